@@ -1,0 +1,234 @@
+use crate::{Equations, Newton, OneStep, Stage, State, StepError, StepReport};
+use lagrangian::linear::Singular;
+use lagrangian::{
+    AdmissibleBasis, Alpha, DiscreteConstraint, DiscreteLagrangian, Dual, Midpoint, NotAWeight, Saddle, System,
+    Trapezoid, constraint_residual, mass_matrix, momentum,
+};
+use std::array::from_fn;
+
+/// How the equations of a step are solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Form {
+    /// By the system's closed form where it has one for this method, else in its basis of admissible velocities, else
+    /// with multipliers.
+    #[default]
+    Best,
+    /// In the basis of admissible velocities where the system gives one, else with multipliers.
+    General,
+    /// With multipliers.
+    Multipliers,
+}
+
+/// The discrete Lagrange-d'Alembert integrator as a one-step map on the distribution.
+///
+/// Given `q0` and an admissible `v0`, it finds the mean velocity `v` of the step, with `q1 = q0 + h v`, and the
+/// multiplier from
+///
+/// ```text
+/// L_v(q0, v0) + D1 L_d(q0, q1) + f_d^-(q0, q1) + A(q0)' lambda = 0,      w_d(q0, q1) = 0,
+/// ```
+///
+/// then projects the momentum at the other end onto the constraint there:
+///
+/// ```text
+/// L_v(q1, v1) = D2 L_d(q0, q1) + f_d^+(q0, q1) + A(q1)' mu,              A(q1) v1 + b(q1) = 0.
+/// ```
+///
+/// Eliminating the velocities gives the equations of Cortes and Martinez (2001, Nonlinearity 14, 1365-1392), with the
+/// node's multiplier `lambda + mu`; as a map on the distribution it needs no special first step, and is self-adjoint where
+/// the discrete Lagrangian and the discrete constraint are. It keeps both constraints to round-off. It does not bound
+/// the energy in general.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Dla<L, C> {
+    /// The discrete Lagrangian `L_d`.
+    pub lagrangian: L,
+    /// The discrete constraint `w_d`.
+    pub constraint: C,
+    /// The solver.
+    pub newton: Newton,
+    form: Form,
+}
+
+impl Dla<Midpoint, Midpoint> {
+    /// The midpoint rule for both: order 2, self-adjoint.
+    #[must_use]
+    pub fn midpoint() -> Self {
+        Self::default()
+    }
+}
+
+impl Dla<Trapezoid, Trapezoid> {
+    /// The trapezoidal rule for both: order 2, self-adjoint.
+    #[must_use]
+    pub fn trapezoid() -> Self {
+        Self::new(Trapezoid, Trapezoid)
+    }
+}
+
+impl Dla<Alpha, Alpha> {
+    /// The rule with weight `alpha` for both: order 1 unless `alpha = 1/2`.
+    ///
+    /// # Errors
+    /// [`NotAWeight`] unless `0 <= alpha <= 1`.
+    pub fn alpha(alpha: f64) -> Result<Self, NotAWeight> {
+        let rule = Alpha::new(alpha)?;
+        Ok(Self::new(rule, rule))
+    }
+}
+
+impl<L, C> Dla<L, C> {
+    /// The method of a discrete Lagrangian and a discrete constraint, solved in the general form.
+    pub fn new(lagrangian: L, constraint: C) -> Self {
+        Self { lagrangian, constraint, newton: Newton::default(), form: Form::General }
+    }
+
+    /// The same method, solved in the given form. Only the pair of midpoint rules has closed forms.
+    #[must_use]
+    pub fn solved(mut self, form: Form) -> Self {
+        self.form = form;
+        self
+    }
+}
+
+impl<Sys, L, C, const N: usize, const M: usize> OneStep<Sys, N, M> for Dla<L, C>
+where
+    Sys: System<N, M>,
+    L: DiscreteLagrangian<Sys, N, M> + 'static,
+    C: DiscreteConstraint<Sys, N, M> + 'static,
+{
+    #[inline]
+    fn step(&mut self, system: &Sys, t0: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        let (q0, v0) = (*state.q(), state.v);
+        if self.form == Form::Best && is_midpoint::<L>() && is_midpoint::<C>() {
+            if let Some(step) = system.closed_step(t0, h, &q0, &v0) {
+                let step = step.map_err(StepError::Closed)?;
+                state.advance(&step.increment, step.velocity);
+                return Ok(StepReport { impulses: step.impulses, iterations: step.iterations });
+            }
+        }
+        let in_basis = self.form != Form::Multipliers;
+        let basis = |t, q: &[f64; N]| if in_basis { system.admissible_basis(t, q) } else { None };
+
+        // The increment, through the mean velocity.
+        let mut increment = Increment {
+            dla: self,
+            system,
+            t0,
+            h,
+            q0,
+            p0: momentum(system, t0, &q0, &v0),
+            a0: system.constraint(t0, &q0).0,
+            basis: basis(t0, &q0),
+            lambda: [0.0; M],
+        };
+        let mut v = v0;
+        let iterations = self
+            .newton
+            .solve(&mut increment, &mut v)
+            .map_err(|source| StepError::Newton { stage: Stage::Increment, source })?;
+        let lambda = increment.lambda;
+
+        // The momentum at the end, projected onto the constraint there.
+        let mut p1 = self.lagrangian.d2(system, t0, h, &q0, &v);
+        if let Some((_, plus)) = self.lagrangian.forces(system, t0, h, &q0, &v) {
+            p1 = from_fn(|i| p1[i] + plus[i]);
+        }
+        let d = v.map(|v| h * v);
+        let (t1, q1) = (t0 + h, state.ahead(&d));
+        let mut projection = Projection { system, t1, q1, p1, basis: basis(t1, &q1), mu: [0.0; M] };
+        let mut v1 = v;
+        self.newton
+            .solve(&mut projection, &mut v1)
+            .map_err(|source| StepError::Newton { stage: Stage::Projection, source })?;
+        let mu = projection.mu;
+
+        state.advance(&d, v1);
+        Ok(StepReport { impulses: [lambda, mu], iterations })
+    }
+}
+
+fn is_midpoint<R: 'static>() -> bool {
+    std::any::TypeId::of::<R>() == std::any::TypeId::of::<Midpoint>()
+}
+
+/// The equations for the mean velocity `v` of a step, with the multiplier at its beginning.
+struct Increment<'a, Sys, L, C, const N: usize, const M: usize> {
+    dla: &'a Dla<L, C>,
+    system: &'a Sys,
+    t0: f64,
+    h: f64,
+    q0: [f64; N],
+    p0: [f64; N],
+    a0: [[f64; N]; M],
+    basis: Option<AdmissibleBasis<f64, N, M>>,
+    lambda: [f64; M],
+}
+
+impl<Sys, L, C, const N: usize, const M: usize> Equations<N> for Increment<'_, Sys, L, C, N, M>
+where
+    Sys: System<N, M>,
+    L: DiscreteLagrangian<Sys, N, M>,
+    C: DiscreteConstraint<Sys, N, M>,
+{
+    #[inline]
+    fn correction(&mut self, v: &[f64; N]) -> Result<[f64; N], Singular> {
+        let Self { dla, system, t0, h, q0, .. } = *self;
+        let (lagrangian, constraint) = (&dla.lagrangian, &dla.constraint);
+        let l_d = lagrangian.derivatives(system, t0, h, &q0, v);
+        let mut residual: [f64; N] = from_fn(|i| self.p0[i] + l_d.d1[i]);
+        let mut block = l_d.d1d2.map(|row| row.map(|x| h * x));
+
+        // Forces and constraint with their derivatives in v.
+        let (t, step) = (Dual::fixed(t0), Dual::fixed(h));
+        let (q, v) = (q0.map(Dual::fixed), Dual::variables(v));
+        if let Some((minus, _)) = lagrangian.forces(system, t, step, &q, &v) {
+            for i in 0..N {
+                residual[i] += minus[i].re;
+                for j in 0..N {
+                    block[i][j] += minus[i].eps[j];
+                }
+            }
+        }
+        let w_d = constraint.residual(system, t, step, &q, &v);
+
+        let saddle = Saddle {
+            block,
+            transposed: self.a0,
+            rows: w_d.map(|w| w.eps),
+            right: residual.map(|r| -r),
+            level: w_d.map(|w| -w.re),
+        };
+        let (correction, lambda) = saddle.solve(self.basis.as_ref())?;
+        self.lambda = lambda;
+        Ok(correction)
+    }
+}
+
+/// The equations for the velocity at the end of a step, with the multiplier there.
+struct Projection<'a, Sys, const N: usize, const M: usize> {
+    system: &'a Sys,
+    t1: f64,
+    q1: [f64; N],
+    p1: [f64; N],
+    basis: Option<AdmissibleBasis<f64, N, M>>,
+    mu: [f64; M],
+}
+
+impl<Sys: System<N, M>, const N: usize, const M: usize> Equations<N> for Projection<'_, Sys, N, M> {
+    #[inline]
+    fn correction(&mut self, v1: &[f64; N]) -> Result<[f64; N], Singular> {
+        let (p, mass) = mass_matrix(self.system, self.t1, &self.q1, v1);
+        let (a1, _) = self.system.constraint(self.t1, &self.q1);
+        let slip = constraint_residual(self.system, self.t1, &self.q1, v1);
+        let saddle = Saddle {
+            block: mass,
+            transposed: a1,
+            rows: a1,
+            right: from_fn(|i| self.p1[i] - p[i]),
+            level: slip.map(|s| -s),
+        };
+        let (correction, minus_mu) = saddle.solve(self.basis.as_ref())?;
+        self.mu = minus_mu.map(|m| -m);
+        Ok(correction)
+    }
+}

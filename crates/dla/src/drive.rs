@@ -1,0 +1,170 @@
+use crate::{OneStep, State, StepError, StepReport};
+use lagrangian::{System, constraint_residual, energy};
+use std::ops::ControlFlow;
+use thiserror::Error;
+
+/// When the steps of a run are made: node `k` is at `t0 + k h`, so that no rounding error adds up in the time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Schedule {
+    /// Time of the first node [s].
+    pub t0: f64,
+    /// Step `h` [s]; negative runs backward.
+    pub step: f64,
+    /// How many steps.
+    pub steps: u64,
+}
+
+impl Schedule {
+    /// Time of node `k` [s].
+    #[must_use]
+    #[inline(always)]
+    pub fn time(&self, k: u64) -> f64 {
+        self.t0 + k as f64 * self.step
+    }
+}
+
+/// A node of a run, as an observer sees it.
+#[derive(Debug)]
+pub struct View<'a, Sys, const N: usize> {
+    /// The system.
+    pub system: &'a Sys,
+    /// The number of steps made so far.
+    pub k: u64,
+    /// The time [s].
+    pub t: f64,
+    /// The state.
+    pub state: &'a State<N>,
+}
+
+impl<Sys, const N: usize> View<'_, Sys, N> {
+    /// The energy `v . L_v - L` [J].
+    pub fn energy<const M: usize>(&self) -> f64
+    where
+        Sys: System<N, M>,
+    {
+        energy(self.system, self.t, self.state.q(), &self.state.v)
+    }
+
+    /// The largest constraint residual `|A(q) v + b|`.
+    pub fn constraint<const M: usize>(&self) -> f64
+    where
+        Sys: System<N, M>,
+    {
+        let residual = constraint_residual(self.system, self.t, self.state.q(), &self.state.v);
+        residual.iter().fold(0.0, |m, r| if r.abs() > m || r.is_nan() { r.abs() } else { m })
+    }
+}
+
+/// Something that looks at the nodes of a run and changes nothing.
+///
+/// `()` looks at nothing; a pair is two observers.
+pub trait Observer<Sys, const N: usize, const M: usize> {
+    /// Sees the first node.
+    fn start(&mut self, node: &View<'_, Sys, N>);
+
+    /// Sees a node after a step; `Break` ends the run there.
+    fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()>;
+
+    /// Sees the last good node once more when the run ends, by itself, by a `Break` or by a failure.
+    #[inline(always)]
+    fn end(&mut self, _node: &View<'_, Sys, N>) {}
+}
+
+impl<Sys, const N: usize, const M: usize> Observer<Sys, N, M> for () {
+    #[inline(always)]
+    fn start(&mut self, _node: &View<'_, Sys, N>) {}
+    #[inline(always)]
+    fn step(&mut self, _node: &View<'_, Sys, N>, _report: &StepReport<M>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
+
+impl<Sys, A, B, const N: usize, const M: usize> Observer<Sys, N, M> for (A, B)
+where
+    A: Observer<Sys, N, M>,
+    B: Observer<Sys, N, M>,
+{
+    #[inline(always)]
+    fn start(&mut self, node: &View<'_, Sys, N>) {
+        self.0.start(node);
+        self.1.start(node);
+    }
+    #[inline(always)]
+    fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+        let first = self.0.step(node, report);
+        let second = self.1.step(node, report);
+        if first.is_break() { first } else { second }
+    }
+    #[inline(always)]
+    fn end(&mut self, node: &View<'_, Sys, N>) {
+        self.0.end(node);
+        self.1.end(node);
+    }
+}
+
+impl<Sys, O: Observer<Sys, N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for &mut O {
+    #[inline(always)]
+    fn start(&mut self, node: &View<'_, Sys, N>) {
+        (**self).start(node);
+    }
+    #[inline(always)]
+    fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+        (**self).step(node, report)
+    }
+    #[inline(always)]
+    fn end(&mut self, node: &View<'_, Sys, N>) {
+        (**self).end(node);
+    }
+}
+
+/// A run that ended early. Its observers keep what they saw, the state is that of the last good node.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[error("step {step}, from t = {time} s: {source}")]
+pub struct RunError {
+    /// The number of the failed step, from 1.
+    pub step: u64,
+    /// The time it began at, which is how far the trajectory is valid [s].
+    pub time: f64,
+    /// What happened.
+    #[source]
+    pub source: StepError,
+}
+
+/// Makes the steps of a schedule and shows every node to the observer; returns how many steps were made.
+///
+/// # Errors
+/// [`RunError`] with the step that failed; `state` then is the last good node.
+#[inline]
+pub fn drive<Sys, Method, Obs, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &mut Method,
+    schedule: &Schedule,
+    state: &mut State<N>,
+    mut observer: Obs,
+) -> Result<u64, RunError>
+where
+    Method: OneStep<Sys, N, M>,
+    Obs: Observer<Sys, N, M>,
+{
+    observer.start(&View { system, k: 0, t: schedule.t0, state });
+    let mut made = 0;
+    let mut outcome = Ok(());
+    while made < schedule.steps {
+        let time = schedule.time(made);
+        match method.step(system, time, schedule.step, state) {
+            Ok(report) => {
+                made += 1;
+                let node = View { system, k: made, t: schedule.time(made), state };
+                if observer.step(&node, &report).is_break() {
+                    break;
+                }
+            }
+            Err(source) => {
+                outcome = Err(RunError { step: made + 1, time, source });
+                break;
+            }
+        }
+    }
+    observer.end(&View { system, k: made, t: schedule.time(made), state });
+    outcome.map(|()| made)
+}

@@ -1,0 +1,21 @@
+//! Discrete Lagrange-d'Alembert integrators.
+//!
+//! A method is a [`OneStep`] map on the constraint distribution: from a state `(q, v)` with `A(q) v + b = 0` to the next
+//! one. [`Dla`] derives it from a discrete Lagrangian and a discrete constraint; [`drive`] repeats it and shows every
+//! node to an [`Observer`], of which [`Trajectory`] is one that keeps what it sees.
+//!
+//! This crate knows no particular system and no file; its [`Newton`] solver knows neither time nor mechanics.
+
+mod dla;
+mod drive;
+mod newton;
+mod one_step;
+mod state;
+mod trajectory;
+
+pub use crate::dla::{Dla, Form};
+pub use drive::{Observer, RunError, Schedule, View, drive};
+pub use newton::{Equations, Newton, NewtonError};
+pub use one_step::{OneStep, Stage, StepError, StepReport};
+pub use state::State;
+pub use trajectory::{Node, Trajectory};

@@ -1,0 +1,74 @@
+use crate::{NewtonError, State};
+use lagrangian::{ClosedStepError, MotionError};
+use thiserror::Error;
+
+/// A one-step map on the constraint distribution: `(q, v)` with `A(q) v + b = 0` to the next such pair.
+pub trait OneStep<Sys, const N: usize, const M: usize> {
+    /// Moves `state` from time `t` to `t + h`.
+    ///
+    /// # Errors
+    /// [`StepError`] where the step has no solution that the method accepts; `state` is then unchanged.
+    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError>;
+}
+
+/// What a step did besides moving the state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StepReport<const M: usize> {
+    /// Impulses of the constraints at the two ends of the step [N s]; the constraint acts with
+    /// `A(q0)' impulses[0] + A(q1)' impulses[1]`. Zero where a method does not compute them.
+    pub impulses: [[f64; M]; 2],
+    /// Newton iterations of the step's equations; 0 for an explicit method.
+    pub iterations: u32,
+}
+
+impl<const M: usize> StepReport<M> {
+    /// The constraint forces, averaged over a step of length `h`: second-order accurate in its middle.
+    #[must_use]
+    pub fn multipliers(&self, h: f64) -> [f64; M] {
+        std::array::from_fn(|k| (self.impulses[0][k] + self.impulses[1][k]) / h)
+    }
+}
+
+/// Which equations of a step failed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// The discrete Lagrange-d'Alembert equations, for the increment.
+    Increment,
+    /// The projection of the momentum onto the constraint, for the new velocity.
+    Projection,
+}
+
+impl std::fmt::Display for Stage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Increment => "the discrete Lagrange-d'Alembert equations",
+            Self::Projection => "the projection onto the constraint",
+        })
+    }
+}
+
+/// Why a step failed.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum StepError {
+    /// Newton's method failed.
+    #[error("{stage}: {source}")]
+    Newton {
+        /// On which equations.
+        stage: Stage,
+        /// How.
+        #[source]
+        source: NewtonError,
+    },
+    /// The closed form of the step failed.
+    #[error("closed form of the step: {0}")]
+    Closed(#[source] ClosedStepError),
+    /// The continuous equations of motion do not determine the accelerations.
+    #[error(transparent)]
+    Motion(MotionError),
+    /// The system gives no basis of its admissible velocities, which the method needs.
+    #[error("the method needs a basis of the admissible velocities, and the system gives none")]
+    NoBasis,
+    /// A velocity became infinite or not a number.
+    #[error("the velocities are no longer finite")]
+    NotFinite,
+}

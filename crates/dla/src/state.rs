@@ -1,0 +1,89 @@
+use std::array::from_fn;
+use std::f64::consts::{PI, TAU};
+
+/// `2 pi` minus its nearest f64.
+const TAU_REST: f64 = 2.449_293_598_294_706_4e-16;
+
+/// Configuration and velocity, as integrators carry them.
+///
+/// The coordinates are sums of many small increments, so their rounding errors are kept and added again (compensated
+/// summation, Kahan 1965); angles stay within half a turn of zero, their full turns counted apart. Together they keep
+/// the constraint and the energy at round-off over any length of run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State<const N: usize> {
+    q: [f64; N],
+    rest: [f64; N],
+    turns: [f64; N],
+    angles: [bool; N],
+    /// Velocities.
+    pub v: [f64; N],
+}
+
+impl<const N: usize> State<N> {
+    /// A state at `q` with velocity `v`; `angles` says which coordinates are angles
+    /// (see [`System::angles`](lagrangian::System::angles)).
+    #[must_use]
+    pub fn new(q: [f64; N], v: [f64; N], angles: [bool; N]) -> Self {
+        let mut state = Self { q, rest: [0.0; N], turns: [0.0; N], angles, v };
+        state.wrap();
+        state
+    }
+
+    /// Configuration, angles within a turn: what a system is evaluated at.
+    #[must_use]
+    #[inline(always)]
+    pub fn q(&self) -> &[f64; N] {
+        &self.q
+    }
+
+    /// Configuration, angles with their full turns: what a user wants to see.
+    #[must_use]
+    pub fn unwrapped(&self) -> [f64; N] {
+        from_fn(|i| if self.turns[i] == 0.0 { self.q[i] } else { self.q[i] + self.turns[i] * TAU })
+    }
+
+    /// The full turns of every angle.
+    #[must_use]
+    pub fn turns(&self) -> &[f64; N] {
+        &self.turns
+    }
+
+    /// The configuration at the end of a step with this increment, before the state has moved there.
+    #[must_use]
+    #[inline(always)]
+    pub fn ahead(&self, increment: &[f64; N]) -> [f64; N] {
+        from_fn(|i| self.q[i] + (increment[i] + self.rest[i]))
+    }
+
+    /// Moves the configuration by `increment` and sets the velocity.
+    #[inline(always)]
+    pub fn advance(&mut self, increment: &[f64; N], v: [f64; N]) {
+        for i in 0..N {
+            let (q, d) = (self.q[i], increment[i] + self.rest[i]);
+            let sum = q + d;
+            let part = sum - q;
+            self.q[i] = sum;
+            self.rest[i] = (q - (sum - part)) + (d - part);
+        }
+        self.v = v;
+        self.wrap();
+    }
+
+    /// The same place with the opposite velocity.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        Self { v: self.v.map(|v| -v), ..*self }
+    }
+
+    #[inline(always)]
+    fn wrap(&mut self) {
+        for i in 0..N {
+            if self.angles[i] && self.q[i].abs() > PI && self.q[i].is_finite() {
+                let turns = (self.q[i] / TAU).round();
+                self.q[i] = (-turns).mul_add(TAU, self.q[i]);
+                self.rest[i] -= turns * TAU_REST;
+                self.turns[i] += turns;
+            }
+        }
+    }
+}

@@ -1,0 +1,79 @@
+use crate::{Observer, StepReport, View};
+use lagrangian::System;
+use std::ops::ControlFlow;
+
+/// A node that was kept.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Node<const N: usize, const M: usize> {
+    /// The number of steps made so far.
+    pub k: u64,
+    /// Time [s].
+    pub t: f64,
+    /// Configuration, angles with their full turns.
+    pub q: [f64; N],
+    /// Velocity.
+    pub v: [f64; N],
+    /// Energy [J].
+    pub energy: f64,
+    /// Largest constraint residual `|A(q) v + b|`.
+    pub constraint: f64,
+    /// Constraint forces averaged over the step that led here; none at the start.
+    pub multipliers: Option<[f64; M]>,
+}
+
+/// The observer that keeps the first node, every `every`-th and the last.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trajectory<const N: usize, const M: usize> {
+    nodes: Vec<Node<N, M>>,
+    every: u64,
+    time: f64,
+    multipliers: Option<[f64; M]>,
+}
+
+impl<const N: usize, const M: usize> Trajectory<N, M> {
+    /// Keeps every `every`-th node; 0 counts as 1.
+    #[must_use]
+    pub fn every(every: u64) -> Self {
+        Self { nodes: Vec::new(), every: every.max(1), time: 0.0, multipliers: None }
+    }
+
+    /// The nodes kept, in the order of time.
+    #[must_use]
+    pub fn nodes(&self) -> &[Node<N, M>] {
+        &self.nodes
+    }
+
+    fn keep<Sys: System<N, M>>(&mut self, view: &View<'_, Sys, N>) {
+        self.nodes.push(Node {
+            k: view.k,
+            t: view.t,
+            q: view.state.unwrapped(),
+            v: view.state.v,
+            energy: view.energy(),
+            constraint: view.constraint(),
+            multipliers: self.multipliers,
+        });
+    }
+}
+
+impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for Trajectory<N, M> {
+    fn start(&mut self, node: &View<'_, Sys, N>) {
+        (self.time, self.multipliers) = (node.t, None);
+        self.keep(node);
+    }
+
+    fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+        self.multipliers = Some(report.multipliers(node.t - self.time));
+        self.time = node.t;
+        if node.k.is_multiple_of(self.every) {
+            self.keep(node);
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn end(&mut self, node: &View<'_, Sys, N>) {
+        if self.nodes.last().is_some_and(|last| last.k != node.k) {
+            self.keep(node);
+        }
+    }
+}

@@ -1,0 +1,1 @@
+//! The comparison harness: baselines, drift, order, reports.

@@ -1,0 +1,36 @@
+use crate::Scalar;
+
+/// A basis `w_1 .. w_(N-M)` of the admissible velocities `ker A(q, t)` at one point.
+///
+/// The array has `N` places, since `N - M` cannot yet be written as its length; only the first `N - M` are read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AdmissibleBasis<S, const N: usize, const M: usize> {
+    vectors: [[S; N]; N],
+}
+
+impl<S: Scalar, const N: usize, const M: usize> AdmissibleBasis<S, N, M> {
+    /// How many vectors there are: the dimension of the distribution.
+    pub const DIMENSION: usize = {
+        assert!(M <= N, "more constraints than coordinates");
+        N - M
+    };
+
+    /// The basis of the given vectors. `K` must be `N - M`, which is checked when the program is compiled.
+    #[must_use]
+    #[inline(always)]
+    pub fn new<const K: usize>(vectors: [[S; N]; K]) -> Self {
+        const {
+            assert!(K == Self::DIMENSION, "a basis of the admissible velocities has N - M vectors");
+        }
+        let mut all = [[S::zero(); N]; N];
+        all[..K].copy_from_slice(&vectors);
+        Self { vectors: all }
+    }
+
+    /// The `N - M` basis vectors.
+    #[must_use]
+    #[inline(always)]
+    pub fn vectors(&self) -> &[[S; N]] {
+        &self.vectors[..Self::DIMENSION]
+    }
+}

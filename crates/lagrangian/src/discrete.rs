@@ -1,0 +1,117 @@
+use crate::{Dual, HyperDual, Rule, Scalar, System, constraint_residual};
+use std::array::from_fn;
+
+/// The derivatives of a discrete Lagrangian over one step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Derivatives<S, const N: usize> {
+    /// `L_d(q0, q1)` [J s].
+    pub value: S,
+    /// `D1 L_d = dL_d/dq0`.
+    pub d1: [S; N],
+    /// `D2 L_d = dL_d/dq1`.
+    pub d2: [S; N],
+    /// `D1 D2 L_d`: row `i`, column `j` is `d^2 L_d / dq0_i dq1_j`.
+    pub d1d2: [[S; N]; N],
+}
+
+/// A discrete Lagrangian `L_d(q0, q1; t0, h)`, an approximation of the action over one step.
+///
+/// A pair `(q0, q1)` is given as `q0` and the mean velocity `v = (q1 - q0)/h`: far from the origin the difference of
+/// the rounded end points would lose the digits that a step needs. Every quadrature [`Rule`] is one; a hand-made one
+/// implements [`DiscreteLagrangian::value`], and [`DiscreteLagrangian::derivatives`] too where a closed form pays.
+pub trait DiscreteLagrangian<Sys, const N: usize, const M: usize> {
+    /// `L_d(q0, q0 + h v)` [J s].
+    fn value<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> S;
+
+    /// Discrete forces `f_d^-` at `q0` and `f_d^+` at `q1` [N s], with the quadrature of the action; none by default.
+    ///
+    /// Marsden and West 2001, equation (3.2.1).
+    #[inline(always)]
+    fn forces<S: Scalar>(
+        &self,
+        _system: &Sys,
+        _t0: S,
+        _h: S,
+        _q0: &[S; N],
+        _v: &[S; N],
+    ) -> Option<([S; N], [S; N])> {
+        None
+    }
+
+    /// Value, `D1`, `D2` and the mixed block, in one evaluation: automatic unless given by hand.
+    #[inline]
+    fn derivatives<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> Derivatives<S, N> {
+        let per_step = h.recip();
+        let unit = |x: S, i: usize| -> [S; N] { from_fn(|k| if k == i { x } else { S::zero() }) };
+        let one = S::constant(1.0);
+        let q0: [HyperDual<S, N, N>; N] = from_fn(|i| HyperDual::linear(q0[i], unit(one, i), [S::zero(); N]));
+        let v: [HyperDual<S, N, N>; N] = from_fn(|i| HyperDual::linear(v[i], unit(-per_step, i), unit(per_step, i)));
+        let l = self.value(system, HyperDual::fixed(t0), HyperDual::fixed(h), &q0, &v);
+        Derivatives { value: l.re, d1: l.e1, d2: l.e2, d1d2: l.e12 }
+    }
+
+    /// `D2 L_d` by itself, the momentum at the end of a step: automatic unless given by hand.
+    #[inline]
+    fn d2<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> [S; N] {
+        let l = self.value(system, Dual::fixed(t0), Dual::fixed(h), &q0.map(Dual::fixed), &Dual::variables(v));
+        l.eps.map(|dl_dv| dl_dv / h)
+    }
+}
+
+/// A discrete constraint `w_d(q0, q1; t0, h) = 0` on the pairs of a step, given as `q0` and `v = (q1 - q0)/h`.
+///
+/// It is chosen independently of the discrete Lagrangian. (Cortes and Martinez 2001, Nonlinearity 14, 1365-1392.)
+pub trait DiscreteConstraint<Sys, const N: usize, const M: usize> {
+    /// `w_d(q0, q0 + h v)`, in the units of `A v`.
+    fn residual<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> [S; M];
+}
+
+impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteLagrangian<Sys, N, M> for R {
+    #[inline(always)]
+    fn value<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> S {
+        let mut sum: Option<S> = None;
+        for node in self.nodes() {
+            let (t, q) = on_line(node.alpha, t0, h, q0, v);
+            let term = system.lagrangian(t, &q, v) * node.weight;
+            sum = Some(sum.map_or(term, |s| s + term));
+        }
+        sum.map_or(S::zero(), |s| h * s)
+    }
+
+    #[inline(always)]
+    fn forces<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> Option<([S; N], [S; N])> {
+        let (mut minus, mut plus) = ([S::zero(); N], [S::zero(); N]);
+        for node in self.nodes() {
+            let (t, q) = on_line(node.alpha, t0, h, q0, v);
+            let force = system.force(t, &q, v)?;
+            for i in 0..N {
+                let impulse = h * force[i] * node.weight;
+                minus[i] += impulse * (1.0 - node.alpha);
+                plus[i] += impulse * node.alpha;
+            }
+        }
+        Some((minus, plus))
+    }
+}
+
+impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteConstraint<Sys, N, M> for R {
+    #[inline(always)]
+    fn residual<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> [S; M] {
+        let mut sum = [S::zero(); M];
+        for node in self.nodes() {
+            let (t, q) = on_line(node.alpha, t0, h, q0, v);
+            let residual = constraint_residual(system, t, &q, v);
+            for k in 0..M {
+                sum[k] += residual[k] * node.weight;
+            }
+        }
+        sum
+    }
+}
+
+/// Time and configuration at the fraction `alpha` of a step.
+#[inline(always)]
+fn on_line<S: Scalar, const N: usize>(alpha: f64, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> (S, [S; N]) {
+    let part = h * alpha;
+    (t0 + part, from_fn(|i| q0[i] + part * v[i]))
+}

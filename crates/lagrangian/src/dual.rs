@@ -1,0 +1,136 @@
+use crate::Scalar;
+use crate::scalar::derived_operators;
+use std::array::from_fn;
+use std::ops::{Add, Div, Mul, Neg};
+
+/// A first-order dual number with `N` independent infinitesimals: a value and its gradient.
+///
+/// `f(re + sum_i eps_i E_i) = f(re) + f'(re) sum_i eps_i E_i`, with `E_i E_j = 0`. The base `S` may itself be a
+/// dual number or eight lanes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dual<S, const N: usize> {
+    /// The value.
+    pub re: S,
+    /// The derivatives.
+    pub eps: [S; N],
+}
+
+impl<S: Scalar, const N: usize> Dual<S, N> {
+    /// The `i`-th independent variable, at the value `re`.
+    #[must_use]
+    #[inline(always)]
+    pub fn variable(re: S, i: usize) -> Self {
+        Self { re, eps: from_fn(|k| S::constant(if k == i { 1.0 } else { 0.0 })) }
+    }
+
+    /// The point `x`, each of its components an independent variable.
+    #[must_use]
+    #[inline(always)]
+    pub fn variables(x: &[S; N]) -> [Self; N] {
+        from_fn(|i| Self::variable(x[i], i))
+    }
+
+    /// A value that does not depend on the variables.
+    #[must_use]
+    #[inline(always)]
+    pub fn fixed(re: S) -> Self {
+        Self { re, eps: [S::zero(); N] }
+    }
+
+    /// `f(self)`, given the value `f` and the derivative `df` at [`Dual::re`].
+    #[must_use]
+    #[inline(always)]
+    pub fn chain(self, f: S, df: S) -> Self {
+        Self { re: f, eps: self.eps.map(|e| df * e) }
+    }
+}
+
+impl<S: Scalar, const N: usize> Add for Dual<S, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        Self { re: self.re + o.re, eps: from_fn(|i| self.eps[i] + o.eps[i]) }
+    }
+}
+impl<S: Scalar, const N: usize> Mul for Dual<S, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, o: Self) -> Self {
+        Self { re: self.re * o.re, eps: from_fn(|i| self.re * o.eps[i] + self.eps[i] * o.re) }
+    }
+}
+impl<S: Scalar, const N: usize> Div for Dual<S, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, o: Self) -> Self {
+        let re = self.re / o.re;
+        Self { re, eps: from_fn(|i| (self.eps[i] - re * o.eps[i]) / o.re) }
+    }
+}
+impl<S: Scalar, const N: usize> Neg for Dual<S, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { re: -self.re, eps: self.eps.map(|e| -e) }
+    }
+}
+impl<S: Scalar, const N: usize> Add<f64> for Dual<S, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: f64) -> Self {
+        Self { re: self.re + o, ..self }
+    }
+}
+impl<S: Scalar, const N: usize> Mul<f64> for Dual<S, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, o: f64) -> Self {
+        Self { re: self.re * o, eps: self.eps.map(|e| e * o) }
+    }
+}
+impl<S: Scalar, const N: usize> Div<f64> for Dual<S, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, o: f64) -> Self {
+        Self { re: self.re / o, eps: self.eps.map(|e| e / o) }
+    }
+}
+derived_operators!([S: Scalar, const N: usize] Dual<S, N>);
+
+impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
+    #[inline(always)]
+    fn constant(x: f64) -> Self {
+        Self::fixed(S::constant(x))
+    }
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = self.re.sin_cos();
+        (self.chain(sin, cos), self.chain(cos, -sin))
+    }
+    #[inline(always)]
+    fn exp(self) -> Self {
+        let f = self.re.exp();
+        self.chain(f, f)
+    }
+    #[inline(always)]
+    fn ln(self) -> Self {
+        self.chain(self.re.ln(), self.re.recip())
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        let f = self.re.sqrt();
+        self.chain(f, f.recip() * 0.5)
+    }
+    #[inline(always)]
+    fn powi(self, n: i32) -> Self {
+        if n == 0 {
+            return Self::constant(1.0);
+        }
+        self.chain(self.re.powi(n), self.re.powi(n - 1) * f64::from(n))
+    }
+    #[inline(always)]
+    fn recip(self) -> Self {
+        let f = self.re.recip();
+        self.chain(f, -(f * f))
+    }
+}

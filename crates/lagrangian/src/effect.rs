@@ -1,0 +1,95 @@
+use crate::Scalar;
+use std::array::from_fn;
+
+/// Something that acts on a body: it adds to the Lagrangian or to the forces, on the body's own coordinates.
+///
+/// What it does not add it leaves `None`, and then nothing is computed. What changes coordinates or constraints is
+/// another body. Effects compose: `()` is none of them, a tuple several known ones, a `Vec` as many as a file names. In
+/// the angles of the body an effect must have the period `2 pi`.
+pub trait Effect<B, const N: usize> {
+    /// What the effect adds to `L(t, q, v)` [J]; a potential `V` adds `-V`.
+    #[inline(always)]
+    fn lagrangian<S: Scalar>(&self, _body: &B, _t: S, _q: &[S; N], _v: &[S; N]) -> Option<S> {
+        None
+    }
+
+    /// What the effect adds to the generalised forces.
+    #[inline(always)]
+    fn force<S: Scalar>(&self, _body: &B, _t: S, _q: &[S; N], _v: &[S; N]) -> Option<[S; N]> {
+        None
+    }
+
+    /// Whether there is no effect at all, so that the body's own closed forms hold.
+    #[inline(always)]
+    fn is_none(&self) -> bool {
+        false
+    }
+}
+
+/// No effect.
+impl<B, const N: usize> Effect<B, N> for () {
+    #[inline(always)]
+    fn is_none(&self) -> bool {
+        true
+    }
+}
+
+#[inline(always)]
+fn add<S: Scalar>(a: Option<S>, b: Option<S>) -> Option<S> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(a + b),
+        (a, b) => a.or(b),
+    }
+}
+
+#[inline(always)]
+fn add_all<S: Scalar, const N: usize>(a: Option<[S; N]>, b: Option<[S; N]>) -> Option<[S; N]> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(from_fn(|i| a[i] + b[i])),
+        (a, b) => a.or(b),
+    }
+}
+
+macro_rules! tuple_of_effects {
+    ($($effect:ident $index:tt),+) => {
+        impl<B, const N: usize, $($effect: Effect<B, N>),+> Effect<B, N> for ($($effect,)+) {
+            #[inline(always)]
+            fn lagrangian<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<S> {
+                let sum = None;
+                $(let sum = add(sum, self.$index.lagrangian(body, t, q, v));)+
+                sum
+            }
+            #[inline(always)]
+            fn force<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
+                let sum = None;
+                $(let sum = add_all(sum, self.$index.force(body, t, q, v));)+
+                sum
+            }
+            #[inline(always)]
+            fn is_none(&self) -> bool {
+                $(self.$index.is_none())&&+
+            }
+        }
+    };
+}
+tuple_of_effects!(E0 0);
+tuple_of_effects!(E0 0, E1 1);
+tuple_of_effects!(E0 0, E1 1, E2 2);
+tuple_of_effects!(E0 0, E1 1, E2 2, E3 3);
+tuple_of_effects!(E0 0, E1 1, E2 2, E3 3, E4 4);
+tuple_of_effects!(E0 0, E1 1, E2 2, E3 3, E4 4, E5 5);
+
+impl<B, E: Effect<B, N>, const N: usize> Effect<B, N> for Vec<E> {
+    #[inline(always)]
+    fn lagrangian<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<S> {
+        self.iter().fold(None, |sum, effect| add(sum, effect.lagrangian(body, t, q, v)))
+    }
+    #[inline(always)]
+    fn force<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
+        self.iter().fold(None, |sum, effect| add_all(sum, effect.force(body, t, q, v)))
+    }
+    #[inline(always)]
+    fn is_none(&self) -> bool {
+        self.iter().all(Effect::is_none)
+    }
+}

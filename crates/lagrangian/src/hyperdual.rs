@@ -1,0 +1,183 @@
+use crate::Scalar;
+use crate::scalar::derived_operators;
+use std::array::from_fn;
+use std::ops::{Add, Div, Mul, Neg};
+
+/// A second-order dual number with two groups of infinitesimals, `P` of the first and `Q` of the second.
+///
+/// One evaluation gives the value, both gradients and the mixed block `d^2 f / da_i db_j`. For a discrete Lagrangian
+/// with the first group on `q0` and the second on `q1` that is all a step needs, without the two blocks
+/// `d^2 f / da da` and `d^2 f / db db` that it does not. (Fike and Alonso 2011, AIAA 2011-886, for `P = Q = 1`.)
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HyperDual<S, const P: usize, const Q: usize> {
+    /// The value.
+    pub re: S,
+    /// Derivatives in the first group.
+    pub e1: [S; P],
+    /// Derivatives in the second group.
+    pub e2: [S; Q],
+    /// Mixed second derivatives, `e12[i][j] = d^2 f / da_i db_j`.
+    pub e12: [[S; Q]; P],
+}
+
+impl<S: Scalar, const P: usize, const Q: usize> HyperDual<S, P, Q> {
+    /// A value that does not depend on the variables.
+    #[must_use]
+    #[inline(always)]
+    pub fn fixed(re: S) -> Self {
+        Self { re, e1: [S::zero(); P], e2: [S::zero(); Q], e12: [[S::zero(); Q]; P] }
+    }
+
+    /// A value that depends linearly on the variables, with the given gradients.
+    #[must_use]
+    #[inline(always)]
+    pub fn linear(re: S, e1: [S; P], e2: [S; Q]) -> Self {
+        Self { re, e1, e2, e12: [[S::zero(); Q]; P] }
+    }
+
+    /// `f(self)`, given the value `f` and the derivatives `df`, `ddf` at [`HyperDual::re`].
+    #[must_use]
+    #[inline(always)]
+    pub fn chain(self, f: S, df: S, ddf: S) -> Self {
+        Self {
+            re: f,
+            e1: self.e1.map(|e| df * e),
+            e2: self.e2.map(|e| df * e),
+            e12: from_fn(|i| {
+                let ddf_i = ddf * self.e1[i];
+                from_fn(|j| df * self.e12[i][j] + ddf_i * self.e2[j])
+            }),
+        }
+    }
+}
+
+impl<S: Scalar, const P: usize, const Q: usize> Add for HyperDual<S, P, Q> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        Self {
+            re: self.re + o.re,
+            e1: from_fn(|i| self.e1[i] + o.e1[i]),
+            e2: from_fn(|j| self.e2[j] + o.e2[j]),
+            e12: from_fn(|i| from_fn(|j| self.e12[i][j] + o.e12[i][j])),
+        }
+    }
+}
+impl<S: Scalar, const P: usize, const Q: usize> Mul for HyperDual<S, P, Q> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, o: Self) -> Self {
+        Self {
+            re: self.re * o.re,
+            e1: from_fn(|i| self.re * o.e1[i] + self.e1[i] * o.re),
+            e2: from_fn(|j| self.re * o.e2[j] + self.e2[j] * o.re),
+            e12: from_fn(|i| {
+                from_fn(|j| {
+                    self.re * o.e12[i][j] + self.e1[i] * o.e2[j] + self.e2[j] * o.e1[i] + self.e12[i][j] * o.re
+                })
+            }),
+        }
+    }
+}
+impl<S: Scalar, const P: usize, const Q: usize> Div for HyperDual<S, P, Q> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, o: Self) -> Self {
+        let re = self.re / o.re;
+        let e1: [S; P] = from_fn(|i| (self.e1[i] - re * o.e1[i]) / o.re);
+        let e2: [S; Q] = from_fn(|j| (self.e2[j] - re * o.e2[j]) / o.re);
+        let e12 = from_fn(|i| {
+            from_fn(|j| (self.e12[i][j] - re * o.e12[i][j] - e1[i] * o.e2[j] - e2[j] * o.e1[i]) / o.re)
+        });
+        Self { re, e1, e2, e12 }
+    }
+}
+impl<S: Scalar, const P: usize, const Q: usize> Neg for HyperDual<S, P, Q> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self {
+            re: -self.re,
+            e1: self.e1.map(|e| -e),
+            e2: self.e2.map(|e| -e),
+            e12: self.e12.map(|row| row.map(|e| -e)),
+        }
+    }
+}
+impl<S: Scalar, const P: usize, const Q: usize> Add<f64> for HyperDual<S, P, Q> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: f64) -> Self {
+        Self { re: self.re + o, ..self }
+    }
+}
+impl<S: Scalar, const P: usize, const Q: usize> Mul<f64> for HyperDual<S, P, Q> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, o: f64) -> Self {
+        Self {
+            re: self.re * o,
+            e1: self.e1.map(|e| e * o),
+            e2: self.e2.map(|e| e * o),
+            e12: self.e12.map(|row| row.map(|e| e * o)),
+        }
+    }
+}
+impl<S: Scalar, const P: usize, const Q: usize> Div<f64> for HyperDual<S, P, Q> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, o: f64) -> Self {
+        Self {
+            re: self.re / o,
+            e1: self.e1.map(|e| e / o),
+            e2: self.e2.map(|e| e / o),
+            e12: self.e12.map(|row| row.map(|e| e / o)),
+        }
+    }
+}
+derived_operators!([S: Scalar, const P: usize, const Q: usize] HyperDual<S, P, Q>);
+
+impl<S: Scalar, const P: usize, const Q: usize> Scalar for HyperDual<S, P, Q> {
+    #[inline(always)]
+    fn constant(x: f64) -> Self {
+        Self::fixed(S::constant(x))
+    }
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = self.re.sin_cos();
+        (self.chain(sin, cos, -sin), self.chain(cos, -sin, -cos))
+    }
+    #[inline(always)]
+    fn exp(self) -> Self {
+        let f = self.re.exp();
+        self.chain(f, f, f)
+    }
+    #[inline(always)]
+    fn ln(self) -> Self {
+        let df = self.re.recip();
+        self.chain(self.re.ln(), df, -(df * df))
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        let f = self.re.sqrt();
+        let df = f.recip() * 0.5;
+        self.chain(f, df, -(df / self.re * 0.5))
+    }
+    #[inline(always)]
+    fn powi(self, n: i32) -> Self {
+        match n {
+            0 => Self::constant(1.0),
+            1 => self,
+            _ => {
+                let ddf = self.re.powi(n - 2) * (f64::from(n) * f64::from(n - 1));
+                self.chain(self.re.powi(n), self.re.powi(n - 1) * f64::from(n), ddf)
+            }
+        }
+    }
+    #[inline(always)]
+    fn recip(self) -> Self {
+        let f = self.re.recip();
+        let df = -(f * f);
+        self.chain(f, df, -(df * f) * 2.0)
+    }
+}

@@ -1,0 +1,121 @@
+use crate::Scalar;
+use crate::scalar::derived_operators;
+use crate::sincos;
+use multiversion::multiversion;
+use std::array::from_fn;
+use std::ops::{Add, Div, Mul, Neg};
+
+/// Eight numbers that go through the same arithmetic at once: eight stages of one step, or eight trajectories.
+///
+/// Plain loops over an array, which the compiler turns into whatever vector instructions it may use; wrap the outermost
+/// call in [`vectorized`] to let it use those that the machine has. Every lane gets
+/// the bits that the same operation on `f64` gives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(align(64))]
+pub struct Lanes(pub [f64; Lanes::COUNT]);
+
+impl Lanes {
+    /// How many lanes there are.
+    pub const COUNT: usize = 8;
+
+    #[inline(always)]
+    fn map(self, f: impl Fn(f64) -> f64) -> Self {
+        Self(from_fn(|i| f(self.0[i])))
+    }
+    #[inline(always)]
+    fn zip(self, o: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        Self(from_fn(|i| f(self.0[i], o.0[i])))
+    }
+}
+
+/// Runs `f` compiled for the widest vector instructions of the machine, found at run time.
+///
+/// What `f` calls takes part as far as it is inlined into `f`; mark closures and kernels `#[inline(always)]`. A portable
+/// build keeps the speed of a native one this way. The bits of the result do not depend on the choice.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2", "aarch64+neon"))]
+pub fn vectorized<R, F: FnOnce() -> R>(f: F) -> R {
+    f()
+}
+
+impl Add for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        self.zip(o, |a, b| a + b)
+    }
+}
+impl Mul for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, o: Self) -> Self {
+        self.zip(o, |a, b| a * b)
+    }
+}
+impl Div for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, o: Self) -> Self {
+        self.zip(o, |a, b| a / b)
+    }
+}
+impl Neg for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.map(|a| -a)
+    }
+}
+impl Add<f64> for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: f64) -> Self {
+        self.map(|a| a + o)
+    }
+}
+impl Mul<f64> for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, o: f64) -> Self {
+        self.map(|a| a * o)
+    }
+}
+impl Div<f64> for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, o: f64) -> Self {
+        self.map(|a| a / o)
+    }
+}
+derived_operators!([] Lanes);
+
+impl Scalar for Lanes {
+    #[inline(always)]
+    fn constant(x: f64) -> Self {
+        Self([x; Self::COUNT])
+    }
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = sincos::sin_cos(&self.0);
+        (Self(sin), Self(cos))
+    }
+    #[inline(always)]
+    fn exp(self) -> Self {
+        self.map(f64::exp)
+    }
+    #[inline(always)]
+    fn ln(self) -> Self {
+        self.map(f64::ln)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.map(f64::sqrt)
+    }
+    #[inline(always)]
+    fn powi(self, n: i32) -> Self {
+        self.map(|a| a.powi(n))
+    }
+    #[inline(always)]
+    fn recip(self) -> Self {
+        self.map(f64::recip)
+    }
+}

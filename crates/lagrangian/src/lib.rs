@@ -1,0 +1,42 @@
+//! What a constrained mechanical system is, and what its discrete Lagrangian is.
+//!
+//! A [`System`] is a Lagrangian and a velocity constraint `A(q, t) v + b(q, t) = 0`, each written once as a function
+//! generic in its [`Scalar`]. Everything else follows from the two: [momenta and energies](energy), the
+//! [equations of motion](Motion), and the derivatives `D1`, `D2`, `D1D2` of the [`DiscreteLagrangian`] that a
+//! variational integrator solves with. Derivatives are exact, by [dual](Dual) [numbers](HyperDual), never by differences.
+//!
+//! This crate knows no integrator and no particular system.
+
+mod basis;
+mod closed;
+mod discrete;
+mod dual;
+mod effect;
+mod hyperdual;
+mod lanes;
+pub mod linear;
+mod momentum;
+mod motion;
+#[cfg(feature = "num-dual")]
+mod num_dual;
+mod rule;
+mod saddle;
+mod scalar;
+mod sincos;
+mod system;
+mod with;
+
+pub use basis::AdmissibleBasis;
+pub use closed::{ClosedStep, ClosedStepError};
+pub use discrete::{Derivatives, DiscreteConstraint, DiscreteLagrangian};
+pub use dual::Dual;
+pub use effect::Effect;
+pub use hyperdual::HyperDual;
+pub use lanes::{Lanes, vectorized};
+pub use momentum::{energy, mass_matrix, momentum};
+pub use motion::{Motion, MotionError};
+pub use rule::{Alpha, Midpoint, Node, NotAWeight, Rule, Symmetrised, Trapezoid};
+pub use saddle::Saddle;
+pub use scalar::Scalar;
+pub use system::{Constraint, System, constraint_residual};
+pub use with::With;

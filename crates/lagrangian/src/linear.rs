@@ -1,0 +1,103 @@
+//! Linear algebra of a few unknowns, on the stack.
+
+use nalgebra::{ArrayStorage, SMatrix, SVector};
+use thiserror::Error;
+
+/// A matrix that does not determine the solution.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[error("singular matrix: pivot {pivot:e} in column {column}, relative to its row and column")]
+pub struct Singular {
+    /// The column whose pivot vanishes.
+    pub column: usize,
+    /// The pivot, relative to the largest entries of its row and column.
+    pub pivot: f64,
+}
+
+/// A factorisation `P A = L U` by elimination with scaled partial pivoting.
+///
+/// nalgebra's own bounds the sizes by a trait that no generic `N` can promise, and every signature up to the user's
+/// would carry it; this one is tested against nalgebra's and faer's.
+#[derive(Debug, Clone, Copy)]
+pub struct Lu<const U: usize> {
+    factors: [[f64; U]; U],
+    order: [usize; U],
+}
+
+impl<const U: usize> Lu<U> {
+    /// Factorises `matrix`, given by rows.
+    ///
+    /// # Errors
+    /// [`Singular`] where a pivot, relative to the size of its row and column, vanishes to rounding or is not a number.
+    #[inline]
+    pub fn new(matrix: [[f64; U]; U]) -> Result<Self, Singular> {
+        let mut a = matrix;
+        let mut order: [usize; U] = std::array::from_fn(|i| i);
+        // Reciprocals of the largest entry of each row, and of each column of the matrix so scaled.
+        let mut row = a.map(|r| largest(r).recip());
+        let column: [f64; U] = std::array::from_fn(|j| largest(std::array::from_fn::<_, U, _>(|i| a[i][j] * row[i])).recip());
+        let threshold = 4.0 * f64::EPSILON;
+        for k in 0..U {
+            let mut best = k;
+            for i in k + 1..U {
+                if (a[i][k] * row[i]).abs() > (a[best][k] * row[best]).abs() {
+                    best = i;
+                }
+            }
+            let pivot = (a[best][k] * row[best] * column[k]).abs();
+            // Written so that a pivot that is not a number is refused too.
+            if !(pivot > threshold && pivot.is_finite()) {
+                return Err(Singular { column: k, pivot });
+            }
+            a.swap(k, best);
+            row.swap(k, best);
+            order.swap(k, best);
+            let upper = a[k];
+            for lower in &mut a[k + 1..] {
+                let factor = lower[k] / upper[k];
+                lower[k] = factor;
+                for j in k + 1..U {
+                    lower[j] -= factor * upper[j];
+                }
+            }
+        }
+        Ok(Self { factors: a, order })
+    }
+
+    /// The solution `x` of `A x = b`.
+    #[must_use]
+    #[inline]
+    pub fn solve(&self, b: [f64; U]) -> [f64; U] {
+        let mut x = self.order.map(|i| b[i]);
+        for i in 0..U {
+            for j in 0..i {
+                x[i] -= self.factors[i][j] * x[j];
+            }
+        }
+        for i in (0..U).rev() {
+            for j in i + 1..U {
+                x[i] -= self.factors[i][j] * x[j];
+            }
+            x[i] /= self.factors[i][i];
+        }
+        x
+    }
+}
+
+#[inline(always)]
+fn largest<const U: usize>(row: [f64; U]) -> f64 {
+    row.iter().fold(0.0, |m: f64, x| if x.abs() > m || x.is_nan() { x.abs() } else { m })
+}
+
+/// The least-squares solution `lambda` of `A' lambda = b`, `A` given by its `M` rows: `(A A') lambda = A b`.
+///
+/// # Errors
+/// [`Singular`] where the rows of `A` depend on one another.
+#[inline]
+pub fn normal_solve<const N: usize, const M: usize>(rows: &[[f64; N]; M], b: &[f64; N]) -> Result<[f64; M], Singular> {
+    let transposed: SMatrix<f64, N, M> = SMatrix::from_array_storage(ArrayStorage(*rows));
+    let gram = transposed.tr_mul(&transposed);
+    let right: SVector<f64, M> = transposed.tr_mul(&SVector::from(*b));
+    let factor = gram.cholesky().ok_or(Singular { column: M.saturating_sub(1), pivot: 0.0 })?;
+    let [lambda] = factor.solve(&right).data.0;
+    Ok(lambda)
+}

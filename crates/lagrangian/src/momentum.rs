@@ -1,0 +1,57 @@
+use crate::{Dual, HyperDual, Scalar, System};
+use std::array::from_fn;
+
+/// `L(t, q, v)` with its gradient in `v`.
+#[inline(always)]
+fn in_velocity<Sys, S, const N: usize, const M: usize>(system: &Sys, t: S, q: &[S; N], v: &[S; N]) -> Dual<S, N>
+where
+    Sys: System<N, M>,
+    S: Scalar,
+{
+    system.lagrangian(Dual::fixed(t), &q.map(Dual::fixed), &Dual::variables(v))
+}
+
+/// The momenta `p = dL/dv`.
+#[inline]
+pub fn momentum<Sys, S, const N: usize, const M: usize>(system: &Sys, t: S, q: &[S; N], v: &[S; N]) -> [S; N]
+where
+    Sys: System<N, M>,
+    S: Scalar,
+{
+    in_velocity(system, t, q, v).eps
+}
+
+/// The energy `E = v . dL/dv - L` [J].
+#[inline]
+pub fn energy<Sys, S, const N: usize, const M: usize>(system: &Sys, t: S, q: &[S; N], v: &[S; N]) -> S
+where
+    Sys: System<N, M>,
+    S: Scalar,
+{
+    let l = in_velocity(system, t, q, v);
+    let mut energy = -l.re;
+    for i in 0..N {
+        energy += l.eps[i] * v[i];
+    }
+    energy
+}
+
+/// The momenta `p = dL/dv` and the mass matrix `d^2 L / dv dv`.
+#[inline]
+pub fn mass_matrix<Sys, S, const N: usize, const M: usize>(
+    system: &Sys,
+    t: S,
+    q: &[S; N],
+    v: &[S; N],
+) -> ([S; N], [[S; N]; N])
+where
+    Sys: System<N, M>,
+    S: Scalar,
+{
+    let v: [HyperDual<S, N, N>; N] = from_fn(|i| {
+        let unit = from_fn(|k| S::constant(if k == i { 1.0 } else { 0.0 }));
+        HyperDual::linear(v[i], unit, unit)
+    });
+    let l = system.lagrangian(HyperDual::fixed(t), &q.map(HyperDual::fixed), &v);
+    (l.e1, l.e12)
+}

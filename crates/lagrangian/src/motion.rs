@@ -1,0 +1,68 @@
+use crate::linear::Singular;
+use crate::{Dual, HyperDual, Saddle, System, constraint_residual, mass_matrix};
+use std::array::from_fn;
+use thiserror::Error;
+
+/// The continuous equations of motion at one state.
+///
+/// `d/dt L_v - L_q = F + A' lambda`, `d/dt (A v + b) = 0`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Motion<const N: usize, const M: usize> {
+    /// Accelerations `v'`.
+    pub acceleration: [f64; N],
+    /// Multipliers `lambda`: the constraint forces are `A' lambda`.
+    pub multiplier: [f64; M],
+}
+
+/// Why the equations of motion do not determine the accelerations.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[error("the mass matrix on the constraint is degenerate at t = {time}: {source}")]
+pub struct MotionError {
+    /// The time [s].
+    pub time: f64,
+    /// The matrix's defect.
+    #[source]
+    pub source: Singular,
+}
+
+impl<const N: usize, const M: usize> Motion<N, M> {
+    /// The equations of motion of any system, by automatic derivatives.
+    ///
+    /// # Errors
+    /// [`MotionError`] where the mass matrix or the constraint is degenerate.
+    pub fn automatic<Sys: System<N, M>>(
+        system: &Sys,
+        t: f64,
+        q: &[f64; N],
+        v: &[f64; N],
+    ) -> Result<Self, MotionError> {
+        let (_, mass) = mass_matrix(system, t, q, v);
+
+        // d/dt L_v at frozen acceleration: the derivative of L_v along (t', q', v') = (1, v, 0).
+        let along_t = HyperDual::linear(t, [0.0; N], [1.0]);
+        let along_q: [HyperDual<f64, N, 1>; N] = from_fn(|i| HyperDual::linear(q[i], [0.0; N], [v[i]]));
+        let in_v = from_fn(|i| HyperDual::linear(v[i], from_fn(|k| if k == i { 1.0 } else { 0.0 }), [0.0]));
+        let transport = system.lagrangian(along_t, &along_q, &in_v).e12;
+
+        let l_q = system.lagrangian(Dual::fixed(t), &Dual::variables(q), &v.map(Dual::fixed)).eps;
+        let force = system.force(t, q, v);
+
+        // d/dt (A v + b) at frozen acceleration.
+        let along_t = Dual { re: t, eps: [1.0] };
+        let along_q: [Dual<f64, 1>; N] = from_fn(|i| Dual { re: q[i], eps: [v[i]] });
+        let rate = constraint_residual(system, along_t, &along_q, &v.map(Dual::fixed));
+
+        let (a, _) = system.constraint(t, q);
+        let saddle = Saddle {
+            block: mass,
+            transposed: a,
+            rows: a,
+            right: from_fn(|i| l_q[i] + force.map_or(0.0, |f| f[i]) - transport[i][0]),
+            level: rate.map(|r| -r.eps[0]),
+        };
+        let basis = system.admissible_basis(t, q);
+        let (acceleration, lambda) =
+            saddle.solve(basis.as_ref()).map_err(|source| MotionError { time: t, source })?;
+        Ok(Self { acceleration, multiplier: lambda.map(|l| -l) })
+    }
+}

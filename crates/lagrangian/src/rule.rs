@@ -1,0 +1,94 @@
+use thiserror::Error;
+
+/// One node of a quadrature over a step: where, as a fraction of the step, and with what weight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Node {
+    /// Position, 0 at the beginning of the step and 1 at its end.
+    pub alpha: f64,
+    /// Weight.
+    pub weight: f64,
+}
+
+/// A quadrature rule on the straight line from `q0` to `q1`.
+///
+/// It gives a discrete Lagrangian `L_d = h sum_i w_i L(t_i, q_i, v)`, the discrete forces that belong to it, and a
+/// discrete constraint `w_d = sum_i w_i [A(q_i, t_i) v + b(q_i, t_i)]`, with `q_i = q0 + alpha_i h v`,
+/// `t_i = t0 + alpha_i h` and `v = (q1 - q0)/h`. (Marsden and West 2001, Acta Numerica 10, 357-514, section 2.3.)
+pub trait Rule {
+    /// The nodes.
+    fn nodes(&self) -> &[Node];
+}
+
+/// One node in the middle: order 2, self-adjoint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Midpoint;
+
+/// The two end points: order 2, self-adjoint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Trapezoid;
+
+/// One node at `q0 + alpha (q1 - q0)`: order 1 unless `alpha = 1/2`; its adjoint has the weight `1 - alpha`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Alpha([Node; 1]);
+
+/// The mean of the rules with `alpha` and with `1 - alpha`: order 2, self-adjoint. `alpha = 0` is the trapezoid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Symmetrised([Node; 2]);
+
+/// The weight of a rule was not a number from 0 to 1.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[error("alpha must lie between 0 and 1, and is {alpha}")]
+pub struct NotAWeight {
+    /// What was given.
+    pub alpha: f64,
+}
+
+fn checked(alpha: f64) -> Result<f64, NotAWeight> {
+    if (0.0..=1.0).contains(&alpha) { Ok(alpha) } else { Err(NotAWeight { alpha }) }
+}
+
+impl Alpha {
+    /// The rule with its node at the fraction `alpha` of the step, `0 <= alpha <= 1`.
+    ///
+    /// # Errors
+    /// [`NotAWeight`] for any other number.
+    pub fn new(alpha: f64) -> Result<Self, NotAWeight> {
+        Ok(Self([Node { alpha: checked(alpha)?, weight: 1.0 }]))
+    }
+}
+
+impl Symmetrised {
+    /// The rule with its nodes at the fractions `alpha` and `1 - alpha` of the step, `0 <= alpha <= 1`.
+    ///
+    /// # Errors
+    /// [`NotAWeight`] for any other number.
+    pub fn new(alpha: f64) -> Result<Self, NotAWeight> {
+        let alpha = checked(alpha)?;
+        Ok(Self([alpha, 1.0 - alpha].map(|alpha| Node { alpha, weight: 0.5 })))
+    }
+}
+
+impl Rule for Midpoint {
+    #[inline(always)]
+    fn nodes(&self) -> &[Node] {
+        &[Node { alpha: 0.5, weight: 1.0 }]
+    }
+}
+impl Rule for Trapezoid {
+    #[inline(always)]
+    fn nodes(&self) -> &[Node] {
+        &[Node { alpha: 0.0, weight: 0.5 }, Node { alpha: 1.0, weight: 0.5 }]
+    }
+}
+impl Rule for Alpha {
+    #[inline(always)]
+    fn nodes(&self) -> &[Node] {
+        &self.0
+    }
+}
+impl Rule for Symmetrised {
+    #[inline(always)]
+    fn nodes(&self) -> &[Node] {
+        &self.0
+    }
+}

@@ -1,0 +1,98 @@
+use crate::{AdmissibleBasis, ClosedStep, ClosedStepError, Motion, MotionError, Scalar};
+
+/// The constraint `A(q, t) v + b(q, t) = 0` at one point: the `M` rows of `A`, and `b`.
+pub type Constraint<S, const N: usize, const M: usize> = ([[S; N]; M], [S; M]);
+
+/// A mechanical system with `N` coordinates and `M` velocity constraints.
+///
+/// The first two methods are the system; the rest have defaults. A method is generic in its scalar so that one
+/// text serves values, exact derivatives and SIMD lanes. SI units, angles in radians.
+///
+/// ```
+/// use lagrangian::{Constraint, Scalar, System};
+///
+/// /// A point of unit mass in space with `z' = y x'` (Rosenberg 1977).
+/// struct Particle;
+/// impl System<3, 1> for Particle {
+///     fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 3], v: &[S; 3]) -> S {
+///         (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) * 0.5
+///     }
+///     fn constraint<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
+///         ([[-q[1], S::zero(), S::constant(1.0)]], [S::zero()])
+///     }
+/// }
+/// # assert_eq!(lagrangian::energy(&Particle, 0.0, &[0.0; 3], &[1.0, 2.0, 0.0]), 2.5);
+/// ```
+pub trait System<const N: usize, const M: usize> {
+    /// The Lagrangian `L(t, q, v)` [J].
+    fn lagrangian<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> S;
+
+    /// `A(q, t)` and `b(q, t)` of the constraint `A v + b = 0`.
+    fn constraint<S: Scalar>(&self, t: S, q: &[S; N]) -> Constraint<S, N, M>;
+
+    /// Generalised forces that no Lagrangian gives: dissipation, controls. None by default, and then none is computed.
+    #[inline(always)]
+    fn force<S: Scalar>(&self, _t: S, _q: &[S; N], _v: &[S; N]) -> Option<[S; N]> {
+        None
+    }
+
+    /// A basis of the admissible velocities `ker A(q, t)`, where one is known in closed form.
+    ///
+    /// A step then solves in it, and needs no multiplier (the discrete null-space method, Betsch 2005,
+    /// Comput. Methods Appl. Mech. Engrg. 194, 5159-5190).
+    #[inline(always)]
+    fn admissible_basis<S: Scalar>(&self, _t: S, _q: &[S; N]) -> Option<AdmissibleBasis<S, N, M>> {
+        None
+    }
+
+    /// Which coordinates are angles, in which the whole system has the period `2 pi`.
+    ///
+    /// Integrators keep these within a turn and count the turns apart, so that a long run loses no digits.
+    #[inline(always)]
+    fn angles(&self) -> [bool; N] {
+        [false; N]
+    }
+
+    /// Accelerations and multipliers of the continuous system, by automatic derivatives unless given by hand.
+    ///
+    /// # Errors
+    /// [`MotionError`] where the mass matrix or the constraint is degenerate.
+    #[inline]
+    fn motion(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<Motion<N, M>, MotionError>
+    where
+        Self: Sized,
+    {
+        Motion::automatic(self, t, q, v)
+    }
+
+    /// One step of the midpoint discrete Lagrange-d'Alembert map, where the system knows a closed form of it.
+    ///
+    /// It must agree with the general step to round-off; it exists for its speed, and for the digits that a closed
+    /// form keeps.
+    #[inline(always)]
+    fn closed_step(
+        &self,
+        _t: f64,
+        _h: f64,
+        _q: &[f64; N],
+        _v: &[f64; N],
+    ) -> Option<Result<ClosedStep<N, M>, ClosedStepError>> {
+        None
+    }
+}
+
+/// The residual `A(q, t) v + b(q, t)` of each constraint.
+#[inline]
+pub fn constraint_residual<Sys, S, const N: usize, const M: usize>(system: &Sys, t: S, q: &[S; N], v: &[S; N]) -> [S; M]
+where
+    Sys: System<N, M>,
+    S: Scalar,
+{
+    let (a, mut residual) = system.constraint(t, q);
+    for k in 0..M {
+        for i in 0..N {
+            residual[k] += a[k][i] * v[i];
+        }
+    }
+    residual
+}

@@ -1,0 +1,1 @@
+//! Scene files: from TOML to a system of concrete type.

@@ -1,0 +1,62 @@
+use crate::SleighError;
+
+/// The free Chaplygin sleigh.
+///
+/// `q = (x, y, theta)`: the blade's contact point `P = (x, y)` [m] and the heading `theta` [rad], with
+/// `e = (cos theta, sin theta)` along the blade and `n = (-sin theta, cos theta)` across it. The centre of mass is
+/// `C = P + a e`, the offset `a` signed: positive when the centre of mass is ahead of the blade.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sleigh {
+    mass: f64,
+    inertia: f64,
+    offset: f64,
+}
+
+impl Sleigh {
+    /// A sleigh of mass `m` [kg], moment of inertia `I` [kg m^2] about the centre of mass and offset `a` [m].
+    ///
+    /// # Errors
+    /// [`SleighError`] names the parameter that is not finite, or not positive where it must be.
+    pub fn new(mass: f64, inertia: f64, offset: f64) -> Result<Self, SleighError> {
+        for (quantity, value) in [("mass", mass), ("inertia", inertia)] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(SleighError::NotPositive { quantity, value });
+            }
+        }
+        if !offset.is_finite() {
+            return Err(SleighError::NotFinite { quantity: "offset", value: offset });
+        }
+        let sleigh = Self { mass, inertia, offset };
+        if !sleigh.pivot_inertia().is_finite() {
+            return Err(SleighError::NotFinite {
+                quantity: "inertia about the blade, I + m a^2,",
+                value: sleigh.pivot_inertia(),
+            });
+        }
+        Ok(sleigh)
+    }
+
+    /// Mass `m` [kg].
+    #[must_use]
+    pub fn mass(&self) -> f64 {
+        self.mass
+    }
+
+    /// Moment of inertia `I` about the centre of mass [kg m^2].
+    #[must_use]
+    pub fn inertia(&self) -> f64 {
+        self.inertia
+    }
+
+    /// Signed distance `a` of the centre of mass ahead of the blade [m].
+    #[must_use]
+    pub fn offset(&self) -> f64 {
+        self.offset
+    }
+
+    /// Moment of inertia `J = I + m a^2` about the blade's contact point [kg m^2].
+    #[must_use]
+    pub fn pivot_inertia(&self) -> f64 {
+        self.inertia + self.mass * self.offset * self.offset
+    }
+}

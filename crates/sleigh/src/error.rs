@@ -1,0 +1,22 @@
+use thiserror::Error;
+
+/// Why a sleigh or its motion cannot be built.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum SleighError {
+    /// A mass or a moment of inertia is not a finite positive number.
+    #[error("{quantity} must be a finite positive number, and is {value}")]
+    NotPositive {
+        /// Which parameter.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A number is infinite or not a number.
+    #[error("{quantity} must be finite, and is {value}")]
+    NotFinite {
+        /// Which parameter, state variable or derived quantity.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+    },
+}

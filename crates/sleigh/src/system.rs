@@ -1,0 +1,63 @@
+use crate::{Sleigh, closed_map};
+use lagrangian::{
+    AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Motion, MotionError, Scalar, System,
+};
+
+impl System<3, 1> for Sleigh {
+    /// `L = m/2 |P'|^2 + m a omega (n . P') + J/2 omega^2`, which is `m/2 |C'|^2 + I/2 omega^2` written at the blade.
+    #[inline(always)]
+    fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 3], v: &[S; 3]) -> S {
+        let (sin, cos) = q[2].sin_cos();
+        let across = cos * v[1] - sin * v[0];
+        (v[0] * v[0] + v[1] * v[1]) * (0.5 * self.mass())
+            + v[2] * across * (self.mass() * self.offset())
+            + v[2] * v[2] * (0.5 * self.pivot_inertia())
+    }
+
+    /// The blade does not slip: `n . P' = -sin(theta) x' + cos(theta) y' = 0`.
+    #[inline(always)]
+    fn constraint<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
+        let (sin, cos) = q[2].sin_cos();
+        ([[-sin, cos, S::zero()]], [S::zero()])
+    }
+
+    /// Drive along the blade, and pivot about it.
+    #[inline(always)]
+    fn admissible_basis<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, 1>> {
+        let (sin, cos) = q[2].sin_cos();
+        let (zero, one) = (S::zero(), S::constant(1.0));
+        Some(AdmissibleBasis::new([[cos, sin, zero], [zero, zero, one]]))
+    }
+
+    #[inline(always)]
+    fn angles(&self) -> [bool; 3] {
+        [false, false, true]
+    }
+
+    /// By hand, for any velocity, admissible or not: with `s = n . P'` the slip and `u = e . P'`,
+    /// `u' = a omega^2 + s omega`, `omega' = -(m a / J) u omega`, `s' = 0`, `lambda = (m I / J) u omega`.
+    #[inline]
+    fn motion(&self, _t: f64, q: &[f64; 3], v: &[f64; 3]) -> Result<Motion<3, 1>, MotionError> {
+        let (m, a, j) = (self.mass(), self.offset(), self.pivot_inertia());
+        let (sin, cos) = q[2].sin_cos();
+        let omega = v[2];
+        let u = cos * v[0] + sin * v[1];
+        // P'' = (u' - omega s) e + (s' + omega u) n, and u' - omega s = a omega^2.
+        let (along, across) = (a * omega * omega, u * omega);
+        Ok(Motion {
+            acceleration: [along * cos - across * sin, along * sin + across * cos, -(m * a / j) * across],
+            multiplier: [m * across * (self.inertia() / j)],
+        })
+    }
+
+    #[inline]
+    fn closed_step(
+        &self,
+        _t: f64,
+        h: f64,
+        q: &[f64; 3],
+        v: &[f64; 3],
+    ) -> Option<Result<ClosedStep<3, 1>, ClosedStepError>> {
+        Some(closed_map::step(self, h, q, v))
+    }
+}
