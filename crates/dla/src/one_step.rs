@@ -65,9 +65,12 @@ pub enum StepError {
     /// The continuous equations of motion do not determine the accelerations.
     #[error(transparent)]
     Motion(MotionError),
-    /// The system gives no basis of its admissible velocities, which the method needs.
-    #[error("the method needs a basis of the admissible velocities, and the system gives none")]
-    NoBasis,
+    /// The method cannot do this system.
+    #[error("{reason}")]
+    Unsupported {
+        /// Why not.
+        reason: &'static str,
+    },
     /// A velocity became infinite or not a number.
     #[error("the velocities are no longer finite")]
     NotFinite,

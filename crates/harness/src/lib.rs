@@ -1,1 +1,18 @@
-//! The comparison harness: baselines, drift, order, reports.
+//! The comparison harness: baselines, long-run drift, and the report that shows them.
+//!
+//! [`Method`] names every integrator; [`run`] makes one run of it and measures it as a [`Record`].
+
+mod baseline;
+mod method;
+mod record;
+// pub mod report;
+mod run;
+mod statistics;
+mod timing;
+
+pub use baseline::{Rk4, Rk4Projected, Rk4Reduced};
+pub use method::{METHODS, Method, MethodError, MethodInfo};
+pub use record::{EnergySummary, NewtonSummary, Record, Sample};
+pub use run::{Request, integrate, run};
+pub use statistics::Trend;
+pub use timing::Progress;

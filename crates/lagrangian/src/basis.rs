@@ -33,4 +33,17 @@ impl<S: Scalar, const N: usize, const M: usize> AdmissibleBasis<S, N, M> {
     pub fn vectors(&self) -> &[[S; N]] {
         &self.vectors[..Self::DIMENSION]
     }
+
+    /// The velocity `xi_1 w_1 + .. + xi_(N-M) w_(N-M)`; the last `M` places of `xi` are not read.
+    #[must_use]
+    #[inline(always)]
+    pub fn combine(&self, xi: &[S; N]) -> [S; N] {
+        let mut v = [S::zero(); N];
+        for (k, w) in self.vectors().iter().enumerate() {
+            for i in 0..N {
+                v[i] += xi[k] * w[i];
+            }
+        }
+        v
+    }
 }

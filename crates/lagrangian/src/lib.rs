@@ -19,6 +19,7 @@ mod momentum;
 mod motion;
 #[cfg(feature = "num-dual")]
 mod num_dual;
+mod reduced;
 mod rule;
 mod saddle;
 mod scalar;
@@ -35,6 +36,7 @@ pub use hyperdual::HyperDual;
 pub use lanes::{Lanes, vectorized};
 pub use momentum::{energy, mass_matrix, momentum};
 pub use motion::{Motion, MotionError};
+pub use reduced::{quasi_velocities, reduced_acceleration};
 pub use rule::{Alpha, Midpoint, Node, NotAWeight, Rule, Symmetrised, Trapezoid};
 pub use saddle::Saddle;
 pub use scalar::Scalar;

@@ -13,6 +13,9 @@ pub struct Singular {
     pub pivot: f64,
 }
 
+/// A pivot below it, relative to its row and column, is rounding.
+const THRESHOLD: f64 = 4.0 * f64::EPSILON;
+
 /// A factorisation `P A = L U` by elimination with scaled partial pivoting.
 ///
 /// nalgebra's own bounds the sizes by a trait that no generic `N` can promise, and every signature up to the user's
@@ -35,7 +38,6 @@ impl<const U: usize> Lu<U> {
         // Reciprocals of the largest entry of each row, and of each column of the matrix so scaled.
         let mut row = a.map(|r| largest(r).recip());
         let column: [f64; U] = std::array::from_fn(|j| largest(std::array::from_fn::<_, U, _>(|i| a[i][j] * row[i])).recip());
-        let threshold = 4.0 * f64::EPSILON;
         for k in 0..U {
             let mut best = k;
             for i in k + 1..U {
@@ -45,7 +47,7 @@ impl<const U: usize> Lu<U> {
             }
             let pivot = (a[best][k] * row[best] * column[k]).abs();
             // Written so that a pivot that is not a number is refused too.
-            if !(pivot > threshold && pivot.is_finite()) {
+            if !(pivot > THRESHOLD && pivot.is_finite()) {
                 return Err(Singular { column: k, pivot });
             }
             a.swap(k, best);
@@ -98,6 +100,13 @@ pub fn normal_solve<const N: usize, const M: usize>(rows: &[[f64; N]; M], b: &[f
     let gram = transposed.tr_mul(&transposed);
     let right: SVector<f64, M> = transposed.tr_mul(&SVector::from(*b));
     let factor = gram.cholesky().ok_or(Singular { column: M.saturating_sub(1), pivot: 0.0 })?;
+    for k in 0..M {
+        // What is left of a row without the part along the rows before it.
+        let pivot = factor.l_dirty()[(k, k)].powi(2) / gram[(k, k)];
+        if !(pivot > THRESHOLD) {
+            return Err(Singular { column: k, pivot });
+        }
+    }
     let [lambda] = factor.solve(&right).data.0;
     Ok(lambda)
 }

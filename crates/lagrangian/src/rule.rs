@@ -57,6 +57,15 @@ impl Alpha {
     }
 }
 
+impl Alpha {
+    /// Whether this is the midpoint rule, the only self-adjoint one of the family.
+    #[must_use]
+    #[allow(clippy::float_cmp, reason = "only the number 1/2 itself makes the rule symmetric")]
+    pub fn is_symmetric(&self) -> bool {
+        self.0[0].alpha == 0.5
+    }
+}
+
 impl Symmetrised {
     /// The rule with its nodes at the fractions `alpha` and `1 - alpha` of the step, `0 <= alpha <= 1`.
     ///

@@ -65,6 +65,14 @@ pub trait System<const N: usize, const M: usize> {
         Motion::automatic(self, t, q, v)
     }
 
+    /// The accelerations `xi'` of the quasi-velocities in [`System::admissible_basis`], where they are known by hand.
+    ///
+    /// Only the first `N - M` places of `xi` and of the result count.
+    #[inline(always)]
+    fn reduced_motion(&self, _t: f64, _q: &[f64; N], _xi: &[f64; N]) -> Option<[f64; N]> {
+        None
+    }
+
     /// One step of the midpoint discrete Lagrange-d'Alembert map, where the system knows a closed form of it.
     ///
     /// It must agree with the general step to round-off; it exists for its speed, and for the digits that a closed

@@ -53,6 +53,11 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
     }
 
     #[inline(always)]
+    fn reduced_motion(&self, t: f64, q: &[f64; N], xi: &[f64; N]) -> Option<[f64; N]> {
+        if self.effects.is_none() { self.body.reduced_motion(t, q, xi) } else { None }
+    }
+
+    #[inline(always)]
     fn closed_step(
         &self,
         t: f64,

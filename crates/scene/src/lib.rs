@@ -1,1 +1,37 @@
-//! Scene files: from TOML to a system of concrete type.
+//! Scene files: from TOML to validated data.
+//!
+//! A scene is a sleigh, the state it starts in, and how to run it. [`Scene::load`] reads a bundled scene or a file,
+//! [`Scene::parse`] a text; both check every key and every number, so that what they return can be run as it is. What
+//! is wrong with a file comes back as a [`SceneError`] that shows the line and says what is accepted there.
+//!
+//! ```
+//! let scene = noslip_scene::Scene::load("turnaround", &["dla"])?;
+//! assert_eq!(scene.run.steps(), 800);
+//!
+//! let text = noslip_scene::Scene::template().replace("mass = 1.0", "mass = -1.0");
+//! let error = noslip_scene::Scene::parse(&text, "heavy.toml", &["dla"]).unwrap_err();
+//! assert!(error.to_string().contains("heavy.toml:6:8"));
+//! # Ok::<(), noslip_scene::SceneError>(())
+//! ```
+
+mod bundled;
+mod document;
+mod effects;
+mod error;
+mod fault;
+mod file;
+mod finding;
+mod keys;
+mod quantity;
+mod run;
+mod scene;
+mod sleigh_section;
+mod suggest;
+mod table;
+
+pub use bundled::{Bundled, bundled};
+pub use effects::EFFECTS;
+pub use error::SceneError;
+pub use finding::{Finding, Place};
+pub use run::{DEFAULT_METHOD, MAX_STEPS, RunSettings};
+pub use scene::Scene;

@@ -4,6 +4,7 @@
 //! [`SleighState`]; [`Exact`] is the motion of the free sleigh in closed form.
 
 mod body;
+mod centre_of_mass;
 mod closed_map;
 mod error;
 mod exact;
@@ -11,6 +12,7 @@ mod state;
 mod system;
 
 pub use body::Sleigh;
+pub use centre_of_mass::CentreOfMass;
 pub use error::SleighError;
 pub use exact::Exact;
 pub use state::SleighState;

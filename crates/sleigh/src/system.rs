@@ -50,6 +50,13 @@ impl System<3, 1> for Sleigh {
         })
     }
 
+    /// `u' = a omega^2`, `omega' = -(m a / J) u omega`.
+    #[inline(always)]
+    fn reduced_motion(&self, _t: f64, _q: &[f64; 3], &[u, omega, _]: &[f64; 3]) -> Option<[f64; 3]> {
+        let a = self.offset();
+        Some([a * omega * omega, -(self.mass() * a / self.pivot_inertia()) * u * omega, 0.0])
+    }
+
     #[inline]
     fn closed_step(
         &self,

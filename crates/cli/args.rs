@@ -1,0 +1,124 @@
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Simulates systems with velocity constraints (blades, wheels, rolling bodies) and shows what accuracy costs.
+///
+/// Without a command: compares every method on the bundled scenes, prints a table for each, and writes a report with
+/// pictures.
+#[derive(Debug, Parser)]
+#[command(name = "noslip", version, args_conflicts_with_subcommands = true)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+    #[command(flatten)]
+    pub(crate) job: JobArguments,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Integrates a scene: one trajectory
+    Run(RunArguments),
+    /// Compares methods on a scene: constraint, energy and drift, error and time, method by method
+    Compare(CompareArguments),
+    /// Reads a scene and says what it is, or what is wrong with it
+    Check(CheckArguments),
+    /// Lists what there is
+    List(ListArguments),
+    /// Writes a commented scene to start from
+    New(NewArguments),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct JobArguments {
+    /// Folder for the report [default: noslip-report, or the next free noslip-report-N]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) report: Option<PathBuf>,
+    /// Write into a report folder that is there already
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SceneArguments {
+    /// A scene file, or the name of a bundled scene (see `noslip list scenes`)
+    #[arg(value_name = "SCENE")]
+    pub(crate) scene: String,
+    /// Largest step [s], instead of the scene's
+    #[arg(long, value_name = "H", allow_negative_numbers = true)]
+    pub(crate) step: Option<f64>,
+    /// Duration [s], instead of the scene's
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    pub(crate) duration: Option<f64>,
+    /// Weight of `dla-alpha`, from 0 to 1
+    #[arg(long, value_name = "A", allow_negative_numbers = true)]
+    pub(crate) alpha: Option<f64>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Overwrite output that is there already
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RunArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    /// Method (see `noslip list methods`), instead of the scene's
+    #[arg(long, value_name = "M")]
+    pub(crate) method: Option<String>,
+    /// Keep every N-th node in the output file
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) every: u64,
+    /// Write the trajectory: .csv or .npz, by the ending
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CompareArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    /// Methods, separated by commas [default: all]
+    #[arg(long, value_name = "M,..", value_delimiter = ',')]
+    pub(crate) methods: Option<Vec<String>>,
+    /// Write a report with pictures into this folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) report: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckArguments {
+    /// A scene file, or the name of a bundled scene
+    #[arg(value_name = "SCENE")]
+    pub(crate) scene: String,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ListArguments {
+    /// What to list
+    pub(crate) what: Listed,
+    /// Print one JSON array
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum Listed {
+    /// The integrators
+    Methods,
+    /// What can act on a body
+    Effects,
+    /// The bundled scenes
+    Scenes,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct NewArguments {
+    /// The file to write
+    #[arg(value_name = "FILE")]
+    pub(crate) file: PathBuf,
+    /// Overwrite a file that is there already
+    #[arg(long)]
+    pub(crate) force: bool,
+}

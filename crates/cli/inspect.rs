@@ -1,0 +1,75 @@
+use crate::args::{CheckArguments, ListArguments, Listed, NewArguments, SceneArguments};
+use crate::error::CliError;
+use crate::files::write_whole;
+use crate::{table, terminal};
+use dla::Schedule;
+use harness::METHODS;
+use scene::Scene;
+use serde_json::json;
+use std::io::Write;
+
+/// The names that a scene's `method` may have.
+pub(crate) fn method_names() -> Vec<&'static str> {
+    METHODS.iter().map(|info| info.name).collect()
+}
+
+/// The scene of a command line, with what its flags say instead.
+pub(crate) fn load(arguments: &SceneArguments, method: Option<&str>) -> Result<Scene, CliError> {
+    let names = method_names();
+    let scene = Scene::load(&arguments.scene, &names)?;
+    Ok(scene.with_overrides(method, arguments.step, arguments.duration, arguments.alpha, &names)?)
+}
+
+/// The steps of a scene's run.
+pub(crate) fn schedule(scene: &Scene) -> Schedule {
+    Schedule { t0: 0.0, step: scene.run.actual_step(), steps: scene.run.steps() }
+}
+
+/// `noslip check`: what a scene is.
+pub(crate) fn check(arguments: &CheckArguments) -> Result<(), CliError> {
+    let scene = Scene::load(&arguments.scene, &method_names())?;
+    let heading = format!("{}: valid, \"{}\"\n", scene.name, scene.title);
+    let mut facts = table::facts(&scene);
+    facts.push(("method".to_owned(), scene.run.method.clone()));
+    terminal::print(&(heading + &table::aligned(&facts)))
+}
+
+/// `noslip list`: what there is.
+pub(crate) fn list(arguments: &ListArguments) -> Result<(), CliError> {
+    if arguments.json {
+        let all: Vec<_> = match arguments.what {
+            Listed::Methods => METHODS
+                .iter()
+                .map(|m| {
+                    json!({"name": m.name, "order": m.order, "keeps": m.keeps, "summary": m.summary,
+                           "reference": m.reference})
+                })
+                .collect(),
+            Listed::Effects => scene::EFFECTS.iter().map(|name| json!({"name": name})).collect(),
+            Listed::Scenes => scenes()?.iter().map(|(name, title)| json!({"name": name, "title": title})).collect(),
+        };
+        return terminal::print_json(&json!(all));
+    }
+    let text = match arguments.what {
+        Listed::Methods => {
+            let line = |m: &harness::MethodInfo| (m.name, format!("order {}, {}", m.order, m.summary));
+            table::aligned(&METHODS.iter().map(line).collect::<Vec<_>>())
+        }
+        Listed::Effects if scene::EFFECTS.is_empty() => "this version knows no effects yet\n".to_owned(),
+        Listed::Effects => scene::EFFECTS.iter().map(|name| format!("{name}\n")).collect(),
+        Listed::Scenes => table::aligned(&scenes()?),
+    };
+    terminal::print(&text)
+}
+
+fn scenes() -> Result<Vec<(&'static str, String)>, CliError> {
+    let names = method_names();
+    let title = |bundled: &scene::Bundled| Ok((bundled.name, Scene::load(bundled.name, &names)?.title));
+    scene::bundled().iter().map(title).collect()
+}
+
+/// `noslip new`: a scene to start from.
+pub(crate) fn new(arguments: &NewArguments) -> Result<(), CliError> {
+    write_whole(&arguments.file, arguments.force, |file| file.write_all(Scene::template().as_bytes()))?;
+    terminal::print(&format!("written: {}\n", arguments.file.display()))
+}

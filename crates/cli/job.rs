@@ -1,0 +1,42 @@
+use crate::args::JobArguments;
+use crate::compare::{compare_scene, methods};
+use crate::error::CliError;
+use crate::inspect::method_names;
+use crate::{table, terminal};
+use harness::report::{self, Report};
+use scene::Scene;
+use std::path::PathBuf;
+
+/// Plain `noslip`: the comparison on the bundled scenes, as tables and as a report.
+pub(crate) fn main_job(arguments: &JobArguments) -> Result<(), CliError> {
+    let folder = match &arguments.report {
+        Some(folder) => folder.clone(),
+        None => free_folder(),
+    };
+    crate::files::refuse_existing(&folder, arguments.force)?;
+    let mut scenes = Vec::new();
+    let mut failure = None;
+    for bundled in scene::bundled() {
+        let scene = Scene::load(bundled.name, &method_names())?;
+        let comparison = compare_scene(&scene, &methods(&method_names(), scene.run.alpha)?);
+        terminal::print(&table::comparison(&scene, &comparison.rows))?;
+        terminal::print("\n")?;
+        failure = failure.or(comparison.rows.into_iter().find_map(|row| row.failure));
+        scenes.push(comparison.report);
+    }
+    let title = "What accuracy costs, and what structure keeps".to_owned();
+    let report = Report { title, intro: table::INTRO.to_owned(), scenes };
+    report::write(&report, &folder, arguments.force).map_err(CliError::Report)?;
+    terminal::print(&format!("report: {}\n", folder.join("index.html").display()))?;
+    failure.map_or(Ok(()), Err)
+}
+
+/// The first of `noslip-report`, `noslip-report-2`, .. that is not there.
+fn free_folder() -> PathBuf {
+    let first = PathBuf::from("noslip-report");
+    if first.symlink_metadata().is_err() {
+        return first;
+    }
+    let numbered = |k: u32| PathBuf::from(format!("noslip-report-{k}"));
+    (2..).map(numbered).find(|folder| folder.symlink_metadata().is_err()).unwrap_or(first)
+}

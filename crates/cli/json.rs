@@ -1,0 +1,47 @@
+use harness::Record;
+use serde_json::{Value, json};
+use sleigh::SleighState;
+
+/// The object that `run --json` prints.
+pub(crate) fn record<const N: usize>(scene: &str, record: &Record<N>, end: &SleighState) -> Value {
+    let mut object = json!({
+        "scene": scene,
+        "method": record.method.name,
+        "order": record.method.order,
+        "step": record.step,
+        "steps": record.steps,
+        "duration": record.t,
+        "wall_seconds": record.wall_seconds,
+        "newton": {"mean": record.newton.mean, "max": record.newton.max},
+        "energy": {
+            "initial": record.energy.initial,
+            "final": record.energy.last,
+            "max_error": record.energy.max_error,
+        },
+        "constraint": {"max": record.constraint_max},
+        "final": {
+            "t": record.t,
+            "x": end.x,
+            "y": end.y,
+            "heading": end.heading,
+            "speed": end.speed,
+            "turn_rate": end.turn_rate,
+        },
+    });
+    if let Some(failure) = &record.failure {
+        object["failure"] = json!({
+            "step": failure.step,
+            "time": failure.time,
+            "reason": failure.source.to_string(),
+        });
+    }
+    object
+}
+
+/// The same object in a row of `compare --json`, with the error at the end and the drift of the energy.
+pub(crate) fn compared<const N: usize>(scene: &str, run: &Record<N>, end: &SleighState, error: Option<f64>) -> Value {
+    let mut object = record(scene, run, end);
+    object["energy"]["drift_per_time"] = json!(run.energy.drift_per_time);
+    object["error"] = json!(error);
+    object
+}

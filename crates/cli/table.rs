@@ -1,0 +1,131 @@
+use crate::compare::Row;
+use crate::error::CliError;
+use comfy_table::{CellAlignment, Table, presets};
+use harness::Record;
+use scene::Scene;
+use sleigh::SleighState;
+use std::fmt::Write;
+use std::path::Path;
+
+/// The columns of a comparison.
+pub(crate) const COLUMNS: [&str; 10] = [
+    "method",
+    "order",
+    "step [s]",
+    "steps",
+    "constraint [m/s]",
+    "energy error [J]",
+    "energy drift [W]",
+    "end error",
+    "Newton",
+    "ns/step",
+];
+
+/// What the columns mean.
+pub(crate) const INTRO: &str = "Every method from the same start with the same step. Constraint: the largest \
+    |A(q) v + b| at a node, for a blade its sideways slip. Energy error: the largest |E - E0| at a node. Energy drift: slope \
+    of the least-squares line through E - E0. End error: distance from the closed form at the end, in metres or radians, \
+    whichever is larger. Newton: iterations a step. ns/step: time of the steps alone, median of repeated runs.";
+
+/// A row of a comparison.
+pub(crate) fn cells<const N: usize>(record: &Record<N>, error: Option<f64>) -> Vec<String> {
+    let newton = if record.newton.max == 0 { "-".to_owned() } else { format!("{:.2}", record.newton.mean) };
+    vec![
+        record.method.name.to_owned(),
+        record.method.order.to_string(),
+        format!("{}", record.step),
+        record.steps.to_string(),
+        format!("{:.1e}", record.constraint_max),
+        format!("{:.1e}", record.energy.max_error),
+        format!("{:+.1e}", record.energy.drift_per_time),
+        error.map_or_else(|| "-".to_owned(), |error| format!("{error:.1e}")),
+        newton,
+        format!("{:.1}", record.wall_seconds * 1e9 / record.steps.max(1) as f64),
+    ]
+}
+
+/// The table of a comparison.
+pub(crate) fn comparison(scene: &Scene, rows: &[Row]) -> String {
+    let mut table = Table::new();
+    table.load_preset(presets::NOTHING).set_header(COLUMNS);
+    for row in rows {
+        table.add_row(&row.cells);
+    }
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    let mut text = format!("{} ({}), {} s\n", scene.title, scene.name, scene.run.duration);
+    for line in table.to_string().lines() {
+        let _ = writeln!(text, "{}", line.trim_end());
+    }
+    text
+}
+
+/// What a scene says, for a person.
+pub(crate) fn facts(scene: &Scene) -> Vec<(String, String)> {
+    let (sleigh, start) = (&scene.sleigh, &scene.start);
+    let energy = 0.5
+        * (sleigh.mass() * start.speed * start.speed + sleigh.pivot_inertia() * start.turn_rate * start.turn_rate);
+    let fact = |name: &str, value: String| (name.to_owned(), value);
+    vec![
+        fact("mass m", format!("{} kg", sleigh.mass())),
+        fact("inertia I about the centre of mass", format!("{} kg m²", sleigh.inertia())),
+        fact("offset a of the centre of mass ahead of the blade", format!("{} m", sleigh.offset())),
+        fact("start", format!("x = {} m, y = {} m, heading {} rad", start.x, start.y, start.heading)),
+        fact("start velocity", format!("{} m/s along the blade, {} rad/s", start.speed, start.turn_rate)),
+        fact("energy", format!("{energy} J")),
+        fact(
+            "run",
+            format!("{} s in {} steps of {} s", scene.run.duration, scene.run.steps(), scene.run.actual_step()),
+        ),
+    ]
+}
+
+/// The result of one run, for a person.
+pub(crate) fn one_run<const N: usize>(
+    scene: &Scene,
+    record: &Record<N>,
+    end: &SleighState,
+    out: Option<&Path>,
+) -> String {
+    let mut lines = vec![
+        ("scene", format!("{} ({})", scene.title, scene.name)),
+        ("method", format!("{}, order {}", record.method.name, record.method.order)),
+        ("steps", format!("{} of {} s, to t = {} s", record.steps, record.step, record.t)),
+        ("position", format!("x = {} m, y = {} m", end.x, end.y)),
+        ("heading", format!("{} rad", end.heading)),
+        ("velocity", format!("{} m/s along the blade, {} rad/s", end.speed, end.turn_rate)),
+        ("energy", format!("{} J at the start, {} J at the end", record.energy.initial, record.energy.last)),
+        ("energy error", format!("{:.2e} J at most", record.energy.max_error)),
+        ("constraint", format!("{:.2e} m/s at most", record.constraint_max)),
+    ];
+    if record.newton.max > 0 {
+        lines.push(("Newton", format!("{:.2} iterations a step, {} at most", record.newton.mean, record.newton.max)));
+    }
+    let per_step = record.wall_seconds * 1e9 / record.steps.max(1) as f64;
+    lines.push(("time", format!("{:.3e} s, {per_step:.1} ns a step", record.wall_seconds)));
+    if let Some(path) = out {
+        lines.push(("written", path.display().to_string()));
+    }
+    aligned(&lines)
+}
+
+/// Names and values in two columns.
+pub(crate) fn aligned<K: AsRef<str>, V: AsRef<str>>(lines: &[(K, V)]) -> String {
+    let width = lines.iter().map(|(name, _)| name.as_ref().chars().count()).max().unwrap_or(0);
+    let mut text = String::new();
+    for (name, value) in lines {
+        let _ = writeln!(text, "{:<width$}  {}", name.as_ref(), value.as_ref());
+    }
+    text
+}
+
+/// The failure of a run, told with how far the run is valid.
+pub(crate) fn failure<const N: usize>(record: &Record<N>) -> Option<CliError> {
+    record.failure.as_ref().map(|failure| {
+        CliError::Computation(format!(
+            "{} failed at {failure}; the trajectory is valid up to t = {} s ({} steps)",
+            record.method.name, record.t, record.steps
+        ))
+    })
+}

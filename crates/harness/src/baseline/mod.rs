@@ -1,0 +1,24 @@
+//! Integrators to compare with: the classical Runge-Kutta method on the equations of motion in three forms.
+
+mod rk4;
+mod rk4_reduced;
+
+pub use rk4::{Rk4, Rk4Projected};
+pub use rk4_reduced::Rk4Reduced;
+
+use std::array::from_fn;
+
+/// `x + h k`.
+#[inline(always)]
+fn shifted<const N: usize>(x: &[f64; N], h: f64, k: &[f64; N]) -> [f64; N] {
+    from_fn(|i| x[i] + h * k[i])
+}
+
+/// The increment `h/6 (k1 + 2 k2 + 2 k3 + k4)`. (Kutta 1901; Hairer, Norsett and Wanner 1993, section II.1.)
+#[inline(always)]
+fn weighted<const N: usize>(h: f64, k: &[[f64; N]; 4]) -> [f64; N] {
+    from_fn(|i| h / 6.0 * (k[0][i] + 2.0 * (k[1][i] + k[2][i]) + k[3][i]))
+}
+
+/// Where the four stages are evaluated, as fractions of the step; each uses the slope of the one before it.
+const STAGES: [f64; 4] = [0.0, 0.5, 0.5, 1.0];

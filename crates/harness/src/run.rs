@@ -1,0 +1,69 @@
+use crate::record::Meter;
+use crate::timing::{Ticker, median_seconds};
+use crate::{Method, Progress, Record, Rk4, Rk4Projected, Rk4Reduced};
+use dla::{Dla, Form, Observer, RunError, Schedule, State, drive};
+use lagrangian::System;
+
+/// A run to be made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Request<const N: usize> {
+    /// When the steps are.
+    pub schedule: Schedule,
+    /// Configuration at the start.
+    pub q: [f64; N],
+    /// Velocity at the start.
+    pub v: [f64; N],
+    /// About how many nodes to keep for plots.
+    pub samples: u64,
+}
+
+/// Integrates with the method of that name: the one place where a name becomes a type.
+///
+/// # Errors
+/// [`RunError`] with the step that failed; `state` is then the last good node.
+pub fn integrate<Sys, Obs, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &Method,
+    schedule: &Schedule,
+    state: &mut State<N>,
+    observer: Obs,
+) -> Result<u64, RunError>
+where
+    Sys: System<N, M>,
+    Obs: Observer<Sys, N, M>,
+{
+    match *method {
+        Method::Dla => drive(system, &mut Dla::midpoint().solved(Form::Best), schedule, state, observer),
+        Method::DlaTrapezoid => drive(system, &mut Dla::trapezoid(), schedule, state, observer),
+        Method::DlaAlpha(rule) => drive(system, &mut Dla::new(rule, rule), schedule, state, observer),
+        Method::Rk4 => drive(system, &mut Rk4, schedule, state, observer),
+        Method::Rk4Projected => drive(system, &mut Rk4Projected, schedule, state, observer),
+        Method::Rk4Reduced => drive(system, &mut Rk4Reduced, schedule, state, observer),
+    }
+}
+
+/// Makes a run twice, once observed and once timed with nothing looking on, and measures it.
+///
+/// A run that fails gives the record of its valid part, with [`Record::failure`] set.
+pub fn run<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &Method,
+    request: &Request<N>,
+    progress: &mut impl Progress,
+) -> Record<N> {
+    let Request { schedule, q, v, samples } = *request;
+    let start = State::new(q, v, system.angles());
+
+    let mut meter = Meter::new(schedule.steps.div_ceil(samples.max(1)));
+    let ticker = Ticker { progress, told: 0 };
+    let failure = integrate(system, method, &schedule, &mut start.clone(), (&mut meter, ticker)).err();
+
+    let timed = Schedule { steps: failure.map_or(schedule.steps, |failure| failure.step - 1), ..schedule };
+    let wall_seconds = median_seconds(|| {
+        let mut state = std::hint::black_box(start);
+        // The observed run has just shown that these steps succeed.
+        let made = integrate(system, method, &timed, &mut state, ());
+        std::hint::black_box((made.is_ok(), state));
+    });
+    meter.record(method.info(), schedule.step, wall_seconds, failure)
+}

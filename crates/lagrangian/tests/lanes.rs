@@ -1,0 +1,74 @@
+//! Eight lanes against eight scalars, and their sine and cosine against the platform's.
+
+#![allow(missing_docs)]
+mod common;
+
+use common::{Everything, vector};
+use lagrangian::{Dual, HyperDual, Lanes, Scalar, System, momentum, vectorized};
+use proptest::prelude::*;
+use std::array::from_fn;
+
+proptest! {
+    /// The same model on lanes, run with the machine's best instructions and with the build's own, gives the bits of f64.
+    #[test]
+    fn lanes_are_eight_scalars(
+        c in vector(), t in vector::<8>(), q in proptest::array::uniform8(vector::<3>()),
+        v in proptest::array::uniform8(vector::<3>()),
+    ) {
+        let system = Everything { c };
+        let lane_q: [Lanes; 3] = from_fn(|i| Lanes(from_fn(|l| q[l][i])));
+        let lane_v: [Lanes; 3] = from_fn(|i| Lanes(from_fn(|l| v[l][i])));
+        let plain = system.lagrangian(Lanes(t), &lane_q, &lane_v);
+        let wide = vectorized(#[inline(always)] || system.lagrangian(Lanes(t), &lane_q, &lane_v));
+        let p = vectorized(#[inline(always)] || momentum(&system, Lanes(t), &lane_q, &lane_v));
+        for l in 0..8 {
+            let scalar = system.lagrangian(t[l], &q[l], &v[l]);
+            prop_assert_eq!(plain.0[l].to_bits(), scalar.to_bits());
+            prop_assert_eq!(wide.0[l].to_bits(), scalar.to_bits());
+            for i in 0..3 {
+                prop_assert_eq!(p[i].0[l].to_bits(), momentum(&system, t[l], &q[l], &v[l])[i].to_bits());
+            }
+        }
+    }
+
+    /// Second derivatives over lanes: the type that eight trajectories will solve with.
+    #[test]
+    fn duals_over_lanes(x in vector::<8>(), y in vector::<8>()) {
+        let f = |a: HyperDual<Lanes, 1, 1>, b: HyperDual<Lanes, 1, 1>| (a * b).sin() / (b * b + 2.0).sqrt();
+        let lanes = f(
+            HyperDual::linear(Lanes(x), [Lanes::constant(1.0)], [Lanes::zero()]),
+            HyperDual::linear(Lanes(y), [Lanes::zero()], [Lanes::constant(1.0)]),
+        );
+        for l in 0..8 {
+            let a = Dual::<Dual<f64, 1>, 1>::variable(Dual::fixed(x[l]), 0);
+            let b = Dual::fixed(Dual::variable(y[l], 0));
+            let nested = (a * b).sin() / (b * b + 2.0).sqrt();
+            approx::assert_relative_eq!(lanes.e12[0][0].0[l], nested.eps[0].eps[0], epsilon = 1e-14);
+        }
+    }
+
+    #[test]
+    fn sine_and_cosine_within_an_ulp(x in prop_oneof![
+        -1.0..1.0f64, -1e4..1e4f64, -1e6..1e6f64, -1e300..1e300f64,
+        // Near the multiples of pi/2, where a careless reduction loses everything.
+        (-100_000i32..100_000, -1e-9..1e-9f64).prop_map(|(k, e)| f64::from(k) * std::f64::consts::FRAC_PI_2 + e),
+    ]) {
+        let (sin, cos) = Scalar::sin_cos(x);
+        for (ours, platform) in [(sin, f64::sin(x)), (cos, f64::cos(x))] {
+            // Both are within one unit in the last place of the truth.
+            let ulp = (platform.abs() * f64::EPSILON).max(f64::MIN_POSITIVE);
+            prop_assert!((ours - platform).abs() <= 2.0 * ulp, "{x}: {ours} and {platform}");
+        }
+    }
+}
+
+#[test]
+fn sine_and_cosine_of_special_values() {
+    assert_eq!(Scalar::sin_cos(0.0), (0.0, 1.0));
+    assert!(Scalar::sin_cos(-0.0).0.is_sign_negative());
+    assert_eq!(Scalar::sin_cos(1e-300), (1e-300, 1.0));
+    for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let (sin, cos) = Scalar::sin_cos(x);
+        assert!(sin.is_nan() && cos.is_nan());
+    }
+}

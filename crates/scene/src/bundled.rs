@@ -1,0 +1,26 @@
+/// A scene that is part of the program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Bundled {
+    /// The name under which [`Scene::load`](crate::Scene::load) finds it.
+    pub name: &'static str,
+    /// Its text, with comments.
+    pub text: &'static str,
+}
+
+macro_rules! bundle {
+    ($($name:literal),* $(,)?) => {
+        &[$(Bundled { name: $name, text: include_str!(concat!("../../../docs/scenes/", $name, ".toml")) }),*]
+    };
+}
+
+/// Every bundled scene, in the order in which to present them.
+#[must_use]
+pub fn bundled() -> &'static [Bundled] {
+    bundle!["turnaround", "straight", "circle"]
+}
+
+pub(crate) fn names() -> impl Iterator<Item = &'static str> {
+    bundled().iter().map(|scene| scene.name)
+}
+
+pub(crate) const TEMPLATE: &str = include_str!("template.toml");

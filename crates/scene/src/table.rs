@@ -1,0 +1,154 @@
+use crate::document::Document;
+use crate::error::SceneError;
+use crate::fault::Fault;
+use crate::keys;
+use crate::quantity::Quantity;
+use crate::suggest;
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// One table of a scene, read key by key.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Table<'s> {
+    pub(crate) document: Document<'s>,
+    /// The path of the table, empty for the document itself.
+    path: &'static str,
+    entries: &'s DeTable<'s>,
+    /// Where the table is announced: what an error about a missing key points to.
+    header: (usize, usize),
+}
+
+impl<'s> Table<'s> {
+    /// The document itself, whose keys are all known.
+    pub(crate) fn root(document: Document<'s>, entries: &'s DeTable<'s>) -> Result<Self, SceneError> {
+        Self { document, path: "", entries, header: (0, 0) }.with_known_keys()
+    }
+
+    /// The required table `key`, whose keys are all known.
+    pub(crate) fn table(&self, key: &'static str) -> Result<Self, SceneError> {
+        let accepted = || format!("the table `[{key}]` with the keys {}", suggest::list(keys::of(key)));
+        let value = self.get(key).ok_or_else(|| self.missing(key, accepted()))?;
+        let DeValue::Table(entries) = value.get_ref() else {
+            return Err(self.wrong_type(key, value, accepted()));
+        };
+        let span = value.span();
+        Self { document: self.document, path: key, entries, header: (span.start, span.end) }.with_known_keys()
+    }
+
+    /// Refuses keys that the table does not have, the first in the text before the others.
+    fn with_known_keys(self) -> Result<Self, SceneError> {
+        let known = keys::of(self.path);
+        let unknown = self.entries.keys().filter(|key| !known.contains(&key.get_ref().as_ref()));
+        let Some(key) = unknown.min_by_key(|key| key.span().start) else {
+            return Ok(self);
+        };
+        let name: &str = key.get_ref();
+        let help = match (keys::home(name), suggest::nearest(name, known.iter().copied())) {
+            (Some(""), _) => Some(format!("`{name}` belongs at the top of the file, before the first table")),
+            (Some(table), _) => Some(format!("`{name}` belongs in the table `[{table}]`")),
+            (None, Some(near)) => Some(suggest::did_you_mean(near)),
+            (None, None) => None,
+        };
+        let fault = Fault {
+            variant: SceneError::UnknownKey,
+            key: "",
+            problem: "is not a key of a scene".to_owned(),
+            found: None,
+            accepted: suggest::list(known),
+            help,
+        };
+        Err(self.document.fail(&key.span(), Some(keys::path(self.path, name)), fault))
+    }
+
+    /// The value of `key`, if the table has it.
+    pub(crate) fn get(&self, key: &str) -> Option<&'s Spanned<DeValue<'s>>> {
+        self.entries.get(key)
+    }
+
+    /// The number `quantity`, within its range, if the table has it.
+    pub(crate) fn number(&self, quantity: &Quantity) -> Result<Option<f64>, SceneError> {
+        let Some(value) = self.get(quantity.key) else {
+            return Ok(None);
+        };
+        let number = as_f64(value.get_ref())
+            .ok_or_else(|| self.wrong_type(quantity.key, value, quantity.accepted()))?;
+        quantity.check(number).map_err(|fault| self.fail(fault))?;
+        Ok(Some(number))
+    }
+
+    /// The number `quantity`, within its range.
+    pub(crate) fn required(&self, quantity: &Quantity) -> Result<f64, SceneError> {
+        self.number(quantity)?.ok_or_else(|| self.missing(quantity.key, quantity.accepted()))
+    }
+
+    /// The string `key`, if the table has it.
+    pub(crate) fn text(&self, key: &'static str, accepted: &str) -> Result<Option<&'s str>, SceneError> {
+        match self.get(key) {
+            None => Ok(None),
+            Some(value) => match value.get_ref() {
+                DeValue::String(text) => Ok(Some(text)),
+                _ => Err(self.wrong_type(key, value, accepted.to_owned())),
+            },
+        }
+    }
+
+    /// The fault as an error at the value of its key, or at the header of the table when that has no such key.
+    pub(crate) fn fail(&self, mut fault: Fault) -> SceneError {
+        let span = self.get(fault.key).map(Spanned::span);
+        if let Some(span) = &span {
+            // As it is written, not as it was read: 1e999 rather than inf.
+            fault.found = Some(keys::abridged(&self.document.text[span.clone()]));
+        }
+        self.document.fail(&span.unwrap_or(self.header()), Some(keys::path(self.path, fault.key)), fault)
+    }
+
+    fn missing(&self, key: &'static str, accepted: String) -> SceneError {
+        let problem = "is missing".to_owned();
+        self.fail(Fault { variant: SceneError::Missing, key, problem, found: None, accepted, help: None })
+    }
+
+    /// The error of a value whose type is not the accepted one.
+    pub(crate) fn wrong_type(&self, key: &str, value: &Spanned<DeValue<'_>>, accepted: String) -> SceneError {
+        let fault = Fault {
+            variant: SceneError::WrongType,
+            key: "",
+            problem: "has the wrong type".to_owned(),
+            found: Some(type_name(value.get_ref()).to_owned()),
+            accepted,
+            help: None,
+        };
+        self.document.fail(&value.span(), Some(keys::path(self.path, key)), fault)
+    }
+
+    fn header(&self) -> Range<usize> {
+        self.header.0..self.header.1
+    }
+}
+
+/// An integer or a float as the nearest `f64`; infinite when there is none, `None` for other types.
+fn as_f64(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Float(float) => Some(float.as_str().parse().unwrap_or(f64::NAN)),
+        // Read as a float, so that an integer may have more digits than any integer type.
+        DeValue::Integer(integer) if integer.radix() == 10 => Some(integer.as_str().parse().unwrap_or(f64::NAN)),
+        DeValue::Integer(integer) => Some(match u128::from_str_radix(integer.as_str(), integer.radix()) {
+            Ok(number) => number as f64,
+            Err(_) => f64::INFINITY,
+        }),
+        _ => None,
+    }
+}
+
+/// The type of a value, with its article.
+pub(crate) fn type_name(value: &DeValue<'_>) -> &'static str {
+    match value {
+        DeValue::String(_) => "a string",
+        DeValue::Integer(_) => "an integer",
+        DeValue::Float(_) => "a number",
+        DeValue::Boolean(_) => "a truth value",
+        DeValue::Datetime(_) => "a date or time",
+        DeValue::Array(_) => "a list",
+        DeValue::Table(_) => "a table",
+    }
+}
