@@ -47,7 +47,7 @@ pub(crate) fn cells<const N: usize>(record: &Record<N>, error: Option<f64>) -> V
 /// The table of a comparison.
 pub(crate) fn comparison(scene: &Scene, rows: &[Row]) -> String {
     let mut table = Table::new();
-    table.load_preset(presets::NOTHING).set_header(COLUMNS);
+    table.load_style(presets::NOTHING).set_header(COLUMNS);
     for row in rows {
         table.add_row(&row.cells);
     }
@@ -55,8 +55,8 @@ pub(crate) fn comparison(scene: &Scene, rows: &[Row]) -> String {
         column.set_cell_alignment(CellAlignment::Right);
     }
     let mut text = format!("{} ({}), {} s\n", scene.title, scene.name, scene.run.duration);
-    for line in table.to_string().lines() {
-        let _ = writeln!(text, "{}", line.trim_end());
+    for line in table.trim_fmt().lines() {
+        let _ = writeln!(text, "{line}");
     }
     text
 }
@@ -64,8 +64,8 @@ pub(crate) fn comparison(scene: &Scene, rows: &[Row]) -> String {
 /// What a scene says, for a person.
 pub(crate) fn facts(scene: &Scene) -> Vec<(String, String)> {
     let (sleigh, start) = (&scene.sleigh, &scene.start);
-    let energy = 0.5
-        * (sleigh.mass() * start.speed * start.speed + sleigh.pivot_inertia() * start.turn_rate * start.turn_rate);
+    let energy =
+        0.5 * (sleigh.mass() * start.speed * start.speed + sleigh.pivot_inertia() * start.turn_rate * start.turn_rate);
     let fact = |name: &str, value: String| (name.to_owned(), value);
     vec![
         fact("mass m", format!("{} kg", sleigh.mass())),

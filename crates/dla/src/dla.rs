@@ -38,7 +38,7 @@ pub enum Form {
 /// node's multiplier `lambda + mu`; as a map on the distribution it needs no special first step, and is self-adjoint where
 /// the discrete Lagrangian and the discrete constraint are. It keeps both constraints to round-off. It does not bound
 /// the energy in general.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dla<L, C> {
     /// The discrete Lagrangian `L_d`.
     pub lagrangian: L,
@@ -53,7 +53,7 @@ impl Dla<Midpoint, Midpoint> {
     /// The midpoint rule for both: order 2, self-adjoint.
     #[must_use]
     pub fn midpoint() -> Self {
-        Self::default()
+        Self::new(Midpoint, Midpoint)
     }
 }
 
@@ -98,13 +98,12 @@ where
 {
     #[inline]
     fn step(&mut self, system: &Sys, t0: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
-        let (q0, v0) = (*state.q(), state.v);
-        if self.form == Form::Best && is_midpoint::<L>() && is_midpoint::<C>() {
-            if let Some(step) = system.closed_step(t0, h, &q0, &v0) {
-                let step = step.map_err(StepError::Closed)?;
-                state.advance(&step.increment, step.velocity);
-                return Ok(StepReport { impulses: step.impulses, iterations: step.iterations });
-            }
+        let (q0, v0) = (*state.q(), *state.v());
+        let closed = self.form == Form::Best && is_midpoint::<L>() && is_midpoint::<C>();
+        if closed && let Some(step) = system.closed_step(t0, h, &q0, &v0, state.xi()) {
+            let step = step.map_err(StepError::Closed)?;
+            state.advance(&step.increment, step.velocity, Some(step.xi));
+            return Ok(StepReport { impulses: step.impulses, iterations: step.iterations });
         }
         let in_basis = self.form != Form::Multipliers;
         let basis = |t, q: &[f64; N]| if in_basis { system.admissible_basis(t, q) } else { None };
@@ -142,7 +141,7 @@ where
             .map_err(|source| StepError::Newton { stage: Stage::Projection, source })?;
         let mu = projection.mu;
 
-        state.advance(&d, v1);
+        state.advance(&d, v1, None);
         Ok(StepReport { impulses: [lambda, mu], iterations })
     }
 }

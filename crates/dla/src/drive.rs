@@ -42,7 +42,7 @@ impl<Sys, const N: usize> View<'_, Sys, N> {
     where
         Sys: System<N, M>,
     {
-        energy(self.system, self.t, self.state.q(), &self.state.v)
+        energy(self.system, self.t, self.state.q(), self.state.v())
     }
 
     /// The largest constraint residual `|A(q) v + b|`.
@@ -50,7 +50,7 @@ impl<Sys, const N: usize> View<'_, Sys, N> {
     where
         Sys: System<N, M>,
     {
-        let residual = constraint_residual(self.system, self.t, self.state.q(), &self.state.v);
+        let residual = constraint_residual(self.system, self.t, self.state.q(), self.state.v());
         residual.iter().fold(0.0, |m, r| if r.abs() > m || r.is_nan() { r.abs() } else { m })
     }
 }

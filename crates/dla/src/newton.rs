@@ -84,11 +84,11 @@ impl Newton {
         x: &mut [f64; U],
     ) -> Result<u32, NewtonError> {
         let mut last = [f64::INFINITY; U];
+        let mut rounding = [false; U];
         let mut before = f64::INFINITY;
         let mut growths = 0;
         for iteration in 1..=self.max_iterations {
-            let correction =
-                equations.correction(x).map_err(|source| NewtonError::Singular { iteration, source })?;
+            let correction = equations.correction(x).map_err(|source| NewtonError::Singular { iteration, source })?;
             for i in 0..U {
                 x[i] += correction[i];
             }
@@ -97,29 +97,27 @@ impl Newton {
             if !size.is_finite() || (relative.is_nan() && size > 0.0) {
                 return Err(NewtonError::NotFinite { iteration });
             }
-            if (0..U).all(|i| self.settled(correction[i].abs(), last[i], x[i].abs(), size)) {
+            let mut settled = true;
+            for i in 0..U {
+                let (d, shrink) = (correction[i].abs(), correction[i].abs() / last[i]);
+                // Once a component has been seen to move by rounding only, it stays so.
+                rounding[i] |= shrink >= 0.25 && d <= Self::ROUNDING * size;
+                let next = if last[i].is_finite() { d * shrink * shrink } else { f64::INFINITY };
+                settled &= rounding[i] || d.min(next) <= self.tolerance * x[i].abs();
+                last[i] = d;
+            }
+            if settled {
                 return Ok(iteration);
             }
-            if relative > before {
+            if relative > before && relative > Self::ROUNDING {
                 growths += 1;
                 if growths == Self::GROWTHS {
                     return Err(NewtonError::Diverged { iteration, correction: relative, before });
                 }
             }
             before = relative;
-            last = correction.map(f64::abs);
         }
         Err(NewtonError::IterationLimit { iterations: self.max_iterations, correction: before })
-    }
-
-    #[inline(always)]
-    fn settled(&self, correction: f64, last: f64, x: f64, size: f64) -> bool {
-        if correction <= self.tolerance * x {
-            return true;
-        }
-        let shrink = correction / last;
-        correction * shrink * shrink <= self.tolerance * x && last.is_finite()
-            || correction <= Self::ROUNDING * size && shrink >= 0.25
     }
 }
 

@@ -8,15 +8,16 @@ const TAU_REST: f64 = 2.449_293_598_294_706_4e-16;
 ///
 /// The coordinates are sums of many small increments, so their rounding errors are kept and added again (compensated
 /// summation, Kahan 1965); angles stay within half a turn of zero, their full turns counted apart. Together they keep
-/// the constraint and the energy at round-off over any length of run.
+/// the constraint and the energy at round-off over any length of run. A method that works with quasi-velocities leaves
+/// them beside the velocity, so that the next step need not recover them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State<const N: usize> {
     q: [f64; N],
     rest: [f64; N],
     turns: [f64; N],
     angles: [bool; N],
-    /// Velocities.
-    pub v: [f64; N],
+    v: [f64; N],
+    xi: Option<[f64; N]>,
 }
 
 impl<const N: usize> State<N> {
@@ -24,7 +25,7 @@ impl<const N: usize> State<N> {
     /// (see [`System::angles`](lagrangian::System::angles)).
     #[must_use]
     pub fn new(q: [f64; N], v: [f64; N], angles: [bool; N]) -> Self {
-        let mut state = Self { q, rest: [0.0; N], turns: [0.0; N], angles, v };
+        let mut state = Self { q, rest: [0.0; N], turns: [0.0; N], angles, v, xi: None };
         state.wrap();
         state
     }
@@ -42,6 +43,20 @@ impl<const N: usize> State<N> {
         from_fn(|i| if self.turns[i] == 0.0 { self.q[i] } else { self.q[i] + self.turns[i] * TAU })
     }
 
+    /// Velocity.
+    #[must_use]
+    #[inline(always)]
+    pub fn v(&self) -> &[f64; N] {
+        &self.v
+    }
+
+    /// The velocity in the system's basis of admissible velocities, where the last step knew it.
+    #[must_use]
+    #[inline(always)]
+    pub fn xi(&self) -> Option<[f64; N]> {
+        self.xi
+    }
+
     /// The full turns of every angle.
     #[must_use]
     pub fn turns(&self) -> &[f64; N] {
@@ -55,9 +70,9 @@ impl<const N: usize> State<N> {
         from_fn(|i| self.q[i] + (increment[i] + self.rest[i]))
     }
 
-    /// Moves the configuration by `increment` and sets the velocity.
+    /// Moves the configuration by `increment` and sets the velocity, with its quasi-velocities where they are known.
     #[inline(always)]
-    pub fn advance(&mut self, increment: &[f64; N], v: [f64; N]) {
+    pub fn advance(&mut self, increment: &[f64; N], v: [f64; N], xi: Option<[f64; N]>) {
         for i in 0..N {
             let (q, d) = (self.q[i], increment[i] + self.rest[i]);
             let sum = q + d;
@@ -65,14 +80,15 @@ impl<const N: usize> State<N> {
             self.q[i] = sum;
             self.rest[i] = (q - (sum - part)) + (d - part);
         }
-        self.v = v;
+        (self.v, self.xi) = (v, xi);
         self.wrap();
     }
 
     /// The same place with the opposite velocity.
     #[must_use]
     pub fn reversed(&self) -> Self {
-        Self { v: self.v.map(|v| -v), ..*self }
+        let flipped = |v: [f64; N]| v.map(|v| -v);
+        Self { v: flipped(self.v), xi: self.xi.map(flipped), ..*self }
     }
 
     #[inline(always)]

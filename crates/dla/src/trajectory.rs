@@ -48,7 +48,7 @@ impl<const N: usize, const M: usize> Trajectory<N, M> {
             k: view.k,
             t: view.t,
             q: view.state.unwrapped(),
-            v: view.state.v,
+            v: *view.state.v(),
             energy: view.energy(),
             constraint: view.constraint(),
             multipliers: self.multipliers,

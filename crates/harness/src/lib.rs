@@ -5,7 +5,7 @@
 mod baseline;
 mod method;
 mod record;
-// pub mod report;
+pub mod report;
 mod run;
 mod statistics;
 mod timing;

@@ -170,7 +170,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for 
     }
 
     fn end(&mut self, node: &View<'_, Sys, N>) {
-        self.end = (node.k, node.t, node.state.unwrapped(), node.state.v);
+        self.end = (node.k, node.t, node.state.unwrapped(), *node.state.v());
         if !node.k.is_multiple_of(self.every) {
             self.sample(node);
         }

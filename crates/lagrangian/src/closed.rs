@@ -7,6 +7,8 @@ pub struct ClosedStep<const N: usize, const M: usize> {
     pub increment: [f64; N],
     /// The velocity `v1` at the end, admissible at `q1`.
     pub velocity: [f64; N],
+    /// The same velocity as quasi-velocities in the system's basis of admissible velocities at `q1`.
+    pub xi: [f64; N],
     /// Impulses of the constraints at the two ends of the step, `A(q0)' impulses[0] + A(q1)' impulses[1]` in all.
     pub impulses: [[f64; M]; 2],
     /// Newton iterations taken.

@@ -18,43 +18,45 @@ pub struct Derivatives<S, const N: usize> {
 ///
 /// A pair `(q0, q1)` is given as `q0` and the mean velocity `v = (q1 - q0)/h`: far from the origin the difference of
 /// the rounded end points would lose the digits that a step needs. Every quadrature [`Rule`] is one; a hand-made one
-/// implements [`DiscreteLagrangian::value`], and [`DiscreteLagrangian::derivatives`] too where a closed form pays.
+/// implements [`DiscreteLagrangian::average`], and [`DiscreteLagrangian::derivatives`] too where a closed form pays.
 pub trait DiscreteLagrangian<Sys, const N: usize, const M: usize> {
+    /// The mean Lagrangian over the step, `L_d(q0, q0 + h v) / h` [J].
+    ///
+    /// The action itself would bring factors `h` and `1/h` into the momenta that cancel but for their rounding, which is
+    /// the same in every step: an energy drift of half an ulp a step.
+    fn average<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> S;
+
     /// `L_d(q0, q0 + h v)` [J s].
-    fn value<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> S;
+    #[inline(always)]
+    fn value<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> S {
+        h * self.average(system, t0, h, q0, v)
+    }
 
     /// Discrete forces `f_d^-` at `q0` and `f_d^+` at `q1` [N s], with the quadrature of the action; none by default.
     ///
     /// Marsden and West 2001, equation (3.2.1).
     #[inline(always)]
-    fn forces<S: Scalar>(
-        &self,
-        _system: &Sys,
-        _t0: S,
-        _h: S,
-        _q0: &[S; N],
-        _v: &[S; N],
-    ) -> Option<([S; N], [S; N])> {
+    fn forces<S: Scalar>(&self, _system: &Sys, _t0: S, _h: S, _q0: &[S; N], _v: &[S; N]) -> Option<([S; N], [S; N])> {
         None
     }
 
     /// Value, `D1`, `D2` and the mixed block, in one evaluation: automatic unless given by hand.
     #[inline]
     fn derivatives<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> Derivatives<S, N> {
-        let per_step = h.recip();
-        let unit = |x: S, i: usize| -> [S; N] { from_fn(|k| if k == i { x } else { S::zero() }) };
-        let one = S::constant(1.0);
-        let q0: [HyperDual<S, N, N>; N] = from_fn(|i| HyperDual::linear(q0[i], unit(one, i), [S::zero(); N]));
-        let v: [HyperDual<S, N, N>; N] = from_fn(|i| HyperDual::linear(v[i], unit(-per_step, i), unit(per_step, i)));
-        let l = self.value(system, HyperDual::fixed(t0), HyperDual::fixed(h), &q0, &v);
-        Derivatives { value: l.re, d1: l.e1, d2: l.e2, d1d2: l.e12 }
+        // In units of h the end points are a = q0/h and b = q1/h: then q0 = h a, v = b - a, and D1 L_d is the derivative
+        // of L_d/h in a.
+        let (zero, one) = (S::zero(), S::constant(1.0));
+        let unit = |x: S, i: usize| -> [S; N] { from_fn(|k| if k == i { x } else { zero }) };
+        let q0: [HyperDual<S, N, N>; N] = from_fn(|i| HyperDual::linear(q0[i], unit(h, i), [zero; N]));
+        let v: [HyperDual<S, N, N>; N] = from_fn(|i| HyperDual::linear(v[i], unit(-one, i), unit(one, i)));
+        let l = self.average(system, HyperDual::fixed(t0), HyperDual::fixed(h), &q0, &v);
+        Derivatives { value: h * l.re, d1: l.e1, d2: l.e2, d1d2: l.e12.map(|row| row.map(|x| x / h)) }
     }
 
     /// `D2 L_d` by itself, the momentum at the end of a step: automatic unless given by hand.
     #[inline]
     fn d2<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> [S; N] {
-        let l = self.value(system, Dual::fixed(t0), Dual::fixed(h), &q0.map(Dual::fixed), &Dual::variables(v));
-        l.eps.map(|dl_dv| dl_dv / h)
+        self.average(system, Dual::fixed(t0), Dual::fixed(h), &q0.map(Dual::fixed), &Dual::variables(v)).eps
     }
 }
 
@@ -68,14 +70,14 @@ pub trait DiscreteConstraint<Sys, const N: usize, const M: usize> {
 
 impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteLagrangian<Sys, N, M> for R {
     #[inline(always)]
-    fn value<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> S {
+    fn average<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> S {
         let mut sum: Option<S> = None;
         for node in self.nodes() {
             let (t, q) = on_line(node.alpha, t0, h, q0, v);
             let term = system.lagrangian(t, &q, v) * node.weight;
             sum = Some(sum.map_or(term, |s| s + term));
         }
-        sum.map_or(S::zero(), |s| h * s)
+        sum.unwrap_or(S::zero())
     }
 
     #[inline(always)]

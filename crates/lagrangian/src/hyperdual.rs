@@ -72,9 +72,7 @@ impl<S: Scalar, const P: usize, const Q: usize> Mul for HyperDual<S, P, Q> {
             e1: from_fn(|i| self.re * o.e1[i] + self.e1[i] * o.re),
             e2: from_fn(|j| self.re * o.e2[j] + self.e2[j] * o.re),
             e12: from_fn(|i| {
-                from_fn(|j| {
-                    self.re * o.e12[i][j] + self.e1[i] * o.e2[j] + self.e2[j] * o.e1[i] + self.e12[i][j] * o.re
-                })
+                from_fn(|j| self.re * o.e12[i][j] + self.e1[i] * o.e2[j] + self.e2[j] * o.e1[i] + self.e12[i][j] * o.re)
             }),
         }
     }
@@ -86,9 +84,8 @@ impl<S: Scalar, const P: usize, const Q: usize> Div for HyperDual<S, P, Q> {
         let re = self.re / o.re;
         let e1: [S; P] = from_fn(|i| (self.e1[i] - re * o.e1[i]) / o.re);
         let e2: [S; Q] = from_fn(|j| (self.e2[j] - re * o.e2[j]) / o.re);
-        let e12 = from_fn(|i| {
-            from_fn(|j| (self.e12[i][j] - re * o.e12[i][j] - e1[i] * o.e2[j] - e2[j] * o.e1[i]) / o.re)
-        });
+        let e12 =
+            from_fn(|i| from_fn(|j| (self.e12[i][j] - re * o.e12[i][j] - e1[i] * o.e2[j] - e2[j] * o.e1[i]) / o.re));
         Self { re, e1, e2, e12 }
     }
 }

@@ -37,7 +37,8 @@ impl<const U: usize> Lu<U> {
         let mut order: [usize; U] = std::array::from_fn(|i| i);
         // Reciprocals of the largest entry of each row, and of each column of the matrix so scaled.
         let mut row = a.map(|r| largest(r).recip());
-        let column: [f64; U] = std::array::from_fn(|j| largest(std::array::from_fn::<_, U, _>(|i| a[i][j] * row[i])).recip());
+        let column: [f64; U] =
+            std::array::from_fn(|j| largest(std::array::from_fn::<_, U, _>(|i| a[i][j] * row[i])).recip());
         for k in 0..U {
             let mut best = k;
             for i in k + 1..U {
@@ -46,8 +47,7 @@ impl<const U: usize> Lu<U> {
                 }
             }
             let pivot = (a[best][k] * row[best] * column[k]).abs();
-            // Written so that a pivot that is not a number is refused too.
-            if !(pivot > THRESHOLD && pivot.is_finite()) {
+            if pivot <= THRESHOLD || !pivot.is_finite() {
                 return Err(Singular { column: k, pivot });
             }
             a.swap(k, best);
@@ -103,7 +103,7 @@ pub fn normal_solve<const N: usize, const M: usize>(rows: &[[f64; N]; M], b: &[f
     for k in 0..M {
         // What is left of a row without the part along the rows before it.
         let pivot = factor.l_dirty()[(k, k)].powi(2) / gram[(k, k)];
-        if !(pivot > THRESHOLD) {
+        if pivot <= THRESHOLD || pivot.is_nan() {
             return Err(Singular { column: k, pivot });
         }
     }

@@ -30,12 +30,7 @@ impl<const N: usize, const M: usize> Motion<N, M> {
     ///
     /// # Errors
     /// [`MotionError`] where the mass matrix or the constraint is degenerate.
-    pub fn automatic<Sys: System<N, M>>(
-        system: &Sys,
-        t: f64,
-        q: &[f64; N],
-        v: &[f64; N],
-    ) -> Result<Self, MotionError> {
+    pub fn automatic<Sys: System<N, M>>(system: &Sys, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<Self, MotionError> {
         let (_, mass) = mass_matrix(system, t, q, v);
 
         // d/dt L_v at frozen acceleration: the derivative of L_v along (t', q', v') = (1, v, 0).
@@ -61,8 +56,7 @@ impl<const N: usize, const M: usize> Motion<N, M> {
             level: rate.map(|r| -r.eps[0]),
         };
         let basis = system.admissible_basis(t, q);
-        let (acceleration, lambda) =
-            saddle.solve(basis.as_ref()).map_err(|source| MotionError { time: t, source })?;
+        let (acceleration, lambda) = saddle.solve(basis.as_ref()).map_err(|source| MotionError { time: t, source })?;
         Ok(Self { acceleration, multiplier: lambda.map(|l| -l) })
     }
 }

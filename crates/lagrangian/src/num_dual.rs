@@ -1,7 +1,7 @@
 //! The number types of `num-dual` as scalars of a model: the oracle of the derivative tests.
 
 use crate::Scalar;
-use num_dual::{Dual64, Dual2_64, DualNum, HyperDual64};
+use num_dual::{Dual2_64, Dual64, DualNum, HyperDual64};
 
 macro_rules! oracle {
     ($($number:ty),+) => { $(

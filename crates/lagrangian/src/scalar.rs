@@ -1,4 +1,3 @@
-use crate::sincos;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -72,9 +71,7 @@ impl Scalar for f64 {
     }
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        // Not that of the platform: these bits are the same on every machine, and the same as those of the lanes.
-        let ([sin], [cos]) = sincos::sin_cos(&[self]);
-        (sin, cos)
+        f64::sin_cos(self)
     }
     #[inline(always)]
     fn exp(self) -> Self {

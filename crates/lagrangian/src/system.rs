@@ -75,8 +75,8 @@ pub trait System<const N: usize, const M: usize> {
 
     /// One step of the midpoint discrete Lagrange-d'Alembert map, where the system knows a closed form of it.
     ///
-    /// It must agree with the general step to round-off; it exists for its speed, and for the digits that a closed
-    /// form keeps.
+    /// `xi` are the quasi-velocities of `v` in [`System::admissible_basis`], where they are known. The step must agree with
+    /// the general one to round-off; it exists for its speed, and for the digits that a closed form keeps.
     #[inline(always)]
     fn closed_step(
         &self,
@@ -84,6 +84,7 @@ pub trait System<const N: usize, const M: usize> {
         _h: f64,
         _q: &[f64; N],
         _v: &[f64; N],
+        _xi: Option<[f64; N]>,
     ) -> Option<Result<ClosedStep<N, M>, ClosedStepError>> {
         None
     }

@@ -1,6 +1,4 @@
-use crate::{
-    AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Effect, Motion, MotionError, Scalar, System,
-};
+use crate::{AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Effect, Motion, MotionError, Scalar, System};
 use std::array::from_fn;
 
 /// A body with the effects that act on it: again a [`System`], on the body's coordinates and constraints.
@@ -64,7 +62,8 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
         h: f64,
         q: &[f64; N],
         v: &[f64; N],
+        xi: Option<[f64; N]>,
     ) -> Option<Result<ClosedStep<N, M>, ClosedStepError>> {
-        if self.effects.is_none() { self.body.closed_step(t, h, q, v) } else { None }
+        if self.effects.is_none() { self.body.closed_step(t, h, q, v, xi) } else { None }
     }
 }

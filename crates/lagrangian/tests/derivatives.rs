@@ -1,6 +1,6 @@
 //! The dual numbers against `num-dual`, on single operations and on a Lagrangian that has everything.
 
-#![allow(missing_docs, clippy::float_cmp)]
+#![allow(missing_docs, clippy::float_cmp, clippy::unwrap_used, clippy::expect_used)]
 mod common;
 
 use approx::assert_relative_eq;
@@ -21,9 +21,32 @@ fn operations<S: Scalar>(x: S, y: S) -> Vec<S> {
     sum -= x * y;
     sum *= 1.5;
     vec![
-        x + y, x - y, x * y, x / (y * y + 1.0), -x, x + 2.0, x - 2.0, x * 3.0, x / 3.0, sin, cos, x.exp(),
-        positive.ln(), positive.sqrt(), positive.recip(), x.powi(0), x.powi(1), x.powi(2), x.powi(5),
-        positive.powi(-3), x.squared(), x.sin(), y.cos(), sum, S::constant(4.0), S::zero(),
+        x + y,
+        x - y,
+        x * y,
+        x / (y * y + 1.0),
+        -x,
+        x + 2.0,
+        x - 2.0,
+        x * 3.0,
+        x / 3.0,
+        sin,
+        cos,
+        x.exp(),
+        positive.ln(),
+        positive.sqrt(),
+        positive.recip(),
+        x.powi(0),
+        x.powi(1),
+        x.powi(2),
+        x.powi(5),
+        positive.powi(-3),
+        x.squared(),
+        x.sin(),
+        y.cos(),
+        sum,
+        S::constant(4.0),
+        S::zero(),
     ]
 }
 

@@ -1,6 +1,6 @@
 //! Discrete Lagrangians and their derivatives, for every rule.
 
-#![allow(missing_docs)]
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 mod common;
 
 use approx::assert_relative_eq;
@@ -112,8 +112,8 @@ proptest! {
 struct HandMade;
 
 impl DiscreteLagrangian<Everything, 3, 1> for HandMade {
-    fn value<S: Scalar>(&self, system: &Everything, t0: S, h: S, q0: &[S; 3], v: &[S; 3]) -> S {
-        Midpoint.value(system, t0, h, q0, v)
+    fn average<S: Scalar>(&self, system: &Everything, t0: S, h: S, q0: &[S; 3], v: &[S; 3]) -> S {
+        Midpoint.average(system, t0, h, q0, v)
     }
     fn derivatives<S: Scalar>(&self, system: &Everything, t0: S, h: S, q0: &[S; 3], v: &[S; 3]) -> Derivatives<S, 3> {
         // D1 = h/2 L_q - L_v, D2 = h/2 L_q + L_v, D1D2 = h/4 L_qq + (L_qv - L_vq)/2 - L_vv/h: here from the end points'

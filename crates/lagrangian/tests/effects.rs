@@ -1,6 +1,6 @@
 //! Effects compose by types and by lists, and none of them is the bare body.
 
-#![allow(missing_docs, clippy::float_cmp)]
+#![allow(missing_docs, clippy::float_cmp, clippy::unwrap_used, clippy::expect_used)]
 mod common;
 
 use common::{Everything, vector};

@@ -1,6 +1,6 @@
 //! The small linear solvers against those of faer and nalgebra.
 
-#![allow(missing_docs)]
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 mod common;
 
 use common::component;
@@ -48,7 +48,7 @@ fn check<const U: usize>(a: Matrix<U>, b: [f64; U]) -> Result<(), TestCaseError>
     let dense = faer::Mat::from_fn(U, U, |i, j| a[i][j]);
     let right = faer::Mat::from_fn(U, 1, |i, _| b[i]);
     let other = dense.full_piv_lu().solve(&right);
-    let theirs: [f64; U] = std::array::from_fn(|i| other[(i, 0)]);
+    let theirs: [f64; U] = from_fn(|i| other[(i, 0)]);
     let ours = residual(&a, &x, &b);
     prop_assert!(ours <= 1e-15f64.max(10.0 * residual(&a, &theirs, &b)), "worse than faer's: {ours:e}");
     Ok(())

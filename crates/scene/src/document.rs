@@ -1,6 +1,7 @@
 use crate::error::SceneError;
 use crate::fault::Fault;
 use crate::finding::{Excerpt, Place};
+use crate::keys;
 use std::ops::Range;
 
 /// The text of a scene and where it comes from: turns byte ranges into places.
@@ -17,26 +18,44 @@ impl Document<'_> {
         fault.at(self.origin, Some(place), field, excerpt)
     }
 
-    /// An error of the TOML parser, or of a deserialiser that was given a part of this text.
-    pub(crate) fn toml_error(&self, error: &toml::de::Error) -> SceneError {
+    /// An error of the TOML parser.
+    pub(crate) fn syntax(&self, error: &toml::de::Error) -> SceneError {
+        let span = error.span().unwrap_or(0..0);
         // The parser says "problem, expected this, that".
-        let (problem, accepted) = match error.message().split_once(", expected ") {
-            Some((problem, expected)) => (problem.to_owned(), expected.to_owned()),
-            None => (error.message().to_owned(), "TOML, as https://toml.io defines it".to_owned()),
+        let (problem, expected) = match error.message().split_once(", expected ") {
+            None if error.message() == "duplicate key" => ("duplicate key", "every key and table once"),
+            None => (error.message(), "TOML, as https://toml.io defines it"),
+            Some(parts) => parts,
+        };
+        // Within the value of a known key, what that key accepts says more than what the parser would go on with.
+        let value = self.key_before(span.start).and_then(|field| Some((keys::accepted(&field)?, field)));
+        let (field, problem, accepted) = match value {
+            Some((accepted, field)) => (Some(field), format!("is not TOML: {problem}"), accepted),
+            None => (None, format!("not TOML: {problem}"), expected.to_owned()),
         };
         let fault = Fault { variant: SceneError::Syntax, key: "", problem, found: None, accepted, help: None };
-        self.fail(&error.span().unwrap_or(0..0), None, fault)
+        self.fail(&span, field, fault)
+    }
+
+    /// The path of the key whose value `index` is in, as far as its line and the last header before it tell.
+    fn key_before(&self, index: usize) -> Option<String> {
+        let before = &self.text[..self.text.floor_char_boundary(index)];
+        let (headers, line) = before.rsplit_once('\n').unwrap_or(("", before));
+        let (key, _) = line.split_once('=')?;
+        let header = headers.lines().rev().find_map(|line| line.trim_start().strip_prefix('['));
+        let table = header.and_then(|header| header.split(']').next()).unwrap_or("").trim();
+        Some(if table.is_empty() { key.trim().to_owned() } else { format!("{table}.{}", key.trim()) })
     }
 
     /// The line and column where `span` begins, and the part of it on that line.
     fn locate(&self, span: &Range<usize>) -> (Place, Excerpt) {
         let text = self.text;
-        let start = floor_char_boundary(text, span.start);
+        let start = text.floor_char_boundary(span.start);
         let line_start = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
         let rest = &text[line_start..];
         let line = rest.split('\n').next().unwrap_or(rest);
         let line = line.strip_suffix('\r').unwrap_or(line);
-        let in_line = |index: usize| floor_char_boundary(line, index.saturating_sub(line_start));
+        let in_line = |index: usize| line.floor_char_boundary(index.saturating_sub(line_start));
         let marked = in_line(start)..in_line(span.end.max(start));
         let place = Place {
             line: 1 + text[..line_start].matches('\n').count(),
@@ -44,9 +63,4 @@ impl Document<'_> {
         };
         (place, Excerpt { line: line.to_owned(), span: marked })
     }
-}
-
-/// The last boundary between characters of `text` that is not after `index`.
-fn floor_char_boundary(text: &str, index: usize) -> usize {
-    (0..=index.min(text.len())).rev().find(|&i| text.is_char_boundary(i)).unwrap_or(0)
 }

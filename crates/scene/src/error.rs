@@ -32,7 +32,7 @@ pub enum SceneError {
     OutOfRange(Box<Finding>),
     /// Neither a bundled scene nor a file.
     #[error(
-        "no bundled scene and no file is named `{}`{}\n  accepted: the path of a scene file, or one of {}",
+        "no bundled scene and no file is named `{}`{}\n  = accepted: the path of a scene file, or one of {}",
         .origin.escape_debug(), did_you_mean(*.suggestion), .bundled.join(", ")
     )]
     NotFound {
@@ -44,7 +44,7 @@ pub enum SceneError {
         bundled: Vec<&'static str>,
     },
     /// The path is a directory.
-    #[error("`{}` is a directory\n  accepted: the path of a scene file, or the name of a bundled scene", .origin.escape_debug())]
+    #[error("`{}` is a directory\n  = accepted: the path of a scene file, or the name of a bundled scene", .origin.escape_debug())]
     Directory {
         /// The path.
         origin: String,
@@ -54,7 +54,7 @@ pub enum SceneError {
     TooLarge {
         /// The path.
         origin: String,
-        /// The largest size that is read [byte].
+        /// The largest size that is read, in bytes.
         limit: u64,
     },
     /// The operating system does not let the file be read.

@@ -1,10 +1,39 @@
+use crate::quantity::Quantity;
+
+pub(crate) const MASS: Quantity = Quantity::positive("mass", "kg");
+pub(crate) const INERTIA: Quantity = Quantity::positive("inertia", "kg m^2");
+pub(crate) const OFFSET: Quantity = Quantity::finite("offset", "m");
+
+pub(crate) const X: Quantity = Quantity::finite("x", "m");
+pub(crate) const Y: Quantity = Quantity::finite("y", "m");
+pub(crate) const HEADING: Quantity = Quantity::finite("heading", "rad");
+pub(crate) const SPEED: Quantity = Quantity::finite("speed", "m/s");
+pub(crate) const TURN_RATE: Quantity = Quantity::finite("turn_rate", "rad/s");
+
+pub(crate) const ALPHA: Quantity = Quantity::fraction("alpha");
+pub(crate) const STEP: Quantity = Quantity::positive("step", "s");
+pub(crate) const DURATION: Quantity = Quantity::positive("duration", "s");
+
+/// The keys that hold a number: no two tables share one.
+const QUANTITIES: &[Quantity] = &[MASS, INERTIA, OFFSET, X, Y, HEADING, SPEED, TURN_RATE, ALPHA, STEP, DURATION];
+
 /// The tables of a scene, by path, and the keys of each; the path of the document itself is empty.
 pub(crate) const TABLES: &[(&str, &[&str])] = &[
     ("", &["title", "sleigh", "start", "run", "effects"]),
-    ("sleigh", &["mass", "inertia", "offset"]),
-    ("start", &["x", "y", "heading", "speed", "turn_rate"]),
-    ("run", &["method", "alpha", "step", "duration"]),
+    ("sleigh", &[MASS.key, INERTIA.key, OFFSET.key]),
+    ("start", &[X.key, Y.key, HEADING.key, SPEED.key, TURN_RATE.key]),
+    ("run", &["method", ALPHA.key, STEP.key, DURATION.key]),
 ];
+
+/// What the value of the key of that path may be; `None` for tables and for what is no key of a scene.
+pub(crate) fn accepted(field: &str) -> Option<String> {
+    if matches!(field, "title" | "run.method") {
+        return Some("a string in quotes".to_owned());
+    }
+    let (table, key) = field.split_once('.')?;
+    let quantity = QUANTITIES.iter().find(|quantity| quantity.key == key)?;
+    of(table).contains(&key).then(|| quantity.accepted())
+}
 
 /// The keys of the table of that path.
 pub(crate) fn of(path: &str) -> &'static [&'static str] {

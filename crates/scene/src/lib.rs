@@ -5,13 +5,13 @@
 //! is wrong with a file comes back as a [`SceneError`] that shows the line and says what is accepted there.
 //!
 //! ```
-//! let scene = noslip_scene::Scene::load("turnaround", &["dla"])?;
+//! let scene = scene::Scene::load("turnaround", &["dla"])?;
 //! assert_eq!(scene.run.steps(), 800);
 //!
-//! let text = noslip_scene::Scene::template().replace("mass = 1.0", "mass = -1.0");
-//! let error = noslip_scene::Scene::parse(&text, "heavy.toml", &["dla"]).unwrap_err();
+//! let text = scene::Scene::template().replace("mass = 1.0", "mass = -1.0");
+//! let error = scene::Scene::parse(&text, "heavy.toml", &["dla"]).unwrap_err();
 //! assert!(error.to_string().contains("heavy.toml:6:8"));
-//! # Ok::<(), noslip_scene::SceneError>(())
+//! # Ok::<(), scene::SceneError>(())
 //! ```
 
 mod bundled;
@@ -25,13 +25,15 @@ mod keys;
 mod quantity;
 mod run;
 mod scene;
-mod sleigh_section;
+mod sections;
 mod suggest;
+mod system;
 mod table;
 
+pub use self::scene::Scene;
 pub use bundled::{Bundled, bundled};
 pub use effects::EFFECTS;
 pub use error::SceneError;
 pub use finding::{Finding, Place};
 pub use run::{DEFAULT_METHOD, MAX_STEPS, RunSettings};
-pub use scene::Scene;
+pub use system::{SceneSystem, Visitor};

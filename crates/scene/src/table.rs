@@ -45,7 +45,9 @@ impl<'s> Table<'s> {
         };
         let name: &str = key.get_ref();
         let help = match (keys::home(name), suggest::nearest(name, known.iter().copied())) {
-            (Some(""), _) => Some(format!("`{name}` belongs at the top of the file, before the first table")),
+            (Some(""), _) if name == "title" => Some("`title` belongs at the top, before the first table".to_owned()),
+            (Some(""), _) if name == "effects" => Some("effects are headed `[[effects]]`".to_owned()),
+            (Some(""), _) => Some(format!("`{name}` is a table of its own, headed `[{name}]`")),
             (Some(table), _) => Some(format!("`{name}` belongs in the table `[{table}]`")),
             (None, Some(near)) => Some(suggest::did_you_mean(near)),
             (None, None) => None,
@@ -71,8 +73,8 @@ impl<'s> Table<'s> {
         let Some(value) = self.get(quantity.key) else {
             return Ok(None);
         };
-        let number = as_f64(value.get_ref())
-            .ok_or_else(|| self.wrong_type(quantity.key, value, quantity.accepted()))?;
+        let number =
+            as_f64(value.get_ref()).ok_or_else(|| self.wrong_type(quantity.key, value, quantity.accepted()))?;
         quantity.check(number).map_err(|fault| self.fail(fault))?;
         Ok(Some(number))
     }

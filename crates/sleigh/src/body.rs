@@ -10,6 +10,8 @@ pub struct Sleigh {
     mass: f64,
     inertia: f64,
     offset: f64,
+    pivot_inertia: f64,
+    spin_gain: f64,
 }
 
 impl Sleigh {
@@ -26,14 +28,14 @@ impl Sleigh {
         if !offset.is_finite() {
             return Err(SleighError::NotFinite { quantity: "offset", value: offset });
         }
-        let sleigh = Self { mass, inertia, offset };
-        if !sleigh.pivot_inertia().is_finite() {
+        let pivot_inertia = inertia + mass * offset * offset;
+        if !pivot_inertia.is_finite() {
             return Err(SleighError::NotFinite {
                 quantity: "inertia about the blade, I + m a^2,",
-                value: sleigh.pivot_inertia(),
+                value: pivot_inertia,
             });
         }
-        Ok(sleigh)
+        Ok(Self { mass, inertia, offset, pivot_inertia, spin_gain: mass * offset / pivot_inertia })
     }
 
     /// Mass `m` [kg].
@@ -57,6 +59,12 @@ impl Sleigh {
     /// Moment of inertia `J = I + m a^2` about the blade's contact point [kg m^2].
     #[must_use]
     pub fn pivot_inertia(&self) -> f64 {
-        self.inertia + self.mass * self.offset * self.offset
+        self.pivot_inertia
+    }
+
+    /// The rate `c = m a / J` [1/m] of `omega' = -c u omega`, by which the spin dies out or grows.
+    #[must_use]
+    pub fn spin_gain(&self) -> f64 {
+        self.spin_gain
     }
 }

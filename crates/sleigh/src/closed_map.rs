@@ -1,9 +1,11 @@
 use crate::Sleigh;
-use lagrangian::{ClosedStep, ClosedStepError, Scalar};
+use lagrangian::{ClosedStep, ClosedStepError};
 use std::f64::consts::FRAC_PI_2;
 
-/// A correction this small, relative, leaves an error below rounding: the iteration converges quadratically.
-const SETTLED: f64 = 1e-9;
+/// An error in `r` of this size is rounding.
+const ROUNDING: f64 = 1e-17;
+/// The cube of an angle this small is rounding.
+const SMALL: f64 = 1e-6;
 const MAX_ITERATIONS: u32 = 30;
 
 /// One step of the midpoint discrete Lagrange-d'Alembert map of the free sleigh, reduced to one unknown.
@@ -17,96 +19,133 @@ const MAX_ITERATIONS: u32 = 30;
 /// ```
 ///
 /// that is `F_h(U, w) = (u0, J omega0)`, `F_-h(U, w) = (u1, J omega1)`: the map is its own adjoint. The first equation
-/// gives `U`, the second is solved for the ratio `r = w/omega0` by Newton's method, so that the spin keeps its sign and
-/// all its digits however small it is. Among the solutions the one that continues the motion has `|d| < pi/2` and
+/// gives `U cos d`, the second is solved for the ratio `r = w/omega0` by Newton's method, so that the spin keeps its sign
+/// and all its digits however small it is. Among the solutions the one that continues the motion has `|d| < pi/2` and
 /// `1 + k U > 0`; the map ends where these do.
+#[inline(always)]
 pub(crate) fn step(
     sleigh: &Sleigh,
     h: f64,
     q: &[f64; 3],
     v: &[f64; 3],
+    xi: Option<[f64; 3]>,
 ) -> Result<ClosedStep<3, 1>, ClosedStepError> {
     let (m, a) = (sleigh.mass(), sleigh.offset());
-    let k = 0.5 * h * (m * a / sleigh.pivot_inertia());
-    let (sin0, cos0) = Scalar::sin_cos(q[2]);
-    let u0 = v[0] * cos0 + v[1] * sin0;
-    let omega0 = v[2];
+    let k = 0.5 * h * sleigh.spin_gain();
+    let (sin0, cos0) = q[2].sin_cos();
+    let (u0, omega0) = match xi {
+        Some([u, omega, _]) => (u, omega),
+        None => recovered(sin0, cos0, v),
+    };
+    let (reach, d) = (a * omega0, 0.5 * h * omega0);
 
-    let start = 1.0 + k * (u0 + 0.5 * h * a * omega0 * omega0);
-    let mut r = if start > 0.0 { start.recip() } else { 1.0 };
-    let d_of_r = 0.5 * h * omega0;
+    let mut r = prediction(k, u0, reach, d);
+    let (mut sin, mut cos) = half_turn(d * r)?;
+    // How far f is from a straight line, which bounds the error that a correction leaves.
+    let bend = (k * reach * d).abs() + d * d;
     let mut iterations = 0;
-    let mut correction;
-    let (mut sin, mut cos) = half_turn(d_of_r * r)?;
-    loop {
-        let (d, w) = (d_of_r * r, omega0 * r);
-        let per_cos = cos.recip();
-        let mean_speed = (u0 + a * w * sin) * per_cos;
-        let speed_of_r = (a * omega0 * (sin + d * cos) + mean_speed * sin * d_of_r) * per_cos;
-        let growth = 1.0 + k * mean_speed;
-        correction = (1.0 - r * growth) / (growth + k * r * speed_of_r);
+    let across = loop {
+        // f(r) = r (1 + k U) cos d - cos d, with U cos d = u0 + a w sin d; and a w sin d with its slope.
+        let (part, part_of_r) = (reach * (r * sin), reach * (sin + d * r * cos));
+        let growth = cos + k * (u0 + part);
+        let slope = growth + k * r * part_of_r + (1.0 - r) * d * sin;
+        let correction = (cos - r * growth) / slope;
         r += correction;
         iterations += 1;
-        (sin, cos) = turned(sin, cos, d_of_r * correction, d_of_r * r)?;
-        if correction.abs() <= SETTLED * r.abs() {
-            break;
+        let e = d * correction;
+        if bend * correction * correction <= ROUNDING * r && e.abs() <= SMALL {
+            // What is still to be done is linear, to rounding, and need not wait for new sines.
+            (sin, cos) = (sin + e * (cos - 0.5 * e * sin), cos - e * (sin + 0.5 * e * cos));
+            break part + correction * part_of_r;
         }
+        (sin, cos) = half_turn(d * r)?;
         if iterations == MAX_ITERATIONS || correction.is_nan() {
-            return Err(failure(k, u0, iterations, correction / r));
+            return Err(failure(k * u0, iterations, correction / r));
         }
+    };
+    if r <= 0.0 {
+        return Err(out_of_branch(r.recip() - 1.0));
     }
 
+    // With w = r omega0 and (1 + k U) r = 1: omega1 = w (1 - k U) = omega0 (2 r - 1).
     let w = omega0 * r;
-    let mean_speed = (u0 + a * w * sin) / cos;
-    let gain = k * mean_speed;
-    if gain <= -1.0 {
-        return Err(out_of_branch(gain));
+    let (u1, omega1) = (u0 + 2.0 * across, omega0 * (2.0 * r - 1.0));
+    if !(u1 + omega1).is_finite() {
+        return Err(ClosedStepError::NotFinite { quantity: "the new velocity" });
     }
-    let (along, across) = (mean_speed * cos, a * w * sin);
-    let (u1, omega1) = (along + across, w * (1.0 - gain));
 
     // The directions of the blade half a step and a step later.
     let (cos_m, sin_m) = (cos0 * cos - sin0 * sin, sin0 * cos + cos0 * sin);
     let (cos1, sin1) = (cos_m * cos - sin_m * sin, sin_m * cos + cos_m * sin);
+    let mean_speed = (u0 + across) / cos;
     let (turn, spin) = (mean_speed * sin, a * w * cos);
-    let result = ClosedStep {
+    Ok(ClosedStep {
         increment: [h * mean_speed * cos_m, h * mean_speed * sin_m, h * w],
         velocity: [u1 * cos1, u1 * sin1, omega1],
-        impulses: [[m * (turn + (spin - a * omega0))], [m * (turn + (a * omega1 - spin))]],
+        xi: [u1, omega1, 0.0],
+        impulses: [[m * (turn + (spin - reach))], [m * (turn + (a * omega1 - spin))]],
         iterations,
-    };
-    if (u1 + omega1).is_finite() { Ok(result) } else { Err(ClosedStepError::NotFinite { quantity: "the new velocity" }) }
+    })
 }
 
-/// Sine and cosine of the half turn `d = h w/2`, which must stay below a right angle.
+/// Quasi-velocities of a velocity. Out of line, so that where they are known the search for `r` is a branch that does not
+/// wait for the trigonometry of the heading, and not a selection that does.
+#[cold]
+#[inline(never)]
+fn recovered(sin0: f64, cos0: f64, v: &[f64; 3]) -> (f64, f64) {
+    (v[0] * cos0 + v[1] * sin0, v[2])
+}
+
+/// A first guess of `r = 1 / (1 + k U)`, with `U = u0 + r^2 (a omega0 d + u0 d^2 / 2) + O(d^4)`.
+#[inline(always)]
+fn prediction(k: f64, u0: f64, reach: f64, d: f64) -> f64 {
+    let growth = 1.0 + k * u0;
+    if growth <= 0.0 {
+        return 1.0;
+    }
+    let r = growth.recip();
+    let rr = r * r;
+    r - k * (reach * d + 0.5 * u0 * d * d) * (rr * rr)
+}
+
+/// Sine and cosine of half the turn of a step, which must stay below a right angle.
 #[inline(always)]
 fn half_turn(d: f64) -> Result<(f64, f64), ClosedStepError> {
-    if d.abs() < FRAC_PI_2 {
-        Ok(Scalar::sin_cos(d))
-    } else if d.is_nan() {
-        Err(ClosedStepError::NotFinite { quantity: "the turn of a step" })
+    if d.abs() <= 0.25 {
+        // Their series, to the first term below rounding, summed in pairs: no range to reduce, little to wait for.
+        let z = d * d;
+        let zz = z * z;
+        let s = (-1.0 / 6.0 + z * (1.0 / 120.0))
+            + zz * ((-1.0 / 5040.0 + z * (1.0 / 362_880.0)) - zz * (1.0 / 39_916_800.0));
+        let c = (1.0 / 24.0 - z * (1.0 / 720.0))
+            + zz * ((1.0 / 40_320.0 - z * (1.0 / 3_628_800.0)) + zz * (1.0 / 479_001_600.0));
+        Ok((d + d * z * s, 1.0 - (0.5 * z - zz * c)))
+    } else if d.abs() < FRAC_PI_2 {
+        Ok(d.sin_cos())
     } else {
-        Err(ClosedStepError::NoSolution { quantity: "the turn of half a step, h omega/2,", value: d, bound: FRAC_PI_2 })
-    }
-}
-
-/// Sine and cosine after `d` has changed by `change` to `d`: by their series where three terms are exact to rounding.
-#[inline(always)]
-fn turned(sin: f64, cos: f64, change: f64, d: f64) -> Result<(f64, f64), ClosedStepError> {
-    if change.abs() < 3e-6 {
-        let bend = 0.5 * change * change;
-        Ok((sin + (change * cos - bend * sin), cos - (change * sin + bend * cos)))
-    } else {
-        half_turn(d)
+        Err(too_far(d))
     }
 }
 
 #[cold]
-fn failure(k: f64, u0: f64, iterations: u32, correction: f64) -> ClosedStepError {
-    if !(k * u0).is_finite() {
+fn too_far(d: f64) -> ClosedStepError {
+    if d.is_nan() {
+        ClosedStepError::NotFinite { quantity: "the turn of a step" }
+    } else {
+        ClosedStepError::NoSolution {
+            quantity: "the turn of half a step, h omega/2,",
+            value: d.abs(),
+            bound: FRAC_PI_2,
+        }
+    }
+}
+
+#[cold]
+fn failure(gain: f64, iterations: u32, correction: f64) -> ClosedStepError {
+    if !gain.is_finite() {
         ClosedStepError::NotFinite { quantity: "h m a u / (2 J)" }
-    } else if k * u0 <= -1.0 {
-        out_of_branch(k * u0)
+    } else if gain <= -1.0 {
+        out_of_branch(gain)
     } else {
         ClosedStepError::IterationLimit { iterations, correction }
     }

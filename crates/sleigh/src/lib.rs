@@ -8,8 +8,12 @@ mod centre_of_mass;
 mod closed_map;
 mod error;
 mod exact;
+mod gauss;
+mod path;
+mod reduced;
 mod state;
 mod system;
+mod twofold;
 
 pub use body::Sleigh;
 pub use centre_of_mass::CentreOfMass;

@@ -1,7 +1,5 @@
 use crate::{Sleigh, closed_map};
-use lagrangian::{
-    AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Motion, MotionError, Scalar, System,
-};
+use lagrangian::{AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Motion, MotionError, Scalar, System};
 
 impl System<3, 1> for Sleigh {
     /// `L = m/2 |P'|^2 + m a omega (n . P') + J/2 omega^2`, which is `m/2 |C'|^2 + I/2 omega^2` written at the blade.
@@ -38,15 +36,15 @@ impl System<3, 1> for Sleigh {
     /// `u' = a omega^2 + s omega`, `omega' = -(m a / J) u omega`, `s' = 0`, `lambda = (m I / J) u omega`.
     #[inline]
     fn motion(&self, _t: f64, q: &[f64; 3], v: &[f64; 3]) -> Result<Motion<3, 1>, MotionError> {
-        let (m, a, j) = (self.mass(), self.offset(), self.pivot_inertia());
+        let a = self.offset();
         let (sin, cos) = q[2].sin_cos();
         let omega = v[2];
         let u = cos * v[0] + sin * v[1];
         // P'' = (u' - omega s) e + (s' + omega u) n, and u' - omega s = a omega^2.
         let (along, across) = (a * omega * omega, u * omega);
         Ok(Motion {
-            acceleration: [along * cos - across * sin, along * sin + across * cos, -(m * a / j) * across],
-            multiplier: [m * across * (self.inertia() / j)],
+            acceleration: [along * cos - across * sin, along * sin + across * cos, -self.spin_gain() * across],
+            multiplier: [self.mass() * across * (self.inertia() / self.pivot_inertia())],
         })
     }
 
@@ -54,17 +52,18 @@ impl System<3, 1> for Sleigh {
     #[inline(always)]
     fn reduced_motion(&self, _t: f64, _q: &[f64; 3], &[u, omega, _]: &[f64; 3]) -> Option<[f64; 3]> {
         let a = self.offset();
-        Some([a * omega * omega, -(self.mass() * a / self.pivot_inertia()) * u * omega, 0.0])
+        Some([a * omega * omega, -self.spin_gain() * u * omega, 0.0])
     }
 
-    #[inline]
+    #[inline(always)]
     fn closed_step(
         &self,
         _t: f64,
         h: f64,
         q: &[f64; 3],
         v: &[f64; 3],
+        xi: Option<[f64; 3]>,
     ) -> Option<Result<ClosedStep<3, 1>, ClosedStepError>> {
-        Some(closed_map::step(self, h, q, v))
+        Some(closed_map::step(self, h, q, v, xi))
     }
 }

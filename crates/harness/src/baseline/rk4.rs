@@ -22,7 +22,7 @@ fn increments<Sys: System<N, M>, const N: usize, const M: usize>(
     h: f64,
     state: &State<N>,
 ) -> Result<([f64; N], [f64; N]), StepError> {
-    let (q0, v0) = (state.q(), &state.v);
+    let (q0, v0) = (state.q(), state.v());
     let (mut velocities, mut accelerations) = ([[0.0; N]; 4], [[0.0; N]; 4]);
     let (mut q, mut v) = (*q0, *v0);
     for (i, stage) in STAGES.iter().enumerate() {
@@ -41,11 +41,12 @@ pub(super) fn explicit<const N: usize, const M: usize>(
     state: &mut State<N>,
     increment: &[f64; N],
     v: [f64; N],
+    xi: Option<[f64; N]>,
 ) -> Result<StepReport<M>, StepError> {
     if !v.iter().chain(increment).all(|x| x.is_finite()) {
         return Err(StepError::NotFinite);
     }
-    state.advance(increment, v);
+    state.advance(increment, v, xi);
     Ok(StepReport { impulses: [[0.0; M]; 2], iterations: 0 })
 }
 
@@ -53,8 +54,8 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for R
     #[inline]
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
         let (dq, dv) = increments(system, t, h, state)?;
-        let v = from_fn(|i| state.v[i] + dv[i]);
-        explicit(state, &dq, v)
+        let v = from_fn(|i| state.v()[i] + dv[i]);
+        explicit(state, &dq, v, None)
     }
 }
 
@@ -62,9 +63,9 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for R
     #[inline]
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
         let (dq, dv) = increments(system, t, h, state)?;
-        let v = from_fn(|i| state.v[i] + dv[i]);
+        let v = from_fn(|i| state.v()[i] + dv[i]);
         let v = projected(system, t + h, &state.ahead(&dq), &v)?;
-        explicit(state, &dq, v)
+        explicit(state, &dq, v, None)
     }
 }
 

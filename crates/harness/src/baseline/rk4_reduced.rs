@@ -15,7 +15,9 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for R
         let q0 = state.q();
         let (_, b) = system.constraint(t, q0);
         if b.iter().any(|b| *b != 0.0) {
-            return Err(StepError::Unsupported { reason: "the reduced equations are those of a constraint with b = 0" });
+            return Err(StepError::Unsupported {
+                reason: "the reduced equations are those of a constraint with b = 0",
+            });
         }
         let basis = |t: f64, q: &[f64; N]| {
             system.admissible_basis(t, q).ok_or(StepError::Unsupported {
@@ -23,7 +25,10 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for R
             })
         };
         let singular = |t| move |source| StepError::Motion(MotionError { time: t, source });
-        let xi0 = quasi_velocities(system, t, q0, &state.v, &basis(t, q0)?).map_err(singular(t))?;
+        let xi0 = match state.xi() {
+            Some(xi) => xi,
+            None => quasi_velocities(system, t, q0, state.v(), &basis(t, q0)?).map_err(singular(t))?,
+        };
         let (mut velocities, mut rates) = ([[0.0; N]; 4], [[0.0; N]; 4]);
         let (mut q, mut xi) = (*q0, xi0);
         for (i, stage) in STAGES.iter().enumerate() {
@@ -41,6 +46,6 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for R
         let increment = weighted(h, &velocities);
         let xi1 = shifted(&xi0, 1.0, &weighted(h, &rates));
         let v1 = basis(t + h, &state.ahead(&increment))?.combine(&xi1);
-        super::rk4::explicit(state, &increment, v1)
+        super::rk4::explicit(state, &increment, v1, Some(xi1))
     }
 }

@@ -1,6 +1,13 @@
 //! A system that has everything: a mass matrix that depends on the configuration, terms linear in the velocity,
 //! explicit time, a force, and an affine constraint that moves.
-#![allow(dead_code, unreachable_pub, missing_docs, reason = "every test file uses its own part")]
+#![allow(
+    dead_code,
+    unreachable_pub,
+    missing_docs,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    reason = "every test file uses its own part"
+)]
 
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
 use proptest::prelude::*;
@@ -15,7 +22,8 @@ impl System<3, 1> for Everything {
         let c = &self.c;
         let (sin, cos) = (q[2] + t * c[0]).sin_cos();
         let inertia = (q[0] * q[0] + 1.0).sqrt() * (2.0 + c[1] * c[1]);
-        v[0] * v[0] * 0.5 + v[1] * v[1] * (0.5 + 0.1 * c[2] * c[2])
+        v[0] * v[0] * 0.5
+            + v[1] * v[1] * (0.5 + 0.1 * c[2] * c[2])
             + v[2] * v[2] * 0.5 * inertia
             + v[0] * v[2] * cos * 0.3
             + v[1] * sin * c[3]

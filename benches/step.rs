@@ -1,0 +1,119 @@
+//! What a step costs: the discrete Lagrange-d'Alembert step in its forms, against the classical Runge-Kutta step.
+//!
+//! All on the same full state, through the first 800 steps of the turn-around. The last lines give the ratios of
+//! interleaved runs, which hold where the times of a shared machine do not.
+
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
+
+use criterion::{Criterion, criterion_group};
+use dla::{Dla, Form, OneStep, Schedule, State, drive};
+use harness::{Rk4, Rk4Projected, Rk4Reduced};
+use lagrangian::System;
+use sleigh::{Sleigh, SleighState};
+use std::hint::black_box;
+use std::time::Instant;
+
+const STEPS: u64 = 800;
+const STEP: f64 = 0.05;
+
+fn sleigh() -> Sleigh {
+    Sleigh::new(1.0, 1.0, 0.5).expect("positive parameters")
+}
+
+fn start() -> ([f64; 3], [f64; 3]) {
+    SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() }.to_coordinates()
+}
+
+/// The steps of a method of the library.
+fn library<Method: OneStep<Sleigh, 3, 1>>(mut method: Method) -> State<3> {
+    let (sleigh, (q, v)) = (black_box(sleigh()), black_box(start()));
+    let mut state = State::new(q, v, sleigh.angles());
+    let schedule = Schedule { t0: 0.0, step: STEP, steps: STEPS };
+    drive(&sleigh, &mut method, &schedule, &mut state, ()).expect("the steps succeed");
+    state
+}
+
+/// The Runge-Kutta step as one writes it by hand for this one system: six plain numbers, nothing else.
+fn by_hand() -> [f64; 6] {
+    let sleigh = black_box(sleigh());
+    let (a, c) = (sleigh.offset(), sleigh.spin_gain());
+    let slope = |y: &[f64; 6]| -> [f64; 6] {
+        let (sin, cos) = y[2].sin_cos();
+        let (vx, vy, w) = (y[3], y[4], y[5]);
+        let u = cos * vx + sin * vy;
+        let (along, across) = (a * w * w, u * w);
+        [vx, vy, w, along * cos - across * sin, along * sin + across * cos, -c * across]
+    };
+    let ahead = |y: &[f64; 6], h: f64, k: &[f64; 6]| -> [f64; 6] { std::array::from_fn(|i| y[i] + h * k[i]) };
+    let (q, v) = black_box(start());
+    let mut y = [q[0], q[1], q[2], v[0], v[1], v[2]];
+    for _ in 0..STEPS {
+        let k1 = slope(&y);
+        let k2 = slope(&ahead(&y, 0.5 * STEP, &k1));
+        let k3 = slope(&ahead(&y, 0.5 * STEP, &k2));
+        let k4 = slope(&ahead(&y, STEP, &k3));
+        y = std::array::from_fn(|i| y[i] + STEP / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]));
+    }
+    y
+}
+
+fn consume<T>(result: T) {
+    black_box(result);
+}
+
+type Case = (&'static str, fn());
+
+/// The first is what the others are compared with.
+const CASES: [Case; 8] = [
+    ("rk4 by hand", || consume(by_hand())),
+    ("rk4", || consume(library(Rk4))),
+    ("rk4-projected", || consume(library(Rk4Projected))),
+    ("rk4-reduced", || consume(library(Rk4Reduced))),
+    ("dla, closed map", || consume(library(Dla::midpoint().solved(Form::Best)))),
+    ("dla, automatic derivatives in the basis", || consume(library(Dla::midpoint()))),
+    ("dla, automatic derivatives and multipliers", || {
+        consume(library(Dla::midpoint().solved(Form::Multipliers)));
+    }),
+    ("dla-trapezoid, automatic derivatives", || consume(library(Dla::trapezoid()))),
+];
+
+fn steps(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("800 steps");
+    for (name, case) in CASES {
+        group.bench_function(name, |bencher| bencher.iter(case));
+    }
+    group.finish();
+}
+
+/// Medians over rounds in which every case runs once.
+fn ratios() {
+    const ROUNDS: usize = 301;
+    const REPEATS: u32 = 5;
+    let mut times = vec![Vec::with_capacity(ROUNDS); CASES.len()];
+    for _ in 0..ROUNDS {
+        for (times, (_, case)) in times.iter_mut().zip(CASES) {
+            let begin = Instant::now();
+            for _ in 0..REPEATS {
+                case();
+            }
+            times.push(begin.elapsed().as_secs_f64() / f64::from(REPEATS));
+        }
+    }
+    println!("\nmedian of {ROUNDS} interleaved rounds: ns a step, and ratio to the first");
+    let median = |mut values: Vec<f64>| {
+        values.sort_by(f64::total_cmp);
+        values[values.len() / 2]
+    };
+    for (k, (name, _)) in CASES.iter().enumerate() {
+        let ratio = median(times[k].iter().zip(&times[0]).map(|(a, b)| a / b).collect());
+        println!("{name:<45} {:>8.1} {ratio:>8.3}", median(times[k].clone()) * 1e9 / STEPS as f64);
+    }
+}
+
+criterion_group!(benches, steps);
+
+fn main() {
+    benches();
+    ratios();
+    Criterion::default().configure_from_args().final_summary();
+}

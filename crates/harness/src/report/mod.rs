@@ -1,0 +1,133 @@
+//! The report of a comparison: one page that works offline, and the pictures on it as files of their own.
+//!
+//! A report takes plain numbers and finished text, so that it says exactly what the terminal says. [`write()`] puts a
+//! page `index.html` and, for each scene, `NAME-path.svg`, `NAME-constraint.svg` and `NAME-energy.svg` into a folder.
+//! The page holds its pictures and its style itself, needs no script and no network, and follows the light or dark
+//! setting of whoever reads it.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+mod axis;
+mod canvas;
+mod drift;
+mod files;
+mod geometry;
+mod look;
+mod page;
+mod path;
+mod picture;
+mod scale;
+mod sleigh;
+mod thinning;
+mod xml;
+
+/// A report: what the page says above its scenes, and the scenes.
+#[derive(Debug, Clone)]
+pub struct Report {
+    /// The heading of the page.
+    pub title: String,
+    /// What was compared, in a few sentences; an empty line starts a new paragraph.
+    pub intro: String,
+    /// The scenes, in the order of the page.
+    pub scenes: Vec<SceneReport>,
+}
+
+/// What the report shows of one scene.
+#[derive(Debug, Clone)]
+pub struct SceneReport {
+    /// The short name that the picture files start with; characters unfit for a file name become `-`.
+    pub name: String,
+    /// The heading of the scene.
+    pub title: String,
+    /// Names and values, such as `("mass", "1 kg")`.
+    pub facts: Vec<(String, String)>,
+    /// The headings of the comparison table.
+    pub columns: Vec<String>,
+    /// The rows of the comparison table, already formatted.
+    pub rows: Vec<Vec<String>>,
+    /// The runs that the pictures show, one per method.
+    pub series: Vec<Series>,
+    /// The blade's exact path \[m\], where one is known.
+    pub exact_path: Option<Vec<[f64; 2]>>,
+}
+
+/// One run of one method.
+///
+/// The vectors hold one entry per node. Where lengths differ, the shorter one counts; entries that are not finite are
+/// left out of the pictures and interrupt their lines.
+#[derive(Debug, Clone)]
+pub struct Series {
+    /// The name of the method.
+    pub label: String,
+    /// The blade's position \[m\].
+    pub path: Vec<[f64; 2]>,
+    /// The heading \[rad\].
+    pub heading: Vec<f64>,
+    /// The time \[s\].
+    pub time: Vec<f64>,
+    /// The size of the constraint's residual, `|A(q) v + b|`.
+    pub constraint: Vec<f64>,
+    /// The distance of the energy from its initial value, `|E - E0|` \[J\].
+    pub energy_error: Vec<f64>,
+}
+
+/// Why a report could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// The folder is there already, and overwriting was not asked for.
+    #[error("{} exists already", path.display())]
+    Exists {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A file or folder could not be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A picture could not be drawn.
+    #[error("cannot draw {picture}: {reason}")]
+    Draw {
+        /// The name of the picture's file.
+        picture: String,
+        /// What the drawing library said.
+        reason: String,
+    },
+}
+
+/// Writes a report into a folder and returns the files: the page first, then the pictures.
+///
+/// A new folder appears whole or not at all; the folder that holds it must exist. With `overwrite`, an existing folder
+/// keeps every file that is not part of the report, and each file of the report is replaced in one step, the page
+/// last, and none of them before all of them are on the disk.
+///
+/// # Errors
+///
+/// [`ReportError::Exists`] if something with that name is there and `overwrite` is false; [`ReportError::Io`] if the
+/// system refuses to write, in which case no new file is left behind; [`ReportError::Draw`] if the drawing library
+/// fails.
+pub fn write(report: &Report, directory: &Path, overwrite: bool) -> Result<Vec<PathBuf>, ReportError> {
+    // Asked first, so that no picture is drawn in vain; asked again, by the rename itself, at the end.
+    if !overwrite && directory.symlink_metadata().is_ok() {
+        return Err(ReportError::Exists { path: directory.to_path_buf() });
+    }
+    let names = files::stems(report.scenes.iter().map(|scene| scene.name.as_str()));
+    let mut scenes = Vec::with_capacity(names.len());
+    for (scene, name) in report.scenes.iter().zip(&names) {
+        scenes.push(pictures(scene, name)?);
+    }
+    let mut contents = vec![("index.html".to_owned(), page::page(report, &names, &scenes))];
+    for picture in scenes.iter().flatten() {
+        contents.push((picture.file.clone(), picture.standalone()));
+    }
+    files::write_all(directory, &contents, overwrite)
+}
+
+/// The three pictures of a scene.
+fn pictures(scene: &SceneReport, name: &str) -> Result<[picture::Picture; 3], ReportError> {
+    Ok([path::picture(scene, name)?, drift::constraint(scene, name)?, drift::energy(scene, name)?])
+}

@@ -1,0 +1,95 @@
+//! The page.
+
+use super::picture::Picture;
+use super::xml::escape;
+use super::{Report, SceneReport, look};
+
+/// The style, in the page itself, so that the page is one file.
+const STYLE: &str = include_str!("style.css");
+
+/// The page of a report, given the file names of its scenes and their pictures.
+pub(super) fn page(report: &Report, names: &[String], pictures: &[[Picture; 3]]) -> String {
+    let title = escape(&report.title);
+    let mut page = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
+         content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n\
+         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<header>\n<h1>{title}</h1>\n"
+    );
+    for paragraph in report.intro.split("\n\n").filter(|paragraph| !paragraph.trim().is_empty()) {
+        page += &format!("<p>{}</p>\n", escape(paragraph.trim()));
+    }
+    if report.scenes.len() > 1 {
+        page += "<nav aria-label=\"Scenes\"><ul>\n";
+        for (scene, name) in report.scenes.iter().zip(names) {
+            page += &format!("<li><a href=\"#scene-{}\">{}</a></li>\n", escape(name), escape(&scene.title));
+        }
+        page += "</ul></nav>\n";
+    }
+    page += "</header>\n<main>\n";
+    for ((scene, name), pictures) in report.scenes.iter().zip(names).zip(pictures) {
+        section(&mut page, scene, name, pictures);
+    }
+    page += "</main>\n</body>\n</html>\n";
+    page
+}
+
+fn section(page: &mut String, scene: &SceneReport, name: &str, pictures: &[Picture]) {
+    *page += &format!("<section id=\"scene-{}\">\n<h2>{}</h2>\n", escape(name), escape(&scene.title));
+    if !scene.facts.is_empty() {
+        *page += "<dl>\n";
+        for (fact, value) in &scene.facts {
+            *page += &format!("<div><dt>{}</dt><dd>{}</dd></div>\n", escape(fact), escape(value));
+        }
+        *page += "</dl>\n";
+    }
+    if !scene.columns.is_empty() || !scene.rows.is_empty() {
+        table(page, scene);
+    }
+    *page += "<div class=\"pictures\">\n";
+    for picture in pictures {
+        *page += &format!(
+            "<figure>\n<div class=\"scroll\">{}</div>\n<figcaption>{} <a href=\"{}\">SVG</a></figcaption>\n</figure>\n",
+            picture.inline(),
+            escape(&picture.caption),
+            escape(&picture.file),
+        );
+    }
+    *page += "</div>\n</section>\n";
+}
+
+fn table(page: &mut String, scene: &SceneReport) {
+    let width = scene.rows.iter().map(Vec::len).fold(scene.columns.len(), usize::max);
+    let numeric: Vec<bool> = (0..width).map(|column| numeric(&scene.rows, column)).collect();
+    let class = |column: usize| if numeric[column] { " class=\"n\"" } else { "" };
+    let text = |row: &[String], column: usize| row.get(column).map_or_else(String::new, |cell| escape(cell));
+    *page += "<div class=\"scroll\"><table>\n<thead><tr>";
+    for column in 0..width {
+        *page += &format!("<th scope=\"col\"{}>{}</th>", class(column), text(&scene.columns, column));
+    }
+    *page += "</tr></thead>\n<tbody>\n";
+    for row in &scene.rows {
+        *page += "<tr>";
+        // The row of a method that the pictures show starts with the look of its line.
+        let method = scene.series.iter().position(|series| row.first() == Some(&series.label));
+        for column in 0..width {
+            let key = method.filter(|_| column == 0).map_or_else(String::new, look::key);
+            *page += &format!("<td{}>{key}{}</td>", class(column), text(row, column));
+        }
+        *page += "</tr>\n";
+    }
+    *page += "</tbody>\n</table></div>\n";
+}
+
+/// Whether a column holds numbers, with or without units, and nothing else but signs for a missing one.
+fn numeric(rows: &[Vec<String>], column: usize) -> bool {
+    let missing =
+        |cell: &str| matches!(cell.to_lowercase().as_str(), "" | "-" | "–" | "—" | "nan" | "inf" | "-inf" | "n/a");
+    let number = |cell: &str| {
+        let sign =
+            |c: char| c.is_whitespace() || matches!(c, '+' | '-' | '−' | '<' | '>' | '≤' | '≥' | '~' | '≈' | '.');
+        cell.trim_start_matches(sign).starts_with(|c: char| c.is_ascii_digit())
+    };
+    let mut cells = rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.trim()).filter(|cell| !missing(cell));
+    let first = cells.next();
+    first.is_some_and(number) && cells.all(number)
+}

@@ -1,0 +1,143 @@
+//! The picture of the paths, seen from above.
+
+use super::axis::{self, Entry};
+use super::canvas::{Canvas, Drawn, Ink};
+use super::geometry::{Frame, Span, distance, drawable, visible};
+use super::look;
+use super::picture::Picture;
+use super::sleigh::{APART, sleighs};
+use super::thinning::thin;
+use super::{ReportError, SceneReport, Series};
+
+const WIDTH: f64 = 560.0;
+/// Room for what lies at the edge of the paths: half a sleigh.
+const PADDING: f64 = 24.0;
+/// How many points of a path are kept.
+const POINTS: usize = 4000;
+/// How many times larger than the exact path the picture may become because of a method that leaves it.
+const STRAY: f64 = 2.5;
+
+/// Draws the picture of a scene.
+pub(super) fn picture(scene: &SceneReport, name: &str) -> Result<Picture, ReportError> {
+    let mut entries: Vec<Entry<'_>> =
+        scene.series.iter().enumerate().map(|(method, series)| (Ink::Method(method), series.label.as_str())).collect();
+    let exact = scene.exact_path.as_deref().filter(|path| !path.is_empty());
+    if exact.is_some() {
+        entries.push((Ink::Exact, "exact"));
+    }
+    let (places, legend) = axis::legend(&entries, WIDTH - 20.0);
+    let frame = frame(scene, exact, legend + 34.0);
+    let [across, up] = ticks(&frame);
+    let caption = caption(scene, exact.is_some(), &strays(scene, &frame));
+    let size = [WIDTH, frame.bottom() + 44.0];
+    Picture::draw(format!("{name}-path.svg"), format!("{}: path from above", scene.title), caption, size, |canvas| {
+        axis::draw_legend(canvas, &entries, &places, [10.0, 4.0])?;
+        axis::draw(canvas, &frame, [&across, &up], ["x [m]", "y [m]"])?;
+        let draw = |path: &[[f64; 2]], ink, opacity, width| {
+            let lines = thin(frame.lines(path.iter().map(|point| frame.place(*point))), POINTS);
+            lines.iter().try_for_each(|line| canvas.line(line, ink, opacity, width))
+        };
+        draw(exact.unwrap_or_default(), Ink::Exact, 0.7, 1.3)?;
+        for (method, series) in scene.series.iter().enumerate() {
+            draw(&series.path, Ink::Method(method), 1.0, look::width(method))?;
+        }
+        for (method, series) in scene.series.iter().enumerate() {
+            markers(canvas, &frame, method, series, scene.series.len())?;
+        }
+        match scene.series.first() {
+            Some(series) => sleighs(canvas, &frame, series),
+            None => Ok(()),
+        }
+    })
+}
+
+fn caption(scene: &SceneReport, exact: bool, strays: &[&str]) -> String {
+    let mut caption =
+        "The path of the blade on the ground, seen from above; a metre is as long upwards as across.".to_owned();
+    if let Some(first) = scene.series.first() {
+        caption += &format!(" The sleigh stands where {} puts it at equally spaced times.", first.label);
+    }
+    if exact {
+        caption += " Thin grey dashes: the exact path.";
+    }
+    if !strays.is_empty() {
+        caption += &format!(" Running out of the picture: {}.", strays.join(", "));
+    }
+    caption
+}
+
+/// The methods whose path leaves the picture.
+fn strays<'a>(scene: &'a SceneReport, frame: &Frame) -> Vec<&'a str> {
+    let outside = |point: &[f64; 2]| !frame.place(*point).is_some_and(|place| frame.holds(place));
+    let stray = scene.series.iter().filter(|series| series.path.iter().any(outside));
+    stray.map(|series| series.label.as_str()).collect()
+}
+
+/// The frame: as high as the paths ask for, within reason, and a metre as long upwards as across.
+fn frame(scene: &SceneReport, exact: Option<&[[f64; 2]]>, top: f64) -> Frame {
+    let all = |axis: usize| {
+        let paths = scene.series.iter().map(|series| series.path.as_slice()).chain(exact);
+        let points = paths.flatten().filter(|point| drawable(point[0]) && drawable(point[1]));
+        Span::of(points.map(|point| point[axis]))
+    };
+    let spans = [0, 1].map(|axis| all(axis).unwrap_or(Span { lo: -1.0, hi: 1.0 }));
+    let spans = exact.map_or(spans, |path| near(path, spans));
+    let [x, y] = spans;
+    let largest = [x.lo, x.hi, y.lo, y.hi].into_iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let half = visible(x.half().max(y.half()), largest);
+    let (half_x, half_y) = if x.half().max(y.half()) < half { (half, 0.0) } else { (x.half(), y.half()) };
+    // The room for the figures depends on the ticks, and these on the height, but hardly: once is enough.
+    let guess = Span::about(y.middle(), half);
+    let left = axis::margin(&axis::linear(guess, 5.0)).max(44.0);
+    let width = WIDTH - left - 16.0;
+    let ratio = half_y / half_x.max(1e-3 * half);
+    let height = ((width - 2.0 * PADDING) * ratio + 2.0 * PADDING).clamp(0.26 * width, 0.8 * width);
+    let metre = (2.0 * half_x / (width - 2.0 * PADDING)).max(2.0 * half_y / (height - 2.0 * PADDING));
+    Frame {
+        left,
+        top,
+        width,
+        height,
+        x: Span::about(x.middle(), 0.5 * width * metre),
+        y: Span::about(y.middle(), 0.5 * height * metre),
+    }
+}
+
+/// Keeps a method that goes astray from making a dot of everything else.
+fn near(exact: &[[f64; 2]], all: [Span; 2]) -> [Span; 2] {
+    let extent = [0, 1].map(|axis| Span::of(exact.iter().map(|point| point[axis])));
+    let [Some(x), Some(y)] = extent else { return all };
+    let half = x.half().max(y.half());
+    if half <= 0.0 {
+        return all;
+    }
+    let reach = |span: Span, wanted: Span| wanted.within(Span::about(span.middle(), STRAY * half));
+    [reach(x, all[0]), reach(y, all[1])]
+}
+
+fn ticks(frame: &Frame) -> [Vec<axis::Tick>; 2] {
+    let across = axis::linear(frame.x, 6.0);
+    // Figures as wide as their distance would run into each other.
+    let widest = axis::margin(&across);
+    [
+        axis::linear(frame.x, (frame.width / (1.4 * widest)).clamp(2.0, 7.0)),
+        axis::linear(frame.y, (frame.height / 55.0).max(3.5)),
+    ]
+}
+
+/// A few markers on a path, at other places for each method.
+fn markers(canvas: &Canvas<'_>, frame: &Frame, method: usize, series: &Series, methods: usize) -> Drawn {
+    let last = series.path.len().saturating_sub(1) as f64;
+    let mut before: Option<[f64; 2]> = None;
+    for k in 0..5_u32 {
+        let share = (f64::from(k) + (method as f64 + 0.5) / methods as f64) / 5.0;
+        let place = series.path.get((share * last).round() as usize).and_then(|point| frame.place(*point));
+        if let Some(place) = place.filter(|place| frame.holds(*place))
+            && before.is_none_or(|before| distance(before, place) > APART)
+        {
+            canvas.marker(method, place)?;
+            before = Some(place);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,76 @@
+//! The upright axis of what should stay zero.
+
+use super::axis::{self, Tick};
+use super::geometry::{Frame, Span};
+
+/// Values that many decades below the usual ones of the most exact method say no more than that they are small.
+const BELOW: f64 = 8.0;
+/// Values that many decades above it say no more than that a method has blown up.
+const ABOVE: f64 = 24.0;
+
+/// The time and the size of each peak, in order; nothing where the values are not finite.
+pub(super) type Trace = Vec<Option<[f64; 2]>>;
+
+/// The upright axis: decades, and below them a line for what is zero.
+#[derive(Debug)]
+pub(super) struct Scale {
+    lo: f64,
+    hi: f64,
+    /// The line for what is zero, or too small for the decades.
+    pub(super) floor: Option<Tick>,
+}
+
+impl Scale {
+    pub(super) fn of(traces: &[Trace]) -> Self {
+        let all: Vec<f64> = traces.iter().flatten().flatten().map(|point| point[1]).collect();
+        let best = traces.iter().filter_map(usual).fold(f64::INFINITY, f64::min).log10();
+        let worth = |log: &f64| *log >= best - BELOW && *log <= best + ABOVE;
+        let logs = Span::of(all.iter().filter(|size| **size > 0.0).map(|size| size.log10()).filter(worth));
+        // Where everything is zero, the decades below it show what it is smaller than.
+        let Span { lo, hi } = logs.unwrap_or(Span { lo: -17.0, hi: -14.5 });
+        let lo = (lo + 1e-9).floor();
+        // The highest peak is not to touch the upper edge.
+        let hi = (hi + 0.08).ceil().max(lo + 1.0);
+        let smaller = all.iter().any(|size| *size > 0.0 && size.log10() < lo);
+        let zero = all.iter().any(|size| *size <= 0.0);
+        let text = if smaller { format!("< {}", power(lo)) } else { "0".to_owned() };
+        let floor = (smaller || zero).then(|| (lo - (0.12 * (hi - lo)).max(0.4), text));
+        Self { lo, hi, floor }
+    }
+
+    /// Whether some value lies above the axis.
+    pub(super) fn leaves(&self, trace: &Trace) -> bool {
+        trace.iter().flatten().any(|[_, size]| size.log10() > self.hi)
+    }
+
+    pub(super) fn span(&self) -> Span {
+        let lo = self.floor.as_ref().map_or(self.lo, |(floor, _)| floor - 0.03 * (self.hi - floor));
+        Span { lo, hi: self.hi }
+    }
+
+    pub(super) fn ticks(&self) -> Vec<Tick> {
+        let rough = (self.hi - self.lo) / 7.0;
+        let step = [1.0, 2.0, 3.0, 4.0, 5.0, 10.0, 20.0, 50.0].into_iter().find(|step| *step >= rough).unwrap_or(100.0);
+        let first = (self.lo / step).ceil();
+        let decades = (0..20).map(|k| (first + f64::from(k)) * step).take_while(|decade| *decade <= self.hi);
+        decades.map(|decade| (decade, power(decade))).chain(self.floor.clone()).collect()
+    }
+
+    pub(super) fn place(&self, frame: &Frame, point: Option<[f64; 2]>) -> Option<[f64; 2]> {
+        let [time, size] = point?;
+        let log = if size > 0.0 { size.log10() } else { f64::NEG_INFINITY };
+        let floor = self.floor.as_ref().map_or(self.lo, |(floor, _)| *floor);
+        frame.place([time, if log < self.lo { floor } else { log }])
+    }
+}
+
+/// The middle one of the sizes that are not zero: a peak does not move it, and neither does a dip.
+fn usual(trace: &Trace) -> Option<f64> {
+    let mut sizes: Vec<f64> = trace.iter().flatten().map(|point| point[1]).filter(|size| *size > 0.0).collect();
+    sizes.sort_by(f64::total_cmp);
+    sizes.get(sizes.len() / 2).copied()
+}
+
+fn power(decade: f64) -> String {
+    format!("10{}", axis::superscript(&format!("{decade:.0}")))
+}

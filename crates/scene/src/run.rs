@@ -1,0 +1,118 @@
+use crate::error::SceneError;
+use crate::fault::Fault;
+use crate::keys::{ALPHA, DURATION, STEP};
+use crate::suggest;
+use crate::table::Table;
+
+/// The method of a scene that names none.
+pub const DEFAULT_METHOD: &str = "dla";
+
+/// The most steps that a run may have.
+pub const MAX_STEPS: u64 = 1_000_000_000_000;
+
+/// How to run a scene.
+///
+/// The run consists of [`steps`](Self::steps) equal steps of size [`actual_step`](Self::actual_step), which is `step`
+/// where the duration is a multiple of it, and otherwise as little less as makes the run end at `duration`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunSettings {
+    /// Name of the integrator; `dla` when left out.
+    pub method: String,
+    /// Where in the step the method `dla-alpha` evaluates the Lagrangian, from 0 to 1; other methods do not read it.
+    /// May be left out.
+    pub alpha: Option<f64>,
+    /// The largest step to take, in s; positive.
+    pub step: f64,
+    /// Length of the run, in s; positive and no less than the step.
+    pub duration: f64,
+}
+
+impl RunSettings {
+    /// Number of steps of the run, at least 1.
+    ///
+    /// It is the ratio `duration / step` where that is whole to within `1e-9`, or to within its own rounding error if
+    /// that is more, and otherwise the next whole number.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        // Of settings that were never checked, `max` drops a NaN and the conversion saturates.
+        self.schedule().0.max(1.0) as u64
+    }
+
+    /// The step that the run takes, in s: `step` itself, to the last bit, where `steps() * step` is `duration` but for
+    /// the tolerance of [`steps`](Self::steps), otherwise `duration / steps()`.
+    #[must_use]
+    pub fn actual_step(&self) -> f64 {
+        match self.schedule() {
+            (_, true) => self.step,
+            (steps, false) => self.duration / steps,
+        }
+    }
+
+    /// The number of steps, and whether the duration is that multiple of the step.
+    fn schedule(&self) -> (f64, bool) {
+        let ratio = self.duration / self.step;
+        let nearest = ratio.round();
+        // Step and duration come from decimals, each rounded to half a unit in the last place, and the division adds
+        // as much again: beyond 1e6 steps that is more than 1e-9.
+        let tolerance = f64::max(1e-9, 2.0 * f64::EPSILON * ratio);
+        if (ratio - nearest).abs() <= tolerance { (nearest, true) } else { (ratio.ceil(), false) }
+    }
+
+    /// Reads `[run]`: `step` and `duration` are required.
+    pub(crate) fn read(table: &Table<'_>, methods: &[&str]) -> Result<Self, SceneError> {
+        let accepted = format!("a string, one of {}", suggest::list(methods));
+        let settings = Self {
+            method: table.text("method", &accepted)?.unwrap_or(DEFAULT_METHOD).to_owned(),
+            alpha: table.number(&ALPHA)?,
+            step: table.required(&STEP)?,
+            duration: table.required(&DURATION)?,
+        };
+        settings.check(STEP.key, methods).map_err(|fault| table.fail(fault))?;
+        Ok(settings)
+    }
+
+    /// Checks all of it; a step that does not go with the duration is said to be the fault of `culprit`.
+    pub(crate) fn check(&self, culprit: &'static str, methods: &[&str]) -> Result<(), Fault> {
+        if !methods.contains(&self.method.as_str()) {
+            return Err(unknown_method(&self.method, methods));
+        }
+        STEP.check(self.step)?;
+        DURATION.check(self.duration)?;
+        self.alpha.map_or(Ok(()), |alpha| ALPHA.check(alpha))?;
+        let Self { step, duration, .. } = *self;
+        let blames_step = culprit == STEP.key;
+        let too_many = duration / step > MAX_STEPS as f64;
+        let (problem, accepted) = match (blames_step, too_many) {
+            _ if !too_many && step <= duration => return Ok(()),
+            (true, false) => ("is longer than the duration", format!("at most the duration, {duration:?} s")),
+            (false, false) => ("is shorter than the step", format!("at least the step, {step:?} s")),
+            (true, true) => {
+                let least = duration / MAX_STEPS as f64;
+                ("makes more than 1e12 steps", format!("at least {least:?} s, for the duration of {duration:?} s"))
+            }
+            (false, true) => {
+                let most = step * MAX_STEPS as f64;
+                ("makes more than 1e12 steps", format!("at most {most:?} s, for the step of {step:?} s"))
+            }
+        };
+        Err(Fault {
+            variant: SceneError::OutOfRange,
+            key: culprit,
+            problem: problem.to_owned(),
+            found: Some(format!("{:?}", if blames_step { step } else { duration })),
+            accepted,
+            help: None,
+        })
+    }
+}
+
+fn unknown_method(method: &str, methods: &[&str]) -> Fault {
+    Fault {
+        variant: SceneError::UnknownName,
+        key: "method",
+        problem: "names no known method".to_owned(),
+        found: Some(format!("{:?}", crate::keys::abridged(method))),
+        accepted: format!("one of {}", suggest::list(methods)),
+        help: suggest::nearest(method, methods.iter().copied()).map(suggest::did_you_mean),
+    }
+}

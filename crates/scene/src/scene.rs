@@ -1,0 +1,128 @@
+use crate::bundled::{TEMPLATE, bundled};
+use crate::document::Document;
+use crate::error::SceneError;
+use crate::fault::Fault;
+use crate::finding::Excerpt;
+use crate::run::RunSettings;
+use crate::table::Table;
+use crate::{effects, file, keys, sections};
+use sleigh::{Sleigh, SleighState};
+use std::path::Path;
+use toml::de::DeTable;
+
+/// A scene: a sleigh, its start and its run, all checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// The bundled name, or the file's name without directory and ending.
+    pub name: String,
+    /// What the scene calls itself; the name when it does not.
+    pub title: String,
+    /// The body: `mass` in kg, `inertia` in kg m^2 and `offset` in m, all required.
+    pub sleigh: Sleigh,
+    /// The start: `x` and `y` in m and `heading` in rad, 0 when left out; `speed` in m/s and `turn_rate` in rad/s,
+    /// required.
+    pub start: SleighState,
+    /// How to run it.
+    pub run: RunSettings,
+}
+
+impl Scene {
+    /// Reads a scene from text.
+    ///
+    /// `origin` is the file's name: messages show it, and the scene's name derives from it. `methods` are the names
+    /// that `run.method` may have.
+    ///
+    /// # Errors
+    /// [`SceneError`] with the first thing that is wrong with the text: its syntax, an unknown, missing or misplaced
+    /// key, a value of the wrong type or out of its range.
+    pub fn parse(text: &str, origin: &str, methods: &[&str]) -> Result<Self, SceneError> {
+        // A byte-order mark is no part of the first line.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let document = Document { origin, text };
+        let entries = DeTable::parse(text).map_err(|error| document.syntax(&error))?.into_inner();
+        if entries.is_empty() {
+            return Err(empty(&document));
+        }
+        let root = Table::root(document, &entries)?;
+        let name = name_of(origin);
+        let title = root.text("title", "a string")?.unwrap_or(&name).to_owned();
+        let sleigh = sections::sleigh(&root.table("sleigh")?)?;
+        let start = sections::start(&root.table("start")?)?;
+        let run = RunSettings::read(&root.table("run")?, methods)?;
+        effects::read(&root)?;
+        Ok(Self { name, title, sleigh, start, run })
+    }
+
+    /// Reads the bundled scene of that name or else the file at that path: `./turnaround` is always the file.
+    ///
+    /// # Errors
+    /// [`SceneError`] when there is neither, when the file cannot be read, is not UTF-8 or is larger than 16 MiB, and
+    /// as [`Scene::parse`] for its text.
+    pub fn load(name_or_path: &str, methods: &[&str]) -> Result<Self, SceneError> {
+        match bundled().iter().find(|scene| scene.name == name_or_path) {
+            Some(scene) => Self::parse(scene.text, scene.name, methods),
+            None => Self::parse(&file::read(name_or_path)?, name_or_path, methods),
+        }
+    }
+
+    /// A complete scene with comments, to start a new file from.
+    #[must_use]
+    pub fn template() -> &'static str {
+        TEMPLATE
+    }
+
+    /// The scene with other settings of its run, where they are given: method, step and duration in s, and alpha.
+    ///
+    /// # Errors
+    /// [`SceneError`] when the settings are not valid together, as for a file; its field is the flag `--method`,
+    /// `--step`, `--duration` or `--alpha` of a setting given here, its origin `command line`.
+    pub fn with_overrides(
+        mut self,
+        method: Option<&str>,
+        step: Option<f64>,
+        duration: Option<f64>,
+        alpha: Option<f64>,
+        methods: &[&str],
+    ) -> Result<Self, SceneError> {
+        let run = &mut self.run;
+        run.method = method.map_or_else(|| std::mem::take(&mut run.method), str::to_owned);
+        run.step = step.unwrap_or(run.step);
+        run.duration = duration.unwrap_or(run.duration);
+        run.alpha = alpha.or(run.alpha);
+        // A step that no longer goes with the duration is the fault of what has changed.
+        let culprit = if duration.is_some() && step.is_none() { "duration" } else { "step" };
+        run.check(culprit, methods).map_err(|fault| {
+            let given = match fault.key {
+                "method" => method.is_some(),
+                "alpha" => alpha.is_some(),
+                "duration" => duration.is_some(),
+                _ => step.is_some(),
+            };
+            flag_error(fault, given, &self.name)
+        })?;
+        Ok(self)
+    }
+}
+
+/// The error of a setting from the command line, or else from the scene.
+fn flag_error(fault: Fault, given: bool, name: &str) -> SceneError {
+    let (origin, field) =
+        if given { ("command line", format!("--{}", fault.key)) } else { (name, keys::path("run", fault.key)) };
+    fault.at(origin, None, Some(field), Excerpt::default())
+}
+
+fn empty(document: &Document<'_>) -> SceneError {
+    let fault = Fault {
+        variant: SceneError::Missing,
+        key: "",
+        problem: "the scene is empty".to_owned(),
+        found: None,
+        accepted: "the tables `[sleigh]`, `[start]` and `[run]`".to_owned(),
+        help: Some("`noslip new FILE` writes a scene to start from".to_owned()),
+    };
+    document.fail(&(0..0), None, fault)
+}
+
+fn name_of(origin: &str) -> String {
+    Path::new(origin).file_stem().map_or_else(|| origin.to_owned(), |stem| stem.to_string_lossy().into_owned())
+}

@@ -1,0 +1,207 @@
+//! What is wrong with a file is said with its line, its field and what is accepted.
+#![allow(clippy::panic, reason = "what clippy.toml allows in tests, their helpers need too")]
+
+use scene::{Scene, SceneError};
+
+const METHODS: &[&str] = &["dla", "dla-alpha", "rk4"];
+
+/// Every line is addressed by the tests below: keep the numbers.
+const GOOD: &str = r#"title = "Good"
+[sleigh]
+mass = 1.0
+inertia = 1.0
+offset = 0.5
+[start]
+x = 0.0
+speed = -1.0
+turn_rate = 0.1
+[run]
+method = "dla"
+step = 0.05
+duration = 40.0
+"#;
+
+/// The error of the good file with one part replaced.
+fn error(replaced: &str, by: &str) -> SceneError {
+    assert_eq!(GOOD.matches(replaced).count(), 1, "{replaced:?} must occur once");
+    let text = GOOD.replace(replaced, by);
+    match Scene::parse(&text, "dir/bad.toml", METHODS) {
+        Ok(scene) => panic!("{by:?} was accepted: {scene:?}"),
+        Err(error) => error,
+    }
+}
+
+/// Replaced part, replacement, line and column, and what the message holds besides: the field first.
+type Case = (&'static str, &'static str, (usize, usize), &'static [&'static str]);
+
+const POSITIVE: &str = "greater than 0";
+
+const CASES: &[Case] = &[
+    // Numbers out of their range.
+    ("mass = 1.0", "mass = -1.0", (3, 8), &["`sleigh.mass`", "must be positive", "found -1.0", POSITIVE, "in kg"]),
+    ("mass = 1.0", "mass = 0", (3, 8), &["`sleigh.mass`", "must be positive", "found 0", POSITIVE]),
+    ("mass = 1.0", "mass = -0.0", (3, 8), &["`sleigh.mass`", "must be positive"]),
+    ("mass = 1.0", "mass = 1e-999", (3, 8), &["`sleigh.mass`", "must be positive", "found 1e-999"]),
+    ("mass = 1.0", "mass = nan", (3, 8), &["`sleigh.mass`", "must be finite", "found nan", POSITIVE]),
+    ("inertia = 1.0", "inertia = +inf", (4, 11), &["`sleigh.inertia`", "must be finite", "in kg m^2"]),
+    ("inertia = 1.0", "inertia = -2", (4, 11), &["`sleigh.inertia`", "must be positive"]),
+    ("offset = 0.5", "offset = -inf", (5, 10), &["`sleigh.offset`", "must be finite", "a finite number, in m"]),
+    ("offset = 0.5", "offset = 1e999", (5, 10), &["`sleigh.offset`", "must be finite", "found 1e999"]),
+    ("offset = 0.5", "offset = 1e200", (5, 10), &["`sleigh.offset`", "inertia + mass * offset^2"]),
+    ("speed = -1.0", "speed = nan", (8, 9), &["`start.speed`", "must be finite", "in m/s"]),
+    ("turn_rate = 0.1", "turn_rate = inf", (9, 13), &["`start.turn_rate`", "must be finite", "in rad/s"]),
+    ("x = 0.0", "y = nan", (7, 5), &["`start.y`", "must be finite"]),
+    ("step = 0.05", "step = 0.0", (12, 8), &["`run.step`", "must be positive", POSITIVE, "in s"]),
+    ("step = 0.05", "step = -1", (12, 8), &["`run.step`", "must be positive"]),
+    ("step = 0.05", "step = nan", (12, 8), &["`run.step`", "must be finite"]),
+    ("step = 0.05", "step = 41", (12, 8), &["`run.step`", "longer than the duration", "at most the duration, 40.0 s"]),
+    ("step = 0.05", "step = 3e-11", (12, 8), &["`run.step`", "more than 1e12 steps", "at least 4e-11 s"]),
+    ("step = 0.05", "step = 5e-324", (12, 8), &["`run.step`", "more than 1e12 steps"]),
+    ("duration = 40.0", "duration = -40.0", (13, 12), &["`run.duration`", "must be positive"]),
+    ("duration = 40.0", "duration = 0", (13, 12), &["`run.duration`", "must be positive", "found 0"]),
+    ("duration = 40.0", "duration = inf", (13, 12), &["`run.duration`", "must be finite"]),
+    ("method = \"dla\"", "alpha = 1.5", (11, 9), &["`run.alpha`", "between 0 and 1", "a number from 0 to 1"]),
+    ("method = \"dla\"", "alpha = -0.1", (11, 9), &["`run.alpha`", "between 0 and 1"]),
+    // Wrong types.
+    ("mass = 1.0", "mass = \"1.0\"", (3, 8), &["`sleigh.mass`", "wrong type", "found a string", POSITIVE]),
+    ("mass = 1.0", "mass = [1.0]", (3, 8), &["`sleigh.mass`", "found a list"]),
+    ("mass = 1.0", "mass = true", (3, 8), &["`sleigh.mass`", "found a truth value"]),
+    ("mass = 1.0", "mass = 1979-05-27", (3, 8), &["`sleigh.mass`", "found a date or time"]),
+    ("mass = 1.0", "mass = { kg = 1.0 }", (3, 8), &["`sleigh.mass`", "found a table"]),
+    ("method = \"dla\"", "method = 4", (11, 10), &["`run.method`", "found an integer", "`dla`, `dla-alpha`, `rk4`"]),
+    ("\"Good\"", "1.5", (1, 9), &["`title`", "found a number", "a string"]),
+    ("title = \"Good\"", "effects = 3", (1, 11), &["`effects`", "found an integer", "`[[effects]]`"]),
+    ("title = \"Good\"", "effects = [1]", (1, 12), &["`effects`", "found an integer", "`[[effects]]`"]),
+    ("[run]", "[[run]]", (10, 1), &["`run`", "found a list", "the table `[run]`"]),
+    // Names.
+    ("\"dla\"", "\"dal\"", (11, 10), &["`run.method`", "found \"dal\"", "`dla-alpha`, `rk4`", "did you mean `dla`?"]),
+    ("\"dla\"", "\"\"", (11, 10), &["`run.method`", "one of `dla`"]),
+    (
+        "duration = 40.0\n",
+        "duration = 40.0\n[[effects]]\nkind = \"bowl\"\nstiffness = 1",
+        (15, 8),
+        &["`effects.kind`", "\"bowl\"", "this version knows no effects yet"],
+    ),
+    (
+        "duration = 40.0\n",
+        "duration = 40.0\n\n[[effects]]\nstiffness = 1",
+        (15, 1),
+        &["`effects.kind`", "is missing", "this version knows no effects yet"],
+    ),
+    (
+        "title = \"Good\"",
+        "effects = [{ kind = 1 }]",
+        (1, 21),
+        &["`effects.kind`", "found an integer", "no effects yet"],
+    ),
+    // Keys that no scene has.
+    ("mass = 1.0", "masss = 1.0", (3, 1), &["`sleigh.masss`", "`mass`, `inertia`, `offset`", "did you mean `mass`?"]),
+    ("x = 0.0", "turn-rate = 0.0", (7, 1), &["`start.turn-rate`", "did you mean `turn_rate`?"]),
+    ("x = 0.0", "\"a b\" = 0.0", (7, 1), &["`start.\"a b\"`", "`heading`"]),
+    ("x = 0.0", "mass = 0.0", (7, 1), &["`start.mass`", "belongs in the table `[sleigh]`"]),
+    ("step = 0.05", "title = 1", (12, 1), &["`run.title`", "belongs at the top"]),
+    ("title = \"Good\"", "titel = \"Good\"", (1, 1), &["`titel`", "did you mean `title`?"]),
+    ("[start]", "[strat]", (6, 2), &["`strat`", "did you mean `start`?"]),
+    ("[start]", "[sleigh.start]", (6, 9), &["`sleigh.start`", "`mass`, `inertia`, `offset`", "headed `[start]`"]),
+    // Keys and tables that are not there.
+    ("mass = 1.0\n", "", (2, 1), &["`sleigh.mass`", "is missing", POSITIVE, "[sleigh]"]),
+    ("inertia = 1.0\n", "", (2, 1), &["`sleigh.inertia`", "is missing"]),
+    ("offset = 0.5\n", "", (2, 1), &["`sleigh.offset`", "is missing", "a finite number, in m"]),
+    ("speed = -1.0\n", "", (6, 1), &["`start.speed`", "is missing", "[start]"]),
+    ("turn_rate = 0.1\n", "", (6, 1), &["`start.turn_rate`", "is missing"]),
+    ("step = 0.05\n", "", (10, 1), &["`run.step`", "is missing", "[run]"]),
+    ("duration = 40.0\n", "", (10, 1), &["`run.duration`", "is missing"]),
+    (
+        "[start]\nx = 0.0\nspeed = -1.0\nturn_rate = 0.1\n",
+        "",
+        (1, 1),
+        &["`start`", "is missing", "the table `[start]`"],
+    ),
+    // Not TOML.
+    ("mass = 1.0", "mass = ", (3, 8), &["`sleigh.mass` is not TOML", POSITIVE, "in kg"]),
+    ("mass = 1.0", "mass 1.0", (3, 6), &["mass 1.0", "accepted: `=`"]),
+    ("mass = 1.0", "mass = 1.0 kg", (3, 8), &["`sleigh.mass` is not TOML", POSITIVE, "in kg"]),
+    ("mass = 1.0", "mass = 1,0", (3, 9), &["`sleigh.mass` is not TOML", POSITIVE]),
+    ("mass = 1.0", "mass = 1e", (3, 10), &["`sleigh.mass`", POSITIVE]),
+    ("\"dla\"", "dla", (11, 10), &["`run.method` is not TOML: string values must be quoted", "a string in quotes"]),
+    ("inertia = 1.0", "mass = 1.0", (4, 1), &["duplicate key", "once"]),
+    ("[start]", "[start", (6, 7), &["[start"]),
+    ("\"Good\"", "\"Good", (1, 14), &["`title` is not TOML", "a string in quotes"]),
+];
+
+#[test]
+fn errors_name_line_field_and_what_is_accepted() {
+    for &(replaced, by, (line, column), fragments) in CASES {
+        let error = error(replaced, by);
+        let text = error.to_string();
+        let place = error.finding().and_then(|finding| finding.place).map(|place| (place.line, place.column));
+        assert_eq!(place, Some((line, column)), "{by:?}:\n{text}");
+        assert_eq!(error.origin(), "dir/bad.toml");
+        let at = format!("dir/bad.toml:{line}:{column}\n");
+        for fragment in fragments.iter().copied().chain([at.as_str(), "= accepted: "]) {
+            assert!(text.contains(fragment), "no {fragment:?} for {by:?} in:\n{text}");
+        }
+    }
+}
+
+#[test]
+fn an_error_reads_like_this() {
+    let expected = "\
+`sleigh.mass` must be positive
+ --> dir/bad.toml:3:8
+  |
+3 | mass = -1.0
+  |        ^^^^ found -1.0
+  |
+  = accepted: a finite number greater than 0, in kg";
+    assert_eq!(error("mass = 1.0", "mass = -1.0").to_string(), expected);
+}
+
+#[test]
+fn the_data_of_an_error_say_what_its_text_says() {
+    let error = error("method = \"dla\"", "method = \"rk5\"");
+    assert!(matches!(error, SceneError::UnknownName(_)));
+    let finding = error.finding().unwrap();
+    assert_eq!(finding.field.as_deref(), Some("run.method"));
+    assert_eq!(finding.found.as_deref(), Some("\"rk5\""));
+    assert_eq!(finding.accepted, "one of `dla`, `dla-alpha`, `rk4`");
+    assert_eq!(finding.help.as_deref(), Some("did you mean `rk4`?"));
+}
+
+#[test]
+fn empty_texts_are_empty_scenes() {
+    for text in ["", "\n\n", "# nothing\r\n", "\u{feff}", "\u{feff}# nothing"] {
+        let error = Scene::parse(text, "empty.toml", METHODS).unwrap_err();
+        let message = error.to_string();
+        assert!(matches!(error, SceneError::Missing(_)));
+        for fragment in ["the scene is empty", "empty.toml:1:1", "`[sleigh]`, `[start]` and `[run]`"] {
+            assert!(message.contains(fragment), "{text:?}:\n{message}");
+        }
+    }
+}
+
+#[test]
+fn places_do_not_depend_on_the_ends_of_lines() {
+    let windows = format!("\u{feff}{}", GOOD.replace('\n', "\r\n"));
+    let scene = Scene::parse(&windows, "windows.toml", METHODS).unwrap();
+    assert_eq!(scene, Scene { name: "windows".to_owned(), ..Scene::parse(GOOD, "good.toml", METHODS).unwrap() });
+    let error = Scene::parse(&windows.replace("mass = 1.0", "mass = -1.0"), "windows.toml", METHODS).unwrap_err();
+    assert!(error.to_string().contains("windows.toml:3:8\n"), "{error}");
+}
+
+#[test]
+fn methods_are_those_of_the_caller() {
+    let error = Scene::parse(&GOOD.replace("method = \"dla\"\n", ""), "bad.toml", &["rk4"]).unwrap_err();
+    let text = error.to_string();
+    // The default is not accepted here, and the file has no line to blame but the table's header.
+    assert!(
+        text.contains("bad.toml:10:1\n") && text.contains("found \"dla\"") && text.contains("one of `rk4`"),
+        "{text}"
+    );
+}
+
+#[test]
+fn errors_cross_threads() {
+    fn check<E: std::error::Error + Send + Sync + 'static>() {}
+    check::<SceneError>();
+}

@@ -1,0 +1,90 @@
+use std::ops::{Add, Div, Mul};
+
+/// A number as the unevaluated sum `hi + lo`, `|lo|` at most half a unit in the last place of `hi`: some 106 bits.
+///
+/// The operations are those of Dekker (1971), the products exact by a fused multiply-add. Parts that overflow or
+/// underflow lose the extra digits and nothing else.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Twofold {
+    pub(crate) hi: f64,
+    pub(crate) lo: f64,
+}
+
+impl Twofold {
+    pub(crate) fn new(hi: f64, lo: f64) -> Self {
+        Self { hi, lo }
+    }
+
+    /// `ln 2`.
+    pub(crate) fn ln_2() -> Self {
+        Self::new(std::f64::consts::LN_2, 2.319_046_813_846_299_6e-17)
+    }
+
+    /// The exact product of two numbers.
+    pub(crate) fn product(a: f64, b: f64) -> Self {
+        let hi = a * b;
+        Self::new(hi, a.mul_add(b, -hi))
+    }
+
+    pub(crate) fn sqrt(self) -> Self {
+        let root = self.hi.sqrt();
+        if root > 0.0 { Self::renormalised(root, 0.5 * self.residual(root, root) / root) } else { Self::from(root) }
+    }
+
+    pub(crate) fn abs(self) -> Self {
+        if self.hi < 0.0 { Self::new(-self.hi, -self.lo) } else { self }
+    }
+
+    /// `e^(hi + lo)`, with the relative accuracy of `f64` at any size of `hi`.
+    pub(crate) fn exp(self) -> f64 {
+        let exp = self.hi.exp();
+        if exp > 0.0 && exp.is_finite() { exp + exp * self.lo } else { exp }
+    }
+
+    /// `self - a b`, where the two nearly cancel.
+    fn residual(self, a: f64, b: f64) -> f64 {
+        let product = Self::product(a, b);
+        (self.hi - product.hi) + (self.lo - product.lo)
+    }
+
+    /// `hi + lo` for `|lo| <= |hi|`, without `lo` where it is not a number.
+    fn renormalised(hi: f64, lo: f64) -> Self {
+        let sum = hi + lo;
+        if sum.is_finite() { Self::new(sum, lo - (sum - hi)) } else { Self::from(hi) }
+    }
+}
+
+impl From<f64> for Twofold {
+    fn from(value: f64) -> Self {
+        Self::new(value, 0.0)
+    }
+}
+
+impl Add for Twofold {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        let sum = self.hi + other.hi;
+        let shift = sum - self.hi;
+        let error = (self.hi - (sum - shift)) + (other.hi - shift);
+        Self::renormalised(sum, error + (self.lo + other.lo))
+    }
+}
+
+impl Mul<f64> for Twofold {
+    type Output = Self;
+
+    fn mul(self, factor: f64) -> Self {
+        let product = Self::product(self.hi, factor);
+        Self::renormalised(product.hi, product.lo + self.lo * factor)
+    }
+}
+
+impl Div for Twofold {
+    type Output = Self;
+
+    fn div(self, divisor: Self) -> Self {
+        let quotient = self.hi / divisor.hi;
+        Self::renormalised(quotient, (self.residual(quotient, divisor.hi) - quotient * divisor.lo) / divisor.hi)
+    }
+}

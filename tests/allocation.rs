@@ -1,0 +1,39 @@
+//! A step allocates nothing, whatever the method.
+
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
+mod common;
+
+use allocation_counter::measure;
+use common::{backward, midpoint_forms, sleigh, state_of};
+use dla::Schedule;
+use harness::{METHODS, Method, integrate};
+
+#[test]
+fn no_method_allocates_in_a_step() {
+    let sleigh = sleigh();
+    let schedule = Schedule { t0: 0.0, step: 0.05, steps: 1000 };
+    for info in METHODS {
+        let method = Method::named(info.name, None).unwrap();
+        let mut state = state_of(&sleigh, &backward());
+        let counts = measure(|| {
+            integrate(&sleigh, &method, &schedule, &mut state, ()).unwrap();
+        });
+        assert_eq!(counts.count_total, 0, "{} allocates", info.name);
+    }
+    for (name, mut method) in midpoint_forms() {
+        let mut state = state_of(&sleigh, &backward());
+        let counts = measure(|| {
+            dla::drive(&sleigh, &mut method, &schedule, &mut state, ()).unwrap();
+        });
+        assert_eq!(counts.count_total, 0, "{name} allocates");
+    }
+}
+
+/// The control: the counter counts.
+#[test]
+fn the_counter_counts() {
+    let counts = measure(|| {
+        std::hint::black_box(vec![1.0f64; 3]);
+    });
+    assert_eq!(counts.count_total, 1);
+}
