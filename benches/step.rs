@@ -69,8 +69,8 @@ const CASES: [Case; 8] = [
     ("rk4", || consume(library(Rk4))),
     ("rk4-projected", || consume(library(Rk4Projected))),
     ("rk4-reduced", || consume(library(Rk4Reduced))),
-    ("dla, closed map", || consume(library(Dla::midpoint().solved(Form::Best)))),
-    ("dla, automatic derivatives in the basis", || consume(library(Dla::midpoint()))),
+    ("dla, closed map", || consume(library(Dla::midpoint()))),
+    ("dla, automatic derivatives in the basis", || consume(library(Dla::midpoint().solved(Form::General)))),
     ("dla, automatic derivatives and multipliers", || {
         consume(library(Dla::midpoint().solved(Form::Multipliers)));
     }),

@@ -18,7 +18,7 @@ fn a_step_that_turns_too_far_is_refused() {
     for turn_rate in [4.8, 100.0, -1e200] {
         let mut state = state_of(&sleigh, &start(0.1, turn_rate));
         let before = state;
-        let error = Dla::midpoint().solved(Form::Best).step(&sleigh, 0.0, 1.0, &mut state).unwrap_err();
+        let error = Dla::midpoint().step(&sleigh, 0.0, 1.0, &mut state).unwrap_err();
         assert!(matches!(error, StepError::Closed(ClosedStepError::NoSolution { .. })), "{turn_rate}: {error}");
         assert_eq!(state, before, "a failed step leaves the state");
     }
@@ -31,7 +31,7 @@ fn the_singular_step_is_refused() {
     let critical = 2.0 / sleigh.spin_gain();
     let step = |h: f64| {
         let mut state = state_of(&sleigh, &start(-1.0, 1e-3));
-        Dla::midpoint().solved(Form::Best).step(&sleigh, 0.0, h, &mut state)
+        Dla::midpoint().step(&sleigh, 0.0, h, &mut state)
     };
     assert!(step(0.9 * critical).is_ok());
     for h in [critical, 1.1 * critical, 10.0 * critical] {
@@ -57,7 +57,7 @@ fn numbers_that_overflow_are_reported() {
 #[test]
 fn the_general_form_reports_its_newton() {
     let sleigh = sleigh();
-    let mut method = Dla::midpoint();
+    let mut method = Dla::midpoint().solved(Form::General);
     method.newton.max_iterations = 1;
     let mut state = state_of(&sleigh, &start(-1.0, 0.5));
     let error = method.step(&sleigh, 0.0, 0.3, &mut state).unwrap_err();
@@ -78,7 +78,7 @@ fn a_failed_run_keeps_its_trajectory() {
     let mut state = state_of(&sleigh, &start(-1.5, 1e-3));
     let mut trajectory = Trajectory::<3, 1>::every(3);
     let schedule = Schedule { t0: 1.0, step: h, steps: 1000 };
-    let mut method = Dla::midpoint().solved(Form::Best);
+    let mut method = Dla::midpoint();
     let error = drive(&sleigh, &mut method, &schedule, &mut state, &mut trajectory).unwrap_err();
     println!("{error}");
     let last = trajectory.nodes().last().unwrap();

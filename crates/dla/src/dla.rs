@@ -77,9 +77,9 @@ impl Dla<Alpha, Alpha> {
 }
 
 impl<L, C> Dla<L, C> {
-    /// The method of a discrete Lagrangian and a discrete constraint, solved in the general form.
+    /// The method of a discrete Lagrangian and a discrete constraint, in its best form.
     pub fn new(lagrangian: L, constraint: C) -> Self {
-        Self { lagrangian, constraint, newton: Newton::default(), form: Form::General }
+        Self { lagrangian, constraint, newton: Newton::default(), form: Form::Best }
     }
 
     /// The same method, solved in the given form. Only the pair of midpoint rules has closed forms.

@@ -6,16 +6,16 @@ use thiserror::Error;
 /// When the steps of a run are made: node `k` is at `t0 + k h`, so that no rounding error adds up in the time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Schedule {
-    /// Time of the first node [s].
+    /// Time of the first node (s).
     pub t0: f64,
-    /// Step `h` [s]; negative runs backward.
+    /// Step `h` (s); negative runs backward.
     pub step: f64,
     /// How many steps.
     pub steps: u64,
 }
 
 impl Schedule {
-    /// Time of node `k` [s].
+    /// Time of node `k` (s).
     #[must_use]
     #[inline(always)]
     pub fn time(&self, k: u64) -> f64 {
@@ -30,14 +30,14 @@ pub struct View<'a, Sys, const N: usize> {
     pub system: &'a Sys,
     /// The number of steps made so far.
     pub k: u64,
-    /// The time [s].
+    /// The time (s).
     pub t: f64,
     /// The state.
     pub state: &'a State<N>,
 }
 
 impl<Sys, const N: usize> View<'_, Sys, N> {
-    /// The energy `v . L_v - L` [J].
+    /// The energy `v . L_v - L` (J).
     pub fn energy<const M: usize>(&self) -> f64
     where
         Sys: System<N, M>,
@@ -123,7 +123,7 @@ impl<Sys, O: Observer<Sys, N, M>, const N: usize, const M: usize> Observer<Sys, 
 pub struct RunError {
     /// The number of the failed step, from 1.
     pub step: u64,
-    /// The time it began at, which is how far the trajectory is valid [s].
+    /// The time it began at, which is how far the trajectory is valid (s).
     pub time: f64,
     /// What happened.
     #[source]

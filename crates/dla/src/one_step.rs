@@ -14,7 +14,7 @@ pub trait OneStep<Sys, const N: usize, const M: usize> {
 /// What a step did besides moving the state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StepReport<const M: usize> {
-    /// Impulses of the constraints at the two ends of the step [N s]; the constraint acts with
+    /// Impulses of the constraints at the two ends of the step (N s); the constraint acts with
     /// `A(q0)' impulses[0] + A(q1)' impulses[1]`. Zero where a method does not compute them.
     pub impulses: [[f64; M]; 2],
     /// Newton iterations of the step's equations; 0 for an explicit method.

@@ -7,13 +7,13 @@ use std::ops::ControlFlow;
 pub struct Node<const N: usize, const M: usize> {
     /// The number of steps made so far.
     pub k: u64,
-    /// Time [s].
+    /// Time (s).
     pub t: f64,
     /// Configuration, angles with their full turns.
     pub q: [f64; N],
     /// Velocity.
     pub v: [f64; N],
-    /// Energy [J].
+    /// Energy (J).
     pub energy: f64,
     /// Largest constraint residual `|A(q) v + b|`.
     pub constraint: f64,

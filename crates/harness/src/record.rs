@@ -12,7 +12,7 @@ pub struct NewtonSummary {
     pub max: u32,
 }
 
-/// The energy over a run [J].
+/// The energy over a run (J).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EnergySummary {
     /// At the start.
@@ -21,18 +21,18 @@ pub struct EnergySummary {
     pub last: f64,
     /// `max |E - E0|` over all nodes.
     pub max_error: f64,
-    /// Slope of the least-squares line through `E - E0` at all nodes [J/s].
+    /// Slope of the least-squares line through `E - E0` at all nodes (J/s).
     pub drift_per_time: f64,
 }
 
 /// A node kept for plots.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample<const N: usize> {
-    /// Time [s].
+    /// Time (s).
     pub t: f64,
     /// Configuration, angles with their full turns.
     pub q: [f64; N],
-    /// The largest `|E - E0|` [J] since the sample before.
+    /// The largest `|E - E0|` (J) since the sample before.
     pub energy_error: f64,
     /// The largest constraint residual since the sample before.
     pub constraint: f64,
@@ -43,11 +43,11 @@ pub struct Sample<const N: usize> {
 pub struct Record<const N: usize> {
     /// The method.
     pub method: MethodInfo,
-    /// Step [s].
+    /// Step (s).
     pub step: f64,
     /// Steps made.
     pub steps: u64,
-    /// Time of the steps alone, nothing observed [s]: the median of repeated runs where they are short.
+    /// Time of the steps alone, nothing observed (s): the median of repeated runs where they are short.
     pub wall_seconds: f64,
     /// Newton iterations.
     pub newton: NewtonSummary,
@@ -55,7 +55,7 @@ pub struct Record<const N: usize> {
     pub energy: EnergySummary,
     /// `max |A(q) v + b|` over all nodes.
     pub constraint_max: f64,
-    /// Time at the end [s].
+    /// Time at the end (s).
     pub t: f64,
     /// Configuration at the end, angles with their full turns.
     pub q: [f64; N],

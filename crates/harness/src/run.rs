@@ -1,7 +1,7 @@
 use crate::record::Meter;
 use crate::timing::{Ticker, median_seconds};
 use crate::{Method, Progress, Record, Rk4, Rk4Projected, Rk4Reduced};
-use dla::{Dla, Form, Observer, RunError, Schedule, State, drive};
+use dla::{Dla, Observer, RunError, Schedule, State, drive};
 use lagrangian::System;
 
 /// A run to be made.
@@ -33,7 +33,7 @@ where
     Obs: Observer<Sys, N, M>,
 {
     match *method {
-        Method::Dla => drive(system, &mut Dla::midpoint().solved(Form::Best), schedule, state, observer),
+        Method::Dla => drive(system, &mut Dla::midpoint(), schedule, state, observer),
         Method::DlaTrapezoid => drive(system, &mut Dla::trapezoid(), schedule, state, observer),
         Method::DlaAlpha(rule) => drive(system, &mut Dla::new(rule, rule), schedule, state, observer),
         Method::Rk4 => drive(system, &mut Rk4, schedule, state, observer),

@@ -51,7 +51,7 @@ impl<P: Progress, Sys, const N: usize, const M: usize> Observer<Sys, N, M> for T
     }
 }
 
-/// The median time of `f` over repeated calls, of one call where that is long enough [s].
+/// The median time of `f` over repeated calls, of one call where that is long enough (s).
 pub(crate) fn median_seconds(mut f: impl FnMut()) -> f64 {
     let mut times = Vec::with_capacity(REPEATS);
     let begin = Instant::now();

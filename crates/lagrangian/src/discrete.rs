@@ -4,7 +4,7 @@ use std::array::from_fn;
 /// The derivatives of a discrete Lagrangian over one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Derivatives<S, const N: usize> {
-    /// `L_d(q0, q1)` [J s].
+    /// `L_d(q0, q1)` (J s).
     pub value: S,
     /// `D1 L_d = dL_d/dq0`.
     pub d1: [S; N],
@@ -20,19 +20,19 @@ pub struct Derivatives<S, const N: usize> {
 /// the rounded end points would lose the digits that a step needs. Every quadrature [`Rule`] is one; a hand-made one
 /// implements [`DiscreteLagrangian::average`], and [`DiscreteLagrangian::derivatives`] too where a closed form pays.
 pub trait DiscreteLagrangian<Sys, const N: usize, const M: usize> {
-    /// The mean Lagrangian over the step, `L_d(q0, q0 + h v) / h` [J].
+    /// The mean Lagrangian over the step, `L_d(q0, q0 + h v) / h` (J).
     ///
     /// The action itself would bring factors `h` and `1/h` into the momenta that cancel but for their rounding, which is
     /// the same in every step: an energy drift of half an ulp a step.
     fn average<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> S;
 
-    /// `L_d(q0, q0 + h v)` [J s].
+    /// `L_d(q0, q0 + h v)` (J s).
     #[inline(always)]
     fn value<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> S {
         h * self.average(system, t0, h, q0, v)
     }
 
-    /// Discrete forces `f_d^-` at `q0` and `f_d^+` at `q1` [N s], with the quadrature of the action; none by default.
+    /// Discrete forces `f_d^-` at `q0` and `f_d^+` at `q1` (N s), with the quadrature of the action; none by default.
     ///
     /// Marsden and West 2001, equation (3.2.1).
     #[inline(always)]

@@ -7,7 +7,7 @@ use std::array::from_fn;
 /// another body. Effects compose: `()` is none of them, a tuple several known ones, a `Vec` as many as a file names. In
 /// the angles of the body an effect must have the period `2 pi`.
 pub trait Effect<B, const N: usize> {
-    /// What the effect adds to `L(t, q, v)` [J]; a potential `V` adds `-V`.
+    /// What the effect adds to `L(t, q, v)` (J); a potential `V` adds `-V`.
     #[inline(always)]
     fn lagrangian<S: Scalar>(&self, _body: &B, _t: S, _q: &[S; N], _v: &[S; N]) -> Option<S> {
         None

@@ -37,7 +37,7 @@ pub use lanes::{Lanes, vectorized};
 pub use momentum::{energy, mass_matrix, momentum};
 pub use motion::{Motion, MotionError};
 pub use reduced::{quasi_velocities, reduced_acceleration};
-pub use rule::{Alpha, Midpoint, Node, NotAWeight, Rule, Symmetrised, Trapezoid};
+pub use rule::{Alpha, Midpoint, NotAWeight, Rule, RuleNode, Symmetrised, Trapezoid};
 pub use saddle::Saddle;
 pub use scalar::Scalar;
 pub use system::{Constraint, System, constraint_residual};

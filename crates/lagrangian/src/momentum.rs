@@ -21,7 +21,7 @@ where
     in_velocity(system, t, q, v).eps
 }
 
-/// The energy `E = v . dL/dv - L` [J].
+/// The energy `E = v . dL/dv - L` (J).
 #[inline]
 pub fn energy<Sys, S, const N: usize, const M: usize>(system: &Sys, t: S, q: &[S; N], v: &[S; N]) -> S
 where

@@ -18,7 +18,7 @@ pub struct Motion<const N: usize, const M: usize> {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[error("the mass matrix on the constraint is degenerate at t = {time}: {source}")]
 pub struct MotionError {
-    /// The time [s].
+    /// The time (s).
     pub time: f64,
     /// The matrix's defect.
     #[source]

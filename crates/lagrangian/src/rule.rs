@@ -2,7 +2,7 @@ use thiserror::Error;
 
 /// One node of a quadrature over a step: where, as a fraction of the step, and with what weight.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Node {
+pub struct RuleNode {
     /// Position, 0 at the beginning of the step and 1 at its end.
     pub alpha: f64,
     /// Weight.
@@ -16,7 +16,7 @@ pub struct Node {
 /// `t_i = t0 + alpha_i h` and `v = (q1 - q0)/h`. (Marsden and West 2001, Acta Numerica 10, 357-514, section 2.3.)
 pub trait Rule {
     /// The nodes.
-    fn nodes(&self) -> &[Node];
+    fn nodes(&self) -> &[RuleNode];
 }
 
 /// One node in the middle: order 2, self-adjoint.
@@ -29,11 +29,11 @@ pub struct Trapezoid;
 
 /// One node at `q0 + alpha (q1 - q0)`: order 1 unless `alpha = 1/2`; its adjoint has the weight `1 - alpha`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Alpha([Node; 1]);
+pub struct Alpha([RuleNode; 1]);
 
 /// The mean of the rules with `alpha` and with `1 - alpha`: order 2, self-adjoint. `alpha = 0` is the trapezoid.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Symmetrised([Node; 2]);
+pub struct Symmetrised([RuleNode; 2]);
 
 /// The weight of a rule was not a number from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
@@ -53,7 +53,7 @@ impl Alpha {
     /// # Errors
     /// [`NotAWeight`] for any other number.
     pub fn new(alpha: f64) -> Result<Self, NotAWeight> {
-        Ok(Self([Node { alpha: checked(alpha)?, weight: 1.0 }]))
+        Ok(Self([RuleNode { alpha: checked(alpha)?, weight: 1.0 }]))
     }
 }
 
@@ -73,31 +73,31 @@ impl Symmetrised {
     /// [`NotAWeight`] for any other number.
     pub fn new(alpha: f64) -> Result<Self, NotAWeight> {
         let alpha = checked(alpha)?;
-        Ok(Self([alpha, 1.0 - alpha].map(|alpha| Node { alpha, weight: 0.5 })))
+        Ok(Self([alpha, 1.0 - alpha].map(|alpha| RuleNode { alpha, weight: 0.5 })))
     }
 }
 
 impl Rule for Midpoint {
     #[inline(always)]
-    fn nodes(&self) -> &[Node] {
-        &[Node { alpha: 0.5, weight: 1.0 }]
+    fn nodes(&self) -> &[RuleNode] {
+        &[RuleNode { alpha: 0.5, weight: 1.0 }]
     }
 }
 impl Rule for Trapezoid {
     #[inline(always)]
-    fn nodes(&self) -> &[Node] {
-        &[Node { alpha: 0.0, weight: 0.5 }, Node { alpha: 1.0, weight: 0.5 }]
+    fn nodes(&self) -> &[RuleNode] {
+        &[RuleNode { alpha: 0.0, weight: 0.5 }, RuleNode { alpha: 1.0, weight: 0.5 }]
     }
 }
 impl Rule for Alpha {
     #[inline(always)]
-    fn nodes(&self) -> &[Node] {
+    fn nodes(&self) -> &[RuleNode] {
         &self.0
     }
 }
 impl Rule for Symmetrised {
     #[inline(always)]
-    fn nodes(&self) -> &[Node] {
+    fn nodes(&self) -> &[RuleNode] {
         &self.0
     }
 }

@@ -25,7 +25,7 @@ pub trait Scalar:
 {
     /// The constant `x`, all of its derivatives zero.
     fn constant(x: f64) -> Self;
-    /// Sine and cosine together [rad].
+    /// Sine and cosine together (rad).
     fn sin_cos(self) -> (Self, Self);
     /// Exponential.
     fn exp(self) -> Self;
@@ -44,13 +44,13 @@ pub trait Scalar:
     fn zero() -> Self {
         Self::constant(0.0)
     }
-    /// Sine [rad].
+    /// Sine (rad).
     #[must_use]
     #[inline(always)]
     fn sin(self) -> Self {
         self.sin_cos().0
     }
-    /// Cosine [rad].
+    /// Cosine (rad).
     #[must_use]
     #[inline(always)]
     fn cos(self) -> Self {

@@ -29,7 +29,7 @@ const C: [f64; 6] = [
     -1.135_964_755_778_819_5e-11,
 ];
 
-/// Sines and cosines of `x` [rad].
+/// Sines and cosines of `x` (rad).
 #[inline(always)]
 pub(crate) fn sin_cos<const W: usize>(x: &[f64; W]) -> ([f64; W], [f64; W]) {
     let mut sin = [0.0; W];

@@ -24,7 +24,7 @@ pub type Constraint<S, const N: usize, const M: usize> = ([[S; N]; M], [S; M]);
 /// # assert_eq!(lagrangian::energy(&Particle, 0.0, &[0.0; 3], &[1.0, 2.0, 0.0]), 2.5);
 /// ```
 pub trait System<const N: usize, const M: usize> {
-    /// The Lagrangian `L(t, q, v)` [J].
+    /// The Lagrangian `L(t, q, v)` (J).
     fn lagrangian<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> S;
 
     /// `A(q, t)` and `b(q, t)` of the constraint `A v + b = 0`.

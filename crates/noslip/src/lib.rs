@@ -1,4 +1,27 @@
 //! Discrete variational integrators for systems with velocity constraints: blades, wheels, rolling bodies.
-pub use dla;
-pub use lagrangian;
-pub use sleigh;
+//!
+//! This crate gathers what a program needs under one name; each thing is documented where it is defined.
+//!
+//! | to | see |
+//! |---|---|
+//! | describe a system: its Lagrangian and its constraint | [`System`], [`Scalar`] |
+//! | add what acts on a body | [`Effect`], [`With`] |
+//! | choose a method | [`Dla`], [`DiscreteLagrangian`], [`OneStep`] |
+//! | run it and look on | [`drive`], [`Schedule`], [`State`], [`Observer`], [`Trajectory`] |
+//! | use the Chaplygin sleigh and its closed form | [`Sleigh`], [`SleighState`], [`Exact`] |
+
+pub use dla::{
+    self, Dla, Equations, Form, Newton, NewtonError, Node, Observer, OneStep, RunError, Schedule, Stage, State,
+    StepError, StepReport, Trajectory, View, drive,
+};
+pub use lagrangian::{
+    self, AdmissibleBasis, Alpha, ClosedStep, ClosedStepError, Constraint, Derivatives, DiscreteConstraint,
+    DiscreteLagrangian, Dual, Effect, HyperDual, Lanes, Midpoint, Motion, MotionError, Rule, Scalar, Symmetrised,
+    System, Trapezoid, With, constraint_residual, energy, mass_matrix, momentum, vectorized,
+};
+pub use sleigh::{self, CentreOfMass, Exact, Sleigh, SleighError, SleighState};
+
+/// The examples of the README, compiled and run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+pub struct Readme;

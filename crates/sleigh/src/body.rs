@@ -2,7 +2,7 @@ use crate::SleighError;
 
 /// The free Chaplygin sleigh.
 ///
-/// `q = (x, y, theta)`: the blade's contact point `P = (x, y)` [m] and the heading `theta` [rad], with
+/// `q = (x, y, theta)`: the blade's contact point `P = (x, y)` (m) and the heading `theta` (rad), with
 /// `e = (cos theta, sin theta)` along the blade and `n = (-sin theta, cos theta)` across it. The centre of mass is
 /// `C = P + a e`, the offset `a` signed: positive when the centre of mass is ahead of the blade.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,7 +15,7 @@ pub struct Sleigh {
 }
 
 impl Sleigh {
-    /// A sleigh of mass `m` [kg], moment of inertia `I` [kg m^2] about the centre of mass and offset `a` [m].
+    /// A sleigh of mass `m` (kg), moment of inertia `I` (kg m^2) about the centre of mass and offset `a` (m).
     ///
     /// # Errors
     /// [`SleighError`] names the parameter that is not finite, or not positive where it must be.
@@ -38,31 +38,31 @@ impl Sleigh {
         Ok(Self { mass, inertia, offset, pivot_inertia, spin_gain: mass * offset / pivot_inertia })
     }
 
-    /// Mass `m` [kg].
+    /// Mass `m` (kg).
     #[must_use]
     pub fn mass(&self) -> f64 {
         self.mass
     }
 
-    /// Moment of inertia `I` about the centre of mass [kg m^2].
+    /// Moment of inertia `I` about the centre of mass (kg m^2).
     #[must_use]
     pub fn inertia(&self) -> f64 {
         self.inertia
     }
 
-    /// Signed distance `a` of the centre of mass ahead of the blade [m].
+    /// Signed distance `a` of the centre of mass ahead of the blade (m).
     #[must_use]
     pub fn offset(&self) -> f64 {
         self.offset
     }
 
-    /// Moment of inertia `J = I + m a^2` about the blade's contact point [kg m^2].
+    /// Moment of inertia `J = I + m a^2` about the blade's contact point (kg m^2).
     #[must_use]
     pub fn pivot_inertia(&self) -> f64 {
         self.pivot_inertia
     }
 
-    /// The rate `c = m a / J` [1/m] of `omega' = -c u omega`, by which the spin dies out or grows.
+    /// The rate `c = m a / J` (1/m) of `omega' = -c u omega`, by which the spin dies out or grows.
     #[must_use]
     pub fn spin_gain(&self) -> f64 {
         self.spin_gain

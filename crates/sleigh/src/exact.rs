@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 /// The motion of the free sleigh in closed form, at any time before or after its start.
 ///
-/// With `k = sqrt(J/m)` [m] the gyration radius about the blade, `U = sqrt(2 E/m)` [m/s] the speed that all the energy
+/// With `k = sqrt(J/m)` (m) the gyration radius about the blade, `U = sqrt(2 E/m)` (m/s) the speed that all the energy
 /// would give, `kappa = a U m/J` [1/s], `sigma = k/|a|` and the Gudermannian `gd(s) = 2 atan(tanh(s/2))`,
 ///
 /// ```text
@@ -74,7 +74,7 @@ impl Exact {
         Ok(Self { sleigh: *sleigh, start: *start, turning })
     }
 
-    /// The state at the finite time `t` [s], negative before the start.
+    /// The state at the finite time `t` (s), negative before the start.
     #[must_use]
     pub fn at(&self, t: f64) -> SleighState {
         let start = &self.start;
@@ -93,7 +93,7 @@ impl Exact {
         }
     }
 
-    /// By how much the heading turns from the far past to the far future [rad], in absolute value:
+    /// By how much the heading turns from the far past to the far future (rad), in absolute value:
     /// `pi sqrt(J / (m a^2))`, whatever the energy.
     ///
     /// Infinite for a balanced sleigh, and zero for the straight line without spin.
@@ -102,7 +102,7 @@ impl Exact {
         self.turning.as_ref().map_or(0.0, |(reduced, _)| PI * reduced.gyration_per_offset.abs())
     }
 
-    /// `E = m u^2/2 + J omega^2/2` [J], constant: the constraint does no work.
+    /// `E = m u^2/2 + J omega^2/2` (J), constant: the constraint does no work.
     #[must_use]
     pub fn energy(&self) -> f64 {
         let SleighState { speed, turn_rate, .. } = self.start;

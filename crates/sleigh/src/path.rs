@@ -1,7 +1,7 @@
 use crate::gauss::panel;
 use crate::reduced::{Moment, Reduced};
 
-/// Up to these distances in `s` and turns [rad] the path is integrated over time directly.
+/// Up to these distances in `s` and turns (rad) the path is integrated over time directly.
 const SHORT: f64 = 2.0;
 const SMALL_TURN: f64 = 8.0;
 /// What one panel covers of each.

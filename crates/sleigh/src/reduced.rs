@@ -20,9 +20,9 @@ const NEAR: f64 = 0.5;
 #[derive(Debug, Clone)]
 pub(crate) struct Reduced {
     start: Moment,
-    /// `k = sqrt(J/m)` [m].
+    /// `k = sqrt(J/m)` (m).
     pub(crate) gyration: f64,
-    /// `U` [m/s].
+    /// `U` (m/s).
     pub(crate) speed: f64,
     /// `k/a`, infinite for a balanced sleigh.
     pub(crate) gyration_per_offset: f64,
@@ -40,11 +40,11 @@ pub(crate) struct Reduced {
 pub(crate) struct Moment {
     /// `kappa t`, the distance in `s` from the start.
     pub(crate) tau: f64,
-    /// `u` [m/s].
+    /// `u` (m/s).
     pub(crate) speed: f64,
-    /// `omega` [rad/s].
+    /// `omega` (rad/s).
     pub(crate) turn_rate: f64,
-    /// `theta - theta0` [rad].
+    /// `theta - theta0` (rad).
     pub(crate) turn: f64,
 }
 

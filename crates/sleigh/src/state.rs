@@ -2,15 +2,15 @@
 /// velocities.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SleighState {
-    /// Position of the blade's contact point [m].
+    /// Position of the blade's contact point (m).
     pub x: f64,
-    /// Position of the blade's contact point [m].
+    /// Position of the blade's contact point (m).
     pub y: f64,
-    /// Heading `theta`, with its full turns [rad].
+    /// Heading `theta`, with its full turns (rad).
     pub heading: f64,
-    /// Forward speed `u` of the blade [m/s].
+    /// Forward speed `u` of the blade (m/s).
     pub speed: f64,
-    /// Turn rate `omega` [rad/s].
+    /// Turn rate `omega` (rad/s).
     pub turn_rate: f64,
 }
 
