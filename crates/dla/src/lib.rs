@@ -6,15 +6,19 @@
 //!
 //! This crate knows no particular system and no file; its [`Newton`] solver knows neither time nor mechanics.
 
+mod composition;
 mod dla;
 mod drive;
+mod gauss;
 mod newton;
 mod one_step;
 mod state;
 mod trajectory;
 
 pub use crate::dla::{Dla, Form};
+pub use composition::Composition;
 pub use drive::{Observer, RunError, Schedule, View, drive};
+pub use gauss::Gauss;
 pub use newton::{Equations, Newton, NewtonError};
 pub use one_step::{OneStep, Stage, StepError, StepReport};
 pub use state::State;

@@ -1,5 +1,5 @@
 use crate::{NewtonError, State};
-use lagrangian::{ClosedStepError, MotionError};
+use lagrangian::{ClosedStepError, MotionError, ReducedError};
 use thiserror::Error;
 
 /// A one-step map on the constraint distribution: `(q, v)` with `A(q) v + b = 0` to the next such pair.
@@ -34,6 +34,8 @@ impl<const M: usize> StepReport<M> {
 pub enum Stage {
     /// The discrete Lagrange-d'Alembert equations, for the increment.
     Increment,
+    /// The stages of a collocation method.
+    Collocation,
     /// The projection of the momentum onto the constraint, for the new velocity.
     Projection,
 }
@@ -42,6 +44,7 @@ impl std::fmt::Display for Stage {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::Increment => "the discrete Lagrange-d'Alembert equations",
+            Self::Collocation => "the stages of the collocation",
             Self::Projection => "the projection onto the constraint",
         })
     }
@@ -65,6 +68,9 @@ pub enum StepError {
     /// The continuous equations of motion do not determine the accelerations.
     #[error(transparent)]
     Motion(MotionError),
+    /// The reduced equations, in quasi-velocities, do not exist.
+    #[error(transparent)]
+    Reduced(#[from] ReducedError),
     /// The method cannot do this system.
     #[error("{reason}")]
     Unsupported {

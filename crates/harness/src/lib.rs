@@ -11,7 +11,7 @@ mod statistics;
 mod timing;
 
 pub use baseline::{Rk4, Rk4Projected, Rk4Reduced};
-pub use method::{METHODS, Method, MethodError, MethodInfo};
+pub use method::{Kind, METHODS, Method, MethodError, MethodInfo};
 pub use record::{EnergySummary, NewtonSummary, Record, Sample};
 pub use run::{Request, integrate, run};
 pub use statistics::Trend;

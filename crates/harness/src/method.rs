@@ -4,6 +4,8 @@ use thiserror::Error;
 /// What is known of a method by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MethodInfo {
+    /// Which one it is.
+    pub kind: Kind,
     /// The name in files and commands.
     pub name: &'static str,
     /// The order of accuracy.
@@ -19,6 +21,7 @@ pub struct MethodInfo {
 /// Every method, in the order in which tables show them.
 pub const METHODS: &[MethodInfo] = &[
     MethodInfo {
+        kind: Kind::Dla,
         name: "dla",
         order: 2,
         keeps: "constraint",
@@ -26,6 +29,7 @@ pub const METHODS: &[MethodInfo] = &[
         reference: "Cortes and Martinez 2001, Nonlinearity 14, 1365-1392",
     },
     MethodInfo {
+        kind: Kind::DlaTrapezoid,
         name: "dla-trapezoid",
         order: 2,
         keeps: "constraint",
@@ -33,6 +37,7 @@ pub const METHODS: &[MethodInfo] = &[
         reference: "Cortes and Martinez 2001, Nonlinearity 14, 1365-1392",
     },
     MethodInfo {
+        kind: Kind::DlaAlpha,
         name: "dla-alpha",
         order: 1,
         keeps: "constraint",
@@ -40,6 +45,87 @@ pub const METHODS: &[MethodInfo] = &[
         reference: "Marsden and West 2001, Acta Numerica 10, section 2.3",
     },
     MethodInfo {
+        kind: Kind::Dla4,
+        name: "dla4",
+        order: 4,
+        keeps: "constraint",
+        summary: "five steps of dla, Suzuki's composition",
+        reference: "Suzuki 1990, Phys. Lett. A 146, 319-323",
+    },
+    MethodInfo {
+        kind: Kind::Dla6,
+        name: "dla6",
+        order: 6,
+        keeps: "constraint",
+        summary: "nine steps of dla, the composition of Kahan and Li",
+        reference: "Kahan and Li 1997, Math. Comp. 66, 1089-1099",
+    },
+    MethodInfo {
+        kind: Kind::Dla8,
+        name: "dla8",
+        order: 8,
+        keeps: "constraint",
+        summary: "fifteen steps of dla, composed",
+        reference: "Hairer, Lubich and Wanner 2006, (V.3.12)",
+    },
+    MethodInfo {
+        kind: Kind::Gauss4,
+        name: "gauss4",
+        order: 4,
+        keeps: "constraint",
+        summary: "Gauss collocation with 2 stages, in a basis of admissible velocities",
+        reference: "Hairer, Lubich and Wanner 2006, section II.1.3",
+    },
+    MethodInfo {
+        kind: Kind::Gauss6,
+        name: "gauss6",
+        order: 6,
+        keeps: "constraint",
+        summary: "Gauss collocation with 3 stages, in a basis of admissible velocities",
+        reference: "Hairer, Lubich and Wanner 2006, section II.1.3",
+    },
+    MethodInfo {
+        kind: Kind::Gauss8,
+        name: "gauss8",
+        order: 8,
+        keeps: "constraint",
+        summary: "Gauss collocation with 4 stages, in a basis of admissible velocities",
+        reference: "Hairer, Lubich and Wanner 2006, section II.1.3",
+    },
+    MethodInfo {
+        kind: Kind::Gauss10,
+        name: "gauss10",
+        order: 10,
+        keeps: "constraint",
+        summary: "Gauss collocation with 5 stages, in a basis of admissible velocities",
+        reference: "Hairer, Lubich and Wanner 2006, section II.1.3",
+    },
+    MethodInfo {
+        kind: Kind::Gauss12,
+        name: "gauss12",
+        order: 12,
+        keeps: "constraint",
+        summary: "Gauss collocation with 6 stages, in a basis of admissible velocities",
+        reference: "Hairer, Lubich and Wanner 2006, section II.1.3",
+    },
+    MethodInfo {
+        kind: Kind::Gauss14,
+        name: "gauss14",
+        order: 14,
+        keeps: "constraint",
+        summary: "Gauss collocation with 7 stages, in a basis of admissible velocities",
+        reference: "Hairer, Lubich and Wanner 2006, section II.1.3",
+    },
+    MethodInfo {
+        kind: Kind::Gauss16,
+        name: "gauss16",
+        order: 16,
+        keeps: "constraint",
+        summary: "Gauss collocation with 8 stages, in a basis of admissible velocities",
+        reference: "Hairer, Lubich and Wanner 2006, section II.1.3",
+    },
+    MethodInfo {
+        kind: Kind::Rk4,
         name: "rk4",
         order: 4,
         keeps: "nothing",
@@ -47,6 +133,7 @@ pub const METHODS: &[MethodInfo] = &[
         reference: "Kutta 1901; Hairer and Wanner 1996, section VII.1",
     },
     MethodInfo {
+        kind: Kind::Rk4Projected,
         name: "rk4-projected",
         order: 4,
         keeps: "constraint",
@@ -54,6 +141,7 @@ pub const METHODS: &[MethodInfo] = &[
         reference: "Hairer, Lubich and Wanner 2006, section IV.4",
     },
     MethodInfo {
+        kind: Kind::Rk4Reduced,
         name: "rk4-reduced",
         order: 4,
         keeps: "constraint",
@@ -62,21 +150,48 @@ pub const METHODS: &[MethodInfo] = &[
     },
 ];
 
-/// A method, ready to integrate.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Method {
+/// The methods, as a program tells them apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
     /// `dla`
     Dla,
     /// `dla-trapezoid`
     DlaTrapezoid,
     /// `dla-alpha`
-    DlaAlpha(Alpha),
+    DlaAlpha,
+    /// `dla4`
+    Dla4,
+    /// `dla6`
+    Dla6,
+    /// `dla8`
+    Dla8,
+    /// `gauss4`
+    Gauss4,
+    /// `gauss6`
+    Gauss6,
+    /// `gauss8`
+    Gauss8,
+    /// `gauss10`
+    Gauss10,
+    /// `gauss12`
+    Gauss12,
+    /// `gauss14`
+    Gauss14,
+    /// `gauss16`
+    Gauss16,
     /// `rk4`
     Rk4,
     /// `rk4-projected`
     Rk4Projected,
     /// `rk4-reduced`
     Rk4Reduced,
+}
+
+/// A method, ready to integrate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Method {
+    info: MethodInfo,
+    alpha: Alpha,
 }
 
 /// A method that there is not.
@@ -103,33 +218,25 @@ impl Method {
     /// # Errors
     /// [`MethodError`] where the name or the weight is none.
     pub fn named(name: &str, alpha: Option<f64>) -> Result<Self, MethodError> {
-        Ok(match name {
-            "dla" => Self::Dla,
-            "dla-trapezoid" => Self::DlaTrapezoid,
-            "dla-alpha" => Self::DlaAlpha(Alpha::new(alpha.unwrap_or(0.5))?),
-            "rk4" => Self::Rk4,
-            "rk4-projected" => Self::Rk4Projected,
-            "rk4-reduced" => Self::Rk4Reduced,
-            _ => return Err(MethodError::Unknown { name: name.to_owned() }),
-        })
+        let found = METHODS.iter().find(|info| info.name == name);
+        let mut info = *found.ok_or_else(|| MethodError::Unknown { name: name.to_owned() })?;
+        let alpha = Alpha::new(alpha.unwrap_or(0.5))?;
+        if info.kind == Kind::DlaAlpha && alpha.is_symmetric() {
+            // The one weight that makes the rule symmetric.
+            info.order = 2;
+        }
+        Ok(Self { info, alpha })
     }
 
     /// Name, order and source.
     #[must_use]
     pub fn info(&self) -> MethodInfo {
-        let index = match self {
-            Self::Dla => 0,
-            Self::DlaTrapezoid => 1,
-            Self::DlaAlpha(..) => 2,
-            Self::Rk4 => 3,
-            Self::Rk4Projected => 4,
-            Self::Rk4Reduced => 5,
-        };
-        let mut info = METHODS[index];
-        // The one weight that makes the rule symmetric.
-        if matches!(self, Self::DlaAlpha(rule) if rule.is_symmetric()) {
-            info.order = 2;
-        }
-        info
+        self.info
+    }
+
+    /// The rule of `dla-alpha`.
+    #[must_use]
+    pub fn alpha(&self) -> Alpha {
+        self.alpha
     }
 }

@@ -1,7 +1,7 @@
 use crate::record::Meter;
 use crate::timing::{Ticker, median_seconds};
-use crate::{Method, Progress, Record, Rk4, Rk4Projected, Rk4Reduced};
-use dla::{Dla, Observer, RunError, Schedule, State, drive};
+use crate::{Kind, Method, Progress, Record, Rk4, Rk4Projected, Rk4Reduced};
+use dla::{Composition, Dla, Gauss, Observer, RunError, Schedule, State, drive};
 use lagrangian::System;
 
 /// A run to be made.
@@ -32,13 +32,28 @@ where
     Sys: System<N, M>,
     Obs: Observer<Sys, N, M>,
 {
-    match *method {
-        Method::Dla => drive(system, &mut Dla::midpoint(), schedule, state, observer),
-        Method::DlaTrapezoid => drive(system, &mut Dla::trapezoid(), schedule, state, observer),
-        Method::DlaAlpha(rule) => drive(system, &mut Dla::new(rule, rule), schedule, state, observer),
-        Method::Rk4 => drive(system, &mut Rk4, schedule, state, observer),
-        Method::Rk4Projected => drive(system, &mut Rk4Projected, schedule, state, observer),
-        Method::Rk4Reduced => drive(system, &mut Rk4Reduced, schedule, state, observer),
+    macro_rules! run_with {
+        ($method:expr) => {
+            drive(system, &mut $method, schedule, state, observer)
+        };
+    }
+    match method.info().kind {
+        Kind::Dla => run_with!(Dla::midpoint()),
+        Kind::DlaTrapezoid => run_with!(Dla::trapezoid()),
+        Kind::DlaAlpha => run_with!(Dla::new(method.alpha(), method.alpha())),
+        Kind::Dla4 => run_with!(Composition::suzuki4(Dla::midpoint())),
+        Kind::Dla6 => run_with!(Composition::kahan_li6(Dla::midpoint())),
+        Kind::Dla8 => run_with!(Composition::fifteen8(Dla::midpoint())),
+        Kind::Gauss4 => run_with!(Gauss::<2>::default()),
+        Kind::Gauss6 => run_with!(Gauss::<3>::default()),
+        Kind::Gauss8 => run_with!(Gauss::<4>::default()),
+        Kind::Gauss10 => run_with!(Gauss::<5>::default()),
+        Kind::Gauss12 => run_with!(Gauss::<6>::default()),
+        Kind::Gauss14 => run_with!(Gauss::<7>::default()),
+        Kind::Gauss16 => run_with!(Gauss::<8>::default()),
+        Kind::Rk4 => run_with!(Rk4),
+        Kind::Rk4Projected => run_with!(Rk4Projected),
+        Kind::Rk4Reduced => run_with!(Rk4Reduced),
     }
 }
 

@@ -133,4 +133,8 @@ impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
         let f = self.re.recip();
         self.chain(f, -(f * f))
     }
+    #[inline(always)]
+    fn is_zero(&self) -> bool {
+        self.re.is_zero() && self.eps.iter().all(S::is_zero)
+    }
 }

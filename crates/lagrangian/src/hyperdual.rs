@@ -177,4 +177,9 @@ impl<S: Scalar, const P: usize, const Q: usize> Scalar for HyperDual<S, P, Q> {
         let df = -(f * f);
         self.chain(f, df, -(df * f) * 2.0)
     }
+    #[inline(always)]
+    fn is_zero(&self) -> bool {
+        let first = self.re.is_zero() && self.e1.iter().chain(&self.e2).all(S::is_zero);
+        first && self.e12.iter().flatten().all(S::is_zero)
+    }
 }

@@ -119,4 +119,8 @@ impl Scalar for Lanes {
     fn recip(self) -> Self {
         self.map(f64::recip)
     }
+    #[inline(always)]
+    fn is_zero(&self) -> bool {
+        self.0.iter().all(Scalar::is_zero)
+    }
 }

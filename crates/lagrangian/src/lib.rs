@@ -19,6 +19,7 @@ mod momentum;
 mod motion;
 #[cfg(feature = "num-dual")]
 mod num_dual;
+pub mod quadrature;
 mod reduced;
 mod rule;
 mod saddle;
@@ -36,7 +37,7 @@ pub use hyperdual::HyperDual;
 pub use lanes::{Lanes, vectorized};
 pub use momentum::{energy, mass_matrix, momentum};
 pub use motion::{Motion, MotionError};
-pub use reduced::{quasi_velocities, reduced_acceleration};
+pub use reduced::{ReducedError, ReducedSlope, quasi_velocities, reduced_acceleration, reduced_slope, velocity_of};
 pub use rule::{Alpha, Midpoint, NotAWeight, Rule, RuleNode, Symmetrised, Trapezoid};
 pub use saddle::Saddle;
 pub use scalar::Scalar;

@@ -4,7 +4,7 @@ use crate::Scalar;
 use num_dual::{Dual2_64, Dual64, DualNum, HyperDual64};
 
 macro_rules! oracle {
-    ($($number:ty),+) => { $(
+    ($($number:ty: $($part:ident)+),+) => { $(
         impl Scalar for $number {
             fn constant(x: f64) -> Self {
                 Self::from(x)
@@ -27,7 +27,10 @@ macro_rules! oracle {
             fn recip(self) -> Self {
                 DualNum::recip(&self)
             }
+            fn is_zero(&self) -> bool {
+                $(self.$part == 0.0)&&+
+            }
         }
     )+ };
 }
-oracle!(Dual64, Dual2_64, HyperDual64);
+oracle!(Dual64: re eps, Dual2_64: re v1 v2, HyperDual64: re eps1 eps2 eps1eps2);

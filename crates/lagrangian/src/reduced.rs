@@ -1,54 +1,155 @@
 use crate::linear::{Lu, Singular};
-use crate::{AdmissibleBasis, Dual, Motion, MotionError, System};
+use crate::{AdmissibleBasis, Dual, Motion, MotionError, Scalar, System};
 use std::array::from_fn;
+use thiserror::Error;
 
-/// The quasi-velocities `xi` of a velocity in a basis of the admissible ones: `v = xi_1 w_1 + .. + A' eta`.
+/// Why there are no reduced equations.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum ReducedError {
+    /// The system gives no basis of its admissible velocities.
+    #[error("the reduced equations need a basis of the admissible velocities, and the system gives none")]
+    NoBasis,
+    /// The equations of motion, the basis or the constraint are degenerate.
+    #[error(transparent)]
+    Motion(#[from] MotionError),
+}
+
+/// The reduced equations at one point: `q' = W xi + v_b`, and `xi'`.
 ///
-/// The first `N - M` places are the quasi-velocities; the last `M` are `eta`, the part across the distribution, zero
-/// for an admissible velocity.
+/// `W` is the system's basis of admissible velocities, `v_b = -A' (A A')^-1 b` the shortest velocity that meets an affine
+/// constraint. Only the first `N - M` places of `xi` and `xi'` count.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReducedSlope<const N: usize> {
+    /// The velocity.
+    pub velocity: [f64; N],
+    /// The accelerations of the quasi-velocities.
+    pub acceleration: [f64; N],
+}
+
+/// The velocity of the quasi-velocities `xi`.
 ///
 /// # Errors
-/// [`Singular`] where basis and constraint do not span all velocities.
+/// [`ReducedError`] where the system gives no basis, or its constraints depend on one another.
+#[inline]
+pub fn velocity_of<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
+    system: &Sys,
+    t: S,
+    q: &[S; N],
+    xi: &[S; N],
+) -> Result<[S; N], ReducedError> {
+    let basis = system.admissible_basis(t, q).ok_or(ReducedError::NoBasis)?;
+    let v = basis.combine(xi);
+    Ok(match shift(system, t, q) {
+        Some(shift) => from_fn(|i| v[i] + shift[i]),
+        None => v,
+    })
+}
+
+/// The quasi-velocities `xi` of a velocity: `v = W xi + v_b`, with what lies across the distribution left out.
+///
+/// # Errors
+/// [`ReducedError`] where there is no basis, or basis and constraint do not span all velocities.
 #[inline]
 pub fn quasi_velocities<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
     t: f64,
     q: &[f64; N],
     v: &[f64; N],
-    basis: &AdmissibleBasis<f64, N, M>,
-) -> Result<[f64; N], Singular> {
-    let (a, _) = system.constraint(t, q);
-    let columns = basis.vectors().iter().chain(&a);
-    let mut matrix = [[0.0; N]; N];
-    for (j, column) in columns.enumerate() {
-        for i in 0..N {
-            matrix[i][j] = column[i];
-        }
-    }
-    Ok(Lu::new(matrix)?.solve(*v))
+) -> Result<[f64; N], ReducedError> {
+    let basis = system.admissible_basis(t, q).ok_or(ReducedError::NoBasis)?;
+    let v = match shift(system, t, q) {
+        Some(shift) => from_fn(|i| v[i] - shift[i]),
+        None => *v,
+    };
+    split(system, t, q, &v, &basis)
 }
 
-/// The accelerations `xi'` in the system's basis `W(q, t)` of admissible velocities, for `b = 0`.
-///
-/// With `v = W xi` they follow from those of the full coordinates by `v' = W xi' + W' xi`.
+/// The reduced equations of motion, by hand where the system gives them, else from its motion in full coordinates:
+/// `v' = W xi' + (W' xi + v_b')`.
 ///
 /// # Errors
-/// [`MotionError`] where the equations of motion, or the basis, are degenerate, or no basis is given.
+/// [`ReducedError`] where there is no basis, or where equations are degenerate.
+#[inline]
+pub fn reduced_slope<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    q: &[f64; N],
+    xi: &[f64; N],
+) -> Result<ReducedSlope<N>, ReducedError> {
+    let velocity = velocity_of(system, t, q, xi)?;
+    let acceleration = match system.reduced_motion(t, q, xi) {
+        Some(acceleration) => acceleration,
+        None => reduced_acceleration(system, t, q, xi)?,
+    };
+    Ok(ReducedSlope { velocity, acceleration })
+}
+
+/// The accelerations `xi'` from the motion in full coordinates.
+///
+/// # Errors
+/// [`ReducedError`] where there is no basis, or where equations are degenerate.
 pub fn reduced_acceleration<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
     t: f64,
     q: &[f64; N],
     xi: &[f64; N],
-) -> Result<[f64; N], MotionError> {
-    let degenerate = |source| MotionError { time: t, source };
-    let none = Singular { column: 0, pivot: 0.0 };
-    let basis = system.admissible_basis(t, q).ok_or(degenerate(none))?;
-    let v = basis.combine(xi);
+) -> Result<[f64; N], ReducedError> {
+    let basis = system.admissible_basis(t, q).ok_or(ReducedError::NoBasis)?;
+    let v = velocity_of(system, t, q, xi)?;
     let Motion { acceleration, .. } = system.motion(t, q, &v)?;
-
     let along: [Dual<f64, 1>; N] = from_fn(|i| Dual { re: q[i], eps: [v[i]] });
-    let moving = system.admissible_basis(Dual { re: t, eps: [1.0] }, &along).ok_or(degenerate(none))?;
-    let turning = moving.combine(&xi.map(Dual::fixed));
+    let turning = velocity_of(system, Dual { re: t, eps: [1.0] }, &along, &xi.map(Dual::fixed))?;
     let rest = from_fn(|i| acceleration[i] - turning[i].eps[0]);
-    quasi_velocities(system, t, q, &rest, &basis).map_err(degenerate)
+    split(system, t, q, &rest, &basis)
+}
+
+/// The part of a vector along the basis, the rest being a combination of the rows of `A`: `x = W xi + A' eta`.
+fn split<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    q: &[f64; N],
+    x: &[f64; N],
+    basis: &AdmissibleBasis<f64, N, M>,
+) -> Result<[f64; N], ReducedError> {
+    let (a, _) = system.constraint(t, q);
+    let mut matrix = [[0.0; N]; N];
+    for (j, column) in basis.vectors().iter().chain(&a).enumerate() {
+        for i in 0..N {
+            matrix[i][j] = column[i];
+        }
+    }
+    let degenerate = |source: Singular| MotionError { time: t, source };
+    let mut xi = Lu::new(matrix).map_err(degenerate)?.solve(*x);
+    xi[N - M..].fill(0.0);
+    Ok(xi)
+}
+
+/// `v_b = -A' (A A')^-1 b`; none where `b` and its derivatives vanish, so that a linear constraint pays nothing.
+///
+/// The symmetric matrix is eliminated without pivots, on any scalar; dependent rows of `A` have been refused by the
+/// equations of motion.
+#[inline]
+fn shift<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(system: &Sys, t: S, q: &[S; N]) -> Option<[S; N]> {
+    let (a, b) = system.constraint(t, q);
+    if b.iter().all(Scalar::is_zero) {
+        return None;
+    }
+    let mut gram: [[S; M]; M] = from_fn(|k| from_fn(|l| (0..N).fold(S::zero(), |sum, i| sum + a[k][i] * a[l][i])));
+    let mut eta = b.map(|b| -b);
+    for k in 0..M {
+        for l in k + 1..M {
+            let factor = gram[l][k] / gram[k][k];
+            for m in k..M {
+                gram[l][m] = gram[l][m] - factor * gram[k][m];
+            }
+            eta[l] = eta[l] - factor * eta[k];
+        }
+    }
+    for k in (0..M).rev() {
+        for l in k + 1..M {
+            eta[k] = eta[k] - gram[k][l] * eta[l];
+        }
+        eta[k] = eta[k] / gram[k][k];
+    }
+    Some(from_fn(|i| (0..M).fold(S::zero(), |sum, k| sum + a[k][i] * eta[k])))
 }

@@ -38,6 +38,9 @@ pub trait Scalar:
     /// Reciprocal.
     fn recip(self) -> Self;
 
+    /// Whether the number and all of its derivatives vanish.
+    fn is_zero(&self) -> bool;
+
     /// Zero.
     #[must_use]
     #[inline(always)]
@@ -92,6 +95,10 @@ impl Scalar for f64 {
     #[inline(always)]
     fn recip(self) -> Self {
         f64::recip(self)
+    }
+    #[inline(always)]
+    fn is_zero(&self) -> bool {
+        *self == 0.0
     }
 }
 

@@ -10,6 +10,7 @@ mod error;
 mod exact;
 mod gauss;
 mod path;
+mod point;
 mod reduced;
 mod state;
 mod system;

@@ -1,4 +1,5 @@
 use crate::gauss::panel;
+use crate::point::Point;
 use crate::reduced::{Moment, Reduced};
 
 /// Up to these distances in `s` and turns (rad) the path is integrated over time directly.
@@ -31,18 +32,6 @@ pub(crate) struct Path {
     start: Point,
 }
 
-/// A point of the motion as the path needs it.
-#[derive(Debug, Clone, Copy)]
-struct Point {
-    /// `s - s0`.
-    tau: f64,
-    psi: f64,
-    tanh: f64,
-    sech: f64,
-    /// `e^-|s|`.
-    g: f64,
-}
-
 /// The parts of the motion, in the order of `s`.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 enum Part {
@@ -62,7 +51,7 @@ impl Path {
             ell_per_sigma: k.copysign(k_per_a),
             mirror,
             s0: reduced.s0(),
-            start: point(reduced, &start, mirror),
+            start: Point::new(reduced, &start, mirror),
         }
     }
 
@@ -73,7 +62,7 @@ impl Path {
             let panels = (distance / PANEL).max(turn / PANEL_TURN).ceil().max(1.0);
             return over_time(reduced, t / panels, panels);
         }
-        let end = point(reduced, moment, self.mirror);
+        let end = Point::new(reduced, moment, self.mirror);
         let (part, last) = (self.part(&self.start), self.part(&end));
         let [x, y] = self.journey(self.start, part, end, last);
         [x, self.mirror * y]
@@ -197,17 +186,6 @@ fn over_time(reduced: &Reduced, step: f64, panels: f64) -> [f64; 2] {
         index += 1.0;
     }
     sum
-}
-
-fn point(reduced: &Reduced, moment: &Moment, mirror: f64) -> Point {
-    let spin = reduced.gyration * moment.turn_rate.abs();
-    Point {
-        tau: moment.tau,
-        psi: mirror * moment.turn,
-        tanh: moment.speed / reduced.speed,
-        sech: spin / reduced.speed,
-        g: spin / (reduced.speed + moment.speed.abs()),
-    }
 }
 
 pub(crate) fn rotated([x, y]: [f64; 2], angle: f64) -> [f64; 2] {

@@ -13,7 +13,7 @@ formula by the hypergeometric function and with an integration of the equations 
 """
 
 import sys
-from mpmath import mp, mpf, mpc, quad, sqrt, asinh, tanh, sech, atan, exp, expj, hyp2f1, log, cosh, sign, pi, nstr, odefun, cos, sin, acosh
+from mpmath import asinh, atan, cos, cosh, exp, expj, hyp2f1, log, mp, mpc, mpf, nstr, odefun, quad, sech, sign, sin, sqrt, tanh
 
 mp.dps = 50
 STRAIGHT = mpf(140)

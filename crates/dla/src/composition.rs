@@ -1,0 +1,79 @@
+use crate::{OneStep, State, StepError, StepReport};
+
+/// A symmetric composition of a symmetric one-step map `S_h`: `S_(g_1 h) S_(g_2 h) .. S_(g_n h)`, of higher order.
+///
+/// The base must be a one-step map on the distribution, as the discrete Lagrange-d'Alembert maps here are; what carries a
+/// multiplier from step to step must not be composed. Some of the sub-steps go backward. (Hairer, Lubich and Wanner 2006,
+/// Geometric Numerical Integration, section V.3.)
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Composition<Base, const STAGES: usize> {
+    base: Base,
+    weights: [f64; STAGES],
+}
+
+/// Mirrors the first weights about a centre that makes the sum one.
+fn mirrored<const STAGES: usize>(first: &[f64]) -> [f64; STAGES] {
+    let centre = 1.0 - 2.0 * first.iter().sum::<f64>();
+    std::array::from_fn(|i| first.get(i.min(STAGES - 1 - i)).copied().unwrap_or(centre))
+}
+
+impl<Base> Composition<Base, 5> {
+    /// Suzuki's five stages of order 4 on a base of order 2 (Suzuki 1990, Phys. Lett. A 146, 319-323).
+    #[must_use]
+    pub fn suzuki4(base: Base) -> Self {
+        let g = 1.0 / (4.0 - 4f64.cbrt());
+        Self { base, weights: mirrored(&[g, g]) }
+    }
+}
+
+impl<Base> Composition<Base, 9> {
+    /// The nine stages of order 6 of Kahan and Li (1997, Math. Comp. 66, 1089-1099).
+    #[must_use]
+    pub fn kahan_li6(base: Base) -> Self {
+        let first =
+            [0.392_161_444_007_314_14, 0.332_599_136_789_359_44, -0.706_246_172_557_639_4, 0.082_213_596_293_550_8];
+        Self { base, weights: mirrored(&first) }
+    }
+}
+
+impl<Base> Composition<Base, 15> {
+    /// The fifteen stages of order 8 of Suzuki and Umeno, with the digits of McLachlan (1995, SIAM J. Sci. Comput. 16,
+    /// 151-168; Hairer, Lubich and Wanner 2006, (V.3.12)).
+    #[must_use]
+    pub fn fifteen8(base: Base) -> Self {
+        let first = [
+            0.741_670_364_350_612_6,
+            -0.409_100_825_800_031_6,
+            0.190_754_710_296_238_38,
+            -0.573_862_471_116_082_3,
+            0.299_064_181_303_655_9,
+            0.334_624_918_245_298_2,
+            0.315_293_092_396_766_6,
+        ];
+        Self { base, weights: mirrored(&first) }
+    }
+}
+
+impl<Base, Sys, const N: usize, const M: usize, const STAGES: usize> OneStep<Sys, N, M> for Composition<Base, STAGES>
+where
+    Base: OneStep<Sys, N, M>,
+{
+    #[inline]
+    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        let mut inner = *state;
+        let mut total = StepReport { impulses: [[0.0; M]; 2], iterations: 0 };
+        let mut done = 0.0;
+        for weight in self.weights {
+            let report = self.base.step(system, t + done * h, weight * h, &mut inner)?;
+            done += weight;
+            for end in 0..2 {
+                for k in 0..M {
+                    total.impulses[end][k] += report.impulses[end][k];
+                }
+            }
+            total.iterations += report.iterations;
+        }
+        *state = inner;
+        Ok(total)
+    }
+}

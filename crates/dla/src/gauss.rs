@@ -1,0 +1,110 @@
+use crate::{NewtonError, OneStep, Stage, State, StepError, StepReport};
+use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
+use lagrangian::{System, quasi_velocities, reduced_slope, velocity_of};
+use std::array::from_fn;
+
+/// Gauss collocation on the constraint: the reduced equations `q' = W xi + v_b`, `xi' = ..` in the basis of admissible
+/// velocities, with `S` stages, of order `2 S`.
+///
+/// Symmetric, and on the constraint by construction. Stages are found by fixed-point iteration, which converges for steps
+/// below the time constants of the motion, until their changes are rounding; what does not settle is an error.
+/// (Hairer, Lubich and Wanner 2006, section II.1.3; the stopping rule as in Antonana, Makazaga and Murua 2017, Numer.
+/// Algorithms 76, 861-880.)
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gauss<const S: usize> {
+    nodes: [f64; S],
+    weights: [f64; S],
+    coefficients: [[f64; S]; S],
+    /// Iterations after which the search is given up.
+    pub max_iterations: u32,
+}
+
+impl<const S: usize> Default for Gauss<S> {
+    fn default() -> Self {
+        let (nodes, weights) = gauss_legendre();
+        Self { nodes, weights, coefficients: gauss_collocation(&nodes, &weights), max_iterations: 100 }
+    }
+}
+
+/// The slopes of the stages, and how far they have moved.
+struct Stages<const N: usize, const S: usize> {
+    velocity: [[f64; N]; S],
+    acceleration: [[f64; N]; S],
+}
+
+impl<const S: usize> Gauss<S> {
+    /// The sum `h sum_j factors[j] slopes[j]`.
+    #[inline(always)]
+    fn sum<const N: usize>(h: f64, factors: &[f64; S], slopes: &[[f64; N]; S]) -> [f64; N] {
+        from_fn(|i| h * (0..S).map(|j| factors[j] * slopes[j][i]).sum::<f64>())
+    }
+
+    /// Iterates the slopes of the stages until they move by rounding only; returns how many times.
+    #[inline]
+    fn solve<Sys: System<N, M>, const N: usize, const M: usize>(
+        &self,
+        system: &Sys,
+        (t, h): (f64, f64),
+        (q0, xi0): (&[f64; N], &[f64; N]),
+        stages: &mut Stages<N, S>,
+    ) -> Result<u32, StepError> {
+        let fail = |source| StepError::Newton { stage: Stage::Collocation, source };
+        let mut before = f64::INFINITY;
+        for iteration in 1..=self.max_iterations {
+            let (mut moved, mut size) = (0.0f64, 0.0f64);
+            for i in 0..S {
+                let a = &self.coefficients[i];
+                let (dq, dxi) = (Self::sum(h, a, &stages.velocity), Self::sum(h, a, &stages.acceleration));
+                let (q, xi) = (from_fn(|k| q0[k] + dq[k]), from_fn(|k| xi0[k] + dxi[k]));
+                let slope = reduced_slope(system, t + self.nodes[i] * h, &q, &xi)?;
+                for k in 0..N {
+                    moved = larger(moved, (slope.velocity[k] - stages.velocity[i][k]).abs());
+                    moved = larger(moved, (slope.acceleration[k] - stages.acceleration[i][k]).abs());
+                    size = larger(larger(size, slope.velocity[k].abs()), slope.acceleration[k].abs());
+                }
+                (stages.velocity[i], stages.acceleration[i]) = (slope.velocity, slope.acceleration);
+            }
+            if !size.is_finite() || moved.is_nan() {
+                return Err(fail(NewtonError::NotFinite { iteration }));
+            }
+            // At rounding the changes stop shrinking.
+            if moved == 0.0 || (moved <= 1e-12 * size && moved >= 0.5 * before) {
+                return Ok(iteration);
+            }
+            if iteration > 3 && moved > 2.0 * before {
+                return Err(fail(NewtonError::Diverged { iteration, correction: moved / size, before: before / size }));
+            }
+            before = moved;
+        }
+        Err(fail(NewtonError::IterationLimit { iterations: self.max_iterations, correction: before }))
+    }
+}
+
+/// The larger of two; what is not a number wins.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if b > a || b.is_nan() { b } else { a }
+}
+
+impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<Sys, N, M> for Gauss<S> {
+    #[inline]
+    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        let q0 = state.q();
+        let xi0 = match state.xi() {
+            Some(xi) => xi,
+            None => quasi_velocities(system, t, q0, state.v())?,
+        };
+        let start = reduced_slope(system, t, q0, &xi0)?;
+        let mut stages = Stages { velocity: [start.velocity; S], acceleration: [start.acceleration; S] };
+        let iterations = self.solve(system, (t, h), (q0, &xi0), &mut stages)?;
+        let increment = Self::sum(h, &self.weights, &stages.velocity);
+        let gain = Self::sum(h, &self.weights, &stages.acceleration);
+        let xi1 = from_fn(|i| xi0[i] + gain[i]);
+        let v1 = velocity_of(system, t + h, &state.ahead(&increment), &xi1)?;
+        if !v1.iter().chain(&increment).all(|x| x.is_finite()) {
+            return Err(StepError::NotFinite);
+        }
+        state.advance(&increment, v1, Some(xi1));
+        Ok(StepReport { impulses: [[0.0; M]; 2], iterations })
+    }
+}
