@@ -34,6 +34,18 @@ impl<S: Scalar, const N: usize, const M: usize> AdmissibleBasis<S, N, M> {
         &self.vectors[..Self::DIMENSION]
     }
 
+    /// The basis of `N - M` zero vectors, to be filled.
+    #[inline(always)]
+    pub(crate) fn empty() -> Self {
+        Self { vectors: [[S::zero(); N]; N] }
+    }
+
+    /// The `N - M` basis vectors, to be changed.
+    #[inline(always)]
+    pub(crate) fn vectors_mut(&mut self) -> &mut [[S; N]] {
+        &mut self.vectors[..Self::DIMENSION]
+    }
+
     /// The velocity `xi_1 w_1 + .. + xi_(N-M) w_(N-M)`; the last `M` places of `xi` are not read.
     #[must_use]
     #[inline(always)]

@@ -8,6 +8,7 @@
 //! This crate knows no integrator and no particular system.
 
 mod basis;
+mod bracket;
 mod closed;
 mod discrete;
 mod dual;
@@ -29,6 +30,7 @@ mod system;
 mod with;
 
 pub use basis::AdmissibleBasis;
+pub use bracket::{Bracket, EnergySlope, energy_slope, inverse_reduced_mass};
 pub use closed::{ClosedStep, ClosedStepError};
 pub use discrete::{Derivatives, DiscreteConstraint, DiscreteLagrangian};
 pub use dual::Dual;

@@ -140,14 +140,14 @@ fn shift<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(system: &
         for l in k + 1..M {
             let factor = gram[l][k] / gram[k][k];
             for m in k..M {
-                gram[l][m] = gram[l][m] - factor * gram[k][m];
+                gram[l][m] -= factor * gram[k][m];
             }
-            eta[l] = eta[l] - factor * eta[k];
+            eta[l] -= factor * eta[k];
         }
     }
     for k in (0..M).rev() {
         for l in k + 1..M {
-            eta[k] = eta[k] - gram[k][l] * eta[l];
+            eta[k] -= gram[k][l] * eta[l];
         }
         eta[k] = eta[k] / gram[k][k];
     }

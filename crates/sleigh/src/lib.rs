@@ -8,13 +8,8 @@ mod centre_of_mass;
 mod closed_map;
 mod error;
 mod exact;
-mod gauss;
-mod path;
-mod point;
-mod reduced;
 mod state;
 mod system;
-mod twofold;
 
 pub use body::Sleigh;
 pub use centre_of_mass::CentreOfMass;

@@ -5,38 +5,38 @@ use std::ops::{Add, Div, Mul};
 /// The operations are those of Dekker (1971), the products exact by a fused multiply-add. Parts that overflow or
 /// underflow lose the extra digits and nothing else.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Twofold {
-    pub(crate) hi: f64,
-    pub(crate) lo: f64,
+pub(super) struct Twofold {
+    pub(super) hi: f64,
+    pub(super) lo: f64,
 }
 
 impl Twofold {
-    pub(crate) fn new(hi: f64, lo: f64) -> Self {
+    pub(super) fn new(hi: f64, lo: f64) -> Self {
         Self { hi, lo }
     }
 
     /// `ln 2`.
-    pub(crate) fn ln_2() -> Self {
+    pub(super) fn ln_2() -> Self {
         Self::new(std::f64::consts::LN_2, 2.319_046_813_846_299_6e-17)
     }
 
     /// The exact product of two numbers.
-    pub(crate) fn product(a: f64, b: f64) -> Self {
+    pub(super) fn product(a: f64, b: f64) -> Self {
         let hi = a * b;
         Self::new(hi, a.mul_add(b, -hi))
     }
 
-    pub(crate) fn sqrt(self) -> Self {
+    pub(super) fn sqrt(self) -> Self {
         let root = self.hi.sqrt();
         if root > 0.0 { Self::renormalised(root, 0.5 * self.residual(root, root) / root) } else { Self::from(root) }
     }
 
-    pub(crate) fn abs(self) -> Self {
+    pub(super) fn abs(self) -> Self {
         if self.hi < 0.0 { Self::new(-self.hi, -self.lo) } else { self }
     }
 
     /// `e^(hi + lo)`, with the relative accuracy of `f64` at any size of `hi`.
-    pub(crate) fn exp(self) -> f64 {
+    pub(super) fn exp(self) -> f64 {
         let exp = self.hi.exp();
         if exp > 0.0 && exp.is_finite() { exp + exp * self.lo } else { exp }
     }

@@ -1,6 +1,6 @@
-use crate::gauss::panel;
-use crate::point::Point;
-use crate::reduced::{Moment, Reduced};
+use super::gauss::panel;
+use super::point::Point;
+use super::reduced::{Moment, Reduced};
 
 /// Up to these distances in `s` and turns (rad) the path is integrated over time directly.
 const SHORT: f64 = 2.0;
@@ -20,7 +20,7 @@ const PANEL_TURN: f64 = 4.0;
 /// - **Between** them the blade turns quickly. `e^(i sigma phi)` decays upwards in the complex plane of `phi`, so the
 ///   integral of `tan(phi) e^(i sigma phi)` between two points is that up from the first less that up from the second.
 #[derive(Debug, Clone)]
-pub(crate) struct Path {
+pub(super) struct Path {
     /// `sigma`, infinite for a balanced sleigh.
     sigma: f64,
     ell: f64,
@@ -41,7 +41,7 @@ enum Part {
 }
 
 impl Path {
-    pub(crate) fn new(reduced: &Reduced) -> Self {
+    pub(super) fn new(reduced: &Reduced) -> Self {
         let (k, k_per_a) = (reduced.gyration, reduced.gyration_per_offset);
         let start = reduced.start();
         let mirror = k_per_a.signum() * start.turn_rate.signum();
@@ -56,7 +56,7 @@ impl Path {
     }
 
     /// The displacement from the start at time `t`, which has the reduced state `moment`.
-    pub(crate) fn displacement(&self, reduced: &Reduced, t: f64, moment: &Moment) -> [f64; 2] {
+    pub(super) fn displacement(&self, reduced: &Reduced, t: f64, moment: &Moment) -> [f64; 2] {
         let (turn, distance) = (moment.turn.abs(), moment.tau.abs());
         if distance <= SHORT && turn <= SMALL_TURN {
             let panels = (distance / PANEL).max(turn / PANEL_TURN).ceil().max(1.0);
@@ -188,7 +188,7 @@ fn over_time(reduced: &Reduced, step: f64, panels: f64) -> [f64; 2] {
     sum
 }
 
-pub(crate) fn rotated([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
+pub(super) fn rotated([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
     let (sin, cos) = angle.sin_cos();
     [x * cos - y * sin, x * sin + y * cos]
 }

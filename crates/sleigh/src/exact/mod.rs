@@ -1,6 +1,12 @@
-use crate::path::{Path, rotated};
-use crate::reduced::Reduced;
+mod gauss;
+mod path;
+mod point;
+mod reduced;
+mod twofold;
+
 use crate::{Sleigh, SleighError, SleighState};
+use path::{Path, rotated};
+use reduced::Reduced;
 use std::f64::consts::PI;
 
 /// The motion of the free sleigh in closed form, at any time before or after its start.

@@ -11,7 +11,7 @@ const RULE: [(f64, f64); 8] = [
 ];
 
 /// `int_from^to f` for `f` analytic and slowly varying over the interval: one Gauss-Legendre panel.
-pub(crate) fn panel(from: f64, to: f64, f: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
+pub(super) fn panel(from: f64, to: f64, f: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
     let mut sum = [0.0; 2];
     for (node, weight) in RULE {

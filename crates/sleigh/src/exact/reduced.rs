@@ -1,4 +1,4 @@
-use crate::twofold::Twofold;
+use super::twofold::Twofold;
 use crate::{Sleigh, SleighError};
 
 /// Below this phase the motion is written as its change from the start, which keeps the digits of a small change and
@@ -18,14 +18,14 @@ const NEAR: f64 = 0.5;
 /// `e^-|s0| = k |omega0| / (U + |u0|)` carries all its digits however small the spin, and multiplies or divides
 /// `e^(kappa t)`. An error of `kappa t` is a relative error of the spin, so `kappa t` has twice the digits.
 #[derive(Debug, Clone)]
-pub(crate) struct Reduced {
+pub(super) struct Reduced {
     start: Moment,
     /// `k = sqrt(J/m)` (m).
-    pub(crate) gyration: f64,
+    pub(super) gyration: f64,
     /// `U` (m/s).
-    pub(crate) speed: f64,
+    pub(super) speed: f64,
     /// `k/a`, infinite for a balanced sleigh.
-    pub(crate) gyration_per_offset: f64,
+    pub(super) gyration_per_offset: f64,
     kappa: Twofold,
     /// `tanh s0` and `sech s0`.
     tanh0: f64,
@@ -37,21 +37,21 @@ pub(crate) struct Reduced {
 
 /// The reduced state at one time.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Moment {
+pub(super) struct Moment {
     /// `kappa t`, the distance in `s` from the start.
-    pub(crate) tau: f64,
+    pub(super) tau: f64,
     /// `u` (m/s).
-    pub(crate) speed: f64,
+    pub(super) speed: f64,
     /// `omega` (rad/s).
-    pub(crate) turn_rate: f64,
+    pub(super) turn_rate: f64,
     /// `theta - theta0` (rad).
-    pub(crate) turn: f64,
+    pub(super) turn: f64,
 }
 
 impl Reduced {
     /// # Errors
     /// [`SleighError::NotFinite`] where the energy's speed `U` or the rate `kappa` leaves the range of numbers.
-    pub(crate) fn new(sleigh: &Sleigh, u0: f64, omega0: f64) -> Result<Self, SleighError> {
+    pub(super) fn new(sleigh: &Sleigh, u0: f64, omega0: f64) -> Result<Self, SleighError> {
         let a = sleigh.offset();
         let gyration = (sleigh.inertia() / sleigh.mass()).sqrt().hypot(a);
         let spin = gyration * omega0.abs();
@@ -79,16 +79,16 @@ impl Reduced {
         })
     }
 
-    pub(crate) fn start(&self) -> Moment {
+    pub(super) fn start(&self) -> Moment {
         self.start
     }
 
     /// `s0`, to rounding of its size.
-    pub(crate) fn s0(&self) -> f64 {
+    pub(super) fn s0(&self) -> f64 {
         (f64::from(self.shift) * std::f64::consts::LN_2 - self.decay.ln()).copysign(self.tanh0)
     }
 
-    pub(crate) fn at(&self, t: f64) -> Moment {
+    pub(super) fn at(&self, t: f64) -> Moment {
         let tau = self.kappa * t;
         if tau.hi.abs() <= NEAR { self.near(tau.hi, t) } else { self.far(tau) }
     }
