@@ -44,13 +44,13 @@ pub(crate) struct SceneArguments {
     #[arg(value_name = "SCENE")]
     pub(crate) scene: String,
     /// Largest step [s], instead of the scene's
-    #[arg(long, value_name = "H", allow_negative_numbers = true)]
+    #[arg(long, value_name = "H", allow_negative_numbers = true, value_parser = number)]
     pub(crate) step: Option<f64>,
     /// Duration [s], instead of the scene's
-    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = number)]
     pub(crate) duration: Option<f64>,
     /// Weight of `dla-alpha`, from 0 to 1
-    #[arg(long, value_name = "A", allow_negative_numbers = true)]
+    #[arg(long, value_name = "A", allow_negative_numbers = true, value_parser = number)]
     pub(crate) alpha: Option<f64>,
     /// Print one JSON object
     #[arg(long)]
@@ -68,7 +68,7 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "M")]
     pub(crate) method: Option<String>,
     /// Keep every N-th node in the output file
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true, value_parser = count)]
     pub(crate) every: u64,
     /// Write the trajectory: .csv or .npz, by the ending
     #[arg(long, value_name = "FILE")]
@@ -121,4 +121,13 @@ pub(crate) struct NewArguments {
     /// Overwrite a file that is there already
     #[arg(long)]
     pub(crate) force: bool,
+}
+
+fn count(text: &str) -> Result<u64, &'static str> {
+    let count = text.trim().parse().ok().filter(|count| *count > 0);
+    count.ok_or("accepted is a whole number from 1 on")
+}
+
+fn number(text: &str) -> Result<f64, &'static str> {
+    text.trim().parse().map_err(|_| "not a number; accepted are numbers like 0.05 and 1e-3")
 }

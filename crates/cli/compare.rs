@@ -17,7 +17,7 @@ pub(crate) struct Comparison {
 pub(crate) struct Row {
     pub(crate) cells: Vec<String>,
     pub(crate) json: serde_json::Value,
-    pub(crate) failure: Option<CliError>,
+    pub(crate) failure: Option<String>,
 }
 
 /// `noslip compare`: long-run constraint and energy, method by method.
@@ -29,7 +29,7 @@ pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
     };
     let methods = methods(&names, scene.run.alpha)?;
     if let Some(folder) = &arguments.report {
-        crate::files::refuse_existing(folder, arguments.scene.force)?;
+        crate::files::check_folder(folder, arguments.scene.force)?;
     }
 
     let comparison = compare_scene(&scene, &methods);
@@ -50,7 +50,7 @@ pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
             terminal::print(&format!("report: {}\n", folder.join("index.html").display()))?;
         }
     }
-    comparison.rows.into_iter().find_map(|row| row.failure).map_or(Ok(()), Err)
+    CliError::of_failures(comparison.rows.into_iter().filter_map(|row| row.failure))
 }
 
 pub(crate) fn methods(names: &[&str], alpha: Option<f64>) -> Result<Vec<Method>, CliError> {

@@ -1,44 +1,78 @@
 use crate::error::CliError;
-use std::io::{BufWriter, Error, Write};
-use std::path::Path;
+use std::fs::{File, OpenOptions};
+use std::io::{BufWriter, Error, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
 
-/// Refuses a file that is there already, unless it may be overwritten.
-pub(crate) fn refuse_existing(path: &Path, overwrite: bool) -> Result<(), CliError> {
-    if !overwrite && path.symlink_metadata().is_ok() {
-        return Err(CliError::Exists { path: path.to_owned() });
+/// Refuses, before the work begins, a file that could not be written at its end.
+pub(crate) fn check_file(path: &Path, overwrite: bool) -> Result<(), CliError> {
+    refuse_existing(path, overwrite)?;
+    if path.is_dir() || path.to_string_lossy().ends_with(std::path::is_separator) {
+        return Err(CliError::Write { path: path.to_owned(), source: ErrorKind::IsADirectory.into() });
     }
-    Ok(())
+    // A rename would put a file in the place of a device or a pipe.
+    if path.metadata().is_ok_and(|existing| !existing.is_file()) {
+        let source = Error::new(ErrorKind::InvalidInput, "there is something that is not a regular file");
+        return Err(CliError::Write { path: path.to_owned(), source });
+    }
+    // The way to learn whether a folder can be written in is to write in it.
+    temporary(path).map(drop)
+}
+
+/// The same for a folder.
+pub(crate) fn check_folder(path: &Path, overwrite: bool) -> Result<(), CliError> {
+    refuse_existing(path, overwrite)?;
+    if path.exists() && !path.is_dir() {
+        return Err(CliError::Write { path: path.to_owned(), source: ErrorKind::NotADirectory.into() });
+    }
+    temporary(path).map(drop)
+}
+
+fn refuse_existing(path: &Path, overwrite: bool) -> Result<(), CliError> {
+    match path.symlink_metadata() {
+        Ok(_) if !overwrite => Err(CliError::Exists { path: path.to_owned() }),
+        // Such as a name that is too long; of a folder that is not there, `temporary` says more.
+        Err(source) if source.kind() != ErrorKind::NotFound && parent(path).is_dir() => {
+            Err(CliError::Write { path: path.to_owned(), source })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Writes a file that appears whole or not at all: under another name beside it, renamed when it is complete.
 pub(crate) fn write_whole(
     path: &Path,
     overwrite: bool,
-    content: impl FnOnce(&mut BufWriter<&mut std::fs::File>) -> Result<(), Error>,
+    content: impl FnOnce(&mut BufWriter<&mut File>) -> Result<(), Error>,
 ) -> Result<(), CliError> {
-    refuse_existing(path, overwrite)?;
+    check_file(path, overwrite)?;
     let failed = |source| CliError::Write { path: path.to_owned(), source };
-    let folder = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    if path.is_dir() {
-        return Err(failed(Error::from(std::io::ErrorKind::IsADirectory)));
-    }
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".noslip-");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // The usual rights of a new file, not the private ones of a temporary file.
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    let mut file = builder.tempfile_in(folder).map_err(failed)?;
+    // What is overwritten through a link is the file that the link leads to.
+    let target = if overwrite { path.canonicalize().unwrap_or_else(|_| path.to_owned()) } else { path.to_owned() };
+    let mut file = temporary(&target)?;
     {
         let mut buffer = BufWriter::new(file.as_file_mut());
         content(&mut buffer).and_then(|()| buffer.flush()).map_err(failed)?;
     }
     file.as_file().sync_all().map_err(failed)?;
-    let kept = if overwrite { file.persist(path) } else { file.persist_noclobber(path) };
+    let kept = if overwrite { file.persist(target) } else { file.persist_noclobber(target) };
     kept.map(|_| ()).map_err(|error| failed(error.error))
+}
+
+/// A file beside `path` that is removed unless it is renamed; with the usual rights of a new file.
+fn temporary(path: &Path) -> Result<NamedTempFile, CliError> {
+    let folder = parent(path);
+    let create = |name: &Path| OpenOptions::new().read(true).write(true).create_new(true).open(name);
+    tempfile::Builder::new().prefix(".noslip-").make_in(&folder, create).map_err(|source| CliError::Folder {
+        path: path.to_owned(),
+        folder,
+        source,
+    })
+}
+
+fn parent(path: &Path) -> PathBuf {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
+        _ => PathBuf::from("."),
+    }
 }

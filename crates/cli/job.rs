@@ -13,22 +13,23 @@ pub(crate) fn main_job(arguments: &JobArguments) -> Result<(), CliError> {
         Some(folder) => folder.clone(),
         None => free_folder(),
     };
-    crate::files::refuse_existing(&folder, arguments.force)?;
+    crate::files::check_folder(&folder, arguments.force)?;
     let mut scenes = Vec::new();
-    let mut failure = None;
+    let mut failures = Vec::new();
     for bundled in scene::bundled() {
         let scene = Scene::load(bundled.name, &method_names())?;
         let comparison = compare_scene(&scene, &methods(&method_names(), scene.run.alpha)?);
         terminal::print(&table::comparison(&scene, &comparison.rows))?;
         terminal::print("\n")?;
-        failure = failure.or(comparison.rows.into_iter().find_map(|row| row.failure));
+        let failed = comparison.rows.into_iter().filter_map(|row| row.failure);
+        failures.extend(failed.map(|failure| format!("{}: {failure}", scene.name)));
         scenes.push(comparison.report);
     }
     let title = "What accuracy costs, and what structure keeps".to_owned();
     let report = Report { title, intro: table::INTRO.to_owned(), scenes };
     report::write(&report, &folder, arguments.force).map_err(CliError::Report)?;
     terminal::print(&format!("report: {}\n", folder.join("index.html").display()))?;
-    failure.map_or(Ok(()), Err)
+    CliError::of_failures(failures)
 }
 
 /// The first of `noslip-report`, `noslip-report-2`, .. that is not there.

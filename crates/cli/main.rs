@@ -4,6 +4,7 @@ mod args;
 mod compare;
 mod error;
 mod files;
+mod first_error;
 mod inspect;
 mod job;
 mod json;
@@ -19,22 +20,30 @@ use error::CliError;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
-    let outcome = match arguments.command {
+    let (outcome, done) = match Arguments::try_parse() {
+        Ok(arguments) => (command(arguments), ExitCode::SUCCESS),
+        // The help and the version are no errors to anybody but clap.
+        Err(usage) => {
+            let done = if usage.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS };
+            (terminal::print_usage(&usage), done)
+        }
+    };
+    match outcome {
+        Ok(()) => done,
+        Err(error) => {
+            terminal::say("error", &error);
+            error.exit_code()
+        }
+    }
+}
+
+fn command(arguments: Arguments) -> Result<(), CliError> {
+    match arguments.command {
         None => job::main_job(&arguments.job),
         Some(Command::Run(arguments)) => run::run(&arguments),
         Some(Command::Compare(arguments)) => compare::compare(&arguments),
         Some(Command::Check(arguments)) => inspect::check(&arguments),
         Some(Command::List(arguments)) => inspect::list(&arguments),
         Some(Command::New(arguments)) => inspect::new(&arguments),
-    };
-    match outcome {
-        Ok(()) => ExitCode::SUCCESS,
-        // Whoever reads our output has seen enough.
-        Err(CliError::ReaderGone) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            error.exit_code()
-        }
     }
 }

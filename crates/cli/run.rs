@@ -1,27 +1,57 @@
 use crate::args::RunArguments;
 use crate::error::CliError;
-use crate::files::refuse_existing;
-use crate::trajectory_file::{Columns, Format};
+use crate::files::check_file;
+use crate::trajectory_file::{self, Format};
 use crate::{inspect, json, progress, table, terminal};
-use dla::{State, Trajectory};
-use harness::{Method, Request, integrate};
+use dla::{Schedule, State, Trajectory};
+use harness::{Kind, Method, Request, integrate};
 use scene::{Scene, SceneSystem, Visitor};
+use std::path::Path;
 
 /// `noslip run`: one trajectory.
 pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let scene = inspect::load(&arguments.scene, arguments.method.as_deref())?;
     let method = Method::named(&scene.run.method, scene.run.alpha)?;
-    if let Some(path) = &arguments.out {
-        Format::of(path)?;
-        refuse_existing(path, arguments.scene.force)?;
+    let out = match &arguments.out {
+        Some(path) => {
+            let format = Format::of(path)?;
+            trajectory_file::check_size(scene.run.steps(), arguments.every)?;
+            check_file(path, arguments.scene.force)?;
+            Some((path.as_path(), format))
+        }
+        None => None,
+    };
+    if arguments.scene.alpha.is_some() && method.info().kind != Kind::DlaAlpha {
+        let name = method.info().name;
+        terminal::say("warning", &format!("--alpha is the weight of dla-alpha; {name} has none and ignores it"));
     }
-    scene.visit(Run { arguments, scene: &scene, method })
+    scene.visit(Run { arguments, scene: &scene, method, out })
 }
 
 struct Run<'a> {
     arguments: &'a RunArguments,
     scene: &'a Scene,
     method: Method,
+    out: Option<(&'a Path, Format)>,
+}
+
+impl Run<'_> {
+    /// Integrates once more, now to keep the nodes, and writes them.
+    fn write<Sys, const N: usize, const M: usize>(
+        &self,
+        system: &Sys,
+        schedule: &Schedule,
+        mut state: State<N>,
+    ) -> Result<(), CliError>
+    where
+        Sys: SceneSystem<N, M>,
+    {
+        let Some((path, format)) = self.out else { return Ok(()) };
+        let mut trajectory = Trajectory::<N, M>::every(self.arguments.every);
+        // A failure here is the one that the record already tells of.
+        let _ = integrate(system, &self.method, schedule, &mut state, &mut trajectory);
+        trajectory_file::write(system, trajectory.nodes(), path, format, self.arguments.scene.force)
+    }
 }
 
 impl Visitor for Run<'_> {
@@ -31,27 +61,25 @@ impl Visitor for Run<'_> {
     where
         Sys: SceneSystem<N, M>,
     {
-        let Self { arguments, scene, method } = self;
-        let schedule = inspect::schedule(scene);
-        let bar = progress::bar(method.info().name, schedule.steps);
+        let schedule = inspect::schedule(self.scene);
+        let bar = progress::bar(self.method.info().name, schedule.steps);
         let request = Request { schedule, q, v, samples: 1 };
-        let record = harness::run(system, &method, &request, &mut |steps| bar.inc(steps));
+        let record = harness::run(system, &self.method, &request, &mut |steps| bar.inc(steps));
         bar.finish_and_clear();
 
-        if let Some(path) = &arguments.out {
-            let mut trajectory = Trajectory::<N, M>::every(arguments.every);
-            let mut state = State::new(q, v, system.angles());
-            // A failure here is the one that the record already tells of.
-            let _ = integrate(system, &method, &schedule, &mut state, &mut trajectory);
-            let columns = Columns::new(system, trajectory.nodes());
-            columns.write(path, Format::of(path)?, arguments.scene.force)?;
-        }
+        let written = self.write(system, &schedule, State::new(q, v, system.angles()));
         let end = system.sleigh_state(&record.q, &record.v);
-        if arguments.scene.json {
-            terminal::print_json(&json::record(&scene.name, &record, &end))?;
+        // What was computed is shown even where its file could not be written.
+        if self.arguments.scene.json {
+            terminal::print_json(&json::record(&self.scene.name, &record, &end))?;
         } else {
-            terminal::print(&table::one_run(scene, &record, &end, arguments.out.as_deref()))?;
+            let file = self.out.and_then(|(path, _)| written.is_ok().then_some(path));
+            terminal::print(&table::one_run(self.scene, &record, &end, file))?;
         }
-        table::failure(&record).map_or(Ok(()), Err)
+        let computed = CliError::of_failures(table::failure(&record));
+        if let (Err(_), Err(error)) = (&computed, &written) {
+            terminal::say("error", error);
+        }
+        computed.and(written)
     }
 }

@@ -1,5 +1,4 @@
 use crate::compare::Row;
-use crate::error::CliError;
 use comfy_table::{CellAlignment, Table, presets};
 use harness::Record;
 use scene::Scene;
@@ -33,7 +32,7 @@ pub(crate) fn cells<const N: usize>(record: &Record<N>, error: Option<f64>) -> V
     vec![
         record.method.name.to_owned(),
         record.method.order.to_string(),
-        format!("{}", record.step),
+        number(record.step),
         record.steps.to_string(),
         format!("{:.1e}", record.constraint_max),
         format!("{:.1e}", record.energy.max_error),
@@ -54,7 +53,7 @@ pub(crate) fn comparison(scene: &Scene, rows: &[Row]) -> String {
     for column in table.column_iter_mut().skip(1) {
         column.set_cell_alignment(CellAlignment::Right);
     }
-    let mut text = format!("{} ({}), {} s\n", scene.title, scene.name, scene.run.duration);
+    let mut text = format!("{} ({}), {} s\n", scene.title, scene.name, number(scene.run.duration));
     for line in table.trim_fmt().lines() {
         let _ = writeln!(text, "{line}");
     }
@@ -68,15 +67,26 @@ pub(crate) fn facts(scene: &Scene) -> Vec<(String, String)> {
         0.5 * (sleigh.mass() * start.speed * start.speed + sleigh.pivot_inertia() * start.turn_rate * start.turn_rate);
     let fact = |name: &str, value: String| (name.to_owned(), value);
     vec![
-        fact("mass m", format!("{} kg", sleigh.mass())),
-        fact("inertia I about the centre of mass", format!("{} kg m²", sleigh.inertia())),
-        fact("offset a of the centre of mass ahead of the blade", format!("{} m", sleigh.offset())),
-        fact("start", format!("x = {} m, y = {} m, heading {} rad", start.x, start.y, start.heading)),
-        fact("start velocity", format!("{} m/s along the blade, {} rad/s", start.speed, start.turn_rate)),
-        fact("energy", format!("{energy} J")),
+        fact("mass m", format!("{} kg", number(sleigh.mass()))),
+        fact("inertia I about the centre of mass", format!("{} kg m²", number(sleigh.inertia()))),
+        fact("offset a of the centre of mass ahead of the blade", format!("{} m", number(sleigh.offset()))),
+        fact(
+            "start",
+            format!("x = {} m, y = {} m, heading {} rad", number(start.x), number(start.y), number(start.heading)),
+        ),
+        fact(
+            "start velocity",
+            format!("{} m/s along the blade, {} rad/s", number(start.speed), number(start.turn_rate)),
+        ),
+        fact("energy", format!("{} J", number(energy))),
         fact(
             "run",
-            format!("{} s in {} steps of {} s", scene.run.duration, scene.run.steps(), scene.run.actual_step()),
+            format!(
+                "{} s in {} steps of {} s",
+                number(scene.run.duration),
+                scene.run.steps(),
+                number(scene.run.actual_step())
+            ),
         ),
     ]
 }
@@ -91,11 +101,14 @@ pub(crate) fn one_run<const N: usize>(
     let mut lines = vec![
         ("scene", format!("{} ({})", scene.title, scene.name)),
         ("method", format!("{}, order {}", record.method.name, record.method.order)),
-        ("steps", format!("{} of {} s, to t = {} s", record.steps, record.step, record.t)),
-        ("position", format!("x = {} m, y = {} m", end.x, end.y)),
-        ("heading", format!("{} rad", end.heading)),
-        ("velocity", format!("{} m/s along the blade, {} rad/s", end.speed, end.turn_rate)),
-        ("energy", format!("{} J at the start, {} J at the end", record.energy.initial, record.energy.last)),
+        ("steps", format!("{} of {} s, to t = {} s", record.steps, number(record.step), number(record.t))),
+        ("position", format!("x = {} m, y = {} m", number(end.x), number(end.y))),
+        ("heading", format!("{} rad", number(end.heading))),
+        ("velocity", format!("{} m/s along the blade, {} rad/s", number(end.speed), number(end.turn_rate))),
+        (
+            "energy",
+            format!("{} J at the start, {} J at the end", number(record.energy.initial), number(record.energy.last)),
+        ),
         ("energy error", format!("{:.2e} J at most", record.energy.max_error)),
         ("constraint", format!("{:.2e} m/s at most", record.constraint_max)),
     ];
@@ -110,6 +123,11 @@ pub(crate) fn one_run<const N: usize>(
     aligned(&lines)
 }
 
+/// A number with every digit, with an exponent where it would have a long row of zeros.
+fn number(value: f64) -> String {
+    if value == 0.0 || (1e-4..1e16).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
+}
+
 /// Names and values in two columns.
 pub(crate) fn aligned<K: AsRef<str>, V: AsRef<str>>(lines: &[(K, V)]) -> String {
     let width = lines.iter().map(|(name, _)| name.as_ref().chars().count()).max().unwrap_or(0);
@@ -121,11 +139,11 @@ pub(crate) fn aligned<K: AsRef<str>, V: AsRef<str>>(lines: &[(K, V)]) -> String 
 }
 
 /// The failure of a run, told with how far the run is valid.
-pub(crate) fn failure<const N: usize>(record: &Record<N>) -> Option<CliError> {
+pub(crate) fn failure<const N: usize>(record: &Record<N>) -> Option<String> {
     record.failure.as_ref().map(|failure| {
-        CliError::Computation(format!(
+        format!(
             "{} failed at {failure}; the trajectory is valid up to t = {} s ({} steps)",
             record.method.name, record.t, record.steps
-        ))
+        )
     })
 }

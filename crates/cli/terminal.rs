@@ -1,16 +1,33 @@
 use crate::error::CliError;
+use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 
-/// Prints a result. Standard output may be full, or closed by its reader; neither is a panic.
+/// Prints a result. Standard output may be full, which is an error, or closed by a reader who has seen enough, which
+/// is none: the rest of the work is done all the same.
 pub(crate) fn print(text: &str) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
-    out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|error| match error.kind() {
-        ErrorKind::BrokenPipe => CliError::ReaderGone,
-        _ => CliError::Output(error),
-    })
+    accept_closed(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
 }
 
 /// Prints one JSON value.
 pub(crate) fn print_json(value: &serde_json::Value) -> Result<(), CliError> {
     print(&format!("{value:#}\n"))
+}
+
+/// Prints what clap has to say: on standard output the help or the version, on standard error what is wrong.
+pub(crate) fn print_usage(usage: &clap::Error) -> Result<(), CliError> {
+    let printed = usage.print().and_then(|()| std::io::stdout().flush());
+    if usage.use_stderr() { Ok(()) } else { accept_closed(printed) }
+}
+
+/// Says something on standard error. Where that cannot be written to, there is nobody left to tell.
+pub(crate) fn say(level: &str, message: &impl Display) {
+    let _ = writeln!(std::io::stderr(), "{level}: {message}");
+}
+
+fn accept_closed(written: std::io::Result<()>) -> Result<(), CliError> {
+    match written {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(CliError::Output(error)),
+        _ => Ok(()),
+    }
 }

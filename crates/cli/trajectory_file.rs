@@ -1,5 +1,6 @@
 use crate::error::CliError;
 use crate::files::write_whole;
+use crate::first_error::FirstError;
 use scene::SceneSystem;
 use sleigh::SleighState;
 use std::io::{Error, Seek, Write};
@@ -15,7 +16,8 @@ pub(crate) enum Format {
 impl Format {
     /// By the ending of the file's name.
     pub(crate) fn of(path: &Path) -> Result<Self, CliError> {
-        match path.extension().and_then(|ending| ending.to_str()) {
+        let ending = path.extension().map(std::ffi::OsStr::to_ascii_lowercase);
+        match ending.as_ref().and_then(|ending| ending.to_str()) {
             Some("csv") => Ok(Self::Csv),
             Some("npz") => Ok(Self::Npz),
             _ => Err(CliError::Ending { path: path.to_owned() }),
@@ -36,64 +38,75 @@ const COLUMNS: [(&str, &str); 9] = [
     ("constraint_force", "N"),
 ];
 
-/// A trajectory in the words of a scene.
-#[derive(Debug)]
-pub(crate) struct Columns(Vec<[f64; COLUMNS.len()]>);
+type Row = [f64; COLUMNS.len()];
 
-impl Columns {
-    pub(crate) fn new<Sys, const N: usize, const M: usize>(system: &Sys, nodes: &[dla::Node<N, M>]) -> Self
-    where
-        Sys: SceneSystem<N, M>,
-    {
-        let row = |node: &dla::Node<N, M>| {
-            let state = system.sleigh_state(&node.q, &node.v);
-            // The force of the first constraint, that of the blade; at the start there is no step to average it over.
-            let force = node.multipliers.and_then(|all| all.first().copied()).unwrap_or(f64::NAN);
-            let SleighState { x, y, heading, speed, turn_rate } = state;
-            [node.t, x, y, heading, speed, turn_rate, node.energy, node.constraint, force]
-        };
-        Self(nodes.iter().map(row).collect())
+/// The most nodes that a file holds: those of a run are in memory, at about 100 bytes each, before they are written.
+const MOST_NODES: u64 = 10_000_000;
+
+/// Refuses, before a run begins, one of which more nodes would be kept than fit in the memory.
+pub(crate) fn check_size(steps: u64, every: u64) -> Result<(), CliError> {
+    // The first, every `every`-th, and the last, which may be one of those.
+    let nodes = |every: u64| 1 + steps.div_ceil(every);
+    if nodes(every) <= MOST_NODES {
+        return Ok(());
     }
+    Err(CliError::TooManyNodes { nodes: nodes(every), most: MOST_NODES, every: steps.div_ceil(MOST_NODES - 1) })
+}
 
-    /// Writes the file, whole or not at all.
-    pub(crate) fn write(&self, path: &Path, format: Format, overwrite: bool) -> Result<(), CliError> {
-        write_whole(path, overwrite, |file| match format {
-            Format::Csv => self.csv(file),
-            Format::Npz => self.npz(file),
-        })
-    }
-
-    fn csv(&self, file: &mut impl Write) -> Result<(), Error> {
-        let header: Vec<String> = COLUMNS.iter().map(|(name, unit)| format!("{name} [{unit}]")).collect();
-        writeln!(file, "{}", header.join(","))?;
-        for row in &self.0 {
-            // `{:?}` prints the shortest text that reads back as the same number.
-            write!(file, "{:?}", row[0])?;
-            for value in &row[1..] {
-                write!(file, ",{value:?}")?;
-            }
-            writeln!(file)?;
+/// Writes a trajectory in the words of a scene: a file that appears whole or not at all.
+pub(crate) fn write<Sys, const N: usize, const M: usize>(
+    system: &Sys,
+    nodes: &[dla::Node<N, M>],
+    path: &Path,
+    format: Format,
+    overwrite: bool,
+) -> Result<(), CliError>
+where
+    Sys: SceneSystem<N, M>,
+{
+    let row = |node: &dla::Node<N, M>| -> Row {
+        let SleighState { x, y, heading, speed, turn_rate } = system.sleigh_state(&node.q, &node.v);
+        // The force of the first constraint, that of the blade; at the start there is no step to average it over.
+        let force = node.multipliers.and_then(|all| all.first().copied()).unwrap_or(f64::NAN);
+        [node.t, x, y, heading, speed, turn_rate, node.energy, node.constraint, force]
+    };
+    write_whole(path, overwrite, |file| match format {
+        Format::Csv => csv(file, nodes.iter().map(row)),
+        Format::Npz => {
+            let mut file = FirstError::new(file);
+            let outcome = npz(&mut file, &nodes.iter().map(row));
+            // What stopped the file is the reason of whatever the archive then stumbled over.
+            file.into_result().and(outcome)
         }
-        Ok(())
-    }
+    })
+}
 
-    fn npz(&self, file: &mut (impl Write + Seek)) -> Result<(), Error> {
-        use npyz::WriterBuilder;
-        let mut archive = zip::ZipWriter::new(file);
-        let options = zip::write::SimpleFileOptions::default()
-            .compression_method(zip::CompressionMethod::Stored)
-            .large_file(true);
-        for (column, (name, _)) in COLUMNS.iter().enumerate() {
-            archive.start_file(npyz::npz::file_name_from_array_name(name), options)?;
-            let mut array = npyz::WriteOptions::new()
-                .default_dtype()
-                .shape(&[self.0.len() as u64])
-                .writer(&mut archive)
-                .begin_nd()?;
-            array.extend(self.0.iter().map(|row| row[column]))?;
-            array.finish()?;
+fn csv(file: &mut impl Write, rows: impl Iterator<Item = Row>) -> Result<(), Error> {
+    let header: Vec<String> = COLUMNS.iter().map(|(name, unit)| format!("{name} [{unit}]")).collect();
+    writeln!(file, "{}", header.join(","))?;
+    for row in rows {
+        // `{:?}` prints the shortest text that reads back as the same number.
+        write!(file, "{:?}", row[0])?;
+        for value in &row[1..] {
+            write!(file, ",{value:?}")?;
         }
-        archive.finish()?;
-        Ok(())
+        writeln!(file)?;
     }
+    Ok(())
+}
+
+fn npz(file: &mut (impl Write + Seek), rows: &(impl ExactSizeIterator<Item = Row> + Clone)) -> Result<(), Error> {
+    use npyz::WriterBuilder;
+    let mut archive = zip::ZipWriter::new(file);
+    let options =
+        zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored).large_file(true);
+    for (column, (name, _)) in COLUMNS.iter().enumerate() {
+        archive.start_file(npyz::npz::file_name_from_array_name(name), options)?;
+        let mut array =
+            npyz::WriteOptions::new().default_dtype().shape(&[rows.len() as u64]).writer(&mut archive).begin_nd()?;
+        array.extend(rows.clone().map(|row| row[column]))?;
+        array.finish()?;
+    }
+    archive.finish()?;
+    Ok(())
 }

@@ -60,17 +60,19 @@ impl Finding {
 
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(place) = self.place else {
+            write!(f, "{}\n  = accepted: {}", self.headline(), self.accepted)?;
+            return self.help.as_ref().map_or(Ok(()), |help| write!(f, "\n  = help: {help}"));
+        };
         // The caller says that this is an error: a name of the level would say it twice.
         let mut group = annotate_snippets::Group::with_title(Level::ERROR.no_name().primary_title(self.headline()));
-        if let Some(place) = self.place {
-            let label = self.found.as_ref().map(|found| format!("found {found}"));
-            group = group.element(
-                Snippet::source(self.excerpt.line.as_str())
-                    .path(self.origin.as_str())
-                    .line_start(place.line)
-                    .annotation(AnnotationKind::Primary.span(self.excerpt.span.clone()).label(label)),
-            );
-        }
+        let label = self.found.as_ref().map(|found| format!("found {found}"));
+        group = group.element(
+            Snippet::source(self.excerpt.line.as_str())
+                .path(self.origin.as_str())
+                .line_start(place.line)
+                .annotation(AnnotationKind::Primary.span(self.excerpt.span.clone()).label(label)),
+        );
         group = group.element(Level::NOTE.with_name("accepted").message(self.accepted.as_str()));
         if let Some(help) = &self.help {
             group = group.element(Level::HELP.message(help.as_str()));

@@ -1,0 +1,132 @@
+use crate::{Equations, Newton, OneStep, Stage, State, StepError, StepReport};
+use lagrangian::linear::{Lu, Singular};
+use lagrangian::{DiscreteLagrangian, Dual, Saddle, System, Trapezoid, mass_matrix, momentum};
+use std::array::from_fn;
+
+/// The geometric nonholonomic integrator: **a counter-example**, not a method to use.
+///
+/// At every node the momentum is reflected at the constraint in the kinetic metric,
+///
+/// ```text
+/// p+ = (P* - Q*) p-,     p- = D2 L_d(q_{k-1}, q_k),     -D1 L_d(q_k, q_{k+1}) = p+,
+/// ```
+///
+/// with `Q* p = A' (A M^-1 A')^-1 A M^-1 p` and `P* = 1 - Q*` (Ferraro, Iglesias and Martin de Diego 2008, Nonlinearity 21,
+/// 1911-1928; with the trapezoidal rule the nonholonomic RATTLE). It is of order 2, holds the constraint in the mean of
+/// two steps, and keeps the kinetic energy of free motions between nodes. But it is no map on the distribution: the
+/// momentum across the constraint is carried from step to step as a variable of its own, and about the *stable* straight
+/// motion of the sleigh that variable grows as `exp(asinh(kappa h) t / h)`, until the sleigh reverses by itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gni<L, const N: usize> {
+    lagrangian: L,
+    newton: Newton,
+    memory: Option<Memory<N>>,
+}
+
+/// The node that the last step led to, and the momentum it arrived with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Memory<const N: usize> {
+    node: State<N>,
+    arriving: [f64; N],
+}
+
+impl<const N: usize> Default for Gni<Trapezoid, N> {
+    fn default() -> Self {
+        Self::new(Trapezoid)
+    }
+}
+
+impl<L, const N: usize> Gni<L, N> {
+    /// The integrator of a discrete Lagrangian.
+    pub fn new(lagrangian: L) -> Self {
+        Self { lagrangian, newton: Newton::default(), memory: None }
+    }
+}
+
+/// `Q* p`, the part of a momentum across the constraint, and the admissible velocity of the rest.
+fn across<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    state: (&[f64; N], &[f64; N]),
+    p: &[f64; N],
+) -> Result<([f64; N], [f64; N]), Singular> {
+    let (_, mass) = mass_matrix(system, t, state.0, state.1);
+    let (a, b) = system.constraint(t, state.0);
+    let saddle = Saddle { block: mass, transposed: a, rows: a, right: *p, level: b.map(|b| -b) };
+    let (v, mu) = saddle.solve(system.admissible_basis(t, state.0).as_ref())?;
+    Ok((from_fn(|i| (0..M).map(|k| a[k][i] * mu[k]).sum()), v))
+}
+
+impl<Sys, L, const N: usize, const M: usize> OneStep<Sys, N, M> for Gni<L, N>
+where
+    Sys: System<N, M>,
+    L: DiscreteLagrangian<Sys, N, M>,
+{
+    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        let singular = |stage| {
+            move |source| StepError::Newton { stage, source: crate::NewtonError::Singular { iteration: 1, source } }
+        };
+        let (q0, v0) = (*state.q(), *state.v());
+        // Only a node that it led to itself has a momentum to reflect; another start begins without one across.
+        let departing = match self.memory {
+            Some(memory) if memory.node == *state => {
+                let p = memory.arriving;
+                let (q_p, _) = across(system, t, (&q0, &v0), &p).map_err(singular(Stage::Projection))?;
+                from_fn(|i| p[i] - 2.0 * q_p[i])
+            }
+            _ => momentum(system, t, &q0, &v0),
+        };
+        let mut equations = Departure::<_, _, N, M> { lagrangian: &self.lagrangian, system, t, h, q0, departing };
+        let mut v = v0;
+        let iterations = self
+            .newton
+            .solve(&mut equations, &mut v)
+            .map_err(|source| StepError::Newton { stage: Stage::Increment, source })?;
+
+        let mut arriving = self.lagrangian.d2(system, t, h, &q0, &v);
+        if let Some((_, plus)) = self.lagrangian.forces(system, t, h, &q0, &v) {
+            arriving = from_fn(|i| arriving[i] + plus[i]);
+        }
+        let increment = v.map(|v| h * v);
+        let q1 = state.ahead(&increment);
+        let (_, v1) = across(system, t + h, (&q1, &v), &arriving).map_err(singular(Stage::Projection))?;
+        state.advance(&increment, v1, None);
+        self.memory = Some(Memory { node: *state, arriving });
+        Ok(StepReport { impulses: [[0.0; M]; 2], iterations })
+    }
+}
+
+/// The equations `p+ + D1 L_d(q0, q0 + h v) + f_d^- = 0` for the mean velocity of a step; nothing constrains it.
+struct Departure<'a, Sys, L, const N: usize, const M: usize> {
+    lagrangian: &'a L,
+    system: &'a Sys,
+    t: f64,
+    h: f64,
+    q0: [f64; N],
+    departing: [f64; N],
+}
+
+impl<Sys, L, const N: usize, const M: usize> Equations<N> for Departure<'_, Sys, L, N, M>
+where
+    Sys: System<N, M>,
+    L: DiscreteLagrangian<Sys, N, M>,
+{
+    fn correction(&mut self, v: &[f64; N]) -> Result<[f64; N], Singular> {
+        let Self { lagrangian, system, t, h, q0, departing } = *self;
+        let l_d = lagrangian.derivatives(system, t, h, &q0, v);
+        let mut residual: [f64; N] = from_fn(|i| departing[i] + l_d.d1[i]);
+        let mut block = l_d.d1d2.map(|row| row.map(|x| h * x));
+        let lifted = (Dual::fixed(t), Dual::fixed(h));
+        if let Some((minus, _)) =
+            lagrangian.forces(system, lifted.0, lifted.1, &q0.map(Dual::fixed), &Dual::variables(v))
+        {
+            for i in 0..N {
+                residual[i] += minus[i].re;
+                for j in 0..N {
+                    block[i][j] += minus[i].eps[j];
+                }
+            }
+        }
+        Ok(Lu::new(block)?.solve(residual.map(|r| -r)))
+    }
+}

@@ -1,0 +1,105 @@
+//! Runs are measured as they are: means, extremes and slopes of known series, and the part of a run that fails.
+
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
+
+use approx::assert_relative_eq;
+use dla::Schedule;
+use harness::{METHODS, Method, MethodError, Request, Trend, run};
+use lagrangian::{Constraint, Scalar, System};
+use proptest::prelude::*;
+
+/// A point of unit mass with `z' = y x'`, in a well that has no floor beyond `|y| = 1`.
+struct Particle {
+    depth: f64,
+}
+
+impl System<3, 1> for Particle {
+    fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 3], v: &[S; 3]) -> S {
+        // The mass across grows without bound at y = -1: a wall that no step may cross.
+        let across = (q[1] + 1.0).recip();
+        (v[0] * v[0] + v[1] * v[1] * across * across + v[2] * v[2]) * 0.5 - q[1] * q[1] * (0.5 * self.depth)
+    }
+    fn constraint<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
+        ([[-q[1], S::zero(), S::constant(1.0)]], [S::zero()])
+    }
+}
+
+fn request(steps: u64, step: f64) -> Request<3> {
+    Request { schedule: Schedule { t0: 0.0, step, steps }, q: [0.1, 0.2, 0.3], v: [0.9, 0.7, 0.2 * 0.9], samples: 10 }
+}
+
+#[test]
+fn a_record_tells_of_its_run() {
+    let mut told = 0;
+    let method = Method::named("dla", None).unwrap();
+    let record = run(&Particle { depth: 1.0 }, &method, &request(95, 0.05), &mut |steps| told += steps);
+    assert_eq!((record.steps, told), (95, 95));
+    assert_relative_eq!(record.t, 95.0 * 0.05);
+    assert!(record.failure.is_none() && record.wall_seconds > 0.0);
+    assert!(record.newton.mean >= 1.0 && f64::from(record.newton.max) >= record.newton.mean);
+    assert!(record.constraint_max < 1e-14);
+    assert!((record.energy.last - record.energy.initial).abs() <= record.energy.max_error);
+    // The first, every tenth, the last; and no peak between them is lost.
+    let times: Vec<f64> = record.samples.iter().map(|s| (s.t / 0.05).round()).collect();
+    assert_eq!(times, [0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0, 90.0, 95.0]);
+    let peak = record.samples.iter().map(|s| s.energy_error).fold(0.0, f64::max);
+    assert_relative_eq!(peak, record.energy.max_error);
+}
+
+#[test]
+fn explicit_methods_have_no_newton() {
+    let record = run(&Particle { depth: 1.0 }, &Method::named("rk4", None).unwrap(), &request(20, 0.05), &mut ());
+    assert_eq!((record.newton.mean.to_bits(), record.newton.max), (0, 0));
+    assert!(record.constraint_max > 0.0);
+}
+
+/// A method that needs a basis says so instead of running.
+#[test]
+fn a_refusal_is_a_record_with_its_reason() {
+    let method = Method::named("rk4-reduced", None).unwrap();
+    let record = run(&Particle { depth: 1.0 }, &method, &request(20, 0.05), &mut ());
+    let failure = record.failure.unwrap();
+    assert_eq!((failure.step, record.steps), (1, 0));
+    assert!(failure.to_string().contains("basis"), "{failure}");
+}
+
+#[test]
+fn methods_are_found_by_their_names() {
+    for info in METHODS {
+        assert_eq!(Method::named(info.name, None).unwrap().info().kind, info.kind);
+        assert_eq!(METHODS.iter().filter(|other| other.name == info.name || other.kind == info.kind).count(), 1);
+    }
+    let error = Method::named("dlb", None).unwrap_err();
+    assert!(error.to_string().contains("dla-trapezoid"), "{error}");
+    assert!(matches!(Method::named("dla-alpha", Some(1.5)), Err(MethodError::Alpha(_))));
+    assert_eq!(Method::named("dla-alpha", Some(0.3)).unwrap().info().order, 1);
+    assert_eq!(Method::named("dla-alpha", None).unwrap().info().order, 2);
+}
+
+proptest! {
+    /// The slope of a line with noise that cancels is the line's, far from the origin too.
+    #[test]
+    fn the_trend_of_a_line(slope in -1e3..1e3f64, offset in -1e6..1e6f64, far in 0.0..1e6f64) {
+        let mut trend = Trend::default();
+        for k in 0..1000 {
+            let x = far + f64::from(k);
+            let noise = if k % 2 == 0 { 1e-3 } else { -1e-3 };
+            trend.add(x, offset + slope * (x - far) + noise);
+        }
+        // Alternating noise tilts a line through n points by 6 e / n^2; rounding of y is relative to its size.
+        let rounding = f64::EPSILON * (offset.abs() + 1e3 * slope.abs() + far);
+        prop_assert!((trend.slope().unwrap() - slope).abs() <= 6e-3 / 1e6 * 2.0 + rounding);
+    }
+}
+
+#[test]
+fn a_trend_needs_two_points() {
+    let mut trend = Trend::default();
+    assert_eq!(trend.slope(), None);
+    trend.add(1.0, 2.0);
+    assert_eq!(trend.slope(), None);
+    trend.add(1.0, 3.0);
+    assert_eq!(trend.slope(), None);
+    trend.add(2.0, 2.0);
+    assert_relative_eq!(trend.slope().unwrap(), -0.5, epsilon = 1e-15);
+}

@@ -1,0 +1,46 @@
+//! Nonholonomic systems of the literature, each with what is known of it.
+//!
+//! A [`Model`] is a [`System`](lagrangian::System) with a source, a standard start, labels, invariants, its closed form
+//! where there is one, and its accelerations written a second time, by hand from the reduced equations. The tests hold
+//! the two texts of each model against each other, and its labels, invariants and closed form against both.
+//!
+//! ```
+//! use models::{Model, RollingDisk};
+//!
+//! let disk = RollingDisk::new(1.0, 0.5, 0.125, 0.0625)?;
+//! let (q, v) = disk.start();
+//! assert!(lagrangian::constraint_residual(&disk, 0.0, &q, &v).iter().all(|slip| slip.abs() < 1e-15));
+//! assert!(disk.labels().integrable && disk.exact(1.0).is_some());
+//! # Ok::<(), models::ModelError>(())
+//! ```
+//!
+//! SI units, angles in radians. This crate knows no integrator.
+
+mod attitude;
+mod chaplygin_ball;
+mod contact_oscillator;
+mod error;
+mod gauged_oscillator;
+mod knife_edge;
+mod model;
+mod particle;
+mod quartic_oscillator;
+mod roller_racer;
+mod rolling_disk;
+mod snakeboard;
+mod special;
+mod suslov;
+
+pub use attitude::Attitude;
+pub use chaplygin_ball::ChaplyginBall;
+pub use contact_oscillator::ContactOscillator;
+pub use error::ModelError;
+pub use gauged_oscillator::GaugedOscillator;
+pub use knife_edge::KnifeEdge;
+pub use model::{Labels, Model, State};
+pub use particle::Particle;
+pub use quartic_oscillator::QuarticOscillator;
+pub use roller_racer::RollerRacer;
+pub use rolling_disk::RollingDisk;
+pub use snakeboard::Snakeboard;
+pub use suslov::Suslov;

@@ -1,0 +1,63 @@
+use lagrangian::{Scalar, System, energy};
+
+/// A configuration `q` and a velocity `v`.
+pub type State<const N: usize> = ([f64; N], [f64; N]);
+
+/// What is known of a system beyond its equations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Labels {
+    /// The Lagrangian is even in the velocities, and with a linear constraint the flow is then reversed by
+    /// `(q, p) -> (q, -p)`.
+    pub reversible: bool,
+    /// The velocities follow from known integrals, by quadratures or a linear equation.
+    pub integrable: bool,
+    /// The flow on the constraint has an invariant measure of smooth positive density, [`Model::density`].
+    pub invariant_measure: bool,
+}
+
+/// A system of the literature, with what is known of it.
+pub trait Model<const N: usize, const M: usize>: System<N, M> + Sized {
+    /// A name for people.
+    fn name(&self) -> &'static str;
+
+    /// Where the system and its equations are found.
+    fn source(&self) -> &'static str;
+
+    /// What kind of system it is, for these parameters.
+    fn labels(&self) -> Labels;
+
+    /// The standard start: a configuration, and an admissible velocity.
+    fn start(&self) -> State<N>;
+
+    /// The accelerations at an admissible velocity, from the reduced equations worked out on paper.
+    ///
+    /// Nothing in it comes from the Lagrangian by machine, so that each can be held against the other.
+    fn accelerations_by_hand(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> [f64; N];
+
+    /// The integrals of the motion, by name; the energy is the first.
+    fn invariants<S: Scalar>(&self, q: &[S; N], v: &[S; N]) -> Vec<(&'static str, S)> {
+        vec![("energy", energy(self, S::zero(), q, v))]
+    }
+
+    /// The density of the invariant measure `density(q) dq dxi`, where there is a smooth one.
+    ///
+    /// `xi` are the quasi-velocities in [`System::admissible_basis`].
+    fn density<S: Scalar>(&self, _q: &[S; N]) -> Option<S> {
+        None
+    }
+
+    /// How far the coordinates are from a singularity: one far from it, and zero on it.
+    fn regularity(&self, _q: &[f64; N]) -> f64 {
+        1.0
+    }
+
+    /// The state a time `t` (s) after the given one, where the motion is known in closed form.
+    fn exact_from(&self, _start: &State<N>, _t: f64) -> Option<State<N>> {
+        None
+    }
+
+    /// The state a time `t` (s) after [`Model::start`], where the motion is known in closed form.
+    fn exact(&self, t: f64) -> Option<State<N>> {
+        self.exact_from(&self.start(), t)
+    }
+}

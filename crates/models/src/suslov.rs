@@ -1,0 +1,152 @@
+use crate::error::{finite, positive};
+use crate::{Attitude, Labels, Model, ModelError, State};
+use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
+
+/// The Suslov problem: a rigid body about a fixed point that cannot turn about its own third axis, `Omega3 = 0`.
+///
+/// `q = (alpha, beta, gamma)`: the angles of [`Attitude`] (rad), singular where `cos(beta) = 0`. `Omega` is the angular
+/// velocity in the body, in axes turned about the third so that `I12 = 0`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Suslov {
+    diagonal: [f64; 3],
+    i13: f64,
+    i23: f64,
+}
+
+impl Suslov {
+    /// A body of the inertia matrix `((I11, 0, I13), (0, I22, I23), (I13, I23, I33))` (kg m^2); `I13` and `I23` are the
+    /// entries, the products of inertia with their minus sign.
+    ///
+    /// # Errors
+    /// [`ModelError`] where a number is not finite, or the matrix not positive definite.
+    pub fn new(diagonal: [f64; 3], i13: f64, i23: f64) -> Result<Self, ModelError> {
+        let [i11, i22, i33] = diagonal;
+        positive("I11", i11)?;
+        positive("I22", i22)?;
+        positive("I33", i33)?;
+        finite("I13", i13)?;
+        finite("I23", i23)?;
+        let determinant = i11 * i22 * i33 - i22 * i13 * i13 - i11 * i23 * i23;
+        if !(determinant.is_finite() && determinant > 0.0) {
+            return Err(ModelError::NotPositiveDefinite { determinant });
+        }
+        Ok(Self { diagonal, i13, i23 })
+    }
+
+    /// `I11`, `I22`, `I33` (kg m^2).
+    #[must_use]
+    pub fn diagonal(&self) -> [f64; 3] {
+        self.diagonal
+    }
+
+    /// The entries `I13` and `I23` of the inertia matrix (kg m^2).
+    #[must_use]
+    pub fn products(&self) -> [f64; 2] {
+        [self.i13, self.i23]
+    }
+
+    /// The reduced equations `I11 Omega1' = -(I13 Omega1 + I23 Omega2) Omega2`,
+    /// `I22 Omega2' = (I13 Omega1 + I23 Omega2) Omega1`.
+    #[must_use]
+    pub fn reduced_acceleration(&self, omega: [f64; 2]) -> [f64; 2] {
+        let across = self.i13 * omega[0] + self.i23 * omega[1];
+        [-across * omega[1] / self.diagonal[0], across * omega[0] / self.diagonal[1]]
+    }
+
+    /// The solution of the reduced equations, a time `t` (s) after `omega` (rad/s).
+    ///
+    /// In `(X, Y) = (sqrt(I11) Omega1, sqrt(I22) Omega2)` they run a circle of radius `R`; with `P` along
+    /// `(I13/sqrt(I11), I23/sqrt(I22))` of length `n`, and `Q` a quarter turn further, `Q = R tanh(nu R (t - t0))`,
+    /// `P = +-R sech(nu R (t - t0))`, `nu = n/sqrt(I11 I22)`.
+    #[must_use]
+    pub fn exact_reduced(&self, omega: [f64; 2], t: f64) -> [f64; 2] {
+        let [i11, i22, _] = self.diagonal;
+        let (root1, root2) = (i11.sqrt(), i22.sqrt());
+        let (a, b) = (self.i13 / root1, self.i23 / root2);
+        let n = a.hypot(b);
+        let (x, y) = (root1 * omega[0], root2 * omega[1]);
+        let radius = x.hypot(y);
+        if n == 0.0 || radius == 0.0 {
+            return omega;
+        }
+        let (p, q) = ((a * x + b * y) / n, (a * y - b * x) / n);
+        let s = n / (root1 * root2) * radius * t;
+        // 1 + Q/R and 1 - Q/R, the smaller one from P^2 + Q^2 = R^2.
+        let (k, flat) = (q / radius, p / radius);
+        let large = 1.0 + k.abs();
+        let small = flat * flat / large;
+        let (up, down) = if k >= 0.0 { (large, small) } else { (small, large) };
+        // Both sides of the quotient (up e^s -+ down e^-s), without their large factor.
+        let decay = (-2.0 * s.abs()).exp();
+        let (up, down) = if s >= 0.0 { (up, down * decay) } else { (up * decay, down) };
+        let (p, q) = (2.0 * p * (-s.abs()).exp() / (up + down), radius * (up - down) / (up + down));
+        [(a * p - b * q) / (n * root1), (b * p + a * q) / (n * root2)]
+    }
+}
+
+impl System<3, 1> for Suslov {
+    /// `L = Omega . I Omega / 2`.
+    #[inline(always)]
+    fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 3], v: &[S; 3]) -> S {
+        let [o1, o2, o3] = Attitude::new(*q).body_velocity(*v);
+        let [i11, i22, i33] = self.diagonal;
+        o1 * o1 * (0.5 * i11) + o2 * o2 * (0.5 * i22) + o3 * o3 * (0.5 * i33) + (o1 * self.i13 + o2 * self.i23) * o3
+    }
+
+    /// `Omega3 = sin(beta) alpha' + gamma' = 0`.
+    #[inline(always)]
+    fn constraint<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
+        ([[q[1].sin(), S::zero(), S::constant(1.0)]], [S::zero()])
+    }
+
+    /// `(1, 0, -sin(beta))` and `(0, 1, 0)`.
+    #[inline(always)]
+    fn admissible_basis<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, 1>> {
+        let (zero, one) = (S::zero(), S::constant(1.0));
+        Some(AdmissibleBasis::new([[one, zero, -q[1].sin()], [zero, one, zero]]))
+    }
+
+    #[inline(always)]
+    fn angles(&self) -> [bool; 3] {
+        [true; 3]
+    }
+}
+
+impl Model<3, 1> for Suslov {
+    fn name(&self) -> &'static str {
+        "Suslov problem"
+    }
+
+    fn source(&self) -> &'static str {
+        "Bloch 2015, Nonholonomic Mechanics and Control; Fedorov and Kozlov 1995, Various aspects of n-dimensional \
+         rigid body dynamics"
+    }
+
+    /// A steady turn attracts unless the third axis is a principal one, and only then is there a smooth measure.
+    fn labels(&self) -> Labels {
+        let principal = self.i13 == 0.0 && self.i23 == 0.0;
+        Labels { reversible: true, integrable: true, invariant_measure: principal }
+    }
+
+    fn start(&self) -> State<3> {
+        let q = [0.2, -0.3, 0.1];
+        (q, Attitude::new(q).rates([0.6, 0.2, 0.0]))
+    }
+
+    /// The reduced equations, and the kinematics of the angles.
+    fn accelerations_by_hand(&self, _t: f64, q: &[f64; 3], v: &[f64; 3]) -> [f64; 3] {
+        let attitude = Attitude::new(*q);
+        let [o1, o2, _] = attitude.body_velocity(*v);
+        let [a1, a2] = self.reduced_acceleration([o1, o2]);
+        attitude.accelerations(*v, [a1, a2, 0.0])
+    }
+
+    /// `cos(beta)^2`: the volume of the rotations and that of `(Omega1, Omega2)`.
+    fn density<S: Scalar>(&self, q: &[S; 3]) -> Option<S> {
+        self.labels().invariant_measure.then(|| q[1].cos().squared())
+    }
+
+    fn regularity(&self, q: &[f64; 3]) -> f64 {
+        Attitude::new(*q).regularity().abs()
+    }
+}

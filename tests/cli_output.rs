@@ -1,0 +1,87 @@
+//! `noslip run --out`: the files of a trajectory.
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
+
+#[path = "common/program.rs"]
+mod program;
+
+use program::{Folder, SCENE, csv};
+use std::fs::File;
+
+const HEADER: &str = "t [s],x [m],y [m],heading [rad],speed [m/s],turn_rate [rad/s],energy [J],constraint [m/s],\
+    constraint_force [N]";
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write("scene.toml", SCENE);
+    folder
+}
+
+#[test]
+fn csv_has_a_header_and_a_row_for_each_node() {
+    let folder = folder();
+    let text = folder.done("run scene.toml --out run.csv");
+    assert!(text.contains("run.csv"), "{text}");
+    let file = folder.read("run.csv");
+    assert_eq!(file.lines().next(), Some(HEADER));
+    let (names, rows) = csv(&file);
+    assert_eq!(rows.len(), 41);
+    assert!(rows.iter().all(|row| row.len() == names.len()));
+    assert!(rows.iter().enumerate().all(|(k, row)| row[0].to_bits() == (k as f64 * 0.05).to_bits()));
+    // The force of the blade belongs to the step before a node: the first has none.
+    assert!(rows[0][8].is_nan() && rows[1..].iter().all(|row| row[8].is_finite()));
+    // `{:?}` of what was read is what was written: every digit is there, and none too many.
+    for line in file.lines().skip(1) {
+        assert!(line.split(',').all(|text| format!("{:?}", text.parse::<f64>().unwrap()) == text), "{line}");
+    }
+    assert_eq!(folder.names(), ["run.csv", "scene.toml"]);
+}
+
+#[test]
+fn every_keeps_the_first_every_nth_and_the_last() {
+    let folder = folder();
+    folder.done("run scene.toml --out all.csv");
+    let (_, all) = csv(&folder.read("all.csv"));
+    for (every, kept) in [
+        (1, (0..=40).collect::<Vec<usize>>()),
+        (7, vec![0, 7, 14, 21, 28, 35, 40]),
+        (20, vec![0, 20, 40]),
+        (40, vec![0, 40]),
+        (u64::MAX, vec![0, 40]),
+    ] {
+        folder.done(&format!("run scene.toml --out some.csv --force --every {every}"));
+        let (_, rows) = csv(&folder.read("some.csv"));
+        let bits = |row: &Vec<f64>| row.iter().map(|number| number.to_bits()).collect::<Vec<u64>>();
+        let expected: Vec<_> = kept.iter().map(|k| bits(&all[*k])).collect();
+        assert_eq!(rows.iter().map(bits).collect::<Vec<_>>(), expected, "--every {every}");
+    }
+}
+
+#[test]
+fn npz_has_the_columns_of_the_csv_as_arrays() {
+    let folder = folder();
+    folder.done("run scene.toml --every 3 --out run.csv");
+    folder.done("run scene.toml --every 3 --out run.npz");
+    let (names, rows) = csv(&folder.read("run.csv"));
+    let mut archive = zip::ZipArchive::new(File::open(folder.join("run.npz")).unwrap()).unwrap();
+    let arrays: Vec<String> =
+        archive.file_names().map(|name| name.unwrap().trim_end_matches(".npy").to_owned()).collect();
+    assert_eq!(arrays, names);
+    for (column, name) in names.iter().enumerate() {
+        let array = npyz::NpyFile::new(archive.by_name(&format!("{name}.npy")).unwrap()).unwrap();
+        assert_eq!(array.shape(), [rows.len() as u64]);
+        let values: Vec<f64> = array.into_vec().unwrap();
+        let bits = |value: f64| value.to_bits();
+        let expected: Vec<u64> = rows.iter().map(|row| bits(row[column])).collect();
+        assert_eq!(values.into_iter().map(bits).collect::<Vec<_>>(), expected, "{name}");
+    }
+}
+
+#[test]
+fn other_endings_are_refused() {
+    let folder = folder();
+    for name in ["run.txt", "run", ".csv", "csv", "run.csv.gz", "run.parquett", "run.", "ru\u{e9}"] {
+        folder.refused(&format!("run scene.toml --out {name}"), &[name, ".csv", ".npz"]);
+    }
+    folder.done("run scene.toml --out RUN.CSV");
+    assert_eq!(folder.names(), ["RUN.CSV", "scene.toml"]);
+}

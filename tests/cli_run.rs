@@ -1,0 +1,157 @@
+//! `noslip run`: what it computes and prints.
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
+
+#[path = "common/program.rs"]
+mod program;
+
+use program::{FAILING, Folder, SCENE, SCENES, csv, keys, methods};
+use serde_json::Value;
+
+const KEYS: [&str; 11] = [
+    "scene",
+    "method",
+    "order",
+    "step",
+    "steps",
+    "duration",
+    "wall_seconds",
+    "newton",
+    "energy",
+    "constraint",
+    "final",
+];
+const FINAL: [&str; 6] = ["t", "x", "y", "heading", "speed", "turn_rate"];
+
+fn assert_shape(run: &Value) {
+    assert_eq!(keys(run), KEYS);
+    assert_eq!(keys(&run["newton"]), ["mean", "max"]);
+    assert_eq!(keys(&run["energy"]), ["initial", "final", "max_error"]);
+    assert_eq!(keys(&run["constraint"]), ["max"]);
+    assert_eq!(keys(&run["final"]), FINAL);
+    assert!(run["scene"].is_string() && run["method"].is_string());
+    assert!(run["order"].is_u64() && run["steps"].is_u64() && run["newton"]["max"].is_u64());
+    let numbers = [&run["step"], &run["duration"], &run["wall_seconds"], &run["newton"]["mean"]];
+    assert!(numbers.iter().all(|number| number.is_f64()), "{run}");
+    for object in ["energy", "constraint", "final"] {
+        assert!(run[object].as_object().unwrap().values().all(Value::is_f64), "{run}");
+    }
+    let (steps, step) = (run["steps"].as_u64().unwrap(), run["step"].as_f64().unwrap());
+    assert_eq!(run["duration"].as_f64().unwrap(), steps as f64 * step);
+    assert_eq!(run["duration"], run["final"]["t"]);
+    assert!(run["wall_seconds"].as_f64().unwrap() > 0.0);
+}
+
+#[test]
+fn every_bundled_scene_and_a_file_run() {
+    let folder = Folder::new();
+    folder.write("my scene.toml", SCENE);
+    for scene in SCENES {
+        let run = folder.json(&format!("run {scene} --json"));
+        assert_shape(&run);
+        assert_eq!((run["scene"].as_str(), run["method"].as_str()), (Some(scene), Some("dla")));
+        assert!(folder.done(&format!("run {scene}")).contains(&format!("({scene})")));
+    }
+    let outcome = folder.noslip(["run", "my scene.toml", "--json"]);
+    let run: Value = serde_json::from_str(&outcome.stdout).unwrap();
+    assert_shape(&run);
+    assert_eq!((outcome.code, run["scene"].as_str(), run["steps"].as_u64()), (0, Some("my scene"), Some(40)));
+    assert_eq!(folder.names(), ["my scene.toml"]);
+}
+
+#[test]
+fn the_default_run_has_the_values_of_its_scene() {
+    let run = Folder::new().json("run turnaround --json");
+    assert_eq!((run["order"].as_u64(), run["steps"].as_u64()), (Some(2), Some(800)));
+    assert_eq!((run["step"].as_f64(), run["duration"].as_f64()), (Some(0.05), Some(40.0)));
+    // (m v^2 + (I + m a^2) w^2) / 2 with v = -1 and w = 0.1.
+    assert!((run["energy"]["initial"].as_f64().unwrap() - 0.50625).abs() <= 1e-16);
+    assert!(run["energy"]["max_error"].as_f64().unwrap() < 1e-3);
+    assert!(run["constraint"]["max"].as_f64().unwrap() <= 1e-14);
+    let (mean, max) = (run["newton"]["mean"].as_f64().unwrap(), run["newton"]["max"].as_u64().unwrap());
+    assert!(0.0 < mean && mean <= max as f64 && max <= 10, "{mean} {max}");
+    let drift = run["energy"]["final"].as_f64().unwrap() - run["energy"]["initial"].as_f64().unwrap();
+    assert!(drift.abs() <= run["energy"]["max_error"].as_f64().unwrap());
+    // It has turned round and glides forward with all of its energy.
+    assert!((run["final"]["speed"].as_f64().unwrap() - 1.0125f64.sqrt()).abs() < 1e-3, "{run}");
+}
+
+#[test]
+fn every_listed_method_runs() {
+    let folder = Folder::new();
+    let listed = folder.json("list methods --json");
+    for method in listed.as_array().unwrap() {
+        let name = method["name"].as_str().unwrap();
+        let run = folder.json(&format!("run turnaround --method {name} --duration 5 --json"));
+        assert_shape(&run);
+        assert_eq!(run["method"], method["name"]);
+        // With the weight that it has by default, 1/2, dla-alpha is of order 2.
+        let order = if name == "dla-alpha" { Some(2) } else { method["order"].as_u64() };
+        assert_eq!(run["order"].as_u64(), order, "{name}");
+        assert!(run["energy"]["max_error"].as_f64().unwrap() < 0.1, "{run}");
+        assert!(run["newton"]["mean"].as_f64().unwrap() <= run["newton"]["max"].as_u64().unwrap() as f64);
+    }
+    assert!(methods().iter().any(|name| name == "dla"));
+}
+
+#[test]
+fn step_duration_and_alpha_override_the_scene() {
+    let folder = Folder::new();
+    let run = folder.json("run turnaround --step 0.01 --duration 3 --json");
+    assert_eq!((run["steps"].as_u64(), run["step"].as_f64()), (Some(300), Some(0.01)));
+    // A step that does not divide the duration is shortened.
+    let run = folder.json("run turnaround --step 0.3 --duration 1 --json");
+    assert_eq!((run["steps"].as_u64(), run["step"].as_f64()), (Some(4), Some(0.25)));
+    let order =
+        |alpha: &str| folder.json(&format!("run circle --method dla-alpha --alpha {alpha} --json"))["order"].clone();
+    assert_eq!((order("0.5"), order("0.3"), order("0"), order("1")), (2.into(), 1.into(), 1.into(), 1.into()));
+    let ends = ["0.2", "0.8"].map(|alpha| {
+        folder.json(&format!("run turnaround --method dla-alpha --alpha {alpha} --json"))["final"]["x"].clone()
+    });
+    assert_ne!(ends[0], ends[1]);
+    // A weight for a method that has none is pointed out.
+    let outcome = folder.line("run circle --alpha 0.3 --json");
+    assert_eq!(outcome.code, 0);
+    assert!(outcome.stderr.starts_with("warning: --alpha "), "{}", outcome.stderr);
+}
+
+#[test]
+fn the_printed_end_is_the_last_row_to_the_bit() {
+    let folder = Folder::new();
+    for method in methods() {
+        let line = format!("run turnaround --duration 3 --method {method} --json --force --out all.csv");
+        let run = folder.json(&line);
+        let (names, rows) = csv(&folder.read("all.csv"));
+        for name in FINAL {
+            let column = names.iter().position(|other| other == name).unwrap();
+            let (printed, written) = (run["final"][name].as_f64().unwrap(), rows.last().unwrap()[column]);
+            assert_eq!(printed.to_bits(), written.to_bits(), "{method}: {name}");
+        }
+        assert_eq!(run["energy"]["final"].as_f64().unwrap(), rows.last().unwrap()[6]);
+        let worst = rows.iter().map(|row| row[7]).fold(0.0, f64::max);
+        assert_eq!(run["constraint"]["max"].as_f64().unwrap(), worst, "{method}");
+    }
+}
+
+#[test]
+fn a_run_that_fails_keeps_and_tells_what_is_valid() {
+    let folder = Folder::new();
+    folder.write("large.toml", FAILING);
+    let outcome = folder.line("run large.toml --json --out valid.csv");
+    let run: Value = serde_json::from_str(&outcome.stdout).unwrap();
+    assert_eq!(outcome.code, 1);
+    assert_eq!(keys(&run), [&KEYS[..], &["failure"]].concat());
+    assert_eq!(keys(&run["failure"]), ["step", "time", "reason"]);
+    let (steps, t) = (run["steps"].as_u64().unwrap(), run["final"]["t"].as_f64().unwrap());
+    assert!(0 < steps && steps < 10);
+    assert_eq!((run["failure"]["step"].as_u64(), run["failure"]["time"].as_f64()), (Some(steps + 1), Some(t)));
+    let place = format!("dla failed at step {}, from t = {t} s: ", steps + 1);
+    let valid = format!("valid up to t = {t} s ({steps} steps)");
+    outcome.assert_told("run", &[&place, run["failure"]["reason"].as_str().unwrap(), &valid]);
+    let (_, rows) = csv(&folder.read("valid.csv"));
+    assert_eq!((rows.len() as u64, rows.last().unwrap()[0]), (steps + 1, t));
+    assert!(rows.iter().all(|row| row[..8].iter().all(|number| number.is_finite())));
+
+    let text = folder.line("run large.toml");
+    assert_eq!(text.code, 1);
+    assert!(text.stdout.contains(&format!("{steps} of 2.9 s")), "{}", text.stdout);
+}
