@@ -4,10 +4,11 @@
 mod common;
 
 use common::{sleigh, sleigh_state, state_of};
-use dla::{Gni, OneStep, State};
+use dla::{Gni, Observer, OneStep, State, StepReport, View};
 use harness::{METHODS, Method, Trend, integrate};
 use lagrangian::System;
 use sleigh::{CentreOfMass, SleighState};
+use std::ops::ControlFlow;
 
 /// About the stable straight motion the spin of the sleigh dies out; that of the counter-example grows at the rate
 /// `asinh(kappa h)/h`, with alternating sign.
@@ -39,6 +40,19 @@ fn the_hidden_mode_grows_at_its_rate() {
     }
 }
 
+/// The largest spin in the second half of a run of 200 s.
+struct Late(f64);
+
+impl<Sys> Observer<Sys, 3, 1> for Late {
+    fn start(&mut self, _node: &View<'_, Sys, 3>) {}
+    fn step(&mut self, node: &View<'_, Sys, 3>, _report: &StepReport<1>) -> ControlFlow<()> {
+        if node.t > 100.0 {
+            self.0 = self.0.max(node.state.v()[2].abs());
+        }
+        ControlFlow::Continue(())
+    }
+}
+
 /// No other method has such a mode: the stable straight motion stays straight, for as long as one looks.
 #[test]
 fn no_other_method_has_it() {
@@ -48,14 +62,15 @@ fn no_other_method_has_it() {
         let method = Method::named(info.name, None).unwrap();
         let mut state = state_of(&sleigh, &start);
         let schedule = dla::Schedule { t0: 0.0, step: 0.05, steps: 4_000 };
-        integrate(&sleigh, &method, &schedule, &mut state, ()).unwrap();
+        let mut largest = Late(0.0);
+        integrate(&sleigh, &method, &schedule, &mut state, &mut largest).unwrap();
         let end = sleigh_state(&state);
-        println!("{:<15} spin {:+.1e}, speed {}", info.name, end.turn_rate, end.speed);
+        println!("{:<15} spin at most {:.1e} after t = 100, speed {}", info.name, largest.0, end.speed);
         if info.name == "gni" {
-            assert!(end.turn_rate.abs() > 1e-2, "the counter-example has lost its point: {end:?}");
+            assert!(largest.0 > 1e-2, "the counter-example has lost its point: {end:?}");
         } else {
             // Rounding may leave a spin of the size of rounding, and no more.
-            assert!(end.turn_rate.abs() < 1e-14, "{}: {end:?}", info.name);
+            assert!(largest.0 < 1e-14, "{}: {end:?}", info.name);
         }
     }
 }

@@ -1,8 +1,9 @@
+use crate::projection::Projection;
 use crate::{Equations, Newton, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::linear::Singular;
 use lagrangian::{
     AdmissibleBasis, Alpha, DiscreteConstraint, DiscreteLagrangian, Dual, Midpoint, NotAWeight, Saddle, System,
-    Trapezoid, constraint_residual, mass_matrix, momentum,
+    Trapezoid, momentum,
 };
 use std::array::from_fn;
 
@@ -134,12 +135,9 @@ where
         }
         let d = v.map(|v| h * v);
         let (t1, q1) = (t0 + h, state.ahead(&d));
-        let mut projection = Projection { system, t1, q1, p1, basis: basis(t1, &q1), mu: [0.0; M] };
-        let mut v1 = v;
-        self.newton
-            .solve(&mut projection, &mut v1)
+        let (v1, mu) = Projection::new(system, t1, q1, p1, basis(t1, &q1))
+            .solve(&self.newton, v)
             .map_err(|source| StepError::Newton { stage: Stage::Projection, source })?;
-        let mu = projection.mu;
 
         state.advance(&d, v1, None);
         Ok(StepReport { impulses: [lambda, mu], iterations })
@@ -199,35 +197,6 @@ where
         };
         let (correction, lambda) = saddle.solve(self.basis.as_ref())?;
         self.lambda = lambda;
-        Ok(correction)
-    }
-}
-
-/// The equations for the velocity at the end of a step, with the multiplier there.
-struct Projection<'a, Sys, const N: usize, const M: usize> {
-    system: &'a Sys,
-    t1: f64,
-    q1: [f64; N],
-    p1: [f64; N],
-    basis: Option<AdmissibleBasis<f64, N, M>>,
-    mu: [f64; M],
-}
-
-impl<Sys: System<N, M>, const N: usize, const M: usize> Equations<N> for Projection<'_, Sys, N, M> {
-    #[inline]
-    fn correction(&mut self, v1: &[f64; N]) -> Result<[f64; N], Singular> {
-        let (p, mass) = mass_matrix(self.system, self.t1, &self.q1, v1);
-        let (a1, _) = self.system.constraint(self.t1, &self.q1);
-        let slip = constraint_residual(self.system, self.t1, &self.q1, v1);
-        let saddle = Saddle {
-            block: mass,
-            transposed: a1,
-            rows: a1,
-            right: from_fn(|i| self.p1[i] - p[i]),
-            level: slip.map(|s| -s),
-        };
-        let (correction, minus_mu) = saddle.solve(self.basis.as_ref())?;
-        self.mu = minus_mu.map(|m| -m);
         Ok(correction)
     }
 }

@@ -9,16 +9,23 @@
 mod composition;
 mod dla;
 mod drive;
+mod energy;
 mod gauss;
+mod gni;
+mod lobatto;
 mod newton;
 mod one_step;
+mod projection;
 mod state;
 mod trajectory;
 
 pub use crate::dla::{Dla, Form};
 pub use composition::Composition;
 pub use drive::{Observer, RunError, Schedule, View, drive};
+pub use energy::{Energy, Gradient};
 pub use gauss::Gauss;
+pub use gni::Gni;
+pub use lobatto::Lobatto;
 pub use newton::{Equations, Newton, NewtonError};
 pub use one_step::{OneStep, Stage, StepError, StepReport};
 pub use state::State;

@@ -10,12 +10,28 @@ pub trait Equations<const U: usize> {
     fn correction(&mut self, x: &[f64; U]) -> Result<[f64; U], Singular>;
 }
 
+/// Equations in `S` blocks of `U` unknowns each.
+pub(crate) trait BlockEquations<const U: usize, const S: usize> {
+    /// The correction `-F'(x)^-1 F(x)` at `x`.
+    fn correction(&mut self, x: &[[f64; U]; S]) -> Result<[[f64; U]; S], Singular>;
+}
+
+/// One block.
+struct Single<'a, E>(&'a mut E);
+
+impl<E: Equations<U>, const U: usize> BlockEquations<U, 1> for Single<'_, E> {
+    #[inline(always)]
+    fn correction(&mut self, [x]: &[[f64; U]; 1]) -> Result<[[f64; U]; 1], Singular> {
+        self.0.correction(x).map(|correction| [correction])
+    }
+}
+
 /// Newton's method with an exact Jacobian and a stopping rule for every component by itself.
 ///
 /// A component is settled when its correction `d` is below `tolerance` relative to it; or when quadratic convergence
-/// predicts that the next one, `d (d / d_before)^2`, will be; or when its corrections are below [`Newton::ROUNDING`] of
-/// the largest component and no longer shrink, so that they are rounding. A tolerance on all components together would
-/// freeze those that are small (a spin that dies out exponentially, for one).
+/// predicts that the next one, `d (d / d_before)^2`, will be; or when all corrections are below [`Newton::ROUNDING`] of
+/// the largest component there was and its own no longer shrinks, so that it is rounding. A tolerance on all components
+/// together would freeze those that are small (a spin that dies out exponentially, for one).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Newton {
     /// Relative tolerance of every component. The default, `4 * 2^-52`, asks for all digits.
@@ -46,7 +62,7 @@ pub enum NewtonError {
     Diverged {
         /// The iteration, from 1.
         iteration: u32,
-        /// The largest correction, relative to the largest component.
+        /// The largest correction, relative to the largest component there was.
         correction: f64,
         /// The one before it.
         before: f64,
@@ -56,7 +72,7 @@ pub enum NewtonError {
     IterationLimit {
         /// How many were made.
         iterations: u32,
-        /// The largest correction, relative to the largest component.
+        /// The largest correction, relative to the largest component there was.
         correction: f64,
     },
     /// An unknown is infinite or not a number.
@@ -68,7 +84,7 @@ pub enum NewtonError {
 }
 
 impl Newton {
-    /// Corrections below this part of the largest component may be taken for rounding, if they do not shrink.
+    /// Where all corrections are below this part of the largest component, those that do not shrink are rounding.
     pub const ROUNDING: f64 = 1e-11;
     /// So many times in all the largest correction may grow.
     const GROWTHS: u32 = 3;
@@ -83,46 +99,65 @@ impl Newton {
         equations: &mut impl Equations<U>,
         x: &mut [f64; U],
     ) -> Result<u32, NewtonError> {
-        let mut last = [f64::INFINITY; U];
-        let mut rounding = [false; U];
+        self.solve_blocks(&mut Single(equations), std::array::from_mut(x))
+    }
+
+    /// The same for unknowns in blocks.
+    #[inline]
+    pub(crate) fn solve_blocks<const U: usize, const S: usize>(
+        &self,
+        equations: &mut impl BlockEquations<U, S>,
+        x: &mut [[f64; U]; S],
+    ) -> Result<u32, NewtonError> {
+        let mut last = [[f64::INFINITY; U]; S];
+        let mut rounding = [[false; U]; S];
         let mut before = f64::INFINITY;
         let mut growths = 0;
+        // The largest component so far, the start's too: a solution of zeros only has no size of its own.
+        let mut size = largest(x.as_flattened());
         for iteration in 1..=self.max_iterations {
             let correction = equations.correction(x).map_err(|source| NewtonError::Singular { iteration, source })?;
-            for i in 0..U {
-                x[i] += correction[i];
+            for (x, d) in x.as_flattened_mut().iter_mut().zip(correction.as_flattened()) {
+                *x += d;
             }
-            let size = largest(x);
-            let relative = largest(&correction) / size;
-            if !size.is_finite() || (relative.is_nan() && size > 0.0) {
+            let now = largest(x.as_flattened());
+            if !now.is_finite() {
                 return Err(NewtonError::NotFinite { iteration });
             }
+            size = size.max(now);
+            let step = largest(correction.as_flattened());
+            let converged = step <= Self::ROUNDING * size;
             let mut settled = true;
-            for i in 0..U {
-                let (d, shrink) = (correction[i].abs(), correction[i].abs() / last[i]);
-                // Once a component has been seen to move by rounding only, it stays so.
-                rounding[i] |= shrink >= 0.25 && d <= Self::ROUNDING * size;
-                let next = if last[i].is_finite() { d * shrink * shrink } else { f64::INFINITY };
-                settled &= rounding[i] || d.min(next) <= self.tolerance * x[i].abs();
-                last[i] = d;
+            for b in 0..S {
+                for i in 0..U {
+                    let (d, shrink) = (correction[b][i].abs(), correction[b][i].abs() / last[b][i]);
+                    // Once a component has been seen to move by rounding only, it stays so.
+                    rounding[b][i] |= converged && shrink >= 0.25;
+                    // A correction larger than what it leaves brings rounding of its own, and predicts nothing.
+                    let predicts = last[b][i].is_finite() && d <= x[b][i].abs();
+                    let next = if predicts { d * shrink * shrink } else { d };
+                    settled &= rounding[b][i] || next.min(d) <= self.tolerance * x[b][i].abs();
+                    last[b][i] = d;
+                }
             }
             if settled {
                 return Ok(iteration);
             }
-            if relative > before && relative > Self::ROUNDING {
+            // The corrections themselves are compared: relative to unknowns that shrink they may grow and yet converge.
+            if step > before && !converged {
                 growths += 1;
                 if growths == Self::GROWTHS {
-                    return Err(NewtonError::Diverged { iteration, correction: relative, before });
+                    return Err(NewtonError::Diverged { iteration, correction: step / size, before: before / size });
                 }
             }
-            before = relative;
+            before = step;
         }
-        Err(NewtonError::IterationLimit { iterations: self.max_iterations, correction: before })
+        Err(NewtonError::IterationLimit { iterations: self.max_iterations, correction: before / size })
     }
 }
 
 #[inline(always)]
-fn largest<const U: usize>(x: &[f64; U]) -> f64 {
+fn largest(x: &[f64]) -> f64 {
     // `f64::max` drops what is not a number; here it has to come through.
     x.iter().fold(0.0, |m: f64, x| if x.abs() > m || x.is_nan() { x.abs() } else { m })
 }

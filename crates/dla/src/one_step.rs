@@ -53,7 +53,7 @@ impl std::fmt::Display for Stage {
 /// Why a step failed.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum StepError {
-    /// Newton's method failed.
+    /// Newton's method, or the fixed-point iteration in its place, failed.
     #[error("{stage}: {source}")]
     Newton {
         /// On which equations.
@@ -76,6 +76,17 @@ pub enum StepError {
     Unsupported {
         /// Why not.
         reason: &'static str,
+    },
+    /// The step of an energy-preserving method changes the energy by more than the work of the forces.
+    #[error(
+        "the energy would change by {defect:e} J besides the work of the forces, above its rounding of {bound:e} J: the \
+         step is too long, or the energy along it too rough, for the quadrature"
+    )]
+    Energy {
+        /// The change (J).
+        defect: f64,
+        /// What rounding may do (J).
+        bound: f64,
     },
     /// A velocity became infinite or not a number.
     #[error("the velocities are no longer finite")]

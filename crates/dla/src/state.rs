@@ -40,7 +40,10 @@ impl<const N: usize> State<N> {
     /// Configuration, angles with their full turns: what a user wants to see.
     #[must_use]
     pub fn unwrapped(&self) -> [f64; N] {
-        from_fn(|i| if self.turns[i] == 0.0 { self.q[i] } else { self.q[i] + self.turns[i] * TAU })
+        from_fn(|i| {
+            let (q, turns) = (self.q[i], self.turns[i]);
+            if turns == 0.0 { q } else { turns.mul_add(TAU, turns.mul_add(TAU_REST, q)) }
+        })
     }
 
     /// Velocity.
@@ -74,11 +77,7 @@ impl<const N: usize> State<N> {
     #[inline(always)]
     pub fn advance(&mut self, increment: &[f64; N], v: [f64; N], xi: Option<[f64; N]>) {
         for i in 0..N {
-            let (q, d) = (self.q[i], increment[i] + self.rest[i]);
-            let sum = q + d;
-            let part = sum - q;
-            self.q[i] = sum;
-            self.rest[i] = (q - (sum - part)) + (d - part);
+            (self.q[i], self.rest[i]) = two_sum(self.q[i], increment[i] + self.rest[i]);
         }
         (self.v, self.xi) = (v, xi);
         self.wrap();
@@ -96,10 +95,19 @@ impl<const N: usize> State<N> {
         for i in 0..N {
             if self.angles[i] && self.q[i].abs() > PI && self.q[i].is_finite() {
                 let turns = (self.q[i] / TAU).round();
-                self.q[i] = (-turns).mul_add(TAU, self.q[i]);
-                self.rest[i] -= turns * TAU_REST;
+                // The first difference is exact; what many turns leave in the second belongs to the angle.
+                let within = (-turns).mul_add(TAU, self.q[i]);
+                (self.q[i], self.rest[i]) = two_sum(within, self.rest[i] - turns * TAU_REST);
                 self.turns[i] += turns;
             }
         }
     }
+}
+
+/// The rounded sum and its rounding error (Knuth).
+#[inline(always)]
+fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let part = sum - a;
+    (sum, (a - (sum - part)) + (b - part))
 }

@@ -69,6 +69,30 @@ pub const METHODS: &[MethodInfo] = &[
         reference: "Hairer, Lubich and Wanner 2006, (V.3.12)",
     },
     MethodInfo {
+        kind: Kind::Lobatto3,
+        name: "lobatto3",
+        order: 4,
+        keeps: "constraint",
+        summary: "variational Lobatto IIIA-IIIB pair with 3 stages, self-adjoint, on any system",
+        reference: "Jay 2003, BIT 43, 93-106",
+    },
+    MethodInfo {
+        kind: Kind::Lobatto4,
+        name: "lobatto4",
+        order: 6,
+        keeps: "constraint",
+        summary: "variational Lobatto IIIA-IIIB pair with 4 stages, self-adjoint, on any system",
+        reference: "Jay 2003, BIT 43, 93-106",
+    },
+    MethodInfo {
+        kind: Kind::Lobatto5,
+        name: "lobatto5",
+        order: 8,
+        keeps: "constraint",
+        summary: "variational Lobatto IIIA-IIIB pair with 5 stages, self-adjoint, on any system",
+        reference: "Jay 2003, BIT 43, 93-106",
+    },
+    MethodInfo {
         kind: Kind::Gauss4,
         name: "gauss4",
         order: 4,
@@ -125,6 +149,46 @@ pub const METHODS: &[MethodInfo] = &[
         reference: "Hairer, Lubich and Wanner 2006, section II.1.3",
     },
     MethodInfo {
+        kind: Kind::Energy2,
+        name: "energy2",
+        order: 2,
+        keeps: "constraint, energy",
+        summary: "discrete gradient method on the dual of the distribution, averaged gradient, self-adjoint",
+        reference: "Celledoni, Farre Puiggali, Hoiseth and Martin de Diego 2019, J. Nonlinear Sci. 29, 1523-1562",
+    },
+    MethodInfo {
+        kind: Kind::Energy4,
+        name: "energy4",
+        order: 4,
+        keeps: "constraint, energy",
+        summary: "energy-preserving collocation with 2 stages on the dual of the distribution",
+        reference: "Cohen and Hairer 2011, BIT 51, 91-101",
+    },
+    MethodInfo {
+        kind: Kind::Energy6,
+        name: "energy6",
+        order: 6,
+        keeps: "constraint, energy",
+        summary: "energy-preserving collocation with 3 stages on the dual of the distribution",
+        reference: "Cohen and Hairer 2011, BIT 51, 91-101",
+    },
+    MethodInfo {
+        kind: Kind::Energy8,
+        name: "energy8",
+        order: 8,
+        keeps: "constraint, energy",
+        summary: "energy-preserving collocation with 4 stages on the dual of the distribution",
+        reference: "Cohen and Hairer 2011, BIT 51, 91-101",
+    },
+    MethodInfo {
+        kind: Kind::Gni,
+        name: "gni",
+        order: 2,
+        keeps: "constraint at nodes",
+        summary: "counter-example: geometric nonholonomic integrator, whose hidden multiplier mode grows about stable motions",
+        reference: "Ferraro, Iglesias and Martin de Diego 2008, Nonlinearity 21, 1911-1928",
+    },
+    MethodInfo {
         kind: Kind::Rk4,
         name: "rk4",
         order: 4,
@@ -165,6 +229,12 @@ pub enum Kind {
     Dla6,
     /// `dla8`
     Dla8,
+    /// `lobatto3`
+    Lobatto3,
+    /// `lobatto4`
+    Lobatto4,
+    /// `lobatto5`
+    Lobatto5,
     /// `gauss4`
     Gauss4,
     /// `gauss6`
@@ -179,6 +249,16 @@ pub enum Kind {
     Gauss14,
     /// `gauss16`
     Gauss16,
+    /// `energy2`
+    Energy2,
+    /// `energy4`
+    Energy4,
+    /// `energy6`
+    Energy6,
+    /// `energy8`
+    Energy8,
+    /// `gni`
+    Gni,
     /// `rk4`
     Rk4,
     /// `rk4-projected`

@@ -1,7 +1,7 @@
 use crate::record::Meter;
 use crate::timing::{Ticker, median_seconds};
 use crate::{Kind, Method, Progress, Record, Rk4, Rk4Projected, Rk4Reduced};
-use dla::{Composition, Dla, Gauss, Observer, RunError, Schedule, State, drive};
+use dla::{Composition, Dla, Energy, Gauss, Gni, Lobatto, Observer, RunError, Schedule, State, drive};
 use lagrangian::System;
 
 /// A run to be made.
@@ -44,6 +44,9 @@ where
         Kind::Dla4 => run_with!(Composition::suzuki4(Dla::midpoint())),
         Kind::Dla6 => run_with!(Composition::kahan_li6(Dla::midpoint())),
         Kind::Dla8 => run_with!(Composition::fifteen8(Dla::midpoint())),
+        Kind::Lobatto3 => run_with!(Lobatto::<3>::new()),
+        Kind::Lobatto4 => run_with!(Lobatto::<4>::new()),
+        Kind::Lobatto5 => run_with!(Lobatto::<5>::new()),
         Kind::Gauss4 => run_with!(Gauss::<2>::default()),
         Kind::Gauss6 => run_with!(Gauss::<3>::default()),
         Kind::Gauss8 => run_with!(Gauss::<4>::default()),
@@ -51,6 +54,11 @@ where
         Kind::Gauss12 => run_with!(Gauss::<6>::default()),
         Kind::Gauss14 => run_with!(Gauss::<7>::default()),
         Kind::Gauss16 => run_with!(Gauss::<8>::default()),
+        Kind::Energy2 => run_with!(Energy::<1>::default()),
+        Kind::Energy4 => run_with!(Energy::<2>::default()),
+        Kind::Energy6 => run_with!(Energy::<3>::default()),
+        Kind::Energy8 => run_with!(Energy::<4>::default()),
+        Kind::Gni => run_with!(Gni::<_, N>::default()),
         Kind::Rk4 => run_with!(Rk4),
         Kind::Rk4Projected => run_with!(Rk4Projected),
         Kind::Rk4Reduced => run_with!(Rk4Reduced),

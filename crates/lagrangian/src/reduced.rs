@@ -129,7 +129,11 @@ fn split<Sys: System<N, M>, const N: usize, const M: usize>(
 /// The symmetric matrix is eliminated without pivots, on any scalar; dependent rows of `A` have been refused by the
 /// equations of motion.
 #[inline]
-fn shift<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(system: &Sys, t: S, q: &[S; N]) -> Option<[S; N]> {
+fn shift<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
+    system: &Sys,
+    t: S,
+    q: &[S; N],
+) -> Option<[S; N]> {
     let (a, b) = system.constraint(t, q);
     if b.iter().all(Scalar::is_zero) {
         return None;

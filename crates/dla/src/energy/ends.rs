@@ -1,0 +1,38 @@
+use super::path::Points;
+use super::rule::Rule;
+use lagrangian::{Bracket, Lanes};
+
+/// The energies at the two ends of a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ends {
+    pub(super) before: f64,
+    pub(super) after: f64,
+    /// The size of the terms whose rounding they carry.
+    pub(super) size: f64,
+}
+
+impl Ends {
+    #[inline(always)]
+    pub(super) fn of<const S: usize, const N: usize, const M: usize>(
+        bracket: &Bracket<Lanes, N, M>,
+        points: &Points<N>,
+    ) -> Self {
+        let (end, start) = Rule::<S>::ENDS;
+        // H_pi = xi makes up for what the iteration for xi still misses; a discrete gradient divides it by the step.
+        let mut energy = bracket.energy();
+        for a in 0..N {
+            energy += points.xi[a] * (points.aim[a] - points.pi[a]);
+        }
+        let size = |k: usize| {
+            let twice_kinetic = (0..N).map(|i| (bracket.momentum[i].0[k] * bracket.velocity[i].0[k]).abs());
+            bracket.lagrangian.0[k].abs() + twice_kinetic.sum::<f64>()
+        };
+        Self { before: energy.0[start], after: energy.0[end], size: size(start).max(size(end)) }
+    }
+
+    /// The size of the numbers in whose last digits the energies are uncertain, the coordinates being rounded too.
+    #[inline(always)]
+    pub(super) fn rounded_size<const N: usize>(&self, q: &[f64; N], steepest: &[f64; N]) -> f64 {
+        self.size + (0..N).map(|i| steepest[i] * q[i].abs()).sum::<f64>()
+    }
+}

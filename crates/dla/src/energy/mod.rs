@@ -1,0 +1,206 @@
+//! Methods that keep the energy: collocation on the dual of the distribution with averaged gradients.
+
+mod ends;
+mod gradient;
+mod path;
+mod rule;
+mod settling;
+mod start;
+
+pub use gradient::Gradient;
+
+use crate::{OneStep, Stage, State, StepError, StepReport};
+use ends::Ends;
+use lagrangian::{Bracket, Lanes, Scalar, System, vectorized};
+use path::{Path, Points};
+use rule::Rule;
+use settling::Settling;
+use start::Start;
+use std::array::from_fn;
+
+/// The energy-preserving collocation method with `S` Gauss nodes, of order `2 S`, for `S` from 1 to 4.
+///
+/// With `z = (q, pi)` and `z' = B(z) grad H` as in [`Bracket`], the path of a step is the polynomial `u` of degree `S` with
+/// `u(0) = z0` and, at the Gauss nodes `c_i`,
+///
+/// ```text
+/// u'(c_i) = B(u(c_i)) g_i + f_i,      g_i = int_0^1 (l_i(sigma) / b_i) grad H(u(sigma)) dsigma,      z1 = u(1).
+/// ```
+///
+/// Since `B` is skew, `H(z1) - H(z0) = h sum_i b_i g_i . u'(c_i)` is the discrete work
+/// `h sum_i b_i F(u(c_i), q'(c_i)) . q'(c_i)` of the forces, and zero without them; with the forces taken at the velocity
+/// `q'(c_i)` of the path, a dissipative one can only lower the energy. The new velocity is `W(q1) xi1`, so the constraint
+/// holds too. Both are exact but for rounding. The method is symmetric. `S = 1` with the averaged gradient is the discrete
+/// gradient method `(z1 - z0)/h = B((z0 + z1)/2) DG(z0, z1)`.
+///
+/// Cohen and Hairer 2011, BIT 51, 91-101; on `D*`, Celledoni, Farre Puiggali, Hoiseth and Martin de Diego 2019,
+/// J. Nonlinear Sci. 29, 1523-1562. The integrals are by a Gauss rule with eight nodes; a step along which the energy is
+/// too rough for them is refused. The equations are solved by fixed-point iteration, for steps up to about the time in
+/// which the system turns by a radian.
+///
+/// The system must have a basis of admissible velocities, `b = 0` and no explicit time; forces may depend on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Energy<const S: usize> {
+    rule: Rule<S>,
+    gradient: Gradient,
+    work: f64,
+}
+
+impl<const S: usize> Energy<S> {
+    /// The method with averaged gradients.
+    #[must_use]
+    pub fn new() -> Self {
+        Self { rule: Rule::new(), gradient: Gradient::Average, work: 0.0 }
+    }
+
+    /// The discrete work of the forces over the last step (J): by so much the energy has changed.
+    #[must_use]
+    pub fn work(&self) -> f64 {
+        self.work
+    }
+}
+
+impl<const S: usize> Default for Energy<S> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Energy<1> {
+    /// The method of order 2 with the given discrete gradient.
+    #[must_use]
+    pub fn with(gradient: Gradient) -> Self {
+        Self { gradient, ..Self::new() }
+    }
+}
+
+impl<Sys: System<N, M>, const S: usize, const N: usize, const M: usize> OneStep<Sys, N, M> for Energy<S> {
+    #[inline]
+    fn step(&mut self, system: &Sys, t0: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        let start = Start::new(system, t0, h, state)?;
+        let step = Step { system, rule: &self.rule, gradient: self.gradient, t0, h, start: &start };
+        let end = vectorized(
+            #[inline(always)]
+            || step.solve(),
+        )?;
+        let q1 = state.ahead(&end.increment);
+        let v1 = system.admissible_basis(t0 + h, &q1).ok_or(NO_BASIS)?.combine(&end.xi);
+        state.advance(&end.increment, v1, Some(end.xi));
+        self.work = end.work;
+        Ok(StepReport { impulses: [[0.0; M]; 2], iterations: end.iterations })
+    }
+}
+
+const NO_BASIS: StepError = StepError::Unsupported {
+    reason: "the energy-preserving methods need a basis of the admissible velocities, and the system gives none",
+};
+
+/// The equations of one step.
+struct Step<'a, Sys, const S: usize, const N: usize> {
+    system: &'a Sys,
+    rule: &'a Rule<S>,
+    gradient: Gradient,
+    t0: f64,
+    h: f64,
+    start: &'a Start<N>,
+}
+
+/// The end of a step.
+struct End<const N: usize> {
+    increment: [f64; N],
+    xi: [f64; N],
+    work: f64,
+    iterations: u32,
+}
+
+impl<Sys, const S: usize, const N: usize> Step<'_, Sys, S, N> {
+    /// The energy may miss the work by so many roundings; more is an error of the quadrature.
+    const ROUNDINGS: f64 = 1024.0;
+
+    #[inline(always)]
+    fn solve<const M: usize>(&self) -> Result<End<N>, StepError>
+    where
+        Sys: System<N, M>,
+    {
+        let Self { system, rule, start, h, .. } = *self;
+        let time = |tau: Lanes| tau * h + self.t0;
+        let (mut path, mut points, mut nodes) = (Path::rest(), Points::at(start), Points::at(start));
+        let mut settling = Settling::<3, N>::new();
+        loop {
+            let before = points.xi;
+            points.follow(&path, &rule.to_points, start, h);
+            let t = time(rule.points);
+            let bracket = Bracket::at(system, t, &points.q, &points.xi).ok_or(NO_BASIS)?;
+            points.pi = bracket.quasi_momenta();
+            let ends = Ends::of::<S, N, M>(&bracket, &points);
+            let averages = match self.gradient {
+                Gradient::Average => {
+                    nodes.follow(&path, &rule.to_nodes, start, h);
+                    gradient::average(system, rule, time(rule.nodes), &mut nodes)
+                }
+                Gradient::Gonzalez => gradient::gonzalez(system, rule, t, &path, &points, &ends, h),
+            }
+            .ok_or(NO_BASIS)?;
+
+            let (q_rate, mut pi_rate) = bracket.rates(&averages.h_q, &averages.h_pi);
+            let mut power = Lanes::zero();
+            if let Some(force) = system.force(t, &points.q, &q_rate) {
+                let along = bracket.along_basis(&force);
+                for i in 0..N {
+                    pi_rate[i] += along[i];
+                    power += force[i] * q_rate[i];
+                }
+            }
+
+            let changes = [
+                compared(&q_rate, &path.q_rate, 0..S),
+                compared(&pi_rate, &path.pi_rate, 0..S),
+                compared(&points.xi, &before, S..S + 1),
+            ];
+            path = Path { q_rate, pi_rate };
+            let settled = settling.see(changes, averages.noise);
+            let settled = settled.map_err(|source| StepError::Newton { stage: Stage::Collocation, source })?;
+            if let Some(iterations) = settled {
+                let work = h * (0..S).map(|i| rule.b[i] * power.0[i]).sum::<f64>();
+                self.check(&ends, work, &averages.steepest)?;
+                return Ok(self.end(&path, &points, work, iterations));
+            }
+        }
+    }
+
+    /// Increment and quasi-velocities at the end of the path.
+    #[inline(always)]
+    fn end(&self, path: &Path<N>, points: &Points<N>, work: f64, iterations: u32) -> End<N> {
+        let (increment, gained) = path.increments(self.rule, self.h);
+        let last = Rule::<S>::ENDS.0;
+        let mut xi = points.xi.map(|xi| xi.0[last]);
+        let missing: [f64; N] = from_fn(|a| self.start.pi[a] + gained[a] - points.pi[a].0[last]);
+        for a in 0..N {
+            for b in 0..N {
+                xi[a] += self.start.inverse_mass[a][b] * missing[b];
+            }
+        }
+        End { increment, xi, work, iterations }
+    }
+
+    /// That the energy has changed by the work of the forces.
+    #[inline(always)]
+    fn check(&self, ends: &Ends, work: f64, steepest: &[f64; N]) -> Result<(), StepError> {
+        let defect = ends.after - ends.before - work;
+        let size = ends.rounded_size(self.start.state.q(), steepest);
+        let bound = Self::ROUNDINGS * f64::EPSILON * size;
+        if defect.abs() <= bound { Ok(()) } else { Err(StepError::Energy { defect, bound }) }
+    }
+}
+
+/// The largest change and the largest size of every component over some of the lanes.
+#[inline(always)]
+fn compared<const N: usize>(new: &[Lanes; N], old: &[Lanes; N], lanes: std::ops::Range<usize>) -> [(f64, f64); N] {
+    // `f64::max` drops what is not a number; here it has to come through.
+    let larger = |m: f64, x: f64| if x > m || x.is_nan() { x } else { m };
+    from_fn(|i| {
+        lanes.clone().fold((0.0, 0.0), |(change, size), k| {
+            (larger(change, (new[i].0[k] - old[i].0[k]).abs()), larger(size, new[i].0[k].abs()))
+        })
+    })
+}

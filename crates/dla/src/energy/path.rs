@@ -1,0 +1,78 @@
+use super::rule::Rule;
+use super::start::Start;
+use lagrangian::{Lanes, Scalar};
+use std::array::from_fn;
+
+/// The path of a step, a polynomial in the coordinates and the quasi-momenta: its derivatives at the collocation nodes,
+/// one in each of the first `S` lanes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Path<const N: usize> {
+    pub(super) q_rate: [Lanes; N],
+    pub(super) pi_rate: [Lanes; N],
+}
+
+impl<const N: usize> Path<N> {
+    /// No motion.
+    #[inline(always)]
+    pub(super) fn rest() -> Self {
+        Self { q_rate: [Lanes::zero(); N], pi_rate: [Lanes::zero(); N] }
+    }
+
+    /// The increments of coordinates and quasi-momenta over the step.
+    #[inline(always)]
+    pub(super) fn increments<const S: usize>(&self, rule: &Rule<S>, h: f64) -> ([f64; N], [f64; N]) {
+        let sum = |k: &Lanes| h * (0..S).map(|i| rule.b[i] * k.0[i]).sum::<f64>();
+        (from_fn(|i| sum(&self.q_rate[i])), from_fn(|i| sum(&self.pi_rate[i])))
+    }
+}
+
+/// Eight points on the path, and what is known of their quasi-velocities.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Points<const N: usize> {
+    pub(super) q: [Lanes; N],
+    pub(super) xi: [Lanes; N],
+    /// The quasi-momenta on the path.
+    pub(super) aim: [Lanes; N],
+    /// The quasi-momenta of `q` and `xi`, as last evaluated.
+    pub(super) pi: [Lanes; N],
+}
+
+impl<const N: usize> Points<N> {
+    /// All at the start of the step.
+    #[inline(always)]
+    pub(super) fn at(start: &Start<N>) -> Self {
+        let same = |x: [f64; N]| x.map(Lanes::constant);
+        Self { q: same(*start.state.q()), xi: same(start.xi), aim: same(start.pi), pi: same(start.pi) }
+    }
+
+    /// Moves the points onto `path`, where `weights` are `int_0^tau l_i`.
+    ///
+    /// The quasi-velocities follow the quasi-momenta by one correction with the mass matrix of the start: exact where
+    /// that is constant in the basis, else one more fixed-point iteration within the others.
+    #[inline(always)]
+    pub(super) fn follow<const S: usize>(&mut self, path: &Path<N>, weights: &[Lanes; S], start: &Start<N>, h: f64) {
+        let moved = |k: &Lanes| {
+            let mut sum = Lanes::zero();
+            for i in 0..S {
+                sum += weights[i] * k.0[i];
+            }
+            sum * h
+        };
+        let increment: [Lanes; N] = from_fn(|i| moved(&path.q_rate[i]));
+        for k in 0..Lanes::COUNT {
+            let q = start.state.ahead(&from_fn(|i| increment[i].0[k]));
+            for i in 0..N {
+                self.q[i].0[k] = q[i];
+            }
+        }
+        for a in 0..N {
+            self.aim[a] = moved(&path.pi_rate[a]) + start.pi[a];
+        }
+        let missing: [Lanes; N] = from_fn(|a| self.aim[a] - self.pi[a]);
+        for a in 0..N {
+            for b in 0..N {
+                self.xi[a] += missing[b] * start.inverse_mass[a][b];
+            }
+        }
+    }
+}

@@ -1,0 +1,77 @@
+use super::NO_BASIS;
+use crate::{State, StepError};
+use lagrangian::{Bracket, Dual, Lanes, MotionError, Scalar, System, inverse_reduced_mass, quasi_velocities};
+
+/// The beginning of a step on `D*`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Start<const N: usize> {
+    /// The state, whose configuration is carried with more digits than it shows.
+    pub(super) state: State<N>,
+    /// Quasi-velocities.
+    pub(super) xi: [f64; N],
+    /// Quasi-momenta.
+    pub(super) pi: [f64; N],
+    /// `dxi/dpi`.
+    pub(super) inverse_mass: [[f64; N]; N],
+}
+
+impl<const N: usize> Start<N> {
+    /// # Errors
+    /// [`StepError::Unsupported`] for a system that the methods on `D*` cannot do; [`StepError::Motion`] where its mass
+    /// matrix is degenerate.
+    pub(super) fn new<Sys: System<N, M>, const M: usize>(
+        system: &Sys,
+        t0: f64,
+        h: f64,
+        state: &State<N>,
+    ) -> Result<Self, StepError> {
+        let (q, v) = (state.q(), state.v());
+        let basis = system.admissible_basis(t0, q).ok_or(NO_BASIS)?;
+        autonomous(system, t0, h, q, v)?;
+        let singular = |source| StepError::Motion(MotionError { time: t0, source });
+        let mut xi = match state.xi() {
+            Some(xi) => xi,
+            None => quasi_velocities(system, t0, q, v)?,
+        };
+        xi[basis.vectors().len()..].fill(0.0);
+        let v = basis.combine(&xi);
+        let inverse_mass = inverse_reduced_mass(system, t0, q, &v, &basis).map_err(singular)?;
+        // In the arithmetic that ended the step before: between two sines that differ in their last digits the quasi-momenta
+        // would lose the same part of an ulp at every step.
+        let here = Bracket::at(system, Lanes::constant(t0), &q.map(Lanes::constant), &xi.map(Lanes::constant));
+        let pi = here.ok_or(NO_BASIS)?.quasi_momenta().map(|pi| pi.0[0]);
+        Ok(Self { state: *state, xi, pi, inverse_mass })
+    }
+}
+
+/// Refuses `b != 0` and a Lagrangian, constraint or basis that changes with time.
+///
+/// The time is not one that a period of the system is likely to share with the step.
+fn autonomous<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t0: f64,
+    h: f64,
+    place: &[f64; N],
+    v: &[f64; N],
+) -> Result<(), StepError> {
+    let t = Dual { re: t0 + 0.381_966 * h, eps: [1.0] };
+    let (q, v) = (place.map(Dual::fixed), v.map(Dual::fixed));
+    let (a, b) = system.constraint(t, &q);
+    let (_, nearby) = system.constraint(Dual::fixed(t.re), &Dual::variables(place));
+    if !nearby.iter().all(Scalar::is_zero) {
+        return Err(StepError::Unsupported {
+            reason: "the energy is conserved only under constraints with b = 0, and this one moves",
+        });
+    }
+    let moves = |x: &Dual<f64, 1>| x.eps[0] != 0.0;
+    let basis = system.admissible_basis(t, &q);
+    let timed = moves(&system.lagrangian(t, &q, &v))
+        || a.iter().flatten().chain(&b).any(moves)
+        || basis.is_some_and(|basis| basis.vectors().iter().flatten().any(moves));
+    if timed {
+        return Err(StepError::Unsupported {
+            reason: "the energy-preserving methods are for systems without explicit time, and this one depends on it",
+        });
+    }
+    Ok(())
+}

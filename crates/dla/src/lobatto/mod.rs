@@ -1,0 +1,100 @@
+mod dense;
+mod point;
+mod stages;
+mod tables;
+
+use crate::projection::Projection;
+use crate::{Newton, OneStep, Stage, State, StepError, StepReport};
+use lagrangian::{System, momentum};
+use stages::Stages;
+use std::array::from_fn;
+use tables::Tables;
+
+/// The variational partitioned Runge-Kutta method of the Lobatto pair IIIA and IIIB with `S >= 2` stages, as a one-step map
+/// on the distribution: order `2 S - 2`, self-adjoint.
+///
+/// Given `q0` and an admissible `v0` it finds the velocities `V_i` and the multipliers `Lambda_i` of the stages,
+///
+/// ```text
+/// Q_i = q0 + h sum_j a_ij V_j,                    W_i = L_q(Q_i, V_i) + F_i + A(Q_i)' Lambda_i,
+/// L_v(Q_i, V_i) = L_v(q0, v0) + h sum_j a^_ij W_j,
+/// sum_j a_ij (A(Q_j) V_j + b_j) = 0               for i = 2 .. S,
+/// ```
+///
+/// and then `q1 = q0 + h sum_j b_j V_j` and `v1` from
+///
+/// ```text
+/// L_v(q1, v1) = L_v(q0, v0) + h sum_j b_j W_j,    A(q1) v1 + b(q1) = 0.
+/// ```
+///
+/// The last column of `a^` is zero: the multiplier of the last stage acts in `v1` only, so that there are as many equations
+/// as unknowns, and nothing but `(q, v)` is carried from step to step. With two stages and a constant mass matrix it is the
+/// trapezoidal [`Dla`](crate::Dla). (Jay 2003, BIT 43, 93-106.)
+///
+/// All stages are solved for together by Newton's method with the exact Jacobian, on the stack.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lobatto<const S: usize> {
+    tables: Tables<S>,
+    /// The solver.
+    pub newton: Newton,
+}
+
+impl<const S: usize> Default for Lobatto<S> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const S: usize> Lobatto<S> {
+    /// The method, with its coefficients computed to rounding.
+    #[must_use]
+    pub fn new() -> Self {
+        Self { tables: Tables::new(), newton: Newton::default() }
+    }
+}
+
+impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<Sys, N, M> for Lobatto<S> {
+    /// The impulses in the report are those of all stages, each shared between the two ends as a lever would.
+    #[inline]
+    fn step(&mut self, system: &Sys, t0: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        let Tables { c, b, .. } = &self.tables;
+        let (q0, v0) = (*state.q(), *state.v());
+        let p0 = momentum(system, t0, &q0, &v0);
+
+        // Start from uniform acceleration, where the equations of motion give one.
+        let (mut v, mut impulse) = ([v0; S], [0.0; M]);
+        if let Ok(motion) = system.motion(t0, &q0, &v0) {
+            v = c.map(|c| from_fn(|i| v0[i] + c * h * motion.acceleration[i]));
+            impulse = motion.multiplier.map(|lambda| h * lambda);
+        }
+        let mut impulses = [impulse; S];
+        impulses[S - 1] = [0.0; M];
+        let mut stages = Stages { tables: &self.tables, system, t0, h, start: state, p0, impulses };
+        let iterations = self
+            .newton
+            .solve_blocks(&mut stages, &mut v)
+            .map_err(|source| StepError::Newton { stage: Stage::Increment, source })?;
+
+        let mut p1 = p0;
+        for (point, weight) in stages.points(&v).iter().zip(b) {
+            let gain = point.gain(system, h);
+            p1 = from_fn(|i| p1[i] + weight * gain[i]);
+        }
+        let increment = stages.increment(b, 1.0, &v);
+        let impulses = stages.impulses;
+        let (t1, q1) = (t0 + h, state.ahead(&increment));
+        let (v1, last) = Projection::new(system, t1, q1, p1, system.admissible_basis(t1, &q1))
+            .solve(&self.newton, v[S - 1])
+            .map_err(|source| StepError::Newton { stage: Stage::Projection, source })?;
+
+        let mut ends = [[0.0; M], last];
+        for j in 0..S - 1 {
+            for k in 0..M {
+                ends[0][k] += b[j] * (1.0 - c[j]) * impulses[j][k];
+                ends[1][k] += b[j] * c[j] * impulses[j][k];
+            }
+        }
+        state.advance(&increment, v1, None);
+        Ok(StepReport { impulses: ends, iterations })
+    }
+}

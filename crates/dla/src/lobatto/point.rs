@@ -1,0 +1,89 @@
+use lagrangian::{Dual, HyperDual, System, mass_matrix};
+use std::array::from_fn;
+
+/// A configuration and a velocity at one time, with the impulse of the constraint there.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Point<const N: usize, const M: usize> {
+    pub(super) t: f64,
+    pub(super) q: [f64; N],
+    pub(super) v: [f64; N],
+    pub(super) impulse: [f64; M],
+}
+
+/// What the equations of a step need at one stage, with all first derivatives.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Linearised<const N: usize, const M: usize> {
+    /// `p = L_v`.
+    pub(super) p: [f64; N],
+    pub(super) p_q: [[f64; N]; N],
+    pub(super) p_v: [[f64; N]; N],
+    /// `w = h (L_q + F) + A' l`, with `l` the impulse of the constraint.
+    pub(super) w: [f64; N],
+    pub(super) w_q: [[f64; N]; N],
+    pub(super) w_v: [[f64; N]; N],
+    /// `g = A v + b`, with `g_v = A`.
+    pub(super) g: [f64; M],
+    pub(super) g_q: [[f64; N]; M],
+    pub(super) a: [[f64; N]; M],
+}
+
+impl<const N: usize, const M: usize> Point<N, M> {
+    /// `h (L_q + F) + A' l`.
+    #[inline]
+    pub(super) fn gain<Sys: System<N, M>>(&self, system: &Sys, h: f64) -> [f64; N] {
+        let Self { t, q, v, impulse } = self;
+        let l_q = system.lagrangian(Dual::fixed(*t), &Dual::variables(q), &v.map(Dual::fixed)).eps;
+        let force = system.force(*t, q, v);
+        let (a, _) = system.constraint(*t, q);
+        from_fn(|i| {
+            let constrained: f64 = (0..M).map(|k| a[k][i] * impulse[k]).sum();
+            h * (l_q[i] + force.map_or(0.0, |f| f[i])) + constrained
+        })
+    }
+
+    #[inline]
+    pub(super) fn linearised<Sys: System<N, M>>(&self, system: &Sys, h: f64) -> Linearised<N, M> {
+        let Self { t, q, v, impulse } = self;
+        let (time, zero) = (HyperDual::fixed(*t), [0.0; N]);
+        let unit = |i: usize| from_fn(|k| if k == i { 1.0 } else { 0.0 });
+        let twice: [HyperDual<f64, N, N>; N] = from_fn(|i| HyperDual::linear(q[i], unit(i), unit(i)));
+        let in_q = system.lagrangian(time, &twice, &v.map(HyperDual::fixed));
+        let first: [HyperDual<f64, N, N>; N] = from_fn(|i| HyperDual::linear(q[i], unit(i), zero));
+        let second: [HyperDual<f64, N, N>; N] = from_fn(|i| HyperDual::linear(v[i], zero, unit(i)));
+        let mixed = system.lagrangian(time, &first, &second).e12;
+        let (p, p_v) = mass_matrix(system, *t, q, v);
+
+        let mut w = in_q.e1.map(|x| h * x);
+        let mut w_q = in_q.e12.map(|row| row.map(|x| h * x));
+        let mut w_v = mixed.map(|row| row.map(|x| h * x));
+        let time = Dual::fixed(*t);
+        let (q_fixed, v_fixed) = (q.map(Dual::fixed), v.map(Dual::fixed));
+        if let Some(force) = system.force(time, &Dual::variables(q), &v_fixed) {
+            for i in 0..N {
+                w[i] += h * force[i].re;
+                w_q[i] = from_fn(|j| w_q[i][j] + h * force[i].eps[j]);
+            }
+        }
+        if let Some(force) = system.force(time, &q_fixed, &Dual::variables(v)) {
+            for i in 0..N {
+                w_v[i] = from_fn(|j| w_v[i][j] + h * force[i].eps[j]);
+            }
+        }
+
+        let (rows, b) = system.constraint(time, &Dual::variables(q));
+        let (mut g, mut g_q) = (b.map(|b: Dual<f64, N>| b.re), b.map(|b| b.eps));
+        for k in 0..M {
+            for i in 0..N {
+                let a: Dual<f64, N> = rows[k][i];
+                g[k] += a.re * v[i];
+                w[i] += a.re * impulse[k];
+                for j in 0..N {
+                    g_q[k][j] += a.eps[j] * v[i];
+                    w_q[i][j] += a.eps[j] * impulse[k];
+                }
+            }
+        }
+        let p_q = from_fn(|i| from_fn(|j| mixed[j][i]));
+        Linearised { p, p_q, p_v, w, w_q, w_v, g, g_q, a: rows.map(|row| row.map(|a| a.re)) }
+    }
+}

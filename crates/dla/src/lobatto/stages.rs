@@ -1,0 +1,115 @@
+use super::dense::Dense;
+use super::point::{Linearised, Point};
+use super::tables::Tables;
+use crate::State;
+use crate::newton::BlockEquations;
+use lagrangian::System;
+use lagrangian::linear::Singular;
+use std::array::from_fn;
+
+/// The equations for the velocities of all stages of a step, with the impulses of the constraint at all but the last.
+pub(super) struct Stages<'a, Sys, const N: usize, const M: usize, const S: usize> {
+    pub(super) tables: &'a Tables<S>,
+    pub(super) system: &'a Sys,
+    pub(super) t0: f64,
+    pub(super) h: f64,
+    pub(super) start: &'a State<N>,
+    pub(super) p0: [f64; N],
+    /// `h Lambda` of every stage; that of the last stays zero.
+    pub(super) impulses: [[f64; M]; S],
+}
+
+impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> Stages<'_, Sys, N, M, S> {
+    /// The increment `h sum_j factors[j] v[j]`, `share` the sum of the factors.
+    ///
+    /// Summed about the velocity at the start, so that the rounding of the factors multiplies differences only.
+    #[inline(always)]
+    pub(super) fn increment(&self, factors: &[f64; S], share: f64, v: &[[f64; N]; S]) -> [f64; N] {
+        let v0 = self.start.v();
+        from_fn(|i| {
+            let excess: f64 = (0..S).map(|j| factors[j] * (v[j][i] - v0[i])).sum();
+            self.h * (share * v0[i] + excess)
+        })
+    }
+
+    /// The points of the stages.
+    #[inline]
+    pub(super) fn points(&self, v: &[[f64; N]; S]) -> [Point<N, M>; S] {
+        let Tables { c, a, .. } = self.tables;
+        from_fn(|j| Point {
+            t: self.t0 + c[j] * self.h,
+            q: self.start.ahead(&self.increment(&a[j], c[j], v)),
+            v: v[j],
+            impulse: self.impulses[j],
+        })
+    }
+
+    /// The linear equations of Newton's method.
+    #[inline]
+    fn equations(&self, at: &[Linearised<N, M>; S]) -> Dense<N, M, S> {
+        let Tables { a, a_hat, blind, .. } = self.tables;
+        let h = self.h;
+        let mut dense = Dense::zero();
+        // p_i - p0 - sum_j a_hat_ij w_j = 0
+        for i in 0..S {
+            for x in 0..N {
+                let gained: f64 = (0..S - 1).map(|j| a_hat[i][j] * at[j].w[x]).sum();
+                let equation = Dense::<N, M, S>::velocity(i, x);
+                dense.right()[equation] = self.p0[x] - at[i].p[x] + gained;
+                let row = dense.row(equation);
+                for k in 0..S {
+                    for y in 0..N {
+                        // The first stage is at the start whatever the velocities are.
+                        let moved: f64 = (1..S - 1).map(|j| a_hat[i][j] * a[j][k] * at[j].w_q[x][y]).sum();
+                        let mut sum = h * (a[i][k] * at[i].p_q[x][y] - moved) - a_hat[i][k] * at[k].w_v[x][y];
+                        if i == k {
+                            sum += at[i].p_v[x][y];
+                        }
+                        row[Dense::<N, M, S>::velocity(k, y)] = sum;
+                    }
+                }
+                for j in 0..S - 1 {
+                    for k in 0..M {
+                        row[Dense::<N, M, S>::multiplier(j, k)] = -a_hat[i][j] * at[j].a[k][x];
+                    }
+                }
+            }
+        }
+        // g_i - blind_i g_0 = 0
+        for i in 1..S {
+            for k in 0..M {
+                let equation = Dense::<N, M, S>::multiplier(i - 1, k);
+                dense.right()[equation] = blind[i] * at[0].g[k] - at[i].g[k];
+                let row = dense.row(equation);
+                for j in 0..S {
+                    for y in 0..N {
+                        row[Dense::<N, M, S>::velocity(j, y)] = h * a[i][j] * at[i].g_q[k][y];
+                    }
+                }
+                for y in 0..N {
+                    row[Dense::<N, M, S>::velocity(i, y)] += at[i].a[k][y];
+                    row[Dense::<N, M, S>::velocity(0, y)] -= blind[i] * at[0].a[k][y];
+                }
+            }
+        }
+        dense
+    }
+}
+
+impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> BlockEquations<N, S>
+    for Stages<'_, Sys, N, M, S>
+{
+    #[inline]
+    fn correction(&mut self, v: &[[f64; N]; S]) -> Result<[[f64; N]; S], Singular> {
+        let at = self.points(v).map(|point| point.linearised(self.system, self.h));
+        let mut dense = self.equations(&at);
+        dense.solve()?;
+        let solution = dense.right();
+        for j in 0..S - 1 {
+            for k in 0..M {
+                self.impulses[j][k] += solution[Dense::<N, M, S>::multiplier(j, k)];
+            }
+        }
+        Ok(from_fn(|j| from_fn(|i| solution[Dense::<N, M, S>::velocity(j, i)])))
+    }
+}

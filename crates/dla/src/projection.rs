@@ -1,0 +1,54 @@
+use crate::{Equations, Newton, NewtonError};
+use lagrangian::linear::Singular;
+use lagrangian::{AdmissibleBasis, Saddle, System, constraint_residual, mass_matrix};
+use std::array::from_fn;
+
+/// The equations for the velocity at the end of a step, with the multiplier there:
+/// `L_v(q1, v1) = p1 + A(q1)' mu`, `A(q1) v1 + b(q1) = 0`.
+pub(crate) struct Projection<'a, Sys, const N: usize, const M: usize> {
+    system: &'a Sys,
+    t1: f64,
+    q1: [f64; N],
+    p1: [f64; N],
+    basis: Option<AdmissibleBasis<f64, N, M>>,
+    mu: [f64; M],
+}
+
+impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Projection<'a, Sys, N, M> {
+    pub(crate) fn new(
+        system: &'a Sys,
+        t1: f64,
+        q1: [f64; N],
+        p1: [f64; N],
+        basis: Option<AdmissibleBasis<f64, N, M>>,
+    ) -> Self {
+        Self { system, t1, q1, p1, basis, mu: [0.0; M] }
+    }
+
+    /// `v1` and `mu`, from a first guess of `v1`.
+    #[inline(always)]
+    pub(crate) fn solve(mut self, newton: &Newton, guess: [f64; N]) -> Result<([f64; N], [f64; M]), NewtonError> {
+        let mut v1 = guess;
+        newton.solve(&mut self, &mut v1)?;
+        Ok((v1, self.mu))
+    }
+}
+
+impl<Sys: System<N, M>, const N: usize, const M: usize> Equations<N> for Projection<'_, Sys, N, M> {
+    #[inline]
+    fn correction(&mut self, v1: &[f64; N]) -> Result<[f64; N], Singular> {
+        let (p, mass) = mass_matrix(self.system, self.t1, &self.q1, v1);
+        let (a1, _) = self.system.constraint(self.t1, &self.q1);
+        let slip = constraint_residual(self.system, self.t1, &self.q1, v1);
+        let saddle = Saddle {
+            block: mass,
+            transposed: a1,
+            rows: a1,
+            right: from_fn(|i| self.p1[i] - p[i]),
+            level: slip.map(|s| -s),
+        };
+        let (correction, minus_mu) = saddle.solve(self.basis.as_ref())?;
+        self.mu = minus_mu.map(|m| -m);
+        Ok(correction)
+    }
+}

@@ -1,0 +1,154 @@
+use crate::systems::{Friction, Particle, Potential, at_centre, com};
+use dla::{Dla, Energy, Gradient, Observer, OneStep, Schedule, State, StepReport, View, drive};
+use lagrangian::{System, With, energy};
+use sleigh::CentreOfMass;
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+/// The energy relative to the start: its extremes, its least-squares slope through the start, and the worst slip.
+#[derive(Debug, Default)]
+struct Balance {
+    start: f64,
+    worst: f64,
+    slip: f64,
+    reach: f64,
+    ty: f64,
+    tt: f64,
+    iterations: u64,
+}
+impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for Balance {
+    fn start(&mut self, node: &View<'_, Sys, N>) {
+        self.start = node.energy();
+    }
+    fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+        let change = node.energy() - self.start;
+        self.worst = self.worst.max((change / self.start).abs());
+        self.slip = self.slip.max(node.constraint());
+        let q = node.state.unwrapped();
+        self.reach = self.reach.max(f64::hypot(q[0], q[1]));
+        self.ty += node.t * change;
+        self.tt += node.t * node.t;
+        self.iterations += u64::from(report.iterations);
+        ControlFlow::Continue(())
+    }
+}
+
+fn balance<Sys, Method, const N: usize, const M: usize>(
+    name: &str,
+    system: &Sys,
+    method: &mut Method,
+    (q, v): &([f64; N], [f64; N]),
+    steps: u64,
+) -> Balance
+where
+    Sys: System<N, M>,
+    Method: OneStep<Sys, N, M>,
+{
+    let mut seen = Balance::default();
+    let mut state = State::new(*q, *v, system.angles());
+    let clock = Instant::now();
+    drive(system, method, &Schedule { t0: 0.0, step: 0.05, steps }, &mut state, &mut seen).unwrap();
+    let nanoseconds = clock.elapsed().as_secs_f64() * 1e9 / steps as f64;
+    let iterations = seen.iterations as f64 / steps as f64;
+    println!(
+        "{name:<22} E = {:.3}: relative {:.2e}, slope {:+.2e}, slip {:.1e}, reach {:.0}, {iterations:.1} iterations, {nanoseconds:.0} ns",
+        seen.start,
+        seen.worst,
+        seen.ty / seen.tt,
+        seen.slip,
+        seen.reach
+    );
+    seen
+}
+
+/// At the energy 1.2 in the egg-crate.
+fn egg_crate() -> ([f64; 3], [f64; 3]) {
+    let (x, y, heading, omega) = (0.3, 0.2, 0.7, 0.3);
+    let potential = 0.5 * (f64::cos(x) + f64::cos(y));
+    let u = (2.0 * (1.2 - potential) - 1.01 * omega * omega).sqrt();
+    at_centre([x, y, heading, u, omega], 0.1)
+}
+
+/// At the energy 2 in the valley.
+fn valley() -> ([f64; 3], [f64; 3]) {
+    let (y, omega) = (0.6, 0.4);
+    let u = f64::sqrt(2.0 * (2.0 - 0.5 * y * y) - 1.25 * omega * omega);
+    at_centre([0.0, y, 0.9, u, omega], 0.5)
+}
+
+fn held<Sys, const N: usize, const M: usize>(name: &str, system: &Sys, start: &([f64; N], [f64; N]), steps: u64)
+where
+    Sys: System<N, M>,
+{
+    let runs = [
+        balance(&format!("{name}, energy2"), system, &mut Energy::<1>::new(), start, steps),
+        balance(&format!("{name}, energy4"), system, &mut Energy::<2>::new(), start, steps / 5),
+        balance(&format!("{name}, energy6"), system, &mut Energy::<3>::new(), start, steps / 5),
+        balance(&format!("{name}, energy8"), system, &mut Energy::<4>::new(), start, steps),
+    ];
+    for run in &runs {
+        assert!(run.worst < 1e-11, "{name}: {run:?}");
+        assert!(run.slip < 1e-13, "{name}: {run:?}");
+    }
+    // Far from the origin this one carries the rounding of the coordinates into the energy.
+    let gonzalez =
+        balance(&format!("{name}, Gonzalez"), system, &mut Energy::with(Gradient::Gonzalez), start, steps / 5);
+    assert!(gonzalez.worst < 1e-10 && gonzalez.slip < 1e-13, "{name}: {gonzalez:?}");
+}
+
+const STEPS: u64 = 100_000;
+
+#[test]
+fn egg_crate_keeps_its_energy() {
+    let system = com(0.1, Potential::EggCrate);
+    held("egg-crate", &system, &egg_crate(), STEPS);
+    let drift = balance("egg-crate, dla", &system, &mut Dla::midpoint(), &egg_crate(), STEPS);
+    assert!(drift.worst > 1e-4, "the control, which drifts: {drift:?}");
+}
+
+#[test]
+fn valley_keeps_its_energy() {
+    let system = com(0.5, Potential::Valley);
+    held("valley", &system, &valley(), STEPS);
+    let drift = balance("valley, dla", &system, &mut Dla::midpoint(), &valley(), STEPS);
+    assert!(drift.worst > 1e-4, "the control, which drifts: {drift:?}");
+}
+
+#[test]
+fn particle_keeps_its_energy() {
+    for quartic in [0.0, 0.2] {
+        held("particle", &Particle { mass: 1.3, quartic }, &([0.3, 0.5, -0.2], [0.6, -0.4, 0.3]), STEPS / 5);
+    }
+}
+
+type Damped = With<CentreOfMass, (Potential, Friction)>;
+
+/// Under friction every step loses the discrete work, which is never positive.
+fn loses_the_work<Method: OneStep<Damped, 3, 1>>(mut method: Method, work: impl Fn(&Method) -> f64) {
+    let system = com(0.4, (Potential::EggCrate, Friction));
+    let (q, v) = at_centre([0.5, 1.0, 0.3, 0.9, 1.7], 0.4);
+    let mut state = State::new(q, v, system.angles());
+    let at = |state: &State<3>| energy(&system, 0.0, state.q(), state.v());
+    let first = at(&state);
+    let mut total = 0.0;
+    for k in 0..400 {
+        let before = at(&state);
+        method.step(&system, f64::from(k) * 0.1, 0.1, &mut state).unwrap();
+        let (lost, done) = (at(&state) - before, work(&method));
+        assert!((lost - done).abs() < 1e-14, "step {k}: {lost:e} of {done:e}");
+        assert!(done <= 0.0);
+        total += done;
+    }
+    let lost = at(&state) - first;
+    assert!(lost < -1.0, "there is friction: {lost}");
+    assert!((lost - total).abs() < 1e-13, "{lost:e} of {total:e}");
+}
+
+#[test]
+fn the_work_of_friction_is_the_loss() {
+    loses_the_work(Energy::<1>::new(), Energy::work);
+    loses_the_work(Energy::with(Gradient::Gonzalez), Energy::work);
+    loses_the_work(Energy::<2>::new(), Energy::work);
+    loses_the_work(Energy::<3>::new(), Energy::work);
+    loses_the_work(Energy::<4>::new(), Energy::work);
+}

@@ -1,0 +1,74 @@
+use crate::systems::{Potential, at_centre, com};
+use dla::{Lobatto, NewtonError, OneStep, Stage, State, StepError};
+use lagrangian::{Constraint, Scalar, System};
+
+/// A point whose two constraints become one where `x = 0`.
+struct Dropping;
+impl System<3, 2> for Dropping {
+    fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 3], v: &[S; 3]) -> S {
+        (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) * 0.5
+    }
+    fn constraint<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Constraint<S, 3, 2> {
+        let (zero, one) = (S::zero(), S::constant(1.0));
+        ([[zero, one, zero], [zero, one, q[0]]], [zero; 2])
+    }
+}
+
+/// The step fails, and the state is what it was.
+fn refused<Sys: System<3, M>, const S: usize, const M: usize>(
+    system: &Sys,
+    method: &mut Lobatto<S>,
+    h: f64,
+    state: &State<3>,
+) -> StepError {
+    let mut after = *state;
+    let error = method.step(system, 0.0, h, &mut after).unwrap_err();
+    // By their digits: a velocity may be no number.
+    assert_eq!(format!("{after:?}"), format!("{state:?}"), "a failed step leaves the state");
+    error
+}
+
+#[test]
+fn an_unconverged_step_is_never_accepted() {
+    let system = com(0.5, Potential::EggCrate);
+    let (q, v) = at_centre([0.5, 1.0, 0.3, 0.4, 0.7], 0.5);
+    let state = State::new(q, v, system.angles());
+    let mut method = Lobatto::<4>::new();
+    method.newton.max_iterations = 2;
+    let error = refused(&system, &mut method, 0.2, &state);
+    let StepError::Newton { stage: Stage::Increment, source: NewtonError::IterationLimit { iterations: 2, .. } } =
+        error
+    else {
+        panic!("{error}");
+    };
+}
+
+#[test]
+fn a_step_far_too_long() {
+    let system = com(0.5, Potential::EggCrate);
+    let (q, v) = at_centre([0.5, 1.0, 0.3, 4.0, 7.0], 0.5);
+    let state = State::new(q, v, system.angles());
+    let error = refused(&system, &mut Lobatto::<3>::new(), 300.0, &state);
+    assert!(matches!(error, StepError::Newton { stage: Stage::Increment, .. }), "{error}");
+}
+
+#[test]
+fn what_is_not_a_number() {
+    let system = com(0.5, Potential::EggCrate);
+    for v in [[f64::NAN, 0.0, 0.1], [1.0, f64::INFINITY, 0.1], [1e308, -1e308, 1e300]] {
+        let state = State::new([0.0; 3], v, system.angles());
+        let error = refused(&system, &mut Lobatto::<3>::new(), 0.1, &state);
+        assert!(matches!(error, StepError::Newton { .. }), "{error}");
+    }
+}
+
+#[test]
+fn constraints_that_depend_on_one_another() {
+    let state = State::new([0.0; 3], [0.0, 0.0, 1.0], [false; 3]);
+    let error = refused(&Dropping, &mut Lobatto::<3>::new(), 0.1, &state);
+    assert!(matches!(error, StepError::Newton { source: NewtonError::Singular { .. }, .. }), "{error}");
+    // The control: elsewhere they do not.
+    let mut state = State::new([1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [false; 3]);
+    Lobatto::<3>::new().step(&Dropping, 0.0, 0.1, &mut state).unwrap();
+    assert!((state.q()[0] - 1.1).abs() < 1e-14);
+}

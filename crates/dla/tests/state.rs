@@ -1,0 +1,189 @@
+//! The coordinates of long runs: compensated sums, and angles with their turns.
+
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
+
+use approx::assert_relative_eq;
+use dla::State;
+use proptest::prelude::*;
+use std::f64::consts::{PI, TAU};
+
+/// `2 pi` in units of `2^-100`, exact to one of them.
+const EXACT_TAU: i128 = 0x0064_87ED_5110_B461_1A62_6331_45C0;
+
+/// Exact angles: whole turns, and the rest in units of `2^-100`, within half a turn.
+#[derive(Debug, Default, Clone, Copy)]
+struct Exact {
+    turns: i128,
+    rest: i128,
+}
+
+impl Exact {
+    fn add(&mut self, increment: f64) {
+        let units = increment * 100f64.exp2();
+        assert!(units.fract() == 0.0 && units.abs() < 126f64.exp2(), "{increment:e} is not a multiple of 2^-100");
+        let sum = self.rest + units as i128;
+        let turns = (2 * sum + EXACT_TAU).div_euclid(2 * EXACT_TAU);
+        (self.turns, self.rest) = (self.turns + turns, sum - turns * EXACT_TAU);
+    }
+    fn angle(&self) -> f64 {
+        self.rest as f64 / 100f64.exp2()
+    }
+    fn unwrapped(&self) -> f64 {
+        // The products are exact to 2^-75 of a turn.
+        self.turns as f64 * TAU + (self.angle() + self.turns as f64 * 2.449_293_598_294_706_4e-16)
+    }
+}
+
+fn angle(q: f64) -> State<1> {
+    State::new([q], [0.0], [true])
+}
+
+fn check(state: &State<1>, exact: &Exact, tolerance: f64) {
+    let ((sin, cos), (s, c)) = (state.q()[0].sin_cos(), exact.angle().sin_cos());
+    assert!((sin - s).abs() <= tolerance && (cos - c).abs() <= tolerance, "{:e}, {:e}", sin - s, cos - c);
+    assert!(state.q()[0].abs() <= PI + 1e-9);
+    // One rounding of the sum, one of each product.
+    assert_relative_eq!(state.unwrapped()[0], exact.unwrapped(), epsilon = tolerance, max_relative = 4e-16);
+}
+
+/// Uniform in -1..1, always the same.
+fn random(seed: &mut u64) -> f64 {
+    *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    (*seed >> 11) as f64 * (-52f64).exp2() - 1.0
+}
+
+#[test]
+fn sums_are_compensated() {
+    let (mut state, mut naive) = (State::new([0.0, 3.0], [0.0; 2], [false; 2]), 0.0f64);
+    for _ in 0..10_000_000 {
+        state.advance(&[0.1, -0.1], [0.0; 2], None);
+        naive += 0.1;
+    }
+    // 1e7 times the f64 nearest to 0.1, which is 0.1 + 5.55e-18.
+    let ulp = 1e6f64.next_up() - 1e6;
+    assert!((state.q()[0] - (1e6 + 5.55e-11)).abs() <= ulp, "{:e}", state.q()[0] - 1e6);
+    assert!((state.q()[1] - (3.0 - 1e6 - 5.55e-11)).abs() <= ulp);
+    assert!((naive - 1e6).abs() > 1e6 * ulp, "a naive sum is off by {:e}", naive - 1e6);
+}
+
+#[test]
+fn small_increments_far_from_the_origin_count() {
+    let mut state = State::new([1e9], [0.0], [false]);
+    for _ in 0..1000 {
+        state.advance(&[1e-8], [0.0], None);
+    }
+    assert_eq!(state.q()[0], 1e9 + 1e-5);
+    assert_eq!(1e9 + 1e-8, 1e9, "a naive sum would not move");
+    assert_eq!(state.ahead(&[1.0]), [1e9 + 1.0 + 1e-5]);
+}
+
+#[test]
+fn angles_stay_within_a_turn() {
+    for (q, turns) in
+        [(0.0, 0.0), (3.0, 0.0), (-3.0, 0.0), (PI, 0.0), (3.2, 1.0), (-3.2, -1.0), (7.0, 1.0), (100.0, 16.0)]
+    {
+        let state = angle(q);
+        assert_eq!(state.turns(), &[turns]);
+        assert_eq!(state.unwrapped(), [q], "what the user gave");
+        // `TAU` is short of the turn by 2.4e-16.
+        assert_relative_eq!(state.q()[0], q - turns * TAU, epsilon = (1.0 + turns.abs()) * 2.5e-16);
+    }
+    let other = State::new([100.0, 100.0], [0.0; 2], [false, true]);
+    assert_eq!((other.q()[0], other.turns()), (100.0, &[0.0, 16.0]), "only angles are wrapped");
+}
+
+/// A sine of the rounded sum would be off by half an ulp of 6e6, which is 5e-10.
+#[test]
+fn a_million_turns_lose_no_digits() {
+    let start = 1e6 * TAU + 1.0;
+    let (mut state, mut exact) = (angle(start), Exact::default());
+    exact.add(start);
+    check(&state, &exact, 1e-15);
+    assert_eq!(state.turns(), &[1e6]);
+    assert_eq!(state.unwrapped(), [start], "what the user gave");
+    for _ in 0..1000 {
+        state.advance(&[0.125], [0.0], None);
+        exact.add(0.125);
+    }
+    // Each sum of increment and rest is rounded by 2^-57 at most.
+    check(&state, &exact, 1e-15);
+}
+
+#[test]
+fn a_million_random_increments() {
+    // Each is rounded by 2^-62 at most when the rest is added to it: 1.3e-16 in 1e6 by chance. A naive sum as the control.
+    let (mut state, mut exact, mut naive, mut seed) = (angle(0.5), Exact::default(), 0.5, 7);
+    exact.add(0.5);
+    for k in 0..1_000_000 {
+        let increment = (random(&mut seed) + 0.5) / 512.0;
+        state.advance(&[increment], [0.0], None);
+        exact.add(increment);
+        naive += increment;
+        if k % 1000 == 0 {
+            check(&state, &exact, 1e-15);
+        }
+    }
+    check(&state, &exact, 1e-15);
+    assert_eq!(state.turns()[0], exact.turns as f64);
+    assert!(exact.turns > 100, "{}", exact.turns);
+    let lost = (naive - exact.unwrapped()).abs();
+    assert!(lost > 1e-12, "a naive sum is off by {lost:e}");
+}
+
+/// Increments of whole degrees, and of more than a turn, against the count of the degrees.
+#[test]
+fn degrees_add_up_to_turns() {
+    let (mut state, mut degrees, mut seed) = (angle(0.0), 0i64, 3);
+    for _ in 0..100_000 {
+        let k = (random(&mut seed) * 1000.0) as i64;
+        state.advance(&[TAU * (k as f64 / 360.0)], [0.0], None);
+        degrees += k;
+    }
+    let expected = ((degrees + 180).rem_euclid(360) - 180) as f64 * (TAU / 360.0);
+    // The increments are rounded three times by 4e-16 each, which adds up as the root of their number.
+    let (sin, cos) = state.q()[0].sin_cos();
+    assert!((sin - expected.sin()).abs() <= 1e-12 && (cos - expected.cos()).abs() <= 1e-12);
+    assert_relative_eq!(state.unwrapped()[0], degrees as f64 * (TAU / 360.0), epsilon = 1e-12, max_relative = 1e-15);
+}
+
+#[test]
+fn velocities_and_quasi_velocities() {
+    let mut state = State::new([1.0, 9.0], [2.0, -3.0], [false, true]);
+    assert_eq!((state.v(), state.xi()), (&[2.0, -3.0], None));
+    state.advance(&[0.5, 0.5], [4.0, 5.0], Some([6.0, 7.0]));
+    let back = state.reversed();
+    assert_eq!((back.v(), back.xi()), (&[-4.0, -5.0], Some([-6.0, -7.0])));
+    assert_eq!((back.q(), back.turns()), (state.q(), state.turns()));
+    assert_eq!(back.reversed(), state);
+    state.advance(&[0.0; 2], [1.0, 1.0], None);
+    assert_eq!(state.xi(), None, "a method that does not know them leaves no old ones");
+}
+
+#[test]
+fn angles_that_are_no_numbers_come_through() {
+    for q in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let mut state = angle(q);
+        state.advance(&[1.0], [0.0], None);
+        assert!(!state.q()[0].is_finite() && !state.unwrapped()[0].is_finite());
+        let mut state = angle(1.0);
+        state.advance(&[q], [0.0], None);
+        assert!(!state.q()[0].is_finite());
+    }
+    // Beyond 2^53 turns an angle has no meaning, and still no loop.
+    for q in [1e17, -1e200, f64::MAX] {
+        let mut state = angle(q);
+        state.advance(&[1.0], [0.0], None);
+        assert!(state.q()[0].is_finite());
+    }
+}
+
+proptest! {
+    #[test]
+    fn any_start_is_wrapped_exactly(turns in -1_000_000..1_000_000i32, part in -0.5..0.5f64, bits in -20..0i32) {
+        let q = (f64::from(turns) + part) * TAU * f64::from(bits).exp2();
+        let mut exact = Exact::default();
+        exact.add((q * 45f64.exp2()).round() * (-45f64).exp2());
+        let state = angle((q * 45f64.exp2()).round() * (-45f64).exp2());
+        check(&state, &exact, 1e-15);
+    }
+}
