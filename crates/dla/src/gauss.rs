@@ -1,6 +1,6 @@
 use crate::{NewtonError, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
-use lagrangian::{System, quasi_velocities, reduced_slope, velocity_of};
+use lagrangian::{System, reduced_slope, velocity_of};
 use std::array::from_fn;
 
 /// Gauss collocation on the constraint: the reduced equations `q' = W xi + v_b`, `xi' = ..` in the basis of admissible
@@ -90,10 +90,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
     #[inline]
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
         let q0 = state.q();
-        let xi0 = match state.xi() {
-            Some(xi) => xi,
-            None => quasi_velocities(system, t, q0, state.v())?,
-        };
+        let xi0 = state.quasi_velocities(system, t)?;
         let start = reduced_slope(system, t, q0, &xi0)?;
         let mut stages = Stages { velocity: [start.velocity; S], acceleration: [start.acceleration; S] };
         let iterations = self.solve(system, (t, h), (q0, &xi0), &mut stages)?;

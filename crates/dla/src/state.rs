@@ -1,3 +1,4 @@
+use lagrangian::{ReducedError, System, quasi_velocities};
 use std::array::from_fn;
 use std::f64::consts::{PI, TAU};
 
@@ -58,6 +59,22 @@ impl<const N: usize> State<N> {
     #[inline(always)]
     pub fn xi(&self) -> Option<[f64; N]> {
         self.xi
+    }
+
+    /// The quasi-velocities: those the last step left, else those of the velocity.
+    ///
+    /// # Errors
+    /// [`ReducedError`] where the system has no basis of admissible velocities, or a degenerate one.
+    #[inline(always)]
+    pub fn quasi_velocities<Sys: System<N, M>, const M: usize>(
+        &self,
+        system: &Sys,
+        t: f64,
+    ) -> Result<[f64; N], ReducedError> {
+        match self.xi {
+            Some(xi) => Ok(xi),
+            None => quasi_velocities(system, t, &self.q, &self.v),
+        }
     }
 
     /// The full turns of every angle.

@@ -1,6 +1,6 @@
 use super::NO_BASIS;
 use crate::{State, StepError};
-use lagrangian::{Bracket, Dual, Lanes, MotionError, Scalar, System, inverse_reduced_mass, quasi_velocities};
+use lagrangian::{Bracket, Dual, Lanes, MotionError, Scalar, System, inverse_reduced_mass};
 
 /// The beginning of a step on `D*`.
 #[derive(Debug, Clone, Copy)]
@@ -29,10 +29,7 @@ impl<const N: usize> Start<N> {
         let basis = system.admissible_basis(t0, q).ok_or(NO_BASIS)?;
         autonomous(system, t0, h, q, v)?;
         let singular = |source| StepError::Motion(MotionError { time: t0, source });
-        let mut xi = match state.xi() {
-            Some(xi) => xi,
-            None => quasi_velocities(system, t0, q, v)?,
-        };
+        let mut xi = state.quasi_velocities(system, t0)?;
         xi[basis.vectors().len()..].fill(0.0);
         let v = basis.combine(&xi);
         let inverse_mass = inverse_reduced_mass(system, t0, q, &v, &basis).map_err(singular)?;

@@ -1,6 +1,6 @@
 use super::{STAGES, shifted, weighted};
 use dla::{OneStep, State, StepError, StepReport};
-use lagrangian::{System, quasi_velocities, reduced_slope, velocity_of};
+use lagrangian::{System, reduced_slope, velocity_of};
 
 /// The classical Runge-Kutta method on the reduced equations.
 ///
@@ -13,10 +13,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for R
     #[inline]
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
         let q0 = state.q();
-        let xi0 = match state.xi() {
-            Some(xi) => xi,
-            None => quasi_velocities(system, t, q0, state.v())?,
-        };
+        let xi0 = state.quasi_velocities(system, t)?;
         let (mut velocities, mut rates) = ([[0.0; N]; 4], [[0.0; N]; 4]);
         let (mut q, mut xi) = (*q0, xi0);
         for (i, stage) in STAGES.iter().enumerate() {
