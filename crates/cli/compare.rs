@@ -1,11 +1,12 @@
 use crate::args::CompareArguments;
 use crate::error::CliError;
 use crate::{inspect, json, progress, table, terminal};
+use dla::{Schedule, State};
 use harness::report::{self, Report, SceneReport, Series};
 use harness::{METHODS, Method, Record, Request};
 use scene::{Scene, SceneSystem, Visitor};
 use serde_json::json;
-use sleigh::SleighState;
+use sleigh::{Exact, SleighState};
 
 /// A comparison on one scene: the runs, method by method, with what the closed form says of them.
 pub(crate) struct Comparison {
@@ -32,7 +33,7 @@ pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
         crate::files::check_folder(folder, arguments.scene.force)?;
     }
 
-    let comparison = compare_scene(&scene, &methods);
+    let comparison = compare_scene(&scene, &methods)?;
     if let Some(folder) = &arguments.report {
         let report = Report {
             title: format!("noslip compare {}", scene.name),
@@ -58,8 +59,8 @@ pub(crate) fn methods(names: &[&str], alpha: Option<f64>) -> Result<Vec<Method>,
 }
 
 /// Runs every method on the scene.
-pub(crate) fn compare_scene(scene: &Scene, methods: &[Method]) -> Comparison {
-    scene.visit(Compare { scene, methods })
+pub(crate) fn compare_scene(scene: &Scene, methods: &[Method]) -> Result<Comparison, CliError> {
+    Ok(scene.visit(Compare { scene, methods })?)
 }
 
 struct Compare<'a> {
@@ -75,7 +76,8 @@ impl Visitor for Compare<'_> {
         Sys: SceneSystem<N, M>,
     {
         let schedule = inspect::schedule(self.scene);
-        let exact = self.scene.exact().ok();
+        let exact = self.scene.exact().ok().flatten();
+        let reference = Reference::of(system, exact.as_ref(), &schedule, State::new(q, v, system.angles()));
         let (mut rows, mut series) = (Vec::new(), Vec::new());
         for method in self.methods {
             let bar = progress::bar(&format!("{} {}", self.scene.name, method.info().name), schedule.steps);
@@ -83,7 +85,7 @@ impl Visitor for Compare<'_> {
             let record = harness::run(system, method, &request, &mut |steps| bar.inc(steps));
             bar.finish_and_clear();
             let end = system.sleigh_state(&record.q, &record.v);
-            let error = exact.as_ref().map(|exact| distance(&end, &exact.at(record.t)));
+            let error = reference.at(system, record.t).map(|reference| distance(&end, &reference));
             rows.push(Row {
                 cells: table::cells(&record, error),
                 json: json::compared(&self.scene.name, &record, &end, error),
@@ -103,6 +105,44 @@ impl Visitor for Compare<'_> {
             exact_path,
         };
         Comparison { rows, report }
+    }
+}
+
+/// Where the motion truly ends: in closed form, or by the method of the highest order with a quarter of the step.
+enum Reference<'a, const N: usize> {
+    Exact(&'a Exact),
+    Computed { t: f64, state: State<N> },
+    None,
+}
+
+impl<'a, const N: usize> Reference<'a, N> {
+    fn of<Sys, const M: usize>(system: &Sys, exact: Option<&'a Exact>, schedule: &Schedule, mut state: State<N>) -> Self
+    where
+        Sys: SceneSystem<N, M>,
+    {
+        if let Some(exact) = exact {
+            return Self::Exact(exact);
+        }
+        let Ok(method) = Method::named("gauss16", None) else { return Self::None };
+        let fine = Schedule { step: 0.25 * schedule.step, steps: 4 * schedule.steps, ..*schedule };
+        match harness::integrate_pieces(system, &method, &fine, &mut state, ()) {
+            Ok(made) => Self::Computed { t: fine.time(made), state },
+            Err(_) => Self::None,
+        }
+    }
+
+    /// The state at the time `t`, which is the end of the run unless the run failed.
+    fn at<Sys, const M: usize>(&self, system: &Sys, t: f64) -> Option<SleighState>
+    where
+        Sys: SceneSystem<N, M>,
+    {
+        match self {
+            Self::Exact(exact) => Some(exact.at(t)),
+            Self::Computed { t: end, state } if (end - t).abs() <= 1e-9 * end.abs() => {
+                Some(system.sleigh_state(&state.unwrapped(), state.v()))
+            }
+            Self::Computed { .. } | Self::None => None,
+        }
     }
 }
 

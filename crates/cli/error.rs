@@ -11,6 +11,8 @@ pub(crate) enum CliError {
     Scene(#[from] SceneError),
     #[error("{0}")]
     Method(#[from] MethodError),
+    #[error("the scene: {0}")]
+    Sleigh(#[from] sleigh::SleighError),
     #[error("{} exists already; --force overwrites it", path.display())]
     Exists { path: PathBuf },
     #[error("{}: a trajectory is written as .csv or .npz, by the ending of its name", path.display())]
@@ -40,7 +42,9 @@ impl CliError {
     /// 1: the computation failed, or what it gave could not be written. 2: the request was wrong.
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
-            Self::Scene(_) | Self::Method(_) | Self::Exists { .. } | Self::Ending { .. } => ExitCode::from(2),
+            Self::Scene(_) | Self::Sleigh(_) | Self::Method(_) | Self::Exists { .. } | Self::Ending { .. } => {
+                ExitCode::from(2)
+            }
             Self::TooManyNodes { .. } | Self::Report(ReportError::Exists { .. }) => ExitCode::from(2),
             Self::Write { .. } | Self::Folder { .. } | Self::Output(_) => ExitCode::FAILURE,
             Self::Report(_) | Self::Computation(_) => ExitCode::FAILURE,

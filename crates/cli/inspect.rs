@@ -45,7 +45,10 @@ pub(crate) fn list(arguments: &ListArguments) -> Result<(), CliError> {
                            "reference": m.reference})
                 })
                 .collect(),
-            Listed::Effects => scene::EFFECTS.iter().map(|name| json!({"name": name})).collect(),
+            Listed::Effects => scene::EFFECTS
+                .iter()
+                .map(|(name, keys, meaning)| json!({"name": name, "keys": keys, "summary": meaning}))
+                .collect(),
             Listed::Scenes => scenes()?.iter().map(|(name, title)| json!({"name": name, "title": title})).collect(),
         };
         return terminal::print_json(&json!(all));
@@ -55,8 +58,12 @@ pub(crate) fn list(arguments: &ListArguments) -> Result<(), CliError> {
             let line = |m: &harness::MethodInfo| (m.name, format!("order {}, {}", m.order, m.summary));
             table::aligned(&METHODS.iter().map(line).collect::<Vec<_>>())
         }
-        Listed::Effects if scene::EFFECTS.is_empty() => "this version knows no effects yet\n".to_owned(),
-        Listed::Effects => scene::EFFECTS.iter().map(|name| format!("{name}\n")).collect(),
+        Listed::Effects => {
+            let line = |(name, keys, meaning): &(&'static str, &[&str], &str)| {
+                (*name, format!("{meaning}; keys: {}", keys.join(", ")))
+            };
+            table::aligned(&scene::EFFECTS.iter().map(line).collect::<Vec<_>>())
+        }
         Listed::Scenes => table::aligned(&scenes()?),
     };
     terminal::print(&text)

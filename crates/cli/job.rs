@@ -18,7 +18,7 @@ pub(crate) fn main_job(arguments: &JobArguments) -> Result<(), CliError> {
     let mut failures = Vec::new();
     for bundled in scene::bundled() {
         let scene = Scene::load(bundled.name, &method_names())?;
-        let comparison = compare_scene(&scene, &methods(&method_names(), scene.run.alpha)?);
+        let comparison = compare_scene(&scene, &methods(&method_names(), scene.run.alpha)?)?;
         terminal::print(&table::comparison(&scene, &comparison.rows))?;
         terminal::print("\n")?;
         let failed = comparison.rows.into_iter().filter_map(|row| row.failure);

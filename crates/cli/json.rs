@@ -16,6 +16,7 @@ pub(crate) fn record<const N: usize>(scene: &str, record: &Record<N>, end: &Slei
         "energy": {
             "initial": record.energy.initial,
             "final": record.energy.last,
+            "work": record.energy.work,
             "max_error": record.energy.max_error,
         },
         "constraint": {"max": record.constraint_max},

@@ -4,7 +4,7 @@ use crate::files::check_file;
 use crate::trajectory_file::{self, Format};
 use crate::{inspect, json, progress, table, terminal};
 use dla::{Schedule, State, Trajectory};
-use harness::{Kind, Method, Request, integrate};
+use harness::{Kind, Method, Request, integrate_pieces};
 use scene::{Scene, SceneSystem, Visitor};
 use std::path::Path;
 
@@ -25,7 +25,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
         let name = method.info().name;
         terminal::say("warning", &format!("--alpha is the weight of dla-alpha; {name} has none and ignores it"));
     }
-    scene.visit(Run { arguments, scene: &scene, method, out })
+    scene.visit(Run { arguments, scene: &scene, method, out })?
 }
 
 struct Run<'a> {
@@ -49,7 +49,7 @@ impl Run<'_> {
         let Some((path, format)) = self.out else { return Ok(()) };
         let mut trajectory = Trajectory::<N, M>::every(self.arguments.every);
         // A failure here is the one that the record already tells of.
-        let _ = integrate(system, &self.method, schedule, &mut state, &mut trajectory);
+        let _ = integrate_pieces(system, &self.method, schedule, &mut state, &mut trajectory);
         trajectory_file::write(system, trajectory.nodes(), path, format, self.arguments.scene.force)
     }
 }

@@ -22,9 +22,10 @@ pub(crate) const COLUMNS: [&str; 10] = [
 
 /// What the columns mean.
 pub(crate) const INTRO: &str = "Every method from the same start with the same step. Constraint: the largest \
-    |A(q) v + b| at a node, for a blade its sideways slip. Energy error: the largest |E - E0| at a node. Energy drift: slope \
-    of the least-squares line through E - E0. End error: distance from the closed form at the end, in metres or radians, \
-    whichever is larger. Newton: iterations a step. ns/step: time of the steps alone, median of repeated runs.";
+    |A(q) v + b| at a node, for a blade its sideways slip. Energy error: the largest |E - E0 - work| at a node, the work of \
+    what drives or brakes the scene taken off. Energy drift: slope of the least-squares line through it. End error: \
+    distance at the end from the closed form, or from gauss16 at a quarter of the step where there is none, in metres or \
+    radians, whichever is larger. Newton: iterations a step. ns/step: time of the steps alone, median of repeated runs.";
 
 /// A row of a comparison.
 pub(crate) fn cells<const N: usize>(record: &Record<N>, error: Option<f64>) -> Vec<String> {

@@ -25,8 +25,8 @@ impl Format {
     }
 }
 
-/// Names and units of the columns; in a `.npz` file the name alone is that of the array.
-const COLUMNS: [(&str, &str); 9] = [
+/// Names and units of the columns of every trajectory; in a `.npz` file the name alone is that of the array.
+const COLUMNS: [(&str, &str); 11] = [
     ("t", "s"),
     ("x", "m"),
     ("y", "m"),
@@ -36,9 +36,54 @@ const COLUMNS: [(&str, &str); 9] = [
     ("energy", "J"),
     ("constraint", "m/s"),
     ("constraint_force", "N"),
+    ("center_x", "m"),
+    ("center_y", "m"),
 ];
 
-type Row = [f64; COLUMNS.len()];
+/// A table of numbers, with a header.
+struct Columns {
+    header: Vec<(String, &'static str)>,
+    rows: Vec<Vec<f64>>,
+}
+
+impl Columns {
+    /// A trajectory in the words of a scene: what the scene does not have has no column.
+    fn of<Sys, const N: usize, const M: usize>(system: &Sys, nodes: &[dla::Node<N, M>]) -> Self
+    where
+        Sys: SceneSystem<N, M>,
+    {
+        let mut header: Vec<_> = COLUMNS.iter().map(|(name, unit)| ((*name).to_owned(), *unit)).collect();
+        let mut rows = Vec::with_capacity(nodes.len());
+        for node in nodes {
+            // What holds from this node on.
+            let piece = system.piece(node.t);
+            let SleighState { x, y, heading, speed, turn_rate } = piece.sleigh_state(&node.q, &node.v);
+            let [center_x, center_y] = piece.centre(&node.q);
+            let lambda = piece.motion(node.t, &node.q, &node.v).map_or([f64::NAN; M], |motion| motion.multiplier);
+            // The first constraint is that of the blade.
+            let force = lambda.first().copied().unwrap_or(0.0);
+            let mut row = vec![node.t, x, y, heading, speed, turn_rate, node.energy, node.constraint, force];
+            row.extend([center_x, center_y]);
+            let (rotor, powers) = (piece.rotor(&node.q, &node.v), piece.powers(node.t, &node.q, &node.v, &lambda));
+            if rows.is_empty() {
+                if rotor.is_some() {
+                    header.extend([("rotor_angle".to_owned(), "rad"), ("rotor_rate".to_owned(), "rad/s")]);
+                }
+                if !powers.is_empty() {
+                    header.push(("work".to_owned(), "J"));
+                }
+                header.extend(powers.iter().map(|power| (format!("power_{}", power.name), "W")));
+            }
+            row.extend(rotor.into_iter().flatten());
+            if !powers.is_empty() {
+                row.push(node.work);
+            }
+            row.extend(powers.iter().map(|power| power.power));
+            rows.push(row);
+        }
+        Self { header, rows }
+    }
+}
 
 /// The most nodes that a file holds: those of a run are in memory, at about 100 bytes each, before they are written.
 const MOST_NODES: u64 = 10_000_000;
@@ -64,27 +109,22 @@ pub(crate) fn write<Sys, const N: usize, const M: usize>(
 where
     Sys: SceneSystem<N, M>,
 {
-    let row = |node: &dla::Node<N, M>| -> Row {
-        let SleighState { x, y, heading, speed, turn_rate } = system.sleigh_state(&node.q, &node.v);
-        // The force of the first constraint, that of the blade; at the start there is no step to average it over.
-        let force = node.multipliers.and_then(|all| all.first().copied()).unwrap_or(f64::NAN);
-        [node.t, x, y, heading, speed, turn_rate, node.energy, node.constraint, force]
-    };
+    let columns = Columns::of(system, nodes);
     write_whole(path, overwrite, |file| match format {
-        Format::Csv => csv(file, nodes.iter().map(row)),
+        Format::Csv => csv(file, &columns),
         Format::Npz => {
             let mut file = FirstError::new(file);
-            let outcome = npz(&mut file, &nodes.iter().map(row));
+            let outcome = npz(&mut file, &columns);
             // What stopped the file is the reason of whatever the archive then stumbled over.
             file.into_result().and(outcome)
         }
     })
 }
 
-fn csv(file: &mut impl Write, rows: impl Iterator<Item = Row>) -> Result<(), Error> {
-    let header: Vec<String> = COLUMNS.iter().map(|(name, unit)| format!("{name} [{unit}]")).collect();
+fn csv(file: &mut impl Write, columns: &Columns) -> Result<(), Error> {
+    let header: Vec<String> = columns.header.iter().map(|(name, unit)| format!("{name} [{unit}]")).collect();
     writeln!(file, "{}", header.join(","))?;
-    for row in rows {
+    for row in &columns.rows {
         // `{:?}` prints the shortest text that reads back as the same number.
         write!(file, "{:?}", row[0])?;
         for value in &row[1..] {
@@ -95,16 +135,19 @@ fn csv(file: &mut impl Write, rows: impl Iterator<Item = Row>) -> Result<(), Err
     Ok(())
 }
 
-fn npz(file: &mut (impl Write + Seek), rows: &(impl ExactSizeIterator<Item = Row> + Clone)) -> Result<(), Error> {
+fn npz(file: &mut (impl Write + Seek), columns: &Columns) -> Result<(), Error> {
     use npyz::WriterBuilder;
     let mut archive = zip::ZipWriter::new(file);
     let options =
         zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored).large_file(true);
-    for (column, (name, _)) in COLUMNS.iter().enumerate() {
+    for (column, (name, _)) in columns.header.iter().enumerate() {
         archive.start_file(npyz::npz::file_name_from_array_name(name), options)?;
-        let mut array =
-            npyz::WriteOptions::new().default_dtype().shape(&[rows.len() as u64]).writer(&mut archive).begin_nd()?;
-        array.extend(rows.clone().map(|row| row[column]))?;
+        let mut array = npyz::WriteOptions::new()
+            .default_dtype()
+            .shape(&[columns.rows.len() as u64])
+            .writer(&mut archive)
+            .begin_nd()?;
+        array.extend(columns.rows.iter().map(|row| row[column]))?;
         array.finish()?;
     }
     archive.finish()?;

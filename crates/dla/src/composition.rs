@@ -61,7 +61,7 @@ where
     #[inline]
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
         let mut inner = *state;
-        let mut total = StepReport { impulses: [[0.0; M]; 2], iterations: 0 };
+        let mut total = StepReport::of(0);
         let mut done = 0.0;
         for weight in self.weights {
             let report = self.base.step(system, t + done * h, weight * h, &mut inner)?;

@@ -104,7 +104,7 @@ where
         if closed && let Some(step) = system.closed_step(t0, h, &q0, &v0, state.xi()) {
             let step = step.map_err(StepError::Closed)?;
             state.advance(&step.increment, step.velocity, Some(step.xi));
-            return Ok(StepReport { impulses: step.impulses, iterations: step.iterations });
+            return Ok(StepReport { impulses: step.impulses, iterations: step.iterations, work: None });
         }
         let in_basis = self.form != Form::Multipliers;
         let basis = |t, q: &[f64; N]| if in_basis { system.admissible_basis(t, q) } else { None };
@@ -140,7 +140,7 @@ where
             .map_err(|source| StepError::Newton { stage: Stage::Projection, source })?;
 
         state.advance(&d, v1, None);
-        Ok(StepReport { impulses: [lambda, mu], iterations })
+        Ok(StepReport { impulses: [lambda, mu], iterations, work: None })
     }
 }
 

@@ -1,6 +1,6 @@
 use crate::{OneStep, State, StepError, StepReport};
 use lagrangian::{System, constraint_residual, energy};
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use thiserror::Error;
 
 /// When the steps of a run are made: node `k` is at `t0 + k h`, so that no rounding error adds up in the time.
@@ -62,6 +62,10 @@ pub trait Observer<Sys, const N: usize, const M: usize> {
     /// Sees the first node.
     fn start(&mut self, node: &View<'_, Sys, N>);
 
+    /// Sees a node again where the next smooth piece of a run begins: the velocity may have jumped.
+    #[inline(always)]
+    fn resume(&mut self, _node: &View<'_, Sys, N>) {}
+
     /// Sees a node after a step; `Break` ends the run there.
     fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()>;
 
@@ -90,6 +94,11 @@ where
         self.1.start(node);
     }
     #[inline(always)]
+    fn resume(&mut self, node: &View<'_, Sys, N>) {
+        self.0.resume(node);
+        self.1.resume(node);
+    }
+    #[inline(always)]
     fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
         let first = self.0.step(node, report);
         let second = self.1.step(node, report);
@@ -106,6 +115,10 @@ impl<Sys, O: Observer<Sys, N, M>, const N: usize, const M: usize> Observer<Sys, 
     #[inline(always)]
     fn start(&mut self, node: &View<'_, Sys, N>) {
         (**self).start(node);
+    }
+    #[inline(always)]
+    fn resume(&mut self, node: &View<'_, Sys, N>) {
+        (**self).resume(node);
     }
     #[inline(always)]
     fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
@@ -140,22 +153,58 @@ pub fn drive<Sys, Method, Obs, const N: usize, const M: usize>(
     method: &mut Method,
     schedule: &Schedule,
     state: &mut State<N>,
-    mut observer: Obs,
+    observer: Obs,
 ) -> Result<u64, RunError>
 where
     Method: OneStep<Sys, N, M>,
     Obs: Observer<Sys, N, M>,
 {
-    observer.start(&View { system, k: 0, t: schedule.t0, state });
-    let mut made = 0;
-    let mut outcome = Ok(());
-    while made < schedule.steps {
+    drive_part(system, method, schedule, 0..schedule.steps, state, observer).map(|part| part.made)
+}
+
+/// Some of the steps of a run, made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Part {
+    /// The number of steps made since the start of the run.
+    pub made: u64,
+    /// Whether the observer ended the run.
+    pub stopped: bool,
+}
+
+/// Makes the steps `steps.start + 1 ..= steps.end` of a schedule, as a part of a run: the observer sees the start with the
+/// first part, the end with the last or where the run ends early, and [`Observer::resume`] in between.
+///
+/// # Errors
+/// As [`drive`].
+#[inline]
+pub fn drive_part<Sys, Method, Obs, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &mut Method,
+    schedule: &Schedule,
+    steps: Range<u64>,
+    state: &mut State<N>,
+    mut observer: Obs,
+) -> Result<Part, RunError>
+where
+    Method: OneStep<Sys, N, M>,
+    Obs: Observer<Sys, N, M>,
+{
+    let mut made = steps.start;
+    let first = View { system, k: made, t: schedule.time(made), state };
+    if made == 0 {
+        observer.start(&first)
+    } else {
+        observer.resume(&first)
+    }
+    let (mut outcome, mut stopped) = (Ok(()), false);
+    while made < steps.end {
         let time = schedule.time(made);
         match method.step(system, time, schedule.step, state) {
             Ok(report) => {
                 made += 1;
                 let node = View { system, k: made, t: schedule.time(made), state };
                 if observer.step(&node, &report).is_break() {
+                    stopped = true;
                     break;
                 }
             }
@@ -165,6 +214,8 @@ where
             }
         }
     }
-    observer.end(&View { system, k: made, t: schedule.time(made), state });
-    outcome.map(|()| made)
+    if stopped || outcome.is_err() || made == schedule.steps {
+        observer.end(&View { system, k: made, t: schedule.time(made), state });
+    }
+    outcome.map(|()| Part { made, stopped })
 }

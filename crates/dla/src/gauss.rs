@@ -102,6 +102,6 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
             return Err(StepError::NotFinite);
         }
         state.advance(&increment, v1, Some(xi1));
-        Ok(StepReport { impulses: [[0.0; M]; 2], iterations })
+        Ok(StepReport::of(iterations))
     }
 }

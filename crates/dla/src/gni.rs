@@ -92,7 +92,7 @@ where
         let (_, v1) = across(system, t + h, (&q1, &v), &arriving).map_err(singular(Stage::Projection))?;
         state.advance(&increment, v1, None);
         self.memory = Some(Memory { node: *state, arriving });
-        Ok(StepReport { impulses: [[0.0; M]; 2], iterations })
+        Ok(StepReport::of(iterations))
     }
 }
 

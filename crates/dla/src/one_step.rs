@@ -19,9 +19,18 @@ pub struct StepReport<const M: usize> {
     pub impulses: [[f64; M]; 2],
     /// Newton iterations of the step's equations; 0 for an explicit method.
     pub iterations: u32,
+    /// The work that the forces did over the step (J), for a method whose energy balance knows it.
+    pub work: Option<f64>,
 }
 
 impl<const M: usize> StepReport<M> {
+    /// The report of a step of which nothing but the iterations is known.
+    #[must_use]
+    #[inline(always)]
+    pub fn of(iterations: u32) -> Self {
+        Self { impulses: [[0.0; M]; 2], iterations, work: None }
+    }
+
     /// The constraint forces, averaged over a step of length `h`: second-order accurate in its middle.
     #[must_use]
     pub fn multipliers(&self, h: f64) -> [f64; M] {
@@ -87,6 +96,12 @@ pub enum StepError {
         defect: f64,
         /// What rounding may do (J).
         bound: f64,
+    },
+    /// Forces or constraints jump inside the step, across which no method has an order.
+    #[error("forces or constraints jump at t = {time} s, inside the step: choose a step that has a node there")]
+    Jump {
+        /// When (s).
+        time: f64,
     },
     /// A velocity became infinite or not a number.
     #[error("the velocities are no longer finite")]

@@ -1,4 +1,4 @@
-use crate::{Observer, StepReport, View};
+use crate::{Observer, StepReport, View, Work};
 use lagrangian::System;
 use std::ops::ControlFlow;
 
@@ -15,6 +15,8 @@ pub struct Node<const N: usize, const M: usize> {
     pub v: [f64; N],
     /// Energy (J).
     pub energy: f64,
+    /// Work done since the start (J), so that `E(t) - E(0) - work` is the error of the energy.
+    pub work: f64,
     /// Largest constraint residual `|A(q) v + b|`.
     pub constraint: f64,
     /// Constraint forces averaged over the step that led here; none at the start.
@@ -28,13 +30,14 @@ pub struct Trajectory<const N: usize, const M: usize> {
     every: u64,
     time: f64,
     multipliers: Option<[f64; M]>,
+    work: Work<N>,
 }
 
 impl<const N: usize, const M: usize> Trajectory<N, M> {
     /// Keeps every `every`-th node; 0 counts as 1.
     #[must_use]
     pub fn every(every: u64) -> Self {
-        Self { nodes: Vec::new(), every: every.max(1), time: 0.0, multipliers: None }
+        Self { nodes: Vec::new(), every: every.max(1), time: 0.0, multipliers: None, work: Work::default() }
     }
 
     /// The nodes kept, in the order of time.
@@ -50,6 +53,7 @@ impl<const N: usize, const M: usize> Trajectory<N, M> {
             q: view.state.unwrapped(),
             v: *view.state.v(),
             energy: view.energy(),
+            work: self.work.total(),
             constraint: view.constraint(),
             multipliers: self.multipliers,
         });
@@ -59,10 +63,17 @@ impl<const N: usize, const M: usize> Trajectory<N, M> {
 impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for Trajectory<N, M> {
     fn start(&mut self, node: &View<'_, Sys, N>) {
         (self.time, self.multipliers) = (node.t, None);
+        self.work.start(node);
         self.keep(node);
     }
 
+    fn resume(&mut self, node: &View<'_, Sys, N>) {
+        self.work.resume(node);
+    }
+
     fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+        // Work never ends a run.
+        let _ = self.work.step(node, report);
         self.multipliers = Some(report.multipliers(node.t - self.time));
         self.time = node.t;
         if node.k.is_multiple_of(self.every) {

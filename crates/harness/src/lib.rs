@@ -13,6 +13,6 @@ mod timing;
 pub use baseline::{Rk4, Rk4Projected, Rk4Reduced};
 pub use method::{Kind, METHODS, Method, MethodError, MethodInfo};
 pub use record::{EnergySummary, NewtonSummary, Record, Sample};
-pub use run::{Request, integrate, run};
+pub use run::{Request, integrate, integrate_pieces, run};
 pub use statistics::Trend;
 pub use timing::Progress;

@@ -1,5 +1,5 @@
 use crate::{MethodInfo, Trend};
-use dla::{Observer, RunError, StepReport, View};
+use dla::{Observer, RunError, StepReport, View, Work};
 use lagrangian::System;
 use std::ops::ControlFlow;
 
@@ -19,9 +19,11 @@ pub struct EnergySummary {
     pub initial: f64,
     /// At the end.
     pub last: f64,
-    /// `max |E - E0|` over all nodes.
+    /// The work done over the run; zero unless forces, explicit time or moving constraints do some.
+    pub work: f64,
+    /// `max |E - E0 - work|` over all nodes.
     pub max_error: f64,
-    /// Slope of the least-squares line through `E - E0` at all nodes (J/s).
+    /// Slope of the least-squares line through `E - E0 - work` at all nodes (J/s).
     pub drift_per_time: f64,
 }
 
@@ -32,7 +34,7 @@ pub struct Sample<const N: usize> {
     pub t: f64,
     /// Configuration, angles with their full turns.
     pub q: [f64; N],
-    /// The largest `|E - E0|` (J) since the sample before.
+    /// The largest `|E - E0 - work|` (J) since the sample before.
     pub energy_error: f64,
     /// The largest constraint residual since the sample before.
     pub constraint: f64,
@@ -76,6 +78,7 @@ pub(crate) struct Meter<const N: usize> {
     max_error: f64,
     constraint_max: f64,
     trend: Trend,
+    work: Work<N>,
     iterations: u64,
     most: u32,
     bucket: (f64, f64),
@@ -98,6 +101,7 @@ impl<const N: usize> Meter<N> {
             max_error: 0.0,
             constraint_max: 0.0,
             trend: Trend::default(),
+            work: Work::default(),
             iterations: 0,
             most: 0,
             bucket: (0.0, 0.0),
@@ -108,12 +112,12 @@ impl<const N: usize> Meter<N> {
 
     fn see<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>) {
         self.last = node.energy();
-        let error = (self.last - self.initial).abs();
+        let error = self.last - self.initial - self.work.total();
         let constraint = node.constraint();
-        self.max_error = larger(self.max_error, error);
+        self.max_error = larger(self.max_error, error.abs());
         self.constraint_max = larger(self.constraint_max, constraint);
-        self.trend.add(node.t, self.last - self.initial);
-        self.bucket = (larger(self.bucket.0, error), larger(self.bucket.1, constraint));
+        self.trend.add(node.t, error);
+        self.bucket = (larger(self.bucket.0, error.abs()), larger(self.bucket.1, constraint));
     }
 
     fn sample<Sys>(&mut self, node: &View<'_, Sys, N>) {
@@ -139,6 +143,7 @@ impl<const N: usize> Meter<N> {
             energy: EnergySummary {
                 initial: self.initial,
                 last: self.last,
+                work: self.work.total(),
                 max_error: self.max_error,
                 drift_per_time: self.trend.slope().unwrap_or(0.0),
             },
@@ -155,11 +160,18 @@ impl<const N: usize> Meter<N> {
 impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for Meter<N> {
     fn start(&mut self, node: &View<'_, Sys, N>) {
         self.initial = node.energy();
+        self.work.start(node);
         self.see(node);
         self.sample(node);
     }
 
+    fn resume(&mut self, node: &View<'_, Sys, N>) {
+        self.work.resume(node);
+    }
+
     fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+        // Work never ends a run.
+        let _ = self.work.step(node, report);
         self.see(node);
         self.iterations += u64::from(report.iterations);
         self.most = self.most.max(report.iterations);

@@ -1,8 +1,12 @@
 use crate::record::Meter;
 use crate::timing::{Ticker, median_seconds};
 use crate::{Kind, Method, Progress, Record, Rk4, Rk4Projected, Rk4Reduced};
-use dla::{Composition, Dla, Energy, Gauss, Gni, Lobatto, Observer, RunError, Schedule, State, drive};
-use lagrangian::System;
+use dla::{
+    Composition, Dla, Energy, Gauss, Gni, Lobatto, Observer, Part, RunError, Schedule, State, drive_part,
+    onto_constraint, pieces,
+};
+use lagrangian::{Piecewise, System};
+use std::ops::Range;
 
 /// A run to be made.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,7 +21,7 @@ pub struct Request<const N: usize> {
     pub samples: u64,
 }
 
-/// Integrates with the method of that name: the one place where a name becomes a type.
+/// Integrates with the method of that name; returns how many steps were made.
 ///
 /// # Errors
 /// [`RunError`] with the step that failed; `state` is then the last good node.
@@ -32,9 +36,57 @@ where
     Sys: System<N, M>,
     Obs: Observer<Sys, N, M>,
 {
+    integrate_part(system, method, schedule, 0..schedule.steps, state, observer).map(|part| part.made)
+}
+
+/// Integrates a system whose forces or constraints may jump: one smooth piece after the other.
+///
+/// Where an imposed velocity jumps, the impulse of the constraints changes the velocity.
+///
+/// # Errors
+/// As [`integrate`]; a jump inside a step is refused before the first step is made.
+pub fn integrate_pieces<Sys, Obs, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &Method,
+    schedule: &Schedule,
+    state: &mut State<N>,
+    mut observer: Obs,
+) -> Result<u64, RunError>
+where
+    Sys: System<N, M> + Piecewise,
+    Obs: Observer<Sys, N, M>,
+{
+    let (begin, end) = (schedule.t0, schedule.time(schedule.steps));
+    let mut made = 0;
+    for part in pieces(schedule, system.jumps(begin.min(end), begin.max(end)))? {
+        let (first, last) = (schedule.time(part.start), schedule.time(part.end));
+        let piece = system.piece(0.5 * (first + last));
+        onto_constraint(&piece, first, state).map_err(|source| RunError { step: made + 1, time: first, source })?;
+        let done = integrate_part(&piece, method, schedule, part, state, &mut observer)?;
+        made = done.made;
+        if done.stopped {
+            break;
+        }
+    }
+    Ok(made)
+}
+
+/// A part of a run with the method of that name: the one place where a name becomes a type.
+fn integrate_part<Sys, Obs, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &Method,
+    schedule: &Schedule,
+    steps: Range<u64>,
+    state: &mut State<N>,
+    observer: Obs,
+) -> Result<Part, RunError>
+where
+    Sys: System<N, M>,
+    Obs: Observer<Sys, N, M>,
+{
     macro_rules! run_with {
         ($method:expr) => {
-            drive(system, &mut $method, schedule, state, observer)
+            drive_part(system, &mut $method, schedule, steps, state, observer)
         };
     }
     match method.info().kind {
@@ -68,7 +120,7 @@ where
 /// Makes a run twice, once observed and once timed with nothing looking on, and measures it.
 ///
 /// A run that fails gives the record of its valid part, with [`Record::failure`] set.
-pub fn run<Sys: System<N, M>, const N: usize, const M: usize>(
+pub fn run<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
     system: &Sys,
     method: &Method,
     request: &Request<N>,
@@ -79,13 +131,13 @@ pub fn run<Sys: System<N, M>, const N: usize, const M: usize>(
 
     let mut meter = Meter::new(schedule.steps.div_ceil(samples.max(1)));
     let ticker = Ticker { progress, told: 0 };
-    let failure = integrate(system, method, &schedule, &mut start.clone(), (&mut meter, ticker)).err();
+    let failure = integrate_pieces(system, method, &schedule, &mut start.clone(), (&mut meter, ticker)).err();
 
     let timed = Schedule { steps: failure.map_or(schedule.steps, |failure| failure.step - 1), ..schedule };
     let wall_seconds = median_seconds(|| {
         let mut state = std::hint::black_box(start);
         // The observed run has just shown that these steps succeed.
-        let made = integrate(system, method, &timed, &mut state, ());
+        let made = integrate_pieces(system, method, &timed, &mut state, ());
         std::hint::black_box((made.is_ok(), state));
     });
     meter.record(method.info(), schedule.step, wall_seconds, failure)

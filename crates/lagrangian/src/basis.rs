@@ -27,6 +27,17 @@ impl<S: Scalar, const N: usize, const M: usize> AdmissibleBasis<S, N, M> {
         Self { vectors: all }
     }
 
+    /// The basis with the vectors `vector(0) .. vector(N - M - 1)`, where their number is not known as a constant.
+    #[must_use]
+    #[inline(always)]
+    pub fn from_fn(vector: impl Fn(usize) -> [S; N]) -> Self {
+        let mut basis = Self::empty();
+        for (k, w) in basis.vectors_mut().iter_mut().enumerate() {
+            *w = vector(k);
+        }
+        basis
+    }
+
     /// The `N - M` basis vectors.
     #[must_use]
     #[inline(always)]

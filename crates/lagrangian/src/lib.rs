@@ -20,6 +20,8 @@ mod momentum;
 mod motion;
 #[cfg(feature = "num-dual")]
 mod num_dual;
+mod piecewise;
+mod power;
 pub mod quadrature;
 mod reduced;
 mod rule;
@@ -39,6 +41,8 @@ pub use hyperdual::HyperDual;
 pub use lanes::{Lanes, vectorized};
 pub use momentum::{energy, mass_matrix, momentum};
 pub use motion::{Motion, MotionError};
+pub use piecewise::Piecewise;
+pub use power::{force_power, lagrangian_power};
 pub use reduced::{ReducedError, ReducedSlope, quasi_velocities, reduced_acceleration, reduced_slope, velocity_of};
 pub use rule::{Alpha, Midpoint, NotAWeight, Rule, RuleNode, Symmetrised, Trapezoid};
 pub use saddle::Saddle;

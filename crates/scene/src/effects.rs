@@ -1,64 +1,168 @@
-use crate::document::Document;
+use crate::effect::{EFFECTS, HillSpec, SceneEffect, TimeSpec};
 use crate::error::SceneError;
 use crate::fault::Fault;
-use crate::finding::Finding;
 use crate::keys::abridged;
+use crate::quantity::Quantity;
 use crate::suggest;
-use crate::table::{Table, type_name};
-use std::ops::Range;
+use crate::table::Table;
 use toml::de::{DeTable, DeValue};
 
-/// The kinds of effects that a scene may name in this version.
-pub const EFFECTS: &[&str] = &[];
+/// Reads the entries of `[[effects]]`.
+pub(crate) fn read(root: &Table<'_>, offset: f64) -> Result<Vec<SceneEffect>, SceneError> {
+    if root.get("effects").is_none() {
+        return Ok(Vec::new());
+    }
+    let mut effects: Vec<SceneEffect> = Vec::new();
+    for (entry, raw) in root.entries_of("effects", "a list of tables, each headed `[[effects]]`")? {
+        let kind = kind_of(&entry)?;
+        let known: Vec<&str> = ["kind"].into_iter().chain(kind.1.iter().copied()).collect();
+        let table = root.inner(format!("effects.{}", kind.0), raw, entry.header(), &known)?;
+        let effect = read_one(&table, kind.0)?;
+        check_company(&table, &effect, &effects, offset)?;
+        effects.push(effect);
+    }
+    Ok(effects)
+}
 
-/// Checks the entries of `[[effects]]`.
-pub(crate) fn read(root: &Table<'_>) -> Result<(), SceneError> {
-    let Some(value) = root.get("effects") else {
-        return Ok(());
+/// The row of [`EFFECTS`] that the entry's `kind` names.
+fn kind_of(entry: &Table<'_>) -> Result<&'static (&'static str, &'static [&'static str], &'static str), SceneError> {
+    let names: Vec<&str> = EFFECTS.iter().map(|(name, _, _)| *name).collect();
+    let accepted = || format!("one of {}", suggest::list(&names));
+    let kind = entry.get("kind").ok_or_else(|| entry.missing("kind", accepted()))?;
+    let DeValue::String(name) = kind.get_ref() else {
+        return Err(entry.wrong_type("kind", kind, accepted()));
     };
-    let accepted = "a list of tables, each headed `[[effects]]`";
-    let DeValue::Array(entries) = value.get_ref() else {
-        return Err(root.wrong_type("effects", value, accepted.to_owned()));
-    };
-    for entry in entries {
-        let DeValue::Table(table) = entry.get_ref() else {
-            return Err(root.wrong_type("effects", entry, accepted.to_owned()));
+    EFFECTS.iter().find(|(known, _, _)| known == name).ok_or_else(|| {
+        let fault = Fault {
+            variant: SceneError::UnknownName,
+            key: "kind",
+            problem: "names no known effect".to_owned(),
+            found: Some(format!("{:?}", abridged(name))),
+            accepted: accepted(),
+            help: suggest::nearest(name, names.iter().copied()).map(suggest::did_you_mean),
         };
-        read_entry(&root.document, entry.span(), table)?;
+        entry.fail(fault)
+    })
+}
+
+/// Reads the keys of one effect.
+fn read_one(table: &Table<'_>, kind: &str) -> Result<SceneEffect, SceneError> {
+    const fn finite(key: &'static str, unit: &'static str) -> Quantity {
+        Quantity::finite(key, unit)
+    }
+    let at_least_one = |keys: [&'static str; 2], what: &str| match keys.iter().any(|key| table.get(key).is_some()) {
+        true => Ok(()),
+        false => Err(table.missing(keys[0], format!("{what}: `{}`, `{}` or both", keys[0], keys[1]))),
+    };
+    Ok(match kind {
+        "slope" => SceneEffect::Slope { gravity: table.required_pair(&finite("gravity", "m/s^2"))? },
+        "bowl" => SceneEffect::Bowl {
+            stiffness: table.required_pair(&finite("stiffness", "N/m"))?,
+            center: table.pair(&finite("center", "m"))?.unwrap_or([0.0; 2]),
+        },
+        "egg_crate" => SceneEffect::EggCrate {
+            height: table.required(&finite("height", "J"))?,
+            wave_number: table.required_pair(&finite("wave_number", "1/m"))?,
+        },
+        "hills" => SceneEffect::Hills { hills: hills(table)? },
+        "flywheel" => SceneEffect::Flywheel {
+            inertia: table.required(&Quantity::positive("inertia", "kg m^2"))?,
+            rotor_rate: table.number(&finite("rotor_rate", "rad/s"))?.unwrap_or(0.0),
+            torque: table.time_function(&finite("torque", "N m"))?,
+        },
+        "drag" => {
+            at_least_one(["along", "turning"], "a coefficient of drag")?;
+            SceneEffect::Drag {
+                along: table.number(&Quantity::not_negative("along", "kg/s"))?.unwrap_or(0.0),
+                turning: table.number(&Quantity::not_negative("turning", "kg m^2/s"))?.unwrap_or(0.0),
+            }
+        }
+        "thrust" => SceneEffect::Thrust { force: table.required_function(&finite("force", "N"))? },
+        "torque" => SceneEffect::Torque { torque: table.required_function(&finite("torque", "N m"))? },
+        "moving_mass" => {
+            at_least_one(["x", "y"], "the place of the mass in the body, in m")?;
+            let place = |key| {
+                let function = table.time_function(&finite(key, "m"))?;
+                Ok(function.unwrap_or(TimeSpec::Constant(0.0)))
+            };
+            let mass = table.required(&Quantity::positive("mass", "kg"))?;
+            SceneEffect::MovingMass { mass, x: place("x")?, y: place("y")? }
+        }
+        "servo" => {
+            at_least_one(["speed", "turn_rate"], "what the servo imposes")?;
+            SceneEffect::Servo {
+                speed: table.time_function(&finite("speed", "m/s"))?,
+                turn_rate: table.time_function(&finite("turn_rate", "rad/s"))?,
+            }
+        }
+        "tracer" => SceneEffect::Tracer { path: table.path("path")? },
+        _ => SceneEffect::Turntable { rate: table.required(&finite("rate", "rad/s"))? },
+    })
+}
+
+fn hills(table: &Table<'_>) -> Result<Vec<HillSpec>, SceneError> {
+    let accepted = "a list of tables `{height, x, y, width}`, the height in J, lengths in m";
+    let read = |hill: &Table<'_>| {
+        Ok(HillSpec {
+            height: hill.required(&Quantity::finite("height", "J"))?,
+            x: hill.required(&Quantity::finite("x", "m"))?,
+            y: hill.required(&Quantity::finite("y", "m"))?,
+            width: hill.required(&Quantity::positive("width", "m"))?,
+        })
+    };
+    table.tables("hills", &["height", "x", "y", "width"], accepted)?.iter().map(read).collect()
+}
+
+/// Refuses what does not go together: a second body, two ways to impose a velocity, what the sleigh cannot do.
+fn check_company(table: &Table<'_>, new: &SceneEffect, others: &[SceneEffect], offset: f64) -> Result<(), SceneError> {
+    let only_once = matches!(
+        new,
+        SceneEffect::Flywheel { .. }
+            | SceneEffect::Servo { .. }
+            | SceneEffect::Tracer { .. }
+            | SceneEffect::Turntable { .. }
+    );
+    if only_once && others.iter().any(|other| other.kind() == new.kind()) {
+        return Err(table.wrong("kind", "is there already", format!("one `{}` in a scene", new.kind())));
+    }
+    let imposes = |effect: &SceneEffect| matches!(effect, SceneEffect::Servo { .. } | SceneEffect::Tracer { .. });
+    if imposes(new) && others.iter().any(imposes) {
+        let problem = "imposes velocities that another effect imposes already";
+        return Err(table.wrong("kind", problem, "either a `servo` or a `tracer`".to_owned()));
+    }
+    if matches!(new, SceneEffect::Tracer { .. }) && offset == 0.0 {
+        let problem = "cannot lead a centre of mass that lies at the blade, which does not move sideways";
+        return Err(table.wrong("kind", problem, "a `tracer` where `sleigh.offset` is not 0".to_owned()));
+    }
+    if let SceneEffect::MovingMass { x, y, .. } = new {
+        let jumps = |f: &TimeSpec| matches!(f, TimeSpec::Table { times, .. } if times.len() > 1);
+        for (key, function) in [("x", x), ("y", y)] {
+            if jumps(function) {
+                let accepted = "a number or `{amplitude, frequency, phase}`, in m".to_owned();
+                return Err(table.wrong(key, "would make the mass jump", accepted));
+            }
+        }
     }
     Ok(())
 }
 
-/// Reads one effect: its `kind` says which other keys it has, so that is read first.
-fn read_entry(document: &Document<'_>, header: Range<usize>, table: &DeTable<'_>) -> Result<(), SceneError> {
-    let Some(kind) = table.get("kind") else {
-        return Err(fail(document, &header, SceneError::Missing, "is missing", None, None));
-    };
-    let DeValue::String(name) = kind.get_ref() else {
-        let found = type_name(kind.get_ref()).to_owned();
-        return Err(fail(document, &kind.span(), SceneError::WrongType, "has the wrong type", Some(found), None));
-    };
-    // No kind is known yet. The other keys of one that is known are those of a plain struct that refuses unknown
-    // fields, deserialised from the rest of the table; the errors of serde carry the span to mark.
-    let found = format!("{:?}", abridged(name));
-    let help = suggest::nearest(name, EFFECTS.iter().copied()).map(suggest::did_you_mean);
-    let problem = "names no effect of this version";
-    Err(fail(document, &kind.span(), SceneError::UnknownName, problem, Some(found), help))
-}
+/// An entry of a list, and its keys.
+type Entry<'s> = (Table<'s>, &'s DeTable<'s>);
 
-fn fail(
-    document: &Document<'_>,
-    span: &Range<usize>,
-    variant: fn(Box<Finding>) -> SceneError,
-    problem: &str,
-    found: Option<String>,
-    help: Option<String>,
-) -> SceneError {
-    let accepted = if EFFECTS.is_empty() {
-        "no kind: this version knows no effects yet".to_owned()
-    } else {
-        format!("one of {}", suggest::list(EFFECTS))
-    };
-    let fault = Fault { variant, key: "kind", problem: problem.to_owned(), found, accepted, help };
-    document.fail(span, Some("effects.kind".to_owned()), fault)
+impl<'s> Table<'s> {
+    /// The entries of a list of tables, each with its raw keys.
+    fn entries_of(&self, key: &str, accepted: &str) -> Result<Vec<Entry<'s>>, SceneError> {
+        let Some(value) = self.get(key) else { return Ok(Vec::new()) };
+        let DeValue::Array(entries) = value.get_ref() else {
+            return Err(self.wrong_type(key, value, accepted.to_owned()));
+        };
+        let mut tables = Vec::new();
+        for entry in entries {
+            let DeValue::Table(raw) = entry.get_ref() else {
+                return Err(self.wrong_type(key, entry, accepted.to_owned()));
+            };
+            tables.push((self.unchecked(self.path_of(key), raw, entry.span()), raw));
+        }
+        Ok(tables)
+    }
 }

@@ -47,7 +47,7 @@ pub(crate) fn home(key: &str) -> Option<&'static str> {
 
 /// `key` of the table `path`, as messages name it.
 pub(crate) fn path(table: &str, key: &str) -> String {
-    let bare = !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
+    let bare = !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-'));
     let key = if bare { abridged(key) } else { format!("{:?}", abridged(key)) };
     if table.is_empty() { key } else { format!("{table}.{key}") }
 }

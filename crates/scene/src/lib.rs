@@ -14,15 +14,19 @@
 //! # Ok::<(), scene::SceneError>(())
 //! ```
 
+mod acting;
 mod bundled;
 mod document;
+mod effect;
 mod effects;
 mod error;
 mod fault;
 mod file;
 mod finding;
 mod keys;
+mod power;
 mod quantity;
+mod reading;
 mod run;
 mod scene;
 mod sections;
@@ -31,9 +35,11 @@ mod system;
 mod table;
 
 pub use self::scene::Scene;
+pub use acting::Acting;
 pub use bundled::{Bundled, bundled};
-pub use effects::EFFECTS;
+pub use effect::{EFFECTS, HillSpec, PathSpec, SceneEffect, Shape, TimeSpec};
 pub use error::SceneError;
 pub use finding::{Finding, Place};
+pub use power::{EffectPower, SceneBody, SceneEffects};
 pub use run::{DEFAULT_METHOD, MAX_STEPS, RunSettings};
 pub use system::{SceneSystem, Visitor};

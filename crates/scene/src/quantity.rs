@@ -5,7 +5,7 @@ use crate::fault::Fault;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Quantity {
     pub(crate) key: &'static str,
-    unit: &'static str,
+    pub(crate) unit: &'static str,
     range: Range,
 }
 
@@ -13,6 +13,7 @@ pub(crate) struct Quantity {
 enum Range {
     Finite,
     Positive,
+    NotNegative,
     Fraction,
 }
 
@@ -27,9 +28,19 @@ impl Quantity {
         Self { key, unit, range: Range::Positive }
     }
 
+    /// A finite number, 0 or greater.
+    pub(crate) const fn not_negative(key: &'static str, unit: &'static str) -> Self {
+        Self { key, unit, range: Range::NotNegative }
+    }
+
     /// A number from 0 to 1, without a unit.
     pub(crate) const fn fraction(key: &'static str) -> Self {
         Self { key, unit: "", range: Range::Fraction }
+    }
+
+    /// The same kind of number under another key.
+    pub(crate) const fn named(self, key: &'static str) -> Self {
+        Self { key, ..self }
     }
 
     /// The values it may have, as messages say it.
@@ -37,6 +48,7 @@ impl Quantity {
         match self.range {
             Range::Finite => format!("a finite number, in {}", self.unit),
             Range::Positive => format!("a finite number greater than 0, in {}", self.unit),
+            Range::NotNegative => format!("a finite number, 0 or greater, in {}", self.unit),
             Range::Fraction => "a number from 0 to 1".to_owned(),
         }
     }
@@ -46,8 +58,9 @@ impl Quantity {
         let problem = match self.range {
             _ if !value.is_finite() => "must be finite",
             Range::Positive if value <= 0.0 => "must be positive",
+            Range::NotNegative if value < 0.0 => "must not be negative",
             Range::Fraction if !(0.0..=1.0).contains(&value) => "must be between 0 and 1",
-            Range::Finite | Range::Positive | Range::Fraction => return Ok(()),
+            Range::Finite | Range::Positive | Range::NotNegative | Range::Fraction => return Ok(()),
         };
         Err(Fault {
             variant: SceneError::OutOfRange,

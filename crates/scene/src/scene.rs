@@ -4,8 +4,9 @@ use crate::error::SceneError;
 use crate::fault::Fault;
 use crate::finding::Excerpt;
 use crate::run::RunSettings;
+use crate::system::FirstMisaligned;
 use crate::table::Table;
-use crate::{effects, file, keys, sections};
+use crate::{SceneEffect, effects, file, keys, sections};
 use sleigh::{Sleigh, SleighState};
 use std::path::Path;
 use toml::de::DeTable;
@@ -24,6 +25,8 @@ pub struct Scene {
     pub start: SleighState,
     /// How to run it.
     pub run: RunSettings,
+    /// What the entries `[[effects]]` name, in their order.
+    pub effects: Vec<SceneEffect>,
 }
 
 impl Scene {
@@ -49,8 +52,17 @@ impl Scene {
         let sleigh = sections::sleigh(&root.table("sleigh")?)?;
         let start = sections::start(&root.table("start")?)?;
         let run = RunSettings::read(&root.table("run")?, methods)?;
-        effects::read(&root)?;
-        Ok(Self { name, title, sleigh, start, run })
+        let effects = effects::read(&root, sleigh.offset())?;
+        let scene = Self { name, title, sleigh, start, run, effects };
+        match scene.misaligned() {
+            None => Ok(scene),
+            Some(time) => Err(root.table("run")?.fail(unaligned(time))),
+        }
+    }
+
+    /// The first time at which a table or a corner of a path jumps inside a step.
+    fn misaligned(&self) -> Option<f64> {
+        self.visit(FirstMisaligned(&self.run)).ok().flatten()
     }
 
     /// Reads the bundled scene of that name or else the file at that path: `./turnaround` is always the file.
@@ -100,7 +112,10 @@ impl Scene {
             };
             flag_error(fault, given, &self.name)
         })?;
-        Ok(self)
+        match self.misaligned() {
+            None => Ok(self),
+            Some(time) => Err(flag_error(unaligned(time), step.is_some(), &self.name)),
+        }
     }
 }
 
@@ -109,6 +124,18 @@ fn flag_error(fault: Fault, given: bool, name: &str) -> SceneError {
     let (origin, field) =
         if given { ("command line", format!("--{}", fault.key)) } else { (name, keys::path("run", fault.key)) };
     fault.at(origin, None, Some(field), Excerpt::default())
+}
+
+/// A jump that falls inside a step.
+fn unaligned(time: f64) -> Fault {
+    Fault {
+        variant: SceneError::OutOfRange,
+        key: "step",
+        problem: format!("makes no node at t = {time:?} s, where an effect jumps"),
+        found: None,
+        accepted: format!("a step that divides {time:?} s, and every other time at which a table or a path jumps"),
+        help: None,
+    }
 }
 
 fn empty(document: &Document<'_>) -> SceneError {

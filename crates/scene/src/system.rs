@@ -1,19 +1,41 @@
-use crate::Scene;
-use lagrangian::{System, With};
-use sleigh::{Exact, Sleigh, SleighError, SleighState};
+use crate::power::{self, SceneBody, SceneEffects};
+use crate::{Acting, EffectPower, RunSettings, Scene, SceneEffect};
+use lagrangian::{Piecewise, System, With, quasi_velocities, velocity_of};
+use sleigh::{Exact, Flywheel, Guide, Guided, SleighError, SleighState};
 
 /// A system that came from a scene, and answers in the words of a scene.
-pub trait SceneSystem<const N: usize, const M: usize>: System<N, M> {
+pub trait SceneSystem<const N: usize, const M: usize>: System<N, M> + Piecewise {
     /// Place, heading and admissible velocities of the sleigh.
     fn sleigh_state(&self, q: &[f64; N], v: &[f64; N]) -> SleighState;
+
+    /// The centre of mass (m).
+    fn centre(&self, q: &[f64; N]) -> [f64; 2];
+
+    /// Angle relative to the body (rad) and relative rate (rad/s) of the rotor, where there is one.
+    fn rotor(&self, q: &[f64; N], v: &[f64; N]) -> Option<[f64; 2]> {
+        (N == 4).then(|| [q[N - 1], v[N - 1]])
+    }
+
+    /// The power of each effect that has any, where the constraints have the multipliers `lambda`.
+    fn powers(&self, t: f64, q: &[f64; N], v: &[f64; N], lambda: &[f64; M]) -> Vec<EffectPower>;
 }
 
-impl<E> SceneSystem<3, 1> for With<Sleigh, E>
+impl<B, E, const N: usize, const M: usize> SceneSystem<N, M> for With<B, E>
 where
-    Self: System<3, 1>,
+    Self: System<N, M> + Piecewise,
+    B: SceneBody<N, M>,
+    E: SceneEffects<B, N>,
 {
-    fn sleigh_state(&self, q: &[f64; 3], v: &[f64; 3]) -> SleighState {
-        SleighState::from_coordinates(q, v)
+    fn sleigh_state(&self, q: &[f64; N], v: &[f64; N]) -> SleighState {
+        SleighState::from_coordinates(&[q[0], q[1], q[2]], &[v[0], v[1], v[2]])
+    }
+
+    fn centre(&self, q: &[f64; N]) -> [f64; 2] {
+        self.body.centre(q)
+    }
+
+    fn powers(&self, t: f64, q: &[f64; N], v: &[f64; N], lambda: &[f64; M]) -> Vec<EffectPower> {
+        power::of(self, t, q, v, lambda)
     }
 }
 
@@ -28,20 +50,139 @@ pub trait Visitor {
         Sys: SceneSystem<N, M>;
 }
 
+/// What imposes velocities on the sleigh of a scene.
+enum Guiding {
+    None,
+    Turntable(Guided<0>),
+    One(Guided<1>),
+    Two(Guided<2>),
+}
+
 impl Scene {
     /// Builds the system of the scene and hands it to the visitor: the one place where a scene becomes a type.
     ///
-    /// A scene without effects becomes the bare body, `With<Sleigh, ()>`.
-    pub fn visit<V: Visitor>(&self, visitor: V) -> V::Output {
-        let (q, v) = self.start.to_coordinates();
-        visitor.visit(&With { body: self.sleigh, effects: () }, q, v)
+    /// A scene without effects becomes the bare body, `With<Sleigh, ()>`. A velocity that the scene imposes replaces that
+    /// of its start.
+    ///
+    /// # Errors
+    /// [`SleighError`] where an effect has impossible parameters, which one read from a file has not.
+    pub fn visit<V: Visitor>(&self, visitor: V) -> Result<V::Output, SleighError> {
+        Ok(match self.guiding()? {
+            Guiding::None => self.with_rotor(self.sleigh, visitor)?,
+            Guiding::Turntable(body) => self.with_rotor(body, visitor)?,
+            Guiding::One(body) => self.with_rotor(body, visitor)?,
+            Guiding::Two(body) => self.with_rotor(body, visitor)?,
+        })
     }
 
-    /// The motion of the scene in closed form.
+    /// The effects that act on the coordinates there are.
+    fn acting(&self) -> Result<Vec<Acting>, SleighError> {
+        self.effects.iter().filter_map(|effect| Acting::of(effect).transpose()).collect()
+    }
+
+    fn guiding(&self) -> Result<Guiding, SleighError> {
+        let sleigh = self.sleigh;
+        let rate = self.effects.iter().find_map(|effect| match effect {
+            SceneEffect::Turntable { rate } => Some(*rate),
+            _ => None,
+        });
+        let imposed = self.effects.iter().find_map(|effect| match effect {
+            SceneEffect::Servo { speed: Some(speed), turn_rate: Some(turn_rate) } => {
+                let both = speed.build().and_then(|u| Guided::<2>::servo(sleigh, u, turn_rate.build()?));
+                Some(both.map(Guiding::Two))
+            }
+            SceneEffect::Servo { speed: Some(speed), .. } => {
+                let one = speed.build().and_then(|u| Guided::<1>::servo(sleigh, Guide::Speed(u)));
+                Some(one.map(Guiding::One))
+            }
+            SceneEffect::Servo { turn_rate: Some(turn_rate), .. } => {
+                let one = turn_rate.build().and_then(|omega| Guided::<1>::servo(sleigh, Guide::TurnRate(omega)));
+                Some(one.map(Guiding::One))
+            }
+            SceneEffect::Tracer { path } => {
+                Some(path.build().and_then(|path| Guided::<2>::tracer(sleigh, path)).map(Guiding::Two))
+            }
+            _ => None,
+        });
+        Ok(match (imposed.transpose()?, rate) {
+            (None, None) => Guiding::None,
+            (None, Some(rate)) => Guiding::Turntable(Guided::turntable(sleigh, rate)?),
+            (Some(guiding), None) => guiding,
+            (Some(Guiding::One(body)), Some(rate)) => Guiding::One(body.on_turntable(rate)?),
+            (Some(Guiding::Two(body)), Some(rate)) => Guiding::Two(body.on_turntable(rate)?),
+            (Some(guiding), Some(_)) => guiding,
+        })
+    }
+
+    fn with_rotor<B, V, const M: usize>(&self, body: B, visitor: V) -> Result<V::Output, SleighError>
+    where
+        B: SceneBody<3, M> + Piecewise,
+        V: Visitor,
+    {
+        let (q, v) = self.start.to_coordinates();
+        for effect in &self.effects {
+            if let SceneEffect::Flywheel { inertia, rotor_rate, torque } = effect {
+                let torque = torque.as_ref().map(crate::TimeSpec::build).transpose()?;
+                let body = Flywheel::new(body, *inertia, torque)?;
+                return self.with_effects(body, [q[0], q[1], q[2], 0.0], [v[0], v[1], v[2], *rotor_rate], visitor);
+            }
+        }
+        self.with_effects(body, q, v, visitor)
+    }
+
+    fn with_effects<B, V, const N: usize, const M: usize>(
+        &self,
+        body: B,
+        q: [f64; N],
+        v: [f64; N],
+        visitor: V,
+    ) -> Result<V::Output, SleighError>
+    where
+        B: SceneBody<N, M> + Piecewise,
+        V: Visitor,
+    {
+        let effects = self.acting()?;
+        Ok(if effects.is_empty() {
+            start(visitor, &With { body, effects: () }, q, v)
+        } else {
+            start(visitor, &With { body, effects }, q, v)
+        })
+    }
+
+    /// The motion of the scene in closed form, where no effect changes that of the free sleigh.
     ///
     /// # Errors
     /// [`SleighError`] where a quantity of it overflows.
-    pub fn exact(&self) -> Result<Exact, SleighError> {
-        Exact::new(&self.sleigh, &self.start)
+    pub fn exact(&self) -> Result<Option<Exact>, SleighError> {
+        let free = |effect: &SceneEffect| matches!(effect, SceneEffect::Flywheel { torque: None, .. });
+        self.effects.iter().all(free).then(|| Exact::new(&self.sleigh, &self.start)).transpose()
+    }
+}
+
+/// Hands the system over with the admissible velocity that has the quasi-velocities of the given one.
+fn start<Sys, V, const N: usize, const M: usize>(visitor: V, system: &Sys, q: [f64; N], v: [f64; N]) -> V::Output
+where
+    Sys: SceneSystem<N, M>,
+    V: Visitor,
+{
+    let first = system.piece(0.0);
+    let admissible = quasi_velocities(&first, 0.0, &q, &v).and_then(|xi| velocity_of(&first, 0.0, &q, &xi));
+    let free = M == 1 && first.constraint(0.0, &q).1.iter().all(|b| *b == 0.0);
+    visitor.visit(system, q, if free { v } else { admissible.unwrap_or(v) })
+}
+
+/// The first jump that no step ends at.
+pub(crate) struct FirstMisaligned<'a>(pub(crate) &'a RunSettings);
+
+impl Visitor for FirstMisaligned<'_> {
+    type Output = Option<f64>;
+
+    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, _q: [f64; N], _v: [f64; N]) -> Option<f64>
+    where
+        Sys: SceneSystem<N, M>,
+    {
+        let step = self.0.actual_step();
+        let inside = |t: &f64| (t / step - (t / step).round()).abs() > 1e-9;
+        system.jumps(0.0, self.0.duration).into_iter().filter(inside).min_by(f64::total_cmp)
     }
 }

@@ -9,11 +9,11 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// One table of a scene, read key by key.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Table<'s> {
     pub(crate) document: Document<'s>,
     /// The path of the table, empty for the document itself.
-    path: &'static str,
+    path: String,
     entries: &'s DeTable<'s>,
     /// Where the table is announced: what an error about a missing key points to.
     header: (usize, usize),
@@ -22,7 +22,7 @@ pub(crate) struct Table<'s> {
 impl<'s> Table<'s> {
     /// The document itself, whose keys are all known.
     pub(crate) fn root(document: Document<'s>, entries: &'s DeTable<'s>) -> Result<Self, SceneError> {
-        Self { document, path: "", entries, header: (0, 0) }.with_known_keys()
+        Self { document, path: String::new(), entries, header: (0, 0) }.with_known_keys(keys::of(""))
     }
 
     /// The required table `key`, whose keys are all known.
@@ -32,19 +32,35 @@ impl<'s> Table<'s> {
         let DeValue::Table(entries) = value.get_ref() else {
             return Err(self.wrong_type(key, value, accepted()));
         };
-        let span = value.span();
-        Self { document: self.document, path: key, entries, header: (span.start, span.end) }.with_known_keys()
+        self.inner(key.to_owned(), entries, value.span(), keys::of(key))
+    }
+
+    /// A table inside this one, with these keys and no others.
+    pub(crate) fn inner(
+        &self,
+        path: String,
+        entries: &'s DeTable<'s>,
+        span: Range<usize>,
+        known: &[&str],
+    ) -> Result<Self, SceneError> {
+        self.unchecked(path, entries, span).with_known_keys(known)
+    }
+
+    /// A table inside this one, whatever its keys.
+    pub(crate) fn unchecked(&self, path: String, entries: &'s DeTable<'s>, span: Range<usize>) -> Self {
+        Self { document: self.document, path, entries, header: (span.start, span.end) }
     }
 
     /// Refuses keys that the table does not have, the first in the text before the others.
-    fn with_known_keys(self) -> Result<Self, SceneError> {
-        let known = keys::of(self.path);
+    fn with_known_keys(self, known: &[&str]) -> Result<Self, SceneError> {
         let unknown = self.entries.keys().filter(|key| !known.contains(&key.get_ref().as_ref()));
         let Some(key) = unknown.min_by_key(|key| key.span().start) else {
             return Ok(self);
         };
         let name: &str = key.get_ref();
-        let help = match (keys::home(name), suggest::nearest(name, known.iter().copied())) {
+        // An effect shares keys with the other tables.
+        let home = keys::home(name).filter(|_| !self.path.starts_with("effects"));
+        let help = match (home, suggest::nearest(name, known.iter().copied())) {
             (Some(""), _) if name == "title" => Some("`title` belongs at the top, before the first table".to_owned()),
             (Some(""), _) if name == "effects" => Some("effects are headed `[[effects]]`".to_owned()),
             (Some(""), _) => Some(format!("`{name}` is a table of its own, headed `[{name}]`")),
@@ -60,7 +76,7 @@ impl<'s> Table<'s> {
             accepted: suggest::list(known),
             help,
         };
-        Err(self.document.fail(&key.span(), Some(keys::path(self.path, name)), fault))
+        Err(self.document.fail(&key.span(), Some(keys::path(&self.path, name)), fault))
     }
 
     /// The value of `key`, if the table has it.
@@ -102,10 +118,17 @@ impl<'s> Table<'s> {
             // As it is written, not as it was read: 1e999 rather than inf.
             fault.found = Some(keys::abridged(&self.document.text[span.clone()]));
         }
-        self.document.fail(&span.unwrap_or(self.header()), Some(keys::path(self.path, fault.key)), fault)
+        self.document.fail(&span.unwrap_or(self.header()), Some(keys::path(&self.path, fault.key)), fault)
     }
 
-    fn missing(&self, key: &'static str, accepted: String) -> SceneError {
+    /// The fault as an error at that place.
+    pub(crate) fn fail_at(&self, span: Range<usize>, mut fault: Fault) -> SceneError {
+        fault.found = fault.found.or_else(|| Some(keys::abridged(&self.document.text[span.clone()])));
+        self.document.fail(&span, Some(keys::path(&self.path, fault.key)), fault)
+    }
+
+    /// The error of a key that is not there.
+    pub(crate) fn missing(&self, key: &'static str, accepted: String) -> SceneError {
         let problem = "is missing".to_owned();
         self.fail(Fault { variant: SceneError::Missing, key, problem, found: None, accepted, help: None })
     }
@@ -120,16 +143,22 @@ impl<'s> Table<'s> {
             accepted,
             help: None,
         };
-        self.document.fail(&value.span(), Some(keys::path(self.path, key)), fault)
+        self.document.fail(&value.span(), Some(keys::path(&self.path, key)), fault)
     }
 
-    fn header(&self) -> Range<usize> {
+    /// The path of a key of this table.
+    pub(crate) fn path_of(&self, key: &str) -> String {
+        keys::path(&self.path, key)
+    }
+
+    /// Where the table is announced.
+    pub(crate) fn header(&self) -> Range<usize> {
         self.header.0..self.header.1
     }
 }
 
 /// An integer or a float as the nearest `f64`; infinite when there is none, `None` for other types.
-fn as_f64(value: &DeValue<'_>) -> Option<f64> {
+pub(crate) fn as_f64(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Float(float) => Some(float.as_str().parse().unwrap_or(f64::NAN)),
         // Read as a float, so that an integer may have more digits than any integer type.

@@ -19,4 +19,24 @@ pub enum SleighError {
         /// Its value.
         value: f64,
     },
+    /// A coefficient is negative or not finite.
+    #[error("{quantity} must be a finite number and not negative, and is {value}")]
+    Negative {
+        /// Which parameter.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A table is not a function of time.
+    #[error("the table is no function of time: {problem}")]
+    Table {
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// A path cannot be followed.
+    #[error("the path cannot be followed: {problem}")]
+    Path {
+        /// What is wrong with it.
+        problem: String,
+    },
 }

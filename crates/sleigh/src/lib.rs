@@ -1,18 +1,26 @@
 //! The Chaplygin sleigh: a rigid body on a plane, carried by a blade that cannot slip sideways.
 //!
 //! Coordinates, signs and acting points are those of [`Sleigh`]; the state that a person would write down is a
-//! [`SleighState`]; [`Exact`] is the motion of the free sleigh in closed form.
+//! [`SleighState`]; [`Exact`] is the motion of the free sleigh in closed form. What acts on it is in [`effects`]; what gives it
+//! another coordinate or another constraint is another body: [`Flywheel`], [`Guided`].
 
+mod bodies;
 mod body;
 mod centre_of_mass;
 mod closed_map;
+pub mod effects;
 mod error;
 mod exact;
+mod sleigh_body;
 mod state;
 mod system;
+mod time_function;
 
+pub use bodies::{ClosedPath, Flywheel, Guide, Guided};
 pub use body::Sleigh;
 pub use centre_of_mass::CentreOfMass;
 pub use error::SleighError;
 pub use exact::Exact;
+pub use sleigh_body::SleighBody;
 pub use state::SleighState;
+pub use time_function::{Table, TimeFunction};

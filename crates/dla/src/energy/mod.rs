@@ -87,7 +87,7 @@ impl<Sys: System<N, M>, const S: usize, const N: usize, const M: usize> OneStep<
         let v1 = system.admissible_basis(t0 + h, &q1).ok_or(NO_BASIS)?.combine(&end.xi);
         state.advance(&end.increment, v1, Some(end.xi));
         self.work = end.work;
-        Ok(StepReport { impulses: [[0.0; M]; 2], iterations: end.iterations })
+        Ok(StepReport { work: Some(end.work), ..StepReport::of(end.iterations) })
     }
 }
 

@@ -95,6 +95,6 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
             }
         }
         state.advance(&increment, v1, None);
-        Ok(StepReport { impulses: ends, iterations })
+        Ok(StepReport { impulses: ends, iterations, work: None })
     }
 }

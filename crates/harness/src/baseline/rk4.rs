@@ -47,7 +47,7 @@ pub(super) fn explicit<const N: usize, const M: usize>(
         return Err(StepError::NotFinite);
     }
     state.advance(increment, v, xi);
-    Ok(StepReport { impulses: [[0.0; M]; 2], iterations: 0 })
+    Ok(StepReport::of(0))
 }
 
 impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Rk4 {

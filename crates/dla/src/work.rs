@@ -1,0 +1,138 @@
+use crate::{Observer, StepReport, View};
+use lagrangian::quadrature::gauss_legendre;
+use lagrangian::{System, constraint_residual, energy, force_power, lagrangian_power};
+use std::array::from_fn;
+use std::ops::ControlFlow;
+
+/// The work done on a system since the start of a run (J), so that `E(t) - E(0) - work` is the error of the energy.
+///
+/// Its power is `F . v - dL/dt - lambda . b`: that of the generalised forces, of explicit time in the Lagrangian, and of
+/// what moves an affine constraint. Where a method reports the work of its step, that counts. Elsewhere the power is
+/// integrated with four Gauss nodes along the polynomial of degree five that has the positions, velocities and
+/// accelerations of both ends of the step, which is of order 6; a system without any power costs no acceleration.
+/// An impulse, where an imposed velocity jumps, does the work by which it changes the energy.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Work<const N: usize> {
+    total: f64,
+    rest: f64,
+    before: Option<(f64, [f64; N], [f64; N], f64)>,
+    nodes: [f64; 4],
+    weights: [f64; 4],
+}
+
+impl<const N: usize> Default for Work<N> {
+    fn default() -> Self {
+        let (nodes, weights) = gauss_legendre();
+        Self { total: 0.0, rest: 0.0, before: None, nodes, weights }
+    }
+}
+
+impl<const N: usize> Work<N> {
+    /// The work so far (J).
+    #[must_use]
+    pub fn total(&self) -> f64 {
+        self.total
+    }
+
+    /// Adds with compensation.
+    fn add(&mut self, work: f64) {
+        let sum = self.total + (work + self.rest);
+        self.rest += work - (sum - self.total);
+        self.total = sum;
+    }
+
+    fn remember<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>) {
+        self.before = Some((node.t, node.state.unwrapped(), *node.state.v(), node.energy()));
+    }
+
+    /// The work over the step that ends at the node; not a number where the accelerations are not determined.
+    fn over_step<Sys: System<N, M>, const M: usize>(&self, node: &View<'_, Sys, N>) -> f64 {
+        let Some((t0, q0, v0, _)) = self.before else { return 0.0 };
+        let (system, q1, v1) = (node.system, node.state.unwrapped(), *node.state.v());
+        let h = node.t - t0;
+        let time = |c: f64| t0 + c * h;
+        let level: [(f64, f64); M] = {
+            let (first, last) = (system.constraint(t0, &q0).1, system.constraint(node.t, &q1).1);
+            from_fn(|k| (first[k], last[k]))
+        };
+        let moved = level.iter().any(|(first, last)| *first != 0.0 || *last != 0.0);
+        let mean = |c: f64| from_fn::<f64, N, _>(|i| q0[i] + c * (q1[i] - q0[i]));
+        let powered = moved
+            || system.force(t0, &q0, &v0).is_some()
+            || self.nodes.iter().any(|c| lagrangian_power(system, time(*c), &mean(*c), &v1) != 0.0);
+        if !powered {
+            return 0.0;
+        }
+        let (Ok(first), Ok(last)) = (system.motion(t0, &q0, &v0), system.motion(node.t, &q1, &v1)) else {
+            return f64::NAN;
+        };
+        let hermite = Hermite { h, q0, v0, a0: first.acceleration, q1, v1, a1: last.acceleration };
+        let power = |c: f64| {
+            let (t, (q, v)) = (time(c), hermite.at(c));
+            let mut power = lagrangian_power(system, t, &q, &v) + force_power(system, t, &q, &v).unwrap_or(0.0);
+            if moved {
+                let Ok(motion) = system.motion(t, &q, &v) else { return f64::NAN };
+                // lambda . (A v) is -lambda . b on the constraint, and keeps its order off it.
+                let residual = constraint_residual(system, t, &q, &v);
+                let (_, b) = system.constraint(t, &q);
+                power += (0..M).map(|k| motion.multiplier[k] * (residual[k] - b[k])).sum::<f64>();
+            }
+            power
+        };
+        h * (0..4).map(|i| self.weights[i] * power(self.nodes[i])).sum::<f64>()
+    }
+}
+
+impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for Work<N> {
+    fn start(&mut self, node: &View<'_, Sys, N>) {
+        self.remember(node);
+    }
+
+    fn resume(&mut self, node: &View<'_, Sys, N>) {
+        if let Some((_, _, v, _)) = self.before
+            && v != *node.state.v()
+        {
+            let jump = node.energy() - energy(node.system, node.t, node.state.q(), &v);
+            self.add(jump);
+        }
+        self.remember(node);
+    }
+
+    fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+        let work = report.work.unwrap_or_else(|| self.over_step(node));
+        if work != 0.0 {
+            self.add(work);
+        }
+        self.remember(node);
+        ControlFlow::Continue(())
+    }
+}
+
+/// The quintic through position, velocity and acceleration at both ends of a step.
+struct Hermite<const N: usize> {
+    h: f64,
+    q0: [f64; N],
+    v0: [f64; N],
+    a0: [f64; N],
+    q1: [f64; N],
+    v1: [f64; N],
+    a1: [f64; N],
+}
+
+impl<const N: usize> Hermite<N> {
+    /// Position and velocity at the fraction `c` of the step.
+    fn at(&self, c: f64) -> ([f64; N], [f64; N]) {
+        let h = self.h;
+        let mut v = [0.0; N];
+        let q = from_fn(|i| {
+            // In s = c: q0 + h v0 s + h^2 a0/2 s^2 + s^3 (x + y s + z s^2).
+            let (v0, v1, a0, a1) = (h * self.v0[i], h * self.v1[i], h * h * self.a0[i], h * h * self.a1[i]);
+            let d = self.q1[i] - self.q0[i] - v0 - 0.5 * a0;
+            let (e, f) = (v1 - v0 - a0, a1 - a0);
+            let (x, y, z) = (10.0 * d - 4.0 * e + 0.5 * f, -15.0 * d + 7.0 * e - f, 6.0 * d - 3.0 * e + 0.5 * f);
+            v[i] = (v0 + c * (a0 + c * (3.0 * x + c * (4.0 * y + c * 5.0 * z)))) / h;
+            self.q0[i] + c * (v0 + c * (0.5 * a0 + c * (x + c * (y + c * z))))
+        });
+        (q, v)
+    }
+}

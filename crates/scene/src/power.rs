@@ -1,0 +1,118 @@
+//! The power of what drives or brakes a scene, by name.
+
+use crate::Acting;
+use lagrangian::{Effect, System, With, force_power, lagrangian_power};
+use sleigh::{Flywheel, Guided, Sleigh, SleighBody};
+
+/// The power of one effect at one node.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EffectPower {
+    /// The effect's kind, numbered from the second of one kind on.
+    pub name: String,
+    /// The power that it feeds into the energy (W).
+    pub power: f64,
+}
+
+/// The list of effects of a scene, none or some.
+pub trait SceneEffects<B, const N: usize>: Effect<B, N> {
+    /// The power of each effect that has any.
+    fn powers(&self, body: &B, t: f64, q: &[f64; N], v: &[f64; N]) -> Vec<EffectPower>;
+}
+
+impl<B, const N: usize> SceneEffects<B, N> for () {
+    fn powers(&self, _body: &B, _t: f64, _q: &[f64; N], _v: &[f64; N]) -> Vec<EffectPower> {
+        Vec::new()
+    }
+}
+
+/// One effect alone, without a body: what it adds to a Lagrangian and to the forces.
+struct Alone<'a, B> {
+    body: &'a B,
+    effect: &'a Acting,
+}
+
+impl<B: SleighBody, const N: usize> System<N, 0> for Alone<'_, B> {
+    fn lagrangian<S: lagrangian::Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> S {
+        self.effect.lagrangian(self.body, t, q, v).unwrap_or(S::zero())
+    }
+    fn constraint<S: lagrangian::Scalar>(&self, _t: S, _q: &[S; N]) -> lagrangian::Constraint<S, N, 0> {
+        ([], [])
+    }
+    fn force<S: lagrangian::Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
+        self.effect.force(self.body, t, q, v)
+    }
+}
+
+impl<B: SleighBody, const N: usize> SceneEffects<B, N> for Vec<Acting> {
+    fn powers(&self, body: &B, t: f64, q: &[f64; N], v: &[f64; N]) -> Vec<EffectPower> {
+        let mut powers: Vec<EffectPower> = Vec::new();
+        for effect in self {
+            let Some(kind) = effect.powered() else { continue };
+            let alone = Alone { body, effect };
+            let power = force_power(&alone, t, q, v).unwrap_or(0.0) + lagrangian_power(&alone, t, q, v);
+            let before = self.iter().take_while(|other| !std::ptr::eq(*other, effect));
+            let number = 1 + before.filter(|other| other.powered() == Some(kind)).count();
+            let name = if number == 1 { kind.to_owned() } else { format!("{kind}_{number}") };
+            powers.push(EffectPower { name, power });
+        }
+        powers
+    }
+}
+
+/// A body of a scene: a sleigh, perhaps with a rotor, perhaps guided.
+pub trait SceneBody<const N: usize, const M: usize>: SleighBody + System<N, M> {
+    /// The power of what drives the body's own coordinates and constraints; `lambda` are the multipliers there.
+    fn powers(&self, t: f64, q: &[f64; N], v: &[f64; N], lambda: &[f64; M]) -> Vec<EffectPower>;
+}
+
+impl SceneBody<3, 1> for Sleigh {
+    fn powers(&self, _t: f64, _q: &[f64; 3], _v: &[f64; 3], _lambda: &[f64; 1]) -> Vec<EffectPower> {
+        Vec::new()
+    }
+}
+
+impl<const K: usize, const M: usize> SceneBody<3, M> for Guided<K>
+where
+    Self: System<3, M>,
+{
+    /// A constraint `A v + b = 0` with the multiplier `lambda` has the power `-lambda . b`.
+    fn powers(&self, t: f64, q: &[f64; 3], _v: &[f64; 3], lambda: &[f64; M]) -> Vec<EffectPower> {
+        let (_, b) = self.constraint(t, q);
+        let power = |rows: std::ops::Range<usize>| -rows.map(|k| lambda[k] * b[k]).sum::<f64>();
+        let mut powers = Vec::new();
+        if self.table_rate() != 0.0 {
+            powers.push(EffectPower { name: "turntable".to_owned(), power: power(0..1) });
+        }
+        if let Some(name) = self.guided_by() {
+            powers.push(EffectPower { name: name.to_owned(), power: power(1..M) });
+        }
+        powers
+    }
+}
+
+impl<B: SceneBody<3, M>, const M: usize> SceneBody<4, M> for Flywheel<B> {
+    fn powers(&self, t: f64, q: &[f64; 4], v: &[f64; 4], lambda: &[f64; M]) -> Vec<EffectPower> {
+        let mut powers = self.body().powers(t, &[q[0], q[1], q[2]], &[v[0], v[1], v[2]], lambda);
+        if let Some(torque) = self.torque() {
+            powers.push(EffectPower { name: "flywheel".to_owned(), power: torque.value(t) * v[3] });
+        }
+        powers
+    }
+}
+
+/// The powers of a body and of what acts on it.
+pub(crate) fn of<B, E, const N: usize, const M: usize>(
+    system: &With<B, E>,
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+    lambda: &[f64; M],
+) -> Vec<EffectPower>
+where
+    B: SceneBody<N, M>,
+    E: SceneEffects<B, N>,
+{
+    let mut powers = system.effects.powers(&system.body, t, q, v);
+    powers.extend(system.body.powers(t, q, v, lambda));
+    powers
+}

@@ -1,0 +1,169 @@
+//! The values of effects: points, lists, functions of time, paths.
+
+use crate::effect::{PathSpec, Shape, TimeSpec};
+use crate::error::SceneError;
+use crate::fault::Fault;
+use crate::quantity::Quantity;
+use crate::table::{Table, as_f64};
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::DeValue;
+
+const FREQUENCY: Quantity = Quantity::finite("frequency", "rad/s");
+const PHASE: Quantity = Quantity::finite("phase", "rad");
+const TIMES: Quantity = Quantity::finite("times", "s");
+const RADIUS: Quantity = Quantity::positive("radius", "m");
+const CENTER: Quantity = Quantity::finite("center", "m");
+const PERIOD: Quantity = Quantity::positive("period", "s");
+
+impl<'s> Table<'s> {
+    /// A list of numbers, each within the range of the quantity, if the table has it.
+    pub(crate) fn numbers(&self, quantity: &Quantity) -> Result<Option<Vec<f64>>, SceneError> {
+        self.get(quantity.key).map(|value| self.list(quantity, value)).transpose()
+    }
+
+    fn list(&self, quantity: &Quantity, value: &Spanned<DeValue<'_>>) -> Result<Vec<f64>, SceneError> {
+        let accepted = || format!("a list of numbers, each {}", quantity.accepted());
+        let DeValue::Array(entries) = value.get_ref() else {
+            return Err(self.wrong_type(quantity.key, value, accepted()));
+        };
+        let number = |entry: &Spanned<DeValue<'_>>| {
+            let number = as_f64(entry.get_ref()).ok_or_else(|| self.wrong_type(quantity.key, entry, accepted()))?;
+            quantity.check(number).map_err(|fault| self.fail_at(entry.span(), fault))?;
+            Ok(number)
+        };
+        entries.iter().map(number).collect()
+    }
+
+    /// A pair of numbers, if the table has it.
+    pub(crate) fn pair(&self, quantity: &Quantity) -> Result<Option<[f64; 2]>, SceneError> {
+        let Some(value) = self.get(quantity.key) else { return Ok(None) };
+        let list = self.list(quantity, value)?;
+        let pair = <[f64; 2]>::try_from(list.as_slice());
+        pair.map(Some).map_err(|_| self.wrong_length(quantity, list.len(), value.span()))
+    }
+
+    /// A pair of numbers.
+    pub(crate) fn required_pair(&self, quantity: &Quantity) -> Result<[f64; 2], SceneError> {
+        self.pair(quantity)?.ok_or_else(|| self.missing(quantity.key, two(quantity)))
+    }
+
+    fn wrong_length(&self, quantity: &Quantity, found: usize, span: Range<usize>) -> SceneError {
+        let fault = Fault {
+            variant: SceneError::OutOfRange,
+            key: quantity.key,
+            problem: "has the wrong length".to_owned(),
+            found: Some(format!("{found} of them")),
+            accepted: two(quantity),
+            help: None,
+        };
+        self.fail_at(span, fault)
+    }
+
+    /// The value of `key` as a table with these keys.
+    fn nested(&self, key: &str, known: &[&str], accepted: impl Fn() -> String) -> Result<Option<Self>, SceneError> {
+        let Some(value) = self.get(key) else { return Ok(None) };
+        let DeValue::Table(entries) = value.get_ref() else {
+            return Err(self.wrong_type(key, value, accepted()));
+        };
+        self.inner(self.path_of(key), entries, value.span(), known).map(Some)
+    }
+
+    /// The value of `key` as a list of tables with these keys.
+    pub(crate) fn tables(&self, key: &'static str, known: &[&str], accepted: &str) -> Result<Vec<Self>, SceneError> {
+        let value = self.get(key).ok_or_else(|| self.missing(key, accepted.to_owned()))?;
+        let DeValue::Array(entries) = value.get_ref() else {
+            return Err(self.wrong_type(key, value, accepted.to_owned()));
+        };
+        let table = |entry: &'s Spanned<DeValue<'s>>| match entry.get_ref() {
+            DeValue::Table(table) => self.inner(self.path_of(key), table, entry.span(), known),
+            _ => Err(self.wrong_type(key, entry, accepted.to_owned())),
+        };
+        entries.iter().map(table).collect()
+    }
+
+    /// A function of time: a number, a sine or a table; if the table has it.
+    pub(crate) fn time_function(&self, quantity: &Quantity) -> Result<Option<TimeSpec>, SceneError> {
+        let Some(value) = self.get(quantity.key) else { return Ok(None) };
+        if as_f64(value.get_ref()).is_some() {
+            return Ok(self.number(quantity)?.map(TimeSpec::Constant));
+        }
+        let known = ["amplitude", "frequency", "phase", "times", "values"];
+        let Some(table) = self.nested(quantity.key, &known, || function(quantity))? else { return Ok(None) };
+        if table.get("times").is_some() || table.get("values").is_some() {
+            if let Some(key) = ["amplitude", "frequency", "phase"].into_iter().find(|key| table.get(key).is_some()) {
+                return Err(table.wrong(key, "does not go with `times` and `values`", function(quantity)));
+            }
+            let numbers = |quantity: &Quantity| {
+                let list = table.numbers(quantity)?;
+                list.ok_or_else(|| table.missing(quantity.key, "a list of numbers".to_owned()))
+            };
+            let (times, values) = (numbers(&TIMES)?, numbers(&quantity.named("values"))?);
+            let spec = TimeSpec::Table { times, values };
+            spec.build().map_err(|error| table.wrong("times", &error.to_string(), function(quantity)))?;
+            return Ok(Some(spec));
+        }
+        Ok(Some(TimeSpec::Sine {
+            amplitude: table.required(&quantity.named("amplitude"))?,
+            frequency: table.required(&FREQUENCY)?,
+            phase: table.number(&PHASE)?.unwrap_or(0.0),
+        }))
+    }
+
+    /// A function of time.
+    pub(crate) fn required_function(&self, quantity: &Quantity) -> Result<TimeSpec, SceneError> {
+        self.time_function(quantity)?.ok_or_else(|| self.missing(quantity.key, function(quantity)))
+    }
+
+    /// A closed path.
+    pub(crate) fn path(&self, key: &'static str) -> Result<PathSpec, SceneError> {
+        let accepted = || {
+            "`{circle = {radius, center}, period}` or `{polygon = [[x, y], ..], period}`, lengths in m and the period in s"
+                .to_owned()
+        };
+        let table = self.nested(key, &["circle", "polygon", "period"], accepted)?;
+        let table = table.ok_or_else(|| self.missing(key, accepted()))?;
+        let period = table.required(&PERIOD)?;
+        let shape = match (table.nested("circle", &["radius", "center"], accepted)?, table.get("polygon")) {
+            (Some(circle), None) => {
+                let center = circle.pair(&CENTER)?.unwrap_or([0.0; 2]);
+                Shape::Circle { radius: circle.required(&RADIUS)?, center }
+            }
+            (None, Some(value)) => Shape::Polygon(table.vertices(value)?),
+            (Some(_), Some(_)) => return Err(table.wrong("polygon", "does not go with `circle`", accepted())),
+            (None, None) => return Err(table.missing("circle", accepted())),
+        };
+        let path = PathSpec { shape, period };
+        path.build().map_err(|error| table.wrong("polygon", &error.to_string(), accepted()))?;
+        Ok(path)
+    }
+
+    fn vertices(&self, value: &Spanned<DeValue<'_>>) -> Result<Vec<[f64; 2]>, SceneError> {
+        const VERTEX: Quantity = Quantity::finite("polygon", "m");
+        let DeValue::Array(entries) = value.get_ref() else {
+            return Err(self.wrong_type("polygon", value, format!("a list of vertices, each {}", two(&VERTEX))));
+        };
+        let vertex = |entry: &Spanned<DeValue<'_>>| {
+            let list = self.list(&VERTEX, entry)?;
+            <[f64; 2]>::try_from(list.as_slice()).map_err(|_| self.wrong_length(&VERTEX, list.len(), entry.span()))
+        };
+        entries.iter().map(vertex).collect()
+    }
+
+    /// The error of a value that makes no sense where it is.
+    pub(crate) fn wrong(&self, key: &'static str, problem: &str, accepted: String) -> SceneError {
+        let problem = problem.to_owned();
+        self.fail(Fault { variant: SceneError::OutOfRange, key, problem, found: None, accepted, help: None })
+    }
+}
+
+fn two(quantity: &Quantity) -> String {
+    format!("a list of two numbers, in {}", quantity.unit)
+}
+
+fn function(quantity: &Quantity) -> String {
+    format!(
+        "a function of time in {}: a number, `{{amplitude, frequency, phase}}` or `{{times = [..], values = [..]}}`",
+        quantity.unit
+    )
+}

@@ -1,0 +1,153 @@
+use crate::{Sleigh, SleighBody, SleighError, TimeFunction};
+use lagrangian::{AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Piecewise, Scalar, System};
+
+/// A sleigh with a rotor on a bearing: the coordinate `psi`, its angle relative to the body, and the energy
+/// `I_r/2 (omega + psi')^2`.
+///
+/// The mass of the sleigh includes the rotor's, its inertia excludes the rotor's spin. On a free bearing the rotor's
+/// absolute angular momentum `I_r (omega + psi')` is conserved, and the sleigh moves as if there were no rotor. A motor
+/// torque `tau(t)` acts on `psi`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flywheel<B> {
+    body: B,
+    inertia: f64,
+    torque: Option<TimeFunction>,
+}
+
+impl<B> Flywheel<B> {
+    /// The body with a rotor of spin inertia `I_r` (kg m^2) and, unless the bearing is free, a motor torque (N m).
+    ///
+    /// # Errors
+    /// [`SleighError`] names an inertia that is not positive or a torque that is not finite.
+    pub fn new(body: B, inertia: f64, torque: Option<TimeFunction>) -> Result<Self, SleighError> {
+        if !(inertia.is_finite() && inertia > 0.0) {
+            return Err(SleighError::NotPositive { quantity: "inertia of the rotor", value: inertia });
+        }
+        let torque = torque.map(|torque| torque.finite("torque")).transpose()?;
+        Ok(Self { body, inertia, torque })
+    }
+
+    /// The sleigh that carries the rotor.
+    #[must_use]
+    pub fn body(&self) -> &B {
+        &self.body
+    }
+
+    /// The torque of the motor (N m); none on a free bearing.
+    #[must_use]
+    pub fn torque(&self) -> Option<&TimeFunction> {
+        self.torque.as_ref()
+    }
+
+    /// The rotor's spin inertia `I_r` (kg m^2).
+    #[must_use]
+    pub fn inertia(&self) -> f64 {
+        self.inertia
+    }
+}
+
+/// The coordinates of the sleigh among those of the sleigh with its rotor.
+#[inline(always)]
+fn of_body<S: Scalar>(all: &[S; 4]) -> [S; 3] {
+    [all[0], all[1], all[2]]
+}
+
+#[inline(always)]
+fn with_rotor<S: Scalar>(body: &[S; 3], rotor: S) -> [S; 4] {
+    [body[0], body[1], body[2], rotor]
+}
+
+impl<B: System<3, M>, const M: usize> System<4, M> for Flywheel<B> {
+    #[inline(always)]
+    fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 4], v: &[S; 4]) -> S {
+        let spin = v[2] + v[3];
+        self.body.lagrangian(t, &of_body(q), &of_body(v)) + spin * spin * (0.5 * self.inertia)
+    }
+
+    #[inline(always)]
+    fn constraint<S: Scalar>(&self, t: S, q: &[S; 4]) -> Constraint<S, 4, M> {
+        let (a, b) = self.body.constraint(t, &of_body(q));
+        (a.map(|row| with_rotor(&row, S::zero())), b)
+    }
+
+    #[inline(always)]
+    fn force<S: Scalar>(&self, t: S, q: &[S; 4], v: &[S; 4]) -> Option<[S; 4]> {
+        let motor = self.torque.as_ref().map(|torque| torque.value(t));
+        match (self.body.force(t, &of_body(q), &of_body(v)), motor) {
+            (None, None) => None,
+            (force, motor) => Some(with_rotor(&force.unwrap_or([S::zero(); 3]), motor.unwrap_or(S::zero()))),
+        }
+    }
+
+    /// The body's own, with the rotor at rest in space as it pivots, and then the spin of the rotor: the last
+    /// quasi-velocity is the rotor's absolute rate `omega + psi'`.
+    #[inline(always)]
+    fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; 4]) -> Option<AdmissibleBasis<S, 4, M>> {
+        let body = self.body.admissible_basis(t, &of_body(q))?;
+        let vectors = body.vectors();
+        Some(AdmissibleBasis::from_fn(|k| match vectors.get(k) {
+            Some(w) => with_rotor(w, -w[2]),
+            None => [S::zero(), S::zero(), S::zero(), S::constant(1.0)],
+        }))
+    }
+
+    #[inline(always)]
+    fn angles(&self) -> [bool; 4] {
+        let [x, y, theta] = self.body.angles();
+        [x, y, theta, true]
+    }
+
+    /// The body's own, and `I_r (omega + psi')' = tau`, where the constraints leave the body two freedoms.
+    #[inline(always)]
+    fn reduced_motion(&self, t: f64, q: &[f64; 4], xi: &[f64; 4]) -> Option<[f64; 4]> {
+        if M != 1 {
+            return None;
+        }
+        // The motor's torque on the body is -tau, which the body's own equations do not know.
+        if self.torque.is_some() {
+            return None;
+        }
+        let [u, omega, _] = self.body.reduced_motion(t, &of_body(q), &of_body(xi))?;
+        Some([u, omega, 0.0, 0.0])
+    }
+
+    /// On a free bearing the body's own, and the rotor keeps its absolute rate.
+    #[inline(always)]
+    fn closed_step(
+        &self,
+        t: f64,
+        h: f64,
+        q: &[f64; 4],
+        v: &[f64; 4],
+        xi: Option<[f64; 4]>,
+    ) -> Option<Result<ClosedStep<4, M>, ClosedStepError>> {
+        if self.torque.is_some() || M != 1 {
+            return None;
+        }
+        let spin = xi.map_or_else(|| v[2] + v[3], |xi| xi[2]);
+        let body = self.body.closed_step(t, h, &of_body(q), &of_body(v), xi.as_ref().map(of_body))?;
+        Some(body.map(|step| ClosedStep {
+            increment: with_rotor(&step.increment, h * spin - step.increment[2]),
+            velocity: with_rotor(&step.velocity, spin - step.velocity[2]),
+            xi: [step.xi[0], step.xi[1], spin, 0.0],
+            impulses: step.impulses,
+            iterations: step.iterations,
+        }))
+    }
+}
+
+impl<B: SleighBody> SleighBody for Flywheel<B> {
+    #[inline(always)]
+    fn sleigh(&self) -> &Sleigh {
+        self.body.sleigh()
+    }
+}
+
+impl<B: Piecewise> Piecewise for Flywheel<B> {
+    fn jumps(&self, from: f64, to: f64) -> Vec<f64> {
+        [self.body.jumps(from, to), self.torque.jumps(from, to)].concat()
+    }
+    fn piece(&self, t: f64) -> Self {
+        Self { body: self.body.piece(t), inertia: self.inertia, torque: self.torque.piece(t) }
+    }
+}

@@ -1,0 +1,200 @@
+use crate::{ClosedPath, Sleigh, SleighBody, SleighError, TimeFunction};
+use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Scalar, System};
+
+/// A velocity that is imposed on the sleigh, as an affine constraint.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Guide {
+    /// The speed along the blade: `e . P' = u(t)` (m/s).
+    Speed(TimeFunction),
+    /// The turn rate: `theta' = omega(t)` (rad/s).
+    TurnRate(TimeFunction),
+    /// The velocity of the centre of mass along the axis `x`, as on the path.
+    TracerX(ClosedPath),
+    /// The velocity of the centre of mass along the axis `y`, as on the path.
+    TracerY(ClosedPath),
+}
+
+/// A sleigh with `K` velocities imposed, perhaps on a turning table: `1 + K` constraints.
+///
+/// The first constraint is the blade's, `n . (P' - Omega (-y, x)) = 0` on a plane that turns at the rate `Omega` about the
+/// origin. Then come the imposed velocities: a servo imposes the speed, the turn rate or both; a tracer, the point `C` of
+/// the planimeter, both components of `C'`. What imposes them does work.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Guided<const K: usize> {
+    sleigh: Sleigh,
+    table_rate: f64,
+    guides: [Guide; K],
+}
+
+impl Guided<0> {
+    /// The sleigh on a plane that turns at the rate `Omega` about the origin (rad/s).
+    ///
+    /// # Errors
+    /// [`SleighError::NotFinite`].
+    pub fn turntable(sleigh: Sleigh, rate: f64) -> Result<Self, SleighError> {
+        Self { sleigh, table_rate: 0.0, guides: [] }.on_turntable(rate)
+    }
+}
+
+impl Guided<1> {
+    /// The sleigh with one velocity imposed.
+    ///
+    /// # Errors
+    /// [`SleighError`] names what is not finite; half a tracer is refused.
+    pub fn servo(sleigh: Sleigh, guide: Guide) -> Result<Self, SleighError> {
+        let guides = [match guide {
+            Guide::Speed(speed) => Guide::Speed(speed.finite("speed")?),
+            Guide::TurnRate(rate) => Guide::TurnRate(rate.finite("turn_rate")?),
+            Guide::TracerX(_) | Guide::TracerY(_) => {
+                return Err(SleighError::Path { problem: "a tracer imposes both components of a velocity".to_owned() });
+            }
+        }];
+        Ok(Self { sleigh, table_rate: 0.0, guides })
+    }
+}
+
+impl Guided<2> {
+    /// The sleigh with both of its velocities imposed: it follows `u(t)`, `omega(t)` whatever acts on it.
+    ///
+    /// # Errors
+    /// [`SleighError::NotFinite`].
+    pub fn servo(sleigh: Sleigh, speed: TimeFunction, turn_rate: TimeFunction) -> Result<Self, SleighError> {
+        let guides = [Guide::Speed(speed.finite("speed")?), Guide::TurnRate(turn_rate.finite("turn_rate")?)];
+        Ok(Self { sleigh, table_rate: 0.0, guides })
+    }
+
+    /// The sleigh whose centre of mass is led along a closed path: Prytz's planimeter, `theta' = (n . C')/a`.
+    ///
+    /// # Errors
+    /// [`SleighError::Path`] where `a = 0`: the blade would have to move sideways.
+    pub fn tracer(sleigh: Sleigh, path: ClosedPath) -> Result<Self, SleighError> {
+        if sleigh.offset() == 0.0 {
+            let problem = "with the centre of mass at the blade (offset 0) a tracer cannot be led sideways".to_owned();
+            return Err(SleighError::Path { problem });
+        }
+        Ok(Self { sleigh, table_rate: 0.0, guides: [Guide::TracerX(path.clone()), Guide::TracerY(path)] })
+    }
+}
+
+impl<const K: usize> Guided<K> {
+    /// The same on a plane that turns at the rate `Omega` about the origin (rad/s).
+    ///
+    /// # Errors
+    /// [`SleighError::NotFinite`].
+    pub fn on_turntable(self, rate: f64) -> Result<Self, SleighError> {
+        if !rate.is_finite() {
+            return Err(SleighError::NotFinite { quantity: "rate", value: rate });
+        }
+        Ok(Self { table_rate: rate, ..self })
+    }
+
+    /// The rate `Omega` of the plane (rad/s).
+    #[must_use]
+    pub fn table_rate(&self) -> f64 {
+        self.table_rate
+    }
+
+    /// What imposes the velocities: `servo` or `tracer`.
+    #[must_use]
+    pub fn guided_by(&self) -> Option<&'static str> {
+        self.guides.first().map(|guide| match guide {
+            Guide::Speed(_) | Guide::TurnRate(_) => "servo",
+            Guide::TracerX(_) | Guide::TracerY(_) => "tracer",
+        })
+    }
+
+    /// The row of the blade.
+    #[inline(always)]
+    fn blade<S: Scalar>(&self, q: &[S; 3]) -> ([S; 3], S) {
+        let (sin, cos) = q[2].sin_cos();
+        // n . (-y, x) = y sin(theta) + x cos(theta).
+        let swept = if self.table_rate == 0.0 { S::zero() } else { (q[0] * cos + q[1] * sin) * -self.table_rate };
+        ([-sin, cos, S::zero()], swept)
+    }
+
+    /// The row of an imposed velocity.
+    #[inline(always)]
+    fn guide<S: Scalar>(&self, guide: &Guide, t: S, q: &[S; 3]) -> ([S; 3], S) {
+        let (zero, one) = (S::zero(), S::constant(1.0));
+        let (sin, cos) = q[2].sin_cos();
+        let a = self.sleigh.offset();
+        match guide {
+            Guide::Speed(speed) => ([cos, sin, zero], -speed.value(t)),
+            Guide::TurnRate(rate) => ([zero, zero, one], -rate.value(t)),
+            Guide::TracerX(path) => ([one, zero, sin * -a], -path.velocity(t)[0]),
+            Guide::TracerY(path) => ([zero, one, cos * a], -path.velocity(t)[1]),
+        }
+    }
+}
+
+/// One text for each number of imposed velocities.
+macro_rules! guided {
+    ($k:literal, $m:literal) => {
+        impl System<3, $m> for Guided<$k> {
+            #[inline(always)]
+            fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 3], v: &[S; 3]) -> S {
+                System::<3, 1>::lagrangian(&self.sleigh, t, q, v)
+            }
+
+            #[inline(always)]
+            fn constraint<S: Scalar>(&self, t: S, q: &[S; 3]) -> Constraint<S, 3, $m> {
+                let (mut a, mut b) = ([[S::zero(); 3]; $m], [S::zero(); $m]);
+                (a[0], b[0]) = self.blade(q);
+                for (k, guide) in self.guides.iter().enumerate() {
+                    (a[k + 1], b[k + 1]) = self.guide(guide, t, q);
+                }
+                (a, b)
+            }
+
+            /// What is not imposed: drive along the blade, and pivot about it.
+            #[inline(always)]
+            fn admissible_basis<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, $m>> {
+                let (sin, cos) = q[2].sin_cos();
+                let (drive, pivot) = ([cos, sin, S::zero()], [S::zero(), S::zero(), S::constant(1.0)]);
+                let driven = matches!(self.guides.first(), Some(Guide::Speed(_)));
+                Some(AdmissibleBasis::from_fn(|k| if driven || k == 1 { pivot } else { drive }))
+            }
+
+            #[inline(always)]
+            fn angles(&self) -> [bool; 3] {
+                [false, false, true]
+            }
+        }
+    };
+}
+guided!(0, 1);
+guided!(1, 2);
+guided!(2, 3);
+
+impl<const K: usize> SleighBody for Guided<K> {
+    #[inline(always)]
+    fn sleigh(&self) -> &Sleigh {
+        &self.sleigh
+    }
+}
+
+impl Piecewise for Guide {
+    fn jumps(&self, from: f64, to: f64) -> Vec<f64> {
+        match self {
+            Self::Speed(function) | Self::TurnRate(function) => function.jumps(from, to),
+            Self::TracerX(path) | Self::TracerY(path) => path.jumps(from, to),
+        }
+    }
+    fn piece(&self, t: f64) -> Self {
+        match self {
+            Self::Speed(function) => Self::Speed(function.piece(t)),
+            Self::TurnRate(function) => Self::TurnRate(function.piece(t)),
+            Self::TracerX(path) => Self::TracerX(path.piece(t)),
+            Self::TracerY(path) => Self::TracerY(path.piece(t)),
+        }
+    }
+}
+
+impl<const K: usize> Piecewise for Guided<K> {
+    fn jumps(&self, from: f64, to: f64) -> Vec<f64> {
+        self.guides.jumps(from, to)
+    }
+    fn piece(&self, t: f64) -> Self {
+        Self { guides: self.guides.piece(t), ..self.clone() }
+    }
+}

@@ -1,0 +1,152 @@
+use crate::SleighError;
+use lagrangian::{Piecewise, Scalar};
+use std::f64::consts::TAU;
+
+/// A closed path that a point runs once in every period, at constant speed: a circle, or a polygon.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClosedPath {
+    shape: Shape,
+    period: f64,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Shape {
+    Circle {
+        radius: f64,
+        center: [f64; 2],
+    },
+    Polygon {
+        vertices: Vec<[f64; 2]>,
+        /// When each edge begins, as a fraction of the period; one more entry for the end.
+        begins: Vec<f64>,
+        /// The edge on which the point is.
+        current: usize,
+    },
+}
+
+impl ClosedPath {
+    /// The circle about `center` (m), counterclockwise from `center + (radius, 0)` for a positive radius (m) and period (s).
+    ///
+    /// # Errors
+    /// [`SleighError`] names what is not finite, or a radius or period that is not positive.
+    pub fn circle(radius: f64, center: [f64; 2], period: f64) -> Result<Self, SleighError> {
+        positive("radius", radius)?;
+        positive("period", period)?;
+        if let Some(value) = center.into_iter().find(|x| !x.is_finite()) {
+            return Err(SleighError::NotFinite { quantity: "center", value });
+        }
+        Ok(Self { shape: Shape::Circle { radius, center }, period })
+    }
+
+    /// The polygon with these vertices (m), in their order and back to the first.
+    ///
+    /// # Errors
+    /// [`SleighError`] where there are fewer than two vertices, neighbours coincide, a number is not finite, or the period
+    /// is not positive.
+    pub fn polygon(vertices: Vec<[f64; 2]>, period: f64) -> Result<Self, SleighError> {
+        positive("period", period)?;
+        let fail = |problem: &str| Err(SleighError::Path { problem: problem.to_owned() });
+        if vertices.len() < 2 {
+            return fail("a polygon has at least two vertices");
+        }
+        if let Some(value) = vertices.iter().flatten().find(|x| !x.is_finite()) {
+            return Err(SleighError::NotFinite { quantity: "polygon", value: *value });
+        }
+        let mut begins = vec![0.0];
+        let mut length = 0.0;
+        for (k, from) in vertices.iter().enumerate() {
+            let to = vertices[(k + 1) % vertices.len()];
+            let edge = f64::hypot(to[0] - from[0], to[1] - from[1]);
+            if edge == 0.0 {
+                return fail("two neighbouring vertices of the polygon coincide");
+            }
+            length += edge;
+            begins.push(length);
+        }
+        if !length.is_finite() {
+            return Err(SleighError::NotFinite { quantity: "the length of the polygon", value: length });
+        }
+        for begin in &mut begins {
+            *begin /= length;
+        }
+        Ok(Self { shape: Shape::Polygon { vertices, begins, current: 0 }, period })
+    }
+
+    /// Where the path begins at `t = 0` (m).
+    #[must_use]
+    pub fn start(&self) -> [f64; 2] {
+        match &self.shape {
+            Shape::Circle { radius, center } => [center[0] + radius, center[1]],
+            Shape::Polygon { vertices, .. } => vertices[0],
+        }
+    }
+
+    /// The period (s).
+    #[must_use]
+    pub fn period(&self) -> f64 {
+        self.period
+    }
+
+    /// The area inside, positive counterclockwise (m^2).
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        match &self.shape {
+            Shape::Circle { radius, .. } => 0.5 * TAU * radius * radius,
+            Shape::Polygon { vertices, .. } => {
+                let twice = |k: usize| {
+                    let (a, b) = (vertices[k], vertices[(k + 1) % vertices.len()]);
+                    a[0] * b[1] - b[0] * a[1]
+                };
+                0.5 * (0..vertices.len()).map(twice).sum::<f64>()
+            }
+        }
+    }
+
+    /// The velocity along the path at the time `t` (m/s).
+    #[inline(always)]
+    pub fn velocity<S: Scalar>(&self, t: S) -> [S; 2] {
+        match &self.shape {
+            Shape::Circle { radius, .. } => {
+                let rate = TAU / self.period;
+                let (sin, cos) = (t * rate).sin_cos();
+                [sin * (-radius * rate), cos * (radius * rate)]
+            }
+            Shape::Polygon { vertices, begins, current } => {
+                let (from, to) = (vertices[*current], vertices[(current + 1) % vertices.len()]);
+                let time = (begins[current + 1] - begins[*current]) * self.period;
+                [0, 1].map(|i| S::constant((to[i] - from[i]) / time))
+            }
+        }
+    }
+}
+
+fn positive(quantity: &'static str, value: f64) -> Result<(), SleighError> {
+    if value.is_finite() && value > 0.0 { Ok(()) } else { Err(SleighError::NotPositive { quantity, value }) }
+}
+
+impl Piecewise for ClosedPath {
+    fn jumps(&self, from: f64, to: f64) -> Vec<f64> {
+        let Shape::Polygon { begins, .. } = &self.shape else {
+            return Vec::new();
+        };
+        let (first, last) = ((from / self.period).floor(), (to / self.period).ceil());
+        let mut jumps = Vec::new();
+        let mut round = first;
+        while round < last {
+            jumps.extend(begins[1..].iter().map(|begin| (round + begin) * self.period));
+            round += 1.0;
+        }
+        jumps.retain(|t| from < *t && *t < to);
+        jumps
+    }
+
+    fn piece(&self, t: f64) -> Self {
+        let mut piece = self.clone();
+        if let Shape::Polygon { begins, current, vertices } = &mut piece.shape {
+            let fraction = (t / self.period).rem_euclid(1.0);
+            let begun = begins.partition_point(|begin| *begin <= fraction);
+            *current = begun.saturating_sub(1).min(vertices.len() - 1);
+        }
+        piece
+    }
+}

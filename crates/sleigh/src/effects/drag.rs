@@ -1,0 +1,31 @@
+use super::not_negative;
+use crate::{SleighBody, SleighError};
+use lagrangian::{Effect, Scalar};
+use std::array::from_fn;
+
+/// Viscous drag: the force `-c_u u` along the blade at its contact point, and the torque `-c_omega omega`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drag {
+    along: f64,
+    turning: f64,
+}
+
+impl Drag {
+    /// The drag with the coefficients `c_u` (kg/s) and `c_omega` (kg m^2/s), neither negative.
+    ///
+    /// # Errors
+    /// [`SleighError::Negative`] names the coefficient.
+    pub fn new(along: f64, turning: f64) -> Result<Self, SleighError> {
+        Ok(Self { along: not_negative("along", along)?, turning: not_negative("turning", turning)? })
+    }
+}
+
+impl<B: SleighBody, const N: usize> Effect<B, N> for Drag {
+    #[inline(always)]
+    fn force<S: Scalar>(&self, _body: &B, _t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
+        let (sin, cos) = q[2].sin_cos();
+        let push = (cos * v[0] + sin * v[1]) * -self.along;
+        let turn = v[2] * -self.turning;
+        Some(from_fn(|i| [push * cos, push * sin, turn].get(i).copied().unwrap_or(S::zero())))
+    }
+}

@@ -1,0 +1,36 @@
+use crate::{SleighBody, SleighError, TimeFunction};
+use lagrangian::{Effect, Piecewise, Scalar};
+use std::array::from_fn;
+
+/// A torque `tau(t)` on the heading (N m).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Torque {
+    torque: TimeFunction,
+}
+
+impl Torque {
+    /// The torque `tau(t)` (N m).
+    ///
+    /// # Errors
+    /// [`SleighError::NotFinite`].
+    pub fn new(torque: impl Into<TimeFunction>) -> Result<Self, SleighError> {
+        Ok(Self { torque: torque.into().finite("torque")? })
+    }
+}
+
+impl<B: SleighBody, const N: usize> Effect<B, N> for Torque {
+    #[inline(always)]
+    fn force<S: Scalar>(&self, _body: &B, t: S, _q: &[S; N], _v: &[S; N]) -> Option<[S; N]> {
+        let torque = self.torque.value(t);
+        Some(from_fn(|i| if i == 2 { torque } else { S::zero() }))
+    }
+}
+
+impl Piecewise for Torque {
+    fn jumps(&self, from: f64, to: f64) -> Vec<f64> {
+        self.torque.jumps(from, to)
+    }
+    fn piece(&self, t: f64) -> Self {
+        Self { torque: self.torque.piece(t) }
+    }
+}

@@ -1,0 +1,23 @@
+use crate::Sleigh;
+use lagrangian::Scalar;
+
+/// A body that is a sleigh, perhaps with more coordinates or constraints: its first three coordinates are `(x, y, theta)`.
+pub trait SleighBody {
+    /// The sleigh.
+    fn sleigh(&self) -> &Sleigh;
+
+    /// The centre of mass `C = P + a e` (m).
+    #[inline(always)]
+    fn centre<S: Scalar, const N: usize>(&self, q: &[S; N]) -> [S; 2] {
+        let (sin, cos) = q[2].sin_cos();
+        let a = self.sleigh().offset();
+        [q[0] + cos * a, q[1] + sin * a]
+    }
+}
+
+impl SleighBody for Sleigh {
+    #[inline(always)]
+    fn sleigh(&self) -> &Sleigh {
+        self
+    }
+}
