@@ -4,6 +4,7 @@ use approx::assert_relative_eq;
 use dla::{Dla, NewtonError, Schedule, State, StepError, drive};
 use harness::{Dop853, ImplicitMidpoint, Rk4};
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
+use std::cell::Cell;
 
 /// A point of unit mass in the plane with `y' = 0`, so that it moves along a line.
 struct Line<Law>(Law);
@@ -141,6 +142,36 @@ fn the_adaptive_method_ends_with_the_motion() {
         assert!(matches!(error.source, StepError::Tolerance { .. } | StepError::NotFinite), "{error}");
         assert_relative_eq!(state.q()[0], runaway(error.time), max_relative = 1e-8);
     }
+}
+
+/// The spring, which counts how often its slope is asked for.
+#[derive(Default)]
+struct Counting(Cell<u32>);
+
+impl System<2, 1> for Counting {
+    fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 2], v: &[S; 2]) -> S {
+        Line(Spring).lagrangian(t, q, v)
+    }
+    fn constraint<S: Scalar>(&self, t: S, q: &[S; 2]) -> Constraint<S, 2, 1> {
+        Line(Spring).constraint(t, q)
+    }
+    fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; 2]) -> Option<AdmissibleBasis<S, 2, 1>> {
+        Line(Spring).admissible_basis(t, q)
+    }
+    fn reduced_motion(&self, _t: f64, q: &[f64; 2], _xi: &[f64; 2]) -> Option<[f64; 2]> {
+        self.0.set(self.0.get() + 1);
+        Some([-q[0], 0.0])
+    }
+}
+
+/// A step costs its twelve stages and an interval one slope more; the slopes of an interpolant are not worked out.
+#[test]
+fn the_adaptive_method_asks_for_no_more_than_it_uses() {
+    let (system, mut state) = (Counting::default(), at(1.0, 0.0));
+    drive(&system, &mut Dop853::new(1.0), &schedule(0.1, 10), &mut state, ()).unwrap();
+    assert_eq!(system.0.get(), 10 * (1 + 12));
+    // A step of 0.1 leaves (0.1)^9 of an error, with room.
+    assert_relative_eq!(state.q()[0], 1f64.cos(), max_relative = 10.0 * 1e-9);
 }
 
 /// What is not a number is refused at once, and where there is no basis the method says so.
