@@ -37,7 +37,8 @@ fn lists_are_the_same_as_text_and_as_json() {
             assert!(!method[key].as_str().unwrap().is_empty(), "{method}");
         }
     }
-    for baseline in ["dla", "dla-trapezoid", "dla-alpha", "rk4", "rk4-projected", "rk4-reduced"] {
+    let baselines = ["rk4", "rk4-projected", "rk4-reduced", "implicit-midpoint", "dop853"];
+    for baseline in ["dla", "dla-trapezoid", "dla-alpha"].into_iter().chain(baselines) {
         assert!(methods().iter().any(|name| name == baseline), "{baseline}");
     }
 

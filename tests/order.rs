@@ -74,7 +74,8 @@ fn methods_of_high_order() {
             12 => 0.5,
             _ => 1.0,
         };
-        let method = Method::named(info.name, None).unwrap();
+        // So loose a tolerance lets the adaptive method make every step in one; the others have none.
+        let method = Method::named(info.name, None).unwrap().with_tolerance(1e6).unwrap();
         // The four shortest steps whose error is clear of the plateau, or the three that there are.
         let (mut steps, mut errors) = (Vec::new(), Vec::new());
         for n in [4, 5, 6, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 64] {
@@ -100,6 +101,31 @@ fn mean_error(sleigh: &Sleigh, method: &Method, steps: u64) -> f64 {
         distance(&sleigh_state(&state), &Exact::new(sleigh, &start).unwrap().at(DURATION)).powi(2)
     });
     (squares.sum::<f64>() / 24.0).sqrt()
+}
+
+/// An adaptive method has a tolerance in place of the step: its error follows that, and hardly the step.
+#[test]
+fn the_adaptive_method_follows_its_tolerance() {
+    let sleigh = sleigh();
+    let method = Method::named("dop853", None).unwrap();
+    for h in [DURATION, 0.5] {
+        let tolerances = [1e-5, 1e-7, 1e-9, 1e-11];
+        let errors = tolerances.map(|tolerance| error(&sleigh, &method.with_tolerance(tolerance).unwrap(), h));
+        println!("h = {h}: errors {}", short(&errors));
+        for (tolerance, error) in tolerances.iter().zip(&errors) {
+            // Sixteen steps at most, and no error grows faster than the spin does, by exp(c u t) with u below 1.2 m/s.
+            let growth = (1.2 * sleigh.spin_gain() * DURATION).exp();
+            assert!(*error <= 16.0 * growth * tolerance, "h = {h}, tolerance {tolerance:e}: {error:e}");
+        }
+    }
+    // Over one long interval the error is nearly proportional to it.
+    let long = [1e-5, 1e-7, 1e-9, 1e-11];
+    let errors = long.map(|tolerance| error(&sleigh, &method.with_tolerance(tolerance).unwrap(), DURATION));
+    let slope = fitted(&long, &errors);
+    assert!((0.8..=1.2).contains(&slope), "error goes with tolerance^{slope}");
+    // The default asks for as much as there is to have.
+    let default = error(&sleigh, &method, 0.05);
+    assert!(default <= 1e-12, "default tolerance: {default:e}");
 }
 
 /// The same method in other coordinates is another method, of the same order.

@@ -103,6 +103,14 @@ pub enum StepError {
         /// When (s).
         time: f64,
     },
+    /// An adaptive method does not meet its tolerance within a step.
+    #[error("the tolerance is not met: after {tries} steps within the interval the next would be {step:e} s")]
+    Tolerance {
+        /// The steps tried, refused ones included.
+        tries: u32,
+        /// What the next one would be (s).
+        step: f64,
+    },
     /// A velocity became infinite or not a number.
     #[error("the velocities are no longer finite")]
     NotFinite,

@@ -10,7 +10,7 @@ mod run;
 mod statistics;
 mod timing;
 
-pub use baseline::{Rk4, Rk4Projected, Rk4Reduced};
+pub use baseline::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced};
 pub use method::{Kind, METHODS, Method, MethodError, MethodInfo};
 pub use record::{EnergySummary, NewtonSummary, Record, Sample};
 pub use run::{Request, integrate, integrate_pieces, run};

@@ -212,6 +212,22 @@ pub const METHODS: &[MethodInfo] = &[
         summary: "baseline: classical Runge-Kutta on the reduced equations, in a basis of admissible velocities",
         reference: "Bloch 2015, Nonholonomic Mechanics and Control, section 5.2",
     },
+    MethodInfo {
+        kind: Kind::ImplicitMidpoint,
+        name: "implicit-midpoint",
+        order: 2,
+        keeps: "nothing",
+        summary: "baseline: implicit midpoint rule in full coordinates, multiplier eliminated by index reduction",
+        reference: "Hairer, Lubich and Wanner 2006, section II.1.2",
+    },
+    MethodInfo {
+        kind: Kind::Dop853,
+        name: "dop853",
+        order: 8,
+        keeps: "constraint",
+        summary: "baseline: adaptive Dormand-Prince 8(5,3) on the reduced equations, tolerance 1e-12 within each step",
+        reference: "Hairer, Norsett and Wanner 1993, section II.10",
+    },
 ];
 
 /// The methods, as a program tells them apart.
@@ -265,6 +281,10 @@ pub enum Kind {
     Rk4Projected,
     /// `rk4-reduced`
     Rk4Reduced,
+    /// `implicit-midpoint`
+    ImplicitMidpoint,
+    /// `dop853`
+    Dop853,
 }
 
 /// A method, ready to integrate.
@@ -272,6 +292,7 @@ pub enum Kind {
 pub struct Method {
     info: MethodInfo,
     alpha: Alpha,
+    tolerance: f64,
 }
 
 /// A method that there is not.
@@ -286,6 +307,12 @@ pub enum MethodError {
     /// The weight of `dla-alpha` is no weight.
     #[error(transparent)]
     Alpha(#[from] NotAWeight),
+    /// The tolerance of `dop853` is none.
+    #[error("the tolerance must be positive and finite, and is {tolerance}")]
+    Tolerance {
+        /// What was given.
+        tolerance: f64,
+    },
 }
 
 fn names() -> Vec<&'static str> {
@@ -293,6 +320,9 @@ fn names() -> Vec<&'static str> {
 }
 
 impl Method {
+    /// The tolerance of `dop853` where none is given, relative and absolute (see [`Dop853::new`](crate::Dop853::new)).
+    pub const TOLERANCE: f64 = 1e-12;
+
     /// The method of that name; `alpha` is the weight of `dla-alpha`, `1/2` where none is given.
     ///
     /// # Errors
@@ -305,13 +335,31 @@ impl Method {
             // The one weight that makes the rule symmetric.
             info.order = 2;
         }
-        Ok(Self { info, alpha })
+        Ok(Self { info, alpha, tolerance: Self::TOLERANCE })
+    }
+
+    /// The same method with another tolerance, which only `dop853` reads.
+    ///
+    /// # Errors
+    /// [`MethodError::Tolerance`] unless it is positive and finite.
+    pub fn with_tolerance(self, tolerance: f64) -> Result<Self, MethodError> {
+        if tolerance > 0.0 && tolerance.is_finite() {
+            Ok(Self { tolerance, ..self })
+        } else {
+            Err(MethodError::Tolerance { tolerance })
+        }
     }
 
     /// Name, order and source.
     #[must_use]
     pub fn info(&self) -> MethodInfo {
         self.info
+    }
+
+    /// The tolerance of `dop853`.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
     }
 
     /// The rule of `dla-alpha`.

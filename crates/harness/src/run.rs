@@ -1,6 +1,6 @@
 use crate::record::Meter;
 use crate::timing::{Ticker, median_seconds};
-use crate::{Kind, Method, Progress, Record, Rk4, Rk4Projected, Rk4Reduced};
+use crate::{Dop853, ImplicitMidpoint, Kind, Method, Progress, Record, Rk4, Rk4Projected, Rk4Reduced};
 use dla::{
     Composition, Dla, Energy, Gauss, Gni, Lobatto, Observer, Part, RunError, Schedule, State, drive_part,
     onto_constraint, pieces,
@@ -114,6 +114,8 @@ where
         Kind::Rk4 => run_with!(Rk4),
         Kind::Rk4Projected => run_with!(Rk4Projected),
         Kind::Rk4Reduced => run_with!(Rk4Reduced),
+        Kind::ImplicitMidpoint => run_with!(ImplicitMidpoint::default()),
+        Kind::Dop853 => run_with!(Dop853::<N, M>::new(method.tolerance())),
     }
 }
 

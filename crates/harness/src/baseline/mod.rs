@@ -1,8 +1,14 @@
-//! Integrators to compare with: the classical Runge-Kutta method on the equations of motion in three forms.
+//! Integrators to compare with, on the continuous equations of motion: the classical Runge-Kutta method in three forms, the
+//! implicit midpoint rule, and an adaptive method of high order.
 
+mod dop853;
+mod implicit_midpoint;
+mod reduced_point;
 mod rk4;
 mod rk4_reduced;
 
+pub use dop853::Dop853;
+pub use implicit_midpoint::ImplicitMidpoint;
 pub use rk4::{Rk4, Rk4Projected};
 pub use rk4_reduced::Rk4Reduced;
 

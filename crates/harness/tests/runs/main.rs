@@ -2,6 +2,8 @@
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
+mod baselines;
+
 use approx::assert_relative_eq;
 use dla::Schedule;
 use harness::{METHODS, Method, MethodError, Request, Trend, run};
@@ -74,6 +76,13 @@ fn methods_are_found_by_their_names() {
     assert!(matches!(Method::named("dla-alpha", Some(1.5)), Err(MethodError::Alpha(_))));
     assert_eq!(Method::named("dla-alpha", Some(0.3)).unwrap().info().order, 1);
     assert_eq!(Method::named("dla-alpha", None).unwrap().info().order, 2);
+    let adaptive = Method::named("dop853", None).unwrap();
+    assert_eq!(adaptive.tolerance().to_bits(), Method::TOLERANCE.to_bits());
+    assert_eq!(adaptive.with_tolerance(1e-9).unwrap().tolerance().to_bits(), 1e-9f64.to_bits());
+    for tolerance in [0.0, -1e-9, f64::NAN, f64::INFINITY] {
+        let error = adaptive.with_tolerance(tolerance).unwrap_err();
+        assert!(error.to_string().contains("tolerance"), "{error}");
+    }
 }
 
 proptest! {

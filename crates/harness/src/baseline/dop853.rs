@@ -1,0 +1,122 @@
+use super::reduced_point::ReducedPoint;
+use differential_equations::methods::{DormandPrince, ExplicitRungeKutta, Ordinary};
+use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
+use dla::{OneStep, State, StepError, StepReport};
+use lagrangian::{System, reduced_slope, velocity_of};
+use std::cell::Cell;
+
+/// The adaptive method of Dormand and Prince of order 8(5,3), from a library, on the reduced equations.
+///
+/// A step of the schedule is an interval that the method crosses in steps of its own, as many as the tolerance asks for;
+/// the first is what the interval before left. The unknowns are those of [`Rk4Reduced`](crate::Rk4Reduced), the
+/// coordinates counted from the beginning of the interval. (Hairer, Norsett and Wanner 1993, section II.10; crate
+/// `differential-equations`.)
+pub struct Dop853<const N: usize, const M: usize> {
+    solver: Solver<N, M>,
+    /// The step to begin with (s); none before the first interval.
+    proposed: Option<f64>,
+}
+
+type Solver<const N: usize, const M: usize> =
+    ExplicitRungeKutta<Ordinary, DormandPrince, f64, ReducedPoint<N, M>, 8, 12, 16>;
+
+impl<const N: usize, const M: usize> Dop853<N, M> {
+    /// Steps tried within an interval before it is given up.
+    pub const MAX_TRIES: u32 = 100_000;
+    /// Slopes that a step uses: eleven new stages, and the end of the step where it is accepted.
+    const SLOPES: u32 = 12;
+
+    /// The method with the tolerance `epsilon`: the estimated error of a step stays, in the root mean square of its
+    /// components, below `epsilon + epsilon |y|`.
+    #[must_use]
+    pub fn new(epsilon: f64) -> Self {
+        // The limit of the library would count over all intervals.
+        let solver = Solver::dop853().rtol(epsilon).atol(epsilon).max_steps(usize::MAX);
+        Self { solver, proposed: None }
+    }
+
+    /// Crosses an interval of length `h` and returns the steps tried.
+    #[inline]
+    fn cross<Sys: System<N, M>>(
+        &mut self,
+        slopes: &Slopes<'_, Sys, N>,
+        h: f64,
+        xi: [f64; N],
+    ) -> Result<u32, StepError> {
+        let solver = &mut self.solver;
+        let failed = |tries, step| slopes.failure.get().unwrap_or(StepError::Tolerance { tries, step });
+        solver.h0 = self.proposed.filter(|step| step.abs() < h.abs()).map_or(h, |step| step.abs().copysign(h));
+        slopes.left.set(1);
+        solver.init(slopes, 0.0, h, &ReducedPoint { d: [0.0; N], xi }).map_err(|_| failed(0, h))?;
+        for tries in 1..=Self::MAX_TRIES {
+            let (begin, full) = (solver.t(), solver.h());
+            if full.abs() <= f64::EPSILON * h.abs() {
+                return Err(failed(tries - 1, full));
+            }
+            let rest = h - begin;
+            // A step that would leave a hundredth of itself over takes that too.
+            let last = 1.01 * full.abs() >= rest.abs();
+            if last {
+                solver.set_h(rest);
+            }
+            slopes.left.set(Self::SLOPES);
+            solver.step(slopes).map_err(|_| failed(tries, full))?;
+            let accepted = solver.t().to_bits() != begin.to_bits();
+            if accepted {
+                slopes.failure.set(None);
+                if last {
+                    // A step cut at the end of the interval says little of the next.
+                    self.proposed = Some(full.abs().max(solver.h().abs()));
+                    return Ok(tries);
+                }
+            }
+        }
+        Err(failed(Self::MAX_TRIES, solver.h()))
+    }
+}
+
+impl<const N: usize, const M: usize> std::fmt::Debug for Dop853<N, M> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Dop853").field("proposed", &self.proposed).finish_non_exhaustive()
+    }
+}
+
+/// The reduced equations as the library wants them.
+struct Slopes<'a, Sys, const N: usize> {
+    system: &'a Sys,
+    t0: f64,
+    q0: [f64; N],
+    /// Slopes that are still used. What the library asks for beyond them serves its interpolant, which nobody reads.
+    left: Cell<u32>,
+    /// Why the last slope that does not exist does not. The library takes such a step again, shorter.
+    failure: Cell<Option<StepError>>,
+}
+
+impl<Sys: System<N, M>, const N: usize, const M: usize> ODE<f64, ReducedPoint<N, M>> for Slopes<'_, Sys, N> {
+    #[inline]
+    fn diff(&self, t: f64, y: &ReducedPoint<N, M>, slope: &mut ReducedPoint<N, M>) {
+        let Some(left) = self.left.get().checked_sub(1) else { return };
+        self.left.set(left);
+        let q = std::array::from_fn(|i| self.q0[i] + y.d[i]);
+        (slope.d, slope.xi) = match reduced_slope(self.system, self.t0 + t, &q, &y.xi) {
+            Ok(found) => (found.velocity, found.acceleration),
+            Err(error) => {
+                self.failure.set(Some(error.into()));
+                // Not a number fails the library's test of the error.
+                ([f64::NAN; N], [f64::NAN; N])
+            }
+        };
+    }
+}
+
+impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Dop853<N, M> {
+    #[inline]
+    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        let xi0 = state.quasi_velocities(system, t)?;
+        let slopes = Slopes { system, t0: t, q0: *state.q(), left: Cell::new(0), failure: Cell::new(None) };
+        self.cross(&slopes, h, xi0)?;
+        let ReducedPoint { d, xi } = *self.solver.y();
+        let v = velocity_of(system, t + h, &state.ahead(&d), &xi)?;
+        super::rk4::explicit(state, &d, v, Some(xi))
+    }
+}

@@ -1,0 +1,92 @@
+use super::shifted;
+use dla::{NewtonError, OneStep, Stage, State, StepError, StepReport};
+use lagrangian::System;
+
+/// The implicit midpoint rule in full coordinates, the multiplier eliminated as in [`Rk4`](crate::Rk4).
+///
+/// With the acceleration `a` in the middle of the step as the unknown,
+///
+/// ```text
+/// v1 = v0 + h a,   q1 = q0 + h v_m,   v_m = v0 + h a / 2,   a = v'(t0 + h/2, q0 + h v_m / 2, v_m).
+/// ```
+///
+/// Symmetric and of order 2, with one stage of Gauss (Hairer, Lubich and Wanner 2006, section II.1.2). It keeps quadratic
+/// integrals, which the residual `A v + b` is not in general: the blade slips, by what a method of order 2 leaves.
+/// The acceleration is found by fixed-point iteration, which converges for steps below the time constants of the motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ImplicitMidpoint {
+    /// Iterations after which the search is given up.
+    pub max_iterations: u32,
+}
+
+impl Default for ImplicitMidpoint {
+    fn default() -> Self {
+        Self { max_iterations: 100 }
+    }
+}
+
+impl ImplicitMidpoint {
+    /// Where all changes are below this part of the largest acceleration, those that do not shrink are rounding.
+    const ROUNDING: f64 = 1e-11;
+
+    /// The acceleration in the middle, to the rounding of every component by itself, and the iterations.
+    #[inline]
+    fn acceleration<Sys: System<N, M>, const N: usize, const M: usize>(
+        &self,
+        system: &Sys,
+        (t0, h): (f64, f64),
+        state: &State<N>,
+    ) -> Result<([f64; N], u32), StepError> {
+        let fail = |source| StepError::Newton { stage: Stage::Collocation, source };
+        let (q0, v0) = (state.q(), state.v());
+        let motion = |t: f64, q: &[f64; N], v: &[f64; N]| {
+            system.motion(t, q, v).map(|motion| motion.acceleration).map_err(StepError::Motion)
+        };
+        let mut a = motion(t0, q0, v0)?;
+        let mut last = [f64::INFINITY; N];
+        let mut before = f64::INFINITY;
+        // The start's size too: an acceleration of zeros only has no size of its own.
+        let mut size = largest(&a);
+        for iteration in 1..=self.max_iterations {
+            let v = shifted(v0, 0.5 * h, &a);
+            let next = motion(t0 + 0.5 * h, &shifted(q0, 0.5 * h, &v), &v)?;
+            let change: [f64; N] = std::array::from_fn(|i| (next[i] - a[i]).abs());
+            a = next;
+            let (now, moved) = (largest(&a), largest(&change));
+            if !now.is_finite() || moved.is_nan() {
+                return Err(fail(NewtonError::NotFinite { iteration }));
+            }
+            size = size.max(now);
+            let converged = moved <= Self::ROUNDING * size;
+            let settled = (0..N).all(|i| {
+                let rounding = converged && change[i] >= 0.5 * last[i];
+                rounding || change[i] <= 4.0 * f64::EPSILON * a[i].abs()
+            });
+            if settled {
+                return Ok((a, iteration));
+            }
+            if iteration > 3 && moved > 2.0 * before {
+                return Err(fail(NewtonError::Diverged { iteration, correction: moved / size, before: before / size }));
+            }
+            (last, before) = (change, moved);
+        }
+        Err(fail(NewtonError::IterationLimit { iterations: self.max_iterations, correction: before / size }))
+    }
+}
+
+/// The largest component; what is not a number wins.
+#[inline(always)]
+fn largest(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |m: f64, x| if x.abs() > m || x.is_nan() { x.abs() } else { m })
+}
+
+impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for ImplicitMidpoint {
+    #[inline]
+    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        let (a, iterations) = self.acceleration(system, (t, h), state)?;
+        let v0 = *state.v();
+        let increment = shifted(&v0, 0.5 * h, &a).map(|v| h * v);
+        let report = super::rk4::explicit(state, &increment, shifted(&v0, h, &a), None)?;
+        Ok(StepReport { iterations, ..report })
+    }
+}
