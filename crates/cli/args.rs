@@ -20,6 +20,8 @@ pub(crate) enum Command {
     Run(RunArguments),
     /// Compares methods on a scene: constraint, energy and drift, error and time, method by method
     Compare(CompareArguments),
+    /// Measures what each effect of a scene costs a step of dla
+    Cost(SceneArguments),
     /// Reads a scene and says what it is, or what is wrong with it
     Check(CheckArguments),
     /// Lists what there is

@@ -2,6 +2,7 @@
 
 mod args;
 mod compare;
+mod cost;
 mod error;
 mod files;
 mod first_error;
@@ -42,6 +43,7 @@ fn command(arguments: Arguments) -> Result<(), CliError> {
         None => job::main_job(&arguments.job),
         Some(Command::Run(arguments)) => run::run(&arguments),
         Some(Command::Compare(arguments)) => compare::compare(&arguments),
+        Some(Command::Cost(arguments)) => cost::cost(&arguments),
         Some(Command::Check(arguments)) => inspect::check(&arguments),
         Some(Command::List(arguments)) => inspect::list(&arguments),
         Some(Command::New(arguments)) => inspect::new(&arguments),

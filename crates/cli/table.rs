@@ -46,15 +46,20 @@ pub(crate) fn cells<const N: usize>(record: &Record<N>, error: Option<f64>) -> V
 
 /// The table of a comparison.
 pub(crate) fn comparison(scene: &Scene, rows: &[Row]) -> String {
+    let rows: Vec<_> = rows.iter().map(|row| row.cells.clone()).collect();
+    let heading = format!("{} ({}), {} s\n", scene.title, scene.name, number(scene.run.duration));
+    heading + &right_aligned(&COLUMNS, &rows)
+}
+
+/// A table, all columns but the first aligned to the right.
+pub(crate) fn right_aligned(header: &[&str], rows: &[Vec<String>]) -> String {
     let mut table = Table::new();
-    table.load_style(presets::NOTHING).set_header(COLUMNS);
-    for row in rows {
-        table.add_row(&row.cells);
-    }
+    table.load_style(presets::NOTHING).set_header(header);
+    table.add_rows(rows);
     for column in table.column_iter_mut().skip(1) {
         column.set_cell_alignment(CellAlignment::Right);
     }
-    let mut text = format!("{} ({}), {} s\n", scene.title, scene.name, number(scene.run.duration));
+    let mut text = String::new();
     for line in table.trim_fmt().lines() {
         let _ = writeln!(text, "{line}");
     }

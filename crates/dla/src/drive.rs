@@ -111,7 +111,7 @@ where
     }
 }
 
-impl<Sys, O: Observer<Sys, N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for &mut O {
+impl<Sys, O: Observer<Sys, N, M> + ?Sized, const N: usize, const M: usize> Observer<Sys, N, M> for &mut O {
     #[inline(always)]
     fn start(&mut self, node: &View<'_, Sys, N>) {
         (**self).start(node);

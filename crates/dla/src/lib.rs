@@ -30,7 +30,7 @@ pub use gni::Gni;
 pub use lobatto::Lobatto;
 pub use newton::{Equations, Newton, NewtonError};
 pub use one_step::{OneStep, Stage, StepError, StepReport};
-pub use pieces::{onto_constraint, pieces};
+pub use pieces::{onto_constraint, piece_by_piece, pieces};
 pub use state::State;
 pub use trajectory::{Node, Trajectory};
 pub use work::Work;

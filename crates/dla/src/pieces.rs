@@ -1,6 +1,6 @@
 use crate::projection::Projection;
-use crate::{Newton, RunError, Schedule, Stage, State, StepError};
-use lagrangian::{System, constraint_residual, momentum};
+use crate::{Newton, Part, RunError, Schedule, Stage, State, StepError};
+use lagrangian::{Piecewise, System, constraint_residual, momentum};
 use std::ops::Range;
 
 /// A jump may miss a node by this part of a step.
@@ -34,6 +34,37 @@ pub fn pieces(schedule: &Schedule, mut jumps: Vec<f64>) -> Result<Vec<Range<u64>
         parts.push(begin..schedule.steps);
     }
     Ok(parts)
+}
+
+/// Makes a run whose forces or constraints may jump, one smooth piece after the other; returns how many steps were made.
+///
+/// `make` makes the given steps with the given piece, as [`drive_part`](crate::drive_part) does. Where an imposed velocity
+/// jumps, the impulse of the constraints changes the velocity before the next piece begins.
+///
+/// # Errors
+/// [`RunError`] of the part that failed; a jump inside a step is refused before the first step is made.
+pub fn piece_by_piece<Sys, const N: usize, const M: usize>(
+    system: &Sys,
+    schedule: &Schedule,
+    state: &mut State<N>,
+    mut make: impl FnMut(&Sys, Range<u64>, &mut State<N>) -> Result<Part, RunError>,
+) -> Result<u64, RunError>
+where
+    Sys: System<N, M> + Piecewise,
+{
+    let (begin, end) = (schedule.t0, schedule.time(schedule.steps));
+    let mut made = 0;
+    for part in pieces(schedule, system.jumps(begin.min(end), begin.max(end)))? {
+        let (first, last) = (schedule.time(part.start), schedule.time(part.end));
+        let piece = system.piece(0.5 * (first + last));
+        onto_constraint(&piece, first, state).map_err(|source| RunError { step: made + 1, time: first, source })?;
+        let done = make(&piece, part, state)?;
+        made = done.made;
+        if done.stopped {
+            break;
+        }
+    }
+    Ok(made)
 }
 
 /// Where a velocity misses its constraints by more than rounding, the impulse of the constraints brings it there: the

@@ -3,6 +3,7 @@
 //! [`Method`] names every integrator; [`run`] makes one run of it and measures it as a [`Record`].
 
 mod baseline;
+mod cost;
 mod method;
 mod record;
 pub mod report;
@@ -11,8 +12,9 @@ mod statistics;
 mod timing;
 
 pub use baseline::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced};
+pub use cost::{StepCost, step_cost};
 pub use method::{Kind, METHODS, Method, MethodError, MethodInfo};
 pub use record::{EnergySummary, NewtonSummary, Record, Sample};
-pub use run::{Request, integrate, integrate_pieces, run};
+pub use run::{Request, integrate, integrate_pieces, integrate_unseen, run};
 pub use statistics::Trend;
 pub use timing::Progress;

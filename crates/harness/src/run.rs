@@ -3,7 +3,7 @@ use crate::timing::{Ticker, median_seconds};
 use crate::{Dop853, ImplicitMidpoint, Kind, Method, Progress, Record, Rk4, Rk4Projected, Rk4Reduced};
 use dla::{
     Composition, Dla, Energy, Gauss, Gni, Lobatto, Observer, Part, RunError, Schedule, State, drive_part,
-    onto_constraint, pieces,
+    piece_by_piece,
 };
 use lagrangian::{Piecewise, System};
 use std::ops::Range;
@@ -39,36 +39,44 @@ where
     integrate_part(system, method, schedule, 0..schedule.steps, state, observer).map(|part| part.made)
 }
 
-/// Integrates a system whose forces or constraints may jump: one smooth piece after the other.
+/// Integrates a system whose forces or constraints may jump, one smooth piece after the other, and shows every node to the
+/// observer.
 ///
-/// Where an imposed velocity jumps, the impulse of the constraints changes the velocity.
+/// One code for every observer: it is called through a pointer, and the steps are compiled once.
 ///
 /// # Errors
 /// As [`integrate`]; a jump inside a step is refused before the first step is made.
-pub fn integrate_pieces<Sys, Obs, const N: usize, const M: usize>(
+pub fn integrate_pieces<Sys, const N: usize, const M: usize>(
     system: &Sys,
     method: &Method,
     schedule: &Schedule,
     state: &mut State<N>,
-    mut observer: Obs,
+    observer: &mut dyn Observer<Sys, N, M>,
 ) -> Result<u64, RunError>
 where
     Sys: System<N, M> + Piecewise,
-    Obs: Observer<Sys, N, M>,
 {
-    let (begin, end) = (schedule.t0, schedule.time(schedule.steps));
-    let mut made = 0;
-    for part in pieces(schedule, system.jumps(begin.min(end), begin.max(end)))? {
-        let (first, last) = (schedule.time(part.start), schedule.time(part.end));
-        let piece = system.piece(0.5 * (first + last));
-        onto_constraint(&piece, first, state).map_err(|source| RunError { step: made + 1, time: first, source })?;
-        let done = integrate_part(&piece, method, schedule, part, state, &mut observer)?;
-        made = done.made;
-        if done.stopped {
-            break;
-        }
-    }
-    Ok(made)
+    piece_by_piece(system, schedule, state, |piece, steps, state| {
+        integrate_part(piece, method, schedule, steps, state, &mut *observer)
+    })
+}
+
+/// The same with nothing looking on: what is timed.
+///
+/// # Errors
+/// As [`integrate_pieces`].
+pub fn integrate_unseen<Sys, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &Method,
+    schedule: &Schedule,
+    state: &mut State<N>,
+) -> Result<u64, RunError>
+where
+    Sys: System<N, M> + Piecewise,
+{
+    piece_by_piece(system, schedule, state, |piece, steps, state| {
+        integrate_part(piece, method, schedule, steps, state, ())
+    })
 }
 
 /// A part of a run with the method of that name: the one place where a name becomes a type.
@@ -126,20 +134,20 @@ pub fn run<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
     system: &Sys,
     method: &Method,
     request: &Request<N>,
-    progress: &mut impl Progress,
+    progress: &mut dyn Progress,
 ) -> Record<N> {
     let Request { schedule, q, v, samples } = *request;
     let start = State::new(q, v, system.angles());
 
     let mut meter = Meter::new(schedule.steps.div_ceil(samples.max(1)));
     let ticker = Ticker { progress, told: 0 };
-    let failure = integrate_pieces(system, method, &schedule, &mut start.clone(), (&mut meter, ticker)).err();
+    let failure = integrate_pieces(system, method, &schedule, &mut start.clone(), &mut (&mut meter, ticker)).err();
 
     let timed = Schedule { steps: failure.map_or(schedule.steps, |failure| failure.step - 1), ..schedule };
     let wall_seconds = median_seconds(|| {
         let mut state = std::hint::black_box(start);
         // The observed run has just shown that these steps succeed.
-        let made = integrate_pieces(system, method, &timed, &mut state, ());
+        let made = integrate_unseen(system, method, &timed, &mut state);
         std::hint::black_box((made.is_ok(), state));
     });
     meter.record(method.info(), schedule.step, wall_seconds, failure)

@@ -24,16 +24,16 @@ impl<F: FnMut(u64)> Progress for F {
 }
 
 /// The observer that tells a [`Progress`] every so many steps.
-pub(crate) struct Ticker<'a, P> {
-    pub(crate) progress: &'a mut P,
+pub(crate) struct Ticker<'a> {
+    pub(crate) progress: &'a mut dyn Progress,
     pub(crate) told: u64,
 }
 
-impl<P: Progress> Ticker<'_, P> {
+impl Ticker<'_> {
     const EVERY: u64 = 1 << 14;
 }
 
-impl<P: Progress, Sys, const N: usize, const M: usize> Observer<Sys, N, M> for Ticker<'_, P> {
+impl<Sys, const N: usize, const M: usize> Observer<Sys, N, M> for Ticker<'_> {
     fn start(&mut self, _node: &View<'_, Sys, N>) {}
 
     #[inline]

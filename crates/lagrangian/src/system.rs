@@ -24,6 +24,10 @@ pub type Constraint<S, const N: usize, const M: usize> = ([[S; N]; M], [S; M]);
 /// # assert_eq!(lagrangian::energy(&Particle, 0.0, &[0.0; 3], &[1.0, 2.0, 0.0]), 2.5);
 /// ```
 pub trait System<const N: usize, const M: usize> {
+    /// Whether constraints are known to move, `b != 0`: a method for fixed constraints then refuses the system when the
+    /// program is compiled, and no code is made for it. Where this is false it still looks at `b`.
+    const MOVING: bool = false;
+
     /// The Lagrangian `L(t, q, v)` (J).
     fn lagrangian<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> S;
 

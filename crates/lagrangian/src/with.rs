@@ -13,6 +13,8 @@ pub struct With<B, E> {
 }
 
 impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N, M> for With<B, E> {
+    const MOVING: bool = B::MOVING;
+
     #[inline(always)]
     fn lagrangian<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> S {
         let bare = self.body.lagrangian(t, q, v);

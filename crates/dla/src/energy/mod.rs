@@ -77,6 +77,9 @@ impl Energy<1> {
 impl<Sys: System<N, M>, const S: usize, const N: usize, const M: usize> OneStep<Sys, N, M> for Energy<S> {
     #[inline]
     fn step(&mut self, system: &Sys, t0: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        if Sys::MOVING {
+            return Err(start::MOVING);
+        }
         let start = Start::new(system, t0, h, state)?;
         let step = Step { system, rule: &self.rule, gradient: self.gradient, t0, h, start: &start };
         let end = vectorized(

@@ -41,6 +41,9 @@ impl<const N: usize> Start<N> {
     }
 }
 
+pub(super) const MOVING: StepError =
+    StepError::Unsupported { reason: "the energy is conserved only under constraints with b = 0, and this one moves" };
+
 /// Refuses `b != 0` and a Lagrangian, constraint or basis that changes with time.
 ///
 /// The time is not one that a period of the system is likely to share with the step.
@@ -56,9 +59,7 @@ fn autonomous<Sys: System<N, M>, const N: usize, const M: usize>(
     let (a, b) = system.constraint(t, &q);
     let (_, nearby) = system.constraint(Dual::fixed(t.re), &Dual::variables(place));
     if !nearby.iter().all(Scalar::is_zero) {
-        return Err(StepError::Unsupported {
-            reason: "the energy is conserved only under constraints with b = 0, and this one moves",
-        });
+        return Err(MOVING);
     }
     let moves = |x: &Dual<f64, 1>| x.eps[0] != 0.0;
     let basis = system.admissible_basis(t, &q);

@@ -58,6 +58,8 @@ fn with_rotor<S: Scalar>(body: &[S; 3], rotor: S) -> [S; 4] {
 }
 
 impl<B: System<3, M>, const M: usize> System<4, M> for Flywheel<B> {
+    const MOVING: bool = B::MOVING;
+
     #[inline(always)]
     fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 4], v: &[S; 4]) -> S {
         let spin = v[2] + v[3];

@@ -1,0 +1,84 @@
+use crate::args::SceneArguments;
+use crate::error::CliError;
+use crate::{inspect, table, terminal};
+use dla::{RunError, Schedule};
+use harness::{StepCost, step_cost};
+use scene::{Scene, SceneEffect, SceneSystem, Visitor};
+use serde_json::json;
+
+/// The steps over which a cost is a mean.
+const STEPS: u64 = 2000;
+
+/// One row: some of a scene's effects, and what a step costs with them.
+struct Row {
+    effects: Vec<&'static str>,
+    cost: StepCost,
+}
+
+/// `noslip cost`: what each effect of a scene costs a step, for the scene with none, with each alone, and with all.
+pub(crate) fn cost(arguments: &SceneArguments) -> Result<(), CliError> {
+    let scene = inspect::load(arguments, None)?;
+    let mut subsets: Vec<Vec<SceneEffect>> = vec![Vec::new()];
+    subsets.extend(scene.effects.iter().map(|effect| vec![effect.clone()]));
+    if scene.effects.len() > 1 {
+        subsets.push(scene.effects.clone());
+    }
+    let mut rows = Vec::new();
+    let mut failures = Vec::new();
+    for effects in subsets {
+        let names: Vec<&'static str> = effects.iter().map(SceneEffect::kind).collect();
+        let schedule = Schedule { steps: scene.run.steps().min(STEPS), ..inspect::schedule(&scene) };
+        let part = Scene { effects, ..scene.clone() };
+        match part.visit(Cost(schedule))? {
+            Ok(cost) => rows.push(Row { effects: names, cost }),
+            Err(failure) => failures.push(format!("with [{}]: {failure}", names.join(", "))),
+        }
+    }
+    if arguments.json {
+        let rows: Vec<_> = rows
+            .iter()
+            .map(|row| {
+                json!({
+                    "effects": row.effects,
+                    "ns_per_step": row.cost.ns_per_step,
+                    "evaluations_per_step": row.cost.evaluations_per_step,
+                })
+            })
+            .collect();
+        terminal::print_json(&json!({"scene": scene.name, "rows": rows}))?;
+    } else {
+        let heading =
+            format!("{} ({}): a step of dla by automatic derivatives, the mean over a run\n", scene.title, scene.name);
+        terminal::print(&(heading + &table::right_aligned(&COLUMNS, &cells(&rows))))?;
+    }
+    CliError::of_failures(failures)
+}
+
+const COLUMNS: [&str; 4] = ["effects", "ns/step", "more", "evaluations/step"];
+
+/// The rows as text, each with what it costs more than the first.
+fn cells(rows: &[Row]) -> Vec<Vec<String>> {
+    let bare = rows.first().map_or(f64::NAN, |row| row.cost.ns_per_step);
+    let cells = |row: &Row| {
+        vec![
+            if row.effects.is_empty() { "none".to_owned() } else { row.effects.join(", ") },
+            format!("{:.1}", row.cost.ns_per_step),
+            if row.effects.is_empty() { "-".to_owned() } else { format!("{:+.1}", row.cost.ns_per_step - bare) },
+            format!("{:.2}", row.cost.evaluations_per_step),
+        ]
+    };
+    rows.iter().map(cells).collect()
+}
+
+struct Cost(Schedule);
+
+impl Visitor for Cost {
+    type Output = Result<StepCost, RunError>;
+
+    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
+    where
+        Sys: SceneSystem<N, M>,
+    {
+        step_cost(system, &self.0, q, v)
+    }
+}
