@@ -125,7 +125,7 @@ impl<'a, const N: usize> Reference<'a, N> {
         }
         let Ok(method) = Method::named("gauss16", None) else { return Self::None };
         let fine = Schedule { step: 0.25 * schedule.step, steps: 4 * schedule.steps, ..*schedule };
-        match harness::integrate_unseen(system, &method, &fine, &mut state) {
+        match harness::integrate_pieces(system, &method, &fine, &mut state, &mut ()) {
             Ok(made) => Self::Computed { t: fine.time(made), state },
             Err(_) => Self::None,
         }

@@ -15,6 +15,6 @@ pub use baseline::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced};
 pub use cost::{StepCost, step_cost};
 pub use method::{Kind, METHODS, Method, MethodError, MethodInfo};
 pub use record::{EnergySummary, NewtonSummary, Record, Sample};
-pub use run::{Request, integrate, integrate_pieces, integrate_unseen, run};
+pub use run::{Request, integrate, integrate_pieces, run};
 pub use statistics::Trend;
 pub use timing::Progress;

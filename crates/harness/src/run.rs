@@ -42,7 +42,7 @@ where
 /// Integrates a system whose forces or constraints may jump, one smooth piece after the other, and shows every node to the
 /// observer.
 ///
-/// One code for every observer: it is called through a pointer, and the steps are compiled once.
+/// One code for every observer, `()` among them: it is called through a pointer, so that the steps are compiled once.
 ///
 /// # Errors
 /// As [`integrate`]; a jump inside a step is refused before the first step is made.
@@ -58,24 +58,6 @@ where
 {
     piece_by_piece(system, schedule, state, |piece, steps, state| {
         integrate_part(piece, method, schedule, steps, state, &mut *observer)
-    })
-}
-
-/// The same with nothing looking on: what is timed.
-///
-/// # Errors
-/// As [`integrate_pieces`].
-pub fn integrate_unseen<Sys, const N: usize, const M: usize>(
-    system: &Sys,
-    method: &Method,
-    schedule: &Schedule,
-    state: &mut State<N>,
-) -> Result<u64, RunError>
-where
-    Sys: System<N, M> + Piecewise,
-{
-    piece_by_piece(system, schedule, state, |piece, steps, state| {
-        integrate_part(piece, method, schedule, steps, state, ())
     })
 }
 
@@ -147,7 +129,7 @@ pub fn run<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
     let wall_seconds = median_seconds(|| {
         let mut state = std::hint::black_box(start);
         // The observed run has just shown that these steps succeed.
-        let made = integrate_unseen(system, method, &timed, &mut state);
+        let made = integrate_pieces(system, method, &timed, &mut state, &mut ());
         std::hint::black_box((made.is_ok(), state));
     });
     meter.record(method.info(), schedule.step, wall_seconds, failure)

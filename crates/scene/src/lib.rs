@@ -33,6 +33,7 @@ mod sections;
 mod suggest;
 mod system;
 mod table;
+mod written;
 
 pub use self::scene::Scene;
 pub use acting::Acting;

@@ -78,21 +78,21 @@ const CASES: &[Case] = &[
     ("\"dla\"", "\"\"", (11, 10), &["`run.method`", "one of `dla`"]),
     (
         "duration = 40.0\n",
-        "duration = 40.0\n[[effects]]\nkind = \"bowl\"\nstiffness = 1",
+        "duration = 40.0\n[[effects]]\nkind = \"bow\"\nstiffness = 1",
         (15, 8),
-        &["`effects.kind`", "\"bowl\"", "this version knows no effects yet"],
+        &["`effects.kind`", "\"bow\"", "`slope`, `bowl`", "did you mean `bowl`?"],
     ),
     (
         "duration = 40.0\n",
         "duration = 40.0\n\n[[effects]]\nstiffness = 1",
         (15, 1),
-        &["`effects.kind`", "is missing", "this version knows no effects yet"],
+        &["`effects.kind`", "is missing", "one of `slope`"],
     ),
     (
         "title = \"Good\"",
         "effects = [{ kind = 1 }]",
         (1, 21),
-        &["`effects.kind`", "found an integer", "no effects yet"],
+        &["`effects.kind`", "found an integer", "one of `slope`"],
     ),
     // Keys that no scene has.
     ("mass = 1.0", "masss = 1.0", (3, 1), &["`sleigh.masss`", "`mass`, `inertia`, `offset`", "did you mean `mass`?"]),

@@ -1,8 +1,9 @@
 //! Scenes and texts at random.
 #![allow(clippy::unwrap_used, reason = "what clippy.toml allows in tests, their helpers need too")]
 
+use dla::{Dla, Schedule, State, drive_part, piece_by_piece};
 use proptest::prelude::*;
-use scene::{RunSettings, Scene};
+use scene::{HillSpec, PathSpec, RunSettings, Scene, SceneEffect, SceneSystem, Shape, TimeSpec, Visitor};
 use sleigh::{Sleigh, SleighState};
 
 const METHODS: &[&str] = &["dla", "dla-alpha", "rk4"];
@@ -15,6 +16,77 @@ fn finite() -> impl Strategy<Value = f64> {
     prop_oneof![Just(0.0), Just(-0.0), Just(3.0), proptest::num::f64::NORMAL | proptest::num::f64::SUBNORMAL]
 }
 
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![Just(0.0), -3.0..3.0, finite()]
+}
+
+fn pair() -> impl Strategy<Value = [f64; 2]> {
+    prop::array::uniform2(number())
+}
+
+/// A function of time; its table, if it is one, jumps where every step of `scenes` has a node: never within the run.
+fn function() -> impl Strategy<Value = TimeSpec> {
+    prop_oneof![
+        number().prop_map(TimeSpec::Constant),
+        (number(), number(), number()).prop_map(|(amplitude, frequency, phase)| TimeSpec::Sine {
+            amplitude,
+            frequency,
+            phase
+        }),
+        (number(), number()).prop_map(|(a, b)| TimeSpec::Table { times: vec![-1.0, 0.0], values: vec![a, b] }),
+    ]
+}
+
+fn hill() -> impl Strategy<Value = HillSpec> {
+    (number(), number(), number(), positive()).prop_map(|(height, x, y, width)| HillSpec { height, x, y, width })
+}
+
+/// Any effect that a scene may have several of.
+fn acting() -> impl Strategy<Value = SceneEffect> {
+    let smooth = prop_oneof![
+        number().prop_map(TimeSpec::Constant),
+        (number(), number(), number()).prop_map(|(amplitude, frequency, phase)| TimeSpec::Sine {
+            amplitude,
+            frequency,
+            phase
+        }),
+    ];
+    prop_oneof![
+        pair().prop_map(|gravity| SceneEffect::Slope { gravity }),
+        (pair(), pair()).prop_map(|(stiffness, center)| SceneEffect::Bowl { stiffness, center }),
+        (number(), pair()).prop_map(|(height, wave_number)| SceneEffect::EggCrate { height, wave_number }),
+        prop::collection::vec(hill(), 0..3).prop_map(|hills| SceneEffect::Hills { hills }),
+        (positive(), positive()).prop_map(|(along, turning)| SceneEffect::Drag { along, turning }),
+        function().prop_map(|force| SceneEffect::Thrust { force }),
+        function().prop_map(|torque| SceneEffect::Torque { torque }),
+        (positive(), smooth.clone(), smooth).prop_map(|(mass, x, y)| SceneEffect::MovingMass { mass, x, y }),
+    ]
+}
+
+/// At most one rotor, one guide and one table, then what acts on them.
+fn effects() -> impl Strategy<Value = Vec<SceneEffect>> {
+    let flywheel = (positive(), number(), prop::option::of(function()))
+        .prop_map(|(inertia, rotor_rate, torque)| SceneEffect::Flywheel { inertia, rotor_rate, torque });
+    let guide = prop_oneof![
+        (function(), prop::option::of(function()))
+            .prop_map(|(speed, turn_rate)| SceneEffect::Servo { speed: Some(speed), turn_rate }),
+        function().prop_map(|turn_rate| SceneEffect::Servo { speed: None, turn_rate: Some(turn_rate) }),
+        (positive(), pair(), positive()).prop_map(|(radius, center, period)| SceneEffect::Tracer {
+            path: PathSpec { shape: Shape::Circle { radius, center }, period },
+        }),
+    ];
+    let turntable = number().prop_map(|rate| SceneEffect::Turntable { rate });
+    (
+        prop::option::of(flywheel),
+        prop::option::of(guide),
+        prop::option::of(turntable),
+        prop::collection::vec(acting(), 0..4),
+    )
+        .prop_map(|(flywheel, guide, turntable, acting)| {
+            flywheel.into_iter().chain(guide).chain(turntable).chain(acting).collect()
+        })
+}
+
 prop_compose! {
     fn scenes()(
         title in "[^\\p{Cc}\"\\\\]{0,12}",
@@ -23,7 +95,11 @@ prop_compose! {
         method in prop::sample::select(METHODS),
         alpha in prop::option::of(0.0..=1.0),
         (step, ratio) in (positive(), 1.0_f64..1e11),
+        mut effects in effects(),
     ) -> Scene {
+        if offset == 0.0 {
+            effects.retain(|effect| !matches!(effect, SceneEffect::Tracer { .. }));
+        }
         let [x, y, heading, speed, turn_rate] = start;
         Scene {
             name: "random".to_owned(),
@@ -31,29 +107,9 @@ prop_compose! {
             sleigh: Sleigh::new(mass, inertia, offset).unwrap(),
             start: SleighState { x, y, heading, speed, turn_rate },
             run: RunSettings { method: method.to_owned(), alpha, step, duration: f64::max(step * ratio, step) },
+            effects,
         }
     }
-}
-
-/// The scene as a file; `{:?}` writes a number with the digits that lead back to it.
-fn written(scene: &Scene) -> String {
-    let Scene { title, sleigh, start, run, .. } = scene;
-    let alpha = run.alpha.map(|alpha| format!("alpha = {alpha:?}\n")).unwrap_or_default();
-    format!(
-        "title = \"{title}\"\n[sleigh]\nmass = {:?}\ninertia = {:?}\noffset = {:?}\n[start]\nx = {:?}\ny = {:?}\n\
-         heading = {:?}\nspeed = {:?}\nturn_rate = {:?}\n[run]\nmethod = {:?}\nstep = {:?}\nduration = {:?}\n{alpha}",
-        sleigh.mass(),
-        sleigh.inertia(),
-        sleigh.offset(),
-        start.x,
-        start.y,
-        start.heading,
-        start.speed,
-        start.turn_rate,
-        run.method,
-        run.step,
-        run.duration,
-    )
 }
 
 /// A text either is a scene or has an error that names where it comes from.
@@ -71,12 +127,40 @@ fn parses_or_explains(text: &str) -> Result<(), TestCaseError> {
     Ok(())
 }
 
+/// Makes at most ten steps; an error is as good as an end, if it shows.
+struct AFewSteps<'a>(&'a RunSettings);
+
+impl Visitor for AFewSteps<'_> {
+    type Output = Result<(), TestCaseError>;
+
+    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
+    where
+        Sys: SceneSystem<N, M>,
+    {
+        let schedule = Schedule { t0: 0.0, step: self.0.actual_step(), steps: self.0.steps().min(10) };
+        let mut state = State::new(q, v, system.angles());
+        let run = piece_by_piece(system, &schedule, &mut state, |piece, steps, state| {
+            drive_part(piece, &mut Dla::midpoint(), &schedule, steps, state, ())
+        });
+        match run {
+            Ok(made) => prop_assert!(made == schedule.steps && state.v().iter().all(|v| v.is_finite())),
+            Err(error) => prop_assert!(!error.to_string().is_empty()),
+        }
+        Ok(())
+    }
+}
+
 proptest! {
     #[test]
     fn scenes_come_back_from_their_text(scene in scenes()) {
-        let text = written(&scene);
+        let text = scene.to_toml().unwrap();
         let back = Scene::parse(&text, "random.toml", METHODS);
         prop_assert_eq!(back, Ok(scene), "{}", text);
+    }
+
+    #[test]
+    fn scenes_run_or_say_why_not(scene in scenes()) {
+        scene.visit(AFewSteps(&scene.run)).unwrap()?;
     }
 
     #[test]
@@ -105,6 +189,19 @@ proptest! {
             let end = (start + removed).min(boundaries.len() - 1);
             text.replace_range(boundaries[start]..boundaries[end], &inserted);
         }
+        parses_or_explains(&text)?;
+    }
+
+    #[test]
+    fn mutated_scenes_parse_or_explain(
+        scene in scenes(),
+        (at, removed, inserted) in (any::<prop::sample::Index>(), 0_usize..12, "[\\[\\]={},.#0-9a-z\"\n-]{0,4}"),
+    ) {
+        let mut text = scene.to_toml().unwrap();
+        let boundaries: Vec<_> = text.char_indices().map(|(at, _)| at).chain([text.len()]).collect();
+        let start = at.index(boundaries.len());
+        let end = (start + removed).min(boundaries.len() - 1);
+        text.replace_range(boundaries[start]..boundaries[end], &inserted);
         parses_or_explains(&text)?;
     }
 
