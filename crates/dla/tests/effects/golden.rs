@@ -58,6 +58,11 @@ fn three_computations_agree() {
         let [a, b, c] = [basis, multipliers, hand].map(|end| distance(&end, &stored));
         println!("{:<40} basis {a:.1e}, multipliers {b:.1e}, by hand {c:.1e}", scene.title);
         assert!(a < 1e-10 && b < 1e-10 && c < 1e-10, "{}: {a:e}, {b:e}, {c:e}", scene.title);
+        // The control: without its last effect the motion is another one.
+        let mut lighter = scene.clone();
+        lighter.effects.pop();
+        let other = hand::motion(&lighter, &jumps, scene.run.duration, 0.05);
+        assert!(distance(&other, &stored) > 1e-3, "{}: {:e}", scene.title, distance(&other, &stored));
         count += 1;
     }
     assert_eq!(count, 30);

@@ -228,9 +228,8 @@ pub fn motion(scene: &Scene, jumps: &[f64], end: f64, h: f64) -> [f64; 7] {
             // The iteration gains a factor of about h times the rates, below a tenth; rounding ends it.
             for _ in 0..30 {
                 for i in 0..STAGES {
-                    let stage: Place = from_fn(|c| {
-                        place[c] + h * (0..STAGES).map(|l| coefficients[i][l] * slopes[l][c]).sum::<f64>()
-                    });
+                    let stage: Place =
+                        from_fn(|c| place[c] + h * (0..STAGES).map(|l| coefficients[i][l] * slopes[l][c]).sum::<f64>());
                     slopes[i] = rates(scene, t + nodes[i] * h, middle, &stage);
                 }
             }

@@ -39,10 +39,13 @@ fn a_jump_inside_a_step_is_refused() {
 /// Times and steps are decimals, each rounded: after many steps their ratio misses a whole number by more than `1e-9`.
 #[test]
 fn a_late_jump_is_on_its_node() {
-    for (step, time, node) in [(0.01, 123_456.78, 12_345_678), (0.001, 654_321.987, 654_321_987), (0.1, 1e9 + 0.7, 10_000_000_007)]
+    for (step, time, node) in
+        [(0.01, 613_296.69, 61_329_669), (0.05, 793_484.2, 15_869_684), (0.1, 4_341_178.1, 43_411_781)]
     {
         let cut = pieces(&steps(step, 2 * node), vec![time]).unwrap();
         assert_eq!(cut, [0..node, node..2 * node]);
+        // The control: a thousandth of a step is not rounding.
+        assert!(pieces(&steps(step, 2 * node), vec![time + 1e-3 * step]).is_err());
     }
 }
 

@@ -20,7 +20,10 @@ fn effects(k: f64) -> Vec<(&'static str, Acting)> {
         ("thrust", Acting::Thrust(Thrust::new(sine(k, 1.0, 0.3)).unwrap())),
         ("torque", Acting::Torque(Torque::new(table).unwrap())),
         // A mass must be positive; the smallest has no effect on a double.
-        ("moving_mass", Acting::MovingMass(MovingMass::new(k.max(f64::MIN_POSITIVE), sine(0.3, 2.0, 0.0), 0.2).unwrap())),
+        (
+            "moving_mass",
+            Acting::MovingMass(MovingMass::new(k.max(f64::MIN_POSITIVE), sine(0.3, 2.0, 0.0), 0.2).unwrap()),
+        ),
     ]
 }
 
