@@ -31,6 +31,7 @@ prop_compose! {
             sleigh: Sleigh::new(mass, inertia, offset).unwrap(),
             start: SleighState { x, y, heading, speed, turn_rate },
             run: RunSettings { method: method.to_owned(), alpha, step, duration: f64::max(step * ratio, step) },
+            effects: vec![],
         }
     }
 }

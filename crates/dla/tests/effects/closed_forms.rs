@@ -18,16 +18,13 @@ fn distance(a: &SleighState, b: &SleighState) -> f64 {
 
 fn errors<Method: OneStep<Laden<Sleigh>, 3, 1>>(
     system: &Laden<Sleigh>,
-    method: Method,
+    mut method: Method,
     start: &SleighState,
     (end, exact): (f64, &SleighState),
     counts: [u64; 3],
-) -> [f64; 3]
-where
-    Method: Clone,
-{
+) -> [f64; 3] {
     counts.map(|n| {
-        let state = run(system, &mut method.clone(), &steps(end / n as f64, n), start.to_coordinates(), ());
+        let state = run(system, &mut method, &steps(end / n as f64, n), start.to_coordinates(), ());
         distance(&place(&state), exact)
     })
 }

@@ -1,4 +1,5 @@
 //! Runs that are cut at jumps.
+#![allow(clippy::single_range_in_vec_init, reason = "a run in one piece is a list of one range")]
 
 use crate::tools::{Laden, laden, moving, run, sleigh, steps};
 use dla::{Dla, RunError, Schedule, State, StepError, Trajectory, drive, drive_part, onto_constraint, pieces};
@@ -101,7 +102,7 @@ fn a_velocity_off_the_constraint_is_brought_there_by_an_impulse() {
     let mut state = State::new(q, off, system.angles());
     onto_constraint(&system, 0.0, &mut state).unwrap();
     assert!(constraint_residual(&system, 0.0, &q, state.v())[0].abs() < 4.0 * f64::EPSILON);
-    assert_eq!(*state.q(), q);
+    assert!((0..3).all(|i| state.q()[i].to_bits() == q[i].to_bits()));
     // The change of momentum is an impulse across the blade.
     let (before, after) = (momentum(&system, 0.0, &q, &off), momentum(&system, 0.0, &q, state.v()));
     let impulse: [f64; 3] = std::array::from_fn(|i| after[i] - before[i]);

@@ -1,4 +1,5 @@
 //! Functions of time.
+#![allow(clippy::float_cmp, reason = "one text evaluated twice has one value, and a table those it was given")]
 
 use approx::assert_relative_eq;
 use lagrangian::{Dual, Piecewise};
@@ -31,7 +32,6 @@ proptest! {
 
 /// A value holds from its time on, the first also before.
 #[test]
-#[allow(clippy::float_cmp, reason = "the values are those of the table, to the bit")]
 fn a_table_in_pieces() {
     let table = steps();
     for (t, value) in [(-9.0, 0.5), (1.0, 0.5), (2.4, 0.5), (2.5, -0.7), (3.9, -0.7), (4.0, 0.2), (1e9, 0.2)] {
@@ -51,7 +51,6 @@ fn a_table_in_pieces() {
 
 /// What has a table jumps with it.
 #[test]
-#[allow(clippy::float_cmp, reason = "the values are those of the table, to the bit")]
 fn jumps_come_through() {
     let sleigh = Sleigh::new(1.3, 0.8, 0.4).unwrap();
     let jumps = [2.5, 4.0];
