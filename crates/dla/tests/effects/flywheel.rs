@@ -3,7 +3,7 @@
 use crate::balance::sine;
 use crate::tools::{Laden, laden, moving, run, sleigh, steps};
 use dla::{Dla, Form, Observer, StepReport, View};
-use lagrangian::System;
+use lagrangian::{System, With};
 use scene::Acting;
 use sleigh::effects::Thrust;
 use sleigh::{Flywheel, Sleigh};
@@ -36,9 +36,9 @@ fn a_free_rotor_keeps_its_momentum() {
     let back = || vec![Acting::Thrust(Thrust::new(-0.5).unwrap())];
 
     let mut spin = Spin::default();
-    let body = Flywheel::new(sleigh(), 0.2, None).unwrap();
+    let body = With { body: Flywheel::new(sleigh(), 0.2, None).unwrap(), effects: () };
     let end = run(&body, &mut Dla::midpoint(), &steps(0.05, count), with_rotor, &mut spin);
-    let bare = run(&sleigh(), &mut Dla::midpoint(), &steps(0.05, count), (q, v), ());
+    let bare = run(&With { body: sleigh(), effects: () }, &mut Dla::midpoint(), &steps(0.05, count), (q, v), ());
     println!("free, closed form: momentum to {:.1e}", spin.worst);
     assert!(spin.worst <= 1e-14);
     for i in 0..3 {
