@@ -192,9 +192,9 @@ where
     let mut made = steps.start;
     let first = View { system, k: made, t: schedule.time(made), state };
     if made == 0 {
-        observer.start(&first)
+        observer.start(&first);
     } else {
-        observer.resume(&first)
+        observer.resume(&first);
     }
     let (mut outcome, mut stopped) = (Ok(()), false);
     while made < steps.end {

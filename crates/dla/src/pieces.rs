@@ -3,7 +3,7 @@ use crate::{Newton, Part, RunError, Schedule, Stage, State, StepError};
 use lagrangian::{Piecewise, System, constraint_residual, momentum};
 use std::ops::Range;
 
-/// A jump may miss a node by this part of a step.
+/// A jump may miss a node by this part of a step, or by the rounding of its own time and of the step.
 const ALIGNED: f64 = 1e-9;
 
 /// Cuts a run into parts, the steps between one jump and the next.
@@ -20,7 +20,7 @@ pub fn pieces(schedule: &Schedule, mut jumps: Vec<f64>) -> Result<Vec<Range<u64>
     for time in jumps {
         let steps = (time - schedule.t0) / schedule.step;
         let nearest = steps.round();
-        if (steps - nearest).abs() > ALIGNED {
+        if (steps - nearest).abs() > ALIGNED.max(8.0 * f64::EPSILON * nearest.abs()) {
             let step = steps.floor() as u64;
             return Err(RunError { step: step + 1, time: schedule.time(step), source: StepError::Jump { time } });
         }

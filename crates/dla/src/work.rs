@@ -88,6 +88,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for 
         self.remember(node);
     }
 
+    #[allow(clippy::float_cmp, reason = "a velocity that has not jumped is the same to the bit")]
     fn resume(&mut self, node: &View<'_, Sys, N>) {
         if let Some((_, _, v, _)) = self.before
             && v != *node.state.v()

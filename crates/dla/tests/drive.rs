@@ -153,10 +153,13 @@ fn a_trajectory_keeps_every_nth_node_and_the_last() {
 fn a_node_has_what_its_step_reported() {
     let mut trajectory = Trajectory::every(2);
     drive(&Line, &mut Counting::default(), &SCHEDULE, &mut start(), &mut trajectory).unwrap();
+    // The work is integrated along the nodes, and these are not those of a motion.
+    let works: Vec<f64> = trajectory.nodes().iter().map(|node| node.work).collect();
     let node = |k: u64, multipliers: Option<[f64; 1]>| {
         let t = 0.5 * k as f64;
         let v = (1.0 + t).recip();
-        Node { k, t, q: [k as f64], v: [v], energy: 0.5 * v * v, constraint: 0.0, multipliers }
+        let work = works[k.div_ceil(2) as usize];
+        Node { k, t, q: [k as f64], v: [v], energy: 0.5 * v * v, work, constraint: 0.0, multipliers }
     };
     // The impulses of step k sum up to k, over h = 1/2.
     assert_eq!(trajectory.nodes(), [node(0, None), node(2, Some([4.0])), node(3, Some([6.0]))]);

@@ -6,7 +6,7 @@ use crate::finding::Excerpt;
 use crate::run::RunSettings;
 use crate::system::FirstMisaligned;
 use crate::table::Table;
-use crate::{SceneEffect, effects, file, keys, sections};
+use crate::{PathSpec, SceneEffect, Shape, effects, file, keys, sections};
 use sleigh::{Sleigh, SleighState};
 use std::path::Path;
 use toml::de::DeTable;
@@ -62,6 +62,16 @@ impl Scene {
 
     /// The first time at which a table or a corner of a path jumps inside a step.
     fn misaligned(&self) -> Option<f64> {
+        // A round within a step has a corner inside it, and a run may have more of them than memory holds.
+        let hasty = self.effects.iter().find_map(|effect| match effect {
+            SceneEffect::Tracer { path: PathSpec { shape: Shape::Polygon(_), period } } => Some(*period),
+            _ => None,
+        });
+        if let Some(period) = hasty
+            && period < self.run.actual_step()
+        {
+            return Some(period);
+        }
         self.visit(FirstMisaligned(&self.run)).ok().flatten()
     }
 

@@ -171,7 +171,11 @@ impl Visitor for FirstMisaligned<'_> {
         Sys: SceneSystem<N, M>,
     {
         let step = self.0.actual_step();
-        let inside = |t: &f64| (t / step - (t / step).round()).abs() > 1e-9;
+        let inside = |t: &f64| {
+            let (steps, nearest) = (t / step, (t / step).round());
+            // Times and steps are rounded decimals, which shows after some 1e6 steps.
+            (steps - nearest).abs() > f64::max(1e-9, 8.0 * f64::EPSILON * nearest)
+        };
         system.jumps(0.0, self.0.duration).into_iter().filter(inside).min_by(f64::total_cmp)
     }
 }

@@ -205,3 +205,33 @@ fn errors_cross_threads() {
     fn check<E: std::error::Error + Send + Sync + 'static>() {}
     check::<SceneError>();
 }
+
+/// The good scene with another step and duration, and one effect.
+fn with_effect(step: f64, duration: f64, effect: &str) -> Result<Scene, SceneError> {
+    let text = GOOD.replace("step = 0.05", &format!("step = {step:?}"));
+    let text = text.replace("duration = 40.0", &format!("duration = {duration:?}"));
+    Scene::parse(&format!("{text}[[effects]]\n{effect}\n"), "dir/bad.toml", METHODS)
+}
+
+/// Times and steps are rounded decimals: late in a run a jump misses its node by their rounding, and is on it.
+#[test]
+fn a_jump_late_in_a_run_is_on_its_node() {
+    let table = |time: f64| format!("kind = \"thrust\"\nforce = {{times = [0.0, {time:?}], values = [1.0, 2.0]}}");
+    for (step, time) in [(0.01, 613_296.69), (0.05, 793_484.2), (0.1, 4_341_178.1)] {
+        assert!(with_effect(step, 1e7, &table(time)).is_ok(), "{step}, {time}");
+        let error = with_effect(step, 1e7, &table(time + 0.001 * step)).unwrap_err().to_string();
+        assert!(error.contains("`run.step`") && error.contains("makes no node"), "{error}");
+    }
+}
+
+/// However many corners a path has in a run, the first inside a step is found at once.
+#[test]
+fn a_path_faster_than_the_step_is_refused() {
+    for period in ["1e-300", "1e-12", "0.04"] {
+        let path = format!("kind = \"tracer\"\npath = {{polygon = [[0, 0], [1, 0], [1, 1]], period = {period}}}");
+        let error = with_effect(0.05, 40.0, &path).unwrap_err().to_string();
+        assert!(error.contains("makes no node") && error.contains(period), "{error}");
+    }
+    let slow = "kind = \"tracer\"\npath = {polygon = [[0, 0], [1, 0]], period = 1.0}";
+    assert!(with_effect(0.05, 40.0, slow).is_ok());
+}

@@ -46,7 +46,7 @@ impl Alternating {
 
 impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Alternating {
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
-        let (mut done, mut report) = (0.0, StepReport { impulses: [[0.0; M]; 2], iterations: 0 });
+        let (mut done, mut report) = (0.0, StepReport::of(0));
         for (k, part) in self.parts.iter().enumerate() {
             report = self.rules[k % 2].step(system, t + done * h, part * h, state)?;
             done += part;

@@ -1,0 +1,13 @@
+//! The effects on the sleigh: three computations of the same motions, closed forms, what is kept, and runs in pieces.
+
+#![allow(missing_docs, unreachable_pub, clippy::unwrap_used, clippy::expect_used)]
+
+mod balance;
+mod closed_forms;
+mod flywheel;
+mod golden;
+mod hand;
+mod parts;
+mod strength;
+mod tools;
+mod turntable;

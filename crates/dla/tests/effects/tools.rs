@@ -1,0 +1,58 @@
+//! Runs of systems that may jump.
+
+use dla::{Observer, OneStep, Schedule, State, drive_part, piece_by_piece};
+use lagrangian::{Piecewise, System, With};
+use scene::Acting;
+use sleigh::{Sleigh, SleighState};
+
+/// Runs piece by piece, as a command does.
+pub fn run<Sys, Method, Obs, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &mut Method,
+    schedule: &Schedule,
+    (q, v): ([f64; N], [f64; N]),
+    mut observer: Obs,
+) -> State<N>
+where
+    Sys: System<N, M> + Piecewise,
+    Method: OneStep<Sys, N, M>,
+    Obs: Observer<Sys, N, M>,
+{
+    let mut state = State::new(q, v, system.angles());
+    piece_by_piece(system, schedule, &mut state, |piece, steps, state| {
+        drive_part(piece, method, schedule, steps, state, &mut observer)
+    })
+    .unwrap();
+    state
+}
+
+/// A body of a scene with a list of effects: the type of all runs here, so that each body is compiled once.
+pub type Laden<B> = With<B, Vec<Acting>>;
+
+pub fn laden<B>(body: B, effects: Vec<Acting>) -> Laden<B> {
+    With { body, effects }
+}
+
+/// `m = 1.3`, `I = 0.8`, `a = 0.4`.
+pub fn sleigh() -> Sleigh {
+    Sleigh::new(1.3, 0.8, 0.4).unwrap()
+}
+
+/// A start with both velocities.
+pub fn moving() -> SleighState {
+    SleighState { x: 0.3, y: -0.2, heading: 0.5, speed: -0.6, turn_rate: 1.1 }
+}
+
+/// `steps` steps of `h` from `t = 0`.
+pub fn steps(h: f64, steps: u64) -> Schedule {
+    Schedule { t0: 0.0, step: h, steps }
+}
+
+/// Asserts the slope from the first error to the last, each at half the step of the one before; returns it.
+pub fn assert_order(name: &str, errors: &[f64], order: f64) {
+    let halvings = (errors.len() - 1) as f64;
+    let slope = (errors[0] / errors[errors.len() - 1]).log2() / halvings;
+    let shown: Vec<String> = errors.iter().map(|e| format!("{e:.1e}")).collect();
+    println!("{name}: {}, order {slope:.2}", shown.join(" "));
+    assert!((slope - order).abs() < 0.25, "{name}: order {slope}, not {order}: {errors:?}");
+}

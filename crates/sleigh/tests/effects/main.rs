@@ -1,0 +1,8 @@
+//! The effects by themselves: derivatives, what they refuse, functions of time and paths.
+
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
+
+mod derivatives;
+mod paths;
+mod refusals;
+mod time;

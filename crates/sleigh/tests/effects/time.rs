@@ -1,0 +1,67 @@
+//! Functions of time.
+#![allow(clippy::float_cmp, reason = "one text evaluated twice has one value, and a table those it was given")]
+
+use approx::assert_relative_eq;
+use lagrangian::{Dual, Piecewise};
+use proptest::prelude::*;
+use sleigh::effects::{Thrust, Torque};
+use sleigh::{Flywheel, Guide, Guided, Sleigh, Table, TimeFunction};
+
+fn steps() -> TimeFunction {
+    TimeFunction::Table(Table::new(vec![1.0, 2.5, 4.0], vec![0.5, -0.7, 0.2]).unwrap())
+}
+
+proptest! {
+    #[test]
+    fn a_slope_is_the_derivative_of_the_value(
+        t in -5.0..5.0f64, amplitude in -2.0..2.0f64, frequency in -3.0..3.0f64, phase in -4.0..4.0f64,
+    ) {
+        let sine = TimeFunction::Sine { amplitude, frequency, phase };
+        prop_assert_eq!(sine.value(t), amplitude * (frequency * t + phase).sin());
+        for function in [sine, TimeFunction::Constant(amplitude), steps()] {
+            let value = function.value(Dual::<f64, 1>::variable(t, 0));
+            prop_assert_eq!(value.re, function.value(t));
+            // A product of three, rounded in either order.
+            assert_relative_eq!(value.eps[0], function.slope(t), max_relative = 4.0 * f64::EPSILON, epsilon = 1e-300);
+            let slope = function.slope(Dual::<f64, 1>::variable(t, 0));
+            assert_relative_eq!(slope.eps[0], -frequency * frequency * function.value(t)
+                * f64::from(u8::from(matches!(function, TimeFunction::Sine { .. }))), epsilon = 1e-14);
+        }
+    }
+}
+
+/// A value holds from its time on, the first also before.
+#[test]
+fn a_table_in_pieces() {
+    let table = steps();
+    for (t, value) in [(-9.0, 0.5), (1.0, 0.5), (2.4, 0.5), (2.5, -0.7), (3.9, -0.7), (4.0, 0.2), (1e9, 0.2)] {
+        let piece = table.piece(t);
+        assert_eq!(piece.value(t), value, "at {t}");
+        // A piece is the same at all times.
+        assert_eq!(piece.value(-100.0), value);
+    }
+    assert_eq!(table.value(100.0), 0.5);
+    assert_eq!(table.jumps(-10.0, 10.0), [2.5, 4.0]);
+    // Not at the ends, nor where the table begins.
+    assert_eq!(table.jumps(2.5, 4.0), [0.0; 0]);
+    assert_eq!(table.jumps(0.0, 3.0), [2.5]);
+    let sine = TimeFunction::Sine { amplitude: 1.0, frequency: 2.0, phase: 0.0 };
+    assert!(sine.jumps(-10.0, 10.0).is_empty() && sine.piece(3.0) == sine);
+}
+
+/// What has a table jumps with it.
+#[test]
+fn jumps_come_through() {
+    let sleigh = Sleigh::new(1.3, 0.8, 0.4).unwrap();
+    let jumps = [2.5, 4.0];
+    let thrust = Thrust::new(steps()).unwrap();
+    assert!(thrust.jumps(0.0, 9.0) == jumps && thrust.piece(3.0) != thrust);
+    assert_eq!(Torque::new(steps()).unwrap().jumps(0.0, 9.0), jumps);
+    let flywheel = Flywheel::new(sleigh, 0.2, Some(steps())).unwrap();
+    assert_eq!(flywheel.jumps(0.0, 9.0), jumps);
+    assert_eq!(flywheel.piece(3.0).torque().unwrap().value(0.0), -0.7);
+    assert!(Flywheel::new(sleigh, 0.2, None).unwrap().jumps(0.0, 9.0).is_empty());
+    let servo = Guided::<1>::servo(sleigh, Guide::Speed(steps())).unwrap();
+    assert_eq!(Flywheel::new(servo, 0.2, Some(steps())).unwrap().jumps(0.0, 3.0), [2.5, 2.5]);
+    assert!(Guided::turntable(sleigh, 0.3).unwrap().jumps(0.0, 9.0).is_empty());
+}
