@@ -1,6 +1,5 @@
 //! Steps that have no solution fail with an error value, and what was reached before stays.
 
-
 use crate::common::{midpoint_forms, sleigh, state_of};
 use dla::{Dla, Form, NewtonError, OneStep, Schedule, Stage, StepError, Trajectory, drive};
 use lagrangian::ClosedStepError;

@@ -1,6 +1,5 @@
 //! Time reversal and rigid motions.
 
-
 use crate::common::{advanced, backward, midpoint_forms, sleigh, sleigh_state, sleighs, starts, state_of};
 use dla::{Dla, OneStep, State};
 use harness::Rk4;

@@ -1,6 +1,5 @@
 //! The turn-around: its angle, and how little spin it needs.
 
-
 use crate::common::{advanced, sleigh, sleigh_state, state_of};
 use dla::Dla;
 use harness::Trend;

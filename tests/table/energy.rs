@@ -32,7 +32,8 @@ fn change_over(case: &dyn Case, name: &str, steps: u64) -> f64 {
 fn energy_methods_keep_it() {
     let mut controls = 0;
     for case in table().iter().filter(|case| !case.facts().forced) {
-        for info in METHODS.iter().filter(|info| info.keeps.contains("energy") && refuses(info, case.facts()).is_none()) {
+        for info in METHODS.iter().filter(|info| info.keeps.contains("energy") && refuses(info, case.facts()).is_none())
+        {
             let kept = change(case.as_ref(), info.name);
             println!("{:<32} {}: {kept:.1e}", case.name(), info.name);
             // A rounding or two a step, of energies that are differences of terms up to ten times as large.

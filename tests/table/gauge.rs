@@ -98,7 +98,7 @@ fn plain_symmetric_scheme(z0: f64, periods: u64) -> Vec<f64> {
         let (mut a, mut b) = (0.0, 1e-3);
         let (mut fa, mut fb) = (slip(a), slip(b));
         for _ in 0..50 {
-            if fb.abs() < 1e-15 || fb == fa {
+            if fb.abs() < 1e-15 || fb.to_bits() == fa.to_bits() {
                 break;
             }
             let next = b - fb * (b - a) / (fb - fa);

@@ -24,7 +24,8 @@ fn on_a_motion_without_singularities() {
     let case = named("knife edge on an incline");
     let duration = 40.0;
     for info in METHODS.iter().filter(|info| info.order > 8) {
-        let errors = (13..80).map(|n| (duration / n as f64, error(case.as_ref(), info.name, &case.start(), duration, n)));
+        let errors =
+            (13..80).map(|n| (duration / n as f64, error(case.as_ref(), info.name, &case.start(), duration, n)));
         // The rounding of some dozen steps to a place forty metres away is a few 1e-14.
         let ladder: Vec<(f64, f64)> = errors.filter(|(_, error)| *error > 2e-12).collect();
         let order = fitted_order(&ladder);
@@ -58,7 +59,8 @@ fn on_the_sleigh_in_the_mean() {
         (squares.sum::<f64>() / 24.0).sqrt()
     };
     for info in METHODS.iter().filter(|info| info.order > 8) {
-        let errors = [4, 5, 6, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 64].map(|n| (4.0 / n as f64, mean(info.name, n)));
+        let errors =
+            [4, 5, 6, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 64].map(|n| (4.0 / n as f64, mean(info.name, n)));
         let ladder: Vec<(f64, f64)> = errors.into_iter().filter(|(_, error)| *error > 2e-13).collect();
         let order = crate::tools::slope(&ladder[ladder.len().saturating_sub(4)..]);
         let margin = match info.order {

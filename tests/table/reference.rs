@@ -81,7 +81,8 @@ fn closed_forms() {
     let particle: Row<Three, 3> = row("particle", particle, particle.start(), 3.0);
     on_the_closed_form(&particle, Some([2.04e-3, 5.10e-4, 1.27e-4]), 20);
     let edge = KnifeEdge::new(1.0, 1.0, 0.7).unwrap();
-    let edge: Row<Three, 3> = row("knife edge", edge, ([0.1, 0.2, 0.3], [0.4 * 0.3f64.cos(), 0.4 * 0.3f64.sin(), 0.8]), 5.0);
+    let edge: Row<Three, 3> =
+        row("knife edge", edge, ([0.1, 0.2, 0.3], [0.4 * 0.3f64.cos(), 0.4 * 0.3f64.sin(), 0.8]), 5.0);
     on_the_closed_form(&edge, None, 0);
 }
 

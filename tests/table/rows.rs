@@ -30,13 +30,7 @@ where
     Box::new(Row::<Shape, N>::new(name, model, start, duration, Facts { reversible, ..facts }))
 }
 
-fn three(
-    name: &'static str,
-    system: impl Into<Three>,
-    start: Place<3>,
-    duration: f64,
-    facts: Facts,
-) -> Box<dyn Case> {
+fn three(name: &'static str, system: impl Into<Three>, start: Place<3>, duration: f64, facts: Facts) -> Box<dyn Case> {
     Box::new(Row::<Three, 3>::new(name, system, start, duration, facts))
 }
 
@@ -54,13 +48,8 @@ pub fn table() -> Vec<Box<dyn Case>> {
     let plain = Facts { highest_order: 8, ..Facts::default() };
     let even = Facts { reversible: true, ..plain };
     let here_again = Facts { recurrent: true, ..even };
-    let everything = Facts {
-        timed: true,
-        forced: true,
-        affine: true,
-        momentum_is_not_mass_times_velocity: true,
-        ..plain
-    };
+    let everything =
+        Facts { timed: true, forced: true, affine: true, momentum_is_not_mass_times_velocity: true, ..plain };
     let through_the_turn = SleighState { x: 0.3, y: -0.2, heading: 0.5, speed: -0.9, turn_rate: 0.8 };
     let balanced = Sleigh::new(1.3, 0.8, 0.0).unwrap();
     let in_the_crate = at_centre([0.5, 1.0, 0.3, 0.4, 0.7], 0.4);
@@ -109,13 +98,7 @@ pub fn table() -> Vec<Box<dyn Case>> {
             4.0,
             Facts { affine: true, ..plain },
         ),
-        three(
-            "moving everything",
-            Moving { basis: true },
-            moving,
-            4.0,
-            everything,
-        ),
+        three("moving everything", Moving { basis: true }, moving, 4.0, everything),
         three(
             "moving everything, no basis",
             Moving { basis: false },
@@ -139,17 +122,22 @@ pub fn table() -> Vec<Box<dyn Case>> {
         ),
         model::<Three, _, 3, 1>(Suslov::new([1.0, 2.0, 1.5], 0.3, 0.5).unwrap(), 3.0, plain),
         model::<Three, _, 3, 1>(contact, 6.0, Facts { highest_order: 6, ..here_again }),
-        model::<Three, _, 3, 1>(GaugedOscillator::new(contact, 1.0).unwrap(),
+        model::<Three, _, 3, 1>(
+            GaugedOscillator::new(contact, 1.0).unwrap(),
             6.0,
             Facts { momentum_is_not_mass_times_velocity: true, highest_order: 6, ..here_again },
-       ),
+        ),
         model::<Four, _, 4, 2>(
             RollingDisk::new(1.3, 0.7, 0.5, 0.9).unwrap(),
             3.0,
             Facts { momenta: &["spin momentum", "heading momentum"], ..here_again },
         ),
         model::<Four, _, 4, 2>(RollerRacer::new(1.3, 0.8, 0.3, 0.7, 0.4).unwrap(), 2.0, plain),
-        model::<Five, _, 5, 2>(ChaplyginBall::new(1.2, 0.6, [0.5, 0.8, 1.1]).unwrap(), 3.0, Facts { highest_order: 6, ..plain }),
+        model::<Five, _, 5, 2>(
+            ChaplyginBall::new(1.2, 0.6, [0.5, 0.8, 1.1]).unwrap(),
+            3.0,
+            Facts { highest_order: 6, ..plain },
+        ),
         model::<Five, _, 5, 2>(
             Snakeboard::new(1.3, 0.7, 0.3, 0.2, 0.1).unwrap(),
             4.0,

@@ -4,9 +4,7 @@
 //! arm adds is compiled once for every kind of number, since the calls are not inlined.
 
 use crate::systems::{Forces, InField, Magnetic, Moving, Thrust, Turntable};
-use lagrangian::{
-    AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Motion, MotionError, Scalar, System, With,
-};
+use lagrangian::{AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Motion, MotionError, Scalar, System, With};
 use models::{
     ChaplyginBall, ContactOscillator, GaugedOscillator, KnifeEdge, Model, Particle, QuarticOscillator, RollerRacer,
     RollingDisk, Snakeboard, Suslov,

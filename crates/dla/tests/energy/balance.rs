@@ -111,7 +111,7 @@ const SHORT: u64 = 100_000;
 #[test]
 fn egg_crate_keeps_its_energy() {
     let system = Wrapped(com(0.1, Potential::EggCrate));
-    held("egg-crate", &system, &egg_crate(), [LONG, LONG, LONG, LONG]);
+    held("egg-crate", &system, &egg_crate(), [SHORT, SHORT / 5, SHORT / 5, SHORT]);
     let drift = balance("egg-crate, dla", &system, &mut Dla::midpoint(), &egg_crate(), SHORT);
     assert!(drift.worst > 1e-4, "the control, which drifts: {drift:?}");
 }
@@ -119,9 +119,17 @@ fn egg_crate_keeps_its_energy() {
 #[test]
 fn valley_keeps_its_energy() {
     let system = Wrapped(com(0.5, Potential::Valley));
-    held("valley", &system, &valley(), [LONG, LONG, LONG, LONG]);
+    held("valley", &system, &valley(), [SHORT, SHORT / 5, SHORT / 5, SHORT]);
     let drift = balance("valley, dla", &system, &mut Dla::midpoint(), &valley(), SHORT);
     assert!(drift.worst > 1e-4, "the control, which drifts: {drift:?}");
+}
+
+/// `cargo test --release -p noslip-dla --test energy -- --ignored`
+#[test]
+#[ignore = "takes minutes without the optimisation of a release build"]
+fn a_million_steps() {
+    held("egg-crate", &Wrapped(com(0.1, Potential::EggCrate)), &egg_crate(), [LONG; 4]);
+    held("valley", &Wrapped(com(0.5, Potential::Valley)), &valley(), [LONG; 4]);
 }
 
 #[test]
