@@ -33,7 +33,9 @@ fn horizontal_symmetries_keep_their_momenta() {
             for info in METHODS.iter().filter(|info| symmetric(info)) {
                 let change = change(case.as_ref(), info.name, momentum);
                 println!("{:<26} {:<14} {momentum}: {change:.1e}", case.name(), info.name);
-                assert!(change <= 1e-14, "{}, {}, {momentum}: {change:e}", case.name(), info.name);
+                // The spins of the disk are constant; elsewhere at worst a rounding a step, all in the same direction.
+                let bound = if case.name() == "vertical rolling disk" { 1e-14 } else { 1000.0 * f64::EPSILON };
+                assert!(change <= bound, "{}, {}, {momentum}: {change:e}", case.name(), info.name);
             }
         }
     }

@@ -1,7 +1,7 @@
 use crate::systems::{Forces, Moving, Potential, at_centre, com, distance, run, sleigh};
 use allocation_counter::measure;
 use dla::{Dla, Lobatto, OneStep, State};
-use lagrangian::{System, With, constraint_residual};
+use lagrangian::{System, constraint_residual};
 
 const MOVING: ([f64; 3], [f64; 3]) = ([0.3, 0.0, 0.0], [0.6, 0.5, -0.36]);
 
