@@ -4,7 +4,7 @@ use crate::case::Case;
 use crate::rows::{named, table};
 use crate::tools::{method, symmetric};
 use dla::Schedule;
-use harness::METHODS;
+use harness::{METHODS, MethodInfo};
 
 /// The largest change of an invariant over a thousand steps, relative to its size or to one.
 fn change(case: &dyn Case, name: &str, invariant: &str) -> f64 {
@@ -23,6 +23,12 @@ fn change(case: &dyn Case, name: &str, invariant: &str) -> f64 {
     largest
 }
 
+/// The energy-preserving methods average force and bracket apart from each other: the steering of the snakeboard, whose
+/// rows of the bracket change with it, is kept to their order only.
+fn promised(info: &MethodInfo, row: &str) -> bool {
+    !(info.keeps.contains("energy") && row == "snakeboard")
+}
+
 /// With every method that is a map on the constraint, the baselines apart.
 #[test]
 fn horizontal_symmetries_keep_their_momenta() {
@@ -30,7 +36,7 @@ fn horizontal_symmetries_keep_their_momenta() {
     for case in table().iter().filter(|case| !case.facts().momenta.is_empty()) {
         rows += 1;
         for momentum in case.facts().momenta {
-            for info in METHODS.iter().filter(|info| symmetric(info)) {
+            for info in METHODS.iter().filter(|info| symmetric(info) && promised(info, case.name())) {
                 let change = change(case.as_ref(), info.name, momentum);
                 println!("{:<26} {:<14} {momentum}: {change:.1e}", case.name(), info.name);
                 // The spins of the disk are constant; elsewhere at worst a rounding a step, all in the same direction.
@@ -54,6 +60,8 @@ fn other_integrals_are_not_kept() {
         println!("{row}, {invariant}: {change:.1e}");
         assert!(change > least, "{row}, {invariant}: {change:e}");
     }
+    let averaged = change(named("snakeboard").as_ref(), "energy2", "steering momentum");
+    assert!(averaged > 1e-10, "a method that does not promise it there: {averaged:e}");
     let projected = change(named("vertical rolling disk").as_ref(), "rk4-projected", "spin momentum");
     assert!(projected > 1e-10, "a method that does not promise it: {projected:e}");
 }
