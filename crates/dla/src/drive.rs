@@ -1,4 +1,5 @@
 use crate::{OneStep, State, StepError, StepReport};
+use lagrangian::linear::largest;
 use lagrangian::{System, constraint_residual, energy};
 use std::ops::{ControlFlow, Range};
 use thiserror::Error;
@@ -51,7 +52,7 @@ impl<Sys, const N: usize> View<'_, Sys, N> {
         Sys: System<N, M>,
     {
         let residual = constraint_residual(self.system, self.t, self.state.q(), self.state.v());
-        residual.iter().fold(0.0, |m, r| if r.abs() > m || r.is_nan() { r.abs() } else { m })
+        largest(&residual)
     }
 }
 

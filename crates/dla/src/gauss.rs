@@ -1,4 +1,5 @@
 use crate::{NewtonError, OneStep, Stage, State, StepError, StepReport};
+use lagrangian::linear::larger;
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
 use lagrangian::{System, reduced_slope, velocity_of};
 use std::array::from_fn;
@@ -78,12 +79,6 @@ impl<const S: usize> Gauss<S> {
         }
         Err(fail(NewtonError::IterationLimit { iterations: self.max_iterations, correction: before }))
     }
-}
-
-/// The larger of two; what is not a number wins.
-#[inline(always)]
-fn larger(a: f64, b: f64) -> f64 {
-    if b > a || b.is_nan() { b } else { a }
 }
 
 impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<Sys, N, M> for Gauss<S> {

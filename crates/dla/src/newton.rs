@@ -1,4 +1,4 @@
-use lagrangian::linear::Singular;
+use lagrangian::linear::{Singular, largest};
 use thiserror::Error;
 
 /// Equations whose Newton correction can be computed.
@@ -154,10 +154,4 @@ impl Newton {
         }
         Err(NewtonError::IterationLimit { iterations: self.max_iterations, correction: before / size })
     }
-}
-
-#[inline(always)]
-fn largest(x: &[f64]) -> f64 {
-    // `f64::max` drops what is not a number; here it has to come through.
-    x.iter().fold(0.0, |m: f64, x| if x.abs() > m || x.is_nan() { x.abs() } else { m })
 }

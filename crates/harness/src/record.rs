@@ -1,6 +1,7 @@
 use crate::{MethodInfo, Trend};
 use dla::{Observer, RunError, StepReport, View, Work};
 use lagrangian::System;
+use lagrangian::linear::larger;
 use std::ops::ControlFlow;
 
 /// Newton iterations a step; zeros for an explicit method.
@@ -84,11 +85,6 @@ pub(crate) struct Meter<const N: usize> {
     bucket: (f64, f64),
     samples: Vec<Sample<N>>,
     end: (u64, f64, [f64; N], [f64; N]),
-}
-
-/// The larger of the two; what is not a number wins.
-fn larger(a: f64, b: f64) -> f64 {
-    if b > a || b.is_nan() { b } else { a }
 }
 
 impl<const N: usize> Meter<N> {

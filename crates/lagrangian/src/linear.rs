@@ -36,9 +36,9 @@ impl<const U: usize> Lu<U> {
         let mut a = matrix;
         let mut order: [usize; U] = std::array::from_fn(|i| i);
         // Reciprocals of the largest entry of each row, and of each column of the matrix so scaled.
-        let mut row = a.map(|r| largest(r).recip());
+        let mut row = a.map(|r| largest(&r).recip());
         let column: [f64; U] =
-            std::array::from_fn(|j| largest(std::array::from_fn::<_, U, _>(|i| a[i][j] * row[i])).recip());
+            std::array::from_fn(|j| largest(&std::array::from_fn::<_, U, _>(|i| a[i][j] * row[i])).recip());
         for k in 0..U {
             let mut best = k;
             for i in k + 1..U {
@@ -85,9 +85,19 @@ impl<const U: usize> Lu<U> {
     }
 }
 
+/// The larger of `m` and the size of `x`; what is not a number wins, where `f64::max` would drop it.
+#[must_use]
 #[inline(always)]
-fn largest<const U: usize>(row: [f64; U]) -> f64 {
-    row.iter().fold(0.0, |m: f64, x| if x.abs() > m || x.is_nan() { x.abs() } else { m })
+pub fn larger(m: f64, x: f64) -> f64 {
+    let size = x.abs();
+    if size > m || size.is_nan() { size } else { m }
+}
+
+/// The size of the largest component; not a number where one of them is none.
+#[must_use]
+#[inline(always)]
+pub fn largest(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |m, x| larger(m, *x))
 }
 
 /// The least-squares solution `lambda` of `A' lambda = b`, `A` given by its `M` rows: `(A A') lambda = A b`.

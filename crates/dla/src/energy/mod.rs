@@ -11,6 +11,7 @@ pub use gradient::Gradient;
 
 use crate::{OneStep, Stage, State, StepError, StepReport};
 use ends::Ends;
+use lagrangian::linear::larger;
 use lagrangian::{Bracket, Lanes, Scalar, System, vectorized};
 use path::{Path, Points};
 use rule::Rule;
@@ -199,11 +200,9 @@ impl<Sys, const S: usize, const N: usize> Step<'_, Sys, S, N> {
 /// The largest change and the largest size of every component over some of the lanes.
 #[inline(always)]
 fn compared<const N: usize>(new: &[Lanes; N], old: &[Lanes; N], lanes: std::ops::Range<usize>) -> [(f64, f64); N] {
-    // `f64::max` drops what is not a number; here it has to come through.
-    let larger = |m: f64, x: f64| if x > m || x.is_nan() { x } else { m };
     from_fn(|i| {
         lanes.clone().fold((0.0, 0.0), |(change, size), k| {
-            (larger(change, (new[i].0[k] - old[i].0[k]).abs()), larger(size, new[i].0[k].abs()))
+            (larger(change, new[i].0[k] - old[i].0[k]), larger(size, new[i].0[k]))
         })
     })
 }

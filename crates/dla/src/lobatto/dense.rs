@@ -1,4 +1,4 @@
-use lagrangian::linear::Singular;
+use lagrangian::linear::{Singular, larger};
 
 /// A row of the matrix: `2 N` places a stage, which is room for `N` velocities and up to `N` multipliers.
 type Row<const N: usize, const S: usize> = [[[f64; N]; 2]; S];
@@ -23,12 +23,6 @@ fn flat<const N: usize, const S: usize>(row: &Row<N, S>) -> &[f64] {
 #[inline(always)]
 fn flat_mut<const N: usize, const S: usize>(row: &mut Row<N, S>) -> &mut [f64] {
     row.as_flattened_mut().as_flattened_mut()
-}
-
-/// The larger of the two in size; what is not a number wins.
-#[inline(always)]
-fn larger(m: f64, x: f64) -> f64 {
-    if x.abs() > m || x.is_nan() { x.abs() } else { m }
 }
 
 impl<const N: usize, const M: usize, const S: usize> Dense<N, M, S> {

@@ -95,17 +95,8 @@ fn returns<Method: OneStep<Sys, N, M>, Sys: System<N, M>, const N: usize, const 
 /// Back with the opposite step.
 #[test]
 fn symmetric() {
-    let particle = Particle { mass: 1.3, quartic: 0.2 };
-    let start = ([0.3, 0.5, -0.2], [0.6, -0.4, 0.3]);
     let crate_start = at_centre([0.5, 1.0, 0.3, 0.9, 1.7], 0.4);
-    let egg_crate = com(0.4, Potential::EggCrate);
-    returns(&egg_crate, Energy::<1>::new(), crate_start);
-    returns(&egg_crate, Energy::with(Gradient::Gonzalez), crate_start);
-    returns(&egg_crate, Energy::<2>::new(), crate_start);
-    returns(&egg_crate, Energy::<3>::new(), crate_start);
-    returns(&egg_crate, Energy::<4>::new(), crate_start);
-    returns(&particle, Energy::<1>::new(), start);
-    returns(&particle, Energy::<4>::new(), start);
+    returns(&com(0.4, Potential::EggCrate), Energy::with(Gradient::Gonzalez), crate_start);
 }
 
 /// From rest, at rest, and through the cusps of a blade without spin that runs up and down.

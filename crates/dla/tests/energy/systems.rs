@@ -71,6 +71,26 @@ impl System<3, 1> for Particle {
     }
 }
 
+/// The sleigh where the potential has the period `2 pi` in the place, or none of it: the place then is an angle to the
+/// integrators, whose rounding would else be all that the energy shows far from the origin.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Wrapped(pub(crate) With<CentreOfMass, Potential>);
+
+impl System<3, 1> for Wrapped {
+    fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 3], v: &[S; 3]) -> S {
+        self.0.lagrangian(t, q, v)
+    }
+    fn constraint<S: Scalar>(&self, t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
+        self.0.constraint(t, q)
+    }
+    fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, 1>> {
+        self.0.admissible_basis(t, q)
+    }
+    fn angles(&self) -> [bool; 3] {
+        [true, matches!(self.0.effects, Potential::EggCrate), true]
+    }
+}
+
 pub(crate) fn com<E>(offset: f64, effects: E) -> With<CentreOfMass, E> {
     With { body: CentreOfMass(Sleigh::new(1.0, 1.0, offset).unwrap()), effects }
 }

@@ -30,15 +30,12 @@ impl Particle {
 /// A potential at the first two coordinates.
 #[derive(Clone, Copy)]
 pub(crate) enum Potential {
-    /// `(X^2 + Y^2)/2`
-    Well,
     /// `(cos X + cos Y)/2`
     EggCrate,
 }
 impl Effect<CentreOfMass, 3> for Potential {
     fn lagrangian<S: Scalar>(&self, _body: &CentreOfMass, _t: S, q: &[S; 3], _v: &[S; 3]) -> Option<S> {
         Some(match self {
-            Self::Well => -(q[0] * q[0] + q[1] * q[1]) * 0.5,
             Self::EggCrate => -(q[0].cos() + q[1].cos()) * 0.5,
         })
     }

@@ -1,10 +1,7 @@
 //! One step, three ways to solve it: the closed map, the basis of admissible velocities, and the multipliers.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-mod common;
-
+use crate::common::{midpoint_forms, sleighs, starts, state_of};
 use approx::assert_relative_eq;
-use common::{midpoint_forms, sleighs, starts, state_of};
 use dla::{Dla, Form, OneStep};
 use lagrangian::{DiscreteConstraint, DiscreteLagrangian, Midpoint, System, Trapezoid, constraint_residual, momentum};
 use proptest::prelude::*;

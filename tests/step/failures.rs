@@ -1,9 +1,6 @@
 //! Steps that have no solution fail with an error value, and what was reached before stays.
 
-#![allow(missing_docs, clippy::float_cmp, clippy::unwrap_used, clippy::expect_used)]
-mod common;
-
-use common::{midpoint_forms, sleigh, state_of};
+use crate::common::{midpoint_forms, sleigh, state_of};
 use dla::{Dla, Form, NewtonError, OneStep, Schedule, Stage, StepError, Trajectory, drive};
 use lagrangian::ClosedStepError;
 use sleigh::SleighState;

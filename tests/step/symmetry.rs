@@ -1,9 +1,6 @@
 //! Time reversal and rigid motions.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-mod common;
-
-use common::{advanced, backward, midpoint_forms, sleigh, sleigh_state, sleighs, starts, state_of};
+use crate::common::{advanced, backward, midpoint_forms, sleigh, sleigh_state, sleighs, starts, state_of};
 use dla::{Dla, OneStep, State};
 use harness::Rk4;
 use lagrangian::System;

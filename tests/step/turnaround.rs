@@ -1,9 +1,6 @@
 //! The turn-around: its angle, and how little spin it needs.
 
-#![allow(missing_docs, clippy::float_cmp, clippy::unwrap_used, clippy::expect_used)]
-mod common;
-
-use common::{advanced, sleigh, sleigh_state, state_of};
+use crate::common::{advanced, sleigh, sleigh_state, state_of};
 use dla::Dla;
 use harness::Trend;
 use sleigh::{Exact, Sleigh, SleighState};

@@ -1,0 +1,22 @@
+//! One table of systems, every method on each: a row buys every check.
+
+#![allow(missing_docs, unreachable_pub, clippy::unwrap_used, clippy::expect_used)]
+
+mod adaptive;
+mod case;
+mod constraint;
+mod energy;
+mod gauge;
+mod hidden_mode;
+mod high_order;
+mod long_energy;
+mod momentum;
+mod order;
+mod reference;
+mod refusal;
+mod reversal;
+mod rows;
+mod shapes;
+mod systems;
+mod thrust;
+mod tools;
