@@ -1,6 +1,6 @@
 //! The pictures of what should stay zero, against time, on a logarithmic axis.
 
-use super::axis::{self, Entry};
+use super::axis;
 use super::canvas::{Anchor, Canvas, Drawn, Ink, text_width};
 use super::geometry::{Frame, Span, visible};
 use super::look;
@@ -8,7 +8,7 @@ use super::picture::Picture;
 use super::scale::{Scale, Trace};
 use super::thinning::peaks;
 use super::xml::label;
-use super::{ReportError, SceneReport, Series};
+use super::{ReportError, SceneReport, Series, entries};
 
 const WIDTH: f64 = 560.0;
 const HEIGHT: f64 = 250.0;
@@ -30,9 +30,9 @@ pub(super) fn constraint(scene: &SceneReport, name: &str) -> Result<Picture, Rep
 
 /// Draws the picture of the energy error.
 pub(super) fn energy(scene: &SceneReport, name: &str) -> Result<Picture, ReportError> {
-    let caption = "How far the energy is from its initial value. Where nothing drives or brakes the sleigh, a line \
+    let caption = "How far the energy is from its initial value and the work W of what drives or brakes the sleigh. A line \
                    that keeps climbing is drift.";
-    draw(scene, format!("{name}-energy.svg"), "energy error", "|E − E₀|  [J]", caption, |series| {
+    draw(scene, format!("{name}-energy.svg"), "energy error", "|E − E₀ − W|  [J]", caption, |series| {
         &series.energy_error
     })
 }
@@ -54,8 +54,7 @@ fn draw(
     if !strays.is_empty() {
         caption += &format!(" Running out of the picture: {}.", strays.join(", "));
     }
-    let entries: Vec<Entry<'_>> =
-        scene.series.iter().enumerate().map(|(method, series)| (Ink::Method(method), series.label.as_str())).collect();
+    let entries = entries(scene);
     let (places, legend) = axis::legend(&entries, WIDTH - 20.0);
     let up = scale.ticks();
     let names: Vec<String> = scene.series.iter().map(|series| label(&series.label, LONGEST)).collect();
