@@ -14,6 +14,10 @@ const WIDTH: f64 = 560.0;
 const HEIGHT: f64 = 250.0;
 /// How many points of a series are drawn at most: more would lie on top of each other.
 const POINTS: usize = 300;
+/// How many points a picture has in all, unless its series then had fewer than [`FEWEST`] each.
+const TOGETHER: usize = 3000;
+/// How many points a series needs for its shape.
+const FEWEST: usize = 100;
 /// How far apart the names at the ends of the lines are.
 const NAMES: f64 = 15.0;
 /// The longest name at the end of a line.
@@ -45,10 +49,11 @@ fn draw(
     caption: &str,
     values: impl Fn(&Series) -> &Vec<f64>,
 ) -> Result<Picture, ReportError> {
-    let traces: Vec<Trace> = scene.series.iter().map(|series| peaks(&series.time, values(series), POINTS)).collect();
+    let most = (TOGETHER / scene.series.len().max(1)).clamp(FEWEST, POINTS);
+    let traces: Vec<Trace> = scene.series.iter().map(|series| peaks(&series.time, values(series), most)).collect();
     let longest = scene.series.iter().map(|series| series.time.len().min(values(series).len())).max().unwrap_or(0);
     let scale = Scale::of(&traces);
-    let mut caption = captioned(caption, &scale, longest);
+    let mut caption = captioned(caption, &scale, longest > most);
     let strays = scene.series.iter().zip(&traces).filter(|(_, trace)| scale.leaves(trace));
     let strays: Vec<&str> = strays.map(|(series, _)| series.label.as_str()).collect();
     if !strays.is_empty() {
@@ -91,9 +96,9 @@ fn draw(
     })
 }
 
-fn captioned(caption: &str, scale: &Scale, longest: usize) -> String {
+fn captioned(caption: &str, scale: &Scale, thinned: bool) -> String {
     let mut caption = caption.to_owned();
-    if longest > POINTS {
+    if thinned {
         caption += " Each point is the largest value of a short stretch of time.";
     }
     match &scale.floor {

@@ -7,7 +7,7 @@ mod baselines;
 use approx::assert_relative_eq;
 use dla::Schedule;
 use harness::{METHODS, Method, MethodError, Request, Trend, run};
-use lagrangian::{Constraint, Piecewise, Scalar, System};
+use lagrangian::{Constraint, Scalar, System};
 use proptest::prelude::*;
 
 /// A point of unit mass with `z' = y x'`, in a well that has no floor beyond `|y| = 1`.
@@ -23,12 +23,6 @@ impl System<3, 1> for Particle {
     }
     fn constraint<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
         ([[-q[1], S::zero(), S::constant(1.0)]], [S::zero()])
-    }
-}
-
-impl Piecewise for Particle {
-    fn piece(&self, _t: f64) -> Self {
-        Self { depth: self.depth }
     }
 }
 
