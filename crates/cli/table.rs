@@ -49,23 +49,32 @@ pub(crate) fn cells<const N: usize>(record: &Record<N>, error: Option<f64>) -> V
 
 /// The table of a comparison.
 pub(crate) fn comparison(scene: &Scene, rows: &[Row]) -> String {
-    let mut table = Table::new();
-    table.load_style(presets::NOTHING).set_header(COLUMNS);
+    // What is said of a refusal needs more room than a column has: it follows the row.
     let refusal = |row: &Row| row.cells.last().filter(|_| row.refused).cloned();
-    for row in rows {
-        // What is said of a refusal needs more room than a column has.
-        table.add_row(&row.cells[..row.cells.len() - usize::from(row.refused)]);
-    }
-    for column in table.column_iter_mut().skip(1) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
-    let mut text = format!("{} ({}), {} s\n", scene.title, scene.name, number(scene.run.duration));
+    let own = |row: &Row| row.cells[..row.cells.len() - usize::from(row.refused)].to_vec();
+    let cells: Vec<_> = rows.iter().map(own).collect();
     let refusals = std::iter::once(None).chain(rows.iter().map(refusal));
-    for (line, refusal) in table.trim_fmt().lines().zip(refusals) {
+    let mut text = format!("{} ({}), {} s\n", scene.title, scene.name, number(scene.run.duration));
+    for (line, refusal) in right_aligned(&COLUMNS, &cells).lines().zip(refusals) {
         let _ = match refusal {
             Some(refusal) => writeln!(text, "{line}  {refusal}"),
             None => writeln!(text, "{line}"),
         };
+    }
+    text
+}
+
+/// A table, all columns but the first aligned to the right.
+pub(crate) fn right_aligned(header: &[&str], rows: &[Vec<String>]) -> String {
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING).set_header(header);
+    table.add_rows(rows);
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    let mut text = String::new();
+    for line in table.trim_fmt().lines() {
+        let _ = writeln!(text, "{line}");
     }
     text
 }
