@@ -4,7 +4,7 @@
 #[path = "common/program.rs"]
 mod program;
 
-use program::{FAILING, Folder, SCENES, keys, methods, names};
+use program::{FAILING, Folder, SCENE, SCENES, keys, methods, names};
 use serde_json::Value;
 
 fn row_methods(comparison: &Value) -> Vec<&str> {
@@ -23,7 +23,7 @@ fn json_has_a_row_for_each_method() {
         let mut expected = keys(&run);
         expected.push("error");
         assert_eq!(keys(row), expected);
-        assert_eq!(keys(&row["energy"]), ["initial", "final", "max_error", "drift_per_time"]);
+        assert_eq!(keys(&row["energy"]), ["initial", "final", "work", "max_error", "drift_per_time"]);
         assert!(row["error"].is_f64() && row["energy"]["drift_per_time"].is_f64(), "{row}");
         assert!((0.0..1.0).contains(&row["error"].as_f64().unwrap()), "{row}");
         assert_eq!(row["scene"], comparison["scene"]);
@@ -110,8 +110,51 @@ fn a_method_that_fails_does_not_hide_the_others() {
 }
 
 #[test]
+fn a_refusal_is_shown_and_fails_only_who_asked_for_it() {
+    let folder = Folder::new();
+    let shaken = "[[effects]]\nkind = \"moving_mass\"\nmass = 0.5\ny = { amplitude = 0.4, frequency = 2.0 }\n";
+    folder.write("shaken.toml", format!("{SCENE}{shaken}"));
+    let comparison = folder.json("compare shaken.toml --json --report pages");
+    assert_eq!(row_methods(&comparison), methods());
+    let rows = comparison["rows"].as_array().unwrap();
+    let (refused, made): (Vec<&Value>, Vec<&Value>) = rows.iter().partition(|row| row.get("refused").is_some());
+    let names: Vec<&str> = refused.iter().map(|row| row["method"].as_str().unwrap()).collect();
+    assert_eq!(names, ["energy2", "energy4", "energy6", "energy8"]);
+    for row in refused {
+        assert_eq!(row["refused"].as_bool(), Some(true));
+        assert!(row["failure"]["reason"].as_str().unwrap().contains("explicit time"), "{row}");
+        let extra: Vec<&str> = keys(row).into_iter().filter(|key| made[0].get(key).is_none()).collect();
+        assert_eq!((extra, keys(row).len()), (vec!["failure", "refused"], keys(made[0]).len() + 2));
+    }
+    // One row says why; the pictures leave out what has no path, and the others keep their looks.
+    let reason = "refused: the energy-preserving methods are for systems without explicit time";
+    let text = folder.done("compare shaken.toml");
+    let row = text.lines().find(|line| line.starts_with(" energy2 ")).unwrap();
+    assert!(row.contains(reason) && row.split_whitespace().nth(1) == Some("2"), "{row}");
+    let page = folder.read("pages/index.html");
+    assert!(page.contains(&format!("<td colspan=\"8\">{reason}")), "{page}");
+    for picture in ["path", "constraint", "energy"] {
+        let drawn = folder.read(&format!("pages/shaken-{picture}.svg"));
+        assert!(drawn.contains("lobatto5") && !drawn.contains("energy2"), "{picture}");
+    }
+    // A picture can show it.
+    folder.write("free.toml", SCENE);
+    folder.done("compare free.toml --methods dla,energy2 --report free");
+    assert!(folder.read("free/free-path.svg").contains("energy2"));
+
+    for line in ["compare shaken.toml --methods dla,energy2", "run shaken.toml --method energy2"] {
+        let outcome = folder.line(line);
+        assert_eq!(outcome.code, 1, "{outcome:?}");
+        outcome.assert_told(line, &["energy2", reason]);
+    }
+}
+
+#[test]
 fn plain_noslip_does_the_main_job() {
     let folder = Folder::new();
+    // Somebody's folder, which stays as it is.
+    std::fs::create_dir(folder.join("noslip-report")).unwrap();
+    folder.write("noslip-report/index.html", "mine");
     let text = folder.done("");
     let tables: Vec<&str> = text.split("\n\n").collect();
     assert_eq!(tables.len(), 1 + SCENES.len(), "{text}");
@@ -120,14 +163,13 @@ fn plain_noslip_does_the_main_job() {
         let first = |line: &str| line.split_whitespace().next().unwrap().to_owned();
         assert_eq!(table.lines().skip(2).map(first).collect::<Vec<_>>(), methods());
     }
-    assert!(tables[3].starts_with("report: noslip-report"), "{text}");
-    let files = names(&folder.join("noslip-report"));
-    assert_eq!(files.iter().filter(|name| name.ends_with(".svg")).count(), 9, "{files:?}");
-    assert!(files.len() == 10 && files.contains(&"index.html".to_owned()), "{files:?}");
+    assert!(tables[SCENES.len()].starts_with("report: noslip-report-2"), "{text}");
+    let files = names(&folder.join("noslip-report-2"));
+    let pictures = 3 * SCENES.len();
+    assert_eq!(files.iter().filter(|name| name.ends_with(".svg")).count(), pictures, "{files:?}");
+    assert!(files.len() == 1 + pictures && files.contains(&"index.html".to_owned()), "{files:?}");
 
-    let page = folder.read("noslip-report/index.html");
-    assert!(folder.done("").contains("noslip-report-2"));
     assert_eq!(folder.names(), ["noslip-report", "noslip-report-2"]);
-    assert_eq!(folder.read("noslip-report/index.html"), page);
+    assert_eq!(folder.read("noslip-report/index.html"), "mine");
     folder.refused("--report noslip-report", &["noslip-report", "exists already", "--force"]);
 }

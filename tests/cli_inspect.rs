@@ -24,6 +24,51 @@ fn check_says_what_a_scene_is() {
 }
 
 #[test]
+fn check_says_the_effects_in_words_and_the_velocity_that_is_imposed() {
+    let folder = Folder::new();
+    let effects = "[[effects]]\nkind = \"servo\"\nturn_rate = 0.3\n[[effects]]\nkind = \"moving_mass\"\nmass = 2\n\
+        y = { amplitude = 0.1, frequency = 2.0, phase = 1.0 }\n";
+    folder.write("scene.toml", format!("{SCENE}{effects}"));
+    let text = folder.done("check scene.toml");
+    for fact in [
+        "servo imposes: turn rate 0.3 rad/s",
+        "moving mass of 2 kg: 0 m ahead of the blade, 0.1 sin(2 t + 1) m to the left",
+        "-1 m/s along the blade, 0.3 rad/s, as the servo imposes it",
+    ] {
+        assert!(text.lines().any(|line| line.ends_with(fact)), "{fact}: {text}");
+    }
+    // The energy is that of all that moves and of where it stands.
+    let energy = folder.json("run bowl --duration 1 --json")["energy"]["initial"].as_f64().unwrap();
+    assert!(folder.done("check bowl").contains(&format!(" {energy} J")), "{energy}");
+    // Every kind of effect has its line.
+    for scene in SCENES {
+        let text = folder.done(&format!("check {scene}"));
+        let effects = text.lines().filter(|line| line.starts_with("effect ")).count();
+        let entries = scene_text(scene).lines().filter(|line| *line == "[[effects]]").count();
+        assert_eq!(effects, entries, "{text}");
+    }
+}
+
+fn scene_text(name: &str) -> String {
+    std::fs::read_to_string(format!("{}/docs/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap()
+}
+
+#[test]
+fn every_scene_has_its_page_and_its_picture() {
+    let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let index = std::fs::read_to_string(docs.join("gallery/README.md")).unwrap();
+    for scene in SCENES {
+        assert!(index.contains(&format!("({scene}.md)")), "{scene}");
+        let page = std::fs::read_to_string(docs.join(format!("gallery/{scene}.md"))).unwrap();
+        assert!(page.contains(&format!("noslip compare {scene} ")), "{scene}");
+        assert!(page.contains(&format!("(../pictures/{scene}-path.svg)")), "{scene}");
+        assert!(page.contains(&format!("(../scenes/{scene}.toml)")), "{scene}");
+        let picture = std::fs::metadata(docs.join(format!("pictures/{scene}-path.svg"))).unwrap();
+        assert!(picture.len() < 80_000, "{scene}");
+    }
+}
+
+#[test]
 fn lists_are_the_same_as_text_and_as_json() {
     let folder = Folder::new();
     let listed = folder.json("list methods --json");
@@ -48,7 +93,7 @@ fn lists_are_the_same_as_text_and_as_json() {
         assert_eq!(scene["name"].as_str(), Some(name));
         assert!(line.starts_with(name) && line.ends_with(scene["title"].as_str().unwrap()), "{line}");
     }
-    assert_eq!((scenes.as_array().unwrap().len(), text.lines().count()), (3, 3));
+    assert_eq!((scenes.as_array().unwrap().len(), text.lines().count()), (SCENES.len(), SCENES.len()));
 
     assert!(folder.json("list effects --json").is_array());
     assert!(!folder.done("list effects").is_empty());

@@ -25,7 +25,7 @@ const FINAL: [&str; 6] = ["t", "x", "y", "heading", "speed", "turn_rate"];
 fn assert_shape(run: &Value) {
     assert_eq!(keys(run), KEYS);
     assert_eq!(keys(&run["newton"]), ["mean", "max"]);
-    assert_eq!(keys(&run["energy"]), ["initial", "final", "max_error"]);
+    assert_eq!(keys(&run["energy"]), ["initial", "final", "work", "max_error"]);
     assert_eq!(keys(&run["constraint"]), ["max"]);
     assert_eq!(keys(&run["final"]), FINAL);
     assert!(run["scene"].is_string() && run["method"].is_string());
@@ -56,6 +56,37 @@ fn every_bundled_scene_and_a_file_run() {
     assert_shape(&run);
     assert_eq!((outcome.code, run["scene"].as_str(), run["steps"].as_u64()), (0, Some("my scene"), Some(40)));
     assert_eq!(folder.names(), ["my scene.toml"]);
+}
+
+/// What the pages of the gallery say of motions with a closed form. The runs are of order 16, so that nothing but rounding is
+/// left: some `1e3` steps with numbers of some units.
+#[test]
+fn scenes_do_what_their_pages_say() {
+    let folder = Folder::new();
+    let end = |scene: &str, key: &str| {
+        folder.json(&format!("run {scene} --method gauss16 --json"))["final"][key].as_f64().unwrap()
+    };
+    let rounding = 1e4 * f64::EPSILON;
+    let near = |found: f64, expected: f64| assert!((found - expected).abs() < rounding, "{found} {expected}");
+    // Four rounds of forward d = 1, pivot -p, back d, pivot p.
+    let p = 0.5_f64;
+    near(end("parking", "x"), 4.0 * (1.0 - p.cos()));
+    near(end("parking", "y"), 4.0 * p.sin());
+    near(end("parking", "heading"), 0.0);
+    // A cycloid across the slope: g = w = 1, from rest.
+    let t = 20.0_f64;
+    near(end("skate", "x"), 0.5 * t.sin() * t.sin());
+    near(end("skate", "y"), 0.5 * (t - 0.5 * (2.0 * t).sin()));
+    // With psi = theta - phi and phi the angle of the tracer: psi' = rho cos psi - 1.
+    let (rho, begin) = (0.2_f64, std::f64::consts::FRAC_PI_2);
+    let (root, ratio) = ((1.0 - rho * rho).sqrt(), ((1.0 - rho) / (1.0 + rho)).sqrt());
+    let phase = ((0.5 * begin).tan() / ratio).atan() - root * std::f64::consts::PI;
+    // The branch: the tracer has gone once around, and the blade has turned by less than a right angle.
+    let psi = 2.0 * (ratio * phase.tan()).atan();
+    let turn = (psi - begin).rem_euclid(std::f64::consts::TAU);
+    near(end("planimeter", "heading"), begin + turn);
+    let area = std::f64::consts::PI * rho * rho;
+    assert!((turn - area).abs() < 0.05 * area && turn > area, "{turn} {area}");
 }
 
 #[test]

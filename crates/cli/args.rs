@@ -72,7 +72,7 @@ pub(crate) struct RunArguments {
     /// Keep every N-th node in the output file
     #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true, value_parser = count)]
     pub(crate) every: u64,
-    /// Write the trajectory: .csv or .npz, by the ending
+    /// Write the trajectory: .csv, .npz, or .parquet (a cargo feature), by the ending
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
 }

@@ -1,6 +1,6 @@
 use crate::args::CompareArguments;
 use crate::error::CliError;
-use crate::{inspect, json, progress, table, terminal};
+use crate::{facts, inspect, json, progress, table, terminal};
 use dla::{Schedule, State};
 use harness::report::{self, Report, SceneReport, Series};
 use harness::{METHODS, Method, Record, Request};
@@ -19,6 +19,15 @@ pub(crate) struct Row {
     pub(crate) cells: Vec<String>,
     pub(crate) json: serde_json::Value,
     pub(crate) failure: Option<String>,
+    /// The method refuses the scene.
+    pub(crate) refused: bool,
+}
+
+impl Row {
+    /// The failure, unless all that happened is that a method which nobody asked for by name refuses the scene.
+    pub(crate) fn unexpected(self) -> Option<String> {
+        self.failure.filter(|_| !self.refused)
+    }
 }
 
 /// `noslip compare`: long-run constraint and energy, method by method.
@@ -51,7 +60,10 @@ pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
             terminal::print(&format!("report: {}\n", folder.join("index.html").display()))?;
         }
     }
-    CliError::of_failures(comparison.rows.into_iter().filter_map(|row| row.failure))
+    let named = arguments.methods.is_some();
+    CliError::of_failures(
+        comparison.rows.into_iter().filter_map(|row| if named { row.failure } else { row.unexpected() }),
+    )
 }
 
 pub(crate) fn methods(names: &[&str], alpha: Option<f64>) -> Result<Vec<Method>, CliError> {
@@ -90,15 +102,17 @@ impl Visitor for Compare<'_> {
                 cells: table::cells(&record, error),
                 json: json::compared(&self.scene.name, &record, &end, error),
                 failure: table::failure(&record),
+                refused: record.refusal().is_some(),
             });
             series.push(series_of(system, &record));
         }
-        let times = series.first().map(|first| first.time.clone()).unwrap_or_default();
+        // The longest run: one that failed ends before the others.
+        let times = series.iter().map(|series| &series.time).max_by_key(|time| time.len()).cloned().unwrap_or_default();
         let exact_path = exact.map(|exact| times.iter().map(|t| exact.at(*t)).map(|s| [s.x, s.y]).collect());
         let report = SceneReport {
             name: self.scene.name.clone(),
             title: self.scene.title.clone(),
-            facts: table::facts(self.scene),
+            facts: facts::of(self.scene, system, &State::new(q, v, system.angles())),
             columns: table::COLUMNS.iter().map(|column| (*column).to_owned()).collect(),
             rows: rows.iter().map(|row| row.cells.clone()).collect(),
             series,
@@ -156,14 +170,15 @@ fn series_of<Sys, const N: usize, const M: usize>(system: &Sys, record: &Record<
 where
     Sys: SceneSystem<N, M>,
 {
-    let states: Vec<SleighState> =
-        record.samples.iter().map(|sample| system.sleigh_state(&sample.q, &[0.0; N])).collect();
+    // A run without a step has nothing to draw.
+    let samples = if record.steps == 0 { &[][..] } else { &record.samples[..] };
+    let states: Vec<SleighState> = samples.iter().map(|sample| system.sleigh_state(&sample.q, &[0.0; N])).collect();
     Series {
         label: record.method.name.to_owned(),
         path: states.iter().map(|state| [state.x, state.y]).collect(),
         heading: states.iter().map(|state| state.heading).collect(),
-        time: record.samples.iter().map(|sample| sample.t).collect(),
-        constraint: record.samples.iter().map(|sample| sample.constraint).collect(),
-        energy_error: record.samples.iter().map(|sample| sample.energy_error).collect(),
+        time: samples.iter().map(|sample| sample.t).collect(),
+        constraint: samples.iter().map(|sample| sample.constraint).collect(),
+        energy_error: samples.iter().map(|sample| sample.energy_error).collect(),
     }
 }

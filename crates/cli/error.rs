@@ -15,8 +15,14 @@ pub(crate) enum CliError {
     Sleigh(#[from] sleigh::SleighError),
     #[error("{} exists already; --force overwrites it", path.display())]
     Exists { path: PathBuf },
-    #[error("{}: a trajectory is written as .csv or .npz, by the ending of its name", path.display())]
+    #[error("{}: a trajectory is written as .csv, .npz or .parquet, by the ending of its name", path.display())]
     Ending { path: PathBuf },
+    #[cfg(not(feature = "parquet"))]
+    #[error(
+        "{}: this program was built without Parquet; `cargo build --release --features parquet` builds it with it",
+        path.display()
+    )]
+    WithoutParquet { path: PathBuf },
     #[error("--out would hold {nodes} nodes; at most {most} are accepted, with --every {every} or more")]
     TooManyNodes { nodes: u64, most: u64, every: u64 },
     #[error("cannot write {}: {source}", path.display())]
@@ -45,6 +51,8 @@ impl CliError {
             Self::Scene(_) | Self::Sleigh(_) | Self::Method(_) | Self::Exists { .. } | Self::Ending { .. } => {
                 ExitCode::from(2)
             }
+            #[cfg(not(feature = "parquet"))]
+            Self::WithoutParquet { .. } => ExitCode::from(2),
             Self::TooManyNodes { .. } | Self::Report(ReportError::Exists { .. }) => ExitCode::from(2),
             Self::Write { .. } | Self::Folder { .. } | Self::Output(_) => ExitCode::FAILURE,
             Self::Report(_) | Self::Computation(_) => ExitCode::FAILURE,

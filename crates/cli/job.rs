@@ -1,5 +1,5 @@
 use crate::args::JobArguments;
-use crate::compare::{compare_scene, methods};
+use crate::compare::{Row, compare_scene, methods};
 use crate::error::CliError;
 use crate::inspect::method_names;
 use crate::{table, terminal};
@@ -21,7 +21,7 @@ pub(crate) fn main_job(arguments: &JobArguments) -> Result<(), CliError> {
         let comparison = compare_scene(&scene, &methods(&method_names(), scene.run.alpha)?)?;
         terminal::print(&table::comparison(&scene, &comparison.rows))?;
         terminal::print("\n")?;
-        let failed = comparison.rows.into_iter().filter_map(|row| row.failure);
+        let failed = comparison.rows.into_iter().filter_map(Row::unexpected);
         failures.extend(failed.map(|failure| format!("{}: {failure}", scene.name)));
         scenes.push(comparison.report);
     }

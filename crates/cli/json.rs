@@ -36,6 +36,9 @@ pub(crate) fn record<const N: usize>(scene: &str, record: &Record<N>, end: &Slei
             "reason": failure.source.to_string(),
         });
     }
+    if record.refusal().is_some() {
+        object["refused"] = json!(true);
+    }
     object
 }
 

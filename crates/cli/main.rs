@@ -4,11 +4,14 @@ mod args;
 mod compare;
 mod cost;
 mod error;
+mod facts;
 mod files;
 mod first_error;
 mod inspect;
 mod job;
 mod json;
+#[cfg(feature = "parquet")]
+mod parquet_file;
 mod progress;
 mod run;
 mod table;

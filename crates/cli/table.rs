@@ -27,8 +27,11 @@ pub(crate) const INTRO: &str = "Every method from the same start with the same s
     distance at the end from the closed form, or from gauss16 at a quarter of the step where there is none, in metres or \
     radians, whichever is larger. Newton: iterations a step. ns/step: time of the steps alone, median of repeated runs.";
 
-/// A row of a comparison.
+/// A row of a comparison; of a method that refuses the scene, a short one, whose last cell says why.
 pub(crate) fn cells<const N: usize>(record: &Record<N>, error: Option<f64>) -> Vec<String> {
+    if let Some(reason) = record.refusal() {
+        return vec![record.method.name.to_owned(), record.method.order.to_string(), format!("refused: {reason}")];
+    }
     let newton = if record.newton.max == 0 { "-".to_owned() } else { format!("{:.2}", record.newton.mean) };
     vec![
         record.method.name.to_owned(),
@@ -46,9 +49,19 @@ pub(crate) fn cells<const N: usize>(record: &Record<N>, error: Option<f64>) -> V
 
 /// The table of a comparison.
 pub(crate) fn comparison(scene: &Scene, rows: &[Row]) -> String {
-    let rows: Vec<_> = rows.iter().map(|row| row.cells.clone()).collect();
-    let heading = format!("{} ({}), {} s\n", scene.title, scene.name, number(scene.run.duration));
-    heading + &right_aligned(&COLUMNS, &rows)
+    // What is said of a refusal needs more room than a column has: it follows the row.
+    let refusal = |row: &Row| row.cells.last().filter(|_| row.refused).cloned();
+    let own = |row: &Row| row.cells[..row.cells.len() - usize::from(row.refused)].to_vec();
+    let cells: Vec<_> = rows.iter().map(own).collect();
+    let refusals = std::iter::once(None).chain(rows.iter().map(refusal));
+    let mut text = format!("{} ({}), {} s\n", scene.title, scene.name, number(scene.run.duration));
+    for (line, refusal) in right_aligned(&COLUMNS, &cells).lines().zip(refusals) {
+        let _ = match refusal {
+            Some(refusal) => writeln!(text, "{line}  {refusal}"),
+            None => writeln!(text, "{line}"),
+        };
+    }
+    text
 }
 
 /// A table, all columns but the first aligned to the right.
@@ -64,37 +77,6 @@ pub(crate) fn right_aligned(header: &[&str], rows: &[Vec<String>]) -> String {
         let _ = writeln!(text, "{line}");
     }
     text
-}
-
-/// What a scene says, for a person.
-pub(crate) fn facts(scene: &Scene) -> Vec<(String, String)> {
-    let (sleigh, start) = (&scene.sleigh, &scene.start);
-    let energy =
-        0.5 * (sleigh.mass() * start.speed * start.speed + sleigh.pivot_inertia() * start.turn_rate * start.turn_rate);
-    let fact = |name: &str, value: String| (name.to_owned(), value);
-    vec![
-        fact("mass m", format!("{} kg", number(sleigh.mass()))),
-        fact("inertia I about the centre of mass", format!("{} kg m²", number(sleigh.inertia()))),
-        fact("offset a of the centre of mass ahead of the blade", format!("{} m", number(sleigh.offset()))),
-        fact(
-            "start",
-            format!("x = {} m, y = {} m, heading {} rad", number(start.x), number(start.y), number(start.heading)),
-        ),
-        fact(
-            "start velocity",
-            format!("{} m/s along the blade, {} rad/s", number(start.speed), number(start.turn_rate)),
-        ),
-        fact("energy", format!("{} J", number(energy))),
-        fact(
-            "run",
-            format!(
-                "{} s in {} steps of {} s",
-                number(scene.run.duration),
-                scene.run.steps(),
-                number(scene.run.actual_step())
-            ),
-        ),
-    ]
 }
 
 /// The result of one run, for a person.
@@ -130,7 +112,7 @@ pub(crate) fn one_run<const N: usize>(
 }
 
 /// A number with every digit, with an exponent where it would have a long row of zeros.
-fn number(value: f64) -> String {
+pub(crate) fn number(value: f64) -> String {
     if value == 0.0 || (1e-4..1e16).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
 }
 
@@ -146,6 +128,9 @@ pub(crate) fn aligned<K: AsRef<str>, V: AsRef<str>>(lines: &[(K, V)]) -> String 
 
 /// The failure of a run, told with how far the run is valid.
 pub(crate) fn failure<const N: usize>(record: &Record<N>) -> Option<String> {
+    if let Some(reason) = record.refusal() {
+        return Some(format!("{} refused: {reason}", record.method.name));
+    }
     record.failure.as_ref().map(|failure| {
         format!(
             "{} failed at {failure}; the trajectory is valid up to t = {} s ({} steps)",

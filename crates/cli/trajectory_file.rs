@@ -11,6 +11,8 @@ use std::path::Path;
 pub(crate) enum Format {
     Csv,
     Npz,
+    #[cfg(feature = "parquet")]
+    Parquet,
 }
 
 impl Format {
@@ -20,6 +22,10 @@ impl Format {
         match ending.as_ref().and_then(|ending| ending.to_str()) {
             Some("csv") => Ok(Self::Csv),
             Some("npz") => Ok(Self::Npz),
+            #[cfg(feature = "parquet")]
+            Some("parquet") => Ok(Self::Parquet),
+            #[cfg(not(feature = "parquet"))]
+            Some("parquet") => Err(CliError::WithoutParquet { path: path.to_owned() }),
             _ => Err(CliError::Ending { path: path.to_owned() }),
         }
     }
@@ -41,9 +47,9 @@ const COLUMNS: [(&str, &str); 11] = [
 ];
 
 /// A table of numbers, with a header.
-struct Columns {
+pub(crate) struct Columns {
     header: Vec<(String, &'static str)>,
-    rows: Vec<Vec<f64>>,
+    pub(crate) rows: Vec<Vec<f64>>,
 }
 
 impl Columns {
@@ -83,6 +89,11 @@ impl Columns {
         }
         Self { header, rows }
     }
+
+    /// The names of the columns, each with its unit.
+    pub(crate) fn names(&self) -> impl Iterator<Item = String> {
+        self.header.iter().map(|(name, unit)| format!("{name} [{unit}]"))
+    }
 }
 
 /// The most nodes that a file holds: those of a run are in memory, at about 100 bytes each, before they are written.
@@ -118,12 +129,14 @@ where
             // What stopped the file is the reason of whatever the archive then stumbled over.
             file.into_result().and(outcome)
         }
+        #[cfg(feature = "parquet")]
+        Format::Parquet => crate::parquet_file::write(file, &columns),
     })
 }
 
 fn csv(file: &mut impl Write, columns: &Columns) -> Result<(), Error> {
-    let header: Vec<String> = columns.header.iter().map(|(name, unit)| format!("{name} [{unit}]")).collect();
-    writeln!(file, "{}", header.join(","))?;
+    let names: Vec<String> = columns.names().collect();
+    writeln!(file, "{}", names.join(","))?;
     for row in &columns.rows {
         // `{:?}` prints the shortest text that reads back as the same number.
         write!(file, "{:?}", row[0])?;

@@ -155,7 +155,26 @@ pub fn methods() -> Vec<String> {
 }
 
 /// The names of the bundled scenes.
-pub const SCENES: [&str; 3] = ["turnaround", "straight", "circle"];
+pub const SCENES: [&str; 18] = [
+    "turnaround",
+    "straight",
+    "circle",
+    "bowl",
+    "valley",
+    "egg-crate",
+    "egg-crate-chaos",
+    "egg-crate-attractor",
+    "hills",
+    "skate",
+    "braking",
+    "thrust-well",
+    "flywheel",
+    "shaker",
+    "shaker-friction",
+    "parking",
+    "planimeter",
+    "turntable",
+];
 
 /// The names and the rows of a file of comma-separated values; the units are dropped.
 pub fn csv(text: &str) -> (Vec<String>, Vec<Vec<f64>>) {

@@ -1,5 +1,5 @@
 use crate::{MethodInfo, Trend};
-use dla::{Observer, RunError, StepReport, View, Work};
+use dla::{Observer, RunError, StepError, StepReport, View, Work};
 use lagrangian::System;
 use lagrangian::linear::larger;
 use std::ops::ControlFlow;
@@ -68,6 +68,17 @@ pub struct Record<const N: usize> {
     pub samples: Vec<Sample<N>>,
     /// Why the run ended early, where it did; all else then tells of the part before.
     pub failure: Option<RunError>,
+}
+
+impl<const N: usize> Record<N> {
+    /// Why the method refuses the system, where it does: no failure of a computation, since none was begun or could be.
+    #[must_use]
+    pub fn refusal(&self) -> Option<&'static str> {
+        match self.failure {
+            Some(RunError { source: StepError::Unsupported { reason }, .. }) => Some(reason),
+            _ => None,
+        }
+    }
 }
 
 /// The observer that measures a run.

@@ -156,6 +156,27 @@ fn the_page_holds_every_row_every_fact_and_every_picture() {
 }
 
 #[test]
+fn a_method_without_a_run_stands_in_the_table_alone() {
+    let drawn = scene("drawn", vec![circle("first", 50), circle("refuses", 50), circle("last", 50)]);
+    let mut left_out = drawn.clone();
+    left_out.series[1] = circle("refuses", 0);
+    left_out.rows[1] = vec!["refuses".to_owned(), "refused: it cannot".to_owned()];
+    let (full, with) = written(&report(vec![drawn]));
+    let (page, without) = written(&report(vec![left_out]));
+    // The last cell takes the columns that are left, and does not make a column of words of one of numbers.
+    assert!(page.contains("<td>refuses</td><td colspan=\"2\">refused: it cannot</td>"));
+    assert!(page.contains("<td class=\"n\">1.5e-16</td>") && !full.contains("colspan"));
+    for ((_, with), (_, without)) in with.iter().zip(&without) {
+        let named = |picture: &str, name: &str| texts(picture).iter().any(|text| text == name);
+        assert!(named(with, "refuses") && !named(without, "refuses"));
+        assert!(named(without, "first") && named(without, "last"));
+    }
+    // The third method keeps its look, whoever else is drawn.
+    let key = |page: &str| page.split_once("</svg>last</td>").unwrap().0.rsplit_once("<svg").unwrap().1.to_owned();
+    assert_eq!(key(&full), key(&page));
+}
+
+#[test]
 fn the_page_needs_nothing_from_elsewhere() {
     let (page, _) = written(&report(vec![scene("coast", vec![circle("dla", 50)])]));
     let page = page.replace("http://www.w3.org/2000/svg", "");

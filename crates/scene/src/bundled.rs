@@ -16,7 +16,26 @@ macro_rules! bundle {
 /// Every bundled scene, in the order in which to present them.
 #[must_use]
 pub fn bundled() -> &'static [Bundled] {
-    bundle!["turnaround", "straight", "circle"]
+    bundle![
+        "turnaround",
+        "straight",
+        "circle",
+        "bowl",
+        "valley",
+        "egg-crate",
+        "egg-crate-chaos",
+        "egg-crate-attractor",
+        "hills",
+        "skate",
+        "braking",
+        "thrust-well",
+        "flywheel",
+        "shaker",
+        "shaker-friction",
+        "parking",
+        "planimeter",
+        "turntable",
+    ]
 }
 
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {

@@ -1,4 +1,8 @@
-//! Bundled scenes, the template, and files that are not scenes.
+//! Bundled scenes, the template, their schema, and files that are not scenes.
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod schema;
+
 use scene::{RunSettings, Scene, SceneError, bundled};
 use std::fs;
 
@@ -7,7 +11,7 @@ const METHODS: &[&str] = &["dla", "dla-alpha"];
 #[test]
 fn bundled_scenes_load_by_name() {
     let names: Vec<_> = bundled().iter().map(|scene| scene.name).collect();
-    assert_eq!(names, ["turnaround", "straight", "circle"]);
+    assert_eq!(names[..3], ["turnaround", "straight", "circle"], "the free motions come first");
     for bundled in bundled() {
         let scene = Scene::load(bundled.name, METHODS).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(scene.name, bundled.name);
@@ -66,7 +70,7 @@ fn a_name_that_is_nothing_lists_the_bundled_scenes() {
         let text = error.to_string();
         let SceneError::NotFound { suggestion, .. } = error else { panic!("{text}") };
         assert_eq!(suggestion, near);
-        assert!(text.contains(&format!("`{name}`")) && text.contains("turnaround, straight, circle"), "{text}");
+        assert!(text.contains(&format!("`{name}`")) && text.contains("turnaround, straight, circle, bowl"), "{text}");
         assert_eq!(text.contains("did you mean"), near.is_some(), "{text}");
     }
 }

@@ -1,6 +1,6 @@
 //! The pictures of what should stay zero, against time, on a logarithmic axis.
 
-use super::axis::{self, Entry};
+use super::axis;
 use super::canvas::{Anchor, Canvas, Drawn, Ink, text_width};
 use super::geometry::{Frame, Span, visible};
 use super::look;
@@ -8,12 +8,16 @@ use super::picture::Picture;
 use super::scale::{Scale, Trace};
 use super::thinning::peaks;
 use super::xml::label;
-use super::{ReportError, SceneReport, Series};
+use super::{ReportError, SceneReport, Series, entries};
 
 const WIDTH: f64 = 560.0;
 const HEIGHT: f64 = 250.0;
 /// How many points of a series are drawn at most: more would lie on top of each other.
 const POINTS: usize = 300;
+/// How many points a picture has in all, unless its series then had fewer than [`FEWEST`] each.
+const TOGETHER: usize = 3000;
+/// How many points a series needs for its shape.
+const FEWEST: usize = 100;
 /// How far apart the names at the ends of the lines are.
 const NAMES: f64 = 15.0;
 /// The longest name at the end of a line.
@@ -30,9 +34,9 @@ pub(super) fn constraint(scene: &SceneReport, name: &str) -> Result<Picture, Rep
 
 /// Draws the picture of the energy error.
 pub(super) fn energy(scene: &SceneReport, name: &str) -> Result<Picture, ReportError> {
-    let caption = "How far the energy is from its initial value. Where nothing drives or brakes the sleigh, a line \
+    let caption = "How far the energy is from its initial value and the work W of what drives or brakes the sleigh. A line \
                    that keeps climbing is drift.";
-    draw(scene, format!("{name}-energy.svg"), "energy error", "|E − E₀|  [J]", caption, |series| {
+    draw(scene, format!("{name}-energy.svg"), "energy error", "|E − E₀ − W|  [J]", caption, |series| {
         &series.energy_error
     })
 }
@@ -45,17 +49,17 @@ fn draw(
     caption: &str,
     values: impl Fn(&Series) -> &Vec<f64>,
 ) -> Result<Picture, ReportError> {
-    let traces: Vec<Trace> = scene.series.iter().map(|series| peaks(&series.time, values(series), POINTS)).collect();
+    let most = (TOGETHER / scene.series.len().max(1)).clamp(FEWEST, POINTS);
+    let traces: Vec<Trace> = scene.series.iter().map(|series| peaks(&series.time, values(series), most)).collect();
     let longest = scene.series.iter().map(|series| series.time.len().min(values(series).len())).max().unwrap_or(0);
     let scale = Scale::of(&traces);
-    let mut caption = captioned(caption, &scale, longest);
+    let mut caption = captioned(caption, &scale, longest > most);
     let strays = scene.series.iter().zip(&traces).filter(|(_, trace)| scale.leaves(trace));
     let strays: Vec<&str> = strays.map(|(series, _)| series.label.as_str()).collect();
     if !strays.is_empty() {
         caption += &format!(" Running out of the picture: {}.", strays.join(", "));
     }
-    let entries: Vec<Entry<'_>> =
-        scene.series.iter().enumerate().map(|(method, series)| (Ink::Method(method), series.label.as_str())).collect();
+    let entries = entries(scene);
     let (places, legend) = axis::legend(&entries, WIDTH - 20.0);
     let up = scale.ticks();
     let names: Vec<String> = scene.series.iter().map(|series| label(&series.label, LONGEST)).collect();
@@ -92,9 +96,9 @@ fn draw(
     })
 }
 
-fn captioned(caption: &str, scale: &Scale, longest: usize) -> String {
+fn captioned(caption: &str, scale: &Scale, thinned: bool) -> String {
     let mut caption = caption.to_owned();
-    if longest > POINTS {
+    if thinned {
         caption += " Each point is the largest value of a short stretch of time.";
     }
     match &scale.floor {

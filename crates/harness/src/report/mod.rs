@@ -44,7 +44,8 @@ pub struct SceneReport {
     pub facts: Vec<(String, String)>,
     /// The headings of the comparison table.
     pub columns: Vec<String>,
-    /// The rows of the comparison table, already formatted.
+    /// The rows of the comparison table, already formatted. The last cell of a row that is shorter than the others takes
+    /// the columns that are left.
     pub rows: Vec<Vec<String>>,
     /// The runs that the pictures show, one per method.
     pub series: Vec<Series>,
@@ -55,7 +56,7 @@ pub struct SceneReport {
 /// One run of one method.
 ///
 /// The vectors hold one entry per node. Where lengths differ, the shorter one counts; entries that are not finite are
-/// left out of the pictures and interrupt their lines.
+/// left out of the pictures and interrupt their lines. A run without nodes is not drawn; the others keep their looks.
 #[derive(Debug, Clone)]
 pub struct Series {
     /// The name of the method.
@@ -68,8 +69,21 @@ pub struct Series {
     pub time: Vec<f64>,
     /// The size of the constraint's residual, `|A(q) v + b|`.
     pub constraint: Vec<f64>,
-    /// The distance of the energy from its initial value, `|E - E0|` \[J\].
+    /// The energy beyond its initial value that no work explains, `|E - E0 - W|` \[J\].
     pub energy_error: Vec<f64>,
+}
+
+impl Series {
+    /// Whether there is anything to draw.
+    fn is_drawn(&self) -> bool {
+        !self.time.is_empty() || !self.path.is_empty()
+    }
+}
+
+/// The entries of a legend: the runs that are drawn, each with its own look.
+fn entries(scene: &SceneReport) -> Vec<axis::Entry<'_>> {
+    let drawn = scene.series.iter().enumerate().filter(|(_, series)| series.is_drawn());
+    drawn.map(|(method, series)| (canvas::Ink::Method(method), series.label.as_str())).collect()
 }
 
 /// Why a report could not be written.

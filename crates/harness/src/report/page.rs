@@ -59,7 +59,7 @@ fn section(page: &mut String, scene: &SceneReport, name: &str, pictures: &[Pictu
 
 fn table(page: &mut String, scene: &SceneReport) {
     let width = scene.rows.iter().map(Vec::len).fold(scene.columns.len(), usize::max);
-    let numeric: Vec<bool> = (0..width).map(|column| numeric(&scene.rows, column)).collect();
+    let numeric: Vec<bool> = (0..width).map(|column| numeric(&scene.rows, column, width)).collect();
     let class = |column: usize| if numeric[column] { " class=\"n\"" } else { "" };
     let text = |row: &[String], column: usize| row.get(column).map_or_else(String::new, |cell| escape(cell));
     *page += "<div class=\"scroll\"><table>\n<thead><tr>";
@@ -70,18 +70,27 @@ fn table(page: &mut String, scene: &SceneReport) {
     for row in &scene.rows {
         *page += "<tr>";
         // The row of a method that the pictures show starts with the look of its line.
-        let method = scene.series.iter().position(|series| row.first() == Some(&series.label));
-        for column in 0..width {
+        let method = scene.series.iter().position(|series| row.first() == Some(&series.label) && series.is_drawn());
+        for column in 0..row.len() {
             let key = method.filter(|_| column == 0).map_or_else(String::new, look::key);
-            *page += &format!("<td{}>{key}{}</td>", class(column), text(row, column));
+            let class = match spanned(row, width).filter(|_| column + 1 == row.len()) {
+                Some(columns) => format!(" colspan=\"{columns}\""),
+                None => class(column).to_owned(),
+            };
+            *page += &format!("<td{class}>{key}{}</td>", text(row, column));
         }
         *page += "</tr>\n";
     }
     *page += "</tbody>\n</table></div>\n";
 }
 
+/// How many columns the last cell of a row takes, where it takes more than its own.
+fn spanned(row: &[String], width: usize) -> Option<usize> {
+    (!row.is_empty() && row.len() < width).then(|| width + 1 - row.len())
+}
+
 /// Whether a column holds numbers, with or without units, and nothing else but signs for a missing one.
-fn numeric(rows: &[Vec<String>], column: usize) -> bool {
+fn numeric(rows: &[Vec<String>], column: usize, width: usize) -> bool {
     let missing =
         |cell: &str| matches!(cell.to_lowercase().as_str(), "" | "-" | "–" | "—" | "nan" | "inf" | "-inf" | "n/a");
     let number = |cell: &str| {
@@ -89,7 +98,10 @@ fn numeric(rows: &[Vec<String>], column: usize) -> bool {
             |c: char| c.is_whitespace() || matches!(c, '+' | '-' | '−' | '<' | '>' | '≤' | '≥' | '~' | '≈' | '.');
         cell.trim_start_matches(sign).starts_with(|c: char| c.is_ascii_digit())
     };
-    let mut cells = rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.trim()).filter(|cell| !missing(cell));
+    // A cell that takes several columns is text and belongs to none of them.
+    let own = |row: &&Vec<String>| spanned(row, width).is_none() || column + 1 < row.len();
+    let cells = rows.iter().filter(own).filter_map(|row| row.get(column)).map(|cell| cell.trim());
+    let mut cells = cells.filter(|cell| !missing(cell));
     let first = cells.next();
     first.is_some_and(number) && cells.all(number)
 }

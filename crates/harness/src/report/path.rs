@@ -1,13 +1,13 @@
 //! The picture of the paths, seen from above.
 
-use super::axis::{self, Entry};
+use super::axis;
 use super::canvas::{Canvas, Drawn, Ink};
 use super::geometry::{Frame, Span, distance, drawable, visible};
 use super::look;
 use super::picture::Picture;
 use super::sleigh::{APART, sleighs};
 use super::thinning::thin;
-use super::{ReportError, SceneReport, Series};
+use super::{ReportError, SceneReport, Series, entries};
 
 const WIDTH: f64 = 560.0;
 /// Room for what lies at the edge of the paths: half a sleigh.
@@ -19,8 +19,7 @@ const STRAY: f64 = 2.5;
 
 /// Draws the picture of a scene.
 pub(super) fn picture(scene: &SceneReport, name: &str) -> Result<Picture, ReportError> {
-    let mut entries: Vec<Entry<'_>> =
-        scene.series.iter().enumerate().map(|(method, series)| (Ink::Method(method), series.label.as_str())).collect();
+    let mut entries = entries(scene);
     let exact = scene.exact_path.as_deref().filter(|path| !path.is_empty());
     if exact.is_some() {
         entries.push((Ink::Exact, "exact"));
@@ -44,7 +43,7 @@ pub(super) fn picture(scene: &SceneReport, name: &str) -> Result<Picture, Report
         for (method, series) in scene.series.iter().enumerate() {
             markers(canvas, &frame, method, series, scene.series.len())?;
         }
-        match scene.series.first() {
+        match scene.series.iter().find(|series| series.is_drawn()) {
             Some(series) => sleighs(canvas, &frame, series),
             None => Ok(()),
         }
@@ -54,7 +53,7 @@ pub(super) fn picture(scene: &SceneReport, name: &str) -> Result<Picture, Report
 fn caption(scene: &SceneReport, exact: bool, strays: &[&str]) -> String {
     let mut caption =
         "The path of the blade on the ground, seen from above; a metre is as long upwards as across.".to_owned();
-    if let Some(first) = scene.series.first() {
+    if let Some(first) = scene.series.iter().find(|series| series.is_drawn()) {
         caption += &format!(" The sleigh stands where {} puts it at equally spaced times.", first.label);
     }
     if exact {

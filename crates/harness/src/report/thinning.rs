@@ -10,7 +10,7 @@ type Lines = Vec<Vec<[f64; 2]>>;
 /// what lies on itself, as in a circle run through a thousand times, and then points a little further apart.
 pub(super) fn thin(lines: Lines, most: usize) -> Lines {
     let few = |lines: &Lines| lines.iter().map(Vec::len).sum::<usize>() <= most;
-    let fine = sparser(lines, 0.25);
+    let fine = sparser(lines, 0.7);
     if few(&fine) {
         return fine;
     }

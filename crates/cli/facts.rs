@@ -1,0 +1,121 @@
+use crate::table::number;
+use dla::{State, View};
+use scene::{PathSpec, Scene, SceneEffect, SceneSystem, Shape, TimeSpec, Visitor};
+
+/// What a scene says, for a person: names and values.
+pub(crate) struct Facts<'a>(pub(crate) &'a Scene);
+
+impl Visitor for Facts<'_> {
+    type Output = Vec<(String, String)>;
+
+    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
+    where
+        Sys: SceneSystem<N, M>,
+    {
+        of(self.0, system, &State::new(q, v, system.angles()))
+    }
+}
+
+/// The facts of a scene, of its system and the state that it starts in.
+pub(crate) fn of<Sys, const N: usize, const M: usize>(
+    scene: &Scene,
+    system: &Sys,
+    state: &State<N>,
+) -> Vec<(String, String)>
+where
+    Sys: SceneSystem<N, M>,
+{
+    let (sleigh, run) = (&scene.sleigh, &scene.run);
+    let first = system.piece(0.0);
+    let start = first.sleigh_state(state.q(), state.v());
+    let energy = View { system: &first, k: 0, t: 0.0, state }.energy();
+    let imposed = scene.effects.iter().map(SceneEffect::kind).find(|kind| matches!(*kind, "servo" | "tracer"));
+    let imposed = imposed.map_or_else(String::new, |kind| format!(", as the {kind} imposes it"));
+    let mut facts = vec![
+        ("mass m", format!("{} kg", number(sleigh.mass()))),
+        ("inertia I about the centre of mass", format!("{} kg m²", number(sleigh.inertia()))),
+        ("offset a of the centre of mass ahead of the blade", format!("{} m", number(sleigh.offset()))),
+    ];
+    facts.extend(scene.effects.iter().map(|effect| ("effect", words(effect))));
+    let [x, y, heading] = [start.x, start.y, start.heading].map(number);
+    let [speed, turn_rate] = [start.speed, start.turn_rate].map(number);
+    facts.extend([
+        ("start", format!("x = {x} m, y = {y} m, heading {heading} rad")),
+        ("start velocity", format!("{speed} m/s along the blade, {turn_rate} rad/s{imposed}")),
+        ("energy", format!("{} J", number(energy))),
+        ("run", format!("{} s in {} steps of {} s", number(run.duration), run.steps(), number(run.actual_step()))),
+    ]);
+    facts.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+}
+
+/// An effect, in words.
+fn words(effect: &SceneEffect) -> String {
+    match effect {
+        SceneEffect::Slope { gravity } => format!("slope: gravity {} m/s²", pair(gravity)),
+        SceneEffect::Bowl { stiffness, center } => {
+            let shape = if stiffness.contains(&0.0) { "valley" } else { "bowl" };
+            format!("{shape} of stiffness {} N/m about {} m", pair(stiffness), pair(center))
+        }
+        SceneEffect::EggCrate { height, wave_number } => {
+            format!("egg crate of height {} J, wave numbers {} 1/m", number(*height), pair(wave_number))
+        }
+        SceneEffect::Hills { hills } => {
+            let one = |hill: &scene::HillSpec| {
+                let [height, width] = [hill.height, hill.width].map(number);
+                format!("{height} J at {} m, {width} m wide", pair(&[hill.x, hill.y]))
+            };
+            format!("hills: {}", hills.iter().map(one).collect::<Vec<_>>().join("; "))
+        }
+        SceneEffect::Flywheel { inertia, rotor_rate, torque } => {
+            let motor = match torque {
+                Some(torque) => format!("motor torque {}", function(torque, "N m")),
+                None => "running free".to_owned(),
+            };
+            format!("flywheel of {} kg m², first at {} rad/s, {motor}", number(*inertia), number(*rotor_rate))
+        }
+        SceneEffect::Drag { along, turning } => {
+            format!("drag: {} kg/s along the blade, {} kg m²/s against turning", number(*along), number(*turning))
+        }
+        SceneEffect::Thrust { force } => format!("thrust along the blade: {}", function(force, "N")),
+        SceneEffect::Torque { torque } => format!("torque on the heading: {}", function(torque, "N m")),
+        SceneEffect::MovingMass { mass, x, y } => {
+            let [ahead, left] = [x, y].map(|place| function(place, "m"));
+            format!("moving mass of {} kg: {ahead} ahead of the blade, {left} to the left", number(*mass))
+        }
+        SceneEffect::Servo { speed, turn_rate } => {
+            let speed = speed.as_ref().map(|speed| format!("speed {}", function(speed, "m/s")));
+            let turn = turn_rate.as_ref().map(|rate| format!("turn rate {}", function(rate, "rad/s")));
+            format!("servo imposes: {}", speed.into_iter().chain(turn).collect::<Vec<_>>().join(", "))
+        }
+        SceneEffect::Tracer { path } => format!("tracer leads the centre of mass: {}", round(path)),
+        SceneEffect::Turntable { rate } => format!("turntable: the plane turns at {} rad/s", number(*rate)),
+    }
+}
+
+fn pair([x, y]: &[f64; 2]) -> String {
+    format!("({}, {})", number(*x), number(*y))
+}
+
+fn function(function: &TimeSpec, unit: &str) -> String {
+    match function {
+        TimeSpec::Constant(value) => format!("{} {unit}", number(*value)),
+        TimeSpec::Sine { amplitude, frequency, phase } => {
+            let shift = if *phase == 0.0 { String::new() } else { format!(" + {}", number(*phase)) };
+            format!("{} sin({} t{shift}) {unit}", number(*amplitude), number(*frequency))
+        }
+        TimeSpec::Table { times, values } => {
+            let value = |value: Option<&f64>| value.copied().map_or_else(String::new, number);
+            format!("a table of {} values, {} {unit} at first", times.len(), value(values.first()))
+        }
+    }
+}
+
+fn round(path: &PathSpec) -> String {
+    let shape = match &path.shape {
+        Shape::Circle { radius, center } => {
+            format!("a circle of radius {} m about {} m", number(*radius), pair(center))
+        }
+        Shape::Polygon(vertices) => format!("a polygon of {} vertices", vertices.len()),
+    };
+    format!("{shape}, once every {} s", number(path.period))
+}

@@ -1,0 +1,195 @@
+//! docs/scene.schema.json and the program say the same of a scene.
+mod validator;
+
+use scene::{EFFECTS, Scene, SceneError, bundled};
+use serde_json::Value;
+use validator::validate;
+
+const SCHEMA: &str = include_str!("../../../../docs/scene.schema.json");
+const METHODS: &[&str] = &["dla", "dla-alpha"];
+
+const HEAD: &str = "title = \"A test\"
+[sleigh]
+mass = 1.0
+inertia = 2
+offset = 0.5
+[start]
+x = 0.0
+y = 0.0
+heading = 0.5
+speed = -1.0
+turn_rate = 0.1
+[run]
+method = \"dla-alpha\"
+alpha = 0.5
+step = 0.05
+duration = 2.0
+";
+
+/// What is wrong wherever it stands: a text of the scene, and what it becomes.
+const MUTANTS: &[(&str, &str)] = &[
+    ("title = \"A test\"", "title = 1"),
+    ("title", "tittle"),
+    ("[sleigh]\nmass = 1.0\n", "[sleigh]\n"),
+    ("mass = 1.0", "mass = 0.0"),
+    ("mass = 1.0", "mass = \"1 kg\""),
+    ("inertia = 2", "inertia = -2"),
+    ("offset = 0.5", "offset = [0.5]"),
+    ("offset = 0.5", "offset = 0.5\ncolour = 1"),
+    ("x = 0.0", "x = true"),
+    ("speed = -1.0\n", ""),
+    ("[start]", "[begin]"),
+    ("method = \"dla-alpha\"", "method = 2"),
+    ("alpha = 0.5", "alpha = 1.5"),
+    ("step = 0.05", "step = 0"),
+    ("duration = 2.0", ""),
+];
+
+/// Every kind of effect, in all of its forms, and what is wrong with each.
+const ENTRIES: &[(&str, &[(&str, &str)])] = &[
+    ("kind = \"slope\"\ngravity = [1.0, 0]", &[("[1.0, 0]", "1.0"), ("[1.0, 0]", "[1.0]"), ("slope", "slopes")]),
+    ("kind = \"bowl\"\nstiffness = [1.0, 0.0]", &[("[1.0, 0.0]", "[1.0, 0.0, 0.0]"), ("kind = \"bowl\"\n", "")]),
+    ("kind = \"bowl\"\nstiffness = [1.0, 1.0]\ncenter = [0.0, 1.0]", &[("[0.0, 1.0]", "[0.0, \"1\"]")]),
+    (
+        "kind = \"egg_crate\"\nheight = 0.5\nwave_number = [1.0, 2.0]",
+        &[("height = 0.5\n", ""), ("height", "depth"), ("[1.0, 2.0]", "1.0")],
+    ),
+    (
+        "kind = \"hills\"\nhills = [{ height = -1.0, x = 0.0, y = 0.0, width = 1.0 }]",
+        &[
+            ("width = 1.0", "width = 0.0"),
+            ("x = 0.0, ", ""),
+            ("width", "size"),
+            ("[{ height = -1.0, x = 0.0, y = 0.0, width = 1.0 }]", "2.0"),
+        ],
+    ),
+    ("kind = \"flywheel\"\ninertia = 0.5", &[("0.5", "0.0"), ("inertia", "mass")]),
+    (
+        "kind = \"flywheel\"\ninertia = 0.5\nrotor_rate = 1.0\ntorque = { amplitude = 1.0, frequency = 2.0 }",
+        &[("amplitude = 1.0, ", ""), ("frequency = 2.0", "frequency = 2.0, times = [0.0], values = [1.0]")],
+    ),
+    ("kind = \"drag\"\nalong = 0.0", &[("along = 0.0", ""), ("0.0", "-1.0")]),
+    ("kind = \"drag\"\nturning = 0.1", &[("turning", "pivoting")]),
+    ("kind = \"thrust\"\nforce = -0.5", &[("force", "thrust"), ("-0.5", "\"-0.5\""), ("force = -0.5", "")]),
+    (
+        "kind = \"thrust\"\nforce = { times = [0.0, 1.0], values = [1.0, 2.0] }",
+        &[(", values = [1.0, 2.0]", ""), ("[0.0, 1.0]", "[]"), ("values", "forces")],
+    ),
+    ("kind = \"torque\"\ntorque = { amplitude = 1.0, frequency = 2.0, phase = 0.5 }", &[("phase", "shift")]),
+    (
+        "kind = \"moving_mass\"\nmass = 0.5\nx = 0.3\ny = { amplitude = 0.4, frequency = 2.0 }",
+        &[("mass = 0.5\n", ""), ("mass = 0.5", "mass = 0"), ("0.3", "{ times = [0.0, 1.0], values = [0.0, 1.0] }")],
+    ),
+    (
+        "kind = \"moving_mass\"\nmass = 0.5\ny = { times = [0.0], values = [1.0] }",
+        &[("\ny = { times = [0.0], values = [1.0] }", "")],
+    ),
+    ("kind = \"servo\"\nspeed = 1.0", &[("speed = 1.0", ""), ("speed", "velocity")]),
+    ("kind = \"servo\"\nspeed = 1.0\nturn_rate = { amplitude = 1, frequency = 2 }", &[("turn_rate", "rate")]),
+    (
+        "kind = \"tracer\"\npath = { circle = { radius = 0.3, center = [0.0, 1.0] }, period = 2.0 }",
+        &[
+            (", period = 2.0", ""),
+            ("radius = 0.3", "radius = 0.0"),
+            ("period = 2.0", "period = 2.0, polygon = [[0.0, 0.0], [1.0, 0.0]]"),
+            ("circle = { radius = 0.3, center = [0.0, 1.0] }, ", ""),
+        ],
+    ),
+    (
+        "kind = \"tracer\"\npath = { polygon = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], period = 8.0 }",
+        &[("[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]", "[[0.0, 0.0]]"), ("[1.0, 1.0]", "[1.0]")],
+    ),
+    ("kind = \"turntable\"\nrate = 0.2", &[("rate = 0.2", ""), ("rate = 0.2", "rate = 0.2\nrate_2 = 1")]),
+];
+
+fn schema() -> Value {
+    serde_json::from_str(SCHEMA).unwrap()
+}
+
+/// What the schema says of a scene.
+fn valid(text: &str) -> Result<(), String> {
+    let schema = schema();
+    let value: Value = toml::from_str(text).map_err(|error| error.to_string())?;
+    validate(&schema, &schema, &value)
+}
+
+/// Both accept the scene, and neither accepts any of its mutants.
+fn check(text: &str, mutants: &[(&str, &str)]) {
+    valid(text).unwrap_or_else(|error| panic!("{error}"));
+    Scene::parse(text, "scene.toml", METHODS).unwrap_or_else(|error| panic!("{error}"));
+    for (from, to) in mutants {
+        let mutant = text.replacen(from, to, 1);
+        assert_ne!(mutant, text, "{from}");
+        assert!(toml::from_str::<Value>(&mutant).is_ok(), "a mutant is TOML still: {mutant}");
+        assert!(valid(&mutant).is_err(), "the schema accepts {from:?} as {to:?}");
+        assert!(Scene::parse(&mutant, "scene.toml", METHODS).is_err(), "the program accepts {from:?} as {to:?}");
+    }
+}
+
+#[test]
+fn bundled_scenes_and_the_template_are_valid() {
+    for text in bundled().iter().map(|scene| scene.text).chain([Scene::template()]) {
+        valid(text).unwrap_or_else(|error| panic!("{error}"));
+    }
+}
+
+#[test]
+fn what_is_wrong_is_wrong_to_both() {
+    check(HEAD, MUTANTS);
+    for (entry, mutants) in ENTRIES {
+        // The effect alone is what changes.
+        let text = format!("[[effects]]\n{entry}\n\n{}", HEAD.replacen("title = \"A test\"\n", "", 1));
+        check(&text, mutants);
+    }
+}
+
+#[test]
+fn every_kind_has_its_keys_and_an_entry_here() {
+    let schema = schema();
+    let kinds: Vec<&str> = EFFECTS.iter().map(|(kind, _, _)| *kind).collect();
+    let named: Vec<&str> = schema["properties"]["effects"]["items"]["oneOf"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|one| one["$ref"].as_str().unwrap().strip_prefix("#/$defs/").unwrap())
+        .collect();
+    assert_eq!(named, kinds);
+    for (kind, keys, _) in EFFECTS {
+        let properties: Vec<&str> =
+            schema["$defs"][kind]["properties"].as_object().unwrap().keys().map(String::as_str).collect();
+        let mut expected: Vec<&str> = ["kind"].iter().chain(*keys).copied().collect();
+        let mut found = properties;
+        expected.sort_unstable();
+        found.sort_unstable();
+        assert_eq!(found, expected, "{kind}");
+        assert!(ENTRIES.iter().any(|(entry, _)| entry.starts_with(&format!("kind = \"{kind}\""))), "{kind}");
+    }
+}
+
+#[test]
+fn every_table_has_its_keys() {
+    let schema = schema();
+    for table in ["", "sleigh", "start", "run"] {
+        // What the program accepts, it says when it finds something else.
+        let text = if table.is_empty() {
+            format!("zzz = 1\n{HEAD}")
+        } else {
+            HEAD.replacen(&format!("[{table}]\n"), &format!("[{table}]\nzzz = 1\n"), 1)
+        };
+        let Err(SceneError::UnknownKey(finding)) = Scene::parse(&text, "scene.toml", METHODS) else {
+            panic!("{table}")
+        };
+        let place = if table.is_empty() { &schema } else { &schema["properties"][table] };
+        let keys: Vec<&str> = place["properties"].as_object().unwrap().keys().map(String::as_str).collect();
+        let said: Vec<&str> = finding
+            .accepted
+            .split(|c: char| !c.is_ascii_alphanumeric() && c != '_')
+            .filter(|word| !word.is_empty())
+            .collect();
+        let sorted = |mut words: Vec<&str>| {
+            words.sort_unstable();
+            words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>()
+        };
+        assert_eq!(sorted(keys), sorted(said), "{table}");
+    }
+}

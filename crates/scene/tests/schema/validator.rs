@@ -1,0 +1,60 @@
+//! As much of JSON Schema (draft 2020-12) as the schema of scenes uses; a keyword beyond that is an error of the test.
+use serde_json::Value;
+
+/// Whether the value is valid, or else what is wrong with it.
+pub(super) fn validate(root: &Value, schema: &Value, value: &Value) -> Result<(), String> {
+    let fail = |what: &str| Err(format!("{value}: {what} {schema}"));
+    let number = |bound: &Value| value.as_f64().zip(bound.as_f64());
+    let holds = |result: Result<(), String>| result.is_ok();
+    for (keyword, says) in schema.as_object().expect("a schema is an object") {
+        let ok = match keyword.as_str() {
+            // What is said to people, and to the editor.
+            "$schema" | "$defs" | "title" | "description" | "default" => true,
+            "$ref" => {
+                let place = says.as_str().and_then(|place| place.strip_prefix('#')).expect("a place in this document");
+                validate(root, root.pointer(place).expect("a place that exists"), value)?;
+                true
+            }
+            "type" => match says.as_str().expect("one type") {
+                "object" => value.is_object(),
+                "array" => value.is_array(),
+                "number" => value.is_number(),
+                "string" => value.is_string(),
+                other => panic!("the type {other}"),
+            },
+            "const" => says == value,
+            "required" => value.as_object().is_none_or(|object| {
+                says.as_array().expect("a list").iter().all(|key| object.contains_key(key.as_str().expect("a name")))
+            }),
+            "properties" => {
+                for (key, inner) in value.as_object().into_iter().flatten() {
+                    says.get(key).map_or(Ok(()), |schema| validate(root, schema, inner))?;
+                }
+                true
+            }
+            "additionalProperties" => {
+                assert_eq!(says.as_bool(), Some(false));
+                value.as_object().is_none_or(|object| object.keys().all(|key| schema["properties"].get(key).is_some()))
+            }
+            "items" => {
+                value.as_array().into_iter().flatten().try_for_each(|item| validate(root, says, item))?;
+                true
+            }
+            "minItems" => value.as_array().is_none_or(|list| list.len() as u64 >= says.as_u64().expect("a count")),
+            "maxItems" => value.as_array().is_none_or(|list| list.len() as u64 <= says.as_u64().expect("a count")),
+            "minimum" => number(says).is_none_or(|(value, least)| value >= least),
+            "maximum" => number(says).is_none_or(|(value, most)| value <= most),
+            "exclusiveMinimum" => number(says).is_none_or(|(value, bound)| value > bound),
+            "oneOf" | "anyOf" => {
+                let all = says.as_array().expect("a list");
+                let valid = all.iter().filter(|schema| holds(validate(root, schema, value))).count();
+                if keyword == "oneOf" { valid == 1 } else { valid > 0 }
+            }
+            other => panic!("the keyword {other}"),
+        };
+        if !ok {
+            return fail(keyword);
+        }
+    }
+    Ok(())
+}
