@@ -150,6 +150,7 @@ fn a_refusal_is_shown_and_fails_only_who_asked_for_it() {
 }
 
 #[test]
+#[ignore = "minutes unless optimised: `cargo test --release --test cli_compare -- --ignored`"]
 fn plain_noslip_does_the_main_job() {
     let folder = Folder::new();
     // Somebody's folder, which stays as it is.
