@@ -3,7 +3,7 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 /// Timed runs shorter than this in all are repeated.
-const ENOUGH: Duration = Duration::from_millis(50);
+const ENOUGH: Duration = Duration::from_millis(20);
 /// So many times at most.
 const REPEATS: usize = 15;
 
