@@ -1,10 +1,11 @@
-//! `noslip check`, `noslip list` and `noslip new`.
+//! `noslip check`, `noslip list`, `noslip new` and `noslip cost`.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 #[path = "common/program.rs"]
 mod program;
 
 use program::{Folder, SCENE, SCENES, keys, methods};
+use serde_json::Value;
 
 #[test]
 fn check_says_what_a_scene_is() {
@@ -138,4 +139,30 @@ fn help_and_version_are_results() {
         assert!(folder.done("--help").contains(command));
         assert!(folder.done(&format!("{command} --help")).contains("Usage: noslip"));
     }
+}
+
+/// A row for none of the effects, for each alone and for all; counts do not depend on the machine.
+#[test]
+fn cost_has_a_row_for_none_each_and_all() {
+    let folder = Folder::new();
+    let drag = "[[effects]]\nkind = \"drag\"\nalong = 0.1\n";
+    let bowl = "[[effects]]\nkind = \"bowl\"\nstiffness = [0.5, 0.2]\n";
+    folder.write("bare.toml", SCENE);
+    folder.write("laden.toml", format!("{SCENE}{bowl}{drag}"));
+    let [bare, laden] = ["bare", "laden"].map(|name| folder.json(&format!("cost {name}.toml --json")));
+    let effects = |cost: &Value| -> Vec<String> {
+        cost["rows"].as_array().unwrap().iter().map(|row| row["effects"].to_string()).collect()
+    };
+    assert_eq!(effects(&bare), ["[]"]);
+    assert_eq!(effects(&laden), ["[]", "[\"bowl\"]", "[\"drag\"]", "[\"bowl\",\"drag\"]"]);
+    let number = |cost: &Value, row: usize, key: &str| cost["rows"][row][key].as_f64().unwrap();
+    assert!((0..4).all(|row| number(&laden, row, "ns_per_step") > 0.0));
+    // What is left out leaves nothing behind.
+    let evaluations = |cost: &Value, row: usize| number(cost, row, "evaluations_per_step");
+    assert_eq!(evaluations(&bare, 0).to_bits(), evaluations(&laden, 0).to_bits());
+    // Only the drag has forces to evaluate, once in every correction and once at the end of a step.
+    assert!(evaluations(&laden, 2) > evaluations(&laden, 0) + 1.0);
+    let text = folder.done("cost laden.toml");
+    assert_eq!(text.lines().count(), 6, "a heading, the columns and four rows: {text}");
+    folder.refused("cost none.toml", &["none.toml"]);
 }
