@@ -23,11 +23,11 @@ pub(crate) fn cost(arguments: &SceneArguments) -> Result<(), CliError> {
     if scene.effects.len() > 1 {
         subsets.push(scene.effects.clone());
     }
+    let schedule = Schedule { steps: scene.run.steps().min(STEPS), ..inspect::schedule(&scene) };
     let mut rows = Vec::new();
     let mut failures = Vec::new();
     for effects in subsets {
         let names: Vec<&'static str> = effects.iter().map(SceneEffect::kind).collect();
-        let schedule = Schedule { steps: scene.run.steps().min(STEPS), ..inspect::schedule(&scene) };
         let part = Scene { effects, ..scene.clone() };
         match part.visit(Cost(schedule))? {
             Ok(cost) => rows.push(Row { effects: names, cost }),

@@ -1,10 +1,7 @@
 use crate::projection::Projection;
 use crate::{Newton, Part, RunError, Schedule, Stage, State, StepError};
-use lagrangian::{Piecewise, System, constraint_residual, momentum};
+use lagrangian::{Piecewise, System, constraint_residual, momentum, whole_steps};
 use std::ops::Range;
-
-/// A jump may miss a node by this part of a step, or by the rounding of its own time and of the step.
-const ALIGNED: f64 = 1e-9;
 
 /// Cuts a run into parts, the steps between one jump and the next.
 ///
@@ -19,11 +16,10 @@ pub fn pieces(schedule: &Schedule, mut jumps: Vec<f64>) -> Result<Vec<Range<u64>
     let mut begin = 0;
     for time in jumps {
         let steps = (time - schedule.t0) / schedule.step;
-        let nearest = steps.round();
-        if (steps - nearest).abs() > ALIGNED.max(8.0 * f64::EPSILON * nearest.abs()) {
+        let Some(nearest) = whole_steps(steps) else {
             let step = steps.floor() as u64;
             return Err(RunError { step: step + 1, time: schedule.time(step), source: StepError::Jump { time } });
-        }
+        };
         let end = (nearest as u64).min(schedule.steps);
         if end > begin {
             parts.push(begin..end);

@@ -1,3 +1,4 @@
+use crate::state::two_sum;
 use crate::{Observer, StepReport, View};
 use lagrangian::quadrature::gauss_legendre;
 use lagrangian::{System, constraint_residual, energy, force_power, lagrangian_power};
@@ -15,7 +16,8 @@ use std::ops::ControlFlow;
 pub struct Work<const N: usize> {
     total: f64,
     rest: f64,
-    before: Option<(f64, [f64; N], [f64; N], f64)>,
+    /// Time, place and velocity at the node before.
+    before: Option<(f64, [f64; N], [f64; N])>,
     nodes: [f64; 4],
     weights: [f64; 4],
 }
@@ -36,26 +38,21 @@ impl<const N: usize> Work<N> {
 
     /// Adds with compensation.
     fn add(&mut self, work: f64) {
-        let sum = self.total + (work + self.rest);
-        self.rest += work - (sum - self.total);
-        self.total = sum;
+        (self.total, self.rest) = two_sum(self.total, work + self.rest);
     }
 
-    fn remember<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>) {
-        self.before = Some((node.t, node.state.unwrapped(), *node.state.v(), node.energy()));
+    fn remember<Sys>(&mut self, node: &View<'_, Sys, N>) {
+        self.before = Some((node.t, node.state.unwrapped(), *node.state.v()));
     }
 
     /// The work over the step that ends at the node; not a number where the accelerations are not determined.
     fn over_step<Sys: System<N, M>, const M: usize>(&self, node: &View<'_, Sys, N>) -> f64 {
-        let Some((t0, q0, v0, _)) = self.before else { return 0.0 };
+        let Some((t0, q0, v0)) = self.before else { return 0.0 };
         let (system, q1, v1) = (node.system, node.state.unwrapped(), *node.state.v());
         let h = node.t - t0;
         let time = |c: f64| t0 + c * h;
-        let level: [(f64, f64); M] = {
-            let (first, last) = (system.constraint(t0, &q0).1, system.constraint(node.t, &q1).1);
-            from_fn(|k| (first[k], last[k]))
-        };
-        let moved = level.iter().any(|(first, last)| *first != 0.0 || *last != 0.0);
+        let moves = |t: f64, q: &[f64; N]| system.constraint(t, q).1.iter().any(|b| *b != 0.0);
+        let moved = moves(t0, &q0) || moves(node.t, &q1);
         let mean = |c: f64| from_fn::<f64, N, _>(|i| q0[i] + c * (q1[i] - q0[i]));
         let powered = moved
             || system.force(t0, &q0, &v0).is_some()
@@ -90,7 +87,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for 
 
     #[allow(clippy::float_cmp, reason = "a velocity that has not jumped is the same to the bit")]
     fn resume(&mut self, node: &View<'_, Sys, N>) {
-        if let Some((_, _, v, _)) = self.before
+        if let Some((_, _, v)) = self.before
             && v != *node.state.v()
         {
             let jump = node.energy() - energy(node.system, node.t, node.state.q(), &v);

@@ -41,7 +41,7 @@ pub use hyperdual::HyperDual;
 pub use lanes::{Lanes, vectorized};
 pub use momentum::{energy, mass_matrix, momentum};
 pub use motion::{Motion, MotionError};
-pub use piecewise::Piecewise;
+pub use piecewise::{Piecewise, whole_steps};
 pub use power::{force_power, lagrangian_power};
 pub use reduced::{ReducedError, ReducedSlope, quasi_velocities, reduced_acceleration, reduced_slope, velocity_of};
 pub use rule::{Alpha, Midpoint, NotAWeight, Rule, RuleNode, Symmetrised, Trapezoid};

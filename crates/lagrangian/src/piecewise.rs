@@ -16,6 +16,17 @@ pub trait Piecewise: Sized {
     fn piece(&self, t: f64) -> Self;
 }
 
+/// The whole number of steps that `steps` stands for, where a jump so many steps into a run falls on a node; `None` where it
+/// falls inside a step.
+///
+/// Times and steps are rounded decimals, which shows after some 1e6 steps.
+#[must_use]
+pub fn whole_steps(steps: f64) -> Option<f64> {
+    let nearest = steps.round();
+    let on_node = (steps - nearest).abs() <= f64::max(1e-9, 8.0 * f64::EPSILON * nearest.abs());
+    on_node.then_some(nearest)
+}
+
 impl Piecewise for () {
     fn piece(&self, _t: f64) -> Self {}
 }

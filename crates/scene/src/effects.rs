@@ -5,19 +5,16 @@ use crate::keys::abridged;
 use crate::quantity::Quantity;
 use crate::suggest;
 use crate::table::Table;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeValue;
 
 /// Reads the entries of `[[effects]]`.
 pub(crate) fn read(root: &Table<'_>, offset: f64) -> Result<Vec<SceneEffect>, SceneError> {
-    if root.get("effects").is_none() {
-        return Ok(Vec::new());
-    }
     let mut effects: Vec<SceneEffect> = Vec::new();
-    for (entry, raw) in root.entries_of("effects", "a list of tables, each headed `[[effects]]`")? {
-        let kind = kind_of(&entry)?;
-        let known: Vec<&str> = ["kind"].into_iter().chain(kind.1.iter().copied()).collect();
-        let table = root.inner(format!("effects.{}", kind.0), raw, entry.header(), &known)?;
-        let effect = read_one(&table, kind.0)?;
+    for entry in root.entries_of("effects", "a list of tables, each headed `[[effects]]`")? {
+        let (kind, keys, _) = kind_of(&entry)?;
+        let known: Vec<&str> = ["kind"].into_iter().chain(keys.iter().copied()).collect();
+        let table = entry.named(format!("effects.{kind}")).with_known_keys(&known)?;
+        let effect = read_one(&table, kind)?;
         check_company(&table, &effect, &effects, offset)?;
         effects.push(effect);
     }
@@ -144,25 +141,4 @@ fn check_company(table: &Table<'_>, new: &SceneEffect, others: &[SceneEffect], o
         }
     }
     Ok(())
-}
-
-/// An entry of a list, and its keys.
-type Entry<'s> = (Table<'s>, &'s DeTable<'s>);
-
-impl<'s> Table<'s> {
-    /// The entries of a list of tables, each with its raw keys.
-    fn entries_of(&self, key: &str, accepted: &str) -> Result<Vec<Entry<'s>>, SceneError> {
-        let Some(value) = self.get(key) else { return Ok(Vec::new()) };
-        let DeValue::Array(entries) = value.get_ref() else {
-            return Err(self.wrong_type(key, value, accepted.to_owned()));
-        };
-        let mut tables = Vec::new();
-        for entry in entries {
-            let DeValue::Table(raw) = entry.get_ref() else {
-                return Err(self.wrong_type(key, entry, accepted.to_owned()));
-            };
-            tables.push((self.unchecked(self.path_of(key), raw, entry.span()), raw));
-        }
-        Ok(tables)
-    }
 }

@@ -69,17 +69,25 @@ impl<'s> Table<'s> {
         self.inner(self.path_of(key), entries, value.span(), known).map(Some)
     }
 
-    /// The value of `key` as a list of tables with these keys.
-    pub(crate) fn tables(&self, key: &'static str, known: &[&str], accepted: &str) -> Result<Vec<Self>, SceneError> {
-        let value = self.get(key).ok_or_else(|| self.missing(key, accepted.to_owned()))?;
+    /// The entries of a list of tables, whatever their keys; none where the table has no such list.
+    pub(crate) fn entries_of(&self, key: &str, accepted: &str) -> Result<Vec<Self>, SceneError> {
+        let Some(value) = self.get(key) else { return Ok(Vec::new()) };
         let DeValue::Array(entries) = value.get_ref() else {
             return Err(self.wrong_type(key, value, accepted.to_owned()));
         };
         let table = |entry: &'s Spanned<DeValue<'s>>| match entry.get_ref() {
-            DeValue::Table(table) => self.inner(self.path_of(key), table, entry.span(), known),
+            DeValue::Table(table) => Ok(self.unchecked(self.path_of(key), table, entry.span())),
             _ => Err(self.wrong_type(key, entry, accepted.to_owned())),
         };
         entries.iter().map(table).collect()
+    }
+
+    /// The value of `key` as a list of tables with these keys.
+    pub(crate) fn tables(&self, key: &'static str, known: &[&str], accepted: &str) -> Result<Vec<Self>, SceneError> {
+        if self.get(key).is_none() {
+            return Err(self.missing(key, accepted.to_owned()));
+        }
+        self.entries_of(key, accepted)?.into_iter().map(|table| table.with_known_keys(known)).collect()
     }
 
     /// A function of time: a number, a sine or a table; if the table has it.

@@ -1,6 +1,6 @@
 use crate::power::{self, SceneBody, SceneEffects};
 use crate::{Acting, EffectPower, RunSettings, Scene, SceneEffect};
-use lagrangian::{Piecewise, System, With, quasi_velocities, velocity_of};
+use lagrangian::{Piecewise, System, With, quasi_velocities, velocity_of, whole_steps};
 use sleigh::{Exact, Flywheel, Guide, Guided, SleighError, SleighState};
 
 /// A system that came from a scene, and answers in the words of a scene.
@@ -171,11 +171,7 @@ impl Visitor for FirstMisaligned<'_> {
         Sys: SceneSystem<N, M>,
     {
         let step = self.0.actual_step();
-        let inside = |t: &f64| {
-            let (steps, nearest) = (t / step, (t / step).round());
-            // Times and steps are rounded decimals, which shows after some 1e6 steps.
-            (steps - nearest).abs() > f64::max(1e-9, 8.0 * f64::EPSILON * nearest)
-        };
+        let inside = |t: &f64| whole_steps(t / step).is_none();
         system.jumps(0.0, self.0.duration).into_iter().filter(inside).min_by(f64::total_cmp)
     }
 }

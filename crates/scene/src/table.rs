@@ -46,13 +46,18 @@ impl<'s> Table<'s> {
         self.unchecked(path, entries, span).with_known_keys(known)
     }
 
+    /// The same table under another path.
+    pub(crate) fn named(self, path: String) -> Self {
+        Self { path, ..self }
+    }
+
     /// A table inside this one, whatever its keys.
     pub(crate) fn unchecked(&self, path: String, entries: &'s DeTable<'s>, span: Range<usize>) -> Self {
         Self { document: self.document, path, entries, header: (span.start, span.end) }
     }
 
     /// Refuses keys that the table does not have, the first in the text before the others.
-    fn with_known_keys(self, known: &[&str]) -> Result<Self, SceneError> {
+    pub(crate) fn with_known_keys(self, known: &[&str]) -> Result<Self, SceneError> {
         let unknown = self.entries.keys().filter(|key| !known.contains(&key.get_ref().as_ref()));
         let Some(key) = unknown.min_by_key(|key| key.span().start) else {
             return Ok(self);

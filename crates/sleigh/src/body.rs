@@ -1,4 +1,5 @@
 use crate::SleighError;
+use crate::checks::{finite, positive};
 
 /// The free Chaplygin sleigh.
 ///
@@ -20,21 +21,11 @@ impl Sleigh {
     /// # Errors
     /// [`SleighError`] names the parameter that is not finite, or not positive where it must be.
     pub fn new(mass: f64, inertia: f64, offset: f64) -> Result<Self, SleighError> {
-        for (quantity, value) in [("mass", mass), ("inertia", inertia)] {
-            if !(value.is_finite() && value > 0.0) {
-                return Err(SleighError::NotPositive { quantity, value });
-            }
-        }
-        if !offset.is_finite() {
-            return Err(SleighError::NotFinite { quantity: "offset", value: offset });
-        }
+        positive("mass", mass)?;
+        positive("inertia", inertia)?;
+        finite("offset", [offset])?;
         let pivot_inertia = inertia + mass * offset * offset;
-        if !pivot_inertia.is_finite() {
-            return Err(SleighError::NotFinite {
-                quantity: "inertia about the blade, I + m a^2,",
-                value: pivot_inertia,
-            });
-        }
+        finite("inertia about the blade, I + m a^2,", [pivot_inertia])?;
         Ok(Self { mass, inertia, offset, pivot_inertia, spin_gain: mass * offset / pivot_inertia })
     }
 

@@ -7,6 +7,7 @@
 mod bodies;
 mod body;
 mod centre_of_mass;
+mod checks;
 mod closed_map;
 pub mod effects;
 mod error;

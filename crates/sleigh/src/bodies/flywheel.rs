@@ -1,3 +1,4 @@
+use crate::checks::positive;
 use crate::{Sleigh, SleighBody, SleighError, TimeFunction};
 use lagrangian::{AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Piecewise, Scalar, System};
 
@@ -20,9 +21,7 @@ impl<B> Flywheel<B> {
     /// # Errors
     /// [`SleighError`] names an inertia that is not positive or a torque that is not finite.
     pub fn new(body: B, inertia: f64, torque: Option<TimeFunction>) -> Result<Self, SleighError> {
-        if !(inertia.is_finite() && inertia > 0.0) {
-            return Err(SleighError::NotPositive { quantity: "inertia of the rotor", value: inertia });
-        }
+        positive("inertia of the rotor", inertia)?;
         let torque = torque.map(|torque| torque.finite("torque")).transpose()?;
         Ok(Self { body, inertia, torque })
     }

@@ -1,3 +1,4 @@
+use crate::checks::finite;
 use crate::{ClosedPath, Sleigh, SleighBody, SleighError, TimeFunction};
 use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Scalar, System};
 
@@ -82,9 +83,7 @@ impl<const K: usize> Guided<K> {
     /// # Errors
     /// [`SleighError::NotFinite`].
     pub fn on_turntable(self, rate: f64) -> Result<Self, SleighError> {
-        if !rate.is_finite() {
-            return Err(SleighError::NotFinite { quantity: "rate", value: rate });
-        }
+        finite("rate", [rate])?;
         Ok(Self { table_rate: rate, ..self })
     }
 

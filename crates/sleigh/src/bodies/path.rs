@@ -1,4 +1,5 @@
 use crate::SleighError;
+use crate::checks::{finite, positive};
 use lagrangian::{Piecewise, Scalar};
 use std::f64::consts::TAU;
 
@@ -32,9 +33,7 @@ impl ClosedPath {
     pub fn circle(radius: f64, center: [f64; 2], period: f64) -> Result<Self, SleighError> {
         positive("radius", radius)?;
         positive("period", period)?;
-        if let Some(value) = center.into_iter().find(|x| !x.is_finite()) {
-            return Err(SleighError::NotFinite { quantity: "center", value });
-        }
+        finite("center", center)?;
         Ok(Self { shape: Shape::Circle { radius, center }, period })
     }
 
@@ -49,8 +48,8 @@ impl ClosedPath {
         if vertices.len() < 2 {
             return fail("a polygon has at least two vertices");
         }
-        if let Some(value) = vertices.iter().flatten().find(|x| !x.is_finite()) {
-            return Err(SleighError::NotFinite { quantity: "polygon", value: *value });
+        for vertex in &vertices {
+            finite("polygon", *vertex)?;
         }
         let mut begins = vec![0.0];
         let mut length = 0.0;
@@ -63,9 +62,7 @@ impl ClosedPath {
             length += edge;
             begins.push(length);
         }
-        if !length.is_finite() {
-            return Err(SleighError::NotFinite { quantity: "the length of the polygon", value: length });
-        }
+        finite("the length of the polygon", [length])?;
         for begin in &mut begins {
             *begin /= length;
         }
@@ -118,10 +115,6 @@ impl ClosedPath {
             }
         }
     }
-}
-
-fn positive(quantity: &'static str, value: f64) -> Result<(), SleighError> {
-    if value.is_finite() && value > 0.0 { Ok(()) } else { Err(SleighError::NotPositive { quantity, value }) }
 }
 
 impl Piecewise for ClosedPath {

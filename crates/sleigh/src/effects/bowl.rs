@@ -1,4 +1,4 @@
-use super::finite;
+use crate::checks::finite;
 use crate::{SleighBody, SleighError};
 use lagrangian::{Effect, Scalar};
 

@@ -1,4 +1,4 @@
-use super::not_negative;
+use crate::checks::not_negative;
 use crate::{SleighBody, SleighError};
 use lagrangian::{Effect, Scalar};
 use std::array::from_fn;

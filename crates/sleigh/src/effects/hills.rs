@@ -1,4 +1,4 @@
-use super::{finite, positive};
+use crate::checks::{finite, positive};
 use crate::{SleighBody, SleighError};
 use lagrangian::{Effect, Scalar};
 

@@ -20,7 +20,6 @@ pub use slope::Slope;
 pub use thrust::Thrust;
 pub use torque::Torque;
 
-use crate::SleighError;
 use lagrangian::Piecewise;
 
 /// Effects that no jump cuts.
@@ -34,21 +33,3 @@ macro_rules! smooth {
     };
 }
 smooth!(Bowl, Drag, EggCrate, Hills, Slope);
-
-/// The numbers, where all are finite.
-fn finite<const K: usize>(quantity: &'static str, numbers: [f64; K]) -> Result<[f64; K], SleighError> {
-    match numbers.iter().find(|x| !x.is_finite()) {
-        Some(value) => Err(SleighError::NotFinite { quantity, value: *value }),
-        None => Ok(numbers),
-    }
-}
-
-/// The number, where it is finite and positive.
-fn positive(quantity: &'static str, value: f64) -> Result<f64, SleighError> {
-    if value.is_finite() && value > 0.0 { Ok(value) } else { Err(SleighError::NotPositive { quantity, value }) }
-}
-
-/// The number, where it is finite and not negative.
-fn not_negative(quantity: &'static str, value: f64) -> Result<f64, SleighError> {
-    if value.is_finite() && value >= 0.0 { Ok(value) } else { Err(SleighError::Negative { quantity, value }) }
-}

@@ -1,4 +1,4 @@
-use super::positive;
+use crate::checks::positive;
 use crate::{SleighBody, SleighError, TimeFunction};
 use lagrangian::{Effect, Piecewise, Scalar};
 
