@@ -1,4 +1,4 @@
-use lagrangian::{ReducedError, System, quasi_velocities};
+use lagrangian::{ReducedError, System, Twofold, quasi_velocities};
 use std::array::from_fn;
 use std::f64::consts::{PI, TAU};
 
@@ -10,7 +10,8 @@ const TAU_REST: f64 = 2.449_293_598_294_706_4e-16;
 /// The coordinates are sums of many small increments, so their rounding errors are kept and added again (compensated
 /// summation, Kahan 1965); angles stay within half a turn of zero, their full turns counted apart. Together they keep
 /// the constraint and the energy at round-off over any length of run. A method that works with quasi-velocities leaves
-/// them beside the velocity, so that the next step need not recover them.
+/// them beside the velocity, so that the next step need not recover them; one that works with quasi-momenta leaves those
+/// too, with twice the digits, since they too are sums of many increments.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State<const N: usize> {
     q: [f64; N],
@@ -19,6 +20,7 @@ pub struct State<const N: usize> {
     angles: [bool; N],
     v: [f64; N],
     xi: Option<[f64; N]>,
+    pi: Option<[Twofold; N]>,
 }
 
 impl<const N: usize> State<N> {
@@ -26,7 +28,7 @@ impl<const N: usize> State<N> {
     /// (see [`System::angles`](lagrangian::System::angles)).
     #[must_use]
     pub fn new(q: [f64; N], v: [f64; N], angles: [bool; N]) -> Self {
-        let mut state = Self { q, rest: [0.0; N], turns: [0.0; N], angles, v, xi: None };
+        let mut state = Self { q, rest: [0.0; N], turns: [0.0; N], angles, v, xi: None, pi: None };
         state.wrap();
         state
     }
@@ -59,6 +61,13 @@ impl<const N: usize> State<N> {
     #[inline(always)]
     pub fn xi(&self) -> Option<[f64; N]> {
         self.xi
+    }
+
+    /// The quasi-momenta in that basis, where the last step carried them.
+    #[must_use]
+    #[inline(always)]
+    pub fn quasi_momenta(&self) -> Option<[Twofold; N]> {
+        self.pi
     }
 
     /// The quasi-velocities: those the last step left, else those of the velocity.
@@ -96,15 +105,22 @@ impl<const N: usize> State<N> {
         for i in 0..N {
             (self.q[i], self.rest[i]) = two_sum(self.q[i], increment[i] + self.rest[i]);
         }
-        (self.v, self.xi) = (v, xi);
+        (self.v, self.xi, self.pi) = (v, xi, None);
         self.wrap();
+    }
+
+    /// [Moves](State::advance) the state and leaves its quasi-momenta to the next step.
+    #[inline(always)]
+    pub fn advance_with_momenta(&mut self, increment: &[f64; N], v: [f64; N], xi: [f64; N], pi: [Twofold; N]) {
+        self.advance(increment, v, Some(xi));
+        self.pi = Some(pi);
     }
 
     /// The same place with the opposite velocity.
     #[must_use]
     pub fn reversed(&self) -> Self {
         let flipped = |v: [f64; N]| v.map(|v| -v);
-        Self { v: flipped(self.v), xi: self.xi.map(flipped), ..*self }
+        Self { v: flipped(self.v), xi: self.xi.map(flipped), pi: None, ..*self }
     }
 
     #[inline(always)]

@@ -4,6 +4,7 @@
 
 use approx::assert_relative_eq;
 use dla::State;
+use lagrangian::Twofold;
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 
@@ -157,6 +158,12 @@ fn velocities_and_quasi_velocities() {
     assert_eq!(back.reversed(), state);
     state.advance(&[0.0; 2], [1.0, 1.0], None);
     assert_eq!(state.xi(), None, "a method that does not know them leaves no old ones");
+    let pi = [Twofold::from(3.0), Twofold::new(1.0, 1e-17)];
+    state.advance_with_momenta(&[0.0; 2], [1.0, 1.0], [2.0, 1.0], pi);
+    assert_eq!((state.xi(), state.quasi_momenta()), (Some([2.0, 1.0]), Some(pi)));
+    assert_eq!(state.reversed().quasi_momenta(), None, "of a velocity the other way they are not known");
+    state.advance(&[0.0; 2], [1.0, 1.0], Some([2.0, 1.0]));
+    assert_eq!(state.quasi_momenta(), None, "nor after a method that does not carry them");
 }
 
 #[test]

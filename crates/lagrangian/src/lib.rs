@@ -29,6 +29,7 @@ mod saddle;
 mod scalar;
 mod sincos;
 mod system;
+mod twofold;
 mod with;
 
 pub use basis::AdmissibleBasis;
@@ -36,7 +37,7 @@ pub use bracket::{Bracket, EnergySlope, energy_slope, inverse_reduced_mass};
 pub use closed::{ClosedStep, ClosedStepError};
 pub use discrete::{Derivatives, DiscreteConstraint, DiscreteLagrangian};
 pub use dual::Dual;
-pub use effect::Effect;
+pub use effect::{Effect, Slope};
 pub use hyperdual::HyperDual;
 pub use lanes::{Lanes, vectorized};
 pub use momentum::{energy, mass_matrix, momentum};
@@ -48,4 +49,5 @@ pub use rule::{Alpha, Midpoint, NotAWeight, Rule, RuleNode, Symmetrised, Trapezo
 pub use saddle::Saddle;
 pub use scalar::Scalar;
 pub use system::{Constraint, System, constraint_residual};
+pub use twofold::Twofold;
 pub use with::With;

@@ -1,16 +1,23 @@
 //! Quadrature rules on `[0, 1]`, computed to rounding.
 
+use crate::Twofold;
 use std::array::from_fn;
+use std::ops::{Div, Mul, Sub};
 
 /// The Legendre polynomials `P_0(x) .. P_n(x)` on `[-1, 1]`, by their recurrence; `visit(k, P_k)` receives each.
-fn legendre(n: usize, x: f64, mut visit: impl FnMut(usize, f64)) {
-    let (mut before, mut current) = (0.0, 1.0);
+fn legendre<T: Number>(n: usize, x: T, mut visit: impl FnMut(usize, T)) {
+    let (mut before, mut current) = (T::from(0.0), T::from(1.0));
     for k in 0..=n {
         visit(k, current);
         let k = k as f64;
-        (before, current) = (current, ((2.0 * k + 1.0) * x * current - k * before) / (k + 1.0));
+        (before, current) = (current, (x * current * T::from(2.0 * k + 1.0) - before * T::from(k)) / T::from(k + 1.0));
     }
 }
+
+/// What the recurrence needs: `f64` has it, and [`Twofold`].
+trait Number: Copy + From<f64> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {}
+impl Number for f64 {}
+impl Number for Twofold {}
 
 /// The values `P_0(2 x - 1) .. P_S(2 x - 1)` of the first `S` Legendre polynomials on `[0, 1]`, and of the next one.
 #[must_use]
@@ -21,34 +28,42 @@ pub fn shifted_legendre<const S: usize>(x: f64) -> ([f64; S], f64) {
 }
 
 /// Nodes, in ascending order, and weights of the Gauss-Legendre rule with `S` nodes, exact to degree `2 S - 1`.
+#[must_use]
+pub fn gauss_legendre<const S: usize>() -> ([f64; S], [f64; S]) {
+    let (nodes, weights) = gauss_legendre_twofold();
+    (nodes.map(|node| node.hi), weights.map(|weight| weight.hi))
+}
+
+/// The rule of [`gauss_legendre`] with twice the digits.
 ///
 /// Newton's method on `P_S` from Tricomi's approximations (Abramowitz and Stegun 1964, 22.16.6); each pair of nodes
 /// is computed once, so that the rule is symmetric to the last bit.
 #[must_use]
-pub fn gauss_legendre<const S: usize>() -> ([f64; S], [f64; S]) {
-    let (mut nodes, mut weights) = ([0.5; S], [1.0; S]);
+pub fn gauss_legendre_twofold<const S: usize>() -> ([Twofold; S], [Twofold; S]) {
+    let one = Twofold::from(1.0);
+    let (mut nodes, mut weights) = ([one * 0.5; S], [one; S]);
     for k in 0..S.div_ceil(2) {
         // The k-th largest zero of P_S; the middle one is zero.
         let n = S as f64;
-        let mut x = (std::f64::consts::PI * (k as f64 + 0.75) / (n + 0.5)).cos();
+        let mut x = Twofold::from((std::f64::consts::PI * (k as f64 + 0.75) / (n + 0.5)).cos());
         if 2 * k + 1 == S {
-            x = 0.0;
+            x = Twofold::from(0.0);
         }
-        let mut slope = 1.0;
+        let mut slope = one;
         for _ in 0..10 {
-            let (mut before, mut p) = (0.0, 0.0);
+            let (mut before, mut p) = (Twofold::from(0.0), Twofold::from(0.0));
             legendre(S, x, |k, value| {
                 if k + 1 == S {
                     before = value;
                 }
                 p = value;
             });
-            slope = n * (x * p - before) / (x * x - 1.0);
-            x -= p / slope;
+            slope = (x * p - before) * n / (x * x - one);
+            x = x - p / slope;
         }
-        let weight = 1.0 / ((1.0 - x * x) * slope * slope);
-        nodes[k] = 0.5 * (1.0 - x);
-        nodes[S - 1 - k] = 1.0 - nodes[k];
+        let weight = one / ((one - x * x) * slope * slope);
+        nodes[k] = (one - x) * 0.5;
+        nodes[S - 1 - k] = one - nodes[k];
         weights[k] = weight;
         weights[S - 1 - k] = weight;
     }

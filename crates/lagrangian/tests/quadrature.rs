@@ -3,7 +3,8 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use approx::assert_relative_eq;
-use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
+use lagrangian::Twofold;
+use lagrangian::quadrature::{gauss_collocation, gauss_legendre, gauss_legendre_twofold};
 
 /// Sums of up to 16 terms below one.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
@@ -44,6 +45,32 @@ fn gauss_rules_integrate_polynomials() {
     check::<5>();
     check::<6>();
     check::<7>();
+    check::<8>();
+    check::<16>();
+}
+
+/// Twice the digits: powers are integrated to some 100 bits.
+#[test]
+fn twofold_rules() {
+    fn check<const S: usize>() {
+        let (c, b) = gauss_legendre_twofold::<S>();
+        let mut powers = b;
+        for degree in 0..2 * S {
+            let sum = powers.iter().fold(Twofold::from(0.0), |sum, term| sum + *term);
+            let missing = sum - Twofold::from(1.0) / Twofold::from(degree as f64 + 1.0);
+            assert!(missing.hi.abs() <= 1e-30, "S = {S}, degree {degree}: {missing:?}");
+            powers = std::array::from_fn(|i| powers[i] * c[i]);
+        }
+        // The control: without the second halves the sums are those of f64.
+        if S > 2 {
+            let sum = (0..S).fold(Twofold::from(0.0), |sum, i| sum + Twofold::product(b[i].hi, c[i].hi));
+            assert!((sum - Twofold::from(0.5)).hi.abs() > 1e-19);
+        }
+    }
+    check::<1>();
+    check::<2>();
+    check::<3>();
+    check::<4>();
     check::<8>();
     check::<16>();
 }

@@ -1,5 +1,6 @@
 use super::path::Points;
 use super::rule::Rule;
+use super::start::Start;
 use lagrangian::{Bracket, Lanes};
 
 /// The energies at the two ends of a step.
@@ -16,12 +17,14 @@ impl Ends {
     pub(super) fn of<const S: usize, const N: usize, const M: usize>(
         bracket: &Bracket<Lanes, N, M>,
         points: &Points<N>,
+        begin: &Start<N>,
     ) -> Self {
         let (end, start) = Rule::<S>::ENDS;
         // H_pi = xi makes up for what the iteration for xi still misses; a discrete gradient divides it by the step.
         let mut energy = bracket.energy();
+        let missing = points.missing(begin);
         for a in 0..N {
-            energy += points.xi[a] * (points.aim[a] - points.pi[a]);
+            energy += points.xi[a] * missing[a];
         }
         let size = |k: usize| {
             let twice_kinetic = (0..N).map(|i| (bracket.momentum[i].0[k] * bracket.velocity[i].0[k]).abs());

@@ -49,7 +49,9 @@ pub(super) fn average<Sys: System<N, M>, const S: usize, const N: usize, const M
         values.map(|value| {
             let mut result = Lanes::zero();
             for i in 0..S {
-                result.0[i] = (rule.averages[i] * value).0.iter().sum();
+                let (mut terms, mut rest) = (Lanes::zero(), Lanes::zero());
+                rule.averages[i].add(value, &mut terms, &mut rest);
+                result.0[i] = terms.0.iter().sum::<f64>() + rest.0.iter().sum::<f64>();
             }
             result
         })

@@ -12,7 +12,7 @@ pub use gradient::Gradient;
 use crate::{OneStep, Stage, State, StepError, StepReport};
 use ends::Ends;
 use lagrangian::linear::larger;
-use lagrangian::{Bracket, Lanes, Scalar, System, vectorized};
+use lagrangian::{Bracket, Lanes, Scalar, System, Twofold, vectorized};
 use path::{Path, Points};
 use rule::Rule;
 use settling::Settling;
@@ -89,7 +89,7 @@ impl<Sys: System<N, M>, const S: usize, const N: usize, const M: usize> OneStep<
         )?;
         let q1 = state.ahead(&end.increment);
         let v1 = system.admissible_basis(t0 + h, &q1).ok_or(NO_BASIS)?.combine(&end.xi);
-        state.advance(&end.increment, v1, Some(end.xi));
+        state.advance_with_momenta(&end.increment, v1, end.xi, end.pi);
         self.work = end.work;
         Ok(StepReport { work: Some(end.work), ..StepReport::of(end.iterations) })
     }
@@ -113,6 +113,7 @@ struct Step<'a, Sys, const S: usize, const N: usize> {
 struct End<const N: usize> {
     increment: [f64; N],
     xi: [f64; N],
+    pi: [Twofold; N],
     work: f64,
     iterations: u32,
 }
@@ -136,7 +137,7 @@ impl<Sys, const S: usize, const N: usize> Step<'_, Sys, S, N> {
             let t = time(rule.points);
             let bracket = Bracket::at(system, t, &points.q, &points.xi).ok_or(NO_BASIS)?;
             points.pi = bracket.quasi_momenta();
-            let ends = Ends::of::<S, N, M>(&bracket, &points);
+            let ends = Ends::of::<S, N, M>(&bracket, &points, start);
             let averages = match self.gradient {
                 Gradient::Average => {
                     nodes.follow(&path, &rule.to_nodes, start, h);
@@ -165,7 +166,7 @@ impl<Sys, const S: usize, const N: usize> Step<'_, Sys, S, N> {
             let settled = settling.see(changes, averages.noise);
             let settled = settled.map_err(|source| StepError::Newton { stage: Stage::Collocation, source })?;
             if let Some(iterations) = settled {
-                let work = h * (0..S).map(|i| rule.b[i] * power.0[i]).sum::<f64>();
+                let work = h * rule.weighted(&power);
                 self.check(&ends, work, &averages.steepest)?;
                 return Ok(self.end(&path, &points, work, iterations));
             }
@@ -176,15 +177,16 @@ impl<Sys, const S: usize, const N: usize> Step<'_, Sys, S, N> {
     #[inline(always)]
     fn end(&self, path: &Path<N>, points: &Points<N>, work: f64, iterations: u32) -> End<N> {
         let (increment, gained) = path.increments(self.rule, self.h);
-        let last = Rule::<S>::ENDS.0;
+        let (start, last) = (self.start, Rule::<S>::ENDS.0);
         let mut xi = points.xi.map(|xi| xi.0[last]);
-        let missing: [f64; N] = from_fn(|a| self.start.pi[a] + gained[a] - points.pi[a].0[last]);
-        for a in 0..N {
-            for b in 0..N {
-                xi[a] += self.start.inverse_mass[a][b] * missing[b];
+        for b in 0..N {
+            let missing = gained[b] + start.rest[b] - (points.pi[b].0[last] - start.pi[b]);
+            for a in 0..N {
+                xi[a] += start.inverse_mass[a][b] * missing;
             }
         }
-        End { increment, xi, work, iterations }
+        let sum = |a: usize| Twofold::from(start.pi[a]) + Twofold::from(gained[a]) + Twofold::from(start.rest[a]);
+        End { increment, xi, pi: from_fn(sum), work, iterations }
     }
 
     /// That the energy has changed by the work of the forces.

@@ -1,4 +1,4 @@
-use super::rule::Rule;
+use super::rule::{Rule, Weights};
 use super::start::Start;
 use lagrangian::{Lanes, Scalar};
 use std::array::from_fn;
@@ -21,7 +21,7 @@ impl<const N: usize> Path<N> {
     /// The increments of coordinates and quasi-momenta over the step.
     #[inline(always)]
     pub(super) fn increments<const S: usize>(&self, rule: &Rule<S>, h: f64) -> ([f64; N], [f64; N]) {
-        let sum = |k: &Lanes| h * (0..S).map(|i| rule.b[i] * k.0[i]).sum::<f64>();
+        let sum = |k: &Lanes| h * rule.weighted(k);
         (from_fn(|i| sum(&self.q_rate[i])), from_fn(|i| sum(&self.pi_rate[i])))
     }
 }
@@ -31,8 +31,8 @@ impl<const N: usize> Path<N> {
 pub(super) struct Points<const N: usize> {
     pub(super) q: [Lanes; N],
     pub(super) xi: [Lanes; N],
-    /// The quasi-momenta on the path.
-    pub(super) aim: [Lanes; N],
+    /// The quasi-momenta gained on the path since the start.
+    pub(super) gain: [Lanes; N],
     /// The quasi-momenta of `q` and `xi`, as last evaluated.
     pub(super) pi: [Lanes; N],
 }
@@ -42,7 +42,7 @@ impl<const N: usize> Points<N> {
     #[inline(always)]
     pub(super) fn at(start: &Start<N>) -> Self {
         let same = |x: [f64; N]| x.map(Lanes::constant);
-        Self { q: same(*start.state.q()), xi: same(start.xi), aim: same(start.pi), pi: same(start.pi) }
+        Self { q: same(*start.state.q()), xi: same(start.xi), gain: same(start.rest), pi: same(start.pi) }
     }
 
     /// Moves the points onto `path`, where `weights` are `int_0^tau l_i`.
@@ -50,13 +50,13 @@ impl<const N: usize> Points<N> {
     /// The quasi-velocities follow the quasi-momenta by one correction with the mass matrix of the start: exact where
     /// that is constant in the basis, else one more fixed-point iteration within the others.
     #[inline(always)]
-    pub(super) fn follow<const S: usize>(&mut self, path: &Path<N>, weights: &[Lanes; S], start: &Start<N>, h: f64) {
+    pub(super) fn follow<const S: usize>(&mut self, path: &Path<N>, weights: &[Weights; S], start: &Start<N>, h: f64) {
         let moved = |k: &Lanes| {
-            let mut sum = Lanes::zero();
+            let (mut sum, mut rest) = (Lanes::zero(), Lanes::zero());
             for i in 0..S {
-                sum += weights[i] * k.0[i];
+                weights[i].add(k.0[i], &mut sum, &mut rest);
             }
-            sum * h
+            (sum + rest) * h
         };
         let increment: [Lanes; N] = from_fn(|i| moved(&path.q_rate[i]));
         for k in 0..Lanes::COUNT {
@@ -66,13 +66,18 @@ impl<const N: usize> Points<N> {
             }
         }
         for a in 0..N {
-            self.aim[a] = moved(&path.pi_rate[a]) + start.pi[a];
+            self.gain[a] = moved(&path.pi_rate[a]) + start.rest[a];
         }
-        let missing: [Lanes; N] = from_fn(|a| self.aim[a] - self.pi[a]);
+        let missing = self.missing(start);
         for a in 0..N {
             for b in 0..N {
                 self.xi[a] += missing[b] * start.inverse_mass[a][b];
             }
         }
+    }
+    /// The quasi-momenta on the path less those last evaluated. Differences from the start keep the digits.
+    #[inline(always)]
+    pub(super) fn missing(&self, start: &Start<N>) -> [Lanes; N] {
+        from_fn(|a| self.gain[a] - (self.pi[a] + -start.pi[a]))
     }
 }

@@ -1,5 +1,5 @@
-use lagrangian::Lanes;
-use lagrangian::quadrature::gauss_legendre;
+use lagrangian::quadrature::gauss_legendre_twofold;
+use lagrangian::{Lanes, Twofold};
 use std::array::from_fn;
 
 /// The coefficients of collocation with `S` Gauss nodes `c_i` and of the integrals over the step.
@@ -9,20 +9,46 @@ use std::array::from_fn;
 /// [`Lanes`]. It integrates polynomials of degree 15 exactly, so a gradient along the path of degree `16 - S`: an energy
 /// of fourth degree at `S = 4`. An oscillation by the angle `d` over a step is integrated with the relative error
 /// `d^16 (8!)^4 / (17 (16!)^3)`, which is `7e-16` at `d = 3` and far below rounding at the steps of an accurate run.
+///
+/// The energy is kept by identities between the coefficients. Their rounding would break these by the same little in every
+/// step, and where the motion has an attractor the energy would drift; so they have twice the digits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Rule<const S: usize> {
     /// `b_i`, the integral of `l_i`.
-    pub(super) b: [f64; S],
+    pub(super) b: [Twofold; S],
     /// Where along the step the nodes of the quadrature are.
     pub(super) nodes: Lanes,
     /// Where the [points](Rule::ENDS) are.
     pub(super) points: Lanes,
     /// `w_k l_i(sigma_k) / b_i` at the nodes of the quadrature.
-    pub(super) averages: [Lanes; S],
+    pub(super) averages: [Weights; S],
     /// `int_0^sigma l_i` at the nodes of the quadrature.
-    pub(super) to_nodes: [Lanes; S],
+    pub(super) to_nodes: [Weights; S],
     /// The same at the points.
-    pub(super) to_points: [Lanes; S],
+    pub(super) to_points: [Weights; S],
+}
+
+/// One coefficient for each of the lanes, with twice the digits.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Weights {
+    hi: Lanes,
+    lo: Lanes,
+}
+
+impl Weights {
+    fn new(weights: [Twofold; Lanes::COUNT]) -> Self {
+        Self { hi: Lanes(weights.map(|w| w.hi)), lo: Lanes(weights.map(|w| w.lo)) }
+    }
+
+    /// Adds the products with `x` to a sum and to what it leaves out.
+    #[inline(always)]
+    pub(super) fn add<X: Copy>(&self, x: X, sum: &mut Lanes, rest: &mut Lanes)
+    where
+        Lanes: std::ops::Mul<X, Output = Lanes>,
+    {
+        *sum += self.hi * x;
+        *rest += self.lo * x;
+    }
 }
 
 impl<const S: usize> Rule<S> {
@@ -31,27 +57,37 @@ impl<const S: usize> Rule<S> {
 
     pub(super) fn new() -> Self {
         const { assert!(1 <= S && S <= 4, "one to four nodes: more leave too few of the quadrature's digits") };
-        let (c, _) = gauss_legendre::<S>();
-        let (nodes, weights) = gauss_legendre::<{ Lanes::COUNT }>();
-        let basis =
-            |i: usize, tau: f64| -> f64 { (0..S).filter(|j| *j != i).map(|j| (tau - c[j]) / (c[i] - c[j])).product() };
-        let integral = |i: usize, tau: f64| -> f64 {
-            tau * (0..Lanes::COUNT).map(|k| weights[k] * basis(i, tau * nodes[k])).sum::<f64>()
+        let (c, _) = gauss_legendre_twofold::<S>();
+        let (nodes, weights) = gauss_legendre_twofold::<{ Lanes::COUNT }>();
+        let one = Twofold::from(1.0);
+        let basis = |i: usize, tau: Twofold| -> Twofold {
+            (0..S).filter(|j| *j != i).fold(one, |product, j| product * ((tau - c[j]) / (c[i] - c[j])))
         };
-        let points = Lanes(from_fn(|k| match k {
+        let integral = |i: usize, tau: Twofold| -> Twofold {
+            let at = |k: usize| weights[k] * basis(i, tau * nodes[k]);
+            tau * (1..Lanes::COUNT).fold(at(0), |sum, k| sum + at(k))
+        };
+        let points: [Twofold; Lanes::COUNT] = from_fn(|k| match k {
             k if k < S => c[k],
-            k if k == Self::ENDS.1 => 0.0,
-            _ => 1.0,
-        }));
-        let b: [f64; S] = from_fn(|i| integral(i, 1.0));
+            k if k == Self::ENDS.1 => Twofold::from(0.0),
+            _ => one,
+        });
+        let b: [Twofold; S] = from_fn(|i| integral(i, one));
         Self {
             b,
-            nodes: Lanes(nodes),
-            points,
-            averages: from_fn(|i| Lanes(from_fn(|k| weights[k] * basis(i, nodes[k]) / b[i]))),
-            to_nodes: from_fn(|i| Lanes(nodes.map(|tau| integral(i, tau)))),
-            to_points: from_fn(|i| Lanes(points.0.map(|tau| integral(i, tau)))),
+            nodes: Lanes(nodes.map(|node| node.hi)),
+            points: Lanes(points.map(|point| point.hi)),
+            averages: from_fn(|i| Weights::new(from_fn(|k| weights[k] * basis(i, nodes[k]) / b[i]))),
+            to_nodes: from_fn(|i| Weights::new(nodes.map(|tau| integral(i, tau)))),
+            to_points: from_fn(|i| Weights::new(points.map(|tau| integral(i, tau)))),
         }
+    }
+
+    /// `sum_i b_i x_i`.
+    #[inline(always)]
+    pub(super) fn weighted(&self, x: &Lanes) -> f64 {
+        let (hi, lo) = self.b.iter().zip(x.0).fold((0.0, 0.0), |(hi, lo), (b, x)| (hi + b.hi * x, lo + b.lo * x));
+        hi + lo
     }
 }
 
@@ -66,9 +102,9 @@ mod tests {
         let root = 3.0_f64.sqrt() / 6.0;
         let expected = [[0.25, 0.25 - root], [0.25 + root, 0.25]];
         for i in 0..2 {
-            assert!((rule.b[i] - 0.5).abs() < 2e-16);
+            assert!((rule.b[i].hi - 0.5).abs() < 2e-16);
             for j in 0..2 {
-                assert!((rule.to_points[j].0[i] - expected[i][j]).abs() < 2e-16);
+                assert!((rule.to_points[j].hi.0[i] - expected[i][j]).abs() < 2e-16);
             }
         }
         check::<1>();
@@ -80,19 +116,19 @@ mod tests {
     fn check<const S: usize>() {
         let rule = Rule::<S>::new();
         for power in 0..2 * S as i32 {
-            let sum: f64 = (0..S).map(|i| rule.b[i] * rule.points.0[i].powi(power)).sum();
+            let sum: f64 = (0..S).map(|i| rule.b[i].hi * rule.points.0[i].powi(power)).sum();
             assert!((sum - f64::from(power + 1).recip()).abs() < 4e-16, "S = {S}, power {power}: {sum}");
         }
         for power in 0..S as i32 {
             for k in 0..8 {
                 let tau = rule.nodes.0[k];
-                let sum: f64 = (0..S).map(|j| rule.to_nodes[j].0[k] * rule.points.0[j].powi(power)).sum();
+                let sum: f64 = (0..S).map(|j| rule.to_nodes[j].hi.0[k] * rule.points.0[j].powi(power)).sum();
                 let exact = tau.powi(power + 1) / f64::from(power + 1);
                 assert!((sum - exact).abs() < 4e-16, "S = {S}, power {power}, node {k}");
             }
         }
         for i in 0..S {
-            assert!((rule.averages[i].0.iter().sum::<f64>() - 1.0).abs() < 4e-16);
+            assert!((rule.averages[i].hi.0.iter().sum::<f64>() - 1.0).abs() < 4e-16);
         }
     }
 }

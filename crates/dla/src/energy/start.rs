@@ -1,6 +1,8 @@
 use super::NO_BASIS;
-use crate::{State, StepError};
-use lagrangian::{Bracket, Dual, Lanes, MotionError, Scalar, System, inverse_reduced_mass};
+use crate::{Newton, State, StepError};
+use lagrangian::linear::largest;
+use lagrangian::{Bracket, Dual, Lanes, MotionError, Scalar, System, Twofold, inverse_reduced_mass};
+use std::array::from_fn;
 
 /// The beginning of a step on `D*`.
 #[derive(Debug, Clone, Copy)]
@@ -9,8 +11,10 @@ pub(super) struct Start<const N: usize> {
     pub(super) state: State<N>,
     /// Quasi-velocities.
     pub(super) xi: [f64; N],
-    /// Quasi-momenta.
+    /// The quasi-momenta of these.
     pub(super) pi: [f64; N],
+    /// What the rounding of the quasi-velocities left out of the quasi-momenta.
+    pub(super) rest: [f64; N],
     /// `dxi/dpi`.
     pub(super) inverse_mass: [[f64; N]; N],
 }
@@ -37,8 +41,15 @@ impl<const N: usize> Start<N> {
         // would lose the same part of an ulp at every step.
         let here = Bracket::at(system, Lanes::constant(t0), &q.map(Lanes::constant), &xi.map(Lanes::constant));
         let pi = here.ok_or(NO_BASIS)?.quasi_momenta().map(|pi| pi.0[0]);
-        Ok(Self { state: *state, xi, pi, inverse_mass })
+        let rest = state.quasi_momenta().map_or([0.0; N], |carried| rounding(&carried, &pi));
+        Ok(Self { state: *state, xi, pi, rest, inverse_mass })
     }
+}
+
+/// `carried - pi`; zero where it is more than rounding, as when the step before was made with another system.
+fn rounding<const N: usize>(carried: &[Twofold; N], pi: &[f64; N]) -> [f64; N] {
+    let rest = from_fn(|a| (carried[a] - Twofold::from(pi[a])).hi);
+    if largest(&rest) <= Newton::ROUNDING * largest(pi) { rest } else { [0.0; N] }
 }
 
 pub(super) const MOVING: StepError =

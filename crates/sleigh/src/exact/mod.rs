@@ -2,7 +2,6 @@ mod gauss;
 mod path;
 mod point;
 mod reduced;
-mod twofold;
 
 use crate::{Sleigh, SleighError, SleighState};
 use path::{Path, rotated};

@@ -1,5 +1,5 @@
-use super::twofold::Twofold;
 use crate::{Sleigh, SleighError};
+use lagrangian::Twofold;
 
 /// Below this phase the motion is written as its change from the start, which keeps the digits of a small change and
 /// is exact at phase zero; above it, by exponentials.
@@ -118,11 +118,10 @@ impl Reduced {
         let outward = direction * self.tanh0 >= 0.0;
         let distance = tau.abs();
         let shift = Twofold::ln_2() * f64::from(self.shift);
-        let backward = Twofold::new(-distance.hi, -distance.lo);
+        let backward = -distance;
         let two_to_shift = 2.0_f64.powi(self.shift);
         let (e_start, f) = if outward {
-            let down = Twofold::new(-shift.hi, -shift.lo);
-            (two_to_shift / self.decay, self.decay * (backward + down).exp())
+            (two_to_shift / self.decay, self.decay * (backward - shift).exp())
         } else {
             (self.decay / two_to_shift, (backward + shift).exp() / self.decay)
         };

@@ -1,42 +1,53 @@
-use std::ops::{Add, Div, Mul};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number as the unevaluated sum `hi + lo`, `|lo|` at most half a unit in the last place of `hi`: some 106 bits.
 ///
 /// The operations are those of Dekker (1971), the products exact by a fused multiply-add. Parts that overflow or
 /// underflow lose the extra digits and nothing else.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Twofold {
-    pub(super) hi: f64,
-    pub(super) lo: f64,
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Twofold {
+    /// The number, rounded.
+    pub hi: f64,
+    /// What rounding left out.
+    pub lo: f64,
 }
 
 impl Twofold {
-    pub(super) fn new(hi: f64, lo: f64) -> Self {
+    /// The sum `hi + lo`, `|lo|` at most half a unit in the last place of `hi`.
+    #[must_use]
+    pub fn new(hi: f64, lo: f64) -> Self {
         Self { hi, lo }
     }
 
     /// `ln 2`.
-    pub(super) fn ln_2() -> Self {
+    #[must_use]
+    pub fn ln_2() -> Self {
         Self::new(std::f64::consts::LN_2, 2.319_046_813_846_299_6e-17)
     }
 
     /// The exact product of two numbers.
-    pub(super) fn product(a: f64, b: f64) -> Self {
+    #[must_use]
+    pub fn product(a: f64, b: f64) -> Self {
         let hi = a * b;
         Self::new(hi, a.mul_add(b, -hi))
     }
 
-    pub(super) fn sqrt(self) -> Self {
+    /// The square root.
+    #[must_use]
+    pub fn sqrt(self) -> Self {
         let root = self.hi.sqrt();
         if root > 0.0 { Self::renormalised(root, 0.5 * self.residual(root, root) / root) } else { Self::from(root) }
     }
 
-    pub(super) fn abs(self) -> Self {
+    /// The absolute value.
+    #[must_use]
+    pub fn abs(self) -> Self {
         if self.hi < 0.0 { Self::new(-self.hi, -self.lo) } else { self }
     }
 
     /// `e^(hi + lo)`, with the relative accuracy of `f64` at any size of `hi`.
-    pub(super) fn exp(self) -> f64 {
+    #[must_use]
+    pub fn exp(self) -> f64 {
         let exp = self.hi.exp();
         if exp > 0.0 && exp.is_finite() { exp + exp * self.lo } else { exp }
     }
@@ -68,6 +79,31 @@ impl Add for Twofold {
         let shift = sum - self.hi;
         let error = (self.hi - (sum - shift)) + (other.hi - shift);
         Self::renormalised(sum, error + (self.lo + other.lo))
+    }
+}
+
+impl Neg for Twofold {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self::new(-self.hi, -self.lo)
+    }
+}
+
+impl Sub for Twofold {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Twofold {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        let product = Self::product(self.hi, other.hi);
+        Self::renormalised(product.hi, product.lo + (self.hi * other.lo + self.lo * other.hi))
     }
 }
 
