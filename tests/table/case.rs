@@ -70,6 +70,11 @@ impl Point {
         differences.fold(0.0, |m, d| if d.is_nan() { f64::INFINITY } else { f64::max(m, d) })
     }
 
+    /// The root of the sum of squares of the differences.
+    pub fn apart(&self, other: &Self) -> f64 {
+        self.components().zip(other.components()).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+    }
+
     /// The largest component, at least one.
     pub fn size(&self) -> f64 {
         self.components().fold(1.0, |m, x| m.max(x.abs()))

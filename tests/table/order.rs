@@ -53,7 +53,7 @@ fn every_method_has_its_order() {
         let rounding = rounding(case.as_ref(), &reference);
         for (info, seen) in METHODS.iter().zip(&mut seen) {
             // The error of an unsymmetric method has every power of the step, and one of order 8 is at its rounding before
-            // the lowest is alone: its order shows in the mean over many starts only.
+            // the lowest is alone: its order shows on gentler motions only, as those above eight do.
             let not_for_it = info.name == "dop853" || info.name == "gni" && facts.momentum_is_not_mass_times_velocity;
             if info.order > facts.highest_order || refuses(info, facts).is_some() || not_for_it {
                 continue;

@@ -79,7 +79,7 @@ pub fn table() -> Vec<Box<dyn Case>> {
         ),
         three(
             "sleigh under thrust",
-            With { body: sleigh(), effects: Thrust(-0.5) },
+            With { body: sleigh(), effects: Thrust { force: -0.5, frequency: 0.0 } },
             SleighState { turn_rate: 0.6, ..SleighState::default() }.to_coordinates(),
             6.0,
             Facts { forced: true, ..here_again },

@@ -68,7 +68,7 @@ macro_rules! shape {
                 match self { $(Self::$model(x) => x.motion(t, q, v),)* $(Self::$plain(x) => x.motion(t, q, v),)* }
             }
             #[inline(never)]
-            fn reduced_motion(&self, t: f64, q: &[f64; $n], xi: &[f64; $n]) -> Option<[f64; $n]> {
+            fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; $n], xi: &[S; $n]) -> Option<[S; $n]> {
                 match self {
                     $(Self::$model(x) => x.reduced_motion(t, q, xi),)*
                     $(Self::$plain(x) => x.reduced_motion(t, q, xi),)*
@@ -110,7 +110,7 @@ macro_rules! shape {
 shape! {
     /// Three coordinates, one constraint.
     Three<3, 1>: Particle KnifeEdge Suslov ContactOscillator GaugedOscillator;
-    Sleigh: Sleigh, InField: InField, Thrust: With<Sleigh, Thrust>, Forces: With<Sleigh, Forces>, Moving: Moving,
+    Sleigh: Sleigh, InField: InField, Thrust: With<Sleigh, Thrust>, Pushed: With<InField, Thrust>, Forces: With<Sleigh, Forces>, Moving: Moving,
     Turntable: Turntable, Magnetic: Magnetic
 }
 

@@ -69,18 +69,23 @@ impl Known<3> for Sleigh {
     }
 }
 
-/// A constant force `F` (N) along the blade.
+/// A force (N) along the blade that swings with a frequency (rad/s), or is constant where that is zero.
 #[derive(Debug, Clone, Copy)]
-pub struct Thrust(pub f64);
+pub struct Thrust {
+    pub force: f64,
+    pub frequency: f64,
+}
 
-impl Effect<Sleigh, 3> for Thrust {
-    fn force<S: Scalar>(&self, _body: &Sleigh, _t: S, q: &[S; 3], _v: &[S; 3]) -> Option<[S; 3]> {
+impl<B> Effect<B, 3> for Thrust {
+    fn force<S: Scalar>(&self, _body: &B, t: S, q: &[S; 3], _v: &[S; 3]) -> Option<[S; 3]> {
         let (sin, cos) = q[2].sin_cos();
-        Some([cos * self.0, sin * self.0, S::zero()])
+        let force = (t * self.frequency).cos() * self.force;
+        Some([cos * force, sin * force, S::zero()])
     }
 }
 
 impl Known<3> for With<Sleigh, Thrust> {}
+impl Known<3> for With<InField, Thrust> {}
 
 /// A sideways force that grows with the turn rate, a couple, and friction, part of it cubic.
 #[derive(Debug, Clone, Copy)]

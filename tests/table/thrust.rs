@@ -17,7 +17,7 @@ fn change(name: &str) -> (f64, f64) {
     let start = SleighState { turn_rate: 0.1, ..SleighState::default() };
     let case: Row<Three, 3> = Row {
         name: "thrust",
-        system: With { body: sleigh, effects: Thrust(FORCE) }.into(),
+        system: With { body: sleigh, effects: Thrust { force: FORCE, frequency: 0.0 } }.into(),
         start: start.to_coordinates(),
         duration: 0.0,
         facts: Facts::default(),

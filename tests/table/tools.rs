@@ -25,29 +25,20 @@ pub fn symmetric(info: &MethodInfo) -> bool {
     !matches!(info.name, "gni" | "dop853") && !info.name.starts_with("rk4")
 }
 
-/// The exponent `p` of `error = C h^p (1 + c h^2)`, fitted by least squares to pairs of a step and an error.
+/// The exponent `p` of `error = C h^p (1 + c h^next + ..)`, fitted by least squares to pairs of a step and an error, which
+/// is uncertain by `rounding`.
 ///
-/// The second term is the next one of a symmetric method; without it the longest steps of a ladder would count for more
-/// than they say.
-pub fn fitted_order(ladder: &[(f64, f64)]) -> f64 {
-    let mut equations = [[0.0; 4]; 3];
-    for (h, error) in ladder {
-        let row = [1.0, h.ln(), h * h, error.ln()];
-        for i in 0..3 {
-            for j in 0..4 {
-                equations[i][j] += row[i] * row[j];
-            }
-        }
-    }
-    for i in 0..3 {
-        for k in (0..3).filter(|k| *k != i) {
-            let factor = equations[k][i] / equations[i][i];
-            for j in i..4 {
-                equations[k][j] -= factor * equations[i][j];
-            }
-        }
-    }
-    equations[1][3] / equations[1][1]
+/// The logarithm has the terms `c h^next + d h^(2 next)`: of a symmetric method `next` is two. Without them the longest steps
+/// of a ladder would count for more than they say.
+pub fn fitted_order(ladder: &[(f64, f64)], next: i32, rounding: f64) -> f64 {
+    let rows = ladder.iter().map(|(h, error)| {
+        let sure = 1.0 / (rounding / error + 1e-3);
+        ([1.0, h.ln(), h.powi(next), h.powi(2 * next)].map(|x| x * sure), error.ln() * sure)
+    });
+    let (matrix, right): (Vec<[f64; 4]>, Vec<f64>) = rows.unzip();
+    let matrix = nalgebra::DMatrix::from_fn(matrix.len(), 4, |i, j| matrix[i][j]);
+    let solution = matrix.svd(true, true).solve(&nalgebra::DVector::from_vec(right), 1e-14).unwrap();
+    solution[1]
 }
 
 /// The slope of the least-squares line through the logarithms of steps and errors.

@@ -19,10 +19,53 @@ pub trait Effect<B, const N: usize> {
         None
     }
 
+    /// The derivative `dL/dq` of what the effect adds to the Lagrangian, by hand: for a term without velocities, as a
+    /// potential is. The equations of motion of a body that knows its own then need no automatic ones.
+    #[inline(always)]
+    fn slope<S: Scalar>(&self, body: &B, t: S, q: &[S; N]) -> Slope<S, N> {
+        match self.lagrangian(body, t, q, &[S::zero(); N]) {
+            Some(_) => Slope::Unknown,
+            None => Slope::Nothing,
+        }
+    }
+
     /// Whether there is no effect at all, so that the body's own closed forms hold.
     #[inline(always)]
     fn is_none(&self) -> bool {
         false
+    }
+}
+
+/// What [`Effect::slope`] knows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Slope<S, const N: usize> {
+    /// The effect adds nothing to the Lagrangian.
+    Nothing,
+    /// The derivative, by hand.
+    Known([S; N]),
+    /// There is one, and it is not known by hand.
+    Unknown,
+}
+
+impl<S: Scalar, const N: usize> Slope<S, N> {
+    #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Unknown, _) | (_, Self::Unknown) => Self::Unknown,
+            (Self::Nothing, slope) | (slope, Self::Nothing) => slope,
+            (Self::Known(a), Self::Known(b)) => Self::Known(from_fn(|i| a[i] + b[i])),
+        }
+    }
+
+    /// The whole generalised force of an effect with this slope and the given force; none where the slope is not known.
+    #[inline(always)]
+    pub(crate) fn with_force(self, force: Option<[S; N]>) -> Option<[S; N]> {
+        match (self, force) {
+            (Self::Unknown, _) => None,
+            (Self::Nothing, force) => Some(force.unwrap_or([S::zero(); N])),
+            (Self::Known(slope), None) => Some(slope),
+            (Self::Known(slope), Some(force)) => Some(from_fn(|i| slope[i] + force[i])),
+        }
     }
 }
 
@@ -66,6 +109,10 @@ macro_rules! tuple_of_effects {
                 sum
             }
             #[inline(always)]
+            fn slope<S: Scalar>(&self, body: &B, t: S, q: &[S; N]) -> Slope<S, N> {
+                Slope::Nothing$(.and(self.$index.slope(body, t, q)))+
+            }
+            #[inline(always)]
             fn is_none(&self) -> bool {
                 $(self.$index.is_none())&&+
             }
@@ -87,6 +134,10 @@ impl<B, E: Effect<B, N>, const N: usize> Effect<B, N> for Vec<E> {
     #[inline(always)]
     fn force<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
         self.iter().fold(None, |sum, effect| add_all(sum, effect.force(body, t, q, v)))
+    }
+    #[inline(always)]
+    fn slope<S: Scalar>(&self, body: &B, t: S, q: &[S; N]) -> Slope<S, N> {
+        self.iter().fold(Slope::Nothing, |sum, effect| sum.and(effect.slope(body, t, q)))
     }
     #[inline(always)]
     fn is_none(&self) -> bool {

@@ -1,6 +1,7 @@
 use crate::linear::Singular;
 use crate::{Dual, HyperDual, Saddle, System, constraint_residual, mass_matrix};
 use std::array::from_fn;
+use std::ops::Add;
 use thiserror::Error;
 
 /// The continuous equations of motion at one state.
@@ -12,6 +13,18 @@ pub struct Motion<const N: usize, const M: usize> {
     pub acceleration: [f64; N],
     /// Multipliers `lambda`: the constraint forces are `A' lambda`.
     pub multiplier: [f64; M],
+}
+
+impl<const N: usize, const M: usize> Add for Motion<N, M> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self {
+            acceleration: from_fn(|i| self.acceleration[i] + other.acceleration[i]),
+            multiplier: from_fn(|k| self.multiplier[k] + other.multiplier[k]),
+        }
+    }
 }
 
 /// Why the equations of motion do not determine the accelerations.

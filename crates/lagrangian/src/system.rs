@@ -73,7 +73,19 @@ pub trait System<const N: usize, const M: usize> {
     ///
     /// Only the first `N - M` places of `xi` and of the result count.
     #[inline(always)]
-    fn reduced_motion(&self, _t: f64, _q: &[f64; N], _xi: &[f64; N]) -> Option<[f64; N]> {
+    fn reduced_motion<S: Scalar>(&self, _t: S, _q: &[S; N], _xi: &[S; N]) -> Option<[S; N]> {
+        None
+    }
+
+    /// What one more generalised force would add to [`System::motion`], where that is known by hand.
+    #[inline(always)]
+    fn response(&self, _t: f64, _q: &[f64; N], _force: &[f64; N]) -> Option<Motion<N, M>> {
+        None
+    }
+
+    /// What one more generalised force would add to [`System::reduced_motion`], where that is known by hand.
+    #[inline(always)]
+    fn reduced_response<S: Scalar>(&self, _t: S, _q: &[S; N], _force: &[S; N]) -> Option<[S; N]> {
         None
     }
 

@@ -1,4 +1,6 @@
-use crate::{AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Effect, Motion, MotionError, Scalar, System};
+use crate::{
+    AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Effect, Motion, MotionError, Scalar, System, velocity_of,
+};
 use std::array::from_fn;
 
 /// A body with the effects that act on it: again a [`System`], on the body's coordinates and constraints.
@@ -10,6 +12,17 @@ pub struct With<B, E> {
     pub body: B,
     /// What acts on it.
     pub effects: E,
+}
+
+impl<B, E> With<B, E> {
+    /// The generalised force of the effects, where it is known by hand.
+    #[inline(always)]
+    fn push<S: Scalar, const N: usize>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]>
+    where
+        E: Effect<B, N>,
+    {
+        self.effects.slope(&self.body, t, q).with_force(self.effects.force(&self.body, t, q, v))
+    }
 }
 
 impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N, M> for With<B, E> {
@@ -47,14 +60,37 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
         self.body.angles()
     }
 
+    /// The body's own and its response to the effects, where both are known by hand.
     #[inline]
     fn motion(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<Motion<N, M>, MotionError> {
-        if self.effects.is_none() { self.body.motion(t, q, v) } else { Motion::automatic(self, t, q, v) }
+        if self.effects.is_none() {
+            return self.body.motion(t, q, v);
+        }
+        match self.push(t, q, v).and_then(|push| self.body.response(t, q, &push)) {
+            Some(response) => Ok(self.body.motion(t, q, v)? + response),
+            None => Motion::automatic(self, t, q, v),
+        }
     }
 
     #[inline(always)]
-    fn reduced_motion(&self, t: f64, q: &[f64; N], xi: &[f64; N]) -> Option<[f64; N]> {
-        if self.effects.is_none() { self.body.reduced_motion(t, q, xi) } else { None }
+    fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; N], xi: &[S; N]) -> Option<[S; N]> {
+        let bare = self.body.reduced_motion(t, q, xi)?;
+        if self.effects.is_none() {
+            return Some(bare);
+        }
+        let push = self.push(t, q, &velocity_of(&self.body, t, q, xi).ok()?)?;
+        let response = self.body.reduced_response(t, q, &push)?;
+        Some(from_fn(|i| bare[i] + response[i]))
+    }
+
+    #[inline(always)]
+    fn response(&self, t: f64, q: &[f64; N], force: &[f64; N]) -> Option<Motion<N, M>> {
+        self.body.response(t, q, force)
+    }
+
+    #[inline(always)]
+    fn reduced_response<S: Scalar>(&self, t: S, q: &[S; N], force: &[S; N]) -> Option<[S; N]> {
+        self.body.reduced_response(t, q, force)
     }
 
     #[inline(always)]

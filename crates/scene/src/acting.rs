@@ -42,6 +42,10 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Acting {
     fn force<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
         each!(self, effect => effect.force(body, t, q, v))
     }
+    #[inline(always)]
+    fn slope<S: Scalar>(&self, body: &B, t: S, q: &[S; N]) -> lagrangian::Slope<S, N> {
+        each!(self, effect => Effect::<B, N>::slope(effect, body, t, q))
+    }
 }
 
 impl Piecewise for Acting {

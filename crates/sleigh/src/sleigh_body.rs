@@ -1,5 +1,6 @@
 use crate::Sleigh;
 use lagrangian::Scalar;
+use std::array::from_fn;
 
 /// A body that is a sleigh, perhaps with more coordinates or constraints: its first three coordinates are `(x, y, theta)`.
 pub trait SleighBody {
@@ -12,6 +13,14 @@ pub trait SleighBody {
         let (sin, cos) = q[2].sin_cos();
         let a = self.sleigh().offset();
         [q[0] + cos * a, q[1] + sin * a]
+    }
+
+    /// The generalised force of a force at the centre of mass (N).
+    #[inline(always)]
+    fn at_centre<S: Scalar, const N: usize>(&self, q: &[S; N], [fx, fy]: [S; 2]) -> [S; N] {
+        let (sin, cos) = q[2].sin_cos();
+        let torque = (cos * fy - sin * fx) * self.sleigh().offset();
+        from_fn(|i| [fx, fy, torque].get(i).copied().unwrap_or(S::zero()))
     }
 }
 

@@ -48,11 +48,30 @@ impl System<3, 1> for Sleigh {
         })
     }
 
+    /// `u' = (e . f) / m`, `omega' = tau / J` of a force `f` at the blade and a torque `tau`; across the blade the
+    /// constraint takes what is not needed to turn the mass, `lambda = m a omega' - n . f`.
+    #[inline]
+    fn response(&self, _t: f64, q: &[f64; 3], &[fx, fy, tau]: &[f64; 3]) -> Option<Motion<3, 1>> {
+        let (sin, cos) = q[2].sin_cos();
+        let (along, turn) = ((cos * fx + sin * fy) / self.mass(), tau / self.pivot_inertia());
+        let across = cos * fy - sin * fx;
+        Some(Motion {
+            acceleration: [along * cos, along * sin, turn],
+            multiplier: [self.mass() * self.offset() * turn - across],
+        })
+    }
+
     /// `u' = a omega^2`, `omega' = -(m a / J) u omega`.
     #[inline(always)]
-    fn reduced_motion(&self, _t: f64, _q: &[f64; 3], &[u, omega, _]: &[f64; 3]) -> Option<[f64; 3]> {
-        let a = self.offset();
-        Some([a * omega * omega, -self.spin_gain() * u * omega, 0.0])
+    fn reduced_motion<S: Scalar>(&self, _t: S, _q: &[S; 3], &[u, omega, _]: &[S; 3]) -> Option<[S; 3]> {
+        Some([omega * omega * self.offset(), u * omega * -self.spin_gain(), S::zero()])
+    }
+
+    /// `u' = (e . f) / m`, `omega' = tau / J`.
+    #[inline(always)]
+    fn reduced_response<S: Scalar>(&self, _t: S, q: &[S; 3], &[fx, fy, tau]: &[S; 3]) -> Option<[S; 3]> {
+        let (sin, cos) = q[2].sin_cos();
+        Some([(cos * fx + sin * fy) / self.mass(), tau / self.pivot_inertia(), S::zero()])
     }
 
     #[inline(always)]

@@ -158,9 +158,9 @@ impl System<2, 1> for Counting {
     fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; 2]) -> Option<AdmissibleBasis<S, 2, 1>> {
         Line(Spring).admissible_basis(t, q)
     }
-    fn reduced_motion(&self, _t: f64, q: &[f64; 2], _xi: &[f64; 2]) -> Option<[f64; 2]> {
+    fn reduced_motion<S: Scalar>(&self, _t: S, q: &[S; 2], _xi: &[S; 2]) -> Option<[S; 2]> {
         self.0.set(self.0.get() + 1);
-        Some([-q[0], 0.0])
+        Some([-q[0], S::zero()])
     }
 }
 

@@ -100,16 +100,25 @@ impl<B: System<3, M>, const M: usize> System<4, M> for Flywheel<B> {
 
     /// The body's own, and `I_r (omega + psi')' = tau`, where the constraints leave the body two freedoms.
     #[inline(always)]
-    fn reduced_motion(&self, t: f64, q: &[f64; 4], xi: &[f64; 4]) -> Option<[f64; 4]> {
+    fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; 4], xi: &[S; 4]) -> Option<[S; 4]> {
         if M != 1 {
             return None;
         }
-        // The motor's torque on the body is -tau, which the body's own equations do not know.
-        if self.torque.is_some() {
+        let [u, omega, _] = self.body.reduced_motion(t, &of_body(q), &of_body(xi))?;
+        let zero = S::zero();
+        let Some(torque) = &self.torque else { return Some([u, omega, zero, zero]) };
+        let driven = self.reduced_response(t, q, &[zero, zero, zero, torque.value(t)])?;
+        Some([u + driven[0], omega + driven[1], driven[2], zero])
+    }
+
+    /// A torque on the rotor acts on the body the other way.
+    #[inline(always)]
+    fn reduced_response<S: Scalar>(&self, t: S, q: &[S; 4], &[fx, fy, tau, motor]: &[S; 4]) -> Option<[S; 4]> {
+        if M != 1 {
             return None;
         }
-        let [u, omega, _] = self.body.reduced_motion(t, &of_body(q), &of_body(xi))?;
-        Some([u, omega, 0.0, 0.0])
+        let [u, omega, _] = self.body.reduced_response(t, &of_body(q), &[fx, fy, tau - motor])?;
+        Some([u, omega, motor / self.inertia, S::zero()])
     }
 
     /// On a free bearing the body's own, and the rotor keeps its absolute rate.

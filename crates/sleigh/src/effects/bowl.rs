@@ -1,6 +1,6 @@
 use crate::checks::finite;
 use crate::{SleighBody, SleighError};
-use lagrangian::{Effect, Scalar};
+use lagrangian::{Effect, Scalar, Slope};
 
 /// A quadratic well: `V = k_x/2 (X - c_x)^2 + k_y/2 (Y - c_y)^2` at the centre of mass `C = (X, Y)`.
 ///
@@ -28,5 +28,12 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Bowl {
         let [x, y] = body.centre(q);
         let (x, y) = (x - self.center[0], y - self.center[1]);
         Some(-(x * x * (0.5 * self.stiffness[0]) + y * y * (0.5 * self.stiffness[1])))
+    }
+
+    #[inline(always)]
+    fn slope<S: Scalar>(&self, body: &B, _t: S, q: &[S; N]) -> Slope<S, N> {
+        let [x, y] = body.centre(q);
+        let force = [(x - self.center[0]) * -self.stiffness[0], (y - self.center[1]) * -self.stiffness[1]];
+        Slope::Known(body.at_centre(q, force))
     }
 }

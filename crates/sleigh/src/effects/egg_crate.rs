@@ -1,6 +1,6 @@
 use crate::checks::finite;
 use crate::{SleighBody, SleighError};
-use lagrangian::{Effect, Scalar};
+use lagrangian::{Effect, Scalar, Slope};
 
 /// A periodic landscape: `V = V_0 (cos(k_x X) + cos(k_y Y))` at the centre of mass `C = (X, Y)`.
 ///
@@ -27,5 +27,12 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for EggCrate {
     fn lagrangian<S: Scalar>(&self, body: &B, _t: S, q: &[S; N], _v: &[S; N]) -> Option<S> {
         let [x, y] = body.centre(q);
         Some(((x * self.wave_number[0]).cos() + (y * self.wave_number[1]).cos()) * -self.height)
+    }
+
+    #[inline(always)]
+    fn slope<S: Scalar>(&self, body: &B, _t: S, q: &[S; N]) -> Slope<S, N> {
+        let ([x, y], [kx, ky]) = (body.centre(q), self.wave_number);
+        let force = [(x * kx).sin() * (kx * self.height), (y * ky).sin() * (ky * self.height)];
+        Slope::Known(body.at_centre(q, force))
     }
 }

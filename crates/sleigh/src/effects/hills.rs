@@ -1,6 +1,6 @@
 use crate::checks::{finite, positive};
 use crate::{SleighBody, SleighError};
-use lagrangian::{Effect, Scalar};
+use lagrangian::{Effect, Scalar, Slope};
 
 /// One Gaussian hill, or hollow.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,5 +47,18 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Hills {
             potential += ((dx * dx + dy * dy) * -0.5).exp() * hill.height;
         }
         Some(-potential)
+    }
+
+    #[inline(always)]
+    fn slope<S: Scalar>(&self, body: &B, _t: S, q: &[S; N]) -> Slope<S, N> {
+        let [x, y] = body.centre(q);
+        let mut force = [S::zero(); 2];
+        for hill in &self.hills {
+            let (dx, dy) = ((x - hill.x) / hill.width, (y - hill.y) / hill.width);
+            let steepness = ((dx * dx + dy * dy) * -0.5).exp() * (hill.height / hill.width);
+            force[0] += steepness * dx;
+            force[1] += steepness * dy;
+        }
+        Slope::Known(body.at_centre(q, force))
     }
 }

@@ -28,4 +28,11 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Slope {
         let [x, y] = body.centre(q);
         Some(x * (m * self.gravity[0]) + y * (m * self.gravity[1]))
     }
+
+    #[inline(always)]
+    fn slope<S: Scalar>(&self, body: &B, _t: S, q: &[S; N]) -> lagrangian::Slope<S, N> {
+        let m = body.sleigh().mass();
+        let force = self.gravity.map(|g| S::constant(m * g));
+        lagrangian::Slope::Known(body.at_centre(q, force))
+    }
 }

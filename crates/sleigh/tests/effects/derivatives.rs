@@ -1,7 +1,7 @@
 //! Derivatives of Lagrangian, forces and constraints by the dual numbers of the methods and by those of `num-dual`.
 
 use approx::assert_relative_eq;
-use lagrangian::{Dual, HyperDual, Lanes, Scalar, System, With};
+use lagrangian::{Dual, Effect, HyperDual, Lanes, Motion, Scalar, System, With, reduced_acceleration};
 use num_dual::{Dual64, HyperDual64};
 use proptest::prelude::*;
 use sleigh::effects::{Bowl, Drag, EggCrate, Hill, Hills, MovingMass, Slope, Thrust, Torque};
@@ -106,6 +106,38 @@ proptest! {
                 }
             }
         }
+    }
+
+    /// What the effects and the bodies give by hand against what the dual numbers make of their Lagrangians.
+    #[test]
+    fn by_hand(t in -3.0..3.0f64, z in proptest::array::uniform7(-2.0..2.0f64)) {
+        let Everything { body, effects: (fields, (drag, thrust, torque, mass)) } = everything();
+        let (q, v) = ([z[0], z[1], z[2]], [z[3], z[4], z[5]]);
+        let zero = [Dual::<f64, 3>::zero(); 3];
+        let l = fields.lagrangian(&sleigh(), Dual::fixed(t), &Dual::variables(&q), &zero).unwrap();
+        let lagrangian::Slope::Known(slope) = fields.slope(&sleigh(), t, &q) else { panic!("four potentials") };
+        for i in 0..3 {
+            assert_relative_eq!(slope[i], l.eps[i], epsilon = ROUNDING);
+        }
+
+        let known = With { body: sleigh(), effects: (fields.clone(), drag.clone(), thrust.clone(), torque.clone()) };
+        let (hand, automatic) = (known.motion(t, &q, &v).unwrap(), Motion::automatic(&known, t, &q, &v).unwrap());
+        for i in 0..3 {
+            assert_relative_eq!(hand.acceleration[i], automatic.acceleration[i], epsilon = 10.0 * ROUNDING);
+        }
+        assert_relative_eq!(hand.multiplier[0], automatic.multiplier[0], epsilon = 10.0 * ROUNDING);
+
+        let xi = [z[3], z[4], z[5], 0.0];
+        let q = [z[0], z[1], z[2], z[6]];
+        let known = With { body: body.clone(), effects: (fields, drag, thrust, torque) };
+        let (hand, automatic) =
+            (known.reduced_motion(t, &q, &xi).unwrap(), reduced_acceleration(&known, t, &q, &xi).unwrap());
+        for i in 0..4 {
+            assert_relative_eq!(hand[i], automatic[i], epsilon = 10.0 * ROUNDING);
+        }
+        // Velocities in the Lagrangian are nobody's potential.
+        let shaken = With { body, effects: (mass,) };
+        prop_assert!(shaken.reduced_motion(t, &q, &xi).is_none());
     }
 
     /// The basis is orthogonal to the rows, for every kind of guide.
