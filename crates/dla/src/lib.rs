@@ -17,6 +17,7 @@ mod newton;
 mod one_step;
 mod pieces;
 mod projection;
+mod sensitivity;
 mod state;
 mod trajectory;
 mod work;
@@ -31,6 +32,10 @@ pub use lobatto::Lobatto;
 pub use newton::{Equations, Newton, NewtonError};
 pub use one_step::{OneStep, Stage, StepError, StepReport};
 pub use pieces::{onto_constraint, piece_by_piece, pieces};
+pub use sensitivity::{
+    Differentiable, ReducedDerivative, ReducedVariation, Sensitivity, SensitivityError, StepDerivative, StepEquations,
+    StepStart, Tangent, TangentRunError, Variation,
+};
 pub use state::State;
 pub use trajectory::{Node, Trajectory};
 pub use work::Work;

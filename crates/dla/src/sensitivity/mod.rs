@@ -1,0 +1,20 @@
+//! First derivatives of steps and runs.
+
+mod composition;
+mod derivative;
+mod dla;
+mod equations;
+mod error;
+mod gauss;
+mod implicit;
+mod linear;
+mod reduced;
+mod run;
+mod step;
+
+pub use derivative::{StepDerivative, Tangent, Variation};
+pub use equations::{Differentiable, StepEquations, StepStart};
+pub(crate) use equations::{NO_BASIS, Unknowns, advanced, constrained, difference, dimension, product};
+pub use error::{SensitivityError, TangentRunError};
+pub use reduced::{ReducedDerivative, ReducedVariation};
+pub use step::Sensitivity;

@@ -1,0 +1,34 @@
+//! What has no derivative says so, and changes nothing.
+
+use crate::systems::{Controlled, Moving};
+use dla::{Dla, Energy, Gauss, Gradient, Sensitivity, SensitivityError, State};
+use lagrangian::System;
+use sleigh::Sleigh;
+
+#[test]
+fn a_refusal_has_a_reason_and_changes_nothing() {
+    let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    let mut state = State::new([0.1, 0.2, 0.0], [1.0, 0.0, 0.3], sleigh.angles());
+    let before = state;
+    let refused = Sensitivity::of(&sleigh).step(&mut Energy::<1>::with(Gradient::Gonzalez), 0.0, 0.1, &mut state);
+    let Err(SensitivityError::Unsupported { reason }) = refused else { panic!("{refused:?}") };
+    assert!(reason.contains("gradient"), "{reason}");
+    assert_eq!(state, before);
+    // The same with averaged gradients has one.
+    Sensitivity::of(&sleigh).step(&mut Energy::<1>::new(), 0.0, 0.1, &mut state).unwrap();
+
+    // No basis: the method's own refusal comes through.
+    let mut state = State::new([0.1, 0.2, 0.3], [1.0, 0.4, 0.2], [false; 3]);
+    let refused = Sensitivity::of(&Moving).step(&mut Gauss::<4>::default(), 0.0, 0.1, &mut state);
+    assert!(matches!(refused, Err(SensitivityError::Step(_))), "{refused:?}");
+}
+
+#[test]
+fn a_failed_step_and_numbers_that_are_none() {
+    let system = Controlled::at(&Controlled::PARAMETERS);
+    let mut state = State::new([0.0; 3], [f64::MAX, 0.0, f64::MAX], system.angles());
+    let before = state;
+    let failed = Sensitivity::of_member(&system).step(&mut Dla::midpoint(), 0.0, 0.1, &mut state);
+    assert!(matches!(failed, Err(SensitivityError::Step(_))), "{failed:?}");
+    assert_eq!(state, before);
+}
