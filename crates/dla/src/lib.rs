@@ -34,7 +34,7 @@ pub use one_step::{OneStep, Stage, StepError, StepReport};
 pub use pieces::{onto_constraint, piece_by_piece, pieces};
 pub use sensitivity::{
     Differentiable, ReducedDerivative, ReducedVariation, Sensitivity, SensitivityError, StepDerivative, StepEquations,
-    StepStart, Tangent, TangentRunError, Variation,
+    StepStart, Tangent, TangentRunError, Unknowns, Variation,
 };
 pub use state::State;
 pub use trajectory::{Node, Trajectory};

@@ -14,6 +14,9 @@ pub type Along = Dual<Seeded, 1>;
 /// differentiates the step. The trait is for one scalar and so can be an object: the equations of a method are compiled once,
 /// and not for every system.
 pub trait Gradients<const N: usize, const M: usize> {
+    /// The Lagrangian (J).
+    fn lagrangian(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> Seeded;
+
     /// The momenta `L_v`.
     fn momentum(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> [Seeded; N];
 
@@ -53,6 +56,24 @@ pub trait Gradients<const N: usize, const M: usize> {
         from_fn(|k| (0..N).fold(b[k], |sum, i| sum + a[k][i] * v[i]))
     }
 
+    /// What is left of the equations of motion `d/dt L_v - L_q - F = A' lambda`, `d/dt (A v + b) = 0` at an acceleration `a`.
+    fn motion(
+        &self,
+        t: Seeded,
+        q: &[Seeded; N],
+        v: &[Seeded; N],
+        a: &[Seeded; N],
+        lambda: &[Seeded; M],
+    ) -> ([Seeded; N], [Seeded; M]) {
+        let (rate, push) = (self.momentum_rate(t, q, v, a), self.push(t, q, v));
+        let along_t = Dual { re: t, eps: [Seeded::constant(1.0)] };
+        let (rows, b) = self.constraint_along(along_t, &from_fn(|i| Dual { re: q[i], eps: [v[i]] }));
+        let forces = from_fn(|i| (0..M).fold(rate[i] - push[i], |sum, k| sum - rows[k][i].re * lambda[k]));
+        let slips =
+            from_fn(|k| (0..N).fold(b[k].eps[0], |sum, i| sum + rows[k][i].eps[0] * v[i] + rows[k][i].re * a[i]));
+        (forces, slips)
+    }
+
     /// The basis of admissible velocities.
     fn basis(&self, t: Seeded, q: &[Seeded; N]) -> Option<AdmissibleBasis<Seeded, N, M>> {
         let basis = self.basis_along(Dual::fixed(t), &q.map(Dual::fixed))?;
@@ -68,6 +89,22 @@ pub trait Gradients<const N: usize, const M: usize> {
             Some(shift) => from_fn(|i| v[i] + shift[i]),
             None => v,
         })
+    }
+
+    /// The velocity `v = W xi + v_b` and the acceleration `v' = W xi' + (W' xi + v_b')` of quasi-velocities that change at
+    /// the rate `xi'`.
+    fn turned(
+        &self,
+        t: Seeded,
+        q: &[Seeded; N],
+        xi: &[Seeded; N],
+        rate: &[Seeded; N],
+    ) -> Option<([Seeded; N], [Seeded; N])> {
+        let v = self.velocity(t, q, xi)?;
+        let along_t = Dual { re: t, eps: [Seeded::constant(1.0)] };
+        let carried = self.velocity_along(along_t, &from_fn(|i| Dual { re: q[i], eps: [v[i]] }), xi)?;
+        let turned = self.basis(t, q)?.combine(rate);
+        Some((v, from_fn(|i| turned[i] + carried[i].eps[0])))
     }
 
     /// The velocity `W xi + v_b` of quasi-velocities.
@@ -86,8 +123,12 @@ pub struct SeededMember<F, const P: usize> {
 }
 
 impl<F: Parametrised<N, M, P>, const N: usize, const M: usize, const P: usize> Gradients<N, M> for SeededMember<F, P> {
+    fn lagrangian(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> Seeded {
+        self.first_order(t, &q.map(Dual::fixed), &v.map(Dual::fixed)).re
+    }
+
     fn momentum(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> [Seeded; N] {
-        self.first_order(t, &q.map(Dual::fixed), &Dual::variables(v))
+        self.first_order(t, &q.map(Dual::fixed), &Dual::variables(v)).eps
     }
 
     fn momentum_rate(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N], a: &[Seeded; N]) -> [Seeded; N] {
@@ -101,7 +142,7 @@ impl<F: Parametrised<N, M, P>, const N: usize, const M: usize, const P: usize> G
     }
 
     fn slope(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> [Seeded; N] {
-        self.first_order(t, &Dual::variables(q), &v.map(Dual::fixed))
+        self.first_order(t, &Dual::variables(q), &v.map(Dual::fixed)).eps
     }
 
     fn force(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> Option<[Seeded; N]> {
@@ -118,18 +159,19 @@ impl<F: Parametrised<N, M, P>, const N: usize, const M: usize, const P: usize> G
 }
 
 impl<F, const P: usize> SeededMember<F, P> {
-    /// The gradient of the Lagrangian in the variables among `q` and `v`. Not inlined, so that the Lagrangian is compiled
-    /// once for both of its gradients.
+    /// The Lagrangian with its gradient in the variables among `q` and `v`.
+    ///
+    /// Not inlined, so that the Lagrangian is compiled once for both of its gradients.
     #[inline(never)]
     fn first_order<const N: usize, const M: usize>(
         &self,
         t: Seeded,
         q: &[Dual<Seeded, N>; N],
         v: &[Dual<Seeded, N>; N],
-    ) -> [Seeded; N]
+    ) -> Dual<Seeded, N>
     where
         F: Parametrised<N, M, P>,
     {
-        self.family.lagrangian(&self.parameters.map(Dual::fixed), Dual::fixed(t), q, v).eps
+        self.family.lagrangian(&self.parameters.map(Dual::fixed), Dual::fixed(t), q, v)
     }
 }

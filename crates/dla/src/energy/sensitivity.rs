@@ -21,11 +21,6 @@ impl<const S: usize, const N: usize, const M: usize> Differentiable<N, M> for En
         start: &StepStart<N>,
         z: &[Seeded],
     ) -> Result<StepEquations<N>, SensitivityError> {
-        if self.gradient == Gradient::Gonzalez {
-            return Err(SensitivityError::Unsupported {
-                reason: "the corrected gradient is taken or left by the size of rounding, and has no derivative there",
-            });
-        }
         let StepStart { t, h, q: q0, v: v0 } = *start;
         let (mut unknowns, dimension) = (Unknowns(z), dimension::<N, M>());
         let (xi0, eta): ([Seeded; N], [Seeded; M]) = (unknowns.take_some(dimension), unknowns.take());
@@ -61,6 +56,12 @@ impl<const S: usize, const N: usize, const M: usize> Differentiable<N, M> for En
         }
         let end = on_path(1.0, &self.rule.b)?;
 
+        if self.gradient == Gradient::Gonzalez {
+            let (dq, dpi) = (q_rates.map(|k| k.map(|k| h * k)), pi_rates.map(|k| k.map(|k| h * k)));
+            for i in 0..S {
+                (h_q[i], h_pi[i]) = points[i].corrected(model, (&first, &end), (&dq[i], &dpi[i]))?;
+            }
+        }
         for (i, point) in points.iter().enumerate() {
             let q_rate = point.basis_combined(&h_pi[i]);
             residual.extend(difference(&q_rates[i], &q_rate));
@@ -120,6 +121,29 @@ impl<const N: usize, const M: usize> Point<N, M> {
             h_q[j] -= product(&self.turning(model, &unit)?, &self.xi);
         }
         Ok(h_q)
+    }
+
+    /// `H = v . p - L`.
+    fn energy(&self, model: &dyn Gradients<N, M>) -> Seeded {
+        product(&self.velocity, &self.momentum) - model.lagrangian(self.t, &self.q, &self.velocity)
+    }
+
+    /// The gradient in the middle, corrected along the increment: [`Gradient::Gonzalez`].
+    fn corrected(
+        &self,
+        model: &dyn Gradients<N, M>,
+        (first, end): (&Self, &Self),
+        (dq, dpi): (&[Seeded; N], &[Seeded; N]),
+    ) -> Result<([Seeded; N], [Seeded; N]), SensitivityError> {
+        let (h_q, h_pi) = (self.energy_slope(model)?, self.xi);
+        let square = product(dq, dq) + product(dpi, dpi);
+        if square.re == 0.0 {
+            // At rest, and in the first iteration, the correction is 0/0 and the method leaves it out.
+            return Ok((h_q, h_pi));
+        }
+        let missing = end.energy(model) - first.energy(model) - product(&h_q, dq) - product(&h_pi, dpi);
+        let k = missing / square;
+        Ok((from_fn(|i| h_q[i] + k * dq[i]), from_fn(|i| h_pi[i] + k * dpi[i])))
     }
 
     /// `-W_a . h_q - <p, [W_a, W_b]> h_pi_b + W_a . F`, the force at the velocity of the path.

@@ -53,16 +53,16 @@ pub trait Differentiable<const N: usize, const M: usize> {
 
 /// Reads the unknowns of a step one group after the other.
 #[derive(Debug, Clone)]
-pub(crate) struct Unknowns<'a>(pub(crate) &'a [Seeded]);
+pub struct Unknowns<'a>(pub &'a [Seeded]);
 
 impl Unknowns<'_> {
     /// The next `K` unknowns.
-    pub(crate) fn take<const K: usize>(&mut self) -> [Seeded; K] {
+    pub fn take<const K: usize>(&mut self) -> [Seeded; K] {
         self.take_some(K)
     }
 
     /// The next `count` unknowns in the first places of an array, zeros after them.
-    pub(crate) fn take_some<const K: usize>(&mut self, count: usize) -> [Seeded; K] {
+    pub fn take_some<const K: usize>(&mut self, count: usize) -> [Seeded; K] {
         let (head, tail) = self.0.split_at(count.min(self.0.len()));
         self.0 = tail;
         from_fn(|i| head.get(i).copied().unwrap_or(Seeded::zero()))

@@ -1,7 +1,7 @@
 use super::equations::{NO_BASIS, Unknowns, advanced, constrained, difference, dimension, product};
 use super::{Differentiable, SensitivityError, StepEquations, StepStart};
 use crate::Gauss;
-use lagrangian::{Dual, Gradients, Scalar, Seeded};
+use lagrangian::{Gradients, Scalar, Seeded};
 use std::array::from_fn;
 
 /// In the velocities `V_i` and the accelerations `Xi'_i` of the stages, after the quasi-velocities `xi0` of the start:
@@ -37,17 +37,11 @@ impl<const S: usize, const N: usize, const M: usize> Differentiable<N, M> for Ga
             let (q, v) = (advanced(&q0, h, coefficients, &velocities), velocities[i]);
             let xi = advanced(&xi0, h, coefficients, &accelerations);
 
-            let along_t = Dual { re: t, eps: [Seeded::constant(1.0)] };
-            let along_q = from_fn(|i| Dual { re: q[i], eps: [v[i]] });
-            let carried = model.velocity_along(along_t, &along_q, &xi).ok_or(NO_BASIS)?;
-            residual.extend((0..N).map(|i| v[i] - carried[i].re));
-
+            let (carried, acceleration) = model.turned(t, &q, &xi, &accelerations[i]).ok_or(NO_BASIS)?;
+            residual.extend(difference(&v, &carried));
+            let (forces, _) = model.motion(t, &q, &v, &acceleration, &[Seeded::zero(); M]);
             let basis = model.basis(t, &q).ok_or(NO_BASIS)?;
-            let turned = basis.combine(&accelerations[i]);
-            let acceleration = from_fn(|i| turned[i] + carried[i].eps[0]);
-            let rate = model.momentum_rate(t, &q, &v, &acceleration);
-            let rest = difference(&rate, &model.push(t, &q, &v));
-            residual.extend(basis.vectors().iter().map(|w| product(w, &rest)));
+            residual.extend(basis.vectors().iter().map(|w| product(w, &forces)));
         }
         let increment = advanced(&[Seeded::zero(); N], h, &self.weights, &velocities);
         let xi1 = advanced(&xi0, h, &self.weights, &accelerations);

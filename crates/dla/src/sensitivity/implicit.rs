@@ -72,7 +72,13 @@ impl<const N: usize, const M: usize> Elementary<'_, '_, N, M> {
         };
         let parameters: Vec<Seeded> =
             self.parameters.iter().enumerate().map(|(i, p)| input(*p, 2 * N + 2 + i)).collect();
-        self.method.equations(&*(self.seeder)(&parameters), &start, &unknowns)
+        let at = self.method.equations(&*(self.seeder)(&parameters), &start, &unknowns)?;
+        if at.residual.len() != z.len() || z.is_empty() {
+            return Err(SensitivityError::Unsupported {
+                reason: "the method states other equations than it has unknowns",
+            });
+        }
+        Ok(at)
     }
 
     /// The solution of the equations, and then by the implicit function theorem `dz = -(R_z)^-1 R_x dx` the derivative of
@@ -121,7 +127,7 @@ impl<const N: usize, const M: usize> Elementary<'_, '_, N, M> {
         for iteration in 1..=Self::MAX_ITERATIONS {
             let mut r = DMatrix::zeros(z.len(), 1);
             let mut r_z = DMatrix::zeros(z.len(), z.len());
-            for block in 0..blocks(z.len()) {
+            for block in 0..blocks(z.len()).max(1) {
                 let at = self.evaluate(&z, block)?;
                 for (i, residual) in at.residual.iter().enumerate() {
                     r[i] = residual.re;

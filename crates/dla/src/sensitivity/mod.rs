@@ -6,6 +6,7 @@ mod dla;
 mod equations;
 mod error;
 mod gauss;
+mod gni;
 mod implicit;
 mod linear;
 mod reduced;
@@ -13,8 +14,8 @@ mod run;
 mod step;
 
 pub use derivative::{StepDerivative, Tangent, Variation};
-pub use equations::{Differentiable, StepEquations, StepStart};
-pub(crate) use equations::{NO_BASIS, Unknowns, advanced, constrained, difference, dimension, product};
+pub use equations::{Differentiable, StepEquations, StepStart, Unknowns};
+pub(crate) use equations::{NO_BASIS, advanced, constrained, difference, dimension, product};
 pub use error::{SensitivityError, TangentRunError};
 pub use reduced::{ReducedDerivative, ReducedVariation};
 pub use step::Sensitivity;

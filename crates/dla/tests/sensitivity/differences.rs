@@ -1,7 +1,7 @@
 //! Extrapolated differences of the step, along curves on the distribution.
 
-use dla::{Differentiable, OneStep, Sensitivity, State, Tangent, Variation};
-use lagrangian::{System, constraint_residual};
+use dla::{Differentiable, OneStep, Sensitivity, State, Tangent, Variation, onto_constraint};
+use lagrangian::System;
 use std::array::from_fn;
 
 /// A number on which everything here depends: where a step begins and what it is made with.
@@ -45,12 +45,25 @@ impl<const N: usize, const P: usize> Input<N, P> {
     }
 }
 
-/// The admissible velocity nearest to `v`: `v - A' (A A')^-1 (A v + b)`, for one constraint.
-pub fn admissible<Sys: System<N, 1>, const N: usize>(system: &Sys, t: f64, q: &[f64; N], v: &[f64; N]) -> [f64; N] {
-    let ([a], _) = system.constraint(t, q);
-    let [slip] = constraint_residual(system, t, q, v);
-    let square: f64 = a.iter().map(|a| a * a).sum();
-    from_fn(|i| v[i] - a[i] * slip / square)
+/// Which velocities a step is varied with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Start {
+    /// Those on the constraint, to which every variation is projected.
+    Admissible,
+    /// Any.
+    Any,
+}
+
+/// The state with the admissible velocity nearest to `v` in the kinetic energy.
+pub fn admissible<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    q: [f64; N],
+    v: [f64; N],
+) -> State<N> {
+    let mut state = State::new(q, v, system.angles());
+    onto_constraint(system, t, &mut state).unwrap();
+    state
 }
 
 /// The derivative at zero of a curve, by central differences extrapolated three times (Richardson 1911).
@@ -76,20 +89,22 @@ pub fn extrapolated<const K: usize>(curve: impl Fn(f64) -> [f64; K]) -> [f64; K]
 pub const BAR: f64 = 1e-9;
 
 /// The largest disagreement of derivative and differences over all directions, relative.
-pub fn disagreement<Sys, Method, const N: usize, const P: usize>(
-    sensitivity: &Sensitivity<'_, Sys, N, 1, P>,
+pub fn disagreement<Sys, Method, const N: usize, const M: usize, const P: usize>(
+    sensitivity: &Sensitivity<'_, Sys, N, M, P>,
     system: impl Fn(&[f64; P]) -> Sys,
-    method: Method,
-    at: &Input<N, P>,
+    method: &Method,
+    (start, at): (Start, &Input<N, P>),
 ) -> f64
 where
-    Sys: System<N, 1>,
-    Method: OneStep<Sys, N, 1> + Differentiable<N, 1> + Clone,
+    Sys: System<N, M>,
+    Method: OneStep<Sys, N, M> + Differentiable<N, M> + Clone,
 {
     let start = |x: &Input<N, P>| {
         let system = system(&x.p);
-        let v = admissible(&system, x.t, &x.q, &x.v);
-        let state = State::new(x.q, v, system.angles());
+        let state = match start {
+            Start::Admissible => admissible(&system, x.t, x.q, x.v),
+            Start::Any => State::new(x.q, x.v, system.angles()),
+        };
         (system, state)
     };
     let (_, mut state) = start(at);

@@ -1,7 +1,7 @@
 //! What has no derivative says so, and changes nothing.
 
 use crate::systems::{Controlled, Moving};
-use dla::{Dla, Energy, Gauss, Gradient, Sensitivity, SensitivityError, State};
+use dla::{Dla, Gauss, Gni, Sensitivity, SensitivityError, State};
 use lagrangian::System;
 use sleigh::Sleigh;
 
@@ -10,12 +10,12 @@ fn a_refusal_has_a_reason_and_changes_nothing() {
     let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
     let mut state = State::new([0.1, 0.2, 0.0], [1.0, 0.0, 0.3], sleigh.angles());
     let before = state;
-    let refused = Sensitivity::of(&sleigh).step(&mut Energy::<1>::with(Gradient::Gonzalez), 0.0, 0.1, &mut state);
+    let refused = Sensitivity::of(&sleigh).step(&mut Gni::default(), 0.0, 0.1, &mut state);
     let Err(SensitivityError::Unsupported { reason }) = refused else { panic!("{refused:?}") };
-    assert!(reason.contains("gradient"), "{reason}");
+    assert!(reason.contains("momentum across"), "{reason}");
     assert_eq!(state, before);
-    // The same with averaged gradients has one.
-    Sensitivity::of(&sleigh).step(&mut Energy::<1>::new(), 0.0, 0.1, &mut state).unwrap();
+    // From the same start another method has one.
+    Sensitivity::of(&sleigh).step(&mut Dla::trapezoid(), 0.0, 0.1, &mut state).unwrap();
 
     // No basis: the method's own refusal comes through.
     let mut state = State::new([0.1, 0.2, 0.3], [1.0, 0.4, 0.2], [false; 3]);

@@ -2,8 +2,7 @@
 
 use crate::differences::{BAR, admissible, extrapolated};
 use crate::systems::Controlled;
-use dla::{Dla, Schedule, Sensitivity, State, Tangent, Variation, drive};
-use lagrangian::System;
+use dla::{Dla, Schedule, Sensitivity, Tangent, Variation, drive};
 use std::array::from_fn;
 use std::ops::ControlFlow;
 
@@ -16,8 +15,7 @@ fn tangents_are_the_differences_of_runs() {
     let begin = |epsilon: f64, direction: &[f64; 6], p: &[f64; 6]| {
         let system = Controlled::at(&from_fn(|k| Controlled::PARAMETERS[k] + epsilon * p[k]));
         let q = from_fn(|i| START.0[i] + epsilon * direction[i]);
-        let v = admissible(&system, 0.0, &q, &from_fn(|i| START.1[i] + epsilon * direction[3 + i]));
-        (system, State::new(q, v, system.angles()))
+        (system, admissible(&system, 0.0, q, from_fn(|i| START.1[i] + epsilon * direction[3 + i])))
     };
     // Small enough for the extrapolation, since a hundred steps stretch a variation.
     let scale = 0.1;
@@ -69,7 +67,7 @@ fn tangents_are_the_differences_of_runs() {
 #[test]
 fn a_run_may_be_ended_and_tangents_scaled() {
     let system = Controlled::at(&Controlled::PARAMETERS);
-    let mut state = State::new(START.0, admissible(&system, 0.0, &START.0, &START.1), system.angles());
+    let mut state = admissible(&system, 0.0, START.0, START.1);
     let mut tangents = [Tangent { state: Variation { q: [1.0, 0.0, 0.0], v: [0.0; 3] }, parameters: [0.0; 6] }];
     let made = Sensitivity::of_member(&system)
         .drive(&mut Dla::midpoint(), &SCHEDULE, &mut state, &mut tangents, |node, tangents| {
