@@ -34,9 +34,13 @@ pub trait Gradients<const N: usize, const M: usize> {
 
     /// The basis of admissible velocities, with its derivative along the direction of `t` and `q`.
     fn basis_along(&self, t: Along, q: &[Along; N]) -> Option<AdmissibleBasis<Along, N, M>>;
+}
 
+/// What follows of the rest; compiled once, and not for every system.
+impl<const N: usize, const M: usize> dyn Gradients<N, M> + '_ {
     /// `L_q + F`: what changes the momenta besides the constraint.
-    fn push(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> [Seeded; N] {
+    #[must_use]
+    pub fn push(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> [Seeded; N] {
         let slope = self.slope(t, q, v);
         match self.force(t, q, v) {
             Some(force) => from_fn(|i| slope[i] + force[i]),
@@ -45,19 +49,22 @@ pub trait Gradients<const N: usize, const M: usize> {
     }
 
     /// `A` and `b` of the constraint.
-    fn constraint(&self, t: Seeded, q: &[Seeded; N]) -> Constraint<Seeded, N, M> {
+    #[must_use]
+    pub fn constraint(&self, t: Seeded, q: &[Seeded; N]) -> Constraint<Seeded, N, M> {
         let (a, b) = self.constraint_along(Dual::fixed(t), &q.map(Dual::fixed));
         (a.map(|row| row.map(|x| x.re)), b.map(|x| x.re))
     }
 
     /// `A v + b`.
-    fn slip(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> [Seeded; M] {
+    #[must_use]
+    pub fn slip(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> [Seeded; M] {
         let (a, b) = self.constraint(t, q);
         from_fn(|k| (0..N).fold(b[k], |sum, i| sum + a[k][i] * v[i]))
     }
 
     /// What is left of the equations of motion `d/dt L_v - L_q - F = A' lambda`, `d/dt (A v + b) = 0` at an acceleration `a`.
-    fn motion(
+    #[must_use]
+    pub fn motion(
         &self,
         t: Seeded,
         q: &[Seeded; N],
@@ -75,14 +82,16 @@ pub trait Gradients<const N: usize, const M: usize> {
     }
 
     /// The basis of admissible velocities.
-    fn basis(&self, t: Seeded, q: &[Seeded; N]) -> Option<AdmissibleBasis<Seeded, N, M>> {
+    #[must_use]
+    pub fn basis(&self, t: Seeded, q: &[Seeded; N]) -> Option<AdmissibleBasis<Seeded, N, M>> {
         let basis = self.basis_along(Dual::fixed(t), &q.map(Dual::fixed))?;
         Some(AdmissibleBasis::from_fn(|a| basis.vectors()[a].map(|w| w.re)))
     }
 
     /// The velocity `W xi + v_b` of quasi-velocities, as [`velocity_of`](crate::velocity_of), with its derivative along the
     /// direction of `t` and `q`.
-    fn velocity_along(&self, t: Along, q: &[Along; N], xi: &[Seeded; N]) -> Option<[Along; N]> {
+    #[must_use]
+    pub fn velocity_along(&self, t: Along, q: &[Along; N], xi: &[Seeded; N]) -> Option<[Along; N]> {
         let v = self.basis_along(t, q)?.combine(&xi.map(Dual::fixed));
         let (a, b) = self.constraint_along(t, q);
         Some(match shortest(&a, &b) {
@@ -93,7 +102,8 @@ pub trait Gradients<const N: usize, const M: usize> {
 
     /// The velocity `v = W xi + v_b` and the acceleration `v' = W xi' + (W' xi + v_b')` of quasi-velocities that change at
     /// the rate `xi'`.
-    fn turned(
+    #[must_use]
+    pub fn turned(
         &self,
         t: Seeded,
         q: &[Seeded; N],
@@ -108,7 +118,8 @@ pub trait Gradients<const N: usize, const M: usize> {
     }
 
     /// The velocity `W xi + v_b` of quasi-velocities.
-    fn velocity(&self, t: Seeded, q: &[Seeded; N], xi: &[Seeded; N]) -> Option<[Seeded; N]> {
+    #[must_use]
+    pub fn velocity(&self, t: Seeded, q: &[Seeded; N], xi: &[Seeded; N]) -> Option<[Seeded; N]> {
         Some(self.velocity_along(Dual::fixed(t), &q.map(Dual::fixed), xi)?.map(|v| v.re))
     }
 }

@@ -96,66 +96,66 @@ impl<Sys, const N: usize, const M: usize, const P: usize> Sensitivity<'_, Sys, N
     {
         let mut end = *state;
         let report = method.step(self.system, t, h, &mut end)?;
-        let derivative = self.derivative(method, (t, h), state, &end, report)?;
+        let derivative = derivative(method, &*self.seeder, &self.parameters, (t, h), state, &end, report)?;
         *state = end;
         Ok(derivative)
     }
+}
 
-    /// The derivative of the step from `start` to `end`.
-    fn derivative(
-        &self,
-        method: &dyn Differentiable<N, M>,
-        (t, h): (f64, f64),
-        start: &State<N>,
-        end: &State<N>,
-        report: StepReport<M>,
-    ) -> Result<StepDerivative<N, M, P>, SensitivityError> {
-        let (seeder, parameters) = (&*self.seeder, &self.parameters);
-        let inputs = 2 * N + 2 + P;
-        let (mut q, mut v) = (*start.q(), *start.v());
-        let mut moved = [0.0; N];
-        // d(q, v)/d(q0, v0, t, h, p) so far.
-        let mut chain = DMatrix::identity(2 * N, inputs);
-        let mut done = 0.0;
-        for fraction in method.fractions() {
-            let part = Elementary { method, seeder, parameters, t: t + done * h, h: fraction * h, q, v };
-            let step = part.linearised()?;
-            // What the sub-step begins with, as a function of the same.
-            let mut begin = DMatrix::identity(inputs, inputs);
-            begin.rows_mut(0, 2 * N).copy_from(&chain);
-            begin[(2 * N, 2 * N + 1)] = done;
-            begin[(2 * N + 1, 2 * N + 1)] = fraction;
-            chain = step.derivative * begin;
-            done += fraction;
-            for i in 0..N {
-                moved[i] += step.increment[i];
-                q[i] += step.increment[i];
-            }
-            v = step.velocity;
+/// The derivative of the step from `start` to `end`; apart from the system, so as not to be compiled for each.
+fn derivative<const N: usize, const M: usize, const P: usize>(
+    method: &dyn Differentiable<N, M>,
+    seeder: &Seeder<'_, N, M>,
+    parameters: &[f64; P],
+    (t, h): (f64, f64),
+    start: &State<N>,
+    end: &State<N>,
+    report: StepReport<M>,
+) -> Result<StepDerivative<N, M, P>, SensitivityError> {
+    let inputs = 2 * N + 2 + P;
+    let (mut q, mut v) = (*start.q(), *start.v());
+    let mut moved = [0.0; N];
+    // d(q, v)/d(q0, v0, t, h, p) so far.
+    let mut chain = DMatrix::identity(2 * N, inputs);
+    let mut done = 0.0;
+    for fraction in method.fractions() {
+        let part = Elementary { method, seeder, parameters, t: t + done * h, h: fraction * h, q, v };
+        let step = part.linearised()?;
+        // What the sub-step begins with, as a function of the same.
+        let mut begin = DMatrix::identity(inputs, inputs);
+        begin.rows_mut(0, 2 * N).copy_from(&chain);
+        begin[(2 * N, 2 * N + 1)] = done;
+        begin[(2 * N + 1, 2 * N + 1)] = fraction;
+        chain = step.derivative * begin;
+        done += fraction;
+        for i in 0..N {
+            moved[i] += step.increment[i];
+            q[i] += step.increment[i];
         }
-
-        let defect = defect(start, end, &moved, &v);
-        if defect > AGREEMENT || defect.is_nan() {
-            return Err(SensitivityError::OtherSolution { defect });
-        }
-        let column = |j: usize| Variation { q: from_fn(|i| chain[(i, j)]), v: from_fn(|i| chain[(N + i, j)]) };
-        let (from_q, from_v) = (from_fn(column), from_fn(|j| column(N + j)));
-        let (from_time, from_step) = (column(2 * N), column(2 * N + 1));
-        let from_parameters = from_fn(|k| column(2 * N + 2 + k));
-        let columns = Columns {
-            from_q: &from_q,
-            from_v: &from_v,
-            from_parameters: &from_parameters,
-            from_time: &from_time,
-            from_step: &from_step,
-        };
-        let frame = |t, state: &State<N>| Frame::new(seeder, parameters, t, state.q(), state.v());
-        let reduced = match (frame(t, start), frame(t + h, end)) {
-            (Some(start), Some(end)) => Some(columns.reduced(&start, &end)),
-            _ => None,
-        };
-        Ok(StepDerivative { from_q, from_v, from_parameters, from_time, from_step, reduced, defect, report })
+        v = step.velocity;
     }
+
+    let defect = defect(start, end, &moved, &v);
+    if defect > AGREEMENT || defect.is_nan() {
+        return Err(SensitivityError::OtherSolution { defect });
+    }
+    let column = |j: usize| Variation { q: from_fn(|i| chain[(i, j)]), v: from_fn(|i| chain[(N + i, j)]) };
+    let (from_q, from_v) = (from_fn(column), from_fn(|j| column(N + j)));
+    let (from_time, from_step) = (column(2 * N), column(2 * N + 1));
+    let from_parameters = from_fn(|k| column(2 * N + 2 + k));
+    let columns = Columns {
+        from_q: &from_q,
+        from_v: &from_v,
+        from_parameters: &from_parameters,
+        from_time: &from_time,
+        from_step: &from_step,
+    };
+    let frame = |t, state: &State<N>| Frame::new(seeder, parameters, t, state.q(), state.v());
+    let reduced = match (frame(t, start), frame(t + h, end)) {
+        (Some(start), Some(end)) => Some(columns.reduced(&start, &end)),
+        _ => None,
+    };
+    Ok(StepDerivative { from_q, from_v, from_parameters, from_time, from_step, reduced, defect, report })
 }
 
 /// Steps that differ by more, relative, are different solutions; rounding is far below.

@@ -70,7 +70,7 @@ pub fn admissible<Sys: System<N, M>, const N: usize, const M: usize>(
 ///
 /// The steps are `w, w/2, w/4, w/8`: the rest is of order `(w^4/64)^2` times the ninth derivative over `9!`, below `1e-17` for
 /// `w = 0.02`; rounding enters as a few ulp over `w/8`, some `1e-13`.
-pub fn extrapolated<const K: usize>(curve: impl Fn(f64) -> [f64; K]) -> [f64; K] {
+pub fn extrapolated<const K: usize>(curve: &dyn Fn(f64) -> [f64; K]) -> [f64; K] {
     let mut row: Vec<[f64; K]> = (0..4)
         .map(|level| {
             let w = 0.02 / f64::from(1 << level);
@@ -121,14 +121,14 @@ where
             (state.unwrapped(), *state.v())
         };
         // The velocity at the start moves along with the constraint.
-        let v = extrapolated(|epsilon| *start(&at.moved(epsilon, &direction)).1.v());
+        let v = extrapolated(&|epsilon| *start(&at.moved(epsilon, &direction)).1.v());
         let tangent = Tangent { state: Variation { q: direction.q, v }, parameters: direction.p };
         let ends = derivative
             .apply(&tangent)
             .state
             .plus(direction.t, &derivative.from_time)
             .plus(direction.h, &derivative.from_step);
-        let (q, v) = (extrapolated(|epsilon| end(epsilon).0), extrapolated(|epsilon| end(epsilon).1));
+        let (q, v) = (extrapolated(&|epsilon| end(epsilon).0), extrapolated(&|epsilon| end(epsilon).1));
         let size = q.iter().chain(&v).fold(0.0f64, |m, x| m.max(x.abs()));
         for i in 0..N {
             worst = worst.max((ends.q[i] - q[i]).abs() / size).max((ends.v[i] - v[i]).abs() / size);
@@ -140,7 +140,7 @@ where
 /// Differences find what they should, and an error of `1e-8`.
 #[test]
 fn differences_are_extrapolated_to_rounding() {
-    let [slope, quotient] = extrapolated(|x| [(1.0 + x).exp(), (2.0 + x).recip()]);
+    let [slope, quotient] = extrapolated(&|x| [(1.0 + x).exp(), (2.0 + x).recip()]);
     approx::assert_relative_eq!(slope, 1f64.exp(), max_relative = 1e-12);
     approx::assert_relative_eq!(quotient, -0.25, max_relative = 1e-12);
     approx::assert_relative_ne!(quotient, -0.25 * (1.0 + 1e-8), max_relative = BAR);

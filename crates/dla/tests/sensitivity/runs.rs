@@ -28,7 +28,7 @@ fn tangents_are_the_differences_of_runs() {
         ([0.0; 6], [0.0, 0.0, 0.0, 0.0, scale, scale]),
     ];
     let mut tangents = directions.map(|(direction, p)| {
-        let v = extrapolated(|epsilon| *begin(epsilon, &direction, &p).1.v());
+        let v = extrapolated(&|epsilon| *begin(epsilon, &direction, &p).1.v());
         Tangent { state: Variation { q: from_fn(|i| direction[i]), v }, parameters: p }
     });
 
@@ -50,8 +50,8 @@ fn tangents_are_the_differences_of_runs() {
             drive(&system, &mut Dla::midpoint(), &SCHEDULE, &mut state, ()).unwrap();
             state
         };
-        let q = extrapolated(|epsilon| end(epsilon).unwrapped());
-        let v = extrapolated(|epsilon| *end(epsilon).v());
+        let q = extrapolated(&|epsilon| end(epsilon).unwrapped());
+        let v = extrapolated(&|epsilon| *end(epsilon).v());
         let size = q.iter().chain(&v).fold(0.0f64, |m, x| m.max(x.abs()));
         let off =
             (0..3).fold(0.0f64, |m, i| m.max((tangent.state.q[i] - q[i]).abs()).max((tangent.state.v[i] - v[i]).abs()));

@@ -83,7 +83,6 @@ fn the_snakeboard() {
     let at = Input { q, v, t: 0.0, h: 0.1, p: [] };
     let sensitivity = Sensitivity::of(&board);
     assert_close("dla", disagreement(&sensitivity, |_| board, &Dla::midpoint(), on(&at)));
-    assert_close("energy2", disagreement(&sensitivity, |_| board, &Energy::<1>::new(), on(&at)));
 }
 
 /// Off the distribution the derivative is that of the equations in their general form.

@@ -81,11 +81,10 @@ impl<const N: usize, const M: usize> Differentiable<N, M> for Rk4Projected {
     }
 }
 
-/// In the accelerations and multipliers of the stages, after the quasi-velocities `xi0`, `v0 = W xi0 + v_b + A' eta`, with
-/// `xi'` by `v' = W xi' + W' xi + v_b'`.
+/// In the rates `xi'` of the stages, after the quasi-velocities `xi0` with `v0 = W xi0 + v_b + A' eta`.
 impl<const N: usize, const M: usize> Differentiable<N, M> for Rk4Reduced {
     fn guess(&self, _v: &[f64; N]) -> Vec<f64> {
-        vec![0.0; N + 4 * (AdmissibleBasis::<f64, N, M>::DIMENSION + M)]
+        vec![0.0; N + 4 * AdmissibleBasis::<f64, N, M>::DIMENSION]
     }
 
     fn equations(

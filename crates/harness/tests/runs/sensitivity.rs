@@ -36,7 +36,7 @@ fn state([x, y, z, along, across]: [f64; 5]) -> State<3> {
 
 /// The derivative at zero of a curve, by central differences with the steps `0.02 .. 0.0025`, extrapolated: what is left is
 /// below `1e-12`.
-fn extrapolated(curve: impl Fn(f64) -> [f64; 6]) -> [f64; 6] {
+fn extrapolated(curve: &dyn Fn(f64) -> [f64; 6]) -> [f64; 6] {
     let mut row: Vec<[f64; 6]> = (0..4)
         .map(|level| {
             let w = 0.02 / f64::from(1 << level);
@@ -66,12 +66,12 @@ where
     let mut worst = 0.0f64;
     for k in 0..5 {
         let moved = |epsilon: f64| state(from_fn(|i| if i == k { start[i] + epsilon } else { start[i] }));
-        let expected = extrapolated(|epsilon| {
+        let expected = extrapolated(&|epsilon| {
             let mut state = moved(epsilon);
             method.clone().step(&Pushed, TIME, STEP, &mut state).unwrap();
             flat(*state.q(), *state.v())
         });
-        let variation = extrapolated(|epsilon| flat(*moved(epsilon).q(), *moved(epsilon).v()));
+        let variation = extrapolated(&|epsilon| flat(*moved(epsilon).q(), *moved(epsilon).v()));
         let state = Variation { q: from_fn(|i| variation[i]), v: from_fn(|i| variation[3 + i]) };
         let got = derivative.apply(&Tangent { state, parameters: [] }).state;
         let size = expected.iter().fold(0.0f64, |m, x| m.max(x.abs()));
