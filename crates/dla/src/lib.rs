@@ -4,6 +4,8 @@
 //! one. [`Dla`] derives it from a discrete Lagrangian and a discrete constraint; [`drive`] repeats it and shows every
 //! node to an [`Observer`], of which [`Trajectory`] is one that keeps what it sees.
 //!
+//! [`Sensitivity`] differentiates the steps of a [`Differentiable`] method.
+//!
 //! This crate knows no particular system and no file; its [`Newton`] solver knows neither time nor mechanics.
 
 mod composition;

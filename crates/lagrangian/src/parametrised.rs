@@ -5,6 +5,26 @@ use crate::{AdmissibleBasis, Constraint, Scalar, System};
 /// The functions are those of [`System`], with the parameters `p` as numbers of the same scalar, so that what is derived of
 /// them has exact derivatives in the parameters too: masses, offsets, stiffnesses, and controls that are constant over a
 /// step. [`Member`] is the system at given parameters.
+///
+/// ```
+/// use lagrangian::{Constraint, Member, Parametrised, Scalar};
+///
+/// /// A point in space with `z' = y x'`: its mass (kg), and a force along x (N).
+/// struct Particle;
+/// impl Parametrised<3, 1, 2> for Particle {
+///     fn lagrangian<S: Scalar>(&self, &[mass, _]: &[S; 2], _t: S, _q: &[S; 3], v: &[S; 3]) -> S {
+///         mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) * 0.5
+///     }
+///     fn constraint<S: Scalar>(&self, _p: &[S; 2], _t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
+///         ([[-q[1], S::zero(), S::constant(1.0)]], [S::zero()])
+///     }
+///     fn force<S: Scalar>(&self, &[_, force]: &[S; 2], _t: S, _q: &[S; 3], _v: &[S; 3]) -> Option<[S; 3]> {
+///         Some([force, S::zero(), S::zero()])
+///     }
+/// }
+/// let system = Member { family: Particle, parameters: [2.0, 0.5] };
+/// # assert_eq!(lagrangian::energy(&system, 0.0, &[0.0; 3], &[1.0, 2.0, 0.0]), 5.0);
+/// ```
 pub trait Parametrised<const N: usize, const M: usize, const P: usize> {
     /// The Lagrangian `L(p; t, q, v)` (J).
     fn lagrangian<S: Scalar>(&self, p: &[S; P], t: S, q: &[S; N], v: &[S; N]) -> S;

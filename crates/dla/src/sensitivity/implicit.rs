@@ -51,8 +51,9 @@ pub(super) struct Linearised<const N: usize> {
 }
 
 impl<const N: usize, const M: usize> Elementary<'_, '_, N, M> {
-    /// Newton's method on the equations is quadratic: after a correction as small as this the next leaves rounding.
-    const NEARLY: f64 = 1e-8;
+    /// Newton's method is quadratic: of a correction as small as the first of these the next leaves rounding, and one as
+    /// small as the second has left it itself.
+    const NEARLY: [f64; 2] = [1e-7, 1e-11];
     const MAX_ITERATIONS: u32 = 50;
 
     /// How many inputs a step has: `(q0, v0, t, h, p)`.
@@ -146,10 +147,10 @@ impl<const N: usize, const M: usize> Elementary<'_, '_, N, M> {
             }
             let size = jacobian.size(z.iter().copied());
             let change = jacobian.size(correction.iter().copied());
-            if nearly || change == 0.0 {
+            if nearly || change <= Self::NEARLY[1] * size {
                 return Ok(z);
             }
-            nearly = change <= Self::NEARLY * size;
+            nearly = change <= Self::NEARLY[0] * size;
             last = change / size;
         }
         let limit = NewtonError::IterationLimit { iterations: Self::MAX_ITERATIONS, correction: last };

@@ -8,6 +8,7 @@ mod error;
 mod gauss;
 mod gni;
 mod implicit;
+mod impulse;
 mod linear;
 mod reduced;
 mod run;

@@ -96,9 +96,20 @@ impl<Sys, const N: usize, const M: usize, const P: usize> Sensitivity<'_, Sys, N
     {
         let mut end = *state;
         let report = method.step(self.system, t, h, &mut end)?;
-        let derivative = derivative(method, &*self.seeder, &self.parameters, (t, h), state, &end, report)?;
+        let derivative = self.derivative(method, (t, h), state, &end, report)?;
         *state = end;
         Ok(derivative)
+    }
+
+    pub(super) fn derivative(
+        &self,
+        method: &dyn Differentiable<N, M>,
+        time: (f64, f64),
+        start: &State<N>,
+        end: &State<N>,
+        report: StepReport<M>,
+    ) -> Result<StepDerivative<N, M, P>, SensitivityError> {
+        derivative(method, &*self.seeder, &self.parameters, time, start, end, report)
     }
 }
 

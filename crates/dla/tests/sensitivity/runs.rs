@@ -2,7 +2,7 @@
 
 use crate::differences::{BAR, admissible, extrapolated};
 use crate::systems::Controlled;
-use dla::{Dla, Schedule, Sensitivity, Tangent, Variation, drive};
+use dla::{Dla, Schedule, Sensitivity, State, Tangent, Variation, drive};
 use std::array::from_fn;
 use std::ops::ControlFlow;
 
@@ -77,4 +77,28 @@ fn a_run_may_be_ended_and_tangents_scaled() {
         .unwrap();
     assert_eq!(made, 3);
     assert_eq!(tangents[0].state, Variation::ZERO);
+}
+
+/// Between two pieces of a run the velocity is brought onto the new constraint, and a tangent with it.
+#[test]
+fn tangents_follow_the_impulse_of_the_constraint() {
+    let system = Controlled::at(&Controlled::PARAMETERS);
+    // The blade slips by half a metre a second.
+    let (q, v) = ([0.3, -0.2, 0.5], [0.6, 0.7, 0.4]);
+    let direction: [f64; 6] = [0.2, -0.4, 1.0, 0.5, 0.3, -0.7];
+    let at = |epsilon: f64| {
+        let moved = |x: &[f64; 3], k: usize| from_fn(|i| x[i] + epsilon * direction[k + i]);
+        admissible(&system, 0.0, moved(&q, 0), moved(&v, 3))
+    };
+    let [dx, dy, dtheta, tail @ ..] = direction;
+    let mut tangents = [Tangent { state: Variation { q: [dx, dy, dtheta], v: tail }, parameters: [0.0; 6] }];
+    let mut state = State::new(q, v, [false, false, true]);
+    Sensitivity::of_member(&system).onto_constraint(0.0, &mut state, &mut tangents).unwrap();
+    assert_eq!(state, at(0.0));
+    assert!((state.v()[1] - v[1]).abs() > 0.1, "nothing to project");
+    let expected = extrapolated(&|epsilon| *at(epsilon).v());
+    for i in 0..3 {
+        approx::assert_abs_diff_eq!(tangents[0].state.v[i], expected[i], epsilon = BAR);
+        approx::assert_abs_diff_eq!(tangents[0].state.q[i], direction[i], epsilon = BAR);
+    }
 }

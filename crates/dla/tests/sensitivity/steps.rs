@@ -22,28 +22,28 @@ fn bare() -> Input<3, 0> {
     Input { q: START.q, v: START.v, t: START.t, h: START.h, p: [] }
 }
 
-fn controlled<Method>(name: &str, method: Method)
+fn controlled<Method>(name: &str, method: &Method)
 where
     Method: OneStep<ControlledSleigh, 3, 1> + Differentiable<3, 1> + Clone,
 {
     let system = Controlled::at(&START.p);
     assert_close(
         name,
-        disagreement(&Sensitivity::of_member(&system), Controlled::at, &method, (Start::Admissible, &START)),
+        disagreement(&Sensitivity::of_member(&system), Controlled::at, method, (Start::Admissible, &START)),
     );
 }
 
 /// State, mass, inertia, offset, height of the potential, and two controls.
 #[test]
 fn a_sleigh_with_parameters_and_controls() {
-    controlled("dla", Dla::midpoint());
-    controlled("dla-alpha", Dla::alpha(0.3).unwrap());
-    controlled("dla4", Composition::suzuki4(Dla::midpoint()));
-    controlled("lobatto3", Lobatto::<3>::new());
-    controlled("gauss8", Gauss::<4>::default());
-    controlled("energy2", Energy::<1>::new());
-    controlled("energy4", Energy::<2>::new());
-    controlled("gonzalez", Energy::<1>::with(Gradient::Gonzalez));
+    controlled("dla", &Dla::midpoint());
+    controlled("dla-alpha", &Dla::alpha(0.3).unwrap());
+    controlled("dla4", &Composition::suzuki4(Dla::midpoint()));
+    controlled("lobatto3", &Lobatto::<3>::new());
+    controlled("gauss8", &Gauss::<4>::default());
+    controlled("energy2", &Energy::<1>::new());
+    controlled("energy4", &Energy::<2>::new());
+    controlled("gonzalez", &Energy::<1>::with(Gradient::Gonzalez));
 }
 
 /// Its closed step and its accelerations by hand are differentiated through the general equations.
