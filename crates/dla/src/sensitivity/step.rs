@@ -172,8 +172,8 @@ fn derivative<const N: usize, const M: usize, const P: usize>(
 /// Steps that differ by more, relative, are different solutions; rounding is far below.
 const AGREEMENT: f64 = 1e-9;
 
-/// The largest difference between the step made and the solution of its equations, relative to the largest increment and
-/// velocity, and to the coordinates in whose digits the increment is rounded.
+/// The largest difference between the step made and the solution of its equations: of the increments relative to the
+/// coordinates, in whose digits they are rounded, of the velocities relative to the largest.
 fn defect<const N: usize>(start: &State<N>, end: &State<N>, moved: &[f64; N], velocity: &[f64; N]) -> f64 {
     let (before, after) = (start.unwrapped(), end.unwrapped());
     let off: [f64; N] = from_fn(|i| after[i] - before[i] - moved[i]);

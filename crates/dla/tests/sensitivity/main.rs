@@ -4,6 +4,7 @@
 
 mod closed_forms;
 mod differences;
+mod reduced;
 mod refusals;
 mod runs;
 mod steps;
