@@ -7,8 +7,8 @@ use crate::{OneStep, State, StepError, StepReport};
 /// Geometric Numerical Integration, section V.3.)
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Composition<Base, const STAGES: usize> {
-    base: Base,
-    weights: [f64; STAGES],
+    pub(crate) base: Base,
+    pub(crate) weights: [f64; STAGES],
 }
 
 /// Mirrors the first weights about a centre that makes the sum one.

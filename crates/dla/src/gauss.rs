@@ -13,9 +13,9 @@ use std::array::from_fn;
 /// Algorithms 76, 861-880.)
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gauss<const S: usize> {
-    nodes: [f64; S],
-    weights: [f64; S],
-    coefficients: [[f64; S]; S],
+    pub(crate) nodes: [f64; S],
+    pub(crate) weights: [f64; S],
+    pub(crate) coefficients: [[f64; S]; S],
     /// Iterations after which the search is given up.
     pub max_iterations: u32,
 }

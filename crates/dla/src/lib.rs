@@ -4,6 +4,8 @@
 //! one. [`Dla`] derives it from a discrete Lagrangian and a discrete constraint; [`drive`] repeats it and shows every
 //! node to an [`Observer`], of which [`Trajectory`] is one that keeps what it sees.
 //!
+//! [`Sensitivity`] differentiates the steps of a [`Differentiable`] method.
+//!
 //! This crate knows no particular system and no file; its [`Newton`] solver knows neither time nor mechanics.
 
 mod composition;
@@ -17,6 +19,7 @@ mod newton;
 mod one_step;
 mod pieces;
 mod projection;
+mod sensitivity;
 mod state;
 mod trajectory;
 mod work;
@@ -31,6 +34,10 @@ pub use lobatto::Lobatto;
 pub use newton::{Equations, Newton, NewtonError};
 pub use one_step::{OneStep, Stage, StepError, StepReport};
 pub use pieces::{onto_constraint, piece_by_piece, pieces};
+pub use sensitivity::{
+    Differentiable, ReducedDerivative, ReducedVariation, Sensitivity, SensitivityError, StepDerivative, StepEquations,
+    StepStart, Tangent, TangentRunError, Unknowns, Variation,
+};
 pub use state::State;
 pub use trajectory::{Node, Trajectory};
 pub use work::Work;

@@ -124,10 +124,7 @@ fn split<Sys: System<N, M>, const N: usize, const M: usize>(
     Ok(xi)
 }
 
-/// `v_b = -A' (A A')^-1 b`; none where `b` and its derivatives vanish, so that a linear constraint pays nothing.
-///
-/// The symmetric matrix is eliminated without pivots, on any scalar; dependent rows of `A` have been refused by the
-/// equations of motion.
+/// `v_b` of a system at one point.
 #[inline]
 fn shift<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
     system: &Sys,
@@ -135,6 +132,15 @@ fn shift<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
     q: &[S; N],
 ) -> Option<[S; N]> {
     let (a, b) = system.constraint(t, q);
+    shortest(&a, &b)
+}
+
+/// `v_b = -A' (A A')^-1 b`; none where `b` and its derivatives vanish, so that a linear constraint pays nothing.
+///
+/// The symmetric matrix is eliminated without pivots, on any scalar; dependent rows of `A` have been refused by the
+/// equations of motion.
+#[inline(always)]
+pub(crate) fn shortest<S: Scalar, const N: usize, const M: usize>(a: &[[S; N]; M], b: &[S; M]) -> Option<[S; N]> {
     if b.iter().all(Scalar::is_zero) {
         return None;
     }

@@ -8,16 +8,17 @@
 //! | add what acts on a body | [`Effect`], [`With`] |
 //! | choose a method | [`Dla`], [`DiscreteLagrangian`], [`OneStep`] |
 //! | run it and look on | [`drive`], [`Schedule`], [`State`], [`Observer`], [`Trajectory`] |
+//! | differentiate its steps in state, parameters and controls | [`Sensitivity`], [`Parametrised`], [`Member`] |
 //! | use the Chaplygin sleigh and its closed form | [`Sleigh`], [`SleighState`], [`Exact`] |
 
 pub use dla::{
-    self, Dla, Equations, Form, Newton, NewtonError, Node, Observer, OneStep, RunError, Schedule, Stage, State,
-    StepError, StepReport, Trajectory, View, drive,
+    self, Dla, Equations, Form, Newton, NewtonError, Node, Observer, OneStep, RunError, Schedule, Sensitivity, Stage,
+    State, StepError, StepReport, Trajectory, View, drive,
 };
 pub use lagrangian::{
     self, AdmissibleBasis, Alpha, ClosedStep, ClosedStepError, Constraint, Derivatives, DiscreteConstraint,
-    DiscreteLagrangian, Dual, Effect, HyperDual, Lanes, Midpoint, Motion, MotionError, Rule, Scalar, Symmetrised,
-    System, Trapezoid, With, constraint_residual, energy, mass_matrix, momentum, vectorized,
+    DiscreteLagrangian, Dual, Effect, HyperDual, Lanes, Member, Midpoint, Motion, MotionError, Parametrised, Rule,
+    Scalar, Symmetrised, System, Trapezoid, With, constraint_residual, energy, mass_matrix, momentum, vectorized,
 };
 pub use sleigh::{self, CentreOfMass, Exact, Sleigh, SleighError, SleighState};
 

@@ -4,6 +4,7 @@ mod ends;
 mod gradient;
 mod path;
 mod rule;
+mod sensitivity;
 mod settling;
 mod start;
 

@@ -1,5 +1,6 @@
 mod dense;
 mod point;
+mod sensitivity;
 mod stages;
 mod tables;
 

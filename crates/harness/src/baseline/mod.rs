@@ -6,6 +6,7 @@ mod implicit_midpoint;
 mod reduced_point;
 mod rk4;
 mod rk4_reduced;
+mod sensitivity;
 
 pub use dop853::Dop853;
 pub use implicit_midpoint::ImplicitMidpoint;

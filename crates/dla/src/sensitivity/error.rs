@@ -1,0 +1,40 @@
+use crate::{NewtonError, StepError};
+use thiserror::Error;
+
+/// Why a step has no derivative.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum SensitivityError {
+    /// The step itself failed.
+    #[error(transparent)]
+    Step(#[from] StepError),
+    /// The method or the system cannot be differentiated.
+    #[error("{reason}")]
+    Unsupported {
+        /// Why not.
+        reason: &'static str,
+    },
+    /// The equations of the step, restated, were not solved.
+    #[error("the derivative of the step: {0}")]
+    Equations(#[source] NewtonError),
+    /// The equations of the step have another solution than the one that the method took.
+    #[error(
+        "the equations of the step have a solution that is off the method's by {defect:e}, relative: choose a shorter step"
+    )]
+    OtherSolution {
+        /// The largest difference of configurations or velocities, relative.
+        defect: f64,
+    },
+}
+
+/// A run with tangents that ended early; state and tangents are those of the last good node.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[error("step {step}, from t = {time} s: {source}")]
+pub struct TangentRunError {
+    /// The number of the failed step, from 1.
+    pub step: u64,
+    /// The time it began at (s).
+    pub time: f64,
+    /// What happened.
+    #[source]
+    pub source: SensitivityError,
+}

@@ -1,0 +1,22 @@
+use super::{Differentiable, SensitivityError, StepEquations, StepStart};
+use crate::Gni;
+use lagrangian::{Gradients, Seeded};
+
+/// Refused: the step is no map of configuration and velocity.
+impl<L, const N: usize, const M: usize> Differentiable<N, M> for Gni<L, N> {
+    fn guess(&self, _v: &[f64; N]) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn equations(
+        &self,
+        _model: &dyn Gradients<N, M>,
+        _start: &StepStart<N>,
+        _z: &[Seeded],
+    ) -> Result<StepEquations<N>, SensitivityError> {
+        Err(SensitivityError::Unsupported {
+            reason: "the step is no map of configuration and velocity: it carries a momentum across the constraint from step \
+                     to step",
+        })
+    }
+}

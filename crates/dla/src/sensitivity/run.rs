@@ -1,0 +1,60 @@
+use super::{Differentiable, Sensitivity, SensitivityError, Tangent, TangentRunError};
+use crate::{OneStep, Schedule, State, StepReport, View};
+use std::ops::ControlFlow;
+
+impl<Sys, const N: usize, const M: usize, const P: usize> Sensitivity<'_, Sys, N, M, P> {
+    /// Moves a state and tangents together from time `t` to `t + h`.
+    ///
+    /// # Errors
+    /// As [`Sensitivity::step`]; state and tangents are then unchanged.
+    pub fn advance<Method>(
+        &self,
+        method: &mut Method,
+        t: f64,
+        h: f64,
+        state: &mut State<N>,
+        tangents: &mut [Tangent<N, P>],
+    ) -> Result<StepReport<M>, SensitivityError>
+    where
+        Method: OneStep<Sys, N, M> + Differentiable<N, M>,
+    {
+        let derivative = self.step(method, t, h, state)?;
+        for tangent in tangents {
+            *tangent = derivative.apply(tangent);
+        }
+        Ok(derivative.report)
+    }
+
+    /// Makes the steps of a schedule with a state and tangents; returns how many were made.
+    ///
+    /// After every step `each` sees the node and may change the tangents, as the computation of Lyapunov exponents does that
+    /// makes them orthonormal; `Break` ends the run there. No matrix is kept.
+    ///
+    /// # Errors
+    /// [`TangentRunError`] with the step that failed; state and tangents then are those of the last good node.
+    pub fn drive<Method>(
+        &self,
+        method: &mut Method,
+        schedule: &Schedule,
+        state: &mut State<N>,
+        tangents: &mut [Tangent<N, P>],
+        mut each: impl FnMut(&View<'_, Sys, N>, &mut [Tangent<N, P>]) -> ControlFlow<()>,
+    ) -> Result<u64, TangentRunError>
+    where
+        Method: OneStep<Sys, N, M> + Differentiable<N, M>,
+    {
+        for k in 0..schedule.steps {
+            let time = schedule.time(k);
+            self.advance(method, time, schedule.step, state, tangents).map_err(|source| TangentRunError {
+                step: k + 1,
+                time,
+                source,
+            })?;
+            let node = View { system: self.system(), k: k + 1, t: schedule.time(k + 1), state };
+            if each(&node, tangents).is_break() {
+                return Ok(k + 1);
+            }
+        }
+        Ok(schedule.steps)
+    }
+}

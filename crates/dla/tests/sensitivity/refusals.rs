@@ -1,0 +1,67 @@
+//! What has no derivative says so, and changes nothing.
+
+use crate::systems::{Controlled, Moving};
+use dla::{
+    Differentiable, Dla, Gauss, Gni, OneStep, Sensitivity, SensitivityError, State, StepEquations, StepError,
+    StepReport, StepStart,
+};
+use lagrangian::{Gradients, Seeded, System};
+use sleigh::Sleigh;
+
+#[test]
+fn a_refusal_has_a_reason_and_changes_nothing() {
+    let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    let mut state = State::new([0.1, 0.2, 0.0], [1.0, 0.0, 0.3], sleigh.angles());
+    let before = state;
+    let refused = Sensitivity::of(&sleigh).step(&mut Gni::default(), 0.0, 0.1, &mut state);
+    let Err(SensitivityError::Unsupported { reason }) = refused else { panic!("{refused:?}") };
+    assert!(reason.contains("momentum across"), "{reason}");
+    assert_eq!(state, before);
+    // From the same start another method has one.
+    Sensitivity::of(&sleigh).step(&mut Dla::trapezoid(), 0.0, 0.1, &mut state).unwrap();
+
+    // No basis: the method's own refusal comes through.
+    let mut state = State::new([0.1, 0.2, 0.3], [1.0, 0.4, 0.2], [false; 3]);
+    let refused = Sensitivity::of(&Moving).step(&mut Gauss::<4>::default(), 0.0, 0.1, &mut state);
+    assert!(matches!(refused, Err(SensitivityError::Step(_))), "{refused:?}");
+}
+
+#[test]
+fn a_failed_step_and_numbers_that_are_none() {
+    let system = Controlled::at(&Controlled::PARAMETERS);
+    let mut state = State::new([0.0; 3], [f64::MAX, 0.0, f64::MAX], system.angles());
+    let before = state;
+    let failed = Sensitivity::of_member(&system).step(&mut Dla::midpoint(), 0.0, 0.1, &mut state);
+    assert!(matches!(failed, Err(SensitivityError::Step(_))), "{failed:?}");
+    assert_eq!(state, before);
+}
+
+/// A method that steps by one rule and states the equations of another.
+struct Impostor;
+
+impl<Sys: System<3, 1>> OneStep<Sys, 3, 1> for Impostor {
+    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<3>) -> Result<StepReport<1>, StepError> {
+        Dla::trapezoid().step(system, t, h, state)
+    }
+}
+
+impl Differentiable<3, 1> for Impostor {
+    fn guess(&self, v: &[f64; 3]) -> Vec<f64> {
+        Differentiable::<3, 1>::guess(&Dla::midpoint(), v)
+    }
+    fn equations(
+        &self,
+        model: &dyn Gradients<3, 1>,
+        start: &StepStart<3>,
+        z: &[Seeded],
+    ) -> Result<StepEquations<3>, SensitivityError> {
+        Dla::midpoint().equations(model, start, z)
+    }
+}
+
+#[test]
+fn a_step_that_does_not_solve_its_equations_is_found_out() {
+    let mut state = State::new([0.1, 0.2, 0.3], [1.0, 0.4, 0.2], [false; 3]);
+    let refused = Sensitivity::of(&Moving).step(&mut Impostor, 0.0, 0.1, &mut state);
+    assert!(matches!(refused, Err(SensitivityError::OtherSolution { defect }) if defect > 1e-6), "{refused:?}");
+}

@@ -1,0 +1,98 @@
+//! One step of every family of methods.
+
+use crate::differences::{BAR, Input, Start, disagreement};
+use crate::systems::{Controlled, ControlledSleigh, Moving};
+use dla::{Composition, Differentiable, Dla, Energy, Form, Gauss, Gradient, Lobatto, OneStep, Sensitivity};
+use lagrangian::{Midpoint, Symmetrised, Trapezoid};
+use models::{Model, Snakeboard};
+use sleigh::{Guided, Sleigh};
+
+fn assert_close(name: &str, worst: f64) {
+    println!("{name}: {worst:.1e}");
+    assert!(worst < BAR, "{name}: {worst:e}");
+}
+
+const START: Input<3, 6> = Input { q: [0.3, -0.2, 0.5], v: [0.6, 0.2, 1.1], t: 0.2, h: 0.1, p: Controlled::PARAMETERS };
+
+fn on<const N: usize, const P: usize>(at: &Input<N, P>) -> (Start, &Input<N, P>) {
+    (Start::Admissible, at)
+}
+
+fn bare() -> Input<3, 0> {
+    Input { q: START.q, v: START.v, t: START.t, h: START.h, p: [] }
+}
+
+fn controlled<Method>(name: &str, method: &Method)
+where
+    Method: OneStep<ControlledSleigh, 3, 1> + Differentiable<3, 1> + Clone,
+{
+    let system = Controlled::at(&START.p);
+    assert_close(
+        name,
+        disagreement(&Sensitivity::of_member(&system), Controlled::at, method, (Start::Admissible, &START)),
+    );
+}
+
+/// State, mass, inertia, offset, height of the potential, and two controls.
+#[test]
+fn a_sleigh_with_parameters_and_controls() {
+    controlled("dla", &Dla::midpoint());
+    controlled("dla-alpha", &Dla::alpha(0.3).unwrap());
+    controlled("dla4", &Composition::suzuki4(Dla::midpoint()));
+    controlled("lobatto3", &Lobatto::<3>::new());
+    controlled("gauss8", &Gauss::<4>::default());
+    controlled("energy2", &Energy::<1>::new());
+    controlled("energy4", &Energy::<2>::new());
+    controlled("gonzalez", &Energy::<1>::with(Gradient::Gonzalez));
+}
+
+/// Its closed step and its accelerations by hand are differentiated through the general equations.
+#[test]
+fn the_free_sleigh() {
+    let sleigh = Sleigh::new(1.3, 0.8, 0.4).unwrap();
+    let sensitivity = Sensitivity::of(&sleigh);
+    assert_close("dla", disagreement(&sensitivity, |_| sleigh, &Dla::midpoint(), on(&bare())));
+    assert_close("gauss8", disagreement(&sensitivity, |_| sleigh, &Gauss::<4>::default(), on(&bare())));
+}
+
+#[test]
+fn multipliers_with_time_everywhere() {
+    let sensitivity = Sensitivity::of(&Moving);
+    let symmetrised = Symmetrised::new(0.2).unwrap();
+    assert_close("trapezoid", disagreement(&sensitivity, |_| Moving, &Dla::trapezoid(), on(&bare())));
+    assert_close("mixed", disagreement(&sensitivity, |_| Moving, &Dla::new(symmetrised, Trapezoid), on(&bare())));
+    assert_close("lobatto3", disagreement(&sensitivity, |_| Moving, &Lobatto::<3>::new(), on(&bare())));
+}
+
+#[test]
+fn an_affine_constraint() {
+    let table = || Guided::turntable(Sleigh::new(1.3, 0.8, 0.4).unwrap(), 0.6).unwrap();
+    let system = table();
+    let sensitivity = Sensitivity::of(&system);
+    let mixed = Dla::new(Midpoint, Midpoint).solved(Form::Multipliers);
+    assert_close("multipliers", disagreement(&sensitivity, |_| table(), &mixed, on(&bare())));
+    assert_close("gauss8", disagreement(&sensitivity, |_| table(), &Gauss::<4>::default(), on(&bare())));
+}
+
+/// Two constraints, five coordinates.
+#[test]
+fn the_snakeboard() {
+    let board = Snakeboard::new(1.2, 0.4, 0.05, 0.03, 0.02).unwrap();
+    let (mut q, v) = board.start();
+    q[4] += 0.3;
+    let at = Input { q, v, t: 0.0, h: 0.1, p: [] };
+    let sensitivity = Sensitivity::of(&board);
+    assert_close("dla", disagreement(&sensitivity, |_| board, &Dla::midpoint(), on(&at)));
+}
+
+/// Off the distribution the derivative is that of the equations in their general form.
+#[test]
+fn inadmissible_velocities() {
+    let system = Controlled::at(&START.p);
+    let sensitivity = Sensitivity::of_member(&system);
+    let any = (Start::Any, &START);
+    assert_close("dla", disagreement(&sensitivity, Controlled::at, &Dla::midpoint(), any));
+    assert_close("lobatto3", disagreement(&sensitivity, Controlled::at, &Lobatto::<3>::new(), any));
+    assert_close("gauss8", disagreement(&sensitivity, Controlled::at, &Gauss::<4>::default(), any));
+    assert_close("energy2", disagreement(&sensitivity, Controlled::at, &Energy::<1>::new(), any));
+}

@@ -1,0 +1,60 @@
+use lagrangian::{AdmissibleBasis, Constraint, Member, Parametrised, Scalar, System};
+
+/// The Chaplygin sleigh of mass `m` (kg), inertia `I` about the centre of mass (kg m^2) and offset `a` (m), in an egg-crate
+/// potential of height `V` (J), with a thrust `F` along the blade (N) and a torque (N m) as controls.
+#[derive(Debug, Clone, Copy)]
+pub struct Controlled;
+
+pub type ControlledSleigh = Member<Controlled, 6>;
+
+impl Controlled {
+    pub const PARAMETERS: [f64; 6] = [1.3, 0.8, 0.4, 0.7, 0.5, -0.3];
+
+    pub fn at(parameters: &[f64; 6]) -> ControlledSleigh {
+        Member { family: Self, parameters: *parameters }
+    }
+}
+
+impl Parametrised<3, 1, 6> for Controlled {
+    fn lagrangian<S: Scalar>(&self, &[m, i, a, height, ..]: &[S; 6], _t: S, q: &[S; 3], v: &[S; 3]) -> S {
+        let (sin, cos) = q[2].sin_cos();
+        let (vx, vy) = (v[0] - a * sin * v[2], v[1] + a * cos * v[2]);
+        let (x, y) = (q[0] + a * cos, q[1] + a * sin);
+        (m * (vx * vx + vy * vy) + i * v[2] * v[2]) * 0.5 - height * (x.cos() + y.cos())
+    }
+    fn constraint<S: Scalar>(&self, _p: &[S; 6], _t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
+        let (sin, cos) = q[2].sin_cos();
+        ([[-sin, cos, S::zero()]], [S::zero()])
+    }
+    fn force<S: Scalar>(&self, p: &[S; 6], _t: S, q: &[S; 3], _v: &[S; 3]) -> Option<[S; 3]> {
+        let (sin, cos) = q[2].sin_cos();
+        Some([p[4] * cos, p[4] * sin, p[5]])
+    }
+    fn admissible_basis<S: Scalar>(&self, _p: &[S; 6], _t: S, q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, 1>> {
+        let (sin, cos) = q[2].sin_cos();
+        let (zero, one) = (S::zero(), S::constant(1.0));
+        Some(AdmissibleBasis::new([[cos, sin, zero], [zero, zero, one]]))
+    }
+    fn angles(&self) -> [bool; 3] {
+        [false, false, true]
+    }
+}
+
+/// Time everywhere and no basis: masses that depend on time and place, a magnetic term, an affine constraint that moves, a
+/// force.
+#[derive(Debug, Clone, Copy)]
+pub struct Moving;
+
+impl System<3, 1> for Moving {
+    fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 3], v: &[S; 3]) -> S {
+        let mass = (t * 1.5).sin() * 0.3 + q[0] * q[0] * 0.2 + 1.0;
+        let kinetic = (mass * v[0] * v[0] + v[1] * v[1] + v[2] * v[2] * (q[1].cos() * 0.3 + 1.5)) * 0.5;
+        kinetic + q[1] * v[0] * 0.4 + (t * t) * v[2] * q[0] * 0.1 - (q[0] + t * 0.5).cos() * 0.6 - q[2] * q[2] * 0.5
+    }
+    fn constraint<S: Scalar>(&self, t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
+        ([[-q[1], (t + q[2]).sin() * 0.5, S::constant(1.0)]], [t.cos() * 0.3 + q[0] * 0.2])
+    }
+    fn force<S: Scalar>(&self, t: S, q: &[S; 3], v: &[S; 3]) -> Option<[S; 3]> {
+        Some([(t * 2.0).cos() * 0.4 - v[0] * 0.1, -(v[0] * v[1]) * 0.2, q[1] * v[2] * -0.3])
+    }
+}
