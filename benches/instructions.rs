@@ -10,7 +10,7 @@ use dla::{Dla, Form, Gauss, OneStep, Schedule, State, drive};
 use lagrangian::{System, With};
 use scene::{Acting, Scene, SceneSystem, Visitor};
 use sleigh::effects::{Bowl, Drag, EggCrate};
-use sleigh::{Sleigh, SleighState};
+use sleigh::{Guide, Guided, Sleigh, SleighState};
 use std::hint::black_box;
 use std::process::{Command, ExitCode};
 
@@ -32,12 +32,21 @@ const CASES: &[Case] = &[
     ("dla, bowl + drag, list", |steps| dla(&with(vec![Acting::Bowl(bowl()), Acting::Drag(drag())]), steps), None),
     ("dla, bowl + drag + egg crate, typed", |steps| dla(&with((bowl(), drag(), egg_crate())), steps), None),
     ("dla, bowl + drag + egg crate, list", |steps| dla(&with(three()), steps), None),
+    ("dla, servo, typed", |steps| servo(&With { body: guided(), effects: () }, steps), None),
+    ("dla, servo, scene", |steps| scene(SERVO, steps), Some("dla, servo, typed")),
     ("gauss8, the sleigh itself", |steps| gauss(&sleigh(), steps), None),
     ("gauss8, no effect, typed", |steps| gauss(&with(()), steps), Some("gauss8, the sleigh itself")),
     ("gauss8, bowl, typed", |steps| gauss(&with((bowl(),)), steps), None),
 ];
 
 const BOWL: &str = "\n[[effects]]\nkind = \"bowl\"\nstiffness = [0.1, 0.1]\n";
+
+const SERVO: &str = "\n[[effects]]\nkind = \"servo\"\nspeed = 0.7\n";
+
+/// A sleigh whose speed is imposed.
+fn guided() -> Guided<1> {
+    Guided::<1>::servo(sleigh(), Guide::Speed(0.7.into())).expect("finite")
+}
 
 fn sleigh() -> Sleigh {
     Sleigh::new(1.0, 1.0, 0.5).expect("positive parameters")
@@ -69,6 +78,14 @@ fn go<Sys: System<3, 1>>(system: &Sys, mut method: impl OneStep<Sys, 3, 1>, step
     let mut state = State::new(q, v, system.angles());
     let schedule = Schedule { t0: 0.0, step: 0.05, steps };
     drive(black_box(system), &mut method, &schedule, &mut state, ()).expect("the steps succeed");
+    black_box(state);
+}
+
+fn servo<Sys: System<3, 2>>(system: &Sys, steps: u64) {
+    let (q, v) = black_box(SleighState { speed: 0.7, turn_rate: 0.1, ..SleighState::default() }).to_coordinates();
+    let mut state = State::new(q, v, system.angles());
+    let schedule = Schedule { t0: 0.0, step: 0.05, steps };
+    drive(black_box(system), &mut Dla::midpoint(), &schedule, &mut state, ()).expect("the steps succeed");
     black_box(state);
 }
 
