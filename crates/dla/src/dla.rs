@@ -1,9 +1,10 @@
+use crate::dependent::{independent_rows, rows_left_out};
 use crate::projection::Projection;
 use crate::{Equations, Newton, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::linear::Singular;
 use lagrangian::{
-    AdmissibleBasis, Alpha, DiscreteConstraint, DiscreteLagrangian, Dual, Midpoint, NotAWeight, Saddle, System,
-    Trapezoid, momentum,
+    AdmissibleBasis, Alpha, DiscreteConstraint, DiscreteLagrangian, Dual, Midpoint, NotAWeight, Rows, Saddle, System,
+    Trapezoid, momentum, position_misses, reaction_rows,
 };
 use std::array::from_fn;
 
@@ -39,6 +40,12 @@ pub enum Form {
 /// node's multiplier `lambda + mu`; as a map on the distribution it needs no special first step, and is self-adjoint where
 /// the discrete Lagrangian and the discrete constraint are. It keeps both constraints to round-off. It does not bound
 /// the energy in general.
+///
+/// A constraint on positions, [`System::holonomic`], takes the place of its discrete one: `g(q1) = 0` instead of `w_d = 0`.
+/// With such constraints alone this is RATTLE, by the discrete Lagrangian at hand (Marsden and West 2001, section 3.5.4; Jay
+/// 1993). A constraint that is not affine, [`System::nonlinear`], acts along `d phi / dv` at the two nodes and is met by the
+/// mean velocity at the rule's nodes, and by the velocity at the end. Rows that depend on one another and agree are met by
+/// as many of them as are independent, with multipliers; the others hold in the nodes, which is checked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dla<L, C> {
     /// The discrete Lagrangian `L_d`.
@@ -106,8 +113,37 @@ where
             state.advance(&step.increment, step.velocity, Some(step.xi));
             return Ok(StepReport { impulses: step.impulses, iterations: step.iterations, work: None });
         }
+        let mut some = None;
+        loop {
+            match self.attempt(system, t0, h, state, some) {
+                Err(error) if some.is_none() && error.is_singular() => {
+                    some = Some(independent_rows(system, t0, &q0, &v0, error)?);
+                }
+                made => return made,
+            }
+        }
+    }
+}
+
+impl<L, C> Dla<L, C> {
+    /// The step for all rows of the constraint, or for some of them alone.
+    #[inline(always)]
+    fn attempt<Sys, const N: usize, const M: usize>(
+        &self,
+        system: &Sys,
+        t0: f64,
+        h: f64,
+        state: &mut State<N>,
+        some: Option<Rows>,
+    ) -> Result<StepReport<M>, StepError>
+    where
+        Sys: System<N, M>,
+        L: DiscreteLagrangian<Sys, N, M>,
+        C: DiscreteConstraint<Sys, N, M>,
+    {
+        let (q0, v0) = (*state.q(), *state.v());
         let in_basis = self.form != Form::Multipliers;
-        let basis = |t, q: &[f64; N]| if in_basis { system.admissible_basis(t, q) } else { None };
+        let basis = |t, q: &[f64; N]| if in_basis && some.is_none() { system.admissible_basis(t, q) } else { None };
 
         // The increment, through the mean velocity.
         let mut increment = Increment {
@@ -115,10 +151,11 @@ where
             system,
             t0,
             h,
-            q0,
+            state,
             p0: momentum(system, t0, &q0, &v0),
-            a0: system.constraint(t0, &q0).0,
+            a0: reaction_rows(system, t0, &q0, &v0),
             basis: basis(t0, &q0),
+            some,
             lambda: [0.0; M],
         };
         let mut v = v0;
@@ -136,9 +173,13 @@ where
         let d = v.map(|v| h * v);
         let (t1, q1) = (t0 + h, state.ahead(&d));
         let (v1, mu) = Projection::new(system, t1, q1, p1, basis(t1, &q1))
+            .of(some)
             .solve(&self.newton, v)
             .map_err(|source| StepError::Newton { stage: Stage::Projection, source })?;
 
+        if let Some(rows) = some {
+            rows_left_out(system, t1, &q1, &v1, rows)?;
+        }
         state.advance(&d, v1, None);
         Ok(StepReport { impulses: [lambda, mu], iterations, work: None })
     }
@@ -154,10 +195,11 @@ struct Increment<'a, Sys, L, C, const N: usize, const M: usize> {
     system: &'a Sys,
     t0: f64,
     h: f64,
-    q0: [f64; N],
+    state: &'a State<N>,
     p0: [f64; N],
     a0: [[f64; N]; M],
     basis: Option<AdmissibleBasis<f64, N, M>>,
+    some: Option<Rows>,
     lambda: [f64; M],
 }
 
@@ -169,11 +211,15 @@ where
 {
     #[inline]
     fn correction(&mut self, v: &[f64; N]) -> Result<[f64; N], Singular> {
-        let Self { dla, system, t0, h, q0, .. } = *self;
+        let Self { dla, system, t0, h, state, .. } = *self;
+        let q0 = *state.q();
         let (lagrangian, constraint) = (&dla.lagrangian, &dla.constraint);
         let l_d = lagrangian.derivatives(system, t0, h, &q0, v);
         let mut residual: [f64; N] = from_fn(|i| self.p0[i] + l_d.d1[i]);
         let mut block = l_d.d1d2.map(|row| row.map(|x| h * x));
+
+        // Where it constrains positions, in place of the discrete constraint.
+        let positions = position_misses(system, t0 + h, &state.ahead(&v.map(|v| h * v)));
 
         // Forces and constraint with their derivatives in v.
         let (t, step) = (Dual::fixed(t0), Dual::fixed(h));
@@ -187,15 +233,17 @@ where
             }
         }
         let w_d = constraint.residual(system, t, step, &q, &v);
+        let (mut rows, mut level) = (w_d.map(|w| w.eps), w_d.map(|w| -w.re));
+        if let Some(positions) = positions {
+            for k in 0..M {
+                if let Some(g) = positions[k] {
+                    (rows[k], level[k]) = (g.eps, -g.re / h);
+                }
+            }
+        }
 
-        let saddle = Saddle {
-            block,
-            transposed: self.a0,
-            rows: w_d.map(|w| w.eps),
-            right: residual.map(|r| -r),
-            level: w_d.map(|w| -w.re),
-        };
-        let (correction, lambda) = saddle.solve(self.basis.as_ref())?;
+        let saddle = Saddle { block, transposed: self.a0, rows, right: residual.map(|r| -r), level };
+        let (correction, lambda) = saddle.solve_for(self.basis.as_ref(), self.some)?;
         self.lambda = lambda;
         Ok(correction)
     }

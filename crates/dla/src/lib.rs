@@ -7,6 +7,7 @@
 //! This crate knows no particular system and no file; its [`Newton`] solver knows neither time nor mechanics.
 
 mod composition;
+mod dependent;
 mod dla;
 mod drive;
 mod energy;
@@ -16,13 +17,16 @@ mod lobatto;
 mod newton;
 mod one_step;
 mod pieces;
+mod positions;
 mod projection;
+mod start;
 mod state;
 mod trajectory;
 mod work;
 
 pub use crate::dla::{Dla, Form};
 pub use composition::Composition;
+pub use dependent::{Dependency, Dependent};
 pub use drive::{Observer, Part, RunError, Schedule, View, drive, drive_part};
 pub use energy::{Energy, Gradient};
 pub use gauss::Gauss;
@@ -31,6 +35,7 @@ pub use lobatto::Lobatto;
 pub use newton::{Equations, Newton, NewtonError};
 pub use one_step::{OneStep, Stage, StepError, StepReport};
 pub use pieces::{onto_constraint, piece_by_piece, pieces};
+pub use start::{Start, consistent_start};
 pub use state::State;
 pub use trajectory::{Node, Trajectory};
 pub use work::Work;

@@ -1,11 +1,12 @@
 use crate::linear::Singular;
-use crate::{Dual, HyperDual, Saddle, System, constraint_residual, mass_matrix};
+use crate::{Dual, HyperDual, Saddle, System, constraint_residual, mass_matrix, reaction_rows};
 use std::array::from_fn;
 use thiserror::Error;
 
 /// The continuous equations of motion at one state.
 ///
-/// `d/dt L_v - L_q = F + A' lambda`, `d/dt (A v + b) = 0`.
+/// `d/dt L_v - L_q = F + A' lambda`, `d/dt (A v + b) = 0`. Of a constraint `phi(t, q, v) = 0` that is not affine, `A` is
+/// `d phi / dv`, and its rate vanishes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motion<const N: usize, const M: usize> {
     /// Accelerations `v'`.
@@ -47,7 +48,7 @@ impl<const N: usize, const M: usize> Motion<N, M> {
         let along_q: [Dual<f64, 1>; N] = from_fn(|i| Dual { re: q[i], eps: [v[i]] });
         let rate = constraint_residual(system, along_t, &along_q, &v.map(Dual::fixed));
 
-        let (a, _) = system.constraint(t, q);
+        let a = reaction_rows(system, t, q, v);
         let saddle = Saddle {
             block: mass,
             transposed: a,

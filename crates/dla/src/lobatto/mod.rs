@@ -3,6 +3,7 @@ mod point;
 mod stages;
 mod tables;
 
+use crate::positions::affine_only;
 use crate::projection::Projection;
 use crate::{Newton, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::{System, momentum};
@@ -31,6 +32,9 @@ use tables::Tables;
 /// as unknowns, and nothing but `(q, v)` is carried from step to step. With two stages and a constant mass matrix it is the
 /// trapezoidal [`Dla`](crate::Dla). (Jay 2003, BIT 43, 93-106.)
 ///
+/// Of a constraint on positions the stages meet the function itself, `g(Q_i) = 0` for `i = 2 .. S`, of which the equations
+/// above are the rates; the last stage is the node (Jay 1996, SIAM J. Numer. Anal. 33, 368-387).
+///
 /// All stages are solved for together by Newton's method with the exact Jacobian, on the stack.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lobatto<const S: usize> {
@@ -57,6 +61,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
     /// The impulses in the report are those of all stages, each shared between the two ends as a lever would.
     #[inline]
     fn step(&mut self, system: &Sys, t0: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        affine_only(system, t0, state)?;
         let Tables { c, b, .. } = &self.tables;
         let (q0, v0) = (*state.q(), *state.v());
         let p0 = momentum(system, t0, &q0, &v0);
