@@ -1,4 +1,4 @@
-use crate::{State, StepError};
+use crate::{NewtonError, Stage, State, StepError};
 use lagrangian::linear::larger;
 use lagrangian::{
     RowSpace, Rows, System, constraint_residual, position_misses, rank_is_constant, reaction_rows, row_space,
@@ -82,6 +82,24 @@ pub(crate) fn independent_rows<Sys: System<N, M>, const N: usize, const M: usize
         return Ok(found.independent);
     };
     Err(Dependent { rows: found.involved, time: t, distance: found.distance, dependency }.into())
+}
+
+/// The error of the projection at the end of a step, with the rows of the constraint named where their rank drops there.
+#[cold]
+#[inline(never)]
+pub(crate) fn named_at_end<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t1: f64,
+    q1: &[f64; N],
+    v1: &[f64; N],
+    source: NewtonError,
+) -> StepError {
+    let error = StepError::Newton { stage: Stage::Projection, source };
+    if !error.is_singular() {
+        return error;
+    }
+    // Rows that are redundant there are so at the beginning, too, and are seen there.
+    independent_rows(system, t1, q1, v1, error).err().unwrap_or(error)
 }
 
 /// The error of a step, with the rows of the constraint named where they depend on one another at its beginning.

@@ -1,4 +1,4 @@
-use crate::dependent::{independent_rows, rows_left_out};
+use crate::dependent::{independent_rows, named_at_end, rows_left_out};
 use crate::projection::Projection;
 use crate::{Equations, Newton, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::linear::Singular;
@@ -175,7 +175,7 @@ impl<L, C> Dla<L, C> {
         let (v1, mu) = Projection::new(system, t1, q1, p1, basis(t1, &q1))
             .of(some)
             .solve(&self.newton, v)
-            .map_err(|source| StepError::Newton { stage: Stage::Projection, source })?;
+            .map_err(|source| named_at_end(system, t1, &q1, &v0, source))?;
 
         if let Some(rows) = some {
             rows_left_out(system, t1, &q1, &v1, rows)?;
