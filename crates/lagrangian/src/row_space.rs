@@ -4,7 +4,7 @@ use std::array::from_fn;
 /// The span of the rows of a constraint, in a metric that has no units: its dimension is their rank.
 ///
 /// Rows are covectors, and compared by the inverse of the mass matrix where that is positive definite; elsewhere every
-/// coordinate is measured by the largest entry of its column. Each row counts relative to its own size. Orthogonal vectors
+/// coordinate is measured by its own mass, and one without by the largest entry of its column. Each row counts relative to its own size. Orthogonal vectors
 /// are found with the farthest row next, each made orthogonal twice. (Golub and Van Loan 2013, Matrix Computations,
 /// sections 5.2.8 and 5.4.2.)
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +38,7 @@ impl<const N: usize, const M: usize> RowSpace<N, M> {
     /// The span of `rows`. One that lies nearer to the span of the others than `tolerance` times its size depends on them.
     #[must_use]
     pub fn new(rows: &[[f64; N]; M], mass: &[[f64; N]; N], tolerance: f64) -> Self {
-        let metric = cholesky(mass).unwrap_or_else(|| by_columns(rows));
+        let metric = cholesky(mass).unwrap_or_else(|| by_coordinates(rows, mass));
         let mut rest = rows.map(|row| lowered(&metric, &row));
         let size = rest.map(|row| norm(&row));
         for k in 0..M {
@@ -185,14 +185,18 @@ fn cholesky<const N: usize>(mass: &[[f64; N]; N]) -> Option<[[f64; N]; N]> {
     Some(l)
 }
 
-/// The metric that measures every coordinate by the largest entry of its column.
-fn by_columns<const N: usize, const M: usize>(rows: &[[f64; N]; M]) -> [[f64; N]; N] {
-    let mut l = [[0.0; N]; N];
-    for i in 0..N {
-        let largest = rows.iter().fold(0.0, |m: f64, row| m.max(row[i].abs()));
-        l[i][i] = if largest > 0.0 { largest } else { 1.0 };
-    }
-    l
+/// The metric that measures every coordinate by its own mass, and one without by the largest entry of its column, the rows
+/// scaled to one in the others.
+fn by_coordinates<const N: usize, const M: usize>(rows: &[[f64; N]; M], mass: &[[f64; N]; N]) -> [[f64; N]; N] {
+    let whole = |x: f64| if x > 0.0 && x.is_finite() { x } else { 1.0 };
+    let massive = |i: &usize| mass[*i][*i] > 0.0 && mass[*i][*i].is_finite();
+    let measured =
+        |k: usize| (0..N).filter(massive).fold(0.0, |m: f64, i| m.max((rows[k][i] / mass[i][i].sqrt()).abs()));
+    let column: [f64; N] = from_fn(|i| match massive(&i) {
+        true => mass[i][i].sqrt(),
+        false => whole((0..M).fold(0.0, |m: f64, k| m.max((rows[k][i] / whole(measured(k))).abs()))),
+    });
+    from_fn(|i| from_fn(|j| if i == j { column[i] } else { 0.0 }))
 }
 
 /// `L^-1 a` of a row.
