@@ -22,6 +22,9 @@ pub(crate) fn onto_positions<Sys: System<N, M>, const N: usize, const M: usize>(
     for iteration in 1..=ITERATIONS {
         let q1 = state.ahead(&increment);
         let Some(misses) = position_misses(system, t1, &q1) else { return Ok(increment) };
+        if misses.iter().flatten().all(|g| g.re == 0.0) {
+            return Ok(increment);
+        }
         let moved = correction(system, t1, &q1, v, &misses)
             .map_err(|source| fail(NewtonError::Singular { iteration, source }))?;
         for i in 0..N {
@@ -32,8 +35,16 @@ pub(crate) fn onto_positions<Sys: System<N, M>, const N: usize, const M: usize>(
             return Err(fail(NewtonError::NotFinite { iteration }));
         }
         // Where corrections of rounding no longer shrink, nothing is nearer.
-        if step == 0.0 || (step <= 16.0 * N as f64 * f64::EPSILON * size && step >= 0.25 * before) {
-            return Ok(increment);
+        if step <= 16.0 * N as f64 * f64::EPSILON * size && step >= 0.25 * before {
+            let off = misses.iter().flatten().any(|g| {
+                let rounding: f64 = (0..N).map(|i| (g.eps[i] * q1[i]).abs()).sum();
+                g.re.abs() > RowSpace::<N, M>::ROUNDING * rounding
+            });
+            // Rows that depend on one another and disagree leave a rest that no move takes away.
+            return match off {
+                true => Err(fail(NewtonError::IterationLimit { iterations: iteration, correction: step / size })),
+                false => Ok(increment),
+            };
         }
         before = step;
     }
@@ -52,9 +63,6 @@ fn correction<Sys: System<N, M>, const N: usize, const M: usize>(
     v: &[f64; N],
     misses: &[Option<Dual<f64, N>>; M],
 ) -> Result<[f64; N], lagrangian::linear::Singular> {
-    if misses.iter().flatten().all(|g| g.re == 0.0) {
-        return Ok([0.0; N]);
-    }
     let (_, mass) = mass_matrix(system, t, q, v);
     // Rows of the velocities are zero here, and so left out.
     let rows = misses.map(|g| g.map_or([0.0; N], |g| g.eps));

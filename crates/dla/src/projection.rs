@@ -1,6 +1,9 @@
-use crate::{Equations, Newton, NewtonError};
+use crate::dependent::{independent_rows, rows_left_out};
+use crate::{Equations, Newton, NewtonError, Stage, StepError};
 use lagrangian::linear::Singular;
-use lagrangian::{AdmissibleBasis, HyperDual, Rows, Saddle, System, constraint_residual, mass_matrix, reaction_rows};
+use lagrangian::{
+    AdmissibleBasis, HyperDual, Rows, Saddle, System, constraint_residual, mass_matrix, momentum, reaction_rows,
+};
 use std::array::from_fn;
 
 /// The equations for the velocity at the end of a step, with the multiplier there:
@@ -40,6 +43,33 @@ impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Projection<'a, Sys, 
         newton.solve(&mut self, &mut v1)?;
         Ok((v1, self.mu))
     }
+}
+
+/// The velocity that meets the constraints, by the impulse that they give one that does not: `L_v(q, v1) = L_v(q, v) + A' mu`.
+/// Rows that depend on one another and agree are no obstacle.
+///
+/// # Errors
+/// [`StepError::Newton`] where the constraints do not determine it, [`StepError::Dependent`] where rows drop or disagree.
+pub(crate) fn project<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+) -> Result<[f64; N], StepError> {
+    let (p, newton) = (momentum(system, t, q, v), Newton::default());
+    let fail = |source| StepError::Newton { stage: Stage::Projection, source };
+    let all = Projection::new(system, t, *q, p, system.admissible_basis(t, q));
+    let error = match all.solve(&newton, *v) {
+        Ok((v1, _)) => return Ok(v1),
+        Err(source) => fail(source),
+    };
+    if !error.is_singular() {
+        return Err(error);
+    }
+    let rows = independent_rows(system, t, q, v, error)?;
+    let (v1, _) = Projection::new(system, t, *q, p, None).of(Some(rows)).solve(&newton, *v).map_err(fail)?;
+    rows_left_out(system, t, q, &v1, rows)?;
+    Ok(v1)
 }
 
 impl<Sys: System<N, M>, const N: usize, const M: usize> Equations<N> for Projection<'_, Sys, N, M> {

@@ -1,9 +1,8 @@
-use crate::dependent::independent_rows;
 use crate::positions::onto_positions;
-use crate::projection::Projection;
-use crate::{Equations, Newton, NewtonError, Stage, State, StepError};
+use crate::projection::project;
+use crate::{Equations, Newton, Stage, State, StepError};
 use lagrangian::linear::Singular;
-use lagrangian::{HyperDual, RowSpace, Rows, Saddle, System, mass_matrix, momentum, row_space};
+use lagrangian::{HyperDual, RowSpace, Saddle, System, mass_matrix};
 use std::array::from_fn;
 
 /// A start that meets every constraint.
@@ -26,8 +25,8 @@ pub struct Start<const N: usize> {
 /// the Lagrangian is quadratic in velocities. Rows that depend on one another and agree are no obstacle.
 ///
 /// # Errors
-/// [`StepError::Newton`] where there is none nearby; [`StepError::Dependent`] where the rank of the constraints drops there,
-/// or they contradict one another.
+/// [`StepError::Newton`] where there is none nearby, or positions contradict one another; [`StepError::Dependent`] where the rank of the constraints drops there,
+/// or their velocities contradict one another.
 pub fn consistent_start<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
     t: f64,
@@ -46,32 +45,12 @@ pub fn consistent_start<Sys: System<N, M>, const N: usize, const M: usize>(
         way = onto_positions(system, t, &given, way, v)?;
     }
     let q1 = given.ahead(&way);
-    let some = all_or_some(system, t, &q1, v)?;
-    let basis = if some.is_none() { system.admissible_basis(t, &q1) } else { None };
-    let (v1, _) = Projection::new(system, t, q1, momentum(system, t, &q1, v), basis)
-        .of(some)
-        .solve(&Newton::default(), *v)
-        .map_err(|source| StepError::Newton { stage: Stage::Projection, source })?;
+    let v1 = project(system, t, &q1, v)?;
     let length = |d: &[f64; N]| {
         let (_, mass) = mass_matrix(system, t, &q1, &v1);
         (0..N).map(|i| (0..N).map(|j| d[i] * mass[i][j] * d[j]).sum::<f64>()).sum::<f64>().max(0.0).sqrt()
     };
     Ok(Start { q: q1, v: v1, moved: length(&way), changed: length(&from_fn(|i| v1[i] - v[i])) })
-}
-
-/// The independent rows where they are fewer than all.
-fn all_or_some<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
-    t: f64,
-    q: &[f64; N],
-    v: &[f64; N],
-) -> Result<Option<Rows>, StepError> {
-    let space = row_space::<_, N, M>(system, t, q, v, RowSpace::<N, M>::ROUNDING);
-    if space.rank() == M {
-        return Ok(None);
-    }
-    let source = NewtonError::Singular { iteration: 1, source: Singular { column: space.rank(), pivot: 0.0 } };
-    independent_rows(system, t, q, v, StepError::Newton { stage: Stage::Projection, source }).map(Some)
 }
 
 /// The equations for the move `d` to the nearest place: `M d + A(q + d)' nu = 0`, `g(q + d) = 0`.

@@ -85,6 +85,23 @@ pub fn row_space<Sys: System<N, M>, const N: usize, const M: usize>(
     RowSpace::new(&reaction_rows(system, t, q, v), &mass, tolerance)
 }
 
+/// Independent rows that imply the others, where rows depend on one another, do so nearby, and agree; none elsewhere.
+#[cold]
+#[inline(never)]
+#[must_use]
+pub fn redundant_rows<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+) -> Option<Rows> {
+    let space = row_space::<_, N, M>(system, t, q, v, RowSpace::<N, M>::ROUNDING);
+    let found = space.dependence();
+    let redundant =
+        space.rank() < M && rank_is_constant(system, t, q, v, &space) && rows_are_consistent(system, t, q, v, found);
+    redundant.then_some(found.independent)
+}
+
 /// Whether the rank of the constraint is the same nearby, to first order: a combination of rows that vanishes at the point
 /// has derivatives within the span.
 #[must_use]

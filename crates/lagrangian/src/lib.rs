@@ -37,7 +37,9 @@ mod with;
 
 pub use basis::AdmissibleBasis;
 pub use bracket::{Bracket, EnergySlope, energy_slope, inverse_reduced_mass};
-pub use classify::{Classification, RowKind, classify, rank_is_constant, row_space, rows_are_consistent};
+pub use classify::{
+    Classification, RowKind, classify, rank_is_constant, redundant_rows, row_space, rows_are_consistent,
+};
 pub use closed::{ClosedStep, ClosedStepError};
 pub use discrete::{Derivatives, DiscreteConstraint, DiscreteLagrangian};
 pub use dual::Dual;

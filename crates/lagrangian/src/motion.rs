@@ -1,12 +1,13 @@
 use crate::linear::Singular;
-use crate::{Dual, HyperDual, Saddle, System, constraint_residual, mass_matrix, reaction_rows};
+use crate::{Dual, HyperDual, Saddle, System, constraint_residual, mass_matrix, reaction_rows, redundant_rows};
 use std::array::from_fn;
 use thiserror::Error;
 
 /// The continuous equations of motion at one state.
 ///
 /// `d/dt L_v - L_q = F + A' lambda`, `d/dt (A v + b) = 0`. Of a constraint `phi(t, q, v) = 0` that is not affine, `A` is
-/// `d phi / dv`, and its rate vanishes.
+/// `d phi / dv`, and its rate vanishes. Rows that depend on one another and agree are met by those that are independent, and the
+/// multipliers of the others are zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motion<const N: usize, const M: usize> {
     /// Accelerations `v'`.
@@ -57,7 +58,13 @@ impl<const N: usize, const M: usize> Motion<N, M> {
             level: rate.map(|r| -r.eps[0]),
         };
         let basis = system.admissible_basis(t, q);
-        let (acceleration, lambda) = saddle.solve(basis.as_ref()).map_err(|source| MotionError { time: t, source })?;
+        let (acceleration, lambda) = saddle
+            .solve(basis.as_ref())
+            .or_else(|source| match redundant_rows(system, t, q, v) {
+                Some(rows) => saddle.solve_some(rows),
+                None => Err(source),
+            })
+            .map_err(|source| MotionError { time: t, source })?;
         Ok(Self { acceleration, multiplier: lambda.map(|l| -l) })
     }
 }

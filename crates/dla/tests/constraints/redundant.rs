@@ -1,7 +1,11 @@
 //! Rows that depend on one another: everywhere, at a place, or in what they ask for.
 
 use crate::tools::{distance, end, misses};
-use dla::{Dependency, Dependent, Dla, Gauss, Lobatto, OneStep, RunError, Schedule, State, StepError, drive};
+use allocation_counter::measure;
+use dla::{
+    Dependency, Dependent, Dla, Gauss, Lobatto, OneStep, RunError, Schedule, State, StepError, consistent_start, drive,
+    onto_constraint,
+};
 use lagrangian::{Constraint, Rows, Scalar, System};
 use models::{CompoundPendulum, Model};
 use std::array::from_fn;
@@ -68,6 +72,43 @@ fn redundant_rows_that_agree() {
     let with = end(&redundant, &mut Dla::midpoint(), pendulum.start(), 0.02, 100);
     let error = distance(&with, &(alone.unwrapped(), *alone.v()));
     assert!(error <= 1e-12, "{error:e}");
+}
+
+/// The equations of motion, the start and the impulse at a jump go on, too.
+#[test]
+fn redundant_rows_outside_of_steps() {
+    let (pendulum, redundant) = (pendulum(), third_row(0.0, 0.0));
+    let (q, v) = pendulum.start();
+    let motion = redundant.motion(0.0, &q, &v).unwrap();
+    approx::assert_abs_diff_eq!(
+        &motion.acceleration[..],
+        &pendulum.accelerations_by_hand(0.0, &q, &v)[..],
+        epsilon = 1e-13
+    );
+    let off = (q.map(|q| q + 0.1), v.map(|v| v + 0.1));
+    let expected = consistent_start(&pendulum, 0.0, &off.0, &off.1).unwrap();
+    let start = consistent_start(&redundant, 0.0, &off.0, &off.1).unwrap();
+    approx::assert_abs_diff_eq!(&start.q[..], &expected.q[..], epsilon = 1e-14);
+    approx::assert_abs_diff_eq!(&start.v[..], &expected.v[..], epsilon = 1e-14);
+    let mut state = State::new(q, off.1, [false, false, true]);
+    onto_constraint(&redundant, 0.0, &mut state).unwrap();
+    assert!(lagrangian::constraint_residual(&redundant, 0.0, &q, state.v()).iter().all(|slip| slip.abs() <= 1e-15));
+    // Rows that disagree have no start, at any place or at any velocity.
+    assert!(consistent_start(&third_row(0.01, 0.0), 0.0, &q, &v).is_err());
+    assert!(consistent_start(&third_row(0.0, 0.1), 0.0, &q, &v).is_err());
+}
+
+/// Nor does the search for independent rows allocate.
+#[test]
+fn no_allocation() {
+    let redundant = third_row(0.0, 0.0);
+    let (q, v) = pendulum().start();
+    let mut state = State::new(q, v, [false, false, true]);
+    let counted = measure(|| {
+        Dla::midpoint().step(&redundant, 0.0, 0.01, &mut state).unwrap();
+    });
+    assert_eq!(counted.count_total, 0);
+    assert!(measure(|| drop(std::hint::black_box(vec![1]))).count_total > 0);
 }
 
 /// Methods that need independent rows say which are not.
