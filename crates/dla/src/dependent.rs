@@ -84,22 +84,44 @@ pub(crate) fn independent_rows<Sys: System<N, M>, const N: usize, const M: usize
     Err(Dependent { rows: found.involved, time: t, distance: found.distance, dependency }.into())
 }
 
-/// The error of the projection at the end of a step, with the rows of the constraint named where their rank drops there.
+/// The error of the equations at a place, with the rows of the constraint named where their rank drops there or they
+/// contradict one another.
 #[cold]
 #[inline(never)]
-pub(crate) fn named_at_end<Sys: System<N, M>, const N: usize, const M: usize>(
+pub(crate) fn named_at<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
-    t1: f64,
-    q1: &[f64; N],
-    v1: &[f64; N],
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+    stage: Stage,
     source: NewtonError,
 ) -> StepError {
-    let error = StepError::Newton { stage: Stage::Projection, source };
+    let error = StepError::Newton { stage, source };
     if !error.is_singular() {
         return error;
     }
-    // Rows that are redundant there are so at the beginning, too, and are seen there.
-    independent_rows(system, t1, q1, v1, error).err().unwrap_or(error)
+    // That rows are redundant is seen at the beginning of the step, and is no error of the place.
+    independent_rows(system, t, q, v, error).err().unwrap_or(error)
+}
+
+/// The error of the equations of a step, with rows named as by [`named_at`] at its beginning, in its middle or at its end.
+#[cold]
+#[inline(never)]
+pub(crate) fn named_along<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    (t0, h): (f64, f64),
+    state: &State<N>,
+    v: &[f64; N],
+    source: NewtonError,
+) -> StepError {
+    let mut error = StepError::Newton { stage: Stage::Increment, source };
+    for part in [0.0, 0.5, 1.0] {
+        if error.is_singular() {
+            let q = state.ahead(&v.map(|v| part * h * v));
+            error = named_at(system, t0 + part * h, &q, v, Stage::Increment, source);
+        }
+    }
+    error
 }
 
 /// The error of a step, with the rows of the constraint named where they depend on one another at its beginning.

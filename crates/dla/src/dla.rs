@@ -1,10 +1,10 @@
-use crate::dependent::{independent_rows, named_at_end, rows_left_out};
+use crate::dependent::{named_along, named_at, rows_left_out};
 use crate::projection::Projection;
 use crate::{Equations, Newton, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::linear::Singular;
 use lagrangian::{
     AdmissibleBasis, Alpha, DiscreteConstraint, DiscreteLagrangian, Dual, Midpoint, NotAWeight, Rows, Saddle, System,
-    Trapezoid, momentum, position_misses, reaction_rows,
+    Trapezoid, momentum, position_misses, reaction_rows, redundant_rows,
 };
 use std::array::from_fn;
 
@@ -113,37 +113,8 @@ where
             state.advance(&step.increment, step.velocity, Some(step.xi));
             return Ok(StepReport { impulses: step.impulses, iterations: step.iterations, work: None });
         }
-        let mut some = None;
-        loop {
-            match self.attempt(system, t0, h, state, some) {
-                Err(error) if some.is_none() && error.is_singular() => {
-                    some = Some(independent_rows(system, t0, &q0, &v0, error)?);
-                }
-                made => return made,
-            }
-        }
-    }
-}
-
-impl<L, C> Dla<L, C> {
-    /// The step for all rows of the constraint, or for some of them alone.
-    #[inline(always)]
-    fn attempt<Sys, const N: usize, const M: usize>(
-        &self,
-        system: &Sys,
-        t0: f64,
-        h: f64,
-        state: &mut State<N>,
-        some: Option<Rows>,
-    ) -> Result<StepReport<M>, StepError>
-    where
-        Sys: System<N, M>,
-        L: DiscreteLagrangian<Sys, N, M>,
-        C: DiscreteConstraint<Sys, N, M>,
-    {
-        let (q0, v0) = (*state.q(), *state.v());
         let in_basis = self.form != Form::Multipliers;
-        let basis = |t, q: &[f64; N]| if in_basis && some.is_none() { system.admissible_basis(t, q) } else { None };
+        let basis = |t, q: &[f64; N]| if in_basis { system.admissible_basis(t, q) } else { None };
 
         // The increment, through the mean velocity.
         let mut increment = Increment {
@@ -155,15 +126,15 @@ impl<L, C> Dla<L, C> {
             p0: momentum(system, t0, &q0, &v0),
             a0: reaction_rows(system, t0, &q0, &v0),
             basis: basis(t0, &q0),
-            some,
+            some: None,
             lambda: [0.0; M],
         };
         let mut v = v0;
         let iterations = self
             .newton
             .solve(&mut increment, &mut v)
-            .map_err(|source| StepError::Newton { stage: Stage::Increment, source })?;
-        let lambda = increment.lambda;
+            .map_err(|source| named_along(system, (t0, h), state, &v, source))?;
+        let (lambda, some) = (increment.lambda, increment.some);
 
         // The momentum at the end, projected onto the constraint there.
         let mut p1 = self.lagrangian.d2(system, t0, h, &q0, &v);
@@ -175,7 +146,7 @@ impl<L, C> Dla<L, C> {
         let (v1, mu) = Projection::new(system, t1, q1, p1, basis(t1, &q1))
             .of(some)
             .solve(&self.newton, v)
-            .map_err(|source| named_at_end(system, t1, &q1, &v0, source))?;
+            .map_err(|source| named_at(system, t1, &q1, &v0, Stage::Projection, source))?;
 
         if let Some(rows) = some {
             rows_left_out(system, t1, &q1, &v1, rows)?;
@@ -199,6 +170,7 @@ struct Increment<'a, Sys, L, C, const N: usize, const M: usize> {
     p0: [f64; N],
     a0: [[f64; N]; M],
     basis: Option<AdmissibleBasis<f64, N, M>>,
+    /// The rows that are solved for, where they depend on one another and agree.
     some: Option<Rows>,
     lambda: [f64; M],
 }
@@ -243,7 +215,28 @@ where
         }
 
         let saddle = Saddle { block, transposed: self.a0, rows, right: residual.map(|r| -r), level };
-        let (correction, lambda) = saddle.solve_for(self.basis.as_ref(), self.some)?;
+        match saddle.solve(self.basis.as_ref()) {
+            Ok((correction, lambda)) => {
+                self.lambda = lambda;
+                Ok(correction)
+            }
+            Err(source) => self.solve_redundant(&saddle, source),
+        }
+    }
+}
+
+impl<Sys, L, C, const N: usize, const M: usize> Increment<'_, Sys, L, C, N, M>
+where
+    Sys: System<N, M>,
+{
+    /// The solution for independent rows, where the others follow from them.
+    #[cold]
+    #[inline(never)]
+    fn solve_redundant(&mut self, saddle: &Saddle<N, M>, source: Singular) -> Result<[f64; N], Singular> {
+        if self.some.is_none() {
+            self.some = redundant_rows(self.system, self.t0, self.state.q(), self.state.v());
+        }
+        let (correction, lambda) = saddle.solve_some(self.some.ok_or(source)?)?;
         self.lambda = lambda;
         Ok(correction)
     }

@@ -95,7 +95,12 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Equations<N> for Project
             right: from_fn(|i| self.p1[i] - p[i]),
             level: slip.map(|s| -s),
         };
-        let (correction, minus_mu) = saddle.solve_for(self.basis.as_ref(), self.some)?;
+        if let Some(rows) = self.some {
+            let (correction, minus_mu) = saddle.solve_some(rows)?;
+            self.mu = minus_mu.map(|m| -m);
+            return Ok(correction);
+        }
+        let (correction, minus_mu) = saddle.solve(self.basis.as_ref())?;
         self.mu = minus_mu.map(|m| -m);
         Ok(correction)
     }

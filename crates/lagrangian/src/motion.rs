@@ -58,13 +58,13 @@ impl<const N: usize, const M: usize> Motion<N, M> {
             level: rate.map(|r| -r.eps[0]),
         };
         let basis = system.admissible_basis(t, q);
-        let (acceleration, lambda) = saddle
-            .solve(basis.as_ref())
-            .or_else(|source| match redundant_rows(system, t, q, v) {
-                Some(rows) => saddle.solve_some(rows),
-                None => Err(source),
-            })
-            .map_err(|source| MotionError { time: t, source })?;
-        Ok(Self { acceleration, multiplier: lambda.map(|l| -l) })
+        let of = |(acceleration, lambda): ([f64; N], [f64; M])| Self { acceleration, multiplier: lambda.map(|l| -l) };
+        match saddle.solve(basis.as_ref()) {
+            Ok(solution) => Ok(of(solution)),
+            Err(source) => redundant_rows(system, t, q, v)
+                .map_or(Err(source), |rows| saddle.solve_some(rows))
+                .map(of)
+                .map_err(|source| MotionError { time: t, source }),
+        }
     }
 }

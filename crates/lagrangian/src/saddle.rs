@@ -41,22 +41,6 @@ impl<const N: usize, const M: usize> Saddle<N, M> {
         }
     }
 
-    /// The same, or the solution for [some](Self::solve_some) of the rows where they are given.
-    ///
-    /// # Errors
-    /// As [`Saddle::solve`] and [`Saddle::solve_some`].
-    #[inline(always)]
-    pub fn solve_for(
-        &self,
-        basis: Option<&AdmissibleBasis<f64, N, M>>,
-        some: Option<Rows>,
-    ) -> Result<([f64; N], [f64; M]), Singular> {
-        match some {
-            None => self.solve(basis),
-            Some(rows) => self.solve_some(rows),
-        }
-    }
-
     /// Tested against the basis `w` of `ker G` the multipliers drop out: `w . (K x) = w . r`, `C x = c`.
     fn solve_in_basis(&self, basis: &AdmissibleBasis<f64, N, M>) -> Result<([f64; N], [f64; M]), Singular> {
         let mut matrix = [[0.0; N]; N];

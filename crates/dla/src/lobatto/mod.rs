@@ -3,7 +3,7 @@ mod point;
 mod stages;
 mod tables;
 
-use crate::dependent::named_at_end;
+use crate::dependent::{named_along, named_at};
 use crate::positions::affine_only;
 use crate::projection::Projection;
 use crate::{Newton, OneStep, Stage, State, StepError, StepReport};
@@ -79,7 +79,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
         let iterations = self
             .newton
             .solve_blocks(&mut stages, &mut v)
-            .map_err(|source| StepError::Newton { stage: Stage::Increment, source })?;
+            .map_err(|source| named_along(system, (t0, h), state, &v0, source))?;
 
         let mut p1 = p0;
         for (point, weight) in stages.points(&v).iter().zip(b) {
@@ -91,7 +91,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
         let (t1, q1) = (t0 + h, state.ahead(&increment));
         let (v1, last) = Projection::new(system, t1, q1, p1, system.admissible_basis(t1, &q1))
             .solve(&self.newton, v[S - 1])
-            .map_err(|source| named_at_end(system, t1, &q1, &v0, source))?;
+            .map_err(|source| named_at(system, t1, &q1, &v0, Stage::Projection, source))?;
 
         let mut ends = [[0.0; M], last];
         for j in 0..S - 1 {

@@ -161,6 +161,11 @@ fn parallel_blades() {
     assert_eq!((step, found.dependency, found.rows), (8, Dependency::RankDrops, Rows::from_iter([0, 1])));
     assert_eq!((state.q()[2], found.time), (-0.0625, 0.5));
 
+    // In the middle of a step, where the midpoint rule asks.
+    let mut state = State::new([0.0, 0.0, -0.46875, 0.0], [0.0, 0.0, 1.0, 0.0], [false; 4]);
+    let (step, found) = dependent(run(&TwoBlades, Dla::midpoint(), &mut state).unwrap_err());
+    assert_eq!((step, found.rows, found.time), (8, Rows::from_iter([0, 1]), 0.46875));
+
     let (sin, cos) = 0.7f64.sin_cos();
     for (angle, rates) in [(0.0, [0.3, 0.1]), (1e-15, [0.3, 0.1]), (0.0, [0.0; 2]), (1e-9, [0.0; 2])] {
         let v = [0.5 * cos, 0.5 * sin, rates[0], rates[1]];
