@@ -110,15 +110,15 @@ pub(crate) fn named_at<Sys: System<N, M>, const N: usize, const M: usize>(
 pub(crate) fn named_along<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
     (t0, h): (f64, f64),
-    state: &State<N>,
-    v: &[f64; N],
+    state: State<N>,
+    v: [f64; N],
     source: NewtonError,
 ) -> StepError {
     let mut error = StepError::Newton { stage: Stage::Increment, source };
     for part in [0.0, 0.5, 1.0] {
         if error.is_singular() {
             let q = state.ahead(&v.map(|v| part * h * v));
-            error = named_at(system, t0 + part * h, &q, v, Stage::Increment, source);
+            error = named_at(system, t0 + part * h, &q, &v, Stage::Increment, source);
         }
     }
     error

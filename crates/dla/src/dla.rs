@@ -123,6 +123,7 @@ where
             t0,
             h,
             state,
+            q0,
             p0: momentum(system, t0, &q0, &v0),
             a0: reaction_rows(system, t0, &q0, &v0),
             basis: basis(t0, &q0),
@@ -133,7 +134,7 @@ where
         let iterations = self
             .newton
             .solve(&mut increment, &mut v)
-            .map_err(|source| named_along(system, (t0, h), state, &v, source))?;
+            .map_err(|source| named_along(system, (t0, h), *state, v, source))?;
         let (lambda, some) = (increment.lambda, increment.some);
 
         // The momentum at the end, projected onto the constraint there.
@@ -167,6 +168,7 @@ struct Increment<'a, Sys, L, C, const N: usize, const M: usize> {
     t0: f64,
     h: f64,
     state: &'a State<N>,
+    q0: [f64; N],
     p0: [f64; N],
     a0: [[f64; N]; M],
     basis: Option<AdmissibleBasis<f64, N, M>>,
@@ -183,8 +185,7 @@ where
 {
     #[inline]
     fn correction(&mut self, v: &[f64; N]) -> Result<[f64; N], Singular> {
-        let Self { dla, system, t0, h, state, .. } = *self;
-        let q0 = *state.q();
+        let Self { dla, system, t0, h, state, q0, .. } = *self;
         let (lagrangian, constraint) = (&dla.lagrangian, &dla.constraint);
         let l_d = lagrangian.derivatives(system, t0, h, &q0, v);
         let mut residual: [f64; N] = from_fn(|i| self.p0[i] + l_d.d1[i]);
@@ -220,24 +221,25 @@ where
                 self.lambda = lambda;
                 Ok(correction)
             }
-            Err(source) => self.solve_redundant(&saddle, source),
+            Err(source) => {
+                // By value, so that nothing of a step that succeeds must stay in memory.
+                let rows = independent(system, t0, *state, self.some).ok_or(source)?;
+                let (correction, lambda) = { saddle }.solve_some(rows)?;
+                (self.some, self.lambda) = (Some(rows), lambda);
+                Ok(correction)
+            }
         }
     }
 }
 
-impl<Sys, L, C, const N: usize, const M: usize> Increment<'_, Sys, L, C, N, M>
-where
-    Sys: System<N, M>,
-{
-    /// The solution for independent rows, where the others follow from them.
-    #[cold]
-    #[inline(never)]
-    fn solve_redundant(&mut self, saddle: &Saddle<N, M>, source: Singular) -> Result<[f64; N], Singular> {
-        if self.some.is_none() {
-            self.some = redundant_rows(self.system, self.t0, self.state.q(), self.state.v());
-        }
-        let (correction, lambda) = saddle.solve_some(self.some.ok_or(source)?)?;
-        self.lambda = lambda;
-        Ok(correction)
-    }
+/// The rows found before, or those that imply the others at the beginning of the step.
+#[cold]
+#[inline(never)]
+fn independent<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t0: f64,
+    start: State<N>,
+    found: Option<Rows>,
+) -> Option<Rows> {
+    found.or_else(|| redundant_rows(system, t0, start.q(), start.v()))
 }

@@ -79,7 +79,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
         let iterations = self
             .newton
             .solve_blocks(&mut stages, &mut v)
-            .map_err(|source| named_along(system, (t0, h), state, &v0, source))?;
+            .map_err(|source| named_along(system, (t0, h), *state, v0, source))?;
 
         let mut p1 = p0;
         for (point, weight) in stages.points(&v).iter().zip(b) {
