@@ -1,9 +1,10 @@
+use crate::dependent::{named_along, named_at, rows_left_out};
 use crate::projection::Projection;
 use crate::{Equations, Newton, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::linear::Singular;
 use lagrangian::{
-    AdmissibleBasis, Alpha, DiscreteConstraint, DiscreteLagrangian, Dual, Midpoint, NotAWeight, Saddle, System,
-    Trapezoid, momentum,
+    AdmissibleBasis, Alpha, DiscreteConstraint, DiscreteLagrangian, Dual, Midpoint, NotAWeight, Rows, Saddle, System,
+    Trapezoid, momentum, position_misses, reaction_rows, redundant_rows,
 };
 use std::array::from_fn;
 
@@ -39,6 +40,12 @@ pub enum Form {
 /// node's multiplier `lambda + mu`; as a map on the distribution it needs no special first step, and is self-adjoint where
 /// the discrete Lagrangian and the discrete constraint are. It keeps both constraints to round-off. It does not bound
 /// the energy in general.
+///
+/// A constraint on positions, [`System::holonomic`], takes the place of its discrete one: `g(q1) = 0` instead of `w_d = 0`.
+/// With such constraints alone this is RATTLE, by the discrete Lagrangian at hand (Marsden and West 2001, section 3.5.4; Jay
+/// 1993). A constraint that is not affine, [`System::nonlinear`], acts along `d phi / dv` at the two nodes and is met by the
+/// mean velocity at the rule's nodes, and by the velocity at the end. Rows that depend on one another and agree are met by
+/// as many of them as are independent, with multipliers; the others hold in the nodes, which is checked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dla<L, C> {
     /// The discrete Lagrangian `L_d`.
@@ -115,18 +122,20 @@ where
             system,
             t0,
             h,
+            state,
             q0,
             p0: momentum(system, t0, &q0, &v0),
-            a0: system.constraint(t0, &q0).0,
+            a0: reaction_rows(system, t0, &q0, &v0),
             basis: basis(t0, &q0),
+            some: None,
             lambda: [0.0; M],
         };
         let mut v = v0;
         let iterations = self
             .newton
             .solve(&mut increment, &mut v)
-            .map_err(|source| StepError::Newton { stage: Stage::Increment, source })?;
-        let lambda = increment.lambda;
+            .map_err(|source| named_along(system, (t0, h), *state, v, source))?;
+        let (lambda, some) = (increment.lambda, increment.some);
 
         // The momentum at the end, projected onto the constraint there.
         let mut p1 = self.lagrangian.d2(system, t0, h, &q0, &v);
@@ -136,9 +145,13 @@ where
         let d = v.map(|v| h * v);
         let (t1, q1) = (t0 + h, state.ahead(&d));
         let (v1, mu) = Projection::new(system, t1, q1, p1, basis(t1, &q1))
+            .of(some)
             .solve(&self.newton, v)
-            .map_err(|source| StepError::Newton { stage: Stage::Projection, source })?;
+            .map_err(|source| named_at(system, t1, &q1, &v0, Stage::Projection, source))?;
 
+        if let Some(rows) = some {
+            rows_left_out(system, t1, &q1, &v1, rows)?;
+        }
         state.advance(&d, v1, None);
         Ok(StepReport { impulses: [lambda, mu], iterations, work: None })
     }
@@ -154,10 +167,13 @@ struct Increment<'a, Sys, L, C, const N: usize, const M: usize> {
     system: &'a Sys,
     t0: f64,
     h: f64,
+    state: &'a State<N>,
     q0: [f64; N],
     p0: [f64; N],
     a0: [[f64; N]; M],
     basis: Option<AdmissibleBasis<f64, N, M>>,
+    /// The rows that are solved for, where they depend on one another and agree.
+    some: Option<Rows>,
     lambda: [f64; M],
 }
 
@@ -169,11 +185,14 @@ where
 {
     #[inline]
     fn correction(&mut self, v: &[f64; N]) -> Result<[f64; N], Singular> {
-        let Self { dla, system, t0, h, q0, .. } = *self;
+        let Self { dla, system, t0, h, state, q0, .. } = *self;
         let (lagrangian, constraint) = (&dla.lagrangian, &dla.constraint);
         let l_d = lagrangian.derivatives(system, t0, h, &q0, v);
         let mut residual: [f64; N] = from_fn(|i| self.p0[i] + l_d.d1[i]);
         let mut block = l_d.d1d2.map(|row| row.map(|x| h * x));
+
+        // Where it constrains positions, in place of the discrete constraint.
+        let positions = position_misses(system, t0 + h, &state.ahead(&v.map(|v| h * v)));
 
         // Forces and constraint with their derivatives in v.
         let (t, step) = (Dual::fixed(t0), Dual::fixed(h));
@@ -187,16 +206,40 @@ where
             }
         }
         let w_d = constraint.residual(system, t, step, &q, &v);
+        let (mut rows, mut level) = (w_d.map(|w| w.eps), w_d.map(|w| -w.re));
+        if let Some(positions) = positions {
+            for k in 0..M {
+                if let Some(g) = positions[k] {
+                    (rows[k], level[k]) = (g.eps, -g.re / h);
+                }
+            }
+        }
 
-        let saddle = Saddle {
-            block,
-            transposed: self.a0,
-            rows: w_d.map(|w| w.eps),
-            right: residual.map(|r| -r),
-            level: w_d.map(|w| -w.re),
-        };
-        let (correction, lambda) = saddle.solve(self.basis.as_ref())?;
-        self.lambda = lambda;
-        Ok(correction)
+        let saddle = Saddle { block, transposed: self.a0, rows, right: residual.map(|r| -r), level };
+        match saddle.solve(self.basis.as_ref()) {
+            Ok((correction, lambda)) => {
+                self.lambda = lambda;
+                Ok(correction)
+            }
+            Err(source) => {
+                // By value, so that nothing of a step that succeeds must stay in memory.
+                let rows = independent(system, t0, *state, self.some).ok_or(source)?;
+                let (correction, lambda) = { saddle }.solve_some(rows)?;
+                (self.some, self.lambda) = (Some(rows), lambda);
+                Ok(correction)
+            }
+        }
     }
+}
+
+/// The rows found before, or those that imply the others at the beginning of the step.
+#[cold]
+#[inline(never)]
+fn independent<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t0: f64,
+    start: State<N>,
+    found: Option<Rows>,
+) -> Option<Rows> {
+    found.or_else(|| redundant_rows(system, t0, start.q(), start.v()))
 }

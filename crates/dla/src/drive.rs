@@ -1,3 +1,4 @@
+use crate::dependent::named;
 use crate::{OneStep, State, StepError, StepReport};
 use lagrangian::linear::largest;
 use lagrangian::{System, constraint_residual, energy};
@@ -157,6 +158,7 @@ pub fn drive<Sys, Method, Obs, const N: usize, const M: usize>(
     observer: Obs,
 ) -> Result<u64, RunError>
 where
+    Sys: System<N, M>,
     Method: OneStep<Sys, N, M>,
     Obs: Observer<Sys, N, M>,
 {
@@ -187,6 +189,7 @@ pub fn drive_part<Sys, Method, Obs, const N: usize, const M: usize>(
     mut observer: Obs,
 ) -> Result<Part, RunError>
 where
+    Sys: System<N, M>,
     Method: OneStep<Sys, N, M>,
     Obs: Observer<Sys, N, M>,
 {
@@ -210,6 +213,7 @@ where
                 }
             }
             Err(source) => {
+                let source = named(system, time, state, source);
                 outcome = Err(RunError { step: made + 1, time, source });
                 break;
             }

@@ -1,3 +1,4 @@
+use crate::positions::{affine_only, velocities_only};
 use crate::{Equations, Newton, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::linear::{Lu, Singular};
 use lagrangian::{DiscreteLagrangian, Dual, Saddle, System, Trapezoid, mass_matrix, momentum};
@@ -63,6 +64,9 @@ where
     L: DiscreteLagrangian<Sys, N, M>,
 {
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        affine_only(system, t, state)?;
+        let reason = "the reflection of momenta lets the positions drift, and this system constrains them";
+        velocities_only(system, t, state, reason)?;
         let singular = |stage| {
             move |source| StepError::Newton { stage, source: crate::NewtonError::Singular { iteration: 1, source } }
         };

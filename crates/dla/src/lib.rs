@@ -9,6 +9,7 @@
 //! This crate knows no particular system and no file; its [`Newton`] solver knows neither time nor mechanics.
 
 mod composition;
+mod dependent;
 mod dla;
 mod drive;
 mod energy;
@@ -18,14 +19,17 @@ mod lobatto;
 mod newton;
 mod one_step;
 mod pieces;
+mod positions;
 mod projection;
 mod sensitivity;
+mod start;
 mod state;
 mod trajectory;
 mod work;
 
 pub use crate::dla::{Dla, Form};
 pub use composition::Composition;
+pub use dependent::{Dependency, Dependent};
 pub use drive::{Observer, Part, RunError, Schedule, View, drive, drive_part};
 pub use energy::{Energy, Gradient};
 pub use gauss::Gauss;
@@ -38,6 +42,7 @@ pub use sensitivity::{
     Differentiable, ReducedDerivative, ReducedVariation, Sensitivity, SensitivityError, StepDerivative, StepEquations,
     StepStart, Tangent, TangentRunError, Unknowns, Variation,
 };
+pub use start::{Start, consistent_start};
 pub use state::State;
 pub use trajectory::{Node, Trajectory};
 pub use work::Work;

@@ -1,4 +1,4 @@
-use crate::{NewtonError, State};
+use crate::{Dependent, NewtonError, State};
 use lagrangian::{ClosedStepError, MotionError, ReducedError};
 use thiserror::Error;
 
@@ -47,6 +47,8 @@ pub enum Stage {
     Collocation,
     /// The projection of the momentum onto the constraint, for the new velocity.
     Projection,
+    /// The projection of a configuration onto the constraints on positions.
+    Positions,
 }
 
 impl std::fmt::Display for Stage {
@@ -55,6 +57,7 @@ impl std::fmt::Display for Stage {
             Self::Increment => "the discrete Lagrange-d'Alembert equations",
             Self::Collocation => "the stages of the collocation",
             Self::Projection => "the projection onto the constraint",
+            Self::Positions => "the projection onto the constraints on positions",
         })
     }
 }
@@ -80,6 +83,9 @@ pub enum StepError {
     /// The reduced equations, in quasi-velocities, do not exist.
     #[error(transparent)]
     Reduced(#[from] ReducedError),
+    /// Rows of the constraint depend on one another.
+    #[error(transparent)]
+    Dependent(#[from] Dependent),
     /// The method cannot do this system.
     #[error("{reason}")]
     Unsupported {
@@ -114,4 +120,16 @@ pub enum StepError {
     /// A velocity became infinite or not a number.
     #[error("the velocities are no longer finite")]
     NotFinite,
+}
+
+impl StepError {
+    /// Whether equations did not determine their solution.
+    pub(crate) fn is_singular(&self) -> bool {
+        matches!(
+            self,
+            Self::Newton { source: NewtonError::Singular { .. }, .. }
+                | Self::Motion(_)
+                | Self::Reduced(ReducedError::Motion(_))
+        )
+    }
 }

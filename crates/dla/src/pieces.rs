@@ -1,6 +1,6 @@
-use crate::projection::Projection;
-use crate::{Newton, Part, RunError, Schedule, Stage, State, StepError};
-use lagrangian::{Piecewise, System, constraint_residual, momentum, whole_steps};
+use crate::projection::project;
+use crate::{Part, RunError, Schedule, State, StepError};
+use lagrangian::{Piecewise, System, constraint_residual, whole_steps};
 use std::ops::Range;
 
 /// Cuts a run into parts, the steps between one jump and the next.
@@ -83,10 +83,7 @@ pub fn onto_constraint<Sys: System<N, M>, const N: usize, const M: usize>(
     if met {
         return Ok(());
     }
-    let (p, basis) = (momentum(system, t, &q, &v), system.admissible_basis(t, &q));
-    let (v, _) = Projection::new(system, t, q, p, basis)
-        .solve(&Newton::default(), v)
-        .map_err(|source| StepError::Newton { stage: Stage::Projection, source })?;
+    let v = project(system, t, &q, &v)?;
     state.advance(&[0.0; N], v, None);
     Ok(())
 }

@@ -86,6 +86,12 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> System<N, M> for Counted
     fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; N]) -> Option<AdmissibleBasis<S, N, M>> {
         self.system.admissible_basis(t, q)
     }
+    fn holonomic<S: Scalar>(&self, t: S, q: &[S; N]) -> Option<[Option<S>; M]> {
+        self.system.holonomic(t, q)
+    }
+    fn nonlinear<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[Option<S>; M]> {
+        self.system.nonlinear(t, q, v)
+    }
     fn angles(&self) -> [bool; N] {
         self.system.angles()
     }

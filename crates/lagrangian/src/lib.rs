@@ -9,6 +9,7 @@
 
 mod basis;
 mod bracket;
+mod classify;
 mod closed;
 mod discrete;
 mod dual;
@@ -25,7 +26,10 @@ mod parametrised;
 mod piecewise;
 mod power;
 pub mod quadrature;
+mod reaction;
 mod reduced;
+mod row_space;
+mod rows;
 mod rule;
 mod saddle;
 mod scalar;
@@ -36,6 +40,9 @@ mod with;
 
 pub use basis::AdmissibleBasis;
 pub use bracket::{Bracket, EnergySlope, energy_slope, inverse_reduced_mass};
+pub use classify::{
+    Classification, RowKind, classify, rank_is_constant, redundant_rows, row_space, rows_are_consistent,
+};
 pub use closed::{ClosedStep, ClosedStepError};
 pub use discrete::{Derivatives, DiscreteConstraint, DiscreteLagrangian};
 pub use dual::Dual;
@@ -48,7 +55,10 @@ pub use motion::{Motion, MotionError};
 pub use parametrised::{Member, Parametrised, Unparametrised};
 pub use piecewise::{Piecewise, whole_steps};
 pub use power::{force_power, lagrangian_power};
+pub use reaction::{position_misses, position_residual, position_rows, reaction_rows};
 pub use reduced::{ReducedError, ReducedSlope, quasi_velocities, reduced_acceleration, reduced_slope, velocity_of};
+pub use row_space::{Dependence, RowSpace};
+pub use rows::Rows;
 pub use rule::{Alpha, Midpoint, NotAWeight, Rule, RuleNode, Symmetrised, Trapezoid};
 pub use saddle::Saddle;
 pub use scalar::Scalar;

@@ -33,6 +33,15 @@ impl<const U: usize> Lu<U> {
     /// [`Singular`] where a pivot, relative to the size of its row and column, vanishes to rounding or is not a number.
     #[inline]
     pub fn new(matrix: [[f64; U]; U]) -> Result<Self, Singular> {
+        Self::above(matrix, THRESHOLD)
+    }
+
+    /// The same for a matrix whose entries carry more rounding: pivots up to `threshold` count as zero.
+    ///
+    /// # Errors
+    /// As [`Lu::new`].
+    #[inline]
+    pub fn above(matrix: [[f64; U]; U], threshold: f64) -> Result<Self, Singular> {
         let mut a = matrix;
         let mut order: [usize; U] = std::array::from_fn(|i| i);
         // Reciprocals of the largest entry of each row, and of each column of the matrix so scaled.
@@ -47,7 +56,7 @@ impl<const U: usize> Lu<U> {
                 }
             }
             let pivot = (a[best][k] * row[best] * column[k]).abs();
-            if pivot <= THRESHOLD || !pivot.is_finite() {
+            if pivot <= threshold || !pivot.is_finite() {
                 return Err(Singular { column: k, pivot });
             }
             a.swap(k, best);

@@ -1,12 +1,14 @@
 use crate::linear::Singular;
-use crate::{Dual, HyperDual, Saddle, System, constraint_residual, mass_matrix};
+use crate::{Dual, HyperDual, Saddle, System, constraint_residual, mass_matrix, reaction_rows, redundant_rows};
 use std::array::from_fn;
 use std::ops::Add;
 use thiserror::Error;
 
 /// The continuous equations of motion at one state.
 ///
-/// `d/dt L_v - L_q = F + A' lambda`, `d/dt (A v + b) = 0`.
+/// `d/dt L_v - L_q = F + A' lambda`, `d/dt (A v + b) = 0`. Of a constraint `phi(t, q, v) = 0` that is not affine, `A` is
+/// `d phi / dv`, and its rate vanishes. Rows that depend on one another and agree are met by those that are independent, and the
+/// multipliers of the others are zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motion<const N: usize, const M: usize> {
     /// Accelerations `v'`.
@@ -60,7 +62,7 @@ impl<const N: usize, const M: usize> Motion<N, M> {
         let along_q: [Dual<f64, 1>; N] = from_fn(|i| Dual { re: q[i], eps: [v[i]] });
         let rate = constraint_residual(system, along_t, &along_q, &v.map(Dual::fixed));
 
-        let (a, _) = system.constraint(t, q);
+        let a = reaction_rows(system, t, q, v);
         let saddle = Saddle {
             block: mass,
             transposed: a,
@@ -69,7 +71,13 @@ impl<const N: usize, const M: usize> Motion<N, M> {
             level: rate.map(|r| -r.eps[0]),
         };
         let basis = system.admissible_basis(t, q);
-        let (acceleration, lambda) = saddle.solve(basis.as_ref()).map_err(|source| MotionError { time: t, source })?;
-        Ok(Self { acceleration, multiplier: lambda.map(|l| -l) })
+        let of = |(acceleration, lambda): ([f64; N], [f64; M])| Self { acceleration, multiplier: lambda.map(|l| -l) };
+        match saddle.solve(basis.as_ref()) {
+            Ok(solution) => Ok(of(solution)),
+            Err(source) => redundant_rows(system, t, q, v)
+                .map_or(Err(source), |rows| saddle.solve_some(rows))
+                .map(of)
+                .map_err(|source| MotionError { time: t, source }),
+        }
     }
 }

@@ -1,5 +1,5 @@
-use crate::AdmissibleBasis;
 use crate::linear::{Lu, Singular, normal_solve};
+use crate::{AdmissibleBasis, Rows};
 use std::array::from_fn;
 
 /// The linear equations of a constrained system,
@@ -25,6 +25,10 @@ pub struct Saddle<const N: usize, const M: usize> {
 }
 
 impl<const N: usize, const M: usize> Saddle<N, M> {
+    /// A pivot of the Schur complement below it, relative to its row and column, is rounding: each entry is a sum of `N`
+    /// products, and up to `M` of them have been eliminated.
+    const DEPENDENT: f64 = 4.0 * (N + M) as f64 * f64::EPSILON;
+
     /// `x` and `lambda`, in the given basis of `ker G` where there is one and with the multipliers otherwise.
     ///
     /// # Errors
@@ -63,11 +67,35 @@ impl<const N: usize, const M: usize> Saddle<N, M> {
 
     /// The Schur complement `C K^-1 G'` gives the multipliers first.
     fn solve_with_multipliers(&self) -> Result<([f64; N], [f64; M]), Singular> {
+        self.solve_by_schur(None)
+    }
+
+    /// The same with some of the rows alone: the others are not met, and their multipliers are zero.
+    ///
+    /// # Errors
+    /// [`Singular`] where the equations that are left do not determine a solution.
+    #[cold]
+    #[inline(never)]
+    pub fn solve_some(&self, rows: Rows) -> Result<([f64; N], [f64; M]), Singular> {
+        self.solve_by_schur(Some(rows))
+    }
+
+    #[inline(always)]
+    fn solve_by_schur(&self, some: Option<Rows>) -> Result<([f64; N], [f64; M]), Singular> {
         let block = Lu::new(self.block)?;
         let free = block.solve(self.right);
         let response = self.transposed.map(|g| block.solve(g));
-        let schur = from_fn(|k| from_fn(|l| dot(&self.rows[k], &response[l])));
-        let lambda = Lu::new(schur)?.solve(from_fn(|k| dot(&self.rows[k], &free) - self.level[k]));
+        let mut schur: [[f64; M]; M] = from_fn(|k| from_fn(|l| dot(&self.rows[k], &response[l])));
+        let mut right: [f64; M] = from_fn(|k| dot(&self.rows[k], &free) - self.level[k]);
+        if let Some(some) = some {
+            for k in (0..M).filter(|k| !some.contains(*k)) {
+                for l in 0..M {
+                    (schur[k][l], schur[l][k]) = (0.0, 0.0);
+                }
+                (schur[k][k], right[k]) = (1.0, 0.0);
+            }
+        }
+        let lambda = Lu::above(schur, Self::DEPENDENT)?.solve(right);
         let x = from_fn(|i| free[i] - (0..M).map(|k| response[k][i] * lambda[k]).sum::<f64>());
         Ok((x, lambda))
     }

@@ -49,6 +49,26 @@ pub trait System<const N: usize, const M: usize> {
         None
     }
 
+    /// The functions `g_k(q, t)` of constraints on positions, `g_k = 0`: `Some` for every row `k` that is the rate of one,
+    /// `A_k = dg_k/dq` and `b_k = dg_k/dt`. None by default, and then only velocities are constrained.
+    ///
+    /// A method that carries them keeps `g_k = 0` at its nodes beside the velocities. The rows can be had from the functions
+    /// by [`position_rows`](crate::position_rows), and [`classify`](crate::classify) tells where the two differ.
+    #[inline(always)]
+    fn holonomic<S: Scalar>(&self, _t: S, _q: &[S; N]) -> Option<[Option<S>; M]> {
+        None
+    }
+
+    /// The functions `phi_k(t, q, v)` of constraints that are not affine in the velocities, `phi_k = 0`: `Some` for every
+    /// such row, whose place in [`System::constraint`] is left zero. None by default.
+    ///
+    /// The reaction is along `d phi_k / dv`, by Chetaev's rule. (Neimark and Fufaev 1972, Dynamics of Nonholonomic Systems,
+    /// section IV.1.) A system with such rows gives no [`System::admissible_basis`].
+    #[inline(always)]
+    fn nonlinear<S: Scalar>(&self, _t: S, _q: &[S; N], _v: &[S; N]) -> Option<[Option<S>; M]> {
+        None
+    }
+
     /// Which coordinates are angles, in which the whole system has the period `2 pi`.
     ///
     /// Integrators keep these within a turn and count the turns apart, so that a long run loses no digits.
@@ -106,7 +126,7 @@ pub trait System<const N: usize, const M: usize> {
     }
 }
 
-/// The residual `A(q, t) v + b(q, t)` of each constraint.
+/// The residual `A(q, t) v + b(q, t)` of each constraint, or `phi(t, q, v)` of one that is not affine.
 #[inline]
 pub fn constraint_residual<Sys, S, const N: usize, const M: usize>(system: &Sys, t: S, q: &[S; N], v: &[S; N]) -> [S; M]
 where
@@ -117,6 +137,11 @@ where
     for k in 0..M {
         for i in 0..N {
             residual[k] += a[k][i] * v[i];
+        }
+    }
+    if let Some(phi) = system.nonlinear(t, q, v) {
+        for k in 0..M {
+            residual[k] = phi[k].unwrap_or(residual[k]);
         }
     }
     residual

@@ -56,6 +56,16 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
     }
 
     #[inline(always)]
+    fn holonomic<S: Scalar>(&self, t: S, q: &[S; N]) -> Option<[Option<S>; M]> {
+        self.body.holonomic(t, q)
+    }
+
+    #[inline(always)]
+    fn nonlinear<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[Option<S>; M]> {
+        self.body.nonlinear(t, q, v)
+    }
+
+    #[inline(always)]
     fn angles(&self) -> [bool; N] {
         self.body.angles()
     }

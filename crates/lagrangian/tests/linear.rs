@@ -6,7 +6,7 @@ mod common;
 use common::component;
 use faer::linalg::solvers::Solve;
 use lagrangian::linear::{Lu, normal_solve};
-use lagrangian::{AdmissibleBasis, Saddle};
+use lagrangian::{AdmissibleBasis, RowSpace, Rows, Saddle};
 use proptest::prelude::*;
 use std::array::from_fn;
 
@@ -132,4 +132,75 @@ fn multipliers_of_dependent_rows_are_refused() {
     assert!(normal_solve(&rows, &[1.0, 2.0, 3.0]).is_err());
     let one = normal_solve(&[[0.0, 2.0, 0.0]], &[1.0, 2.0, 3.0]).unwrap();
     assert!((one[0] - 1.0).abs() < 1e-15);
+}
+
+proptest! {
+    /// The rank of rows in any units, of the coordinates and of their own; what the dependent one is
+    /// made of, and the velocities that none of them sees.
+    #[test]
+    fn rank_of_rows(
+        a in proptest::array::uniform2(proptest::array::uniform4(component())), weights in proptest::array::uniform2(0.2..3.0f64),
+        row in proptest::array::uniform3(-6..6i32), unit in proptest::array::uniform4(-6..6i32),
+    ) {
+        let unit = unit.map(|k| 10f64.powi(k));
+        let row = row.map(|k| 10f64.powi(k));
+        // Two rows of some size and angle, and a third that may depend on them.
+        let size = |x: &[f64; 4]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let along = (0..4).map(|i| a[0][i] * a[1][i]).sum::<f64>() / (size(&a[0]) * size(&a[1]));
+        prop_assume!(size(&a[0]) > 0.1 && size(&a[1]) > 0.1 && along.abs() < 0.9);
+        let third: [f64; 4] = from_fn(|i| weights[0] * a[0][i] / size(&a[0]) - weights[1] * a[1][i] / size(&a[1]));
+        let scaled = |rows: [[f64; 4]; 3]| -> [[f64; 4]; 3] { from_fn(|k| from_fn(|i| row[k] * rows[k][i] * unit[i])) };
+        let mass = from_fn(|i| from_fn(|j| if i == j { unit[i] * unit[i] } else { 0.0 }));
+        let tolerance = RowSpace::<4, 3>::ROUNDING;
+
+        let rows = scaled([a[0], a[1], third]);
+        let space = RowSpace::new(&rows, &mass, tolerance);
+        prop_assert_eq!(space.rank(), 2);
+        let found = space.dependence();
+        prop_assert_eq!(found.involved, Rows::from_iter(0..3));
+        prop_assert!(found.distance <= tolerance);
+        for k in (0..3).filter(|k| !found.independent.contains(*k)) {
+            for i in 0..4 {
+                let sum: f64 = found.independent.iter().map(|l| found.combination[k][l] * rows[l][i]).sum();
+                let terms: f64 = found.independent.iter().map(|l| (found.combination[k][l] * rows[l][i]).abs()).sum();
+                // Both rows have weights of a size, and an angle that is not small.
+                prop_assert!((sum - rows[k][i]).abs() <= 100.0 * tolerance * (terms + row[k] * unit[i]), "{sum} {rows:?}");
+            }
+        }
+        for w in &space.kernel()[..2] {
+            for r in &rows {
+                let terms: f64 = (0..4).map(|i| (r[i] * w[i]).abs()).sum();
+                let (_, size) = space.outside(r);
+                let seen: f64 = (0..4).map(|i| r[i] * w[i]).sum();
+                prop_assert!(seen.abs() <= 10.0 * tolerance * (terms + size), "{seen:e}");
+            }
+            prop_assert!(w.iter().any(|w| *w != 0.0));
+        }
+
+        // A part across both shows, however small it is beside the rounding of the rest.
+        let unseen = space.kernel();
+        let across: [f64; 4] = from_fn(|i| (unseen[0][i] + unseen[1][i]) * unit[i]);
+        let length = size(&across);
+        let lifted = scaled([a[0], a[1], from_fn(|i| third[i] + 1e-9 * across[i] / length)]);
+        prop_assert_eq!(RowSpace::new(&lifted, &mass, tolerance).rank(), 3);
+        prop_assert_eq!(RowSpace::new(&lifted, &mass, 1e-6).rank(), 2);
+    }
+}
+
+#[test]
+fn rows_that_vanish_or_are_no_numbers() {
+    let identity = from_fn(|i| from_fn(|j| f64::from(u8::from(i == j))));
+    let rank = |rows: [[f64; 2]; 2]| RowSpace::new(&rows, &identity, RowSpace::<2, 2>::ROUNDING).rank();
+    assert_eq!(rank([[0.0, 0.0], [1.0, 0.0]]), 1);
+    assert_eq!(rank([[0.0, 0.0], [0.0, 0.0]]), 0);
+    assert_eq!(rank([[1e-300, 0.0], [1e-300, 1e-300]]), 2);
+    assert_eq!(rank([[1e200, 0.0], [1e200, 1e200]]), 2);
+    assert!(rank([[f64::NAN, 0.0], [0.0, 1.0]]) < 2);
+    // A coordinate without mass, in any unit.
+    for unit in [1e-9, 1.0, 1e9] {
+        let mass = [[2.0, 0.0], [0.0, 0.0]];
+        let rank = |rows: [[f64; 2]; 2]| RowSpace::new(&rows, &mass, RowSpace::<2, 2>::ROUNDING).rank();
+        assert_eq!(rank([[1.0, unit], [3.0, 3.0 * unit]]), 1);
+        assert_eq!(rank([[1.0, unit], [3.0, 2.9 * unit]]), 2);
+    }
 }

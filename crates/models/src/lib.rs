@@ -18,29 +18,37 @@
 
 mod attitude;
 mod chaplygin_ball;
+mod compound_pendulum;
 mod contact_oscillator;
 mod error;
 mod gauged_oscillator;
+mod isokinetic;
 mod knife_edge;
 mod model;
 mod particle;
 mod quartic_oscillator;
 mod roller_racer;
 mod rolling_disk;
+mod sleigh_on_arm;
 mod snakeboard;
 mod special;
 mod suslov;
+mod turntable_ball;
 
 pub use attitude::Attitude;
 pub use chaplygin_ball::ChaplyginBall;
+pub use compound_pendulum::CompoundPendulum;
 pub use contact_oscillator::ContactOscillator;
 pub use error::ModelError;
 pub use gauged_oscillator::GaugedOscillator;
+pub use isokinetic::IsokineticParticle;
 pub use knife_edge::KnifeEdge;
 pub use model::{Labels, Model, State};
 pub use particle::Particle;
 pub use quartic_oscillator::QuarticOscillator;
 pub use roller_racer::RollerRacer;
 pub use rolling_disk::RollingDisk;
+pub use sleigh_on_arm::SleighOnArm;
 pub use snakeboard::Snakeboard;
 pub use suslov::Suslov;
+pub use turntable_ball::TurntableBall;

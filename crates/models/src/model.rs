@@ -29,12 +29,19 @@ pub trait Model<const N: usize, const M: usize>: System<N, M> + Sized {
     /// The standard start: a configuration, and an admissible velocity.
     fn start(&self) -> State<N>;
 
+    /// An admissible state made of any coordinates and quasi-velocities: as they are, in [`System::admissible_basis`], unless
+    /// the constraints bind positions or have no basis.
+    fn admissible(&self, q: [f64; N], xi: [f64; N]) -> State<N> {
+        let v = self.admissible_basis(0.0, &q).map_or([0.0; N], |basis| basis.combine(&xi));
+        (q, v)
+    }
+
     /// The accelerations at an admissible velocity, from the reduced equations worked out on paper.
     ///
     /// Nothing in it comes from the Lagrangian by machine, so that each can be held against the other.
     fn accelerations_by_hand(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> [f64; N];
 
-    /// The integrals of the motion, by name; the energy is the first.
+    /// The integrals of the motion, by name; the first is the energy, or what is kept in its place.
     fn invariants<S: Scalar>(&self, q: &[S; N], v: &[S; N]) -> Vec<(&'static str, S)> {
         vec![("energy", energy(self, S::zero(), q, v))]
     }

@@ -5,6 +5,7 @@
 //! | to | see |
 //! |---|---|
 //! | describe a system: its Lagrangian and its constraint | [`System`], [`Scalar`] |
+//! | say what its constraints are, and start on them | [`classify`], [`consistent_start`] |
 //! | add what acts on a body | [`Effect`], [`With`] |
 //! | choose a method | [`Dla`], [`DiscreteLagrangian`], [`OneStep`] |
 //! | run it and look on | [`drive`], [`Schedule`], [`State`], [`Observer`], [`Trajectory`] |
@@ -13,12 +14,13 @@
 
 pub use dla::{
     self, Dla, Equations, Form, Newton, NewtonError, Node, Observer, OneStep, RunError, Schedule, Sensitivity, Stage,
-    State, StepError, StepReport, Trajectory, View, drive,
+    State, StepError, StepReport, Trajectory, View, consistent_start, drive,
 };
 pub use lagrangian::{
     self, AdmissibleBasis, Alpha, ClosedStep, ClosedStepError, Constraint, Derivatives, DiscreteConstraint,
     DiscreteLagrangian, Dual, Effect, HyperDual, Lanes, Member, Midpoint, Motion, MotionError, Parametrised, Rule,
-    Scalar, Symmetrised, System, Trapezoid, With, constraint_residual, energy, mass_matrix, momentum, vectorized,
+    Scalar, Symmetrised, System, Trapezoid, With, classify, constraint_residual, energy, mass_matrix, momentum,
+    vectorized,
 };
 pub use sleigh::{self, CentreOfMass, Exact, Sleigh, SleighError, SleighState};
 

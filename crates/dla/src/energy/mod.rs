@@ -10,6 +10,7 @@ mod start;
 
 pub use gradient::Gradient;
 
+use crate::positions::{affine_only, velocities_only};
 use crate::{OneStep, Stage, State, StepError, StepReport};
 use ends::Ends;
 use lagrangian::linear::larger;
@@ -82,6 +83,8 @@ impl<Sys: System<N, M>, const S: usize, const N: usize, const M: usize> OneStep<
         if Sys::MOVING {
             return Err(start::MOVING);
         }
+        affine_only(system, t0, state)?;
+        velocities_only(system, t0, state, POSITIONS)?;
         let start = Start::new(system, t0, h, state)?;
         let step = Step { system, rule: &self.rule, gradient: self.gradient, t0, h, start: &start };
         let end = vectorized(
@@ -99,6 +102,10 @@ impl<Sys: System<N, M>, const S: usize, const N: usize, const M: usize> OneStep<
 const NO_BASIS: StepError = StepError::Unsupported {
     reason: "the energy-preserving methods need a basis of the admissible velocities, and the system gives none",
 };
+
+/// To project the positions would change the potential energy, and at a turning point no velocity makes up for it.
+const POSITIONS: &str = "the energy-preserving methods let positions drift from a constraint on them, by their order, and \
+                         projected positions would change the energy";
 
 /// The equations of one step.
 struct Step<'a, Sys, const S: usize, const N: usize> {

@@ -4,6 +4,8 @@ mod sensitivity;
 mod stages;
 mod tables;
 
+use crate::dependent::{named_along, named_at};
+use crate::positions::affine_only;
 use crate::projection::Projection;
 use crate::{Newton, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::{System, momentum};
@@ -32,6 +34,9 @@ use tables::Tables;
 /// as unknowns, and nothing but `(q, v)` is carried from step to step. With two stages and a constant mass matrix it is the
 /// trapezoidal [`Dla`](crate::Dla). (Jay 2003, BIT 43, 93-106.)
 ///
+/// Of a constraint on positions the stages meet the function itself, `g(Q_i) = 0` for `i = 2 .. S`, of which the equations
+/// above are the rates; the last stage is the node (Jay 1996, SIAM J. Numer. Anal. 33, 368-387).
+///
 /// All stages are solved for together by Newton's method with the exact Jacobian, on the stack.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lobatto<const S: usize> {
@@ -58,6 +63,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
     /// The impulses in the report are those of all stages, each shared between the two ends as a lever would.
     #[inline]
     fn step(&mut self, system: &Sys, t0: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        affine_only(system, t0, state)?;
         let Tables { c, b, .. } = &self.tables;
         let (q0, v0) = (*state.q(), *state.v());
         let p0 = momentum(system, t0, &q0, &v0);
@@ -74,7 +80,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
         let iterations = self
             .newton
             .solve_blocks(&mut stages, &mut v)
-            .map_err(|source| StepError::Newton { stage: Stage::Increment, source })?;
+            .map_err(|source| named_along(system, (t0, h), *state, v0, source))?;
 
         let mut p1 = p0;
         for (point, weight) in stages.points(&v).iter().zip(b) {
@@ -86,7 +92,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
         let (t1, q1) = (t0 + h, state.ahead(&increment));
         let (v1, last) = Projection::new(system, t1, q1, p1, system.admissible_basis(t1, &q1))
             .solve(&self.newton, v[S - 1])
-            .map_err(|source| StepError::Newton { stage: Stage::Projection, source })?;
+            .map_err(|source| named_at(system, t1, &q1, &v0, Stage::Projection, source))?;
 
         let mut ends = [[0.0; M], last];
         for j in 0..S - 1 {

@@ -3,8 +3,8 @@ use super::point::{Linearised, Point};
 use super::tables::Tables;
 use crate::State;
 use crate::newton::BlockEquations;
-use lagrangian::System;
 use lagrangian::linear::Singular;
+use lagrangian::{System, position_misses};
 use std::array::from_fn;
 
 /// The equations for the velocities of all stages of a step, with the impulses of the constraint at all but the last.
@@ -46,7 +46,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> Stages<'
 
     /// The linear equations of Newton's method.
     #[inline]
-    fn equations(&self, at: &[Linearised<N, M>; S]) -> Dense<N, M, S> {
+    fn equations(&self, points: &[Point<N, M>; S], at: &[Linearised<N, M>; S]) -> Dense<N, M, S> {
         let Tables { a, a_hat, blind, .. } = self.tables;
         let h = self.h;
         let mut dense = Dense::zero();
@@ -75,10 +75,21 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> Stages<'
                 }
             }
         }
-        // g_i - blind_i g_0 = 0
+        // g_i - blind_i g_0 = 0, or of positions g_i = 0
         for i in 1..S {
+            let positions = position_misses(self.system, points[i].t, &points[i].q);
             for k in 0..M {
                 let equation = Dense::<N, M, S>::multiplier(i - 1, k);
+                if let Some(g) = positions.and_then(|g| g[k]) {
+                    dense.right()[equation] = -g.re / h;
+                    let row = dense.row(equation);
+                    for j in 0..S {
+                        for y in 0..N {
+                            row[Dense::<N, M, S>::velocity(j, y)] = a[i][j] * g.eps[y];
+                        }
+                    }
+                    continue;
+                }
                 dense.right()[equation] = blind[i] * at[0].g[k] - at[i].g[k];
                 let row = dense.row(equation);
                 for j in 0..S {
@@ -101,8 +112,9 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> BlockEqu
 {
     #[inline]
     fn correction(&mut self, v: &[[f64; N]; S]) -> Result<[[f64; N]; S], Singular> {
-        let at = self.points(v).map(|point| point.linearised(self.system, self.h));
-        let mut dense = self.equations(&at);
+        let points = self.points(v);
+        let at = points.map(|point| point.linearised(self.system, self.h));
+        let mut dense = self.equations(&points, &at);
         dense.solve()?;
         let solution = dense.right();
         for j in 0..S - 1 {

@@ -28,5 +28,5 @@ pub(crate) fn state<Mo: Model<N, M>, const N: usize, const M: usize>(
         q = std::array::from_fn(|i| range * draws[i]);
     }
     let xi = std::array::from_fn(|i| 1.5 * draws[8 + i]);
-    (q, model.admissible_basis(0.0, &q).unwrap().combine(&xi))
+    model.admissible(q, xi)
 }

@@ -5,6 +5,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod constrained;
 mod geometry;
 mod invariants;
 mod measures;

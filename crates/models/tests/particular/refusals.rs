@@ -1,8 +1,8 @@
 //! Parameters that are refused.
 
 use models::{
-    ChaplyginBall, ContactOscillator, GaugedOscillator, KnifeEdge, ModelError, Particle, QuarticOscillator,
-    RollerRacer, RollingDisk, Snakeboard, Suslov,
+    ChaplyginBall, CompoundPendulum, ContactOscillator, GaugedOscillator, IsokineticParticle, KnifeEdge, ModelError,
+    Particle, QuarticOscillator, RollerRacer, RollingDisk, SleighOnArm, Snakeboard, Suslov, TurntableBall,
 };
 use std::array::from_fn;
 
@@ -88,6 +88,28 @@ fn bad_parameters_are_refused() {
             &positive,
         );
     }
+    for k in 0..3 {
+        let p = |x| put(k, x);
+        refused("pendulum", k, &|x| CompoundPendulum::new(p(x)[0], p(x)[1], p(x)[2], 1.0).err(), &positive);
+        refused("ball on a table", k, &|x| TurntableBall::new(p(x)[0], p(x)[1], p(x)[2], 1.0).err(), &positive);
+        refused(
+            "sleigh on an arm",
+            k,
+            &|x| SleighOnArm::new(p(x)[0], p(x)[1], 0.1, p(x)[2], 2.0, 1.0).err(),
+            &positive,
+        );
+    }
+    for k in 0..2 {
+        let p = |x| put(k, x);
+        refused("isokinetic", k, &|x| IsokineticParticle::new(p(x)[0], p(x)[1], 1.0).err(), &positive);
+    }
+    refused("pendulum", 3, &|x| CompoundPendulum::new(1.0, 1.0, 1.0, x).err(), &not_finite);
+    refused("ball on a table", 3, &|x| TurntableBall::new(1.0, 1.0, 1.0, x).err(), &not_finite);
+    refused("isokinetic", 2, &|x| IsokineticParticle::new(1.0, 1.0, x).err(), &not_finite);
+    refused("sleigh on an arm", 3, &|x| SleighOnArm::new(1.0, 1.0, x, 1.0, 2.0, 1.0).err(), &not_finite);
+    refused("sleigh on an arm", 5, &|x| SleighOnArm::new(1.0, 1.0, 0.1, 1.0, 2.0, x).err(), &not_finite);
+    // The arm must be longer than the hitch's distance: what is told is the difference.
+    assert!(SleighOnArm::new(1.0, 1.0, 0.1, 1.0, 1.0, 0.0).is_err());
     refused("particle", 0, &|x| Particle::flat(x).err(), &positive);
     refused("particle", 1, &|x| Particle::in_well(1.0, x).err(), &not_negative);
     refused("edge", 2, &|x| KnifeEdge::new(1.0, 1.0, x).err(), &not_finite);

@@ -93,6 +93,16 @@ impl<B: System<3, M>, const M: usize> System<4, M> for Flywheel<B> {
     }
 
     #[inline(always)]
+    fn holonomic<S: Scalar>(&self, t: S, q: &[S; 4]) -> Option<[Option<S>; M]> {
+        self.body.holonomic(t, &of_body(q))
+    }
+
+    #[inline(always)]
+    fn nonlinear<S: Scalar>(&self, t: S, q: &[S; 4], v: &[S; 4]) -> Option<[Option<S>; M]> {
+        self.body.nonlinear(t, &of_body(q), &of_body(v))
+    }
+
+    #[inline(always)]
     fn angles(&self) -> [bool; 4] {
         let [x, y, theta] = self.body.angles();
         [x, y, theta, true]

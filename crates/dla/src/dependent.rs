@@ -1,0 +1,202 @@
+use crate::{NewtonError, Stage, State, StepError};
+use lagrangian::linear::larger;
+use lagrangian::{
+    RowSpace, Rows, System, constraint_residual, position_misses, rank_is_constant, reaction_rows, row_space,
+    rows_are_consistent,
+};
+use std::fmt;
+use thiserror::Error;
+
+/// Rows of a constraint that depend on one another where a step needs independent ones.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub struct Dependent {
+    /// The rows: those that can be left out, and those that they are made of.
+    pub rows: Rows,
+    /// The time (s).
+    pub time: f64,
+    /// How far the nearest of them lies from the span of the others, relative to its size in the kinetic metric.
+    pub distance: f64,
+    /// What that means.
+    pub dependency: Dependency,
+}
+
+/// How rows depend on one another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dependency {
+    /// Everywhere nearby, and they ask for the same: the motion is determined, and the method needs independent rows.
+    Redundant,
+    /// At this place alone: their rank drops, and what the constraints ask for is not continuous there.
+    RankDrops,
+    /// They ask for different velocities.
+    Contradictory,
+}
+
+impl fmt::Display for Dependent {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { rows, time, distance, dependency } = self;
+        if rows.count() == 1 {
+            write!(f, "{rows} of the constraint vanishes at t = {time} s")?;
+        } else {
+            write!(
+                f,
+                "{rows} of the constraint depend on one another at t = {time} s, to {distance:.0e} of their size"
+            )?;
+        }
+        f.write_str(match dependency {
+            Dependency::Redundant => ": leave out what the others imply, or take a method of the family `dla`",
+            Dependency::RankDrops => ": the rank drops there, and the motion beyond is not determined",
+            Dependency::Contradictory => ": they contradict one another",
+        })
+    }
+}
+
+/// Rows that do not depend on one another and imply the others, where equations with all rows have failed with `error`.
+///
+/// # Errors
+/// [`StepError::Dependent`] where the rank drops at the place or the rows contradict one another; `error` where the rows are
+/// independent, so that something else is degenerate.
+#[cold]
+#[inline(never)]
+pub(crate) fn independent_rows<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+    error: StepError,
+) -> Result<Rows, StepError> {
+    let mut space = row_space::<_, N, M>(system, t, q, v, RowSpace::<N, M>::ROUNDING);
+    let near = space.rank() == M;
+    if near {
+        // A row that is only nearly dependent fails by the square of its distance.
+        space = row_space(system, t, q, v, RowSpace::<N, M>::ROUNDING.sqrt());
+        if space.rank() == M {
+            return Err(error);
+        }
+    }
+    let found = space.dependence();
+    let dependency = if near || !rank_is_constant(system, t, q, v, &space) {
+        Dependency::RankDrops
+    } else if !rows_are_consistent(system, t, q, v, found) {
+        Dependency::Contradictory
+    } else {
+        return Ok(found.independent);
+    };
+    Err(Dependent { rows: found.involved, time: t, distance: found.distance, dependency }.into())
+}
+
+/// The error of the equations at a place, with the rows of the constraint named where their rank drops there or they
+/// contradict one another.
+#[cold]
+#[inline(never)]
+pub(crate) fn named_at<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+    stage: Stage,
+    source: NewtonError,
+) -> StepError {
+    let error = StepError::Newton { stage, source };
+    if !error.is_singular() {
+        return error;
+    }
+    // That rows are redundant is seen at the beginning of the step, and is no error of the place.
+    independent_rows(system, t, q, v, error).err().unwrap_or(error)
+}
+
+/// The error of the equations of a step, with rows named as by [`named_at`] at its beginning, in its middle or at its end.
+#[cold]
+#[inline(never)]
+pub(crate) fn named_along<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    (t0, h): (f64, f64),
+    state: State<N>,
+    v: [f64; N],
+    source: NewtonError,
+) -> StepError {
+    let mut error = StepError::Newton { stage: Stage::Increment, source };
+    for part in [0.0, 0.5, 1.0] {
+        if error.is_singular() {
+            let q = state.ahead(&v.map(|v| part * h * v));
+            error = named_at(system, t0 + part * h, &q, &v, Stage::Increment, source);
+        }
+    }
+    error
+}
+
+/// The error of a step, with the rows of the constraint named where they depend on one another at its beginning.
+#[cold]
+#[inline(never)]
+pub(crate) fn named<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    state: &State<N>,
+    error: StepError,
+) -> StepError {
+    if !error.is_singular() {
+        return error;
+    }
+    let (q, v) = (state.q(), state.v());
+    match independent_rows(system, t, q, v, error) {
+        Err(error) => error,
+        Ok(_) => dependent_at(system, t, q, v, Dependency::Redundant),
+    }
+}
+
+fn dependent_at<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+    dependency: Dependency,
+) -> StepError {
+    let space = row_space::<_, N, M>(system, t, q, v, RowSpace::<N, M>::ROUNDING);
+    let found = space.dependence();
+    Dependent { rows: found.involved, time: t, distance: found.distance, dependency }.into()
+}
+
+/// That at the end of a step the rows that it left out hold, too.
+///
+/// # Errors
+/// [`StepError::Dependent`] names those that do not, with all they depended on.
+#[cold]
+#[inline(never)]
+pub(crate) fn rows_left_out<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t1: f64,
+    q1: &[f64; N],
+    v1: &[f64; N],
+    kept: Rows,
+) -> Result<(), StepError> {
+    let rows = reaction_rows(system, t1, q1, v1);
+    let (_, b) = system.constraint(t1, q1);
+    let slip = constraint_residual(system, t1, q1, v1);
+    // Every row relative to its own size, the terms that make up the largest of them being what rounding comes from.
+    let size = |k: usize| rows[k].iter().fold(0.0, |m, x| larger(m, *x));
+    let terms = (0..M)
+        .filter(|k| size(*k) > 0.0)
+        .fold(0.0, |m, k| larger(m, (0..N).fold(b[k].abs(), |sum, i| sum + (rows[k][i] * v1[i]).abs()) / size(k)));
+    let bound = 4.0 * RowSpace::<N, M>::ROUNDING * terms;
+    let positions = position_misses(system, t1, q1);
+    let missed: Rows = (0..M)
+        .filter(|k| !kept.contains(*k))
+        .filter(|k| {
+            // Twice its rounding is allowed to a position, since none but the others was solved for.
+            let off = positions.and_then(|g| g[*k]).is_some_and(|g| {
+                let rounding: f64 = (0..N).map(|i| (g.eps[i] * q1[i]).abs()).sum();
+                g.re.abs() > RowSpace::<N, M>::ROUNDING * rounding
+            });
+            slip[*k].abs() > bound * size(*k) || off
+        })
+        .collect();
+    if missed.is_empty() {
+        return Ok(());
+    }
+    Err(Dependent {
+        rows: missed.and(kept),
+        time: t1,
+        distance: missed.iter().fold(0.0, |m, k| larger(m, slip[k] / (terms * size(k)))),
+        dependency: Dependency::Contradictory,
+    }
+    .into())
+}

@@ -1,0 +1,107 @@
+use crate::{NewtonError, Stage, State, StepError};
+use lagrangian::linear::larger;
+use lagrangian::{Dual, RowSpace, Saddle, System, mass_matrix, position_misses};
+
+/// The increment of a step with its end moved onto the constraints on positions, `g(q1) = 0`, by the shortest way in the
+/// kinetic metric: Newton's method with the gradients of the place it has come to. Nothing is done without such constraints.
+///
+/// Rows that depend on one another move the end by those that do not.
+///
+/// # Errors
+/// [`StepError::Newton`] where no such place is found.
+#[inline(always)]
+pub(crate) fn onto_positions<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t1: f64,
+    state: &State<N>,
+    mut increment: [f64; N],
+    v: &[f64; N],
+) -> Result<[f64; N], StepError> {
+    let fail = |source| StepError::Newton { stage: Stage::Positions, source };
+    let mut before = f64::INFINITY;
+    for iteration in 1..=ITERATIONS {
+        let q1 = state.ahead(&increment);
+        let Some(misses) = position_misses(system, t1, &q1) else { return Ok(increment) };
+        if misses.iter().flatten().all(|g| g.re == 0.0) {
+            return Ok(increment);
+        }
+        let moved = correction(system, t1, &q1, v, &misses)
+            .map_err(|source| fail(NewtonError::Singular { iteration, source }))?;
+        for i in 0..N {
+            increment[i] += moved[i];
+        }
+        let (step, size) = (sup(&moved), sup(&q1));
+        if !step.is_finite() {
+            return Err(fail(NewtonError::NotFinite { iteration }));
+        }
+        // Where corrections of rounding no longer shrink, nothing is nearer.
+        if step <= 16.0 * N as f64 * f64::EPSILON * size && step >= 0.25 * before {
+            let off = misses.iter().flatten().any(|g| {
+                let rounding: f64 = (0..N).map(|i| (g.eps[i] * q1[i]).abs()).sum();
+                g.re.abs() > RowSpace::<N, M>::ROUNDING * rounding
+            });
+            // Rows that depend on one another and disagree leave a rest that no move takes away.
+            return match off {
+                true => Err(fail(NewtonError::IterationLimit { iterations: iteration, correction: step / size })),
+                false => Ok(increment),
+            };
+        }
+        before = step;
+    }
+    Err(fail(NewtonError::IterationLimit { iterations: ITERATIONS, correction: before }))
+}
+
+const ITERATIONS: u32 = 50;
+
+/// The correction `-M^-1 A' (A M^-1 A')^-1 g` for the rows of the positions.
+#[cold]
+#[inline(never)]
+fn correction<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+    misses: &[Option<Dual<f64, N>>; M],
+) -> Result<[f64; N], lagrangian::linear::Singular> {
+    let (_, mass) = mass_matrix(system, t, q, v);
+    // Rows of the velocities are zero here, and so left out.
+    let rows = misses.map(|g| g.map_or([0.0; N], |g| g.eps));
+    let some = RowSpace::new(&rows, &mass, RowSpace::<N, M>::ROUNDING).dependence().independent;
+    let level = misses.map(|g| g.map_or(0.0, |g| -g.re));
+    let saddle = Saddle { block: mass, transposed: rows, rows, right: [0.0; N], level };
+    saddle.solve_some(some).map(|(moved, _)| moved)
+}
+
+fn sup<const N: usize>(x: &[f64; N]) -> f64 {
+    x.iter().fold(0.0, |m, x| larger(m, *x))
+}
+
+/// Refuses a system with constraints that a method cannot carry.
+#[inline(always)]
+pub(crate) fn affine_only<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    state: &State<N>,
+) -> Result<(), StepError> {
+    match system.nonlinear(t, state.q(), state.v()) {
+        None => Ok(()),
+        Some(_) => Err(StepError::Unsupported {
+            reason: "the method is for constraints that are affine in the velocities, and one of these is not: the family \
+                     `dla` does it",
+        }),
+    }
+}
+
+/// Refuses a system with constraints on positions.
+#[inline(always)]
+pub(crate) fn velocities_only<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    state: &State<N>,
+    reason: &'static str,
+) -> Result<(), StepError> {
+    match system.holonomic(t, state.q()) {
+        None => Ok(()),
+        Some(_) => Err(StepError::Unsupported { reason }),
+    }
+}

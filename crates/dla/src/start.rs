@@ -1,0 +1,91 @@
+use crate::positions::onto_positions;
+use crate::projection::project;
+use crate::{Equations, Newton, Stage, State, StepError};
+use lagrangian::linear::Singular;
+use lagrangian::{HyperDual, RowSpace, Saddle, System, mass_matrix};
+use std::array::from_fn;
+
+/// A start that meets every constraint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Start<const N: usize> {
+    /// Configuration.
+    pub q: [f64; N],
+    /// Velocity.
+    pub v: [f64; N],
+    /// How far the configuration was moved, `sqrt(dq' M dq)`; zero where it was consistent to rounding.
+    pub moved: f64,
+    /// How far the velocity was changed, `sqrt(dv' M dv)`.
+    pub changed: f64,
+}
+
+/// The start that meets all constraints and is nearest to a given one in the kinetic metric.
+///
+/// The configuration is the stationary point of `(q1 - q)' M(q) (q1 - q)` on `g(q1, t) = 0`, found from the given one by
+/// Newton's method; the velocity is that of `L_v(q1, v1) = L_v(q1, v) + A' mu` with `A v1 + b = 0`, which is the nearest where
+/// the Lagrangian is quadratic in velocities. Rows that depend on one another and agree are no obstacle.
+///
+/// # Errors
+/// [`StepError::Newton`] where there is none nearby, or positions contradict one another; [`StepError::Dependent`] where the rank of the constraints drops there,
+/// or their velocities contradict one another.
+pub fn consistent_start<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+) -> Result<Start<N>, StepError> {
+    let given = State::new(*q, *v, [false; N]);
+    // Somewhere on the positions first, then along them to the nearest place.
+    let guess = onto_positions(system, t, &given, [0.0; N], v)?;
+    let mut nearest = Nearest { system, t, given: &given, mass: mass_matrix(system, t, q, v).1, nu: [0.0; M] };
+    let mut way = guess;
+    if guess.iter().any(|d| *d != 0.0) {
+        Newton::default()
+            .solve(&mut nearest, &mut way)
+            .map_err(|source| StepError::Newton { stage: Stage::Positions, source })?;
+        way = onto_positions(system, t, &given, way, v)?;
+    }
+    let q1 = given.ahead(&way);
+    let v1 = project(system, t, &q1, v)?;
+    let length = |d: &[f64; N]| {
+        let (_, mass) = mass_matrix(system, t, &q1, &v1);
+        (0..N).map(|i| (0..N).map(|j| d[i] * mass[i][j] * d[j]).sum::<f64>()).sum::<f64>().max(0.0).sqrt()
+    };
+    Ok(Start { q: q1, v: v1, moved: length(&way), changed: length(&from_fn(|i| v1[i] - v[i])) })
+}
+
+/// The equations for the move `d` to the nearest place: `M d + A(q + d)' nu = 0`, `g(q + d) = 0`.
+struct Nearest<'a, Sys, const N: usize, const M: usize> {
+    system: &'a Sys,
+    t: f64,
+    given: &'a State<N>,
+    mass: [[f64; N]; N],
+    nu: [f64; M],
+}
+
+impl<Sys: System<N, M>, const N: usize, const M: usize> Equations<N> for Nearest<'_, Sys, N, M> {
+    fn correction(&mut self, d: &[f64; N]) -> Result<[f64; N], Singular> {
+        let q = self.given.ahead(d);
+        let unit = |i: usize| from_fn(|k| f64::from(u8::from(k == i)));
+        let twice: [HyperDual<f64, N, N>; N] = from_fn(|i| HyperDual::linear(q[i], unit(i), unit(i)));
+        let zero = HyperDual::fixed(0.0);
+        let g = self.system.holonomic(HyperDual::fixed(self.t), &twice).unwrap_or([None; M]);
+        let g = g.map(|g| g.unwrap_or(zero));
+        let misses = lagrangian::position_misses(self.system, self.t, &q).unwrap_or([None; M]);
+        let rows = g.map(|g| g.e1);
+        let mut block = self.mass;
+        for (nu, g) in self.nu.iter().zip(&g) {
+            block = from_fn(|i| from_fn(|j| block[i][j] + nu * g.e12[i][j]));
+        }
+        let some = RowSpace::new(&rows, &self.mass, RowSpace::<N, M>::ROUNDING).dependence().independent;
+        let saddle = Saddle {
+            block,
+            transposed: rows,
+            rows,
+            right: from_fn(|i| -(0..N).map(|j| self.mass[i][j] * d[j]).sum::<f64>()),
+            level: misses.map(|g| g.map_or(0.0, |g| -g.re)),
+        };
+        let (correction, nu) = saddle.solve_some(some)?;
+        self.nu = nu;
+        Ok(correction)
+    }
+}

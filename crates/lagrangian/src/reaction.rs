@@ -1,0 +1,76 @@
+use crate::{Constraint, Dual, Scalar, System};
+use std::array::from_fn;
+
+/// The rows along which the constraints act on the system at a velocity: `A(q, t)`, and `d phi / dv` where a constraint is
+/// not affine.
+#[inline]
+pub fn reaction_rows<Sys, S, const N: usize, const M: usize>(system: &Sys, t: S, q: &[S; N], v: &[S; N]) -> [[S; N]; M]
+where
+    Sys: System<N, M>,
+    S: Scalar,
+{
+    let (mut a, _) = system.constraint(t, q);
+    if let Some(phi) = system.nonlinear(Dual::fixed(t), &q.map(Dual::fixed), &Dual::variables(v)) {
+        for k in 0..M {
+            a[k] = phi[k].map_or(a[k], |phi: Dual<S, N>| phi.eps);
+        }
+    }
+    a
+}
+
+/// The rows of the constraints on positions, `A_k = dg_k/dq` and `b_k = dg_k/dt`, from the functions of
+/// [`System::holonomic`]; zero for the others.
+///
+/// [`System::constraint`] may call it and fill in its other rows.
+#[inline]
+pub fn position_rows<Sys, S, const N: usize, const M: usize>(system: &Sys, t: S, q: &[S; N]) -> Constraint<S, N, M>
+where
+    Sys: System<N, M>,
+    S: Scalar,
+{
+    let (mut a, mut b) = ([[S::zero(); N]; M], [S::zero(); M]);
+    let in_q = system.holonomic(Dual::fixed(t), &Dual::variables(q));
+    let in_t = system.holonomic(Dual { re: t, eps: [S::constant(1.0)] }, &q.map(Dual::fixed));
+    if let (Some(in_q), Some(in_t)) = (in_q, in_t) {
+        for k in 0..M {
+            a[k] = in_q[k].map_or(a[k], |g: Dual<S, N>| g.eps);
+            b[k] = in_t[k].map_or(b[k], |g: Dual<S, 1>| g.eps[0]);
+        }
+    }
+    (a, b)
+}
+
+/// What the constraints on positions miss, `g_k`, and their gradients; none where the system has no such constraint.
+///
+/// A value that the rounding of the coordinates alone may bring, `2 eps sum_i |dg/dq_i q_i|`, counts as zero: far from the
+/// origin no coordinates come nearer.
+#[inline(always)]
+pub fn position_misses<Sys, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    q: &[f64; N],
+) -> Option<[Option<Dual<f64, N>>; M]>
+where
+    Sys: System<N, M>,
+{
+    let g: [Option<Dual<f64, N>>; M] = system.holonomic(Dual::fixed(t), &Dual::variables(q))?;
+    Some(g.map(|g| {
+        g.map(|g| {
+            let rounding: f64 = (0..N).map(|i| (g.eps[i] * q[i]).abs()).sum();
+            if g.re.abs() <= 2.0 * f64::EPSILON * rounding { Dual { re: 0.0, ..g } } else { g }
+        })
+    }))
+}
+
+/// The largest `|g_k(q, t)|` of the constraints on positions; zero where there are none.
+#[inline]
+pub fn position_residual<Sys, const N: usize, const M: usize>(system: &Sys, t: f64, q: &[f64; N]) -> f64
+where
+    Sys: System<N, M>,
+{
+    let residuals: [f64; M] = match system.holonomic(t, q) {
+        Some(g) => from_fn(|k| g[k].unwrap_or(0.0)),
+        None => [0.0; M],
+    };
+    crate::linear::largest(&residuals)
+}
