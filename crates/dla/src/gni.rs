@@ -1,4 +1,4 @@
-use crate::{Equations, Newton, OneStep, Stage, State, StepError, StepReport};
+use crate::{Equations, History, Newton, NewtonError, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::linear::{Lu, Singular};
 use lagrangian::{DiscreteLagrangian, Dual, Saddle, System, Trapezoid, mass_matrix, momentum};
 use std::array::from_fn;
@@ -64,7 +64,10 @@ where
 {
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
         let singular = |stage| {
-            move |source| StepError::Newton { stage, source: crate::NewtonError::Singular { iteration: 1, source } }
+            move |source| StepError::Newton {
+                stage,
+                source: NewtonError::Singular { iteration: 1, source, history: History::new() },
+            }
         };
         let (q0, v0) = (*state.q(), *state.v());
         // Only a node that it led to itself has a momentum to reflect; another start begins without one across.
@@ -93,6 +96,14 @@ where
         state.advance(&increment, v1, None);
         self.memory = Some(Memory { node: *state, arriving });
         Ok(StepReport::of(iterations))
+    }
+
+    fn memory(&self) -> Vec<f64> {
+        self.memory.map_or_else(Vec::new, |memory| memory.arriving.to_vec())
+    }
+
+    fn recall(&mut self, memory: &[f64], state: &State<N>) {
+        self.memory = <[f64; N]>::try_from(memory).ok().map(|arriving| Memory { node: *state, arriving });
     }
 }
 

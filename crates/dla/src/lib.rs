@@ -6,31 +6,45 @@
 //!
 //! This crate knows no particular system and no file; its [`Newton`] solver knows neither time nor mechanics.
 
+mod checkpoint;
 mod composition;
 mod dla;
 mod drive;
 mod energy;
+mod events;
 mod gauss;
 mod gni;
+mod hermite;
+mod hint;
+mod history;
 mod lobatto;
 mod newton;
 mod one_step;
 mod pieces;
 mod projection;
+mod recommend;
+mod samples;
 mod state;
 mod trajectory;
 mod work;
 
 pub use crate::dla::{Dla, Form};
+pub use checkpoint::{Checkpoint, CheckpointError};
 pub use composition::Composition;
 pub use drive::{Observer, Part, RunError, Schedule, View, drive, drive_part};
 pub use energy::{Energy, Gradient};
+pub use events::{Crossing, Direction, Event, Watch};
 pub use gauss::Gauss;
 pub use gni::Gni;
+pub use hermite::Hermite;
+pub use hint::Hint;
+pub use history::History;
 pub use lobatto::Lobatto;
 pub use newton::{Equations, Newton, NewtonError};
 pub use one_step::{OneStep, Stage, StepError, StepReport};
-pub use pieces::{onto_constraint, piece_by_piece, pieces};
+pub use pieces::{onto_constraint, piece_by_piece, piece_by_piece_from, pieces};
+pub use recommend::{RecommendError, Recommendation, recommend_step};
+pub use samples::Samples;
 pub use state::State;
 pub use trajectory::{Node, Trajectory};
 pub use work::Work;

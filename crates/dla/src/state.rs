@@ -1,3 +1,4 @@
+use crate::{Checkpoint, CheckpointError};
 use lagrangian::{ReducedError, System, quasi_velocities};
 use std::array::from_fn;
 use std::f64::consts::{PI, TAU};
@@ -105,6 +106,31 @@ impl<const N: usize> State<N> {
     pub fn reversed(&self) -> Self {
         let flipped = |v: [f64; N]| v.map(|v| -v);
         Self { v: flipped(self.v), xi: self.xi.map(flipped), ..*self }
+    }
+
+    /// Writes every bit of the state to a checkpoint; all but which coordinates are angles, which the system knows.
+    pub fn save(&self, checkpoint: &mut Checkpoint) {
+        checkpoint.put("q", &self.q);
+        checkpoint.put("rest", &self.rest);
+        checkpoint.put("turns", &self.turns);
+        checkpoint.put("v", &self.v);
+        checkpoint.put("xi", self.xi.as_ref().map_or(&[], |xi| &xi[..]));
+    }
+
+    /// The state that [`save`](Self::save) wrote.
+    ///
+    /// # Errors
+    /// [`CheckpointError`] where the checkpoint has none of `N` coordinates.
+    pub fn load(checkpoint: &Checkpoint, angles: [bool; N]) -> Result<Self, CheckpointError> {
+        let xi = if checkpoint.list("xi")?.is_empty() { None } else { Some(checkpoint.get("xi")?) };
+        Ok(Self {
+            q: checkpoint.get("q")?,
+            rest: checkpoint.get("rest")?,
+            turns: checkpoint.get("turns")?,
+            angles,
+            v: checkpoint.get("v")?,
+            xi,
+        })
     }
 
     #[inline(always)]
