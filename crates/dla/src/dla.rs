@@ -1,10 +1,7 @@
+use crate::increment::{Increment, Mean};
 use crate::projection::Projection;
-use crate::{Equations, Newton, OneStep, Stage, State, StepError, StepReport};
-use lagrangian::linear::Singular;
-use lagrangian::{
-    AdmissibleBasis, Alpha, DiscreteConstraint, DiscreteLagrangian, Dual, Midpoint, NotAWeight, Saddle, System,
-    Trapezoid, momentum,
-};
+use crate::{Newton, OneStep, Stage, State, StepError, StepReport};
+use lagrangian::{Alpha, DiscreteConstraint, DiscreteLagrangian, Midpoint, NotAWeight, System, Trapezoid, momentum};
 use std::array::from_fn;
 
 /// How the equations of a step are solved.
@@ -39,6 +36,11 @@ pub enum Form {
 /// node's multiplier `lambda + mu`; as a map on the distribution it needs no special first step, and is self-adjoint where
 /// the discrete Lagrangian and the discrete constraint are. It keeps both constraints to round-off. It does not bound
 /// the energy in general.
+///
+/// The equations of a long step may have several solutions, or only such as belong to another motion. One is accepted where
+/// it is connected with the solution of a step of length zero: the determinant of the equations has the same sign there, the
+/// constraint turns by less than a radian, and Newton's method contracts from its first step; or else the solution is
+/// followed from length zero to that of the step. No step turns a constraint by half a turn: it could as well be the other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dla<L, C> {
     /// The discrete Lagrangian `L_d`.
@@ -110,8 +112,8 @@ where
         let basis = |t, q: &[f64; N]| if in_basis { system.admissible_basis(t, q) } else { None };
 
         // The increment, through the mean velocity.
-        let mut increment = Increment {
-            dla: self,
+        let increment = Increment {
+            rules: (&self.lagrangian, &self.constraint),
             system,
             t0,
             h,
@@ -120,13 +122,9 @@ where
             a0: system.constraint(t0, &q0).0,
             basis: basis(t0, &q0),
             lambda: [0.0; M],
+            positive: false,
         };
-        let mut v = v0;
-        let iterations = self
-            .newton
-            .solve(&mut increment, &mut v)
-            .map_err(|source| StepError::Newton { stage: Stage::Increment, source })?;
-        let lambda = increment.lambda;
+        let Mean { v, lambda, iterations } = increment.solve(&self.newton, v0)?;
 
         // The momentum at the end, projected onto the constraint there.
         let mut p1 = self.lagrangian.d2(system, t0, h, &q0, &v);
@@ -146,57 +144,4 @@ where
 
 fn is_midpoint<R: 'static>() -> bool {
     std::any::TypeId::of::<R>() == std::any::TypeId::of::<Midpoint>()
-}
-
-/// The equations for the mean velocity `v` of a step, with the multiplier at its beginning.
-struct Increment<'a, Sys, L, C, const N: usize, const M: usize> {
-    dla: &'a Dla<L, C>,
-    system: &'a Sys,
-    t0: f64,
-    h: f64,
-    q0: [f64; N],
-    p0: [f64; N],
-    a0: [[f64; N]; M],
-    basis: Option<AdmissibleBasis<f64, N, M>>,
-    lambda: [f64; M],
-}
-
-impl<Sys, L, C, const N: usize, const M: usize> Equations<N> for Increment<'_, Sys, L, C, N, M>
-where
-    Sys: System<N, M>,
-    L: DiscreteLagrangian<Sys, N, M>,
-    C: DiscreteConstraint<Sys, N, M>,
-{
-    #[inline]
-    fn correction(&mut self, v: &[f64; N]) -> Result<[f64; N], Singular> {
-        let Self { dla, system, t0, h, q0, .. } = *self;
-        let (lagrangian, constraint) = (&dla.lagrangian, &dla.constraint);
-        let l_d = lagrangian.derivatives(system, t0, h, &q0, v);
-        let mut residual: [f64; N] = from_fn(|i| self.p0[i] + l_d.d1[i]);
-        let mut block = l_d.d1d2.map(|row| row.map(|x| h * x));
-
-        // Forces and constraint with their derivatives in v.
-        let (t, step) = (Dual::fixed(t0), Dual::fixed(h));
-        let (q, v) = (q0.map(Dual::fixed), Dual::variables(v));
-        if let Some((minus, _)) = lagrangian.forces(system, t, step, &q, &v) {
-            for i in 0..N {
-                residual[i] += minus[i].re;
-                for j in 0..N {
-                    block[i][j] += minus[i].eps[j];
-                }
-            }
-        }
-        let w_d = constraint.residual(system, t, step, &q, &v);
-
-        let saddle = Saddle {
-            block,
-            transposed: self.a0,
-            rows: w_d.map(|w| w.eps),
-            right: residual.map(|r| -r),
-            level: w_d.map(|w| -w.re),
-        };
-        let (correction, lambda) = saddle.solve(self.basis.as_ref())?;
-        self.lambda = lambda;
-        Ok(correction)
-    }
 }

@@ -1,4 +1,4 @@
-use crate::{Equations, History, Newton, NewtonError, OneStep, Stage, State, StepError, StepReport};
+use crate::{Equations, Newton, NewtonError, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::linear::{Lu, Singular};
 use lagrangian::{DiscreteLagrangian, Dual, Saddle, System, Trapezoid, mass_matrix, momentum};
 use std::array::from_fn;
@@ -63,12 +63,7 @@ where
     L: DiscreteLagrangian<Sys, N, M>,
 {
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
-        let singular = |stage| {
-            move |source| StepError::Newton {
-                stage,
-                source: NewtonError::Singular { iteration: 1, source, history: History::new() },
-            }
-        };
+        let singular = |stage| move |source| StepError::Newton { stage, source: NewtonError::singular(source) };
         let (q0, v0) = (*state.q(), *state.v());
         // Only a node that it led to itself has a momentum to reflect; another start begins without one across.
         let departing = match self.memory {

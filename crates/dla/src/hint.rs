@@ -123,7 +123,7 @@ impl StepError {
                 Hint::ShorterStep { part: 0.5 * bound / value }
             }
             Self::Closed(ClosedStepError::NotFinite { .. }) | Self::NotFinite => Hint::Numbers,
-            Self::Closed(_) | Self::Energy { .. } | Self::Tolerance { .. } => HALF,
+            Self::Closed(_) | Self::Branch | Self::Energy { .. } | Self::Tolerance { .. } => HALF,
             Self::Unsupported { .. } => Hint::OtherMethod,
             Self::Jump { time } => Hint::NodeAt { time: *time },
             Self::Motion(_) => Hint::Constraints,

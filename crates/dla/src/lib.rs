@@ -6,6 +6,7 @@
 //!
 //! This crate knows no particular system and no file; its [`Newton`] solver knows neither time nor mechanics.
 
+mod branch;
 mod checkpoint;
 mod composition;
 mod dla;
@@ -17,6 +18,7 @@ mod gni;
 mod hermite;
 mod hint;
 mod history;
+mod increment;
 mod lobatto;
 mod newton;
 mod one_step;
@@ -43,7 +45,7 @@ pub use lobatto::Lobatto;
 pub use newton::{Equations, Newton, NewtonError};
 pub use one_step::{OneStep, Stage, StepError, StepReport};
 pub use pieces::{onto_constraint, piece_by_piece, piece_by_piece_from, pieces};
-pub use recommend::{RecommendError, Recommendation, recommend_step};
+pub use recommend::{RecommendError, Recommendation, recommend_by_trial, recommend_step};
 pub use samples::Samples;
 pub use state::State;
 pub use trajectory::{Node, Trajectory};

@@ -92,6 +92,13 @@ pub enum NewtonError {
     },
 }
 
+impl NewtonError {
+    /// The equations are singular from the start.
+    pub(crate) fn singular(source: Singular) -> Self {
+        Self::Singular { iteration: 1, source, history: History::new() }
+    }
+}
+
 impl Newton {
     /// Where all corrections are below this part of the largest component, those that do not shrink are rounding.
     pub const ROUNDING: f64 = 1e-11;

@@ -111,6 +111,9 @@ pub enum StepError {
         /// When (s).
         time: f64,
     },
+    /// The equations of the step have a solution, but it belongs to another motion, or cannot be shown to continue this one.
+    #[error("no solution continues the motion: the one that was found is not connected with the start of the step")]
+    Branch,
     /// An adaptive method does not meet its tolerance within a step.
     #[error("the tolerance is not met: after {tries} steps within the interval the next would be {step:e} s")]
     Tolerance {

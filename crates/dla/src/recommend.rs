@@ -84,23 +84,35 @@ pub fn recommend_step<Sys, Method, const N: usize, const M: usize>(
 where
     Method: OneStep<Sys, N, M> + Clone,
 {
+    recommend_by_trial(duration, tolerance, |schedule, times| {
+        let mut samples = Samples::new(make_method(), times);
+        drive(system, &mut make_method(), schedule, &mut state.clone(), &mut samples)?;
+        samples.into_taken().map_err(|source| RunError { step: schedule.steps, time: schedule.t0, source })
+    })
+}
+
+/// The same with a function that makes the trials: a run by the schedule, and the states at the times, which end with the
+/// end of the run.
+///
+/// # Errors
+/// As [`recommend_step`].
+pub fn recommend_by_trial<const N: usize>(
+    duration: f64,
+    tolerance: f64,
+    mut make: impl FnMut(&Schedule, &[f64]) -> Result<Vec<State<N>>, RunError>,
+) -> Result<Recommendation, RecommendError> {
     if !(tolerance > 0.0 && tolerance.is_finite() && duration > 0.0 && duration.is_finite()) {
         return Err(RecommendError::Request { tolerance, duration });
     }
-    let times: [f64; TIMES] = std::array::from_fn(|i| duration * (i + 1) as f64 / TIMES as f64);
     let mut trial = |steps: u64| -> Result<Sampled<N>, RunError> {
         let schedule = Schedule { t0: 0.0, step: duration / steps as f64, steps };
-        let (inner, last) = times.split_at(TIMES - 1);
-        let mut samples = Samples::new(make_method(), inner);
-        let mut end = *state;
-        drive(system, &mut make_method(), &schedule, &mut end, &mut samples)?;
-        let failed = |source| RunError { step: steps, time: last[0], source };
-        if let Some(source) = samples.failure() {
-            return Err(failed(source));
-        }
-        let mut sampled = samples.taken().iter().chain([&end]).map(State::unwrapped);
-        let sampled = std::array::from_fn(|_| sampled.next().unwrap_or([f64::NAN; N]));
-        if sampled.iter().flatten().all(|q| q.is_finite()) { Ok(sampled) } else { Err(failed(StepError::NotFinite)) }
+        // The last is that of the last node, to the bit.
+        let end = schedule.time(steps);
+        let times: [f64; TIMES] = std::array::from_fn(|i| end * (i + 1) as f64 / TIMES as f64);
+        let found = make(&schedule, &times)?;
+        let sampled: Sampled<N> = std::array::from_fn(|i| found.get(i).map_or([f64::NAN; N], State::unwrapped));
+        let finite = sampled.iter().flatten().all(|q| q.is_finite());
+        if finite { Ok(sampled) } else { Err(RunError { step: steps, time: end, source: StepError::NotFinite }) }
     };
     let (found, trials) = reference(&mut trial, duration, tolerance)?;
     refined(&mut trial, &found, &trials, duration, tolerance)
@@ -165,7 +177,7 @@ fn reference<const N: usize>(
                 failure = Some(error);
                 trials.clear();
                 (change, extrapolated) = (f64::INFINITY, None);
-                if matches!(error.source, StepError::Unsupported { .. } | StepError::Jump { .. }) {
+                if matches!(error.source, StepError::Unsupported { .. }) {
                     break;
                 }
             }

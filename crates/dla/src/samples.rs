@@ -35,6 +35,14 @@ impl<'a, Method, const N: usize> Samples<'a, Method, N> {
         self.failure
     }
 
+    /// The samples themselves.
+    ///
+    /// # Errors
+    /// As [`failure`](Self::failure).
+    pub fn into_taken(self) -> Result<Vec<State<N>>, StepError> {
+        self.failure.map_or(Ok(self.taken), Err)
+    }
+
     fn take<Sys, const M: usize>(&mut self, node: &View<'_, Sys, N>, (t0, start): (f64, State<N>))
     where
         Method: OneStep<Sys, N, M> + Clone,

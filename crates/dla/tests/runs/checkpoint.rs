@@ -78,9 +78,8 @@ fn every_part_of_a_state_counts() {
 
 #[test]
 fn what_is_no_checkpoint_of_the_run_is_refused() {
-    let of = |method: &str, version: &str| {
-        Checkpoint::of([("method", method.to_owned()), ("version", version.to_owned())])
-    };
+    let of =
+        |method: &str, version: &str| Checkpoint::of([("method", method.to_owned()), ("version", version.to_owned())]);
     let mut checkpoint = of("dla", "1.2\n3 = ä");
     checkpoint.put("q", &[1.0, -0.0, f64::MIN_POSITIVE / 3.0]);
     checkpoint.put("none", &[]);

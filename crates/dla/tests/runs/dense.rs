@@ -49,22 +49,16 @@ fn samples_have_the_order_of_the_method_and_hold_the_constraint() {
     let rows = [
         ("dla", 2.0, [100, 200, 400].map(|steps| sampled(Dla::midpoint(), steps))),
         ("dla4", 4.0, [100, 200, 400].map(|steps| sampled(Composition::suzuki4(Dla::midpoint()), steps))),
-        ("gauss6", 6.0, [15, 30, 60].map(|steps| sampled(Gauss::<3>::default(), steps))),
-        ("gauss16", 16.0, [5, 6, 8].map(|steps| sampled(Gauss::<8>::default(), steps))),
+        ("gauss8", 8.0, [10, 20, 40].map(|steps| sampled(Gauss::<4>::default(), steps))),
     ];
     for (name, order, row) in rows {
         println!("{name}: {row:?}");
-        if name == "gauss16" {
-            // Its error over a step that is a third longer is a hundred times as large; and it reaches rounding soon.
-            let (ratio, steps) = (row[0].0 / row[2].0, 8.0f64 / 5.0);
-            assert!(ratio.ln() / steps.ln() > order - 1.0, "{row:?}");
-            assert!(sampled(Gauss::<8>::default(), 25).0 < 1e-13);
-        } else {
-            let found = orders(row.map(|(error, _)| error));
-            assert!(found[1] > order - 0.3, "{name}: {found:?}");
-        }
+        let found = orders(row.map(|(error, _)| error));
+        assert!(found[1] > order - 0.3, "{name}: {found:?}");
         assert!(row.iter().all(|(_, slip)| *slip <= 4.0 * f64::EPSILON), "{name}: {row:?}");
     }
+    // With steps of two fifths of a second order 16 has nothing left but the rounding of some metres.
+    assert!(sampled(Gauss::<8>::default(), 25).0 <= 1e-13);
 }
 
 /// Samples at nodes are the nodes, and looking changes nothing.
@@ -117,7 +111,7 @@ fn interpolated<Method: OneStep<Sleigh, 3, 1>>(mut method: Method, steps: u64) -
     drive(&sleigh, &mut method, &schedule(steps), &mut state_of(&backward()), &mut quintics).unwrap();
     let exact = Exact::new(&sleigh, &backward()).unwrap();
     let mut worst = [0.0f64; 3];
-    for t in TIMES {
+    for t in (0..997).map(|i| DURATION * (f64::from(i) + 0.5) / 997.0) {
         let (_, quintic) = quintics.found.iter().find(|(end, _)| *end >= t).unwrap();
         let ((q, v), (q_exact, v_exact)) = (quintic.at(t), exact.at(t).to_coordinates());
         for i in 0..3 {
@@ -132,10 +126,10 @@ fn interpolated<Method: OneStep<Sleigh, 3, 1>>(mut method: Method, steps: u64) -
 
 #[test]
 fn quintics_have_their_orders() {
-    let rows = [100, 200, 400].map(|steps| interpolated(Gauss::<8>::default(), steps));
+    let rows = [25, 50, 100].map(|steps| interpolated(Gauss::<8>::default(), steps));
     let found: Vec<_> = (0..3).map(|i| orders(rows.map(|row| row[i]))).collect();
     println!("quintic: {rows:?}, orders {found:.2?}");
-    // Position 6, velocity and constraint 5; the position may be better where its error passes through zero.
+    // Position 6, velocity and constraint 5.
     for (order, found) in [6.0, 5.0, 5.0].iter().zip(&found) {
         assert!(found[1] > order - 0.3, "{found:?}");
     }

@@ -7,6 +7,7 @@ use lagrangian::{Constraint, Piecewise, Scalar, System};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use sleigh::{Sleigh, SleighState};
+use std::cell::Cell;
 
 fn speed(state: &State<3>) -> f64 {
     sleigh_state(state).speed
@@ -29,18 +30,19 @@ where
     watch.crossings().iter().map(|crossing| (crossing.event, crossing.t)).collect()
 }
 
-/// The speed crosses zero, the heading reaches a right angle, on the scene `turnaround`.
+/// The heading reaches a right angle, the speed crosses zero, on the scene `turnaround`.
 fn errors<Method: OneStep<Sleigh, 3, 1> + Clone>(method: Method, steps: u64) -> [f64; 2] {
     let (sleigh, start) = (sleigh(), backward());
     let motion = Motion::new(&sleigh, &start);
     let right_angle = std::f64::consts::FRAC_PI_2;
     let events = [
-        Event::new("speed", |_, state| speed(state)),
         Event::new("heading", |_, state: &State<3>| state.unwrapped()[2] - right_angle),
+        Event::new("speed", |_, state| speed(state)),
     ];
     let found = times(&sleigh, method, &start, (40.0 / steps as f64, steps), &events);
+    // It has turned by a right angle before it stands: half of the whole turn, pi sqrt(5)/2, is more.
     assert_eq!(found.iter().map(|(event, _)| *event).collect::<Vec<_>>(), [0, 1], "{found:?}");
-    let exact = [motion.turnaround, motion.at_turn(sleigh.offset(), right_angle)];
+    let exact = [motion.at_turn(sleigh.offset(), right_angle), motion.turnaround];
     [0, 1].map(|event| (found[event].1 - exact[event]).abs())
 }
 
@@ -69,66 +71,67 @@ fn the_turnaround_is_located_to_the_order_of_the_method() {
 fn no_crossing_of_ten_thousand_runs_is_missed() {
     let strategy = (
         (0.5..2.0f64, 0.3..2.0f64, 0.2..0.8f64, any::<bool>()),
-        (0.4..2.0f64, -1.5..1.5f64, any::<bool>(), -9.0..-0.5f64),
+        (0.4..2.0f64, -1.5..1.5f64, any::<bool>(), -6.0..-0.5f64),
         (0.05..0.25f64, 10..30u64),
     );
-    let (mut crossed, mut twice, mut near) = (0, 0, 0);
-    let mut worst: f64 = 0.0;
+    let [crossed, twice, near] = &[const { Cell::new(0) }; 3];
+    let worst = &[const { Cell::new(0.0f64) }; 2];
     let mut runner = TestRunner::new(Config { cases: 10_000, failure_persistence: None, ..Config::default() });
-    let (crossed_now, twice_now, near_now, worst_now) =
-        (&std::cell::Cell::new(0), &std::cell::Cell::new(0), &std::cell::Cell::new(0), &std::cell::Cell::new(0.0f64));
-    let outcome = runner.run(&strategy, |((mass, inertia, offset, behind), (size, phase, left, exponent), (part, steps))| {
-        let sleigh = Sleigh::new(mass, inertia, if behind { -offset } else { offset }).unwrap();
-        let gyration = (sleigh.pivot_inertia() / mass).sqrt();
-        // Of all the energy, in any part of the motion.
-        let (speed0, spin) = (size * phase.tanh(), size / phase.cosh() / gyration);
-        let start = SleighState { speed: speed0, turn_rate: if left { spin } else { -spin }, ..SleighState::default() };
-        let motion = Motion::new(&sleigh, &start);
-        let low = 10f64.powf(exponent) * motion.speed;
-        let events = [
-            Event::new("speed", |_, state| speed(state)),
-            Event::new("size of the speed", |_, state| speed(state).abs() - low),
-        ];
-        // Steps from a small part of the shortest time of the motion to a large one.
-        let step = part / motion.kappa.abs().max(size / gyration);
-        let end = steps as f64 * step;
-        for (name, found, tolerance) in [
-            ("dla", times(&sleigh, Dla::midpoint(), &start, (step, steps), &events), 0.02 * step),
-            ("gauss16", times(&sleigh, Gauss::<8>::default(), &start, (step, steps), &events), 1e-12 * (1.0 + end)),
-        ] {
-            let (one, other) = (motion.at_speed(-low / motion.speed), motion.at_speed(low / motion.speed));
-            let mut expected = vec![(0, motion.turnaround), (1, one), (1, other)];
-            // A crossing within the error of the ends of the run may or may not be in it.
-            if expected.iter().any(|(_, t)| t.abs() <= tolerance || (t - end).abs() <= tolerance) {
-                near_now.set(near_now.get() + 1);
-                continue;
-            }
-            expected.retain(|(_, t)| 0.0 < *t && *t < end);
-            crossed_now.set(crossed_now.get() + i32::from(!expected.is_empty()));
-            twice_now.set(twice_now.get() + i32::from(expected.len() == 3 && (other - one).abs() < 0.1 * step));
-            for event in 0..2 {
-                let sorted = |list: &[(usize, f64)]| {
-                    let mut times: Vec<f64> = list.iter().filter(|(e, _)| *e == event).map(|(_, t)| *t).collect();
-                    times.sort_by(f64::total_cmp);
-                    times
-                };
-                let (found, expected) = (sorted(&found), sorted(&expected));
-                prop_assert_eq!(found.len(), expected.len(), "{}: {:?}, expected {:?}", name, found, expected);
-                for (found, expected) in found.iter().zip(&expected) {
-                    let error = (found - expected).abs();
-                    prop_assert!(error <= tolerance, "{name}: {found} for {expected}, step {step}: {error:e}");
-                    worst_now.set(worst_now.get().max(error / tolerance));
+    let outcome =
+        runner.run(&strategy, |((mass, inertia, offset, behind), (size, phase, left, exponent), (part, steps))| {
+            let sleigh = Sleigh::new(mass, inertia, if behind { -offset } else { offset }).unwrap();
+            let gyration = (sleigh.pivot_inertia() / mass).sqrt();
+            // Of all the energy, in any part of the motion.
+            let (speed0, spin) = (size * phase.tanh(), size / phase.cosh() / gyration);
+            let start =
+                SleighState { speed: speed0, turn_rate: if left { spin } else { -spin }, ..SleighState::default() };
+            let motion = Motion::new(&sleigh, &start);
+            let low = 10f64.powf(exponent) * motion.speed;
+            let events = [
+                Event::new("speed", |_, state| speed(state)),
+                Event::new("size of the speed", |_, state| speed(state).abs() - low),
+            ];
+            // Steps from a small part of the shortest time of the motion to a large one.
+            let step = part / motion.kappa.abs().max(size / gyration);
+            let end = steps as f64 * step;
+            // The midpoint map has the motion of a rate kappa that is wrong by its (kappa h)^2/12 (the artanh of its factor),
+            // and by as much of the turn of a step. Order 16 leaves rounding, of which slow motions make more time.
+            let phase = end * part * part / 6.0;
+            let rounding = 1e-12 * f64::max(1.0, motion.kappa.abs().recip());
+            for (method, found, tolerance) in [
+                (0, times(&sleigh, Dla::midpoint(), &start, (step, steps), &events), phase),
+                (1, times(&sleigh, Gauss::<8>::default(), &start, (step, steps), &events), rounding),
+            ] {
+                let (one, other) = (motion.at_speed(-low / motion.speed), motion.at_speed(low / motion.speed));
+                let mut expected = vec![(0, motion.turnaround), (1, one), (1, other)];
+                // A crossing within the error of the ends of the run may or may not be in it.
+                if expected.iter().any(|(_, t)| t.abs() <= tolerance || (t - end).abs() <= tolerance) {
+                    near.set(near.get() + 1);
+                    continue;
+                }
+                expected.retain(|(_, t)| 0.0 < *t && *t < end);
+                crossed.set(crossed.get() + i32::from(!expected.is_empty()));
+                twice.set(twice.get() + i32::from(expected.len() == 3 && (other - one).abs() < 0.1 * step));
+                for event in 0..2 {
+                    let sorted = |list: &[(usize, f64)]| {
+                        let mut times: Vec<f64> = list.iter().filter(|(e, _)| *e == event).map(|(_, t)| *t).collect();
+                        times.sort_by(f64::total_cmp);
+                        times
+                    };
+                    let (found, expected) = (sorted(&found), sorted(&expected));
+                    prop_assert_eq!(found.len(), expected.len(), "{}: {:?}, expected {:?}", method, found, expected);
+                    for (found, expected) in found.iter().zip(&expected) {
+                        let error = (found - expected).abs();
+                        prop_assert!(error <= tolerance, "{method}: {found} for {expected}, step {step}: {error:e}");
+                        worst[method].set(worst[method].get().max(error / tolerance));
+                    }
                 }
             }
-        }
-        Ok(())
-    });
-    (crossed, twice) = (crossed + crossed_now.get(), twice + twice_now.get());
-    near += near_now.get();
-    worst = worst.max(worst_now.get());
-    println!("with a crossing {crossed}, twice within a tenth of a step {twice}, at an end {near}, worst {worst:.2}");
+            Ok(())
+        });
+    println!("with a crossing {crossed:?}, twice in a tenth of a step {twice:?}, at an end {near:?}, worst {worst:?}");
     outcome.unwrap();
-    assert!(crossed > 5000 && twice > 2000, "{crossed} {twice}");
+    assert!(crossed.get() > 5000 && twice.get() > 2000 && near.get() < 1000);
 }
 
 #[test]
@@ -217,7 +220,8 @@ fn events_within_each_piece_and_in_a_jump() {
         drive_part(piece, &mut Dla::midpoint(), &schedule, steps, state, &mut watch)
     })
     .unwrap();
-    let found: Vec<_> = watch.crossings().iter().map(|crossing| (crossing.event, crossing.rising, crossing.t)).collect();
+    let found: Vec<_> =
+        watch.crossings().iter().map(|crossing| (crossing.event, crossing.rising, crossing.t)).collect();
     let root = 0.008f64.sqrt();
     let expected = [(1, true, 1.0), (0, false, 1.2 - root), (2, true, 1.2), (0, true, 1.2 + root)];
     assert_eq!(found.len(), expected.len(), "{found:?}");

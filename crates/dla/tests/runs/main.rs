@@ -36,7 +36,6 @@ struct Motion {
     speed: f64,
     kappa: f64,
     turnaround: f64,
-    start: SleighState,
 }
 
 impl Motion {
@@ -45,7 +44,7 @@ impl Motion {
         let spin = gyration * start.turn_rate.abs();
         let speed = start.speed.hypot(spin);
         let kappa = sleigh.offset() * speed / (gyration * gyration);
-        Self { gyration, speed, kappa, turnaround: -(start.speed / spin).asinh() / kappa, start: *start }
+        Self { gyration, speed, kappa, turnaround: -(start.speed / spin).asinh() / kappa }
     }
 
     /// When the speed is a given part of `U`.
@@ -58,9 +57,5 @@ impl Motion {
     fn at_turn(&self, offset: f64, turn: f64) -> f64 {
         let phi = offset * turn / self.gyration + 2.0 * (0.5 * (-self.kappa * self.turnaround)).tanh().atan();
         self.turnaround + phi.tan().asinh() / self.kappa
-    }
-
-    fn sense(&self) -> f64 {
-        self.start.turn_rate.signum()
     }
 }

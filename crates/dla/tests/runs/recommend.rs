@@ -1,5 +1,7 @@
 use crate::{backward, sleigh, sleigh_state, state_of};
-use dla::{Composition, Dla, Gauss, OneStep, RecommendError, Recommendation, Schedule, Trajectory, drive, recommend_step};
+use dla::{
+    Composition, Dla, Gauss, OneStep, RecommendError, Recommendation, Schedule, Trajectory, drive, recommend_step,
+};
 use lagrangian::Alpha;
 use sleigh::{Exact, Sleigh};
 
@@ -29,11 +31,9 @@ fn the_error_is_that_of_the_tolerance() {
     for tolerance in [1e-3, 1e-6, 1e-9] {
         let found = [
             ("dla", recommended(Dla::midpoint, tolerance), &|r: &_| reached(Dla::midpoint(), r)),
-            (
-                "dla4",
-                recommended(|| Composition::suzuki4(Dla::midpoint()), tolerance),
-                &|r: &_| reached(Composition::suzuki4(Dla::midpoint()), r) as f64,
-            ),
+            ("dla4", recommended(|| Composition::suzuki4(Dla::midpoint()), tolerance), &|r: &_| {
+                reached(Composition::suzuki4(Dla::midpoint()), r) as f64
+            }),
             ("gauss8", recommended(Gauss::<4>::default, tolerance), &|r: &_| reached(Gauss::<4>::default(), r)),
         ] as [(&str, _, &dyn Fn(&Recommendation) -> f64); 3];
         for (name, found, reached) in found {
@@ -61,8 +61,8 @@ fn a_tolerance_below_rounding_is_refused_with_the_best() {
     }
 }
 
-/// Forward, flip, back: how far from the start the recommended steps end.
-fn returned<Method: OneStep<Sleigh, 3, 1> + Clone>(method: Method, duration: f64, tolerance: f64) -> f64 {
+/// Forward, flip, back: how far from the start the recommended steps end, and how far rounding may bring them.
+fn returned<Method: OneStep<Sleigh, 3, 1> + Clone>(method: Method, duration: f64, tolerance: f64) -> (f64, f64) {
     let (sleigh, start) = (sleigh(), state_of(&backward()));
     let found = recommend_step(&sleigh, || method.clone(), &start, duration, tolerance).unwrap();
     let schedule = Schedule { t0: 0.0, step: found.step, steps: found.steps };
@@ -71,13 +71,16 @@ fn returned<Method: OneStep<Sleigh, 3, 1> + Clone>(method: Method, duration: f64
     state = state.reversed();
     drive(&sleigh, &mut method.clone(), &schedule, &mut state, ()).unwrap();
     let (end, start) = (sleigh_state(&state.reversed()), sleigh_state(&start));
-    f64::hypot(end.x - start.x, end.y - start.y).max((end.heading - start.heading).abs())
+    let distance = f64::hypot(end.x - start.x, end.y - start.y).max((end.heading - start.heading).abs());
+    // Every step leaves a rounding error in the velocities, of size one. The way back leaves a straight motion that repels
+    // it at the rate kappa = a U m/J = 0.40, from the end to the turn at 7.2 s; a velocity moves the place for the rest
+    // of the time.
+    let growth = (0.4 * (duration - 7.2)).exp();
+    (distance, 2.0 * found.steps as f64 * f64::EPSILON * growth * duration)
 }
 
 #[test]
 fn the_symmetry_is_kept() {
-    // The way back leaves a straight motion that repels it at the rate kappa = a U m/J = 0.40: over ten seconds, four of
-    // them before the turn, rounding grows by e^(0.4 (10 - 7.3)) = 3 or so, and adds up over a hundred steps at most.
     for tolerance in [1e-3, 1e-6] {
         let symmetric = [
             returned(Dla::midpoint(), 10.0, tolerance),
@@ -85,10 +88,10 @@ fn the_symmetry_is_kept() {
             returned(Gauss::<4>::default(), 10.0, tolerance),
         ];
         println!("return {tolerance:e}: {symmetric:?}");
-        assert!(symmetric.iter().all(|distance| *distance <= 1e-12), "{symmetric:?}");
+        assert!(symmetric.iter().all(|(distance, rounding)| distance <= rounding), "{symmetric:?}");
     }
     // The control.
     let alpha = Alpha::new(0.3).unwrap();
-    let unsymmetric = returned(Dla::new(alpha, alpha), 10.0, 1e-3);
+    let (unsymmetric, _) = returned(Dla::new(alpha, alpha), 10.0, 1e-3);
     assert!(unsymmetric > 1e-4, "{unsymmetric:e}");
 }
