@@ -76,8 +76,8 @@ impl NewtonError {
     fn hint(&self, stage: Stage) -> Hint {
         let history = self.history();
         match self {
-            // The first matrix is that of a step of length zero, or does not depend on the step at all.
-            Self::Singular { iteration, .. } if *iteration == 1 || stage == Stage::Projection => Hint::Constraints,
+            // This matrix does not depend on the step.
+            Self::Singular { .. } if stage == Stage::Projection => Hint::Constraints,
             Self::IterationLimit { correction, .. } => match history.last_ratio() {
                 Some(ratio) if ratio < 0.25 => Hint::MoreIterations,
                 Some(_) if correction.abs() < ROUNDING => Hint::LooserTolerance,
@@ -118,9 +118,9 @@ impl StepError {
     pub fn hint(&self) -> Option<Hint> {
         Some(match self {
             Self::Newton { stage, source } => source.hint(*stage),
-            // The quantity grows at least as fast as the step.
+            // The quantity grows at least as fast as the step; but it is that of an iterate, which may be far off.
             Self::Closed(ClosedStepError::NoSolution { value, bound, .. }) if value.is_finite() && *value >= *bound => {
-                Hint::ShorterStep { part: 0.5 * bound / value }
+                Hint::ShorterStep { part: f64::max(0.5 * bound / value, 0.25) }
             }
             Self::Closed(ClosedStepError::NotFinite { .. }) | Self::NotFinite => Hint::Numbers,
             Self::Closed(_) | Self::Branch | Self::Energy { .. } | Self::Tolerance { .. } => HALF,

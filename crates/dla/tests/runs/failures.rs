@@ -90,7 +90,8 @@ fn a_failure_tells_what_to_do() {
     let critical = 2.0 / sleigh.spin_gain();
     for (name, h, from) in [
         ("h too large", 2.9, start(-1.5, 1e-3)),
-        ("h omega near pi", 1.0, start(0.1, 3.6)),
+        // Forward, or slowly backward, the step brakes such a spin; here it does not.
+        ("h omega near pi", 1.0, start(-2.0, 3.0)),
         ("h c u = -2", critical, start(-1.0, 0.0)),
         ("h c u = -2, with a spin", critical, start(-1.0, 1e-3)),
     ] {
@@ -106,7 +107,9 @@ fn a_failure_tells_what_to_do() {
                 let history = source.history();
                 println!("  {} iterations, corrections {history}", source.iterations());
                 assert_eq!(error.source.iterations(), Some(source.iterations()));
-                assert!(history.iter().count() > 0 && history.iter().all(|size| size > 0.0 && size.is_finite()));
+                assert!(history.iter().all(|size| size > 0.0 && size.is_finite()), "{history}");
+                // Where the first matrix is singular there is no correction yet.
+                assert!(history.made() + 1 >= source.iterations(), "{source:?}");
             } else {
                 assert!(matches!(error.source, StepError::Closed(_) | StepError::Branch), "{error}");
             }
