@@ -35,7 +35,7 @@ pub(crate) enum CliError {
     #[error("{}: {source}", path.display())]
     Checkpoint { path: PathBuf, source: CheckpointError },
     #[error("--tolerance: {0}")]
-    Tolerance(RecommendError),
+    Tolerance(Box<RecommendError>),
     #[error("cannot write to standard output: {0}")]
     Output(std::io::Error),
     #[error("the report: {0}")]
@@ -60,9 +60,8 @@ impl CliError {
             }
             #[cfg(not(feature = "parquet"))]
             Self::WithoutParquet { .. } => ExitCode::from(2),
-            Self::Read { .. } | Self::Checkpoint { .. } | Self::Tolerance(RecommendError::Request { .. }) => {
-                ExitCode::from(2)
-            }
+            Self::Read { .. } | Self::Checkpoint { .. } => ExitCode::from(2),
+            Self::Tolerance(error) if matches!(**error, RecommendError::Request { .. }) => ExitCode::from(2),
             Self::TooManyNodes { .. } | Self::Report(ReportError::Exists { .. }) => ExitCode::from(2),
             Self::Write { .. } | Self::Folder { .. } | Self::Output(_) => ExitCode::FAILURE,
             Self::Report(_) | Self::Computation(_) | Self::Tolerance(_) => ExitCode::FAILURE,

@@ -128,7 +128,7 @@ impl Visitor for Run<'_> {
         let mut schedule = inspect::schedule(self.scene);
         if let Some(tolerance) = tolerance {
             let found = recommend(system, &self.method, (q, v), self.scene.run.duration, *tolerance);
-            let found = found.map_err(CliError::Tolerance)?;
+            let found = found.map_err(|error| CliError::Tolerance(Box::new(error)))?;
             schedule = Schedule { step: found.step, steps: found.steps, ..schedule };
             if self.out.is_some() {
                 trajectory_file::check_size(schedule.steps, self.arguments.every)?;

@@ -137,7 +137,7 @@ pub(crate) fn failure<const N: usize>(record: &Record<N>) -> Option<String> {
             record.method.name, record.t, record.steps
         );
         // Writing to a string cannot fail.
-        if let Some(history) = failure.source.history() {
+        if let Some(history) = failure.source.history().filter(|history| history.made() > 0) {
             let _ = write!(told, "; corrections {history}");
         }
         if let Some(hint) = failure.hint() {

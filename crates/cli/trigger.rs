@@ -9,11 +9,13 @@ use std::str::FromStr;
 pub(crate) struct Trigger {
     /// As it was written.
     text: String,
-    quantity: fn(&SleighState) -> f64,
+    quantity: Quantity,
     value: f64,
 }
 
-const QUANTITIES: [(&str, fn(&SleighState) -> f64); 5] = [
+type Quantity = fn(&SleighState) -> f64;
+
+const QUANTITIES: [(&str, Quantity); 5] = [
     ("x", |state| state.x),
     ("y", |state| state.y),
     ("heading", |state| state.heading),

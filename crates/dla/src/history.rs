@@ -18,7 +18,7 @@ impl Default for History {
 
 impl History {
     /// So many are kept.
-    pub const KEPT: usize = 8;
+    pub const KEPT: usize = 6;
 
     /// No corrections yet.
     #[must_use]

@@ -35,7 +35,7 @@ pub fn run_watched<Sys: System<N, M> + Piecewise, const N: usize, const M: usize
     let mut watch = Watch::new(Again(method), events, inner);
     let outcome = integrate_pieces(system, method, &schedule, &mut start.clone(), &mut watch);
     let crossings = watch.crossings().to_vec();
-    let steps = outcome.map_or_else(|failure| failure.valid_steps(), |made| made);
+    let steps = outcome.unwrap_or_else(|failure| failure.valid_steps());
     let seconds = timed(system, method, &Schedule { steps, ..schedule }, start);
     Watched { record: meter.record(method.info(), schedule.step, seconds, outcome.err()), trajectory, crossings }
 }

@@ -8,11 +8,13 @@
 //! | add what acts on a body | [`Effect`], [`With`] |
 //! | choose a method | [`Dla`], [`DiscreteLagrangian`], [`OneStep`] |
 //! | run it and look on | [`drive`], [`Schedule`], [`State`], [`Observer`], [`Trajectory`] |
+//! | find events, take samples, stop and resume, choose a step | [`Event`], [`Watch`], [`Samples`], [`Checkpoint`], [`recommend_step`] |
 //! | use the Chaplygin sleigh and its closed form | [`Sleigh`], [`SleighState`], [`Exact`] |
 
 pub use dla::{
-    self, Dla, Equations, Form, Newton, NewtonError, Node, Observer, OneStep, RunError, Schedule, Stage, State,
-    StepError, StepReport, Trajectory, View, drive,
+    self, Checkpoint, CheckpointError, Crossing, Direction, Dla, Equations, Event, Form, Hermite, Hint, History,
+    Newton, NewtonError, Node, Observer, OneStep, RecommendError, Recommendation, RunError, Samples, Schedule, Stage,
+    State, StepError, StepReport, Trajectory, View, Watch, drive, recommend_step,
 };
 pub use lagrangian::{
     self, AdmissibleBasis, Alpha, ClosedStep, ClosedStepError, Constraint, Derivatives, DiscreteConstraint,

@@ -13,6 +13,9 @@ pub enum Direction {
     Both,
 }
 
+/// Of the time (s) and the state.
+type Function<'a, const N: usize> = Box<dyn Fn(f64, &State<N>) -> f64 + 'a>;
+
 /// A function of time and state whose crossings of zero are looked for.
 ///
 /// A crossing changes the sign. A zero that is only touched is none, and a run that begins on one has not crossed it.
@@ -23,7 +26,7 @@ pub struct Event<'a, const N: usize> {
     pub direction: Direction,
     /// Whether the first crossing ends the run.
     pub terminal: bool,
-    function: Box<dyn Fn(f64, &State<N>) -> f64 + 'a>,
+    function: Function<'a, N>,
 }
 
 impl<'a, const N: usize> Event<'a, N> {

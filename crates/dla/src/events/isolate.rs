@@ -34,17 +34,12 @@ fn dip([a, b, c]: [Point; 3], f: &mut impl FnMut(f64) -> f64) -> Option<(Point, 
     // The parabola through the points dips below the middle by an eighth of this at most.
     let fall = f64::max(left, right) - middle;
     let may = middle > 0.0 && left >= middle && right > middle && middle <= fall;
-    let ends = [a.at.max(0.0), c.at.min(1.0)];
-    if !may || ends[0] >= ends[1] {
+    if !may || b.at < 0.0 || b.at > 1.0 {
         return None;
     }
-    let least = negative(ends, |at| side * f(at))?;
-    let end = |known: Point, at: f64, f: &mut dyn FnMut(f64) -> f64| {
-        // The ends of the step are among the points, or the middle one is.
-        if known.at == at { known } else { Point { at, value: f(at) } }
-    };
-    let from = end(if b.at == ends[0] { b } else { a }, ends[0], f);
-    let to = end(if b.at == ends[1] { b } else { c }, ends[1], f);
+    // The ends of the step are among the points.
+    let (from, to) = (if a.at < 0.0 { b } else { a }, if c.at > 1.0 { b } else { c });
+    let least = negative([from.at, to.at], |at| side * f(at))?;
     Some((from, Point { at: least.at, value: side * least.value }, to))
 }
 

@@ -28,7 +28,8 @@ pub struct Watch<'a, Method, Inner, const N: usize> {
     inner: Inner,
     before: Option<(f64, State<N>)>,
     crossings: Vec<Crossing<N>>,
-    ended: Option<Crossing<N>>,
+    /// With the number of the node that it makes.
+    ended: Option<(Crossing<N>, u64)>,
 }
 
 /// A step, to be made again in parts.
@@ -84,7 +85,7 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
     /// The event that ended the run.
     #[must_use]
     pub fn ended(&self) -> Option<&Crossing<N>> {
-        self.ended.as_ref()
+        self.ended.as_ref().map(|(crossing, _)| crossing)
     }
 
     /// The inner observer.
@@ -127,12 +128,12 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
         found.into_iter().map(|(_, crossing)| crossing).collect()
     }
 
-    /// Notes a crossing; whether it ends the run.
-    fn note(&mut self, crossing: Crossing<N>) -> bool {
+    /// Notes a crossing; whether it ends the run, there at node `k`.
+    fn note(&mut self, crossing: Crossing<N>, k: u64) -> bool {
         self.crossings.push(crossing);
         let ends = self.events[crossing.event].terminal;
         if ends {
-            self.ended = Some(crossing);
+            self.ended = Some((crossing, k));
         }
         ends
     }
@@ -155,7 +156,8 @@ where
                 let (old, new) = (event.value(t, &before), event.value(node.t, node.state));
                 let rising = old < 0.0;
                 if old * new.signum() < 0.0 && new != 0.0 && event.counts(rising) && self.ended.is_none() {
-                    self.note(Crossing { event: index, k: node.k, t: node.t, within: 0.0, rising, state: *node.state });
+                    let (k, t, state) = (node.k, node.t, *node.state);
+                    self.note(Crossing { event: index, k, t, within: 0.0, rising, state }, k);
                 }
             }
         }
@@ -172,7 +174,7 @@ where
             let step =
                 Again { system: node.system, method: &method, t0, h: node.t - t0, start: &start, end: node.state };
             for crossing in self.within(&step, node.k.saturating_sub(1)) {
-                if self.note(crossing) {
+                if self.note(crossing, node.k) {
                     let report = step.after((crossing.t - t0) / step.h).map_or(*report, |(_, report)| report);
                     let last = View { system: node.system, k: node.k, t: crossing.t, state: &crossing.state };
                     // The run ends here, whatever the inner observer says.
@@ -187,10 +189,8 @@ where
 
     fn end(&mut self, node: &View<'_, Sys, N>) {
         match &self.ended {
-            Some(Crossing { k, t, state, .. }) => {
-                // After a jump at a node the last node is that one.
-                let k = if self.before.is_some_and(|(before, _)| before == *t) { *k } else { k + 1 };
-                self.inner.end(&View { system: node.system, k, t: *t, state });
+            Some((Crossing { t, state, .. }, k)) => {
+                self.inner.end(&View { system: node.system, k: *k, t: *t, state });
             }
             None => self.inner.end(node),
         }
