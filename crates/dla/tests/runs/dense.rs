@@ -26,10 +26,10 @@ fn schedule(steps: u64) -> Schedule {
 }
 
 /// The largest error of samples, and of the constraint at them.
-fn sampled<Method: OneStep<Sleigh, 3, 1> + Clone>(method: Method, steps: u64) -> (f64, f64) {
+fn sampled<Method: OneStep<Sleigh, 3, 1> + Copy>(method: Method, steps: u64) -> (f64, f64) {
     let (sleigh, mut state) = (sleigh(), state_of(&backward()));
-    let mut samples = Samples::new(method.clone(), &TIMES);
-    drive(&sleigh, &mut method.clone(), &schedule(steps), &mut state, &mut samples).unwrap();
+    let mut samples = Samples::new(method, &TIMES);
+    drive(&sleigh, &mut { method }, &schedule(steps), &mut state, &mut samples).unwrap();
     assert_eq!((samples.taken().len(), samples.failure()), (TIMES.len(), None));
     let taken = samples.taken().iter().zip(TIMES);
     taken.fold((0.0, 0.0), |(e, c): (f64, f64), (state, t)| {

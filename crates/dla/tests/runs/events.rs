@@ -22,16 +22,16 @@ fn times<Method>(
     events: &[Event<'_, 3>],
 ) -> Vec<(usize, f64)>
 where
-    Method: OneStep<Sleigh, 3, 1> + Clone,
+    Method: OneStep<Sleigh, 3, 1> + Copy,
 {
-    let mut watch = Watch::new(method.clone(), events, ());
+    let mut watch = Watch::new(method, events, ());
     let schedule = Schedule { t0: 0.0, step, steps };
-    drive(sleigh, &mut method.clone(), &schedule, &mut state_of(start), &mut watch).unwrap();
+    drive(sleigh, &mut { method }, &schedule, &mut state_of(start), &mut watch).unwrap();
     watch.crossings().iter().map(|crossing| (crossing.event, crossing.t)).collect()
 }
 
 /// The heading reaches a right angle, the speed crosses zero, on the scene `turnaround`.
-fn errors<Method: OneStep<Sleigh, 3, 1> + Clone>(method: Method, steps: u64) -> [f64; 2] {
+fn errors<Method: OneStep<Sleigh, 3, 1> + Copy>(method: Method, steps: u64) -> [f64; 2] {
     let (sleigh, start) = (sleigh(), backward());
     let motion = Motion::new(&sleigh, &start);
     let right_angle = std::f64::consts::FRAC_PI_2;

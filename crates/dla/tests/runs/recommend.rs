@@ -9,7 +9,7 @@ const DURATION: f64 = 40.0;
 
 fn recommended<Method>(make: impl Fn() -> Method, tolerance: f64) -> Result<Recommendation, RecommendError>
 where
-    Method: OneStep<Sleigh, 3, 1> + Clone,
+    Method: OneStep<Sleigh, 3, 1> + Copy,
 {
     recommend_step(&sleigh(), make, &state_of(&backward()), DURATION, tolerance)
 }
@@ -32,7 +32,7 @@ fn the_error_is_that_of_the_tolerance() {
         let found = [
             ("dla", recommended(Dla::midpoint, tolerance), &|r: &_| reached(Dla::midpoint(), r)),
             ("dla4", recommended(|| Composition::suzuki4(Dla::midpoint()), tolerance), &|r: &_| {
-                reached(Composition::suzuki4(Dla::midpoint()), r) as f64
+                reached(Composition::suzuki4(Dla::midpoint()), r)
             }),
             ("gauss8", recommended(Gauss::<4>::default, tolerance), &|r: &_| reached(Gauss::<4>::default(), r)),
         ] as [(&str, _, &dyn Fn(&Recommendation) -> f64); 3];
@@ -62,14 +62,14 @@ fn a_tolerance_below_rounding_is_refused_with_the_best() {
 }
 
 /// Forward, flip, back: how far from the start the recommended steps end, and how far rounding may bring them.
-fn returned<Method: OneStep<Sleigh, 3, 1> + Clone>(method: Method, duration: f64, tolerance: f64) -> (f64, f64) {
+fn returned<Method: OneStep<Sleigh, 3, 1> + Copy>(method: Method, duration: f64, tolerance: f64) -> (f64, f64) {
     let (sleigh, start) = (sleigh(), state_of(&backward()));
-    let found = recommend_step(&sleigh, || method.clone(), &start, duration, tolerance).unwrap();
+    let found = recommend_step(&sleigh, || method, &start, duration, tolerance).unwrap();
     let schedule = Schedule { t0: 0.0, step: found.step, steps: found.steps };
     let mut state = start;
-    drive(&sleigh, &mut method.clone(), &schedule, &mut state, ()).unwrap();
+    drive(&sleigh, &mut { method }, &schedule, &mut state, ()).unwrap();
     state = state.reversed();
-    drive(&sleigh, &mut method.clone(), &schedule, &mut state, ()).unwrap();
+    drive(&sleigh, &mut { method }, &schedule, &mut state, ()).unwrap();
     let (end, start) = (sleigh_state(&state.reversed()), sleigh_state(&start));
     let distance = f64::hypot(end.x - start.x, end.y - start.y).max((end.heading - start.heading).abs());
     // Every step leaves a rounding error in the velocities, of size one. The way back leaves a straight motion that repels
