@@ -202,11 +202,10 @@ impl Piecewise for Pushed {
     }
 }
 
-/// `x = 0.6 - t^2/2` to 0.1 at `t = 1`, then `0.1 - s + 5 s^2/2`: zero at `s = (1 -+ sqrt(0)) / 5`, and so on.
+/// `x = 0.58 - t^2/2` to `t = 1`, then `0.08 - s + 5 s^2/2`, which is zero at `s = 0.2 -+ sqrt(0.04 - 0.032)`.
 #[test]
 fn events_within_each_piece_and_in_a_jump() {
     let system = Pushed { after: None, imposed: true };
-    // With x(1) = 0.08 the parabola after the jump is zero at s = 0.2 -+ sqrt(0.04 - 0.032).
     let mut state = State::new([0.58, 0.0], [0.0, -1.0], [false; 2]);
     let events = [
         Event::new("x", |_, state: &State<2>| state.q()[0]),
