@@ -6,6 +6,8 @@ mod program;
 
 use program::{FAILING, Folder, SCENE, SCENES, csv, keys, methods};
 use serde_json::Value;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
 
 const KEYS: [&str; 11] = [
     "scene",
@@ -171,7 +173,8 @@ fn a_run_that_fails_keeps_and_tells_what_is_valid() {
     let run: Value = serde_json::from_str(&outcome.stdout).unwrap();
     assert_eq!(outcome.code, 1);
     assert_eq!(keys(&run), [&KEYS[..], &["failure"]].concat());
-    assert_eq!(keys(&run["failure"]), ["step", "time", "reason"]);
+    assert_eq!(keys(&run["failure"]), ["step", "time", "reason", "iterations", "corrections", "hint"]);
+    assert!(run["failure"]["hint"].as_str().unwrap().starts_with("shorten the step to 0."), "{run}");
     let (steps, t) = (run["steps"].as_u64().unwrap(), run["final"]["t"].as_f64().unwrap());
     assert!(0 < steps && steps < 10);
     assert_eq!((run["failure"]["step"].as_u64(), run["failure"]["time"].as_f64()), (Some(steps + 1), Some(t)));
@@ -185,4 +188,134 @@ fn a_run_that_fails_keeps_and_tells_what_is_valid() {
     let text = folder.line("run large.toml");
     assert_eq!(text.code, 1);
     assert!(text.stdout.contains(&format!("{steps} of 2.9 s")), "{}", text.stdout);
+}
+
+/// What a program prints, but for the time it took.
+fn timeless(mut run: Value) -> Value {
+    run["wall_seconds"].take();
+    run
+}
+
+/// Stopped by force in the middle, whenever that happens to be, a run goes on from its last checkpoint to the same end.
+#[test]
+fn a_killed_run_is_resumed_to_the_same_bits() {
+    let folder = Folder::new();
+    let line = "run turnaround --method gauss16 --step 0.002 --duration 800 --json --every 100";
+    let mut child: Command =
+        folder.command(format!("{line} --checkpoint saved --checkpoint-every 20000").split_whitespace());
+    let mut child = child.stdout(Stdio::null()).spawn().unwrap();
+    let begin = Instant::now();
+    while !folder.join("saved").exists() {
+        assert!(begin.elapsed() < Duration::from_secs(60) && child.try_wait().unwrap().is_none(), "no checkpoint");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    child.kill().unwrap();
+    assert!(!child.wait().unwrap().success(), "it was not stopped");
+
+    let resumed = folder.json(&format!("{line} --resume saved --out rest.csv"));
+    let whole = folder.json(&format!("{line} --out whole.csv"));
+    assert_eq!(timeless(resumed), timeless(whole));
+    let (rest, whole) = (folder.read("rest.csv"), folder.read("whole.csv"));
+    let (rest, whole): (Vec<_>, Vec<_>) = (rest.lines().collect(), whole.lines().collect());
+    // All rows that come after the checkpoint, under the same header.
+    assert!(1 < rest.len() && rest.len() < whole.len() && rest[0] == whole[0], "{} {}", rest.len(), whole.len());
+    assert_eq!(rest[1..], whole[whole.len() + 1 - rest.len()..]);
+}
+
+/// The last checkpoint of a run that ended by itself, of scenes with forces, jumps and moving constraints, and of methods that
+/// remember something.
+#[test]
+fn a_resumed_run_has_the_bits_of_the_whole() {
+    let folder = Folder::new();
+    for (scene, method, every) in [
+        ("turnaround", "gni", 333),
+        ("turnaround", "dop853", 77),
+        ("turnaround", "energy4", 500),
+        ("bowl", "dla4", 701),
+        ("turntable", "dla", 100),
+        // At a jump of the imposed velocity, and between two.
+        ("parking", "dla", 100),
+        ("parking", "lobatto3", 70),
+    ] {
+        let line = format!("run {scene} --method {method} --json");
+        let whole = folder.json(&line);
+        let saved = folder.json(&format!("{line} --checkpoint saved --checkpoint-every {every} --force"));
+        assert_eq!(timeless(whole.clone()), timeless(saved), "{line}: saving changes nothing");
+        let steps = whole["steps"].as_u64().unwrap();
+        assert!(folder.read("saved").contains(&format!("\nsteps = {steps}\n")) && steps > every, "{steps}");
+        let resumed = folder.json(&format!("{line} --resume saved"));
+        assert_eq!(timeless(whole), timeless(resumed), "{line}");
+    }
+}
+
+#[test]
+fn a_checkpoint_of_another_run_is_refused() {
+    let folder = Folder::new();
+    folder.done("run turnaround --checkpoint saved --checkpoint-every 300");
+    let written = folder.read("saved");
+    folder.refused("run circle --resume saved", &["saved", "scene", "`turnaround`", "`circle`"]);
+    folder.refused("run turnaround --method dla4 --resume saved", &["method", "`dla`", "`dla4`"]);
+    folder.refused("run turnaround --step 0.01 --resume saved", &["step", "`0.05`", "`0.01`"]);
+    folder.refused("run turnaround --resume none", &["none"]);
+    folder.refused("run turnaround --checkpoint saved", &["saved exists already", "--force"]);
+    folder.refused("run turnaround --checkpoint-every 10", &["--checkpoint"]);
+    folder.refused("run turnaround --resume saved --event speed=0", &["--event"]);
+    folder.write("cut", &written[..written.len() / 2]);
+    folder.refused("run turnaround --resume cut", &["cut", "damaged"]);
+    folder.write("noise", b"\xff\xfe");
+    folder.refused("run turnaround --resume noise", &["no checkpoint"]);
+    folder.write("newer", written.replacen("checkpoint 1", "checkpoint 7", 1));
+    folder.refused("run turnaround --resume newer", &["version 7"]);
+    // The scene of a name may change.
+    folder.write("scene.toml", SCENE);
+    folder.done("run scene.toml --checkpoint other --checkpoint-every 10");
+    folder.write("scene.toml", SCENE.replace("offset = 0.5", "offset = 0.6"));
+    folder.refused("run scene.toml --resume other", &["contents"]);
+    // It may be overwritten by the run that goes on from it.
+    folder.done("run turnaround --resume saved --checkpoint saved --checkpoint-every 700");
+    assert_ne!(folder.read("saved"), written);
+}
+
+/// The closed form of the scene: the speed is zero at `asinh(u0/(k w0)) / kappa`.
+#[test]
+fn events_are_found_and_end_a_run() {
+    let folder = Folder::new();
+    let (spin, energy_speed) = (1.25f64.sqrt() * 0.1, 1.0125f64.sqrt());
+    let turnaround = (1.0 / spin).asinh() / (0.5 * energy_speed / 1.25);
+    let run = folder.json("run turnaround --method gauss16 --event speed=0 --event heading=1.5 --json");
+    let events = run["events"].as_array().unwrap();
+    assert_eq!((events[0]["event"].as_str(), events[1]["event"].as_str()), (Some("heading=1.5"), Some("speed=0")));
+    assert!((events[0]["heading"].as_f64().unwrap() - 1.5).abs() <= 4.0 * f64::EPSILON);
+    assert!((events[1]["t"].as_f64().unwrap() - turnaround).abs() <= 1e-12, "{run}");
+    assert_eq!((events.len(), events[1]["rising"].as_bool(), run["steps"].as_u64()), (2, Some(true), Some(800)));
+    assert_eq!(folder.json("run turnaround --event x=1e9 --json")["events"].as_array().unwrap().len(), 0);
+
+    let run = folder.json("run turnaround --method gauss16 --until speed=0 --event x=100 --json --out path.csv");
+    let (_, rows) = csv(&folder.read("path.csv"));
+    let t = run["final"]["t"].as_f64().unwrap();
+    assert!((t - turnaround).abs() <= 1e-12 && run["final"]["speed"].as_f64().unwrap().abs() <= 1e-15, "{run}");
+    assert_eq!((rows.last().unwrap()[0], run["duration"].as_f64().unwrap()), (t, t));
+    assert_eq!(run["steps"].as_u64().unwrap() + 1, rows.len() as u64);
+    assert!(folder.done("run turnaround --event speed=0").contains("speed=0, rising, at t = 7.17"));
+    folder.refused("run turnaround --event spede=0", &["spede", "turn_rate"]);
+    folder.refused("run turnaround --until speed=fast", &["fast"]);
+}
+
+#[test]
+fn a_step_is_found_for_a_tolerance() {
+    let folder = Folder::new();
+    let end = |line: &str| {
+        let run = folder.json(line);
+        let coordinate = |name: &str| run["final"][name].as_f64().unwrap();
+        (["x", "y", "heading"].map(coordinate), run["steps"].as_u64().unwrap())
+    };
+    let (exact, _) = end("run turnaround --method gauss16 --json");
+    let (found, steps) = end("run turnaround --method gauss8 --tolerance 1e-6 --json");
+    let error = exact.iter().zip(&found).fold(0.0f64, |error, (a, b)| error.max((a - b).abs()));
+    assert!((1e-7..=1e-6).contains(&error), "{error:e} with {steps} steps");
+    folder.refused("run turnaround --tolerance -1", &["--tolerance", "positive"]);
+    folder.refused("run turnaround --tolerance 1e-3 --step 0.1", &["--step"]);
+    let out_of_reach = folder.line("run turnaround --method gauss8 --tolerance 1e-17");
+    assert_eq!(out_of_reach.code, 1);
+    assert!(out_of_reach.stderr.contains("out of reach: the best found is about "), "{}", out_of_reach.stderr);
 }

@@ -1,3 +1,4 @@
+use crate::trigger::Trigger;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -75,6 +76,25 @@ pub(crate) struct RunArguments {
     /// Write the trajectory: .csv, .npz, or .parquet (a cargo feature), by the ending
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
+    /// Choose the longest step whose error, of a place or an angle, stays below this, by trial runs
+    #[arg(long, value_name = "TOL", allow_negative_numbers = true, value_parser = number, conflicts_with = "step")]
+    pub(crate) tolerance: Option<f64>,
+    /// Save the run to this file now and then, so that it can be resumed after a stop
+    #[arg(long, value_name = "FILE")]
+    pub(crate) checkpoint: Option<PathBuf>,
+    /// Save the run every N steps
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, allow_negative_numbers = true, value_parser = count,
+          requires = "checkpoint")]
+    pub(crate) checkpoint_every: u64,
+    /// Go on from this checkpoint, to the same last bit; --out then writes the nodes after it
+    #[arg(long, value_name = "FILE")]
+    pub(crate) resume: Option<PathBuf>,
+    /// Find when x, y, heading, speed or turn_rate crosses a value, as in speed=0; can be repeated
+    #[arg(long, value_name = "NAME=VALUE", conflicts_with_all = ["checkpoint", "resume"])]
+    pub(crate) event: Vec<Trigger>,
+    /// The same, and end the run there
+    #[arg(long, value_name = "NAME=VALUE", conflicts_with_all = ["checkpoint", "resume"])]
+    pub(crate) until: Vec<Trigger>,
 }
 
 #[derive(Debug, Args)]

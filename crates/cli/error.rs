@@ -1,3 +1,4 @@
+use dla::{CheckpointError, RecommendError};
 use harness::{MethodError, report::ReportError};
 use scene::SceneError;
 use std::path::PathBuf;
@@ -29,6 +30,12 @@ pub(crate) enum CliError {
     Write { path: PathBuf, source: std::io::Error },
     #[error("cannot write {}: in the folder {}: {source}", path.display(), folder.display())]
     Folder { path: PathBuf, folder: PathBuf, source: std::io::Error },
+    #[error("cannot read {}: {source}", path.display())]
+    Read { path: PathBuf, source: std::io::Error },
+    #[error("{}: {source}", path.display())]
+    Checkpoint { path: PathBuf, source: CheckpointError },
+    #[error("--tolerance: {0}")]
+    Tolerance(Box<RecommendError>),
     #[error("cannot write to standard output: {0}")]
     Output(std::io::Error),
     #[error("the report: {0}")]
@@ -53,9 +60,11 @@ impl CliError {
             }
             #[cfg(not(feature = "parquet"))]
             Self::WithoutParquet { .. } => ExitCode::from(2),
+            Self::Read { .. } | Self::Checkpoint { .. } => ExitCode::from(2),
+            Self::Tolerance(error) if matches!(**error, RecommendError::Request { .. }) => ExitCode::from(2),
             Self::TooManyNodes { .. } | Self::Report(ReportError::Exists { .. }) => ExitCode::from(2),
             Self::Write { .. } | Self::Folder { .. } | Self::Output(_) => ExitCode::FAILURE,
-            Self::Report(_) | Self::Computation(_) => ExitCode::FAILURE,
+            Self::Report(_) | Self::Computation(_) | Self::Tolerance(_) => ExitCode::FAILURE,
         }
     }
 }

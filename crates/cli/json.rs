@@ -34,6 +34,9 @@ pub(crate) fn record<const N: usize>(scene: &str, record: &Record<N>, end: &Slei
             "step": failure.step,
             "time": failure.time,
             "reason": failure.source.to_string(),
+            "iterations": failure.source.iterations(),
+            "corrections": failure.source.history().map(|history| history.iter().collect::<Vec<_>>()),
+            "hint": failure.hint().map(|hint| hint.to_string()),
         });
     }
     if record.refusal().is_some() {

@@ -13,10 +13,12 @@ mod json;
 #[cfg(feature = "parquet")]
 mod parquet_file;
 mod progress;
+mod resume;
 mod run;
 mod table;
 mod terminal;
 mod trajectory_file;
+mod trigger;
 
 use args::{Arguments, Command};
 use clap::Parser;

@@ -2,10 +2,13 @@ use crate::args::RunArguments;
 use crate::error::CliError;
 use crate::files::check_file;
 use crate::trajectory_file::{self, Format};
-use crate::{inspect, json, progress, table, terminal};
-use dla::{Schedule, State, Trajectory};
-use harness::{Kind, Method, Request, integrate_pieces};
+use crate::{inspect, json, progress, resume, table, terminal, trigger};
+use dla::{Checkpoint, Schedule, State, Trajectory};
+use harness::{
+    Kind, Method, Progress, Record, Request, Saving, Watched, integrate_pieces, recommend, run_saved, run_watched,
+};
 use scene::{Scene, SceneSystem, Visitor};
+use serde_json::Value;
 use std::path::Path;
 
 /// `noslip run`: one trajectory.
@@ -35,22 +38,82 @@ struct Run<'a> {
     out: Option<(&'a Path, Format)>,
 }
 
+/// A run that was made, with the nodes that are to be written.
+struct Made<const N: usize, const M: usize> {
+    record: Record<N>,
+    trajectory: Option<Trajectory<N, M>>,
+    /// What happened, for a program and for a person.
+    events: Option<(Vec<Value>, String)>,
+    /// What else went wrong.
+    warning: Result<(), CliError>,
+}
+
 impl Run<'_> {
-    /// Integrates once more, now to keep the nodes, and writes them.
-    fn write<Sys, const N: usize, const M: usize>(
-        &self,
-        system: &Sys,
-        schedule: &Schedule,
-        mut state: State<N>,
-    ) -> Result<(), CliError>
+    /// Every how many nodes are kept, where any are.
+    fn keep(&self) -> Option<u64> {
+        self.out.map(|_| self.arguments.every)
+    }
+
+    /// Once more, now to keep the nodes.
+    fn nodes<Sys, const N: usize, const M: usize>(&self, system: &Sys, request: &Request<N>) -> Option<Trajectory<N, M>>
     where
         Sys: SceneSystem<N, M>,
     {
-        let Some((path, format)) = self.out else { return Ok(()) };
-        let mut trajectory = Trajectory::<N, M>::every(self.arguments.every);
+        let mut trajectory = Trajectory::every(self.keep()?);
+        let mut state = State::new(request.q, request.v, system.angles());
         // A failure here is the one that the record already tells of.
-        let _ = integrate_pieces(system, &self.method, schedule, &mut state, &mut trajectory);
-        trajectory_file::write(system, trajectory.nodes(), path, format, self.arguments.scene.force)
+        let _ = integrate_pieces(system, &self.method, &request.schedule, &mut state, &mut trajectory);
+        Some(trajectory)
+    }
+
+    /// In parts that are saved, or from a part that was.
+    fn saved<Sys, const N: usize, const M: usize>(
+        &self,
+        system: &Sys,
+        request: &Request<N>,
+        progress: &mut dyn Progress,
+    ) -> Result<Made<N, M>, CliError>
+    where
+        Sys: SceneSystem<N, M>,
+    {
+        let RunArguments { checkpoint, checkpoint_every, resume: from, scene, .. } = self.arguments;
+        let identity = resume::identity(self.scene, &self.method, &request.schedule);
+        let read = from.as_ref().map(|path| resume::read(path, &identity)).transpose()?;
+        if let Some(path) = checkpoint {
+            resume::check(path, from.as_deref(), scene.force)?;
+        }
+        let mut warning = Ok(());
+        let mut save = |made: &Checkpoint| {
+            if let (Some(path), Ok(())) = (checkpoint, &warning) {
+                warning = resume::write(path, made);
+            }
+        };
+        let every = checkpoint.as_ref().map(|_| *checkpoint_every);
+        let mut saving = Saving { identity: &identity, from: read.as_ref(), every, save: &mut save };
+        let outcome = run_saved(system, &self.method, request, &mut saving, self.keep(), progress);
+        let (record, trajectory) =
+            outcome.map_err(|source| CliError::Checkpoint { path: from.clone().unwrap_or_default(), source })?;
+        Ok(Made { record, trajectory, events: None, warning })
+    }
+
+    /// With an eye on events.
+    fn watched<Sys, const N: usize, const M: usize>(
+        &self,
+        system: &Sys,
+        request: &Request<N>,
+        progress: &mut dyn Progress,
+    ) -> Made<N, M>
+    where
+        Sys: SceneSystem<N, M>,
+    {
+        let RunArguments { event, until, .. } = self.arguments;
+        let reported = event.iter().map(|trigger| trigger.event(system));
+        let events: Vec<_> = reported.chain(until.iter().map(|trigger| trigger.event(system).terminal())).collect();
+        let Watched { record, trajectory, crossings } =
+            run_watched(system, &self.method, request, &events, self.keep(), progress);
+        let values = crossings.iter().map(|crossing| trigger::json(system, &events, crossing)).collect();
+        let told = crossings.iter().map(|crossing| trigger::told(&events, crossing)).collect();
+        Made { record, trajectory, events: Some((values, told)), warning: Ok(()) }
     }
 }
 
@@ -61,25 +124,50 @@ impl Visitor for Run<'_> {
     where
         Sys: SceneSystem<N, M>,
     {
-        let schedule = inspect::schedule(self.scene);
+        let RunArguments { checkpoint, resume, event, until, tolerance, .. } = self.arguments;
+        let mut schedule = inspect::schedule(self.scene);
+        if let Some(tolerance) = tolerance {
+            let found = recommend(system, &self.method, (q, v), self.scene.run.duration, *tolerance);
+            let found = found.map_err(|error| CliError::Tolerance(Box::new(error)))?;
+            schedule = Schedule { step: found.step, steps: found.steps, ..schedule };
+            if self.out.is_some() {
+                trajectory_file::check_size(schedule.steps, self.arguments.every)?;
+            }
+        }
         let bar = progress::bar(self.method.info().name, schedule.steps);
+        let mut progress = |steps| bar.inc(steps);
         let request = Request { schedule, q, v, samples: 1 };
-        let record = harness::run(system, &self.method, &request, &mut |steps| bar.inc(steps));
+        let made = if checkpoint.is_some() || resume.is_some() {
+            self.saved(system, &request, &mut progress)
+        } else if !(event.is_empty() && until.is_empty()) {
+            Ok(self.watched(system, &request, &mut progress))
+        } else {
+            let record = harness::run(system, &self.method, &request, &mut progress);
+            Ok(Made { trajectory: self.nodes(system, &request), record, events: None, warning: Ok(()) })
+        };
         bar.finish_and_clear();
+        let Made { record, trajectory, events, warning } = made?;
 
-        let written = self.write(system, &schedule, State::new(q, v, system.angles()));
+        let written = self.out.zip(trajectory).map_or(Ok(()), |((path, format), trajectory)| {
+            trajectory_file::write(system, trajectory.nodes(), path, format, self.arguments.scene.force)
+        });
         let end = system.sleigh_state(&record.q, &record.v);
         // What was computed is shown even where its file could not be written.
         if self.arguments.scene.json {
-            terminal::print_json(&json::record(&self.scene.name, &record, &end))?;
+            let mut object = json::record(&self.scene.name, &record, &end);
+            if let Some((events, _)) = events {
+                object["events"] = Value::Array(events);
+            }
+            terminal::print_json(&object)?;
         } else {
             let file = self.out.and_then(|(path, _)| written.is_ok().then_some(path));
-            terminal::print(&table::one_run(self.scene, &record, &end, file))?;
+            let told = events.map_or_else(String::new, |(_, told)| told);
+            terminal::print(&(table::one_run(self.scene, &record, &end, file) + &told))?;
         }
         let computed = CliError::of_failures(table::failure(&record));
         if let (Err(_), Err(error)) = (&computed, &written) {
             terminal::say("error", error);
         }
-        computed.and(written)
+        computed.and(written).and(warning)
     }
 }

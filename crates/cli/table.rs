@@ -132,9 +132,17 @@ pub(crate) fn failure<const N: usize>(record: &Record<N>) -> Option<String> {
         return Some(format!("{} refused: {reason}", record.method.name));
     }
     record.failure.as_ref().map(|failure| {
-        format!(
+        let mut told = format!(
             "{} failed at {failure}; the trajectory is valid up to t = {} s ({} steps)",
             record.method.name, record.t, record.steps
-        )
+        );
+        // Writing to a string cannot fail.
+        if let Some(history) = failure.source.history().filter(|history| history.made() > 0) {
+            let _ = write!(told, "; corrections {history}");
+        }
+        if let Some(hint) = failure.hint() {
+            let _ = write!(told, "; {hint}");
+        }
+        told
     })
 }

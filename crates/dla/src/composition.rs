@@ -76,4 +76,12 @@ where
         *state = inner;
         Ok(total)
     }
+
+    fn memory(&self) -> Vec<f64> {
+        self.base.memory()
+    }
+
+    fn recall(&mut self, memory: &[f64], state: &State<N>) {
+        self.base.recall(memory, state);
+    }
 }

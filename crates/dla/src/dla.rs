@@ -1,10 +1,9 @@
-use crate::dependent::{named_along, named_at, rows_left_out};
+use crate::dependent::{named_at, rows_left_out};
+use crate::increment::{Increment, Mean};
 use crate::projection::Projection;
-use crate::{Equations, Newton, OneStep, Stage, State, StepError, StepReport};
-use lagrangian::linear::Singular;
+use crate::{Newton, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::{
-    AdmissibleBasis, Alpha, DiscreteConstraint, DiscreteLagrangian, Dual, Midpoint, NotAWeight, Rows, Saddle, System,
-    Trapezoid, momentum, position_misses, reaction_rows, redundant_rows,
+    Alpha, DiscreteConstraint, DiscreteLagrangian, Midpoint, NotAWeight, System, Trapezoid, momentum, reaction_rows,
 };
 use std::array::from_fn;
 
@@ -46,6 +45,11 @@ pub enum Form {
 /// 1993). A constraint that is not affine, [`System::nonlinear`], acts along `d phi / dv` at the two nodes and is met by the
 /// mean velocity at the rule's nodes, and by the velocity at the end. Rows that depend on one another and agree are met by
 /// as many of them as are independent, with multipliers; the others hold in the nodes, which is checked.
+///
+/// The equations of a long step may have several solutions, or only such as belong to another motion. One is accepted where
+/// it is connected with the solution of a step of length zero: the determinant of the equations has the same sign there, the
+/// constraint turns by less than a radian, and Newton's method contracts from its first step; or else the solution is
+/// followed from length zero to that of the step. No step turns a constraint by half a turn: it could as well be the other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dla<L, C> {
     /// The discrete Lagrangian `L_d`.
@@ -117,8 +121,8 @@ where
         let basis = |t, q: &[f64; N]| if in_basis { system.admissible_basis(t, q) } else { None };
 
         // The increment, through the mean velocity.
-        let mut increment = Increment {
-            dla: self,
+        let increment = Increment {
+            rules: (&self.lagrangian, &self.constraint),
             system,
             t0,
             h,
@@ -129,13 +133,9 @@ where
             basis: basis(t0, &q0),
             some: None,
             lambda: [0.0; M],
+            positive: None,
         };
-        let mut v = v0;
-        let iterations = self
-            .newton
-            .solve(&mut increment, &mut v)
-            .map_err(|source| named_along(system, (t0, h), *state, v, source))?;
-        let (lambda, some) = (increment.lambda, increment.some);
+        let Mean { v, lambda, iterations, some } = increment.solve(&self.newton, v0)?;
 
         // The momentum at the end, projected onto the constraint there.
         let mut p1 = self.lagrangian.d2(system, t0, h, &q0, &v);
@@ -159,87 +159,4 @@ where
 
 fn is_midpoint<R: 'static>() -> bool {
     std::any::TypeId::of::<R>() == std::any::TypeId::of::<Midpoint>()
-}
-
-/// The equations for the mean velocity `v` of a step, with the multiplier at its beginning.
-struct Increment<'a, Sys, L, C, const N: usize, const M: usize> {
-    dla: &'a Dla<L, C>,
-    system: &'a Sys,
-    t0: f64,
-    h: f64,
-    state: &'a State<N>,
-    q0: [f64; N],
-    p0: [f64; N],
-    a0: [[f64; N]; M],
-    basis: Option<AdmissibleBasis<f64, N, M>>,
-    /// The rows that are solved for, where they depend on one another and agree.
-    some: Option<Rows>,
-    lambda: [f64; M],
-}
-
-impl<Sys, L, C, const N: usize, const M: usize> Equations<N> for Increment<'_, Sys, L, C, N, M>
-where
-    Sys: System<N, M>,
-    L: DiscreteLagrangian<Sys, N, M>,
-    C: DiscreteConstraint<Sys, N, M>,
-{
-    #[inline]
-    fn correction(&mut self, v: &[f64; N]) -> Result<[f64; N], Singular> {
-        let Self { dla, system, t0, h, state, q0, .. } = *self;
-        let (lagrangian, constraint) = (&dla.lagrangian, &dla.constraint);
-        let l_d = lagrangian.derivatives(system, t0, h, &q0, v);
-        let mut residual: [f64; N] = from_fn(|i| self.p0[i] + l_d.d1[i]);
-        let mut block = l_d.d1d2.map(|row| row.map(|x| h * x));
-
-        // Where it constrains positions, in place of the discrete constraint.
-        let positions = position_misses(system, t0 + h, &state.ahead(&v.map(|v| h * v)));
-
-        // Forces and constraint with their derivatives in v.
-        let (t, step) = (Dual::fixed(t0), Dual::fixed(h));
-        let (q, v) = (q0.map(Dual::fixed), Dual::variables(v));
-        if let Some((minus, _)) = lagrangian.forces(system, t, step, &q, &v) {
-            for i in 0..N {
-                residual[i] += minus[i].re;
-                for j in 0..N {
-                    block[i][j] += minus[i].eps[j];
-                }
-            }
-        }
-        let w_d = constraint.residual(system, t, step, &q, &v);
-        let (mut rows, mut level) = (w_d.map(|w| w.eps), w_d.map(|w| -w.re));
-        if let Some(positions) = positions {
-            for k in 0..M {
-                if let Some(g) = positions[k] {
-                    (rows[k], level[k]) = (g.eps, -g.re / h);
-                }
-            }
-        }
-
-        let saddle = Saddle { block, transposed: self.a0, rows, right: residual.map(|r| -r), level };
-        match saddle.solve(self.basis.as_ref()) {
-            Ok((correction, lambda)) => {
-                self.lambda = lambda;
-                Ok(correction)
-            }
-            Err(source) => {
-                // By value, so that nothing of a step that succeeds must stay in memory.
-                let rows = independent(system, t0, *state, self.some).ok_or(source)?;
-                let (correction, lambda) = { saddle }.solve_some(rows)?;
-                (self.some, self.lambda) = (Some(rows), lambda);
-                Ok(correction)
-            }
-        }
-    }
-}
-
-/// The rows found before, or those that imply the others at the beginning of the step.
-#[cold]
-#[inline(never)]
-fn independent<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
-    t0: f64,
-    start: State<N>,
-    found: Option<Rows>,
-) -> Option<Rows> {
-    found.or_else(|| redundant_rows(system, t0, start.q(), start.v()))
 }

@@ -113,6 +113,22 @@ where
     }
 }
 
+/// Looks where there is something to look with.
+impl<Sys, O: Observer<Sys, N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for Option<O> {
+    fn start(&mut self, node: &View<'_, Sys, N>) {
+        self.iter_mut().for_each(|observer| observer.start(node));
+    }
+    fn resume(&mut self, node: &View<'_, Sys, N>) {
+        self.iter_mut().for_each(|observer| observer.resume(node));
+    }
+    fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+        self.as_mut().map_or(ControlFlow::Continue(()), |observer| observer.step(node, report))
+    }
+    fn end(&mut self, node: &View<'_, Sys, N>) {
+        self.iter_mut().for_each(|observer| observer.end(node));
+    }
+}
+
 impl<Sys, O: Observer<Sys, N, M> + ?Sized, const N: usize, const M: usize> Observer<Sys, N, M> for &mut O {
     #[inline(always)]
     fn start(&mut self, node: &View<'_, Sys, N>) {

@@ -1,5 +1,5 @@
 use crate::positions::{affine_only, onto_positions};
-use crate::{NewtonError, OneStep, Stage, State, StepError, StepReport};
+use crate::{History, NewtonError, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::linear::larger;
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
 use lagrangian::{System, reduced_slope, velocity_of};
@@ -55,7 +55,7 @@ impl<const S: usize> Gauss<S> {
         stages: &mut Stages<N, S>,
     ) -> Result<u32, StepError> {
         let fail = |source| StepError::Newton { stage: Stage::Collocation, source };
-        let mut before = f64::INFINITY;
+        let (mut before, mut history) = (f64::INFINITY, History::new());
         for iteration in 1..=self.max_iterations {
             let (mut moved, mut size) = (0.0f64, 0.0f64);
             for i in 0..S {
@@ -71,18 +71,20 @@ impl<const S: usize> Gauss<S> {
                 (stages.velocity[i], stages.acceleration[i]) = (slope.velocity, slope.acceleration);
             }
             if !size.is_finite() || moved.is_nan() {
-                return Err(fail(NewtonError::NotFinite { iteration }));
+                return Err(fail(NewtonError::NotFinite { iteration, history }));
             }
+            history.push(moved / size);
             // At rounding the changes stop shrinking.
             if moved == 0.0 || (moved <= 1e-12 * size && moved >= 0.5 * before) {
                 return Ok(iteration);
             }
             if iteration > 3 && moved > 2.0 * before {
-                return Err(fail(NewtonError::Diverged { iteration, correction: moved / size, before: before / size }));
+                let (correction, before) = (moved / size, before / size);
+                return Err(fail(NewtonError::Diverged { iteration, correction, before, history }));
             }
             before = moved;
         }
-        Err(fail(NewtonError::IterationLimit { iterations: self.max_iterations, correction: before }))
+        Err(fail(NewtonError::IterationLimit { iterations: self.max_iterations, correction: before, history }))
     }
 }
 

@@ -1,5 +1,5 @@
 use crate::positions::{affine_only, velocities_only};
-use crate::{Equations, Newton, OneStep, Stage, State, StepError, StepReport};
+use crate::{Equations, Newton, NewtonError, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::linear::{Lu, Singular};
 use lagrangian::{DiscreteLagrangian, Dual, Saddle, System, Trapezoid, mass_matrix, momentum};
 use std::array::from_fn;
@@ -67,9 +67,7 @@ where
         affine_only(system, t, state)?;
         let reason = "the reflection of momenta lets the positions drift, and this system constrains them";
         velocities_only(system, t, state, reason)?;
-        let singular = |stage| {
-            move |source| StepError::Newton { stage, source: crate::NewtonError::Singular { iteration: 1, source } }
-        };
+        let singular = |stage| move |source| StepError::Newton { stage, source: NewtonError::singular(source) };
         let (q0, v0) = (*state.q(), *state.v());
         // Only a node that it led to itself has a momentum to reflect; another start begins without one across.
         let departing = match self.memory {
@@ -97,6 +95,14 @@ where
         state.advance(&increment, v1, None);
         self.memory = Some(Memory { node: *state, arriving });
         Ok(StepReport::of(iterations))
+    }
+
+    fn memory(&self) -> Vec<f64> {
+        self.memory.map_or_else(Vec::new, |memory| memory.arriving.to_vec())
+    }
+
+    fn recall(&mut self, memory: &[f64], state: &State<N>) {
+        self.memory = <[f64; N]>::try_from(memory).ok().map(|arriving| Memory { node: *state, arriving });
     }
 }
 

@@ -8,19 +8,28 @@
 //!
 //! This crate knows no particular system and no file; its [`Newton`] solver knows neither time nor mechanics.
 
+mod branch;
+mod checkpoint;
 mod composition;
 mod dependent;
 mod dla;
 mod drive;
 mod energy;
+mod events;
 mod gauss;
 mod gni;
+mod hermite;
+mod hint;
+mod history;
+mod increment;
 mod lobatto;
 mod newton;
 mod one_step;
 mod pieces;
 mod positions;
 mod projection;
+mod recommend;
+mod samples;
 mod sensitivity;
 mod start;
 mod state;
@@ -28,16 +37,23 @@ mod trajectory;
 mod work;
 
 pub use crate::dla::{Dla, Form};
+pub use checkpoint::{Checkpoint, CheckpointError};
 pub use composition::Composition;
 pub use dependent::{Dependency, Dependent};
 pub use drive::{Observer, Part, RunError, Schedule, View, drive, drive_part};
 pub use energy::{Energy, Gradient};
+pub use events::{Crossing, Direction, Event, Watch};
 pub use gauss::Gauss;
 pub use gni::Gni;
+pub use hermite::Hermite;
+pub use hint::Hint;
+pub use history::History;
 pub use lobatto::Lobatto;
 pub use newton::{Equations, Newton, NewtonError};
 pub use one_step::{OneStep, Stage, StepError, StepReport};
-pub use pieces::{onto_constraint, piece_by_piece, pieces};
+pub use pieces::{onto_constraint, piece_by_piece, piece_by_piece_from, pieces};
+pub use recommend::{RecommendError, Recommendation, recommend_by_trial, recommend_step};
+pub use samples::Samples;
 pub use sensitivity::{
     Differentiable, ReducedDerivative, ReducedVariation, Sensitivity, SensitivityError, StepDerivative, StepEquations,
     StepStart, Tangent, TangentRunError, Unknowns, Variation,

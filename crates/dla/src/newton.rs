@@ -1,3 +1,4 @@
+use crate::History;
 use lagrangian::linear::{Singular, largest};
 use thiserror::Error;
 
@@ -56,6 +57,8 @@ pub enum NewtonError {
         iteration: u32,
         /// The matrix's defect.
         source: Singular,
+        /// The corrections before.
+        history: History,
     },
     /// The corrections grow.
     #[error("corrections grow: relative {correction:e} after {before:e} at iteration {iteration}")]
@@ -66,6 +69,8 @@ pub enum NewtonError {
         correction: f64,
         /// The one before it.
         before: f64,
+        /// The last corrections, relative.
+        history: History,
     },
     /// The iteration limit is reached.
     #[error("no convergence in {iterations} iterations, last relative correction {correction:e}")]
@@ -74,13 +79,24 @@ pub enum NewtonError {
         iterations: u32,
         /// The largest correction, relative to the largest component there was.
         correction: f64,
+        /// The last corrections, relative.
+        history: History,
     },
     /// An unknown is infinite or not a number.
     #[error("the unknowns are no longer finite at iteration {iteration}")]
     NotFinite {
         /// The iteration, from 1.
         iteration: u32,
+        /// The corrections before, relative.
+        history: History,
     },
+}
+
+impl NewtonError {
+    /// The equations are singular from the start.
+    pub(crate) fn singular(source: Singular) -> Self {
+        Self::Singular { iteration: 1, source, history: History::new() }
+    }
 }
 
 impl Newton {
@@ -113,19 +129,25 @@ impl Newton {
         let mut rounding = [[false; U]; S];
         let mut before = f64::INFINITY;
         let mut growths = 0;
+        let mut history = History::new();
         // The largest component so far, the start's too: a solution of zeros only has no size of its own.
         let mut size = largest(x.as_flattened());
         for iteration in 1..=self.max_iterations {
-            let correction = equations.correction(x).map_err(|source| NewtonError::Singular { iteration, source })?;
+            let correction = equations.correction(x).map_err(|source| NewtonError::Singular {
+                iteration,
+                source,
+                history: history.relative_to(size),
+            })?;
             for (x, d) in x.as_flattened_mut().iter_mut().zip(correction.as_flattened()) {
                 *x += d;
             }
             let now = largest(x.as_flattened());
             if !now.is_finite() {
-                return Err(NewtonError::NotFinite { iteration });
+                return Err(NewtonError::NotFinite { iteration, history: history.relative_to(size) });
             }
             size = size.max(now);
             let step = largest(correction.as_flattened());
+            history.push(step);
             let converged = step <= Self::ROUNDING * size;
             let mut settled = true;
             for b in 0..S {
@@ -147,11 +169,14 @@ impl Newton {
             if step > before && !converged {
                 growths += 1;
                 if growths == Self::GROWTHS {
-                    return Err(NewtonError::Diverged { iteration, correction: step / size, before: before / size });
+                    let (correction, before) = (step / size, before / size);
+                    let history = history.relative_to(size);
+                    return Err(NewtonError::Diverged { iteration, correction, before, history });
                 }
             }
             before = step;
         }
-        Err(NewtonError::IterationLimit { iterations: self.max_iterations, correction: before / size })
+        let (iterations, correction) = (self.max_iterations, before / size);
+        Err(NewtonError::IterationLimit { iterations, correction, history: history.relative_to(size) })
     }
 }

@@ -9,6 +9,14 @@ pub trait OneStep<Sys, const N: usize, const M: usize> {
     /// # Errors
     /// [`StepError`] where the step has no solution that the method accepts; `state` is then unchanged.
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError>;
+
+    /// What it remembers besides the state, for a checkpoint: nothing, if it is the map that it should be.
+    fn memory(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Remembers again what [`memory`](Self::memory) gave when the run was at `state`.
+    fn recall(&mut self, _memory: &[f64], _state: &State<N>) {}
 }
 
 /// What a step did besides moving the state.
@@ -109,6 +117,9 @@ pub enum StepError {
         /// When (s).
         time: f64,
     },
+    /// The equations of the step have a solution, but it belongs to another motion, or cannot be shown to continue this one.
+    #[error("no solution continues the motion: the one that was found is not connected with the start of the step")]
+    Branch,
     /// An adaptive method does not meet its tolerance within a step.
     #[error("the tolerance is not met: after {tries} steps within the interval the next would be {step:e} s")]
     Tolerance {

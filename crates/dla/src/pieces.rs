@@ -43,18 +43,41 @@ pub fn piece_by_piece<Sys, const N: usize, const M: usize>(
     system: &Sys,
     schedule: &Schedule,
     state: &mut State<N>,
+    make: impl FnMut(&Sys, Range<u64>, &mut State<N>) -> Result<Part, RunError>,
+) -> Result<u64, RunError>
+where
+    Sys: System<N, M> + Piecewise,
+{
+    piece_by_piece_from(0, system, schedule, state, make)
+}
+
+/// The same for a run that has made `from` steps already and is at `state`, before the impulse of a jump there.
+///
+/// # Errors
+/// As [`piece_by_piece`].
+pub fn piece_by_piece_from<Sys, const N: usize, const M: usize>(
+    from: u64,
+    system: &Sys,
+    schedule: &Schedule,
+    state: &mut State<N>,
     mut make: impl FnMut(&Sys, Range<u64>, &mut State<N>) -> Result<Part, RunError>,
 ) -> Result<u64, RunError>
 where
     Sys: System<N, M> + Piecewise,
 {
     let (begin, end) = (schedule.t0, schedule.time(schedule.steps));
-    let mut made = 0;
+    let mut made = from;
     for part in pieces(schedule, system.jumps(begin.min(end), begin.max(end)))? {
+        if part.end <= from && from > 0 {
+            continue;
+        }
         let (first, last) = (schedule.time(part.start), schedule.time(part.end));
         let piece = system.piece(0.5 * (first + last));
-        onto_constraint(&piece, first, state).map_err(|source| RunError { step: made + 1, time: first, source })?;
-        let done = make(&piece, part, state)?;
+        // Inside a piece there is no impulse.
+        if part.start >= from {
+            onto_constraint(&piece, first, state).map_err(|source| RunError { step: made + 1, time: first, source })?;
+        }
+        let done = make(&piece, part.start.max(from)..part.end, state)?;
         made = done.made;
         if done.stopped {
             break;

@@ -1,4 +1,4 @@
-use crate::{NewtonError, Stage, State, StepError};
+use crate::{History, NewtonError, Stage, State, StepError};
 use lagrangian::linear::larger;
 use lagrangian::{Dual, RowSpace, Saddle, System, mass_matrix, position_misses};
 
@@ -18,7 +18,7 @@ pub(crate) fn onto_positions<Sys: System<N, M>, const N: usize, const M: usize>(
     v: &[f64; N],
 ) -> Result<[f64; N], StepError> {
     let fail = |source| StepError::Newton { stage: Stage::Positions, source };
-    let mut before = f64::INFINITY;
+    let (mut before, mut history) = (f64::INFINITY, History::new());
     for iteration in 1..=ITERATIONS {
         let q1 = state.ahead(&increment);
         let Some(misses) = position_misses(system, t1, &q1) else { return Ok(increment) };
@@ -26,13 +26,14 @@ pub(crate) fn onto_positions<Sys: System<N, M>, const N: usize, const M: usize>(
             return Ok(increment);
         }
         let moved = correction(system, t1, &q1, v, &misses)
-            .map_err(|source| fail(NewtonError::Singular { iteration, source }))?;
+            .map_err(|source| fail(NewtonError::Singular { iteration, source, history }))?;
         for i in 0..N {
             increment[i] += moved[i];
         }
         let (step, size) = (sup(&moved), sup(&q1));
+        history.push(step / size);
         if !step.is_finite() {
-            return Err(fail(NewtonError::NotFinite { iteration }));
+            return Err(fail(NewtonError::NotFinite { iteration, history }));
         }
         // Where corrections of rounding no longer shrink, nothing is nearer.
         if step <= 16.0 * N as f64 * f64::EPSILON * size && step >= 0.25 * before {
@@ -42,13 +43,15 @@ pub(crate) fn onto_positions<Sys: System<N, M>, const N: usize, const M: usize>(
             });
             // Rows that depend on one another and disagree leave a rest that no move takes away.
             return match off {
-                true => Err(fail(NewtonError::IterationLimit { iterations: iteration, correction: step / size })),
+                true => {
+                    Err(fail(NewtonError::IterationLimit { iterations: iteration, correction: step / size, history }))
+                }
                 false => Ok(increment),
             };
         }
         before = step;
     }
-    Err(fail(NewtonError::IterationLimit { iterations: ITERATIONS, correction: before }))
+    Err(fail(NewtonError::IterationLimit { iterations: ITERATIONS, correction: before, history }))
 }
 
 const ITERATIONS: u32 = 50;

@@ -1,3 +1,4 @@
+use crate::{Checkpoint, CheckpointError};
 use lagrangian::{ReducedError, System, Twofold, quasi_velocities};
 use std::array::from_fn;
 use std::f64::consts::{PI, TAU};
@@ -121,6 +122,38 @@ impl<const N: usize> State<N> {
     pub fn reversed(&self) -> Self {
         let flipped = |v: [f64; N]| v.map(|v| -v);
         Self { v: flipped(self.v), xi: self.xi.map(flipped), pi: None, ..*self }
+    }
+
+    /// Writes every bit of the state to a checkpoint; all but which coordinates are angles, which the system knows.
+    pub fn save(&self, checkpoint: &mut Checkpoint) {
+        checkpoint.put("q", &self.q);
+        checkpoint.put("rest", &self.rest);
+        checkpoint.put("turns", &self.turns);
+        checkpoint.put("v", &self.v);
+        checkpoint.put("xi", self.xi.as_ref().map_or(&[], |xi| &xi[..]));
+        let halves = self.pi.map(|pi| [pi.map(|pi| pi.hi), pi.map(|pi| pi.lo)]);
+        checkpoint.put("pi", halves.as_ref().map_or(&[], |[hi, _]| &hi[..]));
+        checkpoint.put("pi_rest", halves.as_ref().map_or(&[], |[_, lo]| &lo[..]));
+    }
+
+    /// The state that [`save`](Self::save) wrote.
+    ///
+    /// # Errors
+    /// [`CheckpointError`] where the checkpoint has none of `N` coordinates.
+    pub fn load(checkpoint: &Checkpoint, angles: [bool; N]) -> Result<Self, CheckpointError> {
+        let some = |name: &str| -> Result<Option<[f64; N]>, CheckpointError> {
+            if checkpoint.list(name)?.is_empty() { Ok(None) } else { checkpoint.get(name).map(Some) }
+        };
+        let pi = some("pi")?.zip(some("pi_rest")?);
+        Ok(Self {
+            q: checkpoint.get("q")?,
+            rest: checkpoint.get("rest")?,
+            turns: checkpoint.get("turns")?,
+            angles,
+            v: checkpoint.get("v")?,
+            xi: some("xi")?,
+            pi: pi.map(|(hi, lo)| from_fn(|a| Twofold::new(hi[a], lo[a]))),
+        })
     }
 
     #[inline(always)]

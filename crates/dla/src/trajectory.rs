@@ -40,6 +40,12 @@ impl<const N: usize, const M: usize> Trajectory<N, M> {
         Self { nodes: Vec::new(), every: every.max(1), time: 0.0, multipliers: None, work: Work::default() }
     }
 
+    /// The same for a run that goes on from a checkpoint, whose work [`Work::load`] gave: keeps the nodes after it.
+    #[must_use]
+    pub fn resumed(every: u64, t: f64, work: Work<N>) -> Self {
+        Self { time: t, work, ..Self::every(every) }
+    }
+
     /// The nodes kept, in the order of time.
     #[must_use]
     pub fn nodes(&self) -> &[Node<N, M>] {
@@ -83,7 +89,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for 
     }
 
     fn end(&mut self, node: &View<'_, Sys, N>) {
-        if self.nodes.last().is_some_and(|last| last.k != node.k) {
+        if self.nodes.last().is_none_or(|last| last.k != node.k) {
             self.keep(node);
         }
     }

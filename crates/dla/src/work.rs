@@ -1,5 +1,6 @@
+use crate::hermite::Hermite;
 use crate::state::two_sum;
-use crate::{Observer, StepReport, View};
+use crate::{Checkpoint, CheckpointError, Observer, State, StepReport, View};
 use lagrangian::quadrature::gauss_legendre;
 use lagrangian::{System, constraint_residual, energy, force_power, lagrangian_power};
 use std::array::from_fn;
@@ -41,6 +42,20 @@ impl<const N: usize> Work<N> {
         (self.total, self.rest) = two_sum(self.total, work + self.rest);
     }
 
+    /// Writes the work to a checkpoint.
+    pub fn save(&self, checkpoint: &mut Checkpoint) {
+        checkpoint.put("work", &[self.total, self.rest]);
+    }
+
+    /// The work that [`save`](Self::save) wrote, to go on from the state of the same checkpoint.
+    ///
+    /// # Errors
+    /// [`CheckpointError`] where the checkpoint has none.
+    pub fn load(checkpoint: &Checkpoint, t: f64, state: &State<N>) -> Result<Self, CheckpointError> {
+        let [total, rest] = checkpoint.get("work")?;
+        Ok(Self { total, rest, before: Some((t, state.unwrapped(), *state.v())), ..Self::default() })
+    }
+
     fn remember<Sys>(&mut self, node: &View<'_, Sys, N>) {
         self.before = Some((node.t, node.state.unwrapped(), *node.state.v()));
     }
@@ -63,9 +78,9 @@ impl<const N: usize> Work<N> {
         let (Ok(first), Ok(last)) = (system.motion(t0, &q0, &v0), system.motion(node.t, &q1, &v1)) else {
             return f64::NAN;
         };
-        let hermite = Hermite { h, q0, v0, a0: first.acceleration, q1, v1, a1: last.acceleration };
+        let hermite = Hermite { t0, h, q0, v0, a0: first.acceleration, q1, v1, a1: last.acceleration };
         let power = |c: f64| {
-            let (t, (q, v)) = (time(c), hermite.at(c));
+            let (t, (q, v)) = (time(c), hermite.at_part(c));
             let mut power = lagrangian_power(system, t, &q, &v) + force_power(system, t, &q, &v).unwrap_or(0.0);
             if moved {
                 let Ok(motion) = system.motion(t, &q, &v) else { return f64::NAN };
@@ -103,34 +118,5 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for 
         }
         self.remember(node);
         ControlFlow::Continue(())
-    }
-}
-
-/// The quintic through position, velocity and acceleration at both ends of a step.
-struct Hermite<const N: usize> {
-    h: f64,
-    q0: [f64; N],
-    v0: [f64; N],
-    a0: [f64; N],
-    q1: [f64; N],
-    v1: [f64; N],
-    a1: [f64; N],
-}
-
-impl<const N: usize> Hermite<N> {
-    /// Position and velocity at the fraction `c` of the step.
-    fn at(&self, c: f64) -> ([f64; N], [f64; N]) {
-        let h = self.h;
-        let mut v = [0.0; N];
-        let q = from_fn(|i| {
-            // In s = c: q0 + h v0 s + h^2 a0/2 s^2 + s^3 (x + y s + z s^2).
-            let (v0, v1, a0, a1) = (h * self.v0[i], h * self.v1[i], h * h * self.a0[i], h * h * self.a1[i]);
-            let d = self.q1[i] - self.q0[i] - v0 - 0.5 * a0;
-            let (e, f) = (v1 - v0 - a0, a1 - a0);
-            let (x, y, z) = (10.0 * d - 4.0 * e + 0.5 * f, -15.0 * d + 7.0 * e - f, 6.0 * d - 3.0 * e + 0.5 * f);
-            v[i] = (v0 + c * (a0 + c * (3.0 * x + c * (4.0 * y + c * 5.0 * z)))) / h;
-            self.q0[i] + c * (v0 + c * (0.5 * a0 + c * (x + c * (y + c * z))))
-        });
-        (q, v)
     }
 }

@@ -3,8 +3,8 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
 use dla::{
-    Dla, NewtonError, Node, Observer, OneStep, RunError, Schedule, Stage, State, StepError, StepReport, Trajectory,
-    View, drive,
+    Dla, History, NewtonError, Node, Observer, OneStep, RunError, Schedule, Stage, State, StepError, StepReport,
+    Trajectory, View, drive,
 };
 use lagrangian::{Constraint, Scalar, System};
 use std::ops::ControlFlow;
@@ -28,8 +28,10 @@ struct Counting {
     fails_at: Option<usize>,
 }
 
-const FAILURE: StepError =
-    StepError::Newton { stage: Stage::Projection, source: NewtonError::NotFinite { iteration: 3 } };
+const FAILURE: StepError = StepError::Newton {
+    stage: Stage::Projection,
+    source: NewtonError::NotFinite { iteration: 3, history: History::new() },
+};
 
 impl<Sys> OneStep<Sys, 1, 1> for Counting {
     fn step(&mut self, _: &Sys, t: f64, h: f64, state: &mut State<1>) -> Result<StepReport<1>, StepError> {

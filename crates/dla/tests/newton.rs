@@ -149,7 +149,7 @@ fn failures_name_their_iteration() {
             },
             1.0,
         );
-        assert_eq!(error, NewtonError::NotFinite { iteration: 2 });
+        assert!(matches!(error, NewtonError::NotFinite { iteration: 2, .. }), "{error}");
         // In a Jacobian it leaves no pivot.
         let error = failure(|_| ([1.0], [[bad]]), 1.0);
         assert!(matches!(error, NewtonError::Singular { iteration: 1, .. }), "{error}");

@@ -2,19 +2,25 @@
 //!
 //! [`Method`] names every integrator; [`run`] makes one run of it and measures it as a [`Record`].
 
+mod again;
 mod baseline;
 mod cost;
 mod method;
 mod record;
 pub mod report;
 mod run;
+mod saved;
 mod statistics;
 mod timing;
+mod watched;
 
+pub use again::Again;
 pub use baseline::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced};
 pub use cost::{StepCost, step_cost};
 pub use method::{Kind, METHODS, Method, MethodError, MethodInfo};
 pub use record::{EnergySummary, NewtonSummary, Record, Sample};
 pub use run::{Request, integrate, integrate_pieces, run};
+pub use saved::{Saving, run_saved};
 pub use statistics::Trend;
 pub use timing::Progress;
+pub use watched::{Watched, recommend, run_watched};

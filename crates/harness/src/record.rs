@@ -1,5 +1,5 @@
 use crate::{MethodInfo, Trend};
-use dla::{Observer, RunError, StepError, StepReport, View, Work};
+use dla::{Checkpoint, CheckpointError, Observer, RunError, StepError, StepReport, View, Work};
 use lagrangian::System;
 use lagrangian::linear::larger;
 use std::ops::ControlFlow;
@@ -115,6 +115,26 @@ impl<const N: usize> Meter<N> {
             samples: Vec::new(),
             end: (0, 0.0, [0.0; N], [0.0; N]),
         }
+    }
+
+    /// Writes to a checkpoint all that the rest of a run needs; not the samples.
+    pub(crate) fn save(&self, checkpoint: &mut Checkpoint) {
+        let (energy, constraint) = self.bucket;
+        let sizes = [self.initial, self.last, self.max_error, self.constraint_max, energy, constraint];
+        checkpoint.put("meter", &sizes);
+        checkpoint.put("trend", &self.trend.sums());
+        checkpoint.put_counts("iterations", &[self.iterations, u64::from(self.most)]);
+        self.work.save(checkpoint);
+    }
+
+    /// The meter that [`save`](Self::save) wrote, whose work is loaded already.
+    pub(crate) fn load(checkpoint: &Checkpoint, every: u64, work: Work<N>) -> Result<Self, CheckpointError> {
+        let [initial, last, max_error, constraint_max, energy, constraint] = checkpoint.get("meter")?;
+        let [iterations, most] = checkpoint.counts("iterations")?;
+        let most = u32::try_from(most).unwrap_or(u32::MAX);
+        let trend = Trend::of_sums(checkpoint.get("trend")?);
+        let sizes = Self { initial, last, max_error, constraint_max, ..Self::new(every) };
+        Ok(Self { trend, work, iterations, most, bucket: (energy, constraint), ..sizes })
     }
 
     fn see<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>) {

@@ -2,7 +2,7 @@ use crate::record::Meter;
 use crate::timing::{Ticker, median_seconds};
 use crate::{Dop853, ImplicitMidpoint, Kind, Method, Progress, Record, Rk4, Rk4Projected, Rk4Reduced};
 use dla::{
-    Composition, Dla, Energy, Gauss, Gni, Lobatto, Observer, Part, RunError, Schedule, State, drive_part,
+    Composition, Dla, Energy, Gauss, Gni, Lobatto, Observer, OneStep, Part, RunError, Schedule, State, drive_part,
     piece_by_piece,
 };
 use lagrangian::{Piecewise, System};
@@ -36,7 +36,7 @@ where
     Sys: System<N, M>,
     Obs: Observer<Sys, N, M>,
 {
-    integrate_part(system, method, schedule, 0..schedule.steps, state, observer).map(|part| part.made)
+    integrate_part(system, method, schedule, 0..schedule.steps, state, observer, None).map(|part| part.made)
 }
 
 /// Integrates a system whose forces or constraints may jump, one smooth piece after the other, and shows every node to the
@@ -57,27 +57,37 @@ where
     Sys: System<N, M> + Piecewise,
 {
     piece_by_piece(system, schedule, state, |piece, steps, state| {
-        integrate_part(piece, method, schedule, steps, state, &mut *observer)
+        integrate_part(piece, method, schedule, steps, state, &mut *observer, None)
     })
 }
 
-/// A part of a run with the method of that name: the one place where a name becomes a type.
-fn integrate_part<Sys, Obs, const N: usize, const M: usize>(
+/// A part of a run with the method of that name: the one place where a name becomes a type. Where there is a memory, it is
+/// what the method remembers from the part before, and then from this one.
+pub(crate) fn integrate_part<Sys, Obs, const N: usize, const M: usize>(
     system: &Sys,
     method: &Method,
     schedule: &Schedule,
     steps: Range<u64>,
     state: &mut State<N>,
     observer: Obs,
+    memory: Option<&mut Vec<f64>>,
 ) -> Result<Part, RunError>
 where
     Sys: System<N, M>,
     Obs: Observer<Sys, N, M>,
 {
     macro_rules! run_with {
-        ($method:expr) => {
-            drive_part(system, &mut $method, schedule, steps, state, observer)
-        };
+        ($method:expr) => {{
+            let mut method = $method;
+            if let Some(memory) = &memory {
+                OneStep::<Sys, N, M>::recall(&mut method, memory, state);
+            }
+            let part = drive_part(system, &mut method, schedule, steps, state, observer);
+            if let Some(memory) = memory {
+                *memory = OneStep::<Sys, N, M>::memory(&method);
+            }
+            part
+        }};
     }
     match method.info().kind {
         Kind::Dla => run_with!(Dla::midpoint()),
@@ -125,12 +135,22 @@ pub fn run<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
     let ticker = Ticker { progress, told: 0 };
     let failure = integrate_pieces(system, method, &schedule, &mut start.clone(), &mut (&mut meter, ticker)).err();
 
-    let timed = Schedule { steps: failure.map_or(schedule.steps, |failure| failure.step - 1), ..schedule };
-    let wall_seconds = median_seconds(|| {
+    let steps = failure.map_or(schedule.steps, |failure| failure.step - 1);
+    let wall_seconds = timed(system, method, &Schedule { steps, ..schedule }, start);
+    meter.record(method.info(), schedule.step, wall_seconds, failure)
+}
+
+/// The time of steps that have been made before, nothing looking on (s).
+pub(crate) fn timed<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &Method,
+    schedule: &Schedule,
+    start: State<N>,
+) -> f64 {
+    median_seconds(|| {
         let mut state = std::hint::black_box(start);
         // The observed run has just shown that these steps succeed.
-        let made = integrate_pieces(system, method, &timed, &mut state, &mut ());
+        let made = integrate_pieces(system, method, schedule, &mut state, &mut ());
         std::hint::black_box((made.is_ok(), state));
-    });
-    meter.record(method.info(), schedule.step, wall_seconds, failure)
+    })
 }

@@ -23,6 +23,18 @@ impl Trend {
         self.sum_xy += dx * (y - self.mean_y);
     }
 
+    /// All that it knows, for a checkpoint.
+    #[must_use]
+    pub fn sums(&self) -> [f64; 5] {
+        [self.count, self.mean_x, self.mean_y, self.sum_xx, self.sum_xy]
+    }
+
+    /// The line of [`sums`](Self::sums).
+    #[must_use]
+    pub fn of_sums([count, mean_x, mean_y, sum_xx, sum_xy]: [f64; 5]) -> Self {
+        Self { count, mean_x, mean_y, sum_xx, sum_xy }
+    }
+
     /// The slope of the line; none before two different abscissae.
     #[must_use]
     pub fn slope(&self) -> Option<f64> {

@@ -24,6 +24,7 @@ const THRESHOLD: f64 = 4.0 * f64::EPSILON;
 pub struct Lu<const U: usize> {
     factors: [[f64; U]; U],
     order: [usize; U],
+    positive: bool,
 }
 
 impl<const U: usize> Lu<U> {
@@ -48,6 +49,7 @@ impl<const U: usize> Lu<U> {
         let mut row = a.map(|r| largest(&r).recip());
         let column: [f64; U] =
             std::array::from_fn(|j| largest(&std::array::from_fn::<_, U, _>(|i| a[i][j] * row[i])).recip());
+        let mut positive = true;
         for k in 0..U {
             let mut best = k;
             for i in k + 1..U {
@@ -59,6 +61,7 @@ impl<const U: usize> Lu<U> {
             if pivot <= threshold || !pivot.is_finite() {
                 return Err(Singular { column: k, pivot });
             }
+            positive ^= (best != k) ^ (a[best][k] < 0.0);
             a.swap(k, best);
             row.swap(k, best);
             order.swap(k, best);
@@ -71,7 +74,14 @@ impl<const U: usize> Lu<U> {
                 }
             }
         }
-        Ok(Self { factors: a, order })
+        Ok(Self { factors: a, order, positive })
+    }
+
+    /// Whether the determinant is positive.
+    #[must_use]
+    #[inline(always)]
+    pub fn is_positive(&self) -> bool {
+        self.positive
     }
 
     /// The solution `x` of `A x = b`.

@@ -35,14 +35,48 @@ impl<const N: usize, const M: usize> Saddle<N, M> {
     /// [`Singular`] where the equations do not determine a solution.
     #[inline]
     pub fn solve(&self, basis: Option<&AdmissibleBasis<f64, N, M>>) -> Result<([f64; N], [f64; M]), Singular> {
+        self.solve_oriented(basis).map(|(x, lambda, _)| (x, lambda))
+    }
+
+    /// The same, and whether the determinant of the equations is positive: of those tested against the basis, with the
+    /// constraints after them, or of all with the multipliers.
+    ///
+    /// # Errors
+    /// As [`solve`](Self::solve).
+    #[inline]
+    pub fn solve_oriented(
+        &self,
+        basis: Option<&AdmissibleBasis<f64, N, M>>,
+    ) -> Result<([f64; N], [f64; M], bool), Singular> {
         match basis {
             Some(basis) => self.solve_in_basis(basis),
             None => self.solve_with_multipliers(),
         }
     }
 
+    /// Whether that determinant is positive in a step of length zero, where `K` is minus a positive mass matrix and `C` is
+    /// `G`. On the branch of solutions that begins there it keeps its sign until it vanishes.
+    ///
+    /// Tested against a basis `w` the matrix is `[-w' M; G]`, which times `[w, M^-1 G']` has the diagonal blocks `-w' M w` and
+    /// `G M^-1 G'`; so but for `(-1)^(N-M)` it has the sign of `[w'; G]`, whatever `M`.
+    ///
+    /// # Errors
+    /// [`Singular`] where the basis is none.
+    #[inline]
+    pub fn is_positive_at_rest(
+        transposed: &[[f64; N]; M],
+        basis: Option<&AdmissibleBasis<f64, N, M>>,
+    ) -> Result<bool, Singular> {
+        let Some(basis) = basis else { return Ok(N.is_multiple_of(2)) };
+        let mut frame = [[0.0; N]; N];
+        for (row, w) in frame.iter_mut().zip(basis.vectors().iter().chain(transposed)) {
+            *row = *w;
+        }
+        Ok(Lu::new(frame)?.is_positive() == (N.is_multiple_of(2) == M.is_multiple_of(2)))
+    }
+
     /// Tested against the basis `w` of `ker G` the multipliers drop out: `w . (K x) = w . r`, `C x = c`.
-    fn solve_in_basis(&self, basis: &AdmissibleBasis<f64, N, M>) -> Result<([f64; N], [f64; M]), Singular> {
+    fn solve_in_basis(&self, basis: &AdmissibleBasis<f64, N, M>) -> Result<([f64; N], [f64; M], bool), Singular> {
         let mut matrix = [[0.0; N]; N];
         let mut right = [0.0; N];
         for (row, w) in basis.vectors().iter().enumerate() {
@@ -57,16 +91,17 @@ impl<const N: usize, const M: usize> Saddle<N, M> {
             matrix[N - M + k] = self.rows[k];
             right[N - M + k] = self.level[k];
         }
-        let x = Lu::new(matrix)?.solve(right);
+        let matrix = Lu::new(matrix)?;
+        let x = matrix.solve(right);
 
         // What is left of the first equations lies in the span of G', and gives the multipliers.
         let rest = from_fn(|i| self.right[i] - dot(&self.block[i], &x));
         let lambda = normal_solve(&self.transposed, &rest)?;
-        Ok((x, lambda))
+        Ok((x, lambda, matrix.is_positive()))
     }
 
     /// The Schur complement `C K^-1 G'` gives the multipliers first.
-    fn solve_with_multipliers(&self) -> Result<([f64; N], [f64; M]), Singular> {
+    fn solve_with_multipliers(&self) -> Result<([f64; N], [f64; M], bool), Singular> {
         self.solve_by_schur(None)
     }
 
@@ -77,11 +112,11 @@ impl<const N: usize, const M: usize> Saddle<N, M> {
     #[cold]
     #[inline(never)]
     pub fn solve_some(&self, rows: Rows) -> Result<([f64; N], [f64; M]), Singular> {
-        self.solve_by_schur(Some(rows))
+        self.solve_by_schur(Some(rows)).map(|(x, lambda, _)| (x, lambda))
     }
 
     #[inline(always)]
-    fn solve_by_schur(&self, some: Option<Rows>) -> Result<([f64; N], [f64; M]), Singular> {
+    fn solve_by_schur(&self, some: Option<Rows>) -> Result<([f64; N], [f64; M], bool), Singular> {
         let block = Lu::new(self.block)?;
         let free = block.solve(self.right);
         let response = self.transposed.map(|g| block.solve(g));
@@ -95,9 +130,12 @@ impl<const N: usize, const M: usize> Saddle<N, M> {
                 (schur[k][k], right[k]) = (1.0, 0.0);
             }
         }
-        let lambda = Lu::above(schur, Self::DEPENDENT)?.solve(right);
+        let schur = Lu::above(schur, Self::DEPENDENT)?;
+        let lambda = schur.solve(right);
         let x = from_fn(|i| free[i] - (0..M).map(|k| response[k][i] * lambda[k]).sum::<f64>());
-        Ok((x, lambda))
+        // The determinant is that of K times that of -C K^-1 G'.
+        let positive = block.is_positive() == (schur.is_positive() ^ !M.is_multiple_of(2));
+        Ok((x, lambda, positive))
     }
 }
 

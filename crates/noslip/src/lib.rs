@@ -10,11 +10,13 @@
 //! | choose a method | [`Dla`], [`DiscreteLagrangian`], [`OneStep`] |
 //! | run it and look on | [`drive`], [`Schedule`], [`State`], [`Observer`], [`Trajectory`] |
 //! | differentiate its steps in state, parameters and controls | [`Sensitivity`], [`Parametrised`], [`Member`] |
+//! | find events, take samples, stop and resume, choose a step | [`Event`], [`Watch`], [`Samples`], [`Checkpoint`], [`recommend_step`] |
 //! | use the Chaplygin sleigh and its closed form | [`Sleigh`], [`SleighState`], [`Exact`] |
 
 pub use dla::{
-    self, Dla, Equations, Form, Newton, NewtonError, Node, Observer, OneStep, RunError, Schedule, Sensitivity, Stage,
-    State, StepError, StepReport, Trajectory, View, consistent_start, drive,
+    self, Checkpoint, CheckpointError, Crossing, Direction, Dla, Equations, Event, Form, Hermite, Hint, History,
+    Newton, NewtonError, Node, Observer, OneStep, RecommendError, Recommendation, RunError, Samples, Schedule,
+    Sensitivity, Stage, State, StepError, StepReport, Trajectory, View, Watch, consistent_start, drive, recommend_step,
 };
 pub use lagrangian::{
     self, AdmissibleBasis, Alpha, ClosedStep, ClosedStepError, Constraint, Derivatives, DiscreteConstraint,

@@ -1,4 +1,4 @@
-use crate::{Newton, NewtonError};
+use crate::{History, Newton, NewtonError};
 
 /// The stopping rule of the fixed-point iteration: at rounding, every component by itself.
 ///
@@ -12,6 +12,7 @@ pub(super) struct Settling<const G: usize, const N: usize> {
     components: [[Component; N]; G],
     least: f64,
     iteration: u32,
+    history: History,
 }
 
 /// See [`Settling`].
@@ -36,7 +37,7 @@ impl<const G: usize, const N: usize> Settling<G, N> {
 
     pub(super) fn new() -> Self {
         let component = Component { last: f64::INFINITY, before_last: f64::INFINITY, stalls: 0, far_stalls: 0 };
-        Self { components: [[component; N]; G], least: f64::INFINITY, iteration: 0 }
+        Self { components: [[component; N]; G], least: f64::INFINITY, iteration: 0, history: History::new() }
     }
 
     /// Sees the largest changes and sizes of the components after an iteration; the iteration's number if it was the last.
@@ -53,7 +54,7 @@ impl<const G: usize, const N: usize> Settling<G, N> {
         for (group, components) in groups.iter().zip(&mut self.components) {
             for (&(change, size), component) in group.iter().zip(components) {
                 if !(change.is_finite() && size.is_finite()) {
-                    return Err(NewtonError::NotFinite { iteration });
+                    return Err(NewtonError::NotFinite { iteration, history: self.history });
                 }
                 settled &= component.settles(change, size, noise.max(Newton::ROUNDING * overall));
                 if change > noise {
@@ -64,11 +65,13 @@ impl<const G: usize, const N: usize> Settling<G, N> {
         if settled {
             return Ok(Some(iteration));
         }
+        self.history.push(worst);
+        let history = self.history;
         if worst > Self::GROWTH * self.least.max(Newton::ROUNDING) {
-            return Err(NewtonError::Diverged { iteration, correction: worst, before: self.least });
+            return Err(NewtonError::Diverged { iteration, correction: worst, before: self.least, history });
         }
         if iteration == Self::LIMIT {
-            return Err(NewtonError::IterationLimit { iterations: iteration, correction: worst });
+            return Err(NewtonError::IterationLimit { iterations: iteration, correction: worst, history });
         }
         self.least = self.least.min(worst);
         Ok(None)

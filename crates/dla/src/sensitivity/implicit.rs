@@ -1,6 +1,6 @@
 use super::linear::Scaled;
 use super::{Differentiable, SensitivityError, StepEquations, StepStart};
-use crate::NewtonError;
+use crate::{History, NewtonError};
 use lagrangian::linear::Singular;
 use lagrangian::{Gradients, Scalar, Seeded};
 use nalgebra::DMatrix;
@@ -111,12 +111,12 @@ impl<const N: usize, const M: usize> Elementary<'_, '_, N, M> {
             end[(i, unknowns + i)] += 1.0;
         }
         let (r_z, r_x) = (r.columns(0, unknowns).into_owned(), r.columns(unknowns, inputs).into_owned());
-        let z_x = Scaled::new(r_z).map_err(|source| singular(0, source))?.solve(-r_x);
+        let z_x = Scaled::new(r_z).map_err(|source| singular(0, source, History::new()))?.solve(-r_x);
         let derivative = end.columns(unknowns, inputs) + end.columns(0, unknowns) * z_x;
         if derivative.iter().all(|x| x.is_finite()) {
             Ok(Linearised { increment, velocity, derivative })
         } else {
-            Err(SensitivityError::Equations(NewtonError::NotFinite { iteration: 0 }))
+            Err(SensitivityError::Equations(NewtonError::NotFinite { iteration: 0, history: History::new() }))
         }
     }
 
@@ -124,7 +124,7 @@ impl<const N: usize, const M: usize> Elementary<'_, '_, N, M> {
     fn solution(&self) -> Result<Vec<f64>, SensitivityError> {
         let mut z = self.method.guess(&self.v);
         let mut nearly = false;
-        let mut last = f64::INFINITY;
+        let (mut last, mut history) = (f64::INFINITY, History::new());
         for iteration in 1..=Self::MAX_ITERATIONS {
             let mut r = DMatrix::zeros(z.len(), 1);
             let mut r_z = DMatrix::zeros(z.len(), z.len());
@@ -138,9 +138,9 @@ impl<const N: usize, const M: usize> Elementary<'_, '_, N, M> {
                 }
             }
             if r.iter().chain(&r_z).any(|x| !x.is_finite()) {
-                return Err(SensitivityError::Equations(NewtonError::NotFinite { iteration }));
+                return Err(SensitivityError::Equations(NewtonError::NotFinite { iteration, history }));
             }
-            let jacobian = Scaled::new(r_z).map_err(|source| singular(iteration, source))?;
+            let jacobian = Scaled::new(r_z).map_err(|source| singular(iteration, source, history))?;
             let correction = jacobian.solve(-r);
             for (z, d) in z.iter_mut().zip(&correction) {
                 *z += d;
@@ -152,12 +152,13 @@ impl<const N: usize, const M: usize> Elementary<'_, '_, N, M> {
             }
             nearly = change <= Self::NEARLY[0] * size;
             last = change / size;
+            history.push(last);
         }
-        let limit = NewtonError::IterationLimit { iterations: Self::MAX_ITERATIONS, correction: last };
+        let limit = NewtonError::IterationLimit { iterations: Self::MAX_ITERATIONS, correction: last, history };
         Err(SensitivityError::Equations(limit))
     }
 }
 
-fn singular(iteration: u32, source: Singular) -> SensitivityError {
-    SensitivityError::Equations(NewtonError::Singular { iteration, source })
+fn singular(iteration: u32, source: Singular, history: History) -> SensitivityError {
+    SensitivityError::Equations(NewtonError::Singular { iteration, source, history })
 }

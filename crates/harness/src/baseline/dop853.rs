@@ -119,4 +119,12 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for D
         let v = velocity_of(system, t + h, &state.ahead(&d), &xi)?;
         super::rk4::explicit(state, &d, v, Some(xi))
     }
+
+    fn memory(&self) -> Vec<f64> {
+        self.proposed.into_iter().collect()
+    }
+
+    fn recall(&mut self, memory: &[f64], _state: &State<N>) {
+        self.proposed = memory.first().copied();
+    }
 }

@@ -1,5 +1,5 @@
 use super::shifted;
-use dla::{NewtonError, OneStep, Stage, State, StepError, StepReport};
+use dla::{History, NewtonError, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::System;
 
 /// The implicit midpoint rule in full coordinates, the multiplier eliminated as in [`Rk4`](crate::Rk4).
@@ -44,7 +44,7 @@ impl ImplicitMidpoint {
         };
         let mut a = motion(t0, q0, v0)?;
         let mut last = [f64::INFINITY; N];
-        let mut before = f64::INFINITY;
+        let (mut before, mut history) = (f64::INFINITY, History::new());
         // The start's size too: an acceleration of zeros only has no size of its own.
         let mut size = largest(&a);
         for iteration in 1..=self.max_iterations {
@@ -54,9 +54,10 @@ impl ImplicitMidpoint {
             a = next;
             let (now, moved) = (largest(&a), largest(&change));
             if !now.is_finite() || moved.is_nan() {
-                return Err(fail(NewtonError::NotFinite { iteration }));
+                return Err(fail(NewtonError::NotFinite { iteration, history }));
             }
             size = size.max(now);
+            history.push(moved / size);
             let converged = moved <= Self::ROUNDING * size;
             let settled = (0..N).all(|i| {
                 let rounding = converged && change[i] >= 0.5 * last[i];
@@ -67,11 +68,13 @@ impl ImplicitMidpoint {
             }
             // What is left after convergence is rounding, which may grow.
             if iteration > 3 && !converged && moved > 2.0 * before {
-                return Err(fail(NewtonError::Diverged { iteration, correction: moved / size, before: before / size }));
+                let (correction, before) = (moved / size, before / size);
+                return Err(fail(NewtonError::Diverged { iteration, correction, before, history }));
             }
             (last, before) = (change, moved);
         }
-        Err(fail(NewtonError::IterationLimit { iterations: self.max_iterations, correction: before / size }))
+        let (iterations, correction) = (self.max_iterations, before / size);
+        Err(fail(NewtonError::IterationLimit { iterations, correction, history }))
     }
 }
 

@@ -1,0 +1,91 @@
+use crate::State;
+use std::fmt;
+
+/// Which crossings of zero count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Direction {
+    /// From below.
+    Rising,
+    /// From above.
+    Falling,
+    /// Both.
+    #[default]
+    Both,
+}
+
+/// Of the time (s) and the state.
+type Function<'a, const N: usize> = Box<dyn Fn(f64, &State<N>) -> f64 + 'a>;
+
+/// A function of time and state whose crossings of zero are looked for.
+///
+/// A crossing changes the sign. A zero that is only touched is none, and a run that begins on one has not crossed it.
+pub struct Event<'a, const N: usize> {
+    /// What it is called.
+    pub name: String,
+    /// Which crossings count, in the direction in which the run goes.
+    pub direction: Direction,
+    /// Whether the first crossing ends the run.
+    pub terminal: bool,
+    function: Function<'a, N>,
+}
+
+impl<'a, const N: usize> Event<'a, N> {
+    /// The event `function(t, state) = 0`, in both directions, which ends nothing.
+    pub fn new(name: impl Into<String>, function: impl Fn(f64, &State<N>) -> f64 + 'a) -> Self {
+        Self { name: name.into(), direction: Direction::Both, terminal: false, function: Box::new(function) }
+    }
+
+    /// The same event, of which only crossings in one direction count.
+    #[must_use]
+    pub fn in_direction(self, direction: Direction) -> Self {
+        Self { direction, ..self }
+    }
+
+    /// The same event, ending the run.
+    #[must_use]
+    pub fn terminal(self) -> Self {
+        Self { terminal: true, ..self }
+    }
+
+    /// The value of the function at the time `t` (s).
+    #[must_use]
+    pub fn value(&self, t: f64, state: &State<N>) -> f64 {
+        (self.function)(t, state)
+    }
+
+    pub(super) fn counts(&self, rising: bool) -> bool {
+        match self.direction {
+            Direction::Rising => rising,
+            Direction::Falling => !rising,
+            Direction::Both => true,
+        }
+    }
+}
+
+impl<const N: usize> fmt::Debug for Event<'_, N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, direction, terminal, .. } = self;
+        f.debug_struct("Event")
+            .field("name", name)
+            .field("direction", direction)
+            .field("terminal", terminal)
+            .finish_non_exhaustive()
+    }
+}
+
+/// An event that happened.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crossing<const N: usize> {
+    /// Which one, by its place in the list of events.
+    pub event: usize,
+    /// The node before it.
+    pub k: u64,
+    /// When (s).
+    pub t: f64,
+    /// The interval of time that is known to hold the change of sign (s). The error of the method comes on top.
+    pub within: f64,
+    /// Whether the function rises through zero.
+    pub rising: bool,
+    /// The state then: a step of the method, shortened to end there. Where a velocity jumps, the state after the jump.
+    pub state: State<N>,
+}

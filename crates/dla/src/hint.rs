@@ -1,0 +1,147 @@
+use crate::{History, NewtonError, RunError, Stage, StepError};
+use lagrangian::ClosedStepError;
+use std::fmt;
+
+/// What to change after a failure, as far as the failure tells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Hint {
+    /// Make the step shorter, to this part of it or less.
+    ShorterStep {
+        /// The part.
+        part: f64,
+    },
+    /// The search still converges quickly where it was cut off: allow it more iterations.
+    MoreIterations,
+    /// The search moves by rounding only: ask for fewer digits.
+    LooserTolerance,
+    /// The constraints or the mass matrix determine no velocity, at any step: look for rows that say the same.
+    Constraints,
+    /// The method cannot do the system.
+    OtherMethod,
+    /// Choose a step that has a node where the forces jump.
+    NodeAt {
+        /// When (s).
+        time: f64,
+    },
+    /// A number is too large, infinite or undefined: look at the start and the parameters, then at the step.
+    Numbers,
+}
+
+impl fmt::Display for Hint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::ShorterStep { part } => write!(f, "shorten the step to {part:.2} of it or less"),
+            Self::MoreIterations => f.write_str("it was still converging: allow more iterations"),
+            Self::LooserTolerance => f.write_str("the search moves by rounding only: ask for fewer digits"),
+            Self::Constraints => f.write_str(
+                "constraints or mass matrix determine no velocity here: look for constraint rows that say the same",
+            ),
+            Self::OtherMethod => f.write_str("choose another method"),
+            Self::NodeAt { time } => write!(f, "choose a step that has a node at t = {time} s"),
+            Self::Numbers => f.write_str(
+                "a number is too large or undefined: look at the start and the parameters, then at the step",
+            ),
+        }
+    }
+}
+
+/// Half the step, where nothing tells how much is too much.
+const HALF: Hint = Hint::ShorterStep { part: 0.5 };
+
+impl NewtonError {
+    /// The corrections before the failure, relative to the largest component there was; empty where the first failed.
+    #[must_use]
+    pub fn history(&self) -> History {
+        match self {
+            Self::Singular { history, .. }
+            | Self::Diverged { history, .. }
+            | Self::IterationLimit { history, .. }
+            | Self::NotFinite { history, .. } => *history,
+        }
+    }
+
+    /// The iterations begun, the one that failed among them.
+    #[must_use]
+    pub fn iterations(&self) -> u32 {
+        match self {
+            Self::Singular { iteration, .. } | Self::Diverged { iteration, .. } | Self::NotFinite { iteration, .. } => {
+                *iteration
+            }
+            Self::IterationLimit { iterations, .. } => *iterations,
+        }
+    }
+
+    /// What to change. Quadratic convergence shrinks a correction to less than a quarter; corrections that do not shrink
+    /// and are small are rounding.
+    fn hint(&self, stage: Stage) -> Hint {
+        let history = self.history();
+        match self {
+            // This matrix does not depend on the step.
+            Self::Singular { .. } if stage == Stage::Projection => Hint::Constraints,
+            Self::IterationLimit { correction, .. } => match history.last_ratio() {
+                Some(ratio) if ratio < 0.25 => Hint::MoreIterations,
+                Some(_) if correction.abs() < ROUNDING => Hint::LooserTolerance,
+                None => Hint::MoreIterations,
+                _ => HALF,
+            },
+            Self::NotFinite { iteration: 1, .. } => Hint::Numbers,
+            _ => HALF,
+        }
+    }
+}
+
+/// Below this part of the largest component, corrections that do not shrink are taken for rounding.
+const ROUNDING: f64 = 1e-8;
+
+impl StepError {
+    /// The corrections before the failure; none where nothing was iterated.
+    #[must_use]
+    pub fn history(&self) -> Option<History> {
+        match self {
+            Self::Newton { source, .. } => Some(source.history()),
+            _ => None,
+        }
+    }
+
+    /// The iterations of the failed equations; none where nothing was iterated.
+    #[must_use]
+    pub fn iterations(&self) -> Option<u32> {
+        match self {
+            Self::Newton { source, .. } => Some(source.iterations()),
+            Self::Closed(ClosedStepError::IterationLimit { iterations, .. }) => Some(*iterations),
+            _ => None,
+        }
+    }
+
+    /// What to change; none where the error says no more than that it failed.
+    #[must_use]
+    pub fn hint(&self) -> Option<Hint> {
+        Some(match self {
+            Self::Newton { stage, source } => source.hint(*stage),
+            // The quantity grows at least as fast as the step; but it is that of an iterate, which may be far off.
+            Self::Closed(ClosedStepError::NoSolution { value, bound, .. }) if value.is_finite() && *value >= *bound => {
+                Hint::ShorterStep { part: f64::max(0.5 * bound / value, 0.25) }
+            }
+            Self::Closed(ClosedStepError::NotFinite { .. }) | Self::NotFinite => Hint::Numbers,
+            Self::Closed(_) | Self::Branch | Self::Energy { .. } | Self::Tolerance { .. } => HALF,
+            Self::Unsupported { .. } => Hint::OtherMethod,
+            Self::Jump { time } => Hint::NodeAt { time: *time },
+            Self::Motion(_) | Self::Dependent(_) => Hint::Constraints,
+            Self::Reduced(_) => return None,
+        })
+    }
+}
+
+impl RunError {
+    /// The steps made before the failure: nodes `0 ..= valid_steps` are the valid part of the trajectory.
+    #[must_use]
+    pub fn valid_steps(&self) -> u64 {
+        self.step.saturating_sub(1)
+    }
+
+    /// What to change; none where the error says no more than that it failed.
+    #[must_use]
+    pub fn hint(&self) -> Option<Hint> {
+        self.source.hint()
+    }
+}

@@ -1,0 +1,266 @@
+use crate::{OneStep, RunError, Samples, Schedule, State, StepError, drive};
+use lagrangian::System;
+use lagrangian::linear::larger;
+use thiserror::Error;
+
+/// A constant step for a tolerance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Recommendation {
+    /// The step (s), a whole part of the duration.
+    pub step: f64,
+    /// So many make the duration.
+    pub steps: u64,
+    /// The error to expect: the largest of a coordinate, in its own units, at eighths of the duration.
+    pub estimated_error: f64,
+}
+
+/// Why there is no step for a tolerance.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum RecommendError {
+    /// The tolerance or the duration is none.
+    #[error("the tolerance and the duration must be positive and finite, and are {tolerance} and {duration} s")]
+    Request {
+        /// The tolerance.
+        tolerance: f64,
+        /// The duration (s).
+        duration: f64,
+    },
+    /// The method does not reach the tolerance: rounding, or the steps, are too many.
+    #[error(
+        "the tolerance {tolerance:e} is out of reach: the best found is about {best:e}, with {steps} steps of {step:e} s"
+    )]
+    OutOfReach {
+        /// The tolerance.
+        tolerance: f64,
+        /// The smallest error found.
+        best: f64,
+        /// With this step (s).
+        step: f64,
+        /// And so many of them.
+        steps: u64,
+    },
+    /// The run fails with the shortest step tried.
+    #[error("the run fails even with steps of {step:e} s: {source}")]
+    Fails {
+        /// The step (s).
+        step: f64,
+        /// How it fails.
+        #[source]
+        source: RunError,
+    },
+}
+
+/// The times at which trials are compared, as parts of the duration: wherever the nodes are, and several, so that an error
+/// that happens to pass through zero at one of them hides nothing.
+const TIMES: usize = 8;
+/// The recommended step aims at this part of the tolerance, and is content with anything between the second and it.
+const AIM: (f64, f64) = (0.5, 0.25);
+/// The reference is as close as this part of the tolerance.
+const REFERENCE: f64 = 0.05;
+/// Trials between the last step that is too long and the first that is not.
+const REFINEMENTS: u32 = 12;
+/// Changes below this part of the largest coordinate may be rounding.
+const ROUNDING: f64 = 1e-7;
+/// No trial has more steps.
+const MOST: u64 = 1 << 26;
+
+/// The longest constant step with which a run from `state` at time zero reaches its tolerance, the largest error of a
+/// coordinate in its own units, found by trial.
+///
+/// A step that changes along a run would destroy the symmetry of a symmetric method; a constant one keeps it. The number of
+/// steps is doubled until the change, extrapolated by the ratio of two changes (Richardson), no longer moves by more than a
+/// part of the tolerance: that is the reference. The order of the method is what that ratio shows. Then the number of
+/// steps is refined against it, to half of the tolerance. It costs some four times the steps of what it recommends, and
+/// more where the tolerance is loose.
+///
+/// # Errors
+/// [`RecommendError`], with the best that is within reach.
+pub fn recommend_step<Sys, Method, const N: usize, const M: usize>(
+    system: &Sys,
+    make_method: impl Fn() -> Method,
+    state: &State<N>,
+    duration: f64,
+    tolerance: f64,
+) -> Result<Recommendation, RecommendError>
+where
+    Sys: System<N, M>,
+    Method: OneStep<Sys, N, M> + Clone,
+{
+    recommend_by_trial(duration, tolerance, |schedule, times| {
+        let mut samples = Samples::new(make_method(), times);
+        drive(system, &mut make_method(), schedule, &mut state.clone(), &mut samples)?;
+        samples.into_taken().map_err(|source| RunError { step: schedule.steps, time: schedule.t0, source })
+    })
+}
+
+/// The same with a function that makes the trials: a run by the schedule, and the states at the times, which end with the
+/// end of the run.
+///
+/// # Errors
+/// As [`recommend_step`].
+pub fn recommend_by_trial<const N: usize>(
+    duration: f64,
+    tolerance: f64,
+    mut make: impl FnMut(&Schedule, &[f64]) -> Result<Vec<State<N>>, RunError>,
+) -> Result<Recommendation, RecommendError> {
+    if !(tolerance > 0.0 && tolerance.is_finite() && duration > 0.0 && duration.is_finite()) {
+        return Err(RecommendError::Request { tolerance, duration });
+    }
+    let mut trial = |steps: u64| -> Result<Sampled<N>, RunError> {
+        let schedule = Schedule { t0: 0.0, step: duration / steps as f64, steps };
+        // The last is that of the last node, to the bit.
+        let end = schedule.time(steps);
+        let times: [f64; TIMES] = std::array::from_fn(|i| end * (i + 1) as f64 / TIMES as f64);
+        let found = make(&schedule, &times)?;
+        let sampled: Sampled<N> = std::array::from_fn(|i| found.get(i).map_or([f64::NAN; N], State::unwrapped));
+        let finite = sampled.iter().flatten().all(|q| q.is_finite());
+        if finite { Ok(sampled) } else { Err(RunError { step: steps, time: end, source: StepError::NotFinite }) }
+    };
+    let (found, trials) = reference(&mut trial, duration, tolerance)?;
+    refined(&mut trial, &found, &trials, duration, tolerance)
+}
+
+type Sampled<const N: usize> = [[f64; N]; TIMES];
+
+/// The largest difference of a coordinate at any of the times.
+fn distance<const N: usize>(a: &Sampled<N>, b: &Sampled<N>) -> f64 {
+    a.iter().flatten().zip(b.iter().flatten()).fold(0.0, |largest, (a, b)| larger(largest, a - b))
+}
+
+/// The trials made, by the number of their steps.
+type Trials<const N: usize> = Vec<(u64, Sampled<N>)>;
+
+/// The motion to a part of the tolerance, and the trials that led to it.
+fn reference<const N: usize>(
+    trial: &mut impl FnMut(u64) -> Result<Sampled<N>, RunError>,
+    duration: f64,
+    tolerance: f64,
+) -> Result<(Sampled<N>, Trials<N>), RecommendError> {
+    let mut trials: Trials<N> = Vec::new();
+    let mut extrapolated: Option<Sampled<N>> = None;
+    let (mut change, mut best) = (f64::INFINITY, (f64::INFINITY, 1));
+    let mut failure = None;
+    let (mut steps, mut stalls, mut size) = (4, 0, 0.0);
+    while steps <= MOST {
+        match trial(steps) {
+            Ok(now) => {
+                size = now.iter().flatten().fold(size, |size, q| larger(size, *q));
+                if let Some((_, before)) = trials.last() {
+                    let new_change = distance(before, &now);
+                    let ratio = change / new_change;
+                    change = new_change;
+                    if change < 0.75 * best.0 {
+                        best = (change, steps);
+                    }
+                    // A ratio of two is an error of order one.
+                    let better = (ratio >= 1.9).then(|| {
+                        let gain = (ratio.log2().round().clamp(1.0, 20.0).exp2() - 1.0).recip();
+                        std::array::from_fn(|k| std::array::from_fn(|i| now[k][i] + gain * (now[k][i] - before[k][i])))
+                    });
+                    let moved = match (&better, &extrapolated) {
+                        (Some(better), Some(before)) => distance(better, before),
+                        _ => f64::INFINITY,
+                    };
+                    trials.push((steps, now));
+                    if moved <= REFERENCE * tolerance {
+                        return Ok((better.unwrap_or(now), trials));
+                    }
+                    // Nothing but rounding is left.
+                    if change <= REFERENCE * tolerance {
+                        return Ok((now, trials));
+                    }
+                    extrapolated = better;
+                } else {
+                    trials.push((steps, now));
+                }
+            }
+            // What was found with longer steps, if anything was, cannot be compared.
+            Err(error) => {
+                failure = Some(error);
+                trials.clear();
+                (change, extrapolated) = (f64::INFINITY, None);
+                if matches!(error.source, StepError::Unsupported { .. }) {
+                    break;
+                }
+            }
+        }
+        // Small changes that twice have not shrunk are rounding.
+        stalls = if change > best.0 && change <= ROUNDING * size { stalls + 1 } else { 0 };
+        if stalls == 2 {
+            break;
+        }
+        steps *= 2;
+    }
+    let out_of_reach =
+        RecommendError::OutOfReach { tolerance, best: best.0, step: duration / best.1 as f64, steps: best.1 };
+    match failure {
+        Some(source) if trials.is_empty() => Err(RecommendError::Fails { step: duration / steps as f64, source }),
+        _ => Err(out_of_reach),
+    }
+}
+
+/// The fewest steps whose error is below the aim, to the width of the aim.
+fn refined<const N: usize>(
+    trial: &mut impl FnMut(u64) -> Result<Sampled<N>, RunError>,
+    reference: &Sampled<N>,
+    trials: &Trials<N>,
+    duration: f64,
+    tolerance: f64,
+) -> Result<Recommendation, RecommendError> {
+    let (aim, enough) = (AIM.0 * tolerance, AIM.1 * tolerance);
+    let mut few = (0, f64::INFINITY);
+    let mut many = None;
+    // All before the last that is not good enough count as that.
+    for (steps, found) in trials {
+        let error = distance(found, reference);
+        if error > aim {
+            (few, many) = ((*steps, error), None);
+        } else if many.is_none() {
+            many = Some((*steps, error));
+        }
+    }
+    // The extrapolation may be better than every trial.
+    let mut many = match many {
+        Some(many) => many,
+        None => loop {
+            let steps = 2 * few.0;
+            let fails = |source| RecommendError::Fails { step: duration / steps as f64, source };
+            let error = distance(&trial(steps).map_err(fails)?, reference);
+            if error <= aim {
+                break (steps, error);
+            }
+            // A method of any order would gain more; what does not is rounding.
+            if error > 0.75 * few.1 || steps > MOST {
+                let step = duration / few.0 as f64;
+                return Err(RecommendError::OutOfReach { tolerance, best: few.1, step, steps: few.0 });
+            }
+            few = (steps, error);
+        },
+    };
+    for _ in 0..REFINEMENTS {
+        if many.0 - few.0 <= 1 || many.1 >= enough {
+            break;
+        }
+        let steps = between(few, many, f64::sqrt(aim * enough));
+        let error = trial(steps).map_or(f64::INFINITY, |found| distance(&found, reference));
+        if error <= aim {
+            many = (steps, error);
+        } else {
+            few = (steps, error);
+        }
+    }
+    let (steps, estimated_error) = many;
+    Ok(Recommendation { step: duration / steps as f64, steps, estimated_error })
+}
+
+/// A number of steps between two, where a power law through their errors has the error `aim`; the middle of the powers
+/// where they have no law.
+fn between(few: (u64, f64), many: (u64, f64), aim: f64) -> u64 {
+    let (low, high) = ((few.0.max(1) as f64).ln(), (many.0 as f64).ln());
+    let (top, bottom) = (few.1.ln(), many.1.max(f64::MIN_POSITIVE).ln());
+    let part = (top - aim.ln()) / (top - bottom);
+    // Never too near an end, so that both move.
+    let part = if part.is_finite() { part.clamp(0.1, 0.9) } else { 0.5 };
+    let steps = (low + part * (high - low)).exp().round() as u64;
+    steps.clamp(few.0 + 1, many.0 - 1)
+}

@@ -1,0 +1,148 @@
+use crate::record::Meter;
+use crate::run::integrate_part;
+use crate::timing::Ticker;
+use crate::{Method, Progress, Record, Request};
+use dla::{Checkpoint, CheckpointError, Observer, Part, Schedule, State, Trajectory, Work, piece_by_piece_from};
+use lagrangian::{Piecewise, System};
+use std::ops::Range;
+use std::time::Instant;
+
+/// How a run is saved, and from where it goes on.
+pub struct Saving<'a> {
+    /// What tells the run from all others: a checkpoint without numbers.
+    pub identity: &'a Checkpoint,
+    /// The checkpoint to go on from; the start where there is none.
+    pub from: Option<&'a Checkpoint>,
+    /// A checkpoint is made after every so many steps; none where there is none.
+    pub every: Option<u64>,
+    /// Receives every checkpoint.
+    pub save: &'a mut dyn FnMut(&Checkpoint),
+}
+
+/// Everything that changes along a run.
+struct Progressing<const N: usize, const M: usize> {
+    made: u64,
+    state: State<N>,
+    memory: Vec<f64>,
+    meter: Meter<N>,
+    trajectory: Option<Trajectory<N, M>>,
+    seconds: f64,
+}
+
+/// Makes a run once, measures it, and keeps every `keep`-th node where that is asked for.
+///
+/// The record is the same to the last bit whether the run was made at once or in parts, but for its time, which is that of
+/// all parts, with what looks on, and its samples, which are those since the last checkpoint; so are the nodes.
+///
+/// # Errors
+/// [`CheckpointError`] where the checkpoint is none of this run; nothing is then done.
+pub fn run_saved<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &Method,
+    request: &Request<N>,
+    saving: &mut Saving<'_>,
+    keep: Option<u64>,
+    progress: &mut dyn Progress,
+) -> Result<(Record<N>, Option<Trajectory<N, M>>), CheckpointError> {
+    let Request { schedule, q, v, samples } = *request;
+    let every = schedule.steps.div_ceil(samples.max(1));
+    let mut run = match saving.from {
+        Some(checkpoint) => {
+            checkpoint.belongs_to(saving.identity)?;
+            Progressing::load(checkpoint, &schedule, system.angles(), every, keep)?
+        }
+        None => Progressing {
+            made: 0,
+            state: State::new(q, v, system.angles()),
+            memory: Vec::new(),
+            meter: Meter::new(every),
+            trajectory: keep.map(Trajectory::every),
+            seconds: 0.0,
+        },
+    };
+    progress.advance(run.made);
+    let mut ticker = Ticker { progress, told: run.made };
+    let (begin, before) = (Instant::now(), run.seconds);
+    let (first, mut state) = (run.made, run.state);
+    let outcome = piece_by_piece_from(first, system, &schedule, &mut state, |piece, steps, state| {
+        if steps.start > first {
+            // A piece begins with a new method.
+            run.memory.clear();
+        }
+        let mut done = Part { made: steps.start, stopped: false };
+        for chunk in chunks(&steps, saving.every) {
+            let observer: &mut dyn Observer<Sys, N, M> = &mut (&mut run.meter, (&mut run.trajectory, &mut ticker));
+            let memory = Some(&mut run.memory);
+            done = integrate_part(piece, method, &schedule, chunk.clone(), state, observer, memory)?;
+            let due = saving.every.is_some_and(|every| done.made.is_multiple_of(every));
+            if due && done.made < schedule.steps && !done.stopped {
+                if done.made == steps.end {
+                    run.memory.clear();
+                }
+                (run.made, run.state) = (done.made, *state);
+                run.seconds = before + begin.elapsed().as_secs_f64();
+                (saving.save)(&run.checkpoint(saving.identity));
+            }
+            if done.stopped {
+                break;
+            }
+        }
+        Ok(done)
+    });
+    let seconds = before + begin.elapsed().as_secs_f64();
+    let record = run.meter.record(method.info(), schedule.step, seconds, outcome.err());
+    Ok((record, run.trajectory))
+}
+
+/// The parts of some steps that end at the multiples of `every`; at least one, though it be empty.
+fn chunks(steps: &Range<u64>, every: Option<u64>) -> Vec<Range<u64>> {
+    let mut parts = Vec::new();
+    let mut at = steps.start;
+    loop {
+        let next = every.map_or(steps.end, |every| (at / every).saturating_add(1).saturating_mul(every));
+        parts.push(at..next.min(steps.end));
+        at = next;
+        if at >= steps.end {
+            return parts;
+        }
+    }
+}
+
+impl<const N: usize, const M: usize> Progressing<N, M> {
+    fn checkpoint(&self, identity: &Checkpoint) -> Checkpoint {
+        let mut checkpoint = identity.clone();
+        checkpoint.put_counts("k", &[self.made]);
+        checkpoint.put("seconds", &[self.seconds]);
+        self.state.save(&mut checkpoint);
+        checkpoint.put("memory", &self.memory);
+        self.meter.save(&mut checkpoint);
+        checkpoint
+    }
+
+    fn load(
+        checkpoint: &Checkpoint,
+        schedule: &Schedule,
+        angles: [bool; N],
+        every: u64,
+        keep: Option<u64>,
+    ) -> Result<Self, CheckpointError> {
+        let [made] = checkpoint.counts("k")?;
+        let ([seconds], t) = (checkpoint.get("seconds")?, schedule.time(made));
+        let state = State::load(checkpoint, angles)?;
+        let work = Work::load(checkpoint, t, &state)?;
+        Ok(Self {
+            made,
+            state,
+            memory: checkpoint.list("memory")?,
+            meter: Meter::load(checkpoint, every, work)?,
+            trajectory: keep.map(|keep| Trajectory::resumed(keep, t, work)),
+            seconds,
+        })
+    }
+}
+
+impl std::fmt::Debug for Saving<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Saving").field("identity", self.identity).field("every", &self.every).finish_non_exhaustive()
+    }
+}

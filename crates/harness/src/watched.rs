@@ -1,0 +1,59 @@
+use crate::record::Meter;
+use crate::run::{integrate_pieces, timed};
+use crate::timing::Ticker;
+use crate::{Again, Method, Progress, Record, Request};
+use dla::{
+    Crossing, Event, RecommendError, Recommendation, Samples, Schedule, State, Trajectory, Watch, recommend_by_trial,
+};
+use lagrangian::{Piecewise, System};
+
+/// A run, measured, with the nodes that were asked for and the events that happened.
+#[derive(Debug, Clone)]
+pub struct Watched<const N: usize, const M: usize> {
+    /// The record; where an event ended the run, its end is the event.
+    pub record: Record<N>,
+    /// The nodes.
+    pub trajectory: Option<Trajectory<N, M>>,
+    /// The events, in the order in which they happened.
+    pub crossings: Vec<Crossing<N>>,
+}
+
+/// Makes a run, measures it, looks for events, and keeps every `keep`-th node where that is asked for.
+pub fn run_watched<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &Method,
+    request: &Request<N>,
+    events: &[Event<'_, N>],
+    keep: Option<u64>,
+    progress: &mut dyn Progress,
+) -> Watched<N, M> {
+    let Request { schedule, q, v, samples } = *request;
+    let start = State::new(q, v, system.angles());
+    let mut meter = Meter::new(schedule.steps.div_ceil(samples.max(1)));
+    let mut trajectory = keep.map(Trajectory::every);
+    let inner = (&mut meter, (&mut trajectory, Ticker { progress, told: 0 }));
+    let mut watch = Watch::new(Again(method), events, inner);
+    let outcome = integrate_pieces(system, method, &schedule, &mut start.clone(), &mut watch);
+    let crossings = watch.crossings().to_vec();
+    let steps = outcome.unwrap_or_else(|failure| failure.valid_steps());
+    let seconds = timed(system, method, &Schedule { steps, ..schedule }, start);
+    Watched { record: meter.record(method.info(), schedule.step, seconds, outcome.err()), trajectory, crossings }
+}
+
+/// The longest step of a whole run from time zero that meets a tolerance (see [`dla::recommend_step`]).
+///
+/// # Errors
+/// [`RecommendError`], with the best that is within reach.
+pub fn recommend<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &Method,
+    (q, v): ([f64; N], [f64; N]),
+    duration: f64,
+    tolerance: f64,
+) -> Result<Recommendation, RecommendError> {
+    recommend_by_trial(duration, tolerance, |schedule, times| {
+        let mut samples = Samples::new(Again(method), times);
+        integrate_pieces(system, method, schedule, &mut State::new(q, v, system.angles()), &mut samples)?;
+        samples.into_taken().map_err(|source| dla::RunError { step: schedule.steps, time: schedule.t0, source })
+    })
+}
