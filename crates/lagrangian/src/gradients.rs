@@ -34,6 +34,12 @@ pub trait Gradients<const N: usize, const M: usize> {
 
     /// The basis of admissible velocities, with its derivative along the direction of `t` and `q`.
     fn basis_along(&self, t: Along, q: &[Along; N]) -> Option<AdmissibleBasis<Along, N, M>>;
+
+    /// The functions of constraints on positions.
+    fn holonomic(&self, t: Seeded, q: &[Seeded; N]) -> Option<[Option<Seeded>; M]>;
+
+    /// The functions of constraints that are not affine in the velocities, with their derivatives in these.
+    fn nonlinear(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> Option<[Option<Dual<Seeded, N>>; M]>;
 }
 
 /// What follows of the rest; compiled once, and not for every system.
@@ -55,11 +61,25 @@ impl<const N: usize, const M: usize> dyn Gradients<N, M> + '_ {
         (a.map(|row| row.map(|x| x.re)), b.map(|x| x.re))
     }
 
-    /// `A v + b`.
+    /// `A v + b`, or `phi` of a constraint that is not affine.
     #[must_use]
     pub fn slip(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> [Seeded; M] {
         let (a, b) = self.constraint(t, q);
-        from_fn(|k| (0..N).fold(b[k], |sum, i| sum + a[k][i] * v[i]))
+        let slip = from_fn(|k| (0..N).fold(b[k], |sum, i| sum + a[k][i] * v[i]));
+        match self.nonlinear(t, q, v) {
+            Some(phi) => from_fn(|k| phi[k].map_or(slip[k], |phi| phi.re)),
+            None => slip,
+        }
+    }
+
+    /// The rows along which the constraints react: those of `A`, or `d phi / dv`.
+    #[must_use]
+    pub fn reaction_rows(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> [[Seeded; N]; M] {
+        let (a, _) = self.constraint(t, q);
+        match self.nonlinear(t, q, v) {
+            Some(phi) => from_fn(|k| phi[k].map_or(a[k], |phi| phi.eps)),
+            None => a,
+        }
     }
 
     /// What is left of the equations of motion `d/dt L_v - L_q - F = A' lambda`, `d/dt (A v + b) = 0` at an acceleration `a`.
@@ -166,6 +186,15 @@ impl<F: Parametrised<N, M, P>, const N: usize, const M: usize, const P: usize> G
 
     fn basis_along(&self, t: Along, q: &[Along; N]) -> Option<AdmissibleBasis<Along, N, M>> {
         self.family.admissible_basis(&self.parameters.map(Dual::fixed), t, q)
+    }
+
+    fn holonomic(&self, t: Seeded, q: &[Seeded; N]) -> Option<[Option<Seeded>; M]> {
+        self.family.holonomic(&self.parameters, t, q)
+    }
+
+    fn nonlinear(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> Option<[Option<Dual<Seeded, N>>; M]> {
+        let (t, q) = (Dual::fixed(t), q.map(Dual::fixed));
+        self.family.nonlinear(&self.parameters.map(Dual::fixed), t, &q, &Dual::variables(v))
     }
 }
 

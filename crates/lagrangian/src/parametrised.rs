@@ -44,6 +44,18 @@ pub trait Parametrised<const N: usize, const M: usize, const P: usize> {
         None
     }
 
+    /// The functions of constraints on positions, as [`System::holonomic`]; none by default.
+    #[inline(always)]
+    fn holonomic<S: Scalar>(&self, _p: &[S; P], _t: S, _q: &[S; N]) -> Option<[Option<S>; M]> {
+        None
+    }
+
+    /// The functions of constraints that are not affine in the velocities, as [`System::nonlinear`]; none by default.
+    #[inline(always)]
+    fn nonlinear<S: Scalar>(&self, _p: &[S; P], _t: S, _q: &[S; N], _v: &[S; N]) -> Option<[Option<S>; M]> {
+        None
+    }
+
     /// Which coordinates are angles, as [`System::angles`].
     #[inline(always)]
     fn angles(&self) -> [bool; N] {
@@ -78,6 +90,14 @@ impl<F: Parametrised<N, M, P>, const N: usize, const M: usize, const P: usize> S
         self.family.admissible_basis(&self.parameters.map(S::constant), t, q)
     }
     #[inline(always)]
+    fn holonomic<S: Scalar>(&self, t: S, q: &[S; N]) -> Option<[Option<S>; M]> {
+        self.family.holonomic(&self.parameters.map(S::constant), t, q)
+    }
+    #[inline(always)]
+    fn nonlinear<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[Option<S>; M]> {
+        self.family.nonlinear(&self.parameters.map(S::constant), t, q, v)
+    }
+    #[inline(always)]
     fn angles(&self) -> [bool; N] {
         self.family.angles()
     }
@@ -105,6 +125,14 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Parametrised<N, M, 0> fo
         self.0.admissible_basis(t, q)
     }
     #[inline(always)]
+    fn holonomic<S: Scalar>(&self, _p: &[S; 0], t: S, q: &[S; N]) -> Option<[Option<S>; M]> {
+        self.0.holonomic(t, q)
+    }
+    #[inline(always)]
+    fn nonlinear<S: Scalar>(&self, _p: &[S; 0], t: S, q: &[S; N], v: &[S; N]) -> Option<[Option<S>; M]> {
+        self.0.nonlinear(t, q, v)
+    }
+    #[inline(always)]
     fn angles(&self) -> [bool; N] {
         self.0.angles()
     }
@@ -126,6 +154,14 @@ impl<F: Parametrised<N, M, P>, const N: usize, const M: usize, const P: usize> P
     #[inline(always)]
     fn admissible_basis<S: Scalar>(&self, p: &[S; P], t: S, q: &[S; N]) -> Option<AdmissibleBasis<S, N, M>> {
         F::admissible_basis(self, p, t, q)
+    }
+    #[inline(always)]
+    fn holonomic<S: Scalar>(&self, p: &[S; P], t: S, q: &[S; N]) -> Option<[Option<S>; M]> {
+        F::holonomic(self, p, t, q)
+    }
+    #[inline(always)]
+    fn nonlinear<S: Scalar>(&self, p: &[S; P], t: S, q: &[S; N], v: &[S; N]) -> Option<[Option<S>; M]> {
+        F::nonlinear(self, p, t, q, v)
     }
     #[inline(always)]
     fn angles(&self) -> [bool; N] {

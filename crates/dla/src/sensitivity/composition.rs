@@ -12,6 +12,10 @@ where
         self.weights.iter().flat_map(|weight| inner.iter().map(move |fraction| weight * fraction)).collect()
     }
 
+    fn carries_every_class(&self) -> bool {
+        self.base.carries_every_class()
+    }
+
     fn guess(&self, v: &[f64; N]) -> Vec<f64> {
         self.base.guess(v)
     }

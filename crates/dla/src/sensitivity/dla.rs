@@ -12,9 +12,14 @@ use std::array::from_fn;
 /// D1 L_d + f_d^- = sum_i w_i [h (1 - alpha_i) (L_q + F) - L_v],      D2 L_d + f_d^+ = sum_i w_i [h alpha_i (L_q + F) + L_v].
 /// ```
 ///
-/// (Marsden and West 2001, section 2.3.) A discrete Lagrangian that is written by hand has no such form, and no derivative
+/// (Marsden and West 2001, section 2.3.) A constraint on positions takes the place of its discrete one, and one that is not
+/// affine reacts along `d phi / dv` at the two nodes. A discrete Lagrangian that is written by hand has no such form, and no derivative
 /// here.
 impl<L: Rule, C: Rule, const N: usize, const M: usize> Differentiable<N, M> for Dla<L, C> {
+    fn carries_every_class(&self) -> bool {
+        true
+    }
+
     fn guess(&self, v: &[f64; N]) -> Vec<f64> {
         [&v[..], &[0.0; M], v, &[0.0; M]].concat()
     }
@@ -50,8 +55,10 @@ impl<L: Rule, C: Rule, const N: usize, const M: usize> Differentiable<N, M> for 
         }
 
         let (t1, q1) = along(1.0);
-        let (a0, _) = model.constraint(t, &q);
-        let (a1, _) = model.constraint(t1, &q1);
+        if let Some(positions) = model.holonomic(t1, &q1) {
+            chord = from_fn(|k| positions[k].map_or(chord[k], |g| g / h));
+        }
+        let (a0, a1) = (model.reaction_rows(t, &q, &v0), model.reaction_rows(t1, &q1, &v1));
         let projected = constrained(&arriving, &a1, &mu);
         let residual = [
             &constrained(&leaving, &a0, &lambda)[..],

@@ -36,6 +36,11 @@ pub trait Differentiable<const N: usize, const M: usize> {
         vec![1.0]
     }
 
+    /// Whether the equations have constraints on positions, and such as are not affine in the velocities.
+    fn carries_every_class(&self) -> bool {
+        false
+    }
+
     /// A first guess of the unknowns of a sub-step that begins with the velocity `v`; its length is their number.
     fn guess(&self, v: &[f64; N]) -> Vec<f64>;
 

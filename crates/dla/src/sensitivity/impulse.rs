@@ -4,10 +4,14 @@ use crate::{State, StepReport, onto_constraint};
 use lagrangian::{Gradients, Scalar, Seeded, System};
 
 /// The impulse of the constraints on a velocity that does not meet them, as a step without duration:
-/// `L_v(q, v1) = L_v(q, v0) + A' mu`, `A v1 + b = 0`.
+/// `L_v(q, v1) = L_v(q, v0) + A' mu`, `A v1 + b = 0`, or `phi(q, v1) = 0` with its reaction along `d phi / dv1`.
 struct Impulse;
 
 impl<const N: usize, const M: usize> Differentiable<N, M> for Impulse {
+    fn carries_every_class(&self) -> bool {
+        true
+    }
+
     fn guess(&self, v: &[f64; N]) -> Vec<f64> {
         [&v[..], &[0.0; M]].concat()
     }
@@ -21,7 +25,7 @@ impl<const N: usize, const M: usize> Differentiable<N, M> for Impulse {
         let StepStart { t, q, v: v0, .. } = *start;
         let mut unknowns = Unknowns(z);
         let (v1, mu): ([Seeded; N], [Seeded; M]) = (unknowns.take(), unknowns.take());
-        let (a, _) = model.constraint(t, &q);
+        let a = model.reaction_rows(t, &q, &v1);
         let p1 = constrained(&model.momentum(t, &q, &v0), &a, &mu);
         let residual = [&difference(&model.momentum(t, &q, &v1), &p1)[..], &model.slip(t, &q, &v1)].concat();
         Ok(StepEquations { residual, increment: [Seeded::zero(); N], velocity: v1 })

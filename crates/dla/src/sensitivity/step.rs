@@ -123,6 +123,17 @@ fn derivative<const N: usize, const M: usize, const P: usize>(
     end: &State<N>,
     report: StepReport<M>,
 ) -> Result<StepDerivative<N, M, P>, SensitivityError> {
+    let (first_t, first_q, first_v) =
+        (Seeded::constant(t), start.q().map(Seeded::constant), start.v().map(Seeded::constant));
+    let model = seeder(&parameters.map(Seeded::constant));
+    let classes =
+        model.holonomic(first_t, &first_q).is_some() || model.nonlinear(first_t, &first_q, &first_v).is_some();
+    if classes && !method.carries_every_class() {
+        return Err(SensitivityError::Unsupported {
+            reason: "constraints on positions, and such as are not affine in the velocities, are differentiated in the \
+                     methods of the family `dla` only",
+        });
+    }
     let inputs = 2 * N + 2 + P;
     let (mut q, mut v) = (*start.q(), *start.v());
     let mut moved = [0.0; N];

@@ -2,9 +2,12 @@
 
 use crate::differences::{BAR, Input, Start, disagreement};
 use crate::systems::{Controlled, ControlledSleigh, Moving};
-use dla::{Composition, Differentiable, Dla, Energy, Form, Gauss, Gradient, Lobatto, OneStep, Sensitivity};
-use lagrangian::{Midpoint, Symmetrised, Trapezoid};
-use models::{Model, Snakeboard};
+use dla::{
+    Composition, Differentiable, Dla, Energy, Form, Gauss, Gradient, Lobatto, OneStep, Sensitivity, SensitivityError,
+    State,
+};
+use lagrangian::{Midpoint, Symmetrised, System, Trapezoid};
+use models::{IsokineticParticle, Model, SleighOnArm, Snakeboard};
 use sleigh::{Guided, Sleigh};
 
 fn assert_close(name: &str, worst: f64) {
@@ -83,6 +86,42 @@ fn the_snakeboard() {
     let at = Input { q, v, t: 0.0, h: 0.1, p: [] };
     let sensitivity = Sensitivity::of(&board);
     assert_close("dla", disagreement(&sensitivity, |_| board, &Dla::midpoint(), on(&at)));
+}
+
+/// A constraint on positions beside the blade's; the start is off it too, where the step still has a derivative.
+#[test]
+fn a_sleigh_on_an_arm() {
+    let sleigh = SleighOnArm::new(1.3, 0.8, 0.4, 0.7, 1.5, 2.0).unwrap();
+    let (q, v) = sleigh.start();
+    let at = Input { q, v, t: 0.0, h: 0.1, p: [] };
+    let sensitivity = Sensitivity::of(&sleigh);
+    assert_close("dla", disagreement(&sensitivity, |_| sleigh, &Dla::midpoint(), on(&at)));
+    assert_close(
+        "multipliers",
+        disagreement(&sensitivity, |_| sleigh, &Dla::midpoint().solved(Form::Multipliers), on(&at)),
+    );
+    // The step that follows a tangent follows the arm: the first order of its length does not change.
+    let mut state = State::new(q, v, sleigh.angles());
+    let derivative = sensitivity.step(&mut Dla::midpoint(), 0.0, 0.1, &mut state).unwrap();
+    let slope = lagrangian::position_misses(&sleigh, 0.1, state.q()).unwrap()[1].unwrap().eps;
+    for column in derivative.from_v {
+        let stretch: f64 = (0..3).map(|i| slope[i] * column.q[i]).sum();
+        assert!(stretch.abs() < 1e-14, "{stretch:e}");
+        assert!(column.q.iter().any(|x| x.abs() > 1e-3), "the control: it moves");
+    }
+    let refused = sensitivity.step(&mut Gauss::<4>::default(), 0.0, 0.1, &mut state);
+    assert!(matches!(refused, Err(SensitivityError::Unsupported { .. })), "{refused:?}");
+}
+
+/// A constraint that is not affine in the velocities, by Chetaev's rule.
+#[test]
+fn an_isokinetic_particle() {
+    let particle = IsokineticParticle::new(1.3, 0.8, 0.6).unwrap();
+    let (q, v) = particle.state_at([0.2, -0.1], 1.1);
+    let at = Input { q, v, t: 0.0, h: 0.1, p: [] };
+    let sensitivity = Sensitivity::of(&particle);
+    assert_close("dla", disagreement(&sensitivity, |_| particle, &Dla::midpoint(), on(&at)));
+    assert_close("dla4", disagreement(&sensitivity, |_| particle, &Composition::suzuki4(Dla::midpoint()), on(&at)));
 }
 
 /// Off the distribution the derivative is that of the equations in their general form.
