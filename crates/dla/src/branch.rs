@@ -1,7 +1,10 @@
 //! Which of several solutions of a step continues the motion.
 
+use crate::newton::BlockEquations;
 use crate::{Equations, Newton};
-use lagrangian::linear::{Singular, largest};
+use lagrangian::linear::{Singular, larger};
+use lagrangian::{Dual, System};
+use std::array::from_fn;
 
 /// Equations that remember how large the first two corrections of a search were.
 pub(crate) struct Search<E> {
@@ -26,31 +29,90 @@ impl<E> Search<E> {
 
     /// Whether the solution `x` is the one near the start of the search.
     #[inline(always)]
-    pub(crate) fn is_certain<const U: usize>(&self, x: &[f64; U]) -> bool {
+    pub(crate) fn is_certain(&self, x: &[f64]) -> bool {
         let [first, second] = self.sizes;
-        second <= Self::CONTRACTION * first || second <= Newton::ROUNDING * largest(x)
+        second <= Self::CONTRACTION * first || second <= Newton::ROUNDING * sup(x)
     }
+
+    /// Whether the search began within this part of the solution `x`.
+    #[inline(always)]
+    pub(crate) fn began_within(&self, part: f64, x: &[f64]) -> bool {
+        self.sizes[0] <= part * sup(x)
+    }
+
+    #[inline(always)]
+    fn remember(&mut self, correction: &[f64]) {
+        if self.made < 2 {
+            self.sizes[self.made] = sup(correction);
+            self.made += 1;
+        }
+    }
+}
+
+#[inline(always)]
+fn sup(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |most, x| larger(most, x.abs()))
 }
 
 impl<E: Equations<U>, const U: usize> Equations<U> for Search<E> {
     #[inline(always)]
     fn correction(&mut self, x: &[f64; U]) -> Result<[f64; U], Singular> {
         let correction = self.equations.correction(x)?;
-        if self.made < 2 {
-            self.sizes[self.made] = largest(&correction);
-            self.made += 1;
-        }
+        self.remember(&correction);
         Ok(correction)
     }
 }
 
+impl<E: BlockEquations<U, S>, const U: usize, const S: usize> BlockEquations<U, S> for Search<E> {
+    #[inline(always)]
+    fn correction(&mut self, x: &[[f64; U]; S]) -> Result<[[f64; U]; S], Singular> {
+        let correction = self.equations.correction(x)?;
+        self.remember(correction.as_flattened());
+        Ok(correction)
+    }
+}
+
+/// By how much a step with this mean velocity turns the constraint that turns most (rad): a rate times the step, which
+/// shows what the two ends do not, whole turns. Zero where no angle turns by as much as is near.
+#[inline(always)]
+pub(crate) fn turn<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    time: (f64, f64),
+    q0: &[f64; N],
+    v: &[f64; N],
+) -> f64 {
+    let angles = system.angles();
+    let far = (0..N).any(|i| angles[i] && (time.1 * v[i]).abs() > NEAR);
+    if far { turned(system, time, q0, v) } else { 0.0 }
+}
+
+#[cold]
+#[inline(never)]
+fn turned<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    (t0, h): (f64, f64),
+    q0: &[f64; N],
+    v: &[f64; N],
+) -> f64 {
+    // Along the motion: of the derivatives that the equations need anyway, the first.
+    let along = |re: f64, rate: f64| Dual { re, eps: from_fn::<f64, N, _>(|j| if j == 0 { rate } else { 0.0 }) };
+    let (a, _) = system.constraint(along(t0, h), &from_fn(|i| along(q0[i], h * v[i])));
+    let size = |row: [f64; N]| row.iter().map(|x| x * x).sum::<f64>().sqrt();
+    // A row that is not affine has no place in `A`.
+    let turns = a.map(|row| match size(row.map(|x| x.re)) {
+        0.0 => 0.0,
+        length => size(row.map(|x| x.eps[0])) / length,
+    });
+    turns.iter().fold(0.0, |most, turn| larger(most, *turn))
+}
+
 /// The solution at the end of the branch that begins with `start` at length zero, where `solve` finds the solution near a
 /// guess for a part of the length, or shows that it is not certain to be that one; by parts of no more than `longest`.
-pub(crate) fn followed<const U: usize>(
-    start: &[f64; U],
+pub(crate) fn followed<X: Copy>(
+    start: &X,
     longest: f64,
-    mut solve: impl FnMut(f64, &mut [f64; U]) -> Option<()>,
-) -> Option<[f64; U]> {
+    mut solve: impl FnMut(f64, &mut X) -> Option<()>,
+) -> Option<X> {
     /// A branch that needs shorter parts is taken to end.
     const SHORTEST: f64 = 1.0 / 1024.0;
     let (mut x, mut reached, mut part) = (*start, 0.0, longest.min(0.25));

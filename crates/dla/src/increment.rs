@@ -1,7 +1,7 @@
 use crate::branch::{self, Search};
 use crate::dependent::named_along;
 use crate::{Equations, Newton, State, StepError};
-use lagrangian::linear::{Singular, larger};
+use lagrangian::linear::Singular;
 use lagrangian::{
     AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, Dual, Rows, Saddle, System, position_misses,
     redundant_rows,
@@ -87,28 +87,9 @@ where
         })
     }
 
-    /// By how much a step with this mean velocity turns the constraint that turns most (rad): a rate times the step, which
-    /// shows what the two ends do not, whole turns. Zero where no angle turns by as much as is near.
     #[inline(always)]
     fn turn(&self, v: &[f64; N]) -> f64 {
-        let angles = self.system.angles();
-        let far = (0..N).any(|i| angles[i] && (self.h * v[i]).abs() > branch::NEAR);
-        if far { self.turned(v) } else { 0.0 }
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn turned(&self, v: &[f64; N]) -> f64 {
-        // Along the motion: of the derivatives that the equations need anyway, the first.
-        let along = |re: f64, rate: f64| Dual { re, eps: from_fn::<f64, N, _>(|j| if j == 0 { rate } else { 0.0 }) };
-        let (a, _) = self.system.constraint(along(self.t0, self.h), &from_fn(|i| along(self.q0[i], self.h * v[i])));
-        let size = |row: [f64; N]| row.iter().map(|x| x * x).sum::<f64>().sqrt();
-        // A row that is not affine has no place in `A`.
-        let turns = a.map(|row| match size(row.map(|x| x.re)) {
-            0.0 => 0.0,
-            length => size(row.map(|x| x.eps[0])) / length,
-        });
-        turns.iter().fold(0.0, |most, turn| larger(most, *turn))
+        branch::turn(self.system, (self.t0, self.h), &self.q0, v)
     }
 }
 

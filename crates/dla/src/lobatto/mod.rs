@@ -4,6 +4,7 @@ mod sensitivity;
 mod stages;
 mod tables;
 
+use crate::branch::{self, Search};
 use crate::dependent::{named_along, named_at};
 use crate::positions::affine_only;
 use crate::projection::Projection;
@@ -11,6 +12,7 @@ use crate::{Newton, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::{System, momentum};
 use stages::Stages;
 use std::array::from_fn;
+use std::f64::consts::PI;
 use tables::Tables;
 
 /// The variational partitioned Runge-Kutta method of the Lobatto pair IIIA and IIIB with `S >= 2` stages, as a one-step map
@@ -37,7 +39,10 @@ use tables::Tables;
 /// Of a constraint on positions the stages meet the function itself, `g(Q_i) = 0` for `i = 2 .. S`, of which the equations
 /// above are the rates; the last stage is the node (Jay 1996, SIAM J. Numer. Anal. 33, 368-387).
 ///
-/// All stages are solved for together by Newton's method with the exact Jacobian, on the stack.
+/// All stages are solved for together by Newton's method with the exact Jacobian, on the stack. The equations of a long step
+/// may have several solutions. One is accepted where Newton's method contracts to it from its first correction, not far from
+/// where it began, while the constraint turns by less than a radian; else it is followed from a step of length zero in parts
+/// for which that holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lobatto<const S: usize> {
     tables: Tables<S>,
@@ -56,6 +61,24 @@ impl<const S: usize> Lobatto<S> {
     #[must_use]
     pub fn new() -> Self {
         Self { tables: Tables::new(), newton: Newton::default() }
+    }
+
+    /// The stages at the end of the branch of solutions that begins with a step of length zero.
+    #[cold]
+    #[inline(never)]
+    fn followed<Sys: System<N, M>, const N: usize, const M: usize>(
+        &self,
+        whole: &Stages<'_, Sys, N, M, S>,
+        turn: f64,
+        v0: [f64; N],
+    ) -> Option<[[f64; N]; S]> {
+        branch::followed(&[v0; S], 0.5 * branch::NEAR / turn, |part, guess| {
+            let mut search = Search::new(Stages { h: part * whole.h, ..*whole });
+            self.newton.solve_blocks(&mut search, guess).ok()?;
+            let flat = guess.as_flattened();
+            let near = search.is_certain(flat) && search.began_within(0.1, flat);
+            (near && search.equations.turn(guess) < PI).then_some(())
+        })
     }
 }
 
@@ -76,11 +99,23 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
         }
         let mut impulses = [impulse; S];
         impulses[S - 1] = [0.0; M];
-        let mut stages = Stages { tables: &self.tables, system, t0, h, start: state, p0, impulses };
-        let iterations = self
+        let first = Stages { tables: &self.tables, system, t0, h, start: state, p0, impulses };
+        let mut search = Search::new(first);
+        let mut iterations = self
             .newton
-            .solve_blocks(&mut stages, &mut v)
+            .solve_blocks(&mut search, &mut v)
             .map_err(|source| named_along(system, (t0, h), *state, v0, source))?;
+        let turn = search.equations.turn(&v);
+        let flat = v.as_flattened();
+        if !(turn <= branch::NEAR && search.is_certain(flat) && search.began_within(0.3, flat)) {
+            v = self.followed(&first, turn, v0).ok_or(StepError::Branch)?;
+            search = Search::new(first);
+            iterations += self
+                .newton
+                .solve_blocks(&mut search, &mut v)
+                .map_err(|source| named_along(system, (t0, h), *state, v0, source))?;
+        }
+        let stages = search.equations;
 
         let mut p1 = p0;
         for (point, weight) in stages.points(&v).iter().zip(b) {

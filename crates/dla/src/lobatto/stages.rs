@@ -2,6 +2,7 @@ use super::dense::Dense;
 use super::point::{Linearised, Point};
 use super::tables::Tables;
 use crate::State;
+use crate::branch;
 use crate::newton::BlockEquations;
 use lagrangian::linear::Singular;
 use lagrangian::{System, position_misses};
@@ -19,6 +20,14 @@ pub(super) struct Stages<'a, Sys, const N: usize, const M: usize, const S: usize
     pub(super) impulses: [[f64; M]; S],
 }
 
+impl<Sys, const N: usize, const M: usize, const S: usize> Clone for Stages<'_, Sys, N, M, S> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<Sys, const N: usize, const M: usize, const S: usize> Copy for Stages<'_, Sys, N, M, S> {}
+
 impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> Stages<'_, Sys, N, M, S> {
     /// The increment `h sum_j factors[j] v[j]`, `share` the sum of the factors.
     ///
@@ -30,6 +39,13 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> Stages<'
             let excess: f64 = (0..S).map(|j| factors[j] * (v[j][i] - v0[i])).sum();
             self.h * (share * v0[i] + excess)
         })
+    }
+
+    /// By how much the step turns the constraint (rad).
+    #[inline(always)]
+    pub(super) fn turn(&self, v: &[[f64; N]; S]) -> f64 {
+        let increment = self.increment(&self.tables.b, 1.0, v);
+        branch::turn(self.system, (self.t0, self.h), self.start.q(), &increment.map(|d| d / self.h))
     }
 
     /// The points of the stages.

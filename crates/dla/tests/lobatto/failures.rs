@@ -1,6 +1,7 @@
 use crate::systems::{Potential, at_centre, com};
 use dla::{Lobatto, NewtonError, OneStep, Stage, State, StepError};
 use lagrangian::{Constraint, Scalar, System};
+use sleigh::{Sleigh, SleighState};
 
 /// A point whose two constraints become one where `x = 0`.
 struct Dropping;
@@ -43,13 +44,45 @@ fn an_unconverged_step_is_never_accepted() {
     };
 }
 
+/// Of longer and longer steps from one start those that succeed lie on one curve, whose points are as near as its slope
+/// allows; a solution of another branch would lie elsewhere.
+#[test]
+fn no_wrong_root_is_accepted() {
+    let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    let (mut accepted, mut refusals) = (0, 0);
+    for k in 0..12 {
+        let start = SleighState { speed: -3.0 + 0.5 * f64::from(k), turn_rate: 1.3, ..SleighState::default() };
+        let (q, v) = start.to_coordinates();
+        let mut before: Option<f64> = None;
+        for part in 1..=800 {
+            let mut state = State::new(q, v, sleigh.angles());
+            match Lobatto::<3>::new().step(&sleigh, 0.0, 0.005 * f64::from(part), &mut state) {
+                Ok(_) => {
+                    let spin = state.v()[2];
+                    // Spins and speeds are below 4, rates below 16, and near the end of a branch as roots.
+                    if let Some(before) = before {
+                        assert!((spin - before).abs() < 0.3, "{k}, part {part}: {before} {spin}");
+                    }
+                    (before, accepted) = (Some(spin), accepted + 1);
+                }
+                Err(error) => {
+                    assert!(error.hint().is_some(), "{error}");
+                    refusals += 1;
+                }
+            }
+        }
+    }
+    println!("accepted {accepted}, refused {refusals}");
+    assert!(accepted > 2000 && refusals > 100, "{accepted} {refusals}");
+}
+
 #[test]
 fn a_step_far_too_long() {
     let system = com(0.5, Potential::EggCrate);
     let (q, v) = at_centre([0.5, 1.0, 0.3, 4.0, 7.0], 0.5);
     let state = State::new(q, v, system.angles());
     let error = refused(&system, &mut Lobatto::<3>::new(), 300.0, &state);
-    assert!(matches!(error, StepError::Newton { stage: Stage::Increment, .. }), "{error}");
+    assert!(matches!(error, StepError::Branch | StepError::Newton { stage: Stage::Increment, .. }), "{error}");
 }
 
 #[test]
