@@ -115,11 +115,13 @@ pub(crate) fn followed<X: Copy>(
 ) -> Option<X> {
     /// A branch that needs shorter parts is taken to end.
     const SHORTEST: f64 = 1.0 / 1024.0;
-    let (mut x, mut reached, mut part) = (*start, 0.0, longest.min(0.25));
+    // However far the whole step turns, or if that is no number, the parts are not without end.
+    let longest = longest.max(SHORTEST);
+    let (mut x, mut reached, mut part) = (*start, 0.0, f64::min(longest, 0.25));
     while reached < 1.0 {
         let (mut guess, next) = (x, f64::min(1.0, reached + part));
         if solve(next, &mut guess).is_some() {
-            (x, reached, part) = (guess, next, longest.min(2.0 * part));
+            (x, reached, part) = (guess, next, f64::min(longest, 2.0 * part));
         } else if part > SHORTEST {
             part *= 0.5;
         } else {

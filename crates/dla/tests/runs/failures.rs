@@ -164,3 +164,14 @@ fn the_history_tells_how_a_search_went() {
     assert!(source.history().made() + 1 >= source.iterations() && source.history().made() > 0, "{source:?}");
     assert_eq!(error.hint(), Some(Hint::ShorterStep { part: 0.5 }));
 }
+
+/// A step that turns by a thousand million turns is refused soon, not followed that often.
+#[test]
+fn a_step_beyond_all_measure() {
+    let sleigh = sleigh();
+    for form in [Form::General, Form::Multipliers] {
+        let mut state = state_of(&start(-1.0, 1e10));
+        let error = Dla::midpoint().solved(form).step(&sleigh, 0.0, 1.0, &mut state).unwrap_err();
+        assert!(error.hint().is_some(), "{error}");
+    }
+}
