@@ -1,8 +1,8 @@
 //! How many instructions a step takes, counted by callgrind: what an effect adds, and that one which is absent adds nothing.
 //!
 //! The program runs itself under `valgrind --tool=callgrind`, each case with two numbers of steps; the difference is the
-//! steps alone. Counts repeat to the instruction where times do not. Valgrind knows no AVX-512, so build for a machine that
-//! it does know: `RUSTFLAGS="-C target-cpu=x86-64-v3" cargo bench --bench instructions`.
+//! steps alone. Counts repeat to the instruction where times do not. Valgrind knows not every AVX instruction, so build for a machine that
+//! it does know: `RUSTFLAGS="-C target-cpu=x86-64-v2" cargo bench --bench instructions`.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
