@@ -29,6 +29,8 @@ pub(crate) enum CliError {
     Write { path: PathBuf, source: std::io::Error },
     #[error("cannot write {}: in the folder {}: {source}", path.display(), folder.display())]
     Folder { path: PathBuf, folder: PathBuf, source: std::io::Error },
+    #[error("{}: {problem}; accepted is JSON, {{\"points\": [{{\"method\", \"step\" or \"tolerance\", \"steps\", \"error\", \"wall_seconds\"}}]}}", path.display())]
+    Points { path: PathBuf, problem: String },
     #[error("cannot write to standard output: {0}")]
     Output(std::io::Error),
     #[error("the report: {0}")]
@@ -53,7 +55,9 @@ impl CliError {
             }
             #[cfg(not(feature = "parquet"))]
             Self::WithoutParquet { .. } => ExitCode::from(2),
-            Self::TooManyNodes { .. } | Self::Report(ReportError::Exists { .. }) => ExitCode::from(2),
+            Self::TooManyNodes { .. } | Self::Points { .. } | Self::Report(ReportError::Exists { .. }) => {
+                ExitCode::from(2)
+            }
             Self::Write { .. } | Self::Folder { .. } | Self::Output(_) => ExitCode::FAILURE,
             Self::Report(_) | Self::Computation(_) => ExitCode::FAILURE,
         }

@@ -1,14 +1,17 @@
-//! The comparison harness: baselines, long-run drift, and the report that shows them.
+//! The comparison harness: baselines, long-run drift, work against precision, and the reports that show them.
 //!
-//! [`Method`] names every integrator; [`run`] makes one run of it and measures it as a [`Record`].
+//! [`Method`] names every integrator; [`run`] makes one run of it and measures it as a [`Record`];
+//! [`precision::work_precision`] measures what accuracy costs in time.
 
 mod baseline;
 mod cost;
 mod method;
+pub mod precision;
 mod record;
 pub mod report;
 mod run;
 mod statistics;
+mod stopwatch;
 mod timing;
 
 pub use baseline::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced};
