@@ -19,6 +19,9 @@ const KNOWN: f64 = 1e-12;
 /// How often the duration is halved for that.
 const HALVINGS: u32 = 6;
 
+/// Errors within so many times that of the reference are all the same.
+const CLEAR: f64 = 10.0;
+
 /// What was measured of a scene.
 pub(crate) struct Measurement {
     /// How long the motion takes (s).
@@ -67,7 +70,7 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
     let mut measured =
         scene.visit(Measure { scene: &scene, methods: &methods, longest: arguments.longest, chosen })??;
     measured.curves.extend(others);
-    mark_pareto(&mut measured.curves);
+    mark_pareto(&mut measured.curves, CLEAR * measured.reference.error);
 
     if let Some(path) = &arguments.csv {
         let text = precision_text::csv(&measured.curves);
@@ -139,7 +142,7 @@ impl Visitor for Measure<'_> {
             |method: &Method, steps: u64| motion.end(method, steps).map(|q| distance(&place(&q), &reference.end));
         let aligned = |steps: u64| motion.aligned(steps);
         let bench = Bench { duration, reference_error: reference.error, end_error: &end_error, aligned: &aligned };
-        let limits = Limits { fewest: motion.fewest(), longest: self.longest };
+        let limits = Limits { fewest: motion.aligned(2), longest: self.longest };
         let bar = progress::bar(&format!("{} precision", self.scene.name), self.methods.len() as u64 + rounds());
         let (curves, clock) = work_precision(&bench, self.methods, &limits, &mut |done| bar.inc(done));
         bar.finish_and_clear();

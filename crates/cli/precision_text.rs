@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 
 const POINTS: [&str; 8] = ["method", "step [s]", "tolerance", "steps", "error", "wall [s]", "CPU [s]", "spread"];
-const METHODS: [&str; 8] = ["method", "order", "slope", "finest", "to 1e-3 [s]", "to 1e-6", "to 1e-9", "to 1e-12"];
+const METHODS: [&str; 8] = ["method", "order", "slope", "points", "to 1e-3 [s]", "to 1e-6", "to 1e-9", "to 1e-12"];
 const CSV: &str =
     "method,step [s],tolerance,steps,error [m or rad],wall_seconds [s],cpu_seconds [s],spread,mark,pareto,source";
 
@@ -19,7 +19,8 @@ const INTRO: &str = "Every method over a ladder of steps, an adaptive one of tol
     of batches of warm runs, all methods in turn; spread: the middle half of the processor times over their median. Pareto: no \
     other point is both faster and more exact. Plateau: within ten times the error of the reference, or no longer falling: \
     rounding. Slope: the exponent of the step (for an adaptive method of the tolerance) that the error follows, by least \
-    squares over errors from 0.01 down to ten times the plateau; finest: between the last two of these points. To 1e-3 ..: \
+    squares over the longest row of points whose slopes from one to the next agree within a tenth, among errors from 0.01 down \
+    to ten times the plateau; points: how many these are. To 1e-3 ..: \
     processor time to that error, between two points along the line through their logarithms.";
 
 /// Step and tolerance, one of which a point has.
@@ -55,9 +56,9 @@ fn summary(curve: &Curve) -> (Vec<String>, String) {
     let order = curve.order.map_or_else(|| "-".to_owned(), |order| order.to_string());
     let two = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2}"));
     let slope = two(curve.slope.map(|slope| slope.value));
-    let finest = two(curve.slope.and_then(|slope| slope.finest));
+    let fitted = curve.slope.map_or_else(|| "-".to_owned(), |slope| slope.points.to_string());
     let times = LEVELS.map(|level| shown(seconds_to(&curve.points, level)));
-    let cells = [curve.label(), order, slope, finest].into_iter().chain(times).collect();
+    let cells = [curve.label(), order, slope, fitted].into_iter().chain(times).collect();
     (cells, curve.refusal.map_or_else(String::new, |reason| format!("refused: {reason}")))
 }
 
@@ -220,7 +221,6 @@ fn json_method(curve: &Curve) -> Value {
         "method": curve.method,
         "order": curve.order,
         "slope": curve.slope.map(|slope| slope.value),
-        "slope_finest": curve.slope.and_then(|slope| slope.finest),
         "slope_points": curve.slope.map_or(0, |slope| slope.points),
         "seconds_to": seconds,
     });

@@ -28,9 +28,10 @@ const PATIENCE: f64 = 10.0;
 /// Rungs at most.
 const RUNGS: usize = 64;
 
-/// The first tolerance of an adaptive method, and what each is divided by for the next.
-const TOLERANCE: (f64, f64) = (1e-2, 10.0);
-const LEAST_TOLERANCE: f64 = 1e-15;
+/// The tolerances of an adaptive method, a tenth from one to the next.
+const TOLERANCES: [f64; 14] =
+    [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15];
+const TENTH: f64 = 10.0;
 
 /// How many times the steps a method has from one rung to the next: enough for an error 30 times smaller, and at most
 /// twice.
@@ -44,10 +45,17 @@ pub(super) fn climb(bench: &Bench<'_>, method: &Method, limits: &Limits) -> Resu
     let ratio = ratio(method.info().order);
     let mut rungs: Vec<Rung> = Vec::new();
     let mut wanted = if adaptive { 1 } else { limits.fewest };
-    let mut tolerance = TOLERANCE.0;
+    let mut tolerances = TOLERANCES.iter();
     for _ in 0..RUNGS {
         let steps = (bench.aligned)(wanted);
-        let tuned = if adaptive { method.with_tolerance(tolerance).unwrap_or(*method) } else { *method };
+        let tuned = if adaptive {
+            let Some(tuned) = tolerances.next().and_then(|tolerance| method.with_tolerance(*tolerance).ok()) else {
+                break;
+            };
+            tuned
+        } else {
+            *method
+        };
         let start = Instant::now();
         let outcome = (bench.end_error)(&tuned, steps);
         let seconds = start.elapsed().as_secs_f64();
@@ -65,8 +73,7 @@ pub(super) fn climb(bench: &Bench<'_>, method: &Method, limits: &Limits) -> Resu
         let flat = rungs.iter().filter(|rung| rung.mark == Some(Mark::Plateau)).count();
         let next = seconds * if adaptive { 1.0 } else { ratio };
         let late = next > limits.longest && (regular >= POINTS || next > PATIENCE * limits.longest);
-        tolerance /= TOLERANCE.1;
-        if flat >= PLATEAU || late || (adaptive && tolerance < 0.5 * LEAST_TOLERANCE) {
+        if flat >= PLATEAU || late {
             break;
         }
         if !adaptive {
@@ -84,7 +91,7 @@ fn mark_plateau(rungs: &mut [Rung], reference: f64, order: u32) {
             (Some(larger), Some(error)) if error < FINE => {
                 // What the order promises of the finer step; of a tolerance, as much as it is smaller.
                 let finer = last.steps as f64 / before.steps as f64;
-                let promised = if finer > 1.0 { finer.powf(f64::from(order)) } else { TOLERANCE.1 };
+                let promised = if finer > 1.0 { finer.powf(f64::from(order)) } else { TENTH };
                 before.mark == Some(Mark::Plateau) || error * promised.sqrt() > larger
             }
             _ => false,
@@ -98,13 +105,14 @@ fn mark_plateau(rungs: &mut [Rung], reference: f64, order: u32) {
 }
 
 /// Leaves out the first rungs, whose steps are too coarse: runs that fail, errors of the size of the motion, and errors
-/// that finer steps do not reduce. A method that never gets beyond keeps its finest run.
+/// that do not fall twice in a row. A method that never gets beyond keeps its finest run.
 fn without_coarse(mut rungs: Vec<Rung>) -> Vec<Rung> {
     let falls = |pair: &[Rung]| match (pair[0].error, pair[1].error) {
         (Some(error), Some(next)) => error <= SATURATED && (next < error || pair[0].mark.is_some()),
-        (Some(error), None) => error <= SATURATED,
-        (None, _) => false,
+        _ => false,
     };
-    let first = rungs.windows(2).position(falls).unwrap_or(rungs.len().saturating_sub(1));
+    let twice = rungs.windows(3).position(|three| falls(&three[..2]) && falls(&three[1..]));
+    let once = || rungs.windows(2).position(falls);
+    let first = twice.or_else(once).unwrap_or(rungs.len().saturating_sub(1));
     rungs.split_off(first)
 }

@@ -58,7 +58,7 @@ pub struct Clock {
     pub thread: bool,
     /// The thread stayed on one core.
     pub pinned: bool,
-    /// Batches of runs that a median is of; three for runs longer than 20 ms.
+    /// Batches of runs that a median is of; five for runs longer than 20 ms.
     pub rounds: u64,
 }
 
@@ -78,7 +78,7 @@ pub fn work_precision(
         progress.advance(1);
     }
     let all: Vec<&ladder::Rung> = ladders.iter().flatten().flatten().collect();
-    let mut times = race::race(bench, &all, progress).into_iter();
+    let mut times = race::race(bench, &all, limits.longest, progress).into_iter();
     let mut curves = Vec::with_capacity(methods.len());
     for (method, ladder) in methods.iter().zip(&ladders) {
         let info = method.info();

@@ -4,13 +4,13 @@ use crate::Progress;
 use crate::stopwatch::{Taken, take};
 use std::hint::black_box;
 
-/// A batch of runs takes at least so long (s), so that reading the clock does not count.
+/// A batch of runs takes so long (s), so that reading the clock does not count; less where the longest run is shorter.
 const BATCH: f64 = 2e-3;
 /// Batches of every run, one in each round.
-pub(super) const ROUNDS: u64 = 11;
+pub(super) const ROUNDS: u64 = 21;
 /// Of runs longer than [`LONG`] (s), which need fewer.
-const FEWER: u64 = 3;
-const LONG: f64 = 0.02;
+pub(super) const FEWER: u64 = 5;
+pub(super) const LONG: f64 = 0.02;
 
 /// The time of a run, from its batches.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,7 +23,12 @@ pub(super) struct Measured {
 /// Times all runs, each round one batch of every run: a drift of the processor's clock is the same for all of them.
 ///
 /// A batch is warm: where its runs are short, one goes before it that does not count. What failed has no time.
-pub(super) fn race(bench: &Bench<'_>, rungs: &[&Rung], progress: &mut dyn Progress) -> Vec<Option<Measured>> {
+pub(super) fn race(
+    bench: &Bench<'_>,
+    rungs: &[&Rung],
+    longest: f64,
+    progress: &mut dyn Progress,
+) -> Vec<Option<Measured>> {
     let mut batches: Vec<Vec<Taken>> = vec![Vec::new(); rungs.len()];
     for round in 0..ROUNDS {
         for (rung, batches) in rungs.iter().zip(&mut batches) {
@@ -32,7 +37,7 @@ pub(super) fn race(bench: &Bench<'_>, rungs: &[&Rung], progress: &mut dyn Progre
             }
             // The run that gave the error was cold: the first batch says how long a warm one is.
             let one = batches.first().map_or(rung.seconds, |taken| taken.cpu).max(1e-9);
-            let runs = (BATCH / one).ceil().clamp(1.0, 1e6) as u32;
+            let runs = (BATCH.min(longest) / one).ceil().clamp(1.0, 1e6) as u32;
             let run = || {
                 black_box((bench.end_error)(black_box(&rung.method), black_box(rung.steps)).is_ok());
             };

@@ -23,11 +23,13 @@ impl Cheapest {
 /// The errors at which methods are compared (m or rad).
 pub const LEVELS: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
 
-/// Marks the points that no other beats in both error and time.
-pub fn mark_pareto(curves: &mut [Curve]) {
+/// Marks the points that no other beats in both error and time; errors below `known`, what of them is known (m or rad),
+/// are as good as that.
+pub fn mark_pareto(curves: &mut [Curve], known: f64) {
     let mut points: Vec<&mut Point> = curves.iter_mut().flat_map(|curve| &mut curve.points).collect();
     let mut order: Vec<(usize, [f64; 2])> =
         points.iter().enumerate().filter_map(|(k, point)| Some((k, point.measured()?))).collect();
+    order.iter_mut().for_each(|(_, [error, _])| *error = error.max(known));
     order.sort_by(|(_, a), (_, b)| a[1].total_cmp(&b[1]).then(a[0].total_cmp(&b[0])));
     let mut least = f64::INFINITY;
     for point in &mut points {
