@@ -33,10 +33,10 @@ const TOLERANCES: [f64; 14] =
     [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15];
 const TENTH: f64 = 10.0;
 
-/// How many times the steps a method has from one rung to the next: enough for an error 30 times smaller, and at most
+/// How many times the steps a method has from one rung to the next: enough for an error 16 times smaller, and at most
 /// twice.
 fn ratio(order: u32) -> f64 {
-    f64::min(2.0, 10.0_f64.powf(1.5 / f64::from(order.max(1))))
+    f64::min(2.0, 10.0_f64.powf(1.2 / f64::from(order.max(1))))
 }
 
 /// Runs a method with ever finer steps, until rounding or the limit of time; or says why the method refuses.

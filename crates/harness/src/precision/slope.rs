@@ -22,7 +22,7 @@ impl Slope {
     ///
     /// Where the step is varied, it is the longest row of points with agreeing slopes from each to the next, of equally
     /// long ones the finest: the steps before are still too coarse for the leading power, those after show rounding. What
-    /// the order of the method is does not come in.
+    /// the order of the method is does not come in. Where not three points agree it is all of them.
     pub(super) fn of(curve: &Curve) -> Option<Self> {
         let rounding = curve.points.iter().filter(|point| point.mark == Some(Mark::Plateau));
         let rounding = rounding.filter_map(|point| point.error).fold(0.0, f64::max);
@@ -44,7 +44,7 @@ impl Slope {
     }
 }
 
-/// The longest row of points with agreeing slopes between neighbours.
+/// The longest row of three points or more with agreeing slopes between neighbours, or else all points.
 fn settled(logs: &[[f64; 2]]) -> &[[f64; 2]] {
     let slopes: Vec<f64> = logs.windows(2).map(|pair| (pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0])).collect();
     let agree = |slopes: &[f64]| {
@@ -54,7 +54,7 @@ fn settled(logs: &[[f64; 2]]) -> &[[f64; 2]] {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), slope| (low.min(*slope), high.max(*slope)));
         high - low <= AGREEING * mean.abs()
     };
-    for length in (1..=slopes.len()).rev() {
+    for length in (2..=slopes.len()).rev() {
         for first in (0..=slopes.len() - length).rev() {
             if agree(&slopes[first..first + length]) {
                 return &logs[first..=first + length];
