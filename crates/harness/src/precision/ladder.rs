@@ -16,8 +16,10 @@ pub(super) struct Rung {
 
 /// Errors beyond this (m or rad) tell of no accuracy at all; a ladder begins below.
 const SATURATED: f64 = 0.1;
-/// Below this a curve that falls too slowly is on its plateau; above, its steps are still too coarse.
+/// Below this a curve that hardly falls is on its plateau; above, its steps are still too coarse.
 const FINE: f64 = 1e-9;
+/// What counts as hardly: less than this power of the fall that the order promises.
+const HARDLY: f64 = 0.25;
 /// Within so many times the error of the reference, an error is that of both.
 const CLEAR: f64 = 10.0;
 /// Points on the plateau are no news: so many are kept.
@@ -70,7 +72,7 @@ pub(super) fn climb(bench: &Bench<'_>, method: &Method, limits: &Limits) -> Resu
         });
         mark_plateau(&mut rungs, bench.reference_error, method.info().order);
         let regular = rungs.iter().filter(|rung| rung.mark.is_none() && rung.error <= Some(SATURATED)).count();
-        let flat = rungs.iter().filter(|rung| rung.mark == Some(Mark::Plateau)).count();
+        let flat = plateau(&rungs);
         let next = seconds * if adaptive { 1.0 } else { ratio };
         let late = next > limits.longest && (regular >= POINTS || next > PATIENCE * limits.longest);
         if flat >= PLATEAU || late {
@@ -80,7 +82,17 @@ pub(super) fn climb(bench: &Bench<'_>, method: &Method, limits: &Limits) -> Resu
             wanted = (steps + 1).max((steps as f64 * ratio).round() as u64);
         }
     }
+    // What falls again was no plateau.
+    let (end, near) = (rungs.len() - plateau(&rungs), CLEAR * bench.reference_error);
+    for rung in &mut rungs[..end] {
+        rung.mark = rung.mark.take().filter(|mark| *mark != Mark::Plateau || rung.error <= Some(near));
+    }
     Ok(without_coarse(rungs))
+}
+
+/// How many rungs at the end are on the plateau.
+fn plateau(rungs: &[Rung]) -> usize {
+    rungs.iter().rev().take_while(|rung| rung.mark == Some(Mark::Plateau)).count()
 }
 
 /// Marks the last rung where rounding shows in it.
@@ -92,7 +104,7 @@ fn mark_plateau(rungs: &mut [Rung], reference: f64, order: u32) {
                 // What the order promises of the finer step; of a tolerance, as much as it is smaller.
                 let finer = last.steps as f64 / before.steps as f64;
                 let promised = if finer > 1.0 { finer.powf(f64::from(order)) } else { TENTH };
-                before.mark == Some(Mark::Plateau) || error * promised.sqrt() > larger
+                error * promised.powf(HARDLY) > larger
             }
             _ => false,
         },

@@ -36,7 +36,7 @@ fn curves(names: &[&str]) -> Vec<Curve> {
         aligned: &|steps| steps.div_ceil(3) * 3,
     };
     let mut told = 0;
-    let limits = Limits { fewest: 8, longest: 1.0 };
+    let limits = Limits { fewest: 8, longest: 1e-4 };
     let (curves, clock) = work_precision(&bench, &methods, &limits, &mut |done| told += done);
     assert_eq!(told, names.len() as u64 + clock.rounds);
     curves
@@ -65,6 +65,25 @@ fn a_ladder_begins_where_runs_succeed_and_ends_in_rounding() {
             assert!(point.wall_seconds.is_some() && point.cpu_seconds.is_some() && point.spread.is_some());
         }
     }
+}
+
+/// An error that waits for one step and falls again is not yet rounding; the control is the plateau that follows.
+#[test]
+fn a_pause_is_no_plateau() {
+    let pauses = |method: &Method, steps: u64| {
+        let error = made_up(method, steps)?;
+        Ok(if (1e-12..1e-10).contains(&error) { 1e-10 } else { error })
+    };
+    let bench = Bench { duration: DURATION, reference_error: 1e-16, end_error: &pauses, aligned: &|steps| steps };
+    let limits = Limits { fewest: 10, longest: 1e-4 };
+    let (curves, _) = work_precision(&bench, &[Method::named("rk4", None).unwrap()], &limits, &mut ());
+    let errors = |marked: bool| {
+        let points = curves[0].points.iter().filter(move |point| point.mark.is_some() == marked);
+        points.map(|point| point.error.unwrap()).collect::<Vec<_>>()
+    };
+    let pause = errors(false).iter().position(|error| (*error - 1e-10).abs() < 1e-20).unwrap();
+    assert!(errors(false)[pause..].iter().any(|error| *error < 1e-12), "{curves:?}");
+    assert!(errors(true).len() == 2 && errors(true).iter().all(|error| *error < 10.0 * FLOOR), "{curves:?}");
 }
 
 #[test]
