@@ -58,7 +58,7 @@ pub struct Clock {
     pub thread: bool,
     /// The thread stayed on one core.
     pub pinned: bool,
-    /// Batches of runs that a median is of; five for runs longer than 20 ms.
+    /// Batches of runs that a median is of; fewer, five at least, for runs longer than half a millisecond.
     pub rounds: u64,
 }
 

@@ -5,12 +5,12 @@ use crate::stopwatch::{Taken, take};
 use std::hint::black_box;
 
 /// A batch of runs takes so long (s), so that reading the clock does not count; less where the longest run is shorter.
-const BATCH: f64 = 2e-3;
-/// Batches of every run, one in each round.
-pub(super) const ROUNDS: u64 = 21;
-/// Of runs longer than [`LONG`] (s), which need fewer.
-pub(super) const FEWER: u64 = 5;
-pub(super) const LONG: f64 = 0.02;
+const BATCH: f64 = 5e-4;
+/// Rounds; short runs have a batch in each.
+pub(super) const ROUNDS: u64 = 81;
+/// Batches of a run at least, and the time for all of its batches (s), if that is longer.
+const FEWEST: u64 = 5;
+const ALTOGETHER: f64 = 0.04;
 
 /// The time of a run, from its batches.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,7 +32,7 @@ pub(super) fn race(
     let mut batches: Vec<Vec<Taken>> = vec![Vec::new(); rungs.len()];
     for round in 0..ROUNDS {
         for (rung, batches) in rungs.iter().zip(&mut batches) {
-            if rung.error.is_none() || (rung.seconds > LONG && round >= FEWER) {
+            if rung.error.is_none() || !has_turn(rung.seconds, round) {
                 continue;
             }
             // The run that gave the error was cold: the first batch says how long a warm one is.
@@ -49,6 +49,12 @@ pub(super) fn race(
         progress.advance(1);
     }
     batches.iter().map(|batches| measured(batches)).collect()
+}
+
+/// Whether a run that long (s) has a batch in a round: as many as there is time for, spread over all rounds.
+fn has_turn(seconds: f64, round: u64) -> bool {
+    let batches = ((ALTOGETHER / seconds.max(BATCH)) as u64).clamp(FEWEST, ROUNDS);
+    round * batches % ROUNDS < batches
 }
 
 fn measured(batches: &[Taken]) -> Option<Measured> {
