@@ -21,6 +21,8 @@ pub(crate) enum Command {
     Run(RunArguments),
     /// Compares methods on a scene: constraint, energy and drift, error and time, method by method
     Compare(CompareArguments),
+    /// Measures what accuracy costs in time: the error at the end against the time of a run, over a range of steps
+    Precision(PrecisionArguments),
     /// Measures what each effect of a scene costs a step of dla
     Cost(SceneArguments),
     /// Reads a scene and says what it is, or what is wrong with it
@@ -110,6 +112,40 @@ pub(crate) struct CompareArguments {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct PrecisionArguments {
+    /// A scene file, or the name of a bundled scene (see `noslip list scenes`)
+    #[arg(value_name = "SCENE")]
+    pub(crate) scene: String,
+    /// Methods, separated by commas [default: all]
+    #[arg(long, value_name = "M,..", value_delimiter = ',')]
+    pub(crate) methods: Option<Vec<String>>,
+    /// Duration [s] [default: the scene's, at most 20 s, or what of it the reference knows to 1e-12]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = number)]
+    pub(crate) duration: Option<f64>,
+    /// Weight of `dla-alpha`, from 0 to 1
+    #[arg(long, value_name = "A", allow_negative_numbers = true, value_parser = number)]
+    pub(crate) alpha: Option<f64>,
+    /// The longest run of a method [s]; up to ten times that for one that has not six points yet
+    #[arg(long, value_name = "S", default_value_t = 0.1, allow_negative_numbers = true, value_parser = positive)]
+    pub(crate) longest: f64,
+    /// Points of another program to show beside these: a JSON file of the same shape; may be given again
+    #[arg(long, value_name = "FILE")]
+    pub(crate) with: Vec<PathBuf>,
+    /// Write a report with diagrams into this folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) report: Option<PathBuf>,
+    /// Write the points as comma-separated values
+    #[arg(long, value_name = "FILE")]
+    pub(crate) csv: Option<PathBuf>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Overwrite output that is there already
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct CheckArguments {
     /// A scene file, or the name of a bundled scene
     #[arg(value_name = "SCENE")]
@@ -152,4 +188,9 @@ fn count(text: &str) -> Result<u64, &'static str> {
 
 fn number(text: &str) -> Result<f64, &'static str> {
     text.trim().parse().map_err(|_| "not a number; accepted are numbers like 0.05 and 1e-3")
+}
+
+fn positive(text: &str) -> Result<f64, &'static str> {
+    let positive = number(text).ok().filter(|number| *number > 0.0 && number.is_finite());
+    positive.ok_or("accepted is a number greater than 0")
 }

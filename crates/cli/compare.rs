@@ -161,7 +161,7 @@ impl<'a, const N: usize> Reference<'a, N> {
 }
 
 /// The larger of the distances in position [m] and in heading [rad].
-fn distance(a: &SleighState, b: &SleighState) -> f64 {
+pub(crate) fn distance(a: &SleighState, b: &SleighState) -> f64 {
     let (place, turn) = (f64::hypot(a.x - b.x, a.y - b.y), (a.heading - b.heading).abs());
     if place > turn || place.is_nan() { place } else { turn }
 }

@@ -36,6 +36,8 @@ pub(crate) enum CliError {
     Checkpoint { path: PathBuf, source: CheckpointError },
     #[error("--tolerance: {0}")]
     Tolerance(Box<RecommendError>),
+    #[error("{}: {problem}; accepted is JSON, {{\"points\": [{{\"method\", \"step\" or \"tolerance\", \"steps\", \"error\", \"wall_seconds\"}}]}}", path.display())]
+    Points { path: PathBuf, problem: String },
     #[error("cannot write to standard output: {0}")]
     Output(std::io::Error),
     #[error("the report: {0}")]
@@ -62,7 +64,9 @@ impl CliError {
             Self::WithoutParquet { .. } => ExitCode::from(2),
             Self::Read { .. } | Self::Checkpoint { .. } => ExitCode::from(2),
             Self::Tolerance(error) if matches!(**error, RecommendError::Request { .. }) => ExitCode::from(2),
-            Self::TooManyNodes { .. } | Self::Report(ReportError::Exists { .. }) => ExitCode::from(2),
+            Self::TooManyNodes { .. } | Self::Points { .. } | Self::Report(ReportError::Exists { .. }) => {
+                ExitCode::from(2)
+            }
             Self::Write { .. } | Self::Folder { .. } | Self::Output(_) => ExitCode::FAILURE,
             Self::Report(_) | Self::Computation(_) | Self::Tolerance(_) => ExitCode::FAILURE,
         }

@@ -16,9 +16,19 @@ pub(crate) fn method_names() -> Vec<&'static str> {
 
 /// The scene of a command line, with what its flags say instead.
 pub(crate) fn load(arguments: &SceneArguments, method: Option<&str>) -> Result<Scene, CliError> {
+    load_with(&arguments.scene, method, arguments.step, arguments.duration, arguments.alpha)
+}
+
+/// The scene of that name, with other settings where they are given.
+pub(crate) fn load_with(
+    scene: &str,
+    method: Option<&str>,
+    step: Option<f64>,
+    duration: Option<f64>,
+    alpha: Option<f64>,
+) -> Result<Scene, CliError> {
     let names = method_names();
-    let scene = Scene::load(&arguments.scene, &names)?;
-    Ok(scene.with_overrides(method, arguments.step, arguments.duration, arguments.alpha, &names)?)
+    Ok(Scene::load(scene, &names)?.with_overrides(method, step, duration, alpha, &names)?)
 }
 
 /// The steps of a scene's run.

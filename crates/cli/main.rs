@@ -12,6 +12,9 @@ mod job;
 mod json;
 #[cfg(feature = "parquet")]
 mod parquet_file;
+mod points_file;
+mod precision;
+mod precision_text;
 mod progress;
 mod resume;
 mod run;
@@ -48,6 +51,7 @@ fn command(arguments: Arguments) -> Result<(), CliError> {
         None => job::main_job(&arguments.job),
         Some(Command::Run(arguments)) => run::run(&arguments),
         Some(Command::Compare(arguments)) => compare::compare(&arguments),
+        Some(Command::Precision(arguments)) => precision::precision(&arguments),
         Some(Command::Cost(arguments)) => cost::cost(&arguments),
         Some(Command::Check(arguments)) => inspect::check(&arguments),
         Some(Command::List(arguments)) => inspect::list(&arguments),

@@ -1,6 +1,7 @@
 use crate::compare::Row;
 use comfy_table::{CellAlignment, Table, presets};
 use harness::Record;
+pub(crate) use harness::precision::number;
 use scene::Scene;
 use sleigh::SleighState;
 use std::fmt::Write;
@@ -109,11 +110,6 @@ pub(crate) fn one_run<const N: usize>(
         lines.push(("written", path.display().to_string()));
     }
     aligned(&lines)
-}
-
-/// A number with every digit, with an exponent where it would have a long row of zeros.
-pub(crate) fn number(value: f64) -> String {
-    if value == 0.0 || (1e-4..1e16).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
 }
 
 /// Names and values in two columns.

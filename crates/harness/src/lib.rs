@@ -1,16 +1,19 @@
-//! The comparison harness: baselines, long-run drift, and the report that shows them.
+//! The comparison harness: baselines, long-run drift, work against precision, and the reports that show them.
 //!
-//! [`Method`] names every integrator; [`run`] makes one run of it and measures it as a [`Record`].
+//! [`Method`] names every integrator; [`run`] makes one run of it and measures it as a [`Record`];
+//! [`precision::work_precision`] measures what accuracy costs in time.
 
 mod again;
 mod baseline;
 mod cost;
 mod method;
+pub mod precision;
 mod record;
 pub mod report;
 mod run;
 mod saved;
 mod statistics;
+mod stopwatch;
 mod timing;
 mod watched;
 

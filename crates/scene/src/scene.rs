@@ -81,7 +81,9 @@ impl Scene {
     /// [`SceneError`] when there is neither, when the file cannot be read, is not UTF-8 or is larger than 16 MiB, and
     /// as [`Scene::parse`] for its text.
     pub fn load(name_or_path: &str, methods: &[&str]) -> Result<Self, SceneError> {
-        match bundled().iter().find(|scene| scene.name == name_or_path) {
+        // Underscores in a name are taken for hyphens: an effect is spelled with them.
+        let name = name_or_path.replace('_', "-");
+        match bundled().iter().find(|scene| scene.name == name) {
             Some(scene) => Self::parse(scene.text, scene.name, methods),
             None => Self::parse(&file::read(name_or_path)?, name_or_path, methods),
         }

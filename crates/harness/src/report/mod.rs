@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 
 mod axis;
 mod canvas;
+mod diagram;
 mod drift;
 mod files;
 mod geometry;
@@ -17,10 +18,13 @@ mod look;
 mod page;
 mod path;
 mod picture;
+mod precision;
 mod scale;
 mod sleigh;
 mod thinning;
 mod xml;
+
+pub use precision::{PrecisionReport, Table, write_precision};
 
 /// A report: what the page says above its scenes, and the scenes.
 #[derive(Debug, Clone)]

@@ -9,15 +9,7 @@ const STYLE: &str = include_str!("style.css");
 
 /// The page of a report, given the file names of its scenes and their pictures.
 pub(super) fn page(report: &Report, names: &[String], pictures: &[[Picture; 3]]) -> String {
-    let title = escape(&report.title);
-    let mut page = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
-         content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n\
-         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<header>\n<h1>{title}</h1>\n"
-    );
-    for paragraph in report.intro.split("\n\n").filter(|paragraph| !paragraph.trim().is_empty()) {
-        page += &format!("<p>{}</p>\n", escape(paragraph.trim()));
-    }
+    let mut page = head(&report.title, &report.intro);
     if report.scenes.len() > 1 {
         page += "<nav aria-label=\"Scenes\"><ul>\n";
         for (scene, name) in report.scenes.iter().zip(names) {
@@ -29,22 +21,55 @@ pub(super) fn page(report: &Report, names: &[String], pictures: &[[Picture; 3]])
     for ((scene, name), pictures) in report.scenes.iter().zip(names).zip(pictures) {
         section(&mut page, scene, name, pictures);
     }
-    page += "</main>\n</body>\n</html>\n";
+    page += FOOT;
     page
 }
 
+/// What a page begins with, up to its heading and the paragraphs below.
+pub(super) fn head(title: &str, intro: &str) -> String {
+    let title = escape(title);
+    let mut page = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
+         content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n\
+         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<header>\n<h1>{title}</h1>\n"
+    );
+    for paragraph in intro.split("\n\n").filter(|paragraph| !paragraph.trim().is_empty()) {
+        page += &format!("<p>{}</p>\n", escape(paragraph.trim()));
+    }
+    page
+}
+
+/// What it ends with.
+pub(super) const FOOT: &str = "</main>\n</body>\n</html>\n";
+
 fn section(page: &mut String, scene: &SceneReport, name: &str, pictures: &[Picture]) {
     *page += &format!("<section id=\"scene-{}\">\n<h2>{}</h2>\n", escape(name), escape(&scene.title));
-    if !scene.facts.is_empty() {
-        *page += "<dl>\n";
-        for (fact, value) in &scene.facts {
-            *page += &format!("<div><dt>{}</dt><dd>{}</dd></div>\n", escape(fact), escape(value));
-        }
-        *page += "</dl>\n";
-    }
+    facts(page, &scene.facts);
     if !scene.columns.is_empty() || !scene.rows.is_empty() {
-        table(page, scene);
+        // The row of a method that the pictures show starts with the look of its line.
+        let shown = |row: &[String]| {
+            scene.series.iter().position(|series| row.first() == Some(&series.label) && series.is_drawn())
+        };
+        table(page, &scene.columns, &scene.rows, &shown);
     }
+    figures(page, pictures);
+    *page += "</section>\n";
+}
+
+/// Names and values.
+pub(super) fn facts(page: &mut String, facts: &[(String, String)]) {
+    if facts.is_empty() {
+        return;
+    }
+    *page += "<dl>\n";
+    for (fact, value) in facts {
+        *page += &format!("<div><dt>{}</dt><dd>{}</dd></div>\n", escape(fact), escape(value));
+    }
+    *page += "</dl>\n";
+}
+
+/// Pictures with their captions.
+pub(super) fn figures(page: &mut String, pictures: &[Picture]) {
     *page += "<div class=\"pictures\">\n";
     for picture in pictures {
         *page += &format!(
@@ -54,23 +79,28 @@ fn section(page: &mut String, scene: &SceneReport, name: &str, pictures: &[Pictu
             escape(&picture.file),
         );
     }
-    *page += "</div>\n</section>\n";
+    *page += "</div>\n";
 }
 
-fn table(page: &mut String, scene: &SceneReport) {
-    let width = scene.rows.iter().map(Vec::len).fold(scene.columns.len(), usize::max);
-    let numeric: Vec<bool> = (0..width).map(|column| numeric(&scene.rows, column, width)).collect();
+/// A table; `shown` tells which look a row begins with, if with any.
+pub(super) fn table(
+    page: &mut String,
+    columns: &[String],
+    rows: &[Vec<String>],
+    shown: &dyn Fn(&[String]) -> Option<usize>,
+) {
+    let width = rows.iter().map(Vec::len).fold(columns.len(), usize::max);
+    let numeric: Vec<bool> = (0..width).map(|column| numeric(rows, column, width)).collect();
     let class = |column: usize| if numeric[column] { " class=\"n\"" } else { "" };
     let text = |row: &[String], column: usize| row.get(column).map_or_else(String::new, |cell| escape(cell));
     *page += "<div class=\"scroll\"><table>\n<thead><tr>";
     for column in 0..width {
-        *page += &format!("<th scope=\"col\"{}>{}</th>", class(column), text(&scene.columns, column));
+        *page += &format!("<th scope=\"col\"{}>{}</th>", class(column), text(columns, column));
     }
     *page += "</tr></thead>\n<tbody>\n";
-    for row in &scene.rows {
+    for row in rows {
         *page += "<tr>";
-        // The row of a method that the pictures show starts with the look of its line.
-        let method = scene.series.iter().position(|series| row.first() == Some(&series.label) && series.is_drawn());
+        let method = shown(row);
         for column in 0..row.len() {
             let key = method.filter(|_| column == 0).map_or_else(String::new, look::key);
             let class = match spanned(row, width).filter(|_| column + 1 == row.len()) {

@@ -4,6 +4,9 @@ use super::ReportError;
 use super::canvas::{Canvas, Drawn, shapes, units};
 use super::xml::escape;
 
+/// How near a pointer must come to a point.
+const TIP: f64 = 6.0;
+
 /// A finished picture.
 #[derive(Debug)]
 pub(super) struct Picture {
@@ -30,6 +33,18 @@ impl Picture {
             Ok(shapes) => Ok(Self { file, title, caption, size, shapes }),
             Err(error) => Err(ReportError::Draw { picture: file, reason: error.to_string() }),
         }
+    }
+
+    /// Adds what a pointer is told over some points.
+    pub(super) fn told(mut self, tips: &[([f64; 2], String)]) -> Self {
+        for ([x, y], text) in tips {
+            let [x, y, r] = [*x, *y, TIP].map(units);
+            self.shapes += &format!(
+                "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" fill=\"none\" pointer-events=\"all\"><title>{}</title></circle>\n",
+                escape(text)
+            );
+        }
+        self
     }
 
     /// The picture as a part of a page: transparent, in the page's text colour.

@@ -3,6 +3,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 mod baselines;
+mod precision;
 mod sensitivity;
 
 use approx::assert_relative_eq;

@@ -1,0 +1,168 @@
+use crate::args::PrecisionArguments;
+use crate::compare::{distance, methods};
+use crate::error::CliError;
+use crate::inspect::method_names;
+use crate::{facts, files, inspect, points_file, precision_text, progress, terminal};
+use dla::State;
+use harness::Method;
+use harness::precision::{
+    Bench, Clock, Curve, Limits, Motion, Reference, ReferenceError, mark_pareto, rounds, work_precision,
+};
+use harness::report::write_precision;
+use scene::{Scene, SceneSystem, Visitor};
+use sleigh::{Exact, SleighState};
+
+/// The longest duration (s) that is chosen without being asked for.
+const DURATION: f64 = 20.0;
+/// How well the reference is then known.
+const KNOWN: f64 = 1e-12;
+/// How often the duration is halved for that.
+const HALVINGS: u32 = 6;
+
+/// Errors within so many times that of the reference are all the same.
+const CLEAR: f64 = 10.0;
+
+/// What was measured of a scene.
+pub(crate) struct Measurement {
+    /// How long the motion takes (s).
+    pub(crate) duration: f64,
+    pub(crate) reference: KnownEnd,
+    pub(crate) clock: Clock,
+    pub(crate) facts: Vec<(String, String)>,
+    pub(crate) curves: Vec<Curve>,
+}
+
+/// Where the motion truly ends.
+pub(crate) struct KnownEnd {
+    /// In closed form; else by `gauss16`.
+    pub(crate) closed: bool,
+    /// Steps of `gauss16`, which the closed form is checked against.
+    pub(crate) steps: u64,
+    /// How far it may be off (m or rad).
+    pub(crate) error: f64,
+    end: SleighState,
+}
+
+/// `noslip precision`: what accuracy costs in time.
+pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> {
+    let mut scene = inspect::load_with(&arguments.scene, None, None, arguments.duration, arguments.alpha)?;
+    let names: Vec<&str> = match &arguments.methods {
+        Some(names) => names.iter().map(|name| name.trim()).collect(),
+        None => method_names(),
+    };
+    let methods = methods(&names, scene.run.alpha)?;
+    let mut others = Vec::new();
+    for path in &arguments.with {
+        let (curves, warnings) = points_file::read(path, &scene.name)?;
+        warnings.iter().for_each(|warning| terminal::say("warning", warning));
+        others.extend(curves);
+    }
+    if let Some(folder) = &arguments.report {
+        files::check_folder(folder, arguments.force)?;
+    }
+    if let Some(path) = &arguments.csv {
+        files::check_file(path, arguments.force)?;
+    }
+    if arguments.duration.is_none() {
+        scene.run.duration = scene.run.duration.min(DURATION);
+    }
+    let chosen = arguments.duration.is_none();
+    let mut measured =
+        scene.visit(Measure { scene: &scene, methods: &methods, longest: arguments.longest, chosen })??;
+    measured.curves.extend(others);
+    mark_pareto(&mut measured.curves, CLEAR * measured.reference.error);
+
+    if let Some(path) = &arguments.csv {
+        let text = precision_text::csv(&measured.curves);
+        files::write_whole(path, arguments.force, |file| std::io::Write::write_all(file, text.as_bytes()))?;
+    }
+    if let Some(folder) = &arguments.report {
+        let report = precision_text::report(&scene, &measured);
+        write_precision(&report, folder, arguments.force).map_err(CliError::Report)?;
+    }
+    if arguments.json {
+        terminal::print_json(&precision_text::json(&scene, &measured))?;
+    } else {
+        terminal::print(&precision_text::text(&scene, &measured))?;
+        let page = arguments.report.as_ref().map(|folder| folder.join("index.html"));
+        for (what, path) in [("points", arguments.csv.as_ref()), ("report", page.as_ref())] {
+            path.map_or(Ok(()), |path| terminal::print(&format!("{what}: {}\n", path.display())))?;
+        }
+    }
+    let named = arguments.methods.is_some();
+    CliError::of_failures(measured.curves.iter().filter_map(|curve| failure(curve, named)))
+}
+
+/// What keeps a method from having any point; a refusal only where the method was asked for by name.
+fn failure(curve: &Curve, named: bool) -> Option<String> {
+    if let Some(reason) = curve.refusal {
+        return named.then(|| format!("{} refused: {reason}", curve.method));
+    }
+    let lost = curve.source.is_none() && curve.points.iter().all(|point| point.error.is_none());
+    let reason = curve.points.last().and_then(|point| point.mark.as_ref()).map(ToString::to_string);
+    lost.then(|| format!("{}: every run failed; the finest {}", curve.method, reason.unwrap_or_default()))
+}
+
+struct Measure<'a> {
+    scene: &'a Scene,
+    methods: &'a [Method],
+    longest: f64,
+    /// The duration is not the user's: it may be less.
+    chosen: bool,
+}
+
+impl Visitor for Measure<'_> {
+    type Output = Result<Measurement, CliError>;
+
+    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
+    where
+        Sys: SceneSystem<N, M>,
+    {
+        let place = |q: &[f64; N]| system.sleigh_state(q, &[0.0; N]);
+        let apart = |a: &[f64; N], b: &[f64; N]| distance(&place(a), &place(b));
+        let exact = self.scene.exact().ok().flatten();
+        let mut duration = self.scene.run.duration;
+        let mut halvings = 0;
+        let (motion, reference) = loop {
+            let Some(motion) = Motion::new(system, q, v, duration) else {
+                let reason = format!("no number of steps of {duration} s has a node at every jump of the scene");
+                return Err(CliError::Computation(vec![reason]));
+            };
+            let reference =
+                Reference::converged(&motion, &apart).map(|found| known(exact.as_ref(), duration, &found, place));
+            let unsure = reference.as_ref().map_or(true, |reference: &KnownEnd| reference.error > KNOWN);
+            if !(self.chosen && unsure && halvings < HALVINGS) {
+                break (motion, reference);
+            }
+            duration *= 0.5;
+            halvings += 1;
+        };
+        let reference = reference.map_err(|error: ReferenceError| CliError::Computation(vec![error.to_string()]))?;
+        let end_error =
+            |method: &Method, steps: u64| motion.end(method, steps).map(|q| distance(&place(&q), &reference.end));
+        let aligned = |steps: u64| motion.aligned(steps);
+        let bench = Bench { duration, reference_error: reference.error, end_error: &end_error, aligned: &aligned };
+        let limits = Limits { fewest: motion.aligned(2), longest: self.longest };
+        let bar = progress::bar(&format!("{} precision", self.scene.name), self.methods.len() as u64 + rounds());
+        let (curves, clock) = work_precision(&bench, self.methods, &limits, &mut |done| bar.inc(done));
+        bar.finish_and_clear();
+        let mut facts = facts::of(self.scene, system, &State::new(q, v, system.angles()));
+        // The steps are those of the ladders, not the scene's.
+        facts.pop();
+        Ok(Measurement { duration, reference, clock, facts, curves })
+    }
+}
+
+/// The end in closed form, with its distance from the computed one as its error; the computed end where there is none.
+fn known<const N: usize>(
+    exact: Option<&Exact>,
+    duration: f64,
+    computed: &Reference<N>,
+    place: impl Fn(&[f64; N]) -> SleighState,
+) -> KnownEnd {
+    let (end, Reference { steps, error, .. }) = (place(&computed.q), *computed);
+    match exact.map(|exact| exact.at(duration)) {
+        Some(exact) => KnownEnd { closed: true, steps, error: distance(&exact, &end).max(f64::EPSILON), end: exact },
+        None => KnownEnd { closed: false, steps, error, end },
+    }
+}

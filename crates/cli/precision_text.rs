@@ -1,0 +1,267 @@
+//! What `noslip precision` says: the same values as a table, as CSV, as JSON and in the report.
+
+use crate::precision::Measurement;
+use crate::table::{number, right_aligned};
+use harness::precision::{Curve, LEVELS, Mark, Point, Setting, cheapest, seconds_to};
+use harness::report::{PrecisionReport, Table};
+use scene::Scene;
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+const POINTS: [&str; 8] = ["method", "step [s]", "tolerance", "steps", "error", "wall [s]", "CPU [s]", "spread"];
+const METHODS: [&str; 8] = ["method", "order", "slope", "points", "to 1e-3 [s]", "to 1e-6", "to 1e-9", "to 1e-12"];
+const CSV: &str =
+    "method,step [s],tolerance,steps,error [m or rad],wall_seconds [s],cpu_seconds [s],spread,mark,pareto,source";
+
+/// What the columns mean.
+const INTRO: &str = "Every method over a ladder of steps, an adaptive one of tolerances. Error: distance of the end from the \
+    reference, in metres or radians, whichever is larger. Wall, CPU: elapsed time and processor time of a whole run, medians \
+    of batches of warm runs, all methods in turn; spread: the middle half of the processor times over their median. Pareto: no \
+    other point is both faster and more exact. Plateau: within ten times the error of the reference, or no longer falling: \
+    rounding. Slope: the exponent of the step (for an adaptive method of the tolerance) that the error follows, by least \
+    squares over the longest row of points whose slopes from one to the next agree within a tenth, among errors from 0.01 down \
+    to ten times the plateau; points: how many these are. To 1e-3 ..: \
+    processor time to that error, between two points along the line through their logarithms.";
+
+/// Step and tolerance, one of which a point has.
+fn settings(point: &Point) -> [Option<f64>; 2] {
+    match point.setting {
+        Some(Setting::Step(step)) => [Some(step), None],
+        Some(Setting::Tolerance(tolerance)) => [None, Some(tolerance)],
+        None => [None, None],
+    }
+}
+
+fn points(curves: &[Curve]) -> impl Iterator<Item = (&Curve, &Point)> {
+    curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point)))
+}
+
+fn shown(value: Option<f64>) -> String {
+    value.map_or_else(|| "-".to_owned(), number)
+}
+
+/// A row of the table of points, and what follows it.
+fn cells(curve: &Curve, point: &Point) -> (Vec<String>, String) {
+    let [step, tolerance] = settings(point);
+    let steps = point.steps.map_or_else(|| "-".to_owned(), |steps| steps.to_string());
+    let numbers = [point.error, point.wall_seconds, point.cpu_seconds, point.spread].map(shown);
+    let cells = [curve.label(), shown(step), shown(tolerance), steps].into_iter().chain(numbers).collect();
+    let mark = point.mark.as_ref().map(ToString::to_string);
+    let notes: Vec<String> = point.pareto.then(|| "pareto".to_owned()).into_iter().chain(mark).collect();
+    (cells, notes.join(", "))
+}
+
+/// A row of the table of methods, and what follows it.
+fn summary(curve: &Curve) -> (Vec<String>, String) {
+    let order = curve.order.map_or_else(|| "-".to_owned(), |order| order.to_string());
+    let two = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.2}"));
+    let slope = two(curve.slope.map(|slope| slope.value));
+    let fitted = curve.slope.map_or_else(|| "-".to_owned(), |slope| slope.points.to_string());
+    let times = LEVELS.map(|level| shown(seconds_to(&curve.points, level)));
+    let cells = [curve.label(), order, slope, fitted].into_iter().chain(times).collect();
+    (cells, curve.refusal.map_or_else(String::new, |reason| format!("refused: {reason}")))
+}
+
+/// The best of each level, in words.
+fn verdicts(curves: &[Curve]) -> String {
+    let mut text = String::new();
+    for level in cheapest(curves) {
+        let (error, best, next) = (number(level.error), level.methods.first(), level.methods.get(1));
+        let _ = match (best, next, level.factor()) {
+            (Some((best, seconds)), Some((next, _)), Some(factor)) => {
+                writeln!(
+                    text,
+                    "cheapest at {error}: {best}, {} s; {next} takes {factor:.2} times that",
+                    number(*seconds)
+                )
+            }
+            (Some((best, seconds)), ..) => writeln!(text, "cheapest at {error}: {best}, {} s, alone", number(*seconds)),
+            (None, ..) => writeln!(text, "cheapest at {error}: none gets there"),
+        };
+    }
+    text
+}
+
+/// What the errors are measured from, in words.
+fn reference(measured: &Measurement) -> String {
+    let known = &measured.reference;
+    let (steps, error) = (known.steps, number(known.error));
+    if known.closed {
+        format!("closed form; gauss16 with {steps} steps ends {error} away")
+    } else {
+        format!("gauss16 with {steps} steps, off by {error} at most, from finer runs and gauss14")
+    }
+}
+
+/// How times were taken, in words.
+fn clock(measured: &Measurement) -> String {
+    let clock = measured.clock;
+    let time = if clock.thread { "processor time of the thread" } else { "elapsed time" };
+    let place = if clock.pinned { "pinned to a core" } else { "not pinned to a core" };
+    format!("{time}, {place}, {} rounds", clock.rounds)
+}
+
+/// The tables on a terminal.
+pub(crate) fn text(scene: &Scene, measured: &Measurement) -> String {
+    let mut text = format!("{} ({}), {} s\n", scene.title, scene.name, number(measured.duration));
+    let _ = writeln!(text, "reference: {}\ntimes: {}\n", reference(measured), clock(measured));
+    text += &noted(&POINTS, points(&measured.curves).map(|(curve, point)| cells(curve, point)).collect());
+    text.push('\n');
+    text += &noted(&METHODS, measured.curves.iter().map(summary).collect());
+    text.push('\n');
+    text + &verdicts(&measured.curves)
+}
+
+/// A table with remarks after its rows.
+fn noted(columns: &[&str], rows: Vec<(Vec<String>, String)>) -> String {
+    let (cells, notes): (Vec<_>, Vec<_>) = rows.into_iter().unzip();
+    let notes = std::iter::once(String::new()).chain(notes);
+    let mut text = String::new();
+    for (line, note) in right_aligned(columns, &cells).lines().zip(notes) {
+        let _ = writeln!(text, "{}", format!("{line}  {note}").trim_end());
+    }
+    text
+}
+
+/// The points, one on a line.
+pub(crate) fn csv(curves: &[Curve]) -> String {
+    let mut text = format!("{CSV}\n");
+    let some = |value: Option<f64>| value.map_or_else(String::new, number);
+    for (_, point) in points(curves) {
+        let [step, tolerance] = settings(point).map(some);
+        let steps = point.steps.map_or_else(String::new, |steps| steps.to_string());
+        let [error, wall, cpu, spread] = [point.error, point.wall_seconds, point.cpu_seconds, point.spread].map(some);
+        let [method, mark, source] = [
+            point.method.clone(),
+            point.mark.as_ref().map_or_else(String::new, ToString::to_string),
+            point.source.clone().unwrap_or_default(),
+        ]
+        .map(|text| quoted(&text));
+        let pareto = point.pareto;
+        let _ = writeln!(
+            text,
+            "{method},{step},{tolerance},{steps},{error},{wall},{cpu},{spread},{mark},{pareto},{source}"
+        );
+    }
+    text
+}
+
+/// A field of text (RFC 4180).
+fn quoted(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+}
+
+/// The object that `precision --json` prints.
+pub(crate) fn json(scene: &Scene, measured: &Measurement) -> Value {
+    let (known, curves) = (&measured.reference, &measured.curves);
+    let cheapest: Vec<Value> = cheapest(curves)
+        .iter()
+        .map(|level| {
+            let named = |entry: Option<&(String, f64)>| {
+                entry.map(|(method, seconds)| json!({"method": method, "seconds": seconds}))
+            };
+            let (best, next) = (level.methods.first(), level.methods.get(1));
+            json!({
+                "error": level.error,
+                "method": best.map(|(method, _)| method),
+                "seconds": best.map(|(_, seconds)| seconds),
+                "next": named(next),
+                "factor": level.factor(),
+            })
+        })
+        .collect();
+    json!({
+        "scene": scene.name,
+        "duration": measured.duration,
+        "reference": {
+            "kind": if known.closed { "closed form" } else { "gauss16" },
+            "steps": known.steps,
+            "error": known.error,
+            "text": reference(measured),
+        },
+        "clock": {
+            "time": if measured.clock.thread { "cpu" } else { "wall" },
+            "pinned": measured.clock.pinned,
+            "rounds": measured.clock.rounds,
+        },
+        "points": points(curves).map(|(_, point)| json_point(point)).collect::<Vec<_>>(),
+        "methods": curves.iter().map(json_method).collect::<Vec<_>>(),
+        "cheapest": cheapest,
+    })
+}
+
+fn json_point(point: &Point) -> Value {
+    let mut object = json!({"method": point.method});
+    match point.setting {
+        Some(Setting::Step(step)) => object["step"] = json!(step),
+        Some(Setting::Tolerance(tolerance)) => object["tolerance"] = json!(tolerance),
+        None => object["step"] = Value::Null,
+    }
+    object["steps"] = json!(point.steps);
+    object["error"] = json!(point.error);
+    object["wall_seconds"] = json!(point.wall_seconds);
+    object["cpu_seconds"] = json!(point.cpu_seconds);
+    object["spread"] = json!(point.spread);
+    object["pareto"] = json!(point.pareto);
+    match &point.mark {
+        Some(Mark::Plateau) => object["mark"] = json!("plateau"),
+        Some(Mark::Failed(reason)) => (object["mark"], object["failure"]) = (json!("failed"), json!(reason)),
+        None => {}
+    }
+    if let Some(source) = &point.source {
+        object["source"] = json!(source);
+    }
+    object
+}
+
+fn json_method(curve: &Curve) -> Value {
+    let seconds: Vec<Value> =
+        LEVELS.iter().map(|level| json!({"error": level, "seconds": seconds_to(&curve.points, *level)})).collect();
+    let mut object = json!({
+        "method": curve.method,
+        "order": curve.order,
+        "slope": curve.slope.map(|slope| slope.value),
+        "slope_points": curve.slope.map_or(0, |slope| slope.points),
+        "seconds_to": seconds,
+    });
+    if let Some(reason) = curve.refusal {
+        (object["refused"], object["failure"]) = (json!(true), json!(reason));
+    }
+    if let Some(source) = &curve.source {
+        object["source"] = json!(source);
+    }
+    object
+}
+
+/// The report.
+pub(crate) fn report(scene: &Scene, measured: &Measurement) -> PrecisionReport {
+    let mut facts = measured.facts.clone();
+    let duration = format!("{} s", number(measured.duration));
+    for (name, value) in [("duration", duration), ("reference", reference(measured)), ("times", clock(measured))] {
+        facts.push((name.to_owned(), value));
+    }
+    let table = |title: &str, columns: &[&str], rows: Vec<(Vec<String>, String)>| Table {
+        title: title.to_owned(),
+        columns: columns.iter().map(|column| (*column).to_owned()).chain([String::new()]).collect(),
+        rows: rows
+            .into_iter()
+            .map(|(mut cells, note)| {
+                cells.push(note);
+                cells
+            })
+            .collect(),
+    };
+    let rows = points(&measured.curves).map(|(curve, point)| cells(curve, point)).collect();
+    PrecisionReport {
+        title: format!("noslip precision {}", scene.name),
+        intro: format!("{INTRO}\n\n{}", verdicts(&measured.curves)),
+        name: scene.name.clone(),
+        heading: scene.title.clone(),
+        facts,
+        curves: measured.curves.clone(),
+        tables: vec![
+            table("Time to an error", &METHODS, measured.curves.iter().map(summary).collect()),
+            table("Every point", &POINTS, rows),
+        ],
+    }
+}

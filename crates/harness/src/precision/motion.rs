@@ -1,0 +1,68 @@
+use crate::{Method, integrate_pieces};
+use dla::{RunError, Schedule, State, pieces};
+use lagrangian::{Piecewise, System};
+
+/// A motion to be computed again and again, with other methods and other steps.
+#[derive(Debug, Clone, Copy)]
+pub struct Motion<'a, Sys, const N: usize> {
+    system: &'a Sys,
+    q: [f64; N],
+    v: [f64; N],
+    duration: f64,
+    base: u64,
+}
+
+/// The coarsest run has so many steps.
+const FEWEST: u64 = 8;
+/// The most steps that the jumps of a system may ask for.
+const MOST: u64 = 1 << 20;
+
+impl<'a, Sys, const N: usize> Motion<'a, Sys, N> {
+    /// The motion of a system from `q` with the velocity `v` over `duration` (s); none where no number of steps up to a
+    /// million has a node at every jump.
+    #[must_use]
+    pub fn new(system: &'a Sys, q: [f64; N], v: [f64; N], duration: f64) -> Option<Self>
+    where
+        Sys: Piecewise,
+    {
+        let jumps = system.jumps(0.0, duration);
+        let motion = Self { system, q, v, duration, base: 1 };
+        let aligned = |steps: &u64| pieces(&motion.schedule(*steps), jumps.clone()).is_ok();
+        Some(Self { base: (1..=MOST).find(aligned)?, ..motion })
+    }
+
+    /// How long it takes (s).
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    /// The steps of the coarsest run.
+    #[must_use]
+    pub fn fewest(&self) -> u64 {
+        self.aligned(FEWEST)
+    }
+
+    /// The first number of steps from the given one on with which every jump of the system falls on a node.
+    #[must_use]
+    pub fn aligned(&self, steps: u64) -> u64 {
+        steps.max(1).div_ceil(self.base).saturating_mul(self.base)
+    }
+
+    fn schedule(&self, steps: u64) -> Schedule {
+        Schedule { t0: 0.0, step: self.duration / steps as f64, steps }
+    }
+
+    /// Where the motion ends with that many steps of a method.
+    ///
+    /// # Errors
+    /// [`RunError`] with the step that failed.
+    pub fn end<const M: usize>(&self, method: &Method, steps: u64) -> Result<[f64; N], RunError>
+    where
+        Sys: System<N, M> + Piecewise,
+    {
+        let mut state = State::new(self.q, self.v, self.system.angles());
+        integrate_pieces(self.system, method, &self.schedule(steps), &mut state, &mut ())?;
+        Ok(state.unwrapped())
+    }
+}

@@ -1,0 +1,125 @@
+use super::Slope;
+use std::fmt;
+
+/// What is varied along the curve of a method.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Setting {
+    /// The step (s).
+    Step(f64),
+    /// The tolerance of an adaptive method.
+    Tolerance(f64),
+}
+
+/// What is to be said of a point beside its numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Mark {
+    /// Its error is within ten times that of the reference, or finer steps no longer make it smaller: rounding.
+    Plateau,
+    /// The run failed, with the reason.
+    Failed(String),
+}
+
+impl fmt::Display for Setting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Step(step) => write!(f, "step {} s", number(*step)),
+            Self::Tolerance(tolerance) => write!(f, "tolerance {}", number(*tolerance)),
+        }
+    }
+}
+
+/// A number with every digit, with an exponent where it would have a long row of zeros.
+#[must_use]
+pub fn number(value: f64) -> String {
+    if value == 0.0 || (1e-4..1e16).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
+}
+
+impl fmt::Display for Mark {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Plateau => f.write_str("plateau"),
+            Self::Failed(reason) => write!(f, "failed: {reason}"),
+        }
+    }
+}
+
+/// A run of one method, its error and its time; also one that another program made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Point {
+    /// The name of the method.
+    pub method: String,
+    /// Where the point comes from, if not from this program.
+    pub source: Option<String>,
+    /// What was varied.
+    pub setting: Option<Setting>,
+    /// Steps made: of the schedule, for an adaptive method the intervals that it crosses.
+    pub steps: Option<u64>,
+    /// Distance of the end from the reference; none where the run failed.
+    pub error: Option<f64>,
+    /// Elapsed time of a run (s), the median.
+    pub wall_seconds: Option<f64>,
+    /// Processor time of a run (s), the median.
+    pub cpu_seconds: Option<f64>,
+    /// The width of the middle half of the processor times, as a fraction of the median.
+    pub spread: Option<f64>,
+    /// What else is to be said.
+    pub mark: Option<Mark>,
+    /// No other point has both a smaller error and a smaller time.
+    pub pareto: bool,
+}
+
+impl Point {
+    /// The time to compare (s): the processor's, or the wall's where that is all there is.
+    #[must_use]
+    pub fn seconds(&self) -> Option<f64> {
+        self.cpu_seconds.or(self.wall_seconds)
+    }
+
+    /// Error and time, where the point has both, and logarithms of both.
+    #[must_use]
+    pub fn measured(&self) -> Option<[f64; 2]> {
+        let usable = |value: &f64| value.is_finite() && *value > 0.0;
+        Some([self.error.filter(usable)?, self.seconds().filter(usable)?])
+    }
+
+    /// Whether the error tells of the method rather than of rounding.
+    #[must_use]
+    pub fn is_regular(&self) -> bool {
+        self.mark.is_none() && self.error.is_some()
+    }
+}
+
+/// The points of one method, from coarse to fine.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curve {
+    /// The name of the method.
+    pub method: String,
+    /// Where the points come from, if not from this program.
+    pub source: Option<String>,
+    /// The order of the method, where it is known.
+    pub order: Option<u32>,
+    /// The exponent `p` of `error = c h^p`, or of the tolerance, by least squares (see [`Slope`]).
+    pub slope: Option<Slope>,
+    /// The points.
+    pub points: Vec<Point>,
+    /// Why the method refuses the system, where it does; there are no points then.
+    pub refusal: Option<&'static str>,
+}
+
+impl Curve {
+    /// A curve with the slope of its points.
+    #[must_use]
+    pub fn new(method: String, source: Option<String>, order: Option<u32>, points: Vec<Point>) -> Self {
+        let curve = Self { method, source, order, slope: None, points, refusal: None };
+        Self { slope: Slope::of(&curve), ..curve }
+    }
+
+    /// The name of the method, with where the points come from.
+    #[must_use]
+    pub fn label(&self) -> String {
+        match &self.source {
+            Some(source) => format!("{} ({source})", self.method),
+            None => self.method.clone(),
+        }
+    }
+}

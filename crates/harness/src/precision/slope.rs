@@ -1,0 +1,65 @@
+use super::{Curve, Mark, Setting};
+use crate::Trend;
+
+/// The measured order of a method.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slope {
+    /// The slope of the least-squares line through `(ln h, ln error)`; of the tolerance for an adaptive method.
+    pub value: f64,
+    /// How many points it goes through.
+    pub points: usize,
+}
+
+/// Errors above this fraction of a metre or radian are those of steps too coarse for any order to show.
+const COARSE: f64 = 1e-2;
+/// Errors must be so many times the largest one on the plateau of their curve: rounding is in them too.
+const CLEAR: f64 = 10.0;
+/// Slopes between neighbours agree where they differ by less than this fraction of their mean.
+const AGREEING: f64 = 0.1;
+
+impl Slope {
+    /// Fits the part of a curve above the plateau and below saturation; none with fewer than two points.
+    ///
+    /// Where the step is varied, it is the longest row of points with agreeing slopes from each to the next, of equally
+    /// long ones the finest: the steps before are still too coarse for the leading power, those after show rounding. What
+    /// the order of the method is does not come in. Where not three points agree it is all of them.
+    pub(super) fn of(curve: &Curve) -> Option<Self> {
+        let rounding = curve.points.iter().filter(|point| point.mark == Some(Mark::Plateau));
+        let rounding = rounding.filter_map(|point| point.error).fold(0.0, f64::max);
+        let clear = |error: &f64| *error <= COARSE && *error > CLEAR * rounding;
+        let regular = curve.points.iter().filter(|point| point.is_regular());
+        let logs: Vec<[f64; 2]> = regular
+            .filter_map(|point| {
+                let (Setting::Step(size) | Setting::Tolerance(size)) = point.setting?;
+                Some([size.ln(), point.error.filter(clear)?.ln()])
+            })
+            .collect();
+        let adaptive = curve.points.iter().any(|point| matches!(point.setting, Some(Setting::Tolerance(_))));
+        let fitted = if adaptive { &logs[..] } else { settled(&logs) };
+        let mut trend = Trend::default();
+        for [x, y] in fitted {
+            trend.add(*x, *y);
+        }
+        trend.slope().map(|value| Self { value, points: fitted.len() })
+    }
+}
+
+/// The longest row of three points or more with agreeing slopes between neighbours, or else all points.
+fn settled(logs: &[[f64; 2]]) -> &[[f64; 2]] {
+    let slopes: Vec<f64> = logs.windows(2).map(|pair| (pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0])).collect();
+    let agree = |slopes: &[f64]| {
+        let mean = slopes.iter().sum::<f64>() / slopes.len() as f64;
+        let (low, high) = slopes
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), slope| (low.min(*slope), high.max(*slope)));
+        high - low <= AGREEING * mean.abs()
+    };
+    for length in (2..=slopes.len()).rev() {
+        for first in (0..=slopes.len() - length).rev() {
+            if agree(&slopes[first..first + length]) {
+                return &logs[first..=first + length];
+            }
+        }
+    }
+    logs
+}
