@@ -42,6 +42,10 @@ def version_of(package):
         return "unknown"
 
 
+def wanted(method, options):
+    return not options.methods or any(method.startswith(name) for name in options.methods)
+
+
 def compare(problem, options):
     """The result of a problem, as `noslip precision --json` prints it, with what failed and what was absent."""
     say(f"{problem.name}: reference of {problem.duration} s")
@@ -50,7 +54,7 @@ def compare(problem, options):
     points, failures = [], []
     for module in modules:
         for line in module.lines(problem):
-            if options.methods and not any(line.method.startswith(m) for m in options.methods):
+            if not wanted(line.method, options):
                 continue
             say(f"{problem.name}: {line.method}")
             found = measure.climb(line, version_of(line.package), exact.end, options.limit, options.budget)
@@ -59,7 +63,7 @@ def compare(problem, options):
     try:
         say(f"{problem.name}: the Rust crates")
         found = rust.climb(problem, exact.end, options.limit, options.budget)
-        points += [p for p in found[0] if not options.methods or any(p["method"].startswith(m) for m in options.methods)]
+        points += [p for p in found[0] if wanted(p["method"], options)]
         failures += found[1]
     except (OSError, RuntimeError) as error:
         absent.append({"package": "the Rust crates", "message": str(error)})
@@ -90,8 +94,8 @@ def table(result):
         smallest = min(p["error"] for p in points)
         key = [float("inf") if t is None else t for t in (times[2], times[1], times[0])]
         rows.append((key, f"| {method} | {points[0]['form']} | {' | '.join(cells)} | {smallest:.1e} |"))
-    head = f"| {result['scene']}, {result['duration']:g} s | form | us to 1e-3 | 1e-6 | 1e-9 | 1e-12 | smallest error |\n|---|---|---|---|---|---|---|"
-    return "\n".join([head, *(row for _, row in sorted(rows))])
+    head = f"| {result['scene']}, {result['duration']:g} s | form | us to 1e-3 | 1e-6 | 1e-9 | 1e-12 | smallest error |"
+    return "\n".join([head, "|---|---|---|---|---|---|---|", *(row for _, row in sorted(rows))])
 
 
 def write(path, result, force):
@@ -115,8 +119,8 @@ def main():
     parser.add_argument("--budget", type=float, default=0.2, help="what is spent on repeating a run (s)")
     parser.add_argument("--self-test", action="store_true", help="all peers against closed forms, loosely")
     options = parser.parse_args()
-    # Tolerances below 100 roundings are raised by SciPy, with a warning each time.
-    warnings.filterwarnings("ignore", message=".*rtol.*")
+    # What fails is in the result; what is left warns of tolerances near rounding, at every run.
+    warnings.simplefilter("ignore")
     try:
         if options.self_test:
             return selftest.main(load)
@@ -128,7 +132,9 @@ def main():
             raise scene.Refused("no scene: name one, or --case, or --self-test")
         for problem in problems:
             several = len(problems) > 1
-            path = options.out and (options.out.with_suffix(f".{problem.name}{options.out.suffix}") if several else options.out)
+            path = options.out
+            if path and several:
+                path = path.with_suffix(f".{problem.name}{path.suffix}")
             if path and path.exists() and not options.force:
                 raise scene.Refused(f"{path} is there already; --force overwrites it")
             result = compare(problem, options)

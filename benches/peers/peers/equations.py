@@ -108,7 +108,7 @@ def full_start(problem):
 
 
 def multiplier(problem):
-    """The force across the blade at the start (N): m (u omega + a omega') - F_n, where the forces at P have no such part."""
+    """The force across the blade at the start (N): m (u omega + a omega') - F_n. Forces at P have no such part."""
     x, y, th, u, w = problem.start
     dw = namespace(problem)["reduced"](*problem.start)[4]
     probe = namespace(problem)["residual"](*full_start(problem), *(0.0,) * 7)

@@ -13,7 +13,10 @@ TOLERANCES = [10.0**-k for k in range(3, 15)]
 
 @dataclass
 class Line:
-    """One method of one package in one form. `prepare(value)` sets up and returns a run; a run gives (x, y, heading), steps."""
+    """One method of one package in one form.
+
+    `prepare(value)` sets up for a tolerance or a step and returns a run, which gives (x, y, heading) and a number of steps.
+    """
 
     method: str
     package: str
@@ -73,12 +76,13 @@ def climb(line, version, reference, limit, budget):
             long = second > limit / 3
             wall, cpu, repeats = timed(run, second, 0.0 if long else budget)
         except Exception as error:  # what a package fails with is its result
-            failures.append({"method": line.method, line.rung: value, "message": f"{type(error).__name__}: {error}"[:300]})
+            message = f"{type(error).__name__}: {error}"[:300]
+            failures.append({"method": line.method, line.rung: value, "message": message})
             continue
         points.append({
             "method": line.method, line.rung: value, "steps": int(steps), "error": largest(map(mpf, end), reference),
-            "wall_seconds": wall / line.lanes, "cpu_seconds": cpu / line.lanes, "package": line.package, "version": version, "form": line.form,
-            "setup_seconds": setup, "repeats": repeats,
+            "wall_seconds": wall / line.lanes, "cpu_seconds": cpu / line.lanes, "package": line.package, "version": version,
+            "form": line.form, "setup_seconds": setup, "repeats": repeats,
         })
         if wall > limit:
             failures.append({"method": line.method, line.rung: value, "message": f"stopped here: over {limit} s a run"})

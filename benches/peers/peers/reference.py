@@ -46,7 +46,8 @@ def closed_form(problem):
         way, error = mp.quad(rate, pieces, error=True)
         # The sum of the pieces' estimates, and the rounding of their sum.
         error = float(error + len(pieces) * mp.eps * abs(way))
-        return Reference((x0 + way.real, y0 + way.imag, heading(end)), error, "closed form, position by quadrature (mpmath)")
+        source = "closed form, position by quadrature (mpmath)"
+        return Reference((x0 + way.real, y0 + way.imag, heading(end)), error, source)
 
 
 def extrapolated_step(slope, y, h):
@@ -81,7 +82,9 @@ def extrapolation(problem, tolerance):
         new, error = extrapolated_step(lambda p: slope(*p), y, h)
         if error <= tolerance:
             y, t = new, t + h
-        h *= min(mp.mpf(2), max(mp.mpf("0.2"), mp.mpf("0.9") * (tolerance / max(error, mp.eps**2)) ** (mp.mpf(1) / (2 * COLUMNS - 1))))
+        # The estimate is of the order of one column less.
+        factor = (tolerance / max(error, mp.eps**2)) ** (mp.mpf(1) / (2 * COLUMNS - 1))
+        h *= min(mp.mpf(2), max(mp.mpf("0.2"), mp.mpf("0.9") * factor))
     return tuple(y[:3])
 
 

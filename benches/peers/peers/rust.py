@@ -45,5 +45,6 @@ def climb(problem, reference, limit, budget, tolerances=None, steps=None):
             answer["failures"].append({"method": point["method"], "message": "the end is not a finite number"})
             continue
         # The run contains what little there is to set up.
-        points.append(point | {"error": largest(map(mpf, end), reference), "version": version[point["package"]], "setup_seconds": 0.0})
+        found = {"error": largest(map(mpf, end), reference), "version": version[point["package"]], "setup_seconds": 0.0}
+        points.append(point | found)
     return points, answer["failures"]

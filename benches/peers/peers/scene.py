@@ -70,10 +70,14 @@ def read(scene, duration=None):
     """
     path = Path(scene)
     if not path.is_file():
-        path = SCENES / f"{scene}.toml"
+        path = SCENES / f"{scene.replace('_', '-')}.toml"
     if not path.is_file():
-        raise Refused(f"no scene `{scene}`: neither a file nor one of {', '.join(sorted(p.stem for p in SCENES.glob('*.toml')))}")
-    table = tomllib.loads(path.read_text())
+        bundled = ", ".join(sorted(p.stem for p in SCENES.glob("*.toml")))
+        raise Refused(f"no scene `{scene}`: neither a file nor one of {bundled}")
+    try:
+        table = tomllib.loads(path.read_text())
+    except (OSError, ValueError) as error:
+        raise Refused(f"{path}: {error}") from None
     body, start, run = (table.get(key, {}) for key in ("sleigh", "start", "run"))
     try:
         effects = tuple(e for entry in table.get("effects", []) for e in read_effect(entry))
