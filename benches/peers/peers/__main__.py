@@ -51,19 +51,22 @@ def compare(problem, options):
     say(f"{problem.name}: reference of {problem.duration} s")
     exact = reference(problem)
     modules, absent = load()
-    points, failures = [], []
+    points, failures, kept = [], [], []
     for module in modules:
         for line in module.lines(problem):
             if not wanted(line.method, options):
                 continue
             say(f"{problem.name}: {line.method}")
-            found = measure.climb(line, version_of(line.package), exact.end, options.limit, options.budget)
+            found = measure.climb(line, version_of(line.package), exact.end, options.limit, options.budget, kept)
             points += found[0]
             failures += found[1]
+    for turn in range(measure.ROUNDS):
+        say(f"{problem.name}: short runs, round {turn + 2}")
+        measure.again(kept, options.budget)
     try:
         say(f"{problem.name}: the Rust crates")
-        found = rust.climb(problem, exact.end, options.limit, options.budget)
-        points += [p for p in found[0] if wanted(p["method"], options)]
+        found = rust.climb(problem, exact.end, options.limit, options.budget, methods=options.methods)
+        points += found[0]
         failures += found[1]
     except (OSError, RuntimeError) as error:
         absent.append({"package": "the Rust crates", "message": str(error)})
