@@ -6,6 +6,7 @@ import json
 import os
 import platform
 import sys
+import time
 import warnings
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -52,8 +53,12 @@ def compare(problem, options):
     exact = reference(problem)
     modules, absent = load()
     points, failures, kept = [], [], []
+    compiling = {}
     for module in modules:
-        for line in module.lines(problem):
+        begin = time.perf_counter()
+        lines = module.lines(problem)
+        compiling[module.__name__.rsplit(".", 1)[-1].removesuffix("_lines")] = time.perf_counter() - begin
+        for line in lines:
             if not wanted(line.method, options):
                 continue
             say(f"{problem.name}: {line.method}")
@@ -73,8 +78,8 @@ def compare(problem, options):
     for entry in absent:
         say(f"absent: {entry['package']}: {entry['message']}")
     machine = {"processor": processor(), "load_average": os.getloadavg(), "python": platform.python_version()}
-    return {"scene": problem.name, "duration": problem.duration, "reference": exact.as_dict(), "machine": machine,
-            "points": points, "failures": failures, "absent": absent}
+    return {"program": "peers", "scene": problem.name, "duration": problem.duration, "reference": exact.as_dict(), "machine": machine,
+            "compile_seconds": compiling, "points": points, "failures": failures, "absent": absent}
 
 
 def processor():

@@ -42,7 +42,8 @@ def climb(problem, reference, limit, budget, tolerances=None, steps=None, method
     place = lambda point: (point["method"], point.get("tolerance", point.get("step")))
     rounds = ROUNDS if budget > 0.0 else 0
     for _ in range(rounds):
-        found = {place(p): p for p in ends(problem, tolerances or TOLERANCES, steps or STEPS, SHORT, budget, methods)["points"]}
+        other = ends(problem, tolerances or TOLERANCES, steps or STEPS, SHORT, budget, methods)
+        found = {place(point): point for point in other["points"]}
         for point in answer["points"]:
             if other := found.get(place(point)):
                 keep_smaller(point, other["wall_seconds"], other["cpu_seconds"])
