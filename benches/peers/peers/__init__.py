@@ -1,0 +1,1 @@
+"""Other people's integrators on the scenes of noslip."""

@@ -1,0 +1,1 @@
+"""A module for each package: `lines(problem)` gives its methods."""
