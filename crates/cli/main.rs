@@ -8,6 +8,7 @@ mod facts;
 mod files;
 mod first_error;
 mod inspect;
+mod interrupt;
 mod job;
 mod json;
 #[cfg(feature = "parquet")]
@@ -15,6 +16,7 @@ mod parquet_file;
 mod progress;
 mod resume;
 mod run;
+mod saves;
 mod table;
 mod terminal;
 mod trajectory_file;
