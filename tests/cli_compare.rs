@@ -177,25 +177,27 @@ fn verdicts_on_an_attractor_and_off_it() {
         rows_of(&folder, &line)
     };
     // The centre of mass ahead of the blade: a linear drift of the order of the method.
-    let slopes = [0.1, 0.05].map(|step| {
-        let rows = line("egg-crate-attractor", step, 20_000.0, "dla");
+    let slopes = [0.05, 0.025].map(|step| {
+        let rows = line("egg-crate-attractor", step, 5000.0, "dla");
         assert_eq!(rows[0]["energy"]["verdict"], "linear drift", "{rows:?}");
         assert!(energy(&rows[0], "slope_ci") < 0.25 * -energy(&rows[0], "slope"), "{rows:?}");
         (energy(&rows[0], "slope"), energy(&rows[0], "slope_ci"))
     });
     let ratio = slopes[0].0 / slopes[1].0;
     let spread = ratio * (slopes[0].1 / slopes[0].0).hypot(slopes[1].1 / slopes[1].0);
-    // Within the intervals of both, and what the next order, h^2 of one, adds to a factor of four.
-    assert!((ratio - 4.0).abs() < spread + 0.4, "{ratio} +- {spread}");
+    // Within the intervals of both.
+    assert!((ratio - 4.0).abs() < spread, "{ratio} +- {spread}");
 
-    let rows = line("egg-crate-attractor", 0.1, 20_000.0, "rk4,energy4");
+    let rows = line("egg-crate-attractor", 0.1, 2000.0, "rk4");
     assert_eq!(rows[0]["energy"]["verdict"], "linear drift", "{rows:?}");
-    // Rounding, bounded or a random walk of it: 2e5 roundings of 1.2 J, and no line.
-    assert!(energy(&rows[1], "max_error") < 2e5_f64.sqrt() * 1.2 * f64::EPSILON, "{rows:?}");
-    assert_ne!(rows[1]["energy"]["verdict"], "linear drift", "{rows:?}");
+    let rows = line("egg-crate-attractor", 0.1, 500.0, "energy4");
+    // Nothing but rounding, which grows with the distance: at 2.1 m/s at most (1.2 J above hollows at -1 J) for 500 s, the
+    // rounding of x and y, with slopes of 0.5 J/m, changes the energy by at most this. It is no line.
+    assert!(energy(&rows[0], "max_error") < 1050.0 * f64::EPSILON, "{rows:?}");
+    assert_ne!(rows[0]["energy"]["verdict"], "linear drift", "{rows:?}");
 
     // Above the blade: no contraction, no drift.
-    let rows = line("egg-crate", 0.1, 20_000.0, "dla,rk4");
+    let rows = line("egg-crate", 0.1, 1000.0, "dla,rk4");
     assert_eq!(rows[0]["energy"]["verdict"], "bounded", "{rows:?}");
     assert_eq!(rows[1]["energy"]["verdict"], "linear drift", "{rows:?}");
     // The larger amplitude, the smaller slope: and from when on that counts.

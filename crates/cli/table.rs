@@ -28,7 +28,7 @@ pub(crate) const COLUMNS: [&str; 14] = [
 pub(crate) const INTRO: &str = "Every method from the same start with the same step. Constraint: the largest \
     |A(q) v + b| at a node, for a blade its sideways slip. Over steps: the same of the discrete constraint of a step, from node \
     to node, which is rounding for the methods whose constraint it is. Energy error: the largest |E - E0 - work| at a node, the work of \
-    what drives or brakes the scene taken off. Amplitude: half its range about its line within a 32nd of the run, the fast \
+    what drives or brakes the scene taken off. Amplitude: half its largest range about a line in a 32nd of the run, the fast \
     part. Energy drift: slope of the line, the secular part, with its 95 % confidence interval. Verdict: what the slow part \
     does, by a test. End error: \
     distance at the end from the closed form, or from gauss16 at a quarter of the step where there is none, in metres or \

@@ -11,9 +11,8 @@ pub(crate) struct Slip<const N: usize> {
     /// The time and the state at the node before.
     before: Option<(f64, State<N>)>,
     step: f64,
-    /// The functions of the positions at the start, as many as there are, and how far they have gone.
-    leaf: Vec<f64>,
-    distance: f64,
+    /// The largest of the functions of the positions, where there are any.
+    leaf: Option<f64>,
 }
 
 /// The rule of a discrete constraint.
@@ -31,7 +30,7 @@ impl<const N: usize> Slip<N> {
             Kind::DlaAlpha => Rule::Alpha(method.alpha()),
             _ => Rule::Midpoint,
         };
-        Self { rule, h, before: None, step: 0.0, leaf: Vec::new(), distance: 0.0 }
+        Self { rule, h, before: None, step: 0.0, leaf: None }
     }
 
     pub(crate) fn step_max(&self) -> f64 {
@@ -39,11 +38,11 @@ impl<const N: usize> Slip<N> {
     }
 
     pub(crate) fn leaf_max(&self) -> Option<f64> {
-        (!self.leaf.is_empty()).then_some(self.distance)
+        self.leaf
     }
 
     pub(crate) fn start<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>) {
-        self.leaf = functions(node).collect();
+        self.look(node);
         self.before = Some((node.t, *node.state));
     }
 
@@ -62,28 +61,28 @@ impl<const N: usize> Slip<N> {
             };
             self.step = larger(self.step, largest(&residual));
         }
-        for (now, start) in functions(node).zip(&self.leaf) {
-            self.distance = larger(self.distance, (now - start).abs());
-        }
+        self.look(node);
         self.before = Some((node.t, *node.state));
+    }
+
+    /// At the functions `g(q, t)` whose rates are constraints.
+    fn look<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>) {
+        let functions = node.system.holonomic(node.t, &node.state.unwrapped());
+        for g in functions.into_iter().flatten().flatten() {
+            self.leaf = Some(larger(self.leaf.unwrap_or(0.0), g.abs()));
+        }
     }
 
     /// Writes it to a checkpoint; the node before is the state there.
     pub(crate) fn save(&self, checkpoint: &mut Checkpoint) {
-        checkpoint.put("slip", &[self.step, self.distance]);
-        checkpoint.put("leaf", &self.leaf);
+        checkpoint.put("slip", &[self.step]);
+        checkpoint.put("leaf", self.leaf.as_slice());
     }
 
     /// The same with what [`save`](Self::save) wrote.
     pub(crate) fn load(&self, checkpoint: &Checkpoint) -> Result<Self, CheckpointError> {
-        let [step, distance] = checkpoint.get("slip")?;
-        Ok(Self { rule: self.rule, h: self.h, before: None, step, leaf: checkpoint.list("leaf")?, distance })
+        let [step] = checkpoint.get("slip")?;
+        let leaf = checkpoint.list("leaf")?.first().copied();
+        Ok(Self { rule: self.rule, h: self.h, before: None, step, leaf })
     }
-}
-
-/// The functions of the positions whose rates are constraints.
-fn functions<Sys: System<N, M>, const N: usize, const M: usize>(
-    node: &View<'_, Sys, N>,
-) -> impl Iterator<Item = f64> + use<Sys, N, M> {
-    node.system.holonomic(node.t, &node.state.unwrapped()).into_iter().flatten().flatten()
 }

@@ -98,18 +98,33 @@ pub(super) fn line(series: &[f64]) -> (f64, f64) {
     (center, if spread > 0.0 { products / spread } else { 0.0 })
 }
 
-/// Half the largest range about a line within a batch; of a short series, within all of it.
-pub(super) fn amplitude(ranges: &[[f64; 2]], center: f64, slope: f64) -> f64 {
-    let length = ranges.len();
-    let parts = if length < BATCHES { vec![0..length] } else { (0..BATCHES).map(|j| batch(j, length)).collect() };
-    let half_range = |part: std::ops::Range<usize>| {
-        let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
-        for i in part {
-            let on_line = center + slope * ((i as f64 + 0.5) / length as f64 - 0.5);
-            lowest = lowest.min(ranges[i][0] - on_line);
-            highest = highest.max(ranges[i][1] - on_line);
-        }
-        0.5 * (highest - lowest)
+/// Half the largest range within a batch: about the line of the series or, where that is less because a drift bends, about
+/// the line of the batch.
+pub(super) fn amplitude(means: &[f64], ranges: &[[f64; 2]]) -> f64 {
+    let length = means.len();
+    let (_, slope) = line(means);
+    if length < ENOUGH * BATCHES {
+        return half_range(ranges, slope, length);
+    }
+    let within = |part: std::ops::Range<usize>| {
+        let (_, own_slope) = line(&means[part.clone()]);
+        let ranges = &ranges[part];
+        let own = half_range(ranges, own_slope, ranges.len());
+        own.min(half_range(ranges, slope, length))
     };
-    parts.into_iter().map(half_range).fold(0.0, f64::max)
+    (0..BATCHES).map(|j| within(batch(j, length))).fold(0.0, f64::max)
+}
+
+/// So many blocks of a batch have a line of their own.
+const ENOUGH: usize = 8;
+
+/// Half the range about a line that has this slope over so many blocks.
+fn half_range(ranges: &[[f64; 2]], slope: f64, length: usize) -> f64 {
+    let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
+    for (i, [min, max]) in ranges.iter().enumerate() {
+        let on_line = slope * (i as f64 + 0.5) / length as f64;
+        lowest = lowest.min(min - on_line);
+        highest = highest.max(max - on_line);
+    }
+    0.5 * (highest - lowest)
 }

@@ -46,7 +46,7 @@ impl fmt::Display for Verdict {
 /// With the blocks of [`Blocks`] and 32 batches of them (the tests, their thresholds and sources: `docs/methods/drift.md`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drift {
-    /// The fast part: half the largest range about the line within a batch, a 32nd of the run.
+    /// The fast part: half the largest range within a batch, a 32nd of the run, about a line.
     pub amplitude: f64,
     /// The secular part: slope of the least-squares line through the means of the blocks (per s).
     pub slope: f64,
@@ -85,8 +85,8 @@ impl Drift {
         let means: Vec<f64> = blocks.means().map(|mean| mean / size).collect();
         let run = blocks.spacing() * means.len() as f64;
         let ranges: Vec<[f64; 2]> = blocks.full().iter().map(|b| [b.min / size, b.max / size]).collect();
-        let (center, slope) = batches::line(&means);
-        let amplitude = batches::amplitude(&ranges, center, slope);
+        let (_, slope) = batches::line(&means);
+        let amplitude = batches::amplitude(&means, &ranges);
         let measured = Self { amplitude: amplitude * size, slope: slope * size / run, ..nothing };
         let (Some(batches), Some(exponent)) = (Batches::of(&means), growth::exponent(&means)) else { return measured };
         let stationary = batches.stationarity() < STATIONARY && exponent < BETWEEN;
