@@ -4,8 +4,12 @@
 #[path = "common/program.rs"]
 mod program;
 
+use approx::assert_relative_eq;
 use program::{FAILING, Folder, SCENE, SCENES, keys, methods, names};
 use serde_json::Value;
+use std::fs;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
 
 fn row_methods(comparison: &Value) -> Vec<&str> {
     comparison["rows"].as_array().unwrap().iter().map(|row| row["method"].as_str().unwrap()).collect()
@@ -21,9 +25,14 @@ fn json_has_a_row_for_each_method() {
     for row in comparison["rows"].as_array().unwrap() {
         let run = folder.json("run turnaround --duration 5 --json");
         let mut expected = keys(&run);
-        expected.push("error");
+        expected.extend(["error", "seconds_per_simulated_second", "better_than"]);
         assert_eq!(keys(row), expected);
-        assert_eq!(keys(&row["energy"]), ["initial", "final", "work", "max_error", "drift_per_time"]);
+        let energy = ["initial", "final", "work", "max_error", "drift_per_time"];
+        let drift = ["amplitude", "slope", "slope_ci", "exponent", "verdict"];
+        assert_eq!(keys(&row["energy"]), [&energy[..], &drift[..]].concat());
+        assert_eq!(keys(&row["constraint"]), ["max", "step_max", "leaf_max"]);
+        let cost = row["wall_seconds"].as_f64().unwrap() / row["duration"].as_f64().unwrap();
+        assert_relative_eq!(row["seconds_per_simulated_second"].as_f64().unwrap(), cost, max_relative = 1e-12);
         assert!(row["error"].is_f64() && row["energy"]["drift_per_time"].is_f64(), "{row}");
         assert!((0.0..1.0).contains(&row["error"].as_f64().unwrap()), "{row}");
         assert_eq!(row["scene"], comparison["scene"]);
@@ -55,7 +64,9 @@ fn the_table_says_what_the_json_says() {
     let text = Folder::new().done("compare turnaround --methods dla,rk4 --duration 2");
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines.len(), 4, "{text}");
-    assert!(lines[1].contains("constraint [m/s]") && lines[1].contains("energy drift [W]"), "{text}");
+    for column in ["constraint [m/s]", "amplitude [J]", "energy drift [W]", "verdict", "cost [s/s]"] {
+        assert!(lines[1].contains(column), "{text}");
+    }
     assert!(lines[2].starts_with(" dla ") && lines[3].starts_with(" rk4 "), "{text}");
 }
 
@@ -132,7 +143,7 @@ fn a_refusal_is_shown_and_fails_only_who_asked_for_it() {
     let row = text.lines().find(|line| line.starts_with(" energy2 ")).unwrap();
     assert!(row.contains(reason) && row.split_whitespace().nth(1) == Some("2"), "{row}");
     let page = folder.read("pages/index.html");
-    assert!(page.contains(&format!("<td colspan=\"8\">{reason}")), "{page}");
+    assert!(page.contains(&format!("<td colspan=\"12\">{reason}")), "{page}");
     for picture in ["path", "constraint", "energy"] {
         let drawn = folder.read(&format!("pages/shaken-{picture}.svg"));
         assert!(drawn.contains("lobatto5") && !drawn.contains("energy2"), "{picture}");
@@ -147,6 +158,109 @@ fn a_refusal_is_shown_and_fails_only_who_asked_for_it() {
         assert_eq!(outcome.code, 1, "{outcome:?}");
         outcome.assert_told(line, &["energy2", reason]);
     }
+}
+
+/// The row of each method of a long comparison.
+fn rows_of(folder: &Folder, line: &str) -> Vec<Value> {
+    folder.json(line)["rows"].as_array().unwrap().clone()
+}
+
+fn energy(row: &Value, key: &str) -> f64 {
+    row["energy"][key].as_f64().unwrap()
+}
+
+#[test]
+fn verdicts_on_an_attractor_and_off_it() {
+    let folder = Folder::new();
+    let line = |scene: &str, step: f64, duration: f64, methods: &str| {
+        let line = format!("compare {scene} --step {step} --duration {duration} --methods {methods} --json");
+        rows_of(&folder, &line)
+    };
+    // The centre of mass ahead of the blade: a linear drift of the order of the method.
+    let slopes = [0.05, 0.025].map(|step| {
+        let rows = line("egg-crate-attractor", step, 5000.0, "dla");
+        assert_eq!(rows[0]["energy"]["verdict"], "linear drift", "{rows:?}");
+        assert!(energy(&rows[0], "slope_ci") < 0.25 * -energy(&rows[0], "slope"), "{rows:?}");
+        (energy(&rows[0], "slope"), energy(&rows[0], "slope_ci"))
+    });
+    let ratio = slopes[0].0 / slopes[1].0;
+    let spread = ratio * (slopes[0].1 / slopes[0].0).hypot(slopes[1].1 / slopes[1].0);
+    // Within the intervals of both.
+    assert!((ratio - 4.0).abs() < spread, "{ratio} +- {spread}");
+
+    let rows = line("egg-crate-attractor", 0.1, 2000.0, "rk4");
+    assert_eq!(rows[0]["energy"]["verdict"], "linear drift", "{rows:?}");
+    let rows = line("egg-crate-attractor", 0.1, 500.0, "energy4");
+    // Nothing but rounding, which grows with the distance: at 2.1 m/s at most (1.2 J above hollows at -1 J) for 500 s, the
+    // rounding of x and y, with slopes of 0.5 J/m, changes the energy by at most this. It is no line.
+    assert!(energy(&rows[0], "max_error") < 1050.0 * f64::EPSILON, "{rows:?}");
+    assert_ne!(rows[0]["energy"]["verdict"], "linear drift", "{rows:?}");
+
+    // Above the blade: no contraction, no drift.
+    let rows = line("egg-crate", 0.1, 1000.0, "dla,rk4");
+    assert_eq!(rows[0]["energy"]["verdict"], "bounded", "{rows:?}");
+    assert_eq!(rows[1]["energy"]["verdict"], "linear drift", "{rows:?}");
+    // The larger amplitude, the smaller slope: and from when on that counts.
+    assert!(energy(&rows[0], "amplitude") > energy(&rows[1], "amplitude"), "{rows:?}");
+    let overtaken = &rows[0]["better_than"][0];
+    let (a, b) = ([0, 1].map(|k| energy(&rows[k], "amplitude")), [0, 1].map(|k| energy(&rows[k], "slope").abs()));
+    assert_eq!(overtaken["method"], "rk4");
+    assert_relative_eq!(overtaken["from"].as_f64().unwrap(), (a[0] - a[1]) / (b[1] - b[0]), max_relative = 1e-12);
+    assert_eq!(rows[1]["better_than"].as_array().map(Vec::len), Some(0));
+    // The discrete constraint is that of dla, and not of rk4.
+    let over_step = |k: usize| rows[k]["constraint"]["step_max"].as_f64().unwrap();
+    assert!(over_step(0) < 1e-13 && over_step(1) > 1e-6, "{rows:?}");
+}
+
+/// Ctrl-C, as a terminal sends it.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_what_is_done_and_the_rest_is_resumed() {
+    let folder = Folder::new();
+    let line = |more: &str| format!("compare turnaround --step 0.01 --methods dla,gauss4 --json {more}");
+    let long = line("--duration 3e6 --checkpoint saves --checkpoint-every 1000000");
+    let mut command = folder.command(long.split_whitespace());
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let begin = Instant::now();
+    while !folder.join("saves/dla.save").exists() {
+        assert!(begin.elapsed() < Duration::from_secs(60), "no checkpoint");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let outcome = program::Outcome::of(child.wait_with_output().unwrap());
+    assert_eq!(outcome.code, 130, "{outcome:?}");
+    outcome.assert_told("ctrl-c", &["interrupted: 0 of 2 methods are done, dla up to t = ", "--resume saves goes on"]);
+    let object: Value = serde_json::from_str(&outcome.stdout).unwrap();
+    let rows = object["rows"].as_array().unwrap();
+    assert_eq!((&object["interrupted"], rows.len()), (&Value::Bool(true), 1), "{object}");
+    let steps = rows[0]["steps"].as_u64().unwrap();
+    assert!((1_000_000..300_000_000).contains(&steps) && rows[0]["interrupted"] == true, "{object}");
+    // What was saved last is where it ended, and belongs to that comparison alone.
+    let saved = fs::read_to_string(folder.join("saves/dla.save")).unwrap();
+    assert!(saved.contains(&format!("\nk: {steps:016x}\n")), "{steps}");
+    folder.refused(&line("--duration 9 --resume saves"), &["belongs to another run"]);
+}
+
+#[test]
+fn a_comparison_from_its_checkpoints_is_the_same() {
+    let folder = Folder::new();
+    let line = "compare turnaround --duration 20 --methods dla,rk4,dla --json";
+    let whole = folder.json(line);
+    let saved = folder.json(&format!("{line} --checkpoint saves --checkpoint-every 100"));
+    assert_eq!(names(&folder.join("saves")), ["dla-2.save", "dla.save", "rk4.save"]);
+    let resumed = folder.json(&format!("{line} --resume saves"));
+    // All but the times.
+    let timeless = |mut object: Value| {
+        for row in object["rows"].as_array_mut().unwrap() {
+            row["wall_seconds"] = Value::Null;
+            row["seconds_per_simulated_second"] = Value::Null;
+        }
+        object
+    };
+    let whole = timeless(whole);
+    assert_eq!((timeless(saved), timeless(resumed)), (whole.clone(), whole));
+    folder.refused(&format!("{line} --checkpoint saves"), &["saves", "exists already", "--force"]);
+    folder.refused(&format!("{line} --resume nowhere"), &["cannot read nowhere"]);
 }
 
 #[test]

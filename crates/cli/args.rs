@@ -109,6 +109,16 @@ pub(crate) struct CompareArguments {
     /// Write a report with pictures into this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) report: Option<PathBuf>,
+    /// Save the runs into this folder now and then, and when Ctrl-C ends them, so that they can be resumed
+    #[arg(long, value_name = "DIR")]
+    pub(crate) checkpoint: Option<PathBuf>,
+    /// Save them every N steps
+    #[arg(long, value_name = "N", default_value_t = 10_000_000, allow_negative_numbers = true, value_parser = count,
+          requires = "checkpoint")]
+    pub(crate) checkpoint_every: u64,
+    /// Go on from the checkpoints in this folder; runs that are done are not made again
+    #[arg(long, value_name = "DIR")]
+    pub(crate) resume: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

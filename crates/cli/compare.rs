@@ -1,23 +1,31 @@
 use crate::args::CompareArguments;
 use crate::error::CliError;
+use crate::interrupt::Interrupt;
+use crate::progress::Interruptible;
+use crate::saves::Saves;
 use crate::{facts, inspect, json, progress, table, terminal};
 use dla::{Schedule, State};
 use harness::report::{self, Report, SceneReport, Series};
-use harness::{METHODS, Method, Record, Request};
+use harness::{Drift, METHODS, Method, Record, Request};
 use scene::{Scene, SceneSystem, Visitor};
 use serde_json::json;
 use sleigh::{Exact, SleighState};
+use std::path::PathBuf;
 
 /// A comparison on one scene: the runs, method by method, with what the closed form says of them.
 pub(crate) struct Comparison {
     pub(crate) rows: Vec<Row>,
     pub(crate) report: SceneReport,
+    /// How far it came, where Ctrl-C ended it.
+    pub(crate) interrupted: Option<String>,
 }
 
 /// One method's run, the number of coordinates forgotten.
 pub(crate) struct Row {
     pub(crate) cells: Vec<String>,
     pub(crate) json: serde_json::Value,
+    /// Whom it overtakes in a longer run, where it does.
+    pub(crate) better: Option<String>,
     pub(crate) failure: Option<String>,
     /// The method refuses the scene.
     pub(crate) refused: bool,
@@ -42,7 +50,8 @@ pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
         crate::files::check_folder(folder, arguments.scene.force)?;
     }
 
-    let comparison = compare_scene(&scene, &methods)?;
+    let mut saves = Saves::of(arguments)?;
+    let comparison = compare_scene(&scene, &methods, &mut saves, &Interrupt::listen())?;
     if let Some(folder) = &arguments.report {
         let report = Report {
             title: format!("noslip compare {}", scene.name),
@@ -53,58 +62,126 @@ pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
     }
     if arguments.scene.json {
         let rows: Vec<_> = comparison.rows.iter().map(|row| row.json.clone()).collect();
-        terminal::print_json(&json!({"scene": scene.name, "rows": rows}))?;
+        let mut object = json!({"scene": scene.name, "rows": rows});
+        if comparison.interrupted.is_some() {
+            object["interrupted"] = json!(true);
+        }
+        terminal::print_json(&object)?;
     } else {
-        terminal::print(&table::comparison(&scene, &comparison.rows))?;
+        terminal::print(&table::comparison(&scene, &comparison.rows, comparison.interrupted.as_deref()))?;
         if let Some(folder) = &arguments.report {
             terminal::print(&format!("report: {}\n", folder.join("index.html").display()))?;
         }
     }
     let named = arguments.methods.is_some();
-    CliError::of_failures(
+    let failed = CliError::of_failures(
         comparison.rows.into_iter().filter_map(|row| if named { row.failure } else { row.unexpected() }),
-    )
+    );
+    let resume = saves.folder().map(ToOwned::to_owned);
+    unless_interrupted(comparison.interrupted, resume, failed)
+}
+
+/// What comes of work that may have been interrupted; failures before are told all the same.
+pub(crate) fn unless_interrupted(
+    interrupted: Option<String>,
+    resume: Option<PathBuf>,
+    outcome: Result<(), CliError>,
+) -> Result<(), CliError> {
+    let Some(made) = interrupted else { return outcome };
+    if let Err(error) = outcome {
+        terminal::say("error", &error);
+    }
+    Err(CliError::Interrupted { made, resume })
 }
 
 pub(crate) fn methods(names: &[&str], alpha: Option<f64>) -> Result<Vec<Method>, CliError> {
     Ok(names.iter().map(|name| Method::named(name, alpha)).collect::<Result<_, _>>()?)
 }
 
-/// Runs every method on the scene.
-pub(crate) fn compare_scene(scene: &Scene, methods: &[Method]) -> Result<Comparison, CliError> {
-    Ok(scene.visit(Compare { scene, methods })?)
+/// Runs every method on the scene, until Ctrl-C.
+pub(crate) fn compare_scene(
+    scene: &Scene,
+    methods: &[Method],
+    saves: &mut Saves,
+    interrupt: &Interrupt,
+) -> Result<Comparison, CliError> {
+    scene.visit(Compare { scene, methods, saves, interrupt })?
 }
 
 struct Compare<'a> {
     scene: &'a Scene,
     methods: &'a [Method],
+    saves: &'a mut Saves,
+    interrupt: &'a Interrupt,
 }
 
-impl Visitor for Compare<'_> {
-    type Output = Comparison;
+impl Compare<'_> {
+    fn progress(&self, label: &str, steps: u64) -> Interruptible<'_> {
+        let bar = progress::bar(&format!("{} {label}", self.scene.name), steps);
+        Interruptible { bar, interrupt: self.interrupt }
+    }
 
-    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Comparison
+    /// The runs of all methods, as far as they come.
+    fn records<Sys, const N: usize, const M: usize>(
+        &mut self,
+        system: &Sys,
+        request: &Request<N>,
+    ) -> Result<Vec<Record<N>>, CliError>
     where
         Sys: SceneSystem<N, M>,
     {
-        let schedule = inspect::schedule(self.scene);
-        let exact = self.scene.exact().ok().flatten();
-        let reference = Reference::of(system, exact.as_ref(), &schedule, State::new(q, v, system.angles()));
-        let (mut rows, mut series) = (Vec::new(), Vec::new());
+        let mut records = Vec::new();
         for method in self.methods {
-            let bar = progress::bar(&format!("{} {}", self.scene.name, method.info().name), schedule.steps);
-            let request = Request { schedule, q, v, samples: 1000 };
-            let record = harness::run(system, method, &request, &mut |steps| bar.inc(steps));
-            bar.finish_and_clear();
+            if self.interrupt.asked() {
+                break;
+            }
+            let bar = progress::bar(&format!("{} {}", self.scene.name, method.info().name), request.schedule.steps);
+            let mut progress = Interruptible { bar, interrupt: self.interrupt };
+            records.push(self.saves.run(self.scene, system, method, request, &mut progress)?);
+            progress.bar.finish_and_clear();
+        }
+        Ok(records)
+    }
+
+    /// How far the runs have come, where Ctrl-C ended them.
+    fn interrupted<const N: usize>(&self, records: &[Record<N>]) -> Option<String> {
+        let whole = records.iter().filter(|record| !record.interrupted).count();
+        let part = records.iter().find(|record| record.interrupted);
+        let part = part.map(|record| format!(", {} up to t = {} s", record.method.name, table::number(record.t)));
+        (whole < self.methods.len())
+            .then(|| format!("{whole} of {} methods are done{}", self.methods.len(), part.unwrap_or_default()))
+    }
+}
+
+impl Visitor for Compare<'_> {
+    type Output = Result<Comparison, CliError>;
+
+    fn visit<Sys, const N: usize, const M: usize>(mut self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
+    where
+        Sys: SceneSystem<N, M>,
+    {
+        let request = Request { schedule: inspect::schedule(self.scene), q, v, samples: 1000 };
+        let records = self.records(system, &request)?;
+        let exact = self.scene.exact().ok().flatten();
+        let start = State::new(q, v, system.angles());
+        let mut progress = self.progress("reference", 4 * request.schedule.steps);
+        let reference = Reference::of(system, exact.as_ref(), &request.schedule, start, &mut progress);
+        progress.bar.finish_and_clear();
+        let drifts: Vec<(&str, Drift)> =
+            records.iter().map(|record| (record.method.name, record.energy.drift)).collect();
+        let (mut rows, mut series) = (Vec::new(), Vec::new());
+        for record in &records {
             let end = system.sleigh_state(&record.q, &record.v);
             let error = reference.at(system, record.t).map(|reference| distance(&end, &reference));
+            let better = better_than(&record.energy.drift, &drifts);
             rows.push(Row {
-                cells: table::cells(&record, error),
-                json: json::compared(&self.scene.name, &record, &end, error),
-                failure: table::failure(&record),
+                cells: table::cells(record, error),
+                json: json::compared(&self.scene.name, record, &end, error, &better),
+                better: table::better(record, &better),
+                failure: table::failure(record),
                 refused: record.refusal().is_some(),
             });
-            series.push(series_of(system, &record));
+            series.push(series_of(system, record));
         }
         // The longest run: one that failed ends before the others.
         let times = series.iter().map(|series| &series.time).max_by_key(|time| time.len()).cloned().unwrap_or_default();
@@ -112,15 +189,23 @@ impl Visitor for Compare<'_> {
         let report = SceneReport {
             name: self.scene.name.clone(),
             title: self.scene.title.clone(),
-            facts: facts::of(self.scene, system, &State::new(q, v, system.angles())),
+            facts: facts::of(self.scene, system, &start),
             columns: table::COLUMNS.iter().map(|column| (*column).to_owned()).collect(),
             rows: rows.iter().map(|row| row.cells.clone()).collect(),
             series,
             exact_path,
         };
-        Comparison { rows, report }
+        Ok(Comparison { rows, report, interrupted: self.interrupted(&records) })
     }
 }
+
+/// The methods whose energy error starts smaller and becomes larger, each with the length of run (s) from which it is so.
+fn better_than<'a>(drift: &Drift, others: &[(&'a str, Drift)]) -> Vec<(&'a str, f64)> {
+    others.iter().filter_map(|(name, other)| Some((*name, drift.better_from(other)?))).collect()
+}
+
+/// A comparison of more steps has no computed reference, which would take longer than all of it.
+const REFERRED: u64 = 1 << 22;
 
 /// Where the motion truly ends: in closed form, or by the method of the highest order with a quarter of the step.
 enum Reference<'a, const N: usize> {
@@ -130,16 +215,25 @@ enum Reference<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Reference<'a, N> {
-    fn of<Sys, const M: usize>(system: &Sys, exact: Option<&'a Exact>, schedule: &Schedule, mut state: State<N>) -> Self
+    fn of<Sys, const M: usize>(
+        system: &Sys,
+        exact: Option<&'a Exact>,
+        schedule: &Schedule,
+        mut state: State<N>,
+        progress: &mut Interruptible<'_>,
+    ) -> Self
     where
         Sys: SceneSystem<N, M>,
     {
         if let Some(exact) = exact {
             return Self::Exact(exact);
         }
+        if schedule.steps > REFERRED || progress.interrupt.asked() {
+            return Self::None;
+        }
         let Ok(method) = Method::named("gauss16", None) else { return Self::None };
         let fine = Schedule { step: 0.25 * schedule.step, steps: 4 * schedule.steps, ..*schedule };
-        match harness::integrate_pieces(system, &method, &fine, &mut state, &mut ()) {
+        match harness::integrate_on(system, &method, &fine, &mut state, progress) {
             Ok(made) => Self::Computed { t: fine.time(made), state },
             Err(_) => Self::None,
         }

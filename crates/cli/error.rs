@@ -42,6 +42,9 @@ pub(crate) enum CliError {
     Output(std::io::Error),
     #[error("the report: {0}")]
     Report(ReportError),
+    /// Ctrl-C; what was done has been shown.
+    #[error("interrupted: {made}{}", resume.as_ref().map_or_else(String::new, |d| format!("; --resume {} goes on", d.display())))]
+    Interrupted { made: String, resume: Option<PathBuf> },
     /// The computation failed; what was reached has been shown.
     #[error("{}", .0.join("\nerror: "))]
     Computation(Vec<String>),
@@ -67,6 +70,7 @@ impl CliError {
             Self::TooManyNodes { .. } | Self::Points { .. } | Self::Report(ReportError::Exists { .. }) => {
                 ExitCode::from(2)
             }
+            Self::Interrupted { .. } => ExitCode::from(crate::interrupt::EXIT_CODE),
             Self::Write { .. } | Self::Folder { .. } | Self::Output(_) => ExitCode::FAILURE,
             Self::Report(_) | Self::Computation(_) | Self::Tolerance(_) => ExitCode::FAILURE,
         }

@@ -45,10 +45,31 @@ pub(crate) fn record<const N: usize>(scene: &str, record: &Record<N>, end: &Slei
     object
 }
 
-/// The same object in a row of `compare --json`, with the error at the end and the drift of the energy.
-pub(crate) fn compared<const N: usize>(scene: &str, run: &Record<N>, end: &SleighState, error: Option<f64>) -> Value {
+/// The same object in a row of `compare --json`, with the error at the end, the drift of the energy, the constraint in its
+/// other senses, the cost, and the methods that it overtakes.
+pub(crate) fn compared<const N: usize>(
+    scene: &str,
+    run: &Record<N>,
+    end: &SleighState,
+    error: Option<f64>,
+    better: &[(&str, f64)],
+) -> Value {
     let mut object = record(scene, run, end);
     object["energy"]["drift_per_time"] = json!(run.energy.drift_per_time);
+    let drift = &run.energy.drift;
+    object["energy"]["amplitude"] = json!(drift.amplitude);
+    object["energy"]["slope"] = json!(drift.slope);
+    object["energy"]["slope_ci"] = json!(drift.slope_ci);
+    object["energy"]["exponent"] = json!(drift.exponent);
+    object["energy"]["verdict"] = json!(drift.verdict.name());
+    object["constraint"]["step_max"] = json!(run.step_constraint_max);
+    object["constraint"]["leaf_max"] = json!(run.leaf_max);
     object["error"] = json!(error);
+    object["seconds_per_simulated_second"] = json!(run.seconds_per_simulated_second());
+    let better = better.iter().map(|(method, from)| json!({"method": method, "from": from}));
+    object["better_than"] = better.collect();
+    if run.interrupted {
+        object["interrupted"] = json!(true);
+    }
     object
 }

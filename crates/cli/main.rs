@@ -8,6 +8,7 @@ mod facts;
 mod files;
 mod first_error;
 mod inspect;
+mod interrupt;
 mod job;
 mod json;
 #[cfg(feature = "parquet")]
@@ -18,6 +19,7 @@ mod precision_text;
 mod progress;
 mod resume;
 mod run;
+mod saves;
 mod table;
 mod terminal;
 mod trajectory_file;

@@ -1,3 +1,5 @@
+use crate::interrupt::Interrupt;
+use harness::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// A bar on the terminal's standard error, on a terminal only.
@@ -9,4 +11,20 @@ pub(crate) fn bar(label: &str, steps: u64) -> ProgressBar {
     }
     bar.set_message(label.to_owned());
     bar
+}
+
+/// A bar whose work Ctrl-C ends.
+pub(crate) struct Interruptible<'a> {
+    pub(crate) bar: ProgressBar,
+    pub(crate) interrupt: &'a Interrupt,
+}
+
+impl Progress for Interruptible<'_> {
+    fn advance(&mut self, steps: u64) {
+        self.bar.inc(steps);
+    }
+
+    fn stops(&self) -> bool {
+        self.interrupt.asked()
+    }
 }

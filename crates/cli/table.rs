@@ -8,31 +8,41 @@ use std::fmt::Write;
 use std::path::Path;
 
 /// The columns of a comparison.
-pub(crate) const COLUMNS: [&str; 10] = [
+pub(crate) const COLUMNS: [&str; 14] = [
     "method",
     "order",
     "step [s]",
     "steps",
     "constraint [m/s]",
+    "over steps [m/s]",
     "energy error [J]",
+    "amplitude [J]",
     "energy drift [W]",
+    "verdict",
     "end error",
     "Newton",
     "ns/step",
+    "cost [s/s]",
 ];
 
 /// What the columns mean.
 pub(crate) const INTRO: &str = "Every method from the same start with the same step. Constraint: the largest \
-    |A(q) v + b| at a node, for a blade its sideways slip. Energy error: the largest |E - E0 - work| at a node, the work of \
-    what drives or brakes the scene taken off. Energy drift: slope of the least-squares line through it. End error: \
+    |A(q) v + b| at a node, for a blade its sideways slip. Over steps: the same of the discrete constraint of a step, from node \
+    to node, which is rounding for the methods whose constraint it is. Energy error: the largest |E - E0 - work| at a node, the work of \
+    what drives or brakes the scene taken off. Amplitude: half its largest range about a line in a 32nd of the run, the fast \
+    part. Energy drift: slope of the line, the secular part, with its 95 % confidence interval. Verdict: what the slow part \
+    does, by a test. End error: \
     distance at the end from the closed form, or from gauss16 at a quarter of the step where there is none, in metres or \
-    radians, whichever is larger. Newton: iterations a step. ns/step: time of the steps alone, median of repeated runs.";
+    radians, whichever is larger. Newton: iterations a step. ns/step: time of the steps alone, median of repeated runs. \
+    Cost: the same for each second of the motion.";
 
 /// A row of a comparison; of a method that refuses the scene, a short one, whose last cell says why.
 pub(crate) fn cells<const N: usize>(record: &Record<N>, error: Option<f64>) -> Vec<String> {
     if let Some(reason) = record.refusal() {
         return vec![record.method.name.to_owned(), record.method.order.to_string(), format!("refused: {reason}")];
     }
+    let drift = &record.energy.drift;
+    let slope = || format!("{:+.1e}", drift.slope);
     let newton = if record.newton.max == 0 { "-".to_owned() } else { format!("{:.2}", record.newton.mean) };
     vec![
         record.method.name.to_owned(),
@@ -40,16 +50,27 @@ pub(crate) fn cells<const N: usize>(record: &Record<N>, error: Option<f64>) -> V
         number(record.step),
         record.steps.to_string(),
         format!("{:.1e}", record.constraint_max),
+        format!("{:.1e}", record.step_constraint_max),
         format!("{:.1e}", record.energy.max_error),
-        format!("{:+.1e}", record.energy.drift_per_time),
+        format!("{:.1e}", drift.amplitude),
+        drift.slope_ci.map_or_else(slope, |interval| format!("{} ± {interval:.0e}", slope())),
+        drift.verdict.to_string(),
         error.map_or_else(|| "-".to_owned(), |error| format!("{error:.1e}")),
         newton,
         format!("{:.1}", record.wall_seconds * 1e9 / record.steps.max(1) as f64),
+        record.seconds_per_simulated_second().map_or_else(|| "-".to_owned(), |cost| format!("{cost:.1e}")),
     ]
 }
 
+/// The methods that a method overtakes in a longer run, where there are any.
+pub(crate) fn better<const N: usize>(record: &Record<N>, better: &[(&str, f64)]) -> Option<String> {
+    let overtaken: Vec<String> = better.iter().map(|(name, from)| format!("{name} from {from:.1e} s")).collect();
+    let name = record.method.name;
+    (!overtaken.is_empty()).then(|| format!("{name} has the smaller energy error than {}", overtaken.join(", ")))
+}
+
 /// The table of a comparison.
-pub(crate) fn comparison(scene: &Scene, rows: &[Row]) -> String {
+pub(crate) fn comparison(scene: &Scene, rows: &[Row], interrupted: Option<&str>) -> String {
     // What is said of a refusal needs more room than a column has: it follows the row.
     let refusal = |row: &Row| row.cells.last().filter(|_| row.refused).cloned();
     let own = |row: &Row| row.cells[..row.cells.len() - usize::from(row.refused)].to_vec();
@@ -61,6 +82,12 @@ pub(crate) fn comparison(scene: &Scene, rows: &[Row]) -> String {
             Some(refusal) => writeln!(text, "{line}  {refusal}"),
             None => writeln!(text, "{line}"),
         };
+    }
+    for better in rows.iter().filter_map(|row| row.better.as_ref()) {
+        let _ = writeln!(text, " {better}");
+    }
+    if let Some(made) = interrupted {
+        let _ = writeln!(text, " interrupted: {made}");
     }
     text
 }

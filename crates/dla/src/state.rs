@@ -117,6 +117,15 @@ impl<const N: usize> State<N> {
         self.pi = Some(pi);
     }
 
+    /// How far the configuration has moved since `before`, with the digits that the sums keep.
+    #[must_use]
+    pub fn moved_since(&self, before: &Self) -> [f64; N] {
+        from_fn(|i| {
+            let turns = self.turns[i] - before.turns[i];
+            turns * TAU + ((self.q[i] - before.q[i]) + (self.rest[i] - before.rest[i] + turns * TAU_REST))
+        })
+    }
+
     /// The same place with the opposite velocity.
     #[must_use]
     pub fn reversed(&self) -> Self {

@@ -1,5 +1,6 @@
-use crate::{MethodInfo, Trend};
-use dla::{Checkpoint, CheckpointError, Observer, RunError, StepError, StepReport, View, Work};
+use crate::slip::Slip;
+use crate::{Blocks, Drift, Method, MethodInfo, Request, Trend};
+use dla::{Checkpoint, CheckpointError, Observer, RunError, State, StepError, StepReport, View, Work};
 use lagrangian::System;
 use lagrangian::linear::larger;
 use std::ops::ControlFlow;
@@ -26,6 +27,8 @@ pub struct EnergySummary {
     pub max_error: f64,
     /// Slope of the least-squares line through `E - E0 - work` at all nodes (J/s).
     pub drift_per_time: f64,
+    /// What `E - E0 - work` does over the run, its fast and its slow part.
+    pub drift: Drift,
 }
 
 /// A node kept for plots.
@@ -58,6 +61,12 @@ pub struct Record<const N: usize> {
     pub energy: EnergySummary,
     /// `max |A(q) v + b|` over all nodes.
     pub constraint_max: f64,
+    /// The same of the discrete constraint `w_d` of a step, `A(q) (q1 - q0)/h + b` by the rule of the method (see
+    /// `docs/methods/drift.md`), over all steps.
+    pub step_constraint_max: f64,
+    /// `max |g(q, t)|` over all nodes, the distance from the leaf `g = 0`; none where no constraint is the rate of
+    /// a function `g` of the positions ([`System::holonomic`]).
+    pub leaf_max: Option<f64>,
     /// Time at the end (s).
     pub t: f64,
     /// Configuration at the end, angles with their full turns.
@@ -68,9 +77,17 @@ pub struct Record<const N: usize> {
     pub samples: Vec<Sample<N>>,
     /// Why the run ended early, where it did; all else then tells of the part before.
     pub failure: Option<RunError>,
+    /// Whether the [`Progress`](crate::Progress) ended the run early.
+    pub interrupted: bool,
 }
 
 impl<const N: usize> Record<N> {
+    /// The time of the steps for each second of the motion; none of a run without a step.
+    #[must_use]
+    pub fn seconds_per_simulated_second(&self) -> Option<f64> {
+        (self.steps > 0).then(|| self.wall_seconds / (self.steps as f64 * self.step.abs()))
+    }
+
     /// Why the method refuses the system, where it does: no failure of a computation, since none was begun or could be.
     #[must_use]
     pub fn refusal(&self) -> Option<&'static str> {
@@ -85,39 +102,49 @@ impl<const N: usize> Record<N> {
 #[derive(Debug)]
 pub(crate) struct Meter<const N: usize> {
     every: u64,
+    step: f64,
     initial: f64,
     last: f64,
     max_error: f64,
     constraint_max: f64,
     trend: Trend,
+    blocks: Blocks,
+    slip: Slip<N>,
     work: Work<N>,
     iterations: u64,
     most: u32,
     bucket: (f64, f64),
     samples: Vec<Sample<N>>,
+    /// The end, where that is no regular sample.
+    last_sample: Option<Sample<N>>,
     end: (u64, f64, [f64; N], [f64; N]),
 }
 
 impl<const N: usize> Meter<N> {
-    /// Keeps a sample every `every` steps.
-    pub(crate) fn new(every: u64) -> Self {
+    /// Keeps about as many samples as are asked for.
+    pub(crate) fn new(request: &Request<N>, method: &Method) -> Self {
+        let Request { schedule, samples, .. } = request;
         Self {
-            every: every.max(1),
+            every: schedule.steps.div_ceil((*samples).max(1)).max(1),
+            step: schedule.step,
             initial: 0.0,
             last: 0.0,
             max_error: 0.0,
             constraint_max: 0.0,
             trend: Trend::default(),
+            blocks: Blocks::default(),
+            slip: Slip::new(method, schedule.step),
             work: Work::default(),
             iterations: 0,
             most: 0,
             bucket: (0.0, 0.0),
             samples: Vec::new(),
+            last_sample: None,
             end: (0, 0.0, [0.0; N], [0.0; N]),
         }
     }
 
-    /// Writes to a checkpoint all that the rest of a run needs; not the samples.
+    /// Writes to a checkpoint all that the rest of a run needs.
     pub(crate) fn save(&self, checkpoint: &mut Checkpoint) {
         let (energy, constraint) = self.bucket;
         let sizes = [self.initial, self.last, self.max_error, self.constraint_max, energy, constraint];
@@ -125,16 +152,54 @@ impl<const N: usize> Meter<N> {
         checkpoint.put("trend", &self.trend.sums());
         checkpoint.put_counts("iterations", &[self.iterations, u64::from(self.most)]);
         self.work.save(checkpoint);
+        self.blocks.save(checkpoint);
+        self.slip.save(checkpoint);
+        let samples = self.samples.iter().flat_map(|s| [s.t, s.energy_error, s.constraint].into_iter().chain(s.q));
+        checkpoint.put("samples", &samples.collect::<Vec<_>>());
     }
 
-    /// The meter that [`save`](Self::save) wrote, whose work is loaded already.
-    pub(crate) fn load(checkpoint: &Checkpoint, every: u64, work: Work<N>) -> Result<Self, CheckpointError> {
+    /// The meter that [`save`](Self::save) wrote after `made` steps, at `state`, whose work is loaded already.
+    pub(crate) fn load(
+        checkpoint: &Checkpoint,
+        new: Self,
+        made: u64,
+        t: f64,
+        state: &State<N>,
+        work: Work<N>,
+    ) -> Result<Self, CheckpointError> {
         let [initial, last, max_error, constraint_max, energy, constraint] = checkpoint.get("meter")?;
         let [iterations, most] = checkpoint.counts("iterations")?;
         let most = u32::try_from(most).unwrap_or(u32::MAX);
         let trend = Trend::of_sums(checkpoint.get("trend")?);
-        let sizes = Self { initial, last, max_error, constraint_max, ..Self::new(every) };
-        Ok(Self { trend, work, iterations, most, bucket: (energy, constraint), ..sizes })
+        let end = (made, t, state.unwrapped(), *state.v());
+        let sizes = Self { initial, last, max_error, constraint_max, end, ..new };
+        let (blocks, slip) = (Blocks::load(checkpoint)?, sizes.slip.load(checkpoint)?);
+        let list = checkpoint.list("samples")?;
+        let samples = list.chunks_exact(3 + N).map(|numbers| Sample {
+            t: numbers[0],
+            q: std::array::from_fn(|i| numbers[3 + i]),
+            energy_error: numbers[1],
+            constraint: numbers[2],
+        });
+        let samples = samples.collect();
+        let last_sample = (!made.is_multiple_of(sizes.every)).then(|| Sample {
+            t,
+            q: state.unwrapped(),
+            energy_error: energy,
+            constraint,
+        });
+        Ok(Self {
+            last_sample,
+            trend,
+            blocks,
+            slip,
+            work,
+            iterations,
+            most,
+            bucket: (energy, constraint),
+            samples,
+            ..sizes
+        })
     }
 
     fn see<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>) {
@@ -144,26 +209,27 @@ impl<const N: usize> Meter<N> {
         self.max_error = larger(self.max_error, error.abs());
         self.constraint_max = larger(self.constraint_max, constraint);
         self.trend.add(node.t, error);
+        self.blocks.add(node.t, error);
         self.bucket = (larger(self.bucket.0, error.abs()), larger(self.bucket.1, constraint));
     }
 
     fn sample<Sys>(&mut self, node: &View<'_, Sys, N>) {
-        let (energy_error, constraint) = std::mem::take(&mut self.bucket);
-        self.samples.push(Sample { t: node.t, q: node.state.unwrapped(), energy_error, constraint });
+        let sample = self.sampled(node);
+        self.samples.push(sample);
+        self.bucket = (0.0, 0.0);
     }
 
-    pub(crate) fn record(
-        self,
-        method: MethodInfo,
-        step: f64,
-        wall_seconds: f64,
-        failure: Option<RunError>,
-    ) -> Record<N> {
+    fn sampled<Sys>(&self, node: &View<'_, Sys, N>) -> Sample<N> {
+        let (energy_error, constraint) = self.bucket;
+        Sample { t: node.t, q: node.state.unwrapped(), energy_error, constraint }
+    }
+
+    pub(crate) fn record(self, method: MethodInfo, wall_seconds: f64, failure: Option<RunError>) -> Record<N> {
         let (steps, t, q, v) = self.end;
         let mean = if steps == 0 { 0.0 } else { self.iterations as f64 / steps as f64 };
         Record {
             method,
-            step,
+            step: self.step,
             steps,
             wall_seconds,
             newton: NewtonSummary { mean, max: self.most },
@@ -173,13 +239,17 @@ impl<const N: usize> Meter<N> {
                 work: self.work.total(),
                 max_error: self.max_error,
                 drift_per_time: self.trend.slope().unwrap_or(0.0),
+                drift: Drift::of(&self.blocks),
             },
             constraint_max: self.constraint_max,
+            step_constraint_max: self.slip.step_max(),
+            leaf_max: self.slip.leaf_max(),
             t,
             q,
             v,
-            samples: self.samples,
+            samples: self.samples.into_iter().chain(self.last_sample).collect(),
             failure,
+            interrupted: false,
         }
     }
 }
@@ -188,17 +258,20 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for 
     fn start(&mut self, node: &View<'_, Sys, N>) {
         self.initial = node.energy();
         self.work.start(node);
+        self.slip.start(node);
         self.see(node);
         self.sample(node);
     }
 
     fn resume(&mut self, node: &View<'_, Sys, N>) {
         self.work.resume(node);
+        self.slip.resume(node);
     }
 
     fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
         // Work never ends a run.
         let _ = self.work.step(node, report);
+        self.slip.step(node);
         self.see(node);
         self.iterations += u64::from(report.iterations);
         self.most = self.most.max(report.iterations);
@@ -210,8 +283,6 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for 
 
     fn end(&mut self, node: &View<'_, Sys, N>) {
         self.end = (node.k, node.t, node.state.unwrapped(), *node.state.v());
-        if !node.k.is_multiple_of(self.every) {
-            self.sample(node);
-        }
+        self.last_sample = (!node.k.is_multiple_of(self.every)).then(|| self.sampled(node));
     }
 }

@@ -1,5 +1,5 @@
 use crate::record::Meter;
-use crate::timing::{Ticker, median_seconds};
+use crate::timing::{Stopper, Ticker, median_seconds};
 use crate::{Dop853, ImplicitMidpoint, Kind, Method, Progress, Record, Rk4, Rk4Projected, Rk4Reduced};
 use dla::{
     Composition, Dla, Energy, Gauss, Gni, Lobatto, Observer, OneStep, Part, RunError, Schedule, State, drive_part,
@@ -119,6 +119,20 @@ where
     }
 }
 
+/// Makes a run with nothing but the progress looking on; returns how many steps were made.
+///
+/// # Errors
+/// As [`integrate_pieces`].
+pub fn integrate_on<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &Method,
+    schedule: &Schedule,
+    state: &mut State<N>,
+    progress: &mut dyn Progress,
+) -> Result<u64, RunError> {
+    integrate_pieces(system, method, schedule, state, &mut Ticker::new(progress, 0))
+}
+
 /// Makes a run twice, once observed and once timed with nothing looking on, and measures it.
 ///
 /// A run that fails gives the record of its valid part, with [`Record::failure`] set.
@@ -128,29 +142,40 @@ pub fn run<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
     request: &Request<N>,
     progress: &mut dyn Progress,
 ) -> Record<N> {
-    let Request { schedule, q, v, samples } = *request;
+    let Request { schedule, q, v, .. } = *request;
     let start = State::new(q, v, system.angles());
 
-    let mut meter = Meter::new(schedule.steps.div_ceil(samples.max(1)));
-    let ticker = Ticker { progress, told: 0 };
-    let failure = integrate_pieces(system, method, &schedule, &mut start.clone(), &mut (&mut meter, ticker)).err();
+    let mut meter = Meter::new(request, method);
+    let mut ticker = Ticker::new(progress, 0);
+    let outcome = integrate_pieces(system, method, &schedule, &mut start.clone(), &mut (&mut meter, &mut ticker));
 
-    let steps = failure.map_or(schedule.steps, |failure| failure.step - 1);
-    let wall_seconds = timed(system, method, &Schedule { steps, ..schedule }, start);
-    meter.record(method.info(), schedule.step, wall_seconds, failure)
+    let interrupted = ticker.stopped;
+    let steps = outcome.unwrap_or_else(|failure| failure.valid_steps());
+    let wall_seconds = timed(system, method, request, steps, progress);
+    Record { interrupted, ..meter.record(method.info(), wall_seconds, outcome.err()) }
 }
 
+/// Of a longer run than this the first so many steps are timed.
+const TIMED: u64 = 1 << 22;
+
 /// The time of steps that have been made before, nothing looking on (s).
-pub(crate) fn timed<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
+///
+/// Of more than 2^22 steps it is that of the first so many, times the ratio: a long run costs hardly more for being timed.
+pub fn timed<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
     system: &Sys,
     method: &Method,
-    schedule: &Schedule,
-    start: State<N>,
+    request: &Request<N>,
+    steps: u64,
+    progress: &dyn Progress,
 ) -> f64 {
-    median_seconds(|| {
+    let first = Schedule { steps: steps.min(TIMED), ..request.schedule };
+    let start = State::new(request.q, request.v, system.angles());
+    let mut made = 0;
+    let seconds = median_seconds(|| {
         let mut state = std::hint::black_box(start);
         // The observed run has just shown that these steps succeed.
-        let made = integrate_pieces(system, method, schedule, &mut state, &mut ());
-        std::hint::black_box((made.is_ok(), state));
-    })
+        made = integrate_pieces(system, method, &first, &mut state, &mut Stopper(progress)).unwrap_or(first.steps);
+        std::hint::black_box(state);
+    });
+    if made == steps { seconds } else { seconds * steps as f64 / made.max(1) as f64 }
 }

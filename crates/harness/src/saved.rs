@@ -32,7 +32,8 @@ struct Progressing<const N: usize, const M: usize> {
 /// Makes a run once, measures it, and keeps every `keep`-th node where that is asked for.
 ///
 /// The record is the same to the last bit whether the run was made at once or in parts, but for its time, which is that of
-/// all parts, with what looks on, and its samples, which are those since the last checkpoint; so are the nodes.
+/// all parts, with what looks on. The nodes are those since the last checkpoint. Where the progress ends the run a last
+/// checkpoint is made; so is one at its end, from which the same record comes again at once.
 ///
 /// # Errors
 /// [`CheckpointError`] where the checkpoint is none of this run; nothing is then done.
@@ -44,26 +45,27 @@ pub fn run_saved<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
     keep: Option<u64>,
     progress: &mut dyn Progress,
 ) -> Result<(Record<N>, Option<Trajectory<N, M>>), CheckpointError> {
-    let Request { schedule, q, v, samples } = *request;
-    let every = schedule.steps.div_ceil(samples.max(1));
+    let Request { schedule, q, v, .. } = *request;
+    let meter = Meter::new(request, method);
     let mut run = match saving.from {
         Some(checkpoint) => {
             checkpoint.belongs_to(saving.identity)?;
-            Progressing::load(checkpoint, &schedule, system.angles(), every, keep)?
+            Progressing::load(checkpoint, &schedule, system.angles(), meter, keep)?
         }
         None => Progressing {
             made: 0,
             state: State::new(q, v, system.angles()),
             memory: Vec::new(),
-            meter: Meter::new(every),
+            meter,
             trajectory: keep.map(Trajectory::every),
             seconds: 0.0,
         },
     };
     progress.advance(run.made);
-    let mut ticker = Ticker { progress, told: run.made };
+    let mut ticker = Ticker::new(progress, run.made);
     let (begin, before) = (Instant::now(), run.seconds);
     let (first, mut state) = (run.made, run.state);
+    let ends = |done: &Part| saving.every.is_some() && (done.stopped || done.made == schedule.steps);
     let outcome = piece_by_piece_from(first, system, &schedule, &mut state, |piece, steps, state| {
         if steps.start > first {
             // A piece begins with a new method.
@@ -75,8 +77,8 @@ pub fn run_saved<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
             let memory = Some(&mut run.memory);
             done = integrate_part(piece, method, &schedule, chunk.clone(), state, observer, memory)?;
             let due = saving.every.is_some_and(|every| done.made.is_multiple_of(every));
-            if due && done.made < schedule.steps && !done.stopped {
-                if done.made == steps.end {
+            if due && done.made < schedule.steps || ends(&done) {
+                if done.made == steps.end && done.made < schedule.steps {
                     run.memory.clear();
                 }
                 (run.made, run.state) = (done.made, *state);
@@ -90,7 +92,8 @@ pub fn run_saved<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
         Ok(done)
     });
     let seconds = before + begin.elapsed().as_secs_f64();
-    let record = run.meter.record(method.info(), schedule.step, seconds, outcome.err());
+    let interrupted = ticker.stopped;
+    let record = Record { interrupted, ..run.meter.record(method.info(), seconds, outcome.err()) };
     Ok((record, run.trajectory))
 }
 
@@ -123,7 +126,7 @@ impl<const N: usize, const M: usize> Progressing<N, M> {
         checkpoint: &Checkpoint,
         schedule: &Schedule,
         angles: [bool; N],
-        every: u64,
+        meter: Meter<N>,
         keep: Option<u64>,
     ) -> Result<Self, CheckpointError> {
         let [made] = checkpoint.counts("k")?;
@@ -134,7 +137,7 @@ impl<const N: usize, const M: usize> Progressing<N, M> {
             made,
             state,
             memory: checkpoint.list("memory")?,
-            meter: Meter::load(checkpoint, every, work)?,
+            meter: Meter::load(checkpoint, meter, made, t, &state, work)?,
             trajectory: keep.map(|keep| Trajectory::resumed(keep, t, work)),
             seconds,
         })

@@ -11,6 +11,11 @@ const REPEATS: usize = 15;
 pub trait Progress {
     /// So many more steps are done.
     fn advance(&mut self, steps: u64);
+
+    /// Whether the run is to end here, with what it has; asked every 2^14 steps.
+    fn stops(&self) -> bool {
+        false
+    }
 }
 
 impl Progress for () {
@@ -27,10 +32,16 @@ impl<F: FnMut(u64)> Progress for F {
 pub(crate) struct Ticker<'a> {
     pub(crate) progress: &'a mut dyn Progress,
     pub(crate) told: u64,
+    pub(crate) stopped: bool,
 }
 
-impl Ticker<'_> {
+impl<'a> Ticker<'a> {
     const EVERY: u64 = 1 << 14;
+
+    /// A run that has told of so many steps already.
+    pub(crate) fn new(progress: &'a mut dyn Progress, told: u64) -> Self {
+        Self { progress, told, stopped: false }
+    }
 }
 
 impl<Sys, const N: usize, const M: usize> Observer<Sys, N, M> for Ticker<'_> {
@@ -41,6 +52,10 @@ impl<Sys, const N: usize, const M: usize> Observer<Sys, N, M> for Ticker<'_> {
         if node.k.is_multiple_of(Self::EVERY) {
             self.progress.advance(node.k - self.told);
             self.told = node.k;
+            if self.progress.stops() {
+                self.stopped = true;
+                return ControlFlow::Break(());
+            }
         }
         ControlFlow::Continue(())
     }
@@ -48,6 +63,21 @@ impl<Sys, const N: usize, const M: usize> Observer<Sys, N, M> for Ticker<'_> {
     fn end(&mut self, node: &View<'_, Sys, N>) {
         self.progress.advance(node.k - self.told);
         self.told = node.k;
+    }
+}
+
+/// The observer that only asks whether to go on.
+pub(crate) struct Stopper<'a>(pub(crate) &'a dyn Progress);
+
+impl<Sys, const N: usize, const M: usize> Observer<Sys, N, M> for Stopper<'_> {
+    fn start(&mut self, _node: &View<'_, Sys, N>) {}
+
+    #[inline]
+    fn step(&mut self, node: &View<'_, Sys, N>, _report: &StepReport<M>) -> ControlFlow<()> {
+        if node.k.is_multiple_of(Ticker::EVERY) && self.0.stops() {
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
     }
 }
 

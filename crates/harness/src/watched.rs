@@ -2,9 +2,7 @@ use crate::record::Meter;
 use crate::run::{integrate_pieces, timed};
 use crate::timing::Ticker;
 use crate::{Again, Method, Progress, Record, Request};
-use dla::{
-    Crossing, Event, RecommendError, Recommendation, Samples, Schedule, State, Trajectory, Watch, recommend_by_trial,
-};
+use dla::{Crossing, Event, RecommendError, Recommendation, Samples, State, Trajectory, Watch, recommend_by_trial};
 use lagrangian::{Piecewise, System};
 
 /// A run, measured, with the nodes that were asked for and the events that happened.
@@ -27,17 +25,20 @@ pub fn run_watched<Sys: System<N, M> + Piecewise, const N: usize, const M: usize
     keep: Option<u64>,
     progress: &mut dyn Progress,
 ) -> Watched<N, M> {
-    let Request { schedule, q, v, samples } = *request;
+    let Request { schedule, q, v, .. } = *request;
     let start = State::new(q, v, system.angles());
-    let mut meter = Meter::new(schedule.steps.div_ceil(samples.max(1)));
+    let mut meter = Meter::new(request, method);
     let mut trajectory = keep.map(Trajectory::every);
-    let inner = (&mut meter, (&mut trajectory, Ticker { progress, told: 0 }));
+    let mut ticker = Ticker::new(progress, 0);
+    let inner = (&mut meter, (&mut trajectory, &mut ticker));
     let mut watch = Watch::new(Again(method), events, inner);
     let outcome = integrate_pieces(system, method, &schedule, &mut start.clone(), &mut watch);
     let crossings = watch.crossings().to_vec();
     let steps = outcome.unwrap_or_else(|failure| failure.valid_steps());
-    let seconds = timed(system, method, &Schedule { steps, ..schedule }, start);
-    Watched { record: meter.record(method.info(), schedule.step, seconds, outcome.err()), trajectory, crossings }
+    let interrupted = ticker.stopped;
+    let seconds = timed(system, method, request, steps, progress);
+    let record = Record { interrupted, ..meter.record(method.info(), seconds, outcome.err()) };
+    Watched { record, trajectory, crossings }
 }
 
 /// The longest step of a whole run from time zero that meets a tolerance (see [`dla::recommend_step`]).

@@ -3,6 +3,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 mod baselines;
+mod drift;
 mod precision;
 mod sensitivity;
 
@@ -16,6 +17,14 @@ use proptest::prelude::*;
 #[derive(Clone)]
 struct Particle {
     depth: f64,
+    /// `z' = y y'` in its place, the rate of `z - y^2/2`.
+    leaf: bool,
+}
+
+impl Particle {
+    fn of(depth: f64) -> Self {
+        Self { depth, leaf: false }
+    }
 }
 
 impl System<3, 1> for Particle {
@@ -25,7 +34,11 @@ impl System<3, 1> for Particle {
         (v[0] * v[0] + v[1] * v[1] * across * across + v[2] * v[2]) * 0.5 - q[1] * q[1] * (0.5 * self.depth)
     }
     fn constraint<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
-        ([[-q[1], S::zero(), S::constant(1.0)]], [S::zero()])
+        let row = if self.leaf { [S::zero(), -q[1]] } else { [-q[1], S::zero()] };
+        ([[row[0], row[1], S::constant(1.0)]], [S::zero()])
+    }
+    fn holonomic<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Option<[Option<S>; 1]> {
+        self.leaf.then(|| [Some(q[2] - q[1] * q[1] * 0.5)])
     }
 }
 
@@ -43,7 +56,7 @@ fn request(steps: u64, step: f64) -> Request<3> {
 fn a_record_tells_of_its_run() {
     let mut told = 0;
     let method = Method::named("dla", None).unwrap();
-    let record = run(&Particle { depth: 1.0 }, &method, &request(95, 0.05), &mut |steps| told += steps);
+    let record = run(&Particle::of(1.0), &method, &request(95, 0.05), &mut |steps| told += steps);
     assert_eq!((record.steps, told), (95, 95));
     assert_relative_eq!(record.t, 95.0 * 0.05);
     assert!(record.failure.is_none() && record.wall_seconds > 0.0);
@@ -59,7 +72,7 @@ fn a_record_tells_of_its_run() {
 
 #[test]
 fn explicit_methods_have_no_newton() {
-    let record = run(&Particle { depth: 1.0 }, &Method::named("rk4", None).unwrap(), &request(20, 0.05), &mut ());
+    let record = run(&Particle::of(1.0), &Method::named("rk4", None).unwrap(), &request(20, 0.05), &mut ());
     assert_eq!((record.newton.mean.to_bits(), record.newton.max), (0, 0));
     assert!(record.constraint_max > 0.0);
 }
@@ -68,7 +81,7 @@ fn explicit_methods_have_no_newton() {
 #[test]
 fn a_refusal_is_a_record_with_its_reason() {
     let method = Method::named("rk4-reduced", None).unwrap();
-    let record = run(&Particle { depth: 1.0 }, &method, &request(20, 0.05), &mut ());
+    let record = run(&Particle::of(1.0), &method, &request(20, 0.05), &mut ());
     let failure = record.failure.unwrap();
     assert_eq!((failure.step, record.steps), (1, 0));
     assert!(failure.to_string().contains("basis"), "{failure}");

@@ -1,0 +1,81 @@
+use crate::args::CompareArguments;
+use crate::error::CliError;
+use crate::files::check_folder;
+use crate::resume;
+use dla::Checkpoint;
+use harness::{Method, Progress, Record, Request, Saving, run_saved, timed};
+use scene::{Scene, SceneSystem};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Where the runs of a comparison are saved, a checkpoint for each method, and from where they go on.
+#[derive(Debug, Default)]
+pub(crate) struct Saves {
+    to: Option<PathBuf>,
+    from: Option<PathBuf>,
+    every: u64,
+    /// How often each method has been saved: one that is asked for twice is two runs.
+    seen: BTreeMap<&'static str, u32>,
+}
+
+impl Saves {
+    /// What the arguments ask for; a folder that cannot be written in, or is there already, is refused before the work.
+    pub(crate) fn of(arguments: &CompareArguments) -> Result<Self, CliError> {
+        let CompareArguments { checkpoint, checkpoint_every, resume, scene, .. } = arguments;
+        if let Some(folder) = resume {
+            std::fs::read_dir(folder).map_err(|source| CliError::Read { path: folder.clone(), source })?;
+        }
+        if let Some(folder) = checkpoint {
+            check_folder(folder, scene.force || resume.as_ref() == Some(folder))?;
+            std::fs::create_dir_all(folder).map_err(|source| CliError::Write { path: folder.clone(), source })?;
+        }
+        Ok(Self { to: checkpoint.clone(), from: resume.clone(), every: *checkpoint_every, ..Self::default() })
+    }
+
+    /// Where to go on after an interruption.
+    pub(crate) fn folder(&self) -> Option<&Path> {
+        self.to.as_deref()
+    }
+
+    /// Makes a run: at once where nothing is to be saved, else from checkpoint to checkpoint.
+    pub(crate) fn run<Sys, const N: usize, const M: usize>(
+        &mut self,
+        scene: &Scene,
+        system: &Sys,
+        method: &Method,
+        request: &Request<N>,
+        progress: &mut dyn Progress,
+    ) -> Result<Record<N>, CliError>
+    where
+        Sys: SceneSystem<N, M>,
+    {
+        if self.to.is_none() && self.from.is_none() {
+            return Ok(harness::run(system, method, request, progress));
+        }
+        let name = self.file(method.info().name);
+        let identity = resume::identity(scene, method, &request.schedule);
+        let from = self.from.as_ref().map(|folder| folder.join(&name)).filter(|path| path.exists());
+        let read = from.as_ref().map(|path| resume::read(path, &identity)).transpose()?;
+        let to = self.to.as_ref().map(|folder| folder.join(&name));
+        let mut written = Ok(());
+        let mut save = |made: &Checkpoint| {
+            if let (Some(path), Ok(())) = (&to, &written) {
+                written = resume::write(path, made);
+            }
+        };
+        let every = to.as_ref().map(|_| self.every);
+        let mut saving = Saving { identity: &identity, from: read.as_ref(), every, save: &mut save };
+        let outcome = run_saved::<_, N, M>(system, method, request, &mut saving, None, progress);
+        let (mut record, _) =
+            outcome.map_err(|source| CliError::Checkpoint { path: from.unwrap_or_default(), source })?;
+        written?;
+        record.wall_seconds = timed(system, method, request, record.steps, progress);
+        Ok(record)
+    }
+
+    fn file(&mut self, method: &'static str) -> String {
+        let times = self.seen.entry(method).or_default();
+        *times += 1;
+        if *times == 1 { format!("{method}.save") } else { format!("{method}-{times}.save") }
+    }
+}

@@ -1,0 +1,130 @@
+/// So many batches.
+const BATCHES: usize = 32;
+
+/// The means of 32 batches of a series, about their least-squares line; time in units of the whole series.
+///
+/// Longer than the correlations of a series, batches are independent of each other (method of batch means: Schmeiser
+/// 1982, Oper. Res. 30, 556-568).
+#[derive(Debug)]
+pub(super) struct Batches {
+    residuals: Vec<f64>,
+    increments: Vec<f64>,
+    /// `sum (t - mean t)^2`.
+    spread: f64,
+}
+
+impl Batches {
+    /// The batches of a series; none of one that is too short.
+    pub(super) fn of(series: &[f64]) -> Option<Self> {
+        if series.len() < 2 * BATCHES {
+            return None;
+        }
+        let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
+        let means: Vec<f64> = (0..BATCHES).map(|j| mean(&series[batch(j, series.len())])).collect();
+        let (center, slope) = line(&means);
+        let times = || (0..BATCHES).map(|j| (j as f64 + 0.5) / BATCHES as f64 - 0.5);
+        Some(Self {
+            residuals: means.iter().zip(times()).map(|(mean, t)| mean - center - slope * t).collect(),
+            increments: means.windows(2).map(|pair| pair[1] - pair[0]).collect(),
+            spread: times().map(|t| t * t).sum(),
+        })
+    }
+
+    /// Root of the mean square of the means about their line.
+    pub(super) fn residual(&self) -> f64 {
+        (squares(&self.residuals) / BATCHES as f64).sqrt()
+    }
+
+    /// The standard error of the slope where batches scatter independently about the line.
+    pub(super) fn error(&self) -> f64 {
+        (squares(&self.residuals) / (BATCHES - 2) as f64 / self.spread).sqrt()
+    }
+
+    /// The standard error of the slope where it is the increments of the series that are independent.
+    ///
+    /// A walk of variance `s` a unit of time has a least-squares slope of variance `6/5 s` over a unit of time (Durlauf and
+    /// Phillips 1988, Econometrica 56, 1333-1354), and increments of its batch means of `2/3` of the variance of its own.
+    pub(super) fn error_of_walk(&self) -> f64 {
+        let mean = self.increments.iter().sum::<f64>() / self.increments.len() as f64;
+        let scatter: f64 = self.increments.iter().map(|d| (d - mean).powi(2)).sum();
+        let variance = scatter / (self.increments.len() - 1) as f64;
+        (6.0 / 5.0 * 3.0 / 2.0 * variance * BATCHES as f64).sqrt()
+    }
+
+    /// The statistic of stationarity about a line, `sum S_j^2 / (k^2 s^2)` with the partial sums `S_j` of the residuals
+    /// (Kwiatkowski, Phillips, Schmidt and Shin 1992, J. Econometrics 54, 159-178); batches take the place of its kernel.
+    pub(super) fn stationarity(&self) -> f64 {
+        let squared = squares(&self.residuals);
+        if squared == 0.0 {
+            return 0.0;
+        }
+        let (mut sum, mut sums) = (0.0, 0.0);
+        for residual in &self.residuals {
+            sum += residual;
+            sums += sum * sum;
+        }
+        sums / (BATCHES as f64 * squared)
+    }
+
+    /// Whether the increments go on all along, as those of a walk do: not one of them, nor one half of the series, makes up
+    /// nearly all of their squares, as where a series jumps or settles.
+    pub(super) fn walks(&self) -> bool {
+        let all = squares(&self.increments);
+        let largest = self.increments.iter().map(|d| d * d).fold(0.0, f64::max);
+        let first = squares(&self.increments[..self.increments.len() / 2]);
+        largest < 0.5 * all && first > 0.05 * all && first < 0.95 * all
+    }
+}
+
+/// The places of batch `j` in a series.
+fn batch(j: usize, length: usize) -> std::ops::Range<usize> {
+    j * length / BATCHES..(j + 1) * length / BATCHES
+}
+
+fn squares(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum()
+}
+
+/// The least-squares line through a series: its value in the middle, and its slope over the whole length.
+pub(super) fn line(series: &[f64]) -> (f64, f64) {
+    let length = series.len() as f64;
+    let center = series.iter().sum::<f64>() / length;
+    let (mut products, mut spread) = (0.0, 0.0);
+    for (i, value) in series.iter().enumerate() {
+        let t = (i as f64 + 0.5) / length - 0.5;
+        products += t * (value - center);
+        spread += t * t;
+    }
+    (center, if spread > 0.0 { products / spread } else { 0.0 })
+}
+
+/// Half the largest range within a batch: about the line of the series or, where that is less because a drift bends, about
+/// the line of the batch.
+pub(super) fn amplitude(means: &[f64], ranges: &[[f64; 2]]) -> f64 {
+    let length = means.len();
+    let (_, slope) = line(means);
+    if length < ENOUGH * BATCHES {
+        return half_range(ranges, slope, length);
+    }
+    let within = |part: std::ops::Range<usize>| {
+        let (_, own_slope) = line(&means[part.clone()]);
+        let ranges = &ranges[part];
+        let own = half_range(ranges, own_slope, ranges.len());
+        own.min(half_range(ranges, slope, length))
+    };
+    (0..BATCHES).map(|j| within(batch(j, length))).fold(0.0, f64::max)
+}
+
+/// So many blocks of a batch have a line of their own.
+const ENOUGH: usize = 8;
+
+/// Half the range about a line that has this slope over so many blocks.
+fn half_range(ranges: &[[f64; 2]], slope: f64, length: usize) -> f64 {
+    let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
+    for (i, [min, max]) in ranges.iter().enumerate() {
+        let on_line = slope * (i as f64 + 0.5) / length as f64;
+        lowest = lowest.min(min - on_line);
+        highest = highest.max(max - on_line);
+    }
+    0.5 * (highest - lowest)
+}

@@ -1,0 +1,126 @@
+//! What an error does over a long run: how far it swings, whether it drifts, and how it grows.
+
+mod batches;
+mod blocks;
+mod growth;
+
+pub use blocks::Blocks;
+
+use batches::Batches;
+use std::fmt;
+
+/// What the slow part of a series does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// It stays where it is: it is stationary, or moves too little beside the fast part to be seen.
+    Bounded,
+    /// It grows with the time.
+    LinearDrift,
+    /// It grows with the square root of the time.
+    RandomWalk,
+    /// The series is too short, or does none of these: it settles, jumps, wanders as slowly as the run is long.
+    Undecided,
+}
+
+impl Verdict {
+    /// Its name, in tables and files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Bounded => "bounded",
+            Self::LinearDrift => "linear drift",
+            Self::RandomWalk => "random walk",
+            Self::Undecided => "undecided",
+        }
+    }
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// The fast and the slow part of an error over a run, apart.
+///
+/// With the blocks of [`Blocks`] and 32 batches of them (the tests, their thresholds and sources: `docs/methods/drift.md`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drift {
+    /// The fast part: half the largest range within a batch, a 32nd of the run, about a line.
+    pub amplitude: f64,
+    /// The secular part: slope of the least-squares line through the means of the blocks (per s).
+    pub slope: f64,
+    /// Half the width of the 95 % confidence interval of the slope (per s); none where the series is too short.
+    pub slope_ci: Option<f64>,
+    /// Growth exponent: 0 bounded, 1/2 a random walk, 1 linear; none where the series is too short.
+    pub exponent: Option<f64>,
+    /// What it comes to.
+    pub verdict: Verdict,
+}
+
+/// Student's factor for 95 % and for 99 %, both sides, at the 30 degrees of freedom of 32 batches less two.
+const T95: f64 = 2.042;
+const T99: f64 = 2.750;
+/// The 5 % point of the statistic of stationarity about a line (Kwiatkowski et al. 1992, table 1).
+const STATIONARY: f64 = 0.146;
+/// Between the growth exponents of a bounded series and of a random walk.
+const BETWEEN: f64 = 0.25;
+/// What the slow part may do beside the fast one and be unseen: a sine that is cut at the ends of the run and of the
+/// batches feigns a slope of `(6/pi) P/T` amplitudes a run, and one of a 32nd of it `0.06`.
+const SEEN: f64 = 1.0 / 16.0;
+
+impl Drift {
+    /// What a series does.
+    #[must_use]
+    pub fn of(blocks: &Blocks) -> Self {
+        let nothing = Self { amplitude: 0.0, slope: 0.0, slope_ci: None, exponent: None, verdict: Verdict::Undecided };
+        let size = blocks.full().iter().map(|block| block.min.abs().max(block.max.abs())).fold(0.0, f64::max);
+        if blocks.full().is_empty() || !blocks.means().all(f64::is_finite) {
+            return nothing;
+        }
+        if size == 0.0 {
+            return Self { slope_ci: Some(0.0), exponent: Some(0.0), verdict: Verdict::Bounded, ..nothing };
+        }
+        // In units of the largest value and of the run's length nothing over- or underflows.
+        let means: Vec<f64> = blocks.means().map(|mean| mean / size).collect();
+        let run = blocks.spacing() * means.len() as f64;
+        let ranges: Vec<[f64; 2]> = blocks.full().iter().map(|b| [b.min / size, b.max / size]).collect();
+        let (_, slope) = batches::line(&means);
+        let amplitude = batches::amplitude(&means, &ranges);
+        let measured = Self { amplitude: amplitude * size, slope: slope * size / run, ..nothing };
+        let (Some(batches), Some(exponent)) = (Batches::of(&means), growth::exponent(&means)) else { return measured };
+        let stationary = batches.stationarity() < STATIONARY && exponent < BETWEEN;
+        let error = if stationary { batches.error() } else { batches.error().max(batches.error_of_walk()) };
+        // The means of constants differ by their rounding.
+        let floor = (SEEN * amplitude).max(64.0 * f64::EPSILON);
+        let verdict = if slope.abs() < floor && batches.residual() < floor {
+            Verdict::Bounded
+        } else if slope.abs() > T99 * error && slope.abs() > floor {
+            Verdict::LinearDrift
+        } else if stationary {
+            Verdict::Bounded
+        } else if exponent >= BETWEEN && batches.stationarity() >= STATIONARY && batches.walks() {
+            Verdict::RandomWalk
+        } else {
+            Verdict::Undecided
+        };
+        Self { slope_ci: Some(T95 * error * size / run), exponent: Some(exponent), verdict, ..measured }
+    }
+
+    /// The largest error to be expected at a time (s) after the start: the fast part and the secular one.
+    #[must_use]
+    pub fn reach(&self, time: f64) -> f64 {
+        self.amplitude + self.slope.abs() * time
+    }
+
+    /// The length of run (s) from which on this error is the smaller one, though it starts as the larger: where the two
+    /// [`reach`](Self::reach) the same. None unless the other drifts, and faster beyond the two intervals of confidence.
+    #[must_use]
+    pub fn better_from(&self, other: &Self) -> Option<f64> {
+        let (own, others) = (self.slope.abs(), other.slope.abs());
+        let faster = own + self.slope_ci? < others - other.slope_ci?;
+        let starts_worse = self.amplitude > other.amplitude;
+        (starts_worse && faster && other.verdict == Verdict::LinearDrift)
+            .then(|| (self.amplitude - other.amplitude) / (others - own))
+    }
+}

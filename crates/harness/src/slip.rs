@@ -1,0 +1,88 @@
+use crate::{Kind, Method};
+use dla::{Checkpoint, CheckpointError, State, View};
+use lagrangian::linear::{larger, largest};
+use lagrangian::{Alpha, DiscreteConstraint, Midpoint, System, Trapezoid};
+
+/// How far a run is from its constraints besides at the velocities of its nodes: over each step, and in the positions.
+#[derive(Debug)]
+pub(crate) struct Slip<const N: usize> {
+    rule: Rule,
+    h: f64,
+    /// The time and the state at the node before.
+    before: Option<(f64, State<N>)>,
+    step: f64,
+    /// The largest of the functions of the positions, where there are any.
+    leaf: Option<f64>,
+}
+
+/// The rule of a discrete constraint.
+#[derive(Debug, Clone, Copy)]
+enum Rule {
+    Midpoint,
+    Trapezoid,
+    Alpha(Alpha),
+}
+
+impl<const N: usize> Slip<N> {
+    pub(crate) fn new(method: &Method, h: f64) -> Self {
+        let rule = match method.info().kind {
+            Kind::DlaTrapezoid => Rule::Trapezoid,
+            Kind::DlaAlpha => Rule::Alpha(method.alpha()),
+            _ => Rule::Midpoint,
+        };
+        Self { rule, h, before: None, step: 0.0, leaf: None }
+    }
+
+    pub(crate) fn step_max(&self) -> f64 {
+        self.step
+    }
+
+    pub(crate) fn leaf_max(&self) -> Option<f64> {
+        self.leaf
+    }
+
+    pub(crate) fn start<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>) {
+        self.look(node);
+        self.before = Some((node.t, *node.state));
+    }
+
+    pub(crate) fn resume<Sys>(&mut self, node: &View<'_, Sys, N>) {
+        self.before = Some((node.t, *node.state));
+    }
+
+    pub(crate) fn step<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>) {
+        if let Some((t, before)) = &self.before {
+            let v = node.state.moved_since(before).map(|moved| moved / self.h);
+            let (system, t, h, q) = (node.system, *t, self.h, before.q());
+            let residual: [f64; M] = match self.rule {
+                Rule::Midpoint => Midpoint.residual(system, t, h, q, &v),
+                Rule::Trapezoid => Trapezoid.residual(system, t, h, q, &v),
+                Rule::Alpha(alpha) => alpha.residual(system, t, h, q, &v),
+            };
+            self.step = larger(self.step, largest(&residual));
+        }
+        self.look(node);
+        self.before = Some((node.t, *node.state));
+    }
+
+    /// At the functions `g(q, t)` whose rates are constraints.
+    fn look<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>) {
+        let functions = node.system.holonomic(node.t, &node.state.unwrapped());
+        for g in functions.into_iter().flatten().flatten() {
+            self.leaf = Some(larger(self.leaf.unwrap_or(0.0), g.abs()));
+        }
+    }
+
+    /// Writes it to a checkpoint; the node before is the state there.
+    pub(crate) fn save(&self, checkpoint: &mut Checkpoint) {
+        checkpoint.put("slip", &[self.step]);
+        checkpoint.put("leaf", self.leaf.as_slice());
+    }
+
+    /// The same with what [`save`](Self::save) wrote.
+    pub(crate) fn load(&self, checkpoint: &Checkpoint) -> Result<Self, CheckpointError> {
+        let [step] = checkpoint.get("slip")?;
+        let leaf = checkpoint.list("leaf")?.first().copied();
+        Ok(Self { rule: self.rule, h: self.h, before: None, step, leaf })
+    }
+}
