@@ -268,7 +268,7 @@ fn a_comparison_from_its_checkpoints_is_the_same() {
 fn plain_noslip_does_the_main_job() {
     let folder = Folder::new();
     // Somebody's folder, which stays as it is.
-    std::fs::create_dir(folder.join("noslip-report")).unwrap();
+    fs::create_dir(folder.join("noslip-report")).unwrap();
     folder.write("noslip-report/index.html", "mine");
     let text = folder.done("");
     let tables: Vec<&str> = text.split("\n\n").collect();
