@@ -32,7 +32,9 @@ def load():
             absent.append({"package": name.removesuffix("_lines"), "message": f"{type(error).__name__}: {error}"})
     failed = Path(os.environ.get("NOSLIP_PEERS_FAILED", "/nonexistent"))
     if failed.is_file():
-        absent += [{"package": line.split(":")[0], "message": line} for line in failed.read_text().splitlines()]
+        for line in failed.read_text().splitlines():
+            package, _, message = line.partition(": ")
+            absent.append({"package": package, "message": message})
     return there, absent
 
 
