@@ -50,7 +50,7 @@ where
     #[inline]
     pub(crate) fn solve(self, newton: &Newton, v0: [f64; N]) -> Result<Mean<N, M>, StepError> {
         // Of rows that depend on one another there is none, and then it is not looked at.
-        let positive = Saddle::is_positive_at_rest(&self.a0, self.basis.as_ref()).ok();
+        let positive = Saddle::is_positive_at_rest(&self.a0, self.basis.as_ref());
         let time = (self.t0, self.h);
         let (mut search, mut v) = (Search::new(self), v0);
         let mut iterations = newton

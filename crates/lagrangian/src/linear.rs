@@ -104,6 +104,30 @@ impl<const U: usize> Lu<U> {
     }
 }
 
+/// Whether the determinant of a matrix, given by rows, is positive; none where it is zero or not a number.
+///
+/// By its expansion up to four rows, which costs a fraction of a factorisation and does not depend on the scale of rows and
+/// columns.
+#[must_use]
+#[inline]
+pub fn has_positive_determinant<const U: usize>(a: &[[f64; U]; U]) -> Option<bool> {
+    let minor = |i: usize, j: usize, k: usize, l: usize| a[i][k] * a[j][l] - a[i][l] * a[j][k];
+    let determinant = match U {
+        1 => a[0][0],
+        2 => minor(0, 1, 0, 1),
+        3 => a[0][0] * minor(1, 2, 1, 2) - a[0][1] * minor(1, 2, 0, 2) + a[0][2] * minor(1, 2, 0, 1),
+        4 => {
+            minor(0, 1, 0, 1) * minor(2, 3, 2, 3) - minor(0, 1, 0, 2) * minor(2, 3, 1, 3)
+                + minor(0, 1, 0, 3) * minor(2, 3, 1, 2)
+                + minor(0, 1, 1, 2) * minor(2, 3, 0, 3)
+                - minor(0, 1, 1, 3) * minor(2, 3, 0, 2)
+                + minor(0, 1, 2, 3) * minor(2, 3, 0, 1)
+        }
+        _ => return Lu::new(*a).ok().map(|lu| lu.is_positive()),
+    };
+    (determinant.abs() > 0.0).then_some(determinant > 0.0)
+}
+
 /// The larger of `m` and the size of `x`; what is not a number wins, where `f64::max` would drop it.
 #[must_use]
 #[inline(always)]

@@ -1,4 +1,4 @@
-use crate::linear::{Lu, Singular, normal_solve};
+use crate::linear::{Lu, Singular, has_positive_determinant, normal_solve};
 use crate::{AdmissibleBasis, Rows};
 use std::array::from_fn;
 
@@ -60,19 +60,17 @@ impl<const N: usize, const M: usize> Saddle<N, M> {
     /// Tested against a basis `w` the matrix is `[-w' M; G]`, which times `[w, M^-1 G']` has the diagonal blocks `-w' M w` and
     /// `G M^-1 G'`; so but for `(-1)^(N-M)` it has the sign of `[w'; G]`, whatever `M`.
     ///
-    /// # Errors
-    /// [`Singular`] where the basis is none.
+    /// None where the basis is none, or the rows depend on one another.
+    #[must_use]
     #[inline]
-    pub fn is_positive_at_rest(
-        transposed: &[[f64; N]; M],
-        basis: Option<&AdmissibleBasis<f64, N, M>>,
-    ) -> Result<bool, Singular> {
-        let Some(basis) = basis else { return Ok(N.is_multiple_of(2)) };
+    pub fn is_positive_at_rest(transposed: &[[f64; N]; M], basis: Option<&AdmissibleBasis<f64, N, M>>) -> Option<bool> {
+        let Some(basis) = basis else { return Some(N.is_multiple_of(2)) };
         let mut frame = [[0.0; N]; N];
         for (row, w) in frame.iter_mut().zip(basis.vectors().iter().chain(transposed)) {
             *row = *w;
         }
-        Ok(Lu::new(frame)?.is_positive() == (N.is_multiple_of(2) == M.is_multiple_of(2)))
+        let positive = has_positive_determinant(&frame)?;
+        Some(positive == (N.is_multiple_of(2) == M.is_multiple_of(2)))
     }
 
     /// Tested against the basis `w` of `ker G` the multipliers drop out: `w . (K x) = w . r`, `C x = c`.

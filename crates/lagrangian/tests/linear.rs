@@ -5,7 +5,7 @@ mod common;
 
 use common::component;
 use faer::linalg::solvers::Solve;
-use lagrangian::linear::{Lu, normal_solve};
+use lagrangian::linear::{Lu, has_positive_determinant, normal_solve};
 use lagrangian::{AdmissibleBasis, RowSpace, Rows, Saddle};
 use proptest::prelude::*;
 use std::array::from_fn;
@@ -134,7 +134,37 @@ fn multipliers_of_dependent_rows_are_refused() {
     assert!((one[0] - 1.0).abs() < 1e-15);
 }
 
+/// The sign of the determinant of a product of triangles of whole numbers, rows and columns scaled by powers of two: all of
+/// it exact.
+fn sign<const U: usize>(numbers: &[i32], scales: &[i32]) -> Result<(), TestCaseError> {
+    let number = |i: usize, j: usize| f64::from(numbers[5 * i + j]);
+    let lower = |i: usize, k: usize| if i == k { 1.0 } else { number(i, k) };
+    let scale = |i: usize| 2f64.powi(scales[i]);
+    let a: Matrix<U> = from_fn(|i| {
+        from_fn(|j| (0..=i.min(j)).map(|k| lower(i, k) * number(k, j)).sum::<f64>() * scale(i) * scale(U + j))
+    });
+    let signs: f64 = (0..U).map(|i| number(i, i).signum() * f64::from(u8::from(number(i, i) != 0.0))).product();
+    let expected = if signs == 0.0 { None } else { Some(signs > 0.0) };
+    prop_assert_eq!(has_positive_determinant(&a), expected, "{:?}", a);
+    if let Ok(lu) = Lu::new(a) {
+        prop_assert_eq!(expected, Some(lu.is_positive()), "{:?}", a);
+    }
+    Ok(())
+}
+
 proptest! {
+    #[test]
+    fn signs_of_determinants(
+        numbers in proptest::collection::vec(-3..4i32, 25), scales in proptest::collection::vec(-20..20i32, 10),
+    ) {
+        sign::<1>(&numbers, &scales)?;
+        sign::<2>(&numbers, &scales)?;
+        sign::<3>(&numbers, &scales)?;
+        sign::<4>(&numbers, &scales)?;
+        prop_assume!((0..5).all(|i| numbers[6 * i] != 0));
+        sign::<5>(&numbers, &scales)?;
+    }
+
     /// The rank of rows in any units, of the coordinates and of their own; what the dependent one is
     /// made of, and the velocities that none of them sees.
     #[test]
