@@ -117,6 +117,25 @@ where
             state.advance(&step.increment, step.velocity, Some(step.xi));
             return Ok(StepReport { impulses: step.impulses, iterations: step.iterations, work: None });
         }
+        self.solved_step(system, t0, h, state)
+    }
+}
+
+impl<L, C> Dla<L, C> {
+    /// The step in its general form. Compiled once for a system, whatever is composed of it.
+    #[inline(never)]
+    fn solved_step<Sys: System<N, M>, const N: usize, const M: usize>(
+        &self,
+        system: &Sys,
+        t0: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError>
+    where
+        L: DiscreteLagrangian<Sys, N, M>,
+        C: DiscreteConstraint<Sys, N, M>,
+    {
+        let (q0, v0) = (*state.q(), *state.v());
         let in_basis = self.form != Form::Multipliers;
         let basis = |t, q: &[f64; N]| if in_basis { system.admissible_basis(t, q) } else { None };
 

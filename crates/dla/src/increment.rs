@@ -107,7 +107,8 @@ where
     L: DiscreteLagrangian<Sys, N, M>,
     C: DiscreteConstraint<Sys, N, M>,
 {
-    #[inline]
+    /// Not inlined: it is called from each of the searches that a step may make, and is long.
+    #[inline(never)]
     fn correction(&mut self, v: &[f64; N]) -> Result<[f64; N], Singular> {
         let Self { rules: (lagrangian, constraint), system, t0, h, state, q0, .. } = *self;
         let l_d = lagrangian.derivatives(system, t0, h, &q0, v);

@@ -126,7 +126,8 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> Stages<'
 impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> BlockEquations<N, S>
     for Stages<'_, Sys, N, M, S>
 {
-    #[inline]
+    /// Not inlined: it is called from each of the searches that a step may make, and is long.
+    #[inline(never)]
     fn correction(&mut self, v: &[[f64; N]; S]) -> Result<[[f64; N]; S], Singular> {
         let points = self.points(v);
         let at = points.map(|point| point.linearised(self.system, self.h));
