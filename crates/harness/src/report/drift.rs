@@ -15,9 +15,9 @@ const HEIGHT: f64 = 250.0;
 /// How many points of a series are drawn at most: more would lie on top of each other.
 const POINTS: usize = 300;
 /// How many points a picture has in all, unless its series then had fewer than [`FEWEST`] each.
-const TOGETHER: usize = 3000;
+const TOGETHER: usize = 2000;
 /// How many points a series needs for its shape.
-const FEWEST: usize = 100;
+const FEWEST: usize = 75;
 /// How far apart the names at the ends of the lines are.
 const NAMES: f64 = 15.0;
 /// The longest name at the end of a line.
