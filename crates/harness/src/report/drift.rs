@@ -21,7 +21,7 @@ const FEWEST: usize = 75;
 /// How far apart the names at the ends of the lines are.
 const NAMES: f64 = 15.0;
 /// The longest name at the end of a line.
-const LONGEST: usize = 16;
+const LONGEST: usize = 17;
 
 /// Draws the picture of the constraint's residual.
 pub(super) fn constraint(scene: &SceneReport, name: &str) -> Result<Picture, ReportError> {

@@ -32,7 +32,7 @@
       [this.trail, this.sleigh, this.rotor] = [find(".trail"), find(".sleigh"), find(".rotor")];
       [this.button, this.slider, this.clock, this.speed] = ["button", "input", "output", "select"].map(find);
       const [start, end] = [Number(this.slider.min), Number(this.slider.max)];
-      Object.assign(this, { start, end, time: start, frame: 0, playing: false, last: null });
+      Object.assign(this, { start, end, time: start, frame: 0, playing: false, last: null, inView: false });
       const whole = end - start;
       this.digits = Math.max(0, Math.min(6, 2 - Math.floor(Math.log10(whole))));
       const middle = Math.round(3 * Math.log10(whole / WHOLE));
@@ -41,7 +41,12 @@
       }
       this.button.addEventListener("click", () => (this.playing ? this.pause() : this.play()));
       this.slider.addEventListener("input", () => { this.pause(); this.show(Number(this.slider.value)); });
-      new IntersectionObserver((seen) => { if (!seen[0].isIntersecting) this.pause(); }).observe(figure);
+      // What is scrolled away pauses; what has not been seen yet may have been started all the same.
+      new IntersectionObserver((seen) => {
+        const inView = seen[seen.length - 1].isIntersecting;
+        if (this.inView && !inView) this.pause();
+        this.inView = inView;
+      }).observe(figure);
       this.tell();
       find(".controls").hidden = false;
     }
