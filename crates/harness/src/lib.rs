@@ -4,6 +4,7 @@
 //! [`precision::work_precision`] measures what accuracy costs in time.
 
 mod again;
+pub mod analysis;
 mod baseline;
 mod cost;
 mod drift;
