@@ -18,12 +18,14 @@ mod look;
 mod page;
 mod path;
 mod picture;
+mod plane;
 mod precision;
 mod scale;
 mod sleigh;
 mod thinning;
 mod xml;
 
+pub use plane::{Curves, Plane, plane};
 pub use precision::{PrecisionReport, Table, write_precision};
 
 /// A report: what the page says above its scenes, and the scenes.
@@ -143,6 +145,14 @@ pub fn write(report: &Report, directory: &Path, overwrite: bool) -> Result<Vec<P
         contents.push((picture.file.clone(), picture.standalone()));
     }
     files::write_all(directory, &contents, overwrite)
+}
+
+/// The picture of the paths of a scene, seen from above, as the text of an SVG file.
+///
+/// # Errors
+/// [`ReportError::Draw`] if the drawing library fails.
+pub fn path_picture(scene: &SceneReport) -> Result<String, ReportError> {
+    Ok(path::picture(scene, &scene.name)?.standalone())
 }
 
 /// The three pictures of a scene.

@@ -33,8 +33,7 @@ pub(super) fn picture(scene: &SceneReport, name: &str) -> Result<Picture, Report
         axis::draw_legend(canvas, &entries, &places, [10.0, 4.0])?;
         axis::draw(canvas, &frame, [&across, &up], ["x [m]", "y [m]"])?;
         let draw = |path: &[[f64; 2]], ink, opacity, width| {
-            let lines = thin(frame.lines(path.iter().map(|point| frame.place(*point))), POINTS);
-            lines.iter().try_for_each(|line| canvas.line(line, ink, opacity, width))
+            thinned(&frame, path).iter().try_for_each(|line| canvas.line(line, ink, opacity, width))
         };
         draw(exact.unwrap_or_default(), Ink::Exact, 0.7, 1.3)?;
         for (method, series) in scene.series.iter().enumerate() {
@@ -48,6 +47,11 @@ pub(super) fn picture(scene: &SceneReport, name: &str) -> Result<Picture, Report
             None => Ok(()),
         }
     })
+}
+
+/// What the frame shows of a path, in unbroken lines of not too many points.
+pub(super) fn thinned(frame: &Frame, path: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
+    thin(frame.lines(path.iter().map(|point| frame.place(*point))), POINTS)
 }
 
 fn caption(scene: &SceneReport, exact: bool, strays: &[&str]) -> String {
