@@ -91,9 +91,9 @@ impl Visitor for Find<'_> {
             rotor_rate: system.rotor(&e.q, &e.v).map(|[_, rate]| rate),
             depends_on: e.shape.iter().filter_map(|i| COORDINATES.get(*i).copied()).collect(),
             family: e.family,
-            stable: e.is_stable(),
+            stable: e.stable,
             map: map.spectrum(h, e),
-            limit: e.is_stable().then(|| map.limit(h, e)),
+            limit: e.stable.then(|| map.limit(h, e)),
             flow: e.flow.clone(),
         };
         let rows = found.iter().map(row).collect();
@@ -196,7 +196,7 @@ fn text(scene: &Scene, method: &Method, rows: &[Row]) -> String {
         let lines = [
             ("motion", what),
             ("", if row.stable { "stable".to_owned() } else { "unstable".to_owned() }),
-            ("family", format!("of {} parameters", row.family)),
+            ("parameters", row.family.to_string()),
             ("flow [1/s]", complex_numbers(&row.flow)),
             ("map", row.map.as_deref().map_or_else(|| "no step stays near".to_owned(), complex_numbers)),
             ("longest step", limit),
@@ -208,7 +208,8 @@ fn text(scene: &Scene, method: &Method, rows: &[Row]) -> String {
 
 fn complex_numbers(values: &[[f64; 2]]) -> String {
     let number = |[re, im]: &[f64; 2]| match *im {
-        0.0 => table::number(*re),
+        // Without the sign of a zero.
+        0.0 => table::number(*re + 0.0),
         im => format!("{} {} {} i", table::number(*re), if im < 0.0 { '-' } else { '+' }, table::number(im.abs())),
     };
     values.iter().map(number).collect::<Vec<_>>().join(", ")

@@ -1,6 +1,6 @@
 use super::Equilibrium;
 use super::root::nearest_root;
-use super::spectrum::{is_stable_map, size, spectrum};
+use super::spectrum::{Spectrum, size, spectrum};
 use crate::{Kind, Method, Rk4, Rk4Reduced};
 use dla::{Composition, Differentiable, Dla, Sensitivity, State, StepReport};
 use lagrangian::{System, quasi_velocities, velocity_of};
@@ -93,6 +93,10 @@ impl<'a, Sys: System<N, M>, const N: usize, const M: usize> DiscreteMap<'a, Sys,
     /// The eigenvalues of the map with the step `h` (s) in shape and quasi-velocities, at its own equilibrium near that of the
     /// flow, the largest first; none where it has none.
     pub fn spectrum(&mut self, h: f64, equilibrium: &Equilibrium<N>) -> Option<Vec<[f64; 2]>> {
+        self.at_rest(h, equilibrium).map(|spectrum| spectrum.values)
+    }
+
+    fn at_rest(&mut self, h: f64, equilibrium: &Equilibrium<N>) -> Option<Spectrum> {
         let start = equilibrium.reduced(N - M);
         let scale = 1.0 + start.norm();
         let mut moved = |z: &DVector<f64>| self.moved(h, equilibrium, z);
@@ -119,7 +123,7 @@ impl<'a, Sys: System<N, M>, const N: usize, const M: usize> DiscreteMap<'a, Sys,
     }
 
     fn is_stable(&mut self, h: f64, equilibrium: &Equilibrium<N>) -> bool {
-        self.spectrum(h, equilibrium).is_some_and(|values| is_stable_map(&values))
+        self.at_rest(h, equilibrium).is_some_and(|spectrum| spectrum.is_stable_map())
     }
 
     fn bisected(&mut self, mut good: f64, mut bad: f64, equilibrium: &Equilibrium<N>) -> StepLimit {

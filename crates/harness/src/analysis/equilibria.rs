@@ -1,6 +1,6 @@
 use super::reduced_field;
 use super::root::nearest_root;
-use super::spectrum::{is_stable_flow, spectrum};
+use super::spectrum::spectrum;
 use lagrangian::linear::Singular;
 use lagrangian::{
     Gradients, ReducedError, SeededMember, System, Unparametrised, energy, quasi_velocities, velocity_of,
@@ -21,19 +21,16 @@ pub struct Equilibrium<const N: usize> {
     pub xi: [f64; N],
     /// The coordinates that the equations depend on, the shape; the others are cyclic.
     pub shape: Vec<usize>,
-    /// How many parameters the family has that it belongs to; 0 where it stands alone.
+    /// How many directions the linear equations leave at rest: the parameters of the family that it belongs to; 0 where it
+    /// stands alone.
     pub family: usize,
     /// The eigenvalues of the flow in shape and quasi-velocities, real and imaginary parts (1/s), the largest real part first.
     pub flow: Vec<[f64; 2]>,
+    /// Whether no eigenvalue of the flow has a positive real part, but for rounding.
+    pub stable: bool,
 }
 
 impl<const N: usize> Equilibrium<N> {
-    /// Whether no eigenvalue of the flow has a positive real part.
-    #[must_use]
-    pub fn is_stable(&self) -> bool {
-        is_stable_flow(&self.flow)
-    }
-
     /// Shape and quasi-velocities.
     pub(super) fn reduced(&self, dimension: usize) -> DVector<f64> {
         let numbers = self.shape.iter().map(|i| self.q[*i]).chain(self.xi[..dimension].iter().copied());
@@ -71,6 +68,10 @@ const CYCLIC: f64 = 1e-10;
 /// A singular value below this, relative to the largest, is a direction of the family.
 const FAMILY: f64 = 1e-9;
 
+/// How far from a first guess the search goes on where it ends there (m, rad), and at which points and times (s) it is asked
+/// what the equations depend on: in general position.
+const OFFSETS: [f64; 5] = [0.0, 0.37, -0.61, 0.83, 1.9];
+
 /// Relative equilibria of a system: steady motions near its start, and near motions of its energy.
 ///
 /// The coordinates that the reduced equations `xi' = f(q, xi)` do not depend on are cyclic, and free to change; the roots of
@@ -92,7 +93,8 @@ pub fn relative_equilibria<Sys: System<N, M>, const N: usize, const M: usize>(
     let rest = velocity_of(system, 0.0, q, &[0.0; N])?;
     let kinetic = |v: &[f64; N]| energy(system, 0.0, q, v) - energy(system, 0.0, q, &rest);
     let available = kinetic(v);
-    let mut guesses = vec![];
+    // Rest first: it is exact, where what comes to rest from elsewhere is not.
+    let mut guesses = vec![[0.0; N]];
     for axis in 0..N - M {
         let unit = from_fn(|k| f64::from(u8::from(k == axis)));
         let speed = (available / kinetic(&velocity_of(system, 0.0, q, &unit)?)).max(0.0).sqrt();
@@ -100,7 +102,7 @@ pub fn relative_equilibria<Sys: System<N, M>, const N: usize, const M: usize>(
             guesses.extend([speed, -speed].map(|speed| unit.map(|unit| unit * speed)));
         }
     }
-    guesses.extend([xi, [0.0; N]]);
+    guesses.push(xi);
     let model: &dyn Gradients<N, M> = &SeededMember { family: Unparametrised(system), parameters: [] };
     search(model, q, &guesses)
 }
@@ -119,24 +121,37 @@ fn search<const N: usize, const M: usize>(
     };
     let mut found: Vec<Equilibrium<N>> = Vec::new();
     for guess in guesses {
-        let numbers = shape.iter().map(|i| q[*i]).chain(guess[..dimension].iter().copied());
-        let start = DVector::from_vec(numbers.collect());
         let mut rates = |z: &DVector<f64>| {
             let (place, xi) = placed(z);
-            rates(model, &place, &xi, &shape)?.ok()
+            rates(model, &place, &xi, &shape)
         };
-        let Some(z) = nearest_root(&mut rates, start.clone(), ROOT * (1.0 + start.norm())) else { continue };
+        // At a symmetric start the search may stand on a ridge: then from beside it.
+        let offsets = if shape.is_empty() { &OFFSETS[..1] } else { &OFFSETS };
+        let from = |offset: &f64| {
+            let place = shape.iter().map(|i| q[*i] + offset * (0.5 + *i as f64).cos());
+            DVector::from_vec(place.chain(guess[..dimension].iter().copied()).collect())
+        };
+        let mut starts = offsets.iter().map(from);
+        let root = starts.find_map(|start| {
+            let tolerance = ROOT * (1.0 + start.norm());
+            nearest_root(&mut rates, start, tolerance)
+        });
+        let Some(z) = root else { continue };
         let Some((_, slope)) = rates(&z) else { continue };
         let Some(flow) = spectrum(&slope, |[re, _]| re) else { continue };
         let (place, xi) = placed(&z);
         let Some(Ok(field)) = reduced_field(model, 0.0, &place, &xi) else { continue };
         let singular = slope.singular_values();
         let family = singular.iter().filter(|s| **s <= FAMILY * singular.max()).count();
-        let equilibrium = Equilibrium { q: place, v: field.velocity, xi, shape: shape.clone(), family, flow };
+        let (stable, flow) = (flow.is_stable_flow(), flow.values);
+        let equilibrium = Equilibrium { q: place, v: field.velocity, xi, shape: shape.clone(), family, flow, stable };
         if !found.iter().any(|other| alike(other, &equilibrium)) {
             found.push(equilibrium);
         }
     }
+    // The fastest first, rest last.
+    let speed = |e: &Equilibrium<N>| e.xi.iter().map(|x| x * x).sum::<f64>();
+    found.sort_by(|a, b| speed(b).total_cmp(&speed(a)));
     if found.is_empty() { Err(EquilibriumError::NoneFound { guesses: guesses.len() }) } else { Ok(found) }
 }
 
@@ -155,16 +170,13 @@ fn rates<const N: usize, const M: usize>(
     q: &[f64; N],
     xi: &[f64; N],
     shape: &[usize],
-) -> Option<Result<(DVector<f64>, DMatrix<f64>), Singular>> {
-    let field = match reduced_field(model, 0.0, q, xi)? {
-        Ok(field) => field,
-        Err(singular) => return Some(Err(singular)),
-    };
+) -> Option<(DVector<f64>, DMatrix<f64>)> {
+    let field = reduced_field(model, 0.0, q, xi)?.ok()?;
     let rows: Vec<usize> = shape.iter().copied().chain(N..2 * N - M).collect();
     let value = |row: usize| if row < N { field.velocity[row] } else { field.acceleration[row - N] };
     let values = DVector::from_iterator(rows.len(), rows.iter().map(|row| value(*row)));
     let slope = DMatrix::from_fn(rows.len(), rows.len(), |i, j| field.derivative[(rows[i], rows[j])]);
-    Some(Ok((values, slope)))
+    Some((values, slope))
 }
 
 /// The coordinates that the reduced equations depend on, and those whose rates these depend on by them.
@@ -177,10 +189,10 @@ fn shape<const N: usize, const M: usize>(
     let (xi_rows, time) = (N..N + dimension, N + dimension);
     let mut sizes = DMatrix::zeros(N + dimension, N + dimension + 1);
     // Points in general position: what vanishes at all of them is taken to vanish.
-    let points = [0.0, 0.37, -0.61, 0.83].iter().zip(guesses.iter().cycle());
+    let points = OFFSETS.iter().zip(guesses.iter().cycle());
     for (offset, guess) in points {
         let near = |x: &[f64; N], turn: f64| from_fn(|i| x[i] + offset * (turn + i as f64).cos());
-        let field = reduced_field(model, 0.0, &near(q, 0.5), &near(guess, 1.7));
+        let field = reduced_field(model, offset.abs(), &near(q, 0.5), &near(guess, 1.7));
         let field = field.ok_or(ReducedError::NoBasis)??;
         let sum = &sizes + field.derivative.abs();
         sizes = sum;
