@@ -137,7 +137,13 @@ fn portrait(scene: &Scene, found: &Found) -> Plane {
         let rows = found.rows.iter().filter(|row| row.stable == stable);
         rows.map(|row| vec![[row.state.speed, row.state.turn_rate]]).collect()
     };
-    let kinds = [("orbits", found.orbits.clone()), ("stable", steady(true)), ("unstable", steady(false))];
+    let starts = found.orbits.iter().filter_map(|orbit| orbit.first().map(|start| vec![*start])).collect();
+    let kinds = [
+        ("orbits", found.orbits.clone()),
+        ("stable", steady(true)),
+        ("unstable", steady(false)),
+        ("where orbits begin", starts),
+    ];
     let kinds = kinds.into_iter().filter(|(_, curves)| !curves.is_empty());
     Plane {
         title: format!("{}: phase portrait", scene.title),
