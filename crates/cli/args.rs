@@ -25,6 +25,10 @@ pub(crate) enum Command {
     Precision(PrecisionArguments),
     /// Measures what each effect of a scene costs a step of dla
     Cost(SceneArguments),
+    /// Finds the steady motions of a scene, and the eigenvalues of the flow and of a method's steps about them
+    Equilibria(EquilibriaArguments),
+    /// Measures what the loops of a scene's tracer turn the blade by, beside the exact map
+    Phase(PhaseArguments),
     /// Reads a scene and says what it is, or what is wrong with it
     Check(CheckArguments),
     /// Lists what there is
@@ -153,6 +157,33 @@ pub(crate) struct PrecisionArguments {
     /// Overwrite output that is there already
     #[arg(long)]
     pub(crate) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct EquilibriaArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    /// Method whose steps are looked at: of the family dla, rk4 or rk4-reduced, instead of the scene's
+    #[arg(long, value_name = "M")]
+    pub(crate) method: Option<String>,
+    /// Write a phase portrait of speed and turn rate: .svg
+    #[arg(long, value_name = "FILE")]
+    pub(crate) picture: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PhaseArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    /// Method (see `noslip list methods`), instead of the scene's
+    #[arg(long, value_name = "M")]
+    pub(crate) method: Option<String>,
+    /// How many loops [default: as many whole ones as the scene's duration has]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count)]
+    pub(crate) loops: Option<u64>,
+    /// Write the turn of a loop against the heading before it: .svg
+    #[arg(long, value_name = "FILE")]
+    pub(crate) picture: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -4,6 +4,7 @@ mod args;
 mod compare;
 mod compare_numbers;
 mod cost;
+mod equilibria;
 mod error;
 mod facts;
 mod files;
@@ -14,6 +15,7 @@ mod job;
 mod json;
 #[cfg(feature = "parquet")]
 mod parquet_file;
+mod phase;
 mod points_file;
 mod precision;
 mod precision_text;
@@ -56,6 +58,8 @@ fn command(arguments: Arguments) -> Result<(), CliError> {
         Some(Command::Compare(arguments)) => compare::compare(&arguments),
         Some(Command::Precision(arguments)) => precision::precision(&arguments),
         Some(Command::Cost(arguments)) => cost::cost(&arguments),
+        Some(Command::Equilibria(arguments)) => equilibria::equilibria(&arguments),
+        Some(Command::Phase(arguments)) => phase::phase(&arguments),
         Some(Command::Check(arguments)) => inspect::check(&arguments),
         Some(Command::List(arguments)) => inspect::list(&arguments),
         Some(Command::New(arguments)) => inspect::new(&arguments),

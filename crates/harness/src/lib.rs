@@ -4,6 +4,7 @@
 //! [`precision::work_precision`] measures what accuracy costs in time.
 
 mod again;
+pub mod analysis;
 mod baseline;
 mod cost;
 mod drift;
@@ -25,7 +26,7 @@ pub use cost::{StepCost, step_cost};
 pub use drift::{Blocks, Drift, Verdict};
 pub use method::{Kind, METHODS, Method, MethodError, MethodInfo};
 pub use record::{EnergySummary, NewtonSummary, Record, Sample};
-pub use run::{Request, integrate, integrate_on, integrate_pieces, run, timed};
+pub use run::{Request, integrate, integrate_on, integrate_on_watched, integrate_pieces, run, timed};
 pub use saved::{Saving, run_saved};
 pub use statistics::Trend;
 pub use timing::Progress;

@@ -66,7 +66,10 @@ pub enum Shape {
 
 impl PathSpec {
     /// The path.
-    pub(crate) fn build(&self) -> Result<ClosedPath, SleighError> {
+    ///
+    /// # Errors
+    /// [`SleighError`] where it cannot be followed, which one read from a file can.
+    pub fn build(&self) -> Result<ClosedPath, SleighError> {
         match &self.shape {
             Shape::Circle { radius, center } => ClosedPath::circle(*radius, *center, self.period),
             Shape::Polygon(vertices) => ClosedPath::polygon(vertices.clone(), self.period),

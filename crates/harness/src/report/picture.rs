@@ -68,7 +68,7 @@ impl Picture {
     }
 
     /// The picture as a file: on a light ground of its own.
-    fn standalone(&self) -> String {
+    pub(super) fn standalone(&self) -> String {
         format!(
             "<svg{} width=\"{:.0}\" height=\"{:.0}\" color=\"{TEXT}\">\n<title>{}</title>\n\
              <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>{}</svg>\n",
