@@ -101,7 +101,11 @@ impl<Sys, const N: usize, const M: usize, const P: usize> Sensitivity<'_, Sys, N
         Ok(derivative)
     }
 
-    pub(super) fn derivative(
+    /// The derivative of a step that was made already, by whatever code, from `start` to `end`; `time` is its start and its length (s).
+    ///
+    /// # Errors
+    /// [`SensitivityError`] where the step has no derivative, or `end` is not the end that the equations of the method give.
+    pub fn derivative(
         &self,
         method: &dyn Differentiable<N, M>,
         time: (f64, f64),
