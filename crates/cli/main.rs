@@ -1,7 +1,9 @@
 //! The command line of noslip.
 
 mod args;
+mod chart_file;
 mod compare;
+mod coordinate;
 mod cost;
 mod error;
 mod facts;
@@ -11,8 +13,10 @@ mod inspect;
 mod interrupt;
 mod job;
 mod json;
+mod lyapunov;
 #[cfg(feature = "parquet")]
 mod parquet_file;
+mod plane;
 mod points_file;
 mod precision;
 mod precision_text;
@@ -20,6 +24,9 @@ mod progress;
 mod resume;
 mod run;
 mod saves;
+mod section;
+mod stability_map;
+mod starts;
 mod table;
 mod terminal;
 mod trajectory_file;
@@ -55,6 +62,8 @@ fn command(arguments: Arguments) -> Result<(), CliError> {
         Some(Command::Compare(arguments)) => compare::compare(&arguments),
         Some(Command::Precision(arguments)) => precision::precision(&arguments),
         Some(Command::Cost(arguments)) => cost::cost(&arguments),
+        Some(Command::Lyapunov(arguments)) => lyapunov::lyapunov(&arguments),
+        Some(Command::Section(arguments)) => section::section(&arguments),
         Some(Command::Check(arguments)) => inspect::check(&arguments),
         Some(Command::List(arguments)) => inspect::list(&arguments),
         Some(Command::New(arguments)) => inspect::new(&arguments),

@@ -4,7 +4,7 @@ use lagrangian::{Piecewise, System, With, quasi_velocities, velocity_of, whole_s
 use sleigh::{Exact, Flywheel, Guide, Guided, SleighError, SleighState};
 
 /// A system that came from a scene, and answers in the words of a scene.
-pub trait SceneSystem<const N: usize, const M: usize>: System<N, M> + Piecewise {
+pub trait SceneSystem<const N: usize, const M: usize>: System<N, M> + Piecewise + Sync {
     /// Place, heading and admissible velocities of the sleigh.
     fn sleigh_state(&self, q: &[f64; N], v: &[f64; N]) -> SleighState;
 
@@ -22,7 +22,7 @@ pub trait SceneSystem<const N: usize, const M: usize>: System<N, M> + Piecewise 
 
 impl<B, E, const N: usize, const M: usize> SceneSystem<N, M> for With<B, E>
 where
-    Self: System<N, M> + Piecewise,
+    Self: System<N, M> + Piecewise + Sync,
     B: SceneBody<N, M>,
     E: SceneEffects<B, N>,
 {
@@ -80,6 +80,30 @@ impl Scene {
         })
     }
 
+    /// The same where the blade is the only constraint; `None` of a scene that imposes velocities.
+    ///
+    /// What needs much code for each system is compiled for fewer of them.
+    ///
+    /// # Errors
+    /// As [`visit`](Self::visit).
+    pub fn visit_free<V: Visitor>(&self, visitor: V) -> Result<Option<V::Output>, SleighError> {
+        if self.effects.is_empty() {
+            let (q, v) = self.start.to_coordinates();
+            return Ok(Some(start(visitor, &With { body: self.sleigh, effects: () }, q, v)));
+        }
+        Ok(match self.guiding()? {
+            Guiding::None => Some(self.with_rotor(self.sleigh, visitor)?),
+            Guiding::Turntable(body) => Some(self.with_rotor(body, visitor)?),
+            Guiding::One(_) | Guiding::Two(_) => None,
+        })
+    }
+
+    /// Whether anything in the scene is a function of time.
+    #[must_use]
+    pub fn depends_on_time(&self) -> bool {
+        self.effects.iter().any(SceneEffect::depends_on_time)
+    }
+
     /// The effects that act on the coordinates there are.
     fn acting(&self) -> Result<Vec<Acting>, SleighError> {
         self.effects.iter().filter_map(|effect| Acting::of(effect).transpose()).collect()
@@ -122,7 +146,7 @@ impl Scene {
     /// Adds the rotor, if there is one, and what acts on the body.
     fn with_rotor<B, V, const M: usize>(&self, body: B, visitor: V) -> Result<V::Output, SleighError>
     where
-        B: SceneBody<3, M> + Piecewise,
+        B: SceneBody<3, M> + Piecewise + Sync,
         V: Visitor,
     {
         let effects = self.acting()?;

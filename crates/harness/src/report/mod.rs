@@ -10,6 +10,8 @@ use std::path::{Path, PathBuf};
 
 mod axis;
 mod canvas;
+mod cells;
+mod chart;
 mod diagram;
 mod drift;
 mod files;
@@ -24,6 +26,8 @@ mod sleigh;
 mod thinning;
 mod xml;
 
+pub use cells::Cells;
+pub use chart::{Chart, Layer, chart_svg};
 pub use precision::{PrecisionReport, Table, write_precision};
 
 /// A report: what the page says above its scenes, and the scenes.

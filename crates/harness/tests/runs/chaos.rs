@@ -159,6 +159,15 @@ fn long_strange_attractors() {
     check_attractors(200_000, 200_000);
 }
 
+/// Twenty kilometres away the places within a step are rounded to more than the slopes of its stages are, and yet each step ends.
+#[test]
+fn far_from_the_origin() {
+    let (system, (mut q, v)) = egg_crate();
+    q[0] += 2e4;
+    let found = exponents(&system, (q, v), (0.1, 0, 3000));
+    assert_abs_diff_eq!(found.sum(), found.divergence_mean, epsilon = 1e-4);
+}
+
 /// A system that hides what it knows by hand.
 struct Plain<Sys>(Sys);
 
