@@ -3,7 +3,7 @@
 // What the helpers of these tests cannot do is a failed test, too.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use harness::report::{Cells, Chart, Layer, Report, ReportError, SceneReport, Series, chart_svg, write};
+use harness::report::{Report, ReportError, SceneReport, Series, write};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -412,37 +412,4 @@ fn a_folder_without_permission_stays_as_it_was() {
     assert!(matches!(write(&report(vec![]), &locked.join("out"), false), Err(ReportError::Io { .. })));
     assert!(matches!(write(&report(vec![]), &locked, true), Err(ReportError::Io { .. })));
     assert!(names(&locked).is_empty());
-}
-
-/// Lines, dots and cells; what is not finite, and what there is nothing of, is drawn without a panic.
-#[test]
-fn charts_are_drawn() {
-    let chart = |decades: bool, layers: Vec<Layer>| {
-        let axes = ["time [s]".to_owned(), "so much [1/s]".to_owned()];
-        chart_svg(&Chart { title: "A <chart>".to_owned(), axes, decades, layers }).unwrap()
-    };
-    let line = |points: Vec<[f64; 2]>| Layer::Line { label: "one".to_owned(), points };
-    let cells = |values: Vec<Option<f64>>| {
-        Layer::Cells(Cells { label: "value [1]".to_owned(), ranges: [[0.0, 2.0], [-1.0, 1.0]], columns: 2, values })
-    };
-    let odd = vec![[1.0, 2.0], [f64::NAN, 0.0], [10.0, f64::INFINITY], [-1.0, 3.0], [100.0, 2.5], [1000.0, 2.0]];
-    let drawn = [
-        chart(true, vec![line(odd.clone())]),
-        chart(false, vec![Layer::Dots(odd), Layer::Dots(vec![]), Layer::Dots(vec![[0.0; 2]])]),
-        chart(false, vec![cells(vec![Some(0.0), Some(0.5), None, Some(f64::NAN)])]),
-        chart(false, vec![cells(vec![])]),
-        chart(true, vec![]),
-    ];
-    for picture in &drawn {
-        let document = roxmltree::Document::parse(picture).unwrap();
-        check_numbers(&document);
-        assert!(texts(picture).contains(&"so much [1/s]".to_owned()));
-    }
-    assert!(texts(&drawn[0]).contains(&"10²".to_owned()) && texts(&drawn[0]).contains(&"one".to_owned()));
-    // Of the first dots three can be drawn; each is a line without length.
-    assert_eq!(drawn[1].matches("h0").count(), 5);
-    // Two cells have a value, of the first and of the last colour; sixteen colours are on the bar.
-    assert_eq!(drawn[2].matches("V").count(), 4);
-    assert_eq!(drawn[2].matches("<rect").count(), 17);
-    assert!(texts(&drawn[2]).contains(&"value [1]".to_owned()));
 }

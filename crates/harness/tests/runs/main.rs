@@ -4,6 +4,7 @@
 
 mod baselines;
 mod chaos;
+mod charts;
 mod drift;
 mod measures;
 mod precision;
