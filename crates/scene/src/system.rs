@@ -77,20 +77,43 @@ impl Scene {
 
     /// The same where the blade is the only constraint; `None` of a scene that imposes velocities.
     ///
-    /// What needs much code for each system is compiled for fewer of them.
+    /// For what needs much code for each system: a list of effects that is empty makes no type of its own here.
     ///
     /// # Errors
     /// As [`visit`](Self::visit).
     pub fn visit_free<V: Visitor>(&self, visitor: V) -> Result<Option<V::Output>, SleighError> {
-        if self.effects.is_empty() {
-            let (q, v) = self.start.to_coordinates();
-            return Ok(Some(start(visitor, &With { body: self.sleigh, effects: () }, q, v)));
+        match self.guiding()? {
+            Guiding::None => self.listed(self.sleigh, visitor).map(Some),
+            Guiding::Turntable(body) => self.listed(body, visitor).map(Some),
+            Guiding::One(_) | Guiding::Two(_) => Ok(None),
         }
-        Ok(match self.guiding()? {
-            Guiding::None => Some(self.with_rotor(self.sleigh, visitor)?),
-            Guiding::Turntable(body) => Some(self.with_rotor(body, visitor)?),
-            Guiding::One(_) | Guiding::Two(_) => None,
+    }
+
+    /// Adds the rotor, if there is one, and the list of what acts on the body.
+    fn listed<B, V, const M: usize>(&self, body: B, visitor: V) -> Result<V::Output, SleighError>
+    where
+        B: SceneBody<3, M> + Piecewise + Clone + Sync,
+        V: Visitor,
+    {
+        let (effects, (q, v)) = (self.acting()?, self.start.to_coordinates());
+        Ok(match self.rotor(&body)? {
+            Some((body, rate)) => {
+                let (q, v) = ([q[0], q[1], q[2], 0.0], [v[0], v[1], v[2], rate]);
+                start(visitor, &With { body, effects }, q, v)
+            }
+            None => start(visitor, &With { body, effects }, q, v),
         })
+    }
+
+    /// The body with its rotor, and the rate of that (rad/s), where there is one.
+    fn rotor<B: Clone>(&self, body: &B) -> Result<Option<(Flywheel<B>, f64)>, SleighError> {
+        for effect in &self.effects {
+            if let SceneEffect::Flywheel { inertia, rotor_rate, torque } = effect {
+                let torque = torque.as_ref().map(crate::TimeSpec::build).transpose()?;
+                return Ok(Some((Flywheel::new(body.clone(), *inertia, torque)?, *rotor_rate)));
+            }
+        }
+        Ok(None)
     }
 
     /// Whether anything in the scene is a function of time.
@@ -141,19 +164,17 @@ impl Scene {
     /// Adds the rotor, if there is one, and what acts on the body.
     fn with_rotor<B, V, const M: usize>(&self, body: B, visitor: V) -> Result<V::Output, SleighError>
     where
-        B: SceneBody<3, M> + Piecewise + Sync,
+        B: SceneBody<3, M> + Piecewise + Clone + Sync,
         V: Visitor,
     {
         let (q, v) = self.start.to_coordinates();
-        for effect in &self.effects {
-            if let SceneEffect::Flywheel { inertia, rotor_rate, torque } = effect {
-                let torque = torque.as_ref().map(crate::TimeSpec::build).transpose()?;
-                let body = Flywheel::new(body, *inertia, torque)?;
-                let (q, v) = ([q[0], q[1], q[2], 0.0], [v[0], v[1], v[2], *rotor_rate]);
-                return self.with_effects(body, visitor, q, v);
+        match self.rotor(&body)? {
+            Some((body, rate)) => {
+                let (q, v) = ([q[0], q[1], q[2], 0.0], [v[0], v[1], v[2], rate]);
+                self.with_effects(body, visitor, q, v)
             }
+            None => self.with_effects(body, visitor, q, v),
         }
-        self.with_effects(body, visitor, q, v)
     }
 
     /// Adds what acts on the body, if anything does.
@@ -165,7 +186,7 @@ impl Scene {
         v: [f64; N],
     ) -> Result<V::Output, SleighError>
     where
-        B: SceneBody<N, M> + Piecewise,
+        B: SceneBody<N, M> + Piecewise + Sync,
         V: Visitor,
     {
         let effects = self.acting()?;
