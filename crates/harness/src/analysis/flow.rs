@@ -55,14 +55,14 @@ fn implicit<const N: usize, const M: usize>(
         for l in k + 1..N - M {
             let factor = mass[l][k] / mass[k][k];
             for m in k..N - M {
-                mass[l][m] = mass[l][m] - factor * mass[k][m];
+                mass[l][m] -= factor * mass[k][m];
             }
-            rate[l] = rate[l] - factor * rate[k];
+            rate[l] -= factor * rate[k];
         }
     }
     for k in (0..N - M).rev() {
         for l in k + 1..N - M {
-            rate[k] = rate[k] - mass[k][l] * rate[l];
+            rate[k] -= mass[k][l] * rate[l];
         }
         rate[k] = rate[k] / mass[k][k];
     }

@@ -4,5 +4,5 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 ///
 /// Each is computed by itself, so that the number of threads (`RAYON_NUM_THREADS`) changes nothing but the time.
 pub fn in_parallel<T: Send>(count: usize, each: impl Fn(usize) -> T + Sync) -> Vec<T> {
-    (0..count).into_par_iter().map(|i| each(i)).collect()
+    (0..count).into_par_iter().map(&each).collect()
 }
