@@ -101,7 +101,7 @@ fn a_map_does_not_depend_on_the_threads() {
 #[test]
 fn the_points_of_a_section_are_on_its_plane_and_of_one_energy() {
     let folder = Folder::new();
-    let told = folder.done("section bowl --step 0.1 --plane center_y=0.25 --starts 3 --duration 100 --out points.csv");
+    let told = folder.done("section bowl --step 0.1 --plane center_y=0.25 --starts 3 --duration 300 --out points.csv");
     assert!(told.contains("center_y=0.25, rising"), "{told}");
     let (names, rows) = csv(&folder.read("points.csv"));
     assert_eq!(names, ["start", "t", "x", "y", "heading", "speed", "turn_rate", "heading", "turn_rate"]);
@@ -118,7 +118,7 @@ fn the_points_of_a_section_are_on_its_plane_and_of_one_energy() {
         assert_abs_diff_eq!(energy, 0.5 + 0.00625 + 0.0125, epsilon = 1e-7);
         assert!(row[7].abs() <= std::f64::consts::PI);
     }
-    let found = folder.json("section bowl --step 0.1 --plane center_y=0.25 --starts 3 --duration 100 --json");
+    let found = folder.json("section bowl --step 0.1 --plane center_y=0.25 --starts 3 --duration 300 --json");
     let points: usize = found["starts"].as_array().unwrap().iter().map(|s| s["points"].as_array().unwrap().len()).sum();
     assert_eq!(points, rows.len());
     assert_eq!(found["starts"][0]["points"][0][1].as_f64().unwrap().to_bits(), rows[0][7].to_bits());

@@ -92,7 +92,7 @@ impl Visitor for Exponents<'_> {
         let (schedule, settle) = schedule(self.arguments, self.scene);
         let exponents = self.arguments.exponents.map(|count| count as usize);
         let request = LyapunovRequest { schedule, settle, exponents, q, v };
-        let bar = progress::bar(self.method.info().name, settle + schedule.steps);
+        let bar = progress::bar(self.method.info().name, settle.saturating_add(schedule.steps));
         let found = harness::analysis::lyapunov(system, &self.method, &request, &mut |steps| bar.inc(steps));
         bar.finish_and_clear();
         self.tell(&found.map_err(refused)?, energy(system, 0.0, &q, &v), 2 * N - M)

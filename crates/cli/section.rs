@@ -47,13 +47,6 @@ pub(crate) fn section(arguments: &SectionArguments) -> Result<(), CliError> {
         ));
     }
     let file = arguments.out.as_deref().map(|path| ChartFile::of(path, shared.force)).transpose()?;
-    if scene.depends_on_time() && !arguments.plane.period().is_some() {
-        terminal::say(
-            "note",
-            &"the scene depends on time, and so does where a motion goes from a point of this section; --plane t=PERIOD takes \
-              all points at the same phase",
-        );
-    }
     scene.visit_free(Sections { arguments, scene: &scene, method, axes, file })?.ok_or_else(imposed)?
 }
 
@@ -79,6 +72,13 @@ impl Visitor for Sections<'_> {
     where
         Sys: SceneSystem<N, M>,
     {
+        if self.scene.depends_on_time() && self.arguments.plane.period().is_none() {
+            terminal::say(
+                "note",
+                &"the scene depends on time, and so does where a motion goes from a point of this section; --plane t=PERIOD takes \
+                  all points at the same phase",
+            );
+        }
         let first = asked(system, (q, v), self.arguments.energy)?;
         let starts: Vec<Start<N>> = spread(system, &first, &self.scene.sleigh, self.arguments.starts);
         let schedule = inspect::schedule(self.scene);

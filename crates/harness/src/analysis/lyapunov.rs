@@ -100,7 +100,8 @@ pub fn lyapunov<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
     request: &LyapunovRequest<N>,
     progress: &mut dyn Progress,
 ) -> Result<Lyapunov, LyapunovError> {
-    let (first, last) = (request.schedule.t0, request.schedule.time(request.settle + request.schedule.steps));
+    let (first, last) =
+        (request.schedule.t0, request.schedule.time(request.settle.saturating_add(request.schedule.steps)));
     if let Some(time) = system.jumps(first, last).into_iter().min_by(f64::total_cmp) {
         return Err(LyapunovError::Jump { time });
     }
@@ -127,7 +128,7 @@ pub fn lyapunov_by<Sys: System<N, M>, const N: usize, const M: usize>(
     }
     let tangent = Steps::of(system, method)?;
     let mut stretch = Stretch::new(&tangent, count, settle, schedule.steps);
-    let all = Schedule { steps: settle + schedule.steps, ..schedule };
+    let all = Schedule { steps: settle.saturating_add(schedule.steps), ..schedule };
     let outcome = drive(&all, &mut State::new(q, v, system.angles()), &mut stretch);
     let failure = stretch.failure.map(Into::into).or(outcome.err().map(Into::into));
     Ok(result(&stretch, failure))
