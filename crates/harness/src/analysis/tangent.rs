@@ -36,7 +36,7 @@ pub(super) struct Steps<'a, Sys, const N: usize, const M: usize> {
     sensitivity: Sensitivity<'a, Sys, N, M, 0>,
 }
 
-/// Whether [`lyapunov`](super::lyapunov) has the derivatives of this method.
+/// Whether [`lyapunov`](fn@super::lyapunov) has the derivatives of this method.
 ///
 /// # Errors
 /// [`SensitivityError::Unsupported`] with the reason, where it has not.
