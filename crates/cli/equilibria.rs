@@ -4,7 +4,7 @@ use crate::files::{check_file, write_whole};
 use crate::{inspect, table, terminal};
 use dla::{Schedule, State, Trajectory};
 use harness::analysis::{DiscreteMap, EquilibriumError, StepLimit, differentiable, relative_equilibria};
-use harness::report::{Curves, Plane, plane};
+use harness::report::{Chart, Layer, chart_svg};
 use harness::{Method, integrate_pieces};
 use lagrangian::velocity_of;
 use scene::{Scene, SceneSystem, Visitor};
@@ -49,7 +49,7 @@ pub(crate) fn equilibria(arguments: &EquilibriaArguments) -> Result<(), CliError
     }
     let found = scene.visit(Find { scene: &scene, method: &method, portrait: arguments.picture.is_some() })??;
     if let Some(path) = &arguments.picture {
-        let picture = plane(&portrait(&scene, &found)).map_err(CliError::Report)?;
+        let picture = chart_svg(&portrait(&scene, &found)).map_err(CliError::Report)?;
         write_whole(path, arguments.scene.force, |file| std::io::Write::write_all(file, picture.as_bytes()))?;
     }
     if arguments.scene.json {
@@ -132,7 +132,7 @@ fn orbits<Sys: SceneSystem<N, M>, const N: usize, const M: usize>(
     orbits
 }
 
-fn portrait(scene: &Scene, found: &Found) -> Plane {
+fn portrait(scene: &Scene, found: &Found) -> Chart {
     let steady = |stable: bool| {
         let rows = found.rows.iter().filter(|row| row.stable == stable);
         rows.map(|row| vec![[row.state.speed, row.state.turn_rate]]).collect()
@@ -145,10 +145,11 @@ fn portrait(scene: &Scene, found: &Found) -> Plane {
         ("where orbits begin", starts),
     ];
     let kinds = kinds.into_iter().filter(|(_, curves)| !curves.is_empty());
-    Plane {
+    Chart {
         title: format!("{}: phase portrait", scene.title),
         axes: ["speed [m/s]".to_owned(), "turn rate [rad/s]".to_owned()],
-        kinds: kinds.map(|(label, curves)| Curves { label: label.to_owned(), curves }).collect(),
+        decades: false,
+        layers: kinds.map(|(label, curves)| Layer::Curves { label: label.to_owned(), curves }).collect(),
     }
 }
 

@@ -25,6 +25,11 @@ pub(crate) enum CliError {
         path.display()
     )]
     WithoutParquet { path: PathBuf },
+    #[error("{}: accepted is .csv or a picture .svg, by the ending of its name", path.display())]
+    ChartEnding { path: PathBuf },
+    /// What is asked for makes no sense, or cannot be had of this scene or method.
+    #[error("{0}")]
+    Request(String),
     #[error("--out would hold {nodes} nodes; at most {most} are accepted, with --every {every} or more")]
     TooManyNodes { nodes: u64, most: u64, every: u64 },
     #[error("cannot write {}: {source}", path.display())]
@@ -74,6 +79,7 @@ impl CliError {
             }
             #[cfg(not(feature = "parquet"))]
             Self::WithoutParquet { .. } => ExitCode::from(2),
+            Self::ChartEnding { .. } | Self::Request(_) => ExitCode::from(2),
             Self::Read { .. } | Self::Checkpoint { .. } => ExitCode::from(2),
             Self::Tolerance(error) if matches!(**error, RecommendError::Request { .. }) => ExitCode::from(2),
             Self::TooManyNodes { .. } | Self::Points { .. } | Self::Report(ReportError::Exists { .. }) => {

@@ -1,8 +1,10 @@
 //! The command line of noslip.
 
 mod args;
+mod chart_file;
 mod compare;
 mod compare_numbers;
+mod coordinate;
 mod cost;
 mod equilibria;
 mod error;
@@ -13,9 +15,11 @@ mod inspect;
 mod interrupt;
 mod job;
 mod json;
+mod lyapunov;
 #[cfg(feature = "parquet")]
 mod parquet_file;
 mod phase;
+mod plane;
 mod points_file;
 mod precision;
 mod precision_text;
@@ -23,6 +27,9 @@ mod progress;
 mod resume;
 mod run;
 mod saves;
+mod section;
+mod stability_map;
+mod starts;
 mod table;
 mod terminal;
 mod trajectory_file;
@@ -60,6 +67,8 @@ fn command(arguments: Arguments) -> Result<(), CliError> {
         Some(Command::Cost(arguments)) => cost::cost(&arguments),
         Some(Command::Equilibria(arguments)) => equilibria::equilibria(&arguments),
         Some(Command::Phase(arguments)) => phase::phase(&arguments),
+        Some(Command::Lyapunov(arguments)) => lyapunov::lyapunov(&arguments),
+        Some(Command::Section(arguments)) => section::section(&arguments),
         Some(Command::Check(arguments)) => inspect::check(&arguments),
         Some(Command::List(arguments)) => inspect::list(&arguments),
         Some(Command::New(arguments)) => inspect::new(&arguments),

@@ -4,7 +4,7 @@ use crate::files::{check_file, write_whole};
 use crate::{inspect, progress, table, terminal};
 use dla::{RunError, Schedule, State};
 use harness::analysis::{Rounds, weighted_mean};
-use harness::report::{Curves, Plane, plane};
+use harness::report::{Chart, Layer, chart_svg};
 use harness::{Method, integrate_on_watched};
 use scene::{PathSpec, Scene, SceneEffect, SceneSystem, Shape, Visitor};
 use serde_json::{Value, json};
@@ -69,7 +69,7 @@ pub(crate) fn phase(arguments: &PhaseArguments) -> Result<(), CliError> {
         measured.curvature = Some(-at_zero(&ratios));
     }
     if let Some(file) = &arguments.picture {
-        let picture = plane(&circle_map(&scene, &measured)).map_err(CliError::Report)?;
+        let picture = chart_svg(&circle_map(&scene, &measured)).map_err(CliError::Report)?;
         write_whole(file, arguments.scene.force, |out| std::io::Write::write_all(out, picture.as_bytes()))?;
     }
     if arguments.scene.json {
@@ -147,21 +147,22 @@ impl Measured {
     }
 }
 
-fn circle_map(scene: &Scene, measured: &Measured) -> Plane {
+fn circle_map(scene: &Scene, measured: &Measured) -> Chart {
     let points = measured.headings().zip(&measured.turns).map(|(heading, turn)| vec![[heading, *turn]]).collect();
-    let mut kinds = Vec::new();
+    let mut layers = Vec::new();
     if let Some(exact) = &measured.exact {
         let curve = (0..=POINTS).map(|k| {
             let heading = TAU * f64::from(k) / f64::from(POINTS) - PI;
             [heading, exact.turn(heading)]
         });
-        kinds.push(Curves { label: "exact".to_owned(), curves: vec![curve.collect()] });
+        layers.push(Layer::Curves { label: "exact".to_owned(), curves: vec![curve.collect()] });
     }
-    kinds.push(Curves { label: "measured".to_owned(), curves: points });
-    Plane {
+    layers.push(Layer::Curves { label: "measured".to_owned(), curves: points });
+    Chart {
         title: format!("{}: turn of a loop", scene.title),
         axes: ["heading before the loop [rad]".to_owned(), "turn of the loop [rad]".to_owned()],
-        kinds,
+        decades: false,
+        layers,
     }
 }
 

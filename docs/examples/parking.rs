@@ -50,6 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             label: "dla".to_owned(),
             path: nodes.iter().map(|node| [node.q[0], node.q[1]]).collect(),
             heading: nodes.iter().map(|node| node.q[2]).collect(),
+            rotor: Vec::new(),
             time: nodes.iter().map(|node| node.t).collect(),
             constraint: Vec::new(),
             energy_error: Vec::new(),
@@ -62,6 +63,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             rows: Vec::new(),
             series: vec![series],
             exact_path: None,
+            numbers: Vec::new(),
         };
         std::fs::File::create_new(&file)?.write_all(path_picture(&scene)?.as_bytes())?;
         println!("written: {file}");

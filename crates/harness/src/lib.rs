@@ -1,7 +1,7 @@
 //! The comparison harness: baselines, long-run drift, work against precision, and the reports that show them.
 //!
 //! [`Method`] names every integrator; [`run`] makes one run of it and measures it as a [`Record`];
-//! [`precision::work_precision`] measures what accuracy costs in time.
+//! [`precision::work_precision`] measures what accuracy costs in time; [`analysis`] asks whether a motion is chaotic.
 
 mod again;
 pub mod analysis;

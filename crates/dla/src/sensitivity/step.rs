@@ -101,7 +101,8 @@ impl<Sys, const N: usize, const M: usize, const P: usize> Sensitivity<'_, Sys, N
         Ok(derivative)
     }
 
-    /// The derivative of a step that has been made: from `start` at time `t` to `end` at `t + h`.
+    /// The derivative of a step that has been made: from `start` to `end`; `time` is its start and its
+    /// length (s).
     ///
     /// The method is an object here, so that what asks for derivatives of many methods is compiled once.
     ///

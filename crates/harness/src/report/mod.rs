@@ -12,6 +12,8 @@ use std::path::{Path, PathBuf};
 mod animation;
 mod axis;
 mod canvas;
+mod cells;
+mod chart;
 mod diagram;
 mod drift;
 mod files;
@@ -22,7 +24,6 @@ mod page;
 mod path;
 mod picture;
 mod png;
-mod plane;
 mod precision;
 mod raster;
 mod scale;
@@ -30,7 +31,8 @@ mod sleigh;
 mod thinning;
 mod xml;
 
-pub use plane::{Curves, Plane, plane};
+pub use cells::Cells;
+pub use chart::{Chart, Layer, chart_svg};
 pub use precision::{PrecisionReport, Table, write_precision};
 
 /// A report: what the page says above its scenes, and the scenes.

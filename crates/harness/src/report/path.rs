@@ -72,7 +72,7 @@ impl View {
 }
 
 /// What the frame shows of a path, in unbroken lines of not too many points.
-pub(super) fn thinned(frame: &Frame, path: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
+fn thinned(frame: &Frame, path: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
     thin(frame.lines(path.iter().map(|point| frame.place(*point))), POINTS)
 }
 

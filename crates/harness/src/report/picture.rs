@@ -49,6 +49,12 @@ impl Picture {
         self
     }
 
+    /// Adds shapes on top, in units of the canvas.
+    pub(super) fn with(mut self, shapes: &str) -> Self {
+        self.shapes += shapes;
+        self
+    }
+
     /// The picture as a part of a page: transparent, in the page's text colour.
     pub(super) fn inline(&self) -> String {
         self.with_inside("")
