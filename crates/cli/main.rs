@@ -20,6 +20,7 @@ mod progress;
 mod resume;
 mod run;
 mod saves;
+mod stability;
 mod table;
 mod terminal;
 mod trajectory_file;
@@ -54,6 +55,7 @@ fn command(arguments: Arguments) -> Result<(), CliError> {
         Some(Command::Run(arguments)) => run::run(&arguments),
         Some(Command::Compare(arguments)) => compare::compare(&arguments),
         Some(Command::Precision(arguments)) => precision::precision(&arguments),
+        Some(Command::Stability(arguments)) => stability::stability(&arguments),
         Some(Command::Cost(arguments)) => cost::cost(&arguments),
         Some(Command::Check(arguments)) => inspect::check(&arguments),
         Some(Command::List(arguments)) => inspect::list(&arguments),
