@@ -22,7 +22,7 @@ pub(super) const ROTOR_DRIVE: Case = Case {
 pub(super) fn rotor_drive(lab: &mut Lab) -> Result<(), CliError> {
     let frequency = 0.25;
     let torque = Some(TimeSpec::Sine { amplitude: 1.0, frequency, phase: 0.0 });
-    let periods = 16.0;
+    let periods = 8.0;
     let setup = Setup::new(1.0, 0.0, 0.1, periods * TAU / frequency).with(SceneEffect::Flywheel {
         inertia: 0.2,
         rotor_rate: 0.0,
@@ -178,7 +178,7 @@ pub(super) const TURNTABLE: Case = Case {
            velocities through zero exists.",
     shows: "The constraint to rounding, and the energy but for the work that the plane does.",
     bar: "Rounding of the velocities; the method's order over the run, or that of the work's quadrature (6).",
-    claim: Claim::Constraint,
+    claim: Claim::Order,
     refusable: false,
 };
 

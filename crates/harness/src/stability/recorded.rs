@@ -1,6 +1,5 @@
 use dla::{Observer, RunError, State, StepReport, View, Work};
 use lagrangian::System;
-use lagrangian::linear::larger;
 use std::fmt;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -15,9 +14,9 @@ pub struct Seen {
     pub t: f64,
     /// What the case looks at; the rest is zero.
     pub values: [f64; VALUES],
-    /// The largest `|E - E0 - work|` (J) since the node before.
+    /// `|E - E0 - work|` (J).
     pub energy_error: f64,
-    /// The largest constraint residual since the node before.
+    /// The constraint residual.
     pub constraint: f64,
 }
 
@@ -52,7 +51,6 @@ pub struct Recorder<'a, const N: usize> {
     begun: Instant,
     initial: f64,
     work: Work<N>,
-    bucket: (f64, f64),
     recorded: Recorded,
 }
 
@@ -64,7 +62,7 @@ impl<'a, const N: usize> Recorder<'a, N> {
     #[must_use]
     pub fn new(every: u64, look: &'a dyn Fn(&State<N>) -> [f64; VALUES]) -> Self {
         let (work, recorded) = (Work::default(), Recorded::default());
-        Self { look, every: every.max(1), begun: Instant::now(), initial: 0.0, work, bucket: (0.0, 0.0), recorded }
+        Self { look, every: every.max(1), begun: Instant::now(), initial: 0.0, work, recorded }
     }
 
     /// The run, with why it ended early.
@@ -74,17 +72,15 @@ impl<'a, const N: usize> Recorder<'a, N> {
     }
 
     fn see<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>) -> ControlFlow<()> {
-        let error = (node.energy() - self.initial - self.work.total()).abs();
-        self.bucket = (larger(self.bucket.0, error), larger(self.bucket.1, node.constraint()));
         let late = node.k.is_multiple_of(1024) && self.begun.elapsed() > Self::LONGEST;
-        let values = (self.look)(node.state);
-        let broken = values.iter().any(|x| !x.is_finite());
-        if node.k.is_multiple_of(self.every) || broken {
-            let (energy_error, constraint) = self.bucket;
-            self.recorded.nodes.push(Seen { t: node.t, values, energy_error, constraint });
-            self.bucket = (0.0, 0.0);
-        }
         self.recorded.late |= late;
+        let mut broken = false;
+        if node.k.is_multiple_of(self.every) {
+            let values = (self.look)(node.state);
+            let energy_error = (node.energy() - self.initial - self.work.total()).abs();
+            self.recorded.nodes.push(Seen { t: node.t, values, energy_error, constraint: node.constraint() });
+            broken = values.iter().any(|x| !x.is_finite());
+        }
         if late || broken { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
