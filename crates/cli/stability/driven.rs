@@ -100,7 +100,7 @@ pub(super) fn planimeter(lab: &mut Lab) -> Result<(), CliError> {
         let start = (0.5 * FRAC_PI_2).tan();
         let expected = 2.0 * f64::atan2(c * start + d * (ratio - 1.0), d * (ratio + 1.0) * start + c);
         let rate = (1.0 + ratio) * TAU / period;
-        let bar = rate * period * lab.accuracy(setup.step * rate, rate * period, setup.steps);
+        let bar = lab.accuracy(setup.step * rate, rate * period, setup.steps);
         lab.run(format!("R/a = {ratio}"), &setup, |run| {
             let off = run.end().map(|end| 2.0 * (0.5 * (end.values[HEADING] - expected)).sin().abs());
             off.map(|off| measured("heading after a round, modulo 2 pi", off, bar))
@@ -131,7 +131,7 @@ pub(super) fn corners(lab: &mut Lab) -> Result<(), CliError> {
         direction + 2.0 * f64::atan2(turned.sin() * (-1.0 / offset).exp(), turned.cos())
     });
     let rate = 4.0 / period / offset;
-    let bar = rate * period * lab.accuracy(setup.step * rate, rate * period, setup.steps);
+    let bar = lab.accuracy(setup.step * rate, rate * period, setup.steps);
     lab.run("", &setup, |run| {
         let off = run.end().map(|end| 2.0 * (0.5 * (end.values[HEADING] - expected)).sin().abs());
         off.map(|off| measured("heading after a round, modulo 2 pi", off, bar))

@@ -17,6 +17,7 @@ use harness::stability::{Case, Outcome, Verdict, claims, judge};
 use lab::Lab;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 type Trying = fn(&mut Lab) -> Result<(), CliError>;
 
@@ -37,6 +38,7 @@ const CASES: &[(Case, Trying)] = &[
     (numbers::MANY_TURNS, numbers::many_turns),
     (numbers::LATE, numbers::late),
     (numbers::MASSES, numbers::masses),
+    (numbers::LIGHT_INERTIA, numbers::light_inertia),
     (numbers::FAST, numbers::fast),
     (fields::STIFF_BOWL, fields::stiff_bowl),
     (fields::STEEP_HILL, fields::steep_hill),
@@ -83,21 +85,22 @@ pub(crate) fn stability(arguments: &StabilityArguments) -> Result<(), CliError> 
         None => method_names(),
     };
     let methods = methods(&names, None)?;
-    let bar = progress::bar("cases", (chosen.len() * methods.len()) as u64);
-    let mut rows = Vec::new();
-    for (case, try_it) in chosen {
-        for method in &methods {
-            bar.inc(1);
-            let kind = method.info().kind;
-            if OTHER_SYSTEMS.contains(case) && !systems::METHODS.contains(&kind) {
-                continue;
-            }
-            let mut lab = Lab::new(*method);
-            try_it(&mut lab)?;
-            let verdict = judge(case, claims(kind, case.claim), &lab.trials);
-            rows.push(Row { case: case.name, method: method.info().name, verdict });
-        }
-    }
+    let pairs: Vec<_> = chosen
+        .iter()
+        .flat_map(|(case, try_it)| methods.iter().map(move |method| (case, *try_it, *method)))
+        .filter(|(case, _, method)| !OTHER_SYSTEMS.contains(case) || systems::METHODS.contains(&method.info().kind))
+        .collect();
+    let bar = progress::bar("cases", pairs.len() as u64);
+    let rows = in_parallel(&pairs, |(case, try_it, method)| {
+        let mut lab = Lab::new(*method);
+        let tried = try_it(&mut lab);
+        bar.inc(1);
+        tried.map(|()| Row {
+            case: case.name,
+            method: method.info().name,
+            verdict: judge(case, claims(method.info().kind, case.claim), &lab.trials),
+        })
+    })?;
     bar.finish_and_clear();
     if arguments.json {
         terminal::print_json(&json!({"cases": rows.iter().map(object).collect::<Vec<_>>()}))?;
@@ -106,6 +109,38 @@ pub(crate) fn stability(arguments: &StabilityArguments) -> Result<(), CliError> 
     }
     let failed = rows.iter().filter(|row| row.verdict.outcome == Outcome::Failed);
     CliError::of_failures(failed.map(|row| format!("{}, {} failed: {}", row.case, row.method, row.verdict.why)))
+}
+
+/// Each of the rows on whatever thread is free, in their order.
+fn in_parallel<T: Sync, R: Send>(
+    pairs: &[T],
+    row: impl Fn(&T) -> Result<R, CliError> + Sync,
+) -> Result<Vec<R>, CliError> {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(pairs.len().max(1));
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let mut made = Vec::new();
+        while let Some((at, pair)) =
+            Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|at| Some((at, pairs.get(at)?)))
+        {
+            made.push((at, row(pair)));
+        }
+        made
+    };
+    let mut made = std::thread::scope(|scope| {
+        let others: Vec<_> = (1..threads).map(|_| scope.spawn(work)).collect();
+        let own = work();
+        // A thread that panicked has said so; its rows are missing, and the count below tells.
+        others.into_iter().filter_map(|other| other.join().ok()).fold(own, |mut all, more| {
+            all.extend(more);
+            all
+        })
+    });
+    if made.len() < pairs.len() {
+        return Err(CliError::Computation(vec![format!("{} rows are missing", pairs.len() - made.len())]));
+    }
+    made.sort_by_key(|(at, _)| *at);
+    made.into_iter().map(|(_, row)| row).collect()
 }
 
 fn named(name: &str) -> Result<&'static (Case, Trying), CliError> {

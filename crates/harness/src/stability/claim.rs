@@ -17,6 +17,8 @@ pub enum Claim {
     Energy,
     /// What is accepted is the solution that continues the motion.
     Continuation,
+    /// A mass matrix that is regular on the constraint only.
+    LightInertia,
     /// A step that the explicit ones cannot make.
     Stiffness,
 }
@@ -49,12 +51,18 @@ pub fn claims(method: Kind, claim: Claim) -> Result<(), &'static str> {
             C::SmallSpin,
         ) => Err("works in coordinates: a spin below the rounding of the speed is noise to it"),
 
+        (K::Lobatto3 | K::Lobatto4 | K::Lobatto5, C::LightInertia) => Err(
+            "its stages leave the constraint, where the mass matrix is singular: they cannot be shown to continue the motion",
+        ),
+        (K::Gni, C::LightInertia) => Err(HIDDEN_MODE),
+
         (K::Rk4 | K::Rk4Projected | K::Rk4Reduced | K::Dop853, C::Symmetry) => Err("is not its own adjoint"),
         (K::Energy2 | K::Energy4 | K::Energy6 | K::Energy8, C::Energy) => Ok(()),
         (_, C::Energy) => Err("keeps the energy to its order only"),
         (K::Rk4 | K::Rk4Projected | K::Rk4Reduced, C::Continuation | C::Stiffness) => Err(EXPLICIT),
-        (_, C::Order | C::Constraint | C::SmallSpin | C::StableLine | C::Symmetry | C::Continuation | C::Stiffness) => {
-            Ok(())
+        (K::DlaTrapezoid | K::Gni, C::Stiffness) => {
+            Err("takes a potential at the nodes, as the leapfrog does: beyond sqrt(k/m) h = 2 it grows")
         }
+        _ => Ok(()),
     }
 }

@@ -97,7 +97,11 @@ pub fn judge(case: &Case, claim: Result<(), &'static str>, trials: &[Trial]) -> 
         (None, Some((trial, error)), Ok(())) if !case.refusable && !trial.unsupported => {
             verdict(Outcome::Failed, told(&trial.label, error))
         }
-        (None, Some((trial, error)), _) => {
+        (None, Some((trial, error)), Err(reason)) => verdict(
+            Outcome::Refused,
+            format!("not claimed, {reason}; {held} of {all} hold; {}", told(&trial.label, error)),
+        ),
+        (None, Some((trial, error)), Ok(())) => {
             verdict(Outcome::Refused, format!("{held} of {all} hold; {}", told(&trial.label, error)))
         }
         (None, None, Ok(())) => {
