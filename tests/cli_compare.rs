@@ -212,23 +212,29 @@ fn verdicts_on_an_attractor_and_off_it() {
     assert!(over_step(0) < 1e-13 && over_step(1) > 1e-6, "{rows:?}");
 }
 
-/// Ctrl-C, as a terminal sends it.
+/// Starts a command, sends it Ctrl-C, as a terminal does, once a file of it is there, and returns what came of it.
+#[cfg(unix)]
+fn interrupted(folder: &Folder, line: &str, sign_of_life: &str) -> program::Outcome {
+    let mut command = folder.command(line.split_whitespace());
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let begin = Instant::now();
+    while !folder.join(sign_of_life).exists() {
+        assert!(begin.elapsed() < Duration::from_secs(60), "no {sign_of_life}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let outcome = program::Outcome::of(child.wait_with_output().unwrap());
+    assert_eq!(outcome.code, 130, "{outcome:?}");
+    outcome
+}
+
 #[cfg(unix)]
 #[test]
 fn ctrl_c_keeps_what_is_done_and_the_rest_is_resumed() {
     let folder = Folder::new();
     let line = |more: &str| format!("compare turnaround --step 0.01 --methods dla,gauss4 --json {more}");
     let long = line("--duration 3e6 --checkpoint saves --checkpoint-every 1000000");
-    let mut command = folder.command(long.split_whitespace());
-    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    let begin = Instant::now();
-    while !folder.join("saves/dla.save").exists() {
-        assert!(begin.elapsed() < Duration::from_secs(60), "no checkpoint");
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
-    let outcome = program::Outcome::of(child.wait_with_output().unwrap());
-    assert_eq!(outcome.code, 130, "{outcome:?}");
+    let outcome = interrupted(&folder, &long, "saves/dla.save");
     outcome.assert_told("ctrl-c", &["interrupted: 0 of 2 methods are done, dla up to t = ", "--resume saves goes on"]);
     let object: Value = serde_json::from_str(&outcome.stdout).unwrap();
     let rows = object["rows"].as_array().unwrap();
@@ -239,6 +245,21 @@ fn ctrl_c_keeps_what_is_done_and_the_rest_is_resumed() {
     let saved = fs::read_to_string(folder.join("saves/dla.save")).unwrap();
     assert!(saved.contains(&format!("\nk: {steps:016x}\n")), "{steps}");
     folder.refused(&line("--duration 9 --resume saves"), &["belongs to another run"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_the_run_and_its_nodes() {
+    let folder = Folder::new();
+    let line = "run turnaround --step 0.01 --duration 3e6 --out path.csv --every 100000 --checkpoint run.save \
+                --checkpoint-every 1000000 --json";
+    let outcome = interrupted(&folder, line, "run.save");
+    outcome.assert_told("ctrl-c", &["interrupted: the run is made up to t = ", "--resume run.save goes on"]);
+    let object: Value = serde_json::from_str(&outcome.stdout).unwrap();
+    let steps = object["steps"].as_u64().unwrap();
+    assert!((1_000_000..300_000_000).contains(&steps) && object["interrupted"] == true, "{object}");
+    let written = fs::read_to_string(folder.join("path.csv")).unwrap();
+    assert!(written.lines().count() as u64 >= steps / 100_000, "{steps} steps, {} lines", written.lines().count());
 }
 
 #[test]

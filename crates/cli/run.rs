@@ -1,17 +1,18 @@
 use crate::args::RunArguments;
+use crate::compare::unless_interrupted;
 use crate::error::CliError;
 use crate::files::check_file;
+use crate::interrupt::Interrupt;
+use crate::progress::Interruptible;
 use crate::trajectory_file::{self, Format};
 use crate::{inspect, json, progress, resume, table, terminal, trigger};
-use dla::{Checkpoint, Schedule, State, Trajectory};
-use harness::{
-    Kind, Method, Progress, Record, Request, Saving, Watched, integrate_pieces, recommend, run_saved, run_watched,
-};
+use dla::{Checkpoint, Schedule, Trajectory};
+use harness::{Kind, Method, Progress, Record, Request, Saving, Watched, recommend, run_saved, run_watched};
 use scene::{Scene, SceneSystem, Visitor};
 use serde_json::Value;
 use std::path::Path;
 
-/// `noslip run`: one trajectory.
+/// `noslip run`: one trajectory, as far as Ctrl-C lets it come.
 pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let scene = inspect::load(&arguments.scene, arguments.method.as_deref())?;
     let method = Method::named(&scene.run.method, scene.run.alpha)?;
@@ -54,18 +55,6 @@ impl Run<'_> {
         self.out.map(|_| self.arguments.every)
     }
 
-    /// Once more, now to keep the nodes.
-    fn nodes<Sys, const N: usize, const M: usize>(&self, system: &Sys, request: &Request<N>) -> Option<Trajectory<N, M>>
-    where
-        Sys: SceneSystem<N, M>,
-    {
-        let mut trajectory = Trajectory::every(self.keep()?);
-        let mut state = State::new(request.q, request.v, system.angles());
-        // A failure here is the one that the record already tells of.
-        let _ = integrate_pieces(system, &self.method, &request.schedule, &mut state, &mut trajectory);
-        Some(trajectory)
-    }
-
     /// In parts that are saved, or from a part that was.
     fn saved<Sys, const N: usize, const M: usize>(
         &self,
@@ -96,7 +85,7 @@ impl Run<'_> {
         Ok(Made { record, trajectory, events: None, warning })
     }
 
-    /// With an eye on events.
+    /// At once, with an eye on events where there are any.
     fn watched<Sys, const N: usize, const M: usize>(
         &self,
         system: &Sys,
@@ -111,6 +100,9 @@ impl Run<'_> {
         let events: Vec<_> = reported.chain(until.iter().map(|trigger| trigger.event(system).terminal())).collect();
         let Watched { record, trajectory, crossings } =
             run_watched(system, &self.method, request, &events, self.keep(), progress);
+        if events.is_empty() {
+            return Made { record, trajectory, events: None, warning: Ok(()) };
+        }
         let values = crossings.iter().map(|crossing| trigger::json(system, &events, crossing)).collect();
         let told = crossings.iter().map(|crossing| trigger::told(&events, crossing)).collect();
         Made { record, trajectory, events: Some((values, told)), warning: Ok(()) }
@@ -124,7 +116,7 @@ impl Visitor for Run<'_> {
     where
         Sys: SceneSystem<N, M>,
     {
-        let RunArguments { checkpoint, resume, event, until, tolerance, .. } = self.arguments;
+        let RunArguments { checkpoint, resume, tolerance, .. } = self.arguments;
         let mut schedule = inspect::schedule(self.scene);
         if let Some(tolerance) = tolerance {
             let found = recommend(system, &self.method, (q, v), self.scene.run.duration, *tolerance);
@@ -134,18 +126,16 @@ impl Visitor for Run<'_> {
                 trajectory_file::check_size(schedule.steps, self.arguments.every)?;
             }
         }
+        let interrupt = Interrupt::listen();
         let bar = progress::bar(self.method.info().name, schedule.steps);
-        let mut progress = |steps| bar.inc(steps);
+        let mut progress = Interruptible { bar, interrupt: &interrupt };
         let request = Request { schedule, q, v, samples: 1 };
         let made = if checkpoint.is_some() || resume.is_some() {
             self.saved(system, &request, &mut progress)
-        } else if !(event.is_empty() && until.is_empty()) {
-            Ok(self.watched(system, &request, &mut progress))
         } else {
-            let record = harness::run(system, &self.method, &request, &mut progress);
-            Ok(Made { trajectory: self.nodes(system, &request), record, events: None, warning: Ok(()) })
+            Ok(self.watched(system, &request, &mut progress))
         };
-        bar.finish_and_clear();
+        progress.bar.finish_and_clear();
         let Made { record, trajectory, events, warning } = made?;
 
         let written = self.out.zip(trajectory).map_or(Ok(()), |((path, format), trajectory)| {
@@ -168,6 +158,7 @@ impl Visitor for Run<'_> {
         if let (Err(_), Err(error)) = (&computed, &written) {
             terminal::say("error", error);
         }
-        computed.and(written).and(warning)
+        let made = record.interrupted.then(|| format!("the run is made up to t = {} s", table::number(record.t)));
+        unless_interrupted(made, checkpoint.clone(), computed.and(written).and(warning))
     }
 }

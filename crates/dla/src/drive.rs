@@ -195,7 +195,8 @@ pub struct Part {
 ///
 /// # Errors
 /// As [`drive`].
-#[inline]
+// Inlined into the one place that names all methods, their loops would be one function, and slow to compile.
+#[inline(never)]
 pub fn drive_part<Sys, Method, Obs, const N: usize, const M: usize>(
     system: &Sys,
     method: &mut Method,

@@ -61,17 +61,12 @@ enum Guiding {
 impl Scene {
     /// Builds the system of the scene and hands it to the visitor: the one place where a scene becomes a type.
     ///
-    /// A scene without effects becomes the bare body, `With<Sleigh, ()>`; any other a body with a list of what acts on it,
-    /// which may be empty. More types would be more code for every method: each has its own copy. A velocity that the scene imposes replaces that
-    /// of its start.
+    /// A body on which nothing acts becomes `With<Body, ()>`, any other a body with a list of what acts on it: an empty list
+    /// would be looked at in every evaluation. A velocity that the scene imposes replaces that of its start.
     ///
     /// # Errors
     /// [`SleighError`] where an effect has impossible parameters, which one read from a file has not.
     pub fn visit<V: Visitor>(&self, visitor: V) -> Result<V::Output, SleighError> {
-        if self.effects.is_empty() {
-            let (q, v) = self.start.to_coordinates();
-            return Ok(start(visitor, &With { body: self.sleigh, effects: () }, q, v));
-        }
         Ok(match self.guiding()? {
             Guiding::None => self.with_rotor(self.sleigh, visitor)?,
             Guiding::Turntable(body) => self.with_rotor(body, visitor)?,
@@ -125,17 +120,36 @@ impl Scene {
         B: SceneBody<3, M> + Piecewise,
         V: Visitor,
     {
-        let effects = self.acting()?;
         let (q, v) = self.start.to_coordinates();
         for effect in &self.effects {
             if let SceneEffect::Flywheel { inertia, rotor_rate, torque } = effect {
                 let torque = torque.as_ref().map(crate::TimeSpec::build).transpose()?;
                 let body = Flywheel::new(body, *inertia, torque)?;
                 let (q, v) = ([q[0], q[1], q[2], 0.0], [v[0], v[1], v[2], *rotor_rate]);
-                return Ok(start(visitor, &With { body, effects }, q, v));
+                return self.with_effects(body, visitor, q, v);
             }
         }
-        Ok(start(visitor, &With { body, effects }, q, v))
+        self.with_effects(body, visitor, q, v)
+    }
+
+    /// Adds what acts on the body, if anything does.
+    fn with_effects<B, V, const N: usize, const M: usize>(
+        &self,
+        body: B,
+        visitor: V,
+        q: [f64; N],
+        v: [f64; N],
+    ) -> Result<V::Output, SleighError>
+    where
+        B: SceneBody<N, M> + Piecewise,
+        V: Visitor,
+    {
+        let effects = self.acting()?;
+        Ok(if effects.is_empty() {
+            start(visitor, &With { body, effects: () }, q, v)
+        } else {
+            start(visitor, &With { body, effects }, q, v)
+        })
     }
 
     /// The motion of the scene in closed form, where no effect changes that of the free sleigh.

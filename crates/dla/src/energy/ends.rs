@@ -14,12 +14,13 @@ pub(super) struct Ends {
 
 impl Ends {
     #[inline(always)]
-    pub(super) fn of<const S: usize, const N: usize, const M: usize>(
+    pub(super) fn of<const N: usize, const M: usize>(
+        rule: &Rule,
         bracket: &Bracket<Lanes, N, M>,
         points: &Points<N>,
         begin: &Start<N>,
     ) -> Self {
-        let (end, start) = Rule::<S>::ENDS;
+        let (end, start) = rule.ends();
         // H_pi = xi makes up for what the iteration for xi still misses; a discrete gradient divides it by the step.
         let mut energy = bracket.energy();
         let missing = points.missing(begin);

@@ -37,9 +37,9 @@ fn steepest<const N: usize>(h_q: &[Lanes; N], lanes: usize) -> [f64; N] {
 
 /// `int_0^1 (l_i / b_i) grad H(u) dsigma`.
 #[inline(always)]
-pub(super) fn average<Sys: System<N, M>, const S: usize, const N: usize, const M: usize>(
+pub(super) fn average<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
-    rule: &Rule<S>,
+    rule: &Rule,
     t: Lanes,
     nodes: &mut Points<N>,
 ) -> Option<Averages<N>> {
@@ -48,10 +48,10 @@ pub(super) fn average<Sys: System<N, M>, const S: usize, const N: usize, const M
     let mean = |values: &[Lanes; N]| {
         values.map(|value| {
             let mut result = Lanes::zero();
-            for i in 0..S {
+            for (weights, result) in rule.averages().iter().zip(&mut result.0) {
                 let (mut terms, mut rest) = (Lanes::zero(), Lanes::zero());
-                rule.averages[i].add(value, &mut terms, &mut rest);
-                result.0[i] = terms.0.iter().sum::<f64>() + rest.0.iter().sum::<f64>();
+                weights.add(value, &mut terms, &mut rest);
+                *result = terms.0.iter().sum::<f64>() + rest.0.iter().sum::<f64>();
             }
             result
         })
@@ -68,9 +68,9 @@ pub(super) fn average<Sys: System<N, M>, const S: usize, const N: usize, const M
 ///
 /// Where the ends coincide `k` is `0/0`; it is left out where the change that it would make up for is rounding.
 #[inline(always)]
-pub(super) fn gonzalez<Sys: System<N, M>, const S: usize, const N: usize, const M: usize>(
+pub(super) fn gonzalez<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
-    rule: &Rule<S>,
+    rule: &Rule,
     t: Lanes,
     path: &Path<N>,
     points: &Points<N>,
@@ -85,7 +85,7 @@ pub(super) fn gonzalez<Sys: System<N, M>, const S: usize, const N: usize, const 
         missing -= h_q[i].0[0] * dq[i] + h_pi[i].0[0] * dpi[i];
         square += dq[i] * dq[i] + dpi[i] * dpi[i];
     }
-    let steepest = steepest(&slope.h_q, Rule::<S>::ENDS.1 + 1);
+    let steepest = steepest(&slope.h_q, rule.ends().1 + 1);
     let rounding = f64::EPSILON * ends.rounded_size(&points.q.map(|q| q.0[0]), &steepest);
     if missing.abs() > rounding && square > 0.0 {
         let k = missing / square;

@@ -44,7 +44,7 @@ use std::array::from_fn;
 /// The system must have a basis of admissible velocities, `b = 0` and no explicit time; forces may depend on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Energy<const S: usize> {
-    rule: Rule<S>,
+    rule: Rule,
     gradient: Gradient,
     work: f64,
 }
@@ -53,7 +53,7 @@ impl<const S: usize> Energy<S> {
     /// The method with averaged gradients.
     #[must_use]
     pub fn new() -> Self {
-        Self { rule: Rule::new(), gradient: Gradient::Average, work: 0.0 }
+        Self { rule: Rule::new::<S>(), gradient: Gradient::Average, work: 0.0 }
     }
 
     /// The discrete work of the forces over the last step (J): by so much the energy has changed.
@@ -86,11 +86,7 @@ impl<Sys: System<N, M>, const S: usize, const N: usize, const M: usize> OneStep<
         affine_only(system, t0, state)?;
         velocities_only(system, t0, state, POSITIONS)?;
         let start = Start::new(system, t0, h, state)?;
-        let step = Step { system, rule: &self.rule, gradient: self.gradient, t0, h, start: &start };
-        let end = vectorized(
-            #[inline(always)]
-            || step.solve(),
-        )?;
+        let end = Step { system, rule: &self.rule, gradient: self.gradient, t0, h, start: &start }.solved()?;
         let q1 = state.ahead(&end.increment);
         let v1 = system.admissible_basis(t0 + h, &q1).ok_or(NO_BASIS)?.combine(&end.xi);
         state.advance_with_momenta(&end.increment, v1, end.xi, end.pi);
@@ -108,9 +104,9 @@ const POSITIONS: &str = "the energy-preserving methods let positions drift from 
                          projected positions would change the energy";
 
 /// The equations of one step.
-struct Step<'a, Sys, const S: usize, const N: usize> {
+struct Step<'a, Sys, const N: usize> {
     system: &'a Sys,
-    rule: &'a Rule<S>,
+    rule: &'a Rule,
     gradient: Gradient,
     t0: f64,
     h: f64,
@@ -126,9 +122,21 @@ struct End<const N: usize> {
     iterations: u32,
 }
 
-impl<Sys, const S: usize, const N: usize> Step<'_, Sys, S, N> {
+impl<Sys, const N: usize> Step<'_, Sys, N> {
     /// The energy may miss the work by so many roundings; more is an error of the quadrature.
     const ROUNDINGS: f64 = 1024.0;
+
+    /// With the widest instructions that the machine has.
+    #[inline(never)]
+    fn solved<const M: usize>(&self) -> Result<End<N>, StepError>
+    where
+        Sys: System<N, M>,
+    {
+        vectorized(
+            #[inline(always)]
+            || self.solve(),
+        )
+    }
 
     #[inline(always)]
     fn solve<const M: usize>(&self) -> Result<End<N>, StepError>
@@ -141,14 +149,14 @@ impl<Sys, const S: usize, const N: usize> Step<'_, Sys, S, N> {
         let mut settling = Settling::<3, N>::new();
         loop {
             let before = points.xi;
-            points.follow(&path, &rule.to_points, start, h);
+            points.follow(&path, rule.integrals_to_points(), start, h);
             let t = time(rule.points);
             let bracket = Bracket::at(system, t, &points.q, &points.xi).ok_or(NO_BASIS)?;
             points.pi = bracket.quasi_momenta();
-            let ends = Ends::of::<S, N, M>(&bracket, &points, start);
+            let ends = Ends::of(rule, &bracket, &points, start);
             let averages = match self.gradient {
                 Gradient::Average => {
-                    nodes.follow(&path, &rule.to_nodes, start, h);
+                    nodes.follow(&path, rule.integrals_to_nodes(), start, h);
                     gradient::average(system, rule, time(rule.nodes), &mut nodes)
                 }
                 Gradient::Gonzalez => gradient::gonzalez(system, rule, t, &path, &points, &ends, h),
@@ -166,9 +174,9 @@ impl<Sys, const S: usize, const N: usize> Step<'_, Sys, S, N> {
             }
 
             let changes = [
-                compared(&q_rate, &path.q_rate, 0..S),
-                compared(&pi_rate, &path.pi_rate, 0..S),
-                compared(&points.xi, &before, S..S + 1),
+                compared(&q_rate, &path.q_rate, 0..rule.stages),
+                compared(&pi_rate, &path.pi_rate, 0..rule.stages),
+                compared(&points.xi, &before, rule.stages..rule.stages + 1),
             ];
             path = Path { q_rate, pi_rate };
             let settled = settling.see(changes, averages.noise);
@@ -185,7 +193,7 @@ impl<Sys, const S: usize, const N: usize> Step<'_, Sys, S, N> {
     #[inline(always)]
     fn end(&self, path: &Path<N>, points: &Points<N>, work: f64, iterations: u32) -> End<N> {
         let (increment, gained) = path.increments(self.rule, self.h);
-        let (start, last) = (self.start, Rule::<S>::ENDS.0);
+        let (start, last) = (self.start, self.rule.ends().0);
         let mut xi = points.xi.map(|xi| xi.0[last]);
         for b in 0..N {
             let missing = gained[b] + start.rest[b] - (points.pi[b].0[last] - start.pi[b]);

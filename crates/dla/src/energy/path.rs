@@ -4,7 +4,7 @@ use lagrangian::{Lanes, Scalar};
 use std::array::from_fn;
 
 /// The path of a step, a polynomial in the coordinates and the quasi-momenta: its derivatives at the collocation nodes,
-/// one in each of the first `S` lanes.
+/// one in each of the first lanes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Path<const N: usize> {
     pub(super) q_rate: [Lanes; N],
@@ -20,7 +20,7 @@ impl<const N: usize> Path<N> {
 
     /// The increments of coordinates and quasi-momenta over the step.
     #[inline(always)]
-    pub(super) fn increments<const S: usize>(&self, rule: &Rule<S>, h: f64) -> ([f64; N], [f64; N]) {
+    pub(super) fn increments(&self, rule: &Rule, h: f64) -> ([f64; N], [f64; N]) {
         let sum = |k: &Lanes| h * rule.weighted(k);
         (from_fn(|i| sum(&self.q_rate[i])), from_fn(|i| sum(&self.pi_rate[i])))
     }
@@ -50,11 +50,11 @@ impl<const N: usize> Points<N> {
     /// The quasi-velocities follow the quasi-momenta by one correction with the mass matrix of the start: exact where
     /// that is constant in the basis, else one more fixed-point iteration within the others.
     #[inline(always)]
-    pub(super) fn follow<const S: usize>(&mut self, path: &Path<N>, weights: &[Weights; S], start: &Start<N>, h: f64) {
+    pub(super) fn follow(&mut self, path: &Path<N>, weights: &[Weights], start: &Start<N>, h: f64) {
         let moved = |k: &Lanes| {
             let (mut sum, mut rest) = (Lanes::zero(), Lanes::zero());
-            for i in 0..S {
-                weights[i].add(k.0[i], &mut sum, &mut rest);
+            for (weights, k) in weights.iter().zip(k.0) {
+                weights.add(k, &mut sum, &mut rest);
             }
             (sum + rest) * h
         };

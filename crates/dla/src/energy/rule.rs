@@ -2,7 +2,7 @@ use lagrangian::quadrature::gauss_legendre_twofold;
 use lagrangian::{Lanes, Twofold};
 use std::array::from_fn;
 
-/// The coefficients of collocation with `S` Gauss nodes `c_i` and of the integrals over the step.
+/// The coefficients of collocation with up to four Gauss nodes `c_i` and of the integrals over the step.
 ///
 /// The derivative of the polynomial is `u'(tau) = sum_i l_i(tau) K_i`, `l_i` the Lagrange polynomials of the `c_i`. The
 /// averages of the gradient are integrals against the `l_i`, by the Gauss rule with eight nodes, one in each of the
@@ -12,21 +12,28 @@ use std::array::from_fn;
 ///
 /// The energy is kept by identities between the coefficients. Their rounding would break these by the same little in every
 /// step, and where the motion has an attractor the energy would drift; so they have twice the digits.
+///
+/// The number of nodes is a value and no type, so that a step is compiled once for all of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Rule<const S: usize> {
+pub(super) struct Rule {
+    /// How many collocation nodes there are; `S` above.
+    pub(super) stages: usize,
     /// `b_i`, the integral of `l_i`.
-    pub(super) b: [Twofold; S],
+    b: [Twofold; MOST],
     /// Where along the step the nodes of the quadrature are.
     pub(super) nodes: Lanes,
-    /// Where the [points](Rule::ENDS) are.
+    /// Where the [points](Rule::ends) are.
     pub(super) points: Lanes,
     /// `w_k l_i(sigma_k) / b_i` at the nodes of the quadrature.
-    pub(super) averages: [Weights; S],
+    averages: [Weights; MOST],
     /// `int_0^sigma l_i` at the nodes of the quadrature.
-    pub(super) to_nodes: [Weights; S],
+    to_nodes: [Weights; MOST],
     /// The same at the points.
-    pub(super) to_points: [Weights; S],
+    to_points: [Weights; MOST],
 }
+
+/// With more nodes too few of the quadrature's digits are left.
+const MOST: usize = 4;
 
 /// One coefficient for each of the lanes, with twice the digits.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,6 +43,8 @@ pub(super) struct Weights {
 }
 
 impl Weights {
+    const NONE: Self = Self { hi: Lanes([0.0; Lanes::COUNT]), lo: Lanes([0.0; Lanes::COUNT]) };
+
     fn new(weights: [Twofold; Lanes::COUNT]) -> Self {
         Self { hi: Lanes(weights.map(|w| w.hi)), lo: Lanes(weights.map(|w| w.lo)) }
     }
@@ -56,12 +65,15 @@ impl Weights {
     }
 }
 
-impl<const S: usize> Rule<S> {
-    /// Of the points, the first `S` are the collocation nodes; then come the end and the start of the step.
-    pub(super) const ENDS: (usize, usize) = (S, S + 1);
+impl Rule {
+    /// Of the points, the first are the collocation nodes; then come the end and the start of the step.
+    #[inline(always)]
+    pub(super) fn ends(&self) -> (usize, usize) {
+        (self.stages, self.stages + 1)
+    }
 
-    pub(super) fn new() -> Self {
-        const { assert!(1 <= S && S <= 4, "one to four nodes: more leave too few of the quadrature's digits") };
+    pub(super) fn new<const S: usize>() -> Self {
+        const { assert!(1 <= S && S <= MOST, "one to four nodes: more leave too few of the quadrature's digits") };
         let (c, _) = gauss_legendre_twofold::<S>();
         let (nodes, weights) = gauss_legendre_twofold::<{ Lanes::COUNT }>();
         let one = Twofold::from(1.0);
@@ -74,24 +86,46 @@ impl<const S: usize> Rule<S> {
         };
         let points: [Twofold; Lanes::COUNT] = from_fn(|k| match k {
             k if k < S => c[k],
-            k if k == Self::ENDS.1 => Twofold::from(0.0),
+            k if k == S + 1 => Twofold::from(0.0),
             _ => one,
         });
         let b: [Twofold; S] = from_fn(|i| integral(i, one));
+        let filled = |weights: &dyn Fn(usize) -> Weights| from_fn(|i| if i < S { weights(i) } else { Weights::NONE });
         Self {
-            b,
+            stages: S,
+            b: from_fn(|i| if i < S { b[i] } else { Twofold::from(0.0) }),
             nodes: Lanes(nodes.map(|node| node.hi)),
             points: Lanes(points.map(|point| point.hi)),
-            averages: from_fn(|i| Weights::new(from_fn(|k| weights[k] * basis(i, nodes[k]) / b[i]))),
-            to_nodes: from_fn(|i| Weights::new(nodes.map(|tau| integral(i, tau)))),
-            to_points: from_fn(|i| Weights::new(points.map(|tau| integral(i, tau)))),
+            averages: filled(&|i| Weights::new(from_fn(|k| weights[k] * basis(i, nodes[k]) / b[i]))),
+            to_nodes: filled(&|i| Weights::new(nodes.map(|tau| integral(i, tau)))),
+            to_points: filled(&|i| Weights::new(points.map(|tau| integral(i, tau)))),
         }
+    }
+
+    #[inline(always)]
+    pub(super) fn b(&self) -> &[Twofold] {
+        &self.b[..self.stages]
+    }
+
+    #[inline(always)]
+    pub(super) fn averages(&self) -> &[Weights] {
+        &self.averages[..self.stages]
+    }
+
+    #[inline(always)]
+    pub(super) fn integrals_to_nodes(&self) -> &[Weights] {
+        &self.to_nodes[..self.stages]
+    }
+
+    #[inline(always)]
+    pub(super) fn integrals_to_points(&self) -> &[Weights] {
+        &self.to_points[..self.stages]
     }
 
     /// `sum_i b_i x_i`.
     #[inline(always)]
     pub(super) fn weighted(&self, x: &Lanes) -> f64 {
-        let (hi, lo) = self.b.iter().zip(x.0).fold((0.0, 0.0), |(hi, lo), (b, x)| (hi + b.hi * x, lo + b.lo * x));
+        let (hi, lo) = self.b().iter().zip(x.0).fold((0.0, 0.0), |(hi, lo), (b, x)| (hi + b.hi * x, lo + b.lo * x));
         hi + lo
     }
 }
@@ -103,7 +137,7 @@ mod tests {
     /// Weights and matrix of the Gauss methods (Hairer, Lubich and Wanner 2006, table II.1.1).
     #[test]
     fn gauss_coefficients() {
-        let rule = Rule::<2>::new();
+        let rule = Rule::new::<2>();
         let root = 3.0_f64.sqrt() / 6.0;
         let expected = [[0.25, 0.25 - root], [0.25 + root, 0.25]];
         for i in 0..2 {
@@ -119,7 +153,7 @@ mod tests {
 
     /// Collocation integrates powers below `2 S` exactly over the step, and below `S` up to every point.
     fn check<const S: usize>() {
-        let rule = Rule::<S>::new();
+        let rule = Rule::new::<S>();
         for power in 0..2 * S as i32 {
             let sum: f64 = (0..S).map(|i| rule.b[i].hi * rule.points.0[i].powi(power)).sum();
             assert!((sum - f64::from(power + 1).recip()).abs() < 4e-16, "S = {S}, power {power}: {sum}");

@@ -42,19 +42,21 @@ impl<const S: usize, const N: usize, const M: usize> Differentiable<N, M> for En
         };
         let (mut h_q, mut h_pi) = ([[Seeded::zero(); N]; S], [[Seeded::zero(); N]; S]);
         for k in 0..Lanes::COUNT {
-            let point = on_path(self.rule.nodes.0[k], &self.rule.to_nodes.map(|w| w.rounded(k)))?;
+            let weights: [f64; S] = from_fn(|i| self.rule.integrals_to_nodes()[i].rounded(k));
+            let point = on_path(self.rule.nodes.0[k], &weights)?;
             let slope = point.energy_slope(model)?;
             for i in 0..S {
-                let share = self.rule.averages[i].rounded(k);
+                let share = self.rule.averages()[i].rounded(k);
                 h_q[i] = from_fn(|x| h_q[i][x] + slope[x] * share);
                 h_pi[i] = from_fn(|x| h_pi[i][x] + point.xi[x] * share);
             }
         }
         let mut points = Vec::with_capacity(S);
         for i in 0..S {
-            points.push(on_path(self.rule.points.0[i], &self.rule.to_points.map(|w| w.rounded(i)))?);
+            let weights: [f64; S] = from_fn(|j| self.rule.integrals_to_points()[j].rounded(i));
+            points.push(on_path(self.rule.points.0[i], &weights)?);
         }
-        let b = self.rule.b.map(|b| b.hi);
+        let b: [f64; S] = from_fn(|i| self.rule.b()[i].hi);
         let end = on_path(1.0, &b)?;
 
         if self.gradient == Gradient::Gonzalez {

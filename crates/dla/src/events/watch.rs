@@ -98,6 +98,9 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
     where
         Method: OneStep<Sys, N, M> + Clone,
     {
+        if self.events.is_empty() {
+            return Vec::new();
+        }
         let parts = i64::from(self.samples.max(1));
         let states: Vec<_> = (-1..=parts + 1)
             .filter_map(|j| {

@@ -1,0 +1,101 @@
+use super::Case;
+use super::systems::{bowl, drag, egg_crate, from, go, sleigh, start, three, with};
+use dla::{Dla, Form, Gauss};
+use lagrangian::{System, With};
+use scene::{Acting, Scene, SceneSystem, Visitor};
+use sleigh::effects::{Hill, Hills, MovingMass, Slope, Thrust, Torque};
+use sleigh::{Flywheel, Guide, Guided};
+use std::hint::black_box;
+
+const DLA: &str = "effects, dla";
+const GAUSS: &str = "effects, gauss8";
+
+/// A step with every effect alone and with several, as types and from a scene; what is absent must cost nothing.
+///
+/// The general midpoint step: its closed form knows no effects.
+pub(super) fn cases() -> Vec<Case> {
+    vec![
+        Case::new(DLA, "the sleigh itself", |steps| dla(&sleigh(), steps)),
+        Case::new(DLA, "none", |steps| dla(&with(()), steps)).same_as("the sleigh itself"),
+        Case::new(DLA, "none, scene", |steps| scene("", steps)).same_as("the sleigh itself"),
+        Case::new(DLA, "slope", |steps| dla(&with((slope(),)), steps)),
+        Case::new(DLA, "bowl", |steps| dla(&with((bowl(),)), steps)),
+        Case::new(DLA, "bowl, scene", |steps| scene(BOWL, steps)),
+        Case::new(DLA, "egg_crate", |steps| dla(&with((egg_crate(),)), steps)),
+        Case::new(DLA, "hills", |steps| dla(&with((hills(),)), steps)),
+        Case::new(DLA, "drag", |steps| dla(&with((drag(),)), steps)),
+        Case::new(DLA, "thrust", |steps| dla(&with((Thrust::new(-0.5).expect("finite"),)), steps)),
+        Case::new(DLA, "torque", |steps| dla(&with((Torque::new(0.1).expect("finite"),)), steps)),
+        Case::new(DLA, "moving_mass", |steps| dla(&with((moving_mass(),)), steps)),
+        Case::new(DLA, "bowl + drag", |steps| dla(&with((bowl(), drag())), steps)),
+        Case::new(DLA, "bowl + drag, list", |steps| {
+            dla(&with(vec![Acting::Bowl(bowl()), Acting::Drag(drag())]), steps);
+        }),
+        Case::new(DLA, "bowl + drag + egg_crate", |steps| dla(&with((bowl(), drag(), egg_crate())), steps)),
+        Case::new(DLA, "bowl + drag + egg_crate, list", |steps| dla(&with(three()), steps)),
+        Case::new(DLA, "flywheel", |steps| {
+            let body = Flywheel::new(sleigh(), 0.5, None).expect("positive");
+            let ([x, y, heading], [vx, vy, omega]) = start();
+            let start = ([x, y, heading, 0.0], [vx, vy, omega, 2.0]);
+            from(&With { body, effects: () }, Dla::midpoint().solved(Form::General), steps, start);
+        }),
+        Case::new(DLA, "flywheel, scene", |steps| scene(FLYWHEEL, steps)).same_as("flywheel"),
+        Case::new(DLA, "servo", |steps| {
+            let body = Guided::<1>::servo(sleigh(), Guide::Speed((-1.0).into())).expect("finite");
+            dla(&With { body, effects: () }, steps);
+        }),
+        Case::new(DLA, "servo, scene", |steps| scene(SERVO, steps)).same_as("servo"),
+        Case::new(DLA, "turntable", |steps| {
+            dla(&With { body: Guided::turntable(sleigh(), 0.2).expect("finite"), effects: () }, steps);
+        }),
+        Case::new(DLA, "turntable, scene", |steps| scene(TURNTABLE, steps)).same_as("turntable"),
+        Case::new(GAUSS, "the sleigh itself", |steps| gauss(&sleigh(), steps)),
+        Case::new(GAUSS, "none", |steps| gauss(&with(()), steps)).same_as("the sleigh itself"),
+        Case::new(GAUSS, "bowl", |steps| gauss(&with((bowl(),)), steps)),
+    ]
+}
+
+const BOWL: &str = "\n[[effects]]\nkind = \"bowl\"\nstiffness = [0.1, 0.1]\n";
+const FLYWHEEL: &str = "\n[[effects]]\nkind = \"flywheel\"\ninertia = 0.5\nrotor_rate = 2.0\n";
+const SERVO: &str = "\n[[effects]]\nkind = \"servo\"\nspeed = -1.0\n";
+const TURNTABLE: &str = "\n[[effects]]\nkind = \"turntable\"\nrate = 0.2\n";
+
+fn slope() -> Slope {
+    Slope::new([0.1, 0.0]).expect("finite")
+}
+
+fn hills() -> Hills {
+    Hills::new(vec![Hill { height: 0.1, x: 1.0, y: 1.0, width: 0.5 }]).expect("a positive width")
+}
+
+fn moving_mass() -> MovingMass {
+    MovingMass::new(0.1, 0.2, 0.1).expect("a positive mass")
+}
+
+fn dla<Sys: System<3, M>, const M: usize>(system: &Sys, steps: u64) {
+    go(system, Dla::midpoint().solved(Form::General), steps);
+}
+
+fn gauss<Sys: System<3, 1>>(system: &Sys, steps: u64) {
+    go(system, Gauss::<4>::default(), steps);
+}
+
+/// The same through a scene file.
+fn scene(effects: &str, steps: u64) {
+    let text = Scene::template().split("[[effects]]").next().expect("a first part").to_owned() + effects;
+    let scene = Scene::parse(&text, "bench.toml", &["dla"]).expect("a valid scene");
+    scene.visit(Steps(steps)).expect("a valid scene");
+}
+
+struct Steps(u64);
+
+impl Visitor for Steps {
+    type Output = ();
+
+    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N])
+    where
+        Sys: SceneSystem<N, M>,
+    {
+        from(system, Dla::midpoint().solved(Form::General), self.0, (black_box(q), black_box(v)));
+    }
+}
