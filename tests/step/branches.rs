@@ -1,5 +1,5 @@
-//! Methods that find their step by fixed-point iteration, or take what Newton's method finds: whether that is the solution
-//! that continues the motion, by following it from a step of length zero on, independently.
+//! Methods that find their step by fixed-point iteration need no safeguard: what the iteration converges to is the solution
+//! that continues the motion, which is followed here from a step of length zero on, independently.
 
 use crate::common::{sleigh, state_of};
 use dla::{Energy, Gauss, Gni, OneStep, State};
@@ -11,14 +11,14 @@ use sleigh::{Sleigh, SleighState};
 use std::array::from_fn;
 
 /// The parts in which a solution is followed; within one it changes by less than a twentieth, or it has ended.
-const PARTS: u32 = 2000;
+const PARTS: u32 = 500;
 
 /// A solution `x` of some equations at the end of the branch that begins at `x0`, by Newton's method in small parts.
 fn followed<const U: usize>(x0: [f64; U], correction: impl Fn(f64, &[f64; U]) -> Option<[f64; U]>) -> Option<[f64; U]> {
     let mut x = x0;
     for part in 1..=PARTS {
         let before = x;
-        for _ in 0..12 {
+        for _ in 0..6 {
             let d = correction(f64::from(part) / f64::from(PARTS), &x)?;
             x = from_fn(|i| x[i] + d[i]);
         }
@@ -63,7 +63,7 @@ fn collocated<const S: usize, const U: usize>(sleigh: &Sleigh, start: [f64; 2], 
 }
 
 /// The solution of one equation `f(h, w) = 0`, from `w0` on.
-fn root(w0: f64, h: f64, f: impl Fn(f64, Dual<1>) -> Dual<1>) -> Option<f64> {
+fn root(w0: f64, h: f64, f: impl Fn(f64, Dual<f64, 1>) -> Dual<f64, 1>) -> Option<f64> {
     let [w] = followed([w0], |part, w| {
         let [w] = Dual::variables(w);
         let at = f(part * h, w);
@@ -153,12 +153,14 @@ fn fixed_points_are_on_the_branch() {
     let gauss8 = count(Gauss::<4>::default, |s, y, h| collocated::<4, 8>(s, y, h).map(|y| y[1]), spin);
     let energy2 = count(Energy::<1>::default, |s, y, h| collocated::<1, 2>(s, y, h).map(|y| y[1]), spin);
     let midpoint = count(ImplicitMidpoint::default, by_midpoint, spin);
-    let gni = count(Gni::<_, 3>::default, by_reflection, |state, h| state.unwrapped()[2] / h);
-    for (name, count) in
-        [("gauss4", gauss4), ("gauss8", gauss8), ("energy2", energy2), ("implicit-midpoint", midpoint), ("gni", gni)]
+    for (name, count) in [("gauss4", gauss4), ("gauss8", gauss8), ("energy2", energy2), ("implicit-midpoint", midpoint)]
     {
         println!("{name:<18} {count:?}");
         assert_eq!(count.wrong, 0, "{name} accepts solutions of another motion: {count:?}");
-        assert!(count.right > 100 && count.none + count.refused > 20, "{name}: {count:?}");
+        assert!(count.right > 300 && count.none + count.refused > 100, "{name}: {count:?}");
     }
+    // The control: Newton's method without a look at the branch, as the counter-example has it.
+    let gni = count(Gni::<_, 3>::default, by_reflection, |state, h| state.unwrapped()[2] / h);
+    println!("{:<18} {gni:?}", "gni");
+    assert!(gni.wrong > 50 && gni.right > 300, "the same measure sees other solutions with gni: {gni:?}");
 }
