@@ -66,12 +66,7 @@ where
         for weight in self.weights {
             let report = self.base.step(system, t + done * h, weight * h, &mut inner)?;
             done += weight;
-            for end in 0..2 {
-                for k in 0..M {
-                    total.impulses[end][k] += report.impulses[end][k];
-                }
-            }
-            total.iterations += report.iterations;
+            total = total.then(&report);
         }
         *state = inner;
         Ok(total)

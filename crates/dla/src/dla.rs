@@ -3,6 +3,7 @@ use crate::increment::{Increment, Mean};
 use crate::overshoot::brakes_only;
 use crate::projection::Projection;
 use crate::{Newton, OneStep, Stage, State, StepError, StepReport};
+use lagrangian::linear::largest;
 use lagrangian::{
     Alpha, DiscreteConstraint, DiscreteLagrangian, Midpoint, NotAWeight, System, Trapezoid, momentum, reaction_rows,
 };
@@ -155,7 +156,7 @@ impl<L, C> Dla<L, C> {
             lambda: [0.0; M],
             positive: None,
         };
-        let Mean { v, lambda, iterations, some } = increment.solve(&self.newton, v0)?;
+        let Mean { v, lambda, iterations, some } = increment.solve(&self.newton, v0, predicted(state, h))?;
 
         // The momentum at the end, projected onto the constraint there.
         let mut p1 = self.lagrangian.d2(system, t0, h, &q0, &v);
@@ -173,9 +174,20 @@ impl<L, C> Dla<L, C> {
         if let Some(rows) = some {
             rows_left_out(system, t1, &q1, &v1, rows)?;
         }
-        state.advance(&d, v1, None);
+        // From the middle of the step to its end.
+        let acceleration = from_fn(|i| (v1[i] - v[i]) / (0.5 * h));
+        state.advance_with_acceleration(&d, v1, acceleration);
         Ok(StepReport { impulses: [lambda, mu], iterations, work: None })
     }
+}
+
+/// The mean velocity of a step, if the acceleration is that of the last one; none where that is not known, or would change
+/// the velocity so much that a search from there might lead elsewhere.
+#[inline]
+fn predicted<const N: usize>(state: &State<N>, h: f64) -> Option<[f64; N]> {
+    const MOST: f64 = 0.125;
+    let (v0, gained) = (state.v(), state.acceleration()?.map(|a| 0.5 * h * a));
+    (largest(&gained) <= MOST * largest(v0)).then(|| from_fn(|i| v0[i] + gained[i]))
 }
 
 fn is_midpoint<R: 'static>() -> bool {
