@@ -1,6 +1,8 @@
 //! `noslip check`, `noslip list`, `noslip new` and `noslip cost`.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
+#[path = "book/mod.rs"]
+mod book;
 #[path = "common/program.rs"]
 mod program;
 

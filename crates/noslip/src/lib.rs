@@ -26,7 +26,17 @@ pub use lagrangian::{
 };
 pub use sleigh::{self, CentreOfMass, Exact, Sleigh, SleighError, SleighState};
 
-/// The examples of the README, compiled and run as tests.
+/// The examples of the README and of the book, compiled and run as tests.
 #[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-pub struct Readme;
+mod book {
+    #[doc = include_str!("../../../README.md")]
+    pub struct Readme;
+    #[doc = include_str!("../../../docs/guide/first-simulation.md")]
+    pub struct FirstSimulation;
+    #[doc = include_str!("../../../docs/guide/your-own-system.md")]
+    pub struct YourOwnSystem;
+    #[doc = include_str!("../../../docs/phenomena/naive.md")]
+    pub struct Naive;
+    #[doc = include_str!("../../../docs/sensitivities.md")]
+    pub struct Sensitivities;
+}
