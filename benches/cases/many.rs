@@ -5,8 +5,8 @@ use harness::report::{Report, SceneReport, Series, write};
 use sleigh::SleighState;
 use std::thread;
 
-const ENSEMBLE: &str = "ensemble";
-const REPORT: &str = "report";
+pub(super) const ENSEMBLE: &str = "ensemble";
+pub(super) const REPORT: &str = "report";
 
 /// Steps of every sleigh of an ensemble.
 const STEPS: u64 = 800;

@@ -2,6 +2,7 @@
 
 mod args;
 mod compare;
+mod compare_numbers;
 mod cost;
 mod error;
 mod facts;

@@ -30,6 +30,14 @@ for page in "$root"/docs/gallery/*.md; do
 done
 take turnaround/turnaround-constraint.svg turnaround-constraint.svg
 
+"$noslip" compare turnaround --methods dla,dla4,dla8,rk4,rk4-projected --report pages >/dev/null
+for look in light=1 dark=0; do
+    chromium --headless=new --no-sandbox --hide-scrollbars --window-size=1500,1790 --force-device-scale-factor=0.75 \
+        --blink-settings=preferredColorScheme="${look#*=}" --screenshot="report-${look%=*}.png" "file://$work/pages/index.html" 2>/dev/null
+done
+take report-light.png report-light.png
+take report-dark.png report-dark.png
+
 example() {
     cargo run --quiet --manifest-path "$root/Cargo.toml" --example "$1" -- "$work/$2" >/dev/null
 }

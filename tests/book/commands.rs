@@ -10,13 +10,14 @@ use std::thread;
 const LONG: [&str; 2] = ["noslip precision bowl --report pages", "noslip precision bowl --report pages --csv bowl.csv"];
 
 /// Commands that are for other programs: what is built, installed or measured is not done by a test.
-const OTHERS: [&str; 6] = [
+const OTHERS: [&str; 7] = [
     "cargo build --release",
     "cargo run --release",
     "cargo test --workspace",
     "cargo install mdbook --locked --no-default-features",
     "mdbook build docs",
     "benches/peers/run ",
+    "docs/pictures/make.sh",
 ];
 
 /// A line of a block of shell commands, and what its comment says of it.
