@@ -7,7 +7,8 @@ use harness::{Rk4, Rk4Projected};
 use noslip::dla::{Composition, onto_constraint};
 use noslip::sleigh::effects::Bowl;
 use noslip::{
-    Dla, OneStep, Schedule, Sleigh, SleighState, State, StepError, StepReport, System, Trajectory, With, drive,
+    Dla, OneStep, Schedule, Sleigh, SleighError, SleighState, State, StepError, StepReport, System, Trajectory, With,
+    drive,
 };
 use std::path::Path;
 
@@ -43,70 +44,84 @@ type Basin = With<Sleigh, Bowl>;
 const DURATION: f64 = 3000.0;
 const STEP: f64 = 0.1;
 
-/// A run from the start of the bundled scene `bowl`, as far as the method goes.
-fn series<M: OneStep<Basin, 3, 1>>(basin: &Basin, label: &str, mut method: M) -> Series {
-    let (q, v) = SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() }.to_coordinates();
+/// A run whose energy is off by so much (J) is lost.
+const LOST: f64 = 1e3;
+
+/// A run in a bowl, until it is lost.
+fn series<M: OneStep<Basin, 3, 1>>(basin: &Basin, start: &SleighState, label: &str, mut method: M) -> Series {
+    let (q, v) = start.to_coordinates();
     let mut state = State::new(q, v, basin.angles());
     let mut trajectory = Trajectory::<3, 1>::every(1);
     let schedule = Schedule { t0: 0.0, step: STEP, steps: (DURATION / STEP) as u64 };
-    if let Err(error) = drive(basin, &mut method, &schedule, &mut state, &mut trajectory) {
-        println!("{label}: {error}");
-    }
-    let nodes = trajectory.nodes();
+    // A run that fails is lost too: its last nodes are infinite in all but name.
+    let _ended = drive(basin, &mut method, &schedule, &mut state, &mut trajectory);
+    let first = trajectory.nodes()[0].energy;
+    let nodes: Vec<_> = trajectory.nodes().iter().take_while(|node| (node.energy - first).abs() < LOST).collect();
     Series {
         label: label.to_owned(),
         path: nodes.iter().map(|node| [node.q[0], node.q[1]]).collect(),
         heading: nodes.iter().map(|node| node.q[2]).collect(),
         time: nodes.iter().map(|node| node.t).collect(),
         constraint: nodes.iter().map(|node| node.constraint).collect(),
-        energy_error: nodes.iter().map(|node| (node.energy - nodes[0].energy).abs()).collect(),
+        energy_error: nodes.iter().map(|node| (node.energy - first).abs()).collect(),
         ..Series::default()
     }
 }
 
-/// The largest of the values at the times of a span (s).
-fn largest(run: &Series, values: &[f64], span: [f64; 2]) -> String {
-    if run.time.last().is_none_or(|end| *end < span[1] - STEP) {
-        return "-".to_owned();
+/// The largest of the values up to a time (s).
+fn largest(run: &Series, values: &[f64], end: f64) -> String {
+    if run.time.last().is_none_or(|last| *last < end - STEP) {
+        return "lost".to_owned();
     }
-    let within = run.time.iter().zip(values).filter(|(time, _)| (span[0]..=span[1]).contains(*time));
-    format!("{:.1e}", within.fold(0.0f64, |most, (_, value)| most.max(*value)))
+    let before = run.time.iter().zip(values).filter(|(time, _)| **time <= end);
+    format!("{:.1e}", before.fold(0.0f64, |most, (_, value)| most.max(*value)))
+}
+
+const COLUMNS: [&str; 7] = ["method", "slip to 30 s", "300 s", "3000 s [m/s]", "energy to 30 s", "300 s", "3000 s [J]"];
+
+fn scene(name: &str, offset: f64, start: &SleighState) -> Result<SceneReport, SleighError> {
+    let basin = With { body: Sleigh::new(1.0, 1.0, offset)?, effects: Bowl::new([0.1, 0.1], [0.0, 0.0])? };
+    println!("\n{name}: a = {offset} m, u = {} m/s, w = {} rad/s", start.speed, start.turn_rate);
+    let series = vec![
+        series(&basin, start, "euler", Euler),
+        series(&basin, start, "euler-projected", EulerProjected),
+        series(&basin, start, "rk4", Rk4),
+        series(&basin, start, "rk4-projected", Rk4Projected),
+        series(&basin, start, "dla", Dla::midpoint()),
+        series(&basin, start, "dla4", Composition::suzuki4(Dla::midpoint())),
+    ];
+    let ends = [30.0, 300.0, DURATION];
+    let rows: Vec<Vec<String>> = series
+        .iter()
+        .map(|run| {
+            let slip = ends.map(|end| largest(run, &run.constraint, end));
+            let energy = ends.map(|end| largest(run, &run.energy_error, end));
+            [&[run.label.clone()], &slip[..], &energy].concat()
+        })
+        .collect();
+    for row in [&COLUMNS.map(str::to_owned).to_vec()].into_iter().chain(&rows) {
+        print!("{:<16}", row[0]);
+        row[1..].iter().zip([13, 9, 14, 16, 9, 12]).for_each(|(cell, width)| print!("{cell:>width$}"));
+        println!();
+    }
+    Ok(SceneReport {
+        name: format!("naive-{name}"),
+        title: format!("A {name} sleigh in a bowl"),
+        columns: COLUMNS.map(str::to_owned).to_vec(),
+        rows,
+        series,
+        ..SceneReport::default()
+    })
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let basin = With { body: Sleigh::new(1.0, 1.0, 0.5)?, effects: Bowl::new([0.1, 0.1], [0.0, 0.0])? };
-    let all = vec![
-        series(&basin, "euler", Euler),
-        series(&basin, "euler-projected", EulerProjected),
-        series(&basin, "rk4", Rk4),
-        series(&basin, "rk4-projected", Rk4Projected),
-        series(&basin, "dla", Dla::midpoint()),
-        series(&basin, "dla4", Composition::suzuki4(Dla::midpoint())),
+    let scenes = vec![
+        scene("balanced", 0.0, &SleighState { speed: 1.0, turn_rate: 0.7, ..SleighState::default() })?,
+        scene("unbalanced", 0.5, &SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() })?,
     ];
-    let columns = ["method", "slip to 30 s [m/s]", "to 3000 s", "energy to 30 s [J]", "to 300 s", "to 3000 s"];
-    println!(
-        "{:<16}{:>19}{:>11}{:>20}{:>11}{:>11}",
-        columns[0], columns[1], columns[2], columns[3], columns[4], columns[5]
-    );
-    let mut rows = Vec::new();
-    for run in &all {
-        let slip = [30.0, DURATION].map(|end| largest(run, &run.constraint, [0.0, end]));
-        let energy = [30.0, 300.0, DURATION].map(|end| largest(run, &run.energy_error, [0.0, end]));
-        println!("{:<16}{:>19}{:>11}{:>20}{:>11}{:>11}", run.label, slip[0], slip[1], energy[0], energy[1], energy[2]);
-        rows.push([&[run.label.clone()], &slip[..], &energy].concat());
-    }
-
     if let Some(folder) = std::env::args().nth(1) {
-        let scene = SceneReport {
-            name: "naive".to_owned(),
-            title: "Naive methods beside the discrete principle".to_owned(),
-            columns: columns.map(str::to_owned).to_vec(),
-            rows,
-            series: all,
-            ..SceneReport::default()
-        };
-        let report = Report { title: scene.title.clone(), intro: String::new(), scenes: vec![scene] };
-        report::write(&report, Path::new(&folder), false)?;
+        let title = "Naive methods beside the discrete principle".to_owned();
+        report::write(&Report { title, intro: String::new(), scenes }, Path::new(&folder), false)?;
         println!("written: {folder}");
     }
     Ok(())
