@@ -1,9 +1,10 @@
 //! Circles and straightening: the curvature of the blade's path against the time, for smaller and smaller offsets.
 //!
-//! `cargo run --example circles [FOLDER]`; the folder receives a report with the paths.
+//! `cargo run --example circles [FOLDER]`; the folder receives the two pictures.
 
-use harness::report::{self, Report, SceneReport, Series};
+use harness::report::{Chart, Layer, SceneReport, Series, chart_svg, path_picture};
 use noslip::{Dla, Exact, RunError, Schedule, Sleigh, SleighState, State, System, Trajectory, drive};
+use std::fs;
 use std::path::Path;
 
 const OFFSETS: [f64; 5] = [0.5, 0.2, 0.05, 0.01, 0.0];
@@ -27,7 +28,7 @@ fn curvature(state: &SleighState) -> f64 {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("curvature w/u [1/m]; error: the largest difference from the closed form");
     println!("  a [m]       0 s      10 s      20 s      40 s      80 s     160 s      error   turn to come [rad]");
-    let mut series = Vec::new();
+    let (mut series, mut curves, mut dots) = (Vec::new(), Vec::new(), Vec::new());
     for offset in OFFSETS {
         let sleigh = Sleigh::new(1.0, 1.0, offset)?;
         let exact = Exact::new(&sleigh, &START)?;
@@ -46,20 +47,29 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!(" {error:10.1e} {rest:20.2}");
 
         let path = nodes(&sleigh, 40, 4)?;
+        let path = path.nodes();
+        let bent = path.iter().map(|node| [node.t, curvature(&SleighState::from_coordinates(&node.q, &node.v))]);
+        curves.push(Layer::Curves { label: format!("a = {offset} m"), curves: vec![bent.collect()] });
+        dots.extend((0..=20).map(|k| 2.0 * f64::from(k)).map(|t| [t, curvature(&exact.at(t))]));
         series.push(Series {
             label: format!("a = {offset} m"),
-            path: path.nodes().iter().map(|node| [node.q[0], node.q[1]]).collect(),
-            heading: path.nodes().iter().map(|node| node.q[2]).collect(),
-            time: path.nodes().iter().map(|node| node.t).collect(),
-            constraint: path.nodes().iter().map(|node| node.constraint).collect(),
+            path: path.iter().map(|node| [node.q[0], node.q[1]]).collect(),
+            heading: path.iter().map(|node| node.q[2]).collect(),
+            time: path.iter().map(|node| node.t).collect(),
             ..Series::default()
         });
     }
 
     if let Some(folder) = std::env::args().nth(1) {
-        let title = "Circles and straightening".to_owned();
-        let scene = SceneReport { name: "circles".to_owned(), title: title.clone(), series, ..SceneReport::default() };
-        report::write(&Report { title, intro: String::new(), scenes: vec![scene] }, Path::new(&folder), false)?;
+        let title = "Curvature of the blade's path; the dots are the closed form".to_owned();
+        let axes = ["t [s]".to_owned(), "w/u [1/m]".to_owned()];
+        curves.push(Layer::Dots(dots));
+        let chart = Chart { title, axes, decades: false, layers: curves };
+        let scene =
+            SceneReport { name: "circles".to_owned(), title: "Paths".to_owned(), series, ..SceneReport::default() };
+        fs::create_dir(&folder)?;
+        fs::write(Path::new(&folder).join("circles-curvature.svg"), chart_svg(&chart)?)?;
+        fs::write(Path::new(&folder).join("circles-path.svg"), path_picture(&scene)?)?;
         println!("written: {folder}");
     }
     Ok(())

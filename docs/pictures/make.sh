@@ -42,7 +42,31 @@ example() {
     cargo run --quiet --manifest-path "$root/Cargo.toml" --example "$1" -- "$work/$2" >/dev/null
 }
 example naive_methods naive
-take naive/naive-constraint.svg naive-constraint.svg
-take naive/naive-energy.svg naive-energy.svg
+for picture in naive-balanced-constraint.svg naive-balanced-energy.svg naive-unbalanced-energy.svg; do
+    take "naive/$picture" "$picture"
+done
 example circles circles
 take circles/circles-path.svg circles-path.svg
+take circles/circles-curvature.svg circles-curvature.svg
+example parking parking.svg
+take parking.svg parking-gap.svg
+
+"$noslip" equilibria turnaround --picture portrait.svg >/dev/null
+take portrait.svg straight-portrait.svg
+"$noslip" equilibria thrust-well --picture thrust.svg >/dev/null
+take thrust.svg exchange-thrust.svg
+"$noslip" phase planimeter --loops 40 --picture phase.svg >/dev/null
+take phase.svg phase-map.svg
+
+# Minutes from here on.
+chaos=$root/docs/chaos
+"$noslip" lyapunov "$chaos/valley.toml" --duration 20000 --out exponents.svg >/dev/null
+take exponents.svg chaos-valley-exponents.svg
+"$noslip" section "$chaos/well.toml" --energy 0.2 --plane along=0 --axes across,turn_rate --starts 24 --duration 1000 --out well.svg >/dev/null
+take well.svg chaos-well.svg
+"$noslip" section "$chaos/valley.toml" --plane center_y=0 --starts 4 --duration 6000 --out valley.svg >/dev/null
+take valley.svg chaos-valley.svg
+"$noslip" section egg-crate-attractor --step 0.1 --plane turn_rate=0 --starts 4 --duration 8000 --out egg-crate.svg >/dev/null
+take egg-crate.svg chaos-egg-crate.svg
+"$noslip" lyapunov "$chaos/well.toml" --map speed=-1.2:1.2:30 --map turn_rate=-1.1:1.1:24 --duration 200 --out map.svg >/dev/null
+take map.svg chaos-map.svg

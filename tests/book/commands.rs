@@ -7,7 +7,16 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 /// What takes longer than a test may: marked `# long` on its page, parsed here, and run by the ignored test.
-const LONG: [&str; 2] = ["noslip precision bowl --report pages", "noslip precision bowl --report pages --csv bowl.csv"];
+const LONG: [&str; 8] = [
+    "noslip lyapunov docs/chaos/valley.toml --duration 20000 --out valley.svg",
+    "noslip lyapunov docs/chaos/well.toml --map speed=-1.2:1.2:30 --map turn_rate=-1.1:1.1:24 --duration 200 --out map.svg",
+    "noslip lyapunov egg-crate-attractor --step 0.1 --duration 20000",
+    "noslip precision bowl --report pages",
+    "noslip precision bowl --report pages --csv bowl.csv",
+    "noslip section docs/chaos/valley.toml --plane center_y=0 --starts 4 --duration 6000 --out valley.svg",
+    "noslip section docs/chaos/well.toml --energy 0.2 --plane along=0 --axes across,turn_rate --starts 24 --duration 1000 --out well.svg",
+    "noslip section egg-crate-attractor --step 0.1 --plane turn_rate=0 --starts 4 --duration 8000 --out egg-crate.svg",
+];
 
 /// Commands that are for other programs: what is built, installed or measured is not done by a test.
 const OTHERS: [&str; 7] = [

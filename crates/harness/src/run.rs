@@ -133,6 +133,21 @@ pub fn integrate_on<Sys: System<N, M> + Piecewise, const N: usize, const M: usiz
     integrate_pieces(system, method, schedule, state, &mut Ticker::new(progress, 0))
 }
 
+/// The same with an observer besides.
+///
+/// # Errors
+/// As [`integrate_pieces`].
+pub fn integrate_on_watched<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &Method,
+    schedule: &Schedule,
+    state: &mut State<N>,
+    observer: &mut dyn Observer<Sys, N, M>,
+    progress: &mut dyn Progress,
+) -> Result<u64, RunError> {
+    integrate_pieces(system, method, schedule, state, &mut (observer, Ticker::new(progress, 0)))
+}
+
 /// Makes a run twice, once observed and once timed with nothing looking on, and measures it.
 ///
 /// A run that fails gives the record of its valid part, with [`Record::failure`] set.

@@ -7,6 +7,7 @@
 //! | describe a system: its Lagrangian and its constraint | [`System`], [`Scalar`] |
 //! | say what its constraints are, and start on them | [`classify`], [`consistent_start`] |
 //! | add what acts on a body | [`Effect`], [`With`] |
+//! | ask what its constraints let it reach, and what its symmetries conserve | [`lagrangian::growth`], [`lagrangian::conservation`] |
 //! | choose a method | [`Dla`], [`DiscreteLagrangian`], [`OneStep`] |
 //! | run it and look on | [`drive`], [`Schedule`], [`State`], [`Observer`], [`Trajectory`] |
 //! | differentiate its steps in state, parameters and controls | [`Sensitivity`], [`Parametrised`], [`Member`] |
@@ -37,6 +38,10 @@ mod book {
     pub struct YourOwnSystem;
     #[doc = include_str!("../../../docs/phenomena/naive.md")]
     pub struct Naive;
+    #[doc = include_str!("../../../docs/phenomena/parking.md")]
+    pub struct Parking;
+    #[doc = include_str!("../../../docs/phenomena/flywheel.md")]
+    pub struct Flywheel;
     #[doc = include_str!("../../../docs/sensitivities.md")]
     pub struct Sensitivities;
 }

@@ -12,6 +12,8 @@ use std::path::{Path, PathBuf};
 mod animation;
 mod axis;
 mod canvas;
+mod cells;
+mod chart;
 mod diagram;
 mod drift;
 mod files;
@@ -29,6 +31,8 @@ mod sleigh;
 mod thinning;
 mod xml;
 
+pub use cells::Cells;
+pub use chart::{Chart, Layer, chart_svg};
 pub use precision::{PrecisionReport, Table, write_precision};
 
 /// A report: what the page says above its scenes, and the scenes.
@@ -168,6 +172,13 @@ pub fn write(report: &Report, directory: &Path, overwrite: bool) -> Result<Vec<P
 
 /// The name of the page.
 const PAGE: &str = "index.html";
+/// The picture of the paths of a scene, seen from above, as the text of an SVG file.
+///
+/// # Errors
+/// [`ReportError::Draw`] if the drawing library fails.
+pub fn path_picture(scene: &SceneReport) -> Result<String, ReportError> {
+    Ok(path::picture(scene, &scene.name)?.standalone())
+}
 
 /// The three pictures of a scene.
 fn pictures(scene: &SceneReport, name: &str) -> Result<[picture::Picture; 3], ReportError> {

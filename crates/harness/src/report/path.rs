@@ -67,10 +67,13 @@ impl View {
     }
 
     pub(super) fn line(&self, canvas: &Canvas<'_>, path: &[[f64; 2]], ink: Ink, opacity: f64, width: f64) -> Drawn {
-        let frame = &self.frame;
-        let lines = thin(frame.lines(path.iter().map(|point| frame.place(*point))), POINTS);
-        lines.iter().try_for_each(|line| canvas.line(line, ink, opacity, width))
+        thinned(&self.frame, path).iter().try_for_each(|line| canvas.line(line, ink, opacity, width))
     }
+}
+
+/// What the frame shows of a path, in unbroken lines of not too many points.
+fn thinned(frame: &Frame, path: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
+    thin(frame.lines(path.iter().map(|point| frame.place(*point))), POINTS)
 }
 
 fn caption(scene: &SceneReport, exact: bool, strays: &[&str]) -> String {

@@ -49,6 +49,12 @@ impl Picture {
         self
     }
 
+    /// Adds shapes on top, in units of the canvas.
+    pub(super) fn with(mut self, shapes: &str) -> Self {
+        self.shapes += shapes;
+        self
+    }
+
     /// The picture as a part of a page: transparent, in the page's text colour.
     pub(super) fn inline(&self) -> String {
         self.with_inside("")
@@ -68,7 +74,7 @@ impl Picture {
     }
 
     /// The picture as a file: on a light ground of its own.
-    fn standalone(&self) -> String {
+    pub(super) fn standalone(&self) -> String {
         format!(
             "<svg{} width=\"{:.0}\" height=\"{:.0}\" color=\"{TEXT}\">\n<title>{}</title>\n\
              <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>{}</svg>\n",
