@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let path = path.nodes();
         let bent = path.iter().map(|node| [node.t, curvature(&SleighState::from_coordinates(&node.q, &node.v))]);
         curves.push(Layer::Curves { label: format!("a = {offset} m"), curves: vec![bent.collect()] });
-        dots.extend((0..=20).map(|k| 2.0 * f64::from(k)).map(|t| [t, curvature(&exact.at(t))]));
+        dots.extend((0..=20).map(|k| 2.0 * f64::from(k)).map(|t| vec![[t, curvature(&exact.at(t))]]));
         series.push(Series {
             label: format!("a = {offset} m"),
             path: path.iter().map(|node| [node.q[0], node.q[1]]).collect(),
@@ -61,9 +61,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
 
     if let Some(folder) = std::env::args().nth(1) {
-        let title = "Curvature of the blade's path; the dots are the closed form".to_owned();
+        let title = "Curvature of the blade's path".to_owned();
         let axes = ["t [s]".to_owned(), "w/u [1/m]".to_owned()];
-        curves.push(Layer::Dots(dots));
+        curves.push(Layer::Curves { label: "closed form".to_owned(), curves: dots });
         let chart = Chart { title, axes, decades: false, layers: curves };
         let scene =
             SceneReport { name: "circles".to_owned(), title: "Paths".to_owned(), series, ..SceneReport::default() };
