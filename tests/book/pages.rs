@@ -41,16 +41,20 @@ impl Page {
         blocks
     }
 
-    /// The targets of its links and pictures, those in blocks apart.
-    pub(super) fn links(&self) -> Vec<&str> {
+    /// Its lines outside of blocks.
+    pub(super) fn prose(&self) -> impl Iterator<Item = &str> {
         let mut fenced = false;
-        let prose = self.text.lines().filter(|line| {
+        self.text.lines().filter(move |line| {
             let fence = line.starts_with("```");
             fenced ^= fence;
             !fenced && !fence
-        });
-        let targets = prose.flat_map(|line| line.split("](").skip(1)).filter_map(|rest| rest.split(')').next());
-        targets.collect()
+        })
+    }
+
+    /// The targets of its links and pictures.
+    pub(super) fn links(&self) -> Vec<&str> {
+        let targets = self.prose().flat_map(|line| line.split("](").skip(1));
+        targets.filter_map(|rest| rest.split(')').next()).collect()
     }
 
     /// The folder that its links start from.
