@@ -138,14 +138,15 @@ fn every_long_command_of_the_book_runs() {
 /// The controls: what a page gets wrong is seen.
 #[test]
 fn a_wrong_command_is_seen() {
-    for wrong in
-        ["noslip run nowhere", "noslip compare bowl --metods dla # long", "cargo run --example none", "rm -r docs"]
-    {
+    for wrong in [
+        "noslip run nowhere",
+        "noslip list methods # exit 2",
+        "noslip compare bowl --metods dla # long",
+        "cargo run --example none",
+        "rm -r docs",
+    ] {
         let block = Block { language: "sh", lines: vec![wrong] };
-        let seen = thread::spawn({
-            let line = wrong.to_owned();
-            move || run("a page", &Block { language: "sh", lines: vec![&line] }, false)
-        });
-        assert!(seen.join().is_err(), "{block:?}");
+        let seen = thread::spawn(move || run("a page", &block, false)).join();
+        assert!(seen.is_err(), "{wrong}");
     }
 }
