@@ -105,7 +105,10 @@ fn the_points_of_a_section_are_on_its_plane_and_of_one_energy() {
     assert!(told.contains("center_y=0.25, rising"), "{told}");
     let (names, rows) = csv(&folder.read("points.csv"));
     assert_eq!(names, ["start", "t", "x", "y", "heading", "speed", "turn_rate", "heading", "turn_rate"]);
-    assert!((0..3).all(|start| rows.iter().filter(|row| row[0].to_bits() == f64::from(start).to_bits()).count() > 3), "{told}");
+    assert!(
+        (0..3).all(|start| rows.iter().filter(|row| row[0].to_bits() == f64::from(start).to_bits()).count() > 3),
+        "{told}"
+    );
     for row in &rows {
         let [x, y, heading, u, omega] = row[2..7] else { panic!("{row:?}") };
         let (sin, cos) = heading.sin_cos();

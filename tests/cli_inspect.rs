@@ -217,3 +217,53 @@ fn phase_tells_what_loops_leave() {
     folder.refused("phase turnaround", &["turnaround", "tracer"]);
     folder.refused("phase planimeter --loops 0", &["accepted"]);
 }
+
+/// Every case, with every method: none fails, nothing is silent, and the page in the documents tells of each.
+#[test]
+fn the_hard_cases() {
+    let folder = Folder::new();
+    let cases = folder.json("list cases --json");
+    let cases = cases.as_array().unwrap();
+    let found = folder.json("stability --json");
+    assert_eq!(keys(&found), ["cases"]);
+    let rows = found["cases"].as_array().unwrap();
+    let text = |row: &Value, key: &str| row[key].as_str().unwrap().to_owned();
+    for row in rows {
+        assert_eq!(keys(row), ["case", "method", "outcome", "measured", "bar", "why"]);
+        assert!(matches!(text(row, "outcome").as_str(), "pass" | "refused"), "{row}");
+        assert!(text(row, "outcome") == "pass" || text(row, "why").len() > 20, "a refusal says why: {row}");
+    }
+    let methods = methods();
+    for case in cases {
+        let of_it: Vec<_> = rows.iter().filter(|row| row["case"] == case["name"]).collect();
+        // Five where another system than a scene is needed.
+        assert!(of_it.len() == methods.len() || of_it.len() == 5, "{case}");
+        let passes = of_it.iter().filter(|row| text(row, "outcome") == "pass").count();
+        // Of the steep hill the honest answer is a refusal: no method sees what lies between its nodes.
+        assert!(passes > 0 || case["refusable"] == true, "{case} passes with no method");
+    }
+    // Words are broken into lines there.
+    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let page = std::fs::read_to_string(format!("{}/docs/stability.md", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    for case in cases {
+        let name = case["name"].as_str().unwrap();
+        let (_, section) =
+            page.split_once(&format!("\n## {name}\n")).unwrap_or_else(|| panic!("{name} has no section"));
+        let section = words(section.split("\n## ").next().unwrap());
+        for key in ["hard", "shows", "bar"] {
+            assert!(section.contains(&words(case[key].as_str().unwrap())), "{name}: the page says another {key}");
+        }
+        assert!(section.contains(&format!("noslip stability --case {name}")), "{name}");
+    }
+}
+
+#[test]
+fn one_hard_case() {
+    let folder = Folder::new();
+    let text = folder.done("stability --case jumps --methods dla,gauss8");
+    assert_eq!(text.lines().count(), 4, "{text}");
+    assert!(text.contains("jumps") && text.ends_with("2 pass, 0 refused, 0 failed\n"), "{text}");
+    folder.refused("stability --case jump", &["unknown case `jump`", "did you mean `jumps`?", "small-spin"]);
+    folder.refused("stability --case jumps --methods nope", &["unknown method"]);
+    assert!(folder.done("list cases").contains("small-spin"));
+}

@@ -25,6 +25,8 @@ pub(crate) enum Command {
     Compare(CompareArguments),
     /// Measures what accuracy costs in time: the error at the end against the time of a run, over a range of steps
     Precision(PrecisionArguments),
+    /// Puts the methods to the hard cases: each passes, refuses, or fails
+    Stability(StabilityArguments),
     /// Measures what each effect of a scene costs a step of dla
     Cost(SceneArguments),
     /// Finds the steady motions of a scene, and the eigenvalues of the flow and of a method's steps about them
@@ -251,6 +253,19 @@ pub(crate) struct SectionArguments {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct StabilityArguments {
+    /// One case (see `noslip list cases`) [default: all]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) case: Option<String>,
+    /// Methods, separated by commas [default: all]
+    #[arg(long, value_name = "M,..", value_delimiter = ',')]
+    pub(crate) methods: Option<Vec<String>>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct CheckArguments {
     /// A scene file, or the name of a bundled scene
     #[arg(value_name = "SCENE")]
@@ -274,6 +289,8 @@ pub(crate) enum Listed {
     Effects,
     /// The bundled scenes
     Scenes,
+    /// The hard cases of `noslip stability`
+    Cases,
 }
 
 #[derive(Debug, Args)]

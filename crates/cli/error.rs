@@ -15,6 +15,8 @@ pub(crate) enum CliError {
     Method(#[from] MethodError),
     #[error("the scene: {0}")]
     Sleigh(#[from] sleigh::SleighError),
+    #[error("unknown case `{name}`{}; the cases are {names}", nearest.as_ref().map_or_else(String::new, |n| format!(", did you mean `{n}`?")))]
+    Case { name: String, nearest: Option<String>, names: String },
     #[error("{} exists already; --force overwrites it", path.display())]
     Exists { path: PathBuf },
     #[error("{}: a trajectory is written as .csv, .npz or .parquet, by the ending of its name", path.display())]
@@ -74,6 +76,7 @@ impl CliError {
     /// 1: the computation failed, or what it gave could not be written. 2: the request was wrong.
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
+            Self::Case { .. } => ExitCode::from(2),
             Self::Scene(_) | Self::Sleigh(_) | Self::Method(_) | Self::Exists { .. } | Self::Ending { .. } => {
                 ExitCode::from(2)
             }

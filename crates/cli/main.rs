@@ -28,6 +28,7 @@ mod resume;
 mod run;
 mod saves;
 mod section;
+mod stability;
 mod stability_map;
 mod starts;
 mod table;
@@ -64,6 +65,7 @@ fn command(arguments: Arguments) -> Result<(), CliError> {
         Some(Command::Run(arguments)) => run::run(&arguments),
         Some(Command::Compare(arguments)) => compare::compare(&arguments),
         Some(Command::Precision(arguments)) => precision::precision(&arguments),
+        Some(Command::Stability(arguments)) => stability::stability(&arguments),
         Some(Command::Cost(arguments)) => cost::cost(&arguments),
         Some(Command::Equilibria(arguments)) => equilibria::equilibria(&arguments),
         Some(Command::Phase(arguments)) => phase::phase(&arguments),

@@ -58,6 +58,20 @@ take thrust.svg exchange-thrust.svg
 "$noslip" phase planimeter --loops 40 --picture phase.svg >/dev/null
 take phase.svg phase-map.svg
 
+# The scenes of the hard cases begin with their commands: stability-small-spin.svg from docs/stability/small-spin.toml.
+for file in "$root"/docs/stability/*.toml; do
+    case=$(basename "$file" .toml)
+    command=$(sed -n "s|^# noslip \(compare\) docs/stability/$case.toml \(.*\) --report DIR$|\1 $file \2|p" "$file")
+    # shellcheck disable=SC2086
+    "$noslip" $command --report "stability-$case" >/dev/null
+    case $case in
+        attractor | steep-hill) kind=energy ;;
+        round-off) kind=constraint ;;
+        *) kind=path ;;
+    esac
+    take "stability-$case/$case-$kind.svg" "stability-$case.svg"
+done
+
 # Minutes from here on.
 chaos=$root/docs/chaos
 "$noslip" lyapunov "$chaos/valley.toml" --duration 20000 --out exponents.svg >/dev/null

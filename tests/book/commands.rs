@@ -18,6 +18,9 @@ const LONG: [&str; 8] = [
     "noslip section egg-crate-attractor --step 0.1 --plane turn_rate=0 --starts 4 --duration 8000 --out egg-crate.svg",
 ];
 
+/// What another test of this binary runs as a whole; here it is parsed.
+const TOGETHER: &str = "noslip stability --case ";
+
 /// Commands that are for other programs: what is built, installed or measured is not done by a test.
 const OTHERS: [&str; 7] = [
     "cargo build --release",
@@ -65,7 +68,7 @@ fn run(page: &str, block: &Block<'_>, long: bool) {
     for line in lines(block) {
         if line.words.starts_with("noslip") {
             // With `--help` the words before it are parsed, and nothing is done.
-            let skipped = line.long && !long;
+            let skipped = (line.long && !long) || line.words.starts_with(TOGETHER);
             let help = skipped.then(|| "--help".to_owned());
             let outcome = folder.noslip(words(&line.words).into_iter().chain(help));
             let code = if skipped { 0 } else { line.code };

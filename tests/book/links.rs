@@ -69,10 +69,11 @@ fn every_picture_is_shown_and_can_be_made() {
         assert!(!by.is_empty(), "no page shows {name}");
         let made = by.iter().any(|page| page.blocks().iter().any(|block| block.language == "sh"));
         assert!(made, "{name}: no page that shows it has a command");
-        // The script takes the commands of the gallery's scenes from their pages.
-        let scene = name
-            .strip_suffix("-path.svg")
-            .is_some_and(|scene| root().join(format!("docs/gallery/{scene}.md")).is_file());
+        // The script takes the commands of scenes from the pages of the gallery, and from the scenes of the hard cases.
+        let there = |file: String| root().join(file).is_file();
+        let scene = name.strip_suffix("-path.svg").is_some_and(|scene| there(format!("docs/gallery/{scene}.md")));
+        let case = name.strip_prefix("stability-").and_then(|name| name.strip_suffix(".svg"));
+        let scene = scene || case.is_some_and(|case| there(format!("docs/stability/{case}.toml")));
         assert!(scene || script.contains(name), "docs/pictures/make.sh does not make {name}");
     }
 }

@@ -23,8 +23,9 @@ pub(super) fn root() -> &'static Path {
 
 impl Page {
     pub(super) fn read(path: &str) -> Self {
-        let text = fs::read_to_string(root().join(path)).unwrap_or_else(|error| panic!("{path}: {error}"));
-        Self { path: path.to_owned(), text }
+        let text = fs::read_to_string(root().join(path));
+        assert!(text.is_ok(), "{path}: {text:?}");
+        Self { path: path.to_owned(), text: text.unwrap() }
     }
 
     pub(super) fn blocks(&self) -> Vec<Block<'_>> {
