@@ -96,7 +96,7 @@ fn scene(name: &str, offset: f64, start: &SleighState) -> Result<SceneReport, Sl
         .map(|run| {
             let slip = ends.map(|end| largest(run, &run.constraint, end));
             let energy = ends.map(|end| largest(run, &run.energy_error, end));
-            [&[run.label.clone()], &slip[..], &energy].concat()
+            std::iter::once(run.label.clone()).chain(slip).chain(energy).collect()
         })
         .collect();
     for row in [&COLUMNS.map(str::to_owned).to_vec()].into_iter().chain(&rows) {
