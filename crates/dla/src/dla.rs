@@ -40,7 +40,7 @@ pub enum Form {
 /// Eliminating the velocities gives the equations of Cortes and Martinez (2001, Nonlinearity 14, 1365-1392), with the
 /// node's multiplier `lambda + mu`; as a map on the distribution it needs no special first step, and is self-adjoint where
 /// the discrete Lagrangian and the discrete constraint are. It keeps both constraints to round-off. It does not bound
-/// the energy in general.
+/// the energy in general. (The book, (3.1), (3.2) and (2.3).)
 ///
 /// A constraint on positions, [`System::holonomic`], takes the place of its discrete one: `g(q1) = 0` instead of `w_d = 0`.
 /// With such constraints alone this is RATTLE, by the discrete Lagrangian at hand (Marsden and West 2001, section 3.5.4; Jay
