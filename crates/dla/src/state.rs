@@ -6,6 +6,9 @@ use std::f64::consts::{PI, TAU};
 /// `2 pi` minus its nearest f64.
 const TAU_REST: f64 = 2.449_293_598_294_706_4e-16;
 
+/// An angle of as many turns, `2^50`, is known to less than a radian.
+const COUNTED: f64 = 1_125_899_906_842_624.0;
+
 /// Configuration and velocity, as integrators carry them.
 ///
 /// The coordinates are sums of many small increments, so their rounding errors are kept and added again (compensated
@@ -170,13 +173,25 @@ impl<const N: usize> State<N> {
         for i in 0..N {
             if self.angles[i] && self.q[i].abs() > PI && self.q[i].is_finite() {
                 let turns = (self.q[i] / TAU).round();
-                // The first difference is exact; what many turns leave in the second belongs to the angle.
-                let within = (-turns).mul_add(TAU, self.q[i]);
-                (self.q[i], self.rest[i]) = two_sum(within, self.rest[i] - turns * TAU_REST);
+                if turns.abs() < COUNTED {
+                    // The first difference is exact; what many turns leave in the second belongs to the angle.
+                    let within = (-turns).mul_add(TAU, self.q[i]);
+                    (self.q[i], self.rest[i]) = two_sum(within, self.rest[i] - turns * TAU_REST);
+                } else {
+                    // A rest says nothing there, and the angle that the velocity has been found at is without it.
+                    (self.q[i], self.rest[i]) = (within_many(self.q[i]), 0.0);
+                }
                 self.turns[i] += turns;
             }
         }
     }
+}
+
+/// The angle within a turn of one of so many turns that two parts of a turn are not enough of its digits.
+#[cold]
+#[inline(never)]
+fn within_many(angle: f64) -> f64 {
+    angle.sin().atan2(angle.cos())
 }
 
 /// The rounded sum and its rounding error (Knuth).

@@ -5,12 +5,13 @@
 mod baselines;
 mod drift;
 mod precision;
+mod same_bits;
 mod sensitivity;
 
 use approx::assert_relative_eq;
 use dla::Schedule;
 use harness::{METHODS, Method, MethodError, Request, Trend, run};
-use lagrangian::{Constraint, Piecewise, Scalar, System};
+use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Scalar, System};
 use proptest::prelude::*;
 
 /// A point of unit mass with `z' = y x'`, in a well that has no floor beyond `|y| = 1`.
@@ -19,11 +20,13 @@ struct Particle {
     depth: f64,
     /// `z' = y y'` in its place, the rate of `z - y^2/2`.
     leaf: bool,
+    /// Whether its admissible velocities have a basis.
+    basis: bool,
 }
 
 impl Particle {
     fn of(depth: f64) -> Self {
-        Self { depth, leaf: false }
+        Self { depth, leaf: false, basis: false }
     }
 }
 
@@ -36,6 +39,10 @@ impl System<3, 1> for Particle {
     fn constraint<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
         let row = if self.leaf { [S::zero(), -q[1]] } else { [-q[1], S::zero()] };
         ([[row[0], row[1], S::constant(1.0)]], [S::zero()])
+    }
+    fn admissible_basis<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, 1>> {
+        let (zero, one) = (S::zero(), S::constant(1.0));
+        self.basis.then(|| AdmissibleBasis::new([[one, zero, q[1]], [zero, one, zero]]))
     }
     fn holonomic<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Option<[Option<S>; 1]> {
         self.leaf.then(|| [Some(q[2] - q[1] * q[1] * 0.5)])
