@@ -92,6 +92,7 @@ where
         let increment = v.map(|v| h * v);
         let q1 = state.ahead(&increment);
         let (_, v1) = across(system, t + h, (&q1, &v), &arriving).map_err(singular(Stage::Projection))?;
+        state.stays_finite(&increment, &v1)?;
         state.advance(&increment, v1, None);
         self.memory = Some(Memory { node: *state, arriving });
         Ok(StepReport::of(iterations))

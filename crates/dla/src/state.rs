@@ -1,4 +1,4 @@
-use crate::{Checkpoint, CheckpointError};
+use crate::{Checkpoint, CheckpointError, StepError};
 use lagrangian::{ReducedError, System, Twofold, quasi_velocities};
 use std::array::from_fn;
 use std::f64::consts::{PI, TAU};
@@ -101,6 +101,16 @@ impl<const N: usize> State<N> {
     #[inline(always)]
     pub fn ahead(&self, increment: &[f64; N]) -> [f64; N] {
         from_fn(|i| self.q[i] + (increment[i] + self.rest[i]))
+    }
+
+    /// Whether [`advance`](Self::advance) would lead to finite coordinates and velocities.
+    ///
+    /// # Errors
+    /// [`StepError::NotFinite`].
+    #[inline(always)]
+    pub fn stays_finite(&self, increment: &[f64; N], v: &[f64; N]) -> Result<(), StepError> {
+        let finite = self.ahead(increment).iter().chain(v).all(|x| x.is_finite());
+        if finite { Ok(()) } else { Err(StepError::NotFinite) }
     }
 
     /// Moves the configuration by `increment` and sets the velocity, with its quasi-velocities where they are known.
