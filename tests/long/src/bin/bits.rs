@@ -14,7 +14,7 @@ fn hash(numbers: impl Iterator<Item = f64>) -> u64 {
 fn main() -> Result<(), Box<dyn Error>> {
     let schedule = Schedule { t0: 0.0, step: STEP, steps: 2000 };
     for info in METHODS {
-        let (system, mut state) = bowl()?;
+        let (system, mut state) = bowl(0.1)?;
         let outcome =
             integrate::<_, _, 3, 1>(&system, &Method::named(info.name, Some(0.3))?, &schedule, &mut state, ());
         match outcome {

@@ -1,4 +1,5 @@
-//! `long METHOD STEPS`: constraint and energy of `dla`, `energy4` or `gauss8` in the bowl, and how the energy error grows.
+//! `long METHOD STEPS [TURN_RATE]`: constraint and energy of `dla`, `energy4` or `gauss8` in the bowl, and how the energy
+//! error grows.
 
 use dla::{Dla, Energy, Gauss, Observer, Schedule, StepReport, View, drive};
 use harness::{Blocks, Drift};
@@ -73,9 +74,13 @@ fn growth(series: &[f64], lags: &[usize]) -> Option<(f64, f64)> {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [method, steps] = &arguments[..] else { return Err("usage: long METHOD STEPS".into()) };
+    let (method, steps, turn_rate) = match &arguments[..] {
+        [method, steps] => (method, steps, 0.1),
+        [method, steps, turn_rate] => (method, steps, turn_rate.parse()?),
+        _ => return Err("usage: long METHOD STEPS [TURN_RATE]".into()),
+    };
     let schedule = Schedule { t0: 0.0, step: STEP, steps: steps.parse::<f64>()? as u64 };
-    let (system, mut state) = bowl()?;
+    let (system, mut state) = bowl(turn_rate)?;
     let mut watch = Watch::default();
     let begin = Instant::now();
     match method.as_str() {
