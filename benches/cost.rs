@@ -12,24 +12,15 @@ mod cases;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use std::time::Duration;
 
-/// Steps, solutions or runs in one measurement: criterion shows the throughput of each.
-fn times(group: &str) -> u64 {
-    match group {
-        "report" => 1,
-        "ensemble" => 64,
-        _ => 200,
-    }
-}
-
 fn cost(criterion: &mut Criterion) {
     let cases = cases::all();
     for of_group in cases.chunk_by(|a, b| a.group == b.group) {
-        let name = of_group[0].group;
-        let mut group = criterion.benchmark_group(name);
+        let mut group = criterion.benchmark_group(of_group[0].group);
         group.warm_up_time(Duration::from_millis(200)).measurement_time(Duration::from_millis(800)).sample_size(20);
-        group.throughput(Throughput::Elements(times(name)));
         for case in of_group {
-            group.bench_function(&case.name, |bencher| bencher.iter(|| (case.run)(times(name))));
+            // Steps, solutions, sleighs or pages.
+            group.throughput(Throughput::Elements(case.times()));
+            group.bench_function(&case.name, |bencher| bencher.iter(|| (case.run)(case.times())));
         }
         group.finish();
     }

@@ -12,8 +12,6 @@ mod cases;
 use cases::Case;
 use std::process::{Command, ExitCode};
 
-/// How often, twice: the difference is what the times between cost.
-const TIMES: [u64; 2] = [20, 220];
 /// What counts as the same: the issue of inlining decisions, not of terms.
 const SAME: f64 = 0.02;
 
@@ -35,14 +33,16 @@ fn count_all(cases: &[Case], chosen: impl Fn(&Case) -> bool) -> bool {
     let mut counts: Vec<(&Case, f64)> = Vec::new();
     let mut all_same = true;
     for (k, case) in cases.iter().enumerate().filter(|(_, case)| chosen(case)) {
-        let (Some(few), Some(many)) = (count(k, TIMES[0]), count(k, TIMES[1])) else {
+        // What is left of the difference is the times between, without the start of the program.
+        let [before, times] = [case.times() / 5, case.times()];
+        let (Some(few), Some(many)) = (count(k, before), count(k, before + times)) else {
             println!("{}: not counted; this needs valgrind, and a build for a processor that it knows", case.name);
             return true;
         };
         if counts.last().is_none_or(|(last, _)| last.group != case.group) {
             println!("\n{}", case.group);
         }
-        let each = (many - few) as f64 / (TIMES[1] - TIMES[0]) as f64;
+        let each = (many - few) as f64 / times as f64;
         let other =
             counts.iter().find(|(other, _)| other.group == case.group && Some(other.name.as_str()) == case.same);
         let verdict = other.map_or(String::new(), |(other, count)| {

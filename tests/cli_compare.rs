@@ -76,7 +76,10 @@ fn the_report_is_whole_and_overwritten_on_demand_only() {
     let line = "compare circle --methods dla,rk4 --duration 2 --report pages";
     let text = folder.done(line);
     assert!(text.contains("report: pages"), "{text}");
-    let files = ["circle-constraint.svg", "circle-energy.svg", "circle-path.svg", "index.html"];
+    let mut files: Vec<String> = ["circle.csv", "circle.json", "index.html"].map(str::to_owned).to_vec();
+    let pictures = ["path", "constraint", "energy"];
+    files.extend(pictures.iter().flat_map(|what| ["svg", "png"].map(|ending| format!("circle-{what}.{ending}"))));
+    files.sort();
     assert_eq!(names(&folder.join("pages")), files);
     let page = folder.read("pages/index.html");
     assert!(page.trim_end().ends_with("</html>") && page.contains("rk4"));
@@ -87,6 +90,64 @@ fn the_report_is_whole_and_overwritten_on_demand_only() {
     folder.done(&format!("{line} --force"));
     assert!(folder.read("pages/index.html").len() > 1000);
     assert_eq!(folder.names(), ["pages"]);
+}
+
+#[test]
+fn the_numbers_beside_the_page_are_those_that_are_printed() {
+    let folder = Folder::new();
+    let printed = folder.json("compare bowl --methods dla,rk4,energy2,dop853 --duration 2 --json --report pages");
+    assert_eq!(serde_json::from_str::<Value>(&folder.read("pages/bowl.json")).unwrap(), printed);
+    let csv = folder.read("pages/bowl.csv");
+    let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let header = lines.next().unwrap();
+    let rows = printed["rows"].as_array().unwrap();
+    for (line, row) in lines.by_ref().zip(rows) {
+        assert_eq!(line.len(), header.len(), "{line:?}");
+        let cell = |name: &str| line[header.iter().position(|other| *other == name).unwrap()];
+        assert_eq!(cell("method"), row["method"].as_str().unwrap());
+        for (name, place) in [
+            ("constraint [m/s]", "/constraint/max"),
+            ("energy error [J]", "/energy/max_error"),
+            ("energy drift [W]", "/energy/slope"),
+            ("end error [m or rad]", "/error"),
+            ("x [m]", "/final/x"),
+            ("wall_seconds [s]", "/wall_seconds"),
+        ] {
+            let bits = |number: f64| number.to_bits();
+            let said = row.pointer(place).unwrap().as_f64().map(bits);
+            assert_eq!(cell(name).parse().ok().map(bits), said, "{name} of {line:?}");
+        }
+    }
+    assert!(lines.next().is_none());
+}
+
+#[test]
+fn a_wide_table_is_split_where_there_is_less_room() {
+    let folder = Folder::new();
+    let methods = ["dla", "rk4", "implicit-midpoint", "energy2"];
+    let line = format!("compare turnaround --duration 2 --methods {}", methods.join(","));
+    let columns = |width: &str| {
+        let output = folder.command(line.split(' ')).env("COLUMNS", width).output().unwrap();
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let whole = folder.done(&line);
+    // The control: there is something to split.
+    assert!(whole.lines().any(|line| line.chars().count() > 120), "{whole}");
+    let of_table = |line: &&str| !line.contains("smaller energy error");
+    for width in [60, 80, 100, 120] {
+        let text = columns(&width.to_string());
+        assert!(text.lines().filter(of_table).all(|line| line.chars().count() <= width), "{text}");
+        // Each table has every method, and together they have every column.
+        let tables: Vec<&str> = text.split("\n\n").collect();
+        assert!(tables.len() > 1, "{text}");
+        for table in &tables {
+            assert!(methods.iter().all(|method| table.contains(&format!("\n {method} "))), "{table}");
+        }
+        for name in whole.lines().nth(1).unwrap().split("  ").map(str::trim).filter(|name| !name.is_empty()) {
+            assert!(text.contains(name), "{name} in {text}");
+        }
+    }
+    assert_eq!(columns("500").lines().count(), whole.lines().count());
 }
 
 #[test]
@@ -303,7 +364,9 @@ fn plain_noslip_does_the_main_job() {
     let files = names(&folder.join("noslip-report-2"));
     let pictures = 3 * SCENES.len();
     assert_eq!(files.iter().filter(|name| name.ends_with(".svg")).count(), pictures, "{files:?}");
-    assert!(files.len() == 1 + pictures && files.contains(&"index.html".to_owned()), "{files:?}");
+    // Each picture twice, as SVG and as PNG; the numbers of each scene twice, as CSV and as JSON.
+    assert_eq!(files.len(), 1 + 2 * pictures + 2 * SCENES.len(), "{files:?}");
+    assert!(files.contains(&"index.html".to_owned()), "{files:?}");
 
     assert_eq!(folder.names(), ["noslip-report", "noslip-report-2"]);
     assert_eq!(folder.read("noslip-report/index.html"), "mine");

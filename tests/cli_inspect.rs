@@ -1,4 +1,4 @@
-//! `noslip check`, `noslip list`, `noslip new` and `noslip cost`.
+//! `noslip check`, `list`, `new`, `cost`, `equilibria` and `phase`.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 #[path = "common/program.rs"]
@@ -165,4 +165,103 @@ fn cost_has_a_row_for_none_each_and_all() {
     let text = folder.done("cost laden.toml");
     assert_eq!(text.lines().count(), 6, "a heading, the columns and four rows: {text}");
     folder.refused("cost none.toml", &["none.toml"]);
+}
+
+#[test]
+fn equilibria_tells_steady_motions_and_their_eigenvalues() {
+    let folder = Folder::new();
+    let found = folder.json("equilibria turnaround --json");
+    assert_eq!(keys(&found), ["scene", "method", "step", "equilibria"]);
+    let straight = |sign: f64| {
+        let all = found["equilibria"].as_array().unwrap().iter();
+        all.clone().find(|e| e["speed"].as_f64().unwrap() * sign > 0.5).unwrap().clone()
+    };
+    // m = I = 1, a = 1/2: c = 0.4, and the energy is 0.50625 J.
+    let speed = (2.0 * 0.506_25_f64).sqrt();
+    let forward = straight(1.0);
+    assert_eq!((forward["stable"].as_bool(), forward["family"].as_u64()), (Some(true), Some(1)));
+    assert!((forward["flow"][1]["re"].as_f64().unwrap() + 0.4 * speed).abs() < 1e-12);
+    let half = 0.05 * 0.4 * speed / 2.0;
+    assert!((forward["map"][1]["re"].as_f64().unwrap() - (1.0 - half) / (1.0 + half)).abs() < 1e-12);
+    assert!(forward["step_limit"].is_null() && forward["step_limit_reason"] == "none");
+    let back = straight(-1.0);
+    assert!(back["stable"] == false && back["step_limit_reason"].is_null());
+    let rk4 = folder.json("equilibria turnaround --method rk4 --json");
+    assert_eq!(rk4["equilibria"][0]["step_limit_reason"], "unstable");
+    assert!(folder.done("equilibria turnaround --picture portrait.svg").contains("longest step"));
+    assert!(folder.read("portrait.svg").contains("phase portrait"));
+    folder.refused("equilibria turnaround --method dop853", &["dop853", "dla", "accepted"]);
+    folder.refused("equilibria flywheel", &["depend on time"]);
+    folder.refused("equilibria parking", &["depend on time"]);
+    folder.refused("equilibria turnaround --picture portrait.svg", &["portrait.svg", "--force"]);
+    // A search that finds none is no wrong request.
+    folder.write("slope.toml", format!("{SCENE}[[effects]]\nkind = \"slope\"\ngravity = [0.3, 0.0]\n"));
+    assert_eq!(folder.line("equilibria slope.toml").code, 1);
+}
+
+#[test]
+fn phase_tells_what_loops_leave() {
+    let folder = Folder::new();
+    let found = folder.json("phase planimeter --method gauss8 --json");
+    let number = |key: &str| found[key].as_f64().unwrap();
+    assert!((number("turn") - found["exact"]["turn"].as_f64().unwrap()).abs() < 1e-10);
+    let mean = std::f64::consts::TAU * (1.0 - (1.0_f64 - 0.04).sqrt());
+    assert!((found["exact"]["mean_turn"].as_f64().unwrap() - mean).abs() < 1e-12);
+    // Six halvings extrapolated: the next term is below 2^-21.
+    assert!((number("curvature") + 1.0).abs() < 1e-6, "{}", number("curvature"));
+    assert_eq!(found["class"], "elliptic");
+    assert!(folder.done("phase planimeter --loops 3 --picture map.svg").contains("elliptic"));
+    assert!(folder.read("map.svg").contains("turn of a loop"));
+    folder.refused("phase turnaround", &["turnaround", "tracer"]);
+    folder.refused("phase planimeter --loops 0", &["accepted"]);
+}
+
+/// Every case, with every method: none fails, nothing is silent, and the page in the documents tells of each.
+#[test]
+fn the_hard_cases() {
+    let folder = Folder::new();
+    let cases = folder.json("list cases --json");
+    let cases = cases.as_array().unwrap();
+    let found = folder.json("stability --json");
+    assert_eq!(keys(&found), ["cases"]);
+    let rows = found["cases"].as_array().unwrap();
+    let text = |row: &Value, key: &str| row[key].as_str().unwrap().to_owned();
+    for row in rows {
+        assert_eq!(keys(row), ["case", "method", "outcome", "measured", "bar", "why"]);
+        assert!(matches!(text(row, "outcome").as_str(), "pass" | "refused"), "{row}");
+        assert!(text(row, "outcome") == "pass" || text(row, "why").len() > 20, "a refusal says why: {row}");
+    }
+    let methods = methods();
+    for case in cases {
+        let of_it: Vec<_> = rows.iter().filter(|row| row["case"] == case["name"]).collect();
+        // Five where another system than a scene is needed.
+        assert!(of_it.len() == methods.len() || of_it.len() == 5, "{case}");
+        let passes = of_it.iter().filter(|row| text(row, "outcome") == "pass").count();
+        // Of the steep hill the honest answer is a refusal: no method sees what lies between its nodes.
+        assert!(passes > 0 || case["refusable"] == true, "{case} passes with no method");
+    }
+    // Words are broken into lines there.
+    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let page = std::fs::read_to_string(format!("{}/docs/stability.md", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    for case in cases {
+        let name = case["name"].as_str().unwrap();
+        let (_, section) =
+            page.split_once(&format!("\n## {name}\n")).unwrap_or_else(|| panic!("{name} has no section"));
+        let section = words(section.split("\n## ").next().unwrap());
+        for key in ["hard", "shows", "bar"] {
+            assert!(section.contains(&words(case[key].as_str().unwrap())), "{name}: the page says another {key}");
+        }
+        assert!(section.contains(&format!("noslip stability --case {name}")), "{name}");
+    }
+}
+
+#[test]
+fn one_hard_case() {
+    let folder = Folder::new();
+    let text = folder.done("stability --case jumps --methods dla,gauss8");
+    assert_eq!(text.lines().count(), 4, "{text}");
+    assert!(text.contains("jumps") && text.ends_with("2 pass, 0 refused, 0 failed\n"), "{text}");
+    folder.refused("stability --case jump", &["unknown case `jump`", "did you mean `jumps`?", "small-spin"]);
+    folder.refused("stability --case jumps --methods nope", &["unknown method"]);
+    assert!(folder.done("list cases").contains("small-spin"));
 }

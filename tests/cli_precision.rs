@@ -122,8 +122,13 @@ fn table_csv_json_page_and_plot_say_the_same() {
             }
         }
     }
-    let files = ["index.html", "turnaround-step.svg", "turnaround-time.svg"];
+    let pictures = ["step.png", "step.svg", "time.png", "time.svg"].map(|what| format!("turnaround-{what}"));
+    let mut files: Vec<String> = ["index.html", "turnaround.csv", "turnaround.json"].map(str::to_owned).to_vec();
+    files.extend(pictures);
+    files.sort();
     assert_eq!(names(&folder.join("a")), files);
+    assert_eq!(folder.read("a/turnaround.csv"), folder.read("a.csv"));
+    assert_eq!(serde_json::from_str::<Value>(&folder.read("a/turnaround.json")).unwrap(), result);
     assert!(text.contains("points: b.csv\n") && text.ends_with("report: b/index.html\n"), "{text}");
 }
 

@@ -5,8 +5,8 @@ use harness::report::{Report, SceneReport, Series, write};
 use sleigh::SleighState;
 use std::thread;
 
-const ENSEMBLE: &str = "ensemble";
-const REPORT: &str = "report";
+pub(super) const ENSEMBLE: &str = "ensemble";
+pub(super) const REPORT: &str = "report";
 
 /// Steps of every sleigh of an ensemble.
 const STEPS: u64 = 800;
@@ -46,6 +46,7 @@ fn report() -> Report {
             label: label.to_owned(),
             path: time.iter().map(|t| [t.sin(), 1.0 - t.cos()]).collect(),
             heading: time.clone(),
+            rotor: Vec::new(),
             constraint: time.iter().map(|t| 1e-16 * (1.0 + t)).collect(),
             energy_error: time.iter().map(|t| 1e-9 * t).collect(),
             time,
@@ -59,6 +60,7 @@ fn report() -> Report {
         rows: vec![vec!["dla".to_owned()], vec!["rk4".to_owned()]],
         series: vec![series("dla"), series("rk4")],
         exact_path: None,
+        numbers: Vec::new(),
     };
     Report { title: "A bench".to_owned(), intro: String::new(), scenes: vec![scene] }
 }

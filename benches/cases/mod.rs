@@ -23,6 +23,15 @@ impl Case {
         Self { group, name: name.into(), run: Box::new(run), same: None }
     }
 
+    /// How often it is done in one measurement.
+    pub(crate) fn times(&self) -> u64 {
+        match self.group {
+            many::REPORT => 1,
+            many::ENSEMBLE => 64,
+            _ => 500,
+        }
+    }
+
     /// Of a term that is absent, no instruction is left.
     fn same_as(self, other: &'static str) -> Self {
         Self { same: Some(other), ..self }

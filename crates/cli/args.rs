@@ -1,3 +1,5 @@
+use crate::coordinate::{Coordinate, Range};
+use crate::plane::{Crossed, Plane};
 use crate::trigger::Trigger;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -23,8 +25,24 @@ pub(crate) enum Command {
     Compare(CompareArguments),
     /// Measures what accuracy costs in time: the error at the end against the time of a run, over a range of steps
     Precision(PrecisionArguments),
+    /// Puts the methods to the hard cases: each passes, refuses, or fails
+    Stability(StabilityArguments),
     /// Measures what each effect of a scene costs a step of dla
     Cost(SceneArguments),
+    /// Finds the steady motions of a scene, and the eigenvalues of the flow and of a method's steps about them
+    Equilibria(EquilibriaArguments),
+    /// Measures what the loops of a scene's tracer turn the blade by, beside the exact map
+    Phase(PhaseArguments),
+    /// Measures whether a motion is chaotic: its Lyapunov exponents, or a map of the largest over many starts
+    ///
+    /// Without --duration a motion is measured over 10000 s, and each of a map over 500 s. Starts are computed on all threads;
+    /// their number, RAYON_NUM_THREADS, changes no result.
+    Lyapunov(LyapunovArguments),
+    /// Draws a Poincare section: where motions cross a plane
+    ///
+    /// Without --duration each motion is followed for 2000 s. In a scene that depends on time only --plane t=PERIOD, with the period
+    /// of the scene, shows the iterates of one map.
+    Section(SectionArguments),
     /// Reads a scene and says what it is, or what is wrong with it
     Check(CheckArguments),
     /// Lists what there is
@@ -156,6 +174,98 @@ pub(crate) struct PrecisionArguments {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct EquilibriaArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    /// Method whose steps are looked at: of the family dla, rk4 or rk4-reduced, instead of the scene's
+    #[arg(long, value_name = "M")]
+    pub(crate) method: Option<String>,
+    /// Write a phase portrait of speed and turn rate: .svg
+    #[arg(long, value_name = "FILE")]
+    pub(crate) picture: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PhaseArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    /// Method (see `noslip list methods`), instead of the scene's
+    #[arg(long, value_name = "M")]
+    pub(crate) method: Option<String>,
+    /// How many loops [default: as many whole ones as the scene's duration has]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count)]
+    pub(crate) loops: Option<u64>,
+    /// Write the turn of a loop against the heading before it: .svg
+    #[arg(long, value_name = "FILE")]
+    pub(crate) picture: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct LyapunovArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    /// Method that can be differentiated: the families dla, gauss, lobatto3, lobatto4, energy2, energy4, rk4-reduced
+    #[arg(long, value_name = "M", default_value = "gauss8")]
+    pub(crate) method: String,
+    /// How many exponents, the largest first [default: all]
+    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = count, conflicts_with = "map")]
+    pub(crate) exponents: Option<u64>,
+    /// Time before the run that is not counted, until the motion has settled [s] [default: a tenth of the duration]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = not_negative)]
+    pub(crate) settle: Option<f64>,
+    /// Energy of the start [J]: its velocities are made so many times larger or smaller
+    #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = number)]
+    pub(crate) energy: Option<f64>,
+    /// The largest exponent over a grid of starts; given twice, first across, then upwards
+    #[arg(long, value_name = "NAME=FROM:TO:CELLS", allow_hyphen_values = true)]
+    pub(crate) map: Vec<Range>,
+    /// Write the estimates along the run, or the map: .csv, or a picture .svg, by the ending
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SectionArguments {
+    #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    /// Any method
+    #[arg(long, value_name = "M", default_value = "gauss8")]
+    pub(crate) method: String,
+    /// The plane: x, y, heading, speed, turn_rate, center_x, center_y, or along, across (the centre of mass as the body sees
+    /// it from the origin), with a value; or t=PERIOD, every multiple of a period
+    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub(crate) plane: Plane,
+    /// Which crossings count
+    #[arg(long, value_enum, default_value_t = Crossed::Rising)]
+    pub(crate) direction: Crossed,
+    /// What is shown of each, across and upwards
+    #[arg(long, value_name = "A,B", value_delimiter = ',')]
+    pub(crate) axes: Option<Vec<Coordinate>>,
+    /// How many starts: the scene's, and others at its place and of its energy
+    #[arg(long, value_name = "N", default_value_t = 12, allow_negative_numbers = true, value_parser = count)]
+    pub(crate) starts: u64,
+    /// Energy of all starts [J], instead of the scene's
+    #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = number)]
+    pub(crate) energy: Option<f64>,
+    /// Write the crossings: .csv, or a picture .svg, by the ending
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct StabilityArguments {
+    /// One case (see `noslip list cases`) [default: all]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) case: Option<String>,
+    /// Methods, separated by commas [default: all]
+    #[arg(long, value_name = "M,..", value_delimiter = ',')]
+    pub(crate) methods: Option<Vec<String>>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct CheckArguments {
     /// A scene file, or the name of a bundled scene
     #[arg(value_name = "SCENE")]
@@ -179,6 +289,8 @@ pub(crate) enum Listed {
     Effects,
     /// The bundled scenes
     Scenes,
+    /// The hard cases of `noslip stability`
+    Cases,
 }
 
 #[derive(Debug, Args)]
@@ -198,6 +310,11 @@ fn count(text: &str) -> Result<u64, &'static str> {
 
 fn number(text: &str) -> Result<f64, &'static str> {
     text.trim().parse().map_err(|_| "not a number; accepted are numbers like 0.05 and 1e-3")
+}
+
+fn not_negative(text: &str) -> Result<f64, &'static str> {
+    let number = number(text).ok().filter(|number| *number >= 0.0 && number.is_finite());
+    number.ok_or("accepted is a number from 0 on")
 }
 
 fn positive(text: &str) -> Result<f64, &'static str> {

@@ -3,12 +3,11 @@ use crate::error::CliError;
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
 use crate::saves::Saves;
-use crate::{facts, inspect, json, progress, table, terminal};
+use crate::{compare_numbers, facts, inspect, json, progress, table, terminal};
 use dla::{Schedule, State};
 use harness::report::{self, Report, SceneReport, Series};
 use harness::{Drift, METHODS, Method, Record, Request};
 use scene::{Scene, SceneSystem, Visitor};
-use serde_json::json;
 use sleigh::{Exact, SleighState};
 use std::path::PathBuf;
 
@@ -61,14 +60,16 @@ pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
         report::write(&report, folder, arguments.scene.force).map_err(CliError::Report)?;
     }
     if arguments.scene.json {
-        let rows: Vec<_> = comparison.rows.iter().map(|row| row.json.clone()).collect();
-        let mut object = json!({"scene": scene.name, "rows": rows});
-        if comparison.interrupted.is_some() {
-            object["interrupted"] = json!(true);
-        }
+        let rows: Vec<_> = comparison.rows.iter().map(|row| &row.json).collect();
+        let object = compare_numbers::json(&scene.name, &rows, comparison.interrupted.is_some());
         terminal::print_json(&object)?;
     } else {
-        terminal::print(&table::comparison(&scene, &comparison.rows, comparison.interrupted.as_deref()))?;
+        terminal::print(&table::comparison(
+            &scene,
+            &comparison.rows,
+            comparison.interrupted.as_deref(),
+            terminal::width(),
+        ))?;
         if let Some(folder) = &arguments.report {
             terminal::print(&format!("report: {}\n", folder.join("index.html").display()))?;
         }
@@ -186,6 +187,8 @@ impl Visitor for Compare<'_> {
         // The longest run: one that failed ends before the others.
         let times = series.iter().map(|series| &series.time).max_by_key(|time| time.len()).cloned().unwrap_or_default();
         let exact_path = exact.map(|exact| times.iter().map(|t| exact.at(*t)).map(|s| [s.x, s.y]).collect());
+        let interrupted = self.interrupted(&records);
+        let objects: Vec<_> = rows.iter().map(|row| &row.json).collect();
         let report = SceneReport {
             name: self.scene.name.clone(),
             title: self.scene.title.clone(),
@@ -194,8 +197,9 @@ impl Visitor for Compare<'_> {
             rows: rows.iter().map(|row| row.cells.clone()).collect(),
             series,
             exact_path,
+            numbers: compare_numbers::files(&self.scene.name, &objects, interrupted.is_some()),
         };
-        Ok(Comparison { rows, report, interrupted: self.interrupted(&records) })
+        Ok(Comparison { rows, report, interrupted })
     }
 }
 
@@ -271,6 +275,7 @@ where
         label: record.method.name.to_owned(),
         path: states.iter().map(|state| [state.x, state.y]).collect(),
         heading: states.iter().map(|state| state.heading).collect(),
+        rotor: samples.iter().filter_map(|sample| system.rotor(&sample.q, &[0.0; N])).map(|[angle, _]| angle).collect(),
         time: samples.iter().map(|sample| sample.t).collect(),
         constraint: samples.iter().map(|sample| sample.constraint).collect(),
         energy_error: samples.iter().map(|sample| sample.energy_error).collect(),

@@ -1,4 +1,5 @@
 use dla::{CheckpointError, RecommendError};
+use harness::analysis::EquilibriumError;
 use harness::{MethodError, report::ReportError};
 use scene::SceneError;
 use std::path::PathBuf;
@@ -14,6 +15,8 @@ pub(crate) enum CliError {
     Method(#[from] MethodError),
     #[error("the scene: {0}")]
     Sleigh(#[from] sleigh::SleighError),
+    #[error("unknown case `{name}`{}; the cases are {names}", nearest.as_ref().map_or_else(String::new, |n| format!(", did you mean `{n}`?")))]
+    Case { name: String, nearest: Option<String>, names: String },
     #[error("{} exists already; --force overwrites it", path.display())]
     Exists { path: PathBuf },
     #[error("{}: a trajectory is written as .csv, .npz or .parquet, by the ending of its name", path.display())]
@@ -24,6 +27,11 @@ pub(crate) enum CliError {
         path.display()
     )]
     WithoutParquet { path: PathBuf },
+    #[error("{}: accepted is .csv or a picture .svg, by the ending of its name", path.display())]
+    ChartEnding { path: PathBuf },
+    /// What is asked for makes no sense, or cannot be had of this scene or method.
+    #[error("{0}")]
+    Request(String),
     #[error("--out would hold {nodes} nodes; at most {most} are accepted, with --every {every} or more")]
     TooManyNodes { nodes: u64, most: u64, every: u64 },
     #[error("cannot write {}: {source}", path.display())]
@@ -38,6 +46,14 @@ pub(crate) enum CliError {
     Tolerance(Box<RecommendError>),
     #[error("{}: {problem}; accepted is JSON, {{\"points\": [{{\"method\", \"step\" or \"tolerance\", \"steps\", \"error\", \"wall_seconds\"}}]}}", path.display())]
     Points { path: PathBuf, problem: String },
+    #[error("steady motions: {0}")]
+    Equilibria(#[from] EquilibriumError),
+    #[error(
+        "the steps of {method} are not differentiated here; accepted are the methods of the family dla, rk4 and rk4-reduced (--method)"
+    )]
+    NotDifferentiated { method: &'static str },
+    #[error("the scene {scene} has no tracer, whose loops have a phase; `noslip phase planimeter` shows one")]
+    WithoutTracer { scene: String },
     #[error("cannot write to standard output: {0}")]
     Output(std::io::Error),
     #[error("the report: {0}")]
@@ -60,16 +76,21 @@ impl CliError {
     /// 1: the computation failed, or what it gave could not be written. 2: the request was wrong.
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
+            Self::Case { .. } => ExitCode::from(2),
             Self::Scene(_) | Self::Sleigh(_) | Self::Method(_) | Self::Exists { .. } | Self::Ending { .. } => {
                 ExitCode::from(2)
             }
             #[cfg(not(feature = "parquet"))]
             Self::WithoutParquet { .. } => ExitCode::from(2),
+            Self::ChartEnding { .. } | Self::Request(_) => ExitCode::from(2),
             Self::Read { .. } | Self::Checkpoint { .. } => ExitCode::from(2),
             Self::Tolerance(error) if matches!(**error, RecommendError::Request { .. }) => ExitCode::from(2),
             Self::TooManyNodes { .. } | Self::Points { .. } | Self::Report(ReportError::Exists { .. }) => {
                 ExitCode::from(2)
             }
+            // That a search ends without any is no fault of the request.
+            Self::Equilibria(EquilibriumError::NoneFound { .. } | EquilibriumError::Singular(_)) => ExitCode::FAILURE,
+            Self::Equilibria(_) | Self::NotDifferentiated { .. } | Self::WithoutTracer { .. } => ExitCode::from(2),
             Self::Interrupted { .. } => ExitCode::from(crate::interrupt::EXIT_CODE),
             Self::Write { .. } | Self::Folder { .. } | Self::Output(_) => ExitCode::FAILURE,
             Self::Report(_) | Self::Computation(_) | Self::Tolerance(_) => ExitCode::FAILURE,

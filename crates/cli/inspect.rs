@@ -60,6 +60,12 @@ pub(crate) fn list(arguments: &ListArguments) -> Result<(), CliError> {
                 .iter()
                 .map(|(name, keys, meaning)| json!({"name": name, "keys": keys, "summary": meaning}))
                 .collect(),
+            Listed::Cases => crate::stability::cases()
+                .map(|case| {
+                    json!({"name": case.name, "hard": case.hard, "shows": case.shows, "bar": case.bar,
+                           "refusable": case.refusable})
+                })
+                .collect(),
             Listed::Scenes => scenes()?.iter().map(|(name, title)| json!({"name": name, "title": title})).collect(),
         };
         return terminal::print_json(&json!(all));
@@ -74,6 +80,9 @@ pub(crate) fn list(arguments: &ListArguments) -> Result<(), CliError> {
                 (*name, format!("{meaning}; keys: {}", keys.join(", ")))
             };
             table::aligned(&scene::EFFECTS.iter().map(line).collect::<Vec<_>>())
+        }
+        Listed::Cases => {
+            table::aligned(&crate::stability::cases().map(|case| (case.name, case.hard)).collect::<Vec<_>>())
         }
         Listed::Scenes => table::aligned(&scenes()?),
     };

@@ -1,8 +1,12 @@
 //! The command line of noslip.
 
 mod args;
+mod chart_file;
 mod compare;
+mod compare_numbers;
+mod coordinate;
 mod cost;
+mod equilibria;
 mod error;
 mod facts;
 mod files;
@@ -11,8 +15,11 @@ mod inspect;
 mod interrupt;
 mod job;
 mod json;
+mod lyapunov;
 #[cfg(feature = "parquet")]
 mod parquet_file;
+mod phase;
+mod plane;
 mod points_file;
 mod precision;
 mod precision_text;
@@ -20,6 +27,10 @@ mod progress;
 mod resume;
 mod run;
 mod saves;
+mod section;
+mod stability;
+mod stability_map;
+mod starts;
 mod table;
 mod terminal;
 mod trajectory_file;
@@ -54,7 +65,12 @@ fn command(arguments: Arguments) -> Result<(), CliError> {
         Some(Command::Run(arguments)) => run::run(&arguments),
         Some(Command::Compare(arguments)) => compare::compare(&arguments),
         Some(Command::Precision(arguments)) => precision::precision(&arguments),
+        Some(Command::Stability(arguments)) => stability::stability(&arguments),
         Some(Command::Cost(arguments)) => cost::cost(&arguments),
+        Some(Command::Equilibria(arguments)) => equilibria::equilibria(&arguments),
+        Some(Command::Phase(arguments)) => phase::phase(&arguments),
+        Some(Command::Lyapunov(arguments)) => lyapunov::lyapunov(&arguments),
+        Some(Command::Section(arguments)) => section::section(&arguments),
         Some(Command::Check(arguments)) => inspect::check(&arguments),
         Some(Command::List(arguments)) => inspect::list(&arguments),
         Some(Command::New(arguments)) => inspect::new(&arguments),

@@ -3,7 +3,7 @@
 use crate::precision::Measurement;
 use crate::table::{number, right_aligned};
 use harness::precision::{Curve, LEVELS, Mark, Point, Setting, cheapest, seconds_to};
-use harness::report::{PrecisionReport, Table};
+use harness::report::{Numbers, PrecisionReport, Table};
 use scene::Scene;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -147,7 +147,7 @@ pub(crate) fn csv(curves: &[Curve]) -> String {
 }
 
 /// A field of text (RFC 4180).
-fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }
 
@@ -262,6 +262,10 @@ pub(crate) fn report(scene: &Scene, measured: &Measurement) -> PrecisionReport {
         tables: vec![
             table("Time to an error", &METHODS, measured.curves.iter().map(summary).collect()),
             table("Every point", &POINTS, rows),
+        ],
+        numbers: vec![
+            Numbers { ending: "csv", text: csv(&measured.curves) },
+            Numbers { ending: "json", text: format!("{:#}\n", json(scene, measured)) },
         ],
     }
 }

@@ -69,19 +69,30 @@ pub(crate) fn better<const N: usize>(record: &Record<N>, better: &[(&str, f64)])
     (!overtaken.is_empty()).then(|| format!("{name} has the smaller energy error than {}", overtaken.join(", ")))
 }
 
-/// The table of a comparison.
-pub(crate) fn comparison(scene: &Scene, rows: &[Row], interrupted: Option<&str>) -> String {
+/// The table of a comparison; as several tables below each other where one would be wider than there is room for.
+pub(crate) fn comparison(scene: &Scene, rows: &[Row], interrupted: Option<&str>, room: Option<usize>) -> String {
     // What is said of a refusal needs more room than a column has: it follows the row.
     let refusal = |row: &Row| row.cells.last().filter(|_| row.refused).cloned();
     let own = |row: &Row| row.cells[..row.cells.len() - usize::from(row.refused)].to_vec();
     let cells: Vec<_> = rows.iter().map(own).collect();
-    let refusals = std::iter::once(None).chain(rows.iter().map(refusal));
     let mut text = format!("{} ({}), {} s\n", scene.title, scene.name, number(scene.run.duration));
-    for (line, refusal) in right_aligned(&COLUMNS, &cells).lines().zip(refusals) {
-        let _ = match refusal {
-            Some(refusal) => writeln!(text, "{line}  {refusal}"),
-            None => writeln!(text, "{line}"),
-        };
+    let parts = parts(&COLUMNS, &cells, room);
+    for (k, columns) in parts.iter().enumerate() {
+        // A refused method has no numbers for the tables after the first.
+        let rows: Vec<_> = rows.iter().zip(&cells).filter(|(row, _)| k == 0 || !row.refused).collect();
+        let refusals = std::iter::once(None).chain(rows.iter().map(|(row, _)| refusal(row)));
+        let pick = |cells: &Vec<String>| columns.iter().filter_map(|column| cells.get(*column).cloned()).collect();
+        let (cells, header): (Vec<Vec<String>>, Vec<&str>) = (
+            rows.iter().map(|(_, cells)| pick(cells)).collect(),
+            columns.iter().map(|column| COLUMNS[*column]).collect(),
+        );
+        text += if k == 0 { "" } else { "\n" };
+        for (line, refusal) in right_aligned(&header, &cells).lines().zip(refusals) {
+            let _ = match refusal {
+                Some(refusal) => writeln!(text, "{line}  {refusal}"),
+                None => writeln!(text, "{line}"),
+            };
+        }
     }
     for better in rows.iter().filter_map(|row| row.better.as_ref()) {
         let _ = writeln!(text, " {better}");
@@ -90,6 +101,30 @@ pub(crate) fn comparison(scene: &Scene, rows: &[Row], interrupted: Option<&str>)
         let _ = writeln!(text, " interrupted: {made}");
     }
     text
+}
+
+/// The columns of each of the tables that are no wider than the room, the first column in all of them.
+fn parts(header: &[&str], rows: &[Vec<String>], room: Option<usize>) -> Vec<Vec<usize>> {
+    // A space on each side, one of which is trimmed at the end of a line.
+    let width = |column: usize| {
+        let cells = rows.iter().filter_map(|cells| cells.get(column)).map(String::as_str);
+        cells.chain([header[column]]).map(|text| text.chars().count()).max().unwrap_or(0) + 2
+    };
+    let mut parts = vec![vec![0]];
+    let mut used = width(0);
+    for column in 1..header.len() {
+        if room.is_some_and(|room| used + width(column) > room + 1) {
+            parts.push(vec![0]);
+            used = width(0);
+        }
+        used += width(column);
+        if let Some(part) = parts.last_mut() {
+            part.push(column);
+        }
+    }
+    // In a room narrower than any column, every column has a table of its own, and the first none.
+    parts.retain(|part| part.len() > 1);
+    parts
 }
 
 /// A table, all columns but the first aligned to the right.

@@ -9,6 +9,13 @@ pub(crate) fn print(text: &str) -> Result<(), CliError> {
     accept_closed(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
 }
 
+/// How many columns a line of standard output has room for: what `COLUMNS` says, or the terminal; none elsewhere.
+pub(crate) fn width() -> Option<usize> {
+    let asked = std::env::var("COLUMNS").ok().and_then(|columns| columns.trim().parse().ok());
+    let terminal = || console::Term::stdout().size_checked().map(|(_, columns)| usize::from(columns));
+    asked.filter(|columns| *columns > 0).or_else(terminal)
+}
+
 /// Prints one JSON value.
 pub(crate) fn print_json(value: &serde_json::Value) -> Result<(), CliError> {
     print(&format!("{value:#}\n"))

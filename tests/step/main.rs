@@ -5,6 +5,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod branches;
 mod failures;
 mod forms;
 mod symmetry;

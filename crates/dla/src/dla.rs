@@ -1,5 +1,6 @@
 use crate::dependent::{named_at, rows_left_out};
 use crate::increment::{Increment, Mean};
+use crate::overshoot::brakes_only;
 use crate::projection::Projection;
 use crate::{Newton, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::{
@@ -169,6 +170,7 @@ impl<L, C> Dla<L, C> {
             .solve(&self.newton, v)
             .map_err(|source| named_at(system, t1, &q1, &v0, Stage::Projection, source))?;
 
+        brakes_only(system, (t0, h), &q0, (&v, &v1))?;
         if let Some(rows) = some {
             rows_left_out(system, t1, &q1, &v1, rows)?;
         }

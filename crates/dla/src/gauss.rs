@@ -78,7 +78,11 @@ impl<const S: usize> Gauss<S> {
             if moved == 0.0 || (moved <= 1e-12 * size && moved >= 0.5 * before) {
                 return Ok(iteration);
             }
-            if iteration > 3 && moved > 2.0 * before {
+            let (stuck, grows) = (iteration > PATIENCE && moved >= 0.5 * before, iteration > 3 && moved > 2.0 * before);
+            if (stuck || grows) && moved <= rounding(q0, h, &stages.velocity) * size {
+                return Ok(iteration);
+            }
+            if grows {
                 let (correction, before) = (moved / size, before / size);
                 return Err(fail(NewtonError::Diverged { iteration, correction, before, history }));
             }
@@ -86,6 +90,18 @@ impl<const S: usize> Gauss<S> {
         }
         Err(fail(NewtonError::IterationLimit { iterations: self.max_iterations, correction: before, history }))
     }
+}
+
+/// After so many iterations without an end the rounding of the places is looked at.
+const PATIENCE: u32 = 20;
+
+/// What the rounding of places far from the origin, `eps |q|`, is of the way of a step: so much of themselves slopes that change
+/// along the way cannot settle.
+#[cold]
+fn rounding<const N: usize, const S: usize>(q0: &[f64; N], h: f64, velocity: &[[f64; N]; S]) -> f64 {
+    let largest = |x: f64, y: &f64| larger(x, y.abs());
+    let way = h.abs() * velocity.iter().flatten().fold(0.0, largest);
+    4.0 * f64::EPSILON * q0.iter().fold(0.0, largest) / way
 }
 
 impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<Sys, N, M> for Gauss<S> {

@@ -1,3 +1,4 @@
+use crate::overshoot::brakes_only;
 use crate::positions::{affine_only, velocities_only};
 use crate::{Equations, Newton, NewtonError, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::linear::{Lu, Singular};
@@ -93,6 +94,7 @@ where
         let q1 = state.ahead(&increment);
         let (_, v1) = across(system, t + h, (&q1, &v), &arriving).map_err(singular(Stage::Projection))?;
         state.stays_finite(&increment, &v1)?;
+        brakes_only(system, (t, h), &q0, (&v, &v1))?;
         state.advance(&increment, v1, None);
         self.memory = Some(Memory { node: *state, arriving });
         Ok(StepReport::of(iterations))

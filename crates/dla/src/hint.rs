@@ -1,5 +1,6 @@
 use crate::{History, NewtonError, RunError, Stage, StepError};
-use lagrangian::ClosedStepError;
+use lagrangian::linear::Singular;
+use lagrangian::{ClosedStepError, ReducedError};
 use std::fmt;
 
 /// What to change after a failure, as far as the failure tells.
@@ -76,8 +77,12 @@ impl NewtonError {
     fn hint(&self, stage: Stage) -> Hint {
         let history = self.history();
         match self {
+            // A pivot that is no number says nothing of the rows.
+            Self::Singular { source, .. } if is_overflow(source) => Hint::Numbers,
             // This matrix does not depend on the step.
             Self::Singular { .. } if stage == Stage::Projection => Hint::Constraints,
+            // A fixed-point iteration that is slow is so for the step.
+            Self::IterationLimit { .. } if stage == Stage::Collocation => HALF,
             Self::IterationLimit { correction, .. } => match history.last_ratio() {
                 Some(ratio) if ratio < 0.25 => Hint::MoreIterations,
                 Some(_) if correction.abs() < ROUNDING => Hint::LooserTolerance,
@@ -88,6 +93,11 @@ impl NewtonError {
             _ => HALF,
         }
     }
+}
+
+/// Whether a matrix is singular only because its entries have left the range of numbers.
+fn is_overflow(source: &Singular) -> bool {
+    !source.pivot.is_finite()
 }
 
 /// Below this part of the largest component, corrections that do not shrink are taken for rounding.
@@ -123,11 +133,14 @@ impl StepError {
                 Hint::ShorterStep { part: f64::max(0.5 * bound / value, 0.25) }
             }
             Self::Closed(ClosedStepError::NotFinite { .. }) | Self::NotFinite => Hint::Numbers,
+            Self::Overshoot { part } => Hint::ShorterStep { part: *part },
             Self::Closed(_) | Self::Branch | Self::Energy { .. } | Self::Tolerance { .. } => HALF,
-            Self::Unsupported { .. } => Hint::OtherMethod,
+            Self::Unsupported { .. } | Self::Reduced(ReducedError::NoBasis) => Hint::OtherMethod,
             Self::Jump { time } => Hint::NodeAt { time: *time },
-            Self::Motion(_) | Self::Dependent(_) => Hint::Constraints,
-            Self::Reduced(_) => return None,
+            Self::Motion(error) | Self::Reduced(ReducedError::Motion(error)) if is_overflow(&error.source) => {
+                Hint::Numbers
+            }
+            Self::Motion(_) | Self::Dependent(_) | Self::Reduced(ReducedError::Motion(_)) => Hint::Constraints,
         })
     }
 }

@@ -25,6 +25,7 @@ mod increment;
 mod lobatto;
 mod newton;
 mod one_step;
+mod overshoot;
 mod pieces;
 mod positions;
 mod projection;

@@ -148,7 +148,8 @@ impl Newton {
             size = size.max(now);
             let step = largest(correction.as_flattened());
             history.push(step);
-            let converged = step <= Self::ROUNDING * size;
+            // Below the smallest normal number everything is rounding: what comes to rest ends there.
+            let converged = step <= (Self::ROUNDING * size).max(f64::MIN_POSITIVE);
             let mut settled = true;
             for b in 0..S {
                 for i in 0..U {

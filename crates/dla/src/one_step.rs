@@ -120,6 +120,12 @@ pub enum StepError {
     /// The equations of the step have a solution, but it belongs to another motion, or cannot be shown to continue this one.
     #[error("no solution continues the motion: the one that was found is not connected with the start of the step")]
     Branch,
+    /// Forces that depend on the velocity are too stiff for the step: it would drive the velocity past where they vanish.
+    #[error("forces that brake would drive the velocity past where they vanish: the step is {:.2} times too long", part.recip())]
+    Overshoot {
+        /// The longest part of the step for which they do not.
+        part: f64,
+    },
     /// An adaptive method does not meet its tolerance within a step.
     #[error("the tolerance is not met: after {tries} steps within the interval the next would be {step:e} s")]
     Tolerance {

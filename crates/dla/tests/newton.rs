@@ -108,6 +108,16 @@ fn a_solution_of_zeros_only() {
     assert!(x[0].abs() <= 3e-17 && iterations <= 8, "{x:?} in {iterations}");
 }
 
+/// The rounding of what comes to rest exactly: below the smallest normal number a correction may overshoot for ever.
+#[test]
+fn what_is_below_every_normal_number_is_settled() {
+    let overshooting = |x: &[f64; 1]| ([2.0 * x[0]], [[1.0]]);
+    let (x, iterations) = solve(overshooting, [f64::MIN_POSITIVE / 64.0]);
+    assert!(x[0].abs() < f64::MIN_POSITIVE && iterations <= 2);
+    // The positive control: a normal number that does the same is no solution.
+    assert!(matches!(failure(overshooting, 1e-300), NewtonError::IterationLimit { .. }));
+}
+
 #[test]
 fn no_unknowns_need_one_iteration() {
     assert_eq!(solve(|_: &[f64; 0]| ([], []), []), ([], 1));

@@ -1,9 +1,10 @@
 //! The comparison harness: baselines, long-run drift, work against precision, and the reports that show them.
 //!
 //! [`Method`] names every integrator; [`run`] makes one run of it and measures it as a [`Record`];
-//! [`precision::work_precision`] measures what accuracy costs in time.
+//! [`precision::work_precision`] measures what accuracy costs in time; [`analysis`] asks whether a motion is chaotic.
 
 mod again;
+pub mod analysis;
 mod baseline;
 mod cost;
 mod drift;
@@ -14,6 +15,7 @@ pub mod report;
 mod run;
 mod saved;
 mod slip;
+pub mod stability;
 mod statistics;
 mod stopwatch;
 mod timing;
@@ -25,7 +27,7 @@ pub use cost::{StepCost, step_cost};
 pub use drift::{Blocks, Drift, Verdict};
 pub use method::{Kind, METHODS, Method, MethodError, MethodInfo};
 pub use record::{EnergySummary, NewtonSummary, Record, Sample};
-pub use run::{Request, integrate, integrate_on, integrate_pieces, run, timed};
+pub use run::{Request, integrate, integrate_from, integrate_on, integrate_on_watched, integrate_pieces, run, timed};
 pub use saved::{Saving, run_saved};
 pub use statistics::Trend;
 pub use timing::Progress;

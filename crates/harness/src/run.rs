@@ -3,7 +3,7 @@ use crate::timing::{Stopper, Ticker, median_seconds};
 use crate::{Dop853, ImplicitMidpoint, Kind, Method, Progress, Record, Rk4, Rk4Projected, Rk4Reduced};
 use dla::{
     Composition, Dla, Energy, Gauss, Gni, Lobatto, Observer, OneStep, Part, RunError, Schedule, State, drive_part,
-    piece_by_piece,
+    piece_by_piece_from,
 };
 use lagrangian::{Piecewise, System};
 use std::ops::Range;
@@ -56,7 +56,26 @@ pub fn integrate_pieces<Sys, const N: usize, const M: usize>(
 where
     Sys: System<N, M> + Piecewise,
 {
-    piece_by_piece(system, schedule, state, |piece, steps, state| {
+    integrate_from(0, system, method, schedule, state, observer)
+}
+
+/// The same for a run that has made so many steps already, whose observer then sees the first node by
+/// [`Observer::resume`].
+///
+/// # Errors
+/// As [`integrate_pieces`].
+pub fn integrate_from<Sys, const N: usize, const M: usize>(
+    from: u64,
+    system: &Sys,
+    method: &Method,
+    schedule: &Schedule,
+    state: &mut State<N>,
+    observer: &mut dyn Observer<Sys, N, M>,
+) -> Result<u64, RunError>
+where
+    Sys: System<N, M> + Piecewise,
+{
+    piece_by_piece_from(from, system, schedule, state, |piece, steps, state| {
         integrate_part(piece, method, schedule, steps, state, &mut *observer, None)
     })
 }
@@ -131,6 +150,21 @@ pub fn integrate_on<Sys: System<N, M> + Piecewise, const N: usize, const M: usiz
     progress: &mut dyn Progress,
 ) -> Result<u64, RunError> {
     integrate_pieces(system, method, schedule, state, &mut Ticker::new(progress, 0))
+}
+
+/// The same with an observer besides.
+///
+/// # Errors
+/// As [`integrate_pieces`].
+pub fn integrate_on_watched<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &Method,
+    schedule: &Schedule,
+    state: &mut State<N>,
+    observer: &mut dyn Observer<Sys, N, M>,
+    progress: &mut dyn Progress,
+) -> Result<u64, RunError> {
+    integrate_pieces(system, method, schedule, state, &mut (observer, Ticker::new(progress, 0)))
 }
 
 /// Makes a run twice, once observed and once timed with nothing looking on, and measures it.

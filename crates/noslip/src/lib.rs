@@ -7,6 +7,7 @@
 //! | describe a system: its Lagrangian and its constraint | [`System`], [`Scalar`] |
 //! | say what its constraints are, and start on them | [`classify`], [`consistent_start`] |
 //! | add what acts on a body | [`Effect`], [`With`] |
+//! | ask what its constraints let it reach, and what its symmetries conserve | [`lagrangian::growth`], [`lagrangian::conservation`] |
 //! | choose a method | [`Dla`], [`DiscreteLagrangian`], [`OneStep`] |
 //! | run it and look on | [`drive`], [`Schedule`], [`State`], [`Observer`], [`Trajectory`] |
 //! | differentiate its steps in state, parameters and controls | [`Sensitivity`], [`Parametrised`], [`Member`] |
@@ -25,6 +26,12 @@ pub use lagrangian::{
     vectorized,
 };
 pub use sleigh::{self, CentreOfMass, Exact, Sleigh, SleighError, SleighState};
+
+/// The examples of the pages on phenomena, likewise.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/phenomena/parking.md")]
+#[doc = include_str!("../../../docs/phenomena/flywheel.md")]
+pub struct Phenomena;
 
 /// The examples of the README, compiled and run as tests.
 #[cfg(doctest)]

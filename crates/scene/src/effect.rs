@@ -27,6 +27,14 @@ pub enum TimeSpec {
 }
 
 impl TimeSpec {
+    fn varies(&self) -> bool {
+        match self {
+            Self::Constant(_) => false,
+            Self::Sine { amplitude, frequency, .. } => *amplitude != 0.0 && *frequency != 0.0,
+            Self::Table { values, .. } => values.windows(2).any(|pair| pair[0].to_bits() != pair[1].to_bits()),
+        }
+    }
+
     /// The function.
     pub(crate) fn build(&self) -> Result<TimeFunction, SleighError> {
         Ok(match self {
@@ -66,7 +74,10 @@ pub enum Shape {
 
 impl PathSpec {
     /// The path.
-    pub(crate) fn build(&self) -> Result<ClosedPath, SleighError> {
+    ///
+    /// # Errors
+    /// [`SleighError`] where it cannot be followed, which one read from a file can.
+    pub fn build(&self) -> Result<ClosedPath, SleighError> {
         match &self.shape {
             Shape::Circle { radius, center } => ClosedPath::circle(*radius, *center, self.period),
             Shape::Polygon(vertices) => ClosedPath::polygon(vertices.clone(), self.period),
@@ -152,6 +163,20 @@ pub const EFFECTS: &[(&str, &[&str], &str)] = &[
 ];
 
 impl SceneEffect {
+    /// Whether it is a function of time, and not of the state alone.
+    pub(crate) fn depends_on_time(&self) -> bool {
+        let varies = |function: &Option<TimeSpec>| function.as_ref().is_some_and(TimeSpec::varies);
+        match self {
+            Self::Slope { .. } | Self::Bowl { .. } | Self::EggCrate { .. } | Self::Hills { .. } => false,
+            Self::Drag { .. } | Self::Turntable { .. } => false,
+            Self::Flywheel { torque, .. } => varies(torque),
+            Self::Thrust { force: function } | Self::Torque { torque: function } => function.varies(),
+            Self::MovingMass { x, y, .. } => x.varies() || y.varies(),
+            Self::Servo { speed, turn_rate } => varies(speed) || varies(turn_rate),
+            Self::Tracer { .. } => true,
+        }
+    }
+
     /// The name of its kind.
     #[must_use]
     pub fn kind(&self) -> &'static str {

@@ -43,4 +43,5 @@ pub use error::SceneError;
 pub use finding::{Finding, Place};
 pub use power::{EffectPower, SceneBody, SceneEffects};
 pub use run::{DEFAULT_METHOD, MAX_STEPS, RunSettings};
+pub use suggest::nearest;
 pub use system::{SceneSystem, Visitor};

@@ -1,6 +1,7 @@
 /// The candidate that `word` is a likely misspelling of, if there is one: the nearest by insertions, deletions,
 /// replacements and swaps of neighbours, one for every three letters, case aside.
-pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+#[must_use]
+pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let word = word.to_lowercase();
     candidates
         .into_iter()

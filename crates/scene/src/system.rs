@@ -4,7 +4,7 @@ use lagrangian::{Piecewise, System, With, quasi_velocities, velocity_of, whole_s
 use sleigh::{Exact, Flywheel, Guide, Guided, SleighError, SleighState};
 
 /// A system that came from a scene, and answers in the words of a scene.
-pub trait SceneSystem<const N: usize, const M: usize>: System<N, M> + Piecewise {
+pub trait SceneSystem<const N: usize, const M: usize>: System<N, M> + Piecewise + Sync {
     /// Place, heading and admissible velocities of the sleigh.
     fn sleigh_state(&self, q: &[f64; N], v: &[f64; N]) -> SleighState;
 
@@ -22,7 +22,7 @@ pub trait SceneSystem<const N: usize, const M: usize>: System<N, M> + Piecewise 
 
 impl<B, E, const N: usize, const M: usize> SceneSystem<N, M> for With<B, E>
 where
-    Self: System<N, M> + Piecewise,
+    Self: System<N, M> + Piecewise + Sync,
     B: SceneBody<N, M>,
     E: SceneEffects<B, N>,
 {
@@ -75,6 +75,53 @@ impl Scene {
         })
     }
 
+    /// The same where the blade is the only constraint; `None` of a scene that imposes velocities.
+    ///
+    /// For what needs much code for each system: a list of effects that is empty makes no type of its own here.
+    ///
+    /// # Errors
+    /// As [`visit`](Self::visit).
+    pub fn visit_free<V: Visitor>(&self, visitor: V) -> Result<Option<V::Output>, SleighError> {
+        match self.guiding()? {
+            Guiding::None => self.listed(self.sleigh, visitor).map(Some),
+            Guiding::Turntable(body) => self.listed(body, visitor).map(Some),
+            Guiding::One(_) | Guiding::Two(_) => Ok(None),
+        }
+    }
+
+    /// Adds the rotor, if there is one, and the list of what acts on the body.
+    fn listed<B, V, const M: usize>(&self, body: B, visitor: V) -> Result<V::Output, SleighError>
+    where
+        B: SceneBody<3, M> + Piecewise + Clone + Sync,
+        V: Visitor,
+    {
+        let (effects, (q, v)) = (self.acting()?, self.start.to_coordinates());
+        Ok(match self.rotor(&body)? {
+            Some((body, rate)) => {
+                let (q, v) = ([q[0], q[1], q[2], 0.0], [v[0], v[1], v[2], rate]);
+                start(visitor, &With { body, effects }, q, v)
+            }
+            None => start(visitor, &With { body, effects }, q, v),
+        })
+    }
+
+    /// The body with its rotor, and the rate of that (rad/s), where there is one.
+    fn rotor<B: Clone>(&self, body: &B) -> Result<Option<(Flywheel<B>, f64)>, SleighError> {
+        for effect in &self.effects {
+            if let SceneEffect::Flywheel { inertia, rotor_rate, torque } = effect {
+                let torque = torque.as_ref().map(crate::TimeSpec::build).transpose()?;
+                return Ok(Some((Flywheel::new(body.clone(), *inertia, torque)?, *rotor_rate)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Whether anything in the scene is a function of time.
+    #[must_use]
+    pub fn depends_on_time(&self) -> bool {
+        self.effects.iter().any(SceneEffect::depends_on_time)
+    }
+
     /// The effects that act on the coordinates there are.
     fn acting(&self) -> Result<Vec<Acting>, SleighError> {
         self.effects.iter().filter_map(|effect| Acting::of(effect).transpose()).collect()
@@ -117,19 +164,17 @@ impl Scene {
     /// Adds the rotor, if there is one, and what acts on the body.
     fn with_rotor<B, V, const M: usize>(&self, body: B, visitor: V) -> Result<V::Output, SleighError>
     where
-        B: SceneBody<3, M> + Piecewise,
+        B: SceneBody<3, M> + Piecewise + Clone + Sync,
         V: Visitor,
     {
         let (q, v) = self.start.to_coordinates();
-        for effect in &self.effects {
-            if let SceneEffect::Flywheel { inertia, rotor_rate, torque } = effect {
-                let torque = torque.as_ref().map(crate::TimeSpec::build).transpose()?;
-                let body = Flywheel::new(body, *inertia, torque)?;
-                let (q, v) = ([q[0], q[1], q[2], 0.0], [v[0], v[1], v[2], *rotor_rate]);
-                return self.with_effects(body, visitor, q, v);
+        match self.rotor(&body)? {
+            Some((body, rate)) => {
+                let (q, v) = ([q[0], q[1], q[2], 0.0], [v[0], v[1], v[2], rate]);
+                self.with_effects(body, visitor, q, v)
             }
+            None => self.with_effects(body, visitor, q, v),
         }
-        self.with_effects(body, visitor, q, v)
     }
 
     /// Adds what acts on the body, if anything does.
@@ -141,7 +186,7 @@ impl Scene {
         v: [f64; N],
     ) -> Result<V::Output, SleighError>
     where
-        B: SceneBody<N, M> + Piecewise,
+        B: SceneBody<N, M> + Piecewise + Sync,
         V: Visitor,
     {
         let effects = self.acting()?;

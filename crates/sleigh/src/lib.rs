@@ -2,16 +2,20 @@
 //!
 //! Coordinates, signs and acting points are those of [`Sleigh`]; the state that a person would write down is a
 //! [`SleighState`]; [`Exact`] is the motion of the free sleigh in closed form. What acts on it is in [`effects`]; what gives it
-//! another coordinate or another constraint is another body: [`Flywheel`], [`Guided`].
+//! another coordinate or another constraint is another body: [`Flywheel`], [`Guided`]. Its geometry, without any forces, is in
+//! [`planimeter`] (what a led blade turns by) and [`parking`] (controls that reach a pose).
 
 mod bodies;
 mod body;
+mod canonical;
 mod centre_of_mass;
 mod checks;
 mod closed_map;
 pub mod effects;
 mod error;
 mod exact;
+pub mod parking;
+pub mod planimeter;
 mod sleigh_body;
 mod state;
 mod system;
@@ -24,4 +28,4 @@ pub use error::SleighError;
 pub use exact::Exact;
 pub use sleigh_body::SleighBody;
 pub use state::SleighState;
-pub use time_function::{Table, TimeFunction};
+pub use time_function::{Pulses, Table, TimeFunction};

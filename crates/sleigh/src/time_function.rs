@@ -1,5 +1,6 @@
 use crate::SleighError;
 use lagrangian::{Piecewise, Scalar};
+use std::f64::consts::TAU;
 
 /// A function of time: a force, a torque, a position.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,6 +18,8 @@ pub enum TimeFunction {
     },
     /// Constant between the times of a table.
     Table(Table),
+    /// Smooth pulses, one after the other.
+    Pulses(Pulses),
 }
 
 /// A piecewise-constant function: the value `values[i]` holds from `times[i]` on, and the first one before that too.
@@ -65,6 +68,40 @@ impl Table {
     }
 }
 
+/// Smooth pulses from rest to rest, one after the other: `f(t) = A_i/T_i (1 - cos(2 pi (t - t_i)/T_i))` from `t_i` to `t_i + T_i`,
+/// so that pulse `i` has the integral `A_i`; function and slope vanish at every seam, and after the last pulse.
+///
+/// Like a [`Table`] it is evaluated as one of its pieces, the first until [`Piecewise::piece`] chooses another.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pulses {
+    times: Vec<f64>,
+    areas: Vec<f64>,
+    current: usize,
+}
+
+impl Pulses {
+    /// The pulses between these times (s), increasing, with these integrals: one less than times.
+    ///
+    /// # Errors
+    /// [`SleighError::Table`] where the lengths do not go together, the times do not increase, or a number is not finite.
+    pub fn new(times: Vec<f64>, areas: Vec<f64>) -> Result<Self, SleighError> {
+        if times.len() != areas.len() + 1 {
+            let problem = format!("it has {} times for {} pulses", times.len(), areas.len());
+            return Err(SleighError::Table { problem });
+        }
+        // The rest is what a table is asked for.
+        Table::new(times.clone(), [areas.as_slice(), &[0.0]].concat())?;
+        Ok(Self { times, areas, current: 0 })
+    }
+
+    /// The begin (s), the length (s) and the integral of the pulse that is evaluated; none after the last one.
+    #[inline(always)]
+    fn pulse(&self) -> Option<[f64; 3]> {
+        let (begin, end) = (self.times.get(self.current)?, self.times.get(self.current + 1)?);
+        Some([*begin, end - begin, self.areas[self.current]])
+    }
+}
+
 impl TimeFunction {
     /// The value at `t`.
     #[inline(always)]
@@ -73,6 +110,9 @@ impl TimeFunction {
             Self::Constant(value) => S::constant(*value),
             Self::Sine { amplitude, frequency, phase } => (t * *frequency + *phase).sin() * *amplitude,
             Self::Table(table) => S::constant(table.values[table.current]),
+            Self::Pulses(pulses) => pulses.pulse().map_or(S::zero(), |[begin, length, area]| {
+                (-((t - begin) * (TAU / length)).cos() + 1.0) * (area / length)
+            }),
         }
     }
 
@@ -82,6 +122,9 @@ impl TimeFunction {
         match self {
             Self::Sine { amplitude, frequency, phase } => (t * *frequency + *phase).cos() * (*amplitude * *frequency),
             Self::Constant(_) | Self::Table(_) => S::zero(),
+            Self::Pulses(pulses) => pulses.pulse().map_or(S::zero(), |[begin, length, area]| {
+                ((t - begin) * (TAU / length)).sin() * (area / length * (TAU / length))
+            }),
         }
     }
 
@@ -93,8 +136,8 @@ impl TimeFunction {
         let numbers = match self {
             Self::Constant(value) => [value, 0.0, 0.0],
             Self::Sine { amplitude, frequency, phase } => [amplitude, frequency, phase],
-            // Checked when it was made.
-            Self::Table(_) => [0.0; 3],
+            // Checked when they were made.
+            Self::Table(_) | Self::Pulses(_) => [0.0; 3],
         };
         match numbers.into_iter().find(|x| !x.is_finite()) {
             Some(value) => Err(SleighError::NotFinite { quantity, value }),
@@ -114,6 +157,7 @@ impl Piecewise for TimeFunction {
         match self {
             // At the first time nothing changes.
             Self::Table(table) => table.times[1..].iter().copied().filter(|t| from < *t && *t < to).collect(),
+            Self::Pulses(pulses) => pulses.times[1..].iter().copied().filter(|t| from < *t && *t < to).collect(),
             Self::Constant(_) | Self::Sine { .. } => Vec::new(),
         }
     }
@@ -123,6 +167,10 @@ impl Piecewise for TimeFunction {
             Self::Table(table) => {
                 let begun = table.times.partition_point(|time| *time <= t);
                 Self::Table(Table { current: begun.saturating_sub(1), ..table.clone() })
+            }
+            Self::Pulses(pulses) => {
+                let begun = pulses.times.partition_point(|time| *time <= t);
+                Self::Pulses(Pulses { current: begun.saturating_sub(1), ..pulses.clone() })
             }
             other => other.clone(),
         }

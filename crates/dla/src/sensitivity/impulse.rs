@@ -46,7 +46,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const P: usize> Sensitiv
     ) -> Result<(), SensitivityError> {
         let mut end = *state;
         onto_constraint(self.system(), t, &mut end)?;
-        let derivative = self.derivative(&Impulse, (t, 0.0), state, &end, StepReport::of(0))?;
+        let derivative = self.between(&Impulse, (t, 0.0), state, &end, StepReport::of(0))?;
         *state = end;
         for tangent in tangents {
             *tangent = derivative.apply(tangent);

@@ -96,12 +96,19 @@ impl<Sys, const N: usize, const M: usize, const P: usize> Sensitivity<'_, Sys, N
     {
         let mut end = *state;
         let report = method.step(self.system, t, h, &mut end)?;
-        let derivative = self.derivative(method, (t, h), state, &end, report)?;
+        let derivative = self.between(method, (t, h), state, &end, report)?;
         *state = end;
         Ok(derivative)
     }
 
-    pub(super) fn derivative(
+    /// The derivative of a step that has been made: from `start` to `end`; `time` is its start and its
+    /// length (s).
+    ///
+    /// The method is an object here, so that what asks for derivatives of many methods is compiled once.
+    ///
+    /// # Errors
+    /// As [`Sensitivity::step`], [`SensitivityError::OtherSolution`] where the step was not made by this method.
+    pub fn between(
         &self,
         method: &dyn Differentiable<N, M>,
         time: (f64, f64),

@@ -3,6 +3,7 @@
 #![allow(missing_docs, unreachable_pub, clippy::unwrap_used, clippy::expect_used)]
 
 mod balance;
+mod braking;
 mod closed_forms;
 mod flywheel;
 mod golden;

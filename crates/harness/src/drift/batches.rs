@@ -1,5 +1,5 @@
 /// So many batches.
-const BATCHES: usize = 32;
+pub(super) const BATCHES: usize = 32;
 
 /// The means of 32 batches of a series, about their least-squares line; time in units of the whole series.
 ///
@@ -77,7 +77,7 @@ impl Batches {
 }
 
 /// The places of batch `j` in a series.
-fn batch(j: usize, length: usize) -> std::ops::Range<usize> {
+pub(super) fn batch(j: usize, length: usize) -> std::ops::Range<usize> {
     j * length / BATCHES..(j + 1) * length / BATCHES
 }
 

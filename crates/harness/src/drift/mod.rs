@@ -3,6 +3,7 @@
 mod batches;
 mod blocks;
 mod growth;
+mod mean;
 
 pub use blocks::Blocks;
 

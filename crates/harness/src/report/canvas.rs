@@ -1,4 +1,4 @@
-//! What pictures are drawn on: a thin layer over the SVG backend of plotters.
+//! What pictures are drawn on: a thin layer over the SVG backend of plotters, which notes what was drawn, for the raster.
 //!
 //! The backend places everything on whole units, so the canvas has [`SCALE`] of them to a unit of the picture. It also
 //! knows neither dashes nor the colour of the surrounding text: shapes are drawn in stand-in colours, which
@@ -9,6 +9,7 @@ use plotters::coord::Shift;
 use plotters::prelude::{DrawingArea, IntoDrawingArea, IntoFont, PathElement, Polygon, SVGBackend, Text};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, RGBColor, ShapeStyle, TextStyle};
+use std::cell::RefCell;
 use std::io;
 
 /// What drawing returns.
@@ -52,18 +53,29 @@ pub(super) enum Anchor {
     Right,
 }
 
-/// What a picture is drawn on. All lengths are in units of the picture, from its upper left corner.
+/// Something drawn. All lengths are in units of the picture, from its upper left corner.
+#[derive(Debug, Clone)]
+pub(super) enum Mark {
+    Line { points: Vec<[f64; 2]>, ink: Ink, opacity: f64, width: f64 },
+    Area { points: Vec<[f64; 2]>, ink: Ink, opacity: f64 },
+    Text { text: String, at: [f64; 2], anchor: Anchor, size: f64 },
+}
+
+/// What a picture is drawn on.
 pub(super) struct Canvas<'a> {
     area: DrawingArea<SVGBackend<'a>, Shift>,
+    marks: &'a RefCell<Vec<Mark>>,
 }
 
 impl Canvas<'_> {
     pub(super) fn line(&self, points: &[[f64; 2]], ink: Ink, opacity: f64, width: f64) -> Drawn {
+        self.marks.borrow_mut().push(Mark::Line { points: points.to_vec(), ink, opacity, width });
         let style = ShapeStyle::from(ink.stand_in().mix(opacity)).stroke_width(units(width).unsigned_abs());
         self.area.draw(&PathElement::new(points.iter().map(corner).collect::<Vec<_>>(), style))
     }
 
     pub(super) fn fill(&self, points: &[[f64; 2]], ink: Ink, opacity: f64) -> Drawn {
+        self.marks.borrow_mut().push(Mark::Area { points: points.to_vec(), ink, opacity });
         let style = ShapeStyle::from(ink.stand_in().mix(opacity)).filled();
         self.area.draw(&Polygon::new(points.iter().map(corner).collect::<Vec<_>>(), style))
     }
@@ -76,6 +88,7 @@ impl Canvas<'_> {
 
     /// A line of text whose middle height is that of the point.
     pub(super) fn text(&self, text: &str, at: [f64; 2], anchor: Anchor, size: f64) -> Drawn {
+        self.marks.borrow_mut().push(Mark::Text { text: text.to_owned(), at, anchor, size });
         let across = match anchor {
             Anchor::Left => HPos::Left,
             Anchor::Middle => HPos::Center,
@@ -105,28 +118,32 @@ pub(super) fn units(length: f64) -> i32 {
     (length * SCALE).round() as i32
 }
 
-/// What the backend draws, without the `svg` element around it.
-pub(super) fn shapes(size: [f64; 2], draw: impl FnOnce(&Canvas<'_>) -> Drawn) -> Drawn<String> {
+/// What the backend draws, without the `svg` element around it, and the same as marks.
+pub(super) fn shapes(size: [f64; 2], draw: impl FnOnce(&Canvas<'_>) -> Drawn) -> Drawn<(String, Vec<Mark>)> {
     let mut document = String::new();
+    let marks = RefCell::new(Vec::new());
     let [width, height] = size.map(|length| units(length).unsigned_abs());
     {
-        let canvas = Canvas { area: SVGBackend::with_string(&mut document, (width, height)).into_drawing_area() };
+        let area = SVGBackend::with_string(&mut document, (width, height)).into_drawing_area();
+        let canvas = Canvas { area, marks: &marks };
         draw(&canvas)?;
         canvas.area.present()?;
     }
     let inner = document.split_once('>').map_or("", |(_, inner)| inner);
     let inner = inner.rsplit_once("</svg>").map_or(inner, |(inner, _)| inner);
-    Ok(recolour(inner))
+    Ok((recolour(inner), marks.into_inner()))
 }
 
 /// Replaces the stand-in colours. Text cannot be mistaken for an attribute: its quotes are escaped.
 fn recolour(shapes: &str) -> String {
     let mut shapes = shapes.replace("\"#000000\"", "\"currentColor\"");
-    shapes = shapes.replace("stroke=\"#000001\"", "stroke=\"currentColor\" stroke-dasharray=\"50 35\"");
+    let exact = look::written(&look::EXACT, SCALE);
+    let dashed = format!("stroke=\"currentColor\" stroke-dasharray=\"{exact}\"");
+    shapes = shapes.replace("stroke=\"#000001\"", &dashed);
     for method in 0..look::LOOKS {
         let stand_in = format!("=\"#0100{method:02X}\"");
         if shapes.contains(&stand_in) {
-            let (colour, dashes) = (look::colour(method), look::dashes(method, SCALE));
+            let (colour, dashes) = (look::colour(method), look::written(look::dashes(method), SCALE));
             let stroke = format!("stroke=\"{colour}\" stroke-dasharray=\"{dashes}\"");
             let stroke = stroke.replace(" stroke-dasharray=\"\"", "");
             shapes = shapes.replace(&format!("stroke{stand_in}"), &stroke);

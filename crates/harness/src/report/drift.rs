@@ -15,19 +15,19 @@ const HEIGHT: f64 = 250.0;
 /// How many points of a series are drawn at most: more would lie on top of each other.
 const POINTS: usize = 300;
 /// How many points a picture has in all, unless its series then had fewer than [`FEWEST`] each.
-const TOGETHER: usize = 3000;
+const TOGETHER: usize = 2000;
 /// How many points a series needs for its shape.
-const FEWEST: usize = 100;
+const FEWEST: usize = 75;
 /// How far apart the names at the ends of the lines are.
 const NAMES: f64 = 15.0;
 /// The longest name at the end of a line.
-const LONGEST: usize = 16;
+const LONGEST: usize = 17;
 
 /// Draws the picture of the constraint's residual.
 pub(super) fn constraint(scene: &SceneReport, name: &str) -> Result<Picture, ReportError> {
     let caption =
         "How fast the blade slips sideways. Around 10⁻¹⁶ there is nothing but rounding: the constraint is kept.";
-    draw(scene, format!("{name}-constraint.svg"), "constraint residual", "|A(q) v + b|  [m/s]", caption, |series| {
+    draw(scene, format!("{name}-constraint"), "constraint residual", "|A(q) v + b|  [m/s]", caption, |series| {
         &series.constraint
     })
 }
@@ -36,7 +36,7 @@ pub(super) fn constraint(scene: &SceneReport, name: &str) -> Result<Picture, Rep
 pub(super) fn energy(scene: &SceneReport, name: &str) -> Result<Picture, ReportError> {
     let caption = "How far the energy is from its initial value and the work W of what drives or brakes the sleigh. A line \
                    that keeps climbing is drift.";
-    draw(scene, format!("{name}-energy.svg"), "energy error", "|E − E₀ − W|  [J]", caption, |series| {
+    draw(scene, format!("{name}-energy"), "energy error", "|E − E₀ − W|  [J]", caption, |series| {
         &series.energy_error
     })
 }
@@ -63,7 +63,9 @@ fn draw(
     let (places, legend) = axis::legend(&entries, WIDTH - 20.0);
     let up = scale.ticks();
     let names: Vec<String> = scene.series.iter().map(|series| label(&series.label, LONGEST)).collect();
-    let right = names.iter().map(|name| text_width(name, axis::SIZE)).fold(0.0, f64::max) + 26.0;
+    // More names than fit beside the frame are left to the legend.
+    let named = entries.len() as f64 * NAMES <= HEIGHT;
+    let right = names.iter().filter(|_| named).map(|name| text_width(name, axis::SIZE)).fold(0.0, f64::max) + 26.0;
     let left = axis::margin(&up);
     let frame = Frame {
         left,
@@ -92,7 +94,7 @@ fn draw(
             }
         }
         markers(canvas, &frame, &placed)?;
-        ends(canvas, &frame, &placed, &names)
+        if named { ends(canvas, &frame, &placed, &names) } else { Ok(()) }
     })
 }
 
@@ -142,10 +144,6 @@ fn ends(canvas: &Canvas<'_>, frame: &Frame, placed: &[Vec<Option<[f64; 2]>>], na
     let last = |points: &Vec<Option<[f64; 2]>>| points.iter().rev().flatten().next().copied().map(inside);
     let mut ends: Vec<(usize, [f64; 2])> =
         placed.iter().enumerate().filter_map(|(method, points)| Some((method, last(points)?))).collect();
-    // More names than fit beside the frame are left to the legend.
-    if ends.len() as f64 * NAMES > frame.height {
-        return Ok(());
-    }
     ends.sort_by(|a, b| a.1[1].total_cmp(&b.1[1]));
     let mut heights: Vec<f64> = Vec::with_capacity(ends.len());
     for (_, [_, y]) in &ends {

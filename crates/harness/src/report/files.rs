@@ -37,7 +37,7 @@ pub(super) fn stems<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
 /// Writes files, given by name and content, into a folder, and returns where they are.
 pub(super) fn write_all(
     directory: &Path,
-    contents: &[(String, String)],
+    contents: &[(String, Vec<u8>)],
     overwrite: bool,
 ) -> Result<Vec<PathBuf>, ReportError> {
     match directory.symlink_metadata() {
@@ -50,7 +50,7 @@ pub(super) fn write_all(
 }
 
 /// Fills a temporary folder beside the wanted one, which a rename then makes appear with everything in it.
-fn create(directory: &Path, contents: &[(String, String)]) -> Result<(), ReportError> {
+fn create(directory: &Path, contents: &[(String, Vec<u8>)]) -> Result<(), ReportError> {
     let parent = match directory.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
@@ -59,7 +59,7 @@ fn create(directory: &Path, contents: &[(String, String)]) -> Result<(), ReportE
     for (name, content) in contents {
         let write = || {
             let mut file = fs::File::create_new(temporary.path().join(name))?;
-            file.write_all(content.as_bytes())?;
+            file.write_all(content)?;
             // Some file systems find out that they are full only now.
             file.sync_all()
         };
@@ -72,7 +72,7 @@ fn create(directory: &Path, contents: &[(String, String)]) -> Result<(), ReportE
 }
 
 /// Writes every file beside the one it replaces, and renames them once all of them are there.
-fn replace(directory: &Path, contents: &[(String, String)]) -> Result<(), ReportError> {
+fn replace(directory: &Path, contents: &[(String, Vec<u8>)]) -> Result<(), ReportError> {
     let mut written: Vec<(PathBuf, NamedTempFile)> = Vec::with_capacity(contents.len());
     for (name, content) in contents {
         let target = directory.join(name);
@@ -87,7 +87,7 @@ fn replace(directory: &Path, contents: &[(String, String)]) -> Result<(), Report
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let write = || {
             let mut file = builder.tempfile_in(directory)?;
-            file.write_all(content.as_bytes())?;
+            file.write_all(content)?;
             file.as_file().sync_all()?;
             Ok(file)
         };

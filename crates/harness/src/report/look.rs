@@ -1,11 +1,18 @@
 //! How methods are told apart: colour, dashes and a marker, so that overlapping curves and any eye can.
 
-/// Colours of Okabe and Ito that stand out on white and on black; the last is that of the text.
-const COLOURS: [&str; 7] = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "currentColor"];
+/// Colours of Okabe and Ito, darker where a thin line would not stand out on white, and as far apart to a colour-blind eye;
+/// the last is that of the text. On a dark page `style.css` puts the colours of Okabe and Ito themselves in their places.
+const COLOURS: [&str; 7] = ["#005B96", "#B04400", "#008F66", "#CF6FA5", "#C08600", "#3C9CDA", "currentColor"];
+
+/// The colour of text on a ground of the picture's own.
+pub(super) const TEXT: &str = "#1d2329";
 
 /// Dashes in picture units; the first method is a solid line, and the wide one that the others lie on.
 const DASHES: [&[f64]; 7] =
     [&[], &[7.0, 3.5], &[2.2, 2.6], &[9.0, 3.0, 2.2, 3.0], &[13.0, 4.0], &[4.5, 2.5], &[9.0, 2.6, 2.2, 2.6, 2.2, 2.6]];
+
+/// The dashes of what is known without computing.
+pub(super) const EXACT: [f64; 2] = [5.0, 3.5];
 
 /// How many methods have a look of their own.
 pub(super) const LOOKS: usize = COLOURS.len() * DASHES.len();
@@ -15,10 +22,14 @@ pub(super) fn colour(method: usize) -> &'static str {
     COLOURS[method % COLOURS.len()]
 }
 
-/// The dashes of a method, as the value of an SVG attribute, or nothing for a solid line.
-pub(super) fn dashes(method: usize, scale: f64) -> String {
+/// The dashes of a method; none for a solid line.
+pub(super) fn dashes(method: usize) -> &'static [f64] {
     // When the colours start again, the dashes do not.
-    let dashes = DASHES[(method + method / COLOURS.len()) % DASHES.len()];
+    DASHES[(method + method / COLOURS.len()) % DASHES.len()]
+}
+
+/// Dashes as the value of an SVG attribute.
+pub(super) fn written(dashes: &[f64], scale: f64) -> String {
     dashes.iter().map(|length| format!("{:.0}", length * scale)).collect::<Vec<_>>().join(" ")
 }
 
@@ -30,7 +41,7 @@ pub(super) fn width(method: usize) -> f64 {
 /// The outline of a method's marker about the origin.
 pub(super) fn marker(method: usize) -> Vec<[f64; 2]> {
     match (method + method / COLOURS.len()) % 7 {
-        0 => regular(20, 3.7, 0.0),
+        0 => regular(12, 3.8, 0.0),
         1 => regular(4, 4.6, 45.0),
         2 => regular(3, 5.2, -90.0),
         3 => regular(4, 5.2, 0.0),
@@ -62,7 +73,7 @@ pub(super) fn key(method: usize) -> String {
         "<svg class=\"key\" viewBox=\"0 0 28 12\" aria-hidden=\"true\"><path d=\"M0 6H28\" stroke=\"{colour}\" \
          stroke-width=\"{}\" stroke-dasharray=\"{}\"/><polygon fill=\"{colour}\" points=\"{}\"/></svg>",
         width(method),
-        dashes(method, 1.0),
+        written(dashes(method), 1.0),
         points.join(" "),
         colour = colour(method),
     )

@@ -1,29 +1,38 @@
 //! The report of a comparison: one page that works offline, and the pictures on it as files of their own.
 //!
 //! A report takes plain numbers and finished text, so that it says exactly what the terminal says. [`write()`] puts a
-//! page `index.html` and, for each scene, `NAME-path.svg`, `NAME-constraint.svg` and `NAME-energy.svg` into a folder.
-//! The page holds its pictures and its style itself, needs no script and no network, and follows the light or dark
-//! setting of whoever reads it.
+//! page `index.html` and, for each scene, `NAME-path`, `NAME-constraint` and `NAME-energy`, each as `.svg` and as `.png`,
+//! into a folder, with the numbers that the scene brings. The page holds its pictures, its style and its script itself, and
+//! needs no network. It is light or dark as its reader prefers; the files have a light ground. Each scene can be seen in
+//! motion; `index.html#play` starts the first.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
+mod animation;
 mod axis;
 mod canvas;
+mod cells;
+mod chart;
 mod diagram;
 mod drift;
 mod files;
 mod geometry;
+mod letters;
 mod look;
 mod page;
 mod path;
 mod picture;
+mod png;
 mod precision;
+mod raster;
 mod scale;
 mod sleigh;
 mod thinning;
 mod xml;
 
+pub use cells::Cells;
+pub use chart::{Chart, Layer, chart_svg};
 pub use precision::{PrecisionReport, Table, write_precision};
 
 /// A report: what the page says above its scenes, and the scenes.
@@ -55,6 +64,17 @@ pub struct SceneReport {
     pub series: Vec<Series>,
     /// The blade's exact path \[m\], where one is known.
     pub exact_path: Option<Vec<[f64; 2]>>,
+    /// Files of numbers to put beside the page as `NAME.ENDING`.
+    pub numbers: Vec<Numbers>,
+}
+
+/// A file of numbers.
+#[derive(Debug, Clone)]
+pub struct Numbers {
+    /// The ending of its name, such as `csv`.
+    pub ending: &'static str,
+    /// What is in it.
+    pub text: String,
 }
 
 /// One run of one method.
@@ -69,6 +89,8 @@ pub struct Series {
     pub path: Vec<[f64; 2]>,
     /// The heading \[rad\].
     pub heading: Vec<f64>,
+    /// The angle of a rotor relative to the sleigh \[rad\]; empty where there is none.
+    pub rotor: Vec<f64>,
     /// The time \[s\].
     pub time: Vec<f64>,
     /// The size of the constraint's residual, `|A(q) v + b|`.
@@ -117,7 +139,7 @@ pub enum ReportError {
     },
 }
 
-/// Writes a report into a folder and returns the files: the page first, then the pictures.
+/// Writes a report into a folder and returns the files: the page first, then the pictures and the numbers, scene by scene.
 ///
 /// A new folder appears whole or not at all; the folder that holds it must exist. With `overwrite`, an existing folder
 /// keeps every file that is not part of the report, and each file of the report is replaced in one step, the page
@@ -135,17 +157,35 @@ pub fn write(report: &Report, directory: &Path, overwrite: bool) -> Result<Vec<P
     }
     let names = files::stems(report.scenes.iter().map(|scene| scene.name.as_str()));
     let mut scenes = Vec::with_capacity(names.len());
+    let mut contents = vec![(PAGE.to_owned(), Vec::new())];
     for (scene, name) in report.scenes.iter().zip(&names) {
-        scenes.push(pictures(scene, name)?);
+        let pictures = pictures(scene, name)?;
+        for picture in &pictures {
+            contents.extend(picture.files()?);
+        }
+        contents.extend(numbered(name, &scene.numbers));
+        scenes.push(page::Shown { name, pictures, animation: animation::figure(scene)? });
     }
-    let mut contents = vec![("index.html".to_owned(), page::page(report, &names, &scenes))];
-    for picture in scenes.iter().flatten() {
-        contents.push((picture.file.clone(), picture.standalone()));
-    }
+    contents[0].1 = page::page(report, &scenes).into_bytes();
     files::write_all(directory, &contents, overwrite)
+}
+
+/// The name of the page.
+const PAGE: &str = "index.html";
+/// The picture of the paths of a scene, seen from above, as the text of an SVG file.
+///
+/// # Errors
+/// [`ReportError::Draw`] if the drawing library fails.
+pub fn path_picture(scene: &SceneReport) -> Result<String, ReportError> {
+    Ok(path::picture(scene, &scene.name)?.standalone())
 }
 
 /// The three pictures of a scene.
 fn pictures(scene: &SceneReport, name: &str) -> Result<[picture::Picture; 3], ReportError> {
     Ok([path::picture(scene, name)?, drift::constraint(scene, name)?, drift::energy(scene, name)?])
+}
+
+/// Files of numbers with their names.
+fn numbered(name: &str, numbers: &[Numbers]) -> impl Iterator<Item = (String, Vec<u8>)> {
+    numbers.iter().map(move |file| (format!("{name}.{}", file.ending), file.text.clone().into_bytes()))
 }

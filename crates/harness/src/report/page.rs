@@ -2,27 +2,39 @@
 
 use super::picture::Picture;
 use super::xml::escape;
-use super::{Report, SceneReport, look};
+use super::{Numbers, Report, SceneReport, look};
 
 /// The style, in the page itself, so that the page is one file.
 const STYLE: &str = include_str!("style.css");
+/// What comes before the page is shown, and what moves in it.
+const HEAD: &str = include_str!("head.js");
+const SCRIPT: &str = include_str!("page.js");
 
-/// The page of a report, given the file names of its scenes and their pictures.
-pub(super) fn page(report: &Report, names: &[String], pictures: &[[Picture; 3]]) -> String {
+/// What the page shows of a scene beside its text.
+pub(super) struct Shown<'a> {
+    /// The name that its files start with.
+    pub(super) name: &'a str,
+    /// The paths, the constraint, the energy.
+    pub(super) pictures: [Picture; 3],
+    /// The figure that moves, where there is one.
+    pub(super) animation: Option<String>,
+}
+
+/// The page of a report, given what it shows of its scenes.
+pub(super) fn page(report: &Report, shown: &[Shown<'_>]) -> String {
     let mut page = head(&report.title, &report.intro);
     if report.scenes.len() > 1 {
         page += "<nav aria-label=\"Scenes\"><ul>\n";
-        for (scene, name) in report.scenes.iter().zip(names) {
-            page += &format!("<li><a href=\"#scene-{}\">{}</a></li>\n", escape(name), escape(&scene.title));
+        for (scene, shown) in report.scenes.iter().zip(shown) {
+            page += &format!("<li><a href=\"#scene-{}\">{}</a></li>\n", escape(shown.name), escape(&scene.title));
         }
         page += "</ul></nav>\n";
     }
     page += "</header>\n<main>\n";
-    for ((scene, name), pictures) in report.scenes.iter().zip(names).zip(pictures) {
-        section(&mut page, scene, name, pictures);
+    for (scene, shown) in report.scenes.iter().zip(shown) {
+        section(&mut page, scene, shown);
     }
-    page += FOOT;
-    page
+    page + &foot()
 }
 
 /// What a page begins with, up to its heading and the paragraphs below.
@@ -31,7 +43,8 @@ pub(super) fn head(title: &str, intro: &str) -> String {
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
          content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n\
-         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<header>\n<h1>{title}</h1>\n"
+         <title>{title}</title>\n<style>\n{STYLE}</style>\n<script>\n{HEAD}</script>\n</head>\n<body>\n<header>\n\
+         <button type=\"button\" id=\"theme\" hidden></button>\n<h1>{title}</h1>\n"
     );
     for paragraph in intro.split("\n\n").filter(|paragraph| !paragraph.trim().is_empty()) {
         page += &format!("<p>{}</p>\n", escape(paragraph.trim()));
@@ -40,19 +53,25 @@ pub(super) fn head(title: &str, intro: &str) -> String {
 }
 
 /// What it ends with.
-pub(super) const FOOT: &str = "</main>\n</body>\n</html>\n";
+pub(super) fn foot() -> String {
+    format!("</main>\n<script>\n{SCRIPT}</script>\n</body>\n</html>\n")
+}
 
-fn section(page: &mut String, scene: &SceneReport, name: &str, pictures: &[Picture]) {
+fn section(page: &mut String, scene: &SceneReport, shown: &Shown<'_>) {
+    let name = shown.name;
     *page += &format!("<section id=\"scene-{}\">\n<h2>{}</h2>\n", escape(name), escape(&scene.title));
     facts(page, &scene.facts);
     if !scene.columns.is_empty() || !scene.rows.is_empty() {
         // The row of a method that the pictures show starts with the look of its line.
-        let shown = |row: &[String]| {
+        let look = |row: &[String]| {
             scene.series.iter().position(|series| row.first() == Some(&series.label) && series.is_drawn())
         };
-        table(page, &scene.columns, &scene.rows, &shown);
+        table(page, &scene.columns, &scene.rows, &look);
     }
-    figures(page, pictures);
+    numbers(page, name, &scene.numbers);
+    let [path, constraint, energy] = shown.pictures.each_ref().map(figure);
+    let left = std::iter::once(path).chain(shown.animation.clone()).collect();
+    columns(page, &[left, vec![constraint, energy]]);
     *page += "</section>\n";
 }
 
@@ -68,18 +87,35 @@ pub(super) fn facts(page: &mut String, facts: &[(String, String)]) {
     *page += "</dl>\n";
 }
 
-/// Pictures with their captions.
-pub(super) fn figures(page: &mut String, pictures: &[Picture]) {
+/// A picture with its caption.
+pub(super) fn figure(picture: &Picture) -> String {
+    let file = escape(&picture.file);
+    format!(
+        "<figure>\n<div class=\"scroll\">{}</div>\n<figcaption>{} <a href=\"{file}.svg\">SVG</a> \
+         <a href=\"{file}.png\">PNG</a></figcaption>\n</figure>\n",
+        picture.inline(),
+        escape(&picture.caption),
+    )
+}
+
+/// Figures in two columns, which stand one above the other where there is no room.
+pub(super) fn columns(page: &mut String, columns: &[Vec<String>; 2]) {
     *page += "<div class=\"pictures\">\n";
-    for picture in pictures {
-        *page += &format!(
-            "<figure>\n<div class=\"scroll\">{}</div>\n<figcaption>{} <a href=\"{}\">SVG</a></figcaption>\n</figure>\n",
-            picture.inline(),
-            escape(&picture.caption),
-            escape(&picture.file),
-        );
+    for column in columns {
+        *page += &format!("<div>\n{}</div>\n", column.concat());
     }
     *page += "</div>\n";
+}
+
+/// Where the numbers are.
+pub(super) fn numbers(page: &mut String, name: &str, numbers: &[Numbers]) {
+    if numbers.is_empty() {
+        return;
+    }
+    let links = numbers
+        .iter()
+        .map(|Numbers { ending, .. }| format!("<a href=\"{}.{ending}\">{}</a>", escape(name), ending.to_uppercase()));
+    *page += &format!("<p class=\"numbers\">All digits: {}</p>\n", links.collect::<Vec<_>>().join(" "));
 }
 
 /// A table; `shown` tells which look a row begins with, if with any.

@@ -10,6 +10,8 @@ use super::thinning::thin;
 use super::{ReportError, SceneReport, Series, entries};
 
 const WIDTH: f64 = 560.0;
+/// Room beside the frame.
+pub(super) const RIGHT: f64 = 16.0;
 /// Room for what lies at the edge of the paths: half a sleigh.
 const PADDING: f64 = 24.0;
 /// How many points of a path are kept.
@@ -25,29 +27,53 @@ pub(super) fn picture(scene: &SceneReport, name: &str) -> Result<Picture, Report
         entries.push((Ink::Exact, "exact"));
     }
     let (places, legend) = axis::legend(&entries, WIDTH - 20.0);
-    let frame = frame(scene, exact, legend + 34.0);
-    let [across, up] = ticks(&frame);
-    let caption = caption(scene, exact.is_some(), &strays(scene, &frame));
+    let view = view(scene, legend + 34.0);
+    let frame = &view.frame;
+    let caption = caption(scene, exact.is_some(), &strays(scene, frame));
     let size = [WIDTH, frame.bottom() + 44.0];
-    Picture::draw(format!("{name}-path.svg"), format!("{}: path from above", scene.title), caption, size, |canvas| {
+    Picture::draw(format!("{name}-path"), format!("{}: path from above", scene.title), caption, size, |canvas| {
         axis::draw_legend(canvas, &entries, &places, [10.0, 4.0])?;
-        axis::draw(canvas, &frame, [&across, &up], ["x [m]", "y [m]"])?;
-        let draw = |path: &[[f64; 2]], ink, opacity, width| {
-            let lines = thin(frame.lines(path.iter().map(|point| frame.place(*point))), POINTS);
-            lines.iter().try_for_each(|line| canvas.line(line, ink, opacity, width))
-        };
-        draw(exact.unwrap_or_default(), Ink::Exact, 0.7, 1.3)?;
+        view.axes(canvas)?;
+        view.line(canvas, exact.unwrap_or_default(), Ink::Exact, 0.7, 1.3)?;
         for (method, series) in scene.series.iter().enumerate() {
-            draw(&series.path, Ink::Method(method), 1.0, look::width(method))?;
+            view.line(canvas, &series.path, Ink::Method(method), 1.0, look::width(method))?;
         }
         for (method, series) in scene.series.iter().enumerate() {
-            markers(canvas, &frame, method, series, scene.series.len())?;
+            markers(canvas, frame, method, series, scene.series.len())?;
         }
         match scene.series.iter().find(|series| series.is_drawn()) {
-            Some(series) => sleighs(canvas, &frame, series),
+            Some(series) => sleighs(canvas, frame, series),
             None => Ok(()),
         }
     })
+}
+
+/// The ground seen from above.
+pub(super) struct View {
+    pub(super) frame: Frame,
+    ticks: [Vec<axis::Tick>; 2],
+}
+
+/// The view that the paths of a scene ask for, with so much room above.
+pub(super) fn view(scene: &SceneReport, top: f64) -> View {
+    let frame = frame(scene, scene.exact_path.as_deref().filter(|path| !path.is_empty()), top);
+    View { frame, ticks: ticks(&frame) }
+}
+
+impl View {
+    pub(super) fn axes(&self, canvas: &Canvas<'_>) -> Drawn {
+        let [across, up] = &self.ticks;
+        axis::draw(canvas, &self.frame, [across, up], ["x [m]", "y [m]"])
+    }
+
+    pub(super) fn line(&self, canvas: &Canvas<'_>, path: &[[f64; 2]], ink: Ink, opacity: f64, width: f64) -> Drawn {
+        thinned(&self.frame, path).iter().try_for_each(|line| canvas.line(line, ink, opacity, width))
+    }
+}
+
+/// What the frame shows of a path, in unbroken lines of not too many points.
+fn thinned(frame: &Frame, path: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
+    thin(frame.lines(path.iter().map(|point| frame.place(*point))), POINTS)
 }
 
 fn caption(scene: &SceneReport, exact: bool, strays: &[&str]) -> String {
@@ -88,7 +114,7 @@ fn frame(scene: &SceneReport, exact: Option<&[[f64; 2]]>, top: f64) -> Frame {
     // The room for the figures depends on the ticks, and these on the height, but hardly: once is enough.
     let guess = Span::about(y.middle(), half);
     let left = axis::margin(&axis::linear(guess, 5.0)).max(44.0);
-    let width = WIDTH - left - 16.0;
+    let width = WIDTH - left - RIGHT;
     let ratio = half_y / half_x.max(1e-3 * half);
     let height = ((width - 2.0 * PADDING) * ratio + 2.0 * PADDING).clamp(0.26 * width, 0.8 * width);
     let metre = (2.0 * half_x / (width - 2.0 * PADDING)).max(2.0 * half_y / (height - 2.0 * PADDING));

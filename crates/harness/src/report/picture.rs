@@ -1,8 +1,9 @@
-//! A picture, and the two forms in which it appears: in the page, and as a file.
+//! A picture, and the forms in which it appears: in the page, and as files.
 
 use super::ReportError;
-use super::canvas::{Canvas, Drawn, shapes, units};
+use super::canvas::{Canvas, Drawn, Mark, shapes, units};
 use super::xml::escape;
+use super::{look, raster};
 
 /// How near a pointer must come to a point.
 const TIP: f64 = 6.0;
@@ -10,7 +11,7 @@ const TIP: f64 = 6.0;
 /// A finished picture.
 #[derive(Debug)]
 pub(super) struct Picture {
-    /// The name of its file.
+    /// The name of its files, without their endings.
     pub(super) file: String,
     /// What it shows, in a few words.
     pub(super) title: String,
@@ -18,6 +19,7 @@ pub(super) struct Picture {
     pub(super) caption: String,
     size: [f64; 2],
     shapes: String,
+    marks: Vec<Mark>,
 }
 
 impl Picture {
@@ -30,7 +32,7 @@ impl Picture {
         draw: impl FnOnce(&Canvas<'_>) -> Drawn,
     ) -> Result<Self, ReportError> {
         match shapes(size, draw) {
-            Ok(shapes) => Ok(Self { file, title, caption, size, shapes }),
+            Ok((shapes, marks)) => Ok(Self { file, title, caption, size, shapes, marks }),
             Err(error) => Err(ReportError::Draw { picture: file, reason: error.to_string() }),
         }
     }
@@ -47,22 +49,41 @@ impl Picture {
         self
     }
 
-    /// The picture as a part of a page: transparent, in the page's text colour.
-    pub(super) fn inline(&self) -> String {
-        format!("<svg{} role=\"img\" aria-label=\"{}\">{}</svg>", self.frame(), escape(&self.title), self.shapes)
+    /// Adds shapes on top, in units of the canvas.
+    pub(super) fn with(mut self, shapes: &str) -> Self {
+        self.shapes += shapes;
+        self
     }
 
-    /// The picture as a file: on a ground of its own, white or dark as the reader prefers, white where that is unknown.
+    /// The picture as a part of a page: transparent, in the page's text colour.
+    pub(super) fn inline(&self) -> String {
+        self.with_inside("")
+    }
+
+    /// The same with more inside, above everything else.
+    pub(super) fn with_inside(&self, inside: &str) -> String {
+        let (frame, title) = (self.frame(), escape(&self.title));
+        format!("<svg{frame} role=\"img\" aria-label=\"{title}\">{}{inside}</svg>", self.shapes)
+    }
+
+    /// The files of the picture: SVG, and PNG for whatever shows no SVG.
+    pub(super) fn files(&self) -> Result<[(String, Vec<u8>); 2], ReportError> {
+        let failed = |reason| ReportError::Draw { picture: format!("{}.png", self.file), reason };
+        let png = raster::png(self.size, &self.marks).map_err(failed)?;
+        Ok([(format!("{}.svg", self.file), self.standalone().into_bytes()), (format!("{}.png", self.file), png)])
+    }
+
+    /// The picture as a file: on a light ground of its own.
     pub(super) fn standalone(&self) -> String {
         format!(
-            "<svg{} width=\"{:.0}\" height=\"{:.0}\" color=\"#1d2329\">\n<title>{}</title>\n<style>\
-             @media (prefers-color-scheme: dark) {{ svg {{ color: #dfe4e8 }} .ground {{ fill: #14181c }} }}</style>\n\
-             <rect class=\"ground\" width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>{}</svg>\n",
+            "<svg{} width=\"{:.0}\" height=\"{:.0}\" color=\"{TEXT}\">\n<title>{}</title>\n\
+             <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>{}</svg>\n",
             self.frame(),
             self.size[0],
             self.size[1],
             escape(&self.title),
             self.shapes,
+            TEXT = look::TEXT,
         )
     }
 

@@ -2,7 +2,7 @@
 
 use super::diagram::{Abscissa, picture};
 use super::xml::escape;
-use super::{ReportError, files, page};
+use super::{Numbers, PAGE, ReportError, files, numbered, page};
 use crate::precision::Curve;
 use std::path::{Path, PathBuf};
 
@@ -23,6 +23,8 @@ pub struct PrecisionReport {
     pub curves: Vec<Curve>,
     /// The tables below them.
     pub tables: Vec<Table>,
+    /// Files of numbers to put beside the page as `NAME.ENDING`.
+    pub numbers: Vec<Numbers>,
 }
 
 /// A table of finished text. The last cell of a row that is shorter than the others takes the columns that are left.
@@ -36,7 +38,7 @@ pub struct Table {
     pub rows: Vec<Vec<String>>,
 }
 
-/// Writes a page `index.html` with the diagrams `NAME-time.svg` and `NAME-step.svg` into a folder, as
+/// Writes a page `index.html` with the diagrams `NAME-time` and `NAME-step`, each as `.svg` and `.png`, and the numbers into a folder, as
 /// [`write()`](super::write()) does.
 ///
 /// # Errors
@@ -58,7 +60,7 @@ pub fn write_precision(
         .into_iter()
         .map(|(what, abscissa, caption)| {
             let title = format!("{}: error against {what}", report.heading);
-            picture(&report.curves, abscissa, [format!("{name}-{what}.svg"), title, caption.to_owned()])
+            picture(&report.curves, abscissa, [format!("{name}-{what}"), title, caption.to_owned()])
         })
         .collect::<Result<Vec<_>, _>>()?;
     let labels: Vec<String> = report.curves.iter().map(Curve::label).collect();
@@ -67,15 +69,22 @@ pub fn write_precision(
     let mut text = page::head(&report.title, &report.intro);
     text += &format!("</header>\n<main>\n<section>\n<h2>{}</h2>\n", escape(&report.heading));
     page::facts(&mut text, &report.facts);
-    page::figures(&mut text, &pictures);
+    page::columns(
+        &mut text,
+        &[&pictures[..1], &pictures[1..]].map(|pictures| pictures.iter().map(page::figure).collect()),
+    );
+    page::numbers(&mut text, &name, &report.numbers);
     text += "</section>\n";
     for table in &report.tables {
         text += &format!("<section>\n<h2>{}</h2>\n", escape(&table.title));
         page::table(&mut text, &table.columns, &table.rows, &shown);
         text += "</section>\n";
     }
-    text += page::FOOT;
-    let mut contents = vec![("index.html".to_owned(), text)];
-    contents.extend(pictures.iter().map(|picture| (picture.file.clone(), picture.standalone())));
+    text += &page::foot();
+    let mut contents = vec![(PAGE.to_owned(), text.into_bytes())];
+    for picture in &pictures {
+        contents.extend(picture.files()?);
+    }
+    contents.extend(numbered(&name, &report.numbers));
     files::write_all(directory, &contents, overwrite)
 }

@@ -1,9 +1,26 @@
-//! The sleigh itself, drawn along a path.
+//! The sleigh itself: its shape, and where it stands along a path.
 
 use super::Series;
 use super::axis;
-use super::canvas::{Anchor, Canvas, Drawn, Ink};
+use super::canvas::{Anchor, Canvas, Drawn, Ink, units};
 use super::geometry::{Frame, distance};
+
+/// The body with its nose ahead, about the blade's contact point; ahead, then to the left.
+const BODY: [[f64; 2]; 9] = [
+    [19.0, 0.0],
+    [14.0, 4.2],
+    [6.0, 7.0],
+    [-7.0, 7.0],
+    [-9.0, 5.0],
+    [-9.0, -5.0],
+    [-7.0, -7.0],
+    [6.0, -7.0],
+    [14.0, -4.2],
+];
+/// The blade.
+const BLADE: [[f64; 2]; 2] = [[-6.0, 0.0], [6.0, 0.0]];
+/// The rim of a rotor and its spokes.
+const RIM: f64 = 4.6;
 
 /// How many times the sleigh is drawn, where there is room for it.
 const SLEIGHS: usize = 9;
@@ -25,21 +42,36 @@ pub(super) fn sleighs(canvas: &Canvas<'_>, frame: &Frame, series: &Series) -> Dr
             drawn.push(place);
         }
     }
+    start(canvas, frame, series)
+}
+
+/// The word beside the start where it is farthest from the path: behind the sleigh, ahead of it, or to a side.
+fn start(canvas: &Canvas<'_>, frame: &Frame, series: &Series) -> Drawn {
     let Some(place) = series.path.first().and_then(|point| frame.place(*point)).filter(|place| frame.holds(*place))
     else {
         return Ok(());
     };
-    // Behind the sleigh, where the path cannot be yet.
     let heading = series.heading.first().copied().filter(|heading| heading.is_finite()).unwrap_or(0.0);
-    let behind = [place[0] - 30.0 * heading.cos(), place[1] + 24.0 * heading.sin()];
-    let inside = [
-        behind[0].clamp(frame.left + 18.0, frame.right() - 18.0),
-        behind[1].clamp(frame.top + 8.0, frame.bottom() - 8.0),
-    ];
-    // Where the frame pushes the word back onto the sleigh, it goes above or below.
-    let above = if place[1] - 24.0 > frame.top { place[1] - 20.0 } else { place[1] + 20.0 };
-    let at = if distance(inside, behind) > 4.0 { [inside[0], above] } else { inside };
-    canvas.text("start", at, Anchor::Middle, axis::SIZE)
+    let path: Vec<[f64; 2]> = series.path.iter().filter_map(|point| frame.place(*point)).collect();
+    let room = |[x, y]: [f64; 2]| {
+        // Half the word reaches so far to the left and to the right.
+        let ends = [-12.0, 0.0, 12.0].map(|along| [x + along, y]);
+        let nearest = |end: [f64; 2]| path.iter().map(|point| distance(*point, end)).fold(f64::INFINITY, f64::min);
+        ends.map(nearest).into_iter().fold(f64::INFINITY, f64::min)
+    };
+    let mut best: Option<([f64; 2], f64)> = None;
+    for (turn, away) in [(0.5, [30.0, 24.0]), (0.0, [40.0, 34.0]), (0.25, [30.0, 20.0]), (0.75, [30.0, 20.0])] {
+        let (sin, cos) = (heading + std::f64::consts::TAU * turn).sin_cos();
+        let at = [place[0] + away[0] * cos, place[1] - away[1] * sin];
+        let inside = (frame.left + 18.0..=frame.right() - 18.0).contains(&at[0])
+            && (frame.top + 8.0..=frame.bottom() - 8.0).contains(&at[1]);
+        let free = room(at);
+        // As good as behind is not better.
+        if inside && best.is_none_or(|(_, most)| free > most + 6.0) {
+            best = Some((at, free));
+        }
+    }
+    best.map_or(Ok(()), |(at, _)| canvas.text("start", at, Anchor::Middle, axis::SIZE))
 }
 
 /// The nodes nearest to equally spaced times; equally spaced nodes where the times do not increase.
@@ -64,20 +96,33 @@ fn moments(time: &[f64], nodes: usize) -> Vec<usize> {
 fn sleigh(canvas: &Canvas<'_>, [x, y]: [f64; 2], heading: f64) -> Drawn {
     let (sin, cos) = heading.sin_cos();
     let place = |[ahead, left]: [f64; 2]| [x + ahead * cos - left * sin, y - ahead * sin - left * cos];
-    let body = [
-        [19.0, 0.0],
-        [14.0, 4.2],
-        [6.0, 7.0],
-        [-7.0, 7.0],
-        [-9.0, 5.0],
-        [-9.0, -5.0],
-        [-7.0, -7.0],
-        [6.0, -7.0],
-        [14.0, -4.2],
-    ];
-    let mut outline = body.map(place).to_vec();
+    let mut outline = BODY.map(place).to_vec();
     canvas.fill(&outline, Ink::Text, 0.13)?;
     outline.push(outline[0]);
     canvas.line(&outline, Ink::Text, 0.75, 1.1)?;
-    canvas.line(&[[-6.0, 0.0], [6.0, 0.0]].map(place), Ink::Text, 1.0, 2.6)
+    canvas.line(&BLADE.map(place), Ink::Text, 1.0, 2.6)
+}
+
+/// The same shape at the origin, heading to the right, with a rotor if there is one, as SVG for what moves it.
+pub(super) fn shape(rotor: bool) -> String {
+    let corner = |[ahead, left]: [f64; 2]| format!("{},{}", units(ahead), units(-left));
+    let corners = |points: &[[f64; 2]]| points.iter().map(|point| corner(*point)).collect::<Vec<_>>().join(" ");
+    let mut shape = format!(
+        "<polygon class=\"body\" stroke=\"currentColor\" stroke-width=\"{}\" points=\"{}\"/>\
+         <polyline stroke=\"currentColor\" stroke-width=\"{}\" points=\"{}\"/>",
+        units(1.1),
+        corners(&BODY),
+        units(2.6),
+        corners(&BLADE),
+    );
+    if rotor {
+        let rim = units(RIM);
+        shape += &format!(
+            "<g class=\"rotor\" fill=\"none\" stroke=\"currentColor\" stroke-width=\"{}\"><circle r=\"{rim}\"/>\
+             <path d=\"M{} 0H{rim}M0 {0}V0\"/></g>",
+            units(1.0),
+            -rim
+        );
+    }
+    shape
 }

@@ -6,9 +6,19 @@ use std::collections::HashSet;
 /// Lines as a picture draws them.
 type Lines = Vec<Vec<[f64; 2]>>;
 
-/// Leaves out points that lie closer to their predecessor than the eye can tell; where more than `most` are left, also
-/// what lies on itself, as in a circle run through a thousand times, and then points a little further apart.
+/// How far a line may pass by a point that is left out: less than anti-aliasing shows.
+const BESIDE: f64 = 0.15;
+
+/// Leaves out points that lie closer to their predecessor than the eye can tell, or on the straight line between others;
+/// where more than `most` are left before the latter, also what lies on itself, as in a circle run through a thousand
+/// times, and then points a little further apart.
 pub(super) fn thin(lines: Lines, most: usize) -> Lines {
+    let mut lines = few(lines, most);
+    lines.iter_mut().for_each(straighten);
+    lines
+}
+
+fn few(lines: Lines, most: usize) -> Lines {
     let few = |lines: &Lines| lines.iter().map(Vec::len).sum::<usize>() <= most;
     let fine = sparser(lines, 0.7);
     if few(&fine) {
@@ -23,6 +33,34 @@ pub(super) fn thin(lines: Lines, most: usize) -> Lines {
         thinned = sparser(thinned, tolerance);
     }
     thinned
+}
+
+/// Leaves out points beside which the line passes all the same (Ramer 1972; Douglas and Peucker 1973).
+fn straighten(line: &mut Vec<[f64; 2]>) {
+    let mut kept = vec![false; line.len()];
+    let mut pieces = vec![(0, line.len().saturating_sub(1))];
+    while let Some((from, to)) = pieces.pop() {
+        let away = |k: usize| beside(line[k], line[from], line[to]);
+        let farthest = (from + 1..to).max_by(|a, b| away(*a).total_cmp(&away(*b)));
+        match farthest.filter(|k| away(*k) > BESIDE) {
+            Some(middle) => pieces.extend([(from, middle), (middle, to)]),
+            None => [from, to].into_iter().for_each(|end| {
+                if let Some(kept) = kept.get_mut(end) {
+                    *kept = true;
+                }
+            }),
+        }
+    }
+    let mut kept = kept.into_iter();
+    line.retain(|_| kept.next().unwrap_or(false));
+}
+
+/// The distance of a point from a segment.
+fn beside(point: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
+    let [along, off] = [[to[0] - from[0], to[1] - from[1]], [point[0] - from[0], point[1] - from[1]]];
+    let square = along[0] * along[0] + along[1] * along[1];
+    let share = if square > 0.0 { ((along[0] * off[0] + along[1] * off[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
+    distance(off, along.map(|length| share * length))
 }
 
 /// Keeps points that lie at least `tolerance` from the one kept before, and both ends.

@@ -3,7 +3,10 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 mod baselines;
+mod chaos;
+mod charts;
 mod drift;
+mod measures;
 mod precision;
 mod same_bits;
 mod sensitivity;

@@ -1,5 +1,6 @@
 use crate::SleighError;
 use crate::checks::{finite, positive};
+use crate::planimeter::{Holonomy, Leg, of_legs};
 use lagrangian::{Piecewise, Scalar};
 use std::f64::consts::TAU;
 
@@ -97,6 +98,27 @@ impl ClosedPath {
                 0.5 * (0..vertices.len()).map(twice).sum::<f64>()
             }
         }
+    }
+
+    /// The straight segments and arcs of one round.
+    #[must_use]
+    pub fn legs(&self) -> Vec<Leg> {
+        match &self.shape {
+            Shape::Circle { radius, .. } => vec![Leg::Arc { radius: *radius, from: 0.0, by: TAU }],
+            Shape::Polygon { vertices, .. } => {
+                let next = |k: usize| vertices[(k + 1) % vertices.len()];
+                let edges = vertices.iter().enumerate();
+                edges.map(|(k, from)| Leg::Segment([next(k)[0] - from[0], next(k)[1] - from[1]])).collect()
+            }
+        }
+    }
+
+    /// What one round does to the heading of a blade that a tracer leads along the path, `a` (m) ahead of it: exact.
+    ///
+    /// # Errors
+    /// [`SleighError`] where `a` is zero.
+    pub fn holonomy(&self, a: f64) -> Result<Holonomy, SleighError> {
+        of_legs(&self.legs(), a)
     }
 
     /// The velocity along the path at the time `t` (m/s).

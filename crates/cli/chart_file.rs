@@ -1,0 +1,50 @@
+use crate::error::CliError;
+use crate::files::{check_file, write_whole};
+use harness::report::{Chart, chart_svg};
+use std::io::Write;
+use std::path::Path;
+
+/// A file of an analysis: numbers or a picture, by the ending of its name.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum ChartFile<'a> {
+    Csv(&'a Path),
+    Svg(&'a Path),
+}
+
+impl<'a> ChartFile<'a> {
+    /// Refused, before the work begins, where it could not be written at its end.
+    pub(crate) fn of(path: &'a Path, overwrite: bool) -> Result<Self, CliError> {
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+        let file = match ending.as_deref() {
+            Some("csv") => Self::Csv(path),
+            Some("svg") => Self::Svg(path),
+            _ => return Err(CliError::ChartEnding { path: path.to_owned() }),
+        };
+        check_file(path, overwrite)?;
+        Ok(file)
+    }
+
+    /// Writes the rows below their header, or the chart.
+    pub(crate) fn write(
+        self,
+        overwrite: bool,
+        header: &str,
+        rows: &[Vec<f64>],
+        chart: impl FnOnce() -> Chart,
+    ) -> Result<(), CliError> {
+        match self {
+            Self::Csv(path) => write_whole(path, overwrite, |file| {
+                writeln!(file, "{header}")?;
+                for row in rows {
+                    let cells: Vec<String> = row.iter().map(|x| format!("{x:?}")).collect();
+                    writeln!(file, "{}", cells.join(","))?;
+                }
+                Ok(())
+            }),
+            Self::Svg(path) => {
+                let text = chart_svg(&chart()).map_err(CliError::Report)?;
+                write_whole(path, overwrite, |file| file.write_all(text.as_bytes()))
+            }
+        }
+    }
+}

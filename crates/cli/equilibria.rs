@@ -1,0 +1,223 @@
+use crate::args::EquilibriaArguments;
+use crate::error::CliError;
+use crate::files::{check_file, write_whole};
+use crate::{inspect, table, terminal};
+use dla::{Schedule, State, Trajectory};
+use harness::analysis::{DiscreteMap, EquilibriumError, StepLimit, differentiable, relative_equilibria};
+use harness::report::{Chart, Layer, chart_svg};
+use harness::{Method, integrate_pieces};
+use lagrangian::velocity_of;
+use scene::{Scene, SceneSystem, Visitor};
+use serde_json::{Value, json};
+use sleigh::SleighState;
+use std::fmt::Write;
+
+/// The names of the coordinates.
+const COORDINATES: [&str; 4] = ["x", "y", "heading", "rotor"];
+/// The speeds at which orbits of the phase portrait begin, relative to that of the scene's energy, and their turn rates,
+/// relative to its turn rate.
+const PORTRAIT: ([f64; 3], f64) = ([0.4, 0.7, 1.0], 0.03);
+
+/// What was found, and the orbits of a picture of it.
+struct Found {
+    rows: Vec<Row>,
+    orbits: Vec<Vec<[f64; 2]>>,
+}
+
+/// A relative equilibrium in the words of a scene.
+struct Row {
+    state: SleighState,
+    rotor_rate: Option<f64>,
+    depends_on: Vec<&'static str>,
+    family: usize,
+    flow: Vec<[f64; 2]>,
+    stable: bool,
+    map: Option<Vec<[f64; 2]>>,
+    /// Where the flow is stable.
+    limit: Option<StepLimit>,
+}
+
+/// `noslip equilibria`: the steady motions of a scene, and how stable they are, of the flow and of a method.
+pub(crate) fn equilibria(arguments: &EquilibriaArguments) -> Result<(), CliError> {
+    let scene = inspect::load(&arguments.scene, arguments.method.as_deref())?;
+    let method = Method::named(&scene.run.method, scene.run.alpha)?;
+    if differentiable::<3, 1>(&method).is_none() {
+        return Err(CliError::NotDifferentiated { method: method.info().name });
+    }
+    if let Some(path) = &arguments.picture {
+        check_file(path, arguments.scene.force)?;
+    }
+    let found = scene.visit(Find { scene: &scene, method: &method, portrait: arguments.picture.is_some() })??;
+    if let Some(path) = &arguments.picture {
+        let picture = chart_svg(&portrait(&scene, &found)).map_err(CliError::Report)?;
+        write_whole(path, arguments.scene.force, |file| std::io::Write::write_all(file, picture.as_bytes()))?;
+    }
+    if arguments.scene.json {
+        terminal::print_json(&object(&scene, &method, &found.rows))
+    } else {
+        terminal::print(&text(&scene, &method, &found.rows))
+    }
+}
+
+struct Find<'a> {
+    scene: &'a Scene,
+    method: &'a Method,
+    portrait: bool,
+}
+
+impl Visitor for Find<'_> {
+    type Output = Result<Found, CliError>;
+
+    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
+    where
+        Sys: SceneSystem<N, M>,
+    {
+        let Self { scene, method, portrait } = self;
+        if !system.jumps(0.0, scene.run.duration).is_empty() {
+            return Err(EquilibriumError::TimeDependent.into());
+        }
+        let found = relative_equilibria(system, &q, &v)?;
+        let Some(steps) = differentiable::<N, M>(method) else {
+            return Err(CliError::NotDifferentiated { method: method.info().name });
+        };
+        let h = scene.run.actual_step();
+        let mut step = |step: f64, start: &State<N>| {
+            let (mut end, schedule) = (*start, Schedule { t0: 0.0, step, steps: 1 });
+            integrate_pieces(system, method, &schedule, &mut end, &mut ()).ok().map(|_| end)
+        };
+        let mut map = DiscreteMap::new(system, &*steps, &mut step);
+        let row = |e: &harness::analysis::Equilibrium<N>| Row {
+            state: system.sleigh_state(&e.q, &e.v),
+            rotor_rate: system.rotor(&e.q, &e.v).map(|[_, rate]| rate),
+            depends_on: e.shape.iter().filter_map(|i| COORDINATES.get(*i).copied()).collect(),
+            family: e.family,
+            stable: e.stable,
+            map: map.spectrum(h, e),
+            limit: e.stable.then(|| map.limit(h, e)),
+            flow: e.flow.clone(),
+        };
+        let rows = found.iter().map(row).collect();
+        let orbits = if portrait { orbits(system, scene, method, &q, &v) } else { Vec::new() };
+        Ok(Found { rows, orbits })
+    }
+}
+
+/// Orbits from both sides of slow turns, at some speeds forward and back.
+fn orbits<Sys: SceneSystem<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    scene: &Scene,
+    method: &Method,
+    q: &[f64; N],
+    v: &[f64; N],
+) -> Vec<Vec<[f64; 2]>> {
+    let start = system.sleigh_state(q, v);
+    let sleigh = &scene.sleigh;
+    let energy = sleigh.mass() * start.speed * start.speed + sleigh.pivot_inertia() * start.turn_rate * start.turn_rate;
+    let speed = (energy / sleigh.mass()).sqrt();
+    let schedule = inspect::schedule(scene);
+    let (levels, turn) = PORTRAIT;
+    let mut orbits = Vec::new();
+    for level in levels.into_iter().flat_map(|level| [level, -level]) {
+        for turn in [turn, -turn] {
+            let xi =
+                std::array::from_fn(|k| [level * speed, level.abs() * turn * speed].get(k).copied().unwrap_or(0.0));
+            let Ok(v) = velocity_of(system, 0.0, q, &xi) else { continue };
+            let mut nodes = Trajectory::<N, M>::every(1);
+            // An orbit that fails is shown as far as it goes.
+            let _ = integrate_pieces(system, method, &schedule, &mut State::new(*q, v, system.angles()), &mut nodes);
+            let seen = nodes.nodes().iter().map(|node| system.sleigh_state(&node.q, &node.v));
+            orbits.push(seen.map(|state| [state.speed, state.turn_rate]).collect());
+        }
+    }
+    orbits
+}
+
+fn portrait(scene: &Scene, found: &Found) -> Chart {
+    let steady = |stable: bool| {
+        let rows = found.rows.iter().filter(|row| row.stable == stable);
+        rows.map(|row| vec![[row.state.speed, row.state.turn_rate]]).collect()
+    };
+    let starts = found.orbits.iter().filter_map(|orbit| orbit.first().map(|start| vec![*start])).collect();
+    let kinds = [
+        ("orbits", found.orbits.clone()),
+        ("stable", steady(true)),
+        ("unstable", steady(false)),
+        ("where orbits begin", starts),
+    ];
+    let kinds = kinds.into_iter().filter(|(_, curves)| !curves.is_empty());
+    Chart {
+        title: format!("{}: phase portrait", scene.title),
+        axes: ["speed [m/s]".to_owned(), "turn rate [rad/s]".to_owned()],
+        decades: false,
+        layers: kinds.map(|(label, curves)| Layer::Curves { label: label.to_owned(), curves }).collect(),
+    }
+}
+
+fn object(scene: &Scene, method: &Method, rows: &[Row]) -> Value {
+    let complex = |values: &[[f64; 2]]| values.iter().map(|[re, im]| json!({"re": re, "im": im})).collect::<Vec<_>>();
+    let equilibria = rows.iter().map(|row| {
+        json!({
+            "speed": row.state.speed,
+            "turn_rate": row.state.turn_rate,
+            "rotor_rate": row.rotor_rate,
+            "x": row.state.x,
+            "y": row.state.y,
+            "heading": row.state.heading,
+            "depends_on": row.depends_on,
+            "family": row.family,
+            "stable": row.stable,
+            "flow": complex(&row.flow),
+            "map": row.map.as_deref().map(complex),
+            "step_limit": row.limit.and_then(StepLimit::step),
+            "step_limit_reason": row.limit.map(StepLimit::reason),
+        })
+    });
+    json!({
+        "scene": scene.name,
+        "method": method.info().name,
+        "step": scene.run.actual_step(),
+        "equilibria": equilibria.collect::<Vec<_>>(),
+    })
+}
+
+fn text(scene: &Scene, method: &Method, rows: &[Row]) -> String {
+    let (h, name) = (scene.run.actual_step(), method.info().name);
+    let mut text =
+        format!("{} ({}): steady motions, and those of {name} with steps of {h} s\n", scene.title, scene.name);
+    for row in rows {
+        let mut what = format!("{} m/s, {} rad/s", table::number(row.state.speed), table::number(row.state.turn_rate));
+        if let Some(rate) = row.rotor_rate {
+            let _ = write!(what, ", rotor {} rad/s", table::number(rate));
+        }
+        if !row.depends_on.is_empty() {
+            let SleighState { x, y, heading, .. } = row.state;
+            let [x, y, heading] = [x, y, heading].map(table::number);
+            let _ = write!(what, ", at x = {x} m, y = {y} m, heading {heading} rad");
+        }
+        let limit = match row.limit {
+            None => "none: the motion itself is unstable".to_owned(),
+            Some(StepLimit::Beyond(step)) => format!("none found up to {} s", table::number(step)),
+            Some(StepLimit::Unstable(step)) => format!("{} s: beyond, the map is unstable", table::number(step)),
+            Some(StepLimit::Ends(step)) => format!("{} s: beyond, no step stays near", table::number(step)),
+        };
+        let lines = [
+            ("motion", what),
+            ("", if row.stable { "stable".to_owned() } else { "unstable".to_owned() }),
+            ("parameters", row.family.to_string()),
+            ("flow [1/s]", complex_numbers(&row.flow)),
+            ("map", row.map.as_deref().map_or_else(|| "no step stays near".to_owned(), complex_numbers)),
+            ("longest step", limit),
+        ];
+        text += &format!("\n{}", table::aligned(&lines));
+    }
+    text
+}
+
+fn complex_numbers(values: &[[f64; 2]]) -> String {
+    let number = |[re, im]: &[f64; 2]| match *im {
+        // Without the sign of a zero.
+        0.0 => table::number(*re + 0.0),
+        im => format!("{} {} {} i", table::number(*re), if im < 0.0 { '-' } else { '+' }, table::number(im.abs())),
+    };
+    values.iter().map(number).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,209 @@
+use crate::args::LyapunovArguments;
+use crate::chart_file::ChartFile;
+use crate::error::CliError;
+use crate::starts::{Start, with_energy};
+use crate::{inspect, progress, stability_map, table, terminal};
+use dla::Schedule;
+use harness::Method;
+use harness::analysis::{Lyapunov, LyapunovError, LyapunovRequest, has_tangents, kaplan_yorke};
+use harness::report::{Chart, Layer};
+use lagrangian::energy;
+use scene::{Scene, SceneSystem, Visitor};
+use serde_json::{Value, json};
+
+/// What is measured where nobody says (s): of one motion, and of each of a map.
+const DURATION: f64 = 10_000.0;
+const MAP_DURATION: f64 = 500.0;
+
+/// `noslip lyapunov`: the exponents of one motion, or the largest of many.
+pub(crate) fn lyapunov(arguments: &LyapunovArguments) -> Result<(), CliError> {
+    let usual = if arguments.map.is_empty() { DURATION } else { MAP_DURATION };
+    let shared = &arguments.scene;
+    let duration = shared.duration.or(Some(usual));
+    let scene = inspect::load_with(&shared.scene, Some(&arguments.method), shared.step, duration, shared.alpha)?;
+    let method = Method::named(&scene.run.method, scene.run.alpha)?;
+    has_tangents(&method).map_err(|reason| CliError::Request(format!("--method {}: {reason}", arguments.method)))?;
+    let file = arguments.out.as_deref().map(|path| ChartFile::of(path, shared.force)).transpose()?;
+    let outcome = match arguments.map[..] {
+        [] => scene.visit_free(Exponents { arguments, scene: &scene, method, file })?,
+        [across, up] => {
+            let axes = [across, up];
+            scene.visit_free(stability_map::Map { arguments, scene: &scene, method, axes, file })?
+        }
+        _ => return Err(CliError::Request("--map is given twice: first across, then upwards".to_owned())),
+    };
+    outcome.ok_or_else(imposed)?
+}
+
+/// What is said of a scene without a motion of its own.
+pub(crate) fn imposed() -> CliError {
+    CliError::Request(
+        "the scene imposes velocities (servo, tracer): accepted are scenes that only the blade constrains".to_owned(),
+    )
+}
+
+/// The steps that are counted, and those before them.
+pub(crate) fn schedule(arguments: &LyapunovArguments, scene: &Scene) -> (Schedule, u64) {
+    let schedule = inspect::schedule(scene);
+    let settle = arguments.settle.unwrap_or(0.1 * scene.run.duration) / schedule.step;
+    (schedule, settle.ceil() as u64)
+}
+
+/// A start with the energy that is asked for.
+pub(crate) fn asked<Sys, const N: usize, const M: usize>(
+    system: &Sys,
+    start: Start<N>,
+    wanted: Option<f64>,
+) -> Result<Start<N>, CliError>
+where
+    Sys: SceneSystem<N, M>,
+{
+    let Some(wanted) = wanted else { return Ok(start) };
+    with_energy(system, &start, wanted).ok_or_else(|| {
+        let at_rest = energy(system, 0.0, &start.0, &[0.0; N]);
+        CliError::Request(format!(
+            "--energy {wanted:?}: no velocity along that of the start gives it; at rest there the energy is {at_rest:?} J"
+        ))
+    })
+}
+
+pub(crate) fn refused(error: LyapunovError) -> CliError {
+    match error {
+        LyapunovError::Count { .. } => CliError::Request(format!("--exponents: {error}")),
+        error => CliError::Request(error.to_string()),
+    }
+}
+
+struct Exponents<'a> {
+    arguments: &'a LyapunovArguments,
+    scene: &'a Scene,
+    method: Method,
+    file: Option<ChartFile<'a>>,
+}
+
+impl Visitor for Exponents<'_> {
+    type Output = Result<(), CliError>;
+
+    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
+    where
+        Sys: SceneSystem<N, M>,
+    {
+        let (q, v) = asked(system, (q, v), self.arguments.energy)?;
+        let (schedule, settle) = schedule(self.arguments, self.scene);
+        let exponents = self.arguments.exponents.map(|count| count as usize);
+        let request = LyapunovRequest { schedule, settle, exponents, q, v };
+        let bar = progress::bar(self.method.info().name, settle.saturating_add(schedule.steps));
+        let found = harness::analysis::lyapunov(system, &self.method, &request, &mut |steps| bar.inc(steps));
+        bar.finish_and_clear();
+        self.tell(&found.map_err(refused)?, energy(system, 0.0, &q, &v), 2 * N - M)
+    }
+}
+
+impl Exponents<'_> {
+    fn tell(&self, found: &Lyapunov, energy: f64, most: usize) -> Result<(), CliError> {
+        let shared = &self.arguments.scene;
+        let written = self.file.map_or(Ok(()), |file| {
+            let rows: Vec<Vec<f64>> = found.running.iter().map(|at| [&[at.time][..], &at.exponents].concat()).collect();
+            let names = (1..=found.exponents.len()).map(|i| format!("exponent_{i} [1/s]"));
+            let header: Vec<String> = std::iter::once("time [s]".to_owned()).chain(names).collect();
+            file.write(shared.force, &header.join(","), &rows, || self.chart(found))
+        });
+        let whole = found.exponents.len() == most;
+        if shared.json {
+            terminal::print_json(&self.json(found, energy, whole))?;
+        } else {
+            terminal::print(&self.text(found, energy, whole))?;
+            if let (Some(path), Ok(())) = (&self.arguments.out, &written) {
+                terminal::print(&format!("written    {}\n", path.display()))?;
+            }
+        }
+        CliError::of_failures(found.failure.map(|failure| format!("{}: {failure}", self.method.info().name)))
+            .and(written)
+    }
+
+    fn json(&self, found: &Lyapunov, energy: f64, whole: bool) -> Value {
+        let running: Vec<Value> =
+            doublings(found).map(|at| json!({"time": at.time, "exponents": at.exponents})).collect();
+        let mut object = json!({
+            "scene": self.scene.name,
+            "method": self.method.info().name,
+            "step": self.scene.run.actual_step(),
+            "duration": found.time,
+            "energy": energy,
+            "exponents": found.exponents,
+            "ci": found.ci,
+            "sum": found.sum(),
+            "divergence_mean": found.divergence_mean,
+            "convergence": running,
+        });
+        if whole {
+            object["dimension"] = json!(kaplan_yorke(&found.exponents));
+        }
+        if let Some(failure) = found.failure {
+            object["failure"] = json!(failure.to_string());
+        }
+        object
+    }
+
+    fn text(&self, found: &Lyapunov, energy: f64, whole: bool) -> String {
+        let run = &self.scene.run;
+        let exponent = |(value, ci): (&f64, &Option<f64>)| match ci {
+            Some(ci) => format!("{value:+.5} ± {ci:.5}"),
+            None => format!("{value:+.5}"),
+        };
+        let each = |i: usize| exponent((&found.exponents[i], &found.ci[i]));
+        let mut lines = vec![
+            ("scene".to_owned(), format!("{} ({})", self.scene.title, self.scene.name)),
+            (
+                "run".to_owned(),
+                format!(
+                    "{} s by {} with steps of {} s",
+                    table::number(found.time),
+                    run.method,
+                    table::number(run.actual_step())
+                ),
+            ),
+            ("energy".to_owned(), format!("{} J", table::number(energy))),
+        ];
+        lines.extend((0..found.exponents.len()).map(|i| (format!("exponent {}", i + 1), format!("{} 1/s", each(i)))));
+        if whole {
+            lines.push(("sum".to_owned(), format!("{:+.7} 1/s", found.sum())));
+            lines.push(("mean divergence".to_owned(), format!("{:+.7} 1/s", found.divergence_mean)));
+            lines.push(("dimension".to_owned(), format!("{:.3}, by Kaplan and Yorke", kaplan_yorke(&found.exponents))));
+        } else {
+            lines.push(("mean divergence".to_owned(), format!("{:+.7} 1/s, the sum of all", found.divergence_mean)));
+        }
+        lines.push(("verdict".to_owned(), verdict(found).to_owned()));
+        table::aligned(&lines)
+    }
+
+    fn chart(&self, found: &Lyapunov) -> Chart {
+        let line = |i: usize| Layer::Curves {
+            label: format!("exponent {}", i + 1),
+            curves: vec![found.running.iter().map(|at| [at.time, at.exponents[i]]).collect()],
+        };
+        Chart {
+            title: format!("{}: Lyapunov exponents over a run", self.scene.title),
+            axes: ["time [s]".to_owned(), "mean so far [1/s]".to_owned()],
+            decades: true,
+            layers: (0..found.exponents.len()).map(line).collect(),
+        }
+    }
+}
+
+/// What the largest exponent says. Neighbours that part company linearly, as those of regular motions do, have `ln T / T`.
+fn verdict(found: &Lyapunov) -> &'static str {
+    match (found.exponents.first(), found.ci.first().copied().flatten()) {
+        (Some(largest), Some(ci)) if largest - ci > 2.0 * found.time.ln() / found.time => {
+            "chaotic: the largest exponent is positive"
+        }
+        (Some(_), Some(_)) => "not seen to be chaotic: the largest exponent is zero within what this run can tell",
+        _ => "none: the run is too short for a confidence interval",
+    }
+}
+
+/// The estimates after a sixteenth of the run, an eighth, .., all.
+fn doublings(found: &Lyapunov) -> impl Iterator<Item = &harness::analysis::Running> {
+    let count = found.running.len();
+    (0..5).rev().filter_map(move |k| found.running.get((count >> k).checked_sub(1)?))
+}

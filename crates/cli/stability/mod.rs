@@ -1,0 +1,198 @@
+//! `noslip stability`: the hard cases, method by method.
+
+mod driven;
+mod fields;
+mod free;
+mod lab;
+mod numbers;
+mod systems;
+
+use crate::args::StabilityArguments;
+use crate::compare::methods;
+use crate::error::CliError;
+use crate::inspect::method_names;
+use crate::{progress, table, terminal};
+use harness::Kind;
+use harness::stability::{Case, Outcome, Verdict, claims, judge};
+use lab::Lab;
+use serde_json::{Value, json};
+use std::fmt::Write as _;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+type Trying = fn(&mut Lab) -> Result<(), CliError>;
+
+/// The cases, and what makes their runs.
+const CASES: &[(Case, Trying)] = &[
+    (free::SMALL_SPIN, free::small_spin),
+    (free::TINY_SPIN, free::tiny_spin),
+    (free::SUBNORMAL_SPIN, free::subnormal_spin),
+    (free::STABLE_LINE, free::stable_line),
+    (free::THERE_AND_BACK, free::there_and_back),
+    (free::LONG_STEP, free::long_step),
+    (free::STEP_LENGTHS, free::step_lengths),
+    (free::NEGATIVE_SUBSTEPS, free::negative_substeps),
+    (free::OFFSETS, free::offsets),
+    (free::CUSP, free::cusp),
+    (free::ROUND_OFF, free::round_off),
+    (numbers::FAR_AWAY, numbers::far_away),
+    (numbers::MANY_TURNS, numbers::many_turns),
+    (numbers::LATE, numbers::late),
+    (numbers::MASSES, numbers::masses),
+    (numbers::LIGHT_INERTIA, numbers::light_inertia),
+    (numbers::FAST, numbers::fast),
+    (fields::STIFF_BOWL, fields::stiff_bowl),
+    (fields::STEEP_HILL, fields::steep_hill),
+    (fields::TURNING_POINTS, fields::turning_points),
+    (fields::LOG_WELL, fields::log_well),
+    (fields::ATTRACTOR, fields::attractor),
+    (fields::ROUND_BOWL, fields::round_bowl),
+    (fields::HEAVY_DRAG, fields::heavy_drag),
+    (driven::ROTOR_DRIVE, driven::rotor_drive),
+    (driven::FAST_ROTOR, driven::fast_rotor),
+    (driven::PLANIMETER, driven::planimeter),
+    (driven::CORNERS, driven::corners),
+    (driven::JUMPS, driven::jumps),
+    (driven::TURNTABLE, driven::turntable),
+    (systems::PARALLEL_BLADES, systems::parallel_blades),
+    (systems::DROPPING_ROW, systems::dropping_row),
+    (systems::PSEUDO_HOLONOMIC, systems::pseudo_holonomic),
+    (systems::GAUGE, systems::gauge),
+];
+
+/// The cases whose system no scene has.
+const OTHER_SYSTEMS: [Case; 4] =
+    [systems::PARALLEL_BLADES, systems::DROPPING_ROW, systems::PSEUDO_HOLONOMIC, systems::GAUGE];
+
+/// The cases, in words.
+pub(crate) fn cases() -> impl Iterator<Item = &'static Case> {
+    CASES.iter().map(|(case, _)| case)
+}
+
+/// A case, a method, and what came of them.
+struct Row {
+    case: &'static str,
+    method: &'static str,
+    verdict: Verdict,
+}
+
+pub(crate) fn stability(arguments: &StabilityArguments) -> Result<(), CliError> {
+    let chosen: Vec<_> = match &arguments.case {
+        None => CASES.iter().collect(),
+        Some(name) => vec![named(name)?],
+    };
+    let names: Vec<&str> = match &arguments.methods {
+        Some(names) => names.iter().map(|name| name.trim()).collect(),
+        None => method_names(),
+    };
+    let methods = methods(&names, None)?;
+    let pairs: Vec<_> = chosen
+        .iter()
+        .flat_map(|(case, try_it)| methods.iter().map(move |method| (case, *try_it, *method)))
+        .filter(|(case, _, method)| !OTHER_SYSTEMS.contains(case) || systems::METHODS.contains(&method.info().kind))
+        .collect();
+    let bar = progress::bar("cases", pairs.len() as u64);
+    let rows = in_parallel(&pairs, |(case, try_it, method)| {
+        let mut lab = Lab::new(*method);
+        let tried = try_it(&mut lab);
+        bar.inc(1);
+        tried.map(|()| Row {
+            case: case.name,
+            method: method.info().name,
+            verdict: judge(case, claims(method.info().kind, case.claim), &lab.trials),
+        })
+    })?;
+    bar.finish_and_clear();
+    if arguments.json {
+        terminal::print_json(&json!({"cases": rows.iter().map(object).collect::<Vec<_>>()}))?;
+    } else {
+        terminal::print(&text(&rows))?;
+    }
+    let failed = rows.iter().filter(|row| row.verdict.outcome == Outcome::Failed);
+    CliError::of_failures(failed.map(|row| format!("{}, {} failed: {}", row.case, row.method, row.verdict.why)))
+}
+
+/// Each of the rows on whatever thread is free, in their order.
+fn in_parallel<T: Sync, R: Send>(
+    pairs: &[T],
+    row: impl Fn(&T) -> Result<R, CliError> + Sync,
+) -> Result<Vec<R>, CliError> {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(pairs.len().max(1));
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let mut made = Vec::new();
+        while let Some((at, pair)) =
+            Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|at| Some((at, pairs.get(at)?)))
+        {
+            made.push((at, row(pair)));
+        }
+        made
+    };
+    let mut made = std::thread::scope(|scope| {
+        let others: Vec<_> = (1..threads).map(|_| scope.spawn(work)).collect();
+        let own = work();
+        // A thread that panicked has said so; its rows are missing, and the count below tells.
+        others.into_iter().filter_map(|other| other.join().ok()).fold(own, |mut all, more| {
+            all.extend(more);
+            all
+        })
+    });
+    if made.len() < pairs.len() {
+        return Err(CliError::Computation(vec![format!("{} rows are missing", pairs.len() - made.len())]));
+    }
+    made.sort_by_key(|(at, _)| *at);
+    made.into_iter().map(|(_, row)| row).collect()
+}
+
+fn named(name: &str) -> Result<&'static (Case, Trying), CliError> {
+    let wanted = name.trim().replace('_', "-");
+    CASES.iter().find(|(case, _)| case.name == wanted).ok_or_else(|| CliError::Case {
+        name: name.to_owned(),
+        nearest: scene::nearest(name, cases().map(|case| case.name)).map(str::to_owned),
+        names: cases().map(|case| case.name).collect::<Vec<_>>().join(", "),
+    })
+}
+
+fn object(row: &Row) -> Value {
+    let worst = row.verdict.worst;
+    // A number that is none has no place in JSON.
+    let number = |x: Option<f64>| x.filter(|x| x.is_finite());
+    json!({
+        "case": row.case,
+        "method": row.method,
+        "outcome": row.verdict.outcome.to_string(),
+        "measured": number(worst.map(|worst| worst.measured)),
+        "bar": number(worst.map(|worst| worst.bar)),
+        "why": row.verdict.why,
+    })
+}
+
+fn text(rows: &[Row]) -> String {
+    let number = |x: Option<f64>| x.map_or_else(|| "-".to_owned(), |x| format!("{x:.1e}"));
+    let cells: Vec<_> = rows
+        .iter()
+        .map(|row| {
+            let worst = row.verdict.worst;
+            let (measured, bar) = (worst.map(|worst| worst.measured), worst.map(|worst| worst.bar));
+            let outcome = row.verdict.outcome.to_string();
+            vec![row.case.to_owned(), row.method.to_owned(), outcome, number(measured), number(bar)]
+        })
+        .collect();
+    let table = table::right_aligned(&["case", "method", "outcome", "measured", "bar"], &cells);
+    let mut text = String::new();
+    // The line that says why is as long as it must be.
+    let whys = std::iter::once("why").chain(rows.iter().map(|row| row.verdict.why.as_str()));
+    for (line, why) in table.lines().zip(whys) {
+        let _ = writeln!(text, "{line}  {why}");
+    }
+    let count = |outcome| rows.iter().filter(|row| row.verdict.outcome == outcome).count();
+    let [pass, refused, failed] = [Outcome::Pass, Outcome::Refused, Outcome::Failed].map(count);
+    let _ = writeln!(text, "{pass} pass, {refused} refused, {failed} failed");
+    text
+}
+
+impl Lab {
+    /// Whether its error is a tolerance instead of an order.
+    fn is_adaptive(&self) -> bool {
+        self.method.info().kind == Kind::Dop853
+    }
+}

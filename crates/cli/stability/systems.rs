@@ -1,0 +1,203 @@
+//! Cases that need another system than a scene: a few methods make them, the rest of each family shares their code.
+
+use super::lab::Lab;
+use crate::error::CliError;
+use dla::{Dependency, Dla, Energy, Gauss, Lobatto, OneStep, Schedule, State, StepError, drive};
+use harness::stability::check::{constant, energy, follows, measured, rounding, sign_kept};
+use harness::stability::{Case, Claim, Recorded, Recorder, Seen};
+use harness::{Kind, Rk4Reduced};
+use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
+use models::{CompoundPendulum, ContactOscillator, GaugedOscillator};
+use sleigh::{Exact, Sleigh, SleighState};
+use std::f64::consts::PI;
+
+/// The methods that make these cases.
+pub(super) const METHODS: [Kind; 5] = [Kind::Dla, Kind::Lobatto3, Kind::Gauss8, Kind::Energy2, Kind::Rk4Reduced];
+
+/// The systems with two constraints, of one type, so that every method is compiled once for all of them.
+#[derive(Debug, Clone, Copy)]
+enum TwoRows {
+    /// Two blades side by side, parallel: the second says what the first does.
+    Parallel(Sleigh),
+    /// A blade, and a guide `(x - 1) theta' = 0`, which lets go at `x = 1 m`.
+    Guide(Sleigh),
+    /// A pendulum whose hinge is given by its rates alone.
+    Pendulum(CompoundPendulum),
+}
+
+impl System<3, 2> for TwoRows {
+    fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 3], v: &[S; 3]) -> S {
+        match self {
+            Self::Parallel(sleigh) | Self::Guide(sleigh) => sleigh.lagrangian(t, q, v),
+            Self::Pendulum(pendulum) => pendulum.lagrangian(t, q, v),
+        }
+    }
+    fn constraint<S: Scalar>(&self, t: S, q: &[S; 3]) -> Constraint<S, 3, 2> {
+        let zero = S::zero();
+        match self {
+            Self::Parallel(sleigh) => {
+                let ([blade], _) = sleigh.constraint(t, q);
+                ([blade, blade], [zero; 2])
+            }
+            Self::Guide(sleigh) => {
+                let ([blade], _) = sleigh.constraint(t, q);
+                ([blade, [zero, zero, q[0] - 1.0]], [zero; 2])
+            }
+            Self::Pendulum(pendulum) => pendulum.constraint(t, q),
+        }
+    }
+    fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, 2>> {
+        match self {
+            Self::Parallel(_) | Self::Guide(_) => None,
+            Self::Pendulum(pendulum) => pendulum.admissible_basis(t, q),
+        }
+    }
+    fn angles(&self) -> [bool; 3] {
+        [false, false, true]
+    }
+}
+
+/// A run of one of [`METHODS`]; nothing of any other.
+fn record<Sys, const M: usize>(lab: &Lab, system: &Sys, (q, v): ([f64; 3], [f64; 3]), schedule: &Schedule) -> Recorded
+where
+    Sys: System<3, M>,
+{
+    let look = |state: &State<3>| {
+        let ([x, y, z], [vx, vy, vz]) = (state.unwrapped(), *state.v());
+        [x, y, z, vx, vy, vz]
+    };
+    let mut state = State::new(q, v, system.angles());
+    let mut recorder = Recorder::new(1, &look);
+    let outcome = match lab.method.info().kind {
+        Kind::Dla => made(system, Dla::midpoint(), schedule, &mut state, &mut recorder),
+        Kind::Lobatto3 => made(system, Lobatto::<3>::new(), schedule, &mut state, &mut recorder),
+        Kind::Gauss8 => made(system, Gauss::<4>::default(), schedule, &mut state, &mut recorder),
+        Kind::Energy2 => made(system, Energy::<1>::default(), schedule, &mut state, &mut recorder),
+        Kind::Rk4Reduced => made(system, Rk4Reduced, schedule, &mut state, &mut recorder),
+        _ => Ok(0),
+    };
+    recorder.recorded(outcome.err())
+}
+
+fn made<Sys: System<3, M>, const M: usize>(
+    system: &Sys,
+    mut method: impl OneStep<Sys, 3, M>,
+    schedule: &Schedule,
+    state: &mut State<3>,
+    recorder: &mut Recorder<'_, 3>,
+) -> Result<u64, dla::RunError> {
+    drive(system, &mut method, schedule, state, recorder)
+}
+
+pub(super) const PARALLEL_BLADES: Case = Case {
+    name: "parallel-blades",
+    hard: "Two parallel blades side by side: the rows of the constraint are the same, A M^-1 A' is singular, and no method can \
+           tell the two forces apart.",
+    shows: "The motion is that with one blade, in closed form; or an error that names the rows.",
+    bar: "The method's order over the run, and rounding.",
+    claim: Claim::Order,
+    refusable: true,
+};
+
+pub(super) fn parallel_blades(lab: &mut Lab) -> Result<(), CliError> {
+    let sleigh = Sleigh::new(1.0, 1.0, 0.5)?;
+    let start = SleighState { speed: -1.0, turn_rate: 0.3, ..SleighState::default() };
+    let exact = Exact::new(&sleigh, &start)?;
+    let schedule = Schedule { t0: 0.0, step: 0.05, steps: 400 };
+    let run = record(lab, &TwoRows::Parallel(sleigh), start.to_coordinates(), &schedule);
+    // kappa + U/k, over 20 s.
+    let (rate, time) = (1.4, 20.0);
+    let bar = lab.accuracy(0.05 * rate, rate * time, schedule.steps) * time;
+    let at = |t| {
+        let now = exact.at(t);
+        [now.heading, now.turn_rate]
+    };
+    lab.judge("", &run, [follows(&run, [2, 5], at, bar)]);
+    Ok(())
+}
+
+pub(super) const DROPPING_ROW: Case = Case {
+    name: "dropping-row",
+    hard: "A guide that lets go: its row of the constraint is there before x = 1 m and after it, and vanishes there.",
+    shows: "An error that names the row, where the rank drops.",
+    bar: "The error comes at x = 1 m, not before and not later, and is that of dependent rows.",
+    claim: Claim::Order,
+    refusable: true,
+};
+
+pub(super) fn dropping_row(lab: &mut Lab) -> Result<(), CliError> {
+    let sleigh = Sleigh::new(1.0, 1.0, 0.5)?;
+    // A sixteenth of a metre a step, without rounding.
+    let schedule = Schedule { t0: 0.0, step: 0.0625, steps: 32 };
+    let start = ([0.0; 3], [1.0, 0.0, 0.0]);
+    let run = record(lab, &TwoRows::Guide(sleigh), start, &schedule);
+    let named = match run.failure.map(|failure| failure.source) {
+        Some(StepError::Dependent(found)) => found.dependency == Dependency::RankDrops && found.rows.contains(1),
+        Some(error) if error.hint() == Some(dla::Hint::OtherMethod) => true,
+        Some(error) => error.hint() == Some(dla::Hint::Constraints),
+        None => false,
+    };
+    let reached = run.nodes.last().map_or(f64::NAN, |node| node.values[0]);
+    let unsupported = run.failure.is_some_and(|failure| failure.hint() == Some(dla::Hint::OtherMethod));
+    let off = if unsupported { 0.0 } else { (reached - 1.0).abs() };
+    let found = [
+        measured("distance from where the row vanishes", off, schedule.step),
+        measured("runs that go on, or fail without naming the constraints", f64::from(u8::from(!named)), 0.0),
+    ];
+    // The error is what is asked for, and no failure of the case; that of a method for no such system is another.
+    let told = if named && !unsupported { Recorded { failure: None, ..run } } else { run };
+    lab.judge("", &told, found);
+    Ok(())
+}
+
+pub(super) const PSEUDO_HOLONOMIC: Case = Case {
+    name: "pseudo-holonomic",
+    hard: "A pendulum whose hinge is given by its rates alone: nothing pulls it back to where it was.",
+    shows: "The hinge moves to and fro by O(h^p) and does not wander.",
+    bar: "The method's order over one swing, of the length of the arm, for the run; rounding.",
+    claim: Claim::Symmetry,
+    refusable: false,
+};
+
+pub(super) fn pseudo_holonomic(lab: &mut Lab) -> Result<(), CliError> {
+    let fault = |_| CliError::Computation(vec!["the pendulum of the case has impossible parameters".to_owned()]);
+    let arm = 0.9;
+    let pendulum = CompoundPendulum::new(1.3, 0.4, arm, 9.81).map_err(fault)?.pseudo_holonomic();
+    let (step, steps) = (0.02, 10_000);
+    let schedule = Schedule { t0: 0.0, step, steps };
+    let run = record(lab, &TwoRows::Pendulum(pendulum), pendulum.state_at(1.2, 0.3), &schedule);
+    // sqrt(m g a/(I + m a^2)), and the rate at the lowest point.
+    let inertia = 0.4 + 1.3 * arm * arm;
+    let swing = (1.3 * 9.81 * arm / inertia).sqrt();
+    let rate = swing + (0.09 + 2.0 * swing * swing * (1.0 - 1.2f64.cos())).sqrt();
+    let bar = arm * lab.accuracy(step * rate, 2.0 * PI, steps);
+    let off = |node: &Seen| {
+        let [x, y] = pendulum.hinge(&[node.values[0], node.values[1], node.values[2]]);
+        x.hypot(y)
+    };
+    lab.judge("", &run, [constant(&run, off, bar)]);
+    Ok(())
+}
+
+pub(super) const GAUGE: Case = Case {
+    name: "gauge",
+    hard: "A gauge term in the Lagrangian changes no motion, but shifts the momenta: the reversal of the velocity no longer \
+           reverses what a discrete principle sees, and symmetric methods lose energy.",
+    shows: "The methods that promise the energy keep it. The drift of dla is there to be seen (tests/table/gauge.rs).",
+    bar: "Rounding of the energy over the run.",
+    claim: Claim::Energy,
+    refusable: false,
+};
+
+pub(super) fn gauge(lab: &mut Lab) -> Result<(), CliError> {
+    let fault = |_| CliError::Computation(vec!["the oscillator of the case has impossible parameters".to_owned()]);
+    let plain = ContactOscillator::new(0.0).map_err(fault)?;
+    let system = GaugedOscillator::new(plain, 1.0).map_err(fault)?;
+    let start = plain.start_at(-0.5 * 2f64.sqrt()).map_err(fault)?;
+    let schedule = Schedule { t0: 0.0, step: 2.0 * (PI / 40.0).sin(), steps: 4000 };
+    let run = record(lab, &system, start, &schedule);
+    // Whoever keeps the energy must also move.
+    let still = measured("runs that do not move", f64::from(u8::from(sign_kept(&run, 1).holds())), 0.0);
+    lab.judge("", &run, [energy(&run, rounding(schedule.steps as usize, 1.5)), still]);
+    Ok(())
+}

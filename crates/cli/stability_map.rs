@@ -1,0 +1,192 @@
+use crate::args::LyapunovArguments;
+use crate::chart_file::ChartFile;
+use crate::coordinate::Range;
+use crate::error::CliError;
+use crate::lyapunov::{refused, schedule};
+use crate::starts::{moved, with_energy};
+use crate::{progress, table, terminal};
+use harness::Method;
+use harness::analysis::{LyapunovError, LyapunovRequest, in_parallel, lyapunov};
+use harness::report::{Cells, Chart, Layer};
+use scene::{Scene, SceneSystem, Visitor};
+use serde_json::{Value, json};
+
+/// The most starts.
+const MOST: usize = 1_000_000;
+
+/// The largest exponent of every start of a grid.
+pub(crate) struct Map<'a> {
+    pub(crate) arguments: &'a LyapunovArguments,
+    pub(crate) scene: &'a Scene,
+    pub(crate) method: Method,
+    /// Across and upwards.
+    pub(crate) axes: [Range; 2],
+    pub(crate) file: Option<ChartFile<'a>>,
+}
+
+/// What a start came to.
+enum Cell {
+    /// The largest exponent, with its interval (1/s).
+    Exponent(f64, Option<f64>),
+    /// There is no such start.
+    None,
+    Failed(String),
+    Refused(LyapunovError),
+}
+
+impl Visitor for Map<'_> {
+    type Output = Result<(), CliError>;
+
+    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
+    where
+        Sys: SceneSystem<N, M>,
+    {
+        let [across, up] = self.axes;
+        if across.coordinate.name == up.coordinate.name {
+            return Err(CliError::Request(format!("--map: both axes are {}", up.coordinate.name)));
+        }
+        let count = across.cells * up.cells;
+        if count > MOST {
+            return Err(CliError::Request(format!("--map: {count} starts; accepted are at most {MOST}")));
+        }
+        let (schedule, settle) = schedule(self.arguments, self.scene);
+        let first = system.sleigh_state(&q, &v);
+        let bar = progress::bar("starts", count as u64);
+        let cells = in_parallel(count, |i| {
+            let mut state = first;
+            across.apply(&mut state, i % across.cells);
+            up.apply(&mut state, i / across.cells);
+            let start = moved(system, &(q, v), &state);
+            let start = match self.arguments.energy {
+                Some(wanted) => start.and_then(|start| with_energy(system, &start, wanted)),
+                None => start,
+            };
+            let cell = match start {
+                Some((q, v)) => {
+                    let request = LyapunovRequest { schedule, settle, exponents: Some(1), q, v };
+                    match lyapunov(system, &self.method, &request, &mut ()) {
+                        Ok(found) => match found.failure {
+                            Some(failure) => Cell::Failed(failure.to_string()),
+                            None => Cell::Exponent(found.exponents[0], found.ci[0]),
+                        },
+                        Err(error) => Cell::Refused(error),
+                    }
+                }
+                None => Cell::None,
+            };
+            bar.inc(1);
+            cell
+        });
+        bar.finish_and_clear();
+        self.tell(&cells)
+    }
+}
+
+impl Map<'_> {
+    fn tell(&self, cells: &[Cell]) -> Result<(), CliError> {
+        if let Some(error) =
+            cells.iter().find_map(|cell| if let Cell::Refused(error) = cell { Some(*error) } else { None })
+        {
+            return Err(refused(error));
+        }
+        let [across, up] = &self.axes;
+        let value = |cell: &Cell| if let Cell::Exponent(value, _) = cell { Some(*value) } else { None };
+        let values: Vec<Option<f64>> = cells.iter().map(value).collect();
+        let known: Vec<f64> = values.iter().copied().flatten().collect();
+        let failures: Vec<&String> =
+            cells.iter().filter_map(|cell| if let Cell::Failed(why) = cell { Some(why) } else { None }).collect();
+        let shared = &self.arguments.scene;
+        let written = self.file.map_or(Ok(()), |file| {
+            let row = |(i, cell): (usize, &Cell)| match cell {
+                Cell::Exponent(value, ci) => {
+                    let [a, b] = [across.value(i % across.cells), up.value(i / across.cells)];
+                    Some(vec![a, b, *value, ci.unwrap_or(f64::NAN)])
+                }
+                _ => None,
+            };
+            let rows: Vec<Vec<f64>> = cells.iter().enumerate().filter_map(row).collect();
+            let header = format!("{},{},exponent [1/s],ci [1/s]", across.coordinate.label(), up.coordinate.label());
+            file.write(shared.force, &header, &rows, || self.chart(values.clone()))
+        });
+        if shared.json {
+            terminal::print_json(&self.json(cells, &values, failures.len()))?;
+        } else {
+            terminal::print(&self.text(&known, cells.len(), failures.len()))?;
+            if let (Some(path), Ok(())) = (&self.arguments.out, &written) {
+                terminal::print(&format!("written    {}\n", path.display()))?;
+            }
+        }
+        let failed = failures
+            .first()
+            .map(|first| format!("{} of {} starts failed, the first so: {first}", failures.len(), cells.len()));
+        CliError::of_failures(failed).and(written)
+    }
+
+    fn chart(&self, values: Vec<Option<f64>>) -> Chart {
+        let [across, up] = &self.axes;
+        Chart {
+            title: format!("{}: largest Lyapunov exponent over starts", self.scene.title),
+            axes: [
+                format!("{} at the start", across.coordinate.label()),
+                format!("{} at the start", up.coordinate.label()),
+            ],
+            decades: false,
+            layers: vec![Layer::Cells(Cells {
+                label: "exponent [1/s]".to_owned(),
+                ranges: [across.ends, up.ends],
+                columns: across.cells,
+                values,
+            })],
+        }
+    }
+
+    fn json(&self, cells: &[Cell], values: &[Option<f64>], failed: usize) -> Value {
+        let [across, _] = &self.axes;
+        let axis = |range: &Range| json!({"name": range.coordinate.name, "from": range.ends[0], "to": range.ends[1], "cells": range.cells});
+        let ci: Vec<Option<f64>> =
+            cells.iter().map(|cell| if let Cell::Exponent(_, ci) = cell { *ci } else { None }).collect();
+        json!({
+            "scene": self.scene.name,
+            "method": self.method.info().name,
+            "step": self.scene.run.actual_step(),
+            "duration": self.scene.run.duration,
+            "axes": self.axes.iter().map(axis).collect::<Vec<_>>(),
+            "exponents": values.chunks(across.cells).collect::<Vec<_>>(),
+            "ci": ci.chunks(across.cells).collect::<Vec<_>>(),
+            "failed": failed,
+        })
+    }
+
+    fn text(&self, known: &[f64], count: usize, failed: usize) -> String {
+        let run = &self.scene.run;
+        let (least, largest) =
+            known.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
+        let positive = known.iter().filter(|x| **x > 2.0 * run.duration.ln() / run.duration).count();
+        let lines = [
+            ("scene", format!("{} ({})", self.scene.title, self.scene.name)),
+            (
+                "run",
+                format!(
+                    "{} s by {} with steps of {} s, from each start",
+                    table::number(run.duration),
+                    run.method,
+                    table::number(run.actual_step())
+                ),
+            ),
+            (
+                "starts",
+                format!(
+                    "{count}: {} measured, {failed} failed, {} that there are not",
+                    known.len(),
+                    count - known.len() - failed
+                ),
+            ),
+            (
+                "largest exponent",
+                if known.is_empty() { "none".to_owned() } else { format!("from {least:+.4} to {largest:+.4} 1/s") },
+            ),
+            ("chaotic", format!("{positive}, where it is above 2 ln T / T")),
+        ];
+        table::aligned(&lines.map(|(name, value)| (name.to_owned(), value)))
+    }
+}

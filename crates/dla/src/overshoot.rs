@@ -1,0 +1,50 @@
+use crate::StepError;
+use lagrangian::{System, momentum};
+use std::array::from_fn;
+
+/// That the forces of a step brake its velocity and do not turn it round.
+///
+/// A rule for the mean velocity `v` leads from `v0` past it to `v1`. With `w = v1 - v`, a damping that changes the force by
+/// `-C w` makes of it, for the part of the velocity that it acts on,
+///
+/// ```text
+/// (M + h C/2) v = M v0,      M v1 = (M - h C/2) v,
+/// ```
+///
+/// so that beyond `h C/2 = M` the velocity changes its sign in every step though no force drives it there. The two sides are
+/// compared along `w`, in the middle of the step. A force that does not depend on the velocity never overshoots.
+///
+/// # Errors
+/// [`StepError::Overshoot`] with the part of the step at which they are equal.
+#[inline(always)]
+pub(crate) fn brakes_only<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    (t0, h): (f64, f64),
+    q0: &[f64; N],
+    (v, v1): (&[f64; N], &[f64; N]),
+) -> Result<(), StepError> {
+    let (t, q) = (t0 + 0.5 * h, from_fn(|i| q0[i] + 0.5 * h * v[i]));
+    let Some((mean, end)) = system.force(t, &q, v).zip(system.force(t, &q, v1)) else { return Ok(()) };
+    let damping: f64 = (0..N).map(|i| 0.5 * h * (v1[i] - v[i]) * (mean[i] - end[i])).sum();
+    if damping > 0.0 { against_inertia(system, (t, &q), (v, v1), damping) } else { Ok(()) }
+}
+
+/// The damping against the inertia, both along the change of velocity.
+#[inline(never)]
+fn against_inertia<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    (t, q): (f64, &[f64; N]),
+    (v, v1): (&[f64; N], &[f64; N]),
+    damping: f64,
+) -> Result<(), StepError> {
+    /// A change of the velocity by a smaller part of it (squared) is compared with rounding.
+    const ROUNDING: f64 = 1e-16;
+    let (mean, end) = (momentum(system, t, q, v), momentum(system, t, q, v1));
+    let along = |of: &dyn Fn(usize) -> f64| (0..N).map(of).sum::<f64>();
+    let inertia = along(&|i| (v1[i] - v[i]) * (end[i] - mean[i]));
+    let all = along(&|i| (v[i] * mean[i]).abs());
+    if damping > inertia && inertia > ROUNDING * all {
+        return Err(StepError::Overshoot { part: inertia / damping });
+    }
+    Ok(())
+}

@@ -1,0 +1,175 @@
+use super::stretch::Stretch;
+use super::tangent::Steps;
+use crate::run::integrate_pieces;
+use crate::timing::Ticker;
+use crate::{Method, Progress};
+use dla::{Observer, RunError, Schedule, SensitivityError, State, TangentRunError};
+use lagrangian::{Piecewise, System};
+use thiserror::Error;
+
+/// What exponents are asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LyapunovRequest<const N: usize> {
+    /// When the counted steps are.
+    pub schedule: Schedule,
+    /// So many steps are made before them, until the motion and the frame have settled.
+    pub settle: u64,
+    /// How many exponents, the largest first; all where none is said.
+    pub exponents: Option<usize>,
+    /// Configuration at the start.
+    pub q: [f64; N],
+    /// Velocity at the start.
+    pub v: [f64; N],
+}
+
+/// The Lyapunov exponents of a motion, as the discrete map has them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lyapunov {
+    /// The exponents (1/s), the largest first.
+    pub exponents: Vec<f64>,
+    /// Half the width of the 95 % confidence interval of each (1/s); none where the run is too short.
+    ///
+    /// From batch means: it tells the scatter of what a longer run averages out, and not the error of the steps.
+    pub ci: Vec<Option<f64>>,
+    /// The mean over the nodes of the divergence of the continuous equations (1/s), by the trapezoidal rule.
+    ///
+    /// The sum of all exponents is the mean of `ln |det D Phi| / h`. By Liouville's theorem the two agree, to the order of the
+    /// method.
+    pub divergence_mean: f64,
+    /// The time that was counted (s).
+    pub time: f64,
+    /// The estimates on the way, of the same exponents in the same order.
+    pub running: Vec<Running>,
+    /// Why the run ended early, if it did.
+    pub failure: Option<LyapunovFailure>,
+}
+
+/// The exponents over a first part of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Running {
+    /// How long it is (s).
+    pub time: f64,
+    /// The exponents (1/s).
+    pub exponents: Vec<f64>,
+}
+
+/// Why a run with a frame ended early.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum LyapunovFailure {
+    /// A step failed.
+    #[error(transparent)]
+    Step(#[from] RunError),
+    /// A step has no derivative.
+    #[error("the derivative of {0}")]
+    Derivative(#[from] TangentRunError),
+}
+
+/// Why exponents are not computed at all.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum LyapunovError {
+    /// There are no so many.
+    #[error("{asked} exponents; accepted is a number from 1 to {most}, the dimension of the distribution")]
+    Count {
+        /// How many were asked for.
+        asked: usize,
+        /// How many there are.
+        most: usize,
+    },
+    /// Forces or constraints jump along the run, and a step across a jump has no derivative.
+    #[error("forces or constraints jump at t = {time} s, where a motion has no derivative")]
+    Jump {
+        /// When (s).
+        time: f64,
+    },
+    /// The method or the system cannot be differentiated.
+    #[error(transparent)]
+    Sensitivity(#[from] SensitivityError),
+}
+
+/// The Lyapunov exponents of a motion, by the derivatives of the steps that a method makes along it.
+///
+/// `2 N - M` exponents belong to the distribution, in the coordinates `(q, xi)`; they do not depend on the coordinates where
+/// the motion stays in a bounded region of them or is invariant under the translations that leave it. A run that fails gives what it has,
+/// with [`Lyapunov::failure`] set.
+///
+/// # Errors
+/// [`LyapunovError`] where the request makes no sense, or the method has no derivatives here.
+pub fn lyapunov<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &Method,
+    request: &LyapunovRequest<N>,
+    progress: &mut dyn Progress,
+) -> Result<Lyapunov, LyapunovError> {
+    let (first, last) =
+        (request.schedule.t0, request.schedule.time(request.settle.saturating_add(request.schedule.steps)));
+    if let Some(time) = system.jumps(first, last).into_iter().min_by(f64::total_cmp) {
+        return Err(LyapunovError::Jump { time });
+    }
+    lyapunov_by(system, method, request, |schedule, state, observer| {
+        integrate_pieces(system, method, schedule, state, &mut (observer, Ticker::new(progress, 0)))
+    })
+}
+
+/// The same of a run that `drive` makes, by the steps of that method: for a caller who has the method's type, and need not
+/// compile all others.
+///
+/// # Errors
+/// As [`lyapunov`]; jumps are not looked for.
+pub fn lyapunov_by<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &Method,
+    request: &LyapunovRequest<N>,
+    drive: impl FnOnce(&Schedule, &mut State<N>, &mut dyn Observer<Sys, N, M>) -> Result<u64, RunError>,
+) -> Result<Lyapunov, LyapunovError> {
+    let LyapunovRequest { schedule, settle, q, v, .. } = *request;
+    let (count, most) = (request.exponents.unwrap_or(2 * N - M), 2 * N - M);
+    if count == 0 || count > most {
+        return Err(LyapunovError::Count { asked: count, most });
+    }
+    let tangent = Steps::of(system, method)?;
+    let mut stretch = Stretch::new(&tangent, count, settle, schedule.steps);
+    let all = Schedule { steps: settle.saturating_add(schedule.steps), ..schedule };
+    let outcome = drive(&all, &mut State::new(q, v, system.angles()), &mut stretch);
+    let failure = stretch.failure.map(Into::into).or(outcome.err().map(Into::into));
+    Ok(result(&stretch, failure))
+}
+
+/// What the sums come to; the exponents in order.
+fn result<const N: usize, const M: usize>(stretch: &Stretch<'_, N, M>, failure: Option<LyapunovFailure>) -> Lyapunov {
+    let time = stretch.time;
+    let mut order: Vec<usize> = (0..stretch.sums.len()).collect();
+    order.sort_by(|a, b| stretch.sums[*b].total_cmp(&stretch.sums[*a]));
+    let sorted = |values: &[f64]| order.iter().map(|i| values[*i]).collect();
+    let means: Vec<f64> = stretch.sums.iter().map(|sum| sum / time).collect();
+    let running = stretch.running.iter();
+    Lyapunov {
+        exponents: sorted(&means),
+        ci: order.iter().map(|i| stretch.blocks[*i].interval_of_mean()).collect(),
+        divergence_mean: stretch.divergence / time,
+        time,
+        running: running.map(|at| Running { time: at.time, exponents: sorted(&at.exponents) }).collect(),
+        failure,
+    }
+}
+
+impl Lyapunov {
+    /// The sum of the exponents (1/s).
+    #[must_use]
+    pub fn sum(&self) -> f64 {
+        self.exponents.iter().sum()
+    }
+}
+
+/// The dimension that a whole spectrum gives an attractor: `j + (l_1 + .. + l_j) / |l_(j+1)|`, with the largest `j` whose sum is
+/// not negative (Kaplan and Yorke 1979, Lecture Notes in Mathematics 730, 204-227).
+#[must_use]
+pub fn kaplan_yorke(exponents: &[f64]) -> f64 {
+    let mut sum = 0.0;
+    for (j, exponent) in exponents.iter().enumerate() {
+        if sum + exponent < 0.0 {
+            return j as f64 + sum / exponent.abs();
+        }
+        sum += exponent;
+    }
+    exponents.len() as f64
+}

@@ -1,0 +1,42 @@
+use dla::StepDerivative;
+use nalgebra::DMatrix;
+use std::f64::consts::{PI, TAU};
+
+/// The area that a closed curve encloses, given by points of it at equal distances of a parameter in which it is smooth.
+///
+/// With the Fourier series `x + i y = sum_k c_k e^(i k phi)` the area is `pi sum_k k |c_k|^2`: exact but for what the series
+/// leaves out, which falls faster than any power of the number of points. Counterclockwise is positive. In coordinates in which the
+/// density of a measure is constant, such as `(u, ln |omega|)` of the sleigh, it is the measure of what lies within.
+#[must_use]
+pub fn enclosed_area(points: &[[f64; 2]]) -> f64 {
+    let count = points.len();
+    // About a point of the curve, so that a small curve far from the origin loses no digits.
+    let [x0, y0] = points.first().copied().unwrap_or_default();
+    let squares = |k: i64| {
+        let (mut re, mut im) = (0.0, 0.0);
+        for (j, [x, y]) in points.iter().enumerate() {
+            // The phase within a turn, exactly.
+            let turns = (k * j as i64).rem_euclid(count as i64) as f64 / count as f64;
+            let (sin, cos) = (-TAU * turns).sin_cos();
+            re += (x - x0) * cos - (y - y0) * sin;
+            im += (x - x0) * sin + (y - y0) * cos;
+        }
+        (re * re + im * im) / (count * count) as f64
+    };
+    let highest = (count as i64 - 1) / 2;
+    PI * (1..=highest).map(|k| k as f64 * (squares(k) - squares(-k))).sum::<f64>()
+}
+
+/// How far a step is from preserving a measure: `ln |det D Phi| + ln rho(z1) - ln rho(z0)` in the coordinates `(q, xi)`, from the
+/// logarithms of its density at the two ends; none where the system has no basis.
+///
+/// Zero of a step that preserves it; `O(h^(p+1))` of a method of order `p` where the flow does.
+#[must_use]
+pub fn measure_defect<const N: usize, const M: usize, const P: usize>(
+    derivative: &StepDerivative<N, M, P>,
+    [before, after]: [f64; 2],
+) -> Option<f64> {
+    let rows = derivative.reduced.as_ref()?.matrix();
+    let matrix = DMatrix::from_row_iterator(rows.len(), rows.len(), rows.into_iter().flatten());
+    Some(matrix.determinant().abs().ln() + after - before)
+}

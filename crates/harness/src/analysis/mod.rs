@@ -1,0 +1,35 @@
+//! Analyses of motions: what is steady, and how stable; what a loop leaves behind; what a symmetry conserves; whether a motion is
+//! regular or chaotic, and what the flow does to areas.
+//!
+//! Exponents, sections and areas are those on the distribution, in the `2 N - M` coordinates `(q, xi)` of configuration and
+//! quasi-velocities, where the one-step maps live. What is special to a system, such as the density of its invariant measure,
+//! is handed in.
+
+mod discrete;
+mod equilibria;
+mod flow;
+mod linearised;
+mod lyapunov;
+mod measure;
+mod momentum_meter;
+mod parallel;
+mod phase;
+mod root;
+mod section;
+mod spectrum;
+mod stages;
+mod stretch;
+mod tangent;
+
+pub use discrete::{DiscreteMap, Step, StepLimit, differentiable};
+pub use equilibria::{Equilibrium, EquilibriumError, relative_equilibria};
+pub use linearised::{ReducedField, reduced_field};
+pub use lyapunov::{
+    Lyapunov, LyapunovError, LyapunovFailure, LyapunovRequest, Running, kaplan_yorke, lyapunov, lyapunov_by,
+};
+pub use measure::{enclosed_area, measure_defect};
+pub use momentum_meter::MomentumMeter;
+pub use parallel::in_parallel;
+pub use phase::{Rounds, weighted_mean};
+pub use section::{Section, section};
+pub use tangent::has_tangents;

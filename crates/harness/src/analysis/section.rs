@@ -1,0 +1,30 @@
+use crate::run::integrate_pieces;
+use crate::{Again, Method};
+use dla::{Crossing, Event, RunError, Schedule, State, Watch};
+use lagrangian::{Piecewise, System};
+
+/// The crossings of a surface by one motion.
+#[derive(Debug, Clone)]
+pub struct Section<const N: usize> {
+    /// The crossings in the order of time, located to rounding: each is the end of a step that is shortened to end there.
+    pub crossings: Vec<Crossing<N>>,
+    /// The step that failed, if one did.
+    pub failure: Option<RunError>,
+}
+
+/// A step is looked at in so many parts: two crossings within one are not missed.
+const SAMPLES: u32 = 2;
+
+/// Where a motion crosses the surface on which an event's function of time and state is zero (Poincare 1881).
+pub fn section<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &Method,
+    schedule: &Schedule,
+    (q, v): ([f64; N], [f64; N]),
+    surface: &Event<'_, N>,
+) -> Section<N> {
+    let mut watch = Watch::new(Again(method), std::slice::from_ref(surface), ());
+    watch.samples = SAMPLES;
+    let outcome = integrate_pieces(system, method, schedule, &mut State::new(q, v, system.angles()), &mut watch);
+    Section { crossings: watch.crossings().to_vec(), failure: outcome.err() }
+}

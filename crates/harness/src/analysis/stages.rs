@@ -1,0 +1,131 @@
+use super::flow::{ReducedFlow, Slope, admissible, seeded};
+use dla::{History, NewtonError, SensitivityError};
+use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
+use lagrangian::{Scalar, Seeded};
+use std::array::from_fn;
+
+/// The most stages of a method.
+const MOST: usize = 8;
+/// What seeds there are directions for.
+const DIRECTIONS: usize = 8;
+const MAX_SWEEPS: u32 = 100;
+
+/// A Runge-Kutta method on the reduced equations: collocation, or an explicit one.
+///
+/// Its stages are iterated on numbers with derivatives, value and derivatives together, until both move by rounding only:
+/// the end then has the exact derivative of the discrete map in its start.
+#[derive(Debug, Clone)]
+pub(super) struct Stages {
+    nodes: Vec<f64>,
+    weights: Vec<f64>,
+    coefficients: Vec<Vec<f64>>,
+}
+
+/// How far values, or derivatives, moved in a sweep, and how large they are.
+#[derive(Debug, Clone, Copy, Default)]
+struct Change {
+    moved: f64,
+    size: f64,
+}
+
+impl Change {
+    fn add(&mut self, before: f64, after: f64) {
+        // NaN stays.
+        let (moved, size) = ((after - before).abs(), after.abs());
+        self.moved = if moved <= self.moved { self.moved } else { moved };
+        self.size = if size <= self.size { self.size } else { size };
+    }
+
+    /// Whether it is rounding: by its size, or because it is small and does not shrink any more.
+    ///
+    /// Far from the origin the places in a wave are rounded to more than the slopes are.
+    fn settled(self, before: Self) -> bool {
+        let rounding = 4.0 * f64::EPSILON * self.size;
+        self.moved <= rounding || (self.moved <= 1e-10 * self.size && self.moved >= 0.5 * before.moved)
+    }
+}
+
+impl Stages {
+    /// Gauss collocation with `S` stages (Hairer, Lubich and Wanner 2006, section II.1.3).
+    pub(super) fn gauss<const S: usize>() -> Self {
+        let (nodes, weights) = gauss_legendre::<S>();
+        let coefficients = gauss_collocation(&nodes, &weights);
+        Self {
+            nodes: nodes.to_vec(),
+            weights: weights.to_vec(),
+            coefficients: coefficients.iter().map(|row| row.to_vec()).collect(),
+        }
+    }
+
+    /// The classical Runge-Kutta method.
+    pub(super) fn rk4() -> Self {
+        let row = |i: usize, a: f64| (0..4).map(|j| if j + 1 == i { a } else { 0.0 }).collect();
+        Self {
+            nodes: vec![0.0, 0.5, 0.5, 1.0],
+            weights: vec![1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0],
+            coefficients: vec![row(0, 0.0), row(1, 0.5), row(2, 0.5), row(3, 1.0)],
+        }
+    }
+
+    /// The increments of `q` and `xi` over a step from `t` to `t + h`, with their derivatives in `(q0, xi0)`.
+    pub(super) fn increments<const N: usize, const M: usize>(
+        &self,
+        flow: &dyn ReducedFlow<N, M>,
+        (t, h): (f64, f64),
+        q0: &[f64; N],
+        xi0: &[f64; N],
+    ) -> Result<Slope<N>, SensitivityError> {
+        if 2 * N - M > DIRECTIONS {
+            return Err(SensitivityError::Unsupported {
+                reason: "the system has more than eight coordinates and velocities",
+            });
+        }
+        let (q0, xi0) = (seeded(q0, 0), seeded(&admissible::<N, M>(xi0), N));
+        let count = self.nodes.len().min(MOST);
+        let first = flow.slope(t, &q0, &xi0).ok_or(NO_EQUATIONS)?;
+        let mut slopes = [first; MOST];
+        let [mut values, mut derivatives] = [Change { moved: f64::INFINITY, size: 0.0 }; 2];
+        let (mut settled, mut history) = ([false; 2], History::new());
+        for iteration in 1..=MAX_SWEEPS {
+            let before = (values, derivatives);
+            (values, derivatives) = (Change::default(), Change::default());
+            for i in 0..count {
+                let [dq, dxi] = sum(h, &self.coefficients[i], &slopes[..count]);
+                let (q, xi) = (from_fn(|k| q0[k] + dq[k]), from_fn(|k| xi0[k] + dxi[k]));
+                let slope = flow.slope(t + self.nodes[i] * h, &q, &xi).ok_or(NO_EQUATIONS)?;
+                for (new, old) in slope.iter().flatten().zip(slopes[i].iter().flatten()) {
+                    values.add(old.re, new.re);
+                    new.eps.iter().zip(&old.eps).for_each(|(new, old)| derivatives.add(*old, *new));
+                }
+                slopes[i] = slope;
+            }
+            if !(values.size + derivatives.size).is_finite() {
+                return Err(SensitivityError::Equations(NewtonError::NotFinite { iteration, history }));
+            }
+            history.push(derivatives.moved / derivatives.size);
+            // Rounding goes round in cycles, and the two need not agree when each is small.
+            settled = [settled[0] || values.settled(before.0), settled[1] || derivatives.settled(before.1)];
+            if settled == [true; 2] {
+                return Ok(sum(h, &self.weights, &slopes[..count]));
+            }
+        }
+        let correction = derivatives.moved / derivatives.size;
+        Err(SensitivityError::Equations(NewtonError::IterationLimit { iterations: MAX_SWEEPS, correction, history }))
+    }
+}
+
+const NO_EQUATIONS: SensitivityError =
+    SensitivityError::Unsupported { reason: "the system has no reduced equations, or they are degenerate" };
+
+/// `h sum_j factors[j] slopes[j]`.
+fn sum<const N: usize>(h: f64, factors: &[f64], slopes: &[Slope<N>]) -> Slope<N> {
+    let mut total = [[Seeded::zero(); N]; 2];
+    for (factor, slope) in factors.iter().zip(slopes) {
+        if *factor != 0.0 {
+            for (total, slope) in total.iter_mut().flatten().zip(slope.iter().flatten()) {
+                *total += *slope * (h * factor);
+            }
+        }
+    }
+    total
+}

@@ -1,0 +1,152 @@
+use super::discrete::differentiable;
+use super::flow::{Flow, ReducedFlow, divergence};
+use super::stages::Stages;
+use crate::{Kind, Method};
+use dla::{Differentiable, Energy, Lobatto, Sensitivity, SensitivityError, State, StepReport};
+use lagrangian::System;
+use nalgebra::DMatrix;
+
+/// The derivative of single steps of a run, in the coordinates `(q, xi)` of the distribution; an object, so that what uses it
+/// is compiled once.
+pub(super) trait StepTangent<const N: usize, const M: usize> {
+    /// `d(q1, xi1)/d(q0, xi0)` of the step that was made from `start` to `end`; `time` is its start and its length (s).
+    fn matrix(
+        &self,
+        time: (f64, f64),
+        start: &State<N>,
+        end: &State<N>,
+        report: StepReport<M>,
+    ) -> Result<DMatrix<f64>, SensitivityError>;
+
+    /// The divergence of the continuous equations at a state (1/s).
+    fn divergence(&self, t: f64, state: &State<N>) -> Result<f64, SensitivityError>;
+}
+
+/// How the steps of a method are differentiated.
+enum Rule<const N: usize, const M: usize> {
+    /// A Runge-Kutta method on the reduced equations: on numbers with derivatives.
+    Stages(Stages),
+    /// Any other: by the implicit function theorem.
+    Equations(Box<dyn Differentiable<N, M>>),
+}
+
+/// The steps of a method on a system.
+pub(super) struct Steps<'a, Sys, const N: usize, const M: usize> {
+    system: &'a Sys,
+    rule: Rule<N, M>,
+    sensitivity: Sensitivity<'a, Sys, N, M, 0>,
+}
+
+/// Whether [`lyapunov`](fn@super::lyapunov) has the derivatives of this method.
+///
+/// # Errors
+/// [`SensitivityError::Unsupported`] with the reason, where it has not.
+pub fn has_tangents(method: &Method) -> Result<(), SensitivityError> {
+    rule::<3, 1>(method).map(drop)
+}
+
+fn rule<const N: usize, const M: usize>(method: &Method) -> Result<Rule<N, M>, SensitivityError> {
+    let refuse = |reason| Err(SensitivityError::Unsupported { reason });
+    Ok(match method.info().kind {
+        Kind::Gauss4 => Rule::Stages(Stages::gauss::<2>()),
+        Kind::Gauss6 => Rule::Stages(Stages::gauss::<3>()),
+        Kind::Gauss8 => Rule::Stages(Stages::gauss::<4>()),
+        Kind::Gauss10 => Rule::Stages(Stages::gauss::<5>()),
+        Kind::Gauss12 => Rule::Stages(Stages::gauss::<6>()),
+        Kind::Gauss14 => Rule::Stages(Stages::gauss::<7>()),
+        Kind::Gauss16 => Rule::Stages(Stages::gauss::<8>()),
+        Kind::Rk4Reduced => Rule::Stages(Stages::rk4()),
+        Kind::Lobatto3 => Rule::Equations(Box::new(Lobatto::<3>::new())),
+        Kind::Lobatto4 => Rule::Equations(Box::new(Lobatto::<4>::new())),
+        Kind::Energy2 => Rule::Equations(Box::new(Energy::<1>::default())),
+        Kind::Energy4 => Rule::Equations(Box::new(Energy::<2>::default())),
+        Kind::Gni => return refuse("gni carries a multiplier from step to step, and its step is no map of (q, v)"),
+        Kind::Dop853 => {
+            return refuse("dop853 chooses its steps from the state, and how many there are changes by jumps");
+        }
+        Kind::Rk4 | Kind::Rk4Projected | Kind::ImplicitMidpoint => {
+            return refuse(
+                "the method works in full coordinates, off the distribution that exponents are of: take \
+                           rk4-reduced",
+            );
+        }
+        _ => match differentiable(method) {
+            Some(method) => Rule::Equations(method),
+            None => {
+                return refuse(
+                    "the derivatives of this method are in the library, dla::Sensitivity, but not in this program: \
+                     take gauss8",
+                );
+            }
+        },
+    })
+}
+
+impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Steps<'a, Sys, N, M> {
+    pub(super) fn of(system: &'a Sys, method: &Method) -> Result<Self, SensitivityError> {
+        Ok(Self { system, rule: rule(method)?, sensitivity: Sensitivity::of(system) })
+    }
+
+    fn quasi_velocities(&self, t: f64, state: &State<N>) -> Result<[f64; N], SensitivityError> {
+        state.quasi_velocities(self.system, t).map_err(|error| SensitivityError::Step(error.into()))
+    }
+}
+
+/// Steps that differ by more, relative, are different solutions; rounding is far below.
+const AGREEMENT: f64 = 1e-9;
+
+impl<Sys: System<N, M>, const N: usize, const M: usize> StepTangent<N, M> for Steps<'_, Sys, N, M> {
+    fn matrix(
+        &self,
+        time: (f64, f64),
+        start: &State<N>,
+        end: &State<N>,
+        report: StepReport<M>,
+    ) -> Result<DMatrix<f64>, SensitivityError> {
+        match &self.rule {
+            Rule::Stages(stages) => {
+                let flow: &dyn ReducedFlow<N, M> = &Flow(self.system);
+                of_stages(stages, flow, time, start, &self.quasi_velocities(time.0, start)?, end)
+            }
+            Rule::Equations(method) => {
+                let derivative = self.sensitivity.between(&**method, time, start, end, report)?;
+                let rows = derivative.reduced.ok_or(NO_BASIS)?.matrix();
+                Ok(DMatrix::from_row_iterator(rows.len(), rows.len(), rows.into_iter().flatten()))
+            }
+        }
+    }
+
+    fn divergence(&self, t: f64, state: &State<N>) -> Result<f64, SensitivityError> {
+        divergence(&Flow(self.system), t, state.q(), &self.quasi_velocities(t, state)?).ok_or(NO_BASIS)
+    }
+}
+
+const NO_BASIS: SensitivityError = SensitivityError::Unsupported {
+    reason: "exponents need a basis of the admissible velocities, and the system gives none",
+};
+
+/// The matrix of a step by stages, after a look whether it ends where the step did.
+fn of_stages<const N: usize, const M: usize>(
+    stages: &Stages,
+    flow: &dyn ReducedFlow<N, M>,
+    (t, h): (f64, f64),
+    start: &State<N>,
+    xi: &[f64; N],
+    end: &State<N>,
+) -> Result<DMatrix<f64>, SensitivityError> {
+    let [dq, dxi] = stages.increments(flow, (t, h), start.q(), xi)?;
+    let moved = end.moved_since(start);
+    let (mut off, mut size) = (0.0f64, 0.0f64);
+    for i in 0..N {
+        off = off.max((moved[i] - dq[i].re).abs());
+        size = size.max(end.unwrapped()[i].abs()).max(moved[i].abs());
+    }
+    let defect = if off == 0.0 { 0.0 } else { off / size };
+    if defect > AGREEMENT || defect.is_nan() {
+        return Err(SensitivityError::OtherSolution { defect });
+    }
+    Ok(DMatrix::from_fn(2 * N - M, 2 * N - M, |i, j| {
+        let moved = if i < N { dq[i].eps[j] } else { dxi[i - N].eps[j] };
+        if i == j { 1.0 + moved } else { moved }
+    }))
+}

@@ -1,0 +1,68 @@
+use crate::Kind;
+
+/// What a case asks of a method.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Claim {
+    /// The error is that of its order, and nothing else goes wrong.
+    Order,
+    /// The velocity constraint to round-off.
+    Constraint,
+    /// The digits of a spin, however small beside the speed.
+    SmallSpin,
+    /// What dies out stays dead.
+    StableLine,
+    /// It is its own adjoint: there and back is home.
+    Symmetry,
+    /// The energy to round-off, or an error.
+    Energy,
+    /// What is accepted is the solution that continues the motion.
+    Continuation,
+    /// A mass matrix that is regular on the constraint only.
+    LightInertia,
+    /// A step that the explicit ones cannot make.
+    Stiffness,
+}
+
+/// The table of claims: whether a method claims something, or why it does not.
+///
+/// # Errors
+/// The reason why not.
+pub fn claims(method: Kind, claim: Claim) -> Result<(), &'static str> {
+    use Claim as C;
+    use Kind as K;
+    const HIDDEN_MODE: &str = "its hidden multiplier mode grows about the stable line";
+    const EXPLICIT: &str = "explicit: beyond its stability bound it grows";
+    match (method, claim) {
+        (K::Gni, C::StableLine | C::Symmetry | C::Order) => Err(HIDDEN_MODE),
+        (K::Gni, C::Continuation) => Err("takes whatever solution its search finds"),
+        (K::Rk4 | K::ImplicitMidpoint, C::Constraint) => Err("the blade slips, by the error of the method"),
+
+        // The spin is a component of a velocity in the plane, and noise below the rounding of the largest.
+        (
+            K::DlaTrapezoid
+            | K::DlaAlpha
+            | K::Lobatto3
+            | K::Lobatto4
+            | K::Lobatto5
+            | K::Gni
+            | K::Rk4
+            | K::Rk4Projected
+            | K::ImplicitMidpoint,
+            C::SmallSpin,
+        ) => Err("works in coordinates: a spin below the rounding of the speed is noise to it"),
+
+        (K::Lobatto3 | K::Lobatto4 | K::Lobatto5, C::LightInertia) => Err(
+            "its stages leave the constraint, where the mass matrix is singular: they cannot be shown to continue the motion",
+        ),
+        (K::Gni, C::LightInertia) => Err(HIDDEN_MODE),
+
+        (K::Rk4 | K::Rk4Projected | K::Rk4Reduced | K::Dop853, C::Symmetry) => Err("is not its own adjoint"),
+        (K::Energy2 | K::Energy4 | K::Energy6 | K::Energy8, C::Energy) => Ok(()),
+        (_, C::Energy) => Err("keeps the energy to its order only"),
+        (K::Rk4 | K::Rk4Projected | K::Rk4Reduced, C::Continuation | C::Stiffness) => Err(EXPLICIT),
+        (K::DlaTrapezoid | K::Gni, C::Stiffness) => {
+            Err("takes a potential at the nodes, as the leapfrog does: beyond sqrt(k/m) h = 2 it grows")
+        }
+        _ => Ok(()),
+    }
+}

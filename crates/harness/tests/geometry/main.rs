@@ -1,0 +1,42 @@
+//! The geometry of the sleigh and of other systems: brackets, symmetries, phases, steady motions, parking.
+
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
+
+mod attitude;
+mod brackets;
+mod equilibria;
+mod exchange;
+mod gaits;
+mod parking;
+mod phase;
+mod symmetries;
+
+use dla::{Dla, Gauss, Observer, OneStep, Schedule, State, drive_part, piece_by_piece};
+use lagrangian::{Midpoint, Piecewise, System};
+
+/// Runs a method on a system that may jump.
+fn run<Sys, Method, Obs, const N: usize, const M: usize>(
+    system: &Sys,
+    method: impl Fn() -> Method,
+    (step, steps): (f64, u64),
+    state: &mut State<N>,
+    mut observer: Obs,
+) where
+    Sys: System<N, M> + Piecewise,
+    Method: OneStep<Sys, N, M>,
+    Obs: Observer<Sys, N, M>,
+{
+    let schedule = Schedule { t0: 0.0, step, steps };
+    piece_by_piece(system, &schedule, state, |piece, steps, state| {
+        drive_part(piece, &mut method(), &schedule, steps, state, &mut observer)
+    })
+    .unwrap();
+}
+
+fn dla() -> Dla<Midpoint, Midpoint> {
+    Dla::midpoint()
+}
+
+fn gauss() -> Gauss<4> {
+    Gauss::default()
+}

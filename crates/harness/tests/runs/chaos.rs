@@ -1,0 +1,228 @@
+//! Lyapunov exponents: of motions of which they are known, by both ways to differentiate a step, and of two strange attractors.
+
+use approx::{assert_abs_diff_eq, assert_relative_eq};
+use dla::{Gauss, OneStep, Schedule, Sensitivity, State, drive};
+use harness::Method;
+use harness::analysis::{
+    Lyapunov, LyapunovError, LyapunovRequest, has_tangents, in_parallel, kaplan_yorke, lyapunov_by,
+};
+use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, With};
+use nalgebra::DMatrix;
+use sleigh::effects::{Bowl, EggCrate};
+use sleigh::{Sleigh, SleighState};
+
+/// A point above a saddle, on a plane, with friction along `y`: `x'' = k^2 x`, `y'' = -g y'`, `z' = 0`.
+struct Saddle;
+
+const GROWTH: f64 = 0.7;
+const FRICTION: f64 = 0.3;
+
+impl System<3, 1> for Saddle {
+    fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 3], v: &[S; 3]) -> S {
+        (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) * 0.5 + q[0] * q[0] * (0.5 * GROWTH * GROWTH)
+    }
+    fn constraint<S: Scalar>(&self, _t: S, _q: &[S; 3]) -> Constraint<S, 3, 1> {
+        ([[S::zero(), S::zero(), S::constant(1.0)]], [S::zero()])
+    }
+    fn force<S: Scalar>(&self, _t: S, _q: &[S; 3], v: &[S; 3]) -> Option<[S; 3]> {
+        Some([S::zero(), v[1] * -FRICTION, S::zero()])
+    }
+    fn admissible_basis<S: Scalar>(&self, _t: S, _q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, 1>> {
+        let (zero, one) = (S::zero(), S::constant(1.0));
+        Some(AdmissibleBasis::new([[one, zero, zero], [zero, one, zero]]))
+    }
+}
+
+/// Exponents of a run with `gauss8`, or with whichever method has that name.
+fn exponents_by<Sys, Stepper>(
+    (name, mut stepper): (&str, Stepper),
+    system: &Sys,
+    (q, v): ([f64; 3], [f64; 3]),
+    (step, settle, steps): (f64, u64, u64),
+) -> Lyapunov
+where
+    Sys: System<3, 1>,
+    Stepper: OneStep<Sys, 3, 1>,
+{
+    let schedule = Schedule { t0: 0.0, step, steps };
+    let request = LyapunovRequest { schedule, settle, exponents: None, q, v };
+    let method = Method::named(name, None).unwrap();
+    let found = lyapunov_by(system, &method, &request, |schedule, state, observer| {
+        drive(system, &mut stepper, schedule, state, observer)
+    });
+    let found = found.unwrap();
+    assert!(found.failure.is_none(), "{:?}", found.failure);
+    assert_relative_eq!(found.time, step * steps as f64, max_relative = 1e-12);
+    found
+}
+
+fn exponents<Sys: System<3, 1>>(system: &Sys, start: ([f64; 3], [f64; 3]), steps: (f64, u64, u64)) -> Lyapunov {
+    exponents_by(("gauss8", Gauss::<4>::default()), system, start, steps)
+}
+
+fn egg_crate() -> (With<Sleigh, EggCrate>, ([f64; 3], [f64; 3])) {
+    let system = With { body: Sleigh::new(1.0, 1.0, 0.1).unwrap(), effects: EggCrate::new(0.5, [1.0, 1.0]).unwrap() };
+    let start = SleighState { y: 1.0, heading: 0.3, speed: 0.798, turn_rate: 0.5, ..SleighState::default() };
+    (system, start.to_coordinates())
+}
+
+/// The valley `Y^2/2` at the energy 2 J, from its bottom.
+fn valley() -> (With<Sleigh, Bowl>, ([f64; 3], [f64; 3])) {
+    let system = With { body: Sleigh::new(1.0, 1.0, 0.5).unwrap(), effects: Bowl::new([0.0, 1.0], [0.0; 2]).unwrap() };
+    let start = SleighState { y: -0.5 * 0.3_f64.sin(), heading: 0.3, speed: 1.8, ..SleighState::default() };
+    let rest = 2.0 - 0.5 * start.speed.powi(2);
+    (system, SleighState { turn_rate: (2.0 * rest / 1.25).sqrt(), ..start }.to_coordinates())
+}
+
+/// The exponents of a linear system are the real parts of its eigenvalues.
+#[test]
+fn a_saddle_with_friction() {
+    let found = exponents(&Saddle, ([0.0, 0.3, 0.1], [0.0, 0.8, 0.0]), (0.1, 1000, 1000));
+    // A frame that has had 100 s to turn into place is off by exp(-100 FRICTION).
+    for (exponent, known) in found.exponents.iter().zip([GROWTH, 0.0, 0.0, -FRICTION, -GROWTH]) {
+        assert_abs_diff_eq!(*exponent, known, epsilon = 1e-12);
+    }
+    assert_abs_diff_eq!(found.divergence_mean, -FRICTION, epsilon = 1e-14);
+    assert_abs_diff_eq!(found.sum(), -FRICTION, epsilon = 1e-12);
+    assert_relative_eq!(kaplan_yorke(&[0.5, 0.0, -1.0]), 2.5);
+    assert_relative_eq!(kaplan_yorke(&[-0.5, -1.0]), 0.0);
+    assert_relative_eq!(kaplan_yorke(&[1.0, -1.0]), 2.0);
+}
+
+/// About straight motion at the speed `u` the spin has the eigenvalue `-c u`, and all else is neutral. Differences in heading and
+/// speed grow linearly, so the neutral exponents are `ln t / t`.
+#[test]
+fn the_straight_motion_of_the_free_sleigh() {
+    let sleigh = Sleigh::new(1.3, 0.8, 0.4).unwrap();
+    let rate = -sleigh.spin_gain() * 0.9;
+    for (name, found) in [
+        ("gauss8", exponents(&sleigh, ([0.0; 3], [0.9, 0.0, 0.0]), (0.1, 800, 2000))),
+        ("dla", exponents_by(("dla", dla::Dla::midpoint()), &sleigh, ([0.0; 3], [0.9, 0.0, 0.0]), (0.1, 800, 400))),
+    ] {
+        let neutral = 2.0 * found.time.ln() / found.time;
+        // The discrete map has (1 - h c u/2) / (1 + h c u/2) in the place of exp(-h c u).
+        let discrete = if name == "dla" { 2.0 * (0.05 * rate).atanh() / 0.1 } else { rate };
+        assert_abs_diff_eq!(found.exponents[4], discrete, epsilon = 1e-10);
+        assert_abs_diff_eq!(found.sum(), discrete, epsilon = 1e-10);
+        assert_abs_diff_eq!(found.divergence_mean, rate, epsilon = 1e-14);
+        assert!(found.exponents[..4].iter().all(|exponent| exponent.abs() < neutral), "{name}: {:?}", found.exponents);
+    }
+}
+
+/// With the centre of mass at the blade the motion in a round bowl is integrable.
+#[test]
+fn a_balanced_sleigh_in_a_bowl_is_regular() {
+    let system = With { body: Sleigh::new(1.0, 1.0, 0.0).unwrap(), effects: Bowl::new([1.0; 2], [0.0; 2]).unwrap() };
+    let start = SleighState { x: 0.5, heading: 0.3, speed: 0.4, turn_rate: 0.7, ..SleighState::default() };
+    let found = exponents(&system, start.to_coordinates(), (0.1, 2000, 20_000));
+    println!("{:?} ± {:?}", found.exponents, found.ci);
+    let neutral = 2.0 * found.time.ln() / found.time;
+    assert!(found.exponents.iter().all(|exponent| exponent.abs() < neutral), "{:?}", found.exponents);
+    assert_abs_diff_eq!(found.sum(), 0.0, epsilon = 1e-12);
+}
+
+/// The egg crate of 0.5 J at 1.2 J, and the valley at 2 J. Known with an error of about 0.01 each: (0.059, 0, 0, -0.021, -0.176) and
+/// (0.24, 0, 0, 0, -0.47); and the sum is minus the mean of `c u`.
+fn check_attractors(egg: u64, deep: u64) {
+    let ((crate_, start), (valley, low)) = (egg_crate(), valley());
+    let step = 0.1;
+    let runs = in_parallel(2, |i| match i {
+        0 => exponents(&crate_, start, (step, egg / 10, egg)),
+        _ => exponents(&valley, low, (step, deep / 10, deep)),
+    });
+    let known = [[0.059, 0.0, 0.0, -0.021, -0.176], [0.24, 0.0, 0.0, 0.0, -0.47]];
+    for (found, known) in runs.iter().zip(known) {
+        println!("T = {} s: {:.5?}", found.time, found.exponents);
+        println!(
+            "    ± {:.5?}, sum {:.7}, divergence {:.7}, dimension {:.3}",
+            found.ci,
+            found.sum(),
+            found.divergence_mean,
+            kaplan_yorke(&found.exponents)
+        );
+        for ((exponent, ci), known) in found.exponents.iter().zip(&found.ci).zip(known) {
+            assert_abs_diff_eq!(*exponent, known, epsilon = 0.015);
+            assert!(ci.unwrap() < 0.015);
+        }
+        assert_abs_diff_eq!(found.sum(), found.divergence_mean, epsilon = 1e-4);
+    }
+}
+
+#[test]
+fn strange_attractors() {
+    check_attractors(50_000, 100_000);
+}
+
+#[test]
+#[ignore = "half a minute: cargo test -p noslip-harness --test runs long_strange -- --ignored --nocapture"]
+fn long_strange_attractors() {
+    check_attractors(200_000, 200_000);
+}
+
+/// Twenty kilometres away the places within a step are rounded to more than the slopes of its stages are, and yet each step ends.
+#[test]
+fn far_from_the_origin() {
+    let (system, (mut q, v)) = egg_crate();
+    q[0] += 2e4;
+    let found = exponents(&system, (q, v), (0.1, 0, 3000));
+    assert_abs_diff_eq!(found.sum(), found.divergence_mean, epsilon = 1e-4);
+}
+
+/// A system that hides what it knows by hand.
+struct Plain<Sys>(Sys);
+
+impl<Sys: System<3, 1>> System<3, 1> for Plain<Sys> {
+    fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 3], v: &[S; 3]) -> S {
+        self.0.lagrangian(t, q, v)
+    }
+    fn constraint<S: Scalar>(&self, t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
+        self.0.constraint(t, q)
+    }
+    fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, 1>> {
+        self.0.admissible_basis(t, q)
+    }
+}
+
+/// Stages on dual numbers, with reduced equations by hand and without, and the implicit function theorem: the same exponents.
+#[test]
+fn three_ways_to_differentiate_a_step() {
+    let (system, (q, v)) = valley();
+    let by_hand = exponents_by(("gauss4", Gauss::<2>::default()), &system, (q, v), (0.1, 0, 100));
+    let plain = Plain(valley().0);
+    let hidden = exponents_by(("gauss4", Gauss::<2>::default()), &plain, (q, v), (0.1, 0, 100));
+    assert_abs_diff_eq!(by_hand.divergence_mean, hidden.divergence_mean, epsilon = 1e-12);
+    for (one, other) in by_hand.exponents.iter().zip(&hidden.exponents) {
+        assert_abs_diff_eq!(one, other, epsilon = 1e-9);
+    }
+
+    let (sensitivity, mut state) = (Sensitivity::of(&plain), State::new(q, v, plain.angles()));
+    let mut log_volume = 0.0;
+    for k in 0..100 {
+        let derivative = sensitivity.step(&mut Gauss::<2>::default(), 0.1 * f64::from(k), 0.1, &mut state).unwrap();
+        let rows = derivative.reduced.unwrap().matrix();
+        log_volume += DMatrix::from_row_iterator(5, 5, rows.into_iter().flatten()).determinant().ln();
+    }
+    assert_abs_diff_eq!(by_hand.sum(), log_volume / by_hand.time, epsilon = 1e-10);
+}
+
+#[test]
+fn what_has_no_exponents_says_why() {
+    let (system, (q, v)) = valley();
+    let schedule = Schedule { t0: 0.0, step: 0.1, steps: 10 };
+    for (name, exponents, told) in
+        [("gauss8", Some(0), "1 to 5"), ("gauss8", Some(6), "1 to 5"), ("gni", None, "gni"), ("dop853", None, "dop853")]
+    {
+        let request = LyapunovRequest { schedule, settle: 0, exponents, q, v };
+        let method = Method::named(name, None).unwrap();
+        let error = lyapunov_by(&system, &method, &request, |_, _, _| panic!("nothing is to run")).unwrap_err();
+        assert!(error.to_string().contains(told), "{error}");
+        assert_eq!(has_tangents(&method).is_err(), matches!(error, LyapunovError::Sensitivity(_)), "{name}");
+    }
+    // The start of a run that fails keeps what it has: here nothing.
+    let request = LyapunovRequest { schedule, settle: 0, exponents: None, q, v: [f64::NAN; 3] };
+    let method = Method::named("gauss8", None).unwrap();
+    let found = lyapunov_by(&system, &method, &request, |schedule, state, observer| {
+        drive(&system, &mut Gauss::<4>::default(), schedule, state, observer)
+    });
+    assert!(found.unwrap().failure.is_some());
+}

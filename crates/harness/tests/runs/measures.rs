@@ -1,0 +1,134 @@
+//! What flow and methods do to areas of starts of the free sleigh, whose invariant measure is `du domega / |omega|`.
+
+use approx::{assert_abs_diff_eq, assert_relative_eq};
+use dla::{Composition, Differentiable, Dla, Gauss, Lobatto, OneStep, Sensitivity, State};
+use harness::Rk4Reduced;
+use harness::analysis::{enclosed_area, measure_defect};
+use proptest::prelude::*;
+use sleigh::{Exact, Sleigh, SleighState};
+use std::f64::consts::{PI, TAU};
+
+/// Points on a closed curve of starts about `(u, omega)`, round in `(u, ln |omega|)`.
+fn ring([u, omega]: [f64; 2], radius: f64, count: u32) -> Vec<SleighState> {
+    let at = |k: u32| {
+        let (sin, cos) = (TAU * f64::from(k) / f64::from(count)).sin_cos();
+        SleighState { speed: u + radius * cos, turn_rate: omega * (radius * sin).exp(), ..SleighState::default() }
+    };
+    (0..count).map(at).collect()
+}
+
+/// `du domega` and `du domega / |omega|` of what lies within a curve of starts.
+fn areas(curve: &[SleighState]) -> [f64; 2] {
+    let plain: Vec<_> = curve.iter().map(|state| [state.speed, state.turn_rate]).collect();
+    let weighted: Vec<_> = curve.iter().map(|state| [state.speed, state.turn_rate.abs().ln()]).collect();
+    [enclosed_area(&plain), enclosed_area(&weighted)]
+}
+
+proptest! {
+    /// Of an ellipse anywhere, in both directions.
+    #[test]
+    fn the_area_of_an_ellipse(a in 0.01..10.0f64, b in 0.01..10.0f64, x in -1e3..1e3f64, tilt in 0.0..TAU) {
+        let point = |k: i32| {
+            let (sin, cos) = (TAU * f64::from(k) / 32.0).sin_cos();
+            let (s, c) = tilt.sin_cos();
+            [x + a * cos * c - b * sin * s, a * cos * s + b * sin * c]
+        };
+        let forward: Vec<_> = (0..32).map(point).collect();
+        let backward: Vec<_> = (0..32).map(|k| point(-k)).collect();
+        // The coordinates are rounded to so much, along the whole curve.
+        let rounding = 4.0 * f64::EPSILON * (x.abs() + a + b) * (a + b) * PI;
+        prop_assert!((enclosed_area(&forward) - PI * a * b).abs() <= rounding);
+        prop_assert!((enclosed_area(&backward) + PI * a * b).abs() <= rounding);
+    }
+
+    /// The flow shrinks the plain area where it runs forward, and keeps the weighted one.
+    #[test]
+    fn the_flow_keeps_the_weighted_area(u in 0.3..1.0f64, omega in 0.1..0.8f64, t in 1.0..4.0f64, left in any::<bool>()) {
+        let sleigh = Sleigh::new(1.3, 0.8, 0.4).unwrap();
+        let start = ring([u, if left { omega } else { -omega }], 0.1, 64);
+        let end: Vec<_> = start.iter().map(|state| Exact::new(&sleigh, state).unwrap().at(t)).collect();
+        let ([plain0, weighted0], [plain1, weighted1]) = (areas(&start), areas(&end));
+        prop_assert!((weighted1 - weighted0).abs() <= 1e-13, "{weighted0:e} {weighted1:e}");
+        // d(area)/dt = -c u area, and u > 0.2 at all of them.
+        prop_assert!(plain1.abs() < plain0.abs() * (-sleigh.spin_gain() * 0.2 * t).exp());
+    }
+}
+
+#[test]
+fn no_curve_no_area() {
+    assert_abs_diff_eq!(enclosed_area(&[]), 0.0);
+    assert_abs_diff_eq!(enclosed_area(&[[1.0, 2.0]]), 0.0);
+}
+
+/// The explicit scheme keeps the weighted area to round-off while the plain one shrinks a thousand times; the spin keeps its sign;
+/// and it is of second order.
+#[test]
+fn the_canonical_scheme() {
+    let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    let mut curve = ring([0.6, -0.7], 0.2, 128);
+    let [plain, weighted] = areas(&curve);
+    let mut worst = 0.0f64;
+    for _ in 0..1000 {
+        curve.iter_mut().for_each(|state| *state = sleigh.canonical_step(0.02, state));
+        worst = worst.max((areas(&curve)[1] - weighted).abs());
+    }
+    let left = areas(&curve)[0] / plain;
+    println!("weighted area: off by {worst:.1e} of {weighted:.3}; plain area: {left:.1e} of what it was");
+    // The rounding of 1000 steps, at random, in each of the coordinates, along a curve of length about 8.
+    assert!(worst < 8.0 * f64::EPSILON * 1000f64.sqrt() * 4.0, "{worst:e}");
+    assert!(left < 1e-3 && curve.iter().all(|state| state.turn_rate < 0.0));
+
+    let start = SleighState { x: 0.3, y: -0.2, heading: 0.5, speed: -0.6, turn_rate: 1.1 };
+    let truth = Exact::new(&sleigh, &start).unwrap().at(2.0);
+    let error = |steps: u32| {
+        let end = (0..steps).fold(start, |state, _| sleigh.canonical_step(2.0 / f64::from(steps), &state));
+        let off = [end.x - truth.x, end.y - truth.y, end.heading - truth.heading];
+        off.into_iter()
+            .chain([end.speed - truth.speed, end.turn_rate - truth.turn_rate])
+            .fold(0.0, |m, x| x.abs().max(m))
+    };
+    let order = (error(80) / error(160)).log2();
+    assert_abs_diff_eq!(order, 2.0, epsilon = 0.02);
+    // Backward is back.
+    let there = sleigh.canonical_step(0.1, &start);
+    let back = sleigh.canonical_step(-0.1, &there);
+    assert_relative_eq!(back.x, start.x, epsilon = 1e-15);
+    assert_relative_eq!(back.turn_rate, start.turn_rate, max_relative = 1e-15);
+    // A balanced sleigh runs its circle exactly.
+    let balanced = Sleigh::new(1.0, 1.0, 0.0).unwrap();
+    let (end, truth) = (balanced.canonical_step(0.7, &start), Exact::new(&balanced, &start).unwrap().at(0.7));
+    assert_abs_diff_eq!(end.x, truth.x, epsilon = 1e-15);
+    assert_abs_diff_eq!(end.y, truth.y, epsilon = 1e-15);
+}
+
+/// `ln (rho(z1) |det D Phi| / rho(z0))` of one step, with `rho = 1/|omega|`.
+fn defect<Method>(mut method: Method, h: f64) -> f64
+where
+    Method: OneStep<Sleigh, 3, 1> + Differentiable<3, 1>,
+{
+    let sleigh = Sleigh::new(1.3, 0.8, 0.4).unwrap();
+    let (q, v) = SleighState { speed: -0.6, turn_rate: 1.1, ..SleighState::default() }.to_coordinates();
+    let mut state = State::new(q, v, [false, false, true]);
+    let derivative = Sensitivity::of(&sleigh).step(&mut method, 0.0, h, &mut state).unwrap();
+    measure_defect(&derivative, [-v[2].abs().ln(), -state.v()[2].abs().ln()]).unwrap()
+}
+
+/// Every method keeps the measure to its order, or better: the defect of a step is `O(h^(p+1))`, and not zero.
+#[test]
+fn the_defect_of_each_method() {
+    fn row<Method>(name: &str, method: &Method, order: f64, h: f64)
+    where
+        Method: OneStep<Sleigh, 3, 1> + Differentiable<3, 1> + Clone,
+    {
+        let [coarse, fine] = [h, 0.5 * h].map(|h| defect(method.clone(), h).abs());
+        let measured = (coarse / fine).log2();
+        println!("{name:12} h = {h}: {coarse:.1e}, order of the defect {measured:.2}");
+        assert!(fine > 1e-14, "{name}: nothing to see, {fine:e}");
+        assert!(measured > order + 0.7, "{name}: {measured}");
+    }
+    row("dla", &Dla::midpoint(), 2.0, 0.1);
+    row("dla4", &Composition::suzuki4(Dla::midpoint()), 4.0, 0.2);
+    row("lobatto3", &Lobatto::<3>::new(), 4.0, 0.2);
+    row("gauss4", &Gauss::<2>::default(), 4.0, 0.6);
+    row("rk4-reduced", &Rk4Reduced, 4.0, 0.2);
+}

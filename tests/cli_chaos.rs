@@ -1,0 +1,201 @@
+//! `noslip lyapunov` and `noslip section`.
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
+
+#[path = "common/program.rs"]
+mod program;
+
+use approx::assert_abs_diff_eq;
+use program::{Folder, SCENE, csv, keys};
+use serde_json::Value;
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+}
+
+#[test]
+fn exponents_are_told_with_what_they_sum_up_to() {
+    let folder = Folder::new();
+    let found = folder.json("lyapunov egg-crate-attractor --step 0.1 --duration 300 --out run.csv --json");
+    let expected = [
+        "scene",
+        "method",
+        "step",
+        "duration",
+        "energy",
+        "exponents",
+        "ci",
+        "sum",
+        "divergence_mean",
+        "convergence",
+        "dimension",
+    ];
+    assert_eq!(keys(&found), expected);
+    let (exponents, ci) = (numbers(&found["exponents"]), numbers(&found["ci"]));
+    assert!(exponents.len() == 5 && exponents.is_sorted_by(|a, b| a >= b), "{exponents:?}");
+    assert!(ci.iter().all(|ci| *ci > 0.0) && ci.len() == 5);
+    let sum = found["sum"].as_f64().unwrap();
+    assert_abs_diff_eq!(sum, exponents.iter().sum::<f64>(), epsilon = 1e-15);
+    assert_abs_diff_eq!(sum, found["divergence_mean"].as_f64().unwrap(), epsilon = 1e-4);
+    assert_abs_diff_eq!(found["energy"].as_f64().unwrap(), 1.2, epsilon = 1e-3);
+    // The estimates on the way end where the run does.
+    let (names, rows) = csv(&folder.read("run.csv"));
+    assert_eq!(names[..2], ["time", "exponent_1"]);
+    assert_eq!(rows.last().unwrap()[1..], exponents);
+    let text = folder.done("lyapunov egg-crate-attractor --step 0.1 --duration 300");
+    for told in ["exponent 5", "mean divergence", "dimension", "verdict"] {
+        assert!(text.contains(told), "{told}: {text}");
+    }
+    // The start is given another energy by its velocities, and one exponent is the first of all.
+    let one = folder
+        .json("lyapunov egg-crate-attractor --step 0.1 --duration 20 --energy 2 --exponents 1 --method dla --json");
+    assert_eq!(one["exponents"].as_array().unwrap().len(), 1);
+    assert_abs_diff_eq!(one["energy"].as_f64().unwrap(), 2.0, epsilon = 1e-12);
+    assert!(one.get("dimension").is_none() && one["ci"][0].is_f64());
+}
+
+/// The free sleigh, a flywheel, and a turntable, whose equations are not known by hand: `dla` and `gauss8` agree to the order of
+/// the first.
+#[test]
+fn every_free_scene_has_exponents() {
+    let folder = Folder::new();
+    folder.write("scene.toml", SCENE);
+    for scene in ["scene.toml", "flywheel", "turntable"] {
+        let sum = |method: &str| {
+            let found =
+                folder.json(&format!("lyapunov {scene} --step 0.02 --duration 4 --settle 0 --method {method} --json"));
+            assert_abs_diff_eq!(
+                found["sum"].as_f64().unwrap(),
+                found["divergence_mean"].as_f64().unwrap(),
+                epsilon = if method == "dla" { 2e-3 } else { 2e-5 }
+            );
+            found["sum"].as_f64().unwrap()
+        };
+        assert_abs_diff_eq!(sum("dla"), sum("gauss8"), epsilon = 2e-3);
+    }
+}
+
+#[test]
+fn a_map_does_not_depend_on_the_threads() {
+    let folder = Folder::new();
+    let line = "lyapunov bowl --step 0.1 --duration 40 --map speed=-1:1:4 --map turn_rate=0:1:3";
+    let on = |threads: &str, rest: &str| {
+        let mut command = folder.command(format!("{line} {rest}").split_whitespace());
+        let output = command.env("RAYON_NUM_THREADS", threads).output().unwrap();
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let one = on("1", "--json");
+    assert_eq!(one, on("3", "--json"));
+    let found: Value = serde_json::from_str(&one).unwrap();
+    let rows = found["exponents"].as_array().unwrap();
+    assert_eq!((rows.len(), rows[0].as_array().unwrap().len(), &found["failed"]), (3, 4, &Value::from(0)));
+    on("2", "--out map.csv");
+    let (names, cells) = csv(&folder.read("map.csv"));
+    assert_eq!((names.len(), cells.len()), (4, 12));
+    assert_eq!(cells[5][2].to_bits(), found["exponents"][1][1].as_f64().unwrap().to_bits());
+    // Cells that the energy does not allow stay empty.
+    let text = on("2", "--energy -1 --out map.svg");
+    assert!(text.contains("12 that there are not") && folder.read("map.svg").starts_with("<svg"), "{text}");
+}
+
+#[test]
+fn the_points_of_a_section_are_on_its_plane_and_of_one_energy() {
+    let folder = Folder::new();
+    let told = folder.done("section bowl --step 0.1 --plane center_y=0.25 --starts 3 --duration 300 --out points.csv");
+    assert!(told.contains("center_y=0.25, rising"), "{told}");
+    let (names, rows) = csv(&folder.read("points.csv"));
+    assert_eq!(names, ["start", "t", "x", "y", "heading", "speed", "turn_rate", "heading", "turn_rate"]);
+    assert!(
+        (0..3).all(|start| rows.iter().filter(|row| row[0].to_bits() == f64::from(start).to_bits()).count() > 3),
+        "{told}"
+    );
+    for row in &rows {
+        let [x, y, heading, u, omega] = row[2..7] else { panic!("{row:?}") };
+        let (sin, cos) = heading.sin_cos();
+        let [cx, cy] = [x + 0.5 * cos, y + 0.5 * sin];
+        // Located to rounding.
+        assert_abs_diff_eq!(cy, 0.25, epsilon = 1e-13);
+        // It rises: C' = u e + a omega n.
+        assert!(u * sin + 0.5 * omega * cos > 0.0, "{row:?}");
+        let energy = 0.5 * u * u + 0.625 * omega * omega + 0.05 * (cx * cx + cy * cy);
+        assert_abs_diff_eq!(energy, 0.5 + 0.00625 + 0.0125, epsilon = 1e-7);
+        assert!(row[7].abs() <= std::f64::consts::PI);
+    }
+    let found = folder.json("section bowl --step 0.1 --plane center_y=0.25 --starts 3 --duration 300 --json");
+    let points: usize = found["starts"].as_array().unwrap().iter().map(|s| s["points"].as_array().unwrap().len()).sum();
+    assert_eq!(points, rows.len());
+    assert_eq!(found["starts"][0]["points"][0][1].as_f64().unwrap().to_bits(), rows[0][7].to_bits());
+    folder.done(
+        "section bowl --step 0.1 --plane heading=0 --axes along,across --starts 2 --duration 50 --out points.svg",
+    );
+    assert!(folder.read("points.svg").contains("along [m]"));
+}
+
+#[test]
+fn a_scene_that_depends_on_time_has_a_section_at_each_period() {
+    let folder = Folder::new();
+    let outcome = folder.line("section shaker --plane speed=0 --starts 1 --duration 20");
+    assert!(
+        outcome.code == 0 && outcome.stderr.starts_with("note: ") && outcome.stderr.contains("t=PERIOD"),
+        "{outcome:?}"
+    );
+    let found = folder.json("section shaker --plane t=1.5 --starts 1 --duration 10 --json");
+    let times: Vec<f64> =
+        found["starts"][0]["points"].as_array().unwrap().iter().map(|point| point[0].as_f64().unwrap()).collect();
+    assert_eq!(times.len(), 6);
+    times.iter().zip(1..).for_each(|(t, k)| assert_abs_diff_eq!(*t, 1.5 * f64::from(k), epsilon = 1e-12));
+}
+
+#[test]
+fn what_makes_no_sense_is_refused() {
+    let folder = Folder::new();
+    let jumps = "[[effects]]\nkind = \"thrust\"\nforce = { times = [0.0, 1.0], values = [0.0, 1.0] }\n";
+    folder.write("jumps.toml", format!("{SCENE}{jumps}"));
+    for (line, told) in [
+        ("lyapunov bowl --exponents 6", &["--exponents", "1 to 5"][..]),
+        ("lyapunov bowl --exponents 0", &["--exponents", "from 1 on"]),
+        ("lyapunov bowl --method gni", &["gni", "multiplier"]),
+        ("lyapunov bowl --method rk4", &["rk4-reduced"]),
+        ("lyapunov bowl --method euler", &["euler"]),
+        ("lyapunov bowl --duration 0", &["duration"]),
+        ("lyapunov bowl --settle -1", &["--settle", "from 0 on"]),
+        ("lyapunov bowl --energy -3", &["--energy", "at rest"]),
+        ("lyapunov bowl --out run.txt", &["run.txt", ".csv", ".svg"]),
+        ("lyapunov planimeter", &["imposes velocities"]),
+        ("lyapunov jumps.toml --duration 2", &["jump", "t = 1 s"]),
+        ("lyapunov bowl --map speed=-1:1:4", &["--map", "twice"]),
+        ("lyapunov bowl --map speed=-1:1:4 --map speed=-1:1:4", &["--map", "speed"]),
+        ("lyapunov bowl --map speed=1:-1:4 --map y=0:1:4", &["NAME=FROM:TO:CELLS"]),
+        ("lyapunov bowl --map speed=-1:1:0 --map y=0:1:4", &["NAME=FROM:TO:CELLS"]),
+        ("lyapunov bowl --map along=-1:1:2 --map y=0:1:4", &["along", "turn_rate"]),
+        ("section bowl", &["--plane"]),
+        ("section bowl --plane z=0", &["`z`", "center_y"]),
+        ("section bowl --plane y", &["NAME=VALUE"]),
+        ("section bowl --plane y=nan", &["nan", "NAME=VALUE"]),
+        ("section bowl --plane t=0", &["period"]),
+        ("section bowl --plane t=1e-3", &["period", "step"]),
+        ("section bowl --plane y=0 --starts 0", &["--starts", "from 1 on"]),
+        ("section bowl --plane y=0 --axes speed", &["--axes", "two different"]),
+        ("section bowl --plane y=0 --axes speed,speed", &["--axes", "two different"]),
+        ("section bowl --plane y=0 --direction up", &["--direction", "rising"]),
+        ("section planimeter --plane y=0", &["imposes velocities"]),
+    ] {
+        folder.refused(line, told);
+    }
+    assert_eq!(folder.names(), ["jumps.toml"]);
+}
+
+/// A step that is too long ends the run: what is known is shown, and the exit code is 1.
+#[test]
+fn a_run_that_fails_says_so() {
+    let folder = Folder::new();
+    folder.write("scene.toml", program::FAILING);
+    for line in [
+        "lyapunov scene.toml --method dla --settle 0 --duration 29",
+        "section scene.toml --method dla --plane heading=0.1 --starts 1 --duration 29",
+    ] {
+        let outcome = folder.line(line);
+        assert_eq!(outcome.code, 1, "{line}: {outcome:?}");
+        assert!(!outcome.stdout.is_empty() && outcome.stderr.contains("error: "), "{line}: {outcome:?}");
+    }
+}
