@@ -25,11 +25,13 @@ proptest! {
     /// Half of the mass times the square of the velocity of `P + R(theta) r(t)`, in the plane's axes.
     #[test]
     fn a_moving_mass_has_its_energy(
-        q in proptest::array::uniform3(-3.0..3.0f64), v in proptest::array::uniform3(-2.0..2.0), t in 0.0..5.0,
+        q in proptest::array::uniform3(-3.0..3.0f64), v in proptest::array::uniform3(-2.0..2.0f64), t in 0.0..5.0f64,
     ) {
         let place = |phase: f64| TimeFunction::Sine { amplitude: 0.3, frequency: 2.0, phase };
         let mass = MovingMass::new(0.4, place(0.1), place(1.0)).unwrap();
-        let ([rx, ry], [dx, dy]) = ([0.1, 1.0].map(|p: f64| 0.3 * (2.0 * t + p).sin()), [0.1, 1.0].map(|p: f64| 0.6 * (2.0 * t + p).cos()));
+        let phases = [0.1, 1.0f64];
+        let [rx, ry] = phases.map(|phase| 0.3 * (2.0 * t + phase).sin());
+        let [dx, dy] = phases.map(|phase| 0.6 * (2.0 * t + phase).cos());
         let (sin, cos) = q[2].sin_cos();
         let point = [
             v[0] - v[2] * (sin * rx + cos * ry) + cos * dx - sin * dy,
@@ -42,7 +44,7 @@ proptest! {
     }
 
     #[test]
-    fn forces_act_where_they_say(q in proptest::array::uniform3(-3.0..3.0f64), u in -2.0..2.0, w in -2.0..2.0, t in 0.0..5.0) {
+    fn forces_act_where_they_say(q in proptest::array::uniform3(-3.0..3.0f64), u in -2.0..2.0f64, w in -2.0..2.0f64, t in 0.0..5.0f64) {
         let (sin, cos) = q[2].sin_cos();
         let v = [u * cos, u * sin, w];
         close(components(&Drag::new(0.3, 0.7).unwrap(), t, &q, &v), [-0.3 * u, 0.0, -0.7 * w]);
