@@ -116,6 +116,7 @@ where
         let closed = self.form == Form::Best && is_midpoint::<L>() && is_midpoint::<C>();
         if closed && let Some(step) = system.closed_step(t0, h, &q0, &v0, state.xi()) {
             let step = step.map_err(StepError::Closed)?;
+            state.stays_finite(&step.increment, &step.velocity)?;
             state.advance(&step.increment, step.velocity, Some(step.xi));
             return Ok(StepReport { impulses: step.impulses, iterations: step.iterations, work: None });
         }
@@ -174,6 +175,7 @@ impl<L, C> Dla<L, C> {
         if let Some(rows) = some {
             rows_left_out(system, t1, &q1, &v1, rows)?;
         }
+        state.stays_finite(&d, &v1)?;
         // From the middle of the step to its end.
         let acceleration = from_fn(|i| (v1[i] - v[i]) / (0.5 * h));
         state.advance_with_acceleration(&d, v1, acceleration);

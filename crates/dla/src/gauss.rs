@@ -118,9 +118,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
         let xi1 = from_fn(|i| xi0[i] + gain[i]);
         let increment = onto_positions(system, t + h, state, increment, state.v())?;
         let v1 = velocity_of(system, t + h, &state.ahead(&increment), &xi1)?;
-        if !v1.iter().chain(&increment).all(|x| x.is_finite()) {
-            return Err(StepError::NotFinite);
-        }
+        state.stays_finite(&increment, &v1)?;
         state.advance(&increment, v1, Some(xi1));
         Ok(StepReport::of(iterations))
     }

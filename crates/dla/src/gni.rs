@@ -94,9 +94,7 @@ where
         let increment = v.map(|v| h * v);
         let q1 = state.ahead(&increment);
         let (_, v1) = across(system, t + h, (&q1, &v), &arriving).map_err(singular(Stage::Projection))?;
-        if !v1.iter().chain(&increment).all(|x| x.is_finite()) {
-            return Err(StepError::NotFinite);
-        }
+        state.stays_finite(&increment, &v1)?;
         brakes_only(system, (t, h), &q0, (&v, &v1))?;
         state.advance(&increment, v1, None);
         self.memory = Some(Memory { node: *state, arriving });

@@ -145,8 +145,8 @@ pub enum StepError {
         /// What the next one would be (s).
         step: f64,
     },
-    /// A velocity became infinite or not a number.
-    #[error("the velocities are no longer finite")]
+    /// A coordinate or a velocity became infinite or not a number.
+    #[error("the coordinates or the velocities are no longer finite")]
     NotFinite,
 }
 

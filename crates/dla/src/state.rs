@@ -1,10 +1,13 @@
-use crate::{Checkpoint, CheckpointError};
+use crate::{Checkpoint, CheckpointError, StepError};
 use lagrangian::{ReducedError, System, Twofold, quasi_velocities};
 use std::array::from_fn;
 use std::f64::consts::{PI, TAU};
 
 /// `2 pi` minus its nearest f64.
 const TAU_REST: f64 = 2.449_293_598_294_706_4e-16;
+
+/// An angle of as many turns, `2^50`, is known to less than a radian.
+const COUNTED: f64 = 1_125_899_906_842_624.0;
 
 /// Configuration and velocity, as integrators carry them.
 ///
@@ -119,6 +122,16 @@ impl<const N: usize> State<N> {
         from_fn(|i| self.q[i] + (increment[i] + self.rest[i]))
     }
 
+    /// Whether [`advance`](Self::advance) would lead to finite coordinates and velocities.
+    ///
+    /// # Errors
+    /// [`StepError::NotFinite`].
+    #[inline(always)]
+    pub fn stays_finite(&self, increment: &[f64; N], v: &[f64; N]) -> Result<(), StepError> {
+        let finite = self.ahead(increment).iter().chain(v).all(|x| x.is_finite());
+        if finite { Ok(()) } else { Err(StepError::NotFinite) }
+    }
+
     /// Moves the configuration by `increment` and sets the velocity, with its quasi-velocities where they are known.
     #[inline(always)]
     pub fn advance(&mut self, increment: &[f64; N], v: [f64; N], xi: Option<[f64; N]>) {
@@ -210,13 +223,25 @@ impl<const N: usize> State<N> {
         for i in 0..N {
             if self.angles[i] && self.q[i].abs() > PI && self.q[i].is_finite() {
                 let turns = (self.q[i] / TAU).round();
-                // The first difference is exact; what many turns leave in the second belongs to the angle.
-                let within = (-turns).mul_add(TAU, self.q[i]);
-                (self.q[i], self.rest[i]) = two_sum(within, self.rest[i] - turns * TAU_REST);
+                if turns.abs() < COUNTED {
+                    // The first difference is exact; what many turns leave in the second belongs to the angle.
+                    let within = (-turns).mul_add(TAU, self.q[i]);
+                    (self.q[i], self.rest[i]) = two_sum(within, self.rest[i] - turns * TAU_REST);
+                } else {
+                    // A rest says nothing there, and the angle that the velocity has been found at is without it.
+                    (self.q[i], self.rest[i]) = (within_many(self.q[i]), 0.0);
+                }
                 self.turns[i] += turns;
             }
         }
     }
+}
+
+/// The angle within a turn of one of so many turns that two parts of a turn are not enough of its digits.
+#[cold]
+#[inline(never)]
+fn within_many(angle: f64) -> f64 {
+    angle.sin().atan2(angle.cos())
 }
 
 /// The rounded sum and its rounding error (Knuth).

@@ -2,7 +2,7 @@
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
-use approx::assert_relative_eq;
+use approx::{assert_abs_diff_eq, assert_relative_eq};
 use dla::State;
 use lagrangian::Twofold;
 use proptest::prelude::*;
@@ -176,11 +176,27 @@ fn angles_that_are_no_numbers_come_through() {
         state.advance(&[q], [0.0], None);
         assert!(!state.q()[0].is_finite());
     }
-    // Beyond 2^53 turns an angle has no meaning, and still no loop.
-    for q in [1e17, -1e200, f64::MAX] {
+}
+
+/// An angle of more turns than have digits is still an angle, and the one that a sine takes it for.
+#[test]
+fn angles_beyond_counting_are_wrapped() {
+    for q in [7e15, 1e17, -1.4e18, 1e40, -1e200, f64::MAX] {
         let mut state = angle(q);
-        state.advance(&[1.0], [0.0], None);
-        assert!(state.q()[0].is_finite());
+        for _ in 0..2 {
+            let within = state.q()[0];
+            assert!(within.abs() <= PI, "{q:e}: {within}");
+            // Of a sine and its arcus two units each, and half of one of the angle.
+            let bound = 5.0 * f64::EPSILON;
+            assert_abs_diff_eq!(within.sin(), q.sin(), epsilon = bound);
+            assert_abs_diff_eq!(within.cos(), q.cos(), epsilon = bound);
+            // Half a unit of what the velocity was found at is no part of the next node.
+            state = angle(0.0);
+            state.advance(&[q], [0.0], None);
+        }
+        let (turned, turns) = (state.unwrapped()[0], state.turns()[0]);
+        assert_relative_eq!(turned, q, max_relative = 2.0 * f64::EPSILON);
+        assert_eq!(turns.fract(), 0.0);
     }
 }
 

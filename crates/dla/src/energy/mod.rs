@@ -89,6 +89,7 @@ impl<Sys: System<N, M>, const S: usize, const N: usize, const M: usize> OneStep<
         let end = Step { system, rule: &self.rule, gradient: self.gradient, t0, h, start: &start }.solved()?;
         let q1 = state.ahead(&end.increment);
         let v1 = system.admissible_basis(t0 + h, &q1).ok_or(NO_BASIS)?.combine(&end.xi);
+        state.stays_finite(&end.increment, &v1)?;
         state.advance_with_momenta(&end.increment, v1, end.xi, end.pi);
         self.work = end.work;
         Ok(StepReport { work: Some(end.work), ..StepReport::of(end.iterations) })

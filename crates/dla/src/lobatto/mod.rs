@@ -137,6 +137,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
                 ends[1][k] += b[j] * c[j] * impulses[j][k];
             }
         }
+        state.stays_finite(&increment, &v1)?;
         state.advance(&increment, v1, None);
         Ok(StepReport { impulses: ends, iterations, work: None })
     }

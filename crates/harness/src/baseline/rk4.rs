@@ -44,9 +44,7 @@ pub(super) fn explicit<const N: usize, const M: usize>(
     v: [f64; N],
     xi: Option<[f64; N]>,
 ) -> Result<StepReport<M>, StepError> {
-    if !v.iter().chain(increment).all(|x| x.is_finite()) {
-        return Err(StepError::NotFinite);
-    }
+    state.stays_finite(increment, &v)?;
     state.advance(increment, v, xi);
     Ok(StepReport::of(0))
 }

@@ -202,7 +202,7 @@ fn an_interrupted_run_goes_on_to_the_same_bit() {
 
 #[test]
 fn a_run_is_as_far_from_its_leaf_as_its_method_goes() {
-    let system = Particle { depth: 1.0, leaf: true };
+    let system = Particle { leaf: true, ..Particle::of(1.0) };
     let request = Request { q: [0.1, 0.2, 0.02], v: [0.9, 0.7, 0.2 * 0.7], ..request(2000, 0.05) };
     let record = |name: &str| run(&system, &Method::named(name, None).unwrap(), &request, &mut ());
     // The chord of the midpoint rule has dz = y dy with the mean of y: exactly the change of y^2/2. The rest is rounding:

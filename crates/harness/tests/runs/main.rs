@@ -8,12 +8,13 @@ mod charts;
 mod drift;
 mod measures;
 mod precision;
+mod same_bits;
 mod sensitivity;
 
 use approx::assert_relative_eq;
 use dla::Schedule;
 use harness::{METHODS, Method, MethodError, Request, Trend, run};
-use lagrangian::{Constraint, Piecewise, Scalar, System};
+use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Scalar, System};
 use proptest::prelude::*;
 
 /// A point of unit mass with `z' = y x'`, in a well that has no floor beyond `|y| = 1`.
@@ -22,11 +23,13 @@ struct Particle {
     depth: f64,
     /// `z' = y y'` in its place, the rate of `z - y^2/2`.
     leaf: bool,
+    /// Whether its admissible velocities have a basis.
+    basis: bool,
 }
 
 impl Particle {
     fn of(depth: f64) -> Self {
-        Self { depth, leaf: false }
+        Self { depth, leaf: false, basis: false }
     }
 }
 
@@ -39,6 +42,10 @@ impl System<3, 1> for Particle {
     fn constraint<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
         let row = if self.leaf { [S::zero(), -q[1]] } else { [-q[1], S::zero()] };
         ([[row[0], row[1], S::constant(1.0)]], [S::zero()])
+    }
+    fn admissible_basis<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, 1>> {
+        let (zero, one) = (S::zero(), S::constant(1.0));
+        self.basis.then(|| AdmissibleBasis::new([[one, zero, q[1]], [zero, one, zero]]))
     }
     fn holonomic<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Option<[Option<S>; 1]> {
         self.leaf.then(|| [Some(q[2] - q[1] * q[1] * 0.5)])
@@ -88,6 +95,22 @@ fn a_refusal_is_a_record_with_its_reason() {
     let failure = record.failure.unwrap();
     assert_eq!((failure.step, record.steps), (1, 0));
     assert!(failure.to_string().contains("basis"), "{failure}");
+}
+
+/// A node beyond all numbers is none, by any method: the run ends at the last that is one.
+#[test]
+fn a_run_ends_where_the_numbers_do() {
+    let system = Particle { basis: true, ..Particle::of(0.0) };
+    let at_the_end = |step| Request { q: [f64::MAX, 0.0, 0.0], v: [1.0, 0.0, 0.0], ..request(2, step) };
+    for info in METHODS {
+        let method = Method::named(info.name, None).unwrap();
+        let record = run(&system, &method, &at_the_end(1e293), &mut ());
+        assert!(record.failure.is_some() && record.steps == 0, "{record:?}");
+        assert_eq!((record.q[0], record.v[0]), (f64::MAX, 1.0), "{}", info.name);
+        // The control: an ordinary step is below the rounding of such a place, and is made.
+        let record = run(&system, &method, &at_the_end(1.0), &mut ());
+        assert!(record.failure.is_none() && record.q[0].to_bits() == f64::MAX.to_bits(), "{record:?}");
+    }
 }
 
 #[test]

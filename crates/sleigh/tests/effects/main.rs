@@ -1,8 +1,11 @@
 //! The effects by themselves: derivatives, what they refuse, functions of time and paths.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
+mod closed;
 mod derivatives;
+mod forces;
+mod imposed;
 mod paths;
 mod refusals;
 mod time;

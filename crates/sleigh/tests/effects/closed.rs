@@ -1,0 +1,141 @@
+//! The closed step against its own equations: of the midpoint rule, in the velocities along the chord and about the blade.
+
+use approx::{assert_abs_diff_eq, assert_relative_eq};
+use lagrangian::{ClosedStep, ClosedStepError, System};
+use proptest::prelude::*;
+use sleigh::{Flywheel, Sleigh, SleighState};
+
+fn start(heading: f64, speed: f64, turn_rate: f64) -> ([f64; 3], [f64; 3]) {
+    SleighState { x: 0.3, y: -0.2, heading, speed, turn_rate }.to_coordinates()
+}
+
+fn step(sleigh: &Sleigh, h: f64, heading: f64, u: f64, omega: f64) -> Result<ClosedStep<3, 1>, ClosedStepError> {
+    let (q, v) = start(heading, u, omega);
+    System::<3, 1>::closed_step(sleigh, 0.0, h, &q, &v, None).unwrap()
+}
+
+proptest! {
+    #[test]
+    fn the_equations_of_the_step_hold(
+        (m, i, a) in (0.1..10.0, 0.1..10.0, -0.8..0.8),
+        (heading, u0, omega0) in (-3.0..3.0, -2.0..2.0, -2.0..2.0),
+        h in prop_oneof![-0.5..-0.01, 0.01..0.5],
+    ) {
+        let sleigh = Sleigh::new(m, i, a).unwrap();
+        let Ok(made) = step(&sleigh, h, heading, u0, omega0) else {
+            // The blade turns by a right angle, or the spin is lost, in half a step.
+            let lost = (0.5 * h * sleigh.spin_gain() * u0).abs() > 0.5;
+            prop_assert!(lost, "refused");
+            return Ok(());
+        };
+        let [dx, dy, turn] = made.increment;
+        let (w, d, k) = (turn / h, 0.5 * turn, 0.5 * h * sleigh.spin_gain());
+        let (sin, cos) = (heading + d).sin_cos();
+        let chord = (dx * cos + dy * sin) / h;
+        let [u1, omega1, rest] = made.xi;
+        // Numbers below ten, and rounding of the search of the size of its bound, divided by the slope of the equation.
+        let bound = 1e-13 * (1.0 + 1.0 / (1.0 + k * chord).abs());
+        assert_abs_diff_eq!(dy * cos - dx * sin, 0.0, epsilon = 1e-14);
+        assert_abs_diff_eq!(chord * d.cos() - a * w * d.sin(), u0, epsilon = bound);
+        assert_abs_diff_eq!(w * (1.0 + k * chord), omega0, epsilon = bound);
+        assert_abs_diff_eq!(chord * d.cos() + a * w * d.sin(), u1, epsilon = bound);
+        assert_abs_diff_eq!(w * (1.0 - k * chord), omega1, epsilon = bound);
+        prop_assert!(rest == 0.0 && made.iterations >= 1);
+        // The blade at the end.
+        let (sin, cos) = (heading + turn).sin_cos();
+        assert_abs_diff_eq!(made.velocity[0], u1 * cos, epsilon = bound);
+        assert_abs_diff_eq!(made.velocity[1], u1 * sin, epsilon = bound);
+        prop_assert_eq!(made.velocity[2].to_bits(), omega1.to_bits());
+        // Known quasi-velocities are taken as they are, whatever the velocity.
+        let (q, v) = start(heading, u0, omega0);
+        let from = [v[0] * heading.cos() + v[1] * heading.sin(), omega0, 0.0];
+        let again = System::<3, 1>::closed_step(&sleigh, 0.0, h, &q, &[9.0; 3], Some(from)).unwrap().unwrap();
+        assert_abs_diff_eq!(again.xi[0], u1, epsilon = bound);
+        assert_abs_diff_eq!(again.xi[1], omega1, epsilon = bound);
+    }
+
+    /// Back by the same step, the map is its own inverse.
+    #[test]
+    fn the_step_goes_back(heading in -3.0..3.0, u in -2.0..2.0, omega in -2.0..2.0, h in 0.01..0.2) {
+        let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+        let made = step(&sleigh, h, heading, u, omega).unwrap();
+        let back = step(&sleigh, -h, heading + made.increment[2], made.xi[0], made.xi[1]).unwrap();
+        for i in 0..3 {
+            assert_abs_diff_eq!(back.increment[i], -made.increment[i], epsilon = 1e-14);
+        }
+        assert_abs_diff_eq!(back.xi[0], u, epsilon = 1e-13);
+        assert_abs_diff_eq!(back.xi[1], omega, epsilon = 1e-13);
+    }
+
+    /// Each end has half of the impulse of a short step, `h/2` times `lambda = (m I/J) u omega`. That changes along the step by
+    /// `h (u'/u + omega'/omega) = h (a omega^2/u - c u)` of it, which is below `2 h` here, and the halves differ by as much.
+    #[test]
+    fn impulses_are_those_of_the_multiplier(heading in -3.0..3.0, u in 1.0..2.0, omega in 0.5..1.0) {
+        let (sleigh, h) = (Sleigh::new(1.3, 0.9, 0.5).unwrap(), 1e-5);
+        let made = step(&sleigh, h, heading, u, omega).unwrap();
+        let lambda = sleigh.mass() * sleigh.inertia() / sleigh.pivot_inertia() * u * omega;
+        for [impulse] in made.impulses {
+            assert_relative_eq!(impulse, 0.5 * h * lambda, max_relative = 2.0 * h + 1e-10);
+        }
+        // The whole, at the middle of the step, to second order.
+        let whole = made.impulses[0][0] + made.impulses[1][0];
+        let [mean_u, mean_omega] = [0.5 * (u + made.xi[0]), 0.5 * (omega + made.xi[1])];
+        assert_relative_eq!(whole, h * lambda * mean_u * mean_omega / (u * omega), max_relative = 4.0 * h * h + 1e-10);
+    }
+
+    /// On a free bearing the rotor keeps its rate in space, `omega + alpha'`.
+    #[test]
+    fn a_free_rotor_keeps_its_rate(u in -2.0..2.0, omega in -2.0..2.0, rate in -3.0..3.0, h in 0.01..0.2) {
+        let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+        let rotor = Flywheel::new(body, 0.2, None).unwrap();
+        let (q, v) = start(0.4, u, omega);
+        let bare = step(&body, h, 0.4, u, omega).unwrap();
+        let ([x, y, heading], [vx, vy, turn]) = (q, v);
+        for xi in [None, Some([u, omega, omega + rate, 0.0])] {
+            let (q, v) = ([x, y, heading, 0.7], [vx, vy, turn, if xi.is_some() { 9.0 } else { rate }]);
+            let made = System::<4, 1>::closed_step(&rotor, 0.0, h, &q, &v, xi).unwrap().unwrap();
+            for i in 0..3 {
+                assert_abs_diff_eq!(made.increment[i], bare.increment[i], epsilon = 1e-14);
+                assert_abs_diff_eq!(made.velocity[i], bare.velocity[i], epsilon = 1e-14);
+            }
+            assert_abs_diff_eq!(made.increment[2] + made.increment[3], h * (omega + rate), epsilon = 1e-15);
+            assert_abs_diff_eq!(made.velocity[2] + made.velocity[3], omega + rate, epsilon = 4e-15);
+            assert_abs_diff_eq!(made.xi[2], omega + rate, epsilon = 1e-15);
+        }
+    }
+}
+
+/// A spin of any size keeps its digits: `omega1 = omega0 (1 - k u)/(1 + k u)` where the blade hardly turns.
+#[test]
+fn the_smallest_spins_keep_their_digits() {
+    let (sleigh, h) = (Sleigh::new(1.0, 1.0, 0.5).unwrap(), 0.3);
+    for u in [-3.0f64, -1.0, 2.0] {
+        let k = 0.5 * h * sleigh.spin_gain() * u;
+        for omega in [1e-9, -1e-100, 1e-300] {
+            let made = step(&sleigh, h, 0.0, u, omega).unwrap();
+            assert_relative_eq!(made.xi[1], omega * (1.0 - k) / (1.0 + k), max_relative = 16.0 * f64::EPSILON);
+        }
+    }
+}
+
+#[test]
+fn where_no_solution_continues_the_motion_there_is_none() {
+    let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    let refused = |h: f64, u: f64, omega: f64| step(&sleigh, h, 0.0, u, omega).unwrap_err();
+    // h m a u/(2 J) = h u/5 below -1.
+    assert!(matches!(refused(2.0, -2.6, 1e-3), ClosedStepError::NoSolution { bound, .. } if bound == 1.0));
+    assert!(step(&sleigh, 2.0, 0.0, -2.4, 1e-9).is_ok());
+    // A right angle in half a step, where with the mass at the blade the spin stays what it is.
+    let wheel = Sleigh::new(1.0, 1.0, 0.0).unwrap();
+    for (omega, possible) in [(1.5, true), (-1.5, true), (1.6, false), (-1.6, false)] {
+        match step(&wheel, 2.0, 0.0, 0.7, omega) {
+            Ok(made) => assert!(possible && (made.xi[1] - omega).abs() <= 4.0 * f64::EPSILON, "{made:?}"),
+            Err(ClosedStepError::NoSolution { bound, .. }) => assert!(!possible && bound > 1.5),
+            Err(error) => panic!("{error}"),
+        }
+    }
+    for (u, omega) in [(f64::NAN, 0.1), (0.1, f64::NAN), (f64::INFINITY, 0.1), (1e200, 1e-200)] {
+        let error = refused(1e200, u, omega);
+        assert!(matches!(error, ClosedStepError::NotFinite { .. } | ClosedStepError::NoSolution { .. }), "{error}");
+    }
+}

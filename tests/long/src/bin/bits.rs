@@ -1,0 +1,26 @@
+//! `bits`: a hash of the last bits of every method in the bowl, to compare builds and machines with.
+
+use dla::Schedule;
+use harness::{METHODS, Method, integrate};
+use noslip_long::{STEP, bowl};
+use std::error::Error;
+
+/// The FNV-1a hash of the bits.
+fn hash(numbers: impl Iterator<Item = f64>) -> u64 {
+    let bytes = numbers.flat_map(|number| number.to_bits().to_le_bytes());
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let schedule = Schedule { t0: 0.0, step: STEP, steps: 2000 };
+    for info in METHODS {
+        let (system, mut state) = bowl(0.1)?;
+        let outcome =
+            integrate::<_, _, 3, 1>(&system, &Method::named(info.name, Some(0.3))?, &schedule, &mut state, ());
+        match outcome {
+            Ok(_) => println!("{:18} {:016x}", info.name, hash(state.unwrapped().into_iter().chain(*state.v()))),
+            Err(failure) => println!("{:18} {failure}", info.name),
+        }
+    }
+    Ok(())
+}
