@@ -1,6 +1,8 @@
 //! `noslip check`, `list`, `new`, `cost`, `equilibria` and `phase`.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
+#[path = "book/mod.rs"]
+mod book;
 #[path = "common/program.rs"]
 mod program;
 

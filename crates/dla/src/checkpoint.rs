@@ -55,7 +55,7 @@ pub enum CheckpointError {
 }
 
 const HEADER: &str = "noslip checkpoint";
-const VERSION: &str = "1";
+const VERSION: &str = "2";
 
 impl Checkpoint {
     /// A checkpoint of the run that these pairs of a name and a value tell from all others.

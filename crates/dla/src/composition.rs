@@ -4,7 +4,7 @@ use crate::{OneStep, State, StepError, StepReport};
 ///
 /// The base must be a one-step map on the distribution, as the discrete Lagrange-d'Alembert maps here are; what carries a
 /// multiplier from step to step must not be composed. Some of the sub-steps go backward. (Hairer, Lubich and Wanner 2006,
-/// Geometric Numerical Integration, section V.3.)
+/// Geometric Numerical Integration, section V.3; the book, (4.1).)
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Composition<Base, const STAGES: usize> {
     pub(crate) base: Base,
@@ -66,12 +66,7 @@ where
         for weight in self.weights {
             let report = self.base.step(system, t + done * h, weight * h, &mut inner)?;
             done += weight;
-            for end in 0..2 {
-                for k in 0..M {
-                    total.impulses[end][k] += report.impulses[end][k];
-                }
-            }
-            total.iterations += report.iterations;
+            total = total.then(&report);
         }
         *state = inner;
         Ok(total)

@@ -14,7 +14,7 @@ use std::array::from_fn;
 /// Constraints on positions that are of second degree hold by themselves; onto others the end of the step is projected, in
 /// the kinetic metric. It moves by the error of the step, so the order stays, and the symmetry is lost by so much.
 ///
-/// (Hairer, Lubich and Wanner 2006, section II.1.3; the stopping rule as in Antonana, Makazaga and Murua 2017, Numer.
+/// (The book, (4.6); Hairer, Lubich and Wanner 2006, section II.1.3; the stopping rule as in Antonana, Makazaga and Murua 2017, Numer.
 /// Algorithms 76, 861-880.)
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gauss<const S: usize> {

@@ -17,7 +17,8 @@ use std::array::from_fn;
 /// 1911-1928; with the trapezoidal rule the nonholonomic RATTLE). It is of order 2, holds the constraint in the mean of
 /// two steps, and keeps the kinetic energy of free motions between nodes. But it is no map on the distribution: the
 /// momentum across the constraint is carried from step to step as a variable of its own, and about the *stable* straight
-/// motion of the sleigh that variable grows as `exp(asinh(kappa h) t / h)`, until the sleigh reverses by itself.
+/// motion of the sleigh that variable grows as `exp(asinh(kappa h) t / h)`, until the sleigh reverses by itself (the book,
+/// (3.9)).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gni<L, const N: usize> {
     lagrangian: L,

@@ -43,19 +43,23 @@ where
     L: DiscreteLagrangian<Sys, N, M>,
     C: DiscreteConstraint<Sys, N, M>,
 {
-    /// The solution that continues the motion, from the velocity `v0` at the beginning.
+    /// The solution that continues the motion, from the velocity `v0` at the beginning; first looked for near a
+    /// guess where there is one.
     ///
     /// # Errors
     /// [`StepError::Newton`] where none is found, [`StepError::Branch`] where what is found belongs to another motion.
     #[inline]
-    pub(crate) fn solve(self, newton: &Newton, v0: [f64; N]) -> Result<Mean<N, M>, StepError> {
+    pub(crate) fn solve(self, newton: &Newton, v0: [f64; N], guess: Option<[f64; N]>) -> Result<Mean<N, M>, StepError> {
         // Of rows that depend on one another there is none, and then it is not looked at.
         let positive = Saddle::is_positive_at_rest(&self.a0, self.basis.as_ref());
         let time = (self.t0, self.h);
-        let (mut search, mut v) = (Search::new(self), v0);
-        let mut iterations = newton
-            .solve(&mut search, &mut v)
-            .map_err(|source| named_along(self.system, time, *self.state, v, source))?;
+        let (mut search, mut v) = (Search::new(self), guess.unwrap_or(v0));
+        let mut found = newton.solve(&mut search, &mut v);
+        if found.is_err() && guess.is_some() {
+            (search, v) = (Search::new(self), v0);
+            found = newton.solve(&mut search, &mut v);
+        }
+        let mut iterations = found.map_err(|source| named_along(self.system, time, *self.state, v, source))?;
         let turn = search.equations.turn(&v);
         let certain = search.equations.continues(positive) && turn <= branch::NEAR && search.is_certain(&v);
         if !certain {

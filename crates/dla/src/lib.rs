@@ -34,6 +34,7 @@ mod samples;
 mod sensitivity;
 mod start;
 mod state;
+mod substepping;
 mod trajectory;
 mod work;
 
@@ -61,5 +62,6 @@ pub use sensitivity::{
 };
 pub use start::{Start, consistent_start};
 pub use state::State;
+pub use substepping::Substepping;
 pub use trajectory::{Node, Trajectory};
 pub use work::Work;

@@ -39,6 +39,17 @@ impl<const M: usize> StepReport<M> {
         Self { impulses: [[0.0; M]; 2], iterations, work: None }
     }
 
+    /// What this step and a further one did together.
+    #[must_use]
+    pub fn then(&self, next: &Self) -> Self {
+        let sum = |end: usize| std::array::from_fn(|k| self.impulses[end][k] + next.impulses[end][k]);
+        let work = match (self.work, next.work) {
+            (Some(before), Some(work)) => Some(before + work),
+            (before, work) => before.or(work),
+        };
+        Self { impulses: [sum(0), sum(1)], iterations: self.iterations + next.iterations, work }
+    }
+
     /// The constraint forces, averaged over a step of length `h`: second-order accurate in its middle.
     #[must_use]
     pub fn multipliers(&self, h: f64) -> [f64; M] {

@@ -15,7 +15,8 @@ const COUNTED: f64 = 1_125_899_906_842_624.0;
 /// summation, Kahan 1965); angles stay within half a turn of zero, their full turns counted apart. Together they keep
 /// the constraint and the energy at round-off over any length of run. A method that works with quasi-velocities leaves
 /// them beside the velocity, so that the next step need not recover them; one that works with quasi-momenta leaves those
-/// too, with twice the digits, since they too are sums of many increments.
+/// too, with twice the digits, since they too are sums of many increments. One that solves for the mean velocity leaves the
+/// acceleration, from which the next search begins nearer to its solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State<const N: usize> {
     q: [f64; N],
@@ -23,8 +24,16 @@ pub struct State<const N: usize> {
     turns: [f64; N],
     angles: [bool; N],
     v: [f64; N],
-    xi: Option<[f64; N]>,
-    pi: Option<[Twofold; N]>,
+    left: Left<N>,
+}
+
+/// What the last step leaves to the next beside the velocity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Left<const N: usize> {
+    Nothing,
+    Velocities([f64; N]),
+    Momenta([f64; N], [Twofold; N]),
+    Acceleration([f64; N]),
 }
 
 impl<const N: usize> State<N> {
@@ -32,7 +41,7 @@ impl<const N: usize> State<N> {
     /// (see [`System::angles`](lagrangian::System::angles)).
     #[must_use]
     pub fn new(q: [f64; N], v: [f64; N], angles: [bool; N]) -> Self {
-        let mut state = Self { q, rest: [0.0; N], turns: [0.0; N], angles, v, xi: None, pi: None };
+        let mut state = Self { q, rest: [0.0; N], turns: [0.0; N], angles, v, left: Left::Nothing };
         state.wrap();
         state
     }
@@ -64,14 +73,24 @@ impl<const N: usize> State<N> {
     #[must_use]
     #[inline(always)]
     pub fn xi(&self) -> Option<[f64; N]> {
-        self.xi
+        match self.left {
+            Left::Velocities(xi) | Left::Momenta(xi, _) => Some(xi),
+            Left::Nothing | Left::Acceleration(_) => None,
+        }
     }
 
     /// The quasi-momenta in that basis, where the last step carried them.
     #[must_use]
     #[inline(always)]
     pub fn quasi_momenta(&self) -> Option<[Twofold; N]> {
-        self.pi
+        if let Left::Momenta(_, pi) = self.left { Some(pi) } else { None }
+    }
+
+    /// About the acceleration, where the last step left it.
+    #[must_use]
+    #[inline(always)]
+    pub fn acceleration(&self) -> Option<[f64; N]> {
+        if let Left::Acceleration(a) = self.left { Some(a) } else { None }
     }
 
     /// The quasi-velocities: those the last step left, else those of the velocity.
@@ -84,7 +103,7 @@ impl<const N: usize> State<N> {
         system: &Sys,
         t: f64,
     ) -> Result<[f64; N], ReducedError> {
-        match self.xi {
+        match self.xi() {
             Some(xi) => Ok(xi),
             None => quasi_velocities(system, t, &self.q, &self.v),
         }
@@ -119,15 +138,24 @@ impl<const N: usize> State<N> {
         for i in 0..N {
             (self.q[i], self.rest[i]) = two_sum(self.q[i], increment[i] + self.rest[i]);
         }
-        (self.v, self.xi, self.pi) = (v, xi, None);
+        (self.v, self.left) = (v, xi.map_or(Left::Nothing, Left::Velocities));
         self.wrap();
     }
 
     /// [Moves](State::advance) the state and leaves its quasi-momenta to the next step.
     #[inline(always)]
     pub fn advance_with_momenta(&mut self, increment: &[f64; N], v: [f64; N], xi: [f64; N], pi: [Twofold; N]) {
-        self.advance(increment, v, Some(xi));
-        self.pi = Some(pi);
+        self.advance(increment, v, None);
+        self.left = Left::Momenta(xi, pi);
+    }
+
+    /// [Moves](State::advance) the state and leaves about the acceleration to the next step.
+    #[inline(always)]
+    pub fn advance_with_acceleration(&mut self, increment: &[f64; N], v: [f64; N], acceleration: [f64; N]) {
+        self.advance(increment, v, None);
+        if acceleration.iter().all(|a| a.is_finite()) {
+            self.left = Left::Acceleration(acceleration);
+        }
     }
 
     /// How far the configuration has moved since `before`, with the digits that the sums keep.
@@ -143,7 +171,11 @@ impl<const N: usize> State<N> {
     #[must_use]
     pub fn reversed(&self) -> Self {
         let flipped = |v: [f64; N]| v.map(|v| -v);
-        Self { v: flipped(self.v), xi: self.xi.map(flipped), pi: None, ..*self }
+        let left = match self.left {
+            Left::Velocities(xi) | Left::Momenta(xi, _) => Left::Velocities(flipped(xi)),
+            left => left,
+        };
+        Self { v: flipped(self.v), left, ..*self }
     }
 
     /// Writes every bit of the state to a checkpoint; all but which coordinates are angles, which the system knows.
@@ -152,8 +184,10 @@ impl<const N: usize> State<N> {
         checkpoint.put("rest", &self.rest);
         checkpoint.put("turns", &self.turns);
         checkpoint.put("v", &self.v);
-        checkpoint.put("xi", self.xi.as_ref().map_or(&[], |xi| &xi[..]));
-        let halves = self.pi.map(|pi| [pi.map(|pi| pi.hi), pi.map(|pi| pi.lo)]);
+        let [xi, acceleration] = [self.xi(), self.acceleration()];
+        checkpoint.put("xi", xi.as_ref().map_or(&[], |xi| &xi[..]));
+        checkpoint.put("acceleration", acceleration.as_ref().map_or(&[], |a| &a[..]));
+        let halves = self.quasi_momenta().map(|pi| [pi.map(|pi| pi.hi), pi.map(|pi| pi.lo)]);
         checkpoint.put("pi", halves.as_ref().map_or(&[], |[hi, _]| &hi[..]));
         checkpoint.put("pi_rest", halves.as_ref().map_or(&[], |[_, lo]| &lo[..]));
     }
@@ -167,14 +201,20 @@ impl<const N: usize> State<N> {
             if checkpoint.list(name)?.is_empty() { Ok(None) } else { checkpoint.get(name).map(Some) }
         };
         let pi = some("pi")?.zip(some("pi_rest")?);
+        let pi = pi.map(|(hi, lo)| from_fn(|a| Twofold::new(hi[a], lo[a])));
+        let left = match (some("xi")?, pi, some("acceleration")?) {
+            (Some(xi), Some(pi), _) => Left::Momenta(xi, pi),
+            (Some(xi), None, _) => Left::Velocities(xi),
+            (None, _, Some(a)) => Left::Acceleration(a),
+            (None, _, None) => Left::Nothing,
+        };
         Ok(Self {
             q: checkpoint.get("q")?,
             rest: checkpoint.get("rest")?,
             turns: checkpoint.get("turns")?,
             angles,
             v: checkpoint.get("v")?,
-            xi: some("xi")?,
-            pi: pi.map(|(hi, lo)| from_fn(|a| Twofold::new(hi[a], lo[a]))),
+            left,
         })
     }
 

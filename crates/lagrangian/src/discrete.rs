@@ -14,7 +14,8 @@ pub struct Derivatives<S, const N: usize> {
     pub d1d2: [[S; N]; N],
 }
 
-/// A discrete Lagrangian `L_d(q0, q1; t0, h)`, an approximation of the action over one step.
+/// A discrete Lagrangian `L_d(q0, q1; t0, h)`, an approximation of the action over one step (the book, (2.1), and (2.5) for
+/// rules).
 ///
 /// A pair `(q0, q1)` is given as `q0` and the mean velocity `v = (q1 - q0)/h`: far from the origin the difference of
 /// the rounded end points would lose the digits that a step needs. Every quadrature [`Rule`] is one; a hand-made one

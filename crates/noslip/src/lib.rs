@@ -27,13 +27,21 @@ pub use lagrangian::{
 };
 pub use sleigh::{self, CentreOfMass, Exact, Sleigh, SleighError, SleighState};
 
-/// The examples of the pages on phenomena, likewise.
+/// The examples of the README and of the book, compiled and run as tests.
 #[cfg(doctest)]
-#[doc = include_str!("../../../docs/phenomena/parking.md")]
-#[doc = include_str!("../../../docs/phenomena/flywheel.md")]
-pub struct Phenomena;
-
-/// The examples of the README, compiled and run as tests.
-#[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-pub struct Readme;
+mod book {
+    #[doc = include_str!("../../../README.md")]
+    pub struct Readme;
+    #[doc = include_str!("../../../docs/guide/first-simulation.md")]
+    pub struct FirstSimulation;
+    #[doc = include_str!("../../../docs/guide/your-own-system.md")]
+    pub struct YourOwnSystem;
+    #[doc = include_str!("../../../docs/phenomena/naive.md")]
+    pub struct Naive;
+    #[doc = include_str!("../../../docs/phenomena/parking.md")]
+    pub struct Parking;
+    #[doc = include_str!("../../../docs/phenomena/flywheel.md")]
+    pub struct Flywheel;
+    #[doc = include_str!("../../../docs/sensitivities.md")]
+    pub struct Sensitivities;
+}

@@ -18,8 +18,8 @@ const MAX_ITERATIONS: u32 = 30;
 /// U cos d + a w sin d = u1,        w (1 - k U) = omega1        at the end,
 /// ```
 ///
-/// that is `F_h(U, w) = (u0, J omega0)`, `F_-h(U, w) = (u1, J omega1)`: the map is its own adjoint. The first equation
-/// gives `U cos d`, the second is solved for the ratio `r = w/omega0` by Newton's method, so that the spin keeps its sign
+/// that is `F_h(U, w) = (u0, J omega0)`, `F_-h(U, w) = (u1, J omega1)`: the map is its own adjoint (the book, (3.6) and
+/// (3.7)). The first equation gives `U cos d`, the second is solved for the ratio `r = w/omega0` by Newton's method, so that the spin keeps its sign
 /// and all its digits however small it is. Among the solutions the one that continues the motion has `|d| < pi/2` and
 /// `1 + k U > 0`; the map ends where these do.
 #[inline(always)]

@@ -37,7 +37,7 @@ use std::array::from_fn;
 /// gradient method `(z1 - z0)/h = B((z0 + z1)/2) DG(z0, z1)`.
 ///
 /// Cohen and Hairer 2011, BIT 51, 91-101; on `D*`, Celledoni, Farre Puiggali, Hoiseth and Martin de Diego 2019,
-/// J. Nonlinear Sci. 29, 1523-1562. The integrals are by a Gauss rule with eight nodes; a step along which the energy is
+/// J. Nonlinear Sci. 29, 1523-1562; the book, (5.3) and (5.4). The integrals are by a Gauss rule with eight nodes; a step along which the energy is
 /// too rough for them is refused. The equations are solved by fixed-point iteration, for steps up to about the time in
 /// which the system turns by a radian.
 ///

@@ -34,7 +34,8 @@ use tables::Tables;
 ///
 /// The last column of `a^` is zero: the multiplier of the last stage acts in `v1` only, so that there are as many equations
 /// as unknowns, and nothing but `(q, v)` is carried from step to step. With two stages and a constant mass matrix it is the
-/// trapezoidal [`Dla`](crate::Dla). (Jay 2003, BIT 43, 93-106.)
+/// trapezoidal [`Dla`](crate::Dla). (Jay 2003, BIT 43, 93-106; the book, (4.3) to
+/// (4.5).)
 ///
 /// Of a constraint on positions the stages meet the function itself, `g(Q_i) = 0` for `i = 2 .. S`, of which the equations
 /// above are the rates; the last stage is the node (Jay 1996, SIAM J. Numer. Anal. 33, 368-387).

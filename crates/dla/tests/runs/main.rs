@@ -7,6 +7,7 @@ mod dense;
 mod events;
 mod failures;
 mod recommend;
+mod substeps;
 
 use dla::State;
 use sleigh::{Sleigh, SleighState};

@@ -5,8 +5,9 @@ use std::array::from_fn;
 
 /// The classical Runge-Kutta method in full coordinates.
 ///
-/// The multiplier is eliminated by differentiating the constraint (index reduction), so that the equations are ordinary
-/// ones for `(q, v)`. They conserve the residual `A v + b` only up to the error of the method: the blade begins to slip.
+/// The multiplier is eliminated by differentiating the constraint (index reduction; the book, (1.4)), so that the equations
+/// are ordinary ones for `(q, v)`. They conserve the residual `A v + b` only up to the error of the method: the blade begins
+/// to slip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Rk4;
 

@@ -36,7 +36,7 @@ pub use chart::{Chart, Layer, chart_svg};
 pub use precision::{PrecisionReport, Table, write_precision};
 
 /// A report: what the page says above its scenes, and the scenes.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Report {
     /// The heading of the page.
     pub title: String,
@@ -47,7 +47,7 @@ pub struct Report {
 }
 
 /// What the report shows of one scene.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct SceneReport {
     /// The short name that the picture files start with; characters unfit for a file name become `-`.
     pub name: String,
@@ -81,7 +81,7 @@ pub struct Numbers {
 ///
 /// The vectors hold one entry per node. Where lengths differ, the shorter one counts; entries that are not finite are
 /// left out of the pictures and interrupt their lines. A run without nodes is not drawn; the others keep their looks.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Series {
     /// The name of the method.
     pub label: String,
