@@ -3,7 +3,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
 use approx::assert_relative_eq;
-use dla::{Equations, Newton, NewtonError};
+use dla::{Equations, History, Newton, NewtonError};
 use lagrangian::linear::{Lu, Singular};
 use proptest::prelude::*;
 use std::f64::consts::SQRT_2;
@@ -210,4 +210,22 @@ proptest! {
         let root = 2.0 * c / (1.0 + (1.0 + 4.0 * c).sqrt());
         prop_assert!((x[0] - root).abs() <= 8.0 * f64::EPSILON * root, "{} for {root}", x[0]);
     }
+}
+
+/// The last six corrections are kept, whatever their unit; and nothing is a unit of none.
+#[test]
+fn a_history_keeps_the_last_corrections() {
+    let mut history = History::new();
+    assert_eq!((history.made(), history.last(), history.last_ratio()), (0, None, None));
+    history.push(1.0);
+    assert_eq!((history.last(), history.last_ratio()), (Some(1.0), None));
+    for k in 1..8 {
+        history.push(f64::from(-k).exp2());
+    }
+    let kept = |history: &History| history.iter().collect::<Vec<_>>();
+    assert_eq!(kept(&history), [0.25, 0.125, 0.0625, 0.03125, 0.015625, 0.0078125]);
+    assert_eq!((history.made(), history.last(), history.last_ratio()), (8, Some(0.0078125), Some(0.5)));
+    assert_eq!(kept(&history.relative_to(0.125)), [2.0, 1.0, 0.5, 0.25, 0.125, 0.0625]);
+    assert_eq!(kept(&history.relative_to(0.0)), kept(&history));
+    assert!(history.to_string().starts_with(".. 2.5e-1, "), "{history}");
 }
