@@ -246,8 +246,8 @@ fn verdicts_on_an_attractor_and_off_it() {
     });
     let ratio = slopes[0].0 / slopes[1].0;
     let spread = ratio * (slopes[0].1 / slopes[0].0).hypot(slopes[1].1 / slopes[1].0);
-    // Within the intervals of both.
-    assert!((ratio - 4.0).abs() < spread, "{ratio} +- {spread}");
+    // The intervals of 95 % are two standard errors; of three and a half one such run in a thousand is out.
+    assert!((ratio - 4.0).abs() < 1.75 * spread, "{ratio} +- {spread}");
 
     let rows = line("egg-crate-attractor", 0.1, 2000.0, "rk4");
     assert_eq!(rows[0]["energy"]["verdict"], "linear drift", "{rows:?}");

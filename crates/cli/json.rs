@@ -42,6 +42,9 @@ pub(crate) fn record<const N: usize>(scene: &str, record: &Record<N>, end: &Slei
     if record.refusal().is_some() {
         object["refused"] = json!(true);
     }
+    if record.interrupted {
+        object["interrupted"] = json!(true);
+    }
     object
 }
 
@@ -68,8 +71,5 @@ pub(crate) fn compared<const N: usize>(
     object["seconds_per_simulated_second"] = json!(run.seconds_per_simulated_second());
     let better = better.iter().map(|(method, from)| json!({"method": method, "from": from}));
     object["better_than"] = better.collect();
-    if run.interrupted {
-        object["interrupted"] = json!(true);
-    }
     object
 }

@@ -22,7 +22,7 @@ const LONG: [&str; 8] = [
 const TOGETHER: &str = "noslip stability --case ";
 
 /// Commands that are for other programs: what is built, installed or measured is not done by a test.
-const OTHERS: [&str; 7] = [
+const OTHERS: [&str; 14] = [
     "cargo build --release",
     "cargo run --release",
     "cargo test --workspace",
@@ -30,6 +30,13 @@ const OTHERS: [&str; 7] = [
     "mdbook build docs",
     "benches/peers/run ",
     "docs/pictures/make.sh",
+    "cd tests/long && cargo run",
+    "cargo install cargo-fuzz",
+    "cargo +nightly fuzz run --fuzz-dir tests/fuzz",
+    "cargo install cargo-mutants",
+    "CARGO_PROFILE_DEV_OPT_LEVEL=0 PROPTEST_CASES=64 cargo mutants",
+    "rustup component add --toolchain nightly miri rust-src",
+    "RUSTFLAGS= MIRIFLAGS=",
 ];
 
 /// A line of a block of shell commands, and what its comment says of it.

@@ -59,7 +59,9 @@ impl<const U: usize> Lu<U> {
             }
             let pivot = (a[best][k] * row[best] * column[k]).abs();
             if pivot <= threshold || !pivot.is_finite() {
-                return Err(Singular { column: k, pivot });
+                // Of finite entries it is no number only where a row or a column is empty, and has no scale.
+                let empty = !pivot.is_finite() && a.as_flattened().iter().all(|x| x.is_finite());
+                return Err(Singular { column: k, pivot: if empty { 0.0 } else { pivot } });
             }
             positive ^= (best != k) ^ (a[best][k] < 0.0);
             a.swap(k, best);

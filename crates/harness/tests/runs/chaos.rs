@@ -150,7 +150,7 @@ fn check_attractors(egg: u64, deep: u64) {
 
 #[test]
 fn strange_attractors() {
-    check_attractors(50_000, 100_000);
+    check_attractors(100_000, 200_000);
 }
 
 #[test]
