@@ -56,7 +56,7 @@ pub fn cheapest(curves: &[Curve]) -> Vec<Cheapest> {
 }
 
 /// The time (s) in which a method reaches an error: between two points the line through their logarithms, at the coarse
-/// end the first point.
+/// end the first point; or a finer point, where that takes less. (Steps so long that their solution must be followed may.)
 ///
 /// None where even the finest point misses it.
 #[must_use]
@@ -64,7 +64,9 @@ pub fn seconds_to(points: &[Point], error: f64) -> Option<f64> {
     let measured: Vec<[f64; 2]> = points.iter().filter_map(Point::measured).collect();
     let reached = measured.iter().position(|point| point[0] <= error)?;
     let [e1, t1] = measured[reached];
-    let Some([e0, t0]) = reached.checked_sub(1).map(|before| measured[before]) else { return Some(t1) };
+    let finer = measured[reached..].iter().filter(|point| point[0] <= error).map(|point| point[1]);
+    let least = finer.fold(t1, f64::min);
+    let Some([e0, t0]) = reached.checked_sub(1).map(|before| measured[before]) else { return Some(least) };
     let share = (e0 / error).ln() / (e0 / e1).ln();
-    Some(digits(t0 * (t1 / t0).powf(share)))
+    Some(digits(least.min(t0 * (t1 / t0).powf(share))))
 }

@@ -153,6 +153,9 @@ fn times_to_an_error_are_interpolated_in_logarithms() {
     assert_relative_eq!(seconds_to(&slow.points, 1e-3).unwrap(), 10.0_f64.sqrt(), max_relative = 5e-4);
     assert_relative_eq!(seconds_to(&slow.points, 1e-1).unwrap(), 1.0);
     assert_eq!(seconds_to(&slow.points, 1e-6), None);
+    // A finer point may take less.
+    let odd = curve("odd", &[[1e-2, 9.0], [1e-4, 8.0], [1e-5, 2.0], [1e-6, 3.0]]);
+    assert_relative_eq!(seconds_to(&odd.points, 1e-3).unwrap(), 2.0);
     let fast = curve("fast", &[[1e-3, 0.5], [1e-6, 1.0]]);
     let levels = cheapest(&[slow, fast]);
     let best: Vec<Option<&str>> = levels.iter().map(|level| Some(level.methods.first()?.0.as_str())).collect();
