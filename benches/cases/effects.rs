@@ -4,7 +4,7 @@ use dla::{Dla, Form, Gauss};
 use lagrangian::{System, With};
 use scene::{Acting, Scene, SceneSystem, Visitor};
 use sleigh::effects::{Hill, Hills, MovingMass, Slope, Thrust, Torque};
-use sleigh::{Flywheel, Guide, Guided};
+use sleigh::{Flywheel, Guide, Guided, SleighState};
 use std::hint::black_box;
 
 const DLA: &str = "effects, dla";
@@ -41,8 +41,10 @@ pub(super) fn cases() -> Vec<Case> {
         }),
         Case::new(DLA, "flywheel, scene", |steps| scene(FLYWHEEL, steps)).same_as("flywheel"),
         Case::new(DLA, "servo", |steps| {
-            let body = Guided::<1>::servo(sleigh(), Guide::Speed((-1.0).into())).expect("finite");
-            dla(&With { body, effects: () }, steps);
+            // Forward: backward the spin would grow without end.
+            let body = Guided::<1>::servo(sleigh(), Guide::Speed(0.7.into())).expect("finite");
+            let start = SleighState { speed: 0.7, turn_rate: 0.1, ..SleighState::default() }.to_coordinates();
+            from(&With { body, effects: () }, Dla::midpoint().solved(Form::General), steps, start);
         }),
         Case::new(DLA, "servo, scene", |steps| scene(SERVO, steps)).same_as("servo"),
         Case::new(DLA, "turntable", |steps| {
@@ -57,7 +59,7 @@ pub(super) fn cases() -> Vec<Case> {
 
 const BOWL: &str = "\n[[effects]]\nkind = \"bowl\"\nstiffness = [0.1, 0.1]\n";
 const FLYWHEEL: &str = "\n[[effects]]\nkind = \"flywheel\"\ninertia = 0.5\nrotor_rate = 2.0\n";
-const SERVO: &str = "\n[[effects]]\nkind = \"servo\"\nspeed = -1.0\n";
+const SERVO: &str = "\n[[effects]]\nkind = \"servo\"\nspeed = 0.7\n";
 const TURNTABLE: &str = "\n[[effects]]\nkind = \"turntable\"\nrate = 0.2\n";
 
 fn slope() -> Slope {
