@@ -70,14 +70,13 @@ fn page(folder: &Path) -> PathBuf {
     write(&report(scenes.to_vec()), &folder.join("out"), false).unwrap().remove(0)
 }
 
+fn skipped() {
+    eprintln!("skipped: no chromium, chromium-browser or google-chrome in the path, and NOSLIP_CHROMIUM is not set");
+}
+
 #[test]
 fn the_page_works_in_a_browser() {
-    let Some(browser) = browser() else {
-        eprintln!(
-            "skipped: no chromium, chromium-browser or google-chrome in the path, and NOSLIP_CHROMIUM is not set"
-        );
-        return;
-    };
+    let Some(browser) = browser() else { return skipped() };
     let folder = tempfile::tempdir().unwrap();
     let page = page(folder.path());
     let loaded = dom(&browser, &page, "", &[]);
@@ -116,12 +115,7 @@ fn the_page_works_in_a_browser() {
 
 #[test]
 fn play_pause_and_scrub_do_what_they_say() {
-    let Some(browser) = browser() else {
-        eprintln!(
-            "skipped: no chromium, chromium-browser or google-chrome in the path, and NOSLIP_CHROMIUM is not set"
-        );
-        return;
-    };
+    let Some(browser) = browser() else { return skipped() };
     let folder = tempfile::tempdir().unwrap();
     let page = page(folder.path());
     let text = fs::read_to_string(&page).unwrap();
