@@ -1,0 +1,6 @@
+//! Assemblies against the static integrators and against what is known of trains.
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
+
+mod cost;
+mod same;
+mod tools;
