@@ -70,6 +70,7 @@ impl Dla {
         contributions.write_matrix(assembly, pattern, Part::Transposed, values);
 
         predict(state, h, v0, v);
+        floors(assembly, q0, h, &mut equations.settling.floor);
         let evaluate = |equations: &mut Equations, v: &[f64]| {
             for (i, q1) in q1.iter_mut().enumerate() {
                 *q1 = state.ahead(i, h * v[i]);
@@ -100,6 +101,7 @@ impl Dla {
         // The right side of the equations is what the momenta still lack.
         equations.contributions.add_momenta(assembly, -1.0, p);
         v1.copy_from_slice(v);
+        equations.settling.floor.fill(0.0);
         let evaluate = |equations: &mut Equations, v1: &[f64]| {
             equations.contributions.ask(assembly, &|placed, out| {
                 gathered(placed, |i| q1[i], |q1| {
@@ -170,6 +172,18 @@ fn predict(state: &State, h: f64, v0: &[f64], v: &mut [f64]) {
     let most = (0..v0.len()).try_fold(0.0, |most, i| gained(i).map(|gained| larger(most, gained)));
     if most.is_some_and(|most| most <= MOST * largest(v0)) {
         v.iter_mut().enumerate().for_each(|(i, v)| *v += gained(i).unwrap_or(0.0));
+    }
+}
+
+/// By how much a velocity may move where the end of the step moves by no more than the rounding of the coordinates that joints
+/// compare there: the two of a hinge are differences of large numbers where the train is far from the origin.
+fn floors(assembly: &Assembly, q0: &[f64], h: f64, floor: &mut [f64]) {
+    floor.fill(0.0);
+    for placed in assembly.placed().iter().filter(|placed| !placed.element.acts()) {
+        let rounding = placed.at.iter().fold(0.0, |most, i| larger(most, q0[*i])) * 8.0 * f64::EPSILON / h.abs();
+        for i in &placed.at {
+            floor[*i] = floor[*i].max(rounding);
+        }
     }
 }
 
