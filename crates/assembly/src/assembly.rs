@@ -45,6 +45,8 @@ pub(crate) struct Placed {
     /// The first of its constraint rows.
     pub(crate) row: usize,
     pub(crate) rows: usize,
+    /// Which of its coordinates each is measured from, where it says so.
+    pub(crate) origins: Option<Box<[Option<usize>]>>,
 }
 
 impl Placed {
@@ -123,7 +125,10 @@ impl Assembly {
 
     fn place(&mut self, name: &'static str, element: Box<dyn Element>, at: &[usize]) {
         let (_, rows) = element.size();
-        self.placed.push(Placed { element, name, at: at.into(), row: self.rows, rows });
+        let mut origins = vec![None; at.len()];
+        element.origins(&mut origins);
+        let origins = origins.iter().any(Option::is_some).then(|| origins.into());
+        self.placed.push(Placed { element, name, at: at.into(), row: self.rows, rows, origins });
         self.rows += rows;
     }
 
@@ -173,6 +178,9 @@ impl Assembly {
         let (mut q, mut v) = ([0.0; WIDEST], [0.0; WIDEST]);
         for placed in &self.placed {
             let n = placed.gather(|i| state.q(i), &mut q);
+            for (k, origin) in placed.origins.iter().flatten().enumerate() {
+                q[k] = origin.map_or(q[k], |origin| state.apart(placed.at[k], placed.at[origin]));
+            }
             placed.gather(|i| state.v(i), &mut v);
             with(of(placed.element.as_ref(), &q[..n], &v[..n]));
         }

@@ -1,3 +1,4 @@
+use crate::assembly::{Placed, WIDEST};
 use crate::contributions::{Part, at_state, gathered};
 use crate::equations::Equations;
 use crate::{Assembly, AssemblyError, OneStep, Solver, State, StepReport};
@@ -70,7 +71,6 @@ impl Dla {
         contributions.write_matrix(assembly, pattern, Part::Transposed, values);
 
         predict(state, h, v0, v);
-        floors(assembly, q0, h, &mut equations.settling.floor);
         let evaluate = |equations: &mut Equations, v: &[f64]| {
             for (i, q1) in q1.iter_mut().enumerate() {
                 *q1 = state.ahead(i, h * v[i]);
@@ -78,8 +78,14 @@ impl Dla {
             let (q0, q1) = (&*q0, &*q1);
             equations.contributions.ask(assembly, &|placed, out| {
                 gathered(placed, |i| q0[i], |q0| {
-                    gathered(placed, |i| q1[i], |q1| {
-                        gathered(placed, |i| v[i], |v| placed.element.increment((t0, h), [q0, q1], v, out));
+                    gathered(placed, |i| v[i], |v| {
+                        let element = &placed.element;
+                        match &placed.origins {
+                            None => gathered(placed, |i| q1[i], |q1| element.increment((t0, h), [q0, q1], v, out)),
+                            Some(origins) => relative(placed, origins, h, state, v, |q1| {
+                                element.increment((t0, h), [q0, q1], v, out);
+                            }),
+                        }
                     });
                 });
             });
@@ -101,7 +107,6 @@ impl Dla {
         // The right side of the equations is what the momenta still lack.
         equations.contributions.add_momenta(assembly, -1.0, p);
         v1.copy_from_slice(v);
-        equations.settling.floor.fill(0.0);
         let evaluate = |equations: &mut Equations, v1: &[f64]| {
             equations.contributions.ask(assembly, &|placed, out| {
                 gathered(placed, |i| q1[i], |q1| {
@@ -163,6 +168,26 @@ impl Equations {
     }
 }
 
+/// The coordinates of a joint at the end of a step with the mean velocity `v`, those that have an origin measured from it: the
+/// difference keeps the digits that the coordinates have lost far away.
+fn relative(
+    placed: &Placed,
+    origins: &[Option<usize>],
+    h: f64,
+    state: &State,
+    v: &[f64],
+    then: impl FnOnce(&[f64]),
+) {
+    let mut q1 = [0.0; WIDEST];
+    for (k, origin) in origins.iter().enumerate() {
+        q1[k] = match origin {
+            Some(origin) => state.apart(placed.at[k], placed.at[*origin]) + h * (v[k] - v[*origin]),
+            None => state.ahead(placed.at[k], h * v[k]),
+        };
+    }
+    then(&q1[..origins.len()]);
+}
+
 /// The mean velocity of a step, if the accelerations are those of the last one; `v0` where these are not known, or would
 /// change the velocity so much that a search from there might lead elsewhere.
 fn predict(state: &State, h: f64, v0: &[f64], v: &mut [f64]) {
@@ -172,18 +197,6 @@ fn predict(state: &State, h: f64, v0: &[f64], v: &mut [f64]) {
     let most = (0..v0.len()).try_fold(0.0, |most, i| gained(i).map(|gained| larger(most, gained)));
     if most.is_some_and(|most| most <= MOST * largest(v0)) {
         v.iter_mut().enumerate().for_each(|(i, v)| *v += gained(i).unwrap_or(0.0));
-    }
-}
-
-/// By how much a velocity may move where the end of the step moves by no more than the rounding of the coordinates that joints
-/// compare there: the two of a hinge are differences of large numbers where the train is far from the origin.
-fn floors(assembly: &Assembly, q0: &[f64], h: f64, floor: &mut [f64]) {
-    floor.fill(0.0);
-    for placed in assembly.placed().iter().filter(|placed| !placed.element.acts()) {
-        let rounding = placed.at.iter().fold(0.0, |most, i| larger(most, q0[*i])) * 8.0 * f64::EPSILON / h.abs();
-        for i in &placed.at {
-            floor[*i] = floor[*i].max(rounding);
-        }
     }
 }
 

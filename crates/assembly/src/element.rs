@@ -30,6 +30,10 @@ pub trait Element: Debug + Send + Sync {
     /// Which of its coordinates are angles.
     fn angles(&self, angles: &mut [bool]);
 
+    /// Which of its coordinates each may be measured from, at the end of a step and in [`misses`](Self::misses): where only their
+    /// difference counts, it keeps the digits that large coordinates have lost. None by default.
+    fn origins(&self, _origins: &mut [Option<usize>]) {}
+
     /// At the beginning of a step, `momentum = L_v(q, v)` and `rows = A(q)`.
     fn beginning(&self, t: f64, q: &[f64], v: &[f64], out: Blocks<'_>);
 

@@ -7,6 +7,12 @@ use std::fmt;
 pub trait Joint<const N: usize, const M: usize>: Send + Sync {
     /// The functions `g(q, t)` that vanish where the bodies are joined (m, or rad).
     fn position<S: Scalar>(&self, t: S, q: &[S; N]) -> [S; M];
+
+    /// Which of its coordinates each may be measured from, where only their difference counts; itself for the one that
+    /// others are measured from. None by default.
+    fn origins(&self) -> [Option<usize>; N] {
+        [None; N]
+    }
 }
 
 /// A joint as an element.
@@ -53,6 +59,10 @@ impl<J: Joint<N, M>, const N: usize, const M: usize> Element for JointElement<J,
 
     fn angles(&self, angles: &mut [bool]) {
         angles.fill(false);
+    }
+
+    fn origins(&self, origins: &mut [Option<usize>]) {
+        origins.copy_from_slice(&self.joint.origins());
     }
 
     fn beginning(&self, t: f64, q: &[f64], _v: &[f64], out: Blocks<'_>) {

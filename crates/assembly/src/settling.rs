@@ -5,13 +5,10 @@ use lagrangian::linear::largest;
 ///
 /// Every component settles by itself, as there, but that the next correction is predicted by the linear convergence of a matrix
 /// that is kept, `d (d / d_before)`. What is below the rounding of the largest component counts as settled too: of thousands of
-/// components whose corrections are rounding, some would always shrink a little. So does what moves a coordinate by less than
-/// the rounding of the positions that a joint compares.
+/// components whose corrections are rounding, some would always shrink a little.
 #[derive(Debug)]
 pub(crate) struct Settling {
     pub(crate) newton: Newton,
-    /// What a component moves by where its correction is rounding of the equations themselves; zero where that is not known.
-    pub(crate) floor: Vec<f64>,
     last: Vec<f64>,
     rounding: Vec<bool>,
     size: f64,
@@ -32,7 +29,6 @@ impl Settling {
     pub(crate) fn new(unknowns: usize) -> Self {
         Self {
             newton: Newton::default(),
-            floor: vec![0.0; unknowns],
             last: vec![0.0; unknowns],
             rounding: vec![false; unknowns],
             size: 0.0,
@@ -84,12 +80,12 @@ impl Settling {
         let (tolerance, least) = (self.newton.tolerance, self.newton.tolerance * size);
         let mut settled = true;
         let before = self.last.iter_mut().zip(self.rounding.iter_mut());
-        for (((x, d), floor), (last, rounding)) in x.iter().zip(correction).zip(&self.floor).zip(before) {
+        for ((x, d), (last, rounding)) in x.iter().zip(correction).zip(before) {
             let (d, shrink) = (d.abs(), d.abs() / *last);
             *rounding |= converged && shrink >= 0.25;
             let predicts = last.is_finite() && d <= x.abs();
             let next = if predicts { d * shrink } else { d };
-            settled &= *rounding || d <= least.max(*floor) || next.min(d) <= tolerance * x.abs();
+            settled &= *rounding || d <= least || next.min(d) <= tolerance * x.abs();
             *last = d;
         }
         if settled {

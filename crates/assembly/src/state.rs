@@ -62,6 +62,12 @@ impl State {
         self.coordinates[i].ahead(&[increment])[0]
     }
 
+    /// By how much a coordinate is larger than another, with the digits that the sums keep.
+    #[inline(always)]
+    pub(crate) fn apart(&self, i: usize, from: usize) -> f64 {
+        self.coordinates[i].moved_since(&self.coordinates[from])[0]
+    }
+
     /// Moves a coordinate, and leaves about its acceleration to the next step.
     #[inline(always)]
     pub(crate) fn advance(&mut self, i: usize, increment: f64, v: f64, acceleration: f64) {

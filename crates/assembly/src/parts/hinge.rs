@@ -29,4 +29,8 @@ impl Joint<6, 2> for Hinge {
         let (a, b) = (point(&q[..3], self.first), point(&q[3..], self.second));
         [a[0] - b[0], a[1] - b[1]]
     }
+
+    fn origins(&self) -> [Option<usize>; 6] {
+        [Some(0), Some(1), None, Some(0), Some(1), None]
+    }
 }
