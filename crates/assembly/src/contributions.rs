@@ -10,7 +10,7 @@ pub(crate) struct Contributions {
     each: Vec<f64>,
     starts: Vec<usize>,
     /// Elements are evaluated in parallel from so many on.
-    parallel: usize,
+    pub(crate) parallel: usize,
 }
 
 /// What an element is asked for.

@@ -59,6 +59,13 @@ impl Dla {
         })
     }
 
+    /// The same on one thread alone, however many elements there are; the numbers are the same.
+    #[must_use]
+    pub fn on_one_thread(mut self) -> Self {
+        self.equations.contributions.parallel = usize::MAX;
+        self
+    }
+
     /// The mean velocity of the step, in `v`.
     fn increment(&mut self, assembly: &Assembly, (t0, h): (f64, f64), state: &State) -> Result<u32, AssemblyError> {
         let Self { equations, q0, q1, v0, v, p, .. } = self;

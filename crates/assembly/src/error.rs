@@ -1,4 +1,5 @@
-use dla::{NewtonError, Stage};
+use dla::{History, NewtonError, Stage, StepError};
+use lagrangian::linear::Singular;
 use std::fmt;
 use thiserror::Error;
 
@@ -96,6 +97,29 @@ pub enum AssemblyError {
         /// Why not.
         reason: &'static str,
     },
+}
+
+impl AssemblyError {
+    /// The error of a static step that says most of it; which constraints are singular it does not know.
+    #[must_use]
+    pub fn step_error(&self) -> StepError {
+        match self {
+            Self::Newton { stage, source } => StepError::Newton { stage: *stage, source: *source },
+            Self::Singular { stage, pivot, constraints } => {
+                let column = constraints.first().map_or(0, |row| row.element);
+                let source = Singular { column, pivot: *pivot };
+                let source = NewtonError::Singular { iteration: 1, source, history: History::new() };
+                StepError::Newton { stage: *stage, source }
+            }
+            Self::Branch { .. } => StepError::Branch,
+            Self::Overshoot { part } => StepError::Overshoot { part: *part },
+            Self::NotFinite => StepError::NotFinite,
+            Self::Unsupported { reason } => StepError::Unsupported { reason },
+            Self::Coordinates { .. } | Self::Wide { .. } | Self::Number { .. } | Self::Factorisation { .. } => {
+                StepError::Unsupported { reason: "the assembly could not be made" }
+            }
+        }
+    }
 }
 
 fn involved(constraints: &[ConstraintRow]) -> String {

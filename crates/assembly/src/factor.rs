@@ -15,7 +15,7 @@ pub enum Solver {
     /// Dense up to [`Solver::SMALL`] unknowns, sparse beyond.
     #[default]
     Best,
-    /// `faer`'s sparse elimination, by columns and with pivots, in the order of COLAMD.
+    /// `faer`'s sparse elimination, by columns and with pivots: along a chain where it is one, else in the order of COLAMD.
     Sparse,
     /// `faer`'s dense elimination with partial pivoting.
     Dense,
@@ -28,14 +28,14 @@ impl Solver {
 
 /// The factorisation of one matrix after the other, all of one pattern: analysed once, refactorised in place.
 pub(crate) struct Factor {
-    forward: Vec<usize>,
-    inverse: Vec<usize>,
+    forward: Vec<u32>,
+    inverse: Vec<u32>,
     memory: MemBuffer,
     kind: Kind,
 }
 
 enum Kind {
-    Sparse { columns: Perm<usize>, factors: Box<simplicial::SimplicialLu<usize, f64>> },
+    Sparse { columns: Perm<u32>, factors: Box<simplicial::SimplicialLu<u32, f64>> },
     Dense { factors: Mat<f64> },
 }
 
@@ -44,21 +44,16 @@ impl Factor {
         let n = pattern.unknowns();
         let sparse = solver == Solver::Sparse || solver == Solver::Best && n > Solver::SMALL;
         let (kind, scratch) = if sparse {
-            let (mut forward, mut inverse) = (vec![0; n], vec![0; n]);
-            let mut memory = buffer(colamd::order_scratch::<usize>(n, n, pattern.entries()), n)?;
-            let (control, stack) = (colamd::Control::default(), MemStack::new(&mut memory));
-            colamd::order(&mut forward, &mut inverse, pattern.symbolic.as_ref(), control, stack)
-                .map_err(|error| refused(n, &error))?;
+            let columns = order(pattern)?;
             let scratch = StackReq::any_of(&[
-                simplicial::factorize_simplicial_numeric_lu_scratch::<usize, f64>(n, n),
-                simplicial::solve_in_place_scratch::<usize, f64>(n, 1, Par::Seq),
+                simplicial::factorize_simplicial_numeric_lu_scratch::<u32, f64>(n, n),
+                simplicial::solve_in_place_scratch::<u32, f64>(n, 1, Par::Seq),
             ]);
-            let columns = Perm::new_checked(forward.into(), inverse.into(), n);
             (Kind::Sparse { columns, factors: Box::default() }, scratch)
         } else {
             let scratch = StackReq::any_of(&[
-                dense::lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Spec::default()),
-                dense_solve::solve_in_place_scratch::<usize, f64>(n, 1, Par::Seq),
+                dense::lu_in_place_scratch::<u32, f64>(n, n, Par::Seq, Spec::default()),
+                dense_solve::solve_in_place_scratch::<u32, f64>(n, 1, Par::Seq),
             ]);
             (Kind::Dense { factors: Mat::zeros(n, n) }, scratch)
         };
@@ -83,9 +78,9 @@ impl Factor {
                     Err(error) => return Err(refused(n, &error)),
                 }
                 let upper = factors.u_factor_unsorted();
-                let pivots = upper.col_ptr()[1..].iter().map(|end| upper.val()[end - 1].abs());
+                let pivots = upper.col_ptr()[1..].iter().map(|end| upper.val()[*end as usize - 1].abs());
                 let order = order.arrays().0;
-                Ok(pivots.zip(order).map(|(pivot, j)| pivot / largest(*j)).fold(f64::INFINITY, least))
+                Ok(pivots.zip(order).map(|(pivot, j)| pivot / largest(*j as usize)).fold(f64::INFINITY, least))
             }
             Kind::Dense { factors } => {
                 factors.fill(0.0);
@@ -116,6 +111,27 @@ impl Factor {
             }
         }
     }
+}
+
+/// The columns along the assembly, where the entries stay near the diagonal there and memory is then read in its order; else
+/// those of COLAMD, which fills in little in trees and what else is sparse (Davis, Gilbert, Larimore and Ng 2004, ACM Trans.
+/// Math. Softw. 30, 353-376).
+fn order(pattern: &Pattern) -> Result<Perm<u32>, AssemblyError> {
+    const NARROW: f64 = 16.0;
+    let n = pattern.unknowns();
+    let (mut forward, mut inverse) = (vec![0; n], vec![0; n]);
+    if pattern.width() <= NARROW {
+        forward.copy_from_slice(&pattern.along);
+        for (at, unknown) in forward.iter().enumerate() {
+            inverse[*unknown as usize] = at as u32;
+        }
+    } else {
+        let mut memory = buffer(colamd::order_scratch::<u32>(n, n, pattern.entries()), n)?;
+        let (control, stack) = (colamd::Control::default(), MemStack::new(&mut memory));
+        colamd::order(&mut forward, &mut inverse, pattern.symbolic.as_ref(), control, stack)
+            .map_err(|error| refused(n, &error))?;
+    }
+    Ok(Perm::new_checked(forward.into(), inverse.into(), n))
 }
 
 fn buffer(scratch: StackReq, unknowns: usize) -> Result<MemBuffer, AssemblyError> {

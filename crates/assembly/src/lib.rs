@@ -7,6 +7,7 @@
 //! Ready parts are in [`parts`].
 
 mod assembly;
+mod composition;
 mod contributions;
 mod dla;
 mod element;
@@ -24,6 +25,7 @@ mod system_element;
 
 pub use crate::assembly::{Assembly, WIDEST};
 pub use crate::dla::Dla;
+pub use composition::Composition;
 pub use crate::error::{AssemblyError, ConstraintRow, RunError};
 pub use element::{Blocks, Element};
 pub use factor::Solver;

@@ -20,6 +20,9 @@ pub(crate) struct Settling {
     pub(crate) made: u32,
 }
 
+/// What linear convergence leaves out is the same in every step, and not to be seen in the sum of many.
+const BIAS: f64 = f64::EPSILON / 64.0;
+
 impl Settling {
     /// So many times in all the largest correction may grow.
     const GROWTHS: u32 = 3;
@@ -78,6 +81,8 @@ impl Settling {
         }
         let converged = step <= (Newton::ROUNDING * size).max(f64::MIN_POSITIVE);
         let (tolerance, least) = (self.newton.tolerance, self.newton.tolerance * size);
+        // Where the next correction is predicted to be rounding in all components, those that have not settled never will.
+        let over = converged && step * (step / self.before).min(1.0) <= BIAS * size;
         let mut settled = true;
         let before = self.last.iter_mut().zip(self.rounding.iter_mut());
         for ((x, d), (last, rounding)) in x.iter().zip(correction).zip(before) {
@@ -85,11 +90,10 @@ impl Settling {
             *rounding |= converged && shrink >= 0.25;
             let predicts = last.is_finite() && d <= x.abs();
             let next = if predicts { d * shrink } else { d };
-            settled &= *rounding || d <= least || next.min(d) <= tolerance * x.abs();
+            settled &= *rounding || d <= least || d <= tolerance * x.abs() || next <= BIAS * x.abs();
             *last = d;
         }
-        if settled {
-            self.before = step;
+        if settled || over {
             return Ok(true);
         }
         if step > self.before && !converged {

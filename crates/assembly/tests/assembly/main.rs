@@ -3,5 +3,8 @@
 
 mod cost;
 mod long;
+mod models;
 mod same;
+mod step;
 mod tools;
+mod train;
