@@ -27,12 +27,13 @@ impl Contributions {
         Self { each: vec![0.0; starts[starts.len() - 1]], starts, parallel }
     }
 
-    /// Asks every element; in parallel where there are many. The order in which they answer changes nothing.
-    pub(crate) fn ask(&mut self, assembly: &Assembly, ask: &Ask<'_>) {
+    /// Asks every element, for derivatives too or not; in parallel where there are many. The order in which they answer changes
+    /// nothing.
+    pub(crate) fn ask(&mut self, assembly: &Assembly, derivatives: bool, ask: &Ask<'_>) {
         let elements = assembly.placed();
         let parallel = elements.len() >= self.parallel && rayon::current_num_threads() > 1;
         let grain = if parallel { PIECE } else { usize::MAX };
-        ask_all(elements, &self.starts, &mut self.each, ask, grain);
+        ask_all(elements, &self.starts, &mut self.each, (ask, derivatives), grain);
     }
 
     /// The contributions of an element.
@@ -117,7 +118,7 @@ fn blank(assembly: &Assembly, pattern: &Pattern, values: &mut [f64]) {
 /// So many elements are not divided further.
 const PIECE: usize = 512;
 
-fn ask_all(elements: &[Placed], starts: &[usize], out: &mut [f64], ask: &Ask<'_>, grain: usize) {
+fn ask_all(elements: &[Placed], starts: &[usize], out: &mut [f64], ask: (&Ask<'_>, bool), grain: usize) {
     if elements.len() > grain {
         let half = elements.len() / 2;
         let (first, last) = elements.split_at(half);
@@ -133,8 +134,9 @@ fn ask_all(elements: &[Placed], starts: &[usize], out: &mut [f64], ask: &Ask<'_>
         let all = &mut out[starts[k] - starts[0]..starts[k + 1] - starts[0]];
         let (momentum, rest) = all.split_at_mut(n);
         let (level, rest) = rest.split_at_mut(m);
-        let (block, rows) = rest.split_at_mut(rest.len() - m * n);
-        ask(placed, Blocks { momentum, level, block, rows });
+        let rest = if ask.1 { rest } else { &mut [] };
+        let (block, rows) = rest.split_at_mut(rest.len().saturating_sub(m * n));
+        ask.0(placed, Blocks { momentum, level, block, rows, derivatives: ask.1 });
     }
 }
 

@@ -69,7 +69,7 @@ impl Dla {
     /// The mean velocity of the step, in `v`.
     fn increment(&mut self, assembly: &Assembly, (t0, h): (f64, f64), state: &State) -> Result<u32, AssemblyError> {
         let Self { equations, q0, q1, v0, v, p, .. } = self;
-        equations.contributions.ask(assembly, &|placed, out| {
+        equations.contributions.ask(assembly, true, &|placed, out| {
             at_state(placed, state, |element, q, v| element.beginning(t0, q, v, out));
         });
         p.fill(0.0);
@@ -78,12 +78,12 @@ impl Dla {
         contributions.write_matrix(assembly, pattern, Part::Transposed, values);
 
         predict(state, h, v0, v);
-        let evaluate = |equations: &mut Equations, v: &[f64]| {
+        let evaluate = |equations: &mut Equations, v: &[f64], derivatives: bool| {
             for (i, q1) in q1.iter_mut().enumerate() {
                 *q1 = state.ahead(i, h * v[i]);
             }
             let (q0, q1) = (&*q0, &*q1);
-            equations.contributions.ask(assembly, &|placed, out| {
+            equations.contributions.ask(assembly, derivatives, &|placed, out| {
                 gathered(placed, |i| q0[i], |q0| {
                     gathered(placed, |i| v[i], |v| {
                         let element = &placed.element;
@@ -96,7 +96,7 @@ impl Dla {
                     });
                 });
             });
-            equations.write(assembly, Part::Blocks, p);
+            equations.write(assembly, derivatives.then_some(Part::Blocks), p);
         };
         equations.newton(assembly, Stage::Increment, v, evaluate)
     }
@@ -105,7 +105,7 @@ impl Dla {
     fn projection(&mut self, assembly: &Assembly, (t0, h): (f64, f64)) -> Result<u32, AssemblyError> {
         let Self { equations, q0, q1, v, v1, p, .. } = self;
         let (q0, q1, v) = (&*q0, &*q1, &*v);
-        equations.contributions.ask(assembly, &|placed, out| {
+        equations.contributions.ask(assembly, false, &|placed, out| {
             gathered(placed, |i| q0[i], |q0| {
                 gathered(placed, |i| v[i], |v| placed.element.end((t0, h), q0, v, out.momentum));
             });
@@ -114,13 +114,13 @@ impl Dla {
         // The right side of the equations is what the momenta still lack.
         equations.contributions.add_momenta(assembly, -1.0, p);
         v1.copy_from_slice(v);
-        let evaluate = |equations: &mut Equations, v1: &[f64]| {
-            equations.contributions.ask(assembly, &|placed, out| {
+        let evaluate = |equations: &mut Equations, v1: &[f64], derivatives: bool| {
+            equations.contributions.ask(assembly, derivatives, &|placed, out| {
                 gathered(placed, |i| q1[i], |q1| {
                     gathered(placed, |i| v1[i], |v1| placed.element.velocity(t0 + h, q1, v1, out));
                 });
             });
-            equations.write(assembly, Part::All, p);
+            equations.write(assembly, derivatives.then_some(Part::All), p);
         };
         equations.newton(assembly, Stage::Projection, v1, evaluate)
     }
@@ -161,8 +161,8 @@ impl Dla {
 }
 
 impl Equations {
-    /// Matrix and right side: minus the momenta, and the levels.
-    fn write(&mut self, assembly: &Assembly, part: Part, p: &[f64]) {
+    /// The right side, minus the momenta and the levels; and a part of the matrix.
+    fn write(&mut self, assembly: &Assembly, part: Option<Part>, p: &[f64]) {
         let Self { contributions, pattern, values, right, .. } = self;
         let n = assembly.coordinates();
         let (momenta, levels) = right.split_at_mut(n);
@@ -171,7 +171,9 @@ impl Equations {
         }
         contributions.add_momenta(assembly, -1.0, momenta);
         contributions.write_levels(assembly, levels);
-        contributions.write_matrix(assembly, pattern, part, values);
+        if let Some(part) = part {
+            contributions.write_matrix(assembly, pattern, part, values);
+        }
     }
 }
 

@@ -9,10 +9,13 @@ pub struct Blocks<'a> {
     pub momentum: &'a mut [f64],
     /// What the constraints are to be met by, `M`.
     pub level: &'a mut [f64],
-    /// Derivatives of the momenta in the velocities, `N x N`; empty of an element without inertia or forces.
+    /// Derivatives of the momenta in the velocities, `N x N`; empty of an element without inertia or forces, or where no
+    /// derivatives are asked for.
     pub block: &'a mut [f64],
-    /// Derivatives of the constraints in the velocities, `M x N`.
+    /// Derivatives of the constraints in the velocities, `M x N`; empty where no derivatives are asked for.
     pub rows: &'a mut [f64],
+    /// Whether derivatives are asked for.
+    pub derivatives: bool,
 }
 
 /// A part of an assembly: a body, what acts on bodies, or what joins them.

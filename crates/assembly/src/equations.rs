@@ -42,20 +42,20 @@ impl Equations {
         })
     }
 
-    /// Solves for the unknowns `x`: `evaluate` writes the values of the matrix and the right side at `x`, the latter alone
-    /// where the factors of the last matrix still serve.
+    /// Solves for the unknowns `x`: `evaluate` writes the right side at `x`, and the matrix where it is told so, which it is not
+    /// while the factors of the last one still serve.
     pub(crate) fn newton(
         &mut self,
         assembly: &Assembly,
         stage: Stage,
         x: &mut [f64],
-        mut evaluate: impl FnMut(&mut Self, &[f64]),
+        mut evaluate: impl FnMut(&mut Self, &[f64], bool),
     ) -> Result<u32, AssemblyError> {
         self.settling.begin(x);
         let mut before = f64::INFINITY;
         let mut fresh = true;
         loop {
-            evaluate(self, x);
+            evaluate(self, x, fresh);
             if fresh {
                 let pivot = self.factor.factorise(&self.pattern, &self.values)?;
                 if pivot < SINGULAR {

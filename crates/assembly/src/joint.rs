@@ -71,7 +71,9 @@ impl<J: Joint<N, M>, const N: usize, const M: usize> Element for JointElement<J,
 
     fn increment(&self, (t0, h): (f64, f64), [_, q1]: [&[f64]; 2], _v: &[f64], out: Blocks<'_>) {
         let g = self.in_positions(t0 + h, q1);
-        Self::write_rows(&g, out.rows);
+        if out.derivatives {
+            Self::write_rows(&g, out.rows);
+        }
         for (level, g) in out.level.iter_mut().zip(&g) {
             // What the rounding of the coordinates alone may bring counts as zero: no coordinates come nearer.
             let rounding: f64 = g.eps.iter().zip(q1).map(|(slope, q)| (slope * q).abs()).sum();
@@ -84,7 +86,9 @@ impl<J: Joint<N, M>, const N: usize, const M: usize> Element for JointElement<J,
     }
 
     fn velocity(&self, t: f64, q: &[f64], v: &[f64], out: Blocks<'_>) {
-        Self::write_rows(&self.in_positions(t, q), out.rows);
+        if out.derivatives {
+            Self::write_rows(&self.in_positions(t, q), out.rows);
+        }
         for (level, rate) in out.level.iter_mut().zip(self.rates(t, q, v)) {
             *level = -rate;
         }

@@ -18,6 +18,33 @@ impl<Sys, const N: usize, const M: usize> fmt::Debug for SystemElement<Sys, N, M
     }
 }
 
+impl<Sys: System<N, M>, const N: usize, const M: usize> SystemElement<Sys, N, M> {
+    /// The equations for the mean velocity without their derivatives.
+    fn residual(&self, (t0, h): (f64, f64), (q0, q1): (&[f64; N], &[f64; N]), v: &[f64; N], out: Blocks<'_>) {
+        let system = &self.system;
+        // D1 of L_d / h in units of h, as in `DiscreteLagrangian::derivatives`: q0 = h a, v = b - a.
+        let along = |re: f64, i: usize, slope: f64| {
+            let eps = from_fn(|k| if k == i { slope } else { 0.0 });
+            Dual { re, eps }
+        };
+        let (a, b): ([Dual<f64, N>; N], [Dual<f64, N>; N]) =
+            (from_fn(|i| along(q0[i], i, h)), from_fn(|i| along(v[i], i, -1.0)));
+        let l = DiscreteLagrangian::<Sys, N, M>::average(&Midpoint, system, Dual::fixed(t0), Dual::fixed(h), &a, &b);
+        let mut residual = l.eps;
+        let forces = DiscreteLagrangian::<Sys, N, M>::forces(&Midpoint, system, t0, h, q0, v);
+        if let Some((minus, _)) = forces {
+            residual = from_fn(|i| residual[i] + minus[i]);
+        }
+        let w_d: [f64; M] = DiscreteConstraint::residual(&Midpoint, system, t0, h, q0, v);
+        let mut level = w_d.map(|w| -w);
+        if let Some(positions) = position_misses(system, t0 + h, q1) {
+            level = from_fn(|k| positions[k].map_or(level[k], |g| -g.re / h));
+        }
+        out.momentum.copy_from_slice(&residual);
+        out.level.copy_from_slice(&level);
+    }
+}
+
 impl<Sys: System<N, M> + Send + Sync, const N: usize, const M: usize> Element for SystemElement<Sys, N, M> {
     fn size(&self) -> (usize, usize) {
         (N, M)
@@ -40,6 +67,9 @@ impl<Sys: System<N, M> + Send + Sync, const N: usize, const M: usize> Element fo
     fn increment(&self, (t0, h): (f64, f64), [q0, q1]: [&[f64]; 2], v: &[f64], out: Blocks<'_>) {
         let system = &self.system;
         let (q0, q1, v): ([f64; N], [f64; N], [f64; N]) = (local(q0), local(q1), local(v));
+        if !out.derivatives {
+            return self.residual((t0, h), (&q0, &q1), &v, out);
+        }
         let l_d = Midpoint.derivatives(system, t0, h, &q0, &v);
         let (mut residual, mut block) = (l_d.d1, l_d.d1d2.map(|row| row.map(|x| h * x)));
 
@@ -83,10 +113,14 @@ impl<Sys: System<N, M> + Send + Sync, const N: usize, const M: usize> Element fo
 
     fn velocity(&self, t: f64, q: &[f64], v: &[f64], out: Blocks<'_>) {
         let (q, v) = (local(q), local(v));
-        let (p, mass) = mass_matrix(&self.system, t, &q, &v);
-        out.momentum.copy_from_slice(&p);
-        out.block.copy_from_slice(mass.as_flattened());
-        out.rows.copy_from_slice(reaction_rows(&self.system, t, &q, &v).as_flattened());
+        if out.derivatives {
+            let (p, mass) = mass_matrix(&self.system, t, &q, &v);
+            out.momentum.copy_from_slice(&p);
+            out.block.copy_from_slice(mass.as_flattened());
+            out.rows.copy_from_slice(reaction_rows(&self.system, t, &q, &v).as_flattened());
+        } else {
+            out.momentum.copy_from_slice(&momentum(&self.system, t, &q, &v));
+        }
         out.level.copy_from_slice(&constraint_residual(&self.system, t, &q, &v).map(|slip| -slip));
     }
 
