@@ -41,7 +41,7 @@ pub(crate) fn run(
         ("--resume", resume.is_some()),
         ("--tolerance", tolerance.is_some()),
         ("--event", !event.is_empty()),
-        ("--until", until.is_some()),
+        ("--until", !until.is_empty()),
     ];
     if let Some((flag, _)) = asked.iter().find(|(_, asked)| *asked) {
         return Err(CliError::Request(format!("{flag} does not do scenes with `trailers`")));

@@ -1,5 +1,5 @@
 use assembly::parts::{Trailer, Train};
-use assembly::{Dla, OneStep, Solver, State, StepReport};
+use assembly::{Dla, OneStep, Solver, State};
 use sleigh::{Sleigh, SleighState};
 
 /// A train of so many blades in all, with hitches behind the axles.
@@ -14,11 +14,9 @@ pub(crate) fn bent(train: &Train) -> State {
     train.start(&SleighState { speed: 1.0, turn_rate: 0.3, ..SleighState::default() }, &headings)
 }
 
-pub(crate) fn run(train: &Train, solver: Solver, h: f64, steps: u32, state: &mut State) -> StepReport {
+pub(crate) fn run(train: &Train, solver: Solver, h: f64, steps: u32, state: &mut State) {
     let mut method = Dla::new(&train.assembly, solver).unwrap();
-    let mut report = StepReport::default();
     for k in 0..steps {
-        report = method.step(&train.assembly, f64::from(k) * h, h, state).unwrap();
+        method.step(&train.assembly, f64::from(k) * h, h, state).unwrap();
     }
-    report
 }
