@@ -97,10 +97,16 @@ fn words(effect: &SceneEffect) -> String {
         SceneEffect::Trailers(TrailersSpec { count, mass, bar, hitch, .. }) => {
             let all = |list: &[f64]| match list {
                 [one] => number(*one),
-                list => format!("{} to {}", number(least(list)), number(-least(&list.iter().map(|x| -x).collect::<Vec<_>>()))),
+                list => format!(
+                    "{} to {}",
+                    number(least(list)),
+                    number(-least(&list.iter().map(|x| -x).collect::<Vec<_>>()))
+                ),
             };
             let [mass, bar, hitch] = [mass, bar, hitch].map(|list| all(list));
-            format!("{count} trailers of {mass} kg, each blade {bar} m behind a hinge {hitch} m behind the blade before")
+            format!(
+                "{count} trailers of {mass} kg, each blade {bar} m behind a hinge {hitch} m behind the blade before"
+            )
         }
         SceneEffect::Turntable { rate } => format!("turntable: the plane turns at {} rad/s", number(*rate)),
     }

@@ -166,7 +166,9 @@ fn known<const N: usize>(
 ) -> KnownEnd {
     let (end, Reference { steps, error, .. }) = (place(&computed.q), *computed);
     match exact.map(|exact| exact.at(duration)) {
-        Some(exact) => KnownEnd { closed: true, by: "gauss16", steps, error: distance(&exact, &end).max(f64::EPSILON), end: exact },
+        Some(exact) => {
+            KnownEnd { closed: true, by: "gauss16", steps, error: distance(&exact, &end).max(f64::EPSILON), end: exact }
+        }
         None => KnownEnd { closed: false, by: "gauss16", steps, error, end },
     }
 }

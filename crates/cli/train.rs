@@ -149,8 +149,7 @@ pub(crate) fn compare_scene(
         progress.bar.finish_and_clear();
     }
     let reference = reference(scene, train, start, &schedule, interrupt);
-    let drifts: Vec<(&str, Drift)> =
-        runs.iter().map(|run| (run.record.method.name, run.record.energy.drift)).collect();
+    let drifts: Vec<(&str, Drift)> = runs.iter().map(|run| (run.record.method.name, run.record.energy.drift)).collect();
     let (mut rows, mut series) = (Vec::new(), Vec::new());
     for Assembled { record, nodes, end, .. } in &runs {
         let end = train.blade(end, 0);
@@ -178,8 +177,7 @@ pub(crate) fn compare_scene(
         });
     }
     let whole = runs.iter().filter(|run| !run.record.interrupted).count();
-    let interrupted =
-        (whole < methods.len()).then(|| format!("{whole} of {} methods are done", methods.len()));
+    let interrupted = (whole < methods.len()).then(|| format!("{whole} of {} methods are done", methods.len()));
     let objects: Vec<_> = rows.iter().map(|row| &row.json).collect();
     let report = SceneReport {
         name: scene.name.clone(),
@@ -195,13 +193,7 @@ pub(crate) fn compare_scene(
 }
 
 /// Where the motion ends by dla8 with a quarter of the step; none of a run that would take longer than all others.
-fn reference(
-    scene: &Scene,
-    train: &Train,
-    start: &State,
-    schedule: &Schedule,
-    interrupt: &Interrupt,
-) -> Option<State> {
+fn reference(scene: &Scene, train: &Train, start: &State, schedule: &Schedule, interrupt: &Interrupt) -> Option<State> {
     if schedule.steps.saturating_mul(start.len() as u64) > REFERRED || interrupt.asked() {
         return None;
     }
@@ -226,15 +218,12 @@ pub(crate) fn measure(
         let schedule = Schedule { t0: 0.0, step: duration / steps as f64, steps };
         match assembly_end(assembly, method, &schedule, start, &mut ()) {
             Ok(state) => Ok(train.blade(state.as_ref().unwrap_or(start), 0)),
-            Err(error) => {
-                Err(RunError { step: error.step, time: error.time, source: error.source.step_error() })
-            }
+            Err(error) => Err(RunError { step: error.step, time: error.time, source: error.source.step_error() }),
         }
     };
     let reference = converged(&end)?;
     let end_error = |method: &Method, steps: u64| end(method, steps).map(|state| distance(&state, &reference.end));
-    let bench =
-        Bench { duration, reference_error: reference.error, end_error: &end_error, aligned: &|steps| steps };
+    let bench = Bench { duration, reference_error: reference.error, end_error: &end_error, aligned: &|steps| steps };
     let limits = Limits { fewest: 2, longest };
     let bar = progress::bar(&format!("{} precision", scene.name), methods.len() as u64 + rounds());
     let (curves, clock) = work_precision(&bench, methods, &limits, &mut |done| bar.inc(done));

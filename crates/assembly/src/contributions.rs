@@ -150,10 +150,6 @@ pub(crate) fn gathered<T>(placed: &Placed, of: impl Fn(usize) -> f64, then: impl
 
 /// Configuration and velocity of an element.
 #[inline(always)]
-pub(crate) fn at_state<T>(
-    placed: &Placed,
-    state: &State,
-    then: impl FnOnce(&dyn Element, &[f64], &[f64]) -> T,
-) -> T {
+pub(crate) fn at_state<T>(placed: &Placed, state: &State, then: impl FnOnce(&dyn Element, &[f64], &[f64]) -> T) -> T {
     gathered(placed, |i| state.q(i), |q| gathered(placed, |i| state.v(i), |v| then(placed.element.as_ref(), q, v)))
 }

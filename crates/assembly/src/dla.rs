@@ -84,17 +84,27 @@ impl Dla {
             }
             let (q0, q1) = (&*q0, &*q1);
             equations.contributions.ask(assembly, derivatives, &|placed, out| {
-                gathered(placed, |i| q0[i], |q0| {
-                    gathered(placed, |i| v[i], |v| {
-                        let element = &placed.element;
-                        match &placed.origins {
-                            None => gathered(placed, |i| q1[i], |q1| element.increment((t0, h), [q0, q1], v, out)),
-                            Some(origins) => relative(placed, origins, h, state, v, |q1| {
-                                element.increment((t0, h), [q0, q1], v, out);
-                            }),
-                        }
-                    });
-                });
+                gathered(
+                    placed,
+                    |i| q0[i],
+                    |q0| {
+                        gathered(
+                            placed,
+                            |i| v[i],
+                            |v| {
+                                let element = &placed.element;
+                                match &placed.origins {
+                                    None => {
+                                        gathered(placed, |i| q1[i], |q1| element.increment((t0, h), [q0, q1], v, out))
+                                    }
+                                    Some(origins) => relative(placed, origins, h, state, v, |q1| {
+                                        element.increment((t0, h), [q0, q1], v, out);
+                                    }),
+                                }
+                            },
+                        );
+                    },
+                );
             });
             equations.write(assembly, derivatives.then_some(Part::Blocks), p);
         };
@@ -106,9 +116,13 @@ impl Dla {
         let Self { equations, q0, q1, v, v1, p, .. } = self;
         let (q0, q1, v) = (&*q0, &*q1, &*v);
         equations.contributions.ask(assembly, false, &|placed, out| {
-            gathered(placed, |i| q0[i], |q0| {
-                gathered(placed, |i| v[i], |v| placed.element.end((t0, h), q0, v, out.momentum));
-            });
+            gathered(
+                placed,
+                |i| q0[i],
+                |q0| {
+                    gathered(placed, |i| v[i], |v| placed.element.end((t0, h), q0, v, out.momentum));
+                },
+            );
         });
         p.fill(0.0);
         // The right side of the equations is what the momenta still lack.
@@ -116,9 +130,13 @@ impl Dla {
         v1.copy_from_slice(v);
         let evaluate = |equations: &mut Equations, v1: &[f64], derivatives: bool| {
             equations.contributions.ask(assembly, derivatives, &|placed, out| {
-                gathered(placed, |i| q1[i], |q1| {
-                    gathered(placed, |i| v1[i], |v1| placed.element.velocity(t0 + h, q1, v1, out));
-                });
+                gathered(
+                    placed,
+                    |i| q1[i],
+                    |q1| {
+                        gathered(placed, |i| v1[i], |v1| placed.element.velocity(t0 + h, q1, v1, out));
+                    },
+                );
             });
             equations.write(assembly, derivatives.then_some(Part::All), p);
         };
@@ -132,9 +150,11 @@ impl Dla {
             return 0.0;
         }
         let turns = assembly.placed().iter().map(|placed| {
-            gathered(placed, |i| self.q0[i], |q0| {
-                gathered(placed, |i| self.v[i], |v| placed.element.turn((t0, h), q0, v))
-            })
+            gathered(
+                placed,
+                |i| self.q0[i],
+                |q0| gathered(placed, |i| self.v[i], |v| placed.element.turn((t0, h), q0, v)),
+            )
         });
         turns.fold(0.0, larger)
     }
@@ -145,11 +165,17 @@ impl Dla {
         const ROUNDING: f64 = 1e-16;
         let mut sums = [0.0; 3];
         for placed in assembly.placed().iter().filter(|placed| placed.element.acts()) {
-            let own = gathered(placed, |i| self.q0[i], |q0| {
-                gathered(placed, |i| self.v[i], |v| {
-                    gathered(placed, |i| self.v1[i], |v1| placed.element.braking(step, q0, [v, v1]))
-                })
-            });
+            let own = gathered(
+                placed,
+                |i| self.q0[i],
+                |q0| {
+                    gathered(
+                        placed,
+                        |i| self.v[i],
+                        |v| gathered(placed, |i| self.v1[i], |v1| placed.element.braking(step, q0, [v, v1])),
+                    )
+                },
+            );
             sums = std::array::from_fn(|i| sums[i] + own[i]);
         }
         let [damping, inertia, all] = sums;
@@ -179,14 +205,7 @@ impl Equations {
 
 /// The coordinates of a joint at the end of a step with the mean velocity `v`, those that have an origin measured from it: the
 /// difference keeps the digits that the coordinates have lost far away.
-fn relative(
-    placed: &Placed,
-    origins: &[Option<usize>],
-    h: f64,
-    state: &State,
-    v: &[f64],
-    then: impl FnOnce(&[f64]),
-) {
+fn relative(placed: &Placed, origins: &[Option<usize>], h: f64, state: &State, v: &[f64], then: impl FnOnce(&[f64])) {
     let mut q1 = [0.0; WIDEST];
     for (k, origin) in origins.iter().enumerate() {
         q1[k] = match origin {

@@ -67,7 +67,15 @@ impl Factor {
         let (n, stack) = (pattern.unknowns(), MemStack::new(memory));
         let largest = |j: usize| pattern.column(values, j).fold(0.0, |most, (_, value)| larger(most, value));
         // Not a number counts as none.
-        let least = |least: f64, pivot: f64| if pivot < least { pivot } else if pivot.is_nan() { 0.0 } else { least };
+        let least = |least: f64, pivot: f64| {
+            if pivot < least {
+                pivot
+            } else if pivot.is_nan() {
+                0.0
+            } else {
+                least
+            }
+        };
         match kind {
             Kind::Sparse { columns, factors } => {
                 let matrix = SparseColMatRef::new(pattern.symbolic.as_ref(), values);

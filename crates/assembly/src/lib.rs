@@ -25,8 +25,8 @@ mod system_element;
 
 pub use crate::assembly::{Assembly, WIDEST};
 pub use crate::dla::Dla;
-pub use composition::Composition;
 pub use crate::error::{AssemblyError, ConstraintRow, RunError};
+pub use composition::Composition;
 pub use element::{Blocks, Element};
 pub use factor::Solver;
 pub use joint::Joint;

@@ -1,8 +1,6 @@
 //! Runs of assemblies, measured as those of static systems are.
 
-use crate::{
-    Blocks, Drift, EnergySummary, Kind, Method, MethodInfo, NewtonSummary, Progress, Record, Sample, Trend,
-};
+use crate::{Blocks, Drift, EnergySummary, Kind, Method, MethodInfo, NewtonSummary, Progress, Record, Sample, Trend};
 use assembly::{Assembly, AssemblyError, Composition, Dla, OneStep, RunError, Solver, State};
 use dla::Schedule;
 use lagrangian::linear::larger;
@@ -224,8 +222,7 @@ impl Meter {
         state: &State,
         failure: Option<&RunError>,
     ) -> Record<3> {
-        let coordinates: Vec<[f64; 2]> =
-            (0..state.len().min(3)).map(|i| [state.unwrapped(i), state.v(i)]).collect();
+        let coordinates: Vec<[f64; 2]> = (0..state.len().min(3)).map(|i| [state.unwrapped(i), state.v(i)]).collect();
         let of = |which: usize| first(&coordinates.iter().map(|pair| pair[which]).collect::<Vec<_>>());
         let mean = if steps == 0 { 0.0 } else { self.iterations as f64 / steps as f64 };
         Record {

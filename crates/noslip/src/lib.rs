@@ -39,6 +39,8 @@ mod book {
     pub struct FirstSimulation;
     #[doc = include_str!("../../../docs/guide/your-own-system.md")]
     pub struct YourOwnSystem;
+    #[doc = include_str!("../../../docs/guide/many-bodies.md")]
+    pub struct ManyBodies;
     #[doc = include_str!("../../../docs/phenomena/naive.md")]
     pub struct Naive;
     #[doc = include_str!("../../../docs/phenomena/parking.md")]

@@ -19,7 +19,10 @@ fn end(assembly: &Assembly, mut state: State) -> State {
 }
 
 /// The same of a static system.
-fn static_end<Sys: System<N, M>, const N: usize, const M: usize>(system: &Sys, (q, v): ([f64; N], [f64; N])) -> [f64; N] {
+fn static_end<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    (q, v): ([f64; N], [f64; N]),
+) -> [f64; N] {
     let mut state = dla::State::new(q, v, system.angles());
     let mut method = dla::Composition::fifteen8(dla::Dla::midpoint());
     for k in 0..STEPS {
@@ -101,7 +104,8 @@ fn snakeboard() {
     assert!(slip.max(steering) < 1e-14, "{slip} {steering}");
     let end = end(&board, start);
     let heading = end.unwrapped(2);
-    let found = [end.unwrapped(0), end.unwrapped(1), heading, end.unwrapped(rotor) - heading, end.unwrapped(back) - heading];
+    let found =
+        [end.unwrapped(0), end.unwrapped(1), heading, end.unwrapped(rotor) - heading, end.unwrapped(back) - heading];
     println!("{found:?} {expected:?}");
     for i in 0..5 {
         assert_abs_diff_eq!(found[i], expected[i], epsilon = 1e-8);

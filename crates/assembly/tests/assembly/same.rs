@@ -15,7 +15,8 @@ fn one_sleigh_is_the_static_sleigh() {
     let mut state = State::new(&alone, &q, &v);
     let mut fixed = dla::State::new(q, v, [false, false, true]);
     for solver in [Solver::Dense, Solver::Sparse] {
-        let (mut method, mut reference) = (Dla::new(&alone, solver).unwrap(), dla::Dla::midpoint().solved(Form::Multipliers));
+        let (mut method, mut reference) =
+            (Dla::new(&alone, solver).unwrap(), dla::Dla::midpoint().solved(Form::Multipliers));
         let h = 0.05;
         for k in 0..400 {
             method.step(&alone, f64::from(k) * h, h, &mut state).unwrap();

@@ -1,6 +1,6 @@
 use crate::tools::{bent, train};
-use assembly::{Assembly, AssemblyError, Composition, Dla, OneStep, Solver, State};
 use assembly::parts::Hinge;
+use assembly::{Assembly, AssemblyError, Composition, Dla, OneStep, Solver, State};
 use dla::Stage;
 use sleigh::Sleigh;
 

@@ -8,10 +8,8 @@ const STEP: f64 = 0.1;
 
 /// A lead and two unlike trailers.
 fn train() -> Train {
-    let trailers = vec![
-        Trailer::new(0.5, 0.1, 0.1, 0.3, 0.8).unwrap(),
-        Trailer::new(0.7, 0.2, -0.1, 0.2, 1.1).unwrap(),
-    ];
+    let trailers =
+        vec![Trailer::new(0.5, 0.1, 0.1, 0.3, 0.8).unwrap(), Trailer::new(0.7, 0.2, -0.1, 0.2, 1.1).unwrap()];
     Train::new(Sleigh::new(1.0, 1.0, 0.5).unwrap(), trailers, |trailer| trailer.sleigh).unwrap()
 }
 

@@ -147,7 +147,8 @@ fn nodes(series: &Series, frame: &Frame) -> Vec<Node> {
             // A place that cannot be drawn is where the blade before it is.
             let mut last = [x, y, heading.to_degrees()];
             let followers = series.followers.iter().map(|follower| {
-                if let Some([x, y, heading]) = follower.get(k).copied().filter(|place| place.iter().all(|x| x.is_finite()))
+                if let Some([x, y, heading]) =
+                    follower.get(k).copied().filter(|place| place.iter().all(|x| x.is_finite()))
                     && let Some(place) = frame.place([x, y])
                 {
                     let [x, y] = place.map(|length| length.clamp(-1e4, 1e4));
