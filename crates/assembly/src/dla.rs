@@ -94,9 +94,13 @@ impl Dla {
                             |v| {
                                 let element = &placed.element;
                                 match &placed.origins {
-                                    None => {
-                                        gathered(placed, |i| q1[i], |q1| element.increment((t0, h), [q0, q1], v, out))
-                                    }
+                                    None => gathered(
+                                        placed,
+                                        |i| q1[i],
+                                        |q1| {
+                                            element.increment((t0, h), [q0, q1], v, out);
+                                        },
+                                    ),
                                     Some(origins) => relative(placed, origins, h, state, v, |q1| {
                                         element.increment((t0, h), [q0, q1], v, out);
                                     }),

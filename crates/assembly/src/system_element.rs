@@ -20,7 +20,7 @@ impl<Sys, const N: usize, const M: usize> fmt::Debug for SystemElement<Sys, N, M
 
 impl<Sys: System<N, M>, const N: usize, const M: usize> SystemElement<Sys, N, M> {
     /// The equations for the mean velocity without their derivatives.
-    fn residual(&self, (t0, h): (f64, f64), (q0, q1): (&[f64; N], &[f64; N]), v: &[f64; N], out: Blocks<'_>) {
+    fn residual(&self, (t0, h): (f64, f64), (q0, q1): (&[f64; N], &[f64; N]), v: &[f64; N], out: &mut Blocks<'_>) {
         let system = &self.system;
         // D1 of L_d / h in units of h, as in `DiscreteLagrangian::derivatives`: q0 = h a, v = b - a.
         let along = |re: f64, i: usize, slope: f64| {
@@ -64,11 +64,11 @@ impl<Sys: System<N, M> + Send + Sync, const N: usize, const M: usize> Element fo
         out.rows.copy_from_slice(reaction_rows(&self.system, t, &q, &v).as_flattened());
     }
 
-    fn increment(&self, (t0, h): (f64, f64), [q0, q1]: [&[f64]; 2], v: &[f64], out: Blocks<'_>) {
+    fn increment(&self, (t0, h): (f64, f64), [q0, q1]: [&[f64]; 2], v: &[f64], mut out: Blocks<'_>) {
         let system = &self.system;
         let (q0, q1, v): ([f64; N], [f64; N], [f64; N]) = (local(q0), local(q1), local(v));
         if !out.derivatives {
-            return self.residual((t0, h), (&q0, &q1), &v, out);
+            return self.residual((t0, h), (&q0, &q1), &v, &mut out);
         }
         let l_d = Midpoint.derivatives(system, t0, h, &q0, &v);
         let (mut residual, mut block) = (l_d.d1, l_d.d1d2.map(|row| row.map(|x| h * x)));
