@@ -1,5 +1,5 @@
 //! Assemblies against the static integrators and against what is known of trains.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod cost;
 mod long;
