@@ -3,7 +3,7 @@ use crate::error::CliError;
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
 use crate::saves::Saves;
-use crate::{compare_numbers, facts, inspect, json, progress, table, terminal};
+use crate::{compare_numbers, facts, inspect, json, progress, table, terminal, train};
 use dla::{Schedule, State};
 use harness::report::{self, Report, SceneReport, Series};
 use harness::{Drift, METHODS, Method, Record, Request};
@@ -106,6 +106,13 @@ pub(crate) fn compare_scene(
     saves: &mut Saves,
     interrupt: &Interrupt,
 ) -> Result<Comparison, CliError> {
+    if let Some(whole) = scene.train()? {
+        if saves.are_asked_for() {
+            let problem = "--checkpoint and --resume do not do scenes with `trailers`";
+            return Err(CliError::Request(problem.to_owned()));
+        }
+        return train::compare_scene(scene, &whole, methods, interrupt);
+    }
     scene.visit(Compare { scene, methods, saves, interrupt })?
 }
 
@@ -204,7 +211,7 @@ impl Visitor for Compare<'_> {
 }
 
 /// The methods whose energy error starts smaller and becomes larger, each with the length of run (s) from which it is so.
-fn better_than<'a>(drift: &Drift, others: &[(&'a str, Drift)]) -> Vec<(&'a str, f64)> {
+pub(crate) fn better_than<'a>(drift: &Drift, others: &[(&'a str, Drift)]) -> Vec<(&'a str, f64)> {
     others.iter().filter_map(|(name, other)| Some((*name, drift.better_from(other)?))).collect()
 }
 
@@ -279,5 +286,6 @@ where
         time: samples.iter().map(|sample| sample.t).collect(),
         constraint: samples.iter().map(|sample| sample.constraint).collect(),
         energy_error: samples.iter().map(|sample| sample.energy_error).collect(),
+        ..Series::default()
     }
 }

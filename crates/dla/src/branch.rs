@@ -75,7 +75,8 @@ impl<E: BlockEquations<U, S>, const U: usize, const S: usize> BlockEquations<U, 
 /// By how much a step with this mean velocity turns the constraint that turns most (rad): a rate times the step, which
 /// shows what the two ends do not, whole turns. Zero where no angle turns by as much as is near.
 #[inline(always)]
-pub(crate) fn turn<Sys: System<N, M>, const N: usize, const M: usize>(
+#[must_use]
+pub fn turn<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
     time: (f64, f64),
     q0: &[f64; N],

@@ -39,6 +39,7 @@ mod trajectory;
 mod work;
 
 pub use crate::dla::{Dla, Form};
+pub use branch::turn;
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use composition::Composition;
 pub use dependent::{Dependency, Dependent};

@@ -5,6 +5,7 @@
 
 mod again;
 pub mod analysis;
+mod assembled;
 mod baseline;
 mod cost;
 mod drift;
@@ -22,6 +23,7 @@ mod timing;
 mod watched;
 
 pub use again::Again;
+pub use assembled::{Assembled, AssemblyNode, assembly_end, assembly_method, run_assembly};
 pub use baseline::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced};
 pub use cost::{StepCost, step_cost};
 pub use drift::{Blocks, Drift, Verdict};

@@ -33,15 +33,17 @@ mod sections;
 mod suggest;
 mod system;
 mod table;
+mod train;
 mod written;
 
 pub use self::scene::Scene;
 pub use acting::Acting;
 pub use bundled::{Bundled, bundled};
-pub use effect::{EFFECTS, HillSpec, PathSpec, SceneEffect, Shape, TimeSpec};
+pub use effect::{EFFECTS, HillSpec, PathSpec, SceneEffect, Shape, TimeSpec, TrailersSpec};
 pub use error::SceneError;
 pub use finding::{Finding, Place};
 pub use power::{EffectPower, SceneBody, SceneEffects};
 pub use run::{DEFAULT_METHOD, MAX_STEPS, RunSettings};
 pub use suggest::nearest;
 pub use system::{SceneSystem, Visitor};
+pub use train::TrainError;
