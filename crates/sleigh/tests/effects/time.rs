@@ -63,6 +63,7 @@ fn jumps_come_through() {
     assert_eq!(flywheel.piece(3.0).torque().unwrap().value(0.0), -0.7);
     assert!(Flywheel::new(sleigh, 0.2, None).unwrap().jumps(0.0, 9.0).is_empty());
     let servo = Guided::<1>::servo(sleigh, Guide::Speed(steps())).unwrap();
+    assert!(servo.piece(3.0) != servo && servo.piece(1.5) == servo);
     assert_eq!(Flywheel::new(servo, 0.2, Some(steps())).unwrap().jumps(0.0, 3.0), [2.5, 2.5]);
     assert!(Guided::turntable(sleigh, 0.3).unwrap().jumps(0.0, 9.0).is_empty());
 }

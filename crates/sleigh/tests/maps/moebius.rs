@@ -123,4 +123,9 @@ fn turns_and_their_names() {
         assert_eq!(fixed.len(), 1);
         assert_abs_diff_eq!(fixed[0], from, epsilon = 1e-13);
     }
+    // From far away the matrix is large, and its trace has the rounding of that.
+    for [x, y] in [[6.0, 2.0], [5.1, -2.3], [-4.4, 3.7], [0.3, 6.1]] {
+        let away = Moebius::segment([x, y], 1.0) * Moebius::arc(1.0, 0.7, TAU) * Moebius::segment([-x, -y], 1.0);
+        assert_eq!(away.class(), Class::Parabolic);
+    }
 }
