@@ -6,7 +6,9 @@ mod checkpoint;
 mod dense;
 mod events;
 mod failures;
+mod hints;
 mod recommend;
+mod scripted;
 mod substeps;
 
 use dla::State;
