@@ -47,3 +47,27 @@ fn the_counter_example_feels_forces() {
     }
     assert_abs_diff_eq!(state.v()[0], (-0.4_f64 * 2.0).exp(), epsilon = 20.0 * 0.04_f64.powi(3));
 }
+
+/// Lifted at the speed `t`.
+struct Lifted;
+
+impl System<2, 1> for Lifted {
+    fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 2], v: &[S; 2]) -> S {
+        v[0] * v[0] + v[1] * v[1]
+    }
+    fn constraint<S: Scalar>(&self, t: S, _q: &[S; 2]) -> Constraint<S, 2, 1> {
+        ([[S::zero(), S::constant(1.0)]], [-t])
+    }
+}
+
+/// The velocity of a node meets the constraint at the time of the node.
+#[test]
+fn the_counter_example_follows_a_moving_constraint() {
+    let (mut state, mut method) = (State::new([0.0; 2], [0.5, 1.0], [false; 2]), Gni::<_, 2>::default());
+    for k in 0..5 {
+        let t = 1.0 + 0.1 * f64::from(k);
+        OneStep::<_, 2, 1>::step(&mut method, &Lifted, t, 0.1, &mut state).unwrap();
+        assert_abs_diff_eq!(state.v()[1], t + 0.1, epsilon = 1e-15);
+        assert_abs_diff_eq!(state.v()[0], 0.5, epsilon = 1e-15);
+    }
+}
