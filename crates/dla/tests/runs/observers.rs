@@ -215,3 +215,31 @@ fn a_crossing_is_interpolated() {
         assert!(asked.get() < 7 + 16, "{name}: {} evaluations", asked.get());
     }
 }
+
+/// Keeps the impulses of the last report.
+#[derive(Debug, Default)]
+struct Last([[f64; 1]; 2]);
+
+impl Observer<(), 1, 1> for Last {
+    fn start(&mut self, _node: &View<'_, (), 1>) {}
+    fn step(&mut self, _node: &View<'_, (), 1>, report: &StepReport<1>) -> ControlFlow<()> {
+        self.0 = report.impulses;
+        ControlFlow::Continue(())
+    }
+}
+
+/// A tolerance is a time, whatever the step; the last node of a run has the report of the step that ends there.
+#[test]
+fn an_event_ends_a_step_early() {
+    let events = [Event::new("an exponential", |_, state: &State<1>| state.q()[0].exp() - 2.0).terminal()];
+    let mut watch = Watch::new(Short::default(), &events, Last::default());
+    watch.tolerance = 0.01;
+    let (from, to) = (start(), State::new([2.0], [1.0], [false]));
+    Observer::<(), 1, 1>::start(&mut watch, &View { system: &(), k: 0, t: 1.0, state: &from });
+    let flow = watch.step(&View { system: &(), k: 1, t: 3.0, state: &to }, &StepReport::<1>::of(1));
+    assert!(flow.is_break());
+    let found = *watch.ended().unwrap();
+    assert!(found.within <= 0.01 && (found.t - 1.0 - 2.0_f64.ln()).abs() <= found.within, "{found:?}");
+    // The method reports the length of its step, and twice that.
+    assert_relative_eq!(watch.into_inner().0[0][0], found.t - 1.0, max_relative = 1e-15);
+}
