@@ -210,3 +210,25 @@ proptest! {
         check(&state, &exact, 1e-15);
     }
 }
+
+/// A difference of states is what moved them: over full turns, and with what the sums keep.
+#[test]
+fn a_state_knows_how_far_it_has_moved() {
+    for increment in [0.5, -0.7, 1.3, 2.9, -3.1] {
+        let before = State::new([3.0, 1e9], [0.0; 2], [true, false]);
+        let mut state = before;
+        for k in 1..=12 {
+            state.advance(&[increment, 3e-9], [0.0; 2], None);
+            let [turned, moved] = state.moved_since(&before);
+            // The difference of two angles has half an ulp of a number below eight, and the products of whole turns theirs.
+            let expected = f64::from(k) * increment;
+            assert_abs_diff_eq!(turned, expected, epsilon = 4.5e-16 + f64::EPSILON * expected.abs());
+            assert_abs_diff_eq!(moved, 3e-9 * f64::from(k), epsilon = 1e-22);
+        }
+    }
+    // Back over the seam: one turn forward and one back.
+    let start = State::new([3.0], [0.0], [true]);
+    let mut over = start;
+    over.advance(&[0.5], [0.0], None);
+    assert_abs_diff_eq!(start.moved_since(&over)[0], -0.5, epsilon = 4.5e-16);
+}
