@@ -161,7 +161,7 @@ fn circle_map(scene: &Scene, measured: &Measured) -> Chart {
     Chart {
         title: format!("{}: turn of a loop", scene.title),
         axes: ["heading before the loop [rad]".to_owned(), "turn of the loop [rad]".to_owned()],
-        decades: false,
+        decades: [false; 2],
         layers,
     }
 }

@@ -1,8 +1,11 @@
 //! A stepper of the free sleigh, with what can be broken in one.
 
-use crate::schedule;
 use dla::Schedule;
 use harness::stability::{Recorded, Seen, VALUES};
+
+pub(crate) fn schedule(step: f64, duration: f64) -> Schedule {
+    Schedule { t0: 0.0, step, steps: (duration / step).round() as u64 }
+}
 
 /// What is broken.
 #[derive(Debug, Clone, Copy, PartialEq)]
