@@ -39,12 +39,15 @@ pub(crate) fn trace(label: &str, nodes: &[Seen], value: impl Fn(&Seen) -> f64) -
     curve(label, nodes.iter().map(|node| [node.t, value(node)]).collect())
 }
 
-/// The same of what should be small: of each stretch of time the largest value, so that the curve is its upper edge.
+/// The same of what should be small, as its upper edge.
 pub(crate) fn peaks(label: &str, nodes: &[Seen], value: impl Fn(&Seen) -> f64) -> Layer {
-    let stretch = nodes.len().div_ceil(200).max(1);
-    let largest =
-        |nodes: &[Seen]| nodes.iter().map(|node| [node.t, value(node)]).reduce(|a, b| if a[1] >= b[1] { a } else { b });
-    curve(label, nodes.chunks(stretch).filter_map(largest).collect())
+    curve(label, upper_edge(nodes.iter().map(|node| [node.t, value(node)]).collect()))
+}
+
+/// Of each of a hundred stretches of time the largest value.
+pub(crate) fn upper_edge(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    let stretches = points.chunks(points.len().div_ceil(100).max(1));
+    stretches.filter_map(|points| points.iter().copied().reduce(|a, b| if a[1] >= b[1] { a } else { b })).collect()
 }
 
 /// A level, such as a bar.

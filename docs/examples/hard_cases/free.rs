@@ -42,9 +42,10 @@ pub(crate) fn tiny_spin(program: &Program) -> Drawn {
 /// In units of the least number: what is below half of one is lost in every product.
 pub(crate) fn subnormal_spin(program: &Program) -> Drawn {
     const LEAST: f64 = 5e-324;
+    const UNITS: [f64; 3] = [1.0, 30.0, 300.0];
     let mut layers = Vec::new();
-    for (method, units) in [("dla", [1.0, 20.0, 30.0, 300.0]), ("dla-trapezoid", [1.0, 20.0, 30.0, 300.0])] {
-        let runs = units.map(|units| program.run(method, &Setup::free(-1.0, units * LEAST, 0.05, 40.0)));
+    for method in ["dla", "dla-trapezoid"] {
+        let runs = UNITS.map(|units| program.run(method, &Setup::free(-1.0, units * LEAST, 0.05, 40.0)));
         let units = |nodes: &Vec<Seen>| nodes.iter().map(|node| [node.t, node.values[SPIN] / LEAST]).collect();
         let curves = runs.into_iter().map(|run| run.map(|nodes| units(&nodes))).collect::<Result<_, _>>()?;
         layers.push(Layer::Curves { label: method.to_owned(), curves });
@@ -78,8 +79,7 @@ pub(crate) fn long_step(_program: &Program) -> Drawn {
         w * (1.0 + 0.5 * h * gain * (u + a * w * d.sin()) / d.cos()) - omega
     };
     let (most, fine) = (4.0, 8000);
-    let mut layers = vec![curve("zero", vec![[-6.0, 0.0], [6.0, 0.0]])];
-    let mut roots = Vec::new();
+    let (mut layers, mut roots) = (Vec::new(), Vec::new());
     for h in [0.5, 1.0, 2.0] {
         let points: Vec<[f64; 2]> =
             (0..=fine).map(|k| -6.0 + 12.0 * f64::from(k) / f64::from(fine)).map(|w| [w, residual(h, w)]).collect();
@@ -109,6 +109,8 @@ pub(crate) fn step_lengths(program: &Program) -> Drawn {
 }
 
 pub(crate) fn negative_substeps(program: &Program) -> Drawn {
+    // More than all of the energy.
+    const LOST: f64 = 1e4;
     let setup = Setup::free(-1.0, 1e-8, 4.0, 160.0);
     let exact = exact(&setup)?;
     let times = (0..=1600).map(|k| 0.1 * f64::from(k));
@@ -117,10 +119,11 @@ pub(crate) fn negative_substeps(program: &Program) -> Drawn {
     for method in ["dla4", "dla6", "dla8", "rk4"] {
         let nodes = program.run(method, &setup)?;
         let end = &nodes[nodes.len() - 1];
-        if end.t < setup.duration {
+        if end.t < setup.duration && spin(end) < LOST {
             ends.push([end.t, spin(end)]);
         }
-        layers.push(trace(method, &nodes, |node| spin(node).min(1e2)));
+        let before: Vec<Seen> = nodes.into_iter().take_while(|node| spin(node) < LOST).collect();
+        layers.push(trace(method, &before, spin));
     }
     layers.push(markers("refused", ends));
     Ok(in_time("Steps of 4 s, through an unstable line", "|w| [rad/s]", Decades, layers))

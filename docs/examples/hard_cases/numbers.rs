@@ -2,7 +2,7 @@
 
 use crate::broken::{self, BODY, Body, Broken};
 use crate::curves::Upright::{Decades, Linear};
-use crate::curves::{SPEED, SPIN, X, Y, chart, curve, in_time, level, markers, peaks};
+use crate::curves::{SPEED, SPIN, X, Y, chart, curve, in_time, level, markers, peaks, upper_edge};
 use crate::free::exact;
 use crate::program::{Program, Setup};
 use harness::report::Chart;
@@ -54,7 +54,7 @@ pub(crate) fn many_turns(program: &Program) -> Drawn {
     let [unwrapped, image] = unwrapped;
     let layers =
         vec![peaks("dla", &dla, distance), peaks("turns not taken off", &apart(unwrapped, &image, [0.0; 2]), distance)];
-    Ok(in_time("From a million turns: how far from the same motion without", "distance [m]", Decades, layers))
+    Ok(in_time("From a million turns: how far from the same motion without", "distance [m]", Linear, layers))
 }
 
 /// A time that is summed, and one that is a product.
@@ -85,19 +85,20 @@ fn spin_off(setup: &Setup<'_>) -> Result<impl Fn(&Seen) -> f64 + use<>, Box<dyn 
 }
 
 pub(crate) fn masses(program: &Program) -> Drawn {
+    let setup = |body| Setup { body, ..Setup::free(-1.0, 0.3, 0.05, 10.0) };
     let mut layers = Vec::new();
-    for body in [[1.0, 1.0, 0.5], [1e-10, 1e-10, 0.5], [1e10, 1e10, 0.5], [1.0, 1.0, 1e-8]] {
-        let setup = Setup { body, ..Setup::free(-1.0, 0.3, 0.05, 10.0) };
-        let [mass, _, offset] = body;
-        layers.push(peaks(
-            &format!("dla, m = I = {mass:?}, a = {offset:?}"),
-            &program.run("dla", &setup)?,
-            spin_off(&setup)?,
-        ));
+    for (label, body) in [
+        ("1 kg, a = 0.5 m", [1.0, 1.0, 0.5]),
+        ("1e-10 kg, a = 0.5 m", [1e-10, 1e-10, 0.5]),
+        ("1e10 kg, a = 0.5 m", [1e10, 1e10, 0.5]),
+        ("1 kg, a = 1e-8 m", [1.0, 1.0, 1e-8]),
+    ] {
+        let setup = setup(body);
+        layers.push(peaks(label, &program.run("dla", &setup)?, spin_off(&setup)?));
     }
-    let setup = Setup { body: [1e-10, 1e-10, 0.5], ..Setup::free(-1.0, 0.3, 0.05, 10.0) };
-    let unit = made(Broken::UnitMass, setup.body, setup.start, 0.05, 10.0);
-    layers.push(peaks("mass taken for one, 1e-10", &unit, spin_off(&setup)?));
+    let light = setup([1e-10, 1e-10, 0.5]);
+    let unit = made(Broken::UnitMass, light.body, light.start, light.step, light.duration);
+    layers.push(peaks("1e-10 kg, taken for 1 kg", &unit, spin_off(&light)?));
     Ok(in_time("Masses over twenty orders of magnitude", "relative error of the spin", Decades, layers))
 }
 
@@ -121,18 +122,24 @@ pub(crate) fn light_inertia(program: &Program) -> Drawn {
 /// Speeds and times in units of the motion at 1 m/s: the same motion, if its numbers are numbers.
 pub(crate) fn fast(program: &Program) -> Drawn {
     let (mut layers, mut refused) = (Vec::new(), Vec::new());
-    for (method, unit) in [("dla", 1.0), ("dla", 1e160), ("dla", 1e300), ("gauss8", 1e150), ("gauss8", 1e160)] {
+    for (label, method, unit) in [
+        ("dla, 1 m/s", "dla", 1.0),
+        ("dla, 1e160 m/s", "dla", 1e160),
+        ("dla, 1e300 m/s", "dla", 1e300),
+        ("gauss8, 1e150 m/s", "gauss8", 1e150),
+        ("gauss8, 1e160 m/s", "gauss8", 1e160),
+    ] {
         let setup = Setup::free(-unit, 0.3 * unit, 0.05 / unit, 10.0 / unit);
-        let exact = exact(&setup)?;
-        let nodes = program.run(method, &setup)?;
+        let (exact, nodes) = (exact(&setup)?, program.run(method, &setup)?);
         if nodes.len() == 1 {
             refused.push([0.0, 1e-6]);
             continue;
         }
-        let off = nodes.iter().map(|node| [node.t * unit, (node.values[SPEED] - exact.at(node.t).speed).abs() / unit]);
-        layers.push(curve(&format!("{method}, {unit:e} m/s"), off.collect()));
+        // The same motion, in another unit of time.
+        let off = |node: &Seen| [node.t * unit, (node.values[SPEED] - exact.at(node.t).speed).abs() / unit];
+        layers.push(curve(label, upper_edge(nodes.iter().map(off).collect())));
     }
     layers.push(markers("gauss8, 1e160 m/s: refused", refused));
-    let (title, across) = ("Speeds whose squares are no numbers", "t, by the first speed [m]");
-    Ok(chart(title, [across, "error of u, by the first speed"], [false, true], layers))
+    let (title, across) = ("Speeds whose squares are no numbers", "t, times the first speed [m]");
+    Ok(chart(title, [across, "error of u, as a part of the first speed"], [false, true], layers))
 }

@@ -1,12 +1,11 @@
 //! Systems that no scene has.
 
-use crate::curves::Upright::{Decades, Linear};
-use crate::curves::{curve, in_time, level, markers, peaks};
+use crate::curves::Upright::Linear;
+use crate::curves::{curve, in_time, level, markers, upper_edge};
 use crate::program::Program;
-use dla::{Dla, Energy, OneStep, Schedule, State, Trajectory, drive};
+use dla::{Dla, Energy, Node, OneStep, Schedule, State, Trajectory, drive};
 use harness::Rk4Reduced;
-use harness::report::{Chart, Layer};
-use harness::stability::Seen;
+use harness::report::Chart;
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
 use models::{CompoundPendulum, ContactOscillator, GaugedOscillator};
 use sleigh::{Exact, Sleigh, SleighState};
@@ -50,24 +49,18 @@ impl System<3, 2> for TwoRows {
     }
 }
 
-/// Coordinates, velocities and energy of the nodes of a run; of one that is refused on its way, those before.
+/// The nodes of a run; of one that is refused on its way, those before.
 fn nodes<Sys: System<3, M>, const M: usize>(
     system: &Sys,
     mut method: impl OneStep<Sys, 3, M>,
     (q, v): ([f64; 3], [f64; 3]),
     (step, steps): (f64, u64),
-) -> Vec<Seen> {
+) -> Vec<Node<3, M>> {
     let mut state = State::new(q, v, system.angles());
-    let mut trajectory = Trajectory::<3, M>::every(1);
+    let mut trajectory = Trajectory::every(1);
     // A refusal is part of the picture.
     let _refused = drive(system, &mut method, &Schedule { t0: 0.0, step, steps }, &mut state, &mut trajectory);
-    let first = trajectory.nodes()[0].energy;
-    let seen = trajectory.nodes().iter().map(|node| {
-        let ([x, y, z], [vx, vy, vz]) = (node.q, node.v);
-        let energy_error = (node.energy - first).abs();
-        Seen { t: node.t, values: [x, y, z, vx, vy, vz], energy_error, constraint: node.constraint }
-    });
-    seen.collect()
+    trajectory.nodes().to_vec()
 }
 
 pub(crate) fn parallel_blades(_program: &Program) -> Drawn {
@@ -84,8 +77,8 @@ pub(crate) fn parallel_blades(_program: &Program) -> Drawn {
     let times = |count: u32| (0..=count).map(move |k| 20.0 * f64::from(k) / f64::from(count));
     let dla = nodes(&TwoRows::Parallel(sleigh), Dla::midpoint(), start.to_coordinates(), (0.05, 400));
     let layers = vec![
-        curve("dla, two blades", dla.iter().map(|node| [node.t, node.values[2]]).collect()),
-        curve("two blades, each with all of the force", times(200).map(|t| [t, turned(t)]).collect()),
+        curve("dla, two blades", dla.iter().map(|node| [node.t, node.q[2]]).collect()),
+        curve("the force counted twice", times(200).map(|t| [t, turned(t)]).collect()),
         markers("closed form, one blade", times(20).map(|t| [t, exact.at(t).heading])),
     ];
     Ok(in_time("Two parallel blades are one", "heading [rad]", Linear, layers))
@@ -94,28 +87,28 @@ pub(crate) fn parallel_blades(_program: &Program) -> Drawn {
 pub(crate) fn dropping_row(_program: &Program) -> Drawn {
     let guide = TwoRows::Guide(Sleigh::new(1.0, 1.0, 0.5)?);
     let run = nodes(&guide, Dla::midpoint(), ([0.0; 3], [1.0, 0.0, 0.0]), (0.0625, 32));
-    let way: Vec<[f64; 2]> = run.iter().map(|node| [node.t, node.values[0]]).collect();
+    let way: Vec<[f64; 2]> = run.iter().map(|node| [node.t, node.q[0]]).collect();
     let end = way[way.len() - 1];
     let layers = vec![
         curve("dla", way),
         curve("as if nothing were", vec![end, [2.0, 2.0]]),
         level("where the row vanishes", 1.0, 2.0),
-        markers("dla: refused, by the name of the row", [end]),
+        markers("dla: refused", [end]),
     ];
     Ok(in_time("A guide (x - 1) w = 0 that lets go", "x [m]", Linear, layers))
 }
 
 pub(crate) fn pseudo_holonomic(_program: &Program) -> Drawn {
     let pendulum = CompoundPendulum::new(1.3, 0.4, 0.9, 9.81)?.pseudo_holonomic();
-    let (start, steps) = (pendulum.state_at(1.2, 0.3), (0.02, 10_000));
+    let (start, steps) = (pendulum.state_at(1.2, 0.3), (0.1, 20_000));
     let system = TwoRows::Pendulum(pendulum);
-    let off = |node: &Seen| {
-        let [x, y] = pendulum.hinge(&[node.values[0], node.values[1], node.values[2]]);
-        x.hypot(y)
+    let off = |nodes: Vec<Node<3, 2>>| {
+        let hinge = |node: &Node<3, 2>| pendulum.hinge(&node.q);
+        upper_edge(nodes.iter().map(|node| [node.t, hinge(node)[0].hypot(hinge(node)[1])]).collect())
     };
     let layers = vec![
-        peaks("dla", &nodes(&system, Dla::midpoint(), start, steps), off),
-        peaks("rk4-reduced", &nodes(&system, Rk4Reduced, start, steps), off),
+        curve("dla", off(nodes(&system, Dla::midpoint(), start, steps))),
+        curve("rk4-reduced", off(nodes(&system, Rk4Reduced, start, steps))),
     ];
     Ok(in_time("A hinge that is given by its rates alone", "distance of the hinge [m]", Linear, layers))
 }
@@ -123,13 +116,17 @@ pub(crate) fn pseudo_holonomic(_program: &Program) -> Drawn {
 pub(crate) fn gauge(_program: &Program) -> Drawn {
     let plain = ContactOscillator::new(0.0)?;
     let start = plain.start_at(-0.5 * 2f64.sqrt())?;
-    let steps = (2.0 * (PI / 40.0).sin(), 40_000);
-    let mut layers: Vec<Layer> = Vec::new();
-    for (label, gauge) in [("dla", 1.0), ("dla, no gauge term", 0.0)] {
-        let system = GaugedOscillator::new(plain, gauge)?;
-        layers.push(peaks(label, &nodes(&system, Dla::midpoint(), start, steps), |node| node.energy_error));
-    }
-    let system = GaugedOscillator::new(plain, 1.0)?;
-    layers.push(peaks("energy2", &nodes(&system, Energy::<1>::default(), start, steps), |node| node.energy_error));
-    Ok(in_time("A gauge term, which changes no motion", "energy error", Decades, layers))
+    let steps = (2.0 * (PI / 40.0).sin(), 100_000);
+    let (with, without) = (GaugedOscillator::new(plain, 1.0)?, GaugedOscillator::new(plain, 0.0)?);
+    // The mean over fifty periods of `y`, so that what drifts is seen without what swings.
+    let drift = |label: &str, nodes: Vec<Node<3, 1>>| {
+        let mean = |part: &[Node<3, 1>]| part.iter().map(|node| node.energy - nodes[0].energy).sum::<f64>() / 2000.0;
+        curve(label, nodes.chunks_exact(2000).map(|part| [part[0].t, mean(part)]).collect())
+    };
+    let layers = vec![
+        drift("dla", nodes(&with, Dla::midpoint(), start, steps)),
+        drift("dla, no gauge term", nodes(&without, Dla::midpoint(), start, steps)),
+        drift("energy2", nodes(&with, Energy::<1>::default(), start, steps)),
+    ];
+    Ok(in_time("A gauge term, which changes no motion", "E - E0, mean of 50 periods", Linear, layers))
 }
