@@ -57,7 +57,7 @@ const PICTURES: [(&str, Draw); 22] = [
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args_os().skip(1).map(PathBuf::from);
     let folder = arguments.next().ok_or("usage: hard_cases FOLDER [NOSLIP]")?;
-    let program = Program::at(arguments.next().unwrap_or_else(|| "target/release/noslip".into()))?;
+    let program = Program::at(&arguments.next().unwrap_or_else(|| "target/release/noslip".into()))?;
     fs::create_dir_all(&folder)?;
     for (case, draw) in PICTURES {
         let chart = draw(&program).map_err(|error| format!("{case}: {error}"))?;

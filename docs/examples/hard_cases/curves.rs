@@ -41,11 +41,12 @@ pub(crate) fn trace(label: &str, nodes: &[Seen], value: impl Fn(&Seen) -> f64) -
 
 /// The same of what should be small, as its upper edge.
 pub(crate) fn peaks(label: &str, nodes: &[Seen], value: impl Fn(&Seen) -> f64) -> Layer {
-    curve(label, upper_edge(nodes.iter().map(|node| [node.t, value(node)]).collect()))
+    curve(label, upper_edge(nodes.iter().map(|node| [node.t, value(node)])))
 }
 
 /// Of each of a hundred stretches of time the largest value.
-pub(crate) fn upper_edge(points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+pub(crate) fn upper_edge(points: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
+    let points: Vec<_> = points.collect();
     let stretches = points.chunks(points.len().div_ceil(100).max(1));
     stretches.filter_map(|points| points.iter().copied().reduce(|a, b| if a[1] >= b[1] { a } else { b })).collect()
 }

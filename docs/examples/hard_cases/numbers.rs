@@ -137,7 +137,7 @@ pub(crate) fn fast(program: &Program) -> Drawn {
         }
         // The same motion, in another unit of time.
         let off = |node: &Seen| [node.t * unit, (node.values[SPEED] - exact.at(node.t).speed).abs() / unit];
-        layers.push(curve(label, upper_edge(nodes.iter().map(off).collect())));
+        layers.push(curve(label, upper_edge(nodes.iter().map(off))));
     }
     layers.push(markers("gauss8, 1e160 m/s: refused", refused));
     let (title, across) = ("Speeds whose squares are no numbers", "t, times the first speed [m]");

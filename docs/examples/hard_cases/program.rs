@@ -3,7 +3,7 @@
 use harness::stability::Seen;
 use std::error::Error;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use tempfile::TempDir;
 
@@ -44,7 +44,7 @@ impl Setup<'_> {
 }
 
 impl Program {
-    pub(crate) fn at(path: PathBuf) -> Result<Self, Box<dyn Error>> {
+    pub(crate) fn at(path: &Path) -> Result<Self, Box<dyn Error>> {
         Ok(Self { path: path.canonicalize()?, folder: TempDir::new()? })
     }
 

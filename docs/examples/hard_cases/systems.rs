@@ -104,7 +104,7 @@ pub(crate) fn pseudo_holonomic(_program: &Program) -> Drawn {
     let system = TwoRows::Pendulum(pendulum);
     let off = |nodes: Vec<Node<3, 2>>| {
         let hinge = |node: &Node<3, 2>| pendulum.hinge(&node.q);
-        upper_edge(nodes.iter().map(|node| [node.t, hinge(node)[0].hypot(hinge(node)[1])]).collect())
+        upper_edge(nodes.iter().map(|node| [node.t, hinge(node)[0].hypot(hinge(node)[1])]))
     };
     let layers = vec![
         curve("dla", off(nodes(&system, Dla::midpoint(), start, steps))),
