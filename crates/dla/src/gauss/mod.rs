@@ -82,7 +82,7 @@ impl<const S: usize> Gauss<S> {
         state: &State<N>,
         xi0: &[f64; N],
     ) -> Option<Taken<N>> {
-        let rule = self.eight.filter(|_| S >= LANES_PAY)?;
+        let rule = self.eight?;
         let before = self.memory.rows(state).filter(|_| self.memory.is_of_length(h)).zip(rule.continued(0));
         let ending = Ending { left: LEFT, rounding: 1e-12, limit: self.max_iterations, scales: None };
         match dispatch(lanes::Stages { rule, system, t, h, q0: state.q(), xi0, before, ending })? {
@@ -192,9 +192,6 @@ impl<const N: usize> Taken<N> {
         Ok(())
     }
 }
-
-/// From so many stages on eight places at once are faster than the stages in turn.
-const LANES_PAY: usize = 3;
 
 /// Relative changes that are left undone: what they would bias a sum by in `10^6` steps is below its rounding.
 const LEFT: f64 = 1e-18;
