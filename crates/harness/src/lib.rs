@@ -29,7 +29,7 @@ pub use cost::{StepCost, step_cost};
 pub use drift::{Blocks, Drift, Verdict};
 pub use method::{Kind, METHODS, Method, MethodError, MethodInfo};
 pub use record::{EnergySummary, NewtonSummary, Record, Sample};
-pub use run::{Request, integrate, integrate_from, integrate_on, integrate_on_watched, integrate_pieces, run, timed};
+pub use run::{Request, integrate, integrate_from, integrate_on, integrate_pieces, run, timed};
 pub use saved::{Saving, run_saved};
 pub use statistics::Trend;
 pub use timing::Progress;
