@@ -38,6 +38,12 @@ impl<const N: usize> Past<N> {
         (self.step, self.increments) = (h, [*increment, last, second, third, fourth]);
     }
 
+    /// No step yet, again.
+    #[inline(always)]
+    pub(crate) fn forget(&mut self) {
+        self.made = 0;
+    }
+
     /// The increment of one more step of length `h`: their fifth difference would vanish.
     #[inline(always)]
     #[allow(clippy::float_cmp, reason = "only steps of the very same length are points of one sequence")]

@@ -138,7 +138,7 @@ impl<const N: usize> State<N> {
     /// Moves the configuration by `increment` and sets the velocity, with its quasi-velocities where they are known.
     #[inline(always)]
     pub fn advance(&mut self, increment: &[f64; N], v: [f64; N], xi: Option<[f64; N]>) {
-        self.past = Past::new();
+        self.past.forget();
         self.go(increment, v, xi.map_or(Left::Nothing, Left::Velocities));
     }
 

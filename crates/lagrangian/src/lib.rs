@@ -18,6 +18,7 @@ mod factored;
 mod gradients;
 mod growth;
 mod hyperdual;
+mod inverse;
 mod known_angle;
 mod lanes;
 pub mod linear;
