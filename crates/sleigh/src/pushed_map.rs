@@ -18,6 +18,15 @@ const NOISE: f64 = 1e-11;
 /// As many of Newton's corrections, each with two simplified ones after it, before the general step is made.
 const MOST: u32 = 4;
 
+/// Where a step begins, and what is known of it.
+pub(crate) struct Start<'a> {
+    pub(crate) q: &'a [f64; 3],
+    pub(crate) v: &'a [f64; 3],
+    pub(crate) xi: Option<[f64; 3]>,
+    /// About the increment.
+    pub(crate) expected: Option<[f64; 3]>,
+}
+
 /// One step of the midpoint discrete Lagrange-d'Alembert map of a sleigh in a potential, reduced to two unknowns.
 ///
 /// With the notation of the closed map of the free sleigh, and `f_e`, `f_n`, `tau` the force of the potential in the middle of
@@ -35,7 +44,7 @@ const MOST: u32 = 4;
 pub(crate) fn step<P: Push<3>>(
     sleigh: &Sleigh,
     (t, h): (f64, f64),
-    (q, v, xi, expected): (&[f64; 3], &[f64; 3], Option<[f64; 3]>, Option<[f64; 3]>),
+    Start { q, v, xi, expected }: Start<'_>,
     push: &P,
 ) -> Option<ClosedStep<3, 1>> {
     let (sin0, cos0) = q[2].sin_cos();
@@ -240,7 +249,7 @@ impl Equations<'_> {
         let (cos1, sin1) = (cos_m * cos - sin_m * sin, sin_m * cos + cos_m * sin);
         let (turn, spin) = (speed * sin, a * w * cos);
         let turns_far = (h * w).abs() > NEAR;
-        (!turns_far && (u1 + omega1).is_finite()).then(|| ClosedStep {
+        let end = ClosedStep {
             increment: [h * speed * cos_m, h * speed * sin_m, h * w],
             velocity: [u1 * cos1, u1 * sin1, omega1],
             xi: [u1, omega1, 0.0],
@@ -249,6 +258,7 @@ impl Equations<'_> {
                 [m * (turn + (a * omega1 - spin)) - half * (across * cos - along * sin)],
             ],
             iterations: 0,
-        })
+        };
+        (!turns_far && (u1 + omega1).is_finite()).then_some(end)
     }
 }

@@ -98,6 +98,6 @@ impl System<3, 1> for Sleigh {
         expected: Option<[f64; 3]>,
         push: &P,
     ) -> Option<ClosedStep<3, 1>> {
-        pushed_map::step(self, (t, h), (q, v, xi, expected), push)
+        pushed_map::step(self, (t, h), pushed_map::Start { q, v, xi, expected }, push)
     }
 }
