@@ -11,6 +11,7 @@
 mod branch;
 mod checkpoint;
 mod composition;
+mod corrections;
 mod dependent;
 mod dla;
 mod drive;
@@ -26,6 +27,7 @@ mod lobatto;
 mod newton;
 mod one_step;
 mod overshoot;
+mod past;
 mod pieces;
 mod positions;
 mod projection;
