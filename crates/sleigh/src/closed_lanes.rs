@@ -26,10 +26,10 @@ struct Ratio<const R: usize> {
     turn: Abreast<R>,
 }
 
-/// The step: `h`, mass, offset, `k = h m a / (2 J)`; the start: `u0`, `omega0`.
+/// `h/2`, offset and `k = h m a / (2 J)` of the step, `u0` and `omega0` of its start.
 #[derive(Clone, Copy)]
 struct Equation<const R: usize> {
-    h: Abreast<R>,
+    half: Abreast<R>,
     a: Abreast<R>,
     k: Abreast<R>,
     u0: Abreast<R>,
@@ -40,8 +40,8 @@ impl<const R: usize> Equation<R> {
     /// A first guess of `r`, that of the map of one sleigh.
     #[inline(always)]
     fn prediction(&self) -> Abreast<R> {
-        let Self { h, a, k, u0, omega0 } = *self;
-        let d = h * omega0 * 0.5;
+        let Self { half, a, k, u0, omega0 } = *self;
+        let d = half * omega0;
         let r = (k * u0 + 1.0).recip();
         let rr = r * r;
         r - k * ((a * omega0 + u0 * d * 0.5) * d) * (rr * rr)
@@ -51,9 +51,9 @@ impl<const R: usize> Equation<R> {
     /// changes is linear, to the rounding of a small one.
     #[inline(always)]
     fn corrected<const WIDE: bool>(&self, r: Abreast<R>) -> Ratio<R> {
-        let Self { h, a, k, u0, omega0 } = *self;
+        let Self { half, a, k, u0, omega0 } = *self;
         let w = omega0 * r;
-        let turn = h * w * 0.5;
+        let turn = half * w;
         let (sin, cos) = if WIDE { long_series(turn) } else { short_series(turn) };
         let reach = a * w;
         let part = reach * sin;
@@ -79,7 +79,7 @@ impl<const R: usize> Equation<R> {
 fn short_series<const R: usize>(d: Abreast<R>) -> (Abreast<R>, Abreast<R>) {
     let z = d * d;
     let sin = d + d * z * (z * (z * SINE[2] + SINE[1]) + SINE[0]);
-    let cos = -(z * (-(z * (z * (z * COSINE[2] + COSINE[1]) + COSINE[0])) + 0.5)) + 1.0;
+    let cos = -(z * (-(z * (z * COSINE[1] + COSINE[0])) + 0.5)) + 1.0;
     (sin, cos)
 }
 
@@ -96,9 +96,9 @@ fn long_series<const R: usize>(d: Abreast<R>) -> (Abreast<R>, Abreast<R>) {
 ///
 /// The frame is sine and cosine of the heading, and the ratios `w/omega0` of the last four steps, from which that of the next
 /// one is extrapolated: a step then has one correction, and two divisions.
-impl ClosedLanes<3, 1, 4, 6> for Sleigh {
-    fn prepared(&self, h: f64) -> [f64; 4] {
-        [h, self.mass(), self.offset(), 0.5 * h * self.spin_gain()]
+impl ClosedLanes<3, 1, 5, 6> for Sleigh {
+    fn prepared(&self, h: f64) -> [f64; 5] {
+        [h, 0.5 * h, self.mass(), self.offset(), 0.5 * h * self.spin_gain()]
     }
 
     #[inline(always)]
@@ -109,11 +109,11 @@ impl ClosedLanes<3, 1, 4, 6> for Sleigh {
 
     #[inline(always)]
     fn step<const WIDE: bool, const R: usize>(
-        &[h, m, a, k]: &[Abreast<R>; 4],
+        &[h, half, m, a, k]: &[Abreast<R>; 5],
         &[u0, omega0, _]: &[Abreast<R>; 3],
         &[sin0, cos0, r1, r2, r3, r4]: &[Abreast<R>; 6],
     ) -> ClosedLaneStep<R, 3, 1, 6> {
-        let equation = Equation { h, a, k, u0, omega0 };
+        let equation = Equation { half, a, k, u0, omega0 };
         let Ratio { r, w, sin, cos, across, correction, turn } = if WIDE {
             let mut r = equation.prediction();
             for _ in 1..CORRECTIONS {
@@ -134,7 +134,8 @@ impl ClosedLanes<3, 1, 4, 6> for Sleigh {
         let (most, last) = if WIDE { (BROAD, LAST) } else { (NARROW, QUICK) };
         let good = from_fn(|i| {
             let (c, d) = (correction.of[i].abs(), turn.of[i].abs());
-            (c <= last) & (d <= most) & (r.of[i] > 0.0)
+            // That `r` is positive, quick steps take over from the wide ones before them.
+            (c <= last) & (d <= most) & (!WIDE | (r.of[i] > 0.0))
         });
         ClosedLaneStep {
             increment: [way * cos_m, way * sin_m, h * w],

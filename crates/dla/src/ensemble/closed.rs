@@ -5,7 +5,10 @@ use std::array::from_fn;
 
 /// After so many steps frames are found anew from the configurations, so that their rounding does not add up, and angles are
 /// wrapped.
-const BLOCK: u64 = 16;
+const BLOCK: u64 = 64;
+
+/// The first steps have no frame before them, and are made twice: as few as leave a frame behind.
+const FIRST: u64 = 4;
 
 /// Lanes of a vector register.
 const LANES: usize = 8;
@@ -20,6 +23,7 @@ pub struct ClosedEnsemble<Sys, const R: usize, const W: usize, const N: usize, c
     step: f64,
     prepared: [Row<W>; P],
     run: Run<W, N, M, F>,
+    begun: bool,
 }
 
 /// What a block of steps changes.
@@ -43,7 +47,7 @@ where
         let each: [[f64; P]; W] = from_fn(|lane| systems[lane].prepared(h));
         let prepared = from_fn(|k| Row(from_fn(|lane| each[lane][k])));
         let frame = [Row([f64::NAN; W]); F];
-        Self { systems, step: h, prepared, run: Run { state, frame, largest: [Row::ZERO; M], bad: Row::ZERO } }
+        Self { systems, step: h, prepared, run: Run { state, frame, largest: [Row::ZERO; M], bad: Row::ZERO }, begun: false }
     }
 
     /// The states.
@@ -60,13 +64,14 @@ where
 
     /// Makes steps. A trajectory whose step has no solution becomes NaN.
     pub fn advance(&mut self, steps: u64) {
-        let Self { systems, step, prepared, run } = self;
+        let Self { systems, step, prepared, run, begun } = self;
         vectorized(
             #[inline(always)]
             || {
                 let mut made = 0;
                 while made < steps {
-                    let block = BLOCK.min(steps - made);
+                    let block = if *begun { BLOCK } else { FIRST }.min(steps - made);
+                    *begun = true;
                     run.find_frames::<Sys, P>();
                     let before = *run;
                     run.block::<Sys, false, R, P>(prepared, block);
