@@ -2,6 +2,7 @@ use crate::State;
 use crate::state::wrapped;
 use std::array::from_fn;
 use std::f64::consts::PI;
+use std::hint::black_box;
 
 /// One number of each of `W` trajectories.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -10,6 +11,13 @@ pub(crate) struct Row<const W: usize>(pub(crate) [f64; W]);
 
 impl<const W: usize> Row<W> {
     pub(crate) const ZERO: Self = Self([0.0; W]);
+}
+
+/// The number `W` of lanes, as the compiler does not know it: a loop over a known number it would take apart into single
+/// numbers, before it looks for what goes into a vector.
+#[inline(always)]
+pub(crate) fn lanes<const W: usize>() -> usize {
+    black_box(W).min(W)
 }
 
 /// Configurations and quasi-velocities of `W` trajectories: what [`State`] is for one.
