@@ -1,7 +1,7 @@
 //! What a step of an ensemble costs, on one core: processor time, least and median of rounds.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
-use dla::{ClosedEnsemble, GaussEnsemble, LaneState, Same};
+use dla::{ClosedEnsemble, Ensemble, GaussEnsemble, LaneState, Same};
 use lagrangian::{System, With};
 use sleigh::effects::Bowl;
 use sleigh::Sleigh;

@@ -45,7 +45,7 @@ pub use composition::Composition;
 pub use dependent::{Dependency, Dependent};
 pub use drive::{Observer, Part, RunError, Schedule, View, drive, drive_part};
 pub use energy::{Energy, Gradient};
-pub use ensemble::{ClosedEnsemble, Each, GaussEnsemble, LaneState, Same, Systems};
+pub use ensemble::{ClosedEnsemble, Each, Ensemble, GaussEnsemble, LaneState, Same, Systems};
 pub use events::{Crossing, Direction, Event, Watch};
 pub use gauss::Gauss;
 pub use gni::Gni;

@@ -8,6 +8,7 @@ pub mod analysis;
 mod baseline;
 mod cost;
 mod drift;
+pub mod ensemble;
 mod method;
 pub mod precision;
 mod record;

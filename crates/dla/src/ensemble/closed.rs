@@ -1,4 +1,4 @@
-use super::LaneState;
+use super::{Ensemble, LaneState};
 use super::state::Row;
 use lagrangian::{Abreast, ClosedLaneStep, ClosedLanes, System, vectorized};
 use std::array::from_fn;
@@ -50,20 +50,23 @@ where
         Self { systems, step: h, prepared, run: Run { state, frame, largest: [Row::ZERO; M], bad: Row::ZERO }, begun: false }
     }
 
-    /// The states.
-    #[must_use]
-    pub fn state(&self) -> &LaneState<N, W> {
-        &self.run.state
-    }
-
     /// The largest force of each constraint on a lane, averaged over a step (N).
     #[must_use]
     pub fn largest_multiplier(&self, lane: usize) -> [f64; M] {
         from_fn(|k| self.run.largest[k].0[lane] / self.step.abs())
     }
+}
 
-    /// Makes steps. A trajectory whose step has no solution becomes NaN.
-    pub fn advance(&mut self, steps: u64) {
+impl<Sys, const R: usize, const W: usize, const N: usize, const M: usize, const P: usize, const F: usize> Ensemble<N, W>
+    for ClosedEnsemble<Sys, R, W, N, M, P, F>
+where
+    Sys: System<N, M> + ClosedLanes<N, M, P, F> + Copy,
+{
+    fn state(&self) -> &LaneState<N, W> {
+        &self.run.state
+    }
+
+    fn advance(&mut self, steps: u64) {
         let Self { systems, step, prepared, run, begun } = self;
         vectorized(
             #[inline(always)]

@@ -1,6 +1,6 @@
 use super::collocation::Collocation;
 use super::state::{Row, lanes};
-use super::{LaneState, Systems};
+use super::{Ensemble, LaneState, Systems};
 use lagrangian::{Abreast, Scalar, System, vectorized, velocity_of};
 use std::array::from_fn;
 use std::marker::PhantomData;
@@ -59,28 +59,10 @@ where
         Some(Self { systems, collocation, schedule, made: 0, cyclic, state, stages, sweeps: 0, settled: 1e-16, of })
     }
 
-    /// The states.
-    #[must_use]
-    pub fn state(&self) -> &LaneState<N, W> {
-        &self.state
-    }
-
     /// Iterations made so far.
     #[must_use]
     pub fn sweeps(&self) -> u64 {
         self.sweeps
-    }
-
-    /// Makes steps. A trajectory whose step is not found becomes NaN.
-    pub fn advance(&mut self, steps: u64) {
-        vectorized(
-            #[inline(always)]
-            || {
-                for _ in 0..steps {
-                    self.step();
-                }
-            },
-        );
     }
 
     #[inline(always)]
@@ -178,6 +160,28 @@ where
                 self.state.lose(lane);
             }
         }
+    }
+}
+
+impl<Sys, Each, const S: usize, const W: usize, const N: usize, const M: usize> Ensemble<N, W>
+    for GaussEnsemble<Sys, Each, S, W, N, M>
+where
+    Sys: System<N, M>,
+    Each: Systems<Sys, W>,
+{
+    fn state(&self) -> &LaneState<N, W> {
+        &self.state
+    }
+
+    fn advance(&mut self, steps: u64) {
+        vectorized(
+            #[inline(always)]
+            || {
+                for _ in 0..steps {
+                    self.step();
+                }
+            },
+        );
     }
 }
 
