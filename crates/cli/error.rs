@@ -12,6 +12,8 @@ pub(crate) enum CliError {
     #[error("{0}")]
     Scene(#[from] SceneError),
     #[error("{0}")]
+    Sweep(#[from] scene::SweepError),
+    #[error("{0}")]
     Method(#[from] MethodError),
     #[error("the scene: {0}")]
     Sleigh(#[from] sleigh::SleighError),
@@ -77,9 +79,12 @@ impl CliError {
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
             Self::Case { .. } => ExitCode::from(2),
-            Self::Scene(_) | Self::Sleigh(_) | Self::Method(_) | Self::Exists { .. } | Self::Ending { .. } => {
-                ExitCode::from(2)
-            }
+            Self::Scene(_)
+            | Self::Sweep(_)
+            | Self::Sleigh(_)
+            | Self::Method(_)
+            | Self::Exists { .. }
+            | Self::Ending { .. } => ExitCode::from(2),
             #[cfg(not(feature = "parquet"))]
             Self::WithoutParquet { .. } => ExitCode::from(2),
             Self::ChartEnding { .. } | Self::Request(_) => ExitCode::from(2),

@@ -3,8 +3,8 @@
 
 use dla::{ClosedEnsemble, Ensemble, GaussEnsemble, LaneState, Same};
 use lagrangian::{System, With};
-use sleigh::effects::Bowl;
 use sleigh::Sleigh;
+use sleigh::effects::Bowl;
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -27,7 +27,8 @@ fn seconds(mut f: impl FnMut()) -> (f64, f64) {
 fn closed<const R: usize, const W: usize>(h: f64) {
     let sleighs = black_box([Sleigh::new(1.0, 1.0, 0.5).unwrap(); W]);
     let starts: Vec<_> = (0..W).map(|i| ([0.0; 3], [-1.0, 0.05 + 1e-3 * i as f64, 0.0])).collect();
-    let ensemble = ClosedEnsemble::<_, R, W, 3, 1, 5, 6>::new(sleighs, h, LaneState::new(&starts, [false, false, true]));
+    let ensemble =
+        ClosedEnsemble::<_, R, W, 3, 1, 5, 6>::new(sleighs, h, LaneState::new(&starts, [false, false, true]));
     let (least, median) = seconds(|| {
         let mut ensemble = black_box(ensemble);
         ensemble.advance(STEPS);
@@ -50,31 +51,43 @@ fn ends<const W: usize>(state: &LaneState<3, W>) -> Vec<[f64; 3]> {
 
 const DURATION: f64 = 100.0;
 
-fn gauss<Sys: System<3, 1> + Clone, const S: usize, const W: usize>(name: &str, system: &Sys, cyclic: bool, reference: &[[f64; 3]], steps: &[u64]) {
+fn gauss<Sys: System<3, 1> + Clone, const S: usize, const W: usize>(
+    name: &str,
+    system: &Sys,
+    cyclic: bool,
+    reference: &[[f64; 3]],
+    steps: &[u64],
+) {
     for &count in steps {
         for settled in [1e-16, 1e-13, 1e-9] {
             let h = DURATION / count as f64;
-            let mut ensemble = GaussEnsemble::<Sys, _, S, W, 3, 1>::new(Same(system), (0.0, h), cyclic, starts()).unwrap();
+            let mut ensemble =
+                GaussEnsemble::<Sys, _, S, W, 3, 1>::new(Same(system), (0.0, h), cyclic, starts()).unwrap();
             ensemble.settled = settled;
             let mut end = ensemble.clone();
             let (least, median) = seconds(|| {
                 end = black_box(ensemble.clone());
                 end.advance(count);
             });
-            let error = ends(end.state()).iter().zip(reference).fold(0.0, |worst: f64, (a, b)| {
-                (0..3).fold(worst, |worst, k| worst.max((a[k] - b[k]).abs()))
-            });
+            let error = ends(end.state())
+                .iter()
+                .zip(reference)
+                .fold(0.0, |worst: f64, (a, b)| (0..3).fold(worst, |worst, k| worst.max((a[k] - b[k]).abs())));
             let us = 1e6 / W as f64;
             println!(
                 "{name}, gauss{}, h = {h:.3}, settled {settled:e}: error {error:.1e}, {:.2} us a trajectory (median {:.2}), {:.1} sweeps a step",
-                2 * S, us * least, us * median, end.sweeps() as f64 / count as f64
+                2 * S,
+                us * least,
+                us * median,
+                end.sweeps() as f64 / count as f64
             );
         }
     }
 }
 
 fn reference<Sys: System<3, 1>>(system: &Sys, cyclic: bool) -> Vec<[f64; 3]> {
-    let mut ensemble = GaussEnsemble::<Sys, _, 8, 16, 3, 1>::new(Same(system), (0.0, DURATION / 512.0), cyclic, starts()).unwrap();
+    let mut ensemble =
+        GaussEnsemble::<Sys, _, 8, 16, 3, 1>::new(Same(system), (0.0, DURATION / 512.0), cyclic, starts()).unwrap();
     ensemble.advance(512);
     ends(ensemble.state())
 }

@@ -68,17 +68,22 @@ impl Sweep {
     /// # Errors
     /// As [`load`](Self::load).
     pub fn parse(text: &str, origin: &str, methods: &[&str]) -> Result<Self, SweepError> {
-        let file: Table = text
-            .parse()
-            .map_err(|error: toml::de::Error| SweepError::Syntax { origin: origin.to_owned(), problem: error.to_string() })?;
+        let file: Table = text.parse().map_err(|error: toml::de::Error| SweepError::Syntax {
+            origin: origin.to_owned(),
+            problem: error.to_string(),
+        })?;
         let reader = Reader { origin };
         reader.known("", &file, &["scene", "method", "step", "duration", "grid", "random", "output"])?;
-        let name = reader.text(&file, "scene")?.ok_or_else(|| reader.fail("scene", "is missing: a file, or the name of a bundled scene"))?;
-        let bundled_text = bundled().iter().find(|scene| scene.name == name.replace('_', "-")).map(|scene| scene.text.to_owned());
+        let name = reader
+            .text(&file, "scene")?
+            .ok_or_else(|| reader.fail("scene", "is missing: a file, or the name of a bundled scene"))?;
+        let bundled_text =
+            bundled().iter().find(|scene| scene.name == name.replace('_', "-")).map(|scene| scene.text.to_owned());
         let scene_text = bundled_text.map_or_else(|| file::read(name), Ok)?;
         let method = reader.text(&file, "method")?;
         let (step, duration) = (reader.number(&file, "step")?, reader.number(&file, "duration")?);
-        let mut table: Table = Scene::parse(&scene_text, name, methods).and(Ok(scene_text.parse().unwrap_or_default()))?;
+        let mut table: Table =
+            Scene::parse(&scene_text, name, methods).and(Ok(scene_text.parse().unwrap_or_default()))?;
         if let Some(Value::Table(run)) = table.get_mut("run") {
             let numbers = [("step", step), ("duration", duration)];
             let set = numbers.into_iter().filter_map(|(key, value)| Some((key, Value::Float(value?))));
@@ -205,7 +210,8 @@ impl Sweep {
             return Err(self.fail(key, format!("is {value}, and not finite")));
         }
         let [mass, inertia, offset] = body;
-        scene.sleigh = Sleigh::new(mass, inertia, offset).map_err(|error| self.fail("sleigh", format!("makes no sleigh: {error}")))?;
+        scene.sleigh = Sleigh::new(mass, inertia, offset)
+            .map_err(|error| self.fail("sleigh", format!("makes no sleigh: {error}")))?;
         Ok(scene)
     }
 
@@ -214,7 +220,11 @@ impl Sweep {
     }
 
     fn unknown(&self, key: &str) -> SweepError {
-        self.fail(key, "is no number of the scene; accepted are keys like start.speed, sleigh.offset, effects.0.stiffness.1".to_owned())
+        self.fail(
+            key,
+            "is no number of the scene; accepted are keys like start.speed, sleigh.offset, effects.0.stiffness.1"
+                .to_owned(),
+        )
     }
 }
 
@@ -250,7 +260,10 @@ impl Reader<'_> {
     fn known(&self, path: &str, table: &Table, keys: &[&str]) -> Result<(), SweepError> {
         match table.keys().find(|key| !keys.contains(&key.as_str())) {
             None => Ok(()),
-            Some(key) => Err(self.fail(&format!("{path}{}{key}", if path.is_empty() { "" } else { "." }), &format!("is no key of a sweep; accepted are {}", suggest::list(keys)))),
+            Some(key) => Err(self.fail(
+                &format!("{path}{}{key}", if path.is_empty() { "" } else { "." }),
+                &format!("is no key of a sweep; accepted are {}", suggest::list(keys)),
+            )),
         }
     }
 
@@ -281,11 +294,17 @@ impl Reader<'_> {
             Some(_) => return Err(self.fail(section, "is no table")),
         };
         let mut found = Vec::new();
-        let mut open: Vec<(String, &Value)> =
-            table.iter().rev().filter(|(key, _)| !own.contains(&key.as_str())).map(|(key, value)| (key.clone(), value)).collect();
+        let mut open: Vec<(String, &Value)> = table
+            .iter()
+            .rev()
+            .filter(|(key, _)| !own.contains(&key.as_str()))
+            .map(|(key, value)| (key.clone(), value))
+            .collect();
         while let Some((path, value)) = open.pop() {
             match value {
-                Value::Table(inner) if !["from", "uniform", "normal", "log_uniform"].iter().any(|key| inner.contains_key(*key)) => {
+                Value::Table(inner)
+                    if !["from", "uniform", "normal", "log_uniform"].iter().any(|key| inner.contains_key(*key)) =>
+                {
                     open.extend(inner.iter().rev().map(|(key, value)| (format!("{path}.{key}"), value)));
                 }
                 value => found.push((path, value)),

@@ -8,10 +8,8 @@ pub(crate) const ROUNDING: f64 = 1e-17;
 pub(crate) const SMALL: f64 = 1e-6;
 pub(crate) const MAX_ITERATIONS: u32 = 30;
 /// The series of `sin d = d + d^3 (s_0 + s_1 d^2 + ..)` and `cos d = 1 - d^2/2 + d^4 (c_0 + c_1 d^2 + ..)`.
-pub(crate) const SINE: [f64; 5] =
-    [-1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0, -1.0 / 39_916_800.0];
-pub(crate) const COSINE: [f64; 5] =
-    [1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0, 1.0 / 479_001_600.0];
+pub(crate) const SINE: [f64; 5] = [-1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0, -1.0 / 39_916_800.0];
+pub(crate) const COSINE: [f64; 5] = [1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0, 1.0 / 479_001_600.0];
 
 /// One step of the midpoint discrete Lagrange-d'Alembert map of the free sleigh, reduced to one unknown.
 ///

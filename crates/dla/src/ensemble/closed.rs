@@ -1,5 +1,5 @@
-use super::{Ensemble, LaneState};
 use super::state::Row;
+use super::{Ensemble, LaneState};
 use lagrangian::{Abreast, ClosedLaneStep, ClosedLanes, System, vectorized};
 use std::array::from_fn;
 
@@ -18,7 +18,15 @@ const LANES: usize = 8;
 ///
 /// What a trajectory gives does not depend on its neighbours.
 #[derive(Debug, Clone, Copy)]
-pub struct ClosedEnsemble<Sys, const R: usize, const W: usize, const N: usize, const M: usize, const P: usize, const F: usize> {
+pub struct ClosedEnsemble<
+    Sys,
+    const R: usize,
+    const W: usize,
+    const N: usize,
+    const M: usize,
+    const P: usize,
+    const F: usize,
+> {
     systems: [Sys; W],
     step: f64,
     prepared: [Row<W>; P],
@@ -47,7 +55,13 @@ where
         let each: [[f64; P]; W] = from_fn(|lane| systems[lane].prepared(h));
         let prepared = from_fn(|k| Row(from_fn(|lane| each[lane][k])));
         let frame = [Row([f64::NAN; W]); F];
-        Self { systems, step: h, prepared, run: Run { state, frame, largest: [Row::ZERO; M], bad: Row::ZERO }, begun: false }
+        Self {
+            systems,
+            step: h,
+            prepared,
+            run: Run { state, frame, largest: [Row::ZERO; M], bad: Row::ZERO },
+            begun: false,
+        }
     }
 
     /// The largest force of each constraint on a lane, averaged over a step (N).
@@ -115,7 +129,8 @@ impl<const W: usize, const N: usize, const M: usize, const F: usize> Run<W, N, M
                 let prepared = from_fn(|k| load(&prepared[k]));
                 let xi = from_fn(|k| load(&self.state.xi[k]));
                 let frame = from_fn(|k| load(&self.frame[k]));
-                let ClosedLaneStep { increment, xi, frame, impulse, good } = Sys::step::<WIDE, R>(&prepared, &xi, &frame);
+                let ClosedLaneStep { increment, xi, frame, impulse, good } =
+                    Sys::step::<WIDE, R>(&prepared, &xi, &frame);
                 for k in 0..N {
                     let (q, rest) = (load(&self.state.q[k]), load(&self.state.rest[k]));
                     let increment = increment[k] + rest;

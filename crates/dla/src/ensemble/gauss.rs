@@ -84,7 +84,8 @@ where
             if !self.cyclic {
                 self.coordinates(t, h);
             }
-            let (moved, size) = self.stages.accelerations::<Sys, Each, M>(&self.systems, &self.collocation.nodes, (t, h));
+            let (moved, size) =
+                self.stages.accelerations::<Sys, Each, M>(&self.systems, &self.collocation.nodes, (t, h));
             open = false;
             for lane in 0..lanes::<W>() {
                 let (moved, size, before) = (moved.0[lane], size.0[lane], before.0[lane]);
@@ -155,7 +156,9 @@ where
     #[inline(never)]
     fn give_up(&mut self, moved: &Row<W>) {
         for lane in 0..W {
-            let size = (0..N - M).flat_map(|k| self.stages.acceleration[k].iter()).fold(0.0, |size: f64, a| size.max(a.0[lane].abs()));
+            let size = (0..N - M)
+                .flat_map(|k| self.stages.acceleration[k].iter())
+                .fold(0.0, |size: f64, a| size.max(a.0[lane].abs()));
             if moved.0[lane] > 1e-12 * size {
                 self.state.lose(lane);
             }
@@ -195,7 +198,8 @@ impl<const S: usize, const W: usize, const N: usize> Stages<S, W, N> {
         t: f64,
     ) {
         for lane in 0..lanes::<W>() {
-            let acceleration = systems.of(lane).reduced_motion(t, &state.q(lane), &state.xi(lane)).unwrap_or([f64::NAN; N]);
+            let acceleration =
+                systems.of(lane).reduced_motion(t, &state.q(lane), &state.xi(lane)).unwrap_or([f64::NAN; N]);
             for k in 0..N {
                 for i in 0..S {
                     self.q[k][i].0[lane] = state.q[k].0[lane];

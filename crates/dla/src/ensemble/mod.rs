@@ -19,4 +19,3 @@ pub trait Ensemble<const N: usize, const W: usize> {
     /// The states.
     fn state(&self) -> &LaneState<N, W>;
 }
-

@@ -94,7 +94,9 @@ impl<Sys, const N: usize, const K: usize> Looking<'_, '_, Sys, N, K> {
     }
 }
 
-impl<Sys: System<N, M>, const N: usize, const M: usize, const K: usize> Observer<Sys, N, M> for Looking<'_, '_, Sys, N, K> {
+impl<Sys: System<N, M>, const N: usize, const M: usize, const K: usize> Observer<Sys, N, M>
+    for Looking<'_, '_, Sys, N, K>
+{
     fn start(&mut self, node: &View<'_, Sys, N>) {
         self.see(node);
     }
