@@ -6,6 +6,7 @@ mod checkpoint;
 mod dense;
 mod events;
 mod failures;
+mod lanes;
 mod recommend;
 mod substeps;
 
