@@ -5,6 +5,21 @@ use sleigh::Sleigh;
 use thiserror::Error;
 use toml::{Table, Value};
 
+/// Numbers that every scene has, though its text may not have all of them.
+const COMMON: [&str; 8] = [
+    "start.x",
+    "start.y",
+    "start.heading",
+    "start.speed",
+    "start.turn_rate",
+    "sleigh.mass",
+    "sleigh.inertia",
+    "sleigh.offset",
+];
+
+const UNKNOWN: &str = "is no number that the scene has; accepted are keys of its start, its sleigh and its effects, like \
+                       start.speed, sleigh.offset, effects.0.stiffness.1";
+
 /// The most members of a sweep.
 const MOST: u64 = 1_000_000_000_000;
 
@@ -127,14 +142,10 @@ impl Sweep {
             return Err(reader.fail("random.count", "makes no members, or more than 1e12 of them"));
         }
         // What no member could have is said before the first one.
-        for key in sweep.keys() {
-            let value = sweep.value(0, key);
-            let member = sweep.with(&[(key.to_owned(), value)], methods);
-            if let Err(SweepError::Key { problem, .. }) = member {
-                return Err(reader.fail(key, &problem));
-            }
+        match sweep.keys().find(|key| set(&mut sweep.text.clone(), key, 0.0).is_none()) {
+            Some(key) => Err(reader.fail(key, UNKNOWN)),
+            None => Ok(sweep),
         }
-        Ok(sweep)
     }
 
     /// How many members there are.
@@ -193,7 +204,7 @@ impl Sweep {
                 "sleigh.offset" => &mut body[2],
                 _ => {
                     let table = deep.get_or_insert_with(|| self.text.clone());
-                    set(table, key, *value).ok_or_else(|| self.unknown(key))?;
+                    set(table, key, *value).ok_or_else(|| self.fail(key, UNKNOWN.to_owned()))?;
                     continue;
                 }
             };
@@ -202,7 +213,7 @@ impl Sweep {
         if let Some(mut table) = deep {
             // A scene is checked as a whole: its text says all of it.
             for (key, value) in values {
-                set(&mut table, key, *value).ok_or_else(|| self.unknown(key))?;
+                set(&mut table, key, *value).ok_or_else(|| self.fail(key, UNKNOWN.to_owned()))?;
             }
             return Ok(Scene::parse(&table.to_string(), &self.origin, methods)?);
         }
@@ -218,18 +229,15 @@ impl Sweep {
     fn fail(&self, key: &str, problem: String) -> SweepError {
         SweepError::Key { origin: self.origin.clone(), key: key.to_owned(), problem }
     }
-
-    fn unknown(&self, key: &str) -> SweepError {
-        self.fail(
-            key,
-            "is no number of the scene; accepted are keys like start.speed, sleigh.offset, effects.0.stiffness.1"
-                .to_owned(),
-        )
-    }
 }
 
-/// Sets the number at a path of keys, and of indices of lists; none where there is no table or list on the way.
+/// Sets the number at a path of keys, and of indices of lists; none where there is no number yet, or no scene could have one.
 fn set(table: &mut Table, path: &str, value: f64) -> Option<()> {
+    // How a scene is run is the same for all members.
+    let fixed = !["start.", "sleigh.", "effects."].iter().any(|home| path.starts_with(home));
+    if fixed {
+        return None;
+    }
     let (parents, last) = path.rsplit_once('.')?;
     let mut parents = parents.split('.');
     let mut place = table.get_mut(parents.next()?)?;
@@ -241,7 +249,8 @@ fn set(table: &mut Table, path: &str, value: f64) -> Option<()> {
         };
     }
     match place {
-        Value::Table(table) => drop(table.insert(last.to_owned(), Value::Float(value))),
+        Value::Table(table) if COMMON.contains(&path) => drop(table.insert(last.to_owned(), Value::Float(value))),
+        Value::Table(table) => *table.get_mut(last).filter(|old| number(old).is_some())? = Value::Float(value),
         Value::Array(list) => *list.get_mut(last.parse::<usize>().ok()?)? = Value::Float(value),
         _ => return None,
     }

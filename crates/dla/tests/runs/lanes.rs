@@ -129,8 +129,8 @@ proptest! {
 #[test]
 fn a_lane_that_fails_leaves_the_others_alone() {
     let (sleigh, h) = (sleigh(), 0.5);
-    let quick = SleighState { turn_rate: 8.0, ..backward() };
-    let states: Vec<_> = (0..W).map(|i| reduced(if i == 3 { &quick } else { &backward() })).collect();
+    let (quick, usual) = (SleighState { turn_rate: 8.0, ..backward() }, backward());
+    let states: Vec<_> = (0..W).map(|i| reduced(if i == 3 { &quick } else { &usual })).collect();
     let mut ensemble = Closed::new([sleigh; W], h, LaneState::new(&states, [false, false, true]));
     ensemble.advance(40);
     assert!(alone(&sleigh, Dla::midpoint(), (h, 40), &states[3]).is_none());
