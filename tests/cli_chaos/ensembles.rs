@@ -69,10 +69,20 @@ fn a_run_that_was_cut_off_goes_on_to_the_same_file() {
     assert!(whole.lines().count() == 151);
 }
 
+/// Steps so long that a sleigh that goes backward has none where it swings round.
+const SWINGING: &str = "\
+scene = \"turnaround\"
+step = 2.9
+duration = 29.0
+[grid]
+start.turn_rate = [1e-3]
+start.speed = [1.0, -1.5, 0.5]
+";
+
 #[test]
 fn a_member_that_fails_has_its_row_and_the_rest_are_kept() {
     let folder = Folder::new();
-    folder.write("sweep.toml", "scene = \"turnaround\"\nstep = 0.5\n[grid]\nstart.turn_rate = [0.1, 8.0, 0.2]\n");
+    folder.write("sweep.toml", SWINGING);
     let outcome = folder.line("ensemble sweep.toml --out all.csv");
     assert_eq!(outcome.code, 1);
     assert!(outcome.stderr.contains("1 of 3 members failed, the first so: member 1:"), "{}", outcome.stderr);

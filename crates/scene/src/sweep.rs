@@ -142,8 +142,9 @@ impl Sweep {
             return Err(reader.fail("random.count", "makes no members, or more than 1e12 of them"));
         }
         // What no member could have is said before the first one.
-        match sweep.keys().find(|key| set(&mut sweep.text.clone(), key, 0.0).is_none()) {
-            Some(key) => Err(reader.fail(key, UNKNOWN)),
+        let unknown = sweep.keys().find(|key| set(&mut sweep.text.clone(), key, 0.0).is_none()).map(str::to_owned);
+        match unknown {
+            Some(key) => Err(reader.fail(&key, UNKNOWN)),
             None => Ok(sweep),
         }
     }

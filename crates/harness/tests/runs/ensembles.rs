@@ -98,9 +98,9 @@ fn lanes_are_summed_up_as_single_runs_are() {
 fn a_run_that_fails_is_summed_up_as_far_as_it_goes() {
     let system = With { body: Sleigh::new(1.0, 1.0, 0.5).unwrap(), effects: () };
     let of = |_: &With<Sleigh, ()>, q: &[f64; 3], v: &[f64; 3]| words(&SleighState::from_coordinates(q, v));
-    let schedule = Schedule { t0: 0.0, step: 0.5, steps: 40 };
+    let schedule = Schedule { t0: 0.0, step: 2.9, steps: 10 };
     let method = Method::named("dla", None).unwrap();
-    let start = ([0.0; 3], [-1.0, 0.0, 8.0]);
+    let start = ([0.0; 3], [-1.5, 0.0, 1e-3]);
     let (summary, failure) = summarise(&system, &method, start, &Watching { schedule, every: 1, of: &of });
     let failure = failure.unwrap();
     assert_abs_diff_eq!(summary.t, failure.time, epsilon = 0.0);
