@@ -156,7 +156,8 @@ fn one_system_for_all_is_as_each_its_own() {
     let bowls: [_; W] = std::array::from_fn(|_| bowl.clone());
     let mut same = GaussEnsemble::<_, _, 8, W, 3, 1>::new(Same(&bowl), (0.0, 0.5), false, state).unwrap();
     let mut each = GaussEnsemble::<_, _, 8, W, 3, 1>::new(Each(&bowls), (0.0, 0.5), false, state).unwrap();
-    (same.advance(40), each.advance(40));
+    same.advance(40);
+    each.advance(40);
     assert!((0..W).all(|lane| same.state().q(lane) == each.state().q(lane)));
     assert!(same.state().q(0) != same.state().q(1));
 }
