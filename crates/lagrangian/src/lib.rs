@@ -37,6 +37,7 @@ mod rows;
 mod rule;
 mod saddle;
 mod scalar;
+pub mod simd;
 mod sincos;
 mod system;
 mod twofold;

@@ -30,7 +30,7 @@ pub struct ReducedSlope<const N: usize> {
 ///
 /// # Errors
 /// [`ReducedError`] where the system gives no basis, or its constraints depend on one another.
-#[inline]
+#[inline(always)]
 pub fn velocity_of<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
     system: &Sys,
     t: S,
@@ -125,7 +125,7 @@ fn split<Sys: System<N, M>, const N: usize, const M: usize>(
 }
 
 /// `v_b` of a system at one point.
-#[inline]
+#[inline(always)]
 fn shift<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
     system: &Sys,
     t: S,

@@ -97,6 +97,16 @@ pub trait System<const N: usize, const M: usize> {
         None
     }
 
+    /// Whether the equations of the quasi-velocities stand alone, `xi' = f(xi)` without time and place, as those of a free body
+    /// do (Euler-Poincare-Suslov equations; Bloch 2015, section 5.7): then after how many quadratures `v` is known from `xi`.
+    ///
+    /// Zero says that the basis is constant; one, that it depends on coordinates whose rates are combinations of `xi` with
+    /// constant coefficients. A collocation then iterates on the quasi-velocities only.
+    #[inline(always)]
+    fn reconstruction(&self) -> Option<u32> {
+        None
+    }
+
     /// What one more generalised force would add to [`System::motion`], where that is known by hand.
     #[inline(always)]
     fn response(&self, _t: f64, _q: &[f64; N], _force: &[f64; N]) -> Option<Motion<N, M>> {

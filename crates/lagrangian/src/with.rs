@@ -94,6 +94,11 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
     }
 
     #[inline(always)]
+    fn reconstruction(&self) -> Option<u32> {
+        if self.effects.is_none() { self.body.reconstruction() } else { None }
+    }
+
+    #[inline(always)]
     fn response(&self, t: f64, q: &[f64; N], force: &[f64; N]) -> Option<Motion<N, M>> {
         self.body.response(t, q, force)
     }

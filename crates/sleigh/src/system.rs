@@ -67,11 +67,17 @@ impl System<3, 1> for Sleigh {
         Some([omega * omega * self.offset(), u * omega * -self.spin_gain(), S::zero()])
     }
 
+    /// The heading from the spin, and the place from the heading.
+    #[inline(always)]
+    fn reconstruction(&self) -> Option<u32> {
+        Some(1)
+    }
+
     /// `u' = (e . f) / m`, `omega' = tau / J`.
     #[inline(always)]
     fn reduced_response<S: Scalar>(&self, _t: S, q: &[S; 3], &[fx, fy, tau]: &[S; 3]) -> Option<[S; 3]> {
         let (sin, cos) = q[2].sin_cos();
-        Some([(cos * fx + sin * fy) / self.mass(), tau / self.pivot_inertia(), S::zero()])
+        Some([(cos * fx + sin * fy) * self.mass().recip(), tau * self.pivot_inertia().recip(), S::zero()])
     }
 
     #[inline(always)]

@@ -7,5 +7,6 @@ mod degenerate;
 mod driven;
 mod forms;
 mod free;
+mod lanes;
 mod models;
 mod tools;

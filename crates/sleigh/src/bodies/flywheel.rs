@@ -121,6 +121,11 @@ impl<B: System<3, M>, const M: usize> System<4, M> for Flywheel<B> {
         Some([u + driven[0], omega + driven[1], driven[2], zero])
     }
 
+    #[inline(always)]
+    fn reconstruction(&self) -> Option<u32> {
+        if self.torque.is_none() && M == 1 { self.body.reconstruction() } else { None }
+    }
+
     /// A torque on the rotor acts on the body the other way.
     #[inline(always)]
     fn reduced_response<S: Scalar>(&self, t: S, q: &[S; 4], &[fx, fy, tau, motor]: &[S; 4]) -> Option<[S; 4]> {

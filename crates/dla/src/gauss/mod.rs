@@ -1,8 +1,19 @@
+mod adaptive;
+mod lanes;
+mod memory;
+mod rule;
+
+pub use adaptive::GaussAdaptive;
+
 use crate::positions::{affine_only, onto_positions};
 use crate::{History, NewtonError, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::linear::larger;
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
+use lagrangian::simd::dispatch;
 use lagrangian::{System, reduced_slope, velocity_of};
+use lanes::{Ending, Outcome};
+use memory::Memory;
+use rule::Eight;
 use std::array::from_fn;
 
 /// Gauss collocation on the constraint: the reduced equations `q' = W xi + v_b`, `xi' = ..` in the basis of admissible
@@ -10,6 +21,10 @@ use std::array::from_fn;
 ///
 /// Symmetric, and on the constraint by construction. Stages are found by fixed-point iteration, which converges for steps
 /// below the time constants of the motion, until their changes are rounding; what does not settle is an error.
+///
+/// Where a system knows its reduced equations by hand ([`System::reduced_motion`]), up to eight stages are computed at once,
+/// in the vector registers of the machine, beginning with the polynomial of the step before; elsewhere one after another. The
+/// two agree to round-off. Vector registers multiply and add with one rounding, so the last bits depend on the machine.
 ///
 /// Constraints on positions that are of second degree hold by themselves; onto others the end of the step is projected, in
 /// the kinetic metric. It moves by the error of the step, so the order stays, and the symmetry is lost by so much.
@@ -21,14 +36,26 @@ pub struct Gauss<const S: usize> {
     pub(crate) nodes: [f64; S],
     pub(crate) weights: [f64; S],
     pub(crate) coefficients: [[f64; S]; S],
+    eight: Option<&'static Eight>,
+    memory: Memory,
     /// Iterations after which the search is given up.
     pub max_iterations: u32,
 }
 
 impl<const S: usize> Default for Gauss<S> {
     fn default() -> Self {
-        let (nodes, weights) = gauss_legendre();
-        Self { nodes, weights, coefficients: gauss_collocation(&nodes, &weights), max_iterations: 100 }
+        let eight = Eight::gauss::<S>();
+        let (nodes, weights, coefficients) = match eight {
+            Some(rule) => {
+                let some = |row: &[f64; 8]| -> [f64; S] { from_fn(|i| row[i]) };
+                (some(&rule.nodes), some(&rule.weights), from_fn(|i| from_fn(|j| rule.columns[j][i])))
+            }
+            None => {
+                let (nodes, weights) = gauss_legendre();
+                (nodes, weights, gauss_collocation(&nodes, &weights))
+            }
+        };
+        Self { nodes, weights, coefficients, eight, memory: Memory::NONE, max_iterations: 100 }
     }
 }
 
@@ -39,6 +66,53 @@ struct Stages<const N: usize, const S: usize> {
 }
 
 impl<const S: usize> Gauss<S> {
+    /// The method with every stage computed by itself: the same map to round-off, and what lanes are tested against.
+    #[must_use]
+    pub fn one_by_one(self) -> Self {
+        Self { eight: None, ..self }
+    }
+
+    /// The stages all at once: increment and gain of a step, its slopes, and how many iterations it took. None where they are
+    /// to be found one by one.
+    #[inline(always)]
+    fn at_once<Sys: System<N, M>, const N: usize, const M: usize>(
+        &self,
+        system: &Sys,
+        (t, h): (f64, f64),
+        state: &State<N>,
+        xi0: &[f64; N],
+    ) -> Option<Taken<N>> {
+        let rule = self.eight?;
+        let before = self.memory.rows(state).filter(|_| self.memory.is_of_length(h)).zip(rule.continued(0));
+        let ending = Ending { left: LEFT, rounding: 1e-12, limit: self.max_iterations, scales: None };
+        match dispatch(lanes::Stages { rule, system, t, h, q0: state.q(), xi0, before, ending })? {
+            Outcome::Found(found) => {
+                let increment = lanes::sum(h, &rule.weights, &found.slopes.velocity);
+                let gain = lanes::sum(h, &rule.weights, &found.slopes.acceleration);
+                let finite = increment.iter().chain(&gain).all(|x| x.is_finite());
+                finite.then_some(Taken { increment, gain, iterations: found.iterations, slopes: Some(found.slopes) })
+            }
+            Outcome::Unknown | Outcome::Failed => None,
+        }
+    }
+
+    /// The stages one after another.
+    fn in_turn<Sys: System<N, M>, const N: usize, const M: usize>(
+        &self,
+        system: &Sys,
+        (t, h): (f64, f64),
+        (q0, xi0): (&[f64; N], &[f64; N]),
+    ) -> Result<Taken<N>, StepError> {
+        let start = reduced_slope(system, t, q0, xi0)?;
+        let mut stages = Stages { velocity: [start.velocity; S], acceleration: [start.acceleration; S] };
+        let iterations = self.solve(system, (t, h), (q0, xi0), &mut stages)?;
+        let increment = Self::sum(h, &self.weights, &stages.velocity);
+        let gain = Self::sum(h, &self.weights, &stages.acceleration);
+        let by_rows = |slopes: &[[f64; N]; S]| from_fn(|k| from_fn(|i| if i < S { slopes[i][k] } else { 0.0 }));
+        let slopes = lanes::Slopes { velocity: by_rows(&stages.velocity), acceleration: by_rows(&stages.acceleration) };
+        Ok(Taken { increment, gain, iterations, slopes: Some(slopes).filter(|_| S <= 8) })
+    }
+
     /// The sum `h sum_j factors[j] slopes[j]`.
     #[inline(always)]
     fn sum<const N: usize>(h: f64, factors: &[f64; S], slopes: &[[f64; N]; S]) -> [f64; N] {
@@ -92,6 +166,36 @@ impl<const S: usize> Gauss<S> {
     }
 }
 
+/// A step, its stages found.
+struct Taken<const N: usize> {
+    increment: [f64; N],
+    gain: [f64; N],
+    iterations: u32,
+    slopes: Option<lanes::Slopes<N>>,
+}
+
+impl<const N: usize> Taken<N> {
+    /// Moves the state.
+    #[inline(always)]
+    fn apply<Sys: System<N, M>, const M: usize>(
+        &self,
+        system: &Sys,
+        t1: f64,
+        xi0: &[f64; N],
+        state: &mut State<N>,
+    ) -> Result<(), StepError> {
+        let xi1 = from_fn(|i| xi0[i] + self.gain[i]);
+        let increment = onto_positions(system, t1, state, self.increment, state.v())?;
+        let v1 = velocity_of(system, t1, &state.ahead(&increment), &xi1)?;
+        state.stays_finite(&increment, &v1)?;
+        state.advance(&increment, v1, Some(xi1));
+        Ok(())
+    }
+}
+
+/// Relative changes that are left undone: what they would bias a sum by in `10^6` steps is below its rounding.
+const LEFT: f64 = 1e-18;
+
 /// After so many iterations without an end the rounding of the places is looked at.
 const PATIENCE: u32 = 20;
 
@@ -108,18 +212,23 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
     #[inline]
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
         affine_only(system, t, state)?;
-        let q0 = state.q();
         let xi0 = state.quasi_velocities(system, t)?;
-        let start = reduced_slope(system, t, q0, &xi0)?;
-        let mut stages = Stages { velocity: [start.velocity; S], acceleration: [start.acceleration; S] };
-        let iterations = self.solve(system, (t, h), (q0, &xi0), &mut stages)?;
-        let increment = Self::sum(h, &self.weights, &stages.velocity);
-        let gain = Self::sum(h, &self.weights, &stages.acceleration);
-        let xi1 = from_fn(|i| xi0[i] + gain[i]);
-        let increment = onto_positions(system, t + h, state, increment, state.v())?;
-        let v1 = velocity_of(system, t + h, &state.ahead(&increment), &xi1)?;
-        state.stays_finite(&increment, &v1)?;
-        state.advance(&increment, v1, Some(xi1));
-        Ok(StepReport::of(iterations))
+        let taken = match self.at_once(system, (t, h), state, &xi0) {
+            Some(taken) => taken,
+            None => self.in_turn(system, (t, h), (state.q(), &xi0))?,
+        };
+        taken.apply(system, t + h, &xi0, state)?;
+        if let Some(slopes) = taken.slopes.as_ref().filter(|_| self.eight.is_some()) {
+            self.memory.keep(slopes, h, 0, state);
+        }
+        Ok(StepReport::of(taken.iterations))
+    }
+
+    fn memory(&self) -> Vec<f64> {
+        self.memory.save()
+    }
+
+    fn recall(&mut self, memory: &[f64], _state: &State<N>) {
+        self.memory = Memory::load(memory);
     }
 }

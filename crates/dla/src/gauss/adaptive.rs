@@ -1,0 +1,185 @@
+use super::lanes::{self, Ending, Outcome};
+use super::memory::Memory;
+use super::rule::{Eight, quarter_octaves};
+use super::{Gauss, Taken};
+use crate::positions::affine_only;
+use crate::{OneStep, State, StepError, StepReport};
+use lagrangian::System;
+use lagrangian::linear::larger;
+use lagrangian::simd::dispatch;
+
+/// Gauss collocation with steps of its own within a step of the schedule, as many as a tolerance asks for.
+///
+/// The highest Legendre coefficient of the slopes of a step tells how smooth the motion is along it: where coefficients fall
+/// off evenly, its power `2 S / (S - 1)` is about the error of the step. It is the same forward and backward in time. Steps
+/// are powers of the fourth root of two (s), so that the polynomial of one is continued into the next by a few fixed matrices.
+/// Stages are iterated to a fraction of the tolerance, not to rounding: on the constraint the method is by construction, but
+/// it is symmetric to the tolerance only, and what [`Gauss`] keeps over long runs it does not.
+///
+/// (Compare Antonana, Makazaga and Murua 2017, Numer. Algorithms 76, 861-880.)
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GaussAdaptive<const S: usize> {
+    gauss: Gauss<S>,
+    tolerance: f64,
+    /// How rough a step may be.
+    aim: f64,
+    /// The next step, in quarter octaves of a second.
+    quarters: Option<i32>,
+}
+
+impl<const S: usize> GaussAdaptive<S> {
+    /// Steps tried within an interval before it is given up.
+    pub const MAX_TRIES: u32 = 100_000;
+
+    /// The method with the tolerance `epsilon`: the error of a step is kept near `epsilon (1 + |y|)` in every component.
+    #[must_use]
+    pub fn new(epsilon: f64) -> Self {
+        // roughness^(2 S / (S - 1)) is to be epsilon.
+        let s = S as f64;
+        let aim = SMOOTHNESS * epsilon.powf((s - 1.0) / (2.0 * s));
+        Self { gauss: Gauss::default(), tolerance: epsilon, aim, quarters: None }
+    }
+}
+
+/// What a step said of its length.
+struct Tried<const N: usize> {
+    taken: Taken<N>,
+    /// The step that would have met the tolerance, in quarter octaves from this one.
+    longer: i32,
+}
+
+/// As many quarter octaves at once, at most.
+const LEAP: i32 = 8;
+/// A step that should have been so much shorter, or more, is taken again.
+const REFUSED: i32 = -3;
+/// The contraction of the stages that is about the cheapest: longer steps take too many iterations.
+const CONTRACTION: f64 = 0.4;
+
+impl<const S: usize> GaussAdaptive<S> {
+    /// One step of length `h`; none where its stages do not converge.
+    #[inline(always)]
+    fn attempt<Sys: System<N, M>, const N: usize, const M: usize>(
+        &self,
+        system: &Sys,
+        (t, h, quarters): (f64, f64, i32),
+        state: &State<N>,
+        xi0: &[f64; N],
+    ) -> Option<Tried<N>> {
+        let rule = Eight::gauss::<S>()?;
+        let (q0, epsilon) = (state.q(), self.tolerance);
+        let scales = [q0, xi0].map(|y| y.map(|y| epsilon * (1.0 + y.abs()) / h.abs()));
+        let memory = &self.gauss.memory;
+        let apart = if memory.is_of_length(h) { 0 } else { quarters - memory.quarters };
+        let before = memory.rows(state).zip(rule.continued(apart));
+        let ending = Ending { left: 0.1, rounding: larger(0.1, 1e-14 / epsilon), limit: 25, scales: Some(scales) };
+        let (taken, rate) = match dispatch(lanes::Stages { rule, system, t, h, q0, xi0, before, ending }) {
+            Some(Outcome::Found(found)) => {
+                let increment = lanes::sum(h, &rule.weights, &found.slopes.velocity);
+                let gain = lanes::sum(h, &rule.weights, &found.slopes.acceleration);
+                (Taken { increment, gain, iterations: found.iterations, slopes: Some(found.slopes) }, found.rate)
+            }
+            Some(Outcome::Failed) => return None,
+            Some(Outcome::Unknown) | None => (self.gauss.in_turn(system, (t, h), (q0, xi0)).ok()?, 0.0),
+        };
+        let slopes = taken.slopes.as_ref()?;
+        let rough = |rows: &lanes::Rows<N>, scales: &[f64; N]| {
+            let parts: [f64; N] = lanes::sum(1.0, &rule.highest, rows);
+            (0..N).fold(0.0, |largest, k| larger(largest, (parts[k] / scales[k]).abs()))
+        };
+        let roughness = larger(rough(&slopes.velocity, &scales[0]), rough(&slopes.acceleration, &scales[1])) * epsilon;
+        if !roughness.is_finite() {
+            return None;
+        }
+        // It goes with the power S - 1 of the step.
+        let octaves = (self.aim / larger(roughness, 1e-300)).log2() / (S as f64 - 1.0);
+        let converging = (CONTRACTION / larger(rate, 1e-3)).log2();
+        let longer = (4.0 * octaves.min(converging)).floor().clamp(-f64::from(LEAP), f64::from(LEAP)) as i32;
+        let longer = if octaves >= 0.0 { longer.max(if converging < 0.0 { -1 } else { 0 }) } else { longer };
+        Some(Tried { taken, longer })
+    }
+}
+
+/// The length of a step cut at the end of an interval: far from all others.
+const CUT: i32 = i32::MAX / 2;
+
+/// How rough a step may be at the tolerance one.
+const SMOOTHNESS: f64 = 3.0;
+
+impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<Sys, N, M> for GaussAdaptive<S> {
+    #[inline]
+    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        affine_only(system, t, state)?;
+        let (quarters, start) = (self.quarters, *state);
+        let found = self.cross(system, t, h, state);
+        if found.is_err() {
+            (self.quarters, *state) = (quarters, start);
+        }
+        found
+    }
+
+    fn memory(&self) -> Vec<f64> {
+        let quarters = self.quarters.map(f64::from);
+        quarters.into_iter().chain(self.gauss.memory.save()).collect()
+    }
+
+    fn recall(&mut self, memory: &[f64], _state: &State<N>) {
+        self.quarters = memory.first().map(|&quarters| quarters as i32);
+        self.gauss.memory = Memory::load(memory.get(1..).unwrap_or_default());
+    }
+}
+
+impl<const S: usize> GaussAdaptive<S> {
+    #[inline(always)]
+    fn cross<Sys: System<N, M>, const N: usize, const M: usize>(
+        &mut self,
+        system: &Sys,
+        t0: f64,
+        whole: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
+        let (mut made, mut iterations) = (0.0, 0);
+        let mut quarters = self.quarters.unwrap_or_else(|| first(system, t0, whole, state));
+        for tries in 1..=Self::MAX_TRIES {
+            let full = quarter_octaves(quarters);
+            let rest = whole - made;
+            let last = 1.01 * full >= rest.abs();
+            let h = if last { rest } else { full.copysign(whole) };
+            if full <= f64::EPSILON * whole.abs() {
+                return Err(StepError::Tolerance { tries, step: full });
+            }
+            let (t, xi0) = (t0 + made, state.quasi_velocities(system, t0 + made)?);
+            let tried = self.attempt(system, (t, h, quarters), state, &xi0);
+            let Some(Tried { taken, longer }) = tried.filter(|tried| tried.longer > REFUSED) else {
+                // Stages that do not converge, or a step that is too rough.
+                quarters -= LEAP / 2;
+                if last {
+                    quarters = quarters.min((4.0 * rest.abs().log2()).floor() as i32 - LEAP / 2);
+                }
+                continue;
+            };
+            taken.apply(system, t + h, &xi0, state)?;
+            iterations += taken.iterations;
+            if let Some(slopes) = &taken.slopes {
+                self.gauss.memory.keep(slopes, h, if last { CUT } else { quarters }, state);
+            }
+            if last {
+                // A step cut at the end of the interval says little of the next.
+                self.quarters = Some(quarters + longer.min(0));
+                return Ok(StepReport::of(iterations));
+            }
+            made += h;
+            quarters += longer;
+        }
+        Err(StepError::Tolerance { tries: Self::MAX_TRIES, step: quarter_octaves(quarters) })
+    }
+}
+
+/// A first step: a tenth of the shortest time in which a velocity changes by itself, the interval where nothing changes.
+fn first<Sys: System<N, M>, const N: usize, const M: usize>(system: &Sys, t: f64, whole: f64, state: &State<N>) -> i32 {
+    let slope = state.quasi_velocities(system, t).and_then(|xi| lagrangian::reduced_slope(system, t, state.q(), &xi));
+    let size = |x: &[f64; N]| x.iter().fold(0.0f64, |m, x| larger(m, x.abs()));
+    let rate = slope.map_or(0.0, |slope| size(&slope.acceleration) / larger(size(&slope.velocity), 1e-3));
+    let turning = (0..N).filter(|&i| system.angles()[i]).fold(rate, |m, i| larger(m, state.v()[i].abs()));
+    let step = if turning > 0.0 { (0.5 / turning).min(whole.abs()) } else { whole.abs() };
+    (4.0 * step.log2()).floor().clamp(-4000.0, 4000.0) as i32
+}

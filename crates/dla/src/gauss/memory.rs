@@ -1,0 +1,92 @@
+use super::lanes::Slopes;
+use crate::State;
+
+/// Systems of more coordinates are not remembered.
+const COORDINATES: usize = 6;
+
+/// The slopes of the last step, from which the next search begins nearer to its solution.
+///
+/// They say nothing of where it ends; what they change is in the last bit. So they belong to a checkpoint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Memory {
+    /// Whether there was a step.
+    known: bool,
+    velocity: [[f64; 8]; COORDINATES],
+    acceleration: [[f64; 8]; COORDINATES],
+    /// The step, and its length in quarter octaves where it is one of them.
+    h: f64,
+    pub(super) quarters: i32,
+    /// Where it ended, and how fast.
+    q: [f64; COORDINATES],
+    v: [f64; COORDINATES],
+}
+
+impl Memory {
+    /// Of no step.
+    pub(super) const NONE: Self = Self {
+        known: false,
+        velocity: [[0.0; 8]; COORDINATES],
+        acceleration: [[0.0; 8]; COORDINATES],
+        h: 0.0,
+        quarters: 0,
+        q: [0.0; COORDINATES],
+        v: [0.0; COORDINATES],
+    };
+
+    /// Remembers a step of length `h` that ended in `state`.
+    #[inline(always)]
+    pub(super) fn keep<const N: usize>(&mut self, slopes: &Slopes<N>, h: f64, quarters: i32, state: &State<N>) {
+        self.known = N <= COORDINATES;
+        if self.known {
+            self.velocity[..N].copy_from_slice(&slopes.velocity);
+            self.acceleration[..N].copy_from_slice(&slopes.acceleration);
+            self.q[..N].copy_from_slice(state.q());
+            self.v[..N].copy_from_slice(state.v());
+            (self.h, self.quarters) = (h, quarters);
+        }
+    }
+
+    /// The slopes, if it was the step before the one from `state`.
+    #[inline(always)]
+    pub(super) fn rows<const N: usize>(&self, state: &State<N>) -> Option<[&[[f64; 8]; N]; 2]> {
+        if !self.known || self.q.first_chunk::<N>() != Some(state.q()) || self.v.first_chunk::<N>() != Some(state.v()) {
+            return None;
+        }
+        Some([self.velocity.first_chunk()?, self.acceleration.first_chunk()?])
+    }
+
+    /// Whether it was of that length.
+    #[inline(always)]
+    pub(super) fn is_of_length(&self, h: f64) -> bool {
+        self.h.to_bits() == h.to_bits()
+    }
+
+    /// All of it as numbers; none of no step.
+    pub(super) fn save(&self) -> Vec<f64> {
+        if !self.known {
+            return Vec::new();
+        }
+        let rows = self.velocity.iter().chain(&self.acceleration).flatten();
+        let rest = [self.h, f64::from(self.quarters)];
+        rows.chain(&rest).chain(&self.q).chain(&self.v).copied().collect()
+    }
+
+    /// From what [`save`](Self::save) gave; of no step from anything else.
+    pub(super) fn load(numbers: &[f64]) -> Self {
+        let mut memory = Self { known: true, ..Self::NONE };
+        let mut length = [0.0; 2];
+        let Self { velocity, acceleration, q, v, .. } = &mut memory;
+        let mut numbers = numbers.iter().copied();
+        let mut filled = true;
+        for places in [velocity.as_flattened_mut(), acceleration.as_flattened_mut(), &mut length, q, v] {
+            for place in places {
+                match numbers.next() {
+                    Some(number) => *place = number,
+                    None => filled = false,
+                }
+            }
+        }
+        let [h, quarters] = length;
+        if filled { Self { h, quarters: quarters as i32, ..memory } } else { Self::NONE }
+    }
+}

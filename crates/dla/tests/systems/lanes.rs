@@ -1,0 +1,185 @@
+//! Stages in vector registers against stages one by one, and steps of their own length.
+
+use approx::assert_abs_diff_eq;
+use dla::{Gauss, GaussAdaptive, OneStep, Schedule, State, StepError, drive};
+use lagrangian::{System, With, constraint_residual};
+use proptest::prelude::*;
+use sleigh::effects::{Bowl, Drag, EggCrate, Slope};
+use sleigh::{Flywheel, Sleigh, SleighState};
+
+fn start(sleigh_state: &SleighState) -> State<3> {
+    let (q, v) = sleigh_state.to_coordinates();
+    State::new(q, v, [false, false, true])
+}
+
+/// The state after some steps, and the iterations they took.
+fn after<Sys, Method, const N: usize>(system: &Sys, mut method: Method, h: f64, state: &State<N>) -> (State<N>, u32)
+where
+    Sys: System<N, 1>,
+    Method: OneStep<Sys, N, 1>,
+{
+    let (mut state, mut iterations) = (*state, 0);
+    for k in 0..STEPS {
+        iterations += method.step(system, f64::from(k) * h, h, &mut state).unwrap().iterations;
+    }
+    (state, iterations)
+}
+
+const STEPS: u32 = 12;
+
+/// Both solve the same equations until changes are rounding: each step leaves some ulps of the sizes it computes with, and
+/// further steps enlarge them by no more than these short motions do, a factor of `e^2`.
+fn same<Sys: System<N, 1>, const N: usize, const S: usize>(system: &Sys, h: f64, state: &State<N>) {
+    let (lanes, _) = after(system, Gauss::<S>::default(), h, state);
+    let (turns, _) = after(system, Gauss::<S>::default().one_by_one(), h, state);
+    let size = |x: &[f64; N]| x.iter().fold(1.0f64, |m, x| m.max(x.abs()));
+    let tolerance = f64::from(STEPS) * 32.0 * 8.0 * f64::EPSILON;
+    for i in 0..N {
+        assert_abs_diff_eq!(lanes.q()[i], turns.q()[i], epsilon = tolerance * size(turns.q()));
+        assert_abs_diff_eq!(lanes.v()[i], turns.v()[i], epsilon = tolerance * size(turns.v()));
+    }
+}
+
+fn every_order<Sys: System<N, 1>, const N: usize>(system: &Sys, h: f64, state: &State<N>) {
+    same::<_, N, 2>(system, h, state);
+    same::<_, N, 3>(system, h, state);
+    same::<_, N, 4>(system, h, state);
+    same::<_, N, 5>(system, h, state);
+    same::<_, N, 7>(system, h, state);
+    same::<_, N, 8>(system, h, state);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn eight_stages_at_once_are_the_stages_in_turn(
+        mass in 0.1f64..10.0,
+        inertia in 0.1f64..10.0,
+        offset in -1.0f64..1.0,
+        speed in -2.0f64..2.0,
+        turn_rate in -1.0f64..1.0,
+        heading in -3.0f64..3.0,
+        stiffness in 0.01f64..1.0,
+        h in 0.01f64..0.2,
+    ) {
+        let body = Sleigh::new(mass, inertia, offset).unwrap();
+        let state = start(&SleighState { speed, turn_rate, heading, x: 1.0, y: -0.5, ..SleighState::default() });
+        every_order(&body, h, &state);
+        let bowl = Bowl::new([stiffness, 0.3], [0.2, 0.1]).unwrap();
+        every_order(&With { body, effects: (bowl.clone(),) }, h, &state);
+        let crowd = (bowl, Drag::new(0.1, 0.2).unwrap(), Slope::new([0.3, -0.2]).unwrap(), EggCrate::new(0.2, [1.0, 2.0]).unwrap());
+        every_order(&With { body, effects: crowd }, h, &state);
+        let flywheel = Flywheel::new(body, 0.3, None).unwrap();
+        let (q, v) = (state.q(), state.v());
+        let turning = State::new([q[0], q[1], q[2], 0.4], [v[0], v[1], v[2], -0.7], [false, false, true, true]);
+        every_order(&flywheel, h, &turning);
+    }
+
+    /// A spin that is nothing beside the speed keeps its digits: every component settles by its own size.
+    #[test]
+    fn a_spin_that_dies_out_keeps_its_digits(exponent in -200i32..-3) {
+        let (body, h) = (Sleigh::new(1.0, 1.0, 0.5).unwrap(), 0.1);
+        let turn_rate = 10f64.powi(exponent);
+        let (state, _) = after(&body, Gauss::<8>::default(), h, &start(&SleighState { speed: 1.0, turn_rate, ..SleighState::default() }));
+        // omega' = -c u omega with a speed that the spin changes by its square.
+        let exact = turn_rate * (-body.spin_gain() * f64::from(STEPS) * h).exp();
+        let square = if exponent < -8 { 0.0 } else { turn_rate * turn_rate };
+        approx::assert_relative_eq!(state.v()[2], exact, max_relative = 64.0 * f64::EPSILON + 4.0 * square);
+    }
+}
+
+/// The polynomial of the last step is a better beginning than the slopes at the start: the control that it is used.
+#[test]
+fn the_last_step_helps_the_next() {
+    let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    let system = With { body, effects: (Bowl::new([0.1, 0.1], [0.0, 0.0]).unwrap(),) };
+    let state = start(&SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() });
+    let (_, remembered) = after(&system, Gauss::<8>::default(), 0.3, &state);
+    let mut forgetful = 0;
+    let mut moved = state;
+    for k in 0..STEPS {
+        forgetful += Gauss::<8>::default().step(&system, f64::from(k) * 0.3, 0.3, &mut moved).unwrap().iterations;
+    }
+    assert!(remembered < forgetful, "{remembered} iterations, without memory {forgetful}");
+}
+
+/// A turned velocity is another motion: what is remembered of the old one must not be taken for it.
+#[test]
+fn the_way_back_ends_at_the_start() {
+    let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    let system = With { body, effects: (Bowl::new([0.1, 0.1], [0.0, 0.0]).unwrap(),) };
+    let begin = start(&SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() });
+    let mut method = Gauss::<8>::default();
+    let mut state = begin;
+    for _ in 0..STEPS {
+        method.step(&system, 0.0, 0.3, &mut state).unwrap();
+    }
+    state = state.reversed();
+    for _ in 0..STEPS {
+        method.step(&system, 0.0, 0.3, &mut state).unwrap();
+    }
+    for i in 0..3 {
+        assert_abs_diff_eq!(state.q()[i], begin.q()[i], epsilon = 2.0 * f64::from(STEPS) * 32.0 * f64::EPSILON);
+        assert_abs_diff_eq!(state.v()[i], -begin.v()[i], epsilon = 2.0 * f64::from(STEPS) * 32.0 * f64::EPSILON);
+    }
+}
+
+/// Across one interval, however long: the error follows the tolerance, and the velocity is on the constraint.
+#[test]
+fn steps_of_their_own_length_meet_a_tolerance() {
+    let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    let bowl = With { body, effects: (Bowl::new([0.1, 0.1], [0.0, 0.0]).unwrap(),) };
+    let begin = start(&SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() });
+    let run = |method: &mut dyn FnMut(&mut State<3>)| {
+        let mut state = begin;
+        method(&mut state);
+        state
+    };
+    let exact = run(&mut |state| {
+        let schedule = Schedule { t0: 0.0, step: 0.1, steps: 200 };
+        drive(&bowl, &mut Gauss::<8>::default(), &schedule, state, ()).unwrap();
+    });
+    let mut last = (f64::INFINITY, 0);
+    for exponent in [-4, -7, -10, -13] {
+        let tolerance = 10f64.powi(exponent);
+        let mut iterations = 0;
+        let end = run(&mut |state| {
+            iterations = GaussAdaptive::<8>::new(tolerance).step(&bowl, 0.0, 20.0, state).unwrap().iterations;
+        });
+        let error = (0..3).map(|i| (end.unwrapped()[i] - exact.unwrapped()[i]).abs()).fold(0.0, f64::max);
+        // Some ten steps, whose errors the motion enlarges by some ten times.
+        assert!(error < 1e2 * tolerance + 1e-12, "{error:e} at the tolerance {tolerance:e}");
+        assert!(error < last.0 && iterations > last.1, "tighter is more exact, and more work");
+        last = (error, iterations);
+        let slip = constraint_residual(&bowl, 0.0, end.q(), end.v());
+        assert_abs_diff_eq!(slip[0], 0.0, epsilon = 4.0 * f64::EPSILON);
+    }
+}
+
+/// What it remembers is all that the next interval depends on.
+#[test]
+fn an_adaptive_run_continues_from_a_checkpoint() {
+    let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    let mut state = start(&SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() });
+    let mut method = GaussAdaptive::<8>::new(1e-9);
+    OneStep::<Sleigh, 3, 1>::step(&mut method, &body, 0.0, 7.0, &mut state).unwrap();
+    let memory = OneStep::<Sleigh, 3, 1>::memory(&method);
+    let (mut again, mut other) = (state, GaussAdaptive::<8>::new(1e-9));
+    OneStep::<Sleigh, 3, 1>::recall(&mut other, &memory, &again);
+    method.step(&body, 7.0, 7.0, &mut state).unwrap();
+    other.step(&body, 7.0, 7.0, &mut again).unwrap();
+    assert_eq!(state, again);
+    assert_ne!(memory, OneStep::<Sleigh, 3, 1>::memory(&method));
+}
+
+/// A place where nothing is finite ends the interval with an error, and nothing has moved.
+#[test]
+fn what_cannot_be_crossed_is_an_error() {
+    let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    let begin = start(&SleighState { speed: 1e200, turn_rate: 1e200, ..SleighState::default() });
+    let mut state = begin;
+    let found = GaussAdaptive::<8>::new(1e-9).step(&body, 0.0, 1.0, &mut state);
+    assert!(matches!(found, Err(StepError::Tolerance { .. } | StepError::NotFinite)), "{found:?}");
+    assert_eq!(state, begin);
+}

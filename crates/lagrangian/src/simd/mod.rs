@@ -1,0 +1,39 @@
+//! Numbers in the vector registers of the machine, found at run time.
+//!
+//! [`Lanes`](crate::Lanes) leaves the choice of instructions to the compiler, which does well where every lane goes its own
+//! way. Where lanes are mixed, as the stages of a step are, it takes the wrong loops for the vectors; a [`Pack`] is always the
+//! instructions that it says. The crate `pulp` gives them without a line of `unsafe`.
+
+mod pack;
+mod sincos;
+mod wide;
+
+pub use pack::Pack;
+pub use wide::Wide;
+
+pub use pulp::Simd;
+
+/// Something to compute on packs of eight numbers.
+pub trait Kernel {
+    /// The result.
+    type Output;
+    /// Computes it with the registers of `simd`, `R` of which hold eight numbers.
+    fn run<S: Simd, const R: usize>(self, simd: S) -> Self::Output;
+}
+
+/// Runs a kernel with vector registers that multiply and add in one instruction; none where the machine has none known here.
+///
+/// Today these are AVX2 with FMA. Registers of twice the width gained nothing where they were tried: they are two of these
+/// on some machines, and eight numbers of one step wait for one another in any case.
+#[inline(always)]
+pub fn dispatch<K: Kernel>(kernel: K) -> Option<K::Output> {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = pulp::x86::V3::try_new() {
+        return Some(simd.vectorize(
+            #[inline(always)]
+            || kernel.run::<_, 2>(simd),
+        ));
+    }
+    let _ = kernel;
+    None
+}

@@ -1,0 +1,188 @@
+use super::Pack;
+use crate::Scalar;
+use pulp::Simd;
+use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// Eight numbers for a model to be carried on: a [`Pack`], or what all eight have in common.
+///
+/// A model says which of its numbers are constant or zero when it is compiled, so the cases cost nothing when it runs; a
+/// zero of the model takes no instruction at all. (It swallows an infinity or a NaN that it is multiplied by.)
+#[derive(Debug, Clone, Copy)]
+pub enum Wide<S: Simd, const R: usize> {
+    /// Zero, by the model.
+    Zero,
+    /// The same number everywhere.
+    Same(f64),
+    /// Eight numbers.
+    Each(Pack<S, R>),
+}
+use Wide::{Each, Same, Zero};
+
+impl<S: Simd, const R: usize> Wide<S, R> {
+    /// The numbers.
+    #[must_use]
+    #[inline(always)]
+    pub fn pack(self, simd: S) -> Pack<S, R> {
+        match self {
+            Zero => Pack::splat(simd, 0.0),
+            Same(x) => Pack::splat(simd, x),
+            Each(pack) => pack,
+        }
+    }
+
+    #[inline(always)]
+    fn with(self, o: Self, one: impl Fn(f64, f64) -> f64, all: impl Fn(Pack<S, R>, Pack<S, R>) -> Pack<S, R>) -> Self {
+        let value = |x: Self| if let Same(x) = x { x } else { 0.0 };
+        match (self, o) {
+            (Each(a), Each(b)) => Each(all(a, b)),
+            (Each(a), b) => Each(all(a, Pack::splat(a.simd(), value(b)))),
+            (a, Each(b)) => Each(all(Pack::splat(b.simd(), value(a)), b)),
+            (a, b) => Same(one(value(a), value(b))),
+        }
+    }
+
+    #[inline(always)]
+    fn apart(self, f: impl Fn(f64) -> f64) -> Self {
+        match self {
+            Zero => Same(f(0.0)),
+            Same(x) => Same(f(x)),
+            Each(x) => Each(x.each(f)),
+        }
+    }
+}
+
+impl<S: Simd, const R: usize> Add for Wide<S, R> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        match (self, o) {
+            (Zero, x) | (x, Zero) => x,
+            (a, b) => a.with(b, |a, b| a + b, |a, b| a + b),
+        }
+    }
+}
+impl<S: Simd, const R: usize> Sub for Wide<S, R> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        match (self, o) {
+            (x, Zero) => x,
+            (Zero, x) => -x,
+            (a, b) => a.with(b, |a, b| a - b, |a, b| a - b),
+        }
+    }
+}
+impl<S: Simd, const R: usize> Mul for Wide<S, R> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, o: Self) -> Self {
+        match (self, o) {
+            (Zero, _) | (_, Zero) => Zero,
+            (a, b) => a.with(b, |a, b| a * b, |a, b| a * b),
+        }
+    }
+}
+impl<S: Simd, const R: usize> Div for Wide<S, R> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, o: Self) -> Self {
+        match (self, o) {
+            (Zero, _) => Zero,
+            (a, b) => a.with(b, |a, b| a / b, |a, b| a / b),
+        }
+    }
+}
+impl<S: Simd, const R: usize> Neg for Wide<S, R> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        match self {
+            Zero => Zero,
+            Same(x) => Same(-x),
+            Each(x) => Each(-x),
+        }
+    }
+}
+macro_rules! with_numbers {
+    ($($operator:ident $method:ident),*) => {$(
+        impl<S: Simd, const R: usize> $operator<f64> for Wide<S, R> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, x: f64) -> Self {
+                self.$method(Same(x))
+            }
+        }
+    )*};
+}
+with_numbers!(Add add, Sub sub, Mul mul, Div div);
+impl<S: Simd, const R: usize> AddAssign for Wide<S, R> {
+    #[inline(always)]
+    fn add_assign(&mut self, o: Self) {
+        *self = *self + o;
+    }
+}
+impl<S: Simd, const R: usize> SubAssign for Wide<S, R> {
+    #[inline(always)]
+    fn sub_assign(&mut self, o: Self) {
+        *self = *self - o;
+    }
+}
+impl<S: Simd, const R: usize> MulAssign<f64> for Wide<S, R> {
+    #[inline(always)]
+    fn mul_assign(&mut self, factor: f64) {
+        *self = *self * factor;
+    }
+}
+
+impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
+    #[inline(always)]
+    fn constant(x: f64) -> Self {
+        Same(x)
+    }
+    #[inline(always)]
+    fn zero() -> Self {
+        Zero
+    }
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        match self {
+            Zero => (Zero, Same(1.0)),
+            Same(x) => {
+                let (sin, cos) = x.sin_cos();
+                (Same(sin), Same(cos))
+            }
+            Each(x) => {
+                let (sin, cos) = x.sin_cos();
+                (Each(sin), Each(cos))
+            }
+        }
+    }
+    #[inline(always)]
+    fn exp(self) -> Self {
+        self.apart(f64::exp)
+    }
+    #[inline(always)]
+    fn ln(self) -> Self {
+        self.apart(f64::ln)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.apart(f64::sqrt)
+    }
+    #[inline(always)]
+    fn powi(self, n: i32) -> Self {
+        self.apart(|x| x.powi(n))
+    }
+    #[inline(always)]
+    fn recip(self) -> Self {
+        Same(1.0) / self
+    }
+    #[inline(always)]
+    fn is_zero(&self) -> bool {
+        match self {
+            Zero => true,
+            Same(x) => *x == 0.0,
+            Each(x) => x.lanes().iter().all(Scalar::is_zero),
+        }
+    }
+}
