@@ -12,6 +12,8 @@ pub(crate) enum CliError {
     #[error("{0}")]
     Scene(#[from] SceneError),
     #[error("{0}")]
+    Sweep(#[from] scene::SweepError),
+    #[error("{0}")]
     Method(#[from] MethodError),
     #[error("the scene: {0}")]
     Sleigh(#[from] sleigh::SleighError),
@@ -82,6 +84,13 @@ impl CliError {
             Self::Scene(_) | Self::Sleigh(_) | Self::Method(_) | Self::Exists { .. } | Self::Ending { .. } => {
                 ExitCode::from(2)
             }
+            Self::Case { .. } => ExitCode::from(2),
+            Self::Scene(_)
+            | Self::Sweep(_)
+            | Self::Sleigh(_)
+            | Self::Method(_)
+            | Self::Exists { .. }
+            | Self::Ending { .. } => ExitCode::from(2),
             #[cfg(not(feature = "parquet"))]
             Self::WithoutParquet { .. } => ExitCode::from(2),
             Self::ChartEnding { .. } | Self::Request(_) => ExitCode::from(2),

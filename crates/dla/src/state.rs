@@ -244,23 +244,39 @@ impl<const N: usize> State<N> {
         })
     }
 
+    /// A state of its parts: configuration, rest and turns, all that a step leaves.
+    pub(crate) fn assembled([q, rest, turns]: [[f64; N]; 3], angles: [bool; N], v: [f64; N], xi: [f64; N]) -> Self {
+        Self { q, rest, turns, angles, v, left: Left::Velocities(xi) }
+    }
+
     #[inline(always)]
     fn wrap(&mut self) {
         for i in 0..N {
             if self.angles[i] && self.q[i].abs() > PI && self.q[i].is_finite() {
-                let turns = (self.q[i] / TAU).round();
-                if turns.abs() < COUNTED {
-                    // The first difference is exact; what many turns leave in the second belongs to the angle.
-                    let within = (-turns).mul_add(TAU, self.q[i]);
-                    (self.q[i], self.rest[i]) = two_sum(within, self.rest[i] - turns * TAU_REST);
-                } else {
-                    // A rest says nothing there, and the angle that the velocity has been found at is without it.
-                    (self.q[i], self.rest[i]) = (within_many(self.q[i]), 0.0);
-                }
+                let turns;
+                (self.q[i], self.rest[i], turns) = within_half_a_turn(self.q[i], self.rest[i]);
                 self.turns[i] += turns;
             }
         }
     }
+}
+
+/// An angle with its rest, wrapped, and the turns that were taken out of it.
+pub(crate) fn wrapped(q: f64, rest: f64) -> (f64, f64, f64) {
+    if q.abs() > PI && q.is_finite() { within_half_a_turn(q, rest) } else { (q, rest, 0.0) }
+}
+
+#[inline(always)]
+fn within_half_a_turn(q: f64, rest: f64) -> (f64, f64, f64) {
+    let turns = (q / TAU).round();
+    let (q, rest) = if turns.abs() < COUNTED {
+        // The first difference is exact; what many turns leave in the second belongs to the angle.
+        two_sum((-turns).mul_add(TAU, q), rest - turns * TAU_REST)
+    } else {
+        // A rest says nothing there, and the angle that the velocity has been found at is without it.
+        (within_many(q), 0.0)
+    };
+    (q, rest, turns)
 }
 
 /// The angle within a turn of one of so many turns that two parts of a turn are not enough of its digits.

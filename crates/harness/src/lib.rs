@@ -9,6 +9,7 @@ mod assembled;
 mod baseline;
 mod cost;
 mod drift;
+pub mod ensemble;
 mod method;
 pub mod precision;
 mod record;

@@ -7,10 +7,12 @@
 //!
 //! This crate knows no integrator and no particular system.
 
+mod abreast;
 mod basis;
 mod bracket;
 mod classify;
 mod closed;
+mod closed_lanes;
 mod discrete;
 mod dual;
 mod effect;
@@ -45,12 +47,14 @@ mod twofold;
 mod vector_field;
 mod with;
 
+pub use abreast::Abreast;
 pub use basis::AdmissibleBasis;
 pub use bracket::{Bracket, EnergySlope, energy_slope, inverse_reduced_mass};
 pub use classify::{
     Classification, RowKind, classify, rank_is_constant, redundant_rows, row_space, rows_are_consistent,
 };
 pub use closed::{ClosedStep, ClosedStepError};
+pub use closed_lanes::{ClosedLaneStep, ClosedLanes};
 pub use discrete::{Derivatives, DiscreteConstraint, DiscreteLagrangian};
 pub use dual::Dual;
 pub use effect::{Effect, Slope};

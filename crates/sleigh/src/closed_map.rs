@@ -3,12 +3,17 @@ use lagrangian::{ClosedStep, ClosedStepError};
 use std::f64::consts::FRAC_PI_2;
 
 /// An error in `r` of this size is rounding.
-const ROUNDING: f64 = 1e-17;
+pub(crate) const ROUNDING: f64 = 1e-17;
 /// The cube of an angle this small is rounding.
 const SMALL: f64 = 1e-6;
 /// A part of the spin by which an expected one may differ from that before.
 const FAR: f64 = 0.125;
 const MAX_ITERATIONS: u32 = 30;
+pub(crate) const SMALL: f64 = 1e-6;
+pub(crate) const MAX_ITERATIONS: u32 = 30;
+/// The series of `sin d = d + d^3 (s_0 + s_1 d^2 + ..)` and `cos d = 1 - d^2/2 + d^4 (c_0 + c_1 d^2 + ..)`.
+pub(crate) const SINE: [f64; 5] = [-1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0, -1.0 / 39_916_800.0];
+pub(crate) const COSINE: [f64; 5] = [1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0, 1.0 / 479_001_600.0];
 
 /// One step of the midpoint discrete Lagrange-d'Alembert map of the free sleigh, reduced to one unknown.
 ///
@@ -127,10 +132,8 @@ pub(crate) fn half_turn(d: f64) -> Result<(f64, f64), ClosedStepError> {
         // Their series, to the first term below rounding, summed in pairs: no range to reduce, little to wait for.
         let z = d * d;
         let zz = z * z;
-        let s = (-1.0 / 6.0 + z * (1.0 / 120.0))
-            + zz * ((-1.0 / 5040.0 + z * (1.0 / 362_880.0)) - zz * (1.0 / 39_916_800.0));
-        let c = (1.0 / 24.0 - z * (1.0 / 720.0))
-            + zz * ((1.0 / 40_320.0 - z * (1.0 / 3_628_800.0)) + zz * (1.0 / 479_001_600.0));
+        let sum = |c: &[f64; 5]| (c[0] + z * c[1]) + zz * ((c[2] + z * c[3]) + zz * c[4]);
+        let (s, c) = (sum(&SINE), sum(&COSINE));
         Ok((d + d * z * s, 1.0 - (0.5 * z - zz * c)))
     } else if d.abs() < FRAC_PI_2 {
         Ok(d.sin_cos())

@@ -10,6 +10,7 @@ mod body;
 mod canonical;
 mod centre_of_mass;
 mod checks;
+mod closed_lanes;
 mod closed_map;
 pub mod effects;
 mod error;
@@ -25,6 +26,7 @@ mod time_function;
 pub use bodies::{ClosedPath, Flywheel, Guide, Guided};
 pub use body::Sleigh;
 pub use centre_of_mass::CentreOfMass;
+
 pub use error::SleighError;
 pub use exact::Exact;
 pub use sleigh_body::SleighBody;

@@ -6,6 +6,7 @@ mod baselines;
 mod chaos;
 mod charts;
 mod drift;
+mod ensembles;
 mod measures;
 mod precision;
 mod same_bits;
