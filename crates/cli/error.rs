@@ -81,10 +81,6 @@ impl CliError {
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
             Self::Case { .. } | Self::Train(_) => ExitCode::from(2),
-            Self::Scene(_) | Self::Sleigh(_) | Self::Method(_) | Self::Exists { .. } | Self::Ending { .. } => {
-                ExitCode::from(2)
-            }
-            Self::Case { .. } => ExitCode::from(2),
             Self::Scene(_)
             | Self::Sweep(_)
             | Self::Sleigh(_)

@@ -252,7 +252,7 @@ impl OneStep for Dla {
         }
         for i in 0..state.len() {
             let (v, v1) = (self.v[i], self.v1[i]);
-            state.advance(i, h * v, v1, (v1 - v) / (0.5 * h));
+            state.advance(h, i, h * v, v1, (v1 - v) / (0.5 * h));
         }
         Ok(StepReport { iterations })
     }

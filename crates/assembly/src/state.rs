@@ -68,10 +68,10 @@ impl State {
         self.coordinates[i].moved_since(&self.coordinates[from])[0]
     }
 
-    /// Moves a coordinate, and leaves about its acceleration to the next step.
+    /// Moves a coordinate by a step of length `h`, and leaves about its acceleration to the next step.
     #[inline(always)]
-    pub(crate) fn advance(&mut self, i: usize, increment: f64, v: f64, acceleration: f64) {
-        self.coordinates[i].advance_with_acceleration(&[increment], [v], [acceleration]);
+    pub(crate) fn advance(&mut self, h: f64, i: usize, increment: f64, v: f64, acceleration: f64) {
+        self.coordinates[i].advance_with_acceleration(h, &[increment], [v], [acceleration]);
     }
 
     /// The same place with the opposite velocity.

@@ -246,7 +246,7 @@ impl<const N: usize> State<N> {
 
     /// A state of its parts: configuration, rest and turns, all that a step leaves.
     pub(crate) fn assembled([q, rest, turns]: [[f64; N]; 3], angles: [bool; N], v: [f64; N], xi: [f64; N]) -> Self {
-        Self { q, rest, turns, angles, v, left: Left::Velocities(xi) }
+        Self { q, rest, turns, angles, v, left: Left::Velocities(xi), past: Past::new() }
     }
 
     #[inline(always)]

@@ -5,11 +5,9 @@ use std::f64::consts::FRAC_PI_2;
 /// An error in `r` of this size is rounding.
 pub(crate) const ROUNDING: f64 = 1e-17;
 /// The cube of an angle this small is rounding.
-const SMALL: f64 = 1e-6;
+pub(crate) const SMALL: f64 = 1e-6;
 /// A part of the spin by which an expected one may differ from that before.
 const FAR: f64 = 0.125;
-const MAX_ITERATIONS: u32 = 30;
-pub(crate) const SMALL: f64 = 1e-6;
 pub(crate) const MAX_ITERATIONS: u32 = 30;
 /// The series of `sin d = d + d^3 (s_0 + s_1 d^2 + ..)` and `cos d = 1 - d^2/2 + d^4 (c_0 + c_1 d^2 + ..)`.
 pub(crate) const SINE: [f64; 5] = [-1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0, -1.0 / 39_916_800.0];

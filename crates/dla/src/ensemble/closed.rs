@@ -207,7 +207,7 @@ fn one_by_one<Sys: System<N, M>, const W: usize, const N: usize, const M: usize,
     let Run { state, frame, largest, .. } = run;
     for _ in 0..steps {
         let (q, xi) = (state.q(lane), state.xi(lane));
-        let step = system.closed_step(0.0, h, &q, &[0.0; N], Some(xi))?.ok()?;
+        let step = system.closed_step(0.0, h, &q, &[0.0; N], Some(xi), None)?.ok()?;
         for k in 0..N {
             let increment = step.increment[k] + state.rest[k].0[lane];
             let sum = q[k] + increment;

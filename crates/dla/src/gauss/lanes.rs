@@ -13,6 +13,9 @@ pub(super) struct Slopes<const N: usize> {
     pub(super) acceleration: Rows<N>,
 }
 
+/// Velocities and accelerations in registers.
+type Packed<S, const R: usize, const N: usize> = ([Pack<S, R>; N], [Pack<S, R>; N]);
+
 /// When the iteration has come to its end, in units of the scales.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ending<const N: usize> {
@@ -65,7 +68,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
         simd: S,
         q: &[Wide<S, R>; N],
         xi: &[Wide<S, R>; N],
-    ) -> Option<([Pack<S, R>; N], [Pack<S, R>; N])> {
+    ) -> Option<Packed<S, R, N>> {
         let t = Wide::Each(Pack::load(simd, &self.rule.nodes.map(|node| self.t + node * self.h)));
         let velocity = velocity_of(self.system, t, q, xi).ok()?;
         let acceleration = self.system.reduced_motion(t, q, xi)?;

@@ -78,7 +78,7 @@ impl<S: Simd, const R: usize> Pack<S, R> {
     #[must_use]
     #[inline(always)]
     pub fn mul_add(self, factor: Self, term: Self) -> Self {
-        self.zip3(factor, term, |s, a, b, c| s.mul_add_e_f64s(a, b, c))
+        self.zip3(factor, term, S::mul_add_e_f64s)
     }
 
     /// The larger of this number and the absolute value of the other, in every place; the other where one is not a number.
@@ -135,6 +135,6 @@ impl<S: Simd, const R: usize> std::ops::Neg for Pack<S, R> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        self.map(|s, a| s.neg_f64s(a))
+        self.map(S::neg_f64s)
     }
 }

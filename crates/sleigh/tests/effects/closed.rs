@@ -193,5 +193,5 @@ fn sines_have_all_their_digits() {
 #[test]
 fn a_driven_rotor_is_not_closed() {
     let driven = Flywheel::new(Sleigh::new(1.0, 1.0, 0.5).unwrap(), 0.2, Some(0.3.into())).unwrap();
-    assert!(System::<4, 1>::closed_step(&driven, 0.0, 0.1, &[0.0; 4], &[0.0; 4], None).is_none());
+    assert!(System::<4, 1>::closed_step(&driven, 0.0, 0.1, &[0.0; 4], &[0.0; 4], None, None).is_none());
 }
