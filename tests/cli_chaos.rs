@@ -1,6 +1,8 @@
-//! `noslip lyapunov` and `noslip section`.
+//! `noslip lyapunov`, `noslip section` and `noslip ensemble`.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
+#[path = "cli_chaos/ensembles.rs"]
+mod ensembles;
 #[path = "common/program.rs"]
 mod program;
 

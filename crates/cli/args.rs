@@ -43,6 +43,10 @@ pub(crate) enum Command {
     /// Without --duration each motion is followed for 2000 s. In a scene that depends on time only --plane t=PERIOD, with the period
     /// of the scene, shows the iterates of one map.
     Section(SectionArguments),
+    /// Computes many variants of a scene: a grid of starts and parameters, or random samples, a row for each
+    ///
+    /// Members are computed on all threads; their number, RAYON_NUM_THREADS, changes no result.
+    Ensemble(EnsembleArguments),
     /// Reads a scene and says what it is, or what is wrong with it
     Check(CheckArguments),
     /// Lists what there is
@@ -250,6 +254,25 @@ pub(crate) struct SectionArguments {
     /// Write the crossings: .csv, or a picture .svg, by the ending
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct EnsembleArguments {
+    /// A file that names a scene and what varies of it
+    #[arg(value_name = "SWEEP")]
+    pub(crate) sweep: String,
+    /// Write a row for each member: .csv, .npz, or .parquet (a cargo feature), by the ending
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Go on where an interrupted run of the same sweep ended
+    #[arg(long, requires = "out")]
+    pub(crate) resume: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Overwrite output that is there already
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 #[derive(Debug, Args)]

@@ -12,9 +12,13 @@ pub(crate) enum CliError {
     #[error("{0}")]
     Scene(#[from] SceneError),
     #[error("{0}")]
+    Sweep(#[from] scene::SweepError),
+    #[error("{0}")]
     Method(#[from] MethodError),
     #[error("the scene: {0}")]
     Sleigh(#[from] sleigh::SleighError),
+    #[error("the scene: {0}")]
+    Train(#[from] scene::TrainError),
     #[error("unknown case `{name}`{}; the cases are {names}", nearest.as_ref().map_or_else(String::new, |n| format!(", did you mean `{n}`?")))]
     Case { name: String, nearest: Option<String>, names: String },
     #[error("{} exists already; --force overwrites it", path.display())]
@@ -76,10 +80,17 @@ impl CliError {
     /// 1: the computation failed, or what it gave could not be written. 2: the request was wrong.
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
-            Self::Case { .. } => ExitCode::from(2),
+            Self::Case { .. } | Self::Train(_) => ExitCode::from(2),
             Self::Scene(_) | Self::Sleigh(_) | Self::Method(_) | Self::Exists { .. } | Self::Ending { .. } => {
                 ExitCode::from(2)
             }
+            Self::Case { .. } => ExitCode::from(2),
+            Self::Scene(_)
+            | Self::Sweep(_)
+            | Self::Sleigh(_)
+            | Self::Method(_)
+            | Self::Exists { .. }
+            | Self::Ending { .. } => ExitCode::from(2),
             #[cfg(not(feature = "parquet"))]
             Self::WithoutParquet { .. } => ExitCode::from(2),
             Self::ChartEnding { .. } | Self::Request(_) => ExitCode::from(2),

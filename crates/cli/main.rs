@@ -6,6 +6,7 @@ mod compare;
 mod compare_numbers;
 mod coordinate;
 mod cost;
+mod ensemble;
 mod equilibria;
 mod error;
 mod facts;
@@ -33,6 +34,7 @@ mod stability_map;
 mod starts;
 mod table;
 mod terminal;
+mod train;
 mod trajectory_file;
 mod trigger;
 
@@ -71,6 +73,7 @@ fn command(arguments: Arguments) -> Result<(), CliError> {
         Some(Command::Phase(arguments)) => phase::phase(&arguments),
         Some(Command::Lyapunov(arguments)) => lyapunov::lyapunov(&arguments),
         Some(Command::Section(arguments)) => section::section(&arguments),
+        Some(Command::Ensemble(arguments)) => ensemble::ensemble(&arguments),
         Some(Command::Check(arguments)) => inspect::check(&arguments),
         Some(Command::List(arguments)) => inspect::list(&arguments),
         Some(Command::New(arguments)) => inspect::new(&arguments),

@@ -3,7 +3,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use dla::State;
+use dla::{Checkpoint, State};
 use lagrangian::Twofold;
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -198,6 +198,37 @@ fn angles_beyond_counting_are_wrapped() {
         assert_relative_eq!(turned, q, max_relative = 2.0 * f64::EPSILON);
         assert_eq!(turns.fract(), 0.0);
     }
+}
+
+/// Increments along a polynomial of the fourth degree are extrapolated to rounding, those of other steps forgotten.
+#[test]
+fn the_next_increment_is_expected() {
+    let along = |k: i32| [0.1 + 0.02 * f64::from(k) - 1e-3 * f64::from(k).powi(4), 1.0];
+    let mut state = State::new([0.0; 2], [0.0; 2], [false; 2]);
+    for k in 0..9 {
+        let expected = state.expected(0.5);
+        assert_eq!(expected.is_some(), k >= 5, "step {k}");
+        if let Some(expected) = expected {
+            // Sums of numbers below 60.
+            assert_abs_diff_eq!(expected[0], along(k)[0], epsilon = 1e-13);
+            assert_abs_diff_eq!(expected[1], 1.0, epsilon = 1e-14);
+        }
+        state.advance_remembering(0.5, &along(k), [0.0; 2], [0.0; 2]);
+    }
+    assert!(state.expected(0.25).is_none(), "of another length");
+    assert!(state.reversed().expected(0.5).is_none(), "the other way");
+
+    let mut checkpoint = Checkpoint::of([]);
+    state.save(&mut checkpoint);
+    let again = State::load(&checkpoint, [false; 2]).unwrap();
+    assert_eq!(again.expected(0.5), state.expected(0.5));
+    assert_eq!(again, state);
+
+    let mut other = state;
+    other.advance_with_acceleration(0.25, &[0.0; 2], [0.0; 2], [0.0; 2]);
+    assert!(other.expected(0.5).is_none() && other.expected(0.25).is_none());
+    state.advance(&[0.0; 2], [0.0; 2], None);
+    assert!(state.expected(0.5).is_none(), "after a step of which nothing is remembered");
 }
 
 proptest! {

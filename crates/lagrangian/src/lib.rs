@@ -7,16 +7,21 @@
 //!
 //! This crate knows no integrator and no particular system.
 
+mod abreast;
 mod basis;
 mod bracket;
 mod classify;
 mod closed;
+mod closed_lanes;
 mod discrete;
 mod dual;
 mod effect;
+mod factored;
 mod gradients;
 mod growth;
 mod hyperdual;
+mod inverse;
+mod known_angle;
 mod lanes;
 pub mod linear;
 mod momentum;
@@ -42,18 +47,22 @@ mod twofold;
 mod vector_field;
 mod with;
 
+pub use abreast::Abreast;
 pub use basis::AdmissibleBasis;
 pub use bracket::{Bracket, EnergySlope, energy_slope, inverse_reduced_mass};
 pub use classify::{
     Classification, RowKind, classify, rank_is_constant, redundant_rows, row_space, rows_are_consistent,
 };
 pub use closed::{ClosedStep, ClosedStepError};
+pub use closed_lanes::{ClosedLaneStep, ClosedLanes};
 pub use discrete::{Derivatives, DiscreteConstraint, DiscreteLagrangian};
 pub use dual::Dual;
 pub use effect::{Effect, Slope};
+pub use factored::FactoredSaddle;
 pub use gradients::{Along, Gradients, Seeded, SeededMember};
 pub use growth::{AdmissibleField, Growth, GrowthError, admissible_fields, growth};
 pub use hyperdual::HyperDual;
+pub use known_angle::KnownAngle;
 pub use lanes::{Lanes, vectorized};
 pub use momentum::{energy, mass_matrix, momentum};
 pub use motion::{Motion, MotionError};
@@ -68,7 +77,7 @@ pub use rows::Rows;
 pub use rule::{Alpha, Midpoint, NotAWeight, Rule, RuleNode, Symmetrised, Trapezoid};
 pub use saddle::Saddle;
 pub use scalar::Scalar;
-pub use system::{Constraint, System, constraint_residual};
+pub use system::{Constraint, Push, System, constraint_residual};
 pub use twofold::Twofold;
 pub use vector_field::{LieBracket, VectorField};
 pub use with::With;

@@ -9,6 +9,7 @@ mod events;
 mod failures;
 mod hints;
 mod observers;
+mod lanes;
 mod recommend;
 mod scripted;
 mod substeps;

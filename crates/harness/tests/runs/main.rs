@@ -6,10 +6,12 @@ mod baselines;
 mod chaos;
 mod charts;
 mod drift;
+mod ensembles;
 mod measures;
 mod precision;
 mod same_bits;
 mod sensitivity;
+mod trains;
 
 use approx::assert_relative_eq;
 use dla::Schedule;

@@ -11,7 +11,7 @@ fn start(heading: f64, speed: f64, turn_rate: f64) -> ([f64; 3], [f64; 3]) {
 
 fn step(sleigh: &Sleigh, h: f64, heading: f64, u: f64, omega: f64) -> Result<ClosedStep<3, 1>, ClosedStepError> {
     let (q, v) = start(heading, u, omega);
-    System::<3, 1>::closed_step(sleigh, 0.0, h, &q, &v, None).unwrap()
+    System::<3, 1>::closed_step(sleigh, 0.0, h, &q, &v, None, None).unwrap()
 }
 
 proptest! {
@@ -49,7 +49,7 @@ proptest! {
         // Known quasi-velocities are taken as they are, whatever the velocity.
         let (q, v) = start(heading, u0, omega0);
         let from = [v[0] * heading.cos() + v[1] * heading.sin(), omega0, 0.0];
-        let again = System::<3, 1>::closed_step(&sleigh, 0.0, h, &q, &[9.0; 3], Some(from)).unwrap().unwrap();
+        let again = System::<3, 1>::closed_step(&sleigh, 0.0, h, &q, &[9.0; 3], Some(from), None).unwrap().unwrap();
         assert_abs_diff_eq!(again.xi[0], u1, epsilon = bound);
         assert_abs_diff_eq!(again.xi[1], omega1, epsilon = bound);
     }
@@ -112,7 +112,7 @@ proptest! {
         let ([x, y, heading], [vx, vy, turn]) = (q, v);
         for xi in [None, Some([u, omega, omega + rate, 0.0])] {
             let (q, v) = ([x, y, heading, 0.7], [vx, vy, turn, if xi.is_some() { 9.0 } else { rate }]);
-            let made = System::<4, 1>::closed_step(&rotor, 0.0, h, &q, &v, xi).unwrap().unwrap();
+            let made = System::<4, 1>::closed_step(&rotor, 0.0, h, &q, &v, xi, None).unwrap().unwrap();
             for i in 0..3 {
                 assert_abs_diff_eq!(made.increment[i], bare.increment[i], epsilon = 1e-14);
                 assert_abs_diff_eq!(made.velocity[i], bare.velocity[i], epsilon = 1e-14);

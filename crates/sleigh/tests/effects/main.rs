@@ -8,5 +8,6 @@ mod derivatives;
 mod forces;
 mod imposed;
 mod paths;
+mod pushed;
 mod refusals;
 mod time;

@@ -1,0 +1,257 @@
+use crate::inspect;
+use dla::{ClosedEnsemble, Each, Ensemble, GaussEnsemble, LaneState, Schedule};
+use harness::analysis::{LyapunovRequest, lyapunov};
+use harness::ensemble::{Summary, Watching, summarise, watch};
+use harness::{Kind, Method};
+use lagrangian::{System, With};
+use scene::{Scene, SceneEffect, SceneSystem, Sweep, Visitor};
+use sleigh::effects::Bowl;
+use sleigh::{Sleigh, SleighState};
+use std::array::from_fn;
+use std::ops::Range;
+
+/// Members that are computed together: whole registers of the closed map, of three, and of the collocation, of two.
+pub(super) const GROUP: u64 = 48;
+
+/// Lanes of the closed map and of the collocation.
+const CLOSED: usize = 24;
+const GAUSS: usize = 16;
+
+/// What is summed up of a sleigh.
+const QUANTITIES: usize = 5;
+
+/// The columns after those of the keys, with their units.
+pub(super) const COLUMNS: [(&str, &str); 17] = [
+    ("t", "s"),
+    ("x", "m"),
+    ("y", "m"),
+    ("heading", "rad"),
+    ("speed", "m/s"),
+    ("turn_rate", "rad/s"),
+    ("x_min", "m"),
+    ("x_max", "m"),
+    ("y_min", "m"),
+    ("y_max", "m"),
+    ("speed_min", "m/s"),
+    ("speed_max", "m/s"),
+    ("turn_rate_min", "rad/s"),
+    ("turn_rate_max", "rad/s"),
+    ("energy", "J"),
+    ("energy_deviation", "J"),
+    ("constraint", "m/s"),
+];
+
+/// A member that was computed.
+pub(super) struct Row {
+    pub(super) member: u64,
+    /// Keys, columns, and the exponent where it is wanted; NaN where there is none.
+    pub(super) values: Vec<f64>,
+    /// Why it ended early, if it did.
+    pub(super) error: Option<String>,
+}
+
+/// The members of a sweep by one method.
+pub(super) struct Members<'a> {
+    pub(super) sweep: &'a Sweep,
+    pub(super) method: Method,
+    pub(super) names: &'a [&'static str],
+}
+
+type Told = (Option<Summary<QUANTITIES>>, Option<String>);
+
+impl Members<'_> {
+    fn schedule(&self) -> Schedule {
+        inspect::schedule(&self.sweep.scene)
+    }
+
+    /// Some members, in order.
+    pub(super) fn rows(&self, range: Range<u64>) -> Vec<Row> {
+        let made: Vec<_> = range.map(|member| (member, self.sweep.member(member, self.names))).collect();
+        let scenes: Vec<&Scene> = made.iter().filter_map(|(_, scene)| scene.as_ref().ok()).collect();
+        let mut in_lanes = self.in_lanes(&scenes).into_iter();
+        let row = |(member, scene): &(u64, Result<Scene, scene::SweepError>)| {
+            let mut values = self.sweep.values(*member);
+            let (summary, mut error) = match scene {
+                Ok(scene) => match in_lanes.next().flatten() {
+                    Some(summary) => (Some(summary), None),
+                    None => self.alone(scene),
+                },
+                Err(error) => (None, Some(error.to_string())),
+            };
+            values.extend(numbers(summary.as_ref()));
+            if self.sweep.exponent {
+                let exponent = scene.as_ref().ok().filter(|_| error.is_none()).map(|scene| self.exponent(scene));
+                values.push(exponent.as_ref().and_then(|found| found.as_ref().ok()).copied().unwrap_or(f64::NAN));
+                error = error.or(exponent.and_then(Result::err));
+            }
+            Row { member: *member, values, error }
+        };
+        made.iter().map(row).collect()
+    }
+
+    /// One by itself: any scene, any method.
+    fn alone(&self, scene: &Scene) -> Told {
+        let alone = Alone { method: &self.method, schedule: self.schedule(), every: self.sweep.every };
+        scene.visit(alone).unwrap_or_else(|error| (None, Some(error.to_string())))
+    }
+
+    /// The largest Lyapunov exponent (1/s), after a tenth of the run.
+    fn exponent(&self, scene: &Scene) -> Result<f64, String> {
+        let found = scene.visit_free(Exponent { method: &self.method, schedule: self.schedule() });
+        match found {
+            Ok(Some(found)) => found,
+            Ok(None) => Err("the scene imposes velocities, and has no exponents".to_owned()),
+            Err(error) => Err(error.to_string()),
+        }
+    }
+
+    /// In lanes, where there are lanes for it; none of a member that needs to be looked at by itself.
+    fn in_lanes(&self, scenes: &[&Scene]) -> Vec<Option<Summary<QUANTITIES>>> {
+        let Schedule { t0, step, .. } = self.schedule();
+        match (self.method.info().kind, &self.sweep.scene.effects[..]) {
+            (Kind::Dla, []) => self.registers::<CLOSED, _>(scenes, free, |sleighs, state| {
+                Some(Box::new(ClosedEnsemble::<_, 3, CLOSED, 3, 1, 5, 6>::new(*sleighs, step, state)))
+            }),
+            (Kind::Gauss8, []) => self.registers::<GAUSS, _>(scenes, free, |sleighs, state| {
+                boxed(GaussEnsemble::<_, _, 4, GAUSS, 3, 1>::new(Each(sleighs), (t0, step), true, state))
+            }),
+            (Kind::Gauss16, []) => self.registers::<GAUSS, _>(scenes, free, |sleighs, state| {
+                boxed(GaussEnsemble::<_, _, 8, GAUSS, 3, 1>::new(Each(sleighs), (t0, step), true, state))
+            }),
+            (Kind::Gauss8, [SceneEffect::Bowl { .. }]) => self.registers::<GAUSS, _>(scenes, bowl, |bowls, state| {
+                boxed(GaussEnsemble::<_, _, 4, GAUSS, 3, 1>::new(Each(bowls), (t0, step), false, state))
+            }),
+            (Kind::Gauss16, [SceneEffect::Bowl { .. }]) => self.registers::<GAUSS, _>(scenes, bowl, |bowls, state| {
+                boxed(GaussEnsemble::<_, _, 8, GAUSS, 3, 1>::new(Each(bowls), (t0, step), false, state))
+            }),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Register by register; the last one is filled up with its last member.
+    fn registers<const W: usize, Sys: System<3, 1>>(
+        &self,
+        scenes: &[&Scene],
+        system: impl Fn(&Scene) -> Option<Sys>,
+        ensemble: impl for<'s> Fn(&'s [Sys; W], LaneState<3, W>) -> Option<Box<dyn Ensemble<3, W> + 's>>,
+    ) -> Vec<Option<Summary<QUANTITIES>>> {
+        let watching = Watching { schedule: self.schedule(), every: self.sweep.every, of: &quantities };
+        let register = |scenes: &[&Scene]| {
+            let of = |lane: usize| scenes.get(lane).or(scenes.last()).and_then(|scene| system(scene));
+            let systems: [Option<Sys>; W] = from_fn(of);
+            let systems: Vec<Sys> = systems.into_iter().flatten().collect();
+            let systems: Box<[Sys; W]> = systems.into_boxed_slice().try_into().ok()?;
+            let starts: Vec<_> = scenes
+                .iter()
+                .map(|scene| {
+                    let SleighState { x, y, heading, speed, turn_rate } = scene.start;
+                    ([x, y, heading], [speed, turn_rate, 0.0])
+                })
+                .collect();
+            let mut ensemble = ensemble(&systems, LaneState::new(&starts, [false, false, true]))?;
+            Some(watch(ensemble.as_mut(), &Each(&systems), &watching))
+        };
+        let told = |scenes: &[&Scene]| {
+            let found = register(scenes).unwrap_or_else(|| vec![None; scenes.len()]);
+            found.into_iter().take(scenes.len()).collect::<Vec<_>>()
+        };
+        scenes.chunks(W).flat_map(told).collect()
+    }
+}
+
+fn boxed<'s, const W: usize>(ensemble: Option<impl Ensemble<3, W> + 's>) -> Option<Box<dyn Ensemble<3, W> + 's>> {
+    ensemble.map(|ensemble| -> Box<dyn Ensemble<3, W> + 's> { Box::new(ensemble) })
+}
+
+fn free(scene: &Scene) -> Option<Sleigh> {
+    Some(scene.sleigh)
+}
+
+fn bowl(scene: &Scene) -> Option<With<Sleigh, Bowl>> {
+    match scene.effects[..] {
+        [SceneEffect::Bowl { stiffness, center }] => {
+            Bowl::new(stiffness, center).ok().map(|effects| With { body: scene.sleigh, effects })
+        }
+        _ => None,
+    }
+}
+
+fn quantities<Sys>(_system: &Sys, q: &[f64; 3], v: &[f64; 3]) -> [f64; QUANTITIES] {
+    words(&SleighState::from_coordinates(q, v))
+}
+
+fn words(state: &SleighState) -> [f64; QUANTITIES] {
+    [state.x, state.y, state.heading, state.speed, state.turn_rate]
+}
+
+/// The numbers of the columns.
+fn numbers(summary: Option<&Summary<QUANTITIES>>) -> [f64; COLUMNS.len()] {
+    let Some(Summary { t, end, low, high, energy, energy_deviation, constraint }) = summary else {
+        return [f64::NAN; COLUMNS.len()];
+    };
+    let [x, y, heading, speed, turn_rate] = *end;
+    // The heading has no extremes that mean anything.
+    let [[x_min, x_max], [y_min, y_max], _, [u_min, u_max], [w_min, w_max]] = from_fn(|k| [low[k], high[k]]);
+    [
+        *t,
+        x,
+        y,
+        heading,
+        speed,
+        turn_rate,
+        x_min,
+        x_max,
+        y_min,
+        y_max,
+        u_min,
+        u_max,
+        w_min,
+        w_max,
+        energy[1],
+        *energy_deviation,
+        *constraint,
+    ]
+}
+
+struct Alone<'a> {
+    method: &'a Method,
+    schedule: Schedule,
+    every: u64,
+}
+
+impl Visitor for Alone<'_> {
+    type Output = Told;
+
+    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Told
+    where
+        Sys: SceneSystem<N, M>,
+    {
+        let of = |system: &Sys, q: &[f64; N], v: &[f64; N]| words(&system.sleigh_state(q, v));
+        let watching = Watching { schedule: self.schedule, every: self.every, of: &of };
+        let (summary, failure) = summarise(system, self.method, (q, v), &watching);
+        (Some(summary), failure.map(|failure| failure.to_string()))
+    }
+}
+
+struct Exponent<'a> {
+    method: &'a Method,
+    schedule: Schedule,
+}
+
+impl Visitor for Exponent<'_> {
+    type Output = Result<f64, String>;
+
+    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
+    where
+        Sys: SceneSystem<N, M>,
+    {
+        let settle = self.schedule.steps / 10;
+        let schedule = Schedule { steps: self.schedule.steps - settle, ..self.schedule };
+        let request = LyapunovRequest { schedule, settle, exponents: Some(1), q, v };
+        let found = lyapunov(system, self.method, &request, &mut ()).map_err(|error| error.to_string())?;
+        match found.failure {
+            Some(failure) => Err(failure.to_string()),
+            None => Ok(found.exponents[0]),
+        }
+    }
+}

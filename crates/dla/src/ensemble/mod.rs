@@ -1,0 +1,21 @@
+//! Many trajectories at once, one in each lane: what the starts of an ensemble are integrated with.
+
+mod closed;
+mod collocation;
+mod gauss;
+mod state;
+mod systems;
+
+pub use closed::ClosedEnsemble;
+pub use gauss::GaussEnsemble;
+pub use state::LaneState;
+pub use systems::{Each, Same, Systems};
+
+/// `W` trajectories that make their steps together.
+pub trait Ensemble<const N: usize, const W: usize> {
+    /// Makes steps. A trajectory whose step is not found becomes NaN, and the others go on.
+    fn advance(&mut self, steps: u64);
+
+    /// The states.
+    fn state(&self) -> &LaneState<N, W>;
+}

@@ -1,0 +1,25 @@
+//! Ensembles: many starts of a system, summed up one by one, in lanes where there are lanes for it, on all threads.
+//!
+//! ```
+//! use dla::{ClosedEnsemble, Each, LaneState, Schedule};
+//! use harness::ensemble::{Watching, watch};
+//! use sleigh::{Sleigh, SleighState};
+//!
+//! let sleighs = [Sleigh::new(1.0, 1.0, 0.5)?; 16];
+//! let starts: Vec<_> = (0..16).map(|i| ([0.0; 3], [-1.0, 0.1 + 0.01 * f64::from(i), 0.0])).collect();
+//! let state = LaneState::new(&starts, [false, false, true]);
+//! let mut ensemble = ClosedEnsemble::<_, 2, 16, 3, 1, 5, 6>::new(sleighs, 0.05, state);
+//! let schedule = Schedule { t0: 0.0, step: 0.05, steps: 800 };
+//! let speed = |_: &Sleigh, q: &[f64; 3], v: &[f64; 3]| [SleighState::from_coordinates(q, v).speed];
+//! let summaries = watch(&mut ensemble, &Each(&sleighs), &Watching { schedule, every: 50, of: &speed });
+//! assert!(summaries.iter().flatten().all(|summary| summary.low[0] < -0.9 && summary.end[0] > 1.0));
+//! # Ok::<(), sleigh::SleighError>(())
+//! ```
+
+mod stream;
+mod summary;
+mod watch;
+
+pub use stream::in_order;
+pub use summary::Summary;
+pub use watch::{Watching, summarise, watch};

@@ -1,0 +1,108 @@
+//! Ensembles: the same rows on any number of threads and from any group on, and summaries that lanes and single runs share.
+
+use approx::assert_abs_diff_eq;
+use dla::{ClosedEnsemble, Each, LaneState, Schedule};
+use harness::Method;
+use harness::ensemble::{Summary, Watching, in_order, summarise, watch};
+use lagrangian::{With, velocity_of};
+use sleigh::{Sleigh, SleighState};
+use std::ops::{ControlFlow, Range};
+
+const W: usize = 16;
+
+fn start(member: u64) -> ([f64; 3], [f64; 3]) {
+    ([0.1, 0.2, 0.3], [-1.0, 0.1 + 0.01 * member as f64, 0.0])
+}
+
+fn words(state: &SleighState) -> [f64; 3] {
+    [state.x, state.speed, state.turn_rate]
+}
+
+/// The summaries of some members by the closed map.
+fn group(members: Range<u64>) -> Vec<Option<Summary<3>>> {
+    let sleighs = [Sleigh::new(1.0, 1.0, 0.5).unwrap(); W];
+    let starts: Vec<_> = members.map(start).collect();
+    let state = LaneState::new(&starts, [false, false, true]);
+    let mut ensemble = ClosedEnsemble::<_, 2, W, 3, 1, 5, 6>::new(sleighs, 0.05, state);
+    let of = |_: &Sleigh, q: &[f64; 3], v: &[f64; 3]| words(&SleighState::from_coordinates(q, v));
+    let schedule = Schedule { t0: 0.0, step: 0.05, steps: 101 };
+    watch(&mut ensemble, &Each(&sleighs), &Watching { schedule, every: 10, of: &of })
+}
+
+fn all(members: Range<u64>, threads: usize) -> Vec<Option<Summary<3>>> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let mut rows = Vec::new();
+    let outcome: ControlFlow<()> = pool.install(|| {
+        in_order(members, W as u64, group, |some| {
+            rows.extend(some);
+            ControlFlow::Continue(())
+        })
+    });
+    assert!(outcome.is_continue());
+    rows
+}
+
+#[test]
+fn threads_and_where_it_begins_change_no_bit() {
+    let one = all(0..160, 1);
+    assert!(one.len() == 160 && one[0] != one[159]);
+    assert_eq!(one, all(0..160, 3));
+    assert_eq!(one[48..], all(48..160, 2));
+}
+
+#[test]
+fn the_sink_ends_it() {
+    let mut seen = 0;
+    let outcome = in_order(
+        0..160,
+        16,
+        |range| range.start,
+        |begin| {
+            seen += 1;
+            if begin == 32 { ControlFlow::Break("enough") } else { ControlFlow::Continue(()) }
+        },
+    );
+    assert_eq!((outcome, seen), (ControlFlow::Break("enough"), 3));
+}
+
+#[test]
+fn lanes_are_summed_up_as_single_runs_are() {
+    let system = With { body: Sleigh::new(1.0, 1.0, 0.5).unwrap(), effects: () };
+    let schedule = Schedule { t0: 0.0, step: 0.05, steps: 101 };
+    let of = |_: &With<Sleigh, ()>, q: &[f64; 3], v: &[f64; 3]| words(&SleighState::from_coordinates(q, v));
+    let watching = Watching { schedule, every: 10, of: &of };
+    let method = Method::named("dla", None).unwrap();
+    let mut worst = 0.0f64;
+    for (member, in_lanes) in group(0..16).into_iter().enumerate() {
+        let in_lanes = in_lanes.unwrap();
+        let (q, xi) = start(member as u64);
+        let v = velocity_of(&system, 0.0, &q, &xi).unwrap();
+        let (alone, failure) = summarise(&system, &method, (q, v), &watching);
+        assert!(failure.is_none());
+        // A hundred steps of numbers below 10, rounded.
+        let tolerance = 100.0 * 10.0 * f64::EPSILON;
+        let numbers = |s: &Summary<3>| [s.end, s.low, s.high].concat();
+        for (a, b) in numbers(&in_lanes).iter().zip(numbers(&alone)) {
+            assert_abs_diff_eq!(*a, b, epsilon = tolerance);
+        }
+        assert_abs_diff_eq!(in_lanes.t, 5.05, epsilon = 1e-14);
+        assert_abs_diff_eq!(in_lanes.energy_deviation, alone.energy_deviation, epsilon = tolerance);
+        assert!(in_lanes.constraint < 1e-15 && in_lanes.low[1] < in_lanes.high[1]);
+        worst = worst.max(in_lanes.energy_deviation);
+    }
+    // The map does not keep the energy; that it is looked at shows in that.
+    assert!(worst > 1e-6, "{worst:e}");
+}
+
+#[test]
+fn a_run_that_fails_is_summed_up_as_far_as_it_goes() {
+    let system = With { body: Sleigh::new(1.0, 1.0, 0.5).unwrap(), effects: () };
+    let of = |_: &With<Sleigh, ()>, q: &[f64; 3], v: &[f64; 3]| words(&SleighState::from_coordinates(q, v));
+    let schedule = Schedule { t0: 0.0, step: 2.9, steps: 10 };
+    let method = Method::named("dla", None).unwrap();
+    let start = ([0.0; 3], [-1.5, 0.0, 1e-3]);
+    let (summary, failure) = summarise(&system, &method, start, &Watching { schedule, every: 1, of: &of });
+    let failure = failure.unwrap();
+    assert_abs_diff_eq!(summary.t, failure.time, epsilon = 0.0);
+    assert!(summary.end.iter().all(|x| x.is_finite()));
+}

@@ -1,0 +1,148 @@
+use crate::Sleigh;
+use crate::closed_map::{COSINE, SINE};
+use lagrangian::{Abreast, ClosedLaneStep, ClosedLanes, Scalar};
+use std::array::from_fn;
+
+/// Half the turn of a step up to which its sine and cosine are short sums (rad), and that up to which they are long ones.
+const NARROW: f64 = 1.0 / 32.0;
+const BROAD: f64 = 0.25;
+/// With `|d| <= 1/32` the square of a correction like this is rounding.
+const QUICK: f64 = 7e-8;
+/// Newton's method, where it begins from the formula.
+const CORRECTIONS: usize = 3;
+/// With `|d| <= 1/4` the square of a correction like this is rounding.
+const LAST: f64 = 8e-9;
+
+/// The unknown ratio `r = w/omega0` of a step, with what belongs to it.
+struct Ratio<const R: usize> {
+    r: Abreast<R>,
+    w: Abreast<R>,
+    sin: Abreast<R>,
+    cos: Abreast<R>,
+    /// `a w sin d`.
+    across: Abreast<R>,
+    /// The last correction, relative, and half the turn before it.
+    correction: Abreast<R>,
+    turn: Abreast<R>,
+}
+
+/// `h/2`, offset and `k = h m a / (2 J)` of the step, `u0` and `omega0` of its start.
+#[derive(Clone, Copy)]
+struct Equation<const R: usize> {
+    half: Abreast<R>,
+    a: Abreast<R>,
+    k: Abreast<R>,
+    u0: Abreast<R>,
+    omega0: Abreast<R>,
+}
+
+impl<const R: usize> Equation<R> {
+    /// A first guess of `r`, that of the map of one sleigh.
+    #[inline(always)]
+    fn prediction(&self) -> Abreast<R> {
+        let Self { half, a, k, u0, omega0 } = *self;
+        let d = half * omega0;
+        let r = (k * u0 + 1.0).recip();
+        let rr = r * r;
+        r - k * ((a * omega0 + u0 * d * 0.5) * d) * (rr * rr)
+    }
+
+    /// One correction of Newton's method for `f(r) = cos d - r (cos d + k U cos d) = 0`, with its slope times `r`; what it
+    /// changes is linear, to the rounding of a small one.
+    #[inline(always)]
+    fn corrected<const WIDE: bool>(&self, r: Abreast<R>) -> Ratio<R> {
+        let Self { half, a, k, u0, omega0 } = *self;
+        let w = omega0 * r;
+        let turn = half * w;
+        let (sin, cos) = if WIDE { long_series(turn) } else { short_series(turn) };
+        let reach = a * w;
+        let part = reach * sin;
+        let grown = r * (cos + k * (u0 + part));
+        let part_of_r = reach * (sin + turn * cos);
+        let slope = grown + k * r * part_of_r + (-r + 1.0) * (turn * sin);
+        let correction = (cos - grown) / slope;
+        let e = turn * correction;
+        Ratio {
+            r: r + r * correction,
+            w: w + w * correction,
+            sin: sin + e * cos,
+            cos: cos - e * sin,
+            across: part + correction * part_of_r,
+            correction,
+            turn,
+        }
+    }
+}
+
+/// Sine and cosine to rounding for `|d| <= 1/32`.
+#[inline(always)]
+fn short_series<const R: usize>(d: Abreast<R>) -> (Abreast<R>, Abreast<R>) {
+    let z = d * d;
+    let sin = d + d * z * (z * (z * SINE[2] + SINE[1]) + SINE[0]);
+    let cos = -(z * (-(z * (z * COSINE[1] + COSINE[0])) + 0.5)) + 1.0;
+    (sin, cos)
+}
+
+/// The same for `|d| <= 1/4`.
+#[inline(always)]
+fn long_series<const R: usize>(d: Abreast<R>) -> (Abreast<R>, Abreast<R>) {
+    let z = d * d;
+    let zz = z * z;
+    let sum = |c: &[f64; 5]| (z * c[1] + c[0]) + zz * ((z * c[3] + c[2]) + zz * c[4]);
+    (d + d * z * sum(&SINE), -(z * 0.5 - zz * sum(&COSINE)) + 1.0)
+}
+
+/// The map of the free sleigh, with the equations of [`closed_step`](lagrangian::System::closed_step).
+///
+/// The frame is sine and cosine of the heading, and the ratios `w/omega0` of the last four steps, from which that of the next
+/// one is extrapolated: a step then has one correction, and two divisions.
+impl ClosedLanes<3, 1, 5, 6> for Sleigh {
+    fn prepared(&self, h: f64) -> [f64; 5] {
+        [h, 0.5 * h, self.mass(), self.offset(), 0.5 * h * self.spin_gain()]
+    }
+
+    #[inline(always)]
+    fn frame(q: &[f64; 3], before: &[f64; 6]) -> [f64; 6] {
+        let (sin, cos) = Abreast::new([q[2]]).sin_cos();
+        [sin.of[0], cos.of[0], before[2], before[3], before[4], before[5]]
+    }
+
+    #[inline(always)]
+    fn step<const WIDE: bool, const R: usize>(
+        &[h, half, m, a, k]: &[Abreast<R>; 5],
+        &[u0, omega0, _]: &[Abreast<R>; 3],
+        &[sin0, cos0, r1, r2, r3, r4]: &[Abreast<R>; 6],
+    ) -> ClosedLaneStep<R, 3, 1, 6> {
+        let equation = Equation { half, a, k, u0, omega0 };
+        let Ratio { r, w, sin, cos, across, correction, turn } = if WIDE {
+            let mut r = equation.prediction();
+            for _ in 1..CORRECTIONS {
+                r = equation.corrected::<WIDE>(r).r;
+            }
+            equation.corrected::<WIDE>(r)
+        } else {
+            equation.corrected::<WIDE>((r1 + r3) * 4.0 - (r2 * 6.0 + r4))
+        };
+
+        let (u1, omega1) = (u0 + (across + across), (w + w) - omega0);
+        // The directions of the blade half a step and a step later; the second is the first plus a chord.
+        let (cos_m, sin_m) = (cos0 * cos - sin0 * sin, sin0 * cos + cos0 * sin);
+        let chord = sin + sin;
+        let (cos1, sin1) = (cos0 - chord * sin_m, sin0 + chord * cos_m);
+        let mean_speed = (u0 + across) / cos;
+        let (way, turned) = (h * mean_speed, mean_speed * sin);
+        let (most, last) = if WIDE { (BROAD, LAST) } else { (NARROW, QUICK) };
+        let good = from_fn(|i| {
+            let (c, d) = (correction.of[i].abs(), turn.of[i].abs());
+            // That `r` is positive, quick steps take over from the wide ones before them.
+            (c <= last) & (d <= most) & (!WIDE | (r.of[i] > 0.0))
+        });
+        ClosedLaneStep {
+            increment: [way * cos_m, way * sin_m, h * w],
+            xi: [u1, omega1, Abreast::zero()],
+            frame: [sin1, cos1, r, r1, r2, r3],
+            impulse: [m * ((turned + turned) + a * (omega1 - omega0))],
+            good,
+        }
+    }
+}
