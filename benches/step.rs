@@ -1,14 +1,17 @@
 //! What a step costs: the discrete Lagrange-d'Alembert step in its forms, against the classical Runge-Kutta step.
 //!
-//! All on the same full state, through the first 800 steps of the turn-around. The last lines give the ratios of
-//! interleaved runs, which hold where the times of a shared machine do not.
+//! All on the same full state, through the first 800 steps of the turn-around, free and in a bowl. The last lines give the
+//! ratios of interleaved runs, which hold where the times of a shared machine do not; then the same for every model.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
+
+mod models;
 
 use criterion::{Criterion, criterion_group};
 use dla::{Dla, Form, OneStep, Schedule, State, drive};
 use harness::{Rk4, Rk4Projected, Rk4Reduced};
-use lagrangian::System;
+use lagrangian::{System, With};
+use sleigh::effects::Bowl;
 use sleigh::{Sleigh, SleighState};
 use std::hint::black_box;
 use std::time::Instant;
@@ -24,25 +27,48 @@ fn start() -> ([f64; 3], [f64; 3]) {
     SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() }.to_coordinates()
 }
 
+/// Newtons per metre, at the centre of mass.
+const STIFFNESS: [f64; 2] = [0.1; 2];
+
+fn well() -> With<Sleigh, (Bowl,)> {
+    With { body: sleigh(), effects: (Bowl::new(STIFFNESS, [0.0; 2]).expect("finite"),) }
+}
+
 /// The steps of a method of the library.
-fn library<Method: OneStep<Sleigh, 3, 1>>(mut method: Method) -> State<3> {
-    let (sleigh, (q, v)) = (black_box(sleigh()), black_box(start()));
-    let mut state = State::new(q, v, sleigh.angles());
+fn library<Method: OneStep<Sleigh, 3, 1>>(method: Method) -> State<3> {
+    steps_of(&black_box(sleigh()), method)
+}
+
+/// The same in the bowl.
+fn in_bowl<Method: OneStep<With<Sleigh, (Bowl,)>, 3, 1>>(method: Method) -> State<3> {
+    steps_of(&black_box(well()), method)
+}
+
+fn steps_of<Sys: System<3, 1>, Method: OneStep<Sys, 3, 1>>(system: &Sys, mut method: Method) -> State<3> {
+    let (q, v) = black_box(start());
+    let mut state = State::new(q, v, system.angles());
     let schedule = Schedule { t0: 0.0, step: STEP, steps: STEPS };
-    drive(&sleigh, &mut method, &schedule, &mut state, ()).expect("the steps succeed");
+    drive(system, &mut method, &schedule, &mut state, ()).expect("the steps succeed");
     state
 }
 
-/// The Runge-Kutta step as one writes it by hand for this one system: six plain numbers, nothing else.
-fn by_hand() -> [f64; 6] {
+/// The Runge-Kutta step as one writes it by hand for this one system, free or in the bowl: six plain numbers, nothing else.
+fn by_hand<const BOWL: bool>() -> [f64; 6] {
     let sleigh = black_box(sleigh());
     let (a, c) = (sleigh.offset(), sleigh.spin_gain());
+    let ([kx, ky], m, inertia) = (black_box(STIFFNESS), sleigh.mass(), sleigh.pivot_inertia());
     let slope = |y: &[f64; 6]| -> [f64; 6] {
         let (sin, cos) = y[2].sin_cos();
         let (vx, vy, w) = (y[3], y[4], y[5]);
         let u = cos * vx + sin * vy;
-        let (along, across) = (a * w * w, u * w);
-        [vx, vy, w, along * cos - across * sin, along * sin + across * cos, -c * across]
+        let (mut along, across) = (a * w * w, u * w);
+        let mut turn = -c * across;
+        if BOWL {
+            let (fx, fy) = (-kx * (y[0] + a * cos), -ky * (y[1] + a * sin));
+            along += (cos * fx + sin * fy) / m;
+            turn += a * (cos * fy - sin * fx) / inertia;
+        }
+        [vx, vy, w, along * cos - across * sin, along * sin + across * cos, turn]
     };
     let ahead = |y: &[f64; 6], h: f64, k: &[f64; 6]| -> [f64; 6] { std::array::from_fn(|i| y[i] + h * k[i]) };
     let (q, v) = black_box(start());
@@ -64,8 +90,8 @@ fn consume<T>(result: T) {
 type Case = (&'static str, fn());
 
 /// The first is what the others are compared with.
-const CASES: [Case; 8] = [
-    ("rk4 by hand", || consume(by_hand())),
+const CASES: [Case; 11] = [
+    ("rk4 by hand", || consume(by_hand::<false>())),
     ("rk4", || consume(library(Rk4))),
     ("rk4-projected", || consume(library(Rk4Projected))),
     ("rk4-reduced", || consume(library(Rk4Reduced))),
@@ -75,6 +101,9 @@ const CASES: [Case; 8] = [
         consume(library(Dla::midpoint().solved(Form::Multipliers)));
     }),
     ("dla-trapezoid, automatic derivatives", || consume(library(Dla::trapezoid()))),
+    ("bowl: rk4 by hand", || consume(by_hand::<true>())),
+    ("bowl: dla, two unknowns", || consume(in_bowl(Dla::midpoint()))),
+    ("bowl: dla, automatic derivatives", || consume(in_bowl(Dla::midpoint().solved(Form::General)))),
 ];
 
 fn steps(criterion: &mut Criterion) {
@@ -110,10 +139,29 @@ fn ratios() {
     }
 }
 
+/// The generic step of every model against the one by hand, each the fastest of rounds in which both run.
+fn models() {
+    const ROUNDS: usize = 101;
+    let time = |run: &dyn Fn()| {
+        let begin = Instant::now();
+        run();
+        begin.elapsed().as_secs_f64() * 1e9 / f64::from(models::STEPS)
+    };
+    println!("\nfastest of {ROUNDS} interleaved rounds: ns a generic step, ns a step by hand, and their ratio");
+    for models::Row { name, generic, by_hand } in models::all() {
+        let mut best = [f64::INFINITY; 2];
+        for _ in 0..ROUNDS {
+            best = [best[0].min(time(&generic)), best[1].min(time(&by_hand))];
+        }
+        println!("{name:<45} {:>8.1} {:>8.1} {:>8.3}", best[0], best[1], best[0] / best[1]);
+    }
+}
+
 criterion_group!(benches, steps);
 
 fn main() {
     benches();
     ratios();
+    models();
     Criterion::default().configure_from_args().final_summary();
 }

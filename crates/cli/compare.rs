@@ -3,7 +3,7 @@ use crate::error::CliError;
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
 use crate::saves::Saves;
-use crate::{compare_numbers, facts, inspect, json, progress, table, terminal};
+use crate::{compare_numbers, facts, inspect, json, progress, table, terminal, train};
 use dla::{Schedule, State};
 use harness::report::{self, Report, SceneReport, Series};
 use harness::{Drift, METHODS, Method, Record, Request};
@@ -17,6 +17,14 @@ pub(crate) struct Comparison {
     pub(crate) report: SceneReport,
     /// How far it came, where Ctrl-C ended it.
     pub(crate) interrupted: Option<String>,
+}
+
+impl Comparison {
+    /// Prints its table.
+    pub(crate) fn print(&self, scene: &Scene) -> Result<(), CliError> {
+        let table = table::comparison(scene, &self.rows, self.interrupted.as_deref(), terminal::width());
+        terminal::print(&table)
+    }
 }
 
 /// One method's run, the number of coordinates forgotten.
@@ -50,12 +58,12 @@ pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
     }
 
     let mut saves = Saves::of(arguments)?;
-    let comparison = compare_scene(&scene, &methods, &mut saves, &Interrupt::listen())?;
+    let mut comparison = compare_scene(&scene, &methods, &mut saves, &Interrupt::listen())?;
     if let Some(folder) = &arguments.report {
         let report = Report {
             title: format!("noslip compare {}", scene.name),
             intro: table::INTRO.to_owned(),
-            scenes: vec![comparison.report],
+            scenes: vec![std::mem::take(&mut comparison.report)],
         };
         report::write(&report, folder, arguments.scene.force).map_err(CliError::Report)?;
     }
@@ -64,12 +72,7 @@ pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
         let object = compare_numbers::json(&scene.name, &rows, comparison.interrupted.is_some());
         terminal::print_json(&object)?;
     } else {
-        terminal::print(&table::comparison(
-            &scene,
-            &comparison.rows,
-            comparison.interrupted.as_deref(),
-            terminal::width(),
-        ))?;
+        comparison.print(&scene)?;
         if let Some(folder) = &arguments.report {
             terminal::print(&format!("report: {}\n", folder.join("index.html").display()))?;
         }
@@ -106,6 +109,13 @@ pub(crate) fn compare_scene(
     saves: &mut Saves,
     interrupt: &Interrupt,
 ) -> Result<Comparison, CliError> {
+    if let Some(whole) = scene.train()? {
+        if saves.are_asked_for() {
+            let problem = "--checkpoint and --resume do not do scenes with `trailers`";
+            return Err(CliError::Request(problem.to_owned()));
+        }
+        return train::compare_scene(scene, &whole, methods, interrupt);
+    }
     scene.visit(Compare { scene, methods, saves, interrupt })?
 }
 
@@ -116,12 +126,12 @@ struct Compare<'a> {
     interrupt: &'a Interrupt,
 }
 
-impl Compare<'_> {
-    fn progress(&self, label: &str, steps: u64) -> Interruptible<'_> {
-        let bar = progress::bar(&format!("{} {label}", self.scene.name), steps);
-        Interruptible { bar, interrupt: self.interrupt }
-    }
+/// What shows how far a part of a comparison has come, and lets Ctrl-C end it.
+fn progress_of<'a>(scene: &Scene, label: &str, steps: u64, interrupt: &'a Interrupt) -> Interruptible<'a> {
+    Interruptible { bar: progress::bar(&format!("{} {label}", scene.name), steps), interrupt }
+}
 
+impl Compare<'_> {
     /// The runs of all methods, as far as they come.
     fn records<Sys, const N: usize, const M: usize>(
         &mut self,
@@ -136,8 +146,7 @@ impl Compare<'_> {
             if self.interrupt.asked() {
                 break;
             }
-            let bar = progress::bar(&format!("{} {}", self.scene.name, method.info().name), request.schedule.steps);
-            let mut progress = Interruptible { bar, interrupt: self.interrupt };
+            let mut progress = progress_of(self.scene, method.info().name, request.schedule.steps, self.interrupt);
             records.push(self.saves.run(self.scene, system, method, request, &mut progress)?);
             progress.bar.finish_and_clear();
         }
@@ -165,7 +174,7 @@ impl Visitor for Compare<'_> {
         let records = self.records(system, &request)?;
         let exact = self.scene.exact().ok().flatten();
         let start = State::new(q, v, system.angles());
-        let mut progress = self.progress("reference", 4 * request.schedule.steps);
+        let mut progress = progress_of(self.scene, "reference", 4 * request.schedule.steps, self.interrupt);
         let reference = Reference::of(system, exact.as_ref(), &request.schedule, start, &mut progress);
         progress.bar.finish_and_clear();
         let drifts: Vec<(&str, Drift)> =
@@ -204,7 +213,7 @@ impl Visitor for Compare<'_> {
 }
 
 /// The methods whose energy error starts smaller and becomes larger, each with the length of run (s) from which it is so.
-fn better_than<'a>(drift: &Drift, others: &[(&'a str, Drift)]) -> Vec<(&'a str, f64)> {
+pub(crate) fn better_than<'a>(drift: &Drift, others: &[(&'a str, Drift)]) -> Vec<(&'a str, f64)> {
     others.iter().filter_map(|(name, other)| Some((*name, drift.better_from(other)?))).collect()
 }
 
@@ -237,7 +246,7 @@ impl<'a, const N: usize> Reference<'a, N> {
         }
         let Ok(method) = Method::named("gauss16", None) else { return Self::None };
         let fine = Schedule { step: 0.25 * schedule.step, steps: 4 * schedule.steps, ..*schedule };
-        match harness::integrate_on(system, &method, &fine, &mut state, progress) {
+        match harness::integrate_on(system, &method, &fine, &mut state, &mut (), progress) {
             Ok(made) => Self::Computed { t: fine.time(made), state },
             Err(_) => Self::None,
         }
@@ -279,5 +288,6 @@ where
         time: samples.iter().map(|sample| sample.t).collect(),
         constraint: samples.iter().map(|sample| sample.constraint).collect(),
         energy_error: samples.iter().map(|sample| sample.energy_error).collect(),
+        ..Series::default()
     }
 }

@@ -148,7 +148,7 @@ fn portrait(scene: &Scene, found: &Found) -> Chart {
     Chart {
         title: format!("{}: phase portrait", scene.title),
         axes: ["speed [m/s]".to_owned(), "turn rate [rad/s]".to_owned()],
-        decades: false,
+        decades: [false; 2],
         layers: kinds.map(|(label, curves)| Layer::Curves { label: label.to_owned(), curves }).collect(),
     }
 }

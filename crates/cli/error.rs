@@ -17,6 +17,8 @@ pub(crate) enum CliError {
     Method(#[from] MethodError),
     #[error("the scene: {0}")]
     Sleigh(#[from] sleigh::SleighError),
+    #[error("the scene: {0}")]
+    Train(#[from] scene::TrainError),
     #[error("unknown case `{name}`{}; the cases are {names}", nearest.as_ref().map_or_else(String::new, |n| format!(", did you mean `{n}`?")))]
     Case { name: String, nearest: Option<String>, names: String },
     #[error("{} exists already; --force overwrites it", path.display())]
@@ -78,6 +80,10 @@ impl CliError {
     /// 1: the computation failed, or what it gave could not be written. 2: the request was wrong.
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
+            Self::Case { .. } | Self::Train(_) => ExitCode::from(2),
+            Self::Scene(_) | Self::Sleigh(_) | Self::Method(_) | Self::Exists { .. } | Self::Ending { .. } => {
+                ExitCode::from(2)
+            }
             Self::Case { .. } => ExitCode::from(2),
             Self::Scene(_)
             | Self::Sweep(_)

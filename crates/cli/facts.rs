@@ -1,6 +1,7 @@
 use crate::table::number;
 use dla::{State, View};
-use scene::{PathSpec, Scene, SceneEffect, SceneSystem, Shape, TimeSpec, Visitor};
+use scene::{PathSpec, Scene, SceneEffect, SceneSystem, Shape, TimeSpec, TrailersSpec, Visitor};
+use sleigh::SleighState;
 
 /// What a scene says, for a person: names and values.
 pub(crate) struct Facts<'a>(pub(crate) &'a Scene);
@@ -25,12 +26,17 @@ pub(crate) fn of<Sys, const N: usize, const M: usize>(
 where
     Sys: SceneSystem<N, M>,
 {
-    let (sleigh, run) = (&scene.sleigh, &scene.run);
     let first = system.piece(0.0);
     let start = first.sleigh_state(state.q(), state.v());
     let energy = View { system: &first, k: 0, t: 0.0, state }.energy();
     let imposed = scene.effects.iter().map(SceneEffect::kind).find(|kind| matches!(*kind, "servo" | "tracer"));
     let imposed = imposed.map_or_else(String::new, |kind| format!(", as the {kind} imposes it"));
+    listed(scene, &start, energy, &imposed)
+}
+
+/// The facts of a scene that starts in that state of its first blade, with that energy (J).
+pub(crate) fn listed(scene: &Scene, start: &SleighState, energy: f64, imposed: &str) -> Vec<(String, String)> {
+    let (sleigh, run) = (&scene.sleigh, &scene.run);
     let mut facts = vec![
         ("mass m", format!("{} kg", number(sleigh.mass()))),
         ("inertia I about the centre of mass", format!("{} kg m²", number(sleigh.inertia()))),
@@ -88,8 +94,26 @@ fn words(effect: &SceneEffect) -> String {
             format!("servo imposes: {}", speed.into_iter().chain(turn).collect::<Vec<_>>().join(", "))
         }
         SceneEffect::Tracer { path } => format!("tracer leads the centre of mass: {}", round(path)),
+        SceneEffect::Trailers(TrailersSpec { count, mass, bar, hitch, .. }) => {
+            let all = |list: &[f64]| match list {
+                [one] => number(*one),
+                list => format!(
+                    "{} to {}",
+                    number(least(list)),
+                    number(-least(&list.iter().map(|x| -x).collect::<Vec<_>>()))
+                ),
+            };
+            let [mass, bar, hitch] = [mass, bar, hitch].map(|list| all(list));
+            format!(
+                "{count} trailers of {mass} kg, each blade {bar} m behind a hinge {hitch} m behind the blade before"
+            )
+        }
         SceneEffect::Turntable { rate } => format!("turntable: the plane turns at {} rad/s", number(*rate)),
     }
+}
+
+fn least(list: &[f64]) -> f64 {
+    list.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
 fn pair([x, y]: &[f64; 2]) -> String {

@@ -1,6 +1,6 @@
 use crate::args::{CheckArguments, ListArguments, Listed, NewArguments, SceneArguments};
 use crate::error::CliError;
-use crate::facts::Facts;
+use crate::facts::{self, Facts};
 use crate::files::write_whole;
 use crate::{table, terminal};
 use dla::Schedule;
@@ -40,7 +40,10 @@ pub(crate) fn schedule(scene: &Scene) -> Schedule {
 pub(crate) fn check(arguments: &CheckArguments) -> Result<(), CliError> {
     let scene = Scene::load(&arguments.scene, &method_names())?;
     let heading = format!("{}: valid, \"{}\"\n", scene.name, scene.title);
-    let mut facts = scene.visit(Facts(&scene))?;
+    let mut facts = match scene.train()? {
+        Some((train, start)) => facts::listed(&scene, &scene.start, train.assembly.energy(0.0, &start), ""),
+        None => scene.visit(Facts(&scene))?,
+    };
     facts.push(("method".to_owned(), scene.run.method.clone()));
     terminal::print(&(heading + &table::aligned(&facts)))
 }

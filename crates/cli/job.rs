@@ -23,12 +23,7 @@ pub(crate) fn main_job(arguments: &JobArguments) -> Result<(), CliError> {
         let scene = Scene::load(bundled.name, &method_names())?;
         let methods = methods(&method_names(), scene.run.alpha)?;
         let comparison = compare_scene(&scene, &methods, &mut Saves::default(), &interrupt)?;
-        terminal::print(&table::comparison(
-            &scene,
-            &comparison.rows,
-            comparison.interrupted.as_deref(),
-            terminal::width(),
-        ))?;
+        comparison.print(&scene)?;
         terminal::print("\n")?;
         let failed = comparison.rows.into_iter().filter_map(Row::unexpected);
         failures.extend(failed.map(|failure| format!("{}: {failure}", scene.name)));

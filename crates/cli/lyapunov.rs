@@ -185,7 +185,7 @@ impl Exponents<'_> {
         Chart {
             title: format!("{}: Lyapunov exponents over a run", self.scene.title),
             axes: ["time [s]".to_owned(), "mean so far [1/s]".to_owned()],
-            decades: true,
+            decades: [true, false],
             layers: (0..found.exponents.len()).map(line).collect(),
         }
     }

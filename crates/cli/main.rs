@@ -34,6 +34,7 @@ mod stability_map;
 mod starts;
 mod table;
 mod terminal;
+mod train;
 mod trajectory_file;
 mod trigger;
 

@@ -5,7 +5,7 @@ use crate::{inspect, progress, table, terminal};
 use dla::{RunError, Schedule, State};
 use harness::analysis::{Rounds, weighted_mean};
 use harness::report::{Chart, Layer, chart_svg};
-use harness::{Method, integrate_on_watched};
+use harness::{Method, integrate_on};
 use scene::{PathSpec, Scene, SceneEffect, SceneSystem, Shape, Visitor};
 use serde_json::{Value, json};
 use sleigh::ClosedPath;
@@ -124,7 +124,7 @@ impl Visitor for Loops<'_> {
         let mut rounds = Rounds::<N>::new(2, every);
         let mut state = State::new(q, v, system.angles());
         let mut advance = |steps| bar.inc(steps);
-        let outcome = integrate_on_watched(system, method, &schedule, &mut state, &mut rounds, &mut advance);
+        let outcome = integrate_on(system, method, &schedule, &mut state, &mut rounds, &mut advance);
         bar.finish_and_clear();
         outcome.map(|_| rounds.each())
     }
@@ -161,7 +161,7 @@ fn circle_map(scene: &Scene, measured: &Measured) -> Chart {
     Chart {
         title: format!("{}: turn of a loop", scene.title),
         axes: ["heading before the loop [rad]".to_owned(), "turn of the loop [rad]".to_owned()],
-        decades: false,
+        decades: [false; 2],
         layers,
     }
 }

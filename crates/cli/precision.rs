@@ -2,7 +2,7 @@ use crate::args::PrecisionArguments;
 use crate::compare::{distance, methods};
 use crate::error::CliError;
 use crate::inspect::method_names;
-use crate::{facts, files, inspect, points_file, precision_text, progress, terminal};
+use crate::{facts, files, inspect, points_file, precision_text, progress, terminal, train};
 use dla::State;
 use harness::Method;
 use harness::precision::{
@@ -34,13 +34,15 @@ pub(crate) struct Measurement {
 
 /// Where the motion truly ends.
 pub(crate) struct KnownEnd {
-    /// In closed form; else by `gauss16`.
+    /// In closed form; else by the method.
     pub(crate) closed: bool,
-    /// Steps of `gauss16`, which the closed form is checked against.
+    /// The method that computes it, or that the closed form is checked against.
+    pub(crate) by: &'static str,
+    /// Its steps.
     pub(crate) steps: u64,
     /// How far it may be off (m or rad).
     pub(crate) error: f64,
-    end: SleighState,
+    pub(crate) end: SleighState,
 }
 
 /// `noslip precision`: what accuracy costs in time.
@@ -67,8 +69,10 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
         scene.run.duration = scene.run.duration.min(DURATION);
     }
     let chosen = arguments.duration.is_none();
-    let mut measured =
-        scene.visit(Measure { scene: &scene, methods: &methods, longest: arguments.longest, chosen })??;
+    let mut measured = match scene.train()? {
+        Some(whole) => train::measure(&scene, &whole, &methods, arguments.longest)?,
+        None => scene.visit(Measure { scene: &scene, methods: &methods, longest: arguments.longest, chosen })??,
+    };
     measured.curves.extend(others);
     mark_pareto(&mut measured.curves, CLEAR * measured.reference.error);
 
@@ -162,7 +166,9 @@ fn known<const N: usize>(
 ) -> KnownEnd {
     let (end, Reference { steps, error, .. }) = (place(&computed.q), *computed);
     match exact.map(|exact| exact.at(duration)) {
-        Some(exact) => KnownEnd { closed: true, steps, error: distance(&exact, &end).max(f64::EPSILON), end: exact },
-        None => KnownEnd { closed: false, steps, error, end },
+        Some(exact) => {
+            KnownEnd { closed: true, by: "gauss16", steps, error: distance(&exact, &end).max(f64::EPSILON), end: exact }
+        }
+        None => KnownEnd { closed: false, by: "gauss16", steps, error, end },
     }
 }

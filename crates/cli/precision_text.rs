@@ -89,7 +89,8 @@ fn reference(measured: &Measurement) -> String {
     if known.closed {
         format!("closed form; gauss16 with {steps} steps ends {error} away")
     } else {
-        format!("gauss16 with {steps} steps, off by {error} at most, from finer runs and gauss14")
+        let other = if known.by == "gauss16" { " and gauss14" } else { "" };
+        format!("{} with {steps} steps, off by {error} at most, from finer runs{other}", known.by)
     }
 }
 
@@ -174,7 +175,7 @@ pub(crate) fn json(scene: &Scene, measured: &Measurement) -> Value {
         "scene": scene.name,
         "duration": measured.duration,
         "reference": {
-            "kind": if known.closed { "closed form" } else { "gauss16" },
+            "kind": if known.closed { "closed form" } else { known.by },
             "steps": known.steps,
             "error": known.error,
             "text": reference(measured),

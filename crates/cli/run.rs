@@ -5,7 +5,7 @@ use crate::files::check_file;
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
 use crate::trajectory_file::{self, Format};
-use crate::{inspect, json, progress, resume, table, terminal, trigger};
+use crate::{inspect, json, progress, resume, table, terminal, train, trigger};
 use dla::{Checkpoint, Schedule, Trajectory};
 use harness::{Kind, Method, Progress, Record, Request, Saving, Watched, recommend, run_saved, run_watched};
 use scene::{Scene, SceneSystem, Visitor};
@@ -28,6 +28,9 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
     if arguments.scene.alpha.is_some() && method.info().kind != Kind::DlaAlpha {
         let name = method.info().name;
         terminal::say("warning", &format!("--alpha is the weight of dla-alpha; {name} has none and ignores it"));
+    }
+    if scene.has_trailers() {
+        return train::run(arguments, &scene, &method, out);
     }
     scene.visit(Run { arguments, scene: &scene, method, out })?
 }

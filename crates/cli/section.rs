@@ -185,7 +185,7 @@ impl Sections<'_> {
         Chart {
             title: format!("{}: section at {}", self.scene.title, self.arguments.plane.text),
             axes: self.axes.map(|axis| axis.label()),
-            decades: false,
+            decades: [false; 2],
             layers: crossed
                 .iter()
                 .map(|start| Layer::Dots(start.points.iter().map(|p| [p[6], p[7]]).collect()))

@@ -130,7 +130,7 @@ impl Map<'_> {
                 format!("{} at the start", across.coordinate.label()),
                 format!("{} at the start", up.coordinate.label()),
             ],
-            decades: false,
+            decades: [false; 2],
             layers: vec![Layer::Cells(Cells {
                 label: "exponent [1/s]".to_owned(),
                 ranges: [across.ends, up.ends],

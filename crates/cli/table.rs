@@ -50,7 +50,7 @@ pub(crate) fn cells<const N: usize>(record: &Record<N>, error: Option<f64>) -> V
         number(record.step),
         record.steps.to_string(),
         format!("{:.1e}", record.constraint_max),
-        format!("{:.1e}", record.step_constraint_max),
+        over_steps(record.step_constraint_max),
         format!("{:.1e}", record.energy.max_error),
         format!("{:.1e}", drift.amplitude),
         drift.slope_ci.map_or_else(slope, |interval| format!("{} ± {interval:.0e}", slope())),
@@ -60,6 +60,11 @@ pub(crate) fn cells<const N: usize>(record: &Record<N>, error: Option<f64>) -> V
         format!("{:.1}", record.wall_seconds * 1e9 / record.steps.max(1) as f64),
         record.seconds_per_simulated_second().map_or_else(|| "-".to_owned(), |cost| format!("{cost:.1e}")),
     ]
+}
+
+/// The constraint over steps; of an assembly it is not measured.
+fn over_steps(most: f64) -> String {
+    if most.is_nan() { "-".to_owned() } else { format!("{most:.1e}") }
 }
 
 /// The methods that a method overtakes in a longer run, where there are any.

@@ -53,6 +53,11 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
+    /// Names with their units, and rows of as many numbers.
+    pub(crate) fn new(header: Vec<(String, &'static str)>, rows: Vec<Vec<f64>>) -> Self {
+        Self { header, rows }
+    }
+
     /// A trajectory in the words of a scene: what the scene does not have has no column.
     fn of<Sys, const N: usize, const M: usize>(system: &Sys, nodes: &[dla::Node<N, M>]) -> Self
     where
@@ -120,17 +125,21 @@ pub(crate) fn write<Sys, const N: usize, const M: usize>(
 where
     Sys: SceneSystem<N, M>,
 {
-    let columns = Columns::of(system, nodes);
+    write_columns(&Columns::of(system, nodes), path, format, overwrite)
+}
+
+/// The same of any columns.
+pub(crate) fn write_columns(columns: &Columns, path: &Path, format: Format, overwrite: bool) -> Result<(), CliError> {
     write_whole(path, overwrite, |file| match format {
-        Format::Csv => csv(file, &columns),
+        Format::Csv => csv(file, columns),
         Format::Npz => {
             let mut file = FirstError::new(file);
-            let outcome = npz(&mut file, &columns);
+            let outcome = npz(&mut file, columns);
             // What stopped the file is the reason of whatever the archive then stumbled over.
             file.into_result().and(outcome)
         }
         #[cfg(feature = "parquet")]
-        Format::Parquet => crate::parquet_file::write(file, &columns),
+        Format::Parquet => crate::parquet_file::write(file, columns),
     })
 }
 

@@ -64,7 +64,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let title = "Curvature of the blade's path".to_owned();
         let axes = ["t [s]".to_owned(), "w/u [1/m]".to_owned()];
         curves.push(Layer::Curves { label: "closed form".to_owned(), curves: dots });
-        let chart = Chart { title, axes, decades: false, layers: curves };
+        let chart = Chart { title, axes, decades: [false; 2], layers: curves };
         let scene =
             SceneReport { name: "circles".to_owned(), title: "Paths".to_owned(), series, ..SceneReport::default() };
         fs::create_dir(&folder)?;

@@ -72,6 +72,12 @@ for file in "$root"/docs/stability/*.toml; do
     take "stability-$case/$case-$kind.svg" "stability-$case.svg"
 done
 
+# The hard cases that no scene shows.
+cargo run --quiet --manifest-path "$root/Cargo.toml" --example hard_cases -- hard-cases "$noslip" >/dev/null
+for picture in hard-cases/*.svg; do
+    take "$picture" "$(basename "$picture")"
+done
+
 # Minutes from here on.
 chaos=$root/docs/chaos
 "$noslip" lyapunov "$chaos/valley.toml" --duration 20000 --out exponents.svg >/dev/null

@@ -82,10 +82,11 @@ macro_rules! shape {
                 q: &[f64; $n],
                 v: &[f64; $n],
                 xi: Option<[f64; $n]>,
+                expected: Option<[f64; $n]>,
             ) -> Option<Result<ClosedStep<$n, $m>, ClosedStepError>> {
                 match self {
-                    $(Self::$model(x) => x.closed_step(t, h, q, v, xi),)*
-                    $(Self::$plain(x) => x.closed_step(t, h, q, v, xi),)*
+                    $(Self::$model(x) => x.closed_step(t, h, q, v, xi, expected),)*
+                    $(Self::$plain(x) => x.closed_step(t, h, q, v, xi, expected),)*
                 }
             }
         }

@@ -137,7 +137,8 @@ pub(super) const LIGHT_INERTIA: Case = Case {
 
 pub(super) fn light_inertia(lab: &mut Lab) -> Result<(), CliError> {
     for body @ [mass, inertia, offset] in [[1.0, 1e-12, 0.5], [1e10, 1e-10, 0.5], [1.0, 1e-16, 1.0]] {
-        let setup = Setup { body, ..Setup::new(-1.0, 0.3, 0.05, 20.0) };
+        // Its rates are U/a: with shorter steps than elsewhere the bar is 1 % for order 2, and tells a wrong motion.
+        let setup = Setup { body, ..Setup::new(-1.0, 0.3, 0.005, 5.0) };
         follows_exactly(lab, &format!("m = {mass:e}, I = {inertia:e}, a = {offset:e}"), &setup)?;
     }
     Ok(())

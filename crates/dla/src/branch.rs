@@ -17,8 +17,9 @@ pub(crate) struct Search<E> {
 pub(crate) const NEAR: f64 = 1.0;
 
 impl<E> Search<E> {
-    /// Where the second correction is below this part of the first, the bound of Newton and Kantorovich, `h0 <= 1/2` with
-    /// `h0 = 2 theta` to first order, gives one solution near the start. (Deuflhard 2004, Newton Methods for Nonlinear
+    /// Where the second correction, which may be simplified, is below this part of the first, the bound of Newton and
+    /// Kantorovich, `h0 <= 1/2` with `h0 = 2 theta` to first order, gives one solution near the start; and the Jacobian has an
+    /// inverse all the way there, so that its determinant keeps its sign. (Deuflhard 2004, Newton Methods for Nonlinear
     /// Problems, sections 2.1 and 3.3.)
     const CONTRACTION: f64 = 0.25;
 
@@ -61,6 +62,11 @@ impl<E: Equations<U>, const U: usize> Equations<U> for Search<E> {
         self.remember(&correction);
         Ok(correction)
     }
+
+    #[inline(always)]
+    fn is_simplified(&self) -> bool {
+        self.equations.is_simplified()
+    }
 }
 
 impl<E: BlockEquations<U, S>, const U: usize, const S: usize> BlockEquations<U, S> for Search<E> {
@@ -75,7 +81,8 @@ impl<E: BlockEquations<U, S>, const U: usize, const S: usize> BlockEquations<U, 
 /// By how much a step with this mean velocity turns the constraint that turns most (rad): a rate times the step, which
 /// shows what the two ends do not, whole turns. Zero where no angle turns by as much as is near.
 #[inline(always)]
-pub(crate) fn turn<Sys: System<N, M>, const N: usize, const M: usize>(
+#[must_use]
+pub fn turn<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
     time: (f64, f64),
     q0: &[f64; N],

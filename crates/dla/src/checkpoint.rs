@@ -55,7 +55,7 @@ pub enum CheckpointError {
 }
 
 const HEADER: &str = "noslip checkpoint";
-const VERSION: &str = "2";
+const VERSION: &str = "3";
 
 impl Checkpoint {
     /// A checkpoint of the run that these pairs of a name and a value tell from all others.

@@ -17,6 +17,14 @@ fn mirrored<const STAGES: usize>(first: &[f64]) -> [f64; STAGES] {
     std::array::from_fn(|i| first.get(i.min(STAGES - 1 - i)).copied().unwrap_or(centre))
 }
 
+impl<Base, const STAGES: usize> Composition<Base, STAGES> {
+    /// The parts of a step that its stages make, in their order; their sum is one.
+    #[must_use]
+    pub fn weights(&self) -> &[f64; STAGES] {
+        &self.weights
+    }
+}
+
 impl<Base> Composition<Base, 5> {
     /// Suzuki's five stages of order 4 on a base of order 2 (Suzuki 1990, Phys. Lett. A 146, 319-323).
     #[must_use]

@@ -114,10 +114,10 @@ where
     fn step(&mut self, system: &Sys, t0: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
         let (q0, v0) = (*state.q(), *state.v());
         let closed = self.form == Form::Best && is_midpoint::<L>() && is_midpoint::<C>();
-        if closed && let Some(step) = system.closed_step(t0, h, &q0, &v0, state.xi()) {
+        if closed && let Some(step) = system.closed_step(t0, h, &q0, &v0, state.xi(), state.expected(h)) {
             let step = step.map_err(StepError::Closed)?;
             state.stays_finite(&step.increment, &step.velocity)?;
-            state.advance(&step.increment, step.velocity, Some(step.xi));
+            state.advance_remembering(h, &step.increment, step.velocity, step.xi);
             return Ok(StepReport { impulses: step.impulses, iterations: step.iterations, work: None });
         }
         self.solved_step(system, t0, h, state)
@@ -153,17 +153,10 @@ impl<L, C> Dla<L, C> {
             p0: momentum(system, t0, &q0, &v0),
             a0: reaction_rows(system, t0, &q0, &v0),
             basis: basis(t0, &q0),
-            some: None,
-            lambda: [0.0; M],
-            positive: None,
         };
-        let Mean { v, lambda, iterations, some } = increment.solve(&self.newton, v0, predicted(state, h))?;
+        let Mean { v, p1, lambda, iterations, some } = increment.solve(&self.newton, v0, predicted(state, h))?;
 
         // The momentum at the end, projected onto the constraint there.
-        let mut p1 = self.lagrangian.d2(system, t0, h, &q0, &v);
-        if let Some((_, plus)) = self.lagrangian.forces(system, t0, h, &q0, &v) {
-            p1 = from_fn(|i| p1[i] + plus[i]);
-        }
         let d = v.map(|v| h * v);
         let (t1, q1) = (t0 + h, state.ahead(&d));
         let (v1, mu) = Projection::new(system, t1, q1, p1, basis(t1, &q1))
@@ -178,18 +171,23 @@ impl<L, C> Dla<L, C> {
         state.stays_finite(&d, &v1)?;
         // From the middle of the step to its end.
         let acceleration = from_fn(|i| (v1[i] - v[i]) / (0.5 * h));
-        state.advance_with_acceleration(&d, v1, acceleration);
+        state.advance_with_acceleration(h, &d, v1, acceleration);
         Ok(StepReport { impulses: [lambda, mu], iterations, work: None })
     }
 }
 
-/// The mean velocity of a step, if the acceleration is that of the last one; none where that is not known, or would change
-/// the velocity so much that a search from there might lead elsewhere.
+/// The mean velocity of a step, extrapolated from those of the last ones, or with the acceleration of the last one; none where
+/// that is not known, or would change the velocity so much that a search from there might lead elsewhere.
 #[inline]
 fn predicted<const N: usize>(state: &State<N>, h: f64) -> Option<[f64; N]> {
     const MOST: f64 = 0.125;
-    let (v0, gained) = (state.v(), state.acceleration()?.map(|a| 0.5 * h * a));
-    (largest(&gained) <= MOST * largest(v0)).then(|| from_fn(|i| v0[i] + gained[i]))
+    let v0 = state.v();
+    let near = |v: &[f64; N]| largest(&from_fn::<_, N, _>(|i| v[i] - v0[i])) <= MOST * largest(v0);
+    let extrapolated = state.expected(h).map(|d| d.map(|d| d / h)).filter(near);
+    extrapolated.or_else(|| {
+        let acceleration = state.acceleration()?;
+        Some(from_fn(|i| v0[i] + 0.5 * h * acceleration[i])).filter(near)
+    })
 }
 
 fn is_midpoint<R: 'static>() -> bool {

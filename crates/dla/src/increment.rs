@@ -1,11 +1,9 @@
 use crate::branch::{self, Search};
+use crate::corrections::{Corrections, Departure};
 use crate::dependent::named_along;
-use crate::{Equations, Newton, State, StepError};
-use lagrangian::linear::Singular;
-use lagrangian::{
-    AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, Dual, Rows, Saddle, System, position_misses,
-    redundant_rows,
-};
+use crate::{Newton, NewtonError, State, StepError};
+use lagrangian::linear::{Singular, normal_solve};
+use lagrangian::{AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, Rows, Saddle, System, position_misses};
 use std::array::from_fn;
 use std::f64::consts::PI;
 
@@ -21,16 +19,12 @@ pub(crate) struct Increment<'a, Sys, L, C, const N: usize, const M: usize> {
     pub(crate) p0: [f64; N],
     pub(crate) a0: [[f64; N]; M],
     pub(crate) basis: Option<AdmissibleBasis<f64, N, M>>,
-    /// The rows that are solved for, where they depend on one another and agree.
-    pub(crate) some: Option<Rows>,
-    pub(crate) lambda: [f64; M],
-    /// Whether the determinant of the last correction was positive; none of one with some of the rows.
-    pub(crate) positive: Option<bool>,
 }
 
-/// The mean velocity of a step, and the impulse of the constraints at its beginning.
+/// The mean velocity of a step, the impulse of the constraints at its beginning, and the momenta with which it ends.
 pub(crate) struct Mean<const N: usize, const M: usize> {
     pub(crate) v: [f64; N],
+    pub(crate) p1: [f64; N],
     pub(crate) lambda: [f64; M],
     pub(crate) iterations: u32,
     /// The rows that were solved for, where not all.
@@ -49,34 +43,66 @@ where
     /// # Errors
     /// [`StepError::Newton`] where none is found, [`StepError::Branch`] where what is found belongs to another motion.
     #[inline]
-    pub(crate) fn solve(self, newton: &Newton, v0: [f64; N], guess: Option<[f64; N]>) -> Result<Mean<N, M>, StepError> {
+    pub(crate) fn solve(
+        &self,
+        newton: &Newton,
+        v0: [f64; N],
+        guess: Option<[f64; N]>,
+    ) -> Result<Mean<N, M>, StepError> {
         // Of rows that depend on one another there is none, and then it is not looked at.
         let positive = Saddle::is_positive_at_rest(&self.a0, self.basis.as_ref());
         let time = (self.t0, self.h);
-        let (mut search, mut v) = (Search::new(self), guess.unwrap_or(v0));
+        let (mut search, mut v) = (Search::new(Corrections::new(self)), guess.unwrap_or(v0));
         let mut found = newton.solve(&mut search, &mut v);
         if found.is_err() && guess.is_some() {
-            (search, v) = (Search::new(self), v0);
+            (search, v) = (Search::new(Corrections::new(self)), v0);
             found = newton.solve(&mut search, &mut v);
         }
         let mut iterations = found.map_err(|source| named_along(self.system, time, *self.state, v, source))?;
-        let turn = search.equations.turn(&v);
+        let turn = self.turn(&v);
         let certain = search.equations.continues(positive) && turn <= branch::NEAR && search.is_certain(&v);
         if !certain {
             v = self.followed(newton, positive, turn, &v0).ok_or(StepError::Branch)?;
-            search = Search::new(self);
+            search = Search::new(Corrections::new(self));
             iterations += newton
                 .solve(&mut search, &mut v)
                 .map_err(|source| named_along(self.system, time, *self.state, v, source))?;
         }
-        let Increment { lambda, some, .. } = search.equations;
-        Ok(Mean { v, lambda, iterations, some })
+        let some = search.equations.some;
+        let (p1, lambda) = search.equations.ends(&v).map_err(|source| {
+            let source = NewtonError::singular(source);
+            named_along(self.system, time, *self.state, v, source)
+        })?;
+        Ok(Mean { v, p1, lambda, iterations, some })
     }
 
-    /// Whether the determinant has the sign that it has in a step of length zero, as far as both are known.
+    /// The multipliers that take up the rest of the momenta.
     #[inline(always)]
-    fn continues(&self, positive: Option<bool>) -> bool {
-        self.positive.zip(positive).is_none_or(|(here, at_rest)| here == at_rest)
+    pub(crate) fn multipliers(&self, rest: &[f64; N]) -> Result<[f64; M], Singular> {
+        normal_solve(&self.a0, &rest.map(|r| -r))
+    }
+
+    /// Both ends of a step with the mean velocity `v`, and by how much it misses the constraint, in first order alone.
+    ///
+    /// Not inlined: it is called for every simplified correction and for the end of the step.
+    #[inline(never)]
+    pub(crate) fn departure(&self, v: &[f64; N]) -> (Departure<N>, [f64; M]) {
+        let Self { rules: (lagrangian, constraint), system, t0, h, state, q0, .. } = *self;
+        let [d1, d2] = lagrangian.slopes(system, t0, h, &q0, v);
+        let mut at = Departure { residual: from_fn(|i| self.p0[i] + d1[i]), arriving: d2 };
+        if let Some((minus, plus)) = lagrangian.forces(system, t0, h, &q0, v) {
+            for i in 0..N {
+                at.residual[i] += minus[i];
+                at.arriving[i] += plus[i];
+            }
+        }
+        let mut level = constraint.residual(system, t0, h, &q0, v).map(|w| -w);
+        if let Some(positions) = position_misses(system, t0 + h, &state.ahead(&v.map(|v| h * v))) {
+            for k in 0..M {
+                level[k] = positions[k].map_or(level[k], |g| -g.re / h);
+            }
+        }
+        (at, level)
     }
 
     /// The solution at the end of the branch that begins with a step of length zero.
@@ -84,9 +110,10 @@ where
     #[inline(never)]
     fn followed(&self, newton: &Newton, positive: Option<bool>, turn: f64, v0: &[f64; N]) -> Option<[f64; N]> {
         branch::followed(v0, 0.5 * branch::NEAR / turn, |part, guess| {
-            let mut search = Search::new(Self { h: part * self.h, ..*self });
+            let within = Self { h: part * self.h, ..*self };
+            let mut search = Search::new(Corrections::new(&within));
             newton.solve(&mut search, guess).ok()?;
-            let continues = search.equations.continues(positive) && search.equations.turn(guess) < PI;
+            let continues = search.equations.continues(positive) && within.turn(guess) < PI;
             (continues && search.is_certain(guess)).then_some(())
         })
     }
@@ -104,70 +131,3 @@ impl<Sys, L, C, const N: usize, const M: usize> Clone for Increment<'_, Sys, L, 
 }
 
 impl<Sys, L, C, const N: usize, const M: usize> Copy for Increment<'_, Sys, L, C, N, M> {}
-
-impl<Sys, L, C, const N: usize, const M: usize> Equations<N> for Increment<'_, Sys, L, C, N, M>
-where
-    Sys: System<N, M>,
-    L: DiscreteLagrangian<Sys, N, M>,
-    C: DiscreteConstraint<Sys, N, M>,
-{
-    /// Not inlined: it is called from each of the searches that a step may make, and is long.
-    #[inline(never)]
-    fn correction(&mut self, v: &[f64; N]) -> Result<[f64; N], Singular> {
-        let Self { rules: (lagrangian, constraint), system, t0, h, state, q0, .. } = *self;
-        let l_d = lagrangian.derivatives(system, t0, h, &q0, v);
-        let mut residual: [f64; N] = from_fn(|i| self.p0[i] + l_d.d1[i]);
-        let mut block = l_d.d1d2.map(|row| row.map(|x| h * x));
-
-        // Where it constrains positions, in place of the discrete constraint.
-        let positions = position_misses(system, t0 + h, &state.ahead(&v.map(|v| h * v)));
-
-        // Forces and constraint with their derivatives in v.
-        let (t, step) = (Dual::fixed(t0), Dual::fixed(h));
-        let (q, v) = (q0.map(Dual::fixed), Dual::variables(v));
-        if let Some((minus, _)) = lagrangian.forces(system, t, step, &q, &v) {
-            for i in 0..N {
-                residual[i] += minus[i].re;
-                for j in 0..N {
-                    block[i][j] += minus[i].eps[j];
-                }
-            }
-        }
-        let w_d = constraint.residual(system, t, step, &q, &v);
-        let (mut rows, mut level) = (w_d.map(|w| w.eps), w_d.map(|w| -w.re));
-        if let Some(positions) = positions {
-            for k in 0..M {
-                if let Some(g) = positions[k] {
-                    (rows[k], level[k]) = (g.eps, -g.re / h);
-                }
-            }
-        }
-
-        let saddle = Saddle { block, transposed: self.a0, rows, right: residual.map(|r| -r), level };
-        match saddle.solve_oriented(self.basis.as_ref()) {
-            Ok((correction, lambda, positive)) => {
-                (self.lambda, self.positive) = (lambda, Some(positive));
-                Ok(correction)
-            }
-            Err(source) => {
-                // By value, so that nothing of a step that succeeds must stay in memory.
-                let rows = independent(system, t0, *state, self.some).ok_or(source)?;
-                let (correction, lambda) = { saddle }.solve_some(rows)?;
-                (self.some, self.lambda, self.positive) = (Some(rows), lambda, None);
-                Ok(correction)
-            }
-        }
-    }
-}
-
-/// The rows found before, or those that imply the others at the beginning of the step.
-#[cold]
-#[inline(never)]
-fn independent<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
-    t0: f64,
-    start: State<N>,
-    found: Option<Rows>,
-) -> Option<Rows> {
-    found.or_else(|| redundant_rows(system, t0, start.q(), start.v()))
-}

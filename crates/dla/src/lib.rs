@@ -11,6 +11,7 @@
 mod branch;
 mod checkpoint;
 mod composition;
+mod corrections;
 mod dependent;
 mod dla;
 mod drive;
@@ -27,6 +28,7 @@ mod lobatto;
 mod newton;
 mod one_step;
 mod overshoot;
+mod past;
 mod pieces;
 mod positions;
 mod projection;
@@ -40,6 +42,7 @@ mod trajectory;
 mod work;
 
 pub use crate::dla::{Dla, Form};
+pub use branch::turn;
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use composition::Composition;
 pub use dependent::{Dependency, Dependent};

@@ -9,12 +9,25 @@ pub trait Equations<const U: usize> {
     /// # Errors
     /// [`Singular`] where `F'(x)` has no inverse.
     fn correction(&mut self, x: &[f64; U]) -> Result<[f64; U], Singular>;
+
+    /// Whether the last correction was simplified, `-F'(y)^-1 F(x)` with an earlier point `y` in place of `x`. Such corrections
+    /// shrink by about the same factor from each to the next.
+    #[inline(always)]
+    fn is_simplified(&self) -> bool {
+        false
+    }
 }
 
 /// Equations in `S` blocks of `U` unknowns each.
 pub(crate) trait BlockEquations<const U: usize, const S: usize> {
     /// The correction `-F'(x)^-1 F(x)` at `x`.
     fn correction(&mut self, x: &[[f64; U]; S]) -> Result<[[f64; U]; S], Singular>;
+
+    /// Whether the last correction was simplified.
+    #[inline(always)]
+    fn is_simplified(&self) -> bool {
+        false
+    }
 }
 
 /// One block.
@@ -25,12 +38,17 @@ impl<E: Equations<U>, const U: usize> BlockEquations<U, 1> for Single<'_, E> {
     fn correction(&mut self, [x]: &[[f64; U]; 1]) -> Result<[[f64; U]; 1], Singular> {
         self.0.correction(x).map(|correction| [correction])
     }
+
+    #[inline(always)]
+    fn is_simplified(&self) -> bool {
+        self.0.is_simplified()
+    }
 }
 
 /// Newton's method with an exact Jacobian and a stopping rule for every component by itself.
 ///
 /// A component is settled when its correction `d` is below `tolerance` relative to it; or when quadratic convergence
-/// predicts that the next one, `d (d / d_before)^2`, will be; or when all corrections are below [`Newton::ROUNDING`] of
+/// predicts that the next one, `d (d / d_before)^2`, will be, or after a simplified correction `2 d (d / d_before)`; or when all corrections are below [`Newton::ROUNDING`] of
 /// the largest component there was and its own no longer shrinks, so that it is rounding. A tolerance on all components
 /// together would freeze those that are small (a spin that dies out exponentially, for one).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -151,6 +169,7 @@ impl Newton {
             // Below the smallest normal number everything is rounding: what comes to rest ends there.
             let converged = step <= (Self::ROUNDING * size).max(f64::MIN_POSITIVE);
             let mut settled = true;
+            let simplified = equations.is_simplified();
             for b in 0..S {
                 for i in 0..U {
                     let (d, shrink) = (correction[b][i].abs(), correction[b][i].abs() / last[b][i]);
@@ -158,7 +177,10 @@ impl Newton {
                     rounding[b][i] |= converged && shrink >= 0.25;
                     // A correction larger than what it leaves brings rounding of its own, and predicts nothing.
                     let predicts = last[b][i].is_finite() && d <= x[b][i].abs();
-                    let next = if predicts { d * shrink * shrink } else { d };
+                    // With w the bound on the curvature, the first simplified correction is d = w d_before^2/2, and leaves
+                    // w d_before d; the first of Newton's own leaves w d^2/2.
+                    let factor = if simplified { 2.0 * shrink } else { shrink * shrink };
+                    let next = if predicts { d * factor } else { d };
                     settled &= rounding[b][i] || next.min(d) <= self.tolerance * x[b][i].abs();
                     last[b][i] = d;
                 }

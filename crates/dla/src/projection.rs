@@ -1,8 +1,9 @@
 use crate::dependent::{independent_rows, rows_left_out};
 use crate::{Equations, Newton, NewtonError, Stage, StepError};
-use lagrangian::linear::Singular;
+use lagrangian::linear::{Singular, largest, normal_solve};
 use lagrangian::{
-    AdmissibleBasis, HyperDual, Rows, Saddle, System, constraint_residual, mass_matrix, momentum, reaction_rows,
+    AdmissibleBasis, Dual, FactoredSaddle, HyperDual, Rows, Saddle, System, constraint_residual, mass_matrix, momentum,
+    reaction_rows,
 };
 use std::array::from_fn;
 
@@ -38,10 +39,56 @@ impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Projection<'a, Sys, 
 
     /// `v1` and `mu`, from a first guess of `v1`.
     #[inline(always)]
-    pub(crate) fn solve(mut self, newton: &Newton, guess: [f64; N]) -> Result<([f64; N], [f64; M]), NewtonError> {
+    pub(crate) fn solve(self, newton: &Newton, guess: [f64; N]) -> Result<([f64; N], [f64; M]), NewtonError> {
+        if self.some.is_none()
+            && let Some(solution) = self.at_once(newton, &guess)
+        {
+            return Ok(solution);
+        }
+        self.searched(newton, guess)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn searched(mut self, newton: &Newton, guess: [f64; N]) -> Result<([f64; N], [f64; M]), NewtonError> {
         let mut v1 = guess;
         newton.solve(&mut self, &mut v1)?;
         Ok((v1, self.mu))
+    }
+
+    /// The same where a correction and a simplified one are enough, as they are of a Lagrangian that is quadratic in the
+    /// velocities; in one function, since both are made in the same configuration.
+    #[inline(always)]
+    fn at_once(&self, newton: &Newton, guess: &[f64; N]) -> Option<([f64; N], [f64; M])> {
+        let Self { system, t1, q1, p1, basis, .. } = self;
+        let unit = |i: usize| from_fn(|k| f64::from(u8::from(k == i)));
+        let in_v = from_fn(|i| HyperDual::linear(guess[i], unit(i), unit(i)));
+        let at_q = q1.map(HyperDual::fixed);
+        if system.nonlinear(HyperDual::fixed(*t1), &at_q, &in_v).is_some() {
+            return None;
+        }
+        let l: HyperDual<f64, N, N> = system.lagrangian(HyperDual::fixed(*t1), &at_q, &in_v);
+        let (a1, b1) = system.constraint(*t1, q1);
+        let slip = |v: &[f64; N]| -> [f64; M] { from_fn(|k| -(0..N).fold(b1[k], |sum, i| sum + a1[k][i] * v[i])) };
+        let factors = FactoredSaddle::new(&l.e12, &a1, &a1, basis.as_ref()).ok()?;
+
+        let missing: [f64; N] = from_fn(|i| p1[i] - l.e1[i]);
+        let first = factors.solve(&missing, &slip(guess), &a1, basis.as_ref());
+        let v1: [f64; N] = from_fn(|i| guess[i] + first[i]);
+        let p = system.lagrangian(Dual::fixed(*t1), &q1.map(Dual::fixed), &Dual::variables(&v1)).eps;
+        let missing: [f64; N] = from_fn(|i| p1[i] - p[i]);
+        let second = factors.solve(&missing, &slip(&v1), &a1, basis.as_ref());
+        let v1: [f64; N] = from_fn(|i| v1[i] + second[i]);
+
+        // As `Newton` sees that they have settled; below the rounding of the largest component all that is left is rounding.
+        let size = newton.tolerance * largest(&v1);
+        let settled = (0..N).all(|i| {
+            let d = second[i].abs();
+            d <= size || 2.0 * d * d <= newton.tolerance * (first[i] * v1[i]).abs()
+        });
+        let left = from_fn(|i| (0..N).map(|j| l.e12[i][j] * second[j]).sum::<f64>() - missing[i]);
+        let mu = normal_solve(&a1, &left).ok()?;
+        settled.then_some((v1, mu))
     }
 }
 
@@ -88,19 +135,12 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Equations<N> for Project
                 mass = from_fn(|i| from_fn(|j| mass[i][j] - mu * phi.e12[i][j]));
             }
         }
-        let saddle = Saddle {
-            block: mass,
-            transposed: a1,
-            rows: a1,
-            right: from_fn(|i| self.p1[i] - p[i]),
-            level: slip.map(|s| -s),
+        let right = from_fn(|i| self.p1[i] - p[i]);
+        let saddle = Saddle { block: mass, transposed: a1, rows: a1, right, level: slip.map(|s| -s) };
+        let (correction, minus_mu) = match self.some {
+            Some(rows) => saddle.solve_some(rows)?,
+            None => saddle.solve(self.basis.as_ref())?,
         };
-        if let Some(rows) = self.some {
-            let (correction, minus_mu) = saddle.solve_some(rows)?;
-            self.mu = minus_mu.map(|m| -m);
-            return Ok(correction);
-        }
-        let (correction, minus_mu) = saddle.solve(self.basis.as_ref())?;
         self.mu = minus_mu.map(|m| -m);
         Ok(correction)
     }

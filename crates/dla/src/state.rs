@@ -1,3 +1,4 @@
+use crate::past::Past;
 use crate::{Checkpoint, CheckpointError, StepError};
 use lagrangian::{ReducedError, System, Twofold, quasi_velocities};
 use std::array::from_fn;
@@ -16,7 +17,8 @@ const COUNTED: f64 = 1_125_899_906_842_624.0;
 /// the constraint and the energy at round-off over any length of run. A method that works with quasi-velocities leaves
 /// them beside the velocity, so that the next step need not recover them; one that works with quasi-momenta leaves those
 /// too, with twice the digits, since they too are sums of many increments. One that solves for the mean velocity leaves the
-/// acceleration, from which the next search begins nearer to its solution.
+/// acceleration, from which the next search begins nearer to its solution; and after five steps of one length the increment of
+/// the next is extrapolated from theirs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State<const N: usize> {
     q: [f64; N],
@@ -25,6 +27,7 @@ pub struct State<const N: usize> {
     angles: [bool; N],
     v: [f64; N],
     left: Left<N>,
+    past: Past<N>,
 }
 
 /// What the last step leaves to the next beside the velocity.
@@ -41,7 +44,7 @@ impl<const N: usize> State<N> {
     /// (see [`System::angles`](lagrangian::System::angles)).
     #[must_use]
     pub fn new(q: [f64; N], v: [f64; N], angles: [bool; N]) -> Self {
-        let mut state = Self { q, rest: [0.0; N], turns: [0.0; N], angles, v, left: Left::Nothing };
+        let mut state = Self { q, rest: [0.0; N], turns: [0.0; N], angles, v, left: Left::Nothing, past: Past::new() };
         state.wrap();
         state
     }
@@ -135,11 +138,32 @@ impl<const N: usize> State<N> {
     /// Moves the configuration by `increment` and sets the velocity, with its quasi-velocities where they are known.
     #[inline(always)]
     pub fn advance(&mut self, increment: &[f64; N], v: [f64; N], xi: Option<[f64; N]>) {
+        self.past.forget();
+        self.go(increment, v, xi.map_or(Left::Nothing, Left::Velocities));
+    }
+
+    /// [Moves](State::advance) the state by a step of length `h`, with its quasi-velocities, and remembers the increment for
+    /// [`State::expected`].
+    #[inline(always)]
+    pub fn advance_remembering(&mut self, h: f64, increment: &[f64; N], v: [f64; N], xi: [f64; N]) {
+        self.past.push(h, increment);
+        self.go(increment, v, Left::Velocities(xi));
+    }
+
+    #[inline(always)]
+    fn go(&mut self, increment: &[f64; N], v: [f64; N], left: Left<N>) {
         for i in 0..N {
             (self.q[i], self.rest[i]) = two_sum(self.q[i], increment[i] + self.rest[i]);
         }
-        (self.v, self.left) = (v, xi.map_or(Left::Nothing, Left::Velocities));
+        (self.v, self.left) = (v, left);
         self.wrap();
+    }
+
+    /// The increment of a step of length `h`, extrapolated from the last ones where these were as long and are remembered.
+    #[must_use]
+    #[inline(always)]
+    pub fn expected(&self, h: f64) -> Option<[f64; N]> {
+        self.past.next(h)
     }
 
     /// [Moves](State::advance) the state and leaves its quasi-momenta to the next step.
@@ -149,13 +173,13 @@ impl<const N: usize> State<N> {
         self.left = Left::Momenta(xi, pi);
     }
 
-    /// [Moves](State::advance) the state and leaves about the acceleration to the next step.
+    /// [Moves](State::advance) the state by a step of length `h`, leaves about the acceleration to the next step, and remembers
+    /// the increment.
     #[inline(always)]
-    pub fn advance_with_acceleration(&mut self, increment: &[f64; N], v: [f64; N], acceleration: [f64; N]) {
-        self.advance(increment, v, None);
-        if acceleration.iter().all(|a| a.is_finite()) {
-            self.left = Left::Acceleration(acceleration);
-        }
+    pub fn advance_with_acceleration(&mut self, h: f64, increment: &[f64; N], v: [f64; N], acceleration: [f64; N]) {
+        let known = acceleration.iter().all(|a| a.is_finite());
+        self.past.push(h, increment);
+        self.go(increment, v, if known { Left::Acceleration(acceleration) } else { Left::Nothing });
     }
 
     /// How far the configuration has moved since `before`, with the digits that the sums keep.
@@ -175,7 +199,7 @@ impl<const N: usize> State<N> {
             Left::Velocities(xi) | Left::Momenta(xi, _) => Left::Velocities(flipped(xi)),
             left => left,
         };
-        Self { v: flipped(self.v), left, ..*self }
+        Self { v: flipped(self.v), left, past: Past::new(), ..*self }
     }
 
     /// Writes every bit of the state to a checkpoint; all but which coordinates are angles, which the system knows.
@@ -190,6 +214,7 @@ impl<const N: usize> State<N> {
         let halves = self.quasi_momenta().map(|pi| [pi.map(|pi| pi.hi), pi.map(|pi| pi.lo)]);
         checkpoint.put("pi", halves.as_ref().map_or(&[], |[hi, _]| &hi[..]));
         checkpoint.put("pi_rest", halves.as_ref().map_or(&[], |[_, lo]| &lo[..]));
+        self.past.save(checkpoint);
     }
 
     /// The state that [`save`](Self::save) wrote.
@@ -215,6 +240,7 @@ impl<const N: usize> State<N> {
             angles,
             v: checkpoint.get("v")?,
             left,
+            past: Past::load(checkpoint)?,
         })
     }
 

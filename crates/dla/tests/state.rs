@@ -3,7 +3,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use dla::State;
+use dla::{Checkpoint, State};
 use lagrangian::Twofold;
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -200,6 +200,37 @@ fn angles_beyond_counting_are_wrapped() {
     }
 }
 
+/// Increments along a polynomial of the fourth degree are extrapolated to rounding, those of other steps forgotten.
+#[test]
+fn the_next_increment_is_expected() {
+    let along = |k: i32| [0.1 + 0.02 * f64::from(k) - 1e-3 * f64::from(k).powi(4), 1.0];
+    let mut state = State::new([0.0; 2], [0.0; 2], [false; 2]);
+    for k in 0..9 {
+        let expected = state.expected(0.5);
+        assert_eq!(expected.is_some(), k >= 5, "step {k}");
+        if let Some(expected) = expected {
+            // Sums of numbers below 60.
+            assert_abs_diff_eq!(expected[0], along(k)[0], epsilon = 1e-13);
+            assert_abs_diff_eq!(expected[1], 1.0, epsilon = 1e-14);
+        }
+        state.advance_remembering(0.5, &along(k), [0.0; 2], [0.0; 2]);
+    }
+    assert!(state.expected(0.25).is_none(), "of another length");
+    assert!(state.reversed().expected(0.5).is_none(), "the other way");
+
+    let mut checkpoint = Checkpoint::of([]);
+    state.save(&mut checkpoint);
+    let again = State::load(&checkpoint, [false; 2]).unwrap();
+    assert_eq!(again.expected(0.5), state.expected(0.5));
+    assert_eq!(again, state);
+
+    let mut other = state;
+    other.advance_with_acceleration(0.25, &[0.0; 2], [0.0; 2], [0.0; 2]);
+    assert!(other.expected(0.5).is_none() && other.expected(0.25).is_none());
+    state.advance(&[0.0; 2], [0.0; 2], None);
+    assert!(state.expected(0.5).is_none(), "after a step of which nothing is remembered");
+}
+
 proptest! {
     #[test]
     fn any_start_is_wrapped_exactly(turns in -1_000_000..1_000_000i32, part in -0.5..0.5f64, bits in -20..0i32) {
@@ -209,4 +240,26 @@ proptest! {
         let state = angle((q * 45f64.exp2()).round() * (-45f64).exp2());
         check(&state, &exact, 1e-15);
     }
+}
+
+/// A difference of states is what moved them: over full turns, and with what the sums keep.
+#[test]
+fn a_state_knows_how_far_it_has_moved() {
+    for increment in [0.5, -0.7, 1.3, 2.9, -3.1] {
+        let before = State::new([3.0, 1e9], [0.0; 2], [true, false]);
+        let mut state = before;
+        for k in 1..=12 {
+            state.advance(&[increment, 3e-9], [0.0; 2], None);
+            let [turned, moved] = state.moved_since(&before);
+            // The difference of two angles has half an ulp of a number below eight, and the products of whole turns theirs.
+            let expected = f64::from(k) * increment;
+            assert_abs_diff_eq!(turned, expected, epsilon = 4.5e-16 + f64::EPSILON * expected.abs());
+            assert_abs_diff_eq!(moved, 3e-9 * f64::from(k), epsilon = 1e-22);
+        }
+    }
+    // Back over the seam: one turn forward and one back.
+    let start = State::new([3.0], [0.0], [true]);
+    let mut over = start;
+    over.advance(&[0.5], [0.0], None);
+    assert_abs_diff_eq!(start.moved_since(&over)[0], -0.5, epsilon = 4.5e-16);
 }

@@ -5,6 +5,7 @@
 
 mod again;
 pub mod analysis;
+mod assembled;
 mod baseline;
 mod cost;
 mod drift;
@@ -23,12 +24,13 @@ mod timing;
 mod watched;
 
 pub use again::Again;
+pub use assembled::{Assembled, AssemblyNode, assembly_end, assembly_method, run_assembly};
 pub use baseline::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced};
 pub use cost::{StepCost, step_cost};
 pub use drift::{Blocks, Drift, Verdict};
 pub use method::{Kind, METHODS, Method, MethodError, MethodInfo};
 pub use record::{EnergySummary, NewtonSummary, Record, Sample};
-pub use run::{Request, integrate, integrate_from, integrate_on, integrate_on_watched, integrate_pieces, run, timed};
+pub use run::{Request, integrate, integrate_from, integrate_on, integrate_pieces, run, timed};
 pub use saved::{Saving, run_saved};
 pub use statistics::Trend;
 pub use timing::Progress;

@@ -138,25 +138,11 @@ where
     }
 }
 
-/// Makes a run with nothing but the progress looking on; returns how many steps were made.
+/// Makes a run that shows its progress, with an observer besides, which may be `()`.
 ///
 /// # Errors
 /// As [`integrate_pieces`].
 pub fn integrate_on<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
-    system: &Sys,
-    method: &Method,
-    schedule: &Schedule,
-    state: &mut State<N>,
-    progress: &mut dyn Progress,
-) -> Result<u64, RunError> {
-    integrate_pieces(system, method, schedule, state, &mut Ticker::new(progress, 0))
-}
-
-/// The same with an observer besides.
-///
-/// # Errors
-/// As [`integrate_pieces`].
-pub fn integrate_on_watched<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
     system: &Sys,
     method: &Method,
     schedule: &Schedule,

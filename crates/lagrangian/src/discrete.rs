@@ -54,6 +54,18 @@ pub trait DiscreteLagrangian<Sys, const N: usize, const M: usize> {
         Derivatives { value: h * l.re, d1: l.e1, d2: l.e2, d1d2: l.e12.map(|row| row.map(|x| x / h)) }
     }
 
+    /// `D1 L_d` and `D2 L_d` without the mixed block, in first-order evaluations: automatic unless given by hand.
+    #[inline]
+    fn slopes<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> [[S; N]; 2] {
+        let (t, step) = (Dual::fixed(t0), Dual::fixed(h));
+        let directed = |x: S, i: usize, by: S| Dual { re: x, eps: from_fn(|k| if k == i { by } else { S::zero() }) };
+        // Of q0 at a fixed q1, in units of h as above.
+        let q: [Dual<S, N>; N] = from_fn(|i| directed(q0[i], i, h));
+        let back: [Dual<S, N>; N] = from_fn(|i| directed(v[i], i, S::constant(-1.0)));
+        let d1 = self.average(system, t, step, &q, &back).eps;
+        [d1, self.d2(system, t0, h, q0, v)]
+    }
+
     /// `D2 L_d` by itself, the momentum at the end of a step: automatic unless given by hand.
     #[inline]
     fn d2<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> [S; N] {
@@ -79,6 +91,48 @@ impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteLagrang
             sum = Some(sum.map_or(term, |s| s + term));
         }
         sum.unwrap_or(S::zero())
+    }
+
+    /// Seeded at the nodes, where the configuration depends on both ends by `dq = (1 - alpha) dq0 + alpha dq1`: no product
+    /// of derivatives is made on the way there.
+    #[inline]
+    fn derivatives<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> Derivatives<S, N> {
+        let (zero, one) = (S::zero(), S::constant(1.0));
+        let unit = |x: S, i: usize| -> [S; N] { from_fn(|k| if k == i { x } else { zero }) };
+        let in_v: [HyperDual<S, N, N>; N] = from_fn(|i| HyperDual::linear(v[i], unit(-one, i), unit(one, i)));
+        let mut sum: Option<HyperDual<S, N, N>> = None;
+        for node in self.nodes() {
+            let (t, q) = on_line(node.alpha, t0, h, q0, v);
+            let part = h * node.alpha;
+            let in_q: [HyperDual<S, N, N>; N] = from_fn(|i| HyperDual::linear(q[i], unit(h - part, i), unit(part, i)));
+            let term = system.lagrangian(HyperDual::fixed(t), &in_q, &in_v) * node.weight;
+            sum = Some(sum.map_or(term, |s| s + term));
+        }
+        let l = sum.unwrap_or(HyperDual::fixed(zero));
+        Derivatives { value: h * l.re, d1: l.e1, d2: l.e2, d1d2: l.e12.map(|row| row.map(|x| x / h)) }
+    }
+
+    /// By the derivatives in the configuration and the velocity of every node.
+    #[inline]
+    fn slopes<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> [[S; N]; 2] {
+        let [mut d1, mut d2] = [[S::zero(); N]; 2];
+        for node in self.nodes() {
+            let (t, q) = on_line(node.alpha, t0, h, q0, v);
+            let part = h * node.alpha;
+            let l_v = system.lagrangian(Dual::fixed(t), &q.map(Dual::fixed), &Dual::variables(v)).eps;
+            let l_q = system.lagrangian(Dual::fixed(t), &Dual::variables(&q), &v.map(Dual::fixed)).eps;
+            for i in 0..N {
+                d1[i] += ((h - part) * l_q[i] - l_v[i]) * node.weight;
+                d2[i] += (part * l_q[i] + l_v[i]) * node.weight;
+            }
+        }
+        [d1, d2]
+    }
+
+    #[inline]
+    fn d2<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> [S; N] {
+        let [_, d2] = DiscreteLagrangian::<Sys, N, M>::slopes(self, system, t0, h, q0, v);
+        d2
     }
 
     #[inline(always)]

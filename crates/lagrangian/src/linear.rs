@@ -1,5 +1,7 @@
 //! Linear algebra of a few unknowns, on the stack.
 
+pub use crate::inverse::Inverse;
+
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 use thiserror::Error;
 
@@ -14,7 +16,7 @@ pub struct Singular {
 }
 
 /// A pivot below it, relative to its row and column, is rounding.
-const THRESHOLD: f64 = 4.0 * f64::EPSILON;
+pub(crate) const THRESHOLD: f64 = 4.0 * f64::EPSILON;
 
 /// A factorisation `P A = L U` by elimination with scaled partial pivoting.
 ///
@@ -51,28 +53,27 @@ impl<const U: usize> Lu<U> {
             std::array::from_fn(|j| largest(&std::array::from_fn::<_, U, _>(|i| a[i][j] * row[i])).recip());
         let mut positive = true;
         for k in 0..U {
-            let mut best = k;
+            // Exchanged one by one, at places that are known when the program is compiled.
             for i in k + 1..U {
-                if (a[i][k] * row[i]).abs() > (a[best][k] * row[best]).abs() {
-                    best = i;
+                if (a[i][k] * row[i]).abs() > (a[k][k] * row[k]).abs() {
+                    a.swap(k, i);
+                    row.swap(k, i);
+                    order.swap(k, i);
+                    positive = !positive;
                 }
             }
-            let pivot = (a[best][k] * row[best] * column[k]).abs();
+            let pivot = (a[k][k] * row[k] * column[k]).abs();
             if pivot <= threshold || !pivot.is_finite() {
                 // Of finite entries it is no number only where a row or a column is empty, and has no scale.
                 let empty = !pivot.is_finite() && a.as_flattened().iter().all(|x| x.is_finite());
                 return Err(Singular { column: k, pivot: if empty { 0.0 } else { pivot } });
             }
-            positive ^= (best != k) ^ (a[best][k] < 0.0);
-            a.swap(k, best);
-            row.swap(k, best);
-            order.swap(k, best);
-            let upper = a[k];
-            for lower in &mut a[k + 1..] {
-                let factor = lower[k] / upper[k];
-                lower[k] = factor;
+            positive ^= a[k][k] < 0.0;
+            for i in k + 1..U {
+                let factor = a[i][k] / a[k][k];
+                a[i][k] = factor;
                 for j in k + 1..U {
-                    lower[j] -= factor * upper[j];
+                    a[i][j] -= factor * a[k][j];
                 }
             }
         }
@@ -151,6 +152,13 @@ pub fn largest(x: &[f64]) -> f64 {
 /// [`Singular`] where the rows of `A` depend on one another.
 #[inline]
 pub fn normal_solve<const N: usize, const M: usize>(rows: &[[f64; N]; M], b: &[f64; N]) -> Result<[f64; M], Singular> {
+    if M == 1 {
+        let along = |x: &[f64; N]| (0..N).map(|i| rows[0][i] * x[i]).sum::<f64>();
+        let (square, level) = (along(&rows[0]), along(b));
+        // Also where the square is not a number, or leaves the range of numbers.
+        let usual = square > 0.0 && square.is_finite();
+        return if usual { Ok([level / square; M]) } else { Err(Singular { column: 0, pivot: 0.0 }) };
+    }
     let transposed: SMatrix<f64, N, M> = SMatrix::from_array_storage(ArrayStorage(*rows));
     let gram = transposed.tr_mul(&transposed);
     let right: SVector<f64, M> = transposed.tr_mul(&SVector::from(*b));

@@ -27,7 +27,7 @@ pub struct Saddle<const N: usize, const M: usize> {
 impl<const N: usize, const M: usize> Saddle<N, M> {
     /// A pivot of the Schur complement below it, relative to its row and column, is rounding: each entry is a sum of `N`
     /// products, and up to `M` of them have been eliminated.
-    const DEPENDENT: f64 = 4.0 * (N + M) as f64 * f64::EPSILON;
+    pub(crate) const DEPENDENT: f64 = 4.0 * (N + M) as f64 * f64::EPSILON;
 
     /// `x` and `lambda`, in the given basis of `ker G` where there is one and with the multipliers otherwise.
     ///

@@ -121,8 +121,9 @@ pub trait System<const N: usize, const M: usize> {
 
     /// One step of the midpoint discrete Lagrange-d'Alembert map, where the system knows a closed form of it.
     ///
-    /// `xi` are the quasi-velocities of `v` in [`System::admissible_basis`], where they are known. The step must agree with
-    /// the general one to round-off; it exists for its speed, and for the digits that a closed form keeps.
+    /// `xi` are the quasi-velocities of `v` in [`System::admissible_basis`], where they are known; `expected` is about the
+    /// increment, where steps before tell it. The step must agree with the general one to round-off, whatever is expected; it
+    /// exists for its speed, and for the digits that a closed form keeps.
     #[inline(always)]
     fn closed_step(
         &self,
@@ -131,9 +132,34 @@ pub trait System<const N: usize, const M: usize> {
         _q: &[f64; N],
         _v: &[f64; N],
         _xi: Option<[f64; N]>,
+        _expected: Option<[f64; N]>,
     ) -> Option<Result<ClosedStep<N, M>, ClosedStepError>> {
         None
     }
+
+    /// The same step with one more generalised force, which depends on time and configuration alone.
+    ///
+    /// None where it is not known by hand, or not found quickly: the general step is then made.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments, reason = "those of the closed step, and the force")]
+    fn pushed_step<P: Push<N>>(
+        &self,
+        _t: f64,
+        _h: f64,
+        _q: &[f64; N],
+        _v: &[f64; N],
+        _xi: Option<[f64; N]>,
+        _expected: Option<[f64; N]>,
+        _push: &P,
+    ) -> Option<ClosedStep<N, M>> {
+        None
+    }
+}
+
+/// A generalised force that depends on time and configuration.
+pub trait Push<const N: usize> {
+    /// The force at `(t, q)`; none where it is not known by hand, or depends on velocities too.
+    fn push<S: Scalar>(&self, t: S, q: &[S; N]) -> Option<[S; N]>;
 }
 
 /// The residual `A(q, t) v + b(q, t)` of each constraint, or `phi(t, q, v)` of one that is not affine.

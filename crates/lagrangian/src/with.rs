@@ -1,5 +1,6 @@
 use crate::{
-    AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Effect, Motion, MotionError, Scalar, System, velocity_of,
+    AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Effect, Motion, MotionError, Push, Scalar, System,
+    velocity_of,
 };
 use std::array::from_fn;
 
@@ -22,6 +23,21 @@ impl<B, E> With<B, E> {
         E: Effect<B, N>,
     {
         self.effects.slope(&self.body, t, q).with_force(self.effects.force(&self.body, t, q, v))
+    }
+}
+
+/// The effects of a body, where all of them are potentials whose slopes are known by hand.
+struct Potentials<'a, B, E>(&'a With<B, E>);
+
+impl<B, E: Effect<B, N>, const N: usize> Push<N> for Potentials<'_, B, E> {
+    #[inline(always)]
+    fn push<S: Scalar>(&self, t: S, q: &[S; N]) -> Option<[S; N]> {
+        let With { body, effects } = self.0;
+        // Where a force stands beside them it may depend on the velocity.
+        if effects.force(body, t, q, &[S::zero(); N]).is_some() {
+            return None;
+        }
+        effects.slope(body, t, q).with_force(None)
     }
 }
 
@@ -116,7 +132,11 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
         q: &[f64; N],
         v: &[f64; N],
         xi: Option<[f64; N]>,
+        expected: Option<[f64; N]>,
     ) -> Option<Result<ClosedStep<N, M>, ClosedStepError>> {
-        if self.effects.is_none() { self.body.closed_step(t, h, q, v, xi) } else { None }
+        if self.effects.is_none() {
+            return self.body.closed_step(t, h, q, v, xi, expected);
+        }
+        self.body.pushed_step(t, h, q, v, xi, expected, &Potentials(self)).map(Ok)
     }
 }

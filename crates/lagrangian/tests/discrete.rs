@@ -28,6 +28,7 @@ fn against_the_oracle<L: DiscreteLagrangian<Everything, 3, 1>>(
 ) {
     let d = rule.derivatives(system, t, h, q0, v);
     let d2 = rule.d2(system, t, h, q0, v);
+    let [slope1, slope2] = rule.slopes(system, t, h, q0, v);
     assert_relative_eq!(d.value, rule.value(system, t, h, q0, v), max_relative = 1e-15);
     let q1: [f64; 3] = from_fn(|i| q0[i] + h * v[i]);
     for i in 0..3 {
@@ -39,6 +40,8 @@ fn against_the_oracle<L: DiscreteLagrangian<Everything, 3, 1>>(
             close(d.d1[i], l.eps1, h);
             close(d.d2[j], l.eps2, h);
             close(d2[j], l.eps2, h);
+            close(slope1[i], l.eps1, h);
+            close(slope2[j], l.eps2, h);
             close(d.d1d2[i][j], l.eps1eps2, h * h);
         }
     }

@@ -5,8 +5,8 @@ mod common;
 
 use common::component;
 use faer::linalg::solvers::Solve;
-use lagrangian::linear::{Lu, has_positive_determinant, normal_solve};
-use lagrangian::{AdmissibleBasis, RowSpace, Rows, Saddle};
+use lagrangian::linear::{Inverse, Lu, has_positive_determinant, normal_solve};
+use lagrangian::{AdmissibleBasis, FactoredSaddle, RowSpace, Rows, Saddle};
 use proptest::prelude::*;
 use std::array::from_fn;
 
@@ -112,7 +112,53 @@ proptest! {
             approx::assert_relative_eq!(x[i], y[i], epsilon = 1e-13);
         }
         approx::assert_relative_eq!(lambda[0], mu[0], epsilon = 1e-13);
+
+        // Factorised once, for this right-hand side as for any other.
+        for basis in [Some(&basis), None] {
+            let factors = FactoredSaddle::new(&block, &[row], &saddle.rows, basis).unwrap();
+            let z = factors.solve(&right, &[level], &saddle.rows, basis);
+            for i in 0..3 {
+                approx::assert_relative_eq!(z[i], x[i], epsilon = 1e-13);
+            }
+            assert_eq!(factors.is_positive(), saddle.solve_oriented(basis).unwrap().2);
+        }
     }
+
+    /// Near the unit matrix the inverse is as good as the factorisation; so it is whatever the scales of rows and columns.
+    #[test]
+    fn inverses_solve(
+        numbers in proptest::collection::vec(-0.2..0.2f64, 16), scales in proptest::collection::vec(-60..60i32, 8),
+        b in proptest::array::uniform4(component()),
+    ) {
+        fn check<const U: usize>(numbers: &[f64], scales: &[i32], b: &[f64; 4]) {
+            let scale = |i: usize| 2f64.powi(scales[i]);
+            let unit = |i: usize, j: usize| f64::from(u8::from(i == j));
+            let a: Matrix<U> = from_fn(|i| from_fn(|j| (unit(i, j) + numbers[4 * i + j]) * scale(i) * scale(4 + j)));
+            let b = from_fn(|i| b[i] * scale(i));
+            let (inverse, lu) = (Inverse::new(&a).unwrap(), Lu::new(a).unwrap());
+            assert_eq!(matches!(inverse, Inverse::Cofactors(..)), U <= 3);
+            assert_eq!(inverse.is_positive(), lu.is_positive());
+            let (x, y) = (inverse.solve(&b), lu.solve(b));
+            // Of the size of the right-hand sides, up to ten, times the condition, a few.
+            for i in 0..U {
+                approx::assert_relative_eq!(x[i] * scale(4 + i), y[i] * scale(4 + i), epsilon = 1e-12);
+            }
+        }
+        check::<1>(&numbers, &scales, &b);
+        check::<2>(&numbers, &scales, &b);
+        check::<3>(&numbers, &scales, &b);
+        check::<4>(&numbers, &scales, &b);
+    }
+}
+
+/// Near a singular matrix cofactors cancel, and the elimination with pivots decides.
+#[test]
+fn inverses_leave_what_is_nearly_singular() {
+    let near = |e: f64| [[1.0, 2.0, 3.0], [2.0, 4.0 + e, 6.0], [1.0, 1.0, 1.0]];
+    assert!(matches!(Inverse::new(&near(1.0)), Ok(Inverse::Cofactors(..))));
+    assert!(matches!(Inverse::new(&near(1e-6)), Ok(Inverse::Factors(_))));
+    assert_eq!(Inverse::new(&near(0.0)).unwrap_err(), Lu::new(near(0.0)).unwrap_err());
+    assert!(Inverse::new(&[[f64::NAN]]).is_err() && Inverse::new(&[[0.0]]).is_err());
 }
 
 #[test]

@@ -13,7 +13,10 @@
 //! | differentiate its steps in state, parameters and controls | [`Sensitivity`], [`Parametrised`], [`Member`] |
 //! | find events, take samples, stop and resume, choose a step | [`Event`], [`Watch`], [`Samples`], [`Checkpoint`], [`recommend_step`] |
 //! | use the Chaplygin sleigh and its closed form | [`Sleigh`], [`SleighState`], [`Exact`] |
+//! | assemble many bodies (the cargo feature `assembly`) | the crate `noslip-assembly`, here `noslip::assembly` |
 
+#[cfg(feature = "assembly")]
+pub use assembly;
 pub use dla::{
     self, Checkpoint, CheckpointError, Crossing, Direction, Dla, Equations, Event, Form, Hermite, Hint, History,
     Newton, NewtonError, Node, Observer, OneStep, RecommendError, Recommendation, RunError, Samples, Schedule,
@@ -36,6 +39,8 @@ mod book {
     pub struct FirstSimulation;
     #[doc = include_str!("../../../docs/guide/your-own-system.md")]
     pub struct YourOwnSystem;
+    #[doc = include_str!("../../../docs/guide/many-bodies.md")]
+    pub struct ManyBodies;
     #[doc = include_str!("../../../docs/phenomena/naive.md")]
     pub struct Naive;
     #[doc = include_str!("../../../docs/phenomena/parking.md")]

@@ -78,11 +78,17 @@ impl Acting {
             SceneEffect::Thrust { force } => Self::Thrust(Thrust::new(force.build()?)?),
             SceneEffect::Torque { torque } => Self::Torque(Torque::new(torque.build()?)?),
             SceneEffect::MovingMass { mass, x, y } => Self::MovingMass(MovingMass::new(*mass, x.build()?, y.build()?)?),
-            SceneEffect::Flywheel { .. }
+            SceneEffect::Trailers(_)
+            | SceneEffect::Flywheel { .. }
             | SceneEffect::Servo { .. }
             | SceneEffect::Tracer { .. }
             | SceneEffect::Turntable { .. } => return Ok(None),
         }))
+    }
+
+    /// Whether it belongs to the ground, which every blade of a train runs on.
+    pub(crate) fn is_ground(&self) -> bool {
+        matches!(self, Self::Slope(_) | Self::Bowl(_) | Self::EggCrate(_) | Self::Hills(_))
     }
 
     /// The name of its kind, where it feeds or drains the energy; `None` for a potential.

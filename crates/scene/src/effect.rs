@@ -104,6 +104,25 @@ impl From<HillSpec> for Hill {
     }
 }
 
+/// The trailers of a scene; each list has one number for every trailer, or one for all.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TrailersSpec {
+    /// How many there are.
+    pub count: usize,
+    /// Masses (kg).
+    pub mass: Vec<f64>,
+    /// Moments of inertia about the centres of mass (kg m^2).
+    pub inertia: Vec<f64>,
+    /// Distances of the centres of mass ahead of the blades (m).
+    pub offset: Vec<f64>,
+    /// Distances of the hinges behind the blades before them (m).
+    pub hitch: Vec<f64>,
+    /// Distances of the hinges ahead of the trailers' own blades (m).
+    pub bar: Vec<f64>,
+    /// Headings at the start (rad); those that are missing are that of the blade before.
+    pub headings: Vec<f64>,
+}
+
 /// An effect of a scene, as its `[[effects]]` entry says it; what each means is with the type of that name in the crate
 /// `sleigh`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -144,6 +163,8 @@ pub enum SceneEffect {
     Tracer { path: PathSpec },
     /// A turning plane.
     Turntable { rate: f64 },
+    /// A train of further blades.
+    Trailers(TrailersSpec),
 }
 
 /// Name, keys and meaning of every kind of effect, in the order of the documentation.
@@ -160,6 +181,11 @@ pub const EFFECTS: &[(&str, &[&str], &str)] = &[
     ("servo", &["speed", "turn_rate"], "imposed speed, turn rate or both"),
     ("tracer", &["path"], "centre of mass led along a closed path: the planimeter"),
     ("turntable", &["rate"], "a plane that turns about the origin"),
+    (
+        "trailers",
+        &["count", "mass", "inertia", "offset", "hitch", "bar", "headings"],
+        "a train of further blades, each hinged to the one before it",
+    ),
 ];
 
 impl SceneEffect {
@@ -168,7 +194,7 @@ impl SceneEffect {
         let varies = |function: &Option<TimeSpec>| function.as_ref().is_some_and(TimeSpec::varies);
         match self {
             Self::Slope { .. } | Self::Bowl { .. } | Self::EggCrate { .. } | Self::Hills { .. } => false,
-            Self::Drag { .. } | Self::Turntable { .. } => false,
+            Self::Drag { .. } | Self::Turntable { .. } | Self::Trailers(_) => false,
             Self::Flywheel { torque, .. } => varies(torque),
             Self::Thrust { force: function } | Self::Torque { torque: function } => function.varies(),
             Self::MovingMass { x, y, .. } => x.varies() || y.varies(),
@@ -193,6 +219,7 @@ impl SceneEffect {
             Self::Servo { .. } => "servo",
             Self::Tracer { .. } => "tracer",
             Self::Turntable { .. } => "turntable",
+            Self::Trailers(_) => "trailers",
         }
     }
 }

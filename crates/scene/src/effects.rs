@@ -1,4 +1,4 @@
-use crate::effect::{EFFECTS, HillSpec, SceneEffect, TimeSpec};
+use crate::effect::{EFFECTS, HillSpec, SceneEffect, TimeSpec, TrailersSpec};
 use crate::error::SceneError;
 use crate::fault::Fault;
 use crate::keys::abridged;
@@ -93,7 +93,48 @@ fn read_one(table: &Table<'_>, kind: &str) -> Result<SceneEffect, SceneError> {
             }
         }
         "tracer" => SceneEffect::Tracer { path: table.path("path")? },
+        "trailers" => SceneEffect::Trailers(trailers(table)?),
         _ => SceneEffect::Turntable { rate: table.required(&finite("rate", "rad/s"))? },
+    })
+}
+
+/// The most trailers that a scene may have.
+const MOST_TRAILERS: f64 = 100_000.0;
+
+fn trailers(table: &Table<'_>) -> Result<TrailersSpec, SceneError> {
+    let count = table.required(&Quantity::positive("count", "blades"))?;
+    if count.fract() != 0.0 || count > MOST_TRAILERS {
+        let accepted = format!("a whole number from 1 to {MOST_TRAILERS}");
+        return Err(table.wrong("count", "is no number of trailers", accepted));
+    }
+    let count = count as usize;
+    let each = |quantity: &Quantity| {
+        let Some(list) = table.number_or_numbers(quantity)? else { return Ok(None) };
+        match list.len() {
+            1 => Ok(Some(list)),
+            length if length == count => Ok(Some(list)),
+            _ => {
+                let accepted = format!("a number, or a list of {count}, in {}", quantity.unit);
+                Err(table.wrong(quantity.key, "has the wrong length", accepted))
+            }
+        }
+    };
+    let needed = |quantity: Quantity| {
+        each(&quantity)?.ok_or_else(|| table.missing(quantity.key, format!("{}, or a list", quantity.accepted())))
+    };
+    let headings = table.number_or_numbers(&Quantity::finite("headings", "rad"))?.unwrap_or_default();
+    if headings.len() > count {
+        let accepted = format!("a list of at most {count} numbers, in rad");
+        return Err(table.wrong("headings", "are more than the trailers", accepted));
+    }
+    Ok(TrailersSpec {
+        count,
+        mass: needed(Quantity::positive("mass", "kg"))?,
+        inertia: needed(Quantity::positive("inertia", "kg m^2"))?,
+        offset: each(&Quantity::finite("offset", "m"))?.unwrap_or_else(|| vec![0.0]),
+        hitch: each(&Quantity::finite("hitch", "m"))?.unwrap_or_else(|| vec![0.0]),
+        bar: needed(Quantity::positive("bar", "m"))?,
+        headings,
     })
 }
 
@@ -110,6 +151,20 @@ fn hills(table: &Table<'_>) -> Result<Vec<HillSpec>, SceneError> {
     table.tables("hills", &["height", "x", "y", "width"], accepted)?.iter().map(read).collect()
 }
 
+/// Whether it changes the coordinates or the constraints, or jumps in time: what a train does not carry.
+fn changes_body(effect: &SceneEffect) -> bool {
+    match effect {
+        SceneEffect::Flywheel { .. }
+        | SceneEffect::Servo { .. }
+        | SceneEffect::Tracer { .. }
+        | SceneEffect::Turntable { .. } => true,
+        SceneEffect::Thrust { force: function } | SceneEffect::Torque { torque: function } => {
+            matches!(function, TimeSpec::Table { .. })
+        }
+        _ => false,
+    }
+}
+
 /// Refuses what does not go together: a second body, two ways to impose a velocity, what the sleigh cannot do.
 fn check_company(table: &Table<'_>, new: &SceneEffect, others: &[SceneEffect], offset: f64) -> Result<(), SceneError> {
     let only_once = matches!(
@@ -118,9 +173,16 @@ fn check_company(table: &Table<'_>, new: &SceneEffect, others: &[SceneEffect], o
             | SceneEffect::Servo { .. }
             | SceneEffect::Tracer { .. }
             | SceneEffect::Turntable { .. }
+            | SceneEffect::Trailers(_)
     );
     if only_once && others.iter().any(|other| other.kind() == new.kind()) {
         return Err(table.wrong("kind", "is there already", format!("one `{}` in a scene", new.kind())));
+    }
+    let is_train = |effect: &SceneEffect| matches!(effect, SceneEffect::Trailers(_));
+    if (is_train(new) && others.iter().any(changes_body)) || (changes_body(new) && others.iter().any(is_train)) {
+        let accepted = "what acts on its coordinates: `slope`, `bowl`, `egg_crate`, `hills` for every blade, `drag`, \
+                        `thrust`, `torque` and `moving_mass` for the first, without tables of times";
+        return Err(table.wrong("kind", "does not go with `trailers`", accepted.to_owned()));
     }
     let imposes = |effect: &SceneEffect| matches!(effect, SceneEffect::Servo { .. } | SceneEffect::Tracer { .. });
     if imposes(new) && others.iter().any(imposes) {

@@ -22,6 +22,15 @@ impl<'s> Table<'s> {
         self.get(quantity.key).map(|value| self.list(quantity, value)).transpose()
     }
 
+    /// The same, where a number alone is a list of one.
+    pub(crate) fn number_or_numbers(&self, quantity: &Quantity) -> Result<Option<Vec<f64>>, SceneError> {
+        let Some(value) = self.get(quantity.key) else { return Ok(None) };
+        match as_f64(value.get_ref()) {
+            Some(_) => Ok(self.number(quantity)?.map(|number| vec![number])),
+            None => self.list(quantity, value).map(Some),
+        }
+    }
+
     fn list(&self, quantity: &Quantity, value: &Spanned<DeValue<'_>>) -> Result<Vec<f64>, SceneError> {
         let accepted = || format!("a list of numbers, each {}", quantity.accepted());
         let DeValue::Array(entries) = value.get_ref() else {

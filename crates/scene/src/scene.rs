@@ -72,7 +72,7 @@ impl Scene {
         {
             return Some(period);
         }
-        self.visit(FirstMisaligned(&self.run)).ok().flatten()
+        self.visit_first(FirstMisaligned(&self.run)).ok().flatten()
     }
 
     /// Reads the bundled scene of that name or else the file at that path: `./turnaround` is always the file.

@@ -65,8 +65,17 @@ impl Scene {
     /// would be looked at in every evaluation. A velocity that the scene imposes replaces that of its start.
     ///
     /// # Errors
-    /// [`SleighError`] where an effect has impossible parameters, which one read from a file has not.
+    /// [`SleighError`] where an effect has impossible parameters, which one read from a file has not; or of a train, which
+    /// [`train`](Self::train) makes.
     pub fn visit<V: Visitor>(&self, visitor: V) -> Result<V::Output, SleighError> {
+        if self.has_trailers() {
+            return Err(SleighError::Train);
+        }
+        self.visit_first(visitor)
+    }
+
+    /// The same of the first blade alone, where others follow it.
+    pub(crate) fn visit_first<V: Visitor>(&self, visitor: V) -> Result<V::Output, SleighError> {
         Ok(match self.guiding()? {
             Guiding::None => self.with_rotor(self.sleigh, visitor)?,
             Guiding::Turntable(body) => self.with_rotor(body, visitor)?,
@@ -82,6 +91,9 @@ impl Scene {
     /// # Errors
     /// As [`visit`](Self::visit).
     pub fn visit_free<V: Visitor>(&self, visitor: V) -> Result<Option<V::Output>, SleighError> {
+        if self.has_trailers() {
+            return Err(SleighError::Train);
+        }
         match self.guiding()? {
             Guiding::None => self.listed(self.sleigh, visitor).map(Some),
             Guiding::Turntable(body) => self.listed(body, visitor).map(Some),
@@ -123,7 +135,7 @@ impl Scene {
     }
 
     /// The effects that act on the coordinates there are.
-    fn acting(&self) -> Result<Vec<Acting>, SleighError> {
+    pub(crate) fn acting(&self) -> Result<Vec<Acting>, SleighError> {
         self.effects.iter().filter_map(|effect| Acting::of(effect).transpose()).collect()
     }
 

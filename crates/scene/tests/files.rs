@@ -2,6 +2,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod schema;
+mod trailers;
 
 use scene::{RunSettings, Scene, SceneError, bundled};
 use std::fs;

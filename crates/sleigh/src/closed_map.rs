@@ -5,6 +5,10 @@ use std::f64::consts::FRAC_PI_2;
 /// An error in `r` of this size is rounding.
 pub(crate) const ROUNDING: f64 = 1e-17;
 /// The cube of an angle this small is rounding.
+const SMALL: f64 = 1e-6;
+/// A part of the spin by which an expected one may differ from that before.
+const FAR: f64 = 0.125;
+const MAX_ITERATIONS: u32 = 30;
 pub(crate) const SMALL: f64 = 1e-6;
 pub(crate) const MAX_ITERATIONS: u32 = 30;
 /// The series of `sin d = d + d^3 (s_0 + s_1 d^2 + ..)` and `cos d = 1 - d^2/2 + d^4 (c_0 + c_1 d^2 + ..)`.
@@ -22,8 +26,8 @@ pub(crate) const COSINE: [f64; 5] = [1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -
 /// ```
 ///
 /// that is `F_h(U, w) = (u0, J omega0)`, `F_-h(U, w) = (u1, J omega1)`: the map is its own adjoint (the book, (3.6) and
-/// (3.7)). The first equation gives `U cos d`, the second is solved for the ratio `r = w/omega0` by Newton's method, so that the spin keeps its sign
-/// and all its digits however small it is. Among the solutions the one that continues the motion has `|d| < pi/2` and
+/// (3.7)). The first equation gives `U cos d`, the second is solved for `w` by Newton's method, in which `omega0` is but a
+/// factor, so that the spin keeps its sign and all its digits however small it is. Among the solutions the one that continues the motion has `|d| < pi/2` and
 /// `1 + k U > 0`; the map ends where these do.
 #[inline(always)]
 pub(crate) fn step(
@@ -32,6 +36,7 @@ pub(crate) fn step(
     q: &[f64; 3],
     v: &[f64; 3],
     xi: Option<[f64; 3]>,
+    expected: Option<f64>,
 ) -> Result<ClosedStep<3, 1>, ClosedStepError> {
     let (m, a) = (sleigh.mass(), sleigh.offset());
     let k = 0.5 * h * sleigh.spin_gain();
@@ -42,37 +47,46 @@ pub(crate) fn step(
     };
     let (reach, d) = (a * omega0, 0.5 * h * omega0);
 
-    let mut r = prediction(k, u0, reach, d);
-    let (mut sin, mut cos) = half_turn(d * r)?;
+    // What is expected does not wait for the end of the step before, nor its sine for a division.
+    let half = 0.5 * h;
+    let near = expected.map(|turn| (turn, turn / h)).filter(|(_, w)| (w - omega0).abs() <= FAR * omega0.abs());
+    let (mut w, (mut sin, mut cos)) = match near {
+        Some((turn, w)) => (w, half_turn(0.5 * turn)?),
+        None => {
+            let w = omega0 * prediction(k, u0, reach, d);
+            (w, half_turn(half * w)?)
+        }
+    };
     // How far f is from a straight line, which bounds the error that a correction leaves.
     let bend = (k * reach * d).abs() + d * d;
     let mut iterations = 0;
     let across = loop {
-        // f(r) = r (1 + k U) cos d - cos d, with U cos d = u0 + a w sin d; and a w sin d with its slope.
-        let (part, part_of_r) = (reach * (r * sin), reach * (sin + d * r * cos));
+        // f(w) = w (1 + k U) cos d - omega0 cos d, with U cos d = u0 + a w sin d; and a w sin d with its slope.
+        let (part, part_of_w) = (a * w * sin, a * (sin + half * w * cos));
         let growth = cos + k * (u0 + part);
-        let slope = growth + k * r * part_of_r + (1.0 - r) * d * sin;
-        let correction = (cos - r * growth) / slope;
-        r += correction;
+        let slope = growth + k * w * part_of_w + (omega0 - w) * half * sin;
+        let correction = (omega0 * cos - w * growth) / slope;
+        w += correction;
         iterations += 1;
-        let e = d * correction;
-        if bend * correction * correction <= ROUNDING * r && e.abs() <= SMALL {
+        let e = half * correction;
+        if bend * correction * correction <= ROUNDING * (w * w) && e.abs() <= SMALL {
             // What is still to be done is linear, to rounding, and need not wait for new sines.
             (sin, cos) = (sin + e * (cos - 0.5 * e * sin), cos - e * (sin + 0.5 * e * cos));
-            break part + correction * part_of_r;
+            break part + correction * part_of_w;
         }
-        (sin, cos) = half_turn(d * r)?;
+        (sin, cos) = half_turn(half * w)?;
         if iterations == MAX_ITERATIONS || correction.is_nan() {
-            return Err(failure(k * u0, iterations, correction / r));
+            return Err(failure(k * u0, iterations, correction / w));
         }
     };
-    if r <= 0.0 {
-        return Err(out_of_branch(r.recip() - 1.0));
+    // (1 + k U) cos d, the sign of w / omega0.
+    let growth = cos + k * (u0 + across);
+    if growth <= 0.0 {
+        return Err(out_of_branch(growth / cos - 1.0));
     }
 
-    // With w = r omega0 and (1 + k U) r = 1: omega1 = w (1 - k U) = omega0 (2 r - 1).
-    let w = omega0 * r;
-    let (u1, omega1) = (u0 + 2.0 * across, omega0 * (2.0 * r - 1.0));
+    // With w (1 + k U) = omega0: omega1 = w (1 - k U) = 2 w - omega0.
+    let (u1, omega1) = (u0 + 2.0 * across, 2.0 * w - omega0);
     if !(u1 + omega1).is_finite() {
         return Err(ClosedStepError::NotFinite { quantity: "the new velocity" });
     }
@@ -95,7 +109,7 @@ pub(crate) fn step(
 /// wait for the trigonometry of the heading, and not a selection that does.
 #[cold]
 #[inline(never)]
-fn recovered(sin0: f64, cos0: f64, v: &[f64; 3]) -> (f64, f64) {
+pub(crate) fn recovered(sin0: f64, cos0: f64, v: &[f64; 3]) -> (f64, f64) {
     (v[0] * cos0 + v[1] * sin0, v[2])
 }
 
@@ -113,7 +127,7 @@ fn prediction(k: f64, u0: f64, reach: f64, d: f64) -> f64 {
 
 /// Sine and cosine of half the turn of a step, which must stay below a right angle.
 #[inline(always)]
-fn half_turn(d: f64) -> Result<(f64, f64), ClosedStepError> {
+pub(crate) fn half_turn(d: f64) -> Result<(f64, f64), ClosedStepError> {
     if d.abs() <= 0.25 {
         // Their series, to the first term below rounding, summed in pairs: no range to reduce, little to wait for.
         let z = d * d;

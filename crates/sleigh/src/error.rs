@@ -33,6 +33,11 @@ pub enum SleighError {
         /// What is wrong with it.
         problem: String,
     },
+    /// What is wanted needs a system of a few coordinates, and this is a train of many.
+    #[error(
+        "it has `trailers`, and a train of blades is no system of a few coordinates: `run`, `compare` and `precision` do trains, with dla, dla4, dla6 and dla8"
+    )]
+    Train,
     /// A path cannot be followed.
     #[error("the path cannot be followed: {problem}")]
     Path {

@@ -17,6 +17,7 @@ mod error;
 mod exact;
 pub mod parking;
 pub mod planimeter;
+mod pushed_map;
 mod sleigh_body;
 mod state;
 mod system;

@@ -1,5 +1,5 @@
-use crate::{Sleigh, closed_map};
-use lagrangian::{AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Motion, MotionError, Scalar, System};
+use crate::{Sleigh, closed_map, pushed_map};
+use lagrangian::{AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Motion, MotionError, Push, Scalar, System};
 
 impl System<3, 1> for Sleigh {
     /// `L = m/2 |P'|^2 + m a omega (n . P') + J/2 omega^2`, which is `m/2 |C'|^2 + I/2 omega^2` written at the blade.
@@ -88,7 +88,22 @@ impl System<3, 1> for Sleigh {
         q: &[f64; 3],
         v: &[f64; 3],
         xi: Option<[f64; 3]>,
+        expected: Option<[f64; 3]>,
     ) -> Option<Result<ClosedStep<3, 1>, ClosedStepError>> {
-        Some(closed_map::step(self, h, q, v, xi))
+        Some(closed_map::step(self, h, q, v, xi, expected.map(|d| d[2])))
+    }
+
+    #[inline(always)]
+    fn pushed_step<P: Push<3>>(
+        &self,
+        t: f64,
+        h: f64,
+        q: &[f64; 3],
+        v: &[f64; 3],
+        xi: Option<[f64; 3]>,
+        expected: Option<[f64; 3]>,
+        push: &P,
+    ) -> Option<ClosedStep<3, 1>> {
+        pushed_map::step(self, (t, h), pushed_map::Start { q, v, xi, expected }, push)
     }
 }

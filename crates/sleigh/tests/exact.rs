@@ -142,3 +142,23 @@ fn what_is_not_finite_is_named() {
     let huge = SleighState { speed: f64::MAX, turn_rate: f64::MAX, ..good };
     assert!(matches!(Exact::new(&sleigh, &huge), Err(SleighError::NotFinite { .. })));
 }
+
+/// Faster by a power of two and shorter by the same is the same path to the last bit, also where squares of the velocities have
+/// left the range of numbers.
+#[test]
+fn time_has_no_scale() {
+    let sleigh = Sleigh::new(1.3, 0.7, 0.45).unwrap();
+    for (speed, turn_rate) in [(-0.7, 0.3), (0.9, -1.1), (0.0, 0.6)] {
+        let start =
+            |scale: f64| SleighState { speed: speed * scale, turn_rate: turn_rate * scale, ..SleighState::default() };
+        for t in [0.3, 7.0, 70.0, 200.0] {
+            let usual = Exact::new(&sleigh, &start(1.0)).unwrap().at(t);
+            for power in [-540, 540] {
+                let scale = 2.0_f64.powi(power);
+                let end = Exact::new(&sleigh, &start(scale)).unwrap().at(t / scale);
+                let scaled = SleighState { speed: end.speed / scale, turn_rate: end.turn_rate / scale, ..end };
+                assert_eq!(scaled, usual, "{power} {t}");
+            }
+        }
+    }
+}

@@ -9,6 +9,7 @@ mod flywheel;
 mod golden;
 mod hand;
 mod parts;
+mod potentials;
 mod strength;
 mod tools;
 mod turntable;

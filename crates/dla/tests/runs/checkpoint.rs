@@ -110,6 +110,14 @@ fn what_is_no_checkpoint_of_the_run_is_refused() {
         assert!(Checkpoint::from_text(&changed).is_err(), "{changed}");
     }
     assert_eq!(Checkpoint::from_text("title = 1\n"), Err(CheckpointError::NotOne));
-    let newer = text.replacen("checkpoint 2", "checkpoint 3", 1);
-    assert_eq!(Checkpoint::from_text(&newer), Err(CheckpointError::Version { found: "3".to_owned() }));
+    let newer = text.replacen("checkpoint 3", "checkpoint 4", 1);
+    assert_eq!(Checkpoint::from_text(&newer), Err(CheckpointError::Version { found: "4".to_owned() }));
+}
+
+/// The published values of the FNV-1a hash of 64 bits (Fowler, Noll, Vo and Eastlake).
+#[test]
+fn fingerprints_are_fnv() {
+    for (text, hash) in [("", "cbf29ce484222325"), ("a", "af63dc4c8601ec8c"), ("foobar", "85944171f73967e8")] {
+        assert_eq!(Checkpoint::fingerprint(text), hash);
+    }
 }

@@ -3,12 +3,17 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
 mod checkpoint;
+mod counter_example;
 mod dense;
 mod events;
 mod failures;
+mod hints;
+mod observers;
 mod lanes;
 mod recommend;
+mod scripted;
 mod substeps;
+mod trials;
 
 use dla::State;
 use sleigh::{Sleigh, SleighState};

@@ -38,6 +38,7 @@ fn tangents_are_the_differences_of_runs() {
     let made = sensitivity
         .drive(&mut Dla::midpoint(), &SCHEDULE, &mut state, &mut tangents, |node, tangents| {
             seen = node.k;
+            assert_eq!(node.t.to_bits(), SCHEDULE.time(node.k).to_bits());
             assert_eq!(tangents.len(), 6);
             ControlFlow::Continue(())
         })

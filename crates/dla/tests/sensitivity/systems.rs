@@ -1,7 +1,7 @@
 use lagrangian::{AdmissibleBasis, Constraint, Member, Parametrised, Scalar, System};
 
 /// The Chaplygin sleigh of mass `m` (kg), inertia `I` about the centre of mass (kg m^2) and offset `a` (m), in an egg-crate
-/// potential of height `V` (J), with a thrust `F` along the blade (N) and a torque (N m) as controls.
+/// potential of height `V` (J), with a thrust `F` along the blade (N) and a torque (N m) as controls, which swing with time.
 #[derive(Debug, Clone, Copy)]
 pub struct Controlled;
 
@@ -26,9 +26,10 @@ impl Parametrised<3, 1, 6> for Controlled {
         let (sin, cos) = q[2].sin_cos();
         ([[-sin, cos, S::zero()]], [S::zero()])
     }
-    fn force<S: Scalar>(&self, p: &[S; 6], _t: S, q: &[S; 3], _v: &[S; 3]) -> Option<[S; 3]> {
+    fn force<S: Scalar>(&self, p: &[S; 6], t: S, q: &[S; 3], _v: &[S; 3]) -> Option<[S; 3]> {
         let (sin, cos) = q[2].sin_cos();
-        Some([p[4] * cos, p[4] * sin, p[5]])
+        let thrust = p[4] * ((t * 2.0).sin() * 0.5 + 1.0);
+        Some([thrust * cos, thrust * sin, p[5] * (t * 1.5).cos()])
     }
     fn admissible_basis<S: Scalar>(&self, _p: &[S; 6], _t: S, q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, 1>> {
         let (sin, cos) = q[2].sin_cos();

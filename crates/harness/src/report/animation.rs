@@ -26,6 +26,8 @@ const TICKS: f64 = 2e5;
 struct Node {
     t: f64,
     at: [f64; 4],
+    /// Of each blade behind it, its place and its heading.
+    followers: Vec<[f64; 3]>,
 }
 
 /// The figure; none where no run has two nodes to move between.
@@ -67,6 +69,20 @@ pub(super) fn figure(scene: &SceneReport) -> Result<Option<String>, ReportError>
         let scale = if axis < 2 { f64::from(units(1.0)) } else { 1.0 };
         list(&mut figure, name, nodes.iter().map(|node| scale * node.at[axis]), usize::from(axis >= 2));
     }
+    if !first.followers.is_empty() {
+        figure += ",\"followers\":[";
+        for k in 0..first.followers.len() {
+            figure += if k == 0 { "{" } else { ",{" };
+            for (axis, name) in ["x", "y", "heading"].into_iter().enumerate() {
+                figure += if axis == 0 { "" } else { "," };
+                let scale = if axis < 2 { f64::from(units(1.0)) } else { 1.0 };
+                let decimals = usize::from(axis >= 2);
+                list(&mut figure, name, nodes.iter().map(|node| scale * node.followers[k][axis]), decimals);
+            }
+            figure.push('}');
+        }
+        figure.push(']');
+    }
     figure += "}</script>\n";
     let turning = if rotor { " The wheel on it is the rotor, turning as it does." } else { "" };
     let _ = writeln!(
@@ -85,11 +101,35 @@ fn stage(method: usize, frame: &Frame, first: &Node, rotor: bool) -> String {
     format!(
         "<svg x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\" viewBox=\"{left} {top} {width} {height}\">\
          <polyline class=\"trail\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" points=\"{x},{y}\"/>\
-         <g class=\"sleigh\" transform=\"translate({x},{y}) rotate({:.2})\">{}</g></svg>",
+         {}<g class=\"sleigh\" transform=\"translate({x},{y}) rotate({:.2})\">{}</g></svg>",
         look::colour(method),
         units(2.2),
+        behind(first),
         -heading,
         sleigh::shape(rotor),
+    )
+}
+
+/// The blades behind the sleigh and their bars, at the first node.
+fn behind(first: &Node) -> String {
+    if first.followers.is_empty() {
+        return String::new();
+    }
+    let at = |[x, y, _]: &[f64; 3]| format!("{},{}", units(*x), units(*y));
+    let blades: String = first
+        .followers
+        .iter()
+        .map(|place| {
+            let blade = sleigh::blade();
+            format!("<g class=\"follower\" transform=\"translate({}) rotate({:.2})\">{blade}</g>", at(place), -place[2])
+        })
+        .collect();
+    let [x, y, heading, _] = first.at;
+    let places: Vec<String> = std::iter::once(at(&[x, y, heading])).chain(first.followers.iter().map(at)).collect();
+    format!(
+        "<polyline class=\"bars\" fill=\"none\" stroke=\"currentColor\" stroke-width=\"{}\" points=\"{}\"/>{blades}",
+        units(1.0),
+        places.join(" ")
     )
 }
 
@@ -104,7 +144,20 @@ fn nodes(series: &Series, frame: &Frame) -> Vec<Node> {
         // Places far outside the frame are as good as at its edge, and shorter to write.
         let place = frame.place(series.path[k]).map(|place| place.map(|length| length.clamp(-1e4, 1e4)));
         if let Some([x, y]) = place.filter(|_| finite && nodes.last().is_none_or(|before| before.t < t)) {
-            nodes.push(Node { t, at: [x, y, heading.to_degrees(), rotor.to_degrees()] });
+            // A place that cannot be drawn is where the blade before it is.
+            let mut last = [x, y, heading.to_degrees()];
+            let followers = series.followers.iter().map(|follower| {
+                if let Some([x, y, heading]) =
+                    follower.get(k).copied().filter(|place| place.iter().all(|x| x.is_finite()))
+                    && let Some(place) = frame.place([x, y])
+                {
+                    let [x, y] = place.map(|length| length.clamp(-1e4, 1e4));
+                    last = [x, y, heading.to_degrees()];
+                }
+                last
+            });
+            let followers = followers.collect();
+            nodes.push(Node { t, at: [x, y, heading.to_degrees(), rotor.to_degrees()], followers });
         }
     }
     nodes
@@ -116,7 +169,11 @@ fn thinned(nodes: Vec<Node>) -> Vec<Node> {
         nodes[from + 1..to].iter().all(|node| {
             let [a, b] = [&nodes[from], &nodes[to]];
             let share = (node.t - a.t) / (b.t - a.t);
-            (0..4).all(|i| (a.at[i] + share * (b.at[i] - a.at[i]) - node.at[i]).abs() <= NEAR[i])
+            let near = |a: &[f64], b: &[f64], at: &[f64]| {
+                (0..at.len()).all(|i| (a[i] + share * (b[i] - a[i]) - at[i]).abs() <= NEAR[i])
+            };
+            let behind = a.followers.iter().zip(&b.followers).zip(&node.followers);
+            near(&a.at, &b.at, &node.at) && behind.into_iter().all(|((a, b), at)| near(a, b, at))
         })
     };
     let mut from = 0;

@@ -34,6 +34,15 @@ pub(super) fn linear(span: Span, wanted: f64) -> Vec<Tick> {
         .collect()
 }
 
+/// Ticks at whole decades, of their logarithms, about so many at most.
+pub(super) fn decades(span: Span, most: f64) -> Vec<Tick> {
+    let rough = (span.hi - span.lo) / most;
+    let every = [1.0, 2.0, 3.0, 4.0, 5.0, 10.0, 20.0, 50.0].into_iter().find(|every| *every >= rough).unwrap_or(100.0);
+    let first = (span.lo / every).ceil();
+    let decades = (0..40).map(|k| (first + f64::from(k)) * every).take_while(|decade| *decade <= span.hi);
+    decades.map(|decade| (decade, format!("10{}", superscript(&format!("{decade:.0}"))))).collect()
+}
+
 /// A number with the digits that tell it from its neighbours `step` away, on an axis that reaches to `largest`.
 fn number(value: f64, step: f64, largest: f64) -> String {
     let text = if value.abs() < 1e-6 * step {

@@ -1,6 +1,6 @@
 //! A chart of lines, dots or cells over two axes.
 
-use super::axis::{self, Entry, Tick, superscript};
+use super::axis::{self, Entry};
 use super::canvas::{Ink, units};
 use super::cells::Cells;
 use super::geometry::{Frame, Span, drawable, visible};
@@ -22,8 +22,8 @@ pub struct Chart {
     pub title: String,
     /// The names of the axes, with units.
     pub axes: [String; 2],
-    /// Whether the axis across shows decades.
-    pub decades: bool,
+    /// Whether the axis across, and the upright one, shows decades.
+    pub decades: [bool; 2],
     /// What is drawn, one over the other.
     pub layers: Vec<Layer>,
 }
@@ -49,7 +49,8 @@ pub enum Layer {
 /// # Errors
 /// [`ReportError::Draw`] if the drawing library fails.
 pub fn chart_svg(chart: &Chart) -> Result<String, ReportError> {
-    let across = |x: f64| if chart.decades { x.log10() } else { x };
+    let scaled =
+        |point: [f64; 2]| [0, 1].map(|axis| if chart.decades[axis] { point[axis].log10() } else { point[axis] });
     let (mut points, mut entries): (Vec<[f64; 2]>, Vec<Entry<'_>>) = (Vec::new(), Vec::new());
     let mut cells = None;
     for (number, layer) in chart.layers.iter().enumerate() {
@@ -66,8 +67,7 @@ pub fn chart_svg(chart: &Chart) -> Result<String, ReportError> {
             }
         }
     }
-    let points: Vec<[f64; 2]> =
-        points.into_iter().map(|[x, y]| [across(x), y]).filter(|p| p.iter().all(|x| drawable(*x))).collect();
+    let points: Vec<[f64; 2]> = points.into_iter().map(scaled).filter(|p| p.iter().all(|x| drawable(*x))).collect();
     // Dots are not to touch the edge; cells fill the frame.
     let span = |axis: usize| {
         let span = Span::of(points.iter().map(|point| point[axis])).unwrap_or(Span { lo: 0.0, hi: 1.0 });
@@ -76,18 +76,20 @@ pub fn chart_svg(chart: &Chart) -> Result<String, ReportError> {
     };
     let (x, y) = (span(0), span(1));
     let (places, legend) = axis::legend(&entries, WIDTH - 20.0);
-    let ticks = (if chart.decades { decades(x) } else { axis::linear(x, 7.0) }, axis::linear(y, 8.0));
-    let left = axis::margin(&ticks.1).max(44.0);
+    let [across, up] = [(0, x, 7.0), (1, y, 8.0)].map(|(axis, span, wanted)| {
+        if chart.decades[axis] { axis::decades(span, 1.5 * wanted) } else { axis::linear(span, wanted) }
+    });
+    let left = axis::margin(&up).max(44.0);
     let right = if cells.is_some() { 84.0 } else { 24.0 };
     let frame = Frame { left, top: legend + 34.0, width: WIDTH - left - right, height: HEIGHT, x, y };
     let file = "chart.svg".to_owned();
     let picture = Picture::draw(file, chart.title.clone(), String::new(), [WIDTH, frame.bottom() + 44.0], |canvas| {
         axis::draw_legend(canvas, &entries, &places, [10.0, 4.0])?;
-        axis::draw(canvas, &frame, [&ticks.0, &ticks.1], [&chart.axes[0], &chart.axes[1]])?;
+        axis::draw(canvas, &frame, [&across, &up], [&chart.axes[0], &chart.axes[1]])?;
         for (number, layer) in chart.layers.iter().enumerate() {
             let Layer::Curves { curves, .. } = layer else { continue };
             for curve in curves {
-                let mut places = curve.iter().map(|[x, y]| frame.place([across(*x), *y]));
+                let mut places = curve.iter().map(|point| frame.place(scaled(*point)));
                 if curve.len() == 1 {
                     places.next().flatten().map_or(Ok(()), |place| canvas.marker(number, place))?;
                 } else {
@@ -102,8 +104,8 @@ pub fn chart_svg(chart: &Chart) -> Result<String, ReportError> {
     let mut shapes = cells.map_or_else(String::new, |cells| cells.shapes(&frame) + &cells.bar(&frame));
     for (number, layer) in chart.layers.iter().enumerate() {
         if let Layer::Dots(dots) = layer {
-            shapes +=
-                &dotted(dots.iter().filter_map(|[x, y]| frame.place([across(*x), *y])), look::colour(number % DOTS));
+            let places = dots.iter().filter_map(|dot| frame.place(scaled(*dot)));
+            shapes += &dotted(places, look::colour(number % DOTS));
         }
     }
     Ok(picture.with(&shapes).standalone())
@@ -113,11 +115,4 @@ pub fn chart_svg(chart: &Chart) -> Result<String, ReportError> {
 fn dotted(places: impl Iterator<Item = [f64; 2]>, colour: &str) -> String {
     let path: String = places.map(|place| place.map(units)).map(|[x, y]| format!("M{x} {y}h0")).collect();
     format!("<path stroke=\"{colour}\" stroke-width=\"{}\" stroke-linecap=\"round\" d=\"{path}\"/>\n", units(1.7))
-}
-
-/// A tick at every decade.
-fn decades(span: Span) -> Vec<Tick> {
-    let first = span.lo.ceil();
-    let all = (0..40).map(|k| first + f64::from(k)).take_while(|decade| *decade <= span.hi);
-    all.map(|decade| (decade, format!("10{}", superscript(&format!("{decade:.0}"))))).collect()
 }

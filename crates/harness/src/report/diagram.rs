@@ -1,7 +1,7 @@
 //! Errors against what they cost, on two logarithmic axes.
 
 use super::ReportError;
-use super::axis::{self, SIZE, Tick, superscript};
+use super::axis::{self, SIZE};
 use super::canvas::{Anchor, Canvas, Drawn, Ink, text_width};
 use super::geometry::{Frame, Span};
 use super::look;
@@ -59,7 +59,7 @@ pub(super) fn picture(
         .map(|(method, (_, label))| (Ink::Method(method), label.as_str()))
         .collect();
     let (places, legend) = axis::legend(&entries, WIDTH - 20.0);
-    let (across, up) = (ticks(x, 9.0), ticks(y, 12.0));
+    let (across, up) = (axis::decades(x, 9.0), axis::decades(y, 12.0));
     let left = axis::margin(&up);
     let frame = Frame { left, top: legend + 34.0, width: WIDTH - left - 24.0, height: HEIGHT, x, y };
     let mut tips = Vec::new();
@@ -113,14 +113,6 @@ fn decades(values: impl Iterator<Item = f64>) -> Span {
     let Span { lo, hi } = Span::of(values).unwrap_or(Span { lo: -1.0, hi: 0.0 });
     let lo = (lo - 0.02).floor();
     Span { lo, hi: (hi + 0.02).ceil().max(lo + 1.0) }
-}
-
-/// Ticks at whole decades, about so many at most.
-fn ticks(span: Span, most: f64) -> Vec<Tick> {
-    let every = ((span.hi - span.lo) / most).ceil().max(1.0);
-    let first = (span.lo / every).ceil();
-    let decades = (0..40).map(|k| (first + f64::from(k)) * every).take_while(|decade| *decade <= span.hi);
-    decades.map(|decade| (decade, format!("10{}", superscript(&format!("{decade:.0}"))))).collect()
 }
 
 /// The slopes of the orders, from the upper corner where the steps are coarse.

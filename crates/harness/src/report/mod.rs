@@ -91,6 +91,9 @@ pub struct Series {
     pub heading: Vec<f64>,
     /// The angle of a rotor relative to the sleigh \[rad\]; empty where there is none.
     pub rotor: Vec<f64>,
+    /// The places \[m\] and headings \[rad\] of the blades behind it, one list after the other, each of all nodes; empty where
+    /// none follows.
+    pub followers: Vec<Vec<[f64; 3]>>,
     /// The time \[s\].
     pub time: Vec<f64>,
     /// The size of the constraint's residual, `|A(q) v + b|`.

@@ -30,6 +30,7 @@
       this.figure = figure;
       const find = (what) => figure.querySelector(what);
       [this.trail, this.sleigh, this.rotor] = [find(".trail"), find(".sleigh"), find(".rotor")];
+      [this.bars, this.behind] = [find(".bars"), Array.from(figure.querySelectorAll(".follower"))];
       [this.button, this.slider, this.clock, this.speed] = ["button", "input", "output", "select"].map(find);
       const [start, end] = [Number(this.slider.min), Number(this.slider.max)];
       Object.assign(this, { start, end, time: start, frame: 0, playing: false, last: null, inView: false });
@@ -89,7 +90,7 @@
 
     // The scene at a time, on the straight line between two nodes.
     show(time) {
-      const { t, x, y, heading, rotor, points } = this.nodes;
+      const { t, x, y, heading, rotor, followers, points } = this.nodes;
       let [lo, hi] = [0, t.length - 1];
       while (hi - lo > 1) {
         const middle = (lo + hi) >> 1;
@@ -101,6 +102,14 @@
       this.trail.setAttribute("points", `${points.slice(0, lo + 1).join(" ")} ${place}`);
       this.sleigh.setAttribute("transform", `translate(${place}) rotate(${(-at(heading)).toFixed(2)})`);
       if (rotor) this.rotor.setAttribute("transform", `rotate(${(-at(rotor)).toFixed(2)})`);
+      if (followers) {
+        const places = followers.map((blade, k) => {
+          const at_blade = `${at(blade.x).toFixed(1)},${at(blade.y).toFixed(1)}`;
+          this.behind[k].setAttribute("transform", `translate(${at_blade}) rotate(${(-at(blade.heading)).toFixed(2)})`);
+          return at_blade;
+        });
+        this.bars.setAttribute("points", [place, ...places].join(" "));
+      }
       this.time = time;
       this.frame += 1;
       this.tell();

@@ -102,8 +102,9 @@ fn strays<'a>(scene: &'a SceneReport, frame: &Frame) -> Vec<&'a str> {
 fn frame(scene: &SceneReport, exact: Option<&[[f64; 2]]>, top: f64) -> Frame {
     let all = |axis: usize| {
         let paths = scene.series.iter().map(|series| series.path.as_slice()).chain(exact);
-        let points = paths.flatten().filter(|point| drawable(point[0]) && drawable(point[1]));
-        Span::of(points.map(|point| point[axis]))
+        let behind = scene.series.iter().flat_map(|series| series.followers.iter().flatten());
+        let points = paths.flatten().copied().chain(behind.map(|[x, y, _]| [*x, *y]));
+        Span::of(points.filter(|point| drawable(point[0]) && drawable(point[1])).map(|point| point[axis]))
     };
     let spans = [0, 1].map(|axis| all(axis).unwrap_or(Span { lo: -1.0, hi: 1.0 }));
     let spans = exact.map_or(spans, |path| near(path, spans));

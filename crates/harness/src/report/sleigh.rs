@@ -39,10 +39,38 @@ pub(super) fn sleighs(canvas: &Canvas<'_>, frame: &Frame, series: &Series) -> Dr
         };
         if drawn.iter().all(|other| distance(*other, place) > APART) {
             sleigh(canvas, place, heading)?;
+            followers(canvas, frame, series, node, place)?;
             drawn.push(place);
         }
     }
     start(canvas, frame, series)
+}
+
+/// The blades behind it at a node, and the bars from each to the next.
+fn followers(canvas: &Canvas<'_>, frame: &Frame, series: &Series, node: usize, first: [f64; 2]) -> Drawn {
+    let mut bars = vec![first];
+    for follower in &series.followers {
+        let Some([x, y, heading]) = follower.get(node).copied().filter(|place| place.iter().all(|x| x.is_finite()))
+        else {
+            break;
+        };
+        let Some(place) = frame.place([x, y]).filter(|place| frame.holds(*place)) else { break };
+        let (sin, cos) = heading.sin_cos();
+        canvas.line(&BLADE.map(|[ahead, _]| [place[0] + ahead * cos, place[1] - ahead * sin]), Ink::Text, 1.0, 2.2)?;
+        bars.push(place);
+    }
+    if bars.len() > 1 { canvas.line(&bars, Ink::Text, 0.6, 1.0) } else { Ok(()) }
+}
+
+/// The blade alone, as SVG for what moves it.
+pub(super) fn blade() -> String {
+    let [[behind, _], [ahead, _]] = BLADE;
+    format!(
+        "<polyline stroke=\"currentColor\" stroke-width=\"{}\" points=\"{},0 {},0\"/>",
+        units(2.2),
+        units(behind),
+        units(ahead)
+    )
 }
 
 /// The word beside the start where it is farthest from the path: behind the sleigh, ahead of it, or to a side.

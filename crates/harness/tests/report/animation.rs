@@ -87,3 +87,25 @@ fn a_long_run_is_a_small_animation() {
     // Eighteen scenes together stay below half a megabyte.
     assert!(animation(&page).unwrap().len() < 28_000, "{}", animation(&page).unwrap().len());
 }
+
+#[test]
+fn the_blades_behind_move_with_it() {
+    let alone_page = written(&report(vec![alone(circle("dla", 200))])).0;
+    assert!(!alone_page.contains("class=\"follower\"") && !animation(&alone_page).unwrap().contains("followers"));
+    let lead = circle("dla", 200);
+    // Each a metre behind the one before, as it is.
+    let behind = |k: usize| {
+        let blades = lead.path.iter().zip(&lead.heading);
+        blades.map(|([x, y], heading)| [x - k as f64, *y, *heading]).collect::<Vec<_>>()
+    };
+    let train = Series { followers: vec![behind(1), behind(2)], ..lead.clone() };
+    let (page, _) = written(&report(vec![alone(train)]));
+    let animation = animation(&page).unwrap();
+    assert_eq!(animation.matches("class=\"follower\"").count(), 2);
+    assert_eq!(animation.matches("class=\"bars\"").count(), 1);
+    let followers = animation.split_once("\"followers\":[").unwrap().1;
+    let (x, second) = (list(animation, "x"), list(followers, "x"));
+    assert_eq!(x.len(), second.len());
+    let gap = x[0] - second[0];
+    assert!(gap > 10.0 && x.iter().zip(&second).all(|(lead, behind)| (lead - behind - gap).abs() <= 2.0));
+}

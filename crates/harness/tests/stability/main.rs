@@ -39,9 +39,7 @@ pub(crate) fn energetic(
     Recorded { nodes, ..Recorded::default() }
 }
 
-pub(crate) fn schedule(step: f64, duration: f64) -> Schedule {
-    Schedule { t0: 0.0, step, steps: (duration / step).round() as u64 }
-}
+pub(crate) use sleigh::schedule;
 
 /// The unbroken stepper meets the bar, the broken one does not.
 pub(crate) fn control(name: &str, sound: impl Into<Option<Finding>>, broken: impl Into<Option<Finding>>) {

@@ -1,8 +1,11 @@
 //! A stepper of the free sleigh, with what can be broken in one.
 
-use crate::schedule;
 use dla::Schedule;
 use harness::stability::{Recorded, Seen, VALUES};
+
+pub(crate) fn schedule(step: f64, duration: f64) -> Schedule {
+    Schedule { t0: 0.0, step, steps: (duration / step).round() as u64 }
+}
 
 /// What is broken.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,6 +31,11 @@ pub(crate) enum Broken {
     Squares,
     /// The velocity is carried along as it is, and not projected.
     Unprojected,
+    /// The mass matrix is inverted, and the constraint met after that: the inertia is `J - m a^2`.
+    MassMatrix,
+    /// What rounding leaves of a velocity across the blade is stopped as if all mass were there, and the torque of that
+    /// divided by the inertia.
+    Across,
 }
 
 /// Mass, inertia, offset.
@@ -43,7 +51,14 @@ pub(crate) const BODY: Body = [1.0, 1.0, 0.5];
 pub(crate) fn run(broken: Broken, body: Body, start: [f64; 5], schedule: Schedule) -> Recorded {
     use Broken as B;
     let [m, inertia, a] = body;
-    let (h, gain) = (schedule.step, m * a / (inertia + m * a * a));
+    let (h, pivot) = (schedule.step, inertia + m * a * a);
+    let gain = if broken == B::MassMatrix {
+        // (M^-1 A')_theta / (A M^-1 A'), both of which grow as 1/I.
+        let inertia = pivot - m * a * a;
+        (a / inertia) / (1.0 / m + a * a / inertia)
+    } else {
+        m * a / pivot
+    };
     let [mut x, mut y, mut heading, mut u, mut omega] = start;
     let (mut rest, mut turns) = ([0.0; 3], 0.0);
     let mut wrap = |heading: &mut f64, rest: &mut f64| {
@@ -61,12 +76,16 @@ pub(crate) fn run(broken: Broken, body: Body, start: [f64; 5], schedule: Schedul
         let full = wrap(&mut heading, &mut rest[2]);
         let (sin, cos) = heading.sin_cos();
         let v = carried.unwrap_or([u * cos, u * sin]);
+        let across = -sin * v[0] + cos * v[1];
         nodes.push(Seen {
             t: schedule.time(k),
             values: [x, y, heading + full, u, omega, 0.0],
             energy_error: 0.0,
-            constraint: (-sin * v[0] + cos * v[1]).abs(),
+            constraint: across.abs(),
         });
+        if broken == B::Across {
+            omega += m * a * across / inertia;
+        }
         if broken == B::Squares {
             u = (u * u).sqrt().copysign(u);
         }

@@ -100,6 +100,18 @@ const ENTRIES: &[(&str, &[(&str, &str)])] = &[
         &[("[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]", "[[0.0, 0.0]]"), ("[1.0, 1.0]", "[1.0]")],
     ),
     ("kind = \"turntable\"\nrate = 0.2", &[("rate = 0.2", ""), ("rate = 0.2", "rate = 0.2\nrate_2 = 1")]),
+    (
+        "kind = \"trailers\"\ncount = 2\nmass = 0.5\ninertia = [0.1, 0.2]\nhitch = -0.1\nbar = 0.8\nheadings = [0.3]",
+        &[
+            ("count = 2\n", ""),
+            ("count = 2", "count = 0"),
+            ("mass = 0.5\n", ""),
+            ("mass = 0.5", "mass = [0.5, 0.0]"),
+            ("[0.1, 0.2]", "[]"),
+            ("bar = 0.8", "bar = 0.0"),
+            ("hitch", "hinge"),
+        ],
+    ),
 ];
 
 fn schema() -> Value {

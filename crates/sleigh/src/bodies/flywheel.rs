@@ -145,12 +145,20 @@ impl<B: System<3, M>, const M: usize> System<4, M> for Flywheel<B> {
         q: &[f64; 4],
         v: &[f64; 4],
         xi: Option<[f64; 4]>,
+        expected: Option<[f64; 4]>,
     ) -> Option<Result<ClosedStep<4, M>, ClosedStepError>> {
         if self.torque.is_some() || M != 1 {
             return None;
         }
         let spin = xi.map_or_else(|| v[2] + v[3], |xi| xi[2]);
-        let body = self.body.closed_step(t, h, &of_body(q), &of_body(v), xi.as_ref().map(of_body))?;
+        let body = self.body.closed_step(
+            t,
+            h,
+            &of_body(q),
+            &of_body(v),
+            xi.as_ref().map(of_body),
+            expected.as_ref().map(of_body),
+        )?;
         Some(body.map(|step| ClosedStep {
             increment: with_rotor(&step.increment, h * spin - step.increment[2]),
             velocity: with_rotor(&step.velocity, spin - step.velocity[2]),

@@ -1,9 +1,9 @@
 //! What the forces do: their power, and their components along the blade, across it and about it.
 
 use approx::assert_abs_diff_eq;
-use lagrangian::Effect;
+use lagrangian::{Effect, Slope};
 use proptest::prelude::*;
-use sleigh::effects::{Drag, MovingMass, Thrust, Torque};
+use sleigh::effects::{Drag, EggCrate, MovingMass, Thrust, Torque};
 use sleigh::{Flywheel, Sleigh, TimeFunction};
 
 /// Along the blade (N), across it (N), and about its contact point (N m).
@@ -41,6 +41,24 @@ proptest! {
         let expected = 0.2 * (point[0] * point[0] + point[1] * point[1]);
         // Squares below thirty, two dozen operations.
         assert_abs_diff_eq!(energy, expected, epsilon = 30.0 * 24.0 * f64::EPSILON);
+    }
+
+    /// Minus `V_0 (cos(k_x X) + cos(k_y Y))` at the centre of mass, and its derivatives by hand.
+    #[test]
+    fn an_egg_crate_has_its_waves(q in proptest::array::uniform3(-3.0..3.0f64)) {
+        let (sleigh, [kx, ky], height, a) = (Sleigh::new(1.3, 0.8, 0.4).unwrap(), [2.5, 0.4], 0.7, 0.4);
+        let crate_ = EggCrate::new(height, [kx, ky]).unwrap();
+        let (sin, cos) = q[2].sin_cos();
+        let [x, y] = [kx * (q[0] + a * cos), ky * (q[1] + a * sin)];
+        let value: f64 = crate_.lagrangian(&sleigh, 0.0, &q, &[0.0; 3]).unwrap();
+        // Arguments below ten and their rounding, times the wave number.
+        assert_abs_diff_eq!(value, -height * (x.cos() + y.cos()), epsilon = 1e-14);
+        let Slope::Known(slope) = crate_.slope(&sleigh, 0.0, &q) else { panic!("no slope by hand") };
+        let (fx, fy) = (height * kx * x.sin(), height * ky * y.sin());
+        let expected = [fx, fy, a * (cos * fy - sin * fx)];
+        for i in 0..3 {
+            assert_abs_diff_eq!(slope[i], expected[i], epsilon = 1e-14);
+        }
     }
 
     #[test]

@@ -1,11 +1,13 @@
-//! The effects by themselves: derivatives, what they refuse, functions of time and paths.
+//! The effects by themselves: derivatives, what they refuse, functions of time and paths, what bodies pass on.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
+mod bodies;
 mod closed;
 mod derivatives;
 mod forces;
 mod imposed;
 mod paths;
+mod pushed;
 mod refusals;
 mod time;

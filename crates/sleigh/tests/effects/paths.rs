@@ -99,3 +99,14 @@ fn corners_are_jumps() {
         assert_relative_eq!(found[1], v[1], epsilon = 1e-15);
     }
 }
+
+/// Rounds shorter than a second, a corner at either end of the time asked for, and a time a rounding before a round.
+#[test]
+fn corners_at_the_edges() {
+    let square = |period| ClosedPath::polygon(vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], period).unwrap();
+    assert_eq!(square(0.5).jumps(1.0, 2.0), [1.125, 1.25, 1.375, 1.5, 1.625, 1.75, 1.875]);
+    assert_eq!(square(4.0).jumps(1.0, 3.0), [2.0]);
+    assert_eq!(square(4.0).jumps(2.5, 8.0), [3.0, 4.0, 5.0, 6.0, 7.0]);
+    // It counts as the last edge: `-1e-20` is a whole round after the one before.
+    assert_eq!(square(4.0).piece(-1e-20).velocity(0.0), [0.0, -1.0]);
+}

@@ -5,7 +5,8 @@ use approx::assert_relative_eq;
 use lagrangian::{Dual, Piecewise};
 use proptest::prelude::*;
 use sleigh::effects::{Thrust, Torque};
-use sleigh::{Flywheel, Guide, Guided, Sleigh, Table, TimeFunction};
+use sleigh::{Flywheel, Guide, Guided, Pulses, Sleigh, SleighError, Table, TimeFunction};
+use std::f64::consts::TAU;
 
 fn steps() -> TimeFunction {
     TimeFunction::Table(Table::new(vec![1.0, 2.5, 4.0], vec![0.5, -0.7, 0.2]).unwrap())
@@ -62,6 +63,55 @@ fn jumps_come_through() {
     assert_eq!(flywheel.piece(3.0).torque().unwrap().value(0.0), -0.7);
     assert!(Flywheel::new(sleigh, 0.2, None).unwrap().jumps(0.0, 9.0).is_empty());
     let servo = Guided::<1>::servo(sleigh, Guide::Speed(steps())).unwrap();
+    assert!(servo.piece(3.0) != servo && servo.piece(1.5) == servo);
     assert_eq!(Flywheel::new(servo, 0.2, Some(steps())).unwrap().jumps(0.0, 3.0), [2.5, 2.5]);
     assert!(Guided::turntable(sleigh, 0.3).unwrap().jumps(0.0, 9.0).is_empty());
+}
+
+/// Two pulses, of 1.5 s and of 0.5 s.
+fn pulses() -> TimeFunction {
+    TimeFunction::Pulses(Pulses::new(vec![1.0, 2.5, 3.0], vec![0.6, -0.4]).unwrap())
+}
+
+proptest! {
+    #[test]
+    fn pulses_are_raised_cosines(t in -1.0..5.0f64) {
+        // The first holds before it begins as well; after the last there is nothing.
+        let (begin, length, area) = if t < 2.5 { (1.0, 1.5, 0.6) } else { (2.5, 0.5, -0.4) };
+        let on = f64::from(u8::from(t < 3.0));
+        let (k, x) = (TAU / length, TAU * (t - begin) / length);
+        let piece = pulses().piece(t);
+        assert_relative_eq!(piece.value(t), on * area / length * (1.0 - x.cos()), epsilon = 1e-14);
+        let value = piece.value(Dual::<f64, 1>::variable(t, 0));
+        // Slopes are below forty and their arguments below twenty.
+        assert_relative_eq!(value.eps[0], on * area / length * k * x.sin(), epsilon = 1e-12);
+        assert_relative_eq!(value.eps[0], piece.slope(t), epsilon = 1e-12);
+        // Its integral over each pulse, by a sum of equal steps, which is exact for a cosine.
+        let mean = |from: f64, to: f64| (0..8).map(|k| {
+            let t = from + (to - from) * f64::from(k) / 8.0;
+            pulses().piece(t).value(t)
+        }).sum::<f64>() / 8.0;
+        assert_relative_eq!(mean(1.0, 2.5) * 1.5, 0.6, epsilon = 1e-14);
+        assert_relative_eq!(mean(2.5, 3.0) * 0.5, -0.4, epsilon = 1e-14);
+    }
+}
+
+#[test]
+fn pulses_in_pieces() {
+    let pulses = pulses();
+    for (t, at) in [(0.0, 1.75), (1.0, 1.75), (2.4, 1.75), (2.5, 2.75), (2.9, 2.75)] {
+        let height = if at < 2.0 { 2.0 * 0.6 / 1.5 } else { -2.0 * 0.4 / 0.5 };
+        assert_relative_eq!(pulses.piece(t).value(at), height, max_relative = 1e-15);
+    }
+    for t in [3.0, 9.0] {
+        assert_eq!((pulses.piece(t).value(2.75), pulses.piece(t).slope(2.6)), (0.0, 0.0));
+    }
+    // The seams, and the last end; where the first begins nothing changes.
+    assert_eq!(pulses.jumps(0.0, 9.0), [2.5, 3.0]);
+    assert_eq!(pulses.jumps(2.5, 3.0), [0.0; 0]);
+    assert_eq!(pulses.jumps(1.0, 2.6), [2.5]);
+    assert_eq!(pulses.jumps(2.6, 3.1), [3.0]);
+    for (times, areas) in [(vec![0.0, 1.0], vec![]), (vec![0.0], vec![1.0]), (vec![1.0, 0.5], vec![1.0])] {
+        assert!(matches!(Pulses::new(times, areas), Err(SleighError::Table { .. })));
+    }
 }

@@ -1,0 +1,259 @@
+use crate::assembly::{Placed, WIDEST};
+use crate::contributions::{Part, at_state, gathered};
+use crate::equations::Equations;
+use crate::{Assembly, AssemblyError, OneStep, Solver, State, StepReport};
+use dla::Stage;
+use lagrangian::linear::{larger, largest};
+
+/// The discrete Lagrange-d'Alembert map of an assembly, with midpoint rules: order 2, self-adjoint.
+///
+/// The equations are those of the static [`Dla`](dla::Dla), summed over the elements: from `(q0, v0)` the mean velocity `v` of
+/// the step and the multipliers `lambda` with
+///
+/// ```text
+/// sum_e (L_v(q0, v0) + D1 L_d(q0, q1) + f_d^-) + A(q0)' lambda = 0,      w_d(q0, q1) = 0 or g(q1) = 0,
+/// ```
+///
+/// then the velocity at the end by projection, `sum_e L_v(q1, v1) = sum_e (D2 L_d + f_d^+) + A(q1)' mu`, `A(q1) v1 = 0`. Each
+/// Newton iteration is a sparse saddle-point system of `N + M` unknowns; both stages have the same pattern.
+///
+/// A step that turns a constraint by more than a radian, or whose search does not contract from its start, is refused: the
+/// static method follows the solution from a step of length zero there. (The book, (3.1) and (3.2).)
+pub struct Dla {
+    equations: Equations,
+    q0: Vec<f64>,
+    q1: Vec<f64>,
+    v0: Vec<f64>,
+    v: Vec<f64>,
+    v1: Vec<f64>,
+    p: Vec<f64>,
+}
+
+/// What turns by less than this in a step (rad) is near its start.
+const NEAR: f64 = 1.0;
+
+/// With fewer elements, threads cost more than they gain.
+const PARALLEL: usize = 2048;
+
+impl std::fmt::Debug for Dla {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Dla").field("unknowns", &self.equations.right.len()).finish_non_exhaustive()
+    }
+}
+
+impl Dla {
+    /// The method for that assembly, whose pattern it finds and whose memory it keeps.
+    ///
+    /// # Errors
+    /// [`AssemblyError::Factorisation`] where the memory does not suffice.
+    pub fn new(assembly: &Assembly, solver: Solver) -> Result<Self, AssemblyError> {
+        let zeros = || vec![0.0; assembly.coordinates()];
+        Ok(Self {
+            equations: Equations::of(assembly, solver, PARALLEL)?,
+            q0: zeros(),
+            q1: zeros(),
+            v0: zeros(),
+            v: zeros(),
+            v1: zeros(),
+            p: zeros(),
+        })
+    }
+
+    /// The same on one thread alone, however many elements there are; the numbers are the same.
+    #[must_use]
+    pub fn on_one_thread(mut self) -> Self {
+        self.equations.contributions.parallel = usize::MAX;
+        self
+    }
+
+    /// The mean velocity of the step, in `v`.
+    fn increment(&mut self, assembly: &Assembly, (t0, h): (f64, f64), state: &State) -> Result<u32, AssemblyError> {
+        let Self { equations, q0, q1, v0, v, p, .. } = self;
+        equations.contributions.ask(assembly, true, &|placed, out| {
+            at_state(placed, state, |element, q, v| element.beginning(t0, q, v, out));
+        });
+        p.fill(0.0);
+        equations.contributions.add_momenta(assembly, 1.0, p);
+        let Equations { contributions, pattern, values, .. } = equations;
+        contributions.write_matrix(assembly, pattern, Part::Transposed, values);
+
+        predict(state, h, v0, v);
+        let evaluate = |equations: &mut Equations, v: &[f64], derivatives: bool| {
+            for (i, q1) in q1.iter_mut().enumerate() {
+                *q1 = state.ahead(i, h * v[i]);
+            }
+            let (q0, q1) = (&*q0, &*q1);
+            equations.contributions.ask(assembly, derivatives, &|placed, out| {
+                gathered(
+                    placed,
+                    |i| q0[i],
+                    |q0| {
+                        gathered(
+                            placed,
+                            |i| v[i],
+                            |v| {
+                                let element = &placed.element;
+                                match &placed.origins {
+                                    None => gathered(
+                                        placed,
+                                        |i| q1[i],
+                                        |q1| {
+                                            element.increment((t0, h), [q0, q1], v, out);
+                                        },
+                                    ),
+                                    Some(origins) => relative(placed, origins, h, state, v, |q1| {
+                                        element.increment((t0, h), [q0, q1], v, out);
+                                    }),
+                                }
+                            },
+                        );
+                    },
+                );
+            });
+            equations.write(assembly, derivatives.then_some(Part::Blocks), p);
+        };
+        equations.newton(assembly, Stage::Increment, v, evaluate)
+    }
+
+    /// The velocity at the end, in `v1`.
+    fn projection(&mut self, assembly: &Assembly, (t0, h): (f64, f64)) -> Result<u32, AssemblyError> {
+        let Self { equations, q0, q1, v, v1, p, .. } = self;
+        let (q0, q1, v) = (&*q0, &*q1, &*v);
+        equations.contributions.ask(assembly, false, &|placed, out| {
+            gathered(
+                placed,
+                |i| q0[i],
+                |q0| {
+                    gathered(placed, |i| v[i], |v| placed.element.end((t0, h), q0, v, out.momentum));
+                },
+            );
+        });
+        p.fill(0.0);
+        // The right side of the equations is what the momenta still lack.
+        equations.contributions.add_momenta(assembly, -1.0, p);
+        v1.copy_from_slice(v);
+        let evaluate = |equations: &mut Equations, v1: &[f64], derivatives: bool| {
+            equations.contributions.ask(assembly, derivatives, &|placed, out| {
+                gathered(
+                    placed,
+                    |i| q1[i],
+                    |q1| {
+                        gathered(placed, |i| v1[i], |v1| placed.element.velocity(t0 + h, q1, v1, out));
+                    },
+                );
+            });
+            equations.write(assembly, derivatives.then_some(Part::All), p);
+        };
+        equations.newton(assembly, Stage::Projection, v1, evaluate)
+    }
+
+    /// By how much the constraint turns that turns most (rad).
+    fn turn(&self, assembly: &Assembly, (t0, h): (f64, f64)) -> f64 {
+        let far = |(v, angle): (&f64, &bool)| *angle && (h * v).abs() > NEAR;
+        if !self.v.iter().zip(assembly.angles()).any(far) {
+            return 0.0;
+        }
+        let turns = assembly.placed().iter().map(|placed| {
+            gathered(
+                placed,
+                |i| self.q0[i],
+                |q0| gathered(placed, |i| self.v[i], |v| placed.element.turn((t0, h), q0, v)),
+            )
+        });
+        turns.fold(0.0, larger)
+    }
+
+    /// That the forces of the step brake its velocity and do not turn it round: see [`dla::StepError::Overshoot`].
+    fn brakes_only(&self, assembly: &Assembly, step: (f64, f64)) -> Result<(), AssemblyError> {
+        /// A change of the velocity by a smaller part of it (squared) is compared with rounding.
+        const ROUNDING: f64 = 1e-16;
+        let mut sums = [0.0; 3];
+        for placed in assembly.placed().iter().filter(|placed| placed.element.acts()) {
+            let own = gathered(
+                placed,
+                |i| self.q0[i],
+                |q0| {
+                    gathered(
+                        placed,
+                        |i| self.v[i],
+                        |v| gathered(placed, |i| self.v1[i], |v1| placed.element.braking(step, q0, [v, v1])),
+                    )
+                },
+            );
+            sums = std::array::from_fn(|i| sums[i] + own[i]);
+        }
+        let [damping, inertia, all] = sums;
+        if damping > inertia && inertia > ROUNDING * all {
+            return Err(AssemblyError::Overshoot { part: inertia / damping });
+        }
+        Ok(())
+    }
+}
+
+impl Equations {
+    /// The right side, minus the momenta and the levels; and a part of the matrix.
+    fn write(&mut self, assembly: &Assembly, part: Option<Part>, p: &[f64]) {
+        let Self { contributions, pattern, values, right, .. } = self;
+        let n = assembly.coordinates();
+        let (momenta, levels) = right.split_at_mut(n);
+        for (right, p) in momenta.iter_mut().zip(p) {
+            *right = -p;
+        }
+        contributions.add_momenta(assembly, -1.0, momenta);
+        contributions.write_levels(assembly, levels);
+        if let Some(part) = part {
+            contributions.write_matrix(assembly, pattern, part, values);
+        }
+    }
+}
+
+/// The coordinates of a joint at the end of a step with the mean velocity `v`, those that have an origin measured from it: the
+/// difference keeps the digits that the coordinates have lost far away.
+fn relative(placed: &Placed, origins: &[Option<usize>], h: f64, state: &State, v: &[f64], then: impl FnOnce(&[f64])) {
+    let mut q1 = [0.0; WIDEST];
+    for (k, origin) in origins.iter().enumerate() {
+        q1[k] = match origin {
+            Some(origin) => state.apart(placed.at[k], placed.at[*origin]) + h * (v[k] - v[*origin]),
+            None => state.ahead(placed.at[k], h * v[k]),
+        };
+    }
+    then(&q1[..origins.len()]);
+}
+
+/// The mean velocity of a step, if the accelerations are those of the last one; `v0` where these are not known, or would
+/// change the velocity so much that a search from there might lead elsewhere.
+fn predict(state: &State, h: f64, v0: &[f64], v: &mut [f64]) {
+    const MOST: f64 = 0.125;
+    v.copy_from_slice(v0);
+    let gained = |i: usize| state.acceleration(i).map(|a| 0.5 * h * a);
+    let most = (0..v0.len()).try_fold(0.0, |most, i| gained(i).map(|gained| larger(most, gained)));
+    if most.is_some_and(|most| most <= MOST * largest(v0)) {
+        v.iter_mut().enumerate().for_each(|(i, v)| *v += gained(i).unwrap_or(0.0));
+    }
+}
+
+impl OneStep for Dla {
+    fn step(&mut self, assembly: &Assembly, t0: f64, h: f64, state: &mut State) -> Result<StepReport, AssemblyError> {
+        for i in 0..state.len() {
+            (self.q0[i], self.v0[i]) = (state.q(i), state.v(i));
+        }
+        let iterations = self.increment(assembly, (t0, h), state)?;
+        let turn = self.turn(assembly, (t0, h));
+        if turn > NEAR || !self.equations.settling.is_certain() {
+            return Err(AssemblyError::Branch { turn });
+        }
+        for (i, q1) in self.q1.iter_mut().enumerate() {
+            *q1 = state.ahead(i, h * self.v[i]);
+        }
+        self.projection(assembly, (t0, h))?;
+        self.brakes_only(assembly, (t0, h))?;
+        if !self.q1.iter().chain(&self.v1).all(|x| x.is_finite()) {
+            return Err(AssemblyError::NotFinite);
+        }
+        for i in 0..state.len() {
+            let (v, v1) = (self.v[i], self.v1[i]);
+            state.advance(i, h * v, v1, (v1 - v) / (0.5 * h));
+        }
+        Ok(StepReport { iterations })
+    }
+}

@@ -1,0 +1,75 @@
+use std::fmt::Debug;
+
+/// What an element adds to the equations of its assembly, in its own coordinates: `N` coordinates, `M` constraint rows.
+///
+/// Matrices are given by rows.
+#[derive(Debug)]
+pub struct Blocks<'a> {
+    /// Momenta or the residuals of the momentum equations, `N`.
+    pub momentum: &'a mut [f64],
+    /// What the constraints are to be met by, `M`.
+    pub level: &'a mut [f64],
+    /// Derivatives of the momenta in the velocities, `N x N`; empty of an element without inertia or forces, or where no
+    /// derivatives are asked for.
+    pub block: &'a mut [f64],
+    /// Derivatives of the constraints in the velocities, `M x N`; empty where no derivatives are asked for.
+    pub rows: &'a mut [f64],
+    /// Whether derivatives are asked for.
+    pub derivatives: bool,
+}
+
+/// A part of an assembly: a body, what acts on bodies, or what joins them.
+///
+/// It says of a step what the static integrator [`Dla`](dla::Dla) with midpoint rules says of its system, equation by
+/// equation, in slices of its own length. [`Assembly::attach`](crate::Assembly::attach) makes one of any
+/// [`System`](lagrangian::System), [`Assembly::join`](crate::Assembly::join) of any [`Joint`](crate::Joint).
+pub trait Element: Debug + Send + Sync {
+    /// The numbers `N` of coordinates and `M` of constraint rows.
+    fn size(&self) -> (usize, usize);
+
+    /// Whether it has inertia or forces: one that has only constraints fills no block of the matrix.
+    fn acts(&self) -> bool;
+
+    /// Which of its coordinates are angles.
+    fn angles(&self, angles: &mut [bool]);
+
+    /// Which of its coordinates each may be measured from, at the end of a step and in [`misses`](Self::misses): where only their
+    /// difference counts, it keeps the digits that large coordinates have lost. None by default.
+    fn origins(&self, _origins: &mut [Option<usize>]) {}
+
+    /// At the beginning of a step, `momentum = L_v(q, v)` and `rows = A(q)`.
+    fn beginning(&self, t: f64, q: &[f64], v: &[f64], out: Blocks<'_>);
+
+    /// The equations for the mean velocity `v` of a step from `q[0]` to `q[1] = q[0] + h v`: `momentum = D1 L_d + f_d^-` with
+    /// its derivatives in `v`, and the constraints in `v` with their negative residuals: `g(q1)/h` of one on positions, `w_d` of
+    /// others.
+    fn increment(&self, step: (f64, f64), q: [&[f64]; 2], v: &[f64], out: Blocks<'_>);
+
+    /// The momentum at the end of a step, `D2 L_d + f_d^+`.
+    fn end(&self, step: (f64, f64), q0: &[f64], v: &[f64], p1: &mut [f64]);
+
+    /// At a velocity, `momentum = L_v(q, v)`, `block = L_vv`, `rows = A(q)` and `level = -(A v + b)`.
+    fn velocity(&self, t: f64, q: &[f64], v: &[f64], out: Blocks<'_>);
+
+    /// The energy `v . L_v - L` (J).
+    fn energy(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
+
+    /// The power of its forces and of the time in its Lagrangian (W).
+    fn power(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
+
+    /// The largest `|A v + b|` of its constraints, and the largest `|g|` of those on positions.
+    fn misses(&self, t: f64, q: &[f64], v: &[f64]) -> [f64; 2];
+
+    /// By how much a step turns the constraint that turns most (rad); zero where no angle turns far.
+    fn turn(&self, step: (f64, f64), q0: &[f64], v: &[f64]) -> f64;
+
+    /// Damping and inertia of the change of velocity from the middle of a step to its end, and `|v . p|` (J): see
+    /// [`StepError::Overshoot`](dla::StepError::Overshoot).
+    fn braking(&self, step: (f64, f64), q0: &[f64], v: [&[f64]; 2]) -> [f64; 3];
+}
+
+/// The first `N` numbers of a slice; zero where it is shorter, which no slice of an assembly is.
+#[inline(always)]
+pub(crate) fn local<const N: usize>(x: &[f64]) -> [f64; N] {
+    std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
+}

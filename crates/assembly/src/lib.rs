@@ -1,0 +1,34 @@
+//! Assemblies of many bodies: the discrete Lagrange-d'Alembert principle for systems of thousands of coordinates.
+//!
+//! An [`Assembly`] is a list of elements, each a small static [`System`](lagrangian::System) or a [`Joint`] on coordinates that
+//! it shares with others. Its equations are sparse: [`Dla`] finds their pattern once and solves them with `faer`, so that a step
+//! of a chain costs time and memory in proportion to its length.
+//!
+//! Ready parts are in [`parts`].
+
+mod assembly;
+mod composition;
+mod contributions;
+mod dla;
+mod element;
+mod equations;
+mod error;
+mod factor;
+mod joint;
+mod one_step;
+pub mod parts;
+mod pattern;
+mod settling;
+mod singular;
+mod state;
+mod system_element;
+
+pub use crate::assembly::{Assembly, WIDEST};
+pub use crate::dla::Dla;
+pub use crate::error::{AssemblyError, ConstraintRow, RunError};
+pub use composition::Composition;
+pub use element::{Blocks, Element};
+pub use factor::Solver;
+pub use joint::Joint;
+pub use one_step::{OneStep, StepReport};
+pub use state::State;

@@ -1,0 +1,11 @@
+//! Bodies, what runs under them, joints, and trains of blades.
+
+mod blade;
+mod body;
+mod hinge;
+mod train;
+
+pub use blade::{Blade, SteeredBlade};
+pub use body::{Body, Rotor};
+pub use hinge::Hinge;
+pub use train::{Trailer, Train};

@@ -1,0 +1,109 @@
+use crate::parts::Hinge;
+use crate::{Assembly, AssemblyError, State};
+use lagrangian::System;
+use sleigh::{Sleigh, SleighError, SleighState};
+
+/// One blade of a train: a sleigh, hinged by a bar ahead of its blade to the one before it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Trailer {
+    /// The sleigh: mass, inertia, offset of its centre of mass ahead of its blade.
+    pub sleigh: Sleigh,
+    /// The distance `b` of the hinge behind the blade before it (m); zero puts it on that blade.
+    pub hitch: f64,
+    /// The distance `d` of the hinge ahead of its own blade (m), which is not zero.
+    pub bar: f64,
+}
+
+impl Trailer {
+    /// A trailer of mass `m` (kg), inertia `I` about its centre of mass (kg m^2) and offset `a` (m).
+    ///
+    /// # Errors
+    /// [`SleighError`] names the parameter that is not finite, or not positive where it must be.
+    pub fn new(mass: f64, inertia: f64, offset: f64, hitch: f64, bar: f64) -> Result<Self, SleighError> {
+        Ok(Self { sleigh: Sleigh::new(mass, inertia, offset)?, hitch, bar })
+    }
+}
+
+/// A train of blades: a body with a blade, and trailers each hinged to the one before it.
+///
+/// The coordinates of the assembly are `(x, y, theta)` of every blade in their order. What leads may have more: of a body with
+/// more coordinates, the first three are those.
+#[derive(Debug)]
+pub struct Train {
+    /// The assembly.
+    pub assembly: Assembly,
+    trailers: Vec<Trailer>,
+}
+
+impl Train {
+    /// A train behind the system `lead`; `trailer` makes the body of each trailer, with what acts on it.
+    ///
+    /// # Errors
+    /// [`AssemblyError::Number`] where a bar has no length, or a distance is not finite.
+    pub fn new<Lead, Body>(
+        lead: Lead,
+        trailers: Vec<Trailer>,
+        body: impl Fn(&Trailer) -> Body,
+    ) -> Result<Self, AssemblyError>
+    where
+        Lead: System<3, 1> + Send + Sync + 'static,
+        Body: System<3, 1> + Send + Sync + 'static,
+    {
+        let mut assembly = Assembly::new();
+        let mut before = assembly.body("blade", lead);
+        for trailer in &trailers {
+            let Trailer { hitch, bar, .. } = *trailer;
+            if !hitch.is_finite() {
+                return Err(AssemblyError::Number { what: "the hitch of a trailer", accepted: "finite", value: hitch });
+            }
+            if !bar.is_finite() || bar == 0.0 {
+                let accepted = "finite and not zero";
+                return Err(AssemblyError::Number { what: "the bar of a trailer", accepted, value: bar });
+            }
+            let own = assembly.body("blade", body(trailer));
+            let at = [before[0], before[1], before[2], own[0], own[1], own[2]];
+            assembly.join("hinge", Hinge::new([-hitch, 0.0], [bar, 0.0]), at)?;
+            before = own;
+        }
+        Ok(Self { assembly, trailers })
+    }
+
+    /// The trailers, from the first.
+    #[must_use]
+    pub fn trailers(&self) -> &[Trailer] {
+        &self.trailers
+    }
+
+    /// The state in which the first blade is at `start` and the trailers have these headings (rad), or that of the blade
+    /// before them where the list ends: hinged, and no blade slipping.
+    ///
+    /// With the hinge `H = P - b e` of a blade, the next has `P+ = H - d e+`, `omega+ = n+ . H' / d` and `u+ = e+ . H'`.
+    #[must_use]
+    pub fn start(&self, start: &SleighState, headings: &[f64]) -> State {
+        let (mut q, mut v) = (Vec::new(), Vec::new());
+        let ([mut x, mut y, mut heading], [mut vx, mut vy, mut rate]) = start.to_coordinates();
+        q.extend([x, y, heading]);
+        v.extend([vx, vy, rate]);
+        for (k, trailer) in self.trailers.iter().enumerate() {
+            let (sin, cos) = heading.sin_cos();
+            let hinge = [x - trailer.hitch * cos, y - trailer.hitch * sin];
+            let moving = [vx + trailer.hitch * rate * sin, vy - trailer.hitch * rate * cos];
+            heading = headings.get(k).copied().unwrap_or(heading);
+            let (sin, cos) = heading.sin_cos();
+            (x, y) = (hinge[0] - trailer.bar * cos, hinge[1] - trailer.bar * sin);
+            let along = moving[0] * cos + moving[1] * sin;
+            rate = (moving[1] * cos - moving[0] * sin) / trailer.bar;
+            (vx, vy) = (along * cos, along * sin);
+            q.extend([x, y, heading]);
+            v.extend([vx, vy, rate]);
+        }
+        State::new(&self.assembly, &q, &v)
+    }
+
+    /// Place, heading, speed and turn rate of a blade, counted from 0.
+    #[must_use]
+    pub fn blade(&self, state: &State, k: usize) -> SleighState {
+        let (q, v) = ([0, 1, 2].map(|i| state.unwrapped(3 * k + i)), [0, 1, 2].map(|i| state.v(3 * k + i)));
+        SleighState::from_coordinates(&q, &v)
+    }
+}

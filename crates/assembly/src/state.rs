@@ -1,0 +1,94 @@
+use crate::Assembly;
+
+/// Configuration and velocity of an assembly.
+///
+/// Each coordinate is a [`dla::State`] of its own: compensated sums, angles within a turn and their turns apart, as in the
+/// static integrators.
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    coordinates: Vec<dla::State<1>>,
+}
+
+impl State {
+    /// A state at `q` with velocity `v`; numbers that are missing are zero.
+    #[must_use]
+    pub fn new(assembly: &Assembly, q: &[f64], v: &[f64]) -> Self {
+        let number = |x: &[f64], i: usize| x.get(i).copied().unwrap_or(0.0);
+        let one = |(i, angle): (usize, &bool)| dla::State::new([number(q, i)], [number(v, i)], [*angle]);
+        Self { coordinates: assembly.angles().iter().enumerate().map(one).collect() }
+    }
+
+    /// How many coordinates there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.coordinates.len()
+    }
+
+    /// Whether there is no coordinate.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.coordinates.is_empty()
+    }
+
+    /// A coordinate, an angle within a turn: what elements are evaluated at.
+    #[must_use]
+    #[inline(always)]
+    pub fn q(&self, i: usize) -> f64 {
+        self.coordinates[i].q()[0]
+    }
+
+    /// A coordinate, an angle with its full turns.
+    #[must_use]
+    pub fn unwrapped(&self, i: usize) -> f64 {
+        self.coordinates[i].unwrapped()[0]
+    }
+
+    /// A velocity.
+    #[must_use]
+    #[inline(always)]
+    pub fn v(&self, i: usize) -> f64 {
+        self.coordinates[i].v()[0]
+    }
+
+    /// About the acceleration of a coordinate, where the last step left it.
+    #[inline(always)]
+    pub(crate) fn acceleration(&self, i: usize) -> Option<f64> {
+        self.coordinates[i].acceleration().map(|[a]| a)
+    }
+
+    /// A coordinate at the end of a step with this increment, before the state has moved there.
+    #[inline(always)]
+    pub(crate) fn ahead(&self, i: usize, increment: f64) -> f64 {
+        self.coordinates[i].ahead(&[increment])[0]
+    }
+
+    /// By how much a coordinate is larger than another, with the digits that the sums keep.
+    #[inline(always)]
+    pub(crate) fn apart(&self, i: usize, from: usize) -> f64 {
+        self.coordinates[i].moved_since(&self.coordinates[from])[0]
+    }
+
+    /// Moves a coordinate, and leaves about its acceleration to the next step.
+    #[inline(always)]
+    pub(crate) fn advance(&mut self, i: usize, increment: f64, v: f64, acceleration: f64) {
+        self.coordinates[i].advance_with_acceleration(&[increment], [v], [acceleration]);
+    }
+
+    /// The same place with the opposite velocity.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        Self { coordinates: self.coordinates.iter().map(dla::State::reversed).collect() }
+    }
+
+    /// Becomes the other state, without a new allocation where both are of one assembly.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.coordinates.clone_from(&other.coordinates);
+    }
+
+    /// The largest distance of a coordinate from that of another state (m or rad).
+    #[must_use]
+    pub fn distance(&self, other: &Self) -> f64 {
+        let pairs = self.coordinates.iter().zip(&other.coordinates);
+        pairs.fold(0.0, |most, (a, b)| lagrangian::linear::larger(most, a.moved_since(b)[0]))
+    }
+}

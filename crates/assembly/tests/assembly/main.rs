@@ -1,0 +1,10 @@
+//! Assemblies against the static integrators and against what is known of trains.
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod cost;
+mod long;
+mod models;
+mod same;
+mod step;
+mod tools;
+mod train;

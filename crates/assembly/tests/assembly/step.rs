@@ -1,0 +1,98 @@
+use crate::tools::{bent, train};
+use assembly::parts::Hinge;
+use assembly::{Assembly, AssemblyError, Composition, Dla, OneStep, Solver, State};
+use dla::Stage;
+use sleigh::Sleigh;
+
+/// After the first steps, in which the factors find their room.
+#[test]
+fn a_step_allocates_nothing() {
+    let train = train(40);
+    for solver in [Solver::Sparse, Solver::Dense] {
+        let (mut state, mut method) = (bent(&train), Dla::new(&train.assembly, solver).unwrap());
+        let mut step = |k: i32| {
+            let h = 0.02;
+            method.step(&train.assembly, h * f64::from(k), h, &mut state).unwrap();
+        };
+        let first = allocation_counter::measure(|| step(0)).count_total;
+        (1..5).for_each(&mut step);
+        let count = allocation_counter::measure(|| (5..25).for_each(&mut step)).count_total;
+        assert_eq!(count, 0, "{solver:?}");
+        // A positive control: the sparse factors are made in the first step.
+        assert!(first > 0 || solver == Solver::Dense);
+    }
+}
+
+/// Two hinges at one place say the same thing twice.
+#[test]
+fn dependent_constraints_are_named() {
+    let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    for solver in [Solver::Sparse, Solver::Dense] {
+        let mut bodies = Assembly::new();
+        let all: Vec<[usize; 3]> = (0..5).map(|_| bodies.body("blade", sleigh)).collect();
+        let hinge = Hinge::new([-0.5, 0.0], [0.5, 0.0]);
+        for pair in all.windows(2) {
+            let at = [pair[0][0], pair[0][1], pair[0][2], pair[1][0], pair[1][1], pair[1][2]];
+            bodies.join("hinge", hinge, at).unwrap();
+        }
+        let at = [all[2][0], all[2][1], all[2][2], all[3][0], all[3][1], all[3][2]];
+        bodies.join("second hinge", hinge, at).unwrap();
+        let q: Vec<f64> = (0..5).flat_map(|k| [-f64::from(k), 0.0, 0.0]).collect();
+        let v: Vec<f64> = (0..5).flat_map(|_| [1.0, 0.0, 0.0]).collect();
+        let mut state = State::new(&bodies, &q, &v);
+        let before = state.clone();
+        let error = Dla::new(&bodies, solver).unwrap().step(&bodies, 0.0, 0.1, &mut state).unwrap_err();
+        println!("{error}");
+        let AssemblyError::Singular { stage: Stage::Increment, constraints, .. } = error else { panic!("{error}") };
+        let mut elements: Vec<usize> = constraints.iter().map(|constraint| constraint.element).collect();
+        elements.sort_unstable();
+        elements.dedup();
+        assert_eq!(elements, [7, 9]);
+        assert_eq!(state, before);
+    }
+}
+
+/// Of order 2, 4 and 6, against the eighth.
+#[test]
+fn compositions_have_their_order() {
+    let train = train(4);
+    let assembly = &train.assembly;
+    let end = |method: &mut dyn OneStep, steps: u32| {
+        let (mut state, h) = (bent(&train), 2.0 / f64::from(steps));
+        for k in 0..steps {
+            method.step(assembly, f64::from(k) * h, h, &mut state).unwrap();
+        }
+        state
+    };
+    let exact = end(&mut Composition::new(assembly, Solver::Best, 8).unwrap(), 160);
+    let order = |method: &mut dyn OneStep, steps: u32| {
+        (end(method, steps).distance(&exact) / end(method, 2 * steps).distance(&exact)).log2()
+    };
+    let orders = [
+        order(&mut Dla::new(assembly, Solver::Best).unwrap(), 40),
+        order(&mut Composition::new(assembly, Solver::Best, 4).unwrap(), 20),
+        order(&mut Composition::new(assembly, Solver::Best, 6).unwrap(), 10),
+    ];
+    println!("{orders:?}");
+    for (order, expected) in orders.into_iter().zip([2.0, 4.0, 6.0]) {
+        assert!((order - expected).abs() < 0.3, "{orders:?}");
+    }
+    assert!(matches!(Composition::new(assembly, Solver::Best, 3), Err(AssemblyError::Unsupported { .. })));
+}
+
+/// There and back again.
+#[test]
+fn a_step_is_its_own_adjoint() {
+    let train = train(10);
+    let (start, mut method) = (bent(&train), Dla::new(&train.assembly, Solver::Best).unwrap());
+    let mut state = start.clone();
+    for k in 0..50 {
+        method.step(&train.assembly, 0.02 * f64::from(k), 0.02, &mut state).unwrap();
+    }
+    assert!(state.distance(&start) > 0.5);
+    for k in 0..50 {
+        method.step(&train.assembly, 1.0 - 0.02 * f64::from(k), -0.02, &mut state).unwrap();
+    }
+    println!("{:e}", state.distance(&start));
+    assert!(state.distance(&start) < 1e-11);
+}

@@ -1,0 +1,224 @@
+use crate::increment::Increment;
+use crate::{Equations, Newton, State};
+use lagrangian::linear::{Singular, largest};
+use lagrangian::{
+    DiscreteConstraint, DiscreteLagrangian, Dual, FactoredSaddle, Rows, Saddle, System, position_misses, redundant_rows,
+};
+use std::array::from_fn;
+
+/// The corrections of a search for the mean velocity of a step: Newton's own by one second-order evaluation, and simplified
+/// ones by first-order evaluations as long as they converge as well.
+pub(crate) struct Corrections<'e, 'a, Sys, L, C, const N: usize, const M: usize> {
+    of: &'e Increment<'a, Sys, L, C, N, M>,
+    /// The rows that are solved for, where they depend on one another and agree.
+    pub(crate) some: Option<Rows>,
+    /// Their multipliers.
+    lambda: [f64; M],
+    /// Whether the determinant of the last correction was positive; none of one with some of the rows.
+    positive: Option<bool>,
+    /// The derivatives of the last of Newton's own corrections, for the simplified ones after it.
+    kept: Option<Kept<N, M>>,
+    /// The last correction, and what was known where it was made.
+    last: Last<N>,
+}
+
+/// The derivatives of the equations in the mean velocity at one point: of the momenta, `K`, and of the discrete constraint.
+#[derive(Clone, Copy)]
+struct Kept<const N: usize, const M: usize> {
+    block: [[f64; N]; N],
+    rows: [[f64; N]; M],
+    factors: FactoredSaddle<N, M>,
+}
+
+/// A correction `d` at a mean velocity `v`.
+#[derive(Clone, Copy)]
+struct Last<const N: usize> {
+    correction: [f64; N],
+    simplified: bool,
+    /// `r + K d`: what of the momenta at the beginning is left to the multipliers, at `v + d`.
+    rest: [f64; N],
+    /// `D2 L_d + f_d^+ - K d`: with `dD2/dv = -K + O(h)` the momenta at the end, for a small `d` at `v + d`.
+    arriving: [f64; N],
+}
+
+impl<const N: usize> Default for Last<N> {
+    fn default() -> Self {
+        let zero = [0.0; N];
+        Self { correction: zero, simplified: false, rest: zero, arriving: zero }
+    }
+}
+
+impl<const N: usize> Last<N> {
+    #[inline(always)]
+    fn new(correction: [f64; N], simplified: bool, at: &Departure<N>, block: &[[f64; N]; N]) -> Self {
+        let gained: [f64; N] = from_fn(|i| (0..N).map(|j| block[i][j] * correction[j]).sum());
+        let rest = from_fn(|i| at.residual[i] + gained[i]);
+        Self { correction, simplified, rest, arriving: from_fn(|i| at.arriving[i] - gained[i]) }
+    }
+}
+
+/// `L_v(q0, v0) + D1 L_d + f_d^-` and `D2 L_d + f_d^+` at one mean velocity.
+#[derive(Clone, Copy)]
+pub(crate) struct Departure<const N: usize> {
+    pub(crate) residual: [f64; N],
+    pub(crate) arriving: [f64; N],
+}
+
+impl<'e, 'a, Sys, L, C, const N: usize, const M: usize> Corrections<'e, 'a, Sys, L, C, N, M>
+where
+    Sys: System<N, M>,
+    L: DiscreteLagrangian<Sys, N, M>,
+    C: DiscreteConstraint<Sys, N, M>,
+{
+    #[inline(always)]
+    pub(crate) fn new(of: &'e Increment<'a, Sys, L, C, N, M>) -> Self {
+        Self { of, some: None, lambda: [0.0; M], positive: None, kept: None, last: Last::default() }
+    }
+
+    /// The momenta at the end, and the multipliers at the beginning, of a solution `v`.
+    #[inline(always)]
+    pub(crate) fn ends(&mut self, v: &[f64; N]) -> Result<([f64; N], [f64; M]), Singular> {
+        // The first order in the last correction `d` leaves `O(h d)`.
+        const SMALL: f64 = 16.0 * f64::EPSILON;
+        if largest(&self.last.correction) > SMALL * largest(v) {
+            let (at, _) = self.of.departure(v);
+            (self.last.rest, self.last.arriving) = (at.residual, at.arriving);
+        }
+        let lambda = if self.some.is_some() { self.lambda } else { self.of.multipliers(&self.last.rest)? };
+        Ok((self.last.arriving, lambda))
+    }
+
+    /// Whether the determinant has the sign that it has in a step of length zero, as far as both are known.
+    #[inline(always)]
+    pub(crate) fn continues(&self, positive: Option<bool>) -> bool {
+        self.positive.zip(positive).is_none_or(|(here, at_rest)| here == at_rest)
+    }
+
+    /// The simplified correction at `v`, where it is as good as Newton's own.
+    #[inline(always)]
+    fn simplified(&mut self, v: &[f64; N]) -> Option<[f64; N]> {
+        /// Simplified corrections shrink by at least as much, or rounding is all that is left of them.
+        const SHRINKING: f64 = 0.125;
+        let Some(Kept { block, rows, factors }) = &self.kept else { return None };
+        let (at, level) = self.of.departure(v);
+        let correction = factors.solve(&at.residual.map(|r| -r), &level, rows, self.of.basis.as_ref());
+        let size = largest(&correction);
+        let good = size <= SHRINKING * largest(&self.last.correction) || size <= Newton::ROUNDING * largest(v);
+        if !good {
+            return None;
+        }
+        self.last = Last::new(correction, true, &at, block);
+        Some(correction)
+    }
+}
+
+impl<Sys, L, C, const N: usize, const M: usize> Equations<N> for Corrections<'_, '_, Sys, L, C, N, M>
+where
+    Sys: System<N, M>,
+    L: DiscreteLagrangian<Sys, N, M>,
+    C: DiscreteConstraint<Sys, N, M>,
+{
+    #[inline(always)]
+    fn correction(&mut self, v: &[f64; N]) -> Result<[f64; N], Singular> {
+        match self.simplified(v) {
+            Some(correction) => Ok(correction),
+            None => self.own_correction(v),
+        }
+    }
+
+    #[inline(always)]
+    fn is_simplified(&self) -> bool {
+        self.last.simplified
+    }
+}
+
+impl<Sys, L, C, const N: usize, const M: usize> Corrections<'_, '_, Sys, L, C, N, M>
+where
+    Sys: System<N, M>,
+    L: DiscreteLagrangian<Sys, N, M>,
+    C: DiscreteConstraint<Sys, N, M>,
+{
+    /// Newton's own correction, by one second-order evaluation.
+    ///
+    /// Not inlined: it is called from each of the searches that a step may make, and is long.
+    #[inline(never)]
+    fn own_correction(&mut self, v: &[f64; N]) -> Result<[f64; N], Singular> {
+        let Increment { rules: (lagrangian, constraint), system, t0, h, state, q0, .. } = *self.of;
+        let l_d = lagrangian.derivatives(system, t0, h, &q0, v);
+        let mut at = Departure { residual: from_fn(|i| self.of.p0[i] + l_d.d1[i]), arriving: l_d.d2 };
+        let mut block = l_d.d1d2.map(|row| row.map(|x| h * x));
+
+        // Where it constrains positions, in place of the discrete constraint.
+        let positions = position_misses(system, t0 + h, &state.ahead(&v.map(|v| h * v)));
+
+        // Forces and constraint with their derivatives in v.
+        let (t, step) = (Dual::fixed(t0), Dual::fixed(h));
+        let (q, v) = (q0.map(Dual::fixed), Dual::variables(v));
+        if let Some((minus, plus)) = lagrangian.forces(system, t, step, &q, &v) {
+            for i in 0..N {
+                at.residual[i] += minus[i].re;
+                at.arriving[i] += plus[i].re;
+                for j in 0..N {
+                    block[i][j] += minus[i].eps[j];
+                }
+            }
+        }
+        let w_d = constraint.residual(system, t, step, &q, &v);
+        let (mut rows, mut level) = (w_d.map(|w| w.eps), w_d.map(|w| -w.re));
+        if let Some(positions) = positions {
+            for k in 0..M {
+                if let Some(g) = positions[k] {
+                    (rows[k], level[k]) = (g.eps, -g.re / h);
+                }
+            }
+        }
+
+        let right = at.residual.map(|r| -r);
+        match self.solved(&block, &rows, &right, &level) {
+            Ok((factors, correction)) => {
+                self.positive = Some(factors.is_positive());
+                self.kept = Some(Kept { block, rows, factors });
+                self.last = Last::new(correction, false, &at, &block);
+                Ok(correction)
+            }
+            Err(source) => {
+                // By value, so that nothing of a step that succeeds must stay in memory.
+                let found = independent(system, t0, *state, self.some).ok_or(source)?;
+                let saddle = Saddle { block, transposed: self.of.a0, rows, right, level };
+                let (correction, lambda) = saddle.solve_some(found)?;
+                (self.some, self.lambda, self.positive, self.kept) = (Some(found), lambda, None, None);
+                self.last = Last::new(correction, false, &at, &block);
+                Ok(correction)
+            }
+        }
+    }
+
+    /// The correction with these derivatives, which also determine the multipliers.
+    #[inline(always)]
+    fn solved(
+        &self,
+        block: &[[f64; N]; N],
+        rows: &[[f64; N]; M],
+        right: &[f64; N],
+        level: &[f64; M],
+    ) -> Result<(FactoredSaddle<N, M>, [f64; N]), Singular> {
+        let factors = FactoredSaddle::new(block, &self.of.a0, rows, self.of.basis.as_ref())?;
+        if self.of.basis.is_some() {
+            self.of.multipliers(right)?;
+        }
+        let correction = factors.solve(right, level, rows, self.of.basis.as_ref());
+        Ok((factors, correction))
+    }
+}
+
+/// The rows found before, or those that imply the others at the beginning of the step.
+#[cold]
+#[inline(never)]
+fn independent<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t0: f64,
+    start: State<N>,
+    found: Option<Rows>,
+) -> Option<Rows> {
+    found.or_else(|| redundant_rows(system, t0, start.q(), start.v()))
+}

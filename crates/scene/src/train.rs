@@ -1,0 +1,59 @@
+use crate::{Acting, Scene, SceneEffect, TrailersSpec};
+use assembly::parts::{Trailer, Train};
+use assembly::{AssemblyError, State};
+use lagrangian::With;
+use sleigh::SleighError;
+use thiserror::Error;
+
+/// Why a scene makes no train, which one read from a file does.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum TrainError {
+    /// A sleigh or an effect of it.
+    #[error(transparent)]
+    Sleigh(#[from] SleighError),
+    /// The assembly.
+    #[error(transparent)]
+    Assembly(#[from] AssemblyError),
+}
+
+impl TrailersSpec {
+    /// The trailer, counted from 0.
+    fn trailer(&self, k: usize) -> Result<Trailer, SleighError> {
+        let own = |list: &[f64]| list.get(k).or(list.first()).copied().unwrap_or(f64::NAN);
+        let [mass, inertia, offset] = [&self.mass, &self.inertia, &self.offset].map(|list| own(list));
+        Trailer::new(mass, inertia, offset, own(&self.hitch), own(&self.bar))
+    }
+}
+
+impl Scene {
+    /// Whether blades follow the sleigh: the scene is then an assembly.
+    #[must_use]
+    pub fn has_trailers(&self) -> bool {
+        self.trailers().is_some()
+    }
+
+    /// The trailers as the scene has them.
+    #[must_use]
+    pub fn trailers(&self) -> Option<&TrailersSpec> {
+        self.effects.iter().find_map(|effect| if let SceneEffect::Trailers(spec) = effect { Some(spec) } else { None })
+    }
+
+    /// The train of a scene with trailers, and its start.
+    ///
+    /// The ground is under every blade: slopes, bowls, egg crates and hills act on each centre of mass. What else acts does so on
+    /// the first blade.
+    ///
+    /// # Errors
+    /// [`TrainError`] where a trailer or an effect has impossible parameters, which one read from a file has not.
+    pub fn train(&self) -> Result<Option<(Train, State)>, TrainError> {
+        let Some(spec) = self.trailers() else { return Ok(None) };
+        let trailers = (0..spec.count).map(|k| spec.trailer(k)).collect::<Result<Vec<_>, _>>()?;
+        let effects = self.acting()?;
+        let ground: Vec<Acting> = effects.iter().filter(|effect| effect.is_ground()).cloned().collect();
+        let lead = With { body: self.sleigh, effects };
+        let body = |trailer: &Trailer| With { body: trailer.sleigh, effects: ground.clone() };
+        let train = Train::new(lead, trailers, body)?;
+        let start = train.start(&self.start, &spec.headings);
+        Ok(Some((train, start)))
+    }
+}

@@ -1,0 +1,65 @@
+//! Scenes with trailers: assemblies.
+use scene::{Scene, SceneSystem, Visitor};
+use sleigh::SleighError;
+
+const METHODS: &[&str] = &["dla"];
+const TRAIN: &str = include_str!("../../../../docs/guide/train.toml");
+
+/// What has nothing to do with the system that it is given.
+struct Nothing;
+
+impl Visitor for Nothing {
+    type Output = ();
+
+    fn visit<Sys, const N: usize, const M: usize>(self, _system: &Sys, _q: [f64; N], _v: [f64; N])
+    where
+        Sys: SceneSystem<N, M>,
+    {
+    }
+}
+
+#[test]
+fn a_scene_with_trailers_is_a_train() {
+    let scene = Scene::parse(TRAIN, "train.toml", METHODS).unwrap();
+    let (train, start) = scene.train().unwrap().unwrap();
+    assert_eq!(train.trailers().len(), 12);
+    assert_eq!((train.assembly.coordinates(), train.assembly.rows()), (39, 13 + 24));
+    let misses = train.assembly.misses(0.0, &start);
+    // Half a unit in the last place of coordinates of up to eight metres.
+    assert!(misses[0] < 1e-15 && misses[1] < 2e-15, "{misses:?}");
+    assert_eq!(train.blade(&start, 0), scene.start);
+    // The hills are under every blade.
+    let level = Scene::parse(&TRAIN.replace("height = 0.6", "height = 0.0"), "train.toml", METHODS).unwrap();
+    let (level, _) = level.train().unwrap().unwrap();
+    assert!(train.assembly.energy(0.0, &start) > level.assembly.energy(0.0, &start));
+    // It is no static system, and another scene is no train.
+    assert_eq!(scene.visit(Nothing), Err(SleighError::Train));
+    assert_eq!(scene.visit_free(Nothing), Err(SleighError::Train));
+    assert!(Scene::load("turnaround", METHODS).unwrap().train().unwrap().is_none());
+}
+
+#[test]
+fn what_does_not_go_with_trailers_is_refused() {
+    let refused = |text: &str| Scene::parse(text, "train.toml", METHODS).unwrap_err().to_string();
+    let with = |entry: &str| refused(&format!("{TRAIN}\n[[effects]]\n{entry}\n"));
+    for entry in [
+        "kind = \"flywheel\"\ninertia = 1.0",
+        "kind = \"turntable\"\nrate = 0.1",
+        "kind = \"servo\"\nspeed = 1.0",
+        "kind = \"thrust\"\nforce = { times = [0.0, 1.0], values = [0.0, 1.0] }",
+    ] {
+        let said = with(entry);
+        assert!(said.contains("does not go with `trailers`"), "{said}");
+    }
+    let said = with("kind = \"trailers\"\ncount = 1\nmass = 1.0\ninertia = 1.0\nbar = 1.0");
+    assert!(said.contains("is there already"), "{said}");
+    for (from, to, expected) in [
+        ("count = 12", "count = 1.5", "no number of trailers"),
+        ("mass = 0.3", "mass = [0.3, 0.4]", "wrong length"),
+        ("bar = 0.5", "bar = -0.5", "must be positive"),
+        ("count = 12", "count = 2", "more than the trailers"),
+    ] {
+        let said = refused(&TRAIN.replace(from, to));
+        assert!(said.contains(expected), "{said}");
+    }
+}

@@ -1,0 +1,132 @@
+//! Systems that no scene has.
+
+use crate::curves::Upright::Linear;
+use crate::curves::{curve, in_time, level, markers, upper_edge};
+use crate::program::Program;
+use dla::{Dla, Energy, Node, OneStep, Schedule, State, Trajectory, drive};
+use harness::Rk4Reduced;
+use harness::report::Chart;
+use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
+use models::{CompoundPendulum, ContactOscillator, GaugedOscillator};
+use sleigh::{Exact, Sleigh, SleighState};
+use std::error::Error;
+use std::f64::consts::PI;
+
+type Drawn = Result<Chart, Box<dyn Error>>;
+
+/// The systems with two constraints, of one type, so that a method is compiled once for all of them.
+enum TwoRows {
+    /// Two blades side by side, parallel.
+    Parallel(Sleigh),
+    /// A blade, and a guide `(x - 1) theta' = 0`.
+    Guide(Sleigh),
+    Pendulum(CompoundPendulum),
+}
+
+impl System<3, 2> for TwoRows {
+    fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 3], v: &[S; 3]) -> S {
+        match self {
+            Self::Parallel(sleigh) | Self::Guide(sleigh) => sleigh.lagrangian(t, q, v),
+            Self::Pendulum(pendulum) => pendulum.lagrangian(t, q, v),
+        }
+    }
+    fn constraint<S: Scalar>(&self, t: S, q: &[S; 3]) -> Constraint<S, 3, 2> {
+        let zero = S::zero();
+        match self {
+            Self::Pendulum(pendulum) => pendulum.constraint(t, q),
+            Self::Parallel(sleigh) | Self::Guide(sleigh) => {
+                let ([blade], _) = sleigh.constraint(t, q);
+                let second = if matches!(self, Self::Guide(_)) { [zero, zero, q[0] - 1.0] } else { blade };
+                ([blade, second], [zero; 2])
+            }
+        }
+    }
+    fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, 2>> {
+        if let Self::Pendulum(pendulum) = self { pendulum.admissible_basis(t, q) } else { None }
+    }
+    fn angles(&self) -> [bool; 3] {
+        [false, false, true]
+    }
+}
+
+/// The nodes of a run; of one that is refused on its way, those before.
+fn nodes<Sys: System<3, M>, const M: usize>(
+    system: &Sys,
+    mut method: impl OneStep<Sys, 3, M>,
+    (q, v): ([f64; 3], [f64; 3]),
+    (step, steps): (f64, u64),
+) -> Vec<Node<3, M>> {
+    let mut state = State::new(q, v, system.angles());
+    let mut trajectory = Trajectory::every(1);
+    // A refusal is part of the picture.
+    let _refused = drive(system, &mut method, &Schedule { t0: 0.0, step, steps }, &mut state, &mut trajectory);
+    trajectory.nodes().to_vec()
+}
+
+pub(crate) fn parallel_blades(_program: &Program) -> Drawn {
+    let (u, omega, a) = (-1.0, 0.3, 0.5);
+    let sleigh = Sleigh::new(1.0, 1.0, a)?;
+    let start = SleighState { speed: u, turn_rate: omega, ..SleighState::default() };
+    let exact = Exact::new(&sleigh, &start)?;
+    let gain = sleigh.spin_gain();
+    // u' = a w^2 and w' = -2 c u w, where each blade has the force of one: w = W sech(s), s = s0 + 2 c U t.
+    let speed = f64::hypot(u, omega * (a / (2.0 * gain)).sqrt());
+    let begin = -f64::acosh((2.0 * gain / a).sqrt() * speed / omega);
+    let gudermann = |s: f64| 2.0 * (0.5 * s).tanh().atan();
+    let turned = |t: f64| (gudermann(begin + 2.0 * gain * speed * t) - gudermann(begin)) / (2.0 * a * gain).sqrt();
+    let times = |count: u32| (0..=count).map(move |k| 20.0 * f64::from(k) / f64::from(count));
+    let dla = nodes(&TwoRows::Parallel(sleigh), Dla::midpoint(), start.to_coordinates(), (0.05, 400));
+    let layers = vec![
+        curve("dla, two blades", dla.iter().map(|node| [node.t, node.q[2]]).collect()),
+        curve("the force counted twice", times(200).map(|t| [t, turned(t)]).collect()),
+        markers("closed form, one blade", times(20).map(|t| [t, exact.at(t).heading])),
+    ];
+    Ok(in_time("Two parallel blades are one", "heading [rad]", Linear, layers))
+}
+
+pub(crate) fn dropping_row(_program: &Program) -> Drawn {
+    let guide = TwoRows::Guide(Sleigh::new(1.0, 1.0, 0.5)?);
+    let run = nodes(&guide, Dla::midpoint(), ([0.0; 3], [1.0, 0.0, 0.0]), (0.0625, 32));
+    let way: Vec<[f64; 2]> = run.iter().map(|node| [node.t, node.q[0]]).collect();
+    let end = way[way.len() - 1];
+    let layers = vec![
+        curve("dla", way),
+        curve("as if nothing were", vec![end, [2.0, 2.0]]),
+        level("where the row vanishes", 1.0, 2.0),
+        markers("dla: refused", [end]),
+    ];
+    Ok(in_time("A guide (x - 1) w = 0 that lets go", "x [m]", Linear, layers))
+}
+
+pub(crate) fn pseudo_holonomic(_program: &Program) -> Drawn {
+    let pendulum = CompoundPendulum::new(1.3, 0.4, 0.9, 9.81)?.pseudo_holonomic();
+    let (start, steps) = (pendulum.state_at(1.2, 0.3), (0.1, 20_000));
+    let system = TwoRows::Pendulum(pendulum);
+    let off = |nodes: Vec<Node<3, 2>>| {
+        let hinge = |node: &Node<3, 2>| pendulum.hinge(&node.q);
+        upper_edge(nodes.iter().map(|node| [node.t, hinge(node)[0].hypot(hinge(node)[1])]))
+    };
+    let layers = vec![
+        curve("dla", off(nodes(&system, Dla::midpoint(), start, steps))),
+        curve("rk4-reduced", off(nodes(&system, Rk4Reduced, start, steps))),
+    ];
+    Ok(in_time("A hinge that is given by its rates alone", "distance of the hinge [m]", Linear, layers))
+}
+
+pub(crate) fn gauge(_program: &Program) -> Drawn {
+    let plain = ContactOscillator::new(0.0)?;
+    let start = plain.start_at(-0.5 * 2f64.sqrt())?;
+    let steps = (2.0 * (PI / 40.0).sin(), 100_000);
+    let (with, without) = (GaugedOscillator::new(plain, 1.0)?, GaugedOscillator::new(plain, 0.0)?);
+    // The mean over fifty periods of `y`, so that what drifts is seen without what swings.
+    let drift = |label: &str, nodes: Vec<Node<3, 1>>| {
+        let mean = |part: &[Node<3, 1>]| part.iter().map(|node| node.energy - nodes[0].energy).sum::<f64>() / 2000.0;
+        curve(label, nodes.chunks_exact(2000).map(|part| [part[0].t, mean(part)]).collect())
+    };
+    let layers = vec![
+        drift("dla", nodes(&with, Dla::midpoint(), start, steps)),
+        drift("dla, no gauge term", nodes(&without, Dla::midpoint(), start, steps)),
+        drift("energy2", nodes(&with, Energy::<1>::default(), start, steps)),
+    ];
+    Ok(in_time("A gauge term, which changes no motion", "E - E0, mean of 50 periods", Linear, layers))
+}
