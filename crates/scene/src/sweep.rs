@@ -25,8 +25,8 @@ const MOST: u64 = 1_000_000_000_000;
 
 /// Many variants of a scene: a grid of values, and random samples at each of its points.
 ///
-/// Members are numbered; each is made from its number alone, so that any of them can be made at any time. On the grid the key
-/// that comes last varies fastest.
+/// Members are numbered; each is made from its number alone, so that any of them can be made at any time. Keys are in
+/// the order of the alphabet; on the grid the last one varies fastest.
 #[derive(Debug, Clone)]
 pub struct Sweep {
     /// The scene that is varied, with the method, the step and the duration of the sweep.
