@@ -47,6 +47,7 @@ fn report() -> Report {
             path: time.iter().map(|t| [t.sin(), 1.0 - t.cos()]).collect(),
             heading: time.clone(),
             rotor: Vec::new(),
+            followers: Vec::new(),
             constraint: time.iter().map(|t| 1e-16 * (1.0 + t)).collect(),
             energy_error: time.iter().map(|t| 1e-9 * t).collect(),
             time,

@@ -51,6 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             path: nodes.iter().map(|node| [node.q[0], node.q[1]]).collect(),
             heading: nodes.iter().map(|node| node.q[2]).collect(),
             rotor: Vec::new(),
+            followers: Vec::new(),
             time: nodes.iter().map(|node| node.t).collect(),
             constraint: Vec::new(),
             energy_error: Vec::new(),

@@ -64,7 +64,7 @@ proptest! {
         h in 0.01f64..0.2,
     ) {
         let body = Sleigh::new(mass, inertia, offset).unwrap();
-        let state = start(&SleighState { speed, turn_rate, heading, x: 1.0, y: -0.5, ..SleighState::default() });
+        let state = start(&SleighState { speed, turn_rate, heading, x: 1.0, y: -0.5 });
         every_order(&body, h, &state);
         let bowl = Bowl::new([stiffness, 0.3], [0.2, 0.1]).unwrap();
         every_order(&With { body, effects: (bowl.clone(),) }, h, &state);
