@@ -104,7 +104,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
         };
         let inverse = |scales: &[f64; N]| scales.map(|x| Pack::splat(simd, x.max(SMALLEST).recip()));
         let mut scales = self.ending.scales.map(|[v, a]| [inverse(&v), inverse(&a)]);
-        let (mut last, mut rate, mut iteration) = (f64::INFINITY, 1.0, 0);
+        let (mut last, mut rate, mut iteration, mut stalled) = (f64::INFINITY, 1.0, 0, 0);
         loop {
             iteration += 1;
             let xi = xi_of(&a);
@@ -138,7 +138,9 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
             let moved = changes.largest();
             rate = if iteration > 1 { moved / last } else { rate };
             let settled = iteration > 1 && rate < 1.0 && moved * rate <= self.ending.left * (1.0 - rate);
-            let rounding = moved <= self.ending.rounding && moved >= 0.5 * last;
+            // Once may be an iteration that turns the error round before it shrinks.
+            stalled = if moved >= 0.5 * last { stalled + 1 } else { 0 };
+            let rounding = stalled > 1 && moved <= self.ending.rounding;
             if moved == 0.0 || settled || rounding {
                 break;
             }
