@@ -71,7 +71,8 @@ impl<const S: usize> GaussAdaptive<S> {
         let memory = &self.gauss.memory;
         let apart = if memory.is_of_length(h) { 0 } else { quarters - memory.quarters };
         let before = memory.rows(state).zip(rule.continued(apart));
-        let ending = Ending { left: 0.1, rounding: larger(0.1, 1e-14 / epsilon), limit: 25, scales: Some(scales) };
+        let rounding = larger(0.1, 1e-14 / epsilon);
+        let ending = Ending { left: 0.1, rounding, noise: rounding, limit: 25, scales: Some(scales) };
         let (taken, rate) = match dispatch(lanes::Stages { rule, system, t, h, q0, xi0, before, ending }) {
             Some(Outcome::Found(found)) => {
                 let increment = lanes::sum(h, &rule.weights, &found.slopes.velocity);

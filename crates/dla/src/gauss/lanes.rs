@@ -1,4 +1,5 @@
 use super::rule::Eight;
+use lagrangian::linear::larger;
 use lagrangian::simd::{Kernel, Pack, Simd, Wide};
 use lagrangian::{System, velocity_of};
 use std::array::from_fn;
@@ -21,8 +22,10 @@ type Packed<S, const R: usize, const N: usize> = ([Pack<S, R>; N], [Pack<S, R>; 
 pub(super) struct Ending<const N: usize> {
     /// What the next change may still be.
     pub(super) left: f64,
-    /// Changes below which shrink no more are rounding.
+    /// Changes below which shrink no more, twice, are rounding.
     pub(super) rounding: f64,
+    /// And once.
+    pub(super) noise: f64,
     /// Iterations after which the search is given up.
     pub(super) limit: u32,
     /// What velocities and accelerations are measured by; their own sizes where none is given.
@@ -81,8 +84,12 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
 
     #[inline(always)]
     fn run<S: Simd, const R: usize>(self, simd: S) -> Outcome<N> {
-        let columns: [Pack<S, R>; 8] = from_fn(|j| Pack::load(simd, &self.rule.columns[j].map(|a| self.h * a)));
-        let along = |k: usize, slopes: &[Pack<S, R>; N], from: f64| Wide::Each(slopes[k].times(&columns, from));
+        // Not times h: rounded so, the coefficients would lose the symmetry that they have to the last bit.
+        let columns: [Pack<S, R>; 8] = from_fn(|j| Pack::load(simd, &self.rule.columns[j]));
+        let h = Pack::splat(simd, self.h);
+        let along = |k: usize, slopes: &[Pack<S, R>; N], from: f64| {
+            Wide::Each(slopes[k].times(&columns).mul_add(h, Pack::splat(simd, from)))
+        };
         let xi_of = |a: &[Pack<S, R>; N]| from_fn(|k| if k < N - M { along(k, a, self.xi0[k]) } else { Wide::Zero });
         let q_of = |v: &[Pack<S, R>; N]| from_fn(|k| along(k, v, self.q0[k]));
         let still = || self.q0.map(|q| Wide::Each(Pack::splat(simd, q)));
@@ -91,7 +98,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
         let (mut v, mut a) = match self.before {
             Some(([velocity, acceleration], continued)) => {
                 let continued: [Pack<S, R>; 8] = from_fn(|j| Pack::load(simd, &continued[j]));
-                let ahead = |row: &[f64; 8]| Pack::load(simd, row).times(&continued, 0.0);
+                let ahead = |row: &[f64; 8]| Pack::load(simd, row).times(&continued);
                 (velocity.each_ref().map(ahead), acceleration.each_ref().map(ahead))
             }
             None => {
@@ -136,11 +143,15 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
             }
             (v, a) = (v1, a1);
             let moved = changes.largest();
-            rate = if iteration > 1 { moved / last } else { rate };
-            let settled = iteration > 1 && rate < 1.0 && moved * rate <= self.ending.left * (1.0 - rate);
+            let (slower, now) = (if iteration > 2 { rate } else { 0.0 }, moved / last);
+            rate = if iteration > 1 { now } else { rate };
+            // A search that begins near its end may shrink faster at first than it goes on.
+            let expected = larger(larger(rate, slower), SLOWEST);
+            let settled = iteration > 1 && rate < 1.0 && moved * expected <= self.ending.left * (1.0 - rate);
             // Once may be an iteration that turns the error round before it shrinks.
             stalled = if moved >= 0.5 * last { stalled + 1 } else { 0 };
-            let rounding = stalled > 1 && moved <= self.ending.rounding;
+            let rounding =
+                (stalled > 1 && moved <= self.ending.rounding) || (stalled > 0 && moved <= self.ending.noise);
             if moved == 0.0 || settled || rounding {
                 break;
             }
@@ -165,6 +176,9 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
         Outcome::Found(Found { slopes, iterations: iteration, rate })
     }
 }
+
+/// No iteration is expected to shrink its changes by more.
+const SLOWEST: f64 = 0.05;
 
 /// Nothing is measured by less: its inverse is finite.
 const SMALLEST: f64 = 1e-290;

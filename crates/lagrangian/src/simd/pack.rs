@@ -105,14 +105,15 @@ impl<S: Simd, const R: usize> Pack<S, R> {
         ((p[0] + p[7]) + (p[1] + p[6])) + ((p[2] + p[5]) + (p[3] + p[4]))
     }
 
-    /// `start + sum_j columns[j] self[j]`: the product of a matrix, given by its columns, with this vector.
+    /// `sum_j columns[j] self[j]`: the product of a matrix, given by its columns, with this vector.
     #[must_use]
     #[inline(always)]
-    pub fn times<const C: usize>(&self, columns: &[Self; C], start: f64) -> Self {
+    pub fn times<const C: usize>(&self, columns: &[Self; C]) -> Self {
         let (simd, x) = (self.simd, self.lanes());
-        let mut sums = [Self::splat(simd, start), Self::splat(simd, 0.0)];
+        let mut sums = [Self::splat(simd, 0.0); 2];
         for j in 0..C {
-            sums[j % 2] = columns[j].mul_add(Self::splat(simd, x[j]), sums[j % 2]);
+            let factor = Self::splat(simd, x[j]);
+            sums[j % 2] = if j < 2 { columns[j] * factor } else { columns[j].mul_add(factor, sums[j % 2]) };
         }
         sums[0] + sums[1]
     }
