@@ -22,10 +22,11 @@ const LONG: [&str; 8] = [
 const TOGETHER: &str = "noslip stability --case ";
 
 /// Commands that are for other programs: what is built, installed or measured is not done by a test.
-const OTHERS: [&str; 14] = [
+const OTHERS: [&str; 15] = [
     "cargo build --release",
     "cargo run --release",
     "cargo test --workspace",
+    "cargo test --release -p noslip-assembly",
     "cargo install mdbook --locked --no-default-features",
     "mdbook build docs",
     "benches/peers/run ",
@@ -34,7 +35,7 @@ const OTHERS: [&str; 14] = [
     "cargo install cargo-fuzz",
     "cargo +nightly fuzz run --fuzz-dir tests/fuzz",
     "cargo install cargo-mutants",
-    "CARGO_PROFILE_DEV_OPT_LEVEL=0 PROPTEST_CASES=64 cargo mutants",
+    "CARGO_PROFILE_DEV_OPT_LEVEL=1 PROPTEST_CASES=64 cargo mutants",
     "rustup component add --toolchain nightly miri rust-src",
     "RUSTFLAGS= MIRIFLAGS=",
 ];
