@@ -1,5 +1,5 @@
 use crate::Scalar;
-use crate::scalar::derived_operators;
+use crate::scalar::{derived_operators, functions_of_each_lane};
 use crate::sincos::near;
 use std::array::from_fn;
 use std::ops::{Add, Div, Mul, Neg};
@@ -114,26 +114,7 @@ impl<const R: usize> Scalar for Abreast<R> {
         });
         (Self::new(sin), Self::new(cos))
     }
-    #[inline(always)]
-    fn exp(self) -> Self {
-        self.map(f64::exp)
-    }
-    #[inline(always)]
-    fn ln(self) -> Self {
-        self.map(f64::ln)
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        self.map(f64::sqrt)
-    }
-    #[inline(always)]
-    fn powi(self, n: i32) -> Self {
-        self.map(|a| a.powi(n))
-    }
-    #[inline(always)]
-    fn recip(self) -> Self {
-        self.map(f64::recip)
-    }
+    functions_of_each_lane!();
     #[inline(always)]
     fn is_zero(&self) -> bool {
         self.of.iter().all(Scalar::is_zero)

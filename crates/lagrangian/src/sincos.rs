@@ -12,7 +12,8 @@ const ROUNDER: f64 = 6_755_399_441_055_744.0; // 1.5 * 2^52
 /// `pi/2`, its first 33 bits, the next 33 bits, and the rest.
 const PIO2: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
 
-const S: [f64; 6] = [
+/// The polynomials of sine and cosine on `[-pi/4, pi/4]`.
+pub(crate) const SIN: [f64; 6] = [
     -1.666_666_666_666_663_2e-1,
     8.333_333_333_322_49e-3,
     -1.984_126_982_985_795e-4,
@@ -20,7 +21,7 @@ const S: [f64; 6] = [
     -2.505_076_025_340_686_3e-8,
     1.589_690_995_211_55e-10,
 ];
-const C: [f64; 6] = [
+pub(crate) const COS: [f64; 6] = [
     4.166_666_666_666_66e-2,
     -1.388_888_888_887_411e-3,
     2.480_158_728_947_673e-5,
@@ -68,9 +69,9 @@ fn reduced(x: f64) -> (f64, f64) {
     let tail = (r - y) - w;
 
     let z = y * y;
-    let p = S[1] + z * (S[2] + z * (S[3] + z * (S[4] + z * S[5])));
-    let sin = y - ((z * (0.5 * tail - z * y * p) - tail) - z * y * S[0]);
-    let p = z * (C[0] + z * (C[1] + z * (C[2] + z * (C[3] + z * (C[4] + z * C[5])))));
+    let p = SIN[1] + z * (SIN[2] + z * (SIN[3] + z * (SIN[4] + z * SIN[5])));
+    let sin = y - ((z * (0.5 * tail - z * y * p) - tail) - z * y * SIN[0]);
+    let p = z * (COS[0] + z * (COS[1] + z * (COS[2] + z * (COS[3] + z * (COS[4] + z * COS[5])))));
     let half = 0.5 * z;
     let one = 1.0 - half;
     let cos = one + (((1.0 - one) - half) + (z * p - y * tail));

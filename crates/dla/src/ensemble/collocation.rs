@@ -1,5 +1,5 @@
 use super::state::{Row, lanes};
-use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
+use lagrangian::quadrature::{gauss_collocation, gauss_legendre, lagrange};
 use std::array::from_fn;
 
 /// The coefficients of Gauss collocation with an even number `S` of stages, for a step of length `h`, in the form that needs
@@ -26,16 +26,12 @@ impl<const S: usize> Collocation<S> {
         let a = gauss_collocation(&nodes, &weights);
         let odd = |i: usize, k: usize| a[i][k] - 0.5 * weights[k];
         let part = |sign: f64| from_fn(|i| from_fn(|k| 0.5 * h * (odd(i, k) + sign * odd(i, S - 1 - k))));
-        let basis = |j: usize, x: f64| {
-            let factor = |k: usize| if k == j { 1.0 } else { (x - nodes[k]) / (nodes[j] - nodes[k]) };
-            (0..S).map(factor).product::<f64>()
-        };
         Self {
             nodes,
             half_weights: weights.map(|b| 0.5 * h * b),
             of_even: part(1.0),
             of_odd: part(-1.0),
-            next: from_fn(|i| from_fn(|j| basis(j, 1.0 + nodes[i]))),
+            next: from_fn(|i| from_fn(|j| lagrange(&nodes, j, 1.0 + nodes[i]))),
         }
     }
 

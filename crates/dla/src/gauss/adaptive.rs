@@ -74,11 +74,7 @@ impl<const S: usize> GaussAdaptive<S> {
         let rounding = larger(0.1, 1e-14 / epsilon);
         let ending = Ending { left: 0.1, rounding, noise: rounding, limit: 25, scales: Some(scales) };
         let (taken, rate) = match dispatch(lanes::Stages { rule, system, t, h, q0, xi0, before, ending }) {
-            Some(Outcome::Found(found)) => {
-                let increment = lanes::sum(h, &rule.weights, &found.slopes.velocity);
-                let gain = lanes::sum(h, &rule.weights, &found.slopes.acceleration);
-                (Taken { increment, gain, iterations: found.iterations, slopes: Some(found.slopes) }, found.rate)
-            }
+            Some(Outcome::Found(found)) => (Taken::at_once(rule, h, &found), found.rate),
             Some(Outcome::Failed) => return None,
             Some(Outcome::Unknown) | None => (self.gauss.in_turn(system, (t, h), (q0, xi0)).ok()?, 0.0),
         };

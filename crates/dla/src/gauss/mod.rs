@@ -11,7 +11,7 @@ use lagrangian::linear::larger;
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
 use lagrangian::simd::dispatch;
 use lagrangian::{System, reduced_slope, velocity_of};
-use lanes::{Ending, Outcome};
+use lanes::{Ending, Found, Outcome};
 use memory::Memory;
 use rule::Eight;
 use std::array::from_fn;
@@ -87,10 +87,8 @@ impl<const S: usize> Gauss<S> {
         let ending = Ending { left: LEFT, rounding: 1e-12, noise: 1e-15, limit: self.max_iterations, scales: None };
         match dispatch(lanes::Stages { rule, system, t, h, q0: state.q(), xi0, before, ending })? {
             Outcome::Found(found) => {
-                let increment = lanes::sum(h, &rule.weights, &found.slopes.velocity);
-                let gain = lanes::sum(h, &rule.weights, &found.slopes.acceleration);
-                let finite = increment.iter().chain(&gain).all(|x| x.is_finite());
-                finite.then_some(Taken { increment, gain, iterations: found.iterations, slopes: Some(found.slopes) })
+                let taken = Taken::at_once(rule, h, &found);
+                taken.increment.iter().chain(&taken.gain).all(|x| x.is_finite()).then_some(taken)
             }
             Outcome::Unknown | Outcome::Failed => None,
         }
@@ -175,6 +173,14 @@ struct Taken<const N: usize> {
 }
 
 impl<const N: usize> Taken<N> {
+    /// By stages that were found at once.
+    #[inline(always)]
+    fn at_once(rule: &Eight, h: f64, found: &Found<N>) -> Self {
+        let Found { slopes, iterations, .. } = *found;
+        let of = |slopes| lanes::sum(h, &rule.weights, slopes);
+        Self { increment: of(&slopes.velocity), gain: of(&slopes.acceleration), iterations, slopes: Some(slopes) }
+    }
+
     /// Moves the state.
     #[inline(always)]
     fn apply<Sys: System<N, M>, const M: usize>(

@@ -1,4 +1,4 @@
-use lagrangian::quadrature::{gauss_collocation, gauss_legendre, shifted_legendre};
+use lagrangian::quadrature::{gauss_collocation, gauss_legendre, lagrange, shifted_legendre};
 use std::array::from_fn;
 use std::sync::OnceLock;
 
@@ -30,9 +30,6 @@ impl Eight {
         let coefficients = gauss_collocation(&nodes, &weights);
         let row = |f: &dyn Fn(usize) -> f64| from_fn(|i| if i < S { f(i) } else { 0.0 });
         let column = |f: &dyn Fn(usize, usize) -> f64| from_fn(|j| row(&|i| if j < S { f(i, j) } else { 0.0 }));
-        let lagrange = |j: usize, x: f64| -> f64 {
-            (0..S).filter(|&m| m != j).map(|m| (x - nodes[m]) / (nodes[j] - nodes[m])).product()
-        };
         let highest = |j: usize| {
             let (p, _) = shifted_legendre::<S>(nodes[j]);
             (2.0 * S as f64 - 1.0) * weights[j] * p[S - 1]
@@ -44,7 +41,7 @@ impl Eight {
             highest: row(&highest),
             continued: from_fn(|k| {
                 let ratio = quarter_octaves(k as i32 - RATIOS);
-                column(&|i, j| lagrange(j, 1.0 + ratio * nodes[i]))
+                column(&|i, j| lagrange(&nodes, j, 1.0 + ratio * nodes[i]))
             }),
         }
     }

@@ -96,15 +96,6 @@ impl<S: Simd, const R: usize> Pack<S, R> {
         self.simd.reduce_max_f64s(rest.iter().fold(first, |m, x| self.simd.max_f64s(m, *x)))
     }
 
-    /// The scalar product with the numbers of a row, summed so that a row and its mirror image give the same bits.
-    #[must_use]
-    #[inline(always)]
-    pub fn dot(&self, row: &[f64; 8]) -> f64 {
-        let x = self.lanes();
-        let p: [f64; 8] = from_fn(|i| row[i] * x[i]);
-        ((p[0] + p[7]) + (p[1] + p[6])) + ((p[2] + p[5]) + (p[3] + p[4]))
-    }
-
     /// `sum_j columns[j] self[j]`: the product of a matrix, given by its columns, with this vector.
     #[must_use]
     #[inline(always)]

@@ -1,4 +1,5 @@
 use super::Pack;
+use crate::sincos::{COS, SIN};
 use pulp::Simd;
 
 /// Above this, `2^50`, the number of the quadrant does not fit into the lowest bits.
@@ -7,24 +8,6 @@ const LIMIT: f64 = 1_125_899_906_842_624.0;
 const ROUNDER: f64 = 6_755_399_441_055_744.0; // 1.5 * 2^52
 /// `pi/2` in two parts.
 const PIO2: [f64; 2] = [std::f64::consts::FRAC_PI_2, 6.123_233_995_736_766e-17];
-
-/// The polynomials of the FreeBSD mathematics library on `[-pi/4, pi/4]` (`k_sin.c`, `k_cos.c`, Sun Microsystems 1993).
-const SIN: [f64; 6] = [
-    -1.666_666_666_666_663_2e-1,
-    8.333_333_333_322_49e-3,
-    -1.984_126_982_985_795e-4,
-    2.755_731_370_707_006_8e-6,
-    -2.505_076_025_340_686_3e-8,
-    1.589_690_995_211_55e-10,
-];
-const COS: [f64; 6] = [
-    4.166_666_666_666_66e-2,
-    -1.388_888_888_887_411e-3,
-    2.480_158_728_947_673e-5,
-    -2.755_731_435_139_066_3e-7,
-    2.087_572_321_298_175e-9,
-    -1.135_964_755_778_819_5e-11,
-];
 
 impl<S: Simd, const R: usize> Pack<S, R> {
     /// Sines and cosines, within two units of `2^-53` of the truth; not a number beyond `2^50`. (No branch, so that sines of the
