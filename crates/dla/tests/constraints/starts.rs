@@ -38,6 +38,39 @@ fn the_nearest_start() {
     }
 }
 
+/// On the circle of radius 1, with the mass 1 along `x` and 4 along `y`.
+struct Ring;
+
+impl System<2, 1> for Ring {
+    fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 2], v: &[S; 2]) -> S {
+        (v[0] * v[0] + v[1] * v[1] * 4.0) * 0.5
+    }
+    fn constraint<S: Scalar>(&self, t: S, q: &[S; 2]) -> Constraint<S, 2, 1> {
+        lagrangian::position_rows(self, t, q)
+    }
+    fn holonomic<S: Scalar>(&self, _t: S, q: &[S; 2]) -> Option<[Option<S>; 1]> {
+        Some([Some((q[0] * q[0] + q[1] * q[1] - 1.0) * 0.5)])
+    }
+}
+
+/// Also from where the constraint is curved along the way: no other place of the circle is nearer.
+#[test]
+fn the_nearest_place_of_a_circle() {
+    for q in [[0.6, 0.5], [1.2, 0.9], [-1.0, 2.0]] {
+        let start = consistent_start(&Ring, 0.0, &q, &[0.3, -0.4]).unwrap();
+        let [x, y] = start.q;
+        approx::assert_abs_diff_eq!(x.hypot(y), 1.0, epsilon = 1e-15);
+        let length = |x: f64, y: f64| (x - q[0]).hypot(2.0 * (y - q[1]));
+        approx::assert_relative_eq!(start.moved, length(x, y), max_relative = 1e-15);
+        // `M (q1 - q)` has no part along the circle; its terms are of the size 8.
+        approx::assert_abs_diff_eq!((x - q[0]) * y, 4.0 * (y - q[1]) * x, epsilon = 8.0 * 4.0 * f64::EPSILON);
+        for k in 0..100 {
+            let (sin, cos) = f64::sin_cos(0.02 * std::f64::consts::PI * f64::from(k));
+            assert!(start.moved <= length(cos, sin) * (1.0 + 4.0 * f64::EPSILON), "{start:?}, {cos}, {sin}");
+        }
+    }
+}
+
 /// An affine one, and one that is not: the velocity is scaled to the speed.
 #[test]
 fn starts_of_other_classes() {

@@ -1,6 +1,6 @@
 use crate::systems::{Particle, Potential, at_centre, com, distance, run};
 use dla::{Energy, Gradient, OneStep, State};
-use lagrangian::System;
+use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
 use sleigh::{Exact, Sleigh, SleighState};
 
 /// Errors at the given numbers of steps, and the least order between neighbours.
@@ -65,4 +65,33 @@ fn particle() {
     let start = ([0.3, 0.5, -0.2], [0.6, -0.4, 0.3]);
     let exact = run(&system, &mut Energy::<4>::new(), &start, (3.0, 300));
     gonzalez("particle", &system, &start, 3.0, 64, &exact);
+}
+
+/// A mass on a spring along a rail, pushed by `cos(2 t)`.
+struct Swung;
+
+impl System<2, 1> for Swung {
+    fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 2], v: &[S; 2]) -> S {
+        (v[0] * v[0] + v[1] * v[1] - q[0] * q[0]) * 0.5
+    }
+    fn constraint<S: Scalar>(&self, _t: S, _q: &[S; 2]) -> Constraint<S, 2, 1> {
+        ([[S::zero(), S::constant(1.0)]], [S::zero()])
+    }
+    fn force<S: Scalar>(&self, t: S, _q: &[S; 2], _v: &[S; 2]) -> Option<[S; 2]> {
+        Some([(t * 2.0).cos(), S::zero()])
+    }
+    fn admissible_basis<S: Scalar>(&self, _t: S, _q: &[S; 2]) -> Option<AdmissibleBasis<S, 2, 1>> {
+        Some(AdmissibleBasis::new([[S::constant(1.0), S::zero()]]))
+    }
+}
+
+/// Forces are taken at the times of the nodes: `x'' + x = cos(2 t)` from rest is `x = (cos t - cos 2 t)/3`.
+#[test]
+fn a_force_that_swings() {
+    let place = |t: f64| ([(t.cos() - (2.0 * t).cos()) / 3.0, 0.0], [(2.0 * (2.0 * t).sin() - t.sin()) / 3.0, 0.0]);
+    let (q, v) = place(2.0);
+    let exact = State::new(q, v, [false; 2]);
+    let start = ([0.0; 2], [0.0; 2]);
+    check("swung", ladder(&Swung, &mut Energy::<2>::new(), &start, 2.0, &[10, 20, 40], &exact), 4.0);
+    gonzalez("swung", &Swung, &start, 2.0, 20, &exact);
 }

@@ -44,23 +44,35 @@ fn bracket_and_full_coordinates_agree() {
     assert!((pi_rate[1] + m * a * xi[0] * xi[1]).abs() < 1e-15 * j.max(1.0));
 }
 
-/// One step of order 2 is `(z1 - z0)/h = B((z0 + z1)/2) DG`, with the average of the gradient along the straight line.
+/// One step of order 2 is `(z1 - z0)/h = B((z0 + z1)/2) DG`: with the average of the gradient along the straight line, or
+/// with Gonzalez's, the gradient in the middle and as much of `z1 - z0` as makes the product with it the change of energy.
 #[test]
 fn one_node_is_the_discrete_gradient_method() {
+    for gradient in [Gradient::Average, Gradient::Gonzalez] {
+        one_node(gradient);
+    }
+}
+
+fn one_node(gradient: Gradient) {
     let system = com(0.4, Potential::EggCrate);
     let (q, v) = at_centre([0.5, 1.0, 0.3, 0.9, 1.7], 0.4);
     let h = 0.1;
     let quasi = |state: &State<3>| lagrangian::quasi_velocities(&system, 0.0, state.q(), state.v()).unwrap();
     let start = State::new(q, v, [false; 3]);
     let mut end = start;
-    Energy::<1>::new().step(&system, 0.0, h, &mut end).unwrap();
+    Energy::with(gradient).step(&system, 0.0, h, &mut end).unwrap();
 
     // In the basis of the sleigh pi = (m u, J omega) with constants, so the line is straight in xi too.
     let (q0, xi0, q1, xi1) = (start.q(), quasi(&start), end.q(), quasi(&end));
     let at = |s: f64| -> ([f64; 3], [f64; 3]) {
         (from_fn(|i| q0[i] + s * (q1[i] - q0[i])), from_fn(|i| xi0[i] + s * (xi1[i] - xi0[i])))
     };
-    let (nodes, weights) = gauss_legendre::<8>();
+    let inertia = [1.0, 1.0 + 0.4 * 0.4, 0.0];
+    let (nodes, weights) = match gradient {
+        Gradient::Average => gauss_legendre::<8>(),
+        // The middle alone.
+        Gradient::Gonzalez => ([0.5; 8], [0.125; 8]),
+    };
     let (mut h_q, mut h_pi) = ([0.0; 3], [0.0; 3]);
     for (s, w) in nodes.iter().zip(weights) {
         let (q, xi) = at(*s);
@@ -70,9 +82,26 @@ fn one_node_is_the_discrete_gradient_method() {
             h_pi[i] += w * xi[i];
         }
     }
+    let (dq, dpi): ([f64; 3], [f64; 3]) = (from_fn(|i| q1[i] - q0[i]), from_fn(|i| inertia[i] * (xi1[i] - xi0[i])));
+    let change = energy(&system, 0.0, q1, end.v()) - energy(&system, 0.0, q0, start.v());
+    let product: f64 = (0..3).map(|i| h_q[i] * dq[i] + h_pi[i] * dpi[i]).sum();
+    let missing = change - product;
+    match gradient {
+        Gradient::Average => assert!(missing.abs() < 1e-15, "{missing:e}"),
+        Gradient::Gonzalez => {
+            assert!(
+                missing.abs() > 1e-6,
+                "the control: the gradient in the middle is no discrete gradient, {missing:e}"
+            );
+            let square: f64 = (0..3).map(|i| dq[i] * dq[i] + dpi[i] * dpi[i]).sum();
+            for i in 0..3 {
+                h_q[i] += missing / square * dq[i];
+                h_pi[i] += missing / square * dpi[i];
+            }
+        }
+    }
     let (middle, xi) = at(0.5);
     let (q_rate, pi_rate) = Bracket::at(&system, 0.0, &middle, &xi).unwrap().rates(&h_q, &h_pi);
-    let inertia = [1.0, 1.0 + 0.4 * 0.4, 0.0];
     for i in 0..3 {
         assert!((q1[i] - q0[i] - h * q_rate[i]).abs() < 1e-15);
         assert!((inertia[i] * (xi1[i] - xi0[i]) - h * pi_rate[i]).abs() < 1e-15);

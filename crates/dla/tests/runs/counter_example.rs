@@ -71,3 +71,18 @@ fn the_counter_example_follows_a_moving_constraint() {
         assert_abs_diff_eq!(state.v()[0], 0.5, epsilon = 1e-15);
     }
 }
+
+/// A momentum across the constraint is carried from a node to the step that follows it, and to no other start.
+#[test]
+fn the_counter_example_begins_anew_from_another_start() {
+    let step = |method: &mut Gni<_, 2>, mut state: State<2>| {
+        OneStep::<_, 2, 1>::step(method, &Lifted, 1.0, 0.1, &mut state).unwrap();
+        state
+    };
+    let (here, there) = (State::new([0.0; 2], [0.5, 1.0], [false; 2]), State::new([0.0, 0.3], [0.5, 1.0], [false; 2]));
+    let mut method = Gni::<_, 2>::default();
+    let next = step(&mut method, here);
+    assert_eq!(step(&mut { method }, there), step(&mut Gni::default(), there));
+    // The control: from its own node it goes on with what it remembers.
+    assert_ne!(step(&mut method, next), step(&mut Gni::default(), next));
+}

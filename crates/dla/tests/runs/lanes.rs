@@ -5,8 +5,8 @@ use dla::{
 };
 use lagrangian::{System, With, velocity_of};
 use proptest::prelude::*;
-use sleigh::effects::Bowl;
-use sleigh::{Sleigh, SleighState};
+use sleigh::effects::{Bowl, Torque};
+use sleigh::{Sleigh, SleighState, TimeFunction};
 
 const W: usize = 16;
 type Closed = ClosedEnsemble<Sleigh, 2, W, 3, 1, 5, 6>;
@@ -160,4 +160,25 @@ fn one_system_for_all_is_as_each_its_own() {
     each.advance(40);
     assert!((0..W).all(|lane| same.state().q(lane) == each.state().q(lane)));
     assert!(same.state().q(0) != same.state().q(1));
+}
+
+/// A torque acts at the time of each stage, whenever a run begins and however its steps are asked for.
+#[test]
+fn time_goes_on_in_lanes() {
+    let torque = TimeFunction::Sine { amplitude: 0.8, frequency: 2.0, phase: 0.3 };
+    let system = With { body: sleigh(), effects: Torque::new(torque).unwrap() };
+    let starts: Vec<_> = (0..W).map(|i| reduced(&SleighState { speed: 0.05 * i as f64, ..backward() })).collect();
+    let state = LaneState::new(&starts, [false, false, true]);
+    let (t0, h) = (0.7, 0.1);
+    let mut ensemble = GaussEnsemble::<_, _, 4, W, 3, 1>::new(Same(&system), (t0, h), false, state).unwrap();
+    ensemble.advance(7);
+    ensemble.advance(13);
+    for (lane, start) in starts.iter().enumerate() {
+        let mut expected = State::new(start.0, velocity_of(&system, t0, &start.0, &start.1).unwrap(), system.angles());
+        let schedule = Schedule { t0, step: h, steps: 20 };
+        drive(&system, &mut Gauss::<4>::default(), &schedule, &mut expected, ()).unwrap();
+        // As in the bowl: the torque adds less than a newton metre.
+        let tolerance = 4.0 * rounding(&sleigh(), start, (h, 20)) * (20.0 * h * 3.0).exp();
+        assert_same(&ensemble, lane, &expected, tolerance);
+    }
 }

@@ -1,7 +1,7 @@
 //! The derivative in quasi-velocities, whose columns are all admissible.
 
 use crate::differences::{BAR, Input, extrapolated};
-use crate::systems::Controlled;
+use crate::systems::{Controlled, Swivelling};
 use dla::{Differentiable, Dla, Gauss, OneStep, ReducedVariation, Sensitivity, State};
 use lagrangian::{System, quasi_velocities, velocity_of};
 use sleigh::{Guided, Sleigh};
@@ -61,6 +61,13 @@ fn columns_in_quasi_velocities() {
     let system = Controlled::at(&at.p);
     let worst = disagreement(&Sensitivity::of_member(&system), Controlled::at, &Dla::midpoint(), &at);
     println!("sleigh: {worst:.1e}");
+    assert!(worst < BAR, "{worst:e}");
+
+    // Both ends of a step have the basis of their own time, which depends on parameters.
+    let moved = Input { q: at.q, v: at.v, t: at.t, h: at.h, p: Swivelling::PARAMETERS };
+    let system = Swivelling::at(&moved.p);
+    let worst = disagreement(&Sensitivity::of_member(&system), Swivelling::at, &Gauss::<4>::default(), &moved);
+    println!("swivelling blade: {worst:.1e}");
     assert!(worst < BAR, "{worst:e}");
 
     // What is imposed on the velocity depends on the place.

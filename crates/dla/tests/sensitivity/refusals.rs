@@ -2,11 +2,13 @@
 
 use crate::systems::{Controlled, Moving};
 use dla::{
-    Differentiable, Dla, Gauss, Gni, OneStep, Sensitivity, SensitivityError, State, StepEquations, StepError,
-    StepReport, StepStart,
+    Composition, Differentiable, Dla, Gauss, Gni, OneStep, Schedule, Sensitivity, SensitivityError, State,
+    StepEquations, StepError, StepReport, StepStart,
 };
 use lagrangian::{Gradients, Seeded, System};
+use models::{Model, SleighOnArm};
 use sleigh::Sleigh;
+use std::ops::ControlFlow;
 
 #[test]
 fn a_refusal_has_a_reason_and_changes_nothing() {
@@ -34,6 +36,35 @@ fn a_failed_step_and_numbers_that_are_none() {
     let failed = Sensitivity::of_member(&system).step(&mut Dla::midpoint(), 0.0, 0.1, &mut state);
     assert!(matches!(failed, Err(SensitivityError::Step(_))), "{failed:?}");
     assert_eq!(state, before);
+
+    // Of a run the error says which step it was, and when.
+    let schedule = Schedule { t0: 0.5, step: 0.1, steps: 3 };
+    let failed = Sensitivity::of_member(&system)
+        .drive(&mut Dla::midpoint(), &schedule, &mut state, &mut [], |_, _| ControlFlow::Continue(()))
+        .unwrap_err();
+    assert_eq!((failed.step, failed.time.to_bits()), (1, 0.5f64.to_bits()));
+    assert_eq!(state, before);
+}
+
+/// Which classes of constraints a composition carries, and into what it divides a step, is its base's matter.
+#[test]
+fn a_composition_is_differentiated_as_its_base() {
+    let sleigh = SleighOnArm::new(1.3, 0.8, 0.4, 0.7, 1.5, 2.0).unwrap();
+    let (q, v) = sleigh.start();
+    let (start, sensitivity) = (State::new(q, v, sleigh.angles()), Sensitivity::of(&sleigh));
+    let mut end = start;
+    let carries = Composition::suzuki4(Dla::midpoint());
+    let report = OneStep::step(&mut { carries }, &sleigh, 0.0, 0.1, &mut end).unwrap();
+    assert!(sensitivity.between(&carries, (0.0, 0.1), &start, &end, report).is_ok());
+    let not = Composition::suzuki4(Gauss::<1>::default());
+    let refused = sensitivity.between(&not, (0.0, 0.1), &start, &end, report);
+    let Err(SensitivityError::Unsupported { reason }) = refused else { panic!("{refused:?}") };
+    assert!(reason.contains("constraints on positions"), "{reason}");
+
+    let (outer, inner) = (Composition::suzuki4(()), Composition::kahan_li6(Dla::midpoint()));
+    let fractions = Differentiable::<3, 1>::fractions(&Composition::suzuki4(inner));
+    let products = outer.weights().iter().flat_map(|g| inner.weights().map(|w| g * w));
+    assert_eq!(fractions, products.collect::<Vec<_>>());
 }
 
 /// A method that steps by one rule and states the equations of another.

@@ -3,6 +3,7 @@
 use crate::differences::{BAR, admissible, extrapolated};
 use crate::systems::Controlled;
 use dla::{Dla, Schedule, Sensitivity, State, Tangent, Variation, drive};
+use models::{Model, SleighOnArm};
 use std::array::from_fn;
 use std::ops::ControlFlow;
 
@@ -95,6 +96,29 @@ fn tangents_follow_the_impulse_of_the_constraint() {
     let mut tangents = [Tangent { state: Variation { q: [dx, dy, dtheta], v: tail }, parameters: [0.0; 6] }];
     let mut state = State::new(q, v, [false, false, true]);
     Sensitivity::of_member(&system).onto_constraint(0.0, &mut state, &mut tangents).unwrap();
+    assert_eq!(state, at(0.0));
+    assert!((state.v()[1] - v[1]).abs() > 0.1, "nothing to project");
+    let expected = extrapolated(&|epsilon| *at(epsilon).v());
+    for i in 0..3 {
+        approx::assert_abs_diff_eq!(tangents[0].state.v[i], expected[i], epsilon = BAR);
+        approx::assert_abs_diff_eq!(tangents[0].state.q[i], direction[i], epsilon = BAR);
+    }
+}
+
+/// So it is with the rows of a constraint on positions, which keep the velocity only: the tangent keeps its place.
+#[test]
+fn tangents_follow_the_impulse_of_an_arm() {
+    let sleigh = SleighOnArm::new(1.3, 0.8, 0.4, 0.7, 1.5, 2.0).unwrap();
+    let (q, v) = (sleigh.start().0, [0.6, 0.7, 0.4]);
+    let direction: [f64; 6] = [0.2, -0.4, 1.0, 0.5, 0.3, -0.7];
+    let at = |epsilon: f64| {
+        let moved = |x: &[f64; 3], k: usize| from_fn(|i| x[i] + epsilon * direction[k + i]);
+        admissible(&sleigh, 0.0, moved(&q, 0), moved(&v, 3))
+    };
+    let [dx, dy, dtheta, tail @ ..] = direction;
+    let mut tangents = [Tangent { state: Variation { q: [dx, dy, dtheta], v: tail }, parameters: [] }];
+    let mut state = State::new(q, v, [false, false, true]);
+    Sensitivity::of(&sleigh).onto_constraint(0.0, &mut state, &mut tangents).unwrap();
     assert_eq!(state, at(0.0));
     assert!((state.v()[1] - v[1]).abs() > 0.1, "nothing to project");
     let expected = extrapolated(&|epsilon| *at(epsilon).v());

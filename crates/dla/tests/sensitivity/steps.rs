@@ -1,7 +1,7 @@
 //! One step of every family of methods.
 
 use crate::differences::{BAR, Input, Start, disagreement};
-use crate::systems::{Controlled, ControlledSleigh, Moving};
+use crate::systems::{Controlled, ControlledSleigh, Moving, Swivelling};
 use dla::{
     Composition, Differentiable, Dla, Energy, Form, Gauss, Gradient, Lobatto, OneStep, Sensitivity, SensitivityError,
     State,
@@ -75,6 +75,16 @@ fn an_affine_constraint() {
     let mixed = Dla::new(Midpoint, Midpoint).solved(Form::Multipliers);
     assert_close("multipliers", disagreement(&sensitivity, |_| table(), &mixed, on(&bare())));
     assert_close("gauss8", disagreement(&sensitivity, |_| table(), &Gauss::<4>::default(), on(&bare())));
+}
+
+/// The end of a step is on the constraint of its own time.
+#[test]
+fn a_basis_that_moves() {
+    let at = Input { q: START.q, v: START.v, t: START.t, h: START.h, p: Swivelling::PARAMETERS };
+    let system = Swivelling::at(&at.p);
+    let sensitivity = Sensitivity::of_member(&system);
+    assert_close("dla", disagreement(&sensitivity, Swivelling::at, &Dla::midpoint(), on(&at)));
+    assert_close("gauss8", disagreement(&sensitivity, Swivelling::at, &Gauss::<4>::default(), on(&at)));
 }
 
 /// Two constraints, five coordinates.

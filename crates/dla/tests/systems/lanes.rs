@@ -2,10 +2,10 @@
 
 use approx::assert_abs_diff_eq;
 use dla::{Gauss, GaussAdaptive, OneStep, Schedule, State, StepError, drive};
-use lagrangian::{System, With, constraint_residual};
+use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, With, constraint_residual};
 use proptest::prelude::*;
-use sleigh::effects::{Bowl, Drag, EggCrate, Slope};
-use sleigh::{Flywheel, Sleigh, SleighState};
+use sleigh::effects::{Bowl, Drag, EggCrate, Slope, Torque};
+use sleigh::{Flywheel, Sleigh, SleighState, TimeFunction};
 
 fn start(sleigh_state: &SleighState) -> State<3> {
     let (q, v) = sleigh_state.to_coordinates();
@@ -67,7 +67,8 @@ proptest! {
         let state = start(&SleighState { speed, turn_rate, heading, x: 1.0, y: -0.5 });
         every_order(&body, h, &state);
         let bowl = Bowl::new([stiffness, 0.3], [0.2, 0.1]).unwrap();
-        every_order(&With { body, effects: (bowl.clone(),) }, h, &state);
+        let swing = Torque::new(TimeFunction::Sine { amplitude: 0.5 * inertia, frequency: 2.0, phase: 0.3 }).unwrap();
+        every_order(&With { body, effects: (bowl.clone(), swing) }, h, &state);
         let crowd = (bowl, Drag::new(0.1, 0.2).unwrap(), Slope::new([0.3, -0.2]).unwrap(), EggCrate::new(0.2, [1.0, 2.0]).unwrap());
         every_order(&With { body, effects: crowd }, h, &state);
         let flywheel = Flywheel::new(body, 0.3, None).unwrap();
@@ -102,6 +103,16 @@ fn the_last_step_helps_the_next() {
         forgetful += Gauss::<8>::default().step(&system, f64::from(k) * 0.3, 0.3, &mut moved).unwrap().iterations;
     }
     assert!(remembered < forgetful, "{remembered} iterations, without memory {forgetful}");
+
+    // And from a checkpoint too.
+    let mut method = Gauss::<8>::default();
+    let mut moved = state;
+    method.step(&system, 0.0, 0.3, &mut moved).unwrap();
+    let mut recalled = Gauss::<8>::default();
+    OneStep::<Sleigh, 3, 1>::recall(&mut recalled, &OneStep::<Sleigh, 3, 1>::memory(&method), &moved);
+    let next = |mut method: Gauss<8>| method.step(&system, 0.3, 0.3, &mut { moved }).unwrap().iterations;
+    assert_eq!(next(recalled), next(method));
+    assert!(next(recalled) < next(Gauss::default()));
 }
 
 /// A turned velocity is another motion: what is remembered of the old one must not be taken for it.
@@ -155,6 +166,58 @@ fn steps_of_their_own_length_meet_a_tolerance() {
         let slip = constraint_residual(&bowl, 0.0, end.q(), end.v());
         assert_abs_diff_eq!(slip[0], 0.0, epsilon = 4.0 * f64::EPSILON);
     }
+}
+
+/// A sleigh whose blade turns in its body at 0.9 rad/s, pushed by a torque that swings: a basis that moves, and no reduced
+/// equations by hand.
+struct Swivelling;
+
+impl System<3, 1> for Swivelling {
+    fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 3], v: &[S; 3]) -> S {
+        let (sin, cos) = q[2].sin_cos();
+        let (vx, vy) = (v[0] - sin * v[2] * 0.4, v[1] + cos * v[2] * 0.4);
+        (vx * vx + vy * vy) * 0.65 + v[2] * v[2] * 0.4
+    }
+    fn constraint<S: Scalar>(&self, t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
+        let (sin, cos) = (q[2] + t * 0.9).sin_cos();
+        ([[-sin, cos, S::zero()]], [S::zero()])
+    }
+    fn force<S: Scalar>(&self, t: S, _q: &[S; 3], _v: &[S; 3]) -> Option<[S; 3]> {
+        Some([S::zero(), S::zero(), (t * 2.0).cos() * 0.5])
+    }
+    fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, 1>> {
+        let (sin, cos) = (q[2] + t * 0.9).sin_cos();
+        let (zero, one) = (S::zero(), S::constant(1.0));
+        Some(AdmissibleBasis::new([[cos, sin, zero], [zero, zero, one]]))
+    }
+}
+
+/// The time within an interval goes on with its steps, whether the stages are found at once or in turn.
+#[test]
+fn steps_of_their_own_length_know_the_time() {
+    fn check<Sys: System<3, 1>>(system: &Sys, t0: f64, begin: &State<3>) {
+        let (mut state, mut exact) = (*begin, *begin);
+        let schedule = Schedule { t0, step: 0.05, steps: 100 };
+        drive(system, &mut Gauss::<8>::default(), &schedule, &mut exact, ()).unwrap();
+        let mut method = GaussAdaptive::<8>::new(1e-11);
+        // Of the second interval the first step is the last of the first.
+        for k in 0..2 {
+            method.step(system, t0 + 2.5 * f64::from(k), 2.5, &mut state).unwrap();
+        }
+        for i in 0..3 {
+            // As many steps, and as much enlarged, as above.
+            assert_abs_diff_eq!(state.q()[i], exact.q()[i], epsilon = 1e2 * 1e-11 + 1e-12);
+            assert_abs_diff_eq!(state.v()[i], exact.v()[i], epsilon = 1e2 * 1e-11 + 1e-12);
+        }
+        let slip = constraint_residual(system, t0 + 5.0, state.q(), state.v());
+        assert_abs_diff_eq!(slip[0], 0.0, epsilon = 4.0 * f64::EPSILON * state.v()[0].hypot(state.v()[1]).max(1.0));
+    }
+    let start_at =
+        |angle: f64| State::new([0.3, -0.2, 0.5], [0.6 * angle.cos(), 0.6 * angle.sin(), 0.4], [false, false, true]);
+    check(&Swivelling, 0.4, &start_at(0.5 + 0.9 * 0.4));
+    let body = Sleigh::new(1.3, 0.8, 0.4).unwrap();
+    let swing = Torque::new(TimeFunction::Sine { amplitude: 0.5, frequency: 2.0, phase: 0.3 }).unwrap();
+    check(&With { body, effects: (swing,) }, 0.4, &start_at(0.5));
 }
 
 /// What it remembers is all that the next interval depends on.
