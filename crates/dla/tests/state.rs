@@ -3,9 +3,10 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use dla::{Checkpoint, State};
+use dla::{Checkpoint, Dla, OneStep, State};
 use lagrangian::Twofold;
 use proptest::prelude::*;
+use sleigh::Sleigh;
 use std::f64::consts::{PI, TAU};
 
 /// `2 pi` in units of `2^-100`, exact to one of them.
@@ -262,4 +263,22 @@ fn a_state_knows_how_far_it_has_moved() {
     let mut over = start;
     over.advance(&[0.5], [0.0], None);
     assert_abs_diff_eq!(start.moved_since(&over)[0], -0.5, epsilon = 4.5e-16);
+}
+
+/// What the next step begins from is part of a state: at the same place two are not the same after other steps.
+#[test]
+fn states_after_other_steps_differ() {
+    let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    let after = |steps: &[f64]| {
+        let mut state = State::new([0.0; 3], [0.0; 3], [false, false, true]);
+        for h in steps {
+            Dla::midpoint().step(&sleigh, 0.0, *h, &mut state).unwrap();
+        }
+        state
+    };
+    assert_eq!(after(&[0.5]), after(&[0.5]));
+    assert_ne!(after(&[0.5]), after(&[0.25]));
+    assert_ne!(after(&[0.5]), after(&[0.5, 0.5]));
+    // A step of another length begins anew.
+    assert_eq!(after(&[0.5]), after(&[0.25, 0.5]));
 }

@@ -79,7 +79,7 @@ fn the_counter_example_begins_anew_from_another_start() {
         OneStep::<_, 2, 1>::step(method, &Lifted, 1.0, 0.1, &mut state).unwrap();
         state
     };
-    let (here, there) = (State::new([0.0; 2], [0.5, 1.0], [false; 2]), State::new([0.0, 0.3], [0.5, 1.0], [false; 2]));
+    let (here, there) = (State::new([0.0; 2], [0.5, 1.0], [false; 2]), State::new([0.0, 0.3], [0.7, 1.0], [false; 2]));
     let mut method = Gni::<_, 2>::default();
     let next = step(&mut method, here);
     assert_eq!(step(&mut { method }, there), step(&mut Gni::default(), there));

@@ -182,3 +182,63 @@ fn time_goes_on_in_lanes() {
         assert_same(&ensemble, lane, &expected, tolerance);
     }
 }
+
+/// The largest reaction of a lane is that of one trajectory, whether its steps are quick, wide, or the map of one.
+#[test]
+fn the_largest_reaction_of_every_lane() {
+    let (sleigh, h, steps) = (Sleigh::new(1.3, 0.8, 0.4).unwrap(), 0.15, 20);
+    let turn_rate = |lane: usize| [0.1, 1.0, 5.0, -0.2][lane % 4];
+    let starts: Vec<_> = (0..W)
+        .map(|lane| reduced(&SleighState { speed: 0.4 - 0.1 * lane as f64, turn_rate: turn_rate(lane), ..backward() }))
+        .collect();
+    let mut ensemble = Closed::new([sleigh; W], h, LaneState::new(&starts, [false, false, true]));
+    ensemble.advance(steps);
+    for (lane, start) in starts.iter().enumerate() {
+        let mut state = State::new(start.0, velocity_of(&sleigh, 0.0, &start.0, &start.1).unwrap(), sleigh.angles());
+        let mut largest = 0.0f64;
+        for k in 0..steps {
+            let report = Dla::midpoint().step(&sleigh, k as f64 * h, h, &mut state).unwrap();
+            largest = largest.max((report.impulses[0][0] + report.impulses[1][0]).abs() / h);
+        }
+        // A momentum has the rounding of the velocities, the masses being near one.
+        let tolerance = 2.0 * rounding(&sleigh, start, (h, steps)) / h;
+        assert_abs_diff_eq!(ensemble.largest_multiplier(lane)[0], largest, epsilon = tolerance);
+        assert!(largest > 1e3 * tolerance, "the control: {largest:e} is more than rounding, {tolerance:e}");
+    }
+}
+
+/// All lanes iterate until the slowest has settled, from the polynomial of the step before; less when less is asked for.
+#[test]
+fn stages_in_lanes_settle_with_the_slowest() {
+    let (sleigh, h, steps) = (sleigh(), 0.2, 40);
+    let starts: Vec<_> =
+        (0..W).map(|lane| reduced(&SleighState { turn_rate: 0.1 * lane as f64, ..backward() })).collect();
+    let begin = LaneState::new(&starts, [false, false, true]);
+    let run = |settled: Option<f64>| {
+        let mut ensemble = GaussEnsemble::<_, _, 4, W, 3, 1>::new(Same(&sleigh), (0.0, h), true, begin).unwrap();
+        ensemble.settled = settled.unwrap_or(ensemble.settled);
+        ensemble.advance(steps);
+        ensemble
+    };
+    let mut most = vec![0; steps as usize];
+    for start in &starts {
+        let mut state = State::new(start.0, velocity_of(&sleigh, 0.0, &start.0, &start.1).unwrap(), sleigh.angles());
+        let mut method = Gauss::<4>::default();
+        for (k, most) in most.iter_mut().enumerate() {
+            let report = method.step(&sleigh, k as f64 * h, h, &mut state).unwrap();
+            *most = report.iterations.max(*most);
+        }
+    }
+    let alone: u32 = most.iter().sum();
+    let (whole, loose) = (run(None), run(Some(1e-7)));
+    println!("{} sweeps, alone {alone}, to 1e-7 {}", whole.sweeps(), loose.sweeps());
+    // Alone the next change is to be a sixteenth of a rounding: an iteration more, or two.
+    let longer = u64::from(alone).checked_sub(whole.sweeps());
+    assert!(longer.is_some_and(|longer| longer <= 2 * steps), "{} sweeps, alone {alone}", whole.sweeps());
+    assert!(2 * loose.sweeps() < whole.sweeps(), "{} sweeps to 1e-7, {} to rounding", loose.sweeps(), whole.sweeps());
+    for lane in 0..W {
+        let ([u, omega, _], [u1, omega1, _]) = (whole.state().xi(lane), loose.state().xi(lane));
+        let off = (u - u1).abs().max((omega - omega1).abs());
+        assert!(off < 1e-7 * steps as f64, "{off:e}");
+    }
+}

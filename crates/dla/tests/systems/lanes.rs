@@ -68,8 +68,9 @@ proptest! {
         every_order(&body, h, &state);
         let bowl = Bowl::new([stiffness, 0.3], [0.2, 0.1]).unwrap();
         let swing = Torque::new(TimeFunction::Sine { amplitude: 0.5 * inertia, frequency: 2.0, phase: 0.3 }).unwrap();
-        every_order(&With { body, effects: (bowl.clone(), swing) }, h, &state);
-        let crowd = (bowl, Drag::new(0.1, 0.2).unwrap(), Slope::new([0.3, -0.2]).unwrap(), EggCrate::new(0.2, [1.0, 2.0]).unwrap());
+        every_order(&With { body, effects: (bowl.clone(),) }, h, &state);
+        let (drag, slope) = (Drag::new(0.1, 0.2).unwrap(), Slope::new([0.3, -0.2]).unwrap());
+        let crowd = (bowl, drag, slope, EggCrate::new(0.2, [1.0, 2.0]).unwrap(), swing);
         every_order(&With { body, effects: crowd }, h, &state);
         let flywheel = Flywheel::new(body, 0.3, None).unwrap();
         let (q, v) = (state.q(), state.v());
