@@ -1,9 +1,10 @@
 use crate::{backward, sleigh};
 use approx::assert_abs_diff_eq;
 use dla::{
-    ClosedEnsemble, Dla, Each, Ensemble, Gauss, GaussEnsemble, LaneState, OneStep, Same, Schedule, State, drive,
+    ClosedEnsemble, Dla, Each, Ensemble, Gauss, GaussAdaptive, GaussEnsemble, LaneState, OneStep, Same, Schedule,
+    State, drive,
 };
-use lagrangian::{System, With, velocity_of};
+use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, With, velocity_of};
 use proptest::prelude::*;
 use sleigh::effects::{Bowl, Torque};
 use sleigh::{Sleigh, SleighState, TimeFunction};
@@ -203,6 +204,8 @@ fn the_largest_reaction_of_every_lane() {
         // A momentum has the rounding of the velocities, the masses being near one.
         let tolerance = 2.0 * rounding(&sleigh, start, (h, steps)) / h;
         assert_abs_diff_eq!(ensemble.largest_multiplier(lane)[0], largest, epsilon = tolerance);
+        // Some have made full turns.
+        assert_same(&ensemble, lane, &state, rounding(&sleigh, start, (h, steps)));
         assert!(largest > 1e3 * tolerance, "the control: {largest:e} is more than rounding, {tolerance:e}");
     }
 }
@@ -240,5 +243,79 @@ fn stages_in_lanes_settle_with_the_slowest() {
         let ([u, omega, _], [u1, omega1, _]) = (whole.state().xi(lane), loose.state().xi(lane));
         let off = (u - u1).abs().max((omega - omega1).abs());
         assert!(off < 1e-7 * steps as f64, "{off:e}");
+    }
+}
+
+/// A particle of mass 1 that moves along a direction which turns in the plane, at 0.8 rad/s, under the force 1 along `x`: with
+/// `phi = 0.8 t` the speed grows as `xi' = cos phi`.
+struct Turning;
+
+impl Turning {
+    const RATE: f64 = 0.8;
+
+    /// Place and speed at the time `t` of what passes the origin at the time `t0` with the speed `xi0`.
+    fn at(t: f64, (t0, xi0): (f64, f64)) -> ([f64; 2], f64) {
+        let (w, phi, phi0) = (Self::RATE, Self::RATE * t, Self::RATE * t0);
+        let c = xi0 - phi0.sin() / w;
+        let x = c * (phi.sin() - phi0.sin()) / w + (phi.sin().powi(2) - phi0.sin().powi(2)) / (2.0 * w * w);
+        let area = |t: f64| 0.5 * t - (2.0 * w * t).sin() / (4.0 * w);
+        let y = c * (phi0.cos() - phi.cos()) / w + (area(t) - area(t0)) / w;
+        ([x, y], c + phi.sin() / w)
+    }
+}
+
+impl System<2, 1> for Turning {
+    fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 2], v: &[S; 2]) -> S {
+        (v[0] * v[0] + v[1] * v[1]) * 0.5 + q[0]
+    }
+    fn constraint<S: Scalar>(&self, t: S, _q: &[S; 2]) -> Constraint<S, 2, 1> {
+        let (sin, cos) = (t * Self::RATE).sin_cos();
+        ([[-sin, cos]], [S::zero()])
+    }
+    fn admissible_basis<S: Scalar>(&self, t: S, _q: &[S; 2]) -> Option<AdmissibleBasis<S, 2, 1>> {
+        let (sin, cos) = (t * Self::RATE).sin_cos();
+        Some(AdmissibleBasis::new([[cos, sin]]))
+    }
+    fn reduced_motion<S: Scalar>(&self, t: S, _q: &[S; 2], _xi: &[S; 2]) -> Option<[S; 2]> {
+        Some([(t * Self::RATE).cos(), S::zero()])
+    }
+}
+
+/// A direction that turns is that of the time of each stage, in lanes and alone, at once and in turn.
+#[test]
+fn a_direction_that_turns() {
+    let (t0, h, steps) = (0.7, 0.25, 8);
+    let t1 = t0 + h * steps as f64;
+    let starts: Vec<_> = (0..W).map(|lane| ([0.0; 2], [0.1 * lane as f64, 0.0])).collect();
+    let begin = LaneState::new(&starts, [false; 2]);
+    let mut ensemble = GaussEnsemble::<_, _, 8, W, 2, 1>::new(Same(&Turning), (t0, h), false, begin).unwrap();
+    ensemble.advance(steps);
+    for (lane, (q, xi)) in starts.iter().enumerate() {
+        let (place, speed) = Turning::at(t1, (t0, xi[0]));
+        // Of order 16 with a fifth of a radian a step: what is left is some roundings a step of numbers below four.
+        let rounding = 16.0 * 4.0 * steps as f64 * f64::EPSILON;
+        let assert_at = |q: &[f64], xi: f64, epsilon: f64| {
+            assert_abs_diff_eq!(q, &place[..], epsilon = epsilon);
+            assert_abs_diff_eq!(xi, speed, epsilon = epsilon);
+        };
+        assert_at(&ensemble.state().q(lane), ensemble.state().xi(lane)[0], rounding);
+
+        let alone = |method: &mut dyn OneStep<Turning, 2, 1>, h: f64| {
+            let mut state = State::new(*q, velocity_of(&Turning, t0, q, xi).unwrap(), [false; 2]);
+            let mut t = t0;
+            while t < t1 - 0.5 * h {
+                method.step(&Turning, t, h, &mut state).unwrap();
+                t += h;
+            }
+            let (sin, cos) = (Turning::RATE * t1).sin_cos();
+            (*state.q(), cos * state.v()[0] + sin * state.v()[1])
+        };
+        let (q, xi) = alone(&mut Gauss::<8>::default(), h);
+        assert_at(&q, xi, rounding);
+        let (q, xi) = alone(&mut Gauss::<8>::default().one_by_one(), h);
+        assert_at(&q, xi, rounding);
+        // Some steps, each with an error of the tolerance times numbers below four.
+        let (q, xi) = alone(&mut GaussAdaptive::<8>::new(1e-11), 1.0);
+        assert_at(&q, xi, 1e2 * 1e-11);
     }
 }
