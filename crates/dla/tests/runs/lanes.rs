@@ -108,19 +108,19 @@ proptest! {
         let states: Vec<_> = members.iter().map(|(_, start, _)| *start).collect();
         let state = LaneState::new(&states, [false, false, true]);
         let free: [Sleigh; W] = std::array::from_fn(|i| members[i].0);
-        let mut cyclic = GaussEnsemble::<_, _, 4, W, 3, 1>::new(Each(&free), (0.0, h), true, state).unwrap();
-        cyclic.advance(run.1);
+        let mut alike = GaussEnsemble::<_, _, 4, W, 3, 1>::new(Each(&free), (0.0, h), state).unwrap();
+        alike.advance(run.1);
         let bowls: [_; W] = std::array::from_fn(|i| {
             With { body: free[i], effects: Bowl::new([members[i].2, 0.1], [0.5, 0.0]).unwrap() }
         });
-        let mut bowl = GaussEnsemble::<_, _, 8, W, 3, 1>::new(Each(&bowls), (0.0, h), false, state).unwrap();
+        let mut bowl = GaussEnsemble::<_, _, 8, W, 3, 1>::new(Each(&bowls), (0.0, h), state).unwrap();
         bowl.advance(run.1);
         for (lane, (sleigh, start, _)) in members.iter().enumerate() {
             let t = h * run.1 as f64;
             // The stages are found to rounding by both, and the well adds forces of some newtons to what the spin lets grow.
             let tolerance = 4.0 * rounding(sleigh, start, run) * (t * 3.0).exp();
             let expected = alone(sleigh, Gauss::<4>::default(), run, start).unwrap();
-            assert_same(&cyclic, lane, &expected, tolerance);
+            assert_same(&alike, lane, &expected, tolerance);
             let expected = alone(&bowls[lane], Gauss::<8>::default(), run, start).unwrap();
             assert_same(&bowl, lane, &expected, tolerance);
         }
@@ -144,7 +144,7 @@ fn a_lane_that_fails_leaves_the_others_alone() {
     let rest = reduced(&SleighState { speed: 0.0, turn_rate: 0.0, ..backward() });
     let states: Vec<_> = (0..W).map(|i| if i == 3 { reduced(&quick) } else { rest }).collect();
     let state = LaneState::new(&states, [false, false, true]);
-    let mut ensemble = GaussEnsemble::<_, _, 4, W, 3, 1>::new(Same(&sleigh), (0.0, 40.0), true, state).unwrap();
+    let mut ensemble = GaussEnsemble::<_, _, 4, W, 3, 1>::new(Same(&sleigh), (0.0, 40.0), state).unwrap();
     ensemble.advance(2);
     assert!((0..W).all(|lane| ensemble.state().is_finite(lane) == (lane != 3)));
 }
@@ -155,8 +155,8 @@ fn one_system_for_all_is_as_each_its_own() {
     let state = LaneState::new(&states, [false, false, true]);
     let bowl = With { body: sleigh(), effects: Bowl::new([0.1, 0.2], [0.0, 0.0]).unwrap() };
     let bowls: [_; W] = std::array::from_fn(|_| bowl.clone());
-    let mut same = GaussEnsemble::<_, _, 8, W, 3, 1>::new(Same(&bowl), (0.0, 0.5), false, state).unwrap();
-    let mut each = GaussEnsemble::<_, _, 8, W, 3, 1>::new(Each(&bowls), (0.0, 0.5), false, state).unwrap();
+    let mut same = GaussEnsemble::<_, _, 8, W, 3, 1>::new(Same(&bowl), (0.0, 0.5), state).unwrap();
+    let mut each = GaussEnsemble::<_, _, 8, W, 3, 1>::new(Each(&bowls), (0.0, 0.5), state).unwrap();
     same.advance(40);
     each.advance(40);
     assert!((0..W).all(|lane| same.state().q(lane) == each.state().q(lane)));
@@ -171,7 +171,7 @@ fn time_goes_on_in_lanes() {
     let starts: Vec<_> = (0..W).map(|i| reduced(&SleighState { speed: 0.05 * i as f64, ..backward() })).collect();
     let state = LaneState::new(&starts, [false, false, true]);
     let (t0, h) = (0.7, 0.1);
-    let mut ensemble = GaussEnsemble::<_, _, 4, W, 3, 1>::new(Same(&system), (t0, h), false, state).unwrap();
+    let mut ensemble = GaussEnsemble::<_, _, 4, W, 3, 1>::new(Same(&system), (t0, h), state).unwrap();
     ensemble.advance(7);
     ensemble.advance(13);
     for (lane, start) in starts.iter().enumerate() {
@@ -218,7 +218,7 @@ fn stages_in_lanes_settle_with_the_slowest() {
         (0..W).map(|lane| reduced(&SleighState { turn_rate: 0.1 * lane as f64, ..backward() })).collect();
     let begin = LaneState::new(&starts, [false, false, true]);
     let run = |settled: Option<f64>| {
-        let mut ensemble = GaussEnsemble::<_, _, 4, W, 3, 1>::new(Same(&sleigh), (0.0, h), true, begin).unwrap();
+        let mut ensemble = GaussEnsemble::<_, _, 4, W, 3, 1>::new(Same(&sleigh), (0.0, h), begin).unwrap();
         ensemble.settled = settled.unwrap_or(ensemble.settled);
         ensemble.advance(steps);
         ensemble
@@ -235,9 +235,8 @@ fn stages_in_lanes_settle_with_the_slowest() {
     let alone: u32 = most.iter().sum();
     let (whole, loose) = (run(None), run(Some(1e-7)));
     println!("{} sweeps, alone {alone}, to 1e-7 {}", whole.sweeps(), loose.sweeps());
-    // Alone the next change is to be a sixteenth of a rounding: an iteration more, or two.
-    let longer = u64::from(alone).checked_sub(whole.sweeps());
-    assert!(longer.is_some_and(|longer| longer <= 2 * steps), "{} sweeps, alone {alone}", whole.sweeps());
+    // By the same rule; that of lanes takes one contraction for all components, so it may be an iteration off.
+    assert!(whole.sweeps().abs_diff(u64::from(alone)) <= steps, "{} sweeps, alone {alone}", whole.sweeps());
     assert!(2 * loose.sweeps() < whole.sweeps(), "{} sweeps to 1e-7, {} to rounding", loose.sweeps(), whole.sweeps());
     for lane in 0..W {
         let ([u, omega, _], [u1, omega1, _]) = (whole.state().xi(lane), loose.state().xi(lane));
@@ -288,7 +287,7 @@ fn a_direction_that_turns() {
     let t1 = t0 + h * steps as f64;
     let starts: Vec<_> = (0..W).map(|lane| ([0.0; 2], [0.1 * lane as f64, 0.0])).collect();
     let begin = LaneState::new(&starts, [false; 2]);
-    let mut ensemble = GaussEnsemble::<_, _, 8, W, 2, 1>::new(Same(&Turning), (t0, h), false, begin).unwrap();
+    let mut ensemble = GaussEnsemble::<_, _, 8, W, 2, 1>::new(Same(&Turning), (t0, h), begin).unwrap();
     ensemble.advance(steps);
     for (lane, (q, xi)) in starts.iter().enumerate() {
         let (place, speed) = Turning::at(t1, (t0, xi[0]));
@@ -318,4 +317,33 @@ fn a_direction_that_turns() {
         let (q, xi) = alone(&mut GaussAdaptive::<8>::new(1e-11), 1.0);
         assert_at(&q, xi, 1e2 * 1e-11);
     }
+}
+
+/// What the steps of an ensemble leave out does not add up: the energy of each wanders by rounding, as that of one alone.
+#[test]
+fn many_steps_lose_no_energy_but_by_rounding() {
+    let bowl = With { body: sleigh(), effects: Bowl::new([0.1, 0.1], [0.0, 0.0]).unwrap() };
+    let states: Vec<_> = (0..W).map(|i| reduced(&SleighState { turn_rate: 0.05 * i as f64, ..backward() })).collect();
+    let wander = |settled: Option<f64>| {
+        let state = LaneState::new(&states, [false, false, true]);
+        let mut ensemble = GaussEnsemble::<_, _, 4, W, 3, 1>::new(Same(&bowl), (0.0, 0.05), state).unwrap();
+        ensemble.settled = settled.unwrap_or(ensemble.settled);
+        ensemble.advance(STEPS);
+        let energy = |q: &[f64; 3], xi: &[f64; 3]| {
+            let v = velocity_of(&bowl, 0.0, q, xi).unwrap();
+            lagrangian::energy(&bowl, 0.0, q, &v)
+        };
+        let off = |lane: usize| {
+            let (q, xi) = (ensemble.state().q(lane), ensemble.state().xi(lane));
+            let before = energy(&states[lane].0, &states[lane].1);
+            (energy(&q, &xi) - before).abs() / before
+        };
+        (0..W).map(off).fold(0.0, f64::max)
+    };
+    const STEPS: u64 = 100_000;
+    // Sums that are rounded by less than `eps E` in every step are off by five times this once in a million.
+    let walk = 5.0 * f64::EPSILON * (STEPS as f64).sqrt();
+    let [kept, lost] = [None, Some(1e-9)].map(wander);
+    assert!(kept < walk, "{kept:e} of {walk:e}");
+    assert!(lost > walk, "{lost:e} of {walk:e}");
 }
