@@ -2,6 +2,7 @@
 
 use crate::tools::{Place, assert_order, distance, end, misses};
 use dla::{Composition, Dla, Energy, Form, Gauss, Gni, Lobatto, OneStep, State, StepError};
+use lagrangian::{Constraint, Scalar, System};
 use models::{CompoundPendulum, Model, SleighOnArm};
 
 fn sleigh() -> SleighOnArm {
@@ -99,4 +100,32 @@ fn methods_that_would_drift_refuse() {
     };
     check(&mut Energy::<1>::new());
     check(&mut Gni::default());
+}
+
+/// A particle on the line `y = sin t`, which moves.
+struct Lift;
+
+impl System<2, 1> for Lift {
+    fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 2], v: &[S; 2]) -> S {
+        (v[0] * v[0] + v[1] * v[1]) * 0.5 - q[1]
+    }
+    fn constraint<S: Scalar>(&self, t: S, q: &[S; 2]) -> Constraint<S, 2, 1> {
+        lagrangian::position_rows(self, t, q)
+    }
+    fn holonomic<S: Scalar>(&self, t: S, q: &[S; 2]) -> Option<[Option<S>; 1]> {
+        Some([Some(q[1] - t.sin())])
+    }
+}
+
+/// A node is on the constraint of its own time.
+#[test]
+fn positions_that_move() {
+    let mut state = State::new([0.0, 0.7f64.sin()], [0.4, 0.7f64.cos()], [false; 2]);
+    for k in 0..20 {
+        let t = 0.7 + 0.1 * f64::from(k);
+        OneStep::<_, 2, 1>::step(&mut Dla::midpoint(), &Lift, t, 0.1, &mut state).unwrap();
+        let t = t + 0.1;
+        approx::assert_abs_diff_eq!(&state.q()[..], &[0.4 * (t - 0.7), t.sin()][..], epsilon = 8.0 * f64::EPSILON);
+        approx::assert_abs_diff_eq!(&state.v()[..], &[0.4, t.cos()][..], epsilon = 8.0 * f64::EPSILON);
+    }
 }

@@ -179,8 +179,9 @@ fn loses_the_work<Method: OneStep<Damped, 3, 1>>(mut method: Method, work: impl 
     let mut total = 0.0;
     for k in 0..400 {
         let before = at(&state);
-        method.step(&system, f64::from(k) * 0.1, 0.1, &mut state).unwrap();
+        let report = method.step(&system, f64::from(k) * 0.1, 0.1, &mut state).unwrap();
         let (lost, done) = (at(&state) - before, work(&method));
+        assert_eq!(report.work, Some(done));
         assert!((lost - done).abs() < 1e-14, "step {k}: {lost:e} of {done:e}");
         assert!(done <= 0.0);
         total += done;
