@@ -1,6 +1,6 @@
 use crate::{sleigh, state_of};
-use dla::{Dla, Form, Gauss, Hint, History, Newton, OneStep, Schedule, Stage, StepError, Trajectory, drive};
-use lagrangian::Midpoint;
+use dla::{Dla, Form, Gauss, Hint, History, Newton, OneStep, Schedule, Stage, State, StepError, Trajectory, drive};
+use lagrangian::{Constraint, Midpoint, Scalar, System};
 use sleigh::SleighState;
 
 fn start(speed: f64, turn_rate: f64) -> SleighState {
@@ -173,5 +173,44 @@ fn a_step_beyond_all_measure() {
         let mut state = state_of(&start(-1.0, 1e10));
         let error = Dla::midpoint().solved(form).step(&sleigh, 0.0, 1.0, &mut state).unwrap_err();
         assert!(error.hint().is_some(), "{error}");
+    }
+}
+
+/// A particle of mass 1 along `x`, in a brake that acts for a while, about the time 0.75 s, or in a gap, from 0.304 m to 0.36 m.
+struct Brake {
+    strength: f64,
+    gap: bool,
+}
+
+impl System<2, 1> for Brake {
+    fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 2], v: &[S; 2]) -> S {
+        (v[0] * v[0] + v[1] * v[1]) * 0.5
+    }
+    fn constraint<S: Scalar>(&self, _t: S, _q: &[S; 2]) -> Constraint<S, 2, 1> {
+        ([[S::zero(), S::constant(1.0)]], [S::zero()])
+    }
+    fn force<S: Scalar>(&self, t: S, q: &[S; 2], v: &[S; 2]) -> Option<[S; 2]> {
+        let step = |x: S| (((x * -2000.0).exp()) + 1.0).recip();
+        let acts = if self.gap {
+            step(q[0] - 0.304) - step(q[0] - 0.36)
+        } else {
+            (((t - 0.75) * 100.0).squared() * -1.0).exp()
+        };
+        Some([acts * v[0] * -self.strength, S::zero()])
+    }
+}
+
+/// Whether a brake would turn a velocity round is seen in the middle of the step, where the rule has it act.
+#[test]
+fn a_brake_in_the_middle_of_a_step() {
+    for gap in [false, true] {
+        let step = |strength: f64| {
+            let mut state = State::new([0.3, 0.0], [1.0, 0.0], [false; 2]);
+            OneStep::<_, 2, 1>::step(&mut Dla::midpoint(), &Brake { strength, gap }, 0.7, 0.1, &mut state)
+                .map(|_| state.v()[0])
+        };
+        assert!(matches!(step(100.0), Err(StepError::Overshoot { .. })), "{:?}", step(100.0));
+        // The control: with `h c/2 = 1/2` it leaves a third of the velocity.
+        approx::assert_relative_eq!(step(10.0).unwrap(), 1.0 / 3.0, max_relative = 1e-14);
     }
 }
