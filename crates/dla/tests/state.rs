@@ -282,3 +282,12 @@ fn states_after_other_steps_differ() {
     // A step of another length begins anew.
     assert_eq!(after(&[0.5]), after(&[0.25, 0.5]));
 }
+
+/// What would not be a finite place or velocity is refused before the state has moved.
+#[test]
+fn a_step_stays_among_the_numbers() {
+    let state = State::new([1e308, 0.0], [0.0; 2], [false; 2]);
+    assert!(state.stays_finite(&[0.5e308, 1.0], &[0.0; 2]).is_ok());
+    assert!(state.stays_finite(&[1e308, 0.0], &[0.0; 2]).is_err());
+    assert!(state.stays_finite(&[0.0; 2], &[0.0, f64::NAN]).is_err());
+}

@@ -75,6 +75,11 @@ fn samples_at_nodes_are_the_nodes() {
     let mut half = state_of(&backward());
     drive(&sleigh, &mut Dla::midpoint(), &Schedule { steps: 40, ..schedule(80) }, &mut half, ()).unwrap();
     assert_eq!(samples.taken()[3], half);
+    // A run without a step has its start.
+    let (none, mut state) = (Schedule { steps: 0, ..schedule(80) }, state_of(&backward()));
+    let mut samples = Samples::new(Dla::midpoint(), &times);
+    drive(&sleigh, &mut Dla::midpoint(), &none, &mut state, &mut samples).unwrap();
+    assert_eq!(samples.taken(), &[state]);
 
     // Backward in time, from the end.
     let times = [8.0, 3.3];
