@@ -3,10 +3,11 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use dla::{Checkpoint, Dla, OneStep, State};
-use lagrangian::Twofold;
+use dla::{Checkpoint, Dla, Form, OneStep, State};
+use lagrangian::{System, Twofold, With};
 use proptest::prelude::*;
-use sleigh::Sleigh;
+use sleigh::effects::{Bowl, Drag, EggCrate};
+use sleigh::{Sleigh, SleighState};
 use std::f64::consts::{PI, TAU};
 
 /// `2 pi` in units of `2^-100`, exact to one of them.
@@ -290,4 +291,35 @@ fn a_step_stays_among_the_numbers() {
     assert!(state.stays_finite(&[0.5e308, 1.0], &[0.0; 2]).is_ok());
     assert!(state.stays_finite(&[1e308, 0.0], &[0.0; 2]).is_err());
     assert!(state.stays_finite(&[0.0; 2], &[0.0, f64::NAN]).is_err());
+}
+
+/// The search of a step begins from what the state remembers: from five steps of the same length it needs two corrections, the second
+/// of which sees that it has settled; from the acceleration alone more, and more still from the velocity.
+#[test]
+fn what_a_state_remembers_shortens_the_next_search() {
+    const STEPS: u32 = 200;
+    let body = Sleigh::new(1.3, 0.8, 0.4).unwrap();
+    let crowd = (Bowl::new([0.7, 0.4], [0.2, -0.1]).unwrap(), EggCrate::new(0.3, [1.0, 1.2]).unwrap());
+    let system = With { body, effects: (crowd, Drag::new(0.1, 0.1).unwrap()) };
+    let corrections = |h: &dyn Fn(u32) -> f64, forget: bool| {
+        let start = SleighState { x: 0.3, y: -0.2, heading: 0.4, speed: -1.0, turn_rate: 0.7 };
+        let (q, v) = start.to_coordinates();
+        let mut state = State::new(q, v, system.angles());
+        let mut method = Dla::midpoint().solved(Form::General);
+        let steps = (0..STEPS).map(|k| {
+            if forget {
+                state = State::new(*state.q(), *state.v(), system.angles());
+            }
+            // Nothing depends on the time.
+            method.step(&system, 0.0, h(k), &mut state).unwrap().iterations
+        });
+        steps.sum::<u32>()
+    };
+    let same = corrections(&|_| 0.1, false);
+    let other = corrections(&|k| if k % 2 == 0 { 0.1 } else { 0.09 }, false);
+    let forgetful = corrections(&|_| 0.1, true);
+    println!("{same} corrections, {other} at steps of two lengths, {forgetful} without memory");
+    // The first five steps begin from the acceleration.
+    assert!(same <= 2 * STEPS + 5 * 3, "{same} corrections");
+    assert!(same + STEPS / 2 < other && other + STEPS / 2 < forgetful, "{same}, {other}, {forgetful}");
 }
