@@ -164,6 +164,19 @@ fn steps_of_their_own_length_meet_a_tolerance() {
         assert!(error < 1e2 * tolerance + 1e-12, "{error:e} at the tolerance {tolerance:e}");
         assert!(error < last.0 && iterations > last.1, "tighter is more exact, and more work");
         last = (error, iterations);
+        if exponent >= -10 {
+            // Nor is it much smaller, and constant steps that meet the tolerance take more iterations.
+            assert!(error > 1e-3 * tolerance, "{error:e} at the tolerance {tolerance:e}");
+            let constant = (2..60).find_map(|steps| {
+                let (mut state, mut method, h) = (begin, Gauss::<8>::default(), 20.0 / f64::from(steps));
+                let made =
+                    (0..steps).map(|_| method.step(&bowl, 0.0, h, &mut state).ok().map(|report| report.iterations));
+                let made = made.sum::<Option<u32>>()?;
+                let off = (0..3).map(|i| (state.unwrapped()[i] - exact.unwrapped()[i]).abs()).fold(0.0, f64::max);
+                (off < tolerance).then_some(made)
+            });
+            assert!(iterations < constant.unwrap(), "{iterations} iterations, {constant:?} at constant steps");
+        }
         let slip = constraint_residual(&bowl, 0.0, end.q(), end.v());
         assert_abs_diff_eq!(slip[0], 0.0, epsilon = 4.0 * f64::EPSILON);
     }
