@@ -209,7 +209,14 @@ impl Equations {
 
 /// The coordinates of a joint at the end of a step with the mean velocity `v`, those that have an origin measured from it: the
 /// difference keeps the digits that the coordinates have lost far away.
-fn relative(placed: &Placed, origins: &[Option<usize>], h: f64, state: &State, v: &[f64], then: impl FnOnce(&[f64])) {
+pub(crate) fn relative(
+    placed: &Placed,
+    origins: &[Option<usize>],
+    h: f64,
+    state: &State,
+    v: &[f64],
+    then: impl FnOnce(&[f64]),
+) {
     let mut q1 = [0.0; WIDEST];
     for (k, origin) in origins.iter().enumerate() {
         q1[k] = match origin {
