@@ -55,7 +55,7 @@ pub use gni::Gni;
 pub use hermite::Hermite;
 pub use hint::Hint;
 pub use history::History;
-pub use lobatto::Lobatto;
+pub use lobatto::{Linearised as LinearisedStage, Lobatto, Point as StagePoint, Tables as LobattoTables};
 pub use newton::{Equations, Newton, NewtonError};
 pub use one_step::{OneStep, Stage, StepError, StepReport};
 pub use pieces::{onto_constraint, piece_by_piece, piece_by_piece_from, pieces};

@@ -3,6 +3,7 @@
 
 mod cost;
 mod energy;
+mod lobatto;
 mod long;
 mod models;
 mod same;
