@@ -25,8 +25,8 @@ mod watched;
 
 pub use again::Again;
 pub use assembled::{
-    Assembled, AssemblyCrossing, AssemblyEvent, AssemblyNode, assembly_end, assembly_method, recommend_assembly, run_assembly,
-    run_assembly_saved, run_assembly_watched,
+    Assembled, AssemblyCrossing, AssemblyEvent, AssemblyNode, assembly_end, assembly_method, recommend_assembly,
+    run_assembly, run_assembly_saved, run_assembly_watched,
 };
 pub use baseline::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced};
 pub use cost::{StepCost, step_cost};

@@ -109,8 +109,7 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
         let mut found = Vec::new();
         for (index, event) in self.events.iter().enumerate() {
             let value = |at: f64| step.state(at).map_or(f64::NAN, |state| event.value(step.time(at), &state));
-            let known: Vec<_> =
-                states.iter().map(|(at, state)| (*at, event.value(step.time(*at), state))).collect();
+            let known: Vec<_> = states.iter().map(|(at, state)| (*at, event.value(step.time(*at), state))).collect();
             let tolerance = self.tolerance / step.h.abs();
             for Zero { at, within, rising } in zeros(&known, tolerance, |rising| event.counts(rising), value) {
                 let Some(state) = step.state(at) else { continue };

@@ -22,8 +22,11 @@ pub fn zeros(
     counts: impl Fn(bool) -> bool,
     mut f: impl FnMut(f64) -> f64,
 ) -> Vec<Zero> {
-    let points: Vec<Point> =
-        known.iter().map(|(at, value)| Point { at: *at, value: *value }).filter(|point| !point.value.is_nan()).collect();
+    let points: Vec<Point> = known
+        .iter()
+        .map(|(at, value)| Point { at: *at, value: *value })
+        .filter(|point| !point.value.is_nan())
+        .collect();
     let found = isolate(&points, &mut f).into_iter().filter(|(from, _)| counts(from.value < 0.0));
     let found: Vec<(Point, Point)> = found.collect();
     let zero = |(from, to): (Point, Point)| {

@@ -1,5 +1,5 @@
-use super::making::{Making, Ticker};
 use super::Assembled;
+use super::making::{Making, Ticker};
 use crate::{Method, Progress, Saving};
 use assembly::{Assembly, State};
 use dla::{CheckpointError, Schedule};
@@ -30,7 +30,8 @@ pub fn run_assembly_saved(
     progress.advance(making.made);
     let mut ticker = Ticker::new(progress, making.made);
     loop {
-        let next = saving.every.map_or(schedule.steps, |every| (making.made / every).saturating_add(1).saturating_mul(every));
+        let next =
+            saving.every.map_or(schedule.steps, |every| (making.made / every).saturating_add(1).saturating_mul(every));
         making.go(next.min(schedule.steps), &mut ticker, |_, _| ControlFlow::Continue(()));
         if saving.every.is_some() && !making.failed() {
             (saving.save)(&making.checkpoint(saving.identity));
