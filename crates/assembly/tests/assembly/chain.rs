@@ -1,37 +1,43 @@
 //! A chain of unlike blades that rolls over hills, its own weight on each.
 use crate::tools::{bent, slope, weighted};
 use assembly::parts::Train;
-use assembly::{Dla, OneStep, Solver};
+use assembly::{Dla, Energy, OneStep, Solver};
 
-/// The largest relative energy error of a run, of its first tenth and of all of it.
-fn errors(train: &Train, h: f64, duration: f64) -> [f64; 2] {
-    let assembly = &train.assembly;
-    let (mut state, mut method) = (bent(train), Dla::new(assembly, Solver::Best).unwrap());
+const DURATION: f64 = 40.0;
+
+/// The largest relative energy error of a run.
+fn error(train: &Train, method: &mut dyn OneStep, h: f64) -> f64 {
+    let (assembly, mut state) = (&train.assembly, bent(train));
     let initial = assembly.energy(0.0, &state);
-    let steps = (duration / h).round() as u32;
-    let (mut most, mut first) = (0.0f64, 0.0);
-    for k in 0..steps {
+    let mut most = 0.0f64;
+    for k in 0..(DURATION / h).round() as u32 {
         method.step(assembly, f64::from(k) * h, h, &mut state).unwrap();
         most = most.max(((assembly.energy(0.0, &state) - initial) / initial).abs());
-        if k == steps / 10 {
-            first = most;
-        }
     }
-    [first, most]
+    most
 }
 
-/// The error is of the second order in the step, and no larger after ten times the time than what chance makes of a bounded
-/// oscillation; the positive control loses energy to a drag so small that ten times the time shows it.
+/// The exponent of the step in the error, and the error with the shortest.
+fn fitted(train: &Train) -> (f64, f64) {
+    let points = [0.04, 0.02, 0.01].map(|h| {
+        let error = error(train, &mut Dla::new(&train.assembly, Solver::Best).unwrap(), h);
+        (f64::ln(h), error.ln())
+    });
+    (slope(&points), points[2].1.exp())
+}
+
+/// Whatever the chain does for forty seconds, the midpoint rule bounds its energy error by the square of the step. The positive
+/// control is a drag, too weak to see in the motion: what it takes does not shrink with the step. (In the long run the energy of
+/// such a chain drifts, by the second order too: `docs/guide/many-bodies.md` has how far. That of `energy2` does not.)
 #[test]
-fn its_energy_is_bounded_and_of_second_order() {
+fn its_energy_error_is_of_second_order() {
     let chain = weighted(10, 0.0);
-    let runs = [0.04, 0.02, 0.01].map(|h| (h, errors(&chain, h, 40.0)));
-    println!("{runs:?}");
-    let order = slope(&runs.map(|(h, [_, all])| (f64::ln(h), all.ln())));
-    assert!((order - 2.0).abs() < 0.25, "order {order}");
-    let growth = |[first, all]: [f64; 2]| all / first;
-    let control = errors(&weighted(10, 1e-3), 0.01, 40.0);
-    println!("order {order}, {} against {}", growth(runs[2].1), growth(control));
-    assert!(growth(runs[2].1) < 5.0);
-    assert!(control[1] > 10.0 * runs[2].1[1]);
+    let ((order, least), (control, taken)) = (fitted(&chain), fitted(&weighted(10, 1e-4)));
+    println!("order {order}, {least:e}; with drag {control}, {taken:e}");
+    assert!((order - 2.0).abs() < 0.1, "order {order}");
+    assert!(control < 0.5 && taken > 10.0 * least, "{control}");
+    let kept = error(&chain, &mut Energy::new(&chain.assembly, Solver::Best).unwrap(), 0.04);
+    println!("energy2: {kept:e}");
+    // A thousand steps of rounding that walks at random.
+    assert!(kept < 4.0 * f64::EPSILON * 1000f64.sqrt(), "{kept:e}");
 }
