@@ -227,15 +227,25 @@ pub(crate) fn relative(
     then(&q1[..origins.len()]);
 }
 
-/// The mean velocity of a step, if the accelerations are those of the last one; `v0` where these are not known, or would
-/// change the velocity so much that a search from there might lead elsewhere.
+/// The mean velocity of a step, extrapolated from those of the last five, or if the accelerations are those of the last one;
+/// `v0` where neither is known, or would change the velocity so much that a search from there might lead elsewhere.
 fn predict(state: &State, h: f64, v0: &[f64], v: &mut [f64]) {
     const MOST: f64 = 0.125;
-    v.copy_from_slice(v0);
-    let gained = |i: usize| state.acceleration(i).map(|a| 0.5 * h * a);
-    let most = (0..v0.len()).try_fold(0.0, |most, i| gained(i).map(|gained| larger(most, gained)));
-    if most.is_some_and(|most| most <= MOST * largest(v0)) {
-        v.iter_mut().enumerate().for_each(|(i, v)| *v += gained(i).unwrap_or(0.0));
+    let gained = |i: usize| {
+        let expected = state.expected(i, h).map(|dq| dq / h - v0[i]);
+        expected.or_else(|| state.acceleration(i).map(|a| 0.5 * h * a))
+    };
+    let mut most = 0.0;
+    for (i, v) in v.iter_mut().enumerate() {
+        let Some(gained) = gained(i) else {
+            most = f64::INFINITY;
+            break;
+        };
+        *v = v0[i] + gained;
+        most = larger(most, gained);
+    }
+    if most > MOST * largest(v0) || most.is_nan() {
+        v.copy_from_slice(v0);
     }
 }
 

@@ -58,6 +58,12 @@ impl State {
         self.coordinates[i].acceleration().map(|[a]| a)
     }
 
+    /// The increment of a coordinate in a step of length `h`, extrapolated from the last ones where these were as long.
+    #[inline(always)]
+    pub(crate) fn expected(&self, i: usize, h: f64) -> Option<f64> {
+        self.coordinates[i].expected(h).map(|[dq]| dq)
+    }
+
     /// A coordinate at the end of a step with this increment, before the state has moved there.
     #[inline(always)]
     pub(crate) fn ahead(&self, i: usize, increment: f64) -> f64 {

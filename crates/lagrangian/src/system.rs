@@ -97,14 +97,21 @@ pub trait System<const N: usize, const M: usize> {
         None
     }
 
-    /// Whether the equations of the quasi-velocities stand alone, `xi' = f(xi)` without time and place, as those of a free body
-    /// do (Euler-Poincare-Suslov equations; Bloch 2015, section 5.7): then after how many quadratures `v` is known from `xi`.
+    /// After how many quadratures the configuration is known from the quasi-velocities over time, where it is a cascade: zero
+    /// says that the basis is constant; one, that it depends on coordinates alone whose rates are combinations of `xi` with
+    /// constant coefficients. (The reconstruction equation; Bloch 2015, section 5.7.)
     ///
-    /// Zero says that the basis is constant; one, that it depends on coordinates whose rates are combinations of `xi` with
-    /// constant coefficients. A collocation then iterates on the quasi-velocities only.
+    /// A collocation then iterates on the quasi-velocities alone, and each iteration is a whole cascade.
     #[inline(always)]
     fn reconstruction(&self) -> Option<u32> {
         None
+    }
+
+    /// Whether the equations of the quasi-velocities stand alone, `xi' = f(xi)` without time and place, as those of a free body
+    /// do (Euler-Poincare-Suslov equations; Bloch 2015, section 5.7). The configuration then waits until they are solved.
+    #[inline(always)]
+    fn stands_alone(&self) -> bool {
+        false
     }
 
     /// What one more generalised force would add to [`System::motion`], where that is known by hand.

@@ -111,7 +111,12 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
 
     #[inline(always)]
     fn reconstruction(&self) -> Option<u32> {
-        if self.effects.is_none() { self.body.reconstruction() } else { None }
+        self.body.reconstruction()
+    }
+
+    #[inline(always)]
+    fn stands_alone(&self) -> bool {
+        self.effects.is_none() && self.body.stands_alone()
     }
 
     #[inline(always)]

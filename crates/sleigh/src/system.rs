@@ -73,6 +73,11 @@ impl System<3, 1> for Sleigh {
         Some(1)
     }
 
+    #[inline(always)]
+    fn stands_alone(&self) -> bool {
+        true
+    }
+
     /// `u' = (e . f) / m`, `omega' = tau / J`.
     #[inline(always)]
     fn reduced_response<S: Scalar>(&self, _t: S, q: &[S; 3], &[fx, fy, tau]: &[S; 3]) -> Option<[S; 3]> {

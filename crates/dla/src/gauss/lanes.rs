@@ -45,6 +45,21 @@ pub(super) struct Stages<'a, Sys, const N: usize, const M: usize> {
     pub(super) ending: Ending<N>,
 }
 
+/// The rule of collocation in registers.
+struct Along<S: Simd, const R: usize> {
+    /// Not times h: rounded so, the coefficients would lose the symmetry that they have to the last bit.
+    columns: [Pack<S, R>; 8],
+    h: Pack<S, R>,
+}
+
+impl<S: Simd, const R: usize> Along<S, R> {
+    /// `from + h A slopes`.
+    #[inline(always)]
+    fn from(&self, from: f64, slopes: &Pack<S, R>) -> Wide<S, R> {
+        Wide::Each(slopes.times(&self.columns).mul_add(self.h, Pack::splat(self.h.simd(), from)))
+    }
+}
+
 /// What came of a search.
 pub(super) enum Outcome<const N: usize> {
     /// The system does not know its reduced equations by hand.
@@ -64,7 +79,73 @@ pub(super) struct Found<const N: usize> {
 }
 
 impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
-    /// `q' = W xi + v_b` and `xi'` in every stage.
+    /// The places of the stages where nothing moves.
+    #[inline(always)]
+    fn still<S: Simd, const R: usize>(&self, simd: S) -> [Wide<S, R>; N] {
+        self.q0.map(|q| Wide::Each(Pack::splat(simd, q)))
+    }
+
+    /// The places of the stages.
+    #[inline(always)]
+    fn q<S: Simd, const R: usize>(&self, along: &Along<S, R>, v: &[Pack<S, R>; N]) -> [Wide<S, R>; N] {
+        from_fn(|k| along.from(self.q0[k], &v[k]))
+    }
+
+    /// The quasi-velocities of the stages.
+    #[inline(always)]
+    fn xi<S: Simd, const R: usize>(&self, along: &Along<S, R>, a: &[Pack<S, R>; N]) -> [Wide<S, R>; N] {
+        from_fn(|k| if k < N - M { along.from(self.xi0[k], &a[k]) } else { Wide::Zero })
+    }
+
+    /// The velocities of quasi-velocities, one quadrature after another.
+    #[inline(always)]
+    fn reconstructed<S: Simd, const R: usize>(
+        &self,
+        along: &Along<S, R>,
+        quadratures: u32,
+        xi: &[Wide<S, R>; N],
+    ) -> Option<[Pack<S, R>; N]> {
+        let simd = along.h.simd();
+        let mut v = self.velocity(simd, &self.still(simd), xi)?;
+        // The first by itself: what is not needed of it is then not computed.
+        if quadratures > 0 {
+            v = self.velocity(simd, &self.q(along, &v), xi)?;
+        }
+        for _ in 1..quadratures {
+            v = self.velocity(simd, &self.q(along, &v), xi)?;
+        }
+        Some(v)
+    }
+
+    /// The times of the stages.
+    #[inline(always)]
+    fn times<S: Simd, const R: usize>(&self, simd: S) -> Wide<S, R> {
+        Wide::Each(Pack::load(simd, &self.rule.nodes.map(|node| self.t + node * self.h)))
+    }
+
+    /// `q' = W xi + v_b` in every stage.
+    #[inline(always)]
+    fn velocity<S: Simd, const R: usize>(
+        &self,
+        simd: S,
+        q: &[Wide<S, R>; N],
+        xi: &[Wide<S, R>; N],
+    ) -> Option<[Pack<S, R>; N]> {
+        Some(velocity_of(self.system, self.times(simd), q, xi).ok()?.map(|x| x.pack(simd)))
+    }
+
+    /// `xi'` in every stage.
+    #[inline(always)]
+    fn acceleration<S: Simd, const R: usize>(
+        &self,
+        simd: S,
+        q: &[Wide<S, R>; N],
+        xi: &[Wide<S, R>; N],
+    ) -> Option<[Pack<S, R>; N]> {
+        Some(self.system.reduced_motion(self.times(simd), q, xi)?.map(|x| x.pack(simd)))
+    }
+
+    /// Both.
     #[inline(always)]
     fn slopes<S: Simd, const R: usize>(
         &self,
@@ -72,10 +153,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
         q: &[Wide<S, R>; N],
         xi: &[Wide<S, R>; N],
     ) -> Option<Packed<S, R, N>> {
-        let t = Wide::Each(Pack::load(simd, &self.rule.nodes.map(|node| self.t + node * self.h)));
-        let velocity = velocity_of(self.system, t, q, xi).ok()?;
-        let acceleration = self.system.reduced_motion(t, q, xi)?;
-        Some((velocity.map(|x| x.pack(simd)), acceleration.map(|x| x.pack(simd))))
+        Some((self.velocity(simd, q, xi)?, self.acceleration(simd, q, xi)?))
     }
 }
 
@@ -84,16 +162,12 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
 
     #[inline(always)]
     fn run<S: Simd, const R: usize>(self, simd: S) -> Outcome<N> {
-        // Not times h: rounded so, the coefficients would lose the symmetry that they have to the last bit.
-        let columns: [Pack<S, R>; 8] = from_fn(|j| Pack::load(simd, &self.rule.columns[j]));
-        let h = Pack::splat(simd, self.h);
-        let along = |k: usize, slopes: &[Pack<S, R>; N], from: f64| {
-            Wide::Each(slopes[k].times(&columns).mul_add(h, Pack::splat(simd, from)))
+        let along = Along::<S, R> {
+            columns: from_fn(|j| Pack::load(simd, &self.rule.columns[j])),
+            h: Pack::splat(simd, self.h),
         };
-        let xi_of = |a: &[Pack<S, R>; N]| from_fn(|k| if k < N - M { along(k, a, self.xi0[k]) } else { Wide::Zero });
-        let q_of = |v: &[Pack<S, R>; N]| from_fn(|k| along(k, v, self.q0[k]));
-        let still = || self.q0.map(|q| Wide::Each(Pack::splat(simd, q)));
-        let alone = self.system.reconstruction();
+        let cascade = self.system.reconstruction();
+        let alone = cascade.is_some() && self.system.stands_alone();
 
         let (mut v, mut a) = match self.before {
             Some(([velocity, acceleration], continued)) => {
@@ -103,7 +177,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
             }
             None => {
                 let xi = from_fn(|k| if k < N - M { Wide::Each(Pack::splat(simd, self.xi0[k])) } else { Wide::Zero });
-                match self.slopes(simd, &still(), &xi) {
+                match self.slopes(simd, &self.still(simd), &xi) {
                     Some(slopes) => slopes,
                     None => return Outcome::Unknown,
                 }
@@ -114,19 +188,15 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
         let (mut last, mut rate, mut iteration, mut stalled) = (f64::INFINITY, 1.0, 0, 0);
         loop {
             iteration += 1;
-            let xi = xi_of(&a);
-            let (v1, a1) = if alone.is_some() {
-                let t = Wide::Same(self.t);
-                match self.system.reduced_motion(t, &self.q0.map(Wide::Same), &xi) {
-                    Some(a1) => (v, a1.map(|x| x.pack(simd))),
-                    None => return Outcome::Unknown,
-                }
-            } else {
-                match self.slopes(simd, &q_of(&v), &xi) {
-                    Some(slopes) => slopes,
-                    None => return Outcome::Unknown,
-                }
+            let xi = self.xi(&along, &a);
+            let slopes = match cascade {
+                _ if alone => self.acceleration(simd, &self.still(simd), &xi).map(|a1| (v, a1)),
+                Some(quadratures) => self
+                    .reconstructed(&along, quadratures, &xi)
+                    .and_then(|v1| Some((v1, self.acceleration(simd, &self.q(&along, &v1), &xi)?))),
+                None => self.slopes(simd, &self.q(&along, &v), &xi),
             };
+            let Some((v1, a1)) = slopes else { return Outcome::Unknown };
             let zero = Pack::splat(simd, 0.0);
             let [sv, sa] = *scales.get_or_insert_with(|| {
                 let size = |x: &Pack<S, R>| zero.max_abs(*x).largest();
@@ -134,7 +204,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
             });
             let mut changes = zero;
             for k in 0..N {
-                if alone.is_none() {
+                if cascade.is_none() {
                     changes = changes.max_abs((v1[k] - v[k]) * sv[k]);
                 }
                 if k < N - M {
@@ -161,15 +231,11 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
             }
             last = moved;
         }
-        if let Some(quadratures) = alone {
-            let xi = xi_of(&a);
-            let mut q = still();
-            for _ in 0..=quadratures {
-                match self.slopes(simd, &q, &xi) {
-                    Some(slopes) => v = slopes.0,
-                    None => return Outcome::Unknown,
-                }
-                q = q_of(&v);
+        // The last accelerations' own.
+        if let Some(quadratures) = cascade {
+            match self.reconstructed(&along, quadratures, &self.xi(&along, &a)) {
+                Some(last) => v = last,
+                None => return Outcome::Unknown,
             }
         }
         let slopes = Slopes { velocity: v.map(|x| x.row()), acceleration: a.map(|x| x.row()) };

@@ -123,7 +123,12 @@ impl<B: System<3, M>, const M: usize> System<4, M> for Flywheel<B> {
 
     #[inline(always)]
     fn reconstruction(&self) -> Option<u32> {
-        if self.torque.is_none() && M == 1 { self.body.reconstruction() } else { None }
+        if M == 1 { self.body.reconstruction() } else { None }
+    }
+
+    #[inline(always)]
+    fn stands_alone(&self) -> bool {
+        self.torque.is_none() && M == 1 && self.body.stands_alone()
     }
 
     /// A torque on the rotor acts on the body the other way.
