@@ -8,6 +8,7 @@ pub use element::{Average, EnergyElement, Swing};
 
 use crate::assembly::Placed;
 use crate::contributions::gathered;
+use crate::dla::predict;
 use crate::settling::Settling;
 use crate::sparse::Sparse;
 use crate::{Assembly, AssemblyError, OneStep, Solver, State, StepReport};
@@ -61,6 +62,8 @@ pub struct Energy {
     q0: Vec<f64>,
     v0: Vec<f64>,
     v1: Vec<f64>,
+    /// Masses where the search begins.
+    unused: Vec<f64>,
 }
 
 impl std::fmt::Debug for Energy {
@@ -88,11 +91,13 @@ impl Energy {
         let frames = Frames::of(assembly);
         let rows = frames.parts.last().map_or(0, |part| part.row + part.rows);
         let (quasi, all) = (|| vec![0.0; frames.quasi], || vec![0.0; assembly.coordinates()]);
+        let masses = frames.bodies.last().map_or(0, |body| body.masses().end);
         Ok(Self {
             settling: Settling::new(frames.quasi),
             system: Sparse::new(frames.quasi, rows, frames.parts.clone(), solver)?,
             rule: Average::new(),
-            mass: vec![0.0; frames.bodies.last().map_or(0, |body| body.mass + body.quasi * body.quasi)],
+            mass: vec![0.0; masses],
+            unused: vec![0.0; masses],
             xi0: quasi(),
             x: quasi(),
             xi1: quasi(),
@@ -125,6 +130,21 @@ impl Energy {
             } else if element.acts() && at(placed, q0, v0, |q, v| element.has_inertia(t0, q, v)) {
                 return Err(AssemblyError::Unsupported { reason: INERTIA });
             }
+        }
+        Ok(())
+    }
+
+    /// The mean quasi-velocities to begin with, those of the mean velocities that the last steps let expect.
+    fn guess(&mut self, assembly: &Assembly, (t0, h): (f64, f64), state: &State) -> Result<(), AssemblyError> {
+        let Self { frames, x, path: Path { v, q1: middle, .. }, q0, v0, unused, .. } = self;
+        predict(state, h, v0, v);
+        for (middle, (q0, v)) in middle.iter_mut().zip(q0.iter().zip(&*v)) {
+            *middle = q0 + 0.5 * h * v;
+        }
+        for body in &frames.bodies {
+            let element = &assembly.placed()[body.element].element;
+            let (q, v, x) = (&middle[body.coordinates()], &v[body.coordinates()], &mut x[body.quasi_velocities()]);
+            element.rest(t0 + 0.5 * h, q, v, x, &mut unused[body.masses()])?;
         }
         Ok(())
     }
@@ -189,7 +209,7 @@ impl OneStep for Energy {
     fn step(&mut self, assembly: &Assembly, t0: f64, h: f64, state: &mut State) -> Result<StepReport, AssemblyError> {
         self.begin(assembly, (t0, h), state)?;
         let (mut kappa, mut iterations) = (0.0, 0);
-        self.x.copy_from_slice(&self.xi0);
+        self.guess(assembly, (t0, h), state)?;
         self.impulses.fill(0.0);
         let mut history = History::new();
         let mut pass = 0;

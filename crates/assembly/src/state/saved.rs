@@ -2,26 +2,26 @@ use super::State;
 use crate::Assembly;
 use dla::{Checkpoint, CheckpointError};
 
-/// What each coordinate is saved as.
-const NAMES: [&str; 5] = ["q", "rest", "turns", "v", "acceleration"];
+/// What every coordinate has one number of.
+const ONE: [&str; 4] = ["q", "rest", "turns", "v"];
+
+/// What a coordinate has several numbers of, or none.
+const SOME: [&str; 2] = ["acceleration", "past"];
 
 /// What a static state has beside, and a coordinate of an assembly does not.
-const NONE: [&str; 4] = ["xi", "pi", "pi_rest", "past"];
+const NONE: [&str; 3] = ["xi", "pi", "pi_rest"];
 
 impl State {
     /// Writes every bit that the next step depends on to a checkpoint.
     pub fn save(&self, checkpoint: &mut Checkpoint) {
-        let mut lists: [Vec<f64>; 5] = Default::default();
-        for coordinate in &self.coordinates {
-            let mut own = Checkpoint::default();
-            coordinate.save(&mut own);
-            for (list, name) in lists.iter_mut().zip(NAMES) {
-                // An acceleration that is not known is no number.
-                list.push(own.list(name).ok().and_then(|own| own.first().copied()).unwrap_or(f64::NAN));
+        let each: Vec<Checkpoint> = self.coordinates.iter().map(saved).collect();
+        for name in ONE.into_iter().chain(SOME) {
+            let lists: Vec<Vec<f64>> = each.iter().map(|own| own.list(name).unwrap_or_default()).collect();
+            checkpoint.put(name, &lists.concat());
+            if SOME.contains(&name) {
+                let counts: Vec<f64> = lists.iter().map(|list| list.len() as f64).collect();
+                checkpoint.put(&format!("{name}_counts"), &counts);
             }
-        }
-        for (list, name) in lists.iter().zip(NAMES) {
-            checkpoint.put(name, list);
         }
     }
 
@@ -31,22 +31,32 @@ impl State {
     /// [`CheckpointError`] where the checkpoint has none of so many coordinates.
     pub fn load(checkpoint: &Checkpoint, assembly: &Assembly) -> Result<Self, CheckpointError> {
         let count = assembly.coordinates();
-        let list = |name: &str| {
+        let mut each = vec![Checkpoint::default(); count];
+        for name in ONE.into_iter().chain(SOME) {
+            let missing = || CheckpointError::Missing { name: name.to_owned(), count };
             let list = checkpoint.list(name)?;
-            if list.len() == count { Ok(list) } else { Err(CheckpointError::Missing { name: name.to_owned(), count }) }
-        };
-        let mut lists = Vec::new();
-        for name in NAMES {
-            lists.push((name, list(name)?));
-        }
-        let coordinate = |(i, angle): (usize, &bool)| {
-            let mut own = Checkpoint::default();
-            for (name, list) in &lists {
-                own.put(name, if list[i].is_nan() { &[] } else { std::slice::from_ref(&list[i]) });
+            let counts =
+                if SOME.contains(&name) { checkpoint.list(&format!("{name}_counts"))? } else { vec![1.0; count] };
+            if counts.len() != count {
+                return Err(missing());
             }
+            let mut rest = &list[..];
+            for (own, count) in each.iter_mut().zip(&counts) {
+                let (first, after) = rest.split_at_checked(*count as usize).ok_or_else(missing)?;
+                own.put(name, first);
+                rest = after;
+            }
+        }
+        for own in &mut each {
             NONE.iter().for_each(|name| own.put(name, &[]));
-            dla::State::load(&own, [*angle])
-        };
-        Ok(Self { coordinates: assembly.angles().iter().enumerate().map(coordinate).collect::<Result<_, _>>()? })
+        }
+        let loaded = assembly.angles().iter().zip(&each).map(|(angle, own)| dla::State::load(own, [*angle]));
+        Ok(Self { coordinates: loaded.collect::<Result<_, _>>()? })
     }
+}
+
+fn saved(coordinate: &dla::State<1>) -> Checkpoint {
+    let mut own = Checkpoint::default();
+    coordinate.save(&mut own);
+    own
 }
