@@ -23,6 +23,8 @@ pub(crate) struct Sparse {
     rest: Vec<f64>,
     pub(crate) solution: Vec<f64>,
     unknowns: usize,
+    /// Whether the next search may begin with the factors of the last.
+    pub(crate) factors_serve: bool,
 }
 
 /// A pivot below it, relative to its column, is rounding.
@@ -43,6 +45,7 @@ impl Sparse {
             rest: zeros(),
             solution: zeros(),
             unknowns: n,
+            factors_serve: false,
             pattern,
             parts,
         })
@@ -102,11 +105,11 @@ impl Sparse {
         Ok(())
     }
 
-    /// Solves with the factors there are; with one iterative refinement where the matrix is theirs.
-    pub(crate) fn solve(&mut self, refine: bool) {
+    /// Solves with the factors there are; with iterative refinements where the matrix is theirs, or nearly so.
+    pub(crate) fn solve(&mut self, refinements: u32) {
         self.solution.copy_from_slice(&self.right);
         self.factor.solve(&mut self.solution);
-        if refine {
+        for _ in 0..refinements {
             self.rest.copy_from_slice(&self.right);
             self.pattern.subtract_product(&self.values, &self.solution, &mut self.rest);
             self.factor.solve(&mut self.rest);
@@ -126,7 +129,7 @@ impl Sparse {
         mut evaluate: impl FnMut(&mut Self, &[f64], &[f64], bool) -> Result<(), AssemblyError>,
     ) -> Result<u32, AssemblyError> {
         settling.begin(x);
-        let (mut before, mut fresh) = (f64::INFINITY, true);
+        let (mut before, mut fresh) = (f64::INFINITY, !self.factors_serve);
         loop {
             self.right.fill(0.0);
             if fresh {
@@ -136,7 +139,7 @@ impl Sparse {
             if fresh {
                 self.factorise(stage)?;
             }
-            self.solve(fresh);
+            self.solve(u32::from(fresh));
             let (correction, corrections) = self.solution.split_at(x.len());
             for (multiplier, d) in multipliers.iter_mut().zip(corrections) {
                 *multiplier += d;

@@ -7,6 +7,7 @@ use crate::dla::relative;
 use crate::element::Blocks;
 use crate::sparse::Sparse;
 use crate::{Assembly, AssemblyError, State};
+use dla::Stage;
 
 /// What the mean quasi-velocities of a step say of it.
 pub(super) struct Path {
@@ -117,12 +118,12 @@ impl Path {
     }
 
     /// Solves for the correction of the velocities `v1 = W(q1) xi1` that the constraints at the end ask for: `M d = Y alpha`,
-    /// `C (xi1 + d) = 0`.
+    /// `C (xi1 + d) = 0`. Where the end is `near` that of the last projection, its factors do with refinements.
     pub(super) fn project(
         &mut self,
         assembly: &Assembly,
         frames: &Frames,
-        system: &mut Sparse,
+        (system, near): (&mut Sparse, bool),
         (t1, mass): (f64, &[f64]),
         (end, v1): (&[f64], &[f64]),
     ) -> Result<(), AssemblyError> {
@@ -151,8 +152,12 @@ impl Path {
             negated(&self.mean_rows[self.starts[k]..self.starts[k + 1]], half);
             system.write_rows(k, &half[..m * reduced], &block[..m * reduced]);
         }
-        system.factorise(dla::Stage::Projection)?;
-        system.solve(true);
+        if near {
+            system.solve(3);
+        } else {
+            system.factorise(Stage::Projection)?;
+            system.solve(1);
+        }
         Ok(())
     }
 }

@@ -39,8 +39,7 @@ use mean::{Mean, Path};
 /// Without joints `e = 0`, and this is the static method. With them `x = (xi0 + xi1)/2 + e`, and by the equations the energy changes
 /// by the work `h F . W x` of the forces and by `kappa x . M x - e . M (xi1 - xi0)`; so `kappa`, one number of the third order
 /// in the step, is `e . M (xi1 - xi0) / x . M x`, and the energy of the whole is kept. (A discrete gradient under constraints on
-/// positions: Gonzalez 1999, Comput. Methods Appl. Mech. Engrg. 190, 1763-1783, whose velocities do not meet `C xi = 0`; the
-/// book, (5.3).)
+/// positions: Gonzalez 1999, Physica D 132, 165-174, whose velocities do not meet `C xi = 0`; the book, (5.7) to (5.10).)
 ///
 /// The kinetic energy of each body must be a constant quadratic form in its quasi-velocities, as that of a sleigh, a rigid body
 /// of the plane or a rotor is; constraints do not move, and time does not enter but in forces. What else is refused, as is a
@@ -48,6 +47,7 @@ use mean::{Mean, Path};
 pub struct Energy {
     frames: Frames,
     system: Sparse,
+    projection: Sparse,
     settling: Settling,
     rule: Average,
     mass: Vec<f64>,
@@ -95,6 +95,7 @@ impl Energy {
         Ok(Self {
             settling: Settling::new(frames.quasi),
             system: Sparse::new(frames.quasi, rows, frames.parts.clone(), solver)?,
+            projection: Sparse::new(frames.quasi, rows, frames.parts.clone(), solver)?,
             rule: Average::new(),
             mass: vec![0.0; masses],
             unused: vec![0.0; masses],
@@ -150,8 +151,8 @@ impl Energy {
     }
 
     /// The quasi-velocities at the end, `xi1 = 2 x - xi0 - 2 e`; returns the `kappa` that `x` and they ask for.
-    fn finish(&mut self, assembly: &Assembly, t1: f64) -> Result<f64, AssemblyError> {
-        let Self { frames, system, mass, xi0, x, xi1, momenta, path, end, v1, .. } = self;
+    fn finish(&mut self, assembly: &Assembly, t1: f64, near: bool) -> Result<f64, AssemblyError> {
+        let Self { frames, projection, mass, xi0, x, xi1, momenta, path, end, v1, .. } = self;
         for body in &frames.bodies {
             let element = &assembly.placed()[body.element].element;
             let (q1, frame) = (&path.q1[body.coordinates()], &mut end[body.frames()]);
@@ -161,11 +162,11 @@ impl Energy {
             *xi1 = 2.0 * x - xi0;
         }
         frames.combine(end, xi1, v1);
-        if !system.has_rows() {
+        if !projection.has_rows() {
             return Ok(0.0);
         }
-        path.project(assembly, frames, system, (t1, mass), (end, v1))?;
-        let correction = &system.solution[..xi1.len()];
+        path.project(assembly, frames, (projection, near), (t1, mass), (end, v1))?;
+        let correction = &projection.solution[..xi1.len()];
         for (xi1, d) in xi1.iter_mut().zip(correction) {
             *xi1 += d;
         }
@@ -208,13 +209,16 @@ fn at<T>(placed: &Placed, q: &[f64], v: &[f64], then: impl FnOnce(&[f64], &[f64]
 impl OneStep for Energy {
     fn step(&mut self, assembly: &Assembly, t0: f64, h: f64, state: &mut State) -> Result<StepReport, AssemblyError> {
         self.begin(assembly, (t0, h), state)?;
-        let (mut kappa, mut iterations) = (0.0, 0);
+        /// Ends whose `kappa` differ by no more are near each other.
+        const NEAR_ENDS: f64 = 1e-5;
+        let (mut kappa, mut iterations, mut near) = (0.0, 0, false);
         self.guess(assembly, (t0, h), state)?;
         self.impulses.fill(0.0);
         let mut history = History::new();
         let mut pass = 0;
         let work = loop {
             let Self { frames, system, settling, rule, mass, xi0, x, impulses, path, q0, .. } = self;
+            system.factors_serve = near;
             let mut mean = Mean { assembly, frames, rule, step: (t0, h), state, mass, xi0, q0, kappa, path, work: 0.0 };
             let evaluate = |system: &mut Sparse, x: &[f64], impulses: &[f64], fresh: bool| {
                 mean.evaluate(system, x, impulses, fresh)
@@ -225,12 +229,13 @@ impl OneStep for Energy {
                 return Err(AssemblyError::Branch { turn: self.turn(assembly, (t0, h)) });
             }
             self.path.end(&self.frames, (assembly, t0, h), (&self.q0, state), &self.x)?;
-            let change = self.finish(assembly, t0 + h)? - kappa;
+            let change = self.finish(assembly, t0 + h, near)? - kappa;
             if change.abs() <= Self::SETTLED {
                 break work;
             }
             history.push(change.abs());
             kappa += change;
+            near = change.abs() <= NEAR_ENDS;
             pass += 1;
             if pass == Self::PASSES || !change.is_finite() {
                 let source = NewtonError::IterationLimit { iterations, correction: change, history };
