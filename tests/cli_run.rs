@@ -302,14 +302,14 @@ fn events_are_found_and_end_a_run() {
     assert_eq!(run["steps"].as_u64().unwrap() + 1, rows.len() as u64);
     assert!(folder.done("run turnaround --event speed=0").contains("speed=0, rising, at t = 7.17"));
     // Of a train they are those of its first blade.
-    let run = folder.json(&format!("run {TRAIN} --until x=2 --event y=0.5 --json --out train.csv"));
+    let run = folder.json(&format!("run {TRAIN} --until x=1.5 --event y=0.5 --json --out train.csv"));
     let (_, rows) = csv(&folder.read("train.csv"));
     let (events, t) = (run["events"].as_array().unwrap(), run["final"]["t"].as_f64().unwrap());
     assert_eq!(
         (events.len(), events[0]["event"].as_str(), events[1]["event"].as_str()),
-        (2, Some("y=0.5"), Some("x=2"))
+        (2, Some("y=0.5"), Some("x=1.5"))
     );
-    assert!((run["final"]["x"].as_f64().unwrap() - 2.0).abs() < 1e-14 && events[1]["t"].as_f64() == Some(t), "{run}");
+    assert!((run["final"]["x"].as_f64().unwrap() - 1.5).abs() < 1e-14 && events[1]["t"].as_f64() == Some(t), "{run}");
     assert_eq!((rows.last().unwrap()[0], run["steps"].as_u64().unwrap() + 1), (t, rows.len() as u64));
     folder.refused("run turnaround --event spede=0", &["spede", "turn_rate"]);
     folder.refused("run turnaround --until speed=fast", &["fast"]);

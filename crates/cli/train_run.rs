@@ -82,7 +82,7 @@ pub(crate) fn run(
     }
     // The static record does not know which hinge it was.
     let told = table::failure(&record).map(|told| match &failure {
-        Some(error) if !told.contains(&error.to_string()) => format!("{told}; {error}"),
+        Some(error) if !told.contains(&error.source.to_string()) => format!("{told}; {error}"),
         _ => told,
     });
     let computed = CliError::of_failures(told);
