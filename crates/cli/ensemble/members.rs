@@ -113,16 +113,16 @@ impl Members<'_> {
                 Some(Box::new(ClosedEnsemble::<_, 3, CLOSED, 3, 1, 5, 6>::new(*sleighs, step, state)))
             }),
             (Kind::Gauss8, []) => self.registers::<GAUSS, _>(scenes, free, |sleighs, state| {
-                boxed(GaussEnsemble::<_, _, 4, GAUSS, 3, 1>::new(Each(sleighs), (t0, step), true, state))
+                boxed(GaussEnsemble::<_, _, 4, GAUSS, 3, 1>::new(Each(sleighs), (t0, step), state))
             }),
             (Kind::Gauss16, []) => self.registers::<GAUSS, _>(scenes, free, |sleighs, state| {
-                boxed(GaussEnsemble::<_, _, 8, GAUSS, 3, 1>::new(Each(sleighs), (t0, step), true, state))
+                boxed(GaussEnsemble::<_, _, 8, GAUSS, 3, 1>::new(Each(sleighs), (t0, step), state))
             }),
             (Kind::Gauss8, [SceneEffect::Bowl { .. }]) => self.registers::<GAUSS, _>(scenes, bowl, |bowls, state| {
-                boxed(GaussEnsemble::<_, _, 4, GAUSS, 3, 1>::new(Each(bowls), (t0, step), false, state))
+                boxed(GaussEnsemble::<_, _, 4, GAUSS, 3, 1>::new(Each(bowls), (t0, step), state))
             }),
             (Kind::Gauss16, [SceneEffect::Bowl { .. }]) => self.registers::<GAUSS, _>(scenes, bowl, |bowls, state| {
-                boxed(GaussEnsemble::<_, _, 8, GAUSS, 3, 1>::new(Each(bowls), (t0, step), false, state))
+                boxed(GaussEnsemble::<_, _, 8, GAUSS, 3, 1>::new(Each(bowls), (t0, step), state))
             }),
             _ => Vec::new(),
         }

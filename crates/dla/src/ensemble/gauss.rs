@@ -1,6 +1,7 @@
 use super::collocation::Collocation;
 use super::state::{Row, lanes};
 use super::{Ensemble, LaneState, Systems};
+use crate::gauss::{LEFT, SLOWEST};
 use lagrangian::{Abreast, Scalar, System, vectorized, velocity_of};
 use std::array::from_fn;
 use std::marker::PhantomData;
@@ -16,12 +17,11 @@ pub struct GaussEnsemble<Sys, Each, const S: usize, const W: usize, const N: usi
     collocation: Collocation<S>,
     schedule: (f64, f64),
     made: u64,
-    cyclic: bool,
+    alone: bool,
     state: LaneState<N, W>,
     stages: Stages<S, W, N>,
     sweeps: u64,
-    /// A change of the accelerations as small as this, relative, needs no further iteration: `1e-16`, or more where less than
-    /// rounding is wanted.
+    /// Relative changes of the accelerations that may still be to come: a sixteenth of rounding, or more where less is wanted.
     pub settled: f64,
     of: PhantomData<Sys>,
 }
@@ -45,18 +45,20 @@ where
     Sys: System<N, M>,
     Each: Systems<Sys, W>,
 {
-    /// The systems at these states at time `t0` (s), with steps of length `h` (s); `cyclic` says that the reduced equations of
-    /// motion do not contain the coordinates. None where a system has no reduced equations by hand.
+    /// The systems at these states at time `t0` (s), with steps of length `h` (s). None where a system has no reduced equations
+    /// by hand.
     #[must_use]
-    pub fn new(systems: Each, (t0, h): (f64, f64), cyclic: bool, state: LaneState<N, W>) -> Option<Self> {
+    pub fn new(systems: Each, (t0, h): (f64, f64), state: LaneState<N, W>) -> Option<Self> {
+        let mut alone = true;
         for lane in 0..W {
             systems.of(lane).reduced_motion(t0, &state.q(lane), &state.xi(lane))?;
+            alone &= systems.of(lane).stands_alone();
         }
         let zero = [[Row::ZERO; S]; N];
         let stages = Stages { acceleration: zero, next: zero, xi: zero, q: zero, velocity: zero, sin: zero, cos: zero };
         let collocation = Collocation::new(h);
         let (schedule, of) = ((t0, h), PhantomData);
-        Some(Self { systems, collocation, schedule, made: 0, cyclic, state, stages, sweeps: 0, settled: 1e-16, of })
+        Some(Self { systems, collocation, schedule, made: 0, alone, state, stages, sweeps: 0, settled: LEFT, of })
     }
 
     /// Iterations made so far.
@@ -81,7 +83,7 @@ where
         for sweep in 1..=MOST {
             self.sweeps += 1;
             self.quasi_velocities();
-            if !self.cyclic {
+            if !self.alone {
                 self.coordinates(t, h);
             }
             let (moved, size) =
@@ -89,9 +91,10 @@ where
             open = false;
             for lane in 0..lanes::<W>() {
                 let (moved, size, before) = (moved.0[lane], size.0[lane], before.0[lane]);
-                // From change to change the factor is about the same, so that the next one is known before it is made; in the
-                // rounding changes no longer shrink.
-                let next = moved * moved;
+                // From change to change the factor is about the same, so that the next one is known before it is made, but not
+                // believed to be smaller than it may become; in the rounding changes no longer shrink.
+                let slowest = SLOWEST * before;
+                let next = moved * if moved > slowest { moved } else { slowest };
                 let stalls = (moved <= 1e-12 * size) & (moved >= 0.5 * before) & (sweep > 1);
                 open |= (moved > self.settled * size)
                     & ((next > self.settled * size * before) | (moved > 0.5 * before))
@@ -105,7 +108,7 @@ where
         if open {
             self.give_up(&before);
         }
-        if self.cyclic {
+        if self.alone {
             self.coordinates(t, h);
         }
         for k in 0..N {

@@ -244,7 +244,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
 }
 
 /// No iteration is expected to shrink its changes by more.
-const SLOWEST: f64 = 0.05;
+pub(crate) const SLOWEST: f64 = 0.05;
 
 /// Nothing is measured by less: its inverse is finite.
 const SMALLEST: f64 = 1e-290;

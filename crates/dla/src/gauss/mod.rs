@@ -11,6 +11,7 @@ use lagrangian::linear::larger;
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
 use lagrangian::simd::dispatch;
 use lagrangian::{System, reduced_slope, velocity_of};
+pub(crate) use lanes::SLOWEST;
 use lanes::{Ending, Found, Outcome};
 use memory::Memory;
 use rule::Eight;
@@ -201,7 +202,7 @@ impl<const N: usize> Taken<N> {
 
 /// Relative changes that may still be to come where a search ends. What is left out is the same in every step, and adds up:
 /// where the contraction was believed as the first iterations show it, a run of `gauss8` lost `5e-17` of its energy a step.
-const LEFT: f64 = f64::EPSILON / 16.0;
+pub(crate) const LEFT: f64 = f64::EPSILON / 16.0;
 
 /// After so many iterations without an end the rounding of the places is looked at.
 const PATIENCE: u32 = 20;

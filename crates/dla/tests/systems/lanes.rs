@@ -2,7 +2,7 @@
 
 use approx::assert_abs_diff_eq;
 use dla::{Gauss, GaussAdaptive, OneStep, Schedule, State, StepError, drive};
-use lagrangian::{System, With, constraint_residual};
+use lagrangian::{System, With, constraint_residual, energy};
 use proptest::prelude::*;
 use sleigh::effects::{Bowl, Drag, EggCrate, Slope};
 use sleigh::{Flywheel, Sleigh, SleighState};
@@ -182,4 +182,27 @@ fn what_cannot_be_crossed_is_an_error() {
     let found = GaussAdaptive::<8>::new(1e-9).step(&body, 0.0, 1.0, &mut state);
     assert!(matches!(found, Err(StepError::Tolerance { .. } | StepError::NotFinite)), "{found:?}");
     assert_eq!(state, begin);
+}
+
+/// What a step leaves out is the same in every step, and adds up, where rounding only wanders: sums of `n` steps that are each
+/// rounded by less than `eps E` are off by `sqrt(n) eps E`, and by five times that once in a million.
+#[test]
+fn a_million_steps_lose_no_energy_but_by_rounding() {
+    let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    let system = With { body, effects: (Bowl::new([0.1, 0.1], [0.0, 0.0]).unwrap(),) };
+    let begin = start(&SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() });
+    let at = |state: &State<3>| energy(&system, 0.0, state.q(), state.v());
+    let walk = |steps: u32| 5.0 * f64::EPSILON * f64::from(steps).sqrt() * at(&begin);
+    let (mut state, mut method) = (begin, Gauss::<4>::default());
+    for k in 0..1_000_000 {
+        method.step(&system, f64::from(k) * 0.05, 0.05, &mut state).unwrap();
+    }
+    assert_abs_diff_eq!(at(&state), at(&begin), epsilon = walk(1_000_000));
+
+    // The control: stages that are iterated to a tolerance.
+    let (mut state, mut loose) = (begin, GaussAdaptive::<4>::new(1e-12));
+    for k in 0..100_000 {
+        loose.step(&system, f64::from(k) * 0.05, 0.05, &mut state).unwrap();
+    }
+    assert!((at(&state) - at(&begin)).abs() > walk(100_000));
 }
