@@ -25,6 +25,9 @@ pub(crate) struct Sparse {
     unknowns: usize,
     /// Whether the next search may begin with the factors of the last.
     pub(crate) factors_serve: bool,
+    /// Whether a search that has settled is corrected once more: what the linear convergence with a matrix that is not exact
+    /// leaves out would be the same in every step.
+    pub(crate) polishes: bool,
 }
 
 /// A pivot below it, relative to its column, is rounding.
@@ -46,6 +49,7 @@ impl Sparse {
             solution: zeros(),
             unknowns: n,
             factors_serve: false,
+            polishes: false,
             pattern,
             parts,
         })
@@ -130,6 +134,7 @@ impl Sparse {
     ) -> Result<u32, AssemblyError> {
         settling.begin(x);
         let (mut before, mut fresh) = (f64::INFINITY, !self.factors_serve);
+        let mut polished = !self.polishes;
         loop {
             self.right.fill(0.0);
             if fresh {
@@ -147,7 +152,10 @@ impl Sparse {
             let step = largest(correction);
             let done = settling.correct(x, correction);
             if done.map_err(|source| AssemblyError::Newton { stage, source })? {
-                return Ok(settling.made);
+                if polished {
+                    return Ok(settling.made);
+                }
+                polished = true;
             }
             fresh = step > KEPT * before;
             before = step;

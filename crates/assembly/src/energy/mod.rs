@@ -91,10 +91,12 @@ impl Energy {
         let frames = Frames::of(assembly);
         let rows = frames.parts.last().map_or(0, |part| part.row + part.rows);
         let (quasi, all) = (|| vec![0.0; frames.quasi], || vec![0.0; assembly.coordinates()]);
+        let mut system = Sparse::new(frames.quasi, rows, frames.parts.clone(), solver)?;
+        system.polishes = true;
         let masses = frames.bodies.last().map_or(0, |body| body.masses().end);
         Ok(Self {
             settling: Settling::new(frames.quasi),
-            system: Sparse::new(frames.quasi, rows, frames.parts.clone(), solver)?,
+            system,
             projection: Sparse::new(frames.quasi, rows, frames.parts.clone(), solver)?,
             rule: Average::new(),
             mass: vec![0.0; masses],

@@ -41,3 +41,26 @@ fn its_energy_error_is_of_second_order() {
     // A thousand steps of rounding that walks at random.
     assert!(kept < 4.0 * f64::EPSILON * 1000f64.sqrt(), "{kept:e}");
 }
+
+/// What changes the energy of `energy2` over 1e5 steps is rounding that walks at random: the mean change of a thousand steps is zero
+/// within four of its standard errors.
+#[test]
+#[ignore = "long: 1e5 steps, over a minute"]
+fn its_energy_does_not_drift() {
+    let chain = weighted(10, 0.0);
+    let (assembly, mut state) = (&chain.assembly, bent(&chain));
+    let mut method = Energy::new(assembly, Solver::Best).unwrap();
+    let mut energies = vec![assembly.energy(0.0, &state)];
+    for k in 1..=100_000 {
+        method.step(assembly, f64::from(k - 1) * 0.04, 0.04, &mut state).unwrap();
+        if k % 1000 == 0 {
+            energies.push(assembly.energy(0.0, &state));
+        }
+    }
+    let changes: Vec<f64> = energies.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let n = changes.len() as f64;
+    let mean = changes.iter().sum::<f64>() / n;
+    let error = (changes.iter().map(|change| (change - mean).powi(2)).sum::<f64>() / (n * (n - 1.0))).sqrt();
+    println!("{:e} J of {} J; a thousand steps {mean:e} J, give or take {error:e} J", n * mean, energies[0]);
+    assert!(mean.abs() < 4.0 * error);
+}
