@@ -222,6 +222,8 @@ fn a_killed_run_is_resumed_to_the_same_bits() {
     assert_eq!(rest[1..], whole[whole.len() + 1 - rest.len()..]);
 }
 
+const TRAIN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/guide/train.toml");
+
 /// The last checkpoint of a run that ended by itself, of scenes with forces, jumps and moving constraints, and of methods that
 /// remember something.
 #[test]
@@ -236,6 +238,8 @@ fn a_resumed_run_has_the_bits_of_the_whole() {
         // At a jump of the imposed velocity, and between two.
         ("parking", "dla", 100),
         ("parking", "lobatto3", 70),
+        (TRAIN, "dla", 300),
+        (TRAIN, "energy2", 700),
     ] {
         let line = format!("run {scene} --method {method} --json");
         let whole = folder.json(&line);
@@ -297,6 +301,16 @@ fn events_are_found_and_end_a_run() {
     assert_eq!((rows.last().unwrap()[0], run["duration"].as_f64().unwrap()), (t, t));
     assert_eq!(run["steps"].as_u64().unwrap() + 1, rows.len() as u64);
     assert!(folder.done("run turnaround --event speed=0").contains("speed=0, rising, at t = 7.17"));
+    // Of a train they are those of its first blade.
+    let run = folder.json(&format!("run {TRAIN} --until x=1.5 --event y=0.5 --json --out train.csv"));
+    let (_, rows) = csv(&folder.read("train.csv"));
+    let (events, t) = (run["events"].as_array().unwrap(), run["final"]["t"].as_f64().unwrap());
+    assert_eq!(
+        (events.len(), events[0]["event"].as_str(), events[1]["event"].as_str()),
+        (2, Some("y=0.5"), Some("x=1.5"))
+    );
+    assert!((run["final"]["x"].as_f64().unwrap() - 1.5).abs() < 1e-14 && events[1]["t"].as_f64() == Some(t), "{run}");
+    assert_eq!((rows.last().unwrap()[0], run["steps"].as_u64().unwrap() + 1), (t, rows.len() as u64));
     folder.refused("run turnaround --event spede=0", &["spede", "turn_rate"]);
     folder.refused("run turnaround --until speed=fast", &["fast"]);
 }

@@ -111,7 +111,8 @@ pub(crate) fn compare_scene(
 ) -> Result<Comparison, CliError> {
     if let Some(whole) = scene.train()? {
         if saves.are_asked_for() {
-            let problem = "--checkpoint and --resume do not do scenes with `trailers`";
+            let problem = "--checkpoint and --resume of a comparison do not do scenes with `trailers`, whose pictures need the \
+                           nodes of all blades, and no checkpoint has them; `run` saves and resumes a train";
             return Err(CliError::Request(problem.to_owned()));
         }
         return train::compare_scene(scene, &whole, methods, interrupt);

@@ -35,6 +35,7 @@ mod starts;
 mod table;
 mod terminal;
 mod train;
+mod train_run;
 mod trajectory_file;
 mod trigger;
 

@@ -5,7 +5,8 @@ use crate::files::check_file;
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
 use crate::trajectory_file::{self, Format};
-use crate::{inspect, json, progress, resume, table, terminal, train, trigger};
+use crate::trigger::Happened;
+use crate::{inspect, json, progress, resume, table, terminal, train_run};
 use dla::{Checkpoint, Schedule, Trajectory};
 use harness::{Kind, Method, Progress, Record, Request, Saving, Watched, recommend, run_saved, run_watched};
 use scene::{Scene, SceneSystem, Visitor};
@@ -30,7 +31,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
         terminal::say("warning", &format!("--alpha is the weight of dla-alpha; {name} has none and ignores it"));
     }
     if scene.has_trailers() {
-        return train::run(arguments, &scene, &method, out);
+        return train_run::run(arguments, &scene, &method, out);
     }
     scene.visit(Run { arguments, scene: &scene, method, out })?
 }
@@ -106,8 +107,9 @@ impl Run<'_> {
         if events.is_empty() {
             return Made { record, trajectory, events: None, warning: Ok(()) };
         }
-        let values = crossings.iter().map(|crossing| trigger::json(system, &events, crossing)).collect();
-        let told = crossings.iter().map(|crossing| trigger::told(&events, crossing)).collect();
+        let happened = || crossings.iter().map(|crossing| Happened::of(system, &events, crossing));
+        let (values, told) =
+            (happened().map(|event| event.json()).collect(), happened().map(|event| event.told()).collect());
         Made { record, trajectory, events: Some((values, told)), warning: Ok(()) }
     }
 }

@@ -1,13 +1,12 @@
-//! Scenes with trailers: assemblies, whose number of coordinates is not known to the compiler.
+//! Scenes with trailers: assemblies, whose number of coordinates is not known to the compiler. What `compare` and `precision` make
+//! of them; `run` is in `train_run`.
 
-use crate::args::RunArguments;
-use crate::compare::{Comparison, Row, better_than, distance, unless_interrupted};
+use crate::compare::{Comparison, Row, better_than, distance};
 use crate::error::CliError;
 use crate::interrupt::Interrupt;
 use crate::precision::{KnownEnd, Measurement};
 use crate::progress::Interruptible;
-use crate::trajectory_file::{self, Columns, Format};
-use crate::{compare_numbers, facts, inspect, json, progress, table, terminal};
+use crate::{compare_numbers, facts, inspect, json, progress, table};
 use assembly::State;
 use assembly::parts::Train;
 use dla::{RunError, Schedule};
@@ -15,118 +14,15 @@ use harness::precision::{Bench, Limits, rounds, work_precision};
 use harness::report::{SceneReport, Series};
 use harness::{Assembled, AssemblyNode, Drift, Method, assembly_end, run_assembly};
 use scene::Scene;
-use serde_json::json;
 use sleigh::SleighState;
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// So many numbers of a run are kept at most, for a file or a report.
-const MOST_NUMBERS: u64 = 100_000_000;
+pub(crate) const MOST_NUMBERS: u64 = 100_000_000;
 /// A report shows so many blades of a train.
 const SHOWN: usize = 60;
 /// A comparison of more steps of blades has no computed reference.
 const REFERRED: u64 = 1 << 22;
-
-/// `noslip run` of a train.
-pub(crate) fn run(
-    arguments: &RunArguments,
-    scene: &Scene,
-    method: &Method,
-    out: Option<(&Path, Format)>,
-) -> Result<(), CliError> {
-    let Some((train, start)) = scene.train()? else { return Ok(()) };
-    let RunArguments { checkpoint, resume, tolerance, event, until, .. } = arguments;
-    let asked = [
-        ("--checkpoint", checkpoint.is_some()),
-        ("--resume", resume.is_some()),
-        ("--tolerance", tolerance.is_some()),
-        ("--event", !event.is_empty()),
-        ("--until", !until.is_empty()),
-    ];
-    if let Some((flag, _)) = asked.iter().find(|(_, asked)| *asked) {
-        return Err(CliError::Request(format!("{flag} does not do scenes with `trailers`")));
-    }
-    let schedule = inspect::schedule(scene);
-    let every = out.map_or(schedule.steps, |_| arguments.every);
-    if schedule.steps / every.max(1) * 2 * start.len() as u64 > MOST_NUMBERS {
-        let problem = "--out would hold more than 1e8 numbers: choose a larger --every";
-        return Err(CliError::Request(problem.to_owned()));
-    }
-    let interrupt = Interrupt::listen();
-    let bar = progress::bar(method.info().name, schedule.steps);
-    let mut progress = Interruptible { bar, interrupt: &interrupt };
-    let Assembled { record, nodes, end, failure } =
-        run_assembly(&train.assembly, method, &schedule, &start, every, &mut progress);
-    progress.bar.finish_and_clear();
-
-    let written = out.map_or(Ok(()), |(path, format)| {
-        trajectory_file::write_columns(&columns(&train, &nodes), path, format, arguments.scene.force)
-    });
-    let blades = train.trailers().len();
-    let (first, last) = (train.blade(&end, 0), train.blade(&end, blades));
-    if arguments.scene.json {
-        let mut object = json::record(&scene.name, &record, &first);
-        object["constraint"]["leaf_max"] = json!(record.leaf_max);
-        object["trailers"] = json!(blades);
-        let SleighState { x, y, heading, speed, turn_rate } = last;
-        object["last"] = json!({"x": x, "y": y, "heading": heading, "speed": speed, "turn_rate": turn_rate});
-        terminal::print_json(&object)?;
-    } else {
-        let file = out.and_then(|(path, _)| written.is_ok().then_some(path));
-        let joints = format!("{:.2e} m at most", record.leaf_max.unwrap_or(0.0));
-        let [x, y, heading] = [last.x, last.y, last.heading].map(table::number);
-        let more = [
-            ("hinges", joints),
-            ("trailers", blades.to_string()),
-            ("last blade", format!("x = {x} m, y = {y} m, heading {heading} rad")),
-        ];
-        terminal::print(&(table::one_run(scene, &record, &first, file) + &table::aligned(&more)))?;
-    }
-    // The static record does not know which hinge it was.
-    let told = table::failure(&record).map(|told| match &failure {
-        Some(error) if !told.contains(&error.to_string()) => format!("{told}; {error}"),
-        _ => told,
-    });
-    let computed = CliError::of_failures(told);
-    if let (Err(_), Err(error)) = (&computed, &written) {
-        terminal::say("error", error);
-    }
-    let made = record.interrupted.then(|| format!("the run is made up to t = {} s", table::number(record.t)));
-    unless_interrupted(made, None, computed.and(written))
-}
-
-/// A trajectory of a train: that of its first blade, and the headings of the others.
-fn columns(train: &Train, nodes: &[AssemblyNode]) -> Columns {
-    let own = [
-        ("t", "s"),
-        ("x", "m"),
-        ("y", "m"),
-        ("heading", "rad"),
-        ("speed", "m/s"),
-        ("turn_rate", "rad/s"),
-        ("energy", "J"),
-        ("work", "J"),
-        ("constraint", "m/s"),
-        ("hinges", "m"),
-    ];
-    let mut header: Vec<(String, &'static str)> = own.map(|(name, unit)| (name.to_owned(), unit)).to_vec();
-    let trailers = 1..=train.trailers().len();
-    header.extend(trailers.clone().map(|k| (format!("heading_{k}"), "rad")));
-    let row = |node: &AssemblyNode| {
-        let SleighState { x, y, heading, speed, turn_rate } = first(&node.q, &node.v);
-        let AssemblyNode { t, energy, work, constraint, joint, .. } = *node;
-        let mut row = vec![t, x, y, heading, speed, turn_rate, energy, work, constraint, joint];
-        row.extend(trailers.clone().map(|k| node.q[3 * k + 2]));
-        row
-    };
-    Columns::new(header, nodes.iter().map(row).collect())
-}
-
-/// The state of the first blade.
-fn first(q: &[f64], v: &[f64]) -> SleighState {
-    let of = |x: &[f64]| std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0));
-    SleighState::from_coordinates(&of(q), &of(v))
-}
 
 /// Runs every method on a train, until Ctrl-C.
 pub(crate) fn compare_scene(

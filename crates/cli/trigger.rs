@@ -1,4 +1,6 @@
+use assembly::parts::Train;
 use dla::{Crossing, Event};
+use harness::{AssemblyCrossing, AssemblyEvent};
 use scene::SceneSystem;
 use serde_json::{Value, json};
 use sleigh::SleighState;
@@ -49,32 +51,65 @@ impl Trigger {
     }
 }
 
-/// An event in the words of a scene, for `run --json`.
-pub(crate) fn json<Sys, const N: usize, const M: usize>(
-    system: &Sys,
-    events: &[Event<'_, N>],
-    crossing: &Crossing<N>,
-) -> Value
-where
-    Sys: SceneSystem<N, M>,
-{
-    let state = system.sleigh_state(&crossing.state.unwrapped(), crossing.state.v());
-    json!({
-        "event": events.get(crossing.event).map(|event| &event.name),
-        "t": crossing.t,
-        "within": crossing.within,
-        "rising": crossing.rising,
-        "x": state.x,
-        "y": state.y,
-        "heading": state.heading,
-        "speed": state.speed,
-        "turn_rate": state.turn_rate,
-    })
+impl Trigger {
+    /// The event of the first blade of a train.
+    pub(crate) fn of_train<'a>(&'a self, train: &'a Train, terminal: bool) -> AssemblyEvent<'a> {
+        AssemblyEvent::new(self.text.clone(), terminal, move |_, state| {
+            (self.quantity)(&train.blade(state, 0)) - self.value
+        })
+    }
 }
 
-/// The same, for a person.
-pub(crate) fn told<const N: usize>(events: &[Event<'_, N>], crossing: &Crossing<N>) -> String {
-    let name = events.get(crossing.event).map_or("", |event| &event.name);
-    let how = if crossing.rising { "rising" } else { "falling" };
-    format!("event      {name}, {how}, at t = {} s\n", crate::table::number(crossing.t))
+/// An event that happened, the number of coordinates forgotten.
+pub(crate) struct Happened<'a> {
+    name: &'a str,
+    t: f64,
+    within: f64,
+    rising: bool,
+    state: SleighState,
+}
+
+impl<'a> Happened<'a> {
+    /// In a system.
+    pub(crate) fn of<Sys, const N: usize, const M: usize>(
+        system: &Sys,
+        events: &'a [Event<'_, N>],
+        crossing: &Crossing<N>,
+    ) -> Self
+    where
+        Sys: SceneSystem<N, M>,
+    {
+        let Crossing { event, t, within, rising, ref state, .. } = *crossing;
+        let name = events.get(event).map_or("", |event| &event.name);
+        Self { name, t, within, rising, state: system.sleigh_state(&state.unwrapped(), state.v()) }
+    }
+
+    /// Of the first blade of a train.
+    pub(crate) fn of_train(train: &Train, events: &'a [AssemblyEvent<'_>], crossing: &AssemblyCrossing) -> Self {
+        let AssemblyCrossing { event, t, within, rising, ref state, .. } = *crossing;
+        let name = events.get(event).map_or("", |event| &event.name);
+        Self { name, t, within, rising, state: train.blade(state, 0) }
+    }
+
+    /// In the words of a scene, for `run --json`.
+    pub(crate) fn json(&self) -> Value {
+        let Self { name, t, within, rising, state } = self;
+        json!({
+            "event": name,
+            "t": t,
+            "within": within,
+            "rising": rising,
+            "x": state.x,
+            "y": state.y,
+            "heading": state.heading,
+            "speed": state.speed,
+            "turn_rate": state.turn_rate,
+        })
+    }
+
+    /// For a person.
+    pub(crate) fn told(&self) -> String {
+        let how = if self.rising { "rising" } else { "falling" };
+        format!("event      {}, {how}, at t = {} s\n", self.name, crate::table::number(self.t))
+    }
 }

@@ -209,7 +209,14 @@ impl Equations {
 
 /// The coordinates of a joint at the end of a step with the mean velocity `v`, those that have an origin measured from it: the
 /// difference keeps the digits that the coordinates have lost far away.
-fn relative(placed: &Placed, origins: &[Option<usize>], h: f64, state: &State, v: &[f64], then: impl FnOnce(&[f64])) {
+pub(crate) fn relative(
+    placed: &Placed,
+    origins: &[Option<usize>],
+    h: f64,
+    state: &State,
+    v: &[f64],
+    then: impl FnOnce(&[f64]),
+) {
     let mut q1 = [0.0; WIDEST];
     for (k, origin) in origins.iter().enumerate() {
         q1[k] = match origin {
@@ -222,7 +229,7 @@ fn relative(placed: &Placed, origins: &[Option<usize>], h: f64, state: &State, v
 
 /// The mean velocity of a step, extrapolated from those of the last five, or if the accelerations are those of the last one;
 /// `v0` where neither is known, or would change the velocity so much that a search from there might lead elsewhere.
-fn predict(state: &State, h: f64, v0: &[f64], v: &mut [f64]) {
+pub(crate) fn predict(state: &State, h: f64, v0: &[f64], v: &mut [f64]) {
     const MOST: f64 = 0.125;
     let gained = |i: usize| {
         let expected = state.expected(i, h).map(|dq| dq / h - v0[i]);

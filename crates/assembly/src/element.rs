@@ -1,3 +1,5 @@
+use crate::energy::EnergyElement;
+use crate::lobatto::StageElement;
 use std::fmt::Debug;
 
 /// What an element adds to the equations of its assembly, in its own coordinates: `N` coordinates, `M` constraint rows.
@@ -23,7 +25,7 @@ pub struct Blocks<'a> {
 /// It says of a step what the static integrator [`Dla`](dla::Dla) with midpoint rules says of its system, equation by
 /// equation, in slices of its own length. [`Assembly::attach`](crate::Assembly::attach) makes one of any
 /// [`System`](lagrangian::System), [`Assembly::join`](crate::Assembly::join) of any [`Joint`](crate::Joint).
-pub trait Element: Debug + Send + Sync {
+pub trait Element: EnergyElement + StageElement + Debug + Send + Sync {
     /// The numbers `N` of coordinates and `M` of constraint rows.
     fn size(&self) -> (usize, usize);
 

@@ -88,6 +88,15 @@ pub enum AssemblyError {
         /// The longest part of the step for which they do not.
         part: f64,
     },
+    /// A method that keeps the energy has not kept it: along the step it is too rough for the quadrature, or the kinetic energy
+    /// is not one that the method does.
+    #[error("the energy misses the work by {defect:e} J, and rounding explains {bound:e} J")]
+    Energy {
+        /// By how much more than the work the energy has changed (J).
+        defect: f64,
+        /// What rounding may do (J).
+        bound: f64,
+    },
     /// A coordinate or a velocity became infinite or not a number.
     #[error("the coordinates or the velocities are no longer finite")]
     NotFinite,
@@ -113,6 +122,7 @@ impl AssemblyError {
             }
             Self::Branch { .. } => StepError::Branch,
             Self::Overshoot { part } => StepError::Overshoot { part: *part },
+            Self::Energy { defect, bound } => StepError::Energy { defect: *defect, bound: *bound },
             Self::NotFinite => StepError::NotFinite,
             Self::Unsupported { reason } => StepError::Unsupported { reason },
             Self::Coordinates { .. } | Self::Wide { .. } | Self::Number { .. } | Self::Factorisation { .. } => {

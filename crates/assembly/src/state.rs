@@ -1,3 +1,5 @@
+mod saved;
+
 use crate::Assembly;
 
 /// Configuration and velocity of an assembly.

@@ -24,7 +24,10 @@ mod timing;
 mod watched;
 
 pub use again::Again;
-pub use assembled::{Assembled, AssemblyNode, assembly_end, assembly_method, run_assembly};
+pub use assembled::{
+    Assembled, AssemblyCrossing, AssemblyEvent, AssemblyNode, assembly_end, assembly_method, recommend_assembly,
+    run_assembly, run_assembly_saved, run_assembly_watched,
+};
 pub use baseline::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced};
 pub use cost::{StepCost, step_cost};
 pub use drift::{Blocks, Drift, Verdict};

@@ -1,7 +1,6 @@
-use crate::Scalar;
 use crate::scalar::{derived_operators, functions_of_each_lane};
 use crate::sincos::near;
-use std::array::from_fn;
+use crate::{Scalar, array};
 use std::ops::{Add, Div, Mul, Neg};
 
 /// `R` numbers of one lane each, side by side in a loop over lanes: `for i in 0..8 { .. }`, whose body the compiler then turns
@@ -41,12 +40,20 @@ impl<const R: usize> Abreast<R> {
 
     #[inline(always)]
     fn map(self, f: impl Fn(f64) -> f64) -> Self {
-        Self::new(self.of.map(f))
+        Self::new(array(
+            0.0,
+            #[inline(always)]
+            |r| f(self.of[r]),
+        ))
     }
 
     #[inline(always)]
     fn zip(self, o: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        Self::new(from_fn(|r| f(self.of[r], o.of[r])))
+        Self::new(array(
+            0.0,
+            #[inline(always)]
+            |r| f(self.of[r], o.of[r]),
+        ))
     }
 }
 
@@ -54,49 +61,73 @@ impl<const R: usize> Add for Abreast<R> {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
-        self.zip(o, |a, b| a + b)
+        self.zip(
+            o,
+            #[inline(always)]
+            |a, b| a + b,
+        )
     }
 }
 impl<const R: usize> Mul for Abreast<R> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: Self) -> Self {
-        self.zip(o, |a, b| a * b)
+        self.zip(
+            o,
+            #[inline(always)]
+            |a, b| a * b,
+        )
     }
 }
 impl<const R: usize> Div for Abreast<R> {
     type Output = Self;
     #[inline(always)]
     fn div(self, o: Self) -> Self {
-        self.zip(o, |a, b| a / b)
+        self.zip(
+            o,
+            #[inline(always)]
+            |a, b| a / b,
+        )
     }
 }
 impl<const R: usize> Neg for Abreast<R> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        self.map(|a| -a)
+        self.map(
+            #[inline(always)]
+            |a| -a,
+        )
     }
 }
 impl<const R: usize> Add<f64> for Abreast<R> {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: f64) -> Self {
-        self.map(|a| a + o)
+        self.map(
+            #[inline(always)]
+            |a| a + o,
+        )
     }
 }
 impl<const R: usize> Mul<f64> for Abreast<R> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: f64) -> Self {
-        self.map(|a| a * o)
+        self.map(
+            #[inline(always)]
+            |a| a * o,
+        )
     }
 }
 impl<const R: usize> Div<f64> for Abreast<R> {
     type Output = Self;
     #[inline(always)]
     fn div(self, o: f64) -> Self {
-        self.map(|a| a / o)
+        self.map(
+            #[inline(always)]
+            |a| a / o,
+        )
     }
 }
 derived_operators!([const R: usize] Abreast<R>);
@@ -108,10 +139,16 @@ impl<const R: usize> Scalar for Abreast<R> {
     }
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        let (sin, cos) = self.sin_cos.unwrap_or_else(|| {
-            let both = self.of.map(near);
-            (both.map(|(sin, _)| sin), both.map(|(_, cos)| cos))
-        });
+        let (sin, cos) = match self.sin_cos {
+            Some(known) => known,
+            None => {
+                let (mut sin, mut cos) = ([0.0; R], [0.0; R]);
+                for r in 0..R {
+                    (sin[r], cos[r]) = near(self.of[r]);
+                }
+                (sin, cos)
+            }
+        };
         (Self::new(sin), Self::new(cos))
     }
     functions_of_each_lane!();

@@ -1,5 +1,4 @@
-use crate::Scalar;
-use std::array::from_fn;
+use crate::{Scalar, array};
 
 /// Something that acts on a body: it adds to the Lagrangian or to the forces, on the body's own coordinates.
 ///
@@ -53,7 +52,11 @@ impl<S: Scalar, const N: usize> Slope<S, N> {
         match (self, other) {
             (Self::Unknown, _) | (_, Self::Unknown) => Self::Unknown,
             (Self::Nothing, slope) | (slope, Self::Nothing) => slope,
-            (Self::Known(a), Self::Known(b)) => Self::Known(from_fn(|i| a[i] + b[i])),
+            (Self::Known(a), Self::Known(b)) => Self::Known(array(
+                S::zero(),
+                #[inline(always)]
+                |i| a[i] + b[i],
+            )),
         }
     }
 
@@ -64,7 +67,11 @@ impl<S: Scalar, const N: usize> Slope<S, N> {
             (Self::Unknown, _) => None,
             (Self::Nothing, force) => Some(force.unwrap_or([S::zero(); N])),
             (Self::Known(slope), None) => Some(slope),
-            (Self::Known(slope), Some(force)) => Some(from_fn(|i| slope[i] + force[i])),
+            (Self::Known(slope), Some(force)) => Some(array(
+                S::zero(),
+                #[inline(always)]
+                |i| slope[i] + force[i],
+            )),
         }
     }
 }
@@ -88,7 +95,11 @@ fn add<S: Scalar>(a: Option<S>, b: Option<S>) -> Option<S> {
 #[inline(always)]
 fn add_all<S: Scalar, const N: usize>(a: Option<[S; N]>, b: Option<[S; N]>) -> Option<[S; N]> {
     match (a, b) {
-        (Some(a), Some(b)) => Some(from_fn(|i| a[i] + b[i])),
+        (Some(a), Some(b)) => Some(array(
+            S::zero(),
+            #[inline(always)]
+            |i| a[i] + b[i],
+        )),
         (a, b) => a.or(b),
     }
 }
@@ -129,15 +140,27 @@ tuple_of_effects!(E0 0, E1 1, E2 2, E3 3, E4 4, E5 5);
 impl<B, E: Effect<B, N>, const N: usize> Effect<B, N> for Vec<E> {
     #[inline(always)]
     fn lagrangian<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<S> {
-        self.iter().fold(None, |sum, effect| add(sum, effect.lagrangian(body, t, q, v)))
+        let mut sum = None;
+        for effect in self {
+            sum = add(sum, effect.lagrangian(body, t, q, v));
+        }
+        sum
     }
     #[inline(always)]
     fn force<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
-        self.iter().fold(None, |sum, effect| add_all(sum, effect.force(body, t, q, v)))
+        let mut sum = None;
+        for effect in self {
+            sum = add_all(sum, effect.force(body, t, q, v));
+        }
+        sum
     }
     #[inline(always)]
     fn slope<S: Scalar>(&self, body: &B, t: S, q: &[S; N]) -> Slope<S, N> {
-        self.iter().fold(Slope::Nothing, |sum, effect| sum.and(effect.slope(body, t, q)))
+        let mut sum = Slope::Nothing;
+        for effect in self {
+            sum = sum.and(effect.slope(body, t, q));
+        }
+        sum
     }
     #[inline(always)]
     fn is_none(&self) -> bool {

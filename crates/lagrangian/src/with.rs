@@ -1,8 +1,7 @@
 use crate::{
-    AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Effect, Motion, MotionError, Push, Scalar, System,
+    AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Effect, Motion, MotionError, Push, Scalar, System, array,
     velocity_of,
 };
-use std::array::from_fn;
 
 /// A body with the effects that act on it: again a [`System`], on the body's coordinates and constraints.
 ///
@@ -61,7 +60,11 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
     #[inline(always)]
     fn force<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
         match (self.body.force(t, q, v), self.effects.force(&self.body, t, q, v)) {
-            (Some(a), Some(b)) => Some(from_fn(|i| a[i] + b[i])),
+            (Some(a), Some(b)) => Some(array(
+                S::zero(),
+                #[inline(always)]
+                |i| a[i] + b[i],
+            )),
             (a, b) => a.or(b),
         }
     }
@@ -106,7 +109,11 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
         }
         let push = self.push(t, q, &velocity_of(&self.body, t, q, xi).ok()?)?;
         let response = self.body.reduced_response(t, q, &push)?;
-        Some(from_fn(|i| bare[i] + response[i]))
+        Some(array(
+            S::zero(),
+            #[inline(always)]
+            |i| bare[i] + response[i],
+        ))
     }
 
     #[inline(always)]

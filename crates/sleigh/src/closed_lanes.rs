@@ -1,7 +1,6 @@
 use crate::Sleigh;
 use crate::closed_map::{COSINE, SINE};
 use lagrangian::{Abreast, ClosedLaneStep, ClosedLanes, Scalar};
-use std::array::from_fn;
 
 /// Half the turn of a step up to which its sine and cosine are short sums (rad), and that up to which they are long ones.
 const NARROW: f64 = 1.0 / 32.0;
@@ -88,8 +87,12 @@ fn short_series<const R: usize>(d: Abreast<R>) -> (Abreast<R>, Abreast<R>) {
 fn long_series<const R: usize>(d: Abreast<R>) -> (Abreast<R>, Abreast<R>) {
     let z = d * d;
     let zz = z * z;
-    let sum = |c: &[f64; 5]| (z * c[1] + c[0]) + zz * ((z * c[3] + c[2]) + zz * c[4]);
-    (d + d * z * sum(&SINE), -(z * 0.5 - zz * sum(&COSINE)) + 1.0)
+    (d + d * z * quartic(z, zz, &SINE), -(z * 0.5 - zz * quartic(z, zz, &COSINE)) + 1.0)
+}
+
+#[inline(always)]
+fn quartic<const R: usize>(z: Abreast<R>, zz: Abreast<R>, c: &[f64; 5]) -> Abreast<R> {
+    (z * c[1] + c[0]) + zz * ((z * c[3] + c[2]) + zz * c[4])
 }
 
 /// The map of the free sleigh, with the equations of [`closed_step`](lagrangian::System::closed_step).
@@ -132,11 +135,12 @@ impl ClosedLanes<3, 1, 5, 6> for Sleigh {
         let mean_speed = (u0 + across) / cos;
         let (way, turned) = (h * mean_speed, mean_speed * sin);
         let (most, last) = if WIDE { (BROAD, LAST) } else { (NARROW, QUICK) };
-        let good = from_fn(|i| {
+        let mut good = [true; R];
+        for i in 0..R {
             let (c, d) = (correction.of[i].abs(), turn.of[i].abs());
             // That `r` is positive, quick steps take over from the wide ones before them.
-            (c <= last) & (d <= most) & (!WIDE | (r.of[i] > 0.0))
-        });
+            good[i] = (c <= last) & (d <= most) & (!WIDE | (r.of[i] > 0.0));
+        }
         ClosedLaneStep {
             increment: [way * cos_m, way * sin_m, h * w],
             xi: [u1, omega1, Abreast::zero()],

@@ -35,7 +35,7 @@ pub enum SleighError {
     },
     /// What is wanted needs a system of a few coordinates, and this is a train of many.
     #[error(
-        "it has `trailers`, and a train of blades is no system of a few coordinates: `run`, `compare` and `precision` do trains, with dla, dla4, dla6 and dla8"
+        "it has `trailers`, and a train of blades is no system of a few coordinates: `run`, `compare` and `precision` do trains, with dla, dla4, dla6, dla8, lobatto3, lobatto4, lobatto5 and energy2"
     )]
     Train,
     /// A path cannot be followed.

@@ -1,6 +1,5 @@
 use crate::Sleigh;
 use lagrangian::Scalar;
-use std::array::from_fn;
 
 /// A body that is a sleigh, perhaps with more coordinates or constraints: its first three coordinates are `(x, y, theta)`.
 pub trait SleighBody {
@@ -20,7 +19,9 @@ pub trait SleighBody {
     fn at_centre<S: Scalar, const N: usize>(&self, q: &[S; N], [fx, fy]: [S; 2]) -> [S; N] {
         let (sin, cos) = q[2].sin_cos();
         let torque = (cos * fy - sin * fx) * self.sleigh().offset();
-        from_fn(|i| [fx, fy, torque].get(i).copied().unwrap_or(S::zero()))
+        let mut force = [S::zero(); N];
+        force[..3].copy_from_slice(&[fx, fy, torque]);
+        force
     }
 }
 

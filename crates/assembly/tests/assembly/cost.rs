@@ -1,5 +1,6 @@
-use crate::tools::{bent, train};
-use assembly::{Dla, OneStep, Solver};
+use crate::tools::{bent, slope, train};
+use assembly::parts::Train;
+use assembly::{Dla, Energy, Lobatto, OneStep, Solver};
 use rustix::time::{ClockId, clock_gettime};
 
 /// The processor time of this thread (s): that of the clock on the wall is of all who work here.
@@ -11,7 +12,12 @@ fn seconds() -> f64 {
 /// Processor seconds of the fastest of some steps.
 fn step(blades: usize, solver: Solver, steps: u32) -> f64 {
     let train = train(blades);
-    let (mut state, mut method) = (bent(&train), Dla::new(&train.assembly, solver).unwrap().on_one_thread());
+    let mut method = Dla::new(&train.assembly, solver).unwrap().on_one_thread();
+    of(&train, &mut method, steps)
+}
+
+fn of(train: &Train, method: &mut dyn OneStep, steps: u32) -> f64 {
+    let mut state = bent(train);
     let mut fastest = f64::INFINITY;
     for k in 0..steps {
         let clock = seconds();
@@ -19,14 +25,6 @@ fn step(blades: usize, solver: Solver, steps: u32) -> f64 {
         fastest = fastest.min(seconds() - clock);
     }
     fastest
-}
-
-/// The slope of a line through points.
-fn slope(points: &[(f64, f64)]) -> f64 {
-    let n = points.len() as f64;
-    let mean = |of: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
-    let (x, y) = (mean(&|p| p.0), mean(&|p| p.1));
-    points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum::<f64>() / points.iter().map(|p| (p.0 - x).powi(2)).sum::<f64>()
 }
 
 /// Of a hundred blades on, where a step is more than its overhead: below, the exponent is less than one.
@@ -60,5 +58,24 @@ fn figures() {
         let mut seconds = 0.0;
         let memory = allocation_counter::measure(|| seconds = step(blades, Solver::Best, 30)).bytes_max;
         println!("{blades:>5} blades: {:.4} ms a step, {:.1} kB", seconds * 1e3, memory as f64 / 1024.0);
+    }
+}
+
+/// Of the other methods too, to thousands of blades.
+#[test]
+#[ignore = "measures, and checks nothing"]
+fn figures_of_methods() {
+    for blades in [10, 100, 1000, 10_000] {
+        let train = train(blades);
+        let assembly = &train.assembly;
+        let new: [(&str, Box<dyn OneStep>); 4] = [
+            ("dla", Box::new(Dla::new(assembly, Solver::Best).unwrap().on_one_thread())),
+            ("energy2", Box::new(Energy::new(assembly, Solver::Best).unwrap())),
+            ("lobatto3", Box::new(Lobatto::new(assembly, Solver::Best, 3).unwrap())),
+            ("lobatto5", Box::new(Lobatto::new(assembly, Solver::Best, 5).unwrap())),
+        ];
+        for (name, mut method) in new {
+            println!("{blades:>5} blades, {name}: {:.4} ms a step", of(&train, method.as_mut(), 5) * 1e3);
+        }
     }
 }

@@ -1,7 +1,11 @@
 //! Assemblies against the static integrators and against what is known of trains.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod car;
+mod chain;
 mod cost;
+mod energy;
+mod lobatto;
 mod long;
 mod models;
 mod same;

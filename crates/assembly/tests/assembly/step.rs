@@ -1,15 +1,20 @@
 use crate::tools::{bent, train};
 use assembly::parts::Hinge;
-use assembly::{Assembly, AssemblyError, Composition, Dla, OneStep, Solver, State};
+use assembly::{Assembly, AssemblyError, Composition, Dla, Energy, Lobatto, OneStep, Solver, State};
 use dla::Stage;
 use sleigh::Sleigh;
 
 /// After the first steps, in which the factors find their room.
 #[test]
 fn a_step_allocates_nothing() {
-    let train = train(40);
-    for solver in [Solver::Sparse, Solver::Dense] {
-        let (mut state, mut method) = (bent(&train), Dla::new(&train.assembly, solver).unwrap());
+    let train = train(8);
+    let all = [Solver::Sparse, Solver::Dense].into_iter().flat_map(|solver| {
+        let dla: Box<dyn OneStep> = Box::new(Dla::new(&train.assembly, solver).unwrap());
+        let energy = Box::new(Energy::new(&train.assembly, solver).unwrap());
+        [(solver, dla), (solver, energy), (solver, Box::new(Lobatto::new(&train.assembly, solver, 3).unwrap()))]
+    });
+    for (solver, mut method) in all {
+        let mut state = bent(&train);
         let mut step = |k: i32| {
             let h = 0.02;
             method.step(&train.assembly, h * f64::from(k), h, &mut state).unwrap();

@@ -1,6 +1,6 @@
 use super::state::Row;
 use super::{Ensemble, LaneState};
-use lagrangian::{Abreast, ClosedLaneStep, ClosedLanes, System, vectorized};
+use lagrangian::{Abreast, ClosedLaneStep, ClosedLanes, System, array, vectorized};
 use std::array::from_fn;
 
 /// After so many steps frames are found anew from the configurations, so that their rounding does not add up, and angles are
@@ -124,31 +124,38 @@ impl<const W: usize, const N: usize, const M: usize, const F: usize> Run<W, N, M
     ) {
         for _ in 0..steps {
             for i in 0..LANES {
-                let load = |row: &Row<W>| Abreast::<R>::new(from_fn(|r| row.0[i + LANES * r]));
-                let store = |row: &mut Row<W>, x: &Abreast<R>| (0..R).for_each(|r| row.0[i + LANES * r] = x.of[r]);
-                let prepared = from_fn(|k| load(&prepared[k]));
-                let xi = from_fn(|k| load(&self.state.xi[k]));
-                let frame = from_fn(|k| load(&self.frame[k]));
+                let prepared = loaded(prepared, i);
+                let xi = loaded(&self.state.xi, i);
+                let frame = loaded(&self.frame, i);
                 let ClosedLaneStep { increment, xi, frame, impulse, good } =
                     Sys::step::<WIDE, R>(&prepared, &xi, &frame);
                 for k in 0..N {
-                    let (q, rest) = (load(&self.state.q[k]), load(&self.state.rest[k]));
+                    let (q, rest) = (load(&self.state.q[k], i), load(&self.state.rest[k], i));
                     let increment = increment[k] + rest;
                     let sum = q + increment;
-                    store(&mut self.state.rest[k], &(increment - (sum - q)));
-                    store(&mut self.state.q[k], &sum);
-                    store(&mut self.state.xi[k], &xi[k]);
+                    store(&mut self.state.rest[k], i, &(increment - (sum - q)));
+                    store(&mut self.state.q[k], i, &sum);
+                    store(&mut self.state.xi[k], i, &xi[k]);
                 }
                 for k in 0..F {
-                    store(&mut self.frame[k], &frame[k]);
+                    store(&mut self.frame[k], i, &frame[k]);
                 }
                 for k in 0..M {
-                    let (before, now) = (load(&self.largest[k]), impulse[k].abs());
-                    let larger = from_fn(|r| if now.of[r] > before.of[r] { now.of[r] } else { before.of[r] });
-                    store(&mut self.largest[k], &Abreast::new(larger));
+                    let (before, now) = (load::<R, W>(&self.largest[k], i), impulse[k].abs());
+                    let larger: [f64; R] = array(
+                        0.0,
+                        #[inline(always)]
+                        |r| if now.of[r] > before.of[r] { now.of[r] } else { before.of[r] },
+                    );
+                    store(&mut self.largest[k], i, &Abreast::new(larger));
                 }
-                let bad = load(&self.bad);
-                store(&mut self.bad, &Abreast::new(from_fn(|r| if good[r] { bad.of[r] } else { 1.0 })));
+                let bad = load::<R, W>(&self.bad, i);
+                let bad: [f64; R] = array(
+                    1.0,
+                    #[inline(always)]
+                    |r| if good[r] { bad.of[r] } else { 1.0 },
+                );
+                store(&mut self.bad, i, &Abreast::new(bad));
             }
         }
     }
@@ -163,6 +170,33 @@ impl<const W: usize, const N: usize, const M: usize, const F: usize> Run<W, N, M
         (0..F).for_each(|k| self.frame[k].0[lane] = other.frame[k].0[lane]);
         (0..M).for_each(|k| self.largest[k].0[lane] = other.largest[k].0[lane]);
         self.bad.0[lane] = other.bad.0[lane];
+    }
+}
+
+/// The numbers of lane `i` of each register.
+#[inline(always)]
+fn load<const R: usize, const W: usize>(row: &Row<W>, i: usize) -> Abreast<R> {
+    Abreast::new(array(
+        0.0,
+        #[inline(always)]
+        |r| row.0[i + LANES * r],
+    ))
+}
+
+/// Those of some rows.
+#[inline(always)]
+fn loaded<const R: usize, const W: usize, const K: usize>(rows: &[Row<W>; K], i: usize) -> [Abreast<R>; K] {
+    array(
+        Abreast::new([0.0; R]),
+        #[inline(always)]
+        |k| load(&rows[k], i),
+    )
+}
+
+#[inline(always)]
+fn store<const R: usize, const W: usize>(row: &mut Row<W>, i: usize, x: &Abreast<R>) {
+    for r in 0..R {
+        row.0[i + LANES * r] = x.of[r];
     }
 }
 

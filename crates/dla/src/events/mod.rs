@@ -4,6 +4,8 @@ mod crossing;
 mod isolate;
 mod root;
 mod watch;
+mod zeros;
 
 pub use crossing::{Crossing, Direction, Event};
 pub use watch::Watch;
+pub use zeros::{Zero, zeros};

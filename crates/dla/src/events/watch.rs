@@ -1,6 +1,4 @@
-use super::isolate::isolate;
-use super::root::{Point, root};
-use super::{Crossing, Event};
+use super::{Crossing, Event, Zero, zeros};
 use crate::{Observer, OneStep, State, StepReport, View};
 use std::ops::ControlFlow;
 
@@ -111,19 +109,11 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
         let mut found = Vec::new();
         for (index, event) in self.events.iter().enumerate() {
             let value = |at: f64| step.state(at).map_or(f64::NAN, |state| event.value(step.time(at), &state));
-            let points: Vec<_> = states
-                .iter()
-                .map(|(at, state)| Point { at: *at, value: event.value(step.time(*at), state) })
-                .filter(|point| !point.value.is_nan())
-                .collect();
-            for (from, to) in isolate(&points, value) {
-                let rising = from.value < 0.0;
-                if !event.counts(rising) {
-                    continue;
-                }
-                let (at, width) = root(from, to, self.tolerance / step.h.abs(), value);
+            let known: Vec<_> = states.iter().map(|(at, state)| (*at, event.value(step.time(*at), state))).collect();
+            let tolerance = self.tolerance / step.h.abs();
+            for Zero { at, within, rising } in zeros(&known, tolerance, |rising| event.counts(rising), value) {
                 let Some(state) = step.state(at) else { continue };
-                let within = width * step.h.abs();
+                let within = within * step.h.abs();
                 found.push((at, Crossing { event: index, k, t: step.time(at), within, rising, state }));
             }
         }

@@ -1,7 +1,7 @@
 use super::rule::Eight;
 use lagrangian::linear::larger;
 use lagrangian::simd::{Kernel, Pack, Simd, Wide};
-use lagrangian::{System, velocity_of};
+use lagrangian::{System, array, velocity_of};
 use std::array::from_fn;
 
 /// Eight stages of `N` slopes.
@@ -82,19 +82,31 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
     /// The places of the stages where nothing moves.
     #[inline(always)]
     fn still<S: Simd, const R: usize>(&self, simd: S) -> [Wide<S, R>; N] {
-        self.q0.map(|q| Wide::Each(Pack::splat(simd, q)))
+        array(
+            Wide::Zero,
+            #[inline(always)]
+            |k| Wide::Each(Pack::splat(simd, self.q0[k])),
+        )
     }
 
     /// The places of the stages.
     #[inline(always)]
     fn q<S: Simd, const R: usize>(&self, along: &Along<S, R>, v: &[Pack<S, R>; N]) -> [Wide<S, R>; N] {
-        from_fn(|k| along.from(self.q0[k], &v[k]))
+        array(
+            Wide::Zero,
+            #[inline(always)]
+            |k| along.from(self.q0[k], &v[k]),
+        )
     }
 
     /// The quasi-velocities of the stages.
     #[inline(always)]
     fn xi<S: Simd, const R: usize>(&self, along: &Along<S, R>, a: &[Pack<S, R>; N]) -> [Wide<S, R>; N] {
-        from_fn(|k| if k < N - M { along.from(self.xi0[k], &a[k]) } else { Wide::Zero })
+        array(
+            Wide::Zero,
+            #[inline(always)]
+            |k| if k < N - M { along.from(self.xi0[k], &a[k]) } else { Wide::Zero },
+        )
     }
 
     /// The velocities of quasi-velocities, one quadrature after another.
@@ -120,7 +132,8 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
     /// The times of the stages.
     #[inline(always)]
     fn times<S: Simd, const R: usize>(&self, simd: S) -> Wide<S, R> {
-        Wide::Each(Pack::load(simd, &self.rule.nodes.map(|node| self.t + node * self.h)))
+        let times = from_fn(|i| self.t + self.rule.nodes[i] * self.h);
+        Wide::Each(Pack::load(simd, &times))
     }
 
     /// `q' = W xi + v_b` in every stage.
@@ -131,7 +144,10 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
         q: &[Wide<S, R>; N],
         xi: &[Wide<S, R>; N],
     ) -> Option<[Pack<S, R>; N]> {
-        Some(velocity_of(self.system, self.times(simd), q, xi).ok()?.map(|x| x.pack(simd)))
+        match velocity_of(self.system, self.times(simd), q, xi) {
+            Ok(v) => Some(packed(simd, &v)),
+            Err(_) => None,
+        }
     }
 
     /// `xi'` in every stage.
@@ -142,7 +158,10 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
         q: &[Wide<S, R>; N],
         xi: &[Wide<S, R>; N],
     ) -> Option<[Pack<S, R>; N]> {
-        Some(self.system.reduced_motion(self.times(simd), q, xi)?.map(|x| x.pack(simd)))
+        match self.system.reduced_motion(self.times(simd), q, xi) {
+            Some(a) => Some(packed(simd, &a)),
+            None => None,
+        }
     }
 
     /// Both.
@@ -157,51 +176,62 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
     }
 }
 
+#[allow(clippy::manual_map, reason = "a closure may stay a call, in which the registers are not known")]
 impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sys, N, M> {
     type Output = Outcome<N>;
 
     #[inline(always)]
     fn run<S: Simd, const R: usize>(self, simd: S) -> Outcome<N> {
-        let along = Along::<S, R> {
-            columns: from_fn(|j| Pack::load(simd, &self.rule.columns[j])),
-            h: Pack::splat(simd, self.h),
-        };
+        let along = Along::<S, R> { columns: loaded(simd, &self.rule.columns), h: Pack::splat(simd, self.h) };
         let cascade = self.system.reconstruction();
         let alone = cascade.is_some() && self.system.stands_alone();
 
         let (mut v, mut a) = match self.before {
             Some(([velocity, acceleration], continued)) => {
-                let continued: [Pack<S, R>; 8] = from_fn(|j| Pack::load(simd, &continued[j]));
-                let ahead = |row: &[f64; 8]| Pack::load(simd, row).times(&continued);
-                (velocity.each_ref().map(ahead), acceleration.each_ref().map(ahead))
+                let continued = loaded(simd, continued);
+                (ahead(simd, velocity, &continued), ahead(simd, acceleration, &continued))
             }
             None => {
-                let xi = from_fn(|k| if k < N - M { Wide::Each(Pack::splat(simd, self.xi0[k])) } else { Wide::Zero });
+                let xi = array(
+                    Wide::Zero,
+                    #[inline(always)]
+                    |k| if k < N - M { Wide::Each(Pack::splat(simd, self.xi0[k])) } else { Wide::Zero },
+                );
                 match self.slopes(simd, &self.still(simd), &xi) {
                     Some(slopes) => slopes,
                     None => return Outcome::Unknown,
                 }
             }
         };
-        let inverse = |scales: &[f64; N]| scales.map(|x| Pack::splat(simd, x.max(SMALLEST).recip()));
-        let mut scales = self.ending.scales.map(|[v, a]| [inverse(&v), inverse(&a)]);
+        let mut scales = match &self.ending.scales {
+            Some([v, a]) => Some([inverse(simd, v), inverse(simd, a)]),
+            None => None,
+        };
         let (mut last, mut rate, mut iteration, mut stalled) = (f64::INFINITY, 1.0, 0, 0);
         loop {
             iteration += 1;
             let xi = self.xi(&along, &a);
             let slopes = match cascade {
-                _ if alone => self.acceleration(simd, &self.still(simd), &xi).map(|a1| (v, a1)),
-                Some(quadratures) => self
-                    .reconstructed(&along, quadratures, &xi)
-                    .and_then(|v1| Some((v1, self.acceleration(simd, &self.q(&along, &v1), &xi)?))),
+                _ if alone => match self.acceleration(simd, &self.still(simd), &xi) {
+                    Some(a1) => Some((v, a1)),
+                    None => None,
+                },
+                Some(quadratures) => match self.reconstructed(&along, quadratures, &xi) {
+                    Some(v1) => match self.acceleration(simd, &self.q(&along, &v1), &xi) {
+                        Some(a1) => Some((v1, a1)),
+                        None => None,
+                    },
+                    None => None,
+                },
                 None => self.slopes(simd, &self.q(&along, &v), &xi),
             };
             let Some((v1, a1)) = slopes else { return Outcome::Unknown };
             let zero = Pack::splat(simd, 0.0);
-            let [sv, sa] = *scales.get_or_insert_with(|| {
-                let size = |x: &Pack<S, R>| zero.max_abs(*x).largest();
-                [inverse(&v1.each_ref().map(size)), inverse(&a1.each_ref().map(size))]
-            });
+            let [sv, sa] = match scales {
+                Some(scales) => scales,
+                None => [own(simd, &v1), own(simd, &a1)],
+            };
+            scales = Some([sv, sa]);
             let mut changes = zero;
             for k in 0..N {
                 if cascade.is_none() {
@@ -238,9 +268,74 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
                 None => return Outcome::Unknown,
             }
         }
-        let slopes = Slopes { velocity: v.map(|x| x.row()), acceleration: a.map(|x| x.row()) };
+        let slopes = Slopes { velocity: rows(&v), acceleration: rows(&a) };
         Outcome::Found(Found { slopes, iterations: iteration, rate })
     }
+}
+
+/// Numbers that may have something in common, each in its registers.
+#[inline(always)]
+fn packed<S: Simd, const R: usize, const N: usize>(simd: S, x: &[Wide<S, R>; N]) -> [Pack<S, R>; N] {
+    array(
+        Pack::splat(simd, 0.0),
+        #[inline(always)]
+        |k| x[k].pack(simd),
+    )
+}
+
+/// Rows of eight numbers.
+#[inline(always)]
+fn loaded<S: Simd, const R: usize, const N: usize>(simd: S, x: &Rows<N>) -> [Pack<S, R>; N] {
+    array(
+        Pack::splat(simd, 0.0),
+        #[inline(always)]
+        |k| Pack::load(simd, &x[k]),
+    )
+}
+
+/// Rows as their polynomials go on.
+#[inline(always)]
+fn ahead<S: Simd, const R: usize, const N: usize>(
+    simd: S,
+    x: &Rows<N>,
+    continued: &[Pack<S, R>; 8],
+) -> [Pack<S, R>; N] {
+    array(
+        Pack::splat(simd, 0.0),
+        #[inline(always)]
+        |k| Pack::load(simd, &x[k]).times(continued),
+    )
+}
+
+/// The inverse of each scale, everywhere.
+#[inline(always)]
+fn inverse<S: Simd, const R: usize, const N: usize>(simd: S, scales: &[f64; N]) -> [Pack<S, R>; N] {
+    array(
+        Pack::splat(simd, 0.0),
+        #[inline(always)]
+        |k| Pack::splat(simd, larger(SMALLEST, scales[k]).recip()),
+    )
+}
+
+/// The inverse of the size of each row.
+#[inline(always)]
+fn own<S: Simd, const R: usize, const N: usize>(simd: S, x: &[Pack<S, R>; N]) -> [Pack<S, R>; N] {
+    let zero = Pack::splat(simd, 0.0);
+    array(
+        zero,
+        #[inline(always)]
+        |k| Pack::splat(simd, larger(SMALLEST, zero.max_abs(x[k]).largest()).recip()),
+    )
+}
+
+/// The numbers of each row.
+#[inline(always)]
+fn rows<S: Simd, const R: usize, const N: usize>(x: &[Pack<S, R>; N]) -> Rows<N> {
+    array(
+        [0.0; 8],
+        #[inline(always)]
+        |k| x[k].row(),
+    )
 }
 
 /// No iteration is expected to shrink its changes by more.

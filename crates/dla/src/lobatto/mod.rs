@@ -13,7 +13,9 @@ use lagrangian::{System, momentum};
 use stages::Stages;
 use std::array::from_fn;
 use std::f64::consts::PI;
-use tables::Tables;
+
+pub use point::{Linearised, Point};
+pub use tables::Tables;
 
 /// The variational partitioned Runge-Kutta method of the Lobatto pair IIIA and IIIB with `S >= 2` stages, as a one-step map
 /// on the distribution: order `2 S - 2`, self-adjoint.

@@ -3,34 +3,45 @@ use std::array::from_fn;
 
 /// A configuration and a velocity at one time, with the impulse of the constraint there.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Point<const N: usize, const M: usize> {
-    pub(super) t: f64,
-    pub(super) q: [f64; N],
-    pub(super) v: [f64; N],
-    pub(super) impulse: [f64; M],
+pub struct Point<const N: usize, const M: usize> {
+    /// Time (s).
+    pub t: f64,
+    /// Configuration.
+    pub q: [f64; N],
+    /// Velocity.
+    pub v: [f64; N],
+    /// The impulses `h Lambda`, one for each row.
+    pub impulse: [f64; M],
 }
 
 /// What the equations of a step need at one stage, with all first derivatives.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Linearised<const N: usize, const M: usize> {
+pub struct Linearised<const N: usize, const M: usize> {
     /// `p = L_v`.
-    pub(super) p: [f64; N],
-    pub(super) p_q: [[f64; N]; N],
-    pub(super) p_v: [[f64; N]; N],
+    pub p: [f64; N],
+    /// Its derivatives in `q`.
+    pub p_q: [[f64; N]; N],
+    /// Its derivatives in `v`.
+    pub p_v: [[f64; N]; N],
     /// `w = h (L_q + F) + A' l`, with `l` the impulse of the constraint.
-    pub(super) w: [f64; N],
-    pub(super) w_q: [[f64; N]; N],
-    pub(super) w_v: [[f64; N]; N],
+    pub w: [f64; N],
+    /// Its derivatives in `q`.
+    pub w_q: [[f64; N]; N],
+    /// Its derivatives in `v`.
+    pub w_v: [[f64; N]; N],
     /// `g = A v + b`, with `g_v = A`.
-    pub(super) g: [f64; M],
-    pub(super) g_q: [[f64; N]; M],
-    pub(super) a: [[f64; N]; M],
+    pub g: [f64; M],
+    /// Its derivatives in `q`.
+    pub g_q: [[f64; N]; M],
+    /// Its derivatives in `v`, the rows `A`.
+    pub a: [[f64; N]; M],
 }
 
 impl<const N: usize, const M: usize> Point<N, M> {
     /// `h (L_q + F) + A' l`.
+    #[must_use]
     #[inline]
-    pub(super) fn gain<Sys: System<N, M>>(&self, system: &Sys, h: f64) -> [f64; N] {
+    pub fn gain<Sys: System<N, M>>(&self, system: &Sys, h: f64) -> [f64; N] {
         let Self { t, q, v, impulse } = self;
         let l_q = system.lagrangian(Dual::fixed(*t), &Dual::variables(q), &v.map(Dual::fixed)).eps;
         let force = system.force(*t, q, v);
@@ -41,8 +52,10 @@ impl<const N: usize, const M: usize> Point<N, M> {
         })
     }
 
+    /// All that the equations need here, with its derivatives.
+    #[must_use]
     #[inline]
-    pub(super) fn linearised<Sys: System<N, M>>(&self, system: &Sys, h: f64) -> Linearised<N, M> {
+    pub fn linearised<Sys: System<N, M>>(&self, system: &Sys, h: f64) -> Linearised<N, M> {
         let Self { t, q, v, impulse } = self;
         let (time, zero) = (HyperDual::fixed(*t), [0.0; N]);
         let unit = |i: usize| from_fn(|k| if k == i { 1.0 } else { 0.0 });

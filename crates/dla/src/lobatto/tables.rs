@@ -3,26 +3,28 @@ use std::array::from_fn;
 
 /// The Lobatto nodes and weights on `[0, 1]` with the coefficients of the pair IIIA and IIIB, for any `S >= 2`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Tables<const S: usize> {
+pub struct Tables<const S: usize> {
     /// Nodes `c`, ascending, the two ends among them.
-    pub(super) c: [f64; S],
+    pub c: [f64; S],
     /// Weights `b`, exact to degree `2 S - 3`.
-    pub(super) b: [f64; S],
+    pub b: [f64; S],
     /// IIIA: `a[i][j]` is the integral of the `j`-th Lagrange polynomial from 0 to `c[i]`. The first row is zero, the last
     /// is `b`.
-    pub(super) a: [[f64; S]; S],
+    pub a: [[f64; S]; S],
     /// IIIB: `b[i] a_hat[i][j] + b[j] a[j][i] = b[i] b[j]`. The first column is `b[0]`, the last is zero.
-    pub(super) a_hat: [[f64; S]; S],
+    pub a_hat: [[f64; S]; S],
     /// The values at the nodes of the polynomial of degree `S - 1` that IIIA does not see, `sum_j a[i][j] blind[j] = 0`:
     /// Legendre's, scaled to 1 at the first node.
-    pub(super) blind: [f64; S],
+    pub blind: [f64; S],
 }
 
 impl<const S: usize> Tables<S> {
     /// Computes them to rounding.
     ///
     /// The Lagrange polynomials are expanded in Legendre's, which loses no digits (Hairer and Wanner 1996, section IV.5).
-    pub(super) fn new() -> Self {
+    #[must_use]
+    #[allow(clippy::new_without_default, reason = "a rule has no default number of stages")]
+    pub fn new() -> Self {
         const { assert!(S >= 2, "a Lobatto rule has at least the two ends") }
         let c = nodes();
         let values: [([f64; S], f64); S] = c.map(shifted_legendre);

@@ -1,8 +1,11 @@
 //! Runs of assemblies.
 use approx::assert_abs_diff_eq;
 use assembly::parts::{Trailer, Train};
-use dla::Schedule;
-use harness::{Method, Progress, run_assembly};
+use dla::{Checkpoint, CheckpointError, RecommendError, Schedule};
+use harness::{
+    AssemblyEvent, Method, Progress, Saving, assembly_end, recommend_assembly, run_assembly, run_assembly_saved,
+    run_assembly_watched,
+};
 use lagrangian::With;
 use sleigh::effects::{Drag, Thrust};
 use sleigh::{Sleigh, SleighState, TimeFunction};
@@ -25,8 +28,8 @@ fn a_run_of_a_train_is_measured() {
         let method = Method::named(name, None).unwrap();
         run_assembly(&train.assembly, &method, &SCHEDULE, &start, 10, &mut ())
     };
-    let [second, fourth] = ["dla", "dla4"].map(run);
-    for run in [&second, &fourth] {
+    let [second, fourth, staged, kept] = ["dla", "dla4", "lobatto3", "energy2"].map(run);
+    for run in [&second, &fourth, &staged, &kept] {
         let record = &run.record;
         assert_eq!((record.steps, run.nodes.len(), record.samples.len()), (200, 21, 21));
         assert_abs_diff_eq!(record.t, 4.0, epsilon = 1e-12);
@@ -36,6 +39,7 @@ fn a_run_of_a_train_is_measured() {
     }
     // Simpson's rule leaves 1e-8 of the work; order 2 leaves 1e-4.
     assert!(fourth.record.energy.max_error < 1e-6, "{:e}", fourth.record.energy.max_error);
+    assert!(staged.record.energy.max_error < 1e-6, "{:e}", staged.record.energy.max_error);
     assert!(second.record.energy.max_error > fourth.record.energy.max_error);
 }
 
@@ -70,4 +74,89 @@ fn an_interrupted_run_keeps_what_is_made() {
     let run = run_assembly(&train.assembly, &method, &long, &start, long.steps, &mut Impatient);
     assert!(run.record.interrupted && run.record.steps > 0);
     assert_abs_diff_eq!(run.nodes.last().unwrap().t, run.record.t);
+}
+
+/// The state at a crossing is that of a shorter step of the method, and a terminal event ends the run there.
+#[test]
+fn events_along_a_train() {
+    let train = train();
+    let start = train.start(&SleighState { speed: 1.0, turn_rate: 0.5, ..SleighState::default() }, &[0.1, 0.2]);
+    for name in ["dla4", "energy2"] {
+        let method = Method::named(name, None).unwrap();
+        let x = |value: f64| move |_: f64, state: &assembly::State| state.unwrapped(0) - value;
+        let events = [AssemblyEvent::new("x=0.513", false, x(0.513)), AssemblyEvent::new("x=0.911", true, x(0.911))];
+        let (run, crossings) =
+            run_assembly_watched(&train.assembly, &method, &SCHEDULE, (&start, 1000), &events, &mut ());
+        assert_eq!(crossings.iter().map(|crossing| crossing.event).collect::<Vec<_>>(), [0, 1]);
+        for (crossing, value) in crossings.iter().zip([0.513, 0.911]) {
+            assert!(crossing.rising && crossing.within < 1e-15);
+            assert_abs_diff_eq!(crossing.state.unwrapped(0), value, epsilon = 1e-15);
+            assert!(train.assembly.misses(crossing.t, &crossing.state).iter().all(|miss| *miss < 1e-14));
+        }
+        assert_eq!(run.end, crossings[1].state);
+        assert_abs_diff_eq!(run.record.t, crossings[1].t);
+        assert_eq!(run.nodes.len(), 2);
+        assert_eq!(run.record.steps, crossings[1].k + 1);
+        assert!(run.record.failure.is_none() && !run.record.interrupted);
+    }
+}
+
+/// All but the time.
+fn bits(run: &harness::Assembled) -> String {
+    let record = harness::Record { wall_seconds: 0.0, ..run.record.clone() };
+    format!("{record:?} {:?}", run.end)
+}
+
+/// In parts, and from the file of any of them, the numbers are the same to the last bit.
+#[test]
+fn a_saved_run_goes_on_as_if_it_had_not_stopped() {
+    let train = train();
+    let start = train.start(&SleighState { speed: 1.0, turn_rate: 0.5, ..SleighState::default() }, &[0.1, 0.2]);
+    for name in ["dla", "lobatto3", "energy2"] {
+        let method = Method::named(name, None).unwrap();
+        let whole = run_assembly(&train.assembly, &method, &SCHEDULE, &start, 10, &mut ());
+        let identity = Checkpoint::of([("method", name.to_owned())]);
+        let mut files = Vec::new();
+        let mut save = |made: &Checkpoint| files.push(made.to_text());
+        let mut saving = Saving { identity: &identity, from: None, every: Some(64), save: &mut save };
+        let run = |saving: &mut Saving<'_>| {
+            run_assembly_saved(&train.assembly, &method, &SCHEDULE, (&start, 10), saving, &mut ())
+        };
+        let parts = run(&mut saving).unwrap();
+        assert_eq!(bits(&parts), bits(&whole));
+        assert_eq!(files.len(), 4);
+        for file in &files {
+            let read = Checkpoint::from_text(file).unwrap();
+            let mut saving = Saving { identity: &identity, from: Some(&read), every: None, save: &mut |_| {} };
+            assert_eq!(bits(&run(&mut saving).unwrap()), bits(&whole));
+        }
+        // A positive control: another run does not take it.
+        let other = Checkpoint::of([("method", "another".to_owned())]);
+        let read = Checkpoint::from_text(&files[0]).unwrap();
+        let mut saving = Saving { identity: &other, from: Some(&read), every: None, save: &mut |_| {} };
+        assert!(matches!(run(&mut saving), Err(CheckpointError::Other { .. })));
+    }
+}
+
+/// The recommended step meets its tolerance against a run of high order, and one twice as long does not.
+#[test]
+fn a_step_for_a_tolerance() {
+    let train = train();
+    let start = train.start(&SleighState { speed: 1.0, turn_rate: 0.5, ..SleighState::default() }, &[0.1, 0.2]);
+    let last = |state: &assembly::State| [state.unwrapped(9), state.unwrapped(10), state.unwrapped(11)];
+    let (dla, tolerance) = (Method::named("dla", None).unwrap(), 1e-4);
+    let found = recommend_assembly(&train.assembly, &dla, &start, 4.0, tolerance, last).unwrap();
+    let end = |method: &Method, steps: u64| {
+        let schedule = Schedule { t0: 0.0, step: 4.0 / steps as f64, steps };
+        last(&assembly_end(&train.assembly, method, &schedule, &start, &mut ()).unwrap().unwrap())
+    };
+    let exact = end(&Method::named("dla8", None).unwrap(), 200);
+    let error = |steps: u64| {
+        let pairs = end(&dla, steps).into_iter().zip(exact);
+        pairs.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()))
+    };
+    println!("{found:?}, {:e}", error(found.steps));
+    assert!(error(found.steps) < tolerance && error(found.steps / 4) > tolerance);
+    let refused = recommend_assembly(&train.assembly, &Method::named("rk4", None).unwrap(), &start, 4.0, 1e-4, last);
+    assert!(matches!(refused, Err(RecommendError::Fails { .. })));
 }

@@ -1,5 +1,4 @@
 use pulp::{Simd, bytemuck};
-use std::array::from_fn;
 
 /// Eight numbers in `R` registers.
 #[derive(Debug, Clone, Copy)]
@@ -8,6 +7,10 @@ pub struct Pack<S: Simd, const R: usize> {
     registers: [S::f64s; R],
 }
 
+#[allow(
+    clippy::redundant_closure_for_method_calls,
+    reason = "a function may stay a call, in which the registers are not known"
+)]
 impl<S: Simd, const R: usize> Pack<S, R> {
     /// The same number in every place.
     #[must_use]
@@ -21,7 +24,9 @@ impl<S: Simd, const R: usize> Pack<S, R> {
     #[inline(always)]
     pub fn load(simd: S, row: &[f64; 8]) -> Self {
         let (registers, _) = S::as_simd_f64s(row);
-        Self { simd, registers: from_fn(|i| registers[i]) }
+        let mut all = [simd.splat_f64s(0.0); R];
+        all.copy_from_slice(&registers[..R]);
+        Self { simd, registers: all }
     }
 
     /// The numbers one by one.
@@ -36,7 +41,9 @@ impl<S: Simd, const R: usize> Pack<S, R> {
     #[inline(always)]
     pub fn row(&self) -> [f64; 8] {
         let lanes = self.lanes();
-        from_fn(|i| lanes[i])
+        let mut row = [0.0; 8];
+        row.copy_from_slice(&lanes[..8]);
+        row
     }
 
     /// Each number by itself, without vector instructions.
@@ -57,43 +64,61 @@ impl<S: Simd, const R: usize> Pack<S, R> {
     }
 
     #[inline(always)]
-    pub(super) fn map(self, f: impl Fn(S, S::f64s) -> S::f64s) -> Self {
-        Self { simd: self.simd, registers: from_fn(|i| f(self.simd, self.registers[i])) }
-    }
-
-    #[inline(always)]
-    pub(super) fn zip(self, o: Self, f: impl Fn(S, S::f64s, S::f64s) -> S::f64s) -> Self {
-        Self { simd: self.simd, registers: from_fn(|i| f(self.simd, self.registers[i], o.registers[i])) }
-    }
-
-    #[inline(always)]
-    pub(super) fn zip3(self, a: Self, b: Self, f: impl Fn(S, S::f64s, S::f64s, S::f64s) -> S::f64s) -> Self {
-        Self {
-            simd: self.simd,
-            registers: from_fn(|i| f(self.simd, self.registers[i], a.registers[i], b.registers[i])),
+    pub(super) fn map(mut self, f: impl Fn(S, S::f64s) -> S::f64s) -> Self {
+        for i in 0..R {
+            self.registers[i] = f(self.simd, self.registers[i]);
         }
+        self
+    }
+
+    #[inline(always)]
+    pub(super) fn zip(mut self, o: Self, f: impl Fn(S, S::f64s, S::f64s) -> S::f64s) -> Self {
+        for i in 0..R {
+            self.registers[i] = f(self.simd, self.registers[i], o.registers[i]);
+        }
+        self
+    }
+
+    #[inline(always)]
+    pub(super) fn zip3(mut self, a: Self, b: Self, f: impl Fn(S, S::f64s, S::f64s, S::f64s) -> S::f64s) -> Self {
+        for i in 0..R {
+            self.registers[i] = f(self.simd, self.registers[i], a.registers[i], b.registers[i]);
+        }
+        self
     }
 
     /// `self * factor + term`, rounded once.
     #[must_use]
     #[inline(always)]
     pub fn mul_add(self, factor: Self, term: Self) -> Self {
-        self.zip3(factor, term, S::mul_add_e_f64s)
+        self.zip3(
+            factor,
+            term,
+            #[inline(always)]
+            |s, a, b, c| s.mul_add_e_f64s(a, b, c),
+        )
     }
 
     /// The larger of this number and the absolute value of the other, in every place; the other where one is not a number.
     #[must_use]
     #[inline(always)]
     pub fn max_abs(self, o: Self) -> Self {
-        self.zip(o, |s, m, x| s.max_f64s(m, s.abs_f64s(x)))
+        self.zip(
+            o,
+            #[inline(always)]
+            |s, m, x| s.max_f64s(m, s.abs_f64s(x)),
+        )
     }
 
     /// The largest of the numbers, where all are numbers.
     #[must_use]
     #[inline(always)]
     pub fn largest(&self) -> f64 {
-        let (first, rest) = (self.registers[0], &self.registers[1..]);
-        self.simd.reduce_max_f64s(rest.iter().fold(first, |m, x| self.simd.max_f64s(m, *x)))
+        let mut most = self.registers[0];
+        for i in 1..R {
+            most = self.simd.max_f64s(most, self.registers[i]);
+        }
+        self.simd.reduce_max_f64s(most)
     }
 
     /// `sum_j columns[j] self[j]`: the product of a matrix, given by its columns, with this vector.
@@ -116,17 +141,25 @@ macro_rules! operators {
             type Output = Self;
             #[inline(always)]
             fn $method(self, o: Self) -> Self {
-                self.zip(o, |s, a, b| s.$instruction(a, b))
+                self.zip(
+                    o,
+                    #[inline(always)]
+                    |s, a, b| s.$instruction(a, b),
+                )
             }
         }
     )*};
 }
 operators!(Add add add_f64s, Sub sub sub_f64s, Mul mul mul_f64s, Div div div_f64s);
 
+#[allow(clippy::redundant_closure_for_method_calls, reason = "as above")]
 impl<S: Simd, const R: usize> std::ops::Neg for Pack<S, R> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        self.map(S::neg_f64s)
+        self.map(
+            #[inline(always)]
+            |s, x| s.neg_f64s(x),
+        )
     }
 }

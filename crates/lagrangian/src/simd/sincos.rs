@@ -16,46 +16,68 @@ impl<S: Simd, const R: usize> Pack<S, R> {
     #[inline(always)]
     pub fn sin_cos(self) -> (Self, Self) {
         let simd = self.simd();
-        let k = |x: f64| Self::splat(simd, x);
-        let known = self
-            .map(|s, x| s.select_f64s(s.less_than_f64s(s.abs_f64s(x), s.splat_f64s(LIMIT)), x, s.splat_f64s(f64::NAN)));
-        let shifted = self.mul_add(k(std::f64::consts::FRAC_2_PI), k(ROUNDER));
-        let n = shifted - k(ROUNDER);
-        let y = n.mul_add(k(-PIO2[1]), n.mul_add(k(-PIO2[0]), known));
+        let known = self.map(
+            #[inline(always)]
+            |s, x| within(s, x),
+        );
+        let rounder = Self::splat(simd, ROUNDER);
+        let shifted = self.mul_add(Self::splat(simd, std::f64::consts::FRAC_2_PI), rounder);
+        let n = shifted - rounder;
+        let y = n.mul_add(Self::splat(simd, -PIO2[1]), n.mul_add(Self::splat(simd, -PIO2[0]), known));
         let z = y * y;
         let (zz, zzzz) = (z * z, (z * z) * (z * z));
-        let polynomial = |c: &[f64; 6]| {
-            let pair = |i: usize| z.mul_add(k(c[i + 1]), k(c[i]));
-            zzzz.mul_add(pair(4), zz.mul_add(pair(2), pair(0)))
-        };
-        let sin = (y * z).mul_add(polynomial(&SIN), y);
-        let cos = zz.mul_add(polynomial(&COS), z.mul_add(k(-0.5), k(1.0)));
-        quadrant(shifted, sin, cos)
+        let sin = (y * z).mul_add(polynomial([z, zz, zzzz], &SIN), y);
+        let cos =
+            zz.mul_add(polynomial([z, zz, zzzz], &COS), z.mul_add(Self::splat(simd, -0.5), Self::splat(simd, 1.0)));
+        (
+            shifted.zip3(
+                sin,
+                cos,
+                #[inline(always)]
+                |s, x, sin, cos| turned(s, x, [sin, cos], 0),
+            ),
+            shifted.zip3(
+                cos,
+                sin,
+                #[inline(always)]
+                |s, x, cos, sin| turned(s, x, [cos, sin], 1),
+            ),
+        )
     }
 }
 
-/// Sine and cosine from those of the angle within its quadrant, whose number is in the lowest bits of `shifted`.
+/// The angle, where the number of its quadrant is known.
 #[inline(always)]
-fn quadrant<S: Simd, const R: usize>(
-    shifted: Pack<S, R>,
-    sin: Pack<S, R>,
-    cos: Pack<S, R>,
-) -> (Pack<S, R>, Pack<S, R>) {
-    let bits = |s: S, x: S::f64s, bit: u64, plus: u64| {
-        let n = s.add_u64s(s.transmute_u64s_f64s(x), s.splat_u64s(plus));
-        s.greater_than_or_equal_u64s(s.and_u64s(n, s.splat_u64s(bit)), s.splat_u64s(bit))
-    };
-    let flip = |s: S, down, x: S::f64s| {
-        let sign = s.select_u64s(down, s.splat_u64s(1 << 63), s.splat_u64s(0));
-        s.transmute_f64s_u64s(s.xor_u64s(s.transmute_u64s_f64s(x), sign))
-    };
-    let turned = |s: S, x: S::f64s, even: S::f64s, odd: S::f64s, plus: u64| {
-        flip(s, bits(s, x, 2, plus), s.select_f64s(bits(s, x, 1, 0), odd, even))
-    };
-    (
-        shifted.zip3(sin, cos, |s, x, sin, cos| turned(s, x, sin, cos, 0)),
-        shifted.zip3(cos, sin, |s, x, cos, sin| turned(s, x, cos, sin, 1)),
-    )
+fn within<S: Simd>(s: S, x: S::f64s) -> S::f64s {
+    s.select_f64s(s.less_than_f64s(s.abs_f64s(x), s.splat_f64s(LIMIT)), x, s.splat_f64s(f64::NAN))
+}
+
+/// The polynomial of these coefficients, from the first, second and fourth power of its variable.
+#[inline(always)]
+fn polynomial<S: Simd, const R: usize>([z, zz, zzzz]: [Pack<S, R>; 3], c: &[f64; 6]) -> Pack<S, R> {
+    let k = z.simd();
+    let pair = [
+        z.mul_add(Pack::splat(k, c[1]), Pack::splat(k, c[0])),
+        z.mul_add(Pack::splat(k, c[3]), Pack::splat(k, c[2])),
+        z.mul_add(Pack::splat(k, c[5]), Pack::splat(k, c[4])),
+    ];
+    zzzz.mul_add(pair[2], zz.mul_add(pair[1], pair[0]))
+}
+
+/// Sine or cosine from those of the angle within its quadrant, whose number is in the lowest bits of `shifted`; the cosine is
+/// the sine one quadrant on, `plus`.
+#[inline(always)]
+fn turned<S: Simd>(s: S, shifted: S::f64s, [even, odd]: [S::f64s; 2], plus: u64) -> S::f64s {
+    let value = s.select_f64s(has(s, shifted, 1, 0), odd, even);
+    let sign = s.select_u64s(has(s, shifted, 2, plus), s.splat_u64s(1 << 63), s.splat_u64s(0));
+    s.transmute_f64s_u64s(s.xor_u64s(s.transmute_u64s_f64s(value), sign))
+}
+
+/// Whether a bit is set in the lowest bits, taken as a number and increased.
+#[inline(always)]
+fn has<S: Simd>(s: S, x: S::f64s, bit: u64, plus: u64) -> S::m64s {
+    let n = s.add_u64s(s.transmute_u64s_f64s(x), s.splat_u64s(plus));
+    s.greater_than_or_equal_u64s(s.and_u64s(n, s.splat_u64s(bit)), s.splat_u64s(bit))
 }
 
 #[cfg(test)]

@@ -57,7 +57,12 @@ impl<S: Simd, const R: usize> Add for Wide<S, R> {
     fn add(self, o: Self) -> Self {
         match (self, o) {
             (Zero, x) | (x, Zero) => x,
-            (a, b) => a.with(b, |a, b| a + b, |a, b| a + b),
+            (a, b) => a.with(
+                b,
+                |a, b| a + b,
+                #[inline(always)]
+                |a, b| a + b,
+            ),
         }
     }
 }
@@ -68,7 +73,12 @@ impl<S: Simd, const R: usize> Sub for Wide<S, R> {
         match (self, o) {
             (x, Zero) => x,
             (Zero, x) => -x,
-            (a, b) => a.with(b, |a, b| a - b, |a, b| a - b),
+            (a, b) => a.with(
+                b,
+                |a, b| a - b,
+                #[inline(always)]
+                |a, b| a - b,
+            ),
         }
     }
 }
@@ -78,7 +88,12 @@ impl<S: Simd, const R: usize> Mul for Wide<S, R> {
     fn mul(self, o: Self) -> Self {
         match (self, o) {
             (Zero, _) | (_, Zero) => Zero,
-            (a, b) => a.with(b, |a, b| a * b, |a, b| a * b),
+            (a, b) => a.with(
+                b,
+                |a, b| a * b,
+                #[inline(always)]
+                |a, b| a * b,
+            ),
         }
     }
 }
@@ -88,7 +103,12 @@ impl<S: Simd, const R: usize> Div for Wide<S, R> {
     fn div(self, o: Self) -> Self {
         match (self, o) {
             (Zero, _) => Zero,
-            (a, b) => a.with(b, |a, b| a / b, |a, b| a / b),
+            (a, b) => a.with(
+                b,
+                |a, b| a / b,
+                #[inline(always)]
+                |a, b| a / b,
+            ),
         }
     }
 }

@@ -1,7 +1,6 @@
 use crate::checks::not_negative;
 use crate::{SleighBody, SleighError};
 use lagrangian::{Effect, Scalar};
-use std::array::from_fn;
 
 /// Viscous drag: the force `-c_u u` along the blade at its contact point, and the torque `-c_omega omega`.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,6 +25,8 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Drag {
         let (sin, cos) = q[2].sin_cos();
         let push = (cos * v[0] + sin * v[1]) * -self.along;
         let turn = v[2] * -self.turning;
-        Some(from_fn(|i| [push * cos, push * sin, turn].get(i).copied().unwrap_or(S::zero())))
+        let mut force = [S::zero(); N];
+        force[..3].copy_from_slice(&[push * cos, push * sin, turn]);
+        Some(force)
     }
 }

@@ -1,6 +1,5 @@
 use crate::{SleighBody, SleighError, TimeFunction};
 use lagrangian::{Effect, Piecewise, Scalar};
-use std::array::from_fn;
 
 /// A force `F(t)` along the blade at its contact point (N).
 ///
@@ -26,7 +25,9 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Thrust {
     fn force<S: Scalar>(&self, _body: &B, t: S, q: &[S; N], _v: &[S; N]) -> Option<[S; N]> {
         let (sin, cos) = q[2].sin_cos();
         let push = self.force.value(t);
-        Some(from_fn(|i| [push * cos, push * sin].get(i).copied().unwrap_or(S::zero())))
+        let mut force = [S::zero(); N];
+        force[..2].copy_from_slice(&[push * cos, push * sin]);
+        Some(force)
     }
 }
 

@@ -1,6 +1,5 @@
 use crate::{SleighBody, SleighError, TimeFunction};
 use lagrangian::{Effect, Piecewise, Scalar};
-use std::array::from_fn;
 
 /// A torque `tau(t)` on the heading (N m).
 #[derive(Debug, Clone, PartialEq)]
@@ -22,7 +21,9 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Torque {
     #[inline(always)]
     fn force<S: Scalar>(&self, _body: &B, t: S, _q: &[S; N], _v: &[S; N]) -> Option<[S; N]> {
         let torque = self.torque.value(t);
-        Some(from_fn(|i| if i == 2 { torque } else { S::zero() }))
+        let mut force = [S::zero(); N];
+        force[2] = torque;
+        Some(force)
     }
 }
 

@@ -1,0 +1,341 @@
+use crate::AssemblyError;
+use crate::element::local;
+use crate::joint::{Joint, JointElement};
+use crate::system_element::SystemElement;
+use lagrangian::linear::largest;
+use lagrangian::quadrature::gauss_legendre;
+use lagrangian::{
+    AdmissibleBasis, Bracket, Dual, HyperDual, Lanes, Scalar, System, energy, lagrangian_power, mass_matrix, momentum,
+    quasi_velocities,
+};
+use std::array::from_fn;
+
+/// The Gauss rule with eight nodes along a step, by which gradients are averaged: exact to degree 15.
+#[derive(Debug, Clone, Copy)]
+pub struct Average {
+    nodes: Lanes,
+    weights: Lanes,
+}
+
+impl Average {
+    pub(crate) fn new() -> Self {
+        let (nodes, weights) = gauss_legendre::<{ Lanes::COUNT }>();
+        Self { nodes: Lanes(nodes), weights: Lanes(weights) }
+    }
+
+    /// The points of a step along the line from `q0` with the velocity `v`.
+    fn points<const N: usize>(&self, h: f64, q0: &[f64; N], v: &[f64; N]) -> [Lanes; N] {
+        from_fn(|i| self.nodes * (h * v[i]) + q0[i])
+    }
+
+    fn of(&self, values: Lanes) -> f64 {
+        (self.weights * values).0.iter().sum()
+    }
+}
+
+/// A body along a step, matrices by rows.
+#[derive(Debug)]
+pub struct Swing<'a> {
+    /// The mean velocity `W(q_m) xi`, `N`.
+    pub v: &'a mut [f64],
+    /// Its derivative in `xi`, with that of `q_m`: `N x K`.
+    pub slope: &'a mut [f64],
+    /// `W(q_m)`, `N x K`.
+    pub frame: &'a mut [f64],
+    /// `S(q_m, xi) xi` of the bracket, `K`.
+    pub turning: &'a mut [f64],
+    /// Its derivative, `K x K`.
+    pub turning_slope: &'a mut [f64],
+}
+
+/// What an element says of a step that keeps the energy: see [`Energy`](crate::Energy).
+pub trait EnergyElement {
+    /// How many quasi-velocities it has as a body: as many as its basis of admissible velocities, or as coordinates where it has
+    /// none. Rows that no basis meets are constraints of the assembly.
+    fn quasi_velocities(&self) -> usize;
+
+    /// The quasi-velocities `xi` of a body at the beginning of a step, and its mass in them, `W' L_vv W`.
+    ///
+    /// # Errors
+    /// [`AssemblyError`] where the mass is singular, or the energy cannot be kept.
+    fn rest(&self, t: f64, q: &[f64], v: &[f64], xi: &mut [f64], mass: &mut [f64]) -> Result<(), AssemblyError>;
+
+    /// Whether its Lagrangian has a part in the velocities: one that is attached to the coordinates of others must not.
+    fn has_inertia(&self, t: f64, q: &[f64], v: &[f64]) -> bool;
+
+    /// Refuses what explicit time, moving constraints or velocities in a Lagrangian do, where they take the energy.
+    ///
+    /// # Errors
+    /// [`AssemblyError::Unsupported`].
+    fn keeps_energy(&self, t: f64, q: &[f64], v: &[f64]) -> Result<(), AssemblyError>;
+
+    /// A body with the mean quasi-velocities `xi`, from `q0`; nothing where its basis ends.
+    fn swing(&self, step: (f64, f64), q0: &[f64], xi: &[f64], out: Swing<'_>) -> Option<()>;
+
+    /// `W(q)` of a body, `N x K` by rows.
+    fn frame(&self, t: f64, q: &[f64], frame: &mut [f64]) -> Option<()>;
+
+    /// What its potential and its forces push over a step, `h (mean of L_q + F)`, with about its derivative in `v`; returns the
+    /// work of the forces (J).
+    fn push(&self, step: (f64, f64), rule: &Average, q0: &[f64], v: &[f64], out: (&mut [f64], &mut [f64])) -> f64;
+
+    /// Its constraint rows, those of constraints on positions averaged over the step: by these the functions change over it.
+    fn mean_rows(&self, step: (f64, f64), rule: &Average, q0: &[f64], v: &[f64], rows: &mut [f64]);
+
+    /// The energy, and the size of the numbers whose rounding it carries (J).
+    fn energies(&self, t: f64, q: &[f64], v: &[f64]) -> [f64; 2];
+}
+
+const UNSUPPORTED_TIME: AssemblyError = AssemblyError::Unsupported {
+    reason: "the energy-preserving methods are for systems without explicit time, and this one depends on it",
+};
+const UNSUPPORTED_MOVING: AssemblyError = AssemblyError::Unsupported {
+    reason: "the energy is conserved only under constraints with b = 0, and one of these moves",
+};
+const UNSUPPORTED_ROWS: AssemblyError = AssemblyError::Unsupported {
+    reason: "energy2 is for constraints that are affine in the velocities, and one is not",
+};
+const UNSUPPORTED_LINEAR: AssemblyError = AssemblyError::Unsupported {
+    reason: "energy2 of assemblies is for kinetic energies that are quadratic in the velocities, and one is not",
+};
+
+impl<Sys: System<N, M>, const N: usize, const M: usize> SystemElement<Sys, N, M> {
+    /// Whether the system gives a basis. One whose constraints hold positions too is held by its rows.
+    fn has_basis(&self) -> bool {
+        let (system, q) = (&self.system, &[0.0; N]);
+        M > 0 && system.holonomic(0.0, q).is_none() && system.admissible_basis(0.0, q).is_some()
+    }
+
+    fn basis<S: Scalar>(&self, t: S, q: &[S; N]) -> Option<AdmissibleBasis<S, N, M>> {
+        self.system.admissible_basis(t, q)
+    }
+}
+
+/// Writes vectors as the columns of a matrix.
+fn columns<const N: usize>(vectors: &[[f64; N]], matrix: &mut [f64]) {
+    let k = vectors.len();
+    for (a, w) in vectors.iter().enumerate() {
+        for (i, w) in w.iter().enumerate() {
+            matrix[i * k + a] = *w;
+        }
+    }
+}
+
+fn identity<const N: usize>() -> [[f64; N]; N] {
+    from_fn(|i| from_fn(|j| f64::from(u8::from(i == j))))
+}
+
+impl<Sys: System<N, M>, const N: usize, const M: usize> EnergyElement for SystemElement<Sys, N, M> {
+    fn quasi_velocities(&self) -> usize {
+        if self.has_basis() { N - M } else { N }
+    }
+
+    fn rest(&self, t: f64, q: &[f64], v: &[f64], xi: &mut [f64], mass: &mut [f64]) -> Result<(), AssemblyError> {
+        let (q, v) = (local(q), local(v));
+        let (_, full) = mass_matrix(&self.system, t, &q, &v);
+        let basis = if self.has_basis() { self.basis(t, &q) } else { None };
+        let k = xi.len();
+        match &basis {
+            Some(_) => {
+                let own = quasi_velocities(&self.system, t, &q, &v).map_err(|_| NO_BASIS)?;
+                xi.copy_from_slice(&own[..k]);
+            }
+            None => xi.copy_from_slice(&v),
+        }
+        let axes = identity::<N>();
+        let w = basis.as_ref().map_or(&axes[..], |basis| basis.vectors());
+        for a in 0..k {
+            for b in 0..k {
+                mass[a * k + b] = (0..N).map(|i| w[a][i] * (0..N).map(|j| full[i][j] * w[b][j]).sum::<f64>()).sum();
+            }
+        }
+        Ok(())
+    }
+
+    fn has_inertia(&self, t: f64, q: &[f64], v: &[f64]) -> bool {
+        let (_, mass) = mass_matrix(&self.system, t, &local(q), &local(v));
+        mass.as_flattened().iter().any(|m| *m != 0.0)
+    }
+
+    fn keeps_energy(&self, t: f64, q: &[f64], v: &[f64]) -> Result<(), AssemblyError> {
+        let (q, v): ([f64; N], [f64; N]) = (local(q), local(v));
+        let (_, b) = self.system.constraint(Dual { re: t, eps: [1.0] }, &q.map(Dual::fixed));
+        if Sys::MOVING || b.iter().any(|b: &Dual<f64, 1>| !b.is_zero()) {
+            return Err(UNSUPPORTED_MOVING);
+        }
+        if self.system.nonlinear(t, &q, &v).is_some() {
+            return Err(UNSUPPORTED_ROWS);
+        }
+        if lagrangian_power(&self.system, t, &q, &v) != 0.0 {
+            return Err(UNSUPPORTED_TIME);
+        }
+        if largest(&momentum(&self.system, t, &q, &[0.0; N])) != 0.0 {
+            return Err(UNSUPPORTED_LINEAR);
+        }
+        Ok(())
+    }
+
+    fn swing(&self, (t0, h): (f64, f64), q0: &[f64], xi: &[f64], out: Swing<'_>) -> Option<()> {
+        /// However the basis turns, its turn in a step of less than a radian is found with fewer.
+        const ITERATIONS: u32 = 60;
+        if !self.has_basis() {
+            out.v.copy_from_slice(xi);
+            out.slope.copy_from_slice(identity::<N>().as_flattened());
+            out.frame.copy_from_slice(identity::<N>().as_flattened());
+            out.turning.fill(0.0);
+            out.turning_slope.fill(0.0);
+            return Some(());
+        }
+        let (q0, k): ([f64; N], usize) = (local(q0), xi.len());
+        let t = Dual::<f64, N>::fixed(t0 + 0.5 * h);
+        let x = from_fn(|a| xi.get(a).map_or(Dual::zero(), |xi| Dual::variable(*xi, a)));
+        let mut v = self.basis(t, &q0.map(Dual::fixed))?.combine(&x);
+        let middle = |v: &[Dual<f64, N>; N]| from_fn(|i| v[i] * (0.5 * h) + q0[i]);
+        for _ in 0..ITERATIONS {
+            let next = self.basis(t, &middle(&v))?.combine(&x);
+            let settled = next == v;
+            v = next;
+            if settled {
+                break;
+            }
+        }
+        let bracket = Bracket::at(&self.system, t, &middle(&v), &x)?;
+        let (_, rates) = bracket.rates(&[Dual::zero(); N], &x);
+        for i in 0..N {
+            out.v[i] = v[i].re;
+            out.slope[i * k..][..k].copy_from_slice(&v[i].eps[..k]);
+        }
+        for a in 0..k {
+            out.turning[a] = -rates[a].re;
+            for b in 0..k {
+                out.turning_slope[a * k + b] = -rates[a].eps[b];
+            }
+            for i in 0..N {
+                out.frame[i * k + a] = bracket.basis.vectors()[a][i].re;
+            }
+        }
+        Some(())
+    }
+
+    fn frame(&self, t: f64, q: &[f64], frame: &mut [f64]) -> Option<()> {
+        if self.has_basis() {
+            columns(self.basis(t, &local(q))?.vectors(), frame);
+        } else {
+            frame.copy_from_slice(identity::<N>().as_flattened());
+        }
+        Some(())
+    }
+
+    fn push(
+        &self,
+        (t0, h): (f64, f64),
+        rule: &Average,
+        q0: &[f64],
+        v: &[f64],
+        (push, slope): (&mut [f64], &mut [f64]),
+    ) -> f64 {
+        let (q0, v): ([f64; N], [f64; N]) = (local(q0), local(v));
+        let (system, t) = (&self.system, t0 + 0.5 * h);
+        let path = Dual::variables(&rule.points(h, &q0, &v));
+        let l = system.lagrangian(Dual::fixed(Lanes::constant(t)), &path, &[Dual::zero(); N]);
+        // Its derivative in v: that of the gradient in the middle.
+        let unit = |i: usize| from_fn(|k| f64::from(u8::from(k == i)));
+        let middle: [HyperDual<f64, N, N>; N] =
+            from_fn(|i| HyperDual::linear(q0[i] + 0.5 * h * v[i], unit(i), unit(i)));
+        let l_qq = system.lagrangian(HyperDual::fixed(t), &middle, &[HyperDual::fixed(0.0); N]).e12;
+        for i in 0..N {
+            push[i] = h * rule.of(l.eps[i]);
+            for j in 0..N {
+                slope[i * N + j] = 0.5 * h * h * l_qq[i][j];
+            }
+        }
+        let moving: [Dual<f64, N>; N] = from_fn(|i| Dual::variable(v[i], i));
+        let q = from_fn(|i| moving[i] * (0.5 * h) + q0[i]);
+        let Some(force) = system.force(Dual::fixed(t), &q, &moving) else { return 0.0 };
+        let mut work = 0.0;
+        for i in 0..N {
+            push[i] += h * force[i].re;
+            work += h * force[i].re * v[i];
+            for j in 0..N {
+                slope[i * N + j] += h * force[i].eps[j];
+            }
+        }
+        work
+    }
+
+    fn mean_rows(&self, (t0, h): (f64, f64), rule: &Average, q0: &[f64], v: &[f64], rows: &mut [f64]) {
+        let (q0, v): ([f64; N], [f64; N]) = (local(q0), local(v));
+        let t = t0 + 0.5 * h;
+        let (a, _) = self.system.constraint(t, &from_fn(|i| q0[i] + 0.5 * h * v[i]));
+        rows.copy_from_slice(a.as_flattened());
+        let path = Dual::variables(&rule.points(h, &q0, &v));
+        let positions: Option<[Option<Dual<Lanes, N>>; M]> =
+            self.system.holonomic(Dual::fixed(Lanes::constant(t)), &path);
+        for (row, g) in rows.chunks_exact_mut(N).zip(positions.iter().flatten()) {
+            for (x, slope) in row.iter_mut().zip(g.iter().flat_map(|g| g.eps)) {
+                *x = rule.of(slope);
+            }
+        }
+    }
+
+    fn energies(&self, t: f64, q: &[f64], v: &[f64]) -> [f64; 2] {
+        let (q, v): ([f64; N], [f64; N]) = (local(q), local(v));
+        let p = momentum(&self.system, t, &q, &v);
+        let l = self.system.lagrangian(Dual::fixed(t), &Dual::variables(&q), &v.map(Dual::fixed));
+        let size = l.re.abs() + (0..N).map(|i| (p[i] * v[i]).abs() + (l.eps[i] * q[i]).abs()).sum::<f64>();
+        [energy(&self.system, t, &q, &v), size]
+    }
+}
+
+pub(super) const NO_BASIS: AssemblyError =
+    AssemblyError::Unsupported { reason: "a body has no basis of its admissible velocities there" };
+
+impl<J: Joint<N, M>, const N: usize, const M: usize> EnergyElement for JointElement<J, N, M> {
+    fn quasi_velocities(&self) -> usize {
+        N
+    }
+
+    fn rest(&self, _t: f64, _q: &[f64], v: &[f64], xi: &mut [f64], mass: &mut [f64]) -> Result<(), AssemblyError> {
+        xi.copy_from_slice(v);
+        mass.fill(0.0);
+        Ok(())
+    }
+
+    fn has_inertia(&self, _t: f64, _q: &[f64], _v: &[f64]) -> bool {
+        false
+    }
+
+    fn keeps_energy(&self, t: f64, q: &[f64], _v: &[f64]) -> Result<(), AssemblyError> {
+        let q: [f64; N] = local(q);
+        let g = self.joint.position(Dual { re: t, eps: [1.0] }, &q.map(Dual::fixed));
+        if g.iter().any(|g: &Dual<f64, 1>| g.eps[0] != 0.0) { Err(UNSUPPORTED_MOVING) } else { Ok(()) }
+    }
+
+    fn swing(&self, _step: (f64, f64), _q0: &[f64], _xi: &[f64], _out: Swing<'_>) -> Option<()> {
+        None
+    }
+
+    fn frame(&self, _t: f64, _q: &[f64], _frame: &mut [f64]) -> Option<()> {
+        None
+    }
+
+    fn push(&self, _step: (f64, f64), _rule: &Average, _q0: &[f64], _v: &[f64], out: (&mut [f64], &mut [f64])) -> f64 {
+        out.0.fill(0.0);
+        out.1.fill(0.0);
+        0.0
+    }
+
+    fn mean_rows(&self, (t0, h): (f64, f64), rule: &Average, q0: &[f64], v: &[f64], rows: &mut [f64]) {
+        let path = Dual::variables(&rule.points(h, &local::<N>(q0), &local::<N>(v)));
+        let g = self.joint.position(Dual::fixed(Lanes::constant(t0 + 0.5 * h)), &path);
+        for (row, g) in rows.chunks_exact_mut(N).zip(&g) {
+            for (x, slope) in row.iter_mut().zip(g.eps) {
+                *x = rule.of(slope);
+            }
+        }
+    }
+
+    fn energies(&self, _t: f64, _q: &[f64], _v: &[f64]) -> [f64; 2] {
+        [0.0; 2]
+    }
+}

@@ -1,0 +1,138 @@
+use crate::assembly::WIDEST;
+use crate::element::local;
+use crate::joint::{Joint, JointElement};
+use crate::system_element::SystemElement;
+use dla::{LinearisedStage, StagePoint};
+use lagrangian::{Constraint, Dual, Scalar, System, position_misses, position_rows};
+
+/// What an element says at one stage of a step, with first derivatives: as [`LinearisedStage`], in the first places of lists
+/// that are long enough for any. Matrices by rows.
+#[derive(Debug, Clone)]
+pub struct StageTerms {
+    /// `p = L_v`, `N`.
+    pub p: Vec<f64>,
+    /// Its derivatives in `q`, `N x N`.
+    pub p_q: Vec<f64>,
+    /// Its derivatives in `v`, `N x N`.
+    pub p_v: Vec<f64>,
+    /// `w = h (L_q + F) + A' l`, `N`.
+    pub w: Vec<f64>,
+    /// Its derivatives in `q`, `N x N`.
+    pub w_q: Vec<f64>,
+    /// Its derivatives in `v`, `N x N`.
+    pub w_v: Vec<f64>,
+    /// `g = A v + b`, `M`.
+    pub g: Vec<f64>,
+    /// Its derivatives in `q`, `M x N`.
+    pub g_q: Vec<f64>,
+    /// Its derivatives in `v`, `M x N`.
+    pub a: Vec<f64>,
+    /// Which rows hold positions, `M`.
+    pub holds: Vec<bool>,
+    /// What these functions are, `M`.
+    pub position: Vec<f64>,
+    /// Their derivatives in `q`, `M x N`.
+    pub position_q: Vec<f64>,
+}
+
+impl StageTerms {
+    pub(super) fn new() -> Self {
+        let (vector, matrix) = (|| vec![0.0; WIDEST], || vec![0.0; WIDEST * WIDEST]);
+        Self {
+            p: vector(),
+            p_q: matrix(),
+            p_v: matrix(),
+            w: vector(),
+            w_q: matrix(),
+            w_v: matrix(),
+            g: vector(),
+            g_q: matrix(),
+            a: matrix(),
+            holds: vec![false; WIDEST],
+            position: vector(),
+            position_q: matrix(),
+        }
+    }
+
+    fn write<const N: usize, const M: usize>(
+        &mut self,
+        at: &LinearisedStage<N, M>,
+        positions: Option<[Option<Dual<f64, N>>; M]>,
+    ) {
+        let square = |from: &[[f64; N]; N], to: &mut [f64]| to[..N * N].copy_from_slice(from.as_flattened());
+        let rows = |from: &[[f64; N]; M], to: &mut [f64]| to[..M * N].copy_from_slice(from.as_flattened());
+        self.p[..N].copy_from_slice(&at.p);
+        self.w[..N].copy_from_slice(&at.w);
+        self.g[..M].copy_from_slice(&at.g);
+        square(&at.p_q, &mut self.p_q);
+        square(&at.p_v, &mut self.p_v);
+        square(&at.w_q, &mut self.w_q);
+        square(&at.w_v, &mut self.w_v);
+        rows(&at.g_q, &mut self.g_q);
+        rows(&at.a, &mut self.a);
+        self.holds[..M].fill(false);
+        for (k, g) in positions.iter().flatten().enumerate() {
+            if let Some(g) = g {
+                (self.holds[k], self.position[k]) = (true, g.re);
+                self.position_q[k * N..][..N].copy_from_slice(&g.eps);
+            }
+        }
+    }
+}
+
+/// What an element says of the stages of a step: see [`Lobatto`](crate::Lobatto).
+pub trait StageElement {
+    /// All that the equations need at the time `t` of a step of length `h`, with the impulses `h Lambda` of its rows.
+    fn stage(&self, time: (f64, f64), q: &[f64], v: &[f64], impulses: &[f64], out: &mut StageTerms);
+
+    /// Whether it has constraints that are not affine in the velocities, which the method does not do.
+    fn is_affine(&self, t: f64, q: &[f64], v: &[f64]) -> bool;
+}
+
+/// That of any system.
+fn stage<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    (t, h): (f64, f64),
+    [q, v, impulses]: [&[f64]; 3],
+    out: &mut StageTerms,
+) {
+    let point = StagePoint::<N, M> { t, q: local(q), v: local(v), impulse: local(impulses) };
+    out.write(&point.linearised(system, h), position_misses(system, t, &point.q));
+}
+
+impl<Sys: System<N, M>, const N: usize, const M: usize> StageElement for SystemElement<Sys, N, M> {
+    fn stage(&self, time: (f64, f64), q: &[f64], v: &[f64], impulses: &[f64], out: &mut StageTerms) {
+        stage::<Sys, N, M>(&self.system, time, [q, v, impulses], out);
+    }
+
+    fn is_affine(&self, t: f64, q: &[f64], v: &[f64]) -> bool {
+        self.system.nonlinear(t, &local(q), &local(v)).is_none()
+    }
+}
+
+/// A joint as a system without inertia.
+struct Joined<'a, J>(&'a J);
+
+impl<J: Joint<N, M>, const N: usize, const M: usize> System<N, M> for Joined<'_, J> {
+    fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; N], _v: &[S; N]) -> S {
+        S::zero()
+    }
+
+    fn constraint<S: Scalar>(&self, t: S, q: &[S; N]) -> Constraint<S, N, M> {
+        position_rows(self, t, q)
+    }
+
+    fn holonomic<S: Scalar>(&self, t: S, q: &[S; N]) -> Option<[Option<S>; M]> {
+        Some(self.0.position(t, q).map(Some))
+    }
+}
+
+impl<J: Joint<N, M>, const N: usize, const M: usize> StageElement for JointElement<J, N, M> {
+    fn stage(&self, time: (f64, f64), q: &[f64], v: &[f64], impulses: &[f64], out: &mut StageTerms) {
+        stage::<Joined<'_, J>, N, M>(&Joined(&self.joint), time, [q, v, impulses], out);
+    }
+
+    fn is_affine(&self, _t: f64, _q: &[f64], _v: &[f64]) -> bool {
+        true
+    }
+}

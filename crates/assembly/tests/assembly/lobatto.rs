@@ -1,0 +1,74 @@
+//! The Lobatto methods: of one sleigh the static ones, of trains with joints and blades held.
+use crate::tools::{bent, ground, hilly};
+use approx::assert_abs_diff_eq;
+use assembly::{Assembly, AssemblyError, Lobatto, OneStep, Solver, State};
+use lagrangian::linear::larger;
+use lagrangian::{System, With};
+use sleigh::{Sleigh, SleighState};
+
+fn compare<Sys: System<3, 1> + Clone + Send + Sync + 'static>(
+    system: &Sys,
+    stages: usize,
+    reference: &mut dyn dla::OneStep<Sys, 3, 1>,
+) {
+    let mut alone = Assembly::new();
+    let _: [usize; 3] = alone.body("blade", system.clone());
+    let (q, v) = SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() }.to_coordinates();
+    let (mut state, mut fixed) = (State::new(&alone, &q, &v), dla::State::new(q, v, [false, false, true]));
+    let mut method = Lobatto::new(&alone, Solver::Best, stages).unwrap();
+    let h = 0.1;
+    for k in 0..200 {
+        method.step(&alone, f64::from(k) * h, h, &mut state).unwrap();
+        reference.step(system, f64::from(k) * h, h, &mut fixed).unwrap();
+    }
+    // As with `dla`: each step rounds the velocities by some four ulps, and a heading that is off by so much in each of 200
+    // steps puts the end of a way of 24 m beside its place by so much of the way.
+    let turned = 200.0 * 4.0 * f64::EPSILON;
+    for i in 0..3 {
+        assert_abs_diff_eq!(state.unwrapped(i), fixed.unwrapped()[i], epsilon = 24.0 * turned);
+        assert_abs_diff_eq!(state.v(i), fixed.v()[i], epsilon = turned);
+    }
+}
+
+/// Free and on the hills.
+#[test]
+fn one_sleigh_is_the_static_sleigh() {
+    let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    compare(&sleigh, 3, &mut dla::Lobatto::<3>::new());
+    let hills = With { body: sleigh, effects: ground() };
+    compare(&hills, 3, &mut dla::Lobatto::<3>::new());
+    compare(&hills, 5, &mut dla::Lobatto::<5>::new());
+}
+
+/// The end of a run, and what the constraints and the joints miss most.
+fn end(method: &mut dyn OneStep, steps: u32) -> (State, [f64; 2]) {
+    let train = hilly(4);
+    let (mut state, h, mut most) = (bent(&train), 2.0 / f64::from(steps), [0.0; 2]);
+    for k in 0..steps {
+        method.step(&train.assembly, f64::from(k) * h, h, &mut state).unwrap();
+        let misses = train.assembly.misses(f64::from(k + 1) * h, &state);
+        most = [larger(most[0], misses[0]), larger(most[1], misses[1])];
+    }
+    (state, most)
+}
+
+/// Slopes of lines through the logarithms of error and step, on a train of four.
+#[test]
+fn orders_on_a_train() {
+    let train = hilly(4);
+    let method = |stages| Lobatto::new(&train.assembly, Solver::Best, stages).unwrap();
+    let (exact, _) = end(&mut method(5), 80);
+    for (stages, counts, expected) in [(3, [20, 40, 80], 4.0), (4, [10, 14, 20], 6.0), (5, [8, 10, 14], 8.0)] {
+        let mut most = [0.0; 2];
+        let errors = counts.map(|steps| {
+            let (state, misses) = end(&mut method(stages), steps);
+            most = [larger(most[0], misses[0]), larger(most[1], misses[1])];
+            state.distance(&exact)
+        });
+        let fitted = (errors[0] / errors[2]).ln() / (f64::from(counts[2]) / f64::from(counts[0])).ln();
+        println!("lobatto{stages}: {errors:?}, order {fitted}; {most:?}");
+        assert!((fitted - expected).abs() < 0.1 * expected, "{stages}: {fitted}");
+        assert!(most[0] < 4e-15 && most[1] < 4e-15, "{most:?}");
+    }
+    assert!(matches!(Lobatto::new(&train.assembly, Solver::Best, 2), Err(AssemblyError::Unsupported { .. })));
+}

@@ -1,0 +1,187 @@
+//! `noslip run` of a scene with trailers.
+
+use crate::args::RunArguments;
+use crate::compare::unless_interrupted;
+use crate::error::CliError;
+use crate::interrupt::Interrupt;
+use crate::progress::Interruptible;
+use crate::train::MOST_NUMBERS;
+use crate::trajectory_file::{self, Columns, Format};
+use crate::trigger::Happened;
+use crate::{inspect, json, progress, resume, table, terminal};
+use assembly::State;
+use assembly::parts::Train;
+use dla::{Checkpoint, Schedule};
+use harness::{
+    Assembled, AssemblyNode, Method, Progress, Saving, recommend_assembly, run_assembly_saved, run_assembly_watched,
+};
+use scene::Scene;
+use serde_json::{Value, json};
+use sleigh::SleighState;
+use std::path::Path;
+
+/// `noslip run` of a train.
+pub(crate) fn run(
+    arguments: &RunArguments,
+    scene: &Scene,
+    method: &Method,
+    out: Option<(&Path, Format)>,
+) -> Result<(), CliError> {
+    let Some((train, start)) = scene.train()? else { return Ok(()) };
+    let RunArguments { checkpoint, resume, tolerance, .. } = arguments;
+    let mut schedule = inspect::schedule(scene);
+    if let Some(tolerance) = tolerance {
+        let (assembly, duration) = (&train.assembly, scene.run.duration);
+        let found = recommend_assembly(assembly, method, &start, duration, *tolerance, |state| ends(&train, state));
+        let found = found.map_err(|error| CliError::Tolerance(Box::new(error)))?;
+        schedule = Schedule { step: found.step, steps: found.steps, ..schedule };
+    }
+    let every = out.map_or(schedule.steps, |_| arguments.every);
+    if schedule.steps / every.max(1) * 2 * start.len() as u64 > MOST_NUMBERS {
+        let problem = "--out would hold more than 1e8 numbers: choose a larger --every";
+        return Err(CliError::Request(problem.to_owned()));
+    }
+    let interrupt = Interrupt::listen();
+    let bar = progress::bar(method.info().name, schedule.steps);
+    let mut progress = Interruptible { bar, interrupt: &interrupt };
+    let request = Request { scene, method, train: &train, start: &start, schedule: &schedule, every };
+    let made = if checkpoint.is_some() || resume.is_some() {
+        request.saved(arguments, &mut progress)
+    } else {
+        Ok(request.watched(arguments, &mut progress))
+    };
+    progress.bar.finish_and_clear();
+    let Made { run: Assembled { record, nodes, end, failure }, events, warning } = made?;
+
+    let written = out.map_or(Ok(()), |(path, format)| {
+        trajectory_file::write_columns(&columns(&train, &nodes), path, format, arguments.scene.force)
+    });
+    let blades = train.trailers().len();
+    let (first, last) = (train.blade(&end, 0), train.blade(&end, blades));
+    if arguments.scene.json {
+        let mut object = json::record(&scene.name, &record, &first);
+        object["constraint"]["leaf_max"] = json!(record.leaf_max);
+        object["trailers"] = json!(blades);
+        let SleighState { x, y, heading, speed, turn_rate } = last;
+        object["last"] = json!({"x": x, "y": y, "heading": heading, "speed": speed, "turn_rate": turn_rate});
+        if let Some((events, _)) = events {
+            object["events"] = Value::Array(events);
+        }
+        terminal::print_json(&object)?;
+    } else {
+        let file = out.and_then(|(path, _)| written.is_ok().then_some(path));
+        let joints = format!("{:.2e} m at most", record.leaf_max.unwrap_or(0.0));
+        let [x, y, heading] = [last.x, last.y, last.heading].map(table::number);
+        let more = [
+            ("hinges", joints),
+            ("trailers", blades.to_string()),
+            ("last blade", format!("x = {x} m, y = {y} m, heading {heading} rad")),
+        ];
+        let told = events.map_or_else(String::new, |(_, told)| told);
+        terminal::print(&(table::one_run(scene, &record, &first, file) + &table::aligned(&more) + &told))?;
+    }
+    // The static record does not know which hinge it was.
+    let told = table::failure(&record).map(|told| match &failure {
+        Some(error) if !told.contains(&error.source.to_string()) => format!("{told}; {error}"),
+        _ => told,
+    });
+    let computed = CliError::of_failures(told);
+    if let (Err(_), Err(error)) = (&computed, &written) {
+        terminal::say("error", error);
+    }
+    let made = record.interrupted.then(|| format!("the run is made up to t = {} s", table::number(record.t)));
+    unless_interrupted(made, checkpoint.clone(), computed.and(written).and(warning))
+}
+
+/// A run of a train to be made.
+struct Request<'a> {
+    scene: &'a Scene,
+    method: &'a Method,
+    train: &'a Train,
+    start: &'a State,
+    schedule: &'a Schedule,
+    every: u64,
+}
+
+/// A run that was made.
+struct Made {
+    run: Assembled,
+    /// What happened, for a program and for a person.
+    events: Option<(Vec<Value>, String)>,
+    /// What else went wrong.
+    warning: Result<(), CliError>,
+}
+
+impl Request<'_> {
+    /// In parts that are saved, or from a part that was.
+    fn saved(&self, arguments: &RunArguments, progress: &mut dyn Progress) -> Result<Made, CliError> {
+        let RunArguments { checkpoint, checkpoint_every, resume: from, scene, .. } = arguments;
+        let identity = resume::identity(self.scene, self.method, self.schedule);
+        let read = from.as_ref().map(|path| resume::read(path, &identity)).transpose()?;
+        if let Some(path) = checkpoint {
+            resume::check(path, from.as_deref(), scene.force)?;
+        }
+        let mut warning = Ok(());
+        let mut save = |made: &Checkpoint| {
+            if let (Some(path), Ok(())) = (checkpoint, &warning) {
+                warning = resume::write(path, made);
+            }
+        };
+        let every = checkpoint.as_ref().map(|_| *checkpoint_every);
+        let mut saving = Saving { identity: &identity, from: read.as_ref(), every, save: &mut save };
+        let (assembly, start) = (&self.train.assembly, (self.start, self.every));
+        let run = run_assembly_saved(assembly, self.method, self.schedule, start, &mut saving, progress);
+        let run = run.map_err(|source| CliError::Checkpoint { path: from.clone().unwrap_or_default(), source })?;
+        Ok(Made { run, events: None, warning })
+    }
+
+    /// At once, with an eye on events where there are any.
+    fn watched(&self, RunArguments { event, until, .. }: &RunArguments, progress: &mut dyn Progress) -> Made {
+        let reported = event.iter().map(|trigger| trigger.of_train(self.train, false));
+        let events: Vec<_> = reported.chain(until.iter().map(|trigger| trigger.of_train(self.train, true))).collect();
+        let (assembly, start) = (&self.train.assembly, (self.start, self.every));
+        let (run, crossings) = run_assembly_watched(assembly, self.method, self.schedule, start, &events, progress);
+        let happened = || crossings.iter().map(|crossing| Happened::of_train(self.train, &events, crossing));
+        let told = || (happened().map(|event| event.json()).collect(), happened().map(|event| event.told()).collect());
+        Made { run, events: (!events.is_empty()).then(told), warning: Ok(()) }
+    }
+}
+
+/// Place and heading of the first and of the last blade, by which a tolerance is met.
+fn ends(train: &Train, state: &State) -> [f64; 6] {
+    let [first, last] = [0, train.trailers().len()].map(|k| train.blade(state, k));
+    [first.x, first.y, first.heading, last.x, last.y, last.heading]
+}
+
+/// A trajectory of a train: that of its first blade, and the headings of the others.
+fn columns(train: &Train, nodes: &[AssemblyNode]) -> Columns {
+    let own = [
+        ("t", "s"),
+        ("x", "m"),
+        ("y", "m"),
+        ("heading", "rad"),
+        ("speed", "m/s"),
+        ("turn_rate", "rad/s"),
+        ("energy", "J"),
+        ("work", "J"),
+        ("constraint", "m/s"),
+        ("hinges", "m"),
+    ];
+    let mut header: Vec<(String, &'static str)> = own.map(|(name, unit)| (name.to_owned(), unit)).to_vec();
+    let trailers = 1..=train.trailers().len();
+    header.extend(trailers.clone().map(|k| (format!("heading_{k}"), "rad")));
+    let row = |node: &AssemblyNode| {
+        let SleighState { x, y, heading, speed, turn_rate } = first(&node.q, &node.v);
+        let AssemblyNode { t, energy, work, constraint, joint, .. } = *node;
+        let mut row = vec![t, x, y, heading, speed, turn_rate, energy, work, constraint, joint];
+        row.extend(trailers.clone().map(|k| node.q[3 * k + 2]));
+        row
+    };
+    Columns::new(header, nodes.iter().map(row).collect())
+}
+
+/// The state of the first blade.
+fn first(q: &[f64], v: &[f64]) -> SleighState {
+    let of = |x: &[f64]| std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0));
+    SleighState::from_coordinates(&of(q), &of(v))
+}

@@ -1,0 +1,94 @@
+use super::making::{Last, Step};
+use assembly::{Assembly, OneStep, State};
+use dla::{Zero, zeros};
+use std::fmt;
+
+/// Of the time (s) and the state.
+type Function<'a> = Box<dyn Fn(f64, &State) -> f64 + 'a>;
+
+/// A function of time and state whose crossings of zero are looked for along a run of an assembly.
+pub struct AssemblyEvent<'a> {
+    /// What it is called.
+    pub name: String,
+    /// Whether the first crossing ends the run.
+    pub terminal: bool,
+    function: Function<'a>,
+}
+
+impl<'a> AssemblyEvent<'a> {
+    /// The event `function(t, state) = 0`, in both directions.
+    pub fn new(name: impl Into<String>, terminal: bool, function: impl Fn(f64, &State) -> f64 + 'a) -> Self {
+        Self { name: name.into(), terminal, function: Box::new(function) }
+    }
+}
+
+impl fmt::Debug for AssemblyEvent<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, terminal, .. } = self;
+        f.debug_struct("AssemblyEvent").field("name", name).field("terminal", terminal).finish_non_exhaustive()
+    }
+}
+
+/// An event that happened.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AssemblyCrossing {
+    /// Which one, by its place in the list of events.
+    pub event: usize,
+    /// The node before it.
+    pub k: u64,
+    /// When (s).
+    pub t: f64,
+    /// The interval of time that is known to hold the change of sign (s). The error of the method comes on top.
+    pub within: f64,
+    /// Whether the function rises through zero.
+    pub rising: bool,
+    /// The state then: a step of the method, shortened to end there.
+    pub state: State,
+}
+
+/// Into how many parts a step is divided to look for crossings, as by [`dla::Watch`].
+const PARTS: i32 = 4;
+
+/// Notes the crossings within a step, up to the first that ends the run: there it ends.
+pub(super) fn ended(
+    assembly: &Assembly,
+    method: &mut dyn OneStep,
+    step: &Step<'_>,
+    events: &[AssemblyEvent<'_>],
+    crossings: &mut Vec<AssemblyCrossing>,
+) -> Option<Last> {
+    if events.is_empty() {
+        return None;
+    }
+    let time = |part: f64| step.t0 + part * step.h;
+    let mut after = |part: f64| match part {
+        0.0 => Some(step.before.clone()),
+        1.0 => Some(step.after.clone()),
+        _ => {
+            let mut state = step.before.clone();
+            method.step(assembly, step.t0, part * step.h, &mut state).ok().map(|_| state)
+        }
+    };
+    let parts = (-1..=PARTS + 1).map(|j| f64::from(j) / f64::from(PARTS));
+    let states: Vec<(f64, State)> = parts.filter_map(|part| Some((part, after(part)?))).collect();
+    let mut found = Vec::new();
+    for (event, AssemblyEvent { function, .. }) in events.iter().enumerate() {
+        let known: Vec<(f64, f64)> = states.iter().map(|(part, state)| (*part, function(time(*part), state))).collect();
+        let value = |part: f64| after(part).map_or(f64::NAN, |state| function(time(part), &state));
+        for Zero { at, within, rising } in zeros(&known, 0.0, |_| true, value) {
+            if let Some(state) = after(at) {
+                let (t, within) = (time(at), within * step.h.abs());
+                found.push((at, AssemblyCrossing { event, k: step.k, t, within, rising, state }));
+            }
+        }
+    }
+    found.sort_by(|one, other| f64::total_cmp(&one.0, &other.0));
+    for (_, crossing) in found {
+        let last = events[crossing.event].terminal.then(|| (crossing.t, crossing.state.clone()));
+        crossings.push(crossing);
+        if last.is_some() {
+            return last;
+        }
+    }
+    None
+}

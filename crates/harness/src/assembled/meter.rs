@@ -1,0 +1,187 @@
+use super::AssemblyNode;
+use crate::{Blocks, Drift, EnergySummary, MethodInfo, NewtonSummary, Record, Sample, Trend};
+use assembly::{Assembly, RunError, State};
+use dla::{Checkpoint, CheckpointError};
+use lagrangian::linear::larger;
+
+/// What a run of an assembly is measured by.
+pub(super) struct Meter {
+    every: u64,
+    initial: f64,
+    last: f64,
+    max_error: f64,
+    most: [f64; 2],
+    work: f64,
+    power: f64,
+    trend: Trend,
+    blocks: Blocks,
+    iterations: u64,
+    most_iterations: u32,
+    bucket: (f64, f64),
+    samples: Vec<Sample<3>>,
+    pub(super) nodes: Vec<AssemblyNode>,
+}
+
+impl Meter {
+    pub(super) fn new(assembly: &Assembly, t: f64, start: &State, every: u64) -> Self {
+        let (initial, most) = (assembly.energy(t, start), assembly.misses(t, start));
+        let mut meter = Self {
+            every,
+            initial,
+            last: initial,
+            max_error: 0.0,
+            most,
+            work: 0.0,
+            power: assembly.power(t, start),
+            trend: Trend::default(),
+            blocks: Blocks::default(),
+            iterations: 0,
+            most_iterations: 0,
+            bucket: (0.0, most[0]),
+            samples: Vec::new(),
+            nodes: Vec::new(),
+        };
+        meter.trend.add(t, 0.0);
+        meter.blocks.add(t, 0.0);
+        meter.keep(assembly, t, start);
+        meter
+    }
+
+    /// Sees the node number `made`, at the time `t` after a step of length `h`.
+    pub(super) fn see(
+        &mut self,
+        assembly: &Assembly,
+        made: u64,
+        (t, h): (f64, f64),
+        (before, state): (&State, &State),
+        iterations: u32,
+    ) {
+        let power = assembly.power(t, state);
+        if power != 0.0 || self.power != 0.0 {
+            let middle = assembly.power(t - 0.5 * h, &middle(assembly, before, state, h));
+            self.work += h / 6.0 * (self.power + 4.0 * middle + power);
+        }
+        self.power = power;
+        self.last = assembly.energy(t, state);
+        let (error, miss) = (self.last - self.initial - self.work, assembly.misses(t, state));
+        self.max_error = larger(self.max_error, error);
+        self.most = [larger(self.most[0], miss[0]), larger(self.most[1], miss[1])];
+        self.trend.add(t, error);
+        self.blocks.add(t, error);
+        self.bucket = (larger(self.bucket.0, error), larger(self.bucket.1, miss[0]));
+        self.iterations += u64::from(iterations);
+        self.most_iterations = self.most_iterations.max(iterations);
+        if made.is_multiple_of(self.every) {
+            self.keep(assembly, t, state);
+        }
+    }
+
+    fn keep(&mut self, assembly: &Assembly, t: f64, state: &State) {
+        let q: Vec<f64> = (0..state.len()).map(|i| state.unwrapped(i)).collect();
+        let [constraint, joint] = assembly.misses(t, state);
+        let v = (0..state.len()).map(|i| state.v(i)).collect();
+        self.samples.push(Sample { t, q: first(&q), energy_error: self.bucket.0, constraint: self.bucket.1 });
+        self.bucket = (0.0, 0.0);
+        let (energy, work) = (assembly.energy(t, state), self.work);
+        self.nodes.push(AssemblyNode { t, q, v, energy, work, constraint, joint });
+    }
+
+    /// Keeps the last node, where that is no regular one.
+    pub(super) fn finish(&mut self, assembly: &Assembly, t: f64, state: &State) {
+        if self.samples.last().is_none_or(|sample| sample.t < t) {
+            self.keep(assembly, t, state);
+        }
+    }
+
+    pub(super) fn record(
+        &self,
+        method: MethodInfo,
+        step: f64,
+        (t, steps, wall_seconds): (f64, u64, f64),
+        state: &State,
+        failure: Option<&RunError>,
+    ) -> Record<3> {
+        let coordinates: Vec<[f64; 2]> = (0..state.len().min(3)).map(|i| [state.unwrapped(i), state.v(i)]).collect();
+        let of = |which: usize| first(&coordinates.iter().map(|pair| pair[which]).collect::<Vec<_>>());
+        let mean = if steps == 0 { 0.0 } else { self.iterations as f64 / steps as f64 };
+        Record {
+            method,
+            step,
+            steps,
+            wall_seconds,
+            newton: NewtonSummary { mean, max: self.most_iterations },
+            energy: EnergySummary {
+                initial: self.initial,
+                last: self.last,
+                work: self.work,
+                max_error: self.max_error,
+                drift_per_time: self.trend.slope().unwrap_or(0.0),
+                drift: Drift::of(&self.blocks),
+            },
+            constraint_max: self.most[0],
+            // The mean velocities of the steps are not kept; the equations of a step meet it as they do the joints.
+            step_constraint_max: f64::NAN,
+            leaf_max: Some(self.most[1]),
+            t,
+            q: of(0),
+            v: of(1),
+            samples: self.samples.clone(),
+            failure: failure.map(|error| dla::RunError {
+                step: error.step,
+                time: error.time,
+                source: error.source.step_error(),
+            }),
+            interrupted: false,
+        }
+    }
+
+    /// Writes to a checkpoint all that the rest of a run needs.
+    pub(super) fn save(&self, checkpoint: &mut Checkpoint) {
+        let sizes = [self.initial, self.last, self.max_error, self.most[0], self.most[1], self.work, self.power];
+        checkpoint.put("meter", &[&sizes[..], &[self.bucket.0, self.bucket.1]].concat());
+        checkpoint.put("trend", &self.trend.sums());
+        checkpoint.put_counts("iterations", &[self.iterations, u64::from(self.most_iterations)]);
+        self.blocks.save(checkpoint);
+        let samples = self.samples.iter().flat_map(|s| [s.t, s.energy_error, s.constraint].into_iter().chain(s.q));
+        checkpoint.put("samples", &samples.collect::<Vec<_>>());
+    }
+
+    /// The meter that [`save`](Self::save) wrote; it keeps nodes from there on.
+    pub(super) fn load(checkpoint: &Checkpoint, every: u64) -> Result<Self, CheckpointError> {
+        let [initial, last, max_error, constraint, joint, work, power, error, slip] = checkpoint.get("meter")?;
+        let [iterations, most] = checkpoint.counts("iterations")?;
+        let samples = checkpoint.list("samples")?;
+        let sample = |x: &[f64]| Sample { t: x[0], energy_error: x[1], constraint: x[2], q: [x[3], x[4], x[5]] };
+        Ok(Self {
+            every,
+            initial,
+            last,
+            max_error,
+            most: [constraint, joint],
+            work,
+            power,
+            trend: Trend::of_sums(checkpoint.get("trend")?),
+            blocks: Blocks::load(checkpoint)?,
+            iterations,
+            most_iterations: u32::try_from(most).unwrap_or(u32::MAX),
+            bucket: (error, slip),
+            samples: samples.chunks_exact(6).map(sample).collect(),
+            nodes: Vec::new(),
+        })
+    }
+}
+
+/// The first three of some numbers.
+fn first(x: &[f64]) -> [f64; 3] {
+    std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
+}
+
+/// The middle of the cubic polynomial through two nodes.
+fn middle(assembly: &Assembly, before: &State, state: &State, h: f64) -> State {
+    let n = state.len();
+    let moved = |i: usize| state.unwrapped(i) - before.unwrapped(i);
+    let q: Vec<f64> =
+        (0..n).map(|i| before.unwrapped(i) + 0.5 * moved(i) + 0.125 * h * (before.v(i) - state.v(i))).collect();
+    let v: Vec<f64> = (0..n).map(|i| 1.5 * moved(i) / h - 0.25 * (before.v(i) + state.v(i))).collect();
+    State::new(assembly, &q, &v)
+}

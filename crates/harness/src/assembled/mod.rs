@@ -1,0 +1,135 @@
+//! Runs of assemblies, measured as those of static systems are.
+
+mod events;
+mod making;
+mod meter;
+mod recommend;
+mod saved;
+
+pub use events::{AssemblyCrossing, AssemblyEvent};
+pub use recommend::recommend_assembly;
+pub use saved::run_assembly_saved;
+
+use crate::{Kind, Method, Progress, Record};
+use assembly::{Assembly, AssemblyError, Composition, Dla, Energy, Lobatto, OneStep, RunError, Solver, State};
+use dla::Schedule;
+use events::ended;
+use making::{Making, Ticker};
+use std::ops::ControlFlow;
+
+/// A node of an assembly that was kept.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AssemblyNode {
+    /// Time (s).
+    pub t: f64,
+    /// Configuration, angles with their full turns.
+    pub q: Vec<f64>,
+    /// Velocity.
+    pub v: Vec<f64>,
+    /// Energy (J).
+    pub energy: f64,
+    /// Work done since the start (J).
+    pub work: f64,
+    /// The largest `|A v + b|` here.
+    pub constraint: f64,
+    /// The largest `|g|` of a joint here.
+    pub joint: f64,
+}
+
+/// A run of an assembly, measured.
+#[derive(Debug, Clone)]
+pub struct Assembled {
+    /// The record, whose coordinates are the first three of the assembly; [`Record::leaf_max`] is that of its joints.
+    pub record: Record<3>,
+    /// The nodes kept.
+    pub nodes: Vec<AssemblyNode>,
+    /// The state at the end.
+    pub end: State,
+    /// Why the run ended early, where it did, with the constraints that are the cause.
+    pub failure: Option<RunError>,
+}
+
+/// Why a method is refused.
+const OTHERS: &str = "the method is for systems of a few coordinates; trains and other assemblies are done by dla, dla4, \
+                      dla6, dla8, lobatto3, lobatto4, lobatto5 and energy2";
+
+/// The method of that name for an assembly.
+///
+/// # Errors
+/// [`AssemblyError::Unsupported`] for one that does none.
+pub fn assembly_method(assembly: &Assembly, method: &Method) -> Result<Box<dyn OneStep>, AssemblyError> {
+    let staged = |stages| Lobatto::new(assembly, Solver::Best, stages).map(|method| Box::new(method) as _);
+    let composed = |order| Composition::new(assembly, Solver::Best, order).map(|method| Box::new(method) as _);
+    match method.info().kind {
+        Kind::Dla => Dla::new(assembly, Solver::Best).map(|method| Box::new(method) as _),
+        Kind::Dla4 => composed(4),
+        Kind::Dla6 => composed(6),
+        Kind::Dla8 => composed(8),
+        Kind::Lobatto3 => staged(3),
+        Kind::Lobatto4 => staged(4),
+        Kind::Lobatto5 => staged(5),
+        Kind::Energy2 => Energy::new(assembly, Solver::Best).map(|method| Box::new(method) as _),
+        _ => Err(AssemblyError::Unsupported { reason: OTHERS }),
+    }
+}
+
+/// The state at the end of a run, nothing looking on but the progress; none where that stops it.
+///
+/// # Errors
+/// [`RunError`] with the step that failed.
+pub fn assembly_end(
+    assembly: &Assembly,
+    method: &Method,
+    schedule: &Schedule,
+    start: &State,
+    progress: &mut dyn Progress,
+) -> Result<Option<State>, RunError> {
+    let mut state = start.clone();
+    let fail = |k: u64| move |source| RunError { step: k + 1, time: schedule.time(k), source };
+    let (mut method, mut ticker) = (assembly_method(assembly, method).map_err(fail(0))?, Ticker::new(progress, 0));
+    for k in 0..schedule.steps {
+        method.step(assembly, schedule.time(k), schedule.step, &mut state).map_err(fail(k))?;
+        if ticker.stops(k + 1) {
+            return Ok(None);
+        }
+    }
+    ticker.finish(schedule.steps);
+    Ok(Some(state))
+}
+
+/// Makes a run of an assembly and measures it, keeping every `every`-th node and the last.
+///
+/// The time is that of the steps alone. Work is integrated by Simpson's rule along the cubic polynomial of each step, which is
+/// of order 4. A run that fails gives the record of its valid part.
+pub fn run_assembly(
+    assembly: &Assembly,
+    method: &Method,
+    schedule: &Schedule,
+    start: &State,
+    every: u64,
+    progress: &mut dyn Progress,
+) -> Assembled {
+    run_assembly_watched(assembly, method, schedule, (start, every), &[], progress).0
+}
+
+/// The same, with an eye on events; one that is terminal ends the run at its first crossing. Returns the crossings in the order in
+/// which they happened.
+///
+/// Inside a step the state is that of a shorter step of the same method from the same node, as in [`dla::Watch`].
+pub fn run_assembly_watched(
+    assembly: &Assembly,
+    method: &Method,
+    schedule: &Schedule,
+    (start, every): (&State, u64),
+    events: &[AssemblyEvent<'_>],
+    progress: &mut dyn Progress,
+) -> (Assembled, Vec<AssemblyCrossing>) {
+    let mut making = Making::new(assembly, method, schedule, start, every);
+    let (mut ticker, mut crossings) = (Ticker::new(progress, 0), Vec::new());
+    making.go(schedule.steps, &mut ticker, |method, step| {
+        let last = ended(assembly, method, &step, events, &mut crossings);
+        last.map_or(ControlFlow::Continue(()), ControlFlow::Break)
+    });
+    ticker.finish(making.made);
+    (making.assembled(ticker.stopped), crossings)
+}

@@ -1,0 +1,14 @@
+/// An array by its places, as [`std::array::from_fn`] makes it, but inlined whatever the compiler thinks of it; `blank` is what
+/// stands there before.
+///
+/// What is compiled for registers that only some machines have must be one function: in a call that remains in it nothing is
+/// known of them. So what computes with any [`Scalar`](crate::Scalar) in a step calls this one, with a closure that is marked
+/// `#[inline(always)]`.
+#[inline(always)]
+pub fn array<T: Copy, const N: usize>(blank: T, f: impl Fn(usize) -> T) -> [T; N] {
+    let mut all = [blank; N];
+    for i in 0..N {
+        all[i] = f(i);
+    }
+    all
+}
