@@ -151,6 +151,10 @@ impl<const R: usize> Scalar for Abreast<R> {
         };
         (Self::new(sin), Self::new(cos))
     }
+    #[inline(always)]
+    fn array<const N: usize>(f: impl Fn(usize) -> Self) -> [Self; N] {
+        array(Self::new([0.0; R]), f)
+    }
     functions_of_each_lane!();
     #[inline(always)]
     fn is_zero(&self) -> bool {

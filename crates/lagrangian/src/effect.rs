@@ -1,4 +1,4 @@
-use crate::{Scalar, array};
+use crate::Scalar;
 
 /// Something that acts on a body: it adds to the Lagrangian or to the forces, on the body's own coordinates.
 ///
@@ -52,8 +52,7 @@ impl<S: Scalar, const N: usize> Slope<S, N> {
         match (self, other) {
             (Self::Unknown, _) | (_, Self::Unknown) => Self::Unknown,
             (Self::Nothing, slope) | (slope, Self::Nothing) => slope,
-            (Self::Known(a), Self::Known(b)) => Self::Known(array(
-                S::zero(),
+            (Self::Known(a), Self::Known(b)) => Self::Known(S::array(
                 #[inline(always)]
                 |i| a[i] + b[i],
             )),
@@ -67,8 +66,7 @@ impl<S: Scalar, const N: usize> Slope<S, N> {
             (Self::Unknown, _) => None,
             (Self::Nothing, force) => Some(force.unwrap_or([S::zero(); N])),
             (Self::Known(slope), None) => Some(slope),
-            (Self::Known(slope), Some(force)) => Some(array(
-                S::zero(),
+            (Self::Known(slope), Some(force)) => Some(S::array(
                 #[inline(always)]
                 |i| slope[i] + force[i],
             )),
@@ -95,8 +93,7 @@ fn add<S: Scalar>(a: Option<S>, b: Option<S>) -> Option<S> {
 #[inline(always)]
 fn add_all<S: Scalar, const N: usize>(a: Option<[S; N]>, b: Option<[S; N]>) -> Option<[S; N]> {
     match (a, b) {
-        (Some(a), Some(b)) => Some(array(
-            S::zero(),
+        (Some(a), Some(b)) => Some(S::array(
             #[inline(always)]
             |i| a[i] + b[i],
         )),
@@ -140,27 +137,30 @@ tuple_of_effects!(E0 0, E1 1, E2 2, E3 3, E4 4, E5 5);
 impl<B, E: Effect<B, N>, const N: usize> Effect<B, N> for Vec<E> {
     #[inline(always)]
     fn lagrangian<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<S> {
-        let mut sum = None;
-        for effect in self {
-            sum = add(sum, effect.lagrangian(body, t, q, v));
-        }
-        sum
+        S::over(
+            self,
+            None,
+            #[inline(always)]
+            |sum, effect| add(sum, effect.lagrangian(body, t, q, v)),
+        )
     }
     #[inline(always)]
     fn force<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
-        let mut sum = None;
-        for effect in self {
-            sum = add_all(sum, effect.force(body, t, q, v));
-        }
-        sum
+        S::over(
+            self,
+            None,
+            #[inline(always)]
+            |sum, effect| add_all(sum, effect.force(body, t, q, v)),
+        )
     }
     #[inline(always)]
     fn slope<S: Scalar>(&self, body: &B, t: S, q: &[S; N]) -> Slope<S, N> {
-        let mut sum = Slope::Nothing;
-        for effect in self {
-            sum = sum.and(effect.slope(body, t, q));
-        }
-        sum
+        S::over(
+            self,
+            Slope::Nothing,
+            #[inline(always)]
+            |sum, effect| sum.and(effect.slope(body, t, q)),
+        )
     }
     #[inline(always)]
     fn is_none(&self) -> bool {

@@ -1,5 +1,5 @@
 use crate::linear::{Lu, Singular};
-use crate::{AdmissibleBasis, Dual, Motion, MotionError, Scalar, System, array};
+use crate::{AdmissibleBasis, Dual, Motion, MotionError, Scalar, System};
 use std::array::from_fn;
 use thiserror::Error;
 
@@ -40,8 +40,7 @@ pub fn velocity_of<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>
     let basis = system.admissible_basis(t, q).ok_or(ReducedError::NoBasis)?;
     let v = basis.combine(xi);
     Ok(match shift(system, t, q) {
-        Some(shift) => array(
-            S::zero(),
+        Some(shift) => S::array(
             #[inline(always)]
             |i| v[i] + shift[i],
         ),
@@ -152,16 +151,8 @@ pub(crate) fn shortest<S: Scalar, const N: usize, const M: usize>(a: &[[S; N]; M
     if !moves {
         return None;
     }
-    let mut gram = [[S::zero(); M]; M];
-    let mut eta = [S::zero(); M];
-    for k in 0..M {
-        for l in 0..M {
-            for i in 0..N {
-                gram[k][l] += a[k][i] * a[l][i];
-            }
-        }
-        eta[k] = -b[k];
-    }
+    let mut gram: [[S; M]; M] = from_fn(|k| from_fn(|l| (0..N).fold(S::zero(), |sum, i| sum + a[k][i] * a[l][i])));
+    let mut eta = b.map(|b| -b);
     for k in 0..M {
         for l in k + 1..M {
             let factor = gram[l][k] / gram[k][k];
@@ -177,11 +168,5 @@ pub(crate) fn shortest<S: Scalar, const N: usize, const M: usize>(a: &[[S; N]; M
         }
         eta[k] = eta[k] / gram[k][k];
     }
-    let mut v = [S::zero(); N];
-    for k in 0..M {
-        for i in 0..N {
-            v[i] += a[k][i] * eta[k];
-        }
-    }
-    Some(v)
+    Some(from_fn(|i| (0..M).fold(S::zero(), |sum, k| sum + a[k][i] * eta[k])))
 }

@@ -41,6 +41,20 @@ pub trait Scalar:
     /// Whether the number and all of its derivatives vanish.
     fn is_zero(&self) -> bool;
 
+    /// An array by its places. Numbers in vector registers inline it and what it calls, since in a function that remains a call
+    /// the registers are not known; so `f` is to be marked `#[inline(always)]`.
+    #[must_use]
+    #[inline(always)]
+    fn array<const N: usize>(f: impl Fn(usize) -> Self) -> [Self; N] {
+        std::array::from_fn(f)
+    }
+    /// `f(.. f(f(start, items[0]), items[1]) ..)`, inlined as [`array`](Self::array) is.
+    #[must_use]
+    #[inline(always)]
+    fn over<I, T>(items: &[I], start: T, f: impl Fn(T, &I) -> T) -> T {
+        items.iter().fold(start, f)
+    }
+
     /// Zero.
     #[must_use]
     #[inline(always)]

@@ -1,5 +1,5 @@
 use crate::{
-    AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Effect, Motion, MotionError, Push, Scalar, System, array,
+    AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Effect, Motion, MotionError, Push, Scalar, System,
     velocity_of,
 };
 
@@ -60,8 +60,7 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
     #[inline(always)]
     fn force<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
         match (self.body.force(t, q, v), self.effects.force(&self.body, t, q, v)) {
-            (Some(a), Some(b)) => Some(array(
-                S::zero(),
+            (Some(a), Some(b)) => Some(S::array(
                 #[inline(always)]
                 |i| a[i] + b[i],
             )),
@@ -109,8 +108,7 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
         }
         let push = self.push(t, q, &velocity_of(&self.body, t, q, xi).ok()?)?;
         let response = self.body.reduced_response(t, q, &push)?;
-        Some(array(
-            S::zero(),
+        Some(S::array(
             #[inline(always)]
             |i| bare[i] + response[i],
         ))

@@ -1,5 +1,5 @@
 use super::Pack;
-use crate::Scalar;
+use crate::{Scalar, array};
 use pulp::Simd;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -196,6 +196,17 @@ impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
     #[inline(always)]
     fn recip(self) -> Self {
         Same(1.0) / self
+    }
+    #[inline(always)]
+    fn array<const N: usize>(f: impl Fn(usize) -> Self) -> [Self; N] {
+        array(Zero, f)
+    }
+    #[inline(always)]
+    fn over<I, T>(items: &[I], mut start: T, f: impl Fn(T, &I) -> T) -> T {
+        for item in items {
+            start = f(start, item);
+        }
+        start
     }
     #[inline(always)]
     fn is_zero(&self) -> bool {
