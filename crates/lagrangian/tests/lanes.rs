@@ -4,6 +4,7 @@
 mod common;
 
 use common::{Everything, vector};
+use lagrangian::simd::{Kernel, Pack, Simd, Square, dispatch};
 use lagrangian::{Dual, HyperDual, Lanes, Scalar, System, momentum, vectorized};
 use proptest::prelude::*;
 use std::array::from_fn;
@@ -13,7 +14,34 @@ fn lane_sin_cos(x: f64) -> (f64, f64) {
     (sin.0[3], cos.0[3])
 }
 
+/// The product of a matrix, by its columns, with a vector.
+struct Product<'a> {
+    columns: &'a [[f64; 8]; 8],
+    x: &'a [f64; 8],
+}
+
+impl Kernel for Product<'_> {
+    type Output = [f64; 8];
+    #[inline(always)]
+    fn run<S: Simd, const R: usize>(self, simd: S) -> [f64; 8] {
+        let terms = Square::of_columns(self.columns).terms.map(|term| Pack::<S, R>::load(simd, &term));
+        Pack::load(simd, self.x).times(&terms).row()
+    }
+}
+
 proptest! {
+    /// A matrix in the order of registers is the same matrix.
+    #[test]
+    fn products_in_registers(columns in proptest::array::uniform8(vector::<8>()), x in vector::<8>()) {
+        let Some(product) = dispatch(Product { columns: &columns, x: &x }) else { return Ok(()) };
+        for i in 0..8 {
+            let terms: [f64; 8] = from_fn(|j| columns[j][i] * x[j]);
+            // Eight roundings at most on either side, of sums no larger than this one.
+            let epsilon = 16.0 * f64::EPSILON * terms.iter().map(|t| t.abs()).sum::<f64>();
+            approx::assert_abs_diff_eq!(product[i], terms.iter().sum::<f64>(), epsilon = epsilon);
+        }
+    }
+
     /// The same model on lanes gives what it gives on f64 to the rounding of sine and cosine, and the same bits whether it
     /// runs on the machine's best instructions or on the build's own.
     #[test]

@@ -48,12 +48,16 @@ struct Tried<const N: usize> {
     longer: i32,
 }
 
-/// As many quarter octaves at once, at most.
-const LEAP: i32 = 8;
+/// As many quarter octaves longer at once, at most: stages of a step that is much longer may not converge, and are lost.
+const LONGER: f64 = 2.0;
+/// And shorter.
+const SHORTER: f64 = 8.0;
+/// By so many is one shorter whose stages did not converge.
+const CUT_BACK: i32 = 3;
 /// A step that should have been so much shorter, or more, is taken again.
 const REFUSED: i32 = -3;
 /// The contraction of the stages that is about the cheapest: longer steps take too many iterations.
-const CONTRACTION: f64 = 0.4;
+const CONTRACTION: f64 = 0.3;
 
 impl<const S: usize> GaussAdaptive<S> {
     /// One step of length `h`; none where its stages do not converge.
@@ -72,7 +76,10 @@ impl<const S: usize> GaussAdaptive<S> {
         let apart = if memory.is_of_length(h) { 0 } else { quarters - memory.quarters };
         let before = memory.rows(state).zip(rule.continued(apart));
         let rounding = larger(0.1, 1e-14 / epsilon);
-        let ending = Ending { left: 0.1, rounding, noise: rounding, limit: 25, scales: Some(scales) };
+        let unseen = if before.is_some() { memory.half() } else { 0 };
+        // A step whose stages converge slowly costs more than two shorter ones.
+        let (limit, hopeless) = (18, 0.9);
+        let ending = Ending { left: 0.1, rounding, noise: rounding, limit, hopeless, unseen, scales: Some(scales) };
         let (taken, rate) = match dispatch(lanes::Stages { rule, system, t, h, q0, xi0, before, ending }) {
             Some(Outcome::Found(found)) => (Taken::at_once(rule, h, &found), found.rate),
             Some(Outcome::Failed) => return None,
@@ -90,7 +97,7 @@ impl<const S: usize> GaussAdaptive<S> {
         // It goes with the power S - 1 of the step.
         let octaves = (self.aim / larger(roughness, 1e-300)).log2() / (S as f64 - 1.0);
         let converging = (CONTRACTION / larger(rate, 1e-3)).log2();
-        let longer = (4.0 * octaves.min(converging)).floor().clamp(-f64::from(LEAP), f64::from(LEAP)) as i32;
+        let longer = (4.0 * octaves.min(converging)).floor().clamp(-SHORTER, LONGER) as i32;
         let longer = if octaves >= 0.0 { longer.max(if converging < 0.0 { -1 } else { 0 }) } else { longer };
         Some(Tried { taken, longer })
     }
@@ -134,7 +141,7 @@ impl<const S: usize> GaussAdaptive<S> {
         whole: f64,
         state: &mut State<N>,
     ) -> Result<StepReport<M>, StepError> {
-        let (mut made, mut iterations) = (0.0, 0);
+        let (mut made, mut iterations, mut refused) = (0.0, 0, false);
         let mut quarters = self.quarters.unwrap_or_else(|| first(system, t0, whole, state));
         for tries in 1..=Self::MAX_TRIES {
             let full = quarter_octaves(quarters);
@@ -148,16 +155,17 @@ impl<const S: usize> GaussAdaptive<S> {
             let tried = self.attempt(system, (t, h, quarters), state, &xi0);
             let Some(Tried { taken, longer }) = tried.filter(|tried| tried.longer > REFUSED) else {
                 // Stages that do not converge, or a step that is too rough.
-                quarters -= LEAP / 2;
+                quarters -= CUT_BACK;
+                refused = true;
                 if last {
-                    quarters = quarters.min((4.0 * rest.abs().log2()).floor() as i32 - LEAP / 2);
+                    quarters = quarters.min((4.0 * rest.abs().log2()).floor() as i32 - CUT_BACK);
                 }
                 continue;
             };
             taken.apply(system, t + h, &xi0, state)?;
             iterations += taken.iterations;
             if let Some(slopes) = &taken.slopes {
-                self.gauss.memory.keep(slopes, h, if last { CUT } else { quarters }, state);
+                self.gauss.memory.keep(slopes, taken.iterations, (h, if last { CUT } else { quarters }), state);
             }
             if last {
                 // A step cut at the end of the interval says little of the next.
@@ -165,7 +173,9 @@ impl<const S: usize> GaussAdaptive<S> {
                 return Ok(StepReport::of(iterations));
             }
             made += h;
-            quarters += longer;
+            // After one that was too long none is longer at once.
+            quarters += if refused { longer.min(0) } else { longer };
+            refused = false;
         }
         Err(StepError::Tolerance { tries: Self::MAX_TRIES, step: quarter_octaves(quarters) })
     }

@@ -1,6 +1,6 @@
 use super::rule::Eight;
 use lagrangian::linear::larger;
-use lagrangian::simd::{Kernel, Pack, Simd, Wide};
+use lagrangian::simd::{Kernel, Pack, Simd, Square, Wide};
 use lagrangian::{System, array, velocity_of};
 use std::array::from_fn;
 
@@ -14,9 +14,6 @@ pub(super) struct Slopes<const N: usize> {
     pub(super) acceleration: Rows<N>,
 }
 
-/// Velocities and accelerations in registers.
-type Packed<S, const R: usize, const N: usize> = ([Pack<S, R>; N], [Pack<S, R>; N]);
-
 /// When the iteration has come to its end, in units of the scales.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ending<const N: usize> {
@@ -28,6 +25,10 @@ pub(super) struct Ending<const N: usize> {
     pub(super) noise: f64,
     /// Iterations after which the search is given up.
     pub(super) limit: u32,
+    /// Changes that shrink by no more than this do not converge.
+    pub(super) hopeless: f64,
+    /// Iterations that are made before any is looked at.
+    pub(super) unseen: u32,
     /// What velocities and accelerations are measured by; their own sizes where none is given.
     pub(super) scales: Option<[[f64; N]; 2]>,
 }
@@ -41,14 +42,14 @@ pub(super) struct Stages<'a, Sys, const N: usize, const M: usize> {
     pub(super) q0: &'a [f64; N],
     pub(super) xi0: &'a [f64; N],
     /// The slopes of the step before and what continues them to this one.
-    pub(super) before: Option<([&'a Rows<N>; 2], &'a [[f64; 8]; 8])>,
+    pub(super) before: Option<([&'a Rows<N>; 2], &'a Square)>,
     pub(super) ending: Ending<N>,
 }
 
 /// The rule of collocation in registers.
 struct Along<S: Simd, const R: usize> {
     /// Not times h: rounded so, the coefficients would lose the symmetry that they have to the last bit.
-    columns: [Pack<S, R>; 8],
+    square: [Pack<S, R>; 8],
     h: Pack<S, R>,
 }
 
@@ -56,7 +57,7 @@ impl<S: Simd, const R: usize> Along<S, R> {
     /// `from + h A slopes`.
     #[inline(always)]
     fn from(&self, from: f64, slopes: &Pack<S, R>) -> Wide<S, R> {
-        Wide::Each(slopes.times(&self.columns).mul_add(self.h, Pack::splat(self.h.simd(), from)))
+        Wide::Each(slopes.times(&self.square).mul_add(self.h, Pack::splat(self.h.simd(), from)))
     }
 }
 
@@ -119,11 +120,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
     ) -> Option<[Pack<S, R>; N]> {
         let simd = along.h.simd();
         let mut v = self.velocity(simd, &self.still(simd), xi)?;
-        // The first by itself: what is not needed of it is then not computed.
-        if quadratures > 0 {
-            v = self.velocity(simd, &self.q(along, &v), xi)?;
-        }
-        for _ in 1..quadratures {
+        for _ in 0..quadratures {
             v = self.velocity(simd, &self.q(along, &v), xi)?;
         }
         Some(v)
@@ -163,17 +160,6 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
             None => None,
         }
     }
-
-    /// Both.
-    #[inline(always)]
-    fn slopes<S: Simd, const R: usize>(
-        &self,
-        simd: S,
-        q: &[Wide<S, R>; N],
-        xi: &[Wide<S, R>; N],
-    ) -> Option<Packed<S, R, N>> {
-        Some((self.velocity(simd, q, xi)?, self.acceleration(simd, q, xi)?))
-    }
 }
 
 #[allow(clippy::manual_map, reason = "a closure may stay a call, in which the registers are not known")]
@@ -182,26 +168,17 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
 
     #[inline(always)]
     fn run<S: Simd, const R: usize>(self, simd: S) -> Outcome<N> {
-        let along = Along::<S, R> { columns: loaded(simd, &self.rule.columns), h: Pack::splat(simd, self.h) };
+        let along = Along::<S, R> { square: loaded(simd, &self.rule.square.terms), h: Pack::splat(simd, self.h) };
         let cascade = self.system.reconstruction();
         let alone = cascade.is_some() && self.system.stands_alone();
 
+        // Where no step was before, nothing changes at first.
         let (mut v, mut a) = match self.before {
             Some(([velocity, acceleration], continued)) => {
-                let continued = loaded(simd, continued);
+                let continued = loaded(simd, &continued.terms);
                 (ahead(simd, velocity, &continued), ahead(simd, acceleration, &continued))
             }
-            None => {
-                let xi = array(
-                    Wide::Zero,
-                    #[inline(always)]
-                    |k| if k < N - M { Wide::Each(Pack::splat(simd, self.xi0[k])) } else { Wide::Zero },
-                );
-                match self.slopes(simd, &self.still(simd), &xi) {
-                    Some(slopes) => slopes,
-                    None => return Outcome::Unknown,
-                }
-            }
+            None => ([Pack::splat(simd, 0.0); N], [Pack::splat(simd, 0.0); N]),
         };
         let mut scales = match &self.ending.scales {
             Some([v, a]) => Some([inverse(simd, v), inverse(simd, a)]),
@@ -209,23 +186,26 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
         };
         let (mut last, mut rate, mut iteration, mut stalled) = (f64::INFINITY, 1.0, 0, 0);
         loop {
-            iteration += 1;
+            // The accelerations are called at one place: for a list of effects they are much code.
             let xi = self.xi(&along, &a);
-            let slopes = match cascade {
-                _ if alone => match self.acceleration(simd, &self.still(simd), &xi) {
-                    Some(a1) => Some((v, a1)),
-                    None => None,
-                },
+            let (v1, q) = match cascade {
+                _ if alone => (Some(v), self.still(simd)),
                 Some(quadratures) => match self.reconstructed(&along, quadratures, &xi) {
-                    Some(v1) => match self.acceleration(simd, &self.q(&along, &v1), &xi) {
-                        Some(a1) => Some((v1, a1)),
-                        None => None,
-                    },
-                    None => None,
+                    Some(v1) => (Some(v1), self.q(&along, &v1)),
+                    None => (None, self.still(simd)),
                 },
-                None => self.slopes(simd, &self.q(&along, &v), &xi),
+                None => {
+                    let q = self.q(&along, &v);
+                    (self.velocity(simd, &q, &xi), q)
+                }
             };
-            let Some((v1, a1)) = slopes else { return Outcome::Unknown };
+            let (Some(v1), Some(a1)) = (v1, self.acceleration(simd, &q, &xi)) else { return Outcome::Unknown };
+            iteration += 1;
+            if iteration <= self.ending.unseen {
+                (v, a) = (v1, a1);
+                continue;
+            }
+            let seen = iteration - self.ending.unseen;
             let zero = Pack::splat(simd, 0.0);
             let [sv, sa] = match scales {
                 Some(scales) => scales,
@@ -243,11 +223,11 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
             }
             (v, a) = (v1, a1);
             let moved = changes.largest();
-            let (slower, now) = (if iteration > 2 { rate } else { 0.0 }, moved / last);
-            rate = if iteration > 1 { now } else { rate };
+            let (slower, now) = (if seen > 2 { rate } else { 0.0 }, moved / last);
+            rate = if seen > 1 { now } else { rate };
             // A search that begins near its end may shrink faster at first than it goes on.
             let expected = larger(larger(rate, slower), SLOWEST);
-            let settled = iteration > 1 && rate < 1.0 && moved * expected <= self.ending.left * (1.0 - rate);
+            let settled = seen > 1 && rate < 1.0 && moved * expected <= self.ending.left * (1.0 - rate);
             // Once may be an iteration that turns the error round before it shrinks.
             stalled = if moved >= 0.5 * last { stalled + 1 } else { 0 };
             let rounding =
@@ -255,7 +235,10 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
             if moved == 0.0 || settled || rounding {
                 break;
             }
-            if moved.is_nan() || moved.is_infinite() || (iteration > 3 && rate > 2.0) || iteration >= self.ending.limit
+            if moved.is_nan()
+                || moved.is_infinite()
+                || (seen > 3 && rate > self.ending.hopeless)
+                || iteration >= self.ending.limit
             {
                 return Outcome::Failed;
             }

@@ -85,7 +85,16 @@ impl<const S: usize> Gauss<S> {
     ) -> Option<Taken<N>> {
         let rule = self.eight?;
         let before = self.memory.rows(state).filter(|_| self.memory.is_of_length(h)).zip(rule.continued(0));
-        let ending = Ending { left: LEFT, rounding: 1e-12, noise: 1e-15, limit: self.max_iterations, scales: None };
+        let unseen = if before.is_some() { self.memory.unseen() } else { 0 };
+        let ending = Ending {
+            left: LEFT,
+            rounding: 1e-12,
+            noise: 1e-15,
+            limit: self.max_iterations,
+            hopeless: 2.0,
+            unseen,
+            scales: None,
+        };
         match dispatch(lanes::Stages { rule, system, t, h, q0: state.q(), xi0, before, ending })? {
             Outcome::Found(found) => {
                 let taken = Taken::at_once(rule, h, &found);
@@ -227,7 +236,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
         };
         taken.apply(system, t + h, &xi0, state)?;
         if let Some(slopes) = taken.slopes.as_ref().filter(|_| self.eight.is_some()) {
-            self.memory.keep(slopes, h, 0, state);
+            self.memory.keep(slopes, taken.iterations, (h, 0), state);
         }
         Ok(StepReport::of(taken.iterations))
     }

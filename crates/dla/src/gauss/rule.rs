@@ -1,4 +1,5 @@
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre, lagrange, shifted_legendre};
+use lagrangian::simd::Square;
 use std::array::from_fn;
 use std::sync::OnceLock;
 
@@ -9,10 +10,12 @@ pub(crate) struct Eight {
     pub(crate) weights: [f64; 8],
     /// The coefficients `a[i][j]` by columns: column `j` has those of slope `j` in every stage.
     pub(crate) columns: [[f64; 8]; 8],
+    /// The same in the order of registers.
+    pub(super) square: Square,
     /// The weights of the coefficient of the highest Legendre polynomial in the slopes.
     pub(crate) highest: [f64; 8],
-    /// By columns, what continues the polynomial of one step to the nodes of the next, for each ratio of their lengths.
-    continued: [[[f64; 8]; 8]; 2 * RATIOS as usize + 1],
+    /// What continues the polynomial of one step to the nodes of the next, for each ratio of their lengths.
+    continued: [Square; 2 * RATIOS as usize + 1],
 }
 
 /// Lengths of steps are powers of the fourth root of two; the next is at most four times as long, or as short.
@@ -34,20 +37,22 @@ impl Eight {
             let (p, _) = shifted_legendre::<S>(nodes[j]);
             (2.0 * S as f64 - 1.0) * weights[j] * p[S - 1]
         };
+        let columns = column(&|i, j| coefficients[i][j]);
         Self {
             nodes: row(&|i| nodes[i]),
             weights: row(&|i| weights[i]),
-            columns: column(&|i, j| coefficients[i][j]),
+            square: Square::of_columns(&columns),
+            columns,
             highest: row(&highest),
             continued: from_fn(|k| {
                 let ratio = quarter_octaves(k as i32 - RATIOS);
-                column(&|i, j| lagrange(&nodes, j, 1.0 + ratio * nodes[i]))
+                Square::of_columns(&column(&|i, j| lagrange(&nodes, j, 1.0 + ratio * nodes[i])))
             }),
         }
     }
 
     /// What continues the polynomial of a step to the nodes of one that is `2^(quarters/4)` times as long.
-    pub(crate) fn continued(&self, quarters: i32) -> Option<&[[f64; 8]; 8]> {
+    pub(crate) fn continued(&self, quarters: i32) -> Option<&Square> {
         self.continued.get(usize::try_from(quarters + RATIOS).ok()?)
     }
 }

@@ -6,9 +6,11 @@
 
 mod pack;
 mod sincos;
+mod square;
 mod wide;
 
 pub use pack::Pack;
+pub use square::Square;
 pub use wide::Wide;
 
 pub use pulp::Simd;

@@ -121,17 +121,41 @@ impl<S: Simd, const R: usize> Pack<S, R> {
         self.simd.reduce_max_f64s(most)
     }
 
-    /// `sum_j columns[j] self[j]`: the product of a matrix, given by its columns, with this vector.
+    /// The product of a [`Square`](super::Square), its terms loaded, with this vector.
     #[must_use]
     #[inline(always)]
-    pub fn times<const C: usize>(&self, columns: &[Self; C]) -> Self {
-        let (simd, x) = (self.simd, self.lanes());
-        let mut sums = [Self::splat(simd, 0.0); 2];
-        for j in 0..C {
-            let factor = Self::splat(simd, x[j]);
-            sums[j % 2] = if j < 2 { columns[j] * factor } else { columns[j].mul_add(factor, sums[j % 2]) };
+    pub fn times(&self, terms: &[Self; 8]) -> Self {
+        const { assert!(R == 2, "two registers of four numbers") };
+        let zero = Self::splat(self.simd, 0.0);
+        let mut sums = [zero; 2];
+        for half in 0..2 {
+            let four = self.fours(half);
+            let swapped = four.map(
+                #[inline(always)]
+                |s, x| pulp::cast(s.swap_re_im_c64s(pulp::cast(x))),
+            );
+            let [far, far_swapped] = [four, swapped].map(
+                #[inline(always)]
+                |x| {
+                    x.map(
+                        #[inline(always)]
+                        |s, x| s.rotate_right_f64s(x, 2),
+                    )
+                },
+            );
+            let terms = &terms[4 * half..];
+            sums[half] = terms[0] * four;
+            sums[half] = terms[1].mul_add(swapped, sums[half]);
+            sums[half] = terms[2].mul_add(far, sums[half]);
+            sums[half] = terms[3].mul_add(far_swapped, sums[half]);
         }
         sums[0] + sums[1]
+    }
+
+    /// The first or the last four numbers, twice.
+    #[inline(always)]
+    fn fours(&self, half: usize) -> Self {
+        Self { simd: self.simd, registers: [self.registers[half]; R] }
     }
 }
 
