@@ -110,7 +110,7 @@ impl Members<'_> {
         let Schedule { t0, step, .. } = self.schedule();
         match (self.method.info().kind, &self.sweep.scene.effects[..]) {
             (Kind::Dla, []) => self.registers::<CLOSED, _>(scenes, free, |sleighs, state| {
-                Some(Box::new(ClosedEnsemble::<_, 3, CLOSED, 3, 1, 5, 6>::new(*sleighs, step, state)))
+                Some(Box::new(ClosedEnsemble::<_, CLOSED, 3, 1, 5, 6>::new(*sleighs, step, state)))
             }),
             (Kind::Gauss8, []) => self.registers::<GAUSS, _>(scenes, free, |sleighs, state| {
                 boxed(GaussEnsemble::<_, _, 4, GAUSS, 3, 1>::new(Each(sleighs), (t0, step), state))

@@ -55,7 +55,7 @@ pub use classify::{
     Classification, RowKind, classify, rank_is_constant, redundant_rows, row_space, rows_are_consistent,
 };
 pub use closed::{ClosedStep, ClosedStepError};
-pub use closed_lanes::{ClosedLaneStep, ClosedLanes};
+pub use closed_lanes::{ClosedLaneStep, ClosedLanes, Side};
 pub use discrete::{Derivatives, DiscreteConstraint, DiscreteLagrangian};
 pub use dual::Dual;
 pub use effect::{Effect, Slope};

@@ -192,8 +192,9 @@ fn sign<const U: usize>(numbers: &[i32], scales: &[i32]) -> Result<(), TestCaseE
     let signs: f64 = (0..U).map(|i| number(i, i).signum() * f64::from(u8::from(number(i, i) != 0.0))).product();
     let expected = if signs == 0.0 { None } else { Some(signs > 0.0) };
     prop_assert_eq!(has_positive_determinant(&a), expected, "{:?}", a);
-    if let Ok(lu) = Lu::new(a) {
-        prop_assert_eq!(expected, Some(lu.is_positive()), "{:?}", a);
+    // Of a singular matrix elimination may leave the rounding of a pivot.
+    if let (Ok(lu), Some(positive)) = (Lu::new(a), expected) {
+        prop_assert_eq!(lu.is_positive(), positive, "{:?}", a);
     }
     Ok(())
 }

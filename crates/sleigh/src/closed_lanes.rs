@@ -1,6 +1,6 @@
 use crate::Sleigh;
 use crate::closed_map::{COSINE, SINE};
-use lagrangian::{Abreast, ClosedLaneStep, ClosedLanes, Scalar};
+use lagrangian::{ClosedLaneStep, ClosedLanes, Side};
 
 /// Half the turn of a step up to which its sine and cosine are short sums (rad), and that up to which they are long ones.
 const NARROW: f64 = 1.0 / 32.0;
@@ -13,35 +13,35 @@ const CORRECTIONS: usize = 3;
 const LAST: f64 = 8e-9;
 
 /// The unknown ratio `r = w/omega0` of a step, with what belongs to it.
-struct Ratio<const R: usize> {
-    r: Abreast<R>,
-    w: Abreast<R>,
-    sin: Abreast<R>,
-    cos: Abreast<R>,
+struct Ratio<S> {
+    r: S,
+    w: S,
+    sin: S,
+    cos: S,
     /// `a w sin d`.
-    across: Abreast<R>,
+    across: S,
     /// The last correction, relative, and half the turn before it.
-    correction: Abreast<R>,
-    turn: Abreast<R>,
+    correction: S,
+    turn: S,
 }
 
 /// `h/2`, offset and `k = h m a / (2 J)` of the step, `u0` and `omega0` of its start.
 #[derive(Clone, Copy)]
-struct Equation<const R: usize> {
-    half: Abreast<R>,
-    a: Abreast<R>,
-    k: Abreast<R>,
-    u0: Abreast<R>,
-    omega0: Abreast<R>,
+struct Equation<S> {
+    half: S,
+    a: S,
+    k: S,
+    u0: S,
+    omega0: S,
 }
 
-impl<const R: usize> Equation<R> {
+impl<S: Side> Equation<S> {
     /// A first guess of `r`, that of the map of one sleigh.
     #[inline(always)]
-    fn prediction(&self) -> Abreast<R> {
+    fn prediction(&self) -> S {
         let Self { half, a, k, u0, omega0 } = *self;
         let d = half * omega0;
-        let r = (k * u0 + 1.0).recip();
+        let r = k.like(1.0) / (k * u0 + 1.0);
         let rr = r * r;
         r - k * ((a * omega0 + u0 * d * 0.5) * d) * (rr * rr)
     }
@@ -49,7 +49,7 @@ impl<const R: usize> Equation<R> {
     /// One correction of Newton's method for `f(r) = cos d - r (cos d + k U cos d) = 0`, with its slope times `r`; what it
     /// changes is linear, to the rounding of a small one.
     #[inline(always)]
-    fn corrected<const WIDE: bool>(&self, r: Abreast<R>) -> Ratio<R> {
+    fn corrected<const WIDE: bool>(&self, r: S) -> Ratio<S> {
         let Self { half, a, k, u0, omega0 } = *self;
         let w = omega0 * r;
         let turn = half * w;
@@ -75,7 +75,7 @@ impl<const R: usize> Equation<R> {
 
 /// Sine and cosine to rounding for `|d| <= 1/32`.
 #[inline(always)]
-fn short_series<const R: usize>(d: Abreast<R>) -> (Abreast<R>, Abreast<R>) {
+fn short_series<S: Side>(d: S) -> (S, S) {
     let z = d * d;
     let sin = d + d * z * (z * (z * SINE[2] + SINE[1]) + SINE[0]);
     let cos = -(z * (-(z * (z * COSINE[1] + COSINE[0])) + 0.5)) + 1.0;
@@ -84,14 +84,14 @@ fn short_series<const R: usize>(d: Abreast<R>) -> (Abreast<R>, Abreast<R>) {
 
 /// The same for `|d| <= 1/4`.
 #[inline(always)]
-fn long_series<const R: usize>(d: Abreast<R>) -> (Abreast<R>, Abreast<R>) {
+fn long_series<S: Side>(d: S) -> (S, S) {
     let z = d * d;
     let zz = z * z;
     (d + d * z * quartic(z, zz, &SINE), -(z * 0.5 - zz * quartic(z, zz, &COSINE)) + 1.0)
 }
 
 #[inline(always)]
-fn quartic<const R: usize>(z: Abreast<R>, zz: Abreast<R>, c: &[f64; 5]) -> Abreast<R> {
+fn quartic<S: Side>(z: S, zz: S, c: &[f64; 5]) -> S {
     (z * c[1] + c[0]) + zz * ((z * c[3] + c[2]) + zz * c[4])
 }
 
@@ -105,17 +105,17 @@ impl ClosedLanes<3, 1, 5, 6> for Sleigh {
     }
 
     #[inline(always)]
-    fn frame(q: &[f64; 3], before: &[f64; 6]) -> [f64; 6] {
-        let (sin, cos) = Abreast::new([q[2]]).sin_cos();
-        [sin.of[0], cos.of[0], before[2], before[3], before[4], before[5]]
+    fn frame<S: Side>(q: &[S; 3], before: &[S; 6]) -> [S; 6] {
+        let (sin, cos) = q[2].sin_cos();
+        [sin, cos, before[2], before[3], before[4], before[5]]
     }
 
     #[inline(always)]
-    fn step<const WIDE: bool, const R: usize>(
-        &[h, half, m, a, k]: &[Abreast<R>; 5],
-        &[u0, omega0, _]: &[Abreast<R>; 3],
-        &[sin0, cos0, r1, r2, r3, r4]: &[Abreast<R>; 6],
-    ) -> ClosedLaneStep<R, 3, 1, 6> {
+    fn step<const WIDE: bool, S: Side>(
+        &[h, half, m, a, k]: &[S; 5],
+        &[u0, omega0, _]: &[S; 3],
+        &[sin0, cos0, r1, r2, r3, r4]: &[S; 6],
+    ) -> ClosedLaneStep<S, 3, 1, 6> {
         let equation = Equation { half, a, k, u0, omega0 };
         let Ratio { r, w, sin, cos, across, correction, turn } = if WIDE {
             let mut r = equation.prediction();
@@ -135,18 +135,14 @@ impl ClosedLanes<3, 1, 5, 6> for Sleigh {
         let mean_speed = (u0 + across) / cos;
         let (way, turned) = (h * mean_speed, mean_speed * sin);
         let (most, last) = if WIDE { (BROAD, LAST) } else { (NARROW, QUICK) };
-        let mut good = [true; R];
-        for i in 0..R {
-            let (c, d) = (correction.of[i].abs(), turn.of[i].abs());
-            // That `r` is positive, quick steps take over from the wide ones before them.
-            good[i] = (c <= last) & (d <= most) & (!WIDE | (r.of[i] > 0.0));
-        }
         ClosedLaneStep {
             increment: [way * cos_m, way * sin_m, h * w],
-            xi: [u1, omega1, Abreast::zero()],
+            xi: [u1, omega1, u0.like(0.0)],
             frame: [sin1, cos1, r, r1, r2, r3],
             impulse: [m * ((turned + turned) + a * (omega1 - omega0))],
-            good,
+            doubts: [correction * (1.0 / last), turn * (1.0 / most)],
+            // Quick steps take over from the wide ones before them.
+            positive: if WIDE { r } else { r.like(1.0) },
         }
     }
 }

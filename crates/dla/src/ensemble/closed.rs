@@ -1,7 +1,9 @@
 use super::state::Row;
 use super::{Ensemble, LaneState};
-use lagrangian::{Abreast, ClosedLaneStep, ClosedLanes, System, array, vectorized};
+use lagrangian::simd::{Kernel, Pack, Simd, dispatch_widest};
+use lagrangian::{ClosedLaneStep, ClosedLanes, System, array};
 use std::array::from_fn;
+use std::marker::PhantomData;
 
 /// After so many steps frames are found anew from the configurations, so that their rounding does not add up, and angles are
 /// wrapped.
@@ -10,23 +12,15 @@ const BLOCK: u64 = 64;
 /// The first steps have no frame before them, and are made twice: as few as leave a frame behind.
 const FIRST: u64 = 4;
 
-/// Lanes of a vector register.
+/// Trajectories that go side by side.
 const LANES: usize = 8;
 
-/// `W = 8 R` trajectories of the midpoint discrete Lagrange-d'Alembert map in closed form, each with a system of its own: `R`
-/// registers interleaved, so that one computes while another waits for its own numbers.
+/// `W` trajectories of the midpoint discrete Lagrange-d'Alembert map in closed form, each with a system of its own: eights in
+/// the widest registers of the machine.
 ///
 /// What a trajectory gives does not depend on its neighbours.
 #[derive(Debug, Clone, Copy)]
-pub struct ClosedEnsemble<
-    Sys,
-    const R: usize,
-    const W: usize,
-    const N: usize,
-    const M: usize,
-    const P: usize,
-    const F: usize,
-> {
+pub struct ClosedEnsemble<Sys, const W: usize, const N: usize, const M: usize, const P: usize, const F: usize> {
     systems: [Sys; W],
     step: f64,
     prepared: [Row<W>; P],
@@ -43,15 +37,15 @@ struct Run<const W: usize, const N: usize, const M: usize, const F: usize> {
     bad: Row<W>,
 }
 
-impl<Sys, const R: usize, const W: usize, const N: usize, const M: usize, const P: usize, const F: usize>
-    ClosedEnsemble<Sys, R, W, N, M, P, F>
+impl<Sys, const W: usize, const N: usize, const M: usize, const P: usize, const F: usize>
+    ClosedEnsemble<Sys, W, N, M, P, F>
 where
     Sys: System<N, M> + ClosedLanes<N, M, P, F> + Copy,
 {
     /// The systems with steps of length `h` (s), at these states.
     #[must_use]
     pub fn new(systems: [Sys; W], h: f64, state: LaneState<N, W>) -> Self {
-        const { assert!(W == LANES * R, "R registers have 8 R lanes") };
+        const { assert!(W.is_multiple_of(LANES), "trajectories go in eights") };
         let each: [[f64; P]; W] = from_fn(|lane| systems[lane].prepared(h));
         let prepared = from_fn(|k| Row(from_fn(|lane| each[lane][k])));
         let frame = [Row([f64::NAN; W]); F];
@@ -71,8 +65,8 @@ where
     }
 }
 
-impl<Sys, const R: usize, const W: usize, const N: usize, const M: usize, const P: usize, const F: usize> Ensemble<N, W>
-    for ClosedEnsemble<Sys, R, W, N, M, P, F>
+impl<Sys, const W: usize, const N: usize, const M: usize, const P: usize, const F: usize> Ensemble<N, W>
+    for ClosedEnsemble<Sys, W, N, M, P, F>
 where
     Sys: System<N, M> + ClosedLanes<N, M, P, F> + Copy,
 {
@@ -81,85 +75,140 @@ where
     }
 
     fn advance(&mut self, steps: u64) {
-        let Self { systems, step, prepared, run, begun } = self;
-        vectorized(
-            #[inline(always)]
-            || {
-                let mut made = 0;
-                while made < steps {
-                    let block = if *begun { BLOCK } else { FIRST }.min(steps - made);
-                    *begun = true;
-                    run.find_frames::<Sys, P>();
-                    let before = *run;
-                    run.block::<Sys, false, R, P>(prepared, block);
-                    if run.any_bad() {
-                        repair::<Sys, R, W, N, M, P, F>(systems, *step, prepared, block, &before, run);
+        let mut made = 0;
+        while made < steps {
+            let block = if self.begun { BLOCK } else { FIRST }.min(steps - made);
+            self.begun = true;
+            let before = self.run;
+            dispatch_widest(Block::<Sys, false, _, _, _, _, _>::new(&self.prepared, block, &mut self.run));
+            if self.run.any_bad() {
+                self.repair(block, &before);
+            }
+            self.run.state.wrap();
+            made += block;
+        }
+    }
+}
+
+impl<Sys, const W: usize, const N: usize, const M: usize, const P: usize, const F: usize>
+    ClosedEnsemble<Sys, W, N, M, P, F>
+where
+    Sys: System<N, M> + ClosedLanes<N, M, P, F> + Copy,
+{
+    /// Makes a block again from its beginning, and takes of it the lanes whose steps were not good: by wide steps, and where
+    /// these are not good either by the map of one system.
+    #[cold]
+    fn repair(&mut self, steps: u64, before: &Run<W, N, M, F>) {
+        let mut wide = *before;
+        dispatch_widest(Block::<Sys, true, _, _, _, _, _>::new(&self.prepared, steps, &mut wide));
+        let Self { systems, step, run, .. } = self;
+        for lane in 0..W {
+            if run.bad.0[lane] != 0.0 {
+                run.take(lane, &wide);
+                if run.bad.0[lane] != 0.0 {
+                    run.take(lane, before);
+                    if one_by_one(&systems[lane], *step, steps, lane, run).is_none() {
+                        run.state.lose(lane);
                     }
-                    run.state.wrap();
-                    made += block;
                 }
-            },
-        );
+            }
+        }
+    }
+}
+
+/// Steps of all lanes; those that were not good are marked.
+struct Block<'a, Sys, const WIDE: bool, const W: usize, const N: usize, const M: usize, const P: usize, const F: usize>
+{
+    prepared: &'a [Row<W>; P],
+    steps: u64,
+    run: &'a mut Run<W, N, M, F>,
+    of: PhantomData<Sys>,
+}
+
+impl<'a, Sys, const WIDE: bool, const W: usize, const N: usize, const M: usize, const P: usize, const F: usize>
+    Block<'a, Sys, WIDE, W, N, M, P, F>
+{
+    fn new(prepared: &'a [Row<W>; P], steps: u64, run: &'a mut Run<W, N, M, F>) -> Self {
+        Self { prepared, steps, run, of: PhantomData }
+    }
+}
+
+/// Eight trajectories in registers.
+#[derive(Clone, Copy)]
+struct Eight<S: Simd, const K: usize, const N: usize, const M: usize, const P: usize, const F: usize> {
+    prepared: [Pack<S, K>; P],
+    q: [Pack<S, K>; N],
+    rest: [Pack<S, K>; N],
+    xi: [Pack<S, K>; N],
+    frame: [Pack<S, K>; F],
+    largest: [Pack<S, K>; M],
+    doubt: Pack<S, K>,
+    lowest: Pack<S, K>,
+}
+
+impl<S: Simd, const K: usize, const N: usize, const M: usize, const P: usize, const F: usize> Eight<S, K, N, M, P, F> {
+    #[inline(always)]
+    fn step<Sys: ClosedLanes<N, M, P, F>, const WIDE: bool>(&mut self) {
+        let ClosedLaneStep { increment, xi, frame, impulse, doubts, positive } =
+            Sys::step::<WIDE, Pack<S, K>>(&self.prepared, &self.xi, &self.frame);
+        for k in 0..N {
+            let increment = increment[k] + self.rest[k];
+            let sum = self.q[k] + increment;
+            self.rest[k] = increment - (sum - self.q[k]);
+            self.q[k] = sum;
+        }
+        (self.xi, self.frame) = (xi, frame);
+        for k in 0..M {
+            self.largest[k] = self.largest[k].max_abs(impulse[k]);
+        }
+        self.doubt = self.doubt.max_abs(doubts[0]).max_abs(doubts[1]);
+        self.lowest = self.lowest.min(positive);
+    }
+}
+
+impl<Sys, const WIDE: bool, const W: usize, const N: usize, const M: usize, const P: usize, const F: usize> Kernel
+    for Block<'_, Sys, WIDE, W, N, M, P, F>
+where
+    Sys: ClosedLanes<N, M, P, F>,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd, const K: usize>(self, simd: S) {
+        let Run { state, frame, largest, bad } = self.run;
+        for r in 0..W / LANES {
+            let q = loaded(simd, &state.q, r);
+            let mut eight = Eight {
+                prepared: loaded(simd, self.prepared, r),
+                q,
+                rest: loaded(simd, &state.rest, r),
+                xi: loaded(simd, &state.xi, r),
+                frame: Sys::frame(&q, &loaded(simd, frame, r)),
+                largest: loaded(simd, largest, r),
+                doubt: Pack::<S, K>::splat(simd, 0.0),
+                lowest: Pack::splat(simd, 1.0),
+            };
+            for _ in 0..self.steps {
+                eight.step::<Sys, WIDE>();
+            }
+            for k in 0..N {
+                store(&mut state.q[k], r, &eight.q[k]);
+                store(&mut state.rest[k], r, &eight.rest[k]);
+                store(&mut state.xi[k], r, &eight.xi[k]);
+            }
+            (0..F).for_each(|k| store(&mut frame[k], r, &eight.frame[k]));
+            (0..M).for_each(|k| store(&mut largest[k], r, &eight.largest[k]));
+            let (doubt, lowest) = (eight.doubt.row(), eight.lowest.row());
+            for i in 0..LANES {
+                // Of what is not a number neither is true.
+                let good = doubt[i] <= 1.0 && lowest[i] > 0.0;
+                bad.0[LANES * r + i] = if good { 0.0 } else { 1.0 };
+            }
+        }
     }
 }
 
 impl<const W: usize, const N: usize, const M: usize, const F: usize> Run<W, N, M, F> {
-    #[inline(always)]
-    fn find_frames<Sys: ClosedLanes<N, M, P, F>, const P: usize>(&mut self) {
-        for lane in 0..W {
-            let frame = Sys::frame(&from_fn(|k| self.state.q[k].0[lane]), &from_fn(|k| self.frame[k].0[lane]));
-            for k in 0..F {
-                self.frame[k].0[lane] = frame[k];
-            }
-            self.bad.0[lane] = 0.0;
-        }
-    }
-
-    /// Steps of all lanes; those that were not good are marked.
-    #[inline(always)]
-    fn block<Sys: ClosedLanes<N, M, P, F>, const WIDE: bool, const R: usize, const P: usize>(
-        &mut self,
-        prepared: &[Row<W>; P],
-        steps: u64,
-    ) {
-        for _ in 0..steps {
-            for i in 0..LANES {
-                let prepared = loaded(prepared, i);
-                let xi = loaded(&self.state.xi, i);
-                let frame = loaded(&self.frame, i);
-                let ClosedLaneStep { increment, xi, frame, impulse, good } =
-                    Sys::step::<WIDE, R>(&prepared, &xi, &frame);
-                for k in 0..N {
-                    let (q, rest) = (load(&self.state.q[k], i), load(&self.state.rest[k], i));
-                    let increment = increment[k] + rest;
-                    let sum = q + increment;
-                    store(&mut self.state.rest[k], i, &(increment - (sum - q)));
-                    store(&mut self.state.q[k], i, &sum);
-                    store(&mut self.state.xi[k], i, &xi[k]);
-                }
-                for k in 0..F {
-                    store(&mut self.frame[k], i, &frame[k]);
-                }
-                for k in 0..M {
-                    let (before, now) = (load::<R, W>(&self.largest[k], i), impulse[k].abs());
-                    let larger: [f64; R] = array(
-                        0.0,
-                        #[inline(always)]
-                        |r| if now.of[r] > before.of[r] { now.of[r] } else { before.of[r] },
-                    );
-                    store(&mut self.largest[k], i, &Abreast::new(larger));
-                }
-                let bad = load::<R, W>(&self.bad, i);
-                let bad: [f64; R] = array(
-                    1.0,
-                    #[inline(always)]
-                    |r| if good[r] { bad.of[r] } else { 1.0 },
-                );
-                store(&mut self.bad, i, &Abreast::new(bad));
-            }
-        }
-    }
-
     #[inline(always)]
     fn any_bad(&self) -> bool {
         self.bad.0.iter().fold(0.0, |any, bad| any + bad) != 0.0
@@ -173,59 +222,23 @@ impl<const W: usize, const N: usize, const M: usize, const F: usize> Run<W, N, M
     }
 }
 
-/// The numbers of lane `i` of each register.
+/// Eight numbers of each row.
 #[inline(always)]
-fn load<const R: usize, const W: usize>(row: &Row<W>, i: usize) -> Abreast<R> {
-    Abreast::new(array(
-        0.0,
-        #[inline(always)]
-        |r| row.0[i + LANES * r],
-    ))
-}
-
-/// Those of some rows.
-#[inline(always)]
-fn loaded<const R: usize, const W: usize, const K: usize>(rows: &[Row<W>; K], i: usize) -> [Abreast<R>; K] {
+fn loaded<S: Simd, const K: usize, const W: usize, const L: usize>(
+    simd: S,
+    rows: &[Row<W>; L],
+    r: usize,
+) -> [Pack<S, K>; L] {
     array(
-        Abreast::new([0.0; R]),
+        Pack::splat(simd, 0.0),
         #[inline(always)]
-        |k| load(&rows[k], i),
+        |k| Pack::load(simd, &rows[k].0.as_chunks().0[r]),
     )
 }
 
 #[inline(always)]
-fn store<const R: usize, const W: usize>(row: &mut Row<W>, i: usize, x: &Abreast<R>) {
-    for r in 0..R {
-        row.0[i + LANES * r] = x.of[r];
-    }
-}
-
-/// Makes a block again from its beginning, and takes of it the lanes whose steps were not good: by wide steps, and where these
-/// are not good either by the map of one system.
-#[inline(always)]
-fn repair<Sys, const R: usize, const W: usize, const N: usize, const M: usize, const P: usize, const F: usize>(
-    systems: &[Sys; W],
-    h: f64,
-    prepared: &[Row<W>; P],
-    steps: u64,
-    before: &Run<W, N, M, F>,
-    run: &mut Run<W, N, M, F>,
-) where
-    Sys: System<N, M> + ClosedLanes<N, M, P, F>,
-{
-    let mut wide = *before;
-    wide.block::<Sys, true, R, P>(prepared, steps);
-    for lane in 0..W {
-        if run.bad.0[lane] != 0.0 {
-            run.take(lane, &wide);
-            if run.bad.0[lane] != 0.0 {
-                run.take(lane, before);
-                if one_by_one(&systems[lane], h, steps, lane, run).is_none() {
-                    run.state.lose(lane);
-                }
-            }
-        }
-    }
+fn store<S: Simd, const K: usize, const W: usize>(row: &mut Row<W>, r: usize, x: &Pack<S, K>) {
+    row.0.as_chunks_mut().0[r] = x.row();
 }
 
 /// Steps of one lane by the map of one system; none where a step has no solution.

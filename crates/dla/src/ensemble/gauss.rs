@@ -218,16 +218,16 @@ impl<const S: usize, const W: usize, const N: usize> Stages<S, W, N> {
     fn turn(&mut self, k: usize) {
         for i in 0..S {
             for lane in 0..lanes::<W>() {
-                let (sin, cos) = Abreast::new([self.q[k][i].0[lane]]).sin_cos();
-                (self.sin[k][i].0[lane], self.cos[k][i].0[lane]) = (sin.of[0], cos.of[0]);
+                let (sin, cos) = Abreast::new(self.q[k][i].0[lane]).sin_cos();
+                (self.sin[k][i].0[lane], self.cos[k][i].0[lane]) = (sin.of, cos.of);
             }
         }
     }
 
     /// Configuration and quasi-velocities of a stage.
     #[inline(always)]
-    fn point(&self, i: usize, lane: usize, angles: &[bool; N]) -> ([Abreast<1>; N], [Abreast<1>; N]) {
-        let of = |rows: &[[Row<W>; S]; N], k: usize| [rows[k][i].0[lane]];
+    fn point(&self, i: usize, lane: usize, angles: &[bool; N]) -> ([Abreast; N], [Abreast; N]) {
+        let of = |rows: &[[Row<W>; S]; N], k: usize| rows[k][i].0[lane];
         let coordinate = |k: usize| {
             let q = of(&self.q, k);
             if angles[k] { Abreast::turned(q, of(&self.sin, k), of(&self.cos, k)) } else { Abreast::new(q) }
@@ -252,7 +252,7 @@ impl<const S: usize, const W: usize, const N: usize> Stages<S, W, N> {
                 let velocity = velocity_of(systems.of(lane), time, &q, &xi).unwrap_or([Abreast::constant(f64::NAN); N]);
                 for k in 0..N {
                     if which[k] == angles {
-                        self.velocity[k][i].0[lane] = velocity[k].of[0];
+                        self.velocity[k][i].0[lane] = velocity[k].of;
                     }
                 }
             }
@@ -275,7 +275,7 @@ impl<const S: usize, const W: usize, const N: usize> Stages<S, W, N> {
                 let acceleration =
                     systems.of(lane).reduced_motion(time, &q, &xi).unwrap_or([Abreast::constant(f64::NAN); N]);
                 for k in 0..N - M {
-                    self.next[k][i].0[lane] = acceleration[k].of[0];
+                    self.next[k][i].0[lane] = acceleration[k].of;
                 }
             }
         }

@@ -10,7 +10,7 @@ use sleigh::effects::{Bowl, Torque};
 use sleigh::{Sleigh, SleighState, TimeFunction};
 
 const W: usize = 16;
-type Closed = ClosedEnsemble<Sleigh, 2, W, 3, 1, 5, 6>;
+type Closed = ClosedEnsemble<Sleigh, W, 3, 1, 5, 6>;
 type Start = ([f64; 3], [f64; 3]);
 
 /// Configuration and quasi-velocities.

@@ -39,3 +39,25 @@ pub fn dispatch<K: Kernel>(kernel: K) -> Option<K::Output> {
     let _ = kernel;
     None
 }
+
+/// Runs a kernel with the widest registers there are, or one number after another where none are known here: for many
+/// trajectories, whose numbers do not wait for one another.
+#[inline(always)]
+pub fn dispatch_widest<K: Kernel>(kernel: K) -> K::Output {
+    #[cfg(target_arch = "x86_64")]
+    {
+        if let Some(simd) = pulp::x86::V4::try_new() {
+            return simd.vectorize(
+                #[inline(always)]
+                || kernel.run::<_, 1>(simd),
+            );
+        }
+        if let Some(simd) = pulp::x86::V3::try_new() {
+            return simd.vectorize(
+                #[inline(always)]
+                || kernel.run::<_, 2>(simd),
+            );
+        }
+    }
+    kernel.run::<_, 8>(pulp::Scalar::new())
+}

@@ -1,3 +1,4 @@
+use crate::Side;
 use pulp::{Simd, bytemuck};
 
 /// Eight numbers in `R` registers.
@@ -110,6 +111,17 @@ impl<S: Simd, const R: usize> Pack<S, R> {
         )
     }
 
+    /// The smaller of this number and the other, in every place; the other where one is not a number.
+    #[must_use]
+    #[inline(always)]
+    pub fn min(self, o: Self) -> Self {
+        self.zip(
+            o,
+            #[inline(always)]
+            |s, m, x| s.min_f64s(m, x),
+        )
+    }
+
     /// The largest of the numbers, where all are numbers.
     #[must_use]
     #[inline(always)]
@@ -175,6 +187,30 @@ macro_rules! operators {
     )*};
 }
 operators!(Add add add_f64s, Sub sub sub_f64s, Mul mul mul_f64s, Div div div_f64s);
+
+macro_rules! with_numbers {
+    ($($operator:ident $method:ident),*) => {$(
+        impl<S: Simd, const R: usize> std::ops::$operator<f64> for Pack<S, R> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, x: f64) -> Self {
+                self.$method(Self::splat(self.simd, x))
+            }
+        }
+    )*};
+}
+with_numbers!(Add add, Mul mul);
+
+impl<S: Simd, const R: usize> Side for Pack<S, R> {
+    #[inline(always)]
+    fn like(self, x: f64) -> Self {
+        Self::splat(self.simd, x)
+    }
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        Self::sin_cos(self)
+    }
+}
 
 #[allow(clippy::redundant_closure_for_method_calls, reason = "as above")]
 impl<S: Simd, const R: usize> std::ops::Neg for Pack<S, R> {
