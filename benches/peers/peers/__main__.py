@@ -127,6 +127,7 @@ def main():
     parser.add_argument("--methods", type=lambda s: s.split(","), help="only those that begin so")
     parser.add_argument("--limit", type=float, default=5.0, help="a ladder ends with the first run longer than this (s)")
     parser.add_argument("--budget", type=float, default=0.2, help="what is spent on repeating a run (s)")
+    parser.add_argument("--energy", action="store_true", help="energy and slip of long runs in a bowl, against their time")
     parser.add_argument("--self-test", action="store_true", help="all peers against closed forms, loosely")
     options = parser.parse_args()
     # What fails is in the result; what is left warns of tolerances near rounding, at every run.
@@ -140,6 +141,12 @@ def main():
         problems += [scene.case(name, options.duration) for name in options.case]
         if not problems:
             raise scene.Refused("no scene: name one, or --case, or --self-test")
+        if options.energy:
+            # Its packages are needed for nothing else.
+            energy = importlib.import_module("peers.energy")
+            for problem in problems:
+                print(energy.table(problem), flush=True)
+            return 0
         for problem in problems:
             several = len(problems) > 1
             path = options.out

@@ -2,7 +2,7 @@
 //!
 //! Coordinates, signs and acting points are those of [`Sleigh`]; the state that a person would write down is a
 //! [`SleighState`]; [`Exact`] is the motion of the free sleigh in closed form. What acts on it is in [`effects`]; what gives it
-//! another coordinate or another constraint is another body: [`Flywheel`], [`Guided`]. Its geometry, without any forces, is in
+//! other coordinates or another constraint is another body: [`Flywheel`], [`Guided`], [`RoundWell`]. Its geometry, without any forces, is in
 //! [`planimeter`] (what a led blade turns by) and [`parking`] (controls that reach a pose).
 
 mod bodies;
@@ -23,7 +23,7 @@ mod state;
 mod system;
 mod time_function;
 
-pub use bodies::{ClosedPath, Flywheel, Guide, Guided};
+pub use bodies::{ClosedPath, Flywheel, Guide, Guided, RoundWell};
 pub use body::Sleigh;
 pub use centre_of_mass::CentreOfMass;
 

@@ -11,6 +11,7 @@ mod hints;
 mod lanes;
 mod observers;
 mod recommend;
+mod round_well;
 mod scripted;
 mod substeps;
 mod trials;

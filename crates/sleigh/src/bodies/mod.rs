@@ -3,10 +3,12 @@
 mod flywheel;
 mod guided;
 mod path;
+mod round_well;
 
 pub use flywheel::Flywheel;
 pub use guided::{Guide, Guided};
 pub use path::ClosedPath;
+pub use round_well::RoundWell;
 
 use crate::Sleigh;
 use lagrangian::Piecewise;

@@ -10,4 +10,5 @@ mod imposed;
 mod paths;
 mod pushed;
 mod refusals;
+mod round_well;
 mod time;

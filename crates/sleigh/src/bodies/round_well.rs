@@ -1,0 +1,101 @@
+use crate::checks::finite;
+use crate::{Sleigh, SleighError, SleighState};
+use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
+
+/// The Chaplygin sleigh in a round well, in its own axes: what is left of the motion when its symmetry is taken out.
+///
+/// `V = k/2 |P + b e - c|^2` draws the point `b` ahead of the blade (m) to the centre `c`; `b = a` is the centre of mass, as of
+/// a [`Bowl`](crate::effects::Bowl) of equal stiffnesses. A turn about the centre changes nothing, so that the heading is needed
+/// nowhere: `q = (X, Y, theta)` with the blade's place in the axes of the sleigh, `(X, Y) = R(-theta) (P - c)`, and
+///
+/// `X' = u + omega Y`, `Y' = -omega X`, `u' = a omega^2 - k/m (X + b)`, `omega' = -(m a / J) u omega - k b/J Y`.
+///
+/// No sine is left, and the energy is of second degree in `(X, Y, u, omega)`: Gauss methods keep it to rounding whatever the step
+/// (Hairer, Lubich and Wanner 2006, theorem IV.2.1), which on the plane they do not. The reduction is that of Bloch, Krishnaprasad,
+/// Marsden and Murray 1996, Arch. Rational Mech. Anal. 136, 21-99, with the circle as the group.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoundWell {
+    sleigh: Sleigh,
+    stiffness: f64,
+    center: [f64; 2],
+    ahead: f64,
+}
+
+impl RoundWell {
+    /// The sleigh in a well of this stiffness (N/m) about the point `center` (m), which draws its centre of mass.
+    ///
+    /// # Errors
+    /// [`SleighError::NotFinite`].
+    pub fn new(sleigh: Sleigh, stiffness: f64, center: [f64; 2]) -> Result<Self, SleighError> {
+        Self::drawing(sleigh, stiffness, center, sleigh.offset())
+    }
+
+    /// The same of a well that draws the point `ahead` (m) of the blade; zero is the blade itself.
+    ///
+    /// # Errors
+    /// [`SleighError::NotFinite`].
+    pub fn drawing(sleigh: Sleigh, stiffness: f64, center: [f64; 2], ahead: f64) -> Result<Self, SleighError> {
+        let [stiffness, ahead] = finite("stiffness or point of the well", [stiffness, ahead])?;
+        Ok(Self { sleigh, stiffness, center: finite("center", center)?, ahead })
+    }
+
+    /// The coordinates and velocities of a state.
+    #[must_use]
+    pub fn coordinates(&self, state: &SleighState) -> ([f64; 3], [f64; 3]) {
+        let SleighState { x, y, heading, speed, turn_rate } = *state;
+        let (sin, cos) = heading.sin_cos();
+        let (x, y) = (x - self.center[0], y - self.center[1]);
+        let (along, across) = (cos * x + sin * y, cos * y - sin * x);
+        ([along, across, heading], [speed + turn_rate * across, -turn_rate * along, turn_rate])
+    }
+
+    /// The state of coordinates and velocities.
+    #[must_use]
+    pub fn state(&self, &[along, across, heading]: &[f64; 3], v: &[f64; 3]) -> SleighState {
+        let (sin, cos) = heading.sin_cos();
+        let [x, y] = [self.center[0] + cos * along - sin * across, self.center[1] + sin * along + cos * across];
+        SleighState { x, y, heading, speed: v[0] - v[2] * across, turn_rate: v[2] }
+    }
+}
+
+impl System<3, 1> for RoundWell {
+    /// That of the sleigh with the velocity of the blade in its own axes, `(X' - omega Y, Y' + omega X)`, less `V`.
+    #[inline(always)]
+    fn lagrangian<S: Scalar>(&self, _t: S, &[x, y, _]: &[S; 3], v: &[S; 3]) -> S {
+        let (sleigh, omega) = (&self.sleigh, v[2]);
+        let (along, across) = (v[0] - omega * y, v[1] + omega * x);
+        let ahead = x + self.ahead;
+        (along * along + across * across) * (0.5 * sleigh.mass())
+            + omega * across * (sleigh.mass() * sleigh.offset())
+            + omega * omega * (0.5 * sleigh.pivot_inertia())
+            - (ahead * ahead + y * y) * (0.5 * self.stiffness)
+    }
+
+    /// The blade does not slip: `Y' + omega X = 0`.
+    #[inline(always)]
+    fn constraint<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
+        ([[S::zero(), S::constant(1.0), q[0]]], [S::zero()])
+    }
+
+    /// Drive along the blade, and pivot about it.
+    #[inline(always)]
+    fn admissible_basis<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, 1>> {
+        let (zero, one) = (S::zero(), S::constant(1.0));
+        Some(AdmissibleBasis::new([[one, zero, zero], [q[1], -q[0], one]]))
+    }
+
+    #[inline(always)]
+    fn angles(&self) -> [bool; 3] {
+        [false, false, true]
+    }
+
+    #[inline(always)]
+    fn reduced_motion<S: Scalar>(&self, _t: S, q: &[S; 3], &[u, omega, _]: &[S; 3]) -> Option<[S; 3]> {
+        let Self { sleigh, stiffness, ahead, .. } = self;
+        Some([
+            omega * omega * sleigh.offset() - (q[0] + *ahead) * (stiffness / sleigh.mass()),
+            u * omega * -sleigh.spin_gain() - q[1] * (stiffness * ahead / sleigh.pivot_inertia()),
+            S::zero(),
+        ])
+    }
+}
