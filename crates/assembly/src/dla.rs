@@ -1,6 +1,7 @@
 use crate::assembly::{Placed, WIDEST};
 use crate::contributions::{Part, at_state, gathered};
 use crate::equations::Equations;
+use crate::linear::Linear;
 use crate::{Assembly, AssemblyError, OneStep, Solver, State, StepReport};
 use dla::Stage;
 use lagrangian::linear::{larger, largest};
@@ -37,7 +38,7 @@ const PARALLEL: usize = 2048;
 
 impl std::fmt::Debug for Dla {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Dla").field("unknowns", &self.equations.right.len()).finish_non_exhaustive()
+        f.debug_struct("Dla").field("unknowns", &self.equations.linear.right.len()).finish_non_exhaustive()
     }
 }
 
@@ -74,7 +75,7 @@ impl Dla {
         });
         p.fill(0.0);
         equations.contributions.add_momenta(assembly, 1.0, p);
-        let Equations { contributions, pattern, values, .. } = equations;
+        let Equations { contributions, linear: Linear { pattern, values, .. }, .. } = equations;
         contributions.write_matrix(assembly, pattern, Part::Transposed, values);
 
         predict(state, h, v0, v);
@@ -193,7 +194,7 @@ impl Dla {
 impl Equations {
     /// The right side, minus the momenta and the levels; and a part of the matrix.
     fn write(&mut self, assembly: &Assembly, part: Option<Part>, p: &[f64]) {
-        let Self { contributions, pattern, values, right, .. } = self;
+        let Self { contributions, linear: Linear { pattern, values, right, .. }, .. } = self;
         let n = assembly.coordinates();
         let (momenta, levels) = right.split_at_mut(n);
         for (right, p) in momenta.iter_mut().zip(p) {

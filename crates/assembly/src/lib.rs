@@ -16,6 +16,7 @@ mod equations;
 mod error;
 mod factor;
 mod joint;
+mod linear;
 mod lobatto;
 mod one_step;
 pub mod parts;

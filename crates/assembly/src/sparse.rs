@@ -1,4 +1,4 @@
-use crate::factor::Factor;
+use crate::linear::Linear;
 use crate::pattern::{Part, Pattern};
 use crate::settling::Settling;
 use crate::{AssemblyError, Solver};
@@ -15,13 +15,7 @@ use lagrangian::linear::largest;
 /// the right side vanishes is all that a solution is.
 pub(crate) struct Sparse {
     parts: Vec<Part>,
-    pattern: Pattern,
-    factor: Factor,
-    values: Vec<f64>,
-    /// Right side, the equations of the unknowns before the constraints.
-    pub(crate) right: Vec<f64>,
-    rest: Vec<f64>,
-    pub(crate) solution: Vec<f64>,
+    pub(crate) linear: Linear,
     unknowns: usize,
     /// Whether the next search may begin with the factors of the last.
     pub(crate) factors_serve: bool,
@@ -30,96 +24,63 @@ pub(crate) struct Sparse {
     pub(crate) polishes: bool,
 }
 
-/// A pivot below it, relative to its column, is rounding.
-const SINGULAR: f64 = 1e-13;
-
 /// Where a correction is no more than this part of the one before, its matrix is good enough for the next.
 const KEPT: f64 = 0.05;
 
 impl Sparse {
     /// Of `n` unknowns and `m` constraints.
     pub(crate) fn new(n: usize, m: usize, parts: Vec<Part>, solver: Solver) -> Result<Self, AssemblyError> {
-        let pattern = Pattern::of_parts((n, m), &parts);
-        let zeros = || vec![0.0; n + m];
         Ok(Self {
-            factor: Factor::of(&pattern, solver)?,
-            values: vec![0.0; pattern.entries()],
-            right: zeros(),
-            rest: zeros(),
-            solution: zeros(),
+            linear: Linear::new(Pattern::of_parts((n, m), &parts), solver)?,
             unknowns: n,
             factors_serve: false,
             polishes: false,
-            pattern,
             parts,
         })
     }
 
     /// Whether there are constraints.
     pub(crate) fn has_rows(&self) -> bool {
-        self.unknowns < self.right.len()
+        self.unknowns < self.linear.right.len()
     }
 
     /// Forgets the matrix and the right side.
     pub(crate) fn clear(&mut self) {
-        self.values.fill(0.0);
-        self.right.fill(0.0);
+        self.linear.values.fill(0.0);
+        self.linear.right.fill(0.0);
     }
 
     /// Adds to the right side of the unknowns of a part.
     pub(crate) fn add_right(&mut self, k: usize, residual: &[f64]) {
         for (at, x) in self.parts[k].at.iter().zip(residual) {
-            self.right[*at] += x;
+            self.linear.right[*at] += x;
         }
     }
 
     /// Writes the right side of the constraints of a part.
     pub(crate) fn write_levels(&mut self, k: usize, levels: &[f64]) {
         let first = self.unknowns + self.parts[k].row;
-        self.right[first..first + levels.len()].copy_from_slice(levels);
+        self.linear.right[first..first + levels.len()].copy_from_slice(levels);
     }
 
     /// Adds to the block of a part, by rows.
     pub(crate) fn add_block(&mut self, k: usize, block: &[f64]) {
         let Part { at, rows, acts, .. } = &self.parts[k];
-        let places = self.pattern.places(k, (at.len(), *rows), *acts);
+        let places = self.linear.pattern.places(k, (at.len(), *rows), *acts);
         for (place, x) in places.block.iter().zip(block) {
-            self.values[*place as usize] += x;
+            self.linear.values[*place as usize] += x;
         }
     }
 
     /// Writes the rows `G` and `C` of the constraints of a part.
     pub(crate) fn write_rows(&mut self, k: usize, acting: &[f64], rows: &[f64]) {
         let Part { at, rows: count, acts, .. } = &self.parts[k];
-        let places = self.pattern.places(k, (at.len(), *count), *acts);
+        let places = self.linear.pattern.places(k, (at.len(), *count), *acts);
         for (place, x) in places.transposed.iter().zip(acting) {
-            self.values[*place as usize] = *x;
+            self.linear.values[*place as usize] = *x;
         }
         for (place, x) in places.rows.iter().zip(rows) {
-            self.values[*place as usize] = *x;
-        }
-    }
-
-    /// Factorises the matrix that was written.
-    pub(crate) fn factorise(&mut self, stage: Stage) -> Result<(), AssemblyError> {
-        let pivot = self.factor.factorise(&self.pattern, &self.values)?;
-        if pivot < SINGULAR {
-            return Err(AssemblyError::Singular { stage, pivot, constraints: Vec::new() });
-        }
-        Ok(())
-    }
-
-    /// Solves with the factors there are; with iterative refinements where the matrix is theirs, or nearly so.
-    pub(crate) fn solve(&mut self, refinements: u32) {
-        self.solution.copy_from_slice(&self.right);
-        self.factor.solve(&mut self.solution);
-        for _ in 0..refinements {
-            self.rest.copy_from_slice(&self.right);
-            self.pattern.subtract_product(&self.values, &self.solution, &mut self.rest);
-            self.factor.solve(&mut self.rest);
-            for (x, d) in self.solution.iter_mut().zip(&self.rest) {
-                *x += d;
-            }
+            self.linear.values[*place as usize] = *x;
         }
     }
 
@@ -136,16 +97,16 @@ impl Sparse {
         let (mut before, mut fresh) = (f64::INFINITY, !self.factors_serve);
         let mut polished = !self.polishes;
         loop {
-            self.right.fill(0.0);
+            self.linear.right.fill(0.0);
             if fresh {
-                self.values.fill(0.0);
+                self.linear.values.fill(0.0);
             }
             evaluate(self, x, multipliers, fresh)?;
             if fresh {
-                self.factorise(stage)?;
+                self.linear.factorise(stage, None)?;
             }
-            self.solve(u32::from(fresh));
-            let (correction, corrections) = self.solution.split_at(x.len());
+            self.linear.solve(u32::from(fresh));
+            let (correction, corrections) = self.linear.solution.split_at(x.len());
             for (multiplier, d) in multipliers.iter_mut().zip(corrections) {
                 *multiplier += d;
             }

@@ -153,10 +153,10 @@ impl Path {
             system.write_rows(k, &half[..m * reduced], &block[..m * reduced]);
         }
         if near {
-            system.solve(3);
+            system.linear.solve(3);
         } else {
-            system.factorise(Stage::Projection)?;
-            system.solve(1);
+            system.linear.factorise(Stage::Projection, None)?;
+            system.linear.solve(1);
         }
         Ok(())
     }

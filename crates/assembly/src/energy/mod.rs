@@ -168,7 +168,7 @@ impl Energy {
             return Ok(0.0);
         }
         path.project(assembly, frames, (projection, near), (t1, mass), (end, v1))?;
-        let correction = &projection.solution[..xi1.len()];
+        let correction = &projection.linear.solution[..xi1.len()];
         for (xi1, d) in xi1.iter_mut().zip(correction) {
             *xi1 += d;
         }

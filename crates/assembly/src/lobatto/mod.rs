@@ -159,7 +159,7 @@ impl Lobatto {
         let Self { end, settling, p, q1, v1, multipliers, each: [momentum, level, block, rows], .. } = self;
         multipliers.fill(0.0);
         end.newton((&mut settling[1], Stage::Projection), v1, multipliers, |system, v1, multipliers, fresh| {
-            system.right[..p.len()].copy_from_slice(p);
+            system.linear.right[..p.len()].copy_from_slice(p);
             for (k, placed) in assembly.placed().iter().enumerate() {
                 let (n, m, acts) = (placed.at.len(), placed.rows, placed.element.acts());
                 let out = Blocks {

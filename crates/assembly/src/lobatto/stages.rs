@@ -101,7 +101,7 @@ impl Stages<'_> {
     /// the step.
     pub(super) fn evaluate(&mut self, system: &mut Sparse, v: &[f64], impulses: &[f64], matrix: bool) {
         let s = self.rule.stages;
-        for (right, p0) in system.right.chunks_exact_mut(s).zip(self.p0) {
+        for (right, p0) in system.linear.right.chunks_exact_mut(s).zip(self.p0) {
             right.fill(*p0);
         }
         let assembly = self.assembly;

@@ -1,0 +1,59 @@
+use crate::factor::Factor;
+use crate::pattern::Pattern;
+use crate::singular::dependent;
+use crate::{Assembly, AssemblyError, Solver};
+use dla::Stage;
+
+/// Linear equations with a pattern that is found once, and their solution without allocation.
+pub(crate) struct Linear {
+    pub(crate) pattern: Pattern,
+    factor: Factor,
+    pub(crate) values: Vec<f64>,
+    /// Right side, the equations of the unknowns before the constraints.
+    pub(crate) right: Vec<f64>,
+    rest: Vec<f64>,
+    /// The last solution: correction, then multipliers.
+    pub(crate) solution: Vec<f64>,
+}
+
+/// A pivot below it, relative to its column, is rounding.
+const SINGULAR: f64 = 1e-13;
+
+impl Linear {
+    pub(crate) fn new(pattern: Pattern, solver: Solver) -> Result<Self, AssemblyError> {
+        let zeros = || vec![0.0; pattern.unknowns()];
+        Ok(Self {
+            factor: Factor::of(&pattern, solver)?,
+            values: vec![0.0; pattern.entries()],
+            right: zeros(),
+            rest: zeros(),
+            solution: zeros(),
+            pattern,
+        })
+    }
+
+    /// Factorises the matrix that was written. Where it is singular the error names the constraints, if it is the matrix of this
+    /// assembly.
+    pub(crate) fn factorise(&mut self, stage: Stage, of: Option<&Assembly>) -> Result<(), AssemblyError> {
+        let pivot = self.factor.factorise(&self.pattern, &self.values)?;
+        if pivot < SINGULAR {
+            let named = |assembly| dependent(assembly, &self.pattern, &mut self.values, &mut self.factor);
+            return Err(AssemblyError::Singular { stage, pivot, constraints: of.map_or_else(Vec::new, named) });
+        }
+        Ok(())
+    }
+
+    /// Solves with the factors there are; with iterative refinements where the matrix is theirs, or nearly so.
+    pub(crate) fn solve(&mut self, refinements: u32) {
+        self.solution.copy_from_slice(&self.right);
+        self.factor.solve(&mut self.solution);
+        for _ in 0..refinements {
+            self.rest.copy_from_slice(&self.right);
+            self.pattern.subtract_product(&self.values, &self.solution, &mut self.rest);
+            self.factor.solve(&mut self.rest);
+            for (x, d) in self.solution.iter_mut().zip(&self.rest) {
+                *x += d;
+            }
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! What an error at the end costs: Gauss collocation of 16th order on the cases of `docs/peers.md`, by equal steps and by steps
+//! of its own, on the plane and, in a round well, in the axes of the sleigh. Microseconds, the least of rounds on one core.
+//!
+//! With `--all` every run is shown, not only the quickest to an error.
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
+
+use dla::{Gauss, GaussAdaptive, OneStep, Schedule, State, drive};
+use lagrangian::{Effect, Scalar, Slope, System, With};
+use sleigh::effects::Bowl;
+use sleigh::{RoundWell, Sleigh, SleighBody, SleighState};
+use std::hint::black_box;
+use std::time::Instant;
+
+const DURATION: f64 = 100.0;
+const START: SleighState = SleighState { x: 0.0, y: 0.0, heading: 0.0, speed: -1.0, turn_rate: 0.1 };
+const ERRORS: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
+const STEPS: [u64; 19] = [8, 10, 12, 15, 18, 20, 22, 25, 27, 30, 35, 40, 45, 50, 60, 70, 80, 90, 100];
+const ROUNDS: usize = 200;
+
+/// The well of the case L, at the blade: `V = k/2 |P|^2`.
+struct AtBlade(f64);
+
+impl<B: SleighBody, const N: usize> Effect<B, N> for AtBlade {
+    #[inline(always)]
+    fn lagrangian<S: Scalar>(&self, _body: &B, _t: S, q: &[S; N], _v: &[S; N]) -> Option<S> {
+        Some((q[0] * q[0] + q[1] * q[1]) * (-0.5 * self.0))
+    }
+    #[inline(always)]
+    fn slope<S: Scalar>(&self, _body: &B, _t: S, q: &[S; N]) -> Slope<S, N> {
+        let mut slope = [S::zero(); N];
+        (slope[0], slope[1]) = (q[0] * -self.0, q[1] * -self.0);
+        Slope::Known(slope)
+    }
+}
+
+/// The coordinates at the end; none of a run that fails.
+fn end<Sys: System<3, 1>>(
+    system: &Sys,
+    (q, v): ([f64; 3], [f64; 3]),
+    mut method: impl OneStep<Sys, 3, 1>,
+    steps: u64,
+) -> Option<[f64; 3]> {
+    let mut state = State::new(q, v, system.angles());
+    let schedule = Schedule { t0: 0.0, step: DURATION / steps as f64, steps };
+    drive(system, &mut method, &schedule, &mut state, ()).ok().map(|_| state.unwrapped())
+}
+
+/// Microseconds of a run.
+fn time(mut run: impl FnMut() -> Option<[f64; 3]>) -> f64 {
+    let mut least = f64::INFINITY;
+    for _ in 0..ROUNDS {
+        let begin = Instant::now();
+        for _ in 0..4 {
+            black_box(run());
+        }
+        least = least.min(begin.elapsed().as_secs_f64() / 4.0);
+    }
+    least * 1e6
+}
+
+/// Errors and times of all runs of a case, then the least times to the errors.
+fn case<Sys: System<3, 1>>(name: &str, system: &Sys, start: ([f64; 3], [f64; 3])) {
+    let system = black_box(system);
+    let exact = end(system, start, Gauss::<8>::default(), 400).unwrap();
+    let distance = |q: [f64; 3]| (0..3).map(|k| (q[k] - exact[k]).abs()).fold(0.0, f64::max);
+    let mut equal = Vec::new();
+    for steps in STEPS {
+        if let Some(q) = end(system, start, Gauss::<8>::default(), steps) {
+            equal.push((steps as f64, distance(q), time(|| end(system, start, Gauss::<8>::default(), steps))));
+        }
+    }
+    let mut own = Vec::new();
+    for half in 4..29 {
+        let tolerance = 10f64.powf(-0.5 * f64::from(half));
+        if let Some(q) = end(system, start, GaussAdaptive::<8>::new(tolerance), 1) {
+            own.push((tolerance, distance(q), time(|| end(system, start, GaussAdaptive::<8>::new(tolerance), 1))));
+        }
+    }
+    for (method, runs) in [("equal steps", &equal), ("steps of its own", &own)] {
+        if std::env::args().any(|argument| argument == "--all") {
+            for (of, error, us) in runs {
+                println!("{name}, {method}, {of:.3e}: {error:.1e} {us:.2} us");
+            }
+        }
+        let least = |error: f64| {
+            let least = runs.iter().filter(|run| run.1 <= error).map(|run| run.2).fold(f64::INFINITY, f64::min);
+            if least.is_finite() { format!("{least:.1}") } else { "-".into() }
+        };
+        println!("{name}, {method}: {} us", ERRORS.map(least).join(" / "));
+    }
+}
+
+fn main() {
+    let sleigh = |offset| Sleigh::new(1.0, 1.0, offset).unwrap();
+    let (body, start) = (sleigh(0.5), START.to_coordinates());
+    println!("errors {ERRORS:?}");
+    case("S1", &body, start);
+    case("S2", &sleigh(0.1), start);
+    case("L", &With { body, effects: AtBlade(0.05) }, start);
+    let well = RoundWell::drawing(body, 0.05, [0.0; 2], 0.0).unwrap();
+    case("L, own axes", &well, well.coordinates(&START));
+    case("bowl", &With { body, effects: Bowl::new([0.1, 0.1], [0.0; 2]).unwrap() }, start);
+    let well = RoundWell::new(body, 0.1, [0.0; 2]).unwrap();
+    case("bowl, own axes", &well, well.coordinates(&START));
+}
