@@ -200,9 +200,10 @@ where
             (0..M).for_each(|k| store(&mut largest[k], r, &eight.largest[k]));
             let (doubt, lowest) = (eight.doubt.row(), eight.lowest.row());
             for i in 0..LANES {
-                // Of what is not a number neither is true.
-                let good = doubt[i] <= 1.0 && lowest[i] > 0.0;
-                bad.0[LANES * r + i] = if good { 0.0 } else { 1.0 };
+                let lane = LANES * r + i;
+                // A step that is not a number leaves none behind, whatever the larger of that and a number is here.
+                let good = doubt[i] <= 1.0 && lowest[i] > 0.0 && state.is_finite(lane);
+                bad.0[lane] = if good { 0.0 } else { 1.0 };
             }
         }
     }
