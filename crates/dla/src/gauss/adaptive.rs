@@ -1,6 +1,6 @@
 use super::lanes::{self, Ending, Outcome};
 use super::memory::Memory;
-use super::rule::{Eight, quarter_octaves};
+use super::rule::{Eight, LONGER, SHORTER, quarter_octaves};
 use super::{Gauss, Taken};
 use crate::positions::affine_only;
 use crate::{OneStep, State, StepError, StepReport};
@@ -48,10 +48,6 @@ struct Tried<const N: usize> {
     longer: i32,
 }
 
-/// As many quarter octaves longer at once, at most: stages of a step that is much longer may not converge, and are lost.
-const LONGER: f64 = 2.0;
-/// And shorter.
-const SHORTER: f64 = 8.0;
 /// By so many is one shorter whose stages did not converge.
 const CUT_BACK: i32 = 3;
 /// A step that should have been so much shorter, or more, is taken again.
@@ -76,9 +72,8 @@ impl<const S: usize> GaussAdaptive<S> {
         let apart = if memory.is_of_length(h) { 0 } else { quarters - memory.quarters };
         let before = memory.rows(state).zip(rule.continued(apart));
         let rounding = larger(0.1, 1e-14 / epsilon);
-        let unseen = if before.is_some() { memory.half() } else { 0 };
         // A step whose stages converge slowly costs more than two shorter ones.
-        let (limit, hopeless) = (18, 0.9);
+        let (limit, hopeless, unseen) = (18, 0.9, memory.half());
         let ending = Ending { left: 0.1, rounding, noise: rounding, limit, hopeless, unseen, scales: Some(scales) };
         let (taken, rate) = match dispatch(lanes::Stages { rule, system, t, h, q0, xi0, before, ending }) {
             Some(Outcome::Found(found)) => (Taken::at_once(rule, h, &found), found.rate),
@@ -97,7 +92,7 @@ impl<const S: usize> GaussAdaptive<S> {
         // It goes with the power S - 1 of the step.
         let octaves = (self.aim / larger(roughness, 1e-300)).log2() / (S as f64 - 1.0);
         let converging = (CONTRACTION / larger(rate, 1e-3)).log2();
-        let longer = (4.0 * octaves.min(converging)).floor().clamp(-SHORTER, LONGER) as i32;
+        let longer = (4.0 * octaves.min(converging)).floor().clamp(-f64::from(SHORTER), f64::from(LONGER)) as i32;
         let longer = if octaves >= 0.0 { longer.max(if converging < 0.0 { -1 } else { 0 }) } else { longer };
         Some(Tried { taken, longer })
     }

@@ -27,7 +27,7 @@ pub(super) struct Ending<const N: usize> {
     pub(super) limit: u32,
     /// Changes that shrink by no more than this do not converge.
     pub(super) hopeless: f64,
-    /// Iterations that are made before any is looked at.
+    /// Iterations that are made before any is looked at, where there was a step before.
     pub(super) unseen: u32,
     /// What velocities and accelerations are measured by; their own sizes where none is given.
     pub(super) scales: Option<[[f64; N]; 2]>,
@@ -184,6 +184,9 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
             Some([v, a]) => Some([inverse(simd, v), inverse(simd, a)]),
             None => None,
         };
+        // What is remembered may come from a file: the limit holds all the same.
+        let unseen =
+            if self.before.is_some() { self.ending.unseen.min(self.ending.limit.saturating_sub(1)) } else { 0 };
         let (mut last, mut rate, mut iteration, mut stalled) = (f64::INFINITY, 1.0, 0, 0);
         loop {
             // The accelerations are called at one place: for a list of effects they are much code.
@@ -201,11 +204,11 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
             };
             let (Some(v1), Some(a1)) = (v1, self.acceleration(simd, &q, &xi)) else { return Outcome::Unknown };
             iteration += 1;
-            if iteration <= self.ending.unseen {
+            if iteration <= unseen {
                 (v, a) = (v1, a1);
                 continue;
             }
-            let seen = iteration - self.ending.unseen;
+            let seen = iteration - unseen;
             let zero = Pack::splat(simd, 0.0);
             let [sv, sa] = match scales {
                 Some(scales) => scales,

@@ -85,14 +85,13 @@ impl<const S: usize> Gauss<S> {
     ) -> Option<Taken<N>> {
         let rule = self.eight?;
         let before = self.memory.rows(state).filter(|_| self.memory.is_of_length(h)).zip(rule.continued(0));
-        let unseen = if before.is_some() { self.memory.unseen() } else { 0 };
         let ending = Ending {
             left: LEFT,
             rounding: 1e-12,
             noise: 1e-15,
             limit: self.max_iterations,
             hopeless: 2.0,
-            unseen,
+            unseen: self.memory.unseen(),
             scales: None,
         };
         match dispatch(lanes::Stages { rule, system, t, h, q0: state.q(), xi0, before, ending })? {

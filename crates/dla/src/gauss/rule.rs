@@ -15,11 +15,14 @@ pub(crate) struct Eight {
     /// The weights of the coefficient of the highest Legendre polynomial in the slopes.
     pub(crate) highest: [f64; 8],
     /// What continues the polynomial of one step to the nodes of the next, for each ratio of their lengths.
-    continued: [Square; 2 * RATIOS as usize + 1],
+    continued: [Square; (SHORTER + LONGER + 1) as usize],
 }
 
-/// Lengths of steps are powers of the fourth root of two; the next is at most four times as long, or as short.
-const RATIOS: i32 = 8;
+/// Lengths of steps are powers of the fourth root of two. As many quarter octaves longer is the next at most: stages of a step
+/// that is much longer may not converge, and are lost.
+pub(super) const LONGER: i32 = 2;
+/// And shorter.
+pub(super) const SHORTER: i32 = 8;
 
 impl Eight {
     /// The rule with `S` nodes; none for more than eight.
@@ -45,7 +48,7 @@ impl Eight {
             columns,
             highest: row(&highest),
             continued: from_fn(|k| {
-                let ratio = quarter_octaves(k as i32 - RATIOS);
+                let ratio = quarter_octaves(k as i32 - SHORTER);
                 Square::of_columns(&column(&|i, j| lagrange(&nodes, j, 1.0 + ratio * nodes[i])))
             }),
         }
@@ -53,7 +56,7 @@ impl Eight {
 
     /// What continues the polynomial of a step to the nodes of one that is `2^(quarters/4)` times as long.
     pub(crate) fn continued(&self, quarters: i32) -> Option<&Square> {
-        self.continued.get(usize::try_from(quarters + RATIOS).ok()?)
+        self.continued.get(usize::try_from(quarters + SHORTER).ok()?)
     }
 }
 

@@ -347,3 +347,24 @@ fn many_steps_lose_no_energy_but_by_rounding() {
     assert!(kept < walk, "{kept:e} of {walk:e}");
     assert!(lost > walk, "{lost:e} of {walk:e}");
 }
+
+/// However many iterations a checkpoint claims for the last step, the limit of the method holds.
+#[test]
+fn remembered_iterations_stay_within_the_limit() {
+    let system = sleigh();
+    let (q, v) = backward().to_coordinates();
+    let mut state = State::new(q, v, system.angles());
+    let mut method = Gauss::<8>::default();
+    let step = |method: &mut Gauss<8>, state: &mut State<3>| method.step(&system, 0.0, 0.5, state).unwrap();
+    step(&mut method, &mut state);
+    let mut memory = OneStep::<Sleigh, 3, 1>::memory(&method);
+    // After the slopes of six coordinates and six velocities in eight stages, the length of the step and its quarters.
+    memory[98] = 4e9;
+    let (mut other, mut there) = (Gauss::<8>::default(), state);
+    OneStep::<Sleigh, 3, 1>::recall(&mut other, &memory, &there);
+    step(&mut method, &mut state);
+    assert!(step(&mut other, &mut there).iterations <= method.max_iterations);
+    for i in 0..3 {
+        approx::assert_abs_diff_eq!(there.q()[i], state.q()[i], epsilon = 4.0 * f64::EPSILON);
+    }
+}
