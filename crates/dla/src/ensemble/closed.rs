@@ -34,7 +34,7 @@ struct Run<const W: usize, const N: usize, const M: usize, const F: usize> {
     state: LaneState<N, W>,
     frame: [Row<W>; F],
     largest: [Row<W>; M],
-    bad: Row<W>,
+    bad: [bool; W],
 }
 
 impl<Sys, const W: usize, const N: usize, const M: usize, const P: usize, const F: usize>
@@ -53,7 +53,7 @@ where
             systems,
             step: h,
             prepared,
-            run: Run { state, frame, largest: [Row::ZERO; M], bad: Row::ZERO },
+            run: Run { state, frame, largest: [Row::ZERO; M], bad: [false; W] },
             begun: false,
         }
     }
@@ -62,6 +62,26 @@ where
     #[must_use]
     pub fn largest_multiplier(&self, lane: usize) -> [f64; M] {
         from_fn(|k| self.run.largest[k].0[lane] / self.step.abs())
+    }
+
+    /// Makes a block again from its beginning, and takes of it the lanes whose steps were not good: by wide steps, and where
+    /// these are not good either by the map of one system.
+    #[cold]
+    fn repair(&mut self, steps: u64, before: &Run<W, N, M, F>) {
+        let mut wide = *before;
+        dispatch_widest(Block::<Sys, true, _, _, _, _, _>::new(&self.prepared, steps, &mut wide));
+        let Self { systems, step, run, .. } = self;
+        for lane in 0..W {
+            if run.bad[lane] {
+                run.take(lane, &wide);
+                if run.bad[lane] {
+                    run.take(lane, before);
+                    if one_by_one(&systems[lane], *step, steps, lane, run).is_none() {
+                        run.state.lose(lane);
+                    }
+                }
+            }
+        }
     }
 }
 
@@ -81,37 +101,11 @@ where
             self.begun = true;
             let before = self.run;
             dispatch_widest(Block::<Sys, false, _, _, _, _, _>::new(&self.prepared, block, &mut self.run));
-            if self.run.any_bad() {
+            if self.run.bad.contains(&true) {
                 self.repair(block, &before);
             }
             self.run.state.wrap();
             made += block;
-        }
-    }
-}
-
-impl<Sys, const W: usize, const N: usize, const M: usize, const P: usize, const F: usize>
-    ClosedEnsemble<Sys, W, N, M, P, F>
-where
-    Sys: System<N, M> + ClosedLanes<N, M, P, F> + Copy,
-{
-    /// Makes a block again from its beginning, and takes of it the lanes whose steps were not good: by wide steps, and where
-    /// these are not good either by the map of one system.
-    #[cold]
-    fn repair(&mut self, steps: u64, before: &Run<W, N, M, F>) {
-        let mut wide = *before;
-        dispatch_widest(Block::<Sys, true, _, _, _, _, _>::new(&self.prepared, steps, &mut wide));
-        let Self { systems, step, run, .. } = self;
-        for lane in 0..W {
-            if run.bad.0[lane] != 0.0 {
-                run.take(lane, &wide);
-                if run.bad.0[lane] != 0.0 {
-                    run.take(lane, before);
-                    if one_by_one(&systems[lane], *step, steps, lane, run).is_none() {
-                        run.state.lose(lane);
-                    }
-                }
-            }
         }
     }
 }
@@ -134,7 +128,6 @@ impl<'a, Sys, const WIDE: bool, const W: usize, const N: usize, const M: usize, 
 }
 
 /// Eight trajectories in registers.
-#[derive(Clone, Copy)]
 struct Eight<S: Simd, const K: usize, const N: usize, const M: usize, const P: usize, const F: usize> {
     prepared: [Pack<S, K>; P],
     q: [Pack<S, K>; N],
@@ -203,23 +196,18 @@ where
                 let lane = LANES * r + i;
                 // A step that is not a number leaves none behind, whatever the larger of that and a number is here.
                 let good = doubt[i] <= 1.0 && lowest[i] > 0.0 && state.is_finite(lane);
-                bad.0[lane] = if good { 0.0 } else { 1.0 };
+                bad[lane] = !good;
             }
         }
     }
 }
 
 impl<const W: usize, const N: usize, const M: usize, const F: usize> Run<W, N, M, F> {
-    #[inline(always)]
-    fn any_bad(&self) -> bool {
-        self.bad.0.iter().fold(0.0, |any, bad| any + bad) != 0.0
-    }
-
     fn take(&mut self, lane: usize, other: &Self) {
         self.state.take(lane, &other.state);
         (0..F).for_each(|k| self.frame[k].0[lane] = other.frame[k].0[lane]);
         (0..M).for_each(|k| self.largest[k].0[lane] = other.largest[k].0[lane]);
-        self.bad.0[lane] = other.bad.0[lane];
+        self.bad[lane] = other.bad[lane];
     }
 }
 

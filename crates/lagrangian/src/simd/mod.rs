@@ -29,15 +29,7 @@ pub trait Kernel {
 /// on some machines, and eight numbers of one step wait for one another in any case.
 #[inline(always)]
 pub fn dispatch<K: Kernel>(kernel: K) -> Option<K::Output> {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = pulp::x86::V3::try_new() {
-        return Some(simd.vectorize(
-            #[inline(always)]
-            || kernel.run::<_, 2>(simd),
-        ));
-    }
-    let _ = kernel;
-    None
+    attempt(kernel).ok()
 }
 
 /// Runs a kernel with the widest registers there are, or one number after another where none are known here: for many
@@ -45,19 +37,27 @@ pub fn dispatch<K: Kernel>(kernel: K) -> Option<K::Output> {
 #[inline(always)]
 pub fn dispatch_widest<K: Kernel>(kernel: K) -> K::Output {
     #[cfg(target_arch = "x86_64")]
-    {
-        if let Some(simd) = pulp::x86::V4::try_new() {
-            return simd.vectorize(
-                #[inline(always)]
-                || kernel.run::<_, 1>(simd),
-            );
-        }
-        if let Some(simd) = pulp::x86::V3::try_new() {
-            return simd.vectorize(
-                #[inline(always)]
-                || kernel.run::<_, 2>(simd),
-            );
-        }
+    if let Some(simd) = pulp::x86::V4::try_new() {
+        return simd.vectorize(
+            #[inline(always)]
+            || kernel.run::<_, 1>(simd),
+        );
     }
-    kernel.run::<_, 8>(pulp::Scalar::new())
+    match attempt(kernel) {
+        Ok(output) => output,
+        Err(kernel) => kernel.run::<_, 8>(pulp::Scalar::new()),
+    }
+}
+
+/// Runs a kernel as [`dispatch`] does, or gives it back.
+#[inline(always)]
+fn attempt<K: Kernel>(kernel: K) -> Result<K::Output, K> {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = pulp::x86::V3::try_new() {
+        return Ok(simd.vectorize(
+            #[inline(always)]
+            || kernel.run::<_, 2>(simd),
+        ));
+    }
+    Err(kernel)
 }

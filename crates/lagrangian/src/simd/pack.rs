@@ -100,7 +100,8 @@ impl<S: Simd, const R: usize> Pack<S, R> {
         )
     }
 
-    /// The larger of this number and the absolute value of the other, in every place; the other where one is not a number.
+    /// The larger of this number and the absolute value of the other, in every place; where one is not a number the machine
+    /// chooses, and those of `dispatch` take the other.
     #[must_use]
     #[inline(always)]
     pub fn max_abs(self, o: Self) -> Self {
@@ -111,7 +112,7 @@ impl<S: Simd, const R: usize> Pack<S, R> {
         )
     }
 
-    /// The smaller of this number and the other, in every place; the other where one is not a number.
+    /// The smaller of this number and the other, in every place; where one is not a number the machine chooses.
     #[must_use]
     #[inline(always)]
     pub fn min(self, o: Self) -> Self {

@@ -35,7 +35,8 @@ impl RoundWell {
     /// # Errors
     /// [`SleighError::NotFinite`].
     pub fn drawing(sleigh: Sleigh, stiffness: f64, center: [f64; 2], ahead: f64) -> Result<Self, SleighError> {
-        let [stiffness, ahead] = finite("stiffness or point of the well", [stiffness, ahead])?;
+        finite("stiffness", [stiffness])?;
+        finite("ahead", [ahead])?;
         Ok(Self { sleigh, stiffness, center: finite("center", center)?, ahead })
     }
 
@@ -61,14 +62,10 @@ impl RoundWell {
 impl System<3, 1> for RoundWell {
     /// That of the sleigh with the velocity of the blade in its own axes, `(X' - omega Y, Y' + omega X)`, less `V`.
     #[inline(always)]
-    fn lagrangian<S: Scalar>(&self, _t: S, &[x, y, _]: &[S; 3], v: &[S; 3]) -> S {
-        let (sleigh, omega) = (&self.sleigh, v[2]);
-        let (along, across) = (v[0] - omega * y, v[1] + omega * x);
+    fn lagrangian<S: Scalar>(&self, t: S, &[x, y, _]: &[S; 3], v: &[S; 3]) -> S {
+        let own = [v[0] - v[2] * y, v[1] + v[2] * x, v[2]];
         let ahead = x + self.ahead;
-        (along * along + across * across) * (0.5 * sleigh.mass())
-            + omega * across * (sleigh.mass() * sleigh.offset())
-            + omega * omega * (0.5 * sleigh.pivot_inertia())
-            - (ahead * ahead + y * y) * (0.5 * self.stiffness)
+        self.sleigh.lagrangian(t, &[S::zero(); 3], &own) - (ahead * ahead + y * y) * (0.5 * self.stiffness)
     }
 
     /// The blade does not slip: `Y' + omega X = 0`.
@@ -89,13 +86,15 @@ impl System<3, 1> for RoundWell {
         [false, false, true]
     }
 
+    /// That of the free sleigh, and the pull of the well.
     #[inline(always)]
-    fn reduced_motion<S: Scalar>(&self, _t: S, q: &[S; 3], &[u, omega, _]: &[S; 3]) -> Option<[S; 3]> {
+    fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; 3], xi: &[S; 3]) -> Option<[S; 3]> {
         let Self { sleigh, stiffness, ahead, .. } = self;
+        let [along, turn, none] = sleigh.reduced_motion(t, q, xi)?;
         Some([
-            omega * omega * sleigh.offset() - (q[0] + *ahead) * (stiffness / sleigh.mass()),
-            u * omega * -sleigh.spin_gain() - q[1] * (stiffness * ahead / sleigh.pivot_inertia()),
-            S::zero(),
+            along - (q[0] + *ahead) * (stiffness / sleigh.mass()),
+            turn - q[1] * (stiffness * ahead / sleigh.pivot_inertia()),
+            none,
         ])
     }
 }
