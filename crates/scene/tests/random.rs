@@ -25,7 +25,9 @@ fn pair() -> impl Strategy<Value = [f64; 2]> {
 }
 
 /// A function of time; its table, if it is one, jumps where every step of `scenes` has a node: never within the run.
-fn function() -> impl Strategy<Value = TimeSpec> {
+///
+/// On the heap, as what acts is: trees of values within one another outgrow the stack of a test.
+fn function() -> BoxedStrategy<TimeSpec> {
     prop_oneof![
         number().prop_map(TimeSpec::Constant),
         (number(), number(), number()).prop_map(|(amplitude, frequency, phase)| TimeSpec::Sine {
@@ -35,6 +37,7 @@ fn function() -> impl Strategy<Value = TimeSpec> {
         }),
         (number(), number()).prop_map(|(a, b)| TimeSpec::Table { times: vec![-1.0, 0.0], values: vec![a, b] }),
     ]
+    .boxed()
 }
 
 fn hill() -> impl Strategy<Value = HillSpec> {
@@ -42,7 +45,7 @@ fn hill() -> impl Strategy<Value = HillSpec> {
 }
 
 /// Any effect that a scene may have several of.
-fn acting() -> impl Strategy<Value = SceneEffect> {
+fn acting() -> BoxedStrategy<SceneEffect> {
     let smooth = prop_oneof![
         number().prop_map(TimeSpec::Constant),
         (number(), number(), number()).prop_map(|(amplitude, frequency, phase)| TimeSpec::Sine {
@@ -61,6 +64,7 @@ fn acting() -> impl Strategy<Value = SceneEffect> {
         function().prop_map(|torque| SceneEffect::Torque { torque }),
         (positive(), smooth.clone(), smooth).prop_map(|(mass, x, y)| SceneEffect::MovingMass { mass, x, y }),
     ]
+    .boxed()
 }
 
 /// At most one rotor, one guide and one table, then what acts on them.
