@@ -28,6 +28,12 @@ pub trait Effect<B, const N: usize> {
         }
     }
 
+    /// The whole generalised force, `dL/dq` by hand and what is added to the forces; none where the slope is not known by hand.
+    #[inline(always)]
+    fn whole_force<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
+        self.slope(body, t, q).with_force(self.force(body, t, q, v))
+    }
+
     /// Whether there is no effect at all, so that the body's own closed forms hold.
     #[inline(always)]
     fn is_none(&self) -> bool {
@@ -160,6 +166,22 @@ impl<B, E: Effect<B, N>, const N: usize> Effect<B, N> for Vec<E> {
             Slope::Nothing,
             #[inline(always)]
             |sum, effect| sum.and(effect.slope(body, t, q)),
+        )
+    }
+    /// Slope and force of each in one pass.
+    #[inline(always)]
+    fn whole_force<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
+        S::over(
+            self,
+            Some([S::zero(); N]),
+            #[inline(always)]
+            |sum, effect| match (sum, effect.whole_force(body, t, q, v)) {
+                (Some(sum), Some(force)) => Some(S::array(
+                    #[inline(always)]
+                    |i| sum[i] + force[i],
+                )),
+                _ => None,
+            },
         )
     }
     #[inline(always)]

@@ -14,17 +14,6 @@ pub struct With<B, E> {
     pub effects: E,
 }
 
-impl<B, E> With<B, E> {
-    /// The generalised force of the effects, where it is known by hand.
-    #[inline(always)]
-    fn push<S: Scalar, const N: usize>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]>
-    where
-        E: Effect<B, N>,
-    {
-        self.effects.slope(&self.body, t, q).with_force(self.effects.force(&self.body, t, q, v))
-    }
-}
-
 /// The effects of a body, where all of them are potentials whose slopes are known by hand.
 struct Potentials<'a, B, E>(&'a With<B, E>);
 
@@ -94,7 +83,7 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
         if self.effects.is_none() {
             return self.body.motion(t, q, v);
         }
-        match self.push(t, q, v).and_then(|push| self.body.response(t, q, &push)) {
+        match self.effects.whole_force(&self.body, t, q, v).and_then(|push| self.body.response(t, q, &push)) {
             Some(response) => Ok(self.body.motion(t, q, v)? + response),
             None => Motion::automatic(self, t, q, v),
         }
@@ -106,7 +95,7 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
         if self.effects.is_none() {
             return Some(bare);
         }
-        let push = self.push(t, q, &velocity_of(&self.body, t, q, xi).ok()?)?;
+        let push = self.effects.whole_force(&self.body, t, q, &velocity_of(&self.body, t, q, xi).ok()?)?;
         let response = self.body.reduced_response(t, q, &push)?;
         Some(S::array(
             #[inline(always)]

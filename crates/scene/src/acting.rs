@@ -46,6 +46,10 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Acting {
     fn slope<S: Scalar>(&self, body: &B, t: S, q: &[S; N]) -> lagrangian::Slope<S, N> {
         each!(self, effect => Effect::<B, N>::slope(effect, body, t, q))
     }
+    #[inline(always)]
+    fn whole_force<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
+        each!(self, effect => effect.whole_force(body, t, q, v))
+    }
 }
 
 impl Piecewise for Acting {
