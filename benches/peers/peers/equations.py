@@ -101,6 +101,43 @@ def on_complex(problem):
     return namespace(problem, float, cmath.cos, cmath.sin, cmath.exp)
 
 
+def round_well(problem):
+    """(k, b, centre) of one round well alone, that draws the point `b` ahead of the blade; none of other effects."""
+    if [e["kind"] for e in problem.effects] not in (["bowl"], ["blade_bowl"]):
+        return None
+    (well,) = problem.effects
+    (kx, ky) = well["stiffness"]
+    return (kx, problem.offset if well["kind"] == "bowl" else 0.0, well["center"]) if kx == ky else None
+
+
+def own_axes(problem, constant=float):
+    """The slope of (X, Y, heading, u, omega) in a round well, (X, Y) the blade in the axes of the sleigh from the centre."""
+    stiffness, ahead, _ = round_well(problem)
+    # No rounding but that of the numbers that the other forms have too.
+    m, inertia, a, k, b = (constant(x) for x in (problem.mass, problem.inertia, problem.offset, stiffness, ahead))
+    j = inertia + m * a * a
+    # A well at the blade has no arm, and leaves no term behind.
+    arm = (lambda y: k * b / j * y) if ahead else lambda y: 0.0
+    return lambda x, y, th, u, w: (
+        u + w * y, -w * x, w, a * w * w - k / m * (x + b if ahead else x), -(m * a / j) * u * w - arm(y)
+    )
+
+
+def into_own_axes(problem):
+    """The start of (X, Y, heading, u, omega)."""
+    x, y, th, u, w = problem.start
+    cx, cy = round_well(problem)[2]
+    c, s = math.cos(th), math.sin(th)
+    return (c * (x - cx) + s * (y - cy), c * (y - cy) - s * (x - cx), th, u, w)
+
+
+def from_own_axes(problem, x, y, th):
+    """(x, y, heading) on the plane."""
+    cx, cy = round_well(problem)[2]
+    c, s = math.cos(th), math.sin(th)
+    return (cx + c * x - s * y, cy + s * x + c * y, th)
+
+
 def full_start(problem):
     """(x, y, heading, x', y', omega) at the start."""
     x, y, th, u, w = problem.start

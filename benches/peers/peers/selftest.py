@@ -26,6 +26,11 @@ EVERYTHING = scene.Problem(
     ),
 )
 
+ROUND = scene.Problem(
+    "round well", 1.3, 0.8, 0.4, (0.3, -0.2, 0.5, -0.6, 1.1), 5.0,
+    ({"kind": "bowl", "stiffness": (0.3, 0.3), "center": (0.1, 0.4)},),
+)
+
 # Ends from elsewhere, to 15 digits: the blade's from those of the centre of mass, (X, Y, heading) at 10 s, m = I = 1, a = 1/2.
 PUBLISHED = [
     ((), (0.0, 0.0, 0.0, 1.0, 0.3), (8.630050962159051, 5.777081619895769, 0.7128922085503294)),
@@ -84,7 +89,7 @@ def main(load):
         check(error < 1e-13, f"published end under {len(effects)} effects: {error:.1e}")
 
     # The peers, and the positive control: another sleigh would be found out.
-    for problem in (FREE, BEHIND, EVERYTHING):
+    for problem in (FREE, BEHIND, EVERYTHING, ROUND):
         exact = reference(problem)
         for changed in (replace(problem, offset=-problem.offset), replace(problem, inertia=1.1 * problem.inertia)):
             apart = measure.largest(reference(changed).end, exact.end)

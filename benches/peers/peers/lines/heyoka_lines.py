@@ -13,8 +13,11 @@ LANES = 8
 
 def system(problem, form, constant=float):
     """The equations as heyoka's expressions."""
-    found = equations.namespace(problem, constant, hy.cos, hy.sin, hy.exp)
-    names = ("x", "y", "th", "u", "w") if form == "reduced" else ("x", "y", "th", "vx", "vy", "w")
+    if form == "own axes":
+        found = {form: equations.own_axes(problem, constant)}
+    else:
+        found = equations.namespace(problem, constant, hy.cos, hy.sin, hy.exp)
+    names = ("x", "y", "th", "vx", "vy", "w") if form == "full" else ("x", "y", "th", "u", "w")
     unknowns = hy.make_vars(*names)
     return [(v, hy.expression(s) if isinstance(s, float) else s) for v, s in zip(unknowns, found[form](*unknowns))]
 
@@ -33,7 +36,8 @@ def lines(problem):
                 outcome = solver.propagate_until(end)
                 if outcome[0] != hy.taylor_outcome.time_limit:
                     raise ArithmeticError(str(outcome[0]))
-                return solver.state[:3].copy(), outcome[3]
+                end_state = solver.state[:3].copy()
+                return (equations.from_own_axes(problem, *end_state) if form == "own axes" else end_state), outcome[3]
             return run
         return prepare
 
@@ -54,7 +58,12 @@ def lines(problem):
             return solver.state[:3, 0].copy(), outcomes[0][3]
         return run
 
-    return [
+    # In a round well the heading can be left out of the equations, and all sines with it.
+    own = []
+    if equations.round_well(problem):
+        start = list(equations.into_own_axes(problem))
+        own.append(Line("heyoka taylor own axes", "heyoka", "own axes", single("own axes", start), RUNGS))
+    return own + [
         Line("heyoka taylor", "heyoka", "reduced", single("reduced", list(problem.start)), RUNGS),
         Line("heyoka taylor full", "heyoka", "full", single("full", list(equations.full_start(problem))), RUNGS),
         Line("heyoka taylor batch", "heyoka", "reduced, one of eight", batch, RUNGS, lanes=LANES),
