@@ -29,8 +29,8 @@ pub fn shifted_legendre<const S: usize>(x: f64) -> ([f64; S], f64) {
 
 /// The `j`-th Lagrange polynomial of the nodes: one at that node, zero at the others.
 #[must_use]
-pub fn lagrange<const S: usize>(nodes: &[f64; S], j: usize, x: f64) -> f64 {
-    (0..S).filter(|&m| m != j).map(|m| (x - nodes[m]) / (nodes[j] - nodes[m])).product()
+pub fn lagrange(nodes: &[f64], j: usize, x: f64) -> f64 {
+    (0..nodes.len()).filter(|&m| m != j).map(|m| (x - nodes[m]) / (nodes[j] - nodes[m])).product()
 }
 
 /// Nodes, in ascending order, and weights of the Gauss-Legendre rule with `S` nodes, exact to degree `2 S - 1`.

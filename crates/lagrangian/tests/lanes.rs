@@ -29,7 +29,29 @@ impl Kernel for Product<'_> {
     }
 }
 
+/// The sum of a row.
+struct Folded<'a>(&'a [f64; 8]);
+
+impl Kernel for Folded<'_> {
+    type Output = f64;
+    #[inline(always)]
+    fn run<S: Simd, const R: usize>(self, simd: S) -> f64 {
+        Pack::<S, R>::load(simd, self.0).folded()
+    }
+}
+
 proptest! {
+    /// A row and its mirror image have one sum, to the last bit.
+    #[test]
+    fn sums_in_registers(x in vector::<8>()) {
+        let mirrored = from_fn(|i| x[7 - i]);
+        let [Some(sum), Some(same)] = [&x, &mirrored].map(|x| dispatch(Folded(x))) else { return Ok(()) };
+        prop_assert_eq!(sum.to_bits(), same.to_bits());
+        // Seven roundings on either side, of sums no larger than this one.
+        let epsilon = 7.0 * f64::EPSILON * x.iter().map(|x| x.abs()).sum::<f64>();
+        approx::assert_abs_diff_eq!(sum, x.iter().sum::<f64>(), epsilon = epsilon);
+    }
+
     /// A matrix in the order of registers is the same matrix.
     #[test]
     fn products_in_registers(columns in proptest::array::uniform8(vector::<8>()), x in vector::<8>()) {

@@ -1,4 +1,5 @@
-use super::lanes::{self, Ending, Outcome};
+use super::ending::Ending;
+use super::lanes::{Outcome, Slopes, Stages};
 use super::memory::Memory;
 use super::rule::{Eight, LONGER, SHORTER, quarter_octaves};
 use super::{Gauss, Taken};
@@ -23,6 +24,9 @@ pub struct GaussAdaptive<const S: usize> {
     tolerance: f64,
     /// How rough a step may be.
     aim: f64,
+    /// Of the polynomial by which the slopes of a step are continued to the next: the further they are allowed to be from it, the
+    /// sooner it leads astray.
+    degree: usize,
     /// The next step, in quarter octaves of a second.
     quarters: Option<i32>,
 }
@@ -37,7 +41,8 @@ impl<const S: usize> GaussAdaptive<S> {
         // roughness^(2 S / (S - 1)) is to be epsilon.
         let s = S as f64;
         let aim = SMOOTHNESS * epsilon.powf((s - 1.0) / (2.0 * s));
-        Self { gauss: Gauss::default(), tolerance: epsilon, aim, quarters: None }
+        let degree = (1.5 - 0.5 * epsilon.log10()).clamp(0.0, s - 1.0) as usize;
+        Self { gauss: Gauss::default(), tolerance: epsilon, aim, quarters: None, degree }
     }
 }
 
@@ -52,8 +57,11 @@ struct Tried<const N: usize> {
 const CUT_BACK: i32 = 3;
 /// A step that should have been so much shorter, or more, is taken again.
 const REFUSED: i32 = -3;
-/// The contraction of the stages that is about the cheapest: longer steps take too many iterations.
-const CONTRACTION: f64 = 0.3;
+/// By how many octaves the changes of the stages are to shrink in an iteration, from a search that has few to go, whose steps
+/// may well be longer, to one that has many.
+const SHRINKING: [f64; 2] = [0.75, 1.75];
+/// And in so many iterations a search is to be over, between the two.
+const ITERATIONS: f64 = 12.0;
 
 impl<const S: usize> GaussAdaptive<S> {
     /// One step of length `h`; none where its stages do not converge.
@@ -64,36 +72,37 @@ impl<const S: usize> GaussAdaptive<S> {
         (t, h, quarters): (f64, f64, i32),
         state: &State<N>,
         xi0: &[f64; N],
+        slopes: &mut Slopes<N>,
     ) -> Option<Tried<N>> {
         let rule = Eight::gauss::<S>()?;
         let (q0, epsilon) = (state.q(), self.tolerance);
-        let scales = [q0, xi0].map(|y| y.map(|y| epsilon * (1.0 + y.abs()) / h.abs()));
+        let counts = [q0, xi0].map(|y| y.map(|y| h.abs() / (epsilon * (1.0 + y.abs()))));
         let memory = &self.gauss.memory;
         let apart = if memory.is_of_length(h) { 0 } else { quarters - memory.quarters };
-        let before = memory.rows(state).zip(rule.continued(apart));
+        let before = memory.rows(state).zip(rule.continued(self.degree, apart));
         let rounding = larger(0.1, 1e-14 / epsilon);
         // A step whose stages converge slowly costs more than two shorter ones.
-        let (limit, hopeless, unseen) = (18, 0.9, memory.half());
-        let ending = Ending { left: 0.1, rounding, noise: rounding, limit, hopeless, unseen, scales: Some(scales) };
-        let (taken, rate) = match dispatch(lanes::Stages { rule, system, t, h, q0, xi0, before, ending }) {
-            Some(Outcome::Found(found)) => (Taken::at_once(rule, h, &found), found.rate),
+        let (limit, hopeless, unseen) = (18, 0.9, memory.unseen());
+        let ending = Ending { left: 0.5, rounding, noise: rounding, limit, hopeless, unseen };
+        let stages = Stages { rule, system, t, h, q0, xi0, before, ending, counts: Some(counts), slopes };
+        let (taken, rate, roughness) = match dispatch(stages) {
+            Some(Outcome::Found(found)) => (Taken::at_once(&found)?, found.rate, found.roughness),
             Some(Outcome::Failed) => return None,
-            Some(Outcome::Unknown) | None => (self.gauss.in_turn(system, (t, h), (q0, xi0)).ok()?, 0.0),
+            Some(Outcome::Unknown) | None => {
+                let taken = self.gauss.in_turn(system, (t, h), (q0, xi0), slopes).ok()?;
+                (taken, 0.0, slopes.weighed(&rule.highest, &counts))
+            }
         };
-        let slopes = taken.slopes.as_ref()?;
-        let rough = |rows: &lanes::Rows<N>, scales: &[f64; N]| {
-            let parts: [f64; N] = lanes::sum(1.0, &rule.highest, rows);
-            (0..N).fold(0.0, |largest, k| larger(largest, (parts[k] / scales[k]).abs()))
-        };
-        let roughness = larger(rough(&slopes.velocity, &scales[0]), rough(&slopes.acceleration, &scales[1])) * epsilon;
         if !roughness.is_finite() {
             return None;
         }
         // It goes with the power S - 1 of the step.
-        let octaves = (self.aim / larger(roughness, 1e-300)).log2() / (S as f64 - 1.0);
-        let converging = (CONTRACTION / larger(rate, 1e-3)).log2();
-        let longer = (4.0 * octaves.min(converging)).floor().clamp(-f64::from(SHORTER), f64::from(LONGER)) as i32;
-        let longer = if octaves >= 0.0 { longer.max(if converging < 0.0 { -1 } else { 0 }) } else { longer };
+        let smooth = octaves(self.aim / larger(roughness * epsilon, 1e-300)) * (S as f64 - 1.0).recip();
+        let shrinking = -octaves(larger(rate, 1e-3));
+        let few = shrinking * f64::from(taken.iterations) / ITERATIONS;
+        let converging = shrinking - few.clamp(SHRINKING[0], SHRINKING[1]);
+        let longer = (4.0 * smooth.min(converging)).floor().clamp(-f64::from(SHORTER), f64::from(LONGER)) as i32;
+        let longer = if smooth >= 0.0 { longer.max(if converging < 0.0 { -1 } else { 0 }) } else { longer };
         Some(Tried { taken, longer })
     }
 }
@@ -102,7 +111,7 @@ impl<const S: usize> GaussAdaptive<S> {
 const CUT: i32 = i32::MAX / 2;
 
 /// How rough a step may be at the tolerance one.
-const SMOOTHNESS: f64 = 3.0;
+const SMOOTHNESS: f64 = 2.0;
 
 impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<Sys, N, M> for GaussAdaptive<S> {
     #[inline]
@@ -138,6 +147,7 @@ impl<const S: usize> GaussAdaptive<S> {
     ) -> Result<StepReport<M>, StepError> {
         let (mut made, mut iterations, mut refused) = (0.0, 0, false);
         let mut quarters = self.quarters.unwrap_or_else(|| first(system, t0, whole, state));
+        let mut slopes = Slopes::ZERO;
         for tries in 1..=Self::MAX_TRIES {
             let full = quarter_octaves(quarters);
             let rest = whole - made;
@@ -147,21 +157,19 @@ impl<const S: usize> GaussAdaptive<S> {
                 return Err(StepError::Tolerance { tries, step: full });
             }
             let (t, xi0) = (t0 + made, state.quasi_velocities(system, t0 + made)?);
-            let tried = self.attempt(system, (t, h, quarters), state, &xi0);
+            let tried = self.attempt(system, (t, h, quarters), state, &xi0, &mut slopes);
             let Some(Tried { taken, longer }) = tried.filter(|tried| tried.longer > REFUSED) else {
                 // Stages that do not converge, or a step that is too rough.
                 quarters -= CUT_BACK;
                 refused = true;
                 if last {
-                    quarters = quarters.min((4.0 * rest.abs().log2()).floor() as i32 - CUT_BACK);
+                    quarters = quarters.min((4.0 * octaves(rest.abs())).floor() as i32 - CUT_BACK);
                 }
                 continue;
             };
             taken.apply(system, t + h, &xi0, state)?;
             iterations += taken.iterations;
-            if let Some(slopes) = &taken.slopes {
-                self.gauss.memory.keep(slopes, taken.iterations, (h, if last { CUT } else { quarters }), state);
-            }
+            self.gauss.memory.keep(&slopes, taken.iterations, (h, if last { CUT } else { quarters }), state);
             if last {
                 // A step cut at the end of the interval says little of the next.
                 self.quarters = Some(quarters + longer.min(0));
@@ -176,6 +184,12 @@ impl<const S: usize> GaussAdaptive<S> {
     }
 }
 
+/// About the binary logarithm of a number, at most .09 below it: good enough for the length of a step, and four instructions.
+#[inline(always)]
+fn octaves(x: f64) -> f64 {
+    (x.to_bits() as i64 - 1.0f64.to_bits() as i64) as f64 / (1u64 << 52) as f64
+}
+
 /// A first step: a tenth of the shortest time in which a velocity changes by itself, the interval where nothing changes.
 fn first<Sys: System<N, M>, const N: usize, const M: usize>(system: &Sys, t: f64, whole: f64, state: &State<N>) -> i32 {
     let slope = state.quasi_velocities(system, t).and_then(|xi| lagrangian::reduced_slope(system, t, state.q(), &xi));
@@ -183,5 +197,5 @@ fn first<Sys: System<N, M>, const N: usize, const M: usize>(system: &Sys, t: f64
     let rate = slope.map_or(0.0, |slope| size(&slope.acceleration) / larger(size(&slope.velocity), 1e-3));
     let turning = (0..N).filter(|&i| system.angles()[i]).fold(rate, |m, i| larger(m, state.v()[i].abs()));
     let step = if turning > 0.0 { (0.5 / turning).min(whole.abs()) } else { whole.abs() };
-    (4.0 * step.log2()).floor().clamp(-4000.0, 4000.0) as i32
+    (4.0 * octaves(step)).floor().clamp(-4000.0, 4000.0) as i32
 }

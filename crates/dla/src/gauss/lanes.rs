@@ -1,3 +1,4 @@
+use super::ending::{Ending, Verdict};
 use super::rule::Eight;
 use lagrangian::linear::larger;
 use lagrangian::simd::{Kernel, Pack, Simd, Square, Wide};
@@ -14,23 +15,16 @@ pub(super) struct Slopes<const N: usize> {
     pub(super) acceleration: Rows<N>,
 }
 
-/// When the iteration has come to its end, in units of the scales.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Ending<const N: usize> {
-    /// What the next change may still be.
-    pub(super) left: f64,
-    /// Changes below which shrink no more, twice, are rounding.
-    pub(super) rounding: f64,
-    /// And once.
-    pub(super) noise: f64,
-    /// Iterations after which the search is given up.
-    pub(super) limit: u32,
-    /// Changes that shrink by no more than this do not converge.
-    pub(super) hopeless: f64,
-    /// Iterations that are made before any is looked at, where there was a step before.
-    pub(super) unseen: u32,
-    /// What velocities and accelerations are measured by; their own sizes where none is given.
-    pub(super) scales: Option<[[f64; N]; 2]>,
+impl<const N: usize> Slopes<N> {
+    /// None yet.
+    pub(super) const ZERO: Self = Self { velocity: [[0.0; 8]; N], acceleration: [[0.0; 8]; N] };
+
+    /// The largest sum over stages, by these factors, of a slope times what it counts.
+    pub(super) fn weighed(&self, factors: &[f64; 8], counts: &[[f64; N]; 2]) -> f64 {
+        let sums = |rows: &Rows<N>| rows.map(|x| (0..8).map(|i| factors[i] * x[i]).sum::<f64>());
+        let sums = [sums(&self.velocity), sums(&self.acceleration)];
+        sums.iter().flatten().zip(counts.iter().flatten()).fold(0.0, |most, (x, count)| larger(most, (x * count).abs()))
+    }
 }
 
 /// The equations of a collocation step, all stages at once.
@@ -43,7 +37,11 @@ pub(super) struct Stages<'a, Sys, const N: usize, const M: usize> {
     pub(super) xi0: &'a [f64; N],
     /// The slopes of the step before and what continues them to this one.
     pub(super) before: Option<([&'a Rows<N>; 2], &'a Square)>,
-    pub(super) ending: Ending<N>,
+    pub(super) ending: Ending,
+    /// What one of the velocities and of the accelerations counts; as much as its own size where nothing is given.
+    pub(super) counts: Option<[[f64; N]; 2]>,
+    /// Where the slopes are left.
+    pub(super) slopes: &'a mut Slopes<N>,
 }
 
 /// The rule of collocation in registers.
@@ -56,8 +54,8 @@ struct Along<S: Simd, const R: usize> {
 impl<S: Simd, const R: usize> Along<S, R> {
     /// `from + h A slopes`.
     #[inline(always)]
-    fn from(&self, from: f64, slopes: &Pack<S, R>) -> Wide<S, R> {
-        Wide::Each(slopes.times(&self.square).mul_add(self.h, Pack::splat(self.h.simd(), from)))
+    fn from(&self, from: f64, slopes: &Pack<S, R>) -> Pack<S, R> {
+        slopes.times(&self.square).mul_add(self.h, Pack::splat(self.h.simd(), from))
     }
 }
 
@@ -73,7 +71,12 @@ pub(super) enum Outcome<const N: usize> {
 
 /// A solution.
 pub(super) struct Found<const N: usize> {
-    pub(super) slopes: Slopes<N>,
+    /// `h sum_j b_j v_j`.
+    pub(super) increment: [f64; N],
+    /// `h sum_j b_j a_j`.
+    pub(super) gain: [f64; N],
+    /// The largest of the highest Legendre coefficients of the slopes, by what they count; zero where nothing was given.
+    pub(super) roughness: f64,
     pub(super) iterations: u32,
     /// By how much the last changes shrank.
     pub(super) rate: f64,
@@ -82,19 +85,15 @@ pub(super) struct Found<const N: usize> {
 impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
     /// The places of the stages where nothing moves.
     #[inline(always)]
-    fn still<S: Simd, const R: usize>(&self, simd: S) -> [Wide<S, R>; N] {
-        array(
-            Wide::Zero,
-            #[inline(always)]
-            |k| Wide::Each(Pack::splat(simd, self.q0[k])),
-        )
+    fn still<S: Simd, const R: usize>(&self, simd: S) -> [Pack<S, R>; N] {
+        everywhere(simd, self.q0)
     }
 
     /// The places of the stages.
     #[inline(always)]
-    fn q<S: Simd, const R: usize>(&self, along: &Along<S, R>, v: &[Pack<S, R>; N]) -> [Wide<S, R>; N] {
+    fn q<S: Simd, const R: usize>(&self, along: &Along<S, R>, v: &[Pack<S, R>; N]) -> [Pack<S, R>; N] {
         array(
-            Wide::Zero,
+            Pack::splat(along.h.simd(), 0.0),
             #[inline(always)]
             |k| along.from(self.q0[k], &v[k]),
         )
@@ -106,7 +105,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
         array(
             Wide::Zero,
             #[inline(always)]
-            |k| if k < N - M { along.from(self.xi0[k], &a[k]) } else { Wide::Zero },
+            |k| if k < N - M { Wide::Each(along.from(self.xi0[k], &a[k])) } else { Wide::Zero },
         )
     }
 
@@ -138,10 +137,10 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
     fn velocity<S: Simd, const R: usize>(
         &self,
         simd: S,
-        q: &[Wide<S, R>; N],
+        q: &[Pack<S, R>; N],
         xi: &[Wide<S, R>; N],
     ) -> Option<[Pack<S, R>; N]> {
-        match velocity_of(self.system, self.times(simd), q, xi) {
+        match velocity_of(self.system, self.times(simd), &each(q), xi) {
             Ok(v) => Some(packed(simd, &v)),
             Err(_) => None,
         }
@@ -152,10 +151,10 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
     fn acceleration<S: Simd, const R: usize>(
         &self,
         simd: S,
-        q: &[Wide<S, R>; N],
+        q: &[Pack<S, R>; N],
         xi: &[Wide<S, R>; N],
     ) -> Option<[Pack<S, R>; N]> {
-        match self.system.reduced_motion(self.times(simd), q, xi) {
+        match self.system.reduced_motion(self.times(simd), &each(q), xi) {
             Some(a) => Some(packed(simd, &a)),
             None => None,
         }
@@ -180,72 +179,54 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
             }
             None => ([Pack::splat(simd, 0.0); N], [Pack::splat(simd, 0.0); N]),
         };
-        let mut scales = match &self.ending.scales {
-            Some([v, a]) => Some([inverse(simd, v), inverse(simd, a)]),
+        let mut q = if cascade.is_some() { self.still(simd) } else { self.q(&along, &v) };
+        let mut counts = match &self.counts {
+            Some(counts) => Some(counts.map(
+                #[inline(always)]
+                |counts| everywhere(simd, &counts),
+            )),
             None => None,
         };
-        // What is remembered may come from a file: the limit holds all the same.
-        let unseen =
-            if self.before.is_some() { self.ending.unseen.min(self.ending.limit.saturating_sub(1)) } else { 0 };
-        let (mut last, mut rate, mut iteration, mut stalled) = (f64::INFINITY, 1.0, 0, 0);
+        let mut search = self.ending.begin(self.before.is_some());
         loop {
             // The accelerations are called at one place: for a list of effects they are much code.
             let xi = self.xi(&along, &a);
-            let (v1, q) = match cascade {
-                _ if alone => (Some(v), self.still(simd)),
-                Some(quadratures) => match self.reconstructed(&along, quadratures, &xi) {
-                    Some(v1) => (Some(v1), self.q(&along, &v1)),
-                    None => (None, self.still(simd)),
-                },
-                None => {
-                    let q = self.q(&along, &v);
-                    (self.velocity(simd, &q, &xi), q)
-                }
+            let v1 = match cascade {
+                _ if alone => Some(v),
+                Some(quadratures) => self.reconstructed(&along, quadratures, &xi),
+                None => self.velocity(simd, &q, &xi),
             };
-            let (Some(v1), Some(a1)) = (v1, self.acceleration(simd, &q, &xi)) else { return Outcome::Unknown };
-            iteration += 1;
-            if iteration <= unseen {
-                (v, a) = (v1, a1);
-                continue;
+            let Some(v1) = v1 else { return Outcome::Unknown };
+            // What is known of the places by now serves the accelerations.
+            if !alone {
+                q = self.q(&along, &v1);
             }
-            let seen = iteration - unseen;
-            let zero = Pack::splat(simd, 0.0);
-            let [sv, sa] = match scales {
-                Some(scales) => scales,
-                None => [own(simd, &v1), own(simd, &a1)],
+            let Some(a1) = self.acceleration(simd, &q, &xi) else { return Outcome::Unknown };
+            let verdict = if search.is_unseen() {
+                Verdict::Continue
+            } else {
+                let [cv, ca] = match counts {
+                    Some(counts) => counts,
+                    None => [own(simd, &v1), own(simd, &a1)],
+                };
+                counts = Some([cv, ca]);
+                let mut changes = Pack::splat(simd, 0.0);
+                for k in 0..N {
+                    if cascade.is_none() {
+                        changes = changes.max_abs((v1[k] - v[k]) * cv[k]);
+                    }
+                    if k < N - M {
+                        changes = changes.max_abs((a1[k] - a[k]) * ca[k]);
+                    }
+                }
+                search.look(changes.largest())
             };
-            scales = Some([sv, sa]);
-            let mut changes = zero;
-            for k in 0..N {
-                if cascade.is_none() {
-                    changes = changes.max_abs((v1[k] - v[k]) * sv[k]);
-                }
-                if k < N - M {
-                    changes = changes.max_abs((a1[k] - a[k]) * sa[k]);
-                }
-            }
             (v, a) = (v1, a1);
-            let moved = changes.largest();
-            let (slower, now) = (if seen > 2 { rate } else { 0.0 }, moved / last);
-            rate = if seen > 1 { now } else { rate };
-            // A search that begins near its end may shrink faster at first than it goes on.
-            let expected = larger(larger(rate, slower), SLOWEST);
-            let settled = seen > 1 && rate < 1.0 && moved * expected <= self.ending.left * (1.0 - rate);
-            // Once may be an iteration that turns the error round before it shrinks.
-            stalled = if moved >= 0.5 * last { stalled + 1 } else { 0 };
-            let rounding =
-                (stalled > 1 && moved <= self.ending.rounding) || (stalled > 0 && moved <= self.ending.noise);
-            if moved == 0.0 || settled || rounding {
-                break;
+            match verdict {
+                Verdict::Continue => {}
+                Verdict::Done => break,
+                Verdict::Failed => return Outcome::Failed,
             }
-            if moved.is_nan()
-                || moved.is_infinite()
-                || (seen > 3 && rate > self.ending.hopeless)
-                || iteration >= self.ending.limit
-            {
-                return Outcome::Failed;
-            }
-            last = moved;
         }
         // The last accelerations' own.
         if let Some(quadratures) = cascade {
@@ -254,8 +235,27 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
                 None => return Outcome::Unknown,
             }
         }
-        let slopes = Slopes { velocity: rows(&v), acceleration: rows(&a) };
-        Outcome::Found(Found { slopes, iterations: iteration, rate })
+        for k in 0..N {
+            self.slopes.velocity[k] = v[k].row();
+            self.slopes.acceleration[k] = a[k].row();
+        }
+        let weights = Pack::load(simd, &self.rule.weights);
+        let mut found = Found {
+            increment: integral(self.h, weights, &v),
+            gain: integral(self.h, weights, &a),
+            roughness: 0.0,
+            iterations: search.iterations,
+            rate: search.rate,
+        };
+        if let Some([cv, ca]) = self.counts {
+            let highest = Pack::load(simd, &self.rule.highest);
+            let (rough_v, rough_a) = (integral(1.0, highest, &v), integral(1.0, highest, &a));
+            for k in 0..N {
+                found.roughness = larger(found.roughness, (rough_v[k] * cv[k]).abs());
+                found.roughness = larger(found.roughness, (rough_a[k] * ca[k]).abs());
+            }
+        }
+        Outcome::Found(found)
     }
 }
 
@@ -266,6 +266,16 @@ fn packed<S: Simd, const R: usize, const N: usize>(simd: S, x: &[Wide<S, R>; N])
         Pack::splat(simd, 0.0),
         #[inline(always)]
         |k| x[k].pack(simd),
+    )
+}
+
+/// Numbers of stages, as a model takes them.
+#[inline(always)]
+fn each<S: Simd, const R: usize, const N: usize>(x: &[Pack<S, R>; N]) -> [Wide<S, R>; N] {
+    array(
+        Wide::Zero,
+        #[inline(always)]
+        |k| Wide::Each(x[k]),
     )
 }
 
@@ -293,13 +303,13 @@ fn ahead<S: Simd, const R: usize, const N: usize>(
     )
 }
 
-/// The inverse of each scale, everywhere.
+/// Each number in all places.
 #[inline(always)]
-fn inverse<S: Simd, const R: usize, const N: usize>(simd: S, scales: &[f64; N]) -> [Pack<S, R>; N] {
+fn everywhere<S: Simd, const R: usize, const N: usize>(simd: S, x: &[f64; N]) -> [Pack<S, R>; N] {
     array(
         Pack::splat(simd, 0.0),
         #[inline(always)]
-        |k| Pack::splat(simd, larger(SMALLEST, scales[k]).recip()),
+        |k| Pack::splat(simd, x[k]),
     )
 }
 
@@ -314,26 +324,15 @@ fn own<S: Simd, const R: usize, const N: usize>(simd: S, x: &[Pack<S, R>; N]) ->
     )
 }
 
-/// The numbers of each row.
+/// `h sum_j factors[j] x[j]` of every row, summed so that a rule and its mirror image give the same bits.
 #[inline(always)]
-fn rows<S: Simd, const R: usize, const N: usize>(x: &[Pack<S, R>; N]) -> Rows<N> {
+fn integral<S: Simd, const R: usize, const N: usize>(h: f64, factors: Pack<S, R>, x: &[Pack<S, R>; N]) -> [f64; N] {
     array(
-        [0.0; 8],
+        0.0,
         #[inline(always)]
-        |k| x[k].row(),
+        |k| h * (factors * x[k]).folded(),
     )
 }
 
-/// No iteration is expected to shrink its changes by more.
-pub(crate) const SLOWEST: f64 = 0.05;
-
 /// Nothing is measured by less: its inverse is finite.
 const SMALLEST: f64 = 1e-290;
-
-/// `h sum_j factors[j] slopes[j]`, summed so that a rule and its mirror image give the same bits.
-pub(super) fn sum<const N: usize>(h: f64, factors: &[f64; 8], slopes: &Rows<N>) -> [f64; N] {
-    slopes.each_ref().map(|x| {
-        let p: [f64; 8] = from_fn(|i| factors[i] * x[i]);
-        h * (((p[0] + p[7]) + (p[1] + p[6])) + ((p[2] + p[5]) + (p[3] + p[4])))
-    })
-}

@@ -71,12 +71,6 @@ impl Memory {
         self.iterations.saturating_sub(4)
     }
 
-    /// The same where the next step may be of another length.
-    #[inline(always)]
-    pub(super) fn half(&self) -> u32 {
-        self.iterations / 2
-    }
-
     /// Whether it was of that length.
     #[inline(always)]
     pub(super) fn is_of_length(&self, h: f64) -> bool {

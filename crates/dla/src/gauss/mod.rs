@@ -1,4 +1,5 @@
 mod adaptive;
+mod ending;
 mod lanes;
 mod memory;
 mod rule;
@@ -7,12 +8,13 @@ pub use adaptive::GaussAdaptive;
 
 use crate::positions::{affine_only, onto_positions};
 use crate::{History, NewtonError, OneStep, Stage, State, StepError, StepReport};
+use ending::Ending;
+pub(crate) use ending::SLOWEST;
 use lagrangian::linear::larger;
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
 use lagrangian::simd::dispatch;
 use lagrangian::{System, reduced_slope, velocity_of};
-pub(crate) use lanes::SLOWEST;
-use lanes::{Ending, Found, Outcome};
+use lanes::{Outcome, Slopes};
 use memory::Memory;
 use rule::Eight;
 use std::array::from_fn;
@@ -73,8 +75,7 @@ impl<const S: usize> Gauss<S> {
         Self { eight: None, ..self }
     }
 
-    /// The stages all at once: increment and gain of a step, its slopes, and how many iterations it took. None where they are
-    /// to be found one by one.
+    /// The stages all at once, their slopes left where they belong. None where they are to be found one by one.
     #[inline(always)]
     fn at_once<Sys: System<N, M>, const N: usize, const M: usize>(
         &self,
@@ -82,9 +83,11 @@ impl<const S: usize> Gauss<S> {
         (t, h): (f64, f64),
         state: &State<N>,
         xi0: &[f64; N],
+        slopes: &mut Slopes<N>,
     ) -> Option<Taken<N>> {
         let rule = self.eight?;
-        let before = self.memory.rows(state).filter(|_| self.memory.is_of_length(h)).zip(rule.continued(0));
+        let before =
+            self.memory.rows(state).filter(|_| self.memory.is_of_length(h)).zip(rule.continued(rule.stages - 1, 0));
         let ending = Ending {
             left: LEFT,
             rounding: 1e-12,
@@ -92,13 +95,10 @@ impl<const S: usize> Gauss<S> {
             limit: self.max_iterations,
             hopeless: 2.0,
             unseen: self.memory.unseen(),
-            scales: None,
         };
-        match dispatch(lanes::Stages { rule, system, t, h, q0: state.q(), xi0, before, ending })? {
-            Outcome::Found(found) => {
-                let taken = Taken::at_once(rule, h, &found);
-                taken.increment.iter().chain(&taken.gain).all(|x| x.is_finite()).then_some(taken)
-            }
+        let q0 = state.q();
+        match dispatch(lanes::Stages { rule, system, t, h, q0, xi0, before, ending, counts: None, slopes })? {
+            Outcome::Found(found) => Taken::at_once(&found),
             Outcome::Unknown | Outcome::Failed => None,
         }
     }
@@ -109,15 +109,16 @@ impl<const S: usize> Gauss<S> {
         system: &Sys,
         (t, h): (f64, f64),
         (q0, xi0): (&[f64; N], &[f64; N]),
+        slopes: &mut Slopes<N>,
     ) -> Result<Taken<N>, StepError> {
         let start = reduced_slope(system, t, q0, xi0)?;
         let mut stages = Stages { velocity: [start.velocity; S], acceleration: [start.acceleration; S] };
         let iterations = self.solve(system, (t, h), (q0, xi0), &mut stages)?;
         let increment = Self::sum(h, &self.weights, &stages.velocity);
         let gain = Self::sum(h, &self.weights, &stages.acceleration);
-        let by_rows = |slopes: &[[f64; N]; S]| from_fn(|k| from_fn(|i| if i < S { slopes[i][k] } else { 0.0 }));
-        let slopes = lanes::Slopes { velocity: by_rows(&stages.velocity), acceleration: by_rows(&stages.acceleration) };
-        Ok(Taken { increment, gain, iterations, slopes: Some(slopes).filter(|_| S <= 8) })
+        let by_rows = |slopes: &[[f64; N]; S]| from_fn(|k| from_fn(|i| if i < S.min(8) { slopes[i][k] } else { 0.0 }));
+        *slopes = Slopes { velocity: by_rows(&stages.velocity), acceleration: by_rows(&stages.acceleration) };
+        Ok(Taken { increment, gain, iterations })
     }
 
     /// The sum `h sum_j factors[j] slopes[j]`.
@@ -178,16 +179,15 @@ struct Taken<const N: usize> {
     increment: [f64; N],
     gain: [f64; N],
     iterations: u32,
-    slopes: Option<lanes::Slopes<N>>,
 }
 
 impl<const N: usize> Taken<N> {
-    /// By stages that were found at once.
+    /// By stages that were found at once; none where they are not numbers.
     #[inline(always)]
-    fn at_once(rule: &Eight, h: f64, found: &Found<N>) -> Self {
-        let Found { slopes, iterations, .. } = *found;
-        let of = |slopes| lanes::sum(h, &rule.weights, slopes);
-        Self { increment: of(&slopes.velocity), gain: of(&slopes.acceleration), iterations, slopes: Some(slopes) }
+    fn at_once(found: &lanes::Found<N>) -> Option<Self> {
+        let lanes::Found { increment, gain, iterations, .. } = *found;
+        let finite = increment.iter().chain(&gain).all(|x| x.is_finite());
+        finite.then_some(Self { increment, gain, iterations })
     }
 
     /// Moves the state.
@@ -229,13 +229,14 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
         affine_only(system, t, state)?;
         let xi0 = state.quasi_velocities(system, t)?;
-        let taken = match self.at_once(system, (t, h), state, &xi0) {
+        let mut slopes = Slopes::ZERO;
+        let taken = match self.at_once(system, (t, h), state, &xi0, &mut slopes) {
             Some(taken) => taken,
-            None => self.in_turn(system, (t, h), (state.q(), &xi0))?,
+            None => self.in_turn(system, (t, h), (state.q(), &xi0), &mut slopes)?,
         };
         taken.apply(system, t + h, &xi0, state)?;
-        if let Some(slopes) = taken.slopes.as_ref().filter(|_| self.eight.is_some()) {
-            self.memory.keep(slopes, taken.iterations, (h, 0), state);
+        if self.eight.is_some() {
+            self.memory.keep(&slopes, taken.iterations, (h, 0), state);
         }
         Ok(StepReport::of(taken.iterations))
     }

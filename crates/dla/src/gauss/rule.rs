@@ -14,8 +14,9 @@ pub(crate) struct Eight {
     pub(super) square: Square,
     /// The weights of the coefficient of the highest Legendre polynomial in the slopes.
     pub(crate) highest: [f64; 8],
-    /// What continues the polynomial of one step to the nodes of the next, for each ratio of their lengths.
-    continued: [Square; (SHORTER + LONGER + 1) as usize],
+    pub(super) stages: usize,
+    /// What continues the slopes of one step to the nodes of the next, by the degree of the polynomial and the ratio of the lengths.
+    continued: [OnceLock<[Square; (SHORTER + LONGER + 1) as usize]>; 8],
 }
 
 /// Lengths of steps are powers of the fourth root of two. As many quarter octaves longer is the next at most: stages of a step
@@ -47,20 +48,73 @@ impl Eight {
             square: Square::of_columns(&columns),
             columns,
             highest: row(&highest),
-            continued: from_fn(|k| {
-                let ratio = quarter_octaves(k as i32 - SHORTER);
-                Square::of_columns(&column(&|i, j| lagrange(&nodes, j, 1.0 + ratio * nodes[i])))
-            }),
+            stages: S,
+            continued: [const { OnceLock::new() }; 8],
         }
     }
 
-    /// What continues the polynomial of a step to the nodes of one that is `2^(quarters/4)` times as long.
-    pub(crate) fn continued(&self, quarters: i32) -> Option<&Square> {
-        self.continued.get(usize::try_from(quarters + SHORTER).ok()?)
+    /// What continues the slopes of a step to the nodes of one that is `2^(quarters/4)` times as long, by the polynomial through
+    /// the last `degree + 1` of them.
+    #[inline(always)]
+    pub(crate) fn continued(&self, degree: usize, quarters: i32) -> Option<&Square> {
+        let all =
+            self.continued.get(degree)?.get_or_init(|| from_fn(|k| self.continuation(degree, k as i32 - SHORTER)));
+        all.get(usize::try_from(quarters + SHORTER).ok()?)
+    }
+
+    #[cold]
+    fn continuation(&self, degree: usize, quarters: i32) -> Square {
+        let first = self.stages.saturating_sub(degree + 1);
+        let (last, ratio) = (&self.nodes[first..self.stages], quarter_octaves(quarters));
+        let term = |i: usize, j: usize| match i < self.stages && (first..self.stages).contains(&j) {
+            true => lagrange(last, j - first, 1.0 + ratio * self.nodes[i]),
+            false => 0.0,
+        };
+        Square::of_columns(&from_fn(|j| from_fn(|i| term(i, j))))
     }
 }
 
 /// `2^(quarters/4)`.
 pub(crate) fn quarter_octaves(quarters: i32) -> f64 {
     (0.25 * f64::from(quarters)).exp2()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The product of a square with a vector.
+    fn product(square: &Square, x: &[f64; 8]) -> [f64; 8] {
+        let place = |term: usize, i: usize| 4 * (term / 4) + ((i % 4) ^ (term % 4));
+        from_fn(|i| (0..8).map(|term| square.terms[term][i] * x[place(term, i)]).sum())
+    }
+
+    fn check<const S: usize>() {
+        let rule = Eight::gauss::<S>().expect("a rule of at most eight nodes");
+        for degree in 0..S {
+            for quarters in -SHORTER..=LONGER {
+                let square = rule.continued(degree, quarters).expect("a ratio that steps have");
+                let off = |power: i32| {
+                    let before = from_fn(|i| if i < S { rule.nodes[i].powi(power) } else { 0.0 });
+                    let after = product(square, &before);
+                    let ahead = |i: usize| (1.0 + quarter_octaves(quarters) * rule.nodes[i]).powi(power);
+                    (0..S).map(|i| (after[i] - ahead(i)).abs()).fold(0.0, f64::max)
+                };
+                // Lagrange polynomials reach 1e6 at the end of a step that is longer by half an octave.
+                assert!((0..=degree as i32).all(|power| off(power) < 1e6 * 16.0 * f64::EPSILON));
+                assert!(off(degree as i32 + 1) > 1e-4, "one degree more: {:e}", off(degree as i32 + 1));
+            }
+        }
+        assert!(rule.continued(S - 1, LONGER + 1).is_none() && rule.continued(S - 1, -SHORTER - 1).is_none());
+        assert!(rule.continued(8, 0).is_none());
+    }
+
+    /// Slopes that are a polynomial go on as it does, whatever the ratio of the steps, and no others.
+    #[test]
+    fn polynomials_go_on() {
+        check::<1>();
+        check::<2>();
+        check::<5>();
+        check::<8>();
+    }
 }

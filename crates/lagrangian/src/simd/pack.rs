@@ -165,6 +165,21 @@ impl<S: Simd, const R: usize> Pack<S, R> {
         sums[0] + sums[1]
     }
 
+    /// The sum of the numbers, first of each with that in the mirror: a row and its mirror image have the same sum to the last
+    /// bit.
+    #[must_use]
+    #[inline(always)]
+    pub fn folded(&self) -> f64 {
+        const { assert!(R == 2, "two registers of four numbers") };
+        let (s, [first, last]) = (self.simd, [self.registers[0], self.registers[1]]);
+        let swapped = |x: S::f64s| pulp::cast(s.swap_re_im_c64s(pulp::cast(x)));
+        let mirrored = s.rotate_right_f64s(swapped(last), 2);
+        let pairs = s.add_f64s(first, mirrored);
+        let fours = s.add_f64s(pairs, swapped(pairs));
+        let sum = s.add_f64s(fours, s.rotate_right_f64s(fours, 2));
+        bytemuck::cast_slice::<S::f64s, f64>(&[sum])[0]
+    }
+
     /// The first or the last four numbers, twice.
     #[inline(always)]
     fn fours(&self, half: usize) -> Self {
