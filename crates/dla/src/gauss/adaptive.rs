@@ -1,7 +1,8 @@
 use super::ending::Ending;
 use super::lanes::{Outcome, Slopes, Stages};
 use super::memory::Memory;
-use super::rule::{Eight, LONGER, SHORTER, quarter_octaves};
+use super::pace::{degree, longer, octaves, roughest};
+use super::rule::{Eight, quarter_octaves};
 use super::{Gauss, Taken};
 use crate::positions::affine_only;
 use crate::{OneStep, State, StepError, StepReport};
@@ -38,11 +39,8 @@ impl<const S: usize> GaussAdaptive<S> {
     /// The method with the tolerance `epsilon`: the error of a step is kept near `epsilon (1 + |y|)` in every component.
     #[must_use]
     pub fn new(epsilon: f64) -> Self {
-        // roughness^(2 S / (S - 1)) is to be epsilon.
-        let s = S as f64;
-        let aim = SMOOTHNESS * epsilon.powf((s - 1.0) / (2.0 * s));
-        let degree = (1.5 - 0.5 * epsilon.log10()).clamp(0.0, s - 1.0) as usize;
-        Self { gauss: Gauss::default(), tolerance: epsilon, aim, quarters: None, degree }
+        let (aim, degree) = (roughest::<S>(epsilon), degree::<S>(epsilon));
+        Self { gauss: Gauss::default(), tolerance: epsilon, aim, degree, quarters: None }
     }
 }
 
@@ -57,12 +55,6 @@ struct Tried<const N: usize> {
 const CUT_BACK: i32 = 3;
 /// A step that should have been so much shorter, or more, is taken again.
 const REFUSED: i32 = -3;
-/// By how many octaves the changes of the stages are to shrink in an iteration, from a search that has few to go, whose steps
-/// may well be longer, to one that has many.
-const SHRINKING: [f64; 2] = [0.75, 1.75];
-/// And in so many iterations a search is to be over, between the two.
-const ITERATIONS: f64 = 12.0;
-
 impl<const S: usize> GaussAdaptive<S> {
     /// One step of length `h`; none where its stages do not converge.
     #[inline(always)]
@@ -78,7 +70,7 @@ impl<const S: usize> GaussAdaptive<S> {
         let (q0, epsilon) = (state.q(), self.tolerance);
         let counts = [q0, xi0].map(|y| y.map(|y| h.abs() / (epsilon * (1.0 + y.abs()))));
         let memory = &self.gauss.memory;
-        let apart = if memory.is_of_length(h) { 0 } else { quarters - memory.quarters };
+        let apart = if memory.is_of_length(h) { 0 } else { quarters.saturating_sub(memory.quarters) };
         let before = memory.rows(state).zip(rule.continued(self.degree, apart));
         let rounding = larger(0.1, 1e-14 / epsilon);
         // A step whose stages converge slowly costs more than two shorter ones.
@@ -96,22 +88,13 @@ impl<const S: usize> GaussAdaptive<S> {
         if !roughness.is_finite() {
             return None;
         }
-        // It goes with the power S - 1 of the step.
-        let smooth = octaves(self.aim / larger(roughness * epsilon, 1e-300)) * (S as f64 - 1.0).recip();
-        let shrinking = -octaves(larger(rate, 1e-3));
-        let few = shrinking * f64::from(taken.iterations) / ITERATIONS;
-        let converging = shrinking - few.clamp(SHRINKING[0], SHRINKING[1]);
-        let longer = (4.0 * smooth.min(converging)).floor().clamp(-f64::from(SHORTER), f64::from(LONGER)) as i32;
-        let longer = if smooth >= 0.0 { longer.max(if converging < 0.0 { -1 } else { 0 }) } else { longer };
+        let longer = longer::<S>(roughness * epsilon / self.aim, rate, taken.iterations);
         Some(Tried { taken, longer })
     }
 }
 
 /// The length of a step cut at the end of an interval: far from all others.
 const CUT: i32 = i32::MAX / 2;
-
-/// How rough a step may be at the tolerance one.
-const SMOOTHNESS: f64 = 2.0;
 
 impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<Sys, N, M> for GaussAdaptive<S> {
     #[inline]
@@ -131,7 +114,8 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
     }
 
     fn recall(&mut self, memory: &[f64], _state: &State<N>) {
-        self.quarters = memory.first().map(|&quarters| quarters as i32);
+        // From a file it may be any number.
+        self.quarters = memory.first().map(|&quarters| (quarters as i32).clamp(-CUT, CUT));
         self.gauss.memory = Memory::load(memory.get(1..).unwrap_or_default());
     }
 }
@@ -182,12 +166,6 @@ impl<const S: usize> GaussAdaptive<S> {
         }
         Err(StepError::Tolerance { tries: Self::MAX_TRIES, step: quarter_octaves(quarters) })
     }
-}
-
-/// About the binary logarithm of a number, at most .09 below it: good enough for the length of a step, and four instructions.
-#[inline(always)]
-fn octaves(x: f64) -> f64 {
-    (x.to_bits() as i64 - 1.0f64.to_bits() as i64) as f64 / (1u64 << 52) as f64
 }
 
 /// A first step: a tenth of the shortest time in which a velocity changes by itself, the interval where nothing changes.

@@ -2,6 +2,8 @@ mod adaptive;
 mod ending;
 mod lanes;
 mod memory;
+mod pace;
+mod packs;
 mod rule;
 
 pub use adaptive::GaussAdaptive;

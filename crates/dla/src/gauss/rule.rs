@@ -59,7 +59,7 @@ impl Eight {
     pub(crate) fn continued(&self, degree: usize, quarters: i32) -> Option<&Square> {
         let all =
             self.continued.get(degree)?.get_or_init(|| from_fn(|k| self.continuation(degree, k as i32 - SHORTER)));
-        all.get(usize::try_from(quarters + SHORTER).ok()?)
+        all.get(usize::try_from(quarters.saturating_add(SHORTER)).ok()?)
     }
 
     #[cold]

@@ -250,6 +250,33 @@ fn an_adaptive_run_continues_from_a_checkpoint() {
     assert_ne!(memory, OneStep::<Sleigh, 3, 1>::memory(&method));
 }
 
+/// What a file says of the last step may be any numbers: the next interval is crossed all the same, or refused.
+#[test]
+fn numbers_that_no_step_leaves_do_no_harm() {
+    let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    let mut begin = start(&SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() });
+    let mut method = GaussAdaptive::<8>::new(1e-9);
+    OneStep::<Sleigh, 3, 1>::step(&mut method, &body, 0.0, 7.0, &mut begin).unwrap();
+    let memory = OneStep::<Sleigh, 3, 1>::memory(&method);
+    let mut exact = begin;
+    method.step(&body, 7.0, 7.0, &mut exact).unwrap();
+    for wild in [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e300, -1e300, -1.0, 0.0] {
+        for place in 0..memory.len() {
+            let (mut state, mut other, mut numbers) = (begin, GaussAdaptive::<8>::new(1e-9), memory.clone());
+            numbers[place] = wild;
+            OneStep::<Sleigh, 3, 1>::recall(&mut other, &numbers, &state);
+            if other.step(&body, 7.0, 7.0, &mut state).is_ok() {
+                for i in 0..3 {
+                    // As many steps, and as much enlarged, as above.
+                    assert_abs_diff_eq!(state.q()[i], exact.q()[i], epsilon = 1e2 * 1e-9);
+                }
+            } else {
+                assert_eq!(state, begin);
+            }
+        }
+    }
+}
+
 /// A place where nothing is finite ends the interval with an error, and nothing has moved.
 #[test]
 fn what_cannot_be_crossed_is_an_error() {

@@ -1,0 +1,79 @@
+//! How long the next step may be.
+use super::rule::{LONGER, SHORTER};
+use lagrangian::linear::larger;
+
+/// How rough a step may be at the tolerance one.
+const SMOOTHNESS: f64 = 2.0;
+/// By how many octaves the changes of the stages are to shrink in an iteration, from a search that has few to go, whose steps
+/// may well be longer, to one that has many.
+const SHRINKING: [f64; 2] = [0.75, 1.75];
+/// And in so many iterations a search is to be over, between the two.
+const ITERATIONS: f64 = 12.0;
+
+/// How rough a step may be at the tolerance `epsilon`: its power `2 S / (S - 1)` is about the error of the step.
+pub(super) fn roughest<const S: usize>(epsilon: f64) -> f64 {
+    let s = S as f64;
+    SMOOTHNESS * epsilon.powf((s - 1.0) / (2.0 * s))
+}
+
+/// The degree of the polynomial by which the slopes of a step are continued to the next: the further they are allowed to be
+/// from it, the sooner it leads astray.
+pub(super) fn degree<const S: usize>(epsilon: f64) -> usize {
+    (1.5 - 0.5 * epsilon.log10()).clamp(0.0, S as f64 - 1.0) as usize
+}
+
+/// By how many quarter octaves the next step may be longer than one that was `rough` by what it may be, and whose changes shrank by
+/// `rate` in the last of its iterations.
+#[inline(always)]
+pub(super) fn longer<const S: usize>(rough: f64, rate: f64, iterations: u32) -> i32 {
+    // Roughness goes with the power S - 1 of the step.
+    let smooth = -octaves(larger(rough, 1e-300)) * (S as f64 - 1.0).recip();
+    let shrinking = -octaves(larger(rate, 1e-3));
+    let few = shrinking * f64::from(iterations) / ITERATIONS;
+    let converging = shrinking - few.clamp(SHRINKING[0], SHRINKING[1]);
+    let longer = (4.0 * smooth.min(converging)).floor().clamp(-f64::from(SHORTER), f64::from(LONGER)) as i32;
+    // A step that is smooth enough is not refused for its iterations.
+    if smooth >= 0.0 { longer.max(if converging < 0.0 { -1 } else { 0 }) } else { longer }
+}
+
+/// About the binary logarithm of a positive number, at most .09 below it: good enough for the length of a step, and four
+/// instructions.
+#[inline(always)]
+pub(super) fn octaves(x: f64) -> f64 {
+    (x.to_bits() as i64 - 1.0f64.to_bits() as i64) as f64 / (1u64 << 52) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Exact at powers of two, and never far below the logarithm.
+    #[test]
+    fn octaves_are_about_the_logarithm() {
+        for exponent in -1000..1000 {
+            let power = f64::exp2(f64::from(exponent));
+            approx::assert_abs_diff_eq!(octaves(power), f64::from(exponent), epsilon = 0.0);
+            for part in [1.1, 1.44, 1.9] {
+                let below = (power * part).log2() - octaves(power * part);
+                assert!((0.0..0.0861).contains(&below), "{below}");
+            }
+        }
+    }
+
+    /// Rougher steps and slower searches are followed by shorter ones; a smooth step with a short search may grow although the
+    /// search converges slowly, one with a long search may not.
+    #[test]
+    fn the_next_step_follows_from_the_last() {
+        assert!(longer::<8>(1e-9, 0.01, 8) == LONGER && longer::<8>(1e-300, 0.0, 1) == LONGER);
+        assert_eq!(longer::<8>(1e9, 0.01, 8), -SHORTER);
+        assert_eq!(longer::<8>(f64::INFINITY, 0.01, 8), -SHORTER);
+        assert!(longer::<8>(8.0, 0.01, 8) < longer::<8>(0.1, 0.01, 8));
+        assert!(longer::<8>(1e-9, 0.35, 3) > 0 && longer::<8>(1e-9, 0.35, 16) < 0);
+        for tolerance in [1e-2, 1e-5, 1e-8, 1e-11, 1e-14] {
+            assert!(roughest::<8>(tolerance) > roughest::<8>(0.1 * tolerance));
+            assert!(degree::<8>(tolerance) <= degree::<8>(0.1 * tolerance));
+        }
+        assert_eq!([1e-2, 1e-14, 0.0].map(degree::<8>), [2, 7, 7]);
+        assert_eq!(degree::<3>(1e-14), 2);
+    }
+}

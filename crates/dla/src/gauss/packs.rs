@@ -1,0 +1,87 @@
+//! What all stages of all coordinates are brought into registers by.
+use super::lanes::Rows;
+use lagrangian::array;
+use lagrangian::linear::larger;
+use lagrangian::simd::{Pack, Simd, Wide};
+
+/// Numbers that may have something in common, each in its registers.
+#[inline(always)]
+pub(super) fn packed<S: Simd, const R: usize, const N: usize>(simd: S, x: &[Wide<S, R>; N]) -> [Pack<S, R>; N] {
+    array(
+        Pack::splat(simd, 0.0),
+        #[inline(always)]
+        |k| x[k].pack(simd),
+    )
+}
+
+/// Numbers of stages, as a model takes them.
+#[inline(always)]
+pub(super) fn each<S: Simd, const R: usize, const N: usize>(x: &[Pack<S, R>; N]) -> [Wide<S, R>; N] {
+    array(
+        Wide::Zero,
+        #[inline(always)]
+        |k| Wide::Each(x[k]),
+    )
+}
+
+/// Rows of eight numbers.
+#[inline(always)]
+pub(super) fn loaded<S: Simd, const R: usize, const N: usize>(simd: S, x: &Rows<N>) -> [Pack<S, R>; N] {
+    array(
+        Pack::splat(simd, 0.0),
+        #[inline(always)]
+        |k| Pack::load(simd, &x[k]),
+    )
+}
+
+/// Rows as their polynomials go on.
+#[inline(always)]
+pub(super) fn ahead<S: Simd, const R: usize, const N: usize>(
+    simd: S,
+    x: &Rows<N>,
+    continued: &[Pack<S, R>; 8],
+) -> [Pack<S, R>; N] {
+    array(
+        Pack::splat(simd, 0.0),
+        #[inline(always)]
+        |k| Pack::load(simd, &x[k]).times(continued),
+    )
+}
+
+/// Each number in all places.
+#[inline(always)]
+pub(super) fn everywhere<S: Simd, const R: usize, const N: usize>(simd: S, x: &[f64; N]) -> [Pack<S, R>; N] {
+    array(
+        Pack::splat(simd, 0.0),
+        #[inline(always)]
+        |k| Pack::splat(simd, x[k]),
+    )
+}
+
+/// The inverse of the size of each row.
+#[inline(always)]
+pub(super) fn own<S: Simd, const R: usize, const N: usize>(simd: S, x: &[Pack<S, R>; N]) -> [Pack<S, R>; N] {
+    let zero = Pack::splat(simd, 0.0);
+    array(
+        zero,
+        #[inline(always)]
+        |k| Pack::splat(simd, larger(SMALLEST, zero.max_abs(x[k]).largest()).recip()),
+    )
+}
+
+/// `h sum_j factors[j] x[j]` of every row, summed so that a rule and its mirror image give the same bits.
+#[inline(always)]
+pub(super) fn integral<S: Simd, const R: usize, const N: usize>(
+    h: f64,
+    factors: Pack<S, R>,
+    x: &[Pack<S, R>; N],
+) -> [f64; N] {
+    array(
+        0.0,
+        #[inline(always)]
+        |k| h * (factors * x[k]).folded(),
+    )
+}
+
+/// Nothing is measured by less: its inverse is finite.
+const SMALLEST: f64 = 1e-290;
