@@ -182,10 +182,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
         };
         let mut q = if cascade.is_some() { self.still(simd) } else { self.q(&along, &v) };
         let mut counts = match &self.counts {
-            Some(counts) => Some(counts.map(
-                #[inline(always)]
-                |counts| everywhere(simd, &counts),
-            )),
+            Some([v, a]) => Some([everywhere(simd, v), everywhere(simd, a)]),
             None => None,
         };
         let mut search = self.ending.begin(self.before.is_some());

@@ -145,17 +145,9 @@ impl<S: Simd, const R: usize> Pack<S, R> {
             let four = self.fours(half);
             let swapped = four.map(
                 #[inline(always)]
-                |s, x| pulp::cast(s.swap_re_im_c64s(pulp::cast(x))),
+                |s, x| swapped(s, x),
             );
-            let [far, far_swapped] = [four, swapped].map(
-                #[inline(always)]
-                |x| {
-                    x.map(
-                        #[inline(always)]
-                        |s, x| s.rotate_right_f64s(x, 2),
-                    )
-                },
-            );
+            let (far, far_swapped) = (four.halves_exchanged(), swapped.halves_exchanged());
             let terms = &terms[4 * half..];
             sums[half] = terms[0] * four;
             sums[half] = terms[1].mul_add(swapped, sums[half]);
@@ -172,12 +164,20 @@ impl<S: Simd, const R: usize> Pack<S, R> {
     pub fn folded(&self) -> f64 {
         const { assert!(R == 2, "two registers of four numbers") };
         let (s, [first, last]) = (self.simd, [self.registers[0], self.registers[1]]);
-        let swapped = |x: S::f64s| pulp::cast(s.swap_re_im_c64s(pulp::cast(x)));
-        let mirrored = s.rotate_right_f64s(swapped(last), 2);
+        let mirrored = s.rotate_right_f64s(swapped(s, last), 2);
         let pairs = s.add_f64s(first, mirrored);
-        let fours = s.add_f64s(pairs, swapped(pairs));
+        let fours = s.add_f64s(pairs, swapped(s, pairs));
         let sum = s.add_f64s(fours, s.rotate_right_f64s(fours, 2));
         bytemuck::cast_slice::<S::f64s, f64>(&[sum])[0]
+    }
+
+    /// The halves of every register in each other's places.
+    #[inline(always)]
+    fn halves_exchanged(self) -> Self {
+        self.map(
+            #[inline(always)]
+            |s, x| s.rotate_right_f64s(x, 2),
+        )
     }
 
     /// The first or the last four numbers, twice.
@@ -185,6 +185,12 @@ impl<S: Simd, const R: usize> Pack<S, R> {
     fn fours(&self, half: usize) -> Self {
         Self { simd: self.simd, registers: [self.registers[half]; R] }
     }
+}
+
+/// Neighbours in each other's places.
+#[inline(always)]
+fn swapped<S: Simd>(s: S, x: S::f64s) -> S::f64s {
+    pulp::cast(s.swap_re_im_c64s(pulp::cast(x)))
 }
 
 macro_rules! operators {
