@@ -1,94 +1,95 @@
-use crate::Scalar;
-use crate::scalar::derived_operators;
-use std::ops::{Add, Div, Mul, Neg};
+use crate::{Scalar, array};
+use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A number that may be an angle whose sine and cosine are known already: what is computed from it as from any other then
 /// asks for them again at no cost.
 ///
 /// Any result of arithmetic is an unknown one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct KnownAngle {
+pub struct KnownAngle<T = f64> {
     /// The number.
-    pub re: f64,
-    sin_cos: Option<(f64, f64)>,
+    pub re: T,
+    sin_cos: Option<(T, T)>,
 }
 
-impl KnownAngle {
+impl<T> KnownAngle<T> {
     /// An angle (rad) with its sine and cosine.
     #[must_use]
     #[inline(always)]
-    pub fn new(re: f64, sin: f64, cos: f64) -> Self {
+    pub fn new(re: T, sin: T, cos: T) -> Self {
         Self { re, sin_cos: Some((sin, cos)) }
     }
 }
 
-impl From<f64> for KnownAngle {
+impl<T> From<T> for KnownAngle<T> {
     /// A number of which nothing more is known.
     #[inline(always)]
-    fn from(re: f64) -> Self {
+    fn from(re: T) -> Self {
         Self { re, sin_cos: None }
     }
 }
 
-impl Add for KnownAngle {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, o: Self) -> Self {
-        Self::from(self.re + o.re)
-    }
+macro_rules! operators {
+    ($($operator:ident $method:ident),*) => {$(
+        impl<T: Scalar> $operator for KnownAngle<T> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, o: Self) -> Self {
+                Self::from(self.re.$method(o.re))
+            }
+        }
+        impl<T: Scalar> $operator<f64> for KnownAngle<T> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, o: f64) -> Self {
+                Self::from(self.re.$method(o))
+            }
+        }
+    )*};
 }
-impl Mul for KnownAngle {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, o: Self) -> Self {
-        Self::from(self.re * o.re)
-    }
-}
-impl Div for KnownAngle {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, o: Self) -> Self {
-        Self::from(self.re / o.re)
-    }
-}
-impl Neg for KnownAngle {
+operators!(Add add, Sub sub, Mul mul, Div div);
+
+impl<T: Scalar> Neg for KnownAngle<T> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
         Self::from(-self.re)
     }
 }
-impl Add<f64> for KnownAngle {
-    type Output = Self;
+impl<T: Scalar> AddAssign for KnownAngle<T> {
     #[inline(always)]
-    fn add(self, o: f64) -> Self {
-        Self::from(self.re + o)
+    fn add_assign(&mut self, o: Self) {
+        *self = *self + o;
     }
 }
-impl Mul<f64> for KnownAngle {
-    type Output = Self;
+impl<T: Scalar> SubAssign for KnownAngle<T> {
     #[inline(always)]
-    fn mul(self, o: f64) -> Self {
-        Self::from(self.re * o)
+    fn sub_assign(&mut self, o: Self) {
+        *self = *self - o;
     }
 }
-impl Div<f64> for KnownAngle {
-    type Output = Self;
+impl<T: Scalar> MulAssign<f64> for KnownAngle<T> {
     #[inline(always)]
-    fn div(self, o: f64) -> Self {
-        Self::from(self.re / o)
+    fn mul_assign(&mut self, factor: f64) {
+        *self = *self * factor;
     }
 }
-derived_operators!([] KnownAngle);
 
-impl Scalar for KnownAngle {
+impl<T: Scalar> Scalar for KnownAngle<T> {
     #[inline(always)]
     fn constant(x: f64) -> Self {
-        Self::from(x)
+        Self::from(T::constant(x))
+    }
+    #[inline(always)]
+    fn zero() -> Self {
+        Self::from(T::zero())
     }
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        let (sin, cos) = self.sin_cos.unwrap_or_else(|| self.re.sin_cos());
+        let (sin, cos) = match self.sin_cos {
+            Some(known) => known,
+            None => self.re.sin_cos(),
+        };
         (Self::from(sin), Self::from(cos))
     }
     #[inline(always)]
@@ -112,7 +113,15 @@ impl Scalar for KnownAngle {
         Self::from(self.re.recip())
     }
     #[inline(always)]
+    fn array<const N: usize>(f: impl Fn(usize) -> Self) -> [Self; N] {
+        array(Self::zero(), f)
+    }
+    #[inline(always)]
+    fn over<I, U>(items: &[I], start: U, f: impl Fn(U, &I) -> U) -> U {
+        T::over(items, start, f)
+    }
+    #[inline(always)]
     fn is_zero(&self) -> bool {
-        self.re == 0.0
+        self.re.is_zero()
     }
 }

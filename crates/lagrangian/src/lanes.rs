@@ -1,5 +1,5 @@
 use crate::Scalar;
-use crate::scalar::{derived_operators, functions_of_each_lane};
+use crate::scalar::derived_operators;
 use crate::sincos;
 use multiversion::multiversion;
 use std::array::from_fn;
@@ -99,7 +99,26 @@ impl Scalar for Lanes {
         let (sin, cos) = sincos::sin_cos(&self.0);
         (Self(sin), Self(cos))
     }
-    functions_of_each_lane!();
+    #[inline(always)]
+    fn exp(self) -> Self {
+        self.map(f64::exp)
+    }
+    #[inline(always)]
+    fn ln(self) -> Self {
+        self.map(f64::ln)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.map(f64::sqrt)
+    }
+    #[inline(always)]
+    fn powi(self, n: i32) -> Self {
+        self.map(|a| a.powi(n))
+    }
+    #[inline(always)]
+    fn recip(self) -> Self {
+        self.map(f64::recip)
+    }
     #[inline(always)]
     fn is_zero(&self) -> bool {
         self.0.iter().all(Scalar::is_zero)

@@ -7,7 +7,6 @@
 //!
 //! This crate knows no integrator and no particular system.
 
-mod abreast;
 mod basis;
 mod bracket;
 mod classify;
@@ -48,7 +47,6 @@ mod twofold;
 mod vector_field;
 mod with;
 
-pub use abreast::Abreast;
 pub use basis::AdmissibleBasis;
 pub use bracket::{Bracket, EnergySlope, energy_slope, inverse_reduced_mass};
 pub use classify::{

@@ -154,29 +154,4 @@ macro_rules! derived_operators {
     };
 }
 
-/// Functions of [`Scalar`] that a number of several lanes takes of each by itself, with its `map`.
-macro_rules! functions_of_each_lane {
-    () => {
-        #[inline(always)]
-        fn exp(self) -> Self {
-            self.map(f64::exp)
-        }
-        #[inline(always)]
-        fn ln(self) -> Self {
-            self.map(f64::ln)
-        }
-        #[inline(always)]
-        fn sqrt(self) -> Self {
-            self.map(f64::sqrt)
-        }
-        #[inline(always)]
-        fn powi(self, n: i32) -> Self {
-            self.map(|a| a.powi(n))
-        }
-        #[inline(always)]
-        fn recip(self) -> Self {
-            self.map(f64::recip)
-        }
-    };
-}
-pub(crate) use {derived_operators, functions_of_each_lane};
+pub(crate) use derived_operators;

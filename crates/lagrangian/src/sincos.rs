@@ -48,12 +48,6 @@ pub(crate) fn sin_cos<const W: usize>(x: &[f64; W]) -> ([f64; W], [f64; W]) {
     (sin, cos)
 }
 
-/// Sine and cosine of one `x` (rad) without a branch; NaN beyond the limit.
-#[inline(always)]
-pub(crate) fn near(x: f64) -> (f64, f64) {
-    reduced(if x.abs() <= LIMIT { x } else { f64::NAN })
-}
-
 #[inline(always)]
 fn reduced(x: f64) -> (f64, f64) {
     let shifted = x * TWO_OVER_PI + ROUNDER;

@@ -13,6 +13,8 @@ pub struct Sleigh {
     offset: f64,
     pivot_inertia: f64,
     spin_gain: f64,
+    /// `1/m` and `1/J`: a division takes as long as a dozen products.
+    inverse: [f64; 2],
 }
 
 impl Sleigh {
@@ -26,7 +28,8 @@ impl Sleigh {
         finite("offset", [offset])?;
         let pivot_inertia = inertia + mass * offset * offset;
         finite("inertia about the blade, I + m a^2,", [pivot_inertia])?;
-        Ok(Self { mass, inertia, offset, pivot_inertia, spin_gain: mass * offset / pivot_inertia })
+        let (spin_gain, inverse) = (mass * offset / pivot_inertia, [mass.recip(), pivot_inertia.recip()]);
+        Ok(Self { mass, inertia, offset, pivot_inertia, spin_gain, inverse })
     }
 
     /// Mass `m` (kg).
@@ -51,6 +54,12 @@ impl Sleigh {
     #[must_use]
     pub fn pivot_inertia(&self) -> f64 {
         self.pivot_inertia
+    }
+
+    /// `1/m` (1/kg) and `1/J` (1/(kg m^2)).
+    #[must_use]
+    pub(crate) fn inverse(&self) -> [f64; 2] {
+        self.inverse
     }
 
     /// The rate `c = m a / J` (1/m) of `omega' = -c u omega`, by which the spin dies out or grows.

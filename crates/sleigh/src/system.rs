@@ -82,7 +82,8 @@ impl System<3, 1> for Sleigh {
     #[inline(always)]
     fn reduced_response<S: Scalar>(&self, _t: S, q: &[S; 3], &[fx, fy, tau]: &[S; 3]) -> Option<[S; 3]> {
         let (sin, cos) = q[2].sin_cos();
-        Some([(cos * fx + sin * fy) * self.mass().recip(), tau * self.pivot_inertia().recip(), S::zero()])
+        let [per_mass, per_inertia] = self.inverse();
+        Some([(cos * fx + sin * fy) * per_mass, tau * per_inertia, S::zero()])
     }
 
     #[inline(always)]

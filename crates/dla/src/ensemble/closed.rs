@@ -1,7 +1,7 @@
-use super::state::Row;
-use super::{Ensemble, LaneState};
+use super::state::{Row, loaded, store};
+use super::{Ensemble, LANES, LaneState};
 use lagrangian::simd::{Kernel, Pack, Simd, dispatch_widest};
-use lagrangian::{ClosedLaneStep, ClosedLanes, System, array};
+use lagrangian::{ClosedLaneStep, ClosedLanes, System};
 use std::array::from_fn;
 use std::marker::PhantomData;
 
@@ -11,9 +11,6 @@ const BLOCK: u64 = 64;
 
 /// The first steps have no frame before them, and are made twice: as few as leave a frame behind.
 const FIRST: u64 = 4;
-
-/// Trajectories that go side by side.
-const LANES: usize = 8;
 
 /// `W` trajectories of the midpoint discrete Lagrange-d'Alembert map in closed form, each with a system of its own: eights in
 /// the widest registers of the machine.
@@ -209,25 +206,6 @@ impl<const W: usize, const N: usize, const M: usize, const F: usize> Run<W, N, M
         (0..M).for_each(|k| self.largest[k].0[lane] = other.largest[k].0[lane]);
         self.bad[lane] = other.bad[lane];
     }
-}
-
-/// Eight numbers of each row.
-#[inline(always)]
-fn loaded<S: Simd, const K: usize, const W: usize, const L: usize>(
-    simd: S,
-    rows: &[Row<W>; L],
-    r: usize,
-) -> [Pack<S, K>; L] {
-    array(
-        Pack::splat(simd, 0.0),
-        #[inline(always)]
-        |k| Pack::load(simd, &rows[k].0.as_chunks().0[r]),
-    )
-}
-
-#[inline(always)]
-fn store<S: Simd, const K: usize, const W: usize>(row: &mut Row<W>, r: usize, x: &Pack<S, K>) {
-    row.0.as_chunks_mut().0[r] = x.row();
 }
 
 /// Steps of one lane by the map of one system; none where a step has no solution.

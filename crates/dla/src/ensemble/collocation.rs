@@ -1,5 +1,5 @@
-use super::state::{Row, lanes};
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre, lagrange};
+use lagrangian::simd::{Pack, Simd};
 use std::array::from_fn;
 
 /// The coefficients of Gauss collocation with an even number `S` of stages, for a step of length `h`, in the form that needs
@@ -37,58 +37,64 @@ impl<const S: usize> Collocation<S> {
 
     /// `start + h A slopes`, in every lane.
     #[inline(always)]
-    pub(crate) fn integrate<const W: usize>(&self, start: &Row<W>, slopes: &[Row<W>; S], stages: &mut [Row<W>; S]) {
-        for lane in 0..lanes::<W>() {
-            let (even, odd) = Self::parts(lane, slopes);
-            let mut whole = 0.0;
+    pub(crate) fn integrate<Si: Simd, const R: usize>(
+        &self,
+        start: Pack<Si, R>,
+        slopes: &[Pack<Si, R>; S],
+        stages: &mut [Pack<Si, R>; S],
+    ) {
+        let simd = start.simd();
+        let (even, odd) = Self::parts(slopes);
+        let mut whole = start;
+        for k in 0..S / 2 {
+            whole = even[k].mul_add(Pack::splat(simd, self.half_weights[k]), whole);
+        }
+        for i in 0..S / 2 {
+            let (mut along, mut across) = (whole, even[0] * Pack::splat(simd, self.of_even[i][0]));
             for k in 0..S / 2 {
-                whole += self.half_weights[k] * even[k];
-            }
-            for i in 0..S / 2 {
-                let (mut along, mut across) = (whole, 0.0);
-                for k in 0..S / 2 {
-                    along += self.of_odd[i][k] * odd[k];
-                    across += self.of_even[i][k] * even[k];
+                along = odd[k].mul_add(Pack::splat(simd, self.of_odd[i][k]), along);
+                if k > 0 {
+                    across = even[k].mul_add(Pack::splat(simd, self.of_even[i][k]), across);
                 }
-                stages[i].0[lane] = start.0[lane] + (along + across);
-                stages[S - 1 - i].0[lane] = start.0[lane] + (along - across);
             }
+            stages[i] = along + across;
+            stages[S - 1 - i] = along - across;
         }
     }
 
     /// `h b . slopes`, in every lane.
     #[inline(always)]
-    pub(crate) fn increment<const W: usize>(&self, slopes: &[Row<W>; S]) -> Row<W> {
-        let mut sum = Row::ZERO;
-        for lane in 0..lanes::<W>() {
-            let (even, _) = Self::parts(lane, slopes);
-            let mut half = 0.0;
-            for k in 0..S / 2 {
-                half += self.half_weights[k] * even[k];
-            }
-            sum.0[lane] = 2.0 * half;
+    pub(crate) fn increment<Si: Simd, const R: usize>(&self, slopes: &[Pack<Si, R>; S]) -> Pack<Si, R> {
+        let simd = slopes[0].simd();
+        let (even, _) = Self::parts(slopes);
+        let mut half = even[0] * Pack::splat(simd, self.half_weights[0]);
+        for k in 1..S / 2 {
+            half = even[k].mul_add(Pack::splat(simd, self.half_weights[k]), half);
         }
-        sum
+        half + half
     }
 
     /// The slopes as their polynomial goes on over the next step.
     #[inline(always)]
-    pub(crate) fn extrapolate<const W: usize>(&self, slopes: &mut [Row<W>; S]) {
+    pub(crate) fn extrapolate<Si: Simd, const R: usize>(&self, slopes: &mut [Pack<Si, R>; S]) {
         let before = *slopes;
+        let simd = before[0].simd();
         for i in 0..S {
-            for lane in 0..lanes::<W>() {
-                let mut sum = 0.0;
-                for j in 0..S {
-                    sum += self.next[i][j] * before[j].0[lane];
-                }
-                slopes[i].0[lane] = sum;
+            let mut sum = before[0] * Pack::splat(simd, self.next[i][0]);
+            for j in 1..S {
+                sum = before[j].mul_add(Pack::splat(simd, self.next[i][j]), sum);
             }
+            slopes[i] = sum;
         }
     }
 
     #[inline(always)]
-    fn parts<const W: usize>(lane: usize, slopes: &[Row<W>; S]) -> ([f64; S], [f64; S]) {
-        let f = |k: usize| slopes[k].0[lane];
-        (from_fn(|k| f(k) + f(S - 1 - k)), from_fn(|k| f(k) - f(S - 1 - k)))
+    fn parts<Si: Simd, const R: usize>(slopes: &[Pack<Si, R>; S]) -> ([Pack<Si, R>; S], [Pack<Si, R>; S]) {
+        let (mut even, mut odd) = (*slopes, *slopes);
+        for k in 0..S / 2 {
+            even[k] = slopes[k] + slopes[S - 1 - k];
+            odd[k] = slopes[k] - slopes[S - 1 - k];
+        }
+        (even, odd)
     }
 }

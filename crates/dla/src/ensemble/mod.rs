@@ -2,7 +2,11 @@
 
 mod closed;
 mod collocation;
+mod eight;
 mod gauss;
+mod order;
+mod settling;
+mod stages;
 mod state;
 mod systems;
 
@@ -10,6 +14,9 @@ pub use closed::ClosedEnsemble;
 pub use gauss::GaussEnsemble;
 pub use state::LaneState;
 pub use systems::{Each, Same, Systems};
+
+/// Trajectories that go side by side.
+const LANES: usize = 8;
 
 /// `W` trajectories that make their steps together.
 pub trait Ensemble<const N: usize, const W: usize> {

@@ -1,8 +1,9 @@
 use crate::State;
 use crate::state::wrapped;
+use lagrangian::array;
+use lagrangian::simd::{Pack, Simd};
 use std::array::from_fn;
 use std::f64::consts::PI;
-use std::hint::black_box;
 
 /// One number of each of `W` trajectories.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,13 +12,6 @@ pub(crate) struct Row<const W: usize>(pub(crate) [f64; W]);
 
 impl<const W: usize> Row<W> {
     pub(crate) const ZERO: Self = Self([0.0; W]);
-}
-
-/// The number `W` of lanes, as the compiler does not know it: a loop over a known number it would take apart into single
-/// numbers, before it looks for what goes into a vector.
-#[inline(always)]
-pub(crate) fn lanes<const W: usize>() -> usize {
-    black_box(W).min(W)
 }
 
 /// Configurations and quasi-velocities of `W` trajectories: what [`State`] is for one.
@@ -98,4 +92,23 @@ impl<const N: usize, const W: usize> LaneState<N, W> {
             }
         }
     }
+}
+
+/// Eight numbers of each row.
+#[inline(always)]
+pub(super) fn loaded<S: Simd, const K: usize, const W: usize, const L: usize>(
+    simd: S,
+    rows: &[Row<W>; L],
+    r: usize,
+) -> [Pack<S, K>; L] {
+    array(
+        Pack::splat(simd, 0.0),
+        #[inline(always)]
+        |k| Pack::load(simd, &rows[k].0.as_chunks().0[r]),
+    )
+}
+
+#[inline(always)]
+pub(super) fn store<S: Simd, const K: usize, const W: usize>(row: &mut Row<W>, r: usize, x: &Pack<S, K>) {
+    row.0.as_chunks_mut().0[r] = x.row();
 }

@@ -2,6 +2,9 @@
 pub trait Systems<Sys, const W: usize> {
     /// That of a lane.
     fn of(&self, lane: usize) -> &Sys;
+
+    /// That of all lanes, where they have one in common.
+    fn common(&self) -> Option<&Sys>;
 }
 
 /// One system for all.
@@ -17,12 +20,22 @@ impl<Sys, const W: usize> Systems<Sys, W> for Same<'_, Sys> {
     fn of(&self, _lane: usize) -> &Sys {
         self.0
     }
+
+    #[inline(always)]
+    fn common(&self) -> Option<&Sys> {
+        Some(self.0)
+    }
 }
 
 impl<Sys, const W: usize> Systems<Sys, W> for Each<'_, Sys, W> {
     #[inline(always)]
     fn of(&self, lane: usize) -> &Sys {
         &self.0[lane]
+    }
+
+    #[inline(always)]
+    fn common(&self) -> Option<&Sys> {
+        None
     }
 }
 

@@ -30,11 +30,29 @@ impl<S: Simd, const R: usize> Pack<S, R> {
         Self { simd, registers: all }
     }
 
+    /// The same numbers, as one value: from memory straight into a [`Wide`](super::Wide) the compiler would bring them one by one.
+    #[must_use]
+    #[inline(always)]
+    pub fn whole(self) -> Self {
+        // No instruction is left of it.
+        self.map(
+            #[inline(always)]
+            |s, x| s.transmute_f64s_u64s(s.xor_u64s(s.transmute_u64s_f64s(x), s.splat_u64s(0))),
+        )
+    }
+
     /// The numbers one by one.
     #[must_use]
     #[inline(always)]
     pub fn lanes(&self) -> &[f64] {
         bytemuck::cast_slice(&self.registers)
+    }
+
+    /// The numbers one by one, to be changed.
+    #[must_use]
+    #[inline(always)]
+    pub fn lanes_mut(&mut self) -> &mut [f64] {
+        bytemuck::cast_slice_mut(&mut self.registers)
     }
 
     /// The numbers as a row.
@@ -51,7 +69,7 @@ impl<S: Simd, const R: usize> Pack<S, R> {
     #[must_use]
     #[inline(always)]
     pub fn each(mut self, f: impl Fn(f64) -> f64) -> Self {
-        for x in bytemuck::cast_slice_mut::<S::f64s, f64>(&mut self.registers) {
+        for x in self.lanes_mut() {
             *x = f(*x);
         }
         self

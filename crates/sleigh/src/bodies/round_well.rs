@@ -19,6 +19,8 @@ pub struct RoundWell {
     stiffness: f64,
     center: [f64; 2],
     ahead: f64,
+    /// `k/m` and `k b/J`.
+    pulls: [f64; 2],
 }
 
 impl RoundWell {
@@ -37,7 +39,8 @@ impl RoundWell {
     pub fn drawing(sleigh: Sleigh, stiffness: f64, center: [f64; 2], ahead: f64) -> Result<Self, SleighError> {
         finite("stiffness", [stiffness])?;
         finite("ahead", [ahead])?;
-        Ok(Self { sleigh, stiffness, center: finite("center", center)?, ahead })
+        let pulls = [stiffness / sleigh.mass(), stiffness * ahead / sleigh.pivot_inertia()];
+        Ok(Self { sleigh, stiffness, center: finite("center", center)?, ahead, pulls })
     }
 
     /// The coordinates and velocities of a state.
@@ -89,12 +92,7 @@ impl System<3, 1> for RoundWell {
     /// That of the free sleigh, and the pull of the well.
     #[inline(always)]
     fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; 3], xi: &[S; 3]) -> Option<[S; 3]> {
-        let Self { sleigh, stiffness, ahead, .. } = self;
-        let [along, turn, none] = sleigh.reduced_motion(t, q, xi)?;
-        Some([
-            along - (q[0] + *ahead) * (stiffness / sleigh.mass()),
-            turn - q[1] * (stiffness * ahead / sleigh.pivot_inertia()),
-            none,
-        ])
+        let [along, turn, none] = self.sleigh.reduced_motion(t, q, xi)?;
+        Some([along - (q[0] + self.ahead) * self.pulls[0], turn - q[1] * self.pulls[1], none])
     }
 }
