@@ -93,6 +93,8 @@ def namespace(problem, constant=float, cos=math.cos, sin=math.sin, exp=math.exp)
     # pylint: disable=exec-used
     found = {"m": m, "a": a, "J": inertia + m * a * a, "K": constant, "cos": cos, "sin": sin, "exp": exp}
     exec(compile(texts(problem), "equations", "exec"), found)  # the text is ours
+    if round_well(problem):
+        found["own axes"] = own_axes(problem, constant)
     return found
 
 

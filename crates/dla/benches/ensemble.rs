@@ -1,10 +1,10 @@
 //! What a step of an ensemble costs, on one core: processor time, least and median of rounds.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
-use dla::{ClosedEnsemble, Ensemble, GaussEnsemble, LaneState, Same};
+use dla::{ClosedEnsemble, Each, Ensemble, GaussEnsemble, LaneState, Same, Systems};
 use lagrangian::{System, With};
-use sleigh::Sleigh;
 use sleigh::effects::Bowl;
+use sleigh::{RoundWell, Sleigh, SleighState};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -37,56 +37,65 @@ fn closed<const W: usize>(h: f64) {
     println!("dla, free, {W} at once, h = {h}: {:.2} ns a sleigh and step (median {:.2})", ns * least, ns * median);
 }
 
-/// Eight or sixteen starts, as those of the peers.
-fn starts<const W: usize>() -> LaneState<3, W> {
-    let starts: Vec<_> = (0..W).map(|i| ([0.0; 3], [-1.0, 0.1 + 1e-3 * (i % 8) as f64, 0.0])).collect();
+/// Sixteen starts, the eight of the peers twice; `place` gives the coordinates of a state.
+fn starts(place: impl Fn(&SleighState) -> [f64; 3]) -> LaneState<3, W> {
+    let start =
+        |i: usize| SleighState { speed: -1.0, turn_rate: 0.1 + 1e-3 * (i % 8) as f64, ..SleighState::default() };
+    let starts: Vec<_> = (0..W).map(start).map(|s| (place(&s), [s.speed, s.turn_rate, 0.0])).collect();
     LaneState::new(&starts, [false, false, true])
 }
 
-/// Positions and headings at the end, unwrapped.
-fn ends<const W: usize>(state: &LaneState<3, W>) -> Vec<[f64; 3]> {
-    (0..W).map(|lane| state.lane(lane, [0.0; 3]).unwrapped()).collect()
+fn on_plane(state: &SleighState) -> [f64; 3] {
+    [state.x, state.y, state.heading]
 }
 
+/// Positions and headings at the end, unwrapped.
+fn ends(state: &LaneState<3, W>, place: impl Fn(&[f64; 3]) -> [f64; 3]) -> Vec<[f64; 3]> {
+    (0..W).map(|lane| place(&state.lane(lane, [0.0; 3]).unwrapped())).collect()
+}
+
+/// Trajectories at once.
+const W: usize = 16;
 const DURATION: f64 = 100.0;
 
-fn gauss<Sys: System<3, 1> + Clone, const S: usize, const W: usize>(
+/// Runs of so many steps, with stages settled to this; `place` brings the coordinates to the plane.
+fn gauss<Sys: System<3, 1> + Clone, const S: usize>(
     name: &str,
-    system: &Sys,
+    systems: &(impl Systems<Sys, W> + Clone),
+    start: LaneState<3, W>,
+    place: impl Fn(&[f64; 3]) -> [f64; 3],
     reference: &[[f64; 3]],
-    steps: &[u64],
+    runs: &[(u64, f64)],
 ) {
-    for &count in steps {
-        for settled in [1e-17, 1e-13, 1e-9] {
-            let h = DURATION / count as f64;
-            let mut ensemble = GaussEnsemble::<Sys, _, S, W, 3, 1>::new(Same(system), (0.0, h), starts()).unwrap();
-            ensemble.settled = settled;
-            let mut end = ensemble.clone();
-            let (least, median) = seconds(|| {
-                end = black_box(ensemble.clone());
-                end.advance(count);
-            });
-            let error = ends(end.state())
-                .iter()
-                .zip(reference)
-                .fold(0.0, |worst: f64, (a, b)| (0..3).fold(worst, |worst, k| worst.max((a[k] - b[k]).abs())));
-            let us = 1e6 / W as f64;
-            println!(
-                "{name}, gauss{}, h = {h:.3}, settled {settled:e}: error {error:.1e}, {:.2} us a trajectory (median {:.2}), {:.1} sweeps a step",
-                2 * S,
-                us * least,
-                us * median,
-                end.sweeps() as f64 / count as f64
-            );
-        }
+    for &(count, settled) in runs {
+        let h = DURATION / count as f64;
+        let mut ensemble = GaussEnsemble::<Sys, _, S, W, 3, 1>::new(systems.clone(), (0.0, h), start).unwrap();
+        ensemble.settled = settled;
+        let mut end = ensemble.clone();
+        let (least, median) = seconds(|| {
+            end = black_box(ensemble.clone());
+            end.advance(count);
+        });
+        let error = ends(end.state(), &place)
+            .iter()
+            .zip(reference)
+            .fold(0.0, |worst: f64, (a, b)| (0..3).fold(worst, |worst, k| worst.max((a[k] - b[k]).abs())));
+        let us = 1e6 / W as f64;
+        println!(
+            "{name}, gauss{}, h = {h:.3}, settled {settled:e}: error {error:.1e}, {:.2} us a trajectory (median {:.2}), {:.1} iterations a step",
+            2 * S,
+            us * least,
+            us * median,
+            end.sweeps() as f64 / (count as f64 * (W / 8) as f64)
+        );
     }
 }
 
 fn reference<Sys: System<3, 1>>(system: &Sys) -> Vec<[f64; 3]> {
-    let mut ensemble =
-        GaussEnsemble::<Sys, _, 8, 16, 3, 1>::new(Same(system), (0.0, DURATION / 512.0), starts()).unwrap();
+    let time = (0.0, DURATION / 512.0);
+    let mut ensemble = GaussEnsemble::<Sys, _, 8, W, 3, 1>::new(Same(system), time, starts(on_plane)).unwrap();
     ensemble.advance(512);
-    ends(ensemble.state())
+    ends(ensemble.state(), |q| *q)
 }
 
 fn main() {
@@ -95,12 +104,19 @@ fn main() {
         closed::<24>(h);
     }
     let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    let exact = reference(&sleigh);
+    let plane = starts(on_plane);
+    gauss::<_, 8>("free", &Same(&sleigh), plane, |q| *q, &exact, &[(32, 1e-11), (64, 1e-15)]);
+
+    const RUNS: [(u64, f64); 8] =
+        [(30, 1e-9), (36, 1e-11), (36, 1e-13), (40, 1e-9), (56, 1e-13), (64, 1e-13), (72, 1e-15), (80, 1e-16)];
     let bowl = With { body: sleigh, effects: Bowl::new([0.1, 0.1], [0.0, 0.0]).unwrap() };
-    let ends = reference(&sleigh);
-    gauss::<_, 8, 16>("free", &sleigh, &ends, &[32, 64]);
-    gauss::<_, 4, 16>("free", &sleigh, &ends, &[100]);
-    let ends = reference(&bowl);
-    gauss::<_, 8, 8>("bowl", &bowl, &ends, &[40]);
-    gauss::<_, 8, 16>("bowl", &bowl, &ends, &[36, 40, 80]);
-    gauss::<_, 4, 16>("bowl", &bowl, &ends, &[100]);
+    let exact = reference(&bowl);
+    gauss::<_, 8>("bowl", &Same(&bowl), plane, |q| *q, &exact, &RUNS);
+    let each: [_; W] = std::array::from_fn(|_| black_box(bowl.clone()));
+    gauss::<_, 8>("bowl, each its own", &Each(&each), plane, |q| *q, &exact, &[(36, 1e-13), (80, 1e-16)]);
+    let well = RoundWell::new(sleigh, 0.1, [0.0; 2]).unwrap();
+    let own = starts(|state| well.coordinates(state).0);
+    let back = |q: &[f64; 3]| on_plane(&well.state(q, &[0.0; 3]));
+    gauss::<_, 8>("bowl, own axes", &Same(&well), own, back, &exact, &RUNS);
 }
