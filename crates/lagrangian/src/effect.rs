@@ -58,10 +58,7 @@ impl<S: Scalar, const N: usize> Slope<S, N> {
         match (self, other) {
             (Self::Unknown, _) | (_, Self::Unknown) => Self::Unknown,
             (Self::Nothing, slope) | (slope, Self::Nothing) => slope,
-            (Self::Known(a), Self::Known(b)) => Self::Known(S::array(
-                #[inline(always)]
-                |i| a[i] + b[i],
-            )),
+            (Self::Known(a), Self::Known(b)) => Self::Known(sum(&a, &b)),
         }
     }
 
@@ -72,10 +69,7 @@ impl<S: Scalar, const N: usize> Slope<S, N> {
             (Self::Unknown, _) => None,
             (Self::Nothing, force) => Some(force.unwrap_or([S::zero(); N])),
             (Self::Known(slope), None) => Some(slope),
-            (Self::Known(slope), Some(force)) => Some(S::array(
-                #[inline(always)]
-                |i| slope[i] + force[i],
-            )),
+            (Self::Known(slope), Some(force)) => Some(sum(&slope, &force)),
         }
     }
 }
@@ -96,13 +90,19 @@ fn add<S: Scalar>(a: Option<S>, b: Option<S>) -> Option<S> {
     }
 }
 
+/// `a + b`, place by place.
 #[inline(always)]
-fn add_all<S: Scalar, const N: usize>(a: Option<[S; N]>, b: Option<[S; N]>) -> Option<[S; N]> {
+pub(crate) fn sum<S: Scalar, const N: usize>(a: &[S; N], b: &[S; N]) -> [S; N] {
+    S::array(
+        #[inline(always)]
+        |i| a[i] + b[i],
+    )
+}
+
+#[inline(always)]
+pub(crate) fn add_all<S: Scalar, const N: usize>(a: Option<[S; N]>, b: Option<[S; N]>) -> Option<[S; N]> {
     match (a, b) {
-        (Some(a), Some(b)) => Some(S::array(
-            #[inline(always)]
-            |i| a[i] + b[i],
-        )),
+        (Some(a), Some(b)) => Some(sum(&a, &b)),
         (a, b) => a.or(b),
     }
 }
@@ -175,11 +175,8 @@ impl<B, E: Effect<B, N>, const N: usize> Effect<B, N> for Vec<E> {
             self,
             Some([S::zero(); N]),
             #[inline(always)]
-            |sum, effect| match (sum, effect.whole_force(body, t, q, v)) {
-                (Some(sum), Some(force)) => Some(S::array(
-                    #[inline(always)]
-                    |i| sum[i] + force[i],
-                )),
+            |all, effect| match (all, effect.whole_force(body, t, q, v)) {
+                (Some(all), Some(force)) => Some(sum(&all, &force)),
                 _ => None,
             },
         )

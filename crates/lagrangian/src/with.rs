@@ -1,3 +1,4 @@
+use crate::effect::{add_all, sum};
 use crate::{
     AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Effect, Motion, MotionError, Push, Scalar, System,
     velocity_of,
@@ -48,13 +49,7 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
 
     #[inline(always)]
     fn force<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
-        match (self.body.force(t, q, v), self.effects.force(&self.body, t, q, v)) {
-            (Some(a), Some(b)) => Some(S::array(
-                #[inline(always)]
-                |i| a[i] + b[i],
-            )),
-            (a, b) => a.or(b),
-        }
+        add_all(self.body.force(t, q, v), self.effects.force(&self.body, t, q, v))
     }
 
     #[inline(always)]
@@ -97,10 +92,7 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
         }
         let push = self.effects.whole_force(&self.body, t, q, &velocity_of(&self.body, t, q, xi).ok()?)?;
         let response = self.body.reduced_response(t, q, &push)?;
-        Some(S::array(
-            #[inline(always)]
-            |i| bare[i] + response[i],
-        ))
+        Some(sum(&bare, &response))
     }
 
     #[inline(always)]

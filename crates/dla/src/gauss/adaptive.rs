@@ -1,7 +1,7 @@
 use super::ending::Ending;
 use super::lanes::{Outcome, Slopes, Stages};
 use super::memory::Memory;
-use super::pace::{degree, longer, octaves, roughest};
+use super::pace::{degree, longer, quarters_of, roughest};
 use super::rule::{Eight, quarter_octaves};
 use super::{Gauss, Taken};
 use crate::positions::affine_only;
@@ -147,7 +147,7 @@ impl<const S: usize> GaussAdaptive<S> {
                 quarters -= CUT_BACK;
                 refused = true;
                 if last {
-                    quarters = quarters.min((4.0 * octaves(rest.abs())).floor() as i32 - CUT_BACK);
+                    quarters = quarters.min(quarters_of(rest.abs()) - CUT_BACK);
                 }
                 continue;
             };
@@ -175,5 +175,5 @@ fn first<Sys: System<N, M>, const N: usize, const M: usize>(system: &Sys, t: f64
     let rate = slope.map_or(0.0, |slope| size(&slope.acceleration) / larger(size(&slope.velocity), 1e-3));
     let turning = (0..N).filter(|&i| system.angles()[i]).fold(rate, |m, i| larger(m, state.v()[i].abs()));
     let step = if turning > 0.0 { (0.5 / turning).min(whole.abs()) } else { whole.abs() };
-    (4.0 * octaves(step)).floor().clamp(-4000.0, 4000.0) as i32
+    quarters_of(step).clamp(-4000, 4000)
 }

@@ -21,7 +21,6 @@ pub(super) struct Ending {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Search {
     ending: Ending,
-    unseen: u32,
     pub(super) iterations: u32,
     /// The last change, and by how much it shrank.
     last: f64,
@@ -43,23 +42,23 @@ impl Ending {
     pub(super) fn begin(self, led: bool) -> Search {
         // What is remembered may come from a file: the limit holds all the same.
         let unseen = if led { self.unseen.min(self.limit.saturating_sub(1)) } else { 0 };
-        Search { ending: self, unseen, iterations: 0, last: f64::INFINITY, rate: 1.0, stalled: 0 }
+        Search { ending: Self { unseen, ..self }, iterations: 0, last: f64::INFINITY, rate: 1.0, stalled: 0 }
     }
 }
 
 impl Search {
     /// Counts an iteration; whether nobody looks at it.
     #[inline(always)]
-    pub(super) fn is_unseen(&mut self) -> bool {
+    pub(super) fn next_is_unseen(&mut self) -> bool {
         self.iterations += 1;
-        self.iterations <= self.unseen
+        self.iterations <= self.ending.unseen
     }
 
     /// Looks at the largest change of an iteration.
     #[inline(always)]
     pub(super) fn look(&mut self, moved: f64) -> Verdict {
-        let Ending { left, rounding, noise, limit, hopeless, .. } = self.ending;
-        let seen = self.iterations - self.unseen;
+        let Ending { left, rounding, noise, limit, hopeless, unseen } = self.ending;
+        let seen = self.iterations - unseen;
         let (slower, now) = (if seen > 2 { self.rate } else { 0.0 }, moved / self.last);
         self.rate = if seen > 1 { now } else { self.rate };
         // A search that begins near its end may shrink faster at first than it goes on.

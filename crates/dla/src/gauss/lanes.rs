@@ -200,7 +200,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
                 q = self.q(&along, &v1);
             }
             let Some(a1) = self.acceleration(simd, &q, &xi) else { return Outcome::Unknown };
-            let verdict = if search.is_unseen() {
+            let verdict = if search.next_is_unseen() {
                 Verdict::Continue
             } else {
                 let [cv, ca] = match counts {

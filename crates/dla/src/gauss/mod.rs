@@ -88,8 +88,7 @@ impl<const S: usize> Gauss<S> {
         slopes: &mut Slopes<N>,
     ) -> Option<Taken<N>> {
         let rule = self.eight?;
-        let before =
-            self.memory.rows(state).filter(|_| self.memory.is_of_length(h)).zip(rule.continued(rule.stages - 1, 0));
+        let before = self.memory.rows(state).filter(|_| self.memory.is_of_length(h)).zip(rule.continued(S - 1, 0));
         let ending = Ending {
             left: LEFT,
             rounding: 1e-12,

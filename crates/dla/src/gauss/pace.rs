@@ -36,10 +36,16 @@ pub(super) fn longer<const S: usize>(rough: f64, rate: f64, iterations: u32) -> 
     if smooth >= 0.0 { longer.max(if converging < 0.0 { -1 } else { 0 }) } else { longer }
 }
 
+/// The quarter octaves of a length (s), rounded down.
+#[inline(always)]
+pub(super) fn quarters_of(length: f64) -> i32 {
+    (4.0 * octaves(length)).floor() as i32
+}
+
 /// About the binary logarithm of a positive number, at most .09 below it: good enough for the length of a step, and four
 /// instructions.
 #[inline(always)]
-pub(super) fn octaves(x: f64) -> f64 {
+fn octaves(x: f64) -> f64 {
     (x.to_bits() as i64 - 1.0f64.to_bits() as i64) as f64 / (1u64 << 52) as f64
 }
 

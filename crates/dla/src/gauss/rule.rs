@@ -14,7 +14,7 @@ pub(crate) struct Eight {
     pub(super) square: Square,
     /// The weights of the coefficient of the highest Legendre polynomial in the slopes.
     pub(crate) highest: [f64; 8],
-    pub(super) stages: usize,
+    stages: usize,
     /// What continues the slopes of one step to the nodes of the next, by the degree of the polynomial and the ratio of the lengths.
     continued: [OnceLock<[Square; (SHORTER + LONGER + 1) as usize]>; 8],
 }

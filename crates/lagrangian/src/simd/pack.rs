@@ -182,10 +182,10 @@ impl<S: Simd, const R: usize> Pack<S, R> {
     pub fn folded(&self) -> f64 {
         const { assert!(R == 2, "two registers of four numbers") };
         let (s, [first, last]) = (self.simd, [self.registers[0], self.registers[1]]);
-        let mirrored = s.rotate_right_f64s(swapped(s, last), 2);
+        let mirrored = exchanged(s, swapped(s, last));
         let pairs = s.add_f64s(first, mirrored);
         let fours = s.add_f64s(pairs, swapped(s, pairs));
-        let sum = s.add_f64s(fours, s.rotate_right_f64s(fours, 2));
+        let sum = s.add_f64s(fours, exchanged(s, fours));
         bytemuck::cast_slice::<S::f64s, f64>(&[sum])[0]
     }
 
@@ -194,7 +194,7 @@ impl<S: Simd, const R: usize> Pack<S, R> {
     fn halves_exchanged(self) -> Self {
         self.map(
             #[inline(always)]
-            |s, x| s.rotate_right_f64s(x, 2),
+            |s, x| exchanged(s, x),
         )
     }
 
@@ -203,6 +203,12 @@ impl<S: Simd, const R: usize> Pack<S, R> {
     fn fours(&self, half: usize) -> Self {
         Self { simd: self.simd, registers: [self.registers[half]; R] }
     }
+}
+
+/// Halves of a register in each other's places.
+#[inline(always)]
+fn exchanged<S: Simd>(s: S, x: S::f64s) -> S::f64s {
+    s.rotate_right_f64s(x, 2)
 }
 
 /// Neighbours in each other's places.
