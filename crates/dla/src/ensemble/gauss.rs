@@ -2,6 +2,7 @@ use super::collocation::Collocation;
 use super::eight::Eight;
 use super::order::Order;
 use super::state::Row;
+use super::step::Step;
 use super::{Ensemble, LANES, LaneState, Systems};
 use crate::gauss::LEFT;
 use lagrangian::System;
@@ -25,7 +26,7 @@ pub struct GaussEnsemble<Sys, Each, const S: usize, const W: usize, const N: usi
     /// Time of the start, and length of a step (s).
     pub(super) schedule: (f64, f64),
     pub(super) state: LaneState<N, W>,
-    /// The slopes of the last step, velocities and accelerations, and how many iterations it took in each lane.
+    /// The slopes of the last step, velocities and accelerations, and how many iterations it took, by the first lane of each register.
     pub(super) slopes: [[[Row<W>; S]; N]; 2],
     pub(super) iterations: [u32; W],
     made: u64,
@@ -41,7 +42,7 @@ where
     Each: Systems<Sys, W>,
 {
     /// The systems at these states at time `t0` (s), with steps of length `h` (s). None where a system has no reduced equations
-    /// by hand.
+    /// by hand, or no basis of its admissible velocities.
     #[must_use]
     pub fn new(systems: Each, (t0, h): (f64, f64), state: LaneState<N, W>) -> Option<Self> {
         const { assert!(W.is_multiple_of(LANES), "trajectories go in eights") };
@@ -104,7 +105,7 @@ where
         for register in 0..W / LANES {
             let mut eight = Eight::<Si, R, S, N>::load(simd, of, register);
             for made in of.made..of.made + steps {
-                of.sweeps += u64::from(eight.step(of, register, made));
+                of.sweeps += u64::from(Step::after(made, of, register).make(&mut eight));
             }
             eight.store(of, register);
         }

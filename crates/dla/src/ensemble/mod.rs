@@ -8,6 +8,7 @@ mod order;
 mod settling;
 mod stages;
 mod state;
+mod step;
 mod systems;
 
 pub use closed::ClosedEnsemble;
