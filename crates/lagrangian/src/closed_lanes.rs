@@ -17,6 +17,10 @@ pub trait Side:
     #[must_use]
     fn like(self, x: f64) -> Self;
 
+    /// `self * factor + term`, rounded once where the machine does so.
+    #[must_use]
+    fn mul_add(self, factor: Self, term: Self) -> Self;
+
     /// Sines and cosines (rad).
     #[must_use]
     fn sin_cos(self) -> (Self, Self);

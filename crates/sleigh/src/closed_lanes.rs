@@ -56,17 +56,17 @@ impl<S: Side> Equation<S> {
         let (sin, cos) = if WIDE { long_series(turn) } else { short_series(turn) };
         let reach = a * w;
         let part = reach * sin;
-        let grown = r * (cos + k * (u0 + part));
-        let part_of_r = reach * (sin + turn * cos);
-        let slope = grown + k * r * part_of_r + (-r + 1.0) * (turn * sin);
+        let grown = r * k.mul_add(reach.mul_add(sin, u0), cos);
+        let part_of_r = reach * turn.mul_add(cos, sin);
+        let slope = (-r + 1.0).mul_add(turn * sin, (k * r).mul_add(part_of_r, grown));
         let correction = (cos - grown) / slope;
         let e = turn * correction;
         Ratio {
-            r: r + r * correction,
-            w: w + w * correction,
-            sin: sin + e * cos,
-            cos: cos - e * sin,
-            across: part + correction * part_of_r,
+            r: r.mul_add(correction, r),
+            w: w.mul_add(correction, w),
+            sin: e.mul_add(cos, sin),
+            cos: (-e).mul_add(sin, cos),
+            across: correction.mul_add(part_of_r, part),
             correction,
             turn,
         }
@@ -77,8 +77,9 @@ impl<S: Side> Equation<S> {
 #[inline(always)]
 fn short_series<S: Side>(d: S) -> (S, S) {
     let z = d * d;
-    let sin = d + d * z * (z * (z * SINE[2] + SINE[1]) + SINE[0]);
-    let cos = -(z * (-(z * (z * COSINE[1] + COSINE[0])) + 0.5)) + 1.0;
+    let c = |x: f64| z.like(x);
+    let sin = (d * z).mul_add(z.mul_add(z.mul_add(c(SINE[2]), c(SINE[1])), c(SINE[0])), d);
+    let cos = z.mul_add(z.mul_add(z.mul_add(c(COSINE[1]), c(COSINE[0])), c(-0.5)), c(1.0));
     (sin, cos)
 }
 
@@ -124,14 +125,15 @@ impl ClosedLanes<3, 1, 5, 6> for Sleigh {
             }
             equation.corrected::<WIDE>(r)
         } else {
-            equation.corrected::<WIDE>((r1 + r3) * 4.0 - (r2 * 6.0 + r4))
+            let of = |x: f64| r1.like(x);
+            equation.corrected::<WIDE>((r1 + r3).mul_add(of(4.0), (-r2).mul_add(of(6.0), -r4)))
         };
 
         let (u1, omega1) = (u0 + (across + across), (w + w) - omega0);
         // The directions of the blade half a step and a step later; the second is the first plus a chord.
-        let (cos_m, sin_m) = (cos0 * cos - sin0 * sin, sin0 * cos + cos0 * sin);
+        let (cos_m, sin_m) = (cos0.mul_add(cos, -(sin0 * sin)), sin0.mul_add(cos, cos0 * sin));
         let chord = sin + sin;
-        let (cos1, sin1) = (cos0 - chord * sin_m, sin0 + chord * cos_m);
+        let (cos1, sin1) = ((-chord).mul_add(sin_m, cos0), chord.mul_add(cos_m, sin0));
         let mean_speed = (u0 + across) / cos;
         let (way, turned) = (h * mean_speed, mean_speed * sin);
         let (most, last) = if WIDE { (BROAD, LAST) } else { (NARROW, QUICK) };
@@ -139,7 +141,7 @@ impl ClosedLanes<3, 1, 5, 6> for Sleigh {
             increment: [way * cos_m, way * sin_m, h * w],
             xi: [u1, omega1, u0.like(0.0)],
             frame: [sin1, cos1, r, r1, r2, r3],
-            impulse: [m * ((turned + turned) + a * (omega1 - omega0))],
+            impulse: [m * a.mul_add(omega1 - omega0, turned + turned)],
             doubts: [correction * (1.0 / last), turn * (1.0 / most)],
             // Quick steps take over from the wide ones before them.
             positive: if WIDE { r } else { r.like(1.0) },

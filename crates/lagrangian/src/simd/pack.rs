@@ -253,6 +253,10 @@ impl<S: Simd, const R: usize> Side for Pack<S, R> {
         Self::splat(self.simd, x)
     }
     #[inline(always)]
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        Self::mul_add(self, factor, term)
+    }
+    #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         Self::sin_cos(self)
     }
