@@ -77,9 +77,8 @@ impl<S: Side> Equation<S> {
 #[inline(always)]
 fn short_series<S: Side>(d: S) -> (S, S) {
     let z = d * d;
-    let c = |x: f64| z.like(x);
-    let sin = (d * z).mul_add(z.mul_add(z.mul_add(c(SINE[2]), c(SINE[1])), c(SINE[0])), d);
-    let cos = z.mul_add(z.mul_add(z.mul_add(c(COSINE[1]), c(COSINE[0])), c(-0.5)), c(1.0));
+    let sin = (d * z).mul_add(z.mul_add(z.mul_add(z.like(SINE[2]), z.like(SINE[1])), z.like(SINE[0])), d);
+    let cos = z.mul_add(z.mul_add(z.mul_add(z.like(COSINE[1]), z.like(COSINE[0])), z.like(-0.5)), z.like(1.0));
     (sin, cos)
 }
 
@@ -125,8 +124,7 @@ impl ClosedLanes<3, 1, 5, 6> for Sleigh {
             }
             equation.corrected::<WIDE>(r)
         } else {
-            let of = |x: f64| r1.like(x);
-            equation.corrected::<WIDE>((r1 + r3).mul_add(of(4.0), (-r2).mul_add(of(6.0), -r4)))
+            equation.corrected::<WIDE>((r1 + r3).mul_add(r1.like(4.0), (-r2).mul_add(r1.like(6.0), -r4)))
         };
 
         let (u1, omega1) = (u0 + (across + across), (w + w) - omega0);
