@@ -1,13 +1,9 @@
-use super::state::{Row, loaded, store};
-use super::{Ensemble, LANES, LaneState};
+use super::state::{Row, accumulate, loaded, store};
+use super::{BLOCK, Ensemble, LANES, LaneState};
 use lagrangian::simd::{Kernel, Pack, Simd, dispatch_widest};
 use lagrangian::{ClosedLaneStep, ClosedLanes, System};
 use std::array::from_fn;
 use std::marker::PhantomData;
-
-/// After so many steps frames are found anew from the configurations, so that their rounding does not add up, and angles are
-/// wrapped.
-const BLOCK: u64 = 64;
 
 /// The first steps have no frame before them, and are made twice: as few as leave a frame behind.
 const FIRST: u64 = 4;
@@ -142,10 +138,7 @@ impl<S: Simd, const K: usize, const N: usize, const M: usize, const P: usize, co
         let ClosedLaneStep { increment, xi, frame, impulse, doubts, positive } =
             Sys::step::<WIDE, Pack<S, K>>(&self.prepared, &self.xi, &self.frame);
         for k in 0..N {
-            let increment = increment[k] + self.rest[k];
-            let sum = self.q[k] + increment;
-            self.rest[k] = increment - (sum - self.q[k]);
-            self.q[k] = sum;
+            accumulate(&mut self.q[k], &mut self.rest[k], increment[k]);
         }
         (self.xi, self.frame) = (xi, frame);
         for k in 0..M {

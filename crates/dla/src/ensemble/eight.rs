@@ -1,6 +1,6 @@
 use super::collocation::Collocation;
 use super::stages::Stages;
-use super::state::{loaded, store};
+use super::state::{accumulate, loaded, store};
 use super::{GaussEnsemble, LANES};
 use lagrangian::simd::{Pack, Simd};
 
@@ -64,10 +64,7 @@ impl<Si: Simd, const R: usize, const S: usize, const N: usize> Eight<Si, R, S, N
     #[inline(always)]
     pub(super) fn end(&mut self, collocation: &Collocation<S>, free: usize) {
         for k in 0..N {
-            let increment = collocation.increment(&self.velocity[k]) + self.rest[k];
-            let sum = self.q[k] + increment;
-            self.rest[k] = increment - (sum - self.q[k]);
-            self.q[k] = sum;
+            accumulate(&mut self.q[k], &mut self.rest[k], collocation.increment(&self.velocity[k]));
         }
         for k in 0..free {
             self.xi[k] = self.xi[k] + collocation.increment(&self.acceleration[k]);

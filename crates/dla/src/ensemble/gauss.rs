@@ -3,7 +3,7 @@ use super::eight::Eight;
 use super::order::Order;
 use super::state::Row;
 use super::step::Step;
-use super::{Ensemble, LANES, LaneState, Systems};
+use super::{BLOCK, Ensemble, LANES, LaneState, Systems};
 use crate::gauss::LEFT;
 use lagrangian::System;
 use lagrangian::simd::{Kernel, Simd, dispatch_widest};
@@ -79,9 +79,13 @@ where
     }
 
     fn advance(&mut self, steps: u64) {
-        dispatch_widest(Steps { of: self, steps });
-        self.made += steps;
-        self.state.wrap();
+        let end = self.made + steps;
+        while self.made < end {
+            let steps = BLOCK.min(end - self.made);
+            dispatch_widest(Steps { of: self, steps });
+            self.made += steps;
+            self.state.wrap();
+        }
     }
 }
 

@@ -19,6 +19,9 @@ pub use systems::{Each, Same, Systems};
 /// Trajectories that go side by side.
 const LANES: usize = 8;
 
+/// After so many steps angles are wrapped, and frames found anew from the configurations, so that their rounding does not add up.
+const BLOCK: u64 = 64;
+
 /// `W` trajectories that make their steps together.
 pub trait Ensemble<const N: usize, const W: usize> {
     /// Makes steps. A trajectory whose step is not found becomes NaN, and the others go on.

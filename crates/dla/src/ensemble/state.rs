@@ -94,6 +94,15 @@ impl<const N: usize, const W: usize> LaneState<N, W> {
     }
 }
 
+/// Adds an increment to a number whose rounding error is kept.
+#[inline(always)]
+pub(super) fn accumulate<S: Simd, const K: usize>(q: &mut Pack<S, K>, rest: &mut Pack<S, K>, increment: Pack<S, K>) {
+    let increment = increment + *rest;
+    let sum = *q + increment;
+    *rest = increment - (sum - *q);
+    *q = sum;
+}
+
 /// Eight numbers of each row.
 #[inline(always)]
 pub(super) fn loaded<S: Simd, const K: usize, const W: usize, const L: usize>(
