@@ -2,7 +2,7 @@ use crate::increment::Increment;
 use crate::{Equations, Newton, State};
 use lagrangian::linear::{Singular, largest};
 use lagrangian::{
-    DiscreteConstraint, DiscreteLagrangian, Dual, FactoredSaddle, Rows, Saddle, System, position_misses, redundant_rows,
+    DiscreteConstraint, DiscreteLagrangian, FactoredSaddle, Rows, Saddle, System, redundant_rows,
 };
 use std::array::from_fn;
 
@@ -143,36 +143,8 @@ where
     /// Not inlined: it is called from each of the searches that a step may make, and is long.
     #[inline(never)]
     fn own_correction(&mut self, v: &[f64; N]) -> Result<[f64; N], Singular> {
-        let Increment { rules: (lagrangian, constraint), system, t0, h, state, q0, .. } = *self.of;
-        let l_d = lagrangian.derivatives(system, t0, h, &q0, v);
-        let mut at = Departure { residual: from_fn(|i| self.of.p0[i] + l_d.d1[i]), arriving: l_d.d2 };
-        let mut block = l_d.d1d2.map(|row| row.map(|x| h * x));
-
-        // Where it constrains positions, in place of the discrete constraint.
-        let positions = position_misses(system, t0 + h, &state.ahead(&v.map(|v| h * v)));
-
-        // Forces and constraint with their derivatives in v.
-        let (t, step) = (Dual::fixed(t0), Dual::fixed(h));
-        let (q, v) = (q0.map(Dual::fixed), Dual::variables(v));
-        if let Some((minus, plus)) = lagrangian.forces(system, t, step, &q, &v) {
-            for i in 0..N {
-                at.residual[i] += minus[i].re;
-                at.arriving[i] += plus[i].re;
-                for j in 0..N {
-                    block[i][j] += minus[i].eps[j];
-                }
-            }
-        }
-        let w_d = constraint.residual(system, t, step, &q, &v);
-        let (mut rows, mut level) = (w_d.map(|w| w.eps), w_d.map(|w| -w.re));
-        if let Some(positions) = positions {
-            for k in 0..M {
-                if let Some(g) = positions[k] {
-                    (rows[k], level[k]) = (g.eps, -g.re / h);
-                }
-            }
-        }
-
+        let (at, block) = self.of.linearised(v);
+        let (rows, level) = self.of.rows(v);
         let right = at.residual.map(|r| -r);
         match self.solved(&block, &rows, &right, &level) {
             Ok((factors, correction)) => {
@@ -183,7 +155,7 @@ where
             }
             Err(source) => {
                 // By value, so that nothing of a step that succeeds must stay in memory.
-                let found = independent(system, t0, *state, self.some).ok_or(source)?;
+                let found = independent(self.of.system, self.of.t0, *self.of.state, self.some).ok_or(source)?;
                 let saddle = Saddle { block, transposed: self.of.a0, rows, right, level };
                 let (correction, lambda) = saddle.solve_some(found)?;
                 (self.some, self.lambda, self.positive, self.kept) = (Some(found), lambda, None, None);

@@ -11,6 +11,7 @@
 mod branch;
 mod checkpoint;
 mod composition;
+mod continued;
 mod corrections;
 mod dependent;
 mod dla;
@@ -24,6 +25,7 @@ mod hermite;
 mod hint;
 mod history;
 mod increment;
+mod kept;
 mod lobatto;
 mod newton;
 mod one_step;

@@ -1,0 +1,59 @@
+use crate::linear::{Inverse, Singular};
+use crate::Saddle;
+use std::array::from_fn;
+
+/// The equations of a [`Saddle`] where `K^-1` is known: its Schur complement `C K^-1 G'`, factorised for several right-hand
+/// sides.
+#[derive(Debug, Clone, Copy)]
+pub struct Bordered<const N: usize, const M: usize> {
+    /// The rows of `C`.
+    rows: [[f64; N]; M],
+    /// `K^-1 G'`, by the rows of `G`.
+    response: [[f64; N]; M],
+    /// The inverse of `C K^-1 G'`.
+    schur: Inverse<M>,
+}
+
+impl<const N: usize, const M: usize> Bordered<N, M> {
+    /// Of `K^-1`, the rows of `G`, and those of `C`.
+    ///
+    /// # Errors
+    /// [`Singular`] where they do not determine a solution.
+    #[inline(always)]
+    pub fn new(
+        inverse: impl Fn(&[f64; N]) -> [f64; N],
+        transposed: &[[f64; N]; M],
+        rows: &[[f64; N]; M],
+    ) -> Result<Self, Singular> {
+        let response: [[f64; N]; M] = from_fn(|k| inverse(&transposed[k]));
+        let schur: [[f64; M]; M] = from_fn(|k| from_fn(|l| dot(&rows[k], &response[l])));
+        let schur = Inverse::above(&schur, Saddle::<N, M>::DEPENDENT)?;
+        Ok(Self { rows: *rows, response, schur })
+    }
+
+    /// Whether the determinant of the Schur complement is positive.
+    #[must_use]
+    #[inline(always)]
+    pub fn is_positive(&self) -> bool {
+        self.schur.is_positive()
+    }
+
+    /// `x` and `lambda` of `K x + G' lambda = r`, `C x = level`, given `free = K^-1 r`.
+    #[must_use]
+    #[inline(always)]
+    pub fn solve(&self, free: &[f64; N], level: &[f64; M]) -> ([f64; N], [f64; M]) {
+        let lambda = self.schur.solve(&from_fn(|k| dot(&self.rows[k], free) - level[k]));
+        let mut x = *free;
+        for k in 0..M {
+            for i in 0..N {
+                x[i] -= self.response[k][i] * lambda[k];
+            }
+        }
+        (x, lambda)
+    }
+}
+
+#[inline(always)]
+fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
+    (0..N).map(|i| a[i] * b[i]).sum()
+}
