@@ -1,82 +1,31 @@
-//! A step that goes on from the last one: its search begins with the derivatives that were kept, and with rows of its own.
+//! A step that goes on from the last one: it begins with the derivatives that are kept, and has rows of the constraint of its own.
 
 use crate::branch;
 use crate::dla::{Dla, predicted};
 use crate::increment::Increment;
 use crate::overshoot::brakes_only;
+use crate::settle::{SHRINKING, Settle, sup};
 use crate::{State, StepReport};
-use lagrangian::linear::largest;
 use lagrangian::{Bordered, DiscreteConstraint, DiscreteLagrangian, System, mass_matrix, momentum};
 use std::array::from_fn;
 
-/// Corrections shrink by at least as much, or the derivatives are no longer good enough.
-const SHRINKING: f64 = 0.125;
+/// What goes on in a step: the momenta at its beginning, and the rows of the constraint there.
+pub(crate) type Beginning<const N: usize, const M: usize> = ([f64; N], [[f64; N]; M]);
 
-/// Corrections below this part of the velocity are taken for rounding where they do not shrink. Where rounding is larger, the
-/// general search sees it.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
-
-/// The square of a correction that is smaller, relative to the velocity, is below all rounding.
-const SMALL: f64 = 1e-10;
-
-/// Improves `x` until every component is settled by the rule of [`Newton`](crate::Newton) for simplified corrections, the first of which
-/// is no larger than the given size; and says in how many. None where they do not shrink as they should.
-#[inline(always)]
-fn settle<const N: usize>(
-    tolerance: f64,
-    most: f64,
-    exact: bool,
-    x: &mut [f64; N],
-    mut correction: impl FnMut(&[f64; N]) -> [f64; N],
-) -> Option<u32> {
-    /// More are not worth it.
-    const CORRECTIONS: u32 = 8;
-    let (mut last, mut allowed) = ([f64::INFINITY; N], most);
-    for made in 1..=CORRECTIONS {
-        let d = correction(x);
-        for i in 0..N {
-            x[i] += d[i];
-        }
-        let size = sup(&d);
-        let rounding = size <= ROUNDING * sup(x);
-        if !(size <= allowed || rounding) {
-            return None;
-        }
-        let mut settled = true;
-        for i in 0..N {
-            let (d, size) = (d[i].abs(), tolerance * x[i].abs());
-            let predicted = made > 1 && d <= x[i].abs() && 2.0 * d * d <= size * last[i];
-            let rounded = rounding && d >= 0.25 * last[i];
-            settled &= d <= size || predicted || rounded;
-            last[i] = d;
-        }
-        if settled || exact {
-            return Some(made);
-        }
-        allowed = SHRINKING * size;
-    }
-    None
-}
-
-/// The size of the largest component, of numbers.
-#[inline(always)]
-fn sup<const N: usize>(x: &[f64; N]) -> f64 {
-    x.iter().fold(0.0, |most, x| f64::max(most, x.abs()))
-}
-
-/// `x + A' lambda`.
-#[inline(always)]
-fn pushed<const N: usize, const M: usize>(mut x: [f64; N], a: &[[f64; N]; M], lambda: &[f64; M]) -> [f64; N] {
-    for k in 0..M {
-        for i in 0..N {
-            x[i] += a[k][i] * lambda[k];
-        }
-    }
-    x
+/// The velocity that a search has found, with the impulse of the constraints; the momenta at the end of the step; and the
+/// number of corrections.
+struct Found<const N: usize, const M: usize> {
+    v: [f64; N],
+    lambda: [f64; M],
+    p1: [f64; N],
+    corrections: u32,
 }
 
 impl<L, C> Dla<L, C> {
     /// The step in its general form where it goes on from the last one; none where it does not.
+    ///
+    /// The equations are those of [`Dla`], with multipliers. The derivatives are of a step before, so that a correction takes
+    /// first-order evaluations alone, and no elimination beyond the multipliers.
     #[inline(always)]
     pub(crate) fn continued_step<Sys: System<N, M>, const N: usize, const M: usize>(
         &mut self,
@@ -89,8 +38,8 @@ impl<L, C> Dla<L, C> {
         L: DiscreteLagrangian<Sys, N, M>,
         C: DiscreteConstraint<Sys, N, M>,
     {
-        let (p0, a0) = self.kept.goes_on(state)?;
-        let report = self.going_on(system, (t0, h), state, p0, a0);
+        let beginning = self.kept.goes_on(state)?;
+        let report = self.going_on(system, (t0, h), state, beginning);
         match report {
             Some(_) => self.kept.succeeds(),
             None => self.kept.fails(),
@@ -104,19 +53,59 @@ impl<L, C> Dla<L, C> {
         system: &Sys,
         (t0, h): (f64, f64),
         state: &mut State<N>,
-        p0: [f64; N],
-        a0: [[f64; N]; M],
+        (p0, a0): Beginning<N, M>,
     ) -> Option<StepReport<M>>
     where
         L: DiscreteLagrangian<Sys, N, M>,
         C: DiscreteConstraint<Sys, N, M>,
     {
         let (q0, v0) = (*state.q(), *state.v());
+        let Found { v, lambda, p1, corrections } = self.mean(system, (t0, h), state, (p0, a0))?;
+        if branch::turn(system, (t0, h), &q0, &v) > branch::NEAR {
+            return None;
+        }
+
+        let d = v.map(|v| h * v);
+        let (t1, q1) = (t0 + h, state.ahead(&d));
+        let guess = match self.kept.velocities.next(h) {
+            Some(expected) if !self.kept.constant => from_fn(|i| expected[i]),
+            _ => from_fn(|i| 2.0 * v[i] - v0[i]),
+        };
+        let (a1, b1) = system.constraint(t1, &q1);
+        let end = self.arrival(system, (t1, &q1), p1, (&a1, &b1), guess)?;
+        let v1 = end.v;
+
+        brakes_only(system, (t0, h), &q0, (&v, &v1)).ok()?;
+        // One by one they would be waited for.
+        if !(0..N).fold(true, |all, i| all & q1[i].is_finite() & v1[i].is_finite()) {
+            return None;
+        }
+        let acceleration = from_fn(|i| (v1[i] - v[i]) * (2.0 / h));
+        state.advance_with_acceleration(h, &d, v1, acceleration);
+        self.kept.block.took::<N>(corrections);
+        self.kept.mass.took::<N>(end.corrections);
+        self.kept.ended(h, state, &end.p1, &a1);
+        Some(StepReport { impulses: [lambda, end.lambda], iterations: corrections, work: None })
+    }
+
+    /// The mean velocity `v`: `p0 + D1 L_d + f_d^- + A(q0)' lambda = 0`, `w_d = 0`.
+    #[inline(always)]
+    fn mean<Sys: System<N, M>, const N: usize, const M: usize>(
+        &mut self,
+        system: &Sys,
+        (t0, h): (f64, f64),
+        state: &State<N>,
+        (p0, a0): Beginning<N, M>,
+    ) -> Option<Found<N, M>>
+    where
+        L: DiscreteLagrangian<Sys, N, M>,
+        C: DiscreteConstraint<Sys, N, M>,
+    {
+        /// The square of a correction that is smaller, relative to the velocity, is below all rounding.
+        const SMALL: f64 = 1e-9;
         let mut v = predicted(state, h)?;
         let rules = (&self.lagrangian, &self.constraint);
-        let increment = Increment { rules, system, t0, h, state, q0, p0, a0, basis: None };
-
-        // The increment, by rows of its own.
+        let increment = Increment { rules, system, t0, h, state, q0: *state.q(), p0, a0, basis: None };
         let mut at = if self.kept.block.stale {
             let (at, block) = increment.linearised(&v);
             self.kept.block.renew(&block).ok()?;
@@ -133,89 +122,100 @@ impl<L, C> Dla<L, C> {
             &rows,
         )
         .ok()?;
-        let mut first = true;
+        if !bordered.is_as_at_rest(block.positive) {
+            return None;
+        }
+
         let (mut lambda, mut both, mut change) = ([0.0; M], [0.0; N], 0.0);
-        let (mut size, mut before, mut moved) = (0.0, 0.0, 0.0);
-        let most = SHRINKING * largest(&v);
-        let made = settle(
-            self.newton.tolerance,
-            most,
-            false,
+        let (mut first, mut size, mut before, mut moved) = (true, 0.0, 0.0, 0.0);
+        let settle = Settle { tolerance: self.newton.tolerance, most: SHRINKING * sup(&v), enough: 0.0 };
+        let corrections = settle.search(
             &mut v,
             #[inline(always)]
             |v| {
                 if !first {
                     at = increment.momenta(v);
-                    // A correction meets the constraint but for its product with the way to the rows.
+                    // A correction meets the constraint but for its product with the way from where the rows are.
                     let met = moved * size <= (SMALL * sup(v)).powi(2);
                     level = if met { [0.0; M] } else { increment.level(v) };
                 }
-                first = false;
-                let (d, l) = bordered.solve(&block.times(&at.residual.map(|r| -r)), &level);
+                let d;
+                (d, lambda) = bordered.solve(&block.times(&at.residual.map(|r| -r)), &level);
                 let ends: [f64; N] = from_fn(|i| at.residual[i] + at.arriving[i]);
                 change = sup(&from_fn::<_, N, _>(|i| ends[i] - both[i]));
-                (lambda, both, before, size) = (l, ends, size, sup(&d));
+                (first, both, before, size) = (false, ends, size, sup(&d));
                 moved += size;
                 d
             },
         )?;
-        if branch::turn(system, (t0, h), &q0, &v) > branch::NEAR {
-            return None;
-        }
-        // The equations hold at `v`: what the momenta at both ends sum to is all that the last correction has changed.
+        // With the equations at `v` met, the momenta at the end are what those at both ends sum to, and the impulse: of that the
+        // last correction changes as much in its size as the one before.
         if change * size > f64::EPSILON * before * sup(&both) {
             let at = increment.momenta(&v);
             both = from_fn(|i| at.residual[i] + at.arriving[i]);
         }
-        let p1 = pushed(both, &a0, &lambda);
+        Some(Found { v, lambda, p1: pushed(both, &a0, &lambda), corrections })
+    }
 
-        // The momentum at the end, projected onto the constraint there.
-        let d = v.map(|v| h * v);
-        let (t1, q1) = (t0 + h, state.ahead(&d));
-        let mut v1: [f64; N] = match self.kept.velocities.next(h) {
-            Some(expected) if !self.kept.constant => from_fn(|i| expected[i]),
-            _ => from_fn(|i| 2.0 * v[i] - v0[i]),
-        };
+    /// The velocity `v1` at the end: `L_v(q1, v1) = p1 + A(q1)' mu`, `A(q1) v1 + b(q1) = 0`.
+    #[inline(always)]
+    fn arrival<Sys: System<N, M>, const N: usize, const M: usize>(
+        &mut self,
+        system: &Sys,
+        (t1, q1): (f64, &[f64; N]),
+        p1: [f64; N],
+        (a1, b1): (&[[f64; N]; M], &[f64; M]),
+        guess: [f64; N],
+    ) -> Option<Found<N, M>> {
+        /// A linear equation is solved by one correction that is smaller, relative to the velocity.
+        const LINEAR: f64 = 1e-3;
+        let mut v = guess;
         let mut p = if self.kept.mass.stale {
-            let (p, matrix) = mass_matrix(system, t1, &q1, &v1);
-            self.kept.mass.renew(&matrix).ok()?;
+            let (p, mass) = mass_matrix(system, t1, q1, &v);
+            self.kept.mass.renew(&mass).ok()?;
             p
         } else {
-            momentum(system, t1, &q1, &v1)
+            momentum(system, t1, q1, &v)
         };
         let mass = &self.kept.mass;
-        let (a1, b1) = system.constraint(t1, &q1);
         let bordered = Bordered::new(
             #[inline(always)]
             |x| mass.times(x),
-            &a1,
-            &a1,
+            a1,
+            a1,
         )
         .ok()?;
-        let mut first = true;
-        let mut minus_mu = [0.0; M];
-        let project = |v1: &[f64; N]| {
-            if !first {
-                p = momentum(system, t1, &q1, v1);
-            }
-            first = false;
-            let slip: [f64; M] = from_fn(|k| -(0..N).fold(b1[k], |sum, i| sum + a1[k][i] * v1[i]));
-            let (d, l) = bordered.solve(&mass.times(&from_fn(|i| p1[i] - p[i])), &slip);
-            minus_mu = l;
-            d
-        };
-        let projected = settle(self.newton.tolerance, largest(&v), self.kept.constant, &mut v1, project)?;
-        let mu = minus_mu.map(|m| -m);
 
-        brakes_only(system, (t0, h), &q0, (&v, &v1)).ok()?;
-        if !(0..N).fold(true, |all, i| all & q1[i].is_finite() & v1[i].is_finite()) {
-            return None;
-        }
-        let acceleration = from_fn(|i| (v1[i] - v[i]) * (2.0 / h));
-        state.advance_with_acceleration(h, &d, v1, acceleration);
-        self.kept.block.took::<N>(made);
-        self.kept.mass.took::<N>(projected);
-        self.kept.ended(h, state, &pushed(p1, &a1, &mu), &a1);
-        Some(StepReport { impulses: [lambda, mu], iterations: made, work: None })
+        let (mut first, mut minus_mu) = (true, [0.0; M]);
+        let size = sup(&v);
+        let enough = if self.kept.constant { LINEAR * size } else { 0.0 };
+        let settle = Settle { tolerance: self.newton.tolerance, most: size, enough };
+        let corrections = settle.search(
+            &mut v,
+            #[inline(always)]
+            |v| {
+                if !first {
+                    p = momentum(system, t1, q1, v);
+                }
+                first = false;
+                let slip: [f64; M] = from_fn(|k| -(0..N).fold(b1[k], |sum, i| sum + a1[k][i] * v[i]));
+                let d;
+                (d, minus_mu) = bordered.solve(&mass.times(&from_fn(|i| p1[i] - p[i])), &slip);
+                d
+            },
+        )?;
+        let mu = minus_mu.map(|m| -m);
+        Some(Found { v, lambda: mu, p1: pushed(p1, a1, &mu), corrections })
     }
+}
+
+/// `x + A' lambda`.
+#[inline(always)]
+fn pushed<const N: usize, const M: usize>(mut x: [f64; N], a: &[[f64; N]; M], lambda: &[f64; M]) -> [f64; N] {
+    for k in 0..M {
+        for i in 0..N {
+            x[i] += a[k][i] * lambda[k];
+        }
+    }
+    x
 }

@@ -1,12 +1,13 @@
 use crate::dependent::{named_at, rows_left_out};
 use crate::increment::{Increment, Mean};
-use crate::overshoot::brakes_only;
 use crate::kept::Kept;
+use crate::overshoot::brakes_only;
 use crate::projection::{Projected, Projection};
+use crate::settle::sup;
 use crate::{Newton, OneStep, Stage, State, StepError, StepReport};
-use lagrangian::linear::largest;
 use lagrangian::{
-    Alpha, DiscreteConstraint, DiscreteLagrangian, Midpoint, NotAWeight, System, Trapezoid, mass_is_constant, momentum, reaction_rows,
+    Alpha, DiscreteConstraint, DiscreteLagrangian, Midpoint, NotAWeight, System, Trapezoid, mass_is_constant, momentum,
+    reaction_rows,
 };
 use std::array::from_fn;
 
@@ -216,7 +217,7 @@ impl<L, C> Dla<L, C> {
 pub(crate) fn predicted<const N: usize>(state: &State<N>, h: f64) -> Option<[f64; N]> {
     const MOST: f64 = 0.125;
     let v0 = state.v();
-    let near = |v: &[f64; N]| largest(&from_fn::<_, N, _>(|i| v[i] - v0[i])) <= MOST * largest(v0);
+    let near = |v: &[f64; N]| sup(&from_fn::<_, N, _>(|i| v[i] - v0[i])) <= MOST * sup(v0);
     let extrapolated = state.expected(h).map(|d| d.map(|d| d / h)).filter(near);
     extrapolated.or_else(|| {
         let acceleration = state.acceleration()?;

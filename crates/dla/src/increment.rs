@@ -3,7 +3,9 @@ use crate::corrections::{Corrections, Departure};
 use crate::dependent::named_along;
 use crate::{Newton, NewtonError, State, StepError};
 use lagrangian::linear::{Singular, normal_solve};
-use lagrangian::{AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, Dual, Rows, Saddle, System, position_misses};
+use lagrangian::{
+    AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, Dual, Rows, Saddle, System, position_misses,
+};
 use std::array::from_fn;
 use std::f64::consts::PI;
 

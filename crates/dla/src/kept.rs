@@ -1,86 +1,7 @@
 use crate::State;
+use crate::derivatives::{COORDINATES, Derivatives, Row, counted, switch};
 use crate::past::Past;
-use lagrangian::linear::{Inverse, Singular};
 use std::array::from_fn;
-
-/// Systems of more coordinates or constraints are not remembered.
-const COORDINATES: usize = 8;
-
-type Row = [f64; COORDINATES];
-
-/// The inverse of a matrix of derivatives, by columns, which serves several steps.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[repr(align(64))]
-pub(crate) struct Derivatives {
-    columns: [Row; COORDINATES],
-    /// Whether it is time for new ones.
-    pub(crate) stale: bool,
-    /// The corrections that the first search with them took, and how many more all took after it.
-    least: u32,
-    more: u32,
-    /// How many they were.
-    searches: u32,
-    /// For how many searches each is to have its own.
-    own: u32,
-}
-
-impl Derivatives {
-    const NONE: Self = Self { columns: [[0.0; COORDINATES]; COORDINATES], stale: true, least: 0, more: 0, searches: 0, own: 0 };
-
-    /// New ones, given by rows.
-    ///
-    /// # Errors
-    /// [`Singular`] where they have no inverse.
-    #[inline(never)]
-    pub(crate) fn renew<const N: usize>(&mut self, matrix: &[[f64; N]; N]) -> Result<(), Singular> {
-        let inverse = Inverse::new(matrix)?;
-        for (j, column) in self.columns.iter_mut().take(N).enumerate() {
-            let unit = from_fn(|i| f64::from(u8::from(i == j)));
-            column[..N].copy_from_slice(&inverse.solve(&unit));
-        }
-        (self.stale, self.more, self.searches) = (false, 0, 0);
-        Ok(())
-    }
-
-    /// The product of the inverse with a vector.
-    #[inline(always)]
-    pub(crate) fn times<const N: usize>(&self, x: &[f64; N]) -> [f64; N] {
-        if N <= 4 { self.times_of::<N, N>(x) } else { self.times_of::<N, COORDINATES>(x) }
-    }
-
-    /// The same by columns of `W` places: beyond four whole registers are quicker.
-    #[inline(always)]
-    fn times_of<const N: usize, const W: usize>(&self, x: &[f64; N]) -> [f64; N] {
-        let mut sum = [0.0; W];
-        for (column, x) in self.columns.iter().zip(x) {
-            for i in 0..W {
-                sum[i] += column[i] * x;
-            }
-        }
-        from_fn(|i| sum[i])
-    }
-
-    /// That a search with them took so many corrections. They are to be renewed where they have cost more than that.
-    #[inline(always)]
-    pub(crate) fn took<const N: usize>(&mut self, corrections: u32) {
-        /// So many searches in a row have their own where a second one is not worth it.
-        const OWN: u32 = 16;
-        // About as many corrections take the time of new derivatives.
-        let price = const { (N * N * N).div_ceil(27) as u32 };
-        self.searches = self.searches.saturating_add(1);
-        if self.searches == 1 {
-            self.least = corrections;
-            self.stale = self.own > 0;
-            self.own = self.own.saturating_sub(1);
-            return;
-        }
-        self.more = self.more.saturating_add(corrections.saturating_sub(self.least));
-        self.stale = self.more >= price;
-        if self.stale && self.searches == 2 {
-            self.own = OWN;
-        }
-    }
-}
 
 /// What a step of the general form remembers of those before it, with which the search of the next one begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -176,7 +97,10 @@ impl Kept {
     /// The momenta and the rows of the constraint where the last step ended, if that is this state and the next may go on.
     #[inline(always)]
     #[allow(clippy::float_cmp, reason = "only the very same state goes on")]
-    pub(crate) fn goes_on<const N: usize, const M: usize>(&self, state: &State<N>) -> Option<([f64; N], [[f64; N]; M])> {
+    pub(crate) fn goes_on<const N: usize, const M: usize>(
+        &self,
+        state: &State<N>,
+    ) -> Option<([f64; N], [[f64; N]; M])> {
         if N > COORDINATES || M > COORDINATES || !self.ready {
             return None;
         }
@@ -210,12 +134,7 @@ impl Kept {
     fn visit(&mut self, mut visit: impl FnMut(&mut f64)) {
         let Self { ready, pause, next_pause, block, mass, constant, velocities, q, v, p, rows } = self;
         for derivatives in [block, mass] {
-            let Derivatives { columns, stale, least, more, searches, own } = derivatives;
-            columns.as_flattened_mut().iter_mut().for_each(&mut visit);
-            switch(stale, &mut visit);
-            for count in [least, more, searches, own] {
-                counted(count, &mut visit);
-            }
+            derivatives.visit(&mut visit);
         }
         for number in [pause, next_pause] {
             counted(number, &mut visit);
@@ -228,17 +147,4 @@ impl Kept {
             row.iter_mut().for_each(&mut visit);
         }
     }
-}
-
-fn counted(count: &mut u32, visit: &mut impl FnMut(&mut f64)) {
-    let mut number = f64::from(*count);
-    visit(&mut number);
-    // What is no count becomes one.
-    *count = number as u32;
-}
-
-fn switch(flag: &mut bool, visit: &mut impl FnMut(&mut f64)) {
-    let mut number = f64::from(u8::from(*flag));
-    visit(&mut number);
-    *flag = number != 0.0;
 }

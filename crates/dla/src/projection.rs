@@ -81,11 +81,11 @@ impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Projection<'a, Sys, 
         let factors = FactoredSaddle::new(&l.e12, &a1, &a1, basis.as_ref()).ok()?;
 
         let missing: [f64; N] = from_fn(|i| p1[i] - l.e1[i]);
-        let first = factors.solve(&missing, &slip(guess), &a1, basis.as_ref());
+        let first = factors.solve(&missing, &slip(guess), basis.as_ref());
         let v1: [f64; N] = from_fn(|i| guess[i] + first[i]);
         let p = system.lagrangian(Dual::fixed(*t1), &q1.map(Dual::fixed), &Dual::variables(&v1)).eps;
         let missing: [f64; N] = from_fn(|i| p1[i] - p[i]);
-        let second = factors.solve(&missing, &slip(&v1), &a1, basis.as_ref());
+        let second = factors.solve(&missing, &slip(&v1), basis.as_ref());
         let v1: [f64; N] = from_fn(|i| v1[i] + second[i]);
 
         // As `Newton` sees that they have settled; below the rounding of the largest component all that is left is rounding.
@@ -122,7 +122,8 @@ pub(crate) fn project<Sys: System<N, M>, const N: usize, const M: usize>(
         return Err(error);
     }
     let rows = independent_rows(system, t, q, v, error)?;
-    let Projected { v1, .. } = Projection::new(system, t, *q, p, None).of(Some(rows)).solve(&newton, *v).map_err(fail)?;
+    let Projected { v1, .. } =
+        Projection::new(system, t, *q, p, None).of(Some(rows)).solve(&newton, *v).map_err(fail)?;
     rows_left_out(system, t, q, &v1, rows)?;
     Ok(v1)
 }

@@ -1,5 +1,5 @@
-use crate::linear::{Inverse, Singular};
 use crate::Saddle;
+use crate::linear::{Inverse, Singular};
 use std::array::from_fn;
 
 /// The equations of a [`Saddle`] where `K^-1` is known: its Schur complement `C K^-1 G'`, factorised for several right-hand
@@ -31,11 +31,19 @@ impl<const N: usize, const M: usize> Bordered<N, M> {
         Ok(Self { rows: *rows, response, schur })
     }
 
-    /// Whether the determinant of the Schur complement is positive.
+    /// Whether the determinant of the equations is positive, given whether that of `K` is: it is that of `K` times that of
+    /// `-C K^-1 G'`.
     #[must_use]
     #[inline(always)]
-    pub fn is_positive(&self) -> bool {
-        self.schur.is_positive()
+    pub fn is_positive(&self, block: bool) -> bool {
+        block == (self.schur.is_positive() ^ !M.is_multiple_of(2))
+    }
+
+    /// Whether the determinant has the sign of [`Saddle::is_positive_at_rest`].
+    #[must_use]
+    #[inline(always)]
+    pub fn is_as_at_rest(&self, block: bool) -> bool {
+        self.is_positive(block) == N.is_multiple_of(2)
     }
 
     /// `x` and `lambda` of `K x + G' lambda = r`, `C x = level`, given `free = K^-1 r`.

@@ -198,13 +198,12 @@ fn gradients<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
     v: &[S; N],
 ) -> [[S; N]; 2] {
     match N {
-        ..=4 => gradients_by::<Sys, S, N, M, 4>(system, t, q, v),
         5..=8 => gradients_by::<Sys, S, N, M, 8>(system, t, q, v),
         _ => gradients_by::<Sys, S, N, M, N>(system, t, q, v),
     }
 }
 
-/// `L_q` and `L_v`.
+/// The same by derivatives in `W` places, of which those beyond `N` are zero: whole registers are quicker.
 #[inline(always)]
 fn gradients_by<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize, const W: usize>(
     system: &Sys,
@@ -213,9 +212,9 @@ fn gradients_by<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize, co
     v: &[S; N],
 ) -> [[S; N]; 2] {
     let t = Gradient::<S, W>::fixed(t);
-    let l_v = system.lagrangian(t, &Gradient::all_fixed(q), &Gradient::variables(v)).gradient();
-    let l_q = system.lagrangian(t, &Gradient::variables(q), &Gradient::all_fixed(v)).gradient();
-    [from_fn(|i| l_q[i]), from_fn(|i| l_v[i])]
+    let l_v = system.lagrangian(t, &Gradient::all_fixed(q), &Gradient::variables(v));
+    let l_q = system.lagrangian(t, &Gradient::variables(q), &Gradient::all_fixed(v));
+    [l_q.gradient(), l_v.gradient()]
 }
 
 /// Time and configuration at the fraction `alpha` of a step.

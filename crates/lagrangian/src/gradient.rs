@@ -2,16 +2,17 @@ use crate::scalar::derived_operators;
 use crate::{Scalar, array};
 use std::ops::{Add, Div, Mul, Neg};
 
-/// A number with its gradient in `N` variables, of which the parts that a model makes zero are known when it is compiled.
+/// A number with its gradient in `N` variables, or a number that depends on none of them: which of the two, a model says when it is
+/// compiled.
 ///
-/// What a number does not depend on takes no instruction: the derivatives that are left are those that one would write by hand.
-/// [`Dual`](crate::Dual) computes them all, and is as good where few are zero. (A zero of the model swallows an infinity or a NaN
-/// that it is multiplied by.)
+/// So a Lagrangian that is differentiated in its velocities has plain numbers for all that depends on the place alone, where
+/// [`Dual`](crate::Dual) would carry zeros through; in what depends on the variables both are the same. (That a gradient is none
+/// swallows an infinity or a NaN that zeros would be multiplied by.)
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gradient<S, const N: usize> {
     /// The value.
     pub re: S,
-    /// The derivatives; none where the number does not depend on the variable.
+    /// The derivatives; none of a number that does not depend on the variables.
     parts: Option<[S; N]>,
 }
 
@@ -53,24 +54,39 @@ impl<S: Scalar, const N: usize> Gradient<S, N> {
         )
     }
 
-    /// The derivatives.
+    /// The derivatives in the first `K` variables; zero in those that there are not.
     #[must_use]
     #[inline(always)]
-    pub fn gradient(&self) -> [S; N] {
-        self.parts.unwrap_or([S::zero(); N])
+    pub fn gradient<const K: usize>(&self) -> [S; K] {
+        let parts = self.parts.unwrap_or([S::zero(); N]);
+        array(
+            S::zero(),
+            #[inline(always)]
+            |i| if i < N { parts[i] } else { S::zero() },
+        )
     }
 
     #[inline(always)]
     fn chain(self, f: S, df: S) -> Self {
-        self.scaled(f, #[inline(always)] |e| df * e)
+        self.scaled(
+            f,
+            #[inline(always)]
+            |e| df * e,
+        )
     }
 
     #[inline(always)]
     fn scaled(self, re: S, by: impl Fn(S) -> S) -> Self {
-        let parts = match self.parts {
-            Some(e) => Some(array(S::zero(), #[inline(always)] |i| by(e[i]))),
-            None => None,
-        };
+        let parts = self.parts.map(
+            #[inline(always)]
+            |e| {
+                array(
+                    S::zero(),
+                    #[inline(always)]
+                    |i| by(e[i]),
+                )
+            },
+        );
         Self { re, parts }
     }
 
@@ -78,9 +94,21 @@ impl<S: Scalar, const N: usize> Gradient<S, N> {
     fn with(self, o: Self, re: S, one: impl Fn(S) -> S, other: impl Fn(S) -> S) -> Self {
         let parts = match (self.parts, o.parts) {
             (None, None) => None,
-            (Some(a), None) => Some(array(S::zero(), #[inline(always)] |i| one(a[i]))),
-            (None, Some(b)) => Some(array(S::zero(), #[inline(always)] |i| other(b[i]))),
-            (Some(a), Some(b)) => Some(array(S::zero(), #[inline(always)] |i| one(a[i]) + other(b[i]))),
+            (Some(a), None) => Some(array(
+                S::zero(),
+                #[inline(always)]
+                |i| one(a[i]),
+            )),
+            (None, Some(b)) => Some(array(
+                S::zero(),
+                #[inline(always)]
+                |i| other(b[i]),
+            )),
+            (Some(a), Some(b)) => Some(array(
+                S::zero(),
+                #[inline(always)]
+                |i| one(a[i]) + other(b[i]),
+            )),
         };
         Self { re, parts }
     }
@@ -90,14 +118,28 @@ impl<S: Scalar, const N: usize> Add for Gradient<S, N> {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
-        self.with(o, self.re + o.re, #[inline(always)] |a| a, #[inline(always)] |b| b)
+        self.with(
+            o,
+            self.re + o.re,
+            #[inline(always)]
+            |a| a,
+            #[inline(always)]
+            |b| b,
+        )
     }
 }
 impl<S: Scalar, const N: usize> Mul for Gradient<S, N> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: Self) -> Self {
-        self.with(o, self.re * o.re, #[inline(always)] |a| a * o.re, #[inline(always)] |b| self.re * b)
+        self.with(
+            o,
+            self.re * o.re,
+            #[inline(always)]
+            |a| a * o.re,
+            #[inline(always)]
+            |b| self.re * b,
+        )
     }
 }
 impl<S: Scalar, const N: usize> Div for Gradient<S, N> {
@@ -105,14 +147,25 @@ impl<S: Scalar, const N: usize> Div for Gradient<S, N> {
     #[inline(always)]
     fn div(self, o: Self) -> Self {
         let re = self.re / o.re;
-        self.with(o, re, #[inline(always)] |a| a / o.re, #[inline(always)] |b| -(re * b) / o.re)
+        self.with(
+            o,
+            re,
+            #[inline(always)]
+            |a| a / o.re,
+            #[inline(always)]
+            |b| -(re * b) / o.re,
+        )
     }
 }
 impl<S: Scalar, const N: usize> Neg for Gradient<S, N> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        self.scaled(-self.re, #[inline(always)] |e| -e)
+        self.scaled(
+            -self.re,
+            #[inline(always)]
+            |e| -e,
+        )
     }
 }
 impl<S: Scalar, const N: usize> Add<f64> for Gradient<S, N> {
@@ -126,14 +179,22 @@ impl<S: Scalar, const N: usize> Mul<f64> for Gradient<S, N> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: f64) -> Self {
-        self.scaled(self.re * o, #[inline(always)] |e| e * o)
+        self.scaled(
+            self.re * o,
+            #[inline(always)]
+            |e| e * o,
+        )
     }
 }
 impl<S: Scalar, const N: usize> Div<f64> for Gradient<S, N> {
     type Output = Self;
     #[inline(always)]
     fn div(self, o: f64) -> Self {
-        self.scaled(self.re / o, #[inline(always)] |e| e / o)
+        self.scaled(
+            self.re / o,
+            #[inline(always)]
+            |e| e / o,
+        )
     }
 }
 derived_operators!([S: Scalar, const N: usize] Gradient<S, N>);
