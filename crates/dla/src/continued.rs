@@ -219,3 +219,107 @@ fn pushed<const N: usize, const M: usize>(mut x: [f64; N], a: &[[f64; N]; M], la
     }
     x
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Form, OneStep};
+    use lagrangian::{Constraint, Midpoint, Scalar};
+    use proptest::prelude::*;
+
+    /// A disk of unit masses that rolls upright, on a table that may tremble.
+    #[derive(Clone, Copy)]
+    struct Disk {
+        trembling: f64,
+    }
+
+    impl System<4, 2> for Disk {
+        fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 4], v: &[S; 4]) -> S {
+            let square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3];
+            square * 0.5 - q[0] * (t * 1e3).sin() * self.trembling
+        }
+        fn constraint<S: Scalar>(&self, _t: S, q: &[S; 4]) -> Constraint<S, 4, 2> {
+            let ((sin, cos), zero, one) = (q[3].sin_cos(), S::zero(), S::constant(1.0));
+            ([[one, zero, -cos, zero], [zero, one, -sin, zero]], [zero; 2])
+        }
+    }
+
+    const SMOOTH: Disk = Disk { trembling: 0.0 };
+    const STEP: f64 = 0.01;
+
+    fn start() -> State<4> {
+        State::new([0.0; 4], [1.0, 0.0, 1.0, 0.5], [false, false, true, true])
+    }
+
+    fn method() -> Dla<Midpoint, Midpoint> {
+        Dla::midpoint().solved(Form::General)
+    }
+
+    /// How many of a hundred steps go on from the last.
+    fn going_on(system: &Disk, method: &mut Dla<Midpoint, Midpoint>, state: &mut State<4>) -> u32 {
+        let mut count = 0;
+        for k in 0..100 {
+            let t = f64::from(k) * STEP;
+            match method.continued_step::<_, 4, 2>(system, t, STEP, state) {
+                Some(_) => count += 1,
+                None => {
+                    method.step(system, t, STEP, state).unwrap();
+                }
+            }
+        }
+        count
+    }
+
+    #[test]
+    fn smooth_motions_go_on() {
+        let (mut method, mut state) = (method(), start());
+        assert_eq!(going_on(&SMOOTH, &mut method, &mut state), 99);
+        assert!(method.kept.constant && !method.kept.block.stale);
+        // Elsewhere, reversed, or without what the state remembers.
+        let place = *state.q();
+        for mut other in [start(), state.reversed(), State::new(place, [0.0; 4], [false, false, true, true])] {
+            assert!(method.clone().continued_step::<_, 4, 2>(&SMOOTH, 0.0, STEP, &mut other).is_none());
+        }
+    }
+
+    /// What no prediction is near is left to the general search, and tried ever more rarely.
+    #[test]
+    fn rough_motions_are_left_alone() {
+        let rough = Disk { trembling: 1e3 };
+        assert!(going_on(&rough, &mut method(), &mut start()) <= 50);
+        let mut method = method();
+        for pause in [1, 2, 4, 8, 16, 32, 64, 64] {
+            method.kept.fails();
+            let skipped = (0..).take_while(|_| !method.kept.begins::<4, 2>(true)).count();
+            assert_eq!(skipped, pause);
+        }
+    }
+
+    proptest! {
+        /// A checkpoint is a file, in which anything may stand.
+        #[test]
+        fn wild_memories_are_survived(
+            wild in proptest::collection::vec(prop_oneof![Just(f64::NAN), Just(f64::INFINITY), Just(0.0), -1e300..1e300f64, -2.0..2.0f64], 0..400),
+            at in 0usize..400,
+        ) {
+            let (mut known, mut state) = (method(), start());
+            for _ in 0..9 {
+                known.step(&SMOOTH, 0.0, STEP, &mut state).unwrap();
+            }
+            let mut numbers = OneStep::<Disk, 4, 2>::memory(&known);
+            prop_assert!(numbers.len() > 100);
+            let end = numbers.len().min(at + wild.len());
+            let from = at.min(end);
+            numbers[from..end].copy_from_slice(&wild[..end - from]);
+            for numbers in [&numbers, &wild] {
+                let mut method = method();
+                OneStep::<Disk, 4, 2>::recall(&mut method, numbers, &state);
+                let (mut again, mut plain) = (state, state);
+                for _ in 0..9 {
+                    method.step(&SMOOTH, 0.0, STEP, &mut again).unwrap();
+                    known.step(&SMOOTH, 0.0, STEP, &mut plain).unwrap();
+                }
+            }
+        }
+    }
+}
