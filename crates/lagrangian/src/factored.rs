@@ -2,7 +2,7 @@ use crate::linear::{Inverse, Singular};
 use crate::{AdmissibleBasis, Bordered};
 use std::array::from_fn;
 
-/// The matrices of a [`Saddle`], factorised for several right-hand sides: for simplified Newton iterations, which keep the
+/// The matrices of a [`Saddle`](crate::Saddle), factorised for several right-hand sides: for simplified Newton iterations, which keep the
 /// derivatives of an earlier point.
 #[derive(Debug, Clone, Copy)]
 pub struct FactoredSaddle<const N: usize, const M: usize> {
@@ -42,7 +42,7 @@ impl<const N: usize, const M: usize> FactoredSaddle<N, M> {
         Ok(Self { matrix, bordered: Some(bordered) })
     }
 
-    /// Whether the determinant is positive, as [`Saddle::solve_oriented`] tells it.
+    /// Whether the determinant is positive, as [`Saddle::solve_oriented`](crate::Saddle::solve_oriented) tells it.
     #[must_use]
     #[inline(always)]
     pub fn is_positive(&self) -> bool {
