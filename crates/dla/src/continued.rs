@@ -9,15 +9,10 @@ use crate::{State, StepReport};
 use lagrangian::{Bordered, DiscreteConstraint, DiscreteLagrangian, System, mass_matrix, momentum};
 use std::array::from_fn;
 
-/// What goes on in a step: the momenta at its beginning, and the rows of the constraint there.
-pub(crate) type Beginning<const N: usize, const M: usize> = ([f64; N], [[f64; N]; M]);
-
-/// The velocity that a search has found, with the impulse of the constraints; the momenta at the end of the step; and the
-/// number of corrections.
+/// The velocity that a search has found, with the impulse of the constraints, and in how many corrections.
 struct Found<const N: usize, const M: usize> {
     v: [f64; N],
     lambda: [f64; M],
-    p1: [f64; N],
     corrections: u32,
 }
 
@@ -38,8 +33,10 @@ impl<L, C> Dla<L, C> {
         L: DiscreteLagrangian<Sys, N, M>,
         C: DiscreteConstraint<Sys, N, M>,
     {
-        let beginning = self.kept.goes_on(state)?;
-        let report = self.going_on(system, (t0, h), state, beginning);
+        if !self.kept.goes_on::<N, M>(state) {
+            return None;
+        }
+        let report = self.going_on(system, (t0, h), state);
         match report {
             Some(_) => self.kept.succeeds(),
             None => self.kept.fails(),
@@ -53,14 +50,13 @@ impl<L, C> Dla<L, C> {
         system: &Sys,
         (t0, h): (f64, f64),
         state: &mut State<N>,
-        (p0, a0): Beginning<N, M>,
     ) -> Option<StepReport<M>>
     where
         L: DiscreteLagrangian<Sys, N, M>,
         C: DiscreteConstraint<Sys, N, M>,
     {
         let (q0, v0) = (*state.q(), *state.v());
-        let Found { v, lambda, p1, corrections } = self.mean(system, (t0, h), state, (p0, a0))?;
+        let (Found { v, lambda, corrections }, p1) = self.mean(system, (t0, h), state)?;
         if branch::turn(system, (t0, h), &q0, &v) > branch::NEAR {
             return None;
         }
@@ -68,11 +64,10 @@ impl<L, C> Dla<L, C> {
         let d = v.map(|v| h * v);
         let (t1, q1) = (t0 + h, state.ahead(&d));
         let guess = match self.kept.velocities.next(h) {
-            Some(expected) if !self.kept.constant => from_fn(|i| expected[i]),
-            _ => from_fn(|i| 2.0 * v[i] - v0[i]),
+            Some(expected) => from_fn(|i| expected[i]),
+            None => from_fn(|i| 2.0 * v[i] - v0[i]),
         };
-        let (a1, b1) = system.constraint(t1, &q1);
-        let end = self.arrival(system, (t1, &q1), p1, (&a1, &b1), guess)?;
+        let end = self.arrival(system, (t1, &q1), p1, guess)?;
         let v1 = end.v;
 
         brakes_only(system, (t0, h), &q0, (&v, &v1)).ok()?;
@@ -84,19 +79,18 @@ impl<L, C> Dla<L, C> {
         state.advance_with_acceleration(h, &d, v1, acceleration);
         self.kept.block.took::<N>(corrections);
         self.kept.mass.took::<N>(end.corrections);
-        self.kept.ended(h, state, &end.p1, &a1);
+        self.kept.ended(h, state);
         Some(StepReport { impulses: [lambda, end.lambda], iterations: corrections, work: None })
     }
 
-    /// The mean velocity `v`: `p0 + D1 L_d + f_d^- + A(q0)' lambda = 0`, `w_d = 0`.
+    /// The mean velocity `v`, `p0 + D1 L_d + f_d^- + A(q0)' lambda = 0`, `w_d = 0`; and the momenta `D2 L_d + f_d^+` at the end.
     #[inline(always)]
     fn mean<Sys: System<N, M>, const N: usize, const M: usize>(
         &mut self,
         system: &Sys,
         (t0, h): (f64, f64),
         state: &State<N>,
-        (p0, a0): Beginning<N, M>,
-    ) -> Option<Found<N, M>>
+    ) -> Option<(Found<N, M>, [f64; N])>
     where
         L: DiscreteLagrangian<Sys, N, M>,
         C: DiscreteConstraint<Sys, N, M>,
@@ -105,7 +99,10 @@ impl<L, C> Dla<L, C> {
         const SMALL: f64 = 1e-9;
         let mut v = predicted(state, h)?;
         let rules = (&self.lagrangian, &self.constraint);
-        let increment = Increment { rules, system, t0, h, state, q0: *state.q(), p0, a0, basis: None };
+        let (q0, v0) = (*state.q(), state.v());
+        // Of the system as it is now, which may not be the one of the step before.
+        let (p0, (a0, _)) = (momentum(system, t0, &q0, v0), system.constraint(t0, &q0));
+        let increment = Increment { rules, system, t0, h, state, q0, p0, a0, basis: None };
         let mut at = if self.kept.block.stale {
             let (at, block) = increment.linearised(&v);
             self.kept.block.renew(&block).ok()?;
@@ -128,7 +125,7 @@ impl<L, C> Dla<L, C> {
 
         let (mut lambda, mut both, mut change) = ([0.0; M], [0.0; N], 0.0);
         let (mut first, mut size, mut before, mut moved) = (true, 0.0, 0.0, 0.0);
-        let settle = Settle { tolerance: self.newton.tolerance, most: SHRINKING * sup(&v), enough: 0.0 };
+        let settle = Settle { tolerance: self.newton.tolerance, most: SHRINKING * sup(&v) };
         let corrections = settle.search(
             &mut v,
             #[inline(always)]
@@ -154,7 +151,12 @@ impl<L, C> Dla<L, C> {
             let at = increment.momenta(&v);
             both = from_fn(|i| at.residual[i] + at.arriving[i]);
         }
-        Some(Found { v, lambda, p1: pushed(both, &a0, &lambda), corrections })
+        for k in 0..M {
+            for i in 0..N {
+                both[i] += a0[k][i] * lambda[k];
+            }
+        }
+        Some((Found { v, lambda, corrections }, both))
     }
 
     /// The velocity `v1` at the end: `L_v(q1, v1) = p1 + A(q1)' mu`, `A(q1) v1 + b(q1) = 0`.
@@ -164,12 +166,10 @@ impl<L, C> Dla<L, C> {
         system: &Sys,
         (t1, q1): (f64, &[f64; N]),
         p1: [f64; N],
-        (a1, b1): (&[[f64; N]; M], &[f64; M]),
         guess: [f64; N],
     ) -> Option<Found<N, M>> {
-        /// A linear equation is solved by one correction that is smaller, relative to the velocity.
-        const LINEAR: f64 = 1e-3;
         let mut v = guess;
+        let (a1, b1) = system.constraint(t1, q1);
         let mut p = if self.kept.mass.stale {
             let (p, mass) = mass_matrix(system, t1, q1, &v);
             self.kept.mass.renew(&mass).ok()?;
@@ -181,15 +181,13 @@ impl<L, C> Dla<L, C> {
         let bordered = Bordered::new(
             #[inline(always)]
             |x| mass.times(x),
-            a1,
-            a1,
+            &a1,
+            &a1,
         )
         .ok()?;
 
         let (mut first, mut minus_mu) = (true, [0.0; M]);
-        let size = sup(&v);
-        let enough = if self.kept.constant { LINEAR * size } else { 0.0 };
-        let settle = Settle { tolerance: self.newton.tolerance, most: size, enough };
+        let settle = Settle { tolerance: self.newton.tolerance, most: sup(&v) };
         let corrections = settle.search(
             &mut v,
             #[inline(always)]
@@ -204,20 +202,8 @@ impl<L, C> Dla<L, C> {
                 d
             },
         )?;
-        let mu = minus_mu.map(|m| -m);
-        Some(Found { v, lambda: mu, p1: pushed(p1, a1, &mu), corrections })
+        Some(Found { v, lambda: minus_mu.map(|m| -m), corrections })
     }
-}
-
-/// `x + A' lambda`.
-#[inline(always)]
-fn pushed<const N: usize, const M: usize>(mut x: [f64; N], a: &[[f64; N]; M], lambda: &[f64; M]) -> [f64; N] {
-    for k in 0..M {
-        for i in 0..N {
-            x[i] += a[k][i] * lambda[k];
-        }
-    }
-    x
 }
 
 #[cfg(test)]
@@ -274,7 +260,7 @@ mod tests {
     fn smooth_motions_go_on() {
         let (mut method, mut state) = (method(), start());
         assert_eq!(going_on(&SMOOTH, &mut method, &mut state), 99);
-        assert!(method.kept.constant && !method.kept.block.stale);
+        assert!(!method.kept.block.stale && !method.kept.mass.stale);
         // Elsewhere, reversed, or without what the state remembers.
         let place = *state.q();
         for mut other in [start(), state.reversed(), State::new(place, [0.0; 4], [false, false, true, true])] {

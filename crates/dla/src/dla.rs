@@ -6,8 +6,7 @@ use crate::projection::{Projected, Projection};
 use crate::settle::sup;
 use crate::{Newton, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::{
-    Alpha, DiscreteConstraint, DiscreteLagrangian, Midpoint, NotAWeight, System, Trapezoid, mass_is_constant, momentum,
-    reaction_rows,
+    Alpha, DiscreteConstraint, DiscreteLagrangian, Midpoint, NotAWeight, System, Trapezoid, momentum, reaction_rows,
 };
 use std::array::from_fn;
 
@@ -203,9 +202,7 @@ impl<L, C> Dla<L, C> {
         let acceleration = from_fn(|i| (v1[i] - v[i]) / (0.5 * h));
         state.advance_with_acceleration(h, &d, v1, acceleration);
         if self.kept.begins::<N, M>(some.is_none() && quadratic) {
-            self.kept.begin(mass_is_constant(system));
-            let (q, v) = (state.q(), state.v());
-            self.kept.ended(h, state, &momentum(system, t1, q, v), &reaction_rows(system, t1, q, v));
+            self.kept.ended(h, state);
         }
         Ok(StepReport { impulses: [lambda, mu], iterations, work: None })
     }

@@ -1,7 +1,6 @@
 use crate::State;
 use crate::derivatives::{COORDINATES, Derivatives, Row, counted, switch};
 use crate::past::Past;
-use std::array::from_fn;
 
 /// What a step of the general form remembers of those before it, with which the search of the next one begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,15 +14,11 @@ pub(crate) struct Kept {
     pub(crate) block: Derivatives,
     /// Of the mass matrix.
     pub(crate) mass: Derivatives,
-    /// Whether it is the same everywhere.
-    pub(crate) constant: bool,
     /// The velocities at the last nodes.
     pub(crate) velocities: Past<COORDINATES>,
-    /// Where the last step ended, how fast, with what momenta, and the rows of the constraint there.
+    /// Where the last step ended, and how fast.
     q: Row,
     v: Row,
-    p: Row,
-    rows: [Row; COORDINATES],
 }
 
 impl Kept {
@@ -34,29 +29,18 @@ impl Kept {
         next_pause: 1,
         block: Derivatives::NONE,
         mass: Derivatives::NONE,
-        constant: false,
         velocities: Past::new(),
         q: [0.0; COORDINATES],
         v: [0.0; COORDINATES],
-        p: [0.0; COORDINATES],
-        rows: [[0.0; COORDINATES]; COORDINATES],
     };
 
-    /// Whether a step that has ended otherwise is one that the next may go on from.
+    /// That a step has ended that did not go on from one before; whether the next may.
     #[inline(always)]
     pub(crate) fn begins<const N: usize, const M: usize>(&mut self, possible: bool) -> bool {
-        self.ready = false;
-        if self.pause > 0 {
-            self.pause -= 1;
-            return false;
-        }
-        possible && N <= COORDINATES && M <= COORDINATES
-    }
-
-    /// The next step may go on.
-    pub(crate) fn begin(&mut self, constant: bool) {
-        (self.ready, self.constant) = (true, constant);
+        self.ready = possible && self.pause == 0 && N <= COORDINATES && M <= COORDINATES;
+        self.pause = self.pause.saturating_sub(1);
         (self.block.stale, self.mass.stale) = (true, true);
+        self.ready
     }
 
     /// That a step could not go on from the last.
@@ -68,24 +52,12 @@ impl Kept {
         self.next_pause = LONGEST.min(self.next_pause.saturating_mul(2));
     }
 
-    /// That a step of length `h` has ended in the state, with momenta and rows of the constraint.
+    /// That a step of length `h` has ended in the state.
     #[inline(always)]
-    pub(crate) fn ended<const N: usize, const M: usize>(
-        &mut self,
-        h: f64,
-        state: &State<N>,
-        p: &[f64; N],
-        rows: &[[f64; N]; M],
-    ) {
+    pub(crate) fn ended<const N: usize>(&mut self, h: f64, state: &State<N>) {
         self.q[..N].copy_from_slice(state.q());
         self.v[..N].copy_from_slice(state.v());
-        self.p[..N].copy_from_slice(p);
-        for k in 0..M {
-            self.rows[k][..N].copy_from_slice(&rows[k]);
-        }
-        if !self.constant {
-            self.velocities.push(h, &self.v);
-        }
+        self.velocities.push(h, &self.v);
     }
 
     /// That a step went on from the last.
@@ -94,18 +66,12 @@ impl Kept {
         self.next_pause = 1;
     }
 
-    /// The momenta and the rows of the constraint where the last step ended, if that is this state and the next may go on.
+    /// Whether the last step ended in this state, and the next may go on from it.
     #[inline(always)]
     #[allow(clippy::float_cmp, reason = "only the very same state goes on")]
-    pub(crate) fn goes_on<const N: usize, const M: usize>(
-        &self,
-        state: &State<N>,
-    ) -> Option<([f64; N], [[f64; N]; M])> {
-        if N > COORDINATES || M > COORDINATES || !self.ready {
-            return None;
-        }
-        let same = self.q[..N] == state.q()[..] && self.v[..N] == state.v()[..];
-        same.then(|| (from_fn(|i| self.p[i]), from_fn(|k| from_fn(|i| self.rows[k][i]))))
+    pub(crate) fn goes_on<const N: usize, const M: usize>(&self, state: &State<N>) -> bool {
+        let small = N <= COORDINATES && M <= COORDINATES;
+        small && self.ready && self.q[..N] == state.q()[..] && self.v[..N] == state.v()[..]
     }
 
     /// All of it as numbers; none of no step.
@@ -132,18 +98,16 @@ impl Kept {
 
     /// Every number of it, in a fixed order.
     fn visit(&mut self, mut visit: impl FnMut(&mut f64)) {
-        let Self { ready, pause, next_pause, block, mass, constant, velocities, q, v, p, rows } = self;
+        let Self { ready, pause, next_pause, block, mass, velocities, q, v } = self;
         for derivatives in [block, mass] {
             derivatives.visit(&mut visit);
         }
         for number in [pause, next_pause] {
             counted(number, &mut visit);
         }
-        for flag in [ready, constant] {
-            switch(flag, &mut visit);
-        }
+        switch(ready, &mut visit);
         velocities.visit(&mut visit);
-        for row in [q, v, p].into_iter().chain(rows) {
+        for row in [q, v] {
             row.iter_mut().for_each(&mut visit);
         }
     }

@@ -9,8 +9,6 @@ pub(crate) struct Settle {
     pub(crate) tolerance: f64,
     /// How large the first correction may be.
     pub(crate) most: f64,
-    /// Below which size one correction is enough: where the equations are linear, and the derivatives theirs.
-    pub(crate) enough: f64,
 }
 
 impl Settle {
@@ -36,16 +34,15 @@ impl Settle {
             if !(size <= allowed || rounding) {
                 return None;
             }
-            let (mut settled, mut enough) = (true, true);
+            let mut settled = true;
             for i in 0..N {
                 let (d, size) = (d[i].abs(), self.tolerance * x[i].abs());
                 // As the corrections have shrunk the next one will be within the tolerance.
                 let predicted = made > 1 && d <= x[i].abs() && 2.0 * d * d <= size * last[i];
                 settled &= d <= size || predicted || (rounding && d >= 0.25 * last[i]);
-                enough &= d < self.enough;
                 last[i] = d;
             }
-            if settled || enough {
+            if settled {
                 return Some(made);
             }
             allowed = SHRINKING * size;
@@ -64,7 +61,7 @@ pub(crate) fn sup<const N: usize>(x: &[f64; N]) -> f64 {
 mod tests {
     use super::*;
 
-    const SETTLE: Settle = Settle { tolerance: 4.0 * f64::EPSILON, most: 1.0, enough: 0.0 };
+    const SETTLE: Settle = Settle { tolerance: 4.0 * f64::EPSILON, most: 1.0 };
 
     /// `x <- x + rate (1 - x)`, with the derivative of another point: corrections shrink by `1 - rate`.
     fn search(rate: f64, settle: &Settle) -> Option<(u32, f64)> {
@@ -91,12 +88,5 @@ mod tests {
         assert_eq!(search(0.9, &SETTLE), None);
         assert_eq!(search(0.99, &Settle { most: 0.09, ..SETTLE }), None);
         assert!(SETTLE.search(&mut [1.0], |_| [f64::NAN]).is_none());
-    }
-
-    #[test]
-    fn one_is_enough_where_it_is_said_to_be() {
-        let (made, error) = search(0.99, &Settle { enough: 0.2, ..SETTLE }).unwrap();
-        assert_eq!(made, 1);
-        assert!(error > 1e-4);
     }
 }

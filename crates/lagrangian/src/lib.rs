@@ -68,7 +68,7 @@ pub use hyperdual::HyperDual;
 pub use inlined::array;
 pub use known_angle::KnownAngle;
 pub use lanes::{Lanes, vectorized};
-pub use momentum::{energy, mass_is_constant, mass_matrix, momentum};
+pub use momentum::{energy, mass_matrix, momentum};
 pub use motion::{Motion, MotionError};
 pub use noether::{Conservation, CoordinateField, MomentumBalance, conservation, momentum_balance};
 pub use parametrised::{Member, Parametrised, Unparametrised};

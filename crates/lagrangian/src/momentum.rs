@@ -74,19 +74,3 @@ where
     let l = system.lagrangian(HyperDual::fixed(t), &q.map(HyperDual::fixed), &v);
     (l.e1, l.e12)
 }
-
-/// Whether the mass matrix `d^2 L / dv dv` is the same at every time and place and for every velocity, as far as the text of the
-/// Lagrangian shows it: nothing that depends on them enters it.
-#[must_use]
-#[cold]
-#[inline(never)]
-pub fn mass_is_constant<Sys, const N: usize, const M: usize>(system: &Sys) -> bool
-where
-    Sys: System<N, M>,
-{
-    // What is not a number makes none of all that it enters.
-    let unknown = Gradient::fixed(f64::NAN);
-    let v: [Gradient<Gradient<f64, N>, N>; N] = from_fn(|i| Gradient::variable(Gradient::variable(f64::NAN, i), i));
-    let l = system.lagrangian(Gradient::fixed(unknown), &[Gradient::fixed(unknown); N], &v);
-    l.gradient::<N>().iter().all(|p| p.gradient::<N>().iter().all(|m| m.is_finite()))
-}

@@ -6,8 +6,7 @@ mod common;
 use approx::assert_relative_eq;
 use common::{Everything, component, vector};
 use lagrangian::{
-    Dual, Gradient, HyperDual, Motion, Scalar, System, constraint_residual, energy, mass_is_constant, mass_matrix,
-    momentum,
+    Dual, Gradient, HyperDual, Motion, Scalar, System, constraint_residual, energy, mass_matrix, momentum,
 };
 use num_dual::{Dual64, HyperDual64};
 use proptest::prelude::*;
@@ -178,44 +177,4 @@ proptest! {
         let slip = constraint_residual(&system, Dual64::new(t, 1.0), &moving, &speeding)[0].eps;
         prop_assert!(slip.abs() <= ROUNDING * size, "slip rate {slip:e}");
     }
-}
-
-/// A Lagrangian with one term of each kind that a mass matrix may, or may not, show.
-struct Terms {
-    place: f64,
-    time: f64,
-    quartic: f64,
-    coupled: f64,
-}
-
-impl System<2, 0> for Terms {
-    fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 2], v: &[S; 2]) -> S {
-        // Left out where they are zero, as a text leaves out what there is not.
-        let mut l = v[0] * v[0] + v[0] * v[1] * 0.5 + v[1] * v[1] * 2.0 + q[0] * v[1] - q[1].cos() / (t * t + 1.0);
-        for (strength, term) in [
-            (self.place, q[0].sin() * v[0] * v[0]),
-            (self.time, t * v[1] * v[1]),
-            (self.quartic, v[0].powi(4)),
-            (self.coupled, q[1] * v[0] * v[1]),
-        ] {
-            if strength != 0.0 {
-                l += term * strength;
-            }
-        }
-        l
-    }
-    fn constraint<S: Scalar>(&self, _t: S, _q: &[S; 2]) -> lagrangian::Constraint<S, 2, 0> {
-        ([], [])
-    }
-}
-
-/// A potential and a term linear in the velocities do not count; whatever enters a square of velocities does.
-#[test]
-fn a_mass_matrix_is_seen_to_be_constant() {
-    let plain = Terms { place: 0.0, time: 0.0, quartic: 0.0, coupled: 0.0 };
-    assert!(mass_is_constant(&plain));
-    assert!(!mass_is_constant(&Terms { place: 1.0, ..plain }));
-    assert!(!mass_is_constant(&Terms { time: 1.0, ..plain }));
-    assert!(!mass_is_constant(&Terms { quartic: 1.0, ..plain }));
-    assert!(!mass_is_constant(&Terms { coupled: 1.0, ..plain }));
 }

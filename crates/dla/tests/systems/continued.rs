@@ -2,7 +2,7 @@
 
 use crate::models::{Disk, Hyperbolic, Kinetic, Oscillator, Particle, Pushed};
 use dla::{Dla, Form, OneStep, State};
-use lagrangian::{DiscreteConstraint, DiscreteLagrangian, Symmetrised, System};
+use lagrangian::{Constraint, DiscreteConstraint, DiscreteLagrangian, Scalar, Symmetrised, System};
 use proptest::prelude::*;
 
 /// As many steps find predictions of every order, and derivatives that are renewed.
@@ -20,9 +20,24 @@ where
     L: DiscreteLagrangian<Sys, N, M> + Copy + 'static,
     C: DiscreteConstraint<Sys, N, M> + Copy + 'static,
 {
+    check_each(|_| system, method, (q, v), (t, h))
+}
+
+/// The same with a system for each step.
+fn check_each<'a, Sys, L, C, const N: usize, const M: usize>(
+    system: impl Fn(u32) -> &'a Sys,
+    method: Dla<L, C>,
+    (q, v): ([f64; N], [f64; N]),
+    (t, h): (f64, f64),
+) -> Result<(), TestCaseError>
+where
+    Sys: System<N, M> + 'a,
+    L: DiscreteLagrangian<Sys, N, M> + Copy + 'static,
+    C: DiscreteConstraint<Sys, N, M> + Copy + 'static,
+{
     let (mut going_on, mut state) = (method, State::new(q, v, [false; N]));
     for k in 0..STEPS {
-        let (t, mut alone) = (t + f64::from(k) * h, state);
+        let (system, t, mut alone) = (system(k), t + f64::from(k) * h, state);
         let report = method.clone().step(system, t, h, &mut alone).unwrap();
         let continued = going_on.step(system, t, h, &mut state).unwrap();
         for i in 0..N {
@@ -70,5 +85,48 @@ proptest! {
         let (sin, cos) = q[3].sin_cos();
         check_all(&Disk, (q, [0.7 * v[0] * cos, 0.7 * v[0] * sin, v[0], v[1]]), at)?;
         check_all(&Oscillator { damping, drive: 0.3 }, ([q[0]], [v[0]]), at)?;
+    }
+}
+
+/// A wheel whose mass, moment of inertia and radius a user may change between steps.
+#[derive(Clone, Copy)]
+struct Wheel {
+    mass: f64,
+    inertia: f64,
+    lead: f64,
+}
+
+impl System<3, 1> for Wheel {
+    fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 3], v: &[S; 3]) -> S {
+        (v[0] * v[0] + v[1] * v[1]) * (0.5 * self.mass) + v[2] * v[2] * (0.5 * self.inertia) - q[0] * q[0] * 0.2
+    }
+    fn constraint<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
+        let (sin, cos) = q[2].sin_cos();
+        ([[-sin, cos, S::constant(-self.lead)]], [S::zero()])
+    }
+}
+
+proptest! {
+    /// What is remembered of one system says nothing of where a step of another ends, however little they differ.
+    #[test]
+    fn a_system_may_change_between_steps(
+        change in prop_oneof![Just(0.0), 1e-12..1e-3f64, 1e-3..1.0f64], at in 6..30u32, which in 0..3usize, every in any::<bool>(),
+    ) {
+        // The lead alone asks for another velocity, which none but a projection could give.
+        let wheel = Wheel { mass: 1.3, inertia: 0.8, lead: 0.0 };
+        let wheels: Vec<Wheel> = (0..STEPS).map(|k| {
+            let times = if every { f64::from(k) / 10.0 } else { f64::from(u8::from(k >= at)) };
+            let by = 1.0 + change * times;
+            match which {
+                0 => Wheel { mass: wheel.mass * by, ..wheel },
+                1 => Wheel { inertia: wheel.inertia * by, ..wheel },
+                _ => Wheel { mass: wheel.mass * by, inertia: wheel.inertia * by, ..wheel },
+            }
+        }).collect();
+        let start = ([0.4, -0.1, 0.3], [0.3f64.cos(), 0.3f64.sin(), 0.7]);
+        check_each(|k| &wheels[k as usize], Dla::midpoint().solved(Form::General), start, (0.0, 0.01))?;
+        let skewed = Wheel { lead: change, ..wheel };
+        let mixed = |k: u32| if k >= at { &skewed } else { &wheel };
+        check_each(mixed, Dla::midpoint().solved(Form::Multipliers), start, (0.0, 0.01))?;
     }
 }
