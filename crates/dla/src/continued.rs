@@ -33,7 +33,8 @@ impl<L, C> Dla<L, C> {
         L: DiscreteLagrangian<Sys, N, M>,
         C: DiscreteConstraint<Sys, N, M>,
     {
-        if !self.kept.goes_on::<N, M>(state) {
+        self.kept.follows(state);
+        if !self.kept.is_ready() {
             return None;
         }
         let report = self.going_on(system, (t0, h), state);
@@ -268,6 +269,20 @@ mod tests {
         }
     }
 
+    /// A run is the same to the last bit, whatever its method was used for before.
+    #[test]
+    fn another_run_begins_anew() {
+        let (mut used, mut fresh) = (method(), method());
+        going_on(&Disk { trembling: 1e3 }, &mut used, &mut State::new([0.3; 4], [1.0, 0.2, 1.0, 0.7], [false; 4]));
+        let [mut after, mut alone] = [start(), start()];
+        for k in 0..100 {
+            for (method, state) in [(&mut used, &mut after), (&mut fresh, &mut alone)] {
+                method.step(&SMOOTH, f64::from(k) * STEP, STEP, state).unwrap();
+            }
+            assert_eq!(after, alone);
+        }
+    }
+
     /// What no prediction is near is left to the general search, and tried ever more rarely.
     #[test]
     fn rough_motions_are_left_alone() {
@@ -276,8 +291,11 @@ mod tests {
         let mut method = method();
         for pause in [1, 2, 4, 8, 16, 32, 64, 64] {
             method.kept.fails();
-            let skipped = (0..).take_while(|_| !method.kept.begins::<4, 2>(true)).count();
-            assert_eq!(skipped, pause);
+            let ready_again = || {
+                method.kept.begins::<4, 2>(true, STEP, &start());
+                method.kept.is_ready()
+            };
+            assert_eq!(std::iter::repeat_with(ready_again).take_while(|ready| !ready).count(), pause);
         }
     }
 

@@ -51,6 +51,12 @@ impl Derivatives {
         Ok(())
     }
 
+    /// As if there had been none.
+    #[inline(always)]
+    pub(crate) fn forget(&mut self) {
+        (self.stale, self.own) = (true, 0);
+    }
+
     /// The product of the inverse with a vector.
     #[inline(always)]
     pub(crate) fn times<const N: usize>(&self, x: &[f64; N]) -> [f64; N] {

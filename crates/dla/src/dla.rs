@@ -201,9 +201,7 @@ impl<L, C> Dla<L, C> {
         // From the middle of the step to its end.
         let acceleration = from_fn(|i| (v1[i] - v[i]) / (0.5 * h));
         state.advance_with_acceleration(h, &d, v1, acceleration);
-        if self.kept.begins::<N, M>(some.is_none() && quadratic) {
-            self.kept.ended(h, state);
-        }
+        self.kept.begins::<N, M>(some.is_none() && quadratic, h, state);
         Ok(StepReport { impulses: [lambda, mu], iterations, work: None })
     }
 }

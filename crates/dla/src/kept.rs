@@ -34,13 +34,34 @@ impl Kept {
         v: [0.0; COORDINATES],
     };
 
-    /// That a step has ended that did not go on from one before; whether the next may.
+    /// Forgets all unless the last step ended in this state: what begins anew is to be the same whatever was before.
     #[inline(always)]
-    pub(crate) fn begins<const N: usize, const M: usize>(&mut self, possible: bool) -> bool {
-        self.ready = possible && self.pause == 0 && N <= COORDINATES && M <= COORDINATES;
-        self.pause = self.pause.saturating_sub(1);
-        (self.block.stale, self.mass.stale) = (true, true);
+    #[allow(clippy::float_cmp, reason = "only the very same state goes on")]
+    pub(crate) fn follows<const N: usize>(&mut self, state: &State<N>) {
+        let same = N <= COORDINATES && self.q[..N] == state.q()[..] && self.v[..N] == state.v()[..];
+        if !same {
+            (self.ready, self.pause, self.next_pause) = (false, 0, 1);
+        }
+    }
+
+    /// Whether the next step may go on from the last.
+    #[inline(always)]
+    pub(crate) fn is_ready(&self) -> bool {
         self.ready
+    }
+
+    /// That a step of length `h` has ended in the state and did not go on from one before; the next may, where that is possible.
+    #[inline(always)]
+    pub(crate) fn begins<const N: usize, const M: usize>(&mut self, possible: bool, h: f64, state: &State<N>) {
+        if N > COORDINATES || M > COORDINATES {
+            return;
+        }
+        self.ready = possible && self.pause == 0;
+        self.pause = self.pause.saturating_sub(1);
+        self.block.forget();
+        self.mass.forget();
+        self.velocities.forget();
+        self.ended(h, state);
     }
 
     /// That a step could not go on from the last.
@@ -52,7 +73,7 @@ impl Kept {
         self.next_pause = LONGEST.min(self.next_pause.saturating_mul(2));
     }
 
-    /// That a step of length `h` has ended in the state.
+    /// That a step of length `h` that went on from the last has ended in the state.
     #[inline(always)]
     pub(crate) fn ended<const N: usize>(&mut self, h: f64, state: &State<N>) {
         self.q[..N].copy_from_slice(state.q());
@@ -64,14 +85,6 @@ impl Kept {
     #[inline(always)]
     pub(crate) fn succeeds(&mut self) {
         self.next_pause = 1;
-    }
-
-    /// Whether the last step ended in this state, and the next may go on from it.
-    #[inline(always)]
-    #[allow(clippy::float_cmp, reason = "only the very same state goes on")]
-    pub(crate) fn goes_on<const N: usize, const M: usize>(&self, state: &State<N>) -> bool {
-        let small = N <= COORDINATES && M <= COORDINATES;
-        small && self.ready && self.q[..N] == state.q()[..] && self.v[..N] == state.v()[..]
     }
 
     /// All of it as numbers; none of no step.
