@@ -123,3 +123,79 @@ pub(crate) fn switch(flag: &mut bool, visit: &mut impl FnMut(&mut f64)) {
     visit(&mut number);
     *flag = number != 0.0;
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_abs_diff_eq;
+
+    fn renewed<const N: usize>(matrix: &[[f64; N]; N]) -> Derivatives {
+        let mut derivatives = Derivatives::NONE;
+        derivatives.renew(matrix).unwrap();
+        derivatives
+    }
+
+    /// `M^-1 M x = x` below and above the sizes that are inverted by cofactors and padded to registers.
+    fn undoes<const N: usize>() {
+        let matrix: [[f64; N]; N] =
+            from_fn(|i| from_fn(|j| if i == j { 3.0 } else { ((i + 2 * j) as f64).sin() / N as f64 }));
+        let x: [f64; N] = from_fn(|i| 1.0 + i as f64);
+        let image: [f64; N] = from_fn(|i| (0..N).map(|j| matrix[i][j] * x[j]).sum());
+        let derivatives = renewed(&matrix);
+        assert!(!derivatives.stale && derivatives.positive);
+        let back = derivatives.times(&image);
+        for i in 0..N {
+            assert_abs_diff_eq!(back[i], x[i], epsilon = 1e-13);
+        }
+        let mirrored = renewed(&matrix.map(|row| row.map(|x| -x)));
+        assert_eq!(mirrored.positive, N.is_multiple_of(2));
+    }
+
+    #[test]
+    fn the_inverse_undoes_the_matrix() {
+        undoes::<1>();
+        undoes::<3>();
+        undoes::<4>();
+        undoes::<7>();
+        undoes::<8>();
+        let mut none = Derivatives::NONE;
+        assert!(none.renew(&[[1.0, 2.0], [2.0, 4.0]]).is_err());
+    }
+
+    /// They serve until the corrections that they cost more would have paid for new ones: for more of them, the larger they are.
+    #[test]
+    fn they_are_renewed_when_they_have_cost_as_much() {
+        fn served<const N: usize>(corrections: impl Fn(u32) -> u32) -> u32 {
+            let unit: [[f64; N]; N] = from_fn(|i| from_fn(|j| f64::from(u8::from(i == j))));
+            let mut derivatives = renewed(&unit);
+            (0..1000)
+                .take_while(|k| {
+                    derivatives.took::<N>(corrections(*k));
+                    !derivatives.stale
+                })
+                .count() as u32
+        }
+        assert_eq!(served::<3>(|_| 2), 1000);
+        assert_eq!(served::<3>(|k| if k < 5 { 2 } else { 3 }), 5);
+        // One more in every step, thirteen of which are worth new ones.
+        assert_eq!(served::<7>(|k| if k < 5 { 2 } else { 3 }), 5 + 12);
+    }
+
+    /// Where the second search already costs as much, sixteen have their own.
+    #[test]
+    fn each_has_its_own_where_a_second_is_not_worth_it() {
+        let unit = [[1.0, 0.0], [0.0, 1.0]];
+        let mut derivatives = renewed(&unit);
+        derivatives.took::<2>(2);
+        derivatives.took::<2>(4);
+        for _ in 0..16 {
+            assert!(derivatives.stale);
+            derivatives.renew(&unit).unwrap();
+            derivatives.took::<2>(2);
+        }
+        assert!(derivatives.stale);
+        derivatives.renew(&unit).unwrap();
+        derivatives.took::<2>(2);
+        assert!(!derivatives.stale, "then it is tried again");
+    }
+}
