@@ -106,7 +106,7 @@ impl<L, C> Dla<L, C> {
         let increment = Increment { rules, system, t0, h, state, q0, p0, a0, basis: None };
         let mut at = if self.kept.block.stale {
             let (at, block) = increment.linearised(&v);
-            self.kept.block.renew(&block).ok()?;
+            self.kept.block.renew(&block)?;
             at
         } else {
             increment.momenta(&v)
@@ -120,7 +120,7 @@ impl<L, C> Dla<L, C> {
             &rows,
         )
         .ok()?;
-        if !bordered.is_as_at_rest(block.positive) {
+        if !bordered.is_as_at_rest(block.positive) || !bordered.is_clear() {
             return None;
         }
 
@@ -173,7 +173,7 @@ impl<L, C> Dla<L, C> {
         let (a1, b1) = system.constraint(t1, q1);
         let mut p = if self.kept.mass.stale {
             let (p, mass) = mass_matrix(system, t1, q1, &v);
-            self.kept.mass.renew(&mass).ok()?;
+            self.kept.mass.renew(&mass)?;
             p
         } else {
             momentum(system, t1, q1, &v)
@@ -187,6 +187,9 @@ impl<L, C> Dla<L, C> {
         )
         .ok()?;
 
+        if !bordered.is_clear() {
+            return None;
+        }
         let (mut first, mut minus_mu) = (true, [0.0; M]);
         let settle = Settle { tolerance: self.newton.tolerance, most: sup(&v) };
         let corrections = settle.search(

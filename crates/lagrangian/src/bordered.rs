@@ -46,6 +46,14 @@ impl<const N: usize, const M: usize> Bordered<N, M> {
         self.is_positive(block) == N.is_multiple_of(2)
     }
 
+    /// Whether the elimination of up to three multipliers loses no more than three digits, whatever the scale of rows; of more
+    /// it is not looked at.
+    #[must_use]
+    #[inline(always)]
+    pub fn is_clear(&self) -> bool {
+        M > 3 || matches!(self.schur, Inverse::Cofactors(..))
+    }
+
     /// `x` and `lambda` of `K x + G' lambda = r`, `C x = level`, given `free = K^-1 r`.
     #[must_use]
     #[inline(always)]
