@@ -1,9 +1,7 @@
 use crate::increment::Increment;
 use crate::{Equations, Newton, State};
 use lagrangian::linear::{Singular, largest};
-use lagrangian::{
-    DiscreteConstraint, DiscreteLagrangian, Dual, FactoredSaddle, Rows, Saddle, System, position_misses, redundant_rows,
-};
+use lagrangian::{DiscreteConstraint, DiscreteLagrangian, FactoredSaddle, Rows, Saddle, System, redundant_rows};
 use std::array::from_fn;
 
 /// The corrections of a search for the mean velocity of a step: Newton's own by one second-order evaluation, and simplified
@@ -17,16 +15,15 @@ pub(crate) struct Corrections<'e, 'a, Sys, L, C, const N: usize, const M: usize>
     /// Whether the determinant of the last correction was positive; none of one with some of the rows.
     positive: Option<bool>,
     /// The derivatives of the last of Newton's own corrections, for the simplified ones after it.
-    kept: Option<Kept<N, M>>,
+    jacobian: Option<Jacobian<N, M>>,
     /// The last correction, and what was known where it was made.
     last: Last<N>,
 }
 
 /// The derivatives of the equations in the mean velocity at one point: of the momenta, `K`, and of the discrete constraint.
 #[derive(Clone, Copy)]
-struct Kept<const N: usize, const M: usize> {
+struct Jacobian<const N: usize, const M: usize> {
     block: [[f64; N]; N],
-    rows: [[f64; N]; M],
     factors: FactoredSaddle<N, M>,
 }
 
@@ -72,7 +69,7 @@ where
 {
     #[inline(always)]
     pub(crate) fn new(of: &'e Increment<'a, Sys, L, C, N, M>) -> Self {
-        Self { of, some: None, lambda: [0.0; M], positive: None, kept: None, last: Last::default() }
+        Self { of, some: None, lambda: [0.0; M], positive: None, jacobian: None, last: Last::default() }
     }
 
     /// The momenta at the end, and the multipliers at the beginning, of a solution `v`.
@@ -99,9 +96,9 @@ where
     fn simplified(&mut self, v: &[f64; N]) -> Option<[f64; N]> {
         /// Simplified corrections shrink by at least as much, or rounding is all that is left of them.
         const SHRINKING: f64 = 0.125;
-        let Some(Kept { block, rows, factors }) = &self.kept else { return None };
+        let Some(Jacobian { block, factors }) = &self.jacobian else { return None };
         let (at, level) = self.of.departure(v);
-        let correction = factors.solve(&at.residual.map(|r| -r), &level, rows, self.of.basis.as_ref());
+        let correction = factors.solve(&at.residual.map(|r| -r), &level, self.of.basis.as_ref());
         let size = largest(&correction);
         let good = size <= SHRINKING * largest(&self.last.correction) || size <= Newton::ROUNDING * largest(v);
         if !good {
@@ -143,50 +140,22 @@ where
     /// Not inlined: it is called from each of the searches that a step may make, and is long.
     #[inline(never)]
     fn own_correction(&mut self, v: &[f64; N]) -> Result<[f64; N], Singular> {
-        let Increment { rules: (lagrangian, constraint), system, t0, h, state, q0, .. } = *self.of;
-        let l_d = lagrangian.derivatives(system, t0, h, &q0, v);
-        let mut at = Departure { residual: from_fn(|i| self.of.p0[i] + l_d.d1[i]), arriving: l_d.d2 };
-        let mut block = l_d.d1d2.map(|row| row.map(|x| h * x));
-
-        // Where it constrains positions, in place of the discrete constraint.
-        let positions = position_misses(system, t0 + h, &state.ahead(&v.map(|v| h * v)));
-
-        // Forces and constraint with their derivatives in v.
-        let (t, step) = (Dual::fixed(t0), Dual::fixed(h));
-        let (q, v) = (q0.map(Dual::fixed), Dual::variables(v));
-        if let Some((minus, plus)) = lagrangian.forces(system, t, step, &q, &v) {
-            for i in 0..N {
-                at.residual[i] += minus[i].re;
-                at.arriving[i] += plus[i].re;
-                for j in 0..N {
-                    block[i][j] += minus[i].eps[j];
-                }
-            }
-        }
-        let w_d = constraint.residual(system, t, step, &q, &v);
-        let (mut rows, mut level) = (w_d.map(|w| w.eps), w_d.map(|w| -w.re));
-        if let Some(positions) = positions {
-            for k in 0..M {
-                if let Some(g) = positions[k] {
-                    (rows[k], level[k]) = (g.eps, -g.re / h);
-                }
-            }
-        }
-
+        let (at, block) = self.of.linearised(v);
+        let (rows, level) = self.of.rows(v);
         let right = at.residual.map(|r| -r);
         match self.solved(&block, &rows, &right, &level) {
             Ok((factors, correction)) => {
                 self.positive = Some(factors.is_positive());
-                self.kept = Some(Kept { block, rows, factors });
+                self.jacobian = Some(Jacobian { block, factors });
                 self.last = Last::new(correction, false, &at, &block);
                 Ok(correction)
             }
             Err(source) => {
                 // By value, so that nothing of a step that succeeds must stay in memory.
-                let found = independent(system, t0, *state, self.some).ok_or(source)?;
+                let found = independent(self.of.system, self.of.t0, *self.of.state, self.some).ok_or(source)?;
                 let saddle = Saddle { block, transposed: self.of.a0, rows, right, level };
                 let (correction, lambda) = saddle.solve_some(found)?;
-                (self.some, self.lambda, self.positive, self.kept) = (Some(found), lambda, None, None);
+                (self.some, self.lambda, self.positive, self.jacobian) = (Some(found), lambda, None, None);
                 self.last = Last::new(correction, false, &at, &block);
                 Ok(correction)
             }
@@ -206,7 +175,7 @@ where
         if self.of.basis.is_some() {
             self.of.multipliers(right)?;
         }
-        let correction = factors.solve(right, level, rows, self.of.basis.as_ref());
+        let correction = factors.solve(right, level, self.of.basis.as_ref());
         Ok((factors, correction))
     }
 }

@@ -1,9 +1,10 @@
 use crate::dependent::{named_at, rows_left_out};
 use crate::increment::{Increment, Mean};
+use crate::kept::Kept;
 use crate::overshoot::brakes_only;
-use crate::projection::Projection;
+use crate::projection::{Projected, Projection};
+use crate::settle::sup;
 use crate::{Newton, OneStep, Stage, State, StepError, StepReport};
-use lagrangian::linear::largest;
 use lagrangian::{
     Alpha, DiscreteConstraint, DiscreteLagrangian, Midpoint, NotAWeight, System, Trapezoid, momentum, reaction_rows,
 };
@@ -61,6 +62,7 @@ pub struct Dla<L, C> {
     /// The solver.
     pub newton: Newton,
     form: Form,
+    pub(crate) kept: Kept,
 }
 
 impl Dla<Midpoint, Midpoint> {
@@ -93,7 +95,7 @@ impl Dla<Alpha, Alpha> {
 impl<L, C> Dla<L, C> {
     /// The method of a discrete Lagrangian and a discrete constraint, in its best form.
     pub fn new(lagrangian: L, constraint: C) -> Self {
-        Self { lagrangian, constraint, newton: Newton::default(), form: Form::Best }
+        Self { lagrangian, constraint, newton: Newton::default(), form: Form::Best, kept: Kept::NONE }
     }
 
     /// The same method, solved in the given form. Only the pair of midpoint rules has closed forms.
@@ -120,15 +122,42 @@ where
             state.advance_remembering(h, &step.increment, step.velocity, step.xi);
             return Ok(StepReport { impulses: step.impulses, iterations: step.iterations, work: None });
         }
-        self.solved_step(system, t0, h, state)
+        self.general_step(system, t0, h, state)
+    }
+
+    fn memory(&self) -> Vec<f64> {
+        self.kept.save()
+    }
+
+    fn recall(&mut self, memory: &[f64], _state: &State<N>) {
+        self.kept = Kept::load(memory);
     }
 }
 
 impl<L, C> Dla<L, C> {
+    /// The step in its general form.
+    #[inline(never)]
+    fn general_step<Sys: System<N, M>, const N: usize, const M: usize>(
+        &mut self,
+        system: &Sys,
+        t0: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError>
+    where
+        L: DiscreteLagrangian<Sys, N, M>,
+        C: DiscreteConstraint<Sys, N, M>,
+    {
+        match self.continued_step(system, t0, h, state) {
+            Some(report) => Ok(report),
+            None => self.solved_step(system, t0, h, state),
+        }
+    }
+
     /// The step in its general form. Compiled once for a system, whatever is composed of it.
     #[inline(never)]
     fn solved_step<Sys: System<N, M>, const N: usize, const M: usize>(
-        &self,
+        &mut self,
         system: &Sys,
         t0: f64,
         h: f64,
@@ -159,7 +188,7 @@ impl<L, C> Dla<L, C> {
         // The momentum at the end, projected onto the constraint there.
         let d = v.map(|v| h * v);
         let (t1, q1) = (t0 + h, state.ahead(&d));
-        let (v1, mu) = Projection::new(system, t1, q1, p1, basis(t1, &q1))
+        let Projected { v1, mu, quadratic } = Projection::new(system, t1, q1, p1, basis(t1, &q1))
             .of(some)
             .solve(&self.newton, v)
             .map_err(|source| named_at(system, t1, &q1, &v0, Stage::Projection, source))?;
@@ -172,6 +201,7 @@ impl<L, C> Dla<L, C> {
         // From the middle of the step to its end.
         let acceleration = from_fn(|i| (v1[i] - v[i]) / (0.5 * h));
         state.advance_with_acceleration(h, &d, v1, acceleration);
+        self.kept.begins::<N, M>(some.is_none() && quadratic, h, state);
         Ok(StepReport { impulses: [lambda, mu], iterations, work: None })
     }
 }
@@ -179,10 +209,10 @@ impl<L, C> Dla<L, C> {
 /// The mean velocity of a step, extrapolated from those of the last ones, or with the acceleration of the last one; none where
 /// that is not known, or would change the velocity so much that a search from there might lead elsewhere.
 #[inline]
-fn predicted<const N: usize>(state: &State<N>, h: f64) -> Option<[f64; N]> {
+pub(crate) fn predicted<const N: usize>(state: &State<N>, h: f64) -> Option<[f64; N]> {
     const MOST: f64 = 0.125;
     let v0 = state.v();
-    let near = |v: &[f64; N]| largest(&from_fn::<_, N, _>(|i| v[i] - v0[i])) <= MOST * largest(v0);
+    let near = |v: &[f64; N]| sup(&from_fn::<_, N, _>(|i| v[i] - v0[i])) <= MOST * sup(v0);
     let extrapolated = state.expected(h).map(|d| d.map(|d| d / h)).filter(near);
     extrapolated.or_else(|| {
         let acceleration = state.acceleration()?;

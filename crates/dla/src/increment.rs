@@ -3,7 +3,9 @@ use crate::corrections::{Corrections, Departure};
 use crate::dependent::named_along;
 use crate::{Newton, NewtonError, State, StepError};
 use lagrangian::linear::{Singular, normal_solve};
-use lagrangian::{AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, Rows, Saddle, System, position_misses};
+use lagrangian::{
+    AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, Dual, Rows, Saddle, System, position_misses,
+};
 use std::array::from_fn;
 use std::f64::consts::PI;
 
@@ -87,7 +89,63 @@ where
     /// Not inlined: it is called for every simplified correction and for the end of the step.
     #[inline(never)]
     pub(crate) fn departure(&self, v: &[f64; N]) -> (Departure<N>, [f64; M]) {
-        let Self { rules: (lagrangian, constraint), system, t0, h, state, q0, .. } = *self;
+        (self.momenta(v), self.level(v))
+    }
+
+    /// By how much a step with the mean velocity `v` misses the constraint.
+    #[inline(always)]
+    pub(crate) fn level(&self, v: &[f64; N]) -> [f64; M] {
+        let Self { rules: (_, constraint), system, t0, h, state, q0, .. } = *self;
+        let mut level = constraint.residual(system, t0, h, &q0, v).map(|w| -w);
+        if let Some(positions) = position_misses(system, t0 + h, &state.ahead(&v.map(|v| h * v))) {
+            for k in 0..M {
+                level[k] = positions[k].map_or(level[k], |g| -g.re / h);
+            }
+        }
+        level
+    }
+
+    /// The derivatives of the discrete constraint in the mean velocity `v`, and by how much it is missed.
+    #[inline(always)]
+    pub(crate) fn rows(&self, v: &[f64; N]) -> ([[f64; N]; M], [f64; M]) {
+        let Self { rules: (_, constraint), system, t0, h, state, q0, .. } = *self;
+        let w_d = constraint.linearised(system, t0, h, &q0, v);
+        let (mut rows, mut level) = (w_d.map(|w| w.eps), w_d.map(|w| -w.re));
+        if let Some(positions) = position_misses(system, t0 + h, &state.ahead(&v.map(|v| h * v))) {
+            for k in 0..M {
+                if let Some(g) = positions[k] {
+                    (rows[k], level[k]) = (g.eps, -g.re / h);
+                }
+            }
+        }
+        (rows, level)
+    }
+
+    /// Both ends of a step with the mean velocity `v`, and the derivatives of the beginning in it: one second-order evaluation.
+    #[inline(never)]
+    pub(crate) fn linearised(&self, v: &[f64; N]) -> (Departure<N>, [[f64; N]; N]) {
+        let Self { rules: (lagrangian, _), system, t0, h, q0, .. } = *self;
+        let l_d = lagrangian.derivatives(system, t0, h, &q0, v);
+        let mut at = Departure { residual: from_fn(|i| self.p0[i] + l_d.d1[i]), arriving: l_d.d2 };
+        let mut block = l_d.d1d2.map(|row| row.map(|x| h * x));
+        let (t, step) = (Dual::fixed(t0), Dual::fixed(h));
+        let (q, v) = (q0.map(Dual::fixed), Dual::variables(v));
+        if let Some((minus, plus)) = lagrangian.forces(system, t, step, &q, &v) {
+            for i in 0..N {
+                at.residual[i] += minus[i].re;
+                at.arriving[i] += plus[i].re;
+                for j in 0..N {
+                    block[i][j] += minus[i].eps[j];
+                }
+            }
+        }
+        (at, block)
+    }
+
+    /// Both ends of a step with the mean velocity `v`, in first order alone.
+    #[inline(always)]
+    pub(crate) fn momenta(&self, v: &[f64; N]) -> Departure<N> {
+        let Self { rules: (lagrangian, _), system, t0, h, q0, .. } = *self;
         let [d1, d2] = lagrangian.slopes(system, t0, h, &q0, v);
         let mut at = Departure { residual: from_fn(|i| self.p0[i] + d1[i]), arriving: d2 };
         if let Some((minus, plus)) = lagrangian.forces(system, t0, h, &q0, v) {
@@ -96,13 +154,7 @@ where
                 at.arriving[i] += plus[i];
             }
         }
-        let mut level = constraint.residual(system, t0, h, &q0, v).map(|w| -w);
-        if let Some(positions) = position_misses(system, t0 + h, &state.ahead(&v.map(|v| h * v))) {
-            for k in 0..M {
-                level[k] = positions[k].map_or(level[k], |g| -g.re / h);
-            }
-        }
-        (at, level)
+        at
     }
 
     /// The solution at the end of the branch that begins with a step of length zero.

@@ -54,6 +54,16 @@ impl<const N: usize> Past<N> {
             .then(|| from_fn(|i| 5.0 * a[i] + (10.0 * (c[i] - b[i]) + (e[i] - 5.0 * d[i]))))
     }
 
+    /// Every number of it, in a fixed order.
+    pub(crate) fn visit(&mut self, mut visit: impl FnMut(&mut f64)) {
+        let mut made = self.made as f64;
+        visit(&mut made);
+        // What is no number of steps becomes one.
+        self.made = KEPT.min(made as usize);
+        visit(&mut self.step);
+        self.increments.as_flattened_mut().iter_mut().for_each(visit);
+    }
+
     /// Writes every bit to a checkpoint.
     pub(crate) fn save(&self, checkpoint: &mut Checkpoint) {
         let steps = if self.made == 0 { vec![] } else { vec![self.step] };

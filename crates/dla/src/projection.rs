@@ -19,6 +19,14 @@ pub(crate) struct Projection<'a, Sys, const N: usize, const M: usize> {
     mu: [f64; M],
 }
 
+/// The velocity at the end of a step, and the impulse of the constraints there.
+pub(crate) struct Projected<const N: usize, const M: usize> {
+    pub(crate) v1: [f64; N],
+    pub(crate) mu: [f64; M],
+    /// Whether they were found as those of a Lagrangian that is quadratic in the velocities, with constraints that are affine.
+    pub(crate) quadratic: bool,
+}
+
 impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Projection<'a, Sys, N, M> {
     pub(crate) fn new(
         system: &'a Sys,
@@ -39,7 +47,7 @@ impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Projection<'a, Sys, 
 
     /// `v1` and `mu`, from a first guess of `v1`.
     #[inline(always)]
-    pub(crate) fn solve(self, newton: &Newton, guess: [f64; N]) -> Result<([f64; N], [f64; M]), NewtonError> {
+    pub(crate) fn solve(self, newton: &Newton, guess: [f64; N]) -> Result<Projected<N, M>, NewtonError> {
         if self.some.is_none()
             && let Some(solution) = self.at_once(newton, &guess)
         {
@@ -50,16 +58,16 @@ impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Projection<'a, Sys, 
 
     #[cold]
     #[inline(never)]
-    fn searched(mut self, newton: &Newton, guess: [f64; N]) -> Result<([f64; N], [f64; M]), NewtonError> {
+    fn searched(mut self, newton: &Newton, guess: [f64; N]) -> Result<Projected<N, M>, NewtonError> {
         let mut v1 = guess;
         newton.solve(&mut self, &mut v1)?;
-        Ok((v1, self.mu))
+        Ok(Projected { v1, mu: self.mu, quadratic: false })
     }
 
     /// The same where a correction and a simplified one are enough, as they are of a Lagrangian that is quadratic in the
     /// velocities; in one function, since both are made in the same configuration.
     #[inline(always)]
-    fn at_once(&self, newton: &Newton, guess: &[f64; N]) -> Option<([f64; N], [f64; M])> {
+    fn at_once(&self, newton: &Newton, guess: &[f64; N]) -> Option<Projected<N, M>> {
         let Self { system, t1, q1, p1, basis, .. } = self;
         let unit = |i: usize| from_fn(|k| f64::from(u8::from(k == i)));
         let in_v = from_fn(|i| HyperDual::linear(guess[i], unit(i), unit(i)));
@@ -73,11 +81,11 @@ impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Projection<'a, Sys, 
         let factors = FactoredSaddle::new(&l.e12, &a1, &a1, basis.as_ref()).ok()?;
 
         let missing: [f64; N] = from_fn(|i| p1[i] - l.e1[i]);
-        let first = factors.solve(&missing, &slip(guess), &a1, basis.as_ref());
+        let first = factors.solve(&missing, &slip(guess), basis.as_ref());
         let v1: [f64; N] = from_fn(|i| guess[i] + first[i]);
         let p = system.lagrangian(Dual::fixed(*t1), &q1.map(Dual::fixed), &Dual::variables(&v1)).eps;
         let missing: [f64; N] = from_fn(|i| p1[i] - p[i]);
-        let second = factors.solve(&missing, &slip(&v1), &a1, basis.as_ref());
+        let second = factors.solve(&missing, &slip(&v1), basis.as_ref());
         let v1: [f64; N] = from_fn(|i| v1[i] + second[i]);
 
         // As `Newton` sees that they have settled; below the rounding of the largest component all that is left is rounding.
@@ -88,7 +96,7 @@ impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Projection<'a, Sys, 
         });
         let left = from_fn(|i| (0..N).map(|j| l.e12[i][j] * second[j]).sum::<f64>() - missing[i]);
         let mu = normal_solve(&a1, &left).ok()?;
-        settled.then_some((v1, mu))
+        settled.then_some(Projected { v1, mu, quadratic: true })
     }
 }
 
@@ -107,14 +115,15 @@ pub(crate) fn project<Sys: System<N, M>, const N: usize, const M: usize>(
     let fail = |source| StepError::Newton { stage: Stage::Projection, source };
     let all = Projection::new(system, t, *q, p, system.admissible_basis(t, q));
     let error = match all.solve(&newton, *v) {
-        Ok((v1, _)) => return Ok(v1),
+        Ok(Projected { v1, .. }) => return Ok(v1),
         Err(source) => fail(source),
     };
     if !error.is_singular() {
         return Err(error);
     }
     let rows = independent_rows(system, t, q, v, error)?;
-    let (v1, _) = Projection::new(system, t, *q, p, None).of(Some(rows)).solve(&newton, *v).map_err(fail)?;
+    let Projected { v1, .. } =
+        Projection::new(system, t, *q, p, None).of(Some(rows)).solve(&newton, *v).map_err(fail)?;
     rows_left_out(system, t, q, &v1, rows)?;
     Ok(v1)
 }

@@ -177,7 +177,7 @@ impl<const N: usize> State<N> {
     /// the increment.
     #[inline(always)]
     pub fn advance_with_acceleration(&mut self, h: f64, increment: &[f64; N], v: [f64; N], acceleration: [f64; N]) {
-        let known = acceleration.iter().all(|a| a.is_finite());
+        let known = acceleration.iter().fold(true, |all, a| all & a.is_finite());
         self.past.push(h, increment);
         self.go(increment, v, if known { Left::Acceleration(acceleration) } else { Left::Nothing });
     }

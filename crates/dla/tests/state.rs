@@ -319,7 +319,7 @@ fn what_a_state_remembers_shortens_the_next_search() {
     let other = corrections(&|k| if k % 2 == 0 { 0.1 } else { 0.09 }, false);
     let forgetful = corrections(&|_| 0.1, true);
     println!("{same} corrections, {other} at steps of two lengths, {forgetful} without memory");
-    // The first five steps begin from the acceleration.
-    assert!(same <= 2 * STEPS + 5 * 3, "{same} corrections");
+    // The first five steps begin from the acceleration; and one step in four may take a correction more, with derivatives of another.
+    assert!(same <= 2 * STEPS + STEPS / 4 + 5 * 3, "{same} corrections");
     assert!(same + STEPS / 2 < other && other + STEPS / 2 < forgetful, "{same}, {other}, {forgetful}");
 }

@@ -1,4 +1,4 @@
-use crate::{Dual, HyperDual, Rule, Scalar, System, constraint_residual};
+use crate::{Dual, Gradient, HyperDual, Rule, Scalar, System, constraint_residual};
 use std::array::from_fn;
 
 /// The derivatives of a discrete Lagrangian over one step.
@@ -79,6 +79,13 @@ pub trait DiscreteLagrangian<Sys, const N: usize, const M: usize> {
 pub trait DiscreteConstraint<Sys, const N: usize, const M: usize> {
     /// `w_d(q0, q0 + h v)`, in the units of `A v`.
     fn residual<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> [S; M];
+
+    /// The same with its derivatives in `v`, those of row `k` in its `eps`: automatic unless given by hand.
+    #[inline]
+    fn linearised(&self, system: &Sys, t0: f64, h: f64, q0: &[f64; N], v: &[f64; N]) -> [Dual<f64, N>; M] {
+        let (t, step) = (Dual::fixed(t0), Dual::fixed(h));
+        self.residual(system, t, step, &q0.map(Dual::fixed), &Dual::variables(v))
+    }
 }
 
 impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteLagrangian<Sys, N, M> for R {
@@ -119,8 +126,7 @@ impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteLagrang
         for node in self.nodes() {
             let (t, q) = on_line(node.alpha, t0, h, q0, v);
             let part = h * node.alpha;
-            let l_v = system.lagrangian(Dual::fixed(t), &q.map(Dual::fixed), &Dual::variables(v)).eps;
-            let l_q = system.lagrangian(Dual::fixed(t), &Dual::variables(&q), &v.map(Dual::fixed)).eps;
+            let [l_q, l_v] = gradients(system, t, &q, v);
             for i in 0..N {
                 d1[i] += ((h - part) * l_q[i] - l_v[i]) * node.weight;
                 d2[i] += (part * l_q[i] + l_v[i]) * node.weight;
@@ -164,6 +170,51 @@ impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteConstra
         }
         sum
     }
+
+    /// Seeded at the nodes.
+    #[inline]
+    fn linearised(&self, system: &Sys, t0: f64, h: f64, q0: &[f64; N], v: &[f64; N]) -> [Dual<f64, N>; M] {
+        let mut sum = [Dual::fixed(0.0); M];
+        let in_v = Dual::variables(v);
+        for node in self.nodes() {
+            let (t, q) = on_line(node.alpha, t0, h, q0, v);
+            let part = h * node.alpha;
+            let in_q = from_fn(|i| Dual { re: q[i], eps: from_fn(|j| if i == j { part } else { 0.0 }) });
+            let residual = constraint_residual(system, Dual::fixed(t), &in_q, &in_v);
+            for k in 0..M {
+                sum[k] += residual[k] * node.weight;
+            }
+        }
+        sum
+    }
+}
+
+/// `L_q` and `L_v`.
+#[inline(always)]
+fn gradients<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
+    system: &Sys,
+    t: S,
+    q: &[S; N],
+    v: &[S; N],
+) -> [[S; N]; 2] {
+    match N {
+        5..=8 => gradients_by::<Sys, S, N, M, 8>(system, t, q, v),
+        _ => gradients_by::<Sys, S, N, M, N>(system, t, q, v),
+    }
+}
+
+/// The same by derivatives in `W` places, of which those beyond `N` are zero: whole registers are quicker.
+#[inline(always)]
+fn gradients_by<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize, const W: usize>(
+    system: &Sys,
+    t: S,
+    q: &[S; N],
+    v: &[S; N],
+) -> [[S; N]; 2] {
+    let t = Gradient::<S, W>::fixed(t);
+    let l_v = system.lagrangian(t, &Gradient::all_fixed(q), &Gradient::variables(v));
+    let l_q = system.lagrangian(t, &Gradient::variables(q), &Gradient::all_fixed(v));
+    [l_q.gradient(), l_v.gradient()]
 }
 
 /// Time and configuration at the fraction `alpha` of a step.

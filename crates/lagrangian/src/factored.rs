@@ -1,15 +1,15 @@
 use crate::linear::{Inverse, Singular};
-use crate::{AdmissibleBasis, Saddle};
+use crate::{AdmissibleBasis, Bordered};
 use std::array::from_fn;
 
-/// The matrices of a [`Saddle`], factorised for several right-hand sides: for simplified Newton iterations, which keep the
+/// The matrices of a [`Saddle`](crate::Saddle), factorised for several right-hand sides: for simplified Newton iterations, which keep the
 /// derivatives of an earlier point.
 #[derive(Debug, Clone, Copy)]
 pub struct FactoredSaddle<const N: usize, const M: usize> {
     /// `[w' K; C]` in a basis `w` of `ker G`, or `K`.
     matrix: Inverse<N>,
-    /// `K^-1 G'` and the inverse of `C K^-1 G'`, with multipliers.
-    schur: Option<([[f64; N]; M], Inverse<M>)>,
+    /// With multipliers.
+    bordered: Option<Bordered<N, M>>,
 }
 
 impl<const N: usize, const M: usize> FactoredSaddle<N, M> {
@@ -30,52 +30,40 @@ impl<const N: usize, const M: usize> FactoredSaddle<N, M> {
                 *row = from_fn(|j| (0..N).map(|i| w[i] * block[i][j]).sum());
             }
             matrix[N - M..].copy_from_slice(rows);
-            return Ok(Self { matrix: Inverse::new(&matrix)?, schur: None });
+            return Ok(Self { matrix: Inverse::new(&matrix)?, bordered: None });
         }
         let matrix = Inverse::new(block)?;
-        let response = transposed.map(|g| matrix.solve(&g));
-        let schur: [[f64; M]; M] = from_fn(|k| from_fn(|l| dot(&rows[k], &response[l])));
-        let schur = Inverse::above(&schur, Saddle::<N, M>::DEPENDENT)?;
-        Ok(Self { matrix, schur: Some((response, schur)) })
+        let bordered = Bordered::new(
+            #[inline(always)]
+            |g| matrix.solve(g),
+            transposed,
+            rows,
+        )?;
+        Ok(Self { matrix, bordered: Some(bordered) })
     }
 
-    /// Whether the determinant is positive, as [`Saddle::solve_oriented`] tells it.
+    /// Whether the determinant is positive, as [`Saddle::solve_oriented`](crate::Saddle::solve_oriented) tells it.
     #[must_use]
     #[inline(always)]
     pub fn is_positive(&self) -> bool {
-        match &self.schur {
-            None => self.matrix.is_positive(),
-            // That of K times that of -C K^-1 G'.
-            Some((_, schur)) => self.matrix.is_positive() == (schur.is_positive() ^ !M.is_multiple_of(2)),
-        }
+        let block = self.matrix.is_positive();
+        self.bordered.as_ref().map_or(block, |bordered| bordered.is_positive(block))
     }
 
-    /// `x` of `K x + G' lambda = right`, `C x = level`, with the basis, the rows of `C` and the matrices given before.
+    /// `x` of `K x + G' lambda = right`, `C x = level`, with the basis and the matrices given before.
     #[must_use]
     #[inline(always)]
-    pub fn solve(
-        &self,
-        right: &[f64; N],
-        level: &[f64; M],
-        rows: &[[f64; N]; M],
-        basis: Option<&AdmissibleBasis<f64, N, M>>,
-    ) -> [f64; N] {
-        match (&self.schur, basis) {
-            (None, Some(basis)) => {
-                let mut tested = [0.0; N];
-                for (place, w) in tested.iter_mut().zip(basis.vectors()) {
-                    *place = dot(w, right);
-                }
-                tested[N - M..].copy_from_slice(level);
-                self.matrix.solve(&tested)
+    pub fn solve(&self, right: &[f64; N], level: &[f64; M], basis: Option<&AdmissibleBasis<f64, N, M>>) -> [f64; N] {
+        let mut right = *right;
+        if let (None, Some(basis)) = (&self.bordered, basis) {
+            let given = right;
+            for (place, w) in right.iter_mut().zip(basis.vectors()) {
+                *place = dot(w, &given);
             }
-            (Some((response, schur)), _) => {
-                let free = self.matrix.solve(right);
-                let lambda = schur.solve(&from_fn(|k| dot(&rows[k], &free) - level[k]));
-                from_fn(|i| free[i] - (0..M).map(|k| response[k][i] * lambda[k]).sum::<f64>())
-            }
-            (None, None) => self.matrix.solve(right),
+            right[N - M..].copy_from_slice(level);
         }
+        let free = self.matrix.solve(&right);
+        self.bordered.as_ref().map_or(free, |bordered| bordered.solve(&free, level).0)
     }
 }
 

@@ -8,6 +8,7 @@
 //! This crate knows no integrator and no particular system.
 
 mod basis;
+mod bordered;
 mod bracket;
 mod classify;
 mod closed;
@@ -16,6 +17,7 @@ mod discrete;
 mod dual;
 mod effect;
 mod factored;
+mod gradient;
 mod gradients;
 mod growth;
 mod hyperdual;
@@ -48,6 +50,7 @@ mod vector_field;
 mod with;
 
 pub use basis::AdmissibleBasis;
+pub use bordered::Bordered;
 pub use bracket::{Bracket, EnergySlope, energy_slope, inverse_reduced_mass};
 pub use classify::{
     Classification, RowKind, classify, rank_is_constant, redundant_rows, row_space, rows_are_consistent,
@@ -58,6 +61,7 @@ pub use discrete::{Derivatives, DiscreteConstraint, DiscreteLagrangian};
 pub use dual::Dual;
 pub use effect::{Effect, Slope};
 pub use factored::FactoredSaddle;
+pub use gradient::Gradient;
 pub use gradients::{Along, Gradients, Seeded, SeededMember};
 pub use growth::{AdmissibleField, Growth, GrowthError, admissible_fields, growth};
 pub use hyperdual::HyperDual;

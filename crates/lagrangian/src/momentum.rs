@@ -1,14 +1,33 @@
-use crate::{Dual, HyperDual, Scalar, System};
+use crate::{Gradient, HyperDual, Scalar, System};
 use std::array::from_fn;
 
 /// `L(t, q, v)` with its gradient in `v`.
 #[inline(always)]
-fn in_velocity<Sys, S, const N: usize, const M: usize>(system: &Sys, t: S, q: &[S; N], v: &[S; N]) -> Dual<S, N>
+fn in_velocity<Sys, S, const N: usize, const M: usize>(system: &Sys, t: S, q: &[S; N], v: &[S; N]) -> (S, [S; N])
 where
     Sys: System<N, M>,
     S: Scalar,
 {
-    system.lagrangian(Dual::fixed(t), &q.map(Dual::fixed), &Dual::variables(v))
+    match N {
+        5..=8 => in_velocity_by::<Sys, S, N, M, 8>(system, t, q, v),
+        _ => in_velocity_by::<Sys, S, N, M, N>(system, t, q, v),
+    }
+}
+
+/// The same by derivatives in `W` places, of which those beyond `N` are zero: whole registers are quicker.
+#[inline(always)]
+fn in_velocity_by<Sys, S, const N: usize, const M: usize, const W: usize>(
+    system: &Sys,
+    t: S,
+    q: &[S; N],
+    v: &[S; N],
+) -> (S, [S; N])
+where
+    Sys: System<N, M>,
+    S: Scalar,
+{
+    let l = system.lagrangian(Gradient::<S, W>::fixed(t), &Gradient::all_fixed(q), &Gradient::variables(v));
+    (l.re, l.gradient())
 }
 
 /// The momenta `p = dL/dv`.
@@ -18,7 +37,7 @@ where
     Sys: System<N, M>,
     S: Scalar,
 {
-    in_velocity(system, t, q, v).eps
+    in_velocity(system, t, q, v).1
 }
 
 /// The energy `E = v . dL/dv - L` (J).
@@ -28,10 +47,10 @@ where
     Sys: System<N, M>,
     S: Scalar,
 {
-    let l = in_velocity(system, t, q, v);
-    let mut energy = -l.re;
+    let (l, p) = in_velocity(system, t, q, v);
+    let mut energy = -l;
     for i in 0..N {
-        energy += l.eps[i] * v[i];
+        energy += p[i] * v[i];
     }
     energy
 }

@@ -5,7 +5,9 @@ mod common;
 
 use approx::assert_relative_eq;
 use common::{Everything, component, vector};
-use lagrangian::{Dual, HyperDual, Motion, Scalar, System, constraint_residual, energy, mass_matrix, momentum};
+use lagrangian::{
+    Dual, Gradient, HyperDual, Motion, Scalar, System, constraint_residual, energy, mass_matrix, momentum,
+};
 use num_dual::{Dual64, HyperDual64};
 use proptest::prelude::*;
 
@@ -61,6 +63,27 @@ proptest! {
             prop_assert_eq!(ours[k].re, values[k], "the value is that of f64 to the last bit");
             assert_relative_eq!(ours[k].eps[0], in_x[k].eps, epsilon = ROUNDING, max_relative = ROUNDING);
             assert_relative_eq!(ours[k].eps[1], in_y[k].eps, epsilon = ROUNDING, max_relative = ROUNDING);
+        }
+    }
+
+    /// A gradient is that of a dual number, in the variables alone or in more places; what depends on none has none.
+    #[test]
+    fn gradients_of_every_operation(x in component(), y in component()) {
+        let duals = operations(Dual::variable(x, 0), Dual::<f64, 2>::variable(y, 1));
+        let in_x = operations(Gradient::<f64, 2>::variable(x, 0), Gradient::fixed(y));
+        let [a, b] = Gradient::<f64, 8>::variables(&[x, y]);
+        let (both, fixed) = (operations(a, b), Gradient::<f64, 2>::all_fixed(&[x, y]));
+        for (k, constant) in operations(fixed[0], fixed[1]).into_iter().enumerate() {
+            prop_assert_eq!([both[k].re, in_x[k].re, constant.re], [duals[k].re; 3]);
+            prop_assert_eq!(constant.gradient::<2>(), [0.0; 2]);
+            let [by_x, by_y, none] = both[k].gradient();
+            prop_assert_eq!(none, 0.0);
+            assert_relative_eq!(by_x, duals[k].eps[0], epsilon = ROUNDING, max_relative = ROUNDING);
+            assert_relative_eq!(by_y, duals[k].eps[1], epsilon = ROUNDING, max_relative = ROUNDING);
+            let [by_x, by_y] = in_x[k].gradient();
+            prop_assert_eq!(by_y, 0.0);
+            assert_relative_eq!(by_x, duals[k].eps[0], epsilon = ROUNDING, max_relative = ROUNDING);
+            prop_assert_eq!(both[k].is_zero(), both[k].re == 0.0 && by_x == 0.0 && duals[k].eps[1] == 0.0);
         }
     }
 

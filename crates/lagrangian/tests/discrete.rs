@@ -18,6 +18,34 @@ fn close(a: f64, b: f64, h: f64) {
     assert_relative_eq!(a, b, epsilon = 1e-13 / h.abs(), max_relative = 1e-12);
 }
 
+/// A discrete constraint with its derivatives in the mean velocity, by hand for the rules, by dual numbers and by num-dual.
+fn linearised<C: DiscreteConstraint<Everything, 3, 1>>(
+    rule: &C,
+    system: &Everything,
+    (t, h): (f64, f64),
+    q0: &[f64; 3],
+    v: &[f64; 3],
+) {
+    struct Residual<'a, C>(&'a C);
+    impl<C: DiscreteConstraint<Everything, 3, 1>> DiscreteConstraint<Everything, 3, 1> for Residual<'_, C> {
+        fn residual<S: Scalar>(&self, system: &Everything, t0: S, h: S, q0: &[S; 3], v: &[S; 3]) -> [S; 1] {
+            self.0.residual(system, t0, h, q0, v)
+        }
+    }
+    let ([by_hand], [automatic]) =
+        (rule.linearised(system, t, h, q0, v), Residual(rule).linearised(system, t, h, q0, v));
+    let [value] = rule.residual(system, t, h, q0, v);
+    for found in [by_hand, automatic] {
+        assert_relative_eq!(found.re, value, epsilon = 1e-13, max_relative = 1e-13);
+        for i in 0..3 {
+            let v = from_fn(|k| HyperDual64::new(v[k], f64::from(u8::from(i == k)), 0.0, 0.0));
+            let q0 = q0.map(HyperDual64::from);
+            let [w] = rule.residual(system, HyperDual64::from(t), HyperDual64::from(h), &q0, &v);
+            assert_relative_eq!(found.eps[i], w.eps1, epsilon = 1e-12, max_relative = 1e-12);
+        }
+    }
+}
+
 /// `D1`, `D2` and `D1 D2` as derivatives in the end points, by num-dual.
 fn against_the_oracle<L: DiscreteLagrangian<Everything, 3, 1>>(
     rule: &L,
@@ -59,6 +87,18 @@ proptest! {
         against_the_oracle(&Alpha::new(alpha).unwrap(), &system, at, &q0, &v);
         against_the_oracle(&Symmetrised::new(alpha).unwrap(), &system, at, &q0, &v);
         against_the_oracle(&HandMade, &system, at, &q0, &v);
+    }
+
+    #[test]
+    fn constraints_of_every_rule(
+        c in vector(), t in -2.0..2.0f64, h in prop_oneof![0.01..1.0f64, -1.0..-0.01f64], q0 in vector(), v in vector(),
+        alpha in 0.0..1.0f64,
+    ) {
+        let (system, at) = (Everything { c }, (t, h));
+        linearised(&Midpoint, &system, at, &q0, &v);
+        linearised(&Trapezoid, &system, at, &q0, &v);
+        linearised(&Alpha::new(alpha).unwrap(), &system, at, &q0, &v);
+        linearised(&Symmetrised::new(alpha).unwrap(), &system, at, &q0, &v);
     }
 
     /// `L_d(q0, q1; t0, h) = -L_d(q1, q0; t1, -h)` for the symmetric rules; the alpha rule's mirror image is `1 - alpha`.

@@ -7,7 +7,7 @@ mod tables;
 use crate::branch::{self, Search};
 use crate::dependent::{named_along, named_at};
 use crate::positions::affine_only;
-use crate::projection::Projection;
+use crate::projection::{Projected, Projection};
 use crate::{Newton, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::{System, momentum};
 use stages::Stages;
@@ -128,7 +128,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
         let increment = stages.increment(b, 1.0, &v);
         let impulses = stages.impulses;
         let (t1, q1) = (t0 + h, state.ahead(&increment));
-        let (v1, last) = Projection::new(system, t1, q1, p1, system.admissible_basis(t1, &q1))
+        let Projected { v1, mu: last, .. } = Projection::new(system, t1, q1, p1, system.admissible_basis(t1, &q1))
             .solve(&self.newton, v[S - 1])
             .map_err(|source| named_at(system, t1, &q1, &v0, Stage::Projection, source))?;
 

@@ -1,6 +1,7 @@
 use crate::{backward, sleigh, state_of};
 use dla::{
-    Checkpoint, CheckpointError, Composition, Dla, Gauss, Gni, OneStep, Schedule, State, Trajectory, Work, drive_part,
+    Checkpoint, CheckpointError, Composition, Dla, Form, Gauss, Gni, OneStep, Schedule, State, Trajectory, Work,
+    drive_part,
 };
 use sleigh::Sleigh;
 
@@ -44,6 +45,9 @@ fn a_resumed_run_has_the_same_bits() {
         for [(whole, all), (resumed, after)] in [
             whole_and_resumed(Dla::midpoint, stop),
             whole_and_resumed(|| Composition::suzuki4(Dla::midpoint()), stop),
+            // Which remember derivatives.
+            whole_and_resumed(|| Dla::midpoint().solved(Form::General), stop),
+            whole_and_resumed(|| Composition::suzuki4(Dla::trapezoid()), stop),
             whole_and_resumed(Gauss::<8>::default, stop),
             // It remembers a momentum.
             whole_and_resumed(Gni::<_, 3>::default, stop),

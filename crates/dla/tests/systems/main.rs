@@ -3,6 +3,7 @@
 #![allow(missing_docs, unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
 mod alternating;
+mod continued;
 mod degenerate;
 mod driven;
 mod forms;

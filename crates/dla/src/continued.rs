@@ -1,0 +1,332 @@
+//! A step that goes on from the last one: it begins with the derivatives that are kept, and has rows of the constraint of its own.
+
+use crate::branch;
+use crate::dla::{Dla, predicted};
+use crate::increment::Increment;
+use crate::overshoot::brakes_only;
+use crate::settle::{SHRINKING, Settle, sup};
+use crate::{State, StepReport};
+use lagrangian::{Bordered, DiscreteConstraint, DiscreteLagrangian, System, mass_matrix, momentum};
+use std::array::from_fn;
+
+/// The velocity that a search has found, with the impulse of the constraints, and in how many corrections.
+struct Found<const N: usize, const M: usize> {
+    v: [f64; N],
+    lambda: [f64; M],
+    corrections: u32,
+}
+
+impl<L, C> Dla<L, C> {
+    /// The step in its general form where it goes on from the last one; none where it does not.
+    ///
+    /// The equations are those of [`Dla`], with multipliers. The derivatives are of a step before, so that a correction takes
+    /// first-order evaluations alone, and no elimination beyond the multipliers.
+    #[inline(always)]
+    pub(crate) fn continued_step<Sys: System<N, M>, const N: usize, const M: usize>(
+        &mut self,
+        system: &Sys,
+        t0: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Option<StepReport<M>>
+    where
+        L: DiscreteLagrangian<Sys, N, M>,
+        C: DiscreteConstraint<Sys, N, M>,
+    {
+        self.kept.follows(state);
+        if !self.kept.is_ready() {
+            return None;
+        }
+        let report = self.going_on(system, (t0, h), state);
+        match report {
+            Some(_) => self.kept.succeeds(),
+            None => self.kept.fails(),
+        }
+        report
+    }
+
+    #[inline(never)]
+    fn going_on<Sys: System<N, M>, const N: usize, const M: usize>(
+        &mut self,
+        system: &Sys,
+        (t0, h): (f64, f64),
+        state: &mut State<N>,
+    ) -> Option<StepReport<M>>
+    where
+        L: DiscreteLagrangian<Sys, N, M>,
+        C: DiscreteConstraint<Sys, N, M>,
+    {
+        let (q0, v0) = (*state.q(), *state.v());
+        let (Found { v, lambda, corrections }, p1) = self.mean(system, (t0, h), state)?;
+        if branch::turn(system, (t0, h), &q0, &v) > branch::NEAR {
+            return None;
+        }
+
+        let d = v.map(|v| h * v);
+        let (t1, q1) = (t0 + h, state.ahead(&d));
+        let guess = match self.kept.velocities.next(h) {
+            Some(expected) => from_fn(|i| expected[i]),
+            None => from_fn(|i| 2.0 * v[i] - v0[i]),
+        };
+        let end = self.arrival(system, (t1, &q1), p1, guess)?;
+        let v1 = end.v;
+
+        brakes_only(system, (t0, h), &q0, (&v, &v1)).ok()?;
+        // One by one they would be waited for.
+        if !(0..N).fold(true, |all, i| all & q1[i].is_finite() & v1[i].is_finite()) {
+            return None;
+        }
+        let acceleration = from_fn(|i| (v1[i] - v[i]) * (2.0 / h));
+        state.advance_with_acceleration(h, &d, v1, acceleration);
+        self.kept.block.took::<N>(corrections);
+        self.kept.mass.took::<N>(end.corrections);
+        self.kept.ended(h, state);
+        Some(StepReport { impulses: [lambda, end.lambda], iterations: corrections, work: None })
+    }
+
+    /// The mean velocity `v`, `p0 + D1 L_d + f_d^- + A(q0)' lambda = 0`, `w_d = 0`; and the momenta `D2 L_d + f_d^+` at the end.
+    #[inline(always)]
+    fn mean<Sys: System<N, M>, const N: usize, const M: usize>(
+        &mut self,
+        system: &Sys,
+        (t0, h): (f64, f64),
+        state: &State<N>,
+    ) -> Option<(Found<N, M>, [f64; N])>
+    where
+        L: DiscreteLagrangian<Sys, N, M>,
+        C: DiscreteConstraint<Sys, N, M>,
+    {
+        /// The square of a correction that is smaller, relative to the velocity, is below all rounding.
+        const SMALL: f64 = 1e-9;
+        let mut v = predicted(state, h)?;
+        let rules = (&self.lagrangian, &self.constraint);
+        let (q0, v0) = (*state.q(), state.v());
+        // Of the system as it is now, which may not be the one of the step before.
+        let (p0, (a0, _)) = (momentum(system, t0, &q0, v0), system.constraint(t0, &q0));
+        let increment = Increment { rules, system, t0, h, state, q0, p0, a0, basis: None };
+        let mut at = if self.kept.block.stale {
+            let (at, block) = increment.linearised(&v);
+            self.kept.block.renew(&block)?;
+            at
+        } else {
+            increment.momenta(&v)
+        };
+        let block = &self.kept.block;
+        let (rows, mut level) = increment.rows(&v);
+        let bordered = Bordered::new(
+            #[inline(always)]
+            |x| block.times(x),
+            &a0,
+            &rows,
+        )
+        .ok()?;
+        if !bordered.is_as_at_rest(block.positive) || !bordered.is_clear() {
+            return None;
+        }
+
+        let (mut lambda, mut both, mut change) = ([0.0; M], [0.0; N], 0.0);
+        let (mut first, mut size, mut before, mut moved) = (true, 0.0, 0.0, 0.0);
+        let settle = Settle { tolerance: self.newton.tolerance, most: SHRINKING * sup(&v) };
+        let corrections = settle.search(
+            &mut v,
+            #[inline(always)]
+            |v| {
+                if !first {
+                    at = increment.momenta(v);
+                    // A correction meets the constraint but for its product with the way from where the rows are.
+                    let met = moved * size <= (SMALL * sup(v)).powi(2);
+                    level = if met { [0.0; M] } else { increment.level(v) };
+                }
+                let d;
+                (d, lambda) = bordered.solve(&block.times(&at.residual.map(|r| -r)), &level);
+                let ends: [f64; N] = from_fn(|i| at.residual[i] + at.arriving[i]);
+                change = sup(&from_fn::<_, N, _>(|i| ends[i] - both[i]));
+                (first, both, before, size) = (false, ends, size, sup(&d));
+                moved += size;
+                d
+            },
+        )?;
+        // With the equations at `v` met, the momenta at the end are what those at both ends sum to, and the impulse: of that the
+        // last correction changes as much in its size as the one before.
+        if change * size > f64::EPSILON * before * sup(&both) {
+            let at = increment.momenta(&v);
+            both = from_fn(|i| at.residual[i] + at.arriving[i]);
+        }
+        for k in 0..M {
+            for i in 0..N {
+                both[i] += a0[k][i] * lambda[k];
+            }
+        }
+        Some((Found { v, lambda, corrections }, both))
+    }
+
+    /// The velocity `v1` at the end: `L_v(q1, v1) = p1 + A(q1)' mu`, `A(q1) v1 + b(q1) = 0`.
+    #[inline(always)]
+    fn arrival<Sys: System<N, M>, const N: usize, const M: usize>(
+        &mut self,
+        system: &Sys,
+        (t1, q1): (f64, &[f64; N]),
+        p1: [f64; N],
+        guess: [f64; N],
+    ) -> Option<Found<N, M>> {
+        let mut v = guess;
+        let (a1, b1) = system.constraint(t1, q1);
+        let mut p = if self.kept.mass.stale {
+            let (p, mass) = mass_matrix(system, t1, q1, &v);
+            self.kept.mass.renew(&mass)?;
+            p
+        } else {
+            momentum(system, t1, q1, &v)
+        };
+        let mass = &self.kept.mass;
+        let bordered = Bordered::new(
+            #[inline(always)]
+            |x| mass.times(x),
+            &a1,
+            &a1,
+        )
+        .ok()?;
+
+        if !bordered.is_clear() {
+            return None;
+        }
+        let (mut first, mut minus_mu) = (true, [0.0; M]);
+        let settle = Settle { tolerance: self.newton.tolerance, most: sup(&v) };
+        let corrections = settle.search(
+            &mut v,
+            #[inline(always)]
+            |v| {
+                if !first {
+                    p = momentum(system, t1, q1, v);
+                }
+                first = false;
+                let slip: [f64; M] = from_fn(|k| -(0..N).fold(b1[k], |sum, i| sum + a1[k][i] * v[i]));
+                let d;
+                (d, minus_mu) = bordered.solve(&mass.times(&from_fn(|i| p1[i] - p[i])), &slip);
+                d
+            },
+        )?;
+        Some(Found { v, lambda: minus_mu.map(|m| -m), corrections })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Form, OneStep};
+    use lagrangian::{Constraint, Midpoint, Scalar};
+    use proptest::prelude::*;
+
+    /// A disk of unit masses that rolls upright, on a table that may tremble.
+    #[derive(Clone, Copy)]
+    struct Disk {
+        trembling: f64,
+    }
+
+    impl System<4, 2> for Disk {
+        fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 4], v: &[S; 4]) -> S {
+            let square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3];
+            square * 0.5 - q[0] * (t * 1e3).sin() * self.trembling
+        }
+        fn constraint<S: Scalar>(&self, _t: S, q: &[S; 4]) -> Constraint<S, 4, 2> {
+            let ((sin, cos), zero, one) = (q[3].sin_cos(), S::zero(), S::constant(1.0));
+            ([[one, zero, -cos, zero], [zero, one, -sin, zero]], [zero; 2])
+        }
+    }
+
+    const SMOOTH: Disk = Disk { trembling: 0.0 };
+    const STEP: f64 = 0.01;
+
+    fn start() -> State<4> {
+        State::new([0.0; 4], [1.0, 0.0, 1.0, 0.5], [false, false, true, true])
+    }
+
+    fn method() -> Dla<Midpoint, Midpoint> {
+        Dla::midpoint().solved(Form::General)
+    }
+
+    /// How many of a hundred steps go on from the last.
+    fn going_on(system: &Disk, method: &mut Dla<Midpoint, Midpoint>, state: &mut State<4>) -> u32 {
+        let mut count = 0;
+        for k in 0..100 {
+            let t = f64::from(k) * STEP;
+            match method.continued_step::<_, 4, 2>(system, t, STEP, state) {
+                Some(_) => count += 1,
+                None => {
+                    method.step(system, t, STEP, state).unwrap();
+                }
+            }
+        }
+        count
+    }
+
+    #[test]
+    fn smooth_motions_go_on() {
+        let (mut method, mut state) = (method(), start());
+        assert_eq!(going_on(&SMOOTH, &mut method, &mut state), 99);
+        assert!(!method.kept.block.stale && !method.kept.mass.stale);
+        // Elsewhere, reversed, or without what the state remembers.
+        let place = *state.q();
+        for mut other in [start(), state.reversed(), State::new(place, [0.0; 4], [false, false, true, true])] {
+            assert!(method.clone().continued_step::<_, 4, 2>(&SMOOTH, 0.0, STEP, &mut other).is_none());
+        }
+    }
+
+    /// A run is the same to the last bit, whatever its method was used for before.
+    #[test]
+    fn another_run_begins_anew() {
+        let (mut used, mut fresh) = (method(), method());
+        going_on(&Disk { trembling: 1e3 }, &mut used, &mut State::new([0.3; 4], [1.0, 0.2, 1.0, 0.7], [false; 4]));
+        let [mut after, mut alone] = [start(), start()];
+        for k in 0..100 {
+            for (method, state) in [(&mut used, &mut after), (&mut fresh, &mut alone)] {
+                method.step(&SMOOTH, f64::from(k) * STEP, STEP, state).unwrap();
+            }
+            assert_eq!(after, alone);
+        }
+    }
+
+    /// What no prediction is near is left to the general search, and tried ever more rarely.
+    #[test]
+    fn rough_motions_are_left_alone() {
+        let rough = Disk { trembling: 1e3 };
+        assert!(going_on(&rough, &mut method(), &mut start()) <= 50);
+        let mut method = method();
+        for pause in [1, 2, 4, 8, 16, 32, 64, 64] {
+            method.kept.fails();
+            let ready_again = || {
+                method.kept.begins::<4, 2>(true, STEP, &start());
+                method.kept.is_ready()
+            };
+            assert_eq!(std::iter::repeat_with(ready_again).take_while(|ready| !ready).count(), pause);
+        }
+    }
+
+    proptest! {
+        /// A checkpoint is a file, in which anything may stand.
+        #[test]
+        fn wild_memories_are_survived(
+            wild in proptest::collection::vec(prop_oneof![Just(f64::NAN), Just(f64::INFINITY), Just(0.0), -1e300..1e300f64, -2.0..2.0f64], 0..400),
+            at in 0usize..400,
+        ) {
+            let (mut known, mut state) = (method(), start());
+            for _ in 0..9 {
+                known.step(&SMOOTH, 0.0, STEP, &mut state).unwrap();
+            }
+            let mut numbers = OneStep::<Disk, 4, 2>::memory(&known);
+            prop_assert!(numbers.len() > 100);
+            let end = numbers.len().min(at + wild.len());
+            let from = at.min(end);
+            numbers[from..end].copy_from_slice(&wild[..end - from]);
+            for numbers in [&numbers, &wild] {
+                let mut method = method();
+                OneStep::<Disk, 4, 2>::recall(&mut method, numbers, &state);
+                let (mut again, mut plain) = (state, state);
+                for _ in 0..9 {
+                    method.step(&SMOOTH, 0.0, STEP, &mut again).unwrap();
+                    known.step(&SMOOTH, 0.0, STEP, &mut plain).unwrap();
+                }
+            }
+        }
+    }
+}

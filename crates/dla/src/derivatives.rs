@@ -1,0 +1,206 @@
+use lagrangian::linear::{Inverse, larger};
+use std::array::from_fn;
+
+/// Systems of more coordinates or constraints are not remembered.
+pub(crate) const COORDINATES: usize = 8;
+
+pub(crate) type Row = [f64; COORDINATES];
+
+/// The inverse of a matrix of derivatives, by columns, which serves several steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(align(64))]
+pub(crate) struct Derivatives {
+    columns: [Row; COORDINATES],
+    /// Whether its determinant is positive.
+    pub(crate) positive: bool,
+    /// Whether it is time for new ones.
+    pub(crate) stale: bool,
+    /// The corrections that the first search with them took, and how many more all took after it.
+    least: u32,
+    more: u32,
+    /// How many they were.
+    searches: u32,
+    /// For how many searches each is to have its own.
+    own: u32,
+}
+
+impl Derivatives {
+    pub(crate) const NONE: Self = Self {
+        columns: [[0.0; COORDINATES]; COORDINATES],
+        positive: true,
+        stale: true,
+        least: 0,
+        more: 0,
+        searches: 0,
+        own: 0,
+    };
+
+    /// New ones, given by rows; none where they have no inverse, or one that loses digits.
+    #[inline(never)]
+    pub(crate) fn renew<const N: usize>(&mut self, matrix: &[[f64; N]; N]) -> Option<()> {
+        /// More than three digits are left to the general search, which may have a basis to keep them in.
+        const CLEAR: f64 = 1e3;
+        let inverse = Inverse::new(matrix).ok()?;
+        // The diagonal of |K| |K^-1|, whatever the scale of rows and columns. (Skeel 1979, J. ACM 26, 494-526.)
+        let mut condition = 0.0;
+        for (j, column) in self.columns.iter_mut().take(N).enumerate() {
+            let unit = from_fn(|i| f64::from(u8::from(i == j)));
+            column[..N].copy_from_slice(&inverse.solve(&unit));
+            condition = larger(condition, (0..N).map(|i| (matrix[j][i] * column[i]).abs()).sum());
+        }
+        self.positive = inverse.is_positive();
+        (self.stale, self.more, self.searches) = (false, 0, 0);
+        (condition <= CLEAR).then_some(())
+    }
+
+    /// As if there had been none.
+    #[inline(always)]
+    pub(crate) fn forget(&mut self) {
+        (self.stale, self.own) = (true, 0);
+    }
+
+    /// The product of the inverse with a vector.
+    #[inline(always)]
+    pub(crate) fn times<const N: usize>(&self, x: &[f64; N]) -> [f64; N] {
+        if N <= 4 { self.times_of::<N, N>(x) } else { self.times_of::<N, COORDINATES>(x) }
+    }
+
+    /// The same by columns of `W` places: beyond four whole registers are quicker.
+    #[inline(always)]
+    fn times_of<const N: usize, const W: usize>(&self, x: &[f64; N]) -> [f64; N] {
+        let mut sum = [0.0; W];
+        for (column, x) in self.columns.iter().zip(x) {
+            for i in 0..W {
+                sum[i] += column[i] * x;
+            }
+        }
+        from_fn(|i| sum[i])
+    }
+
+    /// That a search with them took so many corrections. They are to be renewed where they have cost more than that.
+    #[inline(always)]
+    pub(crate) fn took<const N: usize>(&mut self, corrections: u32) {
+        /// So many searches in a row have their own where a second one is not worth it.
+        const OWN: u32 = 16;
+        // About as many corrections take the time of new derivatives.
+        let price = const { (N * N * N).div_ceil(27) as u32 };
+        self.searches = self.searches.saturating_add(1);
+        if self.searches == 1 {
+            self.least = corrections;
+            self.stale = self.own > 0;
+            self.own = self.own.saturating_sub(1);
+            return;
+        }
+        self.more = self.more.saturating_add(corrections.saturating_sub(self.least));
+        self.stale = self.more >= price;
+        if self.stale && self.searches == 2 {
+            self.own = OWN;
+        }
+    }
+
+    /// Every number of it, in a fixed order.
+    pub(crate) fn visit(&mut self, mut visit: impl FnMut(&mut f64)) {
+        let Self { columns, positive, stale, least, more, searches, own } = self;
+        columns.as_flattened_mut().iter_mut().for_each(&mut visit);
+        for flag in [positive, stale] {
+            switch(flag, &mut visit);
+        }
+        for count in [least, more, searches, own] {
+            counted(count, &mut visit);
+        }
+    }
+}
+
+/// A count as a number, there and back.
+pub(crate) fn counted(count: &mut u32, visit: &mut impl FnMut(&mut f64)) {
+    let mut number = f64::from(*count);
+    visit(&mut number);
+    // What is no count becomes one.
+    *count = number as u32;
+}
+
+/// A flag as a number, there and back.
+pub(crate) fn switch(flag: &mut bool, visit: &mut impl FnMut(&mut f64)) {
+    let mut number = f64::from(u8::from(*flag));
+    visit(&mut number);
+    *flag = number != 0.0;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_abs_diff_eq;
+
+    fn renewed<const N: usize>(matrix: &[[f64; N]; N]) -> Derivatives {
+        let mut derivatives = Derivatives::NONE;
+        derivatives.renew(matrix).unwrap();
+        derivatives
+    }
+
+    /// `M^-1 M x = x` below and above the sizes that are inverted by cofactors and padded to registers.
+    fn undoes<const N: usize>() {
+        let matrix: [[f64; N]; N] =
+            from_fn(|i| from_fn(|j| if i == j { 3.0 } else { ((i + 2 * j) as f64).sin() / N as f64 }));
+        let x: [f64; N] = from_fn(|i| 1.0 + i as f64);
+        let image: [f64; N] = from_fn(|i| (0..N).map(|j| matrix[i][j] * x[j]).sum());
+        let derivatives = renewed(&matrix);
+        assert!(!derivatives.stale && derivatives.positive);
+        let back = derivatives.times(&image);
+        for i in 0..N {
+            assert_abs_diff_eq!(back[i], x[i], epsilon = 1e-13);
+        }
+        let mirrored = renewed(&matrix.map(|row| row.map(|x| -x)));
+        assert_eq!(mirrored.positive, N.is_multiple_of(2));
+    }
+
+    #[test]
+    fn the_inverse_undoes_the_matrix() {
+        undoes::<1>();
+        undoes::<3>();
+        undoes::<4>();
+        undoes::<7>();
+        undoes::<8>();
+        let mut none = Derivatives::NONE;
+        assert!(none.renew(&[[1.0, 2.0], [2.0, 4.0]]).is_none());
+        // Nearly so; and of very different sizes, which is no loss.
+        assert!(none.renew(&[[1.0, 2.0], [2.0, 4.0001]]).is_none());
+        assert!(none.renew(&[[1e-20, 1.0], [2.0, 4e20]]).is_some());
+    }
+
+    /// They serve until the corrections that they cost more would have paid for new ones: for more of them, the larger they are.
+    #[test]
+    fn they_are_renewed_when_they_have_cost_as_much() {
+        fn served<const N: usize>(corrections: impl Fn(u32) -> u32) -> u32 {
+            let unit: [[f64; N]; N] = from_fn(|i| from_fn(|j| f64::from(u8::from(i == j))));
+            let mut derivatives = renewed(&unit);
+            (0..1000)
+                .take_while(|k| {
+                    derivatives.took::<N>(corrections(*k));
+                    !derivatives.stale
+                })
+                .count() as u32
+        }
+        assert_eq!(served::<3>(|_| 2), 1000);
+        assert_eq!(served::<3>(|k| if k < 5 { 2 } else { 3 }), 5);
+        // One more in every step, thirteen of which are worth new ones.
+        assert_eq!(served::<7>(|k| if k < 5 { 2 } else { 3 }), 5 + 12);
+    }
+
+    /// Where the second search already costs as much, sixteen have their own.
+    #[test]
+    fn each_has_its_own_where_a_second_is_not_worth_it() {
+        let unit = [[1.0, 0.0], [0.0, 1.0]];
+        let mut derivatives = renewed(&unit);
+        derivatives.took::<2>(2);
+        derivatives.took::<2>(4);
+        for _ in 0..16 {
+            assert!(derivatives.stale);
+            derivatives.renew(&unit).unwrap();
+            derivatives.took::<2>(2);
+        }
+        assert!(derivatives.stale);
+        derivatives.renew(&unit).unwrap();
+        derivatives.took::<2>(2);
+        assert!(!derivatives.stale, "then it is tried again");
+    }
+}

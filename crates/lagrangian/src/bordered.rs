@@ -1,0 +1,75 @@
+use crate::Saddle;
+use crate::linear::{Inverse, Singular};
+use std::array::from_fn;
+
+/// The equations of a [`Saddle`] where `K^-1` is known: its Schur complement `C K^-1 G'`, factorised for several right-hand
+/// sides.
+#[derive(Debug, Clone, Copy)]
+pub struct Bordered<const N: usize, const M: usize> {
+    /// The rows of `C`.
+    rows: [[f64; N]; M],
+    /// `K^-1 G'`, by the rows of `G`.
+    response: [[f64; N]; M],
+    /// The inverse of `C K^-1 G'`.
+    schur: Inverse<M>,
+}
+
+impl<const N: usize, const M: usize> Bordered<N, M> {
+    /// Of `K^-1`, the rows of `G`, and those of `C`.
+    ///
+    /// # Errors
+    /// [`Singular`] where they do not determine a solution.
+    #[inline(always)]
+    pub fn new(
+        inverse: impl Fn(&[f64; N]) -> [f64; N],
+        transposed: &[[f64; N]; M],
+        rows: &[[f64; N]; M],
+    ) -> Result<Self, Singular> {
+        let response: [[f64; N]; M] = from_fn(|k| inverse(&transposed[k]));
+        let schur: [[f64; M]; M] = from_fn(|k| from_fn(|l| dot(&rows[k], &response[l])));
+        let schur = Inverse::above(&schur, Saddle::<N, M>::DEPENDENT)?;
+        Ok(Self { rows: *rows, response, schur })
+    }
+
+    /// Whether the determinant of the equations is positive, given whether that of `K` is: it is that of `K` times that of
+    /// `-C K^-1 G'`.
+    #[must_use]
+    #[inline(always)]
+    pub fn is_positive(&self, block: bool) -> bool {
+        block == (self.schur.is_positive() ^ !M.is_multiple_of(2))
+    }
+
+    /// Whether the determinant has the sign of [`Saddle::is_positive_at_rest`].
+    #[must_use]
+    #[inline(always)]
+    pub fn is_as_at_rest(&self, block: bool) -> bool {
+        self.is_positive(block) == N.is_multiple_of(2)
+    }
+
+    /// Whether the elimination of up to three multipliers loses no more than three digits, whatever the scale of rows; of more
+    /// it is not looked at.
+    #[must_use]
+    #[inline(always)]
+    pub fn is_clear(&self) -> bool {
+        M > 3 || matches!(self.schur, Inverse::Cofactors(..))
+    }
+
+    /// `x` and `lambda` of `K x + G' lambda = r`, `C x = level`, given `free = K^-1 r`.
+    #[must_use]
+    #[inline(always)]
+    pub fn solve(&self, free: &[f64; N], level: &[f64; M]) -> ([f64; N], [f64; M]) {
+        let lambda = self.schur.solve(&from_fn(|k| dot(&self.rows[k], free) - level[k]));
+        let mut x = *free;
+        for k in 0..M {
+            for i in 0..N {
+                x[i] -= self.response[k][i] * lambda[k];
+            }
+        }
+        (x, lambda)
+    }
+}
+
+#[inline(always)]
+fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
+    (0..N).map(|i| a[i] * b[i]).sum()
+}
