@@ -59,7 +59,7 @@ impl Settling {
     /// Whether the search contracted from its start, so that what it found is the solution near there.
     pub(crate) fn is_certain(&self) -> bool {
         let [first, second] = self.first;
-        second <= Self::CONTRACTION * first || second <= Newton::ROUNDING * self.size
+        second <= Self::CONTRACTION * first || second <= Newton::rounding(self.size)
     }
 
     /// Adds a correction to `x`, and says whether every component is settled.
@@ -79,7 +79,7 @@ impl Settling {
         if let Some(first) = self.first.get_mut(iteration as usize - 1) {
             *first = step;
         }
-        let converged = step <= (Newton::ROUNDING * size).max(f64::MIN_POSITIVE);
+        let converged = step <= Newton::rounding(size);
         let (tolerance, least) = (self.newton.tolerance, self.newton.tolerance * size);
         // Where the next correction is predicted to be rounding in all components, those that have not settled never will.
         let over = converged && step * (step / self.before).min(1.0) <= BIAS * size;

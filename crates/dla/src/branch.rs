@@ -32,7 +32,7 @@ impl<E> Search<E> {
     #[inline(always)]
     pub(crate) fn is_certain(&self, x: &[f64]) -> bool {
         let [first, second] = self.sizes;
-        second <= Self::CONTRACTION * first || second <= Newton::ROUNDING * sup(x)
+        second <= Self::CONTRACTION * first || second <= Newton::rounding(sup(x))
     }
 
     /// Whether the search began within this part of the solution `x`.

@@ -48,8 +48,9 @@ impl<E: Equations<U>, const U: usize> BlockEquations<U, 1> for Single<'_, E> {
 /// Newton's method with an exact Jacobian and a stopping rule for every component by itself.
 ///
 /// A component is settled when its correction `d` is below `tolerance` relative to it; or when quadratic convergence
-/// predicts that the next one, `d (d / d_before)^2`, will be, or after a simplified correction `2 d (d / d_before)`; or when all corrections are below [`Newton::ROUNDING`] of
-/// the largest component there was and its own no longer shrinks, so that it is rounding. A tolerance on all components
+/// predicts that the next one, `d (d / d_before)^2`, will be, or after a simplified correction `2 d (d / d_before)`; or when
+/// all corrections are below [`Newton::ROUNDING`] of the largest component there was and its own no longer shrinks, so that
+/// it is rounding; or when simplified corrections take it to zero. A tolerance on all components
 /// together would freeze those that are small (a spin that dies out exponentially, for one).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Newton {
@@ -120,8 +121,19 @@ impl NewtonError {
 impl Newton {
     /// Where all corrections are below this part of the largest component, those that do not shrink are rounding.
     pub const ROUNDING: f64 = 1e-11;
+    /// With derivatives of another point an unknown that goes to zero shrinks by the same factor for ever. It is zero where it
+    /// has lost all digits of its start twice.
+    const GONE: f64 = f64::EPSILON * f64::EPSILON;
     /// So many times in all the largest correction may grow.
     const GROWTHS: u32 = 3;
+
+    /// Where all corrections are below this, with a largest component of this size, those that do not shrink are rounding:
+    /// [`Self::ROUNDING`] of it, and below the smallest normal number everything, since what comes to rest ends there.
+    #[must_use]
+    #[inline(always)]
+    pub fn rounding(size: f64) -> f64 {
+        (Self::ROUNDING * size).max(f64::MIN_POSITIVE)
+    }
 
     /// Improves `x` until every component is settled, and says in how many iterations.
     ///
@@ -143,6 +155,7 @@ impl Newton {
         equations: &mut impl BlockEquations<U, S>,
         x: &mut [[f64; U]; S],
     ) -> Result<u32, NewtonError> {
+        let start = *x;
         let mut last = [[f64::INFINITY; U]; S];
         let mut rounding = [[false; U]; S];
         let mut before = f64::INFINITY;
@@ -166,8 +179,7 @@ impl Newton {
             size = size.max(now);
             let step = largest(correction.as_flattened());
             history.push(step);
-            // Below the smallest normal number everything is rounding: what comes to rest ends there.
-            let converged = step <= (Self::ROUNDING * size).max(f64::MIN_POSITIVE);
+            let converged = step <= Self::rounding(size);
             let mut settled = true;
             let simplified = equations.is_simplified();
             for b in 0..S {
@@ -181,7 +193,9 @@ impl Newton {
                     // w d_before d; the first of Newton's own leaves w d^2/2.
                     let factor = if simplified { 2.0 * shrink } else { shrink * shrink };
                     let next = if predicts { d * factor } else { d };
-                    settled &= rounding[b][i] || next.min(d) <= self.tolerance * x[b][i].abs();
+                    let gone =
+                        simplified && d <= Self::GONE * (if start[b][i] == 0.0 { size } else { start[b][i].abs() });
+                    settled &= rounding[b][i] || gone || next.min(d) <= self.tolerance * x[b][i].abs();
                     last[b][i] = d;
                 }
             }

@@ -108,6 +108,51 @@ fn a_solution_of_zeros_only() {
     assert!(x[0].abs() <= 3e-17 && iterations <= 8, "{x:?} in {iterations}");
 }
 
+/// Corrections that make `rate` of the way to the solution, as those with derivatives of another point do.
+struct Simplified<const U: usize> {
+    solution: [f64; U],
+    rate: f64,
+    made: u32,
+}
+
+impl<const U: usize> Equations<U> for Simplified<U> {
+    fn correction(&mut self, x: &[f64; U]) -> Result<[f64; U], Singular> {
+        self.made += 1;
+        // The first leaves rounding of what it takes.
+        let (rate, rest) = if self.made == 1 { (1.0, 1e-15) } else { (self.rate, 0.0) };
+        Ok(std::array::from_fn(|i| rate * (self.solution[i] - x[i]) + rest))
+    }
+    fn is_simplified(&self) -> bool {
+        self.made > 1
+    }
+}
+
+/// Their corrections shrink by the same factor for ever, alone and beside one that goes on.
+#[test]
+fn what_stops_is_settled_with_derivatives_of_its_start_too() {
+    // One that starts at zero beside others is seen to move by their rounding.
+    let cases = [
+        ([0.0, 0.0], [1.0, 0.3], 1e-32),
+        ([0.0, 1.0], [1.0, 0.9], 1e-32),
+        ([0.0, 0.0], [1.0, 0.0], 1e-15),
+        ([0.0, 1.0], [0.0, 0.9], 1e-15),
+    ];
+    for (solution, start, epsilon) in cases {
+        for rate in [0.994, 0.9, 0.88] {
+            let mut x = start;
+            let iterations = Newton::default().solve(&mut Simplified { solution, rate, made: 0 }, &mut x).unwrap();
+            for i in 0..2 {
+                assert_relative_eq!(x[i], solution[i], epsilon = epsilon, max_relative = 4.0 * f64::EPSILON);
+            }
+            assert!(iterations <= 24, "{iterations}");
+        }
+    }
+    // What does not stop keeps its digits, however small it is beside others.
+    let mut x = [1.0, 1.1e-60];
+    Newton::default().solve(&mut Simplified { solution: [0.9, 1e-60], rate: 0.99, made: 1 }, &mut x).unwrap();
+    assert_relative_eq!(x[1], 1e-60, epsilon = 0.0, max_relative = 8.0 * f64::EPSILON);
+}
+
 /// The rounding of what comes to rest exactly: below the smallest normal number a correction may overshoot for ever.
 #[test]
 fn what_is_below_every_normal_number_is_settled() {

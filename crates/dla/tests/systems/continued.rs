@@ -148,3 +148,43 @@ fn a_light_inertia_is_left_to_the_basis() {
         }
     }
 }
+
+/// A blade that is towed along itself with the speed `3 sin^2(pi t)`, or held; it turns freely.
+#[derive(Clone, Copy)]
+struct Towed {
+    held: bool,
+}
+
+impl System<3, 2> for Towed {
+    fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 3], v: &[S; 3]) -> S {
+        (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) * 0.5
+    }
+    fn constraint<S: Scalar>(&self, t: S, q: &[S; 3]) -> Constraint<S, 3, 2> {
+        let ((sin, cos), zero) = (q[2].sin_cos(), S::zero());
+        let stroke = (t * std::f64::consts::PI).sin();
+        let speed = if self.held { zero } else { stroke * stroke * 3.0 };
+        ([[sin, -cos, zero], [cos, sin, zero]], [zero, -speed])
+    }
+}
+
+/// A search whose solution is zero in some unknowns ends, with memory and without; and motions that have stopped go on.
+#[test]
+fn what_comes_to_rest_beside_what_moves() {
+    for (heading, turning) in (0..40).map(|k| (0.17 * f64::from(k), 0.3 * f64::from(k % 8))) {
+        for h in [0.0625, 0.1, 0.03] {
+            for form in [Form::General, Form::Multipliers] {
+                let mut state = State::new([0.0, 0.0, heading], [0.0, 0.0, turning], [false; 3]);
+                let (mut method, steps) = (Dla::midpoint().solved(form), (3.0 / h) as u32);
+                let mut reached = 0.0f64;
+                for k in 0..steps {
+                    let t = -0.5 + f64::from(k) * h;
+                    let system = Towed { held: !(0.0..1.0).contains(&(t + 0.5 * h)) };
+                    method.step(&system, t, h, &mut state).unwrap();
+                    reached = reached.max(state.v()[0].hypot(state.v()[1]));
+                }
+                assert!(reached > 2.9 && state.v()[0].hypot(state.v()[1]) < 1e-30, "{:?}", state.v());
+                assert!((state.v()[2] - turning).abs() <= 1e-13 * turning);
+            }
+        }
+    }
+}
