@@ -34,8 +34,9 @@ impl<const N: usize> Past<N> {
     #[allow(clippy::float_cmp, reason = "only steps of the very same length are points of one sequence")]
     pub(crate) fn push(&mut self, h: f64, increment: &[f64; N]) {
         self.made = if self.step == h { KEPT.min(self.made + 1) } else { 1 };
-        let [last, second, third, fourth, _] = self.increments;
-        (self.step, self.increments) = (h, [*increment, last, second, third, fourth]);
+        self.step = h;
+        self.increments.copy_within(..KEPT - 1, 1);
+        self.increments[0] = *increment;
     }
 
     /// No step yet, again.

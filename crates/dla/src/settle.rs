@@ -25,29 +25,40 @@ impl Settle {
         /// Corrections below this part of the unknowns are taken for rounding where they do not shrink. Where rounding is
         /// larger, the general search sees it.
         const ROUNDING: f64 = 64.0 * f64::EPSILON;
-        let (mut last, mut allowed) = ([f64::INFINITY; N], self.most);
+        // With the first correction none is compared.
+        let (mut last, mut allowed) = ([f64::NAN; N], self.most);
         for made in 1..=CORRECTIONS {
             let d = correction(x);
-            *x = from_fn(|i| x[i] + d[i]);
+            let moved = from_fn(|i| x[i] + d[i]);
             let size = sup(&d);
-            let rounding = size <= ROUNDING * sup(x);
+            let rounding = size <= ROUNDING * sup(&moved);
             if !(size <= allowed || rounding) {
                 return None;
             }
-            let mut settled = true;
-            for i in 0..N {
-                let (d, size) = (d[i].abs(), self.tolerance * x[i].abs());
-                // As the corrections have shrunk the next one will be within the tolerance.
-                let predicted = made > 1 && d <= x[i].abs() && 2.0 * d * d <= size * last[i];
-                settled &= d <= size || predicted || (rounding && d >= 0.25 * last[i]);
-                last[i] = d;
-            }
-            if settled {
+            // What is within the tolerance anyway is a check alone, which nothing then waits for.
+            if rounding && (0..N).fold(true, |all, i| all & (d[i].abs() <= self.tolerance * x[i].abs())) {
                 return Some(made);
             }
+            *x = moved;
+            if made > 1 && self.has_settled(x, &d, &last, rounding) {
+                return Some(made);
+            }
+            last = d.map(f64::abs);
             allowed = SHRINKING * size;
         }
         None
+    }
+
+    /// Whether every component of `x` has settled with the correction `d`, after one with components of the sizes `last`.
+    #[inline(always)]
+    fn has_settled<const N: usize>(&self, x: &[f64; N], d: &[f64; N], last: &[f64; N], rounding: bool) -> bool {
+        (0..N).fold(true, |all, i| {
+            let (d, x, last) = (d[i].abs(), x[i].abs(), last[i]);
+            let size = self.tolerance * x;
+            // As the corrections have shrunk the next one will be within the tolerance.
+            let predicted = (d <= x) & (2.0 * d * d <= size * last);
+            all & ((d <= size) | predicted | (rounding & (d >= 0.25 * last)))
+        })
     }
 }
 

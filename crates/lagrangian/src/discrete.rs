@@ -175,18 +175,57 @@ impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteConstra
     #[inline]
     fn linearised(&self, system: &Sys, t0: f64, h: f64, q0: &[f64; N], v: &[f64; N]) -> [Dual<f64, N>; M] {
         let mut sum = [Dual::fixed(0.0); M];
-        let in_v = Dual::variables(v);
         for node in self.nodes() {
             let (t, q) = on_line(node.alpha, t0, h, q0, v);
-            let part = h * node.alpha;
-            let in_q = from_fn(|i| Dual { re: q[i], eps: from_fn(|j| if i == j { part } else { 0.0 }) });
-            let residual = constraint_residual(system, Dual::fixed(t), &in_q, &in_v);
+            let at_node = residual_along(system, t, &q, v, h * node.alpha);
             for k in 0..M {
-                sum[k] += residual[k] * node.weight;
+                sum[k] += at_node[k] * node.weight;
             }
         }
         sum
     }
+}
+
+/// The residual of each constraint with its derivatives in `v`, where `dq = part dv`.
+#[inline(always)]
+fn residual_along<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+    part: f64,
+) -> [Dual<f64, N>; M] {
+    let mut residual = match N {
+        5..=8 => affine_along::<Sys, N, M, 8>(system, t, q, v, part),
+        _ => affine_along::<Sys, N, M, N>(system, t, q, v, part),
+    };
+    let in_q = from_fn(|i| Dual { re: q[i], eps: from_fn(|j| if i == j { part } else { 0.0 }) });
+    if let Some(phi) = system.nonlinear(Dual::fixed(t), &in_q, &Dual::variables(v)) {
+        for k in 0..M {
+            residual[k] = phi[k].unwrap_or(residual[k]);
+        }
+    }
+    residual
+}
+
+/// The same of affine constraints, `d(A v + b) = (A + part d(A v + b)/dq) dv`, by derivatives in `W` places.
+#[inline(always)]
+fn affine_along<Sys: System<N, M>, const N: usize, const M: usize, const W: usize>(
+    system: &Sys,
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+    part: f64,
+) -> [Dual<f64, N>; M] {
+    let (a, b) = system.constraint(Gradient::<f64, W>::fixed(t), &Gradient::variables(q));
+    from_fn(|k| {
+        let mut along = b[k];
+        for i in 0..N {
+            along += a[k][i] * v[i];
+        }
+        let in_q: [f64; N] = along.gradient();
+        Dual { re: along.re, eps: from_fn(|j| a[k][j].re + part * in_q[j]) }
+    })
 }
 
 /// `L_q` and `L_v`.
