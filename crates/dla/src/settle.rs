@@ -91,6 +91,20 @@ mod tests {
         assert!(search(0.99, &SETTLE).unwrap().0 > search(1.0, &SETTLE).unwrap().0);
     }
 
+    /// A correction that the tolerance allows to be left is left, where that is so in every component.
+    #[test]
+    fn checks_are_not_added() {
+        let start = [0.5, 1e-3];
+        let ulps = |part: f64| [part * 0.5 * f64::EPSILON, part * 1e-3 * f64::EPSILON];
+        let mut x = start;
+        assert_eq!((SETTLE.search(&mut x, |_| ulps(3.0)), x), (Some(1), start));
+        // Rounding that is more in one of them is added until it is seen not to shrink.
+        let [d, _] = ulps(3.0);
+        let [_, more] = ulps(5.0);
+        let made = SETTLE.search(&mut x, |_| [d, more]);
+        assert_eq!((made, x), (Some(2), [start[0] + d + d, start[1] + more + more]));
+    }
+
     /// Corrections that shrink slowly, or the first of which is large, and such as are no numbers.
     #[test]
     fn others_are_given_up() {

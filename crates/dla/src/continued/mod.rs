@@ -1,12 +1,13 @@
 //! A step that goes on from the last one: it begins with the derivatives that are kept, and has rows of the constraint of its own.
 
+mod arrival;
+mod mean;
+
 use crate::branch;
-use crate::dla::{Dla, predicted};
-use crate::increment::Increment;
+use crate::dla::Dla;
 use crate::overshoot::brakes_only;
-use crate::settle::{SHRINKING, Settle, sup};
 use crate::{State, StepReport};
-use lagrangian::{Bordered, DiscreteConstraint, DiscreteLagrangian, System, mass_matrix, momentum};
+use lagrangian::{DiscreteConstraint, DiscreteLagrangian, System};
 use std::array::from_fn;
 
 /// The velocity that a search has found, with the impulse of the constraints, and in how many corrections.
@@ -82,131 +83,6 @@ impl<L, C> Dla<L, C> {
         self.kept.mass.took::<N>(end.corrections);
         self.kept.ended(h, state);
         Some(StepReport { impulses: [lambda, end.lambda], iterations: corrections, work: None })
-    }
-
-    /// The mean velocity `v`, `p0 + D1 L_d + f_d^- + A(q0)' lambda = 0`, `w_d = 0`; and the momenta `D2 L_d + f_d^+` at the end.
-    #[inline(always)]
-    fn mean<Sys: System<N, M>, const N: usize, const M: usize>(
-        &mut self,
-        system: &Sys,
-        (t0, h): (f64, f64),
-        state: &State<N>,
-    ) -> Option<(Found<N, M>, [f64; N])>
-    where
-        L: DiscreteLagrangian<Sys, N, M>,
-        C: DiscreteConstraint<Sys, N, M>,
-    {
-        /// The square of a correction that is smaller, relative to the velocity, is below all rounding.
-        const SMALL: f64 = 1e-9;
-        let mut v = predicted(state, h)?;
-        let rules = (&self.lagrangian, &self.constraint);
-        let (q0, v0) = (*state.q(), state.v());
-        // Of the system as it is now, which may not be the one of the step before.
-        let (p0, (a0, _)) = (momentum(system, t0, &q0, v0), system.constraint(t0, &q0));
-        let increment = Increment { rules, system, t0, h, state, q0, p0, a0, basis: None };
-        let mut at = if self.kept.block.stale {
-            let (at, block) = increment.linearised(&v);
-            self.kept.block.renew(&block)?;
-            at
-        } else {
-            increment.momenta(&v)
-        };
-        let block = &self.kept.block;
-        let (rows, mut level) = increment.rows(&v);
-        let bordered = Bordered::new(
-            #[inline(always)]
-            |x| block.times(x),
-            &a0,
-            &rows,
-        )
-        .ok()?;
-        if !bordered.is_as_at_rest(block.positive) || !bordered.is_clear() {
-            return None;
-        }
-
-        let (mut lambda, mut both, mut change) = ([0.0; M], [0.0; N], 0.0);
-        let (mut first, mut size, mut before, mut moved) = (true, 0.0, 0.0, 0.0);
-        let settle = Settle { tolerance: self.newton.tolerance, most: SHRINKING * sup(&v) };
-        let corrections = settle.search(
-            &mut v,
-            #[inline(always)]
-            |v| {
-                if !first {
-                    at = increment.momenta(v);
-                    // A correction meets the constraint but for its product with the way from where the rows are.
-                    let met = moved * size <= (SMALL * sup(v)).powi(2);
-                    level = if met { [0.0; M] } else { increment.level(v) };
-                }
-                let d;
-                (d, lambda) = bordered.solve(&block.times(&at.residual.map(|r| -r)), &level);
-                let ends: [f64; N] = from_fn(|i| at.residual[i] + at.arriving[i]);
-                change = sup(&from_fn::<_, N, _>(|i| ends[i] - both[i]));
-                (first, both, before, size) = (false, ends, size, sup(&d));
-                moved += size;
-                d
-            },
-        )?;
-        // With the equations at `v` met, the momenta at the end are what those at both ends sum to, and the impulse: of that the
-        // last correction changes as much in its size as the one before.
-        if change * size > f64::EPSILON * before * sup(&both) {
-            let at = increment.momenta(&v);
-            both = from_fn(|i| at.residual[i] + at.arriving[i]);
-        }
-        for k in 0..M {
-            for i in 0..N {
-                both[i] += a0[k][i] * lambda[k];
-            }
-        }
-        Some((Found { v, lambda, corrections }, both))
-    }
-
-    /// The velocity `v1` at the end: `L_v(q1, v1) = p1 + A(q1)' mu`, `A(q1) v1 + b(q1) = 0`.
-    #[inline(always)]
-    fn arrival<Sys: System<N, M>, const N: usize, const M: usize>(
-        &mut self,
-        system: &Sys,
-        (t1, q1): (f64, &[f64; N]),
-        p1: [f64; N],
-        guess: [f64; N],
-    ) -> Option<Found<N, M>> {
-        let mut v = guess;
-        let (a1, b1) = system.constraint(t1, q1);
-        let mut p = if self.kept.mass.stale {
-            let (p, mass) = mass_matrix(system, t1, q1, &v);
-            self.kept.mass.renew(&mass)?;
-            p
-        } else {
-            momentum(system, t1, q1, &v)
-        };
-        let mass = &self.kept.mass;
-        let bordered = Bordered::new(
-            #[inline(always)]
-            |x| mass.times(x),
-            &a1,
-            &a1,
-        )
-        .ok()?;
-
-        if !bordered.is_clear() {
-            return None;
-        }
-        let (mut first, mut minus_mu) = (true, [0.0; M]);
-        let settle = Settle { tolerance: self.newton.tolerance, most: sup(&v) };
-        let corrections = settle.search(
-            &mut v,
-            #[inline(always)]
-            |v| {
-                if !first {
-                    p = momentum(system, t1, q1, v);
-                }
-                first = false;
-                let slip: [f64; M] = from_fn(|k| -(0..N).fold(b1[k], |sum, i| sum + a1[k][i] * v[i]));
-                let d;
-                (d, minus_mu) = bordered.solve(&mass.times(&from_fn(|i| p1[i] - p[i])), &slip);
-                d
-            },
-        )?;
-        Some(Found { v, lambda: minus_mu.map(|m| -m), corrections })
     }
 }
 
