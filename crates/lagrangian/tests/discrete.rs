@@ -6,8 +6,8 @@ mod common;
 use approx::assert_relative_eq;
 use common::{Everything, vector};
 use lagrangian::{
-    Alpha, Derivatives, DiscreteConstraint, DiscreteLagrangian, Midpoint, Scalar, Symmetrised, System, Trapezoid,
-    constraint_residual,
+    Alpha, Constraint, Derivatives, DiscreteConstraint, DiscreteLagrangian, Midpoint, Scalar, Symmetrised, System,
+    Trapezoid, constraint_residual,
 };
 use num_dual::HyperDual64;
 use proptest::prelude::*;
@@ -19,30 +19,52 @@ fn close(a: f64, b: f64, h: f64) {
 }
 
 /// A discrete constraint with its derivatives in the mean velocity, by hand for the rules, by dual numbers and by num-dual.
-fn linearised<C: DiscreteConstraint<Everything, 3, 1>>(
+fn linearised<Sys: System<N, M>, C: DiscreteConstraint<Sys, N, M>, const N: usize, const M: usize>(
     rule: &C,
-    system: &Everything,
+    system: &Sys,
     (t, h): (f64, f64),
-    q0: &[f64; 3],
-    v: &[f64; 3],
+    q0: &[f64; N],
+    v: &[f64; N],
 ) {
     struct Residual<'a, C>(&'a C);
-    impl<C: DiscreteConstraint<Everything, 3, 1>> DiscreteConstraint<Everything, 3, 1> for Residual<'_, C> {
-        fn residual<S: Scalar>(&self, system: &Everything, t0: S, h: S, q0: &[S; 3], v: &[S; 3]) -> [S; 1] {
+    impl<Sys: System<N, M>, C: DiscreteConstraint<Sys, N, M>, const N: usize, const M: usize>
+        DiscreteConstraint<Sys, N, M> for Residual<'_, C>
+    {
+        fn residual<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> [S; M] {
             self.0.residual(system, t0, h, q0, v)
         }
     }
-    let ([by_hand], [automatic]) =
-        (rule.linearised(system, t, h, q0, v), Residual(rule).linearised(system, t, h, q0, v));
-    let [value] = rule.residual(system, t, h, q0, v);
+    let (by_hand, automatic) = (rule.linearised(system, t, h, q0, v), Residual(rule).linearised(system, t, h, q0, v));
+    let value = rule.residual(system, t, h, q0, v);
     for found in [by_hand, automatic] {
-        assert_relative_eq!(found.re, value, epsilon = 1e-13, max_relative = 1e-13);
-        for i in 0..3 {
+        for k in 0..M {
+            assert_relative_eq!(found[k].re, value[k], epsilon = 1e-13, max_relative = 1e-13);
+        }
+        for i in 0..N {
             let v = from_fn(|k| HyperDual64::new(v[k], f64::from(u8::from(i == k)), 0.0, 0.0));
             let q0 = q0.map(HyperDual64::from);
-            let [w] = rule.residual(system, HyperDual64::from(t), HyperDual64::from(h), &q0, &v);
-            assert_relative_eq!(found.eps[i], w.eps1, epsilon = 1e-12, max_relative = 1e-12);
+            let w = rule.residual(system, HyperDual64::from(t), HyperDual64::from(h), &q0, &v);
+            for k in 0..M {
+                assert_relative_eq!(found[k].eps[i], w[k].eps1, epsilon = 1e-12, max_relative = 1e-12);
+            }
         }
+    }
+}
+
+/// Six coordinates: a row that moves, and one that is not affine.
+struct Six;
+
+impl System<6, 2> for Six {
+    fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 6], v: &[S; 6]) -> S {
+        v.iter().fold(S::zero(), |sum, v| sum + *v * *v * 0.5)
+    }
+    fn constraint<S: Scalar>(&self, t: S, q: &[S; 6]) -> Constraint<S, 6, 2> {
+        let (zero, one) = (S::zero(), S::constant(1.0));
+        let row = [q[0] * q[5], one, (q[1] + t).sin(), zero, q[3] * 0.3, q[4] * q[2]];
+        ([row, [zero; 6]], [(t * q[3]).cos(), zero])
+    }
+    fn nonlinear<S: Scalar>(&self, t: S, q: &[S; 6], v: &[S; 6]) -> Option<[Option<S>; 2]> {
+        Some([None, Some(v[0] * v[0] * q[2] + v[4] * v[5] + t * v[3])])
     }
 }
 
@@ -99,6 +121,9 @@ proptest! {
         linearised(&Trapezoid, &system, at, &q0, &v);
         linearised(&Alpha::new(alpha).unwrap(), &system, at, &q0, &v);
         linearised(&Symmetrised::new(alpha).unwrap(), &system, at, &q0, &v);
+        let [q0, v] = [[q0, v], [v, q0]].map(|parts| from_fn(|i| parts[i / 3][i % 3]));
+        linearised(&Midpoint, &Six, at, &q0, &v);
+        linearised(&Symmetrised::new(alpha).unwrap(), &Six, at, &q0, &v);
     }
 
     /// `L_d(q0, q1; t0, h) = -L_d(q1, q0; t1, -h)` for the symmetric rules; the alpha rule's mirror image is `1 - alpha`.
