@@ -14,7 +14,7 @@ use std::ops::Range;
 pub(super) const GROUP: u64 = 48;
 
 /// Lanes of the closed map and of the collocation.
-const CLOSED: usize = 24;
+const CLOSED: usize = 16;
 const GAUSS: usize = 16;
 
 /// What is summed up of a sleigh.

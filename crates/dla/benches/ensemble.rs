@@ -101,6 +101,7 @@ fn reference<Sys: System<3, 1>>(system: &Sys) -> Vec<[f64; 3]> {
 fn main() {
     for h in [0.05, 0.1] {
         closed::<8>(h);
+        closed::<16>(h);
         closed::<24>(h);
     }
     let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();

@@ -39,6 +39,9 @@ pub trait ClosedLanes<const N: usize, const M: usize, const P: usize, const F: u
     /// The frame at a configuration, after the frame of the step that led there; before the first step that is NaN.
     fn frame<S: Side>(q: &[S; N], before: &[S; F]) -> [S; F];
 
+    /// Up to which sizes of its [doubts](ClosedLaneStep::doubts) a step is good.
+    fn bounds<const WIDE: bool>() -> [f64; 2];
+
     /// One step. A step that is not `WIDE` is quicker, and good only for small changes.
     fn step<const WIDE: bool, S: Side>(prepared: &[S; P], xi: &[S; N], frame: &[S; F]) -> ClosedLaneStep<S, N, M, F>;
 }
@@ -54,8 +57,8 @@ pub struct ClosedLaneStep<S, const N: usize, const M: usize, const F: usize> {
     pub frame: [S; F],
     /// The impulses of the constraints over the step, both ends together.
     pub impulse: [S; M],
-    /// The step is good to rounding where neither of these is beyond one in size,
+    /// The step is good to rounding where neither of these is beyond its [bound](ClosedLanes::bounds) in size,
     pub doubts: [S; 2],
-    /// and this one is positive.
+    /// and this one of a wide step is positive: quick steps take over from wide ones.
     pub positive: S,
 }

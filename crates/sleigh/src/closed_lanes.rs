@@ -20,9 +20,10 @@ struct Ratio<S> {
     cos: S,
     /// `a w sin d`.
     across: S,
-    /// The last correction, relative, and half the turn before it.
+    /// The last correction, relative, half the turn before it, and the whole turn after it.
     correction: S,
     turn: S,
+    whole: S,
 }
 
 /// `h/2`, offset and `k = h m a / (2 J)` of the step, `u0` and `omega0` of its start.
@@ -61,6 +62,7 @@ impl<S: Side> Equation<S> {
         let slope = (-r + 1.0).mul_add(turn * sin, (k * r).mul_add(part_of_r, grown));
         let correction = (cos - grown) / slope;
         let e = turn * correction;
+        let corrected = turn + e;
         Ratio {
             r: r.mul_add(correction, r),
             w: w.mul_add(correction, w),
@@ -69,6 +71,7 @@ impl<S: Side> Equation<S> {
             across: correction.mul_add(part_of_r, part),
             correction,
             turn,
+            whole: corrected + corrected,
         }
     }
 }
@@ -110,6 +113,10 @@ impl ClosedLanes<3, 1, 5, 6> for Sleigh {
         [sin, cos, before[2], before[3], before[4], before[5]]
     }
 
+    fn bounds<const WIDE: bool>() -> [f64; 2] {
+        if WIDE { [LAST, BROAD] } else { [QUICK, NARROW] }
+    }
+
     #[inline(always)]
     fn step<const WIDE: bool, S: Side>(
         &[h, half, m, a, k]: &[S; 5],
@@ -117,7 +124,7 @@ impl ClosedLanes<3, 1, 5, 6> for Sleigh {
         &[sin0, cos0, r1, r2, r3, r4]: &[S; 6],
     ) -> ClosedLaneStep<S, 3, 1, 6> {
         let equation = Equation { half, a, k, u0, omega0 };
-        let Ratio { r, w, sin, cos, across, correction, turn } = if WIDE {
+        let Ratio { r, w, sin, cos, across, correction, turn, whole } = if WIDE {
             let mut r = equation.prediction();
             for _ in 1..CORRECTIONS {
                 r = equation.corrected::<WIDE>(r).r;
@@ -134,15 +141,13 @@ impl ClosedLanes<3, 1, 5, 6> for Sleigh {
         let (cos1, sin1) = ((-chord).mul_add(sin_m, cos0), chord.mul_add(cos_m, sin0));
         let mean_speed = (u0 + across) / cos;
         let (way, turned) = (h * mean_speed, mean_speed * sin);
-        let (most, last) = if WIDE { (BROAD, LAST) } else { (NARROW, QUICK) };
         ClosedLaneStep {
-            increment: [way * cos_m, way * sin_m, h * w],
+            increment: [way * cos_m, way * sin_m, whole],
             xi: [u1, omega1, u0.like(0.0)],
             frame: [sin1, cos1, r, r1, r2, r3],
             impulse: [m * a.mul_add(omega1 - omega0, turned + turned)],
-            doubts: [correction * (1.0 / last), turn * (1.0 / most)],
-            // Quick steps take over from the wide ones before them.
-            positive: if WIDE { r } else { r.like(1.0) },
+            doubts: [correction, turn],
+            positive: r,
         }
     }
 }

@@ -128,7 +128,7 @@ struct Eight<S: Simd, const K: usize, const N: usize, const M: usize, const P: u
     xi: [Pack<S, K>; N],
     frame: [Pack<S, K>; F],
     largest: [Pack<S, K>; M],
-    doubt: Pack<S, K>,
+    doubts: [Pack<S, K>; 2],
     lowest: Pack<S, K>,
 }
 
@@ -144,8 +144,12 @@ impl<S: Simd, const K: usize, const N: usize, const M: usize, const P: usize, co
         for k in 0..M {
             self.largest[k] = self.largest[k].max_abs(impulse[k]);
         }
-        self.doubt = self.doubt.max_abs(doubts[0]).max_abs(doubts[1]);
-        self.lowest = self.lowest.min(positive);
+        for k in 0..2 {
+            self.doubts[k] = self.doubts[k].max_abs(doubts[k]);
+        }
+        if WIDE {
+            self.lowest = self.lowest.min(positive);
+        }
     }
 }
 
@@ -158,41 +162,78 @@ where
 
     #[inline(always)]
     fn run<S: Simd, const K: usize>(self, simd: S) {
-        let Run { state, frame, largest, bad } = self.run;
-        for r in 0..W / LANES {
-            let q = loaded(simd, &state.q, r);
-            let mut eight = Eight {
-                prepared: loaded(simd, self.prepared, r),
-                q,
-                rest: loaded(simd, &state.rest, r),
-                xi: loaded(simd, &state.xi, r),
-                frame: Sys::frame(&q, &loaded(simd, frame, r)),
-                largest: loaded(simd, largest, r),
-                doubt: Pack::<S, K>::splat(simd, 0.0),
-                lowest: Pack::splat(simd, 1.0),
-            };
+        let (mut r, bounds) = (0, Sys::bounds::<WIDE>());
+        // Two whose steps do not wait for each other, where each has registers of its own.
+        while !WIDE && K == 1 && r + 1 < W / LANES {
+            let (mut one, mut other) = (self.eight::<S, K>(simd, r), self.eight::<S, K>(simd, r + 1));
             for _ in 0..self.steps {
-                eight.step::<Sys, WIDE>();
+                one.step::<Sys, WIDE>();
+                other.step::<Sys, WIDE>();
             }
-            for k in 0..N {
-                store(&mut state.q[k], r, &eight.q[k]);
-                store(&mut state.rest[k], r, &eight.rest[k]);
-                store(&mut state.xi[k], r, &eight.xi[k]);
+            self.run.end(r, &one, bounds);
+            self.run.end(r + 1, &other, bounds);
+            r += 2;
+        }
+        while r < W / LANES {
+            let mut one = self.eight::<S, K>(simd, r);
+            for _ in 0..self.steps {
+                one.step::<Sys, WIDE>();
             }
-            (0..F).for_each(|k| store(&mut frame[k], r, &eight.frame[k]));
-            (0..M).for_each(|k| store(&mut largest[k], r, &eight.largest[k]));
-            let (doubt, lowest) = (eight.doubt.row(), eight.lowest.row());
-            for i in 0..LANES {
-                let lane = LANES * r + i;
-                // A step that is not a number leaves none behind, whatever the larger of that and a number is here.
-                let good = doubt[i] <= 1.0 && lowest[i] > 0.0 && state.is_finite(lane);
-                bad[lane] = !good;
-            }
+            self.run.end(r, &one, bounds);
+            r += 1;
+        }
+    }
+}
+
+impl<Sys, const WIDE: bool, const W: usize, const N: usize, const M: usize, const P: usize, const F: usize>
+    Block<'_, Sys, WIDE, W, N, M, P, F>
+where
+    Sys: ClosedLanes<N, M, P, F>,
+{
+    #[inline(always)]
+    fn eight<S: Simd, const K: usize>(&self, simd: S, r: usize) -> Eight<S, K, N, M, P, F> {
+        let Run { state, frame, largest, .. } = &*self.run;
+        let q = loaded(simd, &state.q, r);
+        Eight {
+            prepared: loaded(simd, self.prepared, r),
+            q,
+            rest: loaded(simd, &state.rest, r),
+            xi: loaded(simd, &state.xi, r),
+            frame: Sys::frame(&q, &loaded(simd, frame, r)),
+            largest: loaded(simd, largest, r),
+            doubts: [Pack::splat(simd, 0.0); 2],
+            lowest: Pack::splat(simd, 1.0),
         }
     }
 }
 
 impl<const W: usize, const N: usize, const M: usize, const F: usize> Run<W, N, M, F> {
+    /// Puts eights back after their steps, which were good where their doubts are within the bounds.
+    #[inline(always)]
+    fn end<S: Simd, const K: usize, const P: usize>(
+        &mut self,
+        r: usize,
+        eight: &Eight<S, K, N, M, P, F>,
+        bounds: [f64; 2],
+    ) {
+        let Self { state, frame, largest, bad } = self;
+        for k in 0..N {
+            store(&mut state.q[k], r, &eight.q[k]);
+            store(&mut state.rest[k], r, &eight.rest[k]);
+            store(&mut state.xi[k], r, &eight.xi[k]);
+        }
+        (0..F).for_each(|k| store(&mut frame[k], r, &eight.frame[k]));
+        (0..M).for_each(|k| store(&mut largest[k], r, &eight.largest[k]));
+        let (doubts, lowest) = (eight.doubts.map(|doubt| doubt.row()), eight.lowest.row());
+        for i in 0..LANES {
+            let lane = LANES * r + i;
+            // A step that is not a number leaves none behind, whatever the larger of that and a number is here.
+            let sure = (0..2).all(|k| doubts[k][i] <= bounds[k]);
+            let good = sure && lowest[i] > 0.0 && state.is_finite(lane);
+            bad[lane] = !good;
+        }
+    }
+
     fn take(&mut self, lane: usize, other: &Self) {
         self.state.take(lane, &other.state);
         (0..F).for_each(|k| self.frame[k].0[lane] = other.frame[k].0[lane]);
