@@ -10,7 +10,7 @@ use sleigh::{Sleigh, SleighState};
 use std::array::from_fn;
 use std::ops::Range;
 
-/// Members that are computed together: whole registers of the closed map, of three, and of the collocation, of two.
+/// Members that are computed together: three times the lanes of the closed map and of the collocation.
 pub(super) const GROUP: u64 = 48;
 
 /// Lanes of the closed map and of the collocation.
