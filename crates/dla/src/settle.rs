@@ -25,8 +25,7 @@ impl Settle {
         /// Corrections below this part of the unknowns are taken for rounding where they do not shrink. Where rounding is
         /// larger, the general search sees it.
         const ROUNDING: f64 = 64.0 * f64::EPSILON;
-        // With the first correction none is compared.
-        let (mut last, mut allowed) = ([f64::NAN; N], self.most);
+        let (mut last, mut allowed) = ([0.0; N], self.most);
         for made in 1..=CORRECTIONS {
             let d = correction(x);
             let moved = from_fn(|i| x[i] + d[i]);
@@ -40,6 +39,7 @@ impl Settle {
                 return Some(made);
             }
             *x = moved;
+            // The first has none before it to be compared with.
             if made > 1 && self.has_settled(x, &d, &last, rounding) {
                 return Some(made);
             }

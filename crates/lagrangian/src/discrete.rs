@@ -1,3 +1,5 @@
+use crate::gradient::by_places;
+use crate::system::with_nonlinear;
 use crate::{Dual, Gradient, HyperDual, Rule, Scalar, System, constraint_residual};
 use std::array::from_fn;
 
@@ -195,17 +197,9 @@ fn residual_along<Sys: System<N, M>, const N: usize, const M: usize>(
     v: &[f64; N],
     part: f64,
 ) -> [Dual<f64, N>; M] {
-    let mut residual = match N {
-        5..=8 => affine_along::<Sys, N, M, 8>(system, t, q, v, part),
-        _ => affine_along::<Sys, N, M, N>(system, t, q, v, part),
-    };
+    let affine = by_places!(affine_along::<Sys, N, M>(system, t, q, v, part));
     let in_q = from_fn(|i| Dual { re: q[i], eps: from_fn(|j| if i == j { part } else { 0.0 }) });
-    if let Some(phi) = system.nonlinear(Dual::fixed(t), &in_q, &Dual::variables(v)) {
-        for k in 0..M {
-            residual[k] = phi[k].unwrap_or(residual[k]);
-        }
-    }
-    residual
+    with_nonlinear(system, Dual::fixed(t), &in_q, &Dual::variables(v), affine)
 }
 
 /// The same of affine constraints, `d(A v + b) = (A + part d(A v + b)/dq) dv`, by derivatives in `W` places.
@@ -236,13 +230,10 @@ fn gradients<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
     q: &[S; N],
     v: &[S; N],
 ) -> [[S; N]; 2] {
-    match N {
-        5..=8 => gradients_by::<Sys, S, N, M, 8>(system, t, q, v),
-        _ => gradients_by::<Sys, S, N, M, N>(system, t, q, v),
-    }
+    by_places!(gradients_by::<Sys, S, N, M>(system, t, q, v))
 }
 
-/// The same by derivatives in `W` places, of which those beyond `N` are zero: whole registers are quicker.
+/// The same by derivatives in `W` places.
 #[inline(always)]
 fn gradients_by<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize, const W: usize>(
     system: &Sys,

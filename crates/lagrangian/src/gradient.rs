@@ -16,6 +16,18 @@ pub struct Gradient<S, const N: usize> {
     parts: Option<[S; N]>,
 }
 
+/// Calls a function of systems of `N` coordinates whose last parameter is the number of places for derivatives in them; of those
+/// beyond `N` the derivatives are zero: whole registers are quicker.
+macro_rules! by_places {
+    ($by:ident::<$($parameter:ident),+>$arguments:tt) => {
+        match N {
+            5..=8 => $by::<$($parameter,)+ 8>$arguments,
+            _ => $by::<$($parameter,)+ N>$arguments,
+        }
+    };
+}
+pub(crate) use by_places;
+
 impl<S: Scalar, const N: usize> Gradient<S, N> {
     /// A value that does not depend on the variables.
     #[must_use]

@@ -1,3 +1,4 @@
+use crate::gradient::by_places;
 use crate::{Gradient, HyperDual, Scalar, System};
 use std::array::from_fn;
 
@@ -8,13 +9,10 @@ where
     Sys: System<N, M>,
     S: Scalar,
 {
-    match N {
-        5..=8 => in_velocity_by::<Sys, S, N, M, 8>(system, t, q, v),
-        _ => in_velocity_by::<Sys, S, N, M, N>(system, t, q, v),
-    }
+    by_places!(in_velocity_by::<Sys, S, N, M>(system, t, q, v))
 }
 
-/// The same by derivatives in `W` places, of which those beyond `N` are zero: whole registers are quicker.
+/// The same by derivatives in `W` places.
 #[inline(always)]
 fn in_velocity_by<Sys, S, const N: usize, const M: usize, const W: usize>(
     system: &Sys,

@@ -182,6 +182,22 @@ where
             residual[k] += a[k][i] * v[i];
         }
     }
+    with_nonlinear(system, t, q, v, residual)
+}
+
+/// The residuals of all constraints: `phi(t, q, v)` of those that are not affine, and of the others what is given.
+#[inline(always)]
+pub(crate) fn with_nonlinear<Sys, S, const N: usize, const M: usize>(
+    system: &Sys,
+    t: S,
+    q: &[S; N],
+    v: &[S; N],
+    mut residual: [S; M],
+) -> [S; M]
+where
+    Sys: System<N, M>,
+    S: Scalar,
+{
     if let Some(phi) = system.nonlinear(t, q, v) {
         for k in 0..M {
             residual[k] = phi[k].unwrap_or(residual[k]);

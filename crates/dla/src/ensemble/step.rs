@@ -3,7 +3,7 @@ use super::settling::Settling;
 use super::stages::Slope;
 use super::{GaussEnsemble, LANES, Systems};
 use lagrangian::System;
-use lagrangian::simd::{Pack, Simd};
+use lagrangian::simd::{Pack, Simd, apart};
 
 /// A step of the eight trajectories of one register.
 pub(super) struct Step<'a, Sys, Each, const S: usize, const W: usize, const N: usize, const M: usize> {
@@ -42,11 +42,11 @@ where
     #[inline(always)]
     pub(super) fn make<Si: Simd, const R: usize>(&self, eight: &mut Eight<Si, R, S, N>) -> u32 {
         let Self { of, .. } = self;
-        if self.first {
-            self.begin(eight);
-        } else {
-            self.begin_after_another(eight);
-        }
+        apart(
+            eight.simd,
+            #[inline(always)]
+            || if self.first { self.begin(eight) } else { self.begin_after_another(eight) },
+        );
         let unseen = eight.iterations.saturating_sub(SEEN);
         let mut settling = Settling::to(of.settled);
         let (mut iterations, mut size) = (0, [0.0; LANES]);
@@ -59,15 +59,21 @@ where
             self.coordinates::<true, _, _>(eight, &of.order.iterated[0]);
             self.coordinates::<false, _, _>(eight, &of.order.iterated[1]);
             if iterations <= unseen {
-                self.accelerations::<false, _, _>(eight);
+                self.accelerations::<false, _, _>(eight, &self.times);
             } else {
-                let [moved, sizes] = self.accelerations::<true, _, _>(eight);
+                let [moved, sizes] = self.accelerations::<true, _, _>(eight, &self.times);
                 size = sizes.row();
                 open = settling.look(&moved.row(), &size);
             }
         }
-        self.coordinates::<true, _, _>(eight, &of.order.quadratures[0]);
-        self.coordinates::<false, _, _>(eight, &of.order.quadratures[1]);
+        apart(
+            eight.simd,
+            #[inline(always)]
+            || {
+                self.coordinates::<true, _, _>(eight, &of.order.quadratures[0]);
+                self.coordinates::<false, _, _>(eight, &of.order.quadratures[1]);
+            },
+        );
         eight.end(&of.collocation, N - M);
         eight.iterations = if open { 0 } else { iterations };
         if open {
@@ -85,19 +91,7 @@ where
                 eight.stages.turn(k);
             }
         }
-        let acceleration = &mut eight.acceleration;
-        eight.stages.slopes(
-            Slope::Acceleration,
-            &self.of.systems,
-            self.register,
-            &[self.t; S],
-            #[inline(always)]
-            |i, found| {
-                for k in 0..N - M {
-                    acceleration[k][i] = found[k];
-                }
-            },
-        );
+        self.accelerations::<false, _, _>(eight, &[self.t; S]);
     }
 
     /// The slopes as those of the last step go on, and the coordinates from which velocities are found.
@@ -158,11 +152,12 @@ where
         }
     }
 
-    /// The accelerations of the stages; how far they have moved and how large they are, where that is looked at.
+    /// The accelerations of the stages at these times; how far they have moved and how large they are, where that is looked at.
     #[inline(always)]
     fn accelerations<const LOOK: bool, Si: Simd, const R: usize>(
         &self,
         eight: &mut Eight<Si, R, S, N>,
+        times: &[f64; S],
     ) -> [Pack<Si, R>; 2] {
         let zero = Pack::splat(eight.simd, 0.0);
         let (mut moved, mut size) = (zero, zero);
@@ -171,7 +166,7 @@ where
             Slope::Acceleration,
             &self.of.systems,
             self.register,
-            &self.times,
+            times,
             #[inline(always)]
             |i, found| {
                 for k in 0..N - M {

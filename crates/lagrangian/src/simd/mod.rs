@@ -49,6 +49,23 @@ pub fn dispatch_widest<K: Kernel>(kernel: K) -> K::Output {
     }
 }
 
+/// Runs a part of a kernel as a function of its own, in the same registers.
+///
+/// All of a kernel is one function otherwise, in which a model stands as often as it is called: the compiler takes minutes for
+/// what it does in seconds in parts.
+#[inline(never)]
+pub fn apart<S: Simd, T>(simd: S, part: impl FnOnce() -> T) -> T {
+    struct Part<F>(F);
+    impl<T, F: FnOnce() -> T> pulp::WithSimd for Part<F> {
+        type Output = T;
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, _simd: S) -> T {
+            self.0()
+        }
+    }
+    simd.vectorize(Part(part))
+}
+
 /// Runs a kernel as [`dispatch`] does, or gives it back.
 #[inline(always)]
 fn attempt<K: Kernel>(kernel: K) -> Result<K::Output, K> {
