@@ -128,7 +128,10 @@ impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteLagrang
         for node in self.nodes() {
             let (t, q) = on_line(node.alpha, t0, h, q0, v);
             let part = h * node.alpha;
-            let [l_q, l_v] = gradients(system, t, &q, v);
+            let [l_q, l_v] = match const { R::IN_PLACE } {
+                true => gradients(system, t, &q, v),
+                false => gradients_apart(system, t, &q, v),
+            };
             for i in 0..N {
                 d1[i] += ((h - part) * l_q[i] - l_v[i]) * node.weight;
                 d2[i] += (part * l_q[i] + l_v[i]) * node.weight;
@@ -231,6 +234,17 @@ fn gradients<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
     v: &[S; N],
 ) -> [[S; N]; 2] {
     by_places!(gradients_by::<Sys, S, N, M>(system, t, q, v))
+}
+
+/// The same, one function for all rules.
+#[inline(never)]
+fn gradients_apart<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
+    system: &Sys,
+    t: S,
+    q: &[S; N],
+    v: &[S; N],
+) -> [[S; N]; 2] {
+    gradients(system, t, q, v)
 }
 
 /// The same by derivatives in `W` places.
