@@ -8,25 +8,6 @@ pub struct Pack<S: Simd, const R: usize> {
     registers: [S::f64s; R],
 }
 
-/// Does the same with every register: written out for one or two, since of a loop the compiler has one to unroll for every
-/// operation of a kernel.
-macro_rules! each_register {
-    ($i:ident => $act:expr) => {
-        if const { R <= 2 } {
-            let $i = 0;
-            $act;
-            if const { R == 2 } {
-                let $i = 1;
-                $act;
-            }
-        } else {
-            for $i in 0..R {
-                $act;
-            }
-        }
-    };
-}
-
 #[allow(
     clippy::redundant_closure_for_method_calls,
     reason = "a function may stay a call, in which the registers are not known"
@@ -103,19 +84,25 @@ impl<S: Simd, const R: usize> Pack<S, R> {
 
     #[inline(always)]
     pub(super) fn map(mut self, f: impl Fn(S, S::f64s) -> S::f64s) -> Self {
-        each_register!(i => self.registers[i] = f(self.simd, self.registers[i]));
+        for i in 0..R {
+            self.registers[i] = f(self.simd, self.registers[i]);
+        }
         self
     }
 
     #[inline(always)]
     pub(super) fn zip(mut self, o: Self, f: impl Fn(S, S::f64s, S::f64s) -> S::f64s) -> Self {
-        each_register!(i => self.registers[i] = f(self.simd, self.registers[i], o.registers[i]));
+        for i in 0..R {
+            self.registers[i] = f(self.simd, self.registers[i], o.registers[i]);
+        }
         self
     }
 
     #[inline(always)]
     pub(super) fn zip3(mut self, a: Self, b: Self, f: impl Fn(S, S::f64s, S::f64s, S::f64s) -> S::f64s) -> Self {
-        each_register!(i => self.registers[i] = f(self.simd, self.registers[i], a.registers[i], b.registers[i]));
+        for i in 0..R {
+            self.registers[i] = f(self.simd, self.registers[i], a.registers[i], b.registers[i]);
+        }
         self
     }
 
