@@ -51,8 +51,8 @@ pub fn dispatch_widest<K: Kernel>(kernel: K) -> K::Output {
 
 /// Runs a part of a kernel as a function of its own, in the same registers.
 ///
-/// All of a kernel is one function otherwise, in which a model stands as often as it is called: the compiler takes minutes for
-/// what it does in seconds in parts.
+/// All of a kernel is one function otherwise, in which a model stands as often as it is called, and compiling takes longer than
+/// in proportion to its length. A call costs some nanoseconds: it is for what a step does once.
 #[inline(never)]
 pub fn apart<S: Simd, T>(simd: S, part: impl FnOnce() -> T) -> T {
     struct Part<F>(F);
