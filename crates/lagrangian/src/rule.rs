@@ -15,8 +15,8 @@ pub struct RuleNode {
 /// discrete constraint `w_d = sum_i w_i [A(q_i, t_i) v + b(q_i, t_i)]`, with `q_i = q0 + alpha_i h v`,
 /// `t_i = t0 + alpha_i h` and `v = (q1 - q0)/h`. (Marsden and West 2001, Acta Numerica 10, 357-514, section 2.3.)
 pub trait Rule {
-    /// Whether derivatives at its nodes are compiled into each step by it: some percent quicker than the function that other
-    /// rules have in common, and a third of the time to compile a step.
+    /// Whether derivatives at its nodes are compiled into each step by it: some percent quicker to run than the function that
+    /// other rules have in common, and longer to compile.
     const IN_PLACE: bool = false;
 
     /// The nodes.
