@@ -171,12 +171,16 @@ impl<B, E: Effect<B, N>, const N: usize> Effect<B, N> for Vec<E> {
     /// Slope and force of each in one pass.
     #[inline(always)]
     fn whole_force<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
+        // Which effects there are is known in a run alone.
         S::over(
             self,
-            Some([S::zero(); N]),
+            Some([S::zero().carried_as(t); N]),
             #[inline(always)]
             |all, effect| match (all, effect.whole_force(body, t, q, v)) {
-                (Some(all), Some(force)) => Some(sum(&all, &force)),
+                (Some(all), Some(force)) => Some(S::array(
+                    #[inline(always)]
+                    |i| all[i] + force[i].carried_as(t),
+                )),
                 _ => None,
             },
         )

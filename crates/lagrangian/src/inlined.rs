@@ -7,8 +7,10 @@
 #[inline(always)]
 pub fn array<T: Copy, const N: usize>(blank: T, f: impl Fn(usize) -> T) -> [T; N] {
     let mut all = [blank; N];
-    for i in 0..N {
+    let mut i = 0;
+    while i < N {
         all[i] = f(i);
+        i += 1;
     }
     all
 }

@@ -55,6 +55,14 @@ pub trait Scalar:
         items.iter().fold(start, f)
     }
 
+    /// The same number, carried as the other is. Numbers in vector registers are told apart, when a model is compiled, from those
+    /// that all eight have in common; where a run decides which of the two a number is, every operation after it would be there
+    /// for both.
+    #[must_use]
+    #[inline(always)]
+    fn carried_as(self, _other: Self) -> Self {
+        self
+    }
     /// Zero.
     #[must_use]
     #[inline(always)]

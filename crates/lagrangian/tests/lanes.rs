@@ -4,7 +4,7 @@
 mod common;
 
 use common::{Everything, vector};
-use lagrangian::simd::{Kernel, Pack, Simd, Square, dispatch};
+use lagrangian::simd::{Kernel, Pack, Simd, Square, Wide, dispatch};
 use lagrangian::{Dual, HyperDual, Lanes, Scalar, System, momentum, vectorized};
 use proptest::prelude::*;
 use std::array::from_fn;
@@ -40,7 +40,32 @@ impl Kernel for Folded<'_> {
     }
 }
 
+/// Whether zero and a number that all places have in common, carried as a row is, are rows of it; and stay what they are
+/// beside one that is none.
+struct CarriedAs<'a>(&'a [f64; 8]);
+
+impl Kernel for CarriedAs<'_> {
+    type Output = [bool; 3];
+    #[inline(always)]
+    fn run<S: Simd, const R: usize>(self, simd: S) -> [bool; 3] {
+        let row = Wide::Each(Pack::<S, R>::load(simd, self.0));
+        let in_all =
+            |x: Wide<S, R>, value: f64| matches!(x, Wide::Each(x) if x.row().map(f64::to_bits) == [value.to_bits(); 8]);
+        [
+            in_all(Wide::Zero.carried_as(row), 0.0),
+            in_all(Wide::Same(self.0[0]).carried_as(row), self.0[0]),
+            matches!(Wide::<S, R>::Zero.carried_as(Wide::Same(1.0)), Wide::Zero),
+        ]
+    }
+}
+
 proptest! {
+    /// What a number is carried as does not change it.
+    #[test]
+    fn numbers_carried_as_rows(x in vector::<8>()) {
+        prop_assert!(dispatch(CarriedAs(&x)).is_none_or(|kept| kept == [true; 3]));
+    }
+
     /// A row and its mirror image have one sum, to the last bit.
     #[test]
     fn sums_in_registers(x in vector::<8>()) {

@@ -8,6 +8,23 @@ pub struct Pack<S: Simd, const R: usize> {
     registers: [S::f64s; R],
 }
 
+/// Does the same with every register. One needs no loop, of which the compiler would have one to unroll for every operation of a
+/// kernel; the loop over several keeps what is done standing once until it is unrolled, and has no iterator.
+macro_rules! each_register {
+    ($i:ident => $act:expr) => {
+        if const { R == 1 } {
+            let $i = 0;
+            $act;
+        } else {
+            let mut $i = 0;
+            while $i < R {
+                $act;
+                $i += 1;
+            }
+        }
+    };
+}
+
 #[allow(
     clippy::redundant_closure_for_method_calls,
     reason = "a function may stay a call, in which the registers are not known"
@@ -84,38 +101,29 @@ impl<S: Simd, const R: usize> Pack<S, R> {
 
     #[inline(always)]
     pub(super) fn map(mut self, f: impl Fn(S, S::f64s) -> S::f64s) -> Self {
-        for i in 0..R {
-            self.registers[i] = f(self.simd, self.registers[i]);
-        }
+        each_register!(i => self.registers[i] = f(self.simd, self.registers[i]));
         self
     }
 
     #[inline(always)]
     pub(super) fn zip(mut self, o: Self, f: impl Fn(S, S::f64s, S::f64s) -> S::f64s) -> Self {
-        for i in 0..R {
-            self.registers[i] = f(self.simd, self.registers[i], o.registers[i]);
-        }
+        each_register!(i => self.registers[i] = f(self.simd, self.registers[i], o.registers[i]));
         self
     }
 
     #[inline(always)]
     pub(super) fn zip3(mut self, a: Self, b: Self, f: impl Fn(S, S::f64s, S::f64s, S::f64s) -> S::f64s) -> Self {
-        for i in 0..R {
-            self.registers[i] = f(self.simd, self.registers[i], a.registers[i], b.registers[i]);
-        }
+        each_register!(i => self.registers[i] = f(self.simd, self.registers[i], a.registers[i], b.registers[i]));
         self
     }
 
     /// `self * factor + term`, rounded once.
     #[must_use]
     #[inline(always)]
-    pub fn mul_add(self, factor: Self, term: Self) -> Self {
-        self.zip3(
-            factor,
-            term,
-            #[inline(always)]
-            |s, a, b, c| s.mul_add_e_f64s(a, b, c),
-        )
+    pub fn mul_add(mut self, factor: Self, term: Self) -> Self {
+        let (s, f, c) = (self.simd, &factor.registers, &term.registers);
+        each_register!(i => self.registers[i] = s.mul_add_e_f64s(self.registers[i], f[i], c[i]));
+        self
     }
 
     /// The larger of this number and the absolute value of the other, in every place; where one is not a number the machine
@@ -222,12 +230,10 @@ macro_rules! operators {
         impl<S: Simd, const R: usize> std::ops::$operator for Pack<S, R> {
             type Output = Self;
             #[inline(always)]
-            fn $method(self, o: Self) -> Self {
-                self.zip(
-                    o,
-                    #[inline(always)]
-                    |s, a, b| s.$instruction(a, b),
-                )
+            fn $method(mut self, o: Self) -> Self {
+                let s = self.simd;
+                each_register!(i => self.registers[i] = s.$instruction(self.registers[i], o.registers[i]));
+                self
             }
         }
     )*};

@@ -32,13 +32,17 @@ impl<S: Simd, const R: usize> Wide<S, R> {
 
     #[inline(always)]
     fn with(self, o: Self, one: impl Fn(f64, f64) -> f64, all: impl Fn(Pack<S, R>, Pack<S, R>) -> Pack<S, R>) -> Self {
-        let value = |x: Self| if let Same(x) = x { x } else { 0.0 };
-        match (self, o) {
-            (Each(a), Each(b)) => Each(all(a, b)),
-            (Each(a), b) => Each(all(a, Pack::splat(a.simd(), value(b)))),
-            (a, Each(b)) => Each(all(Pack::splat(b.simd(), value(a)), b)),
-            (a, b) => Same(one(value(a), value(b))),
-        }
+        let simd = match (self, o) {
+            (Each(pack), _) | (_, Each(pack)) => pack.simd(),
+            (a, b) => return Same(one(a.common(), b.common())),
+        };
+        Each(all(self.pack(simd), o.pack(simd)))
+    }
+
+    /// What all eight have in common.
+    #[inline(always)]
+    fn common(self) -> f64 {
+        if let Same(x) = self { x } else { 0.0 }
     }
 
     #[inline(always)]
@@ -207,6 +211,13 @@ impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
             start = f(start, item);
         }
         start
+    }
+    #[inline(always)]
+    fn carried_as(self, other: Self) -> Self {
+        match other {
+            Each(pack) => Each(self.pack(pack.simd())),
+            Zero | Same(_) => self,
+        }
     }
     #[inline(always)]
     fn is_zero(&self) -> bool {
