@@ -43,6 +43,33 @@ pub fn dispatch_widest<K: Kernel>(kernel: K) -> K::Output {
             || kernel.run::<_, 1>(simd),
         );
     }
+    narrower(kernel)
+}
+
+/// A build for machines with the widest registers, as every build from this checkout on such a machine is, has no kernels for
+/// others: they are most of what kernels take to compile.
+#[cfg(all(
+    target_feature = "avx512f",
+    target_feature = "avx512bw",
+    target_feature = "avx512cd",
+    target_feature = "avx512dq",
+    target_feature = "avx512vl"
+))]
+#[cold]
+fn narrower<K: Kernel>(_kernel: K) -> K::Output {
+    unreachable!("a program for AVX-512 runs on a machine without")
+}
+
+/// The widest but those of AVX-512.
+#[cfg(not(all(
+    target_feature = "avx512f",
+    target_feature = "avx512bw",
+    target_feature = "avx512cd",
+    target_feature = "avx512dq",
+    target_feature = "avx512vl"
+)))]
+#[inline(always)]
+fn narrower<K: Kernel>(kernel: K) -> K::Output {
     match attempt(kernel) {
         Ok(output) => output,
         Err(kernel) => kernel.run::<_, 8>(pulp::Scalar::new()),
