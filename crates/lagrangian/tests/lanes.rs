@@ -59,6 +59,27 @@ impl Kernel for CarriedAs<'_> {
     }
 }
 
+/// The bits that two instruction sets give, eight numbers in one register and in two, where the machine has both.
+#[cfg(target_arch = "x86_64")]
+fn on_both<K: Kernel>(kernel: impl Fn() -> K) -> Option<[K::Output; 2]> {
+    let (narrow, wide) = (pulp::x86::V3::try_new()?, pulp::x86::V4::try_new()?);
+    Some([narrow.vectorize(|| kernel().run::<_, 2>(narrow)), wide.vectorize(|| kernel().run::<_, 1>(wide))])
+}
+
+#[cfg(target_arch = "x86_64")]
+proptest! {
+    /// How many registers eight numbers take changes no bit.
+    #[test]
+    fn any_registers_give_the_same_bits(columns in proptest::array::uniform8(vector::<8>()), x in vector::<8>()) {
+        if let Some([narrow, wide]) = on_both(|| Product { columns: &columns, x: &x }) {
+            prop_assert_eq!(narrow.map(f64::to_bits), wide.map(f64::to_bits));
+        }
+        if let Some([narrow, wide]) = on_both(|| Folded(&x)) {
+            prop_assert_eq!(narrow.to_bits(), wide.to_bits());
+        }
+    }
+}
+
 proptest! {
     /// What a number is carried as does not change it.
     #[test]

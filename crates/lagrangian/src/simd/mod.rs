@@ -4,16 +4,16 @@
 //! way. Where lanes are mixed, as the stages of a step are, it takes the wrong loops for the vectors; a [`Pack`] is always the
 //! instructions that it says. The crate `pulp` gives them without a line of `unsafe`.
 
+mod instructions;
 mod pack;
 mod sincos;
 mod square;
 mod wide;
 
+pub use instructions::Simd;
 pub use pack::Pack;
 pub use square::Square;
 pub use wide::Wide;
-
-pub use pulp::Simd;
 
 /// Something to compute on packs of eight numbers.
 pub trait Kernel {
@@ -23,56 +23,19 @@ pub trait Kernel {
     fn run<S: Simd, const R: usize>(self, simd: S) -> Self::Output;
 }
 
-/// Runs a kernel with vector registers that multiply and add in one instruction; none where the machine has none known here.
-///
-/// Today these are AVX2 with FMA. Registers of twice the width gained nothing where they were tried: they are two of these
-/// on some machines, and eight numbers of one step wait for one another in any case.
+/// Runs a kernel with the widest vector registers that multiply and add in one instruction; none where the machine has none
+/// known here. Today these are those of AVX-512 and of AVX2 with FMA. A kernel gives the same bits in both.
 #[inline(always)]
 pub fn dispatch<K: Kernel>(kernel: K) -> Option<K::Output> {
     attempt(kernel).ok()
 }
 
-/// Runs a kernel with the widest registers there are, or one number after another where none are known here: for many
-/// trajectories, whose numbers do not wait for one another.
+/// Runs a kernel as [`dispatch`] does, or one number after another: for many trajectories, whose numbers do not wait for one another.
 #[inline(always)]
-pub fn dispatch_widest<K: Kernel>(kernel: K) -> K::Output {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = pulp::x86::V4::try_new() {
-        return simd.vectorize(
-            #[inline(always)]
-            || kernel.run::<_, 1>(simd),
-        );
-    }
-    narrower(kernel)
-}
-
-/// A build for machines with the widest registers, as every build from this checkout on such a machine is, has no kernels for
-/// others: they are most of what kernels take to compile.
-#[cfg(all(
-    target_feature = "avx512f",
-    target_feature = "avx512bw",
-    target_feature = "avx512cd",
-    target_feature = "avx512dq",
-    target_feature = "avx512vl"
-))]
-#[cold]
-fn narrower<K: Kernel>(_kernel: K) -> K::Output {
-    unreachable!("a program for AVX-512 runs on a machine without")
-}
-
-/// The widest but those of AVX-512.
-#[cfg(not(all(
-    target_feature = "avx512f",
-    target_feature = "avx512bw",
-    target_feature = "avx512cd",
-    target_feature = "avx512dq",
-    target_feature = "avx512vl"
-)))]
-#[inline(always)]
-fn narrower<K: Kernel>(kernel: K) -> K::Output {
+pub fn dispatch_always<K: Kernel>(kernel: K) -> K::Output {
     match attempt(kernel) {
         Ok(output) => output,
-        Err(kernel) => kernel.run::<_, 8>(pulp::Scalar::new()),
+        Err(kernel) => one_by_one(kernel),
     }
 }
 
@@ -86,7 +49,7 @@ pub fn apart<S: Simd, T>(simd: S, part: impl FnOnce() -> T) -> T {
     impl<T, F: FnOnce() -> T> pulp::WithSimd for Part<F> {
         type Output = T;
         #[inline(always)]
-        fn with_simd<S: Simd>(self, _simd: S) -> T {
+        fn with_simd<S: pulp::Simd>(self, _simd: S) -> T {
             self.0()
         }
     }
@@ -97,6 +60,21 @@ pub fn apart<S: Simd, T>(simd: S, part: impl FnOnce() -> T) -> T {
 #[inline(always)]
 fn attempt<K: Kernel>(kernel: K) -> Result<K::Output, K> {
     #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = pulp::x86::V4::try_new() {
+        return Ok(simd.vectorize(
+            #[inline(always)]
+            || kernel.run::<_, 1>(simd),
+        ));
+    }
+    // A build for machines with the widest registers, as every build from this checkout on such a machine is, has no kernels for
+    // others: they would be most of what kernels take to compile.
+    #[cfg(not(all(
+        target_feature = "avx512f",
+        target_feature = "avx512bw",
+        target_feature = "avx512cd",
+        target_feature = "avx512dq",
+        target_feature = "avx512vl"
+    )))]
     if let Some(simd) = pulp::x86::V3::try_new() {
         return Ok(simd.vectorize(
             #[inline(always)]
@@ -104,4 +82,30 @@ fn attempt<K: Kernel>(kernel: K) -> Result<K::Output, K> {
         ));
     }
     Err(kernel)
+}
+
+/// Runs a kernel without vector registers.
+#[cfg(not(all(
+    target_feature = "avx2",
+    target_feature = "bmi1",
+    target_feature = "bmi2",
+    target_feature = "fma",
+    target_feature = "lzcnt"
+)))]
+#[inline(always)]
+fn one_by_one<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run::<_, 8>(pulp::Scalar::new())
+}
+
+/// A build for machines with vector registers has nothing for others.
+#[cfg(all(
+    target_feature = "avx2",
+    target_feature = "bmi1",
+    target_feature = "bmi2",
+    target_feature = "fma",
+    target_feature = "lzcnt"
+))]
+#[cold]
+fn one_by_one<K: Kernel>(_kernel: K) -> K::Output {
+    unreachable!("the machine is not one that this program was built for")
 }

@@ -1,5 +1,6 @@
+use super::Simd;
 use crate::Side;
-use pulp::{Simd, bytemuck};
+use pulp::bytemuck;
 
 /// Eight numbers in `R` registers.
 #[derive(Debug, Clone, Copy)]
@@ -164,23 +165,15 @@ impl<S: Simd, const R: usize> Pack<S, R> {
     #[must_use]
     #[inline(always)]
     pub fn times(&self, terms: &[Self; 8]) -> Self {
-        const { assert!(R == 2, "two registers of four numbers") };
-        let zero = Self::splat(self.simd, 0.0);
-        let mut sums = [zero; 2];
-        for half in 0..2 {
-            let four = self.fours(half);
-            let swapped = four.map(
-                #[inline(always)]
-                |s, x| swapped(s, x),
-            );
-            let (far, far_swapped) = (four.halves_exchanged(), swapped.halves_exchanged());
-            let terms = &terms[4 * half..];
-            sums[half] = terms[0] * four;
-            sums[half] = terms[1].mul_add(swapped, sums[half]);
-            sums[half] = terms[2].mul_add(far, sums[half]);
-            sums[half] = terms[3].mul_add(far_swapped, sums[half]);
-        }
-        sums[0] + sums[1]
+        let [x2, x4, x6] = [self.exchanged::<2>(), self.exchanged::<4>(), self.exchanged::<6>()];
+        let mut near = terms[0] * *self;
+        near = terms[1].mul_add(self.neighbours_exchanged(), near);
+        near = terms[2].mul_add(x2, near);
+        near = terms[3].mul_add(x2.neighbours_exchanged(), near);
+        // Two sums, since the first of these comes late where all eight are in one register.
+        let far = terms[5].mul_add(x4.neighbours_exchanged(), terms[4] * x4);
+        let farthest = terms[7].mul_add(x6.neighbours_exchanged(), terms[6] * x6);
+        near + (far + farthest)
     }
 
     /// The sum of the numbers, first of each with that in the mirror: a row and its mirror image have the same sum to the last
@@ -188,41 +181,34 @@ impl<S: Simd, const R: usize> Pack<S, R> {
     #[must_use]
     #[inline(always)]
     pub fn folded(&self) -> f64 {
-        const { assert!(R == 2, "two registers of four numbers") };
-        let (s, [first, last]) = (self.simd, [self.registers[0], self.registers[1]]);
-        let mirrored = exchanged(s, swapped(s, last));
-        let pairs = s.add_f64s(first, mirrored);
-        let fours = s.add_f64s(pairs, swapped(s, pairs));
-        let sum = s.add_f64s(fours, exchanged(s, fours));
-        bytemuck::cast_slice::<S::f64s, f64>(&[sum])[0]
+        let pairs = *self + self.exchanged::<6>().neighbours_exchanged();
+        let fours = pairs + pairs.neighbours_exchanged();
+        let sum = fours + fours.exchanged::<2>();
+        sum.lanes()[0]
     }
 
-    /// The halves of every register in each other's places.
+    /// Each number in the place whose number differs by the bits of `D`, which is 2, 4 or 6.
     #[inline(always)]
-    fn halves_exchanged(self) -> Self {
-        self.map(
+    fn exchanged<const D: usize>(self) -> Self {
+        const { assert!(R <= 2, "registers of four or eight numbers") };
+        let mut ends = self;
+        if const { R == 2 && D & 4 == 4 } {
+            ends.registers.reverse();
+        }
+        ends.map(
             #[inline(always)]
-            |s, x| exchanged(s, x),
+            |s, x| s.exchanged::<D>(x),
         )
     }
 
-    /// The first or the last four numbers, twice.
+    /// Each number in the place of its neighbour.
     #[inline(always)]
-    fn fours(&self, half: usize) -> Self {
-        Self { simd: self.simd, registers: [self.registers[half]; R] }
+    fn neighbours_exchanged(self) -> Self {
+        self.map(
+            #[inline(always)]
+            |s, x| pulp::cast(s.swap_re_im_c64s(pulp::cast(x))),
+        )
     }
-}
-
-/// Halves of a register in each other's places.
-#[inline(always)]
-fn exchanged<S: Simd>(s: S, x: S::f64s) -> S::f64s {
-    s.rotate_right_f64s(x, 2)
-}
-
-/// Neighbours in each other's places.
-#[inline(always)]
-fn swapped<S: Simd>(s: S, x: S::f64s) -> S::f64s {
-    pulp::cast(s.swap_re_im_c64s(pulp::cast(x)))
 }
 
 macro_rules! operators {

@@ -1,6 +1,6 @@
 use super::Pack;
+use super::Simd;
 use crate::sincos::{COS, SIN};
-use pulp::Simd;
 
 /// Above this, `2^50`, the number of the quadrant does not fit into the lowest bits.
 const LIMIT: f64 = 1_125_899_906_842_624.0;

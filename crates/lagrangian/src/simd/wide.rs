@@ -1,6 +1,6 @@
 use super::Pack;
+use super::Simd;
 use crate::{Scalar, array};
-use pulp::Simd;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// Eight numbers for a model to be carried on: a [`Pack`], or what all eight have in common.

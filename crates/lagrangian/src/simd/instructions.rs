@@ -1,0 +1,35 @@
+/// An instruction set, with the exchanges of places that `pulp` has no name for.
+pub trait Simd: pulp::Simd {
+    /// Brings each number of a register to the place whose number differs by the bits of `D`, which is 2, 4 or 6; bits beyond the
+    /// places of a register change nothing.
+    fn exchanged<const D: usize>(self, x: Self::f64s) -> Self::f64s;
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Simd for pulp::x86::V3 {
+    #[inline(always)]
+    fn exchanged<const D: usize>(self, x: Self::f64s) -> Self::f64s {
+        if D & 2 == 2 { pulp::Simd::rotate_right_f64s(self, x, 2) } else { x }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Simd for pulp::x86::V4 {
+    #[inline(always)]
+    fn exchanged<const D: usize>(self, x: Self::f64s) -> Self::f64s {
+        let x = pulp::cast(x);
+        pulp::cast(match D {
+            2 => self.avx512f._mm512_shuffle_f64x2::<0b10_11_00_01>(x, x),
+            4 => self.avx512f._mm512_shuffle_f64x2::<0b01_00_11_10>(x, x),
+            6 => self.avx512f._mm512_shuffle_f64x2::<0b00_01_10_11>(x, x),
+            _ => x,
+        })
+    }
+}
+
+impl Simd for pulp::Scalar {
+    #[inline(always)]
+    fn exchanged<const D: usize>(self, x: Self::f64s) -> Self::f64s {
+        x
+    }
+}
