@@ -1,6 +1,6 @@
 use super::state::{Row, accumulate, loaded, store};
 use super::{BLOCK, Ensemble, LANES, LaneState};
-use lagrangian::simd::{Kernel, Pack, Simd, dispatch_always};
+use lagrangian::simd::{Kernel, Pack, Simd, dispatch_widest};
 use lagrangian::{ClosedLaneStep, ClosedLanes, System};
 use std::array::from_fn;
 use std::marker::PhantomData;
@@ -62,7 +62,7 @@ where
     #[cold]
     fn repair(&mut self, steps: u64, before: &Run<W, N, M, F>) {
         let mut wide = *before;
-        dispatch_always(Block::<Sys, true, _, _, _, _, _>::new(&self.prepared, steps, &mut wide));
+        dispatch_widest(Block::<Sys, true, _, _, _, _, _>::new(&self.prepared, steps, &mut wide));
         let Self { systems, step, run, .. } = self;
         for lane in 0..W {
             if run.bad[lane] {
@@ -93,7 +93,7 @@ where
             let block = if self.begun { BLOCK } else { FIRST }.min(steps - made);
             self.begun = true;
             let before = self.run;
-            dispatch_always(Block::<Sys, false, _, _, _, _, _>::new(&self.prepared, block, &mut self.run));
+            dispatch_widest(Block::<Sys, false, _, _, _, _, _>::new(&self.prepared, block, &mut self.run));
             if self.run.bad.contains(&true) {
                 self.repair(block, &before);
             }

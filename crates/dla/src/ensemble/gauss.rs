@@ -6,7 +6,7 @@ use super::step::Step;
 use super::{BLOCK, Ensemble, LANES, LaneState, Systems};
 use crate::gauss::LEFT;
 use lagrangian::System;
-use lagrangian::simd::{Kernel, Simd, dispatch_always};
+use lagrangian::simd::{Kernel, Simd, dispatch_widest};
 use std::marker::PhantomData;
 
 /// `W` trajectories by Gauss collocation with `S` stages, an even number: the method [`Gauss`](crate::Gauss), eight
@@ -82,7 +82,7 @@ where
         let end = self.made + steps;
         while self.made < end {
             let steps = BLOCK.min(end - self.made);
-            dispatch_always(Steps { of: self, steps });
+            dispatch_widest(Steps { of: self, steps });
             self.made += steps;
             self.state.wrap();
         }

@@ -23,20 +23,92 @@ pub trait Kernel {
     fn run<S: Simd, const R: usize>(self, simd: S) -> Self::Output;
 }
 
-/// Runs a kernel with the widest vector registers that multiply and add in one instruction; none where the machine has none
-/// known here. Today these are those of AVX-512 and of AVX2 with FMA. A kernel gives the same bits in both.
+/// Runs a kernel with vector registers that multiply and add in one instruction: those of AVX-512 where the machine has them
+/// whole, else those of AVX2. None where it has none known here. Sums may
+/// be taken in another order in the one than in the other.
 #[inline(always)]
 pub fn dispatch<K: Kernel>(kernel: K) -> Option<K::Output> {
-    attempt(kernel).ok()
+    #[cfg(target_arch = "x86_64")]
+    {
+        use build::{HALVED, WIDE};
+        if (!WIDE || !HALVED)
+            && let Some(simd) = pulp::x86::V4::try_new()
+            && (WIDE || !halved())
+        {
+            return Some(simd.vectorize(
+                #[inline(always)]
+                || kernel.run::<_, 1>(simd),
+            ));
+        }
+        if (!WIDE || HALVED)
+            && let Some(simd) = pulp::x86::V3::try_new()
+        {
+            return Some(simd.vectorize(
+                #[inline(always)]
+                || kernel.run::<_, 2>(simd),
+            ));
+        }
+    }
+    None
 }
 
-/// Runs a kernel as [`dispatch`] does, or one number after another: for many trajectories, whose numbers do not wait for one another.
+/// Runs a kernel with the widest registers there are, or one number after another where none are known here: for many
+/// trajectories, whose numbers do not wait for one another.
 #[inline(always)]
-pub fn dispatch_always<K: Kernel>(kernel: K) -> K::Output {
-    match attempt(kernel) {
-        Ok(output) => output,
-        Err(kernel) => one_by_one(kernel),
+pub fn dispatch_widest<K: Kernel>(kernel: K) -> K::Output {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use build::{NARROW, WIDE};
+        if let Some(simd) = pulp::x86::V4::try_new() {
+            return simd.vectorize(
+                #[inline(always)]
+                || kernel.run::<_, 1>(simd),
+            );
+        }
+        if !WIDE && let Some(simd) = pulp::x86::V3::try_new() {
+            return simd.vectorize(
+                #[inline(always)]
+                || kernel.run::<_, 2>(simd),
+            );
+        }
+        if WIDE || NARROW {
+            unreachable!("the machine is not one that this program was built for");
+        }
     }
+    kernel.run::<_, 8>(pulp::Scalar::new())
+}
+
+/// What is known of the machine when the program is built. What is known to be absent or not to be used is not compiled: a build
+/// for one machine, as builds from this checkout are, has one kernel instead of three, which take most of the time to compile.
+#[cfg(target_arch = "x86_64")]
+mod build {
+    /// Registers of four numbers.
+    pub(super) const NARROW: bool = cfg!(all(
+        target_feature = "avx2",
+        target_feature = "bmi1",
+        target_feature = "bmi2",
+        target_feature = "fma",
+        target_feature = "lzcnt"
+    ));
+    /// Registers of eight.
+    pub(super) const WIDE: bool = cfg!(all(
+        target_feature = "avx512f",
+        target_feature = "avx512bw",
+        target_feature = "avx512cd",
+        target_feature = "avx512dq",
+        target_feature = "avx512vl"
+    ));
+    /// These in halves, one after the other.
+    pub(super) const HALVED: bool = cfg!(all(target_feature = "sse4a", not(target_feature = "avx512vp2intersect")));
+}
+
+/// Whether registers of eight numbers are computed in halves, one after the other: then eight numbers that wait for one another
+/// are quicker in two registers of four. Processors do not tell; of those that do it so far, AMD's Zen 4, no other has the same
+/// instructions.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn halved() -> bool {
+    std::arch::is_x86_feature_detected!("sse4a") && !std::arch::is_x86_feature_detected!("avx512vp2intersect")
 }
 
 /// Runs a part of a kernel as a function of its own, in the same registers.
@@ -54,58 +126,4 @@ pub fn apart<S: Simd, T>(simd: S, part: impl FnOnce() -> T) -> T {
         }
     }
     simd.vectorize(Part(part))
-}
-
-/// Runs a kernel as [`dispatch`] does, or gives it back.
-#[inline(always)]
-fn attempt<K: Kernel>(kernel: K) -> Result<K::Output, K> {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = pulp::x86::V4::try_new() {
-        return Ok(simd.vectorize(
-            #[inline(always)]
-            || kernel.run::<_, 1>(simd),
-        ));
-    }
-    // A build for machines with the widest registers, as every build from this checkout on such a machine is, has no kernels for
-    // others: they would be most of what kernels take to compile.
-    #[cfg(not(all(
-        target_feature = "avx512f",
-        target_feature = "avx512bw",
-        target_feature = "avx512cd",
-        target_feature = "avx512dq",
-        target_feature = "avx512vl"
-    )))]
-    if let Some(simd) = pulp::x86::V3::try_new() {
-        return Ok(simd.vectorize(
-            #[inline(always)]
-            || kernel.run::<_, 2>(simd),
-        ));
-    }
-    Err(kernel)
-}
-
-/// Runs a kernel without vector registers.
-#[cfg(not(all(
-    target_feature = "avx2",
-    target_feature = "bmi1",
-    target_feature = "bmi2",
-    target_feature = "fma",
-    target_feature = "lzcnt"
-)))]
-#[inline(always)]
-fn one_by_one<K: Kernel>(kernel: K) -> K::Output {
-    kernel.run::<_, 8>(pulp::Scalar::new())
-}
-
-/// A build for machines with vector registers has nothing for others.
-#[cfg(all(
-    target_feature = "avx2",
-    target_feature = "bmi1",
-    target_feature = "bmi2",
-    target_feature = "fma",
-    target_feature = "lzcnt"
-))]
-#[cold]
-fn one_by_one<K: Kernel>(_kernel: K) -> K::Output {
-    unreachable!("the machine is not one that this program was built for")
 }

@@ -170,10 +170,15 @@ impl<S: Simd, const R: usize> Pack<S, R> {
         near = terms[1].mul_add(self.neighbours_exchanged(), near);
         near = terms[2].mul_add(x2, near);
         near = terms[3].mul_add(x2.neighbours_exchanged(), near);
-        // Two sums, since the first of these comes late where all eight are in one register.
-        let far = terms[5].mul_add(x4.neighbours_exchanged(), terms[4] * x4);
-        let farthest = terms[7].mul_add(x6.neighbours_exchanged(), terms[6] * x6);
-        near + (far + farthest)
+        let mut far = terms[4] * x4;
+        far = terms[5].mul_add(x4.neighbours_exchanged(), far);
+        if const { R == 1 } {
+            // Numbers come late from the other end of a register: nothing waits for all of them.
+            near + (far + terms[7].mul_add(x6.neighbours_exchanged(), terms[6] * x6))
+        } else {
+            far = terms[6].mul_add(x6, far);
+            near + terms[7].mul_add(x6.neighbours_exchanged(), far)
+        }
     }
 
     /// The sum of the numbers, first of each with that in the mirror: a row and its mirror image have the same sum to the last
