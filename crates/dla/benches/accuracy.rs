@@ -14,7 +14,10 @@ use std::time::Instant;
 const DURATION: f64 = 100.0;
 const START: SleighState = SleighState { x: 0.0, y: 0.0, heading: 0.0, speed: -1.0, turn_rate: 0.1 };
 const ERRORS: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
-const STEPS: [u64; 19] = [8, 10, 12, 15, 18, 20, 22, 25, 27, 30, 35, 40, 45, 50, 60, 70, 80, 90, 100];
+const STEPS: [u64; 33] = [
+    8, 10, 12, 15, 18, 20, 22, 25, 27, 29, 30, 31, 32, 33, 35, 37, 40, 42, 45, 47, 50, 52, 54, 56, 58, 60, 65, 70, 75,
+    80, 85, 90, 100,
+];
 const ROUNDS: usize = 40;
 const PASSES: usize = 6;
 

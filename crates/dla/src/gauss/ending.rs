@@ -5,7 +5,7 @@ use lagrangian::linear::larger;
 pub(super) struct Ending {
     /// What the next change may still be.
     pub(super) left: f64,
-    /// Changes below which shrink no more, twice, are rounding.
+    /// Changes below this that do not shrink, twice, are rounding.
     pub(super) rounding: f64,
     /// And once.
     pub(super) noise: f64,
@@ -25,6 +25,7 @@ pub(super) struct Search {
     /// The last change, and by how much it shrank.
     last: f64,
     pub(super) rate: f64,
+    /// Changes that were rounding, or may have been.
     stalled: u32,
 }
 
@@ -41,7 +42,7 @@ impl Ending {
     #[inline(always)]
     pub(super) fn begin(self, led: bool) -> Search {
         // What is remembered may come from a file: the limit holds all the same.
-        let unseen = if led { self.unseen.min(self.limit.saturating_sub(1)) } else { 0 };
+        let unseen = if led { self.unseen } else { ANEW }.min(self.limit.saturating_sub(1));
         Search { ending: Self { unseen, ..self }, iterations: 0, last: f64::INFINITY, rate: 1.0, stalled: 0 }
     }
 }
@@ -64,13 +65,15 @@ impl Search {
         // A search that begins near its end may shrink faster at first than it goes on.
         let expected = larger(larger(self.rate, slower), SLOWEST);
         let settled = seen > 1 && self.rate < 1.0 && moved * expected <= left * (1.0 - self.rate);
-        // Once may be an iteration that turns the error round before it shrinks.
-        self.stalled = if moved >= 0.5 * self.last { self.stalled + 1 } else { 0 };
-        let rounding = (self.stalled > 1 && moved <= rounding) || (self.stalled > 0 && moved <= noise);
-        if moved == 0.0 || settled || rounding {
+        // Once may be an iteration that turns the error round before it shrinks. Not one after the other: rounding may shrink
+        // in between, and grow.
+        let small = moved <= rounding;
+        let stalls = small && moved >= 0.5 * self.last;
+        self.stalled += u32::from(stalls);
+        if moved == 0.0 || settled || (stalls && (self.stalled > 1 || moved <= noise)) {
             return Verdict::Done;
         }
-        let grows = seen > 3 && self.rate > hopeless;
+        let grows = seen > 3 && self.rate > hopeless && !small;
         self.last = moved;
         if moved.is_nan() || moved.is_infinite() || grows || self.iterations >= limit {
             Verdict::Failed
@@ -80,5 +83,65 @@ impl Search {
     }
 }
 
+/// Iterations that are made before any is looked at, where there was no step before: at first slopes may be zero that are not so in
+/// the end, and measure nothing.
+const ANEW: u32 = 3;
+
 /// No iteration is expected to shrink its changes by more.
 pub(crate) const SLOWEST: f64 = 0.05;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ENDING: Ending =
+        Ending { left: f64::EPSILON / 16.0, rounding: 1e-12, noise: 1e-15, limit: 100, hopeless: 2.0, unseen: 12 };
+
+    /// What these changes say, one after the other, and after how many of them the search is over.
+    fn search(changes: &[f64]) -> (usize, Verdict) {
+        let mut search = ENDING.begin(true);
+        while search.next_is_unseen() {}
+        for (seen, &moved) in (1..).zip(changes) {
+            match search.look(moved) {
+                Verdict::Continue => search.iterations += 1,
+                verdict => return (seen, verdict),
+            }
+        }
+        (changes.len(), Verdict::Continue)
+    }
+
+    /// Rounding that shrinks in between and grows is the end of a search all the same, and no failure.
+    #[test]
+    fn rounding_may_go_round() {
+        assert_eq!(
+            search(&[4.5e-14, 2.1e-14, 5.1e-15, 2.2e-15, 6.2e-16, 3.0e-15, 3.1e-16, 3.2e-15]),
+            (8, Verdict::Done)
+        );
+        assert_eq!(search(&[3e-16, 2.2e-16]), (2, Verdict::Done));
+        // One above the noise may be an iteration that turns the error round.
+        assert_eq!(search(&[1e-14, 8e-15, 1e-15, 1e-16]), (4, Verdict::Continue));
+    }
+
+    /// Changes that grow above rounding do not converge, nor do those that are no numbers.
+    #[test]
+    fn growth_is_failure() {
+        assert_eq!(search(&[1e-3, 1e-4, 1e-5, 3e-5]), (4, Verdict::Failed));
+        assert_eq!(search(&[1e-3, f64::NAN]), (2, Verdict::Failed));
+    }
+
+    /// A search ends when what is to come is less than what may be left, and not before two changes told it.
+    #[test]
+    fn the_rate_tells_what_is_to_come() {
+        assert_eq!(search(&[1e-18]), (1, Verdict::Continue));
+        assert_eq!(search(&[1e-13, 1e-16]), (2, Verdict::Done));
+        assert_eq!(search(&[1e-9, 1e-12]), (2, Verdict::Continue));
+    }
+
+    /// A search that begins anew is not looked at first; no search is never looked at.
+    #[test]
+    fn some_are_not_looked_at() {
+        assert_eq!((ENDING.begin(false).ending.unseen, ENDING.begin(true).ending.unseen), (ANEW, 12));
+        assert_eq!(Ending { limit: 5, ..ENDING }.begin(true).ending.unseen, 4);
+        assert_eq!(Ending { limit: 0, ..ENDING }.begin(false).ending.unseen, 0);
+    }
+}
