@@ -24,8 +24,7 @@ pub trait Kernel {
 }
 
 /// Runs a kernel with vector registers that multiply and add in one instruction: those of AVX-512 where the machine has them
-/// whole, else those of AVX2. None where it has none known here. Sums may
-/// be taken in another order in the one than in the other.
+/// whole, else those of AVX2. None where it has none known here. Sums may be taken in another order in the one than in the other.
 #[inline(always)]
 pub fn dispatch<K: Kernel>(kernel: K) -> Option<K::Output> {
     #[cfg(target_arch = "x86_64")]
