@@ -30,22 +30,16 @@ pub fn dispatch<K: Kernel>(kernel: K) -> Option<K::Output> {
     #[cfg(target_arch = "x86_64")]
     {
         use build::{HALVED, WIDE};
-        if (!WIDE || !HALVED)
+        if !HALVED
             && let Some(simd) = pulp::x86::V4::try_new()
             && (WIDE || !halved())
         {
-            return Some(simd.vectorize(
-                #[inline(always)]
-                || kernel.run::<_, 1>(simd),
-            ));
+            return Some(run::<_, _, 1>(simd, kernel));
         }
         if (!WIDE || HALVED)
             && let Some(simd) = pulp::x86::V3::try_new()
         {
-            return Some(simd.vectorize(
-                #[inline(always)]
-                || kernel.run::<_, 2>(simd),
-            ));
+            return Some(run::<_, _, 2>(simd, kernel));
         }
     }
     None
@@ -59,22 +53,26 @@ pub fn dispatch_widest<K: Kernel>(kernel: K) -> K::Output {
     {
         use build::{NARROW, WIDE};
         if let Some(simd) = pulp::x86::V4::try_new() {
-            return simd.vectorize(
-                #[inline(always)]
-                || kernel.run::<_, 1>(simd),
-            );
+            return run::<_, _, 1>(simd, kernel);
         }
         if !WIDE && let Some(simd) = pulp::x86::V3::try_new() {
-            return simd.vectorize(
-                #[inline(always)]
-                || kernel.run::<_, 2>(simd),
-            );
+            return run::<_, _, 2>(simd, kernel);
         }
         if WIDE || NARROW {
             unreachable!("the machine is not one that this program was built for");
         }
     }
     kernel.run::<_, 8>(pulp::Scalar::new())
+}
+
+/// Runs a kernel with these registers.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn run<S: Simd, K: Kernel, const R: usize>(simd: S, kernel: K) -> K::Output {
+    simd.vectorize(
+        #[inline(always)]
+        || kernel.run::<_, R>(simd),
+    )
 }
 
 /// What is known of the machine when the program is built. What is known to be absent or not to be used is not compiled: a build
@@ -98,7 +96,8 @@ mod build {
         target_feature = "avx512vl"
     ));
     /// These in halves, one after the other.
-    pub(super) const HALVED: bool = cfg!(all(target_feature = "sse4a", not(target_feature = "avx512vp2intersect")));
+    pub(super) const HALVED: bool =
+        WIDE && cfg!(all(target_feature = "sse4a", not(target_feature = "avx512vp2intersect")));
 }
 
 /// Whether registers of eight numbers are computed in halves, one after the other: then eight numbers that wait for one another

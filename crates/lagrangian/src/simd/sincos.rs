@@ -1,5 +1,4 @@
-use super::Pack;
-use super::Simd;
+use super::{Pack, Simd};
 use crate::sincos::{COS, SIN};
 
 /// Above this, `2^50`, the number of the quadrant does not fit into the lowest bits.

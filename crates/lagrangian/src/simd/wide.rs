@@ -1,5 +1,4 @@
-use super::Pack;
-use super::Simd;
+use super::{Pack, Simd};
 use crate::{Scalar, array};
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
