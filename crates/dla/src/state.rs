@@ -1,6 +1,6 @@
 use crate::past::Past;
 use crate::{Checkpoint, CheckpointError, StepError};
-use lagrangian::{ReducedError, System, Twofold, quasi_velocities};
+use lagrangian::{Memory, ReducedError, Start, System, Twofold, quasi_velocities};
 use std::array::from_fn;
 use std::f64::consts::{PI, TAU};
 
@@ -24,10 +24,12 @@ pub struct State<const N: usize> {
     q: [f64; N],
     rest: [f64; N],
     turns: [f64; N],
-    angles: [bool; N],
+    /// How far a coordinate may go: half a turn of an angle, any distance else.
+    bounds: [f64; N],
     v: [f64; N],
     left: Left<N>,
     past: Past<N>,
+    memory: Memory,
 }
 
 /// What the last step leaves to the next beside the velocity.
@@ -44,7 +46,8 @@ impl<const N: usize> State<N> {
     /// (see [`System::angles`](lagrangian::System::angles)).
     #[must_use]
     pub fn new(q: [f64; N], v: [f64; N], angles: [bool; N]) -> Self {
-        let mut state = Self { q, rest: [0.0; N], turns: [0.0; N], angles, v, left: Left::Nothing, past: Past::new() };
+        let (rest, turns, left, past) = ([0.0; N], [0.0; N], Left::Nothing, Past::new());
+        let mut state = Self { q, rest, turns, bounds: bounds(angles), v, left, past, memory: Memory::EMPTY };
         state.wrap();
         state
     }
@@ -76,10 +79,11 @@ impl<const N: usize> State<N> {
     #[must_use]
     #[inline(always)]
     pub fn xi(&self) -> Option<[f64; N]> {
-        match self.left {
-            Left::Velocities(xi) | Left::Momenta(xi, _) => Some(xi),
-            Left::Nothing | Left::Acceleration(_) => None,
+        // One comparison for what a step in closed form leaves, and no table of jumps.
+        if let Left::Velocities(xi) = self.left {
+            return Some(xi);
         }
+        if let Left::Momenta(xi, _) = self.left { Some(xi) } else { None }
     }
 
     /// The quasi-momenta in that basis, where the last step carried them.
@@ -131,14 +135,17 @@ impl<const N: usize> State<N> {
     /// [`StepError::NotFinite`].
     #[inline(always)]
     pub fn stays_finite(&self, increment: &[f64; N], v: &[f64; N]) -> Result<(), StepError> {
-        let finite = self.ahead(increment).iter().chain(v).all(|x| x.is_finite());
-        if finite { Ok(()) } else { Err(StepError::NotFinite) }
+        let ahead = self.ahead(increment);
+        // A sum is no number, or not finite, where one of its terms is not.
+        let sum = (0..N).fold(0.0, |sum, i| sum + ahead[i]) + (0..N).fold(0.0, |sum, i| sum + v[i]);
+        if sum.abs() <= f64::MAX || too_large_together(ahead, *v) { Ok(()) } else { Err(StepError::NotFinite) }
     }
 
     /// Moves the configuration by `increment` and sets the velocity, with its quasi-velocities where they are known.
     #[inline(always)]
     pub fn advance(&mut self, increment: &[f64; N], v: [f64; N], xi: Option<[f64; N]>) {
         self.past.forget();
+        self.memory.forget();
         self.go(increment, v, xi.map_or(Left::Nothing, Left::Velocities));
     }
 
@@ -147,7 +154,22 @@ impl<const N: usize> State<N> {
     #[inline(always)]
     pub fn advance_remembering(&mut self, h: f64, increment: &[f64; N], v: [f64; N], xi: [f64; N]) {
         self.past.push(h, increment);
+        self.memory.forget();
         self.go(increment, v, Left::Velocities(xi));
+    }
+
+    /// [Moves](State::advance) the state, and keeps its quasi-velocities and what a step in closed form leaves to the next.
+    #[inline(always)]
+    pub(crate) fn advance_with_memory(&mut self, increment: &[f64; N], v: [f64; N], xi: [f64; N], memory: Memory) {
+        self.past.forget();
+        self.memory = memory;
+        self.go(increment, v, Left::Velocities(xi));
+    }
+
+    /// Where a step of length `h` in closed form begins.
+    #[inline(always)]
+    pub(crate) fn begin(&self, h: f64) -> Start<'_, N> {
+        Start { q: &self.q, v: &self.v, xi: self.xi(), expected: self.expected(h), memory: &self.memory }
     }
 
     #[inline(always)]
@@ -179,6 +201,7 @@ impl<const N: usize> State<N> {
     pub fn advance_with_acceleration(&mut self, h: f64, increment: &[f64; N], v: [f64; N], acceleration: [f64; N]) {
         let known = acceleration.iter().fold(true, |all, a| all & a.is_finite());
         self.past.push(h, increment);
+        self.memory.forget();
         self.go(increment, v, if known { Left::Acceleration(acceleration) } else { Left::Nothing });
     }
 
@@ -199,7 +222,7 @@ impl<const N: usize> State<N> {
             Left::Velocities(xi) | Left::Momenta(xi, _) => Left::Velocities(flipped(xi)),
             left => left,
         };
-        Self { v: flipped(self.v), left, past: Past::new(), ..*self }
+        Self { v: flipped(self.v), left, past: Past::new(), memory: Memory::EMPTY, ..*self }
     }
 
     /// Writes every bit of the state to a checkpoint; all but which coordinates are angles, which the system knows.
@@ -215,6 +238,7 @@ impl<const N: usize> State<N> {
         checkpoint.put("pi", halves.as_ref().map_or(&[], |[hi, _]| &hi[..]));
         checkpoint.put("pi_rest", halves.as_ref().map_or(&[], |[_, lo]| &lo[..]));
         self.past.save(checkpoint);
+        checkpoint.put("closed", if self.memory.is_empty() { &[] } else { &self.memory.0[..] });
     }
 
     /// The state that [`save`](Self::save) wrote.
@@ -237,28 +261,52 @@ impl<const N: usize> State<N> {
             q: checkpoint.get("q")?,
             rest: checkpoint.get("rest")?,
             turns: checkpoint.get("turns")?,
-            angles,
+            bounds: bounds(angles),
             v: checkpoint.get("v")?,
             left,
             past: Past::load(checkpoint)?,
+            memory: if checkpoint.list("closed")?.is_empty() {
+                Memory::EMPTY
+            } else {
+                Memory(checkpoint.get("closed")?)
+            },
         })
     }
 
     /// A state of its parts: configuration, rest and turns, all that a step leaves.
     pub(crate) fn assembled([q, rest, turns]: [[f64; N]; 3], angles: [bool; N], v: [f64; N], xi: [f64; N]) -> Self {
-        Self { q, rest, turns, angles, v, left: Left::Velocities(xi), past: Past::new() }
+        let (left, past) = (Left::Velocities(xi), Past::new());
+        Self { q, rest, turns, bounds: bounds(angles), v, left, past, memory: Memory::EMPTY }
     }
 
     #[inline(always)]
     fn wrap(&mut self) {
         for i in 0..N {
-            if self.angles[i] && self.q[i].abs() > PI && self.q[i].is_finite() {
-                let turns;
-                (self.q[i], self.rest[i], turns) = within_half_a_turn(self.q[i], self.rest[i]);
-                self.turns[i] += turns;
+            if self.q[i].abs() > self.bounds[i] {
+                self.wrap_angle(i);
             }
         }
     }
+
+    // Apart, since few steps come here.
+    #[cold]
+    #[inline(never)]
+    fn wrap_angle(&mut self, i: usize) {
+        let turns;
+        (self.q[i], self.rest[i], turns) = wrapped(self.q[i], self.rest[i]);
+        self.turns[i] += turns;
+    }
+}
+
+/// Whether all terms of a sum are finite that is not.
+#[cold]
+#[inline(never)]
+fn too_large_together<const N: usize>(q: [f64; N], v: [f64; N]) -> bool {
+    q.iter().chain(&v).all(|x| x.is_finite())
+}
+
+fn bounds<const N: usize>(angles: [bool; N]) -> [f64; N] {
+    angles.map(|angle| if angle { PI } else { f64::INFINITY })
 }
 
 /// An angle with its rest, wrapped, and the turns that were taken out of it.

@@ -269,19 +269,25 @@ fn a_state_knows_how_far_it_has_moved() {
 /// What the next step begins from is part of a state: at the same place two are not the same after other steps.
 #[test]
 fn states_after_other_steps_differ() {
-    let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
-    let after = |steps: &[f64]| {
+    fn after<Sys: System<3, 1>>(system: &Sys, steps: &[f64]) -> State<3> {
         let mut state = State::new([0.0; 3], [0.0; 3], [false, false, true]);
         for h in steps {
-            Dla::midpoint().step(&sleigh, 0.0, *h, &mut state).unwrap();
+            Dla::midpoint().step(system, 0.0, *h, &mut state).unwrap();
         }
         state
-    };
-    assert_eq!(after(&[0.5]), after(&[0.5]));
-    assert_ne!(after(&[0.5]), after(&[0.25]));
-    assert_ne!(after(&[0.5]), after(&[0.5, 0.5]));
+    }
+    let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    // At rest with its centre of mass at the lowest place.
+    let well = With { body, effects: (Bowl::new([0.7, 0.4], [0.5, 0.0]).unwrap(),) };
+    assert_eq!(after(&well, &[0.5]), after(&well, &[0.5]));
+    assert_ne!(after(&well, &[0.5]), after(&well, &[0.25]));
+    assert_ne!(after(&well, &[0.5]), after(&well, &[0.5, 0.5]));
     // A step of another length begins anew.
-    assert_eq!(after(&[0.5]), after(&[0.25, 0.5]));
+    assert_eq!(after(&well, &[0.5]), after(&well, &[0.25, 0.5]));
+    // The free sleigh begins as after many steps, which were all the same.
+    assert_eq!(after(&body, &[0.5]), after(&body, &[0.5, 0.5]));
+    assert_ne!(after(&body, &[0.5]), after(&body, &[0.25]));
+    assert_eq!(after(&body, &[0.5]), after(&body, &[0.25, 0.5]));
 }
 
 /// What would not be a finite place or velocity is refused before the state has moved.

@@ -1,5 +1,62 @@
 use thiserror::Error;
 
+/// Where a step in closed form begins, and what is known there. Whatever it is, the step is the same to round-off.
+#[derive(Debug, Clone, Copy)]
+pub struct Start<'a, const N: usize> {
+    /// The configuration.
+    pub q: &'a [f64; N],
+    /// The velocity.
+    pub v: &'a [f64; N],
+    /// The velocity in the system's basis of admissible velocities.
+    pub xi: Option<[f64; N]>,
+    /// About the increment, where steps before tell it.
+    pub expected: Option<[f64; N]>,
+    /// What the step before has left.
+    pub memory: &'a Memory,
+}
+
+impl<'a, const N: usize> Start<'a, N> {
+    /// Configuration and velocity, and nothing else.
+    #[must_use]
+    pub fn new(q: &'a [f64; N], v: &'a [f64; N]) -> Self {
+        Self { q, v, xi: None, expected: None, memory: &Memory::EMPTY }
+    }
+}
+
+/// Numbers that a step in closed form leaves to the next one, from which the search there is short.
+///
+/// They begin with the length of the step, which is zero where there is nothing to remember; the others are the system's own
+/// affair.
+#[derive(Debug, Clone, Copy)]
+pub struct Memory(pub [f64; Self::SIZE]);
+
+impl Memory {
+    /// As many numbers.
+    pub const SIZE: usize = 11;
+    /// Nothing yet.
+    pub const EMPTY: Self = Self([0.0; Self::SIZE]);
+
+    /// Whether there is nothing.
+    #[must_use]
+    #[inline(always)]
+    pub fn is_empty(&self) -> bool {
+        self.0[0] == 0.0
+    }
+
+    /// Nothing, again.
+    #[inline(always)]
+    pub fn forget(&mut self) {
+        self.0[0] = 0.0;
+    }
+}
+
+impl PartialEq for Memory {
+    /// Nothing is all the same.
+    fn eq(&self, other: &Self) -> bool {
+        (self.is_empty() && other.is_empty()) || self.0.map(f64::to_bits) == other.0.map(f64::to_bits)
+    }
+}
+
 /// What a step in closed form gives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClosedStep<const N: usize, const M: usize> {
@@ -13,6 +70,8 @@ pub struct ClosedStep<const N: usize, const M: usize> {
     pub impulses: [[f64; M]; 2],
     /// Newton iterations taken.
     pub iterations: u32,
+    /// What it leaves to the next step; none where that is served by the increments of the last ones.
+    pub memory: Option<Memory>,
 }
 
 /// Why a step in closed form does not exist or was not found.

@@ -2,7 +2,9 @@
 //!
 //! Reduction by Cody and Waite in three parts of `pi/2`, then the polynomials of the FreeBSD mathematics library
 //! (`k_sin.c`, `k_cos.c`, Sun Microsystems 1993) on `[-pi/4, pi/4]`. No fused operations, so that every machine gives
-//! the same bits.
+//! the same bits; but for [`sin_cos_wrapped`].
+
+use crate::mul_add;
 
 /// Above this the product of the quadrant's number with the first part of `pi/2` is no longer exact.
 const LIMIT: f64 = 1.0e6;
@@ -48,6 +50,36 @@ pub(crate) fn sin_cos<const W: usize>(x: &[f64; W]) -> ([f64; W], [f64; W]) {
     (sin, cos)
 }
 
+/// Sine and cosine of an angle (rad), within two units of `2^-53` of the truth. Of half a turn at most they are no call, and fused.
+#[must_use]
+#[inline(always)]
+pub fn sin_cos_wrapped(x: f64) -> (f64, f64) {
+    // Up to two quadrants, whose product with the first part of `pi/2` is exact.
+    const PARTS: [f64; 2] = [std::f64::consts::FRAC_PI_2, 6.123_233_995_736_766e-17];
+    if x.abs() <= std::f64::consts::PI {
+        let shifted = mul_add(x, TWO_OVER_PI, ROUNDER);
+        let k = shifted - ROUNDER;
+        let y = mul_add(-k, PARTS[1], mul_add(-k, PARTS[0], x));
+        let z = y * y;
+        let sum = |c: &[f64; 6]| (0..5).rev().fold(c[5], |sum, i| mul_add(sum, z, c[i]));
+        let sin = mul_add(y * z, sum(&SIN), y);
+        let cos = mul_add(z * z, sum(&COS), mul_add(z, -0.5, 1.0));
+        turned(sin, cos, shifted.to_bits())
+    } else {
+        x.sin_cos()
+    }
+}
+
+/// Sine and cosine from those of the angle within its quadrant, whose number is in the lowest bits.
+#[inline(always)]
+fn turned(sin: f64, cos: f64, quadrant: u64) -> (f64, f64) {
+    let odd = quadrant & 1 != 0;
+    let (s, c) = (if odd { cos } else { sin }, if odd { sin } else { cos });
+    let sign_sin = (quadrant & 2) << 62;
+    let sign_cos = (quadrant.wrapping_add(1) & 2) << 62;
+    (f64::from_bits(s.to_bits() ^ sign_sin), f64::from_bits(c.to_bits() ^ sign_cos))
+}
+
 #[inline(always)]
 fn reduced(x: f64) -> (f64, f64) {
     let shifted = x * TWO_OVER_PI + ROUNDER;
@@ -70,9 +102,28 @@ fn reduced(x: f64) -> (f64, f64) {
     let one = 1.0 - half;
     let cos = one + (((1.0 - one) - half) + (z * p - y * tail));
 
-    let odd = quadrant & 1 != 0;
-    let (s, c) = (if odd { cos } else { sin }, if odd { sin } else { cos });
-    let sign_sin = (quadrant & 2) << 62;
-    let sign_cos = (quadrant.wrapping_add(1) & 2) << 62;
-    (f64::from_bits(s.to_bits() ^ sign_sin), f64::from_bits(c.to_bits() ^ sign_cos))
+    turned(sin, cos, quadrant)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::sin_cos_wrapped;
+    use approx::assert_abs_diff_eq;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    /// Two units of `2^-53`: the reduction leaves one, the polynomials one; to all digits where the sine or cosine is small.
+    #[test]
+    fn of_a_wrapped_angle() {
+        let near =
+            [0.0, FRAC_PI_2, PI].into_iter().flat_map(|x| (0..60).map(move |i| x * (1.0 - 1e-3 * 0.6f64.powi(i))));
+        let far = [1e-300, 4.0, 1e3, 1e300].into_iter();
+        for x in near.chain(far).chain((0..4000).map(|i| 1e-3 * f64::from(i))).flat_map(|x| [x, -x]) {
+            let (sin, cos) = sin_cos_wrapped(x);
+            assert_abs_diff_eq!(sin, x.sin(), epsilon = f64::EPSILON * x.sin().abs());
+            assert_abs_diff_eq!(cos, x.cos(), epsilon = f64::EPSILON * x.cos().abs());
+        }
+        for x in [f64::NAN, f64::INFINITY] {
+            assert!(sin_cos_wrapped(x).0.is_nan() && sin_cos_wrapped(x).1.is_nan());
+        }
+    }
 }

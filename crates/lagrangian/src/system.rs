@@ -1,4 +1,4 @@
-use crate::{AdmissibleBasis, ClosedStep, ClosedStepError, Motion, MotionError, Scalar};
+use crate::{AdmissibleBasis, ClosedStep, ClosedStepError, Motion, MotionError, Scalar, Start};
 
 /// The constraint `A(q, t) v + b(q, t) = 0` at one point: the `M` rows of `A`, and `b`.
 pub type Constraint<S, const N: usize, const M: usize> = ([[S; N]; M], [S; M]);
@@ -128,18 +128,13 @@ pub trait System<const N: usize, const M: usize> {
 
     /// One step of the midpoint discrete Lagrange-d'Alembert map, where the system knows a closed form of it.
     ///
-    /// `xi` are the quasi-velocities of `v` in [`System::admissible_basis`], where they are known; `expected` is about the
-    /// increment, where steps before tell it. The step must agree with the general one to round-off, whatever is expected; it
-    /// exists for its speed, and for the digits that a closed form keeps.
+    /// It must agree with the general one to round-off; it exists for its speed, and for the digits that a closed form keeps.
     #[inline(always)]
     fn closed_step(
         &self,
         _t: f64,
         _h: f64,
-        _q: &[f64; N],
-        _v: &[f64; N],
-        _xi: Option<[f64; N]>,
-        _expected: Option<[f64; N]>,
+        _start: &Start<'_, N>,
     ) -> Option<Result<ClosedStep<N, M>, ClosedStepError>> {
         None
     }
@@ -148,17 +143,7 @@ pub trait System<const N: usize, const M: usize> {
     ///
     /// None where it is not known by hand, or not found quickly: the general step is then made.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments, reason = "those of the closed step, and the force")]
-    fn pushed_step<P: Push<N>>(
-        &self,
-        _t: f64,
-        _h: f64,
-        _q: &[f64; N],
-        _v: &[f64; N],
-        _xi: Option<[f64; N]>,
-        _expected: Option<[f64; N]>,
-        _push: &P,
-    ) -> Option<ClosedStep<N, M>> {
+    fn pushed_step<P: Push<N>>(&self, _t: f64, _h: f64, _start: &Start<'_, N>, _push: &P) -> Option<ClosedStep<N, M>> {
         None
     }
 }

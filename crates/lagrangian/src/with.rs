@@ -1,6 +1,6 @@
 use crate::effect::{add_all, sum};
 use crate::{
-    AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Effect, Motion, MotionError, Push, Scalar, System,
+    AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Effect, Motion, MotionError, Push, Scalar, Start, System,
     velocity_of,
 };
 
@@ -116,18 +116,10 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
     }
 
     #[inline(always)]
-    fn closed_step(
-        &self,
-        t: f64,
-        h: f64,
-        q: &[f64; N],
-        v: &[f64; N],
-        xi: Option<[f64; N]>,
-        expected: Option<[f64; N]>,
-    ) -> Option<Result<ClosedStep<N, M>, ClosedStepError>> {
+    fn closed_step(&self, t: f64, h: f64, start: &Start<'_, N>) -> Option<Result<ClosedStep<N, M>, ClosedStepError>> {
         if self.effects.is_none() {
-            return self.body.closed_step(t, h, q, v, xi, expected);
+            return self.body.closed_step(t, h, start);
         }
-        self.body.pushed_step(t, h, q, v, xi, expected, &Potentials(self)).map(Ok)
+        self.body.pushed_step(t, h, start, &Potentials(self)).map(Ok)
     }
 }

@@ -1,10 +1,9 @@
 use crate::Sleigh;
-use crate::closed_map::{COSINE, SINE};
+use crate::half_turn::{BROAD, COSINE, SINE};
 use lagrangian::{ClosedLaneStep, ClosedLanes, Side};
 
-/// Half the turn of a step up to which its sine and cosine are short sums (rad), and that up to which they are long ones.
+/// Half the turn of a step up to which its sine and cosine are short sums (rad); they are long ones up to `BROAD`.
 const NARROW: f64 = 1.0 / 32.0;
-const BROAD: f64 = 0.25;
 /// With `|d| <= 1/32` the square of a correction like this is rounding.
 const QUICK: f64 = 7e-8;
 /// Newton's method, where it begins from the formula.

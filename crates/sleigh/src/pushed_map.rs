@@ -1,6 +1,7 @@
 use crate::Sleigh;
-use crate::closed_map::{half_turn, recovered};
-use lagrangian::{ClosedStep, Dual, KnownAngle, Push};
+use crate::closed_map::recovered;
+use crate::half_turn::half_turn;
+use lagrangian::{ClosedStep, Dual, KnownAngle, Push, Start, sin_cos_wrapped};
 use std::array::from_fn;
 
 /// A turn in one step (rad) beyond which the general step looks for what continues the motion.
@@ -17,15 +18,6 @@ const FAR: f64 = 0.125;
 const NOISE: f64 = 1e-11;
 /// As many of Newton's corrections, each with two simplified ones after it, before the general step is made.
 const MOST: u32 = 4;
-
-/// Where a step begins, and what is known of it.
-pub(crate) struct Start<'a> {
-    pub(crate) q: &'a [f64; 3],
-    pub(crate) v: &'a [f64; 3],
-    pub(crate) xi: Option<[f64; 3]>,
-    /// About the increment.
-    pub(crate) expected: Option<[f64; 3]>,
-}
 
 /// One step of the midpoint discrete Lagrange-d'Alembert map of a sleigh in a potential, reduced to two unknowns.
 ///
@@ -44,26 +36,26 @@ pub(crate) struct Start<'a> {
 pub(crate) fn step<P: Push<3>>(
     sleigh: &Sleigh,
     (t, h): (f64, f64),
-    Start { q, v, xi, expected }: Start<'_>,
+    begin: &Start<'_, 3>,
     push: &P,
 ) -> Option<ClosedStep<3, 1>> {
-    let (sin0, cos0) = q[2].sin_cos();
-    let start = match xi {
+    let (sin0, cos0) = sin_cos_wrapped(begin.q[2]);
+    let start = match begin.xi {
         Some([u, omega, _]) => (u, omega),
-        None => recovered(sin0, cos0, v),
+        None => recovered((sin0, cos0), begin.v),
     };
     let half = 0.5 * h;
     let equations = Equations {
         sleigh,
         t,
         h,
-        q,
+        q: begin.q,
         start: [start.0, start.1],
         heading: [sin0, cos0],
         gains: [half / sleigh.mass(), half / sleigh.pivot_inertia(), half * sleigh.spin_gain()],
     };
 
-    let (mut x, mut turn) = equations.guess(expected)?;
+    let (mut x, mut turn) = equations.guess(begin.expected)?;
     let (mut first, mut iterations) = (f64::INFINITY, 0);
     for _ in 0..MOST {
         let (matrix, at) = equations.linearised(push, x, turn)?;
@@ -258,6 +250,7 @@ impl Equations<'_> {
                 [m * (turn + (a * omega1 - spin)) - half * (across * cos - along * sin)],
             ],
             iterations: 0,
+            memory: None,
         };
         (!turns_far && (u1 + omega1).is_finite()).then_some(end)
     }

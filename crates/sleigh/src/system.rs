@@ -1,5 +1,7 @@
 use crate::{Sleigh, closed_map, pushed_map};
-use lagrangian::{AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Motion, MotionError, Push, Scalar, System};
+use lagrangian::{
+    AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Motion, MotionError, Push, Scalar, Start, System,
+};
 
 impl System<3, 1> for Sleigh {
     /// `L = m/2 |P'|^2 + m a omega (n . P') + J/2 omega^2`, which is `m/2 |C'|^2 + I/2 omega^2` written at the blade.
@@ -87,29 +89,12 @@ impl System<3, 1> for Sleigh {
     }
 
     #[inline(always)]
-    fn closed_step(
-        &self,
-        _t: f64,
-        h: f64,
-        q: &[f64; 3],
-        v: &[f64; 3],
-        xi: Option<[f64; 3]>,
-        expected: Option<[f64; 3]>,
-    ) -> Option<Result<ClosedStep<3, 1>, ClosedStepError>> {
-        Some(closed_map::step(self, h, q, v, xi, expected.map(|d| d[2])))
+    fn closed_step(&self, _t: f64, h: f64, start: &Start<'_, 3>) -> Option<Result<ClosedStep<3, 1>, ClosedStepError>> {
+        Some(closed_map::step(self, h, start))
     }
 
     #[inline(always)]
-    fn pushed_step<P: Push<3>>(
-        &self,
-        t: f64,
-        h: f64,
-        q: &[f64; 3],
-        v: &[f64; 3],
-        xi: Option<[f64; 3]>,
-        expected: Option<[f64; 3]>,
-        push: &P,
-    ) -> Option<ClosedStep<3, 1>> {
-        pushed_map::step(self, (t, h), pushed_map::Start { q, v, xi, expected }, push)
+    fn pushed_step<P: Push<3>>(&self, t: f64, h: f64, start: &Start<'_, 3>, push: &P) -> Option<ClosedStep<3, 1>> {
+        pushed_map::step(self, (t, h), start, push)
     }
 }

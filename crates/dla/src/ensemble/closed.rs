@@ -1,7 +1,7 @@
 use super::state::{Row, accumulate, loaded, store};
 use super::{BLOCK, Ensemble, LANES, LaneState};
 use lagrangian::simd::{Kernel, Pack, Simd, dispatch_widest};
-use lagrangian::{ClosedLaneStep, ClosedLanes, System};
+use lagrangian::{ClosedLaneStep, ClosedLanes, Start, System};
 use std::array::from_fn;
 use std::marker::PhantomData;
 
@@ -255,7 +255,7 @@ fn one_by_one<Sys: System<N, M>, const W: usize, const N: usize, const M: usize,
     let Run { state, frame, largest, .. } = run;
     for _ in 0..steps {
         let (q, xi) = (state.q(lane), state.xi(lane));
-        let step = system.closed_step(0.0, h, &q, &[0.0; N], Some(xi), None)?.ok()?;
+        let step = system.closed_step(0.0, h, &Start { xi: Some(xi), ..Start::new(&q, &[0.0; N]) })?.ok()?;
         for k in 0..N {
             let increment = step.increment[k] + state.rest[k].0[lane];
             let sum = q[k] + increment;

@@ -1,6 +1,6 @@
 use crate::checks::positive;
 use crate::{Sleigh, SleighBody, SleighError, TimeFunction};
-use lagrangian::{AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Piecewise, Scalar, System};
+use lagrangian::{AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Piecewise, Scalar, Start, System};
 
 /// A sleigh with a rotor on a bearing: the coordinate `psi`, its angle relative to the body, and the energy
 /// `I_r/2 (omega + psi')^2`.
@@ -143,33 +143,22 @@ impl<B: System<3, M>, const M: usize> System<4, M> for Flywheel<B> {
 
     /// On a free bearing the body's own, and the rotor keeps its absolute rate.
     #[inline(always)]
-    fn closed_step(
-        &self,
-        t: f64,
-        h: f64,
-        q: &[f64; 4],
-        v: &[f64; 4],
-        xi: Option<[f64; 4]>,
-        expected: Option<[f64; 4]>,
-    ) -> Option<Result<ClosedStep<4, M>, ClosedStepError>> {
+    fn closed_step(&self, t: f64, h: f64, start: &Start<'_, 4>) -> Option<Result<ClosedStep<4, M>, ClosedStepError>> {
         if self.torque.is_some() || M != 1 {
             return None;
         }
-        let spin = xi.map_or_else(|| v[2] + v[3], |xi| xi[2]);
-        let body = self.body.closed_step(
-            t,
-            h,
-            &of_body(q),
-            &of_body(v),
-            xi.as_ref().map(of_body),
-            expected.as_ref().map(of_body),
-        )?;
+        let &Start { v, memory, .. } = start;
+        let spin = start.xi.map_or_else(|| v[2] + v[3], |xi| xi[2]);
+        let (q, v) = (of_body(start.q), of_body(v));
+        let [xi, expected] = [start.xi, start.expected].map(|x| x.as_ref().map(of_body));
+        let body = self.body.closed_step(t, h, &Start { q: &q, v: &v, xi, expected, memory })?;
         Some(body.map(|step| ClosedStep {
             increment: with_rotor(&step.increment, h * spin - step.increment[2]),
             velocity: with_rotor(&step.velocity, spin - step.velocity[2]),
             xi: [step.xi[0], step.xi[1], spin, 0.0],
             impulses: step.impulses,
             iterations: step.iterations,
+            memory: step.memory,
         }))
     }
 }

@@ -1,7 +1,7 @@
 //! The closed step against its own equations: of the midpoint rule, in the velocities along the chord and about the blade.
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use lagrangian::{ClosedStep, ClosedStepError, System};
+use lagrangian::{ClosedStep, ClosedStepError, Memory, Start, System};
 use proptest::prelude::*;
 use sleigh::{Flywheel, Sleigh, SleighState};
 
@@ -11,7 +11,7 @@ fn start(heading: f64, speed: f64, turn_rate: f64) -> ([f64; 3], [f64; 3]) {
 
 fn step(sleigh: &Sleigh, h: f64, heading: f64, u: f64, omega: f64) -> Result<ClosedStep<3, 1>, ClosedStepError> {
     let (q, v) = start(heading, u, omega);
-    System::<3, 1>::closed_step(sleigh, 0.0, h, &q, &v, None, None).unwrap()
+    System::<3, 1>::closed_step(sleigh, 0.0, h, &Start::new(&q, &v)).unwrap()
 }
 
 proptest! {
@@ -49,9 +49,52 @@ proptest! {
         // Known quasi-velocities are taken as they are, whatever the velocity.
         let (q, v) = start(heading, u0, omega0);
         let from = [v[0] * heading.cos() + v[1] * heading.sin(), omega0, 0.0];
-        let again = System::<3, 1>::closed_step(&sleigh, 0.0, h, &q, &[9.0; 3], Some(from), None).unwrap().unwrap();
+        let again = System::<3, 1>::closed_step(&sleigh, 0.0, h, &Start { xi: Some(from), ..Start::new(&q, &[9.0; 3]) }).unwrap().unwrap();
         assert_abs_diff_eq!(again.xi[0], u1, epsilon = bound);
         assert_abs_diff_eq!(again.xi[1], omega1, epsilon = bound);
+    }
+
+    /// What steps before have left changes where the search begins, not where it ends: also of another sleigh, or after a jump of
+    /// the velocity.
+    #[test]
+    fn the_step_is_the_same_whatever_is_remembered(
+        (m, i, a) in (0.3..3.0, 0.3..3.0, -0.8..0.8), (u0, omega0) in (-1.0..1.0, -1.0..1.0),
+        bits in -60..0i32, h in prop_oneof![-0.1..-0.01, 0.01..0.1], steps in 1..20u32,
+    ) {
+        let [ours, other] = [Sleigh::new(m, i, a).unwrap(), Sleigh::new(i, m, 0.9 * a).unwrap()];
+        let omega0 = omega0 * f64::from(bits).exp2();
+        for (sleigh, factor) in [(ours, 1.0), (ours, 0.5), (ours, -1.0), (other, 1.0)] {
+            let (mut xi, mut memory) = ([u0, omega0, 0.0], Memory::EMPTY);
+            for _ in 0..steps {
+                let start = Start { xi: Some(xi), memory: &memory, ..Start::new(&[0.0; 3], &[0.0; 3]) };
+                let made = System::<3, 1>::closed_step(&sleigh, 0.0, h, &start).unwrap().unwrap();
+                (xi, memory) = (made.xi, made.memory.unwrap());
+            }
+            xi = xi.map(|x| factor * x);
+            let blank = Start { xi: Some(xi), ..Start::new(&[0.0; 3], &[0.0; 3]) };
+            let known = Start { memory: &memory, ..blank };
+            let [blank, known] = [blank, known].map(|start| System::<3, 1>::closed_step(&ours, 0.0, h, &start).unwrap().unwrap());
+            // Numbers of order one, but for the spin, which has all its digits.
+            for (x, y) in blank.increment.iter().chain(&blank.velocity).zip(known.increment.iter().chain(&known.velocity)) {
+                assert_abs_diff_eq!(x, y, epsilon = 1e-14);
+            }
+            assert_relative_eq!(blank.xi[1], known.xi[1], max_relative = 1e-14);
+        }
+    }
+
+    /// A smooth motion needs one correction a step, once the steps before tell where to begin.
+    #[test]
+    fn one_correction_is_enough(heading in -3.0..3.0, u0 in -1.0..1.0, omega0 in -1.0..1.0) {
+        let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+        let (q, v) = start(heading, u0, omega0);
+        let (mut xi, mut memory, mut corrections) = ([u0, omega0, 0.0], Memory::EMPTY, vec![]);
+        for _ in 0..100 {
+            let start = Start { xi: Some(xi), memory: &memory, ..Start::new(&q, &v) };
+            let made = System::<3, 1>::closed_step(&sleigh, 0.0, 0.02, &start).unwrap().unwrap();
+            (xi, memory) = (made.xi, made.memory.unwrap());
+            corrections.push(made.iterations);
+        }
+        prop_assert!(corrections[8..].iter().all(|&n| n == 1), "{corrections:?}");
     }
 
     /// Back by the same step, the map is its own inverse.
@@ -112,7 +155,7 @@ proptest! {
         let ([x, y, heading], [vx, vy, turn]) = (q, v);
         for xi in [None, Some([u, omega, omega + rate, 0.0])] {
             let (q, v) = ([x, y, heading, 0.7], [vx, vy, turn, if xi.is_some() { 9.0 } else { rate }]);
-            let made = System::<4, 1>::closed_step(&rotor, 0.0, h, &q, &v, xi, None).unwrap().unwrap();
+            let made = System::<4, 1>::closed_step(&rotor, 0.0, h, &Start { xi, ..Start::new(&q, &v) }).unwrap().unwrap();
             for i in 0..3 {
                 assert_abs_diff_eq!(made.increment[i], bare.increment[i], epsilon = 1e-14);
                 assert_abs_diff_eq!(made.velocity[i], bare.velocity[i], epsilon = 1e-14);
@@ -193,5 +236,5 @@ fn sines_have_all_their_digits() {
 #[test]
 fn a_driven_rotor_is_not_closed() {
     let driven = Flywheel::new(Sleigh::new(1.0, 1.0, 0.5).unwrap(), 0.2, Some(0.3.into())).unwrap();
-    assert!(System::<4, 1>::closed_step(&driven, 0.0, 0.1, &[0.0; 4], &[0.0; 4], None, None).is_none());
+    assert!(System::<4, 1>::closed_step(&driven, 0.0, 0.1, &Start::new(&[0.0; 4], &[0.0; 4])).is_none());
 }

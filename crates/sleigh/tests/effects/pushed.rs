@@ -1,7 +1,7 @@
 //! The step in a potential against its own equations, term by term, and where it leaves the step to others.
 
 use approx::assert_abs_diff_eq;
-use lagrangian::{ClosedStep, Effect, Scalar, Slope, System, With};
+use lagrangian::{ClosedStep, Effect, Scalar, Slope, Start, System, With};
 use proptest::prelude::*;
 use sleigh::effects::{Bowl, Drag, EggCrate};
 use sleigh::{Sleigh, SleighState};
@@ -37,7 +37,7 @@ fn step<Sys: System<3, 1>>(
     expected: Option<[f64; 3]>,
 ) -> Option<ClosedStep<3, 1>> {
     let (q, v) = SleighState { x: 0.3, y: -0.2, heading, speed: u, turn_rate: omega }.to_coordinates();
-    system.closed_step(TIME, h, &q, &v, None, expected).map(Result::unwrap)
+    system.closed_step(TIME, h, &Start { expected, ..Start::new(&q, &v) }).map(Result::unwrap)
 }
 
 proptest! {

@@ -1,0 +1,49 @@
+use lagrangian::{ClosedStepError, mul_add};
+use std::f64::consts::FRAC_PI_2;
+
+/// The series of `sin d = d + d^3 (s_0 + s_1 d^2 + ..)` and `cos d = 1 - d^2/2 + d^4 (c_0 + c_1 d^2 + ..)`.
+pub(crate) const SINE: [f64; 5] = [-1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0, -1.0 / 39_916_800.0];
+pub(crate) const COSINE: [f64; 5] = [1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0, 1.0 / 479_001_600.0];
+
+/// Half the turn of a step up to which three terms of the series are enough (rad), and that up to which five are.
+const NARROW: f64 = 0.04;
+pub(crate) const BROAD: f64 = 0.25;
+
+/// Sine and cosine of half the turn of a step, which must stay below a right angle.
+#[inline(always)]
+pub(crate) fn half_turn(d: f64) -> Result<(f64, f64), ClosedStepError> {
+    if d.abs() <= BROAD {
+        Ok(series(d))
+    } else if d.abs() < FRAC_PI_2 {
+        Ok(d.sin_cos())
+    } else {
+        Err(too_far(d))
+    }
+}
+
+/// Their series, to the first term below rounding: no range to reduce.
+#[inline(always)]
+pub(crate) fn series(d: f64) -> (f64, f64) {
+    let z = d * d;
+    let three = |c: [f64; 3]| mul_add(mul_add(c[2], z, c[1]), z, c[0]);
+    let five = |c: &[f64; 5]| three([c[0], c[1], three([c[2], c[3], c[4]])]);
+    let (s, c) = if z <= NARROW * NARROW {
+        (three([SINE[0], SINE[1], SINE[2]]), three([COSINE[0], COSINE[1], COSINE[2]]))
+    } else {
+        (five(&SINE), five(&COSINE))
+    };
+    (mul_add(d * z, s, d), mul_add(z, mul_add(z, c, -0.5), 1.0))
+}
+
+#[cold]
+fn too_far(d: f64) -> ClosedStepError {
+    if d.is_nan() {
+        ClosedStepError::NotFinite { quantity: "the turn of a step" }
+    } else {
+        ClosedStepError::NoSolution {
+            quantity: "the turn of half a step, h omega/2,",
+            value: d.abs(),
+            bound: FRAC_PI_2,
+        }
+    }
+}

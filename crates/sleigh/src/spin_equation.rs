@@ -1,0 +1,87 @@
+use crate::Sleigh;
+use crate::half_turn::half_turn;
+use lagrangian::{ClosedStepError, mul_add};
+
+/// An error in `r` of this size is rounding.
+const ROUNDING: f64 = 1e-17;
+
+/// The equation for the mean spin `w` of a step, `f(w) = w (1 + k U) cos d - omega0 cos d = 0` with `U cos d = u0 + a w sin d`
+/// and `d = h w/2`; here what of it does not change from step to step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SpinEquation {
+    /// `h/2`.
+    pub(crate) half: f64,
+    /// The offset of the mass.
+    pub(crate) a: f64,
+    /// `h m a / (2 J)`.
+    pub(crate) k: f64,
+}
+
+/// What the equation is at one spin, but for what depends on where the step begins.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SpinPoint {
+    pub(crate) w: f64,
+    /// Sine and cosine of `d`.
+    pub(crate) sin: f64,
+    pub(crate) cos: f64,
+    /// `a w sin d`, and its slope.
+    pub(crate) across: f64,
+    pub(crate) across_of_w: f64,
+    /// `w (cos d + k a w sin d)`, and its slope.
+    grown: f64,
+    grown_of_w: f64,
+}
+
+impl SpinEquation {
+    /// Of a step of length `h`.
+    #[inline(always)]
+    pub(crate) fn new(sleigh: &Sleigh, h: f64) -> Self {
+        let half = 0.5 * h;
+        Self { half, a: sleigh.offset(), k: half * sleigh.spin_gain() }
+    }
+
+    /// # Errors
+    /// Where the blade turns by a right angle in half a step.
+    #[inline(always)]
+    pub(crate) fn at(&self, w: f64) -> Result<SpinPoint, ClosedStepError> {
+        half_turn(self.half * w).map(|half_turn| self.point(w, half_turn))
+    }
+
+    /// The same with the sine and cosine of the half turn.
+    #[inline(always)]
+    pub(crate) fn point(&self, w: f64, (sin, cos): (f64, f64)) -> SpinPoint {
+        let Self { half, a, k } = *self;
+        let (across, across_of_w) = (a * (w * sin), a * mul_add(half * w, cos, sin));
+        let growth = mul_add(k, across, cos);
+        let grown_of_w = mul_add(k * w, across_of_w, mul_add(-half * w, sin, growth));
+        SpinPoint { w, sin, cos, across, across_of_w, grown: w * growth, grown_of_w }
+    }
+
+    /// Newton's correction of the spin of a step that begins with `u0` and `omega0`.
+    #[inline(always)]
+    pub(crate) fn correction(&self, p: &SpinPoint, u0: f64, omega0: f64) -> f64 {
+        let missing = mul_add(self.k * p.w, u0, mul_add(-p.cos, omega0, p.grown));
+        let slope = mul_add(self.half * p.sin, omega0, mul_add(self.k, u0, p.grown_of_w));
+        -missing / slope
+    }
+
+    /// Whether what a correction leaves is rounding: the equation is a straight line but for `C w^3` and smaller, with
+    /// `C = (h/2)^2 + k a h/2`. A correction that is no number is not.
+    #[inline(always)]
+    pub(crate) fn settles(&self, correction: f64) -> bool {
+        let curvature = self.half * (self.half + (self.k * self.a).abs());
+        curvature * (correction * correction) <= ROUNDING
+    }
+
+    /// A first guess of `w`, from `1 + k U` with `U = u0 + r^2 (a omega0 d + u0 d^2 / 2) + O(d^4)` and `r = w/omega0`.
+    #[inline(always)]
+    pub(crate) fn guess(&self, u0: f64, omega0: f64) -> f64 {
+        let growth = 1.0 + self.k * u0;
+        if growth <= 0.0 {
+            return omega0;
+        }
+        let r = growth.recip();
+        let (rr, d) = (r * r, self.half * omega0);
+        omega0 * (r - self.k * (self.a * omega0 * d + 0.5 * u0 * d * d) * (rr * rr))
+    }
+}
