@@ -4,7 +4,9 @@
 //! arm adds is compiled once for every kind of number, since the calls are not inlined.
 
 use crate::systems::{Forces, InField, Magnetic, Moving, Thrust, Turntable};
-use lagrangian::{AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Motion, MotionError, Scalar, System, With};
+use lagrangian::{
+    AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Motion, MotionError, Scalar, Start, System, With,
+};
 use models::{
     ChaplyginBall, ContactOscillator, GaugedOscillator, KnifeEdge, Model, Particle, QuarticOscillator, RollerRacer,
     RollingDisk, Snakeboard, Suslov,
@@ -79,14 +81,11 @@ macro_rules! shape {
                 &self,
                 t: f64,
                 h: f64,
-                q: &[f64; $n],
-                v: &[f64; $n],
-                xi: Option<[f64; $n]>,
-                expected: Option<[f64; $n]>,
+                start: &Start<'_, $n>,
             ) -> Option<Result<ClosedStep<$n, $m>, ClosedStepError>> {
                 match self {
-                    $(Self::$model(x) => x.closed_step(t, h, q, v, xi, expected),)*
-                    $(Self::$plain(x) => x.closed_step(t, h, q, v, xi, expected),)*
+                    $(Self::$model(x) => x.closed_step(t, h, start),)*
+                    $(Self::$plain(x) => x.closed_step(t, h, start),)*
                 }
             }
         }
