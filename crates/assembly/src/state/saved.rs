@@ -9,7 +9,7 @@ const ONE: [&str; 4] = ["q", "rest", "turns", "v"];
 const SOME: [&str; 2] = ["acceleration", "past"];
 
 /// What a static state has beside, and a coordinate of an assembly does not.
-const NONE: [&str; 3] = ["xi", "pi", "pi_rest"];
+const NONE: [&str; 4] = ["xi", "pi", "pi_rest", "closed"];
 
 impl State {
     /// Writes every bit that the next step depends on to a checkpoint.
