@@ -89,7 +89,8 @@ fn search(sleigh: &Sleigh, h: f64, expected: f64, u0: f64, omega0: f64) -> Resul
     let equation = SpinEquation::new(sleigh, h);
     let near = (expected - omega0).abs() <= FAR * omega0.abs();
     let mut point = equation.at(if near { expected } else { equation.guess(u0, omega0) })?;
-    for iterations in 1.. {
+    let mut iterations = 1;
+    loop {
         let correction = equation.correction(&point, u0, omega0);
         if equation.settles(correction) {
             return Ok((point.w, iterations));
@@ -98,8 +99,8 @@ fn search(sleigh: &Sleigh, h: f64, expected: f64, u0: f64, omega0: f64) -> Resul
             return Err(failure(equation.k * u0, iterations, correction / point.w));
         }
         point = equation.at(point.w + correction)?;
+        iterations += 1;
     }
-    unreachable!("the iterations end")
 }
 
 /// Quasi-velocities of a velocity. Out of line, so that where they are known the search for `w` is a branch that does not

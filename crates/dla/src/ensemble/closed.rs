@@ -256,6 +256,9 @@ fn one_by_one<Sys: System<N, M>, const W: usize, const N: usize, const M: usize,
     for _ in 0..steps {
         let (q, xi) = (state.q(lane), state.xi(lane));
         let step = system.closed_step(0.0, h, &Start { xi: Some(xi), ..Start::new(&q, &[0.0; N]) })?.ok()?;
+        if !step.xi.iter().all(|x| x.is_finite()) {
+            return None;
+        }
         for k in 0..N {
             let increment = step.increment[k] + state.rest[k].0[lane];
             let sum = q[k] + increment;
