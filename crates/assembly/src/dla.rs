@@ -228,7 +228,7 @@ pub(crate) fn relative(
     then(&q1[..origins.len()]);
 }
 
-/// The mean velocity of a step, extrapolated from those of the last five, or if the accelerations are those of the last one;
+/// The mean velocity of a step, extrapolated from those of the last ones, or if the accelerations are those of the last one;
 /// `v0` where neither is known, or would change the velocity so much that a search from there might lead elsewhere.
 pub(crate) fn predict(state: &State, h: f64, v0: &[f64], v: &mut [f64]) {
     const MOST: f64 = 0.125;

@@ -72,6 +72,12 @@ where
         Self { of, some: None, lambda: [0.0; M], positive: None, jacobian: None, last: Last::default() }
     }
 
+    /// The derivatives of the last of Newton's own corrections, where it solved for all rows.
+    #[inline(always)]
+    pub(crate) fn block(&self) -> Option<[[f64; N]; N]> {
+        self.jacobian.as_ref().map(|jacobian| jacobian.block)
+    }
+
     /// The momenta at the end, and the multipliers at the beginning, of a solution `v`.
     #[inline(always)]
     pub(crate) fn ends(&mut self, v: &[f64; N]) -> Result<([f64; N], [f64; M]), Singular> {

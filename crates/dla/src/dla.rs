@@ -185,12 +185,12 @@ impl<L, C> Dla<L, C> {
             a0: reaction_rows(system, t0, &q0, &v0),
             basis: basis(t0, &q0),
         };
-        let Mean { v, p1, lambda, iterations, some } = increment.solve(&self.newton, v0, predicted(state, h))?;
+        let Mean { v, p1, lambda, iterations, some, block } = increment.solve(&self.newton, v0, predicted(state, h))?;
 
         // The momentum at the end, projected onto the constraint there.
         let d = v.map(|v| h * v);
         let (t1, q1) = (t0 + h, state.ahead(&d));
-        let Projected { v1, mu, quadratic } = Projection::new(system, t1, q1, p1, basis(t1, &q1))
+        let Projected { v1, mu, mass } = Projection::new(system, t1, q1, p1, basis(t1, &q1))
             .of(some)
             .solve(&self.newton, v)
             .map_err(|source| named_at(system, t1, &q1, &v0, Stage::Projection, source))?;
@@ -203,23 +203,27 @@ impl<L, C> Dla<L, C> {
         // From the middle of the step to its end.
         let acceleration = from_fn(|i| (v1[i] - v[i]) / (0.5 * h));
         state.advance_with_acceleration(h, &d, v1, acceleration);
-        self.kept.begins::<N, M>(some.is_none() && quadratic, h, state);
+        self.kept.begins::<N, M>(block.zip(mass), h, state.q(), &v1);
         Ok(StepReport { impulses: [lambda, mu], iterations, work: None })
     }
 }
 
 /// The mean velocity of a step, extrapolated from those of the last ones, or with the acceleration of the last one; none where
 /// that is not known, or would change the velocity so much that a search from there might lead elsewhere.
-#[inline]
+#[inline(always)]
 pub(crate) fn predicted<const N: usize>(state: &State<N>, h: f64) -> Option<[f64; N]> {
     const MOST: f64 = 0.125;
     let v0 = state.v();
     let near = |v: &[f64; N]| sup(&from_fn::<_, N, _>(|i| v[i] - v0[i])) <= MOST * sup(v0);
-    let extrapolated = state.expected(h).map(|d| d.map(|d| d / h)).filter(near);
-    extrapolated.or_else(|| {
-        let acceleration = state.acceleration()?;
-        Some(from_fn(|i| v0[i] + 0.5 * h * acceleration[i])).filter(near)
-    })
+    if let Some(d) = state.expected(h) {
+        let v = from_fn(|i| d[i] / h);
+        if near(&v) {
+            return Some(v);
+        }
+    }
+    let acceleration = state.acceleration()?;
+    let v = from_fn(|i| v0[i] + 0.5 * h * acceleration[i]);
+    near(&v).then_some(v)
 }
 
 fn is_midpoint<R: 'static>() -> bool {

@@ -31,6 +31,8 @@ pub(crate) struct Mean<const N: usize, const M: usize> {
     pub(crate) iterations: u32,
     /// The rows that were solved for, where not all.
     pub(crate) some: Option<Rows>,
+    /// The derivatives of the momenta at the beginning that the search ended with.
+    pub(crate) block: Option<[[f64; N]; N]>,
 }
 
 impl<Sys, L, C, const N: usize, const M: usize> Increment<'_, Sys, L, C, N, M>
@@ -75,7 +77,7 @@ where
             let source = NewtonError::singular(source);
             named_along(self.system, time, *self.state, v, source)
         })?;
-        Ok(Mean { v, p1, lambda, iterations, some })
+        Ok(Mean { v, p1, lambda, iterations, some, block: search.equations.block() })
     }
 
     /// The multipliers that take up the rest of the momenta.

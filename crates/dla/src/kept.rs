@@ -1,4 +1,5 @@
 use crate::State;
+use crate::continued::LEAST;
 use crate::derivatives::{COORDINATES, Derivatives, Row, counted, switch};
 use crate::past::Past;
 
@@ -16,10 +17,12 @@ pub(crate) struct Kept {
     pub(crate) mass: Derivatives,
     /// The velocities at the last nodes.
     pub(crate) velocities: Past<COORDINATES>,
-    /// Where the last step ended, and how fast.
+    /// Where the last step ended.
     q: Row,
-    v: Row,
 }
+
+/// `h D1 D2 L_d`, with the derivatives of the forces, and the mass matrix.
+pub(crate) type Matrices<const N: usize> = ([[f64; N]; N], [[f64; N]; N]);
 
 impl Kept {
     /// Of no step.
@@ -31,14 +34,17 @@ impl Kept {
         mass: Derivatives::NONE,
         velocities: Past::new(),
         q: [0.0; COORDINATES],
-        v: [0.0; COORDINATES],
     };
 
     /// Forgets all unless the last step ended in this state: what begins anew is to be the same whatever was before.
     #[inline(always)]
     #[allow(clippy::float_cmp, reason = "only the very same state goes on")]
     pub(crate) fn follows<const N: usize>(&mut self, state: &State<N>) {
-        let same = N <= COORDINATES && self.q[..N] == state.q()[..] && self.v[..N] == state.v()[..];
+        let (q, v) = (&self.q, self.velocities.last());
+        let mut same = N <= COORDINATES;
+        for i in 0..N.min(COORDINATES) {
+            same &= (q[i] == state.q()[i]) & (v[i] == state.v()[i]);
+        }
         if !same {
             (self.ready, self.pause, self.next_pause) = (false, 0, 1);
         }
@@ -50,18 +56,34 @@ impl Kept {
         self.ready
     }
 
-    /// That a step of length `h` has ended in the state and did not go on from one before; the next may, where that is possible.
-    #[inline(always)]
-    pub(crate) fn begins<const N: usize, const M: usize>(&mut self, possible: bool, h: f64, state: &State<N>) {
+    /// That a step of length `h` has ended at `q` with the velocity `v` and did not go on from one before; the next may, where its
+    /// derivatives and mass matrix are given.
+    #[inline(never)]
+    pub(crate) fn begins<const N: usize, const M: usize>(
+        &mut self,
+        matrices: Option<Matrices<N>>,
+        h: f64,
+        q: &[f64; N],
+        v: &[f64; N],
+    ) {
         if N > COORDINATES || M > COORDINATES {
             return;
         }
-        self.ready = possible && self.pause == 0;
+        self.ready = matrices.is_some() && self.pause == 0;
         self.pause = self.pause.saturating_sub(1);
         self.block.forget();
         self.mass.forget();
+        // They are near enough to those of the next step.
+        if self.ready
+            && let Some((block, mass)) = matrices
+        {
+            self.ready = self.block.renew(&block).and(self.mass.renew(&mass)).is_some();
+            // Their own search would hardly have taken more.
+            self.block.took::<N>(LEAST);
+            self.mass.took::<N>(LEAST);
+        }
         self.velocities.forget();
-        self.ended(h, state);
+        self.ended(h, q, v);
     }
 
     /// That a step could not go on from the last.
@@ -73,12 +95,14 @@ impl Kept {
         self.next_pause = LONGEST.min(self.next_pause.saturating_mul(2));
     }
 
-    /// That a step of length `h` that went on from the last has ended in the state.
+    /// That a step of length `h` that went on from the last has ended at `q` with the velocity `v`.
     #[inline(always)]
-    pub(crate) fn ended<const N: usize>(&mut self, h: f64, state: &State<N>) {
-        self.q[..N].copy_from_slice(state.q());
-        self.v[..N].copy_from_slice(state.v());
-        self.velocities.push(h, &self.v);
+    pub(crate) fn ended<const N: usize>(&mut self, h: f64, q: &[f64; N], v: &[f64; N]) {
+        let mut row = [0.0; COORDINATES];
+        for i in 0..N {
+            (self.q[i], row[i]) = (q[i], v[i]);
+        }
+        self.velocities.push(h, &row);
     }
 
     /// That a step went on from the last.
@@ -111,7 +135,7 @@ impl Kept {
 
     /// Every number of it, in a fixed order.
     fn visit(&mut self, mut visit: impl FnMut(&mut f64)) {
-        let Self { ready, pause, next_pause, block, mass, velocities, q, v } = self;
+        let Self { ready, pause, next_pause, block, mass, velocities, q } = self;
         for derivatives in [block, mass] {
             derivatives.visit(&mut visit);
         }
@@ -120,8 +144,6 @@ impl Kept {
         }
         switch(ready, &mut visit);
         velocities.visit(&mut visit);
-        for row in [q, v] {
-            row.iter_mut().for_each(&mut visit);
-        }
+        q.iter_mut().for_each(visit);
     }
 }

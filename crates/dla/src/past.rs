@@ -1,24 +1,49 @@
 use crate::{Checkpoint, CheckpointError};
-use std::array::from_fn;
+use lagrangian::mul_add;
+use std::fmt;
 
-/// As many give an extrapolation of order 5 in the step.
-const KEPT: usize = 5;
+/// As many give an extrapolation of order 7 in the step.
+const KEPT: usize = 7;
+/// Fewer say less than the last acceleration.
+const FEWEST: usize = 3;
+/// Of as many as there are: with them the next difference vanishes.
+const WEIGHTS: [[f64; KEPT]; KEPT + 1] = [
+    [0.0; KEPT],
+    [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [2.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [3.0, -3.0, 1.0, 0.0, 0.0, 0.0, 0.0],
+    [4.0, -6.0, 4.0, -1.0, 0.0, 0.0, 0.0],
+    [5.0, -10.0, 10.0, -5.0, 1.0, 0.0, 0.0],
+    [6.0, -15.0, 20.0, -15.0, 6.0, -1.0, 0.0],
+    [7.0, -21.0, 35.0, -35.0, 21.0, -7.0, 1.0],
+];
 
 /// The increments of the last steps, all of one length, from which the next one is extrapolated: a search that begins there
 /// is short, and what begins it need not wait for the end of the step before.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) struct Past<const N: usize> {
     step: f64,
     made: usize,
-    /// The last first.
-    increments: [[f64; N]; KEPT],
+    /// Where the last one stands; those before it follow.
+    last: usize,
+    /// Each stands here twice, [`KEPT`] places apart, so that the last ones stand together wherever the last is and none is ever moved.
+    increments: [[[f64; N]; KEPT]; 2],
+    /// The increment of one more step.
+    next: [f64; N],
+}
+
+impl<const N: usize> fmt::Debug for Past<N> {
+    /// Not where they happen to stand.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Past").field("step", &self.step).field("increments", &self.increments()).finish()
+    }
 }
 
 impl<const N: usize> PartialEq for Past<N> {
     /// What has been forgotten is no part of it.
     fn eq(&self, other: &Self) -> bool {
         let same_step = self.made == 0 || self.step.to_bits() == other.step.to_bits();
-        self.made == other.made && same_step && self.increments[..self.made] == other.increments[..self.made]
+        self.made == other.made && same_step && self.increments() == other.increments()
     }
 }
 
@@ -26,7 +51,7 @@ impl<const N: usize> Past<N> {
     /// No step yet.
     #[inline(always)]
     pub(crate) const fn new() -> Self {
-        Self { step: 0.0, made: 0, increments: [[0.0; N]; KEPT] }
+        Self { step: 0.0, made: 0, last: 0, increments: [[[0.0; N]; KEPT]; 2], next: [0.0; N] }
     }
 
     /// Adds the increment of a step of length `h`; what was before steps of another length is forgotten.
@@ -35,8 +60,30 @@ impl<const N: usize> Past<N> {
     pub(crate) fn push(&mut self, h: f64, increment: &[f64; N]) {
         self.made = if self.step == h { KEPT.min(self.made + 1) } else { 1 };
         self.step = h;
-        self.increments.copy_within(..KEPT - 1, 1);
-        self.increments[0] = *increment;
+        self.last = if self.last == 0 { KEPT - 1 } else { self.last - 1 };
+        for copy in &mut self.increments {
+            copy[self.last] = *increment;
+        }
+        self.extrapolate(increment);
+    }
+
+    /// Finds the increment of one more step after the last one. That is done here, and not where it is asked for, since what has
+    /// just been stored would be waited for there.
+    #[inline(always)]
+    fn extrapolate(&mut self, last: &[f64; N]) {
+        let weights = &WEIGHTS[self.made.min(KEPT)];
+        let Some(rows) = self.increments.as_flattened().get(self.last..).and_then(<[_]>::first_chunk::<KEPT>) else {
+            return;
+        };
+        let mut sum = [0.0; N];
+        for j in (1..KEPT).rev() {
+            for i in 0..N {
+                sum[i] = mul_add(weights[j], rows[j][i], sum[i]);
+            }
+        }
+        for i in 0..N {
+            self.next[i] = mul_add(weights[0], last[i], sum[i]);
+        }
     }
 
     /// No step yet, again.
@@ -45,14 +92,22 @@ impl<const N: usize> Past<N> {
         self.made = 0;
     }
 
-    /// The increment of one more step of length `h`: their fifth difference would vanish.
+    /// That of the last step; zero of no step.
+    #[inline(always)]
+    pub(crate) fn last(&self) -> [f64; N] {
+        self.increments[0].get(self.last).copied().unwrap_or([0.0; N])
+    }
+
+    /// The last first.
+    fn increments(&self) -> &[[f64; N]] {
+        self.increments.as_flattened().get(self.last..self.last + self.made).unwrap_or(&[])
+    }
+
+    /// The increment of one more step of length `h`: their seventh difference would vanish.
     #[inline(always)]
     #[allow(clippy::float_cmp, reason = "only steps of the very same length are points of one sequence")]
     pub(crate) fn next(&self, h: f64) -> Option<[f64; N]> {
-        let [a, b, c, d, e] = &self.increments;
-        // The last one is used last, since it is known last.
-        (self.made == KEPT && self.step == h)
-            .then(|| from_fn(|i| 5.0 * a[i] + (10.0 * (c[i] - b[i]) + (e[i] - 5.0 * d[i]))))
+        (self.step == h && self.made >= FEWEST).then_some(self.next)
     }
 
     /// Every number of it, in a fixed order.
@@ -61,14 +116,18 @@ impl<const N: usize> Past<N> {
         visit(&mut made);
         // What is no number of steps becomes one.
         self.made = KEPT.min(made as usize);
+        let mut last = self.last as f64;
+        visit(&mut last);
+        self.last = (KEPT - 1).min(last as usize);
         visit(&mut self.step);
-        self.increments.as_flattened_mut().iter_mut().for_each(visit);
+        self.increments.as_flattened_mut().as_flattened_mut().iter_mut().for_each(visit);
+        self.extrapolate(&self.last());
     }
 
     /// Writes every bit to a checkpoint.
     pub(crate) fn save(&self, checkpoint: &mut Checkpoint) {
         let steps = if self.made == 0 { vec![] } else { vec![self.step] };
-        let of_steps = self.increments[..self.made].as_flattened();
+        let of_steps = self.increments().as_flattened();
         checkpoint.put("past", &[steps.as_slice(), of_steps].concat());
     }
 
@@ -77,10 +136,13 @@ impl<const N: usize> Past<N> {
         let mut past = Self::new();
         if let Some((step, increments)) = checkpoint.list("past")?.split_first() {
             past.step = *step;
-            for (place, increment) in past.increments.iter_mut().zip(increments.chunks_exact(N.max(1))) {
-                place.copy_from_slice(increment);
+            for increment in increments.chunks_exact(N.max(1)).take(KEPT) {
+                for copy in &mut past.increments {
+                    copy[past.made].copy_from_slice(increment);
+                }
                 past.made += 1;
             }
+            past.extrapolate(&past.last());
         }
         Ok(past)
     }

@@ -23,8 +23,9 @@ pub(crate) struct Projection<'a, Sys, const N: usize, const M: usize> {
 pub(crate) struct Projected<const N: usize, const M: usize> {
     pub(crate) v1: [f64; N],
     pub(crate) mu: [f64; M],
-    /// Whether they were found as those of a Lagrangian that is quadratic in the velocities, with constraints that are affine.
-    pub(crate) quadratic: bool,
+    /// The mass matrix, where they were found as those of a Lagrangian that is quadratic in the velocities, with constraints
+    /// that are affine.
+    pub(crate) mass: Option<[[f64; N]; N]>,
 }
 
 impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Projection<'a, Sys, N, M> {
@@ -61,7 +62,7 @@ impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Projection<'a, Sys, 
     fn searched(mut self, newton: &Newton, guess: [f64; N]) -> Result<Projected<N, M>, NewtonError> {
         let mut v1 = guess;
         newton.solve(&mut self, &mut v1)?;
-        Ok(Projected { v1, mu: self.mu, quadratic: false })
+        Ok(Projected { v1, mu: self.mu, mass: None })
     }
 
     /// The same where a correction and a simplified one are enough, as they are of a Lagrangian that is quadratic in the
@@ -96,7 +97,7 @@ impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Projection<'a, Sys, 
         });
         let left = from_fn(|i| (0..N).map(|j| l.e12[i][j] * second[j]).sum::<f64>() - missing[i]);
         let mu = normal_solve(&a1, &left).ok()?;
-        settled.then_some(Projected { v1, mu, quadratic: true })
+        settled.then_some(Projected { v1, mu, mass: Some(l.e12) })
     }
 }
 

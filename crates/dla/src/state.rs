@@ -17,7 +17,7 @@ const COUNTED: f64 = 1_125_899_906_842_624.0;
 /// the constraint and the energy at round-off over any length of run. A method that works with quasi-velocities leaves
 /// them beside the velocity, so that the next step need not recover them; one that works with quasi-momenta leaves those
 /// too, with twice the digits, since they too are sums of many increments. One that solves for the mean velocity leaves the
-/// acceleration, from which the next search begins nearer to its solution; and after five steps of one length the increment of
+/// acceleration, from which the next search begins nearer to its solution; and from three steps of one length on the increment of
 /// the next is extrapolated from theirs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State<const N: usize> {
@@ -283,18 +283,12 @@ impl<const N: usize> State<N> {
     fn wrap(&mut self) {
         for i in 0..N {
             if self.q[i].abs() > self.bounds[i] {
-                self.wrap_angle(i);
+                // By value, since few steps come here: what the others have just found need not be read again.
+                let turns;
+                (self.q[i], self.rest[i], turns) = wrapped(self.q[i], self.rest[i]);
+                self.turns[i] += turns;
             }
         }
-    }
-
-    // Apart, since few steps come here.
-    #[cold]
-    #[inline(never)]
-    fn wrap_angle(&mut self, i: usize) {
-        let turns;
-        (self.q[i], self.rest[i], turns) = wrapped(self.q[i], self.rest[i]);
-        self.turns[i] += turns;
     }
 }
 
@@ -310,6 +304,9 @@ fn bounds<const N: usize>(angles: [bool; N]) -> [f64; N] {
 }
 
 /// An angle with its rest, wrapped, and the turns that were taken out of it.
+// Apart, since few steps come here.
+#[cold]
+#[inline(never)]
 pub(crate) fn wrapped(q: f64, rest: f64) -> (f64, f64, f64) {
     if q.abs() > PI && q.is_finite() { within_half_a_turn(q, rest) } else { (q, rest, 0.0) }
 }

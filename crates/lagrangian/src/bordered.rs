@@ -25,10 +25,32 @@ impl<const N: usize, const M: usize> Bordered<N, M> {
         transposed: &[[f64; N]; M],
         rows: &[[f64; N]; M],
     ) -> Result<Self, Singular> {
+        let (response, schur) = Self::eliminated(inverse, transposed, rows);
+        Ok(Self { rows: *rows, response, schur: Inverse::above(&schur, Saddle::<N, M>::DEPENDENT)? })
+    }
+
+    /// The same where the elimination of up to three multipliers loses no more than three digits, whatever the scale of rows; of
+    /// more it is not looked at.
+    #[inline(always)]
+    pub fn clear(
+        inverse: impl Fn(&[f64; N]) -> [f64; N],
+        transposed: &[[f64; N]; M],
+        rows: &[[f64; N]; M],
+    ) -> Option<Self> {
+        let (response, schur) = Self::eliminated(inverse, transposed, rows);
+        Some(Self { rows: *rows, response, schur: Inverse::clear_above(&schur, Saddle::<N, M>::DEPENDENT)? })
+    }
+
+    /// `K^-1 G'`, by the rows of `G`, and `C K^-1 G'`.
+    #[inline(always)]
+    fn eliminated(
+        inverse: impl Fn(&[f64; N]) -> [f64; N],
+        transposed: &[[f64; N]; M],
+        rows: &[[f64; N]; M],
+    ) -> ([[f64; N]; M], [[f64; M]; M]) {
         let response: [[f64; N]; M] = from_fn(|k| inverse(&transposed[k]));
-        let schur: [[f64; M]; M] = from_fn(|k| from_fn(|l| dot(&rows[k], &response[l])));
-        let schur = Inverse::above(&schur, Saddle::<N, M>::DEPENDENT)?;
-        Ok(Self { rows: *rows, response, schur })
+        let schur = from_fn(|k| from_fn(|l| dot(&rows[k], &response[l])));
+        (response, schur)
     }
 
     /// Whether the determinant of the equations is positive, given whether that of `K` is: it is that of `K` times that of
@@ -44,14 +66,6 @@ impl<const N: usize, const M: usize> Bordered<N, M> {
     #[inline(always)]
     pub fn is_as_at_rest(&self, block: bool) -> bool {
         self.is_positive(block) == N.is_multiple_of(2)
-    }
-
-    /// Whether the elimination of up to three multipliers loses no more than three digits, whatever the scale of rows; of more
-    /// it is not looked at.
-    #[must_use]
-    #[inline(always)]
-    pub fn is_clear(&self) -> bool {
-        M > 3 || matches!(self.schur, Inverse::Cofactors(..))
     }
 
     /// `x` and `lambda` of `K x + G' lambda = r`, `C x = level`, given `free = K^-1 r`.

@@ -122,7 +122,7 @@ impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteLagrang
     }
 
     /// By the derivatives in the configuration and the velocity of every node.
-    #[inline]
+    #[inline(always)]
     fn slopes<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> [[S; N]; 2] {
         let [mut d1, mut d2] = [[S::zero(); N]; 2];
         for node in self.nodes() {

@@ -4,8 +4,8 @@ use crate::linear::{Lu, Singular, THRESHOLD};
 /// it several times, and quickly.
 #[derive(Debug, Clone, Copy)]
 pub enum Inverse<const U: usize> {
-    /// The rows of the inverse, by cofactors, and whether the determinant is positive.
-    Cofactors([[f64; U]; U], bool),
+    /// The rows of the inverse, by cofactors, and its determinant.
+    Cofactors([[f64; U]; U], f64),
     /// The factorisation.
     Factors(Lu<U>),
 }
@@ -33,6 +33,16 @@ impl<const U: usize> Inverse<U> {
         match Self::by_cofactors(a) {
             Some(inverse) => Ok(inverse),
             None => Self::factorised(a, threshold),
+        }
+    }
+
+    /// The same where the elimination of up to three rows loses no more than three digits; of more it is not looked at.
+    #[inline(always)]
+    pub(crate) fn clear_above(a: &[[f64; U]; U], threshold: f64) -> Option<Self> {
+        // Decided by the number of rows alone: an inverse that might be of either kind would go through memory, and be waited for.
+        match U {
+            0..=3 => Self::by_cofactors(a),
+            _ => Self::factorised(a, threshold).ok(),
         }
     }
 
@@ -75,8 +85,15 @@ impl<const U: usize> Inverse<U> {
         };
         let clear = determinant.abs() > Self::CLEAR * terms && terms.is_finite();
         let scale = determinant.recip();
-        (clear && scale.is_finite())
-            .then(|| Self::Cofactors(inverse.map(|row| row.map(|x| x * scale)), determinant > 0.0))
+        if !(clear && scale.is_finite()) {
+            return None;
+        }
+        for row in &mut inverse {
+            for x in row {
+                *x *= scale;
+            }
+        }
+        Some(Self::Cofactors(inverse, scale))
     }
 
     /// Whether the determinant is positive.
@@ -84,7 +101,7 @@ impl<const U: usize> Inverse<U> {
     #[inline(always)]
     pub fn is_positive(&self) -> bool {
         match self {
-            Self::Cofactors(_, positive) => *positive,
+            Self::Cofactors(_, determinant) => *determinant > 0.0,
             Self::Factors(lu) => lu.is_positive(),
         }
     }

@@ -94,9 +94,10 @@ impl Scalar for f64 {
     fn constant(x: f64) -> Self {
         x
     }
+    /// Of an angle within half a turn no call, between the parts of which nothing could be done.
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        f64::sin_cos(self)
+        crate::sin_cos_wrapped(self)
     }
     #[inline(always)]
     fn exp(self) -> Self {

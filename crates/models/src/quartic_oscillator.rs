@@ -36,18 +36,20 @@ impl QuarticOscillator {
     }
 }
 
+/// `|x|^2`. Written out: a loop that stays one decides in a run which numbers carry derivatives.
+#[inline(always)]
+fn square_sum<S: Scalar>([x, y1, y2, y3, z1, z2, z3]: &[S; 7]) -> S {
+    let (y, z) = (y1.squared() + y2.squared() + y3.squared(), z1.squared() + z2.squared() + z3.squared());
+    x.squared() + (y + z)
+}
+
 impl System<7, 1> for QuarticOscillator {
     /// `L = (|q'|^2 - |q|^2 - c (sum yi^2 zi^2 + z1^2 z2^2))/2`.
     #[inline(always)]
     fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 7], v: &[S; 7]) -> S {
-        let mut harmonic = S::zero();
-        for i in 0..7 {
-            harmonic += v[i] * v[i] - q[i] * q[i];
-        }
-        let mut quartic = (q[4] * q[5]).squared();
-        for i in 1..4 {
-            quartic += (q[i] * q[i + 3]).squared();
-        }
+        let [_, y1, y2, y3, z1, z2, z3] = *q;
+        let harmonic = square_sum(v) - square_sum(q);
+        let quartic = (y1 * z1).squared() + (y2 * z2).squared() + (y3 * z3).squared() + (z1 * z2).squared();
         harmonic * 0.5 - quartic * (0.5 * self.coupling)
     }
 

@@ -1,4 +1,5 @@
-use super::Found;
+use super::{Found, LEAST, are_met};
+use crate::derivatives::Derivatives;
 use crate::dla::Dla;
 use crate::settle::{Settle, sup};
 use lagrangian::{Bordered, System, mass_matrix, momentum};
@@ -14,41 +15,88 @@ impl<L, C> Dla<L, C> {
         p1: [f64; N],
         guess: [f64; N],
     ) -> Option<Found<N, M>> {
-        let mut v = guess;
         let (a1, b1) = system.constraint(t1, q1);
-        let mut p = if self.kept.mass.stale {
-            let (p, mass) = mass_matrix(system, t1, q1, &v);
+        let p = if self.kept.mass.stale {
+            let (p, mass) = mass_matrix(system, t1, q1, &guess);
             self.kept.mass.renew(&mass)?;
             p
         } else {
-            momentum(system, t1, q1, &v)
+            momentum(system, t1, q1, &guess)
         };
         let mass = &self.kept.mass;
-        let bordered = Bordered::new(
+        let bordered = Bordered::clear(
             #[inline(always)]
             |x| mass.times(x),
             &a1,
             &a1,
-        )
-        .ok()?;
+        )?;
+        let here = Here { system, t1, q1: *q1, p1, a1, b1, mass, bordered, tolerance: self.newton.tolerance };
 
-        if !bordered.is_clear() {
+        let (d, minus_mu) = here.correction(&guess, &p);
+        let v = from_fn(|i| guess[i] + d[i]);
+        if sup(&d) > sup(&guess) {
             return None;
         }
-        let (mut first, mut minus_mu) = (true, [0.0; M]);
-        let settle = Settle { tolerance: self.newton.tolerance, most: sup(&v) };
-        let corrections = settle.search(
+        let p = momentum(system, t1, q1, &v);
+        if here.is_met(&p, &minus_mu) {
+            return Some(Found { v, lambda: minus_mu.map(|m| -m), corrections: LEAST });
+        }
+        // Taken apart, so that what is found without it need not be where a call leaves its result.
+        let Found { v, lambda, corrections } = here.settled(v, p, d)?;
+        Some(Found { v, lambda, corrections })
+    }
+}
+
+/// The equations at the end.
+#[derive(Clone, Copy)]
+struct Here<'a, Sys, const N: usize, const M: usize> {
+    system: &'a Sys,
+    t1: f64,
+    q1: [f64; N],
+    p1: [f64; N],
+    a1: [[f64; N]; M],
+    b1: [f64; M],
+    mass: &'a Derivatives,
+    bordered: Bordered<N, M>,
+    tolerance: f64,
+}
+
+impl<Sys: System<N, M>, const N: usize, const M: usize> Here<'_, Sys, N, M> {
+    /// The correction of a velocity `v` that has the momenta `p`, and `-mu`.
+    #[inline(always)]
+    fn correction(&self, v: &[f64; N], p: &[f64; N]) -> ([f64; N], [f64; M]) {
+        let Self { p1, a1, b1, mass, bordered, .. } = self;
+        let slip: [f64; M] = from_fn(|k| -(0..N).fold(b1[k], |sum, i| sum + a1[k][i] * v[i]));
+        bordered.solve(&mass.times(&from_fn(|i| p1[i] - p[i])), &slip)
+    }
+
+    /// Whether a velocity that has the momenta `p`, and meets the constraint, is the solution with `mu`.
+    #[inline(always)]
+    fn is_met(&self, p: &[f64; N], minus_mu: &[f64; M]) -> bool {
+        are_met(&from_fn(|i| p[i] - self.p1[i]), &self.a1, minus_mu, &self.p1, self.tolerance)
+    }
+
+    /// The search to its end, after the correction `d` to `v`, which has the momenta `p`. By value, so that nothing of one that
+    /// is at its end need be in memory.
+    #[inline(never)]
+    fn settled(self, mut v: [f64; N], p: [f64; N], d: [f64; N]) -> Option<Found<N, M>> {
+        let (mut known, mut minus_mu) = (Some(p), [0.0; M]);
+        let corrections = Settle { tolerance: self.tolerance, first: d }.search(
             &mut v,
             #[inline(always)]
             |v| {
-                if !first {
-                    p = momentum(system, t1, q1, v);
-                }
-                first = false;
-                let slip: [f64; M] = from_fn(|k| -(0..N).fold(b1[k], |sum, i| sum + a1[k][i] * v[i]));
                 let d;
-                (d, minus_mu) = bordered.solve(&mass.times(&from_fn(|i| p1[i] - p[i])), &slip);
-                d
+                (d, minus_mu) = match known.take() {
+                    Some(p) => self.correction(v, &p),
+                    None => {
+                        let p = momentum(self.system, self.t1, &self.q1, v);
+                        if self.is_met(&p, &minus_mu) {
+                            return None;
+                        }
+                        self.correction(v, &p)
+                    }
+                };
+                Some(d)
             },
         )?;
         Some(Found { v, lambda: minus_mu.map(|m| -m), corrections })

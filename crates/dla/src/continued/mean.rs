@@ -1,10 +1,15 @@
-use super::Found;
+use super::{Found, LEAST, are_met};
 use crate::State;
+use crate::corrections::Departure;
+use crate::derivatives::Derivatives;
 use crate::dla::{Dla, predicted};
 use crate::increment::Increment;
 use crate::settle::{SHRINKING, Settle, sup};
 use lagrangian::{Bordered, DiscreteConstraint, DiscreteLagrangian, System, momentum};
 use std::array::from_fn;
+
+/// The square of a correction that is smaller, relative to the velocity, is below all rounding.
+const SMALL: f64 = 1e-9;
 
 impl<L, C> Dla<L, C> {
     /// The mean velocity `v`, `p0 + D1 L_d + f_d^- + A(q0)' lambda = 0`, `w_d = 0`; and the momenta `D2 L_d + f_d^+` at the end.
@@ -19,15 +24,13 @@ impl<L, C> Dla<L, C> {
         L: DiscreteLagrangian<Sys, N, M>,
         C: DiscreteConstraint<Sys, N, M>,
     {
-        /// The square of a correction that is smaller, relative to the velocity, is below all rounding.
-        const SMALL: f64 = 1e-9;
-        let mut v = predicted(state, h)?;
+        let v = predicted(state, h)?;
         let rules = (&self.lagrangian, &self.constraint);
         let (q0, v0) = (*state.q(), state.v());
         // Of the system as it is now, which may not be the one of the step before.
         let (p0, (a0, _)) = (momentum(system, t0, &q0, v0), system.constraint(t0, &q0));
         let increment = Increment { rules, system, t0, h, state, q0, p0, a0, basis: None };
-        let mut at = if self.kept.block.stale {
+        let at = if self.kept.block.stale {
             let (at, block) = increment.linearised(&v);
             self.kept.block.renew(&block)?;
             at
@@ -35,51 +38,116 @@ impl<L, C> Dla<L, C> {
             increment.momenta(&v)
         };
         let block = &self.kept.block;
-        let (rows, mut level) = increment.rows(&v);
-        let bordered = Bordered::new(
+        let (rows, level) = increment.rows(&v);
+        let bordered = Bordered::clear(
             #[inline(always)]
             |x| block.times(x),
             &a0,
             &rows,
-        )
-        .ok()?;
-        if !bordered.is_as_at_rest(block.positive) || !bordered.is_clear() {
+        )?;
+        if !bordered.is_as_at_rest(block.positive) {
             return None;
         }
 
-        let (mut lambda, mut both, mut change) = ([0.0; M], [0.0; N], 0.0);
-        let (mut first, mut size, mut before, mut moved) = (true, 0.0, 0.0, 0.0);
-        let settle = Settle { tolerance: self.newton.tolerance, most: SHRINKING * sup(&v) };
-        let corrections = settle.search(
+        let (d, lambda) = bordered.solve(&block.times(&negative(&at.residual)), &level);
+        let moved = from_fn(|i| v[i] + d[i]);
+        let (size, large) = (sup(&d), sup(&moved));
+        if size > SHRINKING * large {
+            return None;
+        }
+        let (first, at, tolerance) = (at, increment.momenta(&moved), self.newton.tolerance);
+        if size <= SMALL * large && are_met(&at.residual, &a0, &lambda, &p0, tolerance) {
+            return Some((Found { v: moved, lambda, corrections: LEAST }, with_reaction(ends(&at), &a0, &lambda)));
+        }
+        let begun = Begun { increment, block, bordered, tolerance, v: moved, d, lambda, first, at };
+        // Taken apart, so that what is found without it need not be where a call leaves its result.
+        let (Found { v, lambda, corrections }, p1) = begun.settled()?;
+        Some((Found { v, lambda, corrections }, p1))
+    }
+}
+
+/// A search after its first correction.
+struct Begun<'a, Sys, L, C, const N: usize, const M: usize> {
+    increment: Increment<'a, Sys, L, C, N, M>,
+    block: &'a Derivatives,
+    bordered: Bordered<N, M>,
+    tolerance: f64,
+    v: [f64; N],
+    /// The first correction, with the impulse that it was found with and what was known where it was made.
+    d: [f64; N],
+    lambda: [f64; M],
+    first: Departure<N>,
+    /// What is known at `v`.
+    at: Departure<N>,
+}
+
+impl<Sys, L, C, const N: usize, const M: usize> Begun<'_, Sys, L, C, N, M>
+where
+    Sys: System<N, M>,
+    L: DiscreteLagrangian<Sys, N, M>,
+    C: DiscreteConstraint<Sys, N, M>,
+{
+    /// The search to its end. By value, so that nothing of one that is at its end need be in memory.
+    #[inline(never)]
+    fn settled(self) -> Option<(Found<N, M>, [f64; N])> {
+        let Self { increment, block, bordered, tolerance, mut v, d, mut lambda, first, at } = self;
+        let Increment { a0, p0, .. } = increment;
+        let (mut both, mut size, mut known) = (ends(&first), sup(&d), Some(at));
+        let (mut change, mut before, mut moved) = (0.0, 0.0, size);
+        let corrections = Settle { tolerance, first: d }.search(
             &mut v,
             #[inline(always)]
             |v| {
-                if !first {
-                    at = increment.momenta(v);
-                    // A correction meets the constraint but for its product with the way from where the rows are.
-                    let met = moved * size <= (SMALL * sup(v)).powi(2);
-                    level = if met { [0.0; M] } else { increment.level(v) };
+                let at = known.take().unwrap_or_else(|| increment.momenta(v));
+                let sums = ends(&at);
+                change = sup(&from_fn::<_, N, _>(|i| sums[i] - both[i]));
+                both = sums;
+                // A correction meets the constraint but for its product with the way from where the rows are.
+                let met = moved * size <= (SMALL * sup(v)).powi(2);
+                if met && are_met(&at.residual, &a0, &lambda, &p0, tolerance) {
+                    change = 0.0;
+                    return None;
                 }
+                let level = if met { [0.0; M] } else { increment.level(v) };
                 let d;
-                (d, lambda) = bordered.solve(&block.times(&at.residual.map(|r| -r)), &level);
-                let ends: [f64; N] = from_fn(|i| at.residual[i] + at.arriving[i]);
-                change = sup(&from_fn::<_, N, _>(|i| ends[i] - both[i]));
-                (first, both, before, size) = (false, ends, size, sup(&d));
+                (d, lambda) = bordered.solve(&block.times(&negative(&at.residual)), &level);
+                (before, size) = (size, sup(&d));
                 moved += size;
-                d
+                Some(d)
             },
         )?;
-        // With the equations at `v` met, the momenta at the end are what those at both ends sum to, and the impulse: of that the
-        // last correction changes as much in its size as the one before.
+        // With the equations at `v` met, the momenta at the end are what those at both ends sum to, and the impulse: of that
+        // the last correction changes as much in its size as the one before.
         if change * size > f64::EPSILON * before * sup(&both) {
-            let at = increment.momenta(&v);
-            both = from_fn(|i| at.residual[i] + at.arriving[i]);
+            both = ends(&increment.momenta(&v));
         }
-        for k in 0..M {
-            for i in 0..N {
-                both[i] += a0[k][i] * lambda[k];
-            }
-        }
-        Some((Found { v, lambda, corrections }, both))
+        Some((Found { v, lambda, corrections }, with_reaction(both, &a0, &lambda)))
     }
+}
+
+/// The momenta of both ends.
+#[inline(always)]
+fn ends<const N: usize>(at: &Departure<N>) -> [f64; N] {
+    from_fn(|i| at.residual[i] + at.arriving[i])
+}
+
+/// `p + A' lambda`.
+#[inline(always)]
+fn with_reaction<const N: usize, const M: usize>(mut p: [f64; N], a: &[[f64; N]; M], lambda: &[f64; M]) -> [f64; N] {
+    for k in 0..M {
+        for i in 0..N {
+            p[i] += a[k][i] * lambda[k];
+        }
+    }
+    p
+}
+
+// A loop, since `map` over more than a few is left a call.
+#[inline(always)]
+fn negative<const N: usize>(x: &[f64; N]) -> [f64; N] {
+    let mut minus = *x;
+    for x in &mut minus {
+        *x = -*x;
+    }
+    minus
 }
