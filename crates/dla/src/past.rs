@@ -26,7 +26,8 @@ pub(crate) struct Past<const N: usize> {
     made: usize,
     /// Where the last one stands; those before it follow.
     last: usize,
-    /// Each stands here twice, [`KEPT`] places apart, so that the last ones stand together wherever the last is and none is ever moved.
+    /// Each stands here twice, [`KEPT`] places apart, so that the last ones stand together wherever the last is, and none is ever
+    /// moved.
     increments: [[[f64; N]; KEPT]; 2],
     /// The increment of one more step.
     next: [f64; N],
@@ -103,7 +104,7 @@ impl<const N: usize> Past<N> {
         self.increments.as_flattened().get(self.last..self.last + self.made).unwrap_or(&[])
     }
 
-    /// The increment of one more step of length `h`: their seventh difference would vanish.
+    /// The increment of one more step of length `h`, with which the next difference of those that are there would vanish.
     #[inline(always)]
     #[allow(clippy::float_cmp, reason = "only steps of the very same length are points of one sequence")]
     pub(crate) fn next(&self, h: f64) -> Option<[f64; N]> {
