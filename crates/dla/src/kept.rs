@@ -1,7 +1,7 @@
 use crate::State;
-use crate::continued::LEAST;
 use crate::derivatives::{COORDINATES, Derivatives, Row, counted, switch};
 use crate::past::Past;
+use crate::settle::LEAST;
 
 /// What a step of the general form remembers of those before it, with which the search of the next one begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,19 +69,17 @@ impl Kept {
         if N > COORDINATES || M > COORDINATES {
             return;
         }
-        self.ready = matrices.is_some() && self.pause == 0;
+        let given = matrices.filter(|_| self.pause == 0);
         self.pause = self.pause.saturating_sub(1);
         self.block.forget();
         self.mass.forget();
-        // They are near enough to those of the next step.
-        if self.ready
-            && let Some((block, mass)) = matrices
-        {
-            self.ready = self.block.renew(&block).and(self.mass.renew(&mass)).is_some();
-            // Their own search would hardly have taken more.
+        self.ready = given.is_some_and(|(block, mass)| {
+            // They are near enough to those of the next step, whose own search would hardly have taken more.
+            let renewed = self.block.renew(&block).and(self.mass.renew(&mass));
             self.block.took::<N>(LEAST);
             self.mass.took::<N>(LEAST);
-        }
+            renewed.is_some()
+        });
         self.velocities.forget();
         self.ended(h, q, v);
     }

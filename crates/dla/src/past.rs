@@ -73,9 +73,7 @@ impl<const N: usize> Past<N> {
     #[inline(always)]
     fn extrapolate(&mut self, last: &[f64; N]) {
         let weights = &WEIGHTS[self.made.min(KEPT)];
-        let Some(rows) = self.increments.as_flattened().get(self.last..).and_then(<[_]>::first_chunk::<KEPT>) else {
-            return;
-        };
+        let Some(rows) = self.rows() else { return };
         let mut sum = [0.0; N];
         for j in (1..KEPT).rev() {
             for i in 0..N {
@@ -99,9 +97,15 @@ impl<const N: usize> Past<N> {
         self.increments[0].get(self.last).copied().unwrap_or([0.0; N])
     }
 
+    /// The last first, with what stands after those that there are.
+    #[inline(always)]
+    fn rows(&self) -> Option<&[[f64; N]; KEPT]> {
+        self.increments.as_flattened().get(self.last..)?.first_chunk()
+    }
+
     /// The last first.
     fn increments(&self) -> &[[f64; N]] {
-        self.increments.as_flattened().get(self.last..self.last + self.made).unwrap_or(&[])
+        self.rows().map_or(&[], |rows| &rows[..self.made])
     }
 
     /// The increment of one more step of length `h`, with which the next difference of those that are there would vanish.
@@ -117,11 +121,11 @@ impl<const N: usize> Past<N> {
         visit(&mut made);
         // What is no number of steps becomes one.
         self.made = KEPT.min(made as usize);
-        let mut last = self.last as f64;
-        visit(&mut last);
-        self.last = (KEPT - 1).min(last as usize);
         visit(&mut self.step);
-        self.increments.as_flattened_mut().as_flattened_mut().iter_mut().for_each(visit);
+        // The last first, wherever they stand.
+        let mut increments = self.rows().copied().unwrap_or([[0.0; N]; KEPT]);
+        increments.as_flattened_mut().iter_mut().for_each(visit);
+        (self.last, self.increments) = (0, [increments; 2]);
         self.extrapolate(&self.last());
     }
 

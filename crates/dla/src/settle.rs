@@ -3,6 +3,9 @@ use std::array::from_fn;
 /// Corrections shrink by at least as much, or their derivatives are not good enough.
 pub(crate) const SHRINKING: f64 = 0.125;
 
+/// The fewest looks of a search: one for its first correction, and one that finds its equations met.
+pub(crate) const LEAST: u32 = 2;
+
 /// How a search with derivatives of another point goes on from its first correction until it has settled.
 pub(crate) struct Settle<const N: usize> {
     /// Relative tolerance of every component.
@@ -27,7 +30,7 @@ impl<const N: usize> Settle<N> {
         /// larger, the general search sees it.
         const ROUNDING: f64 = 64.0 * f64::EPSILON;
         let (mut last, mut allowed) = (self.first.map(f64::abs), SHRINKING * sup(&self.first));
-        for made in 2..=CORRECTIONS {
+        for made in LEAST..=CORRECTIONS {
             let Some(d) = correction(x) else { return Some(made) };
             let moved = from_fn(|i| x[i] + d[i]);
             let size = sup(&d);

@@ -1,7 +1,7 @@
-use super::{Found, LEAST, are_met};
+use super::{Found, are_met};
 use crate::derivatives::Derivatives;
 use crate::dla::Dla;
-use crate::settle::{Settle, sup};
+use crate::settle::{LEAST, Settle, sup};
 use lagrangian::{Bordered, System, mass_matrix, momentum};
 use std::array::from_fn;
 
@@ -48,7 +48,6 @@ impl<L, C> Dla<L, C> {
 }
 
 /// The equations at the end.
-#[derive(Clone, Copy)]
 struct Here<'a, Sys, const N: usize, const M: usize> {
     system: &'a Sys,
     t1: f64,

@@ -1,10 +1,10 @@
-use super::{Found, LEAST, are_met};
+use super::{Found, are_met};
 use crate::State;
 use crate::corrections::Departure;
 use crate::derivatives::Derivatives;
 use crate::dla::{Dla, predicted};
 use crate::increment::Increment;
-use crate::settle::{SHRINKING, Settle, sup};
+use crate::settle::{LEAST, SHRINKING, Settle, sup};
 use lagrangian::{Bordered, DiscreteConstraint, DiscreteLagrangian, System, momentum};
 use std::array::from_fn;
 

@@ -10,9 +10,6 @@ use crate::{State, StepReport};
 use lagrangian::{DiscreteConstraint, DiscreteLagrangian, System};
 use std::array::from_fn;
 
-/// A correction, and a look that finds its equations met.
-pub(crate) const LEAST: u32 = 2;
-
 /// The velocity that a search has found, with the impulse of the constraints, and in how many corrections.
 struct Found<const N: usize, const M: usize> {
     v: [f64; N],
