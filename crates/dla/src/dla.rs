@@ -115,13 +115,10 @@ where
     #[inline(always)]
     fn step(&mut self, system: &Sys, t0: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
         let closed = self.form == Form::Best && is_midpoint::<L>() && is_midpoint::<C>();
-        if closed && let Some(step) = system.closed_step(t0, h, &state.begin(h)) {
+        if closed && let Some(step) = system.closed_step(t0, h, &state.begin()) {
             let step = step.map_err(StepError::Closed)?;
             state.stays_finite(&step.increment, &step.velocity)?;
-            match step.memory {
-                Some(memory) => state.advance_with_memory(&step.increment, step.velocity, step.xi, memory),
-                None => state.advance_remembering(h, &step.increment, step.velocity, step.xi),
-            }
+            state.advance_with_memory(&step.increment, step.velocity, step.xi, step.memory);
             return Ok(StepReport { impulses: step.impulses, iterations: step.iterations, work: None });
         }
         self.general_step(system, t0, h, state)

@@ -149,15 +149,6 @@ impl<const N: usize> State<N> {
         self.go(increment, v, xi.map_or(Left::Nothing, Left::Velocities));
     }
 
-    /// [Moves](State::advance) the state by a step of length `h`, with its quasi-velocities, and remembers the increment for
-    /// [`State::expected`].
-    #[inline(always)]
-    pub fn advance_remembering(&mut self, h: f64, increment: &[f64; N], v: [f64; N], xi: [f64; N]) {
-        self.past.push(h, increment);
-        self.memory.forget();
-        self.go(increment, v, Left::Velocities(xi));
-    }
-
     /// [Moves](State::advance) the state, and keeps its quasi-velocities and what a step in closed form leaves to the next.
     #[inline(always)]
     pub(crate) fn advance_with_memory(&mut self, increment: &[f64; N], v: [f64; N], xi: [f64; N], memory: Memory) {
@@ -166,10 +157,10 @@ impl<const N: usize> State<N> {
         self.go(increment, v, Left::Velocities(xi));
     }
 
-    /// Where a step of length `h` in closed form begins.
+    /// Where a step in closed form begins.
     #[inline(always)]
-    pub(crate) fn begin(&self, h: f64) -> Start<'_, N> {
-        Start { q: &self.q, v: &self.v, xi: self.xi(), expected: self.expected(h), memory: &self.memory }
+    pub(crate) fn begin(&self) -> Start<'_, N> {
+        Start { q: &self.q, v: &self.v, xi: self.xi(), memory: &self.memory }
     }
 
     #[inline(always)]
@@ -265,11 +256,7 @@ impl<const N: usize> State<N> {
             v: checkpoint.get("v")?,
             left,
             past: Past::load(checkpoint)?,
-            memory: if checkpoint.list("closed")?.is_empty() {
-                Memory::EMPTY
-            } else {
-                Memory(checkpoint.get("closed")?)
-            },
+            memory: remembered(checkpoint)?,
         })
     }
 
@@ -290,6 +277,14 @@ impl<const N: usize> State<N> {
             }
         }
     }
+}
+
+/// What a step in closed form has left, of which there may be less than there is place for.
+fn remembered(checkpoint: &Checkpoint) -> Result<Memory, CheckpointError> {
+    let (numbers, mut memory) = (checkpoint.list("closed")?, Memory::EMPTY);
+    let missing = || CheckpointError::Missing { name: "closed".to_owned(), count: Memory::SIZE };
+    memory.0.get_mut(..numbers.len()).ok_or_else(missing)?.copy_from_slice(&numbers);
+    Ok(memory)
 }
 
 /// Whether all terms of a sum are finite that is not.

@@ -217,7 +217,7 @@ fn the_next_increment_is_expected() {
                 assert_abs_diff_eq!(expected[0], along(k)[0], epsilon = 127.0 * 3.0 * f64::EPSILON);
                 assert_abs_diff_eq!(expected[1], 1.0, epsilon = 127.0 * f64::EPSILON);
             }
-            state.advance_remembering(0.5, &along(k), [0.0; 2], [0.0; 2]);
+            state.advance_with_acceleration(0.5, &along(k), [0.0; 2], [0.0; 2]);
         }
     }
     assert!(state.expected(0.25).is_none(), "of another length");
@@ -272,25 +272,28 @@ fn a_state_knows_how_far_it_has_moved() {
 /// What the next step begins from is part of a state: at the same place two are not the same after other steps.
 #[test]
 fn states_after_other_steps_differ() {
-    fn after<Sys: System<3, 1>>(system: &Sys, steps: &[f64]) -> State<3> {
+    fn after<Sys: System<3, 1>>(system: &Sys, form: Form, steps: &[f64]) -> State<3> {
         let mut state = State::new([0.0; 3], [0.0; 3], [false, false, true]);
         for h in steps {
-            Dla::midpoint().step(system, 0.0, *h, &mut state).unwrap();
+            Dla::midpoint().solved(form).step(system, 0.0, *h, &mut state).unwrap();
         }
         state
     }
     let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
     // At rest with its centre of mass at the lowest place.
     let well = With { body, effects: (Bowl::new([0.7, 0.4], [0.5, 0.0]).unwrap(),) };
-    assert_eq!(after(&well, &[0.5]), after(&well, &[0.5]));
-    assert_ne!(after(&well, &[0.5]), after(&well, &[0.25]));
-    assert_ne!(after(&well, &[0.5]), after(&well, &[0.5, 0.5]));
-    // A step of another length begins anew.
-    assert_eq!(after(&well, &[0.5]), after(&well, &[0.25, 0.5]));
-    // The free sleigh begins as after many steps, which were all the same.
-    assert_eq!(after(&body, &[0.5]), after(&body, &[0.5, 0.5]));
-    assert_ne!(after(&body, &[0.5]), after(&body, &[0.25]));
-    assert_eq!(after(&body, &[0.5]), after(&body, &[0.25, 0.5]));
+    for form in [Form::Best, Form::General] {
+        assert_eq!(after(&well, form, &[0.5]), after(&well, form, &[0.5]));
+        assert_ne!(after(&well, form, &[0.5]), after(&well, form, &[0.25]));
+        // A step of another length begins anew.
+        assert_eq!(after(&well, form, &[0.5]), after(&well, form, &[0.25, 0.5]));
+    }
+    // Closed forms begin as after many steps, which were all the same; the general step counts its increments.
+    assert_eq!(after(&well, Form::Best, &[0.5]), after(&well, Form::Best, &[0.5, 0.5]));
+    assert_ne!(after(&well, Form::General, &[0.5]), after(&well, Form::General, &[0.5, 0.5]));
+    assert_eq!(after(&body, Form::Best, &[0.5]), after(&body, Form::Best, &[0.5, 0.5]));
+    assert_ne!(after(&body, Form::Best, &[0.5]), after(&body, Form::Best, &[0.25]));
+    assert_eq!(after(&body, Form::Best, &[0.5]), after(&body, Form::Best, &[0.25, 0.5]));
 }
 
 /// What would not be a finite place or velocity is refused before the state has moved.

@@ -9,8 +9,6 @@ pub struct Start<'a, const N: usize> {
     pub v: &'a [f64; N],
     /// The velocity in the system's basis of admissible velocities.
     pub xi: Option<[f64; N]>,
-    /// About the increment, where steps before tell it.
-    pub expected: Option<[f64; N]>,
     /// What the step before has left.
     pub memory: &'a Memory,
 }
@@ -19,22 +17,34 @@ impl<'a, const N: usize> Start<'a, N> {
     /// Configuration and velocity, and nothing else.
     #[must_use]
     pub fn new(q: &'a [f64; N], v: &'a [f64; N]) -> Self {
-        Self { q, v, xi: None, expected: None, memory: &Memory::EMPTY }
+        Self { q, v, xi: None, memory: &Memory::EMPTY }
     }
 }
 
 /// Numbers that a step in closed form leaves to the next one, from which the search there is short.
 ///
-/// They begin with the length of the step, which is zero where there is nothing to remember; the others are the system's own
-/// affair.
+/// They begin with the length of the step, which is zero where there is nothing to remember, and a number that tells whose they are;
+/// the others are the system's own affair.
 #[derive(Debug, Clone, Copy)]
 pub struct Memory(pub [f64; Self::SIZE]);
 
 impl Memory {
-    /// As many numbers.
-    pub const SIZE: usize = 11;
+    /// As many numbers as any system here remembers.
+    pub const SIZE: usize = 26;
     /// Nothing yet.
     pub const EMPTY: Self = Self([0.0; Self::SIZE]);
+
+    /// These numbers, and zeros.
+    ///
+    /// Does not compile for more than there is place for.
+    #[must_use]
+    #[inline(always)]
+    pub fn of<const K: usize>(numbers: [f64; K]) -> Self {
+        const { assert!(K <= Self::SIZE) };
+        let mut memory = Self::EMPTY;
+        memory.0[..K].copy_from_slice(&numbers);
+        memory
+    }
 
     /// Whether there is nothing.
     #[must_use]
@@ -70,8 +80,8 @@ pub struct ClosedStep<const N: usize, const M: usize> {
     pub impulses: [[f64; M]; 2],
     /// Newton iterations taken.
     pub iterations: u32,
-    /// What it leaves to the next step; none where that is served by the increments of the last ones.
-    pub memory: Option<Memory>,
+    /// What it leaves to the next step.
+    pub memory: Memory,
 }
 
 /// Why a step in closed form does not exist or was not found.

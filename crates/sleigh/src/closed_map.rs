@@ -76,7 +76,7 @@ pub(crate) fn step(
         xi: [u1, omega1, 0.0],
         impulses: [[m * (turn + (spin - a * omega0))], [m * (turn + (a * omega1 - spin))]],
         iterations,
-        memory: Some(before.after(h, w)),
+        memory: before.after(h, w),
     })
 }
 

@@ -150,8 +150,8 @@ impl<B: System<3, M>, const M: usize> System<4, M> for Flywheel<B> {
         let &Start { v, memory, .. } = start;
         let spin = start.xi.map_or_else(|| v[2] + v[3], |xi| xi[2]);
         let (q, v) = (of_body(start.q), of_body(v));
-        let [xi, expected] = [start.xi, start.expected].map(|x| x.as_ref().map(of_body));
-        let body = self.body.closed_step(t, h, &Start { q: &q, v: &v, xi, expected, memory })?;
+        let xi = start.xi.as_ref().map(of_body);
+        let body = self.body.closed_step(t, h, &Start { q: &q, v: &v, xi, memory })?;
         Some(body.map(|step| ClosedStep {
             increment: with_rotor(&step.increment, h * spin - step.increment[2]),
             velocity: with_rotor(&step.velocity, spin - step.velocity[2]),

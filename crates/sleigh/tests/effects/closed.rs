@@ -68,7 +68,7 @@ proptest! {
             for _ in 0..steps {
                 let start = Start { xi: Some(xi), memory: &memory, ..Start::new(&[0.0; 3], &[0.0; 3]) };
                 let made = System::<3, 1>::closed_step(&sleigh, 0.0, h, &start).unwrap().unwrap();
-                (xi, memory) = (made.xi, made.memory.unwrap());
+                (xi, memory) = (made.xi, made.memory);
             }
             xi = xi.map(|x| factor * x);
             let blank = Start { xi: Some(xi), ..Start::new(&[0.0; 3], &[0.0; 3]) };
@@ -91,7 +91,7 @@ proptest! {
         for _ in 0..100 {
             let start = Start { xi: Some(xi), memory: &memory, ..Start::new(&q, &v) };
             let made = System::<3, 1>::closed_step(&sleigh, 0.0, 0.02, &start).unwrap().unwrap();
-            (xi, memory) = (made.xi, made.memory.unwrap());
+            (xi, memory) = (made.xi, made.memory);
             corrections.push(made.iterations);
         }
         prop_assert!(corrections[8..].iter().all(|&n| n == 1), "{corrections:?}");

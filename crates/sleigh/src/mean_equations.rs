@@ -1,0 +1,155 @@
+use crate::Sleigh;
+use crate::half_turn::half_turn;
+use lagrangian::{Dual, KnownAngle, Push, mul_add};
+use std::array::from_fn;
+
+/// The equations of a step of the pushed map for its mean velocities `U` and `w`; here what does not change with these.
+pub(crate) struct MeanEquations<'a> {
+    sleigh: &'a Sleigh,
+    t: f64,
+    pub(crate) h: f64,
+    q: &'a [f64; 3],
+    /// `u0`, `omega0`.
+    pub(crate) start: [f64; 2],
+    /// Sine and cosine of the heading at the beginning.
+    heading: [f64; 2],
+    /// `h/(2m)`, `h/(2J)`, `k`.
+    gains: [f64; 3],
+}
+
+/// What the equations are at one point.
+#[derive(Clone, Copy)]
+pub(crate) struct Point {
+    /// By how much they are missed.
+    pub(crate) missing: [f64; 2],
+    /// The sums of the sizes of their terms.
+    pub(crate) terms: [f64; 2],
+    /// Sine and cosine of `d`.
+    pub(crate) half_turn: [f64; 2],
+    /// `f_e`, `f_n`.
+    pub(crate) force: [f64; 2],
+}
+
+/// Their derivatives in `U` and `w`.
+#[derive(Clone, Copy)]
+pub(crate) struct Matrix {
+    adjugate: [[f64; 2]; 2],
+    determinant: f64,
+    /// The derivatives of `f_e`, `f_n`.
+    pub(crate) force: [[f64; 2]; 2],
+}
+
+impl Matrix {
+    /// The velocities with Newton's correction, and that alone.
+    #[inline(always)]
+    pub(crate) fn corrected(&self, x: [f64; 2], [a, b]: [f64; 2]) -> ([f64; 2], [f64; 2]) {
+        let d: [f64; 2] = from_fn(|i| mul_add(self.adjugate[i][0], a, self.adjugate[i][1] * b) / self.determinant);
+        (from_fn(|i| x[i] + d[i]), d)
+    }
+
+    /// Whether the determinant, one for a step of length zero, has its sign.
+    #[inline(always)]
+    pub(crate) fn keeps_sign(&self) -> bool {
+        self.determinant > 0.0 && self.determinant < f64::INFINITY
+    }
+}
+
+/// Sine and cosine of an angle and of another one: of their sum.
+#[inline(always)]
+pub(crate) fn turned([sin0, cos0]: [f64; 2], [sin, cos]: [f64; 2]) -> [f64; 2] {
+    [mul_add(sin0, cos, cos0 * sin), mul_add(cos0, cos, -sin0 * sin)]
+}
+
+impl<'a> MeanEquations<'a> {
+    /// Of a step of length `h` from the time `t`, the place `q` with this sine and cosine of the heading, and the velocities
+    /// `start`.
+    #[inline(always)]
+    pub(crate) fn new(
+        sleigh: &'a Sleigh,
+        (t, h): (f64, f64),
+        (q, heading): (&'a [f64; 3], [f64; 2]),
+        start: [f64; 2],
+    ) -> Self {
+        let half = 0.5 * h;
+        let gains = [half / sleigh.mass(), half / sleigh.pivot_inertia(), half * sleigh.spin_gain()];
+        Self { sleigh, t, h, q, start, heading, gains }
+    }
+
+    /// The middle of the step: sine and cosine of the heading there, which is that of the chord, and the configuration.
+    #[inline(always)]
+    fn middle(&self, [speed, w]: [f64; 2], half_turn: [f64; 2]) -> ([f64; 2], [f64; 3]) {
+        let half = 0.5 * self.h;
+        let (way, chord) = (half * speed, turned(self.heading, half_turn));
+        let [x, y, heading] = *self.q;
+        (chord, [mul_add(way, chord[1], x), mul_add(way, chord[0], y), mul_add(half, w, heading)])
+    }
+
+    #[inline(always)]
+    fn point(&self, [speed, w]: [f64; 2], half_turn: [f64; 2], chord: [f64; 2], [fx, fy, tau]: [f64; 3]) -> Point {
+        let ([u0, omega0], [sin, cos], a) = (self.start, half_turn, self.sleigh.offset());
+        let [of_mass, of_inertia, k] = self.gains;
+        let force @ [along, across] = [mul_add(chord[1], fx, chord[0] * fy), mul_add(chord[1], fy, -chord[0] * fx)];
+        let [carried, turned] = [speed * cos, a * w * sin];
+        let (pushed, grown) = (mul_add(along, cos, -across * sin), w * mul_add(k, speed, 1.0));
+        // The force is what takes longest.
+        let missing = [mul_add(-of_mass, pushed, (carried - turned) - u0), mul_add(-of_inertia, tau, grown - omega0)];
+        let [pushed, torque] = [of_mass * pushed, of_inertia * tau];
+        Point {
+            missing,
+            terms: [carried.abs() + turned.abs() + u0.abs() + pushed.abs(), grown.abs() + omega0.abs() + torque.abs()],
+            half_turn,
+            force,
+        }
+    }
+
+    /// The equations at the velocities `x`; none where the blade would turn by a right angle in half the step, or the force is not
+    /// known by hand.
+    #[inline(always)]
+    pub(crate) fn at<P: Push<3>>(&self, push: &P, x: [f64; 2]) -> Option<Point> {
+        let half_turn = half_turn(0.5 * self.h * x[1]).ok()?.into();
+        let (chord, [qx, qy, heading]) = self.middle(x, half_turn);
+        let heading = KnownAngle::new(heading, chord[0], chord[1]);
+        let t = KnownAngle::from(self.t + 0.5 * self.h);
+        let force = push.push(t, &[KnownAngle::from(qx), KnownAngle::from(qy), heading])?;
+        Some(self.point(x, half_turn, chord, force.map(|f| f.re)))
+    }
+
+    /// The same with the derivatives, where sine and cosine of the half turn are known.
+    #[inline(always)]
+    pub(crate) fn linearised<P: Push<3>>(&self, push: &P, x: [f64; 2], half_turn: [f64; 2]) -> Option<(Matrix, Point)> {
+        let (chord, [qx, qy, heading]) = self.middle(x, half_turn);
+        let ([speed, w], half) = (x, 0.5 * self.h);
+        let way = half * speed;
+        let seeded = |re: KnownAngle, eps: [f64; 2]| Dual { re, eps: eps.map(KnownAngle::from) };
+        let q = [
+            seeded(KnownAngle::from(qx), [half * chord[1], -half * way * chord[0]]),
+            seeded(KnownAngle::from(qy), [half * chord[0], half * way * chord[1]]),
+            seeded(KnownAngle::new(heading, chord[0], chord[1]), [0.0, half]),
+        ];
+        let force = push.push(Dual::fixed(KnownAngle::from(self.t + half)), &q)?;
+        let at = self.point(x, half_turn, chord, force.map(|f| f.re.re));
+
+        let ([sin, cos], [along, across]) = (half_turn, at.force);
+        let (a, [of_mass, of_inertia, k]) = (self.sleigh.offset(), self.gains);
+        let [fx, fy, tau] = force.map(|f| f.eps.map(|x| x.re));
+        // The chord turns by half a step's turn.
+        let of_both = |[x, y]: [[f64; 2]; 2]| {
+            let along: [f64; 2] = from_fn(|i| mul_add(chord[1], x[i], chord[0] * y[i]));
+            let across: [f64; 2] = from_fn(|i| mul_add(chord[1], y[i], -chord[0] * x[i]));
+            (along, across)
+        };
+        let (mut along_of, mut across_of) = of_both([fx, fy]);
+        along_of[1] = mul_add(half, across, along_of[1]);
+        across_of[1] = mul_add(-half, along, across_of[1]);
+        let pushed: [f64; 2] = from_fn(|i| mul_add(along_of[i], cos, -across_of[i] * sin));
+        let pushed = [pushed[0], mul_add(-half, mul_add(along, sin, across * cos), pushed[1])];
+        let first = [
+            mul_add(-of_mass, pushed[0], cos),
+            mul_add(-of_mass, pushed[1], -mul_add(way, sin, a * mul_add(half * w, cos, sin))),
+        ];
+        let second = [mul_add(-of_inertia, tau[0], k * w), mul_add(-of_inertia, tau[1], mul_add(k, speed, 1.0))];
+        let determinant = mul_add(first[0], second[1], -first[1] * second[0]);
+        let adjugate = [[-second[1], first[1]], [second[0], -first[0]]];
+        Some((Matrix { adjugate, determinant, force: [along_of, across_of] }, at))
+    }
+}
