@@ -39,7 +39,7 @@ const ROTATED: f64 = 16.0 * f64::EPSILON;
 /// those of the free sleigh, with the impulse of half a step at each end. They are solved from velocities that those before the last
 /// ones lead to, where one of Newton's corrections is enough. None where the corrections do not contract or settle, where the blade
 /// turns far, or where the equations are no longer those of a short step: the general step then decides.
-#[inline]
+#[inline(always)]
 pub(crate) fn step<P: Push<3>>(
     sleigh: &Sleigh,
     (t, h): (f64, f64),
