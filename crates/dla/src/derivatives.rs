@@ -4,6 +4,12 @@ use std::array::from_fn;
 /// Systems of more coordinates or constraints are not remembered.
 pub(crate) const COORDINATES: usize = 8;
 
+/// After so many corrections one is looked at again, and none goes unseen before as many have been made with the same derivatives.
+const OFTEN: u32 = 16;
+/// A correction is a part of the unknowns that is larger than this where steps before do not foretell it to their rounding: it is looked
+/// at.
+const SLIGHT: f64 = 1e-12;
+
 pub(crate) type Row = [f64; COORDINATES];
 
 /// The inverse of a matrix of derivatives, by columns, which serves several steps.
@@ -22,6 +28,10 @@ pub(crate) struct Derivatives {
     searches: u32,
     /// For how many searches each is to have its own.
     own: u32,
+    /// A part of the unknowns by which a correction with them changed these and was seen to leave rounding, and how many have gone
+    /// unseen since.
+    seen: f64,
+    unseen: u32,
 }
 
 impl Derivatives {
@@ -33,6 +43,8 @@ impl Derivatives {
         more: 0,
         searches: 0,
         own: 0,
+        seen: 0.0,
+        unseen: 0,
     };
 
     /// New ones, given by rows; none where they have no inverse, or one that loses digits.
@@ -49,14 +61,43 @@ impl Derivatives {
             condition = larger(condition, (0..N).map(|i| (matrix[j][i] * column[i]).abs()).sum());
         }
         self.positive = inverse.is_positive();
-        (self.stale, self.more, self.searches) = (false, 0, 0);
+        (self.stale, self.more, self.searches, self.seen) = (false, 0, 0, 0.0);
         (condition <= CLEAR).then_some(())
     }
 
     /// As if there had been none.
     #[inline(always)]
     pub(crate) fn forget(&mut self) {
-        (self.stale, self.own) = (true, 0);
+        (self.stale, self.own, self.seen) = (true, 0, 0.0);
+    }
+
+    /// Whether a correction of the size `d` of unknowns of the size `x` leaves rounding because one as large has been seen to. What a
+    /// correction with these derivatives leaves is a part of it that grows with the steps since they were made: not beyond twice
+    /// of what was seen before the next one is looked at (as rates of contraction are remembered, Hairer and Wanner 1996, IV.8).
+    #[inline(always)]
+    pub(crate) fn suffice(&self, d: f64, x: f64) -> bool {
+        d <= self.seen * x && self.unseen < OFTEN
+    }
+
+    /// That one was believed to.
+    #[inline(always)]
+    pub(crate) fn go_unseen(&mut self) {
+        self.unseen = self.unseen.saturating_add(1);
+    }
+
+    /// That a correction of the size `d` of unknowns of the size `x` has left rounding, which is to be `sure`. What was seen longer
+    /// ago counts ever less.
+    #[inline(always)]
+    pub(crate) fn have_sufficed(&mut self, d: f64, x: f64, sure: impl FnOnce() -> bool) {
+        if d <= SLIGHT * x && self.searches >= OFTEN && sure() {
+            (self.seen, self.unseen) = (larger(d / x, 0.5 * self.seen), 0);
+        }
+    }
+
+    /// That one has not.
+    #[inline(always)]
+    pub(crate) fn have_not_sufficed(&mut self) {
+        self.seen = 0.0;
     }
 
     /// The product of the inverse with a vector.
@@ -100,12 +141,13 @@ impl Derivatives {
 
     /// Every number of it, in a fixed order.
     pub(crate) fn visit(&mut self, mut visit: impl FnMut(&mut f64)) {
-        let Self { columns, positive, stale, least, more, searches, own } = self;
+        let Self { columns, positive, stale, least, more, searches, own, seen, unseen } = self;
         columns.as_flattened_mut().iter_mut().for_each(&mut visit);
         for flag in [positive, stale] {
             switch(flag, &mut visit);
         }
-        for count in [least, more, searches, own] {
+        visit(seen);
+        for count in [least, more, searches, own, unseen] {
             counted(count, &mut visit);
         }
     }
@@ -184,6 +226,38 @@ mod tests {
         assert_eq!(served::<3>(|k| if k < 5 { 2 } else { 3 }), 5);
         // One more in every step, thirteen of which are worth new ones.
         assert_eq!(served::<7>(|k| if k < 5 { 2 } else { 3 }), 5 + 12);
+    }
+
+    /// A correction goes unseen where one as large was seen lately, with derivatives that are no longer new.
+    #[test]
+    fn what_was_seen_is_believed_for_a_while() {
+        let unit = [[1.0, 0.0], [0.0, 1.0]];
+        let mut derivatives = renewed(&unit);
+        for _ in 0..OFTEN {
+            derivatives.have_sufficed(1e-13, 1.0, || true);
+            assert!(!derivatives.suffice(1e-14, 1.0), "too new");
+            derivatives.took::<2>(2);
+        }
+        derivatives.have_sufficed(1e-13, 1.0, || false);
+        assert!(!derivatives.suffice(1e-14, 1.0), "not sure");
+        derivatives.have_sufficed(2.0 * SLIGHT, 1.0, || true);
+        assert!(!derivatives.suffice(1e-14, 1.0), "too large");
+        derivatives.have_sufficed(2e-13, 2.0, || true);
+        assert!(derivatives.suffice(1e-13, 1.0) && !derivatives.suffice(1.1e-13, 1.0));
+        for _ in 0..OFTEN {
+            assert!(derivatives.suffice(1e-13, 1.0));
+            derivatives.go_unseen();
+        }
+        assert!(!derivatives.suffice(1e-13, 1.0), "for too long");
+        derivatives.have_sufficed(1e-14, 1.0, || true);
+        assert!(derivatives.suffice(0.5e-13, 1.0) && !derivatives.suffice(0.6e-13, 1.0), "half of what it was");
+        for forget in
+            [Derivatives::have_not_sufficed, Derivatives::forget, |d: &mut Derivatives| d.renew(&[[2.0]]).unwrap()]
+        {
+            let mut other = derivatives;
+            forget(&mut other);
+            assert!(!other.suffice(1e-14, 1.0));
+        }
     }
 
     /// Where the second search already costs as much, sixteen have their own.

@@ -34,15 +34,22 @@ impl<L, C> Dla<L, C> {
 
         let (d, minus_mu) = here.correction(&guess, &p);
         let v = from_fn(|i| guess[i] + d[i]);
-        if sup(&d) > sup(&guess) {
+        let (size, large) = (sup(&d), sup(&guess));
+        if size > large {
             return None;
+        }
+        if mass.suffice(size, large) {
+            self.kept.mass.go_unseen();
+            return Some(Found { v, lambda: minus_mu.map(|m| -m), corrections: 1 });
         }
         let p = momentum(system, t1, q1, &v);
         if here.is_met(&p, &minus_mu) {
+            self.kept.mass.have_sufficed(size, large, || true);
             return Some(Found { v, lambda: minus_mu.map(|m| -m), corrections: LEAST });
         }
         // Taken apart, so that what is found without it need not be where a call leaves its result.
         let Found { v, lambda, corrections } = here.settled(v, p, d)?;
+        self.kept.mass.have_not_sufficed();
         Some(Found { v, lambda, corrections })
     }
 }

@@ -55,13 +55,22 @@ impl<L, C> Dla<L, C> {
         if size > SHRINKING * large {
             return None;
         }
+        if block.suffice(size, large) {
+            self.kept.block.go_unseen();
+            return Some((Found { v: moved, lambda, corrections: 1 }, with_reaction(ends(&at), &a0, &lambda)));
+        }
         let (first, at, tolerance) = (at, increment.momenta(&moved), self.newton.tolerance);
         if size <= SMALL * large && are_met(&at.residual, &a0, &lambda, &p0, tolerance) {
-            return Some((Found { v: moved, lambda, corrections: LEAST }, with_reaction(ends(&at), &a0, &lambda)));
+            let both = ends(&at);
+            // Each of the sums is rounded twice.
+            let same = || sup(&difference(&both, &ends(&first))) <= 2.0 * f64::EPSILON * sup(&both);
+            self.kept.block.have_sufficed(size, large, same);
+            return Some((Found { v: moved, lambda, corrections: LEAST }, with_reaction(both, &a0, &lambda)));
         }
         let begun = Begun { increment, block, bordered, tolerance, v: moved, d, lambda, first, at };
         // Taken apart, so that what is found without it need not be where a call leaves its result.
         let (Found { v, lambda, corrections }, p1) = begun.settled()?;
+        self.kept.block.have_not_sufficed();
         Some((Found { v, lambda, corrections }, p1))
     }
 }
@@ -100,7 +109,7 @@ where
             |v| {
                 let at = known.take().unwrap_or_else(|| increment.momenta(v));
                 let sums = ends(&at);
-                change = sup(&from_fn::<_, N, _>(|i| sums[i] - both[i]));
+                change = sup(&difference(&sums, &both));
                 both = sums;
                 // A correction meets the constraint but for its product with the way from where the rows are.
                 let met = moved * size <= (SMALL * sup(v)).powi(2);
@@ -129,6 +138,11 @@ where
 #[inline(always)]
 fn ends<const N: usize>(at: &Departure<N>) -> [f64; N] {
     from_fn(|i| at.residual[i] + at.arriving[i])
+}
+
+#[inline(always)]
+fn difference<const N: usize>(x: &[f64; N], y: &[f64; N]) -> [f64; N] {
+    from_fn(|i| x[i] - y[i])
 }
 
 /// `p + A' lambda`.
