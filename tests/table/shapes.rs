@@ -81,7 +81,7 @@ macro_rules! shape {
                 &self,
                 t: f64,
                 h: f64,
-                start: &Start<'_, $n>,
+                start: Start<'_, $n>,
             ) -> Option<Result<ClosedStep<$n, $m>, ClosedStepError>> {
                 match self {
                     $(Self::$model(x) => x.closed_step(t, h, start),)*

@@ -24,7 +24,7 @@ pub struct State<const N: usize> {
     q: [f64; N],
     rest: [f64; N],
     turns: [f64; N],
-    /// How far a coordinate may go: half a turn of an angle, any distance else.
+    /// How far a coordinate may go: half a turn of an angle, any finite distance else.
     bounds: [f64; N],
     v: [f64; N],
     left: Left<N>,
@@ -137,8 +137,11 @@ impl<const N: usize> State<N> {
     pub fn stays_finite(&self, increment: &[f64; N], v: &[f64; N]) -> Result<(), StepError> {
         let ahead = self.ahead(increment);
         // A sum is no number, or not finite, where one of its terms is not.
-        let sum = (0..N).fold(0.0, |sum, i| sum + ahead[i]) + (0..N).fold(0.0, |sum, i| sum + v[i]);
-        if sum.abs() <= f64::MAX || too_large_together(ahead, *v) { Ok(()) } else { Err(StepError::NotFinite) }
+        if (sum(&ahead) + sum(v)).abs() <= f64::MAX || too_large_together(ahead, *v) {
+            Ok(())
+        } else {
+            Err(StepError::NotFinite)
+        }
     }
 
     /// Moves the configuration by `increment` and sets the velocity, with its quasi-velocities where they are known.
@@ -149,18 +152,38 @@ impl<const N: usize> State<N> {
         self.go(increment, v, xi.map_or(Left::Nothing, Left::Velocities));
     }
 
-    /// [Moves](State::advance) the state, and keeps its quasi-velocities and what a step in closed form leaves to the next.
+    /// [Moves](State::advance) the state, and keeps its quasi-velocities and what a step in closed form has left to the next.
+    ///
+    /// # Errors
+    /// [`StepError::NotFinite`] where coordinates or velocities would not be finite; the state is then as it was.
     #[inline(always)]
-    pub(crate) fn advance_with_memory(&mut self, increment: &[f64; N], v: [f64; N], xi: [f64; N], memory: Memory) {
+    pub(crate) fn advance_remembering(
+        &mut self,
+        increment: &[f64; N],
+        v: [f64; N],
+        xi: [f64; N],
+    ) -> Result<(), StepError> {
+        let (mut q, mut rest, mut within) = ([0.0; N], [0.0; N], true);
+        for i in 0..N {
+            (q[i], rest[i]) = two_sum(self.q[i], increment[i] + self.rest[i]);
+            within &= q[i].abs() <= self.bounds[i];
+        }
+        let left = Left::Velocities(xi);
         self.past.forget();
-        self.memory = memory;
-        self.go(increment, v, Left::Velocities(xi));
+        // Most steps go nowhere where an angle has to be wrapped, and a coordinate within its bounds is finite.
+        if within & (sum(&v).abs() <= f64::MAX) {
+            (self.q, self.rest, self.v, self.left) = (q, rest, v, left);
+            return Ok(());
+        }
+        self.stays_finite(increment, &v)?;
+        self.go(increment, v, left);
+        Ok(())
     }
 
     /// Where a step in closed form begins.
     #[inline(always)]
-    pub(crate) fn begin(&self) -> Start<'_, N> {
-        Start { q: &self.q, v: &self.v, xi: self.xi(), memory: &self.memory }
+    pub(crate) fn begin(&mut self) -> Start<'_, N> {
+        Start { q: &self.q, v: &self.v, xi: self.xi(), memory: &mut self.memory }
     }
 
     #[inline(always)]
@@ -287,6 +310,11 @@ fn remembered(checkpoint: &Checkpoint) -> Result<Memory, CheckpointError> {
     Ok(memory)
 }
 
+#[inline(always)]
+fn sum<const N: usize>(x: &[f64; N]) -> f64 {
+    x.iter().copied().reduce(|sum, x| sum + x).unwrap_or(0.0)
+}
+
 /// Whether all terms of a sum are finite that is not.
 #[cold]
 #[inline(never)]
@@ -295,7 +323,7 @@ fn too_large_together<const N: usize>(q: [f64; N], v: [f64; N]) -> bool {
 }
 
 fn bounds<const N: usize>(angles: [bool; N]) -> [f64; N] {
-    angles.map(|angle| if angle { PI } else { f64::INFINITY })
+    angles.map(|angle| if angle { PI } else { f64::MAX })
 }
 
 /// An angle with its rest, wrapped, and the turns that were taken out of it.

@@ -1,23 +1,23 @@
 use thiserror::Error;
 
-/// Where a step in closed form begins, and what is known there. Whatever it is, the step is the same to round-off.
-#[derive(Debug, Clone, Copy)]
+/// Where a step in closed form begins, and what is known there. Whatever is remembered, the step is the same to round-off.
+#[derive(Debug)]
 pub struct Start<'a, const N: usize> {
     /// The configuration.
     pub q: &'a [f64; N],
     /// The velocity.
     pub v: &'a [f64; N],
-    /// The velocity in the system's basis of admissible velocities.
+    /// The same velocity in the system's basis of admissible velocities, where it is known: either may be read.
     pub xi: Option<[f64; N]>,
-    /// What the step before has left.
-    pub memory: &'a Memory,
+    /// What the step before has left, and where this one leaves what the next may need. A step that fails leaves it alone.
+    pub memory: &'a mut Memory,
 }
 
 impl<'a, const N: usize> Start<'a, N> {
-    /// Configuration and velocity, and nothing else.
+    /// Configuration, velocity, and what is remembered.
     #[must_use]
-    pub fn new(q: &'a [f64; N], v: &'a [f64; N]) -> Self {
-        Self { q, v, xi: None, memory: &Memory::EMPTY }
+    pub fn new(q: &'a [f64; N], v: &'a [f64; N], memory: &'a mut Memory) -> Self {
+        Self { q, v, xi: None, memory }
     }
 }
 
@@ -30,20 +30,26 @@ pub struct Memory(pub [f64; Self::SIZE]);
 
 impl Memory {
     /// As many numbers as any system here remembers.
-    pub const SIZE: usize = 26;
+    pub const SIZE: usize = 28;
     /// Nothing yet.
     pub const EMPTY: Self = Self([0.0; Self::SIZE]);
 
-    /// These numbers, and zeros.
+    /// Remembers what a step of this length leaves, numbers of this kind, the first of all.
     ///
     /// Does not compile for more than there is place for.
+    #[inline(always)]
+    pub fn keep<const K: usize>(&mut self, h: f64, kind: f64, numbers: [f64; K]) {
+        const { assert!(K + 2 <= Self::SIZE) };
+        (self.0[0], self.0[1]) = (h, kind);
+        self.0[2..K + 2].copy_from_slice(&numbers);
+    }
+
+    /// Whether a step of this very length has left numbers of this kind.
     #[must_use]
     #[inline(always)]
-    pub fn of<const K: usize>(numbers: [f64; K]) -> Self {
-        const { assert!(K <= Self::SIZE) };
-        let mut memory = Self::EMPTY;
-        memory.0[..K].copy_from_slice(&numbers);
-        memory
+    pub fn is_of(&self, h: f64, kind: f64) -> bool {
+        // As bits, for one branch.
+        (self.0[0].to_bits() ^ h.to_bits()) | (self.0[1].to_bits() ^ kind.to_bits()) == 0
     }
 
     /// Whether there is nothing.
@@ -57,6 +63,12 @@ impl Memory {
     #[inline(always)]
     pub fn forget(&mut self) {
         self.0[0] = 0.0;
+    }
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        Self::EMPTY
     }
 }
 
@@ -80,8 +92,6 @@ pub struct ClosedStep<const N: usize, const M: usize> {
     pub impulses: [[f64; M]; 2],
     /// Newton iterations taken.
     pub iterations: u32,
-    /// What it leaves to the next step.
-    pub memory: Memory,
 }
 
 /// Why a step in closed form does not exist or was not found.

@@ -130,12 +130,7 @@ pub trait System<const N: usize, const M: usize> {
     ///
     /// It must agree with the general one to round-off; it exists for its speed, and for the digits that a closed form keeps.
     #[inline(always)]
-    fn closed_step(
-        &self,
-        _t: f64,
-        _h: f64,
-        _start: &Start<'_, N>,
-    ) -> Option<Result<ClosedStep<N, M>, ClosedStepError>> {
+    fn closed_step(&self, _t: f64, _h: f64, _start: Start<'_, N>) -> Option<Result<ClosedStep<N, M>, ClosedStepError>> {
         None
     }
 
@@ -143,7 +138,7 @@ pub trait System<const N: usize, const M: usize> {
     ///
     /// None where it is not known by hand, or not found quickly: the general step is then made.
     #[inline(always)]
-    fn pushed_step<P: Push<N>>(&self, _t: f64, _h: f64, _start: &Start<'_, N>, _push: &P) -> Option<ClosedStep<N, M>> {
+    fn pushed_step<P: Push<N>>(&self, _t: f64, _h: f64, _start: Start<'_, N>, _push: &P) -> Option<ClosedStep<N, M>> {
         None
     }
 }

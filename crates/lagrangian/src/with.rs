@@ -116,7 +116,7 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
     }
 
     #[inline(always)]
-    fn closed_step(&self, t: f64, h: f64, start: &Start<'_, N>) -> Option<Result<ClosedStep<N, M>, ClosedStepError>> {
+    fn closed_step(&self, t: f64, h: f64, start: Start<'_, N>) -> Option<Result<ClosedStep<N, M>, ClosedStepError>> {
         if self.effects.is_none() {
             return self.body.closed_step(t, h, start);
         }

@@ -28,16 +28,16 @@ const FAR: f64 = 0.125;
 pub(crate) fn step(
     sleigh: &Sleigh,
     h: f64,
-    &Start { q, v, xi, memory, .. }: &Start<'_, 3>,
+    Start { q, v, xi, memory }: Start<'_, 3>,
 ) -> Result<ClosedStep<3, 1>, ClosedStepError> {
     let (m, a) = (sleigh.mass(), sleigh.offset());
     let equation = SpinEquation::new(sleigh, h);
     let (u0, omega0) = match xi {
-        Some([u, omega, _]) => (u, omega),
-        None => recovered(sin_cos_wrapped(q[2]), v),
+        Some([u, ..]) => (u, v[2]),
+        None => recovered(q[2], v),
     };
 
-    let before = SpinMemory::of(memory, h, omega0);
+    let before = SpinMemory::of(memory, h, (q[2], omega0));
     let mut point = equation.point(before.expected, before.half_turn);
     let mut correction = equation.correction(&point, u0, omega0);
     let mut iterations = 1;
@@ -55,28 +55,27 @@ pub(crate) fn step(
     let across = mul_add(correction, slope, point.across);
     // (1 + k U) cos d, the sign of w / omega0.
     let growth = mul_add(equation.k, u0 + across, cos);
-    if growth <= 0.0 {
-        return Err(out_of_branch(growth / cos - 1.0));
-    }
 
     // With w (1 + k U) = omega0: omega1 = w (1 - k U) = 2 w - omega0. Little of both waits for the correction.
     let u1 = mul_add(correction, 2.0 * slope, mul_add(2.0, point.across, u0));
     let omega1 = 2.0 * w - omega0;
 
     // The directions of the blade at the beginning, half a step and a step later.
-    let (sin0, cos0) = sin_cos_wrapped(q[2]);
     let turned = |[cos0, sin0]: [f64; 2]| [mul_add(cos0, cos, -sin0 * sin), mul_add(sin0, cos, cos0 * sin)];
-    let [cos_m, sin_m] = turned([cos0, sin0]);
+    let [cos_m, sin_m] = turned([before.heading.cos, before.heading.sin]);
     let [cos1, sin1] = turned([cos_m, sin_m]);
     let mean_speed = (u0 + across) / cos;
     let (turn, spin, way) = (mean_speed * sin, a * (w * cos), h * mean_speed);
+    if growth <= 0.0 {
+        return Err(out_of_branch(growth / cos - 1.0));
+    }
+    before.leave(memory, h, w, [sin1, cos1]);
     Ok(ClosedStep {
         increment: [way * cos_m, way * sin_m, h * w],
         velocity: [u1 * cos1, u1 * sin1, omega1],
         xi: [u1, omega1, 0.0],
         impulses: [[m * (turn + (spin - a * omega0))], [m * (turn + (a * omega1 - spin))]],
         iterations,
-        memory: before.after(h, w),
     })
 }
 
@@ -107,7 +106,8 @@ fn search(sleigh: &Sleigh, h: f64, expected: f64, u0: f64, omega0: f64) -> Resul
 /// wait for the trigonometry of the heading, and not a selection that does.
 #[cold]
 #[inline(never)]
-pub(crate) fn recovered((sin0, cos0): (f64, f64), v: &[f64; 3]) -> (f64, f64) {
+pub(crate) fn recovered(heading: f64, v: &[f64; 3]) -> (f64, f64) {
+    let (sin0, cos0) = sin_cos_wrapped(heading);
     (v[0] * cos0 + v[1] * sin0, v[2])
 }
 

@@ -21,17 +21,34 @@ pub(crate) fn half_turn(d: f64) -> Result<(f64, f64), ClosedStepError> {
     }
 }
 
-/// Their series, to the first term below rounding: no range to reduce.
+/// Their series, to the first term below rounding: no range to reduce. No numbers where the turn is too large for these.
 #[inline(always)]
 pub(crate) fn series(d: f64) -> (f64, f64) {
     let z = d * d;
-    let three = |c: [f64; 3]| mul_add(mul_add(c[2], z, c[1]), z, c[0]);
-    let five = |c: &[f64; 5]| three([c[0], c[1], three([c[2], c[3], c[4]])]);
-    let (s, c) = if z <= NARROW * NARROW {
-        (three([SINE[0], SINE[1], SINE[2]]), three([COSINE[0], COSINE[1], COSINE[2]]))
+    if z <= NARROW * NARROW {
+        summed(d, three([SINE[0], SINE[1], SINE[2]], z), three([COSINE[0], COSINE[1], COSINE[2]], z))
     } else {
-        (five(&SINE), five(&COSINE))
-    };
+        broad(d)
+    }
+}
+
+// A call, since few steps come here.
+#[cold]
+#[inline(never)]
+fn broad(d: f64) -> (f64, f64) {
+    let z = d * d;
+    let five = |c: &[f64; 5]| three([c[0], c[1], three([c[2], c[3], c[4]], z)], z);
+    if d.abs() <= BROAD { summed(d, five(&SINE), five(&COSINE)) } else { (f64::NAN, f64::NAN) }
+}
+
+#[inline(always)]
+fn three(c: [f64; 3], z: f64) -> f64 {
+    mul_add(mul_add(c[2], z, c[1]), z, c[0])
+}
+
+#[inline(always)]
+fn summed(d: f64, s: f64, c: f64) -> (f64, f64) {
+    let z = d * d;
     (mul_add(d * z, s, d), mul_add(z, mul_add(z, c, -0.5), 1.0))
 }
 

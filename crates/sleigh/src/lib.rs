@@ -17,6 +17,7 @@ pub mod effects;
 mod error;
 mod exact;
 mod half_turn;
+mod heading;
 mod mean_equations;
 mod mean_memory;
 pub mod parking;

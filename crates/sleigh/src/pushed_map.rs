@@ -3,7 +3,7 @@ use crate::closed_map::recovered;
 use crate::half_turn::half_turn;
 use crate::mean_equations::{Matrix, MeanEquations, Point, turned};
 use crate::mean_memory::MeanMemory;
-use lagrangian::{ClosedStep, Push, Start, mul_add, sin_cos_wrapped};
+use lagrangian::{ClosedStep, Push, Start, mul_add};
 use std::array::from_fn;
 
 /// A turn in one step (rad) beyond which the general step looks for what continues the motion.
@@ -23,8 +23,6 @@ const FAR: f64 = 0.125;
 const NOISE: f64 = 1e-11;
 /// As many of Newton's corrections, each with two simplified ones after it, before the general step is made.
 const MOST: u32 = 4;
-/// By how much a sine that was rotated to a heading may differ from that of the heading.
-const ROTATED: f64 = 16.0 * f64::EPSILON;
 
 /// One step of the midpoint discrete Lagrange-d'Alembert map of a sleigh in a potential, reduced to two unknowns.
 ///
@@ -43,34 +41,26 @@ const ROTATED: f64 = 16.0 * f64::EPSILON;
 pub(crate) fn step<P: Push<3>>(
     sleigh: &Sleigh,
     (t, h): (f64, f64),
-    begin: &Start<'_, 3>,
+    Start { q, v, xi, memory }: Start<'_, 3>,
     push: &P,
 ) -> Option<ClosedStep<3, 1>> {
-    let exact = sin_cos_wrapped(begin.q[2]);
-    let start = match begin.xi {
+    let start = match xi {
         // Not both from there: two numbers that were written one by one are waited for where they are read together.
-        Some([u, ..]) => [u, begin.v[2]],
-        None => recovered(exact, begin.v).into(),
+        Some([u, ..]) => [u, v[2]],
+        None => recovered(q[2], v).into(),
     };
-    let exact = exact.into();
-    let before = match MeanMemory::of(begin.memory, h) {
-        Some(before) => before,
-        None => MeanMemory::fresh(h, start, exact)?,
-    };
+    let before = MeanMemory::of(memory, h, q[2], start)?;
 
-    // The heading's sine, rotated from where the step before began, is there before that of the heading.
-    let mut heading = before.heading;
-    let equations = MeanEquations::new(sleigh, (t, h), (begin.q, heading), start);
+    let heading = before.heading.both();
+    let equations = MeanEquations::new(sleigh, (t, h), (q, heading), start);
     let (mut matrix, mut at) = equations.linearised(push, before.expected, before.half_turn)?;
     let (mut x, mut d) = matrix.corrected(before.expected, at.missing);
     let mut iterations = 1;
     let slight = |i: usize| d[i].abs() <= SLIGHT * x[i].abs();
-    let right = |i: usize| (heading[i] - exact[i]).abs() <= ROTATED;
-    if !(matrix.keeps_sign() & slight(0) & slight(1) & right(0) & right(1)) {
-        let equations = MeanEquations::new(sleigh, (t, h), (begin.q, exact), start);
-        Found { x, d, at, matrix, iterations } =
-            search(&equations, push, (right(0) & right(1)).then_some((x, d, matrix)))?;
-        heading = exact;
+    if !(matrix.keeps_sign() & slight(0) & slight(1)) {
+        // Built anew, so that what stands above need not be in memory.
+        let equations = MeanEquations::new(sleigh, (t, h), (q, heading), start);
+        Found { x, d, at, matrix, iterations } = search(&equations, push, (x, d, matrix))?;
     }
 
     // What is left to correct is linear to rounding.
@@ -87,6 +77,7 @@ pub(crate) fn step<P: Push<3>>(
     let [sin_m, cos_m] = turned(heading, half_turn);
     let [sin1, cos1] = turned([sin_m, cos_m], half_turn);
     let (turn, spin) = (speed * sin, a * w * cos);
+    before.leave(memory, h, x, [sin1, cos1]);
     Some(ClosedStep {
         increment: [h * speed * cos_m, h * speed * sin_m, h * w],
         velocity: [u1 * cos1, u1 * sin1, omega1],
@@ -96,7 +87,6 @@ pub(crate) fn step<P: Push<3>>(
             [mul_add(m, turn + mul_add(a, omega1, -spin), -half * mul_add(across, cos, -along * sin))],
         ],
         iterations,
-        memory: before.after(h, x, turned(turned(exact, half_turn), half_turn)),
     })
 }
 
@@ -115,11 +105,7 @@ struct Found {
 // Out of line, and given and giving numbers alone, so that it is no part of a step that ends at once.
 #[cold]
 #[inline(never)]
-fn search<P: Push<3>>(
-    equations: &MeanEquations<'_>,
-    push: &P,
-    tried: Option<([f64; 2], [f64; 2], Matrix)>,
-) -> Option<Found> {
+fn search<P: Push<3>>(equations: &MeanEquations<'_>, push: &P, tried: ([f64; 2], [f64; 2], Matrix)) -> Option<Found> {
     let &MeanEquations { h, start, .. } = equations;
     let newton = |x: [f64; 2]| {
         let (matrix, at) = equations.linearised(push, x, half_turn(0.5 * h * x[1]).ok()?.into())?;
@@ -128,7 +114,7 @@ fn search<P: Push<3>>(
     };
     let near = |x: &[f64; 2], d: &[f64; 2]| size(from_fn(|i| x[i] - d[i] - start[i])) <= FAR * size(start);
     let (mut x, mut d, mut matrix) = match tried {
-        Some((x, d, matrix)) if near(&x, &d) => (x, d, matrix),
+        (x, d, matrix) if near(&x, &d) => (x, d, matrix),
         _ => newton(start)?,
     };
     let (first, mut iterations) = (size(d), 1);

@@ -60,9 +60,9 @@ impl SpinEquation {
     /// Newton's correction of the spin of a step that begins with `u0` and `omega0`.
     #[inline(always)]
     pub(crate) fn correction(&self, p: &SpinPoint, u0: f64, omega0: f64) -> f64 {
-        let missing = mul_add(self.k * p.w, u0, mul_add(-p.cos, omega0, p.grown));
-        let slope = mul_add(self.half * p.sin, omega0, mul_add(self.k, u0, p.grown_of_w));
-        -missing / slope
+        let missing = mul_add(-self.k * p.w, u0, mul_add(p.cos, omega0, -p.grown));
+        let slope = mul_add(self.k, u0, mul_add(self.half * p.sin, omega0, p.grown_of_w));
+        missing / slope
     }
 
     /// Whether what a correction leaves is rounding: the equation is a straight line but for `C w^3` and smaller, with

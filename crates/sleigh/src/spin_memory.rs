@@ -1,6 +1,8 @@
 use crate::differences::after_next;
-use crate::half_turn::{BROAD, series};
+use crate::half_turn::series;
+use crate::heading::Heading;
 use lagrangian::Memory;
+use std::hint::cold_path;
 
 /// As many differences of the spins are kept, with the last one itself.
 const KEPT: usize = 6;
@@ -8,7 +10,7 @@ const KEPT: usize = 6;
 const KIND: f64 = 1.0;
 
 /// What a step of the closed map leaves to the next: the spin expected there, with the sine and cosine of its half turn, the spin
-/// expected one step later, and those of the last steps.
+/// expected one step later, those of the last steps, and the heading.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SpinMemory {
     pub(crate) expected: f64,
@@ -16,36 +18,34 @@ pub(crate) struct SpinMemory {
     following: f64,
     /// The last spin and its first backward differences.
     differences: [f64; KEPT],
+    pub(crate) heading: Heading,
 }
 
 impl SpinMemory {
-    /// What steps of length `h` have left; before a first one nothing, as after many of the spin `w`.
+    /// What steps of length `h` have left to one that begins at this heading; before a first one nothing, as after many of the spin
+    /// `w`.
     #[inline(always)]
-    #[allow(clippy::float_cmp, reason = "only steps of the very same length are points of one sequence")]
-    pub(crate) fn of(memory: &Memory, h: f64, w: f64) -> Self {
-        let [of, kind, expected, sin, cos, following, e0, e1, e2, e3, e4, e5, ..] = memory.0;
-        if of == h && kind == KIND {
-            return Self { expected, half_turn: (sin, cos), following, differences: [e0, e1, e2, e3, e4, e5] };
+    pub(crate) fn of(memory: &Memory, h: f64, (heading, w): (f64, f64)) -> Self {
+        let [_, _, sin, cos, expected, following, e0, e1, e2, e3, e4, e5, angle, sin0, cos0, slack, ..] = memory.0;
+        if memory.is_of(h, KIND) {
+            let heading = Heading::remembered(&[angle, sin0, cos0, slack], heading);
+            return Self { expected, half_turn: (sin, cos), following, differences: [e0, e1, e2, e3, e4, e5], heading };
         }
-        let unknown = f64::NAN;
-        Self {
-            expected: unknown,
-            half_turn: (unknown, unknown),
-            following: w,
-            differences: [w, 0.0, 0.0, 0.0, 0.0, 0.0],
-        }
+        cold_path();
+        let (heading, differences) = (Heading::of(heading), [w, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        Self { expected: f64::NAN, half_turn: (f64::NAN, f64::NAN), following: w, differences, heading }
     }
 
-    /// What a step of length `h` with the spin `w` leaves.
+    /// Leaves to the next step what one of length `h` with the spin `w` does, that has turned the heading to this sine and cosine.
     ///
     /// A spin is expected two steps after the last one that it is expected from, so that the sine and cosine of its half turn are
-    /// there before the step between has ended. It is not a number where the turn is too large for a series.
+    /// there before the step between has ended.
     #[inline(always)]
-    pub(crate) fn after(&self, h: f64, w: f64) -> Memory {
-        let d = 0.5 * h * self.following;
-        let (sin, cos) = series(d);
-        let expected = if d.abs() <= BROAD { self.following } else { f64::NAN };
-        let ([following], [e0, e1, e2, e3, e4, e5]) = after_next([w], self.differences.map(|e| [e]));
-        Memory::of([h, KIND, expected, sin, cos, following, e0[0], e1[0], e2[0], e3[0], e4[0], e5[0]])
+    pub(crate) fn leave(&self, memory: &mut Memory, h: f64, w: f64, ended: [f64; 2]) {
+        let (sin, cos) = series(0.5 * h * self.following);
+        let ([following], [[e0], [e1], [e2], [e3], [e4], [e5]]) = after_next([w], self.differences.map(|e| [e]));
+        let [angle, sin0, cos0, slack] = self.heading.turned(h * w, ended);
+        let numbers = [sin, cos, self.following, following, e0, e1, e2, e3, e4, e5, angle, sin0, cos0, slack];
+        memory.keep(h, KIND, numbers);
     }
 }

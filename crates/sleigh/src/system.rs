@@ -89,12 +89,12 @@ impl System<3, 1> for Sleigh {
     }
 
     #[inline(always)]
-    fn closed_step(&self, _t: f64, h: f64, start: &Start<'_, 3>) -> Option<Result<ClosedStep<3, 1>, ClosedStepError>> {
+    fn closed_step(&self, _t: f64, h: f64, start: Start<'_, 3>) -> Option<Result<ClosedStep<3, 1>, ClosedStepError>> {
         Some(closed_map::step(self, h, start))
     }
 
     #[inline(always)]
-    fn pushed_step<P: Push<3>>(&self, t: f64, h: f64, start: &Start<'_, 3>, push: &P) -> Option<ClosedStep<3, 1>> {
+    fn pushed_step<P: Push<3>>(&self, t: f64, h: f64, start: Start<'_, 3>, push: &P) -> Option<ClosedStep<3, 1>> {
         pushed_map::step(self, (t, h), start, push)
     }
 }

@@ -1,7 +1,7 @@
 use super::state::{Row, accumulate, loaded, store};
 use super::{BLOCK, Ensemble, LANES, LaneState};
 use lagrangian::simd::{Kernel, Pack, Simd, dispatch_widest};
-use lagrangian::{ClosedLaneStep, ClosedLanes, Start, System};
+use lagrangian::{ClosedLaneStep, ClosedLanes, Memory, Start, System};
 use std::array::from_fn;
 use std::marker::PhantomData;
 
@@ -255,7 +255,11 @@ fn one_by_one<Sys: System<N, M>, const W: usize, const N: usize, const M: usize,
     let Run { state, frame, largest, .. } = run;
     for _ in 0..steps {
         let (q, xi) = (state.q(lane), state.xi(lane));
-        let step = system.closed_step(0.0, h, &Start { xi: Some(xi), ..Start::new(&q, &[0.0; N]) })?.ok()?;
+        let v = system.admissible_basis(0.0, &q)?.combine(&xi);
+        // Nothing is remembered, so that the steps are the same wherever a block of them begins.
+        let mut memory = Memory::EMPTY;
+        let start = Start { xi: Some(xi), ..Start::new(&q, &v, &mut memory) };
+        let step = system.closed_step(0.0, h, start)?.ok()?;
         if !step.xi.iter().all(|x| x.is_finite()) {
             return None;
         }

@@ -143,22 +143,20 @@ impl<B: System<3, M>, const M: usize> System<4, M> for Flywheel<B> {
 
     /// On a free bearing the body's own, and the rotor keeps its absolute rate.
     #[inline(always)]
-    fn closed_step(&self, t: f64, h: f64, start: &Start<'_, 4>) -> Option<Result<ClosedStep<4, M>, ClosedStepError>> {
+    fn closed_step(&self, t: f64, h: f64, start: Start<'_, 4>) -> Option<Result<ClosedStep<4, M>, ClosedStepError>> {
         if self.torque.is_some() || M != 1 {
             return None;
         }
-        let &Start { v, memory, .. } = start;
-        let spin = start.xi.map_or_else(|| v[2] + v[3], |xi| xi[2]);
-        let (q, v) = (of_body(start.q), of_body(v));
-        let xi = start.xi.as_ref().map(of_body);
-        let body = self.body.closed_step(t, h, &Start { q: &q, v: &v, xi, memory })?;
+        let Start { q, v, xi, memory } = start;
+        let spin = xi.map_or_else(|| v[2] + v[3], |xi| xi[2]);
+        let (q, v, xi) = (of_body(q), of_body(v), xi.as_ref().map(of_body));
+        let body = self.body.closed_step(t, h, Start { q: &q, v: &v, xi, memory })?;
         Some(body.map(|step| ClosedStep {
             increment: with_rotor(&step.increment, h * spin - step.increment[2]),
             velocity: with_rotor(&step.velocity, spin - step.velocity[2]),
             xi: [step.xi[0], step.xi[1], spin, 0.0],
             impulses: step.impulses,
             iterations: step.iterations,
-            memory: step.memory,
         }))
     }
 }

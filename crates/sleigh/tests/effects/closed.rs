@@ -4,6 +4,7 @@ use approx::{assert_abs_diff_eq, assert_relative_eq};
 use lagrangian::{ClosedStep, ClosedStepError, Memory, Start, System};
 use proptest::prelude::*;
 use sleigh::{Flywheel, Sleigh, SleighState};
+use std::f64::consts::TAU;
 
 fn start(heading: f64, speed: f64, turn_rate: f64) -> ([f64; 3], [f64; 3]) {
     SleighState { x: 0.3, y: -0.2, heading, speed, turn_rate }.to_coordinates()
@@ -11,7 +12,7 @@ fn start(heading: f64, speed: f64, turn_rate: f64) -> ([f64; 3], [f64; 3]) {
 
 fn step(sleigh: &Sleigh, h: f64, heading: f64, u: f64, omega: f64) -> Result<ClosedStep<3, 1>, ClosedStepError> {
     let (q, v) = start(heading, u, omega);
-    System::<3, 1>::closed_step(sleigh, 0.0, h, &Start::new(&q, &v)).unwrap()
+    System::<3, 1>::closed_step(sleigh, 0.0, h, Start::new(&q, &v, &mut Memory::default())).unwrap()
 }
 
 proptest! {
@@ -46,34 +47,42 @@ proptest! {
         assert_abs_diff_eq!(made.velocity[0], u1 * cos, epsilon = bound);
         assert_abs_diff_eq!(made.velocity[1], u1 * sin, epsilon = bound);
         prop_assert_eq!(made.velocity[2].to_bits(), omega1.to_bits());
-        // Known quasi-velocities are taken as they are, whatever the velocity.
+        // A known speed is taken as it is, whatever the velocity of the place.
         let (q, v) = start(heading, u0, omega0);
         let from = [v[0] * heading.cos() + v[1] * heading.sin(), omega0, 0.0];
-        let again = System::<3, 1>::closed_step(&sleigh, 0.0, h, &Start { xi: Some(from), ..Start::new(&q, &[9.0; 3]) }).unwrap().unwrap();
+        let (v, mut memory) = ([9.0, 9.0, omega0], Memory::EMPTY);
+        let again = Start { xi: Some(from), ..Start::new(&q, &v, &mut memory) };
+        let again = System::<3, 1>::closed_step(&sleigh, 0.0, h, again).unwrap().unwrap();
         assert_abs_diff_eq!(again.xi[0], u1, epsilon = bound);
         assert_abs_diff_eq!(again.xi[1], omega1, epsilon = bound);
     }
 
-    /// What steps before have left changes where the search begins, not where it ends: also of another sleigh, or after a jump of
-    /// the velocity.
+    /// What steps before have left changes where the search begins, not where it ends: also of another sleigh, after a jump of
+    /// the velocity, or of the place.
     #[test]
     fn the_step_is_the_same_whatever_is_remembered(
-        (m, i, a) in (0.3..3.0, 0.3..3.0, -0.8..0.8), (u0, omega0) in (-1.0..1.0, -1.0..1.0),
+        (m, i, a) in (0.3..3.0, 0.3..3.0, -0.8..0.8), (heading, u0, omega0) in (-3.0..3.0, -1.0..1.0, -1.0..1.0),
         bits in -60..0i32, h in prop_oneof![-0.1..-0.01, 0.01..0.1], steps in 1..20u32,
     ) {
         let [ours, other] = [Sleigh::new(m, i, a).unwrap(), Sleigh::new(i, m, 0.9 * a).unwrap()];
         let omega0 = omega0 * f64::from(bits).exp2();
-        for (sleigh, factor) in [(ours, 1.0), (ours, 0.5), (ours, -1.0), (other, 1.0)] {
+        for (sleigh, factor, turned) in
+            [(ours, 1.0, 0.0), (ours, 0.5, 0.0), (ours, -1.0, 0.0), (ours, 1.0, 1e-9), (ours, 1.0, 2.0), (other, 1.0, 0.0)]
+        {
+            let (mut q, mut v) = start(heading, u0, omega0);
             let (mut xi, mut memory) = ([u0, omega0, 0.0], Memory::EMPTY);
             for _ in 0..steps {
-                let start = Start { xi: Some(xi), memory: &memory, ..Start::new(&[0.0; 3], &[0.0; 3]) };
-                let made = System::<3, 1>::closed_step(&sleigh, 0.0, h, &start).unwrap().unwrap();
-                (xi, memory) = (made.xi, made.memory);
+                let start = Start { xi: Some(xi), ..Start::new(&q, &v, &mut memory) };
+                let made = System::<3, 1>::closed_step(&sleigh, 0.0, h, start).unwrap().unwrap();
+                (xi, v) = (made.xi, made.velocity);
+                (0..3).for_each(|i| q[i] += made.increment[i]);
             }
-            xi = xi.map(|x| factor * x);
-            let blank = Start { xi: Some(xi), ..Start::new(&[0.0; 3], &[0.0; 3]) };
-            let known = Start { memory: &memory, ..blank };
-            let [blank, known] = [blank, known].map(|start| System::<3, 1>::closed_step(&ours, 0.0, h, &start).unwrap().unwrap());
+            q[2] += turned;
+            (xi, v[2]) = (xi.map(|x| factor * x), factor * v[2]);
+            let [blank, known] = [Memory::EMPTY, memory].map(|mut memory| {
+                let start = Start { xi: Some(xi), ..Start::new(&q, &v, &mut memory) };
+                System::<3, 1>::closed_step(&ours, 0.0, h, start).unwrap().unwrap()
+            });
             // Numbers of order one, but for the spin, which has all its digits.
             for (x, y) in blank.increment.iter().chain(&blank.velocity).zip(known.increment.iter().chain(&known.velocity)) {
                 assert_abs_diff_eq!(x, y, epsilon = 1e-14);
@@ -87,14 +96,33 @@ proptest! {
     fn one_correction_is_enough(heading in -3.0..3.0, u0 in -1.0..1.0, omega0 in -1.0..1.0) {
         let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
         let (q, v) = start(heading, u0, omega0);
-        let (mut xi, mut memory, mut corrections) = ([u0, omega0, 0.0], Memory::EMPTY, vec![]);
+        let (mut xi, mut v, mut memory, mut corrections) = ([u0, omega0, 0.0], v, Memory::EMPTY, vec![]);
         for _ in 0..100 {
-            let start = Start { xi: Some(xi), memory: &memory, ..Start::new(&q, &v) };
-            let made = System::<3, 1>::closed_step(&sleigh, 0.0, 0.02, &start).unwrap().unwrap();
-            (xi, memory) = (made.xi, made.memory);
+            let start = Start { xi: Some(xi), ..Start::new(&q, &v, &mut memory) };
+            let made = System::<3, 1>::closed_step(&sleigh, 0.0, 0.02, start).unwrap().unwrap();
+            (xi, v) = (made.xi, made.velocity);
             corrections.push(made.iterations);
         }
         prop_assert!(corrections[8..].iter().all(|&n| n == 1), "{corrections:?}");
+    }
+
+    /// The heading's sine and cosine are turned along, and what rounding does to them does not add up: over as many steps the velocity
+    /// keeps the direction of the blade.
+    #[test]
+    fn the_velocity_stays_along_the_blade(heading in -3.0..3.0, u0 in -1.0..1.0, omega0 in -1.0..1.0, h in 0.01..0.1) {
+        let sleigh = Sleigh::new(1.0, 1.0, 0.1).unwrap();
+        let (mut q, mut v) = start(heading, u0, omega0);
+        let mut memory = Memory::EMPTY;
+        for _ in 0..500 {
+            let made = System::<3, 1>::closed_step(&sleigh, 0.0, h, Start::new(&q, &v, &mut memory)).unwrap().unwrap();
+            v = made.velocity;
+            // As a state does, within half a turn.
+            (0..3).for_each(|i| q[i] += made.increment[i]);
+            q[2] -= TAU * (q[2] / TAU).round();
+            let (sin, cos) = q[2].sin_cos();
+            // The angle is known to an ulp of four, 4 eps/2, and so are the sine and cosine after 16 turns with a rounding of eps/2 in each.
+            assert_abs_diff_eq!(v[1] * cos - v[0] * sin, 0.0, epsilon = 10.0 * f64::EPSILON * v[0].hypot(v[1]));
+        }
     }
 
     /// Back by the same step, the map is its own inverse.
@@ -155,7 +183,9 @@ proptest! {
         let ([x, y, heading], [vx, vy, turn]) = (q, v);
         for xi in [None, Some([u, omega, omega + rate, 0.0])] {
             let (q, v) = ([x, y, heading, 0.7], [vx, vy, turn, if xi.is_some() { 9.0 } else { rate }]);
-            let made = System::<4, 1>::closed_step(&rotor, 0.0, h, &Start { xi, ..Start::new(&q, &v) }).unwrap().unwrap();
+            let mut memory = Memory::EMPTY;
+            let start = Start { xi, ..Start::new(&q, &v, &mut memory) };
+            let made = System::<4, 1>::closed_step(&rotor, 0.0, h, start).unwrap().unwrap();
             for i in 0..3 {
                 assert_abs_diff_eq!(made.increment[i], bare.increment[i], epsilon = 1e-14);
                 assert_abs_diff_eq!(made.velocity[i], bare.velocity[i], epsilon = 1e-14);
@@ -236,5 +266,6 @@ fn sines_have_all_their_digits() {
 #[test]
 fn a_driven_rotor_is_not_closed() {
     let driven = Flywheel::new(Sleigh::new(1.0, 1.0, 0.5).unwrap(), 0.2, Some(0.3.into())).unwrap();
-    assert!(System::<4, 1>::closed_step(&driven, 0.0, 0.1, &Start::new(&[0.0; 4], &[0.0; 4])).is_none());
+    let (rest, mut memory) = ([0.0; 4], Memory::EMPTY);
+    assert!(System::<4, 1>::closed_step(&driven, 0.0, 0.1, Start::new(&rest, &rest, &mut memory)).is_none());
 }

@@ -1,7 +1,7 @@
 //! The step in a potential against its own equations, term by term, and where it leaves the step to others.
 
 use approx::assert_abs_diff_eq;
-use lagrangian::{ClosedStep, Effect, Scalar, Slope, Start, System, With};
+use lagrangian::{ClosedStep, Effect, Memory, Scalar, Slope, Start, System, With};
 use proptest::prelude::*;
 use sleigh::effects::{Bowl, Drag, EggCrate};
 use sleigh::{Sleigh, SleighState};
@@ -32,26 +32,27 @@ fn laden(m: f64, i: f64, a: f64, stiffness: [f64; 2], height: f64) -> Laden {
 
 fn step<Sys: System<3, 1>>(system: &Sys, h: f64, (heading, u, omega): (f64, f64, f64)) -> Option<ClosedStep<3, 1>> {
     let (q, v) = SleighState { x: 0.3, y: -0.2, heading, speed: u, turn_rate: omega }.to_coordinates();
-    system.closed_step(TIME, h, &Start::new(&q, &v)).map(Result::unwrap)
+    system.closed_step(TIME, h, Start::new(&q, &v, &mut Memory::default())).map(Result::unwrap)
 }
 
-/// As many steps: where they end, and the last one.
+/// As many steps: where they end, the last one, and what it leaves.
 fn steps<Sys: System<3, 1>>(
     system: &Sys,
     h: f64,
     (heading, u, omega): (f64, f64, f64),
     number: u32,
-) -> ([f64; 3], ClosedStep<3, 1>) {
+) -> ([f64; 3], ClosedStep<3, 1>, Memory) {
     let (mut q, v) = SleighState { x: 0.3, y: -0.2, heading, speed: u, turn_rate: omega }.to_coordinates();
-    let mut made = system.closed_step(TIME, h, &Start::new(&q, &v)).unwrap().unwrap();
+    let mut memory = Memory::EMPTY;
+    let mut made = system.closed_step(TIME, h, Start::new(&q, &v, &mut memory)).unwrap().unwrap();
     for k in 1..number {
         for i in 0..3 {
             q[i] += made.increment[i];
         }
-        let start = Start { xi: Some(made.xi), memory: &made.memory, ..Start::new(&q, &made.velocity) };
-        made = system.closed_step(TIME + h * f64::from(k), h, &start).unwrap().unwrap();
+        let start = Start { xi: Some(made.xi), ..Start::new(&q, &made.velocity, &mut memory) };
+        made = system.closed_step(TIME + h * f64::from(k), h, start).unwrap().unwrap();
     }
-    (std::array::from_fn(|i| q[i] + made.increment[i]), made)
+    (std::array::from_fn(|i| q[i] + made.increment[i]), made, memory)
 }
 
 proptest! {
@@ -101,14 +102,15 @@ proptest! {
         for (system, factor, turned) in
             [(&ours, 1.0, 0.0), (&ours, 0.5, 0.0), (&ours, -1.0, 0.0), (&ours, 1.0, 1e-9), (&ours, 1.0, 2.0), (&other, 1.0, 0.0)]
         {
-            let (mut q, made) = steps(system, h, start, number);
+            let (mut q, made, memory) = steps(system, h, start, number);
             q[2] += turned;
             let (sin, cos) = q[2].sin_cos();
             let [u, omega] = [factor * made.xi[0], factor * made.xi[1]];
             let v = [u * cos, u * sin, omega];
-            let blank = Start { xi: Some([u, omega, 0.0]), ..Start::new(&q, &v) };
-            let known = Start { memory: &made.memory, ..blank };
-            let [blank, known] = [blank, known].map(|start| ours.closed_step(TIME, h, &start).unwrap().unwrap());
+            let [blank, known] = [Memory::EMPTY, memory].map(|mut memory| {
+                let start = Start { xi: Some([u, omega, 0.0]), ..Start::new(&q, &v, &mut memory) };
+                ours.closed_step(TIME, h, start).unwrap().unwrap()
+            });
             // Terms below ten, and their rounding divided by a determinant that is near one.
             let bound = 1e-13;
             for i in 0..3 {
@@ -138,20 +140,21 @@ fn numbers_of_another_map_are_not_taken() {
     let (h, body) = (0.05, Sleigh::new(1.3, 0.8, 0.4).unwrap());
     let well = With { body, effects: (Bowl::new([0.1; 2], [0.4, 0.0]).unwrap(),) };
     // At rest, with the centre of mass at the lowest place: every number is zero, and would be the cosine of a half turn.
-    let rest = well.closed_step(TIME, h, &Start::new(&[0.0; 3], &[0.0; 3])).unwrap().unwrap();
-    let free = System::<3, 1>::closed_step(&body, TIME, h, &Start::new(&[0.0; 3], &[0.0; 3])).unwrap().unwrap();
+    let [mut rest, mut free] = [Memory::EMPTY; 2];
+    well.closed_step(TIME, h, Start::new(&[0.0; 3], &[0.0; 3], &mut rest)).unwrap().unwrap();
+    System::<3, 1>::closed_step(&body, TIME, h, Start::new(&[0.0; 3], &[0.0; 3], &mut free)).unwrap().unwrap();
     for (u, omega) in [(1.0, 0.0), (0.5, -0.3), (0.0, 0.0)] {
         let (q, v) = ([0.0; 3], [u, 0.0, omega]);
-        let blank = Start { xi: Some([u, omega, 0.0]), ..Start::new(&q, &v) };
-        let by = |system: &dyn Fn(&Start<'_, 3>) -> ClosedStep<3, 1>, memory| {
-            let [blank, known] = [system(&blank), system(&Start { memory, ..blank })];
+        let by = |system: &dyn Fn(Start<'_, 3>) -> ClosedStep<3, 1>, memory| {
+            let [blank, known] = [Memory::EMPTY, memory]
+                .map(|mut memory| system(Start { xi: Some([u, omega, 0.0]), ..Start::new(&q, &v, &mut memory) }));
             for i in 0..3 {
                 assert_abs_diff_eq!(known.increment[i], blank.increment[i], epsilon = 1e-15);
                 assert_abs_diff_eq!(known.velocity[i], blank.velocity[i], epsilon = 1e-15);
             }
         };
-        by(&|start| System::<3, 1>::closed_step(&body, TIME, h, start).unwrap().unwrap(), &rest.memory);
-        by(&|start| well.closed_step(TIME, h, start).unwrap().unwrap(), &free.memory);
+        by(&|start| System::<3, 1>::closed_step(&body, TIME, h, start).unwrap().unwrap(), rest);
+        by(&|start| well.closed_step(TIME, h, start).unwrap().unwrap(), free);
     }
 }
 
