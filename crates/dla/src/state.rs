@@ -155,7 +155,8 @@ impl<const N: usize> State<N> {
     /// [Moves](State::advance) the state, and keeps its quasi-velocities and what a step in closed form has left to the next.
     ///
     /// # Errors
-    /// [`StepError::NotFinite`] where coordinates or velocities would not be finite; the state is then as it was.
+    /// [`StepError::NotFinite`] where coordinates or velocities would not be finite; the state is then as it was, but for what the
+    /// step in closed form has left.
     #[inline(always)]
     pub(crate) fn advance_remembering(
         &mut self,
@@ -169,13 +170,14 @@ impl<const N: usize> State<N> {
             within &= q[i].abs() <= self.bounds[i];
         }
         let left = Left::Velocities(xi);
-        self.past.forget();
         // Most steps go nowhere where an angle has to be wrapped, and a coordinate within its bounds is finite.
         if within & (sum(&v).abs() <= f64::MAX) {
+            self.past.forget();
             (self.q, self.rest, self.v, self.left) = (q, rest, v, left);
             return Ok(());
         }
-        self.stays_finite(increment, &v)?;
+        self.stays_finite(increment, &v).inspect_err(|_| self.memory.forget())?;
+        self.past.forget();
         self.go(increment, v, left);
         Ok(())
     }

@@ -3,7 +3,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use dla::{Checkpoint, Dla, Form, OneStep, State};
+use dla::{Checkpoint, Dla, Form, OneStep, State, StepError};
 use lagrangian::{System, Twofold, With};
 use proptest::prelude::*;
 use sleigh::effects::{Bowl, Drag, EggCrate};
@@ -306,6 +306,24 @@ fn a_step_stays_among_the_numbers() {
     assert!(state.stays_finite(&[0.5e308, 1.0], &[0.0; 2]).is_ok());
     assert!(state.stays_finite(&[1e308, 0.0], &[0.0; 2]).is_err());
     assert!(state.stays_finite(&[0.0; 2], &[0.0, f64::NAN]).is_err());
+}
+
+/// Nor has it moved, or forgotten its increments, where a step in closed form would leave them.
+#[test]
+fn a_closed_step_that_fails_leaves_the_state() {
+    let body = Sleigh::new(1.0, 1.0, 0.0).unwrap();
+    let mut state = State::new([1.7e308, 0.0, 0.0], [1e308, 0.0, 0.0], [false, false, true]);
+    for _ in 0..3 {
+        state.advance_with_acceleration(0.5, &[0.0; 3], [1e308, 0.0, 0.0], [0.0; 3]);
+    }
+    let before = state;
+    assert!(before.expected(0.5).is_some());
+    let failed = Dla::midpoint().step(&body, 0.0, 1.0, &mut state).unwrap_err();
+    assert_eq!(failed, StepError::NotFinite);
+    assert_eq!(state, before);
+    // The control: to the other side it is a step.
+    Dla::midpoint().step(&body, 0.0, -1.0, &mut state).unwrap();
+    assert!(state.expected(0.5).is_none() && state != before);
 }
 
 /// The search of a step begins from what the state remembers: from several steps of the same length it needs one correction, and a look

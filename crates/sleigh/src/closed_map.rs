@@ -1,4 +1,5 @@
 use crate::Sleigh;
+use crate::half_turn::turned;
 use crate::spin_equation::SpinEquation;
 use crate::spin_memory::SpinMemory;
 use lagrangian::{ClosedStep, ClosedStepError, Start, mul_add, sin_cos_wrapped};
@@ -33,6 +34,7 @@ pub(crate) fn step(
     let (m, a) = (sleigh.mass(), sleigh.offset());
     let equation = SpinEquation::new(sleigh, h);
     let (u0, omega0) = match xi {
+        // Not both from there: two numbers that were written one by one are waited for where they are read together.
         Some([u, ..]) => (u, v[2]),
         None => recovered(q[2], v),
     };
@@ -61,9 +63,8 @@ pub(crate) fn step(
     let omega1 = 2.0 * w - omega0;
 
     // The directions of the blade at the beginning, half a step and a step later.
-    let turned = |[cos0, sin0]: [f64; 2]| [mul_add(cos0, cos, -sin0 * sin), mul_add(sin0, cos, cos0 * sin)];
-    let [cos_m, sin_m] = turned([before.heading.cos, before.heading.sin]);
-    let [cos1, sin1] = turned([cos_m, sin_m]);
+    let [sin_m, cos_m] = turned(before.heading.both(), [sin, cos]);
+    let [sin1, cos1] = turned([sin_m, cos_m], [sin, cos]);
     let mean_speed = (u0 + across) / cos;
     let (turn, spin, way) = (mean_speed * sin, a * (w * cos), h * mean_speed);
     if growth <= 0.0 {

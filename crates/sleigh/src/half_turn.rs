@@ -52,6 +52,12 @@ fn summed(d: f64, s: f64, c: f64) -> (f64, f64) {
     (mul_add(d * z, s, d), mul_add(z, mul_add(z, c, -0.5), 1.0))
 }
 
+/// Sine and cosine of an angle and of another one: of their sum.
+#[inline(always)]
+pub(crate) fn turned([sin0, cos0]: [f64; 2], [sin, cos]: [f64; 2]) -> [f64; 2] {
+    [mul_add(sin0, cos, cos0 * sin), mul_add(cos0, cos, -sin0 * sin)]
+}
+
 #[cold]
 fn too_far(d: f64) -> ClosedStepError {
     if d.is_nan() {

@@ -10,8 +10,8 @@ const WORN: f64 = 3.0 * f64::EPSILON;
 pub(crate) struct Heading {
     /// The angle, to rounding: that of a state is a sum with a rest, which is not known here.
     angle: f64,
-    pub(crate) sin: f64,
-    pub(crate) cos: f64,
+    sin: f64,
+    cos: f64,
     /// By how much the angle of a state may differ from it.
     slack: f64,
 }

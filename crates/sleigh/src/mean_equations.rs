@@ -1,5 +1,5 @@
 use crate::Sleigh;
-use crate::half_turn::half_turn;
+use crate::half_turn::{half_turn, turned};
 use lagrangian::{Dual, KnownAngle, Push, mul_add};
 use std::array::from_fn;
 
@@ -52,12 +52,6 @@ impl Matrix {
     pub(crate) fn keeps_sign(&self) -> bool {
         self.determinant > 0.0 && self.determinant < f64::INFINITY
     }
-}
-
-/// Sine and cosine of an angle and of another one: of their sum.
-#[inline(always)]
-pub(crate) fn turned([sin0, cos0]: [f64; 2], [sin, cos]: [f64; 2]) -> [f64; 2] {
-    [mul_add(sin0, cos, cos0 * sin), mul_add(cos0, cos, -sin0 * sin)]
 }
 
 impl<'a> MeanEquations<'a> {

@@ -1,7 +1,7 @@
 use crate::Sleigh;
 use crate::closed_map::recovered;
-use crate::half_turn::half_turn;
-use crate::mean_equations::{Matrix, MeanEquations, Point, turned};
+use crate::half_turn::{half_turn, turned};
+use crate::mean_equations::{Matrix, MeanEquations, Point};
 use crate::mean_memory::MeanMemory;
 use lagrangian::{ClosedStep, Push, Start, mul_add};
 use std::array::from_fn;

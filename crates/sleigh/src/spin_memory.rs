@@ -6,8 +6,8 @@ use std::hint::cold_path;
 
 /// As many differences of the spins are kept, with the last one itself.
 const KEPT: usize = 6;
-/// Tells these numbers from those of other maps.
-const KIND: f64 = 1.0;
+/// Tells these numbers, in this order, from those of other maps and orders: a checkpoint may be older.
+const KIND: f64 = 3.0;
 
 /// What a step of the closed map leaves to the next: the spin expected there, with the sine and cosine of its half turn, the spin
 /// expected one step later, those of the last steps, and the heading.
