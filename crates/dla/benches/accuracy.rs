@@ -1,11 +1,12 @@
-//! What an error at the end costs: Gauss collocation of 16th order on the cases of `docs/peers.md`, by equal steps and by steps
-//! of its own, on the plane and, in a round well, in the axes of the sleigh. Microseconds, the least of rounds on one core.
+//! What an error at the end costs on the cases of `docs/peers.md`: Gauss collocation of 16th order by equal steps and by steps
+//! of its own, on the plane and, in a round well, in the axes of the sleigh, and Taylor series. Microseconds, the least of rounds on
+//! one core.
 //!
 //! With `--all` every run is shown, not only the quickest to an error.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
-use dla::{Gauss, GaussAdaptive, OneStep, Schedule, State, drive};
-use lagrangian::{Effect, Scalar, Slope, System, With};
+use dla::{Gauss, GaussAdaptive, OneStep, Schedule, State, Taylor, drive};
+use lagrangian::{Effect, OwnPush, Scalar, Slope, System, With};
 use sleigh::effects::Bowl;
 use sleigh::{RoundWell, Sleigh, SleighBody, SleighState};
 use std::hint::black_box;
@@ -34,6 +35,10 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for AtBlade {
         let mut slope = [S::zero(); N];
         (slope[0], slope[1]) = (q[0] * -self.0, q[1] * -self.0);
         Slope::Known(slope)
+    }
+    #[inline(always)]
+    fn in_own_axes(&self, _body: &B) -> Option<OwnPush> {
+        Some(OwnPush { center: Some([0.0; 2]), along: [0.0, -self.0], turning: [0.0; 2] })
     }
 }
 
@@ -79,12 +84,14 @@ fn case<Sys: System<3, 1>>(name: &str, system: &Sys, start: ([f64; 3], [f64; 3])
     let system = black_box(system);
     let equal = |steps: f64| end(system, start, Gauss::<8>::default(), steps as u64);
     let own = |tolerance: f64| end(system, start, GaussAdaptive::<8>::new(tolerance), 1);
+    let series = |tolerance: f64| end(system, start, Taylor::new(tolerance), 1);
     let exact = equal(400.0).unwrap();
     let distance = |q: [f64; 3]| (0..3).map(|k| (q[k] - exact[k]).abs()).fold(0.0, f64::max);
     let tolerances: Vec<f64> = (8..73).map(|quarter| 10f64.powf(-0.25 * f64::from(quarter))).collect();
     let equal = runs(&STEPS.map(|steps| steps as f64), |steps| equal(steps).map(distance), equal);
     let own = runs(&tolerances, |tolerance| own(tolerance).map(distance), own);
-    for (method, runs) in [("equal steps", &equal), ("steps of its own", &own)] {
+    let series = runs(&tolerances, |tolerance| series(tolerance).map(distance), series);
+    for (method, runs) in [("equal steps", &equal), ("steps of its own", &own), ("series", &series)] {
         if std::env::args().any(|argument| argument == "--all") {
             for (of, error, us) in runs {
                 println!("{name}, {method}, {of:.3e}: {error:.1e} {us:.2} us");

@@ -29,6 +29,7 @@ mod increment;
 mod kept;
 mod lobatto;
 mod newton;
+mod octaves;
 mod one_step;
 mod overshoot;
 mod past;
@@ -42,6 +43,7 @@ mod settle;
 mod start;
 mod state;
 mod substepping;
+mod taylor;
 mod trajectory;
 mod work;
 
@@ -72,5 +74,6 @@ pub use sensitivity::{
 pub use start::{Start, consistent_start};
 pub use state::State;
 pub use substepping::Substepping;
+pub use taylor::Taylor;
 pub use trajectory::{Node, Trajectory};
 pub use work::Work;

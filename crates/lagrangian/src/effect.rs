@@ -1,4 +1,4 @@
-use crate::Scalar;
+use crate::{OwnPush, Scalar};
 
 /// Something that acts on a body: it adds to the Lagrangian or to the forces, on the body's own coordinates.
 ///
@@ -32,6 +32,12 @@ pub trait Effect<B, const N: usize> {
     #[inline(always)]
     fn whole_force<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
         self.slope(body, t, q).with_force(self.force(body, t, q, v))
+    }
+
+    /// The force of the effect in axes that turn with the body, where it is of the first degree there and constant in time.
+    #[inline(always)]
+    fn in_own_axes(&self, _body: &B) -> Option<OwnPush> {
+        self.is_none().then_some(OwnPush::NOTHING)
     }
 
     /// Whether there is no effect at all, so that the body's own closed forms hold.
@@ -127,6 +133,12 @@ macro_rules! tuple_of_effects {
                 Slope::Nothing$(.and(self.$index.slope(body, t, q)))+
             }
             #[inline(always)]
+            fn in_own_axes(&self, body: &B) -> Option<OwnPush> {
+                let sum = OwnPush::NOTHING;
+                $(let sum = sum.and(self.$index.in_own_axes(body)?)?;)+
+                Some(sum)
+            }
+            #[inline(always)]
             fn is_none(&self) -> bool {
                 $(self.$index.is_none())&&+
             }
@@ -184,6 +196,10 @@ impl<B, E: Effect<B, N>, const N: usize> Effect<B, N> for Vec<E> {
                 _ => None,
             },
         )
+    }
+    #[inline(always)]
+    fn in_own_axes(&self, body: &B) -> Option<OwnPush> {
+        self.iter().try_fold(OwnPush::NOTHING, |sum, effect| sum.and(effect.in_own_axes(body)?))
     }
     #[inline(always)]
     fn is_none(&self) -> bool {

@@ -32,6 +32,7 @@ mod motion;
 mod noether;
 #[cfg(feature = "num-dual")]
 mod num_dual;
+mod own_axes;
 mod parametrised;
 mod piecewise;
 mod power;
@@ -73,6 +74,7 @@ pub use lanes::{Lanes, vectorized};
 pub use momentum::{energy, mass_matrix, momentum};
 pub use motion::{Motion, MotionError};
 pub use noether::{Conservation, CoordinateField, MomentumBalance, conservation, momentum_balance};
+pub use own_axes::{Origin, OwnAxes, OwnPush};
 pub use parametrised::{Member, Parametrised, Unparametrised};
 pub use piecewise::{Piecewise, whole_steps};
 pub use power::{force_power, lagrangian_power};

@@ -1,4 +1,4 @@
-use crate::{AdmissibleBasis, ClosedStep, ClosedStepError, Motion, MotionError, Scalar, Start};
+use crate::{AdmissibleBasis, ClosedStep, ClosedStepError, Motion, MotionError, OwnAxes, Scalar, Start};
 
 /// The constraint `A(q, t) v + b(q, t) = 0` at one point: the `M` rows of `A`, and `b`.
 pub type Constraint<S, const N: usize, const M: usize> = ([[S; N]; M], [S; M]);
@@ -94,6 +94,13 @@ pub trait System<const N: usize, const M: usize> {
     /// Only the first `N - M` places of `xi` and of the result count.
     #[inline(always)]
     fn reduced_motion<S: Scalar>(&self, _t: S, _q: &[S; N], _xi: &[S; N]) -> Option<[S; N]> {
+        None
+    }
+
+    /// The reduced equations in axes that turn with the body, where they are of second degree there: of a body on the plane with
+    /// `q = (x, y, theta)`, or `(X, Y, theta)`, and `xi = (u, omega)`. They are [`System::reduced_motion`] in other words.
+    #[inline(always)]
+    fn own_axes(&self) -> Option<OwnAxes> {
         None
     }
 

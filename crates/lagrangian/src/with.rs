@@ -1,7 +1,7 @@
 use crate::effect::{add_all, sum};
 use crate::{
-    AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Effect, Motion, MotionError, Push, Scalar, Start, System,
-    velocity_of,
+    AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Effect, Motion, MotionError, OwnAxes, Push, Scalar,
+    Start, System, velocity_of,
 };
 
 /// A body with the effects that act on it: again a [`System`], on the body's coordinates and constraints.
@@ -93,6 +93,11 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
         let push = self.effects.whole_force(&self.body, t, q, &velocity_of(&self.body, t, q, xi).ok()?)?;
         let response = self.body.reduced_response(t, q, &push)?;
         Some(sum(&bare, &response))
+    }
+
+    #[inline(always)]
+    fn own_axes(&self) -> Option<OwnAxes> {
+        self.body.own_axes()?.pushed(self.effects.in_own_axes(&self.body)?)
     }
 
     #[inline(always)]

@@ -50,6 +50,10 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Acting {
     fn whole_force<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
         each!(self, effect => effect.whole_force(body, t, q, v))
     }
+    #[inline(always)]
+    fn in_own_axes(&self, body: &B) -> Option<lagrangian::OwnPush> {
+        each!(self, effect => Effect::<B, N>::in_own_axes(effect, body))
+    }
 }
 
 impl Piecewise for Acting {

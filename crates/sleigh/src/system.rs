@@ -1,6 +1,7 @@
 use crate::{Sleigh, closed_map, pushed_map};
 use lagrangian::{
-    AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Motion, MotionError, Push, Scalar, Start, System,
+    AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Motion, MotionError, Origin, OwnAxes, Push, Scalar,
+    Start, System,
 };
 
 impl System<3, 1> for Sleigh {
@@ -67,6 +68,18 @@ impl System<3, 1> for Sleigh {
     #[inline(always)]
     fn reduced_motion<S: Scalar>(&self, _t: S, _q: &[S; 3], &[u, omega, _]: &[S; 3]) -> Option<[S; 3]> {
         Some([omega * omega * self.offset(), u * omega * -self.spin_gain(), S::zero()])
+    }
+
+    #[inline(always)]
+    fn own_axes(&self) -> Option<OwnAxes> {
+        Some(OwnAxes {
+            origin: Origin::Anywhere,
+            inverse: self.inverse(),
+            lead: self.offset(),
+            gain: self.spin_gain(),
+            along: [0.0; 2],
+            turning: [0.0; 2],
+        })
     }
 
     /// The heading from the spin, and the place from the heading.

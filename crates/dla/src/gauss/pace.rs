@@ -1,5 +1,6 @@
 //! How long the next step may be.
 use super::rule::{LONGER, SHORTER};
+use crate::octaves::octaves;
 use lagrangian::linear::larger;
 
 /// How rough a step may be at the tolerance one.
@@ -42,29 +43,9 @@ pub(super) fn quarters_of(length: f64) -> i32 {
     (4.0 * octaves(length)).floor() as i32
 }
 
-/// About the binary logarithm of a positive number, at most .09 below it: good enough for the length of a step, and four
-/// instructions.
-#[inline(always)]
-fn octaves(x: f64) -> f64 {
-    (x.to_bits() as i64 - 1.0f64.to_bits() as i64) as f64 / (1u64 << 52) as f64
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Exact at powers of two, and never far below the logarithm.
-    #[test]
-    fn octaves_are_about_the_logarithm() {
-        for exponent in -1000..1000 {
-            let power = f64::exp2(f64::from(exponent));
-            approx::assert_abs_diff_eq!(octaves(power), f64::from(exponent), epsilon = 0.0);
-            for part in [1.1, 1.44, 1.9] {
-                let below = (power * part).log2() - octaves(power * part);
-                assert!((0.0..0.0861).contains(&below), "{below}");
-            }
-        }
-    }
 
     /// Rougher steps and slower searches are followed by shorter ones; a smooth step with a short search may grow although the
     /// search converges slowly, one with a long search may not.

@@ -10,4 +10,5 @@ mod forms;
 mod free;
 mod lanes;
 mod models;
+mod taylor;
 mod tools;

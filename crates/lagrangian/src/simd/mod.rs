@@ -4,12 +4,14 @@
 //! way. Where lanes are mixed, as the stages of a step are, it takes the wrong loops for the vectors; a [`Pack`] is always the
 //! instructions that it says. The crate `pulp` gives them without a line of `unsafe`.
 
+mod four;
 mod instructions;
 mod pack;
 mod sincos;
 mod square;
 mod wide;
 
+pub use four::{Four, FourKernel, in_fours, in_plain_fours};
 pub use instructions::Simd;
 pub use pack::Pack;
 pub use square::Square;

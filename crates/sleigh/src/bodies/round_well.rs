@@ -1,6 +1,6 @@
 use crate::checks::finite;
 use crate::{Sleigh, SleighError, SleighState};
-use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
+use lagrangian::{AdmissibleBasis, Constraint, Origin, OwnAxes, Scalar, System};
 
 /// The Chaplygin sleigh in a round well, in its own axes: what is left of the motion when its symmetry is taken out.
 ///
@@ -94,5 +94,16 @@ impl System<3, 1> for RoundWell {
     fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; 3], xi: &[S; 3]) -> Option<[S; 3]> {
         let [along, turn, none] = self.sleigh.reduced_motion(t, q, xi)?;
         Some([along - (q[0] + self.ahead) * self.pulls[0], turn - q[1] * self.pulls[1], none])
+    }
+
+    #[inline(always)]
+    fn own_axes(&self) -> Option<OwnAxes> {
+        let [k, torque] = self.pulls;
+        Some(OwnAxes {
+            origin: Origin::Coordinates,
+            along: [-k * self.ahead, -k],
+            turning: [0.0, -torque],
+            ..self.sleigh.own_axes()?
+        })
     }
 }

@@ -1,6 +1,6 @@
 use crate::checks::finite;
 use crate::{SleighBody, SleighError};
-use lagrangian::{Effect, Scalar, Slope};
+use lagrangian::{Effect, OwnPush, Scalar, Slope};
 
 /// A quadratic well: `V = k_x/2 (X - c_x)^2 + k_y/2 (Y - c_y)^2` at the centre of mass `C = (X, Y)`.
 ///
@@ -35,5 +35,13 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Bowl {
         let [x, y] = body.centre(q);
         let force = [(x - self.center[0]) * -self.stiffness[0], (y - self.center[1]) * -self.stiffness[1]];
         Slope::Known(body.at_centre(q, force))
+    }
+
+    /// Where it is round: `-k (X + a, Y)` at the centre of mass.
+    #[inline(always)]
+    fn in_own_axes(&self, body: &B) -> Option<OwnPush> {
+        let [k, a] = [self.stiffness[0], body.sleigh().offset()];
+        let round = k.to_bits() == self.stiffness[1].to_bits();
+        round.then_some(OwnPush { center: Some(self.center), along: [-k * a, -k], turning: [0.0, -k * a] })
     }
 }

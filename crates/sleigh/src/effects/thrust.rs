@@ -1,5 +1,5 @@
 use crate::{SleighBody, SleighError, TimeFunction};
-use lagrangian::{Effect, Piecewise, Scalar};
+use lagrangian::{Effect, OwnPush, Piecewise, Scalar};
 
 /// A force `F(t)` along the blade at its contact point (N).
 ///
@@ -28,6 +28,15 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Thrust {
         let mut force = [S::zero(); N];
         force[..2].copy_from_slice(&[push * cos, push * sin]);
         Some(force)
+    }
+
+    /// Where it is constant.
+    #[inline(always)]
+    fn in_own_axes(&self, _body: &B) -> Option<OwnPush> {
+        match self.force {
+            TimeFunction::Constant(force) => Some(OwnPush { center: None, along: [force, 0.0], turning: [0.0; 2] }),
+            _ => None,
+        }
     }
 }
 

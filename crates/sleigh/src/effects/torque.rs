@@ -1,5 +1,5 @@
 use crate::{SleighBody, SleighError, TimeFunction};
-use lagrangian::{Effect, Piecewise, Scalar};
+use lagrangian::{Effect, OwnPush, Piecewise, Scalar};
 
 /// A torque `tau(t)` on the heading (N m).
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +24,15 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Torque {
         let mut force = [S::zero(); N];
         force[2] = torque;
         Some(force)
+    }
+
+    /// Where it is constant.
+    #[inline(always)]
+    fn in_own_axes(&self, _body: &B) -> Option<OwnPush> {
+        match self.torque {
+            TimeFunction::Constant(torque) => Some(OwnPush { center: None, along: [0.0; 2], turning: [torque, 0.0] }),
+            _ => None,
+        }
     }
 }
 

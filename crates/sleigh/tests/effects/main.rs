@@ -7,6 +7,7 @@ mod closed;
 mod derivatives;
 mod forces;
 mod imposed;
+mod own_axes;
 mod paths;
 mod pushed;
 mod refusals;

@@ -1,0 +1,78 @@
+/// The reduced equations of a body on the plane in axes that turn with it, where they are of second degree and have the turn rate
+/// for their only factor:
+///
+/// `u' = a omega^2 + f_0 + f_1 X`, `omega' = -c u omega + g_0 + g_1 Y`, `X' = u + omega Y`, `Y' = -omega X`, `theta' = omega`.
+///
+/// `(X, Y)` is the place of the contact point in these axes (m), `xi = (u, omega)` the quasi-velocities (m/s, rad/s). No sine is
+/// left, so that their Taylor series are sums of products. The heading is needed nowhere, which is the reduction of Bloch,
+/// Krishnaprasad, Marsden and Murray 1996, Arch. Rational Mech. Anal. 136, 21-99, by the turns about a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OwnAxes {
+    /// Where the place is counted from.
+    pub origin: Origin,
+    /// The inverse mass (1/kg), and the inverse moment of inertia about the contact point (1/(kg m^2)).
+    pub inverse: [f64; 2],
+    /// The distance `a` of the centre of mass ahead of the contact point (m).
+    pub lead: f64,
+    /// The rate `c` by which turning dies out or grows (1/m).
+    pub gain: f64,
+    /// `f_0` (m/s^2) and `f_1` (1/s^2).
+    pub along: [f64; 2],
+    /// `g_0` (rad/s^2) and `g_1` (1/(m s^2)).
+    pub turning: [f64; 2],
+}
+
+/// Where `(X, Y)` is counted from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Origin {
+    /// The first two coordinates are `(X, Y)` themselves.
+    Coordinates,
+    /// They are a place on the plane, and this is a point of it (m).
+    Point([f64; 2]),
+    /// They are a place on the plane, and any point will do.
+    Anywhere,
+}
+
+/// A force on such a body, `F_0 + F_1 X` along it at the contact point (N) and the torque `T_0 + T_1 Y` about it (N m).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OwnPush {
+    /// What `(X, Y)` is counted from, where that matters.
+    pub center: Option<[f64; 2]>,
+    /// `F_0` (N) and `F_1` (N/m).
+    pub along: [f64; 2],
+    /// `T_0` (N m) and `T_1` (N).
+    pub turning: [f64; 2],
+}
+
+impl OwnPush {
+    /// No force.
+    pub const NOTHING: Self = Self { center: None, along: [0.0; 2], turning: [0.0; 2] };
+
+    /// Both together; none where their places are counted from two points.
+    #[must_use]
+    pub fn and(self, other: Self) -> Option<Self> {
+        let center = match (self.center, other.center) {
+            (Some(one), Some(two)) if one.map(f64::to_bits) != two.map(f64::to_bits) => return None,
+            (one, two) => one.or(two),
+        };
+        let sum = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
+        Some(Self { center, along: sum(self.along, other.along), turning: sum(self.turning, other.turning) })
+    }
+}
+
+impl OwnAxes {
+    /// The same body, pushed; none where the push is counted from elsewhere.
+    #[must_use]
+    pub fn pushed(self, push: OwnPush) -> Option<Self> {
+        let [per_mass, per_inertia] = self.inverse;
+        let origin = match (self.origin, push.center) {
+            (origin, None) => origin,
+            (Origin::Anywhere, Some(center)) => Origin::Point(center),
+            (Origin::Point(point), Some(center)) if point.map(f64::to_bits) == center.map(f64::to_bits) => self.origin,
+            (Origin::Coordinates | Origin::Point(_), Some(_)) => return None,
+        };
+        let more = |a: [f64; 2], b: [f64; 2], factor: f64| [b[0].mul_add(factor, a[0]), b[1].mul_add(factor, a[1])];
+        let (along, turning) = (more(self.along, push.along, per_mass), more(self.turning, push.turning, per_inertia));
+        Some(Self { origin, along, turning, ..self })
+    }
+}
