@@ -20,10 +20,10 @@ STEPS = (0.1, 0.05, 0.025)
 
 
 def energy(problem, form, state):
-    """The energy (J) of a state of reduced or full unknowns, and the slip of the blade (m/s)."""
-    x, y, th = state[:3]
+    """The energy (J) of a state, and the slip of the blade (m/s)."""
+    x, y, th = equations.from_own_axes(problem, *state[:3]) if form == "own axes" else state[:3]
     sin, cos = np.sin(th), np.cos(th)
-    vx, vy, w = (state[3] * cos, state[3] * sin, state[4]) if form == "reduced" else state[3:6]
+    vx, vy, w = state[3:6] if form == "full" else (state[3] * cos, state[3] * sin, state[4])
     a, (kx, ky), (x0, y0) = problem.offset, problem.effects[0]["stiffness"], problem.effects[0]["center"]
     kinetic = problem.mass * ((vx - a * w * sin) ** 2 + (vy + a * w * cos) ** 2) + problem.inertia * w**2
     potential = kx * (x + a * cos - x0) ** 2 + ky * (y + a * sin - y0) ** 2
@@ -90,6 +90,10 @@ def table(problem):
 
     for tolerance in TOLERANCES:
         row(f"heyoka taylor, {tolerance:g}", taylor(problem, "reduced", problem.start, tolerance))
+    if equations.round_well(problem):
+        own = equations.into_own_axes(problem)
+        for tolerance in TOLERANCES:
+            row(f"heyoka taylor own axes, {tolerance:g}", taylor(problem, "own axes", own, tolerance))
     for tolerance in TOLERANCES:
         row(f"heyoka taylor full, {tolerance:g}", taylor(problem, "full", full, tolerance))
     for step in STEPS:

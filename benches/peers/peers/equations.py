@@ -104,7 +104,9 @@ def on_complex(problem):
 
 
 def round_well(problem):
-    """(k, b, centre) of one round well alone, that draws the point `b` ahead of the blade; none of other effects."""
+    """(k, b, centre) of one round well alone, that draws the point `b` ahead of the blade; of no effect one without force."""
+    if not problem.effects:
+        return (0.0, 0.0, problem.start[:2])
     if [e["kind"] for e in problem.effects] not in (["bowl"], ["blade_bowl"]):
         return None
     (well,) = problem.effects
@@ -113,16 +115,21 @@ def round_well(problem):
 
 
 def own_axes(problem, constant=float):
-    """The slope of (X, Y, heading, u, omega) in a round well, (X, Y) the blade in the axes of the sleigh from the centre."""
+    """The slope of (X, Y, heading, u, omega) in a round well, (X, Y) the blade in the axes of the sleigh from the centre, or free."""
     stiffness, ahead, _ = round_well(problem)
     # No rounding but that of the numbers that the other forms have too.
     m, inertia, a, k, b = (constant(x) for x in (problem.mass, problem.inertia, problem.offset, stiffness, ahead))
     j = inertia + m * a * a
-    # A well at the blade has no arm, and leaves no term behind.
-    arm = (lambda y: k * b / j * y) if ahead else lambda y: 0.0
-    return lambda x, y, th, u, w: (
-        u + w * y, -w * x, w, a * w * w - k / m * (x + b if ahead else x), -(m * a / j) * u * w - arm(y)
-    )
+    # What there is not leaves no term behind.
+    def slope(x, y, th, u, w):
+        along, turning = a * w * w, -(m * a / j) * u * w
+        if stiffness:
+            along = along - k / m * (x + b if ahead else x)
+        if stiffness and ahead:
+            turning = turning - k * b / j * y
+        return (u + w * y, -w * x, w, along, turning)
+
+    return slope
 
 
 def into_own_axes(problem):

@@ -59,7 +59,7 @@ def lines(problem):
             return run
         return prepare
 
-    # In a round well the heading can be left out of the equations, and all sines with it.
+    # In a round well, or free, the heading can be left out of the equations, and all sines with it.
     own = []
     if equations.round_well(problem):
         start = list(equations.into_own_axes(problem))

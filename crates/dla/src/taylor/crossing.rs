@@ -1,6 +1,7 @@
 use super::series::{Equations, ORDER, Series};
 use crate::StepError;
 use crate::octaves::{octaves, of_octaves};
+use crate::state::two_sum;
 use lagrangian::OwnAxes;
 use lagrangian::linear::larger;
 use lagrangian::simd::{Four, FourKernel};
@@ -45,7 +46,8 @@ impl FourKernel for Crossing {
     fn run<F: Four>(self, zero: F) -> Self::Output {
         let equations = Equations::new(zero, &self.axes);
         let mut series = Series::new(zero);
-        let (mut z, mut made, mut turn) = (zero.of(&self.start), 0.0, 0.0);
+        // Sums of many steps, with their rounding.
+        let (mut z, mut made, mut turn) = (zero.of(&self.start), (0.0, 0.0), (0.0, 0.0));
         let tolerance = octaves(self.tolerance);
         for tries in 1..=MAX_STEPS {
             series.expand(&equations, z);
@@ -58,7 +60,7 @@ impl FourKernel for Crossing {
             while last * full.powi(ORDER as i32) > most {
                 full *= SHORTER;
             }
-            let rest = self.whole - made;
+            let rest = (self.whole - made.0) - made.1;
             let ends = full >= rest.abs();
             let h = if ends { rest } else { full.copysign(self.whole) };
             // Also where it is no number.
@@ -67,13 +69,13 @@ impl FourKernel for Crossing {
             }
             let (next, by) = series.after(h);
             z = next;
-            turn += by;
+            turn = two_sum(turn.0, turn.1 + by);
             if ends {
-                return Ok(Crossed { end: z.row(), turn });
+                return Ok(Crossed { end: z.row(), turn: turn.0 });
             }
-            made += h;
+            made = two_sum(made.0, made.1 + h);
         }
-        Err(StepError::Tolerance { tries: MAX_STEPS, step: self.whole - made })
+        Err(StepError::Tolerance { tries: MAX_STEPS, step: self.whole - made.0 })
     }
 }
 

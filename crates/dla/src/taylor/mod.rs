@@ -78,9 +78,14 @@ impl<Sys: System<3, 1>> OneStep<Sys, 3, 1> for Taylor {
         let crossed = in_fours(Crossing { axes, start, whole: h, tolerance: self.tolerance })?;
         let increment = increment(axes.origin, &q0, place, &crossed);
         let xi1 = [crossed.end[1], crossed.end[0], 0.0];
-        let v1 = velocity_of(system, t + h, &state.ahead(&increment), &xi1)?;
-        state.stays_finite(&increment, &v1)?;
-        state.advance(&increment, v1, Some(xi1));
+        state.stays_finite(&increment, &xi1)?;
+        // The velocity is on the constraint at the heading without its turns, of which there may be many.
+        let mut moved = *state;
+        moved.advance(&increment, [0.0; 3], None);
+        let v1 = velocity_of(system, t + h, moved.q(), &xi1)?;
+        moved.stays_finite(&[0.0; 3], &v1)?;
+        moved.advance(&[0.0; 3], v1, Some(xi1));
+        *state = moved;
         Ok(StepReport::of(0))
     }
 }
