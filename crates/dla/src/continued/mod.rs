@@ -61,53 +61,55 @@ impl<L, C> Dla<L, C> {
         if !self.kept.is_ready() {
             return None;
         }
-        let report = self.going_on(system, (t0, h), state);
+        let report = going_on(self, system, (t0, h), state);
         match report {
             Some(_) => self.kept.succeeds(),
             None => self.kept.fails(),
         }
         report
     }
+}
 
-    #[inline(never)]
-    fn going_on<Sys: System<N, M>, const N: usize, const M: usize>(
-        &mut self,
-        system: &Sys,
-        (t0, h): (f64, f64),
-        state: &mut State<N>,
-    ) -> Option<StepReport<M>>
-    where
-        L: DiscreteLagrangian<Sys, N, M>,
-        C: DiscreteConstraint<Sys, N, M>,
-    {
-        let (q0, v0) = (*state.q(), *state.v());
-        let (Found { v, lambda, corrections }, p1) = self.mean(system, (t0, h), state)?;
-        if branch::turn(system, (t0, h), &q0, &v) > branch::NEAR {
-            return None;
-        }
-
-        let d = v.map(|v| h * v);
-        let (t1, q1) = (t0 + h, state.ahead(&d));
-        let guess = match self.kept.velocities.next(h) {
-            Some(expected) => from_fn(|i| expected[i]),
-            None => from_fn(|i| 2.0 * v[i] - v0[i]),
-        };
-        let end = self.arrival(system, (t1, &q1), p1, guess)?;
-        let v1 = end.v;
-
-        brakes_only(system, (t0, h), &q0, (&v, &v1)).ok()?;
-        // One by one they would be waited for.
-        if !(0..N).fold(true, |all, i| all & q1[i].is_finite() & v1[i].is_finite()) {
-            return None;
-        }
-        let acceleration = from_fn(|i| (v1[i] - v[i]) * (2.0 / h));
-        state.advance_with_acceleration(h, &d, v1, acceleration);
-        self.kept.block.took::<N>(corrections.max(LEAST));
-        self.kept.mass.took::<N>(end.corrections.max(LEAST));
-        // Not the velocity of the state, which has just been stored and would be waited for.
-        self.kept.ended(h, state.q(), &v1);
-        Some(StepReport { impulses: [lambda, end.lambda], iterations: corrections, work: None })
+// Twice in a build for any machine, as the loop over steps is (`drive_part`).
+#[cfg_attr(not(target_feature = "avx2"), multiversion::multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt")))]
+#[inline(never)]
+fn going_on<L, C, Sys: System<N, M>, const N: usize, const M: usize>(
+    method: &mut Dla<L, C>,
+    system: &Sys,
+    (t0, h): (f64, f64),
+    state: &mut State<N>,
+) -> Option<StepReport<M>>
+where
+    L: DiscreteLagrangian<Sys, N, M>,
+    C: DiscreteConstraint<Sys, N, M>,
+{
+    let (q0, v0) = (*state.q(), *state.v());
+    let (Found { v, lambda, corrections }, p1) = method.mean(system, (t0, h), state)?;
+    if branch::turn(system, (t0, h), &q0, &v) > branch::NEAR {
+        return None;
     }
+
+    let d = v.map(|v| h * v);
+    let (t1, q1) = (t0 + h, state.ahead(&d));
+    let guess = match method.kept.velocities.next(h) {
+        Some(expected) => from_fn(|i| expected[i]),
+        None => from_fn(|i| 2.0 * v[i] - v0[i]),
+    };
+    let end = method.arrival(system, (t1, &q1), p1, guess)?;
+    let v1 = end.v;
+
+    brakes_only(system, (t0, h), &q0, (&v, &v1)).ok()?;
+    // One by one they would be waited for.
+    if !(0..N).fold(true, |all, i| all & q1[i].is_finite() & v1[i].is_finite()) {
+        return None;
+    }
+    let acceleration = from_fn(|i| (v1[i] - v[i]) * (2.0 / h));
+    state.advance_with_acceleration(h, &d, v1, acceleration);
+    method.kept.block.took::<N>(corrections.max(LEAST));
+    method.kept.mass.took::<N>(end.corrections.max(LEAST));
+    // Not the velocity of the state, which has just been stored and would be waited for.
+    method.kept.ended(h, state.q(), &v1);
+    Some(StepReport { impulses: [lambda, end.lambda], iterations: corrections, work: None })
 }
 
 #[cfg(test)]
