@@ -1,6 +1,6 @@
 //! What a step costs: the discrete Lagrange-d'Alembert step in its forms, against the classical Runge-Kutta step.
 //!
-//! All on the same full state, through the first 800 steps of the turn-around, free and in a bowl. The last lines give the
+//! All on the same full state, through the first 800 steps of the turn-around, free, in a bowl, and with drag besides. The last lines give the
 //! ratios of interleaved runs, which hold where the times of a shared machine do not; then the same for every model.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
@@ -11,7 +11,7 @@ use criterion::{Criterion, criterion_group};
 use dla::{Dla, Form, OneStep, Schedule, State, drive};
 use harness::{Rk4, Rk4Projected, Rk4Reduced};
 use lagrangian::{System, With};
-use sleigh::effects::Bowl;
+use sleigh::effects::{Bowl, Drag};
 use sleigh::{Sleigh, SleighState};
 use std::hint::black_box;
 use std::time::Instant;
@@ -34,6 +34,14 @@ fn well() -> With<Sleigh, (Bowl,)> {
     With { body: sleigh(), effects: (Bowl::new(STIFFNESS, [0.0; 2]).expect("finite"),) }
 }
 
+/// kg/s along the blade, kg m^2/s against turning.
+const DRAG: [f64; 2] = [0.1, 0.05];
+
+fn braked_well() -> With<Sleigh, (Bowl, Drag)> {
+    let (bowl,) = well().effects;
+    With { body: sleigh(), effects: (bowl, Drag::new(DRAG[0], DRAG[1]).expect("positive")) }
+}
+
 /// The steps of a method of the library.
 fn library<Method: OneStep<Sleigh, 3, 1>>(method: Method) -> State<3> {
     steps_of(&black_box(sleigh()), method)
@@ -44,6 +52,11 @@ fn in_bowl<Method: OneStep<With<Sleigh, (Bowl,)>, 3, 1>>(method: Method) -> Stat
     steps_of(&black_box(well()), method)
 }
 
+/// And with drag.
+fn braked<Method: OneStep<With<Sleigh, (Bowl, Drag)>, 3, 1>>(method: Method) -> State<3> {
+    steps_of(&black_box(braked_well()), method)
+}
+
 fn steps_of<Sys: System<3, 1>, Method: OneStep<Sys, 3, 1>>(system: &Sys, mut method: Method) -> State<3> {
     let (q, v) = black_box(start());
     let mut state = State::new(q, v, system.angles());
@@ -52,11 +65,13 @@ fn steps_of<Sys: System<3, 1>, Method: OneStep<Sys, 3, 1>>(system: &Sys, mut met
     state
 }
 
-/// The Runge-Kutta step as one writes it by hand for this one system, free or in the bowl: six plain numbers, nothing else.
-fn by_hand<const BOWL: bool>() -> [f64; 6] {
+/// The Runge-Kutta step as one writes it by hand for this one system, free, in the bowl, or with drag: six plain numbers, nothing
+/// else.
+fn by_hand<const BOWL: bool, const BRAKED: bool>() -> [f64; 6] {
     let sleigh = black_box(sleigh());
     let (a, c) = (sleigh.offset(), sleigh.spin_gain());
     let ([kx, ky], m, inertia) = (black_box(STIFFNESS), sleigh.mass(), sleigh.pivot_inertia());
+    let [drag, turning] = black_box(DRAG);
     let slope = |y: &[f64; 6]| -> [f64; 6] {
         let (sin, cos) = y[2].sin_cos();
         let (vx, vy, w) = (y[3], y[4], y[5]);
@@ -67,6 +82,10 @@ fn by_hand<const BOWL: bool>() -> [f64; 6] {
             let (fx, fy) = (-kx * (y[0] + a * cos), -ky * (y[1] + a * sin));
             along += (cos * fx + sin * fy) / m;
             turn += a * (cos * fy - sin * fx) / inertia;
+        }
+        if BRAKED {
+            along -= drag * u / m;
+            turn -= turning * w / inertia;
         }
         [vx, vy, w, along * cos - across * sin, along * sin + across * cos, turn]
     };
@@ -90,8 +109,8 @@ fn consume<T>(result: T) {
 type Case = (&'static str, fn());
 
 /// The first is what the others are compared with.
-const CASES: [Case; 11] = [
-    ("rk4 by hand", || consume(by_hand::<false>())),
+const CASES: [Case; 14] = [
+    ("rk4 by hand", || consume(by_hand::<false, false>())),
     ("rk4", || consume(library(Rk4))),
     ("rk4-projected", || consume(library(Rk4Projected))),
     ("rk4-reduced", || consume(library(Rk4Reduced))),
@@ -101,9 +120,12 @@ const CASES: [Case; 11] = [
         consume(library(Dla::midpoint().solved(Form::Multipliers)));
     }),
     ("dla-trapezoid, automatic derivatives", || consume(library(Dla::trapezoid()))),
-    ("bowl: rk4 by hand", || consume(by_hand::<true>())),
+    ("bowl: rk4 by hand", || consume(by_hand::<true, false>())),
     ("bowl: dla, two unknowns", || consume(in_bowl(Dla::midpoint()))),
     ("bowl: dla, automatic derivatives", || consume(in_bowl(Dla::midpoint().solved(Form::General)))),
+    ("bowl and drag: rk4 by hand", || consume(by_hand::<true, true>())),
+    ("bowl and drag: dla, two unknowns", || consume(braked(Dla::midpoint()))),
+    ("bowl and drag: dla, automatic derivatives", || consume(braked(Dla::midpoint().solved(Form::General)))),
 ];
 
 fn steps(criterion: &mut Criterion) {

@@ -1,7 +1,7 @@
 //! What a step of an ensemble costs, on one core: processor time, least and median of rounds.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
-use dla::{ClosedEnsemble, Each, Ensemble, GaussEnsemble, LaneState, Same, Systems};
+use dla::{ClosedEnsemble, Each, Ensemble, GaussEnsemble, LaneState, OneStep, Same, State, Systems, Taylor};
 use lagrangian::{System, With};
 use sleigh::effects::Bowl;
 use sleigh::{RoundWell, Sleigh, SleighState};
@@ -91,6 +91,34 @@ fn gauss<Sys: System<3, 1> + Clone, const S: usize>(
     }
 }
 
+/// One trajectory after the other, by Taylor series in one step of the schedule.
+fn series(name: &str, system: &impl System<3, 1>, start: LaneState<3, W>, reference: &[[f64; 3]]) {
+    for tolerance in [1e-6, 1e-9, 1e-10, 1e-13, 1e-14, 1e-15, 1e-16] {
+        let run = |lane: usize| {
+            let (q, xi) = (start.q(lane), start.xi(lane));
+            let v = lagrangian::velocity_of(system, 0.0, &q, &xi).unwrap();
+            let mut state = State::new(q, v, system.angles());
+            Taylor::new(tolerance).step(system, 0.0, DURATION, &mut state).unwrap();
+            state.unwrapped()
+        };
+        let (least, median) = seconds(|| {
+            for lane in 0..W {
+                black_box(run(black_box(lane)));
+            }
+        });
+        let error = |lane: usize| {
+            let end = run(lane);
+            (0..3).fold(0.0, |worst: f64, k| worst.max((end[k] - reference[lane][k]).abs()))
+        };
+        let (first, worst, us) = (error(0), (0..W).map(error).fold(0.0, f64::max), 1e6 / W as f64);
+        println!(
+            "{name}, taylor, {tolerance:e}: error {worst:.1e}, of the first {first:.1e}, {:.2} us a trajectory (median {:.2})",
+            us * least,
+            us * median
+        );
+    }
+}
+
 fn reference<Sys: System<3, 1>>(system: &Sys) -> Vec<[f64; 3]> {
     let time = (0.0, DURATION / 512.0);
     let mut ensemble = GaussEnsemble::<Sys, _, 8, W, 3, 1>::new(Same(system), time, starts(on_plane)).unwrap();
@@ -107,6 +135,7 @@ fn main() {
     let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
     let exact = reference(&sleigh);
     let plane = starts(on_plane);
+    series("free", &sleigh, plane, &exact);
     gauss::<_, 8>("free", &Same(&sleigh), plane, |q| *q, &exact, &[(32, 1e-11), (64, 1e-15)]);
 
     const RUNS: [(u64, f64); 8] =
@@ -114,6 +143,7 @@ fn main() {
     let bowl = With { body: sleigh, effects: Bowl::new([0.1, 0.1], [0.0, 0.0]).unwrap() };
     let exact = reference(&bowl);
     gauss::<_, 8>("bowl", &Same(&bowl), plane, |q| *q, &exact, &RUNS);
+    series("bowl", &bowl, plane, &exact);
     let each: [_; W] = std::array::from_fn(|_| black_box(bowl.clone()));
     gauss::<_, 8>("bowl, each its own", &Each(&each), plane, |q| *q, &exact, &[(36, 1e-13), (80, 1e-16)]);
     let well = RoundWell::new(sleigh, 0.1, [0.0; 2]).unwrap();

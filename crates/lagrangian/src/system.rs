@@ -141,19 +141,22 @@ pub trait System<const N: usize, const M: usize> {
         None
     }
 
-    /// The same step with one more generalised force, which depends on time and configuration alone.
+    /// The same step with one more generalised force, taken in the middle of the step at the mean velocity.
     ///
-    /// None where it is not known by hand, or not found quickly: the general step is then made.
+    /// None where it is not known by hand, not found quickly, or where the force may overshoot: the general step is then made.
     #[inline(always)]
     fn pushed_step<P: Push<N>>(&self, _t: f64, _h: f64, _start: Start<'_, N>, _push: &P) -> Option<ClosedStep<N, M>> {
         None
     }
 }
 
-/// A generalised force that depends on time and configuration.
+/// A generalised force.
 pub trait Push<const N: usize> {
-    /// The force at `(t, q)`; none where it is not known by hand, or depends on velocities too.
-    fn push<S: Scalar>(&self, t: S, q: &[S; N]) -> Option<[S; N]>;
+    /// The force at `(t, q, v)`; none where it is not known by hand.
+    fn push<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]>;
+
+    /// The part of it that may depend on the velocity; none where there is none.
+    fn brake<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]>;
 }
 
 /// The residual `A(q, t) v + b(q, t)` of each constraint, or `phi(t, q, v)` of one that is not affine.

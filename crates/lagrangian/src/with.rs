@@ -15,18 +15,18 @@ pub struct With<B, E> {
     pub effects: E,
 }
 
-/// The effects of a body, where all of them are potentials whose slopes are known by hand.
-struct Potentials<'a, B, E>(&'a With<B, E>);
+/// The effects of a body.
+struct Pushing<'a, B, E>(&'a With<B, E>);
 
-impl<B, E: Effect<B, N>, const N: usize> Push<N> for Potentials<'_, B, E> {
+impl<B, E: Effect<B, N>, const N: usize> Push<N> for Pushing<'_, B, E> {
     #[inline(always)]
-    fn push<S: Scalar>(&self, t: S, q: &[S; N]) -> Option<[S; N]> {
-        let With { body, effects } = self.0;
-        // Where a force stands beside them it may depend on the velocity.
-        if effects.force(body, t, q, &[S::zero(); N]).is_some() {
-            return None;
-        }
-        effects.slope(body, t, q).with_force(None)
+    fn push<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
+        self.0.effects.whole_force(&self.0.body, t, q, v)
+    }
+
+    #[inline(always)]
+    fn brake<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
+        self.0.effects.force(&self.0.body, t, q, v)
     }
 }
 
@@ -125,6 +125,6 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
         if self.effects.is_none() {
             return self.body.closed_step(t, h, start);
         }
-        self.body.pushed_step(t, h, start, &Potentials(self)).map(Ok)
+        self.body.pushed_step(t, h, start, &Pushing(self)).map(Ok)
     }
 }

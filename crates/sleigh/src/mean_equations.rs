@@ -104,11 +104,43 @@ impl<'a> MeanEquations<'a> {
         let (chord, [qx, qy, heading]) = self.middle(x, half_turn);
         let heading = KnownAngle::new(heading, chord[0], chord[1]);
         let t = KnownAngle::from(self.t + 0.5 * self.h);
-        let force = push.push(t, &[KnownAngle::from(qx), KnownAngle::from(qy), heading])?;
+        let q = [KnownAngle::from(qx), KnownAngle::from(qy), heading];
+        let force = push.push(t, &q, &[x[0] * chord[1], x[0] * chord[0], x[1]].map(KnownAngle::from))?;
         Some(self.point(x, half_turn, chord, force.map(|f| f.re)))
     }
 
-    /// The same with the derivatives, where sine and cosine of the half turn are known.
+    /// Whether the force at the end differs from that at the mean velocities `x`, both in the middle of the step, by more than the
+    /// inertia between the two: as a brake does that turns the velocity round.
+    ///
+    /// What differs by rounding is no brake. The general step has the same question, of any system.
+    #[inline(always)]
+    pub(crate) fn overshoots<P: Push<3>>(
+        &self,
+        push: &P,
+        (x, half_turn): ([f64; 2], [f64; 2]),
+        ([u1, omega1], [sin1, cos1]): ([f64; 2], [f64; 2]),
+    ) -> bool {
+        /// A change of the velocity by a smaller part of it (squared) is compared with rounding.
+        const ROUNDING: f64 = 1e-16;
+        let ([sin, cos], [qx, qy, heading]) = self.middle(x, half_turn);
+        let ([speed, w], known) = (x, KnownAngle::from);
+        let (mean, end) = ([speed * cos, speed * sin, w], [u1 * cos1, u1 * sin1, omega1]);
+        let (t, q) = (known(self.t + 0.5 * self.h), [known(qx), known(qy), KnownAngle::new(heading, sin, cos)]);
+        let at = |v: &[f64; 3]| push.brake(t, &q, &v.map(known));
+        let Some((of_mean, of_end)) = at(&mean).zip(at(&end)) else { return false };
+        let [dx, dy, turned]: [f64; 3] = from_fn(|i| end[i] - mean[i]);
+        let damping = 0.5
+            * self.h
+            * [dx, dy, turned].iter().enumerate().map(|(i, d)| d * (of_mean[i].re - of_end[i].re)).sum::<f64>();
+        let inertia = |x: f64, y: f64, omega: f64| {
+            let (m, a, j) = (self.sleigh.mass(), self.sleigh.offset(), self.sleigh.pivot_inertia());
+            m * (x * x + y * y) + (2.0 * m * a * (cos * y - sin * x) + j * omega) * omega
+        };
+        let between = inertia(dx, dy, turned);
+        damping > between && between > ROUNDING * inertia(mean[0], mean[1], w)
+    }
+
+    /// The equations with their derivatives, where sine and cosine of the half turn are known.
     #[inline(always)]
     pub(crate) fn linearised<P: Push<3>>(&self, push: &P, x: [f64; 2], half_turn: [f64; 2]) -> Option<(Matrix, Point)> {
         let (chord, [qx, qy, heading]) = self.middle(x, half_turn);
@@ -120,7 +152,12 @@ impl<'a> MeanEquations<'a> {
             seeded(KnownAngle::from(qy), [half * chord[0], half * way * chord[1]]),
             seeded(KnownAngle::new(heading, chord[0], chord[1]), [0.0, half]),
         ];
-        let force = push.push(Dual::fixed(KnownAngle::from(self.t + half)), &q)?;
+        let v = [
+            seeded(KnownAngle::from(speed * chord[1]), [chord[1], -way * chord[0]]),
+            seeded(KnownAngle::from(speed * chord[0]), [chord[0], way * chord[1]]),
+            seeded(KnownAngle::from(w), [0.0, 1.0]),
+        ];
+        let force = push.push(Dual::fixed(KnownAngle::from(self.t + half)), &q, &v)?;
         let at = self.point(x, half_turn, chord, force.map(|f| f.re.re));
 
         let ([sin, cos], [along, across]) = (half_turn, at.force);

@@ -24,10 +24,10 @@ const NOISE: f64 = 1e-11;
 /// As many of Newton's corrections, each with two simplified ones after it, before the general step is made.
 const MOST: u32 = 4;
 
-/// One step of the midpoint discrete Lagrange-d'Alembert map of a sleigh in a potential, reduced to two unknowns.
+/// One step of the midpoint discrete Lagrange-d'Alembert map of a sleigh that is pushed, reduced to two unknowns.
 ///
-/// With the notation of the closed map of the free sleigh, and `f_e`, `f_n`, `tau` the force of the potential in the middle of
-/// the step, along the chord, across it and about the blade, the equations of the step are
+/// With the notation of the closed map of the free sleigh, and `f_e`, `f_n`, `tau` the force in the middle of the step, at the mean
+/// velocity, along the chord, across it and about the blade, the equations of the step are
 ///
 /// ```text
 /// U cos d - a w sin d = u0 + h/(2m) (f_e cos d - f_n sin d),    w (1 + k U) = omega0 + h/(2J) tau    at the beginning,
@@ -76,6 +76,10 @@ pub(crate) fn step<P: Push<3>>(
     let half_turn = [sin, cos];
     let [sin_m, cos_m] = turned(heading, half_turn);
     let [sin1, cos1] = turned([sin_m, cos_m], half_turn);
+    let equations = MeanEquations::new(sleigh, (t, h), (q, heading), start);
+    if equations.overshoots(push, (x, half_turn), ([u1, omega1], [sin1, cos1])) {
+        return None;
+    }
     let (turn, spin) = (speed * sin, a * w * cos);
     before.leave(memory, h, x, [sin1, cos1]);
     Some(ClosedStep {
