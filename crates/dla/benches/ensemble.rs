@@ -1,7 +1,9 @@
 //! What a step of an ensemble costs, on one core: processor time, least and median of rounds.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
-use dla::{ClosedEnsemble, Each, Ensemble, GaussEnsemble, LaneState, OneStep, Same, State, Systems, Taylor};
+use dla::{
+    ClosedEnsemble, Each, Ensemble, GaussEnsemble, LaneState, OneStep, Same, State, Systems, Taylor, TaylorEnsemble,
+};
 use lagrangian::{System, With};
 use sleigh::effects::Bowl;
 use sleigh::{RoundWell, Sleigh, SleighState};
@@ -91,31 +93,36 @@ fn gauss<Sys: System<3, 1> + Clone, const S: usize>(
     }
 }
 
-/// One trajectory after the other, by Taylor series in one step of the schedule.
+/// Taylor series in one step of the schedule, one trajectory after the other and eight at once.
 fn series(name: &str, system: &impl System<3, 1>, start: LaneState<3, W>, reference: &[[f64; 3]]) {
-    for tolerance in [1e-6, 1e-9, 1e-10, 1e-13, 1e-14, 1e-15, 1e-16] {
-        let run = |lane: usize| {
+    for tolerance in [1e-6, 1e-9, 1e-10, 1e-12, 1e-13, 1e-14, 1e-15, 1e-16] {
+        let alone = |lane: usize| {
             let (q, xi) = (start.q(lane), start.xi(lane));
             let v = lagrangian::velocity_of(system, 0.0, &q, &xi).unwrap();
             let mut state = State::new(q, v, system.angles());
             Taylor::new(tolerance).step(system, 0.0, DURATION, &mut state).unwrap();
             state.unwrapped()
         };
-        let (least, median) = seconds(|| {
-            for lane in 0..W {
-                black_box(run(black_box(lane)));
-            }
-        });
-        let error = |lane: usize| {
-            let end = run(lane);
-            (0..3).fold(0.0, |worst: f64, k| worst.max((end[k] - reference[lane][k]).abs()))
+        let by_ones = || (0..W).map(|lane| alone(black_box(lane))).collect::<Vec<_>>();
+        let by_eights = || {
+            let mut ensemble = TaylorEnsemble::new(&Same(black_box(system)), (DURATION, tolerance), start).unwrap();
+            ensemble.advance(1);
+            ends(ensemble.state(), |q| *q)
         };
-        let (first, worst, us) = (error(0), (0..W).map(error).fold(0.0, f64::max), 1e6 / W as f64);
-        println!(
-            "{name}, taylor, {tolerance:e}: error {worst:.1e}, of the first {first:.1e}, {:.2} us a trajectory (median {:.2})",
-            us * least,
-            us * median
-        );
+        for (way, run) in [("alone", &by_ones as &dyn Fn() -> Vec<[f64; 3]>), ("eight at once", &by_eights)] {
+            let (least, median) = seconds(|| {
+                black_box(run());
+            });
+            let ends = run();
+            let error =
+                |lane: usize| (0..3).fold(0.0, |worst: f64, k| worst.max((ends[lane][k] - reference[lane][k]).abs()));
+            let (first, worst, us) = (error(0), (0..W).map(error).fold(0.0, f64::max), 1e6 / W as f64);
+            println!(
+                "{name}, taylor, {way}, {tolerance:e}: error {worst:.1e}, of the first {first:.1e}, {:.2} us a trajectory (median {:.2})",
+                us * least,
+                us * median
+            );
+        }
     }
 }
 

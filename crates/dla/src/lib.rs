@@ -54,7 +54,7 @@ pub use composition::Composition;
 pub use dependent::{Dependency, Dependent};
 pub use drive::{Observer, Part, RunError, Schedule, View, drive, drive_part};
 pub use energy::{Energy, Gradient};
-pub use ensemble::{ClosedEnsemble, Each, Ensemble, GaussEnsemble, LaneState, Same, Systems};
+pub use ensemble::{ClosedEnsemble, Each, Ensemble, GaussEnsemble, LaneState, Same, Systems, TaylorEnsemble};
 pub use events::{Crossing, Direction, Event, Watch, Zero, zeros};
 pub use gauss::{Gauss, GaussAdaptive};
 pub use gni::Gni;

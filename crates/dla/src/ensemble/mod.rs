@@ -5,16 +5,19 @@ mod collocation;
 mod eight;
 mod gauss;
 mod order;
+mod series;
 mod settling;
 mod stages;
 mod state;
 mod step;
 mod systems;
+mod taylor;
 
 pub use closed::ClosedEnsemble;
 pub use gauss::GaussEnsemble;
 pub use state::LaneState;
 pub use systems::{Each, Same, Systems};
+pub use taylor::TaylorEnsemble;
 
 /// Trajectories that go side by side.
 const LANES: usize = 8;

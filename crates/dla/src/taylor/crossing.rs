@@ -1,43 +1,32 @@
+use super::pace::{LOOKED_AT, Pace, size};
 use super::series::{Equations, ORDER, Series};
 use crate::StepError;
-use crate::octaves::{octaves, of_octaves};
 use crate::state::two_sum;
 use lagrangian::OwnAxes;
-use lagrangian::linear::larger;
 use lagrangian::simd::{Four, FourKernel};
 
 /// An interval to be crossed.
-pub(super) struct Crossing {
-    pub(super) axes: OwnAxes,
+pub(crate) struct Crossing {
+    pub(crate) axes: OwnAxes,
     /// `(omega, u, Y, X)` at its beginning.
-    pub(super) start: [f64; 4],
+    pub(crate) start: [f64; 4],
     /// Its length (s).
-    pub(super) whole: f64,
+    pub(crate) whole: f64,
     /// The error of a step, in units of `1 + |(omega, u)|`: a positive number, and far below rounding is no better than that.
-    pub(super) tolerance: f64,
+    pub(crate) tolerance: f64,
 }
 
 /// Where it ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Crossed {
+pub(crate) struct Crossed {
     /// `(omega, u, Y, X)`.
-    pub(super) end: [f64; 4],
+    pub(crate) end: [f64; 4],
     /// By how much the heading has turned (rad).
-    pub(super) turn: f64,
+    pub(crate) turn: f64,
 }
 
-/// The step is as long as this term and the one before allow, since the last ones come late.
-const LOOKED_AT: usize = ORDER - 2;
-/// Where they are of the size of the error's power of this, terms that fall off evenly leave the error.
-const POWER: f64 = LOOKED_AT as f64 / (ORDER + 1) as f64;
-/// And the last term has this power.
-const LAST: f64 = ORDER as f64 / (ORDER + 1) as f64;
-/// By how many octaves it may be larger.
-const SLACK: f64 = 3.0;
-/// Where it is larger still, the step is shortened by this factor.
-const SHORTER: f64 = 0.75;
 /// Steps within an interval before it is given up.
-pub(super) const MAX_STEPS: u32 = 10_000_000;
+pub(crate) const MAX_STEPS: u32 = 10_000_000;
 
 impl FourKernel for Crossing {
     type Output = Result<Crossed, StepError>;
@@ -48,18 +37,12 @@ impl FourKernel for Crossing {
         let mut series = Series::new(zero);
         // Sums of many steps, with their rounding.
         let (mut z, mut made, mut turn) = (zero.of(&self.start), (0.0, 0.0), (0.0, 0.0));
-        let tolerance = octaves(self.tolerance);
+        let pace = Pace::new(self.tolerance);
         for tries in 1..=MAX_STEPS {
             series.expand(&equations, z);
             let [omega, u, ..] = series.z[0].row();
-            let size = octaves(1.0 + larger(omega.abs(), u.abs()));
-            let allowed = POWER * tolerance + size;
-            let longest = |k: usize| (allowed - octaves(series.z[k].largest())) * (1.0 / k as f64);
-            let mut full = of_octaves(longest(LOOKED_AT).min(longest(LOOKED_AT - 1)));
-            let (last, most) = (series.z[ORDER].largest(), of_octaves(LAST * tolerance + size + SLACK));
-            while last * full.powi(ORDER as i32) > most {
-                full *= SHORTER;
-            }
+            let terms = [LOOKED_AT, LOOKED_AT - 1, ORDER].map(|k| series.z[k].largest());
+            let full = pace.longest(size(omega, u), terms);
             let rest = (self.whole - made.0) - made.1;
             let ends = full >= rest.abs();
             let h = if ends { rest } else { full.copysign(self.whole) };

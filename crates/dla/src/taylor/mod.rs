@@ -1,10 +1,14 @@
 mod crossing;
-mod series;
+pub(crate) mod pace;
+pub(crate) mod place;
+pub(crate) mod series;
 
 use crate::{OneStep, State, StepError, StepReport};
-use crossing::{Crossed, Crossing};
+use crossing::Crossing;
+pub(crate) use crossing::{Crossed, MAX_STEPS};
 use lagrangian::simd::in_fours;
-use lagrangian::{Origin, System, velocity_of};
+use lagrangian::{System, velocity_of};
+use place::{increment, place};
 
 /// Taylor series of the reduced motion in the body's own axes, with steps of its own within a step of the schedule, as many as a
 /// tolerance asks for: what a motion of second degree costs least by.
@@ -26,7 +30,7 @@ impl Taylor {
     /// The order of the method.
     pub const ORDER: usize = series::ORDER;
     /// Steps within an interval before it is given up.
-    pub const MAX_STEPS: u32 = crossing::MAX_STEPS;
+    pub const MAX_STEPS: u32 = MAX_STEPS;
 
     /// The method with the tolerance `epsilon`: the error of a step is kept near `epsilon (1 + |(u, omega)|)`, as far as the terms of
     /// the series fall off evenly. Rounding is larger where it is below some `1e-15`; it is taken to be no less than `1e-31`.
@@ -35,29 +39,6 @@ impl Taylor {
         // Also of what is no number.
         Self { tolerance: epsilon.max(1e-31) }
     }
-}
-
-/// The place `(X, Y)` in axes of this heading, from a place on the plane.
-#[inline(always)]
-fn into_own([x, y]: [f64; 2], heading: f64) -> [f64; 2] {
-    let (sin, cos) = heading.sin_cos();
-    [cos * x + sin * y, cos * y - sin * x]
-}
-
-/// What [`Crossed`] says of the coordinates: the increment of the step.
-#[inline(always)]
-fn increment(origin: Origin, q0: &[f64; 3], [x0, y0]: [f64; 2], crossed: &Crossed) -> [f64; 3] {
-    let Crossed { end: [_, _, y, x], turn } = *crossed;
-    let [dx, dy] = match origin {
-        Origin::Coordinates => [x - x0, y - y0],
-        Origin::Point(_) | Origin::Anywhere => {
-            // Both places in the axes of the beginning: what is common to them is not turned.
-            let [x, y] = into_own([x, y], -turn);
-            let [dx, dy] = [x - x0, y - y0];
-            into_own([dx, dy], -q0[2])
-        }
-    };
-    [dx, dy, turn]
 }
 
 impl<Sys: System<3, 1>> OneStep<Sys, 3, 1> for Taylor {
@@ -69,11 +50,7 @@ impl<Sys: System<3, 1>> OneStep<Sys, 3, 1> for Taylor {
             });
         };
         let (q0, [u, omega, _]) = (*state.q(), state.quasi_velocities(system, t)?);
-        let place = match axes.origin {
-            Origin::Coordinates => [q0[0], q0[1]],
-            Origin::Point(center) => into_own([q0[0] - center[0], q0[1] - center[1]], q0[2]),
-            Origin::Anywhere => [0.0; 2],
-        };
+        let place = place(axes.origin, &q0);
         let start = [omega, u, place[1], place[0]];
         let crossed = in_fours(Crossing { axes, start, whole: h, tolerance: self.tolerance })?;
         let increment = increment(axes.origin, &q0, place, &crossed);

@@ -2,10 +2,10 @@ use lagrangian::OwnAxes;
 use lagrangian::simd::Four;
 
 /// The highest power of time in the series of a step.
-pub(super) const ORDER: usize = 20;
+pub(crate) const ORDER: usize = 20;
 
 /// `1/(k + 1)`.
-const RECIPROCALS: [f64; ORDER + 4] = {
+pub(crate) const RECIPROCALS: [f64; ORDER + 4] = {
     let (mut all, mut k) = ([0.0; ORDER + 4], 0);
     while k < all.len() {
         all[k] = 1.0 / (k as f64 + 1.0);

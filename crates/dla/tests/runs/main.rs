@@ -13,6 +13,7 @@ mod observers;
 mod recommend;
 mod round_well;
 mod scripted;
+mod series;
 mod substeps;
 mod trials;
 

@@ -1,0 +1,145 @@
+use super::series::{Axes, Eight};
+use super::{Ensemble, LANES, LaneState, Systems};
+use crate::state::two_sum;
+use crate::taylor::pace::{LOOKED_AT, Pace, size};
+use crate::taylor::place::{increment, place};
+use crate::taylor::series::ORDER;
+use crate::taylor::{Crossed, MAX_STEPS};
+use lagrangian::simd::{Kernel, Pack, Simd, dispatch_widest};
+use lagrangian::{OwnAxes, System};
+
+/// `W` trajectories by Taylor series, each with steps of its own within a step of the schedule: the method
+/// [`Taylor`](crate::Taylor), eight trajectories to a register.
+///
+/// Eight go on until the last of them has crossed the interval. One whose tolerance is not met is lost, and the others go on.
+#[derive(Debug, Clone)]
+pub struct TaylorEnsemble<const W: usize> {
+    axes: [OwnAxes; W],
+    pace: Pace,
+    h: f64,
+    state: LaneState<3, W>,
+}
+
+impl<const W: usize> TaylorEnsemble<W> {
+    /// The systems at these states, with steps of the schedule of length `h` (s) and the tolerance `epsilon` of
+    /// [`Taylor::new`](crate::Taylor::new). None where a system is not of [second degree in its own axes](System::own_axes).
+    #[must_use]
+    pub fn new<Sys: System<3, 1>>(
+        systems: &impl Systems<Sys, W>,
+        (h, epsilon): (f64, f64),
+        state: LaneState<3, W>,
+    ) -> Option<Self> {
+        const { assert!(W.is_multiple_of(LANES), "trajectories go in eights") };
+        let mut axes = [systems.of(0).own_axes()?; W];
+        for (lane, axes) in axes.iter_mut().enumerate() {
+            *axes = systems.of(lane).own_axes()?;
+        }
+        Some(Self { axes, pace: Pace::new(epsilon.max(1e-31)), h, state })
+    }
+}
+
+impl<const W: usize> Ensemble<3, W> for TaylorEnsemble<W> {
+    fn state(&self) -> &LaneState<3, W> {
+        &self.state
+    }
+
+    fn advance(&mut self, steps: u64) {
+        for _ in 0..steps {
+            for first in (0..W).step_by(LANES) {
+                let lanes: [usize; LANES] = std::array::from_fn(|i| first + i);
+                let (axes, places) = (lanes.map(|lane| self.axes[lane]), lanes.map(|lane| self.place(lane)));
+                let starts = std::array::from_fn(|i| {
+                    let ([u, omega, _], [x, y]) = (self.state.xi(lanes[i]), places[i]);
+                    [omega, u, y, x]
+                });
+                let crossed = dispatch_widest(Crossing { axes: &axes, starts, pace: self.pace, whole: self.h });
+                for (i, crossed) in crossed.iter().enumerate() {
+                    self.arrive(lanes[i], places[i], crossed.as_ref());
+                }
+            }
+            self.state.wrap();
+        }
+    }
+}
+
+impl<const W: usize> TaylorEnsemble<W> {
+    fn place(&self, lane: usize) -> [f64; 2] {
+        place(self.axes[lane].origin, &self.state.q(lane))
+    }
+
+    fn arrive(&mut self, lane: usize, start: [f64; 2], crossed: Option<&Crossed>) {
+        let Some(crossed) = crossed.filter(|crossed| crossed.end.iter().all(|x| x.is_finite())) else {
+            return self.state.lose(lane);
+        };
+        let increment = increment(self.axes[lane].origin, &self.state.q(lane), start, crossed);
+        for k in 0..3 {
+            let (q, rest) = (&mut self.state.q[k].0[lane], &mut self.state.rest[k].0[lane]);
+            (*q, *rest) = two_sum(*q, increment[k] + *rest);
+        }
+        (self.state.xi[0].0[lane], self.state.xi[1].0[lane]) = (crossed.end[1], crossed.end[0]);
+    }
+}
+
+/// An interval to be crossed by eight trajectories; those that do not are none in the result.
+struct Crossing<'a> {
+    axes: &'a [OwnAxes; LANES],
+    /// `(omega, u, Y, X)` of each.
+    starts: [[f64; 4]; LANES],
+    pace: Pace,
+    whole: f64,
+}
+
+impl Kernel for Crossing<'_> {
+    type Output = [Option<Crossed>; LANES];
+
+    #[inline(always)]
+    fn run<S: Simd, const R: usize>(self, simd: S) -> Self::Output {
+        let Self { axes, starts, pace, whole } = self;
+        let axes = Axes::<S, R>::load(simd, axes);
+        let mut z = [Pack::splat(simd, 0.0); 4];
+        for k in 0..4 {
+            let mut row = [0.0; LANES];
+            for lane in 0..LANES {
+                row[lane] = starts[lane][k];
+            }
+            z[k] = Pack::load(simd, &row);
+        }
+        // Sums of many steps, with their rounding.
+        let (mut made, mut turns) = ([(0.0, 0.0); LANES], [(0.0, 0.0); LANES]);
+        let (mut lost, mut crossed) = ([false; LANES], [None; LANES]);
+        for _ in 0..MAX_STEPS {
+            let mut series = Eight::about(z);
+            series.expand(&axes);
+            let (omega, u) = (z[0].row(), z[1].row());
+            let [looked_at, before, last] = [LOOKED_AT, LOOKED_AT - 1, ORDER].map(|k| series.largest(k).row());
+            let (mut steps, mut arrives) = ([0.0; LANES], [false; LANES]);
+            for lane in 0..LANES {
+                if lost[lane] || crossed[lane].is_some() {
+                    continue;
+                }
+                let terms = [looked_at[lane], before[lane], last[lane]];
+                let full = pace.longest(size(omega[lane], u[lane]), terms);
+                let rest = (whole - made[lane].0) - made[lane].1;
+                arrives[lane] = full >= rest.abs();
+                // Also where it is no number.
+                lost[lane] = !arrives[lane] && (full.is_nan() || full <= f64::EPSILON * whole.abs());
+                steps[lane] = if arrives[lane] { rest } else { full.copysign(whole) };
+                made[lane] = two_sum(made[lane].0, made[lane].1 + steps[lane]);
+            }
+            let (next, by) = series.after(Pack::load(simd, &steps));
+            z = next;
+            let ([omega, u, y, x], by) = (z.map(|z| z.row()), by.row());
+            for lane in 0..LANES {
+                turns[lane] = two_sum(turns[lane].0, turns[lane].1 + by[lane]);
+                if arrives[lane] {
+                    let end = [omega[lane], u[lane], y[lane], x[lane]];
+                    crossed[lane] = Some(Crossed { end, turn: turns[lane].0 });
+                }
+            }
+            if (0..LANES).all(|lane| lost[lane] || crossed[lane].is_some()) {
+                break;
+            }
+        }
+        crossed
+    }
+}
