@@ -6,6 +6,10 @@ use crate::{OwnPush, Scalar};
 /// another body. Effects compose: `()` is none of them, a tuple several known ones, a `Vec` as many as a file names. In
 /// the angles of the body an effect must have the period `2 pi`.
 pub trait Effect<B, const N: usize> {
+    /// Whether it may be many kinds of effects, which of them a program knows only when it runs: what asks for all of them is much code,
+    /// and better called than inlined where numbers are not in registers.
+    const MANY: bool = false;
+
     /// What the effect adds to `L(t, q, v)` (J); a potential `V` adds `-V`.
     #[inline(always)]
     fn lagrangian<S: Scalar>(&self, _body: &B, _t: S, _q: &[S; N], _v: &[S; N]) -> Option<S> {
@@ -153,6 +157,8 @@ tuple_of_effects!(E0 0, E1 1, E2 2, E3 3, E4 4);
 tuple_of_effects!(E0 0, E1 1, E2 2, E3 3, E4 4, E5 5);
 
 impl<B, E: Effect<B, N>, const N: usize> Effect<B, N> for Vec<E> {
+    const MANY: bool = true;
+
     #[inline(always)]
     fn lagrangian<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<S> {
         S::over(

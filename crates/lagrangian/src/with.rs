@@ -21,13 +21,21 @@ struct Pushing<'a, B, E>(&'a With<B, E>);
 impl<B, E: Effect<B, N>, const N: usize> Push<N> for Pushing<'_, B, E> {
     #[inline(always)]
     fn push<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
-        self.0.effects.whole_force(&self.0.body, t, q, v)
+        let Self(With { body, effects }) = self;
+        if E::MANY { called(|| effects.whole_force(body, t, q, v)) } else { effects.whole_force(body, t, q, v) }
     }
 
     #[inline(always)]
     fn brake<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
-        self.0.effects.force(&self.0.body, t, q, v)
+        let Self(With { body, effects }) = self;
+        if E::MANY { called(|| effects.force(body, t, q, v)) } else { effects.force(body, t, q, v) }
     }
+}
+
+/// A function that stays one.
+#[inline(never)]
+fn called<T>(f: impl FnOnce() -> T) -> T {
+    f()
 }
 
 impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N, M> for With<B, E> {

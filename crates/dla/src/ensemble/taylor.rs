@@ -34,7 +34,7 @@ impl<const W: usize> TaylorEnsemble<W> {
         for (lane, axes) in axes.iter_mut().enumerate() {
             *axes = systems.of(lane).own_axes()?;
         }
-        Some(Self { axes, pace: Pace::new(epsilon.max(1e-31)), h, state })
+        Some(Self { axes, pace: Pace::new(epsilon), h, state })
     }
 }
 

@@ -12,7 +12,7 @@ pub(crate) struct Crossing {
     pub(crate) start: [f64; 4],
     /// Its length (s).
     pub(crate) whole: f64,
-    /// The error of a step, in units of `1 + |(omega, u)|`: a positive number, and far below rounding is no better than that.
+    /// The error of a step, in units of `1 + |(omega, u)|`.
     pub(crate) tolerance: f64,
 }
 

@@ -36,8 +36,7 @@ impl Taylor {
     /// the series fall off evenly. Rounding is larger where it is below some `1e-15`; it is taken to be no less than `1e-31`.
     #[must_use]
     pub fn new(epsilon: f64) -> Self {
-        // Also of what is no number.
-        Self { tolerance: epsilon.max(1e-31) }
+        Self { tolerance: epsilon }
     }
 }
 

@@ -21,10 +21,10 @@ pub(crate) struct Pace {
 }
 
 impl Pace {
-    /// At this error of a step, a positive number.
+    /// At this error of a step, which is taken to be no less than `1e-31`, also where it is no number.
     #[inline(always)]
     pub(crate) fn new(tolerance: f64) -> Self {
-        Self { tolerance: octaves(tolerance) }
+        Self { tolerance: octaves(tolerance.max(1e-31)) }
     }
 
     /// The length of a step (s) with velocities of this size at its beginning and largest coefficients of these sizes: those of the
