@@ -1,7 +1,7 @@
 //! What a step costs: the discrete Lagrange-d'Alembert step in its forms, against the classical Runge-Kutta step.
 //!
-//! All on the same full state, through the first 800 steps of the turn-around, free, in a bowl, and with drag besides. The last lines give the
-//! ratios of interleaved runs, which hold where the times of a shared machine do not; then the same for every model.
+//! All on the same full state, through the first 800 steps of the turn-around, free, in a bowl, and with drag besides. The
+//! last lines give the ratios of interleaved runs, which hold where the times of a shared machine do not; then the same for every model.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 

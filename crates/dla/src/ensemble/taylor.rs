@@ -1,7 +1,7 @@
 use super::series::{Axes, Eight};
 use super::{Ensemble, LANES, LaneState, Systems};
 use crate::state::two_sum;
-use crate::taylor::pace::{LOOKED_AT, Pace, size};
+use crate::taylor::pace::{Interval, LOOKED_AT, Pace, size};
 use crate::taylor::place::{increment, place};
 use crate::taylor::series::ORDER;
 use crate::taylor::{Crossed, MAX_STEPS};
@@ -104,8 +104,8 @@ impl Kernel for Crossing<'_> {
             }
             z[k] = Pack::load(simd, &row);
         }
-        // Sums of many steps, with their rounding.
-        let (mut made, mut turns) = ([(0.0, 0.0); LANES], [(0.0, 0.0); LANES]);
+        // Turns are sums of many, with their rounding.
+        let (mut intervals, mut turns) = ([Interval::new(whole); LANES], [(0.0, 0.0); LANES]);
         let (mut lost, mut crossed) = ([false; LANES], [None; LANES]);
         for _ in 0..MAX_STEPS {
             let mut series = Eight::about(z);
@@ -119,12 +119,10 @@ impl Kernel for Crossing<'_> {
                 }
                 let terms = [looked_at[lane], before[lane], last[lane]];
                 let full = pace.longest(size(omega[lane], u[lane]), terms);
-                let rest = (whole - made[lane].0) - made[lane].1;
-                arrives[lane] = full >= rest.abs();
-                // Also where it is no number.
-                lost[lane] = !arrives[lane] && (full.is_nan() || full <= f64::EPSILON * whole.abs());
-                steps[lane] = if arrives[lane] { rest } else { full.copysign(whole) };
-                made[lane] = two_sum(made[lane].0, made[lane].1 + steps[lane]);
+                match intervals[lane].go_on(full) {
+                    Some((h, last)) => (steps[lane], arrives[lane]) = (h, last),
+                    None => lost[lane] = true,
+                }
             }
             let (next, by) = series.after(Pack::load(simd, &steps));
             z = next;

@@ -1,4 +1,4 @@
-use super::pace::{LOOKED_AT, Pace, size};
+use super::pace::{Interval, LOOKED_AT, Pace, size};
 use super::series::{Equations, ORDER, Series};
 use crate::StepError;
 use crate::state::two_sum;
@@ -35,30 +35,23 @@ impl FourKernel for Crossing {
     fn run<F: Four>(self, zero: F) -> Self::Output {
         let equations = Equations::new(zero, &self.axes);
         let mut series = Series::new(zero);
-        // Sums of many steps, with their rounding.
-        let (mut z, mut made, mut turn) = (zero.of(&self.start), (0.0, 0.0), (0.0, 0.0));
-        let pace = Pace::new(self.tolerance);
+        // The turn is a sum of many, with its rounding.
+        let (mut z, mut turn, mut interval) = (zero.of(&self.start), (0.0, 0.0), Interval::new(self.whole));
+        let (pace, mut full) = (Pace::new(self.tolerance), f64::NAN);
         for tries in 1..=MAX_STEPS {
             series.expand(&equations, z);
             let [omega, u, ..] = series.z[0].row();
             let terms = [LOOKED_AT, LOOKED_AT - 1, ORDER].map(|k| series.z[k].largest());
-            let full = pace.longest(size(omega, u), terms);
-            let rest = (self.whole - made.0) - made.1;
-            let ends = full >= rest.abs();
-            let h = if ends { rest } else { full.copysign(self.whole) };
-            // Also where it is no number.
-            if !ends && (full.is_nan() || full <= f64::EPSILON * self.whole.abs()) {
-                return Err(StepError::Tolerance { tries, step: full });
-            }
+            full = pace.longest(size(omega, u), terms);
+            let Some((h, ends)) = interval.go_on(full) else { return Err(StepError::Tolerance { tries, step: full }) };
             let (next, by) = series.after(h);
             z = next;
             turn = two_sum(turn.0, turn.1 + by);
             if ends {
                 return Ok(Crossed { end: z.row(), turn: turn.0 });
             }
-            made = two_sum(made.0, made.1 + h);
         }
-        Err(StepError::Tolerance { tries: MAX_STEPS, step: self.whole - made.0 })
+        Err(StepError::Tolerance { tries: MAX_STEPS, step: full })
     }
 }
 

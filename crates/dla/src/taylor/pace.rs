@@ -1,5 +1,6 @@
 use super::series::ORDER;
 use crate::octaves::{octaves, of_octaves};
+use crate::state::two_sum;
 use lagrangian::linear::larger;
 
 /// A step is as long as this term and the one before allow, since the last ones come late.
@@ -47,4 +48,36 @@ impl Pace {
 #[inline(always)]
 pub(crate) fn size(omega: f64, u: f64) -> f64 {
     larger(omega.abs(), u.abs())
+}
+
+/// An interval of time that is crossed step by step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Interval {
+    whole: f64,
+    /// The sum of the steps, with its rounding.
+    made: (f64, f64),
+}
+
+impl Interval {
+    /// Of this length (s), which may be negative.
+    #[inline(always)]
+    pub(crate) fn new(whole: f64) -> Self {
+        Self { whole, made: (0.0, 0.0) }
+    }
+
+    /// Goes on by a step that may be as long as `full`: its length, and whether it is the last. None where it would be nothing beside
+    /// the interval, or no number.
+    #[inline(always)]
+    pub(crate) fn go_on(&mut self, full: f64) -> Option<(f64, bool)> {
+        let rest = (self.whole - self.made.0) - self.made.1;
+        if full >= rest.abs() {
+            return Some((rest, true));
+        }
+        if full.is_nan() || full <= f64::EPSILON * self.whole.abs() {
+            return None;
+        }
+        let h = full.copysign(self.whole);
+        self.made = two_sum(self.made.0, self.made.1 + h);
+        Some((h, false))
+    }
 }
