@@ -6,7 +6,8 @@ use crate::projection::{Projected, Projection};
 use crate::settle::sup;
 use crate::{Newton, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::{
-    Alpha, DiscreteConstraint, DiscreteLagrangian, Midpoint, NotAWeight, System, Trapezoid, momentum, reaction_rows,
+    Alpha, ClosedStepError, DiscreteConstraint, DiscreteLagrangian, Midpoint, NotAWeight, System, Trapezoid, momentum,
+    reaction_rows,
 };
 use std::array::from_fn;
 
@@ -116,7 +117,7 @@ where
     fn step(&mut self, system: &Sys, t0: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
         let closed = self.form == Form::Best && is_midpoint::<L>() && is_midpoint::<C>();
         if closed && let Some(step) = system.closed_step(t0, h, state.begin()) {
-            let step = step.map_err(StepError::Closed)?;
+            let step = step.map_err(|source| failed(state, source))?;
             state.advance_remembering(&step.increment, step.velocity, step.xi)?;
             return Ok(StepReport { impulses: step.impulses, iterations: step.iterations, work: None });
         }
@@ -146,6 +147,8 @@ impl<L, C> Dla<L, C> {
         L: DiscreteLagrangian<Sys, N, M>,
         C: DiscreteConstraint<Sys, N, M>,
     {
+        // What a closed form may have left that did not end.
+        state.forget_closed();
         match self.continued_step(system, t0, h, state) {
             Some(report) => Ok(report),
             None => self.solved_step(system, t0, h, state),
@@ -224,6 +227,14 @@ pub(crate) fn predicted<const N: usize>(state: &State<N>, h: f64) -> Option<[f64
 
 fn is_midpoint<R: 'static>() -> bool {
     std::any::TypeId::of::<R>() == std::any::TypeId::of::<Midpoint>()
+}
+
+// A call, so that nothing of it is in a step.
+#[cold]
+#[inline(never)]
+fn failed<const N: usize>(state: &mut State<N>, source: ClosedStepError) -> StepError {
+    state.forget_closed();
+    StepError::Closed(source)
 }
 
 /// The same, copied: a result that a call leaves in memory would keep that of the closed form there too, with impulses that an observer

@@ -221,8 +221,8 @@ where
     }
     let (mut outcome, mut stopped) = (Ok(()), false);
     while made < steps.end {
-        let time = schedule.time(made);
-        match method.step(system, time, schedule.step, state) {
+        // Worked out anew where a step fails: only a step that reads the time then has it.
+        match method.step(system, schedule.time(made), schedule.step, state) {
             Ok(report) => {
                 made += 1;
                 let node = View { system, k: made, t: schedule.time(made), state };
@@ -232,6 +232,7 @@ where
                 }
             }
             Err(source) => {
+                let time = schedule.time(made);
                 let source = named(system, time, state, source);
                 outcome = Err(RunError { step: made + 1, time, source });
                 break;

@@ -1,6 +1,6 @@
 use crate::past::Past;
 use crate::{Checkpoint, CheckpointError, StepError};
-use lagrangian::{Memory, ReducedError, Start, System, Twofold, quasi_velocities};
+use lagrangian::{Memory, ReducedError, Start, System, Twofold, added, quasi_velocities};
 use std::array::from_fn;
 use std::f64::consts::{PI, TAU};
 
@@ -166,7 +166,7 @@ impl<const N: usize> State<N> {
     ) -> Result<(), StepError> {
         let (mut q, mut rest, mut within) = ([0.0; N], [0.0; N], true);
         for i in 0..N {
-            (q[i], rest[i]) = two_sum(self.q[i], increment[i] + self.rest[i]);
+            (q[i], rest[i]) = added(self.q[i], increment[i] + self.rest[i]);
             within &= q[i].abs() <= self.bounds[i];
         }
         let left = Left::Velocities(xi);
@@ -188,10 +188,16 @@ impl<const N: usize> State<N> {
         Start { q: &self.q, v: &self.v, xi: self.xi(), memory: &mut self.memory }
     }
 
+    /// Forgets what a step in closed form has left.
+    #[inline(always)]
+    pub(crate) fn forget_closed(&mut self) {
+        self.memory.forget();
+    }
+
     #[inline(always)]
     fn go(&mut self, increment: &[f64; N], v: [f64; N], left: Left<N>) {
         for i in 0..N {
-            (self.q[i], self.rest[i]) = two_sum(self.q[i], increment[i] + self.rest[i]);
+            (self.q[i], self.rest[i]) = added(self.q[i], increment[i] + self.rest[i]);
         }
         (self.v, self.left) = (v, left);
         self.wrap();

@@ -9,7 +9,7 @@ pub struct Start<'a, const N: usize> {
     pub v: &'a [f64; N],
     /// The same velocity in the system's basis of admissible velocities, where it is known: either may be read.
     pub xi: Option<[f64; N]>,
-    /// What the step before has left, and where this one leaves what the next may need. A step that fails leaves it alone.
+    /// What the step before has left, and where this one leaves what the next may need. What a step leaves that fails is of no use.
     pub memory: &'a mut Memory,
 }
 
@@ -30,18 +30,29 @@ pub struct Memory(pub [f64; Self::SIZE]);
 
 impl Memory {
     /// As many numbers as any system here remembers.
-    pub const SIZE: usize = 28;
+    pub const SIZE: usize = 30;
     /// Nothing yet.
     pub const EMPTY: Self = Self([0.0; Self::SIZE]);
 
-    /// Remembers what a step of this length leaves, numbers of this kind, the first of all.
+    /// Is of steps of this length from now on, and of this kind.
+    #[inline(always)]
+    pub fn begin(&mut self, h: f64, kind: f64) {
+        (self.0[0], self.0[1]) = (h, kind);
+    }
+
+    /// Its first numbers and those after them, to be read where they are used and changed in place.
     ///
     /// Does not compile for more than there is place for.
     #[inline(always)]
-    pub fn keep<const K: usize>(&mut self, h: f64, kind: f64, numbers: [f64; K]) {
-        const { assert!(K + 2 <= Self::SIZE) };
-        (self.0[0], self.0[1]) = (h, kind);
-        self.0[2..K + 2].copy_from_slice(&numbers);
+    pub fn parts<const A: usize, const B: usize>(&mut self) -> (&mut [f64; A], &mut [f64; B]) {
+        const { assert!(A + B + 2 <= Self::SIZE) };
+        let [_, _, numbers @ ..] = &mut self.0;
+        if let Some((first, others)) = numbers.split_first_chunk_mut()
+            && let Some(second) = others.first_chunk_mut()
+        {
+            return (first, second);
+        }
+        unreachable!("there is place for them")
     }
 
     /// Whether a step of this very length has left numbers of this kind.

@@ -13,6 +13,7 @@ mod bracket;
 mod classify;
 mod closed;
 mod closed_lanes;
+mod compensated;
 mod discrete;
 mod dual;
 mod effect;
@@ -59,6 +60,7 @@ pub use classify::{
 };
 pub use closed::{ClosedStep, ClosedStepError, Memory, Start};
 pub use closed_lanes::{ClosedLaneStep, ClosedLanes, Side};
+pub use compensated::added;
 pub use discrete::{Derivatives, DiscreteConstraint, DiscreteLagrangian};
 pub use dual::Dual;
 pub use effect::{Effect, Slope};

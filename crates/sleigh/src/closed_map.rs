@@ -1,5 +1,4 @@
 use crate::Sleigh;
-use crate::half_turn::turned;
 use crate::spin_equation::SpinEquation;
 use crate::spin_memory::SpinMemory;
 use lagrangian::{ClosedStep, ClosedStepError, Start, mul_add, sin_cos_wrapped};
@@ -31,51 +30,55 @@ pub(crate) fn step(
     h: f64,
     Start { q, v, xi, memory }: Start<'_, 3>,
 ) -> Result<ClosedStep<3, 1>, ClosedStepError> {
-    let (m, a) = (sleigh.mass(), sleigh.offset());
     let equation = SpinEquation::new(sleigh, h);
+    let a = equation.a;
     let (u0, omega0) = match xi {
         // Not both from there: two numbers that were written one by one are waited for where they are read together.
         Some([u, ..]) => (u, v[2]),
         None => recovered(q[2], v),
     };
 
-    let before = SpinMemory::of(memory, h, (q[2], omega0));
-    let mut point = equation.point(before.expected, before.half_turn);
+    let mut before = SpinMemory::of(memory, h, (q[2], omega0));
+    let mut point = equation.point(before.expected(), before.half_turn());
     let mut correction = equation.correction(&point, u0, omega0);
     let mut iterations = 1;
     if !equation.settles(correction) {
         let w;
-        (w, iterations) = search(sleigh, h, before.expected, u0, omega0)?;
+        (w, iterations) = search(sleigh, h, before.expected(), u0, omega0)?;
         point = equation.at(w)?;
         correction = equation.correction(&point, u0, omega0);
     }
 
-    // What is still to be done is linear to rounding, but for a w sin d, and need not wait for new sines.
+    // What is still to be done is linear to rounding, but for a w sin d, and need not wait for new sines. Nor for a quotient: U is
+    // (U cos d) / cos d, and with the tangent there is none but that by the cosine that was expected.
     let (w, e) = (point.w + correction, equation.half * correction);
     let (sin, cos) = (mul_add(e, point.cos, point.sin), mul_add(-e, point.sin, point.cos));
+    let secant = point.cos.recip();
+    let tan = mul_add(e, secant * secant, point.sin * secant);
     let slope = mul_add(a * equation.half, correction, point.across_of_w);
     let across = mul_add(correction, slope, point.across);
-    // (1 + k U) cos d, the sign of w / omega0.
-    let growth = mul_add(equation.k, u0 + across, cos);
+    // U cos d, and (1 + k U) cos d, the sign of w / omega0.
+    let along = u0 + across;
+    let growth = mul_add(equation.k, along, cos);
 
     // With w (1 + k U) = omega0: omega1 = w (1 - k U) = 2 w - omega0. Little of both waits for the correction.
     let u1 = mul_add(correction, 2.0 * slope, mul_add(2.0, point.across, u0));
     let omega1 = 2.0 * w - omega0;
 
-    // The directions of the blade at the beginning, half a step and a step later.
-    let [sin_m, cos_m] = turned(before.heading.both(), [sin, cos]);
-    let [sin1, cos1] = turned([sin_m, cos_m], [sin, cos]);
-    let mean_speed = (u0 + across) / cos;
-    let (turn, spin, way) = (mean_speed * sin, a * (w * cos), h * mean_speed);
+    // The direction of the blade in the middle, over cos d; that at the end is that at the beginning with sin 2 d of it.
+    let [sin0, cos0] = before.heading.both();
+    let (sin_m, cos_m) = (mul_add(tan, cos0, sin0), mul_add(-tan, sin0, cos0));
+    let (turn, spin, way) = (along * tan, a * (w * cos), h * along);
     if growth <= 0.0 {
         return Err(out_of_branch(growth / cos - 1.0));
     }
-    before.leave(memory, h, w, [sin1, cos1]);
+    before.leave(h, w);
+    let [sin1, cos1] = before.heading.turn(h * w, (sin + sin) * cos, [sin_m, cos_m]);
     Ok(ClosedStep {
         increment: [way * cos_m, way * sin_m, h * w],
         velocity: [u1 * cos1, u1 * sin1, omega1],
         xi: [u1, omega1, 0.0],
-        impulses: [[m * (turn + (spin - a * omega0))], [m * (turn + (a * omega1 - spin))]],
+        impulses: [[sleigh.mass() * (turn + (spin - a * omega0))], [sleigh.mass() * (turn + (a * omega1 - spin))]],
         iterations,
     })
 }
@@ -92,7 +95,8 @@ fn search(sleigh: &Sleigh, h: f64, expected: f64, u0: f64, omega0: f64) -> Resul
     let mut iterations = 1;
     loop {
         let correction = equation.correction(&point, u0, omega0);
-        if equation.settles(correction) {
+        // The tangent's second derivative is there too.
+        if equation.settles(correction / point.cos) {
             return Ok((point.w, iterations));
         }
         if correction.is_nan() || iterations == MAX_ITERATIONS {

@@ -1,28 +1,29 @@
 use lagrangian::mul_add;
+use std::array::from_fn;
 
-/// The value after next of a sequence, where its `K`th backward difference vanishes; and its new differences.
+/// The values after next of `P` sequences, where their `K`th backward differences vanish, `N = K P`. `differences`, those of the values
+/// before `x` in rows of `P`, beginning with these values, become those of `x`.
 ///
-/// `before` are the value before `x` and its first differences, as many as `x` and its own are returned. What is expected is
-/// `x + 2 e_1 + .. + K e_(K-1)` with the new differences `e_j = e_(j-1) - before_(j-1)`, of which all but `x` is known: that is all that
-/// waits for `x`.
+/// What is expected is `x + 2 e_1 + .. + K e_(K-1)` with the new differences `e_j = e_(j-1) - before_(j-1)`, of which all but `x` is
+/// known: that is all that waits for `x`.
 #[inline(always)]
-pub(crate) fn after_next<const P: usize, const K: usize>(
-    x: [f64; P],
-    before: [[f64; P]; K],
-) -> ([f64; P], [[f64; P]; K]) {
-    let all = (K * (K + 1) / 2) as f64;
-    let (mut expected, mut after) = ([0.0; P], [x; K]);
-    for i in 0..P {
-        let mut left = all - 1.0;
-        let mut known = left * before[0][i];
-        for j in 1..K {
-            after[j][i] = after[j - 1][i] - before[j - 1][i];
-            left -= (j + 1) as f64;
-            if j < K - 1 {
-                known = mul_add(left, before[j][i], known);
+pub(crate) fn after_next<const P: usize, const N: usize>(x: [f64; P], differences: &mut [f64; N]) -> [f64; P] {
+    let rows = const { N / P };
+    let all = (rows * (rows + 1) / 2) as f64;
+    let mut left = all - 1.0;
+    let (mut known, mut new): ([f64; P], _) = (from_fn(|i| left * differences[i]), x);
+    for j in 1..rows {
+        left -= (j + 1) as f64;
+        for i in 0..P {
+            let before = &mut differences[P * (j - 1) + i];
+            (*before, new[i]) = (new[i], new[i] - *before);
+            if j < rows - 1 {
+                known[i] = mul_add(left, differences[P * j + i], known[i]);
             }
         }
-        expected[i] = mul_add(all, x[i], -known);
     }
-    (expected, after)
+    for i in 0..P {
+        differences[P * (rows - 1) + i] = new[i];
+    }
+    from_fn(|i| mul_add(all, x[i], -known[i]))
 }

@@ -1,54 +1,69 @@
-use lagrangian::sin_cos_wrapped;
+use lagrangian::{added, mul_add, sin_cos_wrapped};
 
 /// By how much an angle may differ from the one that a direction was turned to (rad): a few roundings.
 const SAME: f64 = 23.5 * f64::EPSILON;
-/// By how much less after every step: nothing is left after eight, so that what rounding does to a direction does not add up.
-const WORN: f64 = 3.0 * f64::EPSILON;
+/// By how much less after every step, and for every radian: nothing is left after a hundred steps, or a turn of four radians. What
+/// rounding does to a direction is in proportion to how far it was turned.
+const WORN: f64 = 0.2 * f64::EPSILON;
+const WORN_BY_TURNING: f64 = 6.0 * f64::EPSILON;
 
-/// The direction of the blade at an angle. It is turned along with every step, and its sine and cosine are worked out anew after some.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Heading {
-    /// The angle, to rounding: that of a state is a sum with a rest, which is not known here.
+/// The direction of the blade where a step begins. It is turned along with every step, and its sine and cosine are worked out anew
+/// after some.
+///
+/// They are sums of many small numbers, so their rounding errors are kept and added again (compensated summation).
+#[derive(Debug)]
+pub(crate) struct Heading<'a> {
     angle: f64,
-    sin: f64,
-    cos: f64,
-    /// By how much the angle of a state may differ from it.
-    slack: f64,
+    /// How much more it is than the angle that the direction was turned to: rounding, since the angle of a state is a sum with a rest,
+    /// which is not known here.
+    off: f64,
+    numbers: &'a mut HeadingNumbers,
 }
 
-impl Heading {
-    /// As many numbers it is.
-    pub(crate) const SIZE: usize = 4;
+/// What is remembered of it: the angle that it was turned to, sine and cosine, their rests, and by how much the angle of a state may
+/// differ.
+pub(crate) type HeadingNumbers = [f64; 6];
 
-    /// The direction at an angle.
-    #[inline(always)]
-    pub(crate) fn of(angle: f64) -> Self {
-        let (sin, cos) = sine_and_cosine(angle);
-        Self { angle, sin, cos, slack: SAME }
-    }
+/// None.
+pub(crate) const NO_HEADING: HeadingNumbers = [f64::NAN; 6];
 
-    /// The direction at the angle where a step begins: that at the end of the step before, if this is where that ended.
+impl<'a> Heading<'a> {
+    /// The direction at an angle: that at the end of the step before, if this is where that ended.
     #[inline(always)]
-    pub(crate) fn remembered(&[angle, sin, cos, slack]: &[f64; Self::SIZE], q: f64) -> Self {
-        if (q - angle).abs() <= slack { Self { angle: q, sin, cos, slack } } else { Self::of(q) }
+    pub(crate) fn at(angle: f64, numbers: &'a mut HeadingNumbers) -> Self {
+        let same = |numbers: &HeadingNumbers| (angle - numbers[0]).abs() <= numbers[5];
+        if !same(numbers) {
+            renew(angle, numbers);
+        }
+        Self { angle, off: angle - numbers[0], numbers }
     }
 
     /// Sine and cosine.
     #[inline(always)]
     pub(crate) fn both(&self) -> [f64; 2] {
-        [self.sin, self.cos]
+        [self.numbers[1], self.numbers[2]]
     }
 
-    /// What is remembered of it where a step has turned it by an angle, to this sine and cosine.
+    /// Turns it by an angle, that is by a chord across the direction in the middle; sine and cosine there.
     #[inline(always)]
-    pub(crate) fn turned(&self, turn: f64, [sin, cos]: [f64; 2]) -> [f64; Self::SIZE] {
-        [self.angle + turn, sin, cos, self.slack - WORN]
+    pub(crate) fn turn(&mut self, angle: f64, chord: f64, [sin_m, cos_m]: [f64; 2]) -> [f64; 2] {
+        let [_, sin, cos, rest_of_sin, rest_of_cos, slack] = *self.numbers;
+        let (new_sin, rest_of_sin) = added(sin, mul_add(chord, cos_m, rest_of_sin));
+        let (new_cos, rest_of_cos) = added(cos, mul_add(-chord, sin_m, rest_of_cos));
+        // To the angle that the sum is rounded to; by the next step, since little waits for that.
+        let (ended, rest) = added(self.angle, angle);
+        let further = self.off - rest;
+        let (rest_of_sin, rest_of_cos) = (mul_add(further, cos, rest_of_sin), mul_add(-further, sin, rest_of_cos));
+        let slack = mul_add(-WORN_BY_TURNING, angle.abs(), slack - WORN);
+        *self.numbers = [ended, new_sin, new_cos, rest_of_sin, rest_of_cos, slack];
+        [new_sin, new_cos]
     }
 }
 
-// A call, since few steps come here.
+// A call, since few steps come here, into memory, where what was remembered is read from.
 #[cold]
 #[inline(never)]
-fn sine_and_cosine(angle: f64) -> (f64, f64) {
-    sin_cos_wrapped(angle)
+fn renew(angle: f64, numbers: &mut HeadingNumbers) {
+    let (sin, cos) = sin_cos_wrapped(angle);
+    *numbers = [angle, sin, cos, 0.0, 0.0, SAME];
 }

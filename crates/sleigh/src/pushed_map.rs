@@ -49,12 +49,12 @@ pub(crate) fn step<P: Push<3>>(
         Some([u, ..]) => [u, v[2]],
         None => recovered(q[2], v).into(),
     };
-    let before = MeanMemory::of(memory, h, q[2], start)?;
+    let mut before = MeanMemory::of(memory, h, q[2], start)?;
 
     let heading = before.heading.both();
     let equations = MeanEquations::new(sleigh, (t, h), (q, heading), start);
-    let (mut matrix, mut at) = equations.linearised(push, before.expected, before.half_turn)?;
-    let (mut x, mut d) = matrix.corrected(before.expected, at.missing);
+    let (mut matrix, mut at) = equations.linearised(push, before.expected(), before.half_turn())?;
+    let (mut x, mut d) = matrix.corrected(before.expected(), at.missing);
     let mut iterations = 1;
     let slight = |i: usize| d[i].abs() <= SLIGHT * x[i].abs();
     if !(matrix.keeps_sign() & slight(0) & slight(1)) {
@@ -73,17 +73,17 @@ pub(crate) fn step<P: Push<3>>(
     // The sum of the equations at the two ends gives the velocities at the second.
     let u1 = mul_add(2.0 * a * w, sin, mul_add(h / m * along, cos, u0));
     let omega1 = mul_add(2.0, w, -omega0);
+    before.leave(h, x);
     let half_turn = [sin, cos];
-    let [sin_m, cos_m] = turned(heading, half_turn);
-    let [sin1, cos1] = turned([sin_m, cos_m], half_turn);
+    let ([sin_m, cos_m], way) = (turned(heading, half_turn), h * speed);
+    let [sin1, cos1] = before.heading.turn(h * w, sin + sin, [sin_m, cos_m]);
     let equations = MeanEquations::new(sleigh, (t, h), (q, heading), start);
     if equations.overshoots(push, (x, half_turn), ([u1, omega1], [sin1, cos1])) {
         return None;
     }
     let (turn, spin) = (speed * sin, a * w * cos);
-    before.leave(memory, h, x, [sin1, cos1]);
     Some(ClosedStep {
-        increment: [h * speed * cos_m, h * speed * sin_m, h * w],
+        increment: [way * cos_m, way * sin_m, h * w],
         velocity: [u1 * cos1, u1 * sin1, omega1],
         xi: [u1, omega1, 0.0],
         impulses: [
