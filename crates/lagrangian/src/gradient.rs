@@ -252,6 +252,10 @@ impl<S: Scalar, const N: usize> Scalar for Gradient<S, N> {
         array(Self::fixed(S::zero()), f)
     }
     #[inline(always)]
+    fn apart<T>(f: impl FnOnce() -> T) -> T {
+        f()
+    }
+    #[inline(always)]
     fn over<I, T>(items: &[I], mut start: T, f: impl Fn(T, &I) -> T) -> T {
         for item in items {
             start = f(start, item);

@@ -117,6 +117,10 @@ impl<T: Scalar> Scalar for KnownAngle<T> {
         array(Self::zero(), f)
     }
     #[inline(always)]
+    fn apart<U>(f: impl FnOnce() -> U) -> U {
+        T::apart(f)
+    }
+    #[inline(always)]
     fn over<I, U>(items: &[I], start: U, f: impl Fn(U, &I) -> U) -> U {
         T::over(items, start, f)
     }

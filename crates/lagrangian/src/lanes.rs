@@ -1,7 +1,6 @@
 use crate::Scalar;
 use crate::scalar::derived_operators;
 use crate::sincos;
-use multiversion::multiversion;
 use std::array::from_fn;
 use std::ops::{Add, Div, Mul, Neg};
 
@@ -33,7 +32,11 @@ impl Lanes {
 ///
 /// What `f` calls takes part as far as it is inlined into `f`; mark closures and kernels `#[inline(always)]`. A portable
 /// build keeps the speed of a native one this way. The bits of the result do not depend on the choice.
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2", "aarch64+neon"))]
+// A build for machines that have vectors of four has one of them: three times as much to compile else, for no machine that it is for.
+#[cfg_attr(
+    not(target_feature = "avx2"),
+    multiversion::multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2", "aarch64+neon"))
+)]
 pub fn vectorized<R, F: FnOnce() -> R>(f: F) -> R {
     f()
 }

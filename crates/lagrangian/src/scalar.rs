@@ -55,6 +55,12 @@ pub trait Scalar:
         items.iter().fold(start, f)
     }
 
+    /// `f()`, inlined as [`array`](Self::array) is: else it may stay a function, which is compiled once for all that call it.
+    #[must_use]
+    fn apart<T>(f: impl FnOnce() -> T) -> T {
+        f()
+    }
+
     /// The same number, carried as the other is. Numbers in vector registers are told apart, when a model is compiled, from those
     /// that all eight have in common; where a run decides which of the two a number is, every operation after it would be there
     /// for both.

@@ -1,7 +1,7 @@
 use crate::SceneEffect;
 use lagrangian::{Effect, Piecewise, Scalar};
 use sleigh::effects::{Bowl, Drag, EggCrate, Hills, MovingMass, Slope, Thrust, Torque};
-use sleigh::{SleighBody, SleighError};
+use sleigh::{Sleigh, SleighBody, SleighError};
 
 /// An effect of a scene that acts on the coordinates there are: one type for a list of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,26 +33,64 @@ macro_rules! each {
     };
 }
 
+/// On whichever body, an effect acts on the sleigh that it is: so that of every one there is but one to compile.
 impl<B: SleighBody, const N: usize> Effect<B, N> for Acting {
     #[inline(always)]
     fn lagrangian<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<S> {
-        each!(self, effect => effect.lagrangian(body, t, q, v))
+        self.lagrangian_on(body.sleigh(), t, q, v)
     }
     #[inline(always)]
     fn force<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
-        each!(self, effect => effect.force(body, t, q, v))
+        self.force_on(body.sleigh(), t, q, v)
     }
     #[inline(always)]
     fn slope<S: Scalar>(&self, body: &B, t: S, q: &[S; N]) -> lagrangian::Slope<S, N> {
-        each!(self, effect => Effect::<B, N>::slope(effect, body, t, q))
+        self.slope_on(body.sleigh(), t, q)
     }
     #[inline(always)]
     fn whole_force<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
-        each!(self, effect => effect.whole_force(body, t, q, v))
+        self.whole_force_on(body.sleigh(), t, q, v)
     }
     #[inline(always)]
     fn in_own_axes(&self, body: &B) -> Option<lagrangian::OwnPush> {
         each!(self, effect => Effect::<B, N>::in_own_axes(effect, body))
+    }
+}
+
+impl Acting {
+    #[inline(always)]
+    fn lagrangian_on<S: Scalar, const N: usize>(&self, sleigh: &Sleigh, t: S, q: &[S; N], v: &[S; N]) -> Option<S> {
+        S::apart(
+            #[inline(always)]
+            || each!(self, effect => effect.lagrangian(sleigh, t, q, v)),
+        )
+    }
+    #[inline(always)]
+    fn force_on<S: Scalar, const N: usize>(&self, sleigh: &Sleigh, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
+        S::apart(
+            #[inline(always)]
+            || each!(self, effect => effect.force(sleigh, t, q, v)),
+        )
+    }
+    #[inline(always)]
+    fn slope_on<S: Scalar, const N: usize>(&self, sleigh: &Sleigh, t: S, q: &[S; N]) -> lagrangian::Slope<S, N> {
+        S::apart(
+            #[inline(always)]
+            || each!(self, effect => Effect::<Sleigh, N>::slope(effect, sleigh, t, q)),
+        )
+    }
+    #[inline(always)]
+    fn whole_force_on<S: Scalar, const N: usize>(
+        &self,
+        sleigh: &Sleigh,
+        t: S,
+        q: &[S; N],
+        v: &[S; N],
+    ) -> Option<[S; N]> {
+        S::apart(
+            #[inline(always)]
+            || each!(self, effect => effect.whole_force(sleigh, t, q, v)),
+        )
     }
 }
 

@@ -205,6 +205,10 @@ impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
         array(Zero, f)
     }
     #[inline(always)]
+    fn apart<T>(f: impl FnOnce() -> T) -> T {
+        f()
+    }
+    #[inline(always)]
     fn over<I, T>(items: &[I], mut start: T, f: impl Fn(T, &I) -> T) -> T {
         for item in items {
             start = f(start, item);
