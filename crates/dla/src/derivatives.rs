@@ -1,4 +1,5 @@
 use lagrangian::linear::{Inverse, larger};
+use lagrangian::mul_add;
 use std::array::from_fn;
 
 /// Systems of more coordinates or constraints are not remembered.
@@ -112,7 +113,8 @@ impl Derivatives {
         let mut sum = [0.0; W];
         for (column, x) in self.columns.iter().zip(x) {
             for i in 0..W {
-                sum[i] += column[i] * x;
+                // Of few, sums wait for less where products do not wait with them.
+                sum[i] = if W > 4 { mul_add(column[i], *x, sum[i]) } else { sum[i] + column[i] * x };
             }
         }
         from_fn(|i| sum[i])

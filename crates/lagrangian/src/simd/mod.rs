@@ -31,8 +31,9 @@ pub trait Kernel {
 pub fn dispatch<K: Kernel>(kernel: K) -> Option<K::Output> {
     #[cfg(target_arch = "x86_64")]
     {
-        use build::{HALVED, WIDE};
+        use build::{HALVED, NOT_WIDE, WIDE};
         if !HALVED
+            && !NOT_WIDE
             && let Some(simd) = pulp::x86::V4::try_new()
             && (WIDE || !halved())
         {
@@ -53,8 +54,8 @@ pub fn dispatch<K: Kernel>(kernel: K) -> Option<K::Output> {
 pub fn dispatch_widest<K: Kernel>(kernel: K) -> K::Output {
     #[cfg(target_arch = "x86_64")]
     {
-        use build::{NARROW, WIDE};
-        if let Some(simd) = pulp::x86::V4::try_new() {
+        use build::{NARROW, NOT_WIDE, WIDE};
+        if !NOT_WIDE && let Some(simd) = pulp::x86::V4::try_new() {
             return run::<_, _, 1>(simd, kernel);
         }
         if !WIDE && let Some(simd) = pulp::x86::V3::try_new() {
@@ -97,6 +98,8 @@ mod build {
         target_feature = "avx512dq",
         target_feature = "avx512vl"
     ));
+    /// None of eight: the machine that builds the program is the one that it is for, and has none.
+    pub(super) const NOT_WIDE: bool = cfg!(this_machine) && !WIDE;
     /// These in halves, one after the other.
     pub(super) const HALVED: bool =
         WIDE && cfg!(all(target_feature = "sse4a", not(target_feature = "avx512vp2intersect")));
