@@ -29,7 +29,8 @@ impl<'a> MeanMemory<'a> {
         if !memory.is_of(h, KIND) {
             begin(memory, h, x)?;
         }
-        let (numbers, direction) = memory.parts();
+        // The heading first: behind the differences, its sine would be stored with them, and its cosine be waited for, which is read with it.
+        let (direction, numbers) = memory.parts();
         Some(Self { numbers, heading: Heading::at(heading, direction) })
     }
 
@@ -64,7 +65,7 @@ impl<'a> MeanMemory<'a> {
 fn begin(memory: &mut Memory, h: f64, x: [f64; 2]) -> Option<()> {
     let (sin, cos) = half_turn(0.5 * h * x[1]).ok()?;
     memory.begin(h, KIND);
-    let (numbers, heading) = memory.parts::<SIZE, _>();
+    let (heading, numbers) = memory.parts::<_, SIZE>();
     (*numbers, *heading) = ([0.0; SIZE], NO_HEADING);
     numbers[..EXPECTED + 2].copy_from_slice(&[sin, cos, x[0], x[1], x[0], x[1], x[0], x[1]]);
     Some(())

@@ -28,7 +28,7 @@ impl<'a> SpinMemory<'a> {
         if !memory.is_of(h, KIND) {
             begin(memory, h, w);
         }
-        let (numbers, direction) = memory.parts();
+        let (direction, numbers) = memory.parts();
         Self { numbers, heading: Heading::at(heading, direction) }
     }
 
@@ -62,7 +62,7 @@ impl<'a> SpinMemory<'a> {
 #[inline(never)]
 fn begin(memory: &mut Memory, h: f64, w: f64) {
     memory.begin(h, KIND);
-    let (numbers, heading) = memory.parts::<SIZE, _>();
+    let (heading, numbers) = memory.parts::<_, SIZE>();
     let [none, zero] = [f64::NAN, 0.0];
     (*numbers, *heading) = ([none, none, none, w, w, zero, zero, zero, zero, zero], NO_HEADING);
 }
