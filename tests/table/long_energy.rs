@@ -25,9 +25,9 @@ fn egg_crate(offset: f64) -> Row<Three, 3> {
     sleigh_in(Field::EggCrate, offset, at_centre([x, y, heading, speed, omega], offset))
 }
 
-/// The valley at the energy 1/2.
-fn valley() -> Row<Three, 3> {
-    let (y, omega) = (0.6, 0.2);
+/// The valley at the energy 1/2, from a place that far from another.
+fn valley(apart: f64) -> Row<Three, 3> {
+    let (y, omega) = (0.6 + apart, 0.2);
     let speed = f64::sqrt(2.0 * (0.5 - 0.5 * y * y) - 1.25 * omega * omega);
     sleigh_in(Field::Valley, 0.5, at_centre([0.0, y, 0.9, speed, omega], 0.5))
 }
@@ -58,8 +58,13 @@ fn dla_drifts_on_an_attractor() {
     }
     let order = (slopes[0] / slopes[2]).log2() / 2.0;
     assert!((order - 2.0).abs() < 0.1, "the drift is of order {order}");
-    let valley = slope(&valley(), "dla", 0.05);
-    assert!((valley / -4.7e-7 - 1.0).abs() < 0.2, "{valley:e}");
+    // In a chaotic motion rounding decides which part of the attractor a run sees: its slope has a standard deviation of a fifth, and
+    // the mean of as many runs, -5.2e-7 when this was written, one of a twenty-fifth; the difference of two such means, .055. (One run
+    // alone once gave -4.7e-7.)
+    const RUNS: u32 = 24;
+    let runs = (0..RUNS).map(|k| slope(&valley(1e-10 * f64::from(k)), "dla", 0.05));
+    let valley = runs.sum::<f64>() / f64::from(RUNS);
+    assert!((valley / -5.2e-7 - 1.0).abs() < 0.2, "{valley:e}");
 }
 
 /// The control: without an offset there is no attractor, and the same measure finds a hundredth of that.
