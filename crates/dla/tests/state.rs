@@ -288,13 +288,13 @@ fn states_after_other_steps_differ() {
         // A step of another length begins anew.
         assert_eq!(after(&well, form, &[0.5]), after(&well, form, &[0.25, 0.5]));
     }
-    // Closed forms begin as after many steps, which were all the same, but turn a heading along for eight steps; the general step counts
+    // Closed forms begin as after many steps, which were all the same, but turn a heading along for 118 steps; the general step counts
     // its increments.
-    assert_eq!(after(&well, Form::Best, &[0.5]), after(&well, Form::Best, &[0.5; 9]));
-    assert_ne!(after(&well, Form::Best, &[0.5]), after(&well, Form::Best, &[0.5; 8]));
+    assert_eq!(after(&well, Form::Best, &[0.5]), after(&well, Form::Best, &[0.5; 119]));
+    assert_ne!(after(&well, Form::Best, &[0.5]), after(&well, Form::Best, &[0.5; 118]));
     assert_ne!(after(&well, Form::General, &[0.5]), after(&well, Form::General, &[0.5, 0.5]));
-    assert_eq!(after(&body, Form::Best, &[0.5]), after(&body, Form::Best, &[0.5; 9]));
-    assert_ne!(after(&body, Form::Best, &[0.5]), after(&body, Form::Best, &[0.5; 8]));
+    assert_eq!(after(&body, Form::Best, &[0.5]), after(&body, Form::Best, &[0.5; 119]));
+    assert_ne!(after(&body, Form::Best, &[0.5]), after(&body, Form::Best, &[0.5; 118]));
     assert_ne!(after(&body, Form::Best, &[0.5]), after(&body, Form::Best, &[0.25]));
     assert_eq!(after(&body, Form::Best, &[0.5]), after(&body, Form::Best, &[0.25, 0.5]));
 }

@@ -83,8 +83,8 @@ pub(crate) fn step(
     })
 }
 
-/// A search that does not settle at once, from the expected spin where that is near, or one guessed from the velocities: a spin
-/// whose correction settles it, and how many there were.
+/// A search that does not settle at once, from the expected spin where that is near, or one guessed from the velocities: the
+/// spin that it settles at, and after how many corrections.
 // Out of line, and given and giving numbers alone, so that it is no part of a step that settles at once.
 #[cold]
 #[inline(never)]
@@ -95,9 +95,9 @@ fn search(sleigh: &Sleigh, h: f64, expected: f64, u0: f64, omega0: f64) -> Resul
     let mut iterations = 1;
     loop {
         let correction = equation.correction(&point, u0, omega0);
-        // The tangent's second derivative is there too.
-        if equation.settles(correction / point.cos) {
-            return Ok((point.w, iterations));
+        if equation.settles(correction) {
+            // With it: near a right angle what it leaves of the tangent is more than rounding.
+            return Ok((point.w + correction, iterations));
         }
         if correction.is_nan() || iterations == MAX_ITERATIONS {
             return Err(failure(equation.k * u0, iterations, correction / point.w));
