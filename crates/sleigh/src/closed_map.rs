@@ -1,6 +1,6 @@
 use crate::Sleigh;
 use crate::spin_equation::SpinEquation;
-use crate::spin_memory::SpinMemory;
+use crate::spin_memory::remembered;
 use lagrangian::{ClosedStep, ClosedStepError, Start, mul_add, sin_cos_wrapped};
 
 const MAX_ITERATIONS: u32 = 30;
@@ -38,13 +38,14 @@ pub(crate) fn step(
         None => recovered(q[2], v),
     };
 
-    let mut before = SpinMemory::of(memory, h, (q[2], omega0));
-    let mut point = equation.point(before.expected(), before.half_turn());
+    let mut before = remembered(memory, h, (q[2], omega0));
+    let [expected] = before.expected();
+    let mut point = equation.point(expected, before.half_turn().into());
     let mut correction = equation.correction(&point, u0, omega0);
     let mut iterations = 1;
     if !equation.settles(correction) {
         let w;
-        (w, iterations) = search(sleigh, h, before.expected(), u0, omega0)?;
+        (w, iterations) = search(sleigh, h, expected, u0, omega0)?;
         point = equation.at(w)?;
         correction = equation.correction(&point, u0, omega0);
     }
@@ -72,7 +73,7 @@ pub(crate) fn step(
     if growth <= 0.0 {
         return Err(out_of_branch(growth / cos - 1.0));
     }
-    before.leave(h, w);
+    before.leave(h, [w]);
     let [sin1, cos1] = before.heading.turn(h * w, (sin + sin) * cos, [sin_m, cos_m]);
     Ok(ClosedStep {
         increment: [way * cos_m, way * sin_m, h * w],

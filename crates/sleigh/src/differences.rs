@@ -1,14 +1,14 @@
 use lagrangian::mul_add;
 use std::array::from_fn;
 
-/// The values after next of `P` sequences, where their `K`th backward differences vanish, `N = K P`. `differences`, those of the values
+/// The values after next of `P` sequences, where their `K`th backward differences vanish. `differences`, those of the values
 /// before `x` in rows of `P`, beginning with these values, become those of `x`.
 ///
 /// What is expected is `x + 2 e_1 + .. + K e_(K-1)` with the new differences `e_j = e_(j-1) - before_(j-1)`, of which all but `x` is
 /// known: that is all that waits for `x`.
 #[inline(always)]
-pub(crate) fn after_next<const P: usize, const N: usize>(x: [f64; P], differences: &mut [f64; N]) -> [f64; P] {
-    let rows = const { N / P };
+pub(crate) fn after_next<const P: usize>(x: [f64; P], differences: &mut [f64]) -> [f64; P] {
+    let rows = differences.len() / P;
     let all = (rows * (rows + 1) / 2) as f64;
     let mut left = all - 1.0;
     let (mut known, mut new): ([f64; P], _) = (from_fn(|i| left * differences[i]), x);

@@ -31,8 +31,8 @@ impl<'a> Heading<'a> {
     /// The direction at an angle: that at the end of the step before, if this is where that ended.
     #[inline(always)]
     pub(crate) fn at(angle: f64, numbers: &'a mut HeadingNumbers) -> Self {
-        let same = |numbers: &HeadingNumbers| (angle - numbers[0]).abs() <= numbers[5];
-        if !same(numbers) {
+        let same = (angle - numbers[0]).abs() <= numbers[5];
+        if !same {
             renew(angle, numbers);
         }
         Self { angle, off: angle - numbers[0], numbers }

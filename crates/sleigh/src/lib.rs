@@ -16,6 +16,7 @@ mod differences;
 pub mod effects;
 mod error;
 mod exact;
+mod foreseen;
 mod half_turn;
 mod heading;
 mod mean_equations;

@@ -2,7 +2,7 @@ use crate::Sleigh;
 use crate::closed_map::recovered;
 use crate::half_turn::{half_turn, turned};
 use crate::mean_equations::{Matrix, MeanEquations, Point};
-use crate::mean_memory::MeanMemory;
+use crate::mean_memory::remembered;
 use lagrangian::{ClosedStep, Push, Start, mul_add};
 use std::array::from_fn;
 
@@ -49,7 +49,7 @@ pub(crate) fn step<P: Push<3>>(
         Some([u, ..]) => [u, v[2]],
         None => recovered(q[2], v).into(),
     };
-    let mut before = MeanMemory::of(memory, h, q[2], start)?;
+    let mut before = remembered(memory, h, q[2], start)?;
 
     let heading = before.heading.both();
     let equations = MeanEquations::new(sleigh, (t, h), (q, heading), start);

@@ -1,7 +1,7 @@
 use super::state::{Row, accumulate, loaded, store};
 use super::{BLOCK, Ensemble, LANES, LaneState};
 use lagrangian::simd::{Kernel, Pack, Simd, dispatch_widest};
-use lagrangian::{ClosedLaneStep, ClosedLanes, Memory, Start, System};
+use lagrangian::{ClosedLaneStep, ClosedLanes, Memory, Start, System, added};
 use std::array::from_fn;
 use std::marker::PhantomData;
 
@@ -264,10 +264,8 @@ fn one_by_one<Sys: System<N, M>, const W: usize, const N: usize, const M: usize,
             return None;
         }
         for k in 0..N {
-            let increment = step.increment[k] + state.rest[k].0[lane];
-            let sum = q[k] + increment;
-            state.rest[k].0[lane] = increment - (sum - q[k]);
-            (state.q[k].0[lane], state.xi[k].0[lane]) = (sum, step.xi[k]);
+            (state.q[k].0[lane], state.rest[k].0[lane]) = added(q[k], step.increment[k] + state.rest[k].0[lane]);
+            state.xi[k].0[lane] = step.xi[k];
         }
         for k in 0..M {
             let impulse = step.impulses[0][k] + step.impulses[1][k];

@@ -1,7 +1,7 @@
 use crate::State;
 use crate::state::wrapped;
-use lagrangian::array;
 use lagrangian::simd::{Pack, Simd};
+use lagrangian::{added, array};
 use std::array::from_fn;
 use std::f64::consts::PI;
 
@@ -97,10 +97,7 @@ impl<const N: usize, const W: usize> LaneState<N, W> {
 /// Adds an increment to a number whose rounding error is kept.
 #[inline(always)]
 pub(super) fn accumulate<S: Simd, const K: usize>(q: &mut Pack<S, K>, rest: &mut Pack<S, K>, increment: Pack<S, K>) {
-    let increment = increment + *rest;
-    let sum = *q + increment;
-    *rest = increment - (sum - *q);
-    *q = sum;
+    (*q, *rest) = added(*q, increment + *rest);
 }
 
 /// Eight numbers of each row.
