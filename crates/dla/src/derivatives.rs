@@ -120,13 +120,36 @@ impl Derivatives {
         from_fn(|i| sum[i])
     }
 
+    /// The product of the inverse of a matrix that is the unit matrix beyond the first `D` places with a vector that is zero there.
+    #[inline(always)]
+    pub(crate) fn times_first<const N: usize>(&self, d: usize, x: &[f64; N]) -> [f64; N] {
+        let mut sum = [0.0; N];
+        for i in 0..d {
+            sum[i] = (1..d).fold(self.columns[0][i] * x[0], |sum, j| sum + self.columns[j][i] * x[j]);
+        }
+        sum
+    }
+
     /// That a search with them took so many corrections. They are to be renewed where they have cost more than that.
     #[inline(always)]
     pub(crate) fn took<const N: usize>(&mut self, corrections: u32) {
-        /// So many searches in a row have their own where a second one is not worth it.
-        const OWN: u32 = 16;
         // About as many corrections take the time of new derivatives.
         let price = const { (N * N * N).div_ceil(27) as u32 };
+        self.took_at(price, corrections);
+    }
+
+    /// The same in the basis of admissible velocities, where a search takes a correction more now and then without derivatives that are
+    /// any older, since the basis itself turns along the way.
+    #[inline(always)]
+    pub(crate) fn took_in_basis<const N: usize>(&mut self, corrections: u32) {
+        let price = const { 8 + (N * N * N).div_ceil(27) as u32 };
+        self.took_at(price, corrections);
+    }
+
+    #[inline(always)]
+    fn took_at(&mut self, price: u32, corrections: u32) {
+        /// So many searches in a row have their own where a second one is not worth it.
+        const OWN: u32 = 16;
         self.searches = self.searches.saturating_add(1);
         if self.searches == 1 {
             self.least = corrections;

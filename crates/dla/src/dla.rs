@@ -6,8 +6,8 @@ use crate::projection::{Projected, Projection};
 use crate::settle::sup;
 use crate::{Newton, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::{
-    Alpha, ClosedStepError, DiscreteConstraint, DiscreteLagrangian, Midpoint, NotAWeight, System, Trapezoid, momentum,
-    reaction_rows,
+    Alpha, ClosedStepError, DiscreteConstraint, DiscreteLagrangian, Midpoint, NotAWeight, System, Trapezoid,
+    linear_basis, momentum, reaction_rows,
 };
 use std::array::from_fn;
 
@@ -184,6 +184,7 @@ impl<L, C> Dla<L, C> {
             a0: reaction_rows(system, t0, &q0, &v0),
             basis: basis(t0, &q0),
         };
+        let start = increment.basis;
         let Mean { v, p1, lambda, iterations, some, block } = increment.solve(&self.newton, v0, predicted(state, h))?;
 
         // The momentum at the end, projected onto the constraint there.
@@ -202,7 +203,14 @@ impl<L, C> Dla<L, C> {
         // From the middle of the step to its end.
         let acceleration = from_fn(|i| (v1[i] - v[i]) / (0.5 * h));
         state.advance_with_acceleration(h, &d, v1, acceleration);
-        self.kept.begins::<N, M>(block.zip(mass), h, state.q(), &v1);
+        let bases = || {
+            let middle = self.constraint.basis_along(system, (t0, h), &q0, &v)?;
+            let ends = start.zip(linear_basis(system, t1, &q1))?;
+            let free = system.holonomic(t1, &q1).is_none() && linear_basis(system, t0, &q0).is_some();
+            free.then_some([ends.0, middle, ends.1.1])
+        };
+        let bases = if in_basis && self.kept.wants_basis() { bases() } else { None };
+        self.kept.begins::<N, M>(block.zip(mass), bases, h, (state.q(), &v1), &v);
         Ok(StepReport { impulses: [lambda, mu], iterations, work: None })
     }
 }

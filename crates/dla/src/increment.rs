@@ -159,6 +159,21 @@ where
         at
     }
 
+    /// The same with the configurations of a step of the mean velocity `way`, which is near to `v`.
+    #[inline(always)]
+    pub(crate) fn momenta_along(&self, way: &[f64; N], v: &[f64; N]) -> Departure<N> {
+        let Self { rules: (lagrangian, _), system, t0, h, q0, .. } = *self;
+        let [d1, d2] = lagrangian.slopes_along(system, (t0, h), &q0, way, v);
+        let mut at = Departure { residual: from_fn(|i| self.p0[i] + d1[i]), arriving: d2 };
+        if let Some((minus, plus)) = lagrangian.forces_along(system, (t0, h), &q0, way, v) {
+            for i in 0..N {
+                at.residual[i] += minus[i];
+                at.arriving[i] += plus[i];
+            }
+        }
+        at
+    }
+
     /// The solution at the end of the branch that begins with a step of length zero.
     #[cold]
     #[inline(never)]

@@ -2,6 +2,9 @@ use crate::State;
 use crate::derivatives::{COORDINATES, Derivatives, Row, counted, switch};
 use crate::past::Past;
 use crate::settle::LEAST;
+use crate::unknowns::Unknowns;
+use lagrangian::AdmissibleBasis;
+use std::array::from_fn;
 
 /// What a step of the general form remembers of those before it, with which the search of the next one begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,15 +14,23 @@ pub(crate) struct Kept {
     /// For how many steps it is not to be tried, and for how many where it fails again.
     pause: u32,
     next_pause: u32,
-    /// Of `h D1 D2 L_d`, with the derivatives of the forces.
+    /// In which unknowns a step goes on.
+    unknowns: Unknowns,
+    /// Of `h D1 D2 L_d`, with the derivatives of the forces: `W(q0)' h D1 D2 L_d W` in the basis.
     pub(crate) block: Derivatives,
-    /// Of the mass matrix.
+    /// Of the mass matrix: `W' M W` in the basis.
     pub(crate) mass: Derivatives,
-    /// The velocities at the last nodes.
+    /// The velocities at the last nodes, quasi-velocities in the basis.
     pub(crate) velocities: Past<COORDINATES>,
-    /// Where the last step ended.
+    /// The mean quasi-velocities of the last steps, in the basis.
+    pub(crate) means: Past<COORDINATES>,
+    /// Where the last step ended, and with what velocity.
     q: Row,
+    v: Row,
 }
+
+/// The bases of admissible velocities at the beginning of a step, for its mean velocity, and at its end.
+pub(crate) type Bases<const N: usize, const M: usize> = [AdmissibleBasis<f64, N, M>; 3];
 
 /// `h D1 D2 L_d`, with the derivatives of the forces, and the mass matrix.
 pub(crate) type Matrices<const N: usize> = ([[f64; N]; N], [[f64; N]; N]);
@@ -30,23 +41,26 @@ impl Kept {
         ready: false,
         pause: 0,
         next_pause: 1,
+        unknowns: Unknowns::UNDECIDED,
         block: Derivatives::NONE,
         mass: Derivatives::NONE,
         velocities: Past::new(),
+        means: Past::new(),
         q: [0.0; COORDINATES],
+        v: [0.0; COORDINATES],
     };
 
     /// Forgets all unless the last step ended in this state: what begins anew is to be the same whatever was before.
     #[inline(always)]
     #[allow(clippy::float_cmp, reason = "only the very same state goes on")]
     pub(crate) fn follows<const N: usize>(&mut self, state: &State<N>) {
-        let (q, v) = (&self.q, self.velocities.last());
+        let (q, v) = (&self.q, &self.v);
         let mut same = N <= COORDINATES;
         for i in 0..N.min(COORDINATES) {
             same &= (q[i] == state.q()[i]) & (v[i] == state.v()[i]);
         }
         if !same {
-            (self.ready, self.pause, self.next_pause) = (false, 0, 1);
+            (self.ready, self.pause, self.next_pause, self.unknowns) = (false, 0, 1, Unknowns::UNDECIDED);
         }
     }
 
@@ -56,15 +70,27 @@ impl Kept {
         self.ready
     }
 
+    /// Whether it does so in the basis of admissible velocities.
+    #[inline(always)]
+    pub(crate) fn is_in_basis(&self) -> bool {
+        self.unknowns.in_basis
+    }
+
+    /// Whether derivatives are wanted that are in the basis.
+    pub(crate) fn wants_basis(&self) -> bool {
+        self.unknowns.wanted
+    }
+
     /// That a step of length `h` has ended at `q` with the velocity `v` and did not go on from one before; the next may, where its
-    /// derivatives and mass matrix are given.
+    /// derivatives and mass matrix are given: in the basis where they are given for it, with the quasi-velocities.
     #[inline(never)]
     pub(crate) fn begins<const N: usize, const M: usize>(
         &mut self,
         matrices: Option<Matrices<N>>,
+        basis: Option<Bases<N, M>>,
         h: f64,
-        q: &[f64; N],
-        v: &[f64; N],
+        (q, v): (&[f64; N], &[f64; N]),
+        mean: &[f64; N],
     ) {
         if N > COORDINATES || M > COORDINATES {
             return;
@@ -73,15 +99,32 @@ impl Kept {
         self.pause = self.pause.saturating_sub(1);
         self.block.forget();
         self.mass.forget();
-        self.ready = given.is_some_and(|(block, mass)| {
+        self.unknowns.begin(basis.is_some());
+        self.velocities.forget();
+        self.means.forget();
+        let (mut node, mut middle) = (*v, *mean);
+        self.ready = given.is_some_and(|(mut block, mut mass)| {
+            if let Some([start, middle_of_step, end]) = &basis {
+                // The quasi-velocities of `v = W xi`: `(W0' K W) xi = W0' K v`.
+                node = end.products(&image(&mass, v));
+                middle = start.products(&image(&block, mean));
+                block = in_bases(&block, start, middle_of_step);
+                mass = in_bases(&mass, end, end);
+            }
             // They are near enough to those of the next step, whose own search would hardly have taken more.
             let renewed = self.block.renew(&block).and(self.mass.renew(&mass));
             self.block.took::<N>(LEAST);
             self.mass.took::<N>(LEAST);
+            if basis.is_some() {
+                let dimension = AdmissibleBasis::<f64, N, M>::DIMENSION;
+                node = self.mass.times_first(dimension, &node);
+                middle = self.block.times_first(dimension, &middle);
+            }
             renewed.is_some()
         });
-        self.velocities.forget();
-        self.ended(h, q, v);
+        self.means.push(h, &row(&middle));
+        self.velocities.push(h, &row(&node));
+        self.ends_at(q, v);
     }
 
     /// That a step could not go on from the last.
@@ -96,17 +139,36 @@ impl Kept {
     /// That a step of length `h` that went on from the last has ended at `q` with the velocity `v`.
     #[inline(always)]
     pub(crate) fn ended<const N: usize>(&mut self, h: f64, q: &[f64; N], v: &[f64; N]) {
-        let mut row = [0.0; COORDINATES];
-        for i in 0..N {
-            (self.q[i], row[i]) = (q[i], v[i]);
-        }
-        self.velocities.push(h, &row);
+        self.velocities.push(h, &row(v));
+        self.ends_at(q, v);
+    }
+
+    /// The same in the basis, with the quasi-velocities in the mean and at the end.
+    #[inline(always)]
+    pub(crate) fn ended_in_basis<const N: usize>(
+        &mut self,
+        h: f64,
+        (q, v): (&[f64; N], &[f64; N]),
+        [mean, end]: [&[f64; N]; 2],
+    ) {
+        self.means.push(h, &row(mean));
+        self.velocities.push(h, &row(end));
+        self.ends_at(q, v);
+    }
+
+    #[inline(always)]
+    fn ends_at<const N: usize>(&mut self, q: &[f64; N], v: &[f64; N]) {
+        (self.q, self.v) = (row(q), row(v));
     }
 
     /// That a step went on from the last.
     #[inline(always)]
     pub(crate) fn succeeds(&mut self) {
         self.next_pause = 1;
+        // Not while extrapolations are from few steps, and corrections large.
+        if !self.unknowns.decided && self.velocities.is_full() {
+            self.ready = !self.unknowns.are_to_change(self.block.stale);
+        }
     }
 
     /// All of it as numbers; none of no step.
@@ -133,7 +195,7 @@ impl Kept {
 
     /// Every number of it, in a fixed order.
     fn visit(&mut self, mut visit: impl FnMut(&mut f64)) {
-        let Self { ready, pause, next_pause, block, mass, velocities, q } = self;
+        let Self { ready, pause, next_pause, unknowns, block, mass, velocities, means, q, v } = self;
         for derivatives in [block, mass] {
             derivatives.visit(&mut visit);
         }
@@ -141,7 +203,42 @@ impl Kept {
             counted(number, &mut visit);
         }
         switch(ready, &mut visit);
-        velocities.visit(&mut visit);
-        q.iter_mut().for_each(visit);
+        unknowns.visit(&mut visit);
+        for past in [velocities, means] {
+            past.visit(&mut visit);
+        }
+        for row in [q, v] {
+            row.iter_mut().for_each(&mut visit);
+        }
     }
+}
+
+#[inline(always)]
+fn row<const N: usize>(x: &[f64; N]) -> Row {
+    let mut row = [0.0; COORDINATES];
+    for (place, x) in row.iter_mut().zip(x) {
+        *place = *x;
+    }
+    row
+}
+
+/// `K x`.
+fn image<const N: usize>(matrix: &[[f64; N]; N], x: &[f64; N]) -> [f64; N] {
+    matrix.map(|row| (0..N).map(|j| row[j] * x[j]).sum())
+}
+
+/// `V' K W`, and ones on the diagonal beyond the dimension of the bases.
+pub(crate) fn in_bases<const N: usize, const M: usize>(
+    matrix: &[[f64; N]; N],
+    v: &AdmissibleBasis<f64, N, M>,
+    w: &AdmissibleBasis<f64, N, M>,
+) -> [[f64; N]; N] {
+    let mut reduced = from_fn(|i| from_fn(|j| f64::from(u8::from(i == j))));
+    for (j, w) in w.vectors().iter().enumerate() {
+        let column = v.products(&image(matrix, w));
+        for i in 0..AdmissibleBasis::<f64, N, M>::DIMENSION {
+            reduced[i][j] = column[i];
+        }
+    }
+    reduced
 }

@@ -45,6 +45,7 @@ mod state;
 mod substepping;
 mod taylor;
 mod trajectory;
+mod unknowns;
 mod work;
 
 pub use crate::dla::{Dla, Form};

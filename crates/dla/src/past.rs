@@ -2,35 +2,45 @@ use crate::{Checkpoint, CheckpointError};
 use lagrangian::mul_add;
 use std::fmt;
 
-/// As many give an extrapolation of order 7 in the step.
-const KEPT: usize = 7;
+/// As many give an extrapolation of order 9 in the step.
+const KEPT: usize = 9;
 /// Fewer say less than the last acceleration.
 const FEWEST: usize = 3;
-/// Of as many as there are: with them the next difference vanishes.
-const WEIGHTS: [[f64; KEPT]; KEPT + 1] = [
-    [0.0; KEPT],
-    [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [2.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [3.0, -3.0, 1.0, 0.0, 0.0, 0.0, 0.0],
-    [4.0, -6.0, 4.0, -1.0, 0.0, 0.0, 0.0],
-    [5.0, -10.0, 10.0, -5.0, 1.0, 0.0, 0.0],
-    [6.0, -15.0, 20.0, -15.0, 6.0, -1.0, 0.0],
-    [7.0, -21.0, 35.0, -35.0, 21.0, -7.0, 1.0],
-];
+/// Of as many as there are, binomial coefficients: with them the next difference vanishes.
+const WEIGHTS: [[f64; KEPT]; KEPT + 1] = weights();
+
+const fn weights() -> [[f64; KEPT]; KEPT + 1] {
+    let mut all = [[0.0; KEPT]; KEPT + 1];
+    let mut made = 1;
+    while made <= KEPT {
+        // (-1)^j C(made, j + 1)
+        let (mut j, mut weight) = (0, made as f64);
+        while j < made {
+            all[made][j] = weight;
+            weight = -weight * (made - 1 - j) as f64 / (j + 2) as f64;
+            j += 1;
+        }
+        made += 1;
+    }
+    all
+}
 
 /// The increments of the last steps, all of one length, from which the next one is extrapolated: a search that begins there
 /// is short, and what begins it need not wait for the end of the step before.
+// In this order, and apart: the next one, which the next step begins with, would be waited for where it is read with a neighbour that was
+// not stored with it.
 #[derive(Clone, Copy)]
+#[repr(C, align(64))]
 pub(crate) struct Past<const N: usize> {
+    /// The increment of one more step.
+    next: [f64; N],
+    /// Each stands here twice, [`KEPT`] places apart, so that the last ones stand together wherever the last is, and none is ever
+    /// moved.
+    increments: [[[f64; N]; KEPT]; 2],
     step: f64,
     made: usize,
     /// Where the last one stands; those before it follow.
     last: usize,
-    /// Each stands here twice, [`KEPT`] places apart, so that the last ones stand together wherever the last is, and none is ever
-    /// moved.
-    increments: [[[f64; N]; KEPT]; 2],
-    /// The increment of one more step.
-    next: [f64; N],
 }
 
 impl<const N: usize> fmt::Debug for Past<N> {
@@ -85,6 +95,12 @@ impl<const N: usize> Past<N> {
         }
     }
 
+    /// Whether as many are remembered as are of use.
+    #[inline(always)]
+    pub(crate) fn is_full(&self) -> bool {
+        self.made >= KEPT
+    }
+
     /// No step yet, again.
     #[inline(always)]
     pub(crate) fn forget(&mut self) {
@@ -113,6 +129,13 @@ impl<const N: usize> Past<N> {
     #[allow(clippy::float_cmp, reason = "only steps of the very same length are points of one sequence")]
     pub(crate) fn next(&self, h: f64) -> Option<[f64; N]> {
         (self.step == h && self.made >= FEWEST).then_some(self.next)
+    }
+
+    /// The same from however few there are.
+    #[inline(always)]
+    #[allow(clippy::float_cmp, reason = "only steps of the very same length are points of one sequence")]
+    pub(crate) fn following(&self, h: f64) -> Option<[f64; N]> {
+        (self.step == h && self.made > 0).then_some(self.next)
     }
 
     /// Every number of it, in a fixed order.

@@ -1,4 +1,4 @@
-use crate::Scalar;
+use crate::{Scalar, System};
 
 /// A basis `w_1 .. w_(N-M)` of the admissible velocities `ker A(q, t)` at one point.
 ///
@@ -57,6 +57,17 @@ impl<S: Scalar, const N: usize, const M: usize> AdmissibleBasis<S, N, M> {
         &mut self.vectors[..Self::DIMENSION]
     }
 
+    /// The products of the basis vectors with `p`; zero in the last `M` places.
+    #[must_use]
+    #[inline(always)]
+    pub fn products(&self, p: &[S; N]) -> [S; N] {
+        let mut products = [S::zero(); N];
+        for (product, w) in products.iter_mut().zip(self.vectors()) {
+            *product = (1..N).fold(w[0] * p[0], |sum, i| sum + w[i] * p[i]);
+        }
+        products
+    }
+
     /// The velocity `xi_1 w_1 + .. + xi_(N-M) w_(N-M)`; the last `M` places of `xi` are not read.
     #[must_use]
     #[inline(always)]
@@ -69,4 +80,19 @@ impl<S: Scalar, const N: usize, const M: usize> AdmissibleBasis<S, N, M> {
         }
         v
     }
+}
+
+/// The rows of linear constraints, with the basis of the velocities that they admit; none where the system gives none, or where a
+/// constraint has a part without velocities.
+#[must_use]
+#[inline(always)]
+pub fn linear_basis<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    q: &[f64; N],
+) -> Option<([[f64; N]; M], AdmissibleBasis<f64, N, M>)> {
+    let basis = system.admissible_basis(t, q)?;
+    let (a, b) = system.constraint(t, q);
+    let linear = b.iter().fold(true, |all, b| all & (b.abs() <= 0.0));
+    linear.then_some((a, basis))
 }

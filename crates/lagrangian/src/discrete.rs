@@ -1,6 +1,7 @@
 use crate::gradient::by_places;
+use crate::basis::linear_basis;
 use crate::system::with_nonlinear;
-use crate::{Dual, Gradient, HyperDual, Rule, Scalar, System, constraint_residual};
+use crate::{AdmissibleBasis, Dual, Gradient, HyperDual, Rule, Scalar, System, constraint_residual};
 use std::array::from_fn;
 
 /// The derivatives of a discrete Lagrangian over one step.
@@ -68,6 +69,26 @@ pub trait DiscreteLagrangian<Sys, const N: usize, const M: usize> {
         [d1, self.d2(system, t0, h, q0, v)]
     }
 
+    /// The same with the configurations of a step of the mean velocity `way`, which is near to `v`: what depends on them alone need
+    /// not be worked out for `v` again. At those of `v` itself unless given.
+    #[inline(always)]
+    fn slopes_along(&self, system: &Sys, time: (f64, f64), q0: &[f64; N], _way: &[f64; N], v: &[f64; N]) -> [[f64; N]; 2] {
+        self.slopes(system, time.0, time.1, q0, v)
+    }
+
+    /// The [`forces`](Self::forces) in the same way.
+    #[inline(always)]
+    fn forces_along(
+        &self,
+        system: &Sys,
+        time: (f64, f64),
+        q0: &[f64; N],
+        _way: &[f64; N],
+        v: &[f64; N],
+    ) -> Option<([f64; N], [f64; N])> {
+        self.forces(system, time.0, time.1, q0, v)
+    }
+
     /// `D2 L_d` by itself, the momentum at the end of a step: automatic unless given by hand.
     #[inline]
     fn d2<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> [S; N] {
@@ -87,6 +108,19 @@ pub trait DiscreteConstraint<Sys, const N: usize, const M: usize> {
     fn linearised(&self, system: &Sys, t0: f64, h: f64, q0: &[f64; N], v: &[f64; N]) -> [Dual<f64, N>; M] {
         let (t, step) = (Dual::fixed(t0), Dual::fixed(h));
         self.residual(system, t, step, &q0.map(Dual::fixed), &Dual::variables(v))
+    }
+
+    /// The basis of the mean velocities `v` with `w_d = 0` where it is the system's basis of admissible velocities at one
+    /// configuration, `q0 + alpha h v` at that of the mean velocity `way`; none by default.
+    #[inline(always)]
+    fn basis_along(
+        &self,
+        _system: &Sys,
+        _time: (f64, f64),
+        _q0: &[f64; N],
+        _way: &[f64; N],
+    ) -> Option<AdmissibleBasis<f64, N, M>> {
+        None
     }
 }
 
@@ -121,23 +155,14 @@ impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteLagrang
         Derivatives { value: h * l.re, d1: l.e1, d2: l.e2, d1d2: l.e12.map(|row| row.map(|x| x / h)) }
     }
 
-    /// By the derivatives in the configuration and the velocity of every node.
     #[inline(always)]
     fn slopes<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> [[S; N]; 2] {
-        let [mut d1, mut d2] = [[S::zero(); N]; 2];
-        for node in self.nodes() {
-            let (t, q) = on_line(node.alpha, t0, h, q0, v);
-            let part = h * node.alpha;
-            let [l_q, l_v] = match const { R::IN_PLACE } {
-                true => gradients(system, t, &q, v),
-                false => gradients_apart(system, t, &q, v),
-            };
-            for i in 0..N {
-                d1[i] += ((h - part) * l_q[i] - l_v[i]) * node.weight;
-                d2[i] += (part * l_q[i] + l_v[i]) * node.weight;
-            }
-        }
-        [d1, d2]
+        slopes_at_nodes(self, system, (t0, h), q0, (v, v))
+    }
+
+    #[inline(always)]
+    fn slopes_along(&self, system: &Sys, time: (f64, f64), q0: &[f64; N], way: &[f64; N], v: &[f64; N]) -> [[f64; N]; 2] {
+        slopes_at_nodes(self, system, time, q0, (way, v))
     }
 
     #[inline]
@@ -148,17 +173,19 @@ impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteLagrang
 
     #[inline(always)]
     fn forces<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> Option<([S; N], [S; N])> {
-        let (mut minus, mut plus) = ([S::zero(); N], [S::zero(); N]);
-        for node in self.nodes() {
-            let (t, q) = on_line(node.alpha, t0, h, q0, v);
-            let force = system.force(t, &q, v)?;
-            for i in 0..N {
-                let impulse = h * force[i] * node.weight;
-                minus[i] += impulse * (1.0 - node.alpha);
-                plus[i] += impulse * node.alpha;
-            }
-        }
-        Some((minus, plus))
+        forces_at_nodes(self, system, (t0, h), q0, (v, v))
+    }
+
+    #[inline(always)]
+    fn forces_along(
+        &self,
+        system: &Sys,
+        time: (f64, f64),
+        q0: &[f64; N],
+        way: &[f64; N],
+        v: &[f64; N],
+    ) -> Option<([f64; N], [f64; N])> {
+        forces_at_nodes(self, system, time, q0, (way, v))
     }
 }
 
@@ -189,6 +216,68 @@ impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteConstra
         }
         sum
     }
+
+    /// Of a single node, where the constraints are linear.
+    #[inline(always)]
+    fn basis_along(
+        &self,
+        system: &Sys,
+        (t0, h): (f64, f64),
+        q0: &[f64; N],
+        way: &[f64; N],
+    ) -> Option<AdmissibleBasis<f64, N, M>> {
+        let [node] = self.nodes() else { return None };
+        let (t, q) = on_line(node.alpha, t0, h, q0, way);
+        linear_basis(system, t, &q).map(|(_, basis)| basis)
+    }
+}
+
+/// `D1 L_d` and `D2 L_d` by the derivatives in the configuration and the velocity `v` of every node, which are on the way of the mean
+/// velocity `way`.
+#[inline(always)]
+fn slopes_at_nodes<R: Rule, Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
+    rule: &R,
+    system: &Sys,
+    (t0, h): (S, S),
+    q0: &[S; N],
+    (way, v): (&[S; N], &[S; N]),
+) -> [[S; N]; 2] {
+    let [mut d1, mut d2] = [[S::zero(); N]; 2];
+    for node in rule.nodes() {
+        let (t, q) = on_line(node.alpha, t0, h, q0, way);
+        let part = h * node.alpha;
+        let [l_q, l_v] = match const { R::IN_PLACE } {
+            true => gradients(system, t, &q, v),
+            false => gradients_apart(system, t, &q, v),
+        };
+        for i in 0..N {
+            d1[i] += ((h - part) * l_q[i] - l_v[i]) * node.weight;
+            d2[i] += (part * l_q[i] + l_v[i]) * node.weight;
+        }
+    }
+    [d1, d2]
+}
+
+/// `f_d^-` and `f_d^+` by the forces at every node, in the same way.
+#[inline(always)]
+fn forces_at_nodes<R: Rule, Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
+    rule: &R,
+    system: &Sys,
+    (t0, h): (S, S),
+    q0: &[S; N],
+    (way, v): (&[S; N], &[S; N]),
+) -> Option<([S; N], [S; N])> {
+    let (mut minus, mut plus) = ([S::zero(); N], [S::zero(); N]);
+    for node in rule.nodes() {
+        let (t, q) = on_line(node.alpha, t0, h, q0, way);
+        let force = system.force(t, &q, v)?;
+        for i in 0..N {
+            let impulse = h * force[i] * node.weight;
+            minus[i] += impulse * (1.0 - node.alpha);
+            plus[i] += impulse * node.alpha;
+        }
+    }
+    Some((minus, plus))
 }
 
 /// The residual of each constraint with its derivatives in `v`, where `dq = part dv`.

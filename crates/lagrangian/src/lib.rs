@@ -52,8 +52,8 @@ mod twofold;
 mod vector_field;
 mod with;
 
-pub use basis::AdmissibleBasis;
-pub use bordered::Bordered;
+pub use basis::{AdmissibleBasis, linear_basis};
+pub use bordered::{Bordered, clear_multipliers};
 pub use bracket::{Bracket, EnergySlope, energy_slope, inverse_reduced_mass};
 pub use classify::{
     Classification, RowKind, classify, rank_is_constant, redundant_rows, row_space, rows_are_consistent,

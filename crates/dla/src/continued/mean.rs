@@ -1,4 +1,4 @@
-use super::{Found, are_met};
+use super::{Found, are_met, ends, with_reaction};
 use crate::State;
 use crate::corrections::Departure;
 use crate::derivatives::Derivatives;
@@ -134,26 +134,9 @@ where
     }
 }
 
-/// The momenta of both ends.
-#[inline(always)]
-fn ends<const N: usize>(at: &Departure<N>) -> [f64; N] {
-    from_fn(|i| at.residual[i] + at.arriving[i])
-}
-
 #[inline(always)]
 fn difference<const N: usize>(x: &[f64; N], y: &[f64; N]) -> [f64; N] {
     from_fn(|i| x[i] - y[i])
-}
-
-/// `p + A' lambda`.
-#[inline(always)]
-fn with_reaction<const N: usize, const M: usize>(mut p: [f64; N], a: &[[f64; N]; M], lambda: &[f64; M]) -> [f64; N] {
-    for k in 0..M {
-        for i in 0..N {
-            p[i] += a[k][i] * lambda[k];
-        }
-    }
-    p
 }
 
 // A loop, since `map` over more than a few is left a call.

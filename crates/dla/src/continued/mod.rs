@@ -1,9 +1,11 @@
 //! A step that goes on from the last one: it begins with the derivatives that are kept, and has rows of the constraint of its own.
 
 mod arrival;
+mod in_basis;
 mod mean;
 
 use crate::branch;
+use crate::corrections::Departure;
 use crate::dla::Dla;
 use crate::overshoot::brakes_only;
 use crate::settle::LEAST;
@@ -40,6 +42,26 @@ fn are_met<const N: usize, const M: usize>(
     all
 }
 
+/// Corrections below this part of the unknowns are taken for rounding where they do not shrink.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// The momenta of both ends.
+#[inline(always)]
+fn ends<const N: usize>(at: &Departure<N>) -> [f64; N] {
+    from_fn(|i| at.residual[i] + at.arriving[i])
+}
+
+/// `p + A' lambda`.
+#[inline(always)]
+fn with_reaction<const N: usize, const M: usize>(mut p: [f64; N], a: &[[f64; N]; M], lambda: &[f64; M]) -> [f64; N] {
+    for k in 0..M {
+        for i in 0..N {
+            p[i] += a[k][i] * lambda[k];
+        }
+    }
+    p
+}
+
 impl<L, C> Dla<L, C> {
     /// The step in its general form where it goes on from the last one; none where it does not.
     ///
@@ -61,7 +83,10 @@ impl<L, C> Dla<L, C> {
         if !self.kept.is_ready() {
             return None;
         }
-        let report = going_on(self, system, (t0, h), state);
+        let report = match self.kept.is_in_basis() {
+            true => in_basis::going_on(self, system, (t0, h), state),
+            false => going_on(self, system, (t0, h), state),
+        };
         match report {
             Some(_) => self.kept.succeeds(),
             None => self.kept.fails(),
