@@ -185,7 +185,8 @@ impl<L, C> Dla<L, C> {
             basis: basis(t0, &q0),
         };
         let start = increment.basis;
-        let Mean { v, p1, lambda, iterations, some, block } = increment.solve(&self.newton, v0, predicted(state, h))?;
+        let Mean { v, p1, lambda, iterations, some, block } =
+            increment.solve(&self.newton, v0, predicted(state, h, expected(state, h)))?;
 
         // The momentum at the end, projected onto the constraint there.
         let d = v.map(|v| h * v);
@@ -215,18 +216,23 @@ impl<L, C> Dla<L, C> {
     }
 }
 
-/// The mean velocity of a step, extrapolated from those of the last ones, or with the acceleration of the last one; none where
+/// The mean velocity of a step, extrapolated from those of the last ones.
+#[inline(always)]
+pub(crate) fn expected<const N: usize>(state: &State<N>, h: f64) -> Option<[f64; N]> {
+    state.expected(h).map(|d| from_fn(|i| d[i] / h))
+}
+
+/// The mean velocity of a step: the one that is expected, or with the acceleration of the last one; none where
 /// that is not known, or would change the velocity so much that a search from there might lead elsewhere.
 #[inline(always)]
-pub(crate) fn predicted<const N: usize>(state: &State<N>, h: f64) -> Option<[f64; N]> {
+pub(crate) fn predicted<const N: usize>(state: &State<N>, h: f64, expected: Option<[f64; N]>) -> Option<[f64; N]> {
     const MOST: f64 = 0.125;
     let v0 = state.v();
     let near = |v: &[f64; N]| sup(&from_fn::<_, N, _>(|i| v[i] - v0[i])) <= MOST * sup(v0);
-    if let Some(d) = state.expected(h) {
-        let v = from_fn(|i| d[i] / h);
-        if near(&v) {
-            return Some(v);
-        }
+    if let Some(v) = expected
+        && near(&v)
+    {
+        return Some(v);
     }
     let acceleration = state.acceleration()?;
     let v = from_fn(|i| v0[i] + 0.5 * h * acceleration[i]);

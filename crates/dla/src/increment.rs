@@ -147,16 +147,7 @@ where
     /// Both ends of a step with the mean velocity `v`, in first order alone.
     #[inline(always)]
     pub(crate) fn momenta(&self, v: &[f64; N]) -> Departure<N> {
-        let Self { rules: (lagrangian, _), system, t0, h, q0, .. } = *self;
-        let [d1, d2] = lagrangian.slopes(system, t0, h, &q0, v);
-        let mut at = Departure { residual: from_fn(|i| self.p0[i] + d1[i]), arriving: d2 };
-        if let Some((minus, plus)) = lagrangian.forces(system, t0, h, &q0, v) {
-            for i in 0..N {
-                at.residual[i] += minus[i];
-                at.arriving[i] += plus[i];
-            }
-        }
-        at
+        self.momenta_along(v, v)
     }
 
     /// The same with the configurations of a step of the mean velocity `way`, which is near to `v`.

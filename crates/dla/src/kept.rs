@@ -20,10 +20,12 @@ pub(crate) struct Kept {
     pub(crate) block: Derivatives,
     /// Of the mass matrix: `W' M W` in the basis.
     pub(crate) mass: Derivatives,
-    /// The velocities at the last nodes, quasi-velocities in the basis.
+    /// The velocities at the last nodes, in coordinates.
     pub(crate) velocities: Past<COORDINATES>,
-    /// The mean quasi-velocities of the last steps, in the basis.
-    pub(crate) means: Past<COORDINATES>,
+    /// In the basis the mean velocities of the last steps, in coordinates and in it, and the quasi-velocities at the last nodes.
+    pub(crate) ways: Past<COORDINATES, MORE>,
+    pub(crate) means: Past<COORDINATES, MORE>,
+    pub(crate) ends: Past<COORDINATES, MORE>,
     /// Where the last step ended, and with what velocity.
     q: Row,
     v: Row,
@@ -35,6 +37,10 @@ pub(crate) type Bases<const N: usize, const M: usize> = [AdmissibleBasis<f64, N,
 /// `h D1 D2 L_d`, with the derivatives of the forces, and the mass matrix.
 pub(crate) type Matrices<const N: usize> = ([[f64; N]; N], [[f64; N]; N]);
 
+/// As many steps give an extrapolation of order 9, in the basis: velocities in coordinates turn with a body, and the step waits for how
+/// well the way is known.
+const MORE: usize = 9;
+
 impl Kept {
     /// Of no step.
     pub(crate) const NONE: Self = Self {
@@ -45,7 +51,9 @@ impl Kept {
         block: Derivatives::NONE,
         mass: Derivatives::NONE,
         velocities: Past::new(),
+        ways: Past::new(),
         means: Past::new(),
+        ends: Past::new(),
         q: [0.0; COORDINATES],
         v: [0.0; COORDINATES],
     };
@@ -54,7 +62,7 @@ impl Kept {
     #[inline(always)]
     #[allow(clippy::float_cmp, reason = "only the very same state goes on")]
     pub(crate) fn follows<const N: usize>(&mut self, state: &State<N>) {
-        let (q, v) = (&self.q, &self.v);
+        let (q, v) = (&self.q, if self.unknowns.in_basis { self.v } else { self.velocities.last() });
         let mut same = N <= COORDINATES;
         for i in 0..N.min(COORDINATES) {
             same &= (q[i] == state.q()[i]) & (v[i] == state.v()[i]);
@@ -101,7 +109,9 @@ impl Kept {
         self.mass.forget();
         self.unknowns.begin(basis.is_some());
         self.velocities.forget();
-        self.means.forget();
+        for past in [&mut self.ways, &mut self.means, &mut self.ends] {
+            past.forget();
+        }
         let (mut node, mut middle) = (*v, *mean);
         self.ready = given.is_some_and(|(mut block, mut mass)| {
             if let Some([start, middle_of_step, end]) = &basis {
@@ -122,9 +132,11 @@ impl Kept {
             }
             renewed.is_some()
         });
-        self.means.push(h, &row(&middle));
-        self.velocities.push(h, &row(&node));
-        self.ends_at(q, v);
+        self.velocities.push(h, &row(v));
+        if basis.is_some() {
+            self.ended_in_basis(h, (q, v), mean, [&middle, &node]);
+        }
+        self.q = row(q);
     }
 
     /// That a step could not go on from the last.
@@ -140,24 +152,21 @@ impl Kept {
     #[inline(always)]
     pub(crate) fn ended<const N: usize>(&mut self, h: f64, q: &[f64; N], v: &[f64; N]) {
         self.velocities.push(h, &row(v));
-        self.ends_at(q, v);
+        self.q = row(q);
     }
 
-    /// The same in the basis, with the quasi-velocities in the mean and at the end.
+    /// The same in the basis, with the mean velocity, and the quasi-velocities of it and at the end.
     #[inline(always)]
     pub(crate) fn ended_in_basis<const N: usize>(
         &mut self,
         h: f64,
         (q, v): (&[f64; N], &[f64; N]),
+        way: &[f64; N],
         [mean, end]: [&[f64; N]; 2],
     ) {
+        self.ways.push(h, &row(way));
         self.means.push(h, &row(mean));
-        self.velocities.push(h, &row(end));
-        self.ends_at(q, v);
-    }
-
-    #[inline(always)]
-    fn ends_at<const N: usize>(&mut self, q: &[f64; N], v: &[f64; N]) {
+        self.ends.push(h, &row(end));
         (self.q, self.v) = (row(q), row(v));
     }
 
@@ -166,7 +175,9 @@ impl Kept {
     pub(crate) fn succeeds(&mut self) {
         self.next_pause = 1;
         // Not while extrapolations are from few steps, and corrections large.
-        if !self.unknowns.decided && self.velocities.is_full() {
+        if !self.unknowns.decided
+            && if self.unknowns.in_basis { self.ends.is_full() } else { self.velocities.is_full() }
+        {
             self.ready = !self.unknowns.are_to_change(self.block.stale);
         }
     }
@@ -195,7 +206,7 @@ impl Kept {
 
     /// Every number of it, in a fixed order.
     fn visit(&mut self, mut visit: impl FnMut(&mut f64)) {
-        let Self { ready, pause, next_pause, unknowns, block, mass, velocities, means, q, v } = self;
+        let Self { ready, pause, next_pause, unknowns, block, mass, velocities, ways, means, ends, q, v } = self;
         for derivatives in [block, mass] {
             derivatives.visit(&mut visit);
         }
@@ -204,7 +215,8 @@ impl Kept {
         }
         switch(ready, &mut visit);
         unknowns.visit(&mut visit);
-        for past in [velocities, means] {
+        velocities.visit(&mut visit);
+        for past in [ways, means, ends] {
             past.visit(&mut visit);
         }
         for row in [q, v] {

@@ -72,7 +72,7 @@ mod tests {
 
     /// After how many steps, of which every `nth` renews its derivatives, others are wanted.
     fn change(unknowns: &mut Unknowns, nth: u32) -> Option<u32> {
-        (1..=100).find(|k| !unknowns.decided && unknowns.are_to_change(k.is_multiple_of(nth)))
+        (1_u32..=100).find(|k| !unknowns.decided && unknowns.are_to_change(k.is_multiple_of(nth)))
     }
 
     #[test]

@@ -1,5 +1,5 @@
-use crate::gradient::by_places;
 use crate::basis::linear_basis;
+use crate::gradient::by_places;
 use crate::system::with_nonlinear;
 use crate::{AdmissibleBasis, Dual, Gradient, HyperDual, Rule, Scalar, System, constraint_residual};
 use std::array::from_fn;
@@ -72,7 +72,14 @@ pub trait DiscreteLagrangian<Sys, const N: usize, const M: usize> {
     /// The same with the configurations of a step of the mean velocity `way`, which is near to `v`: what depends on them alone need
     /// not be worked out for `v` again. At those of `v` itself unless given.
     #[inline(always)]
-    fn slopes_along(&self, system: &Sys, time: (f64, f64), q0: &[f64; N], _way: &[f64; N], v: &[f64; N]) -> [[f64; N]; 2] {
+    fn slopes_along(
+        &self,
+        system: &Sys,
+        time: (f64, f64),
+        q0: &[f64; N],
+        _way: &[f64; N],
+        v: &[f64; N],
+    ) -> [[f64; N]; 2] {
         self.slopes(system, time.0, time.1, q0, v)
     }
 
@@ -161,7 +168,14 @@ impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteLagrang
     }
 
     #[inline(always)]
-    fn slopes_along(&self, system: &Sys, time: (f64, f64), q0: &[f64; N], way: &[f64; N], v: &[f64; N]) -> [[f64; N]; 2] {
+    fn slopes_along(
+        &self,
+        system: &Sys,
+        time: (f64, f64),
+        q0: &[f64; N],
+        way: &[f64; N],
+        v: &[f64; N],
+    ) -> [[f64; N]; 2] {
         slopes_at_nodes(self, system, time, q0, (way, v))
     }
 

@@ -2,7 +2,7 @@ use super::{Found, are_met, ends, with_reaction};
 use crate::State;
 use crate::corrections::Departure;
 use crate::derivatives::Derivatives;
-use crate::dla::{Dla, predicted};
+use crate::dla::{Dla, expected, predicted};
 use crate::increment::Increment;
 use crate::settle::{LEAST, SHRINKING, Settle, sup};
 use lagrangian::{Bordered, DiscreteConstraint, DiscreteLagrangian, System, momentum};
@@ -24,7 +24,7 @@ impl<L, C> Dla<L, C> {
         L: DiscreteLagrangian<Sys, N, M>,
         C: DiscreteConstraint<Sys, N, M>,
     {
-        let v = predicted(state, h)?;
+        let v = predicted(state, h, expected(state, h))?;
         let rules = (&self.lagrangian, &self.constraint);
         let (q0, v0) = (*state.q(), state.v());
         // Of the system as it is now, which may not be the one of the step before.

@@ -257,7 +257,8 @@ mod tests {
         for pause in [1, 2, 4, 8, 16, 32, 64, 64] {
             method.kept.fails();
             let ready_again = || {
-                method.kept.begins::<4, 2>(Some((unit, unit)), STEP, start().q(), start().v());
+                let state = start();
+                method.kept.begins::<4, 2>(Some((unit, unit)), None, STEP, (state.q(), state.v()), state.v());
                 method.kept.is_ready()
             };
             assert_eq!(std::iter::repeat_with(ready_again).take_while(|ready| !ready).count(), pause);
