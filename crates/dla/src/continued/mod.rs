@@ -95,6 +95,27 @@ impl<L, C> Dla<L, C> {
     }
 }
 
+/// Moves the state by a step with the mean velocity `v`, to `q1` with the velocity `v1`; none where forces overshoot, or where these are
+/// no numbers.
+#[inline(always)]
+fn advanced<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    (t0, h): (f64, f64),
+    state: &mut State<N>,
+    increment: &[f64; N],
+    (v, v1): (&[f64; N], &[f64; N]),
+    q1: &[f64; N],
+) -> Option<()> {
+    brakes_only(system, (t0, h), state.q(), (v, v1)).ok()?;
+    // One by one they would be waited for.
+    if !(0..N).fold(true, |all, i| all & q1[i].is_finite() & v1[i].is_finite()) {
+        return None;
+    }
+    let acceleration = from_fn(|i| (v1[i] - v[i]) * (2.0 / h));
+    state.advance_with_acceleration(h, increment, *v1, acceleration);
+    Some(())
+}
+
 // Twice in a build for any machine, as the loop over steps is (`drive_part`).
 #[cfg_attr(not(target_feature = "avx2"), multiversion::multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt")))]
 #[inline(never)]
@@ -123,13 +144,7 @@ where
     let end = method.arrival(system, (t1, &q1), p1, guess)?;
     let v1 = end.v;
 
-    brakes_only(system, (t0, h), &q0, (&v, &v1)).ok()?;
-    // One by one they would be waited for.
-    if !(0..N).fold(true, |all, i| all & q1[i].is_finite() & v1[i].is_finite()) {
-        return None;
-    }
-    let acceleration = from_fn(|i| (v1[i] - v[i]) * (2.0 / h));
-    state.advance_with_acceleration(h, &d, v1, acceleration);
+    advanced(system, (t0, h), state, &d, (&v, &v1), &q1)?;
     method.kept.block.took::<N>(corrections.max(LEAST));
     method.kept.mass.took::<N>(end.corrections.max(LEAST));
     // Not the velocity of the state, which has just been stored and would be waited for.

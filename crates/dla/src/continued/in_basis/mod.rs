@@ -4,11 +4,10 @@
 mod arrival;
 mod mean;
 
-use super::Found;
+use super::{Found, advanced};
 use crate::branch;
 use crate::derivatives::COORDINATES;
 use crate::dla::Dla;
-use crate::overshoot::brakes_only;
 use crate::settle::LEAST;
 use crate::{State, StepReport};
 use arrival::arrival;
@@ -55,13 +54,7 @@ where
     let end = arrival(method, system, (t1, h, &q1), p1)?;
     let v1 = end.found.v;
 
-    brakes_only(system, (t0, h), &q0, (&v, &v1)).ok()?;
-    // One by one they would be waited for.
-    if !(0..N).fold(true, |all, i| all & q1[i].is_finite() & v1[i].is_finite()) {
-        return None;
-    }
-    let acceleration = from_fn(|i| (v1[i] - v[i]) * (2.0 / h));
-    state.advance_with_acceleration(h, &d, v1, acceleration);
+    advanced(system, (t0, h), state, &d, (&v, &v1), &q1)?;
     method.kept.block.took_in_basis::<N>(corrections.max(LEAST));
     method.kept.mass.took_in_basis::<N>(end.found.corrections.max(LEAST));
     // Not the velocity of the state, which has just been stored and would be waited for.
