@@ -184,7 +184,6 @@ impl<L, C> Dla<L, C> {
             a0: reaction_rows(system, t0, &q0, &v0),
             basis: basis(t0, &q0),
         };
-        let start = increment.basis;
         let Mean { v, p1, lambda, iterations, some, block } =
             increment.solve(&self.newton, v0, predicted(state, h, expected(state, h)))?;
 
@@ -206,9 +205,8 @@ impl<L, C> Dla<L, C> {
         state.advance_with_acceleration(h, &d, v1, acceleration);
         let bases = || {
             let middle = self.constraint.basis_along(system, (t0, h), &q0, &v)?;
-            let ends = start.zip(linear_basis(system, t1, &q1))?;
-            let free = system.holonomic(t1, &q1).is_none() && linear_basis(system, t0, &q0).is_some();
-            free.then_some([ends.0, middle, ends.1.1])
+            let ((_, start), (_, end)) = linear_basis(system, t0, &q0).zip(linear_basis(system, t1, &q1))?;
+            system.holonomic(t1, &q1).is_none().then_some([start, middle, end])
         };
         let bases = if in_basis && self.kept.wants_basis() { bases() } else { None };
         self.kept.begins::<N, M>(block.zip(mass), bases, h, (state.q(), &v1), &v);

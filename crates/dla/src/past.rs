@@ -6,6 +6,7 @@ use std::fmt;
 const USUAL: usize = 7;
 /// Fewer say less than the last acceleration.
 const FEWEST: usize = 3;
+
 /// The increments of the last steps, all of one length, from which the next one is extrapolated: a search that begins there
 /// is short, and what begins it need not wait for the end of the step before.
 #[derive(Clone, Copy)]

@@ -6,6 +6,13 @@ pub(crate) const SHRINKING: f64 = 0.125;
 /// The fewest looks of a search: one for its first correction, and one that finds its equations met.
 pub(crate) const LEAST: u32 = 2;
 
+/// More corrections are not worth it.
+pub(crate) const CORRECTIONS: u32 = 8;
+
+/// Corrections below this part of the unknowns are taken for rounding where they do not shrink. Where rounding is larger, the general
+/// search sees it.
+pub(crate) const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 /// How a search with derivatives of another point goes on from its first correction until it has settled.
 pub(crate) struct Settle<const N: usize> {
     /// Relative tolerance of every component.
@@ -24,11 +31,6 @@ impl<const N: usize> Settle<N> {
         x: &mut [f64; N],
         mut correction: impl FnMut(&[f64; N]) -> Option<[f64; N]>,
     ) -> Option<u32> {
-        /// More are not worth it.
-        const CORRECTIONS: u32 = 8;
-        /// Corrections below this part of the unknowns are taken for rounding where they do not shrink. Where rounding is
-        /// larger, the general search sees it.
-        const ROUNDING: f64 = 64.0 * f64::EPSILON;
         let (mut last, mut allowed) = (self.first.map(f64::abs), SHRINKING * sup(&self.first));
         for made in LEAST..=CORRECTIONS {
             let Some(d) = correction(x) else { return Some(made) };

@@ -42,9 +42,6 @@ fn are_met<const N: usize, const M: usize>(
     all
 }
 
-/// Corrections below this part of the unknowns are taken for rounding where they do not shrink.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
-
 /// The momenta of both ends.
 #[inline(always)]
 fn ends<const N: usize>(at: &Departure<N>) -> [f64; N] {

@@ -1,8 +1,8 @@
-use super::{CORRECTIONS, InBasis, are_met, first, has_settled};
-use crate::continued::{Found, ROUNDING};
+use super::{InBasis, are_met, first, has_settled};
+use crate::continued::Found;
 use crate::dla::Dla;
 use crate::kept::in_bases;
-use crate::settle::{LEAST, SHRINKING, sup};
+use crate::settle::{CORRECTIONS, LEAST, ROUNDING, SHRINKING, sup};
 use lagrangian::{AdmissibleBasis, System, clear_multipliers, linear_basis, mass_matrix, momentum};
 use std::array::from_fn;
 

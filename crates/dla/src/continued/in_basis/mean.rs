@@ -1,11 +1,11 @@
-use super::{CORRECTIONS, InBasis, are_met, first, has_settled};
+use super::{InBasis, are_met, first, has_settled};
 use crate::State;
-use crate::continued::{Found, ROUNDING, ends, with_reaction};
+use crate::continued::{Found, ends, with_reaction};
 use crate::corrections::Departure;
 use crate::dla::{Dla, predicted};
 use crate::increment::Increment;
 use crate::kept::in_bases;
-use crate::settle::{LEAST, SHRINKING, sup};
+use crate::settle::{CORRECTIONS, LEAST, ROUNDING, SHRINKING, sup};
 use lagrangian::{
     AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, System, clear_multipliers, linear_basis, momentum,
 };

@@ -15,9 +15,6 @@ use lagrangian::{AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, System
 use mean::mean;
 use std::array::from_fn;
 
-/// More corrections are not worth it.
-const CORRECTIONS: u32 = 8;
-
 /// A velocity with its quasi-velocities, and the impulse of the constraints.
 struct InBasis<const N: usize, const M: usize> {
     found: Found<N, M>,
