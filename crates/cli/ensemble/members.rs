@@ -111,7 +111,7 @@ impl Members<'_> {
         let time = (t0, step);
         match (self.method.info().kind, &self.sweep.scene.effects[..]) {
             (Kind::Dla, []) => self.registers::<CLOSED, _>(scenes, free, |sleighs, state| {
-                Some(Box::new(ClosedEnsemble::<_, CLOSED, 3, 1, 5, 6>::new(*sleighs, step, state)))
+                Some(Box::new(ClosedEnsemble::<_, CLOSED, 3, 1, 4, 6>::new(*sleighs, step, state)))
             }),
             (Kind::Gauss8, []) => self.registers(scenes, free, |sleighs, state| gauss::<4, _>(sleighs, time, state)),
             (Kind::Gauss16, []) => self.registers(scenes, free, |sleighs, state| gauss::<8, _>(sleighs, time, state)),

@@ -29,7 +29,7 @@ fn seconds(mut f: impl FnMut()) -> (f64, f64) {
 fn closed<const W: usize>(h: f64) {
     let sleighs = black_box([Sleigh::new(1.0, 1.0, 0.5).unwrap(); W]);
     let starts: Vec<_> = (0..W).map(|i| ([0.0; 3], [-1.0, 0.05 + 1e-3 * i as f64, 0.0])).collect();
-    let ensemble = ClosedEnsemble::<_, W, 3, 1, 5, 6>::new(sleighs, h, LaneState::new(&starts, [false, false, true]));
+    let ensemble = ClosedEnsemble::<_, W, 3, 1, 4, 6>::new(sleighs, h, LaneState::new(&starts, [false, false, true]));
     let (least, median) = seconds(|| {
         let mut ensemble = black_box(ensemble);
         ensemble.advance(STEPS);

@@ -36,6 +36,10 @@ pub trait ClosedLanes<const N: usize, const M: usize, const P: usize, const F: u
     /// The numbers of a step of length `h` (s).
     fn prepared(&self, h: f64) -> [f64; P];
 
+    /// In which unit a step counts the impulse of each constraint (N s): factors that are the same in every step are left to the end
+    /// of a run.
+    fn impulse_units(&self) -> [f64; M];
+
     /// The frame at a configuration, after the frame of the step that led there; before the first step that is NaN.
     fn frame<S: Side>(q: &[S; N], before: &[S; F]) -> [S; F];
 
@@ -55,7 +59,7 @@ pub struct ClosedLaneStep<S, const N: usize, const M: usize, const F: usize> {
     pub xi: [S; N],
     /// The frame at the end.
     pub frame: [S; F],
-    /// The impulses of the constraints over the step, both ends together.
+    /// The impulses of the constraints over the step, both ends together, in their [units](ClosedLanes::impulse_units).
     pub impulse: [S; M],
     /// The step is good to rounding where neither of these is beyond its [bound](ClosedLanes::bounds) in size,
     pub doubts: [S; 2],

@@ -101,9 +101,13 @@ fn quartic<S: Side>(z: S, zz: S, c: &[f64; 5]) -> S {
 ///
 /// The frame is sine and cosine of the heading, and the ratios `w/omega0` of the last four steps, from which that of the next
 /// one is extrapolated: a step then has one correction, and two divisions.
-impl ClosedLanes<3, 1, 5, 6> for Sleigh {
-    fn prepared(&self, h: f64) -> [f64; 5] {
-        [h, 0.5 * h, self.mass(), self.offset(), 0.5 * h * self.spin_gain()]
+impl ClosedLanes<3, 1, 4, 6> for Sleigh {
+    fn prepared(&self, h: f64) -> [f64; 4] {
+        [h, 0.5 * h, self.offset(), 0.5 * h * self.spin_gain()]
+    }
+
+    fn impulse_units(&self) -> [f64; 1] {
+        [2.0 * self.mass()]
     }
 
     #[inline(always)]
@@ -118,7 +122,7 @@ impl ClosedLanes<3, 1, 5, 6> for Sleigh {
 
     #[inline(always)]
     fn step<const WIDE: bool, S: Side>(
-        &[h, half, m, a, k]: &[S; 5],
+        &[h, half, a, k]: &[S; 4],
         &[u0, omega0, _]: &[S; 3],
         &[sin0, cos0, r1, r2, r3, r4]: &[S; 6],
     ) -> ClosedLaneStep<S, 3, 1, 6> {
@@ -144,7 +148,8 @@ impl ClosedLanes<3, 1, 5, 6> for Sleigh {
             increment: [way * cos_m, way * sin_m, whole],
             xi: [u1, omega1, u0.like(0.0)],
             frame: [sin1, cos1, r, r1, r2, r3],
-            impulse: [m * a.mul_add(omega1 - omega0, turned + turned)],
+            // The impulse is m [a (omega1 - omega0) + 2 U sin d], with omega1 - omega0 = 2 (w - omega0).
+            impulse: [a.mul_add(w - omega0, turned)],
             doubts: [correction, turn],
             positive: r,
         }

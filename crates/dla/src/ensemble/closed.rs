@@ -54,7 +54,8 @@ where
     /// The largest force of each constraint on a lane, averaged over a step (N).
     #[must_use]
     pub fn largest_multiplier(&self, lane: usize) -> [f64; M] {
-        from_fn(|k| self.run.largest[k].0[lane] / self.step.abs())
+        let units = self.systems[lane].impulse_units();
+        from_fn(|k| self.run.largest[k].0[lane] * (units[k] / self.step.abs()))
     }
 
     /// Makes a block again from its beginning, and takes of it the lanes whose steps were not good: by wide steps, and where
@@ -69,7 +70,8 @@ where
                 run.take(lane, &wide);
                 if run.bad[lane] {
                     run.take(lane, before);
-                    if one_by_one(&systems[lane], *step, steps, lane, run).is_none() {
+                    let units = systems[lane].impulse_units();
+                    if one_by_one(&systems[lane], (*step, units), steps, lane, run).is_none() {
                         run.state.lose(lane);
                     }
                 }
@@ -247,7 +249,7 @@ impl<const W: usize, const N: usize, const M: usize, const F: usize> Run<W, N, M
 #[inline(never)]
 fn one_by_one<Sys: System<N, M>, const W: usize, const N: usize, const M: usize, const F: usize>(
     system: &Sys,
-    h: f64,
+    (h, units): (f64, [f64; M]),
     steps: u64,
     lane: usize,
     run: &mut Run<W, N, M, F>,
@@ -269,7 +271,7 @@ fn one_by_one<Sys: System<N, M>, const W: usize, const N: usize, const M: usize,
         }
         for k in 0..M {
             let impulse = step.impulses[0][k] + step.impulses[1][k];
-            largest[k].0[lane] = largest[k].0[lane].max(impulse.abs());
+            largest[k].0[lane] = largest[k].0[lane].max((impulse / units[k]).abs());
         }
     }
     // What the next step would extrapolate from is not known.

@@ -10,7 +10,7 @@ use sleigh::effects::{Bowl, Torque};
 use sleigh::{RoundWell, Sleigh, SleighState, TimeFunction};
 
 const W: usize = 16;
-type Closed = ClosedEnsemble<Sleigh, W, 3, 1, 5, 6>;
+type Closed = ClosedEnsemble<Sleigh, W, 3, 1, 4, 6>;
 type Start = ([f64; 3], [f64; 3]);
 
 fn state_of(&([x, y, heading], [speed, turn_rate, _]): &Start) -> SleighState {

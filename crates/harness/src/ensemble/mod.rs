@@ -8,7 +8,7 @@
 //! let sleighs = [Sleigh::new(1.0, 1.0, 0.5)?; 16];
 //! let starts: Vec<_> = (0..16).map(|i| ([0.0; 3], [-1.0, 0.1 + 0.01 * f64::from(i), 0.0])).collect();
 //! let state = LaneState::new(&starts, [false, false, true]);
-//! let mut ensemble = ClosedEnsemble::<_, 16, 3, 1, 5, 6>::new(sleighs, 0.05, state);
+//! let mut ensemble = ClosedEnsemble::<_, 16, 3, 1, 4, 6>::new(sleighs, 0.05, state);
 //! let schedule = Schedule { t0: 0.0, step: 0.05, steps: 800 };
 //! let speed = |_: &Sleigh, q: &[f64; 3], v: &[f64; 3]| [SleighState::from_coordinates(q, v).speed];
 //! let summaries = watch(&mut ensemble, &Each(&sleighs), &Watching { schedule, every: 50, of: &speed });

@@ -23,7 +23,7 @@ fn group(members: Range<u64>) -> Vec<Option<Summary<3>>> {
     let sleighs = [Sleigh::new(1.0, 1.0, 0.5).unwrap(); W];
     let starts: Vec<_> = members.map(start).collect();
     let state = LaneState::new(&starts, [false, false, true]);
-    let mut ensemble = ClosedEnsemble::<_, W, 3, 1, 5, 6>::new(sleighs, 0.05, state);
+    let mut ensemble = ClosedEnsemble::<_, W, 3, 1, 4, 6>::new(sleighs, 0.05, state);
     let of = |_: &Sleigh, q: &[f64; 3], v: &[f64; 3]| words(&SleighState::from_coordinates(q, v));
     let schedule = Schedule { t0: 0.0, step: 0.05, steps: 101 };
     watch(&mut ensemble, &Each(&sleighs), &Watching { schedule, every: 10, of: &of })
