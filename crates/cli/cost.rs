@@ -2,7 +2,7 @@ use crate::args::SceneArguments;
 use crate::error::CliError;
 use crate::{inspect, table, terminal};
 use dla::{RunError, Schedule};
-use harness::{StepCost, step_cost};
+use harness::{step_evaluations, step_time};
 use scene::{Scene, SceneEffect, SceneSystem, Visitor};
 use serde_json::json;
 
@@ -12,7 +12,8 @@ const STEPS: u64 = 2000;
 /// One row: some of a scene's effects, and what a step costs with them.
 struct Row {
     effects: Vec<&'static str>,
-    cost: StepCost,
+    ns_per_step: f64,
+    evaluations_per_step: f64,
 }
 
 /// `noslip cost`: what each effect of a scene costs a step, for the scene with none, with each alone, and with all.
@@ -29,8 +30,13 @@ pub(crate) fn cost(arguments: &SceneArguments) -> Result<(), CliError> {
     for effects in subsets {
         let names: Vec<&'static str> = effects.iter().map(SceneEffect::kind).collect();
         let part = Scene { effects, ..scene.clone() };
-        match part.visit(Cost(schedule))? {
-            Ok(cost) => rows.push(Row { effects: names, cost }),
+        let ns_per_step = part.visit(Time(schedule))?;
+        // Of other types than those that are timed: they evaluate as often, and are half as many to be compiled.
+        let evaluations_per_step = part.visit_listed(Evaluations(schedule))?;
+        match ns_per_step.and_then(|ns| Ok((ns, evaluations_per_step?))) {
+            Ok((ns_per_step, evaluations_per_step)) => {
+                rows.push(Row { effects: names, ns_per_step, evaluations_per_step });
+            }
             Err(failure) => failures.push(format!("with [{}]: {failure}", names.join(", "))),
         }
     }
@@ -40,8 +46,8 @@ pub(crate) fn cost(arguments: &SceneArguments) -> Result<(), CliError> {
             .map(|row| {
                 json!({
                     "effects": row.effects,
-                    "ns_per_step": row.cost.ns_per_step,
-                    "evaluations_per_step": row.cost.evaluations_per_step,
+                    "ns_per_step": row.ns_per_step,
+                    "evaluations_per_step": row.evaluations_per_step,
                 })
             })
             .collect();
@@ -58,27 +64,40 @@ const COLUMNS: [&str; 4] = ["effects", "ns/step", "more", "evaluations/step"];
 
 /// The rows as text, each with what it costs more than the first.
 fn cells(rows: &[Row]) -> Vec<Vec<String>> {
-    let bare = rows.first().map_or(f64::NAN, |row| row.cost.ns_per_step);
+    let bare = rows.first().map_or(f64::NAN, |row| row.ns_per_step);
     let cells = |row: &Row| {
         vec![
             if row.effects.is_empty() { "none".to_owned() } else { row.effects.join(", ") },
-            format!("{:.1}", row.cost.ns_per_step),
-            if row.effects.is_empty() { "-".to_owned() } else { format!("{:+.1}", row.cost.ns_per_step - bare) },
-            format!("{:.2}", row.cost.evaluations_per_step),
+            format!("{:.1}", row.ns_per_step),
+            if row.effects.is_empty() { "-".to_owned() } else { format!("{:+.1}", row.ns_per_step - bare) },
+            format!("{:.2}", row.evaluations_per_step),
         ]
     };
     rows.iter().map(cells).collect()
 }
 
-struct Cost(Schedule);
+struct Time(Schedule);
 
-impl Visitor for Cost {
-    type Output = Result<StepCost, RunError>;
+impl Visitor for Time {
+    type Output = Result<f64, RunError>;
 
     fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
     where
         Sys: SceneSystem<N, M>,
     {
-        step_cost(system, &self.0, q, v)
+        step_time(system, &self.0, q, v)
+    }
+}
+
+struct Evaluations(Schedule);
+
+impl Visitor for Evaluations {
+    type Output = Result<f64, RunError>;
+
+    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
+    where
+        Sys: SceneSystem<N, M>,
+    {
+        step_evaluations(system, &self.0, q, v)
     }
 }

@@ -72,7 +72,7 @@ impl Assembly {
     where
         Sys: System<N, M> + Send + Sync + 'static,
     {
-        let at = std::array::from_fn(|i| self.angles.len() + i);
+        let at = lagrangian::from_fn(|i| self.angles.len() + i);
         self.angles.extend(system.angles());
         self.place(name, Box::new(SystemElement { system }), &at);
         at

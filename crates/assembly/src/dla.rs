@@ -181,7 +181,7 @@ impl Dla {
                     )
                 },
             );
-            sums = std::array::from_fn(|i| sums[i] + own[i]);
+            sums = lagrangian::from_fn(|i| sums[i] + own[i]);
         }
         let [damping, inertia, all] = sums;
         if damping > inertia && inertia > ROUNDING * all {

@@ -73,5 +73,5 @@ pub trait Element: EnergyElement + StageElement + Debug + Send + Sync {
 /// The first `N` numbers of a slice; zero where it is shorter, which no slice of an assembly is.
 #[inline(always)]
 pub(crate) fn local<const N: usize>(x: &[f64]) -> [f64; N] {
-    std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
+    lagrangian::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
 }

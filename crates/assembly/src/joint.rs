@@ -37,7 +37,7 @@ impl<J: Joint<N, M>, const N: usize, const M: usize> JointElement<J, N, M> {
     #[inline(always)]
     fn rates(&self, t: f64, q: &[f64], v: &[f64]) -> [f64; M] {
         let (q, v): ([f64; N], [f64; N]) = (local(q), local(v));
-        let along = std::array::from_fn(|i| Dual { re: q[i], eps: [v[i]] });
+        let along = lagrangian::from_fn(|i| Dual { re: q[i], eps: [v[i]] });
         self.joint.position(Dual { re: t, eps: [1.0] }, &along).map(|g| g.eps[0])
     }
 

@@ -1,10 +1,9 @@
 use crate::element::{Blocks, Element, local};
 use lagrangian::linear::larger;
 use lagrangian::{
-    DiscreteConstraint, DiscreteLagrangian, Dual, Midpoint, System, constraint_residual, energy, force_power,
+    DiscreteConstraint, DiscreteLagrangian, Dual, Midpoint, System, constraint_residual, energy, force_power, from_fn,
     lagrangian_power, mass_matrix, momentum, position_misses, position_residual, reaction_rows,
 };
-use std::array::from_fn;
 use std::fmt;
 
 /// Any static system as an element, with the midpoint rule for its discrete Lagrangian and constraint.

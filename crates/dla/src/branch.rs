@@ -3,8 +3,7 @@
 use crate::newton::BlockEquations;
 use crate::{Equations, Newton};
 use lagrangian::linear::{Singular, larger};
-use lagrangian::{Dual, System};
-use std::array::from_fn;
+use lagrangian::{Dual, System, from_fn};
 
 /// Equations that remember how large the first two corrections of a search were.
 pub(crate) struct Search<E> {

@@ -14,7 +14,7 @@ pub struct Composition<Base, const STAGES: usize> {
 /// Mirrors the first weights about a centre that makes the sum one.
 fn mirrored<const STAGES: usize>(first: &[f64]) -> [f64; STAGES] {
     let centre = 1.0 - 2.0 * first.iter().sum::<f64>();
-    std::array::from_fn(|i| first.get(i.min(STAGES - 1 - i)).copied().unwrap_or(centre))
+    lagrangian::from_fn(|i| first.get(i.min(STAGES - 1 - i)).copied().unwrap_or(centre))
 }
 
 impl<Base, const STAGES: usize> Composition<Base, STAGES> {

@@ -1,8 +1,9 @@
 use crate::increment::Increment;
 use crate::{Equations, Newton, State};
 use lagrangian::linear::{Singular, largest};
-use lagrangian::{DiscreteConstraint, DiscreteLagrangian, FactoredSaddle, Rows, Saddle, System, redundant_rows};
-use std::array::from_fn;
+use lagrangian::{
+    DiscreteConstraint, DiscreteLagrangian, FactoredSaddle, Rows, Saddle, System, from_fn, redundant_rows,
+};
 
 /// The corrections of a search for the mean velocity of a step: Newton's own by one second-order evaluation, and simplified
 /// ones by first-order evaluations as long as they converge as well.

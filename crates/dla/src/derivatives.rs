@@ -1,6 +1,5 @@
 use lagrangian::linear::{Inverse, larger};
-use lagrangian::mul_add;
-use std::array::from_fn;
+use lagrangian::{from_fn, mul_add};
 
 /// Systems of more coordinates or constraints are not remembered.
 pub(crate) const COORDINATES: usize = 8;

@@ -2,8 +2,7 @@ use crate::overshoot::brakes_only;
 use crate::positions::{affine_only, velocities_only};
 use crate::{Equations, Newton, NewtonError, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::linear::{Lu, Singular};
-use lagrangian::{DiscreteLagrangian, Dual, Saddle, System, Trapezoid, mass_matrix, momentum};
-use std::array::from_fn;
+use lagrangian::{DiscreteLagrangian, Dual, Saddle, System, Trapezoid, from_fn, mass_matrix, momentum};
 
 /// The geometric nonholonomic integrator: **a counter-example**, not a method to use.
 ///

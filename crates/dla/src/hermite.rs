@@ -1,6 +1,5 @@
 use crate::State;
-use lagrangian::{MotionError, System};
-use std::array::from_fn;
+use lagrangian::{MotionError, System, from_fn};
 
 /// The quintic through position, velocity and acceleration at both ends of a step: what lies between two nodes, cheaply.
 ///

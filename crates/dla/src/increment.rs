@@ -4,9 +4,8 @@ use crate::dependent::named_along;
 use crate::{Newton, NewtonError, State, StepError};
 use lagrangian::linear::{Singular, normal_solve};
 use lagrangian::{
-    AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, Dual, Rows, Saddle, System, position_misses,
+    AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, Dual, Rows, Saddle, System, from_fn, position_misses,
 };
-use std::array::from_fn;
 use std::f64::consts::PI;
 
 /// The equations for the mean velocity `v` of a step, with the multiplier at its beginning.
@@ -145,13 +144,13 @@ where
     }
 
     /// Both ends of a step with the mean velocity `v`, in first order alone.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn momenta(&self, v: &[f64; N]) -> Departure<N> {
         self.momenta_along(v, v)
     }
 
     /// The same with the configurations of a step of the mean velocity `way`, which is near to `v`.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn momenta_along(&self, way: &[f64; N], v: &[f64; N]) -> Departure<N> {
         let Self { rules: (lagrangian, _), system, t0, h, q0, .. } = *self;
         let [d1, d2] = lagrangian.slopes_along(system, (t0, h), &q0, way, v);

@@ -3,8 +3,7 @@ use crate::derivatives::{COORDINATES, Derivatives, Row, counted, switch};
 use crate::past::Past;
 use crate::settle::LEAST;
 use crate::unknowns::Unknowns;
-use lagrangian::AdmissibleBasis;
-use std::array::from_fn;
+use lagrangian::{AdmissibleBasis, from_fn};
 
 /// What a step of the general form remembers of those before it, with which the search of the next one begins.
 #[derive(Debug, Clone, Copy, PartialEq)]

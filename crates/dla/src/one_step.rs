@@ -42,7 +42,7 @@ impl<const M: usize> StepReport<M> {
     /// What this step and a further one did together.
     #[must_use]
     pub fn then(&self, next: &Self) -> Self {
-        let sum = |end: usize| std::array::from_fn(|k| self.impulses[end][k] + next.impulses[end][k]);
+        let sum = |end: usize| lagrangian::from_fn(|k| self.impulses[end][k] + next.impulses[end][k]);
         let work = match (self.work, next.work) {
             (Some(before), Some(work)) => Some(before + work),
             (before, work) => before.or(work),
@@ -53,7 +53,7 @@ impl<const M: usize> StepReport<M> {
     /// The constraint forces, averaged over a step of length `h`: second-order accurate in its middle.
     #[must_use]
     pub fn multipliers(&self, h: f64) -> [f64; M] {
-        std::array::from_fn(|k| (self.impulses[0][k] + self.impulses[1][k]) / h)
+        lagrangian::from_fn(|k| (self.impulses[0][k] + self.impulses[1][k]) / h)
     }
 }
 

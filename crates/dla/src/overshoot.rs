@@ -1,6 +1,5 @@
 use crate::StepError;
-use lagrangian::{System, momentum};
-use std::array::from_fn;
+use lagrangian::{System, from_fn, momentum};
 
 /// That the forces of a step brake its velocity and do not turn it round.
 ///

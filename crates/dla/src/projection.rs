@@ -2,10 +2,9 @@ use crate::dependent::{independent_rows, rows_left_out};
 use crate::{Equations, Newton, NewtonError, Stage, StepError};
 use lagrangian::linear::{Singular, largest, normal_solve};
 use lagrangian::{
-    AdmissibleBasis, Dual, FactoredSaddle, HyperDual, Rows, Saddle, System, constraint_residual, mass_matrix, momentum,
-    reaction_rows,
+    AdmissibleBasis, Dual, FactoredSaddle, HyperDual, Rows, Saddle, System, constraint_residual, from_fn, mass_matrix,
+    momentum, reaction_rows,
 };
-use std::array::from_fn;
 
 /// The equations for the velocity at the end of a step, with the multiplier there:
 /// `L_v(q1, v1) = p1 + A(q1)' mu`, `A(q1) v1 + b(q1) = 0`. Of a constraint `phi = 0` that is not affine, `A` is `phi_v(q1, v1)`.

@@ -110,9 +110,9 @@ pub fn recommend_by_trial<const N: usize>(
         let schedule = Schedule { t0: 0.0, step: duration / steps as f64, steps };
         // The last is that of the last node, to the bit.
         let end = schedule.time(steps);
-        let times: [f64; TIMES] = std::array::from_fn(|i| end * (i + 1) as f64 / TIMES as f64);
+        let times: [f64; TIMES] = lagrangian::from_fn(|i| end * (i + 1) as f64 / TIMES as f64);
         let found = make(&schedule, &times)?;
-        let sampled: Sampled<N> = std::array::from_fn(|i| found.get(i).map_or([f64::NAN; N], State::unwrapped));
+        let sampled: Sampled<N> = lagrangian::from_fn(|i| found.get(i).map_or([f64::NAN; N], State::unwrapped));
         let finite = sampled.iter().flatten().all(|q| q.is_finite());
         if finite { Ok(sampled) } else { Err(RunError { step: steps, time: end, source: StepError::NotFinite }) }
     };
@@ -155,7 +155,7 @@ fn reference<const N: usize>(
                     // A ratio of two is an error of order one.
                     let better = (ratio >= 1.9).then(|| {
                         let gain = (ratio.log2().round().clamp(1.0, 20.0).exp2() - 1.0).recip();
-                        std::array::from_fn(|k| std::array::from_fn(|i| now[k][i] + gain * (now[k][i] - before[k][i])))
+                        lagrangian::from_fn(|k| lagrangian::from_fn(|i| now[k][i] + gain * (now[k][i] - before[k][i])))
                     });
                     let moved = match (&better, &extrapolated) {
                         (Some(better), Some(before)) => distance(better, before),

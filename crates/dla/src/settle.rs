@@ -1,4 +1,4 @@
-use std::array::from_fn;
+use lagrangian::from_fn;
 
 /// Corrections shrink by at least as much, or their derivatives are not good enough.
 pub(crate) const SHRINKING: f64 = 0.125;

@@ -2,8 +2,7 @@ use crate::positions::onto_positions;
 use crate::projection::project;
 use crate::{Equations, Newton, Stage, State, StepError};
 use lagrangian::linear::Singular;
-use lagrangian::{HyperDual, RowSpace, Saddle, System, mass_matrix};
-use std::array::from_fn;
+use lagrangian::{HyperDual, RowSpace, Saddle, System, from_fn, mass_matrix};
 
 /// A start that meets every constraint.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,6 @@
 use crate::past::Past;
 use crate::{Checkpoint, CheckpointError, StepError};
-use lagrangian::{Memory, ReducedError, Start, System, Twofold, added, quasi_velocities};
-use std::array::from_fn;
+use lagrangian::{Memory, ReducedError, Start, System, Twofold, added, from_fn, quasi_velocities};
 use std::f64::consts::{PI, TAU};
 
 /// `2 pi` minus its nearest f64.

@@ -2,8 +2,7 @@ use crate::hermite::Hermite;
 use crate::state::two_sum;
 use crate::{Checkpoint, CheckpointError, Observer, State, StepReport, View};
 use lagrangian::quadrature::gauss_legendre;
-use lagrangian::{System, constraint_residual, energy, force_power, lagrangian_power};
-use std::array::from_fn;
+use lagrangian::{System, constraint_residual, energy, force_power, from_fn, lagrangian_power};
 use std::ops::ControlFlow;
 
 /// The work done on a system since the start of a run (J), so that `E(t) - E(0) - work` is the error of the energy.

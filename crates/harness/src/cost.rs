@@ -4,38 +4,46 @@ use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Scalar, System};
 use std::cell::Cell;
 use std::hint::black_box;
 
-/// What a step of `dla` costs on a system, solved in general form: no closed form of the step is used.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StepCost {
-    /// Time of a step (ns), the median of repeated runs.
-    pub ns_per_step: f64,
-    /// How often a step evaluates the Lagrangian, the forces or the constraint, with derivatives or without.
-    pub evaluations_per_step: f64,
-}
-
-/// Measures the cost of a step, as the mean over a run.
+/// The time of a step of `dla`, solved in general form (ns), as the mean over a run and the median of repeated runs: no closed form of
+/// the step is used.
 ///
 /// # Errors
 /// [`RunError`] where the run fails.
-pub fn step_cost<Sys, const N: usize, const M: usize>(
+pub fn step_time<Sys, const N: usize, const M: usize>(
     system: &Sys,
     schedule: &Schedule,
     q: [f64; N],
     v: [f64; N],
-) -> Result<StepCost, RunError>
+) -> Result<f64, RunError>
 where
     Sys: System<N, M> + Piecewise,
 {
     let start = State::new(q, v, system.angles());
-    let evaluations = Cell::new(0);
-    let counted = Counted { system: system.piece(schedule.t0), whole: system, evaluations: &evaluations };
-    let steps = made(&counted, schedule, start)?;
+    let steps = made(system, schedule, start)?;
     let seconds = median_seconds(|| {
-        // The counted run has just shown that these steps succeed.
+        // The same run has just succeeded.
         black_box(made(system, schedule, black_box(start)).is_ok());
     });
-    let per_step = 1.0 / steps.max(1) as f64;
-    Ok(StepCost { ns_per_step: 1e9 * seconds * per_step, evaluations_per_step: evaluations.get() as f64 * per_step })
+    Ok(1e9 * seconds / steps.max(1) as f64)
+}
+
+/// How often such a step evaluates the Lagrangian, the forces or the constraint, with derivatives or without.
+///
+/// # Errors
+/// [`RunError`] where the run fails.
+pub fn step_evaluations<Sys, const N: usize, const M: usize>(
+    system: &Sys,
+    schedule: &Schedule,
+    q: [f64; N],
+    v: [f64; N],
+) -> Result<f64, RunError>
+where
+    Sys: System<N, M> + Piecewise,
+{
+    let evaluations = Cell::new(0);
+    let counted = Counted { system: system.piece(schedule.t0), whole: system, evaluations: &evaluations };
+    let steps = made(&counted, schedule, State::new(q, v, system.angles()))?;
+    Ok(evaluations.get() as f64 / steps.max(1) as f64)
 }
 
 fn made<Sys, const N: usize, const M: usize>(

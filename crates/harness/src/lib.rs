@@ -29,7 +29,7 @@ pub use assembled::{
     run_assembly, run_assembly_saved, run_assembly_watched,
 };
 pub use baseline::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced};
-pub use cost::{StepCost, step_cost};
+pub use cost::{step_evaluations, step_time};
 pub use drift::{Blocks, Drift, Verdict};
 pub use method::{Kind, METHODS, Method, MethodError, MethodInfo};
 pub use record::{EnergySummary, NewtonSummary, Record, Sample};

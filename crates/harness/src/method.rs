@@ -1,4 +1,4 @@
-use lagrangian::{Alpha, NotAWeight};
+use lagrangian::{Alpha, AnyRule, Midpoint, NotAWeight, Trapezoid};
 use thiserror::Error;
 
 /// What is known of a method by its name.
@@ -360,6 +360,15 @@ impl Method {
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
+    }
+
+    /// The rule of the discrete constraint: the midpoint rule, but for `dla-trapezoid` and `dla-alpha`.
+    pub(crate) fn rule(&self) -> AnyRule {
+        match self.info.kind {
+            Kind::DlaTrapezoid => Trapezoid.into(),
+            Kind::DlaAlpha => self.alpha.into(),
+            _ => Midpoint.into(),
+        }
     }
 
     /// The rule of `dla-alpha`.

@@ -177,7 +177,7 @@ impl<const N: usize> Meter<N> {
         let list = checkpoint.list("samples")?;
         let samples = list.chunks_exact(3 + N).map(|numbers| Sample {
             t: numbers[0],
-            q: std::array::from_fn(|i| numbers[3 + i]),
+            q: lagrangian::from_fn(|i| numbers[3 + i]),
             energy_error: numbers[1],
             constraint: numbers[2],
         });

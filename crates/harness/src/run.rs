@@ -110,8 +110,8 @@ where
     }
     match method.info().kind {
         Kind::Dla => run_with!(Dla::midpoint()),
-        Kind::DlaTrapezoid => run_with!(Dla::trapezoid()),
-        Kind::DlaAlpha => run_with!(Dla::new(method.alpha(), method.alpha())),
+        // One type for both: every type is compiled for every system.
+        Kind::DlaTrapezoid | Kind::DlaAlpha => run_with!(Dla::new(method.rule(), method.rule())),
         Kind::Dla4 => run_with!(Composition::suzuki4(Dla::midpoint())),
         Kind::Dla6 => run_with!(Composition::kahan_li6(Dla::midpoint())),
         Kind::Dla8 => run_with!(Composition::fifteen8(Dla::midpoint())),

@@ -1,12 +1,12 @@
-use crate::{Kind, Method};
+use crate::Method;
 use dla::{Checkpoint, CheckpointError, State, View};
 use lagrangian::linear::{larger, largest};
-use lagrangian::{Alpha, DiscreteConstraint, Midpoint, System, Trapezoid};
+use lagrangian::{AnyRule, DiscreteConstraint, System};
 
 /// How far a run is from its constraints besides at the velocities of its nodes: over each step, and in the positions.
 #[derive(Debug)]
 pub(crate) struct Slip<const N: usize> {
-    rule: Rule,
+    rule: AnyRule,
     h: f64,
     /// The time and the state at the node before.
     before: Option<(f64, State<N>)>,
@@ -15,22 +15,9 @@ pub(crate) struct Slip<const N: usize> {
     leaf: Option<f64>,
 }
 
-/// The rule of a discrete constraint.
-#[derive(Debug, Clone, Copy)]
-enum Rule {
-    Midpoint,
-    Trapezoid,
-    Alpha(Alpha),
-}
-
 impl<const N: usize> Slip<N> {
     pub(crate) fn new(method: &Method, h: f64) -> Self {
-        let rule = match method.info().kind {
-            Kind::DlaTrapezoid => Rule::Trapezoid,
-            Kind::DlaAlpha => Rule::Alpha(method.alpha()),
-            _ => Rule::Midpoint,
-        };
-        Self { rule, h, before: None, step: 0.0, leaf: None }
+        Self { rule: method.rule(), h, before: None, step: 0.0, leaf: None }
     }
 
     pub(crate) fn step_max(&self) -> f64 {
@@ -54,11 +41,7 @@ impl<const N: usize> Slip<N> {
         if let Some((t, before)) = &self.before {
             let v = node.state.moved_since(before).map(|moved| moved / self.h);
             let (system, t, h, q) = (node.system, *t, self.h, before.q());
-            let residual: [f64; M] = match self.rule {
-                Rule::Midpoint => Midpoint.residual(system, t, h, q, &v),
-                Rule::Trapezoid => Trapezoid.residual(system, t, h, q, &v),
-                Rule::Alpha(alpha) => alpha.residual(system, t, h, q, &v),
-            };
+            let residual: [f64; M] = self.rule.residual(system, t, h, q, &v);
             self.step = larger(self.step, largest(&residual));
         }
         self.look(node);

@@ -1,6 +1,5 @@
-use crate::Saddle;
 use crate::linear::{Inverse, Singular};
-use std::array::from_fn;
+use crate::{Saddle, from_fn};
 
 /// The equations of a [`Saddle`] where `K^-1` is known: its Schur complement `C K^-1 G'`, factorised for several right-hand
 /// sides.

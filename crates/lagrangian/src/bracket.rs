@@ -1,6 +1,5 @@
 use crate::linear::{Lu, Singular};
-use crate::{AdmissibleBasis, Dual, Scalar, System, mass_matrix};
-use std::array::from_fn;
+use crate::{AdmissibleBasis, Dual, Scalar, System, from_fn, mass_matrix};
 
 /// A system without explicit time and with `b = 0`, at one point of the dual `D*` of its distribution.
 ///

@@ -1,6 +1,7 @@
 use crate::linear::Lu;
-use crate::{Constraint, Dependence, Dual, RowSpace, Rows, Scalar, System, mass_matrix, position_rows, reaction_rows};
-use std::array::from_fn;
+use crate::{
+    Constraint, Dependence, Dual, RowSpace, Rows, Scalar, System, from_fn, mass_matrix, position_rows, reaction_rows,
+};
 
 /// What a row of a constraint is at a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

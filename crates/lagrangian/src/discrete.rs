@@ -1,8 +1,7 @@
 use crate::basis::linear_basis;
 use crate::gradient::by_places;
 use crate::system::with_nonlinear;
-use crate::{AdmissibleBasis, Dual, Gradient, HyperDual, Rule, Scalar, System, constraint_residual};
-use std::array::from_fn;
+use crate::{AdmissibleBasis, Dual, Gradient, HyperDual, Rule, Scalar, System, constraint_residual, from_fn};
 
 /// The derivatives of a discrete Lagrangian over one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -107,6 +106,9 @@ pub trait DiscreteLagrangian<Sys, const N: usize, const M: usize> {
 ///
 /// It is chosen independently of the discrete Lagrangian. (Cortes and Martinez 2001, Nonlinearity 14, 1365-1392.)
 pub trait DiscreteConstraint<Sys, const N: usize, const M: usize> {
+    /// Whether [`basis_along`](Self::basis_along) may give a basis. Steps in it are compiled only then.
+    const HAS_BASIS: bool = false;
+
     /// `w_d(q0, q0 + h v)`, in the units of `A v`.
     fn residual<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> [S; M];
 
@@ -204,6 +206,8 @@ impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteLagrang
 }
 
 impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteConstraint<Sys, N, M> for R {
+    const HAS_BASIS: bool = !R::SEVERAL;
+
     #[inline(always)]
     fn residual<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> [S; M] {
         let mut sum = [S::zero(); M];

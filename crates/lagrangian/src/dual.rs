@@ -1,6 +1,5 @@
-use crate::Scalar;
 use crate::scalar::derived_operators;
-use std::array::from_fn;
+use crate::{Scalar, from_fn};
 use std::ops::{Add, Div, Mul, Neg};
 
 /// A first-order dual number with `N` independent infinitesimals: a value and its gradient.

@@ -1,6 +1,5 @@
 use crate::linear::{Inverse, Singular};
-use crate::{AdmissibleBasis, Bordered};
-use std::array::from_fn;
+use crate::{AdmissibleBasis, Bordered, from_fn};
 
 /// The matrices of a [`Saddle`](crate::Saddle), factorised for several right-hand sides: for simplified Newton iterations, which keep the
 /// derivatives of an earlier point.

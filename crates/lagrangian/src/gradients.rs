@@ -1,6 +1,5 @@
 use crate::reduced::shortest;
-use crate::{AdmissibleBasis, Constraint, Dual, HyperDual, Parametrised, Scalar};
-use std::array::from_fn;
+use crate::{AdmissibleBasis, Constraint, Dual, HyperDual, Parametrised, Scalar, from_fn};
 
 /// A number with its derivatives in eight directions.
 pub type Seeded = Dual<f64, 8>;

@@ -1,6 +1,5 @@
-use crate::{LieBracket, RowSpace, Scalar, System, VectorField};
+use crate::{LieBracket, RowSpace, Scalar, System, VectorField, from_fn};
 use nalgebra::DMatrix;
-use std::array::from_fn;
 use thiserror::Error;
 
 /// A field among those that span the admissible directions `ker A(q, t)`, at a fixed time.

@@ -1,7 +1,6 @@
-use crate::Scalar;
 use crate::scalar::derived_operators;
 use crate::sincos;
-use std::array::from_fn;
+use crate::{Scalar, from_fn};
 use std::ops::{Add, Div, Mul, Neg};
 
 /// Eight numbers that go through the same arithmetic at once: eight stages of one step, or eight trajectories.

@@ -70,7 +70,7 @@ pub use gradient::Gradient;
 pub use gradients::{Along, Gradients, Seeded, SeededMember};
 pub use growth::{AdmissibleField, Growth, GrowthError, admissible_fields, growth};
 pub use hyperdual::HyperDual;
-pub use inlined::array;
+pub use inlined::{array, from_fn};
 pub use known_angle::KnownAngle;
 pub use lanes::{Lanes, vectorized};
 pub use momentum::{energy, mass_matrix, momentum};
@@ -84,7 +84,7 @@ pub use reaction::{position_misses, position_residual, position_rows, reaction_r
 pub use reduced::{ReducedError, ReducedSlope, quasi_velocities, reduced_acceleration, reduced_slope, velocity_of};
 pub use row_space::{Dependence, RowSpace};
 pub use rows::Rows;
-pub use rule::{Alpha, Midpoint, NotAWeight, Rule, RuleNode, Symmetrised, Trapezoid};
+pub use rule::{Alpha, AnyRule, Midpoint, NotAWeight, Rule, RuleNode, Symmetrised, Trapezoid};
 pub use saddle::Saddle;
 pub use scalar::Scalar;
 pub use sincos::sin_cos_wrapped;

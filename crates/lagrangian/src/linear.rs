@@ -46,11 +46,10 @@ impl<const U: usize> Lu<U> {
     #[inline]
     pub fn above(matrix: [[f64; U]; U], threshold: f64) -> Result<Self, Singular> {
         let mut a = matrix;
-        let mut order: [usize; U] = std::array::from_fn(|i| i);
+        let mut order: [usize; U] = crate::from_fn(|i| i);
         // Reciprocals of the largest entry of each row, and of each column of the matrix so scaled.
         let mut row = a.map(|r| largest(&r).recip());
-        let column: [f64; U] =
-            std::array::from_fn(|j| largest(&std::array::from_fn::<_, U, _>(|i| a[i][j] * row[i])).recip());
+        let column: [f64; U] = crate::from_fn(|j| largest(&crate::from_fn::<_, U, _>(|i| a[i][j] * row[i])).recip());
         let mut positive = true;
         for k in 0..U {
             // Exchanged one by one, at places that are known when the program is compiled.

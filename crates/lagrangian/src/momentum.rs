@@ -1,6 +1,5 @@
 use crate::gradient::by_places;
-use crate::{Gradient, HyperDual, Scalar, System};
-use std::array::from_fn;
+use crate::{Gradient, HyperDual, Scalar, System, from_fn};
 
 /// `L(t, q, v)` with its gradient in `v`.
 #[inline(always)]

@@ -1,6 +1,7 @@
 use crate::linear::Singular;
-use crate::{Dual, HyperDual, Saddle, System, constraint_residual, mass_matrix, reaction_rows, redundant_rows};
-use std::array::from_fn;
+use crate::{
+    Dual, HyperDual, Saddle, System, constraint_residual, from_fn, mass_matrix, reaction_rows, redundant_rows,
+};
 use std::ops::Add;
 use thiserror::Error;
 

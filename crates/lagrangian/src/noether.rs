@@ -1,7 +1,6 @@
 use crate::linear::largest;
 use crate::vector_field::rate_along;
-use crate::{Dual, MotionError, System, VectorField, reaction_rows};
-use std::array::from_fn;
+use crate::{Dual, MotionError, System, VectorField, from_fn, reaction_rows};
 
 /// The momentum `p . X` along a field `X`, and what changes it.
 ///

@@ -1,7 +1,6 @@
 //! Quadrature rules on `[0, 1]`, computed to rounding.
 
-use crate::Twofold;
-use std::array::from_fn;
+use crate::{Twofold, from_fn};
 use std::ops::{Div, Mul, Sub};
 
 /// The Legendre polynomials `P_0(x) .. P_n(x)` on `[-1, 1]`, by their recurrence; `visit(k, P_k)` receives each.

@@ -1,5 +1,4 @@
-use crate::{Constraint, Dual, Scalar, System};
-use std::array::from_fn;
+use crate::{Constraint, Dual, Scalar, System, from_fn};
 
 /// The rows along which the constraints act on the system at a velocity: `A(q, t)`, and `d phi / dv` where a constraint is
 /// not affine.

@@ -1,6 +1,5 @@
 use crate::linear::{Lu, Singular};
-use crate::{AdmissibleBasis, Dual, Motion, MotionError, Scalar, System};
-use std::array::from_fn;
+use crate::{AdmissibleBasis, Dual, Motion, MotionError, Scalar, System, from_fn};
 use thiserror::Error;
 
 /// Why there are no reduced equations.

@@ -1,5 +1,4 @@
-use crate::Rows;
-use std::array::from_fn;
+use crate::{Rows, from_fn};
 
 /// The span of the rows of a constraint, in a metric that has no units: its dimension is their rank.
 ///

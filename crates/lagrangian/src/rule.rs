@@ -18,6 +18,8 @@ pub trait Rule {
     /// Whether derivatives at its nodes are compiled into each step by it: some percent quicker to run than the function that
     /// other rules have in common, and longer to compile.
     const IN_PLACE: bool = false;
+    /// Whether it never has a single node. What only a single node allows is then not compiled.
+    const SEVERAL: bool = false;
 
     /// The nodes.
     fn nodes(&self) -> &[RuleNode];
@@ -38,6 +40,13 @@ pub struct Alpha([RuleNode; 1]);
 /// The mean of the rules with `alpha` and with `1 - alpha`: order 2, self-adjoint. `alpha = 0` is the trapezoid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Symmetrised([RuleNode; 2]);
+
+/// One of the rules above, which a program knows only when it runs: a step by it is compiled once for all of them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AnyRule {
+    nodes: [RuleNode; 2],
+    count: usize,
+}
 
 /// The weight of a rule was not a number from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
@@ -90,6 +99,8 @@ impl Rule for Midpoint {
     }
 }
 impl Rule for Trapezoid {
+    const SEVERAL: bool = true;
+
     #[inline(always)]
     fn nodes(&self) -> &[RuleNode] {
         &[RuleNode { alpha: 0.0, weight: 0.5 }, RuleNode { alpha: 1.0, weight: 0.5 }]
@@ -102,8 +113,47 @@ impl Rule for Alpha {
     }
 }
 impl Rule for Symmetrised {
+    const SEVERAL: bool = true;
+
     #[inline(always)]
     fn nodes(&self) -> &[RuleNode] {
         &self.0
+    }
+}
+impl Rule for AnyRule {
+    #[inline(always)]
+    fn nodes(&self) -> &[RuleNode] {
+        // One or both: a slice of any length would be checked.
+        if self.count == 1 { &self.nodes[..1] } else { &self.nodes }
+    }
+}
+
+macro_rules! any_rule {
+    ($($rule:ty),*) => {
+        $(impl From<$rule> for AnyRule {
+            fn from(rule: $rule) -> Self {
+                let nodes = rule.nodes();
+                Self { nodes: [nodes[0], nodes[nodes.len() - 1]], count: nodes.len() }
+            }
+        })*
+    };
+}
+any_rule!(Midpoint, Trapezoid, Alpha, Symmetrised);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn any_rule_has_the_nodes_of_the_one_it_is() {
+        fn same<R: Rule + Into<AnyRule> + Copy>(rule: R) {
+            let any: AnyRule = rule.into();
+            assert_eq!(any.nodes(), rule.nodes());
+            assert!(!R::SEVERAL || rule.nodes().len() > 1);
+        }
+        same(Midpoint);
+        same(Trapezoid);
+        same(Alpha::new(0.3).unwrap());
+        same(Symmetrised::new(0.3).unwrap());
     }
 }

@@ -1,6 +1,5 @@
 use crate::linear::{Lu, Singular, has_positive_determinant, normal_solve};
-use crate::{AdmissibleBasis, Rows};
-use std::array::from_fn;
+use crate::{AdmissibleBasis, Rows, from_fn};
 
 /// The linear equations of a constrained system,
 ///

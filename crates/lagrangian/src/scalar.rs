@@ -46,7 +46,7 @@ pub trait Scalar:
     #[must_use]
     #[inline(always)]
     fn array<const N: usize>(f: impl Fn(usize) -> Self) -> [Self; N] {
-        std::array::from_fn(f)
+        crate::from_fn(f)
     }
     /// `f(.. f(f(start, items[0]), items[1]) ..)`, inlined as [`array`](Self::array) is.
     #[must_use]

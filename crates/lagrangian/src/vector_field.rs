@@ -1,5 +1,4 @@
-use crate::{Dual, Scalar};
-use std::array::from_fn;
+use crate::{Dual, Scalar, from_fn};
 
 /// A vector field on the configurations, one function generic in its scalar: an infinitesimal motion `q' = X(q)`.
 pub trait VectorField<const N: usize> {

@@ -1,7 +1,6 @@
 use crate::error::positive;
 use crate::{Attitude, Labels, Model, ModelError, State};
-use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, energy};
-use std::array::from_fn;
+use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, energy, from_fn};
 
 /// The Chaplygin ball: it rolls on a horizontal plane without slipping, its mass centre at its geometric centre and its
 /// three principal moments of inertia any.

@@ -1,7 +1,6 @@
 use crate::error::not_negative;
 use crate::{Labels, Model, ModelError, State};
-use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
-use std::array::from_fn;
+use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, from_fn};
 
 /// The chaotic quartic oscillator: seven oscillators `q = (x, y1, y2, y3, z1, z2, z3)`, coupled by
 /// `c/2 (sum yi^2 zi^2 + z1^2 z2^2)` and by `x' + sum yi zi' = 0`. Without units.

@@ -1,7 +1,6 @@
 use crate::error::{finite, positive};
 use crate::{Labels, Model, ModelError, State};
-use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, energy, velocity_of};
-use std::array::from_fn;
+use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, energy, from_fn, velocity_of};
 
 /// A homogeneous ball that rolls on a level table, which turns about the origin at a given rate: constraints that are affine
 /// in the velocities, and one on positions.

@@ -84,6 +84,22 @@ impl Scene {
         })
     }
 
+    /// The same, of half as many types: a list of effects that is empty makes none of its own, and is looked at in every evaluation.
+    ///
+    /// # Errors
+    /// As [`visit`](Self::visit).
+    pub fn visit_listed<V: Visitor>(&self, visitor: V) -> Result<V::Output, SleighError> {
+        if self.has_trailers() {
+            return Err(SleighError::Train);
+        }
+        match self.guiding()? {
+            Guiding::None => self.listed(self.sleigh, visitor),
+            Guiding::Turntable(body) => self.listed(body, visitor),
+            Guiding::One(body) => self.listed(body, visitor),
+            Guiding::Two(body) => self.listed(body, visitor),
+        }
+    }
+
     /// The same where the blade is the only constraint; `None` of a scene that imposes velocities.
     ///
     /// For what needs much code for each system: a list of effects that is empty makes no type of its own here.

@@ -1,5 +1,4 @@
-use lagrangian::mul_add;
-use std::array::from_fn;
+use lagrangian::{from_fn, mul_add};
 
 /// The values after next of `P` sequences, where their `K`th backward differences vanish. `differences`, those of the values
 /// before `x` in rows of `P`, beginning with these values, become those of `x`.

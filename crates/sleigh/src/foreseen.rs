@@ -1,8 +1,7 @@
 use crate::differences::after_next;
 use crate::half_turn::series;
 use crate::heading::Heading;
-use lagrangian::Memory;
-use std::array::from_fn;
+use lagrangian::{Memory, from_fn};
 
 /// What a step of a map with `P` unknowns, the last of which is the mean spin, leaves to the next, which changes it in place.
 #[derive(Debug)]

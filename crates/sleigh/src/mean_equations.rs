@@ -1,7 +1,6 @@
 use crate::Sleigh;
 use crate::half_turn::{half_turn, turned};
-use lagrangian::{Dual, KnownAngle, Push, mul_add};
-use std::array::from_fn;
+use lagrangian::{Dual, KnownAngle, Push, from_fn, mul_add};
 
 /// The equations of a step of the pushed map for its mean velocities `U` and `w`; here what does not change with these.
 pub(crate) struct MeanEquations<'a> {

@@ -3,8 +3,7 @@ use crate::closed_map::recovered;
 use crate::half_turn::{half_turn, turned};
 use crate::mean_equations::{Matrix, MeanEquations, Point};
 use crate::mean_memory::remembered;
-use lagrangian::{ClosedStep, Push, Start, mul_add};
-use std::array::from_fn;
+use lagrangian::{ClosedStep, Push, Start, from_fn, mul_add};
 
 /// A turn in one step (rad) beyond which the general step looks for what continues the motion.
 const NEAR: f64 = 1.0;

@@ -5,10 +5,9 @@ use crate::system_element::SystemElement;
 use lagrangian::linear::largest;
 use lagrangian::quadrature::gauss_legendre;
 use lagrangian::{
-    AdmissibleBasis, Bracket, Dual, HyperDual, Lanes, Scalar, System, energy, lagrangian_power, mass_matrix, momentum,
-    quasi_velocities,
+    AdmissibleBasis, Bracket, Dual, HyperDual, Lanes, Scalar, System, energy, from_fn, lagrangian_power, mass_matrix,
+    momentum, quasi_velocities,
 };
-use std::array::from_fn;
 
 /// The Gauss rule with eight nodes along a step, by which gradients are averaged: exact to degree 15.
 #[derive(Debug, Clone, Copy)]

@@ -2,8 +2,7 @@ use super::{Found, are_met};
 use crate::derivatives::Derivatives;
 use crate::dla::Dla;
 use crate::settle::{LEAST, Settle, sup};
-use lagrangian::{Bordered, System, mass_matrix, momentum};
-use std::array::from_fn;
+use lagrangian::{Bordered, System, from_fn, mass_matrix, momentum};
 
 impl<L, C> Dla<L, C> {
     /// The velocity `v1` at the end: `L_v(q1, v1) = p1 + A(q1)' mu`, `A(q1) v1 + b(q1) = 0`.

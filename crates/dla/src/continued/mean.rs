@@ -5,8 +5,7 @@ use crate::derivatives::Derivatives;
 use crate::dla::{Dla, expected, predicted};
 use crate::increment::Increment;
 use crate::settle::{LEAST, SHRINKING, Settle, sup};
-use lagrangian::{Bordered, DiscreteConstraint, DiscreteLagrangian, System, momentum};
-use std::array::from_fn;
+use lagrangian::{Bordered, DiscreteConstraint, DiscreteLagrangian, System, from_fn, momentum};
 
 /// The square of a correction that is smaller, relative to the velocity, is below all rounding.
 const SMALL: f64 = 1e-9;

@@ -10,8 +10,7 @@ use crate::dla::Dla;
 use crate::overshoot::brakes_only;
 use crate::settle::LEAST;
 use crate::{State, StepReport};
-use lagrangian::{DiscreteConstraint, DiscreteLagrangian, System};
-use std::array::from_fn;
+use lagrangian::{DiscreteConstraint, DiscreteLagrangian, System, from_fn};
 
 /// The velocity that a search has found, with the impulse of the constraints, and in how many corrections.
 struct Found<const N: usize, const M: usize> {
@@ -81,7 +80,9 @@ impl<L, C> Dla<L, C> {
             return None;
         }
         let report = match self.kept.is_in_basis() {
-            true => in_basis::going_on(self, system, (t0, h), state),
+            true if C::HAS_BASIS => in_basis::going_on(self, system, (t0, h), state),
+            // Only of a memory that is none: it is forgotten.
+            true => None,
             false => going_on(self, system, (t0, h), state),
         };
         match report {

@@ -14,12 +14,11 @@ use crate::positions::{affine_only, velocities_only};
 use crate::{OneStep, Stage, State, StepError, StepReport};
 use ends::Ends;
 use lagrangian::linear::larger;
-use lagrangian::{Bracket, Lanes, Scalar, System, Twofold, vectorized};
+use lagrangian::{Bracket, Lanes, Scalar, System, Twofold, from_fn, vectorized};
 use path::{Path, Points};
 use rule::Rule;
 use settling::Settling;
 use start::Start;
-use std::array::from_fn;
 
 /// The energy-preserving collocation method with `S` Gauss nodes, of order `2 S`, for `S` from 1 to 4.
 ///

@@ -1,7 +1,6 @@
 use super::rule::{Rule, Weights};
 use super::start::Start;
-use lagrangian::{Lanes, Scalar};
-use std::array::from_fn;
+use lagrangian::{Lanes, Scalar, from_fn};
 
 /// The path of a step, a polynomial in the coordinates and the quasi-momenta: its derivatives at the collocation nodes,
 /// one in each of the first lanes.

@@ -1,6 +1,5 @@
 use lagrangian::quadrature::gauss_legendre_twofold;
-use lagrangian::{Lanes, Twofold};
-use std::array::from_fn;
+use lagrangian::{Lanes, Twofold, from_fn};
 
 /// The coefficients of collocation with up to four Gauss nodes `c_i` and of the integrals over the step.
 ///

@@ -3,8 +3,7 @@ use crate::sensitivity::{
     Differentiable, NO_BASIS, SensitivityError, StepEquations, StepStart, Unknowns, advanced, constrained, difference,
     dimension, product,
 };
-use lagrangian::{Dual, Gradients, Lanes, Scalar, Seeded};
-use std::array::from_fn;
+use lagrangian::{Dual, Gradients, Lanes, Scalar, Seeded, from_fn};
 
 /// In the rates of the path at the collocation nodes and the quasi-velocities at all of its points, which belong to its
 /// quasi-momenta, `W_a . L_v(q, W xi) = pi_a`.

@@ -1,8 +1,7 @@
 use super::NO_BASIS;
 use crate::{Newton, State, StepError};
 use lagrangian::linear::largest;
-use lagrangian::{Bracket, Dual, Lanes, MotionError, Scalar, System, Twofold, inverse_reduced_mass};
-use std::array::from_fn;
+use lagrangian::{Bracket, Dual, Lanes, MotionError, Scalar, System, Twofold, from_fn, inverse_reduced_mass};
 
 /// The beginning of a step on `D*`.
 #[derive(Debug, Clone, Copy)]

@@ -1,8 +1,7 @@
 use super::state::{Row, accumulate, loaded, store};
 use super::{BLOCK, Ensemble, LANES, LaneState};
 use lagrangian::simd::{Kernel, Pack, Simd, dispatch_widest};
-use lagrangian::{ClosedLaneStep, ClosedLanes, Memory, Start, System, added};
-use std::array::from_fn;
+use lagrangian::{ClosedLaneStep, ClosedLanes, Memory, Start, System, added, from_fn};
 use std::marker::PhantomData;
 
 /// The first steps have no frame before them, and are made twice: as few as leave a frame behind.

@@ -1,6 +1,6 @@
+use lagrangian::from_fn;
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre, lagrange};
 use lagrangian::simd::{Pack, Simd};
-use std::array::from_fn;
 
 /// The coefficients of Gauss collocation with an even number `S` of stages, for a step of length `h`, in the form that needs
 /// the fewest operations.

@@ -47,7 +47,7 @@ impl<const N: usize> Order<N> {
             }
         }
         let angles = systems.of(0).angles();
-        let chosen = |f: &dyn Fn(usize) -> bool| std::array::from_fn(f);
+        let chosen = |f: &dyn Fn(usize) -> bool| lagrangian::from_fn(f);
         let before = |k: usize, j: usize| angles[k] && !angles[j];
         Some(Self {
             iterated: [chosen(&|k| iterated[k] && angles[k]), chosen(&|k| iterated[k] && !angles[k])],

@@ -46,7 +46,7 @@ impl Settling {
     #[inline(always)]
     pub(super) fn lost(&self, size: &[f64; LANES]) -> [f64; LANES] {
         let before = self.before.unwrap_or([0.0; LANES]);
-        std::array::from_fn(
+        lagrangian::from_fn(
             #[inline(always)]
             |lane| if self.open[lane] && before[lane] > ROUNDING * size[lane] { f64::NAN } else { 0.0 },
         )
@@ -69,7 +69,7 @@ mod tests {
     fn the_slowest_lane_counts() {
         let (quick, _) = looks(|k| [0.1f64.powi(k); LANES]);
         assert!((16..=17).contains(&quick), "{quick}");
-        let slow = |k: i32| std::array::from_fn(|lane| if lane == 3 { 0.4f64.powi(k) } else { 0.1f64.powi(k) });
+        let slow = |k: i32| lagrangian::from_fn(|lane| if lane == 3 { 0.4f64.powi(k) } else { 0.1f64.powi(k) });
         assert!((42..=43).contains(&looks(slow).0));
     }
 
@@ -77,7 +77,7 @@ mod tests {
     #[test]
     fn rounding_ends_an_iteration() {
         let (made, settling) = looks(|k| {
-            std::array::from_fn(|lane| {
+            lagrangian::from_fn(|lane| {
                 let rounding = if (k + lane as i32) % 2 == 0 { 1e-16 } else { 3e-16 };
                 f64::max(0.01f64.powi(k), rounding)
             })
@@ -96,6 +96,6 @@ mod tests {
         });
         assert_eq!(made, 60);
         let lost = settling.lost(&[1.0; LANES]).map(f64::is_nan);
-        assert_eq!(lost, std::array::from_fn(|lane| lane == 2));
+        assert_eq!(lost, lagrangian::from_fn(|lane| lane == 2));
     }
 }

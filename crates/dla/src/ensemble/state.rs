@@ -1,8 +1,7 @@
 use crate::State;
 use crate::state::wrapped;
 use lagrangian::simd::{Pack, Simd};
-use lagrangian::{added, array};
-use std::array::from_fn;
+use lagrangian::{added, array, from_fn};
 use std::f64::consts::PI;
 
 /// One number of each of `W` trajectories.

@@ -46,9 +46,9 @@ impl<const W: usize> Ensemble<3, W> for TaylorEnsemble<W> {
     fn advance(&mut self, steps: u64) {
         for _ in 0..steps {
             for first in (0..W).step_by(LANES) {
-                let lanes: [usize; LANES] = std::array::from_fn(|i| first + i);
+                let lanes: [usize; LANES] = lagrangian::from_fn(|i| first + i);
                 let (axes, places) = (lanes.map(|lane| self.axes[lane]), lanes.map(|lane| self.place(lane)));
-                let starts = std::array::from_fn(|i| {
+                let starts = lagrangian::from_fn(|i| {
                     let ([u, omega, _], [x, y]) = (self.state.xi(lanes[i]), places[i]);
                     [omega, u, y, x]
                 });

@@ -1,3 +1,4 @@
+use super::zeros::in_order;
 use super::{Crossing, Event, Zero, zeros};
 use crate::{Observer, OneStep, State, StepReport, View};
 use std::ops::ControlFlow;
@@ -117,8 +118,7 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
                 found.push((at, Crossing { event: index, k, t: step.time(at), within, rising, state }));
             }
         }
-        found.sort_by(|one, other| f64::total_cmp(&one.0, &other.0));
-        found.into_iter().map(|(_, crossing)| crossing).collect()
+        in_order(found).collect()
     }
 
     /// Notes a crossing; whether it ends the run, there at node `k`.

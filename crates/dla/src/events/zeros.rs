@@ -22,6 +22,16 @@ pub fn zeros(
     counts: impl Fn(bool) -> bool,
     mut f: impl FnMut(f64) -> f64,
 ) -> Vec<Zero> {
+    searched(known, tolerance, &counts, &mut f)
+}
+
+/// The same, compiled once for every function.
+fn searched(
+    known: &[(f64, f64)],
+    tolerance: f64,
+    counts: &dyn Fn(bool) -> bool,
+    mut f: &mut dyn FnMut(f64) -> f64,
+) -> Vec<Zero> {
     let points: Vec<Point> = known
         .iter()
         .map(|(at, value)| Point { at: *at, value: *value })
@@ -34,4 +44,10 @@ pub fn zeros(
         Zero { at, within, rising: from.value < 0.0 }
     };
     found.into_iter().map(zero).collect()
+}
+
+/// What is found at parts of a step, in the order of these.
+pub(super) fn in_order<T>(mut found: Vec<(f64, T)>) -> impl Iterator<Item = T> {
+    found.sort_by(|one, other| f64::total_cmp(&one.0, &other.0));
+    found.into_iter().map(|(_, found)| found)
 }

@@ -3,8 +3,7 @@ use super::packs::{ahead, each, everywhere, integral, loaded, own, packed};
 use super::rule::Eight;
 use lagrangian::linear::larger;
 use lagrangian::simd::{Kernel, Pack, Simd, Square, Wide};
-use lagrangian::{System, array, velocity_of};
-use std::array::from_fn;
+use lagrangian::{System, array, from_fn, velocity_of};
 
 /// Eight stages of `N` slopes.
 pub(super) type Rows<const N: usize> = [[f64; 8]; N];

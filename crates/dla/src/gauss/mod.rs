@@ -15,11 +15,10 @@ pub(crate) use ending::SLOWEST;
 use lagrangian::linear::larger;
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
 use lagrangian::simd::dispatch;
-use lagrangian::{System, reduced_slope, velocity_of};
+use lagrangian::{System, from_fn, reduced_slope, velocity_of};
 use lanes::{Outcome, Slopes};
 use memory::Memory;
 use rule::Eight;
-use std::array::from_fn;
 
 /// Gauss collocation on the constraint: the reduced equations `q' = W xi + v_b`, `xi' = ..` in the basis of admissible
 /// velocities, with `S` stages, of order `2 S`.

@@ -1,6 +1,6 @@
+use lagrangian::from_fn;
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre, lagrange, shifted_legendre};
 use lagrangian::simd::Square;
-use std::array::from_fn;
 use std::sync::OnceLock;
 
 /// A rule of at most eight nodes for eight places at once; those beyond its nodes stay at the beginning of the step.

@@ -15,12 +15,12 @@ pub(super) struct Dense<const N: usize, const M: usize, const S: usize> {
 /// A pivot below it, relative to its row and column, is rounding.
 const THRESHOLD: f64 = 4.0 * f64::EPSILON;
 
-#[inline(always)]
+#[inline]
 fn flat<const N: usize, const S: usize>(row: &Row<N, S>) -> &[f64] {
     row.as_flattened().as_flattened()
 }
 
-#[inline(always)]
+#[inline]
 fn flat_mut<const N: usize, const S: usize>(row: &mut Row<N, S>) -> &mut [f64] {
     row.as_flattened_mut().as_flattened_mut()
 }
@@ -33,31 +33,31 @@ impl<const N: usize, const M: usize, const S: usize> Dense<N, M, S> {
     };
 
     /// All zero.
-    #[inline(always)]
+    #[inline]
     pub(super) fn zero() -> Self {
         Self { rows: [[[[[[0.0; N]; 2]; S]; N]; 2]; S], right: [[[0.0; N]; 2]; S] }
     }
 
     /// Where the velocity `i` of a stage stands, and its equation.
-    #[inline(always)]
+    #[inline]
     pub(super) fn velocity(stage: usize, i: usize) -> usize {
         stage * N + i
     }
 
     /// Where the multiplier `k` of a stage stands, not that of the last.
-    #[inline(always)]
+    #[inline]
     pub(super) fn multiplier(stage: usize, k: usize) -> usize {
         S * N + stage * M + k
     }
 
     /// A row of the matrix.
-    #[inline(always)]
+    #[inline]
     pub(super) fn row(&mut self, row: usize) -> &mut [f64] {
         flat_mut(&mut self.rows.as_flattened_mut().as_flattened_mut()[row])
     }
 
     /// The right-hand sides, and after [`Dense::solve`] the solution.
-    #[inline(always)]
+    #[inline]
     pub(super) fn right(&mut self) -> &mut [f64] {
         flat_mut(&mut self.right)
     }

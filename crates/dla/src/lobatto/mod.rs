@@ -9,9 +9,8 @@ use crate::dependent::{named_along, named_at};
 use crate::positions::affine_only;
 use crate::projection::{Projected, Projection};
 use crate::{Newton, OneStep, Stage, State, StepError, StepReport};
-use lagrangian::{System, momentum};
+use lagrangian::{System, from_fn, momentum};
 use stages::Stages;
-use std::array::from_fn;
 use std::f64::consts::PI;
 
 pub use point::{Linearised, Point};

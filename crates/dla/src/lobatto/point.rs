@@ -1,5 +1,4 @@
-use lagrangian::{Dual, HyperDual, System, mass_matrix};
-use std::array::from_fn;
+use lagrangian::{Dual, HyperDual, System, from_fn, mass_matrix};
 
 /// A configuration and a velocity at one time, with the impulse of the constraint there.
 #[derive(Debug, Clone, Copy)]

@@ -3,8 +3,7 @@ use super::tables::Tables;
 use crate::sensitivity::{
     Differentiable, SensitivityError, StepEquations, StepStart, Unknowns, advanced, constrained, difference,
 };
-use lagrangian::{Gradients, Scalar, Seeded};
-use std::array::from_fn;
+use lagrangian::{Gradients, Scalar, Seeded, from_fn};
 
 /// In the velocities of the stages, the impulses `l_j = h Lambda_j` of all stages but the last, and `(v1, mu)`.
 impl<const S: usize, const N: usize, const M: usize> Differentiable<N, M> for Lobatto<S> {

@@ -5,8 +5,7 @@ use crate::State;
 use crate::branch;
 use crate::newton::BlockEquations;
 use lagrangian::linear::Singular;
-use lagrangian::{System, position_misses};
-use std::array::from_fn;
+use lagrangian::{System, from_fn, position_misses};
 
 /// The equations for the velocities of all stages of a step, with the impulses of the constraint at all but the last.
 pub(super) struct Stages<'a, Sys, const N: usize, const M: usize, const S: usize> {
@@ -32,7 +31,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> Stages<'
     /// The increment `h sum_j factors[j] v[j]`, `share` the sum of the factors.
     ///
     /// Summed about the velocity at the start, so that the rounding of the factors multiplies differences only.
-    #[inline(always)]
+    #[inline]
     pub(super) fn increment(&self, factors: &[f64; S], share: f64, v: &[[f64; N]; S]) -> [f64; N] {
         let v0 = self.start.v();
         from_fn(|i| {
@@ -42,7 +41,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> Stages<'
     }
 
     /// By how much the step turns the constraint (rad).
-    #[inline(always)]
+    #[inline]
     pub(super) fn turn(&self, v: &[[f64; N]; S]) -> f64 {
         let increment = self.increment(&self.tables.b, 1.0, v);
         branch::turn(self.system, (self.t0, self.h), self.start.q(), &increment.map(|d| d / self.h))

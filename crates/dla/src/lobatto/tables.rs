@@ -1,5 +1,5 @@
+use lagrangian::from_fn;
 use lagrangian::quadrature::shifted_legendre;
-use std::array::from_fn;
 
 /// The Lobatto nodes and weights on `[0, 1]` with the coefficients of the pair IIIA and IIIB, for any `S >= 2`.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,6 +1,6 @@
 use super::ReducedDerivative;
 use crate::StepReport;
-use std::array::from_fn;
+use lagrangian::from_fn;
 
 /// A variation of a state, or the derivative of one.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,8 +1,7 @@
 use super::equations::{Unknowns, constrained, difference};
 use super::{Differentiable, SensitivityError, StepEquations, StepStart};
 use crate::Dla;
-use lagrangian::{Gradients, Rule, Scalar, Seeded};
-use std::array::from_fn;
+use lagrangian::{Gradients, Rule, Scalar, Seeded, from_fn};
 
 /// With multipliers, in the unknowns `(v, lambda, v1, mu)`: [`Dla`] solves the same equations in whichever form.
 ///

@@ -1,6 +1,5 @@
 use super::SensitivityError;
-use lagrangian::{AdmissibleBasis, Gradients, Scalar, Seeded};
-use std::array::from_fn;
+use lagrangian::{AdmissibleBasis, Gradients, Scalar, Seeded, from_fn};
 
 /// Where a step begins, and how long it is; every number may carry derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]

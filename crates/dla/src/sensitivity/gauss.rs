@@ -1,8 +1,7 @@
 use super::equations::{NO_BASIS, Unknowns, advanced, constrained, difference, dimension, product};
 use super::{Differentiable, SensitivityError, StepEquations, StepStart};
 use crate::Gauss;
-use lagrangian::{Gradients, Scalar, Seeded};
-use std::array::from_fn;
+use lagrangian::{Gradients, Scalar, Seeded, from_fn};
 
 /// In the velocities `V_i` and the accelerations `Xi'_i` of the stages, after the quasi-velocities `xi0` of the start:
 ///

@@ -2,9 +2,8 @@ use super::linear::Scaled;
 use super::{Differentiable, SensitivityError, StepEquations, StepStart};
 use crate::{History, NewtonError};
 use lagrangian::linear::Singular;
-use lagrangian::{Gradients, Scalar, Seeded};
+use lagrangian::{Gradients, Scalar, Seeded, from_fn};
 use nalgebra::DMatrix;
-use std::array::from_fn;
 
 /// The system at parameters that may carry derivatives.
 pub(super) type Seeder<'a, const N: usize, const M: usize> = dyn Fn(&[Seeded]) -> Box<dyn Gradients<N, M> + 'a> + 'a;

@@ -2,8 +2,7 @@ use super::Variation;
 use super::equations::dimension;
 use super::implicit::{Seeder, blocks, seeded, variable};
 use lagrangian::linear::Lu;
-use lagrangian::{Scalar, Seeded};
-use std::array::from_fn;
+use lagrangian::{Scalar, Seeded, from_fn};
 
 /// A variation of a configuration and of its quasi-velocities.
 #[derive(Debug, Clone, Copy, PartialEq)]

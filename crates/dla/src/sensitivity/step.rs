@@ -3,9 +3,8 @@ use super::reduced::{Columns, Frame};
 use super::{Differentiable, SensitivityError, StepDerivative, Variation};
 use crate::{OneStep, State, StepReport};
 use lagrangian::linear::{larger, largest};
-use lagrangian::{Gradients, Member, Parametrised, Scalar, Seeded, SeededMember, System, Unparametrised};
+use lagrangian::{Gradients, Member, Parametrised, Scalar, Seeded, SeededMember, System, Unparametrised, from_fn};
 use nalgebra::DMatrix;
-use std::array::from_fn;
 use std::fmt;
 
 /// First derivatives of the steps of any [`Differentiable`] method on a system, exact but for rounding.

@@ -122,7 +122,7 @@ impl<F: Four> Series<F> {
             for (i, part) in parts.iter_mut().enumerate() {
                 *part = part.mul_add(h4, self.z[4 * k + i]);
             }
-            let four = |x: &[f64; ORDER + 4]| zero.of(&std::array::from_fn(|i| x[4 * k + i]));
+            let four = |x: &[f64; ORDER + 4]| zero.of(&lagrangian::from_fn(|i| x[4 * k + i]));
             turn = turn.mul_add(h4, four(&self.omega).times(four(&RECIPROCALS)));
         }
         let [z0, z1, z2, z3] = parts;

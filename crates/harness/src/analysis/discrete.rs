@@ -3,9 +3,8 @@ use super::root::nearest_root;
 use super::spectrum::{Spectrum, size, spectrum};
 use crate::{Kind, Method, Rk4, Rk4Reduced};
 use dla::{Composition, Differentiable, Dla, Sensitivity, State, StepReport};
-use lagrangian::{System, quasi_velocities, velocity_of};
+use lagrangian::{System, from_fn, quasi_velocities, velocity_of};
 use nalgebra::{DMatrix, DVector};
-use std::array::from_fn;
 
 /// A method as an object whose steps can be differentiated; none for the methods that this is not done for.
 ///
@@ -14,8 +13,7 @@ use std::array::from_fn;
 pub fn differentiable<const N: usize, const M: usize>(method: &Method) -> Option<Box<dyn Differentiable<N, M>>> {
     Some(match method.info().kind {
         Kind::Dla => Box::new(Dla::midpoint()),
-        Kind::DlaTrapezoid => Box::new(Dla::trapezoid()),
-        Kind::DlaAlpha => Box::new(Dla::new(method.alpha(), method.alpha())),
+        Kind::DlaTrapezoid | Kind::DlaAlpha => Box::new(Dla::new(method.rule(), method.rule())),
         Kind::Dla4 => Box::new(Composition::suzuki4(Dla::midpoint())),
         Kind::Dla6 => Box::new(Composition::kahan_li6(Dla::midpoint())),
         Kind::Dla8 => Box::new(Composition::fifteen8(Dla::midpoint())),

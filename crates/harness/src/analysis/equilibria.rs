@@ -3,10 +3,9 @@ use super::root::nearest_root;
 use super::spectrum::spectrum;
 use lagrangian::linear::Singular;
 use lagrangian::{
-    Gradients, ReducedError, SeededMember, System, Unparametrised, energy, quasi_velocities, velocity_of,
+    Gradients, ReducedError, SeededMember, System, Unparametrised, energy, from_fn, quasi_velocities, velocity_of,
 };
 use nalgebra::{DMatrix, DVector};
-use std::array::from_fn;
 use thiserror::Error;
 
 /// A motion that looks the same at all times but for where it is: steady quasi-velocities, and no change of the coordinates

@@ -1,5 +1,4 @@
-use lagrangian::{Gradients, Scalar, Seeded, SeededMember, System, Unparametrised, velocity_of};
-use std::array::from_fn;
+use lagrangian::{Gradients, Scalar, Seeded, SeededMember, System, Unparametrised, from_fn, velocity_of};
 
 /// `q' = W xi + v_b` and `xi'`.
 pub(super) type Slope<const N: usize> = [[Seeded; N]; 2];

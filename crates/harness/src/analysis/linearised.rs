@@ -1,7 +1,6 @@
 use lagrangian::linear::{Lu, Singular};
-use lagrangian::{Gradients, Scalar, Seeded};
+use lagrangian::{Gradients, Scalar, Seeded, from_fn};
 use nalgebra::DMatrix;
-use std::array::from_fn;
 
 /// The reduced equations `q' = W xi + v_b`, `xi' = f(t, q, xi)` at one point, with their derivatives.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,8 +1,7 @@
 use super::flow::{ReducedFlow, Slope, admissible, seeded};
 use dla::{History, NewtonError, SensitivityError};
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
-use lagrangian::{Scalar, Seeded};
-use std::array::from_fn;
+use lagrangian::{Scalar, Seeded, from_fn};
 
 /// The most stages of a method.
 const MOST: usize = 8;

@@ -173,7 +173,7 @@ impl Meter {
 
 /// The first three of some numbers.
 fn first(x: &[f64]) -> [f64; 3] {
-    std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
+    lagrangian::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
 }
 
 /// The middle of the cubic polynomial through two nodes.

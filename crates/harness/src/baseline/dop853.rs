@@ -97,7 +97,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> ODE<f64, ReducedPoint<N,
     fn diff(&self, t: f64, y: &ReducedPoint<N, M>, slope: &mut ReducedPoint<N, M>) {
         let Some(left) = self.left.get().checked_sub(1) else { return };
         self.left.set(left);
-        let q = std::array::from_fn(|i| self.q0[i] + y.d[i]);
+        let q = lagrangian::from_fn(|i| self.q0[i] + y.d[i]);
         (slope.d, slope.xi) = match reduced_slope(self.system, self.t0 + t, &q, &y.xi) {
             Ok(found) => (found.velocity, found.acceleration),
             Err(error) => {

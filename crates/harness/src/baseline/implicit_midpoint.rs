@@ -50,7 +50,7 @@ impl ImplicitMidpoint {
         for iteration in 1..=self.max_iterations {
             let v = shifted(v0, 0.5 * h, &a);
             let next = motion(t0 + 0.5 * h, &shifted(q0, 0.5 * h, &v), &v)?;
-            let change: [f64; N] = std::array::from_fn(|i| (next[i] - a[i]).abs());
+            let change: [f64; N] = lagrangian::from_fn(|i| (next[i] - a[i]).abs());
             a = next;
             let (now, moved) = (largest(&a), largest(&change));
             if !now.is_finite() || moved.is_nan() {

@@ -13,7 +13,7 @@ pub use implicit_midpoint::ImplicitMidpoint;
 pub use rk4::{Rk4, Rk4Projected};
 pub use rk4_reduced::Rk4Reduced;
 
-use std::array::from_fn;
+use lagrangian::from_fn;
 
 /// `x + h k`.
 #[inline(always)]

@@ -1,7 +1,6 @@
 use super::{STAGES, shifted, weighted};
 use dla::{OneStep, State, StepError, StepReport};
-use lagrangian::{Saddle, System, constraint_residual, mass_matrix};
-use std::array::from_fn;
+use lagrangian::{Saddle, System, constraint_residual, from_fn, mass_matrix};
 
 /// The classical Runge-Kutta method in full coordinates.
 ///

@@ -2,8 +2,7 @@
 
 use super::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced, STAGES};
 use dla::{Differentiable, SensitivityError, StepEquations, StepStart, Unknowns};
-use lagrangian::{AdmissibleBasis, Gradients, Scalar, Seeded};
-use std::array::from_fn;
+use lagrangian::{AdmissibleBasis, Gradients, Scalar, Seeded, from_fn};
 
 /// `x + h k`.
 fn shifted<const N: usize>(x: &[Seeded; N], h: Seeded, k: &[Seeded; N]) -> [Seeded; N] {

@@ -72,7 +72,7 @@ struct Plain([f64; 4]);
 impl Plain {
     #[inline(always)]
     fn zip(self, o: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        Self(std::array::from_fn(|i| f(self.0[i], o.0[i])))
+        Self(crate::from_fn(|i| f(self.0[i], o.0[i])))
     }
 }
 
@@ -117,7 +117,7 @@ impl Four for Plain {
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, term: Self) -> Self {
-        Self(std::array::from_fn(|i| self.0[i].mul_add(factor.0[i], term.0[i])))
+        Self(crate::from_fn(|i| self.0[i].mul_add(factor.0[i], term.0[i])))
     }
     #[inline(always)]
     fn largest(self) -> f64 {

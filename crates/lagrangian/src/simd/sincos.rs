@@ -98,7 +98,7 @@ mod tests {
         let mut x = 1e-9f64;
         while x < 1e14 {
             let angles: [f64; 8] =
-                std::array::from_fn(|i| x * (1.0 + 0.137 * i as f64) * if i % 2 == 0 { 1.0 } else { -1.0 });
+                crate::from_fn(|i| x * (1.0 + 0.137 * i as f64) * if i % 2 == 0 { 1.0 } else { -1.0 });
             let Some((sin, cos)) = dispatch(Both(&angles)) else { return };
             for i in 0..8 {
                 approx::assert_abs_diff_eq!(sin[i], angles[i].sin(), epsilon = f64::EPSILON);

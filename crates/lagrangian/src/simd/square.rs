@@ -1,4 +1,4 @@
-use std::array::from_fn;
+use crate::from_fn;
 
 /// A square matrix of eight rows, in the order in which its product with a vector in registers takes it.
 ///

@@ -3,8 +3,7 @@ use crate::continued::Found;
 use crate::dla::Dla;
 use crate::kept::in_bases;
 use crate::settle::{CORRECTIONS, LEAST, ROUNDING, SHRINKING, sup};
-use lagrangian::{AdmissibleBasis, System, clear_multipliers, linear_basis, mass_matrix, momentum};
-use std::array::from_fn;
+use lagrangian::{AdmissibleBasis, System, clear_multipliers, from_fn, linear_basis, mass_matrix, momentum};
 
 /// The quasi-velocities at the end: `W(q1)' (L_v(q1, v1) - p1) = 0`, `v1 = W(q1) xi`.
 #[inline(always)]

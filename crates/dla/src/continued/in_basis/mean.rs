@@ -7,9 +7,8 @@ use crate::increment::Increment;
 use crate::kept::in_bases;
 use crate::settle::{CORRECTIONS, LEAST, ROUNDING, SHRINKING, sup};
 use lagrangian::{
-    AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, System, clear_multipliers, linear_basis, momentum,
+    AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, System, clear_multipliers, from_fn, linear_basis, momentum,
 };
-use std::array::from_fn;
 
 /// The mean quasi-velocities, `W(q0)' (p0 + D1 L_d + f_d^-) = 0` with `v = W xi` for the basis `W` of `w_d = 0`; and the momenta
 /// `D2 L_d + f_d^+` at the end.

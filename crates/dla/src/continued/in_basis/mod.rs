@@ -11,9 +11,8 @@ use crate::dla::Dla;
 use crate::settle::LEAST;
 use crate::{State, StepReport};
 use arrival::arrival;
-use lagrangian::{AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, System};
+use lagrangian::{AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, System, from_fn};
 use mean::mean;
-use std::array::from_fn;
 
 /// A velocity with its quasi-velocities, and the impulse of the constraints.
 struct InBasis<const N: usize, const M: usize> {
@@ -153,6 +152,22 @@ mod tests {
             }
         }
         assert!(count > 900, "{count} steps in the basis");
+    }
+
+    /// By the trapezoidal rule no step is in the basis: a memory that says so is none.
+    #[test]
+    fn a_rule_of_two_nodes_forgets_a_basis() {
+        let (mut used, mut state) = (method(), start());
+        for _ in 0..200 {
+            used.step(&system(), 0.0, STEP, &mut state).unwrap();
+        }
+        assert!(used.kept.is_in_basis());
+        let (mut recalled, mut fresh) = (Dla::trapezoid(), Dla::trapezoid());
+        recalled.kept = used.kept;
+        let mut expected = state;
+        recalled.step(&system(), 0.0, STEP, &mut state).unwrap();
+        fresh.step(&system(), 0.0, STEP, &mut expected).unwrap();
+        assert_eq!(state, expected);
     }
 
     /// What is remembered is part of a checkpoint, to the last bit; and where it is wild the step is searched for.
