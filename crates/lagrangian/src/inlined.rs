@@ -17,8 +17,8 @@ pub fn array<T: Copy, const N: usize>(blank: T, f: impl Fn(usize) -> T) -> [T; N
 
 /// An array by its places in their order, as [`std::array::from_fn`] makes it, of numbers that can be copied.
 ///
-/// That one calls a function for every place, which is inlined where a program is optimised as a whole: in one that is not, with
-/// the profile that cargo gives for instance, a step of a body with four coordinates took up to half as long again.
+/// That one calls a function for every place, which is inlined where a program is optimised as a whole. In one that is not, as
+/// with the profile that cargo gives, general steps take 1.1 to 1.75 times as long by it, and by the trapezoidal rule twice.
 #[inline]
 pub fn from_fn<T: Copy, const N: usize, F: FnMut(usize) -> T>(mut f: F) -> [T; N] {
     if N == 0 {
