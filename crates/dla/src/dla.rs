@@ -207,7 +207,7 @@ impl<L, C> Dla<L, C> {
             let ((_, start), (_, end)) = linear_basis(system, t0, &q0).zip(linear_basis(system, t1, &q1))?;
             system.holonomic(t1, &q1).is_none().then_some([start, middle, end])
         };
-        let bases = if C::HAS_BASIS && in_basis && self.kept.wants_basis() { bases() } else { None };
+        let bases = if in_basis && self.kept.wants_basis() { bases() } else { None };
         self.kept.begins::<N, M>(block.zip(mass), bases, h, (state.q(), &v1), &v);
         Ok(StepReport { impulses: [lambda, mu], iterations, work: None })
     }

@@ -106,9 +106,6 @@ pub trait DiscreteLagrangian<Sys, const N: usize, const M: usize> {
 ///
 /// It is chosen independently of the discrete Lagrangian. (Cortes and Martinez 2001, Nonlinearity 14, 1365-1392.)
 pub trait DiscreteConstraint<Sys, const N: usize, const M: usize> {
-    /// Whether [`basis_along`](Self::basis_along) may give a basis. Steps in it are compiled only then.
-    const HAS_BASIS: bool = false;
-
     /// `w_d(q0, q0 + h v)`, in the units of `A v`.
     fn residual<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> [S; M];
 
@@ -206,8 +203,6 @@ impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteLagrang
 }
 
 impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteConstraint<Sys, N, M> for R {
-    const HAS_BASIS: bool = !R::SEVERAL;
-
     #[inline(always)]
     fn residual<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> [S; M] {
         let mut sum = [S::zero(); M];

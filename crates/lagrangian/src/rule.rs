@@ -18,8 +18,6 @@ pub trait Rule {
     /// Whether derivatives at its nodes are compiled into each step by it: some percent quicker to run than the function that
     /// other rules have in common, and longer to compile.
     const IN_PLACE: bool = false;
-    /// Whether it never has a single node. What only a single node allows is then not compiled.
-    const SEVERAL: bool = false;
 
     /// The nodes.
     fn nodes(&self) -> &[RuleNode];
@@ -99,8 +97,6 @@ impl Rule for Midpoint {
     }
 }
 impl Rule for Trapezoid {
-    const SEVERAL: bool = true;
-
     #[inline(always)]
     fn nodes(&self) -> &[RuleNode] {
         &[RuleNode { alpha: 0.0, weight: 0.5 }, RuleNode { alpha: 1.0, weight: 0.5 }]
@@ -113,8 +109,6 @@ impl Rule for Alpha {
     }
 }
 impl Rule for Symmetrised {
-    const SEVERAL: bool = true;
-
     #[inline(always)]
     fn nodes(&self) -> &[RuleNode] {
         &self.0
@@ -149,7 +143,6 @@ mod tests {
         fn same<R: Rule + Into<AnyRule> + Copy>(rule: R) {
             let any: AnyRule = rule.into();
             assert_eq!(any.nodes(), rule.nodes());
-            assert!(!R::SEVERAL || rule.nodes().len() > 1);
         }
         same(Midpoint);
         same(Trapezoid);

@@ -80,9 +80,7 @@ impl<L, C> Dla<L, C> {
             return None;
         }
         let report = match self.kept.is_in_basis() {
-            true if C::HAS_BASIS => in_basis::going_on(self, system, (t0, h), state),
-            // Only of a memory that is none: it is forgotten.
-            true => None,
+            true => in_basis::going_on(self, system, (t0, h), state),
             false => going_on(self, system, (t0, h), state),
         };
         match report {
