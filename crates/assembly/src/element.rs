@@ -53,6 +53,10 @@ pub trait Element: EnergyElement + StageElement + Debug + Send + Sync {
     /// At a velocity, `momentum = L_v(q, v)`, `block = L_vv`, `rows = A(q)` and `level = -(A v + b)`.
     fn velocity(&self, t: f64, q: &[f64], v: &[f64], out: Blocks<'_>);
 
+    /// The sums of the sizes of the terms of its equations, for a bound on their rounding: `L_v` and `h (L_q + F)` in `momentum`, and
+    /// the constraints, `A v + b` and of those on positions `g/h`, in `level`.
+    fn sizes(&self, time: (f64, f64), q: &[f64], v: &[f64], momentum: &mut [f64], level: &mut [f64]);
+
     /// The energy `v . L_v - L` (J).
     fn energy(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
 

@@ -94,6 +94,15 @@ impl<J: Joint<N, M>, const N: usize, const M: usize> Element for JointElement<J,
         }
     }
 
+    fn sizes(&self, (t, h): (f64, f64), q: &[f64], v: &[f64], momentum: &mut [f64], level: &mut [f64]) {
+        momentum.fill(0.0);
+        for (size, g) in level.iter_mut().zip(self.in_positions(t, q)) {
+            let terms = g.eps.iter().zip(q.iter().zip(v));
+            // Each product is rounded, and each sum.
+            *size = terms.map(|(slope, (q, v))| 2.0 * (slope * v).abs() + 4.0 * (slope * q / h).abs()).sum();
+        }
+    }
+
     fn energy(&self, _t: f64, _q: &[f64], _v: &[f64]) -> f64 {
         0.0
     }

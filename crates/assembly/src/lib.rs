@@ -26,6 +26,7 @@ mod singular;
 mod sparse;
 mod state;
 mod system_element;
+mod terms;
 
 pub use crate::assembly::{Assembly, WIDEST};
 pub use crate::dla::Dla;

@@ -1,6 +1,6 @@
-use crate::increment::Increment;
 use crate::convergence::parted;
 use crate::convergence::tolerances::{SHRINKING, is_slight};
+use crate::increment::Increment;
 use crate::{Equations, State};
 use lagrangian::linear::{Singular, largest};
 use lagrangian::{

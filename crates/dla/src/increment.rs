@@ -6,7 +6,8 @@ use crate::newton::Found;
 use crate::{Newton, NewtonError, State, StepError};
 use lagrangian::linear::{Singular, normal_solve};
 use lagrangian::{
-    AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, Dual, Rounded, Rows, Saddle, System, from_fn, position_misses,
+    AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, Dual, Rounded, Rows, Saddle, System, from_fn,
+    position_misses,
 };
 use std::f64::consts::PI;
 

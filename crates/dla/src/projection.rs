@@ -3,8 +3,8 @@ use crate::dependent::{independent_rows, rows_left_out};
 use crate::{Equations, Newton, NewtonError, Stage, StepError};
 use lagrangian::linear::{Singular, largest, normal_solve};
 use lagrangian::{
-    AdmissibleBasis, Dual, FactoredSaddle, HyperDual, Rounded, Rows, Saddle, System, constraint_residual, from_fn, mass_matrix,
-    momentum, reaction_rows,
+    AdmissibleBasis, Dual, FactoredSaddle, HyperDual, Rounded, Rows, Saddle, System, constraint_residual, from_fn,
+    mass_matrix, momentum, reaction_rows,
 };
 
 /// The equations for the velocity at the end of a step, with the multiplier there:

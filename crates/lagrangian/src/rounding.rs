@@ -1,6 +1,6 @@
 use crate::{
-    AdmissibleBasis, Dual, Motion, MotionError, Rounded, Saddle, System, configuration_slope, from_fn, inverse_reduced_mass,
-    mass_matrix, momentum, reaction_rows, redundant_rows, velocity_of,
+    AdmissibleBasis, Dual, Motion, MotionError, Rounded, Saddle, System, configuration_slope, from_fn,
+    inverse_reduced_mass, mass_matrix, momentum, reaction_rows, redundant_rows, velocity_of,
 };
 
 /// The unit of rounding.

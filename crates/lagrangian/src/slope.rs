@@ -13,7 +13,12 @@ where
 
 /// The same by derivatives in `W` places.
 #[inline(always)]
-fn slope_by<Sys, S, const N: usize, const M: usize, const W: usize>(system: &Sys, t: S, q: &[S; N], v: &[S; N]) -> [S; N]
+fn slope_by<Sys, S, const N: usize, const M: usize, const W: usize>(
+    system: &Sys,
+    t: S,
+    q: &[S; N],
+    v: &[S; N],
+) -> [S; N]
 where
     Sys: System<N, M>,
     S: Scalar,

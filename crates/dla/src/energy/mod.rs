@@ -9,9 +9,9 @@ mod start;
 
 pub use gradient::Gradient;
 
+use crate::convergence::FixedPoint;
 use crate::positions::{affine_only, velocities_only};
 use crate::{OneStep, Stage, State, StepError, StepReport};
-use crate::convergence::FixedPoint;
 use ends::Ends;
 use lagrangian::linear::larger;
 use lagrangian::{Bracket, Lanes, Scalar, System, Twofold, from_fn, vectorized};

@@ -2,7 +2,9 @@ use super::NO_BASIS;
 use crate::convergence::tolerances::BLIND;
 use crate::{State, StepError};
 use lagrangian::linear::largest;
-use lagrangian::{Bracket, Dual, Lanes, MotionError, MotionRounding, Scalar, System, Twofold, from_fn, inverse_reduced_mass};
+use lagrangian::{
+    Bracket, Dual, Lanes, MotionError, MotionRounding, Scalar, System, Twofold, from_fn, inverse_reduced_mass,
+};
 
 /// The beginning of a step on `D*`.
 #[derive(Debug, Clone, Copy)]

@@ -8,8 +8,8 @@ mod rule;
 
 pub use adaptive::GaussAdaptive;
 
-use crate::positions::{affine_only, onto_positions};
 use crate::convergence::FixedPoint;
+use crate::positions::{affine_only, onto_positions};
 use crate::{OneStep, Stage, State, StepError, StepReport};
 use ending::Ending;
 pub(crate) use ending::SLOWEST;
@@ -155,7 +155,8 @@ impl<const S: usize> Gauss<S> {
                 }
                 (stages.velocity[i], stages.acceleration[i]) = (slope.velocity, slope.acceleration);
             }
-            let settled = convergence.see(seen, 0.0, || reduced_rounding(system, t, q0, xi0, h).unwrap_or([[0.0; N]; 2]));
+            let settled =
+                convergence.see(seen, 0.0, || reduced_rounding(system, t, q0, xi0, h).unwrap_or([[0.0; N]; 2]));
             let settled = settled.map_err(|source| StepError::Newton { stage: Stage::Collocation, source })?;
             if let Some(iterations) = settled {
                 return Ok(iterations);

@@ -1,8 +1,8 @@
 use super::{InBasis, are_met, first, has_settled};
 use crate::continued::Found;
+use crate::convergence::tolerances::{SHRINKING, SLIGHT};
 use crate::dla::Dla;
 use crate::kept::in_bases;
-use crate::convergence::tolerances::{SHRINKING, SLIGHT};
 use crate::settle::{CORRECTIONS, LEAST, sup};
 use lagrangian::{AdmissibleBasis, System, clear_multipliers, from_fn, linear_basis, mass_matrix, momentum};
 

@@ -1,11 +1,11 @@
 use super::{InBasis, are_met, first, has_settled};
 use crate::State;
 use crate::continued::{Found, ends, with_reaction};
+use crate::convergence::tolerances::{SHRINKING, SLIGHT};
 use crate::corrections::Departure;
 use crate::dla::{Dla, predicted};
 use crate::increment::Increment;
 use crate::kept::in_bases;
-use crate::convergence::tolerances::{SHRINKING, SLIGHT};
 use crate::settle::{CORRECTIONS, LEAST, sup};
 use lagrangian::{
     AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, System, clear_multipliers, from_fn, linear_basis, momentum,
