@@ -72,7 +72,7 @@ impl Equations {
             let done = convergence.check(demand, x, correction, || {
                 sizes.fill(0.0);
                 terms(sizes);
-                Some(linear.most_roundings(multipliers, sizes, changes))
+                Some(linear.most_roundings((x, multipliers), sizes, changes))
             });
             *certain = convergence.is_certain();
             if done.map_err(|source| AssemblyError::Newton { stage, source })? {

@@ -156,6 +156,7 @@ impl<'a> Convergence<'a> {
         }
         // Where the next correction is predicted to be rounding in all components, those that have not settled never will.
         settled |= kind == Kind::Chord && step <= BLIND * size && step * (step / before).min(1.0) <= UNBIASED * size;
+        self.watched &= !contracts;
         let stuck = (stalls && step >= STALL * before) || iteration >= limit;
         if !contracts || (stuck && !(settled || slight || self.met)) {
             let met = roundings().map_or(step <= BLIND * size, |most| most <= ROUNDINGS);

@@ -8,6 +8,7 @@
 //! | [`UNBIASED`] | `eps/64` | what a linear convergence leaves out has one sign in every step, and adds up over 10^6 of them | fixed points, assemblies |
 //! | [`SLIGHT`] | `64 eps` | momenta `M v` are rounded to `u M v` in some tens of operations | all: cheap, asked first |
 //! | [`ROUNDINGS`] | `8` | residual over the running error bound of its terms; Newton's method attains a small multiple of one (Tisseur 2001) | all: asked where corrections stall |
+//! | [`CYCLES`] | `64` | a fixed point that contracts by `L` goes round in `1/(1 - L)` roundings of its stages | fixed points |
 //! | [`NEAR_ROUNDINGS`] | `64` | a start that misses its equations by so few roundings is its solution | continuation |
 //! | [`BLIND`] | `1e-11` | the largest unknown, for equations that do not tell the sizes of their terms | users' own equations |
 //! | [`STALL`], [`STALL_OF_FIXED_POINT`] | `1/4`, `1/2` | a correction that shrinks by less is rounding or no convergence | Newton's method; fixed points |
@@ -65,8 +66,15 @@ pub fn is_slight(correction: f64, size: f64) -> bool {
     correction <= (SLIGHT * size).max(f64::MIN_POSITIVE)
 }
 
+/// Changes of a fixed-point iteration of so many roundings of their terms are rounding: what contracts by a factor `L` may go round in
+/// changes of `1/(1 - L)` times the rounding of all stages together.
+pub const CYCLES: f64 = 64.0;
+
 /// So often a change of a fixed-point iteration must have been rounding and not have shrunk.
 pub const STALLS: u32 = 2;
+
+/// After so many iterations in turn that changed nothing but by rounding a fixed-point iteration is at its end.
+pub const QUIET: u32 = 16;
 
 /// Changes of a fixed-point iteration that oscillate may grow by this factor above the least so far.
 pub const GROWTH_OF_FIXED_POINT: f64 = 1e3;
