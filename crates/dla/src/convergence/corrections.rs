@@ -150,7 +150,7 @@ impl<'a> Convergence<'a> {
             // Once a component has been seen to move by rounding only, it stays so.
             self.rounding[i] |= (slight | self.met) & stall;
             let ends = self.rounding[i] || d <= least || is_settled(kind, tolerance, x, d, last);
-            let open = !ends && !(kind == Kind::Simplified && self.is_gone(i, d));
+            let open = !(ends || (kind == Kind::Simplified && self.is_gone(i, d)));
             settled &= !open;
             stalls |= open & stall;
         }

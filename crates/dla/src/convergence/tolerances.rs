@@ -15,6 +15,11 @@
 //! | [`SHRINKING`] | `1/8` | a frozen Jacobian that does worse is renewed | chord method |
 //! | [`CONTRACTION`] | `1/4` | Newton and Kantorovich: `h0 = 2 theta <= 1/2` (Deuflhard 2004, sections 2.1 and 3.3) | continuation |
 //! | [`GONE`] | `eps^2` | an unknown that has lost all digits of its start twice is zero | simplified corrections |
+//! | [`LEFT`] | `eps/16` | as [`UNBIASED`], with the rate of contraction measured | eight stages or trajectories in registers |
+//! | [`OF_ROW`], [`NOISE`] | `1e-12`, `1e-15` | of a number itself, where the terms are not known: what stalls above goes the slow way | registers |
+//! | [`SLOWEST`] | `1/20` | a search that begins near its end shrinks faster at first than it goes on | registers |
+//! | [`QUIET`], [`STALLS`] | `16`, `2` | what goes round among roundings is at its end | fixed points |
+//! | [`GROWTH_OF_FIXED_POINT`] | `1e3` | changes that oscillate may grow for a while | fixed points |
 //! | [`GROWTHS`] | `3` | so often in all the largest correction may grow | Newton's method |
 //!
 //! The unit of all is the component itself, except [`ROUNDINGS`], whose unit is the sum of the sizes of the terms of an
@@ -78,3 +83,16 @@ pub const QUIET: u32 = 16;
 
 /// Changes of a fixed-point iteration that oscillate may grow by this factor above the least so far.
 pub const GROWTH_OF_FIXED_POINT: f64 = 1e3;
+
+/// Relative changes that may still be to come where an iteration in registers ends. What is left out is the same in every step, and
+/// adds up: where the contraction was believed as the first iterations show it, a run of `gauss8` lost `5e-17` of its energy a step.
+pub const LEFT: f64 = f64::EPSILON / 16.0;
+
+/// Changes in registers below this part of what changes, that stall twice, are rounding.
+pub const OF_ROW: f64 = 1e-12;
+
+/// And below this part, once.
+pub const NOISE: f64 = 1e-15;
+
+/// No iteration in registers is expected to shrink its changes by more.
+pub const SLOWEST: f64 = 0.05;

@@ -44,13 +44,13 @@ fn a_cart_stays_where_its_springs_balance() {
 /// `u = g/w (cos(e + w t) - cos e)`.
 #[test]
 fn a_skate_across_its_slope_hardly_moves() {
-    fn all<const BASIS: bool>(runs: Vec<(&'static str, super::systems::Run<Skate<BASIS>, 3>)>) {
+    fn all<const BASIS: bool>(runs: &[(&'static str, super::systems::Run<Skate<BASIS>, 3>)]) {
         let g = SLOPE[0].hypot(SLOPE[1]);
         let level = SLOPE[1].atan2(SLOPE[0]) + std::f64::consts::FRAC_PI_2;
         for (off, spin) in [(1e-3, 0.0), (1e-5, 0.0), (1e-7, 0.0), (1e-9, 0.0), (0.0, 1e-6), (0.0, 1e-9), (0.0, 0.0)] {
             let heading = level + off;
             let start = State::new([0.3, 0.7, heading], [0.0, 0.0, spin], Skate::<BASIS>.angles());
-            for (name, run) in &runs {
+            for (name, run) in runs {
                 let state = run(&Skate, &Schedule { t0: 0.0, step: 0.01, steps: 1000 }, start)
                     .unwrap_or_else(|error| panic!("{name}, basis {BASIS}, {off:e}, {spin:e}: {error}"));
                 let (q, v, t) = (state.unwrapped(), state.v(), 10.0);
@@ -67,6 +67,7 @@ fn a_skate_across_its_slope_hardly_moves() {
             }
         }
     }
-    all::<false>(methods());
-    all::<true>(methods().into_iter().chain(in_basis()).collect());
+    all::<false>(&methods());
+    let based: Vec<_> = methods().into_iter().chain(in_basis()).collect();
+    all::<true>(&based);
 }
