@@ -44,6 +44,8 @@ pub struct MotionError {
 impl<const N: usize, const M: usize> Motion<N, M> {
     /// The linear equations for the accelerations, by automatic derivatives: `M v' - A' lambda = F + L_q - (d/dt L_v at v' = 0)` and
     /// `A v' = -(d/dt (A v + b) at v' = 0)`, whose multipliers are `-lambda`.
+    #[must_use]
+    #[inline(always)]
     pub fn equations<Sys: System<N, M>>(system: &Sys, t: f64, q: &[f64; N], v: &[f64; N]) -> Saddle<N, M> {
         let (_, mass) = mass_matrix(system, t, q, v);
 

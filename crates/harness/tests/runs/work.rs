@@ -5,6 +5,7 @@ use dla::Schedule;
 use harness::{AssemblyEvent, Method, Record, Request, run_assembly, run_assembly_watched};
 use lagrangian::linear::larger;
 use lagrangian::{Piecewise, System, With};
+use proptest::prelude::*;
 use sleigh::effects::{Drag, Thrust, Torque};
 use sleigh::{Sleigh, SleighState, TimeFunction};
 
@@ -74,6 +75,30 @@ fn the_energy_changes_by_the_work_of_the_discrete_forces() {
             let control = measured(&scene, "dla", &schedule);
             assert!(control.energy.max_error > 1e-8, "{step}: {:e}", control.energy.max_error);
         }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Whatever pushes, brakes and turns the train, and however long the step.
+    #[test]
+    fn the_balance_of_any_train(
+        push in -1.0..1.0f64,
+        torque in -0.5..0.5f64,
+        along in 0.0..0.5f64,
+        turning in 0.0..0.3f64,
+        bars in proptest::collection::vec(0.5..1.5f64, 1..5),
+        bend in -0.5..0.5f64,
+        step in 0.005..0.05f64,
+    ) {
+        let drag = || Drag::new(along, turning).unwrap();
+        let effects = (Thrust::new(push).unwrap(), (Torque::new(torque).unwrap(), drag()));
+        let body = |trailer: &Trailer| With { body: trailer.sleigh, effects: drag() };
+        let train = Train::new(With { body: lead(), effects }, bars.into_iter().map(trailer).collect(), body).unwrap();
+        let start = train.start(&START, &[bend, 0.0, -bend]);
+        let kept = measured(&(train, start), "energy2", &Schedule { t0: 0.0, step, steps: 200 });
+        prop_assert!(kept.energy.max_error < rounding(&kept), "{:e} J", kept.energy.max_error);
     }
 }
 
