@@ -275,6 +275,6 @@ impl OneStep for Dla {
             let (v, v1) = (self.v[i], self.v1[i]);
             state.advance(h, i, h * v, v1, (v1 - v) / (0.5 * h));
         }
-        Ok(StepReport { iterations })
+        Ok(StepReport::of(iterations))
     }
 }

@@ -57,6 +57,10 @@ pub trait Element: EnergyElement + StageElement + Debug + Send + Sync {
     /// the constraints, `A v + b` and of those on positions `g/h`, in `level`.
     fn sizes(&self, time: (f64, f64), q: &[f64], v: &[f64], momentum: &mut [f64], level: &mut [f64]);
 
+    /// The continuous equations for accelerations: `block = L_vv`, `momentum = F + L_q - (d/dt L_v at v' = 0)`, `rows = A(q)` and
+    /// `level = -(d/dt (A v + b) at v' = 0)`.
+    fn motion(&self, t: f64, q: &[f64], v: &[f64], out: Blocks<'_>);
+
     /// The energy `v . L_v - L` (J).
     fn energy(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
 

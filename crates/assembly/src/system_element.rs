@@ -1,9 +1,9 @@
 use crate::element::{Blocks, Element, local};
 use lagrangian::linear::larger;
 use lagrangian::{
-    DiscreteConstraint, DiscreteLagrangian, Dual, Midpoint, Rounded, System, configuration_slope, constraint_residual,
-    energy, force_power, from_fn, lagrangian_power, mass_matrix, momentum, position_misses, position_residual,
-    reaction_rows,
+    DiscreteConstraint, DiscreteLagrangian, Dual, Midpoint, Motion, Rounded, Saddle, System, configuration_slope,
+    constraint_residual, energy, force_power, from_fn, lagrangian_power, mass_matrix, momentum, position_misses,
+    position_residual, reaction_rows,
 };
 use std::fmt;
 
@@ -139,6 +139,14 @@ impl<Sys: System<N, M> + Send + Sync, const N: usize, const M: usize> Element fo
             let position = positions.and_then(|g| g[k]).map_or(0.0, |g| g.size / h.abs());
             *size = slip[k].size + position;
         }
+    }
+
+    fn motion(&self, t: f64, q: &[f64], v: &[f64], out: Blocks<'_>) {
+        let Saddle { block, rows, right, level, .. } = Motion::equations(&self.system, t, &local(q), &local(v));
+        out.momentum.copy_from_slice(&right);
+        out.block.copy_from_slice(block.as_flattened());
+        out.rows.copy_from_slice(rows.as_flattened());
+        out.level.copy_from_slice(&level);
     }
 
     fn energy(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {

@@ -7,7 +7,7 @@ mod mean;
 pub use element::{Average, EnergyElement, Swing};
 
 use crate::assembly::Placed;
-use crate::contributions::gathered;
+use crate::contributions::at;
 use crate::dla::predict;
 use crate::settling::Settling;
 use crate::sparse::Sparse;
@@ -215,11 +215,6 @@ impl Energy {
 
 const INERTIA: &str = "energy2 of assemblies is for parts with inertia that have coordinates of their own";
 
-/// The coordinates and velocities of an element, handed on.
-fn at<T>(placed: &Placed, q: &[f64], v: &[f64], then: impl FnOnce(&[f64], &[f64]) -> T) -> T {
-    gathered(placed, |i| q[i], |q| gathered(placed, |i| v[i], |v| then(q, v)))
-}
-
 impl OneStep for Energy {
     fn step(&mut self, assembly: &Assembly, t0: f64, h: f64, state: &mut State) -> Result<StepReport, AssemblyError> {
         self.begin(assembly, (t0, h), state)?;
@@ -272,6 +267,6 @@ impl OneStep for Energy {
             let (v, v1) = (self.path.v[i], self.v1[i]);
             state.advance(h, i, h * v, v1, (v1 - v) / (0.5 * h));
         }
-        Ok(StepReport { iterations })
+        Ok(StepReport { iterations, work: Some(work) })
     }
 }

@@ -253,6 +253,6 @@ impl OneStep for Lobatto {
             let acceleration = (v[s - 1] - v[s - 2]) / (h * (self.rule.c[s - 1] - self.rule.c[s - 2]));
             state.advance(h, i, moved, self.v1[i], acceleration);
         }
-        Ok(StepReport { iterations })
+        Ok(StepReport::of(iterations))
     }
 }

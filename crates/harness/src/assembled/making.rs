@@ -1,7 +1,7 @@
 use super::meter::Meter;
 use super::{Assembled, assembly_method};
 use crate::{Method, MethodInfo, Progress, Record};
-use assembly::{Assembly, OneStep, RunError, State};
+use assembly::{Assembly, OneStep, RunError, State, StepReport};
 use dla::{Checkpoint, CheckpointError, Schedule};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -92,12 +92,15 @@ impl<'a> Making<'a> {
             *made += 1;
             let step = Step { k, t0, h, before: &before, after: state };
             if let ControlFlow::Break((t, last)) = look(method.as_mut(), step) {
+                // What the shorter step did that ends there, not the whole one.
+                let unknown = StepReport { work: None, ..report };
+                let shorter = method.step(assembly, t0, t - t0, &mut before.clone());
                 *state = last;
                 self.ended = Some(t);
-                meter.see(assembly, *made, (t, t - t0), (&before, state), report.iterations);
+                meter.see(assembly, *made, (t0, &before), (t, state), &shorter.unwrap_or(unknown));
                 return;
             }
-            meter.see(assembly, *made, (schedule.time(*made), h), (&before, state), report.iterations);
+            meter.see(assembly, *made, (t0, &before), (schedule.time(*made), state), &report);
             ticker.stops(*made);
         }
     }

@@ -1,6 +1,6 @@
 use super::AssemblyNode;
 use crate::{Blocks, Drift, EnergySummary, MethodInfo, NewtonSummary, Record, Sample, Trend};
-use assembly::{Assembly, RunError, State};
+use assembly::{Assembly, RunError, State, StepReport, Work};
 use dla::{Checkpoint, CheckpointError};
 use lagrangian::linear::larger;
 
@@ -11,8 +11,7 @@ pub(super) struct Meter {
     last: f64,
     max_error: f64,
     most: [f64; 2],
-    work: f64,
-    power: f64,
+    work: Work,
     trend: Trend,
     blocks: Blocks,
     iterations: u64,
@@ -31,8 +30,7 @@ impl Meter {
             last: initial,
             max_error: 0.0,
             most,
-            work: 0.0,
-            power: assembly.power(t, start),
+            work: Work::default(),
             trend: Trend::default(),
             blocks: Blocks::default(),
             iterations: 0,
@@ -47,30 +45,25 @@ impl Meter {
         meter
     }
 
-    /// Sees the node number `made`, at the time `t` after a step of length `h`.
+    /// Sees the node number `made` after a step from one time and state to another.
     pub(super) fn see(
         &mut self,
         assembly: &Assembly,
         made: u64,
-        (t, h): (f64, f64),
-        (before, state): (&State, &State),
-        iterations: u32,
+        before: (f64, &State),
+        (t, state): (f64, &State),
+        report: &StepReport,
     ) {
-        let power = assembly.power(t, state);
-        if power != 0.0 || self.power != 0.0 {
-            let middle = assembly.power(t - 0.5 * h, &middle(assembly, before, state, h));
-            self.work += h / 6.0 * (self.power + 4.0 * middle + power);
-        }
-        self.power = power;
+        self.work.step(assembly, before, (t, state), report);
         self.last = assembly.energy(t, state);
-        let (error, miss) = (self.last - self.initial - self.work, assembly.misses(t, state));
+        let (error, miss) = (self.last - self.initial - self.work.total(), assembly.misses(t, state));
         self.max_error = larger(self.max_error, error);
         self.most = [larger(self.most[0], miss[0]), larger(self.most[1], miss[1])];
         self.trend.add(t, error);
         self.blocks.add(t, error);
         self.bucket = (larger(self.bucket.0, error), larger(self.bucket.1, miss[0]));
-        self.iterations += u64::from(iterations);
-        self.most_iterations = self.most_iterations.max(iterations);
+        self.iterations += u64::from(report.iterations);
+        self.most_iterations = self.most_iterations.max(report.iterations);
         if made.is_multiple_of(self.every) {
             self.keep(assembly, t, state);
         }
@@ -82,7 +75,7 @@ impl Meter {
         let v = (0..state.len()).map(|i| state.v(i)).collect();
         self.samples.push(Sample { t, q: first(&q), energy_error: self.bucket.0, constraint: self.bucket.1 });
         self.bucket = (0.0, 0.0);
-        let (energy, work) = (assembly.energy(t, state), self.work);
+        let (energy, work) = (assembly.energy(t, state), self.work.total());
         self.nodes.push(AssemblyNode { t, q, v, energy, work, constraint, joint });
     }
 
@@ -113,7 +106,7 @@ impl Meter {
             energy: EnergySummary {
                 initial: self.initial,
                 last: self.last,
-                work: self.work,
+                work: self.work.total(),
                 max_error: self.max_error,
                 drift_per_time: self.trend.slope().unwrap_or(0.0),
                 drift: Drift::of(&self.blocks),
@@ -137,10 +130,11 @@ impl Meter {
 
     /// Writes to a checkpoint all that the rest of a run needs.
     pub(super) fn save(&self, checkpoint: &mut Checkpoint) {
-        let sizes = [self.initial, self.last, self.max_error, self.most[0], self.most[1], self.work, self.power];
+        let sizes = [self.initial, self.last, self.max_error, self.most[0], self.most[1]];
         checkpoint.put("meter", &[&sizes[..], &[self.bucket.0, self.bucket.1]].concat());
         checkpoint.put("trend", &self.trend.sums());
         checkpoint.put_counts("iterations", &[self.iterations, u64::from(self.most_iterations)]);
+        self.work.save(checkpoint);
         self.blocks.save(checkpoint);
         let samples = self.samples.iter().flat_map(|s| [s.t, s.energy_error, s.constraint].into_iter().chain(s.q));
         checkpoint.put("samples", &samples.collect::<Vec<_>>());
@@ -148,7 +142,7 @@ impl Meter {
 
     /// The meter that [`save`](Self::save) wrote; it keeps nodes from there on.
     pub(super) fn load(checkpoint: &Checkpoint, every: u64) -> Result<Self, CheckpointError> {
-        let [initial, last, max_error, constraint, joint, work, power, error, slip] = checkpoint.get("meter")?;
+        let [initial, last, max_error, constraint, joint, error, slip] = checkpoint.get("meter")?;
         let [iterations, most] = checkpoint.counts("iterations")?;
         let samples = checkpoint.list("samples")?;
         let sample = |x: &[f64]| Sample { t: x[0], energy_error: x[1], constraint: x[2], q: [x[3], x[4], x[5]] };
@@ -158,8 +152,7 @@ impl Meter {
             last,
             max_error,
             most: [constraint, joint],
-            work,
-            power,
+            work: Work::load(checkpoint)?,
             trend: Trend::of_sums(checkpoint.get("trend")?),
             blocks: Blocks::load(checkpoint)?,
             iterations,
@@ -174,14 +167,4 @@ impl Meter {
 /// The first three of some numbers.
 fn first(x: &[f64]) -> [f64; 3] {
     lagrangian::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
-}
-
-/// The middle of the cubic polynomial through two nodes.
-fn middle(assembly: &Assembly, before: &State, state: &State, h: f64) -> State {
-    let n = state.len();
-    let moved = |i: usize| state.unwrapped(i) - before.unwrapped(i);
-    let q: Vec<f64> =
-        (0..n).map(|i| before.unwrapped(i) + 0.5 * moved(i) + 0.125 * h * (before.v(i) - state.v(i))).collect();
-    let v: Vec<f64> = (0..n).map(|i| 1.5 * moved(i) / h - 0.25 * (before.v(i) + state.v(i))).collect();
-    State::new(assembly, &q, &v)
 }
