@@ -114,16 +114,14 @@ pub(crate) struct RunArguments {
     /// Go on from this checkpoint, to the same last bit; --out then writes the nodes after it
     #[arg(long, value_name = "FILE")]
     pub(crate) resume: Option<PathBuf>,
-    /// Find when x, y, heading, unwrapped_heading, speed or turn_rate crosses a value, as in speed=0; can be repeated
-    ///
-    /// A heading is passed once in every turn, as by `section --plane`; an unwrapped heading counts the turns and is passed in one of
-    /// them.
+    /// Find when x, y, heading (in every turn), unwrapped_heading (turns counted), speed or turn_rate crosses a value, as in
+    /// speed=0; can be repeated
     #[arg(long, value_name = "NAME=VALUE", conflicts_with_all = ["checkpoint", "resume"])]
     pub(crate) event: Vec<Trigger>,
     /// The same, and end the run there
     #[arg(long, value_name = "NAME=VALUE", conflicts_with_all = ["checkpoint", "resume"])]
     pub(crate) until: Vec<Trigger>,
-    /// Look for events in N parts of each step, and of each that dop853 makes within one
+    /// Look for events in so many parts of each step, and of each step that dop853 makes within one
     #[arg(long, value_name = "N", default_value_t = harness::EVENT_SAMPLES, allow_negative_numbers = true,
           value_parser = event_samples, requires = "watched")]
     pub(crate) event_samples: u32,
