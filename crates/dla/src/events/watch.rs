@@ -10,8 +10,8 @@ use std::ops::ControlFlow;
 /// method that remembers more than the state is repeated as in its first step.
 ///
 /// Each step is looked at in [`samples`](Self::samples) parts, and a part beyond both of its ends, which costs so many steps
-/// more, and one. A method with steps of its own within a step is looked at so in each of them
-/// ([`OneStep::own_steps`]), which costs one more crossing of the step. No crossing is missed while between neighbouring samples each function is monotone, or has one
+/// more, and one. A method with steps of its own within a step ([`OneStep::own_steps`]) is looked at so in each of them, which
+/// costs one step more. No crossing is missed while between neighbouring samples each function is monotone, or has one
 /// extremum and falls there to zero by no more than eight times what the parabola through the samples does; in
 /// particular not two crossings within a step. Three crossings between two samples count as one; where crossings are so close
 /// that there may be such, [`close`](Self::close) says so.
@@ -66,8 +66,33 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
         close(looked, |event| self.events[event].direction != Direction::Both)
     }
 
-    /// Looks for events in a step to `node`, in each of those that the method makes of its own, until one ends the run.
-    fn look<Sys, const M: usize>(&mut self, node: &View<'_, Sys, N>, start: (f64, State<N>))
+    /// Looks for events on the way to a node, and shows the inner observer the last one where an event ends the run: `Break`.
+    fn look<Sys, const M: usize>(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()>
+    where
+        Method: OneStep<Sys, N, M> + Clone,
+        Inner: Observer<Sys, N, M>,
+    {
+        if self.ended.is_some() {
+            return ControlFlow::Break(());
+        }
+        if let Some((t0, start)) = self.before.filter(|_| !self.events.is_empty()) {
+            self.look_within(node, (t0, start));
+            if let Some((crossing, _)) = &self.ended {
+                let (system, method, h) = (node.system, &self.method, node.t - t0);
+                let step = Interval { system, method, t0, h, start: &start, end: node.state };
+                let report = step.after((crossing.t - t0) / h).map_or(*report, |(_, report)| report);
+                let last = View { system, k: node.k, t: crossing.t, state: &crossing.state };
+                // The run ends here, whatever the inner observer says.
+                let _ = self.inner.step(&last, &report);
+                return ControlFlow::Break(());
+            }
+        }
+        self.before = Some((node.t, *node.state));
+        ControlFlow::Continue(())
+    }
+
+    /// Looks for events in each of the steps that the method makes of its own on the way to a node, until one ends the run.
+    fn look_within<Sys, const M: usize>(&mut self, node: &View<'_, Sys, N>, start: (f64, State<N>))
     where
         Method: OneStep<Sys, N, M> + Clone,
     {
@@ -140,22 +165,7 @@ where
     }
 
     fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
-        if self.ended.is_some() {
-            return ControlFlow::Break(());
-        }
-        if let Some((t0, start)) = self.before.filter(|_| !self.events.is_empty()) {
-            self.look(node, (t0, start));
-            if let Some((crossing, _)) = &self.ended {
-                let (system, method, h) = (node.system, &self.method, node.t - t0);
-                let step = Interval { system, method, t0, h, start: &start, end: node.state };
-                let report = step.after((crossing.t - t0) / h).map_or(*report, |(_, report)| report);
-                let last = View { system, k: node.k, t: crossing.t, state: &crossing.state };
-                // The run ends here, whatever the inner observer says.
-                let _ = self.inner.step(&last, &report);
-                return ControlFlow::Break(());
-            }
-        }
-        self.before = Some((node.t, *node.state));
+        self.look(node, report)?;
         self.inner.step(node, report)
     }
 

@@ -1,7 +1,9 @@
 //! Methods with steps of their own within a step are looked at in each of them.
 
 use approx::assert_abs_diff_eq;
-use dla::{Close, Crossing, Event, Gauss, GaussAdaptive, OneStep, Schedule, State, StepError, StepReport, Taylor, Watch, drive};
+use dla::{
+    Close, Crossing, Event, Gauss, GaussAdaptive, OneStep, Schedule, State, StepError, StepReport, Taylor, Watch, drive,
+};
 use lagrangian::{System, constraint_residual};
 use proptest::prelude::*;
 use sleigh::{RoundWell, Sleigh};

@@ -82,7 +82,8 @@ fn a_long_step_ends_at_an_event() {
     let watched = run(FREE, (5.0, 12), &[half(), third]);
     let end = 7.0 * PI / 6.0;
     assert_times(&watched, &[PI / 6.0, 5.0 * PI / 6.0, end]);
-    let nodes = watched.trajectory.unwrap().into_nodes();
+    let trajectory = watched.trajectory.unwrap();
+    let nodes = trajectory.nodes();
     assert_eq!((nodes.len(), nodes[1].t.to_bits(), watched.record.steps), (2, watched.record.t.to_bits(), 1));
     assert_abs_diff_eq!(watched.record.t, end, epsilon = 1e-9);
     assert_abs_diff_eq!(nodes[1].q[0], -0.5, epsilon = 1e-15);
