@@ -106,7 +106,7 @@ fn the_points_of_a_section_are_on_its_plane_and_of_one_energy() {
     let told = folder.done("section bowl --step 0.1 --plane center_y=0.25 --starts 3 --duration 300 --out points.csv");
     assert!(told.contains("center_y=0.25, rising"), "{told}");
     let (names, rows) = csv(&folder.read("points.csv"));
-    assert_eq!(names, ["start", "t", "x", "y", "heading", "speed", "turn_rate", "heading", "turn_rate"]);
+    assert_eq!(names, ["start", "t", "x", "y", "heading", "speed", "turn_rate", "shown_heading", "shown_turn_rate"]);
     assert!(
         (0..3).all(|start| rows.iter().filter(|row| row[0].to_bits() == f64::from(start).to_bits()).count() > 3),
         "{told}"
@@ -131,6 +131,10 @@ fn the_points_of_a_section_are_on_its_plane_and_of_one_energy() {
         "section bowl --step 0.1 --plane heading=0 --axes along,across --starts 2 --duration 50 --out points.svg",
     );
     assert!(folder.read("points.svg").contains("along [m]"));
+    // Every column has a name of its own, and one that no other has keeps it.
+    folder.done("section bowl --step 0.1 --plane heading=0 --axes along,speed --starts 1 --duration 50 --out axes.csv");
+    let (names, _) = csv(&folder.read("axes.csv"));
+    assert_eq!(names[2..], ["x", "y", "heading", "speed", "turn_rate", "along", "shown_speed"]);
 }
 
 /// DynamicalSystemsBase issue 175: the direction of a section was the other way round. On the circle `y = 1 - cos t` rises through 1/2 at

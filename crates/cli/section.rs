@@ -128,8 +128,13 @@ impl Sections<'_> {
             let row = |(i, point): (usize, &[f64; 8])| [&[i as f64][..], &point[..6], &point[6..]].concat();
             let rows: Vec<Vec<f64>> =
                 numbered.flat_map(|(i, start)| start.points.iter().map(move |point| row((i, point)))).collect();
-            let [a, b] = self.axes.map(|axis| axis.label());
-            let header = format!("start,t [s],x [m],y [m],heading [rad],speed [m/s],turn_rate [rad/s],{a},{b}");
+            let state = "x [m],y [m],heading [rad],speed [m/s],turn_rate [rad/s]";
+            // A column of the state is another than the one that is shown: its heading counts the turns.
+            let taken = |label: &str| state.split(',').any(|other| other == label);
+            let [a, b] = self.axes.map(|axis| axis.label()).map(|label| {
+                if taken(&label) { format!("shown_{label}") } else { label }
+            });
+            let header = format!("start,t [s],{state},{a},{b}");
             file.write(shared.force, &header, &rows, || self.chart(crossed))
         });
         let count: usize = crossed.iter().map(|start| start.points.len()).sum();
