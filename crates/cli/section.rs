@@ -131,9 +131,10 @@ impl Sections<'_> {
             let state = "x [m],y [m],heading [rad],speed [m/s],turn_rate [rad/s]";
             // A column of the state is another than the one that is shown: its heading counts the turns.
             let taken = |label: &str| state.split(',').any(|other| other == label);
-            let [a, b] = self.axes.map(|axis| axis.label()).map(|label| {
-                if taken(&label) { format!("shown_{label}") } else { label }
-            });
+            let [a, b] = self
+                .axes
+                .map(|axis| axis.label())
+                .map(|label| if taken(&label) { format!("shown_{label}") } else { label });
             let header = format!("start,t [s],{state},{a},{b}");
             file.write(shared.force, &header, &rows, || self.chart(crossed))
         });

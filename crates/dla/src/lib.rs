@@ -56,7 +56,7 @@ pub use dependent::{Dependency, Dependent};
 pub use drive::{Observer, Part, RunError, Schedule, View, drive, drive_part};
 pub use energy::{Energy, Gradient};
 pub use ensemble::{ClosedEnsemble, Each, Ensemble, GaussEnsemble, LaneState, Same, Systems, TaylorEnsemble};
-pub use events::{Close, Crossing, Direction, Event, Watch, Zero, close, zeros};
+pub use events::{Close, Crossing, Direction, Event, Watch, Zero, close_crossings, zeros};
 pub use gauss::{Gauss, GaussAdaptive};
 pub use gni::Gni;
 pub use hermite::Hermite;

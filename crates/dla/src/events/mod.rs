@@ -1,6 +1,6 @@
 //! Events: where a function of the state crosses zero along a run.
 
-mod close;
+mod close_crossings;
 mod crossing;
 mod interval;
 mod isolate;
@@ -8,7 +8,7 @@ mod root;
 mod watch;
 mod zeros;
 
-pub use close::{Close, close};
+pub use close_crossings::{Close, close_crossings};
 pub use crossing::{Crossing, Direction, Event};
 pub use watch::Watch;
 pub use zeros::{Zero, zeros};

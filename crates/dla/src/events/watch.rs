@@ -1,5 +1,5 @@
 use super::interval::Interval;
-use super::{Close, Crossing, Direction, Event, close};
+use super::{Close, Crossing, Direction, Event, close_crossings};
 use crate::{Observer, OneStep, State, StepReport, View};
 use std::ops::ControlFlow;
 
@@ -59,11 +59,11 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
         self.inner
     }
 
-    /// Which crossings are so close to one another that others may have been missed (see [`close`](crate::close)).
+    /// Which crossings are so close to one another that others may have been missed (see [`close_crossings`]).
     #[must_use]
     pub fn close(&self) -> Option<Close> {
         let looked = self.crossings.iter().map(|crossing| (crossing.event, crossing.t, crossing.spacing));
-        close(looked, |event| self.events[event].direction != Direction::Both)
+        close_crossings(looked, |event| self.events[event].direction != Direction::Both)
     }
 
     /// Looks for events on the way to a node, and shows the inner observer the last one where an event ends the run: `Break`.

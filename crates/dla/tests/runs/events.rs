@@ -1,7 +1,7 @@
 use crate::{Motion, backward, sleigh, sleigh_state, state_of};
 use dla::{
-    Close, Composition, Direction, Dla, Event, Gauss, OneStep, Schedule, State, Trajectory, Watch, close, drive,
-    drive_part, piece_by_piece,
+    Close, Composition, Direction, Dla, Event, Gauss, OneStep, Schedule, State, Trajectory, Watch, close_crossings,
+    drive, drive_part, piece_by_piece,
 };
 use lagrangian::{Constraint, Piecewise, Scalar, System};
 use proptest::prelude::*;
@@ -304,16 +304,16 @@ fn several_events_within_one_step_have_its_direction() {
 #[test]
 fn crossings_are_close_by_the_samples_between_them() {
     let at = |times: &'static [f64]| times.iter().map(|t| (1, *t, 0.25));
-    assert_eq!(close(at(&[0.0, 0.5, 1.0]), |_| false), None);
-    assert_eq!(close(at(&[0.0, 0.4, 1.0, 1.1]), |_| false), Some(Close { count: 2, spacing: 0.25 }));
+    assert_eq!(close_crossings(at(&[0.0, 0.5, 1.0]), |_| false), None);
+    assert_eq!(close_crossings(at(&[0.0, 0.4, 1.0, 1.1]), |_| false), Some(Close { count: 2, spacing: 0.25 }));
     // Backward in time.
-    assert_eq!(close(at(&[1.1, 1.0, 0.0]), |_| false), Some(Close { count: 1, spacing: 0.25 }));
-    assert_eq!(close(at(&[0.0, 1.0]), |event| event == 1), None);
-    assert_eq!(close(at(&[0.0, 0.9]), |event| event == 1), Some(Close { count: 1, spacing: 0.25 }));
+    assert_eq!(close_crossings(at(&[1.1, 1.0, 0.0]), |_| false), Some(Close { count: 1, spacing: 0.25 }));
+    assert_eq!(close_crossings(at(&[0.0, 1.0]), |event| event == 1), None);
+    assert_eq!(close_crossings(at(&[0.0, 0.9]), |event| event == 1), Some(Close { count: 1, spacing: 0.25 }));
     // The wider of two spacings; other events between them are others; a jump is no sample.
     let list = [(0, 0.0, 0.1), (2, 0.1, 0.1), (0, 0.3, 0.2), (2, 0.31, 0.0), (2, 0.32, 0.1)];
-    assert_eq!(close(list, |_| false), Some(Close { count: 1, spacing: 0.2 }));
-    assert_eq!(close([], |_| false), None);
+    assert_eq!(close_crossings(list, |_| false), Some(Close { count: 1, spacing: 0.2 }));
+    assert_eq!(close_crossings([], |_| false), None);
 }
 
 /// A sine in the time, with steps from a small part of its turn to many turns. Where one is missed that is said, up to steps of

@@ -1,6 +1,6 @@
 use super::making::{Last, Step};
 use assembly::{Assembly, OneStep, State};
-use dla::{Close, Zero, close, zeros};
+use dla::{Close, Zero, close_crossings, zeros};
 use std::fmt;
 
 /// Of the time (s) and the state.
@@ -49,10 +49,10 @@ pub struct AssemblyCrossing {
 }
 
 impl AssemblyCrossing {
-    /// Which of those of a run are so close to one another that others may have been missed (see [`dla::close`]).
+    /// Which of those of a run are so close to one another that others may have been missed (see [`dla::close_crossings`]).
     #[must_use]
     pub fn close(crossings: &[Self]) -> Option<Close> {
-        close(crossings.iter().map(|crossing| (crossing.event, crossing.t, crossing.spacing)), |_| false)
+        close_crossings(crossings.iter().map(|crossing| (crossing.event, crossing.t, crossing.spacing)), |_| false)
     }
 }
 

@@ -18,7 +18,10 @@ pub struct Close {
 /// `one_way` says of which events only crossings in one direction are given. Between two of them is one in the other, and they
 /// are close where they are nearer than four spacings. A spacing of zero is that of a crossing which was not looked for, since
 /// the velocity jumped there.
-pub fn close(crossings: impl IntoIterator<Item = (usize, f64, f64)>, one_way: impl Fn(usize) -> bool) -> Option<Close> {
+pub fn close_crossings(
+    crossings: impl IntoIterator<Item = (usize, f64, f64)>,
+    one_way: impl Fn(usize) -> bool,
+) -> Option<Close> {
     let (mut last, mut found): (Vec<Option<(f64, f64)>>, Option<Close>) = (Vec::new(), None);
     for (event, t, spacing) in crossings {
         if last.len() <= event {
