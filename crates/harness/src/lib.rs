@@ -37,4 +37,4 @@ pub use run::{Request, integrate, integrate_from, integrate_on, integrate_pieces
 pub use saved::{Saving, run_saved};
 pub use statistics::Trend;
 pub use timing::Progress;
-pub use watched::{Watched, recommend, run_watched};
+pub use watched::{EVENT_SAMPLES, Watched, recommend, run_watched};

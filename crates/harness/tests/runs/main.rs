@@ -12,6 +12,7 @@ mod precision;
 mod same_bits;
 mod sensitivity;
 mod trains;
+mod watched;
 mod work;
 
 use approx::assert_relative_eq;
