@@ -1,4 +1,4 @@
-use crate::{History, NewtonError, RunError, Stage, StepError};
+use crate::{Derivative, History, NewtonError, NotANumber, RunError, Stage, StepError};
 use lagrangian::linear::Singular;
 use lagrangian::{ClosedStepError, ReducedError};
 use std::fmt;
@@ -24,6 +24,8 @@ pub enum Hint {
         /// When (s).
         time: f64,
     },
+    /// A function has a corner or a pole where the motion comes to: write it with functions that have a derivative there.
+    Corner,
     /// A number is too large, infinite or undefined: look at the start and the parameters, then at the step.
     Numbers,
 }
@@ -39,6 +41,10 @@ impl fmt::Display for Hint {
             ),
             Self::OtherMethod => f.write_str("choose another method"),
             Self::NodeAt { time } => write!(f, "choose a step that has a node at t = {time} s"),
+            Self::Corner => f.write_str(
+                "write the function so that it has a derivative there: `Scalar::length` for the root of a sum of squares, `abs`, \
+                 `min`, `max`, a power of at least 1 (of at least 2 in the Lagrangian)",
+            ),
             Self::Numbers => f.write_str(
                 "a number is too large or undefined: look at the start and the parameters, then at the step",
             ),
@@ -133,6 +139,10 @@ impl StepError {
                 Hint::ShorterStep { part: f64::max(0.5 * bound / value, 0.25) }
             }
             Self::Closed(ClosedStepError::NotFinite { .. }) | Self::NotFinite => Hint::Numbers,
+            // Where the step begins, a shorter one is not better.
+            Self::NotANumber(NotANumber { at_node: false, .. }) => HALF,
+            Self::NotANumber(NotANumber { derivative: Derivative::Value, .. }) => Hint::Numbers,
+            Self::NotANumber(_) => Hint::Corner,
             Self::Overshoot { part } => Hint::ShorterStep { part: *part },
             Self::Closed(_) | Self::Branch | Self::Energy { .. } | Self::Tolerance { .. } => HALF,
             Self::Unsupported { .. } | Self::Reduced(ReducedError::NoBasis) => Hint::OtherMethod,

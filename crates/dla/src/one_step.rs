@@ -1,4 +1,4 @@
-use crate::{Dependent, NewtonError, State};
+use crate::{Dependent, NewtonError, NotANumber, State};
 use lagrangian::{ClosedStepError, MotionError, ReducedError};
 use std::ops::ControlFlow;
 use thiserror::Error;
@@ -129,6 +129,9 @@ pub enum StepError {
     /// Rows of the constraint depend on one another.
     #[error(transparent)]
     Dependent(#[from] Dependent),
+    /// A function of the system, or a derivative of one, is not a number or not finite.
+    #[error(transparent)]
+    NotANumber(#[from] NotANumber),
     /// The method cannot do this system.
     #[error("{reason}")]
     Unsupported {

@@ -19,13 +19,14 @@
 pub use assembly;
 pub use dla::{
     self, Checkpoint, CheckpointError, Crossing, Direction, Dla, Equations, Event, Form, Hermite, Hint, History,
-    Newton, NewtonError, Node, Observer, OneStep, RecommendError, Recommendation, RunError, Samples, Schedule,
-    Sensitivity, Stage, State, StepError, StepReport, Trajectory, View, Watch, consistent_start, drive, recommend_step,
+    Newton, NewtonError, Node, NotANumber, Observer, OneStep, RecommendError, Recommendation, RunError, Samples,
+    Schedule, Sensitivity, Stage, State, StepError, StepReport, Trajectory, View, Watch, consistent_start, drive,
+    recommend_step,
 };
 pub use lagrangian::{
     self, AdmissibleBasis, Alpha, ClosedStep, ClosedStepError, Constraint, Derivatives, DiscreteConstraint,
-    DiscreteLagrangian, Dual, Effect, HyperDual, Lanes, Member, Midpoint, Motion, MotionError, Parametrised, Rule,
-    Scalar, Symmetrised, System, Trapezoid, With, classify, constraint_residual, energy, mass_matrix, momentum,
+    DiscreteLagrangian, Dual, Effect, Function, HyperDual, Lanes, Member, Midpoint, Motion, MotionError, Parametrised,
+    Rule, Scalar, Symmetrised, System, Trapezoid, With, classify, constraint_residual, energy, mass_matrix, momentum,
     vectorized,
 };
 pub use sleigh::{self, CentreOfMass, Exact, Sleigh, SleighError, SleighState};

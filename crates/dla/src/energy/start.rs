@@ -92,7 +92,8 @@ fn autonomous<Sys: System<N, M>, const N: usize, const M: usize>(
     if !nearby.iter().all(Scalar::is_zero) {
         return Err(MOVING);
     }
-    let moves = |x: &Dual<f64, 1>| x.eps[0] != 0.0;
+    // What is not a number fails later, and is named there.
+    let moves = |x: &Dual<f64, 1>| x.eps[0].abs() > 0.0;
     let basis = system.admissible_basis(t, &q);
     let timed = moves(&system.lagrangian(t, &q, &v))
         || a.iter().flatten().chain(&b).any(moves)

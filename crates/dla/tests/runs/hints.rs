@@ -113,6 +113,7 @@ fn a_hint_says_it() {
         (Hint::OtherMethod, "another method"),
         (Hint::NodeAt { time: 1.5 }, "t = 1.5 s"),
         (Hint::Numbers, "undefined"),
+        (Hint::Corner, "Scalar::length"),
     ] {
         assert!(hint.to_string().contains(words), "{hint}");
     }

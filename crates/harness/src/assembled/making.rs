@@ -84,6 +84,7 @@ impl<'a> Making<'a> {
             let report = match method.step(assembly, t0, h, state) {
                 Ok(report) => report,
                 Err(source) => {
+                    let source = source.named(assembly, t0, state);
                     self.failure = Some(RunError { step: k + 1, time: t0, source });
                     return;
                 }
