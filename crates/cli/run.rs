@@ -6,8 +6,8 @@ use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
 use crate::trajectory_file::{self, Format};
 use crate::trigger::Happened;
-use crate::{inspect, json, progress, resume, table, terminal, train_run};
-use dla::{Checkpoint, Schedule, Trajectory};
+use crate::{inspect, json, progress, resume, substeps, table, terminal, train_run};
+use dla::{Checkpoint, Schedule, Substeps, Trajectory};
 use harness::{Kind, Method, Progress, Record, Request, Saving, Watched, recommend, run_saved, run_watched};
 use scene::{Scene, SceneSystem, Visitor};
 use serde_json::Value;
@@ -17,6 +17,7 @@ use std::path::Path;
 pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let scene = inspect::load(&arguments.scene, arguments.method.as_deref())?;
     let method = Method::named(&scene.run.method, scene.run.alpha)?;
+    let method = if arguments.substep { method.with_substeps(Substeps::default()) } else { method };
     let out = match &arguments.out {
         Some(path) => {
             let format = Format::of(path)?;
@@ -150,6 +151,7 @@ impl Visitor for Run<'_> {
         // What was computed is shown even where its file could not be written.
         if self.arguments.scene.json {
             let mut object = json::record(&self.scene.name, &record, &end);
+            substeps::add_json(&mut object, &record);
             if let Some((events, _)) = events {
                 object["events"] = Value::Array(events);
             }
@@ -157,9 +159,9 @@ impl Visitor for Run<'_> {
         } else {
             let file = self.out.and_then(|(path, _)| written.is_ok().then_some(path));
             let told = events.map_or_else(String::new, |(_, told)| told);
-            terminal::print(&(table::one_run(self.scene, &record, &end, file) + &told))?;
+            terminal::print(&(table::one_run(self.scene, &record, &end, file) + &substeps::told(&record) + &told))?;
         }
-        let computed = CliError::of_failures(table::failure(&record));
+        let computed = CliError::of_failures(substeps::failure(&record));
         if let (Err(_), Err(error)) = (&computed, &written) {
             terminal::say("error", error);
         }

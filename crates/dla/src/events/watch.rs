@@ -1,6 +1,6 @@
 use super::zeros::in_order;
 use super::{Crossing, Event, Zero, zeros};
-use crate::{Observer, OneStep, State, StepReport, View};
+use crate::{Observer, OneStep, State, StepError, StepReport, Undivided, View};
 use std::ops::ControlFlow;
 
 /// The observer that looks for events, and shows another observer the run up to the first that ends it.
@@ -26,6 +26,8 @@ pub struct Watch<'a, Method, Inner, const N: usize> {
     events: &'a [Event<'a, N>],
     inner: Inner,
     before: Option<(f64, State<N>)>,
+    /// Whether the parts of the step have been looked at already.
+    in_parts: bool,
     crossings: Vec<Crossing<N>>,
     /// With the number of the node that it makes.
     ended: Option<(Crossing<N>, u64)>,
@@ -72,7 +74,7 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
     /// Watches a run made with `method`, and shows it to `inner`.
     pub fn new(method: Method, events: &'a [Event<'a, N>], inner: Inner) -> Self {
         let (crossings, before, ended) = (Vec::new(), None, None);
-        Self { samples: 4, tolerance: 0.0, method, events, inner, before, crossings, ended }
+        Self { samples: 4, tolerance: 0.0, method, events, inner, before, in_parts: false, crossings, ended }
     }
 
     /// What happened, in the order in which it did.
@@ -121,6 +123,33 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
         in_order(found).collect()
     }
 
+    /// Looks for crossings on the way to a node; `Break` where one of them has ended the run.
+    fn look<Sys, const M: usize>(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()>
+    where
+        Method: OneStep<Sys, N, M> + Clone,
+        Inner: Observer<Sys, N, M>,
+    {
+        if self.ended.is_some() {
+            return ControlFlow::Break(());
+        }
+        if let Some((t0, start)) = self.before {
+            let method = self.method.clone();
+            let step =
+                Again { system: node.system, method: &method, t0, h: node.t - t0, start: &start, end: node.state };
+            for crossing in self.within(&step, node.k.saturating_sub(1)) {
+                if self.note(crossing, node.k) {
+                    let report = step.after((crossing.t - t0) / step.h).map_or(*report, |(_, report)| report);
+                    let last = View { system: node.system, k: node.k, t: crossing.t, state: &crossing.state };
+                    // The run ends here, whatever the inner observer says.
+                    let _ = self.inner.step(&last, &report);
+                    return ControlFlow::Break(());
+                }
+            }
+        }
+        self.before = Some((node.t, *node.state));
+        ControlFlow::Continue(())
+    }
+
     /// Notes a crossing; whether it ends the run, there at node `k`.
     fn note(&mut self, crossing: Crossing<N>, k: u64) -> bool {
         self.crossings.push(crossing);
@@ -159,25 +188,21 @@ where
     }
 
     fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
-        if self.ended.is_some() {
-            return ControlFlow::Break(());
+        if !std::mem::take(&mut self.in_parts) {
+            self.look(node, report)?;
         }
-        if let Some((t0, start)) = self.before {
-            let method = self.method.clone();
-            let step =
-                Again { system: node.system, method: &method, t0, h: node.t - t0, start: &start, end: node.state };
-            for crossing in self.within(&step, node.k.saturating_sub(1)) {
-                if self.note(crossing, node.k) {
-                    let report = step.after((crossing.t - t0) / step.h).map_or(*report, |(_, report)| report);
-                    let last = View { system: node.system, k: node.k, t: crossing.t, state: &crossing.state };
-                    // The run ends here, whatever the inner observer says.
-                    let _ = self.inner.step(&last, &report);
-                    return ControlFlow::Break(());
-                }
-            }
-        }
-        self.before = Some((node.t, *node.state));
         self.inner.step(node, report)
+    }
+
+    /// Each part is looked at as a step is: a divided step may hold many crossings.
+    fn part(&mut self, end: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+        self.look(end, report)?;
+        self.in_parts = true;
+        self.inner.part(end, report)
+    }
+
+    fn undivided(&mut self, why: &Undivided<StepError>) {
+        self.inner.undivided(why);
     }
 
     fn end(&mut self, node: &View<'_, Sys, N>) {
