@@ -12,6 +12,7 @@ mod branch;
 mod checkpoint;
 mod composition;
 mod continued;
+pub mod convergence;
 mod corrections;
 mod dependent;
 mod derivatives;

@@ -100,8 +100,8 @@ pub fn assembly_end(
 
 /// Makes a run of an assembly and measures it, keeping every `every`-th node and the last.
 ///
-/// The time is that of the steps alone. Work is integrated by Simpson's rule along the cubic polynomial of each step, which is
-/// of order 4. A run that fails gives the record of its valid part.
+/// The time is that of the steps alone. Work is that of the method's own forces where it knows it, else integrated along the
+/// polynomial of degree five of each step, which is of order 6 ([`assembly::Work`]). A run that fails gives the record of its valid part.
 pub fn run_assembly(
     assembly: &Assembly,
     method: &Method,
