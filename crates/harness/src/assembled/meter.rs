@@ -48,7 +48,13 @@ impl Meter {
     }
 
     /// Adds the work over a step, or a part of one, from one time and state to another.
-    pub(super) fn over(&mut self, assembly: &Assembly, before: (f64, &State), after: (f64, &State), report: &StepReport) {
+    pub(super) fn over(
+        &mut self,
+        assembly: &Assembly,
+        before: (f64, &State),
+        after: (f64, &State),
+        report: &StepReport,
+    ) {
         self.work.step(assembly, before, after, report);
     }
 
