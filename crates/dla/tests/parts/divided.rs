@@ -74,16 +74,24 @@ fn what_is_resolved_is_left_alone() {
 }
 
 /// Makes what is long enough, and says how often it was asked.
-fn pieces(limits: Substeps, longest: impl Fn(f64) -> f64) -> (Result<ControlFlow<(), u64>, Undivided<&'static str>>, f64) {
+fn pieces(
+    limits: Substeps,
+    longest: impl Fn(f64) -> f64,
+) -> (Result<ControlFlow<(), u64>, Undivided<&'static str>>, f64) {
     let mut way = 0.0;
-    let made = limits.divide((2.0, 8.0), "whole", |_| true, |(t, h), after| {
-        assert_eq!((t - 2.0 + h) / 8.0, after);
-        if h > longest(t) {
-            return Err("too long");
-        }
-        way += h;
-        Ok(ControlFlow::Continue(()))
-    });
+    let made = limits.divide(
+        (2.0, 8.0),
+        "whole",
+        |_| true,
+        |(t, h), after| {
+            assert_eq!((t - 2.0 + h) / 8.0, after);
+            if h > longest(t) {
+                return Err("too long");
+            }
+            way += h;
+            Ok(ControlFlow::Continue(()))
+        },
+    );
     (made, way)
 }
 
@@ -108,9 +116,14 @@ fn what_no_part_mends_ends_at_once_and_what_breaks_off_does() {
     let error = Substeps::default().divide((0.0, 1.0), "hopeless", |_| false, never).unwrap_err();
     assert_eq!(error, Undivided { tried: 0, time: 0.0, part: 1.0, source: "hopeless" });
     let mut parts = 0;
-    let broken = Substeps::default().divide((0.0, 1.0), "whole", |_| true, |_, _| {
-        parts += 1;
-        Ok(if parts == 1 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
-    });
+    let broken = Substeps::default().divide(
+        (0.0, 1.0),
+        "whole",
+        |_| true,
+        |_, _| {
+            parts += 1;
+            Ok(if parts == 1 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
+        },
+    );
     assert_eq!((broken, parts), (Ok(ControlFlow::Break(())), 2));
 }

@@ -75,7 +75,8 @@ fn steep_hill() {
             for (found, right) in [(end.x, right.x), (end.y, right.y)] {
                 assert!((found - right).abs() <= BAR, "{name} {height}: {found} {right}");
             }
-            for (found, right) in [(end.heading, right.heading), (end.speed, right.speed), (end.turn_rate, right.turn_rate)]
+            for (found, right) in
+                [(end.heading, right.heading), (end.speed, right.speed), (end.turn_rate, right.turn_rate)]
             {
                 assert!((found - right).abs() <= 0.5 * BAR, "{name} {height}: {found} {right}");
             }

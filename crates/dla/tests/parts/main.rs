@@ -7,9 +7,7 @@ mod fields;
 mod free;
 mod halved;
 
-use dla::{
-    Composition, Dla, Energy, Gauss, Node, OneStep, Schedule, State, Substepping, Substeps, Trajectory, drive,
-};
+use dla::{Composition, Dla, Energy, Gauss, Node, OneStep, Schedule, State, Substepping, Substeps, Trajectory, drive};
 use lagrangian::System;
 use sleigh::{Sleigh, SleighState};
 

@@ -197,8 +197,7 @@ fn long_steps_of_trains_are_made_in_parts() {
         }
 
         let events = [AssemblyEvent::new("x", true, |_, state| state.q(0) - 1.0)];
-        let (ended, crossings) =
-            run_assembly_watched(&train.assembly, &method, &long, (&start, 1), &events, &mut ());
+        let (ended, crossings) = run_assembly_watched(&train.assembly, &method, &long, (&start, 1), &events, &mut ());
         assert_eq!((crossings.len(), ended.record.t), (1, crossings[0].t), "{name}");
         assert_abs_diff_eq!(ended.end.q(0), 1.0, epsilon = 1e-9);
     }
