@@ -22,7 +22,7 @@ pub struct Undivided<E> {
     pub time: f64,
     /// How long it was (s).
     pub part: f64,
-    /// Why it does not hold.
+    /// Why the last that failed did.
     #[source]
     pub source: E,
 }
@@ -49,7 +49,7 @@ impl Substeps {
     /// must leave everything as it was. `mended` says whether a shorter part may hold after such a failure.
     ///
     /// # Errors
-    /// [`Undivided`] with the last failure, where no shorter part mends it or may be tried.
+    /// [`Undivided`] with the last failure, where no shorter part mends it, or no more may be tried.
     pub fn divide<E>(
         &self,
         (t, h): (f64, f64),
@@ -58,24 +58,27 @@ impl Substeps {
         mut make: impl FnMut((f64, f64), f64) -> Result<ControlFlow<()>, E>,
     ) -> Result<ControlFlow<(), u64>, Undivided<E>> {
         let (mut done, mut part, shortest) = (0.0, 1.0, 0.5f64.powi(self.halvings as i32));
-        let (mut tried, mut made, mut failure) = (0, 0, Some(whole));
+        let (mut tried, mut made, mut last) = (0, 0, (t, h));
+        let (mut source, mut failed) = (whole, true);
         while done < 1.0 {
-            if let Some(source) = failure.take() {
-                if !mended(&source) || part <= shortest || tried >= self.most {
-                    return Err(Undivided { tried, time: t + done * h, part: part * h, source });
-                }
+            if tried >= self.most || failed && (part <= shortest || !mended(&source)) {
+                let (time, part) = last;
+                return Err(Undivided { tried, time, part, source });
+            }
+            if failed {
                 part *= 0.5;
             }
             tried += 1;
-            match make((t + done * h, part * h), done + part) {
+            last = (t + done * h, part * h);
+            match make(last, done + part) {
                 Ok(ControlFlow::Break(())) => return Ok(ControlFlow::Break(())),
                 Ok(ControlFlow::Continue(())) => {
-                    (done, made) = (done + part, made + 1);
+                    (done, made, failed) = (done + part, made + 1, false);
                     if part < 0.5 && (done / (2.0 * part)).fract() == 0.0 {
                         part *= 2.0;
                     }
                 }
-                Err(failed) => failure = Some(failed),
+                Err(failure) => (source, failed) = (failure, true),
             }
         }
         Ok(ControlFlow::Continue(made))

@@ -17,9 +17,11 @@ pub struct Halved {
 }
 
 impl Halved {
-    /// The halves and the whole may differ by this part of the largest of the velocities, and of the way with it. Of a method of
-    /// order 2 that is a step of about an eighth of a time constant.
+    /// The halves and the whole may differ by this part of the largest of the velocities. Of a method of order 2, whose velocities
+    /// differ by some `(h/T)^3/16`, that is a step of an eighth of a time constant `T`.
     const AGREEMENT: f64 = 1e-4;
+    /// And by this part of the way with that velocity, of which they miss `(h/T)^2/16`: a step of a tenth of a time constant.
+    const AGREED_WAY: f64 = 5e-4;
     /// Simpson's rule may miss the way by this part of it. Through a turn by the angle `a` it misses `a^4/2880`, so that methods of
     /// high order may go on by nearly two radians a step.
     const WAY: f64 = 1e-2;
@@ -41,10 +43,9 @@ impl Halved {
     pub fn is_resolved(&self, h: f64, nothing: f64) -> bool {
         let Self { v: [v0, middle, end, whole], moved: [halves, once] } = *self;
         let largest = self.v.iter().fold(0.0, |largest, v| larger(largest, *v));
-        let agreed = Self::AGREEMENT * largest + nothing;
         let simpson = (v0 + 4.0 * middle + end) / 6.0;
-        (end - whole).abs() <= agreed
-            && (halves - once).abs() <= agreed * h.abs()
+        (end - whole).abs() <= Self::AGREEMENT * largest + nothing
+            && (halves - once).abs() <= (Self::AGREED_WAY * largest + nothing) * h.abs()
             && (once - h * simpson).abs() <= (Self::WAY * largest + nothing) * h.abs()
     }
 

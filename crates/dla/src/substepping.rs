@@ -7,6 +7,9 @@ use std::ops::ControlFlow;
 /// is said of the method in the long run holds only as far as no step is divided; [`divided`](Self::divided) tells how
 /// many were. The constraint holds all the same, and so does the order: the parts are steps of the method.
 ///
+/// What looks on sees a divided step as one; so where forces do work, a step should be short for them all the same
+/// ([`Work`](crate::Work)).
+///
 /// A step fails that has no solution in parts of `2^-halvings` either, or for a reason that no shorter step mends;
 /// [`undivided`](Self::undivided) then tells what was tried.
 #[derive(Debug, Clone, Copy, PartialEq)]

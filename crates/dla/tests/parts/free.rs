@@ -37,9 +37,9 @@ fn long_steps() {
         let exact = Exact::new(&sleigh(0.5), &start).unwrap();
         for (name, run) in by_each(&sleigh(0.5), &start, (step, 20)) {
             ends_right(&format!("{name}, h c u = -{growth}"), &run, &exact, (step, 20));
-            // Where the spin is more than rounding, it has its sign.
+            // Where the spin is not nothing beside the speed, it has its sign.
             let spins = run.seen(|state| state.turn_rate);
-            assert!(spins.iter().all(|spin| *spin > -1e-14), "{name} {growth}: {spins:?}");
+            assert!(spins.iter().all(|spin| *spin > -1e-12), "{name} {growth}: {spins:?}");
         }
     }
 }

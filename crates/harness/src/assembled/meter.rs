@@ -59,13 +59,13 @@ impl Meter {
     }
 
     /// The work so far.
-    pub(super) fn work(&self) -> Work {
-        self.work
+    pub(super) fn work(&self) -> [f64; 2] {
+        self.work.sum()
     }
 
     /// Takes back the work of parts that have come to nothing.
-    pub(super) fn back_to(&mut self, work: Work) {
-        self.work = work;
+    pub(super) fn back_to(&mut self, work: [f64; 2]) {
+        self.work.back_to(work);
     }
 
     /// Notes why a step cannot be made in parts either.
