@@ -104,6 +104,9 @@ pub(crate) struct RunArguments {
     /// Choose the longest step whose error, of a place or an angle, stays below this, by trial runs
     #[arg(long, value_name = "TOL", allow_negative_numbers = true, value_parser = number, conflicts_with = "step")]
     pub(crate) tolerance: Option<f64>,
+    /// Make a step that is refused, or that does not resolve the motion, in parts; every step then takes the time of three
+    #[arg(long)]
+    pub(crate) substep: bool,
     /// Save the run to this file now and then, so that it can be resumed after a stop
     #[arg(long, value_name = "FILE")]
     pub(crate) checkpoint: Option<PathBuf>,

@@ -32,6 +32,7 @@ mod section;
 mod stability;
 mod stability_map;
 mod starts;
+mod substeps;
 mod table;
 mod terminal;
 mod train;

@@ -8,7 +8,8 @@ use std::path::Path;
 
 /// What tells the run of a scene with a method from all others.
 pub(crate) fn identity(scene: &Scene, method: &Method, schedule: &Schedule) -> Checkpoint {
-    Checkpoint::of([
+    let parts = method.substeps().map(|_| ("substep", "yes".to_owned()));
+    let run = [
         ("scene", scene.name.clone()),
         ("method", method.info().name.to_owned()),
         ("step", schedule.step.to_string()),
@@ -16,7 +17,8 @@ pub(crate) fn identity(scene: &Scene, method: &Method, schedule: &Schedule) -> C
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
         // All the rest: every number of the scene, with every digit.
         ("contents", Checkpoint::fingerprint(&format!("{scene:?}"))),
-    ])
+    ];
+    Checkpoint::of(run.into_iter().chain(parts))
 }
 
 /// Refuses, before the work begins, a checkpoint that could not be written; one that is resumed may be overwritten.

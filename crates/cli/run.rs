@@ -6,8 +6,8 @@ use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
 use crate::trajectory_file::{self, Format};
 use crate::trigger::{Events, Happened, Trigger};
-use crate::{inspect, json, progress, resume, table, terminal, train_run};
-use dla::{Checkpoint, Schedule, Trajectory};
+use crate::{inspect, json, progress, resume, substeps, table, terminal, train_run};
+use dla::{Checkpoint, Schedule, Substeps, Trajectory};
 use harness::{Kind, Method, Progress, Record, Request, Saving, Watched, recommend, run_saved, run_watched};
 use scene::{Scene, SceneSystem, Visitor};
 use std::path::Path;
@@ -16,6 +16,7 @@ use std::path::Path;
 pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let scene = inspect::load(&arguments.scene, arguments.method.as_deref())?;
     let method = Method::named(&scene.run.method, scene.run.alpha)?;
+    let method = if arguments.substep { method.with_substeps(Substeps::default()) } else { method };
     let out = match &arguments.out {
         Some(path) => {
             let format = Format::of(path)?;
@@ -146,6 +147,7 @@ impl Visitor for Run<'_> {
         // What was computed is shown even where its file could not be written.
         if self.arguments.scene.json {
             let mut object = json::record(&self.scene.name, &record, &end);
+            substeps::add_json(&mut object, &record);
             if let Some(events) = &events {
                 events.add_to(&mut object);
             }
@@ -153,10 +155,10 @@ impl Visitor for Run<'_> {
         } else {
             let file = self.out.and_then(|(path, _)| written.is_ok().then_some(path));
             let told = events.as_ref().map_or("", |events| &events.told);
-            terminal::print(&(table::one_run(self.scene, &record, &end, file) + told))?;
+            terminal::print(&(table::one_run(self.scene, &record, &end, file) + &substeps::told(&record) + told))?;
         }
         events.iter().for_each(Events::warn);
-        let computed = CliError::of_failures(table::failure(&record));
+        let computed = CliError::of_failures(substeps::failure(&record));
         if let (Err(_), Err(error)) = (&computed, &written) {
             terminal::say("error", error);
         }

@@ -8,7 +8,7 @@ use crate::progress::Interruptible;
 use crate::train::MOST_NUMBERS;
 use crate::trajectory_file::{self, Columns, Format};
 use crate::trigger::{Events, Happened, Trigger};
-use crate::{inspect, json, progress, resume, table, terminal};
+use crate::{inspect, json, progress, resume, substeps, table, terminal};
 use assembly::State;
 use assembly::parts::Train;
 use dla::{Checkpoint, Schedule};
@@ -61,6 +61,7 @@ pub(crate) fn run(
     let (first, last) = (train.blade(&end, 0), train.blade(&end, blades));
     if arguments.scene.json {
         let mut object = json::record(&scene.name, &record, &first);
+        substeps::add_json(&mut object, &record);
         object["constraint"]["leaf_max"] = json!(record.leaf_max);
         object["trailers"] = json!(blades);
         let SleighState { x, y, heading, speed, turn_rate } = last;
@@ -79,11 +80,12 @@ pub(crate) fn run(
             ("last blade", format!("x = {x} m, y = {y} m, heading {heading} rad")),
         ];
         let told = events.as_ref().map_or("", |events| &events.told);
-        terminal::print(&(table::one_run(scene, &record, &first, file) + &table::aligned(&more) + told))?;
+        let parts = substeps::told(&record);
+        terminal::print(&(table::one_run(scene, &record, &first, file) + &parts + &table::aligned(&more) + told))?;
     }
     events.iter().for_each(Events::warn);
     // The static record does not know which hinge it was.
-    let told = table::failure(&record).map(|told| match &failure {
+    let told = substeps::failure(&record).map(|told| match &failure {
         Some(error) if !told.contains(&error.source.to_string()) => format!("{told}; {error}"),
         _ => told,
     });

@@ -112,6 +112,9 @@ pub enum AssemblyError {
         #[source]
         source: NotANumber,
     },
+    /// The method makes the step, but its halves lead elsewhere (see [`dla::Halved`]); asked only of steps that may be made in parts.
+    #[error("the step does not resolve the motion: its halves lead elsewhere")]
+    Unresolved,
     /// The method cannot do assemblies.
     #[error("{reason}")]
     Unsupported {
@@ -135,6 +138,16 @@ impl AssemblyError {
         found.map_or(self, |(element, name, source)| Self::NotANumber { element, name, source })
     }
 
+    /// Whether shorter steps may do what this one has not: see [`StepError::may_hold_in_parts`]. Constraints that depend on one another
+    /// do so in any step.
+    #[must_use]
+    pub fn may_hold_in_parts(&self) -> bool {
+        match self {
+            Self::Singular { constraints, .. } if !constraints.is_empty() => false,
+            error => error.step_error().may_hold_in_parts(),
+        }
+    }
+
     /// The error of a static step that says most of it; which constraints are singular it does not know.
     #[must_use]
     pub fn step_error(&self) -> StepError {
@@ -151,6 +164,7 @@ impl AssemblyError {
             Self::Energy { defect, bound } => StepError::Energy { defect: *defect, bound: *bound },
             Self::NotFinite => StepError::NotFinite,
             Self::NotANumber { source, .. } => StepError::NotANumber(*source),
+            Self::Unresolved => StepError::Unresolved,
             Self::Unsupported { reason } => StepError::Unsupported { reason },
             Self::Coordinates { .. } | Self::Wide { .. } | Self::Number { .. } | Self::Factorisation { .. } => {
                 StepError::Unsupported { reason: "the assembly could not be made" }

@@ -70,6 +70,12 @@ impl State {
         self.coordinates[i].ahead(&[increment])[0]
     }
 
+    /// How far a coordinate has moved since `before`, with the digits that the sums keep.
+    #[must_use]
+    pub fn moved_since(&self, before: &Self, i: usize) -> f64 {
+        self.coordinates[i].moved_since(&before.coordinates[i])[0]
+    }
+
     /// By how much a coordinate is larger than another, with the digits that the sums keep.
     #[inline(always)]
     pub(crate) fn apart(&self, i: usize, from: usize) -> f64 {

@@ -78,6 +78,17 @@ impl Work {
         Ok(Self { total, rest, ..Self::default() })
     }
 
+    /// The sum with its rest (J), to go back to with [`back_to`](Self::back_to).
+    #[must_use]
+    pub fn sum(&self) -> [f64; 2] {
+        [self.total, self.rest]
+    }
+
+    /// Takes back what has been added since [`sum`](Self::sum), where the steps that did it have come to nothing.
+    pub fn back_to(&mut self, sum: [f64; 2]) {
+        [self.total, self.rest] = sum;
+    }
+
     /// Adds the work of a step, from one time and state to another. It is not a number where the accelerations are not determined.
     pub fn step(&mut self, assembly: &Assembly, before: (f64, &State), after: (f64, &State), report: &StepReport) {
         let work = report.work.unwrap_or_else(|| self.over_step(assembly, before, after));

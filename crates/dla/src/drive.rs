@@ -1,6 +1,6 @@
 use crate::dependent::named;
 use crate::suspect::suspect_along;
-use crate::{OneStep, State, StepError, StepReport};
+use crate::{OneStep, State, StepError, StepReport, Undivided};
 use lagrangian::linear::largest;
 use lagrangian::{System, constraint_residual, energy};
 use std::ops::{ControlFlow, Range};
@@ -72,6 +72,15 @@ pub trait Observer<Sys, const N: usize, const M: usize> {
     /// Sees a node after a step; `Break` ends the run there.
     fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()>;
 
+    /// Sees where each part of a divided step ends, the last at the node that [`step`](Self::step) is shown after it, and that
+    /// node's number; `Break` gives the step up and ends the run at the node before.
+    fn part(&mut self, _end: &View<'_, Sys, N>, _report: &StepReport<M>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    /// Sees why a step cannot be made in parts either, before the run ends with that failure.
+    fn undivided(&mut self, _why: &Undivided<StepError>) {}
+
     /// Sees the last good node once more when the run ends, by itself, by a `Break` or by a failure.
     #[inline(always)]
     fn end(&mut self, _node: &View<'_, Sys, N>) {}
@@ -107,6 +116,15 @@ where
         let second = self.1.step(node, report);
         if first.is_break() { first } else { second }
     }
+    fn part(&mut self, end: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+        let first = self.0.part(end, report);
+        let second = self.1.part(end, report);
+        if first.is_break() { first } else { second }
+    }
+    fn undivided(&mut self, why: &Undivided<StepError>) {
+        self.0.undivided(why);
+        self.1.undivided(why);
+    }
     #[inline(always)]
     fn end(&mut self, node: &View<'_, Sys, N>) {
         self.0.end(node);
@@ -125,6 +143,12 @@ impl<Sys, O: Observer<Sys, N, M>, const N: usize, const M: usize> Observer<Sys, 
     fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
         self.as_mut().map_or(ControlFlow::Continue(()), |observer| observer.step(node, report))
     }
+    fn part(&mut self, end: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+        self.as_mut().map_or(ControlFlow::Continue(()), |observer| observer.part(end, report))
+    }
+    fn undivided(&mut self, why: &Undivided<StepError>) {
+        self.iter_mut().for_each(|observer| observer.undivided(why));
+    }
     fn end(&mut self, node: &View<'_, Sys, N>) {
         self.iter_mut().for_each(|observer| observer.end(node));
     }
@@ -142,6 +166,12 @@ impl<Sys, O: Observer<Sys, N, M> + ?Sized, const N: usize, const M: usize> Obser
     #[inline(always)]
     fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
         (**self).step(node, report)
+    }
+    fn part(&mut self, end: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+        (**self).part(end, report)
+    }
+    fn undivided(&mut self, why: &Undivided<StepError>) {
+        (**self).undivided(why);
     }
     #[inline(always)]
     fn end(&mut self, node: &View<'_, Sys, N>) {

@@ -129,6 +129,23 @@ impl StepError {
         }
     }
 
+    /// Whether shorter steps may do what this one has not: it was too long, or its search did not end.
+    ///
+    /// Numbers that are no longer finite say so only where a search has left their range: a state does so by what led there.
+    #[must_use]
+    pub fn may_hold_in_parts(&self) -> bool {
+        use NewtonError::{Diverged, IterationLimit, NotFinite, Singular};
+        let long = matches!(self.hint(), Some(Hint::ShorterStep { .. }));
+        match self {
+            Self::Newton { source: Diverged { .. } | IterationLimit { .. } | NotFinite { .. }, .. } => true,
+            Self::Newton { stage, source: Singular { source, .. } } => {
+                long || (is_overflow(source) && *stage != Stage::Projection)
+            }
+            Self::Closed(_) => true,
+            _ => long,
+        }
+    }
+
     /// What to change; none where the error says no more than that it failed.
     #[must_use]
     pub fn hint(&self) -> Option<Hint> {
@@ -144,7 +161,7 @@ impl StepError {
             Self::NotANumber(NotANumber { derivative: Derivative::Value, .. }) => Hint::Numbers,
             Self::NotANumber(_) => Hint::Corner,
             Self::Overshoot { part } => Hint::ShorterStep { part: *part },
-            Self::Closed(_) | Self::Branch | Self::Energy { .. } | Self::Tolerance { .. } => HALF,
+            Self::Closed(_) | Self::Branch | Self::Energy { .. } | Self::Tolerance { .. } | Self::Unresolved => HALF,
             Self::Unsupported { .. } | Self::Reduced(ReducedError::NoBasis) => Hint::OtherMethod,
             Self::Jump { time } => Hint::NodeAt { time: *time },
             Self::Motion(error) | Self::Reduced(ReducedError::Motion(error)) if is_overflow(&error.source) => {

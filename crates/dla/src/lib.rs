@@ -16,6 +16,7 @@ pub mod convergence;
 mod corrections;
 mod dependent;
 mod derivatives;
+mod divide;
 mod dla;
 mod drive;
 mod energy;
@@ -39,6 +40,7 @@ mod pieces;
 mod positions;
 mod projection;
 mod recommend;
+mod resolved;
 mod samples;
 mod sensitivity;
 mod settle;
@@ -56,6 +58,7 @@ pub use branch::turn;
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use composition::Composition;
 pub use dependent::{Dependency, Dependent};
+pub use divide::{Substeps, Undivided};
 pub use drive::{Observer, Part, RunError, Schedule, View, drive, drive_part};
 pub use energy::{Energy, Gradient};
 pub use ensemble::{ClosedEnsemble, Each, Ensemble, GaussEnsemble, LaneState, Same, Systems, TaylorEnsemble};
@@ -71,6 +74,7 @@ pub use not_a_number::{Derivative, NotANumber, SystemFunction, Variable, not_a_n
 pub use one_step::{OneStep, OwnStep, Stage, StepError, StepReport};
 pub use pieces::{onto_constraint, piece_by_piece, piece_by_piece_from, pieces};
 pub use recommend::{RecommendError, Recommendation, recommend_by_trial, recommend_step};
+pub use resolved::Halved;
 pub use samples::Samples;
 pub use sensitivity::{
     Differentiable, ReducedDerivative, ReducedVariation, Sensitivity, SensitivityError, StepDerivative, StepEquations,

@@ -175,6 +175,10 @@ pub enum StepError {
     /// A coordinate or a velocity became infinite or not a number.
     #[error("the coordinates or the velocities are no longer finite")]
     NotFinite,
+    /// The method makes the step, but its two halves lead elsewhere, or its velocities do not account for its way (see
+    /// [`Halved`](crate::Halved)); asked only of steps that may be made in parts.
+    #[error("the step does not resolve the motion: its halves lead elsewhere")]
+    Unresolved,
 }
 
 impl StepError {

@@ -88,7 +88,12 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for 
         ControlFlow::Continue(())
     }
 
+    fn part(&mut self, end: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+        self.work.part(end, report)
+    }
+
     fn end(&mut self, node: &View<'_, Sys, N>) {
+        self.work.end(node);
         if self.nodes.last().is_none_or(|last| last.k != node.k) {
             self.keep(node);
         }

@@ -18,14 +18,19 @@ pub struct Work<const N: usize> {
     rest: f64,
     /// Time, place and velocity at the node before.
     before: Option<(f64, [f64; N], [f64; N])>,
+    /// What was known at the last node, while a step is made in parts.
+    at_node: Option<Known<N>>,
     nodes: [f64; 4],
     weights: [f64; 4],
 }
 
+/// The sum with its rest; time, place and velocity.
+type Known<const N: usize> = ([f64; 2], Option<(f64, [f64; N], [f64; N])>);
+
 impl<const N: usize> Default for Work<N> {
     fn default() -> Self {
         let (nodes, weights) = gauss_legendre();
-        Self { total: 0.0, rest: 0.0, before: None, nodes, weights }
+        Self { total: 0.0, rest: 0.0, before: None, at_node: None, nodes, weights }
     }
 }
 
@@ -57,6 +62,15 @@ impl<const N: usize> Work<N> {
 
     fn remember<Sys>(&mut self, node: &View<'_, Sys, N>) {
         self.before = Some((node.t, node.state.unwrapped(), *node.state.v()));
+    }
+
+    /// Adds the work over the step that ends at the node.
+    fn over<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) {
+        let work = report.work.unwrap_or_else(|| self.over_step(node));
+        if work != 0.0 {
+            self.add(work);
+        }
+        self.remember(node);
     }
 
     /// The work over the step that ends at the node; not a number where the accelerations are not determined.
@@ -111,11 +125,24 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for 
     }
 
     fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
-        let work = report.work.unwrap_or_else(|| self.over_step(node));
-        if work != 0.0 {
-            self.add(work);
+        // The parts of a divided step have led to this very node; but for an event, which ends it between two.
+        let led = self.at_node.take().is_some() && self.before.is_some_and(|(t, ..)| t.to_bits() == node.t.to_bits());
+        if !led {
+            self.over(node, report);
         }
-        self.remember(node);
         ControlFlow::Continue(())
+    }
+
+    fn part(&mut self, end: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+        self.at_node = self.at_node.or(Some(([self.total, self.rest], self.before)));
+        self.over(end, report);
+        ControlFlow::Continue(())
+    }
+
+    /// A step that was given up has done nothing.
+    fn end(&mut self, _node: &View<'_, Sys, N>) {
+        if let Some(([total, rest], before)) = self.at_node.take() {
+            (self.total, self.rest, self.before) = (total, rest, before);
+        }
     }
 }

@@ -1,4 +1,4 @@
-use crate::run::integrate_part;
+use crate::substeps::substepped_part;
 use crate::{Dop853, Kind, Method};
 use dla::{Observer, OneStep, OwnStep, Schedule, State, StepError, StepReport, View};
 use lagrangian::System;
@@ -11,7 +11,7 @@ use std::ops::ControlFlow;
 pub struct Again<'a>(pub &'a Method);
 
 /// What the last step reported.
-struct Report<const M: usize>(StepReport<M>);
+pub(crate) struct Report<const M: usize>(pub(crate) StepReport<M>);
 
 impl<Sys, const N: usize, const M: usize> Observer<Sys, N, M> for Report<M> {
     fn start(&mut self, _node: &View<'_, Sys, N>) {}
@@ -27,7 +27,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for A
         let mut report = Report(StepReport::of(0));
         let observer: &mut dyn Observer<Sys, N, M> = &mut report;
         let schedule = Schedule { t0: t, step: h, steps: 1 };
-        integrate_part(system, self.0, &schedule, 0..1, state, observer, None).map_err(|error| error.source)?;
+        substepped_part(system, self.0, &schedule, 0..1, state, observer, None).map_err(|error| error.source)?;
         Ok(report.0)
     }
 

@@ -1,3 +1,4 @@
+use dla::Substeps;
 use lagrangian::{Alpha, AnyRule, Midpoint, NotAWeight, Trapezoid};
 use thiserror::Error;
 
@@ -293,6 +294,7 @@ pub struct Method {
     info: MethodInfo,
     alpha: Alpha,
     tolerance: f64,
+    substeps: Option<Substeps>,
 }
 
 /// A method that there is not.
@@ -335,7 +337,7 @@ impl Method {
             // The one weight that makes the rule symmetric.
             info.order = 2;
         }
-        Ok(Self { info, alpha, tolerance: Self::TOLERANCE })
+        Ok(Self { info, alpha, tolerance: Self::TOLERANCE, substeps: None })
     }
 
     /// The same method with another tolerance, which only `dop853` reads.
@@ -348,6 +350,20 @@ impl Method {
         } else {
             Err(MethodError::Tolerance { tolerance })
         }
+    }
+
+    /// The same method, whose steps are made in parts where it cannot make them whole, or where a whole one does not resolve the
+    /// motion ([`Halved`](dla::Halved)). Runs that are integrated piece by piece heed it, as all do that are measured; each step
+    /// then takes the time of three.
+    #[must_use]
+    pub fn with_substeps(self, substeps: Substeps) -> Self {
+        Self { substeps: Some(substeps), ..self }
+    }
+
+    /// How far its steps may be divided; none where they may not.
+    #[must_use]
+    pub fn substeps(&self) -> Option<Substeps> {
+        self.substeps
     }
 
     /// Name, order and source.

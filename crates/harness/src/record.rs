@@ -1,6 +1,6 @@
 use crate::slip::Slip;
-use crate::{Blocks, Drift, Method, MethodInfo, Request, Trend};
-use dla::{Checkpoint, CheckpointError, Observer, RunError, State, StepError, StepReport, View, Work};
+use crate::{Blocks, Drift, Method, MethodInfo, Request, SubstepSummary, Trend};
+use dla::{Checkpoint, CheckpointError, Observer, RunError, State, StepError, StepReport, Undivided, View, Work};
 use lagrangian::System;
 use lagrangian::linear::larger;
 use std::ops::ControlFlow;
@@ -77,6 +77,8 @@ pub struct Record<const N: usize> {
     pub samples: Vec<Sample<N>>,
     /// Why the run ended early, where it did; all else then tells of the part before.
     pub failure: Option<RunError>,
+    /// What became of steps that might be divided; none of a method that may divide none.
+    pub substeps: Option<SubstepSummary>,
     /// Whether the [`Progress`](crate::Progress) ended the run early.
     pub interrupted: bool,
 }
@@ -118,6 +120,9 @@ pub(crate) struct Meter<const N: usize> {
     /// The end, where that is no regular sample.
     last_sample: Option<Sample<N>>,
     end: (u64, f64, [f64; N], [f64; N]),
+    substeps: Option<SubstepSummary>,
+    /// Of the step that is being made.
+    parts: u64,
 }
 
 impl<const N: usize> Meter<N> {
@@ -141,6 +146,8 @@ impl<const N: usize> Meter<N> {
             samples: Vec::new(),
             last_sample: None,
             end: (0, 0.0, [0.0; N], [0.0; N]),
+            substeps: method.substeps().map(|_| SubstepSummary::default()),
+            parts: 0,
         }
     }
 
@@ -154,6 +161,9 @@ impl<const N: usize> Meter<N> {
         self.work.save(checkpoint);
         self.blocks.save(checkpoint);
         self.slip.save(checkpoint);
+        if let Some(substeps) = &self.substeps {
+            substeps.save(checkpoint);
+        }
         let samples = self.samples.iter().flat_map(|s| [s.t, s.energy_error, s.constraint].into_iter().chain(s.q));
         checkpoint.put("samples", &samples.collect::<Vec<_>>());
     }
@@ -169,6 +179,7 @@ impl<const N: usize> Meter<N> {
     ) -> Result<Self, CheckpointError> {
         let [initial, last, max_error, constraint_max, energy, constraint] = checkpoint.get("meter")?;
         let [iterations, most] = checkpoint.counts("iterations")?;
+        let substeps = new.substeps.map(|_| SubstepSummary::load(checkpoint)).transpose()?;
         let most = u32::try_from(most).unwrap_or(u32::MAX);
         let trend = Trend::of_sums(checkpoint.get("trend")?);
         let end = (made, t, state.unwrapped(), *state.v());
@@ -198,6 +209,7 @@ impl<const N: usize> Meter<N> {
             most,
             bucket: (energy, constraint),
             samples,
+            substeps,
             ..sizes
         })
     }
@@ -249,6 +261,7 @@ impl<const N: usize> Meter<N> {
             v,
             samples: self.samples.into_iter().chain(self.last_sample).collect(),
             failure,
+            substeps: self.substeps,
             interrupted: false,
         }
     }
@@ -271,7 +284,13 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for 
     fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
         // Work never ends a run.
         let _ = self.work.step(node, report);
-        self.slip.step(node);
+        // Over a divided step the discrete constraint is that of its parts.
+        if self.parts == 0 {
+            self.slip.step(node);
+        }
+        if let Some(substeps) = &mut self.substeps {
+            substeps.add(std::mem::take(&mut self.parts));
+        }
         self.see(node);
         self.iterations += u64::from(report.iterations);
         self.most = self.most.max(report.iterations);
@@ -281,7 +300,21 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for 
         ControlFlow::Continue(())
     }
 
+    fn part(&mut self, end: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+        self.slip.part(end);
+        self.parts += 1;
+        self.work.part(end, report)
+    }
+
+    fn undivided(&mut self, why: &Undivided<StepError>) {
+        if let Some(substeps) = &mut self.substeps {
+            substeps.undivided = Some(*why);
+        }
+    }
+
     fn end(&mut self, node: &View<'_, Sys, N>) {
+        self.work.end(node);
+        self.parts = 0;
         self.end = (node.k, node.t, node.state.unwrapped(), *node.state.v());
         self.last_sample = (!node.k.is_multiple_of(self.every)).then(|| self.sampled(node));
     }

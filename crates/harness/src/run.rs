@@ -1,4 +1,5 @@
 use crate::record::Meter;
+use crate::substeps::substepped_part;
 use crate::timing::{Stopper, Ticker, median_seconds};
 use crate::{Dop853, ImplicitMidpoint, Kind, Method, Progress, Record, Rk4, Rk4Projected, Rk4Reduced};
 use dla::{
@@ -21,7 +22,7 @@ pub struct Request<const N: usize> {
     pub samples: u64,
 }
 
-/// Integrates with the method of that name; returns how many steps were made.
+/// Integrates with the method of that name, in whole steps; returns how many were made.
 ///
 /// # Errors
 /// [`RunError`] with the step that failed; `state` is then the last good node.
@@ -76,12 +77,12 @@ where
     Sys: System<N, M> + Piecewise,
 {
     piece_by_piece_from(from, system, schedule, state, |piece, steps, state| {
-        integrate_part(piece, method, schedule, steps, state, &mut *observer, None)
+        substepped_part(piece, method, schedule, steps, state, &mut *observer, None)
     })
 }
 
 /// A part of a run with the method of that name: the one place where a name becomes a type. Where there is a memory, it is
-/// what the method remembers from the part before, and then from this one.
+/// what the method remembers from the part before, and then from this one. All steps are whole; `substepped_part` divides some.
 pub(crate) fn integrate_part<Sys, Obs, const N: usize, const M: usize>(
     system: &Sys,
     method: &Method,

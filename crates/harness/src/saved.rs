@@ -1,5 +1,5 @@
 use crate::record::Meter;
-use crate::run::integrate_part;
+use crate::substeps::substepped_part;
 use crate::timing::Ticker;
 use crate::{Method, Progress, Record, Request};
 use dla::{Checkpoint, CheckpointError, Observer, Part, Schedule, State, Trajectory, Work, piece_by_piece_from};
@@ -75,7 +75,7 @@ pub fn run_saved<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
         for chunk in chunks(&steps, saving.every) {
             let observer: &mut dyn Observer<Sys, N, M> = &mut (&mut run.meter, (&mut run.trajectory, &mut ticker));
             let memory = Some(&mut run.memory);
-            done = integrate_part(piece, method, &schedule, chunk.clone(), state, observer, memory)?;
+            done = substepped_part(piece, method, &schedule, chunk.clone(), state, observer, memory)?;
             let due = saving.every.is_some_and(|every| done.made.is_multiple_of(every));
             if due && done.made < schedule.steps || ends(&done) {
                 if done.made == steps.end && done.made < schedule.steps {

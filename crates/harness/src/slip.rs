@@ -38,9 +38,22 @@ impl<const N: usize> Slip<N> {
     }
 
     pub(crate) fn step<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>) {
+        self.over(node, self.h);
+    }
+
+    /// A part of a step.
+    pub(crate) fn part<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>) {
+        // Where the parts are too short for the time, there is nothing to be told from their ends.
+        match self.before.as_ref().map(|(t, _)| node.t - t) {
+            Some(h) if h != 0.0 => self.over(node, h),
+            _ => self.resume(node),
+        }
+    }
+
+    fn over<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>, h: f64) {
         if let Some((t, before)) = &self.before {
-            let v = node.state.moved_since(before).map(|moved| moved / self.h);
-            let (system, t, h, q) = (node.system, *t, self.h, before.q());
+            let v = node.state.moved_since(before).map(|moved| moved / h);
+            let (system, t, q) = (node.system, *t, before.q());
             let residual: [f64; M] = self.rule.residual(system, t, h, q, &v);
             self.step = larger(self.step, largest(&residual));
         }

@@ -12,7 +12,7 @@ pub trait Progress {
     /// So many more steps are done.
     fn advance(&mut self, steps: u64);
 
-    /// Whether the run is to end here, with what it has; asked every 2^14 steps.
+    /// Whether the run is to end here, with what it has; asked every 2^14 steps, and after every part of a divided one.
     fn stops(&self) -> bool {
         false
     }
@@ -60,6 +60,11 @@ impl<Sys, const N: usize, const M: usize> Observer<Sys, N, M> for Ticker<'_> {
         ControlFlow::Continue(())
     }
 
+    fn part(&mut self, _end: &View<'_, Sys, N>, _report: &StepReport<M>) -> ControlFlow<()> {
+        self.stopped = self.progress.stops();
+        if self.stopped { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
     fn end(&mut self, node: &View<'_, Sys, N>) {
         self.progress.advance(node.k - self.told);
         self.told = node.k;
@@ -78,6 +83,10 @@ impl<Sys, const N: usize, const M: usize> Observer<Sys, N, M> for Stopper<'_> {
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
+    }
+
+    fn part(&mut self, _end: &View<'_, Sys, N>, _report: &StepReport<M>) -> ControlFlow<()> {
+        if self.0.stops() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 

@@ -43,7 +43,9 @@ pub fn run_watched<Sys: System<N, M> + Piecewise, const N: usize, const M: usize
     watch.samples = samples;
     let outcome = integrate_pieces(system, method, &schedule, &mut start.clone(), &mut watch);
     let (crossings, close) = (watch.crossings().to_vec(), watch.close());
-    let steps = outcome.unwrap_or_else(|failure| failure.valid_steps());
+    let made = outcome.unwrap_or_else(|failure| failure.valid_steps());
+    // An event within a divided step ends it there, before it is made.
+    let steps = watch.ended().map_or(made, |ended| made.max(ended.k + 1));
     let interrupted = ticker.stopped;
     let seconds = timed(system, method, request, steps, progress);
     let record = Record { interrupted, ..meter.record(method.info(), seconds, outcome.err()) };

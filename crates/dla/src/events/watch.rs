@@ -1,6 +1,6 @@
 use super::interval::Interval;
 use super::{Close, Crossing, Direction, Event, close_crossings};
-use crate::{Observer, OneStep, State, StepReport, View};
+use crate::{Observer, OneStep, State, StepError, StepReport, Undivided, View};
 use std::ops::ControlFlow;
 
 /// The observer that looks for events, and shows another observer the run up to the first that ends it.
@@ -30,6 +30,8 @@ pub struct Watch<'a, Method, Inner, const N: usize> {
     before: Option<(f64, State<N>)>,
     /// What the method remembers of its own steps, where it has any.
     memory: Vec<f64>,
+    /// Whether the parts of the step have been looked at already.
+    in_parts: bool,
     crossings: Vec<Crossing<N>>,
     /// With the number of the node that it makes.
     ended: Option<(Crossing<N>, u64)>,
@@ -39,7 +41,7 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
     /// Watches a run made with `method`, and shows it to `inner`.
     pub fn new(method: Method, events: &'a [Event<'a, N>], inner: Inner) -> Self {
         let (crossings, before, memory, ended) = (Vec::new(), None, Vec::new(), None);
-        Self { samples: 4, tolerance: 0.0, method, events, inner, before, memory, crossings, ended }
+        Self { samples: 4, tolerance: 0.0, method, events, inner, before, memory, in_parts: false, crossings, ended }
     }
 
     /// What happened, in the order in which it did.
@@ -165,8 +167,25 @@ where
     }
 
     fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
-        self.look(node, report)?;
+        if std::mem::take(&mut self.in_parts) {
+            self.memory.clear();
+        } else {
+            self.look(node, report)?;
+        }
         self.inner.step(node, report)
+    }
+
+    /// Each part is looked at as a step is: a divided step may hold many crossings.
+    fn part(&mut self, end: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+        // It is made without what the method remembers.
+        self.memory.clear();
+        self.look(end, report)?;
+        self.in_parts = true;
+        self.inner.part(end, report)
+    }
+
+    fn undivided(&mut self, why: &Undivided<StepError>) {
+        self.inner.undivided(why);
     }
 
     fn end(&mut self, node: &View<'_, Sys, N>) {

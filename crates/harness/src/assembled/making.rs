@@ -1,8 +1,9 @@
 use super::meter::Meter;
+use super::parts::{Parted, in_parts, resolves, shorter};
 use super::{Assembled, assembly_method};
 use crate::{Method, MethodInfo, Progress, Record};
-use assembly::{Assembly, OneStep, RunError, State, StepReport};
-use dla::{Checkpoint, CheckpointError, Schedule};
+use assembly::{Assembly, OneStep, RunError, State};
+use dla::{Checkpoint, CheckpointError, Schedule, Substeps};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
@@ -11,6 +12,7 @@ pub(super) struct Making<'a> {
     assembly: &'a Assembly,
     schedule: &'a Schedule,
     info: MethodInfo,
+    limits: Option<Substeps>,
     method: Option<Box<dyn OneStep>>,
     meter: Meter,
     state: State,
@@ -42,7 +44,7 @@ impl<'a> Making<'a> {
         start: &State,
         every: u64,
     ) -> Self {
-        let meter = Meter::new(assembly, schedule.t0, start, every.max(1));
+        let meter = Meter::new(assembly, method, schedule.t0, start, every.max(1));
         Self::of(assembly, method, schedule, (meter, start.clone(), 0, 0.0))
     }
 
@@ -52,12 +54,12 @@ impl<'a> Making<'a> {
         schedule: &'a Schedule,
         (meter, state, made, seconds): (Meter, State, u64, f64),
     ) -> Self {
-        let (method, info) = (assembly_method(assembly, method), method.info());
+        let (method, info, limits) = (assembly_method(assembly, method), method.info(), method.substeps());
         let (method, failure) = match method {
             Ok(method) => (Some(method), None),
             Err(source) => (None, Some(RunError { step: 1, time: schedule.t0, source })),
         };
-        Self { assembly, schedule, info, method, meter, state, made, seconds, ended: None, failure }
+        Self { assembly, schedule, info, limits, method, meter, state, made, seconds, ended: None, failure }
     }
 
     pub(super) fn failed(&self) -> bool {
@@ -76,32 +78,70 @@ impl<'a> Making<'a> {
         ticker: &mut Ticker<'_>,
         mut look: impl FnMut(&mut dyn OneStep, Step<'_>) -> ControlFlow<Last>,
     ) {
-        let Self { assembly, schedule, method: Some(method), meter, state, made, seconds, .. } = self else { return };
+        let Self { assembly, schedule, limits, method: Some(method), meter, state, made, seconds, .. } = self else {
+            return;
+        };
         let mut before = state.clone();
         while *made < to && !ticker.stopped {
             let (k, t0, h, clock) = (*made, schedule.time(*made), schedule.step, Instant::now());
             before.copy_from(state);
-            let report = match method.step(assembly, t0, h, state) {
-                Ok(report) => report,
-                Err(source) => {
+            let whole = method.step(assembly, t0, h, state).and_then(|report| {
+                // Only a step that may be divided is asked whether it resolves the motion.
+                limits.map_or(Ok(()), |_| resolves(assembly, method.as_mut(), (t0, h), (&before, state)))?;
+                Ok(report)
+            });
+            *seconds += clock.elapsed().as_secs_f64();
+            let Parted { last, iterations, parts } = match (whole, *limits) {
+                (Ok(report), _) => {
+                    let iterations = report.iterations;
+                    let step = Step { k, t0, h, before: &before, after: state };
+                    let last = match look(method.as_mut(), step) {
+                        ControlFlow::Continue(()) => {
+                            meter.over(assembly, (t0, &before), (schedule.time(k + 1), state), &report);
+                            None
+                        }
+                        ControlFlow::Break((t, last)) => {
+                            let shorter = shorter(assembly, method.as_mut(), (t0, t), &before, report);
+                            meter.over(assembly, (t0, &before), (t, &last), &shorter);
+                            Some((t, last))
+                        }
+                    };
+                    Parted { last, iterations, parts: 0 }
+                }
+                (Err(source), None) => {
                     let source = source.named(assembly, t0, state);
                     self.failure = Some(RunError { step: k + 1, time: t0, source });
                     return;
                 }
+                (Err(source), Some(limits)) => {
+                    state.copy_from(&before);
+                    let (work, clock) = (meter.work(), Instant::now());
+                    let (step, stops) = ((limits, (k, t0, h), source), || ticker.asked());
+                    let parted = in_parts(assembly, method.as_mut(), step, (state, meter), stops, &mut look);
+                    *seconds += clock.elapsed().as_secs_f64();
+                    let Ok(Some(parted)) = parted else {
+                        state.copy_from(&before);
+                        meter.back_to(work);
+                        match parted {
+                            Err(undivided) => {
+                                meter.undivided(&undivided);
+                                self.failure = Some(RunError { step: k + 1, time: t0, source: undivided.source });
+                            }
+                            Ok(_) => ticker.stopped = true,
+                        }
+                        return;
+                    };
+                    parted
+                }
             };
-            *seconds += clock.elapsed().as_secs_f64();
             *made += 1;
-            let step = Step { k, t0, h, before: &before, after: state };
-            if let ControlFlow::Break((t, last)) = look(method.as_mut(), step) {
-                // What the shorter step did that ends there, not the whole one.
-                let unknown = StepReport { work: None, ..report };
-                let shorter = method.step(assembly, t0, t - t0, &mut before.clone());
+            if let Some((t, last)) = last {
                 *state = last;
                 self.ended = Some(t);
-                meter.see(assembly, *made, (t0, &before), (t, state), &shorter.unwrap_or(unknown));
+                meter.see(assembly, (*made, t), state, iterations, parts);
                 return;
             }
-            meter.see(assembly, *made, (t0, &before), (schedule.time(*made), state), &report);
+            meter.see(assembly, (*made, schedule.time(*made)), state, iterations, parts);
             ticker.stops(*made);
         }
     }
@@ -137,7 +177,7 @@ impl<'a> Making<'a> {
     ) -> Result<Self, CheckpointError> {
         let ([made], [seconds]) = (checkpoint.counts("k")?, checkpoint.get("seconds")?);
         let state = State::load(checkpoint, assembly)?;
-        let meter = Meter::load(checkpoint, every.max(1))?;
+        let meter = Meter::load(checkpoint, method, every.max(1))?;
         Ok(Self::of(assembly, method, schedule, (meter, state, made, seconds)))
     }
 }
@@ -166,6 +206,11 @@ impl<'a> Ticker<'a> {
             self.clock = Instant::now();
         }
         self.stopped
+    }
+
+    /// The same within a step, of which nothing is told.
+    pub(super) fn asked(&self) -> bool {
+        self.progress.stops()
     }
 
     pub(super) fn finish(&mut self, made: u64) {

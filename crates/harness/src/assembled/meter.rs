@@ -1,7 +1,7 @@
 use super::AssemblyNode;
-use crate::{Blocks, Drift, EnergySummary, MethodInfo, NewtonSummary, Record, Sample, Trend};
-use assembly::{Assembly, RunError, State, StepReport, Work};
-use dla::{Checkpoint, CheckpointError};
+use crate::{Blocks, Drift, EnergySummary, Method, MethodInfo, NewtonSummary, Record, Sample, SubstepSummary, Trend};
+use assembly::{Assembly, AssemblyError, RunError, State, StepReport, Work};
+use dla::{Checkpoint, CheckpointError, Undivided};
 use lagrangian::linear::larger;
 
 /// What a run of an assembly is measured by.
@@ -19,10 +19,11 @@ pub(super) struct Meter {
     bucket: (f64, f64),
     samples: Vec<Sample<3>>,
     pub(super) nodes: Vec<AssemblyNode>,
+    substeps: Option<SubstepSummary>,
 }
 
 impl Meter {
-    pub(super) fn new(assembly: &Assembly, t: f64, start: &State, every: u64) -> Self {
+    pub(super) fn new(assembly: &Assembly, method: &Method, t: f64, start: &State, every: u64) -> Self {
         let (initial, most) = (assembly.energy(t, start), assembly.misses(t, start));
         let mut meter = Self {
             every,
@@ -38,6 +39,7 @@ impl Meter {
             bucket: (0.0, most[0]),
             samples: Vec::new(),
             nodes: Vec::new(),
+            substeps: method.substeps().map(|_| SubstepSummary::default()),
         };
         meter.trend.add(t, 0.0);
         meter.blocks.add(t, 0.0);
@@ -45,16 +47,47 @@ impl Meter {
         meter
     }
 
-    /// Sees the node number `made` after a step from one time and state to another.
+    /// Adds the work over a step, or a part of one, from one time and state to another.
+    pub(super) fn over(
+        &mut self,
+        assembly: &Assembly,
+        before: (f64, &State),
+        after: (f64, &State),
+        report: &StepReport,
+    ) {
+        self.work.step(assembly, before, after, report);
+    }
+
+    /// The work so far.
+    pub(super) fn work(&self) -> [f64; 2] {
+        self.work.sum()
+    }
+
+    /// Takes back the work of parts that have come to nothing.
+    pub(super) fn back_to(&mut self, work: [f64; 2]) {
+        self.work.back_to(work);
+    }
+
+    /// Notes why a step cannot be made in parts either.
+    pub(super) fn undivided(&mut self, why: &Undivided<AssemblyError>) {
+        if let Some(substeps) = self.substeps.as_mut().filter(|_| why.tried > 0) {
+            let Undivided { tried, time, part, ref source } = *why;
+            substeps.undivided = Some(Undivided { tried, time, part, source: source.step_error() });
+        }
+    }
+
+    /// Sees the node number `made`, at the time `t`, after a step that was made in so many parts, none where it was made whole.
     pub(super) fn see(
         &mut self,
         assembly: &Assembly,
-        made: u64,
-        before: (f64, &State),
-        (t, state): (f64, &State),
-        report: &StepReport,
+        (made, t): (u64, f64),
+        state: &State,
+        iterations: u32,
+        parts: u64,
     ) {
-        self.work.step(assembly, before, (t, state), report);
+        if let Some(substeps) = &mut self.substeps {
+            substeps.add(parts);
+        }
         self.last = assembly.energy(t, state);
         let (error, miss) = (self.last - self.initial - self.work.total(), assembly.misses(t, state));
         self.max_error = larger(self.max_error, error);
@@ -62,8 +95,8 @@ impl Meter {
         self.trend.add(t, error);
         self.blocks.add(t, error);
         self.bucket = (larger(self.bucket.0, error), larger(self.bucket.1, miss[0]));
-        self.iterations += u64::from(report.iterations);
-        self.most_iterations = self.most_iterations.max(report.iterations);
+        self.iterations += u64::from(iterations);
+        self.most_iterations = self.most_iterations.max(iterations);
         if made.is_multiple_of(self.every) {
             self.keep(assembly, t, state);
         }
@@ -124,6 +157,7 @@ impl Meter {
                 time: error.time,
                 source: error.source.step_error(),
             }),
+            substeps: self.substeps,
             interrupted: false,
         }
     }
@@ -136,14 +170,18 @@ impl Meter {
         checkpoint.put_counts("iterations", &[self.iterations, u64::from(self.most_iterations)]);
         self.work.save(checkpoint);
         self.blocks.save(checkpoint);
+        if let Some(substeps) = &self.substeps {
+            substeps.save(checkpoint);
+        }
         let samples = self.samples.iter().flat_map(|s| [s.t, s.energy_error, s.constraint].into_iter().chain(s.q));
         checkpoint.put("samples", &samples.collect::<Vec<_>>());
     }
 
     /// The meter that [`save`](Self::save) wrote; it keeps nodes from there on.
-    pub(super) fn load(checkpoint: &Checkpoint, every: u64) -> Result<Self, CheckpointError> {
+    pub(super) fn load(checkpoint: &Checkpoint, method: &Method, every: u64) -> Result<Self, CheckpointError> {
         let [initial, last, max_error, constraint, joint, error, slip] = checkpoint.get("meter")?;
         let [iterations, most] = checkpoint.counts("iterations")?;
+        let substeps = method.substeps().map(|_| SubstepSummary::load(checkpoint)).transpose()?;
         let samples = checkpoint.list("samples")?;
         let sample = |x: &[f64]| Sample { t: x[0], energy_error: x[1], constraint: x[2], q: [x[3], x[4], x[5]] };
         Ok(Self {
@@ -160,6 +198,7 @@ impl Meter {
             bucket: (error, slip),
             samples: samples.chunks_exact(6).map(sample).collect(),
             nodes: Vec::new(),
+            substeps,
         })
     }
 }

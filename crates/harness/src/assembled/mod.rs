@@ -3,6 +3,7 @@
 mod events;
 mod making;
 mod meter;
+mod parts;
 mod recommend;
 mod saved;
 

@@ -11,6 +11,7 @@ mod measures;
 mod precision;
 mod same_bits;
 mod sensitivity;
+mod substeps;
 mod trains;
 mod watched;
 mod work;

@@ -1,7 +1,7 @@
 //! Runs of assemblies.
 use approx::assert_abs_diff_eq;
 use assembly::parts::{Trailer, Train};
-use dla::{Checkpoint, CheckpointError, RecommendError, Schedule};
+use dla::{Checkpoint, CheckpointError, RecommendError, Schedule, Substeps};
 use harness::{
     AssemblyEvent, Method, Progress, Saving, assembly_end, recommend_assembly, run_assembly, run_assembly_saved,
     run_assembly_watched,
@@ -159,4 +159,52 @@ fn a_step_for_a_tolerance() {
     assert!(error(found.steps) < tolerance && error(found.steps / 4) > tolerance);
     let refused = recommend_assembly(&train.assembly, &Method::named("rk4", None).unwrap(), &start, 4.0, 1e-4, last);
     assert!(matches!(refused, Err(RecommendError::Fails { .. })));
+}
+
+/// A train that is to turn by a radian and more in a step is driven in parts, also from a checkpoint and up to an event.
+#[test]
+fn long_steps_of_trains_are_made_in_parts() {
+    let train = train();
+    let start = train.start(&SleighState { speed: 3.0, turn_rate: 2.0, ..SleighState::default() }, &[0.4, -0.4]);
+    let long = Schedule { t0: 0.0, step: 1.0, steps: 6 };
+    let plain = Method::named("dla4", None).unwrap();
+    assert!(run_assembly(&train.assembly, &plain, &long, &start, 1, &mut ()).failure.is_some());
+    let fine = Schedule { step: 0.005, steps: 1200, ..long };
+    let right = run_assembly(&train.assembly, &plain, &fine, &start, 100, &mut ()).end;
+    for name in ["dla", "dla4", "lobatto3", "energy2"] {
+        let method = Method::named(name, None).unwrap().with_substeps(Substeps::default());
+        let run = run_assembly(&train.assembly, &method, &long, &start, 1, &mut ());
+        assert!(run.failure.is_none(), "{name}: {:?}", run.failure);
+        let substeps = run.record.substeps.unwrap();
+        assert!(substeps.divided > 0 && run.record.steps == 6, "{name}: {substeps:?}");
+        assert!(run.record.constraint_max < 1e-13 && run.record.leaf_max.unwrap() < 1e-13, "{name}: {:?}", run.record);
+        // On a way of fifteen metres.
+        for i in 0..right.len() {
+            assert_abs_diff_eq!(run.end.unwrapped(i), right.unwrapped(i), epsilon = 1e-2);
+        }
+        assert!(run.record.energy.max_error < 1e-2 * run.record.energy.initial, "{name}: {:?}", run.record.energy);
+
+        let mut files = Vec::new();
+        let mut save = |made: &Checkpoint| files.push(made.clone());
+        let identity = Checkpoint::default();
+        let mut saving = Saving { identity: &identity, from: None, every: Some(2), save: &mut save };
+        let whole = run_assembly_saved(&train.assembly, &method, &long, (&start, 1), &mut saving, &mut ()).unwrap();
+        assert_eq!(bits(&whole), bits(&run), "{name}");
+        for file in &files {
+            let mut saving = Saving { identity: &identity, from: Some(file), every: None, save: &mut |_| () };
+            let again = run_assembly_saved(&train.assembly, &method, &long, (&start, 1), &mut saving, &mut ());
+            assert_eq!(bits(&again.unwrap()), bits(&run), "{name}");
+        }
+
+        let events = [AssemblyEvent::new("x", true, |_, state| state.q(0) - 1.0)];
+        let (ended, crossings) =
+            run_assembly_watched(&train.assembly, &method, &long, (&start, 1), (&events, 4), &mut ());
+        assert_eq!((crossings.len(), ended.record.t), (1, crossings[0].t), "{name}");
+        assert_abs_diff_eq!(ended.end.q(0), 1.0, epsilon = 1e-9);
+    }
+    // The bound, and what was tried.
+    let few = plain.with_substeps(Substeps::new(1, 10));
+    let run = run_assembly(&train.assembly, &few, &long, &start, 1, &mut ());
+    assert!(run.failure.is_some() && run.record.substeps.unwrap().undivided.is_some(), "{:?}", run.record);
+    assert_eq!(run.record.energy.work, 0.0);
 }

@@ -164,7 +164,7 @@ fn the_work_of_a_step_that_an_event_ends() {
         let method = Method::named(name, None).unwrap();
         let at = |t: f64, _: &State| t - 4.567_89;
         let events = [AssemblyEvent::new("t", true, at)];
-        let (run, _) = run_assembly_watched(&train.assembly, &method, &schedule, (&start, 1000), &events, &mut ());
+        let (run, _) = run_assembly_watched(&train.assembly, &method, &schedule, (&start, 1000), (&events, 4), &mut ());
         assert!((run.record.t - 4.567_89).abs() < 1e-12);
         println!("{name} {:e}", run.record.energy.max_error);
         assert!(run.record.energy.max_error < most, "{name}: {:e}", run.record.energy.max_error);

@@ -1,0 +1,77 @@
+use crate::{State, StepError};
+use lagrangian::from_fn;
+use lagrangian::linear::larger;
+
+/// One coordinate of a step that was made whole, and again in two halves.
+///
+/// A method may make a step that has little to do with the motion: the midpoint rule has a solution in a bowl that swings sixteen
+/// times within the step, and one for a sleigh that turns a million times. Such a step betrays itself in one of two ways.
+/// Its halves lead elsewhere; or, where they make the same mistake, the velocities at the nodes do not account for the way.
+/// Both are asked of each coordinate for itself, so that what is small beside the rest is resolved too.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Halved {
+    /// The velocities before the step, after its first half, after the second, and after the whole.
+    pub v: [f64; 4],
+    /// The way of the halves and that of the whole.
+    pub moved: [f64; 2],
+}
+
+impl Halved {
+    /// The halves and the whole may differ by this part of the largest of the velocities. Of a method of order 2, whose velocities
+    /// differ by some `(h/T)^3/16`, that is a step of an eighth of a time constant `T`.
+    const AGREEMENT: f64 = 1e-4;
+    /// And by this part of the way with that velocity, of which they miss `(h/T)^2/16`: a step of a tenth of a time constant.
+    const AGREED_WAY: f64 = 5e-4;
+    /// Simpson's rule may miss the way by this part of it. Through a turn by the angle `a` it misses `a^4/2880`, so that methods of
+    /// high order may go on by nearly two radians a step.
+    const WAY: f64 = 1e-2;
+    /// A velocity below this part of the largest of all is not looked at.
+    const NOTHING: f64 = 1e-12;
+    /// So many roundings of the largest coordinate are no way.
+    const ROUNDINGS: f64 = 8.0;
+    /// What is smaller has lost its digits.
+    const LEAST: f64 = 1e-290;
+
+    /// The velocity that is none, in a step of length `h` in which these are the largest coordinate and velocity.
+    #[must_use]
+    pub fn nothing(h: f64, q: f64, v: f64) -> f64 {
+        Self::NOTHING * v + Self::ROUNDINGS * f64::EPSILON * q / h.abs() + Self::LEAST
+    }
+
+    /// Whether a step of length `h` resolves the coordinate.
+    #[must_use]
+    pub fn is_resolved(&self, h: f64, nothing: f64) -> bool {
+        let Self { v: [v0, middle, end, whole], moved: [halves, once] } = *self;
+        let largest = self.v.iter().fold(0.0, |largest, v| larger(largest, *v));
+        let simpson = (v0 + 4.0 * middle + end) / 6.0;
+        (end - whole).abs() <= Self::AGREEMENT * largest + nothing
+            && (halves - once).abs() <= (Self::AGREED_WAY * largest + nothing) * h.abs()
+            && (once - h * simpson).abs() <= (Self::WAY * largest + nothing) * h.abs()
+    }
+
+    /// Whether a step from time `t` to `t + h` that led from `before` to `after` resolves the motion; `make` makes the halves.
+    ///
+    /// # Errors
+    /// [`StepError::Unresolved`] where it does not, and what `make` fails with.
+    pub fn resolves<const N: usize>(
+        (t, h): (f64, f64),
+        before: &State<N>,
+        after: &State<N>,
+        mut make: impl FnMut((f64, f64), &mut State<N>) -> Result<(), StepError>,
+    ) -> Result<(), StepError> {
+        let half = 0.5 * h;
+        let mut middle = *before;
+        make((t, half), &mut middle)?;
+        let mut end = middle;
+        make((t + half, half), &mut end)?;
+        let (halves, once) = (end.moved_since(before), after.moved_since(before));
+        let all: [Self; N] = from_fn(|i| Self {
+            v: [before.v()[i], middle.v()[i], end.v()[i], after.v()[i]],
+            moved: [halves[i], once[i]],
+        });
+        let most = |of: &[f64]| of.iter().fold(0.0, |most, x| larger(most, *x));
+        let nothing = Self::nothing(h, most(&before.unwrapped()), most(all.map(|one| most(&one.v)).as_slice()));
+        let resolved = all.iter().all(|one| one.is_resolved(h, nothing));
+        if resolved { Ok(()) } else { Err(StepError::Unresolved) }
+    }
+}

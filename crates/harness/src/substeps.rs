@@ -1,0 +1,160 @@
+use crate::Method;
+use crate::again::Report;
+use crate::run::integrate_part;
+use dla::{
+    Checkpoint, CheckpointError, Halved, Observer, Part, RunError, Schedule, State, StepError, StepReport, Substeps,
+    Undivided, View,
+};
+use lagrangian::System;
+use std::ops::{ControlFlow, Range};
+
+/// What became of the steps that may be divided.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SubstepSummary {
+    /// How many steps were made in parts.
+    pub divided: u64,
+    /// Into how many parts, all together.
+    pub parts: u64,
+    /// The most parts of one step.
+    pub most: u64,
+    /// What was tried of the step that failed in parts too, where the run ended with one.
+    pub undivided: Option<Undivided<StepError>>,
+}
+
+impl SubstepSummary {
+    /// Adds a step that was made in so many parts; none are a step that was made whole.
+    pub(crate) fn add(&mut self, parts: u64) {
+        self.divided += u64::from(parts > 0);
+        self.parts += parts;
+        self.most = self.most.max(parts);
+    }
+
+    pub(crate) fn save(&self, checkpoint: &mut Checkpoint) {
+        checkpoint.put_counts("substeps", &[self.divided, self.parts, self.most]);
+    }
+
+    pub(crate) fn load(checkpoint: &Checkpoint) -> Result<Self, CheckpointError> {
+        let [divided, parts, most] = checkpoint.counts("substeps")?;
+        Ok(Self { divided, parts, most, undivided: None })
+    }
+}
+
+/// A part of a run, in which steps are divided where the method may: the step is then made anew, and so is each part, without
+/// what the method remembers, which makes a run the same from every checkpoint.
+///
+/// It goes through the code of whole steps, a step at a time. Without leave to divide it is that code.
+pub(crate) fn substepped_part<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &Method,
+    schedule: &Schedule,
+    steps: Range<u64>,
+    state: &mut State<N>,
+    observer: &mut dyn Observer<Sys, N, M>,
+    memory: Option<&mut Vec<f64>>,
+) -> Result<Part, RunError> {
+    let Some(limits) = method.substeps() else {
+        return integrate_part(system, method, schedule, steps, state, observer, memory);
+    };
+    let (mut own, mut made) = (Vec::new(), steps.start);
+    let memory = memory.unwrap_or(&mut own);
+    let first = View { system, k: made, t: schedule.time(made), state };
+    if made == 0 {
+        observer.start(&first);
+    } else {
+        observer.resume(&first);
+    }
+    let (mut outcome, mut stopped) = (Ok(()), false);
+    while made < steps.end && !stopped {
+        match step(system, method, (schedule, made, limits), state, observer, memory) {
+            Ok(ControlFlow::Continue(report)) => {
+                made += 1;
+                let node = View { system, k: made, t: schedule.time(made), state };
+                stopped = observer.step(&node, &report).is_break();
+            }
+            Ok(ControlFlow::Break(())) => stopped = true,
+            Err(error) => {
+                outcome = Err(error);
+                break;
+            }
+        }
+    }
+    if stopped || outcome.is_err() || made == schedule.steps {
+        observer.end(&View { system, k: made, t: schedule.time(made), state });
+    }
+    outcome.map(|()| Part { made, stopped })
+}
+
+/// The step from node `k`, whole or in parts; `Break`, with everything as it was, where the observer gives it up.
+fn step<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &Method,
+    (schedule, k, limits): (&Schedule, u64, Substeps),
+    state: &mut State<N>,
+    observer: &mut dyn Observer<Sys, N, M>,
+    memory: &mut Vec<f64>,
+) -> Result<ControlFlow<(), StepReport<M>>, RunError> {
+    let (before, remembered) = (*state, memory.clone());
+    let (t, h) = (schedule.time(k), schedule.step);
+    let mut report = Report(StepReport::of(0));
+    let looking: &mut dyn Observer<Sys, N, M> = &mut report;
+    let whole = integrate_part(system, method, schedule, k..k + 1, state, looking, Some(&mut *memory))
+        .map_err(|error| error.source)
+        .and_then(|_| resolves(system, method, (t, h), &before, state));
+    let Err(failure) = whole else { return Ok(ControlFlow::Continue(report.0)) };
+
+    *state = before;
+    let mut total = StepReport::of(0);
+    let made = limits.divide((t, h), failure, StepError::may_hold_in_parts, |(t, h), after| {
+        let start = *state;
+        let report = one(system, method, (t, h), state)?;
+        if let Err(failure) = resolves(system, method, (t, h), &start, state) {
+            *state = start;
+            return Err(failure);
+        }
+        total = total.then(&report);
+        let t = if after < 1.0 { t + h } else { schedule.time(k + 1) };
+        Ok(observer.part(&View { system, k: k + 1, t, state }, &report))
+    });
+    match made {
+        Ok(ControlFlow::Continue(_)) => {
+            memory.clear();
+            Ok(ControlFlow::Continue(total))
+        }
+        Ok(ControlFlow::Break(())) => {
+            (*state, *memory) = (before, remembered);
+            Ok(ControlFlow::Break(()))
+        }
+        Err(undivided) => {
+            *state = before;
+            if undivided.tried > 0 {
+                observer.undivided(&undivided);
+            }
+            Err(RunError { step: k + 1, time: t, source: undivided.source })
+        }
+    }
+}
+
+/// Whether a step resolves the motion.
+fn resolves<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &Method,
+    step: (f64, f64),
+    before: &State<N>,
+    after: &State<N>,
+) -> Result<(), StepError> {
+    Halved::resolves(step, before, after, |step, state| one(system, method, step, state).map(|_| ()))
+}
+
+/// One step by itself.
+fn one<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    method: &Method,
+    (t, h): (f64, f64),
+    state: &mut State<N>,
+) -> Result<StepReport<M>, StepError> {
+    let mut report = Report(StepReport::of(0));
+    let looking: &mut dyn Observer<Sys, N, M> = &mut report;
+    let alone = Schedule { t0: t, step: h, steps: 1 };
+    integrate_part(system, method, &alone, 0..1, state, looking, None).map_err(|error| error.source)?;
+    Ok(report.0)
+}

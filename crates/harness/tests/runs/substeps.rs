@@ -1,0 +1,144 @@
+//! Runs whose steps may be made in parts: measured, watched, saved, stopped, and those of trains.
+
+use super::{Particle, request};
+use dla::{Checkpoint, Event, Substeps, Trajectory};
+use harness::{METHODS, Method, Progress, Record, Request, Saving, run, run_saved, run_watched};
+
+fn in_parts(name: &str) -> Method {
+    Method::named(name, Some(0.3)).unwrap().with_substeps(Substeps::default())
+}
+
+fn system() -> Particle {
+    Particle { basis: true, ..Particle::of(100.0) }
+}
+
+/// All but the time and what was divided.
+fn told(record: &Record<3>) -> String {
+    format!("{:?}", Record { wall_seconds: 0.0, substeps: None, ..record.clone() })
+}
+
+/// Steps of nearly a swing of the well, which every method makes in parts; the energy is that of the motion.
+#[test]
+fn steps_that_are_too_long_are_made_in_parts() {
+    let right = run(&system(), &Method::named("gauss8", None).unwrap(), &request(4000, 0.0025), &mut ());
+    for name in ["dla", "dla4", "lobatto3", "gauss8", "energy4", "rk4-reduced", "implicit-midpoint"] {
+        let record = run(&system(), &in_parts(name), &request(20, 0.5), &mut ());
+        assert!(record.failure.is_none(), "{name}: {:?}", record.failure);
+        let substeps = record.substeps.unwrap();
+        assert_eq!((record.steps, substeps.divided, substeps.undivided), (20, 20, None), "{name}");
+        assert!(substeps.parts >= 40 && (2..=substeps.parts).contains(&substeps.most), "{name}: {substeps:?}");
+        // Each part is wrong by a ten-thousandth of the velocity at most.
+        let bar = 1e-4 * substeps.parts as f64;
+        assert!((record.q[1] - right.q[1]).abs() < bar && (record.q[0] - right.q[0]).abs() < 10.0 * bar, "{name}");
+        assert!(record.energy.max_error < 0.02 * right.energy.initial, "{name}: {:e}", record.energy.max_error);
+        let slips = !matches!(name, "implicit-midpoint");
+        assert!(record.constraint_max < if slips { 1e-14 } else { 1e-3 }, "{name}: {:e}", record.constraint_max);
+    }
+}
+
+/// Steps that resolve the motion are those of a run that may divide none, to the last bit.
+#[test]
+fn where_nothing_is_divided_no_bit_is_changed() {
+    let (system, request) = (Particle { basis: true, ..Particle::of(1.0) }, request(200, 0.02));
+    for info in METHODS {
+        let plain = run(&system, &Method::named(info.name, Some(0.3)).unwrap(), &request, &mut ());
+        let record = run(&system, &in_parts(info.name), &request, &mut ());
+        if record.substeps.unwrap().divided == 0 {
+            assert_eq!(told(&record), told(&plain), "{}", info.name);
+        } else {
+            // Of order one, and that which carries a mode along.
+            assert!(["dla-alpha", "gni"].contains(&info.name), "{}: {:?}", info.name, record.substeps);
+        }
+        assert!(plain.substeps.is_none());
+    }
+}
+
+fn saved(method: &Method, from: Option<&Checkpoint>, progress: &mut dyn Progress) -> (Record<3>, Vec<Checkpoint>) {
+    let mut all = Vec::new();
+    let mut save = |made: &Checkpoint| all.push(Checkpoint::from_text(&made.to_text()).unwrap());
+    let mut saving = Saving { identity: &Checkpoint::default(), from, every: Some(7), save: &mut save };
+    let made = run_saved::<_, 3, 1>(&system(), method, &request(40, 0.15), &mut saving, None, progress);
+    (made.unwrap().0, all)
+}
+
+/// All but the time.
+fn bits(record: &Record<3>) -> String {
+    format!("{:?}", Record { wall_seconds: 0.0, ..record.clone() })
+}
+
+#[test]
+fn every_checkpoint_leads_to_the_same_bits() {
+    for name in ["dla", "dla-trapezoid", "dla4", "lobatto3", "gauss8", "energy4", "dop853"] {
+        let method = in_parts(name);
+        let (whole, checkpoints) = saved(&method, None, &mut ());
+        assert_eq!(bits(&whole), bits(&run(&system(), &method, &request(40, 0.15), &mut ())), "{name}");
+        assert!(name == "dop853" || whole.substeps.unwrap().divided > 0, "{name}");
+        assert_eq!(checkpoints.len(), 6, "{name}");
+        for checkpoint in &checkpoints {
+            assert_eq!(bits(&saved(&method, Some(checkpoint), &mut ()).0), bits(&whole), "{name}");
+        }
+    }
+}
+
+/// Somebody who stops a run within a divided step: it is asked after every part.
+struct StopsAfter(std::cell::Cell<u32>);
+
+impl Progress for StopsAfter {
+    fn advance(&mut self, _steps: u64) {}
+    fn stops(&self) -> bool {
+        self.0.set(self.0.get().saturating_sub(1));
+        self.0.get() == 0
+    }
+}
+
+#[test]
+fn a_run_that_is_stopped_within_a_step_goes_on_from_the_node_before() {
+    let method = in_parts("dla");
+    let whole = saved(&method, None, &mut ()).0;
+    for asked in [1, 50, 333] {
+        let (part, checkpoints) = saved(&method, None, &mut StopsAfter(std::cell::Cell::new(asked)));
+        assert!(part.interrupted && part.steps < 40 && part.failure.is_none(), "{asked}: {}", part.steps);
+        assert_eq!(bits(&saved(&method, checkpoints.last(), &mut ()).0), bits(&whole), "{asked}");
+    }
+}
+
+/// A step in which the well is crossed many times: every crossing is found, as in short steps; and where the first ends the run, it
+/// ends there.
+#[test]
+fn events_are_looked_for_in_every_part() {
+    let crossing = [Event::new("y", |_, state: &dla::State<3>| state.q()[1])];
+    let watched = |method: &Method, request: &Request<3>, events: &[Event<'_, 3>]| {
+        run_watched::<_, 3, 1>(&system(), method, request, (events, 4), Some(1), &mut ())
+    };
+    let right = watched(&Method::named("gauss8", None).unwrap(), &request(2000, 0.005), &crossing);
+    assert!(right.crossings.len() > 20, "{}", right.crossings.len());
+    let found = watched(&in_parts("gauss8"), &request(4, 2.5), &crossing);
+    assert_eq!((found.crossings.len(), found.record.substeps.unwrap().divided), (right.crossings.len(), 4));
+    for (one, other) in found.crossings.iter().zip(&right.crossings) {
+        assert!((one.t - other.t).abs() < 1e-2 && one.rising == other.rising, "{} {}", one.t, other.t);
+        // The crossing has the number of the step that it is in.
+        assert_eq!(one.k, (one.t / 2.5).floor() as u64);
+    }
+
+    let last = [Event::new("x", |_, state: &dla::State<3>| state.q()[0] - 2.0).terminal()];
+    let ended = watched(&in_parts("dla4"), &request(4, 2.5), &last);
+    assert!(ended.record.failure.is_none() && (ended.record.q[0] - 2.0).abs() < 1e-12, "{:?}", ended.record);
+    assert_eq!(ended.record.t, ended.crossings[0].t);
+    let nodes = Trajectory::nodes(ended.trajectory.as_ref().unwrap());
+    assert_eq!(nodes.last().unwrap().t, ended.record.t);
+}
+
+/// The bound is told with what was tried, and all is as before the step.
+#[test]
+fn a_step_that_cannot_be_divided_so_far_is_a_failure() {
+    let few = Method::named("dla", None).unwrap().with_substeps(Substeps::new(1, 10));
+    let record = run(&system(), &few, &request(20, 0.5), &mut ());
+    let (failure, why) = (record.failure.unwrap(), record.substeps.unwrap().undivided.unwrap());
+    assert_eq!((failure.step, failure.time, record.steps, failure.source), (1, 0.0, 0, why.source));
+    assert_eq!((why.tried, why.time, why.part), (1, 0.0, 0.25));
+    assert_eq!((record.q, record.energy.work), (request(20, 0.5).q, 0.0));
+    // What no shorter step mends is not tried.
+    let refused = run(&Particle::of(1.0), &in_parts("rk4-reduced"), &request(20, 0.5), &mut ());
+    assert!(refused.refusal().is_some() || refused.failure.is_some());
+    assert_eq!(refused.substeps.unwrap().undivided, None);
+}
