@@ -1,4 +1,6 @@
-use super::tolerances::{BLIND, CONTRACTION, GONE, GROWTHS, ROUNDINGS, STALL, UNBIASED, is_slight};
+use super::tolerances::{
+    BLIND, CONTRACTION, GONE, GROWTHS, NEAR_ROUNDINGS, OF_CORRECTION, ROUNDINGS, STALL, UNBIASED, is_slight,
+};
 use crate::{History, NewtonError};
 use lagrangian::linear::largest;
 
@@ -159,12 +161,14 @@ impl<'a> Convergence<'a> {
         self.watched &= !contracts;
         let stuck = (stalls && step >= STALL * before) || iteration >= limit;
         if !contracts || (stuck && !(settled || slight || self.met)) {
-            let met = roundings().map_or(step <= BLIND * size, |most| most <= ROUNDINGS);
+            let most = roundings();
+            let within = |bound: f64| most.map_or(step <= BLIND * size, |most| most <= bound);
+            let met = within(if kind == Kind::Chord { OF_CORRECTION } else { ROUNDINGS });
             self.met |= met;
             self.unmet = !met;
             // By corrections with less rounding it may yet be seen.
             self.watched = !contracts && !met && refinable;
-            self.certain &= contracts || met || refinable;
+            self.certain &= contracts || within(NEAR_ROUNDINGS) || refinable;
             if met && !settled {
                 settled = self.stalled(correction) || kind == Kind::Chord || iteration >= limit;
             }
