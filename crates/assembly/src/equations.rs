@@ -48,7 +48,7 @@ impl Equations {
         mut terms: impl FnMut(&mut [f64]),
         mut evaluate: impl FnMut(&mut Self, &[f64], bool),
     ) -> Result<u32, AssemblyError> {
-        let Settling { newton, last, rounding, start, sizes, changes, certain } = settling;
+        let Settling { newton, last, rounding, start, sizes, changes, certain, near } = settling;
         start.copy_from_slice(x);
         let mut convergence = Convergence::new(last, rounding, start);
         let (mut before, mut fresh, mut refinements) = (f64::INFINITY, true, 0);
@@ -68,6 +68,7 @@ impl Equations {
                 tolerance: newton.tolerance,
                 limit: newton.max_iterations,
                 refinable: refinements == 0,
+                near: *near,
             };
             let done = convergence.check(demand, x, correction, || {
                 sizes.fill(0.0);

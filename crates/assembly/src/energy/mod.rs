@@ -13,6 +13,7 @@ use crate::settling::Settling;
 use crate::sparse::Sparse;
 use crate::terms;
 use crate::{Assembly, AssemblyError, OneStep, Solver, State, StepReport};
+use dla::convergence::rounding_of_place;
 use dla::convergence::tolerances::STALL;
 use dla::{History, NewtonError, Stage};
 use element::NO_BASIS;
@@ -244,6 +245,7 @@ const INERTIA: &str = "energy2 of assemblies is for parts with inertia that have
 impl OneStep for Energy {
     fn step(&mut self, assembly: &Assembly, t0: f64, h: f64, state: &mut State) -> Result<StepReport, AssemblyError> {
         self.begin(assembly, (t0, h), state)?;
+        self.settling.near = rounding_of_place(&self.q0, h);
         /// Ends whose `kappa` differ by no more are near each other.
         const NEAR_ENDS: f64 = 1e-5;
         let (mut kappa, mut iterations, mut near) = (0.0, 0, false);

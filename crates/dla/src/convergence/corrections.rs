@@ -27,6 +27,17 @@ pub struct Demand {
     pub limit: u32,
     /// Whether corrections can still be made with less rounding than they are.
     pub refinable: bool,
+    /// A correction below this leads to no other solution: it moves the place of the step by its rounding only
+    /// ([`rounding_of_place`]).
+    pub near: f64,
+}
+
+/// The velocity that in a step of length `h` moves the configuration `q` by its rounding only: what corrects a constraint on positions by
+/// the last digits of these is no less, however slow the motion is.
+#[must_use]
+#[inline(always)]
+pub fn rounding_of_place(q: &[f64], h: f64) -> f64 {
+    NEAR_ROUNDINGS * 0.5 * f64::EPSILON * largest(q) / h.abs()
 }
 
 /// The test of a search by corrections: Newton's method, with any of its approximations, on any number of unknowns.
@@ -129,7 +140,7 @@ impl<'a> Convergence<'a> {
         correction: &[f64],
         roundings: impl FnOnce() -> Option<f64>,
     ) -> Result<bool, NewtonError> {
-        let Demand { kind, tolerance, limit, refinable } = demand;
+        let Demand { kind, tolerance, limit, refinable, near } = demand;
         self.made += 1;
         let iteration = self.made;
         let now = largest(x);
@@ -143,7 +154,7 @@ impl<'a> Convergence<'a> {
             self.first = step;
         }
         let slight = is_slight(step, size);
-        let contracts = !self.watched || slight || step <= CONTRACTION * before;
+        let contracts = !self.watched || slight || step <= near || step <= CONTRACTION * before;
         let least = if kind == Kind::Chord { tolerance * size } else { 0.0 };
         let [mut settled, mut stalls] = [true, false];
         for i in 0..x.len() {
