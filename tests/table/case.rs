@@ -15,6 +15,8 @@ pub struct Facts {
     pub forced: bool,
     /// A constraint with `b != 0`.
     pub affine: bool,
+    /// A constraint on positions.
+    pub positions: bool,
     /// No basis of the admissible velocities.
     pub without_basis: bool,
     /// A Lagrangian that is not a quadratic form of the velocities and a potential.
@@ -178,4 +180,5 @@ macro_rules! case {
 case!(crate::shapes::Three, 3);
 case!(crate::shapes::Four, 4);
 case!(crate::shapes::Five, 5);
+case!(crate::shapes::Six, 6);
 case!(crate::shapes::Seven, 7);

@@ -24,6 +24,9 @@ pub enum Hint {
         /// When (s).
         time: f64,
     },
+    /// Use coordinates that do not end there, as the unit quaternion of [`Attitude`](lagrangian::Attitude) for angles, or others of
+    /// the same kind that are turned away from the motion.
+    OtherCoordinates,
     /// A number is too large, infinite or undefined: look at the start and the parameters, then at the step.
     Numbers,
 }
@@ -39,6 +42,9 @@ impl fmt::Display for Hint {
             ),
             Self::OtherMethod => f.write_str("choose another method"),
             Self::NodeAt { time } => write!(f, "choose a step that has a node at t = {time} s"),
+            Self::OtherCoordinates => f.write_str(
+                "use coordinates that do not end there, for an attitude a unit quaternion, or turn these away from the motion",
+            ),
             Self::Numbers => f.write_str(
                 "a number is too large or undefined: look at the start and the parameters, then at the step",
             ),
@@ -136,6 +142,9 @@ impl StepError {
             Self::Overshoot { part } => Hint::ShorterStep { part: *part },
             Self::Closed(_) | Self::Branch | Self::Energy { .. } | Self::Tolerance { .. } => HALF,
             Self::Unsupported { .. } | Self::Reduced(ReducedError::NoBasis) => Hint::OtherMethod,
+            // Far from the end a shorter step changes less.
+            Self::Chart { regularity, least, .. } if *regularity >= 2.0 * least => HALF,
+            Self::Chart { .. } => Hint::OtherCoordinates,
             Self::Jump { time } => Hint::NodeAt { time: *time },
             Self::Motion(error) | Self::Reduced(ReducedError::Motion(error)) if is_overflow(&error.source) => {
                 Hint::Numbers
