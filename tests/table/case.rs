@@ -17,6 +17,9 @@ pub struct Facts {
     pub affine: bool,
     /// A constraint on positions.
     pub positions: bool,
+    /// Discrete Lagrangians and constraints with one node do not depend on where it is. Angular velocities are `e0` times the
+    /// increment of a quaternion, and the increment times itself adds none; so one rule is all, if the length is held on positions.
+    pub one_rule: bool,
     /// No basis of the admissible velocities.
     pub without_basis: bool,
     /// A Lagrangian that is not a quadratic form of the velocities and a potential.

@@ -62,7 +62,7 @@ pub fn table() -> Vec<Box<dyn Case>> {
     // Attitudes by unit quaternions: their length is a constraint on positions, or its rate alone.
     let suslov = Suslov::new([1.0, 2.0, 1.5], 0.3, 0.5).unwrap();
     let ball = ChaplyginBall::new(1.2, 0.6, [0.5, 0.8, 1.1]).unwrap();
-    let on_positions = Facts { positions: true, ..plain };
+    let on_positions = Facts { positions: true, one_rule: true, ..plain };
     vec![
         three("free sleigh", sleigh(), through_the_turn.to_coordinates(), 4.0, even),
         three(
