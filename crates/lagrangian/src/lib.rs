@@ -7,6 +7,7 @@
 //!
 //! This crate knows no integrator and no particular system.
 
+mod attitude;
 mod basis;
 mod bordered;
 mod bracket;
@@ -57,6 +58,7 @@ mod twofold;
 mod vector_field;
 mod with;
 
+pub use attitude::Attitude;
 pub use basis::{AdmissibleBasis, linear_basis};
 pub use bordered::{Bordered, clear_multipliers};
 pub use bracket::{Bracket, EnergySlope, energy_slope, inverse_reduced_mass};
