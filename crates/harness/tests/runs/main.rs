@@ -12,6 +12,7 @@ mod precision;
 mod same_bits;
 mod sensitivity;
 mod trains;
+mod verdicts;
 
 use approx::assert_relative_eq;
 use dla::Schedule;
