@@ -115,11 +115,7 @@ fn search(
 }
 
 /// The spin that Newton's method settles at from a first one, and after how many corrections.
-pub(crate) fn settled(
-    equation: &SpinEquation,
-    first: f64,
-    (u0, omega0): (f64, f64),
-) -> Result<Found, ClosedStepError> {
+pub(crate) fn settled(equation: &SpinEquation, first: f64, (u0, omega0): (f64, f64)) -> Result<Found, ClosedStepError> {
     let mut point = equation.at(first)?;
     let (mut settled, mut iterations) = (false, 0);
     loop {
