@@ -19,6 +19,8 @@ pub enum Hint {
     Constraints,
     /// The method cannot do the system.
     OtherMethod,
+    /// The method has no room for so large a system: others take less, and an assembly keeps many bodies on the heap.
+    LessStack,
     /// Choose a step that has a node where the forces jump.
     NodeAt {
         /// When (s).
@@ -38,6 +40,9 @@ impl fmt::Display for Hint {
                 "constraints or mass matrix determine no velocity here: look for constraint rows that say the same",
             ),
             Self::OtherMethod => f.write_str("choose another method"),
+            Self::LessStack => f.write_str(
+                "choose a method that takes less of the stack, as `dla` or `rk4` do, or assemble the system of its bodies",
+            ),
             Self::NodeAt { time } => write!(f, "choose a step that has a node at t = {time} s"),
             Self::Numbers => f.write_str(
                 "a number is too large or undefined: look at the start and the parameters, then at the step",
@@ -136,6 +141,7 @@ impl StepError {
             Self::Overshoot { part } => Hint::ShorterStep { part: *part },
             Self::Closed(_) | Self::Branch | Self::Energy { .. } | Self::Tolerance { .. } => HALF,
             Self::Unsupported { .. } | Self::Reduced(ReducedError::NoBasis) => Hint::OtherMethod,
+            Self::TooLarge { .. } => Hint::LessStack,
             Self::Jump { time } => Hint::NodeAt { time: *time },
             Self::Motion(error) | Self::Reduced(ReducedError::Motion(error)) if is_overflow(&error.source) => {
                 Hint::Numbers

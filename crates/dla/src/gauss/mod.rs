@@ -9,7 +9,7 @@ mod rule;
 pub use adaptive::GaussAdaptive;
 
 use crate::positions::{affine_only, onto_positions};
-use crate::{History, NewtonError, OneStep, Stage, State, StepError, StepReport};
+use crate::{History, NewtonError, OneStep, StackUse, Stage, State, StepError, StepReport};
 use ending::Ending;
 pub(crate) use ending::SLOWEST;
 use lagrangian::linear::larger;
@@ -224,9 +224,15 @@ fn rounding<const N: usize, const S: usize>(q0: &[f64; N], h: f64, velocity: &[[
     4.0 * f64::EPSILON * q0.iter().fold(0.0, largest) / way
 }
 
+/// Of any number of stages: their slopes are few numbers.
+pub(crate) const USE: StackUse = StackUse { squares: 38, rows: 20 };
+
 impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<Sys, N, M> for Gauss<S> {
     #[inline]
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        if const { USE.exceeds::<N, M>() } {
+            return Err(USE.refusal::<N, M>());
+        }
         affine_only(system, t, state)?;
         let xi0 = state.quasi_velocities(system, t)?;
         let mut slopes = Slopes::ZERO;

@@ -1,5 +1,5 @@
 use super::shifted;
-use dla::{History, NewtonError, OneStep, Stage, State, StepError, StepReport};
+use dla::{History, NewtonError, OneStep, StackUse, Stage, State, StepError, StepReport};
 use lagrangian::System;
 
 /// The implicit midpoint rule in full coordinates, the multiplier eliminated as in [`Rk4`](crate::Rk4).
@@ -84,9 +84,14 @@ fn largest(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |m: f64, x| if x.abs() > m || x.is_nan() { x.abs() } else { m })
 }
 
+const USE: StackUse = StackUse { squares: 14, rows: 20 };
+
 impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for ImplicitMidpoint {
     #[inline]
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        if const { USE.exceeds::<N, M>() } {
+            return Err(USE.refusal::<N, M>());
+        }
         let (a, iterations) = self.acceleration(system, (t, h), state)?;
         let v0 = *state.v();
         let increment = shifted(&v0, 0.5 * h, &a).map(|v| h * v);
