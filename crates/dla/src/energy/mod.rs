@@ -11,7 +11,7 @@ pub use gradient::Gradient;
 
 use crate::convergence::FixedPoint;
 use crate::positions::{affine_only, velocities_only};
-use crate::{OneStep, Stage, State, StepError, StepReport};
+use crate::{OneStep, StackUse, Stage, State, StepError, StepReport};
 use ends::Ends;
 use lagrangian::linear::larger;
 use lagrangian::{Bracket, Lanes, Scalar, System, Twofold, from_fn, vectorized};
@@ -78,6 +78,9 @@ impl Energy<1> {
 impl<Sys: System<N, M>, const S: usize, const N: usize, const M: usize> OneStep<Sys, N, M> for Energy<S> {
     #[inline]
     fn step(&mut self, system: &Sys, t0: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        if const { stack::<N>().exceeds::<N, M>() } {
+            return Err(stack::<N>().refusal::<N, M>());
+        }
         if Sys::MOVING {
             return Err(start::MOVING);
         }
@@ -92,6 +95,11 @@ impl<Sys: System<N, M>, const S: usize, const N: usize, const M: usize> OneStep<
         self.work = end.work;
         Ok(StepReport { work: Some(end.work), ..StepReport::of(end.iterations) })
     }
+}
+
+/// The basis of admissible velocities has derivatives in all coordinates, at eight places at once.
+const fn stack<const N: usize>() -> StackUse {
+    StackUse { squares: 76 * (N + 1), rows: 24 }
 }
 
 const NO_BASIS: StepError = StepError::Unsupported {

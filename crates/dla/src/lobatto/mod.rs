@@ -10,7 +10,7 @@ use crate::dependent::{named_along, named_at};
 use crate::newton::{BlockEquations, Found};
 use crate::positions::affine_only;
 use crate::projection::{Projected, Projection};
-use crate::{Newton, NewtonError, OneStep, Stage, State, StepError, StepReport};
+use crate::{Newton, NewtonError, OneStep, StackUse, Stage, State, StepError, StepReport};
 use lagrangian::linear::largest;
 use lagrangian::{System, from_fn, momentum};
 use stages::Stages;
@@ -62,6 +62,9 @@ impl<const S: usize> Default for Lobatto<S> {
 }
 
 impl<const S: usize> Lobatto<S> {
+    /// The equations of all stages have `2 S N` unknowns at most.
+    const USE: StackUse = StackUse { squares: 4 * S * S + 50, rows: 30 };
+
     /// The method, with its coefficients computed to rounding.
     #[must_use]
     pub fn new() -> Self {
@@ -107,6 +110,9 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
     /// The impulses in the report are those of all stages, each shared between the two ends as a lever would.
     #[inline]
     fn step(&mut self, system: &Sys, t0: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        if const { Self::USE.exceeds::<N, M>() } {
+            return Err(Self::USE.refusal::<N, M>());
+        }
         affine_only(system, t0, state)?;
         let Tables { c, b, .. } = &self.tables;
         let (q0, v0) = (*state.q(), *state.v());

@@ -91,10 +91,9 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> Stages<'
 
     /// The linear equations of Newton's method.
     #[inline]
-    fn equations(&self, points: &[Point<N, M>; S], at: &[Linearised<N, M>; S]) -> Dense<N, M, S> {
+    fn equations(&self, points: &[Point<N, M>; S], at: &[Linearised<N, M>; S], dense: &mut Dense<N, M, S>) {
         let Tables { a, a_hat, blind, .. } = self.tables;
         let h = self.h;
-        let mut dense = Dense::zero();
         // p_i - p0 - sum_j a_hat_ij w_j = 0
         for i in 0..S {
             for x in 0..N {
@@ -148,7 +147,6 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> Stages<'
                 }
             }
         }
-        dense
     }
 }
 
@@ -169,7 +167,9 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> BlockEqu
     fn correction(&mut self, v: &[[f64; N]; S]) -> Result<[[f64; N]; S], Singular> {
         let points = self.points(v);
         let at = points.map(|point| point.linearised(self.system, self.h));
-        let mut dense = self.equations(&points, &at);
+        // Filled where it stands: a second one would be on the stack beside it.
+        let mut dense = Dense::zero();
+        self.equations(&points, &at, &mut dense);
         dense.solve()?;
         let solution = dense.right();
         self.before = self.impulses;

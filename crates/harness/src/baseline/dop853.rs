@@ -1,7 +1,7 @@
 use super::reduced_point::ReducedPoint;
 use differential_equations::methods::{DormandPrince, ExplicitRungeKutta, Ordinary};
 use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
-use dla::{OneStep, OwnStep, State, StepError, StepReport};
+use dla::{OneStep, OwnStep, StackUse, State, StepError, StepReport};
 use lagrangian::{System, reduced_slope, velocity_of};
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -122,9 +122,14 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> ODE<f64, ReducedPoint<N,
     }
 }
 
+const USE: StackUse = StackUse { squares: 28, rows: 20 };
+
 impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Dop853<N, M> {
     #[inline]
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        if const { USE.exceeds::<N, M>() } {
+            return Err(USE.refusal::<N, M>());
+        }
         let xi0 = state.quasi_velocities(system, t)?;
         self.cross(&Slopes::new(system, t, state), h, xi0, |_, _| ControlFlow::Continue(()))?;
         moved(system, t + h, self.solver.y(), state)

@@ -1,6 +1,6 @@
 use super::shifted;
 use dla::convergence::FixedPoint;
-use dla::{OneStep, Stage, State, StepError, StepReport};
+use dla::{OneStep, StackUse, Stage, State, StepError, StepReport};
 use lagrangian::{MotionRounding, System};
 
 /// The implicit midpoint rule in full coordinates, the multiplier eliminated as in [`Rk4`](crate::Rk4).
@@ -56,9 +56,14 @@ impl ImplicitMidpoint {
     }
 }
 
+const USE: StackUse = StackUse { squares: 14, rows: 20 };
+
 impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for ImplicitMidpoint {
     #[inline]
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        if const { USE.exceeds::<N, M>() } {
+            return Err(USE.refusal::<N, M>());
+        }
         let (a, iterations) = self.acceleration(system, (t, h), state)?;
         let v0 = *state.v();
         let increment = shifted(&v0, 0.5 * h, &a).map(|v| h * v);
