@@ -414,12 +414,12 @@ fn events_within_long_steps() {
     assert_eq!(folder.json("run scene.toml --json").get("events_in_doubt"), None);
 
     // The same of a train.
-    let run = |more: &str| folder.json(&format!("run {TRAIN} --event x=1.5 --json{more}"));
+    let run = |more: &str| folder.json(&format!("run {TRAIN} --until x=0.05 --json{more}"));
     let (step, spacing) = (run("")["step"].as_f64().unwrap(), |run: Value| run["events"][0]["spacing"].as_f64());
     assert_eq!(spacing(run("")), Some(step / 4.0));
     let run = run(" --event-samples 3");
     assert_eq!((run["events_in_doubt"].as_u64(), spacing(run)), (Some(0), Some(step / 3.0)));
-    let line = format!("run {TRAIN} --duration 40 --step 10 --event heading=1.5");
+    let line = format!("run {TRAIN} --event heading=1.5");
     for samples in ["0", "-3", "x", "1e3", "10001"] {
         folder.refused(&format!("{line} --event-samples {samples}"), &["--event-samples", "from 1 to 10000"]);
     }
