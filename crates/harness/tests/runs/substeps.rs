@@ -106,13 +106,13 @@ fn a_run_that_is_stopped_within_a_step_goes_on_from_the_node_before() {
 /// ends there.
 #[test]
 fn events_are_looked_for_in_every_part() {
-    let falling = [Event::new(|_, state: &dla::State<3>| state.q()[1])];
+    let crossing = [Event::new("y", |_, state: &dla::State<3>| state.q()[1])];
     let watched = |method: &Method, request: &Request<3>, events: &[Event<'_, 3>]| {
         run_watched::<_, 3, 1>(&system(), method, request, events, Some(1), &mut ())
     };
-    let right = watched(&Method::named("gauss8", None).unwrap(), &request(2000, 0.005), &falling);
+    let right = watched(&Method::named("gauss8", None).unwrap(), &request(2000, 0.005), &crossing);
     assert!(right.crossings.len() > 20, "{}", right.crossings.len());
-    let found = watched(&in_parts("gauss8"), &request(4, 2.5), &falling);
+    let found = watched(&in_parts("gauss8"), &request(4, 2.5), &crossing);
     assert_eq!((found.crossings.len(), found.record.substeps.unwrap().divided), (right.crossings.len(), 4));
     for (one, other) in found.crossings.iter().zip(&right.crossings) {
         assert!((one.t - other.t).abs() < 1e-2 && one.rising == other.rising, "{} {}", one.t, other.t);
@@ -120,7 +120,7 @@ fn events_are_looked_for_in_every_part() {
         assert_eq!(one.k, (one.t / 2.5).floor() as u64);
     }
 
-    let last = [Event::new(|_, state: &dla::State<3>| state.q()[0] - 2.0).terminal()];
+    let last = [Event::new("x", |_, state: &dla::State<3>| state.q()[0] - 2.0).terminal()];
     let ended = watched(&in_parts("dla4"), &request(4, 2.5), &last);
     assert!(ended.record.failure.is_none() && (ended.record.q[0] - 2.0).abs() < 1e-12, "{:?}", ended.record);
     assert_eq!(ended.record.t, ended.crossings[0].t);
