@@ -106,7 +106,7 @@ fn the_points_of_a_section_are_on_its_plane_and_of_one_energy() {
     let told = folder.done("section bowl --step 0.1 --plane center_y=0.25 --starts 3 --duration 300 --out points.csv");
     assert!(told.contains("center_y=0.25, rising"), "{told}");
     let (names, rows) = csv(&folder.read("points.csv"));
-    assert_eq!(names, ["start", "t", "x", "y", "heading", "speed", "turn_rate", "heading", "turn_rate"]);
+    assert_eq!(names, ["start", "t", "x", "y", "heading", "speed", "turn_rate", "shown_heading", "shown_turn_rate"]);
     assert!(
         (0..3).all(|start| rows.iter().filter(|row| row[0].to_bits() == f64::from(start).to_bits()).count() > 3),
         "{told}"
@@ -131,6 +131,44 @@ fn the_points_of_a_section_are_on_its_plane_and_of_one_energy() {
         "section bowl --step 0.1 --plane heading=0 --axes along,across --starts 2 --duration 50 --out points.svg",
     );
     assert!(folder.read("points.svg").contains("along [m]"));
+    // Every column has a name of its own, and one that no other has keeps it.
+    folder.done("section bowl --step 0.1 --plane heading=0 --axes along,speed --starts 1 --duration 50 --out axes.csv");
+    let (names, _) = csv(&folder.read("axes.csv"));
+    assert_eq!(names[2..], ["x", "y", "heading", "speed", "turn_rate", "along", "shown_speed"]);
+}
+
+/// DynamicalSystemsBase issue 175: the direction of a section was the other way round. On the circle `y = 1 - cos t` rises through 1/2 at
+/// `pi/3 + 2 pi k`. A plane that is touched is not crossed.
+#[test]
+fn a_section_has_the_direction_that_was_asked_for() {
+    use std::f64::consts::{FRAC_PI_3, TAU};
+    let folder = Folder::new();
+    let start = "[start]\nspeed = 1.0\nturn_rate = 1.0\n[run]\nstep = 0.1\nduration = 20.0\n";
+    folder.write("circle.toml", format!("[sleigh]\nmass = 1.0\ninertia = 1.0\noffset = 0.0\n{start}"));
+    let times = |plane: &str| -> Vec<f64> {
+        let line = format!("section circle.toml --starts 1 --duration 20 --json --plane {plane}");
+        let found = folder.json(&line);
+        let points = found["starts"][0]["points"].as_array().unwrap();
+        points.iter().map(|point| point[0].as_f64().unwrap()).collect()
+    };
+    let rising = [FRAC_PI_3, FRAC_PI_3 + TAU, FRAC_PI_3 + 2.0 * TAU, FRAC_PI_3 + 3.0 * TAU].map(|t| (t, t < 20.0));
+    let rising: Vec<f64> = rising.into_iter().filter(|(_, within)| *within).map(|(t, _)| t).collect();
+    let falling: Vec<f64> = [1.0, 2.0, 3.0].map(|k| k * TAU - FRAC_PI_3).to_vec();
+    let mut both = [rising.clone(), falling.clone()].concat();
+    both.sort_by(f64::total_cmp);
+    for (direction, expected) in [("rising", rising), ("falling", falling), ("both", both)] {
+        let found = times(&format!("y=0.5 --direction {direction}"));
+        assert_eq!(found.len(), expected.len(), "{direction}: {found:?}");
+        found.iter().zip(&expected).for_each(|(t, expected)| assert_abs_diff_eq!(*t, *expected, epsilon = 1e-12));
+    }
+    assert_eq!(times("y=2.000001 --direction both").len(), 0);
+    assert_eq!(times("y=2 --direction both").len(), 0);
+    // The control: a little lower it is crossed twice a turn, and samples that are as far apart may have missed some.
+    assert_eq!(times("y=1.9999 --direction both").len(), 6);
+    let outcome = folder.line("section circle.toml --starts 1 --duration 20 --plane y=1.9999 --direction both");
+    assert!(outcome.stderr.starts_with("warning: ") && outcome.stderr.contains("--step"), "{outcome:?}");
+    let outcome = folder.line("section circle.toml --starts 1 --duration 20 --plane y=0.5");
+    assert!(outcome.code == 0 && outcome.stderr.is_empty(), "{outcome:?}");
 }
 
 #[test]

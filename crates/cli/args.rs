@@ -1,7 +1,7 @@
 use crate::coordinate::{Coordinate, Range};
 use crate::plane::{Crossed, Plane};
 use crate::trigger::Trigger;
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
 /// Simulates systems with velocity constraints (blades, wheels, rolling bodies) and shows what accuracy costs.
@@ -88,6 +88,7 @@ pub(crate) struct SceneArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(group = ArgGroup::new("watched").args(["event", "until"]).multiple(true))]
 pub(crate) struct RunArguments {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
@@ -116,12 +117,17 @@ pub(crate) struct RunArguments {
     /// Go on from this checkpoint, to the same last bit; --out then writes the nodes after it
     #[arg(long, value_name = "FILE")]
     pub(crate) resume: Option<PathBuf>,
-    /// Find when x, y, heading, speed or turn_rate crosses a value, as in speed=0; can be repeated
+    /// Find when x, y, heading (in every turn), unwrapped_heading (turns counted), speed or turn_rate crosses a value, as in
+    /// speed=0; can be repeated
     #[arg(long, value_name = "NAME=VALUE", conflicts_with_all = ["checkpoint", "resume"])]
     pub(crate) event: Vec<Trigger>,
     /// The same, and end the run there
     #[arg(long, value_name = "NAME=VALUE", conflicts_with_all = ["checkpoint", "resume"])]
     pub(crate) until: Vec<Trigger>,
+    /// Look for events in so many parts of each step, and of each step that dop853 makes within one
+    #[arg(long, value_name = "N", default_value_t = harness::EVENT_SAMPLES, allow_negative_numbers = true,
+          value_parser = event_samples, requires = "watched")]
+    pub(crate) event_samples: u32,
 }
 
 #[derive(Debug, Args)]
@@ -239,7 +245,7 @@ pub(crate) struct SectionArguments {
     #[arg(long, value_name = "M", default_value = "gauss8")]
     pub(crate) method: String,
     /// The plane: x, y, heading, speed, turn_rate, center_x, center_y, or along, across (the centre of mass as the body sees
-    /// it from the origin), with a value; or t=PERIOD, every multiple of a period
+    /// it from the origin), with a value; or t=PERIOD, every multiple of a period. A heading is passed once in every turn
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub(crate) plane: Plane,
     /// Which crossings count
@@ -332,6 +338,14 @@ pub(crate) struct NewArguments {
 fn count(text: &str) -> Result<u64, &'static str> {
     let count = text.trim().parse().ok().filter(|count| *count > 0);
     count.ok_or("accepted is a whole number from 1 on")
+}
+
+/// A step is looked at in so many parts at most, each of which is a step of the method.
+const MOST_SAMPLES: u32 = 10_000;
+
+fn event_samples(text: &str) -> Result<u32, String> {
+    let samples = text.trim().parse().ok().filter(|samples| (1..=MOST_SAMPLES).contains(samples));
+    samples.ok_or_else(|| format!("accepted is a whole number from 1 to {MOST_SAMPLES}"))
 }
 
 fn number(text: &str) -> Result<f64, &'static str> {

@@ -5,12 +5,11 @@ use crate::files::check_file;
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
 use crate::trajectory_file::{self, Format};
-use crate::trigger::Happened;
+use crate::trigger::{Events, Happened, Trigger};
 use crate::{inspect, json, progress, resume, substeps, table, terminal, train_run};
 use dla::{Checkpoint, Schedule, Substeps, Trajectory};
 use harness::{Kind, Method, Progress, Record, Request, Saving, Watched, recommend, run_saved, run_watched};
 use scene::{Scene, SceneSystem, Visitor};
-use serde_json::Value;
 use std::path::Path;
 
 /// `noslip run`: one trajectory, as far as Ctrl-C lets it come.
@@ -48,8 +47,8 @@ struct Run<'a> {
 struct Made<const N: usize, const M: usize> {
     record: Record<N>,
     trajectory: Option<Trajectory<N, M>>,
-    /// What happened, for a program and for a person.
-    events: Option<(Vec<Value>, String)>,
+    /// What happened, where that was asked for.
+    events: Option<Events>,
     /// What else went wrong.
     warning: Result<(), CliError>,
 }
@@ -100,18 +99,15 @@ impl Run<'_> {
     where
         Sys: SceneSystem<N, M>,
     {
-        let RunArguments { event, until, .. } = self.arguments;
+        let RunArguments { event, until, event_samples, .. } = self.arguments;
         let reported = event.iter().map(|trigger| trigger.event(system));
         let events: Vec<_> = reported.chain(until.iter().map(|trigger| trigger.event(system).terminal())).collect();
-        let Watched { record, trajectory, crossings } =
-            run_watched(system, &self.method, request, &events, self.keep(), progress);
-        if events.is_empty() {
-            return Made { record, trajectory, events: None, warning: Ok(()) };
-        }
-        let happened = || crossings.iter().map(|crossing| Happened::of(system, &events, crossing));
-        let (values, told) =
-            (happened().map(|event| event.json()).collect(), happened().map(|event| event.told()).collect());
-        Made { record, trajectory, events: Some((values, told)), warning: Ok(()) }
+        let Watched { record, trajectory, crossings, close } =
+            run_watched(system, &self.method, request, (&events, *event_samples), self.keep(), progress);
+        let triggers: Vec<&Trigger> = event.iter().chain(until).collect();
+        let happened = crossings.iter().filter_map(|crossing| Happened::of(system, &triggers, crossing));
+        let events = (!triggers.is_empty()).then(|| Events::new(happened, close));
+        Made { record, trajectory, events, warning: Ok(()) }
     }
 }
 
@@ -152,15 +148,16 @@ impl Visitor for Run<'_> {
         if self.arguments.scene.json {
             let mut object = json::record(&self.scene.name, &record, &end);
             substeps::add_json(&mut object, &record);
-            if let Some((events, _)) = events {
-                object["events"] = Value::Array(events);
+            if let Some(events) = &events {
+                events.add_to(&mut object);
             }
             terminal::print_json(&object)?;
         } else {
             let file = self.out.and_then(|(path, _)| written.is_ok().then_some(path));
-            let told = events.map_or_else(String::new, |(_, told)| told);
-            terminal::print(&(table::one_run(self.scene, &record, &end, file) + &substeps::told(&record) + &told))?;
+            let told = events.as_ref().map_or("", |events| &events.told);
+            terminal::print(&(table::one_run(self.scene, &record, &end, file) + &substeps::told(&record) + told))?;
         }
+        events.iter().for_each(Events::warn);
         let computed = CliError::of_failures(substeps::failure(&record));
         if let (Err(_), Err(error)) = (&computed, &written) {
             terminal::say("error", error);

@@ -4,8 +4,9 @@ use crate::coordinate::Coordinate;
 use crate::error::CliError;
 use crate::lyapunov::{asked, imposed};
 use crate::starts::{Start, place, spread};
+use crate::trigger::in_doubt;
 use crate::{inspect, progress, table, terminal};
-use dla::Event;
+use dla::{Close, Event};
 use harness::Method;
 use harness::analysis::in_parallel;
 use harness::report::{Chart, Layer};
@@ -63,6 +64,8 @@ struct Crossed {
     /// Time (s), `x`, `y`, heading, speed, turn rate, and the two quantities shown.
     points: Vec<[f64; 8]>,
     failure: Option<String>,
+    /// Which may not be all.
+    close: Option<Close>,
 }
 
 impl Visitor for Sections<'_> {
@@ -109,6 +112,7 @@ impl Visitor for Sections<'_> {
             Crossed {
                 points: found.crossings.iter().filter_map(shown).collect(),
                 failure: found.failure.map(|failure| failure.to_string()),
+                close: found.close,
             }
         });
         bar.finish_and_clear();
@@ -124,8 +128,14 @@ impl Sections<'_> {
             let row = |(i, point): (usize, &[f64; 8])| [&[i as f64][..], &point[..6], &point[6..]].concat();
             let rows: Vec<Vec<f64>> =
                 numbered.flat_map(|(i, start)| start.points.iter().map(move |point| row((i, point)))).collect();
-            let [a, b] = self.axes.map(|axis| axis.label());
-            let header = format!("start,t [s],x [m],y [m],heading [rad],speed [m/s],turn_rate [rad/s],{a},{b}");
+            let state = "x [m],y [m],heading [rad],speed [m/s],turn_rate [rad/s]";
+            // A column of the state is another than the one that is shown: its heading counts the turns.
+            let taken = |label: &str| state.split(',').any(|other| other == label);
+            let [a, b] = self
+                .axes
+                .map(|axis| axis.label())
+                .map(|label| if taken(&label) { format!("shown_{label}") } else { label });
+            let header = format!("start,t [s],{state},{a},{b}");
             file.write(shared.force, &header, &rows, || self.chart(crossed))
         });
         let count: usize = crossed.iter().map(|start| start.points.len()).sum();
@@ -153,6 +163,11 @@ impl Sections<'_> {
                 terminal::print(&format!("written    {}\n", path.display()))?;
             }
         }
+        let all =
+            |all: Close, one: Close| Close { count: all.count + one.count, spacing: all.spacing.max(one.spacing) };
+        if let Some(close) = crossed.iter().filter_map(|start| start.close).reduce(all) {
+            terminal::say("warning", &format!("{}; a shorter --step looks at more places", in_doubt(&close)));
+        }
         let failed = crossed
             .iter()
             .enumerate()
@@ -163,7 +178,7 @@ impl Sections<'_> {
     fn json(&self, crossed: &[Crossed]) -> Value {
         let one = |start: &Crossed| {
             let points: Vec<Value> = start.points.iter().map(|p| json!([p[0], p[6], p[7]])).collect();
-            let mut object = json!({"points": points});
+            let mut object = json!({"points": points, "in_doubt": start.close.map_or(0, |close| close.count)});
             if let Some(failure) = &start.failure {
                 object["failure"] = json!(failure);
             }

@@ -7,16 +7,17 @@ use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
 use crate::train::MOST_NUMBERS;
 use crate::trajectory_file::{self, Columns, Format};
-use crate::trigger::Happened;
+use crate::trigger::{Events, Happened, Trigger};
 use crate::{inspect, json, progress, resume, substeps, table, terminal};
 use assembly::State;
 use assembly::parts::Train;
 use dla::{Checkpoint, Schedule};
 use harness::{
-    Assembled, AssemblyNode, Method, Progress, Saving, recommend_assembly, run_assembly_saved, run_assembly_watched,
+    Assembled, AssemblyCrossing, AssemblyNode, Method, Progress, Saving, recommend_assembly, run_assembly_saved,
+    run_assembly_watched,
 };
 use scene::Scene;
-use serde_json::{Value, json};
+use serde_json::json;
 use sleigh::SleighState;
 use std::path::Path;
 
@@ -65,8 +66,8 @@ pub(crate) fn run(
         object["trailers"] = json!(blades);
         let SleighState { x, y, heading, speed, turn_rate } = last;
         object["last"] = json!({"x": x, "y": y, "heading": heading, "speed": speed, "turn_rate": turn_rate});
-        if let Some((events, _)) = events {
-            object["events"] = Value::Array(events);
+        if let Some(events) = &events {
+            events.add_to(&mut object);
         }
         terminal::print_json(&object)?;
     } else {
@@ -78,10 +79,11 @@ pub(crate) fn run(
             ("trailers", blades.to_string()),
             ("last blade", format!("x = {x} m, y = {y} m, heading {heading} rad")),
         ];
-        let told = events.map_or_else(String::new, |(_, told)| told);
+        let told = events.as_ref().map_or("", |events| &events.told);
         let parts = substeps::told(&record);
-        terminal::print(&(table::one_run(scene, &record, &first, file) + &parts + &table::aligned(&more) + &told))?;
+        terminal::print(&(table::one_run(scene, &record, &first, file) + &parts + &table::aligned(&more) + told))?;
     }
+    events.iter().for_each(Events::warn);
     // The static record does not know which hinge it was.
     let told = substeps::failure(&record).map(|told| match &failure {
         Some(error) if !told.contains(&error.source.to_string()) => format!("{told}; {error}"),
@@ -108,8 +110,8 @@ struct Request<'a> {
 /// A run that was made.
 struct Made {
     run: Assembled,
-    /// What happened, for a program and for a person.
-    events: Option<(Vec<Value>, String)>,
+    /// What happened, where that was asked for.
+    events: Option<Events>,
     /// What else went wrong.
     warning: Result<(), CliError>,
 }
@@ -138,14 +140,17 @@ impl Request<'_> {
     }
 
     /// At once, with an eye on events where there are any.
-    fn watched(&self, RunArguments { event, until, .. }: &RunArguments, progress: &mut dyn Progress) -> Made {
+    fn watched(&self, arguments: &RunArguments, progress: &mut dyn Progress) -> Made {
+        let RunArguments { event, until, event_samples, .. } = arguments;
         let reported = event.iter().map(|trigger| trigger.of_train(self.train, false));
         let events: Vec<_> = reported.chain(until.iter().map(|trigger| trigger.of_train(self.train, true))).collect();
-        let (assembly, start) = (&self.train.assembly, (self.start, self.every));
-        let (run, crossings) = run_assembly_watched(assembly, self.method, self.schedule, start, &events, progress);
-        let happened = || crossings.iter().map(|crossing| Happened::of_train(self.train, &events, crossing));
-        let told = || (happened().map(|event| event.json()).collect(), happened().map(|event| event.told()).collect());
-        Made { run, events: (!events.is_empty()).then(told), warning: Ok(()) }
+        let (assembly, start, watched) =
+            (&self.train.assembly, (self.start, self.every), (&events[..], *event_samples));
+        let (run, crossings) = run_assembly_watched(assembly, self.method, self.schedule, start, watched, progress);
+        let triggers: Vec<&Trigger> = event.iter().chain(until).collect();
+        let happened = crossings.iter().filter_map(|crossing| Happened::of_train(self.train, &triggers, crossing));
+        let events = (!triggers.is_empty()).then(|| Events::new(happened, AssemblyCrossing::close(&crossings)));
+        Made { run, events, warning: Ok(()) }
     }
 }
 

@@ -34,6 +34,6 @@ impl OneStep for Composition {
             done += weight;
         }
         std::mem::swap(state, &mut self.inner);
-        Ok(StepReport { iterations })
+        Ok(StepReport::of(iterations))
     }
 }

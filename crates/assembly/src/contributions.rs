@@ -148,6 +148,12 @@ pub(crate) fn gathered<T>(placed: &Placed, of: impl Fn(usize) -> f64, then: impl
     then(&local[..n])
 }
 
+/// The coordinates and velocities of an element, handed on.
+#[inline(always)]
+pub(crate) fn at<T>(placed: &Placed, q: &[f64], v: &[f64], then: impl FnOnce(&[f64], &[f64]) -> T) -> T {
+    gathered(placed, |i| q[i], |q| gathered(placed, |i| v[i], |v| then(q, v)))
+}
+
 /// Configuration and velocity of an element.
 #[inline(always)]
 pub(crate) fn at_state<T>(placed: &Placed, state: &State, then: impl FnOnce(&dyn Element, &[f64], &[f64]) -> T) -> T {

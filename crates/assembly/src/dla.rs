@@ -2,6 +2,7 @@ use crate::assembly::{Placed, WIDEST};
 use crate::contributions::{Part, at_state, gathered};
 use crate::equations::Equations;
 use crate::linear::Linear;
+use crate::terms;
 use crate::{Assembly, AssemblyError, OneStep, Solver, State, StepReport};
 use dla::Stage;
 use lagrangian::linear::{larger, largest};
@@ -113,7 +114,8 @@ impl Dla {
             });
             equations.write(assembly, derivatives.then_some(Part::Blocks), p);
         };
-        equations.newton(assembly, Stage::Increment, v, evaluate)
+        let terms = |sizes: &mut [f64]| terms::add(assembly, (t0, h), |i| state.q(i), |i| state.v(i), sizes);
+        equations.newton((assembly, Stage::Increment), v, terms, evaluate)
     }
 
     /// The velocity at the end, in `v1`.
@@ -145,7 +147,8 @@ impl Dla {
             });
             equations.write(assembly, derivatives.then_some(Part::All), p);
         };
-        equations.newton(assembly, Stage::Projection, v1, evaluate)
+        let terms = |sizes: &mut [f64]| terms::add(assembly, (t0 + h, h), |i| q1[i], |i| v[i], sizes);
+        equations.newton((assembly, Stage::Projection), v1, terms, evaluate)
     }
 
     /// By how much the constraint turns that turns most (rad).
@@ -257,7 +260,7 @@ impl OneStep for Dla {
         }
         let iterations = self.increment(assembly, (t0, h), state)?;
         let turn = self.turn(assembly, (t0, h));
-        if turn > NEAR || !self.equations.settling.is_certain() {
+        if turn > NEAR || !self.equations.settling.certain {
             return Err(AssemblyError::Branch { turn });
         }
         for (i, q1) in self.q1.iter_mut().enumerate() {
@@ -272,6 +275,6 @@ impl OneStep for Dla {
             let (v, v1) = (self.v[i], self.v1[i]);
             state.advance(h, i, h * v, v1, (v1 - v) / (0.5 * h));
         }
-        Ok(StepReport { iterations })
+        Ok(StepReport::of(iterations))
     }
 }

@@ -53,6 +53,14 @@ pub trait Element: EnergyElement + StageElement + Debug + Send + Sync {
     /// At a velocity, `momentum = L_v(q, v)`, `block = L_vv`, `rows = A(q)` and `level = -(A v + b)`.
     fn velocity(&self, t: f64, q: &[f64], v: &[f64], out: Blocks<'_>);
 
+    /// The sums of the sizes of the terms of its equations, for a bound on their rounding: `L_v` and `h (L_q + F)` in `momentum`, and
+    /// the constraints, `A v + b` and of those on positions `g/h`, in `level`.
+    fn sizes(&self, time: (f64, f64), q: &[f64], v: &[f64], momentum: &mut [f64], level: &mut [f64]);
+
+    /// The continuous equations for accelerations: `block = L_vv`, `momentum = F + L_q - (d/dt L_v at v' = 0)`, `rows = A(q)` and
+    /// `level = -(d/dt (A v + b) at v' = 0)`.
+    fn motion(&self, t: f64, q: &[f64], v: &[f64], out: Blocks<'_>);
+
     /// The energy `v . L_v - L` (J).
     fn energy(&self, t: f64, q: &[f64], v: &[f64]) -> f64;
 

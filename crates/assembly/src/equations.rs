@@ -1,9 +1,10 @@
 use crate::contributions::Contributions;
 use crate::linear::Linear;
 use crate::pattern::Pattern;
-use crate::settling::Settling;
+use crate::settling::{REFINEMENTS, Settling};
 use crate::{Assembly, AssemblyError, Solver};
 use dla::Stage;
+use dla::convergence::{Convergence, Demand, Kind};
 
 /// The linear equations of an assembly, and Newton's method on them.
 pub(crate) struct Equations {
@@ -20,34 +21,65 @@ impl Equations {
         Ok(Self {
             linear: Linear::new(Pattern::of(assembly), solver)?,
             contributions: Contributions::of(assembly, parallel),
-            settling: Settling::new(assembly.coordinates()),
+            settling: Settling::new(assembly.coordinates(), assembly.rows()),
         })
     }
 
     /// Solves for the unknowns `x`: `evaluate` writes the right side at `x`, and the matrix where it is told so, which it is not
-    /// while the factors of the last one still serve.
+    /// while the factors of the last one still serve; `terms` adds the sums of the sizes of the terms of the equations.
     pub(crate) fn newton(
         &mut self,
-        assembly: &Assembly,
-        stage: Stage,
+        of: (&Assembly, Stage),
         x: &mut [f64],
+        terms: impl FnMut(&mut [f64]),
         mut evaluate: impl FnMut(&mut Self, &[f64], bool),
     ) -> Result<u32, AssemblyError> {
-        self.settling.begin(x);
-        let mut before = f64::INFINITY;
-        let mut fresh = true;
+        let mut settling = std::mem::take(&mut self.settling);
+        let made = self.search(&mut settling, of, x, terms, &mut evaluate);
+        self.settling = settling;
+        made
+    }
+
+    fn search(
+        &mut self,
+        settling: &mut Settling,
+        (assembly, stage): (&Assembly, Stage),
+        x: &mut [f64],
+        mut terms: impl FnMut(&mut [f64]),
+        mut evaluate: impl FnMut(&mut Self, &[f64], bool),
+    ) -> Result<u32, AssemblyError> {
+        let Settling { newton, last, rounding, start, sizes, changes, certain } = settling;
+        start.copy_from_slice(x);
+        let mut convergence = Convergence::new(last, rounding, start);
+        let (mut before, mut fresh, mut refinements) = (f64::INFINITY, true, 0);
         loop {
             evaluate(self, x, fresh);
             if fresh {
                 self.linear.factorise(stage, Some(assembly))?;
             }
             // One refinement, where the matrix is that of the factors.
-            self.linear.solve(u32::from(fresh));
-            let correction = &self.linear.solution[..x.len()];
+            self.linear.solve(refinements.max(u32::from(fresh)));
+            let linear = &self.linear;
+            let (correction, multipliers) = linear.solution.split_at(x.len());
             let step = lagrangian::linear::largest(correction);
-            let done = self.settling.correct(x, correction);
+            x.iter_mut().zip(correction).for_each(|(x, d)| *x += d);
+            let demand = Demand {
+                kind: Kind::Chord,
+                tolerance: newton.tolerance,
+                limit: newton.max_iterations,
+                refinable: refinements == 0,
+            };
+            let done = convergence.check(demand, x, correction, || {
+                sizes.fill(0.0);
+                terms(sizes);
+                Some(linear.most_roundings(multipliers, sizes, changes))
+            });
+            *certain = convergence.is_certain();
             if done.map_err(|source| AssemblyError::Newton { stage, source })? {
-                return Ok(self.settling.made);
+                return Ok(convergence.made());
+            }
+            if convergence.is_unmet() {
+                refinements = REFINEMENTS;
             }
             fresh = step > CHORD * before;
             before = step;

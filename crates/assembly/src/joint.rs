@@ -1,6 +1,6 @@
 use crate::element::{Blocks, Element, local};
 use lagrangian::linear::larger;
-use lagrangian::{Dual, Scalar};
+use lagrangian::{Dual, HyperDual, Scalar};
 use std::fmt;
 
 /// What joins bodies: constraints on positions, and no inertia.
@@ -91,6 +91,26 @@ impl<J: Joint<N, M>, const N: usize, const M: usize> Element for JointElement<J,
         }
         for (level, rate) in out.level.iter_mut().zip(self.rates(t, q, v)) {
             *level = -rate;
+        }
+    }
+
+    fn sizes(&self, (t, h): (f64, f64), q: &[f64], v: &[f64], momentum: &mut [f64], level: &mut [f64]) {
+        momentum.fill(0.0);
+        for (size, g) in level.iter_mut().zip(self.in_positions(t, q)) {
+            let terms = g.eps.iter().zip(q.iter().zip(v));
+            // Each product is rounded, and each sum.
+            *size = terms.map(|(slope, (q, v))| 2.0 * (slope * v).abs() + 4.0 * (slope * q / h).abs()).sum();
+        }
+    }
+
+    fn motion(&self, t: f64, q: &[f64], v: &[f64], out: Blocks<'_>) {
+        Self::write_rows(&self.in_positions(t, q), out.rows);
+        // The second derivative of g along the motion as it would be without acceleration.
+        let (q, v): ([f64; N], [f64; N]) = (local(q), local(v));
+        let along: [HyperDual<f64, 1, 1>; N] = lagrangian::from_fn(|i| HyperDual::linear(q[i], [v[i]], [v[i]]));
+        let curved = self.joint.position(HyperDual::linear(t, [1.0], [1.0]), &along);
+        for (level, g) in out.level.iter_mut().zip(&curved) {
+            *level = -g.e12[0][0];
         }
     }
 

@@ -3,6 +3,7 @@ use crate::pattern::Pattern;
 use crate::singular::dependent;
 use crate::{Assembly, AssemblyError, Solver};
 use dla::Stage;
+use lagrangian::Rounded;
 
 /// Linear equations with a pattern that is found once, and their solution without allocation.
 pub(crate) struct Linear {
@@ -55,5 +56,25 @@ impl Linear {
                 *x += d;
             }
         }
+    }
+
+    /// How many roundings of their terms the equations are moved by the last correction, at most: `K d` and `C d` against the sums
+    /// of the `sizes` of the terms, to which the reactions `G' lambda` are added here.
+    #[cold]
+    pub(crate) fn most_roundings(&self, multipliers: &[f64], sizes: &mut [f64], changes: &mut [f64]) -> f64 {
+        let n = sizes.len() - multipliers.len();
+        changes.fill(0.0);
+        for (j, d) in self.solution[..n].iter().enumerate() {
+            for (i, value) in self.pattern.column(&self.values, j) {
+                changes[i] += value * d;
+            }
+        }
+        for (j, lambda) in (n..).zip(multipliers) {
+            for (i, value) in self.pattern.column(&self.values, j) {
+                sizes[i] += (value * lambda).abs();
+            }
+        }
+        let pairs = changes.iter().zip(&*sizes);
+        pairs.fold(0.0, |most, (change, size)| Rounded { value: *change, size: *size }.roundings().max(most))
     }
 }

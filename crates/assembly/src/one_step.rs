@@ -10,8 +10,18 @@ pub trait OneStep {
 }
 
 /// What a step did besides moving the state.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct StepReport {
     /// Newton iterations of its equations.
     pub iterations: u32,
+    /// The work that the forces did over the step (J), for a method whose energy balance knows it.
+    pub work: Option<f64>,
+}
+
+impl StepReport {
+    /// The report of a step of which nothing but the iterations is known.
+    #[must_use]
+    pub fn of(iterations: u32) -> Self {
+        Self { iterations, work: None }
+    }
 }

@@ -1,8 +1,9 @@
 use crate::linear::Linear;
 use crate::pattern::{Part, Pattern};
-use crate::settling::Settling;
+use crate::settling::{REFINEMENTS, Settling};
 use crate::{AssemblyError, Solver};
 use dla::Stage;
+use dla::convergence::{Convergence, Demand, Kind};
 use lagrangian::linear::largest;
 
 /// Linear equations of parts that share unknowns,
@@ -85,15 +86,20 @@ impl Sparse {
     }
 
     /// Solves for the unknowns `x` and the multipliers: `evaluate` writes the right side at these, and the matrix where it is
-    /// told so, which it is not while the factors of the last one still serve.
+    /// told so, which it is not while the factors of the last one still serve; `terms` adds the sums of the sizes of the terms of
+    /// the equations, those of the unknowns and then those of the constraints.
     pub(crate) fn newton(
         &mut self,
         (settling, stage): (&mut Settling, Stage),
         x: &mut [f64],
         multipliers: &mut [f64],
+        mut terms: impl FnMut(&mut [f64]),
         mut evaluate: impl FnMut(&mut Self, &[f64], &[f64], bool) -> Result<(), AssemblyError>,
     ) -> Result<u32, AssemblyError> {
-        settling.begin(x);
+        let Settling { newton, last, rounding, start, sizes, changes, certain } = settling;
+        start.copy_from_slice(x);
+        let mut convergence = Convergence::new(last, rounding, start);
+        let mut refinements = 0;
         let (mut before, mut fresh) = (f64::INFINITY, !self.factors_serve);
         let mut polished = !self.polishes;
         loop {
@@ -105,18 +111,34 @@ impl Sparse {
             if fresh {
                 self.linear.factorise(stage, None)?;
             }
-            self.linear.solve(u32::from(fresh));
+            self.linear.solve(refinements.max(u32::from(fresh)));
             let (correction, corrections) = self.linear.solution.split_at(x.len());
             for (multiplier, d) in multipliers.iter_mut().zip(corrections) {
                 *multiplier += d;
             }
             let step = largest(correction);
-            let done = settling.correct(x, correction);
+            x.iter_mut().zip(correction).for_each(|(x, d)| *x += d);
+            let demand = Demand {
+                kind: Kind::Chord,
+                tolerance: newton.tolerance,
+                limit: newton.max_iterations,
+                refinable: refinements == 0,
+            };
+            let linear = &self.linear;
+            let done = convergence.check(demand, x, correction, || {
+                sizes.fill(0.0);
+                terms(sizes);
+                Some(linear.most_roundings(multipliers, sizes, changes))
+            });
+            *certain = convergence.is_certain();
             if done.map_err(|source| AssemblyError::Newton { stage, source })? {
                 if polished {
-                    return Ok(settling.made);
+                    return Ok(convergence.made());
                 }
                 polished = true;
+            }
+            if convergence.is_unmet() {
+                refinements = REFINEMENTS;
             }
             fresh = step > KEPT * before;
             before = step;

@@ -1,8 +1,9 @@
 use crate::element::{Blocks, Element, local};
 use lagrangian::linear::larger;
 use lagrangian::{
-    DiscreteConstraint, DiscreteLagrangian, Dual, Midpoint, System, constraint_residual, energy, force_power, from_fn,
-    lagrangian_power, mass_matrix, momentum, position_misses, position_residual, reaction_rows,
+    DiscreteConstraint, DiscreteLagrangian, Dual, Midpoint, Motion, Rounded, Saddle, System, configuration_slope,
+    constraint_residual, energy, force_power, from_fn, lagrangian_power, mass_matrix, momentum, position_misses,
+    position_residual, reaction_rows,
 };
 use std::fmt;
 
@@ -121,6 +122,31 @@ impl<Sys: System<N, M> + Send + Sync, const N: usize, const M: usize> Element fo
             out.momentum.copy_from_slice(&momentum(&self.system, t, &q, &v));
         }
         out.level.copy_from_slice(&constraint_residual(&self.system, t, &q, &v).map(|slip| -slip));
+    }
+
+    #[cold]
+    fn sizes(&self, (t, h): (f64, f64), q: &[f64], v: &[f64], momentum: &mut [f64], level: &mut [f64]) {
+        let (t, q, v): (_, [f64; N], [f64; N]) = (Rounded::exact(t), local(q), local(v));
+        let (q, v) = (q.map(Rounded::once), v.map(Rounded::once));
+        let p = lagrangian::momentum(&self.system, t, &q, &v);
+        let (slope, force) = (configuration_slope(&self.system, t, &q, &v), self.system.force(t, &q, &v));
+        for (i, size) in momentum.iter_mut().enumerate().take(N) {
+            *size = p[i].size + h.abs() * (slope[i].size + force.map_or(0.0, |force| force[i].size));
+        }
+        let slip = constraint_residual(&self.system, t, &q, &v);
+        let positions = self.system.holonomic(t, &q);
+        for (k, size) in level.iter_mut().enumerate().take(M) {
+            let position = positions.and_then(|g| g[k]).map_or(0.0, |g| g.size / h.abs());
+            *size = slip[k].size + position;
+        }
+    }
+
+    fn motion(&self, t: f64, q: &[f64], v: &[f64], out: Blocks<'_>) {
+        let Saddle { block, rows, right, level, .. } = Motion::equations(&self.system, t, &local(q), &local(v));
+        out.momentum.copy_from_slice(&right);
+        out.block.copy_from_slice(block.as_flattened());
+        out.rows.copy_from_slice(rows.as_flattened());
+        out.level.copy_from_slice(&level);
     }
 
     fn energy(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {

@@ -1,81 +1,10 @@
 //! Which of several solutions of a step continues the motion.
 
-use crate::newton::BlockEquations;
-use crate::{Equations, Newton};
-use lagrangian::linear::{Singular, larger};
+use lagrangian::linear::larger;
 use lagrangian::{Dual, System, from_fn};
-
-/// Equations that remember how large the first two corrections of a search were.
-pub(crate) struct Search<E> {
-    pub(crate) equations: E,
-    sizes: [f64; 2],
-    made: usize,
-}
 
 /// What turns by less than this in a step (rad) is near its start.
 pub(crate) const NEAR: f64 = 1.0;
-
-impl<E> Search<E> {
-    /// Where the second correction, which may be simplified, is below this part of the first, the bound of Newton and
-    /// Kantorovich, `h0 <= 1/2` with `h0 = 2 theta` to first order, gives one solution near the start; and the Jacobian has an
-    /// inverse all the way there, so that its determinant keeps its sign. (Deuflhard 2004, Newton Methods for Nonlinear
-    /// Problems, sections 2.1 and 3.3.)
-    const CONTRACTION: f64 = 0.25;
-
-    #[inline(always)]
-    pub(crate) fn new(equations: E) -> Self {
-        Self { equations, sizes: [0.0; 2], made: 0 }
-    }
-
-    /// Whether the solution `x` is the one near the start of the search.
-    #[inline(always)]
-    pub(crate) fn is_certain(&self, x: &[f64]) -> bool {
-        let [first, second] = self.sizes;
-        second <= Self::CONTRACTION * first || second <= Newton::rounding(sup(x))
-    }
-
-    /// Whether the search began within this part of the solution `x`.
-    #[inline(always)]
-    pub(crate) fn began_within(&self, part: f64, x: &[f64]) -> bool {
-        self.sizes[0] <= part * sup(x)
-    }
-
-    #[inline(always)]
-    fn remember(&mut self, correction: &[f64]) {
-        if self.made < 2 {
-            self.sizes[self.made] = sup(correction);
-            self.made += 1;
-        }
-    }
-}
-
-#[inline(always)]
-fn sup(x: &[f64]) -> f64 {
-    x.iter().fold(0.0, |most, x| larger(most, x.abs()))
-}
-
-impl<E: Equations<U>, const U: usize> Equations<U> for Search<E> {
-    #[inline(always)]
-    fn correction(&mut self, x: &[f64; U]) -> Result<[f64; U], Singular> {
-        let correction = self.equations.correction(x)?;
-        self.remember(&correction);
-        Ok(correction)
-    }
-
-    #[inline(always)]
-    fn is_simplified(&self) -> bool {
-        self.equations.is_simplified()
-    }
-}
-
-impl<E: BlockEquations<U, S>, const U: usize, const S: usize> BlockEquations<U, S> for Search<E> {
-    #[inline(always)]
-    fn correction(&mut self, x: &[[f64; U]; S]) -> Result<[[f64; U]; S], Singular> {
-        let correction = self.equations.correction(x)?;
-        self.remember(correction.as_flattened());
-        Ok(correction)
-    }
-}
 
 /// By how much a step with this mean velocity turns the constraint that turns most (rad): a rate times the step, which
 /// shows what the two ends do not, whole turns. Zero where no angle turns by as much as is near.

@@ -1,5 +1,7 @@
+use crate::convergence::parted;
+use crate::convergence::tolerances::{SHRINKING, is_slight};
 use crate::increment::Increment;
-use crate::{Equations, Newton, State};
+use crate::{Equations, State};
 use lagrangian::linear::{Singular, largest};
 use lagrangian::{
     DiscreteConstraint, DiscreteLagrangian, FactoredSaddle, Rows, Saddle, System, from_fn, redundant_rows,
@@ -19,6 +21,9 @@ pub(crate) struct Corrections<'e, 'a, Sys, L, C, const N: usize, const M: usize>
     jacobian: Option<Jacobian<N, M>>,
     /// The last correction, and what was known where it was made.
     last: Last<N>,
+    /// Whether the part of the momenta that the multipliers take up is left out of the equations: where it is large, its rounding in
+    /// their solution is larger than that of what is left.
+    refined: bool,
 }
 
 /// The derivatives of the equations in the mean velocity at one point: of the momenta, `K`, and of the discrete constraint.
@@ -70,7 +75,7 @@ where
 {
     #[inline(always)]
     pub(crate) fn new(of: &'e Increment<'a, Sys, L, C, N, M>) -> Self {
-        Self { of, some: None, lambda: [0.0; M], positive: None, jacobian: None, last: Last::default() }
+        Self { of, some: None, lambda: [0.0; M], positive: None, jacobian: None, last: Last::default(), refined: false }
     }
 
     /// The derivatives of the last of Newton's own corrections, where it solved for all rows.
@@ -98,16 +103,22 @@ where
         self.positive.zip(positive).is_none_or(|(here, at_rest)| here == at_rest)
     }
 
+    /// The right side of the equations for a correction.
+    #[inline(always)]
+    fn right(&self, residual: &[f64; N]) -> [f64; N] {
+        let parted = if self.refined { parted(&self.of.a0, residual) } else { None };
+        let left = parted.map_or(*residual, |(left, _)| left);
+        left.map(|r| -r)
+    }
+
     /// The simplified correction at `v`, where it is as good as Newton's own.
     #[inline(always)]
     fn simplified(&mut self, v: &[f64; N]) -> Option<[f64; N]> {
-        /// Simplified corrections shrink by at least as much, or rounding is all that is left of them.
-        const SHRINKING: f64 = 0.125;
         let Some(Jacobian { block, factors }) = &self.jacobian else { return None };
         let (at, level) = self.of.departure(v);
-        let correction = factors.solve(&at.residual.map(|r| -r), &level, self.of.basis.as_ref());
+        let correction = factors.solve(&self.right(&at.residual), &level, self.of.basis.as_ref());
         let size = largest(&correction);
-        let good = size <= SHRINKING * largest(&self.last.correction) || size <= Newton::ROUNDING * largest(v);
+        let good = size <= SHRINKING * largest(&self.last.correction) || is_slight(size, largest(v));
         if !good {
             return None;
         }
@@ -130,6 +141,14 @@ where
         }
     }
 
+    fn roundings(&self, v: &[f64; N]) -> Option<f64> {
+        Some(self.of.roundings(v, self.some))
+    }
+
+    fn refine(&mut self) -> bool {
+        !std::mem::replace(&mut self.refined, true)
+    }
+
     #[inline(always)]
     fn is_simplified(&self) -> bool {
         self.last.simplified
@@ -149,7 +168,7 @@ where
     fn own_correction(&mut self, v: &[f64; N]) -> Result<[f64; N], Singular> {
         let (at, block) = self.of.linearised(v);
         let (rows, level) = self.of.rows(v);
-        let right = at.residual.map(|r| -r);
+        let right = self.right(&at.residual);
         match self.solved(&block, &rows, &right, &level) {
             Ok((factors, correction)) => {
                 self.positive = Some(factors.is_positive());

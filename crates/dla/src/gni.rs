@@ -1,8 +1,9 @@
+use crate::convergence::most_roundings;
 use crate::overshoot::brakes_only;
 use crate::positions::{affine_only, velocities_only};
 use crate::{Equations, Newton, NewtonError, OneStep, Stage, State, StepError, StepReport};
 use lagrangian::linear::{Lu, Singular};
-use lagrangian::{DiscreteLagrangian, Dual, Saddle, System, Trapezoid, from_fn, mass_matrix, momentum};
+use lagrangian::{DiscreteLagrangian, Dual, Rounded, Saddle, System, Trapezoid, from_fn, mass_matrix, momentum};
 
 /// The geometric nonholonomic integrator: **a counter-example**, not a method to use.
 ///
@@ -124,6 +125,19 @@ where
     Sys: System<N, M>,
     L: DiscreteLagrangian<Sys, N, M>,
 {
+    #[cold]
+    #[inline(never)]
+    fn roundings(&self, v: &[f64; N]) -> Option<f64> {
+        let Self { lagrangian, system, t, h, q0, departing } = *self;
+        let (t, h, q, v) = (Rounded::exact(t), Rounded::exact(h), q0.map(Rounded::exact), v.map(Rounded::once));
+        let [d1, _] = lagrangian.slopes(system, t, h, &q, &v);
+        let minus = lagrangian.forces(system, t, h, &q, &v).map(|(minus, _)| minus);
+        Some(most_roundings((0..N).map(|i| {
+            let conservative = d1[i] + departing[i];
+            minus.map_or(conservative, |minus| conservative + minus[i])
+        })))
+    }
+
     fn correction(&mut self, v: &[f64; N]) -> Result<[f64; N], Singular> {
         let Self { lagrangian, system, t, h, q0, departing } = *self;
         let l_d = lagrangian.derivatives(system, t, h, &q0, v);

@@ -42,6 +42,12 @@ impl<const N: usize> Hermite<N> {
         })
     }
 
+    /// The polynomial of a step from the time `t0` of length `h` (s) with these positions, velocities and accelerations at its ends.
+    #[must_use]
+    pub fn through((t0, h): (f64, f64), [q0, v0, a0]: [[f64; N]; 3], [q1, v1, a1]: [[f64; N]; 3]) -> Self {
+        Self { t0, h, q0, v0, a0, q1, v1, a1 }
+    }
+
     /// Configuration, angles with their full turns, and velocity at the time `t` (s).
     #[must_use]
     pub fn at(&self, t: f64) -> ([f64; N], [f64; N]) {
@@ -49,7 +55,8 @@ impl<const N: usize> Hermite<N> {
     }
 
     /// Position and velocity at the fraction `c` of the step.
-    pub(crate) fn at_part(&self, c: f64) -> ([f64; N], [f64; N]) {
+    #[must_use]
+    pub fn at_part(&self, c: f64) -> ([f64; N], [f64; N]) {
         let h = self.h;
         let mut v = [0.0; N];
         let q = from_fn(|i| {

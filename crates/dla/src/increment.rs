@@ -1,10 +1,13 @@
-use crate::branch::{self, Search};
+use crate::branch;
+use crate::convergence::{most_roundings, without_reaction};
 use crate::corrections::{Corrections, Departure};
 use crate::dependent::named_along;
+use crate::newton::Found;
 use crate::{Newton, NewtonError, State, StepError};
 use lagrangian::linear::{Singular, normal_solve};
 use lagrangian::{
-    AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, Dual, Rows, Saddle, System, from_fn, position_misses,
+    AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, Dual, Rounded, Rows, Saddle, System, from_fn,
+    position_misses,
 };
 use std::f64::consts::PI;
 
@@ -55,28 +58,28 @@ where
         // Of rows that depend on one another there is none, and then it is not looked at.
         let positive = Saddle::is_positive_at_rest(&self.a0, self.basis.as_ref());
         let time = (self.t0, self.h);
-        let (mut search, mut v) = (Search::new(Corrections::new(self)), guess.unwrap_or(v0));
-        let mut found = newton.solve(&mut search, &mut v);
+        let (mut search, mut v) = (Corrections::new(self), guess.unwrap_or(v0));
+        let mut found = newton.search(&mut search, &mut v);
         if found.is_err() && guess.is_some() {
-            (search, v) = (Search::new(Corrections::new(self)), v0);
-            found = newton.solve(&mut search, &mut v);
+            (search, v) = (Corrections::new(self), v0);
+            found = newton.search(&mut search, &mut v);
         }
-        let mut iterations = found.map_err(|source| named_along(self.system, time, *self.state, v, source))?;
+        let Found { mut iterations, certain, .. } =
+            found.map_err(|source| named_along(self.system, time, *self.state, v, source))?;
         let turn = self.turn(&v);
-        let certain = search.equations.continues(positive) && turn <= branch::NEAR && search.is_certain(&v);
-        if !certain {
+        if !(certain && search.continues(positive) && turn <= branch::NEAR) {
             v = self.followed(newton, positive, turn, &v0).ok_or(StepError::Branch)?;
-            search = Search::new(Corrections::new(self));
+            search = Corrections::new(self);
             iterations += newton
                 .solve(&mut search, &mut v)
                 .map_err(|source| named_along(self.system, time, *self.state, v, source))?;
         }
-        let some = search.equations.some;
-        let (p1, lambda) = search.equations.ends(&v).map_err(|source| {
+        let some = search.some;
+        let (p1, lambda) = search.ends(&v).map_err(|source| {
             let source = NewtonError::singular(source);
             named_along(self.system, time, *self.state, v, source)
         })?;
-        Ok(Mean { v, p1, lambda, iterations, some, block: search.equations.block() })
+        Ok(Mean { v, p1, lambda, iterations, some, block: search.block() })
     }
 
     /// The multipliers that take up the rest of the momenta.
@@ -164,16 +167,39 @@ where
         at
     }
 
+    /// How many roundings of their terms the equations at the mean velocity `v` are missed by, at most: those of the momenta at the
+    /// beginning without what the multipliers take up, and the constraints, of which `some` may be all that are solved for.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn roundings(&self, v: &[f64; N], some: Option<Rows>) -> f64 {
+        let Self { rules: (lagrangian, constraint), system, t0, h, state, q0, p0, a0, .. } = *self;
+        let (t, step, q) = (Rounded::exact(t0), Rounded::exact(h), q0.map(Rounded::exact));
+        let velocity = v.map(Rounded::once);
+        let [d1, _] = lagrangian.slopes(system, t, step, &q, &velocity);
+        let minus = lagrangian.forces(system, t, step, &q, &velocity).map(|(minus, _)| minus);
+        let momenta = from_fn(|i| {
+            let conservative = d1[i] + p0[i];
+            minus.map_or(conservative, |minus| conservative + minus[i])
+        });
+        let mut level = constraint.residual(system, t, step, &q, &velocity);
+        let q1 = state.ahead(&v.map(|v| h * v));
+        let end = from_fn(|i| Rounded { value: q1[i], size: q1[i].abs() + (h * v[i]).abs() });
+        if let Some(positions) = system.holonomic(Rounded::exact(t0 + h), &end) {
+            level = from_fn(|k| positions[k].map_or(level[k], |g| g / h));
+        }
+        let solved = (0..M).filter(|k| some.is_none_or(|rows| rows.contains(*k)));
+        most_roundings(without_reaction(&a0, momenta).into_iter().chain(solved.map(|k| level[k])))
+    }
+
     /// The solution at the end of the branch that begins with a step of length zero.
     #[cold]
     #[inline(never)]
     fn followed(&self, newton: &Newton, positive: Option<bool>, turn: f64, v0: &[f64; N]) -> Option<[f64; N]> {
         branch::followed(v0, 0.5 * branch::NEAR / turn, |part, guess| {
             let within = Self { h: part * self.h, ..*self };
-            let mut search = Search::new(Corrections::new(&within));
-            newton.solve(&mut search, guess).ok()?;
-            let continues = search.equations.continues(positive) && within.turn(guess) < PI;
-            (continues && search.is_certain(guess)).then_some(())
+            let mut search = Corrections::new(&within);
+            let found = newton.search(&mut search, guess).ok()?;
+            (found.certain && search.continues(positive) && within.turn(guess) < PI).then_some(())
         })
     }
 

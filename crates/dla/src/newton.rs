@@ -1,5 +1,7 @@
 use crate::History;
-use lagrangian::linear::{Singular, largest};
+use crate::convergence::tolerances::SETTLED;
+use crate::convergence::{Convergence, Demand, Kind};
+use lagrangian::linear::Singular;
 use thiserror::Error;
 
 /// Equations whose Newton correction can be computed.
@@ -9,6 +11,19 @@ pub trait Equations<const U: usize> {
     /// # Errors
     /// [`Singular`] where `F'(x)` has no inverse.
     fn correction(&mut self, x: &[f64; U]) -> Result<[f64; U], Singular>;
+
+    /// How many roundings of their terms the residuals are at most at `x`, where the last correction was made
+    /// ([`Rounded::roundings`](lagrangian::Rounded::roundings)); none where that is not known. Asked for only where corrections
+    /// stall.
+    fn roundings(&self, _x: &[f64; U]) -> Option<f64> {
+        None
+    }
+
+    /// Makes further corrections with less rounding, where that is possible; whether it is. Asked for where corrections stall
+    /// though the residuals are not rounding.
+    fn refine(&mut self) -> bool {
+        false
+    }
 
     /// Whether the last correction was simplified, `-F'(y)^-1 F(x)` with an earlier point `y` in place of `x`. Such corrections
     /// shrink by about the same factor from each to the next.
@@ -22,6 +37,14 @@ pub trait Equations<const U: usize> {
 pub(crate) trait BlockEquations<const U: usize, const S: usize> {
     /// The correction `-F'(x)^-1 F(x)` at `x`.
     fn correction(&mut self, x: &[[f64; U]; S]) -> Result<[[f64; U]; S], Singular>;
+
+    /// How many roundings of their terms the residuals are at most at `x`, where the last correction was made.
+    fn roundings(&self, x: &[[f64; U]; S]) -> Option<f64>;
+
+    /// Makes further corrections with less rounding, where that is possible; whether it is.
+    fn refine(&mut self) -> bool {
+        false
+    }
 
     /// Whether the last correction was simplified.
     #[inline(always)]
@@ -40,18 +63,22 @@ impl<E: Equations<U>, const U: usize> BlockEquations<U, 1> for Single<'_, E> {
     }
 
     #[inline(always)]
+    fn roundings(&self, [x]: &[[f64; U]; 1]) -> Option<f64> {
+        self.0.roundings(x)
+    }
+
+    #[inline(always)]
+    fn refine(&mut self) -> bool {
+        self.0.refine()
+    }
+
+    #[inline(always)]
     fn is_simplified(&self) -> bool {
         self.0.is_simplified()
     }
 }
 
-/// Newton's method with an exact Jacobian and a stopping rule for every component by itself.
-///
-/// A component is settled when its correction `d` is below `tolerance` relative to it; or when quadratic convergence
-/// predicts that the next one, `d (d / d_before)^2`, will be, or after a simplified correction `2 d (d / d_before)`; or when
-/// all corrections are below [`Newton::ROUNDING`] of the largest component there was and its own no longer shrinks, so that
-/// it is rounding; or when simplified corrections take it to zero. A tolerance on all components
-/// together would freeze those that are small (a spin that dies out exponentially, for one).
+/// Newton's method with an exact Jacobian and a test for every component by itself: [`Convergence`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Newton {
     /// Relative tolerance of every component. The default, `4 * 2^-52`, asks for all digits.
@@ -62,7 +89,7 @@ pub struct Newton {
 
 impl Default for Newton {
     fn default() -> Self {
-        Self { tolerance: 4.0 * f64::EPSILON, max_iterations: 30 }
+        Self { tolerance: SETTLED, max_iterations: 30 }
     }
 }
 
@@ -119,22 +146,6 @@ impl NewtonError {
 }
 
 impl Newton {
-    /// Where all corrections are below this part of the largest component, those that do not shrink are rounding.
-    pub const ROUNDING: f64 = 1e-11;
-    /// With derivatives of another point an unknown that goes to zero shrinks by the same factor for ever. It is zero where it
-    /// has lost all digits of its start twice.
-    const GONE: f64 = f64::EPSILON * f64::EPSILON;
-    /// So many times in all the largest correction may grow.
-    const GROWTHS: u32 = 3;
-
-    /// Where all corrections are below this, with a largest component of this size, those that do not shrink are rounding:
-    /// [`Self::ROUNDING`] of it, and below the smallest normal number everything, since what comes to rest ends there.
-    #[must_use]
-    #[inline(always)]
-    pub fn rounding(size: f64) -> f64 {
-        (Self::ROUNDING * size).max(f64::MIN_POSITIVE)
-    }
-
     /// Improves `x` until every component is settled, and says in how many iterations.
     ///
     /// # Errors
@@ -145,75 +156,66 @@ impl Newton {
         equations: &mut impl Equations<U>,
         x: &mut [f64; U],
     ) -> Result<u32, NewtonError> {
-        self.solve_blocks(&mut Single(equations), std::array::from_mut(x))
+        self.search(equations, x).map(|found| found.iterations)
+    }
+
+    /// The same, with how the solution was found.
+    #[inline]
+    pub(crate) fn search<const U: usize>(
+        &self,
+        equations: &mut impl Equations<U>,
+        x: &mut [f64; U],
+    ) -> Result<Found, NewtonError> {
+        self.search_blocks(&mut Single(equations), std::array::from_mut(x))
     }
 
     /// The same for unknowns in blocks.
     #[inline]
-    pub(crate) fn solve_blocks<const U: usize, const S: usize>(
+    pub(crate) fn search_blocks<const U: usize, const S: usize>(
         &self,
         equations: &mut impl BlockEquations<U, S>,
         x: &mut [[f64; U]; S],
-    ) -> Result<u32, NewtonError> {
-        let start = *x;
-        let mut last = [[f64::INFINITY; U]; S];
-        let mut rounding = [[false; U]; S];
-        let mut before = f64::INFINITY;
-        let mut growths = 0;
-        let mut history = History::new();
-        // The largest component so far, the start's too: a solution of zeros only has no size of its own.
-        let mut size = largest(x.as_flattened());
-        for iteration in 1..=self.max_iterations {
+    ) -> Result<Found, NewtonError> {
+        let (start, mut last, mut rounding) = (*x, [[0.0; U]; S], [[false; U]; S]);
+        let flat = (last.as_flattened_mut(), rounding.as_flattened_mut());
+        let mut convergence = Convergence::new(flat.0, flat.1, start.as_flattened());
+        let mut refinable = true;
+        loop {
             let correction = equations.correction(x).map_err(|source| NewtonError::Singular {
-                iteration,
+                iteration: convergence.made() + 1,
                 source,
-                history: history.relative_to(size),
+                history: convergence.history(),
             })?;
+            let at = *x;
             for (x, d) in x.as_flattened_mut().iter_mut().zip(correction.as_flattened()) {
                 *x += d;
             }
-            let now = largest(x.as_flattened());
-            if !now.is_finite() {
-                return Err(NewtonError::NotFinite { iteration, history: history.relative_to(size) });
+            let kind = if equations.is_simplified() { Kind::Simplified } else { Kind::Newton };
+            let demand = Demand { kind, tolerance: self.tolerance, limit: self.max_iterations, refinable };
+            let (x, correction) = (x.as_flattened(), correction.as_flattened());
+            if convergence.check(demand, x, correction, || equations.roundings(&at))? {
+                return Ok(Found {
+                    iterations: convergence.made(),
+                    first: convergence.first(),
+                    certain: convergence.is_certain(),
+                });
             }
-            size = size.max(now);
-            let step = largest(correction.as_flattened());
-            history.push(step);
-            let converged = step <= Self::rounding(size);
-            let mut settled = true;
-            let simplified = equations.is_simplified();
-            for b in 0..S {
-                for i in 0..U {
-                    let (d, shrink) = (correction[b][i].abs(), correction[b][i].abs() / last[b][i]);
-                    // Once a component has been seen to move by rounding only, it stays so.
-                    rounding[b][i] |= converged && shrink >= 0.25;
-                    // A correction larger than what it leaves brings rounding of its own, and predicts nothing.
-                    let predicts = last[b][i].is_finite() && d <= x[b][i].abs();
-                    // With w the bound on the curvature, the first simplified correction is d = w d_before^2/2, and leaves
-                    // w d_before d; the first of Newton's own leaves w d^2/2.
-                    let factor = if simplified { 2.0 * shrink } else { shrink * shrink };
-                    let next = if predicts { d * factor } else { d };
-                    let gone =
-                        simplified && d <= Self::GONE * (if start[b][i] == 0.0 { size } else { start[b][i].abs() });
-                    settled &= rounding[b][i] || gone || next.min(d) <= self.tolerance * x[b][i].abs();
-                    last[b][i] = d;
-                }
+            if refinable && convergence.is_unmet() {
+                refinable = equations.refine();
             }
-            if settled {
-                return Ok(iteration);
-            }
-            // The corrections themselves are compared: relative to unknowns that shrink they may grow and yet converge.
-            if step > before && !converged {
-                growths += 1;
-                if growths == Self::GROWTHS {
-                    let (correction, before) = (step / size, before / size);
-                    let history = history.relative_to(size);
-                    return Err(NewtonError::Diverged { iteration, correction, before, history });
-                }
-            }
-            before = step;
         }
-        let (iterations, correction) = (self.max_iterations, before / size);
-        Err(NewtonError::IterationLimit { iterations, correction, history: history.relative_to(size) })
     }
+}
+
+/// How Newton's method found a solution.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Found {
+    pub(crate) iterations: u32,
+    /// The size of the first correction.
+    pub(crate) first: f64,
+    /// Whether the corrections contracted from the start, so that the solution is the one near there: the bound of Newton and
+    /// Kantorovich, `h0 <= 1/2` with `h0 = 2 theta` to first order, gives one solution near the start; and the Jacobian has an
+    /// inverse all the way there, so that its determinant keeps its sign. (Deuflhard 2004, Newton Methods for Nonlinear
+    /// Problems, sections 2.1 and 3.3.)
+    pub(crate) certain: bool,
 }

@@ -1,5 +1,6 @@
 use crate::{Dependent, NewtonError, State};
 use lagrangian::{ClosedStepError, MotionError, ReducedError};
+use std::ops::ControlFlow;
 use thiserror::Error;
 
 /// A one-step map on the constraint distribution: `(q, v)` with `A(q) v + b = 0` to the next such pair.
@@ -17,7 +18,30 @@ pub trait OneStep<Sys, const N: usize, const M: usize> {
 
     /// Remembers again what [`memory`](Self::memory) gave when the run was at `state`.
     fn recall(&mut self, _memory: &[f64], _state: &State<N>) {}
+
+    /// Shows the time (s) and the state where steps end that the method makes of its own within a step from `t` to `t + h`: all but
+    /// the last, which ends with the step; `Break` asks for no more of them. Nothing for a method whose steps are those of the run.
+    ///
+    /// It is for who looks inside steps, as [`Watch`](crate::Watch) does. The step is made once more, so that one at which nobody
+    /// looks costs nothing. `memory` is what the method [remembers](Self::memory) before the step, and then after it; it is empty
+    /// before the first, and means nothing after a `Break`.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step), after what was shown until then.
+    fn own_steps(
+        &self,
+        _system: &Sys,
+        (_t, _h): (f64, f64),
+        _state: &State<N>,
+        _memory: &mut Vec<f64>,
+        _see: &mut OwnStep<'_, N>,
+    ) -> Result<(), StepError> {
+        Ok(())
+    }
 }
+
+/// Looks at the end of a step that a method makes of its own, a time (s) and a state.
+pub type OwnStep<'a, const N: usize> = dyn FnMut(f64, &State<N>) -> ControlFlow<()> + 'a;
 
 /// What a step did besides moving the state.
 #[derive(Debug, Clone, Copy, PartialEq)]

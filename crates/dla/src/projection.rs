@@ -1,9 +1,10 @@
+use crate::convergence::{most_roundings, parted, without_reaction};
 use crate::dependent::{independent_rows, rows_left_out};
 use crate::{Equations, Newton, NewtonError, Stage, StepError};
 use lagrangian::linear::{Singular, largest, normal_solve};
 use lagrangian::{
-    AdmissibleBasis, Dual, FactoredSaddle, HyperDual, Rows, Saddle, System, constraint_residual, from_fn, mass_matrix,
-    momentum, reaction_rows,
+    AdmissibleBasis, Dual, FactoredSaddle, HyperDual, Rounded, Rows, Saddle, System, constraint_residual, from_fn,
+    mass_matrix, momentum, reaction_rows,
 };
 
 /// The equations for the velocity at the end of a step, with the multiplier there:
@@ -16,6 +17,8 @@ pub(crate) struct Projection<'a, Sys, const N: usize, const M: usize> {
     basis: Option<AdmissibleBasis<f64, N, M>>,
     some: Option<Rows>,
     mu: [f64; M],
+    /// Whether the part of the momenta that the multipliers take up is left out of the equations, as for the increment.
+    refined: bool,
 }
 
 /// The velocity at the end of a step, and the impulse of the constraints there.
@@ -35,7 +38,7 @@ impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Projection<'a, Sys, 
         p1: [f64; N],
         basis: Option<AdmissibleBasis<f64, N, M>>,
     ) -> Self {
-        Self { system, t1, q1, p1, basis, some: None, mu: [0.0; M] }
+        Self { system, t1, q1, p1, basis, some: None, mu: [0.0; M], refined: false }
     }
 
     /// For some of the rows alone, where they are given.
@@ -129,6 +132,22 @@ pub(crate) fn project<Sys: System<N, M>, const N: usize, const M: usize>(
 }
 
 impl<Sys: System<N, M>, const N: usize, const M: usize> Equations<N> for Projection<'_, Sys, N, M> {
+    #[cold]
+    #[inline(never)]
+    fn roundings(&self, v1: &[f64; N]) -> Option<f64> {
+        let Self { system, t1, q1, p1, some, .. } = *self;
+        let (t, q, v) = (Rounded::exact(t1), q1.map(Rounded::exact), v1.map(Rounded::once));
+        let p = momentum(system, t, &q, &v);
+        let left = without_reaction(&reaction_rows(system, t1, &q1, v1), from_fn(|i| p[i] + -p1[i]));
+        let slip = constraint_residual(system, t, &q, &v);
+        let solved = (0..M).filter(|k| some.is_none_or(|rows| rows.contains(*k)));
+        Some(most_roundings(left.into_iter().chain(solved.map(|k| slip[k]))))
+    }
+
+    fn refine(&mut self) -> bool {
+        !std::mem::replace(&mut self.refined, true)
+    }
+
     #[inline]
     fn correction(&mut self, v1: &[f64; N]) -> Result<[f64; N], Singular> {
         let (p, mut mass) = mass_matrix(self.system, self.t1, &self.q1, v1);
@@ -144,13 +163,15 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Equations<N> for Project
                 mass = from_fn(|i| from_fn(|j| mass[i][j] - mu * phi.e12[i][j]));
             }
         }
-        let right = from_fn(|i| self.p1[i] - p[i]);
+        let missing = from_fn(|i| self.p1[i] - p[i]);
+        let parted = if self.refined && self.some.is_none() { parted(&a1, &missing) } else { None };
+        let (right, taken) = parted.unwrap_or((missing, [0.0; M]));
         let saddle = Saddle { block: mass, transposed: a1, rows: a1, right, level: slip.map(|s| -s) };
         let (correction, minus_mu) = match self.some {
             Some(rows) => saddle.solve_some(rows)?,
             None => saddle.solve(self.basis.as_ref())?,
         };
-        self.mu = minus_mu.map(|m| -m);
+        self.mu = from_fn(|k| -minus_mu[k] - taken[k]);
         Ok(correction)
     }
 }

@@ -1,17 +1,12 @@
+use crate::convergence::tolerances::{SHRINKING, SLIGHT, STALL};
+use crate::convergence::{Kind, is_settled};
 use lagrangian::from_fn;
-
-/// Corrections shrink by at least as much, or their derivatives are not good enough.
-pub(crate) const SHRINKING: f64 = 0.125;
 
 /// The fewest looks of a search: one for its first correction, and one that finds its equations met.
 pub(crate) const LEAST: u32 = 2;
 
 /// More corrections are not worth it.
 pub(crate) const CORRECTIONS: u32 = 8;
-
-/// Corrections below this part of the unknowns are taken for rounding where they do not shrink. Where rounding is larger, the general
-/// search sees it.
-pub(crate) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// How a search with derivatives of another point goes on from its first correction until it has settled.
 pub(crate) struct Settle<const N: usize> {
@@ -36,7 +31,7 @@ impl<const N: usize> Settle<N> {
             let Some(d) = correction(x) else { return Some(made) };
             let moved = from_fn(|i| x[i] + d[i]);
             let size = sup(&d);
-            let rounding = size <= ROUNDING * sup(&moved);
+            let rounding = size <= SLIGHT * sup(&moved);
             if !(size <= allowed || rounding) {
                 return None;
             }
@@ -55,10 +50,7 @@ impl<const N: usize> Settle<N> {
     fn has_settled(&self, x: &[f64; N], d: &[f64; N], last: &[f64; N], rounding: bool) -> bool {
         (0..N).fold(true, |all, i| {
             let (d, x, last) = (d[i].abs(), x[i].abs(), last[i]);
-            let size = self.tolerance * x;
-            // As the corrections have shrunk the next one will be within the tolerance.
-            let predicted = (d <= x) & (2.0 * d * d <= size * last);
-            all & ((d <= size) | predicted | (rounding & (d >= 0.25 * last)))
+            all & (is_settled(Kind::Simplified, self.tolerance, x, d, last) | (rounding & (d >= STALL * last)))
         })
     }
 }

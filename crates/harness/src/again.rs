@@ -1,6 +1,6 @@
-use crate::Method;
 use crate::substeps::substepped_part;
-use dla::{Observer, OneStep, Schedule, State, StepError, StepReport, View};
+use crate::{Dop853, Kind, Method};
+use dla::{Observer, OneStep, OwnStep, Schedule, State, StepError, StepReport, View};
 use lagrangian::System;
 use std::ops::ControlFlow;
 
@@ -29,5 +29,20 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for A
         let schedule = Schedule { t0: t, step: h, steps: 1 };
         substepped_part(system, self.0, &schedule, 0..1, state, observer, None).map_err(|error| error.source)?;
         Ok(report.0)
+    }
+
+    /// Of the one method in the table that has any.
+    fn own_steps(
+        &self,
+        system: &Sys,
+        step: (f64, f64),
+        state: &State<N>,
+        memory: &mut Vec<f64>,
+        see: &mut OwnStep<'_, N>,
+    ) -> Result<(), StepError> {
+        match self.0.info().kind {
+            Kind::Dop853 => Dop853::<N, M>::new(self.0.tolerance()).own_steps(system, step, state, memory, see),
+            _ => Ok(()),
+        }
     }
 }

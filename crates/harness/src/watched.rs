@@ -2,7 +2,9 @@ use crate::record::Meter;
 use crate::run::{integrate_pieces, timed};
 use crate::timing::Ticker;
 use crate::{Again, Method, Progress, Record, Request};
-use dla::{Crossing, Event, RecommendError, Recommendation, Samples, State, Trajectory, Watch, recommend_by_trial};
+use dla::{
+    Close, Crossing, Event, RecommendError, Recommendation, Samples, State, Trajectory, Watch, recommend_by_trial,
+};
 use lagrangian::{Piecewise, System};
 
 /// A run, measured, with the nodes that were asked for and the events that happened.
@@ -14,14 +16,20 @@ pub struct Watched<const N: usize, const M: usize> {
     pub trajectory: Option<Trajectory<N, M>>,
     /// The events, in the order in which they happened.
     pub crossings: Vec<Crossing<N>>,
+    /// Which of them are so close that others may have been missed.
+    pub close: Option<Close>,
 }
 
-/// Makes a run, measures it, looks for events, and keeps every `keep`-th node where that is asked for.
+/// Into how many parts a step is divided to look for events, where nobody says ([`Watch::samples`]).
+pub const EVENT_SAMPLES: u32 = 4;
+
+/// Makes a run, measures it, looks for events, in so many parts of each step, and keeps every `keep`-th node where that is asked
+/// for.
 pub fn run_watched<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
     system: &Sys,
     method: &Method,
     request: &Request<N>,
-    events: &[Event<'_, N>],
+    (events, samples): (&[Event<'_, N>], u32),
     keep: Option<u64>,
     progress: &mut dyn Progress,
 ) -> Watched<N, M> {
@@ -32,15 +40,16 @@ pub fn run_watched<Sys: System<N, M> + Piecewise, const N: usize, const M: usize
     let mut ticker = Ticker::new(progress, 0);
     let inner = (&mut meter, (&mut trajectory, &mut ticker));
     let mut watch = Watch::new(Again(method), events, inner);
+    watch.samples = samples;
     let outcome = integrate_pieces(system, method, &schedule, &mut start.clone(), &mut watch);
-    let crossings = watch.crossings().to_vec();
+    let (crossings, close) = (watch.crossings().to_vec(), watch.close());
     let made = outcome.unwrap_or_else(|failure| failure.valid_steps());
     // An event within a divided step ends it there, before it is made.
     let steps = watch.ended().map_or(made, |ended| made.max(ended.k + 1));
     let interrupted = ticker.stopped;
     let seconds = timed(system, method, request, steps, progress);
     let record = Record { interrupted, ..meter.record(method.info(), seconds, outcome.err()) };
-    Watched { record, trajectory, crossings }
+    Watched { record, trajectory, crossings, close }
 }
 
 /// The longest step of a whole run from time zero that meets a tolerance (see [`dla::recommend_step`]).

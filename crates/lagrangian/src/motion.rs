@@ -42,11 +42,11 @@ pub struct MotionError {
 }
 
 impl<const N: usize, const M: usize> Motion<N, M> {
-    /// The equations of motion of any system, by automatic derivatives.
-    ///
-    /// # Errors
-    /// [`MotionError`] where the mass matrix or the constraint is degenerate.
-    pub fn automatic<Sys: System<N, M>>(system: &Sys, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<Self, MotionError> {
+    /// The linear equations for the accelerations, by automatic derivatives: `M v' - A' lambda = F + L_q - (d/dt L_v at v' = 0)` and
+    /// `A v' = -(d/dt (A v + b) at v' = 0)`, whose multipliers are `-lambda`.
+    #[must_use]
+    #[inline(always)]
+    pub fn equations<Sys: System<N, M>>(system: &Sys, t: f64, q: &[f64; N], v: &[f64; N]) -> Saddle<N, M> {
         let (_, mass) = mass_matrix(system, t, q, v);
 
         // d/dt L_v at frozen acceleration: the derivative of L_v along (t', q', v') = (1, v, 0).
@@ -64,13 +64,21 @@ impl<const N: usize, const M: usize> Motion<N, M> {
         let rate = constraint_residual(system, along_t, &along_q, &v.map(Dual::fixed));
 
         let a = reaction_rows(system, t, q, v);
-        let saddle = Saddle {
+        Saddle {
             block: mass,
             transposed: a,
             rows: a,
             right: from_fn(|i| l_q[i] + force.map_or(0.0, |f| f[i]) - transport[i][0]),
             level: rate.map(|r| -r.eps[0]),
-        };
+        }
+    }
+
+    /// The equations of motion of any system, by automatic derivatives.
+    ///
+    /// # Errors
+    /// [`MotionError`] where the mass matrix or the constraint is degenerate.
+    pub fn automatic<Sys: System<N, M>>(system: &Sys, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<Self, MotionError> {
+        let saddle = Self::equations(system, t, q, v);
         let basis = system.admissible_basis(t, q);
         let of = |(acceleration, lambda): ([f64; N], [f64; M])| Self { acceleration, multiplier: lambda.map(|l| -l) };
         match saddle.solve(basis.as_ref()) {

@@ -1,5 +1,6 @@
 use crate::Assembly;
 use crate::pattern::Part;
+use crate::terms;
 use std::ops::Range;
 
 /// The bodies of an assembly, and what their quasi-velocities are to the coordinates.
@@ -139,6 +140,42 @@ impl Frames {
                 }
             }
         }
+    }
+
+    /// Adds the sums of the sizes of the terms of the equations in quasi-velocities, and of the constraints that no frame meets; `w` is
+    /// filled with the frames at the configuration.
+    pub(super) fn add_terms(
+        &self,
+        assembly: &Assembly,
+        time: (f64, f64),
+        (q, v): (&[f64], &[f64]),
+        w: &mut [f64],
+        sizes: &mut [f64],
+    ) {
+        for body in &self.bodies {
+            let element = &assembly.placed()[body.element].element;
+            if element.frame(time.0, &q[body.coordinates()], &mut w[body.frames()]).is_none() {
+                return;
+            }
+        }
+        terms::for_each(
+            assembly,
+            time,
+            |i| q[i],
+            |i| v[i],
+            |k, placed, momentum, level| {
+                for (i, size) in placed.at.iter().zip(momentum) {
+                    let Link { frame, first, quasi } = self.links[*i];
+                    for (to, w) in sizes[first..first + quasi].iter_mut().zip(&w[frame..]) {
+                        *to += w.abs() * size;
+                    }
+                }
+                let Part { row, rows, .. } = self.parts[k];
+                for (to, size) in sizes[self.quasi + row..][..rows].iter_mut().zip(level) {
+                    *to += size;
+                }
+            },
+        );
     }
 
     /// `W xi`.

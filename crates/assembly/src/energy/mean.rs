@@ -1,8 +1,7 @@
-use super::at;
 use super::element::{Average, NO_BASIS, Swing};
 use super::frames::{Body, Frames};
 use crate::assembly::{Placed, WIDEST};
-use crate::contributions::gathered;
+use crate::contributions::{at, gathered};
 use crate::dla::relative;
 use crate::element::Blocks;
 use crate::sparse::Sparse;

@@ -7,11 +7,12 @@ mod mean;
 pub use element::{Average, EnergyElement, Swing};
 
 use crate::assembly::Placed;
-use crate::contributions::gathered;
+use crate::contributions::at;
 use crate::dla::predict;
 use crate::settling::Settling;
 use crate::sparse::Sparse;
 use crate::{Assembly, AssemblyError, OneStep, Solver, State, StepReport};
+use dla::convergence::tolerances::STALL;
 use dla::{History, NewtonError, Stage};
 use element::NO_BASIS;
 use frames::Frames;
@@ -59,6 +60,8 @@ pub struct Energy {
     path: Path,
     /// The frames `W(q1)`.
     end: Vec<f64>,
+    /// The frames `W(q0)`, where they are needed.
+    start: Vec<f64>,
     q0: Vec<f64>,
     v0: Vec<f64>,
     v1: Vec<f64>,
@@ -95,7 +98,8 @@ impl Energy {
         system.polishes = true;
         let masses = frames.bodies.last().map_or(0, |body| body.masses().end);
         Ok(Self {
-            settling: Settling::new(frames.quasi),
+            settling: Settling::new(frames.quasi, rows),
+            start: vec![0.0; frames.room],
             system,
             projection: Sparse::new(frames.quasi, rows, frames.parts.clone(), solver)?,
             rule: Average::new(),
@@ -152,8 +156,9 @@ impl Energy {
         Ok(())
     }
 
-    /// The quasi-velocities at the end, `xi1 = 2 x - xi0 - 2 e`; returns the `kappa` that `x` and they ask for.
-    fn finish(&mut self, assembly: &Assembly, t1: f64, near: bool) -> Result<f64, AssemblyError> {
+    /// The quasi-velocities at the end, `xi1 = 2 x - xi0 - 2 e`; returns the `kappa` that `x` and they ask for, and
+    /// twice the kinetic energy (J).
+    fn finish(&mut self, assembly: &Assembly, t1: f64, near: bool) -> Result<[f64; 2], AssemblyError> {
         let Self { frames, projection, mass, xi0, x, xi1, momenta, path, end, v1, .. } = self;
         for body in &frames.bodies {
             let element = &assembly.placed()[body.element].element;
@@ -165,7 +170,7 @@ impl Energy {
         }
         frames.combine(end, xi1, v1);
         if !projection.has_rows() {
-            return Ok(0.0);
+            return Ok([0.0; 2]);
         }
         path.project(assembly, frames, (projection, near), (t1, mass), (end, v1))?;
         let correction = &projection.linear.solution[..xi1.len()];
@@ -178,13 +183,20 @@ impl Energy {
         frames.momenta(mass, &|i| x[i], momenta);
         let twice_kinetic: f64 = momenta.iter().zip(&*x).map(|(p, x)| p * x).sum();
         frames.combine(end, xi1, v1);
-        Ok(if twice_kinetic > 0.0 { against / twice_kinetic } else { 0.0 })
+        Ok([if twice_kinetic > 0.0 { against / twice_kinetic } else { 0.0 }, twice_kinetic])
     }
 
     /// By how much the constraint turns that turns most (rad).
     fn turn(&self, assembly: &Assembly, step: (f64, f64)) -> f64 {
         let turn = |placed: &Placed| at(placed, &self.q0, &self.path.v, |q, v| placed.element.turn(step, q, v));
         assembly.placed().iter().map(turn).fold(0.0, larger)
+    }
+
+    /// Whether a change of the energy is below the rounding of that at the start.
+    #[cold]
+    fn is_rounding(&self, assembly: &Assembly, t0: f64, change: f64) -> bool {
+        let energies = |placed: &Placed| at(placed, &self.q0, &self.v0, |q, v| placed.element.energies(t0, q, v)[1]);
+        change.abs() <= f64::EPSILON * assembly.placed().iter().map(energies).sum::<f64>()
     }
 
     /// That the energy has changed by the work of the forces.
@@ -203,11 +215,6 @@ impl Energy {
 
 const INERTIA: &str = "energy2 of assemblies is for parts with inertia that have coordinates of their own";
 
-/// The coordinates and velocities of an element, handed on.
-fn at<T>(placed: &Placed, q: &[f64], v: &[f64], then: impl FnOnce(&[f64], &[f64]) -> T) -> T {
-    gathered(placed, |i| q[i], |q| gathered(placed, |i| v[i], |v| then(q, v)))
-}
-
 impl OneStep for Energy {
     fn step(&mut self, assembly: &Assembly, t0: f64, h: f64, state: &mut State) -> Result<StepReport, AssemblyError> {
         self.begin(assembly, (t0, h), state)?;
@@ -219,20 +226,24 @@ impl OneStep for Energy {
         let mut history = History::new();
         let mut pass = 0;
         let work = loop {
-            let Self { frames, system, settling, rule, mass, xi0, x, impulses, path, q0, .. } = self;
+            let Self { frames, system, settling, rule, mass, xi0, x, impulses, path, start, q0, v0, .. } = self;
             system.factors_serve = near;
             let mut mean = Mean { assembly, frames, rule, step: (t0, h), state, mass, xi0, q0, kappa, path, work: 0.0 };
             let evaluate = |system: &mut Sparse, x: &[f64], impulses: &[f64], fresh: bool| {
                 mean.evaluate(system, x, impulses, fresh)
             };
-            iterations += system.newton((settling, Stage::Collocation), x, impulses, evaluate)?;
+            let terms = |sizes: &mut [f64]| frames.add_terms(assembly, (t0, h), (q0, v0), start, sizes);
+            iterations += system.newton((settling, Stage::Collocation), x, impulses, terms, evaluate)?;
             let work = mean.work;
-            if pass == 0 && !settling.is_certain() {
+            if pass == 0 && !settling.certain {
                 return Err(AssemblyError::Branch { turn: self.turn(assembly, (t0, h)) });
             }
             self.path.end(&self.frames, (assembly, t0, h), (&self.q0, state), &self.x)?;
-            let change = self.finish(assembly, t0 + h, near)? - kappa;
-            if change.abs() <= Self::SETTLED {
+            let [asked, twice_kinetic] = self.finish(assembly, t0 + h, near)?;
+            let (change, before) = (asked - kappa, history.last().unwrap_or(f64::INFINITY));
+            // Where it no longer shrinks it is rounding, if that of the energy is no less.
+            let stalls = change.abs() >= STALL * before;
+            if change.abs() <= Self::SETTLED || (stalls && self.is_rounding(assembly, t0, change * twice_kinetic)) {
                 break work;
             }
             history.push(change.abs());
@@ -256,6 +267,6 @@ impl OneStep for Energy {
             let (v, v1) = (self.path.v[i], self.v1[i]);
             state.advance(h, i, h * v, v1, (v1 - v) / (0.5 * h));
         }
-        Ok(StepReport { iterations })
+        Ok(StepReport { iterations, work: Some(work) })
     }
 }

@@ -11,6 +11,7 @@ use crate::element::Blocks;
 use crate::pattern::Part;
 use crate::settling::Settling;
 use crate::sparse::Sparse;
+use crate::terms;
 use crate::{Assembly, AssemblyError, OneStep, Solver, State, StepReport};
 use dla::Stage;
 use lagrangian::linear::{larger, largest};
@@ -79,7 +80,7 @@ impl Lobatto {
         Ok(Self {
             stages: Sparse::new(stages * n, (stages - 1) * m, parts(stages, stages - 1), solver)?,
             end: Sparse::new(n, m, parts(1, 1), solver)?,
-            settling: [Settling::new(stages * n), Settling::new(n)],
+            settling: [Settling::new(stages * n, (stages - 1) * m), Settling::new(n, m)],
             terms: vec![StageTerms::new(); stages],
             room: Room::of(assembly, stages),
             p: vec![0.0; n],
@@ -138,11 +139,29 @@ impl Lobatto {
         }
         impulses.fill(0.0);
         let mut equations = Stages { assembly, rule, step, state, p0: p, terms, room };
-        let made =
-            stages.newton((&mut settling[0], Stage::Collocation), v, impulses, |system, v, impulses, fresh| {
+        let (s, unknowns) = (rule.stages, rule.stages * assembly.coordinates());
+        let sizes = |sizes: &mut [f64]| {
+            let (q, v) = (|i: usize| state.q(i), |i: usize| state.v(i));
+            terms::for_each(assembly, step, q, v, |_, placed, momentum, level| {
+                for (i, size) in placed.at.iter().zip(momentum) {
+                    sizes[i * s..][..s].iter_mut().for_each(|to| *to += size);
+                }
+                let rows = &mut sizes[unknowns + (s - 1) * placed.row..][..(s - 1) * placed.rows];
+                for stage in rows.chunks_exact_mut(placed.rows.max(1)) {
+                    stage.iter_mut().zip(level).for_each(|(to, size)| *to += size);
+                }
+            });
+        };
+        let made = stages.newton(
+            (&mut settling[0], Stage::Collocation),
+            v,
+            impulses,
+            sizes,
+            |system, v, impulses, fresh| {
                 equations.evaluate(system, v, impulses, fresh);
                 Ok(())
-            })?;
+            },
+        )?;
         // The momenta that all stages give.
         let mut gains = Stages { assembly, rule, step, state, p0: &[], terms, room };
         for placed in assembly.placed() {
@@ -155,10 +174,13 @@ impl Lobatto {
     }
 
     /// The velocity at the end, in `v1`: `L_v(q1, v1) = p1 + A(q1)' mu`, `A(q1) v1 + b = 0`.
-    fn project(&mut self, assembly: &Assembly, t1: f64) -> Result<u32, AssemblyError> {
-        let Self { end, settling, p, q1, v1, multipliers, each: [momentum, level, block, rows], .. } = self;
+    fn project(&mut self, assembly: &Assembly, (t1, h): (f64, f64)) -> Result<u32, AssemblyError> {
+        let stages = self.rule.stages;
+        let Self { end, settling, p, v, q1, v1, multipliers, each: [momentum, level, block, rows], .. } = self;
         multipliers.fill(0.0);
-        end.newton((&mut settling[1], Stage::Projection), v1, multipliers, |system, v1, multipliers, fresh| {
+        let (q1, start) = (&*q1, |i: usize| v[i * stages + stages - 1]);
+        let sizes = |sizes: &mut [f64]| terms::add(assembly, (t1, h), |i| q1[i], start, sizes);
+        end.newton((&mut settling[1], Stage::Projection), v1, multipliers, sizes, |system, v1, multipliers, fresh| {
             system.linear.right[..p.len()].copy_from_slice(p);
             for (k, placed) in assembly.placed().iter().enumerate() {
                 let (n, m, acts) = (placed.at.len(), placed.rows, placed.element.acts());
@@ -218,10 +240,10 @@ impl OneStep for Lobatto {
             (self.mean[i], self.q1[i], self.v1[i]) = (moved / h, state.ahead(i, moved), v[s - 1]);
         }
         let turn = self.turn(assembly, (t0, h), state);
-        if turn > NEAR || !self.settling[0].is_certain() {
+        if turn > NEAR || !self.settling[0].certain {
             return Err(AssemblyError::Branch { turn });
         }
-        self.project(assembly, t0 + h)?;
+        self.project(assembly, (t0 + h, h))?;
         if !largest(&self.q1).is_finite() || !largest(&self.v1).is_finite() {
             return Err(AssemblyError::NotFinite);
         }
@@ -231,6 +253,6 @@ impl OneStep for Lobatto {
             let acceleration = (v[s - 1] - v[s - 2]) / (h * (self.rule.c[s - 1] - self.rule.c[s - 2]));
             state.advance(h, i, moved, self.v1[i], acceleration);
         }
-        Ok(StepReport { iterations })
+        Ok(StepReport::of(iterations))
     }
 }

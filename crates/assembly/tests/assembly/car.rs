@@ -1,7 +1,7 @@
 //! A car with one to eight trailers, against its kinematics with one equation of motion, integrated by themselves.
 use approx::assert_abs_diff_eq;
 use assembly::parts::{Rotor, SteeredBlade, Trailer, Train};
-use assembly::{Assembly, Joint, Lobatto, OneStep, Solver, State};
+use assembly::{Assembly, Joint, Lobatto, OneStep, Solver, State, Work};
 use lagrangian::Scalar;
 use sleigh::{Sleigh, SleighState};
 
@@ -29,18 +29,25 @@ fn trailers(count: usize) -> Vec<Trailer> {
     (0..count).map(|k| Trailer::new(0.5, 0.1, 0.1, 0.2, 0.8 + 0.05 * k as f64).unwrap()).collect()
 }
 
-/// The end of a run by the assembly, headings after the place of the car; and what its constraints miss most.
-fn assembled(count: usize, steps: u32) -> (Vec<f64>, [f64; 2]) {
+/// The car and its trailers, the wheels straight and beginning to turn.
+fn steered(count: usize) -> (Train, State) {
     let mut train = Train::new(car(), trailers(count), |trailer| trailer.sleigh).unwrap();
     let [wheels] = train.assembly.body("front wheels", Rotor { inertia: WHEELS });
     train.assembly.attach("front axle", SteeredBlade { ahead: WHEELBASE }, [0, 1, 2, wheels]).unwrap();
     train.assembly.join("steering", Steering, [2, wheels]).unwrap();
-    let assembly: &Assembly = &train.assembly;
     let start = train.start(&SleighState { speed: 1.0, ..SleighState::default() }, &[0.2]);
     // The wheels begin to turn at the rate of their joint.
     let (q, mut v): (Vec<f64>, Vec<f64>) = (0..start.len()).map(|i| (start.q(i), start.v(i))).unzip();
     v[wheels] = AMPLITUDE * FREQUENCY;
-    let (mut state, mut method) = (State::new(assembly, &q, &v), Lobatto::new(assembly, Solver::Best, 5).unwrap());
+    let start = State::new(&train.assembly, &q, &v);
+    (train, start)
+}
+
+/// The end of a run by the assembly, headings after the place of the car; and what its constraints miss most.
+fn assembled(count: usize, steps: u32) -> (Vec<f64>, [f64; 2]) {
+    let (train, mut state) = steered(count);
+    let assembly: &Assembly = &train.assembly;
+    let mut method = Lobatto::new(assembly, Solver::Best, 5).unwrap();
     let (h, mut most) = (DURATION / f64::from(steps), [0.0f64; 2]);
     for k in 0..steps {
         method.step(assembly, f64::from(k) * h, h, &mut state).unwrap();
@@ -130,4 +137,29 @@ fn one_to_eight_trailers_follow_their_kinematics() {
         // They have left the straight line that they began in.
         assert!((fine[2] - fine[fine.len() - 1]).abs() > 0.1);
     }
+}
+
+/// What the driver does is work of the joint: by so much the energy changes. It is integrated with the sixth order.
+#[test]
+fn the_driver_does_the_work() {
+    let of = |steps: u32| {
+        let (train, mut state) = steered(2);
+        let (assembly, h) = (&train.assembly, DURATION / f64::from(steps));
+        let (mut method, mut work) = (Lobatto::new(assembly, Solver::Best, 5).unwrap(), Work::default());
+        let initial = assembly.energy(0.0, &state);
+        let (mut error, mut most) = (0.0f64, 0.0f64);
+        for k in 0..steps {
+            let (t0, t1, before) = (f64::from(k) * h, f64::from(k + 1) * h, state.clone());
+            let report = method.step(assembly, t0, h, &mut state).unwrap();
+            assert_eq!(report.work, None);
+            work.step(assembly, (t0, &before), (t1, &state), &report);
+            let gained = assembly.energy(t1, &state) - initial;
+            (error, most) = (error.max((gained - work.total()).abs()), most.max(gained.abs()));
+        }
+        println!("{steps}: {error:e} J of {most:e} J");
+        (error, most)
+    };
+    let ((coarse, _), (fine, most)) = (of(15), of(30));
+    assert!(most > 1e-4 && fine < 1e-6 * most);
+    assert!((coarse / fine).log2() > 5.5, "{coarse:e} {fine:e}");
 }

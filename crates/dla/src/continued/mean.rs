@@ -1,10 +1,11 @@
 use super::{Found, are_met, ends, with_reaction};
 use crate::State;
+use crate::convergence::tolerances::SHRINKING;
 use crate::corrections::Departure;
 use crate::derivatives::Derivatives;
 use crate::dla::{Dla, expected, predicted};
 use crate::increment::Increment;
-use crate::settle::{LEAST, SHRINKING, Settle, sup};
+use crate::settle::{LEAST, Settle, sup};
 use lagrangian::{Bordered, DiscreteConstraint, DiscreteLagrangian, System, from_fn, momentum};
 
 /// The square of a correction that is smaller, relative to the velocity, is below all rounding.

@@ -5,11 +5,11 @@ mod gradient;
 mod path;
 mod rule;
 mod sensitivity;
-mod settling;
 mod start;
 
 pub use gradient::Gradient;
 
+use crate::convergence::FixedPoint;
 use crate::positions::{affine_only, velocities_only};
 use crate::{OneStep, Stage, State, StepError, StepReport};
 use ends::Ends;
@@ -17,7 +17,6 @@ use lagrangian::linear::larger;
 use lagrangian::{Bracket, Lanes, Scalar, System, Twofold, from_fn, vectorized};
 use path::{Path, Points};
 use rule::Rule;
-use settling::Settling;
 use start::Start;
 
 /// The energy-preserving collocation method with `S` Gauss nodes, of order `2 S`, for `S` from 1 to 4.
@@ -126,6 +125,9 @@ impl<Sys, const N: usize> Step<'_, Sys, N> {
     /// The energy may miss the work by so many roundings; more is an error of the quadrature.
     const ROUNDINGS: f64 = 1024.0;
 
+    /// Iterations after which the search is given up.
+    const LIMIT: u32 = 200;
+
     /// With the widest instructions that the machine has.
     #[inline(never)]
     fn solved<const M: usize>(&self) -> Result<End<N>, StepError>
@@ -143,10 +145,10 @@ impl<Sys, const N: usize> Step<'_, Sys, N> {
     where
         Sys: System<N, M>,
     {
-        let Self { system, rule, start, h, .. } = *self;
-        let time = |tau: Lanes| tau * h + self.t0;
+        let Self { system, rule, start, t0, h, .. } = *self;
+        let time = |tau: Lanes| tau * h + t0;
         let (mut path, mut points, mut nodes) = (Path::rest(), Points::at(start), Points::at(start));
-        let mut settling = Settling::<3, N>::new();
+        let mut convergence = FixedPoint::<3, N>::new(Self::LIMIT);
         loop {
             let before = points.xi;
             points.follow(&path, rule.integrals_to_points(), start, h);
@@ -179,7 +181,7 @@ impl<Sys, const N: usize> Step<'_, Sys, N> {
                 compared(&points.xi, &before, rule.stages..rule.stages + 1),
             ];
             path = Path { q_rate, pi_rate };
-            let settled = settling.see(changes, averages.noise);
+            let settled = convergence.see(changes, averages.noise, || start.rounding(system, t0, h));
             let settled = settled.map_err(|source| StepError::Newton { stage: Stage::Collocation, source })?;
             if let Some(iterations) = settled {
                 let work = h * rule.weighted(&power);

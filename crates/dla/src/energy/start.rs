@@ -1,7 +1,10 @@
 use super::NO_BASIS;
-use crate::{Newton, State, StepError};
+use crate::convergence::tolerances::BLIND;
+use crate::{State, StepError};
 use lagrangian::linear::largest;
-use lagrangian::{Bracket, Dual, Lanes, MotionError, Scalar, System, Twofold, from_fn, inverse_reduced_mass};
+use lagrangian::{
+    Bracket, Dual, Lanes, MotionError, MotionRounding, Scalar, System, Twofold, from_fn, inverse_reduced_mass,
+};
 
 /// The beginning of a step on `D*`.
 #[derive(Debug, Clone, Copy)]
@@ -45,10 +48,28 @@ impl<const N: usize> Start<N> {
     }
 }
 
+impl<const N: usize> Start<N> {
+    /// The rounding of the rates of the coordinates and of the quasi-momenta, and of the quasi-velocities, over a step from here;
+    /// none where the motion is degenerate.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn rounding<Sys: System<N, M>, const M: usize>(&self, system: &Sys, t0: f64, h: f64) -> [[f64; N]; 3] {
+        let q = self.state.q();
+        let Some(basis) = system.admissible_basis(t0, q) else { return [[0.0; N]; 3] };
+        let v = basis.combine(&self.xi);
+        let Ok(motion) = MotionRounding::at(system, t0, q, &v) else { return [[0.0; N]; 3] };
+        let (pi, pi_rate) = (motion.quasi_momentum(&basis), motion.along(&basis));
+        let moved: [f64; N] = from_fn(|b| pi[b] + h.abs() * pi_rate[b]);
+        let xi: [f64; N] = from_fn(|a| (0..N).map(|b| self.inverse_mass[a][b].abs() * moved[b]).sum());
+        let q_rate = from_fn(|i| basis.vectors().iter().zip(&xi).map(|(w, xi)| w[i].abs() * xi).sum());
+        [q_rate, pi_rate, xi]
+    }
+}
+
 /// `carried - pi`; zero where it is more than rounding, as when the step before was made with another system.
 fn rounding<const N: usize>(carried: &[Twofold; N], pi: &[f64; N]) -> [f64; N] {
     let rest = from_fn(|a| (carried[a] - Twofold::from(pi[a])).hi);
-    if largest(&rest) <= Newton::ROUNDING * largest(pi) { rest } else { [0.0; N] }
+    if largest(&rest) <= BLIND * largest(pi) { rest } else { [0.0; N] }
 }
 
 pub(super) const MOVING: StepError =

@@ -84,6 +84,8 @@ pub struct Crossing<const N: usize> {
     pub t: f64,
     /// The interval of time that is known to hold the change of sign (s). The error of the method comes on top.
     pub within: f64,
+    /// How far apart the samples are by which it was found (s); 0 where the velocity jumped over it.
+    pub spacing: f64,
     /// Whether the function rises through zero.
     pub rising: bool,
     /// The state then: a step of the method, shortened to end there. Where a velocity jumps, the state after the jump.

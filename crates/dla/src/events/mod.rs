@@ -1,11 +1,14 @@
 //! Events: where a function of the state crosses zero along a run.
 
+mod close_crossings;
 mod crossing;
+mod interval;
 mod isolate;
 mod root;
 mod watch;
 mod zeros;
 
+pub use close_crossings::{Close, close_crossings};
 pub use crossing::{Crossing, Direction, Event};
 pub use watch::Watch;
 pub use zeros::{Zero, zeros};

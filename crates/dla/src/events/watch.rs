@@ -1,5 +1,5 @@
-use super::zeros::in_order;
-use super::{Crossing, Event, Zero, zeros};
+use super::interval::Interval;
+use super::{Close, Crossing, Direction, Event, close_crossings};
 use crate::{Observer, OneStep, State, StepError, StepReport, Undivided, View};
 use std::ops::ControlFlow;
 
@@ -10,9 +10,11 @@ use std::ops::ControlFlow;
 /// method that remembers more than the state is repeated as in its first step.
 ///
 /// Each step is looked at in [`samples`](Self::samples) parts, and a part beyond both of its ends, which costs so many steps
-/// more, and one. No crossing is missed while between neighbouring samples each function is monotone, or has one
+/// more, and one. A method with steps of its own within a step ([`OneStep::own_steps`]) is looked at so in each of them, which
+/// costs one step more. No crossing is missed while between neighbouring samples each function is monotone, or has one
 /// extremum and falls there to zero by no more than eight times what the parabola through the samples does; in
-/// particular not two crossings within a step. Three crossings between two samples count as one.
+/// particular not two crossings within a step. Three crossings between two samples count as one; where crossings are so close
+/// that there may be such, [`close`](Self::close) says so.
 ///
 /// An event that ends the run shows the inner observer a last node, by a step that is shortened to end there. The state
 /// of the run itself is then one node further; [`ended`](Self::ended) has the one at the event.
@@ -26,6 +28,8 @@ pub struct Watch<'a, Method, Inner, const N: usize> {
     events: &'a [Event<'a, N>],
     inner: Inner,
     before: Option<(f64, State<N>)>,
+    /// What the method remembers of its own steps, where it has any.
+    memory: Vec<f64>,
     /// Whether the parts of the step have been looked at already.
     in_parts: bool,
     crossings: Vec<Crossing<N>>,
@@ -33,48 +37,11 @@ pub struct Watch<'a, Method, Inner, const N: usize> {
     ended: Option<(Crossing<N>, u64)>,
 }
 
-/// A step, to be made again in parts.
-struct Again<'a, Sys, Method, const N: usize> {
-    system: &'a Sys,
-    method: &'a Method,
-    t0: f64,
-    h: f64,
-    start: &'a State<N>,
-    end: &'a State<N>,
-}
-
-impl<Sys, Method, const N: usize> Again<'_, Sys, Method, N> {
-    fn time(&self, part: f64) -> f64 {
-        self.t0 + part * self.h
-    }
-
-    /// The state after a part of the step, and what that step reported; none where it has no solution.
-    fn after<const M: usize>(&self, part: f64) -> Option<(State<N>, StepReport<M>)>
-    where
-        Method: OneStep<Sys, N, M> + Clone,
-    {
-        let mut state = *self.start;
-        let report = self.method.clone().step(self.system, self.t0, part * self.h, &mut state).ok()?;
-        Some((state, report))
-    }
-
-    fn state<const M: usize>(&self, part: f64) -> Option<State<N>>
-    where
-        Method: OneStep<Sys, N, M> + Clone,
-    {
-        match part {
-            0.0 => Some(*self.start),
-            1.0 => Some(*self.end),
-            _ => self.after(part).map(|(state, _)| state),
-        }
-    }
-}
-
 impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
     /// Watches a run made with `method`, and shows it to `inner`.
     pub fn new(method: Method, events: &'a [Event<'a, N>], inner: Inner) -> Self {
-        let (crossings, before, ended) = (Vec::new(), None, None);
-        Self { samples: 4, tolerance: 0.0, method, events, inner, before, in_parts: false, crossings, ended }
+        let (crossings, before, memory, ended) = (Vec::new(), None, Vec::new(), None);
+        Self { samples: 4, tolerance: 0.0, method, events, inner, before, memory, in_parts: false, crossings, ended }
     }
 
     /// What happened, in the order in which it did.
@@ -94,36 +61,14 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
         self.inner
     }
 
-    /// The crossings within a step from node `k`, in the order of time.
-    fn within<Sys, const M: usize>(&self, step: &Again<'_, Sys, Method, N>, k: u64) -> Vec<Crossing<N>>
-    where
-        Method: OneStep<Sys, N, M> + Clone,
-    {
-        if self.events.is_empty() {
-            return Vec::new();
-        }
-        let parts = i64::from(self.samples.max(1));
-        let states: Vec<_> = (-1..=parts + 1)
-            .filter_map(|j| {
-                let at = j as f64 / parts as f64;
-                step.state(at).map(|state| (at, state))
-            })
-            .collect();
-        let mut found = Vec::new();
-        for (index, event) in self.events.iter().enumerate() {
-            let value = |at: f64| step.state(at).map_or(f64::NAN, |state| event.value(step.time(at), &state));
-            let known: Vec<_> = states.iter().map(|(at, state)| (*at, event.value(step.time(*at), state))).collect();
-            let tolerance = self.tolerance / step.h.abs();
-            for Zero { at, within, rising } in zeros(&known, tolerance, |rising| event.counts(rising), value) {
-                let Some(state) = step.state(at) else { continue };
-                let within = within * step.h.abs();
-                found.push((at, Crossing { event: index, k, t: step.time(at), within, rising, state }));
-            }
-        }
-        in_order(found).collect()
+    /// Which crossings are so close to one another that others may have been missed (see [`close_crossings`]).
+    #[must_use]
+    pub fn close(&self) -> Option<Close> {
+        let looked = self.crossings.iter().map(|crossing| (crossing.event, crossing.t, crossing.spacing));
+        close_crossings(looked, |event| self.events[event].direction != Direction::Both)
     }
 
-    /// Looks for crossings on the way to a node; `Break` where one of them has ended the run.
+    /// Looks for events on the way to a node, and shows the inner observer the last one where an event ends the run: `Break`.
     fn look<Sys, const M: usize>(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()>
     where
         Method: OneStep<Sys, N, M> + Clone,
@@ -132,22 +77,54 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
         if self.ended.is_some() {
             return ControlFlow::Break(());
         }
-        if let Some((t0, start)) = self.before {
-            let method = self.method.clone();
-            let step =
-                Again { system: node.system, method: &method, t0, h: node.t - t0, start: &start, end: node.state };
-            for crossing in self.within(&step, node.k.saturating_sub(1)) {
-                if self.note(crossing, node.k) {
-                    let report = step.after((crossing.t - t0) / step.h).map_or(*report, |(_, report)| report);
-                    let last = View { system: node.system, k: node.k, t: crossing.t, state: &crossing.state };
-                    // The run ends here, whatever the inner observer says.
-                    let _ = self.inner.step(&last, &report);
-                    return ControlFlow::Break(());
-                }
+        if let Some((t0, start)) = self.before.filter(|_| !self.events.is_empty()) {
+            self.look_within(node, (t0, start));
+            if let Some((crossing, _)) = &self.ended {
+                let (system, method, h) = (node.system, &self.method, node.t - t0);
+                let step = Interval { system, method, t0, h, start: &start, end: node.state };
+                let report = step.after((crossing.t - t0) / h).map_or(*report, |(_, report)| report);
+                let last = View { system, k: node.k, t: crossing.t, state: &crossing.state };
+                // The run ends here, whatever the inner observer says.
+                let _ = self.inner.step(&last, &report);
+                return ControlFlow::Break(());
             }
         }
         self.before = Some((node.t, *node.state));
         ControlFlow::Continue(())
+    }
+
+    /// Looks for events in each of the steps that the method makes of its own on the way to a node, until one ends the run.
+    fn look_within<Sys, const M: usize>(&mut self, node: &View<'_, Sys, N>, start: (f64, State<N>))
+    where
+        Method: OneStep<Sys, N, M> + Clone,
+    {
+        let (mut from, method, mut memory) = (start, self.method.clone(), std::mem::take(&mut self.memory));
+        let step = (start.0, node.t - start.0);
+        // Where they cannot be made again, the rest is looked at as one.
+        let _ = method.own_steps(node.system, step, &start.1, &mut memory, &mut |t, state| {
+            let (t0, before) = std::mem::replace(&mut from, (t, *state));
+            self.look_between(node, (t0, &before), (t, state))
+        });
+        self.memory = memory;
+        if self.ended.is_none() {
+            let _ = self.look_between(node, (from.0, &from.1), (node.t, node.state));
+        }
+    }
+
+    /// Looks for events between two states of a step to `node`.
+    fn look_between<Sys, const M: usize>(
+        &mut self,
+        node: &View<'_, Sys, N>,
+        (t0, start): (f64, &State<N>),
+        (t, end): (f64, &State<N>),
+    ) -> ControlFlow<()>
+    where
+        Method: OneStep<Sys, N, M> + Clone,
+    {
+        let interval = Interval { system: node.system, method: &self.method, t0, h: t - t0, start, end };
+        let found = interval.crossings(self.events, (self.samples, self.tolerance), node.k.saturating_sub(1));
+        let ends = found.into_iter().any(|crossing| self.note(crossing, node.k));
+        if ends { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
     /// Notes a crossing; whether it ends the run, there at node `k`.
@@ -168,6 +145,7 @@ where
 {
     fn start(&mut self, node: &View<'_, Sys, N>) {
         self.before = Some((node.t, *node.state));
+        self.memory.clear();
         self.inner.start(node);
     }
 
@@ -179,16 +157,19 @@ where
                 let rising = old < 0.0;
                 if old * new.signum() < 0.0 && new != 0.0 && event.counts(rising) && self.ended.is_none() {
                     let (k, t, state) = (node.k, node.t, *node.state);
-                    self.note(Crossing { event: index, k, t, within: 0.0, rising, state }, k);
+                    self.note(Crossing { event: index, k, t, within: 0.0, spacing: 0.0, rising, state }, k);
                 }
             }
         }
         self.before = Some((node.t, *node.state));
+        self.memory.clear();
         self.inner.resume(node);
     }
 
     fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
-        if !std::mem::take(&mut self.in_parts) {
+        if std::mem::take(&mut self.in_parts) {
+            self.memory.clear();
+        } else {
             self.look(node, report)?;
         }
         self.inner.step(node, report)
@@ -196,6 +177,8 @@ where
 
     /// Each part is looked at as a step is: a divided step may hold many crossings.
     fn part(&mut self, end: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+        // It is made without what the method remembers.
+        self.memory.clear();
         self.look(end, report)?;
         self.in_parts = true;
         self.inner.part(end, report)

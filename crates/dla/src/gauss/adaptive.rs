@@ -5,10 +5,11 @@ use super::pace::{degree, longer, quarters_of, roughest};
 use super::rule::{Eight, quarter_octaves};
 use super::{Gauss, Taken};
 use crate::positions::affine_only;
-use crate::{OneStep, State, StepError, StepReport};
+use crate::{OneStep, OwnStep, State, StepError, StepReport};
 use lagrangian::System;
 use lagrangian::linear::larger;
 use lagrangian::simd::dispatch;
+use std::ops::ControlFlow;
 
 /// Gauss collocation with steps of its own within a step of the schedule, as many as a tolerance asks for.
 ///
@@ -101,7 +102,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
         affine_only(system, t, state)?;
         let (quarters, start) = (self.quarters, *state);
-        let found = self.cross(system, t, h, state);
+        let found = self.cross(system, t, h, state, |_, _| ControlFlow::Continue(()));
         if found.is_err() {
             (self.quarters, *state) = (quarters, start);
         }
@@ -118,9 +119,27 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
         self.quarters = memory.first().map(|&quarters| (quarters as i32).clamp(-CUT, CUT));
         self.gauss.memory = Memory::load(memory.get(1..).unwrap_or_default());
     }
+
+    fn own_steps(
+        &self,
+        system: &Sys,
+        (t, h): (f64, f64),
+        state: &State<N>,
+        memory: &mut Vec<f64>,
+        see: &mut OwnStep<'_, N>,
+    ) -> Result<(), StepError> {
+        let (mut method, mut state) = (*self, *state);
+        if !memory.is_empty() {
+            OneStep::<Sys, N, M>::recall(&mut method, memory, &state);
+        }
+        method.cross::<Sys, N, M>(system, t, h, &mut state, see)?;
+        *memory = OneStep::<Sys, N, M>::memory(&method);
+        Ok(())
+    }
 }
 
 impl<const S: usize> GaussAdaptive<S> {
+    /// Crosses an interval, and shows where its steps end within it.
     #[inline(always)]
     fn cross<Sys: System<N, M>, const N: usize, const M: usize>(
         &mut self,
@@ -128,6 +147,7 @@ impl<const S: usize> GaussAdaptive<S> {
         t0: f64,
         whole: f64,
         state: &mut State<N>,
+        mut see: impl FnMut(f64, &State<N>) -> ControlFlow<()>,
     ) -> Result<StepReport<M>, StepError> {
         let (mut made, mut iterations, mut refused) = (0.0, 0, false);
         let mut quarters = self.quarters.unwrap_or_else(|| first(system, t0, whole, state));
@@ -160,6 +180,9 @@ impl<const S: usize> GaussAdaptive<S> {
                 return Ok(StepReport::of(iterations));
             }
             made += h;
+            if see(t0 + made, state).is_break() {
+                return Ok(StepReport::of(iterations));
+            }
             // After one that was too long none is longer at once.
             quarters += if refused { longer.min(0) } else { longer };
             refused = false;

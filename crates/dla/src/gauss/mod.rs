@@ -8,14 +8,15 @@ mod rule;
 
 pub use adaptive::GaussAdaptive;
 
+use crate::convergence::FixedPoint;
 use crate::positions::{affine_only, onto_positions};
-use crate::{History, NewtonError, OneStep, Stage, State, StepError, StepReport};
+use crate::{OneStep, Stage, State, StepError, StepReport};
 use ending::Ending;
 pub(crate) use ending::SLOWEST;
 use lagrangian::linear::larger;
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
 use lagrangian::simd::dispatch;
-use lagrangian::{System, from_fn, reduced_slope, velocity_of};
+use lagrangian::{System, from_fn, reduced_rounding, reduced_slope, velocity_of};
 use lanes::{Outcome, Slopes};
 use memory::Memory;
 use rule::Eight;
@@ -136,41 +137,31 @@ impl<const S: usize> Gauss<S> {
         (q0, xi0): (&[f64; N], &[f64; N]),
         stages: &mut Stages<N, S>,
     ) -> Result<u32, StepError> {
-        let fail = |source| StepError::Newton { stage: Stage::Collocation, source };
-        let (mut before, mut history) = (f64::INFINITY, History::new());
-        for iteration in 1..=self.max_iterations {
-            let (mut moved, mut size) = (0.0f64, 0.0f64);
+        let mut convergence = FixedPoint::<2, N>::new(self.max_iterations);
+        loop {
+            let mut seen = [[(0.0f64, 0.0f64); N]; 2];
             for i in 0..S {
                 let a = &self.coefficients[i];
                 let (dq, dxi) = (Self::sum(h, a, &stages.velocity), Self::sum(h, a, &stages.acceleration));
                 let (q, xi) = (from_fn(|k| q0[k] + dq[k]), from_fn(|k| xi0[k] + dxi[k]));
                 let slope = reduced_slope(system, t + self.nodes[i] * h, &q, &xi)?;
-                for k in 0..N {
-                    moved = larger(moved, (slope.velocity[k] - stages.velocity[i][k]).abs());
-                    moved = larger(moved, (slope.acceleration[k] - stages.acceleration[i][k]).abs());
-                    size = larger(larger(size, slope.velocity[k].abs()), slope.acceleration[k].abs());
+                let new = [slope.velocity, slope.acceleration];
+                let old = [stages.velocity[i], stages.acceleration[i]];
+                for (seen, (new, old)) in seen.iter_mut().zip(new.iter().zip(&old)) {
+                    for k in 0..N {
+                        let (change, size) = seen[k];
+                        seen[k] = (larger(change, (new[k] - old[k]).abs()), larger(size, new[k].abs()));
+                    }
                 }
                 (stages.velocity[i], stages.acceleration[i]) = (slope.velocity, slope.acceleration);
             }
-            if !size.is_finite() || moved.is_nan() {
-                return Err(fail(NewtonError::NotFinite { iteration, history }));
+            let settled =
+                convergence.see(seen, 0.0, || reduced_rounding(system, t, q0, xi0, h).unwrap_or([[0.0; N]; 2]));
+            let settled = settled.map_err(|source| StepError::Newton { stage: Stage::Collocation, source })?;
+            if let Some(iterations) = settled {
+                return Ok(iterations);
             }
-            history.push(moved / size);
-            // At rounding the changes stop shrinking.
-            if moved == 0.0 || (moved <= 1e-12 * size && moved >= 0.5 * before) {
-                return Ok(iteration);
-            }
-            let (stuck, grows) = (iteration > PATIENCE && moved >= 0.5 * before, iteration > 3 && moved > 2.0 * before);
-            if (stuck || grows) && moved <= rounding(q0, h, &stages.velocity) * size {
-                return Ok(iteration);
-            }
-            if grows {
-                let (correction, before) = (moved / size, before / size);
-                return Err(fail(NewtonError::Diverged { iteration, correction, before, history }));
-            }
-            before = moved;
         }
-        Err(fail(NewtonError::IterationLimit { iterations: self.max_iterations, correction: before, history }))
     }
 }
 
@@ -211,18 +202,6 @@ impl<const N: usize> Taken<N> {
 /// Relative changes that may still be to come where a search ends. What is left out is the same in every step, and adds up:
 /// where the contraction was believed as the first iterations show it, a run of `gauss8` lost `5e-17` of its energy a step.
 pub(crate) const LEFT: f64 = f64::EPSILON / 16.0;
-
-/// After so many iterations without an end the rounding of the places is looked at.
-const PATIENCE: u32 = 20;
-
-/// What the rounding of places far from the origin, `eps |q|`, is of the way of a step: so much of themselves slopes that change
-/// along the way cannot settle.
-#[cold]
-fn rounding<const N: usize, const S: usize>(q0: &[f64; N], h: f64, velocity: &[[f64; N]; S]) -> f64 {
-    let largest = |x: f64, y: &f64| larger(x, y.abs());
-    let way = h.abs() * velocity.iter().flatten().fold(0.0, largest);
-    4.0 * f64::EPSILON * q0.iter().fold(0.0, largest) / way
-}
 
 impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<Sys, N, M> for Gauss<S> {
     #[inline]

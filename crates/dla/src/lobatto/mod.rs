@@ -4,11 +4,14 @@ mod sensitivity;
 mod stages;
 mod tables;
 
-use crate::branch::{self, Search};
+use crate::branch;
+use crate::convergence::tolerances::NEAR_ROUNDINGS;
 use crate::dependent::{named_along, named_at};
+use crate::newton::Found;
 use crate::positions::affine_only;
 use crate::projection::{Projected, Projection};
-use crate::{Newton, OneStep, Stage, State, StepError, StepReport};
+use crate::{Newton, NewtonError, OneStep, Stage, State, StepError, StepReport};
+use lagrangian::linear::largest;
 use lagrangian::{System, from_fn, momentum};
 use stages::Stages;
 use std::f64::consts::PI;
@@ -65,6 +68,26 @@ impl<const S: usize> Lobatto<S> {
         Self { tables: Tables::new(), newton: Newton::default() }
     }
 
+    /// The stages that a search from `start` leads to, and in how many iterations; and whether they are those near the start: the
+    /// search contracted, and began within `part` of its end, or where the two differ by the rounding of the place or of the
+    /// equations.
+    #[inline(always)]
+    fn found_near<Sys: System<N, M>, const N: usize, const M: usize>(
+        &self,
+        part: f64,
+        stages: &mut Stages<'_, Sys, N, M, S>,
+        start: &[[f64; N]; S],
+        v: &mut [[f64; N]; S],
+    ) -> Result<(u32, bool), NewtonError> {
+        let begun = *stages;
+        let Found { iterations, first, certain } = self.newton.search_blocks(stages, v)?;
+        let place = 0.5 * f64::EPSILON * largest(begun.start.q());
+        let near = first <= part * largest(v.as_flattened())
+            || (begun.h * first).abs() <= NEAR_ROUNDINGS * place
+            || begun.missed(start) <= NEAR_ROUNDINGS;
+        Ok((iterations, certain && near))
+    }
+
     /// The stages at the end of the branch of solutions that begins with a step of length zero.
     #[cold]
     #[inline(never)]
@@ -75,11 +98,9 @@ impl<const S: usize> Lobatto<S> {
         v0: [f64; N],
     ) -> Option<[[f64; N]; S]> {
         branch::followed(&[v0; S], 0.5 * branch::NEAR / turn, |part, guess| {
-            let mut search = Search::new(Stages { h: part * whole.h, ..*whole });
-            self.newton.solve_blocks(&mut search, guess).ok()?;
-            let flat = guess.as_flattened();
-            let near = search.is_certain(flat) && search.began_within(0.1, flat);
-            (near && search.equations.turn(guess) < PI).then_some(())
+            let (mut stages, start) = (Stages { h: part * whole.h, ..*whole }, *guess);
+            let near = self.found_near(0.1, &mut stages, &start, guess).ok()?.1;
+            (near && stages.turn(guess) < PI).then_some(())
         })
     }
 }
@@ -101,23 +122,21 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
         }
         let mut impulses = [impulse; S];
         impulses[S - 1] = [0.0; M];
-        let first = Stages { tables: &self.tables, system, t0, h, start: state, p0, impulses };
-        let mut search = Search::new(first);
-        let mut iterations = self
-            .newton
-            .solve_blocks(&mut search, &mut v)
+        let first = Stages { tables: &self.tables, system, t0, h, start: state, p0, impulses, before: impulses };
+        let (mut stages, begun) = (first, v);
+        let (mut iterations, near) = self
+            .found_near(0.3, &mut stages, &begun, &mut v)
             .map_err(|source| named_along(system, (t0, h), *state, v0, source))?;
-        let turn = search.equations.turn(&v);
-        let flat = v.as_flattened();
-        if !(turn <= branch::NEAR && search.is_certain(flat) && search.began_within(0.3, flat)) {
+        let turn = stages.turn(&v);
+        if !(near && turn <= branch::NEAR) {
             v = self.followed(&first, turn, v0).ok_or(StepError::Branch)?;
-            search = Search::new(first);
+            stages = first;
             iterations += self
                 .newton
-                .solve_blocks(&mut search, &mut v)
-                .map_err(|source| named_along(system, (t0, h), *state, v0, source))?;
+                .search_blocks(&mut stages, &mut v)
+                .map_err(|source| named_along(system, (t0, h), *state, v0, source))?
+                .iterations;
         }
-        let stages = search.equations;
 
         let mut p1 = p0;
         for (point, weight) in stages.points(&v).iter().zip(b) {

@@ -1,4 +1,4 @@
-use lagrangian::{Dual, HyperDual, System, from_fn, mass_matrix};
+use lagrangian::{Dual, HyperDual, Rounded, System, configuration_slope, from_fn, mass_matrix, momentum};
 
 /// A configuration and a velocity at one time, with the impulse of the constraint there.
 #[derive(Debug, Clone, Copy)]
@@ -36,6 +36,15 @@ pub struct Linearised<const N: usize, const M: usize> {
     pub a: [[f64; N]; M],
 }
 
+/// `p`, `w` and `g` of [`Linearised`], and the functions of constraints on positions, with bounds on their rounding.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Terms<const N: usize, const M: usize> {
+    pub(super) p: [Rounded; N],
+    pub(super) w: [Rounded; N],
+    pub(super) g: [Rounded; M],
+    pub(super) positions: [Option<Rounded>; M],
+}
+
 impl<const N: usize, const M: usize> Point<N, M> {
     /// `h (L_q + F) + A' l`.
     #[must_use]
@@ -49,6 +58,23 @@ impl<const N: usize, const M: usize> Point<N, M> {
             let constrained: f64 = (0..M).map(|k| a[k][i] * impulse[k]).sum();
             h * (l_q[i] + force.map_or(0.0, |f| f[i])) + constrained
         })
+    }
+
+    /// What the equations are made of here, with the rounding of their terms; `way` is the sum of the sizes of the increments
+    /// that led to the configuration.
+    pub(super) fn terms<Sys: System<N, M>>(&self, system: &Sys, h: f64, way: &[f64; N]) -> Terms<N, M> {
+        let t = Rounded::exact(self.t);
+        let q: [Rounded; N] = from_fn(|i| Rounded { value: self.q[i], size: self.q[i].abs() + way[i] });
+        let v = self.v.map(Rounded::once);
+        let l_q = configuration_slope(system, t, &q, &v);
+        let force = system.force(t, &q, &v);
+        let (a, b) = system.constraint(t, &q);
+        let w = from_fn(|i| {
+            let pushed = force.map_or(l_q[i], |force| l_q[i] + force[i]) * h;
+            (0..M).fold(pushed, |sum, k| sum + a[k][i] * self.impulse[k])
+        });
+        let g = from_fn(|k| (0..N).fold(b[k], |sum, i| sum + a[k][i] * v[i]));
+        Terms { p: momentum(system, t, &q, &v), w, g, positions: system.holonomic(t, &q).unwrap_or([None; M]) }
     }
 
     /// All that the equations need here, with its derivatives.

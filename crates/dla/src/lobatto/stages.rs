@@ -1,11 +1,12 @@
 use super::dense::Dense;
-use super::point::{Linearised, Point};
+use super::point::{Linearised, Point, Terms};
 use super::tables::Tables;
 use crate::State;
 use crate::branch;
+use crate::convergence::most_roundings;
 use crate::newton::BlockEquations;
 use lagrangian::linear::Singular;
-use lagrangian::{System, from_fn, position_misses};
+use lagrangian::{Rounded, System, from_fn, position_misses};
 
 /// The equations for the velocities of all stages of a step, with the impulses of the constraint at all but the last.
 pub(super) struct Stages<'a, Sys, const N: usize, const M: usize, const S: usize> {
@@ -17,6 +18,8 @@ pub(super) struct Stages<'a, Sys, const N: usize, const M: usize, const S: usize
     pub(super) p0: [f64; N],
     /// `h Lambda` of every stage; that of the last stays zero.
     pub(super) impulses: [[f64; M]; S],
+    /// The impulses before the last correction.
+    pub(super) before: [[f64; M]; S],
 }
 
 impl<Sys, const N: usize, const M: usize, const S: usize> Clone for Stages<'_, Sys, N, M, S> {
@@ -57,6 +60,33 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> Stages<'
             v: v[j],
             impulse: self.impulses[j],
         })
+    }
+
+    /// How many roundings of their terms the equations are missed by, at most, by these velocities and the impulses.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn missed(&self, v: &[[f64; N]; S]) -> f64 {
+        let Tables { a, a_hat, blind, .. } = self.tables;
+        let h = self.h;
+        let terms: [Terms<N, M>; S] = from_fn(|j| {
+            let way = |i: usize| (0..S).map(|k| (h * a[j][k] * v[k][i]).abs()).sum::<f64>();
+            self.points(v)[j].terms(self.system, h, &from_fn(way))
+        });
+        let momenta = (0..S).flat_map(|i| {
+            let terms = &terms;
+            (0..N).map(move |x| {
+                let gained = (0..S - 1).fold(Rounded::exact(self.p0[x]), |sum, j| sum + terms[j].w[x] * a_hat[i][j]);
+                gained - terms[i].p[x]
+            })
+        });
+        let rows = (1..S).flat_map(|i| {
+            let terms = &terms;
+            (0..M).map(move |k| match terms[i].positions[k] {
+                Some(g) => g / h,
+                None => terms[0].g[k] * blind[i] - terms[i].g[k],
+            })
+        });
+        most_roundings(momenta.chain(rows))
     }
 
     /// The linear equations of Newton's method.
@@ -125,6 +155,10 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> Stages<'
 impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> BlockEquations<N, S>
     for Stages<'_, Sys, N, M, S>
 {
+    fn roundings(&self, v: &[[f64; N]; S]) -> Option<f64> {
+        Some(Self { impulses: self.before, ..*self }.missed(v))
+    }
+
     /// Not inlined: it is called from each of the searches that a step may make, and is long.
     #[inline(never)]
     fn correction(&mut self, v: &[[f64; N]; S]) -> Result<[[f64; N]; S], Singular> {
@@ -133,6 +167,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> BlockEqu
         let mut dense = self.equations(&points, &at);
         dense.solve()?;
         let solution = dense.right();
+        self.before = self.impulses;
         for j in 0..S - 1 {
             for k in 0..M {
                 self.impulses[j][k] += solution[Dense::<N, M, S>::multiplier(j, k)];

@@ -1,8 +1,9 @@
 use super::linear::Scaled;
 use super::{Differentiable, SensitivityError, StepEquations, StepStart};
+use crate::convergence::tolerances::{ROUNDINGS, STALL};
 use crate::{History, NewtonError};
 use lagrangian::linear::Singular;
-use lagrangian::{Gradients, Scalar, Seeded, from_fn};
+use lagrangian::{Gradients, Rounded, Scalar, Seeded, from_fn};
 use nalgebra::DMatrix;
 
 /// The system at parameters that may carry derivatives.
@@ -119,6 +120,25 @@ impl<const N: usize, const M: usize> Elementary<'_, '_, N, M> {
         }
     }
 
+    /// Whether the residuals at `z` are a few roundings of what they are made of: to first order, of all variables times the
+    /// derivatives in them.
+    #[cold]
+    fn is_met(&self, z: &[f64]) -> Result<bool, SensitivityError> {
+        let inputs = self.q.iter().chain(&self.v).chain([&self.t, &self.h]).chain(self.parameters);
+        let variables: Vec<f64> = z.iter().chain(inputs).copied().collect();
+        let (mut residuals, mut sizes) = (vec![0.0; z.len()], vec![0.0; z.len()]);
+        for block in 0..blocks(variables.len()) {
+            for (i, residual) in self.evaluate(z, block)?.residual.iter().enumerate() {
+                residuals[i] = residual.re;
+                for (eps, x) in residual.eps.iter().zip(&variables[variable(block, 0)..]) {
+                    sizes[i] += (eps * x).abs();
+                }
+            }
+        }
+        let met = |(r, size): (&f64, &f64)| Rounded { value: *r, size: *size }.roundings() <= ROUNDINGS;
+        Ok(residuals.iter().zip(&sizes).all(met))
+    }
+
     /// The unknowns that solve the equations, to rounding.
     fn solution(&self) -> Result<Vec<f64>, SensitivityError> {
         let mut z = self.method.guess(&self.v);
@@ -146,7 +166,8 @@ impl<const N: usize, const M: usize> Elementary<'_, '_, N, M> {
             }
             let size = jacobian.size(z.iter().copied());
             let change = jacobian.size(correction.iter().copied());
-            if nearly || change <= Self::NEARLY[1] * size {
+            let stalls = iteration > 1 && change >= STALL * last * size;
+            if nearly || change <= Self::NEARLY[1] * size || (stalls && self.is_met(&z)?) {
                 return Ok(z);
             }
             nearly = change <= Self::NEARLY[0] * size;

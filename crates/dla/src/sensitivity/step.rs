@@ -1,6 +1,7 @@
 use super::implicit::{Elementary, Seeder};
 use super::reduced::{Columns, Frame};
 use super::{Differentiable, SensitivityError, StepDerivative, Variation};
+use crate::convergence::tolerances::NEAR_ROUNDINGS;
 use crate::{OneStep, State, StepReport};
 use lagrangian::linear::{larger, largest};
 use lagrangian::{Gradients, Member, Parametrised, Scalar, Seeded, SeededMember, System, Unparametrised, from_fn};
@@ -163,7 +164,9 @@ fn derivative<const N: usize, const M: usize, const P: usize>(
         v = step.velocity;
     }
 
-    let defect = defect(start, end, &moved, &v);
+    let inputs = start.q().iter().chain(start.v()).chain([&t, &h]).chain(parameters);
+    let rounding = from_fn(|i| inputs.clone().enumerate().map(|(j, x)| (chain[(N + i, j)] * x).abs()).sum());
+    let defect = defect(start, end, (&moved, &v), &rounding);
     if defect > AGREEMENT || defect.is_nan() {
         return Err(SensitivityError::OtherSolution { defect });
     }
@@ -190,11 +193,21 @@ fn derivative<const N: usize, const M: usize, const P: usize>(
 const AGREEMENT: f64 = 1e-9;
 
 /// The largest difference between the step made and the solution of its equations: of the increments relative to the
-/// coordinates, in whose digits they are rounded, of the velocities relative to the largest.
-fn defect<const N: usize>(start: &State<N>, end: &State<N>, moved: &[f64; N], velocity: &[f64; N]) -> f64 {
+/// coordinates, in whose digits they are rounded, of the velocities relative to the largest, but for what the rounding of the
+/// inputs makes of them: `rounding`, in units of `2^-53`.
+fn defect<const N: usize>(
+    start: &State<N>,
+    end: &State<N>,
+    (moved, velocity): (&[f64; N], &[f64; N]),
+    rounding: &[f64; N],
+) -> f64 {
     let (before, after) = (start.unwrapped(), end.unwrapped());
     let off: [f64; N] = from_fn(|i| after[i] - before[i] - moved[i]);
-    let slower: [f64; N] = from_fn(|i| end.v()[i] - velocity[i]);
+    let noise: [f64; N] = rounding.map(|size| NEAR_ROUNDINGS * 0.5 * f64::EPSILON * size);
+    let slower: [f64; N] = from_fn(|i| {
+        let off = end.v()[i] - velocity[i];
+        if off.abs() <= noise[i] { 0.0 } else { off }
+    });
     let relative = |off: &[f64], size: f64| if largest(off) == 0.0 { 0.0 } else { largest(off) / size };
     let place = larger(larger(largest(&before), largest(&after)), largest(moved));
     larger(relative(&off, place), relative(&slower, larger(largest(velocity), largest(start.v()))))

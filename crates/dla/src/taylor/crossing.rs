@@ -4,9 +4,10 @@ use crate::StepError;
 use crate::state::two_sum;
 use lagrangian::OwnAxes;
 use lagrangian::simd::{Four, FourKernel};
+use std::ops::ControlFlow;
 
 /// An interval to be crossed.
-pub(crate) struct Crossing {
+pub(crate) struct Crossing<See> {
     pub(crate) axes: OwnAxes,
     /// `(omega, u, Y, X)` at its beginning.
     pub(crate) start: [f64; 4],
@@ -14,6 +15,8 @@ pub(crate) struct Crossing {
     pub(crate) whole: f64,
     /// The error of a step, in units of `1 + |(omega, u)|`.
     pub(crate) tolerance: f64,
+    /// Looks at where a step ends within it, so long after its beginning (s); `Break` ends the crossing there.
+    pub(crate) see: See,
 }
 
 /// Where it ends.
@@ -28,11 +31,11 @@ pub(crate) struct Crossed {
 /// Steps within an interval before it is given up.
 pub(crate) const MAX_STEPS: u32 = 10_000_000;
 
-impl FourKernel for Crossing {
+impl<See: FnMut(f64, Crossed) -> ControlFlow<()>> FourKernel for Crossing<See> {
     type Output = Result<Crossed, StepError>;
 
     #[inline(always)]
-    fn run<F: Four>(self, zero: F) -> Self::Output {
+    fn run<F: Four>(mut self, zero: F) -> Self::Output {
         let equations = Equations::new(zero, &self.axes);
         let mut series = Series::new(zero);
         // The turn is a sum of many, with its rounding.
@@ -47,7 +50,7 @@ impl FourKernel for Crossing {
             let (next, by) = series.after(h);
             z = next;
             turn = two_sum(turn.0, turn.1 + by);
-            if ends {
+            if ends || (self.see)(interval.made(), Crossed { end: z.row(), turn: turn.0 }).is_break() {
                 return Ok(Crossed { end: z.row(), turn: turn.0 });
             }
         }
@@ -62,6 +65,14 @@ mod tests {
     use lagrangian::simd::{in_fours, in_plain_fours};
     use proptest::prelude::*;
 
+    /// Keeps what it is shown.
+    fn keep(seen: &mut Vec<(f64, Crossed)>) -> impl FnMut(f64, Crossed) -> ControlFlow<()> + '_ {
+        |t, crossed| {
+            seen.push((t, crossed));
+            ControlFlow::Continue(())
+        }
+    }
+
     proptest! {
         /// In registers and on plain numbers, to the last bit.
         #[test]
@@ -73,10 +84,14 @@ mod tests {
             // Of another sign than the lead the gain would be that of no body, whose spin could grow without bounds.
             let gain = share * lead;
             let axes = OwnAxes { origin: Origin::Anywhere, inverse: [1.0; 2], lead, gain, along, turning };
-            let crossing = || Crossing { axes, start, whole, tolerance: 10f64.powi(exponent) };
             let bits = |crossed: Crossed| (crossed.end.map(f64::to_bits), crossed.turn.to_bits());
-            let (one, other) = (in_fours(crossing()).unwrap(), in_plain_fours(crossing()).unwrap());
+            let mut seen = [Vec::new(), Vec::new()];
+            let [one, other] = &mut seen;
+            let crossing = |seen| Crossing { axes, start, whole, tolerance: 10f64.powi(exponent), see: keep(seen) };
+            let (one, other) = (in_fours(crossing(one)).unwrap(), in_plain_fours(crossing(other)).unwrap());
             prop_assert_eq!(bits(one), bits(other));
+            let [one, other] = seen.map(|seen| seen.iter().map(|(t, at)| (t.to_bits(), bits(*at))).collect::<Vec<_>>());
+            prop_assert_eq!(one, other);
         }
     }
 }

@@ -3,12 +3,13 @@ pub(crate) mod pace;
 pub(crate) mod place;
 pub(crate) mod series;
 
-use crate::{OneStep, State, StepError, StepReport};
+use crate::{OneStep, OwnStep, State, StepError, StepReport};
 use crossing::Crossing;
 pub(crate) use crossing::{Crossed, MAX_STEPS};
 use lagrangian::simd::in_fours;
-use lagrangian::{System, velocity_of};
+use lagrangian::{OwnAxes, System, velocity_of};
 use place::{increment, place};
+use std::ops::ControlFlow;
 
 /// Taylor series of the reduced motion in the body's own axes, with steps of its own within a step of the schedule, as many as a
 /// tolerance asks for: what a motion of second degree costs least by.
@@ -40,9 +41,18 @@ impl Taylor {
     }
 }
 
-impl<Sys: System<3, 1>> OneStep<Sys, 3, 1> for Taylor {
-    #[inline]
-    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<3>) -> Result<StepReport<1>, StepError> {
+/// Where a step begins.
+struct Departure<'a> {
+    axes: OwnAxes,
+    state: &'a State<3>,
+    place: [f64; 2],
+    /// `(omega, u, Y, X)`.
+    start: [f64; 4],
+}
+
+impl<'a> Departure<'a> {
+    #[inline(always)]
+    fn new<Sys: System<3, 1>>(system: &Sys, t: f64, state: &'a State<3>) -> Result<Self, StepError> {
         let Some(axes) = system.own_axes() else {
             return Err(StepError::Unsupported {
                 reason: "series need equations of second degree in axes that turn with the body",
@@ -50,18 +60,55 @@ impl<Sys: System<3, 1>> OneStep<Sys, 3, 1> for Taylor {
         };
         let (q0, [u, omega, _]) = (*state.q(), state.quasi_velocities(system, t)?);
         let place = place(axes.origin, &q0);
-        let start = [omega, u, place[1], place[0]];
-        let crossed = in_fours(Crossing { axes, start, whole: h, tolerance: self.tolerance })?;
-        let increment = increment(axes.origin, &q0, place, &crossed);
+        Ok(Self { axes, state, place, start: [omega, u, place[1], place[0]] })
+    }
+
+    /// The state at the time `t` (s), where the motion has come so far.
+    #[inline(always)]
+    fn moved<Sys: System<3, 1>>(&self, system: &Sys, t: f64, crossed: &Crossed) -> Result<State<3>, StepError> {
+        let Self { axes, state, place, .. } = self;
+        let increment = increment(axes.origin, state.q(), *place, crossed);
         let xi1 = [crossed.end[1], crossed.end[0], 0.0];
         state.stays_finite(&increment, &xi1)?;
         // The velocity is on the constraint at the heading without its turns, of which there may be many.
-        let mut moved = *state;
+        let mut moved = **state;
         moved.advance(&increment, [0.0; 3], None);
-        let v1 = velocity_of(system, t + h, moved.q(), &xi1)?;
+        let v1 = velocity_of(system, t, moved.q(), &xi1)?;
         moved.stays_finite(&[0.0; 3], &v1)?;
         moved.advance(&[0.0; 3], v1, Some(xi1));
-        *state = moved;
+        Ok(moved)
+    }
+}
+
+impl<Sys: System<3, 1>> OneStep<Sys, 3, 1> for Taylor {
+    #[inline]
+    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<3>) -> Result<StepReport<1>, StepError> {
+        let from = Departure::new(system, t, state)?;
+        let (axes, start, tolerance) = (from.axes, from.start, self.tolerance);
+        let see = |_, _| ControlFlow::Continue(());
+        let crossed = in_fours(Crossing { axes, start, whole: h, tolerance, see })?;
+        *state = from.moved(system, t + h, &crossed)?;
         Ok(StepReport::of(0))
+    }
+
+    fn own_steps(
+        &self,
+        system: &Sys,
+        (t, h): (f64, f64),
+        state: &State<3>,
+        _memory: &mut Vec<f64>,
+        see: &mut OwnStep<'_, 3>,
+    ) -> Result<(), StepError> {
+        let from = Departure::new(system, t, state)?;
+        let (axes, start, tolerance, mut failure) = (from.axes, from.start, self.tolerance, None);
+        let see = |made: f64, crossed: Crossed| match from.moved(system, t + made, &crossed) {
+            Ok(state) => see(t + made, &state),
+            Err(error) => {
+                failure = Some(error);
+                ControlFlow::Break(())
+            }
+        };
+        in_fours(Crossing { axes, start, whole: h, tolerance, see })?;
+        failure.map_or(Ok(()), Err)
     }
 }

@@ -80,4 +80,9 @@ impl Interval {
         self.made = two_sum(self.made.0, self.made.1 + h);
         Some((h, false))
     }
+    /// How far it has come (s).
+    #[inline(always)]
+    pub(crate) fn made(&self) -> f64 {
+        self.made.0
+    }
 }

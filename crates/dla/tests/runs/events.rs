@@ -1,7 +1,7 @@
 use crate::{Motion, backward, sleigh, sleigh_state, state_of};
 use dla::{
-    Composition, Direction, Dla, Event, Gauss, OneStep, Schedule, State, Trajectory, Watch, drive, drive_part,
-    piece_by_piece,
+    Close, Composition, Direction, Dla, Event, Gauss, OneStep, Schedule, State, Trajectory, Watch, close_crossings,
+    drive, drive_part, piece_by_piece,
 };
 use lagrangian::{Constraint, Piecewise, Scalar, System};
 use proptest::prelude::*;
@@ -251,4 +251,93 @@ fn a_touch_is_no_crossing() {
     assert_eq!(found.iter().map(|(event, _)| *event).collect::<Vec<_>>(), [5, 4, 4], "{found:?}");
     assert_eq!(found[0].1, 0.5);
     assert!((found[2].1 - found[1].1 - 2e-4).abs() <= 1e-12, "{found:?}");
+}
+
+/// A sleigh on the line `x = x0 + t`.
+fn straight(x0: f64) -> State<3> {
+    state_of(&SleighState { x: x0, speed: 1.0, ..SleighState::default() })
+}
+
+/// Julia's DiffEqBase issue 1231 and OrdinaryDiffEq issue 2691: of several events within one step, backward, the last was taken.
+#[test]
+fn several_events_within_one_step_have_its_direction() {
+    let x = |value: f64| move |_: f64, state: &State<3>| state.q()[0] - value;
+    let events = [
+        Event::new("0", |t, _: &State<3>| t),
+        Event::new("1", |t, _: &State<3>| t - 1e-8),
+        Event::new("2", x(2e-8)),
+        Event::new("3", x(0.3)).in_direction(Direction::Rising),
+    ];
+    for (t0, step, order, times) in [
+        (-1.0, 2.0, vec![0, 1, 2, 3], vec![0.0, 1e-8, 2e-8, 0.3]),
+        // Going back nothing rises.
+        (1.0, -2.0, vec![2, 1, 0], vec![2e-8, 1e-8, 0.0]),
+    ] {
+        let mut watch = Watch::new(Dla::midpoint(), &events, ());
+        let schedule = Schedule { t0, step, steps: 1 };
+        drive(&sleigh(), &mut Dla::midpoint(), &schedule, &mut straight(t0), &mut watch).unwrap();
+        let found: Vec<_> = watch.crossings().iter().map(|crossing| crossing.event).collect();
+        assert_eq!(found, order);
+        for (crossing, t) in watch.crossings().iter().zip(times) {
+            // The rounding of times near one.
+            assert!((crossing.t - t).abs() <= 2.0 * f64::EPSILON, "{crossing:?}");
+            assert_eq!(crossing.rising, step > 0.0);
+        }
+    }
+
+    // The first that is met ends the run: backward from x = 0 at t = 2 to x = -2.5 at t = -0.5, and not the one just before it.
+    let events = [
+        Event::new("x", |_, state: &State<3>| state.q()[0] + 2.5).terminal(),
+        Event::new("later", |_, state: &State<3>| state.q()[0] + 2.5001),
+        Event::new("before", |_, state: &State<3>| state.q()[0] + 2.4999),
+    ];
+    let mut watch = Watch::new(Dla::midpoint(), &events, Trajectory::<3, 1>::every(1));
+    let schedule = Schedule { t0: 2.0, step: -0.75, steps: 100 };
+    drive(&sleigh(), &mut Dla::midpoint(), &schedule, &mut straight(0.0), &mut watch).unwrap();
+    assert_eq!(watch.crossings().iter().map(|crossing| crossing.event).collect::<Vec<_>>(), [2, 0]);
+    let trajectory = watch.into_inner();
+    let last = trajectory.nodes().last().unwrap();
+    assert!((last.t + 0.5).abs() <= 4.0 * f64::EPSILON && (last.q[0] + 2.5).abs() <= 4.0 * f64::EPSILON, "{last:?}");
+}
+
+/// Two spacings are apart, less is close; four of crossings in one direction, between which there is one in the other.
+#[test]
+fn crossings_are_close_by_the_samples_between_them() {
+    let at = |times: &'static [f64]| times.iter().map(|t| (1, *t, 0.25));
+    assert_eq!(close_crossings(at(&[0.0, 0.5, 1.0]), |_| false), None);
+    assert_eq!(close_crossings(at(&[0.0, 0.4, 1.0, 1.1]), |_| false), Some(Close { count: 2, spacing: 0.25 }));
+    // Backward in time.
+    assert_eq!(close_crossings(at(&[1.1, 1.0, 0.0]), |_| false), Some(Close { count: 1, spacing: 0.25 }));
+    assert_eq!(close_crossings(at(&[0.0, 1.0]), |event| event == 1), None);
+    assert_eq!(close_crossings(at(&[0.0, 0.9]), |event| event == 1), Some(Close { count: 1, spacing: 0.25 }));
+    // The wider of two spacings; other events between them are others; a jump is no sample.
+    let list = [(0, 0.0, 0.1), (2, 0.1, 0.1), (0, 0.3, 0.2), (2, 0.31, 0.0), (2, 0.32, 0.1)];
+    assert_eq!(close_crossings(list, |_| false), Some(Close { count: 1, spacing: 0.2 }));
+    assert_eq!(close_crossings([], |_| false), None);
+}
+
+/// A sine in the time, with steps from a small part of its turn to many turns. Where one is missed that is said, up to steps of
+/// which each sees as little as if the sine were slow.
+#[test]
+fn what_is_missed_is_told() {
+    let found = |frequency: f64, samples| {
+        let events = [Event::new("a sine", |t, _| (frequency * t + 0.1).sin())];
+        let mut watch = Watch::new(Dla::midpoint(), &events, ());
+        watch.samples = samples;
+        let schedule = Schedule { t0: 0.0, step: 0.5, steps: 40 };
+        drive(&sleigh(), &mut Dla::midpoint(), &schedule, &mut straight(0.0), &mut watch).unwrap();
+        (watch.crossings().len(), watch.close())
+    };
+    for (frequency, samples) in [(1.0, 4), (5.0, 4), (12.0, 4), (12.0, 40), (100.0, 40), (100.0, 400)] {
+        let right = ((20.0 * frequency + 0.1) / std::f64::consts::PI) as usize;
+        let (count, close) = found(frequency, samples);
+        // Four samples in half a turn are enough for no doubt.
+        let enough = frequency * 0.5 / f64::from(samples) < std::f64::consts::FRAC_PI_2;
+        assert_eq!((count == right, close.is_none()), (true, enough), "{frequency} {samples}: {count} of {right}");
+    }
+    for frequency in [30.0, 35.0, 40.0, 80.0] {
+        let right = ((20.0 * frequency + 0.1) / std::f64::consts::PI) as usize;
+        let (count, close) = found(frequency, 4);
+        assert!(count < right && close.is_some_and(|close| close.spacing == 0.125), "{frequency}: {count} of {right}");
+    }
 }

@@ -10,6 +10,7 @@ mod failures;
 mod hints;
 mod lanes;
 mod observers;
+mod own_steps;
 mod recommend;
 mod round_well;
 mod scripted;

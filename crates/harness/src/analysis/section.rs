@@ -1,6 +1,6 @@
 use crate::run::integrate_pieces;
 use crate::{Again, Method};
-use dla::{Crossing, Event, RunError, Schedule, State, Watch};
+use dla::{Close, Crossing, Event, RunError, Schedule, State, Watch};
 use lagrangian::{Piecewise, System};
 
 /// The crossings of a surface by one motion.
@@ -8,6 +8,8 @@ use lagrangian::{Piecewise, System};
 pub struct Section<const N: usize> {
     /// The crossings in the order of time, located to rounding: each is the end of a step that is shortened to end there.
     pub crossings: Vec<Crossing<N>>,
+    /// Which of them are so close that others may have been missed.
+    pub close: Option<Close>,
     /// The step that failed, if one did.
     pub failure: Option<RunError>,
 }
@@ -26,5 +28,5 @@ pub fn section<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
     let mut watch = Watch::new(Again(method), std::slice::from_ref(surface), ());
     watch.samples = SAMPLES;
     let outcome = integrate_pieces(system, method, schedule, &mut State::new(q, v, system.angles()), &mut watch);
-    Section { crossings: watch.crossings().to_vec(), failure: outcome.err() }
+    Section { crossings: watch.crossings().to_vec(), close: watch.close(), failure: outcome.err() }
 }

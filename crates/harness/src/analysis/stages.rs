@@ -1,4 +1,5 @@
 use super::flow::{ReducedFlow, Slope, admissible, seeded};
+use dla::convergence::tolerances::{BLIND, ROUNDINGS, SETTLED, STALL_OF_FIXED_POINT};
 use dla::{History, NewtonError, SensitivityError};
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
 use lagrangian::{Scalar, Seeded, from_fn};
@@ -20,14 +21,21 @@ pub(super) struct Stages {
     coefficients: Vec<Vec<f64>>,
 }
 
-/// How far values, or derivatives, moved in a sweep, and how large they are.
+/// How far values, or derivatives, moved in a sweep, how large they are, and by how much the rounding of the start moves them.
 #[derive(Debug, Clone, Copy, Default)]
 struct Change {
     moved: f64,
     size: f64,
+    noise: f64,
 }
 
 impl Change {
+    /// That a slope has these derivatives in the coordinates and quasi-velocities of the start, each of which is rounded once.
+    fn rounded(&mut self, slope: &Seeded, start: &[f64]) {
+        let sum: f64 = slope.eps.iter().zip(start).map(|(eps, x)| (eps * x).abs()).sum();
+        self.noise = self.noise.max(0.5 * f64::EPSILON * sum);
+    }
+
     fn add(&mut self, before: f64, after: f64) {
         // NaN stays.
         let (moved, size) = ((after - before).abs(), after.abs());
@@ -37,10 +45,12 @@ impl Change {
 
     /// Whether it is rounding: by its size, or because it is small and does not shrink any more.
     ///
-    /// Far from the origin the places in a wave are rounded to more than the slopes are.
+    /// Far from the origin the places in a wave are rounded to more than the slopes are, and where forces cancel the slopes are
+    /// smaller than what makes them.
     fn settled(self, before: Self) -> bool {
-        let rounding = 4.0 * f64::EPSILON * self.size;
-        self.moved <= rounding || (self.moved <= 1e-10 * self.size && self.moved >= 0.5 * before.moved)
+        let rounding = (ROUNDINGS * self.noise).max(BLIND * self.size);
+        self.moved <= SETTLED * self.size
+            || (self.moved <= rounding && self.moved >= STALL_OF_FIXED_POINT * before.moved)
     }
 }
 
@@ -80,10 +90,11 @@ impl Stages {
             });
         }
         let (q0, xi0) = (seeded(q0, 0), seeded(&admissible::<N, M>(xi0), N));
+        let start: Vec<f64> = q0.iter().chain(&xi0[..N - M]).map(|x| x.re).collect();
         let count = self.nodes.len().min(MOST);
         let first = flow.slope(t, &q0, &xi0).ok_or(NO_EQUATIONS)?;
         let mut slopes = [first; MOST];
-        let [mut values, mut derivatives] = [Change { moved: f64::INFINITY, size: 0.0 }; 2];
+        let [mut values, mut derivatives] = [Change { moved: f64::INFINITY, ..Change::default() }; 2];
         let (mut settled, mut history) = ([false; 2], History::new());
         for iteration in 1..=MAX_SWEEPS {
             let before = (values, derivatives);
@@ -94,6 +105,7 @@ impl Stages {
                 let slope = flow.slope(t + self.nodes[i] * h, &q, &xi).ok_or(NO_EQUATIONS)?;
                 for (new, old) in slope.iter().flatten().zip(slopes[i].iter().flatten()) {
                     values.add(old.re, new.re);
+                    values.rounded(new, &start);
                     new.eps.iter().zip(&old.eps).for_each(|(new, old)| derivatives.add(*old, *new));
                 }
                 slopes[i] = slope;

@@ -1,6 +1,6 @@
 use super::making::{Last, Step};
 use assembly::{Assembly, OneStep, State};
-use dla::{Zero, zeros};
+use dla::{Close, Zero, close_crossings, zeros};
 use std::fmt;
 
 /// Of the time (s) and the state.
@@ -40,21 +40,28 @@ pub struct AssemblyCrossing {
     pub t: f64,
     /// The interval of time that is known to hold the change of sign (s). The error of the method comes on top.
     pub within: f64,
+    /// How far apart the samples are by which it was found (s).
+    pub spacing: f64,
     /// Whether the function rises through zero.
     pub rising: bool,
     /// The state then: a step of the method, shortened to end there.
     pub state: State,
 }
 
-/// Into how many parts a step is divided to look for crossings, as by [`dla::Watch`].
-const PARTS: i32 = 4;
+impl AssemblyCrossing {
+    /// Which of those of a run are so close to one another that others may have been missed (see [`dla::close_crossings`]).
+    #[must_use]
+    pub fn close(crossings: &[Self]) -> Option<Close> {
+        close_crossings(crossings.iter().map(|crossing| (crossing.event, crossing.t, crossing.spacing)), |_| false)
+    }
+}
 
-/// Notes the crossings within a step, up to the first that ends the run: there it ends.
+/// Notes the crossings within a step, up to the first that ends the run: there it ends. The step is divided into so many parts.
 pub(super) fn ended(
     assembly: &Assembly,
     method: &mut dyn OneStep,
     step: &Step<'_>,
-    events: &[AssemblyEvent<'_>],
+    (events, samples): (&[AssemblyEvent<'_>], u32),
     crossings: &mut Vec<AssemblyCrossing>,
 ) -> Option<Last> {
     if events.is_empty() {
@@ -69,7 +76,8 @@ pub(super) fn ended(
             method.step(assembly, step.t0, part * step.h, &mut state).ok().map(|_| state)
         }
     };
-    let parts = (-1..=PARTS + 1).map(|j| f64::from(j) / f64::from(PARTS));
+    let samples = i64::from(samples.max(1));
+    let parts = (-1..=samples + 1).map(|j| j as f64 / samples as f64);
     let states: Vec<(f64, State)> = parts.filter_map(|part| Some((part, after(part)?))).collect();
     let mut found = Vec::new();
     for (event, AssemblyEvent { function, .. }) in events.iter().enumerate() {
@@ -77,8 +85,8 @@ pub(super) fn ended(
         let value = |part: f64| after(part).map_or(f64::NAN, |state| function(time(part), &state));
         for Zero { at, within, rising } in zeros(&known, 0.0, |_| true, value) {
             if let Some(state) = after(at) {
-                let (t, within) = (time(at), within * step.h.abs());
-                found.push((at, AssemblyCrossing { event, k: step.k, t, within, rising, state }));
+                let (t, within, spacing) = (time(at), within * step.h.abs(), step.h.abs() / samples as f64);
+                found.push((at, AssemblyCrossing { event, k: step.k, t, within, spacing, rising, state }));
             }
         }
     }

@@ -1,5 +1,5 @@
 use super::meter::Meter;
-use super::parts::{Parted, in_parts, resolves};
+use super::parts::{Parted, in_parts, resolves, shorter};
 use super::{Assembled, assembly_method};
 use crate::{Method, MethodInfo, Progress, Record};
 use assembly::{Assembly, OneStep, RunError, State};
@@ -88,15 +88,24 @@ impl<'a> Making<'a> {
             let whole = method.step(assembly, t0, h, state).and_then(|report| {
                 // Only a step that may be divided is asked whether it resolves the motion.
                 limits.map_or(Ok(()), |_| resolves(assembly, method.as_mut(), (t0, h), (&before, state)))?;
-                Ok(report.iterations)
+                Ok(report)
             });
             *seconds += clock.elapsed().as_secs_f64();
             let Parted { last, iterations, parts } = match (whole, *limits) {
-                (Ok(iterations), _) => {
+                (Ok(report), _) => {
+                    let iterations = report.iterations;
                     let step = Step { k, t0, h, before: &before, after: state };
-                    let last = look(method.as_mut(), step).break_value();
-                    let over = last.as_ref().map_or((schedule.time(k + 1), h), |(t, _)| (*t, *t - t0));
-                    meter.over(assembly, over, (&before, last.as_ref().map_or(&*state, |(_, last)| last)));
+                    let last = match look(method.as_mut(), step) {
+                        ControlFlow::Continue(()) => {
+                            meter.over(assembly, (t0, &before), (schedule.time(k + 1), state), &report);
+                            None
+                        }
+                        ControlFlow::Break((t, last)) => {
+                            let shorter = shorter(assembly, method.as_mut(), (t0, t), &before, report);
+                            meter.over(assembly, (t0, &before), (t, &last), &shorter);
+                            Some((t, last))
+                        }
+                    };
                     Parted { last, iterations, parts: 0 }
                 }
                 (Err(source), None) => {

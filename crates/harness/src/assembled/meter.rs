@@ -1,6 +1,6 @@
 use super::AssemblyNode;
 use crate::{Blocks, Drift, EnergySummary, Method, MethodInfo, NewtonSummary, Record, Sample, SubstepSummary, Trend};
-use assembly::{Assembly, AssemblyError, RunError, State};
+use assembly::{Assembly, AssemblyError, RunError, State, StepReport, Work};
 use dla::{Checkpoint, CheckpointError, Undivided};
 use lagrangian::linear::larger;
 
@@ -11,8 +11,7 @@ pub(super) struct Meter {
     last: f64,
     max_error: f64,
     most: [f64; 2],
-    work: f64,
-    power: f64,
+    work: Work,
     trend: Trend,
     blocks: Blocks,
     iterations: u64,
@@ -32,8 +31,7 @@ impl Meter {
             last: initial,
             max_error: 0.0,
             most,
-            work: 0.0,
-            power: assembly.power(t, start),
+            work: Work::default(),
             trend: Trend::default(),
             blocks: Blocks::default(),
             iterations: 0,
@@ -49,24 +47,25 @@ impl Meter {
         meter
     }
 
-    /// Adds the work over a step of length `h`, or a part of one, that ends at the time `t`.
-    pub(super) fn over(&mut self, assembly: &Assembly, (t, h): (f64, f64), (before, state): (&State, &State)) {
-        let power = assembly.power(t, state);
-        if power != 0.0 || self.power != 0.0 {
-            let middle = assembly.power(t - 0.5 * h, &middle(assembly, before, state, h));
-            self.work += h / 6.0 * (self.power + 4.0 * middle + power);
-        }
-        self.power = power;
+    /// Adds the work over a step, or a part of one, from one time and state to another.
+    pub(super) fn over(
+        &mut self,
+        assembly: &Assembly,
+        before: (f64, &State),
+        after: (f64, &State),
+        report: &StepReport,
+    ) {
+        self.work.step(assembly, before, after, report);
     }
 
-    /// The work so far and the power.
+    /// The work so far.
     pub(super) fn work(&self) -> [f64; 2] {
-        [self.work, self.power]
+        self.work.sum()
     }
 
     /// Takes back the work of parts that have come to nothing.
     pub(super) fn back_to(&mut self, work: [f64; 2]) {
-        [self.work, self.power] = work;
+        self.work.back_to(work);
     }
 
     /// Notes why a step cannot be made in parts either.
@@ -90,7 +89,7 @@ impl Meter {
             substeps.add(parts);
         }
         self.last = assembly.energy(t, state);
-        let (error, miss) = (self.last - self.initial - self.work, assembly.misses(t, state));
+        let (error, miss) = (self.last - self.initial - self.work.total(), assembly.misses(t, state));
         self.max_error = larger(self.max_error, error);
         self.most = [larger(self.most[0], miss[0]), larger(self.most[1], miss[1])];
         self.trend.add(t, error);
@@ -109,7 +108,7 @@ impl Meter {
         let v = (0..state.len()).map(|i| state.v(i)).collect();
         self.samples.push(Sample { t, q: first(&q), energy_error: self.bucket.0, constraint: self.bucket.1 });
         self.bucket = (0.0, 0.0);
-        let (energy, work) = (assembly.energy(t, state), self.work);
+        let (energy, work) = (assembly.energy(t, state), self.work.total());
         self.nodes.push(AssemblyNode { t, q, v, energy, work, constraint, joint });
     }
 
@@ -140,7 +139,7 @@ impl Meter {
             energy: EnergySummary {
                 initial: self.initial,
                 last: self.last,
-                work: self.work,
+                work: self.work.total(),
                 max_error: self.max_error,
                 drift_per_time: self.trend.slope().unwrap_or(0.0),
                 drift: Drift::of(&self.blocks),
@@ -165,10 +164,11 @@ impl Meter {
 
     /// Writes to a checkpoint all that the rest of a run needs.
     pub(super) fn save(&self, checkpoint: &mut Checkpoint) {
-        let sizes = [self.initial, self.last, self.max_error, self.most[0], self.most[1], self.work, self.power];
+        let sizes = [self.initial, self.last, self.max_error, self.most[0], self.most[1]];
         checkpoint.put("meter", &[&sizes[..], &[self.bucket.0, self.bucket.1]].concat());
         checkpoint.put("trend", &self.trend.sums());
         checkpoint.put_counts("iterations", &[self.iterations, u64::from(self.most_iterations)]);
+        self.work.save(checkpoint);
         self.blocks.save(checkpoint);
         if let Some(substeps) = &self.substeps {
             substeps.save(checkpoint);
@@ -179,7 +179,7 @@ impl Meter {
 
     /// The meter that [`save`](Self::save) wrote; it keeps nodes from there on.
     pub(super) fn load(checkpoint: &Checkpoint, method: &Method, every: u64) -> Result<Self, CheckpointError> {
-        let [initial, last, max_error, constraint, joint, work, power, error, slip] = checkpoint.get("meter")?;
+        let [initial, last, max_error, constraint, joint, error, slip] = checkpoint.get("meter")?;
         let [iterations, most] = checkpoint.counts("iterations")?;
         let substeps = method.substeps().map(|_| SubstepSummary::load(checkpoint)).transpose()?;
         let samples = checkpoint.list("samples")?;
@@ -190,8 +190,7 @@ impl Meter {
             last,
             max_error,
             most: [constraint, joint],
-            work,
-            power,
+            work: Work::load(checkpoint)?,
             trend: Trend::of_sums(checkpoint.get("trend")?),
             blocks: Blocks::load(checkpoint)?,
             iterations,
@@ -207,14 +206,4 @@ impl Meter {
 /// The first three of some numbers.
 fn first(x: &[f64]) -> [f64; 3] {
     lagrangian::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
-}
-
-/// The middle of the cubic polynomial through two nodes.
-fn middle(assembly: &Assembly, before: &State, state: &State, h: f64) -> State {
-    let n = state.len();
-    let moved = |i: usize| state.unwrapped(i) - before.unwrapped(i);
-    let q: Vec<f64> =
-        (0..n).map(|i| before.unwrapped(i) + 0.5 * moved(i) + 0.125 * h * (before.v(i) - state.v(i))).collect();
-    let v: Vec<f64> = (0..n).map(|i| 1.5 * moved(i) / h - 0.25 * (before.v(i) + state.v(i))).collect();
-    State::new(assembly, &q, &v)
 }

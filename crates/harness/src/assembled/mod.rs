@@ -100,8 +100,8 @@ pub fn assembly_end(
 
 /// Makes a run of an assembly and measures it, keeping every `every`-th node and the last.
 ///
-/// The time is that of the steps alone. Work is integrated by Simpson's rule along the cubic polynomial of each step, which is
-/// of order 4. A run that fails gives the record of its valid part.
+/// The time is that of the steps alone. Work is that of the method's own forces where it knows it, else integrated along the
+/// polynomial of degree five of each step, which is of order 6 ([`assembly::Work`]). A run that fails gives the record of its valid part.
 pub fn run_assembly(
     assembly: &Assembly,
     method: &Method,
@@ -110,11 +110,11 @@ pub fn run_assembly(
     every: u64,
     progress: &mut dyn Progress,
 ) -> Assembled {
-    run_assembly_watched(assembly, method, schedule, (start, every), &[], progress).0
+    run_assembly_watched(assembly, method, schedule, (start, every), (&[], 1), progress).0
 }
 
-/// The same, with an eye on events; one that is terminal ends the run at its first crossing. Returns the crossings in the order in
-/// which they happened.
+/// The same, with an eye on events in so many parts of each step; one that is terminal ends the run at its first crossing. Returns
+/// the crossings in the order in which they happened.
 ///
 /// Inside a step the state is that of a shorter step of the same method from the same node, as in [`dla::Watch`].
 pub fn run_assembly_watched(
@@ -122,7 +122,7 @@ pub fn run_assembly_watched(
     method: &Method,
     schedule: &Schedule,
     (start, every): (&State, u64),
-    events: &[AssemblyEvent<'_>],
+    events: (&[AssemblyEvent<'_>], u32),
     progress: &mut dyn Progress,
 ) -> (Assembled, Vec<AssemblyCrossing>) {
     let mut making = Making::new(assembly, method, schedule, start, every);

@@ -1,6 +1,6 @@
 use super::making::{Last, Step};
 use super::meter::Meter;
-use assembly::{Assembly, AssemblyError, OneStep, State};
+use assembly::{Assembly, AssemblyError, OneStep, State, StepReport};
 use dla::{Halved, Substeps, Undivided};
 use lagrangian::linear::larger;
 use std::ops::ControlFlow;
@@ -36,16 +36,29 @@ pub(super) fn in_parts(
             return Err(failure);
         }
         (iterations, parts) = (iterations + report.iterations, parts + 1);
-        if let ControlFlow::Break(found) = look(method, Step { k, t0: t, h, before: &start, after: state }) {
-            meter.over(assembly, (found.0, found.0 - t), (&start, &found.1));
-            last = Some(found);
+        if let ControlFlow::Break((end, found)) = look(method, Step { k, t0: t, h, before: &start, after: state }) {
+            let shorter = shorter(assembly, method, (t, end), &start, report);
+            meter.over(assembly, (t, &start), (end, &found), &shorter);
+            last = Some((end, found));
             return Ok(ControlFlow::Break(()));
         }
-        meter.over(assembly, (t + h, h), (&start, state));
+        meter.over(assembly, (t, &start), (t + h, state), &report);
         Ok(if stops() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     })?;
     let given_up = made.is_break() && last.is_none();
     Ok((!given_up).then_some(Parted { last, iterations, parts }))
+}
+
+/// What a step did that is shortened to end at an event, between two times; without its work where it cannot be made.
+pub(super) fn shorter(
+    assembly: &Assembly,
+    method: &mut dyn OneStep,
+    (t, end): (f64, f64),
+    before: &State,
+    whole: StepReport,
+) -> StepReport {
+    let unknown = StepReport { work: None, ..whole };
+    method.step(assembly, t, end - t, &mut before.clone()).unwrap_or(unknown)
 }
 
 /// Whether a step from time `t` to `t + h` resolves the motion: see [`Halved`].

@@ -1,9 +1,10 @@
 use super::reduced_point::ReducedPoint;
 use differential_equations::methods::{DormandPrince, ExplicitRungeKutta, Ordinary};
 use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
-use dla::{OneStep, State, StepError, StepReport};
+use dla::{OneStep, OwnStep, State, StepError, StepReport};
 use lagrangian::{System, reduced_slope, velocity_of};
 use std::cell::Cell;
+use std::ops::ControlFlow;
 
 /// The adaptive method of Dormand and Prince of order 8(5,3), from a library, on the reduced equations.
 ///
@@ -35,13 +36,14 @@ impl<const N: usize, const M: usize> Dop853<N, M> {
         Self { solver, proposed: None }
     }
 
-    /// Crosses an interval of length `h` and returns the steps tried.
+    /// Crosses an interval of length `h`, shows where its steps end within it, and returns the steps tried.
     #[inline]
     fn cross<Sys: System<N, M>>(
         &mut self,
         slopes: &Slopes<'_, Sys, N>,
         h: f64,
         xi: [f64; N],
+        mut see: impl FnMut(f64, &ReducedPoint<N, M>) -> ControlFlow<()>,
     ) -> Result<u32, StepError> {
         let solver = &mut self.solver;
         let failed = |tries, step| slopes.failure.get().unwrap_or(StepError::Tolerance { tries, step });
@@ -69,6 +71,9 @@ impl<const N: usize, const M: usize> Dop853<N, M> {
                     self.proposed = Some(full.abs().max(solver.h().abs()));
                     return Ok(tries);
                 }
+                if see(solver.t(), solver.y()).is_break() {
+                    return Ok(tries);
+                }
             }
         }
         Err(failed(Self::MAX_TRIES, solver.h()))
@@ -92,6 +97,14 @@ struct Slopes<'a, Sys, const N: usize> {
     failure: Cell<Option<StepError>>,
 }
 
+impl<'a, Sys, const N: usize> Slopes<'a, Sys, N> {
+    /// Of an interval from `state` at the time `t0` (s).
+    #[inline]
+    fn new(system: &'a Sys, t0: f64, state: &State<N>) -> Self {
+        Self { system, t0, q0: *state.q(), left: Cell::new(0), failure: Cell::new(None) }
+    }
+}
+
 impl<Sys: System<N, M>, const N: usize, const M: usize> ODE<f64, ReducedPoint<N, M>> for Slopes<'_, Sys, N> {
     #[inline]
     fn diff(&self, t: f64, y: &ReducedPoint<N, M>, slope: &mut ReducedPoint<N, M>) {
@@ -113,11 +126,8 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for D
     #[inline]
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
         let xi0 = state.quasi_velocities(system, t)?;
-        let slopes = Slopes { system, t0: t, q0: *state.q(), left: Cell::new(0), failure: Cell::new(None) };
-        self.cross(&slopes, h, xi0)?;
-        let ReducedPoint { d, xi } = *self.solver.y();
-        let v = velocity_of(system, t + h, &state.ahead(&d), &xi)?;
-        super::rk4::explicit(state, &d, v, Some(xi))
+        self.cross(&Slopes::new(system, t, state), h, xi0, |_, _| ControlFlow::Continue(()))?;
+        moved(system, t + h, self.solver.y(), state)
     }
 
     fn memory(&self) -> Vec<f64> {
@@ -127,4 +137,42 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for D
     fn recall(&mut self, memory: &[f64], _state: &State<N>) {
         self.proposed = memory.first().copied();
     }
+
+    fn own_steps(
+        &self,
+        system: &Sys,
+        (t, h): (f64, f64),
+        state: &State<N>,
+        memory: &mut Vec<f64>,
+        see: &mut OwnStep<'_, N>,
+    ) -> Result<(), StepError> {
+        let mut method = Self { solver: self.solver.clone(), proposed: memory.first().copied() };
+        let (xi0, mut failure) = (state.quasi_velocities(system, t)?, None);
+        method.cross(&Slopes::new(system, t, state), h, xi0, |made, point| {
+            let mut inner = *state;
+            match moved::<Sys, N, M>(system, t + made, point, &mut inner) {
+                Ok(_) => see(t + made, &inner),
+                Err(error) => {
+                    failure = Some(error);
+                    ControlFlow::Break(())
+                }
+            }
+        })?;
+        memory.clear();
+        memory.extend(method.proposed);
+        failure.map_or(Ok(()), Err)
+    }
+}
+
+/// Moves a state to where an interval has led, at the time `t` (s).
+#[inline]
+fn moved<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    point: &ReducedPoint<N, M>,
+    state: &mut State<N>,
+) -> Result<StepReport<M>, StepError> {
+    let ReducedPoint { d, xi } = *point;
+    let v = velocity_of(system, t, &state.ahead(&d), &xi)?;
+    super::rk4::explicit(state, &d, v, Some(xi))
 }

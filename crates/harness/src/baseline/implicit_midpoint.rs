@@ -1,6 +1,7 @@
 use super::shifted;
-use dla::{History, NewtonError, OneStep, Stage, State, StepError, StepReport};
-use lagrangian::System;
+use dla::convergence::FixedPoint;
+use dla::{OneStep, Stage, State, StepError, StepReport};
+use lagrangian::{MotionRounding, System};
 
 /// The implicit midpoint rule in full coordinates, the multiplier eliminated as in [`Rk4`](crate::Rk4).
 ///
@@ -26,9 +27,6 @@ impl Default for ImplicitMidpoint {
 }
 
 impl ImplicitMidpoint {
-    /// Where all changes are below this part of the largest acceleration, those that do not shrink are rounding.
-    const ROUNDING: f64 = 1e-11;
-
     /// The acceleration in the middle, to the rounding of every component by itself, and the iterations.
     #[inline]
     fn acceleration<Sys: System<N, M>, const N: usize, const M: usize>(
@@ -37,51 +35,25 @@ impl ImplicitMidpoint {
         (t0, h): (f64, f64),
         state: &State<N>,
     ) -> Result<([f64; N], u32), StepError> {
-        let fail = |source| StepError::Newton { stage: Stage::Collocation, source };
         let (q0, v0) = (state.q(), state.v());
         let motion = |t: f64, q: &[f64; N], v: &[f64; N]| {
             system.motion(t, q, v).map(|motion| motion.acceleration).map_err(StepError::Motion)
         };
         let mut a = motion(t0, q0, v0)?;
-        let mut last = [f64::INFINITY; N];
-        let (mut before, mut history) = (f64::INFINITY, History::new());
-        // The start's size too: an acceleration of zeros only has no size of its own.
-        let mut size = largest(&a);
-        for iteration in 1..=self.max_iterations {
+        let mut convergence = FixedPoint::<1, N>::new(self.max_iterations);
+        loop {
             let v = shifted(v0, 0.5 * h, &a);
             let next = motion(t0 + 0.5 * h, &shifted(q0, 0.5 * h, &v), &v)?;
-            let change: [f64; N] = lagrangian::from_fn(|i| (next[i] - a[i]).abs());
+            let seen = lagrangian::from_fn(|i| ((next[i] - a[i]).abs(), next[i].abs()));
             a = next;
-            let (now, moved) = (largest(&a), largest(&change));
-            if !now.is_finite() || moved.is_nan() {
-                return Err(fail(NewtonError::NotFinite { iteration, history }));
+            let noise = || [MotionRounding::at(system, t0, q0, v0).map_or([0.0; N], |rounding| rounding.acceleration)];
+            let settled = convergence.see([seen], 0.0, noise);
+            let settled = settled.map_err(|source| StepError::Newton { stage: Stage::Collocation, source })?;
+            if let Some(iterations) = settled {
+                return Ok((a, iterations));
             }
-            size = size.max(now);
-            history.push(moved / size);
-            let converged = moved <= Self::ROUNDING * size;
-            let settled = (0..N).all(|i| {
-                let rounding = converged && change[i] >= 0.5 * last[i];
-                rounding || change[i] <= 4.0 * f64::EPSILON * a[i].abs()
-            });
-            if settled {
-                return Ok((a, iteration));
-            }
-            // What is left after convergence is rounding, which may grow.
-            if iteration > 3 && !converged && moved > 2.0 * before {
-                let (correction, before) = (moved / size, before / size);
-                return Err(fail(NewtonError::Diverged { iteration, correction, before, history }));
-            }
-            (last, before) = (change, moved);
         }
-        let (iterations, correction) = (self.max_iterations, before / size);
-        Err(fail(NewtonError::IterationLimit { iterations, correction, history }))
     }
-}
-
-/// The largest component; what is not a number wins.
-#[inline(always)]
-fn largest(x: &[f64]) -> f64 {
-    x.iter().fold(0.0, |m: f64, x| if x.abs() > m || x.is_nan() { x.abs() } else { m })
 }
 
 impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for ImplicitMidpoint {

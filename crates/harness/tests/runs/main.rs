@@ -13,6 +13,8 @@ mod same_bits;
 mod sensitivity;
 mod substeps;
 mod trains;
+mod watched;
+mod work;
 
 use approx::assert_relative_eq;
 use dla::Schedule;

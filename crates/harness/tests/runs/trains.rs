@@ -86,7 +86,7 @@ fn events_along_a_train() {
         let x = |value: f64| move |_: f64, state: &assembly::State| state.unwrapped(0) - value;
         let events = [AssemblyEvent::new("x=0.513", false, x(0.513)), AssemblyEvent::new("x=0.911", true, x(0.911))];
         let (run, crossings) =
-            run_assembly_watched(&train.assembly, &method, &SCHEDULE, (&start, 1000), &events, &mut ());
+            run_assembly_watched(&train.assembly, &method, &SCHEDULE, (&start, 1000), (&events, 4), &mut ());
         assert_eq!(crossings.iter().map(|crossing| crossing.event).collect::<Vec<_>>(), [0, 1]);
         for (crossing, value) in crossings.iter().zip([0.513, 0.911]) {
             assert!(crossing.rising && crossing.within < 1e-15);
@@ -197,7 +197,8 @@ fn long_steps_of_trains_are_made_in_parts() {
         }
 
         let events = [AssemblyEvent::new("x", true, |_, state| state.q(0) - 1.0)];
-        let (ended, crossings) = run_assembly_watched(&train.assembly, &method, &long, (&start, 1), &events, &mut ());
+        let (ended, crossings) =
+            run_assembly_watched(&train.assembly, &method, &long, (&start, 1), (&events, 4), &mut ());
         assert_eq!((crossings.len(), ended.record.t), (1, crossings[0].t), "{name}");
         assert_abs_diff_eq!(ended.end.q(0), 1.0, epsilon = 1e-9);
     }

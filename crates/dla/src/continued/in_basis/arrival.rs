@@ -1,8 +1,9 @@
 use super::{InBasis, are_met, first, has_settled};
 use crate::continued::Found;
+use crate::convergence::tolerances::{SHRINKING, SLIGHT};
 use crate::dla::Dla;
 use crate::kept::in_bases;
-use crate::settle::{CORRECTIONS, LEAST, ROUNDING, SHRINKING, sup};
+use crate::settle::{CORRECTIONS, LEAST, sup};
 use lagrangian::{AdmissibleBasis, System, clear_multipliers, from_fn, linear_basis, mass_matrix, momentum};
 
 /// The quasi-velocities at the end: `W(q1)' (L_v(q1, v1) - p1) = 0`, `v1 = W(q1) xi`.
@@ -36,7 +37,7 @@ pub(super) fn arrival<L, C, Sys: System<N, M>, const N: usize, const M: usize>(
         v = w1.combine(&xi);
         left = rest(&v);
         let next = sup(&from_fn::<f64, N, _>(|i| v[i] - before[i]));
-        let rounding = next <= ROUNDING * sup(&v);
+        let rounding = next <= SLIGHT * sup(&v);
         if are_met(&w1, &left, &p1, tolerance) || (rounding && has_settled(&d, &xi, &last, tolerance)) {
             // `L_v(q1, v1) - p1 = A(q1)' mu`.
             let lambda = clear_multipliers(&a1, &left)?.map(|mu| -mu);

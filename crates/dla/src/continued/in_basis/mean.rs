@@ -1,11 +1,12 @@
 use super::{InBasis, are_met, first, has_settled};
 use crate::State;
 use crate::continued::{Found, ends, with_reaction};
+use crate::convergence::tolerances::{SHRINKING, SLIGHT};
 use crate::corrections::Departure;
 use crate::dla::{Dla, predicted};
 use crate::increment::Increment;
 use crate::kept::in_bases;
-use crate::settle::{CORRECTIONS, LEAST, ROUNDING, SHRINKING, sup};
+use crate::settle::{CORRECTIONS, LEAST, sup};
 use lagrangian::{
     AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, System, clear_multipliers, from_fn, linear_basis, momentum,
 };
@@ -82,7 +83,7 @@ where
         xi = from_fn(|a| xi[a] - d[a]);
         v = w.combine(&xi);
         let next = sup(&from_fn::<f64, N, _>(|i| v[i] - way[i]));
-        let rounding = next <= ROUNDING * large;
+        let rounding = next <= SLIGHT * large;
         if rounding && has_settled(&d, &xi, &last, tolerance) {
             method.kept.block.have_not_sufficed();
             let at = increment.momenta_along(&way, &v);

@@ -6,6 +6,7 @@ mod mean;
 
 use super::{Found, advanced};
 use crate::branch;
+use crate::convergence::tolerances::STALL;
 use crate::derivatives::COORDINATES;
 use crate::dla::Dla;
 use crate::settle::LEAST;
@@ -63,7 +64,7 @@ where
 fn has_settled<const N: usize>(d: &[f64; N], xi: &[f64; N], last: &[f64; N], tolerance: f64) -> bool {
     (0..N).fold(true, |all, a| {
         let size = d[a].abs();
-        all & ((size <= tolerance * xi[a].abs()) | (size >= 0.25 * last[a].abs()))
+        all & ((size <= tolerance * xi[a].abs()) | (size >= STALL * last[a].abs()))
     })
 }
 

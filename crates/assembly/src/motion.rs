@@ -1,0 +1,43 @@
+use crate::contributions::{Contributions, Part, at};
+use crate::linear::Linear;
+use crate::pattern::Pattern;
+use crate::{Assembly, AssemblyError, Solver};
+use dla::Stage;
+
+/// The continuous equations of motion of an assembly, `M v' = F + .. + A' lambda` and `d/dt (A v + b) = 0`, summed over its elements
+/// as the discrete ones are: see [`lagrangian::Motion`].
+pub(crate) struct Motion {
+    linear: Linear,
+    contributions: Contributions,
+    coordinates: usize,
+}
+
+impl Motion {
+    pub(crate) fn of(assembly: &Assembly) -> Result<Self, AssemblyError> {
+        Ok(Self {
+            linear: Linear::new(Pattern::of(assembly), Solver::Best)?,
+            contributions: Contributions::of(assembly, usize::MAX),
+            coordinates: assembly.coordinates(),
+        })
+    }
+
+    /// Accelerations, and multipliers with their signs turned.
+    pub(crate) fn solved(
+        &mut self,
+        assembly: &Assembly,
+        t: f64,
+        q: &[f64],
+        v: &[f64],
+    ) -> Result<(&[f64], &[f64]), AssemblyError> {
+        let Self { linear, contributions, coordinates } = self;
+        contributions.ask(assembly, true, &|placed, out| at(placed, q, v, |q, v| placed.element.motion(t, q, v, out)));
+        let (forces, levels) = linear.right.split_at_mut(*coordinates);
+        forces.fill(0.0);
+        contributions.add_momenta(assembly, 1.0, forces);
+        contributions.write_levels(assembly, levels);
+        contributions.write_matrix(assembly, &linear.pattern, Part::All, &mut linear.values);
+        linear.factorise(Stage::Projection, None)?;
+        linear.solve(1);
+        Ok(linear.solution.split_at(*coordinates))
+    }
+}

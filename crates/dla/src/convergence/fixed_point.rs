@@ -1,0 +1,146 @@
+use super::tolerances::{GROWTH_OF_FIXED_POINT, ROUNDINGS, SLIGHT, STALLS, UNBIASED};
+use crate::{History, NewtonError};
+
+/// The test of a fixed-point iteration: every component by itself, in `G` groups of `N` components with one unit each.
+///
+/// A component is settled when linear convergence, at the rate of the last two iterations, predicts a next change of less than
+/// [`UNBIASED`] of it; or when its changes have twice not shrunk and are rounding: slight beside the largest component of the
+/// group, or a few roundings of the terms that it is made of. Stopping any earlier would leave an error of the same sign in every
+/// step.
+#[derive(Debug)]
+pub struct FixedPoint<const G: usize, const N: usize> {
+    components: [[Component; N]; G],
+    /// The rounding of every component, once it has been asked for.
+    noise: Option<[[f64; N]; G]>,
+    least: f64,
+    iteration: u32,
+    limit: u32,
+    history: History,
+}
+
+/// The last two changes of a component, and how often they have not shrunk and were rounding.
+#[derive(Debug, Clone, Copy)]
+struct Component {
+    last: f64,
+    before_last: f64,
+    stalls: u32,
+}
+
+/// Faster convergence than the first is taken for an accident, slower convergence than the second for none.
+const RATES: (f64, f64) = (0.02, 0.9);
+
+impl<const G: usize, const N: usize> FixedPoint<G, N> {
+    /// An iteration that is given up after `limit`.
+    #[must_use]
+    #[inline(always)]
+    pub fn new(limit: u32) -> Self {
+        let component = Component { last: f64::INFINITY, before_last: f64::INFINITY, stalls: 0 };
+        Self {
+            components: [[component; N]; G],
+            noise: None,
+            least: f64::INFINITY,
+            iteration: 0,
+            limit,
+            history: History::new(),
+        }
+    }
+
+    /// Sees the largest changes and sizes of the components after an iteration; the iteration's number if it was the last. `noise`
+    /// tells the rounding of the components, `2^-53` times the sums of the sizes of their terms; `least` is a rounding that all
+    /// have.
+    ///
+    /// # Errors
+    /// [`NewtonError`] where the iteration leads nowhere.
+    #[inline(always)]
+    pub fn see(
+        &mut self,
+        groups: [[(f64, f64); N]; G],
+        least: f64,
+        noise: impl FnOnce() -> [[f64; N]; G],
+    ) -> Result<Option<u32>, NewtonError> {
+        self.iteration += 1;
+        let iteration = self.iteration;
+        let (mut settled, mut asks, mut worst) = (true, false, 0.0_f64);
+        for (g, (group, components)) in groups.iter().zip(&mut self.components).enumerate() {
+            let overall = group.iter().fold(0.0, |most: f64, (_, size)| most.max(*size));
+            for (i, (&(change, size), component)) in group.iter().zip(components).enumerate() {
+                if !(change.is_finite() && size.is_finite()) {
+                    return Err(NewtonError::NotFinite { iteration, history: self.history });
+                }
+                let known = self.noise.as_ref().map_or(0.0, |noise| ROUNDINGS * noise[g][i]);
+                let rounding = least.max(SLIGHT * overall).max(known).max(f64::MIN_POSITIVE);
+                let (ends, stalls) = component.settles(change, size, rounding);
+                settled &= ends;
+                asks |= stalls && !ends && change > rounding;
+                if change > rounding {
+                    worst = worst.max(change / overall);
+                }
+            }
+        }
+        if settled {
+            return Ok(Some(iteration));
+        }
+        self.history.push(worst);
+        let history = self.history;
+        if self.noise.is_none() && (asks || worst > self.growth()) {
+            self.noise = Some(noise());
+        } else if worst > self.growth() {
+            return Err(NewtonError::Diverged { iteration, correction: worst, before: self.least, history });
+        }
+        if iteration >= self.limit {
+            return Err(NewtonError::IterationLimit { iterations: iteration, correction: worst, history });
+        }
+        self.least = self.least.min(worst);
+        Ok(None)
+    }
+
+    /// Changes that oscillate may grow for a while, up to this.
+    #[inline(always)]
+    fn growth(&self) -> f64 {
+        GROWTH_OF_FIXED_POINT * self.least.max(SLIGHT)
+    }
+}
+
+impl Component {
+    /// Whether it is settled, and whether its change has not shrunk.
+    #[inline(always)]
+    fn settles(&mut self, change: f64, size: f64, rounding: f64) -> (bool, bool) {
+        let (fast, slow) = RATES;
+        let rate = (change / self.last).max((change / self.before_last).sqrt()).max(fast);
+        // Before there is a rate, only no change at all settles.
+        let next = if self.last.is_finite() && rate < slow { change * rate / (1.0 - rate) } else { change };
+        let stalls = change >= slow * self.last.max(self.before_last);
+        self.stalls += u32::from(stalls && change <= rounding);
+        (self.before_last, self.last) = (self.last, change);
+        (self.stalls >= STALLS || next <= UNBIASED * size, stalls)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The iterations of one component of the size one, whose terms are rounded to `noise`.
+    fn iterations(changes: impl Fn(u32) -> f64, noise: f64) -> Result<u32, NewtonError> {
+        let mut fixed_point = FixedPoint::<1, 1>::new(200);
+        let mut k = 0;
+        loop {
+            k += 1;
+            if let Some(made) = fixed_point.see([[(changes(k), 1.0)]], 0.0, || [[noise]])? {
+                return Ok(made);
+            }
+        }
+    }
+
+    /// What shrinks is seen to end before it has; what stalls ends where its terms are no better known.
+    #[test]
+    fn an_iteration_ends_at_its_rounding() {
+        assert_eq!(iterations(|k| 0.1_f64.powi(k as i32), 0.0).unwrap(), 17);
+        let stalls = |k: u32| 0.1_f64.powi(k as i32).max(3e-9 * (1.0 + 0.3 * f64::from(k * 7 % 5)));
+        assert!(iterations(stalls, 1e-9).unwrap() < 16);
+        // The positive control: what is no rounding is no end, and growth is none.
+        assert!(matches!(iterations(stalls, 1e-12), Err(NewtonError::IterationLimit { .. })));
+        assert!(matches!(iterations(|k| 2.0_f64.powi(k as i32), 1e-12), Err(NewtonError::Diverged { .. })));
+        assert!(matches!(iterations(|_| f64::NAN, 1.0), Err(NewtonError::NotFinite { .. })));
+    }
+}

@@ -1,0 +1,72 @@
+//! Every tolerance by which an implicit method decides that its equations are solved.
+//!
+//! `eps = 2^-52` is the distance from one to the next number, `u = eps/2` the unit of rounding.
+//!
+//! | constant | value | from | used by |
+//! |---|---|---|---|
+//! | [`SETTLED`] | `4 eps` | a correction below it changes the last digits of its unknown only | Newton's method, chord method, projection |
+//! | [`UNBIASED`] | `eps/64` | what a linear convergence leaves out has one sign in every step, and adds up over 10^6 of them | fixed points, assemblies |
+//! | [`SLIGHT`] | `64 eps` | momenta `M v` are rounded to `u M v` in some tens of operations | all: cheap, asked first |
+//! | [`ROUNDINGS`] | `8` | residual over the running error bound of its terms; Newton's method attains a small multiple of one (Tisseur 2001) | all: asked where corrections stall |
+//! | [`NEAR_ROUNDINGS`] | `64` | a start that misses its equations by so few roundings is its solution | continuation |
+//! | [`BLIND`] | `1e-11` | the largest unknown, for equations that do not tell the sizes of their terms | users' own equations |
+//! | [`STALL`], [`STALL_OF_FIXED_POINT`] | `1/4`, `1/2` | a correction that shrinks by less is rounding or no convergence | Newton's method; fixed points |
+//! | [`SHRINKING`] | `1/8` | a frozen Jacobian that does worse is renewed | chord method |
+//! | [`CONTRACTION`] | `1/4` | Newton and Kantorovich: `h0 = 2 theta <= 1/2` (Deuflhard 2004, sections 2.1 and 3.3) | continuation |
+//! | [`GONE`] | `eps^2` | an unknown that has lost all digits of its start twice is zero | simplified corrections |
+//! | [`GROWTHS`] | `3` | so often in all the largest correction may grow | Newton's method |
+//!
+//! The unit of all is the component itself, except [`ROUNDINGS`], whose unit is the sum of the sizes of the terms of an
+//! equation, in momenta. A correction is never called rounding by its size beside other unknowns, but for [`SLIGHT`]: where
+//! forces are large and velocities small, the rounding of the equations is that of the forces.
+
+/// Relative correction of a component that is settled.
+pub const SETTLED: f64 = 4.0 * f64::EPSILON;
+
+/// Relative change that a linear convergence may still leave.
+pub const UNBIASED: f64 = f64::EPSILON / 64.0;
+
+/// Corrections below this part of the largest unknown are rounding where they stall.
+pub const SLIGHT: f64 = 64.0 * f64::EPSILON;
+
+/// A residual of so many roundings of its terms is rounding.
+pub const ROUNDINGS: f64 = 8.0;
+
+/// A guess with a residual of so many roundings is as good as the solution.
+pub const NEAR_ROUNDINGS: f64 = 64.0;
+
+/// As [`SLIGHT`], of equations that do not know the sizes of their terms.
+pub const BLIND: f64 = 1e-11;
+
+/// A correction of more than this part of the one before stalls.
+pub const STALL: f64 = 0.25;
+
+/// A change of a fixed-point iteration of more than this part of the one before stalls.
+pub const STALL_OF_FIXED_POINT: f64 = 0.5;
+
+/// Simplified corrections shrink by at least as much, or their derivatives are not good enough.
+pub const SHRINKING: f64 = 0.125;
+
+/// The second correction over the first, where the solution is the one near the start.
+pub const CONTRACTION: f64 = 0.25;
+
+/// With derivatives of another point an unknown that goes to zero shrinks by the same factor for ever. It is zero below this
+/// part of its start.
+pub const GONE: f64 = f64::EPSILON * f64::EPSILON;
+
+/// So many times in all the largest correction may grow.
+pub const GROWTHS: u32 = 3;
+
+/// Whether corrections of this size are rounding beside a largest unknown of that size, whatever the equations are. Below the
+/// smallest normal number everything is, since what comes to rest ends there.
+#[must_use]
+#[inline(always)]
+pub fn is_slight(correction: f64, size: f64) -> bool {
+    correction <= (SLIGHT * size).max(f64::MIN_POSITIVE)
+}
+
+/// So often a change of a fixed-point iteration must have been rounding and not have shrunk.
+pub const STALLS: u32 = 2;
+
+/// Changes of a fixed-point iteration that oscillate may grow by this factor above the least so far.
+pub const GROWTH_OF_FIXED_POINT: f64 = 1e3;

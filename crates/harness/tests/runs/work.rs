@@ -1,0 +1,218 @@
+//! The work that is taken off the energy of an assembly is that of the method's own forces.
+use assembly::parts::{Trailer, Train};
+use assembly::{Assembly, Energy, OneStep, Solver, State, StepReport, Work};
+use dla::Schedule;
+use harness::{AssemblyEvent, Method, Record, Request, run_assembly, run_assembly_watched};
+use lagrangian::linear::larger;
+use lagrangian::{Piecewise, System, With};
+use proptest::prelude::*;
+use sleigh::effects::{Drag, Thrust, Torque};
+use sleigh::{Sleigh, SleighState, TimeFunction};
+
+/// A sleigh under a constant thrust of 0.2 N with one trailer, bent by 0.5 rad less its heading.
+fn thrust() -> (Train, State) {
+    let lead = With { body: lead(), effects: Thrust::new(TimeFunction::Constant(0.2)).unwrap() };
+    let train = Train::new(lead, vec![trailer(1.0)], |trailer| trailer.sleigh).unwrap();
+    let start = train.start(&START, &[0.5]);
+    (train, start)
+}
+
+fn lead() -> Sleigh {
+    Sleigh::new(1.0, 1.0, 0.2).unwrap()
+}
+
+fn trailer(bar: f64) -> Trailer {
+    Trailer::new(0.5, 0.1, 0.0, 0.0, bar).unwrap()
+}
+
+const START: SleighState = SleighState { x: 0.0, y: 0.0, heading: 0.0, speed: 1.0, turn_rate: 0.3 };
+
+/// Thrust and torque that change with time on the lead, drag on every blade.
+fn driven() -> (Train, State) {
+    let wave = |size: f64, rate: f64| TimeFunction::Sine { amplitude: size, frequency: rate, phase: 0.3 };
+    let effects =
+        (Thrust::new(wave(0.8, 1.3)).unwrap(), (Torque::new(wave(0.5, 2.1)).unwrap(), Drag::new(0.1, 0.05).unwrap()));
+    let body = |trailer: &Trailer| With { body: trailer.sleigh, effects: Drag::new(0.05, 0.02).unwrap() };
+    let train = Train::new(With { body: lead(), effects }, vec![trailer(0.8); 3], body).unwrap();
+    let start = train.start(&START, &[0.3, -0.2]);
+    (train, start)
+}
+
+fn free() -> (Train, State) {
+    let train = Train::new(lead(), vec![trailer(0.8); 3], |trailer| trailer.sleigh).unwrap();
+    let start = train.start(&START, &[0.3, -0.2]);
+    (train, start)
+}
+
+fn schedule(step: f64, duration: f64) -> Schedule {
+    Schedule { t0: 0.0, step, steps: (duration / step).round() as u64 }
+}
+
+fn measured((train, start): &(Train, State), name: &str, schedule: &Schedule) -> Record<3> {
+    let method = Method::named(name, None).unwrap();
+    let run = run_assembly(&train.assembly, &method, schedule, start, schedule.steps, &mut ());
+    assert!(run.failure.is_none(), "{name}: {:?}", run.failure);
+    run.record
+}
+
+/// Rounding that walks at random, a few ulps of the largest energy a step.
+fn rounding(record: &Record<3>) -> f64 {
+    let size = record.energy.initial.max(record.energy.last) + record.energy.work.abs();
+    4.0 * f64::EPSILON * size * (record.steps as f64).sqrt()
+}
+
+/// By theory the energy changes by the work of the discrete forces, whatever the step; the control is the midpoint rule, whose
+/// energy does not.
+#[test]
+fn the_energy_changes_by_the_work_of_the_discrete_forces() {
+    for scene in [thrust(), driven()] {
+        for step in [0.04, 0.02, 0.01] {
+            let schedule = schedule(step, 20.0);
+            let kept = measured(&scene, "energy2", &schedule);
+            println!("{step}: {:e} of {:e} J", kept.energy.max_error, rounding(&kept));
+            assert!(kept.energy.work.abs() > 0.1);
+            assert!(kept.energy.max_error < rounding(&kept), "{step}: {:e}", kept.energy.max_error);
+            let control = measured(&scene, "dla", &schedule);
+            assert!(control.energy.max_error > 1e-8, "{step}: {:e}", control.energy.max_error);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Whatever pushes, brakes and turns the train, and however long the step.
+    #[test]
+    fn the_balance_of_any_train(
+        push in -1.0..1.0f64,
+        torque in -0.5..0.5f64,
+        along in 0.0..0.5f64,
+        turning in 0.0..0.3f64,
+        bars in proptest::collection::vec(0.5..1.5f64, 1..5),
+        bend in -0.5..0.5f64,
+        step in 0.005..0.05f64,
+    ) {
+        let drag = || Drag::new(along, turning).unwrap();
+        let effects = (Thrust::new(push).unwrap(), (Torque::new(torque).unwrap(), drag()));
+        let body = |trailer: &Trailer| With { body: trailer.sleigh, effects: drag() };
+        let train = Train::new(With { body: lead(), effects }, bars.into_iter().map(trailer).collect(), body).unwrap();
+        let start = train.start(&START, &[bend, 0.0, -bend]);
+        let kept = measured(&(train, start), "energy2", &Schedule { t0: 0.0, step, steps: 200 });
+        prop_assert!(kept.energy.max_error < rounding(&kept), "{:e} J", kept.energy.max_error);
+    }
+}
+
+/// Without forces nothing is taken off.
+#[test]
+fn a_free_train_has_no_work() {
+    let (scene, schedule) = (free(), schedule(0.02, 20.0));
+    for name in ["energy2", "dla", "dla4", "lobatto3"] {
+        assert_eq!(measured(&scene, name, &schedule).energy.work.to_bits(), 0.0f64.to_bits(), "{name}");
+    }
+    let kept = measured(&scene, "energy2", &schedule);
+    assert!(kept.energy.max_error < rounding(&kept), "{:e}", kept.energy.max_error);
+}
+
+/// What the error of the energy would be by the work that the forces do along the polynomial through the nodes, and after a step
+/// that is not the method's.
+#[test]
+fn another_work_and_another_step_are_seen() {
+    /// By so much, relatively, every velocity is off in a wrong step.
+    const WRONG: f64 = 1e-10;
+    let (train, start) = thrust();
+    let assembly = &train.assembly;
+    let errors = |step: f64, along: bool, wrong: bool| {
+        let (mut method, mut work) = (Energy::new(assembly, Solver::Best).unwrap(), Work::default());
+        let (mut state, initial, mut most) = (start.clone(), assembly.energy(0.0, &start), 0.0);
+        let schedule = schedule(step, 20.0);
+        for k in 0..schedule.steps {
+            let (t0, t1, before) = (schedule.time(k), schedule.time(k + 1), state.clone());
+            let report = method.step(assembly, t0, step, &mut state).unwrap();
+            assert!(report.work.unwrap() > 0.0);
+            if wrong && k == schedule.steps / 2 {
+                state = faster(assembly, &state, 1.0 + WRONG);
+            }
+            let report = if along { StepReport { work: None, ..report } } else { report };
+            work.step(assembly, (t0, &before), (t1, &state), &report);
+            most = larger(most, assembly.energy(t1, &state) - initial - work.total());
+        }
+        most
+    };
+    for (step, known) in [(0.04, 3.1e-6), (0.02, 7.8e-7), (0.01, 1.9e-7)] {
+        let error = errors(step, true, false);
+        println!("{step}: {error:e}");
+        assert!((error / known - 1.0).abs() < 0.05, "{step}: {error:e}");
+    }
+    // The energy is then more than 1 J.
+    let (right, wrong) = (errors(0.02, false, false), errors(0.02, false, true));
+    println!("{right:e} {wrong:e}");
+    assert!(wrong > 2.0 * WRONG && right < 1e-3 * wrong);
+}
+
+/// The same place with all velocities multiplied.
+fn faster(assembly: &Assembly, state: &State, by: f64) -> State {
+    let of = |what: &dyn Fn(usize) -> f64| (0..state.len()).map(what).collect::<Vec<_>>();
+    State::new(assembly, &of(&|i| state.unwrapped(i)), &of(&|i| by * state.v(i)))
+}
+
+/// Of the step that an event ends only the part before it counts.
+#[test]
+fn the_work_of_a_step_that_an_event_ends() {
+    let (train, start) = driven();
+    let schedule = schedule(0.1, 20.0);
+    for (name, most) in [("energy2", 1e-14), ("dla8", 1e-10)] {
+        let method = Method::named(name, None).unwrap();
+        let at = |t: f64, _: &State| t - 4.567_89;
+        let events = [AssemblyEvent::new("t", true, at)];
+        let (run, _) = run_assembly_watched(&train.assembly, &method, &schedule, (&start, 1000), (&events, 4), &mut ());
+        assert!((run.record.t - 4.567_89).abs() < 1e-12);
+        println!("{name} {:e}", run.record.energy.max_error);
+        assert!(run.record.energy.max_error < most, "{name}: {:e}", run.record.energy.max_error);
+    }
+}
+
+/// An assembly of one sleigh is measured as the sleigh is.
+#[test]
+fn one_sleigh_is_measured_as_the_static_sleigh() {
+    fn compare<Sys: System<3, 1> + Piecewise + Clone + Send + Sync + 'static>(system: &Sys, powered: bool) {
+        let mut alone = Assembly::new();
+        let _: [usize; 3] = alone.body("blade", system.clone());
+        let (q, v) = START.to_coordinates();
+        let start = State::new(&alone, &q, &v);
+        let schedule = schedule(0.05, 20.0);
+        for name in ["dla", "dla4", "dla6", "dla8", "lobatto3", "lobatto4", "lobatto5", "energy2"] {
+            let method = Method::named(name, None).unwrap();
+            let own = run_assembly(&alone, &method, &schedule, &start, 400, &mut ()).record;
+            let fixed = harness::run(system, &method, &Request { schedule, q, v, samples: 2 }, &mut ());
+            let (own, fixed) = (own.energy, fixed.energy);
+            println!("{name} {:e} {:e} {:e} {:e}", own.work, fixed.work, own.max_error, fixed.max_error);
+            assert_eq!(powered, fixed.work != 0.0);
+            // The path differs by the rounding of its velocities, a few ulps in each of 400 steps.
+            let rounding = 400.0 * 4.0 * f64::EPSILON * (fixed.initial + fixed.work.abs());
+            assert!((own.work - fixed.work).abs() < rounding, "{name}");
+            assert!((own.max_error - fixed.max_error).abs() < rounding, "{name}");
+        }
+    }
+    let thrust = Thrust::new(TimeFunction::Constant(0.2)).unwrap();
+    compare(&With { body: lead(), effects: thrust.clone() }, true);
+    let wave = TimeFunction::Sine { amplitude: 0.5, frequency: 2.1, phase: 0.3 };
+    let effects = (thrust, (Torque::new(wave).unwrap(), Drag::new(0.1, 0.05).unwrap()));
+    compare(&With { body: lead(), effects }, true);
+    compare(&lead(), false);
+}
+
+/// Pushed from behind, three blades fold and go on.
+#[test]
+fn pushed_trains_fold_and_go_on() {
+    let train = Train::new(lead(), vec![trailer(1.0); 2], |trailer| trailer.sleigh).unwrap();
+    let start = train.start(&SleighState { speed: -1.0, turn_rate: 0.05, ..START }, &[0.01, -0.02]);
+    let method = Method::named("lobatto5", None).unwrap();
+    let schedule = schedule(0.02, 200.0);
+    let run = run_assembly(&train.assembly, &method, &schedule, &start, 50, &mut ());
+    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let folded = run.nodes.iter().fold(0.0, |most, node| larger(most, node.q[5] - node.q[2]));
+    println!("{:e} J of {:e} J, folded by {folded} rad", run.record.energy.max_error, run.record.energy.initial);
+    assert!(folded > 0.9 * std::f64::consts::FRAC_PI_2);
+    assert!(run.record.energy.max_error < 1e-14);
+    assert!(run.record.constraint_max < 1e-14 && run.record.leaf_max.unwrap() < 1e-14);
+}

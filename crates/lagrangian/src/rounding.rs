@@ -1,0 +1,120 @@
+use crate::{
+    AdmissibleBasis, Dual, Motion, MotionError, Rounded, Saddle, System, configuration_slope, from_fn,
+    inverse_reduced_mass, mass_matrix, momentum, reaction_rows, redundant_rows, velocity_of,
+};
+
+/// The unit of rounding.
+const UNIT: f64 = 0.5 * f64::EPSILON;
+
+/// What the rounding of their terms may do to the equations of motion at one point, component by component.
+///
+/// All bounds are to first order, by running error analysis on the functions of the system ([`Rounded`]); a place and a velocity
+/// are rounded once.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MotionRounding<const N: usize> {
+    /// Of the momenta `L_v` (kg m/s, or whatever those of the coordinate are).
+    pub momentum: [f64; N],
+    /// Of the sum of the forces, `L_q + F - (d/dt L_v at constant v) + A' lambda`.
+    pub force: [f64; N],
+    /// Of the accelerations.
+    pub acceleration: [f64; N],
+}
+
+impl<const N: usize> MotionRounding<N> {
+    /// At `(t, q, v)`.
+    ///
+    /// # Errors
+    /// [`MotionError`] where the mass matrix or the constraint is degenerate.
+    #[cold]
+    #[inline(never)]
+    pub fn at<Sys: System<N, M>, const M: usize>(
+        system: &Sys,
+        t: f64,
+        q: &[f64; N],
+        v: &[f64; N],
+    ) -> Result<Self, MotionError> {
+        let Motion { multiplier, .. } = system.motion(t, q, v)?;
+        let (place, velocity) = (q.map(Rounded::once), v.map(Rounded::once));
+        let slope = configuration_slope(system, Rounded::exact(t), &place, &velocity);
+        let pushed = system.force(Rounded::exact(t), &place, &velocity);
+        // Along the motion at constant velocity.
+        let along: [Dual<Rounded, 1>; N] = from_fn(|i| Dual { re: place[i], eps: [velocity[i]] });
+        let time = Dual { re: Rounded::exact(t), eps: [Rounded::exact(1.0)] };
+        let carried = momentum(system, time, &along, &velocity.map(Dual::fixed));
+        let a = reaction_rows(system, t, q, v);
+        let force = from_fn(|i| {
+            let reaction: f64 = (0..M).map(|k| (a[k][i] * multiplier[k]).abs()).sum();
+            UNIT * (slope[i].size + pushed.map_or(0.0, |f| f[i].size) + carried[i].eps[0].size + reaction)
+        });
+
+        // What a force does to the accelerations, the constraints met.
+        let (_, block) = mass_matrix(system, t, q, v);
+        let mut acceleration = [0.0; N];
+        for j in 0..N {
+            let right = from_fn(|i| if i == j { force[j] } else { 0.0 });
+            let saddle = Saddle { block, transposed: a, rows: a, right, level: [0.0; M] };
+            let solved = saddle.solve(system.admissible_basis(t, q).as_ref());
+            let (response, _) = match solved {
+                Ok(solution) => solution,
+                Err(source) => redundant_rows(system, t, q, v)
+                    .map_or(Err(source), |rows| saddle.solve_some(rows))
+                    .map_err(|source| MotionError { time: t, source })?,
+            };
+            for i in 0..N {
+                acceleration[i] += response[i].abs();
+            }
+        }
+        Ok(Self { momentum: carried.map(|p| UNIT * p.re.size), force, acceleration })
+    }
+
+    /// Of the rates of the quasi-momenta in a basis of admissible velocities.
+    #[must_use]
+    pub fn along<const M: usize>(&self, basis: &AdmissibleBasis<f64, N, M>) -> [f64; N] {
+        products(basis, &self.force)
+    }
+
+    /// Of the quasi-momenta themselves.
+    #[must_use]
+    pub fn quasi_momentum<const M: usize>(&self, basis: &AdmissibleBasis<f64, N, M>) -> [f64; N] {
+        products(basis, &self.momentum)
+    }
+}
+
+/// `|W|' x`.
+fn products<const N: usize, const M: usize>(basis: &AdmissibleBasis<f64, N, M>, x: &[f64; N]) -> [f64; N] {
+    let mut sums = [0.0; N];
+    for (sum, w) in sums.iter_mut().zip(basis.vectors()) {
+        *sum = (0..N).map(|i| w[i].abs() * x[i]).sum();
+    }
+    sums
+}
+
+/// The rounding of the reduced equations along a step of length `h`, of the velocities and of the accelerations of the
+/// quasi-velocities; none where there are no such equations.
+#[cold]
+#[inline(never)]
+pub fn reduced_rounding<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    q: &[f64; N],
+    xi: &[f64; N],
+    h: f64,
+) -> Option<[[f64; N]; 2]> {
+    let (time, place, quasi) = (Rounded::exact(t), q.map(Rounded::once), xi.map(Rounded::once));
+    let basis = system.admissible_basis(t, q)?;
+    let acceleration = match system.reduced_motion(time, &place, &quasi) {
+        Some(by_hand) => by_hand.map(|x| UNIT * x.size),
+        None => {
+            let v = velocity_of(system, t, q, xi).ok()?;
+            let forces = products(&basis, &MotionRounding::at(system, t, q, &v).ok()?.force);
+            let inverse = inverse_reduced_mass(system, t, q, &v, &basis).ok()?;
+            from_fn(|a| (0..N).map(|b| (inverse[a][b] * forces[b]).abs()).sum())
+        }
+    };
+    let turned = velocity_of(system, time, &place, &quasi).ok()?;
+    let velocity = from_fn(|i| {
+        let moved = basis.vectors().iter().zip(&acceleration).map(|(w, a)| (h * w[i] * a).abs());
+        UNIT * turned[i].size + moved.sum::<f64>()
+    });
+    Some([velocity, acceleration])
+}
