@@ -28,6 +28,7 @@ fn exponents_are_told_with_what_they_sum_up_to() {
         "ci",
         "sum",
         "divergence_mean",
+        "verdict",
         "convergence",
         "dimension",
     ];
@@ -53,6 +54,50 @@ fn exponents_are_told_with_what_they_sum_up_to() {
     assert_eq!(one["exponents"].as_array().unwrap().len(), 1);
     assert_abs_diff_eq!(one["energy"].as_f64().unwrap(), 2.0, epsilon = 1e-12);
     assert!(one.get("dimension").is_none() && one["ci"][0].is_f64());
+}
+
+/// Straight and unstable: backward with the centre of mass ahead. And a ridge in both directions, down which a sleigh slides.
+const LINE: &str = "[sleigh]\nmass = 1.0\ninertia = 1.0\noffset = 0.5\n[start]\nspeed = -1.0\nturn_rate = 0.0\n\
+    [run]\nstep = 0.1\nduration = 100.0\n";
+const RIDGE: &str = "[sleigh]\nmass = 1.0\ninertia = 1.0\noffset = 0.0\n[start]\nx = 0.01\nspeed = 0.0\nturn_rate = 0.0\n\
+    [run]\nstep = 0.05\nduration = 100.0\n[[effects]]\nkind = \"bowl\"\nstiffness = [-1.0, -1.0]\n";
+
+/// A positive exponent alone is no chaos.
+#[test]
+fn steady_periodic_and_runaway_motions_are_named() {
+    let folder = Folder::new();
+    folder.write("line.toml", LINE);
+    folder.write("ridge.toml", RIDGE);
+    folder.write("well.toml", include_str!("../docs/chaos/well.toml"));
+    let line = folder.json("lyapunov line.toml --duration 200 --json");
+    assert_eq!((&line["verdict"], &line["unstable"]), (&Value::from("steady"), &Value::from(true)));
+    for ((exponent, ci), known) in numbers(&line["exponents"]).iter().zip(numbers(&line["ci"])).zip([0.4, 0.0]) {
+        assert_abs_diff_eq!(*exponent, known, epsilon = ci);
+    }
+    let text = folder.done("lyapunov line.toml --duration 200");
+    assert!(text.contains("steady: ") && !text.contains("chaotic") && !text.contains("dimension"), "{text}");
+
+    let orbit = folder.json("lyapunov well.toml --step 0.05 --energy 8 --settle 100 --duration 300 --json");
+    assert_eq!((&orbit["verdict"], &orbit["unstable"]), (&Value::from("periodic"), &Value::from(false)));
+    assert_abs_diff_eq!(orbit["period"].as_f64().unwrap(), 6.8976, epsilon = 1e-3);
+
+    let short = folder.json("lyapunov ridge.toml --duration 20 --json");
+    assert_eq!((&short["verdict"], short.get("failure")), (&Value::from("running away"), None));
+    assert_abs_diff_eq!(numbers(&short["exponents"])[0], 1.0, epsilon = 0.05);
+    // Later the exponents have no digits, and the sum of all is not what it must be.
+    for rest in ["--duration 60", "--duration 90", "--duration 60 --settle 60"] {
+        let outcome = folder.line(&format!("lyapunov ridge.toml {rest} --json"));
+        assert_eq!(outcome.code, 1, "{rest}: {outcome:?}");
+        for told in ["exponents together", "by the divergence", "shorter steps"] {
+            assert!(outcome.stderr.contains(told), "{rest}: {outcome:?}");
+        }
+        let found: Value = serde_json::from_str(&outcome.stdout).unwrap();
+        assert_eq!(found["verdict"], Value::from("running away"), "{rest}");
+        if let (Some(sum), Some(divergence)) = (found["sum"].as_f64(), found["divergence_mean"].as_f64()) {
+            assert_abs_diff_eq!(sum, divergence, epsilon = 1e-2);
+            assert_abs_diff_eq!(numbers(&found["exponents"])[0], 1.0, epsilon = 0.1);
+        }
+    }
 }
 
 /// The free sleigh, a flywheel, and a turntable, whose equations are not known by hand: `dla` and `gauss8` agree to the order of
@@ -91,6 +136,9 @@ fn a_map_does_not_depend_on_the_threads() {
     let found: Value = serde_json::from_str(&one).unwrap();
     let rows = found["exponents"].as_array().unwrap();
     assert_eq!((rows.len(), rows[0].as_array().unwrap().len(), &found["failed"]), (3, 4, &Value::from(0)));
+    let verdicts = found["verdicts"].as_array().unwrap();
+    assert_eq!((verdicts.len(), verdicts[0].as_array().unwrap().len()), (3, 4));
+    assert!(verdicts.iter().flat_map(|row| row.as_array().unwrap()).all(Value::is_string));
     on("2", "--out map.csv");
     let (names, cells) = csv(&folder.read("map.csv"));
     assert_eq!((names.len(), cells.len()), (4, 12));

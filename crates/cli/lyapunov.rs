@@ -5,7 +5,7 @@ use crate::starts::{Start, with_energy};
 use crate::{inspect, progress, stability_map, table, terminal};
 use dla::Schedule;
 use harness::Method;
-use harness::analysis::{Lyapunov, LyapunovError, LyapunovRequest, has_tangents, kaplan_yorke};
+use harness::analysis::{Lyapunov, LyapunovError, LyapunovRequest, MotionVerdict, has_tangents, kaplan_yorke};
 use harness::report::{Chart, Layer};
 use lagrangian::energy;
 use scene::{Scene, SceneSystem, Visitor};
@@ -134,10 +134,17 @@ impl Exponents<'_> {
             "ci": found.ci,
             "sum": found.sum(),
             "divergence_mean": found.divergence_mean,
+            "verdict": found.verdict.name(),
             "convergence": running,
         });
         if whole {
             object["dimension"] = json!(kaplan_yorke(&found.exponents));
+        }
+        if let MotionVerdict::Periodic { period, .. } = found.verdict {
+            object["period"] = json!(period);
+        }
+        if let MotionVerdict::Steady { unstable } | MotionVerdict::Periodic { unstable, .. } = found.verdict {
+            object["unstable"] = json!(unstable);
         }
         if let Some(failure) = found.failure {
             object["failure"] = json!(failure.to_string());
@@ -165,15 +172,23 @@ impl Exponents<'_> {
             ),
             ("energy".to_owned(), format!("{} J", table::number(energy))),
         ];
-        lines.extend((0..found.exponents.len()).map(|i| (format!("exponent {}", i + 1), format!("{} 1/s", each(i)))));
-        if whole {
-            lines.push(("sum".to_owned(), format!("{:+.7} 1/s", found.sum())));
-            lines.push(("mean divergence".to_owned(), format!("{:+.7} 1/s", found.divergence_mean)));
-            lines.push(("dimension".to_owned(), format!("{:.3}, by Kaplan and Yorke", kaplan_yorke(&found.exponents))));
-        } else {
-            lines.push(("mean divergence".to_owned(), format!("{:+.7} 1/s, the sum of all", found.divergence_mean)));
+        // A run that fails before anything is counted has no exponents.
+        if found.time > 0.0 {
+            let named = |i: usize| (format!("exponent {}", i + 1), format!("{} 1/s", each(i)));
+            lines.extend((0..found.exponents.len()).map(named));
+            let divergence = format!("{:+.7} 1/s", found.divergence_mean);
+            if whole {
+                lines.push(("sum".to_owned(), format!("{:+.7} 1/s", found.sum())));
+                lines.push(("mean divergence".to_owned(), divergence));
+            } else {
+                lines.push(("mean divergence".to_owned(), format!("{divergence}, the sum of all")));
+            }
+            if whole && has_attractor(found.verdict) {
+                let dimension = kaplan_yorke(&found.exponents);
+                lines.push(("dimension".to_owned(), format!("{dimension:.3}, by Kaplan and Yorke")));
+            }
         }
-        lines.push(("verdict".to_owned(), verdict(found).to_owned()));
+        lines.push(("verdict".to_owned(), found.verdict.to_string()));
         table::aligned(&lines)
     }
 
@@ -191,14 +206,13 @@ impl Exponents<'_> {
     }
 }
 
-/// What the largest exponent says. Neighbours that part company linearly, as those of regular motions do, have `ln T / T`.
-fn verdict(found: &Lyapunov) -> &'static str {
-    match (found.exponents.first(), found.ci.first().copied().flatten()) {
-        (Some(largest), Some(ci)) if largest - ci > 2.0 * found.time.ln() / found.time => {
-            "chaotic: the largest exponent is positive"
-        }
-        (Some(_), Some(_)) => "not seen to be chaotic: the largest exponent is zero within what this run can tell",
-        _ => "none: the run is too short for a confidence interval",
+/// Whether a motion may be on an attractor whose dimension its exponents tell: an unstable steady one is not, nor is one that
+/// runs away.
+fn has_attractor(verdict: MotionVerdict) -> bool {
+    match verdict {
+        MotionVerdict::Steady { unstable } | MotionVerdict::Periodic { unstable, .. } => !unstable,
+        MotionVerdict::RunsAway => false,
+        MotionVerdict::Regular | MotionVerdict::Chaotic | MotionVerdict::Undecided(_) => true,
     }
 }
 

@@ -6,7 +6,7 @@ use crate::lyapunov::{refused, schedule};
 use crate::starts::{moved, with_energy};
 use crate::{progress, table, terminal};
 use harness::Method;
-use harness::analysis::{LyapunovError, LyapunovRequest, in_parallel, lyapunov};
+use harness::analysis::{LyapunovError, LyapunovRequest, MotionVerdict, in_parallel, lyapunov};
 use harness::report::{Cells, Chart, Layer};
 use scene::{Scene, SceneSystem, Visitor};
 use serde_json::{Value, json};
@@ -26,12 +26,22 @@ pub(crate) struct Map<'a> {
 
 /// What a start came to.
 enum Cell {
-    /// The largest exponent, with its interval (1/s).
-    Exponent(f64, Option<f64>),
+    /// The largest exponent, with its interval (1/s), and what the motion is.
+    Exponent(f64, Option<f64>, MotionVerdict),
     /// There is no such start.
     None,
     Failed(String),
     Refused(LyapunovError),
+}
+
+/// The names of the verdicts, in the order in which they are counted.
+const VERDICTS: [&str; 6] = ["chaotic", "regular", "periodic", "steady", "running away", "undecided"];
+
+impl Cell {
+    /// The name of what the motion is.
+    fn verdict(&self) -> Option<&'static str> {
+        if let Self::Exponent(.., verdict) = self { Some(verdict.name()) } else { None }
+    }
 }
 
 impl Visitor for Map<'_> {
@@ -67,7 +77,7 @@ impl Visitor for Map<'_> {
                     match lyapunov(system, &self.method, &request, &mut ()) {
                         Ok(found) => match found.failure {
                             Some(failure) => Cell::Failed(failure.to_string()),
-                            None => Cell::Exponent(found.exponents[0], found.ci[0]),
+                            None => Cell::Exponent(found.exponents[0], found.ci[0], found.verdict),
                         },
                         Err(error) => Cell::Refused(error),
                     }
@@ -90,7 +100,7 @@ impl Map<'_> {
             return Err(refused(error));
         }
         let [across, up] = &self.axes;
-        let value = |cell: &Cell| if let Cell::Exponent(value, _) = cell { Some(*value) } else { None };
+        let value = |cell: &Cell| if let Cell::Exponent(value, ..) = cell { Some(*value) } else { None };
         let values: Vec<Option<f64>> = cells.iter().map(value).collect();
         let known: Vec<f64> = values.iter().copied().flatten().collect();
         let failures: Vec<&String> =
@@ -98,7 +108,7 @@ impl Map<'_> {
         let shared = &self.arguments.scene;
         let written = self.file.map_or(Ok(()), |file| {
             let row = |(i, cell): (usize, &Cell)| match cell {
-                Cell::Exponent(value, ci) => {
+                Cell::Exponent(value, ci, _) => {
                     let [a, b] = [across.value(i % across.cells), up.value(i / across.cells)];
                     Some(vec![a, b, *value, ci.unwrap_or(f64::NAN)])
                 }
@@ -111,7 +121,7 @@ impl Map<'_> {
         if shared.json {
             terminal::print_json(&self.json(cells, &values, failures.len()))?;
         } else {
-            terminal::print(&self.text(&known, cells.len(), failures.len()))?;
+            terminal::print(&self.text(&known, cells, failures.len()))?;
             if let (Some(path), Ok(())) = (&self.arguments.out, &written) {
                 terminal::print(&format!("written    {}\n", path.display()))?;
             }
@@ -144,7 +154,8 @@ impl Map<'_> {
         let [across, _] = &self.axes;
         let axis = |range: &Range| json!({"name": range.coordinate.name, "from": range.ends[0], "to": range.ends[1], "cells": range.cells});
         let ci: Vec<Option<f64>> =
-            cells.iter().map(|cell| if let Cell::Exponent(_, ci) = cell { *ci } else { None }).collect();
+            cells.iter().map(|cell| if let Cell::Exponent(_, ci, _) = cell { *ci } else { None }).collect();
+        let verdicts: Vec<Option<&str>> = cells.iter().map(Cell::verdict).collect();
         json!({
             "scene": self.scene.name,
             "method": self.method.info().name,
@@ -153,15 +164,17 @@ impl Map<'_> {
             "axes": self.axes.iter().map(axis).collect::<Vec<_>>(),
             "exponents": values.chunks(across.cells).collect::<Vec<_>>(),
             "ci": ci.chunks(across.cells).collect::<Vec<_>>(),
+            "verdicts": verdicts.chunks(across.cells).collect::<Vec<_>>(),
             "failed": failed,
         })
     }
 
-    fn text(&self, known: &[f64], count: usize, failed: usize) -> String {
-        let run = &self.scene.run;
+    fn text(&self, known: &[f64], cells: &[Cell], failed: usize) -> String {
+        let (run, count) = (&self.scene.run, cells.len());
         let (least, largest) =
             known.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
-        let positive = known.iter().filter(|x| **x > 2.0 * run.duration.ln() / run.duration).count();
+        let counted = |name: &&str| cells.iter().filter(|cell| cell.verdict() == Some(name)).count();
+        let verdicts: Vec<String> = VERDICTS.iter().map(|name| format!("{} {name}", counted(name))).collect();
         let lines = [
             ("scene", format!("{} ({})", self.scene.title, self.scene.name)),
             (
@@ -185,7 +198,7 @@ impl Map<'_> {
                 "largest exponent",
                 if known.is_empty() { "none".to_owned() } else { format!("from {least:+.4} to {largest:+.4} 1/s") },
             ),
-            ("chaotic", format!("{positive}, where it is above 2 ln T / T")),
+            ("verdicts", verdicts.join(", ")),
         ];
         table::aligned(&lines.map(|(name, value)| (name.to_owned(), value)))
     }

@@ -18,7 +18,7 @@ const LONG: [&str; 8] = [
     "noslip section egg-crate-attractor --step 0.1 --plane turn_rate=0 --starts 4 --duration 8000 --out egg-crate.svg",
 ];
 
-/// What another test of this binary runs as a whole; here it is parsed.
+/// What another test runs as a whole (`tests/cli_stability.rs`); here it is parsed.
 const TOGETHER: &str = "noslip stability --case ";
 
 /// Commands that are for other programs: what is built, installed or measured is not done by a test.

@@ -15,6 +15,11 @@ pub struct Facts {
     pub forced: bool,
     /// A constraint with `b != 0`.
     pub affine: bool,
+    /// A constraint on positions.
+    pub positions: bool,
+    /// Discrete Lagrangians and constraints with one node do not depend on where it is. Angular velocities are `e0` times the
+    /// increment of a quaternion, and the increment times itself adds none; so one rule is all, if the length is held on positions.
+    pub one_rule: bool,
     /// No basis of the admissible velocities.
     pub without_basis: bool,
     /// A Lagrangian that is not a quadratic form of the velocities and a potential.
@@ -178,4 +183,5 @@ macro_rules! case {
 case!(crate::shapes::Three, 3);
 case!(crate::shapes::Four, 4);
 case!(crate::shapes::Five, 5);
+case!(crate::shapes::Six, 6);
 case!(crate::shapes::Seven, 7);

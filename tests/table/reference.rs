@@ -90,13 +90,16 @@ fn closed_forms() {
 #[test]
 fn suslov() {
     let body = Suslov::new([1.0, 2.0, 1.5], 0.3, 0.5).unwrap();
-    let case: Row<Three, 3> = row("Suslov", body, body.start(), 3.0);
     let angular_velocity = |point: &Point| {
-        Attitude::new([point.q[0], point.q[1], point.q[2]]).body_velocity([point.v[0], point.v[1], point.v[2]])
+        let [q, v]: [[f64; 4]; 2] = [&point.q, &point.v].map(|x| std::array::from_fn(|i| x[i]));
+        Attitude::new(q).body_velocity(&v)
     };
-    let [o1, o2, _] = angular_velocity(&case.start());
-    let exact = body.exact_reduced([o1, o2], case.duration);
     for name in HIGH {
+        // The length of the quaternion as a constraint on positions, where the method takes one.
+        let body = if name.starts_with("energy") { body.norm_by_rate() } else { body };
+        let case: Row<Four, 4> = row("Suslov", body, body.start(), 3.0);
+        let [o1, o2, _] = angular_velocity(&case.start());
+        let exact = body.exact_reduced([o1, o2], case.duration);
         let end = angular_velocity(&case.end(&method(name), 400).unwrap());
         let error = (end[0] - exact[0]).abs().max((end[1] - exact[1]).abs());
         println!("Suslov, {name}: {error:.1e}");

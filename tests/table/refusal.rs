@@ -29,6 +29,7 @@ fn refusals_are_errors_that_say_why() {
             }
         }
     }
-    // Four energy methods on four rows, and what needs a basis on the row without one.
-    assert_eq!(refused, 4 * 4 + 9);
+    // Four energy methods on four rows, what needs a basis on the row without one, and four energy methods and `gni` on two rows
+    // with constraints on positions.
+    assert_eq!(refused, 4 * 4 + 9 + 5 * 2);
 }

@@ -48,7 +48,8 @@ fn symmetric_methods_return() {
         println!("{:<32} {largest:?}; rk4 {rk4:.1e}, alpha = 1/4 {alpha:.1e}", case.name());
         // The motion of the disk is a mere integral in time, and of such the rule of Runge and Kutta is symmetric.
         assert!(rk4 > 1e-10 || case.name() == "vertical rolling disk", "{}: rk4 returns within {rk4:e}", case.name());
-        assert!(alpha > 1e-4, "{}: alpha = 1/4 returns within {alpha:e}", case.name());
+        let alike = if facts.one_rule { alpha <= 1e-12 } else { alpha > 1e-4 };
+        assert!(alike, "{}: alpha = 1/4 returns within {alpha:e}", case.name());
     }
 }
 

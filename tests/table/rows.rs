@@ -1,7 +1,7 @@
 //! The table: one row for every system. A new row is under every check.
 
 use crate::case::{Case, Facts, Row};
-use crate::shapes::{Five, Four, Place, Seven, Three};
+use crate::shapes::{Five, Four, Place, Seven, Six, Three};
 use crate::systems::{Field, Forces, InField, Magnetic, Moving, Thrust, Turntable, at_centre};
 use lagrangian::With;
 use models::{
@@ -59,6 +59,10 @@ pub fn table() -> Vec<Box<dyn Case>> {
     // Across the blade, y = 0 and heading 0: y' = rate x.
     let on_the_table = ([0.4, 0.0, 0.0], [0.7, 0.3 * 0.4, 0.5]);
     let contact = ContactOscillator::new(0.3).unwrap();
+    // Attitudes by unit quaternions: their length is a constraint on positions, or its rate alone.
+    let suslov = Suslov::new([1.0, 2.0, 1.5], 0.3, 0.5).unwrap();
+    let ball = ChaplyginBall::new(1.2, 0.6, [0.5, 0.8, 1.1]).unwrap();
+    let on_positions = Facts { positions: true, one_rule: true, ..plain };
     vec![
         three("free sleigh", sleigh(), through_the_turn.to_coordinates(), 4.0, even),
         three(
@@ -120,7 +124,6 @@ pub fn table() -> Vec<Box<dyn Case>> {
             4.0,
             Facts { momenta: &["turn momentum"], ..here_again },
         ),
-        model::<Three, _, 3, 1>(Suslov::new([1.0, 2.0, 1.5], 0.3, 0.5).unwrap(), 3.0, plain),
         model::<Three, _, 3, 1>(contact, 6.0, Facts { highest_order: 6, ..here_again }),
         model::<Three, _, 3, 1>(
             GaugedOscillator::new(contact, 1.0).unwrap(),
@@ -133,11 +136,10 @@ pub fn table() -> Vec<Box<dyn Case>> {
             Facts { momenta: &["spin momentum", "heading momentum"], ..here_again },
         ),
         model::<Four, _, 4, 2>(RollerRacer::new(1.3, 0.8, 0.3, 0.7, 0.4).unwrap(), 2.0, plain),
-        model::<Five, _, 5, 2>(
-            ChaplyginBall::new(1.2, 0.6, [0.5, 0.8, 1.1]).unwrap(),
-            3.0,
-            Facts { highest_order: 6, ..plain },
-        ),
+        model::<Four, _, 4, 2>(suslov, 3.0, on_positions),
+        model::<Four, _, 4, 2>(suslov.norm_by_rate(), 3.0, plain),
+        model::<Six, _, 6, 3>(ball, 3.0, Facts { highest_order: 6, ..on_positions }),
+        model::<Six, _, 6, 3>(ball.norm_by_rate(), 3.0, Facts { highest_order: 6, ..plain }),
         model::<Five, _, 5, 2>(
             Snakeboard::new(1.3, 0.7, 0.3, 0.2, 0.1).unwrap(),
             4.0,

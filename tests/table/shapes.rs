@@ -1,6 +1,6 @@
 //! The systems of one shape as the arms of one type.
 //!
-//! A method is compiled once for every type of system. Twenty systems of four shapes are four types here, and what an
+//! A method is compiled once for every type of system. Twenty systems of five shapes are five types here, and what an
 //! arm adds is compiled once for every kind of number, since the calls are not inlined.
 
 use crate::systems::{Forces, InField, Magnetic, Moving, Thrust, Turntable};
@@ -62,6 +62,10 @@ macro_rules! shape {
                     $(Self::$plain(x) => x.admissible_basis(t, q),)*
                 }
             }
+            #[inline(never)]
+            fn holonomic<S: Scalar>(&self, t: S, q: &[S; $n]) -> Option<[Option<S>; $m]> {
+                match self { $(Self::$model(x) => x.holonomic(t, q),)* $(Self::$plain(x) => x.holonomic(t, q),)* }
+            }
             fn angles(&self) -> [bool; $n] {
                 match self { $(Self::$model(x) => x.angles(),)* $(Self::$plain(x) => x.angles(),)* }
             }
@@ -109,19 +113,24 @@ macro_rules! shape {
 
 shape! {
     /// Three coordinates, one constraint.
-    Three<3, 1>: Particle KnifeEdge Suslov ContactOscillator GaugedOscillator;
+    Three<3, 1>: Particle KnifeEdge ContactOscillator GaugedOscillator;
     Sleigh: Sleigh, InField: InField, Thrust: With<Sleigh, Thrust>, Pushed: With<InField, Thrust>, Forces: With<Sleigh, Forces>, Moving: Moving,
     Turntable: Turntable, Magnetic: Magnetic
 }
 
 shape! {
     /// Four coordinates, two constraints.
-    Four<4, 2>: RollingDisk RollerRacer;
+    Four<4, 2>: RollingDisk RollerRacer Suslov;
 }
 
 shape! {
     /// Five coordinates, two constraints.
-    Five<5, 2>: ChaplyginBall Snakeboard;
+    Five<5, 2>: Snakeboard;
+}
+
+shape! {
+    /// Six coordinates, three constraints.
+    Six<6, 3>: ChaplyginBall;
 }
 
 shape! {

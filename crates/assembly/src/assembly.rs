@@ -2,6 +2,7 @@ use crate::element::Element;
 use crate::joint::{Joint, JointElement};
 use crate::system_element::SystemElement;
 use crate::{AssemblyError, ConstraintRow, State};
+use dla::NotANumber;
 use lagrangian::System;
 use lagrangian::linear::larger;
 
@@ -184,6 +185,26 @@ impl Assembly {
             placed.gather(|i| state.v(i), &mut v);
             with(of(placed.element.as_ref(), &q[..n], &v[..n]));
         }
+    }
+
+    /// The first element with a function that is not finite at a state, or has no finite derivative there; coordinates and rows in the
+    /// numbers of the assembly.
+    #[must_use]
+    #[cold]
+    pub fn not_a_number(&self, t: f64, state: &State) -> Option<(usize, &'static str, NotANumber)> {
+        let (mut places, mut found) = (self.placed.iter().enumerate(), None);
+        self.say(
+            state,
+            |element, q, v| element.not_a_number(t, q, v),
+            |missing| {
+                let placed = places.next();
+                if let (None, Some((element, placed)), Some(missing)) = (found, placed, missing) {
+                    let missing = missing.renumbered(|i| placed.at.get(i).copied().unwrap_or(i), placed.row);
+                    found = Some((element, placed.name, missing));
+                }
+            },
+        );
+        found
     }
 
     /// The energy (J).

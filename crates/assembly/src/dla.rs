@@ -5,6 +5,7 @@ use crate::linear::Linear;
 use crate::terms;
 use crate::{Assembly, AssemblyError, OneStep, Solver, State, StepReport};
 use dla::Stage;
+use dla::convergence::rounding_of_place;
 use lagrangian::linear::{larger, largest};
 
 /// The discrete Lagrange-d'Alembert map of an assembly, with midpoint rules: order 2, self-adjoint.
@@ -258,6 +259,7 @@ impl OneStep for Dla {
         for i in 0..state.len() {
             (self.q0[i], self.v0[i]) = (state.q(i), state.v(i));
         }
+        self.equations.settling.near = rounding_of_place(&self.q0, h);
         let iterations = self.increment(assembly, (t0, h), state)?;
         let turn = self.turn(assembly, (t0, h));
         if turn > NEAR || !self.equations.settling.certain {

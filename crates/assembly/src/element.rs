@@ -1,5 +1,6 @@
 use crate::energy::EnergyElement;
 use crate::lobatto::StageElement;
+use dla::NotANumber;
 use std::fmt::Debug;
 
 /// What an element adds to the equations of its assembly, in its own coordinates: `N` coordinates, `M` constraint rows.
@@ -76,6 +77,12 @@ pub trait Element: EnergyElement + StageElement + Debug + Send + Sync {
     /// Damping and inertia of the change of velocity from the middle of a step to its end, and `|v . p|` (J): see
     /// [`StepError::Overshoot`](dla::StepError::Overshoot).
     fn braking(&self, step: (f64, f64), q0: &[f64], v: [&[f64]; 2]) -> [f64; 3];
+
+    /// The first of its functions that is not finite, or has no finite derivative where a step needs one: see
+    /// [`not_a_number`](dla::not_a_number). None by default.
+    fn not_a_number(&self, _t: f64, _q: &[f64], _v: &[f64]) -> Option<NotANumber> {
+        None
+    }
 }
 
 /// The first `N` numbers of a slice; zero where it is shorter, which no slice of an assembly is.

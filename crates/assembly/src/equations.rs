@@ -48,7 +48,7 @@ impl Equations {
         mut terms: impl FnMut(&mut [f64]),
         mut evaluate: impl FnMut(&mut Self, &[f64], bool),
     ) -> Result<u32, AssemblyError> {
-        let Settling { newton, last, rounding, start, sizes, changes, certain } = settling;
+        let Settling { newton, last, rounding, start, sizes, changes, certain, near } = settling;
         start.copy_from_slice(x);
         let mut convergence = Convergence::new(last, rounding, start);
         let (mut before, mut fresh, mut refinements) = (f64::INFINITY, true, 0);
@@ -68,11 +68,12 @@ impl Equations {
                 tolerance: newton.tolerance,
                 limit: newton.max_iterations,
                 refinable: refinements == 0,
+                near: *near,
             };
             let done = convergence.check(demand, x, correction, || {
                 sizes.fill(0.0);
                 terms(sizes);
-                Some(linear.most_roundings(multipliers, sizes, changes))
+                Some(linear.most_roundings((x, multipliers), sizes, changes))
             });
             *certain = convergence.is_certain();
             if done.map_err(|source| AssemblyError::Newton { stage, source })? {

@@ -1,4 +1,5 @@
-use dla::{History, NewtonError, Stage, StepError};
+use crate::{Assembly, State};
+use dla::{History, NewtonError, NotANumber, Stage, StepError};
 use lagrangian::linear::Singular;
 use std::fmt;
 use thiserror::Error;
@@ -100,6 +101,17 @@ pub enum AssemblyError {
     /// A coordinate or a velocity became infinite or not a number.
     #[error("the coordinates or the velocities are no longer finite")]
     NotFinite,
+    /// A function of an element, or a derivative of one, is not a number or not finite; coordinates and rows are those of the assembly.
+    #[error("element {element} ({name}): {source}")]
+    NotANumber {
+        /// The element, counted from 0 in the order in which they were added.
+        element: usize,
+        /// The name that the element was added with.
+        name: &'static str,
+        /// Which function.
+        #[source]
+        source: NotANumber,
+    },
     /// The method makes the step, but its halves lead elsewhere (see [`dla::Halved`]); asked only of steps that may be made in parts.
     #[error("the step does not resolve the motion: its halves lead elsewhere")]
     Unresolved,
@@ -112,6 +124,20 @@ pub enum AssemblyError {
 }
 
 impl AssemblyError {
+    /// The error of a step from `state` at `t` (s), with the function named that is not finite there, if it may have failed by that.
+    #[must_use]
+    #[cold]
+    pub fn named(self, assembly: &Assembly, t: f64, state: &State) -> Self {
+        let lost = match &self {
+            Self::NotFinite | Self::Singular { .. } => true,
+            Self::Newton { source, .. } => matches!(source, NewtonError::NotFinite { .. }),
+            Self::Energy { defect, .. } => !defect.is_finite(),
+            _ => false,
+        };
+        let found = if lost { assembly.not_a_number(t, state) } else { None };
+        found.map_or(self, |(element, name, source)| Self::NotANumber { element, name, source })
+    }
+
     /// Whether shorter steps may do what this one has not: see [`StepError::may_hold_in_parts`]. Constraints that depend on one another
     /// do so in any step.
     #[must_use]
@@ -137,6 +163,7 @@ impl AssemblyError {
             Self::Overshoot { part } => StepError::Overshoot { part: *part },
             Self::Energy { defect, bound } => StepError::Energy { defect: *defect, bound: *bound },
             Self::NotFinite => StepError::NotFinite,
+            Self::NotANumber { source, .. } => StepError::NotANumber(*source),
             Self::Unresolved => StepError::Unresolved,
             Self::Unsupported { reason } => StepError::Unsupported { reason },
             Self::Coordinates { .. } | Self::Wide { .. } | Self::Number { .. } | Self::Factorisation { .. } => {

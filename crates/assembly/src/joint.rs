@@ -1,4 +1,5 @@
 use crate::element::{Blocks, Element, local};
+use dla::{Derivative, NotANumber, SystemFunction, Variable};
 use lagrangian::linear::larger;
 use lagrangian::{Dual, HyperDual, Scalar};
 use std::fmt;
@@ -133,5 +134,15 @@ impl<J: Joint<N, M>, const N: usize, const M: usize> Element for JointElement<J,
 
     fn braking(&self, _step: (f64, f64), _q0: &[f64], _v: [&[f64]; 2]) -> [f64; 3] {
         [0.0; 3]
+    }
+
+    /// A step needs its functions with their derivatives in the coordinates.
+    fn not_a_number(&self, t: f64, q: &[f64], _v: &[f64]) -> Option<NotANumber> {
+        let lost = |(row, g): (usize, &Dual<f64, N>)| {
+            let slope = g.eps.iter().position(|slope| !slope.is_finite()).map(Variable::Coordinate);
+            let derivative = if g.re.is_finite() { Derivative::First(slope?) } else { Derivative::Value };
+            Some(NotANumber { function: SystemFunction::Position { row }, derivative, time: t, at_node: true })
+        };
+        self.in_positions(t, q).iter().enumerate().find_map(lost)
     }
 }

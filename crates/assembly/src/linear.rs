@@ -59,17 +59,22 @@ impl Linear {
     }
 
     /// How many roundings of their terms the equations are moved by the last correction, at most: `K d` and `C d` against the sums
-    /// of the `sizes` of the terms, to which the reactions `G' lambda` are added here.
+    /// of the `sizes` of the terms, to which those of the unknowns, `|K| |x|`, and of the reactions `G' lambda` are added here.
     #[cold]
-    pub(crate) fn most_roundings(&self, multipliers: &[f64], sizes: &mut [f64], changes: &mut [f64]) -> f64 {
-        let n = sizes.len() - multipliers.len();
+    pub(crate) fn most_roundings(
+        &self,
+        (x, multipliers): (&[f64], &[f64]),
+        sizes: &mut [f64],
+        changes: &mut [f64],
+    ) -> f64 {
         changes.fill(0.0);
-        for (j, d) in self.solution[..n].iter().enumerate() {
+        for (j, (d, x)) in self.solution.iter().zip(x).enumerate() {
             for (i, value) in self.pattern.column(&self.values, j) {
                 changes[i] += value * d;
+                sizes[i] += (value * x).abs();
             }
         }
-        for (j, lambda) in (n..).zip(multipliers) {
+        for (j, lambda) in (x.len()..).zip(multipliers) {
             for (i, value) in self.pattern.column(&self.values, j) {
                 sizes[i] += (value * lambda).abs();
             }

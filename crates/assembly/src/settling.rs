@@ -13,6 +13,8 @@ pub(crate) struct Settling {
     pub(crate) changes: Vec<f64>,
     /// Whether the last search contracted from its start, so that what it found is the solution near there.
     pub(crate) certain: bool,
+    /// A correction below this leads to no other solution: see [`rounding_of_place`](dla::convergence::rounding_of_place).
+    pub(crate) near: f64,
 }
 
 /// Linear equations are refined so often where corrections stall above the rounding of the equations.
@@ -29,6 +31,7 @@ impl Settling {
             sizes: vec![0.0; unknowns + rows],
             changes: vec![0.0; unknowns + rows],
             certain: true,
+            near: 0.0,
         }
     }
 }

@@ -1,4 +1,5 @@
 use crate::element::{Blocks, Element, local};
+use dla::NotANumber;
 use lagrangian::linear::larger;
 use lagrangian::{
     DiscreteConstraint, DiscreteLagrangian, Dual, Midpoint, Motion, Rounded, Saddle, System, configuration_slope,
@@ -180,5 +181,9 @@ impl<Sys: System<N, M> + Send + Sync, const N: usize, const M: usize> Element fo
         let forces = self.system.force(t, &q, &v).zip(self.system.force(t, &q, &v1));
         let damping = forces.map_or(0.0, |(mean, end)| along(&|i| 0.5 * h * (v1[i] - v[i]) * (mean[i] - end[i])));
         [damping, inertia, all]
+    }
+
+    fn not_a_number(&self, t: f64, q: &[f64], v: &[f64]) -> Option<NotANumber> {
+        dla::not_a_number(&self.system, t, &local(q), &local(v))
     }
 }

@@ -3,11 +3,11 @@
 use super::lab::Lab;
 use crate::error::CliError;
 use dla::{Dependency, Dla, Energy, Gauss, Lobatto, OneStep, Schedule, State, StepError, drive};
-use harness::stability::check::{constant, energy, follows, measured, rounding, sign_kept};
-use harness::stability::{Case, Claim, Recorded, Recorder, Seen};
+use harness::stability::check::{constant, follows, measured};
+use harness::stability::{Case, Claim, Recorded, Recorder, Seen, VALUES};
 use harness::{Kind, Rk4Reduced};
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
-use models::{CompoundPendulum, ContactOscillator, GaugedOscillator};
+use models::CompoundPendulum;
 use sleigh::{Exact, Sleigh, SleighState};
 use std::f64::consts::PI;
 
@@ -57,8 +57,13 @@ impl System<3, 2> for TwoRows {
     }
 }
 
-/// A run of one of [`METHODS`]; nothing of any other.
-fn record<Sys, const M: usize>(lab: &Lab, system: &Sys, (q, v): ([f64; 3], [f64; 3]), schedule: &Schedule) -> Recorded
+/// A run of one of [`METHODS`], with place and velocity of each node; nothing of any other.
+pub(super) fn record<Sys, const M: usize>(
+    lab: &Lab,
+    system: &Sys,
+    start: ([f64; 3], [f64; 3]),
+    schedule: &Schedule,
+) -> Recorded
 where
     Sys: System<3, M>,
 {
@@ -66,8 +71,22 @@ where
         let ([x, y, z], [vx, vy, vz]) = (state.unwrapped(), *state.v());
         [x, y, z, vx, vy, vz]
     };
+    record_seen(lab, system, start, schedule, &look)
+}
+
+/// The same with what `look` sees.
+pub(super) fn record_seen<Sys, const N: usize, const M: usize>(
+    lab: &Lab,
+    system: &Sys,
+    (q, v): ([f64; N], [f64; N]),
+    schedule: &Schedule,
+    look: &dyn Fn(&State<N>) -> [f64; VALUES],
+) -> Recorded
+where
+    Sys: System<N, M>,
+{
     let mut state = State::new(q, v, system.angles());
-    let mut recorder = Recorder::new(1, &look);
+    let mut recorder = Recorder::new(1, look);
     let outcome = match lab.method.info().kind {
         Kind::Dla => made(system, Dla::midpoint(), schedule, &mut state, &mut recorder),
         Kind::Lobatto3 => made(system, Lobatto::<3>::new(), schedule, &mut state, &mut recorder),
@@ -79,12 +98,12 @@ where
     recorder.recorded(outcome.err())
 }
 
-fn made<Sys: System<3, M>, const M: usize>(
+fn made<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
-    mut method: impl OneStep<Sys, 3, M>,
+    mut method: impl OneStep<Sys, N, M>,
     schedule: &Schedule,
-    state: &mut State<3>,
-    recorder: &mut Recorder<'_, 3>,
+    state: &mut State<N>,
+    recorder: &mut Recorder<'_, N>,
 ) -> Result<u64, dla::RunError> {
     drive(system, &mut method, schedule, state, recorder)
 }
@@ -176,28 +195,5 @@ pub(super) fn pseudo_holonomic(lab: &mut Lab) -> Result<(), CliError> {
         x.hypot(y)
     };
     lab.judge("", &run, [constant(&run, off, bar)]);
-    Ok(())
-}
-
-pub(super) const GAUGE: Case = Case {
-    name: "gauge",
-    hard: "A gauge term in the Lagrangian changes no motion, but shifts the momenta: the reversal of the velocity no longer \
-           reverses what a discrete principle sees, and symmetric methods lose energy.",
-    shows: "The methods that promise the energy keep it. The drift of dla is there to be seen (tests/table/gauge.rs).",
-    bar: "Rounding of the energy over the run.",
-    claim: Claim::Energy,
-    refusable: false,
-};
-
-pub(super) fn gauge(lab: &mut Lab) -> Result<(), CliError> {
-    let fault = |_| CliError::Computation(vec!["the oscillator of the case has impossible parameters".to_owned()]);
-    let plain = ContactOscillator::new(0.0).map_err(fault)?;
-    let system = GaugedOscillator::new(plain, 1.0).map_err(fault)?;
-    let start = plain.start_at(-0.5 * 2f64.sqrt()).map_err(fault)?;
-    let schedule = Schedule { t0: 0.0, step: 2.0 * (PI / 40.0).sin(), steps: 4000 };
-    let run = record(lab, &system, start, &schedule);
-    // Whoever keeps the energy must also move.
-    let still = measured("runs that do not move", f64::from(u8::from(sign_kept(&run, 1).holds())), 0.0);
-    lab.judge("", &run, [energy(&run, rounding(schedule.steps as usize, 1.5)), still]);
     Ok(())
 }

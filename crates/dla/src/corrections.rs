@@ -1,5 +1,5 @@
-use crate::convergence::parted;
 use crate::convergence::tolerances::{SHRINKING, is_slight};
+use crate::convergence::{parted, rounding_of_place};
 use crate::increment::Increment;
 use crate::{Equations, State};
 use lagrangian::linear::{Singular, largest};
@@ -143,6 +143,11 @@ where
 
     fn roundings(&self, v: &[f64; N]) -> Option<f64> {
         Some(self.of.roundings(v, self.some))
+    }
+
+    #[inline(always)]
+    fn near(&self) -> f64 {
+        rounding_of_place(&self.of.q0, self.of.h)
     }
 
     fn refine(&mut self) -> bool {

@@ -1,3 +1,4 @@
+use crate::suspect::{suspect_along, suspect_at};
 use crate::{NewtonError, Stage, State, StepError};
 use lagrangian::linear::larger;
 use lagrangian::{
@@ -84,8 +85,8 @@ pub(crate) fn independent_rows<Sys: System<N, M>, const N: usize, const M: usize
     Err(Dependent { rows: found.involved, time: t, distance: found.distance, dependency }.into())
 }
 
-/// The error of the equations at a place, with the rows of the constraint named where their rank drops there or they
-/// contradict one another.
+/// The error of the equations at a place, with the function named that is not finite there, or the rows of the constraint where their
+/// rank drops there or they contradict one another.
 #[cold]
 #[inline(never)]
 pub(crate) fn named_at<Sys: System<N, M>, const N: usize, const M: usize>(
@@ -96,7 +97,7 @@ pub(crate) fn named_at<Sys: System<N, M>, const N: usize, const M: usize>(
     stage: Stage,
     source: NewtonError,
 ) -> StepError {
-    let error = StepError::Newton { stage, source };
+    let error = suspect_at(system, t, q, v, StepError::Newton { stage, source });
     if !error.is_singular() {
         return error;
     }
@@ -104,7 +105,7 @@ pub(crate) fn named_at<Sys: System<N, M>, const N: usize, const M: usize>(
     independent_rows(system, t, q, v, error).err().unwrap_or(error)
 }
 
-/// The error of the equations of a step, with rows named as by [`named_at`] at its beginning, in its middle or at its end.
+/// The error of the equations of a step, with what is wrong named as by [`named_at`] at its beginning, in its middle or at its end.
 #[cold]
 #[inline(never)]
 pub(crate) fn named_along<Sys: System<N, M>, const N: usize, const M: usize>(
@@ -115,6 +116,7 @@ pub(crate) fn named_along<Sys: System<N, M>, const N: usize, const M: usize>(
     source: NewtonError,
 ) -> StepError {
     let mut error = StepError::Newton { stage: Stage::Increment, source };
+    error = suspect_along(system, (t0, h), &state, &v, error);
     for part in [0.0, 0.5, 1.0] {
         if error.is_singular() {
             let q = state.ahead(&v.map(|v| part * h * v));

@@ -1,4 +1,5 @@
 use crate::dependent::named;
+use crate::suspect::suspect_along;
 use crate::{OneStep, State, StepError, StepReport, Undivided};
 use lagrangian::linear::largest;
 use lagrangian::{System, constraint_residual, energy};
@@ -263,6 +264,7 @@ where
             }
             Err(source) => {
                 let time = schedule.time(made);
+                let source = suspect_along(system, (time, schedule.step), state, state.v(), source);
                 let source = named(system, time, state, source);
                 outcome = Err(RunError { step: made + 1, time, source });
                 break;

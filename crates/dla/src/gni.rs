@@ -87,7 +87,8 @@ where
             .solve(&mut equations, &mut v)
             .map_err(|source| StepError::Newton { stage: Stage::Increment, source })?;
 
-        let mut arriving = self.lagrangian.d2(system, t, h, &q0, &v);
+        // At once with the step, since a force that is too large for a number may have an impulse that is not.
+        let mut arriving = self.lagrangian.derivatives(system, t, h, &q0, &v).d2;
         if let Some((_, plus)) = self.lagrangian.forces(system, t, h, &q0, &v) {
             arriving = from_fn(|i| arriving[i] + plus[i]);
         }

@@ -1,4 +1,4 @@
-use crate::{History, NewtonError, RunError, Stage, StepError};
+use crate::{Derivative, History, NewtonError, NotANumber, RunError, Stage, StepError};
 use lagrangian::linear::Singular;
 use lagrangian::{ClosedStepError, ReducedError};
 use std::fmt;
@@ -24,6 +24,11 @@ pub enum Hint {
         /// When (s).
         time: f64,
     },
+    /// A function has a corner or a pole where the motion comes to: write it with functions that have a derivative there.
+    Corner,
+    /// Use coordinates that do not end there, as the unit quaternion of [`Attitude`](lagrangian::Attitude) for angles, or others of
+    /// the same kind that are turned away from the motion.
+    OtherCoordinates,
     /// A number is too large, infinite or undefined: look at the start and the parameters, then at the step.
     Numbers,
 }
@@ -39,6 +44,13 @@ impl fmt::Display for Hint {
             ),
             Self::OtherMethod => f.write_str("choose another method"),
             Self::NodeAt { time } => write!(f, "choose a step that has a node at t = {time} s"),
+            Self::Corner => f.write_str(
+                "write the function so that it has a derivative there: `Scalar::length` for the root of a sum of squares, `abs`, \
+                 `min`, `max`, a power of at least 1 (of at least 2 in the Lagrangian)",
+            ),
+            Self::OtherCoordinates => f.write_str(
+                "use coordinates that do not end there, for an attitude a unit quaternion, or turn these away from the motion",
+            ),
             Self::Numbers => f.write_str(
                 "a number is too large or undefined: look at the start and the parameters, then at the step",
             ),
@@ -150,9 +162,16 @@ impl StepError {
                 Hint::ShorterStep { part: f64::max(0.5 * bound / value, 0.25) }
             }
             Self::Closed(ClosedStepError::NotFinite { .. }) | Self::NotFinite => Hint::Numbers,
+            // Where the step begins, a shorter one is not better.
+            Self::NotANumber(NotANumber { at_node: false, .. }) => HALF,
+            Self::NotANumber(NotANumber { derivative: Derivative::Value, .. }) => Hint::Numbers,
+            Self::NotANumber(_) => Hint::Corner,
             Self::Overshoot { part } => Hint::ShorterStep { part: *part },
             Self::Closed(_) | Self::Branch | Self::Energy { .. } | Self::Tolerance { .. } | Self::Unresolved => HALF,
             Self::Unsupported { .. } | Self::Reduced(ReducedError::NoBasis) => Hint::OtherMethod,
+            // Far from the end a shorter step changes less.
+            Self::Chart { regularity, least, .. } if *regularity >= 2.0 * least => HALF,
+            Self::Chart { .. } => Hint::OtherCoordinates,
             Self::Jump { time } => Hint::NodeAt { time: *time },
             Self::Motion(error) | Self::Reduced(ReducedError::Motion(error)) if is_overflow(&error.source) => {
                 Hint::Numbers

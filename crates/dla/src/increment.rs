@@ -93,7 +93,10 @@ where
     /// Not inlined: it is called for every simplified correction and for the end of the step.
     #[inline(never)]
     pub(crate) fn departure(&self, v: &[f64; N]) -> (Departure<N>, [f64; M]) {
-        (self.momenta(v), self.level(v))
+        let at = self.momenta(v);
+        let finite = (0..N).all(|i| (at.residual[i] + at.arriving[i]).is_finite());
+        // A force that is too large for a number may have an impulse that is not: there it is never without the step.
+        (if finite { at } else { self.linearised(v).0 }, self.level(v))
     }
 
     /// By how much a step with the mean velocity `v` misses the constraint.

@@ -25,6 +25,12 @@ pub trait Equations<const U: usize> {
         false
     }
 
+    /// A correction below this leads to no other solution; zero where nothing is known of that.
+    #[inline(always)]
+    fn near(&self) -> f64 {
+        0.0
+    }
+
     /// Whether the last correction was simplified, `-F'(y)^-1 F(x)` with an earlier point `y` in place of `x`. Such corrections
     /// shrink by about the same factor from each to the next.
     #[inline(always)]
@@ -44,6 +50,12 @@ pub(crate) trait BlockEquations<const U: usize, const S: usize> {
     /// Makes further corrections with less rounding, where that is possible; whether it is.
     fn refine(&mut self) -> bool {
         false
+    }
+
+    /// A correction below this leads to no other solution; zero where nothing is known of that.
+    #[inline(always)]
+    fn near(&self) -> f64 {
+        0.0
     }
 
     /// Whether the last correction was simplified.
@@ -70,6 +82,11 @@ impl<E: Equations<U>, const U: usize> BlockEquations<U, 1> for Single<'_, E> {
     #[inline(always)]
     fn refine(&mut self) -> bool {
         self.0.refine()
+    }
+
+    #[inline(always)]
+    fn near(&self) -> f64 {
+        self.0.near()
     }
 
     #[inline(always)]
@@ -179,7 +196,7 @@ impl Newton {
         let (start, mut last, mut rounding) = (*x, [[0.0; U]; S], [[false; U]; S]);
         let flat = (last.as_flattened_mut(), rounding.as_flattened_mut());
         let mut convergence = Convergence::new(flat.0, flat.1, start.as_flattened());
-        let mut refinable = true;
+        let (mut refinable, near) = (true, equations.near());
         loop {
             let correction = equations.correction(x).map_err(|source| NewtonError::Singular {
                 iteration: convergence.made() + 1,
@@ -191,7 +208,7 @@ impl Newton {
                 *x += d;
             }
             let kind = if equations.is_simplified() { Kind::Simplified } else { Kind::Newton };
-            let demand = Demand { kind, tolerance: self.tolerance, limit: self.max_iterations, refinable };
+            let demand = Demand { kind, tolerance: self.tolerance, limit: self.max_iterations, refinable, near };
             let (x, correction) = (x.as_flattened(), correction.as_flattened());
             if convergence.check(demand, x, correction, || equations.roundings(&at))? {
                 return Ok(Found {

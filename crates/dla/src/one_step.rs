@@ -1,4 +1,4 @@
-use crate::{Dependent, NewtonError, State};
+use crate::{Dependent, NewtonError, NotANumber, State};
 use lagrangian::{ClosedStepError, MotionError, ReducedError};
 use std::ops::ControlFlow;
 use thiserror::Error;
@@ -129,6 +129,9 @@ pub enum StepError {
     /// Rows of the constraint depend on one another.
     #[error(transparent)]
     Dependent(#[from] Dependent),
+    /// A function of the system, or a derivative of one, is not a number or not finite.
+    #[error(transparent)]
+    NotANumber(#[from] NotANumber),
     /// The method cannot do this system.
     #[error("{reason}")]
     Unsupported {
@@ -168,6 +171,22 @@ pub enum StepError {
         tries: u32,
         /// What the next one would be (s).
         step: f64,
+    },
+    /// The coordinates of the system come near to where they end, as [`InChart`](crate::InChart) is told.
+    #[error(
+        "the coordinates come near to their end ({chart}): their regularity is {regularity:.1e}, where {least} and the change in \
+         the step, {change:.1e}, are the least; use coordinates that do not end there, for an attitude a unit quaternion, or turn \
+         these away from the motion"
+    )]
+    Chart {
+        /// Which coordinates, and where they end.
+        chart: &'static str,
+        /// How far from the end they are: one far from it, zero there.
+        regularity: f64,
+        /// The least that is accepted.
+        least: f64,
+        /// By how much it changes in the step, which is to be less than the regularity itself.
+        change: f64,
     },
     /// A coordinate or a velocity became infinite or not a number.
     #[error("the coordinates or the velocities are no longer finite")]

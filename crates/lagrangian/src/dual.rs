@@ -1,5 +1,6 @@
+use crate::length::{Derived, derived_functions};
 use crate::scalar::derived_operators;
-use crate::{Scalar, from_fn};
+use crate::{Function, Scalar, from_fn};
 use std::ops::{Add, Div, Mul, Neg};
 
 /// A first-order dual number with `N` independent infinitesimals: a value and its gradient.
@@ -133,7 +134,39 @@ impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
         self.chain(f, -(f * f))
     }
     #[inline(always)]
+    fn apply<F: Function>(self, function: F) -> Self {
+        let f = self.re.apply(function);
+        self.chain(f, function.slope(self.re, f))
+    }
+    #[inline(always)]
+    fn where_positive(self, then: Self, otherwise: Self) -> Self {
+        let chosen = |a: S, b: S| self.re.where_positive(a, b);
+        Self { re: chosen(then.re, otherwise.re), eps: from_fn(|i| chosen(then.eps[i], otherwise.eps[i])) }
+    }
+    derived_functions!();
+    #[inline(always)]
     fn is_zero(&self) -> bool {
         self.re.is_zero() && self.eps.iter().all(S::is_zero)
+    }
+}
+
+impl<S: Scalar, const N: usize> Derived for Dual<S, N> {
+    type Base = S;
+    const SECOND: bool = false;
+    #[inline(always)]
+    fn lifted(value: S) -> Self {
+        Self::fixed(value)
+    }
+    #[inline(always)]
+    fn value(self) -> S {
+        self.re
+    }
+    #[inline(always)]
+    fn at(self, re: S) -> Self {
+        Self { re, ..self }
+    }
+    #[inline(always)]
+    fn times(self, factor: S) -> Self {
+        self.chain(self.re * factor, factor)
     }
 }

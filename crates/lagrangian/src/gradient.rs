@@ -1,5 +1,6 @@
+use crate::length::{Derived, derived_functions};
 use crate::scalar::derived_operators;
-use crate::{Scalar, array};
+use crate::{Function, Scalar, array};
 use std::ops::{Add, Div, Mul, Neg};
 
 /// A number with its gradient in `N` variables, or a number that depends on none of them: which of the two, a model says when it is
@@ -248,6 +249,23 @@ impl<S: Scalar, const N: usize> Scalar for Gradient<S, N> {
         self.chain(f, -(f * f))
     }
     #[inline(always)]
+    fn apply<F: Function>(self, function: F) -> Self {
+        let f = self.re.apply(function);
+        self.chain(f, function.slope(self.re, f))
+    }
+    #[inline(always)]
+    fn where_positive(self, then: Self, otherwise: Self) -> Self {
+        then.with(
+            otherwise,
+            self.re.where_positive(then.re, otherwise.re),
+            #[inline(always)]
+            |a| self.re.where_positive(a, S::zero()),
+            #[inline(always)]
+            |b| self.re.where_positive(S::zero(), b),
+        )
+    }
+    derived_functions!();
+    #[inline(always)]
     fn array<const K: usize>(f: impl Fn(usize) -> Self) -> [Self; K] {
         array(Self::fixed(S::zero()), f)
     }
@@ -265,5 +283,26 @@ impl<S: Scalar, const N: usize> Scalar for Gradient<S, N> {
     #[inline(always)]
     fn is_zero(&self) -> bool {
         self.re.is_zero() && self.parts.iter().flatten().all(S::is_zero)
+    }
+}
+
+impl<S: Scalar, const N: usize> Derived for Gradient<S, N> {
+    type Base = S;
+    const SECOND: bool = false;
+    #[inline(always)]
+    fn lifted(value: S) -> Self {
+        Self::fixed(value)
+    }
+    #[inline(always)]
+    fn value(self) -> S {
+        self.re
+    }
+    #[inline(always)]
+    fn at(self, re: S) -> Self {
+        Self { re, ..self }
+    }
+    #[inline(always)]
+    fn times(self, factor: S) -> Self {
+        self.chain(self.re * factor, factor)
     }
 }

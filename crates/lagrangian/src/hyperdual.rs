@@ -1,5 +1,6 @@
+use crate::length::{Derived, derived_functions};
 use crate::scalar::derived_operators;
-use crate::{Scalar, from_fn};
+use crate::{Function, Scalar, from_fn};
 use std::ops::{Add, Div, Mul, Neg};
 
 /// A second-order dual number with two groups of infinitesimals, `P` of the first and `Q` of the second.
@@ -177,8 +178,51 @@ impl<S: Scalar, const P: usize, const Q: usize> Scalar for HyperDual<S, P, Q> {
         self.chain(f, df, -(df * f) * 2.0)
     }
     #[inline(always)]
+    fn apply<F: Function>(self, function: F) -> Self {
+        let f = self.re.apply(function);
+        let slope = function.slope(self.re, f);
+        self.chain(f, slope, function.curvature(self.re, f, slope))
+    }
+    #[inline(always)]
+    fn where_positive(self, then: Self, otherwise: Self) -> Self {
+        let chosen = |a: S, b: S| self.re.where_positive(a, b);
+        Self {
+            re: chosen(then.re, otherwise.re),
+            e1: from_fn(|i| chosen(then.e1[i], otherwise.e1[i])),
+            e2: from_fn(|j| chosen(then.e2[j], otherwise.e2[j])),
+            e12: from_fn(|i| from_fn(|j| chosen(then.e12[i][j], otherwise.e12[i][j]))),
+        }
+    }
+    derived_functions!();
+    #[inline(always)]
     fn is_zero(&self) -> bool {
         let first = self.re.is_zero() && self.e1.iter().chain(&self.e2).all(S::is_zero);
         first && self.e12.iter().flatten().all(S::is_zero)
+    }
+}
+
+impl<S: Scalar, const P: usize, const Q: usize> Derived for HyperDual<S, P, Q> {
+    type Base = S;
+    const SECOND: bool = true;
+    #[inline(always)]
+    fn lifted(value: S) -> Self {
+        Self::fixed(value)
+    }
+    #[inline(always)]
+    fn value(self) -> S {
+        self.re
+    }
+    #[inline(always)]
+    fn at(self, re: S) -> Self {
+        Self { re, ..self }
+    }
+    #[inline(always)]
+    fn times(self, factor: S) -> Self {
+        Self {
+            re: self.re * factor,
+            e1: self.e1.map(|e| e * factor),
+            e2: self.e2.map(|e| e * factor),
+            e12: self.e12.map(|row| row.map(|e| e * factor)),
+        }
     }
 }

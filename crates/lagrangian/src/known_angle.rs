@@ -1,4 +1,4 @@
-use crate::{Scalar, array};
+use crate::{Function, Scalar, array};
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A number that may be an angle whose sine and cosine are known already: what is computed from it as from any other then
@@ -111,6 +111,27 @@ impl<T: Scalar> Scalar for KnownAngle<T> {
     #[inline(always)]
     fn recip(self) -> Self {
         Self::from(self.re.recip())
+    }
+    #[inline(always)]
+    fn apply<F: Function>(self, f: F) -> Self {
+        Self::from(self.re.apply(f))
+    }
+    #[inline(always)]
+    fn where_positive(self, then: Self, otherwise: Self) -> Self {
+        Self::from(self.re.where_positive(then.re, otherwise.re))
+    }
+    #[inline(always)]
+    fn length<const K: usize>(components: &[Self; K]) -> Self {
+        let numbers: [T; K] = array(
+            T::zero(),
+            #[inline(always)]
+            |k| components[k].re,
+        );
+        Self::from(T::length(&numbers))
+    }
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        Self::from(self.re.atan2(x.re))
     }
     #[inline(always)]
     fn array<const N: usize>(f: impl Fn(usize) -> Self) -> [Self; N] {

@@ -1,6 +1,6 @@
 use crate::scalar::derived_operators;
 use crate::sincos;
-use crate::{Scalar, from_fn};
+use crate::{Function, Scalar, from_fn};
 use std::ops::{Add, Div, Mul, Neg};
 
 /// Eight numbers that go through the same arithmetic at once: eight stages of one step, or eight trajectories.
@@ -120,6 +120,22 @@ impl Scalar for Lanes {
     #[inline(always)]
     fn recip(self) -> Self {
         self.map(f64::recip)
+    }
+    #[inline(always)]
+    fn apply<F: Function>(self, f: F) -> Self {
+        self.map(|a| f.value(a))
+    }
+    #[inline(always)]
+    fn where_positive(self, then: Self, otherwise: Self) -> Self {
+        Self(from_fn(|i| if self.0[i] > 0.0 { then.0[i] } else { otherwise.0[i] }))
+    }
+    #[inline(always)]
+    fn length<const K: usize>(components: &[Self; K]) -> Self {
+        Self(from_fn(|i| f64::length::<K>(&from_fn(|k| components[k].0[i]))))
+    }
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        self.zip(x, f64::atan2)
     }
     #[inline(always)]
     fn is_zero(&self) -> bool {

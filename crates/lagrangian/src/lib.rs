@@ -7,6 +7,7 @@
 //!
 //! This crate knows no integrator and no particular system.
 
+mod attitude;
 mod basis;
 mod bordered;
 mod bracket;
@@ -18,6 +19,7 @@ mod discrete;
 mod dual;
 mod effect;
 mod factored;
+mod functions;
 mod fused;
 mod gradient;
 mod gradients;
@@ -27,6 +29,7 @@ mod inlined;
 mod inverse;
 mod known_angle;
 mod lanes;
+mod length;
 pub mod linear;
 mod momentum;
 mod motion;
@@ -55,6 +58,7 @@ mod twofold;
 mod vector_field;
 mod with;
 
+pub use attitude::Attitude;
 pub use basis::{AdmissibleBasis, linear_basis};
 pub use bordered::{Bordered, clear_multipliers};
 pub use bracket::{Bracket, EnergySlope, energy_slope, inverse_reduced_mass};
@@ -68,6 +72,7 @@ pub use discrete::{Derivatives, DiscreteConstraint, DiscreteLagrangian};
 pub use dual::Dual;
 pub use effect::{Effect, Slope};
 pub use factored::FactoredSaddle;
+pub use functions::Function;
 pub use fused::mul_add;
 pub use gradient::Gradient;
 pub use gradients::{Along, Gradients, Seeded, SeededMember};

@@ -1,4 +1,5 @@
 use crate::Scalar;
+use crate::functions::Function;
 use crate::scalar::derived_operators;
 use std::ops::{Add, Div, Mul, Neg};
 
@@ -147,6 +148,28 @@ impl Scalar for Rounded {
         Self::result(value, value * value * self.size, 1.0)
     }
     #[inline]
+    fn apply<F: Function>(self, f: F) -> Self {
+        let value = f.value(self.value);
+        self.function(value, f.slope(self.value, value))
+    }
+    #[inline]
+    fn where_positive(self, then: Self, otherwise: Self) -> Self {
+        if self.value > 0.0 { then } else { otherwise }
+    }
+    /// The slopes of the length are at most one, in sum of squares too.
+    #[inline]
+    fn length<const K: usize>(components: &[Self; K]) -> Self {
+        let brought = f64::length(&components.map(|x| x.size));
+        Self::result(f64::length(&components.map(|x| x.value)), brought, 2.0)
+    }
+    #[inline]
+    fn atan2(self, x: Self) -> Self {
+        let square = self.value * self.value + x.value * x.value;
+        let moved = (x.value * self.size).abs() + (self.value * x.size).abs();
+        let brought = if moved > 0.0 { moved / square } else { 0.0 };
+        Self::result(self.value.atan2(x.value), brought, 2.0)
+    }
+    #[inline]
     fn is_zero(&self) -> bool {
         self.value == 0.0
     }
@@ -179,7 +202,7 @@ mod tests {
     fn an_exact_zero_has_no_rounding() {
         let root = Rounded::exact(0.0).sqrt();
         assert_eq!((root.value, root.size, root.roundings()), (0.0, 0.0, 0.0));
-        assert_eq!(Rounded::exact(1e-320).roundings() < 1.0, true);
+        assert!(Rounded::exact(1e-320).roundings() < 1.0);
         assert_eq!(Rounded { value: f64::NAN, size: 1.0 }.roundings(), f64::INFINITY);
         assert_eq!(Rounded { value: 1.0, size: f64::INFINITY }.roundings(), f64::INFINITY);
     }

@@ -1,3 +1,4 @@
+use crate::functions::{Abs, Acos, Asin, Atan, Cosh, Function, Power, Sign, Sinh, Tan, Tanh};
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -5,7 +6,17 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 ///
 /// A model is one function generic in its scalar. On `f64` it gives values; on [`Dual`](crate::Dual) and
 /// [`HyperDual`](crate::HyperDual) exact first and second derivatives; on [`Lanes`](crate::Lanes) eight
-/// evaluations at once. There are no comparisons: eight lanes have no common branch.
+/// evaluations at once. There are no comparisons, for eight lanes have no common branch:
+/// [`where_positive`](Self::where_positive) chooses for each of them, [`min`](Self::min), [`max`](Self::max) and
+/// [`abs`](Self::abs) with it.
+///
+/// # At corners
+/// A step needs finite derivatives wherever the motion leads. [`abs`](Self::abs), [`sign`](Self::sign), [`min`](Self::min),
+/// [`max`](Self::max), [`length`](Self::length) and [`atan2`](Self::atan2) have none in some places, and say there the one that their
+/// documentation states: a mean of those on the two sides, or zero. What is infinite stays so: [`sqrt`](Self::sqrt) and
+/// [`ln`](Self::ln) at 0, [`asin`](Self::asin) and [`acos`](Self::acos) at 1 and -1, [`powf`](Self::powf) at 0 for small exponents.
+/// A drag `-k v |v|` is therefore to be written with [`length`](Self::length) and not with a root of squares, which has no derivative
+/// at rest.
 pub trait Scalar:
     Copy
     + Debug
@@ -37,6 +48,27 @@ pub trait Scalar:
     fn powi(self, n: i32) -> Self;
     /// Reciprocal.
     fn recip(self) -> Self;
+
+    /// A function given by its value and first two derivatives.
+    #[must_use]
+    fn apply<F: Function>(self, f: F) -> Self;
+    /// `then` where this number is positive, `otherwise` where it is zero, negative or not a number, with their derivatives. What is
+    /// not chosen may be anything.
+    #[must_use]
+    fn where_positive(self, then: Self, otherwise: Self) -> Self;
+    /// The length `sqrt(x_0^2 + x_1^2 + ..)` of a vector, whose squares may be too large or too small for a number.
+    ///
+    /// The derivative in `x_i` is `x_i/|x|`, the second `(delta_ij - x_i x_j/|x|^2)/|x|`. Where the vector vanishes both are zero: of
+    /// all slopes of planes that touch the cone from below the shortest one (the subgradient of least norm). So `v |v|` has the
+    /// derivative zero at rest, which is the true one. The second derivative counts as zero below the smallest normal number too.
+    #[must_use]
+    fn length<const K: usize>(components: &[Self; K]) -> Self;
+    /// The angle of the vector `(x, self)` from the first axis (rad), from `-pi` to `pi`.
+    ///
+    /// The derivatives are those of the angle, and finite across the half-axis where it jumps by `2 pi`. Where the vector vanishes
+    /// there is none, and all are zero.
+    #[must_use]
+    fn atan2(self, x: Self) -> Self;
 
     /// Whether the number and all of its derivatives vanish.
     fn is_zero(&self) -> bool;
@@ -93,6 +125,86 @@ pub trait Scalar:
     fn squared(self) -> Self {
         self * self
     }
+    /// Tangent (rad). No finite one at odd multiples of `pi/2`, none of which is a number.
+    #[must_use]
+    #[inline(always)]
+    fn tan(self) -> Self {
+        self.apply(Tan)
+    }
+    /// Arc sine (rad). At -1 and 1 the derivative is infinite, and beyond the value is not a number.
+    #[must_use]
+    #[inline(always)]
+    fn asin(self) -> Self {
+        self.apply(Asin)
+    }
+    /// Arc cosine (rad). At -1 and 1 the derivative is infinite, and beyond the value is not a number.
+    #[must_use]
+    #[inline(always)]
+    fn acos(self) -> Self {
+        self.apply(Acos)
+    }
+    /// Arc tangent (rad), smooth everywhere.
+    #[must_use]
+    #[inline(always)]
+    fn atan(self) -> Self {
+        self.apply(Atan)
+    }
+    /// Hyperbolic sine.
+    #[must_use]
+    #[inline(always)]
+    fn sinh(self) -> Self {
+        self.apply(Sinh)
+    }
+    /// Hyperbolic cosine.
+    #[must_use]
+    #[inline(always)]
+    fn cosh(self) -> Self {
+        self.apply(Cosh)
+    }
+    /// Hyperbolic tangent: with a large factor before its argument a smooth [`sign`](Self::sign).
+    #[must_use]
+    #[inline(always)]
+    fn tanh(self) -> Self {
+        self.apply(Tanh)
+    }
+    /// The absolute value. The derivative is the [`sign`](Self::sign), at the corner zero, the mean of -1 and 1; the second is zero.
+    #[must_use]
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.apply(Abs)
+    }
+    /// The sign: -1, 0 of zero, or 1. All derivatives are zero, at the jump too.
+    #[must_use]
+    #[inline(always)]
+    fn sign(self) -> Self {
+        self.apply(Sign)
+    }
+    /// `x^p` with a constant exponent, not a number for `x < 0` unless `p` is whole.
+    ///
+    /// The derivative is `p x^(p - 1)`, the second `p (p - 1) x^(p - 2)`: at zero 0 where the power that is left is positive, infinite
+    /// where it is negative. So the derivative at zero is finite for `p >= 1` and `p = 0`, the second for `p >= 2`, `p = 1` and
+    /// `p = 0`.
+    #[must_use]
+    #[inline(always)]
+    fn powf(self, p: f64) -> Self {
+        self.apply(Power(p))
+    }
+    /// The smaller of two numbers; not a number where one is none. Derivatives are those of the smaller, and where both are equal the
+    /// mean of the two.
+    #[must_use]
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        let mean = self * 0.5 + other * 0.5;
+        (other - self).where_positive(self, (self - other).where_positive(other, mean))
+    }
+    /// The larger of two numbers; not a number where one is none. Derivatives are those of the larger, and where both are equal the
+    /// mean of the two.
+    #[must_use]
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        let mean = self * 0.5 + other * 0.5;
+        (self - other).where_positive(self, (other - self).where_positive(other, mean))
+    }
 }
 
 impl Scalar for f64 {
@@ -124,6 +236,22 @@ impl Scalar for f64 {
     #[inline(always)]
     fn recip(self) -> Self {
         f64::recip(self)
+    }
+    #[inline(always)]
+    fn apply<F: Function>(self, f: F) -> Self {
+        f.value(self)
+    }
+    #[inline(always)]
+    fn where_positive(self, then: Self, otherwise: Self) -> Self {
+        if self > 0.0 { then } else { otherwise }
+    }
+    #[inline(always)]
+    fn length<const K: usize>(components: &[Self; K]) -> Self {
+        crate::length::length(components)
+    }
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        f64::atan2(self, x)
     }
     #[inline(always)]
     fn is_zero(&self) -> bool {

@@ -17,6 +17,7 @@ const ROUNDING: f64 = 1e-13;
 /// Every operation of a scalar, at arguments where all are defined.
 fn operations<S: Scalar>(x: S, y: S) -> Vec<S> {
     let positive = x * x + 0.7;
+    let small = x / (positive + 1.0);
     let (sin, cos) = (x * y).sin_cos();
     let mut sum = x;
     sum += y;
@@ -49,6 +50,25 @@ fn operations<S: Scalar>(x: S, y: S) -> Vec<S> {
         sum,
         S::constant(4.0),
         S::zero(),
+        x.tan(),
+        small.asin(),
+        small.acos(),
+        y.atan(),
+        x.sinh(),
+        y.cosh(),
+        x.tanh(),
+        (x + 0.3).abs(),
+        x.sign() * y,
+        positive.powf(1.7),
+        positive.powf(-0.5),
+        x.powf(2.0),
+        x.powf(1.0),
+        x.powf(0.0),
+        x.min(y),
+        x.max(y),
+        (x - y).where_positive(sin, cos),
+        S::length(&[positive, x, y]),
+        (x * 2.0).atan2(positive - 2.0),
     ]
 }
 

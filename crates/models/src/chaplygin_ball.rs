@@ -1,3 +1,4 @@
+use crate::ball::{attitude, attitude_part};
 use crate::error::positive;
 use crate::{Attitude, Labels, Model, ModelError, State};
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, energy, from_fn};
@@ -5,13 +6,15 @@ use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, energy, from_fn};
 /// The Chaplygin ball: it rolls on a horizontal plane without slipping, its mass centre at its geometric centre and its
 /// three principal moments of inertia any.
 ///
-/// `q = (x, y, alpha, beta, gamma)`: the centre over the plane (m), and the angles of [`Attitude`] (rad), singular
-/// where `cos(beta) = 0`. Below, `g = R' e_z` is the vertical as the body sees it.
+/// `q = (x, y, e_0, e_1, e_2, e_3)`: the centre over the plane (m), and the unit quaternion of [`Attitude`]. `|e| = 1` is a
+/// constraint on positions, or with [`norm_by_rate`](Self::norm_by_rate) its rate alone. Below, `g = R' e_z` is the vertical as the
+/// body sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChaplyginBall {
     mass: f64,
     radius: f64,
     inertia: [f64; 3],
+    positions: bool,
 }
 
 impl ChaplyginBall {
@@ -25,7 +28,14 @@ impl ChaplyginBall {
         for (quantity, value) in ["first moment", "second moment", "third moment"].into_iter().zip(inertia) {
             positive(quantity, value)?;
         }
-        Ok(Self { mass, radius, inertia })
+        Ok(Self { mass, radius, inertia, positions: true })
+    }
+
+    /// The same with the length of the quaternion held by its rate alone, for methods that refuse constraints on positions: which
+    /// of them keep it is told at [`Attitude`].
+    #[must_use]
+    pub fn norm_by_rate(self) -> Self {
+        Self { positions: false, ..self }
     }
 
     /// Mass `m` (kg).
@@ -52,11 +62,19 @@ impl ChaplyginBall {
         self.mass * self.radius * self.radius
     }
 
+    /// The state with the centre at a place (m), an attitude, and an angular velocity in space (rad/s), rolling.
+    #[must_use]
+    pub fn rolling(&self, place: [f64; 2], attitude: &Attitude<f64>, omega: [f64; 3]) -> State<6> {
+        let ([s, x, y, z], [s1, x1, y1, z1]) = (attitude.quaternion(), attitude.rates_of_space(&omega));
+        let r = self.radius;
+        ([place[0], place[1], s, x, y, z], [r * omega[1], -r * omega[0], s1, x1, y1, z1])
+    }
+
     /// The angular momentum about the contact point, in space (kg m^2/s): `R K` with
     /// `K = I Omega + D (Omega - (Omega . g) g)`.
-    pub fn contact_momentum<S: Scalar>(&self, q: &[S; 5], v: &[S; 5]) -> [S; 3] {
-        let attitude = Attitude::new([q[2], q[3], q[4]]);
-        let omega = attitude.body_velocity([v[2], v[3], v[4]]);
+    pub fn contact_momentum<S: Scalar>(&self, q: &[S; 6], v: &[S; 6]) -> [S; 3] {
+        let attitude = attitude(q);
+        let omega = attitude.body_velocity(&attitude_part(v));
         let rotation = attitude.rotation();
         let spin = dot(&rotation[2], &omega);
         let d = self.rolling_inertia();
@@ -65,49 +83,54 @@ impl ChaplyginBall {
     }
 }
 
-impl System<5, 2> for ChaplyginBall {
+impl System<6, 3> for ChaplyginBall {
     /// `L = m/2 (x'^2 + y'^2) + Omega . I Omega / 2`.
     #[inline(always)]
-    fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 5], v: &[S; 5]) -> S {
-        let [o1, o2, o3] = Attitude::new([q[2], q[3], q[4]]).body_velocity([v[2], v[3], v[4]]);
-        (v[0] * v[0] + v[1] * v[1]) * (0.5 * self.mass)
-            + o1 * o1 * (0.5 * self.inertia[0])
-            + o2 * o2 * (0.5 * self.inertia[1])
-            + o3 * o3 * (0.5 * self.inertia[2])
+    fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 6], v: &[S; 6]) -> S {
+        let rates = attitude_part(v);
+        let omega = attitude(q).body_velocity(&rates);
+        (v[0] * v[0] + v[1] * v[1]) * (0.5 * self.mass) + Attitude::turning_energy(&rates, &omega, self.inertia)
     }
 
-    /// `x' = r omega_y`, `y' = -r omega_x`, with `omega` the angular velocity in space.
+    /// `x' = r omega_y`, `y' = -r omega_x`, with `omega` the angular velocity in space; and `e . e' = 0`.
     #[inline(always)]
-    fn constraint<S: Scalar>(&self, _t: S, q: &[S; 5]) -> Constraint<S, 5, 2> {
-        let [in_x, in_y, _] = Attitude::new([q[2], q[3], q[4]]).space_velocity_matrix();
+    fn constraint<S: Scalar>(&self, _t: S, q: &[S; 6]) -> Constraint<S, 6, 3> {
+        let attitude = attitude(q);
+        let [x, y, _] = attitude.space_velocity_matrix().map(|row| row.map(|part| part * self.radius));
+        let e = attitude.norm_row();
         let (zero, one) = (S::zero(), S::constant(1.0));
-        let r = self.radius;
-        let first = [one, zero, -in_y[0] * r, -in_y[1] * r, -in_y[2] * r];
-        let second = [zero, one, in_x[0] * r, in_x[1] * r, in_x[2] * r];
-        ([first, second], [zero; 2])
+        (
+            [
+                [one, zero, -y[0], -y[1], -y[2], -y[3]],
+                [zero, one, x[0], x[1], x[2], x[3]],
+                [zero, zero, e[0], e[1], e[2], e[3]],
+            ],
+            [zero; 3],
+        )
     }
 
-    /// One angle turns, and the centre follows.
+    /// `(|e|^2 - 1)/2 = 0`.
     #[inline(always)]
-    fn admissible_basis<S: Scalar>(&self, _t: S, q: &[S; 5]) -> Option<AdmissibleBasis<S, 5, 2>> {
-        let [in_x, in_y, _] = Attitude::new([q[2], q[3], q[4]]).space_velocity_matrix();
-        let (zero, one) = (S::zero(), S::constant(1.0));
+    fn holonomic<S: Scalar>(&self, _t: S, q: &[S; 6]) -> Option<[Option<S>; 3]> {
+        self.positions.then(|| [None, None, Some(attitude(q).norm_miss())])
+    }
+
+    /// The turns at 1 rad/s about the axes of the body, rolling: quasi-velocities are `Omega`.
+    #[inline(always)]
+    fn admissible_basis<S: Scalar>(&self, _t: S, q: &[S; 6]) -> Option<AdmissibleBasis<S, 6, 3>> {
+        let attitude = attitude(q);
+        let [along_x, along_y, _] = attitude.rotation();
+        let turns = attitude.body_turns();
         Some(AdmissibleBasis::new(from_fn::<_, 3, _>(|k| {
-            let mut w = [in_y[k] * self.radius, -in_x[k] * self.radius, zero, zero, zero];
-            w[2 + k] = one;
-            w
+            let e = turns[k];
+            [along_y[k] * self.radius, -along_x[k] * self.radius, e[0], e[1], e[2], e[3]]
         })))
-    }
-
-    #[inline(always)]
-    fn angles(&self) -> [bool; 5] {
-        [false, false, true, true, true]
     }
 }
 
-impl Model<5, 2> for ChaplyginBall {
+impl Model<6, 3> for ChaplyginBall {
     fn name(&self) -> &'static str {
-        "Chaplygin ball"
+        if self.positions { "Chaplygin ball" } else { "Chaplygin ball, norm by its rate" }
     }
 
     fn source(&self) -> &'static str {
@@ -119,23 +142,24 @@ impl Model<5, 2> for ChaplyginBall {
         Labels { reversible: true, integrable: true, invariant_measure: true }
     }
 
-    fn start(&self) -> State<5> {
-        let q = [0.0, 0.0, 0.2, -0.3, 0.1];
-        let attitude = Attitude::new([q[2], q[3], q[4]]);
-        let rates = attitude.rates([0.5, 0.8, -0.4]);
-        let [in_x, in_y, _] = attitude.space_velocity_matrix();
-        let r = self.radius;
-        (q, [r * dot(&in_y, &rates), -r * dot(&in_x, &rates), rates[0], rates[1], rates[2]])
+    fn start(&self) -> State<6> {
+        self.admissible([0.0, 0.0, 0.98, 0.1, -0.15, 0.06], [0.5, 0.8, -0.4, 0.0, 0.0, 0.0])
+    }
+
+    /// At the attitude nearest to the given numbers, turning at `xi` about the axes of the body.
+    fn admissible(&self, q: [f64; 6], xi: [f64; 6]) -> State<6> {
+        let attitude = Attitude::nearest(attitude_part(&q));
+        self.rolling([q[0], q[1]], &attitude, attitude.in_space(&[xi[0], xi[1], xi[2]]))
     }
 
     /// `K' = K x Omega`, `g' = g x Omega`: with `A = (I + D)^-1` and `b = K x Omega + D (g . Omega) g x Omega`,
     /// `Omega' = A b + D (g . A b) / (1 - D g . A g) A g`; the centre is `r` times the acceleration in space.
-    fn accelerations_by_hand(&self, _t: f64, q: &[f64; 5], v: &[f64; 5]) -> [f64; 5] {
-        let attitude = Attitude::new([q[2], q[3], q[4]]);
+    fn accelerations_by_hand(&self, _t: f64, q: &[f64; 6], v: &[f64; 6]) -> [f64; 6] {
+        let attitude = attitude(q);
         let rotation = attitude.rotation();
         let g = rotation[2];
-        let rates = [v[2], v[3], v[4]];
-        let omega = attitude.body_velocity(rates);
+        let rates = attitude_part(v);
+        let omega = attitude.body_velocity(&rates);
         let d = self.rolling_inertia();
         let spin = dot(&g, &omega);
         let k = from_fn(|i| (self.inertia[i] + d) * omega[i] - d * spin * g[i]);
@@ -144,13 +168,13 @@ impl Model<5, 2> for ChaplyginBall {
         let leaned: [f64; 3] = from_fn(|i| g[i] / (self.inertia[i] + d));
         let share = d * dot(&g, &solved) / (1.0 - d * dot(&g, &leaned));
         let acceleration = from_fn(|i| solved[i] + share * leaned[i]);
-        let angles = attitude.accelerations(rates, acceleration);
+        let [s, x, y, z] = attitude.accelerations_of_body(&rates, &acceleration);
         let r = self.radius;
         let [along_x, along_y, _] = rotation.map(|row| dot(&row, &acceleration));
-        [r * along_y, -r * along_x, angles[0], angles[1], angles[2]]
+        [r * along_y, -r * along_x, s, x, y, z]
     }
 
-    fn invariants<S: Scalar>(&self, q: &[S; 5], v: &[S; 5]) -> Vec<(&'static str, S)> {
+    fn invariants<S: Scalar>(&self, q: &[S; 6], v: &[S; 6]) -> Vec<(&'static str, S)> {
         let [x, y, z] = self.contact_momentum(q, v);
         vec![
             ("energy", energy(self, S::zero(), q, v)),
@@ -160,19 +184,14 @@ impl Model<5, 2> for ChaplyginBall {
         ]
     }
 
-    /// `sqrt(1 - D g . A g)` for the rotations and `Omega`, and `cos(beta)^2` from these to the angles and their rates.
-    fn density<S: Scalar>(&self, q: &[S; 5]) -> Option<S> {
-        let attitude = Attitude::new([q[2], q[3], q[4]]);
-        let [_, _, g] = attitude.rotation();
+    /// `sqrt(1 - D g . A g)`, for the volume of the quaternions and that of `Omega`.
+    fn density<S: Scalar>(&self, q: &[S; 6]) -> Option<S> {
+        let [_, _, g] = attitude(q).rotation();
         let d = self.rolling_inertia();
         let lean = g[0] * g[0] * (d / (self.inertia[0] + d))
             + g[1] * g[1] * (d / (self.inertia[1] + d))
             + g[2] * g[2] * (d / (self.inertia[2] + d));
-        Some((-lean + 1.0).sqrt() * attitude.regularity().squared())
-    }
-
-    fn regularity(&self, q: &[f64; 5]) -> f64 {
-        Attitude::new([q[2], q[3], q[4]]).regularity().abs()
+        Some((-lean + 1.0).sqrt())
     }
 }
 

@@ -14,9 +14,12 @@
 //! # Ok::<(), models::ModelError>(())
 //! ```
 //!
+//! Rigid bodies that turn in space have their attitude by a unit quaternion, [`Attitude`], so that no coordinates of these models
+//! end anywhere. A model whose coordinates do says so by [`Model::regularity`], and is run by `dla::InChart`, which asks it.
+//!
 //! SI units, angles in radians. This crate knows no integrator.
 
-mod attitude;
+mod ball;
 mod chaplygin_ball;
 mod compound_pendulum;
 mod contact_oscillator;
@@ -35,7 +38,6 @@ mod special;
 mod suslov;
 mod turntable_ball;
 
-pub use attitude::Attitude;
 pub use chaplygin_ball::ChaplyginBall;
 pub use compound_pendulum::CompoundPendulum;
 pub use contact_oscillator::ContactOscillator;
@@ -43,6 +45,7 @@ pub use error::ModelError;
 pub use gauged_oscillator::GaugedOscillator;
 pub use isokinetic::IsokineticParticle;
 pub use knife_edge::KnifeEdge;
+pub use lagrangian::Attitude;
 pub use model::{Labels, Model, State};
 pub use particle::Particle;
 pub use quartic_oscillator::QuarticOscillator;

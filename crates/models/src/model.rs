@@ -53,7 +53,11 @@ pub trait Model<const N: usize, const M: usize>: System<N, M> + Sized {
         None
     }
 
-    /// How far the coordinates are from a singularity: one far from it, and zero on it.
+    /// How far the coordinates are from where they end, as angles do that are singular at some attitude: one far from it, zero
+    /// there, continuous between. One everywhere by default, for coordinates that end nowhere, as those of every model here.
+    ///
+    /// A method by itself does not ask: near the end it may go on with any error. A model that overrides this is run by
+    /// `dla::InChart::new(method, chart, Model::regularity)`, whose steps are refused there.
     fn regularity(&self, _q: &[f64; N]) -> f64 {
         1.0
     }

@@ -4,13 +4,15 @@ use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
 
 /// The Suslov problem: a rigid body about a fixed point that cannot turn about its own third axis, `Omega3 = 0`.
 ///
-/// `q = (alpha, beta, gamma)`: the angles of [`Attitude`] (rad), singular where `cos(beta) = 0`. `Omega` is the angular
-/// velocity in the body, in axes turned about the third so that `I12 = 0`.
+/// `q = (e_0, e_1, e_2, e_3)`: the unit quaternion of [`Attitude`]. `Omega` is the angular velocity in the body, in axes turned
+/// about the third so that `I12 = 0`. `|e| = 1` is a constraint on positions, or with [`norm_by_rate`](Self::norm_by_rate) its rate
+/// alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Suslov {
     diagonal: [f64; 3],
     i13: f64,
     i23: f64,
+    positions: bool,
 }
 
 impl Suslov {
@@ -30,7 +32,14 @@ impl Suslov {
         if !(determinant.is_finite() && determinant > 0.0) {
             return Err(ModelError::NotPositiveDefinite { determinant });
         }
-        Ok(Self { diagonal, i13, i23 })
+        Ok(Self { diagonal, i13, i23, positions: true })
+    }
+
+    /// The same with the length of the quaternion held by its rate alone, for methods that refuse constraints on positions: which
+    /// of them keep it is told at [`Attitude`].
+    #[must_use]
+    pub fn norm_by_rate(self) -> Self {
+        Self { positions: false, ..self }
     }
 
     /// `I11`, `I22`, `I33` (kg m^2).
@@ -84,37 +93,38 @@ impl Suslov {
     }
 }
 
-impl System<3, 1> for Suslov {
+impl System<4, 2> for Suslov {
     /// `L = Omega . I Omega / 2`.
     #[inline(always)]
-    fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 3], v: &[S; 3]) -> S {
-        let [o1, o2, o3] = Attitude::new(*q).body_velocity(*v);
-        let [i11, i22, i33] = self.diagonal;
-        o1 * o1 * (0.5 * i11) + o2 * o2 * (0.5 * i22) + o3 * o3 * (0.5 * i33) + (o1 * self.i13 + o2 * self.i23) * o3
+    fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 4], v: &[S; 4]) -> S {
+        let omega = Attitude::new(*q).body_velocity(v);
+        Attitude::turning_energy(v, &omega, self.diagonal) + (omega[0] * self.i13 + omega[1] * self.i23) * omega[2]
     }
 
-    /// `Omega3 = sin(beta) alpha' + gamma' = 0`.
+    /// `Omega3 / 2 = 0`, and `e . e' = 0`: at right angles, and of one length.
     #[inline(always)]
-    fn constraint<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
-        ([[q[1].sin(), S::zero(), S::constant(1.0)]], [S::zero()])
+    fn constraint<S: Scalar>(&self, _t: S, q: &[S; 4]) -> Constraint<S, 4, 2> {
+        let [s, x, y, z] = *q;
+        ([[-z, y, -x, s], Attitude::new(*q).norm_row()], [S::zero(); 2])
     }
 
-    /// `(1, 0, -sin(beta))` and `(0, 1, 0)`.
+    /// `(|e|^2 - 1)/2 = 0`.
     #[inline(always)]
-    fn admissible_basis<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, 1>> {
-        let (zero, one) = (S::zero(), S::constant(1.0));
-        Some(AdmissibleBasis::new([[one, zero, -q[1].sin()], [zero, one, zero]]))
+    fn holonomic<S: Scalar>(&self, _t: S, q: &[S; 4]) -> Option<[Option<S>; 2]> {
+        self.positions.then(|| [None, Some(Attitude::new(*q).norm_miss())])
     }
 
+    /// The turns at 1 rad/s about the first and the second axis of the body: quasi-velocities are `Omega1` and `Omega2`.
     #[inline(always)]
-    fn angles(&self) -> [bool; 3] {
-        [true; 3]
+    fn admissible_basis<S: Scalar>(&self, _t: S, q: &[S; 4]) -> Option<AdmissibleBasis<S, 4, 2>> {
+        let [first, second, _] = Attitude::new(*q).body_turns();
+        Some(AdmissibleBasis::new([first, second]))
     }
 }
 
-impl Model<3, 1> for Suslov {
+impl Model<4, 2> for Suslov {
     fn name(&self) -> &'static str {
-        "Suslov problem"
+        if self.positions { "Suslov problem" } else { "Suslov problem, norm by its rate" }
     }
 
     fn source(&self) -> &'static str {
@@ -128,25 +138,26 @@ impl Model<3, 1> for Suslov {
         Labels { reversible: true, integrable: true, invariant_measure: principal }
     }
 
-    fn start(&self) -> State<3> {
-        let q = [0.2, -0.3, 0.1];
-        (q, Attitude::new(q).rates([0.6, 0.2, 0.0]))
+    fn start(&self) -> State<4> {
+        self.admissible([0.98, 0.1, -0.15, 0.06], [0.6, 0.2, 0.0, 0.0])
     }
 
-    /// The reduced equations, and the kinematics of the angles.
-    fn accelerations_by_hand(&self, _t: f64, q: &[f64; 3], v: &[f64; 3]) -> [f64; 3] {
+    /// At the attitude nearest to the given numbers, turning at `xi`.
+    fn admissible(&self, q: [f64; 4], xi: [f64; 4]) -> State<4> {
+        let attitude = Attitude::nearest(q);
+        (attitude.quaternion(), attitude.rates_of_body(&[xi[0], xi[1], 0.0]))
+    }
+
+    /// The reduced equations, and the kinematics of the quaternion.
+    fn accelerations_by_hand(&self, _t: f64, q: &[f64; 4], v: &[f64; 4]) -> [f64; 4] {
         let attitude = Attitude::new(*q);
-        let [o1, o2, _] = attitude.body_velocity(*v);
+        let [o1, o2, _] = attitude.body_velocity(v);
         let [a1, a2] = self.reduced_acceleration([o1, o2]);
-        attitude.accelerations(*v, [a1, a2, 0.0])
+        attitude.accelerations_of_body(v, &[a1, a2, 0.0])
     }
 
-    /// `cos(beta)^2`: the volume of the rotations and that of `(Omega1, Omega2)`.
-    fn density<S: Scalar>(&self, q: &[S; 3]) -> Option<S> {
-        self.labels().invariant_measure.then(|| q[1].cos().squared())
-    }
-
-    fn regularity(&self, q: &[f64; 3]) -> f64 {
-        Attitude::new(*q).regularity().abs()
+    /// One: the volume of the quaternions and that of `(Omega1, Omega2)`.
+    fn density<S: Scalar>(&self, _q: &[S; 4]) -> Option<S> {
+        self.labels().invariant_measure.then(|| S::constant(1.0))
     }
 }

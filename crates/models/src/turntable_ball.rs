@@ -1,11 +1,12 @@
+use crate::ball::{attitude, attitude_part};
 use crate::error::{finite, positive};
-use crate::{Labels, Model, ModelError, State};
-use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, energy, from_fn, velocity_of};
+use crate::{Attitude, Labels, Model, ModelError, State};
+use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, energy, velocity_of};
 
 /// A homogeneous ball that rolls on a level table, which turns about the origin at a given rate: constraints that are affine
 /// in the velocities, and one on positions.
 ///
-/// `q = (x, y, e_0, e_1, e_2, e_3)`: the centre (m) and the attitude as a quaternion of length one, which has no singularity.
+/// `q = (x, y, e_0, e_1, e_2, e_3)`: the centre (m) and the unit quaternion of [`Attitude`].
 /// The centre runs a circle at `Omega k/(1 + k)`, with `k = I/(m r^2)`: 2/7 of the table's rate for a solid ball.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TurntableBall {
@@ -38,7 +39,7 @@ impl TurntableBall {
 
     /// The angular velocity in space (rad/s).
     pub fn spin<S: Scalar>(&self, q: &[S; 6], v: &[S; 6]) -> [S; 3] {
-        turning(&[q[2], q[3], q[4], q[5]]).map(|row| (0..4).fold(S::zero(), |sum, i| sum + row[i] * v[2 + i]) * 2.0)
+        attitude(q).space_velocity(&attitude_part(v))
     }
 
     /// `E - Omega (m (x y' - y x') + I omega_z)` (J), which is kept where the energy is not.
@@ -61,13 +62,6 @@ impl TurntableBall {
     }
 }
 
-/// The matrix, by rows, that takes the rates of a quaternion to half of the angular velocity in space.
-#[inline(always)]
-fn turning<S: Scalar>(e: &[S; 4]) -> [[S; 4]; 3] {
-    let [s, x, y, z] = *e;
-    [[-x, s, -z, y], [-y, z, s, -x], [-z, -y, x, s]]
-}
-
 impl System<6, 3> for TurntableBall {
     const MOVING: bool = true;
 
@@ -81,8 +75,9 @@ impl System<6, 3> for TurntableBall {
     /// Contact at the table's speed, `x' - r omega_y + Omega y = 0`, `y' + r omega_x - Omega x = 0`; and `e . e' = 0`.
     #[inline(always)]
     fn constraint<S: Scalar>(&self, _t: S, q: &[S; 6]) -> Constraint<S, 6, 3> {
-        let e = [q[2], q[3], q[4], q[5]];
-        let [x, y, _] = turning(&e).map(|row| row.map(|part| part * (2.0 * self.radius)));
+        let attitude = attitude(q);
+        let [x, y, _] = attitude.space_velocity_matrix().map(|row| row.map(|part| part * self.radius));
+        let e = attitude.norm_row();
         let (zero, one) = (S::zero(), S::constant(1.0));
         (
             [
@@ -97,8 +92,7 @@ impl System<6, 3> for TurntableBall {
     /// `(|e|^2 - 1)/2 = 0`.
     #[inline(always)]
     fn holonomic<S: Scalar>(&self, _t: S, q: &[S; 6]) -> Option<[Option<S>; 3]> {
-        let square = q[2] * q[2] + q[3] * q[3] + q[4] * q[4] + q[5] * q[5];
-        Some([None, None, Some((square - 1.0) * 0.5)])
+        Some([None, None, Some(attitude(q).norm_miss())])
     }
 
     /// The three turns at 1 rad/s about the axes of space, rolling.
@@ -106,7 +100,7 @@ impl System<6, 3> for TurntableBall {
     fn admissible_basis<S: Scalar>(&self, _t: S, q: &[S; 6]) -> Option<AdmissibleBasis<S, 6, 3>> {
         let e = [q[2], q[3], q[4], q[5]];
         let reach = (e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + e[3] * e[3]) * self.radius;
-        let [x, y, z] = turning(&e).map(|row| row.map(|part| part * 0.5));
+        let [x, y, z] = Attitude::new(e).space_turns();
         let zero = S::zero();
         Some(AdmissibleBasis::new([
             [zero, -reach, x[0], x[1], x[2], x[3]],
@@ -137,27 +131,21 @@ impl Model<6, 3> for TurntableBall {
 
     /// At the attitude nearest to the given numbers, turning at `xi` beside what the table adds.
     fn admissible(&self, q: [f64; 6], xi: [f64; 6]) -> State<6> {
-        let size = q[2..].iter().map(|e| e * e).sum::<f64>().sqrt();
-        let q: [f64; 6] = match size > 0.0 {
-            true => from_fn(|i| if i < 2 { q[i] } else { q[i] / size }),
-            false => [q[0], q[1], 1.0, 0.0, 0.0, 0.0],
-        };
+        let [s, x, y, z] = Attitude::nearest(attitude_part(&q)).quaternion();
+        let q = [q[0], q[1], s, x, y, z];
         // Three independent rows at every attitude, so there is always one.
         let v = velocity_of(self, 0.0, &q, &xi).unwrap_or([0.0; 6]);
         (q, v)
     }
 
-    /// `P'' = w z x P'` for the centre, `I omega' = r m (y'', -x'', 0)`, and `2 e' = (omega, e)` differentiated.
+    /// `P'' = w z x P'` for the centre, `I omega' = r m (y'', -x'', 0)`, and the kinematics of the quaternion.
     fn accelerations_by_hand(&self, _t: f64, q: &[f64; 6], v: &[f64; 6]) -> [f64; 6] {
         let w = self.circling();
         let centre = [-w * v[1], w * v[0]];
         let share = self.radius * self.mass / self.inertia;
         let turn = [share * centre[1], -share * centre[0], 0.0];
-        let omega = self.spin(q, v);
-        let (e, rate) = ([q[2], q[3], q[4], q[5]], [v[2], v[3], v[4], v[5]]);
-        let (here, moving) = (turning(&e), turning(&rate));
-        let second: [f64; 4] =
-            from_fn(|i| 0.5 * (0..3).map(|k| here[k][i] * turn[k] + moving[k][i] * omega[k]).sum::<f64>());
+        let attitude = attitude(q);
+        let second = attitude.accelerations_of_space(&attitude_part(v), &turn);
         [centre[0], centre[1], second[0], second[1], second[2], second[3]]
     }
 

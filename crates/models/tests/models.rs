@@ -28,7 +28,10 @@ fn every_model(&[a, b, c, d, e]: &[f64; 5], check: &mut impl Check) {
     let (i13, i23) = (c - d, d - e);
     check.on(&Suslov::new([a, b, c + i13 * i13 / a + i23 * i23 / b], i13, i23).unwrap());
     check.on(&Suslov::new([a, b, c], 0.0, 0.0).unwrap());
-    check.on(&ChaplyginBall::new(a, b, [c, d, e]).unwrap());
+    check.on(&Suslov::new([a, b, c], 0.0, 0.0).unwrap().norm_by_rate());
+    let ball = ChaplyginBall::new(a, b, [c, d, e]).unwrap();
+    check.on(&ball);
+    check.on(&ball.norm_by_rate());
     for eps in [0.0, a] {
         let oscillator = ContactOscillator::new(eps).unwrap();
         check.on(&oscillator);

@@ -6,6 +6,7 @@
 //! |---|---|
 //! | describe a system: its Lagrangian and its constraint | [`System`], [`Scalar`] |
 //! | say what its constraints are, and start on them | [`classify`], [`consistent_start`] |
+//! | give a body an attitude that ends nowhere; refuse steps near where other coordinates end | [`Attitude`], [`InChart`] |
 //! | add what acts on a body | [`Effect`], [`With`] |
 //! | ask what its constraints let it reach, and what its symmetries conserve | [`lagrangian::growth`], [`lagrangian::conservation`] |
 //! | choose a method | [`Dla`], [`DiscreteLagrangian`], [`OneStep`] |
@@ -19,13 +20,14 @@
 pub use assembly;
 pub use dla::{
     self, Checkpoint, CheckpointError, Crossing, Direction, Dla, Equations, Event, Form, Hermite, Hint, History,
-    Newton, NewtonError, Node, Observer, OneStep, RecommendError, Recommendation, RunError, Samples, Schedule,
-    Sensitivity, Stage, State, StepError, StepReport, Trajectory, View, Watch, consistent_start, drive, recommend_step,
+    InChart, Newton, NewtonError, Node, NotANumber, Observer, OneStep, RecommendError, Recommendation, RunError,
+    Samples, Schedule, Sensitivity, Stage, State, StepError, StepReport, Trajectory, View, Watch, consistent_start,
+    drive, recommend_step,
 };
 pub use lagrangian::{
-    self, AdmissibleBasis, Alpha, ClosedStep, ClosedStepError, Constraint, Derivatives, DiscreteConstraint,
-    DiscreteLagrangian, Dual, Effect, HyperDual, Lanes, Member, Midpoint, Motion, MotionError, Parametrised, Rule,
-    Scalar, Symmetrised, System, Trapezoid, With, classify, constraint_residual, energy, mass_matrix, momentum,
+    self, AdmissibleBasis, Alpha, Attitude, ClosedStep, ClosedStepError, Constraint, Derivatives, DiscreteConstraint,
+    DiscreteLagrangian, Dual, Effect, Function, HyperDual, Lanes, Member, Midpoint, Motion, MotionError, Parametrised,
+    Rule, Scalar, Symmetrised, System, Trapezoid, With, classify, constraint_residual, energy, mass_matrix, momentum,
     vectorized,
 };
 pub use sleigh::{self, CentreOfMass, Exact, Sleigh, SleighError, SleighState};

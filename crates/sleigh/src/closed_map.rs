@@ -1,6 +1,6 @@
-use crate::Sleigh;
 use crate::spin_equation::SpinEquation;
-use crate::spin_memory::remembered;
+use crate::spin_memory::{SpinNumbers, remembered};
+use crate::{Sleigh, least_spin};
 use lagrangian::{ClosedStep, ClosedStepError, Start, mul_add, sin_cos_wrapped};
 
 const MAX_ITERATIONS: u32 = 30;
@@ -32,7 +32,7 @@ pub(crate) fn step(
 ) -> Result<ClosedStep<3, 1>, ClosedStepError> {
     let equation = SpinEquation::new(sleigh, h);
     let a = equation.a;
-    let (u0, omega0) = match xi {
+    let (u0, mut omega0) = match xi {
         // Not both from there: two numbers that were written one by one are waited for where they are read together.
         Some([u, ..]) => (u, v[2]),
         None => recovered(q[2], v),
@@ -44,10 +44,9 @@ pub(crate) fn step(
     let mut correction = equation.correction(&point, u0, omega0);
     let mut iterations = 1;
     if !equation.settles(correction) {
-        let w;
-        (w, iterations) = search(sleigh, h, expected, u0, omega0)?;
-        point = equation.at(w)?;
-        correction = equation.correction(&point, u0, omega0);
+        let found = search(sleigh, h, (u0, omega0), before.numbers)?;
+        point = equation.point(found.w, found.half_turn);
+        (correction, omega0, iterations) = (found.correction, found.omega0, found.iterations);
     }
 
     // What is still to be done is linear to rounding, but for a w sin d, and need not wait for new sines. Nor for a quotient: U is
@@ -84,27 +83,52 @@ pub(crate) fn step(
     })
 }
 
-/// A search that does not settle at once, from the expected spin where that is near, or one guessed from the velocities: the
-/// spin that it settles at, and after how many corrections.
+/// What a search has found.
+pub(crate) struct Found {
+    /// The spin, with sine and cosine of the half turn.
+    pub(crate) w: f64,
+    pub(crate) half_turn: (f64, f64),
+    /// What is left to correct of it.
+    pub(crate) correction: f64,
+    /// The spin at the beginning.
+    pub(crate) omega0: f64,
+    pub(crate) iterations: u32,
+}
+
+/// A search that does not settle at once, from the expected spin where that is near, or one guessed from the velocities.
 // Out of line, and given and giving numbers alone, so that it is no part of a step that settles at once.
 #[cold]
 #[inline(never)]
-fn search(sleigh: &Sleigh, h: f64, expected: f64, u0: f64, omega0: f64) -> Result<(f64, u32), ClosedStepError> {
+fn search(
+    sleigh: &Sleigh,
+    h: f64,
+    (u0, omega0): (f64, f64),
+    numbers: &mut SpinNumbers,
+) -> Result<Found, ClosedStepError> {
     let equation = SpinEquation::new(sleigh, h);
+    if least_spin::is_one(u0, omega0) {
+        return least_spin::search(equation, (u0, omega0), numbers);
+    }
+    let expected = numbers[2];
     let near = (expected - omega0).abs() <= FAR * omega0.abs();
-    let mut point = equation.at(if near { expected } else { equation.guess(u0, omega0) })?;
-    let mut iterations = 1;
+    settled(&equation, if near { expected } else { equation.guess(u0, omega0) }, (u0, omega0))
+}
+
+/// The spin that Newton's method settles at from a first one, and after how many corrections.
+pub(crate) fn settled(equation: &SpinEquation, first: f64, (u0, omega0): (f64, f64)) -> Result<Found, ClosedStepError> {
+    let mut point = equation.at(first)?;
+    let (mut settled, mut iterations) = (false, 0);
     loop {
         let correction = equation.correction(&point, u0, omega0);
-        if equation.settles(correction) {
-            // With it: near a right angle what it leaves of the tangent is more than rounding.
-            return Ok((point.w + correction, iterations));
+        // With one more: near a right angle what the last one leaves of the tangent is more than rounding.
+        if settled {
+            return Ok(Found { w: point.w, half_turn: (point.sin, point.cos), correction, omega0, iterations });
         }
-        if correction.is_nan() || iterations == MAX_ITERATIONS {
+        (settled, iterations) = (equation.settles(correction), iterations + 1);
+        if !settled && (correction.is_nan() || iterations == MAX_ITERATIONS) {
             return Err(failure(equation.k * u0, iterations, correction / point.w));
         }
         point = equation.at(point.w + correction)?;
-        iterations += 1;
     }
 }
 
@@ -129,7 +153,7 @@ fn failure(gain: f64, iterations: u32, correction: f64) -> ClosedStepError {
 }
 
 #[cold]
-fn out_of_branch(gain: f64) -> ClosedStepError {
+pub(crate) fn out_of_branch(gain: f64) -> ClosedStepError {
     ClosedStepError::NoSolution {
         quantity: "the growth of the spin in half a step, -h m a u / (2 J),",
         value: -gain,

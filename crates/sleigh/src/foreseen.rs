@@ -5,15 +5,15 @@ use lagrangian::{Memory, from_fn};
 
 /// What a step of a map with `P` unknowns, the last of which is the mean spin, leaves to the next, which changes it in place.
 #[derive(Debug)]
-pub(crate) struct Foreseen<'a, const P: usize, const N: usize> {
+pub(crate) struct Foreseen<'a, const P: usize, const KEPT: usize, const N: usize> {
     /// Sine and cosine of the half turn of the unknowns that are expected here, these, and those expected one step later; then the
-    /// last ones and their first backward differences. They are read where they are used, so that until then they need no other
-    /// place.
-    numbers: &'a mut [f64; N],
+    /// last ones and their first backward differences, `KEPT` of each in all; then what is the map's own affair. They are read where
+    /// they are used, so that until then they need no other place.
+    pub(crate) numbers: &'a mut [f64; N],
     pub(crate) heading: Heading<'a>,
 }
 
-impl<'a, const P: usize, const N: usize> Foreseen<'a, P, N> {
+impl<'a, const P: usize, const KEPT: usize, const N: usize> Foreseen<'a, P, KEPT, N> {
     /// What the step before has left to one that begins at this heading.
     #[inline(always)]
     pub(crate) fn of(memory: &'a mut Memory, heading: f64) -> Self {
@@ -41,7 +41,7 @@ impl<'a, const P: usize, const N: usize> Foreseen<'a, P, N> {
     /// are there before the step between has ended.
     #[inline(always)]
     pub(crate) fn leave(&mut self, h: f64, x: [f64; P]) {
-        let (expected, differences) = self.numbers.split_at_mut(2 + 2 * P);
+        let (expected, differences) = self.numbers[..2 + (2 + KEPT) * P].split_at_mut(2 + 2 * P);
         for i in 0..P {
             expected[2 + i] = expected[2 + P + i];
         }

@@ -19,6 +19,7 @@ mod exact;
 mod foreseen;
 mod half_turn;
 mod heading;
+mod least_spin;
 mod mean_equations;
 mod mean_memory;
 pub mod parking;

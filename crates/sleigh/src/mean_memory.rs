@@ -10,7 +10,7 @@ const SIZE: usize = 6 + 2 * KEPT;
 const KIND: f64 = 6.0;
 
 /// What a step of the pushed map leaves to the next.
-pub(crate) type MeanMemory<'a> = Foreseen<'a, 2, SIZE>;
+pub(crate) type MeanMemory<'a> = Foreseen<'a, 2, KEPT, SIZE>;
 
 /// What steps of length `h` have left to one that begins at this heading with the velocities `x`; before a first one, as after many
 /// that had these. None where the blade would then turn by a right angle in half the step.

@@ -15,6 +15,8 @@ pub(crate) struct SpinEquation {
     pub(crate) a: f64,
     /// `h m a / (2 J)`.
     pub(crate) k: f64,
+    /// `1 + m a^2 / J`, by which the equation is more curved than a cosine is.
+    bend: f64,
 }
 
 /// What the equation is at one spin, but for what depends on where the step begins.
@@ -36,8 +38,14 @@ impl SpinEquation {
     /// Of a step of length `h`.
     #[inline(always)]
     pub(crate) fn new(sleigh: &Sleigh, h: f64) -> Self {
-        let half = 0.5 * h;
-        Self { half, a: sleigh.offset(), k: half * sleigh.spin_gain() }
+        let (half, a, gain) = (0.5 * h, sleigh.offset(), sleigh.spin_gain());
+        Self { half, a, k: half * gain, bend: mul_add(gain, a, 1.0) }
+    }
+
+    /// The same for the part `r = w/unit` of a spin `unit`, which begins with one: `d = (h unit/2) r` and `a w = (a unit) r`.
+    #[inline]
+    pub(crate) fn in_units_of(self, unit: f64) -> Self {
+        Self { half: self.half * unit, a: self.a * unit, ..self }
     }
 
     /// # Errors
@@ -50,7 +58,7 @@ impl SpinEquation {
     /// The same with the sine and cosine of the half turn.
     #[inline(always)]
     pub(crate) fn point(&self, w: f64, (sin, cos): (f64, f64)) -> SpinPoint {
-        let Self { half, a, k } = *self;
+        let Self { half, a, k, .. } = *self;
         let (across, across_of_w) = (a * (w * sin), a * mul_add(half * w, cos, sin));
         let growth = mul_add(k, across, cos);
         let grown_of_w = mul_add(k * w, across_of_w, mul_add(-half * w, sin, growth));
@@ -66,11 +74,14 @@ impl SpinEquation {
     }
 
     /// Whether what a correction leaves is rounding: the equation is a straight line but for `C w^3` and smaller, with
-    /// `C = (h/2)^2 + k a h/2`. A correction that is no number is not.
+    /// `C = (h/2)^2 (1 + m a^2 / J)`. A correction that is no number is not.
+    ///
+    /// The correction is taken as the angle by which it turns half a step: its own square overflows where the square of the step
+    /// vanishes, in motions that are fast beyond all others.
     #[inline(always)]
     pub(crate) fn settles(&self, correction: f64) -> bool {
-        let curvature = self.half * (self.half + (self.k * self.a).abs());
-        curvature * (correction * correction) <= ROUNDING
+        let angle = self.half * correction;
+        self.bend * (angle * angle) <= ROUNDING
     }
 
     /// A first guess of `w`, from `1 + k U` with `U = u0 + r^2 (a omega0 d + u0 d^2 / 2) + O(d^4)` and `r = w/omega0`.

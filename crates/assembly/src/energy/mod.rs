@@ -11,7 +11,9 @@ use crate::contributions::at;
 use crate::dla::predict;
 use crate::settling::Settling;
 use crate::sparse::Sparse;
+use crate::terms;
 use crate::{Assembly, AssemblyError, OneStep, Solver, State, StepReport};
+use dla::convergence::rounding_of_place;
 use dla::convergence::tolerances::STALL;
 use dla::{History, NewtonError, Stage};
 use element::NO_BASIS;
@@ -209,6 +211,31 @@ impl Energy {
             size += after[1].max(before[1]);
         }
         let bound = Self::ROUNDINGS * f64::EPSILON * size;
+        if defect.abs() <= bound { Ok(()) } else { self.check_at_rest(assembly, (t0, h), (defect, bound)) }
+    }
+
+    /// The same where the motion is as small as the rounding of the place: the energy then changes by the second order of that, as in the
+    /// static methods.
+    #[cold]
+    fn check_at_rest(
+        &self,
+        assembly: &Assembly,
+        (t0, h): (f64, f64),
+        (defect, bound): (f64, f64),
+    ) -> Result<(), AssemblyError> {
+        let mut noise = 0.0;
+        terms::for_each(
+            assembly,
+            (t0, h),
+            |i| self.q0[i],
+            |i| self.v0[i],
+            |_, placed, momentum, _| {
+                for (i, size) in placed.at.iter().zip(momentum) {
+                    noise += f64::EPSILON * size / h.abs() * f64::EPSILON * self.q0[*i].abs();
+                }
+            },
+        );
+        let bound = bound + Self::ROUNDINGS * noise + f64::MIN_POSITIVE;
         if defect.abs() <= bound { Ok(()) } else { Err(AssemblyError::Energy { defect, bound }) }
     }
 }
@@ -218,6 +245,7 @@ const INERTIA: &str = "energy2 of assemblies is for parts with inertia that have
 impl OneStep for Energy {
     fn step(&mut self, assembly: &Assembly, t0: f64, h: f64, state: &mut State) -> Result<StepReport, AssemblyError> {
         self.begin(assembly, (t0, h), state)?;
+        self.settling.near = rounding_of_place(&self.q0, h);
         /// Ends whose `kappa` differ by no more are near each other.
         const NEAR_ENDS: f64 = 1e-5;
         let (mut kappa, mut iterations, mut near) = (0.0, 0, false);

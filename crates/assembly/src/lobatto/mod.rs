@@ -14,6 +14,7 @@ use crate::sparse::Sparse;
 use crate::terms;
 use crate::{Assembly, AssemblyError, OneStep, Solver, State, StepReport};
 use dla::Stage;
+use dla::convergence::rounding_of_place;
 use lagrangian::linear::{larger, largest};
 use stages::{Room, Rule, Stages, increment};
 
@@ -233,6 +234,10 @@ impl Lobatto {
 impl OneStep for Lobatto {
     fn step(&mut self, assembly: &Assembly, t0: f64, h: f64, state: &mut State) -> Result<StepReport, AssemblyError> {
         self.begin(assembly, t0, state)?;
+        for (i, q1) in self.q1.iter_mut().enumerate() {
+            *q1 = state.q(i);
+        }
+        self.settling[0].near = rounding_of_place(&self.q1, h);
         let iterations = self.solve(assembly, (t0, h), state)?;
         let s = self.rule.stages;
         for (i, v) in self.v.chunks_exact(s).enumerate() {

@@ -1,7 +1,8 @@
 use crate::tools::{bent, train};
 use assembly::parts::Hinge;
 use assembly::{Assembly, AssemblyError, Composition, Dla, Energy, Lobatto, OneStep, Solver, State};
-use dla::Stage;
+use dla::{Hint, Stage};
+use lagrangian::{Constraint, Scalar, System};
 use sleigh::Sleigh;
 
 /// After the first steps, in which the factors find their room.
@@ -100,4 +101,55 @@ fn a_step_is_its_own_adjoint() {
     }
     println!("{:e}", state.distance(&start));
     assert!(state.distance(&start) < 1e-11);
+}
+
+/// A body on the plane whose drag has no derivative at rest, or one that has.
+struct Slowed {
+    smooth: bool,
+}
+
+impl System<3, 0> for Slowed {
+    fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 3], v: &[S; 3]) -> S {
+        (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) * 0.5 + q[0]
+    }
+    fn constraint<S: Scalar>(&self, _t: S, _q: &[S; 3]) -> Constraint<S, 3, 0> {
+        ([], [])
+    }
+    fn force<S: Scalar>(&self, _t: S, _q: &[S; 3], v: &[S; 3]) -> Option<[S; 3]> {
+        let speed = if self.smooth { S::length(&[v[0], v[1]]) } else { (v[0] * v[0] + v[1] * v[1]).sqrt() };
+        Some([-(v[0] * speed), -(v[1] * speed), S::zero()])
+    }
+}
+
+/// By all methods of assemblies, in the numbers of the assembly; the control is a drag that is differentiable at rest.
+#[test]
+fn a_force_without_a_derivative_is_named() {
+    for smooth in [false, true] {
+        let mut bodies = Assembly::new();
+        let hinge = Hinge::new([-0.5, 0.0], [0.5, 0.0]);
+        let first = bodies.body("blade", Sleigh::new(1.0, 1.0, 0.5).unwrap());
+        let second = bodies.body("slowed", Slowed { smooth });
+        let at = [first[0], first[1], first[2], second[0], second[1], second[2]];
+        bodies.join("hinge", hinge, at).unwrap();
+        let rest = State::new(&bodies, &[0.0, 0.0, 0.0, -1.0, 0.0, 0.0], &[0.0; 6]);
+        let methods: [Box<dyn OneStep>; 3] = [
+            Box::new(Dla::new(&bodies, Solver::Best).unwrap()),
+            Box::new(Composition::new(&bodies, Solver::Best, 4).unwrap()),
+            Box::new(Lobatto::new(&bodies, Solver::Best, 3).unwrap()),
+        ];
+        for mut method in methods {
+            let mut state = rest.clone();
+            let outcome = method.step(&bodies, 2.0, 0.01, &mut state);
+            if smooth {
+                assert!(outcome.is_ok() && state.v(0) > 0.0, "{outcome:?}");
+                continue;
+            }
+            let error = outcome.unwrap_err().named(&bodies, 2.0, &state);
+            assert_eq!(
+                error.to_string(),
+                "element 1 (slowed): the force on coordinate 3 has no finite derivative in velocity 3 at t = 2 s"
+            );
+            assert_eq!(error.step_error().hint(), Some(Hint::Corner));
+        }
+    }
 }

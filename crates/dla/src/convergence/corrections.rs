@@ -1,4 +1,6 @@
-use super::tolerances::{BLIND, CONTRACTION, GONE, GROWTHS, ROUNDINGS, STALL, UNBIASED, is_slight};
+use super::tolerances::{
+    BLIND, CONTRACTION, GONE, GROWTHS, NEAR_ROUNDINGS, OF_CORRECTION, ROUNDINGS, STALL, UNBIASED, is_slight,
+};
 use crate::{History, NewtonError};
 use lagrangian::linear::largest;
 
@@ -25,6 +27,17 @@ pub struct Demand {
     pub limit: u32,
     /// Whether corrections can still be made with less rounding than they are.
     pub refinable: bool,
+    /// A correction below this leads to no other solution: it moves the place of the step by its rounding only
+    /// ([`rounding_of_place`]).
+    pub near: f64,
+}
+
+/// The velocity that in a step of length `h` moves the configuration `q` by its rounding only: what corrects a constraint on positions by
+/// the last digits of these is no less, however slow the motion is.
+#[must_use]
+#[inline(always)]
+pub fn rounding_of_place(q: &[f64], h: f64) -> f64 {
+    NEAR_ROUNDINGS * 0.5 * f64::EPSILON * largest(q) / h.abs()
 }
 
 /// The test of a search by corrections: Newton's method, with any of its approximations, on any number of unknowns.
@@ -127,7 +140,7 @@ impl<'a> Convergence<'a> {
         correction: &[f64],
         roundings: impl FnOnce() -> Option<f64>,
     ) -> Result<bool, NewtonError> {
-        let Demand { kind, tolerance, limit, refinable } = demand;
+        let Demand { kind, tolerance, limit, refinable, near } = demand;
         self.made += 1;
         let iteration = self.made;
         let now = largest(x);
@@ -141,7 +154,7 @@ impl<'a> Convergence<'a> {
             self.first = step;
         }
         let slight = is_slight(step, size);
-        let contracts = !self.watched || slight || step <= CONTRACTION * before;
+        let contracts = !self.watched || slight || step <= near || step <= CONTRACTION * before;
         let least = if kind == Kind::Chord { tolerance * size } else { 0.0 };
         let [mut settled, mut stalls] = [true, false];
         for i in 0..x.len() {
@@ -150,20 +163,23 @@ impl<'a> Convergence<'a> {
             // Once a component has been seen to move by rounding only, it stays so.
             self.rounding[i] |= (slight | self.met) & stall;
             let ends = self.rounding[i] || d <= least || is_settled(kind, tolerance, x, d, last);
-            let open = !ends && !(kind == Kind::Simplified && self.is_gone(i, d));
+            let open = !(ends || (kind == Kind::Simplified && self.is_gone(i, d)));
             settled &= !open;
             stalls |= open & stall;
         }
         // Where the next correction is predicted to be rounding in all components, those that have not settled never will.
         settled |= kind == Kind::Chord && step <= BLIND * size && step * (step / before).min(1.0) <= UNBIASED * size;
+        self.watched &= !contracts;
         let stuck = (stalls && step >= STALL * before) || iteration >= limit;
         if !contracts || (stuck && !(settled || slight || self.met)) {
-            let met = roundings().map_or(step <= BLIND * size, |most| most <= ROUNDINGS);
+            let most = roundings();
+            let within = |bound: f64| most.map_or(step <= BLIND * size, |most| most <= bound);
+            let met = within(if kind == Kind::Chord { OF_CORRECTION } else { ROUNDINGS });
             self.met |= met;
             self.unmet = !met;
             // By corrections with less rounding it may yet be seen.
             self.watched = !contracts && !met && refinable;
-            self.certain &= contracts || met || refinable;
+            self.certain &= contracts || within(NEAR_ROUNDINGS) || refinable;
             if met && !settled {
                 settled = self.stalled(correction) || kind == Kind::Chord || iteration >= limit;
             }

@@ -8,12 +8,19 @@
 //! | [`UNBIASED`] | `eps/64` | what a linear convergence leaves out has one sign in every step, and adds up over 10^6 of them | fixed points, assemblies |
 //! | [`SLIGHT`] | `64 eps` | momenta `M v` are rounded to `u M v` in some tens of operations | all: cheap, asked first |
 //! | [`ROUNDINGS`] | `8` | residual over the running error bound of its terms; Newton's method attains a small multiple of one (Tisseur 2001) | all: asked where corrections stall |
+//! | [`OF_CORRECTION`] | `64` | the same of `K d`, which has the rounding of the linear solution besides | assemblies |
+//! | [`CYCLES`] | `64` | a fixed point that contracts by `L` goes round in `1/(1 - L)` roundings of its stages | fixed points |
 //! | [`NEAR_ROUNDINGS`] | `64` | a start that misses its equations by so few roundings is its solution | continuation |
 //! | [`BLIND`] | `1e-11` | the largest unknown, for equations that do not tell the sizes of their terms | users' own equations |
 //! | [`STALL`], [`STALL_OF_FIXED_POINT`] | `1/4`, `1/2` | a correction that shrinks by less is rounding or no convergence | Newton's method; fixed points |
 //! | [`SHRINKING`] | `1/8` | a frozen Jacobian that does worse is renewed | chord method |
 //! | [`CONTRACTION`] | `1/4` | Newton and Kantorovich: `h0 = 2 theta <= 1/2` (Deuflhard 2004, sections 2.1 and 3.3) | continuation |
 //! | [`GONE`] | `eps^2` | an unknown that has lost all digits of its start twice is zero | simplified corrections |
+//! | [`LEFT`] | `eps/16` | as [`UNBIASED`], with the rate of contraction measured | eight stages or trajectories in registers |
+//! | [`OF_ROW`], [`NOISE`] | `1e-12`, `1e-15` | of a number itself, where the terms are not known: what stalls above goes the slow way | registers |
+//! | [`SLOWEST`] | `1/20` | a search that begins near its end shrinks faster at first than it goes on | registers |
+//! | [`QUIET`], [`STALLS`] | `16`, `2` | what goes round among roundings is at its end | fixed points |
+//! | [`GROWTH_OF_FIXED_POINT`] | `1e3` | changes that oscillate may grow for a while | fixed points |
 //! | [`GROWTHS`] | `3` | so often in all the largest correction may grow | Newton's method |
 //!
 //! The unit of all is the component itself, except [`ROUNDINGS`], whose unit is the sum of the sizes of the terms of an
@@ -31,6 +38,10 @@ pub const SLIGHT: f64 = 64.0 * f64::EPSILON;
 
 /// A residual of so many roundings of its terms is rounding.
 pub const ROUNDINGS: f64 = 8.0;
+
+/// What a correction changes the equations by is rounding, of so many of their terms: where these are sums over many elements, and the
+/// correction carries the rounding of their solution too.
+pub const OF_CORRECTION: f64 = 64.0;
 
 /// A guess with a residual of so many roundings is as good as the solution.
 pub const NEAR_ROUNDINGS: f64 = 64.0;
@@ -65,8 +76,28 @@ pub fn is_slight(correction: f64, size: f64) -> bool {
     correction <= (SLIGHT * size).max(f64::MIN_POSITIVE)
 }
 
+/// Changes of a fixed-point iteration of so many roundings of their terms are rounding: what contracts by a factor `L` may go round in
+/// changes of `1/(1 - L)` times the rounding of all stages together.
+pub const CYCLES: f64 = 64.0;
+
 /// So often a change of a fixed-point iteration must have been rounding and not have shrunk.
 pub const STALLS: u32 = 2;
 
+/// After so many iterations in turn that changed nothing but by rounding a fixed-point iteration is at its end.
+pub const QUIET: u32 = 16;
+
 /// Changes of a fixed-point iteration that oscillate may grow by this factor above the least so far.
 pub const GROWTH_OF_FIXED_POINT: f64 = 1e3;
+
+/// Relative changes that may still be to come where an iteration in registers ends. What is left out is the same in every step, and
+/// adds up: where the contraction was believed as the first iterations show it, a run of `gauss8` lost `5e-17` of its energy a step.
+pub const LEFT: f64 = f64::EPSILON / 16.0;
+
+/// Changes in registers below this part of what changes, that stall twice, are rounding.
+pub const OF_ROW: f64 = 1e-12;
+
+/// And below this part, once.
+pub const NOISE: f64 = 1e-15;
+
+/// No iteration in registers is expected to shrink its changes by more.
+pub const SLOWEST: f64 = 0.05;

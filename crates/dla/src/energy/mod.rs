@@ -209,11 +209,26 @@ impl<Sys, const N: usize> Step<'_, Sys, N> {
 
     /// That the energy has changed by the work of the forces.
     #[inline(always)]
-    fn check(&self, ends: &Ends, work: f64, steepest: &[f64; N]) -> Result<(), StepError> {
+    fn check<const M: usize>(&self, ends: &Ends, work: f64, steepest: &[f64; N]) -> Result<(), StepError>
+    where
+        Sys: System<N, M>,
+    {
         let defect = ends.after - ends.before - work;
         let size = ends.rounded_size(self.start.state.q(), steepest);
         // An energy among the last numbers is rounded by as much as the least normal one is.
         let bound = (Self::ROUNDINGS * f64::EPSILON * size).max(f64::MIN_POSITIVE);
+        if defect.abs() <= bound { Ok(()) } else { self.check_at_rest(defect, bound) }
+    }
+
+    /// The same where the motion is as small as the rounding of the place: the energy then changes by the second order of that, the
+    /// rounding of the forces times the way that it is off.
+    #[cold]
+    #[inline(never)]
+    fn check_at_rest<const M: usize>(&self, defect: f64, bound: f64) -> Result<(), StepError>
+    where
+        Sys: System<N, M>,
+    {
+        let bound = bound + Self::ROUNDINGS * self.start.energy_rounding(self.system, self.t0, self.h);
         if defect.abs() <= bound { Ok(()) } else { Err(StepError::Energy { defect, bound }) }
     }
 }

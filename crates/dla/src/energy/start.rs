@@ -64,6 +64,19 @@ impl<const N: usize> Start<N> {
         let q_rate = from_fn(|i| basis.vectors().iter().zip(&xi).map(|(w, xi)| w[i].abs() * xi).sum());
         [q_rate, pi_rate, xi]
     }
+
+    /// The second order of the rounding of the energy (J) over a step from here: that of the forces, times that of the place and what
+    /// they move it by.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn energy_rounding<Sys: System<N, M>, const M: usize>(&self, system: &Sys, t0: f64, h: f64) -> f64 {
+        let q = self.state.q();
+        let Some(basis) = system.admissible_basis(t0, q) else { return 0.0 };
+        let motion = MotionRounding::at(system, t0, q, &basis.combine(&self.xi));
+        motion.map_or(0.0, |MotionRounding { force, acceleration, .. }| {
+            (0..N).map(|i| force[i] * (f64::EPSILON * q[i].abs() + h * h * acceleration[i])).sum()
+        })
+    }
 }
 
 /// `carried - pi`; zero where it is more than rounding, as when the step before was made with another system.
@@ -92,7 +105,8 @@ fn autonomous<Sys: System<N, M>, const N: usize, const M: usize>(
     if !nearby.iter().all(Scalar::is_zero) {
         return Err(MOVING);
     }
-    let moves = |x: &Dual<f64, 1>| x.eps[0] != 0.0;
+    // What is not a number fails later, and is named there.
+    let moves = |x: &Dual<f64, 1>| x.eps[0].abs() > 0.0;
     let basis = system.admissible_basis(t, &q);
     let timed = moves(&system.lagrangian(t, &q, &v))
         || a.iter().flatten().chain(&b).any(moves)

@@ -4,7 +4,7 @@ use super::order::Order;
 use super::state::Row;
 use super::step::Step;
 use super::{BLOCK, Ensemble, LANES, LaneState, Systems};
-use crate::gauss::LEFT;
+use crate::convergence::tolerances::LEFT;
 use lagrangian::System;
 use lagrangian::simd::{Kernel, Simd, dispatch_widest};
 use std::marker::PhantomData;

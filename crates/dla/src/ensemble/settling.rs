@@ -1,5 +1,5 @@
 use super::LANES;
-use crate::gauss::SLOWEST;
+use crate::convergence::tolerances::{OF_ROW, SLOWEST, STALL_OF_FIXED_POINT};
 
 /// Which of eight lanes still iterate.
 #[derive(Debug, Clone, Copy)]
@@ -10,9 +10,6 @@ pub(super) struct Settling {
     /// The last changes; none yet.
     before: Option<[f64; LANES]>,
 }
-
-/// Relative changes below which shrink no more are rounding.
-const ROUNDING: f64 = 1e-12;
 
 impl Settling {
     #[inline(always)]
@@ -32,7 +29,7 @@ impl Settling {
             // believed to be smaller than it may become; in the rounding changes no longer shrink.
             let slowest = SLOWEST * before;
             let next = moved * if moved > slowest { moved } else { slowest };
-            let stalls = (moved <= ROUNDING * size) & (moved >= 0.5 * before) & !first;
+            let stalls = (moved <= OF_ROW * size) & (moved >= STALL_OF_FIXED_POINT * before) & !first;
             let shrinks = (next <= self.settled * size * before) & (moved <= 0.5 * before);
             // What is no number is not larger either.
             self.open[lane] &= (moved > self.settled * size) & !shrinks & !stalls;
@@ -48,7 +45,7 @@ impl Settling {
         let before = self.before.unwrap_or([0.0; LANES]);
         lagrangian::from_fn(
             #[inline(always)]
-            |lane| if self.open[lane] && before[lane] > ROUNDING * size[lane] { f64::NAN } else { 0.0 },
+            |lane| if self.open[lane] && before[lane] > OF_ROW * size[lane] { f64::NAN } else { 0.0 },
         )
     }
 }

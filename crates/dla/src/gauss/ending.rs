@@ -1,3 +1,4 @@
+use crate::convergence::tolerances::{SLOWEST, STALL_OF_FIXED_POINT};
 use lagrangian::linear::larger;
 
 /// When an iteration has come to its end, by changes in units of what they count.
@@ -68,7 +69,7 @@ impl Search {
         // Once may be an iteration that turns the error round before it shrinks. Not one after the other: rounding may shrink
         // in between, and grow.
         let small = moved <= rounding;
-        let stalls = small && moved >= 0.5 * self.last;
+        let stalls = small && moved >= STALL_OF_FIXED_POINT * self.last;
         self.stalled += u32::from(stalls);
         if moved == 0.0 || settled || (stalls && (self.stalled > 1 || moved <= noise)) {
             return Verdict::Done;
@@ -87,15 +88,12 @@ impl Search {
 /// the end, and measure nothing.
 const ANEW: u32 = 3;
 
-/// No iteration is expected to shrink its changes by more.
-pub(crate) const SLOWEST: f64 = 0.05;
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::convergence::tolerances::{LEFT, NOISE, OF_ROW};
 
-    const ENDING: Ending =
-        Ending { left: f64::EPSILON / 16.0, rounding: 1e-12, noise: 1e-15, limit: 100, hopeless: 2.0, unseen: 12 };
+    const ENDING: Ending = Ending { left: LEFT, rounding: OF_ROW, noise: NOISE, limit: 100, hopeless: 2.0, unseen: 12 };
 
     /// What these changes say, one after the other, and after how many of them the search is over.
     fn search(changes: &[f64]) -> (usize, Verdict) {

@@ -9,10 +9,10 @@ mod rule;
 pub use adaptive::GaussAdaptive;
 
 use crate::convergence::FixedPoint;
+use crate::convergence::tolerances::{LEFT, NOISE, OF_ROW};
 use crate::positions::{affine_only, onto_positions};
 use crate::{OneStep, Stage, State, StepError, StepReport};
 use ending::Ending;
-pub(crate) use ending::SLOWEST;
 use lagrangian::linear::larger;
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
 use lagrangian::simd::dispatch;
@@ -91,8 +91,8 @@ impl<const S: usize> Gauss<S> {
         let before = self.memory.rows(state).filter(|_| self.memory.is_of_length(h)).zip(rule.continued(S - 1, 0));
         let ending = Ending {
             left: LEFT,
-            rounding: 1e-12,
-            noise: 1e-15,
+            rounding: OF_ROW,
+            noise: NOISE,
             limit: self.max_iterations,
             hopeless: 2.0,
             unseen: self.memory.unseen(),
@@ -198,10 +198,6 @@ impl<const N: usize> Taken<N> {
         Ok(())
     }
 }
-
-/// Relative changes that may still be to come where a search ends. What is left out is the same in every step, and adds up:
-/// where the contraction was believed as the first iterations show it, a run of `gauss8` lost `5e-17` of its energy a step.
-pub(crate) const LEFT: f64 = f64::EPSILON / 16.0;
 
 impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<Sys, N, M> for Gauss<S> {
     #[inline]

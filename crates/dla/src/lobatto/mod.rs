@@ -7,7 +7,7 @@ mod tables;
 use crate::branch;
 use crate::convergence::tolerances::NEAR_ROUNDINGS;
 use crate::dependent::{named_along, named_at};
-use crate::newton::Found;
+use crate::newton::{BlockEquations, Found};
 use crate::positions::affine_only;
 use crate::projection::{Projected, Projection};
 use crate::{Newton, NewtonError, OneStep, Stage, State, StepError, StepReport};
@@ -81,10 +81,8 @@ impl<const S: usize> Lobatto<S> {
     ) -> Result<(u32, bool), NewtonError> {
         let begun = *stages;
         let Found { iterations, first, certain } = self.newton.search_blocks(stages, v)?;
-        let place = 0.5 * f64::EPSILON * largest(begun.start.q());
-        let near = first <= part * largest(v.as_flattened())
-            || (begun.h * first).abs() <= NEAR_ROUNDINGS * place
-            || begun.missed(start) <= NEAR_ROUNDINGS;
+        let near =
+            first <= part * largest(v.as_flattened()) || first <= begun.near() || begun.missed(start) <= NEAR_ROUNDINGS;
         Ok((iterations, certain && near))
     }
 

@@ -3,7 +3,7 @@ use super::point::{Linearised, Point, Terms};
 use super::tables::Tables;
 use crate::State;
 use crate::branch;
-use crate::convergence::most_roundings;
+use crate::convergence::{most_roundings, rounding_of_place};
 use crate::newton::BlockEquations;
 use lagrangian::linear::Singular;
 use lagrangian::{Rounded, System, from_fn, position_misses};
@@ -155,6 +155,11 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> Stages<'
 impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> BlockEquations<N, S>
     for Stages<'_, Sys, N, M, S>
 {
+    #[inline(always)]
+    fn near(&self) -> f64 {
+        rounding_of_place(self.start.q(), self.h)
+    }
+
     fn roundings(&self, v: &[[f64; N]; S]) -> Option<f64> {
         Some(Self { impulses: self.before, ..*self }.missed(v))
     }

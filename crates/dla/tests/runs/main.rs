@@ -17,6 +17,7 @@ mod scripted;
 mod series;
 mod substeps;
 mod trials;
+mod units;
 
 use dla::State;
 use sleigh::{Sleigh, SleighState};

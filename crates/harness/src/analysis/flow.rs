@@ -68,17 +68,18 @@ fn implicit<const N: usize, const M: usize>(
     Some(rate)
 }
 
-/// The divergence of the reduced equations in the coordinates `(q, xi)` (1/s): the rate at which the flow makes volumes grow.
+/// The divergence of the reduced equations in the coordinates `(q, xi)` (1/s): the rate at which the flow makes volumes grow;
+/// and the rates `xi'`.
 pub(super) fn divergence<const N: usize, const M: usize>(
     flow: &dyn ReducedFlow<N, M>,
     t: f64,
     q: &[f64; N],
     xi: &[f64; N],
-) -> Option<f64> {
+) -> Option<(f64, [f64; N])> {
     let [velocity, rate] = flow.slope(t, &seeded(q, 0), &seeded(&admissible::<N, M>(xi), N))?;
     let of_q: f64 = (0..N).map(|i| velocity[i].eps[i]).sum();
     let of_xi: f64 = (0..N - M).map(|a| rate[a].eps[N + a]).sum();
-    Some(of_q + of_xi)
+    Some((of_q + of_xi, from_fn(|a| if a < N - M { rate[a].re } else { 0.0 })))
 }
 
 /// Variables that are seeded in the directions from `first` on, as far as there are directions.

@@ -1,5 +1,8 @@
+use super::neutral::bias;
+use super::pace::Pace;
 use super::stretch::Stretch;
 use super::tangent::Steps;
+use super::verdict::{Evidence, MotionVerdict};
 use crate::run::integrate_pieces;
 use crate::timing::Ticker;
 use crate::{Method, Progress};
@@ -29,7 +32,9 @@ pub struct Lyapunov {
     pub exponents: Vec<f64>,
     /// Half the width of the 95 % confidence interval of each (1/s); none where the run is too short.
     ///
-    /// From batch means: it tells the scatter of what a longer run averages out, and not the error of the steps.
+    /// From batch means, the scatter of what a longer run averages out, and beyond it `3 ln(1 + T/t)/T`, what an exponent may be off
+    /// by because the time `T` is finite, with the time `t` before it that is not counted: neighbours of regular motions part company by
+    /// powers of the time. An exponent that is zero has an interval that holds zero. The error of the steps is not in it.
     pub ci: Vec<Option<f64>>,
     /// The mean over the nodes of the divergence of the continuous equations (1/s), by the trapezoidal rule.
     ///
@@ -40,6 +45,10 @@ pub struct Lyapunov {
     pub time: f64,
     /// The estimates on the way, of the same exponents in the same order.
     pub running: Vec<Running>,
+    /// What the motion is.
+    pub verdict: MotionVerdict,
+    /// What it is judged by.
+    pub evidence: Evidence,
     /// Why the run ended early, if it did.
     pub failure: Option<LyapunovFailure>,
 }
@@ -62,6 +71,23 @@ pub enum LyapunovFailure {
     /// A step has no derivative.
     #[error("the derivative of {0}")]
     Derivative(#[from] TangentRunError),
+    /// The sum of all exponents by the derivatives of the steps is not the mean divergence of the equations, which it is by Liouville's
+    /// theorem. What is told of the run ends where they agreed last.
+    #[error(
+        "until {time:.6} s all exponents together are {:+.6e} 1/s by the steps, and {:+.6e} 1/s by the divergence of the equations, where at \
+         most {allowed:.1e} may lie between: the derivatives of the steps are not those of the motion, for the steps are too long, or the \
+         motion is so quick that rounding takes their digits; told are the exponents until then; take shorter steps, or a shorter run",
+        sums[0],
+        sums[1]
+    )]
+    Volumes {
+        /// When it was seen (s).
+        time: f64,
+        /// The sum of all exponents from the start of the run, by the steps and by the divergence (1/s).
+        sums: [f64; 2],
+        /// By how much the two may differ (1/s).
+        allowed: f64,
+    },
 }
 
 /// Why exponents are not computed at all.
@@ -127,27 +153,46 @@ pub fn lyapunov_by<Sys: System<N, M>, const N: usize, const M: usize>(
         return Err(LyapunovError::Count { asked: count, most });
     }
     let tangent = Steps::of(system, method)?;
-    let mut stretch = Stretch::new(&tangent, count, settle, schedule.steps);
+    let mut stretch = Stretch::new(&tangent, method.info().order, count, (settle, schedule.steps));
     let all = Schedule { steps: settle.saturating_add(schedule.steps), ..schedule };
     let outcome = drive(&all, &mut State::new(q, v, system.angles()), &mut stretch);
-    let failure = stretch.failure.map(Into::into).or(outcome.err().map(Into::into));
-    Ok(result(&stretch, failure))
+    let failure = stretch.failure.or(outcome.err().map(Into::into));
+    // A frame that is counted at once has had a step to turn.
+    let before = settle.max(1) as f64 * schedule.step.abs();
+    Ok(result(&stretch, before, failure))
 }
 
 /// What the sums come to; the exponents in order.
-fn result<const N: usize, const M: usize>(stretch: &Stretch<'_, N, M>, failure: Option<LyapunovFailure>) -> Lyapunov {
-    let time = stretch.time;
-    let mut order: Vec<usize> = (0..stretch.sums.len()).collect();
-    order.sort_by(|a, b| stretch.sums[*b].total_cmp(&stretch.sums[*a]));
-    let sorted = |values: &[f64]| order.iter().map(|i| values[*i]).collect();
-    let means: Vec<f64> = stretch.sums.iter().map(|sum| sum / time).collect();
+fn result<const N: usize, const M: usize>(
+    stretch: &Stretch<'_, N, M>,
+    before: f64,
+    failure: Option<LyapunovFailure>,
+) -> Lyapunov {
+    let (sums, time) = (&stretch.sums, stretch.sums.time);
+    let mut order: Vec<usize> = (0..sums.logs.len()).collect();
+    order.sort_by(|a, b| sums.logs[*b].total_cmp(&sums.logs[*a]));
+    let sorted = |values: &[f64]| -> Vec<f64> { order.iter().map(|i| values[*i]).collect() };
+    let exponents = sorted(&sums.logs.iter().map(|sum| sum / time).collect::<Vec<f64>>());
+    let interval = |i: &usize| stretch.blocks[*i].interval_of_mean().map(|scatter| scatter + bias(before, time.abs()));
+    let ci: Vec<Option<f64>> = order.iter().map(interval).collect();
+    let pace = stretch.pace.as_ref();
+    let evidence = Evidence {
+        largest: exponents[0],
+        ci: ci[0],
+        size: pace.map_or(0.0, Pace::largest),
+        change: pace.map_or(0.0, Pace::change),
+        maxima: pace.and_then(Pace::maxima),
+        period: pace.and_then(Pace::period),
+    };
     let running = stretch.running.iter();
     Lyapunov {
-        exponents: sorted(&means),
-        ci: order.iter().map(|i| stretch.blocks[*i].interval_of_mean()).collect(),
-        divergence_mean: stretch.divergence / time,
+        exponents,
+        ci,
+        divergence_mean: sums.divergence / time,
         time,
         running: running.map(|at| Running { time: at.time, exponents: sorted(&at.exponents) }).collect(),
+        verdict: evidence.verdict(),
+        evidence,
         failure,
     }
 }

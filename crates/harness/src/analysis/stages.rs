@@ -7,7 +7,7 @@ use lagrangian::{Scalar, Seeded, from_fn};
 /// The most stages of a method.
 const MOST: usize = 8;
 /// What seeds there are directions for.
-const DIRECTIONS: usize = 8;
+pub(super) const DIRECTIONS: usize = 8;
 const MAX_SWEEPS: u32 = 100;
 
 /// A Runge-Kutta method on the reduced equations: collocation, or an explicit one.
@@ -85,9 +85,7 @@ impl Stages {
         xi0: &[f64; N],
     ) -> Result<Slope<N>, SensitivityError> {
         if 2 * N - M > DIRECTIONS {
-            return Err(SensitivityError::Unsupported {
-                reason: "the system has more than eight coordinates and velocities",
-            });
+            return Err(TOO_MANY);
         }
         let (q0, xi0) = (seeded(q0, 0), seeded(&admissible::<N, M>(xi0), N));
         let start: Vec<f64> = q0.iter().chain(&xi0[..N - M]).map(|x| x.re).collect();
@@ -124,6 +122,9 @@ impl Stages {
         Err(SensitivityError::Equations(NewtonError::IterationLimit { iterations: MAX_SWEEPS, correction, history }))
     }
 }
+
+pub(super) const TOO_MANY: SensitivityError =
+    SensitivityError::Unsupported { reason: "the system has more than eight coordinates and velocities" };
 
 const NO_EQUATIONS: SensitivityError =
     SensitivityError::Unsupported { reason: "the system has no reduced equations, or they are degenerate" };

@@ -1,5 +1,7 @@
-use super::lyapunov::Running;
-use super::tangent::StepTangent;
+use super::lyapunov::{LyapunovFailure, Running};
+use super::pace::Pace;
+use super::tangent::{Local, StepTangent};
+use super::volume::Volume;
 use crate::Blocks;
 use dla::{Observer, SensitivityError, State, StepReport, TangentRunError, View};
 use nalgebra::DMatrix;
@@ -9,6 +11,16 @@ use std::ops::ControlFlow;
 const NOTES: u64 = 256;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
+/// What is summed up over the counted steps.
+#[derive(Debug, Clone)]
+pub(super) struct Sums {
+    /// Of `ln R_ii`.
+    pub(super) logs: Vec<f64>,
+    /// The integral of the divergence by the trapezoidal rule, and of the time (s).
+    pub(super) divergence: f64,
+    pub(super) time: f64,
+}
+
 /// The observer that carries an orthonormal frame along a run by the derivatives of its steps, and sums up the logarithms of
 /// what it is stretched by: `D Phi Q = Q' R`, with the next frame `Q'` and `ln R_ii` (Benettin et al. 1980, Meccanica 15, 9-20).
 pub(super) struct Stretch<'a, const N: usize, const M: usize> {
@@ -17,70 +29,96 @@ pub(super) struct Stretch<'a, const N: usize, const M: usize> {
     /// Steps that are not counted, and those that are.
     settle: u64,
     steps: u64,
-    /// The last node, with the divergence there.
-    before: Option<(f64, State<N>, f64)>,
-    /// Of `ln R_ii`, all of the counted steps.
-    pub(super) sums: Vec<f64>,
+    /// The last node, with the equations there.
+    before: Option<(f64, State<N>, Local<N>)>,
+    pub(super) sums: Sums,
+    /// The same where the volumes agreed last.
+    agreed: Sums,
+    volume: Volume,
     /// Of `ln R_ii / h`.
     pub(super) blocks: Vec<Blocks>,
-    /// The integral of the divergence by the trapezoidal rule, and of the time (s).
-    pub(super) divergence: f64,
-    pub(super) time: f64,
     pub(super) running: Vec<Running>,
-    pub(super) failure: Option<TangentRunError>,
+    pub(super) pace: Option<Pace<N>>,
+    pub(super) failure: Option<LyapunovFailure>,
 }
 
 impl<'a, const N: usize, const M: usize> Stretch<'a, N, M> {
-    /// A frame of `count` vectors, of which `settle` steps are not counted and `steps` are.
-    pub(super) fn new(tangent: &'a dyn StepTangent<N, M>, count: usize, settle: u64, steps: u64) -> Self {
+    /// A frame of `count` vectors, of which `settle` steps are not counted and `steps` are, by a method of that order.
+    pub(super) fn new(
+        tangent: &'a dyn StepTangent<N, M>,
+        order: u32,
+        count: usize,
+        (settle, steps): (u64, u64),
+    ) -> Self {
         // No direction is special to the system: fractions of multiples of irrational numbers, another for each vector.
         let part = |i: usize, j: usize| ((i + 1) as f64 * GOLDEN * ((j + 2) as f64).sqrt()).fract() - 0.5;
+        let sums = Sums { logs: vec![0.0; count], divergence: 0.0, time: 0.0 };
         Self {
             tangent,
             frame: DMatrix::from_fn(2 * N - M, count, part).qr().q(),
             settle,
             steps,
             before: None,
-            sums: vec![0.0; count],
+            agreed: sums.clone(),
+            sums,
+            volume: Volume::new(order),
             blocks: vec![Blocks::default(); count],
-            divergence: 0.0,
-            time: 0.0,
             running: Vec::new(),
+            pace: None,
             failure: None,
         }
     }
 
-    fn begin(&mut self, t: f64, state: &State<N>) {
-        match self.tangent.divergence(t, state) {
-            Ok(divergence) => self.before = Some((t, *state, divergence)),
-            Err(source) => self.failure = Some(TangentRunError { step: 1, time: t, source }),
-        }
+    fn begin(&mut self, t: f64, state: &State<N>) -> Result<(), TangentRunError> {
+        let local = self.tangent.local(t, state).map_err(|source| TangentRunError { step: 1, time: t, source })?;
+        let mut pace = Pace::new(self.tangent.weights(t, state), self.settle, self.steps);
+        pace.add(0, t, &local.xi, &local.rate);
+        self.pace = Some(pace);
+        self.before = Some((t, *state, local));
+        Ok(())
     }
 
-    fn advance(&mut self, k: u64, t: f64, state: &State<N>, report: &StepReport<M>) -> Result<(), TangentRunError> {
-        let Some((t0, start, divergence)) = self.before else { return Ok(()) };
+    fn advance(&mut self, k: u64, t: f64, state: &State<N>, report: &StepReport<M>) -> Result<(), LyapunovFailure> {
+        let Some((t0, start, local)) = self.before else { return Ok(()) };
         let failed = |source| TangentRunError { step: k, time: t0, source };
         let h = t - t0;
-        let stretched = self.tangent.matrix((t0, h), &start, state, *report).map_err(failed)? * &self.frame;
-        let qr = stretched.qr();
+        let matrix = self.tangent.matrix((t0, h), &start, state, *report).map_err(failed)?;
+        let qr = (&matrix * &self.frame).qr();
         let logs: Vec<f64> = qr.r().diagonal().iter().map(|r| r.abs().ln()).collect();
         if !logs.iter().all(|log| log.is_finite()) {
-            return Err(failed(SensitivityError::Unsupported { reason: "the derivative of the step is singular" }));
+            let reason = "the derivative of the step is singular";
+            return Err(failed(SensitivityError::Unsupported { reason }).into());
         }
         self.frame = qr.q();
-        let next = self.tangent.divergence(t, state).map_err(failed)?;
+        let next = self.tangent.local(t, state).map_err(failed)?;
         self.before = Some((t, *state, next));
+        if let Some(pace) = &mut self.pace {
+            pace.add(k, t, &next.xi, &next.rate);
+        }
+        let ends = [local.divergence, next.divergence];
         if k > self.settle {
-            self.time += h;
-            self.divergence += 0.5 * h * (divergence + next);
+            self.sums.time += h;
+            self.sums.divergence += 0.5 * h * (ends[0] + ends[1]);
             for (i, log) in logs.iter().enumerate() {
-                self.sums[i] += log;
+                self.sums.logs[i] += log;
                 self.blocks[i].add(t, log / h);
             }
-            if (k - self.settle).is_multiple_of(self.steps.div_ceil(NOTES).max(1)) {
-                let exponents = self.sums.iter().map(|sum| sum / self.time).collect();
-                self.running.push(Running { time: self.time, exponents });
+        }
+        // A whole frame spans all volumes.
+        let whole = logs.len() == matrix.nrows();
+        let determinant = if whole { logs.iter().sum() } else { matrix.determinant().abs().ln() };
+        match self.volume.add(h, &logs, determinant, ends) {
+            Some(Ok(())) => self.agreed.clone_from(&self.sums),
+            Some(Err(apart)) => {
+                // What came after the last agreement is not told.
+                self.sums.clone_from(&self.agreed);
+                return Err(LyapunovFailure::Volumes { time: t, sums: apart.sums, allowed: apart.allowed });
             }
+            None => {}
+        }
+        if k > self.settle && (k - self.settle).is_multiple_of(self.steps.div_ceil(NOTES).max(1)) {
+            let exponents = self.sums.logs.iter().map(|sum| sum / self.sums.time).collect();
+            self.running.push(Running { time: self.sums.time, exponents });
         }
         Ok(())
     }
@@ -88,7 +126,7 @@ impl<'a, const N: usize, const M: usize> Stretch<'a, N, M> {
 
 impl<Sys, const N: usize, const M: usize> Observer<Sys, N, M> for Stretch<'_, N, M> {
     fn start(&mut self, node: &View<'_, Sys, N>) {
-        self.begin(node.t, node.state);
+        self.failure = self.begin(node.t, node.state).err().map(Into::into);
     }
 
     fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {

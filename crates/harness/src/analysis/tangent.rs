@@ -1,9 +1,9 @@
 use super::discrete::differentiable;
-use super::flow::{Flow, ReducedFlow, divergence};
-use super::stages::Stages;
+use super::flow::{Flow, ReducedFlow, admissible, divergence};
+use super::stages::{DIRECTIONS, Stages, TOO_MANY};
 use crate::{Kind, Method};
 use dla::{Differentiable, Energy, Lobatto, Sensitivity, SensitivityError, State, StepReport};
-use lagrangian::System;
+use lagrangian::{System, energy, from_fn, velocity_of};
 use nalgebra::DMatrix;
 
 /// The derivative of single steps of a run, in the coordinates `(q, xi)` of the distribution; an object, so that what uses it
@@ -18,8 +18,22 @@ pub(super) trait StepTangent<const N: usize, const M: usize> {
         report: StepReport<M>,
     ) -> Result<DMatrix<f64>, SensitivityError>;
 
-    /// The divergence of the continuous equations at a state (1/s).
-    fn divergence(&self, t: f64, state: &State<N>) -> Result<f64, SensitivityError>;
+    /// What the continuous equations are at a state.
+    fn local(&self, t: f64, state: &State<N>) -> Result<Local<N>, SensitivityError>;
+
+    /// The roots of twice the kinetic energies of the basis vectors at a place, by which quasi-velocities of different units are compared;
+    /// one where a vector has none.
+    fn weights(&self, t: f64, state: &State<N>) -> [f64; N];
+}
+
+/// The continuous equations at a state.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Local<const N: usize> {
+    /// Their divergence (1/s).
+    pub(super) divergence: f64,
+    /// The quasi-velocities and their rates; zero in the places that do not count.
+    pub(super) xi: [f64; N],
+    pub(super) rate: [f64; N],
 }
 
 /// How the steps of a method are differentiated.
@@ -84,6 +98,9 @@ fn rule<const N: usize, const M: usize>(method: &Method) -> Result<Rule<N, M>, S
 
 impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Steps<'a, Sys, N, M> {
     pub(super) fn of(system: &'a Sys, method: &Method) -> Result<Self, SensitivityError> {
+        if 2 * N - M > DIRECTIONS {
+            return Err(TOO_MANY);
+        }
         Ok(Self { system, rule: rule(method)?, sensitivity: Sensitivity::of(system) })
     }
 
@@ -116,8 +133,24 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> StepTangent<N, M> for St
         }
     }
 
-    fn divergence(&self, t: f64, state: &State<N>) -> Result<f64, SensitivityError> {
-        divergence(&Flow(self.system), t, state.q(), &self.quasi_velocities(t, state)?).ok_or(NO_BASIS)
+    fn local(&self, t: f64, state: &State<N>) -> Result<Local<N>, SensitivityError> {
+        let xi = admissible::<N, M>(&self.quasi_velocities(t, state)?);
+        let (divergence, rate) = divergence(&Flow(self.system), t, state.q(), &xi).ok_or(NO_BASIS)?;
+        Ok(Local { divergence, xi, rate })
+    }
+
+    fn weights(&self, t: f64, state: &State<N>) -> [f64; N] {
+        let of = |xi: &[f64; N]| {
+            let velocity = velocity_of(self.system, t, state.q(), xi).ok();
+            velocity.map_or(f64::NAN, |v| energy(self.system, t, state.q(), &v))
+        };
+        let rest = of(&[0.0; N]);
+        from_fn(|a| {
+            let unit = |sign: f64| of(&from_fn(|b| if a == b && a < N - M { sign } else { 0.0 }));
+            // Both signs: a constraint that moves adds what is odd.
+            let twice = unit(1.0) - rest + (unit(-1.0) - rest);
+            if twice > 0.0 && twice.is_finite() { twice.sqrt() } else { 1.0 }
+        })
     }
 }
 

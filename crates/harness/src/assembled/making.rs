@@ -109,6 +109,7 @@ impl<'a> Making<'a> {
                     Parted { last, iterations, parts: 0 }
                 }
                 (Err(source), None) => {
+                    let source = source.named(assembly, t0, state);
                     self.failure = Some(RunError { step: k + 1, time: t0, source });
                     return;
                 }

@@ -82,6 +82,14 @@ impl Blocks {
         self.full.iter().map(|block| block.sum / self.length as f64)
     }
 
+    /// The largest values in so many parts of equal length, in the order of time; none of fewer than four blocks a part.
+    pub(crate) fn maxima<const PARTS: usize>(&self) -> Option<[f64; PARTS]> {
+        let count = self.full.len();
+        let part = |j: usize| &self.full[j * count / PARTS..(j + 1) * count / PARTS];
+        let largest = |j| part(j).iter().fold(f64::NEG_INFINITY, |largest, block| largest.max(block.max));
+        (count >= 4 * PARTS).then(|| std::array::from_fn(largest))
+    }
+
     /// The time from a block to the next (s).
     pub(super) fn spacing(&self) -> f64 {
         let [first, last] = self.times;

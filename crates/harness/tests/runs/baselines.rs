@@ -1,8 +1,11 @@
 //! The implicit midpoint rule and the adaptive method, on a line on which the motion is known.
 
 use approx::assert_relative_eq;
-use dla::{Dla, NewtonError, Schedule, State, StepError, drive};
-use harness::{Dop853, ImplicitMidpoint, Rk4};
+use dla::{
+    Derivative, Dla, Hint, NewtonError, NotANumber, OneStep, Schedule, State, StepError, SystemFunction, Variable,
+    drive,
+};
+use harness::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced};
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
 use std::cell::Cell;
 
@@ -142,6 +145,59 @@ fn the_adaptive_method_ends_with_the_motion() {
         assert!(matches!(error.source, StepError::Tolerance { .. } | StepError::NotFinite), "{error}");
         assert_relative_eq!(state.q()[0], runaway(error.time), max_relative = 1e-8);
     }
+}
+
+/// A spring with a quadratic drag, which has no derivative at rest; and beside it one that is not a number, or a kinetic energy that is
+/// none.
+#[derive(Clone, Copy)]
+struct Slowed {
+    drag: f64,
+    inertia: f64,
+}
+
+impl System<2, 1> for Slowed {
+    fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 2], v: &[S; 2]) -> S {
+        Line(Spring).lagrangian(t, q, v) + v[0] * v[0] * self.inertia
+    }
+    fn constraint<S: Scalar>(&self, t: S, q: &[S; 2]) -> Constraint<S, 2, 1> {
+        Line(Spring).constraint(t, q)
+    }
+    fn force<S: Scalar>(&self, _t: S, _q: &[S; 2], v: &[S; 2]) -> Option<[S; 2]> {
+        Some([v[0] * (v[0] * v[0]).sqrt() * -0.5, S::constant(self.drag)])
+    }
+    fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; 2]) -> Option<AdmissibleBasis<S, 2, 1>> {
+        Line(Spring).admissible_basis(t, q)
+    }
+}
+
+/// These methods need no derivative of a force; what is not a number they name like all others.
+#[test]
+fn what_is_not_a_number_is_named() {
+    fn outcome(system: Slowed, mut method: impl OneStep<Slowed, 2, 1>) -> Result<u64, StepError> {
+        drive(&system, &mut method, &schedule(0.1, 10), &mut at(1.0, 0.0), ()).map_err(|error| error.source)
+    }
+    let all = |system| {
+        [
+            outcome(system, Rk4),
+            outcome(system, Rk4Projected),
+            outcome(system, Rk4Reduced),
+            outcome(system, ImplicitMidpoint::default()),
+            outcome(system, Dop853::new(1e-9)),
+        ]
+    };
+    assert_eq!(all(Slowed { drag: 0.0, inertia: 0.0 }), [Ok(10); 5]);
+    let named = |function, derivative| {
+        Err(StepError::NotANumber(NotANumber { function, derivative, time: 0.0, at_node: true }))
+    };
+    let force = named(SystemFunction::Force { coordinate: 1 }, Derivative::Value);
+    assert_eq!(all(Slowed { drag: f64::NAN, inertia: 0.0 }), [force; 5]);
+    let kinetic = named(SystemFunction::Lagrangian, Derivative::Value);
+    assert_eq!(all(Slowed { drag: 0.0, inertia: f64::NAN }), [kinetic; 5]);
+    // The control: an implicit method that needs the derivative.
+    let corner = outcome(Slowed { drag: 0.0, inertia: 0.0 }, Dla::midpoint());
+    let first = Derivative::First(Variable::Velocity(0));
+    assert_eq!(corner, named(SystemFunction::Force { coordinate: 0 }, first));
+    assert_eq!(corner.unwrap_err().hint(), Some(Hint::Corner));
 }
 
 /// The spring, which counts how often its slope is asked for.

@@ -4,7 +4,7 @@ use approx::{assert_abs_diff_eq, assert_relative_eq};
 use dla::{Gauss, OneStep, Schedule, Sensitivity, State, drive};
 use harness::Method;
 use harness::analysis::{
-    Lyapunov, LyapunovError, LyapunovRequest, has_tangents, in_parallel, kaplan_yorke, lyapunov_by,
+    Lyapunov, LyapunovError, LyapunovRequest, MotionVerdict, has_tangents, in_parallel, kaplan_yorke, lyapunov_by,
 };
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, With};
 use nalgebra::DMatrix;
@@ -34,7 +34,7 @@ impl System<3, 1> for Saddle {
 }
 
 /// Exponents of a run with `gauss8`, or with whichever method has that name.
-fn exponents_by<Sys, Stepper>(
+pub(crate) fn exponents_by<Sys, Stepper>(
     (name, mut stepper): (&str, Stepper),
     system: &Sys,
     (q, v): ([f64; 3], [f64; 3]),
@@ -56,7 +56,11 @@ where
     found
 }
 
-fn exponents<Sys: System<3, 1>>(system: &Sys, start: ([f64; 3], [f64; 3]), steps: (f64, u64, u64)) -> Lyapunov {
+pub(crate) fn exponents<Sys: System<3, 1>>(
+    system: &Sys,
+    start: ([f64; 3], [f64; 3]),
+    steps: (f64, u64, u64),
+) -> Lyapunov {
     exponents_by(("gauss8", Gauss::<4>::default()), system, start, steps)
 }
 
@@ -109,7 +113,8 @@ fn the_straight_motion_of_the_free_sleigh() {
     }
 }
 
-/// With the centre of mass at the blade the motion in a round bowl is integrable.
+/// With the centre of mass at the blade the motion in a round bowl is integrable: the spin stays, and in axes that turn with it the
+/// equations are linear, with the frequencies `(k/m + omega^2)^(1/2)` and zero.
 #[test]
 fn a_balanced_sleigh_in_a_bowl_is_regular() {
     let system = With { body: Sleigh::new(1.0, 1.0, 0.0).unwrap(), effects: Bowl::new([1.0; 2], [0.0; 2]).unwrap() };
@@ -119,6 +124,9 @@ fn a_balanced_sleigh_in_a_bowl_is_regular() {
     let neutral = 2.0 * found.time.ln() / found.time;
     assert!(found.exponents.iter().all(|exponent| exponent.abs() < neutral), "{:?}", found.exponents);
     assert_abs_diff_eq!(found.sum(), 0.0, epsilon = 1e-12);
+    let MotionVerdict::Periodic { period, unstable: false } = found.verdict else { panic!("{}", found.verdict) };
+    assert_relative_eq!(period, std::f64::consts::TAU / (1.0 + 0.7_f64.powi(2)).sqrt(), max_relative = 1e-5);
+    assert!(found.exponents.iter().zip(&found.ci).all(|(exponent, ci)| exponent.abs() <= ci.unwrap()));
 }
 
 /// The egg crate of 0.5 J at 1.2 J, and the valley at 2 J. Known with an error of about 0.01 each: (0.059, 0, 0, -0.021, -0.176) and
@@ -143,7 +151,10 @@ fn check_attractors(egg: u64, deep: u64) {
         for ((exponent, ci), known) in found.exponents.iter().zip(&found.ci).zip(known) {
             assert_abs_diff_eq!(*exponent, known, epsilon = 0.015);
             assert!(ci.unwrap() < 0.015);
+            // What is zero has zero in its interval, and what is not has not.
+            assert_eq!(exponent.abs() <= ci.unwrap(), known == 0.0, "{exponent} ± {ci:?}");
         }
+        assert_eq!(found.verdict, MotionVerdict::Chaotic);
         assert_abs_diff_eq!(found.sum(), found.divergence_mean, epsilon = 1e-4);
     }
 }

@@ -13,6 +13,7 @@ mod same_bits;
 mod sensitivity;
 mod substeps;
 mod trains;
+mod verdicts;
 mod watched;
 mod work;
 

@@ -6,6 +6,7 @@
 mod claims;
 mod fields;
 mod places;
+mod rest;
 mod sleigh;
 mod spins;
 

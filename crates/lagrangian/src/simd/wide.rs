@@ -1,5 +1,5 @@
 use super::{Pack, Simd};
-use crate::{Scalar, array};
+use crate::{Function, Scalar, array};
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// Eight numbers for a model to be carried on: a [`Pack`], or what all eight have in common.
@@ -52,6 +52,38 @@ impl<S: Simd, const R: usize> Wide<S, R> {
             Each(x) => Each(x.each(f)),
         }
     }
+}
+
+/// A function of several numbers, without vector instructions.
+#[inline(always)]
+fn together<S: Simd, const R: usize, const K: usize>(x: &[Wide<S, R>; K], f: impl Fn(&[f64; K]) -> f64) -> Wide<S, R> {
+    let mut simd = None;
+    for x in x {
+        if let Each(pack) = x {
+            simd = Some(pack.simd());
+        }
+    }
+    let Some(simd) = simd else {
+        return Same(f(&array(
+            0.0,
+            #[inline(always)]
+            |k| x[k].common(),
+        )));
+    };
+    let packs: [Pack<S, R>; K] = array(
+        Pack::splat(simd, 0.0),
+        #[inline(always)]
+        |k| x[k].pack(simd),
+    );
+    let mut all = Pack::splat(simd, 0.0);
+    for (i, place) in all.lanes_mut().iter_mut().enumerate() {
+        *place = f(&array(
+            0.0,
+            #[inline(always)]
+            |k| packs[k].lanes()[i],
+        ));
+    }
+    Each(all)
 }
 
 impl<S: Simd, const R: usize> Add for Wide<S, R> {
@@ -199,6 +231,40 @@ impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
     #[inline(always)]
     fn recip(self) -> Self {
         Same(1.0) / self
+    }
+    #[inline(always)]
+    fn apply<F: Function>(self, f: F) -> Self {
+        self.apart(
+            #[inline(always)]
+            |x| f.value(x),
+        )
+    }
+    #[inline(always)]
+    fn where_positive(self, then: Self, otherwise: Self) -> Self {
+        match self {
+            Zero => otherwise,
+            Same(_) | Each(_) => together(
+                &[self, then, otherwise],
+                #[inline(always)]
+                |&[x, then, otherwise]| if x > 0.0 { then } else { otherwise },
+            ),
+        }
+    }
+    #[inline(always)]
+    fn length<const K: usize>(components: &[Self; K]) -> Self {
+        together(
+            components,
+            #[inline(always)]
+            |x| f64::length(x),
+        )
+    }
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        together(
+            &[self, x],
+            #[inline(always)]
+            |&[y, x]| f64::atan2(y, x),
+        )
     }
     #[inline(always)]
     fn array<const N: usize>(f: impl Fn(usize) -> Self) -> [Self; N] {

@@ -38,7 +38,7 @@ proptest! {
         // E = (K, omega)/2.
         let ball = ChaplyginBall::new(a, b, [c, d, e]).unwrap();
         let (q, v) = state(&ball, &draws);
-        let omega = spin(&Attitude::new(moving(&[q[2], q[3], q[4]], &[v[2], v[3], v[4]])));
+        let omega = spin(&Attitude::new(moving(&[q[2], q[3], q[4], q[5]], &[v[2], v[3], v[4], v[5]])));
         let k = ball.contact_momentum(&q, &v);
         close(energy(&ball, 0.0, &q, &v), 0.5 * (0..3).map(|i| k[i] * omega[i]).sum::<f64>());
 

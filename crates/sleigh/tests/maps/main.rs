@@ -6,3 +6,4 @@ mod canonical;
 mod headings;
 mod moebius;
 mod parking;
+mod sizes;

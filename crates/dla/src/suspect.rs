@@ -1,0 +1,68 @@
+use crate::{NewtonError, NotANumber, State, StepError, not_a_number};
+use lagrangian::linear::Singular;
+use lagrangian::{MotionError, ReducedError, System, from_fn};
+
+impl StepError {
+    /// Whether the step may have failed because something is not a number, or not finite.
+    fn has_lost_numbers(&self) -> bool {
+        let lost = |source: &Singular| !source.pivot.is_finite();
+        match self {
+            Self::Newton { source, .. } => match source {
+                NewtonError::Singular { source, .. } => lost(source),
+                NewtonError::Diverged { correction, .. } | NewtonError::IterationLimit { correction, .. } => {
+                    !correction.is_finite()
+                }
+                NewtonError::NotFinite { .. } => true,
+            },
+            Self::Motion(MotionError { source, .. })
+            | Self::Reduced(ReducedError::Motion(MotionError { source, .. })) => lost(source),
+            Self::Energy { defect, .. } => !defect.is_finite(),
+            // An adaptive method takes shorter and shorter steps where there are no numbers.
+            Self::NotFinite | Self::Tolerance { .. } => true,
+            _ => false,
+        }
+    }
+}
+
+/// The error of equations at a place, with the function named that is not finite there, where it is such an error.
+#[cold]
+#[inline(never)]
+pub(crate) fn suspect_at<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+    error: StepError,
+) -> StepError {
+    if !error.has_lost_numbers() {
+        return error;
+    }
+    not_a_number(system, t, q, v).map_or(error, |found| StepError::NotANumber(NotANumber { at_node: false, ..found }))
+}
+
+/// The error of a step from `state`, with the function named that is not finite at its beginning, in its middle or at its end, with the
+/// velocity at the beginning or with another one, where it is such an error.
+#[cold]
+#[inline(never)]
+pub(crate) fn suspect_along<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    (t0, h): (f64, f64),
+    state: &State<N>,
+    v: &[f64; N],
+    error: StepError,
+) -> StepError {
+    if !error.has_lost_numbers() {
+        return error;
+    }
+    if let Some(found) = not_a_number(system, t0, state.q(), state.v()) {
+        return StepError::NotANumber(found);
+    }
+    let mut error = error;
+    for v in [state.v(), v] {
+        for part in [0.0, 0.5, 1.0] {
+            let q = state.ahead(&from_fn(|i| part * h * v[i]));
+            error = suspect_at(system, t0 + part * h, &q, v, error);
+        }
+    }
+    error
+}

@@ -1,0 +1,10 @@
+//! Attitudes of bodies that turn in space: by unit quaternions at any attitude, and by angles up to where they end.
+
+#![allow(missing_docs, unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
+
+mod angles;
+mod chart;
+mod cylinder;
+mod length;
+mod rolling;
+mod tools;

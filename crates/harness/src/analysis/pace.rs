@@ -1,0 +1,81 @@
+use super::returns::{Point, Returns, size};
+use super::verdict::PARTS;
+use crate::Blocks;
+use lagrangian::from_fn;
+
+/// What the quasi-velocities do along a run: whether they change, grow, repeat.
+#[derive(Debug)]
+pub(super) struct Pace<const N: usize> {
+    /// What makes each of them the root of twice its energy.
+    weights: [f64; N],
+    /// From this step on the run is counted, and from this on repetitions are looked for.
+    counted: u64,
+    half: u64,
+    sizes: Blocks,
+    largest: f64,
+    origin: Option<[f64; N]>,
+    change: f64,
+    quickest: f64,
+    last: Option<Point<N>>,
+    returns: Option<Returns<N>>,
+}
+
+impl<const N: usize> Pace<N> {
+    pub(super) fn new(weights: [f64; N], settle: u64, steps: u64) -> Self {
+        Self {
+            weights,
+            counted: settle,
+            half: settle.saturating_add(steps / 2),
+            sizes: Blocks::default(),
+            largest: 0.0,
+            origin: None,
+            change: 0.0,
+            quickest: 0.0,
+            last: None,
+            returns: None,
+        }
+    }
+
+    /// Adds node `k`, with its quasi-velocities and their rates.
+    pub(super) fn add(&mut self, k: u64, t: f64, xi: &[f64; N], rate: &[f64; N]) {
+        let scaled = |x: &[f64; N]| from_fn(|a| self.weights[a] * x[a]);
+        let point = (t, scaled(xi), scaled(rate));
+        self.sizes.add(t, size(&point.1));
+        self.largest = self.largest.max(size(&point.1));
+        if k >= self.counted {
+            let origin = *self.origin.get_or_insert(point.1);
+            self.change = self.change.max(size::<N>(&from_fn(|a| point.1[a] - origin[a])));
+            self.quickest = self.quickest.max(size(&point.2));
+        }
+        if k >= self.half {
+            match (&mut self.returns, &self.last) {
+                (Some(returns), Some(last)) => returns.add(last, &point),
+                // Where it changes quickly, a plane across is well crossed.
+                _ if self.quickest > 0.0 && size(&point.2) >= 0.5 * self.quickest => {
+                    self.returns = Some(Returns::to(point));
+                }
+                _ => {}
+            }
+        }
+        self.last = Some(point);
+    }
+
+    /// The largest size of the whole run.
+    pub(super) fn largest(&self) -> f64 {
+        self.largest
+    }
+
+    /// How far it went from where it was when the count began.
+    pub(super) fn change(&self) -> f64 {
+        self.change
+    }
+
+    /// The largest size in each part of the run.
+    pub(super) fn maxima(&self) -> Option<[f64; PARTS]> {
+        self.sizes.maxima()
+    }
+
+    pub(super) fn period(&self) -> Option<f64> {
+        self.returns.as_ref().and_then(Returns::period)
+    }
+}

@@ -1,0 +1,113 @@
+//! The length of a vector and the angle of one in the plane, with derivatives that are finite where the vector vanishes.
+//!
+//! By the chain rule the derivative of `sqrt(x^2 + y^2)` at zero is infinity times zero. Both functions are written here as what
+//! they are near a vector that is not zero, in the direction `u` of it and across: `|x| = p + |x - u p|^2/(2 p)` and
+//! `angle + c/p`, to second order, with `p` the part along `u` and `c` that across. No square of a small number is divided by one.
+
+use crate::{Scalar, array};
+
+/// The length of a vector of numbers, without overflow or underflow in its squares.
+#[inline(always)]
+pub(crate) fn length<const K: usize>(x: &[f64; K]) -> f64 {
+    /// Squares that add up to less may have lost digits: `2^53` times the smallest normal number.
+    const LEAST: f64 = f64::MIN_POSITIVE / f64::EPSILON * 2.0;
+    let sum = sum_of_squares(x, 1.0);
+    if (LEAST..=f64::MAX).contains(&sum) { sum.sqrt() } else { scaled(x, sum) }
+}
+
+#[inline(always)]
+fn sum_of_squares<const K: usize>(x: &[f64; K], scale: f64) -> f64 {
+    let mut sum = 0.0;
+    for x in x {
+        let part = x / scale;
+        sum += part * part;
+    }
+    sum
+}
+
+/// The same where the sum of the squares is not good: in units of the power of two below the largest component.
+#[cold]
+#[inline(never)]
+fn scaled<const K: usize>(x: &[f64; K], sum: f64) -> f64 {
+    const EXPONENT: u64 = f64::INFINITY.to_bits();
+    let largest = x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    if sum.is_nan() || largest == 0.0 || largest.is_infinite() {
+        return sum;
+    }
+    let scale = f64::from_bits(largest.to_bits() & EXPONENT).max(f64::MIN_POSITIVE);
+    sum_of_squares(x, scale).sqrt() * scale
+}
+
+/// A number with derivatives, over the numbers that it is made of.
+pub(crate) trait Derived: Scalar {
+    /// What value and derivatives are.
+    type Base: Scalar;
+    /// Whether it has second derivatives.
+    const SECOND: bool;
+    /// A number without derivatives.
+    fn lifted(value: Self::Base) -> Self;
+    /// The value.
+    fn value(self) -> Self::Base;
+    /// The same derivatives with another value.
+    fn at(self, value: Self::Base) -> Self;
+    /// Value and derivatives times a factor that has none.
+    fn times(self, factor: Self::Base) -> Self;
+}
+
+/// The length of a vector; where it vanishes all derivatives are zero.
+#[inline(always)]
+pub(crate) fn derived_length<D: Derived, const K: usize>(x: &[D; K]) -> D {
+    let zero = D::Base::zero();
+    let values: [D::Base; K] = array(
+        zero,
+        #[inline(always)]
+        |k| x[k].value(),
+    );
+    let r = D::Base::length(&values);
+    let direction: [D::Base; K] = array(
+        zero,
+        #[inline(always)]
+        |k| r.where_positive(values[k] / r, zero),
+    );
+    let mut along = D::lifted(zero);
+    for k in 0..K {
+        along += x[k].times(direction[k]);
+    }
+    if !D::SECOND {
+        return along.at(r);
+    }
+    // Below the smallest normal number 1/r may be infinite: there as at zero.
+    let half = (r - f64::MIN_POSITIVE).where_positive(r.recip() * 0.5, zero);
+    let mut squares = D::lifted(zero);
+    for k in 0..K {
+        let across = (x[k] - along.times(direction[k])).at(zero);
+        squares += across * across;
+    }
+    (along + squares.times(half)).at(r)
+}
+
+/// The angle of the vector `(x, y)`; where it vanishes all derivatives are zero.
+#[inline(always)]
+pub(crate) fn derived_angle<D: Derived>(y: D, x: D) -> D {
+    let (x0, y0) = (x.value(), y.value());
+    let (r, angle) = (D::Base::length(&[x0, y0]), y0.atan2(x0));
+    let (cos, sin) = (x0 / r, y0 / r);
+    let across = (y.times(cos) - x.times(sin)).at(D::Base::zero());
+    let along = (x.times(cos) + y.times(sin)).at(r);
+    D::lifted(r).where_positive((across / along).at(angle), D::lifted(angle))
+}
+
+/// The functions of a number with derivatives that are not of one number alone.
+macro_rules! derived_functions {
+    () => {
+        #[inline(always)]
+        fn length<const K: usize>(components: &[Self; K]) -> Self {
+            crate::length::derived_length(components)
+        }
+        #[inline(always)]
+        fn atan2(self, x: Self) -> Self {
+            crate::length::derived_angle(self, x)
+        }
+    };
+}
+pub(crate) use derived_functions;
