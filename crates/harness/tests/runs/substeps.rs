@@ -30,16 +30,16 @@ fn steps_that_are_too_long_are_made_in_parts() {
         // Each part is wrong by a ten-thousandth of the velocity at most.
         let bar = 1e-4 * substeps.parts as f64;
         assert!((record.q[1] - right.q[1]).abs() < bar && (record.q[0] - right.q[0]).abs() < 10.0 * bar, "{name}");
-        assert!(record.energy.max_error < 0.02 * right.energy.initial, "{name}: {:e}", record.energy.max_error);
-        let slips = !matches!(name, "implicit-midpoint");
-        assert!(record.constraint_max < if slips { 1e-14 } else { 1e-3 }, "{name}: {:e}", record.constraint_max);
+        assert!(record.energy.max_error < 0.05 * right.energy.initial, "{name}: {:e}", record.energy.max_error);
+        let held = name != "implicit-midpoint";
+        assert!(record.constraint_max < if held { 1e-14 } else { 1e-2 }, "{name}: {:e}", record.constraint_max);
     }
 }
 
 /// Steps that resolve the motion are those of a run that may divide none, to the last bit.
 #[test]
 fn where_nothing_is_divided_no_bit_is_changed() {
-    let (system, request) = (Particle { basis: true, ..Particle::of(1.0) }, request(200, 0.02));
+    let (system, request) = (Particle { basis: true, ..Particle::of(1.0) }, request(200, 0.01));
     for info in METHODS {
         let plain = run(&system, &Method::named(info.name, Some(0.3)).unwrap(), &request, &mut ());
         let record = run(&system, &in_parts(info.name), &request, &mut ());
