@@ -193,7 +193,7 @@ impl<Sys, const N: usize> Step<'_, Sys, N> {
             let settled = settled.map_err(|source| StepError::Newton { stage: Stage::Collocation, source })?;
             if let Some(iterations) = settled {
                 let work = h * rule.weighted(&power);
-                self.check(&ends, work, &averages.steepest)?;
+                self.check(&ends, work, &averages.steepest, &path)?;
                 return Ok(self.end(&path, &points, work, iterations));
             }
         }
@@ -217,7 +217,13 @@ impl<Sys, const N: usize> Step<'_, Sys, N> {
 
     /// That the energy has changed by the work of the forces.
     #[inline(always)]
-    fn check<const M: usize>(&self, ends: &Ends, work: f64, steepest: &[f64; N]) -> Result<(), StepError>
+    fn check<const M: usize>(
+        &self,
+        ends: &Ends,
+        work: f64,
+        steepest: &[f64; N],
+        path: &Path<N>,
+    ) -> Result<(), StepError>
     where
         Sys: System<N, M>,
     {
@@ -225,18 +231,26 @@ impl<Sys, const N: usize> Step<'_, Sys, N> {
         let size = ends.rounded_size(self.start.state.q(), steepest);
         // An energy among the last numbers is rounded by as much as the least normal one is.
         let bound = (Self::ROUNDINGS * f64::EPSILON * size).max(f64::MIN_POSITIVE);
-        if defect.abs() <= bound { Ok(()) } else { self.check_at_rest(defect, bound) }
+        if defect.abs() <= bound { Ok(()) } else { self.check_at_rest((defect, bound), steepest, path) }
     }
 
-    /// The same where the motion is as small as the rounding of the place: the energy then changes by the second order of that, the
-    /// rounding of the forces times the way that it is off.
+    /// The same where the energy is small because its terms cancel, as on a way across a slope; or where the motion is as small as the
+    /// rounding of the place, by whose second order the energy then changes: the rounding of the forces times the way that it is off.
     #[cold]
     #[inline(never)]
-    fn check_at_rest<const M: usize>(&self, defect: f64, bound: f64) -> Result<(), StepError>
+    fn check_at_rest<const M: usize>(
+        &self,
+        (defect, bound): (f64, f64),
+        steepest: &[f64; N],
+        path: &Path<N>,
+    ) -> Result<(), StepError>
     where
         Sys: System<N, M>,
     {
-        let bound = bound + Self::ROUNDINGS * self.start.energy_rounding(self.system, self.t0, self.h);
+        let (way, _) = path.increments(self.rule, self.h);
+        let along: f64 = (0..N).map(|i| steepest[i] * way[i].abs()).sum();
+        let noise = f64::EPSILON * along + self.start.energy_rounding(self.system, self.t0, self.h);
+        let bound = bound + Self::ROUNDINGS * noise;
         if defect.abs() <= bound { Ok(()) } else { Err(StepError::Energy { defect, bound }) }
     }
 }

@@ -131,8 +131,13 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for D
             return Err(USE.refusal::<N, M>());
         }
         let xi0 = state.quasi_velocities(system, t)?;
-        self.cross(&Slopes::new(system, t, state), h, xi0, |_, _| ControlFlow::Continue(()))?;
-        moved(system, t + h, self.solver.y(), state)
+        match self.cross(&Slopes::new(system, t, state), h, xi0, |_, _| ControlFlow::Continue(())) {
+            Ok(_) => moved(system, t + h, self.solver.y(), state),
+            Err(error) => match at_rest::<Sys, N, M>(system, (t, h), state, &xi0) {
+                Some(point) => moved(system, t + h, &point, state),
+                None => Err(error),
+            },
+        }
     }
 
     fn memory(&self) -> Vec<f64> {
@@ -167,6 +172,24 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for D
         memory.extend(method.proposed);
         failure.map_or(Ok(()), Err)
     }
+}
+
+/// Where an interval leads in which nothing moves by as much as a number whose square is one: the library's measure of errors is a sum of
+/// squares, and refuses every step of a motion that has come so near to rest.
+#[cold]
+fn at_rest<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    (t, h): (f64, f64),
+    state: &State<N>,
+    xi: &[f64; N],
+) -> Option<ReducedPoint<N, M>> {
+    const LEAST: f64 = 1e-130;
+    let slope = reduced_slope(system, t, state.q(), xi).ok()?;
+    let rests = slope.velocity.iter().chain(&slope.acceleration).all(|x| (h * x).abs() < LEAST);
+    rests.then(|| ReducedPoint {
+        d: slope.velocity.map(|v| h * v),
+        xi: lagrangian::from_fn(|i| xi[i] + h * slope.acceleration[i]),
+    })
 }
 
 /// Moves a state to where an interval has led, at the time `t` (s).
