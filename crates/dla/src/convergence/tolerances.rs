@@ -6,6 +6,7 @@
 //! |---|---|---|---|
 //! | [`SETTLED`] | `4 eps` | a correction below it changes the last digits of its unknown only | Newton's method, chord method, projection |
 //! | [`UNBIASED`] | `eps/64` | what a linear convergence leaves out has one sign in every step, and adds up over 10^6 of them | fixed points, assemblies |
+//! | [`HALF_A_UNIT`] | `eps/2` | as much as the rounding of the result | the implicit midpoint baseline |
 //! | [`SLIGHT`] | `64 eps` | momenta `M v` are rounded to `u M v` in some tens of operations | all: cheap, asked first |
 //! | [`ROUNDINGS`] | `8` | residual over the running error bound of its terms; Newton's method attains a small multiple of one (Tisseur 2001) | all: asked where corrections stall |
 //! | [`OF_CORRECTION`] | `64` | the same, with the rounding of linear equations of some tens of unknowns | Lobatto stages, assemblies, refined corrections |
@@ -32,6 +33,9 @@ pub const SETTLED: f64 = 4.0 * f64::EPSILON;
 
 /// Relative change that a linear convergence may still leave.
 pub const UNBIASED: f64 = f64::EPSILON / 64.0;
+
+/// Relative change that a linear convergence may leave in a method that no bias is asked of: half a unit in the last place.
+pub const HALF_A_UNIT: f64 = f64::EPSILON / 2.0;
 
 /// Corrections below this part of the largest unknown are rounding where they stall.
 pub const SLIGHT: f64 = 64.0 * f64::EPSILON;

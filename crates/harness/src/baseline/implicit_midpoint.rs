@@ -1,5 +1,6 @@
 use super::shifted;
 use dla::convergence::FixedPoint;
+use dla::convergence::tolerances::HALF_A_UNIT;
 use dla::{OneStep, StackUse, Stage, State, StepError, StepReport};
 use lagrangian::{MotionRounding, System};
 
@@ -40,7 +41,7 @@ impl ImplicitMidpoint {
             system.motion(t, q, v).map(|motion| motion.acceleration).map_err(StepError::Motion)
         };
         let mut a = motion(t0, q0, v0)?;
-        let mut convergence = FixedPoint::<1, N>::new(self.max_iterations);
+        let mut convergence = FixedPoint::<1, N>::new(self.max_iterations).to(HALF_A_UNIT);
         loop {
             let v = shifted(v0, 0.5 * h, &a);
             let next = motion(t0 + 0.5 * h, &shifted(q0, 0.5 * h, &v), &v)?;
