@@ -71,7 +71,7 @@ impl<const S: usize> Lobatto<S> {
         Self { tables: Tables::new(), newton: Newton::default() }
     }
 
-    /// The stages that a search from `start` leads to, and in how many iterations; and whether they are those near the start: the
+    /// The stages that a search from `v` leads to, and in how many iterations; and whether they are those near the start: the
     /// search contracted, and began within `part` of its end, or where the two differ by the rounding of the place or of the
     /// equations.
     #[inline(always)]
@@ -79,13 +79,13 @@ impl<const S: usize> Lobatto<S> {
         &self,
         part: f64,
         stages: &mut Stages<'_, Sys, N, M, S>,
-        start: &[[f64; N]; S],
         v: &mut [[f64; N]; S],
     ) -> Result<(u32, bool), NewtonError> {
         let begun = *stages;
         let Found { iterations, first, certain } = self.newton.search_blocks(stages, v)?;
-        let near =
-            first <= part * largest(v.as_flattened()) || first <= begun.near() || begun.missed(start) <= NEAR_ROUNDINGS;
+        let near = first <= part * largest(v.as_flattened())
+            || first <= begun.near()
+            || first <= NEAR_ROUNDINGS * largest(&begun.velocity_rounding());
         Ok((iterations, certain && near))
     }
 
@@ -99,8 +99,8 @@ impl<const S: usize> Lobatto<S> {
         v0: [f64; N],
     ) -> Option<[[f64; N]; S]> {
         branch::followed(&[v0; S], 0.5 * branch::NEAR / turn, |part, guess| {
-            let (mut stages, start) = (Stages { h: part * whole.h, ..*whole }, *guess);
-            let near = self.found_near(0.1, &mut stages, &start, guess).ok()?.1;
+            let mut stages = Stages { h: part * whole.h, ..*whole };
+            let near = self.found_near(0.1, &mut stages, guess).ok()?.1;
             (near && stages.turn(guess) < PI).then_some(())
         })
     }
@@ -127,9 +127,9 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
         let mut impulses = [impulse; S];
         impulses[S - 1] = [0.0; M];
         let first = Stages { tables: &self.tables, system, t0, h, start: state, p0, impulses, before: impulses };
-        let (mut stages, begun) = (first, v);
+        let mut stages = first;
         let (mut iterations, near) = self
-            .found_near(0.3, &mut stages, &begun, &mut v)
+            .found_near(0.3, &mut stages, &mut v)
             .map_err(|source| named_along(system, (t0, h), *state, v0, source))?;
         let turn = stages.turn(&v);
         if !(near && turn <= branch::NEAR) {

@@ -39,12 +39,13 @@ pub struct Linearised<const N: usize, const M: usize> {
     pub a: [[f64; N]; M],
 }
 
-/// `p`, `w` and `g` of [`Linearised`], and the functions of constraints on positions, with bounds on their rounding.
+/// `p`, `w`, `g` and `a` of [`Linearised`], and the functions of constraints on positions, with bounds on their rounding.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Terms<const N: usize, const M: usize> {
     pub(super) p: [Rounded; N],
     pub(super) w: [Rounded; N],
     pub(super) g: [Rounded; M],
+    pub(super) a: [[f64; N]; M],
     pub(super) positions: [Option<Rounded>; M],
 }
 
@@ -77,7 +78,8 @@ impl<const N: usize, const M: usize> Point<N, M> {
             (0..M).fold(pushed, |sum, k| sum + a[k][i] * self.impulse[k])
         });
         let g = from_fn(|k| (0..N).fold(b[k], |sum, i| sum + a[k][i] * v[i]));
-        Terms { p: momentum(system, t, &q, &v), w, g, positions: system.holonomic(t, &q).unwrap_or([None; M]) }
+        let positions = system.holonomic(t, &q).unwrap_or([None; M]);
+        Terms { p: momentum(system, t, &q, &v), w, g, a: a.map(|row| row.map(|x| x.value)), positions }
     }
 
     /// All that the equations need here, with its derivatives.
