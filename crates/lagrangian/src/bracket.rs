@@ -1,5 +1,5 @@
 use crate::linear::{Lu, Singular};
-use crate::second::{WHOLE, seed};
+use crate::second::{AT_ONCE, seed};
 use crate::{AdmissibleBasis, Dual, Scalar, System, from_fn, mass_matrix};
 
 /// A system without explicit time and with `b = 0`, at one point of the dual `D*` of its distribution.
@@ -35,7 +35,7 @@ impl<S: Scalar, const N: usize, const M: usize> Bracket<S, N, M> {
     #[must_use]
     #[inline(always)]
     pub fn at<Sys: System<N, M>>(system: &Sys, t: S, q: &[S; N], xi: &[S; N]) -> Option<Self> {
-        let (basis, velocity, l, along) = match const { N <= WHOLE } {
+        let (basis, velocity, l, along) = match const { N <= AT_ONCE } {
             true => Self::with_slopes(system, t, q, xi)?,
             false => Self::with_slopes_in_turn(system, t, q, xi)?,
         };
@@ -169,7 +169,7 @@ where
     Sys: System<N, M>,
     S: Scalar,
 {
-    if const { N > WHOLE } {
+    if const { N > AT_ONCE } {
         return energy_slope_in_turn(system, t, q, xi);
     }
     let place: [Dual<S, N>; N] = Dual::variables(q);

@@ -1,5 +1,5 @@
 use crate::linear::Lu;
-use crate::second::{BLOCK, WHOLE, seed};
+use crate::second::{AT_ONCE, BLOCK, seed};
 use crate::{
     Constraint, Dependence, Dual, RowSpace, Rows, Scalar, System, from_fn, mass_matrix, position_rows, reaction_rows,
 };
@@ -117,7 +117,7 @@ pub fn rank_is_constant<Sys: System<N, M>, const N: usize, const M: usize>(
     let (fixed_q, fixed_v): ([Dual<f64, 1>; N], _) = (q.map(Dual::fixed), v.map(Dual::fixed));
     let in_t = reaction_rows(system, Dual { re: t, eps: [1.0] }, &fixed_q, &fixed_v);
     stay_within(space, &in_t, 1)
-        && match const { N <= WHOLE } {
+        && match const { N <= AT_ONCE } {
             true => rank_is_constant_along::<_, N, M, N>(system, t, (q, v), space, 0),
             false => (0..N)
                 .step_by(BLOCK)
@@ -232,7 +232,7 @@ struct InPlace<const N: usize, const M: usize> {
 impl<const N: usize, const M: usize> InPlace<N, M> {
     fn at<Sys: System<N, M>>(system: &Sys, t: f64, q: &[f64; N]) -> Self {
         let mut all = Self { a: [[0.0; N]; M], b: [0.0; M], a_q: vec![[[0.0; N]; N]; M], b_q: [[0.0; N]; M] };
-        match const { N <= WHOLE } {
+        match const { N <= AT_ONCE } {
             true => all.add::<Sys, N>(system, t, q, 0),
             false => (0..N).step_by(BLOCK).for_each(|from| all.add::<Sys, BLOCK>(system, t, q, from)),
         }

@@ -1,4 +1,4 @@
-use crate::second::{BLOCK, WHOLE, seed};
+use crate::second::{AT_ONCE, BLOCK, seed};
 use crate::{Dual, System, from_fn};
 
 /// The constraint `g = A v + b` at a state, and its derivatives.
@@ -25,7 +25,7 @@ impl<const N: usize, const M: usize> ConstraintSlopes<N, M> {
         (w, w_q): (&mut [f64; N], &mut [[f64; N]; N]),
     ) -> Self {
         let mut slopes = Self { a: [[0.0; N]; M], g: [0.0; M], g_q: [[0.0; N]; M] };
-        match const { N <= WHOLE } {
+        match const { N <= AT_ONCE } {
             true => slopes.add::<Sys, N>(system, t, (q, v), impulse, (w, w_q), 0),
             false => slopes.add_by_blocks(system, t, (q, v), impulse, (w, w_q)),
         }

@@ -1,4 +1,4 @@
-use crate::second::{BLOCK, WHOLE, seed};
+use crate::second::{AT_ONCE, BLOCK, seed};
 use crate::{HyperDual, System, from_fn};
 
 /// `M` functions of `N` variables, some of which there are not; all second derivatives of each are wanted.
@@ -34,7 +34,7 @@ pub fn add_position_curvature<Sys: System<N, M>, const N: usize, const M: usize>
 /// Of few variables in one evaluation, of many in blocks, as [`second_derivatives`](crate::second_derivatives).
 #[inline(always)]
 fn add<const N: usize, const M: usize>(of: &impl Curved<N, M>, factors: &[f64; M], matrix: &mut [[f64; N]; N]) {
-    match const { N <= WHOLE } {
+    match const { N <= AT_ONCE } {
         true => add_block::<_, N, M, N>(of, factors, matrix, (0, 0)),
         false => add_by_blocks(of, factors, matrix),
     }

@@ -1,7 +1,7 @@
 use crate::basis::linear_basis;
 use crate::ends::{AtNodes, OfPair};
 use crate::gradient::by_places;
-use crate::second::{BLOCK, WHOLE, second_derivatives};
+use crate::second::{AT_ONCE, BLOCK, second_derivatives};
 use crate::system::with_nonlinear;
 use crate::{AdmissibleBasis, Dual, Gradient, HyperDual, Rule, Scalar, System, constraint_residual, from_fn};
 
@@ -142,7 +142,7 @@ impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteLagrang
     /// of derivatives is made on the way there.
     #[inline]
     fn derivatives<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> Derivatives<S, N> {
-        if const { N > WHOLE } {
+        if const { N > AT_ONCE } {
             let l = second_derivatives(&AtNodes { rule: self, system, t0, h, q0, v });
             return Derivatives { value: h * l.re, d1: l.e1, d2: l.e2, d1d2: l.e12.map(|row| row.map(|x| x / h)) };
         }
@@ -303,7 +303,7 @@ fn residual_along<Sys: System<N, M>, const N: usize, const M: usize>(
     v: &[f64; N],
     part: f64,
 ) -> [Dual<f64, N>; M] {
-    let affine = match const { N <= WHOLE } {
+    let affine = match const { N <= AT_ONCE } {
         true => by_places!(affine_along::<Sys, N, M>(system, t, q, v, part)),
         false => affine_by_blocks(system, t, q, v, part),
     };

@@ -105,7 +105,7 @@ pub use rows::Rows;
 pub use rule::{Alpha, AnyRule, Midpoint, NotAWeight, Rule, RuleNode, Symmetrised, Trapezoid};
 pub use saddle::Saddle;
 pub use scalar::Scalar;
-pub use second::{TwiceDifferentiable, second_derivatives, seed};
+pub use second::{AT_ONCE, TwiceDifferentiable, second_derivatives, seed};
 pub use sincos::sin_cos_wrapped;
 pub use slope::configuration_slope;
 pub use system::{Constraint, Push, System, constraint_residual};

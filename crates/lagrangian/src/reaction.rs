@@ -1,4 +1,4 @@
-use crate::second::{BLOCK, WHOLE, seed};
+use crate::second::{AT_ONCE, BLOCK, seed};
 use crate::{Constraint, Dual, Scalar, System, from_fn};
 
 /// The rows along which the constraints act on the system at a velocity: `A(q, t)`, and `d phi / dv` where a constraint is
@@ -29,7 +29,7 @@ where
     S: Scalar,
 {
     let (mut a, mut b) = ([[S::zero(); N]; M], [S::zero(); M]);
-    match const { N <= WHOLE } {
+    match const { N <= AT_ONCE } {
         true => add_gradients::<Sys, S, N, M, N>(system, t, q, 0, &mut a),
         false => {
             for from in (0..N).step_by(BLOCK) {

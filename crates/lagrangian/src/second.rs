@@ -4,7 +4,7 @@ use crate::{HyperDual, Scalar, from_fn};
 ///
 /// A number that carries all second derivatives has `(N + 1)^2` places, and a function of `N` variables has `N` such numbers: at
 /// 60 variables 1.8 MB, which is a thread's whole stack.
-pub(crate) const WHOLE: usize = 12;
+pub const AT_ONCE: usize = 12;
 
 /// Of functions of more variables the derivatives are taken in so many at a time.
 pub(crate) const BLOCK: usize = 8;
@@ -33,7 +33,7 @@ pub fn seed<S: Scalar, const P: usize>(x: S, i: usize, from: usize) -> [S; P] {
 #[must_use]
 #[inline(always)]
 pub fn second_derivatives<S: Scalar, const N: usize>(f: &impl TwiceDifferentiable<S, N>) -> HyperDual<S, N, N> {
-    match const { N <= WHOLE } {
+    match const { N <= AT_ONCE } {
         true => f.at::<N>(0, 0),
         false => by_blocks(f),
     }

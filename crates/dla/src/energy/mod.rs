@@ -14,7 +14,7 @@ use crate::positions::{affine_only, velocities_only};
 use crate::{OneStep, StackUse, Stage, State, StepError, StepReport};
 use ends::Ends;
 use lagrangian::linear::larger;
-use lagrangian::{Bracket, Lanes, Scalar, System, Twofold, from_fn, vectorized};
+use lagrangian::{AT_ONCE, Bracket, Lanes, Scalar, System, Twofold, from_fn, vectorized};
 use path::{Path, Points};
 use rule::Rule;
 use start::Start;
@@ -97,9 +97,9 @@ impl<Sys: System<N, M>, const S: usize, const N: usize, const M: usize> OneStep<
     }
 }
 
-/// The basis of admissible velocities has derivatives in all coordinates, at eight places at once.
+/// Eight places at once: of few coordinates a basis with its derivatives in all, of many with those along one after another.
 const fn stack<const N: usize>() -> StackUse {
-    StackUse { squares: 76 * (N + 1), rows: 24 }
+    StackUse { squares: if N <= AT_ONCE { 82 * (N + 1) } else { 440 }, rows: 24 }
 }
 
 const NO_BASIS: StepError = StepError::Unsupported {

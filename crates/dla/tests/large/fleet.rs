@@ -85,7 +85,7 @@ macro_rules! systems {
         }
     )* };
 }
-systems!(30 10, 39 13, 60 20);
+systems!(18 6, 30 10, 39 13, 60 20);
 
 /// What is known of a motion: where it begins and where it is.
 pub trait Known<const N: usize, const M: usize>: System<N, M> + Copy + Send + 'static {

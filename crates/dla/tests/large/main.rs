@@ -105,9 +105,11 @@ fn by_lobatto_stages() {
     is_too_large("five of 60", on_stack::<Fleet<60, true>, _, 60, 20>(STACK, Lobatto::<5>::new), (60, 20));
 }
 
-/// A basis with its derivatives, at eight places at once, grows with the cube.
+/// A basis at eight places at once takes the most.
 #[test]
 fn by_methods_that_keep_the_energy() {
+    ends("order 2 of 18", on_stack::<Fleet<18, true>, _, 18, 6>(STACK, Energy::<1>::default), SECOND);
+    ends("order 8 of 18", on_stack::<Fleet<18, true>, _, 18, 6>(STACK, Energy::<4>::default), ROUNDING);
     is_too_large("order 2", on_stack::<Fleet<30, true>, _, 30, 10>(STACK, Energy::<1>::default), (30, 10));
     is_too_large("order 8", on_stack::<Fleet<60, true>, _, 60, 20>(STACK, Energy::<4>::default), (60, 20));
 }
