@@ -57,7 +57,7 @@ fn every_method_comes_to_rest_in_a_well() {
     let (folder, mut settled) = (Folder::new(), 0);
     for (k, well) in WELLS.iter().enumerate() {
         let file = format!("well-{k}.toml");
-        folder.write(&file, &well.scene());
+        folder.write(&file, well.scene());
         for method in program::methods() {
             let run = folder.json(&format!("run {file} --method {method} --json"));
             let number = |key: &str| run["final"][key].as_f64().unwrap_or_else(|| panic!("{file}, {method}: {run}"));

@@ -57,6 +57,12 @@ impl System<3, 2> for TwoRows {
     }
 }
 
+/// What is looked at in a state.
+type Look<'a, const N: usize> = &'a dyn Fn(&State<N>) -> [f64; VALUES];
+
+/// How far a place is from where its coordinates end; a thousandth and less is too near.
+type Regularity<'a, const N: usize> = &'a dyn Fn(&[f64; N]) -> f64;
+
 /// A run of one of [`METHODS`], with place and velocity of each node; nothing of any other.
 pub(super) fn record<Sys, const M: usize>(
     lab: &Lab,
@@ -76,7 +82,7 @@ pub(super) fn record_in_chart<Sys, const M: usize>(
     system: &Sys,
     start: ([f64; 3], [f64; 3]),
     schedule: &Schedule,
-    regularity: &dyn Fn(&[f64; 3]) -> f64,
+    regularity: Regularity<'_, 3>,
 ) -> Recorded
 where
     Sys: System<3, M>,
@@ -94,7 +100,7 @@ pub(super) fn record_seen<Sys, const N: usize, const M: usize>(
     system: &Sys,
     (q, v): ([f64; N], [f64; N]),
     schedule: &Schedule,
-    (look, regularity): (&dyn Fn(&State<N>) -> [f64; VALUES], &dyn Fn(&[f64; N]) -> f64),
+    (look, regularity): (Look<'_, N>, Regularity<'_, N>),
 ) -> Recorded
 where
     Sys: System<N, M>,
@@ -116,7 +122,7 @@ where
 /// Not inlined: what a step takes of the stack would be taken for every method at once.
 #[inline(never)]
 fn made<Sys: System<N, M>, const N: usize, const M: usize>(
-    (system, schedule, regularity): (&Sys, &Schedule, &dyn Fn(&[f64; N]) -> f64),
+    (system, schedule, regularity): (&Sys, &Schedule, Regularity<'_, N>),
     method: impl OneStep<Sys, N, M>,
     state: &mut State<N>,
     recorder: &mut Recorder<'_, N>,
