@@ -203,8 +203,8 @@ mod tests {
         let root = Rounded::exact(0.0).sqrt();
         assert_eq!((root.value, root.size, root.roundings()), (0.0, 0.0, 0.0));
         assert!(Rounded::exact(1e-320).roundings() < 1.0);
-        assert_eq!(Rounded { value: f64::NAN, size: 1.0 }.roundings(), f64::INFINITY);
-        assert_eq!(Rounded { value: 1.0, size: f64::INFINITY }.roundings(), f64::INFINITY);
+        assert!(Rounded { value: f64::NAN, size: 1.0 }.roundings().is_infinite());
+        assert!(Rounded { value: 1.0, size: f64::INFINITY }.roundings().is_infinite());
     }
 
     /// A function with most of the operations.

@@ -1,6 +1,6 @@
 //! Systems of more coordinates than one number carries derivatives in: blocks give what one evaluation would.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 mod common;
 
 use approx::assert_relative_eq;

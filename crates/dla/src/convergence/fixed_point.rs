@@ -1,4 +1,4 @@
-use super::tolerances::{CYCLES, GROWTH_OF_FIXED_POINT, QUIET, SLIGHT, STALLS, UNBIASED};
+use super::tolerances::{CYCLES, GROWTH_OF_FIXED_POINT, QUIET, SLIGHT_OF_FIXED_POINT, STALLS, UNBIASED};
 use crate::{History, NewtonError};
 
 /// The test of a fixed-point iteration: every component by itself, in `G` groups of `N` components with one unit each.
@@ -82,14 +82,14 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
                     return Err(NewtonError::NotFinite { iteration, history: self.history });
                 }
                 let known = self.noise.as_ref().map_or(0.0, |noise| CYCLES * noise[g][i]);
-                let rounding = least.max(SLIGHT * all).max(known).max(f64::MIN_POSITIVE);
+                let rounding = least.max(SLIGHT_OF_FIXED_POINT * all).max(known).max(f64::MIN_POSITIVE);
                 let (ends, stalls) = component.settles(change, size, rounding, self.left);
                 settled &= ends;
                 asks |= stalls && !ends && change > rounding;
                 if change > rounding {
-                    worst = worst.max(change / all);
+                    worst = worst.max(change);
                 }
-                noisiest = noisiest.max(rounding / all);
+                noisiest = noisiest.max(rounding);
             }
         }
         // What goes round among roundings need not stall in every component.
@@ -97,17 +97,18 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
         if settled || self.quiet >= QUIET {
             return Ok(Some(iteration));
         }
-        self.history.push(worst);
+        self.history.push(worst / all);
         let history = self.history;
         // Changes that oscillate may grow for a while, up to this.
         let grown = GROWTH_OF_FIXED_POINT * self.least.max(noisiest);
         if self.noise.is_none() && (asks || worst > grown) {
             self.noise = Some(noise());
         } else if worst > grown {
-            return Err(NewtonError::Diverged { iteration, correction: worst, before: self.least, history });
+            let (correction, before) = (worst / all, self.least / all);
+            return Err(NewtonError::Diverged { iteration, correction, before, history });
         }
         if iteration >= self.limit {
-            return Err(NewtonError::IterationLimit { iterations: iteration, correction: worst, history });
+            return Err(NewtonError::IterationLimit { iterations: iteration, correction: worst / all, history });
         }
         self.least = self.least.min(worst);
         Ok(None)

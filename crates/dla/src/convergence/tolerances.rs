@@ -8,6 +8,7 @@
 //! | [`UNBIASED`] | `eps/64` | what a linear convergence leaves out has one sign in every step, and adds up over 10^6 of them | fixed points, assemblies |
 //! | [`HALF_A_UNIT`] | `eps/2` | as much as the rounding of the result | the implicit midpoint baseline |
 //! | [`SLIGHT`] | `64 eps` | momenta `M v` are rounded to `u M v` in some tens of operations | all: cheap, asked first |
+//! | [`SLIGHT_OF_FIXED_POINT`] | `1024 eps` | the same, of all stages together, twice without shrinking | fixed points |
 //! | [`ROUNDINGS`] | `8` | residual over the running error bound of its terms; Newton's method attains a small multiple of one (Tisseur 2001) | all: asked where corrections stall |
 //! | [`OF_CORRECTION`] | `64` | the same, with the rounding of linear equations of some tens of unknowns | Lobatto stages, assemblies, refined corrections |
 //! | [`CYCLES`] | `64` | a fixed point that contracts by `L` goes round in `1/(1 - L)` roundings of its stages | fixed points |
@@ -39,6 +40,9 @@ pub const HALF_A_UNIT: f64 = f64::EPSILON / 2.0;
 
 /// Corrections below this part of the largest unknown are rounding where they stall.
 pub const SLIGHT: f64 = 64.0 * f64::EPSILON;
+
+/// The same of the changes of a fixed-point iteration, which go round in the rounding of all stages together.
+pub const SLIGHT_OF_FIXED_POINT: f64 = 1024.0 * f64::EPSILON;
 
 /// A residual of so many roundings of its terms is rounding.
 pub const ROUNDINGS: f64 = 8.0;
