@@ -121,7 +121,9 @@ impl Visitor for Run<'_> {
         let RunArguments { checkpoint, resume, tolerance, .. } = self.arguments;
         let mut schedule = inspect::schedule(self.scene);
         if let Some(tolerance) = tolerance {
-            let found = recommend(system, &self.method, (q, v), self.scene.run.duration, *tolerance);
+            // Of the method itself: parts would make any step look good enough.
+            let method = self.method.undivided();
+            let found = recommend(system, &method, (q, v), self.scene.run.duration, *tolerance);
             let found = found.map_err(|error| CliError::Tolerance(Box::new(error)))?;
             schedule = Schedule { step: found.step, steps: found.steps, ..schedule };
             if self.out.is_some() {

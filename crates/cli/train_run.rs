@@ -33,7 +33,9 @@ pub(crate) fn run(
     let mut schedule = inspect::schedule(scene);
     if let Some(tolerance) = tolerance {
         let (assembly, duration) = (&train.assembly, scene.run.duration);
-        let found = recommend_assembly(assembly, method, &start, duration, *tolerance, |state| ends(&train, state));
+        // Of the method itself: parts would make any step look good enough.
+        let whole = method.undivided();
+        let found = recommend_assembly(assembly, &whole, &start, duration, *tolerance, |state| ends(&train, state));
         let found = found.map_err(|error| CliError::Tolerance(Box::new(error)))?;
         schedule = Schedule { step: found.step, steps: found.steps, ..schedule };
     }

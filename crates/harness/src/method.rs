@@ -340,6 +340,12 @@ impl Method {
         Ok(Self { info, alpha, tolerance: Self::TOLERANCE, substeps: None })
     }
 
+    /// The same method, none of whose steps is divided.
+    #[must_use]
+    pub fn undivided(self) -> Self {
+        Self { substeps: None, ..self }
+    }
+
     /// The same method with another tolerance, which only `dop853` reads.
     ///
     /// # Errors
