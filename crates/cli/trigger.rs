@@ -168,10 +168,9 @@ impl Events {
 
 /// That crossings may have been missed, and why.
 pub(crate) fn in_doubt(Close { count, spacing }: &Close) -> String {
-    let spacing = crate::table::number(*spacing);
     let follow = if *count == 1 { "crossing follows" } else { "crossings follow" };
     format!(
-        "{count} {follow} another so closely, beside the {spacing} s between the places of a step that were looked at, that others may \
+        "{count} {follow} another so closely, beside the {spacing:.2e} s between the places of a step that were looked at, that others may \
          have been missed"
     )
 }

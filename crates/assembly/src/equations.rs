@@ -48,7 +48,7 @@ impl Equations {
         mut terms: impl FnMut(&mut [f64]),
         mut evaluate: impl FnMut(&mut Self, &[f64], bool),
     ) -> Result<u32, AssemblyError> {
-        let Settling { newton, last, rounding, start, sizes, changes, certain, near } = settling;
+        let Settling { newton, last, rounding, start, sizes, changes, reactions, certain, near } = settling;
         start.copy_from_slice(x);
         let mut convergence = Convergence::new(last, rounding, start);
         let (mut before, mut fresh, mut refinements) = (f64::INFINITY, true, 0);
@@ -73,8 +73,11 @@ impl Equations {
             let done = convergence.check(demand, x, correction, || {
                 sizes.fill(0.0);
                 terms(sizes);
-                Some(linear.most_roundings((x, multipliers), sizes, changes))
+                // The multipliers are found anew each time: by how much they changed.
+                reactions.iter_mut().zip(multipliers).for_each(|(before, now)| *before = now - *before);
+                Some(linear.most_roundings((x, multipliers, reactions), sizes, changes))
             });
+            reactions.copy_from_slice(multipliers);
             *certain = convergence.is_certain();
             if done.map_err(|source| AssemblyError::Newton { stage, source })? {
                 return Ok(convergence.made());

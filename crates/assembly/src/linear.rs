@@ -58,12 +58,15 @@ impl Linear {
         }
     }
 
-    /// How many roundings of their terms the equations are moved by the last correction, at most: `K d` and `C d` against the sums
-    /// of the `sizes` of the terms, to which those of the unknowns, `|K| |x|`, and of the reactions `G' lambda` are added here.
+    /// How many roundings of their terms the equations are moved by the last correction, at most: `K d + G' dlambda` and `C d` against
+    /// the sums of the `sizes` of the terms, to which those of the unknowns, `|K| |x|`, and of the reactions `G' lambda` are added here.
+    ///
+    /// The correction `dlambda` of the multipliers belongs to it: what the rounding of a constraint moves the unknowns by, `g/h` of
+    /// a joint in a short step, the reactions answer.
     #[cold]
     pub(crate) fn most_roundings(
         &self,
-        (x, multipliers): (&[f64], &[f64]),
+        (x, multipliers, corrections): (&[f64], &[f64], &[f64]),
         sizes: &mut [f64],
         changes: &mut [f64],
     ) -> f64 {
@@ -74,8 +77,9 @@ impl Linear {
                 sizes[i] += (value * x).abs();
             }
         }
-        for (j, lambda) in (x.len()..).zip(multipliers) {
+        for (j, (d, lambda)) in (x.len()..).zip(corrections.iter().zip(multipliers)) {
             for (i, value) in self.pattern.column(&self.values, j) {
+                changes[i] += value * d;
                 sizes[i] += (value * lambda).abs();
             }
         }

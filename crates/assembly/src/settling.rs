@@ -11,6 +11,8 @@ pub(crate) struct Settling {
     /// The sums of the sizes of the terms of the equations, and by how much a correction changes these.
     pub(crate) sizes: Vec<f64>,
     pub(crate) changes: Vec<f64>,
+    /// The multipliers that were found with the correction before.
+    pub(crate) reactions: Vec<f64>,
     /// Whether the last search contracted from its start, so that what it found is the solution near there.
     pub(crate) certain: bool,
     /// A correction below this leads to no other solution: see [`rounding_of_place`](dla::convergence::rounding_of_place).
@@ -30,6 +32,7 @@ impl Settling {
             start: vec![0.0; unknowns],
             sizes: vec![0.0; unknowns + rows],
             changes: vec![0.0; unknowns + rows],
+            reactions: vec![0.0; rows],
             certain: true,
             near: 0.0,
         }

@@ -96,7 +96,7 @@ impl Sparse {
         mut terms: impl FnMut(&mut [f64]),
         mut evaluate: impl FnMut(&mut Self, &[f64], &[f64], bool) -> Result<(), AssemblyError>,
     ) -> Result<u32, AssemblyError> {
-        let Settling { newton, last, rounding, start, sizes, changes, certain, near } = settling;
+        let Settling { newton, last, rounding, start, sizes, changes, certain, near, .. } = settling;
         start.copy_from_slice(x);
         let mut convergence = Convergence::new(last, rounding, start);
         let mut refinements = 0;
@@ -129,7 +129,7 @@ impl Sparse {
             let done = convergence.check(demand, x, correction, || {
                 sizes.fill(0.0);
                 terms(sizes);
-                Some(linear.most_roundings((x, multipliers), sizes, changes))
+                Some(linear.most_roundings((x, multipliers, corrections), sizes, changes))
             });
             *certain = convergence.is_certain();
             if done.map_err(|source| AssemblyError::Newton { stage, source })? {

@@ -67,7 +67,7 @@ pub(super) fn many_bodies(lab: &mut Lab) -> Result<(), CliError> {
     let mut q = [0.0; N];
     (0..BODIES).for_each(|i| q[3 * i] = (i + 1) as f64);
     let made = std::thread::scope(|scope| {
-        let make = || record_seen(lab, &Chain, (q, [0.0; N]), &schedule, &look);
+        let make = || record_seen(lab, &Chain, (q, [0.0; N]), &schedule, (&look, &|_| 1.0));
         let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, make).ok()?;
         thread.join().ok()
     });

@@ -1,7 +1,7 @@
 //! Cases of systems with one constraint that no scene has, of one type, so that every method is compiled once for all of them.
 
 use super::lab::Lab;
-use super::systems::record;
+use super::systems::{record, record_in_chart};
 use crate::error::CliError;
 use dla::Schedule;
 use harness::stability::check::{energy, follows, measured, rounding, sign_kept};
@@ -133,7 +133,7 @@ pub(super) fn chart_end(lab: &mut Lab) -> Result<(), CliError> {
         let schedule = Schedule { t0: 0.0, step: 0.01, steps: 314 };
         // From the equator at 1 rad/s.
         let start = ([FRAC_PI_2, 0.0, 0.0], [-nearest.cos(), nearest.sin(), 0.0]);
-        let run = record(lab, &OneRow::Sphere, start, &schedule);
+        let run = record_in_chart(lab, &OneRow::Sphere, start, &schedule, &|q| q[0].sin().abs());
         let rate = nearest.recip();
         let bar = lab.accuracy(schedule.step * rate, rate * PI, schedule.steps) * rate;
         // Another place is at most the diameter away, and is then wrong, whatever a bound says.

@@ -2,7 +2,7 @@
 
 use super::lab::Lab;
 use crate::error::CliError;
-use dla::{Dependency, Dla, Energy, Gauss, Lobatto, OneStep, Schedule, State, StepError, drive};
+use dla::{Dependency, Dla, Energy, Gauss, InChart, Lobatto, OneStep, Schedule, State, StepError, drive};
 use harness::stability::check::{constant, follows, measured};
 use harness::stability::{Case, Claim, Recorded, Recorder, Seen, VALUES};
 use harness::{Kind, Rk4Reduced};
@@ -57,6 +57,12 @@ impl System<3, 2> for TwoRows {
     }
 }
 
+/// What is looked at in a state.
+type Look<'a, const N: usize> = &'a dyn Fn(&State<N>) -> [f64; VALUES];
+
+/// How far a place is from where its coordinates end; a thousandth and less is too near.
+type Regularity<'a, const N: usize> = &'a dyn Fn(&[f64; N]) -> f64;
+
 /// A run of one of [`METHODS`], with place and velocity of each node; nothing of any other.
 pub(super) fn record<Sys, const M: usize>(
     lab: &Lab,
@@ -67,44 +73,61 @@ pub(super) fn record<Sys, const M: usize>(
 where
     Sys: System<3, M>,
 {
+    record_in_chart(lab, system, start, schedule, &|_| 1.0)
+}
+
+/// The same in coordinates that end where `regularity` vanishes.
+pub(super) fn record_in_chart<Sys, const M: usize>(
+    lab: &Lab,
+    system: &Sys,
+    start: ([f64; 3], [f64; 3]),
+    schedule: &Schedule,
+    regularity: Regularity<'_, 3>,
+) -> Recorded
+where
+    Sys: System<3, M>,
+{
     let look = |state: &State<3>| {
         let ([x, y, z], [vx, vy, vz]) = (state.unwrapped(), *state.v());
         [x, y, z, vx, vy, vz]
     };
-    record_seen(lab, system, start, schedule, &look)
+    record_seen(lab, system, start, schedule, (&look, regularity))
 }
 
-/// The same with what `look` sees.
+/// The same with what `look` sees, in coordinates that end where `regularity` vanishes.
 pub(super) fn record_seen<Sys, const N: usize, const M: usize>(
     lab: &Lab,
     system: &Sys,
     (q, v): ([f64; N], [f64; N]),
     schedule: &Schedule,
-    look: &dyn Fn(&State<N>) -> [f64; VALUES],
+    (look, regularity): (Look<'_, N>, Regularity<'_, N>),
 ) -> Recorded
 where
     Sys: System<N, M>,
 {
     let mut state = State::new(q, v, system.angles());
     let mut recorder = Recorder::new(1, look);
+    let run = (system, schedule, regularity);
     let outcome = match lab.method.info().kind {
-        Kind::Dla => made(system, Dla::midpoint(), schedule, &mut state, &mut recorder),
-        Kind::Lobatto3 => made(system, Lobatto::<3>::new(), schedule, &mut state, &mut recorder),
-        Kind::Gauss8 => made(system, Gauss::<4>::default(), schedule, &mut state, &mut recorder),
-        Kind::Energy2 => made(system, Energy::<1>::default(), schedule, &mut state, &mut recorder),
-        Kind::Rk4Reduced => made(system, Rk4Reduced, schedule, &mut state, &mut recorder),
+        Kind::Dla => made(run, Dla::midpoint(), &mut state, &mut recorder),
+        Kind::Lobatto3 => made(run, Lobatto::<3>::new(), &mut state, &mut recorder),
+        Kind::Gauss8 => made(run, Gauss::<4>::default(), &mut state, &mut recorder),
+        Kind::Energy2 => made(run, Energy::<1>::default(), &mut state, &mut recorder),
+        Kind::Rk4Reduced => made(run, Rk4Reduced, &mut state, &mut recorder),
         _ => Ok(0),
     };
     recorder.recorded(outcome.err())
 }
 
+/// Not inlined: what a step takes of the stack would be taken for every method at once.
+#[inline(never)]
 fn made<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
-    mut method: impl OneStep<Sys, N, M>,
-    schedule: &Schedule,
+    (system, schedule, regularity): (&Sys, &Schedule, Regularity<'_, N>),
+    method: impl OneStep<Sys, N, M>,
     state: &mut State<N>,
     recorder: &mut Recorder<'_, N>,
 ) -> Result<u64, dla::RunError> {
+    let mut method = InChart::new(method, "angles from a pole", |_: &Sys, q: &[f64; N]| regularity(q));
     drive(system, &mut method, schedule, state, recorder)
 }
 

@@ -29,8 +29,8 @@ fn turned<Sys: System<N, M>, const N: usize, const M: usize>(
     q0: &[f64; N],
     v: &[f64; N],
 ) -> f64 {
-    // Along the motion: of the derivatives that the equations need anyway, the first.
-    let along = |re: f64, rate: f64| Dual { re, eps: from_fn::<f64, N, _>(|j| if j == 0 { rate } else { 0.0 }) };
+    // Along the motion: of one direction, for which the equations of motion have the constraint anyway.
+    let along = |re: f64, rate: f64| Dual { re, eps: [rate] };
     let (a, _) = system.constraint(along(t0, h), &from_fn(|i| along(q0[i], h * v[i])));
     let size = |row: [f64; N]| row.iter().map(|x| x * x).sum::<f64>().sqrt();
     // A row that is not affine has no place in `A`.

@@ -4,7 +4,7 @@ use crate::kept::Kept;
 use crate::overshoot::brakes_only;
 use crate::projection::{Projected, Projection};
 use crate::settle::sup;
-use crate::{Newton, OneStep, Stage, State, StepError, StepReport};
+use crate::{Newton, OneStep, StackUse, Stage, State, StepError, StepReport};
 use lagrangian::{
     Alpha, ClosedStepError, DiscreteConstraint, DiscreteLagrangian, Midpoint, NotAWeight, System, Trapezoid, from_fn,
     linear_basis, momentum, reaction_rows,
@@ -106,6 +106,9 @@ impl<L, C> Dla<L, C> {
     }
 }
 
+/// Of the general form; a closed form is left to the system.
+const USE: StackUse = StackUse { squares: 31, rows: 34 };
+
 impl<Sys, L, C, const N: usize, const M: usize> OneStep<Sys, N, M> for Dla<L, C>
 where
     Sys: System<N, M>,
@@ -146,6 +149,9 @@ impl<L, C> Dla<L, C> {
         L: DiscreteLagrangian<Sys, N, M>,
         C: DiscreteConstraint<Sys, N, M>,
     {
+        if const { USE.exceeds::<N, M>() } {
+            return Err(USE.refusal::<N, M>());
+        }
         // What a closed form may have left that did not end.
         state.forget_closed();
         match self.continued_step(system, t0, h, state) {

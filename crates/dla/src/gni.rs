@@ -1,7 +1,7 @@
 use crate::convergence::most_roundings;
 use crate::overshoot::brakes_only;
 use crate::positions::{affine_only, velocities_only};
-use crate::{Equations, Newton, NewtonError, OneStep, Stage, State, StepError, StepReport};
+use crate::{Equations, Newton, NewtonError, OneStep, StackUse, Stage, State, StepError, StepReport};
 use lagrangian::linear::{Lu, Singular};
 use lagrangian::{DiscreteLagrangian, Dual, Rounded, Saddle, System, Trapezoid, from_fn, mass_matrix, momentum};
 
@@ -60,12 +60,17 @@ fn across<Sys: System<N, M>, const N: usize, const M: usize>(
     Ok((from_fn(|i| (0..M).map(|k| a[k][i] * mu[k]).sum()), v))
 }
 
+const USE: StackUse = StackUse { squares: 14, rows: 20 };
+
 impl<Sys, L, const N: usize, const M: usize> OneStep<Sys, N, M> for Gni<L, N>
 where
     Sys: System<N, M>,
     L: DiscreteLagrangian<Sys, N, M>,
 {
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        if const { USE.exceeds::<N, M>() } {
+            return Err(USE.refusal::<N, M>());
+        }
         affine_only(system, t, state)?;
         let reason = "the reflection of momenta lets the positions drift, and this system constrains them";
         velocities_only(system, t, state, reason)?;

@@ -19,6 +19,8 @@ pub enum Hint {
     Constraints,
     /// The method cannot do the system.
     OtherMethod,
+    /// The method has no room for so large a system: others take less, and an assembly keeps many bodies on the heap.
+    LessStack,
     /// Choose a step that has a node where the forces jump.
     NodeAt {
         /// When (s).
@@ -43,6 +45,9 @@ impl fmt::Display for Hint {
                 "constraints or mass matrix determine no velocity here: look for constraint rows that say the same",
             ),
             Self::OtherMethod => f.write_str("choose another method"),
+            Self::LessStack => f.write_str(
+                "choose a method that takes less of the stack, as `dla` or `rk4` do, or assemble the system of its bodies",
+            ),
             Self::NodeAt { time } => write!(f, "choose a step that has a node at t = {time} s"),
             Self::Corner => f.write_str(
                 "write the function so that it has a derivative there: `Scalar::length` for the root of a sum of squares, `abs`, \
@@ -172,6 +177,7 @@ impl StepError {
             // Far from the end a shorter step changes less.
             Self::Chart { regularity, least, .. } if *regularity >= 2.0 * least => HALF,
             Self::Chart { .. } => Hint::OtherCoordinates,
+            Self::TooLarge { .. } => Hint::LessStack,
             Self::Jump { time } => Hint::NodeAt { time: *time },
             Self::Motion(error) | Self::Reduced(ReducedError::Motion(error)) if is_overflow(&error.source) => {
                 Hint::Numbers

@@ -56,7 +56,7 @@ impl<Method, Regularity> InChart<Method, Regularity> {
 
     /// Refuses a step on which the regularity is too little, or changes by as much as is left.
     fn check(&self, seen: &[f64]) -> Result<(), StepError> {
-        let regularity = seen.iter().fold(f64::INFINITY, |m, r| if r.is_nan() { *r } else { m.min(*r) });
+        let regularity = seen.iter().fold(f64::INFINITY, |m, r| if *r < m || r.is_nan() { *r } else { m });
         let change = seen.iter().fold(0.0, |m, r| larger(m, (r - seen[0]).abs()));
         // What is not a number is not enough.
         if regularity >= self.least && regularity >= change {

@@ -45,6 +45,7 @@ mod resolved;
 mod samples;
 mod sensitivity;
 mod settle;
+mod stack;
 mod start;
 mod state;
 mod substepping;
@@ -82,6 +83,7 @@ pub use sensitivity::{
     Differentiable, ReducedDerivative, ReducedVariation, Sensitivity, SensitivityError, StepDerivative, StepEquations,
     StepStart, Tangent, TangentRunError, Unknowns, Variation,
 };
+pub use stack::StackUse;
 pub use start::{Start, consistent_start};
 pub use state::State;
 pub use substepping::Substepping;

@@ -1,4 +1,4 @@
-use lagrangian::{Gradient, System, from_fn, quasi_velocities};
+use lagrangian::{AdmissibleBasis, Gradient, System, from_fn, quasi_velocities};
 use std::fmt;
 use thiserror::Error;
 
@@ -90,7 +90,7 @@ impl NotANumber {
         match &mut self.function {
             SystemFunction::Lagrangian | SystemFunction::ReducedMotion { .. } => {}
             SystemFunction::Force { coordinate: i } | SystemFunction::Basis { coordinate: i, .. } => {
-                *i = coordinate(*i)
+                *i = coordinate(*i);
             }
             SystemFunction::Constraint { row: k, coordinate: i } => (*k, *i) = (row + *k, coordinate(*i)),
             SystemFunction::ConstraintTerm { row: k }
@@ -286,7 +286,7 @@ fn visit<Sys: System<N, M>, const N: usize, const M: usize>(
     for (row, nonlinear) in system.nonlinear(t, q, v).iter().flatten().enumerate() {
         nonlinear.iter().for_each(|phi| see(SystemFunction::Nonlinear { row }, *phi));
     }
-    for (vector, parts) in system.admissible_basis(t, q).iter().flat_map(|basis| basis.vectors()).enumerate() {
+    for (vector, parts) in system.admissible_basis(t, q).iter().flat_map(AdmissibleBasis::vectors).enumerate() {
         for (coordinate, part) in parts.iter().enumerate() {
             see(SystemFunction::Basis { vector, coordinate }, *part);
         }

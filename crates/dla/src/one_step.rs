@@ -138,6 +138,21 @@ pub enum StepError {
         /// Why not.
         reason: &'static str,
     },
+    /// The system has more coordinates and constraints than the method has room for on the stack; no step was begun.
+    #[error(
+        "a system of {coordinates} coordinates and {constraints} constraints is too large for this method: a step would \
+         take {bytes} bytes of the stack, and may take {limit}"
+    )]
+    TooLarge {
+        /// `N`.
+        coordinates: usize,
+        /// `M`.
+        constraints: usize,
+        /// What the step would take of the stack, as [`StackUse`](crate::StackUse) counts it (bytes).
+        bytes: usize,
+        /// What it may take (bytes).
+        limit: usize,
+    },
     /// The step of an energy-preserving method changes the energy by more than the work of the forces.
     #[error(
         "the energy would change by {defect:e} J besides the work of the forces, above its rounding of {bound:e} J: the \

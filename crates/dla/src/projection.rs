@@ -3,8 +3,8 @@ use crate::dependent::{independent_rows, rows_left_out};
 use crate::{Equations, Newton, NewtonError, Stage, StepError};
 use lagrangian::linear::{Singular, largest, normal_solve};
 use lagrangian::{
-    AdmissibleBasis, Dual, FactoredSaddle, HyperDual, Rounded, Rows, Saddle, System, constraint_residual, from_fn,
-    mass_matrix, momentum, reaction_rows,
+    AdmissibleBasis, Dual, FactoredSaddle, Rounded, Rows, Saddle, System, add_reaction_curvature, constraint_residual,
+    from_fn, mass_matrix, momentum, reaction_rows, second_in_velocity,
 };
 
 /// The equations for the velocity at the end of a step, with the multiplier there:
@@ -72,13 +72,10 @@ impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Projection<'a, Sys, 
     #[inline(always)]
     fn at_once(&self, newton: &Newton, guess: &[f64; N]) -> Option<Projected<N, M>> {
         let Self { system, t1, q1, p1, basis, .. } = self;
-        let unit = |i: usize| from_fn(|k| f64::from(u8::from(k == i)));
-        let in_v = from_fn(|i| HyperDual::linear(guess[i], unit(i), unit(i)));
-        let at_q = q1.map(HyperDual::fixed);
-        if system.nonlinear(HyperDual::fixed(*t1), &at_q, &in_v).is_some() {
+        if system.nonlinear(*t1, q1, guess).is_some() {
             return None;
         }
-        let l: HyperDual<f64, N, N> = system.lagrangian(HyperDual::fixed(*t1), &at_q, &in_v);
+        let l = second_in_velocity(*system, *t1, q1, guess);
         let (a1, b1) = system.constraint(*t1, q1);
         let slip = |v: &[f64; N]| -> [f64; M] { from_fn(|k| -(0..N).fold(b1[k], |sum, i| sum + a1[k][i] * v[i])) };
         let factors = FactoredSaddle::new(&l.e12, &a1, &a1, basis.as_ref()).ok()?;
@@ -154,15 +151,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Equations<N> for Project
         let a1 = reaction_rows(self.system, self.t1, &self.q1, v1);
         let slip = constraint_residual(self.system, self.t1, &self.q1, v1);
         // The reaction of a constraint that is not affine turns with the velocity.
-        let unit = |i: usize| from_fn(|k| f64::from(u8::from(k == i)));
-        let in_v = from_fn(|i| HyperDual::linear(v1[i], unit(i), unit(i)));
-        let phi = self.system.nonlinear(HyperDual::fixed(self.t1), &self.q1.map(HyperDual::fixed), &in_v);
-        if let Some(phi) = phi {
-            for (mu, phi) in self.mu.iter().zip(phi) {
-                let phi: HyperDual<f64, N, N> = phi.unwrap_or(HyperDual::fixed(0.0));
-                mass = from_fn(|i| from_fn(|j| mass[i][j] - mu * phi.e12[i][j]));
-            }
-        }
+        add_reaction_curvature(self.system, self.t1, (&self.q1, v1), &self.mu.map(|mu| -mu), &mut mass);
         let missing = from_fn(|i| self.p1[i] - p[i]);
         let parted = if self.refined && self.some.is_none() { parted(&a1, &missing) } else { None };
         let (right, taken) = parted.unwrap_or((missing, [0.0; M]));

@@ -179,7 +179,7 @@ fn reference<const N: usize>(
                 failure = Some(error);
                 trials.clear();
                 (change, extrapolated) = (f64::INFINITY, None);
-                if matches!(error.source, StepError::Unsupported { .. }) {
+                if matches!(error.source, StepError::Unsupported { .. } | StepError::TooLarge { .. }) {
                     break;
                 }
             }

@@ -1,8 +1,10 @@
 use crate::positions::onto_positions;
 use crate::projection::project;
-use crate::{Equations, Newton, Stage, State, StepError};
+use crate::{Equations, Newton, StackUse, Stage, State, StepError};
 use lagrangian::linear::Singular;
-use lagrangian::{HyperDual, RowSpace, Saddle, System, from_fn, mass_matrix};
+use lagrangian::{RowSpace, Saddle, System, add_position_curvature, from_fn, mass_matrix};
+
+const USE: StackUse = StackUse { squares: 18, rows: 24 };
 
 /// A start that meets every constraint.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,6 +34,9 @@ pub fn consistent_start<Sys: System<N, M>, const N: usize, const M: usize>(
     q: &[f64; N],
     v: &[f64; N],
 ) -> Result<Start<N>, StepError> {
+    if const { USE.exceeds::<N, M>() } {
+        return Err(USE.refusal::<N, M>());
+    }
     let given = State::new(*q, *v, [false; N]);
     // Somewhere on the positions first, then along them to the nearest place.
     let guess = onto_positions(system, t, &given, [0.0; N], v)?;
@@ -64,17 +69,10 @@ struct Nearest<'a, Sys, const N: usize, const M: usize> {
 impl<Sys: System<N, M>, const N: usize, const M: usize> Equations<N> for Nearest<'_, Sys, N, M> {
     fn correction(&mut self, d: &[f64; N]) -> Result<[f64; N], Singular> {
         let q = self.given.ahead(d);
-        let unit = |i: usize| from_fn(|k| f64::from(u8::from(k == i)));
-        let twice: [HyperDual<f64, N, N>; N] = from_fn(|i| HyperDual::linear(q[i], unit(i), unit(i)));
-        let zero = HyperDual::fixed(0.0);
-        let g = self.system.holonomic(HyperDual::fixed(self.t), &twice).unwrap_or([None; M]);
-        let g = g.map(|g| g.unwrap_or(zero));
         let misses = lagrangian::position_misses(self.system, self.t, &q).unwrap_or([None; M]);
-        let rows = g.map(|g| g.e1);
+        let rows = misses.map(|g| g.map_or([0.0; N], |g| g.eps));
         let mut block = self.mass;
-        for (nu, g) in self.nu.iter().zip(&g) {
-            block = from_fn(|i| from_fn(|j| block[i][j] + nu * g.e12[i][j]));
-        }
+        add_position_curvature(self.system, self.t, &q, &self.nu, &mut block);
         let some = RowSpace::new(&rows, &self.mass, RowSpace::<N, M>::ROUNDING).dependence().independent;
         let saddle = Saddle {
             block,

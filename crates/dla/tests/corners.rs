@@ -80,7 +80,7 @@ impl System<3, 1> for Skate {
             Slowed::Root | Slowed::Undefined => (v[0] * v[0] + v[1] * v[1]).sqrt(),
             Slowed::Not => return None,
         };
-        let across = if self.slowed == Slowed::Undefined { v[0] / v[0] } else { v[1] };
+        let across = if self.slowed == Slowed::Undefined { (v[0] - 1.0).sqrt() } else { v[1] };
         Some([v[0] * speed * -DRAG, across * speed * -DRAG, S::zero()])
     }
     fn admissible_basis<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, 1>> {

@@ -1,4 +1,5 @@
 use crate::linear::{Lu, Singular};
+use crate::second::{AT_ONCE, seed};
 use crate::{AdmissibleBasis, Dual, Scalar, System, from_fn, mass_matrix};
 
 /// A system without explicit time and with `b = 0`, at one point of the dual `D*` of its distribution.
@@ -34,22 +35,10 @@ impl<S: Scalar, const N: usize, const M: usize> Bracket<S, N, M> {
     #[must_use]
     #[inline(always)]
     pub fn at<Sys: System<N, M>>(system: &Sys, t: S, q: &[S; N], xi: &[S; N]) -> Option<Self> {
-        let frame = system.admissible_basis(Dual::fixed(t), &Dual::variables(q))?;
-        let mut basis = AdmissibleBasis::empty();
-        let mut along = [[S::zero(); N]; N];
-        for (a, w) in frame.vectors().iter().enumerate() {
-            basis.vectors_mut()[a] = w.map(|w| w.re);
-        }
-        let velocity = basis.combine(xi);
-        let l = system.lagrangian(Dual::fixed(t), &q.map(Dual::fixed), &Dual::variables(&velocity));
-        // p . DW_a, a covector.
-        for (a, w) in frame.vectors().iter().enumerate() {
-            for i in 0..N {
-                for j in 0..N {
-                    along[a][j] += l.eps[i] * w[i].eps[j];
-                }
-            }
-        }
+        let (basis, velocity, l, along) = match const { N <= AT_ONCE } {
+            true => Self::with_slopes(system, t, q, xi)?,
+            false => Self::with_slopes_in_turn(system, t, q, xi)?,
+        };
         let mut structure = [[S::zero(); N]; N];
         for a in 0..Self::DIMENSION {
             for b in a + 1..Self::DIMENSION {
@@ -63,6 +52,45 @@ impl<S: Scalar, const N: usize, const M: usize> Bracket<S, N, M> {
             }
         }
         Some(Self { basis, velocity, momentum: l.eps, lagrangian: l.re, structure })
+    }
+
+    /// The basis, the velocity, the Lagrangian in it, and `p . DW_a`, a covector, of every vector of the basis.
+    #[inline(always)]
+    fn with_slopes<Sys: System<N, M>>(system: &Sys, t: S, q: &[S; N], xi: &[S; N]) -> Option<Slopes<S, N, M>> {
+        let frame = system.admissible_basis(Dual::fixed(t), &Dual::variables(q))?;
+        let mut basis = AdmissibleBasis::empty();
+        let mut along = [[S::zero(); N]; N];
+        for (a, w) in frame.vectors().iter().enumerate() {
+            basis.vectors_mut()[a] = w.map(|w| w.re);
+        }
+        let velocity = basis.combine(xi);
+        let l = system.lagrangian(Dual::fixed(t), &q.map(Dual::fixed), &Dual::variables(&velocity));
+        for (a, w) in frame.vectors().iter().enumerate() {
+            for i in 0..N {
+                for j in 0..N {
+                    along[a][j] += l.eps[i] * w[i].eps[j];
+                }
+            }
+        }
+        Some((basis, velocity, l, along))
+    }
+
+    /// The same of many coordinates, along one after another: with its derivatives in all of them a basis has `N^3` numbers.
+    #[inline(always)]
+    fn with_slopes_in_turn<Sys: System<N, M>>(system: &Sys, t: S, q: &[S; N], xi: &[S; N]) -> Option<Slopes<S, N, M>> {
+        let basis = system.admissible_basis(t, q)?;
+        let mut along = [[S::zero(); N]; N];
+        let velocity = basis.combine(xi);
+        let l = system.lagrangian(Dual::fixed(t), &q.map(Dual::fixed), &Dual::variables(&velocity));
+        for j in 0..N {
+            let frame = system.admissible_basis(Dual::fixed(t), &along_one(q, j))?;
+            for (a, w) in frame.vectors().iter().enumerate() {
+                for i in 0..N {
+                    along[a][j] += l.eps[i] * w[i].eps[0];
+                }
+            }
+        }
+        Some((basis, velocity, l, along))
     }
 
     /// `W_a . f` of a covector `f`: of the momenta the quasi-momenta, of a force what it does to them.
@@ -115,6 +143,18 @@ impl<S: Scalar, const N: usize, const M: usize> Bracket<S, N, M> {
     }
 }
 
+/// See [`Bracket::with_slopes`].
+type Slopes<S, const N: usize, const M: usize> = (AdmissibleBasis<S, N, M>, [S; N], Dual<S, N>, [[S; N]; N]);
+
+/// The place `q`, its coordinate number `j` the only variable.
+#[inline(always)]
+fn along_one<S: Scalar, const N: usize>(q: &[S; N], j: usize) -> [Dual<S, 1>; N] {
+    from_fn(
+        #[inline(always)]
+        |i| Dual { re: q[i], eps: seed(S::constant(1.0), i, j) },
+    )
+}
+
 /// The derivatives of the energy `H(q, pi)` of a [`Bracket`] in `q` at fixed `pi`, `H_q = -d/dq L(q, W(q) xi)`, and the
 /// quasi-momenta; none where the system gives no basis.
 #[must_use]
@@ -129,6 +169,9 @@ where
     Sys: System<N, M>,
     S: Scalar,
 {
+    if const { N > AT_ONCE } {
+        return energy_slope_in_turn(system, t, q, xi);
+    }
     let place: [Dual<S, N>; N] = Dual::variables(q);
     let frame = system.admissible_basis(Dual::fixed(t), &place)?;
     let velocity = frame.combine(&xi.map(Dual::fixed));
@@ -142,6 +185,35 @@ where
         }
     }
     let pi = system.lagrangian(Dual::fixed(t), &q.map(Dual::fixed), &moving).eps;
+    Some(EnergySlope { h_q, pi })
+}
+
+/// The same of many coordinates, along one after another.
+#[inline(always)]
+fn energy_slope_in_turn<Sys, S, const N: usize, const M: usize>(
+    system: &Sys,
+    t: S,
+    q: &[S; N],
+    xi: &[S; N],
+) -> Option<EnergySlope<S, N>>
+where
+    Sys: System<N, M>,
+    S: Scalar,
+{
+    let basis = system.admissible_basis(t, q)?;
+    let mut moving = basis.combine(xi).map(Dual::fixed);
+    for (a, w) in basis.vectors().iter().enumerate() {
+        for i in 0..N {
+            moving[i].eps[a] = w[i];
+        }
+    }
+    let pi = system.lagrangian(Dual::fixed(t), &q.map(Dual::fixed), &moving).eps;
+    let mut h_q = [S::zero(); N];
+    for j in 0..N {
+        let place = along_one(q, j);
+        let velocity = system.admissible_basis(Dual::fixed(t), &place)?.combine(&xi.map(Dual::fixed));
+        h_q[j] = -system.lagrangian(Dual::fixed(t), &place, &velocity).eps[0];
+    }
     Some(EnergySlope { h_q, pi })
 }
 

@@ -1,4 +1,5 @@
 use crate::linear::Lu;
+use crate::second::{AT_ONCE, BLOCK, seed};
 use crate::{
     Constraint, Dependence, Dual, RowSpace, Rows, Scalar, System, from_fn, mass_matrix, position_rows, reaction_rows,
 };
@@ -113,14 +114,41 @@ pub fn rank_is_constant<Sys: System<N, M>, const N: usize, const M: usize>(
     v: &[f64; N],
     space: &RowSpace<N, M>,
 ) -> bool {
-    let Dependence { independent, combination, .. } = space.dependence();
-    let in_q = reaction_rows(system, Dual::fixed(t), &Dual::variables(q), &v.map(Dual::fixed));
     let (fixed_q, fixed_v): ([Dual<f64, 1>; N], _) = (q.map(Dual::fixed), v.map(Dual::fixed));
     let in_t = reaction_rows(system, Dual { re: t, eps: [1.0] }, &fixed_q, &fixed_v);
-    let derivative =
-        |k: usize, j: usize| -> [f64; N] { from_fn(|i| if j < N { in_q[k][i].eps[j] } else { in_t[k][i].eps[0] }) };
+    stay_within(space, &in_t, 1)
+        && match const { N <= AT_ONCE } {
+            true => rank_is_constant_along::<_, N, M, N>(system, t, (q, v), space, 0),
+            false => (0..N)
+                .step_by(BLOCK)
+                .all(|from| rank_is_constant_along::<_, N, M, BLOCK>(system, t, (q, v), space, from)),
+        }
+}
+
+/// The same along `P` coordinates, from number `from` on.
+#[inline(never)]
+fn rank_is_constant_along<Sys: System<N, M>, const N: usize, const M: usize, const P: usize>(
+    system: &Sys,
+    t: f64,
+    (q, v): (&[f64; N], &[f64; N]),
+    space: &RowSpace<N, M>,
+    from: usize,
+) -> bool {
+    let in_q: [Dual<f64, P>; N] = from_fn(|i| Dual { re: q[i], eps: seed(1.0, i, from) });
+    let rows = reaction_rows(system, Dual::fixed(t), &in_q, &v.map(Dual::fixed));
+    stay_within(space, &rows, P.min(N - from))
+}
+
+/// Whether combinations of rows that vanish have derivatives within the span, along so many directions.
+fn stay_within<const N: usize, const M: usize, const P: usize>(
+    space: &RowSpace<N, M>,
+    rows: &[[Dual<f64, P>; N]; M],
+    directions: usize,
+) -> bool {
+    let Dependence { independent, combination, .. } = space.dependence();
+    let derivative = |k: usize, j: usize| -> [f64; N] { from_fn(|i| rows[k][i].eps[j]) };
     (0..M).filter(|k| !independent.contains(*k)).all(|k| {
-        (0..=N).all(|j| {
+        (0..directions).all(|j| {
             let mut sum = derivative(k, j);
             let (_, mut terms) = space.outside(&sum);
             for l in independent.iter() {
@@ -169,12 +197,12 @@ fn kinds<Sys: System<N, M>, const N: usize, const M: usize>(
 ) -> [RowKind; M] {
     let g = system.holonomic(t, q).unwrap_or([None; M]);
     let phi = system.nonlinear(t, q, v).unwrap_or([None; M]);
-    let (_, near) = system.constraint(Dual::fixed(t), &Dual::variables(q));
+    let InPlace { b, b_q, .. } = InPlace::at(system, t, q);
     let (_, later) = system.constraint(Dual { re: t, eps: [1.0] }, &q.map(Dual::fixed));
     from_fn(|k| match (phi[k], g[k]) {
         (Some(_), _) => RowKind::Nonlinear,
         (None, Some(_)) => RowKind::Position,
-        _ if near[k].is_zero() && later[k].is_zero() => RowKind::Linear,
+        _ if b[k] == 0.0 && b_q[k].iter().all(|x| *x == 0.0) && later[k].is_zero() => RowKind::Linear,
         _ => RowKind::Affine,
     })
 }
@@ -192,6 +220,46 @@ fn mismatched<Sys: System<N, M>, const N: usize, const M: usize>(system: &Sys, t
         .collect()
 }
 
+/// A constraint with its derivatives in the coordinates.
+struct InPlace<const N: usize, const M: usize> {
+    a: [[f64; N]; M],
+    b: [f64; M],
+    /// `dA_k/dq`, row `i` the derivatives of `A_ki`; not in an array, which of many coordinates would fill a stack.
+    a_q: Vec<[[f64; N]; N]>,
+    b_q: [[f64; N]; M],
+}
+
+impl<const N: usize, const M: usize> InPlace<N, M> {
+    fn at<Sys: System<N, M>>(system: &Sys, t: f64, q: &[f64; N]) -> Self {
+        let mut all = Self { a: [[0.0; N]; M], b: [0.0; M], a_q: vec![[[0.0; N]; N]; M], b_q: [[0.0; N]; M] };
+        match const { N <= AT_ONCE } {
+            true => all.add::<Sys, N>(system, t, q, 0),
+            false => (0..N).step_by(BLOCK).for_each(|from| all.add::<Sys, BLOCK>(system, t, q, from)),
+        }
+        all
+    }
+
+    /// With the derivatives in `P` coordinates, from number `from` on.
+    #[inline(never)]
+    fn add<Sys: System<N, M>, const P: usize>(&mut self, system: &Sys, t: f64, q: &[f64; N], from: usize) {
+        let in_q: [Dual<f64, P>; N] = from_fn(|i| Dual { re: q[i], eps: seed(1.0, i, from) });
+        let (rows, b) = system.constraint(Dual::fixed(t), &in_q);
+        for k in 0..M {
+            self.b[k] = b[k].re;
+            for (j, e) in (from..N).zip(b[k].eps) {
+                self.b_q[k][j] = e;
+            }
+            for i in 0..N {
+                let a: Dual<f64, P> = rows[k][i];
+                self.a[k][i] = a.re;
+                for (j, e) in (from..N).zip(a.eps) {
+                    self.a_q[k][i][j] = e;
+                }
+            }
+        }
+    }
+}
+
 /// The rank of the two-forms `d alpha_k` on pairs of admissible fields, `(0, w)` and `(1, v_b)` in time and space.
 fn brackets<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
@@ -200,10 +268,9 @@ fn brackets<Sys: System<N, M>, const N: usize, const M: usize>(
     kinds: &[RowKind; M],
     space: &RowSpace<N, M>,
 ) -> usize {
-    let (in_q, b_q) = system.constraint(Dual::fixed(t), &Dual::variables(q));
+    let InPlace { a, b, a_q: in_q, b_q } = InPlace::at(system, t, q);
     let (in_t, _) = system.constraint(Dual { re: t, eps: [1.0] }, &q.map(Dual::fixed));
-    let here: Constraint<f64, N, M> =
-        (in_q.map(|row| row.map(|a: Dual<f64, N>| a.re)), b_q.map(|b: Dual<f64, N>| b.re));
+    let here: Constraint<f64, N, M> = (a, b);
     let rows: Vec<usize> = space.dependence().independent.iter().filter(|k| kinds[*k] != RowKind::Nonlinear).collect();
     let drift = particular(&here, &rows);
     let kernel = space.kernel();
@@ -223,11 +290,11 @@ fn brackets<Sys: System<N, M>, const N: usize, const M: usize>(
                 for i in 0..N {
                     for j in 0..N {
                         // (dA_j/dq_i - dA_i/dq_j) x_i y_j.
-                        add(in_q[k][j].eps[i] * x[i] * y[j]);
-                        add(-in_q[k][i].eps[j] * x[i] * y[j]);
+                        add(in_q[k][j][i] * x[i] * y[j]);
+                        add(-in_q[k][i][j] * x[i] * y[j]);
                     }
                     add(time * in_t[k][i].eps[0] * y[i]);
-                    add(-time * b_q[k].eps[i] * y[i]);
+                    add(-time * b_q[k][i] * y[i]);
                 }
                 form.push(if f64::abs(sum) <= RowSpace::<N, M>::ROUNDING * terms { 0.0 } else { sum });
             }

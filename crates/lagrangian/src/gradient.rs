@@ -67,6 +67,17 @@ impl<S: Scalar, const N: usize> Gradient<S, N> {
         )
     }
 
+    /// The point `x`, its components from number `from` on the variables, and the others numbers that do not depend on them.
+    #[must_use]
+    #[inline(always)]
+    pub fn some_variables<const K: usize>(x: &[S; K], from: usize) -> [Self; K] {
+        array(
+            Self::fixed(S::zero()),
+            #[inline(always)]
+            |i| if (from..from + N).contains(&i) { Self::variable(x[i], i - from) } else { Self::fixed(x[i]) },
+        )
+    }
+
     /// The derivatives in the first `K` variables; zero in those that there are not.
     #[must_use]
     #[inline(always)]

@@ -1,5 +1,5 @@
 use crate::gradient::by_places;
-use crate::{Gradient, HyperDual, Scalar, System, from_fn};
+use crate::{Gradient, Scalar, System, second_in_velocity};
 
 /// `L(t, q, v)` with its gradient in `v`.
 #[inline(always)]
@@ -64,10 +64,6 @@ where
     Sys: System<N, M>,
     S: Scalar,
 {
-    let v: [HyperDual<S, N, N>; N] = from_fn(|i| {
-        let unit = from_fn(|k| S::constant(if k == i { 1.0 } else { 0.0 }));
-        HyperDual::linear(v[i], unit, unit)
-    });
-    let l = system.lagrangian(HyperDual::fixed(t), &q.map(HyperDual::fixed), &v);
+    let l = second_in_velocity(system, t, q, v);
     (l.e1, l.e12)
 }

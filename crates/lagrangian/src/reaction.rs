@@ -1,3 +1,4 @@
+use crate::second::{AT_ONCE, BLOCK, seed};
 use crate::{Constraint, Dual, Scalar, System, from_fn};
 
 /// The rows along which the constraints act on the system at a velocity: `A(q, t)`, and `d phi / dv` where a constraint is
@@ -28,15 +29,43 @@ where
     S: Scalar,
 {
     let (mut a, mut b) = ([[S::zero(); N]; M], [S::zero(); M]);
-    let in_q = system.holonomic(Dual::fixed(t), &Dual::variables(q));
-    let in_t = system.holonomic(Dual { re: t, eps: [S::constant(1.0)] }, &q.map(Dual::fixed));
-    if let (Some(in_q), Some(in_t)) = (in_q, in_t) {
+    match const { N <= AT_ONCE } {
+        true => add_gradients::<Sys, S, N, M, N>(system, t, q, 0, &mut a),
+        false => {
+            for from in (0..N).step_by(BLOCK) {
+                add_gradients::<Sys, S, N, M, BLOCK>(system, t, q, from, &mut a);
+            }
+        }
+    }
+    if let Some(in_t) = system.holonomic(Dual { re: t, eps: [S::constant(1.0)] }, &q.map(Dual::fixed)) {
         for k in 0..M {
-            a[k] = in_q[k].map_or(a[k], |g: Dual<S, N>| g.eps);
             b[k] = in_t[k].map_or(b[k], |g: Dual<S, 1>| g.eps[0]);
         }
     }
     (a, b)
+}
+
+/// The derivatives of the functions of positions in `P` coordinates, from number `from` on; nothing where there is none.
+#[inline(always)]
+fn add_gradients<Sys, S, const N: usize, const M: usize, const P: usize>(
+    system: &Sys,
+    t: S,
+    q: &[S; N],
+    from: usize,
+    a: &mut [[S; N]; M],
+) where
+    Sys: System<N, M>,
+    S: Scalar,
+{
+    let one = S::constant(1.0);
+    let in_q: [Dual<S, P>; N] = from_fn(|i| Dual { re: q[i], eps: seed(one, i, from) });
+    let Some(g) = system.holonomic(Dual::fixed(t), &in_q) else { return };
+    for k in 0..M {
+        let Some(g) = g[k] else { continue };
+        for (j, e) in (from..N).zip(g.eps) {
+            a[k][j] = e;
+        }
+    }
 }
 
 /// What the constraints on positions miss, `g_k`, and their gradients; none where the system has no such constraint.

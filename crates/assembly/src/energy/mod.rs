@@ -214,8 +214,8 @@ impl Energy {
         if defect.abs() <= bound { Ok(()) } else { self.check_at_rest(assembly, (t0, h), (defect, bound)) }
     }
 
-    /// The same where the motion is as small as the rounding of the place: the energy then changes by the second order of that, as in the
-    /// static methods.
+    /// The same where the terms of the energy cancel, or where the motion is as small as the rounding of the place, as in the static
+    /// methods.
     #[cold]
     fn check_at_rest(
         &self,
@@ -231,7 +231,8 @@ impl Energy {
             |i| self.v0[i],
             |_, placed, momentum, _| {
                 for (i, size) in placed.at.iter().zip(momentum) {
-                    noise += f64::EPSILON * size / h.abs() * f64::EPSILON * self.q0[*i].abs();
+                    let way = (self.path.q1[*i] - self.q0[*i]).abs();
+                    noise += f64::EPSILON * size / h.abs() * (way + f64::EPSILON * self.q0[*i].abs());
                 }
             },
         );

@@ -8,6 +8,7 @@ mod energy;
 mod lobatto;
 mod long;
 mod models;
+mod rest;
 mod same;
 mod step;
 mod tools;

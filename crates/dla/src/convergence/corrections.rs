@@ -174,7 +174,9 @@ impl<'a> Convergence<'a> {
         if !contracts || (stuck && !(settled || slight || self.met)) {
             let most = roundings();
             let within = |bound: f64| most.map_or(step <= BLIND * size, |most| most <= bound);
-            let met = within(if kind == Kind::Chord { OF_CORRECTION } else { ROUNDINGS });
+            // Where nothing more can be done about the rounding of corrections, that counts too.
+            let chord = kind == Kind::Chord;
+            let met = within(if chord || !refinable { OF_CORRECTION } else { ROUNDINGS });
             self.met |= met;
             self.unmet = !met;
             // By corrections with less rounding it may yet be seen.

@@ -14,6 +14,8 @@ pub struct FixedPoint<const G: usize, const N: usize> {
     least: f64,
     /// Iterations in turn that changed nothing but by rounding.
     quiet: u32,
+    /// The relative change that may still be to come.
+    left: f64,
     iteration: u32,
     limit: u32,
     history: History,
@@ -41,10 +43,19 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
             noise: None,
             least: f64::INFINITY,
             quiet: 0,
+            left: UNBIASED,
             iteration: 0,
             limit,
             history: History::new(),
         }
+    }
+
+    /// The same to this relative change, in place of [`UNBIASED`].
+    #[must_use]
+    #[inline(always)]
+    pub fn to(mut self, left: f64) -> Self {
+        self.left = left;
+        self
     }
 
     /// Sees the largest changes and sizes of the components after an iteration; the iteration's number if it was the last. `noise`
@@ -72,7 +83,7 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
                 }
                 let known = self.noise.as_ref().map_or(0.0, |noise| CYCLES * noise[g][i]);
                 let rounding = least.max(SLIGHT * all).max(known).max(f64::MIN_POSITIVE);
-                let (ends, stalls) = component.settles(change, size, rounding);
+                let (ends, stalls) = component.settles(change, size, rounding, self.left);
                 settled &= ends;
                 asks |= stalls && !ends && change > rounding;
                 if change > rounding {
@@ -106,7 +117,7 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
 impl Component {
     /// Whether it is settled, and whether its change has not shrunk.
     #[inline(always)]
-    fn settles(&mut self, change: f64, size: f64, rounding: f64) -> (bool, bool) {
+    fn settles(&mut self, change: f64, size: f64, rounding: f64, left: f64) -> (bool, bool) {
         let (fast, slow) = RATES;
         let rate = (change / self.last).max((change / self.before_last).sqrt()).max(fast);
         // Before there is a rate, only no change at all settles.
@@ -114,7 +125,7 @@ impl Component {
         let stalls = change >= slow * self.last.max(self.before_last);
         self.stalls += u32::from(stalls && change <= rounding);
         (self.before_last, self.last) = (self.last, change);
-        (self.stalls >= STALLS || next <= UNBIASED * size, stalls)
+        (self.stalls >= STALLS || next <= left * size, stalls)
     }
 }
 

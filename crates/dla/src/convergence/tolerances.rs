@@ -6,9 +6,10 @@
 //! |---|---|---|---|
 //! | [`SETTLED`] | `4 eps` | a correction below it changes the last digits of its unknown only | Newton's method, chord method, projection |
 //! | [`UNBIASED`] | `eps/64` | what a linear convergence leaves out has one sign in every step, and adds up over 10^6 of them | fixed points, assemblies |
+//! | [`HALF_A_UNIT`] | `eps/2` | as much as the rounding of the result | the implicit midpoint baseline |
 //! | [`SLIGHT`] | `64 eps` | momenta `M v` are rounded to `u M v` in some tens of operations | all: cheap, asked first |
 //! | [`ROUNDINGS`] | `8` | residual over the running error bound of its terms; Newton's method attains a small multiple of one (Tisseur 2001) | all: asked where corrections stall |
-//! | [`OF_CORRECTION`] | `64` | the same of `K d`, which has the rounding of the linear solution besides | assemblies |
+//! | [`OF_CORRECTION`] | `64` | the same, with the rounding of linear equations of some tens of unknowns | Lobatto stages, assemblies, refined corrections |
 //! | [`CYCLES`] | `64` | a fixed point that contracts by `L` goes round in `1/(1 - L)` roundings of its stages | fixed points |
 //! | [`NEAR_ROUNDINGS`] | `64` | a start that misses its equations by so few roundings is its solution | continuation |
 //! | [`BLIND`] | `1e-11` | the largest unknown, for equations that do not tell the sizes of their terms | users' own equations |
@@ -33,14 +34,17 @@ pub const SETTLED: f64 = 4.0 * f64::EPSILON;
 /// Relative change that a linear convergence may still leave.
 pub const UNBIASED: f64 = f64::EPSILON / 64.0;
 
+/// Relative change that a linear convergence may leave in a method that no bias is asked of: half a unit in the last place.
+pub const HALF_A_UNIT: f64 = f64::EPSILON / 2.0;
+
 /// Corrections below this part of the largest unknown are rounding where they stall.
 pub const SLIGHT: f64 = 64.0 * f64::EPSILON;
 
 /// A residual of so many roundings of its terms is rounding.
 pub const ROUNDINGS: f64 = 8.0;
 
-/// What a correction changes the equations by is rounding, of so many of their terms: where these are sums over many elements, and the
-/// correction carries the rounding of their solution too.
+/// A residual of so many roundings is rounding where corrections carry that of the linear equations too and cannot be refined further, or
+/// where what is looked at is what a correction changes the equations by.
 pub const OF_CORRECTION: f64 = 64.0;
 
 /// A guess with a residual of so many roundings is as good as the solution.

@@ -11,10 +11,10 @@ pub use gradient::Gradient;
 
 use crate::convergence::FixedPoint;
 use crate::positions::{affine_only, velocities_only};
-use crate::{OneStep, Stage, State, StepError, StepReport};
+use crate::{OneStep, StackUse, Stage, State, StepError, StepReport};
 use ends::Ends;
 use lagrangian::linear::larger;
-use lagrangian::{Bracket, Lanes, Scalar, System, Twofold, from_fn, vectorized};
+use lagrangian::{AT_ONCE, Bracket, Lanes, Scalar, System, Twofold, from_fn, vectorized};
 use path::{Path, Points};
 use rule::Rule;
 use start::Start;
@@ -78,6 +78,9 @@ impl Energy<1> {
 impl<Sys: System<N, M>, const S: usize, const N: usize, const M: usize> OneStep<Sys, N, M> for Energy<S> {
     #[inline]
     fn step(&mut self, system: &Sys, t0: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        if const { stack::<N>().exceeds::<N, M>() } {
+            return Err(stack::<N>().refusal::<N, M>());
+        }
         if Sys::MOVING {
             return Err(start::MOVING);
         }
@@ -92,6 +95,11 @@ impl<Sys: System<N, M>, const S: usize, const N: usize, const M: usize> OneStep<
         self.work = end.work;
         Ok(StepReport { work: Some(end.work), ..StepReport::of(end.iterations) })
     }
+}
+
+/// Eight places at once: of few coordinates a basis with its derivatives in all, of many with those along one after another.
+const fn stack<const N: usize>() -> StackUse {
+    StackUse { squares: if N <= AT_ONCE { 82 * (N + 1) } else { 440 }, rows: 24 }
 }
 
 const NO_BASIS: StepError = StepError::Unsupported {
@@ -185,7 +193,7 @@ impl<Sys, const N: usize> Step<'_, Sys, N> {
             let settled = settled.map_err(|source| StepError::Newton { stage: Stage::Collocation, source })?;
             if let Some(iterations) = settled {
                 let work = h * rule.weighted(&power);
-                self.check(&ends, work, &averages.steepest)?;
+                self.check(&ends, work, &averages.steepest, &path)?;
                 return Ok(self.end(&path, &points, work, iterations));
             }
         }
@@ -209,7 +217,13 @@ impl<Sys, const N: usize> Step<'_, Sys, N> {
 
     /// That the energy has changed by the work of the forces.
     #[inline(always)]
-    fn check<const M: usize>(&self, ends: &Ends, work: f64, steepest: &[f64; N]) -> Result<(), StepError>
+    fn check<const M: usize>(
+        &self,
+        ends: &Ends,
+        work: f64,
+        steepest: &[f64; N],
+        path: &Path<N>,
+    ) -> Result<(), StepError>
     where
         Sys: System<N, M>,
     {
@@ -217,18 +231,26 @@ impl<Sys, const N: usize> Step<'_, Sys, N> {
         let size = ends.rounded_size(self.start.state.q(), steepest);
         // An energy among the last numbers is rounded by as much as the least normal one is.
         let bound = (Self::ROUNDINGS * f64::EPSILON * size).max(f64::MIN_POSITIVE);
-        if defect.abs() <= bound { Ok(()) } else { self.check_at_rest(defect, bound) }
+        if defect.abs() <= bound { Ok(()) } else { self.check_at_rest((defect, bound), steepest, path) }
     }
 
-    /// The same where the motion is as small as the rounding of the place: the energy then changes by the second order of that, the
-    /// rounding of the forces times the way that it is off.
+    /// The same where the energy is small because its terms cancel, as on a way across a slope; or where the motion is as small as the
+    /// rounding of the place, by whose second order the energy then changes: the rounding of the forces times the way that it is off.
     #[cold]
     #[inline(never)]
-    fn check_at_rest<const M: usize>(&self, defect: f64, bound: f64) -> Result<(), StepError>
+    fn check_at_rest<const M: usize>(
+        &self,
+        (defect, bound): (f64, f64),
+        steepest: &[f64; N],
+        path: &Path<N>,
+    ) -> Result<(), StepError>
     where
         Sys: System<N, M>,
     {
-        let bound = bound + Self::ROUNDINGS * self.start.energy_rounding(self.system, self.t0, self.h);
+        let (way, _) = path.increments(self.rule, self.h);
+        let along: f64 = (0..N).map(|i| steepest[i] * way[i].abs()).sum();
+        let noise = f64::EPSILON * along + self.start.energy_rounding(self.system, self.t0, self.h);
+        let bound = bound + Self::ROUNDINGS * noise;
         if defect.abs() <= bound { Ok(()) } else { Err(StepError::Energy { defect, bound }) }
     }
 }

@@ -100,6 +100,9 @@ const CUT: i32 = i32::MAX / 2;
 impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<Sys, N, M> for GaussAdaptive<S> {
     #[inline]
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        if const { super::USE.exceeds::<N, M>() } {
+            return Err(super::USE.refusal::<N, M>());
+        }
         affine_only(system, t, state)?;
         let (quarters, start) = (self.quarters, *state);
         let found = self.cross(system, t, h, state, |_, _| ControlFlow::Continue(()));

@@ -11,7 +11,7 @@ pub use adaptive::GaussAdaptive;
 use crate::convergence::FixedPoint;
 use crate::convergence::tolerances::{LEFT, NOISE, OF_ROW};
 use crate::positions::{affine_only, onto_positions};
-use crate::{OneStep, Stage, State, StepError, StepReport};
+use crate::{OneStep, StackUse, Stage, State, StepError, StepReport};
 use ending::Ending;
 use lagrangian::linear::larger;
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
@@ -199,9 +199,15 @@ impl<const N: usize> Taken<N> {
     }
 }
 
+/// Of any number of stages: their slopes are few numbers.
+pub(crate) const USE: StackUse = StackUse { squares: 38, rows: 20 };
+
 impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<Sys, N, M> for Gauss<S> {
     #[inline]
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        if const { USE.exceeds::<N, M>() } {
+            return Err(USE.refusal::<N, M>());
+        }
         affine_only(system, t, state)?;
         let xi0 = state.quasi_velocities(system, t)?;
         let mut slopes = Slopes::ZERO;

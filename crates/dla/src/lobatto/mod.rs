@@ -10,7 +10,7 @@ use crate::dependent::{named_along, named_at};
 use crate::newton::{BlockEquations, Found};
 use crate::positions::affine_only;
 use crate::projection::{Projected, Projection};
-use crate::{Newton, NewtonError, OneStep, Stage, State, StepError, StepReport};
+use crate::{Newton, NewtonError, OneStep, StackUse, Stage, State, StepError, StepReport};
 use lagrangian::linear::largest;
 use lagrangian::{System, from_fn, momentum};
 use stages::Stages;
@@ -62,13 +62,16 @@ impl<const S: usize> Default for Lobatto<S> {
 }
 
 impl<const S: usize> Lobatto<S> {
+    /// The equations of all stages have `2 S N` unknowns at most.
+    const USE: StackUse = StackUse { squares: 4 * S * S + 50, rows: 30 };
+
     /// The method, with its coefficients computed to rounding.
     #[must_use]
     pub fn new() -> Self {
         Self { tables: Tables::new(), newton: Newton::default() }
     }
 
-    /// The stages that a search from `start` leads to, and in how many iterations; and whether they are those near the start: the
+    /// The stages that a search from `v` leads to, and in how many iterations; and whether they are those near the start: the
     /// search contracted, and began within `part` of its end, or where the two differ by the rounding of the place or of the
     /// equations.
     #[inline(always)]
@@ -76,13 +79,13 @@ impl<const S: usize> Lobatto<S> {
         &self,
         part: f64,
         stages: &mut Stages<'_, Sys, N, M, S>,
-        start: &[[f64; N]; S],
         v: &mut [[f64; N]; S],
     ) -> Result<(u32, bool), NewtonError> {
         let begun = *stages;
         let Found { iterations, first, certain } = self.newton.search_blocks(stages, v)?;
-        let near =
-            first <= part * largest(v.as_flattened()) || first <= begun.near() || begun.missed(start) <= NEAR_ROUNDINGS;
+        let near = first <= part * largest(v.as_flattened())
+            || first <= begun.near()
+            || first <= NEAR_ROUNDINGS * largest(&begun.velocity_rounding());
         Ok((iterations, certain && near))
     }
 
@@ -96,8 +99,8 @@ impl<const S: usize> Lobatto<S> {
         v0: [f64; N],
     ) -> Option<[[f64; N]; S]> {
         branch::followed(&[v0; S], 0.5 * branch::NEAR / turn, |part, guess| {
-            let (mut stages, start) = (Stages { h: part * whole.h, ..*whole }, *guess);
-            let near = self.found_near(0.1, &mut stages, &start, guess).ok()?.1;
+            let mut stages = Stages { h: part * whole.h, ..*whole };
+            let near = self.found_near(0.1, &mut stages, guess).ok()?.1;
             (near && stages.turn(guess) < PI).then_some(())
         })
     }
@@ -107,6 +110,9 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
     /// The impulses in the report are those of all stages, each shared between the two ends as a lever would.
     #[inline]
     fn step(&mut self, system: &Sys, t0: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        if const { Self::USE.exceeds::<N, M>() } {
+            return Err(Self::USE.refusal::<N, M>());
+        }
         affine_only(system, t0, state)?;
         let Tables { c, b, .. } = &self.tables;
         let (q0, v0) = (*state.q(), *state.v());
@@ -121,9 +127,9 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
         let mut impulses = [impulse; S];
         impulses[S - 1] = [0.0; M];
         let first = Stages { tables: &self.tables, system, t0, h, start: state, p0, impulses, before: impulses };
-        let (mut stages, begun) = (first, v);
+        let mut stages = first;
         let (mut iterations, near) = self
-            .found_near(0.3, &mut stages, &begun, &mut v)
+            .found_near(0.3, &mut stages, &mut v)
             .map_err(|source| named_along(system, (t0, h), *state, v0, source))?;
         let turn = stages.turn(&v);
         if !(near && turn <= branch::NEAR) {

@@ -1,4 +1,7 @@
-use lagrangian::{Dual, HyperDual, Rounded, System, configuration_slope, from_fn, mass_matrix, momentum};
+use lagrangian::{
+    ConstraintSlopes, Dual, Rounded, System, configuration_slope, from_fn, mass_matrix, momentum, second_in_both,
+    second_in_place,
+};
 
 /// A configuration and a velocity at one time, with the impulse of the constraint there.
 #[derive(Debug, Clone, Copy)]
@@ -36,12 +39,13 @@ pub struct Linearised<const N: usize, const M: usize> {
     pub a: [[f64; N]; M],
 }
 
-/// `p`, `w` and `g` of [`Linearised`], and the functions of constraints on positions, with bounds on their rounding.
+/// `p`, `w`, `g` and `a` of [`Linearised`], and the functions of constraints on positions, with bounds on their rounding.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Terms<const N: usize, const M: usize> {
     pub(super) p: [Rounded; N],
     pub(super) w: [Rounded; N],
     pub(super) g: [Rounded; M],
+    pub(super) a: [[f64; N]; M],
     pub(super) positions: [Option<Rounded>; M],
 }
 
@@ -74,7 +78,8 @@ impl<const N: usize, const M: usize> Point<N, M> {
             (0..M).fold(pushed, |sum, k| sum + a[k][i] * self.impulse[k])
         });
         let g = from_fn(|k| (0..N).fold(b[k], |sum, i| sum + a[k][i] * v[i]));
-        Terms { p: momentum(system, t, &q, &v), w, g, positions: system.holonomic(t, &q).unwrap_or([None; M]) }
+        let positions = system.holonomic(t, &q).unwrap_or([None; M]);
+        Terms { p: momentum(system, t, &q, &v), w, g, a: a.map(|row| row.map(|x| x.value)), positions }
     }
 
     /// All that the equations need here, with its derivatives.
@@ -82,13 +87,8 @@ impl<const N: usize, const M: usize> Point<N, M> {
     #[inline]
     pub fn linearised<Sys: System<N, M>>(&self, system: &Sys, h: f64) -> Linearised<N, M> {
         let Self { t, q, v, impulse } = self;
-        let (time, zero) = (HyperDual::fixed(*t), [0.0; N]);
-        let unit = |i: usize| from_fn(|k| if k == i { 1.0 } else { 0.0 });
-        let twice: [HyperDual<f64, N, N>; N] = from_fn(|i| HyperDual::linear(q[i], unit(i), unit(i)));
-        let in_q = system.lagrangian(time, &twice, &v.map(HyperDual::fixed));
-        let first: [HyperDual<f64, N, N>; N] = from_fn(|i| HyperDual::linear(q[i], unit(i), zero));
-        let second: [HyperDual<f64, N, N>; N] = from_fn(|i| HyperDual::linear(v[i], zero, unit(i)));
-        let mixed = system.lagrangian(time, &first, &second).e12;
+        let in_q = second_in_place(system, *t, q, v);
+        let mixed = second_in_both(system, *t, q, v).e12;
         let (p, p_v) = mass_matrix(system, *t, q, v);
 
         let mut w = in_q.e1.map(|x| h * x);
@@ -108,20 +108,9 @@ impl<const N: usize, const M: usize> Point<N, M> {
             }
         }
 
-        let (rows, b) = system.constraint(time, &Dual::variables(q));
-        let (mut g, mut g_q) = (b.map(|b: Dual<f64, N>| b.re), b.map(|b| b.eps));
-        for k in 0..M {
-            for i in 0..N {
-                let a: Dual<f64, N> = rows[k][i];
-                g[k] += a.re * v[i];
-                w[i] += a.re * impulse[k];
-                for j in 0..N {
-                    g_q[k][j] += a.eps[j] * v[i];
-                    w_q[i][j] += a.eps[j] * impulse[k];
-                }
-            }
-        }
+        let ConstraintSlopes { a, g, g_q } =
+            ConstraintSlopes::reacting(system, *t, (q, v), impulse, (&mut w, &mut w_q));
         let p_q = from_fn(|i| from_fn(|j| mixed[j][i]));
-        Linearised { p, p_q, p_v, w, w_q, w_v, g, g_q, a: rows.map(|row| row.map(|a| a.re)) }
+        Linearised { p, p_q, p_v, w, w_q, w_v, g, g_q, a }
     }
 }

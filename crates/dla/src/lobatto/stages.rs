@@ -6,7 +6,7 @@ use crate::branch;
 use crate::convergence::{most_roundings, rounding_of_place};
 use crate::newton::BlockEquations;
 use lagrangian::linear::Singular;
-use lagrangian::{Rounded, System, from_fn, position_misses};
+use lagrangian::{MotionRounding, Rounded, Saddle, System, from_fn, mass_matrix, position_misses, reaction_rows};
 
 /// The equations for the velocities of all stages of a step, with the impulses of the constraint at all but the last.
 pub(super) struct Stages<'a, Sys, const N: usize, const M: usize, const S: usize> {
@@ -62,7 +62,30 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> Stages<'
         })
     }
 
-    /// How many roundings of their terms the equations are missed by, at most, by these velocities and the impulses.
+    /// What the rounding of forces, and of the functions of constraints on positions, makes of the velocities over the step.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn velocity_rounding(&self) -> [f64; N] {
+        let Self { system, t0, h, start, .. } = *self;
+        let (q, v) = (start.q(), start.v());
+        let rounding = MotionRounding::at(system, t0, q, v);
+        let mut velocity = rounding.map_or([0.0; N], |rounding| rounding.acceleration.map(|a| (h * a).abs()));
+        if let Some(positions) = system.holonomic(Rounded::exact(t0), &q.map(Rounded::once)) {
+            let ((_, block), rows) = (mass_matrix(system, t0, q, v), reaction_rows(system, t0, q, v));
+            for k in 0..M {
+                let noise = positions[k].map_or(0.0, |g| 0.5 * f64::EPSILON * g.size / h);
+                let level = from_fn(|l| if l == k { noise } else { 0.0 });
+                let saddle = Saddle { block, transposed: rows, rows, right: [0.0; N], level };
+                if let Ok((moved, _)) = saddle.solve(system.admissible_basis(t0, q).as_ref()) {
+                    velocity = from_fn(|i| velocity[i] + moved[i].abs());
+                }
+            }
+        }
+        velocity
+    }
+
+    /// How many roundings of their terms the equations are missed by, at most, by these velocities and the impulses. Velocities meet the
+    /// constraints no better than the rounding of the forces lets them be known; at the nodes the projection sees to that.
     #[cold]
     #[inline(never)]
     pub(super) fn missed(&self, v: &[[f64; N]; S]) -> f64 {
@@ -79,11 +102,16 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> Stages<'
                 gained - terms[i].p[x]
             })
         });
+        let unknown = self.velocity_rounding();
         let rows = (1..S).flat_map(|i| {
-            let terms = &terms;
-            (0..M).map(move |k| match terms[i].positions[k] {
-                Some(g) => g / h,
-                None => terms[0].g[k] * blind[i] - terms[i].g[k],
+            let (terms, unknown) = (&terms, &unknown);
+            (0..M).map(move |k| {
+                let missed = match terms[i].positions[k] {
+                    Some(g) => g / h,
+                    None => terms[0].g[k] * blind[i] - terms[i].g[k],
+                };
+                let moved: f64 = (0..N).map(|x| terms[i].a[k][x].abs() * unknown[x]).sum();
+                Rounded { size: missed.size + 2.0 * moved / f64::EPSILON, ..missed }
             })
         });
         most_roundings(momenta.chain(rows))
@@ -91,10 +119,9 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> Stages<'
 
     /// The linear equations of Newton's method.
     #[inline]
-    fn equations(&self, points: &[Point<N, M>; S], at: &[Linearised<N, M>; S]) -> Dense<N, M, S> {
+    fn equations(&self, points: &[Point<N, M>; S], at: &[Linearised<N, M>; S], dense: &mut Dense<N, M, S>) {
         let Tables { a, a_hat, blind, .. } = self.tables;
         let h = self.h;
-        let mut dense = Dense::zero();
         // p_i - p0 - sum_j a_hat_ij w_j = 0
         for i in 0..S {
             for x in 0..N {
@@ -148,7 +175,6 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> Stages<'
                 }
             }
         }
-        dense
     }
 }
 
@@ -169,7 +195,9 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> BlockEqu
     fn correction(&mut self, v: &[[f64; N]; S]) -> Result<[[f64; N]; S], Singular> {
         let points = self.points(v);
         let at = points.map(|point| point.linearised(self.system, self.h));
-        let mut dense = self.equations(&points, &at);
+        // Filled where it stands: a second one would be on the stack beside it.
+        let mut dense = Dense::zero();
+        self.equations(&points, &at, &mut dense);
         dense.solve()?;
         let solution = dense.right();
         self.before = self.impulses;

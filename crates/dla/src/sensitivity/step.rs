@@ -2,7 +2,7 @@ use super::implicit::{Elementary, Seeder};
 use super::reduced::{Columns, Frame};
 use super::{Differentiable, SensitivityError, StepDerivative, Variation};
 use crate::convergence::tolerances::NEAR_ROUNDINGS;
-use crate::{OneStep, State, StepReport};
+use crate::{OneStep, StackUse, State, StepReport};
 use lagrangian::linear::{larger, largest};
 use lagrangian::{Gradients, Member, Parametrised, Scalar, Seeded, SeededMember, System, Unparametrised, from_fn};
 use nalgebra::DMatrix;
@@ -73,6 +73,9 @@ where
     }
 }
 
+/// Numbers carry eight directions here, and those of a step's equations a gradient of them or two.
+const USE: StackUse = StackUse { squares: 110, rows: 60 };
+
 impl<Sys, const N: usize, const M: usize, const P: usize> Sensitivity<'_, Sys, N, M, P> {
     /// The system.
     #[must_use]
@@ -94,6 +97,9 @@ impl<Sys, const N: usize, const M: usize, const P: usize> Sensitivity<'_, Sys, N
     where
         Method: OneStep<Sys, N, M> + Differentiable<N, M>,
     {
+        if const { USE.exceeds::<N, M>() } {
+            return Err(USE.refusal::<N, M>().into());
+        }
         let mut end = *state;
         let report = method.step(self.system, t, h, &mut end)?;
         let derivative = self.between(method, (t, h), state, &end, report)?;
@@ -116,6 +122,9 @@ impl<Sys, const N: usize, const M: usize, const P: usize> Sensitivity<'_, Sys, N
         end: &State<N>,
         report: StepReport<M>,
     ) -> Result<StepDerivative<N, M, P>, SensitivityError> {
+        if const { USE.exceeds::<N, M>() } {
+            return Err(USE.refusal::<N, M>().into());
+        }
         derivative(method, &*self.seeder, &self.parameters, time, start, end, report)
     }
 }

@@ -77,6 +77,17 @@ fn other_steps_are_the_method_s_own() {
     }
 }
 
+/// What is not a number, half way only, is no regularity.
+#[test]
+fn no_regularity_is_none() {
+    let (q, v) = BALL.level([0.0, 0.0, 1.0]);
+    let half_way = |_: &AngleBall, q: &[f64; 5]| if (0.04..0.06).contains(&q[4]) { f64::NAN } else { 1.0 };
+    let mut state = State::new(q, v, [false; 5]);
+    let error = InChart::new(Dla::midpoint(), CHART, half_way).step(&BALL, 0.0, 0.1, &mut state).unwrap_err();
+    assert!(matches!(error, StepError::Chart { regularity, .. } if regularity.is_nan()), "{error}");
+    assert_eq!(state, State::new(q, v, [false; 5]));
+}
+
 /// However long the step, no run gets past the end: the regularity alone, at nodes, might miss it.
 #[test]
 fn no_step_passes_the_end() {

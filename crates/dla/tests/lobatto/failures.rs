@@ -1,5 +1,5 @@
 use crate::systems::{Potential, at_centre, com};
-use dla::{Lobatto, NewtonError, OneStep, Stage, State, StepError};
+use dla::{Derivative, Lobatto, NewtonError, OneStep, Stage, State, StepError, SystemFunction};
 use lagrangian::{Constraint, Scalar, System};
 use sleigh::{Sleigh, SleighState};
 
@@ -88,11 +88,18 @@ fn a_step_far_too_long() {
 #[test]
 fn what_is_not_a_number() {
     let system = com(0.5, Potential::EggCrate);
-    for v in [[f64::NAN, 0.0, 0.1], [1.0, f64::INFINITY, 0.1], [1e308, -1e308, 1e300]] {
+    let error = |v: [f64; 3]| {
         let state = State::new([0.0; 3], v, system.angles());
-        let error = refused(&system, &mut Lobatto::<3>::new(), 0.1, &state);
+        refused(&system, &mut Lobatto::<3>::new(), 0.1, &state)
+    };
+    for v in [[f64::NAN, 0.0, 0.1], [1.0, f64::INFINITY, 0.1]] {
+        let error = error(v);
         assert!(matches!(error, StepError::Newton { .. }), "{error}");
     }
+    // Of velocities that are numbers it is the system whose kinetic energy is none.
+    let error = error([1e308, -1e308, 1e300]);
+    let StepError::NotANumber(found) = error else { panic!("{error}") };
+    assert_eq!((found.function, found.derivative), (SystemFunction::Lagrangian, Derivative::Value));
 }
 
 #[test]

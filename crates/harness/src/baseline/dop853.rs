@@ -1,7 +1,7 @@
 use super::reduced_point::ReducedPoint;
 use differential_equations::methods::{DormandPrince, ExplicitRungeKutta, Ordinary};
 use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
-use dla::{OneStep, OwnStep, State, StepError, StepReport};
+use dla::{OneStep, OwnStep, StackUse, State, StepError, StepReport};
 use lagrangian::{System, reduced_slope, velocity_of};
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -122,12 +122,22 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> ODE<f64, ReducedPoint<N,
     }
 }
 
+const USE: StackUse = StackUse { squares: 28, rows: 20 };
+
 impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Dop853<N, M> {
     #[inline]
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        if const { USE.exceeds::<N, M>() } {
+            return Err(USE.refusal::<N, M>());
+        }
         let xi0 = state.quasi_velocities(system, t)?;
-        self.cross(&Slopes::new(system, t, state), h, xi0, |_, _| ControlFlow::Continue(()))?;
-        moved(system, t + h, self.solver.y(), state)
+        match self.cross(&Slopes::new(system, t, state), h, xi0, |_, _| ControlFlow::Continue(())) {
+            Ok(_) => moved(system, t + h, self.solver.y(), state),
+            Err(error) => match at_rest::<Sys, N, M>(system, (t, h), state, &xi0) {
+                Some(point) => moved(system, t + h, &point, state),
+                None => Err(error),
+            },
+        }
     }
 
     fn memory(&self) -> Vec<f64> {
@@ -162,6 +172,24 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for D
         memory.extend(method.proposed);
         failure.map_or(Ok(()), Err)
     }
+}
+
+/// Where an interval leads in which nothing moves by as much as a number whose square is one: the library's measure of errors is a sum of
+/// squares, and refuses every step of a motion that has come so near to rest.
+#[cold]
+fn at_rest<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    (t, h): (f64, f64),
+    state: &State<N>,
+    xi: &[f64; N],
+) -> Option<ReducedPoint<N, M>> {
+    const LEAST: f64 = 1e-130;
+    let slope = reduced_slope(system, t, state.q(), xi).ok()?;
+    let rests = slope.velocity.iter().chain(&slope.acceleration).all(|x| (h * x).abs() < LEAST);
+    rests.then(|| ReducedPoint {
+        d: slope.velocity.map(|v| h * v),
+        xi: lagrangian::from_fn(|i| xi[i] + h * slope.acceleration[i]),
+    })
 }
 
 /// Moves a state to where an interval has led, at the time `t` (s).

@@ -1,6 +1,7 @@
 use super::shifted;
 use dla::convergence::FixedPoint;
-use dla::{OneStep, Stage, State, StepError, StepReport};
+use dla::convergence::tolerances::HALF_A_UNIT;
+use dla::{OneStep, StackUse, Stage, State, StepError, StepReport};
 use lagrangian::{MotionRounding, System};
 
 /// The implicit midpoint rule in full coordinates, the multiplier eliminated as in [`Rk4`](crate::Rk4).
@@ -40,7 +41,7 @@ impl ImplicitMidpoint {
             system.motion(t, q, v).map(|motion| motion.acceleration).map_err(StepError::Motion)
         };
         let mut a = motion(t0, q0, v0)?;
-        let mut convergence = FixedPoint::<1, N>::new(self.max_iterations);
+        let mut convergence = FixedPoint::<1, N>::new(self.max_iterations).to(HALF_A_UNIT);
         loop {
             let v = shifted(v0, 0.5 * h, &a);
             let next = motion(t0 + 0.5 * h, &shifted(q0, 0.5 * h, &v), &v)?;
@@ -56,9 +57,14 @@ impl ImplicitMidpoint {
     }
 }
 
+const USE: StackUse = StackUse { squares: 14, rows: 20 };
+
 impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for ImplicitMidpoint {
     #[inline]
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        if const { USE.exceeds::<N, M>() } {
+            return Err(USE.refusal::<N, M>());
+        }
         let (a, iterations) = self.acceleration(system, (t, h), state)?;
         let v0 = *state.v();
         let increment = shifted(&v0, 0.5 * h, &a).map(|v| h * v);

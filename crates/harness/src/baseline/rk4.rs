@@ -1,5 +1,5 @@
 use super::{STAGES, shifted, weighted};
-use dla::{OneStep, State, StepError, StepReport};
+use dla::{OneStep, StackUse, State, StepError, StepReport};
 use lagrangian::{Saddle, System, constraint_residual, from_fn, mass_matrix};
 
 /// The classical Runge-Kutta method in full coordinates.
@@ -48,9 +48,14 @@ pub(super) fn explicit<const N: usize, const M: usize>(
     Ok(StepReport::of(0))
 }
 
+const USE: StackUse = StackUse { squares: 14, rows: 20 };
+
 impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Rk4 {
     #[inline]
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        if const { USE.exceeds::<N, M>() } {
+            return Err(USE.refusal::<N, M>());
+        }
         let (dq, dv) = increments(system, t, h, state)?;
         let v = from_fn(|i| state.v()[i] + dv[i]);
         explicit(state, &dq, v, None)
@@ -60,6 +65,9 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for R
 impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Rk4Projected {
     #[inline]
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        if const { USE.exceeds::<N, M>() } {
+            return Err(USE.refusal::<N, M>());
+        }
         let (dq, dv) = increments(system, t, h, state)?;
         let v = from_fn(|i| state.v()[i] + dv[i]);
         let v = projected(system, t + h, &state.ahead(&dq), &v)?;

@@ -1,5 +1,5 @@
 use super::{STAGES, shifted, weighted};
-use dla::{OneStep, State, StepError, StepReport};
+use dla::{OneStep, StackUse, State, StepError, StepReport};
 use lagrangian::{System, reduced_slope, velocity_of};
 
 /// The classical Runge-Kutta method on the reduced equations.
@@ -9,9 +9,14 @@ use lagrangian::{System, reduced_slope, velocity_of};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Rk4Reduced;
 
+const USE: StackUse = StackUse { squares: 28, rows: 20 };
+
 impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Rk4Reduced {
     #[inline]
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        if const { USE.exceeds::<N, M>() } {
+            return Err(USE.refusal::<N, M>());
+        }
         let q0 = state.q();
         let xi0 = state.quasi_velocities(system, t)?;
         let (mut velocities, mut rates) = ([[0.0; N]; 4], [[0.0; N]; 4]);

@@ -7,6 +7,7 @@ mod chaos;
 mod charts;
 mod drift;
 mod ensembles;
+mod large;
 mod measures;
 mod precision;
 mod same_bits;

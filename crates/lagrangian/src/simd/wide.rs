@@ -251,6 +251,7 @@ impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
         }
     }
     #[inline(always)]
+    #[allow(clippy::redundant_closure, reason = "a function may stay a call, in which the registers are not known")]
     fn length<const K: usize>(components: &[Self; K]) -> Self {
         together(
             components,

@@ -124,9 +124,9 @@ fn digits_belong_to_one_spin() {
         let mut memory = Memory::EMPTY;
         let twice = (0..2).fold(ten, |omega, _| spin(omega, 0.05, &mut memory));
         if of_another {
-            memory.begin(0.05, 6.0)
+            memory.begin(0.05, 6.0);
         } else {
-            memory.forget()
+            memory.forget();
         }
         assert_eq!(spin(twice, 0.05, &mut memory), ten);
     }

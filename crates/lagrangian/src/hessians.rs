@@ -1,0 +1,99 @@
+use crate::second::{TwiceDifferentiable, second_derivatives, seed};
+use crate::{HyperDual, Scalar, System, from_fn};
+
+/// The Lagrangian at a state, as a function of the coordinates or the velocities.
+struct At<'a, Sys, S, const N: usize, const M: usize> {
+    system: &'a Sys,
+    t: S,
+    q: &'a [S; N],
+    v: &'a [S; N],
+}
+
+/// Both groups of variables are the velocities.
+struct InVelocity<'a, Sys, S, const N: usize, const M: usize>(At<'a, Sys, S, N, M>);
+
+/// Both are the coordinates.
+struct InPlace<'a, Sys, S, const N: usize, const M: usize>(At<'a, Sys, S, N, M>);
+
+/// The first are the coordinates, the second the velocities.
+struct InBoth<'a, Sys, S, const N: usize, const M: usize>(At<'a, Sys, S, N, M>);
+
+/// The Lagrangian, its momenta `L_v` in both gradients, and `L_vv`, the mass matrix; inlined, so that what is evaluated beside it in the
+/// same place shares the functions of the place.
+#[must_use]
+#[inline(always)]
+pub fn second_in_velocity<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
+    system: &Sys,
+    t: S,
+    q: &[S; N],
+    v: &[S; N],
+) -> HyperDual<S, N, N> {
+    second_derivatives(&InVelocity::<_, _, N, M>(At { system, t, q, v }))
+}
+
+/// The Lagrangian, `L_q` in both gradients, and `L_qq`.
+#[must_use]
+#[inline(always)]
+pub fn second_in_place<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
+    system: &Sys,
+    t: S,
+    q: &[S; N],
+    v: &[S; N],
+) -> HyperDual<S, N, N> {
+    second_derivatives(&InPlace::<_, _, N, M>(At { system, t, q, v }))
+}
+
+/// The Lagrangian, `L_q`, `L_v`, and the mixed block with row `i` and column `j` the derivative in `q_i` and `v_j`.
+#[must_use]
+#[inline(always)]
+pub fn second_in_both<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
+    system: &Sys,
+    t: S,
+    q: &[S; N],
+    v: &[S; N],
+) -> HyperDual<S, N, N> {
+    second_derivatives(&InBoth::<_, _, N, M>(At { system, t, q, v }))
+}
+
+impl<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize> TwiceDifferentiable<S, N>
+    for InVelocity<'_, Sys, S, N, M>
+{
+    const SYMMETRIC: bool = true;
+
+    #[inline(always)]
+    fn at<const P: usize>(&self, first: usize, second: usize) -> HyperDual<S, P, P> {
+        let At { system, t, q, v } = self.0;
+        let one = S::constant(1.0);
+        let in_v: [_; N] = from_fn(|i| HyperDual::linear(v[i], seed(one, i, first), seed(one, i, second)));
+        system.lagrangian(HyperDual::fixed(t), &q.map(HyperDual::fixed), &in_v)
+    }
+}
+
+impl<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize> TwiceDifferentiable<S, N>
+    for InPlace<'_, Sys, S, N, M>
+{
+    const SYMMETRIC: bool = true;
+
+    #[inline(always)]
+    fn at<const P: usize>(&self, first: usize, second: usize) -> HyperDual<S, P, P> {
+        let At { system, t, q, v } = self.0;
+        let one = S::constant(1.0);
+        let in_q: [_; N] = from_fn(|i| HyperDual::linear(q[i], seed(one, i, first), seed(one, i, second)));
+        system.lagrangian(HyperDual::fixed(t), &in_q, &v.map(HyperDual::fixed))
+    }
+}
+
+impl<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize> TwiceDifferentiable<S, N>
+    for InBoth<'_, Sys, S, N, M>
+{
+    const SYMMETRIC: bool = false;
+
+    #[inline(always)]
+    fn at<const P: usize>(&self, first: usize, second: usize) -> HyperDual<S, P, P> {
+        let At { system, t, q, v } = self.0;
+        let (one, zero) = (S::constant(1.0), [S::zero(); P]);
+        let in_q: [_; N] = from_fn(|i| HyperDual::linear(q[i], seed(one, i, first), zero));
+        let in_v: [_; N] = from_fn(|i| HyperDual::linear(v[i], zero, seed(one, i, second)));
+        system.lagrangian(HyperDual::fixed(t), &in_q, &in_v)
+    }
+}
