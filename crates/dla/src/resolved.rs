@@ -7,7 +7,7 @@ use lagrangian::linear::larger;
 /// A method may make a step that has little to do with the motion: the midpoint rule has a solution in a bowl that swings sixteen
 /// times within the step, and one for a sleigh that turns a million times. Such a step betrays itself in one of two ways.
 /// Its halves lead elsewhere; or, where they make the same mistake, the velocities at the nodes do not account for the way.
-/// Both are asked of each coordinate for itself, so that what is small beside the rest is resolved too.
+/// Velocities are asked of each coordinate for itself, so that what is small beside the rest is resolved too.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Halved {
     /// The velocities before the step, after its first half, after the second, and after the whole.
@@ -20,7 +20,8 @@ impl Halved {
     /// The halves and the whole may differ by this part of the largest of the velocities. Of a method of order 2, whose velocities
     /// differ by some `(h/T)^3/16`, that is a step of an eighth of a time constant `T`.
     const AGREEMENT: f64 = 1e-4;
-    /// And by this part of the way with that velocity, of which they miss `(h/T)^2/16`: a step of a tenth of a time constant.
+    /// And by this part of the way with the geometric mean of that velocity and the largest of all, of which they miss
+    /// `(h/T)^2/16`: a step of a tenth of a time constant. Where a coordinate turns back, its own velocity says nothing of its way.
     const AGREED_WAY: f64 = 5e-4;
     /// Simpson's rule may miss the way by this part of it. Through a turn by the angle `a` it misses `a^4/2880`, so that methods of
     /// high order may go on by nearly two radians a step.
@@ -38,14 +39,15 @@ impl Halved {
         Self::NOTHING * v + Self::ROUNDINGS * f64::EPSILON * q / h.abs() + Self::LEAST
     }
 
-    /// Whether a step of length `h` resolves the coordinate.
+    /// Whether a step of length `h` resolves the coordinate, where `all` is the largest velocity of all coordinates and
+    /// [`nothing`](Self::nothing) what is none.
     #[must_use]
-    pub fn is_resolved(&self, h: f64, nothing: f64) -> bool {
+    pub fn is_resolved(&self, h: f64, all: f64, nothing: f64) -> bool {
         let Self { v: [v0, middle, end, whole], moved: [halves, once] } = *self;
         let largest = self.v.iter().fold(0.0, |largest, v| larger(largest, *v));
         let simpson = (v0 + 4.0 * middle + end) / 6.0;
         (end - whole).abs() <= Self::AGREEMENT * largest + nothing
-            && (halves - once).abs() <= (Self::AGREED_WAY * largest + nothing) * h.abs()
+            && (halves - once).abs() <= (Self::AGREED_WAY * (largest * all).sqrt() + nothing) * h.abs()
             && (once - h * simpson).abs() <= (Self::WAY * largest + nothing) * h.abs()
     }
 
@@ -70,8 +72,9 @@ impl Halved {
             moved: [halves[i], once[i]],
         });
         let most = |of: &[f64]| of.iter().fold(0.0, |most, x| larger(most, *x));
-        let nothing = Self::nothing(h, most(&before.unwrapped()), most(all.map(|one| most(&one.v)).as_slice()));
-        let resolved = all.iter().all(|one| one.is_resolved(h, nothing));
+        let fastest = most(&all.map(|one| most(&one.v)));
+        let nothing = Self::nothing(h, most(&before.unwrapped()), fastest);
+        let resolved = all.iter().all(|one| one.is_resolved(h, fastest, nothing));
         if resolved { Ok(()) } else { Err(StepError::Unresolved) }
     }
 }

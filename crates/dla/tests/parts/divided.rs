@@ -39,7 +39,7 @@ fn divided_steps_keep_the_order() {
         let schedule = Schedule { t0: 0.0, step, steps };
         drive(&sleigh(0.5), &mut method, &schedule, &mut state, ()).unwrap();
         assert_eq!(method.divided(), steps);
-        assert!(method.parts() > 2 * steps && method.most() == 4, "{}", method.parts());
+        assert!(method.parts() > 2 * steps && method.most() > 2, "{}", method.parts());
         let right = Exact::new(&sleigh(0.5), &start()).unwrap().at(4.0);
         let end = SleighState::from_coordinates(&state.unwrapped(), state.v());
         [end.x - right.x, end.y - right.y, end.heading - right.heading, end.speed - right.speed]
@@ -62,15 +62,15 @@ fn divided_steps_keep_the_order() {
 /// Where every step resolves the motion, looking at its halves changes no bit.
 #[test]
 fn what_is_resolved_is_left_alone() {
-    let run = made(&sleigh(0.5), Dla::midpoint(), &start(), (0.01, 400));
+    let run = made(&sleigh(0.5), Gauss::<3>::default(), &start(), (0.05, 200));
     let (q, v) = start().to_coordinates();
     let mut state = State::new(q, v, [false, false, true]);
-    let schedule = Schedule { t0: 0.0, step: 0.01, steps: 400 };
-    drive::<Sleigh, _, _, 3, 1>(&sleigh(0.5), &mut Dla::midpoint(), &schedule, &mut state, ()).unwrap();
+    let schedule = Schedule { t0: 0.0, step: 0.05, steps: 200 };
+    drive::<Sleigh, _, _, 3, 1>(&sleigh(0.5), &mut Gauss::<3>::default(), &schedule, &mut state, ()).unwrap();
     let last = run.nodes.last().unwrap();
     assert_eq!((run.divided, run.parts, last.q, last.v), (0, 0, state.unwrapped(), *state.v()));
-    // The control: forty times the step.
-    assert!(made(&sleigh(0.5), Dla::midpoint(), &start(), (0.4, 10)).divided > 0);
+    // The control: eight times the step.
+    assert!(made(&sleigh(0.5), Dla::midpoint(), &start(), (0.4, 25)).divided > 0);
 }
 
 /// Makes what is long enough, and says how often it was asked.

@@ -84,5 +84,5 @@ pub(super) fn resolves(
     let place = (0..before.len()).fold(0.0, |most, i| larger(most, before.unwrapped(i)));
     let velocity = all().flat_map(|one| one.v).fold(0.0, larger);
     let nothing = Halved::nothing(h, place, velocity);
-    if all().all(|one| one.is_resolved(h, nothing)) { Ok(()) } else { Err(AssemblyError::Unresolved) }
+    if all().all(|one| one.is_resolved(h, velocity, nothing)) { Ok(()) } else { Err(AssemblyError::Unresolved) }
 }
