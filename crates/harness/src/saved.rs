@@ -47,11 +47,16 @@ pub fn run_saved<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
 ) -> Result<(Record<N>, Option<Trajectory<N, M>>), CheckpointError> {
     let Request { schedule, q, v, .. } = *request;
     let meter = Meter::new(request, method);
-    let mut run = match saving.from {
+    let loaded = match saving.from {
         Some(checkpoint) => {
             checkpoint.belongs_to(saving.identity)?;
-            Progressing::load(checkpoint, &schedule, system.angles(), meter, keep)?
+            Some(Progressing::load(checkpoint, &schedule, system.angles(), Meter::new(request, method), keep)?)
         }
+        None => None,
+    };
+    // What has made no step begins anew: its first node is shown again.
+    let mut run = match loaded.filter(|run| run.made > 0) {
+        Some(run) => run,
         None => Progressing {
             made: 0,
             state: State::new(q, v, system.angles()),

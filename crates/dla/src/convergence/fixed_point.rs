@@ -58,6 +58,14 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
         self
     }
 
+    /// That the last iteration led to where there is nothing to iterate.
+    #[cold]
+    #[must_use]
+    pub fn lost(&self) -> NewtonError {
+        let (correction, before) = (f64::INFINITY, self.least);
+        NewtonError::Diverged { iteration: self.iteration + 1, correction, before, history: self.history }
+    }
+
     /// Sees the largest changes and sizes of the components after an iteration; the iteration's number if it was the last. `noise`
     /// tells the rounding of the components, `2^-53` times the sums of the sizes of their terms; `least` is a rounding that all
     /// have.

@@ -144,7 +144,10 @@ impl<const S: usize> Gauss<S> {
                 let a = &self.coefficients[i];
                 let (dq, dxi) = (Self::sum(h, a, &stages.velocity), Self::sum(h, a, &stages.acceleration));
                 let (q, xi) = (from_fn(|k| q0[k] + dq[k]), from_fn(|k| xi0[k] + dxi[k]));
-                let slope = reduced_slope(system, t + self.nodes[i] * h, &q, &xi)?;
+                let fail = |source| StepError::Newton { stage: Stage::Collocation, source };
+                // The start has a slope: a stage without one is where the iteration has led.
+                let slope = reduced_slope(system, t + self.nodes[i] * h, &q, &xi);
+                let slope = slope.map_err(|_| fail(convergence.lost()))?;
                 let new = [slope.velocity, slope.acceleration];
                 let old = [stages.velocity[i], stages.acceleration[i]];
                 for (seen, (new, old)) in seen.iter_mut().zip(new.iter().zip(&old)) {
