@@ -53,11 +53,17 @@ fn where_nothing_is_divided_no_bit_is_changed() {
     }
 }
 
-fn saved(method: &Method, from: Option<&Checkpoint>, progress: &mut dyn Progress) -> (Record<3>, Vec<Checkpoint>) {
+/// Forty steps.
+fn saved(
+    method: &Method,
+    step: f64,
+    from: Option<&Checkpoint>,
+    progress: &mut dyn Progress,
+) -> (Record<3>, Vec<Checkpoint>) {
     let mut all = Vec::new();
     let mut save = |made: &Checkpoint| all.push(Checkpoint::from_text(&made.to_text()).unwrap());
     let mut saving = Saving { identity: &Checkpoint::default(), from, every: Some(7), save: &mut save };
-    let made = run_saved::<_, 3, 1>(&system(), method, &request(40, 0.15), &mut saving, None, progress);
+    let made = run_saved::<_, 3, 1>(&system(), method, &request(40, step), &mut saving, None, progress);
     (made.unwrap().0, all)
 }
 
@@ -70,12 +76,14 @@ fn bits(record: &Record<3>) -> String {
 fn every_checkpoint_leads_to_the_same_bits() {
     for name in ["dla", "dla-trapezoid", "dla4", "lobatto3", "gauss8", "energy4", "dop853"] {
         let method = in_parts(name);
-        let (whole, checkpoints) = saved(&method, None, &mut ());
-        assert_eq!(bits(&whole), bits(&run(&system(), &method, &request(40, 0.15), &mut ())), "{name}");
+        // Some of whose steps are divided: those of order 8 may be longer.
+        let step = if name == "gauss8" { 0.6 } else { 0.15 };
+        let (whole, checkpoints) = saved(&method, step, None, &mut ());
+        assert_eq!(bits(&whole), bits(&run(&system(), &method, &request(40, step), &mut ())), "{name}");
         assert!(name == "dop853" || whole.substeps.unwrap().divided > 0, "{name}");
         assert_eq!(checkpoints.len(), 6, "{name}");
         for checkpoint in &checkpoints {
-            assert_eq!(bits(&saved(&method, Some(checkpoint), &mut ()).0), bits(&whole), "{name}");
+            assert_eq!(bits(&saved(&method, step, Some(checkpoint), &mut ()).0), bits(&whole), "{name}");
         }
     }
 }
@@ -94,11 +102,11 @@ impl Progress for StopsAfter {
 #[test]
 fn a_run_that_is_stopped_within_a_step_goes_on_from_the_node_before() {
     let method = in_parts("dla");
-    let whole = saved(&method, None, &mut ()).0;
+    let whole = saved(&method, 0.15, None, &mut ()).0;
     for asked in [1, 50, 333] {
-        let (part, checkpoints) = saved(&method, None, &mut StopsAfter(std::cell::Cell::new(asked)));
+        let (part, checkpoints) = saved(&method, 0.15, None, &mut StopsAfter(std::cell::Cell::new(asked)));
         assert!(part.interrupted && part.steps < 40 && part.failure.is_none(), "{asked}: {}", part.steps);
-        assert_eq!(bits(&saved(&method, checkpoints.last(), &mut ()).0), bits(&whole), "{asked}");
+        assert_eq!(bits(&saved(&method, 0.15, checkpoints.last(), &mut ()).0), bits(&whole), "{asked}");
     }
 }
 
