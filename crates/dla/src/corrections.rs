@@ -4,7 +4,7 @@ use crate::increment::Increment;
 use crate::{Equations, State};
 use lagrangian::linear::{Singular, largest};
 use lagrangian::{
-    DiscreteConstraint, DiscreteLagrangian, FactoredSaddle, Rows, Saddle, System, from_fn, redundant_rows,
+    DiscreteConstraint, DiscreteLagrangian, FactoredSaddle, Rounded, Rows, Saddle, System, from_fn, redundant_rows,
 };
 
 /// The corrections of a search for the mean velocity of a step: Newton's own by one second-order evaluation, and simplified
@@ -21,6 +21,8 @@ pub(crate) struct Corrections<'e, 'a, Sys, L, C, const N: usize, const M: usize>
     jacobian: Option<Jacobian<N, M>>,
     /// The last correction, and what was known where it was made.
     last: Last<N>,
+    /// The correction before, which led there.
+    before: [f64; N],
     /// Whether the part of the momenta that the multipliers take up is left out of the equations: where it is large, its rounding in
     /// their solution is larger than that of what is left.
     refined: bool,
@@ -75,7 +77,16 @@ where
 {
     #[inline(always)]
     pub(crate) fn new(of: &'e Increment<'a, Sys, L, C, N, M>) -> Self {
-        Self { of, some: None, lambda: [0.0; M], positive: None, jacobian: None, last: Last::default(), refined: false }
+        Self {
+            of,
+            some: None,
+            lambda: [0.0; M],
+            positive: None,
+            jacobian: None,
+            last: Last::default(),
+            before: [0.0; N],
+            refined: false,
+        }
     }
 
     /// The derivatives of the last of Newton's own corrections, where it solved for all rows.
@@ -135,14 +146,17 @@ where
 {
     #[inline(always)]
     fn correction(&mut self, v: &[f64; N]) -> Result<[f64; N], Singular> {
+        self.before = self.last.correction;
         match self.simplified(v) {
             Some(correction) => Ok(correction),
             None => self.own_correction(v),
         }
     }
 
+    /// A velocity that was come to by a correction has the rounding of that one too.
     fn roundings(&self, v: &[f64; N]) -> Option<f64> {
-        Some(self.of.roundings(v, self.some))
+        let velocity = from_fn(|i| Rounded { value: v[i], size: v[i].abs() + self.before[i].abs() });
+        Some(self.of.roundings(&velocity, self.some))
     }
 
     #[inline(always)]

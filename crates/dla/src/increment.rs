@@ -170,23 +170,22 @@ where
         at
     }
 
-    /// How many roundings of their terms the equations at the mean velocity `v` are missed by, at most: those of the momenta at the
+    /// How many roundings of their terms the equations at the mean velocity are missed by, at most: those of the momenta at the
     /// beginning without what the multipliers take up, and the constraints, of which `some` may be all that are solved for.
     #[cold]
     #[inline(never)]
-    pub(crate) fn roundings(&self, v: &[f64; N], some: Option<Rows>) -> f64 {
+    pub(crate) fn roundings(&self, velocity: &[Rounded; N], some: Option<Rows>) -> f64 {
         let Self { rules: (lagrangian, constraint), system, t0, h, state, q0, p0, a0, .. } = *self;
         let (t, step, q) = (Rounded::exact(t0), Rounded::exact(h), q0.map(Rounded::exact));
-        let velocity = v.map(Rounded::once);
-        let [d1, _] = lagrangian.slopes(system, t, step, &q, &velocity);
-        let minus = lagrangian.forces(system, t, step, &q, &velocity).map(|(minus, _)| minus);
+        let [d1, _] = lagrangian.slopes(system, t, step, &q, velocity);
+        let minus = lagrangian.forces(system, t, step, &q, velocity).map(|(minus, _)| minus);
         let momenta = from_fn(|i| {
             let conservative = d1[i] + p0[i];
             minus.map_or(conservative, |minus| conservative + minus[i])
         });
-        let mut level = constraint.residual(system, t, step, &q, &velocity);
-        let q1 = state.ahead(&v.map(|v| h * v));
-        let end = from_fn(|i| Rounded { value: q1[i], size: q1[i].abs() + (h * v[i]).abs() });
+        let mut level = constraint.residual(system, t, step, &q, velocity);
+        let q1 = state.ahead(&velocity.map(|v| h * v.value));
+        let end = from_fn(|i| Rounded { value: q1[i], size: q1[i].abs() + (h * velocity[i].value).abs() });
         if let Some(positions) = system.holonomic(Rounded::exact(t0 + h), &end) {
             level = from_fn(|k| positions[k].map_or(level[k], |g| g / h));
         }

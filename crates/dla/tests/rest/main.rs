@@ -3,6 +3,9 @@
 #![allow(missing_docs, unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod balance;
+mod bicycle;
+mod disk;
 mod settling;
 mod small;
 mod systems;
+mod vectors;
