@@ -21,7 +21,7 @@ pub(crate) struct Corrections<'e, 'a, Sys, L, C, const N: usize, const M: usize>
     jacobian: Option<Jacobian<N, M>>,
     /// The last correction, and what was known where it was made.
     last: Last<N>,
-    /// The correction before, which led there.
+    /// The correction before the last, which led to where the last was made.
     before: [f64; N],
     /// Whether the part of the momenta that the multipliers take up is left out of the equations: where it is large, its rounding in
     /// their solution is larger than that of what is left.

@@ -5,7 +5,7 @@
 //! Schwab 2007, Linearized dynamics equations for the balance and steer of a bicycle, Proc. R. Soc. A 463, table 1 and appendix A. The axes are
 //! those of the paper, `z` downward.
 
-use super::vectors::{M3, V3, about, add, cross, dot, fixed, product, sub, transposed, turned};
+use super::vectors::{M3, V3, about, add, cross, dot, fixed, product, sub, transposed, turned, wheel};
 use dla::{Composition, Dla, Lobatto, OneStep, RunError, Schedule, State, consistent_start, drive};
 use lagrangian::{Constraint, Scalar, System};
 use nalgebra::{Matrix2, Matrix4, Vector4};
@@ -71,7 +71,7 @@ fn rates<S: Scalar>(p: &Parts<S>, q: &[S; 8], v: &[S; 8]) -> Rates<S> {
 /// The lowest point of the front wheel, from its centre.
 fn lowest<S: Scalar>(axle: V3<S>) -> V3<S> {
     let down = sub(fixed([0.0, 0.0, 1.0]), axle.map(|part| part * axle[2]));
-    let length = dot(down, down).sqrt();
+    let length = S::length(&down);
     down.map(|part| part * FRONT / length)
 }
 
@@ -79,12 +79,6 @@ fn lowest<S: Scalar>(axle: V3<S>) -> V3<S> {
 fn turning<S: Scalar>(m: M3<S>, w: V3<S>, [xx, yy, zz, xz]: [f64; 4]) -> S {
     let w = turned(transposed(m), w);
     w[0] * w[0] * xx + w[1] * w[1] * yy + w[2] * w[2] * zz + w[0] * w[2] * (2.0 * xz)
-}
-
-/// `w . I w` of a wheel: across its axle, along the axle.
-fn wheel<S: Scalar>(axle: V3<S>, w: V3<S>, across: f64, along: f64) -> S {
-    let spin = dot(w, axle);
-    (dot(w, w) - spin * spin) * across + spin * spin * along
 }
 
 impl System<8, 5> for Bicycle {
@@ -191,7 +185,7 @@ fn upright_and_at_rest_it_stays_so() {
     for (step, steps) in [(0.1, 50), (1e-2, 500), (1e-4, 500), (1e-6, 500)] {
         let stays = |name: &str, end: Result<State<8>, RunError>| {
             let state = end.unwrap_or_else(|error| panic!("{name}, step {step:e}: {error}"));
-            // It falls by 1/(some 3 rad/s): off upright by the rounding of its weight, growing by exp(3 t).
+            // It falls: what the rounding of its weight moves it off upright grows with time, by some 3/s.
             let (q, t) = (state.q(), step * steps as f64);
             let bound = 1e3 * f64::EPSILON * (4.0 * t).exp();
             assert!(q.iter().all(|q| q.abs() <= bound), "{name}, step {step:e}: {q:?}");

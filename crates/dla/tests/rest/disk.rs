@@ -4,7 +4,7 @@
 //! With `alpha` between disk and floor the centre rests if `Omega^2 sin(alpha) = 4 g/R` (Euler's disk without loss; O'Reilly 1996, The dynamics of
 //! rolling disks and sliding disks, Nonlinear Dynamics 10).
 
-use super::vectors::{add, cross, dot};
+use super::vectors::{add, cross, dot, wheel};
 use dla::convergence::tolerances::{OF_CORRECTION, ROUNDINGS};
 use dla::{Composition, Dla, Lobatto, OneStep, Schedule, State, drive};
 use lagrangian::{Constraint, Scalar, System};
@@ -24,8 +24,8 @@ impl System<5, 2> for Disk {
         let leaning = [cos * v[3], sin * v[3], v[2]];
         let turning = add(leaning, axle.map(|part| part * v[4]));
         let centre = add([v[0], v[1], zero], cross(leaning, up).map(|part| part * RADIUS));
-        let (spin, inertia) = (dot(turning, axle), 0.25 * RADIUS * RADIUS);
-        let rotation = (dot(turning, turning) - spin * spin) * inertia + spin * spin * (2.0 * inertia);
+        let inertia = 0.25 * RADIUS * RADIUS;
+        let rotation = wheel(axle, turning, inertia, 2.0 * inertia);
         (dot(centre, centre) + rotation) * 0.5 - lean_cos * (GRAVITY * RADIUS)
     }
     fn constraint<S: Scalar>(&self, _t: S, q: &[S; 5]) -> Constraint<S, 5, 2> {
@@ -49,8 +49,8 @@ fn rolls<Method: OneStep<Disk, 5, 2>>(name: &str, mut method: Method, alpha: f64
     let (q, v) = (state.q(), state.v());
     let centre = [q[0] + RADIUS * q[2].sin() * q[3].sin(), q[1] - RADIUS * q[2].cos() * q[3].sin()];
     // The spin of the disk itself, `w = alpha^2 Omega/2`, is the difference of two rates near `Omega`, whose equations are met to so many
-    // roundings in every step; these add up. It changes the balance by `d alpha = (C + m R^2)/A dw/Omega`, with moments of inertia `A = C/2`: six times as much.
-    // `Omega` changes with `alpha^(-1/2)`.
+    // roundings in every step; these add up. A change of `w` changes the balance by `d alpha = (C + m R^2)/A dw/Omega`, with moments
+    // of inertia `A = C/2`: six times as much. `Omega` changes with `alpha^(-1/2)`.
     let bound = 6.0 * roundings * 0.5 * f64::EPSILON / alpha * schedule.steps as f64;
     assert!((q[3] - lean).abs() <= bound * alpha, "{name}, {alpha:e}: lean off by {:e}", q[3] - lean);
     assert!((v[2] / rate - 1.0).abs() <= 0.5 * bound, "{name}, {alpha:e}: rate off by {:e}", v[2] / rate - 1.0);

@@ -30,6 +30,11 @@ pub fn product<S: Scalar>(a: M3<S>, b: M3<S>) -> M3<S> {
     let columns = transposed(b);
     transposed(columns.map(|column| turned(a, column)))
 }
+/// `w . I w` of a wheel: across its axle, along the axle.
+pub fn wheel<S: Scalar>(axle: V3<S>, w: V3<S>, across: f64, along: f64) -> S {
+    let spin = dot(w, axle);
+    (dot(w, w) - spin * spin) * across + spin * spin * along
+}
 /// The rotation about an axis of coordinates: 0, 1, 2.
 pub fn about<S: Scalar>(axis: usize, angle: S) -> M3<S> {
     let ((sin, cos), zero, one) = (angle.sin_cos(), S::zero(), S::constant(1.0));
