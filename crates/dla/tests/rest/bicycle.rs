@@ -21,14 +21,14 @@ const GRAVITY: f64 = 9.81;
 /// `q = (x, y, yaw, roll, pitch, steer, spin of the rear wheel, of the front wheel)`; `(x, y)` is the contact of the rear wheel.
 struct Bicycle;
 
-/// Where the parts are: the attitudes of frame and fork, the centres of the wheels, a point of the steering axis, the front axle.
+/// Where the parts are: the attitudes of frame and fork, the centres of the wheels, a point of the steering axis, the axles.
 struct Parts<S> {
     frame: M3<S>,
     fork: M3<S>,
     rear: V3<S>,
     head: V3<S>,
     front: V3<S>,
-    axle: V3<S>,
+    axles: [V3<S>; 2],
     up: V3<S>,
 }
 
@@ -51,12 +51,13 @@ fn parts<S: Scalar>(q: &[S; 8]) -> Parts<S> {
     let steering = product(about(1, S::constant(TILT)), product(about(2, q[5]), about(1, S::constant(-TILT))));
     let fork = product(frame, steering);
     let front = add(head, turned(fork, fixed([-TRAIL, 0.0, -FRONT])));
-    Parts { frame, fork, rear, head, front, axle: turned(fork, fixed([0.0, 1.0, 0.0])), up }
+    let axles = [frame, fork].map(|attitude| turned(attitude, fixed([0.0, 1.0, 0.0])));
+    Parts { frame, fork, rear, head, front, axles, up }
 }
 
 fn rates<S: Scalar>(p: &Parts<S>, q: &[S; 8], v: &[S; 8]) -> Rates<S> {
     let ahead = turned(about(2, q[2]), fixed([1.0, 0.0, 0.0]));
-    let rear_axle = turned(p.frame, fixed([0.0, 1.0, 0.0]));
+    let [rear_axle, front_axle] = p.axles;
     let lean = add([S::zero(), S::zero(), v[2]], ahead.map(|part| part * v[3]));
     let frame = add(lean, rear_axle.map(|part| part * v[4]));
     let rear = sub([v[0], v[1], S::zero()], cross(lean, p.up).map(|part| part * REAR));
@@ -64,7 +65,7 @@ fn rates<S: Scalar>(p: &Parts<S>, q: &[S; 8], v: &[S; 8]) -> Rates<S> {
     let axis = turned(p.frame, fixed([TILT.sin(), 0.0, TILT.cos()]));
     let fork = add(frame, axis.map(|part| part * v[5]));
     let front = add(head, cross(fork, sub(p.front, p.head)));
-    let wheels = [add(lean, rear_axle.map(|part| part * v[6])), add(fork, p.axle.map(|part| part * v[7]))];
+    let wheels = [add(lean, rear_axle.map(|part| part * v[6])), add(fork, front_axle.map(|part| part * v[7]))];
     Rates { frame, fork, wheels, rear, head, front }
 }
 
@@ -87,7 +88,7 @@ impl System<8, 5> for Bicycle {
         let u = rates(&p, q, v);
         let rider = turned(p.frame, fixed([0.3, 0.0, REAR - 0.9]));
         let bars = turned(p.fork, fixed([0.9 - WHEELBASE - TRAIL, 0.0, -0.7]));
-        let rear_axle = turned(p.frame, fixed([0.0, 1.0, 0.0]));
+        let [rear_axle, front_axle] = p.axles;
         let moved = |mass: f64, v: V3<S>| dot(v, v) * mass;
         let kinetic = moved(85.0, add(u.rear, cross(u.frame, rider)))
             + turning(p.frame, u.frame, [9.2, 11.0, 2.8, 2.4])
@@ -96,14 +97,14 @@ impl System<8, 5> for Bicycle {
             + moved(2.0, u.rear)
             + wheel(rear_axle, u.wheels[0], 0.0603, 0.12)
             + moved(3.0, u.front)
-            + wheel(p.axle, u.wheels[1], 0.1405, 0.28);
+            + wheel(front_axle, u.wheels[1], 0.1405, 0.28);
         let depths = (p.rear[2] + rider[2]) * 85.0 + (p.head[2] + bars[2]) * 4.0 + p.rear[2] * 2.0 + p.front[2] * 3.0;
         kinetic * 0.5 + depths * GRAVITY
     }
     /// The contacts rest: the rear one along and across the ground, the front one in the three directions of space.
     fn constraint<S: Scalar>(&self, _t: S, q: &[S; 8]) -> Constraint<S, 8, 5> {
         let (p, (sin, cos), zero, one) = (parts(q), q[2].sin_cos(), S::zero(), S::constant(1.0));
-        let touching = lowest(p.axle);
+        let touching = lowest(p.axles[1]);
         let columns: [V3<S>; 8] = lagrangian::from_fn(|i| {
             let u = rates(&p, q, &lagrangian::from_fn(|j| if i == j { one } else { zero }));
             add(u.front, cross(u.wheels[1], touching))
@@ -121,7 +122,7 @@ impl System<8, 5> for Bicycle {
     /// The front wheel touches the ground.
     fn holonomic<S: Scalar>(&self, _t: S, q: &[S; 8]) -> Option<[Option<S>; 5]> {
         let p = parts(q);
-        Some([None, None, None, None, Some(p.front[2] + lowest(p.axle)[2])])
+        Some([None, None, None, None, Some(p.front[2] + lowest(p.axles[1])[2])])
     }
     fn angles(&self) -> [bool; 8] {
         [false, false, true, false, false, false, true, true]
