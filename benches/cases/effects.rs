@@ -79,7 +79,7 @@ fn dla<Sys: System<3, M>, const M: usize>(system: &Sys, steps: u64) {
 }
 
 fn gauss<Sys: System<3, 1>>(system: &Sys, steps: u64) {
-    go(system, Gauss::<4>::default(), steps);
+    go(system, Gauss::new::<4>(), steps);
 }
 
 /// The same through a scene file.

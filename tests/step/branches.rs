@@ -149,9 +149,9 @@ fn spin(state: &State<3>, _h: f64) -> f64 {
 
 #[test]
 fn fixed_points_are_on_the_branch() {
-    let gauss4 = count(Gauss::<2>::default, |s, y, h| collocated::<2, 4>(s, y, h).map(|y| y[1]), spin);
-    let gauss8 = count(Gauss::<4>::default, |s, y, h| collocated::<4, 8>(s, y, h).map(|y| y[1]), spin);
-    let energy2 = count(Energy::<1>::default, |s, y, h| collocated::<1, 2>(s, y, h).map(|y| y[1]), spin);
+    let gauss4 = count(Gauss::new::<2>, |s, y, h| collocated::<2, 4>(s, y, h).map(|y| y[1]), spin);
+    let gauss8 = count(Gauss::new::<4>, |s, y, h| collocated::<4, 8>(s, y, h).map(|y| y[1]), spin);
+    let energy2 = count(Energy::new::<1>, |s, y, h| collocated::<1, 2>(s, y, h).map(|y| y[1]), spin);
     let midpoint = count(ImplicitMidpoint::default, by_midpoint, spin);
     for (name, count) in [("gauss4", gauss4), ("gauss8", gauss8), ("energy2", energy2), ("implicit-midpoint", midpoint)]
     {

@@ -111,8 +111,8 @@ where
     let outcome = match lab.method.info().kind {
         Kind::Dla => made(run, Dla::midpoint(), &mut state, &mut recorder),
         Kind::Lobatto3 => made(run, Lobatto::<3>::new(), &mut state, &mut recorder),
-        Kind::Gauss8 => made(run, Gauss::<4>::default(), &mut state, &mut recorder),
-        Kind::Energy2 => made(run, Energy::<1>::default(), &mut state, &mut recorder),
+        Kind::Gauss8 => made(run, Gauss::new::<4>(), &mut state, &mut recorder),
+        Kind::Energy2 => made(run, Energy::new::<1>(), &mut state, &mut recorder),
         Kind::Rk4Reduced => made(run, Rk4Reduced, &mut state, &mut recorder),
         _ => Ok(0),
     };

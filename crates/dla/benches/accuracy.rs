@@ -82,8 +82,8 @@ fn runs(of: &[f64], error: impl Fn(f64) -> Option<f64>, run: impl Fn(f64) -> Opt
 /// Errors and times of all runs of a case, then the least times to the errors.
 fn case<Sys: System<3, 1>>(name: &str, system: &Sys, start: ([f64; 3], [f64; 3])) {
     let system = black_box(system);
-    let equal = |steps: f64| end(system, start, Gauss::<8>::default(), steps as u64);
-    let own = |tolerance: f64| end(system, start, GaussAdaptive::<8>::new(tolerance), 1);
+    let equal = |steps: f64| end(system, start, Gauss::new::<8>(), steps as u64);
+    let own = |tolerance: f64| end(system, start, GaussAdaptive::new::<8>(tolerance), 1);
     let series = |tolerance: f64| end(system, start, Taylor::new(tolerance), 1);
     let exact = equal(400.0).unwrap();
     let distance = |q: [f64; 3]| (0..3).map(|k| (q[k] - exact[k]).abs()).fold(0.0, f64::max);

@@ -6,45 +6,44 @@ use crate::{OneStep, State, StepError, StepReport};
 /// multiplier from step to step must not be composed. Some of the sub-steps go backward. (Hairer, Lubich and Wanner 2006,
 /// Geometric Numerical Integration, section V.3; the book, (4.1).)
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Composition<Base, const STAGES: usize> {
+pub struct Composition<Base> {
     pub(crate) base: Base,
-    pub(crate) weights: [f64; STAGES],
+    weights: [f64; MOST],
+    stages: usize,
 }
 
-/// Mirrors the first weights about a centre that makes the sum one.
-fn mirrored<const STAGES: usize>(first: &[f64]) -> [f64; STAGES] {
-    let centre = 1.0 - 2.0 * first.iter().sum::<f64>();
-    lagrangian::from_fn(|i| first.get(i.min(STAGES - 1 - i)).copied().unwrap_or(centre))
-}
+/// As many stages as any composition here has.
+const MOST: usize = 15;
 
-impl<Base, const STAGES: usize> Composition<Base, STAGES> {
+impl<Base> Composition<Base> {
+    /// Of the base with the first weights, mirrored about a centre that makes the sum one.
+    fn mirrored(base: Base, first: &[f64]) -> Self {
+        let (centre, stages) = (1.0 - 2.0 * first.iter().sum::<f64>(), 2 * first.len() + 1);
+        let weight = |i: usize| first.get(i.min((stages - 1).saturating_sub(i))).copied().unwrap_or(centre);
+        Self { base, weights: lagrangian::from_fn(weight), stages }
+    }
+
     /// The parts of a step that its stages make, in their order; their sum is one.
     #[must_use]
-    pub fn weights(&self) -> &[f64; STAGES] {
-        &self.weights
+    pub fn weights(&self) -> &[f64] {
+        &self.weights[..self.stages.min(MOST)]
     }
-}
 
-impl<Base> Composition<Base, 5> {
     /// Suzuki's five stages of order 4 on a base of order 2 (Suzuki 1990, Phys. Lett. A 146, 319-323).
     #[must_use]
     pub fn suzuki4(base: Base) -> Self {
         let g = 1.0 / (4.0 - 4f64.cbrt());
-        Self { base, weights: mirrored(&[g, g]) }
+        Self::mirrored(base, &[g, g])
     }
-}
 
-impl<Base> Composition<Base, 9> {
     /// The nine stages of order 6 of Kahan and Li (1997, Math. Comp. 66, 1089-1099).
     #[must_use]
     pub fn kahan_li6(base: Base) -> Self {
         let first =
             [0.392_161_444_007_314_1, 0.332_599_136_789_359_44, -0.706_246_172_557_639_4, 0.082_213_596_293_550_8];
-        Self { base, weights: mirrored(&first) }
+        Self::mirrored(base, &first)
     }
-}
 
-impl<Base> Composition<Base, 15> {
     /// The fifteen stages of order 8 of Suzuki and Umeno, with the digits of McLachlan (1995, SIAM J. Sci. Comput. 16,
     /// 151-168; Hairer, Lubich and Wanner 2006, (V.3.12)).
     #[must_use]
@@ -58,11 +57,11 @@ impl<Base> Composition<Base, 15> {
             0.334_624_918_245_298_2,
             0.315_293_092_396_766_6,
         ];
-        Self { base, weights: mirrored(&first) }
+        Self::mirrored(base, &first)
     }
 }
 
-impl<Base, Sys, const N: usize, const M: usize, const STAGES: usize> OneStep<Sys, N, M> for Composition<Base, STAGES>
+impl<Base, Sys, const N: usize, const M: usize> OneStep<Sys, N, M> for Composition<Base>
 where
     Base: OneStep<Sys, N, M>,
 {
@@ -71,7 +70,8 @@ where
         let mut inner = *state;
         let mut total = StepReport::of(0);
         let mut done = 0.0;
-        for weight in self.weights {
+        for k in 0..self.stages.min(MOST) {
+            let weight = self.weights[k];
             let report = self.base.step(system, t + done * h, weight * h, &mut inner)?;
             done += weight;
             total = total.then(&report);

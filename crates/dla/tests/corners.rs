@@ -120,12 +120,12 @@ fn all(skate: Skate, heading: f64, speed: f64) -> Vec<(&'static str, State<3>, R
     add("lobatto4", run(skate, Lobatto::<4>::new(), start));
     add("gni", run(skate, Gni::new(Midpoint), start));
     if skate.basis {
-        add("gauss4", run(skate, Gauss::<2>::default(), start));
-        add("gauss8", run(skate, Gauss::<4>::default(), start));
-        add("gauss16", run(skate, Gauss::<8>::default(), start));
-        add("gauss-adaptive", run(skate, GaussAdaptive::<8>::new(1e-9), start));
-        add("energy2", run(skate, Energy::<1>::new(), start));
-        add("energy4", run(skate, Energy::<2>::new(), start));
+        add("gauss4", run(skate, Gauss::new::<2>(), start));
+        add("gauss8", run(skate, Gauss::new::<4>(), start));
+        add("gauss16", run(skate, Gauss::new::<8>(), start));
+        add("gauss-adaptive", run(skate, GaussAdaptive::new::<8>(1e-9), start));
+        add("energy2", run(skate, Energy::new::<1>(), start));
+        add("energy4", run(skate, Energy::new::<2>(), start));
     }
     found
 }

@@ -126,7 +126,7 @@ pub(crate) fn gauge(_program: &Program) -> Drawn {
     let layers = vec![
         drift("dla", nodes(&with, Dla::midpoint(), start, steps)),
         drift("dla, no gauge term", nodes(&without, Dla::midpoint(), start, steps)),
-        drift("energy2", nodes(&with, Energy::<1>::default(), start, steps)),
+        drift("energy2", nodes(&with, Energy::new::<1>(), start, steps)),
     ];
     Ok(in_time("A gauge term, which changes no motion", "E - E0, mean of 50 periods", Linear, layers))
 }

@@ -24,7 +24,7 @@ use mean::{Mean, Path};
 /// The energy-preserving method of order 2 of an assembly, whose joints and blades hold at every node: symmetric.
 ///
 /// Each body moves in the basis `W` of its own admissible velocities, `v = W xi`, as in the static
-/// [`Energy<1>`](dla::Energy). Joints, and blades under bodies that have no such basis, are constraints `C(q) xi = 0`, and
+/// [`Energy`](dla::Energy) of order 2. Joints, and blades under bodies that have no such basis, are constraints `C(q) xi = 0`, and
 /// `g(q) = 0` where they hold positions. From `(q0, xi0)` a step finds the mean quasi-velocities `x` and impulses `lambda` with
 ///
 /// ```text

@@ -16,7 +16,7 @@ fn one_sleigh_is_the_static_sleigh() {
         let _: [usize; 3] = alone.body("blade", system.clone());
         let (q, v) = SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() }.to_coordinates();
         let (mut state, mut fixed) = (State::new(&alone, &q, &v), dla::State::new(q, v, [false, false, true]));
-        let (mut method, mut reference) = (Energy::new(&alone, Solver::Best).unwrap(), dla::Energy::<1>::new());
+        let (mut method, mut reference) = (Energy::new(&alone, Solver::Best).unwrap(), dla::Energy::new::<1>());
         let h = 0.05;
         for k in 0..400 {
             method.step(&alone, f64::from(k) * h, h, &mut state).unwrap();

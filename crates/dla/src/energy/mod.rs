@@ -19,9 +19,9 @@ use path::{Path, Points};
 use rule::Rule;
 use start::Start;
 
-/// The energy-preserving collocation method with `S` Gauss nodes, of order `2 S`, for `S` from 1 to 4.
+/// The energy-preserving collocation method with `s` Gauss nodes, of order `2 s`, for `s` from 1 to 4.
 ///
-/// With `z = (q, pi)` and `z' = B(z) grad H` as in [`Bracket`], the path of a step is the polynomial `u` of degree `S` with
+/// With `z = (q, pi)` and `z' = B(z) grad H` as in [`Bracket`], the path of a step is the polynomial `u` of degree `s` with
 /// `u(0) = z0` and, at the Gauss nodes `c_i`,
 ///
 /// ```text
@@ -31,7 +31,7 @@ use start::Start;
 /// Since `B` is skew, `H(z1) - H(z0) = h sum_i b_i g_i . u'(c_i)` is the discrete work
 /// `h sum_i b_i F(u(c_i), q'(c_i)) . q'(c_i)` of the forces, and zero without them; with the forces taken at the velocity
 /// `q'(c_i)` of the path, a dissipative one can only lower the energy. The new velocity is `W(q1) xi1`, so the constraint
-/// holds too. Both are exact but for rounding. The method is symmetric. `S = 1` with the averaged gradient is the discrete
+/// holds too. Both are exact but for rounding. The method is symmetric. `s = 1` with the averaged gradient is the discrete
 /// gradient method `(z1 - z0)/h = B((z0 + z1)/2) DG(z0, z1)`.
 ///
 /// Cohen and Hairer 2011, BIT 51, 91-101; on `D*`, Celledoni, Farre Puiggali, Hoiseth and Martin de Diego 2019,
@@ -41,17 +41,24 @@ use start::Start;
 ///
 /// The system must have a basis of admissible velocities, `b = 0` and no explicit time; forces may depend on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Energy<const S: usize> {
+pub struct Energy {
     rule: Rule,
     gradient: Gradient,
     work: f64,
 }
 
-impl<const S: usize> Energy<S> {
-    /// The method with averaged gradients.
+impl Energy {
+    /// The method with `S` nodes, from one to four, and averaged gradients. The number is a value of the method and no part of its type:
+    /// a step is compiled once for all of them.
     #[must_use]
-    pub fn new() -> Self {
+    pub fn new<const S: usize>() -> Self {
         Self { rule: Rule::new::<S>(), gradient: Gradient::Average, work: 0.0 }
+    }
+
+    /// The method of order 2 with the given discrete gradient.
+    #[must_use]
+    pub fn with(gradient: Gradient) -> Self {
+        Self { gradient, ..Self::new::<1>() }
     }
 
     /// The discrete work of the forces over the last step (J): by so much the energy has changed.
@@ -61,21 +68,7 @@ impl<const S: usize> Energy<S> {
     }
 }
 
-impl<const S: usize> Default for Energy<S> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl Energy<1> {
-    /// The method of order 2 with the given discrete gradient.
-    #[must_use]
-    pub fn with(gradient: Gradient) -> Self {
-        Self { gradient, ..Self::new() }
-    }
-}
-
-impl<Sys: System<N, M>, const S: usize, const N: usize, const M: usize> OneStep<Sys, N, M> for Energy<S> {
+impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Energy {
     #[inline]
     fn step(&mut self, system: &Sys, t0: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
         if const { stack::<N>().exceeds::<N, M>() } {

@@ -32,7 +32,7 @@ pub(super) struct Rule {
 }
 
 /// With more nodes too few of the quadrature's digits are left.
-const MOST: usize = 4;
+pub(super) const MOST: usize = 4;
 
 /// One coefficient for each of the lanes, with twice the digits.
 #[derive(Debug, Clone, Copy, PartialEq)]

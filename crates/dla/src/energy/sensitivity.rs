@@ -1,3 +1,4 @@
+use super::rule::MOST;
 use super::{Energy, Gradient};
 use crate::sensitivity::{
     Differentiable, NO_BASIS, SensitivityError, StepEquations, StepStart, Unknowns, advanced, constrained, difference,
@@ -7,11 +8,11 @@ use lagrangian::{Dual, Gradients, Lanes, Scalar, Seeded, from_fn};
 
 /// In the rates of the path at the collocation nodes and the quasi-velocities at all of its points, which belong to its
 /// quasi-momenta, `W_a . L_v(q, W xi) = pi_a`.
-impl<const S: usize, const N: usize, const M: usize> Differentiable<N, M> for Energy<S> {
+impl<const N: usize, const M: usize> Differentiable<N, M> for Energy {
     fn guess(&self, v: &[f64; N]) -> Vec<f64> {
         // The start, then rates of q and of pi, then the quasi-velocities at nodes, points and end.
-        let rates = [&v[..], &[0.0; N][..dimension::<N, M>()]].concat().repeat(S);
-        [vec![0.0; N], rates, vec![0.0; (Lanes::COUNT + S + 1) * dimension::<N, M>()]].concat()
+        let rates = [&v[..], &[0.0; N][..dimension::<N, M>()]].concat().repeat(self.rule.stages);
+        [vec![0.0; N], rates, vec![0.0; (Lanes::COUNT + self.rule.stages + 1) * dimension::<N, M>()]].concat()
     }
 
     fn equations(
@@ -23,8 +24,9 @@ impl<const S: usize, const N: usize, const M: usize> Differentiable<N, M> for En
         let StepStart { t, h, q: q0, v: v0 } = *start;
         let (mut unknowns, dimension) = (Unknowns(z), dimension::<N, M>());
         let (xi0, eta): ([Seeded; N], [Seeded; M]) = (unknowns.take_some(dimension), unknowns.take());
-        let rates: [([Seeded; N], [Seeded; N]); S] = from_fn(|_| (unknowns.take(), unknowns.take_some(dimension)));
-        let (q_rates, pi_rates) = (rates.map(|(q, _)| q), rates.map(|(_, pi)| pi));
+        let stages = self.rule.stages;
+        let (q_rates, pi_rates): (Vec<[Seeded; N]>, Vec<[Seeded; N]>) =
+            (0..stages).map(|_| (unknowns.take(), unknowns.take_some(dimension))).unzip();
 
         let (a0, _) = model.constraint(t, &q0);
         let first = Point::at(model, t, &q0, &xi0)?;
@@ -39,29 +41,29 @@ impl<const S: usize, const N: usize, const M: usize> Differentiable<N, M> for En
             residual.extend(&missing[..dimension]);
             Ok(point)
         };
-        let (mut h_q, mut h_pi) = ([[Seeded::zero(); N]; S], [[Seeded::zero(); N]; S]);
+        let (mut h_q, mut h_pi) = ([[Seeded::zero(); N]; MOST], [[Seeded::zero(); N]; MOST]);
         for k in 0..Lanes::COUNT {
-            let weights: [f64; S] = from_fn(|i| self.rule.integrals_to_nodes()[i].rounded(k));
+            let weights: Vec<f64> = self.rule.integrals_to_nodes().iter().map(|weights| weights.rounded(k)).collect();
             let point = on_path(self.rule.nodes.0[k], &weights)?;
             let slope = point.energy_slope(model)?;
-            for i in 0..S {
+            for i in 0..stages {
                 let share = self.rule.averages()[i].rounded(k);
                 h_q[i] = from_fn(|x| h_q[i][x] + slope[x] * share);
                 h_pi[i] = from_fn(|x| h_pi[i][x] + point.xi[x] * share);
             }
         }
-        let mut points = Vec::with_capacity(S);
-        for i in 0..S {
-            let weights: [f64; S] = from_fn(|j| self.rule.integrals_to_points()[j].rounded(i));
+        let mut points = Vec::with_capacity(stages);
+        for i in 0..stages {
+            let weights: Vec<f64> = self.rule.integrals_to_points().iter().map(|weights| weights.rounded(i)).collect();
             points.push(on_path(self.rule.points.0[i], &weights)?);
         }
-        let b: [f64; S] = from_fn(|i| self.rule.b()[i].hi);
+        let b: Vec<f64> = self.rule.b().iter().map(|b| b.hi).collect();
         let end = on_path(1.0, &b)?;
 
         if self.gradient == Gradient::Gonzalez {
-            let (dq, dpi) = (q_rates.map(|k| k.map(|k| h * k)), pi_rates.map(|k| k.map(|k| h * k)));
-            for i in 0..S {
-                (h_q[i], h_pi[i]) = points[i].corrected(model, (&first, &end), (&dq[i], &dpi[i]))?;
+            for i in 0..stages {
+                let (dq, dpi) = (q_rates[i].map(|k| h * k), pi_rates[i].map(|k| h * k));
+                (h_q[i], h_pi[i]) = points[i].corrected(model, (&first, &end), (&dq, &dpi))?;
             }
         }
         for (i, point) in points.iter().enumerate() {

@@ -2,7 +2,7 @@ use super::ending::Ending;
 use super::lanes::{Outcome, Slopes, Stages};
 use super::memory::Memory;
 use super::pace::{degree, longer, quarters_of, roughest};
-use super::rule::{Eight, quarter_octaves};
+use super::rule::quarter_octaves;
 use super::{Gauss, Taken};
 use crate::positions::affine_only;
 use crate::{OneStep, OwnStep, State, StepError, StepReport};
@@ -14,15 +14,15 @@ use std::ops::ControlFlow;
 /// Gauss collocation with steps of its own within a step of the schedule, as many as a tolerance asks for.
 ///
 /// The highest Legendre coefficient of the slopes of a step tells how smooth the motion is along it: where coefficients fall
-/// off evenly, its power `2 S / (S - 1)` is about the error of the step. It is the same forward and backward in time. Steps
+/// off evenly, its power `2 s / (s - 1)` is about the error of the step. It is the same forward and backward in time. Steps
 /// are powers of the fourth root of two (s), so that the polynomial of one is continued into the next by a few fixed matrices.
 /// Stages are iterated to a fraction of the tolerance, not to rounding: on the constraint the method is by construction, but
 /// it is symmetric to the tolerance only, and what [`Gauss`] keeps over long runs it does not.
 ///
 /// (Compare Antonana, Makazaga and Murua 2017, Numer. Algorithms 76, 861-880.)
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GaussAdaptive<const S: usize> {
-    gauss: Gauss<S>,
+pub struct GaussAdaptive {
+    gauss: Gauss,
     tolerance: f64,
     /// How rough a step may be.
     aim: f64,
@@ -33,15 +33,15 @@ pub struct GaussAdaptive<const S: usize> {
     quarters: Option<i32>,
 }
 
-impl<const S: usize> GaussAdaptive<S> {
+impl GaussAdaptive {
     /// Steps tried within an interval before it is given up.
     pub const MAX_TRIES: u32 = 100_000;
 
-    /// The method with the tolerance `epsilon`: the error of a step is kept near `epsilon (1 + |y|)` in every component.
+    /// The method with `S` stages, from two to eight, and the tolerance `epsilon`: the error of a step is kept near `epsilon (1 + |y|)` in every component.
     #[must_use]
-    pub fn new(epsilon: f64) -> Self {
-        let (aim, degree) = (roughest::<S>(epsilon), degree::<S>(epsilon));
-        Self { gauss: Gauss::default(), tolerance: epsilon, aim, degree, quarters: None }
+    pub fn new<const S: usize>(epsilon: f64) -> Self {
+        let (aim, degree) = (roughest(S, epsilon), degree(S, epsilon));
+        Self { gauss: Gauss::new::<S>(), tolerance: epsilon, aim, degree, quarters: None }
     }
 }
 
@@ -56,7 +56,7 @@ struct Tried<const N: usize> {
 const CUT_BACK: i32 = 3;
 /// A step that should have been so much shorter, or more, is taken again.
 const REFUSED: i32 = -3;
-impl<const S: usize> GaussAdaptive<S> {
+impl GaussAdaptive {
     /// One step of length `h`; none where its stages do not converge.
     #[inline(always)]
     fn attempt<Sys: System<N, M>, const N: usize, const M: usize>(
@@ -67,7 +67,7 @@ impl<const S: usize> GaussAdaptive<S> {
         xi0: &[f64; N],
         slopes: &mut Slopes<N>,
     ) -> Option<Tried<N>> {
-        let rule = Eight::gauss::<S>()?;
+        let rule = self.gauss.rule;
         let (q0, epsilon) = (state.q(), self.tolerance);
         let counts = [q0, xi0].map(|y| y.map(|y| h.abs() / (epsilon * (1.0 + y.abs()))));
         let memory = &self.gauss.memory;
@@ -89,7 +89,7 @@ impl<const S: usize> GaussAdaptive<S> {
         if !roughness.is_finite() {
             return None;
         }
-        let longer = longer::<S>(roughness * epsilon / self.aim, rate, taken.iterations);
+        let longer = longer(rule.stages, roughness * epsilon / self.aim, rate, taken.iterations);
         Some(Tried { taken, longer })
     }
 }
@@ -97,7 +97,7 @@ impl<const S: usize> GaussAdaptive<S> {
 /// The length of a step cut at the end of an interval: far from all others.
 const CUT: i32 = i32::MAX / 2;
 
-impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<Sys, N, M> for GaussAdaptive<S> {
+impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for GaussAdaptive {
     #[inline]
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
         if const { super::USE.exceeds::<N, M>() } {
@@ -141,7 +141,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
     }
 }
 
-impl<const S: usize> GaussAdaptive<S> {
+impl GaussAdaptive {
     /// Crosses an interval, and shows where its steps end within it.
     #[inline(always)]
     fn cross<Sys: System<N, M>, const N: usize, const M: usize>(

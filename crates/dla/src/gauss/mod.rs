@@ -14,7 +14,6 @@ use crate::positions::{affine_only, onto_positions};
 use crate::{OneStep, StackUse, Stage, State, StepError, StepReport};
 use ending::Ending;
 use lagrangian::linear::larger;
-use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
 use lagrangian::simd::dispatch;
 use lagrangian::{System, from_fn, reduced_rounding, reduced_slope, velocity_of};
 use lanes::{Outcome, Slopes};
@@ -22,7 +21,7 @@ use memory::Memory;
 use rule::Eight;
 
 /// Gauss collocation on the constraint: the reduced equations `q' = W xi + v_b`, `xi' = ..` in the basis of admissible
-/// velocities, with `S` stages, of order `2 S`.
+/// velocities, with `s` stages, of order `2 s`.
 ///
 /// Symmetric, and on the constraint by construction. Stages are found by fixed-point iteration, which converges for steps
 /// below the time constants of the motion, until their changes are rounding; what does not settle is an error.
@@ -37,44 +36,39 @@ use rule::Eight;
 /// (The book, (4.6); Hairer, Lubich and Wanner 2006, section II.1.3; the stopping rule as in Antonana, Makazaga and Murua 2017, Numer.
 /// Algorithms 76, 861-880.)
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Gauss<const S: usize> {
-    pub(crate) nodes: [f64; S],
-    pub(crate) weights: [f64; S],
-    pub(crate) coefficients: [[f64; S]; S],
-    eight: Option<&'static Eight>,
+pub struct Gauss {
+    pub(crate) rule: &'static Eight,
+    /// Whether all stages may be computed at once.
+    together: bool,
     memory: Memory,
     /// Iterations after which the search is given up.
     pub max_iterations: u32,
 }
 
-impl<const S: usize> Default for Gauss<S> {
-    fn default() -> Self {
-        let eight = Eight::gauss::<S>();
-        let (nodes, weights, coefficients) = match eight {
-            Some(rule) => {
-                let some = |row: &[f64; 8]| -> [f64; S] { from_fn(|i| row[i]) };
-                (some(&rule.nodes), some(&rule.weights), from_fn(|i| from_fn(|j| rule.columns[j][i])))
-            }
-            None => {
-                let (nodes, weights) = gauss_legendre();
-                (nodes, weights, gauss_collocation(&nodes, &weights))
-            }
-        };
-        Self { nodes, weights, coefficients, eight, memory: Memory::NONE, max_iterations: 100 }
+/// The slopes of the stages, in the first places.
+struct Stages<const N: usize> {
+    velocity: [[f64; N]; 8],
+    acceleration: [[f64; N]; 8],
+}
+
+impl Gauss {
+    /// The method with `S` stages, from one to eight. The number is a value of the method and no part of its type: a step is compiled
+    /// once for all of them.
+    #[must_use]
+    pub fn new<const S: usize>() -> Self {
+        Self { rule: Eight::gauss::<S>(), together: true, memory: Memory::NONE, max_iterations: 100 }
     }
-}
 
-/// The slopes of the stages, and how far they have moved.
-struct Stages<const N: usize, const S: usize> {
-    velocity: [[f64; N]; S],
-    acceleration: [[f64; N]; S],
-}
+    /// The number of stages.
+    #[must_use]
+    pub fn stages(&self) -> usize {
+        self.rule.stages
+    }
 
-impl<const S: usize> Gauss<S> {
     /// The method with every stage computed by itself: the same map to round-off, and what lanes are tested against.
     #[must_use]
     pub fn one_by_one(self) -> Self {
-        Self { eight: None, ..self }
+        Self { together: false, ..self }
     }
 
     /// The stages all at once, their slopes left where they belong. None where they are to be found one by one.
@@ -87,8 +81,11 @@ impl<const S: usize> Gauss<S> {
         xi0: &[f64; N],
         slopes: &mut Slopes<N>,
     ) -> Option<Taken<N>> {
-        let rule = self.eight?;
-        let before = self.memory.rows(state).filter(|_| self.memory.is_of_length(h)).zip(rule.continued(S - 1, 0));
+        if !self.together {
+            return None;
+        }
+        let rule = self.rule;
+        let before = self.memory.rows(state).filter(|_| self.memory.is_of_length(h)).zip(rule.continued(rule.stages - 1, 0));
         let ending = Ending {
             left: LEFT,
             rounding: OF_ROW,
@@ -113,19 +110,20 @@ impl<const S: usize> Gauss<S> {
         slopes: &mut Slopes<N>,
     ) -> Result<Taken<N>, StepError> {
         let start = reduced_slope(system, t, q0, xi0)?;
-        let mut stages = Stages { velocity: [start.velocity; S], acceleration: [start.acceleration; S] };
+        let mut stages = Stages { velocity: [start.velocity; 8], acceleration: [start.acceleration; 8] };
         let iterations = self.solve(system, (t, h), (q0, xi0), &mut stages)?;
-        let increment = Self::sum(h, &self.weights, &stages.velocity);
-        let gain = Self::sum(h, &self.weights, &stages.acceleration);
-        let by_rows = |slopes: &[[f64; N]; S]| from_fn(|k| from_fn(|i| if i < S.min(8) { slopes[i][k] } else { 0.0 }));
+        let increment = self.sum(h, |j| self.rule.weights[j], &stages.velocity);
+        let gain = self.sum(h, |j| self.rule.weights[j], &stages.acceleration);
+        let count = self.stages();
+        let by_rows = |slopes: &[[f64; N]; 8]| from_fn(|k| from_fn(|i| if i < count { slopes[i][k] } else { 0.0 }));
         *slopes = Slopes { velocity: by_rows(&stages.velocity), acceleration: by_rows(&stages.acceleration) };
         Ok(Taken { increment, gain, iterations })
     }
 
-    /// The sum `h sum_j factors[j] slopes[j]`.
+    /// The sum `h sum_j factors(j) slopes[j]` over the stages.
     #[inline(always)]
-    fn sum<const N: usize>(h: f64, factors: &[f64; S], slopes: &[[f64; N]; S]) -> [f64; N] {
-        from_fn(|i| h * (0..S).map(|j| factors[j] * slopes[j][i]).sum::<f64>())
+    fn sum<const N: usize>(&self, h: f64, factor: impl Fn(usize) -> f64, slopes: &[[f64; N]; 8]) -> [f64; N] {
+        from_fn(|i| h * (0..self.stages()).map(|j| factor(j) * slopes[j][i]).sum::<f64>())
     }
 
     /// Iterates the slopes of the stages until they move by rounding only; returns how many times.
@@ -135,18 +133,18 @@ impl<const S: usize> Gauss<S> {
         system: &Sys,
         (t, h): (f64, f64),
         (q0, xi0): (&[f64; N], &[f64; N]),
-        stages: &mut Stages<N, S>,
+        stages: &mut Stages<N>,
     ) -> Result<u32, StepError> {
         let mut convergence = FixedPoint::<2, N>::new(self.max_iterations);
         loop {
             let mut seen = [[(0.0f64, 0.0f64); N]; 2];
-            for i in 0..S {
-                let a = &self.coefficients[i];
-                let (dq, dxi) = (Self::sum(h, a, &stages.velocity), Self::sum(h, a, &stages.acceleration));
+            for i in 0..self.stages() {
+                let a = |j: usize| self.rule.columns[j][i];
+                let (dq, dxi) = (self.sum(h, a, &stages.velocity), self.sum(h, a, &stages.acceleration));
                 let (q, xi) = (from_fn(|k| q0[k] + dq[k]), from_fn(|k| xi0[k] + dxi[k]));
                 let fail = |source| StepError::Newton { stage: Stage::Collocation, source };
                 // The start has a slope: a stage without one is where the iteration has led.
-                let slope = reduced_slope(system, t + self.nodes[i] * h, &q, &xi);
+                let slope = reduced_slope(system, t + self.rule.nodes[i] * h, &q, &xi);
                 let slope = slope.map_err(|_| fail(convergence.lost()))?;
                 let new = [slope.velocity, slope.acceleration];
                 let old = [stages.velocity[i], stages.acceleration[i]];
@@ -205,7 +203,7 @@ impl<const N: usize> Taken<N> {
 /// Of any number of stages: their slopes are few numbers.
 pub(crate) const USE: StackUse = StackUse { squares: 38, rows: 20 };
 
-impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<Sys, N, M> for Gauss<S> {
+impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Gauss {
     #[inline]
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
         if const { USE.exceeds::<N, M>() } {
@@ -219,7 +217,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
             None => self.in_turn(system, (t, h), (state.q(), &xi0), &mut slopes)?,
         };
         taken.apply(system, t + h, &xi0, state)?;
-        if self.eight.is_some() {
+        if self.together {
             self.memory.keep(&slopes, taken.iterations, (h, 0), state);
         }
         Ok(StepReport::of(taken.iterations))

@@ -11,24 +11,24 @@ const SHRINKING: [f64; 2] = [0.75, 1.75];
 /// And in so many iterations a search is to be over, between the two.
 const ITERATIONS: f64 = 12.0;
 
-/// How rough a step may be at the tolerance `epsilon`: its power `2 S / (S - 1)` is about the error of the step.
-pub(super) fn roughest<const S: usize>(epsilon: f64) -> f64 {
-    let s = S as f64;
+/// How rough a step may be at the tolerance `epsilon`: its power `2 s / (s - 1)` is about the error of the step.
+pub(super) fn roughest(stages: usize, epsilon: f64) -> f64 {
+    let s = stages as f64;
     SMOOTHNESS * epsilon.powf((s - 1.0) / (2.0 * s))
 }
 
 /// The degree of the polynomial by which the slopes of a step are continued to the next: the further they are allowed to be
 /// from it, the sooner it leads astray.
-pub(super) fn degree<const S: usize>(epsilon: f64) -> usize {
-    (1.5 - 0.5 * epsilon.log10()).clamp(0.0, S as f64 - 1.0) as usize
+pub(super) fn degree(stages: usize, epsilon: f64) -> usize {
+    (1.5 - 0.5 * epsilon.log10()).clamp(0.0, stages as f64 - 1.0) as usize
 }
 
 /// By how many quarter octaves the next step may be longer than one that was `rough` by what it may be, and whose changes shrank by
 /// `rate` in the last of its iterations.
 #[inline(always)]
-pub(super) fn longer<const S: usize>(rough: f64, rate: f64, iterations: u32) -> i32 {
-    // Roughness goes with the power S - 1 of the step.
-    let smooth = -octaves(larger(rough, 1e-300)) * (S as f64 - 1.0).recip();
+pub(super) fn longer(stages: usize, rough: f64, rate: f64, iterations: u32) -> i32 {
+    // Roughness goes with the power s - 1 of the step.
+    let smooth = -octaves(larger(rough, 1e-300)) * (stages as f64 - 1.0).recip();
     let shrinking = -octaves(larger(rate, 1e-3));
     let few = shrinking * f64::from(iterations) / ITERATIONS;
     let converging = shrinking - few.clamp(SHRINKING[0], SHRINKING[1]);
@@ -51,16 +51,16 @@ mod tests {
     /// search converges slowly, one with a long search may not.
     #[test]
     fn the_next_step_follows_from_the_last() {
-        assert!(longer::<8>(1e-9, 0.01, 8) == LONGER && longer::<8>(1e-300, 0.0, 1) == LONGER);
-        assert_eq!(longer::<8>(1e9, 0.01, 8), -SHORTER);
-        assert_eq!(longer::<8>(f64::INFINITY, 0.01, 8), -SHORTER);
-        assert!(longer::<8>(8.0, 0.01, 8) < longer::<8>(0.1, 0.01, 8));
-        assert!(longer::<8>(1e-9, 0.35, 3) > 0 && longer::<8>(1e-9, 0.35, 16) < 0);
+        assert!(longer(8, 1e-9, 0.01, 8) == LONGER && longer(8, 1e-300, 0.0, 1) == LONGER);
+        assert_eq!(longer(8, 1e9, 0.01, 8), -SHORTER);
+        assert_eq!(longer(8, f64::INFINITY, 0.01, 8), -SHORTER);
+        assert!(longer(8, 8.0, 0.01, 8) < longer(8, 0.1, 0.01, 8));
+        assert!(longer(8, 1e-9, 0.35, 3) > 0 && longer(8, 1e-9, 0.35, 16) < 0);
         for tolerance in [1e-2, 1e-5, 1e-8, 1e-11, 1e-14] {
-            assert!(roughest::<8>(tolerance) > roughest::<8>(0.1 * tolerance));
-            assert!(degree::<8>(tolerance) <= degree::<8>(0.1 * tolerance));
+            assert!(roughest(8, tolerance) > roughest(8, 0.1 * tolerance));
+            assert!(degree(8, tolerance) <= degree(8, 0.1 * tolerance));
         }
-        assert_eq!([1e-2, 1e-14, 0.0].map(degree::<8>), [2, 7, 7]);
-        assert_eq!(degree::<3>(1e-14), 2);
+        assert_eq!([1e-2, 1e-14, 0.0].map(|tolerance| degree(8, tolerance)), [2, 7, 7]);
+        assert_eq!(degree(3, 1e-14), 2);
     }
 }

@@ -14,7 +14,8 @@ pub(crate) struct Eight {
     pub(super) square: Square,
     /// The weights of the coefficient of the highest Legendre polynomial in the slopes.
     pub(crate) highest: [f64; 8],
-    stages: usize,
+    /// How many nodes there are.
+    pub(crate) stages: usize,
     /// What continues the slopes of one step to the nodes of the next, by the degree of the polynomial and the ratio of the lengths.
     continued: [OnceLock<[Square; (SHORTER + LONGER + 1) as usize]>; 8],
 }
@@ -26,10 +27,11 @@ pub(super) const LONGER: i32 = 2;
 pub(super) const SHORTER: i32 = 8;
 
 impl Eight {
-    /// The rule with `S` nodes; none for more than eight.
-    pub(crate) fn gauss<const S: usize>() -> Option<&'static Self> {
+    /// The rule with `S` nodes.
+    pub(crate) fn gauss<const S: usize>() -> &'static Self {
         static RULES: [OnceLock<Eight>; 9] = [const { OnceLock::new() }; 9];
-        RULES.get(S).map(|rule| rule.get_or_init(Self::compute::<S>))
+        const { assert!(1 <= S && S <= 8, "one to eight stages") };
+        RULES[S].get_or_init(Self::compute::<S>)
     }
 
     fn compute<const S: usize>() -> Self {
@@ -89,7 +91,7 @@ mod tests {
     }
 
     fn check<const S: usize>() {
-        let rule = Eight::gauss::<S>().expect("a rule of at most eight nodes");
+        let rule = Eight::gauss::<S>();
         for degree in 0..S {
             for quarters in -SHORTER..=LONGER {
                 let square = rule.continued(degree, quarters).expect("a ratio that steps have");

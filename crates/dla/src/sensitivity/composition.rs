@@ -3,13 +3,13 @@ use crate::Composition;
 use lagrangian::{Gradients, Seeded};
 
 /// By the chain rule through the sub-steps.
-impl<Base, const N: usize, const M: usize, const STAGES: usize> Differentiable<N, M> for Composition<Base, STAGES>
+impl<Base, const N: usize, const M: usize> Differentiable<N, M> for Composition<Base>
 where
     Base: Differentiable<N, M>,
 {
     fn fractions(&self) -> Vec<f64> {
         let inner = self.base.fractions();
-        self.weights.iter().flat_map(|weight| inner.iter().map(move |fraction| weight * fraction)).collect()
+        self.weights().iter().flat_map(|weight| inner.iter().map(move |fraction| weight * fraction)).collect()
     }
 
     fn carries_every_class(&self) -> bool {

@@ -9,10 +9,10 @@ use lagrangian::{Gradients, Scalar, Seeded, from_fn};
 /// v0 = W(q0) xi0 + v_b + A' eta,
 /// V_i = W(Q_i) Xi_i + v_b,      W_a . (d/dt L_v - L_q - F) = 0      along v' = W Xi'_i + W' Xi_i + v_b'.
 /// ```
-impl<const S: usize, const N: usize, const M: usize> Differentiable<N, M> for Gauss<S> {
+impl<const N: usize, const M: usize> Differentiable<N, M> for Gauss {
     fn guess(&self, v: &[f64; N]) -> Vec<f64> {
         let stage = [&v[..], &[0.0; N][..dimension::<N, M>()]].concat();
-        [vec![0.0; N], stage.repeat(S)].concat()
+        [vec![0.0; N], stage.repeat(self.stages())].concat()
     }
 
     fn equations(
@@ -24,17 +24,18 @@ impl<const S: usize, const N: usize, const M: usize> Differentiable<N, M> for Ga
         let StepStart { t, h, q: q0, v: v0 } = *start;
         let mut unknowns = Unknowns(z);
         let (xi0, eta): ([Seeded; N], [Seeded; M]) = (unknowns.take_some(dimension::<N, M>()), unknowns.take());
-        let stages: [([Seeded; N], [Seeded; N]); S] =
-            from_fn(|_| (unknowns.take(), unknowns.take_some(dimension::<N, M>())));
-        let (velocities, accelerations) = (stages.map(|(v, _)| v), stages.map(|(_, a)| a));
+        let count = self.stages();
+        let (velocities, accelerations): (Vec<[Seeded; N]>, Vec<[Seeded; N]>) =
+            (0..count).map(|_| (unknowns.take(), unknowns.take_some(dimension::<N, M>()))).unzip();
 
         let (a0, _) = model.constraint(t, &q0);
         let admissible = model.velocity(t, &q0, &xi0).ok_or(NO_BASIS)?;
         let mut residual = difference(&constrained(&admissible, &a0, &eta), &v0).to_vec();
-        for (i, coefficients) in self.coefficients.iter().enumerate() {
-            let t = t + h * self.nodes[i];
-            let (q, v) = (advanced(&q0, h, coefficients, &velocities), velocities[i]);
-            let xi = advanced(&xi0, h, coefficients, &accelerations);
+        for i in 0..count {
+            let t = t + h * self.rule.nodes[i];
+            let coefficients: [f64; 8] = from_fn(|j| self.rule.columns[j][i]);
+            let (q, v) = (advanced(&q0, h, &coefficients, &velocities), velocities[i]);
+            let xi = advanced(&xi0, h, &coefficients, &accelerations);
 
             let (carried, acceleration) = model.turned(t, &q, &xi, &accelerations[i]).ok_or(NO_BASIS)?;
             residual.extend(difference(&v, &carried));
@@ -42,8 +43,8 @@ impl<const S: usize, const N: usize, const M: usize> Differentiable<N, M> for Ga
             let basis = model.basis(t, &q).ok_or(NO_BASIS)?;
             residual.extend(basis.vectors().iter().map(|w| product(w, &forces)));
         }
-        let increment = advanced(&[Seeded::zero(); N], h, &self.weights, &velocities);
-        let xi1 = advanced(&xi0, h, &self.weights, &accelerations);
+        let increment = advanced(&[Seeded::zero(); N], h, &self.rule.weights, &velocities);
+        let xi1 = advanced(&xi0, h, &self.rule.weights, &accelerations);
         let q1 = from_fn(|i| q0[i] + increment[i]);
         let velocity = model.velocity(t + h, &q1, &xi1).ok_or(NO_BASIS)?;
         Ok(StepEquations { residual, increment, velocity })

@@ -37,7 +37,7 @@ fn a_run_is_refused_near_the_end() {
                 ("dla", 2e-4, refused(Dla::midpoint(), omega, step)),
                 ("dla4", 1e-5, refused(Composition::suzuki4(Dla::midpoint()), omega, step)),
                 ("lobatto3", 1e-5, refused(Lobatto::<3>::new(), omega, step)),
-                ("gauss8", 1e-8, refused(Gauss::<4>::default(), omega, step)),
+                ("gauss8", 1e-8, refused(Gauss::new::<4>(), omega, step)),
             ] {
                 println!("{name}, {omega:?}, h = {step}: {off:e} m at {time} s, {error}");
                 let StepError::Chart { chart, regularity, least, change } = error else { panic!("{name}: {error}") };
@@ -95,7 +95,7 @@ fn no_step_passes_the_end() {
         let step = 0.05 + 0.005 * f64::from(k);
         let (q, v) = BALL.level([0.01, 1.0, 0.0]);
         let mut state = State::new(q, v, [false; 5]);
-        let mut method = guarded(Gauss::<8>::default());
+        let mut method = guarded(Gauss::new::<8>());
         let mut t = 0.0;
         let error = loop {
             match method.step(&BALL, t, step, &mut state) {

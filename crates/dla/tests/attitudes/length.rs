@@ -40,11 +40,11 @@ fn on_positions_it_holds_for_ever() {
     held("dla-trapezoid", off(&ball, Dla::new(Trapezoid, Trapezoid), STEPS));
     held("dla4", off(&ball, Composition::suzuki4(Dla::midpoint()), STEPS / 5));
     held("lobatto3", off(&ball, Lobatto::<3>::new(), STEPS / 10));
-    held("gauss4", off(&ball, Gauss::<2>::default(), STEPS / 10));
-    held("gauss8", off(&ball, Gauss::<4>::default(), STEPS / 10));
+    held("gauss4", off(&ball, Gauss::new::<2>(), STEPS / 10));
+    held("gauss8", off(&ball, Gauss::new::<4>(), STEPS / 10));
     let suslov = Suslov::new([1.0, 2.0, 1.5], 0.3, 0.5).unwrap();
     held("Suslov, dla", off(&suslov, Dla::midpoint(), STEPS));
-    held("Suslov, gauss8", off(&suslov, Gauss::<4>::default(), STEPS / 10));
+    held("Suslov, gauss8", off(&suslov, Gauss::new::<4>(), STEPS / 10));
 }
 
 /// By its rate alone it is kept by what keeps functions of second degree: what adds up are the roundings of increments, which are
@@ -57,9 +57,9 @@ fn by_its_rate_it_walks() {
         ("dla", off(&ball, Dla::midpoint(), STEPS), STEPS),
         ("dla-trapezoid", off(&ball, Dla::new(Trapezoid, Trapezoid), STEPS), STEPS),
         ("dla4", off(&ball, Composition::suzuki4(Dla::midpoint()), STEPS / 5), STEPS / 5),
-        ("gauss8", off(&ball, Gauss::<4>::default(), STEPS / 10), STEPS / 10),
-        ("energy2", off(&ball, Energy::<1>::new(), STEPS / 10), STEPS / 10),
-        ("energy4", off(&ball, Energy::<2>::new(), STEPS / 10), STEPS / 10),
+        ("gauss8", off(&ball, Gauss::new::<4>(), STEPS / 10), STEPS / 10),
+        ("energy2", off(&ball, Energy::new::<1>(), STEPS / 10), STEPS / 10),
+        ("energy4", off(&ball, Energy::new::<2>(), STEPS / 10), STEPS / 10),
     ] {
         println!("{name}: {off:e} after {steps} steps");
         assert!(off <= walk(steps), "{name}: {off:e}");
@@ -74,7 +74,7 @@ fn by_its_rate_it_walks() {
 fn what_cannot_hold_it_refuses() {
     let ball = ball();
     let (q, v) = ball.start();
-    for method in [&mut Energy::<2>::new() as &mut dyn OneStep<ChaplyginBall, 6, 3>, &mut Gni::default()] {
+    for method in [&mut Energy::new::<2>() as &mut dyn OneStep<ChaplyginBall, 6, 3>, &mut Gni::default()] {
         let mut state = State::new(q, v, ball.angles());
         let error = method.step(&ball, 0.0, 0.01, &mut state).unwrap_err();
         assert!(matches!(error, StepError::Unsupported { reason } if reason.contains("positions")), "{error}");

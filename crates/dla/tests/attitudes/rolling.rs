@@ -77,20 +77,20 @@ fn a_homogeneous_ball_rolls_straight() {
                     ("dla", by_quaternions(ball, Dla::midpoint(), &level, run)),
                     ("dla4", by_quaternions(ball, four, &level, run)),
                     ("lobatto3", by_quaternions(ball, Lobatto::<3>::new(), &level, run)),
-                    ("gauss8", by_quaternions(ball, Gauss::<4>::default(), &level, run)),
+                    ("gauss8", by_quaternions(ball, Gauss::new::<4>(), &level, run)),
                 ] {
                     to_rounding(&format!("{name}, {form}, {omega:?}"), found, step);
                 }
             }
             // The place has the method's order; energy and constraints do not know it.
-            let [place, energy, slip] = by_quaternions(ball().norm_by_rate(), Energy::<2>::new(), &level, run);
+            let [place, energy, slip] = by_quaternions(ball().norm_by_rate(), Energy::new::<2>(), &level, run);
             println!("energy4, {omega:?}, h = {step}: {place:e}");
             assert!(energy <= rounding(step) && slip <= rounding(step));
             assert!(place <= 3e-3 * step.powi(4) + rounding(step), "{place:e}");
         }
     }
     let by_energy =
-        |step: f64| by_quaternions(ball().norm_by_rate(), Energy::<2>::new(), &Attitude::LEVEL, (TURNS[3], step))[0];
+        |step: f64| by_quaternions(ball().norm_by_rate(), Energy::new::<2>(), &Attitude::LEVEL, (TURNS[3], step))[0];
     assert_order("energy4", [0.4, 0.2, 0.1, 0.05].map(by_energy), 4.0);
 }
 
@@ -136,8 +136,8 @@ fn both_charts_are_one_motion() {
         (ChaplyginBall::new(1.2, 0.7, inertia).unwrap(), AngleBall { mass: 1.2, radius: 0.7, inertia });
     let steps = (0.01, 300);
     let (_, by_quaternions) =
-        largest(&ours, &mut Gauss::<4>::default(), ours.rolling([0.0; 2], &Attitude::LEVEL, omega), steps, |_| [0.0]);
-    let (_, by_angles) = largest(&theirs, &mut Gauss::<4>::default(), theirs.level(omega), steps, |_| [0.0]);
+        largest(&ours, &mut Gauss::new::<4>(), ours.rolling([0.0; 2], &Attitude::LEVEL, omega), steps, |_| [0.0]);
+    let (_, by_angles) = largest(&theirs, &mut Gauss::new::<4>(), theirs.level(omega), steps, |_| [0.0]);
     let (ours, theirs) = (by_quaternions.unwrap(), by_angles.unwrap());
     let [alpha, beta, gamma] = [2, 3, 4].map(|i| theirs.unwrapped()[i]);
     let about = |axis: [f64; 3], angle: f64| Attitude::about(axis, angle);

@@ -37,7 +37,7 @@ fn the_centre_runs_its_circle() {
     assert_order("dla", errors(&Dla::midpoint()), 2.0);
     assert_order("dla4", errors(&Composition::suzuki4(Dla::midpoint())), 4.0);
     assert_order("lobatto3", errors(&Lobatto::<3>::new()), 4.0);
-    assert_order("gauss4", errors(&Gauss::<2>::default()), 4.0);
+    assert_order("gauss4", errors(&Gauss::new::<2>()), 4.0);
 }
 
 /// The variational methods keep the moving energy of this ball to round-off, Gauss collocation keeps it near, by its order;
@@ -53,8 +53,8 @@ fn moving_energy() {
         println!("{name}: moving energy {kept:e}, energy {lost:e}");
         assert!(kept <= walk && lost > 0.5, "{name}: moving energy {kept:e}, energy {lost:e}");
     }
-    let [short, _] = energies(&mut Gauss::<2>::default(), steps / 10);
-    let [long, _] = energies(&mut Gauss::<2>::default(), steps);
+    let [short, _] = energies(&mut Gauss::new::<2>(), steps / 10);
+    let [long, _] = energies(&mut Gauss::new::<2>(), steps);
     println!("gauss4: moving energy {short:e}, {long:e}");
     assert!(short > 1e-8 && long <= 1.01 * short);
 }
@@ -65,7 +65,7 @@ fn contact_and_quaternion_hold() {
     let ball = ball();
     for [g, slip] in [
         misses(&ball, &mut Dla::midpoint(), ball.start(), 0.05, 100_000),
-        misses(&ball, &mut Gauss::<2>::default(), ball.start(), 0.05, 10_000),
+        misses(&ball, &mut Gauss::new::<2>(), ball.start(), 0.05, 10_000),
     ] {
         println!("g {g:e}, slip {slip:e}");
         assert!(g <= 1e-14 && slip <= 1e-14);

@@ -64,7 +64,7 @@ fn orders_beside_constrained_positions() {
     assert_order("dla, multipliers", errors(&Dla::midpoint().solved(Form::Multipliers), &sleigh), 2.0);
     assert_order("dla4", errors(&Composition::suzuki4(Dla::midpoint()), &sleigh), 4.0);
     assert_order("lobatto3", errors(&Lobatto::<3>::new(), &sleigh), 4.0);
-    assert_order("gauss4", errors(&Gauss::<2>::default(), &sleigh), 4.0);
+    assert_order("gauss4", errors(&Gauss::new::<2>(), &sleigh), 4.0);
 }
 
 /// Symmetric methods return; the projection of the positions costs Gauss collocation that.
@@ -79,7 +79,7 @@ fn the_step_is_symmetric() {
         distance(&turned, &(State::new(q, v, [false, false, true]).unwrapped(), v))
     }
     let [dla, lobatto, gauss] =
-        [back(&mut Dla::midpoint()), back(&mut Lobatto::<3>::new()), back(&mut Gauss::<2>::default())];
+        [back(&mut Dla::midpoint()), back(&mut Lobatto::<3>::new()), back(&mut Gauss::new::<2>())];
     println!("there and back: dla {dla:e}, lobatto3 {lobatto:e}, gauss4 {gauss:e}");
     assert!(dla <= 1e-11 && lobatto <= 1e-11);
     assert!(gauss > 1e-10, "no longer a control: {gauss:e}");
@@ -98,7 +98,7 @@ fn methods_that_would_drift_refuse() {
         assert_eq!(state, start);
         method.step(&pseudo, 0.0, 0.01, &mut state).unwrap();
     };
-    check(&mut Energy::<1>::new());
+    check(&mut Energy::new::<1>());
     check(&mut Gni::default());
 }
 

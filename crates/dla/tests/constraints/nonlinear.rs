@@ -65,7 +65,7 @@ fn methods_for_affine_constraints_refuse() {
         assert!(matches!(outcome, Err(StepError::Unsupported { .. })), "{outcome:?}");
     };
     refused(&mut Lobatto::<3>::new());
-    refused(&mut Gauss::<2>::default());
-    refused(&mut Energy::<1>::new());
+    refused(&mut Gauss::new::<2>());
+    refused(&mut Energy::new::<1>());
     refused(&mut Gni::default());
 }

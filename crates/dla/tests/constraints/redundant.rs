@@ -121,7 +121,7 @@ fn redundant_rows_are_named() {
     assert_eq!((step, found.dependency, found.rows), (1, Dependency::Redundant, Rows::from_iter(0..3)));
     assert_eq!(state, start);
     // In a basis that it does not have.
-    let error = run(&third_row(0.0, 0.0), Gauss::<2>::default(), &mut state).unwrap_err();
+    let error = run(&third_row(0.0, 0.0), Gauss::new::<2>(), &mut state).unwrap_err();
     assert!(matches!(error.source, StepError::Reduced(_)), "{error}");
 }
 

@@ -137,7 +137,7 @@ fn the_energy_methods_balance_to_rounding() {
     let system: Laden<Sleigh> = laden(sleigh(), effects);
     let mut seen = Balance::default();
     let count = 20_000;
-    run(&system, &mut Energy::<2>::new(), &steps(0.05, count), moving().to_coordinates(), &mut seen);
+    run(&system, &mut Energy::new::<2>(), &steps(0.05, count), moving().to_coordinates(), &mut seen);
     println!("energy4 over {count} steps: balance {:.1e}, energy {:.1e}", seen.worst, seen.unpaid);
     // The energies and works are below 1 J; each step rounds a few of them, and the roundings walk at random.
     assert!(seen.worst < 8.0 * f64::EPSILON * (count as f64).sqrt(), "{seen:?}");

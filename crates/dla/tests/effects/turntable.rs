@@ -34,10 +34,10 @@ fn the_energy_methods_refuse_it() {
     let mut state = State::new(q, v, system.angles());
     onto_constraint(&system, 0.0, &mut state).unwrap();
     let before = state;
-    let refused = Energy::<2>::new().step(&system, 0.0, 0.05, &mut state);
+    let refused = Energy::new::<2>().step(&system, 0.0, 0.05, &mut state);
     assert!(matches!(refused, Err(StepError::Unsupported { .. })), "{refused:?}");
     assert!(refused.unwrap_err().to_string().contains("b = 0") && state == before);
     // The control: the sleigh on a plane at rest it takes.
     let still: Laden<Sleigh> = laden(sleigh(), vec![]);
-    assert!(Energy::<2>::new().step(&still, 0.0, 0.05, &mut State::new(q, v, still.angles())).is_ok());
+    assert!(Energy::new::<2>().step(&still, 0.0, 0.05, &mut State::new(q, v, still.angles())).is_ok());
 }

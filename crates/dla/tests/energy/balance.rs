@@ -118,10 +118,10 @@ fn held<Sys, const N: usize, const M: usize>(
     Sys: System<N, M>,
 {
     let runs = [
-        (two, balance(&format!("{name}, energy2"), system, &mut Energy::<1>::new(), start, two)),
-        (four, balance(&format!("{name}, energy4"), system, &mut Energy::<2>::new(), start, four)),
-        (six, balance(&format!("{name}, energy6"), system, &mut Energy::<3>::new(), start, six)),
-        (eight, balance(&format!("{name}, energy8"), system, &mut Energy::<4>::new(), start, eight)),
+        (two, balance(&format!("{name}, energy2"), system, &mut Energy::new::<1>(), start, two)),
+        (four, balance(&format!("{name}, energy4"), system, &mut Energy::new::<2>(), start, four)),
+        (six, balance(&format!("{name}, energy6"), system, &mut Energy::new::<3>(), start, six)),
+        (eight, balance(&format!("{name}, energy8"), system, &mut Energy::new::<4>(), start, eight)),
     ];
     for (steps, run) in &runs {
         assert!(run.worst <= random_walk(*steps), "{name}, {steps} steps: {run:?}");
@@ -193,9 +193,9 @@ fn loses_the_work<Method: OneStep<Damped, 3, 1>>(mut method: Method, work: impl 
 
 #[test]
 fn the_work_of_friction_is_the_loss() {
-    loses_the_work(Energy::<1>::new(), Energy::work);
+    loses_the_work(Energy::new::<1>(), Energy::work);
     loses_the_work(Energy::with(Gradient::Gonzalez), Energy::work);
-    loses_the_work(Energy::<2>::new(), Energy::work);
-    loses_the_work(Energy::<3>::new(), Energy::work);
-    loses_the_work(Energy::<4>::new(), Energy::work);
+    loses_the_work(Energy::new::<2>(), Energy::work);
+    loses_the_work(Energy::new::<3>(), Energy::work);
+    loses_the_work(Energy::new::<4>(), Energy::work);
 }

@@ -63,7 +63,7 @@ fn egg_crate() {
 fn particle() {
     let system = Particle { mass: 1.3, quartic: 0.2 };
     let start = ([0.3, 0.5, -0.2], [0.6, -0.4, 0.3]);
-    let exact = run(&system, &mut Energy::<4>::new(), &start, (3.0, 300));
+    let exact = run(&system, &mut Energy::new::<4>(), &start, (3.0, 300));
     gonzalez("particle", &system, &start, 3.0, 64, &exact);
 }
 
@@ -92,6 +92,6 @@ fn a_force_that_swings() {
     let (q, v) = place(2.0);
     let exact = State::new(q, v, [false; 2]);
     let start = ([0.0; 2], [0.0; 2]);
-    check("swung", ladder(&Swung, &mut Energy::<2>::new(), &start, 2.0, &[10, 20, 40], &exact), 4.0);
+    check("swung", ladder(&Swung, &mut Energy::new::<2>(), &start, 2.0, &[10, 20, 40], &exact), 4.0);
     gonzalez("swung", &Swung, &start, 2.0, 20, &exact);
 }

@@ -25,7 +25,7 @@ impl System<2, 1> for Rail {
 fn refused(system: &Rail) -> &'static str {
     let start = State::new([0.0, 0.0], [1.0, 0.0], [false; 2]);
     let mut state = start;
-    let error = Energy::<2>::new().step(system, 0.0, 0.1, &mut state).unwrap_err();
+    let error = Energy::new::<2>().step(system, 0.0, 0.1, &mut state).unwrap_err();
     assert_eq!(state, start, "a failed step moves nothing");
     let StepError::Unsupported { reason } = error else { panic!("{error}") };
     reason
@@ -36,7 +36,7 @@ fn refused(system: &Rail) -> &'static str {
 fn what_the_methods_cannot_do_is_refused() {
     let plain = Rail { affine: 0.0, tide: 0.0, still: 0.0, basis: true };
     let mut state = State::new([0.0, 0.0], [1.0, 0.0], [false; 2]);
-    Energy::<2>::new().step(&plain, 0.0, 0.1, &mut state).unwrap();
+    Energy::new::<2>().step(&plain, 0.0, 0.1, &mut state).unwrap();
 
     assert!(refused(&Rail { affine: 0.3, ..plain }).contains("b = 0"));
     assert!(refused(&Rail { basis: false, ..plain }).contains("basis"));
@@ -44,12 +44,12 @@ fn what_the_methods_cannot_do_is_refused() {
     // Also where the tide stands still at the start, at the end, or as long before as the step looks ahead.
     for still in [0.0, 0.1, -0.381_966 * 0.1] {
         state = State::new([0.1, 0.0], [1.0, 0.0], [false; 2]);
-        let error = Energy::<2>::new().step(&Rail { still, ..tidal }, 0.0, 0.1, &mut state).unwrap_err();
+        let error = Energy::new::<2>().step(&Rail { still, ..tidal }, 0.0, 0.1, &mut state).unwrap_err();
         assert!(error.to_string().contains("explicit time"), "{error}");
     }
     // At q = 0 the time cannot be seen, but the step does not keep the energy.
     state = State::new([0.0, 0.0], [1.0, 0.0], [false; 2]);
-    let error = Energy::<2>::new().step(&tidal, 0.0, 0.1, &mut state).unwrap_err();
+    let error = Energy::new::<2>().step(&tidal, 0.0, 0.1, &mut state).unwrap_err();
     assert!(matches!(error, StepError::Energy { .. }), "{error}");
 }
 
@@ -60,11 +60,11 @@ fn an_energy_too_rough_is_refused() {
     let (q, v) = at_centre([0.3, 0.0, 0.0, 1.0, 0.1], 0.1);
     let start = State::new(q, v, [false, false, true]);
     let mut state = start;
-    let error = Energy::<2>::new().step(&system, 0.0, 0.1, &mut state).unwrap_err();
+    let error = Energy::new::<2>().step(&system, 0.0, 0.1, &mut state).unwrap_err();
     let StepError::Energy { defect, bound } = error else { panic!("{error}") };
     assert!(defect.abs() > bound && bound < 1e-11);
     assert_eq!(state, start);
-    Energy::<2>::new().step(&system, 0.0, 0.02, &mut state).unwrap();
+    Energy::new::<2>().step(&system, 0.0, 0.02, &mut state).unwrap();
 }
 
 /// Steps too long for the iteration.
@@ -74,7 +74,7 @@ fn steps_too_long_are_refused() {
     for h in [5.0, 1e3, f64::NAN] {
         let start = State::new([0.3, 0.5, -0.2], [0.6, -0.4, 0.3], [false; 3]);
         let mut state = start;
-        let error = Energy::<3>::new().step(&system, 0.0, h, &mut state).unwrap_err();
+        let error = Energy::new::<3>().step(&system, 0.0, h, &mut state).unwrap_err();
         assert_eq!(state, start);
         match error {
             StepError::Newton { stage: Stage::Collocation, source } => {

@@ -146,9 +146,9 @@ fn coinciding_ends() {
             assert!(distance(&end, &State::new(start.0, start.1, [false; 3])) > 0.1);
         }
     }
-    holds(Energy::<1>::new());
+    holds(Energy::new::<1>());
     holds(Energy::with(Gradient::Gonzalez));
-    holds(Energy::<2>::new());
-    holds(Energy::<3>::new());
-    holds(Energy::<4>::new());
+    holds(Energy::new::<2>());
+    holds(Energy::new::<3>());
+    holds(Energy::new::<4>());
 }

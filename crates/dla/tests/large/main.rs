@@ -88,9 +88,9 @@ fn sixty_by_reflections() {
 
 #[test]
 fn sixty_by_gauss_collocation() {
-    ends("order 4", on_stack::<Fleet<60, true>, _, 60, 20>(STACK, Gauss::<2>::default), FOURTH);
-    ends("order 16", on_stack::<Fleet<60, true>, _, 60, 20>(STACK, Gauss::<8>::default), ROUNDING);
-    ends("adaptive", on_stack::<Fleet<60, true>, _, 60, 20>(STACK, || GaussAdaptive::<8>::new(1e-13)), ROUNDING);
+    ends("order 4", on_stack::<Fleet<60, true>, _, 60, 20>(STACK, Gauss::new::<2>), FOURTH);
+    ends("order 16", on_stack::<Fleet<60, true>, _, 60, 20>(STACK, Gauss::new::<8>), ROUNDING);
+    ends("adaptive", on_stack::<Fleet<60, true>, _, 60, 20>(STACK, || GaussAdaptive::new::<8>(1e-13)), ROUNDING);
 }
 
 /// All stages are one system of equations: fewer coordinates the more there are.
@@ -108,10 +108,10 @@ fn by_lobatto_stages() {
 /// A basis at eight places at once takes the most.
 #[test]
 fn by_methods_that_keep_the_energy() {
-    ends("order 2 of 18", on_stack::<Fleet<18, true>, _, 18, 6>(STACK, Energy::<1>::default), SECOND);
-    ends("order 8 of 18", on_stack::<Fleet<18, true>, _, 18, 6>(STACK, Energy::<4>::default), ROUNDING);
-    is_too_large("order 2", on_stack::<Fleet<30, true>, _, 30, 10>(STACK, Energy::<1>::default), (30, 10));
-    is_too_large("order 8", on_stack::<Fleet<60, true>, _, 60, 20>(STACK, Energy::<4>::default), (60, 20));
+    ends("order 2 of 18", on_stack::<Fleet<18, true>, _, 18, 6>(STACK, Energy::new::<1>), SECOND);
+    ends("order 8 of 18", on_stack::<Fleet<18, true>, _, 18, 6>(STACK, Energy::new::<4>), ROUNDING);
+    is_too_large("order 2", on_stack::<Fleet<30, true>, _, 30, 10>(STACK, Energy::new::<1>), (30, 10));
+    is_too_large("order 8", on_stack::<Fleet<60, true>, _, 60, 20>(STACK, Energy::new::<4>), (60, 20));
 }
 
 /// A start moved onto the constraints, and what these are.
@@ -169,7 +169,7 @@ fn steps_allocate_nothing() {
     let (x, w) = <Fleet<60, true> as Known<60, 20>>::at(0.0);
     let mut state = State::new(mirror.of(&x), mirror.of(&w), [false; 60]);
     assert_eq!(allocations(&Fleet::<60, true>(mirror), Dla::midpoint(), &mut state), 0);
-    assert_eq!(allocations(&Fleet::<60, true>(mirror), Gauss::<4>::default(), &mut state), 0);
+    assert_eq!(allocations(&Fleet::<60, true>(mirror), Gauss::new::<4>(), &mut state), 0);
 }
 
 /// The count grows with the system, whatever the method, and small systems are far below the limit.

@@ -52,7 +52,7 @@ fn divided_steps_keep_the_order() {
     for (found, order) in [
         (order(&Dla::midpoint(), 160), 2.0),
         (order(&Composition::suzuki4(Dla::midpoint()), 80), 4.0),
-        (order(&Gauss::<3>::default(), 20), 6.0),
+        (order(&Gauss::new::<3>(), 20), 6.0),
     ] {
         // Which steps have four parts differs from one length to the next.
         assert!((found - order).abs() < 0.35, "{found} for {order}");
@@ -62,11 +62,11 @@ fn divided_steps_keep_the_order() {
 /// Where every step resolves the motion, looking at its halves changes no bit.
 #[test]
 fn what_is_resolved_is_left_alone() {
-    let run = made(&sleigh(0.5), Gauss::<3>::default(), &start(), (0.05, 200));
+    let run = made(&sleigh(0.5), Gauss::new::<3>(), &start(), (0.05, 200));
     let (q, v) = start().to_coordinates();
     let mut state = State::new(q, v, [false, false, true]);
     let schedule = Schedule { t0: 0.0, step: 0.05, steps: 200 };
-    drive::<Sleigh, _, _, 3, 1>(&sleigh(0.5), &mut Gauss::<3>::default(), &schedule, &mut state, ()).unwrap();
+    drive::<Sleigh, _, _, 3, 1>(&sleigh(0.5), &mut Gauss::new::<3>(), &schedule, &mut state, ()).unwrap();
     let last = run.nodes.last().unwrap();
     assert_eq!((run.divided, run.parts, last.q, last.v), (0, 0, state.unwrapped(), *state.v()));
     // The control: eight times the step.

@@ -63,7 +63,7 @@ fn steep_hill() {
         let hills = [0.3, 0.82, 1.01].map(|x| Hill { height, x, y, width: 0.01 });
         let system = With { body: sleigh(0.5), effects: Hills::new(hills.to_vec()).unwrap() };
         let start = SleighState { x: -0.5, speed: 1.0, turn_rate: 0.2, ..SleighState::default() };
-        let right = made(&system, Gauss::<6>::default(), &start, (0.05 / 256.0, 100 * 256));
+        let right = made(&system, Gauss::new::<6>(), &start, (0.05 / 256.0, 100 * 256));
         let (right, divided) = (right.end(), right.divided);
         assert_eq!(divided, 0);
         for (name, run) in by_each(&system, &start, (0.05, 100)) {

@@ -57,8 +57,8 @@ fn by_each<Sys: System<3, 1>>(system: &Sys, start: &SleighState, steps: (f64, u6
     [
         ("dla", made(system, Dla::midpoint(), start, steps)),
         ("dla4", made(system, Composition::suzuki4(Dla::midpoint()), start, steps)),
-        ("gauss8", made(system, Gauss::<4>::default(), start, steps)),
-        ("energy4", made(system, Energy::<2>::default(), start, steps)),
+        ("gauss8", made(system, Gauss::new::<4>(), start, steps)),
+        ("energy4", made(system, Energy::new::<2>(), start, steps)),
     ]
 }
 

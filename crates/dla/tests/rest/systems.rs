@@ -124,9 +124,15 @@ by_default!(Middle, Dla<lagrangian::Midpoint, lagrangian::Midpoint>, Dla::midpoi
 by_default!(Ends, Dla<lagrangian::Trapezoid, lagrangian::Trapezoid>, Dla::trapezoid());
 by_default!(
     Fourth,
-    Composition<Dla<lagrangian::Midpoint, lagrangian::Midpoint>, 5>,
+    Composition<Dla<lagrangian::Midpoint, lagrangian::Midpoint>>,
     Composition::suzuki4(Dla::midpoint())
 );
+
+by_default!(Gauss8, Gauss, Gauss::new::<4>());
+by_default!(Gauss16, Gauss, Gauss::new::<8>());
+by_default!(Energy2, Energy, Energy::new::<1>());
+by_default!(Energy4, Energy, Energy::new::<2>());
+by_default!(Energy8, Energy, Energy::new::<4>());
 
 /// The methods that need nothing but the Lagrangian and the constraint, by their names.
 pub fn methods<Sys: System<N, M>, const N: usize, const M: usize>() -> Vec<(&'static str, Run<Sys, N>)> {
@@ -142,10 +148,10 @@ pub fn methods<Sys: System<N, M>, const N: usize, const M: usize>() -> Vec<(&'st
 /// Those that need a basis of the admissible velocities besides.
 pub fn in_basis<Sys: System<N, M>, const N: usize, const M: usize>() -> Vec<(&'static str, Run<Sys, N>)> {
     vec![
-        ("gauss8", run::<Sys, Gauss<4>, N, M>),
-        ("gauss16", run::<Sys, Gauss<8>, N, M>),
-        ("energy2", run::<Sys, Energy<1>, N, M>),
-        ("energy4", run::<Sys, Energy<2>, N, M>),
-        ("energy8", run::<Sys, Energy<4>, N, M>),
+        ("gauss8", run::<Sys, Gauss8, N, M>),
+        ("gauss16", run::<Sys, Gauss16, N, M>),
+        ("energy2", run::<Sys, Energy2, N, M>),
+        ("energy4", run::<Sys, Energy4, N, M>),
+        ("energy8", run::<Sys, Energy8, N, M>),
     ]
 }

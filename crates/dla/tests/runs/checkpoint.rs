@@ -48,7 +48,7 @@ fn a_resumed_run_has_the_same_bits() {
             // Which remember derivatives.
             whole_and_resumed(|| Dla::midpoint().solved(Form::General), stop),
             whole_and_resumed(|| Composition::suzuki4(Dla::trapezoid()), stop),
-            whole_and_resumed(Gauss::<8>::default, stop),
+            whole_and_resumed(Gauss::new::<8>, stop),
             // It remembers a momentum.
             whole_and_resumed(Gni::<_, 3>::default, stop),
         ] {

@@ -49,7 +49,7 @@ fn samples_have_the_order_of_the_method_and_hold_the_constraint() {
     let rows = [
         ("dla", 2.0, [100, 200, 400].map(|steps| sampled(Dla::midpoint(), steps))),
         ("dla4", 4.0, [100, 200, 400].map(|steps| sampled(Composition::suzuki4(Dla::midpoint()), steps))),
-        ("gauss8", 8.0, [10, 20, 40].map(|steps| sampled(Gauss::<4>::default(), steps))),
+        ("gauss8", 8.0, [10, 20, 40].map(|steps| sampled(Gauss::new::<4>(), steps))),
     ];
     for (name, order, row) in rows {
         println!("{name}: {row:?}");
@@ -58,7 +58,7 @@ fn samples_have_the_order_of_the_method_and_hold_the_constraint() {
         assert!(row.iter().all(|(_, slip)| *slip <= 4.0 * f64::EPSILON), "{name}: {row:?}");
     }
     // With steps of two fifths of a second order 16 has nothing left but the rounding of some metres.
-    assert!(sampled(Gauss::<8>::default(), 25).0 <= 1e-13);
+    assert!(sampled(Gauss::new::<8>(), 25).0 <= 1e-13);
 }
 
 /// Samples at nodes are the nodes, and looking changes nothing.
@@ -131,7 +131,7 @@ fn interpolated<Method: OneStep<Sleigh, 3, 1>>(mut method: Method, steps: u64) -
 
 #[test]
 fn quintics_have_their_orders() {
-    let rows = [25, 50, 100].map(|steps| interpolated(Gauss::<8>::default(), steps));
+    let rows = [25, 50, 100].map(|steps| interpolated(Gauss::new::<8>(), steps));
     let found: Vec<_> = (0..3).map(|i| orders(rows.map(|row| row[i]))).collect();
     println!("quintic: {rows:?}, orders {found:.2?}");
     // Position 6, velocity and constraint 5.

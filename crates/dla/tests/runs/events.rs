@@ -48,7 +48,7 @@ fn errors<Method: OneStep<Sleigh, 3, 1> + Copy>(method: Method, steps: u64) -> [
 
 #[test]
 fn the_turnaround_is_located_to_the_order_of_the_method() {
-    let sixteen = errors(Gauss::<8>::default(), 100);
+    let sixteen = errors(Gauss::new::<8>(), 100);
     println!("gauss16: {sixteen:?}");
     assert!(sixteen.iter().all(|error| *error <= 1e-12), "{sixteen:?}");
     for (order, found) in [
@@ -100,7 +100,7 @@ fn no_crossing_of_ten_thousand_runs_is_missed() {
             let rounding = 1e-12 * f64::max(1.0, motion.kappa.abs().recip());
             for (method, found, tolerance) in [
                 (0, times(&sleigh, Dla::midpoint(), &start, (step, steps), &events), phase),
-                (1, times(&sleigh, Gauss::<8>::default(), &start, (step, steps), &events), rounding),
+                (1, times(&sleigh, Gauss::new::<8>(), &start, (step, steps), &events), rounding),
             ] {
                 let (one, other) = (motion.at_speed(-low / motion.speed), motion.at_speed(low / motion.speed));
                 let mut expected = vec![(0, motion.turnaround), (1, one), (1, other)];

@@ -159,7 +159,7 @@ fn the_history_tells_how_a_search_went() {
 
     // A fixed-point iteration with steps far beyond the time constants.
     let mut state = state_of(&start(-1.0, 0.5));
-    let error = Gauss::<8>::default().step(&sleigh, 0.0, 50.0, &mut state).unwrap_err();
+    let error = Gauss::new::<8>().step(&sleigh, 0.0, 50.0, &mut state).unwrap_err();
     let StepError::Newton { stage: Stage::Collocation, source } = error else { panic!("{error}") };
     assert!(source.history().made() + 1 >= source.iterations() && source.history().made() > 0, "{source:?}");
     assert_eq!(error.hint(), Some(Hint::ShorterStep { part: 0.5 }));

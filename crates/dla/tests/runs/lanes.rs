@@ -130,11 +130,11 @@ proptest! {
             let t = h * run.1 as f64;
             // The stages are found to rounding by both, and the well adds forces of some newtons to what the spin lets grow.
             let tolerance = 4.0 * rounding(sleigh, start, run) * (t * 3.0).exp();
-            let expected = alone(sleigh, Gauss::<4>::default(), run, start).unwrap();
+            let expected = alone(sleigh, Gauss::new::<4>(), run, start).unwrap();
             assert_same(&alike, lane, &expected, tolerance);
-            let expected = alone(&bowls[lane], Gauss::<8>::default(), run, start).unwrap();
+            let expected = alone(&bowls[lane], Gauss::new::<8>(), run, start).unwrap();
             assert_same(&bowl, lane, &expected, tolerance);
-            let expected = alone(&wells[lane], Gauss::<8>::default(), run, &own[lane]).unwrap();
+            let expected = alone(&wells[lane], Gauss::new::<8>(), run, &own[lane]).unwrap();
             let found = well.state().lane(lane, *expected.v()).unwrapped();
             assert_abs_diff_eq!(&found[..], &expected.unwrapped()[..], epsilon = tolerance);
         }
@@ -191,7 +191,7 @@ fn time_goes_on_in_lanes() {
     for (lane, start) in starts.iter().enumerate() {
         let mut expected = State::new(start.0, velocity_of(&system, t0, &start.0, &start.1).unwrap(), system.angles());
         let schedule = Schedule { t0, step: h, steps: 20 };
-        drive(&system, &mut Gauss::<4>::default(), &schedule, &mut expected, ()).unwrap();
+        drive(&system, &mut Gauss::new::<4>(), &schedule, &mut expected, ()).unwrap();
         // As in the bowl: the torque adds less than a newton metre.
         let tolerance = 4.0 * rounding(&sleigh(), start, (h, 20)) * (20.0 * h * 3.0).exp();
         assert_same(&ensemble, lane, &expected, tolerance);
@@ -241,7 +241,7 @@ fn stages_in_lanes_settle_with_the_slowest() {
     let mut most = vec![[0; W / 8]; steps as usize];
     for (lane, start) in starts.iter().enumerate() {
         let mut state = State::new(start.0, velocity_of(&sleigh, 0.0, &start.0, &start.1).unwrap(), sleigh.angles());
-        let mut method = Gauss::<4>::default();
+        let mut method = Gauss::new::<4>();
         for (k, most) in most.iter_mut().enumerate() {
             let report = method.step(&sleigh, k as f64 * h, h, &mut state).unwrap();
             most[lane / 8] = report.iterations.max(most[lane / 8]);
@@ -328,12 +328,12 @@ fn a_direction_that_turns() {
             let (sin, cos) = (Turning::RATE * t1).sin_cos();
             (*state.q(), cos * state.v()[0] + sin * state.v()[1])
         };
-        let (q, xi) = alone(&mut Gauss::<8>::default(), h);
+        let (q, xi) = alone(&mut Gauss::new::<8>(), h);
         assert_at(&q, xi, rounding);
-        let (q, xi) = alone(&mut Gauss::<8>::default().one_by_one(), h);
+        let (q, xi) = alone(&mut Gauss::new::<8>().one_by_one(), h);
         assert_at(&q, xi, rounding);
         // Some steps, each with an error of the tolerance times numbers below four.
-        let (q, xi) = alone(&mut GaussAdaptive::<8>::new(1e-11), 1.0);
+        let (q, xi) = alone(&mut GaussAdaptive::new::<8>(1e-11), 1.0);
         assert_at(&q, xi, 1e2 * 1e-11);
     }
 }
@@ -373,13 +373,13 @@ fn remembered_iterations_stay_within_the_limit() {
     let system = sleigh();
     let (q, v) = backward().to_coordinates();
     let mut state = State::new(q, v, system.angles());
-    let mut method = Gauss::<8>::default();
-    let step = |method: &mut Gauss<8>, state: &mut State<3>| method.step(&system, 0.0, 0.5, state).unwrap();
+    let mut method = Gauss::new::<8>();
+    let step = |method: &mut Gauss, state: &mut State<3>| method.step(&system, 0.0, 0.5, state).unwrap();
     step(&mut method, &mut state);
     let mut memory = OneStep::<Sleigh, 3, 1>::memory(&method);
     // After the slopes of six coordinates and six velocities in eight stages, the length of the step and its quarters.
     memory[98] = 4e9;
-    let (mut other, mut there) = (Gauss::<8>::default(), state);
+    let (mut other, mut there) = (Gauss::new::<8>(), state);
     OneStep::<Sleigh, 3, 1>::recall(&mut other, &memory, &there);
     step(&mut method, &mut state);
     assert!(step(&mut other, &mut there).iterations <= method.max_iterations);

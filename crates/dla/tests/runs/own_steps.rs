@@ -62,8 +62,8 @@ impl<Sys, Method: OneStep<Sys, 3, 1>> OneStep<Sys, 3, 1> for Closed<Method> {
 /// says that.
 #[test]
 fn crossings_within_a_long_step_are_all_found() {
-    all_twenty(&GaussAdaptive::<8>::new(1e-13));
-    all_twenty(&GaussAdaptive::<4>::new(1e-12));
+    all_twenty(&GaussAdaptive::new::<8>(1e-13));
+    all_twenty(&GaussAdaptive::new::<4>(1e-12));
     all_twenty(&Taylor::new(1e-15));
     let (few, close) = found(&Closed(Taylor::new(1e-15)), (2.0, 3));
     let close = close.unwrap();
@@ -110,7 +110,7 @@ where
             // On the motion: where a step of a method of constant steps leads.
             let (mut other, parts) = (begin, 200u32);
             let schedule = Schedule { t0: t, step: (at - t) / f64::from(parts), steps: parts.into() };
-            drive(&system, &mut Gauss::<8>::default(), &schedule, &mut other, ()).unwrap();
+            drive(&system, &mut Gauss::new::<8>(), &schedule, &mut other, ()).unwrap();
             for i in 0..3 {
                 prop_assert!((inner.unwrapped()[i] - other.unwrapped()[i]).abs() <= error);
             }
@@ -139,7 +139,7 @@ proptest! {
         let v = lagrangian::velocity_of(&well, 0.0, &q, &[speed, turn_rate, 0.0]).unwrap();
         let (start, h) = (State::new(q, v, well.angles()), if backward { -length } else { length });
         // Frequencies of ten, over two steps, which errors are enlarged by.
-        are_those_of_the_run(&GaussAdaptive::<8>::new(1e-12), h, &start, 1e-8)?;
+        are_those_of_the_run(&GaussAdaptive::new::<8>(1e-12), h, &start, 1e-8)?;
         are_those_of_the_run(&Taylor::new(1e-14), h, &start, 1e-8)?;
     }
 }
@@ -149,6 +149,6 @@ proptest! {
 fn steps_of_the_run_have_none_within() {
     let start = State::new([0.0; 3], [1.0, 0.0, 0.0], [false, false, true]);
     let mut memory = Vec::new();
-    assert_eq!(shown(&Gauss::<8>::default(), (0.0, 0.1), &start, &mut memory), Ok(Vec::new()));
+    assert_eq!(shown(&Gauss::new::<8>(), (0.0, 0.1), &start, &mut memory), Ok(Vec::new()));
     assert!(memory.is_empty());
 }

@@ -34,7 +34,7 @@ fn the_error_is_that_of_the_tolerance() {
             ("dla4", recommended(|| Composition::suzuki4(Dla::midpoint()), tolerance), &|r: &_| {
                 reached(Composition::suzuki4(Dla::midpoint()), r)
             }),
-            ("gauss8", recommended(Gauss::<4>::default, tolerance), &|r: &_| reached(Gauss::<4>::default(), r)),
+            ("gauss8", recommended(Gauss::new::<4>, tolerance), &|r: &_| reached(Gauss::new::<4>(), r)),
         ] as [(&str, _, &dyn Fn(&Recommendation) -> f64); 3];
         for (name, found, reached) in found {
             let found = found.unwrap();
@@ -50,7 +50,7 @@ fn the_error_is_that_of_the_tolerance() {
 /// What cannot be reached is said, with what can.
 #[test]
 fn a_tolerance_below_rounding_is_refused_with_the_best() {
-    let error = recommended(Gauss::<4>::default, 1e-17).unwrap_err();
+    let error = recommended(Gauss::new::<4>, 1e-17).unwrap_err();
     println!("{error}");
     let RecommendError::OutOfReach { best, steps, .. } = error else { panic!("{error}") };
     // Positions of forty metres have an ulp of 7e-15.
@@ -85,7 +85,7 @@ fn the_symmetry_is_kept() {
         let symmetric = [
             returned(Dla::midpoint(), 10.0, tolerance),
             returned(Composition::suzuki4(Dla::midpoint()), 10.0, tolerance),
-            returned(Gauss::<4>::default(), 10.0, tolerance),
+            returned(Gauss::new::<4>(), 10.0, tolerance),
         ];
         println!("return {tolerance:e}: {symmetric:?}");
         assert!(symmetric.iter().all(|(distance, rounding)| distance <= rounding), "{symmetric:?}");

@@ -15,7 +15,7 @@ fn sleigh() -> Sleigh {
 fn run<Sys: System<3, 1>>(system: &Sys, (q, v): ([f64; 3], [f64; 3]), duration: f64, steps: u64) -> (State<3>, f64) {
     let mut state = State::new(q, v, system.angles());
     let first = energy(system, 0.0, &q, &v);
-    let mut method = Gauss::<8>::default();
+    let mut method = Gauss::new::<8>();
     let mut worst = 0.0f64;
     for part in 0..100 {
         let step = duration / steps as f64;

@@ -66,14 +66,14 @@ fn columns_in_quasi_velocities() {
     // Both ends of a step have the basis of their own time, which depends on parameters.
     let moved = Input { q: at.q, v: at.v, t: at.t, h: at.h, p: Swivelling::PARAMETERS };
     let system = Swivelling::at(&moved.p);
-    let worst = disagreement(&Sensitivity::of_member(&system), Swivelling::at, &Gauss::<4>::default(), &moved);
+    let worst = disagreement(&Sensitivity::of_member(&system), Swivelling::at, &Gauss::new::<4>(), &moved);
     println!("swivelling blade: {worst:.1e}");
     assert!(worst < BAR, "{worst:e}");
 
     // What is imposed on the velocity depends on the place.
     let table = || Guided::turntable(Sleigh::new(1.3, 0.8, 0.4).unwrap(), 0.6).unwrap();
     let (system, at) = (table(), Input { q: at.q, v: at.v, t: at.t, h: at.h, p: [] });
-    let worst = disagreement(&Sensitivity::of(&system), |_| table(), &Gauss::<4>::default(), &at);
+    let worst = disagreement(&Sensitivity::of(&system), |_| table(), &Gauss::new::<4>(), &at);
     println!("turntable: {worst:.1e}");
     assert!(worst < BAR, "{worst:e}");
 }

@@ -24,7 +24,7 @@ fn a_refusal_has_a_reason_and_changes_nothing() {
 
     // No basis: the method's own refusal comes through.
     let mut state = State::new([0.1, 0.2, 0.3], [1.0, 0.4, 0.2], [false; 3]);
-    let refused = Sensitivity::of(&Moving).step(&mut Gauss::<4>::default(), 0.0, 0.1, &mut state);
+    let refused = Sensitivity::of(&Moving).step(&mut Gauss::new::<4>(), 0.0, 0.1, &mut state);
     assert!(matches!(refused, Err(SensitivityError::Step(_))), "{refused:?}");
 }
 
@@ -56,7 +56,7 @@ fn a_composition_is_differentiated_as_its_base() {
     let carries = Composition::suzuki4(Dla::midpoint());
     let report = OneStep::step(&mut { carries }, &sleigh, 0.0, 0.1, &mut end).unwrap();
     assert!(sensitivity.between(&carries, (0.0, 0.1), &start, &end, report).is_ok());
-    let not = Composition::suzuki4(Gauss::<1>::default());
+    let not = Composition::suzuki4(Gauss::new::<1>());
     let refused = sensitivity.between(&not, (0.0, 0.1), &start, &end, report);
     let Err(SensitivityError::Unsupported { reason }) = refused else { panic!("{refused:?}") };
     assert!(reason.contains("constraints on positions"), "{reason}");

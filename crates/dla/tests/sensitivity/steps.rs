@@ -43,10 +43,10 @@ fn a_sleigh_with_parameters_and_controls() {
     controlled("dla-alpha", &Dla::alpha(0.3).unwrap());
     controlled("dla4", &Composition::suzuki4(Dla::midpoint()));
     controlled("lobatto3", &Lobatto::<3>::new());
-    controlled("gauss8", &Gauss::<4>::default());
-    controlled("energy2", &Energy::<1>::new());
-    controlled("energy4", &Energy::<2>::new());
-    controlled("gonzalez", &Energy::<1>::with(Gradient::Gonzalez));
+    controlled("gauss8", &Gauss::new::<4>());
+    controlled("energy2", &Energy::new::<1>());
+    controlled("energy4", &Energy::new::<2>());
+    controlled("gonzalez", &Energy::with(Gradient::Gonzalez));
 }
 
 /// Its closed step and its accelerations by hand are differentiated through the general equations.
@@ -55,7 +55,7 @@ fn the_free_sleigh() {
     let sleigh = Sleigh::new(1.3, 0.8, 0.4).unwrap();
     let sensitivity = Sensitivity::of(&sleigh);
     assert_close("dla", disagreement(&sensitivity, |_| sleigh, &Dla::midpoint(), on(&bare())));
-    assert_close("gauss8", disagreement(&sensitivity, |_| sleigh, &Gauss::<4>::default(), on(&bare())));
+    assert_close("gauss8", disagreement(&sensitivity, |_| sleigh, &Gauss::new::<4>(), on(&bare())));
 }
 
 #[test]
@@ -74,7 +74,7 @@ fn an_affine_constraint() {
     let sensitivity = Sensitivity::of(&system);
     let mixed = Dla::new(Midpoint, Midpoint).solved(Form::Multipliers);
     assert_close("multipliers", disagreement(&sensitivity, |_| table(), &mixed, on(&bare())));
-    assert_close("gauss8", disagreement(&sensitivity, |_| table(), &Gauss::<4>::default(), on(&bare())));
+    assert_close("gauss8", disagreement(&sensitivity, |_| table(), &Gauss::new::<4>(), on(&bare())));
 }
 
 /// The end of a step is on the constraint of its own time.
@@ -84,7 +84,7 @@ fn a_basis_that_moves() {
     let system = Swivelling::at(&at.p);
     let sensitivity = Sensitivity::of_member(&system);
     assert_close("dla", disagreement(&sensitivity, Swivelling::at, &Dla::midpoint(), on(&at)));
-    assert_close("gauss8", disagreement(&sensitivity, Swivelling::at, &Gauss::<4>::default(), on(&at)));
+    assert_close("gauss8", disagreement(&sensitivity, Swivelling::at, &Gauss::new::<4>(), on(&at)));
 }
 
 /// Two constraints, five coordinates.
@@ -119,7 +119,7 @@ fn a_sleigh_on_an_arm() {
         assert!(stretch.abs() < 1e-14, "{stretch:e}");
         assert!(column.q.iter().any(|x| x.abs() > 1e-3), "the control: it moves");
     }
-    let refused = sensitivity.step(&mut Gauss::<4>::default(), 0.0, 0.1, &mut state);
+    let refused = sensitivity.step(&mut Gauss::new::<4>(), 0.0, 0.1, &mut state);
     assert!(matches!(refused, Err(SensitivityError::Unsupported { .. })), "{refused:?}");
 }
 
@@ -142,6 +142,6 @@ fn inadmissible_velocities() {
     let any = (Start::Any, &START);
     assert_close("dla", disagreement(&sensitivity, Controlled::at, &Dla::midpoint(), any));
     assert_close("lobatto3", disagreement(&sensitivity, Controlled::at, &Lobatto::<3>::new(), any));
-    assert_close("gauss8", disagreement(&sensitivity, Controlled::at, &Gauss::<4>::default(), any));
-    assert_close("energy2", disagreement(&sensitivity, Controlled::at, &Energy::<1>::new(), any));
+    assert_close("gauss8", disagreement(&sensitivity, Controlled::at, &Gauss::new::<4>(), any));
+    assert_close("energy2", disagreement(&sensitivity, Controlled::at, &Energy::new::<1>(), any));
 }

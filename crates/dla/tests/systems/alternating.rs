@@ -78,7 +78,7 @@ impl<'a, Sys: System<3, 1>> Case<'a, Sys> {
         let start = State::new(q, v, system.angles());
         let mut end = start;
         let schedule = Schedule { t0: 0.0, step: duration / 400.0, steps: 400 };
-        drive(system, &mut Gauss::<8>::default(), &schedule, &mut end, ()).unwrap();
+        drive(system, &mut Gauss::new::<8>(), &schedule, &mut end, ()).unwrap();
         Self { name, system, start, duration, end }
     }
 

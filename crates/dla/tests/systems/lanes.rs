@@ -30,8 +30,8 @@ const STEPS: u32 = 12;
 /// Both solve the same equations until changes are rounding: each step leaves some ulps of the sizes it computes with, and
 /// further steps enlarge them by no more than these short motions do, a factor of `e^2`.
 fn same<Sys: System<N, 1>, const N: usize, const S: usize>(system: &Sys, h: f64, state: &State<N>) {
-    let (lanes, _) = after(system, Gauss::<S>::default(), h, state);
-    let (turns, _) = after(system, Gauss::<S>::default().one_by_one(), h, state);
+    let (lanes, _) = after(system, Gauss::new::<S>(), h, state);
+    let (turns, _) = after(system, Gauss::new::<S>().one_by_one(), h, state);
     let size = |x: &[f64; N]| x.iter().fold(1.0f64, |m, x| m.max(x.abs()));
     let tolerance = f64::from(STEPS) * 32.0 * 8.0 * f64::EPSILON;
     for i in 0..N {
@@ -83,7 +83,7 @@ proptest! {
     fn a_spin_that_dies_out_keeps_its_digits(exponent in -200i32..-3) {
         let (body, h) = (Sleigh::new(1.0, 1.0, 0.5).unwrap(), 0.1);
         let turn_rate = 10f64.powi(exponent);
-        let (state, _) = after(&body, Gauss::<8>::default(), h, &start(&SleighState { speed: 1.0, turn_rate, ..SleighState::default() }));
+        let (state, _) = after(&body, Gauss::new::<8>(), h, &start(&SleighState { speed: 1.0, turn_rate, ..SleighState::default() }));
         // omega' = -c u omega with a speed that the spin changes by its square.
         let exact = turn_rate * (-body.spin_gain() * f64::from(STEPS) * h).exp();
         let square = if exponent < -8 { 0.0 } else { turn_rate * turn_rate };
@@ -97,23 +97,23 @@ fn the_last_step_helps_the_next() {
     let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
     let system = With { body, effects: (Bowl::new([0.1, 0.1], [0.0, 0.0]).unwrap(),) };
     let state = start(&SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() });
-    let (_, remembered) = after(&system, Gauss::<8>::default(), 0.3, &state);
+    let (_, remembered) = after(&system, Gauss::new::<8>(), 0.3, &state);
     let mut forgetful = 0;
     let mut moved = state;
     for k in 0..STEPS {
-        forgetful += Gauss::<8>::default().step(&system, f64::from(k) * 0.3, 0.3, &mut moved).unwrap().iterations;
+        forgetful += Gauss::new::<8>().step(&system, f64::from(k) * 0.3, 0.3, &mut moved).unwrap().iterations;
     }
     assert!(remembered < forgetful, "{remembered} iterations, without memory {forgetful}");
 
     // And from a checkpoint too.
-    let mut method = Gauss::<8>::default();
+    let mut method = Gauss::new::<8>();
     let mut moved = state;
     method.step(&system, 0.0, 0.3, &mut moved).unwrap();
-    let mut recalled = Gauss::<8>::default();
+    let mut recalled = Gauss::new::<8>();
     OneStep::<Sleigh, 3, 1>::recall(&mut recalled, &OneStep::<Sleigh, 3, 1>::memory(&method), &moved);
-    let next = |mut method: Gauss<8>| method.step(&system, 0.3, 0.3, &mut { moved }).unwrap().iterations;
+    let next = |mut method: Gauss| method.step(&system, 0.3, 0.3, &mut { moved }).unwrap().iterations;
     assert_eq!(next(recalled), next(method));
-    assert!(next(recalled) < next(Gauss::default()));
+    assert!(next(recalled) < next(Gauss::new::<8>()));
 }
 
 /// A turned velocity is another motion: what is remembered of the old one must not be taken for it.
@@ -122,7 +122,7 @@ fn the_way_back_ends_at_the_start() {
     let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
     let system = With { body, effects: (Bowl::new([0.1, 0.1], [0.0, 0.0]).unwrap(),) };
     let begin = start(&SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() });
-    let mut method = Gauss::<8>::default();
+    let mut method = Gauss::new::<8>();
     let mut state = begin;
     for _ in 0..STEPS {
         method.step(&system, 0.0, 0.3, &mut state).unwrap();
@@ -150,14 +150,14 @@ fn steps_of_their_own_length_meet_a_tolerance() {
     };
     let exact = run(&mut |state| {
         let schedule = Schedule { t0: 0.0, step: 0.1, steps: 200 };
-        drive(&bowl, &mut Gauss::<8>::default(), &schedule, state, ()).unwrap();
+        drive(&bowl, &mut Gauss::new::<8>(), &schedule, state, ()).unwrap();
     });
     let mut last = (f64::INFINITY, 0);
     for exponent in [-4, -7, -10, -13] {
         let tolerance = 10f64.powi(exponent);
         let mut iterations = 0;
         let end = run(&mut |state| {
-            iterations = GaussAdaptive::<8>::new(tolerance).step(&bowl, 0.0, 20.0, state).unwrap().iterations;
+            iterations = GaussAdaptive::new::<8>(tolerance).step(&bowl, 0.0, 20.0, state).unwrap().iterations;
         });
         let error = (0..3).map(|i| (end.unwrapped()[i] - exact.unwrapped()[i]).abs()).fold(0.0, f64::max);
         // Some ten steps, whose errors the motion enlarges by some ten times.
@@ -168,7 +168,7 @@ fn steps_of_their_own_length_meet_a_tolerance() {
             // Nor is it much smaller, and constant steps that meet the tolerance take more iterations.
             assert!(error > 1e-3 * tolerance, "{error:e} at the tolerance {tolerance:e}");
             let constant = (2..60).find_map(|steps| {
-                let (mut state, mut method, h) = (begin, Gauss::<8>::default(), 20.0 / f64::from(steps));
+                let (mut state, mut method, h) = (begin, Gauss::new::<8>(), 20.0 / f64::from(steps));
                 let made =
                     (0..steps).map(|_| method.step(&bowl, 0.0, h, &mut state).ok().map(|report| report.iterations));
                 let made = made.sum::<Option<u32>>()?;
@@ -212,8 +212,8 @@ fn steps_of_their_own_length_know_the_time() {
     fn check<Sys: System<3, 1>>(system: &Sys, t0: f64, begin: &State<3>) {
         let (mut state, mut exact) = (*begin, *begin);
         let schedule = Schedule { t0, step: 0.05, steps: 100 };
-        drive(system, &mut Gauss::<8>::default(), &schedule, &mut exact, ()).unwrap();
-        let mut method = GaussAdaptive::<8>::new(1e-11);
+        drive(system, &mut Gauss::new::<8>(), &schedule, &mut exact, ()).unwrap();
+        let mut method = GaussAdaptive::new::<8>(1e-11);
         // Of the second interval the first step is the last of the first.
         for k in 0..2 {
             method.step(system, t0 + 2.5 * f64::from(k), 2.5, &mut state).unwrap();
@@ -239,10 +239,10 @@ fn steps_of_their_own_length_know_the_time() {
 fn an_adaptive_run_continues_from_a_checkpoint() {
     let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
     let mut state = start(&SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() });
-    let mut method = GaussAdaptive::<8>::new(1e-9);
+    let mut method = GaussAdaptive::new::<8>(1e-9);
     OneStep::<Sleigh, 3, 1>::step(&mut method, &body, 0.0, 7.0, &mut state).unwrap();
     let memory = OneStep::<Sleigh, 3, 1>::memory(&method);
-    let (mut again, mut other) = (state, GaussAdaptive::<8>::new(1e-9));
+    let (mut again, mut other) = (state, GaussAdaptive::new::<8>(1e-9));
     OneStep::<Sleigh, 3, 1>::recall(&mut other, &memory, &again);
     method.step(&body, 7.0, 7.0, &mut state).unwrap();
     other.step(&body, 7.0, 7.0, &mut again).unwrap();
@@ -255,14 +255,14 @@ fn an_adaptive_run_continues_from_a_checkpoint() {
 fn numbers_that_no_step_leaves_do_no_harm() {
     let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
     let mut begin = start(&SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() });
-    let mut method = GaussAdaptive::<8>::new(1e-9);
+    let mut method = GaussAdaptive::new::<8>(1e-9);
     OneStep::<Sleigh, 3, 1>::step(&mut method, &body, 0.0, 7.0, &mut begin).unwrap();
     let memory = OneStep::<Sleigh, 3, 1>::memory(&method);
     let mut exact = begin;
     method.step(&body, 7.0, 7.0, &mut exact).unwrap();
     for wild in [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e300, -1e300, -1.0, 0.0] {
         for place in 0..memory.len() {
-            let (mut state, mut other, mut numbers) = (begin, GaussAdaptive::<8>::new(1e-9), memory.clone());
+            let (mut state, mut other, mut numbers) = (begin, GaussAdaptive::new::<8>(1e-9), memory.clone());
             numbers[place] = wild;
             OneStep::<Sleigh, 3, 1>::recall(&mut other, &numbers, &state);
             if other.step(&body, 7.0, 7.0, &mut state).is_ok() {
@@ -283,7 +283,7 @@ fn what_cannot_be_crossed_is_an_error() {
     let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
     let begin = start(&SleighState { speed: 1e200, turn_rate: 1e200, ..SleighState::default() });
     let mut state = begin;
-    let found = GaussAdaptive::<8>::new(1e-9).step(&body, 0.0, 1.0, &mut state);
+    let found = GaussAdaptive::new::<8>(1e-9).step(&body, 0.0, 1.0, &mut state);
     assert!(matches!(found, Err(StepError::Tolerance { .. } | StepError::NotFinite)), "{found:?}");
     assert_eq!(state, begin);
 }
@@ -297,14 +297,14 @@ fn a_million_steps_lose_no_energy_but_by_rounding() {
     let begin = start(&SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() });
     let at = |state: &State<3>| energy(&system, 0.0, state.q(), state.v());
     let walk = |steps: u32| 5.0 * f64::EPSILON * f64::from(steps).sqrt() * at(&begin);
-    let (mut state, mut method) = (begin, Gauss::<4>::default());
+    let (mut state, mut method) = (begin, Gauss::new::<4>());
     for k in 0..1_000_000 {
         method.step(&system, f64::from(k) * 0.05, 0.05, &mut state).unwrap();
     }
     assert_abs_diff_eq!(at(&state), at(&begin), epsilon = walk(1_000_000));
 
     // The control: stages that are iterated to a tolerance.
-    let (mut state, mut loose) = (begin, GaussAdaptive::<4>::new(1e-12));
+    let (mut state, mut loose) = (begin, GaussAdaptive::new::<4>(1e-12));
     for k in 0..100_000 {
         loose.step(&system, f64::from(k) * 0.05, 0.05, &mut state).unwrap();
     }

@@ -50,7 +50,7 @@ fn errors_follow_the_tolerance() {
     fn check<Sys: System<3, 1>>(system: &Sys, begin: ([f64; 3], [f64; 3])) {
         let mut exact = state_of(system, begin);
         let schedule = Schedule { t0: 0.0, step: 0.1, steps: 200 };
-        drive(system, &mut Gauss::<8>::default(), &schedule, &mut exact, ()).unwrap();
+        drive(system, &mut Gauss::new::<8>(), &schedule, &mut exact, ()).unwrap();
         let mut last = f64::INFINITY;
         for exponent in [-3, -6, -9, -12] {
             let tolerance = 10f64.powi(exponent);
@@ -103,7 +103,7 @@ proptest! {
                     Taylor::new(1e-15).step(system, 0.0, h, state).unwrap();
                 } else {
                     let schedule = Schedule { t0: 0.0, step: h / 60.0, steps: 60 };
-                    drive(system, &mut Gauss::<8>::default(), &schedule, state, ()).unwrap();
+                    drive(system, &mut Gauss::new::<8>(), &schedule, state, ()).unwrap();
                 }
             }
         }

@@ -72,8 +72,8 @@ fn rule<const N: usize, const M: usize>(method: &Method) -> Result<Rule<N, M>, S
         Kind::Rk4Reduced => Rule::Stages(Stages::rk4()),
         Kind::Lobatto3 => Rule::Equations(Box::new(Lobatto::<3>::new())),
         Kind::Lobatto4 => Rule::Equations(Box::new(Lobatto::<4>::new())),
-        Kind::Energy2 => Rule::Equations(Box::new(Energy::<1>::default())),
-        Kind::Energy4 => Rule::Equations(Box::new(Energy::<2>::default())),
+        Kind::Energy2 => Rule::Equations(Box::new(Energy::new::<1>())),
+        Kind::Energy4 => Rule::Equations(Box::new(Energy::new::<2>())),
         Kind::Gni => return refuse("gni carries a multiplier from step to step, and its step is no map of (q, v)"),
         Kind::Dop853 => {
             return refuse("dop853 chooses its steps from the state, and how many there are changes by jumps");

@@ -37,6 +37,6 @@ fn dla() -> Dla<Midpoint, Midpoint> {
     Dla::midpoint()
 }
 
-fn gauss() -> Gauss<4> {
-    Gauss::default()
+fn gauss() -> Gauss {
+    Gauss::new::<4>()
 }

@@ -61,7 +61,7 @@ pub(crate) fn exponents<Sys: System<3, 1>>(
     start: ([f64; 3], [f64; 3]),
     steps: (f64, u64, u64),
 ) -> Lyapunov {
-    exponents_by(("gauss8", Gauss::<4>::default()), system, start, steps)
+    exponents_by(("gauss8", Gauss::new::<4>()), system, start, steps)
 }
 
 fn egg_crate() -> (With<Sleigh, EggCrate>, ([f64; 3], [f64; 3])) {
@@ -198,9 +198,9 @@ impl<Sys: System<3, 1>> System<3, 1> for Plain<Sys> {
 #[test]
 fn three_ways_to_differentiate_a_step() {
     let (system, (q, v)) = valley();
-    let by_hand = exponents_by(("gauss4", Gauss::<2>::default()), &system, (q, v), (0.1, 0, 100));
+    let by_hand = exponents_by(("gauss4", Gauss::new::<2>()), &system, (q, v), (0.1, 0, 100));
     let plain = Plain(valley().0);
-    let hidden = exponents_by(("gauss4", Gauss::<2>::default()), &plain, (q, v), (0.1, 0, 100));
+    let hidden = exponents_by(("gauss4", Gauss::new::<2>()), &plain, (q, v), (0.1, 0, 100));
     assert_abs_diff_eq!(by_hand.divergence_mean, hidden.divergence_mean, epsilon = 1e-12);
     for (one, other) in by_hand.exponents.iter().zip(&hidden.exponents) {
         assert_abs_diff_eq!(one, other, epsilon = 1e-9);
@@ -209,7 +209,7 @@ fn three_ways_to_differentiate_a_step() {
     let (sensitivity, mut state) = (Sensitivity::of(&plain), State::new(q, v, plain.angles()));
     let mut log_volume = 0.0;
     for k in 0..100 {
-        let derivative = sensitivity.step(&mut Gauss::<2>::default(), 0.1 * f64::from(k), 0.1, &mut state).unwrap();
+        let derivative = sensitivity.step(&mut Gauss::new::<2>(), 0.1 * f64::from(k), 0.1, &mut state).unwrap();
         let rows = derivative.reduced.unwrap().matrix();
         log_volume += DMatrix::from_row_iterator(5, 5, rows.into_iter().flatten()).determinant().ln();
     }
@@ -233,7 +233,7 @@ fn what_has_no_exponents_says_why() {
     let request = LyapunovRequest { schedule, settle: 0, exponents: None, q, v: [f64::NAN; 3] };
     let method = Method::named("gauss8", None).unwrap();
     let found = lyapunov_by(&system, &method, &request, |schedule, state, observer| {
-        drive(&system, &mut Gauss::<4>::default(), schedule, state, observer)
+        drive(&system, &mut Gauss::new::<4>(), schedule, state, observer)
     });
     assert!(found.unwrap().failure.is_some());
 }

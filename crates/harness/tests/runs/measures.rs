@@ -129,6 +129,6 @@ fn the_defect_of_each_method() {
     row("dla", &Dla::midpoint(), 2.0, 0.1);
     row("dla4", &Composition::suzuki4(Dla::midpoint()), 4.0, 0.2);
     row("lobatto3", &Lobatto::<3>::new(), 4.0, 0.2);
-    row("gauss4", &Gauss::<2>::default(), 4.0, 0.6);
+    row("gauss4", &Gauss::new::<2>(), 4.0, 0.6);
     row("rk4-reduced", &Rk4Reduced, 4.0, 0.2);
 }

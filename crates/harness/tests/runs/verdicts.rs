@@ -101,7 +101,7 @@ fn on_a_ridge_a_sleigh_runs_away() {
         let request = LyapunovRequest { schedule, settle, exponents: Some(count), q: start.0, v: start.1 };
         let method = Method::named("gauss8", None).unwrap();
         let found = lyapunov_by(&ridge, &method, &request, |schedule, state, observer| {
-            drive(&ridge, &mut Gauss::<4>::default(), schedule, state, observer)
+            drive(&ridge, &mut Gauss::new::<4>(), schedule, state, observer)
         });
         found.unwrap()
     };

@@ -85,8 +85,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let begin = Instant::now();
     match method.as_str() {
         "dla" => drive(&system, &mut Dla::midpoint(), &schedule, &mut state, &mut watch)?,
-        "energy4" => drive(&system, &mut Energy::<2>::default(), &schedule, &mut state, &mut watch)?,
-        "gauss8" => drive(&system, &mut Gauss::<4>::default(), &schedule, &mut state, &mut watch)?,
+        "energy4" => drive(&system, &mut Energy::new::<2>(), &schedule, &mut state, &mut watch)?,
+        "gauss8" => drive(&system, &mut Gauss::new::<4>(), &schedule, &mut state, &mut watch)?,
         other => return Err(format!("`{other}` is none of dla, energy4, gauss8").into()),
     };
     println!("{method}: {} steps of {STEP} s in {:.0} s", schedule.steps, begin.elapsed().as_secs_f64());
