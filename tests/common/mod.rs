@@ -62,7 +62,7 @@ pub fn sleigh_state(state: &State<3>) -> SleighState {
 }
 
 /// The midpoint method by its closed map, in the basis, and with multipliers.
-pub fn midpoint_forms() -> [(&'static str, Dla<lagrangian::Midpoint, lagrangian::Midpoint>); 3] {
+pub fn midpoint_forms() -> [(&'static str, Dla); 3] {
     [("closed", Form::Best), ("basis", Form::General), ("multipliers", Form::Multipliers)]
         .map(|(name, form)| (name, Dla::midpoint().solved(form)))
 }

@@ -160,7 +160,7 @@ fn fixed_points_are_on_the_branch() {
         assert!(count.right > 300 && count.none + count.refused > 100, "{name}: {count:?}");
     }
     // The control: Newton's method without a look at the branch, as the counter-example has it.
-    let gni = count(Gni::<_, 3>::default, by_reflection, |state, h| state.unwrapped()[2] / h);
+    let gni = count(Gni::<3>::default, by_reflection, |state, h| state.unwrapped()[2] / h);
     println!("{:<18} {gni:?}", "gni");
     assert!(gni.wrong > 50 && gni.right > 300, "the same measure sees other solutions with gni: {gni:?}");
 }

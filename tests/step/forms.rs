@@ -3,7 +3,9 @@
 use crate::common::{midpoint_forms, sleighs, starts, state_of};
 use approx::assert_relative_eq;
 use dla::{Dla, Form, OneStep};
-use lagrangian::{DiscreteConstraint, DiscreteLagrangian, Midpoint, System, Trapezoid, constraint_residual, momentum};
+use lagrangian::{
+    AnyRule, DiscreteConstraint, DiscreteLagrangian, Midpoint, Rule, System, Trapezoid, constraint_residual, momentum,
+};
 use proptest::prelude::*;
 use sleigh::CentreOfMass;
 
@@ -69,8 +71,8 @@ proptest! {
 fn check<Sys, L, C>(system: &Sys, l: L, c: C, q0: [f64; 3], v0: [f64; 3], h: f64) -> Result<(), TestCaseError>
 where
     Sys: System<3, 1>,
-    L: DiscreteLagrangian<Sys, 3, 1> + Copy + 'static,
-    C: DiscreteConstraint<Sys, 3, 1> + Copy + 'static,
+    L: Rule + Into<AnyRule> + Copy,
+    C: Rule + Into<AnyRule> + Copy,
 {
     let start = dla::State::new(q0, v0, [false; 3]);
     let mut state = start;

@@ -1,7 +1,8 @@
 //! Which of several solutions of a step continues the motion.
 
+use crate::Mechanics;
+use lagrangian::from_fn;
 use lagrangian::linear::larger;
-use lagrangian::{Dual, System, from_fn};
 
 /// What turns by less than this in a step (rad) is near its start.
 pub(crate) const NEAR: f64 = 1.0;
@@ -10,8 +11,8 @@ pub(crate) const NEAR: f64 = 1.0;
 /// shows what the two ends do not, whole turns. Zero where no angle turns by as much as is near.
 #[inline(always)]
 #[must_use]
-pub fn turn<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+pub fn turn<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     time: (f64, f64),
     q0: &[f64; N],
     v: &[f64; N],
@@ -23,15 +24,13 @@ pub fn turn<Sys: System<N, M>, const N: usize, const M: usize>(
 
 #[cold]
 #[inline(never)]
-fn turned<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+fn turned<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     (t0, h): (f64, f64),
     q0: &[f64; N],
     v: &[f64; N],
 ) -> f64 {
-    // Along the motion: of one direction, for which the equations of motion have the constraint anyway.
-    let along = |re: f64, rate: f64| Dual { re, eps: [rate] };
-    let (a, _) = system.constraint(along(t0, h), &from_fn(|i| along(q0[i], h * v[i])));
+    let a = system.rows_along(t0, q0, h, &from_fn(|i| h * v[i]));
     let size = |row: [f64; N]| row.iter().map(|x| x * x).sum::<f64>().sqrt();
     // A row that is not affine has no place in `A`.
     let turns = a.map(|row| match size(row.map(|x| x.re)) {

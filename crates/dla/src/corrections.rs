@@ -1,16 +1,14 @@
 use crate::convergence::tolerances::{SHRINKING, is_slight};
 use crate::convergence::{parted, rounding_of_place};
 use crate::increment::Increment;
-use crate::{Equations, State};
+use crate::{Discretisation, Equations, Mechanics, State};
 use lagrangian::linear::{Singular, largest};
-use lagrangian::{
-    DiscreteConstraint, DiscreteLagrangian, FactoredSaddle, Rounded, Rows, Saddle, System, from_fn, redundant_rows,
-};
+use lagrangian::{FactoredSaddle, Rounded, Rows, Saddle, from_fn};
 
 /// The corrections of a search for the mean velocity of a step: Newton's own by one second-order evaluation, and simplified
 /// ones by first-order evaluations as long as they converge as well.
-pub(crate) struct Corrections<'e, 'a, Sys, L, C, const N: usize, const M: usize> {
-    of: &'e Increment<'a, Sys, L, C, N, M>,
+pub(crate) struct Corrections<'e, 'a, D, const N: usize, const M: usize> {
+    of: &'e Increment<'a, D, N, M>,
     /// The rows that are solved for, where they depend on one another and agree.
     pub(crate) some: Option<Rows>,
     /// Their multipliers.
@@ -69,14 +67,9 @@ pub(crate) struct Departure<const N: usize> {
     pub(crate) arriving: [f64; N],
 }
 
-impl<'e, 'a, Sys, L, C, const N: usize, const M: usize> Corrections<'e, 'a, Sys, L, C, N, M>
-where
-    Sys: System<N, M>,
-    L: DiscreteLagrangian<Sys, N, M>,
-    C: DiscreteConstraint<Sys, N, M>,
-{
+impl<'e, 'a, D: Discretisation<N, M>, const N: usize, const M: usize> Corrections<'e, 'a, D, N, M> {
     #[inline(always)]
-    pub(crate) fn new(of: &'e Increment<'a, Sys, L, C, N, M>) -> Self {
+    pub(crate) fn new(of: &'e Increment<'a, D, N, M>) -> Self {
         Self {
             of,
             some: None,
@@ -138,12 +131,7 @@ where
     }
 }
 
-impl<Sys, L, C, const N: usize, const M: usize> Equations<N> for Corrections<'_, '_, Sys, L, C, N, M>
-where
-    Sys: System<N, M>,
-    L: DiscreteLagrangian<Sys, N, M>,
-    C: DiscreteConstraint<Sys, N, M>,
-{
+impl<D: Discretisation<N, M>, const N: usize, const M: usize> Equations<N> for Corrections<'_, '_, D, N, M> {
     #[inline(always)]
     fn correction(&mut self, v: &[f64; N]) -> Result<[f64; N], Singular> {
         self.before = self.last.correction;
@@ -174,12 +162,7 @@ where
     }
 }
 
-impl<Sys, L, C, const N: usize, const M: usize> Corrections<'_, '_, Sys, L, C, N, M>
-where
-    Sys: System<N, M>,
-    L: DiscreteLagrangian<Sys, N, M>,
-    C: DiscreteConstraint<Sys, N, M>,
-{
+impl<D: Discretisation<N, M>, const N: usize, const M: usize> Corrections<'_, '_, D, N, M> {
     /// Newton's own correction, by one second-order evaluation.
     ///
     /// Not inlined: it is called from each of the searches that a step may make, and is long.
@@ -228,11 +211,11 @@ where
 /// The rows found before, or those that imply the others at the beginning of the step.
 #[cold]
 #[inline(never)]
-fn independent<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+fn independent<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     t0: f64,
     start: State<N>,
     found: Option<Rows>,
 ) -> Option<Rows> {
-    found.or_else(|| redundant_rows(system, t0, start.q(), start.v()))
+    found.or_else(|| system.redundant_rows(t0, start.q(), start.v()))
 }

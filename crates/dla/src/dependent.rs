@@ -1,10 +1,7 @@
 use crate::suspect::{suspect_along, suspect_at};
-use crate::{NewtonError, Stage, State, StepError};
+use crate::{Mechanics, NewtonError, Stage, State, StepError};
 use lagrangian::linear::larger;
-use lagrangian::{
-    RowSpace, Rows, System, constraint_residual, position_misses, rank_is_constant, reaction_rows, row_space,
-    rows_are_consistent,
-};
+use lagrangian::{RowSpace, Rows};
 use std::fmt;
 use thiserror::Error;
 
@@ -58,26 +55,26 @@ impl fmt::Display for Dependent {
 /// independent, so that something else is degenerate.
 #[cold]
 #[inline(never)]
-pub(crate) fn independent_rows<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+pub(crate) fn independent_rows<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     t: f64,
     q: &[f64; N],
     v: &[f64; N],
     error: StepError,
 ) -> Result<Rows, StepError> {
-    let mut space = row_space::<_, N, M>(system, t, q, v, RowSpace::<N, M>::ROUNDING);
+    let mut space = system.row_space(t, q, v, RowSpace::<N, M>::ROUNDING);
     let near = space.rank() == M;
     if near {
         // A row that is only nearly dependent fails by the square of its distance.
-        space = row_space(system, t, q, v, RowSpace::<N, M>::ROUNDING.sqrt());
+        space = system.row_space(t, q, v, RowSpace::<N, M>::ROUNDING.sqrt());
         if space.rank() == M {
             return Err(error);
         }
     }
     let found = space.dependence();
-    let dependency = if near || !rank_is_constant(system, t, q, v, &space) {
+    let dependency = if near || !system.rank_is_constant(t, q, v, &space) {
         Dependency::RankDrops
-    } else if !rows_are_consistent(system, t, q, v, found) {
+    } else if !system.rows_are_consistent(t, q, v, found) {
         Dependency::Contradictory
     } else {
         return Ok(found.independent);
@@ -89,8 +86,8 @@ pub(crate) fn independent_rows<Sys: System<N, M>, const N: usize, const M: usize
 /// rank drops there or they contradict one another.
 #[cold]
 #[inline(never)]
-pub(crate) fn named_at<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+pub(crate) fn named_at<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     t: f64,
     q: &[f64; N],
     v: &[f64; N],
@@ -108,8 +105,8 @@ pub(crate) fn named_at<Sys: System<N, M>, const N: usize, const M: usize>(
 /// The error of the equations of a step, with what is wrong named as by [`named_at`] at its beginning, in its middle or at its end.
 #[cold]
 #[inline(never)]
-pub(crate) fn named_along<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+pub(crate) fn named_along<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     (t0, h): (f64, f64),
     state: State<N>,
     v: [f64; N],
@@ -129,8 +126,8 @@ pub(crate) fn named_along<Sys: System<N, M>, const N: usize, const M: usize>(
 /// The error of a step, with the rows of the constraint named where they depend on one another at its beginning.
 #[cold]
 #[inline(never)]
-pub(crate) fn named<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+pub(crate) fn named<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     t: f64,
     state: &State<N>,
     error: StepError,
@@ -145,14 +142,14 @@ pub(crate) fn named<Sys: System<N, M>, const N: usize, const M: usize>(
     }
 }
 
-fn dependent_at<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+fn dependent_at<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     t: f64,
     q: &[f64; N],
     v: &[f64; N],
     dependency: Dependency,
 ) -> StepError {
-    let space = row_space::<_, N, M>(system, t, q, v, RowSpace::<N, M>::ROUNDING);
+    let space = system.row_space(t, q, v, RowSpace::<N, M>::ROUNDING);
     let found = space.dependence();
     Dependent { rows: found.involved, time: t, distance: found.distance, dependency }.into()
 }
@@ -163,23 +160,23 @@ fn dependent_at<Sys: System<N, M>, const N: usize, const M: usize>(
 /// [`StepError::Dependent`] names those that do not, with all they depended on.
 #[cold]
 #[inline(never)]
-pub(crate) fn rows_left_out<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+pub(crate) fn rows_left_out<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     t1: f64,
     q1: &[f64; N],
     v1: &[f64; N],
     kept: Rows,
 ) -> Result<(), StepError> {
-    let rows = reaction_rows(system, t1, q1, v1);
+    let rows = system.reaction_rows(t1, q1, v1);
     let (_, b) = system.constraint(t1, q1);
-    let slip = constraint_residual(system, t1, q1, v1);
+    let slip = system.residual(t1, q1, v1);
     // Every row relative to its own size, the terms that make up the largest of them being what rounding comes from.
     let size = |k: usize| rows[k].iter().fold(0.0, |m, x| larger(m, *x));
     let terms = (0..M)
         .filter(|k| size(*k) > 0.0)
         .fold(0.0, |m, k| larger(m, (0..N).fold(b[k].abs(), |sum, i| sum + (rows[k][i] * v1[i]).abs()) / size(k)));
     let bound = 4.0 * RowSpace::<N, M>::ROUNDING * terms;
-    let positions = position_misses(system, t1, q1);
+    let positions = system.position_misses(t1, q1);
     let missed: Rows = (0..M)
         .filter(|k| !kept.contains(*k))
         .filter(|k| {

@@ -4,11 +4,8 @@ use crate::kept::Kept;
 use crate::overshoot::brakes_only;
 use crate::projection::{Projected, Projection};
 use crate::settle::sup;
-use crate::{Newton, OneStep, StackUse, Stage, State, StepError, StepReport};
-use lagrangian::{
-    Alpha, ClosedStepError, DiscreteConstraint, DiscreteLagrangian, Midpoint, NotAWeight, System, Trapezoid, from_fn,
-    linear_basis, momentum, reaction_rows,
-};
+use crate::{Discretisation, Mechanics, Newton, OneStep, Rules, StackUse, Stage, State, StepError, StepReport};
+use lagrangian::{Alpha, AnyRule, ClosedStepError, Midpoint, NotAWeight, System, Trapezoid, from_fn};
 
 /// How the equations of a step are solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -54,34 +51,28 @@ pub enum Form {
 /// constraint turns by less than a radian, and Newton's method contracts from its first step; or else the solution is
 /// followed from length zero to that of the step. No step turns a constraint by half a turn: it could as well be the other.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Dla<L, C> {
-    /// The discrete Lagrangian `L_d`.
-    pub lagrangian: L,
-    /// The discrete constraint `w_d`.
-    pub constraint: C,
+pub struct Dla<D = Rules> {
+    /// The discrete Lagrangian `L_d` and the discrete constraint `w_d`.
+    pub rules: D,
     /// The solver.
     pub newton: Newton,
     form: Form,
     pub(crate) kept: Kept,
 }
 
-impl Dla<Midpoint, Midpoint> {
+impl Dla {
     /// The midpoint rule for both: order 2, self-adjoint.
     #[must_use]
     pub fn midpoint() -> Self {
         Self::new(Midpoint, Midpoint)
     }
-}
 
-impl Dla<Trapezoid, Trapezoid> {
     /// The trapezoidal rule for both: order 2, self-adjoint.
     #[must_use]
     pub fn trapezoid() -> Self {
         Self::new(Trapezoid, Trapezoid)
     }
-}
 
-impl Dla<Alpha, Alpha> {
     /// The rule with weight `alpha` for both: order 1 unless `alpha = 1/2`.
     ///
     /// # Errors
@@ -90,12 +81,17 @@ impl Dla<Alpha, Alpha> {
         let rule = Alpha::new(alpha)?;
         Ok(Self::new(rule, rule))
     }
+
+    /// The method of a quadrature rule for the discrete Lagrangian and one for the discrete constraint, in its best form.
+    pub fn new(lagrangian: impl Into<AnyRule>, constraint: impl Into<AnyRule>) -> Self {
+        Self::of(Rules::new(lagrangian, constraint))
+    }
 }
 
-impl<L, C> Dla<L, C> {
+impl<D> Dla<D> {
     /// The method of a discrete Lagrangian and a discrete constraint, in its best form.
-    pub fn new(lagrangian: L, constraint: C) -> Self {
-        Self { lagrangian, constraint, newton: Newton::default(), form: Form::Best, kept: Kept::NONE }
+    pub fn of(rules: D) -> Self {
+        Self { rules, newton: Newton::default(), form: Form::Best, kept: Kept::NONE }
     }
 
     /// The same method, solved in the given form. Only the pair of midpoint rules has closed forms.
@@ -109,16 +105,13 @@ impl<L, C> Dla<L, C> {
 /// Of the general form; a closed form is left to the system.
 const USE: StackUse = StackUse { squares: 31, rows: 34 };
 
-impl<Sys, L, C, const N: usize, const M: usize> OneStep<Sys, N, M> for Dla<L, C>
-where
-    Sys: System<N, M>,
-    L: DiscreteLagrangian<Sys, N, M> + 'static,
-    C: DiscreteConstraint<Sys, N, M> + 'static,
-{
+impl<Sys: System<N, M>, D: Discretisation<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Dla<D> {
     #[inline(always)]
     fn step(&mut self, system: &Sys, t0: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
-        let closed = self.form == Form::Best && is_midpoint::<L>() && is_midpoint::<C>();
-        if closed && let Some(step) = system.closed_step(t0, h, state.begin()) {
+        if self.form == Form::Best
+            && self.rules.is_midpoint()
+            && let Some(step) = system.closed_step(t0, h, state.begin())
+        {
             let step = step.map_err(|source| failed(state, source))?;
             state.advance_remembering(&step.increment, step.velocity, step.xi)?;
             return Ok(StepReport { impulses: step.impulses, iterations: step.iterations, work: None });
@@ -135,19 +128,18 @@ where
     }
 }
 
-impl<L, C> Dla<L, C> {
+impl<D> Dla<D> {
     /// The step in its general form.
     #[inline(never)]
-    fn general_step<Sys: System<N, M>, const N: usize, const M: usize>(
+    fn general_step<const N: usize, const M: usize>(
         &mut self,
-        system: &Sys,
+        system: &dyn Mechanics<N, M>,
         t0: f64,
         h: f64,
         state: &mut State<N>,
     ) -> Result<StepReport<M>, StepError>
     where
-        L: DiscreteLagrangian<Sys, N, M>,
-        C: DiscreteConstraint<Sys, N, M>,
+        D: Discretisation<N, M>,
     {
         if const { USE.exceeds::<N, M>() } {
             return Err(USE.refusal::<N, M>());
@@ -162,31 +154,30 @@ impl<L, C> Dla<L, C> {
 
     /// The step in its general form. Compiled once for a system, whatever is composed of it.
     #[inline(never)]
-    fn solved_step<Sys: System<N, M>, const N: usize, const M: usize>(
+    fn solved_step<const N: usize, const M: usize>(
         &mut self,
-        system: &Sys,
+        system: &dyn Mechanics<N, M>,
         t0: f64,
         h: f64,
         state: &mut State<N>,
     ) -> Result<StepReport<M>, StepError>
     where
-        L: DiscreteLagrangian<Sys, N, M>,
-        C: DiscreteConstraint<Sys, N, M>,
+        D: Discretisation<N, M>,
     {
         let (q0, v0) = (*state.q(), *state.v());
         let in_basis = self.form != Form::Multipliers;
-        let basis = |t, q: &[f64; N]| if in_basis { system.admissible_basis(t, q) } else { None };
+        let basis = |t, q: &[f64; N]| if in_basis { system.basis(t, q) } else { None };
 
         // The increment, through the mean velocity.
         let increment = Increment {
-            rules: (&self.lagrangian, &self.constraint),
+            rules: &self.rules,
             system,
             t0,
             h,
             state,
             q0,
-            p0: momentum(system, t0, &q0, &v0),
-            a0: reaction_rows(system, t0, &q0, &v0),
+            p0: system.momentum(t0, &q0, &v0),
+            a0: system.reaction_rows(t0, &q0, &v0),
             basis: basis(t0, &q0),
         };
         let Mean { v, p1, lambda, iterations, some, block } =
@@ -209,9 +200,9 @@ impl<L, C> Dla<L, C> {
         let acceleration = from_fn(|i| (v1[i] - v[i]) / (0.5 * h));
         state.advance_with_acceleration(h, &d, v1, acceleration);
         let bases = || {
-            let middle = self.constraint.basis_along(system, (t0, h), &q0, &v)?;
-            let ((_, start), (_, end)) = linear_basis(system, t0, &q0).zip(linear_basis(system, t1, &q1))?;
-            system.holonomic(t1, &q1).is_none().then_some([start, middle, end])
+            let middle = self.rules.basis_along(system, (t0, h), &q0, &v)?;
+            let ((_, start), (_, end)) = system.linear_basis(t0, &q0).zip(system.linear_basis(t1, &q1))?;
+            (!system.constrains_positions(t1, &q1)).then_some([start, middle, end])
         };
         let bases = if in_basis && self.kept.wants_basis() { bases() } else { None };
         self.kept.begins::<N, M>(block.zip(mass), bases, h, (state.q(), &v1), &v);
@@ -240,10 +231,6 @@ pub(crate) fn predicted<const N: usize>(state: &State<N>, h: f64, expected: Opti
     let acceleration = state.acceleration()?;
     let v = from_fn(|i| v0[i] + 0.5 * h * acceleration[i]);
     near(&v).then_some(v)
-}
-
-fn is_midpoint<R: 'static>() -> bool {
-    std::any::TypeId::of::<R>() == std::any::TypeId::of::<Midpoint>()
 }
 
 // A call, so that nothing of it is in a step.

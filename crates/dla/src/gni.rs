@@ -1,9 +1,12 @@
 use crate::convergence::most_roundings;
 use crate::overshoot::brakes_only;
 use crate::positions::{affine_only, velocities_only};
-use crate::{Equations, Newton, NewtonError, OneStep, StackUse, Stage, State, StepError, StepReport};
+use crate::{
+    Discretisation, Equations, Mechanics, Newton, NewtonError, OneStep, RoundedStep, Rules, StackUse, Stage, State,
+    StepError, StepReport,
+};
 use lagrangian::linear::{Lu, Singular};
-use lagrangian::{DiscreteLagrangian, Dual, Rounded, Saddle, System, Trapezoid, from_fn, mass_matrix, momentum};
+use lagrangian::{Rounded, Saddle, System, Trapezoid, from_fn};
 
 /// The geometric nonholonomic integrator: **a counter-example**, not a method to use.
 ///
@@ -20,8 +23,8 @@ use lagrangian::{DiscreteLagrangian, Dual, Rounded, Saddle, System, Trapezoid, f
 /// motion of the sleigh that variable grows as `exp(asinh(kappa h) t / h)`, until the sleigh reverses by itself (the book,
 /// (3.9)).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Gni<L, const N: usize> {
-    lagrangian: L,
+pub struct Gni<const N: usize, D = Rules> {
+    rules: D,
     newton: Newton,
     memory: Option<Memory<N>>,
 }
@@ -33,41 +36,60 @@ struct Memory<const N: usize> {
     arriving: [f64; N],
 }
 
-impl<const N: usize> Default for Gni<Trapezoid, N> {
+impl<const N: usize> Default for Gni<N> {
     fn default() -> Self {
-        Self::new(Trapezoid)
+        Self::of(Rules::new(Trapezoid, Trapezoid))
     }
 }
 
-impl<L, const N: usize> Gni<L, N> {
-    /// The integrator of a discrete Lagrangian.
-    pub fn new(lagrangian: L) -> Self {
-        Self { lagrangian, newton: Newton::default(), memory: None }
+impl<const N: usize, D> Gni<N, D> {
+    /// The integrator of a discrete Lagrangian, with which comes a discrete constraint that it does not use.
+    pub fn of(rules: D) -> Self {
+        Self { rules, newton: Newton::default(), memory: None }
     }
 }
 
 /// `Q* p`, the part of a momentum across the constraint, and the admissible velocity of the rest.
-fn across<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+fn across<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     t: f64,
     state: (&[f64; N], &[f64; N]),
     p: &[f64; N],
 ) -> Result<([f64; N], [f64; N]), Singular> {
-    let (_, mass) = mass_matrix(system, t, state.0, state.1);
+    let (_, mass) = system.mass_matrix(t, state.0, state.1);
     let (a, b) = system.constraint(t, state.0);
     let saddle = Saddle { block: mass, transposed: a, rows: a, right: *p, level: b.map(|b| -b) };
-    let (v, mu) = saddle.solve(system.admissible_basis(t, state.0).as_ref())?;
+    let (v, mu) = saddle.solve(system.basis(t, state.0).as_ref())?;
     Ok((from_fn(|i| (0..M).map(|k| a[k][i] * mu[k]).sum()), v))
 }
 
 const USE: StackUse = StackUse { squares: 14, rows: 20 };
 
-impl<Sys, L, const N: usize, const M: usize> OneStep<Sys, N, M> for Gni<L, N>
-where
-    Sys: System<N, M>,
-    L: DiscreteLagrangian<Sys, N, M>,
-{
+impl<Sys: System<N, M>, D: Discretisation<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Gni<N, D> {
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        self.advance(system, t, h, state)
+    }
+
+    fn memory(&self) -> Vec<f64> {
+        self.memory.map_or_else(Vec::new, |memory| memory.arriving.to_vec())
+    }
+
+    fn recall(&mut self, memory: &[f64], state: &State<N>) {
+        self.memory = <[f64; N]>::try_from(memory).ok().map(|arriving| Memory { node: *state, arriving });
+    }
+}
+
+impl<const N: usize, D> Gni<N, D> {
+    fn advance<const M: usize>(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        t: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError>
+    where
+        D: Discretisation<N, M>,
+    {
         if const { USE.exceeds::<N, M>() } {
             return Err(USE.refusal::<N, M>());
         }
@@ -83,9 +105,9 @@ where
                 let (q_p, _) = across(system, t, (&q0, &v0), &p).map_err(singular(Stage::Projection))?;
                 from_fn(|i| p[i] - 2.0 * q_p[i])
             }
-            _ => momentum(system, t, &q0, &v0),
+            _ => system.momentum(t, &q0, &v0),
         };
-        let mut equations = Departure::<_, _, N, M> { lagrangian: &self.lagrangian, system, t, h, q0, departing };
+        let mut equations = Departure { rules: &self.rules, system, t, h, q0, departing };
         let mut v = v0;
         let iterations = self
             .newton
@@ -93,8 +115,9 @@ where
             .map_err(|source| StepError::Newton { stage: Stage::Increment, source })?;
 
         // At once with the step, since a force that is too large for a number may have an impulse that is not.
-        let mut arriving = self.lagrangian.derivatives(system, t, h, &q0, &v).d2;
-        if let Some((_, plus)) = self.lagrangian.forces(system, t, h, &q0, &v) {
+        let (momenta, _) = self.rules.linearised(system, (t, h), &q0, &v);
+        let [_, mut arriving] = momenta.slopes;
+        if let Some([_, plus]) = momenta.forces {
             arriving = from_fn(|i| arriving[i] + plus[i]);
         }
         let increment = v.map(|v| h * v);
@@ -106,38 +129,24 @@ where
         self.memory = Some(Memory { node: *state, arriving });
         Ok(StepReport::of(iterations))
     }
-
-    fn memory(&self) -> Vec<f64> {
-        self.memory.map_or_else(Vec::new, |memory| memory.arriving.to_vec())
-    }
-
-    fn recall(&mut self, memory: &[f64], state: &State<N>) {
-        self.memory = <[f64; N]>::try_from(memory).ok().map(|arriving| Memory { node: *state, arriving });
-    }
 }
 
 /// The equations `p+ + D1 L_d(q0, q0 + h v) + f_d^- = 0` for the mean velocity of a step; nothing constrains it.
-struct Departure<'a, Sys, L, const N: usize, const M: usize> {
-    lagrangian: &'a L,
-    system: &'a Sys,
+struct Departure<'a, D, const N: usize, const M: usize> {
+    rules: &'a D,
+    system: &'a dyn Mechanics<N, M>,
     t: f64,
     h: f64,
     q0: [f64; N],
     departing: [f64; N],
 }
 
-impl<Sys, L, const N: usize, const M: usize> Equations<N> for Departure<'_, Sys, L, N, M>
-where
-    Sys: System<N, M>,
-    L: DiscreteLagrangian<Sys, N, M>,
-{
+impl<D: Discretisation<N, M>, const N: usize, const M: usize> Equations<N> for Departure<'_, D, N, M> {
     #[cold]
     #[inline(never)]
     fn roundings(&self, v: &[f64; N]) -> Option<f64> {
-        let Self { lagrangian, system, t, h, q0, departing } = *self;
-        let (t, h, q, v) = (Rounded::exact(t), Rounded::exact(h), q0.map(Rounded::exact), v.map(Rounded::once));
-        let [d1, _] = lagrangian.slopes(system, t, h, &q, &v);
-        let minus = lagrangian.forces(system, t, h, &q, &v).map(|(minus, _)| minus);
+        let Self { rules, system, t, h, q0, departing } = *self;
+        let RoundedStep { d1, minus, .. } = rules.rounded(system, (t, h), &q0, &v.map(Rounded::once));
         Some(most_roundings((0..N).map(|i| {
             let conservative = d1[i] + departing[i];
             minus.map_or(conservative, |minus| conservative + minus[i])
@@ -145,19 +154,13 @@ where
     }
 
     fn correction(&mut self, v: &[f64; N]) -> Result<[f64; N], Singular> {
-        let Self { lagrangian, system, t, h, q0, departing } = *self;
-        let l_d = lagrangian.derivatives(system, t, h, &q0, v);
-        let mut residual: [f64; N] = from_fn(|i| departing[i] + l_d.d1[i]);
-        let mut block = l_d.d1d2.map(|row| row.map(|x| h * x));
-        let lifted = (Dual::fixed(t), Dual::fixed(h));
-        if let Some((minus, _)) =
-            lagrangian.forces(system, lifted.0, lifted.1, &q0.map(Dual::fixed), &Dual::variables(v))
-        {
+        let Self { rules, system, t, h, q0, departing } = *self;
+        let (momenta, block) = rules.linearised(system, (t, h), &q0, v);
+        let [d1, _] = momenta.slopes;
+        let mut residual: [f64; N] = from_fn(|i| departing[i] + d1[i]);
+        if let Some([minus, _]) = momenta.forces {
             for i in 0..N {
-                residual[i] += minus[i].re;
-                for j in 0..N {
-                    block[i][j] += minus[i].eps[j];
-                }
+                residual[i] += minus[i];
             }
         }
         Ok(Lu::new(block)?.solve(residual.map(|r| -r)))

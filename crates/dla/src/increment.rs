@@ -3,19 +3,16 @@ use crate::convergence::{most_roundings, without_reaction};
 use crate::corrections::{Corrections, Departure};
 use crate::dependent::named_along;
 use crate::newton::Found;
-use crate::{Newton, NewtonError, State, StepError};
+use crate::{Discretisation, EndMomenta, Mechanics, Newton, NewtonError, RoundedStep, State, StepError};
 use lagrangian::linear::{Singular, normal_solve};
-use lagrangian::{
-    AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, Dual, Rounded, Rows, Saddle, System, from_fn,
-    position_misses,
-};
+use lagrangian::{AdmissibleBasis, Rounded, Rows, Saddle, from_fn};
 use std::f64::consts::PI;
 
 /// The equations for the mean velocity `v` of a step, with the multiplier at its beginning.
-pub(crate) struct Increment<'a, Sys, L, C, const N: usize, const M: usize> {
+pub(crate) struct Increment<'a, D, const N: usize, const M: usize> {
     /// The discrete Lagrangian and the discrete constraint.
-    pub(crate) rules: (&'a L, &'a C),
-    pub(crate) system: &'a Sys,
+    pub(crate) rules: &'a D,
+    pub(crate) system: &'a dyn Mechanics<N, M>,
     pub(crate) t0: f64,
     pub(crate) h: f64,
     pub(crate) state: &'a State<N>,
@@ -37,12 +34,7 @@ pub(crate) struct Mean<const N: usize, const M: usize> {
     pub(crate) block: Option<[[f64; N]; N]>,
 }
 
-impl<Sys, L, C, const N: usize, const M: usize> Increment<'_, Sys, L, C, N, M>
-where
-    Sys: System<N, M>,
-    L: DiscreteLagrangian<Sys, N, M>,
-    C: DiscreteConstraint<Sys, N, M>,
-{
+impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N, M> {
     /// The solution that continues the motion, from the velocity `v0` at the beginning; first looked for near a
     /// guess where there is one.
     ///
@@ -102,9 +94,9 @@ where
     /// By how much a step with the mean velocity `v` misses the constraint.
     #[inline(always)]
     pub(crate) fn level(&self, v: &[f64; N]) -> [f64; M] {
-        let Self { rules: (_, constraint), system, t0, h, state, q0, .. } = *self;
-        let mut level = constraint.residual(system, t0, h, &q0, v).map(|w| -w);
-        if let Some(positions) = position_misses(system, t0 + h, &state.ahead(&v.map(|v| h * v))) {
+        let Self { rules, system, t0, h, state, q0, .. } = *self;
+        let mut level = rules.residual(system, (t0, h), &q0, v).map(|w| -w);
+        if let Some(positions) = system.position_misses(t0 + h, &state.ahead(&v.map(|v| h * v))) {
             for k in 0..M {
                 level[k] = positions[k].map_or(level[k], |g| -g.re / h);
             }
@@ -115,10 +107,10 @@ where
     /// The derivatives of the discrete constraint in the mean velocity `v`, and by how much it is missed.
     #[inline(always)]
     pub(crate) fn rows(&self, v: &[f64; N]) -> ([[f64; N]; M], [f64; M]) {
-        let Self { rules: (_, constraint), system, t0, h, state, q0, .. } = *self;
-        let w_d = constraint.linearised(system, t0, h, &q0, v);
+        let Self { rules, system, t0, h, state, q0, .. } = *self;
+        let w_d = rules.rows(system, (t0, h), &q0, v);
         let (mut rows, mut level) = (w_d.map(|w| w.eps), w_d.map(|w| -w.re));
-        if let Some(positions) = position_misses(system, t0 + h, &state.ahead(&v.map(|v| h * v))) {
+        if let Some(positions) = system.position_misses(t0 + h, &state.ahead(&v.map(|v| h * v))) {
             for k in 0..M {
                 if let Some(g) = positions[k] {
                     (rows[k], level[k]) = (g.eps, -g.re / h);
@@ -131,22 +123,9 @@ where
     /// Both ends of a step with the mean velocity `v`, and the derivatives of the beginning in it: one second-order evaluation.
     #[inline(never)]
     pub(crate) fn linearised(&self, v: &[f64; N]) -> (Departure<N>, [[f64; N]; N]) {
-        let Self { rules: (lagrangian, _), system, t0, h, q0, .. } = *self;
-        let l_d = lagrangian.derivatives(system, t0, h, &q0, v);
-        let mut at = Departure { residual: from_fn(|i| self.p0[i] + l_d.d1[i]), arriving: l_d.d2 };
-        let mut block = l_d.d1d2.map(|row| row.map(|x| h * x));
-        let (t, step) = (Dual::fixed(t0), Dual::fixed(h));
-        let (q, v) = (q0.map(Dual::fixed), Dual::variables(v));
-        if let Some((minus, plus)) = lagrangian.forces(system, t, step, &q, &v) {
-            for i in 0..N {
-                at.residual[i] += minus[i].re;
-                at.arriving[i] += plus[i].re;
-                for j in 0..N {
-                    block[i][j] += minus[i].eps[j];
-                }
-            }
-        }
-        (at, block)
+        let Self { rules, system, t0, h, q0, .. } = *self;
+        let (momenta, block) = rules.linearised(system, (t0, h), &q0, v);
+        (self.departing(&momenta), block)
     }
 
     /// Both ends of a step with the mean velocity `v`, in first order alone.
@@ -158,10 +137,16 @@ where
     /// The same with the configurations of a step of the mean velocity `way`, which is near to `v`.
     #[inline]
     pub(crate) fn momenta_along(&self, way: &[f64; N], v: &[f64; N]) -> Departure<N> {
-        let Self { rules: (lagrangian, _), system, t0, h, q0, .. } = *self;
-        let [d1, d2] = lagrangian.slopes_along(system, (t0, h), &q0, way, v);
+        let Self { rules, system, t0, h, q0, .. } = *self;
+        self.departing(&rules.momenta(system, (t0, h), &q0, way, v))
+    }
+
+    /// Both ends of a step that begins with the momenta `p0`.
+    #[inline(always)]
+    fn departing(&self, momenta: &EndMomenta<N>) -> Departure<N> {
+        let [d1, d2] = momenta.slopes;
         let mut at = Departure { residual: from_fn(|i| self.p0[i] + d1[i]), arriving: d2 };
-        if let Some((minus, plus)) = lagrangian.forces_along(system, (t0, h), &q0, way, v) {
+        if let Some([minus, plus]) = momenta.forces {
             for i in 0..N {
                 at.residual[i] += minus[i];
                 at.arriving[i] += plus[i];
@@ -175,18 +160,15 @@ where
     #[cold]
     #[inline(never)]
     pub(crate) fn roundings(&self, velocity: &[Rounded; N], some: Option<Rows>) -> f64 {
-        let Self { rules: (lagrangian, constraint), system, t0, h, state, q0, p0, a0, .. } = *self;
-        let (t, step, q) = (Rounded::exact(t0), Rounded::exact(h), q0.map(Rounded::exact));
-        let [d1, _] = lagrangian.slopes(system, t, step, &q, velocity);
-        let minus = lagrangian.forces(system, t, step, &q, velocity).map(|(minus, _)| minus);
+        let Self { rules, system, t0, h, state, q0, p0, a0, .. } = *self;
+        let RoundedStep { d1, minus, residual: mut level } = rules.rounded(system, (t0, h), &q0, velocity);
         let momenta = from_fn(|i| {
             let conservative = d1[i] + p0[i];
             minus.map_or(conservative, |minus| conservative + minus[i])
         });
-        let mut level = constraint.residual(system, t, step, &q, velocity);
         let q1 = state.ahead(&velocity.map(|v| h * v.value));
         let end = from_fn(|i| Rounded { value: q1[i], size: q1[i].abs() + (h * velocity[i].value).abs() });
-        if let Some(positions) = system.holonomic(Rounded::exact(t0 + h), &end) {
+        if let Some(positions) = system.positions_rounded(Rounded::exact(t0 + h), &end) {
             level = from_fn(|k| positions[k].map_or(level[k], |g| g / h));
         }
         let solved = (0..M).filter(|k| some.is_none_or(|rows| rows.contains(*k)));
@@ -211,10 +193,10 @@ where
     }
 }
 
-impl<Sys, L, C, const N: usize, const M: usize> Clone for Increment<'_, Sys, L, C, N, M> {
+impl<D, const N: usize, const M: usize> Clone for Increment<'_, D, N, M> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<Sys, L, C, const N: usize, const M: usize> Copy for Increment<'_, Sys, L, C, N, M> {}
+impl<D, const N: usize, const M: usize> Copy for Increment<'_, D, N, M> {}

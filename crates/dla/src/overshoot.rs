@@ -1,5 +1,5 @@
-use crate::StepError;
-use lagrangian::{System, from_fn, momentum};
+use crate::{Mechanics, StepError};
+use lagrangian::from_fn;
 
 /// That the forces of a step brake its velocity and do not turn it round.
 ///
@@ -16,8 +16,8 @@ use lagrangian::{System, from_fn, momentum};
 /// # Errors
 /// [`StepError::Overshoot`] with the part of the step at which they are equal.
 #[inline(always)]
-pub(crate) fn brakes_only<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+pub(crate) fn brakes_only<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     (t0, h): (f64, f64),
     q0: &[f64; N],
     (v, v1): (&[f64; N], &[f64; N]),
@@ -30,15 +30,15 @@ pub(crate) fn brakes_only<Sys: System<N, M>, const N: usize, const M: usize>(
 
 /// The damping against the inertia, both along the change of velocity.
 #[inline(never)]
-fn against_inertia<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+fn against_inertia<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     (t, q): (f64, &[f64; N]),
     (v, v1): (&[f64; N], &[f64; N]),
     damping: f64,
 ) -> Result<(), StepError> {
     /// A change of the velocity by a smaller part of it (squared) is compared with rounding.
     const ROUNDING: f64 = 1e-16;
-    let (mean, end) = (momentum(system, t, q, v), momentum(system, t, q, v1));
+    let (mean, end) = (system.momentum(t, q, v), system.momentum(t, q, v1));
     let along = |of: &dyn Fn(usize) -> f64| (0..N).map(of).sum::<f64>();
     let inertia = along(&|i| (v1[i] - v[i]) * (end[i] - mean[i]));
     let all = along(&|i| (v[i] * mean[i]).abs());

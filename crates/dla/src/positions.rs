@@ -1,6 +1,6 @@
-use crate::{History, NewtonError, Stage, State, StepError};
+use crate::{History, Mechanics, NewtonError, Stage, State, StepError};
 use lagrangian::linear::larger;
-use lagrangian::{Dual, RowSpace, Saddle, System, mass_matrix, position_misses};
+use lagrangian::{Dual, RowSpace, Saddle};
 
 /// The increment of a step with its end moved onto the constraints on positions, `g(q1) = 0`, by the shortest way in the
 /// kinetic metric: Newton's method with the gradients of the place it has come to. Nothing is done without such constraints.
@@ -10,8 +10,8 @@ use lagrangian::{Dual, RowSpace, Saddle, System, mass_matrix, position_misses};
 /// # Errors
 /// [`StepError::Newton`] where no such place is found.
 #[inline(always)]
-pub(crate) fn onto_positions<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+pub(crate) fn onto_positions<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     t1: f64,
     state: &State<N>,
     mut increment: [f64; N],
@@ -21,7 +21,7 @@ pub(crate) fn onto_positions<Sys: System<N, M>, const N: usize, const M: usize>(
     let (mut before, mut history) = (f64::INFINITY, History::new());
     for iteration in 1..=ITERATIONS {
         let q1 = state.ahead(&increment);
-        let Some(misses) = position_misses(system, t1, &q1) else { return Ok(increment) };
+        let Some(misses) = system.position_misses(t1, &q1) else { return Ok(increment) };
         if misses.iter().flatten().all(|g| g.re == 0.0) {
             return Ok(increment);
         }
@@ -59,14 +59,14 @@ const ITERATIONS: u32 = 50;
 /// The correction `-M^-1 A' (A M^-1 A')^-1 g` for the rows of the positions.
 #[cold]
 #[inline(never)]
-fn correction<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+fn correction<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     t: f64,
     q: &[f64; N],
     v: &[f64; N],
     misses: &[Option<Dual<f64, N>>; M],
 ) -> Result<[f64; N], lagrangian::linear::Singular> {
-    let (_, mass) = mass_matrix(system, t, q, v);
+    let (_, mass) = system.mass_matrix(t, q, v);
     // Rows of the velocities are zero here, and so left out.
     let rows = misses.map(|g| g.map_or([0.0; N], |g| g.eps));
     let some = RowSpace::new(&rows, &mass, RowSpace::<N, M>::ROUNDING).dependence().independent;
@@ -81,14 +81,14 @@ fn sup<const N: usize>(x: &[f64; N]) -> f64 {
 
 /// Refuses a system with constraints that a method cannot carry.
 #[inline(always)]
-pub(crate) fn affine_only<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+pub(crate) fn affine_only<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     t: f64,
     state: &State<N>,
 ) -> Result<(), StepError> {
-    match system.nonlinear(t, state.q(), state.v()) {
-        None => Ok(()),
-        Some(_) => Err(StepError::Unsupported {
+    match system.is_nonlinear(t, state.q(), state.v()) {
+        false => Ok(()),
+        true => Err(StepError::Unsupported {
             reason: "the method is for constraints that are affine in the velocities, and one of these is not: the family \
                      `dla` does it",
         }),
@@ -97,14 +97,14 @@ pub(crate) fn affine_only<Sys: System<N, M>, const N: usize, const M: usize>(
 
 /// Refuses a system with constraints on positions.
 #[inline(always)]
-pub(crate) fn velocities_only<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+pub(crate) fn velocities_only<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     t: f64,
     state: &State<N>,
     reason: &'static str,
 ) -> Result<(), StepError> {
-    match system.holonomic(t, state.q()) {
-        None => Ok(()),
-        Some(_) => Err(StepError::Unsupported { reason }),
+    match system.constrains_positions(t, state.q()) {
+        false => Ok(()),
+        true => Err(StepError::Unsupported { reason }),
     }
 }

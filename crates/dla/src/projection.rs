@@ -1,16 +1,13 @@
 use crate::convergence::{most_roundings, parted, without_reaction};
 use crate::dependent::{independent_rows, rows_left_out};
-use crate::{Equations, Newton, NewtonError, Stage, StepError};
+use crate::{Equations, Mechanics, Newton, NewtonError, Stage, StepError};
 use lagrangian::linear::{Singular, largest, normal_solve};
-use lagrangian::{
-    AdmissibleBasis, Dual, FactoredSaddle, Rounded, Rows, Saddle, System, add_reaction_curvature, constraint_residual,
-    from_fn, mass_matrix, momentum, reaction_rows, second_in_velocity,
-};
+use lagrangian::{AdmissibleBasis, FactoredSaddle, Rounded, Rows, Saddle, from_fn};
 
 /// The equations for the velocity at the end of a step, with the multiplier there:
 /// `L_v(q1, v1) = p1 + A(q1)' mu`, `A(q1) v1 + b(q1) = 0`. Of a constraint `phi = 0` that is not affine, `A` is `phi_v(q1, v1)`.
-pub(crate) struct Projection<'a, Sys, const N: usize, const M: usize> {
-    system: &'a Sys,
+pub(crate) struct Projection<'a, const N: usize, const M: usize> {
+    system: &'a dyn Mechanics<N, M>,
     t1: f64,
     q1: [f64; N],
     p1: [f64; N],
@@ -30,9 +27,9 @@ pub(crate) struct Projected<const N: usize, const M: usize> {
     pub(crate) mass: Option<[[f64; N]; N]>,
 }
 
-impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Projection<'a, Sys, N, M> {
+impl<'a, const N: usize, const M: usize> Projection<'a, N, M> {
     pub(crate) fn new(
-        system: &'a Sys,
+        system: &'a dyn Mechanics<N, M>,
         t1: f64,
         q1: [f64; N],
         p1: [f64; N],
@@ -72,18 +69,18 @@ impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Projection<'a, Sys, 
     #[inline(always)]
     fn at_once(&self, newton: &Newton, guess: &[f64; N]) -> Option<Projected<N, M>> {
         let Self { system, t1, q1, p1, basis, .. } = self;
-        if system.nonlinear(*t1, q1, guess).is_some() {
+        if system.is_nonlinear(*t1, q1, guess) {
             return None;
         }
-        let l = second_in_velocity(*system, *t1, q1, guess);
+        let (p, mass) = system.mass_matrix(*t1, q1, guess);
         let (a1, b1) = system.constraint(*t1, q1);
         let slip = |v: &[f64; N]| -> [f64; M] { from_fn(|k| -(0..N).fold(b1[k], |sum, i| sum + a1[k][i] * v[i])) };
-        let factors = FactoredSaddle::new(&l.e12, &a1, &a1, basis.as_ref()).ok()?;
+        let factors = FactoredSaddle::new(&mass, &a1, &a1, basis.as_ref()).ok()?;
 
-        let missing: [f64; N] = from_fn(|i| p1[i] - l.e1[i]);
+        let missing: [f64; N] = from_fn(|i| p1[i] - p[i]);
         let first = factors.solve(&missing, &slip(guess), basis.as_ref());
         let v1: [f64; N] = from_fn(|i| guess[i] + first[i]);
-        let p = system.lagrangian(Dual::fixed(*t1), &q1.map(Dual::fixed), &Dual::variables(&v1)).eps;
+        let p = system.momentum(*t1, q1, &v1);
         let missing: [f64; N] = from_fn(|i| p1[i] - p[i]);
         let second = factors.solve(&missing, &slip(&v1), basis.as_ref());
         let v1: [f64; N] = from_fn(|i| v1[i] + second[i]);
@@ -94,9 +91,9 @@ impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Projection<'a, Sys, 
             let d = second[i].abs();
             d <= size || 2.0 * d * d <= newton.tolerance * (first[i] * v1[i]).abs()
         });
-        let left = from_fn(|i| (0..N).map(|j| l.e12[i][j] * second[j]).sum::<f64>() - missing[i]);
+        let left = from_fn(|i| (0..N).map(|j| mass[i][j] * second[j]).sum::<f64>() - missing[i]);
         let mu = normal_solve(&a1, &left).ok()?;
-        settled.then_some(Projected { v1, mu, mass: Some(l.e12) })
+        settled.then_some(Projected { v1, mu, mass: Some(mass) })
     }
 }
 
@@ -105,15 +102,15 @@ impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Projection<'a, Sys, 
 ///
 /// # Errors
 /// [`StepError::Newton`] where the constraints do not determine it, [`StepError::Dependent`] where rows drop or disagree.
-pub(crate) fn project<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+pub(crate) fn project<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     t: f64,
     q: &[f64; N],
     v: &[f64; N],
 ) -> Result<[f64; N], StepError> {
-    let (p, newton) = (momentum(system, t, q, v), Newton::default());
+    let (p, newton) = (system.momentum(t, q, v), Newton::default());
     let fail = |source| StepError::Newton { stage: Stage::Projection, source };
-    let all = Projection::new(system, t, *q, p, system.admissible_basis(t, q));
+    let all = Projection::new(system, t, *q, p, system.basis(t, q));
     let error = match all.solve(&newton, *v) {
         Ok(Projected { v1, .. }) => return Ok(v1),
         Err(source) => fail(source),
@@ -128,15 +125,15 @@ pub(crate) fn project<Sys: System<N, M>, const N: usize, const M: usize>(
     Ok(v1)
 }
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> Equations<N> for Projection<'_, Sys, N, M> {
+impl<const N: usize, const M: usize> Equations<N> for Projection<'_, N, M> {
     #[cold]
     #[inline(never)]
     fn roundings(&self, v1: &[f64; N]) -> Option<f64> {
         let Self { system, t1, q1, p1, some, .. } = *self;
         let (t, q, v) = (Rounded::exact(t1), q1.map(Rounded::exact), v1.map(Rounded::once));
-        let p = momentum(system, t, &q, &v);
-        let left = without_reaction(&reaction_rows(system, t1, &q1, v1), from_fn(|i| p[i] + -p1[i]));
-        let slip = constraint_residual(system, t, &q, &v);
+        let p = system.momentum_rounded(t, &q, &v);
+        let left = without_reaction(&system.reaction_rows(t1, &q1, v1), from_fn(|i| p[i] + -p1[i]));
+        let slip = system.residual_rounded(t, &q, &v);
         let solved = (0..M).filter(|k| some.is_none_or(|rows| rows.contains(*k)));
         Some(most_roundings(left.into_iter().chain(solved.map(|k| slip[k]))))
     }
@@ -147,11 +144,11 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Equations<N> for Project
 
     #[inline]
     fn correction(&mut self, v1: &[f64; N]) -> Result<[f64; N], Singular> {
-        let (p, mut mass) = mass_matrix(self.system, self.t1, &self.q1, v1);
-        let a1 = reaction_rows(self.system, self.t1, &self.q1, v1);
-        let slip = constraint_residual(self.system, self.t1, &self.q1, v1);
+        let (p, mut mass) = self.system.mass_matrix(self.t1, &self.q1, v1);
+        let a1 = self.system.reaction_rows(self.t1, &self.q1, v1);
+        let slip = self.system.residual(self.t1, &self.q1, v1);
         // The reaction of a constraint that is not affine turns with the velocity.
-        add_reaction_curvature(self.system, self.t1, (&self.q1, v1), &self.mu.map(|mu| -mu), &mut mass);
+        self.system.add_reaction_curvature(self.t1, (&self.q1, v1), &self.mu.map(|mu| -mu), &mut mass);
         let missing = from_fn(|i| self.p1[i] - p[i]);
         let parted = if self.refined && self.some.is_none() { parted(&a1, &missing) } else { None };
         let (right, taken) = parted.unwrap_or((missing, [0.0; M]));

@@ -1,8 +1,8 @@
 use crate::positions::onto_positions;
 use crate::projection::project;
-use crate::{Equations, Newton, StackUse, Stage, State, StepError};
+use crate::{Equations, Mechanics, Newton, StackUse, Stage, State, StepError};
 use lagrangian::linear::Singular;
-use lagrangian::{RowSpace, Saddle, System, add_position_curvature, from_fn, mass_matrix};
+use lagrangian::{RowSpace, Saddle, from_fn};
 
 const USE: StackUse = StackUse { squares: 18, rows: 24 };
 
@@ -28,8 +28,8 @@ pub struct Start<const N: usize> {
 /// # Errors
 /// [`StepError::Newton`] where there is none nearby, or positions contradict one another; [`StepError::Dependent`] where the rank of the constraints drops there,
 /// or their velocities contradict one another.
-pub fn consistent_start<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+pub fn consistent_start<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     t: f64,
     q: &[f64; N],
     v: &[f64; N],
@@ -40,7 +40,7 @@ pub fn consistent_start<Sys: System<N, M>, const N: usize, const M: usize>(
     let given = State::new(*q, *v, [false; N]);
     // Somewhere on the positions first, then along them to the nearest place.
     let guess = onto_positions(system, t, &given, [0.0; N], v)?;
-    let mut nearest = Nearest { system, t, given: &given, mass: mass_matrix(system, t, q, v).1, nu: [0.0; M] };
+    let mut nearest = Nearest { system, t, given: &given, mass: system.mass_matrix(t, q, v).1, nu: [0.0; M] };
     let mut way = guess;
     if guess.iter().any(|d| *d != 0.0) {
         Newton::default()
@@ -51,28 +51,28 @@ pub fn consistent_start<Sys: System<N, M>, const N: usize, const M: usize>(
     let q1 = given.ahead(&way);
     let v1 = project(system, t, &q1, v)?;
     let length = |d: &[f64; N]| {
-        let (_, mass) = mass_matrix(system, t, &q1, &v1);
+        let (_, mass) = system.mass_matrix(t, &q1, &v1);
         (0..N).map(|i| (0..N).map(|j| d[i] * mass[i][j] * d[j]).sum::<f64>()).sum::<f64>().max(0.0).sqrt()
     };
     Ok(Start { q: q1, v: v1, moved: length(&way), changed: length(&from_fn(|i| v1[i] - v[i])) })
 }
 
 /// The equations for the move `d` to the nearest place: `M d + A(q + d)' nu = 0`, `g(q + d) = 0`.
-struct Nearest<'a, Sys, const N: usize, const M: usize> {
-    system: &'a Sys,
+struct Nearest<'a, const N: usize, const M: usize> {
+    system: &'a dyn Mechanics<N, M>,
     t: f64,
     given: &'a State<N>,
     mass: [[f64; N]; N],
     nu: [f64; M],
 }
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> Equations<N> for Nearest<'_, Sys, N, M> {
+impl<const N: usize, const M: usize> Equations<N> for Nearest<'_, N, M> {
     fn correction(&mut self, d: &[f64; N]) -> Result<[f64; N], Singular> {
         let q = self.given.ahead(d);
-        let misses = lagrangian::position_misses(self.system, self.t, &q).unwrap_or([None; M]);
+        let misses = self.system.position_misses(self.t, &q).unwrap_or([None; M]);
         let rows = misses.map(|g| g.map_or([0.0; N], |g| g.eps));
         let mut block = self.mass;
-        add_position_curvature(self.system, self.t, &q, &self.nu, &mut block);
+        self.system.add_position_curvature(self.t, &q, &self.nu, &mut block);
         let some = RowSpace::new(&rows, &self.mass, RowSpace::<N, M>::ROUNDING).dependence().independent;
         let saddle = Saddle {
             block,

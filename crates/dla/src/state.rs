@@ -1,6 +1,6 @@
 use crate::past::Past;
-use crate::{Checkpoint, CheckpointError, StepError};
-use lagrangian::{Memory, ReducedError, Start, System, Twofold, added, from_fn, quasi_velocities};
+use crate::{Checkpoint, CheckpointError, Mechanics, StepError};
+use lagrangian::{Memory, ReducedError, Start, Twofold, added, from_fn};
 use std::f64::consts::{PI, TAU};
 
 /// `2 pi` minus its nearest f64.
@@ -104,14 +104,14 @@ impl<const N: usize> State<N> {
     /// # Errors
     /// [`ReducedError`] where the system has no basis of admissible velocities, or a degenerate one.
     #[inline(always)]
-    pub fn quasi_velocities<Sys: System<N, M>, const M: usize>(
+    pub fn quasi_velocities<const M: usize>(
         &self,
-        system: &Sys,
+        system: &dyn Mechanics<N, M>,
         t: f64,
     ) -> Result<[f64; N], ReducedError> {
         match self.xi() {
             Some(xi) => Ok(xi),
-            None => quasi_velocities(system, t, &self.q, &self.v),
+            None => system.quasi_velocities(t, &self.q, &self.v),
         }
     }
 

@@ -1,6 +1,6 @@
-use crate::{NewtonError, NotANumber, State, StepError, not_a_number};
+use crate::{Mechanics, NewtonError, NotANumber, State, StepError};
 use lagrangian::linear::Singular;
-use lagrangian::{MotionError, ReducedError, System, from_fn};
+use lagrangian::{MotionError, ReducedError, from_fn};
 
 impl StepError {
     /// Whether the step may have failed because something is not a number, or not finite.
@@ -27,8 +27,8 @@ impl StepError {
 /// The error of equations at a place, with the function named that is not finite there, where it is such an error.
 #[cold]
 #[inline(never)]
-pub(crate) fn suspect_at<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+pub(crate) fn suspect_at<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     t: f64,
     q: &[f64; N],
     v: &[f64; N],
@@ -37,15 +37,15 @@ pub(crate) fn suspect_at<Sys: System<N, M>, const N: usize, const M: usize>(
     if !error.has_lost_numbers() {
         return error;
     }
-    not_a_number(system, t, q, v).map_or(error, |found| StepError::NotANumber(NotANumber { at_node: false, ..found }))
+    system.not_a_number(t, q, v).map_or(error, |found| StepError::NotANumber(NotANumber { at_node: false, ..found }))
 }
 
 /// The error of a step from `state`, with the function named that is not finite at its beginning, in its middle or at its end, with the
 /// velocity at the beginning or with another one, where it is such an error.
 #[cold]
 #[inline(never)]
-pub(crate) fn suspect_along<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+pub(crate) fn suspect_along<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     (t0, h): (f64, f64),
     state: &State<N>,
     v: &[f64; N],
@@ -54,7 +54,7 @@ pub(crate) fn suspect_along<Sys: System<N, M>, const N: usize, const M: usize>(
     if !error.has_lost_numbers() {
         return error;
     }
-    if let Some(found) = not_a_number(system, t0, state.q(), state.v()) {
+    if let Some(found) = system.not_a_number(t0, state.q(), state.v()) {
         return StepError::NotANumber(found);
     }
     let mut error = error;

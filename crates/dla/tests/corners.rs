@@ -4,7 +4,7 @@
 
 use approx::assert_abs_diff_eq;
 use dla::{
-    Composition, Derivative, Dla, Energy, Form, Gauss, GaussAdaptive, Gni, Hint, Lobatto, NotANumber, OneStep,
+    Composition, Derivative, Dla, Energy, Form, Gauss, GaussAdaptive, Gni, Hint, Lobatto, NotANumber, OneStep, Rules,
     RunError, Schedule, State, StepError, SystemFunction, Variable, drive, not_a_number,
 };
 use lagrangian::{AdmissibleBasis, Alpha, Constraint, Midpoint, Scalar, System};
@@ -118,7 +118,7 @@ fn all(skate: Skate, heading: f64, speed: f64) -> Vec<(&'static str, State<3>, R
     add("dla4", run(skate, Composition::suzuki4(Dla::midpoint()), start));
     add("lobatto3", run(skate, Lobatto::<3>::new(), start));
     add("lobatto4", run(skate, Lobatto::<4>::new(), start));
-    add("gni", run(skate, Gni::new(Midpoint), start));
+    add("gni", run(skate, Gni::of(Rules::new(Midpoint, Midpoint)), start));
     if skate.basis {
         add("gauss4", run(skate, Gauss::new::<2>(), start));
         add("gauss8", run(skate, Gauss::new::<4>(), start));

@@ -130,7 +130,7 @@ where
         Kind::Energy4 => run_with!(Energy::new::<2>()),
         Kind::Energy6 => run_with!(Energy::new::<3>()),
         Kind::Energy8 => run_with!(Energy::new::<4>()),
-        Kind::Gni => run_with!(Gni::<_, N>::default()),
+        Kind::Gni => run_with!(Gni::<N>::default()),
         Kind::Rk4 => run_with!(Rk4),
         Kind::Rk4Projected => run_with!(Rk4Projected),
         Kind::Rk4Reduced => run_with!(Rk4Reduced),

@@ -294,9 +294,10 @@ fn forces_at_nodes<R: Rule, Sys: System<N, M>, S: Scalar, const N: usize, const 
     Some((minus, plus))
 }
 
-/// The residual of each constraint with its derivatives in `v`, where `dq = part dv`.
+/// The residual of each constraint with its derivatives along `(dq, dv) = (part, 1) e_j`.
+#[must_use]
 #[inline(always)]
-fn residual_along<Sys: System<N, M>, const N: usize, const M: usize>(
+pub fn residual_along<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
     t: f64,
     q: &[f64; N],
@@ -356,8 +357,9 @@ fn affine_by_blocks<Sys: System<N, M>, const N: usize, const M: usize>(
 }
 
 /// `L_q` and `L_v`.
+#[must_use]
 #[inline(always)]
-fn gradients<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
+pub fn gradients<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
     system: &Sys,
     t: S,
     q: &[S; N],
@@ -392,8 +394,9 @@ fn gradients_by<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize, co
 }
 
 /// Time and configuration at the fraction `alpha` of a step.
+#[must_use]
 #[inline(always)]
-pub(crate) fn on_line<S: Scalar, const N: usize>(alpha: f64, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> (S, [S; N]) {
+pub fn on_line<S: Scalar, const N: usize>(alpha: f64, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> (S, [S; N]) {
     let part = h * alpha;
     (t0 + part, from_fn(|i| q0[i] + part * v[i]))
 }

@@ -18,6 +18,28 @@ struct InPlace<'a, Sys, S, const N: usize, const M: usize>(At<'a, Sys, S, N, M>)
 /// The first are the coordinates, the second the velocities.
 struct InBoth<'a, Sys, S, const N: usize, const M: usize>(At<'a, Sys, S, N, M>);
 
+/// The first are the ends at the beginning of a step, the second those at its end, on whose line the state is a node.
+struct AtNode<'a, Sys, S, const N: usize, const M: usize> {
+    at: At<'a, Sys, S, N, M>,
+    back: S,
+    ahead: S,
+}
+
+/// The Lagrangian with its gradients along `(dq, dv) = (back, -1) e_i` and `(ahead, 1) e_j`, and the mixed second derivatives; with
+/// `back = h (1 - alpha)` and `ahead = h alpha` what a node at the fraction `alpha` of a step adds to `D1 L_d`, `D2 L_d` and `h D1 D2 L_d`.
+#[must_use]
+#[inline(always)]
+pub fn second_at_node<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
+    system: &Sys,
+    t: S,
+    q: &[S; N],
+    v: &[S; N],
+    back: S,
+    ahead: S,
+) -> HyperDual<S, N, N> {
+    second_derivatives(&AtNode::<_, _, N, M> { at: At { system, t, q, v }, back, ahead })
+}
+
 /// The Lagrangian, its momenta `L_v` in both gradients, and `L_vv`, the mass matrix; inlined, so that what is evaluated beside it in the
 /// same place shares the functions of the place.
 #[must_use]
@@ -95,5 +117,19 @@ impl<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize> TwiceDifferen
         let in_q: [_; N] = from_fn(|i| HyperDual::linear(q[i], seed(one, i, first), zero));
         let in_v: [_; N] = from_fn(|i| HyperDual::linear(v[i], zero, seed(one, i, second)));
         system.lagrangian(HyperDual::fixed(t), &in_q, &in_v)
+    }
+}
+
+impl<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize> TwiceDifferentiable<S, N>
+    for AtNode<'_, Sys, S, N, M>
+{
+    const SYMMETRIC: bool = false;
+
+    #[inline(always)]
+    fn at<const P: usize>(&self, first: usize, second: usize) -> HyperDual<S, P, P> {
+        let (At { system, t, q, v }, one) = (&self.at, S::constant(1.0));
+        let in_q: [_; N] = from_fn(|i| HyperDual::linear(q[i], seed(self.back, i, first), seed(self.ahead, i, second)));
+        let in_v: [_; N] = from_fn(|i| HyperDual::linear(v[i], seed(-one, i, first), seed(one, i, second)));
+        system.lagrangian(HyperDual::fixed(*t), &in_q, &in_v)
     }
 }

@@ -1,26 +1,26 @@
 use super::{Found, are_met};
+use crate::Mechanics;
 use crate::derivatives::Derivatives;
 use crate::dla::Dla;
 use crate::settle::{LEAST, Settle, sup};
-use lagrangian::{Bordered, System, from_fn, mass_matrix, momentum};
+use lagrangian::{Bordered, from_fn};
 
-impl<L, C> Dla<L, C> {
+impl<D> Dla<D> {
     /// The velocity `v1` at the end: `L_v(q1, v1) = p1 + A(q1)' mu`, `A(q1) v1 + b(q1) = 0`.
     #[inline(always)]
-    pub(super) fn arrival<Sys: System<N, M>, const N: usize, const M: usize>(
+    pub(super) fn arrival<const N: usize, const M: usize>(
         &mut self,
-        system: &Sys,
+        system: &dyn Mechanics<N, M>,
         (t1, q1): (f64, &[f64; N]),
         p1: [f64; N],
         guess: [f64; N],
     ) -> Option<Found<N, M>> {
-        let (a1, b1) = system.constraint(t1, q1);
-        let p = if self.kept.mass.stale {
-            let (p, mass) = mass_matrix(system, t1, q1, &guess);
+        let (p, (a1, b1)) = if self.kept.mass.stale {
+            let (p, mass) = system.mass_matrix(t1, q1, &guess);
             self.kept.mass.renew(&mass)?;
-            p
+            (p, system.constraint(t1, q1))
         } else {
-            momentum(system, t1, q1, &guess)
+            system.momentum_and_rows(t1, q1, &guess)
         };
         let mass = &self.kept.mass;
         let bordered = Bordered::clear(
@@ -41,7 +41,7 @@ impl<L, C> Dla<L, C> {
             self.kept.mass.go_unseen();
             return Some(Found { v, lambda: minus_mu.map(|m| -m), corrections: 1 });
         }
-        let p = momentum(system, t1, q1, &v);
+        let p = system.momentum(t1, q1, &v);
         if here.is_met(&p, &minus_mu) {
             self.kept.mass.have_sufficed(size, large, || true);
             return Some(Found { v, lambda: minus_mu.map(|m| -m), corrections: LEAST });
@@ -54,8 +54,8 @@ impl<L, C> Dla<L, C> {
 }
 
 /// The equations at the end.
-struct Here<'a, Sys, const N: usize, const M: usize> {
-    system: &'a Sys,
+struct Here<'a, const N: usize, const M: usize> {
+    system: &'a dyn Mechanics<N, M>,
     t1: f64,
     q1: [f64; N],
     p1: [f64; N],
@@ -66,7 +66,7 @@ struct Here<'a, Sys, const N: usize, const M: usize> {
     tolerance: f64,
 }
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> Here<'_, Sys, N, M> {
+impl<const N: usize, const M: usize> Here<'_, N, M> {
     /// The correction of a velocity `v` that has the momenta `p`, and `-mu`.
     #[inline(always)]
     fn correction(&self, v: &[f64; N], p: &[f64; N]) -> ([f64; N], [f64; M]) {
@@ -94,7 +94,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Here<'_, Sys, N, M> {
                 (d, minus_mu) = match known.take() {
                     Some(p) => self.correction(v, &p),
                     None => {
-                        let p = momentum(self.system, self.t1, &self.q1, v);
+                        let p = self.system.momentum(self.t1, &self.q1, v);
                         if self.is_met(&p, &minus_mu) {
                             return None;
                         }

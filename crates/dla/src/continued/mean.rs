@@ -1,34 +1,33 @@
 use super::{Found, are_met, ends, with_reaction};
-use crate::State;
 use crate::convergence::tolerances::SHRINKING;
 use crate::corrections::Departure;
 use crate::derivatives::Derivatives;
 use crate::dla::{Dla, expected, predicted};
 use crate::increment::Increment;
 use crate::settle::{LEAST, Settle, sup};
-use lagrangian::{Bordered, DiscreteConstraint, DiscreteLagrangian, System, from_fn, momentum};
+use crate::{Discretisation, Mechanics, State};
+use lagrangian::{Bordered, from_fn};
 
 /// The square of a correction that is smaller, relative to the velocity, is below all rounding.
 const SMALL: f64 = 1e-9;
 
-impl<L, C> Dla<L, C> {
+impl<D> Dla<D> {
     /// The mean velocity `v`, `p0 + D1 L_d + f_d^- + A(q0)' lambda = 0`, `w_d = 0`; and the momenta `D2 L_d + f_d^+` at the end.
     #[inline(always)]
-    pub(super) fn mean<Sys: System<N, M>, const N: usize, const M: usize>(
+    pub(super) fn mean<const N: usize, const M: usize>(
         &mut self,
-        system: &Sys,
+        system: &dyn Mechanics<N, M>,
         (t0, h): (f64, f64),
         state: &State<N>,
     ) -> Option<(Found<N, M>, [f64; N])>
     where
-        L: DiscreteLagrangian<Sys, N, M>,
-        C: DiscreteConstraint<Sys, N, M>,
+        D: Discretisation<N, M>,
     {
         let v = predicted(state, h, expected(state, h))?;
-        let rules = (&self.lagrangian, &self.constraint);
+        let rules = &self.rules;
         let (q0, v0) = (*state.q(), state.v());
         // Of the system as it is now, which may not be the one of the step before.
-        let (p0, (a0, _)) = (momentum(system, t0, &q0, v0), system.constraint(t0, &q0));
+        let (p0, (a0, _)) = system.momentum_and_rows(t0, &q0, v0);
         let increment = Increment { rules, system, t0, h, state, q0, p0, a0, basis: None };
         let at = if self.kept.block.stale {
             let (at, block) = increment.linearised(&v);
@@ -76,8 +75,8 @@ impl<L, C> Dla<L, C> {
 }
 
 /// A search after its first correction.
-struct Begun<'a, Sys, L, C, const N: usize, const M: usize> {
-    increment: Increment<'a, Sys, L, C, N, M>,
+struct Begun<'a, D, const N: usize, const M: usize> {
+    increment: Increment<'a, D, N, M>,
     block: &'a Derivatives,
     bordered: Bordered<N, M>,
     tolerance: f64,
@@ -90,12 +89,7 @@ struct Begun<'a, Sys, L, C, const N: usize, const M: usize> {
     at: Departure<N>,
 }
 
-impl<Sys, L, C, const N: usize, const M: usize> Begun<'_, Sys, L, C, N, M>
-where
-    Sys: System<N, M>,
-    L: DiscreteLagrangian<Sys, N, M>,
-    C: DiscreteConstraint<Sys, N, M>,
-{
+impl<D: Discretisation<N, M>, const N: usize, const M: usize> Begun<'_, D, N, M> {
     /// The search to its end. By value, so that nothing of one that is at its end need be in memory.
     #[inline(never)]
     fn settled(self) -> Option<(Found<N, M>, [f64; N])> {

@@ -9,8 +9,8 @@ use crate::corrections::Departure;
 use crate::dla::Dla;
 use crate::overshoot::brakes_only;
 use crate::settle::LEAST;
-use crate::{State, StepReport};
-use lagrangian::{DiscreteConstraint, DiscreteLagrangian, System, from_fn};
+use crate::{Discretisation, Mechanics, State, StepReport};
+use lagrangian::from_fn;
 
 /// The velocity that a search has found, with the impulse of the constraints, and in how many corrections.
 struct Found<const N: usize, const M: usize> {
@@ -58,22 +58,21 @@ fn with_reaction<const N: usize, const M: usize>(mut p: [f64; N], a: &[[f64; N];
     p
 }
 
-impl<L, C> Dla<L, C> {
+impl<D> Dla<D> {
     /// The step in its general form where it goes on from the last one; none where it does not.
     ///
     /// The equations are those of [`Dla`], with multipliers. The derivatives are of a step before, so that a correction takes
     /// first-order evaluations alone, and no elimination beyond the multipliers.
     #[inline(always)]
-    pub(crate) fn continued_step<Sys: System<N, M>, const N: usize, const M: usize>(
+    pub(crate) fn continued_step<const N: usize, const M: usize>(
         &mut self,
-        system: &Sys,
+        system: &dyn Mechanics<N, M>,
         t0: f64,
         h: f64,
         state: &mut State<N>,
     ) -> Option<StepReport<M>>
     where
-        L: DiscreteLagrangian<Sys, N, M>,
-        C: DiscreteConstraint<Sys, N, M>,
+        D: Discretisation<N, M>,
     {
         self.kept.follows(state);
         if !self.kept.is_ready() {
@@ -94,8 +93,8 @@ impl<L, C> Dla<L, C> {
 /// Moves the state by a step with the mean velocity `v`, to `q1` with the velocity `v1`; none where forces overshoot, or where these are
 /// no numbers.
 #[inline(always)]
-fn advanced<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+fn advanced<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     (t0, h): (f64, f64),
     state: &mut State<N>,
     increment: &[f64; N],
@@ -115,16 +114,12 @@ fn advanced<Sys: System<N, M>, const N: usize, const M: usize>(
 // Twice in a build for any machine, as the loop over steps is (`drive_part`).
 #[cfg_attr(not(target_feature = "avx2"), multiversion::multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt")))]
 #[inline(never)]
-fn going_on<L, C, Sys: System<N, M>, const N: usize, const M: usize>(
-    method: &mut Dla<L, C>,
-    system: &Sys,
+fn going_on<D: Discretisation<N, M>, const N: usize, const M: usize>(
+    method: &mut Dla<D>,
+    system: &dyn Mechanics<N, M>,
     (t0, h): (f64, f64),
     state: &mut State<N>,
-) -> Option<StepReport<M>>
-where
-    L: DiscreteLagrangian<Sys, N, M>,
-    C: DiscreteConstraint<Sys, N, M>,
-{
+) -> Option<StepReport<M>> {
     let (q0, v0) = (*state.q(), *state.v());
     let (Found { v, lambda, corrections }, p1) = method.mean(system, (t0, h), state)?;
     if branch::turn(system, (t0, h), &q0, &v) > branch::NEAR {
@@ -152,7 +147,7 @@ where
 mod tests {
     use super::*;
     use crate::{Form, OneStep};
-    use lagrangian::{Constraint, Midpoint, Scalar};
+    use lagrangian::{Constraint, Scalar, System};
     use proptest::prelude::*;
 
     /// A disk of unit masses that rolls upright, on a table that may tremble.
@@ -179,16 +174,16 @@ mod tests {
         State::new([0.0; 4], [1.0, 0.0, 1.0, 0.5], [false, false, true, true])
     }
 
-    fn method() -> Dla<Midpoint, Midpoint> {
+    fn method() -> Dla {
         Dla::midpoint().solved(Form::General)
     }
 
     /// How many of a hundred steps go on from the last.
-    fn going_on(system: &Disk, method: &mut Dla<Midpoint, Midpoint>, state: &mut State<4>) -> u32 {
+    fn going_on(system: &Disk, method: &mut Dla, state: &mut State<4>) -> u32 {
         let mut count = 0;
         for k in 0..100 {
             let t = f64::from(k) * STEP;
-            match method.continued_step::<_, 4, 2>(system, t, STEP, state) {
+            match method.continued_step::<4, 2>(system, t, STEP, state) {
                 Some(_) => count += 1,
                 None => {
                     method.step(system, t, STEP, state).unwrap();
@@ -206,7 +201,7 @@ mod tests {
         // Elsewhere, reversed, or without what the state remembers.
         let place = *state.q();
         for mut other in [start(), state.reversed(), State::new(place, [0.0; 4], [false, false, true, true])] {
-            assert!(method.clone().continued_step::<_, 4, 2>(&SMOOTH, 0.0, STEP, &mut other).is_none());
+            assert!(method.clone().continued_step::<4, 2>(&SMOOTH, 0.0, STEP, &mut other).is_none());
         }
     }
 

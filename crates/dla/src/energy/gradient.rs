@@ -1,7 +1,8 @@
 use super::ends::Ends;
 use super::path::{Path, Points};
 use super::rule::Rule;
-use lagrangian::{Lanes, Scalar, System, energy_slope};
+use crate::Mechanics;
+use lagrangian::{Lanes, Scalar};
 
 /// Which discrete gradient of the energy a step takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -37,13 +38,13 @@ fn steepest<const N: usize>(h_q: &[Lanes; N], lanes: usize) -> [f64; N] {
 
 /// `int_0^1 (l_i / b_i) grad H(u) dsigma`.
 #[inline(always)]
-pub(super) fn average<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+pub(super) fn average<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     rule: &Rule,
     t: Lanes,
     nodes: &mut Points<N>,
 ) -> Option<Averages<N>> {
-    let slope = energy_slope(system, t, &nodes.q, &nodes.xi)?;
+    let slope = system.energy_slope(t, &nodes.q, &nodes.xi)?;
     nodes.pi = slope.pi;
     let mean = |values: &[Lanes; N]| {
         values.map(|value| {
@@ -68,8 +69,8 @@ pub(super) fn average<Sys: System<N, M>, const N: usize, const M: usize>(
 ///
 /// Where the ends coincide `k` is `0/0`; it is left out where the change that it would make up for is rounding.
 #[inline(always)]
-pub(super) fn gonzalez<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+pub(super) fn gonzalez<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     rule: &Rule,
     t: Lanes,
     path: &Path<N>,
@@ -77,7 +78,7 @@ pub(super) fn gonzalez<Sys: System<N, M>, const N: usize, const M: usize>(
     ends: &Ends,
     h: f64,
 ) -> Option<Averages<N>> {
-    let slope = energy_slope(system, t, &points.q, &points.xi)?;
+    let slope = system.energy_slope(t, &points.q, &points.xi)?;
     let (mut h_q, mut h_pi) = (slope.h_q, points.xi);
     let (dq, dpi) = path.increments(rule, h);
     let (mut missing, mut square) = (ends.after - ends.before, 0.0);

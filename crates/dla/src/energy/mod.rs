@@ -11,10 +11,10 @@ pub use gradient::Gradient;
 
 use crate::convergence::FixedPoint;
 use crate::positions::{affine_only, velocities_only};
-use crate::{OneStep, StackUse, Stage, State, StepError, StepReport};
+use crate::{Mechanics, OneStep, StackUse, Stage, State, StepError, StepReport};
 use ends::Ends;
 use lagrangian::linear::larger;
-use lagrangian::{AT_ONCE, Bracket, Lanes, Scalar, System, Twofold, from_fn, vectorized};
+use lagrangian::{AT_ONCE, Lanes, Scalar, System, Twofold, from_fn, vectorized};
 use path::{Path, Points};
 use rule::Rule;
 use start::Start;
@@ -71,18 +71,27 @@ impl Energy {
 impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Energy {
     #[inline]
     fn step(&mut self, system: &Sys, t0: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        self.advance(system, t0, h, state)
+    }
+}
+
+impl Energy {
+    fn advance<const N: usize, const M: usize>(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        t0: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
         if const { stack::<N>().exceeds::<N, M>() } {
             return Err(stack::<N>().refusal::<N, M>());
-        }
-        if Sys::MOVING {
-            return Err(start::MOVING);
         }
         affine_only(system, t0, state)?;
         velocities_only(system, t0, state, POSITIONS)?;
         let start = Start::new(system, t0, h, state)?;
         let end = Step { system, rule: &self.rule, gradient: self.gradient, t0, h, start: &start }.solved()?;
         let q1 = state.ahead(&end.increment);
-        let v1 = system.admissible_basis(t0 + h, &q1).ok_or(NO_BASIS)?.combine(&end.xi);
+        let v1 = system.basis(t0 + h, &q1).ok_or(NO_BASIS)?.combine(&end.xi);
         state.stays_finite(&end.increment, &v1)?;
         state.advance_with_momenta(&end.increment, v1, end.xi, end.pi);
         self.work = end.work;
@@ -104,8 +113,8 @@ const POSITIONS: &str = "the energy-preserving methods let positions drift from 
                          projected positions would change the energy";
 
 /// The equations of one step.
-struct Step<'a, Sys, const N: usize> {
-    system: &'a Sys,
+struct Step<'a, const N: usize, const M: usize> {
+    system: &'a dyn Mechanics<N, M>,
     rule: &'a Rule,
     gradient: Gradient,
     t0: f64,
@@ -122,7 +131,7 @@ struct End<const N: usize> {
     iterations: u32,
 }
 
-impl<Sys, const N: usize> Step<'_, Sys, N> {
+impl<const N: usize, const M: usize> Step<'_, N, M> {
     /// The energy may miss the work by so many roundings; more is an error of the quadrature.
     const ROUNDINGS: f64 = 1024.0;
 
@@ -131,10 +140,7 @@ impl<Sys, const N: usize> Step<'_, Sys, N> {
 
     /// With the widest instructions that the machine has.
     #[inline(never)]
-    fn solved<const M: usize>(&self) -> Result<End<N>, StepError>
-    where
-        Sys: System<N, M>,
-    {
+    fn solved(&self) -> Result<End<N>, StepError> {
         vectorized(
             #[inline(always)]
             || self.solve(),
@@ -142,10 +148,7 @@ impl<Sys, const N: usize> Step<'_, Sys, N> {
     }
 
     #[inline(always)]
-    fn solve<const M: usize>(&self) -> Result<End<N>, StepError>
-    where
-        Sys: System<N, M>,
-    {
+    fn solve(&self) -> Result<End<N>, StepError> {
         let Self { system, rule, start, t0, h, .. } = *self;
         let time = |tau: Lanes| tau * h + t0;
         let (mut path, mut points, mut nodes) = (Path::rest(), Points::at(start), Points::at(start));
@@ -154,7 +157,7 @@ impl<Sys, const N: usize> Step<'_, Sys, N> {
             let before = points.xi;
             points.follow(&path, rule.integrals_to_points(), start, h);
             let t = time(rule.points);
-            let bracket = Bracket::at(system, t, &points.q, &points.xi).ok_or(NO_BASIS)?;
+            let bracket = system.bracket(t, &points.q, &points.xi).ok_or(NO_BASIS)?;
             points.pi = bracket.quasi_momenta();
             let ends = Ends::of(rule, &bracket, &points, start);
             let averages = match self.gradient {
@@ -168,7 +171,7 @@ impl<Sys, const N: usize> Step<'_, Sys, N> {
 
             let (q_rate, mut pi_rate) = bracket.rates(&averages.h_q, &averages.h_pi);
             let mut power = Lanes::zero();
-            if let Some(force) = system.force(t, &points.q, &q_rate) {
+            if let Some(force) = system.force_at_eight(t, &points.q, &q_rate) {
                 let along = bracket.along_basis(&force);
                 for i in 0..N {
                     pi_rate[i] += along[i];
@@ -210,16 +213,7 @@ impl<Sys, const N: usize> Step<'_, Sys, N> {
 
     /// That the energy has changed by the work of the forces.
     #[inline(always)]
-    fn check<const M: usize>(
-        &self,
-        ends: &Ends,
-        work: f64,
-        steepest: &[f64; N],
-        path: &Path<N>,
-    ) -> Result<(), StepError>
-    where
-        Sys: System<N, M>,
-    {
+    fn check(&self, ends: &Ends, work: f64, steepest: &[f64; N], path: &Path<N>) -> Result<(), StepError> {
         let defect = ends.after - ends.before - work;
         let size = ends.rounded_size(self.start.state.q(), steepest);
         // An energy among the last numbers is rounded by as much as the least normal one is.
@@ -231,15 +225,7 @@ impl<Sys, const N: usize> Step<'_, Sys, N> {
     /// rounding of the place, by whose second order the energy then changes: the rounding of the forces times the way that it is off.
     #[cold]
     #[inline(never)]
-    fn check_at_rest<const M: usize>(
-        &self,
-        (defect, bound): (f64, f64),
-        steepest: &[f64; N],
-        path: &Path<N>,
-    ) -> Result<(), StepError>
-    where
-        Sys: System<N, M>,
-    {
+    fn check_at_rest(&self, (defect, bound): (f64, f64), steepest: &[f64; N], path: &Path<N>) -> Result<(), StepError> {
         let (way, _) = path.increments(self.rule, self.h);
         let along: f64 = (0..N).map(|i| steepest[i] * way[i].abs()).sum();
         let noise = f64::EPSILON * along + self.start.energy_rounding(self.system, self.t0, self.h);

@@ -1,10 +1,8 @@
 use super::NO_BASIS;
 use crate::convergence::tolerances::BLIND;
-use crate::{State, StepError};
+use crate::{Mechanics, State, StepError};
 use lagrangian::linear::largest;
-use lagrangian::{
-    Bracket, Dual, Lanes, MotionError, MotionRounding, Scalar, System, Twofold, from_fn, inverse_reduced_mass,
-};
+use lagrangian::{Lanes, MotionError, MotionRounding, Scalar, Twofold, from_fn};
 
 /// The beginning of a step on `D*`.
 #[derive(Debug, Clone, Copy)]
@@ -25,23 +23,23 @@ impl<const N: usize> Start<N> {
     /// # Errors
     /// [`StepError::Unsupported`] for a system that the methods on `D*` cannot do; [`StepError::Motion`] where its mass
     /// matrix is degenerate.
-    pub(super) fn new<Sys: System<N, M>, const M: usize>(
-        system: &Sys,
+    pub(super) fn new<const M: usize>(
+        system: &dyn Mechanics<N, M>,
         t0: f64,
         h: f64,
         state: &State<N>,
     ) -> Result<Self, StepError> {
         let (q, v) = (state.q(), state.v());
-        let basis = system.admissible_basis(t0, q).ok_or(NO_BASIS)?;
+        let basis = system.basis(t0, q).ok_or(NO_BASIS)?;
         autonomous(system, t0, h, q, v)?;
         let singular = |source| StepError::Motion(MotionError { time: t0, source });
         let mut xi = state.quasi_velocities(system, t0)?;
         xi[basis.vectors().len()..].fill(0.0);
         let v = basis.combine(&xi);
-        let inverse_mass = inverse_reduced_mass(system, t0, q, &v, &basis).map_err(singular)?;
+        let inverse_mass = system.inverse_reduced_mass(t0, q, &v, &basis).map_err(singular)?;
         // In the arithmetic that ended the step before: between two sines that differ in their last digits the quasi-momenta
         // would lose the same part of an ulp at every step.
-        let here = Bracket::at(system, Lanes::constant(t0), &q.map(Lanes::constant), &xi.map(Lanes::constant));
+        let here = system.bracket(Lanes::constant(t0), &q.map(Lanes::constant), &xi.map(Lanes::constant));
         let pi = here.ok_or(NO_BASIS)?.quasi_momenta().map(|pi| pi.0[0]);
         let rest = state.quasi_momenta().map_or([0.0; N], |carried| rounding(&carried, &pi));
         Ok(Self { state: *state, xi, pi, rest, inverse_mass })
@@ -53,11 +51,11 @@ impl<const N: usize> Start<N> {
     /// none where the motion is degenerate.
     #[cold]
     #[inline(never)]
-    pub(super) fn rounding<Sys: System<N, M>, const M: usize>(&self, system: &Sys, t0: f64, h: f64) -> [[f64; N]; 3] {
+    pub(super) fn rounding<const M: usize>(&self, system: &dyn Mechanics<N, M>, t0: f64, h: f64) -> [[f64; N]; 3] {
         let q = self.state.q();
-        let Some(basis) = system.admissible_basis(t0, q) else { return [[0.0; N]; 3] };
+        let Some(basis) = system.basis(t0, q) else { return [[0.0; N]; 3] };
         let v = basis.combine(&self.xi);
-        let Ok(motion) = MotionRounding::at(system, t0, q, &v) else { return [[0.0; N]; 3] };
+        let Ok(motion) = system.motion_rounding(t0, q, &v) else { return [[0.0; N]; 3] };
         let (pi, pi_rate) = (motion.quasi_momentum(&basis), motion.along(&basis));
         let moved: [f64; N] = from_fn(|b| pi[b] + h.abs() * pi_rate[b]);
         let xi: [f64; N] = from_fn(|a| (0..N).map(|b| self.inverse_mass[a][b].abs() * moved[b]).sum());
@@ -69,10 +67,10 @@ impl<const N: usize> Start<N> {
     /// they move it by.
     #[cold]
     #[inline(never)]
-    pub(super) fn energy_rounding<Sys: System<N, M>, const M: usize>(&self, system: &Sys, t0: f64, h: f64) -> f64 {
+    pub(super) fn energy_rounding<const M: usize>(&self, system: &dyn Mechanics<N, M>, t0: f64, h: f64) -> f64 {
         let q = self.state.q();
-        let Some(basis) = system.admissible_basis(t0, q) else { return 0.0 };
-        let motion = MotionRounding::at(system, t0, q, &basis.combine(&self.xi));
+        let Some(basis) = system.basis(t0, q) else { return 0.0 };
+        let motion = system.motion_rounding(t0, q, &basis.combine(&self.xi));
         motion.map_or(0.0, |MotionRounding { force, acceleration, .. }| {
             (0..N).map(|i| force[i] * (f64::EPSILON * q[i].abs() + h * h * acceleration[i])).sum()
         })
@@ -91,27 +89,18 @@ pub(super) const MOVING: StepError =
 /// Refuses `b != 0` and a Lagrangian, constraint or basis that changes with time.
 ///
 /// The time is not one that a period of the system is likely to share with the step.
-fn autonomous<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+fn autonomous<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     t0: f64,
     h: f64,
     place: &[f64; N],
     v: &[f64; N],
 ) -> Result<(), StepError> {
-    let t = Dual { re: t0 + 0.381_966 * h, eps: [1.0] };
-    let (q, v) = (place.map(Dual::fixed), v.map(Dual::fixed));
-    let (a, b) = system.constraint(t, &q);
-    let (_, nearby) = system.constraint(Dual::fixed(t.re), &Dual::variables(place));
-    if !nearby.iter().all(Scalar::is_zero) {
+    let t = t0 + 0.381_966 * h;
+    if system.constraints_move(t, place) {
         return Err(MOVING);
     }
-    // What is not a number fails later, and is named there.
-    let moves = |x: &Dual<f64, 1>| x.eps[0].abs() > 0.0;
-    let basis = system.admissible_basis(t, &q);
-    let timed = moves(&system.lagrangian(t, &q, &v))
-        || a.iter().flatten().chain(&b).any(moves)
-        || basis.is_some_and(|basis| basis.vectors().iter().flatten().any(moves));
-    if timed {
+    if system.depends_on_time(t, place, v) {
         return Err(StepError::Unsupported {
             reason: "the energy-preserving methods are for systems without explicit time, and this one depends on it",
         });

@@ -1,14 +1,13 @@
 use super::ending::Ending;
-use super::lanes::{Outcome, Slopes, Stages};
+use super::lanes::{Collocation, Outcome, Slopes};
 use super::memory::Memory;
 use super::pace::{degree, longer, quarters_of, roughest};
 use super::rule::quarter_octaves;
 use super::{Gauss, Taken};
 use crate::positions::affine_only;
-use crate::{OneStep, OwnStep, State, StepError, StepReport};
+use crate::{Mechanics, OneStep, OwnStep, State, StepError, StepReport};
 use lagrangian::System;
 use lagrangian::linear::larger;
-use lagrangian::simd::dispatch;
 use std::ops::ControlFlow;
 
 /// Gauss collocation with steps of its own within a step of the schedule, as many as a tolerance asks for.
@@ -59,9 +58,9 @@ const REFUSED: i32 = -3;
 impl GaussAdaptive {
     /// One step of length `h`; none where its stages do not converge.
     #[inline(always)]
-    fn attempt<Sys: System<N, M>, const N: usize, const M: usize>(
+    fn attempt<const N: usize, const M: usize>(
         &self,
-        system: &Sys,
+        system: &dyn Mechanics<N, M>,
         (t, h, quarters): (f64, f64, i32),
         state: &State<N>,
         xi0: &[f64; N],
@@ -77,8 +76,8 @@ impl GaussAdaptive {
         // A step whose stages converge slowly costs more than two shorter ones.
         let (limit, hopeless, unseen) = (18, 0.9, memory.unseen());
         let ending = Ending { left: 0.5, rounding, noise: rounding, limit, hopeless, unseen };
-        let stages = Stages { rule, system, t, h, q0, xi0, before, ending, counts: Some(counts), slopes };
-        let (taken, rate, roughness) = match dispatch(stages) {
+        let stages = Collocation { rule, t, h, q0, xi0, before, ending, counts: Some(counts), slopes };
+        let (taken, rate, roughness) = match system.collocate(stages) {
             Some(Outcome::Found(found)) => (Taken::at_once(&found)?, found.rate, found.roughness),
             Some(Outcome::Failed) => return None,
             Some(Outcome::Unknown) | None => {
@@ -135,7 +134,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for G
         if !memory.is_empty() {
             OneStep::<Sys, N, M>::recall(&mut method, memory, &state);
         }
-        method.cross::<Sys, N, M>(system, t, h, &mut state, see)?;
+        method.cross::<N, M>(system, t, h, &mut state, see)?;
         *memory = OneStep::<Sys, N, M>::memory(&method);
         Ok(())
     }
@@ -144,9 +143,9 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for G
 impl GaussAdaptive {
     /// Crosses an interval, and shows where its steps end within it.
     #[inline(always)]
-    fn cross<Sys: System<N, M>, const N: usize, const M: usize>(
+    fn cross<const N: usize, const M: usize>(
         &mut self,
-        system: &Sys,
+        system: &dyn Mechanics<N, M>,
         t0: f64,
         whole: f64,
         state: &mut State<N>,
@@ -195,8 +194,8 @@ impl GaussAdaptive {
 }
 
 /// A first step: a tenth of the shortest time in which a velocity changes by itself, the interval where nothing changes.
-fn first<Sys: System<N, M>, const N: usize, const M: usize>(system: &Sys, t: f64, whole: f64, state: &State<N>) -> i32 {
-    let slope = state.quasi_velocities(system, t).and_then(|xi| lagrangian::reduced_slope(system, t, state.q(), &xi));
+fn first<const N: usize, const M: usize>(system: &dyn Mechanics<N, M>, t: f64, whole: f64, state: &State<N>) -> i32 {
+    let slope = state.quasi_velocities(system, t).and_then(|xi| system.reduced_slope(t, state.q(), &xi));
     let size = |x: &[f64; N]| x.iter().fold(0.0f64, |m, x| larger(m, x.abs()));
     let rate = slope.map_or(0.0, |slope| size(&slope.acceleration) / larger(size(&slope.velocity), 1e-3));
     let turning = (0..N).filter(|&i| system.angles()[i]).fold(rate, |m, i| larger(m, state.v()[i].abs()));

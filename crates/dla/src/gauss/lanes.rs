@@ -2,8 +2,10 @@ use super::ending::{Ending, Verdict};
 use super::packs::{ahead, each, everywhere, integral, loaded, own, packed};
 use super::rule::Eight;
 use lagrangian::linear::larger;
-use lagrangian::simd::{Kernel, Pack, Simd, Square, Wide};
+use lagrangian::simd::{Kernel, Pack, Simd, Square, Wide, dispatch};
 use lagrangian::{System, array, from_fn, velocity_of};
+use std::fmt;
+use std::ops::Deref;
 
 /// Eight stages of `N` slopes.
 pub(super) type Rows<const N: usize> = [[f64; 8]; N];
@@ -27,10 +29,9 @@ impl<const N: usize> Slopes<N> {
     }
 }
 
-/// The equations of a collocation step, all stages at once.
-pub(super) struct Stages<'a, Sys, const N: usize, const M: usize> {
+/// The stages of a collocation that are to be found at once: what a method gives to the system that finds them.
+pub struct Collocation<'a, const N: usize> {
     pub(super) rule: &'a Eight,
-    pub(super) system: &'a Sys,
     pub(super) t: f64,
     pub(super) h: f64,
     pub(super) q0: &'a [f64; N],
@@ -60,7 +61,8 @@ impl<S: Simd, const R: usize> Along<S, R> {
 }
 
 /// What came of a search.
-pub(super) enum Outcome<const N: usize> {
+#[derive(Debug)]
+pub enum Outcome<const N: usize> {
     /// The system does not know its reduced equations by hand.
     Unknown,
     /// The iteration does not converge.
@@ -70,7 +72,8 @@ pub(super) enum Outcome<const N: usize> {
 }
 
 /// A solution.
-pub(super) struct Found<const N: usize> {
+#[derive(Debug)]
+pub struct Found<const N: usize> {
     /// `h sum_j b_j v_j`.
     pub(super) increment: [f64; N],
     /// `h sum_j b_j a_j`.
@@ -80,6 +83,38 @@ pub(super) struct Found<const N: usize> {
     pub(super) iterations: u32,
     /// By how much the last changes shrank.
     pub(super) rate: f64,
+}
+
+impl<const N: usize> fmt::Debug for Collocation<'_, N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { rule, t, h, q0, xi0, .. } = self;
+        let mut shown = f.debug_struct("Collocation");
+        shown.field("stages", &rule.stages).field("t", t).field("h", h).field("q0", q0).field("xi0", xi0).finish()
+    }
+}
+
+/// Finds the stages of a system, with the widest registers that the machine has; none where it has none.
+#[inline]
+pub(crate) fn collocate<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    of: Collocation<'_, N>,
+) -> Option<Outcome<N>> {
+    dispatch(Stages { system, of })
+}
+
+/// The equations of a collocation step, all stages at once.
+struct Stages<'a, Sys, const N: usize, const M: usize> {
+    system: &'a Sys,
+    of: Collocation<'a, N>,
+}
+
+impl<'a, Sys, const N: usize, const M: usize> Deref for Stages<'a, Sys, N, M> {
+    type Target = Collocation<'a, N>;
+
+    #[inline(always)]
+    fn deref(&self) -> &Collocation<'a, N> {
+        &self.of
+    }
 }
 
 impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
@@ -233,8 +268,8 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
             }
         }
         for k in 0..N {
-            self.slopes.velocity[k] = v[k].row();
-            self.slopes.acceleration[k] = a[k].row();
+            self.of.slopes.velocity[k] = v[k].row();
+            self.of.slopes.acceleration[k] = a[k].row();
         }
         let weights = Pack::load(simd, &self.rule.weights);
         let mut found = Found {

@@ -7,16 +7,17 @@ mod packs;
 mod rule;
 
 pub use adaptive::GaussAdaptive;
+pub(crate) use lanes::collocate;
+pub use lanes::{Collocation, Outcome};
 
 use crate::convergence::FixedPoint;
 use crate::convergence::tolerances::{LEFT, NOISE, OF_ROW};
 use crate::positions::{affine_only, onto_positions};
-use crate::{OneStep, StackUse, Stage, State, StepError, StepReport};
+use crate::{Mechanics, OneStep, StackUse, Stage, State, StepError, StepReport};
 use ending::Ending;
 use lagrangian::linear::larger;
-use lagrangian::simd::dispatch;
-use lagrangian::{System, from_fn, reduced_rounding, reduced_slope, velocity_of};
-use lanes::{Outcome, Slopes};
+use lagrangian::{System, from_fn};
+use lanes::Slopes;
 use memory::Memory;
 use rule::Eight;
 
@@ -73,9 +74,9 @@ impl Gauss {
 
     /// The stages all at once, their slopes left where they belong. None where they are to be found one by one.
     #[inline(always)]
-    fn at_once<Sys: System<N, M>, const N: usize, const M: usize>(
+    fn at_once<const N: usize, const M: usize>(
         &self,
-        system: &Sys,
+        system: &dyn Mechanics<N, M>,
         (t, h): (f64, f64),
         state: &State<N>,
         xi0: &[f64; N],
@@ -85,7 +86,8 @@ impl Gauss {
             return None;
         }
         let rule = self.rule;
-        let before = self.memory.rows(state).filter(|_| self.memory.is_of_length(h)).zip(rule.continued(rule.stages - 1, 0));
+        let before =
+            self.memory.rows(state).filter(|_| self.memory.is_of_length(h)).zip(rule.continued(rule.stages - 1, 0));
         let ending = Ending {
             left: LEFT,
             rounding: OF_ROW,
@@ -95,21 +97,21 @@ impl Gauss {
             unseen: self.memory.unseen(),
         };
         let q0 = state.q();
-        match dispatch(lanes::Stages { rule, system, t, h, q0, xi0, before, ending, counts: None, slopes })? {
+        match system.collocate(Collocation { rule, t, h, q0, xi0, before, ending, counts: None, slopes })? {
             Outcome::Found(found) => Taken::at_once(&found),
             Outcome::Unknown | Outcome::Failed => None,
         }
     }
 
     /// The stages one after another.
-    fn in_turn<Sys: System<N, M>, const N: usize, const M: usize>(
+    fn in_turn<const N: usize, const M: usize>(
         &self,
-        system: &Sys,
+        system: &dyn Mechanics<N, M>,
         (t, h): (f64, f64),
         (q0, xi0): (&[f64; N], &[f64; N]),
         slopes: &mut Slopes<N>,
     ) -> Result<Taken<N>, StepError> {
-        let start = reduced_slope(system, t, q0, xi0)?;
+        let start = system.reduced_slope(t, q0, xi0)?;
         let mut stages = Stages { velocity: [start.velocity; 8], acceleration: [start.acceleration; 8] };
         let iterations = self.solve(system, (t, h), (q0, xi0), &mut stages)?;
         let increment = self.sum(h, |j| self.rule.weights[j], &stages.velocity);
@@ -128,9 +130,9 @@ impl Gauss {
 
     /// Iterates the slopes of the stages until they move by rounding only; returns how many times.
     #[inline]
-    fn solve<Sys: System<N, M>, const N: usize, const M: usize>(
+    fn solve<const N: usize, const M: usize>(
         &self,
-        system: &Sys,
+        system: &dyn Mechanics<N, M>,
         (t, h): (f64, f64),
         (q0, xi0): (&[f64; N], &[f64; N]),
         stages: &mut Stages<N>,
@@ -144,7 +146,7 @@ impl Gauss {
                 let (q, xi) = (from_fn(|k| q0[k] + dq[k]), from_fn(|k| xi0[k] + dxi[k]));
                 let fail = |source| StepError::Newton { stage: Stage::Collocation, source };
                 // The start has a slope: a stage without one is where the iteration has led.
-                let slope = reduced_slope(system, t + self.rule.nodes[i] * h, &q, &xi);
+                let slope = system.reduced_slope(t + self.rule.nodes[i] * h, &q, &xi);
                 let slope = slope.map_err(|_| fail(convergence.lost()))?;
                 let new = [slope.velocity, slope.acceleration];
                 let old = [stages.velocity[i], stages.acceleration[i]];
@@ -157,7 +159,7 @@ impl Gauss {
                 (stages.velocity[i], stages.acceleration[i]) = (slope.velocity, slope.acceleration);
             }
             let settled =
-                convergence.see(seen, 0.0, || reduced_rounding(system, t, q0, xi0, h).unwrap_or([[0.0; N]; 2]));
+                convergence.see(seen, 0.0, || system.reduced_rounding(t, q0, xi0, h).unwrap_or([[0.0; N]; 2]));
             let settled = settled.map_err(|source| StepError::Newton { stage: Stage::Collocation, source })?;
             if let Some(iterations) = settled {
                 return Ok(iterations);
@@ -184,16 +186,16 @@ impl<const N: usize> Taken<N> {
 
     /// Moves the state.
     #[inline(always)]
-    fn apply<Sys: System<N, M>, const M: usize>(
+    fn apply<const M: usize>(
         &self,
-        system: &Sys,
+        system: &dyn Mechanics<N, M>,
         t1: f64,
         xi0: &[f64; N],
         state: &mut State<N>,
     ) -> Result<(), StepError> {
         let xi1 = from_fn(|i| xi0[i] + self.gain[i]);
         let increment = onto_positions(system, t1, state, self.increment, state.v())?;
-        let v1 = velocity_of(system, t1, &state.ahead(&increment), &xi1)?;
+        let v1 = system.velocity_of(t1, &state.ahead(&increment), &xi1)?;
         state.stays_finite(&increment, &v1)?;
         state.advance(&increment, v1, Some(xi1));
         Ok(())
@@ -206,6 +208,26 @@ pub(crate) const USE: StackUse = StackUse { squares: 38, rows: 20 };
 impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Gauss {
     #[inline]
     fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        self.advance(system, t, h, state)
+    }
+
+    fn memory(&self) -> Vec<f64> {
+        self.memory.save()
+    }
+
+    fn recall(&mut self, memory: &[f64], _state: &State<N>) {
+        self.memory = Memory::load(memory);
+    }
+}
+
+impl Gauss {
+    fn advance<const N: usize, const M: usize>(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        t: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
         if const { USE.exceeds::<N, M>() } {
             return Err(USE.refusal::<N, M>());
         }
@@ -221,13 +243,5 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for G
             self.memory.keep(&slopes, taken.iterations, (h, 0), state);
         }
         Ok(StepReport::of(taken.iterations))
-    }
-
-    fn memory(&self) -> Vec<f64> {
-        self.memory.save()
-    }
-
-    fn recall(&mut self, memory: &[f64], _state: &State<N>) {
-        self.memory = Memory::load(memory);
     }
 }

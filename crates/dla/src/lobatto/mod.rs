@@ -10,9 +10,9 @@ use crate::dependent::{named_along, named_at};
 use crate::newton::{BlockEquations, Found};
 use crate::positions::affine_only;
 use crate::projection::{Projected, Projection};
-use crate::{Newton, NewtonError, OneStep, StackUse, Stage, State, StepError, StepReport};
+use crate::{Mechanics, Newton, NewtonError, OneStep, StackUse, Stage, State, StepError, StepReport};
 use lagrangian::linear::largest;
-use lagrangian::{System, from_fn, momentum};
+use lagrangian::{System, from_fn};
 use stages::Stages;
 use std::f64::consts::PI;
 
@@ -75,10 +75,10 @@ impl<const S: usize> Lobatto<S> {
     /// search contracted, and began within `part` of its end, or where the two differ by the rounding of the place or of the
     /// equations.
     #[inline(always)]
-    fn found_near<Sys: System<N, M>, const N: usize, const M: usize>(
+    fn found_near<const N: usize, const M: usize>(
         &self,
         part: f64,
-        stages: &mut Stages<'_, Sys, N, M, S>,
+        stages: &mut Stages<'_, N, M, S>,
         v: &mut [[f64; N]; S],
     ) -> Result<(u32, bool), NewtonError> {
         let begun = *stages;
@@ -92,9 +92,9 @@ impl<const S: usize> Lobatto<S> {
     /// The stages at the end of the branch of solutions that begins with a step of length zero.
     #[cold]
     #[inline(never)]
-    fn followed<Sys: System<N, M>, const N: usize, const M: usize>(
+    fn followed<const N: usize, const M: usize>(
         &self,
-        whole: &Stages<'_, Sys, N, M, S>,
+        whole: &Stages<'_, N, M, S>,
         turn: f64,
         v0: [f64; N],
     ) -> Option<[[f64; N]; S]> {
@@ -110,13 +110,25 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
     /// The impulses in the report are those of all stages, each shared between the two ends as a lever would.
     #[inline]
     fn step(&mut self, system: &Sys, t0: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+        self.advance(system, t0, h, state)
+    }
+}
+
+impl<const S: usize> Lobatto<S> {
+    fn advance<const N: usize, const M: usize>(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        t0: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
         if const { Self::USE.exceeds::<N, M>() } {
             return Err(Self::USE.refusal::<N, M>());
         }
         affine_only(system, t0, state)?;
         let Tables { c, b, .. } = &self.tables;
         let (q0, v0) = (*state.q(), *state.v());
-        let p0 = momentum(system, t0, &q0, &v0);
+        let p0 = system.momentum(t0, &q0, &v0);
 
         // Start from uniform acceleration, where the equations of motion give one.
         let (mut v, mut impulse) = ([v0; S], [0.0; M]);
@@ -150,7 +162,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<
         let increment = stages.increment(b, 1.0, &v);
         let impulses = stages.impulses;
         let (t1, q1) = (t0 + h, state.ahead(&increment));
-        let Projected { v1, mu: last, .. } = Projection::new(system, t1, q1, p1, system.admissible_basis(t1, &q1))
+        let Projected { v1, mu: last, .. } = Projection::new(system, t1, q1, p1, system.basis(t1, &q1))
             .solve(&self.newton, v[S - 1])
             .map_err(|source| named_at(system, t1, &q1, &v0, Stage::Projection, source))?;
 

@@ -1,7 +1,5 @@
-use lagrangian::{
-    ConstraintSlopes, Dual, Rounded, System, configuration_slope, from_fn, mass_matrix, momentum, second_in_both,
-    second_in_place,
-};
+use crate::{Mechanics, SecondSlopes, Slopes};
+use lagrangian::{ConstraintSlopes, Rounded, from_fn};
 
 /// A configuration and a velocity at one time, with the impulse of the constraint there.
 #[derive(Debug, Clone, Copy)]
@@ -53,10 +51,9 @@ impl<const N: usize, const M: usize> Point<N, M> {
     /// `h (L_q + F) + A' l`.
     #[must_use]
     #[inline]
-    pub fn gain<Sys: System<N, M>>(&self, system: &Sys, h: f64) -> [f64; N] {
+    pub fn gain(&self, system: &dyn Mechanics<N, M>, h: f64) -> [f64; N] {
         let Self { t, q, v, impulse } = self;
-        let l_q = system.lagrangian(Dual::fixed(*t), &Dual::variables(q), &v.map(Dual::fixed)).eps;
-        let force = system.force(*t, q, v);
+        let Slopes { l_q, force, .. } = system.slopes(*t, q, v);
         let (a, _) = system.constraint(*t, q);
         from_fn(|i| {
             let constrained: f64 = (0..M).map(|k| a[k][i] * impulse[k]).sum();
@@ -66,50 +63,45 @@ impl<const N: usize, const M: usize> Point<N, M> {
 
     /// What the equations are made of here, with the rounding of their terms; `way` is the sum of the sizes of the increments
     /// that led to the configuration.
-    pub(super) fn terms<Sys: System<N, M>>(&self, system: &Sys, h: f64, way: &[f64; N]) -> Terms<N, M> {
+    pub(super) fn terms(&self, system: &dyn Mechanics<N, M>, h: f64, way: &[f64; N]) -> Terms<N, M> {
         let t = Rounded::exact(self.t);
         let q: [Rounded; N] = from_fn(|i| Rounded { value: self.q[i], size: self.q[i].abs() + way[i] });
         let v = self.v.map(Rounded::once);
-        let l_q = configuration_slope(system, t, &q, &v);
-        let force = system.force(t, &q, &v);
-        let (a, b) = system.constraint(t, &q);
+        let l_q = system.slope_rounded(t, &q, &v);
+        let force = system.force_rounded(t, &q, &v);
+        let (a, b) = system.constraint_rounded(t, &q);
         let w = from_fn(|i| {
             let pushed = force.map_or(l_q[i], |force| l_q[i] + force[i]) * h;
             (0..M).fold(pushed, |sum, k| sum + a[k][i] * self.impulse[k])
         });
         let g = from_fn(|k| (0..N).fold(b[k], |sum, i| sum + a[k][i] * v[i]));
-        let positions = system.holonomic(t, &q).unwrap_or([None; M]);
-        Terms { p: momentum(system, t, &q, &v), w, g, a: a.map(|row| row.map(|x| x.value)), positions }
+        let positions = system.positions_rounded(t, &q).unwrap_or([None; M]);
+        Terms { p: system.momentum_rounded(t, &q, &v), w, g, a: a.map(|row| row.map(|x| x.value)), positions }
     }
 
     /// All that the equations need here, with its derivatives.
     #[must_use]
     #[inline]
-    pub fn linearised<Sys: System<N, M>>(&self, system: &Sys, h: f64) -> Linearised<N, M> {
+    pub fn linearised(&self, system: &dyn Mechanics<N, M>, h: f64) -> Linearised<N, M> {
         let Self { t, q, v, impulse } = self;
-        let in_q = second_in_place(system, *t, q, v);
-        let mixed = second_in_both(system, *t, q, v).e12;
-        let (p, p_v) = mass_matrix(system, *t, q, v);
+        let SecondSlopes { l_q, l_qq, l_qv: mixed, l_v: p, l_vv: p_v } = system.second_slopes(*t, q, v);
 
-        let mut w = in_q.e1.map(|x| h * x);
-        let mut w_q = in_q.e12.map(|row| row.map(|x| h * x));
+        let mut w = l_q.map(|x| h * x);
+        let mut w_q = l_qq.map(|row| row.map(|x| h * x));
         let mut w_v = mixed.map(|row| row.map(|x| h * x));
-        let time = Dual::fixed(*t);
-        let (q_fixed, v_fixed) = (q.map(Dual::fixed), v.map(Dual::fixed));
-        if let Some(force) = system.force(time, &Dual::variables(q), &v_fixed) {
+        if let Some(force) = system.force_along(*t, q, v, 1.0, 0.0) {
             for i in 0..N {
                 w[i] += h * force[i].re;
                 w_q[i] = from_fn(|j| w_q[i][j] + h * force[i].eps[j]);
             }
         }
-        if let Some(force) = system.force(time, &q_fixed, &Dual::variables(v)) {
+        if let Some(force) = system.force_along(*t, q, v, 0.0, 1.0) {
             for i in 0..N {
                 w_v[i] = from_fn(|j| w_v[i][j] + h * force[i].eps[j]);
             }
         }
 
-        let ConstraintSlopes { a, g, g_q } =
-            ConstraintSlopes::reacting(system, *t, (q, v), impulse, (&mut w, &mut w_q));
+        let ConstraintSlopes { a, g, g_q } = system.constraint_slopes(*t, (q, v), impulse, (&mut w, &mut w_q));
         let p_q = from_fn(|i| from_fn(|j| mixed[j][i]));
         Linearised { p, p_q, p_v, w, w_q, w_v, g, g_q, a }
     }

@@ -1,17 +1,17 @@
 use super::dense::Dense;
 use super::point::{Linearised, Point, Terms};
 use super::tables::Tables;
-use crate::State;
 use crate::branch;
 use crate::convergence::{most_roundings, rounding_of_place};
 use crate::newton::BlockEquations;
+use crate::{Mechanics, State};
 use lagrangian::linear::Singular;
-use lagrangian::{MotionRounding, Rounded, Saddle, System, from_fn, mass_matrix, position_misses, reaction_rows};
+use lagrangian::{Rounded, Saddle, from_fn};
 
 /// The equations for the velocities of all stages of a step, with the impulses of the constraint at all but the last.
-pub(super) struct Stages<'a, Sys, const N: usize, const M: usize, const S: usize> {
+pub(super) struct Stages<'a, const N: usize, const M: usize, const S: usize> {
     pub(super) tables: &'a Tables<S>,
-    pub(super) system: &'a Sys,
+    pub(super) system: &'a dyn Mechanics<N, M>,
     pub(super) t0: f64,
     pub(super) h: f64,
     pub(super) start: &'a State<N>,
@@ -22,15 +22,15 @@ pub(super) struct Stages<'a, Sys, const N: usize, const M: usize, const S: usize
     pub(super) before: [[f64; M]; S],
 }
 
-impl<Sys, const N: usize, const M: usize, const S: usize> Clone for Stages<'_, Sys, N, M, S> {
+impl<const N: usize, const M: usize, const S: usize> Clone for Stages<'_, N, M, S> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<Sys, const N: usize, const M: usize, const S: usize> Copy for Stages<'_, Sys, N, M, S> {}
+impl<const N: usize, const M: usize, const S: usize> Copy for Stages<'_, N, M, S> {}
 
-impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> Stages<'_, Sys, N, M, S> {
+impl<const N: usize, const M: usize, const S: usize> Stages<'_, N, M, S> {
     /// The increment `h sum_j factors[j] v[j]`, `share` the sum of the factors.
     ///
     /// Summed about the velocity at the start, so that the rounding of the factors multiplies differences only.
@@ -68,15 +68,15 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> Stages<'
     pub(super) fn velocity_rounding(&self) -> [f64; N] {
         let Self { system, t0, h, start, .. } = *self;
         let (q, v) = (start.q(), start.v());
-        let rounding = MotionRounding::at(system, t0, q, v);
+        let rounding = system.motion_rounding(t0, q, v);
         let mut velocity = rounding.map_or([0.0; N], |rounding| rounding.acceleration.map(|a| (h * a).abs()));
-        if let Some(positions) = system.holonomic(Rounded::exact(t0), &q.map(Rounded::once)) {
-            let ((_, block), rows) = (mass_matrix(system, t0, q, v), reaction_rows(system, t0, q, v));
+        if let Some(positions) = system.positions_rounded(Rounded::exact(t0), &q.map(Rounded::once)) {
+            let ((_, block), rows) = (system.mass_matrix(t0, q, v), system.reaction_rows(t0, q, v));
             for k in 0..M {
                 let noise = positions[k].map_or(0.0, |g| 0.5 * f64::EPSILON * g.size / h);
                 let level = from_fn(|l| if l == k { noise } else { 0.0 });
                 let saddle = Saddle { block, transposed: rows, rows, right: [0.0; N], level };
-                if let Ok((moved, _)) = saddle.solve(system.admissible_basis(t0, q).as_ref()) {
+                if let Ok((moved, _)) = saddle.solve(system.basis(t0, q).as_ref()) {
                     velocity = from_fn(|i| velocity[i] + moved[i].abs());
                 }
             }
@@ -149,7 +149,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> Stages<'
         }
         // g_i - blind_i g_0 = 0, or of positions g_i = 0
         for i in 1..S {
-            let positions = position_misses(self.system, points[i].t, &points[i].q);
+            let positions = self.system.position_misses(points[i].t, &points[i].q);
             for k in 0..M {
                 let equation = Dense::<N, M, S>::multiplier(i - 1, k);
                 if let Some(g) = positions.and_then(|g| g[k]) {
@@ -178,9 +178,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> Stages<'
     }
 }
 
-impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> BlockEquations<N, S>
-    for Stages<'_, Sys, N, M, S>
-{
+impl<const N: usize, const M: usize, const S: usize> BlockEquations<N, S> for Stages<'_, N, M, S> {
     #[inline(always)]
     fn near(&self) -> f64 {
         rounding_of_place(self.start.q(), self.h)

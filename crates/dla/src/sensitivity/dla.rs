@@ -14,7 +14,7 @@ use lagrangian::{Gradients, Rule, Scalar, Seeded, from_fn};
 /// (Marsden and West 2001, section 2.3.) A constraint on positions takes the place of its discrete one, and one that is not
 /// affine reacts along `d phi / dv` at the two nodes. A discrete Lagrangian that is written by hand has no such form, and no derivative
 /// here.
-impl<L: Rule, C: Rule, const N: usize, const M: usize> Differentiable<N, M> for Dla<L, C> {
+impl<const N: usize, const M: usize> Differentiable<N, M> for Dla {
     fn carries_every_class(&self) -> bool {
         true
     }
@@ -38,7 +38,7 @@ impl<L: Rule, C: Rule, const N: usize, const M: usize> Differentiable<N, M> for 
 
         // p0 + D1 L_d + f_d^-, and D2 L_d + f_d^+.
         let (mut leaving, mut arriving) = (model.momentum(t, &q, &v0), [Seeded::zero(); N]);
-        for node in self.lagrangian.nodes() {
+        for node in self.rules.lagrangian.nodes() {
             let (t, q) = along(node.alpha);
             let (p, push) = (model.momentum(t, &q, &v), model.push(t, &q, &v));
             for i in 0..N {
@@ -47,7 +47,7 @@ impl<L: Rule, C: Rule, const N: usize, const M: usize> Differentiable<N, M> for 
             }
         }
         let mut chord = [Seeded::zero(); M];
-        for node in self.constraint.nodes() {
+        for node in self.rules.constraint.nodes() {
             let (t, q) = along(node.alpha);
             let slip = model.slip(t, &q, &v);
             chord = from_fn(|k| chord[k] + slip[k] * node.weight);

@@ -3,7 +3,7 @@ use crate::Gni;
 use lagrangian::{Gradients, Seeded};
 
 /// Refused: the step is no map of configuration and velocity.
-impl<L, const N: usize, const M: usize> Differentiable<N, M> for Gni<L, N> {
+impl<D, const N: usize, const M: usize> Differentiable<N, M> for Gni<N, D> {
     fn guess(&self, _v: &[f64; N]) -> Vec<f64> {
         Vec::new()
     }

@@ -120,13 +120,9 @@ macro_rules! by_default {
         }
     };
 }
-by_default!(Middle, Dla<lagrangian::Midpoint, lagrangian::Midpoint>, Dla::midpoint());
-by_default!(Ends, Dla<lagrangian::Trapezoid, lagrangian::Trapezoid>, Dla::trapezoid());
-by_default!(
-    Fourth,
-    Composition<Dla<lagrangian::Midpoint, lagrangian::Midpoint>>,
-    Composition::suzuki4(Dla::midpoint())
-);
+by_default!(Middle, Dla, Dla::midpoint());
+by_default!(Ends, Dla, Dla::trapezoid());
+by_default!(Fourth, Composition<Dla>, Composition::suzuki4(Dla::midpoint()));
 
 by_default!(Gauss8, Gauss, Gauss::new::<4>());
 by_default!(Gauss16, Gauss, Gauss::new::<8>());

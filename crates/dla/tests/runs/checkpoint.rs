@@ -50,7 +50,7 @@ fn a_resumed_run_has_the_same_bits() {
             whole_and_resumed(|| Composition::suzuki4(Dla::trapezoid()), stop),
             whole_and_resumed(Gauss::new::<8>, stop),
             // It remembers a momentum.
-            whole_and_resumed(Gni::<_, 3>::default, stop),
+            whole_and_resumed(Gni::<3>::default, stop),
         ] {
             assert_eq!(whole, resumed, "after {stop} steps");
             let rest: Vec<_> = all.nodes().iter().filter(|node| node.k > stop).collect();
@@ -63,7 +63,7 @@ fn a_resumed_run_has_the_same_bits() {
 #[test]
 fn every_part_of_a_state_counts() {
     let sleigh = sleigh();
-    let run = |method: &mut Gni<_, 3>, steps, state: &mut State<3>| {
+    let run = |method: &mut Gni<3>, steps, state: &mut State<3>| {
         drive_part(&sleigh, method, &SCHEDULE, steps, state, ()).unwrap();
     };
     let (mut whole, mut forgetful) = (state_of(&backward()), state_of(&backward()));

@@ -26,7 +26,7 @@ impl System<2, 1> for Pushed {
 /// sees so.
 #[test]
 fn the_counter_example_feels_forces() {
-    let (mut state, mut method) = (State::new([0.0; 2], [0.5, 0.0], [false; 2]), Gni::<_, 2>::default());
+    let (mut state, mut method) = (State::new([0.0; 2], [0.5, 0.0], [false; 2]), Gni::<2>::default());
     for k in 0..20 {
         let t = 0.1 * f64::from(k);
         let report =
@@ -39,7 +39,7 @@ fn the_counter_example_feels_forces() {
     }
     // Braked it loses `e^(-c t/m)`, to the second order: the error of a step is below `(c h/m)^3`.
     let mut state = State::new([0.0; 2], [1.0, 0.0], [false; 2]);
-    let mut method = Gni::<_, 2>::default();
+    let mut method = Gni::<2>::default();
     for k in 0..20 {
         let system = Pushed { force: 0.0, drag: 0.8 };
         let report = OneStep::<_, 2, 1>::step(&mut method, &system, 0.1 * f64::from(k), 0.1, &mut state).unwrap();
@@ -63,7 +63,7 @@ impl System<2, 1> for Lifted {
 /// The velocity of a node meets the constraint at the time of the node.
 #[test]
 fn the_counter_example_follows_a_moving_constraint() {
-    let (mut state, mut method) = (State::new([0.0; 2], [0.5, 1.0], [false; 2]), Gni::<_, 2>::default());
+    let (mut state, mut method) = (State::new([0.0; 2], [0.5, 1.0], [false; 2]), Gni::<2>::default());
     for k in 0..5 {
         let t = 1.0 + 0.1 * f64::from(k);
         OneStep::<_, 2, 1>::step(&mut method, &Lifted, t, 0.1, &mut state).unwrap();
@@ -75,12 +75,12 @@ fn the_counter_example_follows_a_moving_constraint() {
 /// A momentum across the constraint is carried from a node to the step that follows it, and to no other start.
 #[test]
 fn the_counter_example_begins_anew_from_another_start() {
-    let step = |method: &mut Gni<_, 2>, mut state: State<2>| {
+    let step = |method: &mut Gni<2>, mut state: State<2>| {
         OneStep::<_, 2, 1>::step(method, &Lifted, 1.0, 0.1, &mut state).unwrap();
         state
     };
     let (here, there) = (State::new([0.0; 2], [0.5, 1.0], [false; 2]), State::new([0.0, 0.3], [0.7, 1.0], [false; 2]));
-    let mut method = Gni::<_, 2>::default();
+    let mut method = Gni::<2>::default();
     let next = step(&mut method, here);
     assert_eq!(step(&mut { method }, there), step(&mut Gni::default(), there));
     // The control: from its own node it goes on with what it remembers.

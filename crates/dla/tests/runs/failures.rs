@@ -1,6 +1,6 @@
 use crate::{sleigh, state_of};
 use dla::{Dla, Form, Gauss, Hint, History, Newton, OneStep, Schedule, Stage, State, StepError, Trajectory, drive};
-use lagrangian::{Constraint, Midpoint, Scalar, System};
+use lagrangian::{Constraint, Scalar, System};
 use sleigh::SleighState;
 
 fn start(speed: f64, turn_rate: f64) -> SleighState {
@@ -76,7 +76,7 @@ fn no_wrong_root_is_accepted() {
 #[test]
 fn a_failure_tells_what_to_do() {
     let sleigh = sleigh();
-    let run = |mut method: Dla<Midpoint, Midpoint>, h: f64, from: SleighState| {
+    let run = |mut method: Dla, h: f64, from: SleighState| {
         let (mut state, mut trajectory) = (state_of(&from), Trajectory::<3, 1>::every(1));
         let schedule = Schedule { t0: 2.0, step: h, steps: 1000 };
         let error = drive(&sleigh, &mut method, &schedule, &mut state, &mut trajectory).unwrap_err();

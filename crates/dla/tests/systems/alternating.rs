@@ -4,14 +4,14 @@
 //! pay is recorded here, with the numbers of docs/methods/compositions.md.
 
 use dla::{Composition, Dla, Form, Gauss, OneStep, Schedule, State, StepError, StepReport, drive};
-use lagrangian::{Alpha, Effect, Scalar, System, With};
+use lagrangian::{Effect, Scalar, System, With};
 use models::ContactOscillator;
 use sleigh::{CentreOfMass, Sleigh, SleighState};
 
 /// The rules `alpha = 1` and `alpha = 0` in turn, over the given parts of a step: each is the adjoint of the other.
 #[derive(Clone)]
 struct Alternating {
-    rules: [Dla<Alpha, Alpha>; 2],
+    rules: [Dla; 2],
     parts: Vec<f64>,
 }
 

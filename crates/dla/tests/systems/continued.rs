@@ -2,7 +2,7 @@
 
 use crate::models::{Disk, Hyperbolic, Kinetic, Oscillator, Particle, Pushed};
 use dla::{Dla, Form, OneStep, State};
-use lagrangian::{Constraint, DiscreteConstraint, DiscreteLagrangian, Scalar, Symmetrised, System};
+use lagrangian::{Constraint, Scalar, Symmetrised, System};
 use proptest::prelude::*;
 use sleigh::{Sleigh, SleighState};
 
@@ -10,32 +10,22 @@ use sleigh::{Sleigh, SleighState};
 const STEPS: u32 = 40;
 
 /// Every step of a run, with memory and without.
-fn check<Sys, L, C, const N: usize, const M: usize>(
+fn check<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
-    method: Dla<L, C>,
+    method: Dla,
     (q, v): ([f64; N], [f64; N]),
     (t, h): (f64, f64),
-) -> Result<(), TestCaseError>
-where
-    Sys: System<N, M>,
-    L: DiscreteLagrangian<Sys, N, M> + Copy + 'static,
-    C: DiscreteConstraint<Sys, N, M> + Copy + 'static,
-{
+) -> Result<(), TestCaseError> {
     check_each(|_| system, method, (q, v), (t, h))
 }
 
 /// The same with a system for each step.
-fn check_each<'a, Sys, L, C, const N: usize, const M: usize>(
+fn check_each<'a, Sys: System<N, M> + 'a, const N: usize, const M: usize>(
     system: impl Fn(u32) -> &'a Sys,
-    method: Dla<L, C>,
+    method: Dla,
     (q, v): ([f64; N], [f64; N]),
     (t, h): (f64, f64),
-) -> Result<(), TestCaseError>
-where
-    Sys: System<N, M> + 'a,
-    L: DiscreteLagrangian<Sys, N, M> + Copy + 'static,
-    C: DiscreteConstraint<Sys, N, M> + Copy + 'static,
-{
+) -> Result<(), TestCaseError> {
     let (mut going_on, mut state) = (method, State::new(q, v, [false; N]));
     for k in 0..STEPS {
         let (system, t, mut alone) = (system(k), t + f64::from(k) * h, state);

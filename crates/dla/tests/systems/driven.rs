@@ -2,7 +2,7 @@
 
 use crate::models::{Oscillator, Particle, Pushed};
 use crate::tools::{assert_order, errors, forms, run};
-use dla::{Dla, Form};
+use dla::{Dla, Form, HandMade};
 use lagrangian::{
     Constraint, Derivatives, DiscreteLagrangian, Midpoint, Scalar, Symmetrised, System, Trapezoid, constraint_residual,
 };
@@ -39,7 +39,7 @@ fn an_affine_constraint_with_time() {
 #[test]
 fn multipliers_are_the_forces_of_the_constraint() {
     let (h, steps) = (0.01, 300);
-    let trajectory = run::<_, _, _, 3, 1>(&Pushed, Dla::midpoint(), Pushed::exact(0.0), h * steps as f64, steps);
+    let trajectory = run::<_, _, 3, 1>(&Pushed, Dla::midpoint(), Pushed::exact(0.0), h * steps as f64, steps);
     for node in &trajectory.nodes()[1..] {
         let (before, after) = (Pushed::exact(node.t - h).1[2], Pushed::exact(node.t).1[2]);
         // Third derivatives below 5.
@@ -101,20 +101,25 @@ impl DiscreteLagrangian<Well, 3, 1> for Simpson {
     }
 }
 
+/// The method of a discrete Lagrangian that is written by hand.
+fn by_hand<L>(lagrangian: L) -> Dla<HandMade<'static, Well, L, Midpoint>> {
+    Dla::of(HandMade { system: &Well, lagrangian, constraint: Midpoint })
+}
+
 #[test]
 fn discrete_lagrangians_by_hand() {
     let start = ([0.4, 0.3, 0.2], [0.6, -0.5, 0.18]);
     assert!(constraint_residual(&Well, 0.0, &start.0, &start.1)[0].abs() < 1e-16);
     let end = |steps| {
-        let by_hand = run::<_, _, _, 3, 1>(&Well, Dla::new(Leapfrog, Midpoint), start, 4.0, steps);
-        let by_rule = run::<_, _, _, 3, 1>(&Well, Dla::new(Trapezoid, Midpoint), start, 4.0, steps);
-        for (a, b) in by_hand.nodes().iter().zip(by_rule.nodes()) {
+        let leapfrog = run::<_, _, 3, 1>(&Well, by_hand(Leapfrog), start, 4.0, steps);
+        let by_rule = run::<_, _, 3, 1>(&Well, Dla::new(Trapezoid, Midpoint), start, 4.0, steps);
+        for (a, b) in leapfrog.nodes().iter().zip(by_rule.nodes()) {
             // The same equations; 160 steps with some roundings each.
             approx::assert_abs_diff_eq!(&a.q[..], &b.q[..], epsilon = 1e-12);
             approx::assert_abs_diff_eq!(&a.v[..], &b.v[..], epsilon = 1e-12);
         }
-        let simpson = run::<_, _, _, 3, 1>(&Well, Dla::new(Simpson, Midpoint), start, 4.0, steps);
-        [by_hand, simpson].map(|run| run.nodes()[steps as usize].q)
+        let simpson = run::<_, _, 3, 1>(&Well, by_hand(Simpson), start, 4.0, steps);
+        [leapfrog, simpson].map(|run| run.nodes()[steps as usize].q)
     };
     // Differences of successive halvings: second order without knowing the limit.
     let ends = [80, 160, 320, 640].map(end);
@@ -127,6 +132,6 @@ fn discrete_lagrangians_by_hand() {
         assert!((slope - 2.0).abs() <= 0.05, "{slope}, {differences:?}");
     }
     // Neither has a closed form or a basis: every way of solving is the one with multipliers.
-    let solved = |form| run::<_, _, _, 3, 1>(&Well, Dla::new(Simpson, Midpoint).solved(form), start, 4.0, 80);
+    let solved = |form| run::<_, _, 3, 1>(&Well, by_hand(Simpson).solved(form), start, 4.0, 80);
     assert_eq!(solved(Form::Best), solved(Form::Multipliers));
 }

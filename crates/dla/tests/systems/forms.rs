@@ -9,25 +9,20 @@ use proptest::prelude::*;
 use std::array::from_fn;
 
 /// One step of `method` in both forms, checked against the equations it stands for.
-fn check<Sys, L, C, const N: usize, const M: usize>(
+fn check<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
-    method: Dla<L, C>,
+    method: Dla,
     q0: [f64; N],
     v0: [f64; N],
     (t, h): (f64, f64),
-) -> Result<(), TestCaseError>
-where
-    Sys: System<N, M>,
-    L: DiscreteLagrangian<Sys, N, M> + Copy + 'static,
-    C: DiscreteConstraint<Sys, N, M> + Copy + 'static,
-{
+) -> Result<(), TestCaseError> {
     let start = State::new(q0, v0, [false; N]);
     let [basis, multipliers] = [Form::General, Form::Multipliers].map(|form| {
         let mut state = start;
         let report = method.solved(form).step(system, t, h, &mut state).unwrap();
         (state, report)
     });
-    let d = method.lagrangian.derivatives(system, t, h, &q0, &v0);
+    let d = method.rules.lagrangian.derivatives(system, t, h, &q0, &v0);
     for (state, report) in [basis, multipliers] {
         let (q1, v1) = (*state.q(), *state.v());
         // A few roundings of terms below 10.
@@ -35,11 +30,11 @@ where
         prop_assert!(residual.iter().all(|r| r.abs() <= 1e-13), "node {residual:?}");
         // From here on with the rounding of q1 - q0, for positions below 4 and h above 0.01.
         let v: [f64; N] = from_fn(|i| (q1[i] - q0[i]) / h);
-        let w = method.constraint.residual(system, t, h, &q0, &v);
+        let w = method.rules.constraint.residual(system, t, h, &q0, &v);
         prop_assert!(w.iter().all(|w| w.abs() <= 1e-12), "pair {w:?}");
         // The impulses are those that move the momentum: p1 - p0 = D1 + D2 + f + A0' lambda + A1' mu.
-        let d = method.lagrangian.derivatives(system, t, h, &q0, &v);
-        let forces = method.lagrangian.forces(system, t, h, &q0, &v).unwrap_or(([0.0; N], [0.0; N]));
+        let d = method.rules.lagrangian.derivatives(system, t, h, &q0, &v);
+        let forces = method.rules.lagrangian.forces(system, t, h, &q0, &v).unwrap_or(([0.0; N], [0.0; N]));
         let (p0, p1) = (momentum(system, t, &q0, &v0), momentum(system, t + h, &q1, &v1));
         let (a0, a1) = (system.constraint(t, &q0).0, system.constraint(t + h, &q1).0);
         for i in 0..N {

@@ -20,11 +20,7 @@ fn a_particle_on_its_closed_form() {
 /// The discrete constraint need not be that of the discrete Lagrangian's rule (Cortes and Martinez 2001).
 #[test]
 fn mixed_rules_are_of_second_order() {
-    fn order<L, C>(name: &str, method: Dla<L, C>, expected: f64) -> f64
-    where
-        L: lagrangian::DiscreteLagrangian<Hyperbolic, 3, 1> + Copy + 'static,
-        C: lagrangian::DiscreteConstraint<Hyperbolic, 3, 1> + Copy + 'static,
-    {
+    fn order(name: &str, method: Dla, expected: f64) -> f64 {
         let [basis, multipliers] = forms(method).map(|(_, method)| errors(&Hyperbolic, method, 2.0, Hyperbolic::exact));
         for (a, b) in basis.iter().flatten().zip(multipliers.iter().flatten()) {
             // 160 steps with a rounding of some ulp each.
@@ -55,13 +51,13 @@ fn no_constraint_at_all() {
         assert_order(form, errors(&free, method, 5.0, |t| free.exact(t)), 2.0);
         // The midpoint rule keeps quadratic invariants; what is left is the rounding of 10^4 steps, by chance
         // a hundred of half an ulp.
-        let nodes = run::<_, _, _, 1, 0>(&free, method, free.exact(0.0), 3000.0, 10_000);
+        let nodes = run::<_, _, 1, 0>(&free, method, free.exact(0.0), 3000.0, 10_000);
         let energy = nodes.nodes()[0].energy;
         assert!(nodes.nodes().iter().all(|node| (node.energy - energy).abs() <= 5e-14), "{form}");
     }
     // The trapezoidal rule does not: its energy oscillates by h^2 / 8 of it.
     assert_order("trapezoid", errors(&free, Dla::trapezoid(), 5.0, |t| free.exact(t)), 2.0);
-    let nodes = run::<_, _, _, 1, 0>(&free, Dla::trapezoid(), free.exact(0.0), 3000.0, 10_000);
+    let nodes = run::<_, _, 1, 0>(&free, Dla::trapezoid(), free.exact(0.0), 3000.0, 10_000);
     let energies = || nodes.nodes().iter().map(|node| node.energy);
     let (least, most) = (energies().fold(f64::INFINITY, f64::min), energies().fold(0.0, f64::max));
     assert!((0.01..0.02).contains(&(most - least)), "{}", most - least);
@@ -77,7 +73,7 @@ fn a_rolling_disk() {
     }
     // Rolling and turning rate belong to symmetries along the constraint, and every step keeps them.
     for (form, method) in forms(Dla::midpoint()) {
-        for node in run::<_, _, _, 4, 2>(&Disk, method, Disk::exact(0.0), 30.0, 300).nodes() {
+        for node in run::<_, _, 4, 2>(&Disk, method, Disk::exact(0.0), 30.0, 300).nodes() {
             approx::assert_abs_diff_eq!(node.v[2], 2.0, epsilon = 1e-14);
             approx::assert_abs_diff_eq!(node.v[3], 0.8, epsilon = 1e-14);
             assert!(node.energy.is_finite(), "{form}");
@@ -99,7 +95,7 @@ fn other_kinetic_terms_move_alike() {
     // The steps are others: only their limit is the same.
     let last = |kinetic| {
         let system = Particle { kinetic, ..Particle::FREE };
-        run::<_, _, _, 3, 1>(&system, Dla::midpoint(), system.exact(0.0), 3.0, 20).nodes()[20].q
+        run::<_, _, 3, 1>(&system, Dla::midpoint(), system.exact(0.0), 3.0, 20).nodes()[20].q
     };
     assert!((last(Kinetic::Quadratic)[0] - last(Kinetic::Quartic)[0]).abs() > 1e-5);
 }

@@ -1,24 +1,19 @@
 //! Orders, measured.
 
-use dla::{Dla, Form, Schedule, State, Trajectory, drive};
-use lagrangian::{DiscreteConstraint, DiscreteLagrangian, System};
+use dla::{Discretisation, Dla, Form, Schedule, State, Trajectory, drive};
+use lagrangian::System;
 
 /// Configuration and velocity at a time.
 pub type Place<const N: usize> = ([f64; N], [f64; N]);
 
 /// The nodes of a run of `steps` steps to the time `end`.
-pub fn run<Sys, L, C, const N: usize, const M: usize>(
+pub fn run<Sys: System<N, M>, D: Discretisation<N, M>, const N: usize, const M: usize>(
     system: &Sys,
-    mut method: Dla<L, C>,
+    mut method: Dla<D>,
     (q, v): Place<N>,
     end: f64,
     steps: u64,
-) -> Trajectory<N, M>
-where
-    Sys: System<N, M>,
-    L: DiscreteLagrangian<Sys, N, M> + 'static,
-    C: DiscreteConstraint<Sys, N, M> + 'static,
-{
+) -> Trajectory<N, M> {
     let schedule = Schedule { t0: 0.0, step: end / steps as f64, steps };
     let mut trajectory = Trajectory::every(1);
     drive(system, &mut method, &schedule, &mut State::new(q, v, system.angles()), &mut trajectory).unwrap();
@@ -26,17 +21,12 @@ where
 }
 
 /// The largest errors in the configuration and in the velocity for 20, 40, 80, 160 steps.
-pub fn errors<Sys, L, C, const N: usize, const M: usize>(
+pub fn errors<Sys: System<N, M>, D: Discretisation<N, M> + Copy, const N: usize, const M: usize>(
     system: &Sys,
-    method: Dla<L, C>,
+    method: Dla<D>,
     end: f64,
     exact: impl Fn(f64) -> Place<N>,
-) -> [[f64; 2]; 4]
-where
-    Sys: System<N, M>,
-    L: DiscreteLagrangian<Sys, N, M> + Copy + 'static,
-    C: DiscreteConstraint<Sys, N, M> + Copy + 'static,
-{
+) -> [[f64; 2]; 4] {
     [20, 40, 80, 160].map(|steps| {
         let mut errors = [0.0f64; 2];
         let trajectory: Trajectory<N, M> = run(system, method, exact(0.0), end, steps);
@@ -68,6 +58,6 @@ pub fn assert_slope(name: &str, errors: [f64; 4], order: f64) {
 }
 
 /// The step in the basis and with multipliers.
-pub fn forms<L: Copy, C: Copy>(method: Dla<L, C>) -> [(&'static str, Dla<L, C>); 2] {
+pub fn forms<D: Copy>(method: Dla<D>) -> [(&'static str, Dla<D>); 2] {
     [("basis", Form::General), ("multipliers", Form::Multipliers)].map(|(name, form)| (name, method.solved(form)))
 }

@@ -12,7 +12,7 @@ mod phase;
 mod symmetries;
 
 use dla::{Dla, Gauss, Observer, OneStep, Schedule, State, drive_part, piece_by_piece};
-use lagrangian::{Midpoint, Piecewise, System};
+use lagrangian::{Piecewise, System};
 
 /// Runs a method on a system that may jump.
 fn run<Sys, Method, Obs, const N: usize, const M: usize>(
@@ -33,7 +33,7 @@ fn run<Sys, Method, Obs, const N: usize, const M: usize>(
     .unwrap();
 }
 
-fn dla() -> Dla<Midpoint, Midpoint> {
+fn dla() -> Dla {
     Dla::midpoint()
 }
 

@@ -1,30 +1,31 @@
 use super::{InBasis, are_met, first, has_settled};
+use crate::Mechanics;
 use crate::continued::Found;
 use crate::convergence::tolerances::{SHRINKING, SLIGHT};
 use crate::dla::Dla;
 use crate::kept::in_bases;
 use crate::settle::{CORRECTIONS, LEAST, sup};
-use lagrangian::{AdmissibleBasis, System, clear_multipliers, from_fn, linear_basis, mass_matrix, momentum};
+use lagrangian::{AdmissibleBasis, clear_multipliers, from_fn};
 
 /// The quasi-velocities at the end: `W(q1)' (L_v(q1, v1) - p1) = 0`, `v1 = W(q1) xi`.
 #[inline(always)]
-pub(super) fn arrival<L, C, Sys: System<N, M>, const N: usize, const M: usize>(
-    method: &mut Dla<L, C>,
-    system: &Sys,
+pub(super) fn arrival<D, const N: usize, const M: usize>(
+    method: &mut Dla<D>,
+    system: &dyn Mechanics<N, M>,
     (t1, h, q1): (f64, f64, &[f64; N]),
     p1: [f64; N],
 ) -> Option<InBasis<N, M>> {
     let dimension = AdmissibleBasis::<f64, N, M>::DIMENSION;
-    let (a1, w1) = linear_basis(system, t1, q1)?;
+    let (a1, w1) = system.linear_basis(t1, q1)?;
     let mut xi: [f64; N] = first(method.kept.ends.following(h)?);
     let mut v = w1.combine(&xi);
     if method.kept.mass.stale {
-        let (_, mass) = mass_matrix(system, t1, q1, &v);
+        let (_, mass) = system.mass_matrix(t1, q1, &v);
         method.kept.mass.renew(&in_bases(&mass, &w1, &w1))?;
     }
     let (mass, tolerance) = (&method.kept.mass, method.newton.tolerance);
     let rest = |v: &[f64; N]| -> [f64; N] {
-        let p = momentum(system, t1, q1, v);
+        let p = system.momentum(t1, q1, v);
         from_fn(|i| p1[i] - p[i])
     };
 

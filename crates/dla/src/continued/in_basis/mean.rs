@@ -1,5 +1,4 @@
 use super::{InBasis, are_met, first, has_settled};
-use crate::State;
 use crate::continued::{Found, ends, with_reaction};
 use crate::convergence::tolerances::{SHRINKING, SLIGHT};
 use crate::corrections::Departure;
@@ -7,32 +6,27 @@ use crate::dla::{Dla, predicted};
 use crate::increment::Increment;
 use crate::kept::in_bases;
 use crate::settle::{CORRECTIONS, LEAST, sup};
-use lagrangian::{
-    AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, System, clear_multipliers, from_fn, linear_basis, momentum,
-};
+use crate::{Discretisation, Mechanics, State};
+use lagrangian::{AdmissibleBasis, clear_multipliers, from_fn};
 
 /// The mean quasi-velocities, `W(q0)' (p0 + D1 L_d + f_d^-) = 0` with `v = W xi` for the basis `W` of `w_d = 0`; and the momenta
 /// `D2 L_d + f_d^+` at the end.
 #[inline(always)]
-pub(super) fn mean<L, C, Sys: System<N, M>, const N: usize, const M: usize>(
-    method: &mut Dla<L, C>,
-    system: &Sys,
+pub(super) fn mean<D: Discretisation<N, M>, const N: usize, const M: usize>(
+    method: &mut Dla<D>,
+    system: &dyn Mechanics<N, M>,
     (t0, h): (f64, f64),
     state: &State<N>,
-) -> Option<(InBasis<N, M>, [f64; N])>
-where
-    L: DiscreteLagrangian<Sys, N, M>,
-    C: DiscreteConstraint<Sys, N, M>,
-{
+) -> Option<(InBasis<N, M>, [f64; N])> {
     let dimension = AdmissibleBasis::<f64, N, M>::DIMENSION;
     let way = predicted(state, h, method.kept.ways.next(h).map(first))?;
     let xi = first(method.kept.means.following(h)?);
-    let rules = (&method.lagrangian, &method.constraint);
+    let rules = &method.rules;
     let (q0, v0) = (*state.q(), *state.v());
     // Of the system as it is now, which may not be the one of the step before.
-    let (p0, (a0, w0)) = (momentum(system, t0, &q0, &v0), linear_basis(system, t0, &q0)?);
+    let (p0, (a0, w0)) = (system.momentum(t0, &q0, &v0), system.linear_basis(t0, &q0)?);
     let increment = Increment { rules, system, t0, h, state, q0, p0, a0, basis: None };
-    let basis = |way: &[f64; N]| increment.rules.1.basis_along(system, (t0, h), &q0, way);
+    let basis = |way: &[f64; N]| increment.rules.basis_along(system, (t0, h), &q0, way);
     if method.kept.block.stale {
         let (_, block) = increment.linearised(&way);
         method.kept.block.renew(&in_bases(&block, &w0, &basis(&way)?))?;

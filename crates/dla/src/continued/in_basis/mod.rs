@@ -10,9 +10,9 @@ use crate::convergence::tolerances::STALL;
 use crate::derivatives::COORDINATES;
 use crate::dla::Dla;
 use crate::settle::LEAST;
-use crate::{State, StepReport};
+use crate::{Discretisation, Mechanics, State, StepReport};
 use arrival::arrival;
-use lagrangian::{AdmissibleBasis, DiscreteConstraint, DiscreteLagrangian, System, from_fn};
+use lagrangian::{AdmissibleBasis, from_fn};
 use mean::mean;
 
 /// A velocity with its quasi-velocities, and the impulse of the constraints.
@@ -30,16 +30,12 @@ fn first<const N: usize>(row: [f64; COORDINATES]) -> [f64; N] {
 // Twice in a build for any machine, as the loop over steps is (`drive_part`).
 #[cfg_attr(not(target_feature = "avx2"), multiversion::multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt")))]
 #[inline(never)]
-pub(super) fn going_on<L, C, Sys: System<N, M>, const N: usize, const M: usize>(
-    method: &mut Dla<L, C>,
-    system: &Sys,
+pub(super) fn going_on<D: Discretisation<N, M>, const N: usize, const M: usize>(
+    method: &mut Dla<D>,
+    system: &dyn Mechanics<N, M>,
     (t0, h): (f64, f64),
     state: &mut State<N>,
-) -> Option<StepReport<M>>
-where
-    L: DiscreteLagrangian<Sys, N, M>,
-    C: DiscreteConstraint<Sys, N, M>,
-{
+) -> Option<StepReport<M>> {
     let q0 = *state.q();
     let (InBasis { found: Found { v, lambda, corrections }, xi }, p1) = mean(method, system, (t0, h), state)?;
     if branch::turn(system, (t0, h), &q0, &v) > branch::NEAR {
@@ -90,14 +86,14 @@ mod tests {
     use super::*;
     use crate::{Form, OneStep};
     use approx::assert_abs_diff_eq;
-    use lagrangian::{Midpoint, With};
+    use lagrangian::With;
     use models::{Model, Particle};
     use sleigh::effects::{Bowl, Drag};
     use sleigh::{Sleigh, SleighState};
 
     const STEP: f64 = 0.05;
 
-    fn method() -> Dla<Midpoint, Midpoint> {
+    fn method() -> Dla {
         Dla::midpoint().solved(Form::General)
     }
 

@@ -1,0 +1,353 @@
+use crate::Mechanics;
+use lagrangian::{
+    AdmissibleBasis, AnyRule, Derivatives, DiscreteConstraint, DiscreteLagrangian, Dual, HyperDual, Midpoint, Rounded,
+    Rule, System, from_fn, on_line,
+};
+
+/// A discrete Lagrangian and a discrete constraint, as the equations of a step ask for them: in numbers.
+///
+/// A pair `(q0, q1)` is given as `q0` and the mean velocity `v = (q1 - q0)/h`, a step by its time and length `(t0, h)`. [`Rules`] are
+/// quadrature rules for both; [`HandMade`] is what a user writes as a [`DiscreteLagrangian`].
+pub trait Discretisation<const N: usize, const M: usize> {
+    /// Whether both are the midpoint rule, of which a system may know a closed form.
+    fn is_midpoint(&self) -> bool {
+        false
+    }
+
+    /// `D1 L_d` and `D2 L_d` with the discrete forces, at the mean velocity `v`, the configurations being those of a step of the mean
+    /// velocity `way`, which is near to `v`: what depends on them alone need not be worked out for `v` again.
+    fn momenta(
+        &self,
+        system: &dyn Mechanics<N, M>,
+        time: (f64, f64),
+        q0: &[f64; N],
+        way: &[f64; N],
+        v: &[f64; N],
+    ) -> EndMomenta<N>;
+
+    /// The same with the derivatives of `D1 L_d + f_d^-` in the mean velocity.
+    fn linearised(
+        &self,
+        system: &dyn Mechanics<N, M>,
+        time: (f64, f64),
+        q0: &[f64; N],
+        v: &[f64; N],
+    ) -> (EndMomenta<N>, [[f64; N]; N]);
+
+    /// `w_d`, in the units of `A v`.
+    fn residual(&self, system: &dyn Mechanics<N, M>, time: (f64, f64), q0: &[f64; N], v: &[f64; N]) -> [f64; M];
+
+    /// The same with its derivatives in the mean velocity.
+    fn rows(&self, system: &dyn Mechanics<N, M>, time: (f64, f64), q0: &[f64; N], v: &[f64; N]) -> [Dual<f64, N>; M];
+
+    /// The basis of the mean velocities with `w_d = 0` where it is the system's basis at one configuration, that of the mean velocity
+    /// `way`; none by default.
+    fn basis_along(
+        &self,
+        _system: &dyn Mechanics<N, M>,
+        _time: (f64, f64),
+        _q0: &[f64; N],
+        _way: &[f64; N],
+    ) -> Option<AdmissibleBasis<f64, N, M>> {
+        None
+    }
+
+    /// `D1 L_d` and `f_d^-`, and `w_d`, with bounds on the rounding of their terms; the velocity has its own.
+    fn rounded(
+        &self,
+        system: &dyn Mechanics<N, M>,
+        time: (f64, f64),
+        q0: &[f64; N],
+        v: &[Rounded; N],
+    ) -> RoundedStep<N, M>;
+}
+
+/// `[D1 L_d, D2 L_d]`, and `[f_d^-, f_d^+]` where there are forces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EndMomenta<const N: usize> {
+    /// Of the discrete Lagrangian.
+    pub slopes: [[f64; N]; 2],
+    /// Of the discrete forces.
+    pub forces: Option<[[f64; N]; 2]>,
+}
+
+/// What [`Discretisation::rounded`] gives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoundedStep<const N: usize, const M: usize> {
+    /// `D1 L_d`.
+    pub d1: [Rounded; N],
+    /// `f_d^-`.
+    pub minus: Option<[Rounded; N]>,
+    /// `w_d`.
+    pub residual: [Rounded; M],
+}
+
+/// A quadrature rule for the discrete Lagrangian and the discrete forces, and one for the discrete constraint.
+///
+/// Rules are values and no types: a step is compiled once for all of them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rules {
+    /// Of `L_d`.
+    pub lagrangian: AnyRule,
+    /// Of `w_d`.
+    pub constraint: AnyRule,
+    midpoint: bool,
+}
+
+impl Rules {
+    /// The pair.
+    pub fn new(lagrangian: impl Into<AnyRule>, constraint: impl Into<AnyRule>) -> Self {
+        let (lagrangian, constraint, middle) = (lagrangian.into(), constraint.into(), AnyRule::from(Midpoint));
+        Self { lagrangian, constraint, midpoint: lagrangian == middle && constraint == middle }
+    }
+}
+
+impl<const N: usize, const M: usize> Discretisation<N, M> for Rules {
+    #[inline]
+    fn is_midpoint(&self) -> bool {
+        self.midpoint
+    }
+
+    /// By the derivatives in configuration and velocity at every node.
+    #[inline]
+    fn momenta(
+        &self,
+        system: &dyn Mechanics<N, M>,
+        (t0, h): (f64, f64),
+        q0: &[f64; N],
+        way: &[f64; N],
+        v: &[f64; N],
+    ) -> EndMomenta<N> {
+        let [mut d1, mut d2] = [[0.0; N]; 2];
+        let mut forces = Some([[0.0; N]; 2]);
+        for node in self.lagrangian.nodes() {
+            let (t, q) = on_line(node.alpha, t0, h, q0, way);
+            let part = h * node.alpha;
+            let slopes = system.slopes(t, &q, v);
+            for i in 0..N {
+                d1[i] += ((h - part) * slopes.l_q[i] - slopes.l_v[i]) * node.weight;
+                d2[i] += (part * slopes.l_q[i] + slopes.l_v[i]) * node.weight;
+            }
+            let Some((force, [minus, plus])) = slopes.force.zip(forces.as_mut()) else {
+                forces = None;
+                continue;
+            };
+            for i in 0..N {
+                let impulse = h * force[i] * node.weight;
+                minus[i] += impulse * (1.0 - node.alpha);
+                plus[i] += impulse * node.alpha;
+            }
+        }
+        EndMomenta { slopes: [d1, d2], forces }
+    }
+
+    /// Seeded at the nodes, where the configuration depends on both ends by `dq = (1 - alpha) dq0 + alpha dq1`: no product of derivatives is
+    /// made on the way there.
+    #[inline]
+    fn linearised(
+        &self,
+        system: &dyn Mechanics<N, M>,
+        (t0, h): (f64, f64),
+        q0: &[f64; N],
+        v: &[f64; N],
+    ) -> (EndMomenta<N>, [[f64; N]; N]) {
+        let mut sum: Option<HyperDual<f64, N, N>> = None;
+        let mut forces = Some(([[0.0; N]; 2], [[0.0; N]; N]));
+        for node in self.lagrangian.nodes() {
+            let (t, q) = on_line(node.alpha, t0, h, q0, v);
+            let part = h * node.alpha;
+            let term = system.at_node(t, &q, v, h - part, part) * node.weight;
+            sum = Some(sum.map_or(term, |s| s + term));
+            let along = if forces.is_some() { system.force_along(t, &q, v, part, 1.0) } else { None };
+            let Some((force, ([minus, plus], block))) = along.zip(forces.as_mut()) else {
+                forces = None;
+                continue;
+            };
+            for i in 0..N {
+                let impulse = force[i] * h * node.weight;
+                minus[i] += impulse.re * (1.0 - node.alpha);
+                plus[i] += impulse.re * node.alpha;
+                for j in 0..N {
+                    block[i][j] += impulse.eps[j] * (1.0 - node.alpha);
+                }
+            }
+        }
+        let l = sum.unwrap_or(HyperDual::fixed(0.0));
+        let mut block = l.e12;
+        if let Some((_, of_forces)) = &forces {
+            for i in 0..N {
+                for j in 0..N {
+                    block[i][j] += of_forces[i][j];
+                }
+            }
+        }
+        (EndMomenta { slopes: [l.e1, l.e2], forces: forces.map(|(ends, _)| ends) }, block)
+    }
+
+    #[inline]
+    fn residual(&self, system: &dyn Mechanics<N, M>, (t0, h): (f64, f64), q0: &[f64; N], v: &[f64; N]) -> [f64; M] {
+        let mut sum = [0.0; M];
+        for node in self.constraint.nodes() {
+            let (t, q) = on_line(node.alpha, t0, h, q0, v);
+            let residual = system.residual(t, &q, v);
+            for k in 0..M {
+                sum[k] += residual[k] * node.weight;
+            }
+        }
+        sum
+    }
+
+    #[inline]
+    fn rows(
+        &self,
+        system: &dyn Mechanics<N, M>,
+        (t0, h): (f64, f64),
+        q0: &[f64; N],
+        v: &[f64; N],
+    ) -> [Dual<f64, N>; M] {
+        let mut sum = [Dual::fixed(0.0); M];
+        for node in self.constraint.nodes() {
+            let (t, q) = on_line(node.alpha, t0, h, q0, v);
+            let at_node = system.residual_along(t, &q, v, h * node.alpha);
+            for k in 0..M {
+                sum[k] += at_node[k] * node.weight;
+            }
+        }
+        sum
+    }
+
+    /// Of a single node, where the constraints are linear.
+    #[inline]
+    fn basis_along(
+        &self,
+        system: &dyn Mechanics<N, M>,
+        (t0, h): (f64, f64),
+        q0: &[f64; N],
+        way: &[f64; N],
+    ) -> Option<AdmissibleBasis<f64, N, M>> {
+        let [node] = self.constraint.nodes() else { return None };
+        let (t, q) = on_line(node.alpha, t0, h, q0, way);
+        system.linear_basis(t, &q).map(|(_, basis)| basis)
+    }
+
+    #[cold]
+    fn rounded(
+        &self,
+        system: &dyn Mechanics<N, M>,
+        (t0, h): (f64, f64),
+        q0: &[f64; N],
+        v: &[Rounded; N],
+    ) -> RoundedStep<N, M> {
+        let (t0, h, q0) = (Rounded::exact(t0), Rounded::exact(h), q0.map(Rounded::exact));
+        let zero = Rounded::exact(0.0);
+        let (mut d1, mut minus, mut residual) = ([zero; N], Some([zero; N]), [zero; M]);
+        for node in self.lagrangian.nodes() {
+            let (t, q) = on_line(node.alpha, t0, h, &q0, v);
+            let (l_q, l_v) = (system.slope_rounded(t, &q, v), system.momentum_rounded(t, &q, v));
+            d1 = from_fn(|i| d1[i] + ((h - h * node.alpha) * l_q[i] - l_v[i]) * node.weight);
+            minus = minus
+                .zip(system.force_rounded(t, &q, v))
+                .map(|(minus, force)| from_fn(|i| minus[i] + h * force[i] * node.weight * (1.0 - node.alpha)));
+        }
+        for node in self.constraint.nodes() {
+            let (t, q) = on_line(node.alpha, t0, h, &q0, v);
+            let at_node = system.residual_rounded(t, &q, v);
+            residual = from_fn(|k| residual[k] + at_node[k] * node.weight);
+        }
+        RoundedStep { d1, minus, residual }
+    }
+}
+
+/// A discrete Lagrangian and a discrete constraint that are written on every scalar, of one system.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HandMade<'a, Sys, L, C> {
+    /// The system.
+    pub system: &'a Sys,
+    /// `L_d`.
+    pub lagrangian: L,
+    /// `w_d`.
+    pub constraint: C,
+}
+
+impl<Sys, L, C, const N: usize, const M: usize> Discretisation<N, M> for HandMade<'_, Sys, L, C>
+where
+    Sys: System<N, M>,
+    L: DiscreteLagrangian<Sys, N, M>,
+    C: DiscreteConstraint<Sys, N, M>,
+{
+    fn momenta(
+        &self,
+        _system: &dyn Mechanics<N, M>,
+        time: (f64, f64),
+        q0: &[f64; N],
+        way: &[f64; N],
+        v: &[f64; N],
+    ) -> EndMomenta<N> {
+        let Self { system, lagrangian, .. } = self;
+        let slopes = lagrangian.slopes_along(system, time, q0, way, v);
+        let forces = lagrangian.forces_along(system, time, q0, way, v);
+        EndMomenta { slopes, forces: forces.map(|(minus, plus)| [minus, plus]) }
+    }
+
+    fn linearised(
+        &self,
+        _system: &dyn Mechanics<N, M>,
+        (t0, h): (f64, f64),
+        q0: &[f64; N],
+        v: &[f64; N],
+    ) -> (EndMomenta<N>, [[f64; N]; N]) {
+        let Self { system, lagrangian, .. } = self;
+        let Derivatives { d1, d2, d1d2, .. } = lagrangian.derivatives(*system, t0, h, q0, v);
+        let mut block = d1d2.map(|row| row.map(|x| h * x));
+        let (t, step, q, along) = (Dual::fixed(t0), Dual::fixed(h), q0.map(Dual::fixed), Dual::variables(v));
+        let forces: Option<([Dual<f64, N>; N], _)> = lagrangian.forces(*system, t, step, &q, &along);
+        if let Some((minus, _)) = &forces {
+            for i in 0..N {
+                for j in 0..N {
+                    block[i][j] += minus[i].eps[j];
+                }
+            }
+        }
+        let forces = forces.map(|ends| <[_; 2]>::from(ends).map(|end| end.map(|f| f.re)));
+        (EndMomenta { slopes: [d1, d2], forces }, block)
+    }
+
+    fn residual(&self, _system: &dyn Mechanics<N, M>, (t0, h): (f64, f64), q0: &[f64; N], v: &[f64; N]) -> [f64; M] {
+        self.constraint.residual(self.system, t0, h, q0, v)
+    }
+
+    fn rows(
+        &self,
+        _system: &dyn Mechanics<N, M>,
+        (t0, h): (f64, f64),
+        q0: &[f64; N],
+        v: &[f64; N],
+    ) -> [Dual<f64, N>; M] {
+        self.constraint.linearised(self.system, t0, h, q0, v)
+    }
+
+    fn basis_along(
+        &self,
+        _system: &dyn Mechanics<N, M>,
+        time: (f64, f64),
+        q0: &[f64; N],
+        way: &[f64; N],
+    ) -> Option<AdmissibleBasis<f64, N, M>> {
+        self.constraint.basis_along(self.system, time, q0, way)
+    }
+
+    #[cold]
+    fn rounded(
+        &self,
+        _system: &dyn Mechanics<N, M>,
+        (t0, h): (f64, f64),
+        q0: &[f64; N],
+        v: &[Rounded; N],
+    ) -> RoundedStep<N, M> {
+        let Self { system, lagrangian, constraint } = self;
+        let (t, step, q) = (Rounded::exact(t0), Rounded::exact(h), q0.map(Rounded::exact));
+        let [d1, _] = lagrangian.slopes(*system, t, step, &q, v);
+        let minus = lagrangian.forces(*system, t, step, &q, v).map(|(minus, _)| minus);
+        RoundedStep { d1, minus, residual: constraint.residual(*system, t, step, &q, v) }
+    }
+}

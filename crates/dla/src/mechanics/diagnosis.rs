@@ -1,0 +1,65 @@
+use crate::{NotANumber, not_a_number};
+use lagrangian::{Dependence, Dual, RowSpace, Rows, Scalar, System};
+
+/// What is asked of a system where a step fails, or before the first one.
+pub trait Diagnosis<const N: usize, const M: usize> {
+    /// The first function that is not finite at a state, or has no finite derivative there.
+    fn not_a_number(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<NotANumber>;
+
+    /// The span of the rows of the constraint at a state.
+    fn row_space(&self, t: f64, q: &[f64; N], v: &[f64; N], tolerance: f64) -> RowSpace<N, M>;
+
+    /// The rows that imply the others, where these depend on them everywhere nearby and agree.
+    fn redundant_rows(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<Rows>;
+
+    /// Whether the rank of the rows is the same nearby.
+    fn rank_is_constant(&self, t: f64, q: &[f64; N], v: &[f64; N], space: &RowSpace<N, M>) -> bool;
+
+    /// Whether rows that depend on others ask for the same velocities.
+    fn rows_are_consistent(&self, t: f64, q: &[f64; N], v: &[f64; N], dependence: &Dependence<M>) -> bool;
+
+    /// Whether constraints move: `b` or one of its derivatives in the coordinates is not zero.
+    fn constraints_move(&self, t: f64, q: &[f64; N]) -> bool;
+
+    /// Whether the Lagrangian, the constraint or the basis changes with time at a state.
+    fn depends_on_time(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> bool;
+}
+
+impl<Sys: System<N, M>, const N: usize, const M: usize> Diagnosis<N, M> for Sys {
+    fn not_a_number(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<NotANumber> {
+        not_a_number(self, t, q, v)
+    }
+
+    fn row_space(&self, t: f64, q: &[f64; N], v: &[f64; N], tolerance: f64) -> RowSpace<N, M> {
+        lagrangian::row_space(self, t, q, v, tolerance)
+    }
+
+    fn redundant_rows(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<Rows> {
+        lagrangian::redundant_rows(self, t, q, v)
+    }
+
+    fn rank_is_constant(&self, t: f64, q: &[f64; N], v: &[f64; N], space: &RowSpace<N, M>) -> bool {
+        lagrangian::rank_is_constant(self, t, q, v, space)
+    }
+
+    fn rows_are_consistent(&self, t: f64, q: &[f64; N], v: &[f64; N], dependence: &Dependence<M>) -> bool {
+        lagrangian::rows_are_consistent(self, t, q, v, dependence)
+    }
+
+    fn constraints_move(&self, t: f64, q: &[f64; N]) -> bool {
+        let (_, nearby) = System::constraint(self, Dual::fixed(t), &Dual::variables(q));
+        !nearby.iter().all(Scalar::is_zero)
+    }
+
+    fn depends_on_time(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> bool {
+        let t = Dual { re: t, eps: [1.0] };
+        let (q, v) = (q.map(Dual::fixed), v.map(Dual::fixed));
+        let (a, b) = System::constraint(self, t, &q);
+        // What is not a number fails later, and is named there.
+        let moves = |x: &Dual<f64, 1>| x.eps[0].abs() > 0.0;
+        let basis = self.admissible_basis(t, &q);
+        moves(&System::lagrangian(self, t, &q, &v))
+            || a.iter().flatten().chain(&b).any(moves)
+            || basis.is_some_and(|basis| basis.vectors().iter().flatten().any(moves))
+    }
+}

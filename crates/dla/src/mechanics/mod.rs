@@ -1,0 +1,188 @@
+//! What a method asks of a system.
+
+mod automatic;
+mod diagnosis;
+mod rounded;
+
+pub use diagnosis::Diagnosis;
+pub use rounded::RoundedMechanics;
+
+use crate::gauss::{Collocation, Outcome};
+use lagrangian::{
+    AdmissibleBasis, Bracket, Constraint, ConstraintSlopes, Dual, EnergySlope, HyperDual, Lanes, Motion, MotionError,
+    ReducedError, ReducedSlope,
+};
+use std::fmt;
+
+/// The Lagrangian's first derivatives at a state, and the generalised forces there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slopes<const N: usize> {
+    /// `L_q`.
+    pub l_q: [f64; N],
+    /// `L_v`, the momenta.
+    pub l_v: [f64; N],
+    /// `F`, where there are forces.
+    pub force: Option<[f64; N]>,
+}
+
+/// The Lagrangian's first and second derivatives at a state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SecondSlopes<const N: usize> {
+    /// `L_q`.
+    pub l_q: [f64; N],
+    /// `L_qq`.
+    pub l_qq: [[f64; N]; N],
+    /// `L_qv`, row `i` and column `j` the derivative in `q_i` and `v_j`.
+    pub l_qv: [[f64; N]; N],
+    /// `L_v`.
+    pub l_v: [f64; N],
+    /// `L_vv`, the mass matrix.
+    pub l_vv: [[f64; N]; N],
+}
+
+/// What a method asks of a system: values and derivatives as numbers, never a scalar that carries derivatives.
+///
+/// Every [`System`](lagrangian::System) is one, by automatic derivatives. The trait is the seam between methods and systems: it can be
+/// an object, so that a method is compiled once for all systems of a shape `(N, M)`, and a system without any method. Entries
+/// are whole questions: what is asked together shares the functions of the place, and no dual number crosses the seam, of which most
+/// places would be zeros.
+pub trait Mechanics<const N: usize, const M: usize>: RoundedMechanics<N, M> + Diagnosis<N, M> {
+    /// Which coordinates are angles.
+    fn angles(&self) -> [bool; N];
+
+    /// The Lagrangian (J).
+    fn lagrangian(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> f64;
+
+    /// The energy `v . L_v - L` (J).
+    fn energy(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> f64;
+
+    /// The momenta `L_v`.
+    fn momentum(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> [f64; N];
+
+    /// The momenta, with `A` and `b` of the constraint at the same place.
+    fn momentum_and_rows(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> ([f64; N], Constraint<f64, N, M>);
+
+    /// The momenta and the mass matrix `L_vv`.
+    fn mass_matrix(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> ([f64; N], [[f64; N]; N]);
+
+    /// All first derivatives of the Lagrangian, and the forces.
+    fn slopes(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Slopes<N>;
+
+    /// All first and second derivatives of the Lagrangian.
+    fn second_slopes(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> SecondSlopes<N>;
+
+    /// The Lagrangian, with its gradients along two groups of directions, `(dq, dv) = (back, -1) e_i` and `(ahead, 1) e_j`, and the
+    /// mixed second derivatives: what a node of a quadrature rule adds to `D1 L_d`, `D2 L_d` and `D1 D2 L_d`.
+    fn at_node(&self, t: f64, q: &[f64; N], v: &[f64; N], back: f64, ahead: f64) -> HyperDual<f64, N, N>;
+
+    /// The generalised forces; none where there are none.
+    fn force(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<[f64; N]>;
+
+    /// The forces with their derivatives along `(dq, dv) = (in_q, in_v) e_j`.
+    fn force_along(&self, t: f64, q: &[f64; N], v: &[f64; N], in_q: f64, in_v: f64) -> Option<[Dual<f64, N>; N]>;
+
+    /// `A` and `b` of the constraint.
+    fn constraint(&self, t: f64, q: &[f64; N]) -> Constraint<f64, N, M>;
+
+    /// The rows of `A` with their rates along `(t', q') = (in_t, in_q)`.
+    fn rows_along(&self, t: f64, q: &[f64; N], in_t: f64, in_q: &[f64; N]) -> [[Dual<f64, 1>; N]; M];
+
+    /// The residual of every constraint, `A v + b`, or `phi` of one that is not affine.
+    fn residual(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> [f64; M];
+
+    /// The same with its derivatives along `(dq, dv) = (in_q, 1) e_j`.
+    fn residual_along(&self, t: f64, q: &[f64; N], v: &[f64; N], in_q: f64) -> [Dual<f64, N>; M];
+
+    /// The rows along which the constraints act at a velocity: `A`, or `phi_v`.
+    fn reaction_rows(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> [[f64; N]; M];
+
+    /// The constraint with all its first derivatives; the reaction of the impulses is added to `w`, with its derivatives to `w_q`.
+    fn constraint_slopes(
+        &self,
+        t: f64,
+        state: (&[f64; N], &[f64; N]),
+        impulse: &[f64; M],
+        w: (&mut [f64; N], &mut [[f64; N]; N]),
+    ) -> ConstraintSlopes<N, M>;
+
+    /// Whether some constraint is not affine in the velocities.
+    fn is_nonlinear(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> bool;
+
+    /// Adds `sum_k factors[k] d^2 phi_k / dv dv` to a matrix.
+    fn add_reaction_curvature(
+        &self,
+        t: f64,
+        state: (&[f64; N], &[f64; N]),
+        factors: &[f64; M],
+        matrix: &mut [[f64; N]; N],
+    );
+
+    /// Whether positions are constrained.
+    fn constrains_positions(&self, t: f64, q: &[f64; N]) -> bool;
+
+    /// What the constraints on positions miss, with their gradients, rounding being zero; none where there are none.
+    fn position_misses(&self, t: f64, q: &[f64; N]) -> Option<[Option<Dual<f64, N>>; M]>;
+
+    /// Adds `sum_k factors[k] d^2 g_k / dq dq` of the constraints on positions to a matrix.
+    fn add_position_curvature(&self, t: f64, q: &[f64; N], factors: &[f64; M], matrix: &mut [[f64; N]; N]);
+
+    /// The basis of admissible velocities, where there is one.
+    fn basis(&self, t: f64, q: &[f64; N]) -> Option<AdmissibleBasis<f64, N, M>>;
+
+    /// The rows of linear constraints with the basis; none where the system gives none, or where `b` is not zero.
+    fn linear_basis(&self, t: f64, q: &[f64; N]) -> Option<([[f64; N]; M], AdmissibleBasis<f64, N, M>)>;
+
+    /// Accelerations and multipliers of the continuous system.
+    ///
+    /// # Errors
+    /// [`MotionError`] where the mass matrix or the constraint is degenerate.
+    fn motion(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<Motion<N, M>, MotionError>;
+
+    /// The velocity `W xi + v_b` of quasi-velocities.
+    ///
+    /// # Errors
+    /// [`ReducedError`] where there is no basis, or a degenerate one.
+    fn velocity_of(&self, t: f64, q: &[f64; N], xi: &[f64; N]) -> Result<[f64; N], ReducedError>;
+
+    /// The quasi-velocities of a velocity.
+    ///
+    /// # Errors
+    /// As [`velocity_of`](Self::velocity_of).
+    fn quasi_velocities(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<[f64; N], ReducedError>;
+
+    /// The reduced equations.
+    ///
+    /// # Errors
+    /// [`ReducedError`] where there is no basis, or where equations are degenerate.
+    fn reduced_slope(&self, t: f64, q: &[f64; N], xi: &[f64; N]) -> Result<ReducedSlope<N>, ReducedError>;
+
+    /// The inverse of the mass matrix on the distribution.
+    ///
+    /// # Errors
+    /// [`Singular`](lagrangian::linear::Singular) where the Lagrangian does not determine the quasi-velocities.
+    fn inverse_reduced_mass(
+        &self,
+        t: f64,
+        q: &[f64; N],
+        v: &[f64; N],
+        basis: &AdmissibleBasis<f64, N, M>,
+    ) -> Result<[[f64; N]; N], lagrangian::linear::Singular>;
+
+    /// The bracket of the dual of the distribution at eight points; none without a basis.
+    fn bracket(&self, t: Lanes, q: &[Lanes; N], xi: &[Lanes; N]) -> Option<Bracket<Lanes, N, M>>;
+
+    /// The slope of the energy at eight points; none without a basis.
+    fn energy_slope(&self, t: Lanes, q: &[Lanes; N], xi: &[Lanes; N]) -> Option<EnergySlope<Lanes, N>>;
+
+    /// The forces at eight points.
+    fn force_at_eight(&self, t: Lanes, q: &[Lanes; N], v: &[Lanes; N]) -> Option<[Lanes; N]>;
+
+    /// The stages of a collocation, all at once in the vector registers of the machine; none where it has none.
+    fn collocate(&self, stages: Collocation<'_, N>) -> Option<Outcome<N>>;
+}
+
+impl<const N: usize, const M: usize> fmt::Debug for dyn Mechanics<N, M> + '_ {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "a system of {N} coordinates and {M} constraints")
+    }
+}

@@ -1,0 +1,76 @@
+use lagrangian::{
+    Constraint, MotionError, MotionRounding, Rounded, System, configuration_slope, constraint_residual, momentum,
+    reduced_rounding,
+};
+
+/// The functions of a system with bounds on the rounding of their terms, as a convergence test asks for them where corrections stall.
+pub trait RoundedMechanics<const N: usize, const M: usize> {
+    /// `L_v`.
+    fn momentum_rounded(&self, t: Rounded, q: &[Rounded; N], v: &[Rounded; N]) -> [Rounded; N];
+
+    /// `L_q`.
+    fn slope_rounded(&self, t: Rounded, q: &[Rounded; N], v: &[Rounded; N]) -> [Rounded; N];
+
+    /// The generalised forces.
+    fn force_rounded(&self, t: Rounded, q: &[Rounded; N], v: &[Rounded; N]) -> Option<[Rounded; N]>;
+
+    /// `A` and `b` of the constraint.
+    fn constraint_rounded(&self, t: Rounded, q: &[Rounded; N]) -> Constraint<Rounded, N, M>;
+
+    /// The residuals of the constraints.
+    fn residual_rounded(&self, t: Rounded, q: &[Rounded; N], v: &[Rounded; N]) -> [Rounded; M];
+
+    /// The functions of the constraints on positions.
+    fn positions_rounded(&self, t: Rounded, q: &[Rounded; N]) -> Option<[Option<Rounded>; M]>;
+
+    /// What rounding does to the equations of motion.
+    ///
+    /// # Errors
+    /// [`MotionError`] where they are degenerate.
+    fn motion_rounding(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<MotionRounding<N>, MotionError>;
+
+    /// What rounding does to the reduced equations along a step; none where there are none.
+    fn reduced_rounding(&self, t: f64, q: &[f64; N], xi: &[f64; N], h: f64) -> Option<[[f64; N]; 2]>;
+}
+
+impl<Sys: System<N, M>, const N: usize, const M: usize> RoundedMechanics<N, M> for Sys {
+    #[cold]
+    fn momentum_rounded(&self, t: Rounded, q: &[Rounded; N], v: &[Rounded; N]) -> [Rounded; N] {
+        momentum(self, t, q, v)
+    }
+
+    #[cold]
+    fn slope_rounded(&self, t: Rounded, q: &[Rounded; N], v: &[Rounded; N]) -> [Rounded; N] {
+        configuration_slope(self, t, q, v)
+    }
+
+    #[cold]
+    fn force_rounded(&self, t: Rounded, q: &[Rounded; N], v: &[Rounded; N]) -> Option<[Rounded; N]> {
+        System::force(self, t, q, v)
+    }
+
+    #[cold]
+    fn constraint_rounded(&self, t: Rounded, q: &[Rounded; N]) -> Constraint<Rounded, N, M> {
+        System::constraint(self, t, q)
+    }
+
+    #[cold]
+    fn residual_rounded(&self, t: Rounded, q: &[Rounded; N], v: &[Rounded; N]) -> [Rounded; M] {
+        constraint_residual(self, t, q, v)
+    }
+
+    #[cold]
+    fn positions_rounded(&self, t: Rounded, q: &[Rounded; N]) -> Option<[Option<Rounded>; M]> {
+        self.holonomic(t, q)
+    }
+
+    #[cold]
+    fn motion_rounding(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<MotionRounding<N>, MotionError> {
+        MotionRounding::at(self, t, q, v)
+    }
+
+    #[cold]
+    fn reduced_rounding(&self, t: f64, q: &[f64; N], xi: &[f64; N], h: f64) -> Option<[[f64; N]; 2]> {
+        reduced_rounding(self, t, q, xi, h)
+    }
+}
