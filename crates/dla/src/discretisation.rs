@@ -156,8 +156,7 @@ impl<const N: usize, const M: usize> Discretisation<N, M> for Rules {
         for node in self.lagrangian.nodes() {
             let (t, q) = on_line(node.alpha, t0, h, q0, v);
             let part = h * node.alpha;
-            let term = system.at_node(t, &q, v, h - part, part) * node.weight;
-            sum = Some(sum.map_or(term, |s| s + term));
+            add_weighted(&mut sum, system.at_node(t, &q, v, h - part, part), node.weight);
             let along = if forces.is_some() { system.force_along(t, &q, v, part, 1.0) } else { None };
             let Some((force, ([minus, plus], block))) = along.zip(forces.as_mut()) else {
                 forces = None;
@@ -255,6 +254,29 @@ impl<const N: usize, const M: usize> Discretisation<N, M> for Rules {
             residual = from_fn(|k| residual[k] + at_node[k] * node.weight);
         }
         RoundedStep { d1, minus, residual }
+    }
+}
+
+/// Adds `weight * term` in place: of a large system a copy is a good part of the stack of a thread.
+#[inline]
+fn add_weighted<const N: usize>(sum: &mut Option<HyperDual<f64, N, N>>, term: HyperDual<f64, N, N>, weight: f64) {
+    let Some(sum) = sum else {
+        let first = sum.insert(term);
+        first.re *= weight;
+        for i in 0..N {
+            first.e1[i] *= weight;
+            first.e2[i] *= weight;
+            first.e12[i].iter_mut().for_each(|x| *x *= weight);
+        }
+        return;
+    };
+    sum.re += term.re * weight;
+    for i in 0..N {
+        sum.e1[i] += term.e1[i] * weight;
+        sum.e2[i] += term.e2[i] * weight;
+        for j in 0..N {
+            sum.e12[i][j] += term.e12[i][j] * weight;
+        }
     }
 }
 

@@ -63,7 +63,7 @@ fn a_composition_is_differentiated_as_its_base() {
 
     let (outer, inner) = (Composition::suzuki4(()), Composition::kahan_li6(Dla::midpoint()));
     let fractions = Differentiable::<3, 1>::fractions(&Composition::suzuki4(inner));
-    let products = outer.weights().iter().flat_map(|g| inner.weights().iter().map(|w| g * w));
+    let products = outer.weights().iter().flat_map(|g| inner.weights().iter().map(move |w| g * w));
     assert_eq!(fractions, products.collect::<Vec<_>>());
 }
 
