@@ -43,21 +43,21 @@ fn braked_well() -> With<Sleigh, (Bowl, Drag)> {
 }
 
 /// The steps of a method of the library.
-fn library<Method: OneStep<Sleigh, 3, 1>>(method: Method) -> State<3> {
+fn library<Method: OneStep<3, 1>>(method: Method) -> State<3> {
     steps_of(&black_box(sleigh()), method)
 }
 
 /// The same in the bowl.
-fn in_bowl<Method: OneStep<With<Sleigh, (Bowl,)>, 3, 1>>(method: Method) -> State<3> {
+fn in_bowl<Method: OneStep<3, 1>>(method: Method) -> State<3> {
     steps_of(&black_box(well()), method)
 }
 
 /// And with drag.
-fn braked<Method: OneStep<With<Sleigh, (Bowl, Drag)>, 3, 1>>(method: Method) -> State<3> {
+fn braked<Method: OneStep<3, 1>>(method: Method) -> State<3> {
     steps_of(&black_box(braked_well()), method)
 }
 
-fn steps_of<Sys: System<3, 1>, Method: OneStep<Sys, 3, 1>>(system: &Sys, mut method: Method) -> State<3> {
+fn steps_of<Sys: System<3, 1>, Method: OneStep<3, 1>>(system: &Sys, mut method: Method) -> State<3> {
     let (q, v) = black_box(start());
     let mut state = State::new(q, v, system.angles());
     let schedule = Schedule { t0: 0.0, step: STEP, steps: STEPS };

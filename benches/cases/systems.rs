@@ -41,7 +41,7 @@ pub(super) fn start() -> ([f64; 3], [f64; 3]) {
 }
 
 /// The first steps from that start.
-pub(super) fn go<Sys: System<3, M>, const M: usize>(system: &Sys, method: impl OneStep<Sys, 3, M>, steps: u64) {
+pub(super) fn go<Sys: System<3, M>, const M: usize>(system: &Sys, method: impl OneStep<3, M>, steps: u64) {
     let (q, v) = start();
     from(system, method, steps, (q, v));
 }
@@ -49,7 +49,7 @@ pub(super) fn go<Sys: System<3, M>, const M: usize>(system: &Sys, method: impl O
 /// The first steps from a start of its own.
 pub(super) fn from<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
-    mut method: impl OneStep<Sys, N, M>,
+    mut method: impl OneStep<N, M>,
     steps: u64,
     (q, v): ([f64; N], [f64; N]),
 ) {

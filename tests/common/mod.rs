@@ -50,7 +50,7 @@ pub fn state_of<Sys: System<3, 1>>(system: &Sys, start: &SleighState) -> State<3
 pub fn advanced<Sys, Method>(system: &Sys, method: &mut Method, h: f64, steps: u64, state: State<3>) -> State<3>
 where
     Sys: System<3, 1>,
-    Method: OneStep<Sys, 3, 1>,
+    Method: OneStep<3, 1>,
 {
     let mut state = state;
     drive(system, method, &Schedule { t0: 0.0, step: h, steps }, &mut state, ()).expect("the steps succeed");

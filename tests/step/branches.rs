@@ -110,7 +110,7 @@ struct Count {
 }
 
 /// Steps of every length against what `expected` follows: what `seen` sees of the state after the step.
-fn count<M: OneStep<Sleigh, 3, 1>>(
+fn count<M: OneStep<3, 1>>(
     method: impl Fn() -> M,
     expected: impl Fn(&Sleigh, [f64; 2], f64) -> Option<f64>,
     seen: impl Fn(&State<3>, f64) -> f64,

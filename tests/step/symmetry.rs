@@ -14,7 +14,7 @@ const STEPS: u64 = 200;
 fn there_and_back<Sys, Method>(system: &Sys, method: &mut Method, state: State<3>) -> f64
 where
     Sys: System<3, 1>,
-    Method: OneStep<Sys, 3, 1>,
+    Method: OneStep<3, 1>,
 {
     let there = advanced(system, method, STEP, STEPS, state);
     let back = advanced(system, method, STEP, STEPS, there.reversed()).reversed();

@@ -94,7 +94,7 @@ pub trait Node {
     fn point(&self) -> Point;
 }
 
-struct Seen<'a, 'b, Sys, const N: usize, const M: usize>(&'a View<'b, Sys, N>);
+struct Seen<'a, 'b, Sys, const N: usize, const M: usize>(&'a View<'b, N, M>);
 
 impl<Sys: System<N, M>, const N: usize, const M: usize> Node for Seen<'_, '_, Sys, N, M> {
     fn t(&self) -> f64 {
@@ -116,11 +116,11 @@ pub type Watch<'a> = &'a mut dyn FnMut(&dyn Node);
 
 struct Watching<'a>(Watch<'a>);
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for Watching<'_> {
-    fn start(&mut self, node: &View<'_, Sys, N>) {
+impl<const N: usize, const M: usize> Observer<N, M> for Watching<'_> {
+    fn start(&mut self, node: &View<'_, N, M>) {
         (self.0)(&Seen(node));
     }
-    fn step(&mut self, node: &View<'_, Sys, N>, _report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
         (self.0)(&Seen(node));
         ControlFlow::Continue(())
     }

@@ -123,7 +123,7 @@ where
 #[inline(never)]
 fn made<Sys: System<N, M>, const N: usize, const M: usize>(
     (system, schedule, regularity): (&Sys, &Schedule, Regularity<'_, N>),
-    method: impl OneStep<Sys, N, M>,
+    method: impl OneStep<N, M>,
     state: &mut State<N>,
     recorder: &mut Recorder<'_, N>,
 ) -> Result<u64, dla::RunError> {

@@ -46,7 +46,7 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for AtBlade {
 fn end<Sys: System<3, 1>>(
     system: &Sys,
     (q, v): ([f64; 3], [f64; 3]),
-    mut method: impl OneStep<Sys, 3, 1>,
+    mut method: impl OneStep<3, 1>,
     steps: u64,
 ) -> Option<[f64; 3]> {
     let mut state = State::new(q, v, system.angles());

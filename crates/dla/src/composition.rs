@@ -1,4 +1,4 @@
-use crate::{OneStep, State, StepError, StepReport};
+use crate::{Mechanics, OneStep, State, StepError, StepReport};
 
 /// A symmetric composition of a symmetric one-step map `S_h`: `S_(g_1 h) S_(g_2 h) .. S_(g_n h)`, of higher order.
 ///
@@ -61,12 +61,18 @@ impl<Base> Composition<Base> {
     }
 }
 
-impl<Base, Sys, const N: usize, const M: usize> OneStep<Sys, N, M> for Composition<Base>
+impl<Base, const N: usize, const M: usize> OneStep<N, M> for Composition<Base>
 where
-    Base: OneStep<Sys, N, M>,
+    Base: OneStep<N, M>,
 {
     #[inline]
-    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+    fn step(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        t: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
         let mut inner = *state;
         let mut total = StepReport::of(0);
         let mut done = 0.0;

@@ -5,7 +5,7 @@ use crate::overshoot::brakes_only;
 use crate::projection::{Projected, Projection};
 use crate::settle::sup;
 use crate::{Discretisation, Mechanics, Newton, OneStep, Rules, StackUse, Stage, State, StepError, StepReport};
-use lagrangian::{Alpha, AnyRule, ClosedStepError, Midpoint, NotAWeight, System, Trapezoid, from_fn};
+use lagrangian::{Alpha, AnyRule, Midpoint, NotAWeight, Trapezoid, from_fn};
 
 /// How the equations of a step are solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -105,18 +105,21 @@ impl<D> Dla<D> {
 /// Of the general form; a closed form is left to the system.
 const USE: StackUse = StackUse { squares: 31, rows: 34 };
 
-impl<Sys: System<N, M>, D: Discretisation<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Dla<D> {
-    #[inline(always)]
-    fn step(&mut self, system: &Sys, t0: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+impl<D: Discretisation<N, M>, const N: usize, const M: usize> OneStep<N, M> for Dla<D> {
+    fn step(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        t0: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
         if self.form == Form::Best
             && self.rules.is_midpoint()
-            && let Some(step) = system.closed_step(t0, h, state.begin())
+            && let Some(report) = system.closed_step(t0, h, state)
         {
-            let step = step.map_err(|source| failed(state, source))?;
-            state.advance_remembering(&step.increment, step.velocity, step.xi)?;
-            return Ok(StepReport { impulses: step.impulses, iterations: step.iterations, work: None });
+            return report;
         }
-        by_value(self.general_step(system, t0, h, state))
+        self.general_step(system, t0, h, state)
     }
 
     fn memory(&self) -> Vec<f64> {
@@ -231,22 +234,4 @@ pub(crate) fn predicted<const N: usize>(state: &State<N>, h: f64, expected: Opti
     let acceleration = state.acceleration()?;
     let v = from_fn(|i| v0[i] + 0.5 * h * acceleration[i]);
     near(&v).then_some(v)
-}
-
-// A call, so that nothing of it is in a step.
-#[cold]
-#[inline(never)]
-fn failed<const N: usize>(state: &mut State<N>, source: ClosedStepError) -> StepError {
-    state.forget_closed();
-    StepError::Closed(source)
-}
-
-/// The same, copied: a result that a call leaves in memory would keep that of the closed form there too, with impulses that an observer
-/// may never read.
-#[inline(always)]
-fn by_value<const M: usize>(result: Result<StepReport<M>, StepError>) -> Result<StepReport<M>, StepError> {
-    match result {
-        Ok(StepReport { impulses, iterations, work }) => Ok(StepReport { impulses, iterations, work }),
-        Err(source) => Err(source),
-    }
 }

@@ -1,8 +1,7 @@
 use crate::dependent::named;
 use crate::suspect::suspect_along;
-use crate::{OneStep, State, StepError, StepReport, Undivided};
+use crate::{Mechanics, OneStep, State, StepError, StepReport, Undivided};
 use lagrangian::linear::largest;
-use lagrangian::{System, constraint_residual, energy};
 use std::ops::{ControlFlow, Range};
 use thiserror::Error;
 
@@ -28,9 +27,9 @@ impl Schedule {
 
 /// A node of a run, as an observer sees it.
 #[derive(Debug)]
-pub struct View<'a, Sys, const N: usize> {
+pub struct View<'a, const N: usize, const M: usize> {
     /// The system.
-    pub system: &'a Sys,
+    pub system: &'a dyn Mechanics<N, M>,
     /// The number of steps made so far.
     pub k: u64,
     /// The time (s).
@@ -39,42 +38,37 @@ pub struct View<'a, Sys, const N: usize> {
     pub state: &'a State<N>,
 }
 
-impl<Sys, const N: usize> View<'_, Sys, N> {
+impl<const N: usize, const M: usize> View<'_, N, M> {
     /// The energy `v . L_v - L` (J).
-    pub fn energy<const M: usize>(&self) -> f64
-    where
-        Sys: System<N, M>,
-    {
-        energy(self.system, self.t, self.state.q(), self.state.v())
+    #[must_use]
+    pub fn energy(&self) -> f64 {
+        self.system.energy(self.t, self.state.q(), self.state.v())
     }
 
     /// The largest constraint residual `|A(q) v + b|`.
-    pub fn constraint<const M: usize>(&self) -> f64
-    where
-        Sys: System<N, M>,
-    {
-        let residual = constraint_residual(self.system, self.t, self.state.q(), self.state.v());
-        largest(&residual)
+    #[must_use]
+    pub fn constraint(&self) -> f64 {
+        largest(&self.system.residual(self.t, self.state.q(), self.state.v()))
     }
 }
 
 /// Something that looks at the nodes of a run and changes nothing.
 ///
 /// `()` looks at nothing; a pair is two observers.
-pub trait Observer<Sys, const N: usize, const M: usize> {
+pub trait Observer<const N: usize, const M: usize> {
     /// Sees the first node.
-    fn start(&mut self, node: &View<'_, Sys, N>);
+    fn start(&mut self, node: &View<'_, N, M>);
 
     /// Sees a node again where the next smooth piece of a run begins: the velocity may have jumped.
     #[inline(always)]
-    fn resume(&mut self, _node: &View<'_, Sys, N>) {}
+    fn resume(&mut self, _node: &View<'_, N, M>) {}
 
     /// Sees a node after a step; `Break` ends the run there.
-    fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()>;
+    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()>;
 
     /// Sees where each part of a divided step ends, the last at the node that [`step`](Self::step) is shown after it, and that
     /// node's number; `Break` gives the step up and ends the run at the node before.
-    fn part(&mut self, _end: &View<'_, Sys, N>, _report: &StepReport<M>) -> ControlFlow<()> {
+    fn part(&mut self, _end: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 
@@ -83,40 +77,40 @@ pub trait Observer<Sys, const N: usize, const M: usize> {
 
     /// Sees the last good node once more when the run ends, by itself, by a `Break` or by a failure.
     #[inline(always)]
-    fn end(&mut self, _node: &View<'_, Sys, N>) {}
+    fn end(&mut self, _node: &View<'_, N, M>) {}
 }
 
-impl<Sys, const N: usize, const M: usize> Observer<Sys, N, M> for () {
+impl<const N: usize, const M: usize> Observer<N, M> for () {
     #[inline(always)]
-    fn start(&mut self, _node: &View<'_, Sys, N>) {}
+    fn start(&mut self, _node: &View<'_, N, M>) {}
     #[inline(always)]
-    fn step(&mut self, _node: &View<'_, Sys, N>, _report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, _node: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 }
 
-impl<Sys, A, B, const N: usize, const M: usize> Observer<Sys, N, M> for (A, B)
+impl<A, B, const N: usize, const M: usize> Observer<N, M> for (A, B)
 where
-    A: Observer<Sys, N, M>,
-    B: Observer<Sys, N, M>,
+    A: Observer<N, M>,
+    B: Observer<N, M>,
 {
     #[inline(always)]
-    fn start(&mut self, node: &View<'_, Sys, N>) {
+    fn start(&mut self, node: &View<'_, N, M>) {
         self.0.start(node);
         self.1.start(node);
     }
     #[inline(always)]
-    fn resume(&mut self, node: &View<'_, Sys, N>) {
+    fn resume(&mut self, node: &View<'_, N, M>) {
         self.0.resume(node);
         self.1.resume(node);
     }
     #[inline(always)]
-    fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         let first = self.0.step(node, report);
         let second = self.1.step(node, report);
         if first.is_break() { first } else { second }
     }
-    fn part(&mut self, end: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn part(&mut self, end: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         let first = self.0.part(end, report);
         let second = self.1.part(end, report);
         if first.is_break() { first } else { second }
@@ -126,55 +120,55 @@ where
         self.1.undivided(why);
     }
     #[inline(always)]
-    fn end(&mut self, node: &View<'_, Sys, N>) {
+    fn end(&mut self, node: &View<'_, N, M>) {
         self.0.end(node);
         self.1.end(node);
     }
 }
 
 /// Looks where there is something to look with.
-impl<Sys, O: Observer<Sys, N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for Option<O> {
-    fn start(&mut self, node: &View<'_, Sys, N>) {
+impl<O: Observer<N, M>, const N: usize, const M: usize> Observer<N, M> for Option<O> {
+    fn start(&mut self, node: &View<'_, N, M>) {
         self.iter_mut().for_each(|observer| observer.start(node));
     }
-    fn resume(&mut self, node: &View<'_, Sys, N>) {
+    fn resume(&mut self, node: &View<'_, N, M>) {
         self.iter_mut().for_each(|observer| observer.resume(node));
     }
-    fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         self.as_mut().map_or(ControlFlow::Continue(()), |observer| observer.step(node, report))
     }
-    fn part(&mut self, end: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn part(&mut self, end: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         self.as_mut().map_or(ControlFlow::Continue(()), |observer| observer.part(end, report))
     }
     fn undivided(&mut self, why: &Undivided<StepError>) {
         self.iter_mut().for_each(|observer| observer.undivided(why));
     }
-    fn end(&mut self, node: &View<'_, Sys, N>) {
+    fn end(&mut self, node: &View<'_, N, M>) {
         self.iter_mut().for_each(|observer| observer.end(node));
     }
 }
 
-impl<Sys, O: Observer<Sys, N, M> + ?Sized, const N: usize, const M: usize> Observer<Sys, N, M> for &mut O {
+impl<O: Observer<N, M> + ?Sized, const N: usize, const M: usize> Observer<N, M> for &mut O {
     #[inline(always)]
-    fn start(&mut self, node: &View<'_, Sys, N>) {
+    fn start(&mut self, node: &View<'_, N, M>) {
         (**self).start(node);
     }
     #[inline(always)]
-    fn resume(&mut self, node: &View<'_, Sys, N>) {
+    fn resume(&mut self, node: &View<'_, N, M>) {
         (**self).resume(node);
     }
     #[inline(always)]
-    fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         (**self).step(node, report)
     }
-    fn part(&mut self, end: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn part(&mut self, end: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         (**self).part(end, report)
     }
     fn undivided(&mut self, why: &Undivided<StepError>) {
         (**self).undivided(why);
     }
     #[inline(always)]
-    fn end(&mut self, node: &View<'_, Sys, N>) {
+    fn end(&mut self, node: &View<'_, N, M>) {
         (**self).end(node);
     }
 }
@@ -197,17 +191,16 @@ pub struct RunError {
 /// # Errors
 /// [`RunError`] with the step that failed; `state` then is the last good node.
 #[inline]
-pub fn drive<Sys, Method, Obs, const N: usize, const M: usize>(
-    system: &Sys,
+pub fn drive<Method, Obs, const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     method: &mut Method,
     schedule: &Schedule,
     state: &mut State<N>,
     observer: Obs,
 ) -> Result<u64, RunError>
 where
-    Sys: System<N, M>,
-    Method: OneStep<Sys, N, M>,
-    Obs: Observer<Sys, N, M>,
+    Method: OneStep<N, M> + ?Sized,
+    Obs: Observer<N, M>,
 {
     drive_part(system, method, schedule, 0..schedule.steps, state, observer).map(|part| part.made)
 }
@@ -230,8 +223,8 @@ pub struct Part {
 // machine there is a second one with the instructions that most have: the same bits, in .75 to .8 of the time.
 #[cfg_attr(not(target_feature = "avx2"), multiversion::multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt")))]
 #[inline(never)]
-pub fn drive_part<Sys, Method, Obs, const N: usize, const M: usize>(
-    system: &Sys,
+pub fn drive_part<Method, Obs, const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     method: &mut Method,
     schedule: &Schedule,
     steps: Range<u64>,
@@ -239,9 +232,8 @@ pub fn drive_part<Sys, Method, Obs, const N: usize, const M: usize>(
     mut observer: Obs,
 ) -> Result<Part, RunError>
 where
-    Sys: System<N, M>,
-    Method: OneStep<Sys, N, M>,
-    Obs: Observer<Sys, N, M>,
+    Method: OneStep<N, M> + ?Sized,
+    Obs: Observer<N, M>,
 {
     let mut made = steps.start;
     let first = View { system, k: made, t: schedule.time(made), state };

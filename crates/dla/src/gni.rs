@@ -6,7 +6,7 @@ use crate::{
     StepError, StepReport,
 };
 use lagrangian::linear::{Lu, Singular};
-use lagrangian::{Rounded, Saddle, System, Trapezoid, from_fn};
+use lagrangian::{Rounded, Saddle, Trapezoid, from_fn};
 
 /// The geometric nonholonomic integrator: **a counter-example**, not a method to use.
 ///
@@ -65,31 +65,14 @@ fn across<const N: usize, const M: usize>(
 
 const USE: StackUse = StackUse { squares: 14, rows: 20 };
 
-impl<Sys: System<N, M>, D: Discretisation<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Gni<N, D> {
-    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
-        self.advance(system, t, h, state)
-    }
-
-    fn memory(&self) -> Vec<f64> {
-        self.memory.map_or_else(Vec::new, |memory| memory.arriving.to_vec())
-    }
-
-    fn recall(&mut self, memory: &[f64], state: &State<N>) {
-        self.memory = <[f64; N]>::try_from(memory).ok().map(|arriving| Memory { node: *state, arriving });
-    }
-}
-
-impl<const N: usize, D> Gni<N, D> {
-    fn advance<const M: usize>(
+impl<D: Discretisation<N, M>, const N: usize, const M: usize> OneStep<N, M> for Gni<N, D> {
+    fn step(
         &mut self,
         system: &dyn Mechanics<N, M>,
         t: f64,
         h: f64,
         state: &mut State<N>,
-    ) -> Result<StepReport<M>, StepError>
-    where
-        D: Discretisation<N, M>,
-    {
+    ) -> Result<StepReport<M>, StepError> {
         if const { USE.exceeds::<N, M>() } {
             return Err(USE.refusal::<N, M>());
         }
@@ -128,6 +111,14 @@ impl<const N: usize, D> Gni<N, D> {
         state.advance(&increment, v1, None);
         self.memory = Some(Memory { node: *state, arriving });
         Ok(StepReport::of(iterations))
+    }
+
+    fn memory(&self) -> Vec<f64> {
+        self.memory.map_or_else(Vec::new, |memory| memory.arriving.to_vec())
+    }
+
+    fn recall(&mut self, memory: &[f64], state: &State<N>) {
+        self.memory = <[f64; N]>::try_from(memory).ok().map(|arriving| Memory { node: *state, arriving });
     }
 }
 

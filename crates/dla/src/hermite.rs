@@ -1,5 +1,6 @@
+use crate::Mechanics;
 use crate::State;
-use lagrangian::{MotionError, System, from_fn};
+use lagrangian::{MotionError, from_fn};
 
 /// The quintic through position, velocity and acceleration at both ends of a step: what lies between two nodes, cheaply.
 ///
@@ -24,8 +25,8 @@ impl<const N: usize> Hermite<N> {
     ///
     /// # Errors
     /// [`MotionError`] where the equations of motion determine no accelerations.
-    pub fn between<Sys: System<N, M>, const M: usize>(
-        system: &Sys,
+    pub fn between<const M: usize>(
+        system: &dyn Mechanics<N, M>,
         (t0, from): (f64, &State<N>),
         (t1, to): (f64, &State<N>),
     ) -> Result<Self, MotionError> {

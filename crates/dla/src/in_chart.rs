@@ -1,4 +1,4 @@
-use crate::{OneStep, State, StepError, StepReport};
+use crate::{Mechanics, OneStep, State, StepError, StepReport};
 use lagrangian::from_fn;
 use lagrangian::linear::larger;
 
@@ -26,7 +26,7 @@ use lagrangian::linear::larger;
 ///     }
 /// }
 ///
-/// let mut method = InChart::new(Dla::midpoint(), "polar coordinates, which end at r = 0", |_: &Polar, q: &[f64; 2]| q[0]);
+/// let mut method = InChart::new(Dla::midpoint(), "polar coordinates, which end at r = 0", |q: &[f64; 2]| q[0]);
 /// // It passes the origin at a distance of 1e-3 after a second.
 /// let mut state = State::new([1.0, 0.0], [-1.0, 1e-3], [false, true]);
 /// let error = drive(&Polar, &mut method, &Schedule { t0: 0.0, step: 0.01, steps: 200 }, &mut state, ()).unwrap_err();
@@ -48,8 +48,8 @@ impl<Method, Regularity> InChart<Method, Regularity> {
     /// times as quickly as the body.
     pub const LEAST: f64 = 0.05;
 
-    /// The method on the coordinates that `chart` names for people, with where they end, and of which `regularity` says for a system
-    /// and a configuration how far from the end that is: of a model, `Model::regularity`.
+    /// The method on the coordinates that `chart` names for people, with where they end, and of which `regularity` says for
+    /// a configuration how far from the end that is: of a model, `Model::regularity`.
     pub fn new(method: Method, chart: &'static str, regularity: Regularity) -> Self {
         Self { method, least: Self::LEAST, chart, regularity }
     }
@@ -66,14 +66,20 @@ impl<Method, Regularity> InChart<Method, Regularity> {
     }
 }
 
-impl<Sys, Method, Regularity, const N: usize, const M: usize> OneStep<Sys, N, M> for InChart<Method, Regularity>
+impl<Method, Regularity, const N: usize, const M: usize> OneStep<N, M> for InChart<Method, Regularity>
 where
-    Method: OneStep<Sys, N, M>,
-    Regularity: Fn(&Sys, &[f64; N]) -> f64,
+    Method: OneStep<N, M>,
+    Regularity: Fn(&[f64; N]) -> f64,
 {
-    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+    fn step(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        t: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
         let before = *state;
-        let at = |q: &[f64; N]| (self.regularity)(system, q);
+        let at = |q: &[f64; N]| (self.regularity)(q);
         let start = at(before.q());
         self.check(&[start])?;
         let report = self.method.step(system, t, h, state).map_err(|error| {

@@ -79,7 +79,7 @@ pub use mechanics::{Diagnosis, Mechanics, RoundedMechanics, SecondSlopes, Slopes
 pub use newton::{Equations, Newton, NewtonError};
 pub use not_a_number::{Derivative, NotANumber, SystemFunction, Variable, not_a_number};
 pub use one_step::{OneStep, OwnStep, Stage, StepError, StepReport};
-pub use pieces::{onto_constraint, piece_by_piece, piece_by_piece_from, pieces};
+pub use pieces::{PiecewiseMechanics, onto_constraint, piece_by_piece, piece_by_piece_from, pieces};
 pub use recommend::{RecommendError, Recommendation, recommend_by_trial, recommend_step};
 pub use resolved::Halved;
 pub use samples::Samples;

@@ -1,15 +1,21 @@
-use crate::{Dependent, NewtonError, NotANumber, State};
+use crate::{Dependent, Mechanics, NewtonError, NotANumber, State};
 use lagrangian::{ClosedStepError, MotionError, ReducedError};
 use std::ops::ControlFlow;
 use thiserror::Error;
 
 /// A one-step map on the constraint distribution: `(q, v)` with `A(q) v + b = 0` to the next such pair.
-pub trait OneStep<Sys, const N: usize, const M: usize> {
+pub trait OneStep<const N: usize, const M: usize> {
     /// Moves `state` from time `t` to `t + h`.
     ///
     /// # Errors
     /// [`StepError`] where the step has no solution that the method accepts; `state` is then unchanged.
-    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError>;
+    fn step(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        t: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError>;
 
     /// What it remembers besides the state, for a checkpoint: nothing, if it is the map that it should be.
     fn memory(&self) -> Vec<f64> {
@@ -30,7 +36,7 @@ pub trait OneStep<Sys, const N: usize, const M: usize> {
     /// As [`step`](Self::step), after what was shown until then.
     fn own_steps(
         &self,
-        _system: &Sys,
+        _system: &dyn Mechanics<N, M>,
         (_t, _h): (f64, f64),
         _state: &State<N>,
         _memory: &mut Vec<f64>,

@@ -1,5 +1,4 @@
-use crate::{OneStep, RunError, Samples, Schedule, State, StepError, drive};
-use lagrangian::System;
+use crate::{Mechanics, OneStep, RunError, Samples, Schedule, State, StepError, drive};
 use lagrangian::linear::larger;
 use thiserror::Error;
 
@@ -75,16 +74,15 @@ const MOST: u64 = 1 << 26;
 ///
 /// # Errors
 /// [`RecommendError`], with the best that is within reach.
-pub fn recommend_step<Sys, Method, const N: usize, const M: usize>(
-    system: &Sys,
+pub fn recommend_step<Method, const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     make_method: impl Fn() -> Method,
     state: &State<N>,
     duration: f64,
     tolerance: f64,
 ) -> Result<Recommendation, RecommendError>
 where
-    Sys: System<N, M>,
-    Method: OneStep<Sys, N, M> + Clone,
+    Method: OneStep<N, M> + Clone,
 {
     recommend_by_trial(duration, tolerance, |schedule, times| {
         let mut samples = Samples::new(make_method(), times);

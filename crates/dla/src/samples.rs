@@ -43,9 +43,9 @@ impl<'a, Method, const N: usize> Samples<'a, Method, N> {
         self.failure.map_or(Ok(self.taken), Err)
     }
 
-    fn take<Sys, const M: usize>(&mut self, node: &View<'_, Sys, N>, (t0, start): (f64, State<N>))
+    fn take<const M: usize>(&mut self, node: &View<'_, N, M>, (t0, start): (f64, State<N>))
     where
-        Method: OneStep<Sys, N, M> + Clone,
+        Method: OneStep<N, M> + Clone,
     {
         let forward = (node.t - t0).signum();
         while let Some(t) = self.times.get(self.taken.len()).copied()
@@ -69,19 +69,19 @@ impl<'a, Method, const N: usize> Samples<'a, Method, N> {
     }
 }
 
-impl<Sys, Method, const N: usize, const M: usize> Observer<Sys, N, M> for Samples<'_, Method, N>
+impl<Method, const N: usize, const M: usize> Observer<N, M> for Samples<'_, Method, N>
 where
-    Method: OneStep<Sys, N, M> + Clone,
+    Method: OneStep<N, M> + Clone,
 {
-    fn start(&mut self, node: &View<'_, Sys, N>) {
+    fn start(&mut self, node: &View<'_, N, M>) {
         self.before = Some((node.t, *node.state));
     }
 
-    fn resume(&mut self, node: &View<'_, Sys, N>) {
+    fn resume(&mut self, node: &View<'_, N, M>) {
         self.start(node);
     }
 
-    fn step(&mut self, node: &View<'_, Sys, N>, _report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
         if let Some(before) = self.before {
             self.take(node, before);
         }
@@ -90,7 +90,7 @@ where
     }
 
     /// A run without a step has its start.
-    fn end(&mut self, node: &View<'_, Sys, N>) {
+    fn end(&mut self, node: &View<'_, N, M>) {
         while self.times.get(self.taken.len()) == Some(&node.t) && self.failure.is_none() {
             self.taken.push(*node.state);
         }

@@ -1,4 +1,4 @@
-use crate::{Halved, OneStep, State, StepError, StepReport, Substeps, Undivided};
+use crate::{Halved, Mechanics, OneStep, State, StepError, StepReport, Substeps, Undivided};
 use std::ops::ControlFlow;
 
 /// A method that makes a step of shorter ones where it finds none of the whole length.
@@ -68,15 +68,15 @@ impl<Method> Substepping<Method> {
 
     /// The step in parts, each as long as it can be; the last error where they would have to be too short.
     #[cold]
-    fn in_parts<Sys, const N: usize, const M: usize>(
+    fn in_parts<const N: usize, const M: usize>(
         &mut self,
-        system: &Sys,
+        system: &dyn Mechanics<N, M>,
         step: (f64, f64),
         state: &mut State<N>,
         error: StepError,
     ) -> Result<StepReport<M>, StepError>
     where
-        Method: OneStep<Sys, N, M> + Clone,
+        Method: OneStep<N, M> + Clone,
     {
         let (mut method, mut inner, resolving) = (self.method.clone(), *state, self.resolving);
         let mut total = StepReport::of(0);
@@ -108,25 +108,31 @@ impl<Method> Substepping<Method> {
 
 /// Whether a step that led from `before` to `after` resolves the motion, by halves that begin with what the method remembers.
 #[cold]
-fn resolves<Sys, Method, const N: usize, const M: usize>(
+fn resolves<Method, const N: usize, const M: usize>(
     method: &Method,
-    system: &Sys,
+    system: &dyn Mechanics<N, M>,
     step: (f64, f64),
     before: &State<N>,
     after: &State<N>,
 ) -> Result<(), StepError>
 where
-    Method: OneStep<Sys, N, M> + Clone,
+    Method: OneStep<N, M> + Clone,
 {
     let mut method = method.clone();
     Halved::resolves(step, before, after, |(t, h), state| method.step(system, t, h, state).map(|_| ()))
 }
 
-impl<Sys, Method, const N: usize, const M: usize> OneStep<Sys, N, M> for Substepping<Method>
+impl<Method, const N: usize, const M: usize> OneStep<N, M> for Substepping<Method>
 where
-    Method: OneStep<Sys, N, M> + Clone,
+    Method: OneStep<N, M> + Clone,
 {
-    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+    fn step(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        t: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
         let before = self.resolving.then(|| (self.method.clone(), *state));
         let report = self.method.step(system, t, h, state).and_then(|report| match before {
             Some((method, before)) => match resolves(&method, system, (t, h), &before, state) {

@@ -1,5 +1,4 @@
 use crate::{Observer, StepReport, View, Work};
-use lagrangian::System;
 use std::ops::ControlFlow;
 
 /// A node that was kept.
@@ -52,7 +51,7 @@ impl<const N: usize, const M: usize> Trajectory<N, M> {
         &self.nodes
     }
 
-    fn keep<Sys: System<N, M>>(&mut self, view: &View<'_, Sys, N>) {
+    fn keep(&mut self, view: &View<'_, N, M>) {
         self.nodes.push(Node {
             k: view.k,
             t: view.t,
@@ -66,18 +65,18 @@ impl<const N: usize, const M: usize> Trajectory<N, M> {
     }
 }
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for Trajectory<N, M> {
-    fn start(&mut self, node: &View<'_, Sys, N>) {
+impl<const N: usize, const M: usize> Observer<N, M> for Trajectory<N, M> {
+    fn start(&mut self, node: &View<'_, N, M>) {
         (self.time, self.multipliers) = (node.t, None);
         self.work.start(node);
         self.keep(node);
     }
 
-    fn resume(&mut self, node: &View<'_, Sys, N>) {
+    fn resume(&mut self, node: &View<'_, N, M>) {
         self.work.resume(node);
     }
 
-    fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         // Work never ends a run.
         let _ = self.work.step(node, report);
         self.multipliers = Some(report.multipliers(node.t - self.time));
@@ -88,11 +87,11 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for 
         ControlFlow::Continue(())
     }
 
-    fn part(&mut self, end: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn part(&mut self, end: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         self.work.part(end, report)
     }
 
-    fn end(&mut self, node: &View<'_, Sys, N>) {
+    fn end(&mut self, node: &View<'_, N, M>) {
         self.work.end(node);
         if self.nodes.last().is_none_or(|last| last.k != node.k) {
             self.keep(node);

@@ -1,8 +1,8 @@
 use crate::hermite::Hermite;
 use crate::state::two_sum;
 use crate::{Checkpoint, CheckpointError, Observer, State, StepReport, View};
+use lagrangian::from_fn;
 use lagrangian::quadrature::gauss_legendre;
-use lagrangian::{System, constraint_residual, energy, force_power, from_fn, lagrangian_power};
 use std::ops::ControlFlow;
 
 /// The work done on a system since the start of a run (J), so that `E(t) - E(0) - work` is the error of the energy.
@@ -60,12 +60,12 @@ impl<const N: usize> Work<N> {
         Ok(Self { total, rest, before: Some((t, state.unwrapped(), *state.v())), ..Self::default() })
     }
 
-    fn remember<Sys>(&mut self, node: &View<'_, Sys, N>) {
+    fn remember<const M: usize>(&mut self, node: &View<'_, N, M>) {
         self.before = Some((node.t, node.state.unwrapped(), *node.state.v()));
     }
 
     /// Adds the work over the step that ends at the node.
-    fn over<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) {
+    fn over<const M: usize>(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) {
         let work = report.work.unwrap_or_else(|| self.over_step(node));
         if work != 0.0 {
             self.add(work);
@@ -74,7 +74,7 @@ impl<const N: usize> Work<N> {
     }
 
     /// The work over the step that ends at the node; not a number where the accelerations are not determined.
-    fn over_step<Sys: System<N, M>, const M: usize>(&self, node: &View<'_, Sys, N>) -> f64 {
+    fn over_step<const M: usize>(&self, node: &View<'_, N, M>) -> f64 {
         let Some((t0, q0, v0)) = self.before else { return 0.0 };
         let (system, q1, v1) = (node.system, node.state.unwrapped(), *node.state.v());
         let h = node.t - t0;
@@ -84,7 +84,7 @@ impl<const N: usize> Work<N> {
         let mean = |c: f64| from_fn::<f64, N, _>(|i| q0[i] + c * (q1[i] - q0[i]));
         let powered = moved
             || system.force(t0, &q0, &v0).is_some()
-            || self.nodes.iter().any(|c| lagrangian_power(system, time(*c), &mean(*c), &v1) != 0.0);
+            || self.nodes.iter().any(|c| system.lagrangian_power(time(*c), &mean(*c), &v1) != 0.0);
         if !powered {
             return 0.0;
         }
@@ -94,11 +94,11 @@ impl<const N: usize> Work<N> {
         let hermite = Hermite { t0, h, q0, v0, a0: first.acceleration, q1, v1, a1: last.acceleration };
         let power = |c: f64| {
             let (t, (q, v)) = (time(c), hermite.at_part(c));
-            let mut power = lagrangian_power(system, t, &q, &v) + force_power(system, t, &q, &v).unwrap_or(0.0);
+            let mut power = system.lagrangian_power(t, &q, &v) + system.force_power(t, &q, &v).unwrap_or(0.0);
             if moved {
                 let Ok(motion) = system.motion(t, &q, &v) else { return f64::NAN };
                 // lambda . (A v) is -lambda . b on the constraint, and keeps its order off it.
-                let residual = constraint_residual(system, t, &q, &v);
+                let residual = system.residual(t, &q, &v);
                 let (_, b) = system.constraint(t, &q);
                 power += (0..M).map(|k| motion.multiplier[k] * (residual[k] - b[k])).sum::<f64>();
             }
@@ -108,23 +108,23 @@ impl<const N: usize> Work<N> {
     }
 }
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for Work<N> {
-    fn start(&mut self, node: &View<'_, Sys, N>) {
+impl<const N: usize, const M: usize> Observer<N, M> for Work<N> {
+    fn start(&mut self, node: &View<'_, N, M>) {
         self.remember(node);
     }
 
     #[allow(clippy::float_cmp, reason = "a velocity that has not jumped is the same to the bit")]
-    fn resume(&mut self, node: &View<'_, Sys, N>) {
+    fn resume(&mut self, node: &View<'_, N, M>) {
         if let Some((_, _, v)) = self.before
             && v != *node.state.v()
         {
-            let jump = node.energy() - energy(node.system, node.t, node.state.q(), &v);
+            let jump = node.energy() - node.system.energy(node.t, node.state.q(), &v);
             self.add(jump);
         }
         self.remember(node);
     }
 
-    fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         // The parts of a divided step have led to this very node; but for an event, which ends it between two.
         let led = self.at_node.take().is_some() && self.before.is_some_and(|(t, ..)| t.to_bits() == node.t.to_bits());
         if !led {
@@ -133,14 +133,14 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for 
         ControlFlow::Continue(())
     }
 
-    fn part(&mut self, end: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn part(&mut self, end: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         self.at_node = self.at_node.or(Some(([self.total, self.rest], self.before)));
         self.over(end, report);
         ControlFlow::Continue(())
     }
 
     /// A step that was given up has done nothing.
-    fn end(&mut self, _node: &View<'_, Sys, N>) {
+    fn end(&mut self, _node: &View<'_, N, M>) {
         if let Some(([total, rest], before)) = self.at_node.take() {
             (self.total, self.rest, self.before) = (total, rest, before);
         }

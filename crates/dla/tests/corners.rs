@@ -96,7 +96,7 @@ const START: [f64; 3] = [0.0, 0.0, 0.0];
 
 fn run(
     skate: Skate,
-    mut method: impl OneStep<Skate, 3, 1>,
+    mut method: impl OneStep<3, 1>,
     (heading, speed): (f64, f64),
 ) -> (State<3>, Result<u64, RunError>) {
     let v = [speed * heading.cos(), speed * heading.sin(), 0.0];

@@ -33,7 +33,7 @@ const FAILURE: StepError = StepError::Newton {
     source: NewtonError::NotFinite { iteration: 3, history: History::new() },
 };
 
-impl<Sys> OneStep<Sys, 1, 1> for Counting {
+impl OneStep<1, 1> for Counting {
     fn step(&mut self, _: &Sys, t: f64, h: f64, state: &mut State<1>) -> Result<StepReport<1>, StepError> {
         self.times.push(t);
         if self.fails_at == Some(self.times.len()) {
@@ -60,15 +60,15 @@ struct Log {
     stop_at: Option<u64>,
 }
 
-impl Observer<Line, 1, 1> for Log {
-    fn start(&mut self, node: &View<'_, Line, 1>) {
+impl Observer<1, 1> for Log {
+    fn start(&mut self, node: &View<'_, 1, 1>) {
         self.events.push(Start(node.k, node.t, node.state.q()[0]));
     }
-    fn step(&mut self, node: &View<'_, Line, 1>, report: &StepReport<1>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, 1, 1>, report: &StepReport<1>) -> ControlFlow<()> {
         self.events.push(Step(node.k, node.t, node.state.q()[0], report.iterations));
         if self.stop_at == Some(node.k) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
-    fn end(&mut self, node: &View<'_, Line, 1>) {
+    fn end(&mut self, node: &View<'_, 1, 1>) {
         self.events.push(End(node.k, node.t, node.state.q()[0]));
     }
 }

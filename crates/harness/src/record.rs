@@ -1,7 +1,6 @@
 use crate::slip::Slip;
 use crate::{Blocks, Drift, Method, MethodInfo, Request, SubstepSummary, Trend};
 use dla::{Checkpoint, CheckpointError, Observer, RunError, State, StepError, StepReport, Undivided, View, Work};
-use lagrangian::System;
 use lagrangian::linear::larger;
 use std::ops::ControlFlow;
 
@@ -65,7 +64,7 @@ pub struct Record<const N: usize> {
     /// `docs/methods/drift.md`), over all steps.
     pub step_constraint_max: f64,
     /// `max |g(q, t)|` over all nodes, the distance from the leaf `g = 0`; none where no constraint is the rate of
-    /// a function `g` of the positions ([`System::holonomic`]).
+    /// a function `g` of the positions ([`System::holonomic`](lagrangian::System::holonomic)).
     pub leaf_max: Option<f64>,
     /// Time at the end (s).
     pub t: f64,
@@ -214,7 +213,7 @@ impl<const N: usize> Meter<N> {
         })
     }
 
-    fn see<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>) {
+    fn see<const M: usize>(&mut self, node: &View<'_, N, M>) {
         self.last = node.energy();
         let error = self.last - self.initial - self.work.total();
         let constraint = node.constraint();
@@ -225,13 +224,13 @@ impl<const N: usize> Meter<N> {
         self.bucket = (larger(self.bucket.0, error.abs()), larger(self.bucket.1, constraint));
     }
 
-    fn sample<Sys>(&mut self, node: &View<'_, Sys, N>) {
+    fn sample<const M: usize>(&mut self, node: &View<'_, N, M>) {
         let sample = self.sampled(node);
         self.samples.push(sample);
         self.bucket = (0.0, 0.0);
     }
 
-    fn sampled<Sys>(&self, node: &View<'_, Sys, N>) -> Sample<N> {
+    fn sampled<const M: usize>(&self, node: &View<'_, N, M>) -> Sample<N> {
         let (energy_error, constraint) = self.bucket;
         Sample { t: node.t, q: node.state.unwrapped(), energy_error, constraint }
     }
@@ -267,8 +266,8 @@ impl<const N: usize> Meter<N> {
     }
 }
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for Meter<N> {
-    fn start(&mut self, node: &View<'_, Sys, N>) {
+impl<const N: usize, const M: usize> Observer<N, M> for Meter<N> {
+    fn start(&mut self, node: &View<'_, N, M>) {
         self.initial = node.energy();
         self.work.start(node);
         self.slip.start(node);
@@ -276,12 +275,12 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for 
         self.sample(node);
     }
 
-    fn resume(&mut self, node: &View<'_, Sys, N>) {
+    fn resume(&mut self, node: &View<'_, N, M>) {
         self.work.resume(node);
         self.slip.resume(node);
     }
 
-    fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         // Work never ends a run.
         let _ = self.work.step(node, report);
         // Over a divided step the discrete constraint is that of its parts.
@@ -300,7 +299,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for 
         ControlFlow::Continue(())
     }
 
-    fn part(&mut self, end: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn part(&mut self, end: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         self.slip.part(end);
         self.parts += 1;
         self.work.part(end, report)
@@ -312,7 +311,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for 
         }
     }
 
-    fn end(&mut self, node: &View<'_, Sys, N>) {
+    fn end(&mut self, node: &View<'_, N, M>) {
         self.work.end(node);
         self.parts = 0;
         self.end = (node.k, node.t, node.state.unwrapped(), *node.state.v());

@@ -2,8 +2,9 @@ use crate::record::Meter;
 use crate::substeps::substepped_part;
 use crate::timing::Ticker;
 use crate::{Method, Progress, Record, Request};
-use dla::{Checkpoint, CheckpointError, Observer, Part, Schedule, State, Trajectory, Work, piece_by_piece_from};
-use lagrangian::{Piecewise, System};
+use dla::{
+    Checkpoint, CheckpointError, Part, PiecewiseMechanics, Schedule, State, Trajectory, Work, piece_by_piece_from,
+};
 use std::ops::Range;
 use std::time::Instant;
 
@@ -37,8 +38,8 @@ struct Progressing<const N: usize, const M: usize> {
 ///
 /// # Errors
 /// [`CheckpointError`] where the checkpoint is none of this run; nothing is then done.
-pub fn run_saved<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
-    system: &Sys,
+pub fn run_saved<const N: usize, const M: usize>(
+    system: &dyn PiecewiseMechanics<N, M>,
     method: &Method,
     request: &Request<N>,
     saving: &mut Saving<'_>,
@@ -71,6 +72,7 @@ pub fn run_saved<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
     let (begin, before) = (Instant::now(), run.seconds);
     let (first, mut state) = (run.made, run.state);
     let ends = |done: &Part| saving.every.is_some() && (done.stopped || done.made == schedule.steps);
+    let mut stepper = method.stepper();
     let outcome = piece_by_piece_from(first, system, &schedule, &mut state, |piece, steps, state| {
         if steps.start > first {
             // A piece begins with a new method.
@@ -78,9 +80,12 @@ pub fn run_saved<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
         }
         let mut done = Part { made: steps.start, stopped: false };
         for chunk in chunks(&steps, saving.every) {
-            let observer: &mut dyn Observer<Sys, N, M> = &mut (&mut run.meter, (&mut run.trajectory, &mut ticker));
-            let memory = Some(&mut run.memory);
-            done = substepped_part(piece, method, &schedule, chunk.clone(), state, observer, memory)?;
+            // From what a checkpoint has, so that the run is the same with one.
+            stepper.recall(&run.memory, state);
+            let limits = method.substeps();
+            let observer = &mut (&mut run.meter, (&mut run.trajectory, &mut ticker));
+            done = substepped_part(piece, &mut *stepper, limits, &schedule, chunk.clone(), state, observer)?;
+            run.memory = stepper.memory();
             let due = saving.every.is_some_and(|every| done.made.is_multiple_of(every));
             if due && done.made < schedule.steps || ends(&done) {
                 if done.made == steps.end && done.made < schedule.steps {

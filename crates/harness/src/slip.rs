@@ -1,12 +1,11 @@
 use crate::Method;
-use dla::{Checkpoint, CheckpointError, State, View};
+use dla::{Checkpoint, CheckpointError, Discretisation, Rules, State, View};
 use lagrangian::linear::{larger, largest};
-use lagrangian::{AnyRule, DiscreteConstraint, System};
 
 /// How far a run is from its constraints besides at the velocities of its nodes: over each step, and in the positions.
 #[derive(Debug)]
 pub(crate) struct Slip<const N: usize> {
-    rule: AnyRule,
+    rules: Rules,
     h: f64,
     /// The time and the state at the node before.
     before: Option<(f64, State<N>)>,
@@ -17,7 +16,7 @@ pub(crate) struct Slip<const N: usize> {
 
 impl<const N: usize> Slip<N> {
     pub(crate) fn new(method: &Method, h: f64) -> Self {
-        Self { rule: method.rule(), h, before: None, step: 0.0, leaf: None }
+        Self { rules: Rules::new(method.rule(), method.rule()), h, before: None, step: 0.0, leaf: None }
     }
 
     pub(crate) fn step_max(&self) -> f64 {
@@ -28,21 +27,21 @@ impl<const N: usize> Slip<N> {
         self.leaf
     }
 
-    pub(crate) fn start<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>) {
+    pub(crate) fn start<const M: usize>(&mut self, node: &View<'_, N, M>) {
         self.look(node);
         self.before = Some((node.t, *node.state));
     }
 
-    pub(crate) fn resume<Sys>(&mut self, node: &View<'_, Sys, N>) {
+    pub(crate) fn resume<const M: usize>(&mut self, node: &View<'_, N, M>) {
         self.before = Some((node.t, *node.state));
     }
 
-    pub(crate) fn step<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>) {
+    pub(crate) fn step<const M: usize>(&mut self, node: &View<'_, N, M>) {
         self.over(node, self.h);
     }
 
     /// A part of a step.
-    pub(crate) fn part<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>) {
+    pub(crate) fn part<const M: usize>(&mut self, node: &View<'_, N, M>) {
         // Where the parts are too short for the time, there is nothing to be told from their ends.
         match self.before.as_ref().map(|(t, _)| node.t - t) {
             Some(h) if h != 0.0 => self.over(node, h),
@@ -50,11 +49,10 @@ impl<const N: usize> Slip<N> {
         }
     }
 
-    fn over<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>, h: f64) {
+    fn over<const M: usize>(&mut self, node: &View<'_, N, M>, h: f64) {
         if let Some((t, before)) = &self.before {
             let v = node.state.moved_since(before).map(|moved| moved / h);
-            let (system, t, q) = (node.system, *t, before.q());
-            let residual: [f64; M] = self.rule.residual(system, t, h, q, &v);
+            let residual: [f64; M] = self.rules.residual(node.system, (*t, h), before.q(), &v);
             self.step = larger(self.step, largest(&residual));
         }
         self.look(node);
@@ -62,8 +60,8 @@ impl<const N: usize> Slip<N> {
     }
 
     /// At the functions `g(q, t)` whose rates are constraints.
-    fn look<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>) {
-        let functions = node.system.holonomic(node.t, &node.state.unwrapped());
+    fn look<const M: usize>(&mut self, node: &View<'_, N, M>) {
+        let functions = node.system.positions(node.t, &node.state.unwrapped());
         for g in functions.into_iter().flatten().flatten() {
             self.leaf = Some(larger(self.leaf.unwrap_or(0.0), g.abs()));
         }
@@ -79,6 +77,6 @@ impl<const N: usize> Slip<N> {
     pub(crate) fn load(&self, checkpoint: &Checkpoint) -> Result<Self, CheckpointError> {
         let [step] = checkpoint.get("slip")?;
         let leaf = checkpoint.list("leaf")?.first().copied();
-        Ok(Self { rule: self.rule, h: self.h, before: None, step, leaf })
+        Ok(Self { rules: self.rules, h: self.h, before: None, step, leaf })
     }
 }

@@ -1,11 +1,7 @@
-use crate::Method;
-use crate::again::Report;
-use crate::run::integrate_part;
 use dla::{
-    Checkpoint, CheckpointError, Halved, Observer, Part, RunError, Schedule, State, StepError, StepReport, Substeps,
-    Undivided, View,
+    Checkpoint, CheckpointError, Halved, Mechanics, Observer, OneStep, Part, RunError, Schedule, State, StepError,
+    StepReport, Substeps, Undivided, View, drive_part,
 };
-use lagrangian::System;
 use std::ops::{ControlFlow, Range};
 
 /// What became of the steps that may be divided.
@@ -42,21 +38,20 @@ impl SubstepSummary {
 /// A part of a run, in which steps are divided where the method may: the step is then made anew, and so is each part, without
 /// what the method remembers, which makes a run the same from every checkpoint.
 ///
-/// It goes through the code of whole steps, a step at a time. Without leave to divide it is that code.
-pub(crate) fn substepped_part<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
-    method: &Method,
+/// It goes through the code of whole steps, a step at a time. Without limits of division it is that code.
+pub(crate) fn substepped_part<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    method: &mut dyn OneStep<N, M>,
+    limits: Option<Substeps>,
     schedule: &Schedule,
     steps: Range<u64>,
     state: &mut State<N>,
-    observer: &mut dyn Observer<Sys, N, M>,
-    memory: Option<&mut Vec<f64>>,
+    observer: &mut dyn Observer<N, M>,
 ) -> Result<Part, RunError> {
-    let Some(limits) = method.substeps() else {
-        return integrate_part(system, method, schedule, steps, state, observer, memory);
+    let Some(limits) = limits else {
+        return drive_part(system, method, schedule, steps, state, observer);
     };
-    let (mut own, mut made) = (Vec::new(), steps.start);
-    let memory = memory.unwrap_or(&mut own);
+    let mut made = steps.start;
     let first = View { system, k: made, t: schedule.time(made), state };
     if made == 0 {
         observer.start(&first);
@@ -65,7 +60,7 @@ pub(crate) fn substepped_part<Sys: System<N, M>, const N: usize, const M: usize>
     }
     let (mut outcome, mut stopped) = (Ok(()), false);
     while made < steps.end && !stopped {
-        match step(system, method, (schedule, made, limits), state, observer, memory) {
+        match step(system, method, (schedule, made, limits), state, observer) {
             Ok(ControlFlow::Continue(report)) => {
                 made += 1;
                 let node = View { system, k: made, t: schedule.time(made), state };
@@ -85,22 +80,29 @@ pub(crate) fn substepped_part<Sys: System<N, M>, const N: usize, const M: usize>
 }
 
 /// The step from node `k`, whole or in parts; `Break`, with everything as it was, where the observer gives it up.
-fn step<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
-    method: &Method,
+fn step<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    method: &mut dyn OneStep<N, M>,
     (schedule, k, limits): (&Schedule, u64, Substeps),
     state: &mut State<N>,
-    observer: &mut dyn Observer<Sys, N, M>,
-    memory: &mut Vec<f64>,
+    observer: &mut dyn Observer<N, M>,
 ) -> Result<ControlFlow<(), StepReport<M>>, RunError> {
-    let (before, remembered) = (*state, memory.clone());
+    let (before, remembered) = (*state, method.memory());
     let (t, h) = (schedule.time(k), schedule.step);
+    // From what a checkpoint has.
+    method.recall(&remembered, state);
     let mut report = Report(StepReport::of(0));
-    let looking: &mut dyn Observer<Sys, N, M> = &mut report;
-    let whole = integrate_part(system, method, schedule, k..k + 1, state, looking, Some(&mut *memory))
+    let mut memory = Vec::new();
+    let whole = drive_part(system, method, schedule, k..k + 1, state, &mut report)
         .map_err(|error| error.source)
-        .and_then(|_| resolves(system, method, (t, h), &before, state));
-    let Err(failure) = whole else { return Ok(ControlFlow::Continue(report.0)) };
+        .and_then(|_| {
+            memory = method.memory();
+            resolves(system, method, (t, h), &before, state)
+        });
+    let Err(failure) = whole else {
+        method.recall(&memory, state);
+        return Ok(ControlFlow::Continue(report.0));
+    };
 
     *state = before;
     let mut total = StepReport::of(0);
@@ -117,11 +119,12 @@ fn step<Sys: System<N, M>, const N: usize, const M: usize>(
     });
     match made {
         Ok(ControlFlow::Continue(_)) => {
-            memory.clear();
+            method.recall(&[], state);
             Ok(ControlFlow::Continue(total))
         }
         Ok(ControlFlow::Break(())) => {
-            (*state, *memory) = (before, remembered);
+            *state = before;
+            method.recall(&remembered, state);
             Ok(ControlFlow::Break(()))
         }
         Err(undivided) => {
@@ -135,9 +138,9 @@ fn step<Sys: System<N, M>, const N: usize, const M: usize>(
 }
 
 /// Whether a step resolves the motion.
-fn resolves<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
-    method: &Method,
+fn resolves<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    method: &mut dyn OneStep<N, M>,
     step: (f64, f64),
     before: &State<N>,
     after: &State<N>,
@@ -145,16 +148,28 @@ fn resolves<Sys: System<N, M>, const N: usize, const M: usize>(
     Halved::resolves(step, before, after, |step, state| one(system, method, step, state).map(|_| ()))
 }
 
-/// One step by itself.
-fn one<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
-    method: &Method,
+/// One step by itself, without what the method remembers of others.
+pub(crate) fn one<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    method: &mut dyn OneStep<N, M>,
     (t, h): (f64, f64),
     state: &mut State<N>,
 ) -> Result<StepReport<M>, StepError> {
+    method.recall(&[], state);
     let mut report = Report(StepReport::of(0));
-    let looking: &mut dyn Observer<Sys, N, M> = &mut report;
     let alone = Schedule { t0: t, step: h, steps: 1 };
-    integrate_part(system, method, &alone, 0..1, state, looking, None).map_err(|error| error.source)?;
+    drive_part(system, method, &alone, 0..1, state, &mut report).map_err(|error| error.source)?;
     Ok(report.0)
+}
+
+/// What the last step reported.
+pub(crate) struct Report<const M: usize>(pub(crate) StepReport<M>);
+
+impl<const N: usize, const M: usize> Observer<N, M> for Report<M> {
+    fn start(&mut self, _node: &View<'_, N, M>) {}
+
+    fn step(&mut self, _node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
+        self.0 = *report;
+        ControlFlow::Continue(())
+    }
 }

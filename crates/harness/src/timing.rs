@@ -44,11 +44,11 @@ impl<'a> Ticker<'a> {
     }
 }
 
-impl<Sys, const N: usize, const M: usize> Observer<Sys, N, M> for Ticker<'_> {
-    fn start(&mut self, _node: &View<'_, Sys, N>) {}
+impl<const N: usize, const M: usize> Observer<N, M> for Ticker<'_> {
+    fn start(&mut self, _node: &View<'_, N, M>) {}
 
     #[inline]
-    fn step(&mut self, node: &View<'_, Sys, N>, _report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
         if node.k.is_multiple_of(Self::EVERY) {
             self.progress.advance(node.k - self.told);
             self.told = node.k;
@@ -60,12 +60,12 @@ impl<Sys, const N: usize, const M: usize> Observer<Sys, N, M> for Ticker<'_> {
         ControlFlow::Continue(())
     }
 
-    fn part(&mut self, _end: &View<'_, Sys, N>, _report: &StepReport<M>) -> ControlFlow<()> {
+    fn part(&mut self, _end: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
         self.stopped = self.progress.stops();
         if self.stopped { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
-    fn end(&mut self, node: &View<'_, Sys, N>) {
+    fn end(&mut self, node: &View<'_, N, M>) {
         self.progress.advance(node.k - self.told);
         self.told = node.k;
     }
@@ -74,18 +74,18 @@ impl<Sys, const N: usize, const M: usize> Observer<Sys, N, M> for Ticker<'_> {
 /// The observer that only asks whether to go on.
 pub(crate) struct Stopper<'a>(pub(crate) &'a dyn Progress);
 
-impl<Sys, const N: usize, const M: usize> Observer<Sys, N, M> for Stopper<'_> {
-    fn start(&mut self, _node: &View<'_, Sys, N>) {}
+impl<const N: usize, const M: usize> Observer<N, M> for Stopper<'_> {
+    fn start(&mut self, _node: &View<'_, N, M>) {}
 
     #[inline]
-    fn step(&mut self, node: &View<'_, Sys, N>, _report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
         if node.k.is_multiple_of(Ticker::EVERY) && self.0.stops() {
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
     }
 
-    fn part(&mut self, _end: &View<'_, Sys, N>, _report: &StepReport<M>) -> ControlFlow<()> {
+    fn part(&mut self, _end: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
         if self.0.stops() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }

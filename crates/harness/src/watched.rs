@@ -3,9 +3,9 @@ use crate::run::{integrate_pieces, timed};
 use crate::timing::Ticker;
 use crate::{Again, Method, Progress, Record, Request};
 use dla::{
-    Close, Crossing, Event, RecommendError, Recommendation, Samples, State, Trajectory, Watch, recommend_by_trial,
+    Close, Crossing, Event, PiecewiseMechanics, RecommendError, Recommendation, Samples, State, Trajectory, Watch,
+    recommend_by_trial,
 };
-use lagrangian::{Piecewise, System};
 
 /// A run, measured, with the nodes that were asked for and the events that happened.
 #[derive(Debug, Clone)]
@@ -25,8 +25,8 @@ pub const EVENT_SAMPLES: u32 = 4;
 
 /// Makes a run, measures it, looks for events, in so many parts of each step, and keeps every `keep`-th node where that is asked
 /// for.
-pub fn run_watched<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
-    system: &Sys,
+pub fn run_watched<const N: usize, const M: usize>(
+    system: &dyn PiecewiseMechanics<N, M>,
     method: &Method,
     request: &Request<N>,
     (events, samples): (&[Event<'_, N>], u32),
@@ -56,8 +56,8 @@ pub fn run_watched<Sys: System<N, M> + Piecewise, const N: usize, const M: usize
 ///
 /// # Errors
 /// [`RecommendError`], with the best that is within reach.
-pub fn recommend<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
-    system: &Sys,
+pub fn recommend<const N: usize, const M: usize>(
+    system: &dyn PiecewiseMechanics<N, M>,
     method: &Method,
     (q, v): ([f64; N], [f64; N]),
     duration: f64,

@@ -101,8 +101,8 @@ struct OnConstraint {
     before: State<3>,
 }
 
-impl Observer<Wild, 3, 1> for OnConstraint {
-    fn start(&mut self, node: &View<'_, Wild, 3>) {
+impl Observer<3, 1> for OnConstraint {
+    fn start(&mut self, node: &View<'_, 3, 1>) {
         self.before = *node.state;
     }
 
@@ -111,7 +111,7 @@ impl Observer<Wild, 3, 1> for OnConstraint {
     /// all of them. The angle of `v` is that before the turns are taken off, and has the
     /// rounding of a number of its size: at most half a turn more than the step turns. Where the turns are too many to be
     /// counted there is no telling.
-    fn step(&mut self, node: &View<'_, Wild, 3>, _report: &StepReport<1>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, 3, 1>, _report: &StepReport<1>) -> ControlFlow<()> {
         let (q, v) = (node.state.q(), node.state.v());
         assert!(q.iter().chain(v).all(|x| x.is_finite()), "node {}: {q:?}, {v:?}", node.k);
         let turned = node.state.moved_since(&self.before)[2].abs();

@@ -9,7 +9,7 @@ use sleigh::{Sleigh, SleighState};
 fn compare<Sys: System<3, 1> + Clone + Send + Sync + 'static>(
     system: &Sys,
     stages: usize,
-    reference: &mut dyn dla::OneStep<Sys, 3, 1>,
+    reference: &mut dyn dla::OneStep<3, 1>,
 ) {
     let mut alone = Assembly::new();
     let _: [usize; 3] = alone.body("blade", system.clone());

@@ -282,14 +282,14 @@ mod tests {
             for _ in 0..9 {
                 known.step(&SMOOTH, 0.0, STEP, &mut state).unwrap();
             }
-            let mut numbers = OneStep::<Disk, 4, 2>::memory(&known);
+            let mut numbers = OneStep::<4, 2>::memory(&known);
             prop_assert!(numbers.len() > 100);
             let end = numbers.len().min(at + wild.len());
             let from = at.min(end);
             numbers[from..end].copy_from_slice(&wild[..end - from]);
             for numbers in [&numbers, &wild] {
                 let mut method = method();
-                OneStep::<Disk, 4, 2>::recall(&mut method, numbers, &state);
+                OneStep::<4, 2>::recall(&mut method, numbers, &state);
                 let (mut again, mut plain) = (state, state);
                 for _ in 0..9 {
                     method.step(&SMOOTH, 0.0, STEP, &mut again).unwrap();

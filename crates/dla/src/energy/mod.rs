@@ -14,7 +14,7 @@ use crate::positions::{affine_only, velocities_only};
 use crate::{Mechanics, OneStep, StackUse, Stage, State, StepError, StepReport};
 use ends::Ends;
 use lagrangian::linear::larger;
-use lagrangian::{AT_ONCE, Lanes, Scalar, System, Twofold, from_fn, vectorized};
+use lagrangian::{AT_ONCE, Lanes, Scalar, Twofold, from_fn, vectorized};
 use path::{Path, Points};
 use rule::Rule;
 use start::Start;
@@ -68,15 +68,9 @@ impl Energy {
     }
 }
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Energy {
+impl<const N: usize, const M: usize> OneStep<N, M> for Energy {
     #[inline]
-    fn step(&mut self, system: &Sys, t0: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
-        self.advance(system, t0, h, state)
-    }
-}
-
-impl Energy {
-    fn advance<const N: usize, const M: usize>(
+    fn step(
         &mut self,
         system: &dyn Mechanics<N, M>,
         t0: f64,

@@ -1,10 +1,10 @@
 use super::zeros::in_order;
 use super::{Crossing, Event, Zero, zeros};
-use crate::{OneStep, State, StepReport};
+use crate::{Mechanics, OneStep, State, StepReport};
 
 /// A step, or one of those that a method makes of its own within it, to be made again in parts.
-pub(super) struct Interval<'a, Sys, Method, const N: usize> {
-    pub(super) system: &'a Sys,
+pub(super) struct Interval<'a, Method, const N: usize, const M: usize> {
+    pub(super) system: &'a dyn Mechanics<N, M>,
     pub(super) method: &'a Method,
     pub(super) t0: f64,
     pub(super) h: f64,
@@ -12,25 +12,22 @@ pub(super) struct Interval<'a, Sys, Method, const N: usize> {
     pub(super) end: &'a State<N>,
 }
 
-impl<Sys, Method, const N: usize> Interval<'_, Sys, Method, N> {
+impl<Method, const N: usize, const M: usize> Interval<'_, Method, N, M>
+where
+    Method: OneStep<N, M> + Clone,
+{
     fn time(&self, part: f64) -> f64 {
         self.t0 + part * self.h
     }
 
     /// The state after a part of the step, and what that step reported; none where it has no solution.
-    pub(super) fn after<const M: usize>(&self, part: f64) -> Option<(State<N>, StepReport<M>)>
-    where
-        Method: OneStep<Sys, N, M> + Clone,
-    {
+    pub(super) fn after(&self, part: f64) -> Option<(State<N>, StepReport<M>)> {
         let mut state = *self.start;
         let report = self.method.clone().step(self.system, self.t0, part * self.h, &mut state).ok()?;
         Some((state, report))
     }
 
-    fn state<const M: usize>(&self, part: f64) -> Option<State<N>>
-    where
-        Method: OneStep<Sys, N, M> + Clone,
-    {
+    fn state(&self, part: f64) -> Option<State<N>> {
         match part {
             0.0 => Some(*self.start),
             1.0 => Some(*self.end),
@@ -40,15 +37,12 @@ impl<Sys, Method, const N: usize> Interval<'_, Sys, Method, N> {
 
     /// The crossings within it, in the order of time, looked for in so many parts and located to an interval of time (s). `k` is
     /// the node before.
-    pub(super) fn crossings<const M: usize>(
+    pub(super) fn crossings(
         &self,
         events: &[Event<'_, N>],
         (samples, tolerance): (u32, f64),
         k: u64,
-    ) -> Vec<Crossing<N>>
-    where
-        Method: OneStep<Sys, N, M> + Clone,
-    {
+    ) -> Vec<Crossing<N>> {
         let parts = i64::from(samples.max(1));
         let states: Vec<_> = (-1..=parts + 1)
             .filter_map(|j| {

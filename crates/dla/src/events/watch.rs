@@ -69,10 +69,10 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
     }
 
     /// Looks for events on the way to a node, and shows the inner observer the last one where an event ends the run: `Break`.
-    fn look<Sys, const M: usize>(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()>
+    fn look<const M: usize>(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()>
     where
-        Method: OneStep<Sys, N, M> + Clone,
-        Inner: Observer<Sys, N, M>,
+        Method: OneStep<N, M> + Clone,
+        Inner: Observer<N, M>,
     {
         if self.ended.is_some() {
             return ControlFlow::Break(());
@@ -94,9 +94,9 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
     }
 
     /// Looks for events in each of the steps that the method makes of its own on the way to a node, until one ends the run.
-    fn look_within<Sys, const M: usize>(&mut self, node: &View<'_, Sys, N>, start: (f64, State<N>))
+    fn look_within<const M: usize>(&mut self, node: &View<'_, N, M>, start: (f64, State<N>))
     where
-        Method: OneStep<Sys, N, M> + Clone,
+        Method: OneStep<N, M> + Clone,
     {
         let (mut from, method, mut memory) = (start, self.method.clone(), std::mem::take(&mut self.memory));
         let step = (start.0, node.t - start.0);
@@ -112,14 +112,14 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
     }
 
     /// Looks for events between two states of a step to `node`.
-    fn look_between<Sys, const M: usize>(
+    fn look_between<const M: usize>(
         &mut self,
-        node: &View<'_, Sys, N>,
+        node: &View<'_, N, M>,
         (t0, start): (f64, &State<N>),
         (t, end): (f64, &State<N>),
     ) -> ControlFlow<()>
     where
-        Method: OneStep<Sys, N, M> + Clone,
+        Method: OneStep<N, M> + Clone,
     {
         let interval = Interval { system: node.system, method: &self.method, t0, h: t - t0, start, end };
         let found = interval.crossings(self.events, (self.samples, self.tolerance), node.k.saturating_sub(1));
@@ -138,19 +138,19 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
     }
 }
 
-impl<Sys, Method, Inner, const N: usize, const M: usize> Observer<Sys, N, M> for Watch<'_, Method, Inner, N>
+impl<Method, Inner, const N: usize, const M: usize> Observer<N, M> for Watch<'_, Method, Inner, N>
 where
-    Method: OneStep<Sys, N, M> + Clone,
-    Inner: Observer<Sys, N, M>,
+    Method: OneStep<N, M> + Clone,
+    Inner: Observer<N, M>,
 {
-    fn start(&mut self, node: &View<'_, Sys, N>) {
+    fn start(&mut self, node: &View<'_, N, M>) {
         self.before = Some((node.t, *node.state));
         self.memory.clear();
         self.inner.start(node);
     }
 
     /// Where the velocity jumps, a function may jump over zero.
-    fn resume(&mut self, node: &View<'_, Sys, N>) {
+    fn resume(&mut self, node: &View<'_, N, M>) {
         if let Some((t, before)) = self.before {
             for (index, event) in self.events.iter().enumerate() {
                 let (old, new) = (event.value(t, &before), event.value(node.t, node.state));
@@ -166,7 +166,7 @@ where
         self.inner.resume(node);
     }
 
-    fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         if std::mem::take(&mut self.in_parts) {
             self.memory.clear();
         } else {
@@ -176,7 +176,7 @@ where
     }
 
     /// Each part is looked at as a step is: a divided step may hold many crossings.
-    fn part(&mut self, end: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn part(&mut self, end: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         // It is made without what the method remembers.
         self.memory.clear();
         self.look(end, report)?;
@@ -188,7 +188,7 @@ where
         self.inner.undivided(why);
     }
 
-    fn end(&mut self, node: &View<'_, Sys, N>) {
+    fn end(&mut self, node: &View<'_, N, M>) {
         match &self.ended {
             Some((Crossing { t, state, .. }, k)) => {
                 self.inner.end(&View { system: node.system, k: *k, t: *t, state });

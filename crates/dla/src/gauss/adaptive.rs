@@ -6,7 +6,6 @@ use super::rule::quarter_octaves;
 use super::{Gauss, Taken};
 use crate::positions::affine_only;
 use crate::{Mechanics, OneStep, OwnStep, State, StepError, StepReport};
-use lagrangian::System;
 use lagrangian::linear::larger;
 use std::ops::ControlFlow;
 
@@ -96,9 +95,15 @@ impl GaussAdaptive {
 /// The length of a step cut at the end of an interval: far from all others.
 const CUT: i32 = i32::MAX / 2;
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for GaussAdaptive {
+impl<const N: usize, const M: usize> OneStep<N, M> for GaussAdaptive {
     #[inline]
-    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+    fn step(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        t: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
         if const { super::USE.exceeds::<N, M>() } {
             return Err(super::USE.refusal::<N, M>());
         }
@@ -124,7 +129,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for G
 
     fn own_steps(
         &self,
-        system: &Sys,
+        system: &dyn Mechanics<N, M>,
         (t, h): (f64, f64),
         state: &State<N>,
         memory: &mut Vec<f64>,
@@ -132,10 +137,10 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for G
     ) -> Result<(), StepError> {
         let (mut method, mut state) = (*self, *state);
         if !memory.is_empty() {
-            OneStep::<Sys, N, M>::recall(&mut method, memory, &state);
+            OneStep::<N, M>::recall(&mut method, memory, &state);
         }
         method.cross::<N, M>(system, t, h, &mut state, see)?;
-        *memory = OneStep::<Sys, N, M>::memory(&method);
+        *memory = OneStep::<N, M>::memory(&method);
         Ok(())
     }
 }

@@ -15,8 +15,8 @@ use crate::convergence::tolerances::{LEFT, NOISE, OF_ROW};
 use crate::positions::{affine_only, onto_positions};
 use crate::{Mechanics, OneStep, StackUse, Stage, State, StepError, StepReport};
 use ending::Ending;
+use lagrangian::from_fn;
 use lagrangian::linear::larger;
-use lagrangian::{System, from_fn};
 use lanes::Slopes;
 use memory::Memory;
 use rule::Eight;
@@ -205,23 +205,9 @@ impl<const N: usize> Taken<N> {
 /// Of any number of stages: their slopes are few numbers.
 pub(crate) const USE: StackUse = StackUse { squares: 38, rows: 20 };
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Gauss {
+impl<const N: usize, const M: usize> OneStep<N, M> for Gauss {
     #[inline]
-    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
-        self.advance(system, t, h, state)
-    }
-
-    fn memory(&self) -> Vec<f64> {
-        self.memory.save()
-    }
-
-    fn recall(&mut self, memory: &[f64], _state: &State<N>) {
-        self.memory = Memory::load(memory);
-    }
-}
-
-impl Gauss {
-    fn advance<const N: usize, const M: usize>(
+    fn step(
         &mut self,
         system: &dyn Mechanics<N, M>,
         t: f64,
@@ -243,5 +229,13 @@ impl Gauss {
             self.memory.keep(&slopes, taken.iterations, (h, 0), state);
         }
         Ok(StepReport::of(taken.iterations))
+    }
+
+    fn memory(&self) -> Vec<f64> {
+        self.memory.save()
+    }
+
+    fn recall(&mut self, memory: &[f64], _state: &State<N>) {
+        self.memory = Memory::load(memory);
     }
 }

@@ -11,8 +11,8 @@ use crate::newton::{BlockEquations, Found};
 use crate::positions::affine_only;
 use crate::projection::{Projected, Projection};
 use crate::{Mechanics, Newton, NewtonError, OneStep, StackUse, Stage, State, StepError, StepReport};
+use lagrangian::from_fn;
 use lagrangian::linear::largest;
-use lagrangian::{System, from_fn};
 use stages::Stages;
 use std::f64::consts::PI;
 
@@ -106,16 +106,10 @@ impl<const S: usize> Lobatto<S> {
     }
 }
 
-impl<Sys: System<N, M>, const N: usize, const M: usize, const S: usize> OneStep<Sys, N, M> for Lobatto<S> {
+impl<const N: usize, const M: usize, const S: usize> OneStep<N, M> for Lobatto<S> {
     /// The impulses in the report are those of all stages, each shared between the two ends as a lever would.
     #[inline]
-    fn step(&mut self, system: &Sys, t0: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
-        self.advance(system, t0, h, state)
-    }
-}
-
-impl<const S: usize> Lobatto<S> {
-    fn advance<const N: usize, const M: usize>(
+    fn step(
         &mut self,
         system: &dyn Mechanics<N, M>,
         t0: f64,

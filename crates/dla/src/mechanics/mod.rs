@@ -8,9 +8,10 @@ pub use diagnosis::Diagnosis;
 pub use rounded::RoundedMechanics;
 
 use crate::gauss::{Collocation, Outcome};
+use crate::{State, StepError, StepReport};
 use lagrangian::{
     AdmissibleBasis, Bracket, Constraint, ConstraintSlopes, Dual, EnergySlope, HyperDual, Lanes, Motion, MotionError,
-    ReducedError, ReducedSlope,
+    OwnAxes, ReducedError, ReducedSlope,
 };
 use std::fmt;
 
@@ -78,6 +79,12 @@ pub trait Mechanics<const N: usize, const M: usize>: RoundedMechanics<N, M> + Di
     /// The generalised forces; none where there are none.
     fn force(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<[f64; N]>;
 
+    /// The power of the forces (W); none where there are none.
+    fn force_power(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<f64>;
+
+    /// The power `-dL/dt` at which explicit time feeds the energy (W).
+    fn lagrangian_power(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> f64;
+
     /// The forces with their derivatives along `(dq, dv) = (in_q, in_v) e_j`.
     fn force_along(&self, t: f64, q: &[f64; N], v: &[f64; N], in_q: f64, in_v: f64) -> Option<[Dual<f64, N>; N]>;
 
@@ -120,6 +127,9 @@ pub trait Mechanics<const N: usize, const M: usize>: RoundedMechanics<N, M> + Di
     /// Whether positions are constrained.
     fn constrains_positions(&self, t: f64, q: &[f64; N]) -> bool;
 
+    /// The functions of the constraints on positions; none where there are none.
+    fn positions(&self, t: f64, q: &[f64; N]) -> Option<[Option<f64>; M]>;
+
     /// What the constraints on positions miss, with their gradients, rounding being zero; none where there are none.
     fn position_misses(&self, t: f64, q: &[f64; N]) -> Option<[Option<Dual<f64, N>>; M]>;
 
@@ -131,6 +141,15 @@ pub trait Mechanics<const N: usize, const M: usize>: RoundedMechanics<N, M> + Di
 
     /// The rows of linear constraints with the basis; none where the system gives none, or where `b` is not zero.
     fn linear_basis(&self, t: f64, q: &[f64; N]) -> Option<([[f64; N]; M], AdmissibleBasis<f64, N, M>)>;
+
+    /// Makes a step of the midpoint map by the system's closed form of it; none where it has none, or none for this step.
+    ///
+    /// # Errors
+    /// [`StepError`] where the closed form does not find the step; the state is then unchanged.
+    fn closed_step(&self, t: f64, h: f64, state: &mut State<N>) -> Option<Result<StepReport<M>, StepError>>;
+
+    /// The reduced equations in axes that turn with the body, where they are of second degree there.
+    fn own_axes(&self) -> Option<OwnAxes>;
 
     /// Accelerations and multipliers of the continuous system.
     ///

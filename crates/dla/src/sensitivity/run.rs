@@ -1,8 +1,9 @@
 use super::{Differentiable, Sensitivity, SensitivityError, Tangent, TangentRunError};
 use crate::{OneStep, Schedule, State, StepReport, View};
+use lagrangian::System;
 use std::ops::ControlFlow;
 
-impl<Sys, const N: usize, const M: usize, const P: usize> Sensitivity<'_, Sys, N, M, P> {
+impl<Sys: System<N, M>, const N: usize, const M: usize, const P: usize> Sensitivity<'_, Sys, N, M, P> {
     /// Moves a state and tangents together from time `t` to `t + h`.
     ///
     /// # Errors
@@ -16,7 +17,7 @@ impl<Sys, const N: usize, const M: usize, const P: usize> Sensitivity<'_, Sys, N
         tangents: &mut [Tangent<N, P>],
     ) -> Result<StepReport<M>, SensitivityError>
     where
-        Method: OneStep<Sys, N, M> + Differentiable<N, M>,
+        Method: OneStep<N, M> + Differentiable<N, M>,
     {
         let derivative = self.step(method, t, h, state)?;
         for tangent in tangents {
@@ -38,10 +39,10 @@ impl<Sys, const N: usize, const M: usize, const P: usize> Sensitivity<'_, Sys, N
         schedule: &Schedule,
         state: &mut State<N>,
         tangents: &mut [Tangent<N, P>],
-        mut each: impl FnMut(&View<'_, Sys, N>, &mut [Tangent<N, P>]) -> ControlFlow<()>,
+        mut each: impl FnMut(&View<'_, N, M>, &mut [Tangent<N, P>]) -> ControlFlow<()>,
     ) -> Result<u64, TangentRunError>
     where
-        Method: OneStep<Sys, N, M> + Differentiable<N, M>,
+        Method: OneStep<N, M> + Differentiable<N, M>,
     {
         for k in 0..schedule.steps {
             let time = schedule.time(k);

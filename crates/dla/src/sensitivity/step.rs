@@ -76,7 +76,7 @@ where
 /// Numbers carry eight directions here, and those of a step's equations a gradient of them or two.
 const USE: StackUse = StackUse { squares: 110, rows: 60 };
 
-impl<Sys, const N: usize, const M: usize, const P: usize> Sensitivity<'_, Sys, N, M, P> {
+impl<Sys: System<N, M>, const N: usize, const M: usize, const P: usize> Sensitivity<'_, Sys, N, M, P> {
     /// The system.
     #[must_use]
     pub fn system(&self) -> &Sys {
@@ -95,7 +95,7 @@ impl<Sys, const N: usize, const M: usize, const P: usize> Sensitivity<'_, Sys, N
         state: &mut State<N>,
     ) -> Result<StepDerivative<N, M, P>, SensitivityError>
     where
-        Method: OneStep<Sys, N, M> + Differentiable<N, M>,
+        Method: OneStep<N, M> + Differentiable<N, M>,
     {
         if const { USE.exceeds::<N, M>() } {
             return Err(USE.refusal::<N, M>().into());

@@ -3,18 +3,18 @@ pub(crate) mod pace;
 pub(crate) mod place;
 pub(crate) mod series;
 
-use crate::{OneStep, OwnStep, State, StepError, StepReport};
+use crate::{Mechanics, OneStep, OwnStep, State, StepError, StepReport};
 use crossing::Crossing;
 pub(crate) use crossing::{Crossed, MAX_STEPS};
+use lagrangian::OwnAxes;
 use lagrangian::simd::in_fours;
-use lagrangian::{OwnAxes, System, velocity_of};
 use place::{increment, place};
 use std::ops::ControlFlow;
 
 /// Taylor series of the reduced motion in the body's own axes, with steps of its own within a step of the schedule, as many as a
 /// tolerance asks for: what a motion of second degree costs least by.
 ///
-/// Where the equations are [of second degree in axes that turn with the body](System::own_axes), a coefficient of the series is a
+/// Where the equations are [of second degree in axes that turn with the body](Mechanics::own_axes), a coefficient of the series is a
 /// sum of products of those before, of all four unknowns in one register; twenty of them take 130 ns. The velocity is
 /// on the constraint by construction. The method is explicit: neither symmetric nor variational, and it keeps energy and momenta to
 /// its tolerance only. For long runs see [`Gauss`](crate::Gauss).
@@ -52,7 +52,7 @@ struct Departure<'a> {
 
 impl<'a> Departure<'a> {
     #[inline(always)]
-    fn new<Sys: System<3, 1>>(system: &Sys, t: f64, state: &'a State<3>) -> Result<Self, StepError> {
+    fn new(system: &dyn Mechanics<3, 1>, t: f64, state: &'a State<3>) -> Result<Self, StepError> {
         let Some(axes) = system.own_axes() else {
             return Err(StepError::Unsupported {
                 reason: "series need equations of second degree in axes that turn with the body",
@@ -65,7 +65,7 @@ impl<'a> Departure<'a> {
 
     /// The state at the time `t` (s), where the motion has come so far.
     #[inline(always)]
-    fn moved<Sys: System<3, 1>>(&self, system: &Sys, t: f64, crossed: &Crossed) -> Result<State<3>, StepError> {
+    fn moved(&self, system: &dyn Mechanics<3, 1>, t: f64, crossed: &Crossed) -> Result<State<3>, StepError> {
         let Self { axes, state, place, .. } = self;
         let increment = increment(axes.origin, state.q(), *place, crossed);
         let xi1 = [crossed.end[1], crossed.end[0], 0.0];
@@ -73,16 +73,22 @@ impl<'a> Departure<'a> {
         // The velocity is on the constraint at the heading without its turns, of which there may be many.
         let mut moved = **state;
         moved.advance(&increment, [0.0; 3], None);
-        let v1 = velocity_of(system, t, moved.q(), &xi1)?;
+        let v1 = system.velocity_of(t, moved.q(), &xi1)?;
         moved.stays_finite(&[0.0; 3], &v1)?;
         moved.advance(&[0.0; 3], v1, Some(xi1));
         Ok(moved)
     }
 }
 
-impl<Sys: System<3, 1>> OneStep<Sys, 3, 1> for Taylor {
+impl OneStep<3, 1> for Taylor {
     #[inline]
-    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<3>) -> Result<StepReport<1>, StepError> {
+    fn step(
+        &mut self,
+        system: &dyn Mechanics<3, 1>,
+        t: f64,
+        h: f64,
+        state: &mut State<3>,
+    ) -> Result<StepReport<1>, StepError> {
         let from = Departure::new(system, t, state)?;
         let (axes, start, tolerance) = (from.axes, from.start, self.tolerance);
         let see = |_, _| ControlFlow::Continue(());
@@ -93,7 +99,7 @@ impl<Sys: System<3, 1>> OneStep<Sys, 3, 1> for Taylor {
 
     fn own_steps(
         &self,
-        system: &Sys,
+        system: &dyn Mechanics<3, 1>,
         (t, h): (f64, f64),
         state: &State<3>,
         _memory: &mut Vec<f64>,

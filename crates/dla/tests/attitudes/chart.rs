@@ -16,7 +16,7 @@ const LEAST: f64 = InChart::<(), ()>::LEAST;
 const BALL: AngleBall = AngleBall { mass: 1.0, radius: 1.0, inertia: [0.4; 3] };
 
 /// The largest error of the place of a run that is to be refused, the time of that, and the error.
-fn refused<Method: OneStep<AngleBall, 5, 2>>(method: Method, omega: [f64; 3], step: f64) -> (f64, f64, StepError) {
+fn refused<Method: OneStep<5, 2>>(method: Method, omega: [f64; 3], step: f64) -> (f64, f64, StepError) {
     let steps = (10.0 / step).round() as u64;
     let ([off], end) =
         largest(&BALL, &mut guarded(method), BALL.level(omega), (step, steps), |node: &View<'_, AngleBall, 5>| {
@@ -63,7 +63,7 @@ fn other_steps_are_the_method_s_own() {
         inside.step(&BALL, t, 0.02, &mut watched).unwrap();
     }
     assert_eq!(alone, watched);
-    assert_eq!(OneStep::<AngleBall, 5, 2>::memory(&inside), OneStep::<AngleBall, 5, 2>::memory(&method));
+    assert_eq!(OneStep::<5, 2>::memory(&inside), OneStep::<5, 2>::memory(&method));
 
     // Begun beyond the least, and stepping over the end: nothing moves.
     for (beta, step) in [(1.55, 1e-3), (1.5, 0.2), (f64::NAN, 0.01)] {

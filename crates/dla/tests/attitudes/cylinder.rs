@@ -71,7 +71,7 @@ const RATE: f64 = 6.0;
 const SPIN: f64 = 10.0;
 
 /// The largest error of the height over five rounds, of the length of the quaternion, and of the contact.
-fn errors<Method: OneStep<Ball, 6, 3>>(mut method: Method, from: &Attitude<f64>, a_round: u64) -> [f64; 3] {
+fn errors<Method: OneStep<6, 3>>(mut method: Method, from: &Attitude<f64>, a_round: u64) -> [f64; 3] {
     let step = std::f64::consts::TAU / RATE / a_round as f64;
     let frequency = RATE * (RATIO / (1.0 + RATIO)).sqrt();
     let middle = -(GRAVITY + RATIO * RADIUS * RATE * SPIN) / (1.0 + RATIO) / frequency.powi(2);

@@ -12,7 +12,7 @@ fn ball() -> ChaplyginBall {
 }
 
 /// The largest `||e|^2 - 1|/2` over so many steps of 0.05 s.
-fn off<Mo: Model<N, M>, Method: OneStep<Mo, N, M>, const N: usize, const M: usize>(
+fn off<Mo: Model<N, M>, Method: OneStep<N, M>, const N: usize, const M: usize>(
     model: &Mo,
     mut method: Method,
     steps: u64,
@@ -74,7 +74,7 @@ fn by_its_rate_it_walks() {
 fn what_cannot_hold_it_refuses() {
     let ball = ball();
     let (q, v) = ball.start();
-    for method in [&mut Energy::new::<2>() as &mut dyn OneStep<ChaplyginBall, 6, 3>, &mut Gni::default()] {
+    for method in [&mut Energy::new::<2>() as &mut dyn OneStep<6, 3>, &mut Gni::default()] {
         let mut state = State::new(q, v, ball.angles());
         let error = method.step(&ball, 0.0, 0.01, &mut state).unwrap_err();
         assert!(matches!(error, StepError::Unsupported { reason } if reason.contains("positions")), "{error}");

@@ -23,20 +23,19 @@ fn errors<Sys, Method, const N: usize, const M: usize>(
 ) -> (Errors, Option<RunError>)
 where
     Sys: System<N, M>,
-    Method: OneStep<Sys, N, M>,
+    Method: OneStep<N, M>,
 {
     let energy = lagrangian::energy(system, 0.0, &start.0, &start.1);
-    let (found, end) =
-        largest(system, method, start, (step, (TIME / step).round() as u64), |node: &View<'_, Sys, N>| {
-            let q = node.state.unwrapped();
-            let off = (q[0] - start.0[0] - omega[1] * node.t).abs().max((q[1] - start.0[1] + omega[0] * node.t).abs());
-            [off, (node.energy() / energy - 1.0).abs(), node.constraint()]
-        });
+    let (found, end) = largest(system, method, start, (step, (TIME / step).round() as u64), |node: &View<'_, N, M>| {
+        let q = node.state.unwrapped();
+        let off = (q[0] - start.0[0] - omega[1] * node.t).abs().max((q[1] - start.0[1] + omega[0] * node.t).abs());
+        [off, (node.energy() / energy - 1.0).abs(), node.constraint()]
+    });
     (found, end.err())
 }
 
 /// The errors of the ball of mass and radius one by quaternions, from an attitude.
-fn by_quaternions<Method: OneStep<ChaplyginBall, 6, 3>>(
+fn by_quaternions<Method: OneStep<6, 3>>(
     ball: ChaplyginBall,
     mut method: Method,
     from: &Attitude<f64>,
@@ -98,7 +97,7 @@ fn a_homogeneous_ball_rolls_straight() {
 #[test]
 fn by_angles_it_does_not() {
     let ball = AngleBall { mass: 1.0, radius: 1.0, inertia: [MOMENT; 3] };
-    let by_angles = |method: &mut dyn OneStep<AngleBall, 5, 2>, omega: [f64; 3], step: f64| {
+    let by_angles = |method: &mut dyn OneStep<5, 2>, omega: [f64; 3], step: f64| {
         let mut method = Borrowed(method);
         errors(&ball, &mut method, ball.level(omega), omega, step)
     };
@@ -114,9 +113,9 @@ fn by_angles_it_does_not() {
 }
 
 /// A method by reference.
-struct Borrowed<'a>(&'a mut dyn OneStep<AngleBall, 5, 2>);
+struct Borrowed<'a>(&'a mut dyn OneStep<5, 2>);
 
-impl OneStep<AngleBall, 5, 2> for Borrowed<'_> {
+impl OneStep<5, 2> for Borrowed<'_> {
     fn step(
         &mut self,
         system: &AngleBall,

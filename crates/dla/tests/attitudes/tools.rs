@@ -14,14 +14,14 @@ struct Largest<F, const K: usize> {
     of: F,
 }
 
-impl<Sys, F, const N: usize, const M: usize, const K: usize> Observer<Sys, N, M> for Largest<F, K>
+impl<F, const N: usize, const M: usize, const K: usize> Observer<N, M> for Largest<F, K>
 where
-    F: FnMut(&View<'_, Sys, N>) -> [f64; K],
+    F: FnMut(&View<'_, N, M>) -> [f64; K],
 {
-    fn start(&mut self, node: &View<'_, Sys, N>) {
+    fn start(&mut self, node: &View<'_, N, M>) {
         self.values = (self.of)(node);
     }
-    fn step(&mut self, node: &View<'_, Sys, N>, _report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
         let now = (self.of)(node);
         // What is not a number wins.
         self.values = std::array::from_fn(|k| larger(self.values[k], now[k]));
@@ -39,8 +39,8 @@ pub fn largest<Sys, Method, F, const N: usize, const M: usize, const K: usize>(
 ) -> ([f64; K], Result<State<N>, RunError>)
 where
     Sys: System<N, M>,
-    Method: OneStep<Sys, N, M>,
-    F: FnMut(&View<'_, Sys, N>) -> [f64; K],
+    Method: OneStep<N, M>,
+    F: FnMut(&View<'_, N, M>) -> [f64; K],
 {
     let mut state = State::new(q, v, system.angles());
     let mut seen = Largest { values: [0.0; K], of };

@@ -9,7 +9,7 @@ fn ball() -> TurntableBall {
 }
 
 /// Errors of the centre's place and velocity at the time 2, against its circle.
-fn errors<Method: OneStep<TurntableBall, 6, 3> + Clone>(method: &Method) -> [f64; 4] {
+fn errors<Method: OneStep<6, 3> + Clone>(method: &Method) -> [f64; 4] {
     let ball = ball();
     let (place, velocity) = ball.centre_from(&ball.start(), 2.0);
     [20, 40, 80, 160].map(|steps| {
@@ -19,7 +19,7 @@ fn errors<Method: OneStep<TurntableBall, 6, 3> + Clone>(method: &Method) -> [f64
 }
 
 /// The largest error of the moving energy, and of the energy, over a run.
-fn energies<Method: OneStep<TurntableBall, 6, 3>>(method: &mut Method, steps: u64) -> [f64; 2] {
+fn energies<Method: OneStep<6, 3>>(method: &mut Method, steps: u64) -> [f64; 2] {
     let ball = ball();
     let (q, v) = ball.start();
     let (moving, still) = (ball.moving_energy(&q, &v), lagrangian::energy(&ball, 0.0, &q, &v));

@@ -46,7 +46,7 @@ fn positions_hold_at_any_step() {
 /// Errors at the time 1 with 20, 40, 80 and 160 steps against 4000 of Lobatto's method of order 4, whose error is rounding.
 fn errors<Method>(method: &Method, sleigh: &SleighOnArm) -> [f64; 4]
 where
-    Method: OneStep<SleighOnArm, 3, 2> + Clone,
+    Method: OneStep<3, 2> + Clone,
 {
     let reference = end(sleigh, &mut Lobatto::<3>::new(), sleigh.start(), 1.0 / 4000.0, 4000);
     let reference: Place<3> = (reference.unwrapped(), *reference.v());
@@ -70,7 +70,7 @@ fn orders_beside_constrained_positions() {
 /// Symmetric methods return; the projection of the positions costs Gauss collocation that.
 #[test]
 fn the_step_is_symmetric() {
-    fn back<Method: OneStep<SleighOnArm, 3, 2>>(method: &mut Method) -> f64 {
+    fn back<Method: OneStep<3, 2>>(method: &mut Method) -> f64 {
         let sleigh = sleigh();
         let there = end(&sleigh, method, sleigh.start(), 0.05, 100);
         let here = end(&sleigh, method, (*there.q(), *there.reversed().v()), 0.05, 100);
@@ -91,7 +91,7 @@ fn methods_that_would_drift_refuse() {
     let (pendulum, pseudo) = (pendulum(), pendulum().pseudo_holonomic());
     let (q, v) = pendulum.start();
     let start = State::new(q, v, [false, false, true]);
-    let check = |method: &mut dyn OneStep<CompoundPendulum, 3, 2>| {
+    let check = |method: &mut dyn OneStep<3, 2>| {
         let mut state = start;
         let outcome = method.step(&pendulum, 0.0, 0.01, &mut state);
         assert!(matches!(outcome, Err(StepError::Unsupported { .. })), "{outcome:?}");
@@ -123,7 +123,7 @@ fn positions_that_move() {
     let mut state = State::new([0.0, 0.7f64.sin()], [0.4, 0.7f64.cos()], [false; 2]);
     for k in 0..20 {
         let t = 0.7 + 0.1 * f64::from(k);
-        OneStep::<_, 2, 1>::step(&mut Dla::midpoint(), &Lift, t, 0.1, &mut state).unwrap();
+        OneStep::<2, 1>::step(&mut Dla::midpoint(), &Lift, t, 0.1, &mut state).unwrap();
         let t = t + 0.1;
         approx::assert_abs_diff_eq!(&state.q()[..], &[0.4 * (t - 0.7), t.sin()][..], epsilon = 8.0 * f64::EPSILON);
         approx::assert_abs_diff_eq!(&state.v()[..], &[0.4, t.cos()][..], epsilon = 8.0 * f64::EPSILON);

@@ -8,7 +8,7 @@ fn particle() -> IsokineticParticle {
     IsokineticParticle::new(1.3, 0.8, -0.9).unwrap()
 }
 
-fn errors<Method: OneStep<IsokineticParticle, 2, 1> + Clone>(method: &Method) -> [f64; 4] {
+fn errors<Method: OneStep<2, 1> + Clone>(method: &Method) -> [f64; 4] {
     let particle = particle();
     [20, 40, 80, 160].map(|steps| {
         let end = end(&particle, &mut method.clone(), particle.start(), 2.0 / steps as f64, steps);
@@ -59,7 +59,7 @@ fn a_particle_at_rest_is_an_error() {
 fn methods_for_affine_constraints_refuse() {
     let particle = particle();
     let (q, v) = particle.start();
-    let refused = |method: &mut dyn OneStep<IsokineticParticle, 2, 1>| {
+    let refused = |method: &mut dyn OneStep<2, 1>| {
         let mut state = State::new(q, v, [false; 2]);
         let outcome = method.step(&particle, 0.0, 0.1, &mut state);
         assert!(matches!(outcome, Err(StepError::Unsupported { .. })), "{outcome:?}");

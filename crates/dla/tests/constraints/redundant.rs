@@ -44,7 +44,7 @@ fn third_row(gap: f64, slip: f64) -> ThirdRow {
     ThirdRow { pendulum: pendulum(), gap, slip }
 }
 
-fn run<Sys: System<N, M>, Method: OneStep<Sys, N, M>, const N: usize, const M: usize>(
+fn run<Sys: System<N, M>, Method: OneStep<N, M>, const N: usize, const M: usize>(
     system: &Sys,
     mut method: Method,
     state: &mut State<N>,

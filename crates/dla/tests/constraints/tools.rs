@@ -19,14 +19,14 @@ impl<F> Largest<F> {
     }
 }
 
-impl<Sys, F, const N: usize, const M: usize> dla::Observer<Sys, N, M> for Largest<F>
+impl<F, const N: usize, const M: usize> dla::Observer<N, M> for Largest<F>
 where
-    F: FnMut(&View<'_, Sys, N>) -> f64,
+    F: FnMut(&View<'_, N, M>) -> f64,
 {
-    fn start(&mut self, node: &View<'_, Sys, N>) {
+    fn start(&mut self, node: &View<'_, N, M>) {
         self.value = (self.of)(node);
     }
-    fn step(&mut self, node: &View<'_, Sys, N>, _report: &dla::StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, N, M>, _report: &dla::StepReport<M>) -> ControlFlow<()> {
         // What is not a number wins.
         self.value = lagrangian::linear::larger(self.value, (self.of)(node));
         ControlFlow::Continue(())
@@ -34,7 +34,7 @@ where
 }
 
 /// The state after `steps` steps of length `step`.
-pub fn end<Sys: System<N, M>, Method: OneStep<Sys, N, M>, const N: usize, const M: usize>(
+pub fn end<Sys: System<N, M>, Method: OneStep<N, M>, const N: usize, const M: usize>(
     system: &Sys,
     method: &mut Method,
     (q, v): Place<N>,
@@ -47,7 +47,7 @@ pub fn end<Sys: System<N, M>, Method: OneStep<Sys, N, M>, const N: usize, const 
 }
 
 /// The largest misses of positions and of velocities over a run.
-pub fn misses<Sys: System<N, M>, Method: OneStep<Sys, N, M>, const N: usize, const M: usize>(
+pub fn misses<Sys: System<N, M>, Method: OneStep<N, M>, const N: usize, const M: usize>(
     system: &Sys,
     method: &mut Method,
     (q, v): Place<N>,
@@ -55,8 +55,8 @@ pub fn misses<Sys: System<N, M>, Method: OneStep<Sys, N, M>, const N: usize, con
     steps: u64,
 ) -> [f64; 2] {
     let mut state = State::new(q, v, system.angles());
-    let mut positions = Largest::of(|node: &View<'_, Sys, N>| position_residual(system, node.t, node.state.q()));
-    let mut velocities = Largest::of(|node: &View<'_, Sys, N>| node.constraint());
+    let mut positions = Largest::of(|node: &View<'_, N, M>| position_residual(system, node.t, node.state.q()));
+    let mut velocities = Largest::of(|node: &View<'_, N, M>| node.constraint());
     let schedule = Schedule { t0: 0.0, step, steps };
     drive(system, method, &schedule, &mut state, (&mut positions, &mut velocities)).unwrap();
     [positions.value, velocities.value]

@@ -21,15 +21,15 @@ pub struct Balance<const N: usize> {
     pub slip: f64,
 }
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for Balance<N> {
-    fn start(&mut self, node: &View<'_, Sys, N>) {
+impl<const N: usize, const M: usize> Observer<N, M> for Balance<N> {
+    fn start(&mut self, node: &View<'_, N, M>) {
         self.work.start(node);
         self.first = node.energy();
     }
-    fn resume(&mut self, node: &View<'_, Sys, N>) {
+    fn resume(&mut self, node: &View<'_, N, M>) {
         self.work.resume(node);
     }
-    fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         let flow = self.work.step(node, report);
         let change = node.energy() - self.first;
         self.unpaid = self.unpaid.max(change.abs());
@@ -51,7 +51,7 @@ fn balance<Sys, Method, const N: usize, const M: usize>(
 ) -> Balance<N>
 where
     Sys: System<N, M> + Piecewise,
-    Method: OneStep<Sys, N, M>,
+    Method: OneStep<N, M>,
 {
     let mut seen = Balance::default();
     run(system, &mut method, &steps(h, (4.0 / h).round() as u64), start, &mut seen);
@@ -112,11 +112,11 @@ fn the_impulse_of_a_jump_is_work() {
 
     // The control: an observer that is not shown the jumps misses just these.
     struct Blind(Balance<3>);
-    impl<Sys: System<3, 2>> Observer<Sys, 3, 2> for Blind {
-        fn start(&mut self, node: &View<'_, Sys, 3>) {
+    impl Observer<3, 2> for Blind {
+        fn start(&mut self, node: &View<'_, 3, 2>) {
             self.0.start(node);
         }
-        fn step(&mut self, node: &View<'_, Sys, 3>, report: &StepReport<2>) -> ControlFlow<()> {
+        fn step(&mut self, node: &View<'_, 3, 2>, report: &StepReport<2>) -> ControlFlow<()> {
             self.0.step(node, report)
         }
     }

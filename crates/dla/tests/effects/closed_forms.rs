@@ -16,7 +16,7 @@ fn distance(a: &SleighState, b: &SleighState) -> f64 {
     d.iter().fold(0.0, |m, d| d.abs().max(m))
 }
 
-fn errors<Method: OneStep<Laden<Sleigh>, 3, 1>>(
+fn errors<Method: OneStep<3, 1>>(
     system: &Laden<Sleigh>,
     mut method: Method,
     start: &SleighState,

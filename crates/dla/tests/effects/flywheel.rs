@@ -15,11 +15,11 @@ struct Spin {
     start: f64,
     worst: f64,
 }
-impl<Sys: System<4, 1>> Observer<Sys, 4, 1> for Spin {
-    fn start(&mut self, node: &View<'_, Sys, 4>) {
+impl Observer<4, 1> for Spin {
+    fn start(&mut self, node: &View<'_, 4, 1>) {
         self.start = node.state.v()[2] + node.state.v()[3];
     }
-    fn step(&mut self, node: &View<'_, Sys, 4>, _report: &StepReport<1>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, 4, 1>, _report: &StepReport<1>) -> ControlFlow<()> {
         let spin = node.state.v()[2] + node.state.v()[3];
         self.worst = self.worst.max((spin / self.start - 1.0).abs());
         ControlFlow::Continue(())

@@ -15,8 +15,8 @@ pub fn run<Sys, Method, Obs, const N: usize, const M: usize>(
 ) -> State<N>
 where
     Sys: System<N, M> + Piecewise,
-    Method: OneStep<Sys, N, M>,
-    Obs: Observer<Sys, N, M>,
+    Method: OneStep<N, M>,
+    Obs: Observer<N, M>,
 {
     let mut state = State::new(q, v, system.angles());
     piece_by_piece(system, schedule, &mut state, |piece, steps, state| {

@@ -37,11 +37,11 @@ impl Balance {
         mean / (variance / n).sqrt()
     }
 }
-impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for Balance {
-    fn start(&mut self, node: &View<'_, Sys, N>) {
+impl<const N: usize, const M: usize> Observer<N, M> for Balance {
+    fn start(&mut self, node: &View<'_, N, M>) {
         self.start = node.energy();
     }
-    fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         let change = node.energy() - self.start;
         self.worst = self.worst.max((change / self.start).abs());
         self.slip = self.slip.max(node.constraint());
@@ -67,7 +67,7 @@ fn balance<Sys, Method, const N: usize, const M: usize>(
 ) -> Balance
 where
     Sys: System<N, M>,
-    Method: OneStep<Sys, N, M>,
+    Method: OneStep<N, M>,
 {
     let mut seen = Balance::over(steps);
     let mut state = State::new(*q, *v, system.angles());
@@ -170,7 +170,7 @@ fn particle_keeps_its_energy() {
 type Damped = With<CentreOfMass, (Potential, Friction)>;
 
 /// Under friction every step loses the discrete work, which is never positive.
-fn loses_the_work<Method: OneStep<Damped, 3, 1>>(mut method: Method, work: impl Fn(&Method) -> f64) {
+fn loses_the_work<Method: OneStep<3, 1>>(mut method: Method, work: impl Fn(&Method) -> f64) {
     let system = com(0.4, (Potential::EggCrate, Friction));
     let (q, v) = at_centre([0.5, 1.0, 0.3, 0.9, 1.7], 0.4);
     let mut state = State::new(q, v, system.angles());

@@ -4,7 +4,7 @@ use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
 use sleigh::{Exact, Sleigh, SleighState};
 
 /// Errors at the given numbers of steps, and the least order between neighbours.
-fn ladder<Sys: System<N, M>, Method: OneStep<Sys, N, M>, const N: usize, const M: usize>(
+fn ladder<Sys: System<N, M>, Method: OneStep<N, M>, const N: usize, const M: usize>(
     system: &Sys,
     method: &mut Method,
     start: &([f64; N], [f64; N]),

@@ -109,7 +109,7 @@ pub(crate) fn run<Sys, Method, const N: usize, const M: usize>(
 ) -> State<N>
 where
     Sys: System<N, M>,
-    Method: OneStep<Sys, N, M>,
+    Method: OneStep<N, M>,
 {
     let mut state = State::new(*q, *v, system.angles());
     let schedule = Schedule { t0: 0.0, step: duration / steps as f64, steps };

@@ -170,7 +170,7 @@ pub fn on_stack<Sys, Method, const N: usize, const M: usize>(
 ) -> Result<Ended, RunError>
 where
     Sys: Known<N, M>,
-    Method: OneStep<Sys, N, M>,
+    Method: OneStep<N, M>,
 {
     let run = move || {
         let system = Sys::new();

@@ -155,7 +155,7 @@ fn derivatives_of_steps() {
 /// Nothing of it is on the heap instead.
 #[test]
 fn steps_allocate_nothing() {
-    fn allocations<Sys: System<60, 20>, Method: OneStep<Sys, 60, 20>>(
+    fn allocations<Sys: System<60, 20>, Method: OneStep<60, 20>>(
         system: &Sys,
         mut method: Method,
         state: &mut State<60>,

@@ -34,7 +34,7 @@ fn two_stages_are_the_trapezoid() {
 fn return_error<Sys, Method>(system: &Sys, method: &mut Method, (q, v): ([f64; 3], [f64; 3])) -> f64
 where
     Sys: System<3, 1>,
-    Method: OneStep<Sys, 3, 1>,
+    Method: OneStep<3, 1>,
 {
     let (h, steps) = (0.1, 50);
     let mut state = State::new(q, v, system.angles());

@@ -18,7 +18,7 @@ struct Refusing<Method> {
     longest: f64,
 }
 
-impl<Method: OneStep<Sleigh, 3, 1>> OneStep<Sleigh, 3, 1> for Refusing<Method> {
+impl<Method: OneStep<3, 1>> OneStep<3, 1> for Refusing<Method> {
     fn step(&mut self, system: &Sleigh, t: f64, h: f64, state: &mut State<3>) -> Result<StepReport<1>, StepError> {
         let third = ((t + 0.5 * h) / 0.1).floor() % 3.0 == 0.0;
         if h > if third { 0.5 } else { 1.0 } * self.longest {
@@ -31,7 +31,7 @@ impl<Method: OneStep<Sleigh, 3, 1>> OneStep<Sleigh, 3, 1> for Refusing<Method> {
 /// Steps of which the most are divided in two and some in four: half the step, and the error is `2^-p` of what it was.
 #[test]
 fn divided_steps_keep_the_order() {
-    fn error<Method: OneStep<Sleigh, 3, 1> + Clone>(method: Method, steps: u64) -> f64 {
+    fn error<Method: OneStep<3, 1> + Clone>(method: Method, steps: u64) -> f64 {
         let step = 4.0 / steps as f64;
         let (q, v) = start().to_coordinates();
         let mut state = State::new(q, v, [false, false, true]);
@@ -46,7 +46,7 @@ fn divided_steps_keep_the_order() {
             .iter()
             .fold(0.0, |most, error| f64::max(most, error.abs()))
     }
-    fn order<Method: OneStep<Sleigh, 3, 1> + Clone>(method: &Method, steps: u64) -> f64 {
+    fn order<Method: OneStep<3, 1> + Clone>(method: &Method, steps: u64) -> f64 {
         (error(method.clone(), steps) / error(method.clone(), 2 * steps)).log2()
     }
     for (found, order) in [

@@ -36,7 +36,7 @@ impl Run {
 fn made<Sys, Method>(system: &Sys, method: Method, start: &SleighState, (step, steps): (f64, u64)) -> Run
 where
     Sys: System<3, 1>,
-    Method: OneStep<Sys, 3, 1> + Clone,
+    Method: OneStep<3, 1> + Clone,
 {
     let (q, v) = start.to_coordinates();
     let mut state = State::new(q, v, [false, false, true]);

@@ -130,7 +130,7 @@ impl System<8, 5> for Bicycle {
 }
 
 /// A run from straight ahead at zero steer, with that speed and rate of lean.
-fn run<Method: OneStep<Bicycle, 8, 5>>(
+fn run<Method: OneStep<8, 5>>(
     mut method: Method,
     speed: f64,
     leaning: f64,
@@ -159,7 +159,7 @@ fn linear(speed: f64, leaning: f64, time: f64) -> [f64; 2] {
 }
 
 /// The largest error of lean and steer after 2 s at 5 m/s, relative to the larger of them.
-fn error<Method: OneStep<Bicycle, 8, 5>>(method: Method, steps: u64) -> f64 {
+fn error<Method: OneStep<8, 5>>(method: Method, steps: u64) -> f64 {
     // So small that the square of the lean, 1e-12 of the lean itself, is no part of the error.
     let leaning = 1e-6;
     let (state, right) = (run(method, 5.0, leaning, (2.0 / steps as f64, steps)).unwrap(), linear(5.0, leaning, 2.0));

@@ -38,7 +38,7 @@ impl System<5, 2> for Disk {
 }
 
 /// Rolls twenty turns of 200 steps, and asserts that lean, rate and centre keep within a part of themselves.
-fn rolls<Method: OneStep<Disk, 5, 2>>(name: &str, mut method: Method, alpha: f64, roundings: f64) {
+fn rolls<Method: OneStep<5, 2>>(name: &str, mut method: Method, alpha: f64, roundings: f64) {
     let (per_turn, turns) = (200, 20);
     let (rate, lean) = ((4.0 * GRAVITY / (RADIUS * alpha.sin())).sqrt(), FRAC_PI_2 - alpha);
     let spin = -lean.sin() * rate;

@@ -87,7 +87,7 @@ impl<const BASIS: bool> System<3, 1> for Skate<BASIS> {
 /// Runs a system by a method, and shows its state at the end.
 pub type Run<Sys, const N: usize> = fn(&Sys, &Schedule, State<N>) -> Result<State<N>, RunError>;
 
-fn run<Sys: System<N, M>, Method: OneStep<Sys, N, M> + Default, const N: usize, const M: usize>(
+fn run<Sys: System<N, M>, Method: OneStep<N, M> + Default, const N: usize, const M: usize>(
     system: &Sys,
     schedule: &Schedule,
     mut state: State<N>,
@@ -104,13 +104,13 @@ macro_rules! by_default {
                 Self($make)
             }
         }
-        impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for $name
+        impl<const N: usize, const M: usize> OneStep<N, M> for $name
         where
-            $method: OneStep<Sys, N, M>,
+            $method: OneStep<N, M>,
         {
             fn step(
                 &mut self,
-                system: &Sys,
+                system: &dyn Mechanics<N, M>,
                 t: f64,
                 h: f64,
                 state: &mut State<N>,

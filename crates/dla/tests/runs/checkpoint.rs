@@ -10,7 +10,7 @@ const SCHEDULE: Schedule = Schedule { t0: 0.5, step: 0.05, steps: 1000 };
 /// A run in one piece, and the same one stopped after `stop` steps, written, read and resumed.
 fn whole_and_resumed<Method>(make: impl Fn() -> Method, stop: u64) -> [(State<3>, Trajectory<3, 1>); 2]
 where
-    Method: OneStep<Sleigh, 3, 1>,
+    Method: OneStep<3, 1>,
 {
     let sleigh = sleigh();
     let part = |method: &mut Method, steps, state: &mut State<3>, trajectory: &mut Trajectory<3, 1>| {

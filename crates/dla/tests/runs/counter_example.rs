@@ -29,8 +29,7 @@ fn the_counter_example_feels_forces() {
     let (mut state, mut method) = (State::new([0.0; 2], [0.5, 0.0], [false; 2]), Gni::<2>::default());
     for k in 0..20 {
         let t = 0.1 * f64::from(k);
-        let report =
-            OneStep::<_, 2, 1>::step(&mut method, &Pushed { force: 3.0, drag: 0.0 }, t, 0.1, &mut state).unwrap();
+        let report = OneStep::<2, 1>::step(&mut method, &Pushed { force: 3.0, drag: 0.0 }, t, 0.1, &mut state).unwrap();
         assert!(report.iterations <= 2);
         let t = t + 0.1;
         assert_abs_diff_eq!(state.q()[0], 0.5 * t + 0.75 * t * t, epsilon = 1e-13);
@@ -42,7 +41,7 @@ fn the_counter_example_feels_forces() {
     let mut method = Gni::<2>::default();
     for k in 0..20 {
         let system = Pushed { force: 0.0, drag: 0.8 };
-        let report = OneStep::<_, 2, 1>::step(&mut method, &system, 0.1 * f64::from(k), 0.1, &mut state).unwrap();
+        let report = OneStep::<2, 1>::step(&mut method, &system, 0.1 * f64::from(k), 0.1, &mut state).unwrap();
         assert!(report.iterations <= 2);
     }
     assert_abs_diff_eq!(state.v()[0], (-0.4_f64 * 2.0).exp(), epsilon = 20.0 * 0.04_f64.powi(3));
@@ -66,7 +65,7 @@ fn the_counter_example_follows_a_moving_constraint() {
     let (mut state, mut method) = (State::new([0.0; 2], [0.5, 1.0], [false; 2]), Gni::<2>::default());
     for k in 0..5 {
         let t = 1.0 + 0.1 * f64::from(k);
-        OneStep::<_, 2, 1>::step(&mut method, &Lifted, t, 0.1, &mut state).unwrap();
+        OneStep::<2, 1>::step(&mut method, &Lifted, t, 0.1, &mut state).unwrap();
         assert_abs_diff_eq!(state.v()[1], t + 0.1, epsilon = 1e-15);
         assert_abs_diff_eq!(state.v()[0], 0.5, epsilon = 1e-15);
     }
@@ -76,7 +75,7 @@ fn the_counter_example_follows_a_moving_constraint() {
 #[test]
 fn the_counter_example_begins_anew_from_another_start() {
     let step = |method: &mut Gni<2>, mut state: State<2>| {
-        OneStep::<_, 2, 1>::step(method, &Lifted, 1.0, 0.1, &mut state).unwrap();
+        OneStep::<2, 1>::step(method, &Lifted, 1.0, 0.1, &mut state).unwrap();
         state
     };
     let (here, there) = (State::new([0.0; 2], [0.5, 1.0], [false; 2]), State::new([0.0, 0.3], [0.7, 1.0], [false; 2]));

@@ -26,7 +26,7 @@ fn schedule(steps: u64) -> Schedule {
 }
 
 /// The largest error of samples, and of the constraint at them.
-fn sampled<Method: OneStep<Sleigh, 3, 1> + Copy>(method: Method, steps: u64) -> (f64, f64) {
+fn sampled<Method: OneStep<3, 1> + Copy>(method: Method, steps: u64) -> (f64, f64) {
     let (sleigh, mut state) = (sleigh(), state_of(&backward()));
     let mut samples = Samples::new(method, &TIMES);
     drive(&sleigh, &mut { method }, &schedule(steps), &mut state, &mut samples).unwrap();
@@ -97,11 +97,11 @@ struct Quintics {
     found: Vec<(f64, Hermite<3>)>,
 }
 
-impl Observer<Sleigh, 3, 1> for Quintics {
-    fn start(&mut self, node: &View<'_, Sleigh, 3>) {
+impl Observer<3, 1> for Quintics {
+    fn start(&mut self, node: &View<'_, 3, 1>) {
         self.before = Some((node.t, *node.state));
     }
-    fn step(&mut self, node: &View<'_, Sleigh, 3>, _: &StepReport<1>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, 3, 1>, _: &StepReport<1>) -> ControlFlow<()> {
         let (t0, state) = self.before.unwrap();
         let quintic = Hermite::between(node.system, (t0, &state), (node.t, node.state)).unwrap();
         self.found.push((node.t, quintic));
@@ -111,7 +111,7 @@ impl Observer<Sleigh, 3, 1> for Quintics {
 }
 
 /// The largest errors of position and velocity, and the largest slip, of the quintics of a run.
-fn interpolated<Method: OneStep<Sleigh, 3, 1>>(mut method: Method, steps: u64) -> [f64; 3] {
+fn interpolated<Method: OneStep<3, 1>>(mut method: Method, steps: u64) -> [f64; 3] {
     let (sleigh, mut quintics) = (sleigh(), Quintics::default());
     drive(&sleigh, &mut method, &schedule(steps), &mut state_of(&backward()), &mut quintics).unwrap();
     let exact = Exact::new(&sleigh, &backward()).unwrap();

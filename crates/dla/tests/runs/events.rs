@@ -22,7 +22,7 @@ fn times<Method>(
     events: &[Event<'_, 3>],
 ) -> Vec<(usize, f64)>
 where
-    Method: OneStep<Sleigh, 3, 1> + Copy,
+    Method: OneStep<3, 1> + Copy,
 {
     let mut watch = Watch::new(method, events, ());
     let schedule = Schedule { t0: 0.0, step, steps };
@@ -31,7 +31,7 @@ where
 }
 
 /// The heading reaches a right angle, the speed crosses zero, on the scene `turnaround`.
-fn errors<Method: OneStep<Sleigh, 3, 1> + Copy>(method: Method, steps: u64) -> [f64; 2] {
+fn errors<Method: OneStep<3, 1> + Copy>(method: Method, steps: u64) -> [f64; 2] {
     let (sleigh, start) = (sleigh(), backward());
     let motion = Motion::new(&sleigh, &start);
     let right_angle = std::f64::consts::FRAC_PI_2;

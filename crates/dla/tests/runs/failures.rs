@@ -206,7 +206,7 @@ fn a_brake_in_the_middle_of_a_step() {
     for gap in [false, true] {
         let step = |strength: f64| {
             let mut state = State::new([0.3, 0.0], [1.0, 0.0], [false; 2]);
-            OneStep::<_, 2, 1>::step(&mut Dla::midpoint(), &Brake { strength, gap }, 0.7, 0.1, &mut state)
+            OneStep::<2, 1>::step(&mut Dla::midpoint(), &Brake { strength, gap }, 0.7, 0.1, &mut state)
                 .map(|_| state.v()[0])
         };
         assert!(matches!(step(100.0), Err(StepError::Overshoot { .. })), "{:?}", step(100.0));

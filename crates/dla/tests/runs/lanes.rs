@@ -25,7 +25,7 @@ fn reduced(start: &SleighState) -> Start {
 /// One trajectory by the code of one trajectory; none where it fails.
 fn alone<Sys: System<3, 1>>(
     system: &Sys,
-    mut method: impl OneStep<Sys, 3, 1>,
+    mut method: impl OneStep<3, 1>,
     (h, steps): (f64, u64),
     (q, xi): &Start,
 ) -> Option<State<3>> {
@@ -318,7 +318,7 @@ fn a_direction_that_turns() {
         };
         assert_at(&ensemble.state().q(lane), ensemble.state().xi(lane)[0], rounding);
 
-        let alone = |method: &mut dyn OneStep<Turning, 2, 1>, h: f64| {
+        let alone = |method: &mut dyn OneStep<2, 1>, h: f64| {
             let mut state = State::new(*q, velocity_of(&Turning, t0, q, xi).unwrap(), [false; 2]);
             let mut t = t0;
             while t < t1 - 0.5 * h {
@@ -376,11 +376,11 @@ fn remembered_iterations_stay_within_the_limit() {
     let mut method = Gauss::new::<8>();
     let step = |method: &mut Gauss, state: &mut State<3>| method.step(&system, 0.0, 0.5, state).unwrap();
     step(&mut method, &mut state);
-    let mut memory = OneStep::<Sleigh, 3, 1>::memory(&method);
+    let mut memory = OneStep::<3, 1>::memory(&method);
     // After the slopes of six coordinates and six velocities in eight stages, the length of the step and its quarters.
     memory[98] = 4e9;
     let (mut other, mut there) = (Gauss::new::<8>(), state);
-    OneStep::<Sleigh, 3, 1>::recall(&mut other, &memory, &there);
+    OneStep::<3, 1>::recall(&mut other, &memory, &there);
     step(&mut method, &mut state);
     assert!(step(&mut other, &mut there).iterations <= method.max_iterations);
     for i in 0..3 {

@@ -14,23 +14,23 @@ use std::ops::ControlFlow;
 #[derive(Debug, Default, PartialEq)]
 struct Log(Vec<&'static str>);
 
-impl Observer<(), 1, 1> for Log {
-    fn start(&mut self, _node: &View<'_, (), 1>) {
+impl Observer<1, 1> for Log {
+    fn start(&mut self, _node: &View<'_, 1, 1>) {
         self.0.push("start");
     }
-    fn resume(&mut self, _node: &View<'_, (), 1>) {
+    fn resume(&mut self, _node: &View<'_, 1, 1>) {
         self.0.push("resume");
     }
-    fn step(&mut self, _node: &View<'_, (), 1>, _report: &StepReport<1>) -> ControlFlow<()> {
+    fn step(&mut self, _node: &View<'_, 1, 1>, _report: &StepReport<1>) -> ControlFlow<()> {
         self.0.push("step");
         ControlFlow::Break(())
     }
-    fn end(&mut self, _node: &View<'_, (), 1>) {
+    fn end(&mut self, _node: &View<'_, 1, 1>) {
         self.0.push("end");
     }
 }
 
-fn shown(observer: &mut impl Observer<(), 1, 1>) -> ControlFlow<()> {
+fn shown(observer: &mut impl Observer<1, 1>) -> ControlFlow<()> {
     let state = start();
     let node = |k| View { system: &(), k, t: k as f64, state: &state };
     observer.start(&node(0));
@@ -220,9 +220,9 @@ fn a_crossing_is_interpolated() {
 #[derive(Debug, Default)]
 struct Last([[f64; 1]; 2]);
 
-impl Observer<(), 1, 1> for Last {
-    fn start(&mut self, _node: &View<'_, (), 1>) {}
-    fn step(&mut self, _node: &View<'_, (), 1>, report: &StepReport<1>) -> ControlFlow<()> {
+impl Observer<1, 1> for Last {
+    fn start(&mut self, _node: &View<'_, 1, 1>) {}
+    fn step(&mut self, _node: &View<'_, 1, 1>, report: &StepReport<1>) -> ControlFlow<()> {
         self.0 = report.impulses;
         ControlFlow::Continue(())
     }

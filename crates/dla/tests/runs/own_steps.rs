@@ -22,7 +22,7 @@ fn crossings(n: u32) -> impl Iterator<Item = f64> {
 
 fn found<Method>(method: &Method, (step, steps): (f64, u64)) -> (Vec<Crossing<3>>, Option<Close>)
 where
-    Method: OneStep<RoundWell, 3, 1> + Clone,
+    Method: OneStep<3, 1> + Clone,
 {
     let events = [Event::new("x = 0.05", |_, state: &State<3>| state.q()[0] - 0.05)];
     let mut watch = Watch::new(method.clone(), &events, ());
@@ -34,7 +34,7 @@ where
 
 fn all_twenty<Method>(method: &Method)
 where
-    Method: OneStep<RoundWell, 3, 1> + Clone,
+    Method: OneStep<3, 1> + Clone,
 {
     for run in [(6.0, 1), (2.0, 3), (0.75, 8)] {
         let (found, close) = found(method, run);
@@ -52,8 +52,14 @@ where
 #[derive(Clone)]
 struct Closed<Method>(Method);
 
-impl<Sys, Method: OneStep<Sys, 3, 1>> OneStep<Sys, 3, 1> for Closed<Method> {
-    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<3>) -> Result<StepReport<1>, StepError> {
+impl<Method: OneStep<3, 1>> OneStep<3, 1> for Closed<Method> {
+    fn step(
+        &mut self,
+        system: &dyn Mechanics<3, 1>,
+        t: f64,
+        h: f64,
+        state: &mut State<3>,
+    ) -> Result<StepReport<1>, StepError> {
         self.0.step(system, t, h, state)
     }
 }
@@ -79,7 +85,7 @@ fn shown<Method>(
     memory: &mut Vec<f64>,
 ) -> Result<Vec<(f64, State<3>)>, StepError>
 where
-    Method: OneStep<RoundWell, 3, 1>,
+    Method: OneStep<3, 1>,
 {
     let mut seen = Vec::new();
     method.own_steps(&spring(), (t, h), state, memory, &mut |t, state| {
@@ -92,7 +98,7 @@ where
 /// Two steps of a run, in what the method shows of its own steps within them.
 fn are_those_of_the_run<Method>(new: &Method, h: f64, start: &State<3>, error: f64) -> Result<(), TestCaseError>
 where
-    Method: OneStep<RoundWell, 3, 1> + Clone,
+    Method: OneStep<3, 1> + Clone,
 {
     let (system, mut method, mut state, mut memory) = (spring(), new.clone(), *start, Vec::new());
     for t in [0.0, h] {
@@ -103,7 +109,7 @@ where
         prop_assert!(times.windows(2).all(|pair| (pair[1] - pair[0]) * h > 0.0), "{times:?}");
         let begin = state;
         method.step(&system, t, h, &mut state).unwrap();
-        prop_assert_eq!(&memory, &OneStep::<RoundWell, 3, 1>::memory(&method), "it remembers what the run does");
+        prop_assert_eq!(&memory, &OneStep::<3, 1>::memory(&method), "it remembers what the run does");
         for (at, inner) in &seen {
             let residual = constraint_residual(&system, *at, inner.q(), inner.v())[0];
             prop_assert!(residual.abs() <= 8.0 * f64::EPSILON, "{:e}", residual);

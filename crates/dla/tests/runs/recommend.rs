@@ -9,13 +9,13 @@ const DURATION: f64 = 40.0;
 
 fn recommended<Method>(make: impl Fn() -> Method, tolerance: f64) -> Result<Recommendation, RecommendError>
 where
-    Method: OneStep<Sleigh, 3, 1> + Copy,
+    Method: OneStep<3, 1> + Copy,
 {
     recommend_step(&sleigh(), make, &state_of(&backward()), DURATION, tolerance)
 }
 
 /// The largest error of a coordinate at any node.
-fn reached<Method: OneStep<Sleigh, 3, 1>>(mut method: Method, found: &Recommendation) -> f64 {
+fn reached<Method: OneStep<3, 1>>(mut method: Method, found: &Recommendation) -> f64 {
     let mut trajectory = Trajectory::<3, 1>::every((found.steps / 500).max(1));
     let schedule = Schedule { t0: 0.0, step: found.step, steps: found.steps };
     drive(&sleigh(), &mut method, &schedule, &mut state_of(&backward()), &mut trajectory).unwrap();
@@ -62,7 +62,7 @@ fn a_tolerance_below_rounding_is_refused_with_the_best() {
 }
 
 /// Forward, flip, back: how far from the start the recommended steps end, and how far rounding may bring them.
-fn returned<Method: OneStep<Sleigh, 3, 1> + Copy>(method: Method, duration: f64, tolerance: f64) -> (f64, f64) {
+fn returned<Method: OneStep<3, 1> + Copy>(method: Method, duration: f64, tolerance: f64) -> (f64, f64) {
     let (sleigh, start) = (sleigh(), state_of(&backward()));
     let found = recommend_step(&sleigh, || method, &start, duration, tolerance).unwrap();
     let schedule = Schedule { t0: 0.0, step: found.step, steps: found.steps };

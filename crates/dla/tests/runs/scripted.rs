@@ -9,7 +9,7 @@ pub(crate) struct Short {
     made: Vec<f64>,
 }
 
-impl<Sys> OneStep<Sys, 1, 1> for Short {
+impl OneStep<1, 1> for Short {
     fn step(&mut self, _: &Sys, t: f64, h: f64, state: &mut State<1>) -> Result<StepReport<1>, StepError> {
         if t < 0.25 && h > 0.125 {
             return Err(StepError::Branch);
@@ -42,11 +42,11 @@ fn parts_grow_on_their_grid() {
     assert_eq!(report, StepReport { impulses: [[1.0], [2.0]], iterations: 4, work: Some(0.75) });
     // A step of three halves does not end on the grid of its wholes.
     let (mut method, mut state) = (Substepping::new(Short::default(), 4), start());
-    OneStep::<(), 1, 1>::step(&mut method, &(), 0.0625, 1.5, &mut state).unwrap();
+    OneStep::<1, 1>::step(&mut method, &(), 0.0625, 1.5, &mut state).unwrap();
     assert_eq!(method.method.made, [0.0625, 0.09375, 0.15625, 0.09375, 0.25, 0.1875, 0.4375, 0.375, 0.8125, 0.75]);
     // Not short enough.
     let mut method = Substepping::new(Short::default(), 2);
-    assert_eq!(OneStep::<(), 1, 1>::step(&mut method, &(), 0.0, 1.0, &mut state), Err(StepError::Branch));
+    assert_eq!(OneStep::<1, 1>::step(&mut method, &(), 0.0, 1.0, &mut state), Err(StepError::Branch));
 }
 
 #[test]
@@ -54,11 +54,11 @@ fn memories_pass_through() {
     let given = [0.5, 0.25];
     let method = Short { made: given.to_vec() };
     let (mut parts, mut composed) = (Substepping::new(Short::default(), 3), Composition::suzuki4(Short::default()));
-    OneStep::<(), 1, 1>::recall(&mut parts, &given, &start());
-    OneStep::<(), 1, 1>::recall(&mut composed, &given, &start());
+    OneStep::<1, 1>::recall(&mut parts, &given, &start());
+    OneStep::<1, 1>::recall(&mut composed, &given, &start());
     assert_eq!(parts.method, method);
-    assert_eq!(OneStep::<(), 1, 1>::memory(&parts), given);
-    assert_eq!(OneStep::<(), 1, 1>::memory(&composed), given);
+    assert_eq!(OneStep::<1, 1>::memory(&parts), given);
+    assert_eq!(OneStep::<1, 1>::memory(&composed), given);
     // What is a map has none.
-    assert!(OneStep::<Sleigh, 3, 1>::memory(&Dla::midpoint()).is_empty());
+    assert!(OneStep::<3, 1>::memory(&Dla::midpoint()).is_empty());
 }

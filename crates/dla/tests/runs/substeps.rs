@@ -13,11 +13,11 @@ fn spinning() -> State<3> {
 fn a_step_that_is_too_long_is_made_of_shorter_ones() {
     let (sleigh, start) = (sleigh(), spinning());
     let mut alone = start;
-    let error = OneStep::<Sleigh, 3, 1>::step(&mut Dla::midpoint(), &sleigh, 0.0, 2.0, &mut alone).unwrap_err();
+    let error = OneStep::<3, 1>::step(&mut Dla::midpoint(), &sleigh, 0.0, 2.0, &mut alone).unwrap_err();
     assert_eq!(alone, start, "{error}");
 
     let (mut state, mut method) = (start, Substepping::new(Dla::midpoint(), 8));
-    let report = OneStep::<Sleigh, 3, 1>::step(&mut method, &sleigh, 0.0, 2.0, &mut state).unwrap();
+    let report = OneStep::<3, 1>::step(&mut method, &sleigh, 0.0, 2.0, &mut state).unwrap();
     assert_eq!(method.divided(), 1);
     assert!(report.iterations > 1);
     let residual = constraint_residual(&sleigh, 2.0, state.q(), state.v());
@@ -28,7 +28,7 @@ fn a_step_that_is_too_long_is_made_of_shorter_ones() {
     let (mut done, mut part) = (0.0, 0.5);
     while done < 1.0 {
         let mut tried = by_hand;
-        if OneStep::<Sleigh, 3, 1>::step(&mut Dla::midpoint(), &sleigh, 2.0 * done, 2.0 * part, &mut tried).is_err() {
+        if OneStep::<3, 1>::step(&mut Dla::midpoint(), &sleigh, 2.0 * done, 2.0 * part, &mut tried).is_err() {
             part *= 0.5;
             continue;
         }
@@ -46,8 +46,8 @@ fn a_step_that_does_is_left_alone() {
     let (mut divided, mut plain) = (state_of(&backward()), state_of(&backward()));
     for k in 0..100 {
         let t = 0.05 * f64::from(k);
-        OneStep::<Sleigh, 3, 1>::step(&mut method, &sleigh, t, 0.05, &mut divided).unwrap();
-        OneStep::<Sleigh, 3, 1>::step(&mut Dla::midpoint(), &sleigh, t, 0.05, &mut plain).unwrap();
+        OneStep::<3, 1>::step(&mut method, &sleigh, t, 0.05, &mut divided).unwrap();
+        OneStep::<3, 1>::step(&mut Dla::midpoint(), &sleigh, t, 0.05, &mut plain).unwrap();
     }
     assert_eq!((divided, method.divided()), (plain, 0));
 }
@@ -69,13 +69,13 @@ fn what_no_shorter_step_mends_and_what_is_not_asked_for_stays_an_error() {
     let (sleigh, mut state) = (sleigh(), spinning());
     for halvings in [0, 1] {
         let mut method = Substepping::new(Dla::midpoint(), halvings);
-        let outcome = OneStep::<Sleigh, 3, 1>::step(&mut method, &sleigh, 0.0, 8.0, &mut state);
+        let outcome = OneStep::<3, 1>::step(&mut method, &sleigh, 0.0, 8.0, &mut state);
         assert!(outcome.is_err() && method.divided() == 0 && state == spinning());
     }
     let mut still = State::new([0.0], [1.0], [false]);
-    let plain = OneStep::<_, 1, 1>::step(&mut Dla::midpoint(), &Contradiction, 0.0, 0.1, &mut still).unwrap_err();
+    let plain = OneStep::<1, 1>::step(&mut Dla::midpoint(), &Contradiction, 0.0, 0.1, &mut still).unwrap_err();
     let mut method = Substepping::new(Dla::midpoint(), 20);
-    let error: StepError = OneStep::<_, 1, 1>::step(&mut method, &Contradiction, 0.0, 0.1, &mut still).unwrap_err();
+    let error: StepError = OneStep::<1, 1>::step(&mut method, &Contradiction, 0.0, 0.1, &mut still).unwrap_err();
     assert_eq!(error, plain);
 }
 
@@ -90,7 +90,7 @@ fn a_step_is_predicted_from_the_last() {
         // The same place without what the last step left.
         let mut fresh = State::new(*carried.q(), *carried.v(), [false, false, true]);
         let told = |state: &mut State<3>, method: &mut _| {
-            let report = OneStep::<Sleigh, 3, 1>::step(method, &sleigh, t, 0.05, state).unwrap();
+            let report = OneStep::<3, 1>::step(method, &sleigh, t, 0.05, state).unwrap();
             report.iterations
         };
         iterations[1] += told(&mut fresh, &mut method);

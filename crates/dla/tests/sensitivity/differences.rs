@@ -97,7 +97,7 @@ pub fn disagreement<Sys, Method, const N: usize, const M: usize, const P: usize>
 ) -> f64
 where
     Sys: System<N, M>,
-    Method: OneStep<Sys, N, M> + Differentiable<N, M> + Clone,
+    Method: OneStep<N, M> + Differentiable<N, M> + Clone,
 {
     let start = |x: &Input<N, P>| {
         let system = system(&x.p);

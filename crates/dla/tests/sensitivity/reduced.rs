@@ -16,7 +16,7 @@ fn disagreement<Sys, Method, const P: usize>(
 ) -> f64
 where
     Sys: System<3, 1>,
-    Method: OneStep<Sys, 3, 1> + Differentiable<3, 1> + Clone,
+    Method: OneStep<3, 1> + Differentiable<3, 1> + Clone,
 {
     let start = |x: &Input<3, P>| {
         let system = system(&x.p);

@@ -70,8 +70,14 @@ fn a_composition_is_differentiated_as_its_base() {
 /// A method that steps by one rule and states the equations of another.
 struct Impostor;
 
-impl<Sys: System<3, 1>> OneStep<Sys, 3, 1> for Impostor {
-    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<3>) -> Result<StepReport<1>, StepError> {
+impl OneStep<3, 1> for Impostor {
+    fn step(
+        &mut self,
+        system: &dyn Mechanics<3, 1>,
+        t: f64,
+        h: f64,
+        state: &mut State<3>,
+    ) -> Result<StepReport<1>, StepError> {
         Dla::trapezoid().step(system, t, h, state)
     }
 }

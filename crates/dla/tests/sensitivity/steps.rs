@@ -27,7 +27,7 @@ fn bare() -> Input<3, 0> {
 
 fn controlled<Method>(name: &str, method: &Method)
 where
-    Method: OneStep<ControlledSleigh, 3, 1> + Differentiable<3, 1> + Clone,
+    Method: OneStep<3, 1> + Differentiable<3, 1> + Clone,
 {
     let system = Controlled::at(&START.p);
     assert_close(

@@ -44,8 +44,14 @@ impl Alternating {
     }
 }
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Alternating {
-    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+impl<const N: usize, const M: usize> OneStep<N, M> for Alternating {
+    fn step(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        t: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
         let (mut done, mut report) = (0.0, StepReport::of(0));
         for (k, part) in self.parts.iter().enumerate() {
             report = self.rules[k % 2].step(system, t + done * h, part * h, state)?;
@@ -83,7 +89,7 @@ impl<'a, Sys: System<3, 1>> Case<'a, Sys> {
     }
 
     /// The largest error of a coordinate or velocity at the end, after so many solves in all.
-    fn error(&self, mut method: impl OneStep<Sys, 3, 1>, stages: u64, solves: u64) -> f64 {
+    fn error(&self, mut method: impl OneStep<3, 1>, stages: u64, solves: u64) -> f64 {
         let steps = solves / stages;
         let mut state = self.start;
         let schedule = Schedule { t0: 0.0, step: self.duration / steps as f64, steps };
@@ -94,7 +100,7 @@ impl<'a, Sys: System<3, 1>> Case<'a, Sys> {
     }
 
     /// The order of a method from two runs, and its error in the cheaper one.
-    fn measured(&self, label: &str, method: &(impl OneStep<Sys, 3, 1> + Clone), stages: u64, order: f64) -> f64 {
+    fn measured(&self, label: &str, method: &(impl OneStep<3, 1> + Clone), stages: u64, order: f64) -> f64 {
         let [coarse, fine] = [1440, 2880].map(|solves| self.error(method.clone(), stages, solves));
         let slope = (coarse / fine).log2();
         println!("{:<20} {label:<8} {coarse:.1e} {fine:.1e}, order {slope:.2}", self.name);

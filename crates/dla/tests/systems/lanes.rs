@@ -16,7 +16,7 @@ fn start(sleigh_state: &SleighState) -> State<3> {
 fn after<Sys, Method, const N: usize>(system: &Sys, mut method: Method, h: f64, state: &State<N>) -> (State<N>, u32)
 where
     Sys: System<N, 1>,
-    Method: OneStep<Sys, N, 1>,
+    Method: OneStep<N, 1>,
 {
     let (mut state, mut iterations) = (*state, 0);
     for k in 0..STEPS {
@@ -110,7 +110,7 @@ fn the_last_step_helps_the_next() {
     let mut moved = state;
     method.step(&system, 0.0, 0.3, &mut moved).unwrap();
     let mut recalled = Gauss::new::<8>();
-    OneStep::<Sleigh, 3, 1>::recall(&mut recalled, &OneStep::<Sleigh, 3, 1>::memory(&method), &moved);
+    OneStep::<3, 1>::recall(&mut recalled, &OneStep::<3, 1>::memory(&method), &moved);
     let next = |mut method: Gauss| method.step(&system, 0.3, 0.3, &mut { moved }).unwrap().iterations;
     assert_eq!(next(recalled), next(method));
     assert!(next(recalled) < next(Gauss::new::<8>()));
@@ -240,14 +240,14 @@ fn an_adaptive_run_continues_from_a_checkpoint() {
     let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
     let mut state = start(&SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() });
     let mut method = GaussAdaptive::new::<8>(1e-9);
-    OneStep::<Sleigh, 3, 1>::step(&mut method, &body, 0.0, 7.0, &mut state).unwrap();
-    let memory = OneStep::<Sleigh, 3, 1>::memory(&method);
+    OneStep::<3, 1>::step(&mut method, &body, 0.0, 7.0, &mut state).unwrap();
+    let memory = OneStep::<3, 1>::memory(&method);
     let (mut again, mut other) = (state, GaussAdaptive::new::<8>(1e-9));
-    OneStep::<Sleigh, 3, 1>::recall(&mut other, &memory, &again);
+    OneStep::<3, 1>::recall(&mut other, &memory, &again);
     method.step(&body, 7.0, 7.0, &mut state).unwrap();
     other.step(&body, 7.0, 7.0, &mut again).unwrap();
     assert_eq!(state, again);
-    assert_ne!(memory, OneStep::<Sleigh, 3, 1>::memory(&method));
+    assert_ne!(memory, OneStep::<3, 1>::memory(&method));
 }
 
 /// What a file says of the last step may be any numbers: the next interval is crossed all the same, or refused.
@@ -256,15 +256,15 @@ fn numbers_that_no_step_leaves_do_no_harm() {
     let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
     let mut begin = start(&SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() });
     let mut method = GaussAdaptive::new::<8>(1e-9);
-    OneStep::<Sleigh, 3, 1>::step(&mut method, &body, 0.0, 7.0, &mut begin).unwrap();
-    let memory = OneStep::<Sleigh, 3, 1>::memory(&method);
+    OneStep::<3, 1>::step(&mut method, &body, 0.0, 7.0, &mut begin).unwrap();
+    let memory = OneStep::<3, 1>::memory(&method);
     let mut exact = begin;
     method.step(&body, 7.0, 7.0, &mut exact).unwrap();
     for wild in [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e300, -1e300, -1.0, 0.0] {
         for place in 0..memory.len() {
             let (mut state, mut other, mut numbers) = (begin, GaussAdaptive::new::<8>(1e-9), memory.clone());
             numbers[place] = wild;
-            OneStep::<Sleigh, 3, 1>::recall(&mut other, &numbers, &state);
+            OneStep::<3, 1>::recall(&mut other, &numbers, &state);
             if other.step(&body, 7.0, 7.0, &mut state).is_ok() {
                 for i in 0..3 {
                     // As many steps, and as much enlarged, as above.

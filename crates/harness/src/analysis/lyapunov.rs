@@ -145,7 +145,7 @@ pub fn lyapunov_by<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
     method: &Method,
     request: &LyapunovRequest<N>,
-    drive: impl FnOnce(&Schedule, &mut State<N>, &mut dyn Observer<Sys, N, M>) -> Result<u64, RunError>,
+    drive: impl FnOnce(&Schedule, &mut State<N>, &mut dyn Observer<N, M>) -> Result<u64, RunError>,
 ) -> Result<Lyapunov, LyapunovError> {
     let LyapunovRequest { schedule, settle, q, v, .. } = *request;
     let (count, most) = (request.exponents.unwrap_or(2 * N - M), 2 * N - M);

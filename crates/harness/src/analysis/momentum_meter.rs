@@ -4,7 +4,8 @@ use std::ops::ControlFlow;
 
 /// Watches the momentum along a field on a run, and the momentum equation.
 #[derive(Debug, Clone)]
-pub struct MomentumMeter<X> {
+pub struct MomentumMeter<'a, Sys, X> {
+    system: &'a Sys,
     field: X,
     first: f64,
     last: Option<(f64, f64)>,
@@ -13,11 +14,11 @@ pub struct MomentumMeter<X> {
     defect: f64,
 }
 
-impl<X> MomentumMeter<X> {
-    /// For the momentum along this field.
+impl<'a, Sys, X> MomentumMeter<'a, Sys, X> {
+    /// For the momentum of this system along this field.
     #[must_use]
-    pub fn new(field: X) -> Self {
-        Self { field, first: 0.0, last: None, gained: 0.0, drift: 0.0, defect: 0.0 }
+    pub fn new(system: &'a Sys, field: X) -> Self {
+        Self { system, field, first: 0.0, last: None, gained: 0.0, drift: 0.0, defect: 0.0 }
     }
 
     /// The largest `|p.X - (p.X)(0)|` at the nodes: rounding where the momentum is conserved.
@@ -33,32 +34,32 @@ impl<X> MomentumMeter<X> {
         self.defect
     }
 
-    fn balance<Sys, const N: usize, const M: usize>(&self, node: &View<'_, Sys, N>) -> (f64, f64)
+    fn balance<const N: usize, const M: usize>(&self, node: &View<'_, N, M>) -> (f64, f64)
     where
         Sys: System<N, M>,
         X: VectorField<N>,
     {
-        let balance = momentum_balance(node.system, node.t, node.state.q(), node.state.v(), &self.field);
+        let balance = momentum_balance(self.system, node.t, node.state.q(), node.state.v(), &self.field);
         balance.map_or((f64::NAN, f64::NAN), |balance: MomentumBalance<M>| (balance.momentum, balance.rate()))
     }
 }
 
-impl<Sys, X, const N: usize, const M: usize> Observer<Sys, N, M> for MomentumMeter<X>
+impl<Sys, X, const N: usize, const M: usize> Observer<N, M> for MomentumMeter<'_, Sys, X>
 where
     Sys: System<N, M>,
     X: VectorField<N>,
 {
-    fn start(&mut self, node: &View<'_, Sys, N>) {
+    fn start(&mut self, node: &View<'_, N, M>) {
         let (momentum, rate) = self.balance(node);
         self.first = momentum;
         self.last = Some((node.t, rate));
     }
 
-    fn resume(&mut self, node: &View<'_, Sys, N>) {
+    fn resume(&mut self, node: &View<'_, N, M>) {
         self.last = Some((node.t, self.balance(node).1));
     }
 
-    fn step(&mut self, node: &View<'_, Sys, N>, _report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
         let (momentum, rate) = self.balance(node);
         if let Some((t, before)) = self.last {
             self.gained += 0.5 * (node.t - t) * (before + rate);

@@ -31,12 +31,12 @@ impl<const N: usize> Rounds<N> {
     }
 }
 
-impl<Sys, const N: usize, const M: usize> Observer<Sys, N, M> for Rounds<N> {
-    fn start(&mut self, node: &View<'_, Sys, N>) {
+impl<const N: usize, const M: usize> Observer<N, M> for Rounds<N> {
+    fn start(&mut self, node: &View<'_, N, M>) {
         self.start = Some(*node.state);
     }
 
-    fn step(&mut self, node: &View<'_, Sys, N>, _report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
         if let Some(start) = &self.start
             && node.k.is_multiple_of(self.every)
         {

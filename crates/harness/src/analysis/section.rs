@@ -1,7 +1,6 @@
 use crate::run::integrate_pieces;
 use crate::{Again, Method};
-use dla::{Close, Crossing, Event, RunError, Schedule, State, Watch};
-use lagrangian::{Piecewise, System};
+use dla::{Close, Crossing, Event, PiecewiseMechanics, RunError, Schedule, State, Watch};
 
 /// The crossings of a surface by one motion.
 #[derive(Debug, Clone)]
@@ -18,8 +17,8 @@ pub struct Section<const N: usize> {
 const SAMPLES: u32 = 2;
 
 /// Where a motion crosses the surface on which an event's function of time and state is zero (Poincare 1881).
-pub fn section<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
-    system: &Sys,
+pub fn section<const N: usize, const M: usize>(
+    system: &dyn PiecewiseMechanics<N, M>,
     method: &Method,
     schedule: &Schedule,
     (q, v): ([f64; N], [f64; N]),

@@ -124,12 +124,12 @@ impl<'a, const N: usize, const M: usize> Stretch<'a, N, M> {
     }
 }
 
-impl<Sys, const N: usize, const M: usize> Observer<Sys, N, M> for Stretch<'_, N, M> {
-    fn start(&mut self, node: &View<'_, Sys, N>) {
+impl<const N: usize, const M: usize> Observer<N, M> for Stretch<'_, N, M> {
+    fn start(&mut self, node: &View<'_, N, M>) {
         self.failure = self.begin(node.t, node.state).err().map(Into::into);
     }
 
-    fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         if self.failure.is_none() {
             self.failure = self.advance(node.k, node.t, node.state, report).err();
         }

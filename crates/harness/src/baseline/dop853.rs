@@ -1,8 +1,7 @@
 use super::reduced_point::ReducedPoint;
 use differential_equations::methods::{DormandPrince, ExplicitRungeKutta, Ordinary};
 use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
-use dla::{OneStep, OwnStep, StackUse, State, StepError, StepReport};
-use lagrangian::{System, reduced_slope, velocity_of};
+use dla::{Mechanics, OneStep, OwnStep, StackUse, State, StepError, StepReport};
 use std::cell::Cell;
 use std::ops::ControlFlow;
 
@@ -38,9 +37,9 @@ impl<const N: usize, const M: usize> Dop853<N, M> {
 
     /// Crosses an interval of length `h`, shows where its steps end within it, and returns the steps tried.
     #[inline]
-    fn cross<Sys: System<N, M>>(
+    fn cross(
         &mut self,
-        slopes: &Slopes<'_, Sys, N>,
+        slopes: &Slopes<'_, N, M>,
         h: f64,
         xi: [f64; N],
         mut see: impl FnMut(f64, &ReducedPoint<N, M>) -> ControlFlow<()>,
@@ -87,8 +86,8 @@ impl<const N: usize, const M: usize> std::fmt::Debug for Dop853<N, M> {
 }
 
 /// The reduced equations as the library wants them.
-struct Slopes<'a, Sys, const N: usize> {
-    system: &'a Sys,
+struct Slopes<'a, const N: usize, const M: usize> {
+    system: &'a dyn Mechanics<N, M>,
     t0: f64,
     q0: [f64; N],
     /// Slopes that are still used. What the library asks for beyond them serves its interpolant, which nobody reads.
@@ -97,21 +96,21 @@ struct Slopes<'a, Sys, const N: usize> {
     failure: Cell<Option<StepError>>,
 }
 
-impl<'a, Sys, const N: usize> Slopes<'a, Sys, N> {
+impl<'a, const N: usize, const M: usize> Slopes<'a, N, M> {
     /// Of an interval from `state` at the time `t0` (s).
     #[inline]
-    fn new(system: &'a Sys, t0: f64, state: &State<N>) -> Self {
+    fn new(system: &'a dyn Mechanics<N, M>, t0: f64, state: &State<N>) -> Self {
         Self { system, t0, q0: *state.q(), left: Cell::new(0), failure: Cell::new(None) }
     }
 }
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> ODE<f64, ReducedPoint<N, M>> for Slopes<'_, Sys, N> {
+impl<const N: usize, const M: usize> ODE<f64, ReducedPoint<N, M>> for Slopes<'_, N, M> {
     #[inline]
     fn diff(&self, t: f64, y: &ReducedPoint<N, M>, slope: &mut ReducedPoint<N, M>) {
         let Some(left) = self.left.get().checked_sub(1) else { return };
         self.left.set(left);
         let q = lagrangian::from_fn(|i| self.q0[i] + y.d[i]);
-        (slope.d, slope.xi) = match reduced_slope(self.system, self.t0 + t, &q, &y.xi) {
+        (slope.d, slope.xi) = match self.system.reduced_slope(self.t0 + t, &q, &y.xi) {
             Ok(found) => (found.velocity, found.acceleration),
             Err(error) => {
                 self.failure.set(Some(error.into()));
@@ -124,16 +123,22 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> ODE<f64, ReducedPoint<N,
 
 const USE: StackUse = StackUse { squares: 28, rows: 20 };
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Dop853<N, M> {
+impl<const N: usize, const M: usize> OneStep<N, M> for Dop853<N, M> {
     #[inline]
-    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+    fn step(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        t: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
         if const { USE.exceeds::<N, M>() } {
             return Err(USE.refusal::<N, M>());
         }
         let xi0 = state.quasi_velocities(system, t)?;
         match self.cross(&Slopes::new(system, t, state), h, xi0, |_, _| ControlFlow::Continue(())) {
             Ok(_) => moved(system, t + h, self.solver.y(), state),
-            Err(error) => match at_rest::<Sys, N, M>(system, (t, h), state, &xi0) {
+            Err(error) => match at_rest(system, (t, h), state, &xi0) {
                 Some(point) => moved(system, t + h, &point, state),
                 None => Err(error),
             },
@@ -150,7 +155,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for D
 
     fn own_steps(
         &self,
-        system: &Sys,
+        system: &dyn Mechanics<N, M>,
         (t, h): (f64, f64),
         state: &State<N>,
         memory: &mut Vec<f64>,
@@ -160,7 +165,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for D
         let (xi0, mut failure) = (state.quasi_velocities(system, t)?, None);
         method.cross(&Slopes::new(system, t, state), h, xi0, |made, point| {
             let mut inner = *state;
-            match moved::<Sys, N, M>(system, t + made, point, &mut inner) {
+            match moved::<N, M>(system, t + made, point, &mut inner) {
                 Ok(_) => see(t + made, &inner),
                 Err(error) => {
                     failure = Some(error);
@@ -177,14 +182,14 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for D
 /// Where an interval leads in which nothing moves by as much as a number whose square is one: the library's measure of errors is a sum of
 /// squares, and refuses every step of a motion that has come so near to rest.
 #[cold]
-fn at_rest<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+fn at_rest<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     (t, h): (f64, f64),
     state: &State<N>,
     xi: &[f64; N],
 ) -> Option<ReducedPoint<N, M>> {
     const LEAST: f64 = 1e-130;
-    let slope = reduced_slope(system, t, state.q(), xi).ok()?;
+    let slope = system.reduced_slope(t, state.q(), xi).ok()?;
     let rests = slope.velocity.iter().chain(&slope.acceleration).all(|x| (h * x).abs() < LEAST);
     rests.then(|| ReducedPoint {
         d: slope.velocity.map(|v| h * v),
@@ -194,13 +199,13 @@ fn at_rest<Sys: System<N, M>, const N: usize, const M: usize>(
 
 /// Moves a state to where an interval has led, at the time `t` (s).
 #[inline]
-fn moved<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+fn moved<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     t: f64,
     point: &ReducedPoint<N, M>,
     state: &mut State<N>,
 ) -> Result<StepReport<M>, StepError> {
     let ReducedPoint { d, xi } = *point;
-    let v = velocity_of(system, t, &state.ahead(&d), &xi)?;
+    let v = system.velocity_of(t, &state.ahead(&d), &xi)?;
     super::rk4::explicit(state, &d, v, Some(xi))
 }

@@ -1,8 +1,7 @@
 use super::shifted;
 use dla::convergence::FixedPoint;
 use dla::convergence::tolerances::HALF_A_UNIT;
-use dla::{OneStep, StackUse, Stage, State, StepError, StepReport};
-use lagrangian::{MotionRounding, System};
+use dla::{Mechanics, OneStep, StackUse, Stage, State, StepError, StepReport};
 
 /// The implicit midpoint rule in full coordinates, the multiplier eliminated as in [`Rk4`](crate::Rk4).
 ///
@@ -30,9 +29,9 @@ impl Default for ImplicitMidpoint {
 impl ImplicitMidpoint {
     /// The acceleration in the middle, to the rounding of every component by itself, and the iterations.
     #[inline]
-    fn acceleration<Sys: System<N, M>, const N: usize, const M: usize>(
+    fn acceleration<const N: usize, const M: usize>(
         &self,
-        system: &Sys,
+        system: &dyn Mechanics<N, M>,
         (t0, h): (f64, f64),
         state: &State<N>,
     ) -> Result<([f64; N], u32), StepError> {
@@ -47,7 +46,7 @@ impl ImplicitMidpoint {
             let next = motion(t0 + 0.5 * h, &shifted(q0, 0.5 * h, &v), &v)?;
             let seen = lagrangian::from_fn(|i| ((next[i] - a[i]).abs(), next[i].abs()));
             a = next;
-            let noise = || [MotionRounding::at(system, t0, q0, v0).map_or([0.0; N], |rounding| rounding.acceleration)];
+            let noise = || [system.motion_rounding(t0, q0, v0).map_or([0.0; N], |rounding| rounding.acceleration)];
             let settled = convergence.see([seen], 0.0, noise);
             let settled = settled.map_err(|source| StepError::Newton { stage: Stage::Collocation, source })?;
             if let Some(iterations) = settled {
@@ -59,9 +58,15 @@ impl ImplicitMidpoint {
 
 const USE: StackUse = StackUse { squares: 14, rows: 20 };
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for ImplicitMidpoint {
+impl<const N: usize, const M: usize> OneStep<N, M> for ImplicitMidpoint {
     #[inline]
-    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+    fn step(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        t: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
         if const { USE.exceeds::<N, M>() } {
             return Err(USE.refusal::<N, M>());
         }

@@ -1,6 +1,6 @@
 use super::{STAGES, shifted, weighted};
-use dla::{OneStep, StackUse, State, StepError, StepReport};
-use lagrangian::{Saddle, System, constraint_residual, from_fn, mass_matrix};
+use dla::{Mechanics, OneStep, StackUse, State, StepError, StepReport};
+use lagrangian::{Saddle, from_fn};
 
 /// The classical Runge-Kutta method in full coordinates.
 ///
@@ -16,8 +16,8 @@ pub struct Rk4Projected;
 
 /// The increments of `q` and `v` over one step.
 #[inline(always)]
-fn increments<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+fn increments<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     t: f64,
     h: f64,
     state: &State<N>,
@@ -50,9 +50,15 @@ pub(super) fn explicit<const N: usize, const M: usize>(
 
 const USE: StackUse = StackUse { squares: 14, rows: 20 };
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Rk4 {
+impl<const N: usize, const M: usize> OneStep<N, M> for Rk4 {
     #[inline]
-    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+    fn step(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        t: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
         if const { USE.exceeds::<N, M>() } {
             return Err(USE.refusal::<N, M>());
         }
@@ -62,9 +68,15 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for R
     }
 }
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Rk4Projected {
+impl<const N: usize, const M: usize> OneStep<N, M> for Rk4Projected {
     #[inline]
-    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+    fn step(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        t: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
         if const { USE.exceeds::<N, M>() } {
             return Err(USE.refusal::<N, M>());
         }
@@ -76,18 +88,18 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for R
 }
 
 /// The admissible velocity nearest to `v` in the kinetic energy: `M (w - v) = A' mu`, `A w + b = 0`.
-fn projected<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+fn projected<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     t: f64,
     q: &[f64; N],
     v: &[f64; N],
 ) -> Result<[f64; N], StepError> {
-    let (_, mass) = mass_matrix(system, t, q, v);
+    let (_, mass) = system.mass_matrix(t, q, v);
     let (a, _) = system.constraint(t, q);
-    let level = constraint_residual(system, t, q, v).map(|r| -r);
+    let level = system.residual(t, q, v).map(|r| -r);
     let saddle = Saddle { block: mass, transposed: a, rows: a, right: [0.0; N], level };
     let (correction, _) = saddle
-        .solve(system.admissible_basis(t, q).as_ref())
+        .solve(system.basis(t, q).as_ref())
         .map_err(|source| StepError::Motion(lagrangian::MotionError { time: t, source }))?;
     Ok(from_fn(|i| v[i] + correction[i]))
 }

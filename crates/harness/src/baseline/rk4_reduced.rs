@@ -1,6 +1,5 @@
 use super::{STAGES, shifted, weighted};
-use dla::{OneStep, StackUse, State, StepError, StepReport};
-use lagrangian::{System, reduced_slope, velocity_of};
+use dla::{Mechanics, OneStep, StackUse, State, StepError, StepReport};
 
 /// The classical Runge-Kutta method on the reduced equations.
 ///
@@ -11,9 +10,15 @@ pub struct Rk4Reduced;
 
 const USE: StackUse = StackUse { squares: 28, rows: 20 };
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Rk4Reduced {
+impl<const N: usize, const M: usize> OneStep<N, M> for Rk4Reduced {
     #[inline]
-    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+    fn step(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        t: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
         if const { USE.exceeds::<N, M>() } {
             return Err(USE.refusal::<N, M>());
         }
@@ -26,12 +31,12 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for R
                 q = shifted(q0, stage * h, &velocities[i - 1]);
                 xi = shifted(&xi0, stage * h, &rates[i - 1]);
             }
-            let slope = reduced_slope(system, t + stage * h, &q, &xi)?;
+            let slope = system.reduced_slope(t + stage * h, &q, &xi)?;
             (velocities[i], rates[i]) = (slope.velocity, slope.acceleration);
         }
         let increment = weighted(h, &velocities);
         let xi1 = shifted(&xi0, 1.0, &weighted(h, &rates));
-        let v1 = velocity_of(system, t + h, &state.ahead(&increment), &xi1)?;
+        let v1 = system.velocity_of(t + h, &state.ahead(&increment), &xi1)?;
         super::rk4::explicit(state, &increment, v1, Some(xi1))
     }
 }

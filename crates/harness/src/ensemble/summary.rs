@@ -1,6 +1,5 @@
-use dla::State;
+use dla::{Mechanics, State};
 use lagrangian::linear::larger;
-use lagrangian::{System, constraint_residual, energy};
 
 /// A trajectory in a few numbers: its end, and extremes over the nodes that were looked at.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,9 +35,9 @@ impl<const K: usize> Summary<K> {
     }
 
     /// Takes in one more node.
-    pub(super) fn see<Sys: System<N, M>, const N: usize, const M: usize>(
+    pub(super) fn see<const N: usize, const M: usize>(
         &mut self,
-        system: &Sys,
+        system: &dyn Mechanics<N, M>,
         t: f64,
         state: &State<N>,
         of: impl Fn(&[f64; N], &[f64; N]) -> [f64; K],
@@ -47,12 +46,12 @@ impl<const K: usize> Summary<K> {
         for k in 0..K {
             (self.low[k], self.high[k]) = (self.low[k].min(self.end[k]), self.high[k].max(self.end[k]));
         }
-        self.energy[1] = energy(system, t, state.q(), state.v());
+        self.energy[1] = system.energy(t, state.q(), state.v());
         if self.energy[0].is_nan() {
             self.energy[0] = self.energy[1];
         }
         self.energy_deviation = larger(self.energy_deviation, (self.energy[1] - self.energy[0]).abs());
-        let residual = constraint_residual(system, t, state.q(), state.v());
+        let residual = system.residual(t, state.q(), state.v());
         self.constraint = residual.iter().fold(self.constraint, |most, residual| larger(most, residual.abs()));
     }
 }

@@ -69,7 +69,7 @@ pub fn summarise<Sys, const N: usize, const M: usize, const K: usize>(
 where
     Sys: System<N, M> + Piecewise,
 {
-    let mut looking = Looking { watching, seen: Summary::new(), last: None };
+    let mut looking = Looking { system, watching, seen: Summary::new(), last: None };
     let mut state = State::new(q, v, system.angles());
     let outcome = integrate_pieces(system, method, &watching.schedule, &mut state, &mut looking);
     (looking.seen, outcome.err())
@@ -77,38 +77,34 @@ where
 
 /// The observer of one trajectory.
 struct Looking<'a, 'b, Sys, const N: usize, const K: usize> {
+    system: &'a Sys,
     watching: &'a Watching<'b, Sys, N, K>,
     seen: Summary<K>,
     last: Option<u64>,
 }
 
 impl<Sys, const N: usize, const K: usize> Looking<'_, '_, Sys, N, K> {
-    fn see<const M: usize>(&mut self, node: &View<'_, Sys, N>)
-    where
-        Sys: System<N, M>,
-    {
+    fn see<const M: usize>(&mut self, node: &View<'_, N, M>) {
         if self.last != Some(node.k) {
             self.last = Some(node.k);
-            self.seen.see(node.system, node.t, node.state, |q, v| (self.watching.of)(node.system, q, v));
+            self.seen.see(node.system, node.t, node.state, |q, v| (self.watching.of)(self.system, q, v));
         }
     }
 }
 
-impl<Sys: System<N, M>, const N: usize, const M: usize, const K: usize> Observer<Sys, N, M>
-    for Looking<'_, '_, Sys, N, K>
-{
-    fn start(&mut self, node: &View<'_, Sys, N>) {
+impl<Sys, const N: usize, const M: usize, const K: usize> Observer<N, M> for Looking<'_, '_, Sys, N, K> {
+    fn start(&mut self, node: &View<'_, N, M>) {
         self.see(node);
     }
 
-    fn step(&mut self, node: &View<'_, Sys, N>, _report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
         if node.k.is_multiple_of(self.watching.every.max(1)) {
             self.see(node);
         }
         ControlFlow::Continue(())
     }
 
-    fn end(&mut self, node: &View<'_, Sys, N>) {
+    fn end(&mut self, node: &View<'_, N, M>) {
         self.see(node);
     }
 }

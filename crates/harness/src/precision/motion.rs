@@ -1,11 +1,10 @@
 use crate::{Method, integrate_pieces};
-use dla::{RunError, Schedule, State, pieces};
-use lagrangian::{Piecewise, System};
+use dla::{PiecewiseMechanics, RunError, Schedule, State, pieces};
 
 /// A motion to be computed again and again, with other methods and other steps.
 #[derive(Debug, Clone, Copy)]
-pub struct Motion<'a, Sys, const N: usize> {
-    system: &'a Sys,
+pub struct Motion<'a, const N: usize, const M: usize> {
+    system: &'a dyn PiecewiseMechanics<N, M>,
     q: [f64; N],
     v: [f64; N],
     duration: f64,
@@ -17,15 +16,12 @@ const FEWEST: u64 = 8;
 /// The most steps that the jumps of a system may ask for.
 const MOST: u64 = 1 << 20;
 
-impl<'a, Sys, const N: usize> Motion<'a, Sys, N> {
+impl<'a, const N: usize, const M: usize> Motion<'a, N, M> {
     /// The motion of a system from `q` with the velocity `v` over `duration` (s); none where no number of steps up to a
     /// million has a node at every jump.
     #[must_use]
-    pub fn new(system: &'a Sys, q: [f64; N], v: [f64; N], duration: f64) -> Option<Self>
-    where
-        Sys: Piecewise,
-    {
-        let jumps = system.jumps(0.0, duration);
+    pub fn new(system: &'a dyn PiecewiseMechanics<N, M>, q: [f64; N], v: [f64; N], duration: f64) -> Option<Self> {
+        let jumps = system.jump_times(0.0, duration);
         let motion = Self { system, q, v, duration, base: 1 };
         let aligned = |steps: &u64| pieces(&motion.schedule(*steps), jumps.clone()).is_ok();
         Some(Self { base: (1..=MOST).find(aligned)?, ..motion })
@@ -57,10 +53,7 @@ impl<'a, Sys, const N: usize> Motion<'a, Sys, N> {
     ///
     /// # Errors
     /// [`RunError`] with the step that failed.
-    pub fn end<const M: usize>(&self, method: &Method, steps: u64) -> Result<[f64; N], RunError>
-    where
-        Sys: System<N, M> + Piecewise,
-    {
+    pub fn end(&self, method: &Method, steps: u64) -> Result<[f64; N], RunError> {
         let mut state = State::new(self.q, self.v, self.system.angles());
         integrate_pieces(self.system, method, &self.schedule(steps), &mut state, &mut ())?;
         Ok(state.unwrapped())

@@ -2,7 +2,6 @@ use super::Motion;
 use crate::{Method, MethodError};
 use dla::RunError;
 use lagrangian::linear::larger;
-use lagrangian::{Piecewise, System};
 use thiserror::Error;
 
 /// Where a motion ends, computed until finer steps change nothing but rounding.
@@ -52,8 +51,8 @@ impl<const N: usize> Reference<N> {
     ///
     /// # Errors
     /// [`ReferenceError`] where no run succeeds.
-    pub fn converged<Sys: System<N, M> + Piecewise, const M: usize>(
-        motion: &Motion<'_, Sys, N>,
+    pub fn converged<const M: usize>(
+        motion: &Motion<'_, N, M>,
         distance: &dyn Fn(&[f64; N], &[f64; N]) -> f64,
     ) -> Result<Self, ReferenceError> {
         let (gauss16, gauss14) = (Method::named("gauss16", None)?, Method::named("gauss14", None)?);

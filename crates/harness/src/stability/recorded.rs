@@ -1,5 +1,4 @@
 use dla::{Observer, RunError, State, StepReport, View, Work};
-use lagrangian::System;
 use std::fmt;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -71,7 +70,7 @@ impl<'a, const N: usize> Recorder<'a, N> {
         Recorded { failure, ..self.recorded }
     }
 
-    fn see<Sys: System<N, M>, const M: usize>(&mut self, node: &View<'_, Sys, N>) -> ControlFlow<()> {
+    fn see<const M: usize>(&mut self, node: &View<'_, N, M>) -> ControlFlow<()> {
         let late = node.k.is_multiple_of(1024) && self.begun.elapsed() > Self::LONGEST;
         self.recorded.late |= late;
         let mut broken = false;
@@ -85,8 +84,8 @@ impl<'a, const N: usize> Recorder<'a, N> {
     }
 }
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for Recorder<'_, N> {
-    fn start(&mut self, node: &View<'_, Sys, N>) {
+impl<const N: usize, const M: usize> Observer<N, M> for Recorder<'_, N> {
+    fn start(&mut self, node: &View<'_, N, M>) {
         self.initial = node.energy();
         self.work.start(node);
         // A start that is not finite is seen again after the first step.
@@ -94,7 +93,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for 
     }
 
     /// Also where a run begins that has made steps before.
-    fn resume(&mut self, node: &View<'_, Sys, N>) {
+    fn resume(&mut self, node: &View<'_, N, M>) {
         if self.recorded.nodes.is_empty() {
             self.start(node);
         } else {
@@ -102,7 +101,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Observer<Sys, N, M> for 
         }
     }
 
-    fn step(&mut self, node: &View<'_, Sys, N>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         // Work never ends a run.
         let _ = self.work.step(node, report);
         self.see(node)

@@ -14,7 +14,7 @@ fn start(speed: f64, turn_rate: f64) -> ([f64; 3], [f64; 3]) {
     SleighState { heading: 0.3, speed, turn_rate, ..SleighState::default() }.to_coordinates()
 }
 
-fn steps<'a, Sys: System<N, M>, Method: OneStep<Sys, N, M> + Clone + 'a, const N: usize, const M: usize>(
+fn steps<'a, Sys: System<N, M>, Method: OneStep<N, M> + Clone + 'a, const N: usize, const M: usize>(
     system: &'a Sys,
     method: Method,
 ) -> impl FnMut(f64, &State<N>) -> Option<State<N>> + 'a {

@@ -23,8 +23,8 @@ fn run<Sys, Method, Obs, const N: usize, const M: usize>(
     mut observer: Obs,
 ) where
     Sys: System<N, M> + Piecewise,
-    Method: OneStep<Sys, N, M>,
-    Obs: Observer<Sys, N, M>,
+    Method: OneStep<N, M>,
+    Obs: Observer<N, M>,
 {
     let schedule = Schedule { t0: 0.0, step, steps };
     piece_by_piece(system, &schedule, state, |piece, steps, state| {

@@ -173,7 +173,7 @@ impl System<2, 1> for Slowed {
 /// These methods need no derivative of a force; what is not a number they name like all others.
 #[test]
 fn what_is_not_a_number_is_named() {
-    fn outcome(system: Slowed, mut method: impl OneStep<Slowed, 2, 1>) -> Result<u64, StepError> {
+    fn outcome(system: Slowed, mut method: impl OneStep<2, 1>) -> Result<u64, StepError> {
         drive(&system, &mut method, &schedule(0.1, 10), &mut at(1.0, 0.0), ()).map_err(|error| error.source)
     }
     let all = |system| {

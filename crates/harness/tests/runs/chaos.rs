@@ -42,7 +42,7 @@ pub(crate) fn exponents_by<Sys, Stepper>(
 ) -> Lyapunov
 where
     Sys: System<3, 1>,
-    Stepper: OneStep<Sys, 3, 1>,
+    Stepper: OneStep<3, 1>,
 {
     let schedule = Schedule { t0: 0.0, step, steps };
     let request = LyapunovRequest { schedule, settle, exponents: None, q, v };

@@ -8,7 +8,7 @@ use dla::{OneStep, StackUse};
 use fleet::{Balls, Ended, Fleet, on_stack};
 use harness::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced};
 
-fn ends<Method: OneStep<Fleet<60, true>, 60, 20>>(method: impl FnOnce() -> Method + Send + 'static) -> Ended {
+fn ends<Method: OneStep<60, 20>>(method: impl FnOnce() -> Method + Send + 'static) -> Ended {
     on_stack::<Fleet<60, true>, _, 60, 20>(StackUse::LIMIT, method).unwrap()
 }
 

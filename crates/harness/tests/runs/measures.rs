@@ -104,7 +104,7 @@ fn the_canonical_scheme() {
 /// `ln (rho(z1) |det D Phi| / rho(z0))` of one step, with `rho = 1/|omega|`.
 fn defect<Method>(mut method: Method, h: f64) -> f64
 where
-    Method: OneStep<Sleigh, 3, 1> + Differentiable<3, 1>,
+    Method: OneStep<3, 1> + Differentiable<3, 1>,
 {
     let sleigh = Sleigh::new(1.3, 0.8, 0.4).unwrap();
     let (q, v) = SleighState { speed: -0.6, turn_rate: 1.1, ..SleighState::default() }.to_coordinates();
@@ -118,7 +118,7 @@ where
 fn the_defect_of_each_method() {
     fn row<Method>(name: &str, method: &Method, order: f64, h: f64)
     where
-        Method: OneStep<Sleigh, 3, 1> + Differentiable<3, 1> + Clone,
+        Method: OneStep<3, 1> + Differentiable<3, 1> + Clone,
     {
         let [coarse, fine] = [h, 0.5 * h].map(|h| defect(method.clone(), h).abs());
         let measured = (coarse / fine).log2();

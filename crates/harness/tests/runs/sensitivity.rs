@@ -57,7 +57,7 @@ fn flat(q: [f64; 3], v: [f64; 3]) -> [f64; 6] {
 
 fn check<Method>(name: &str, method: &Method)
 where
-    Method: OneStep<Pushed, 3, 1> + Differentiable<3, 1> + Clone,
+    Method: OneStep<3, 1> + Differentiable<3, 1> + Clone,
 {
     let start = [0.2, -0.7, 0.4, 0.8, -0.5];
     let mut end = state(start);

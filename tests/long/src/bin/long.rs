@@ -24,13 +24,13 @@ struct Watch {
     kept: Vec<f64>,
 }
 
-impl Observer<InBowl, 3, 1> for Watch {
-    fn start(&mut self, node: &View<'_, InBowl, 3>) {
+impl Observer<3, 1> for Watch {
+    fn start(&mut self, node: &View<'_, 3, 1>) {
         self.initial = node.energy();
         self.kept.push(0.0);
     }
 
-    fn step(&mut self, node: &View<'_, InBowl, 3>, _report: &StepReport<1>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_, 3, 1>, _report: &StepReport<1>) -> ControlFlow<()> {
         let error = node.energy() - self.initial;
         self.constraint = self.constraint.max(node.constraint());
         self.error = self.error.max(error.abs());

@@ -174,15 +174,15 @@ mod tests {
         for _ in 0..200 {
             method.step(&system(), 0.0, STEP, &mut state).unwrap();
         }
-        let memory = OneStep::<With<Sleigh, (Bowl, Drag)>, 3, 1>::memory(&method);
+        let memory = OneStep::<3, 1>::memory(&method);
         let (mut again, mut resumed) = (self::method(), state);
-        OneStep::<With<Sleigh, (Bowl, Drag)>, 3, 1>::recall(&mut again, &memory, &resumed);
+        OneStep::<3, 1>::recall(&mut again, &memory, &resumed);
         assert!(again.kept.is_in_basis());
         for at in 0..memory.len() {
             let (mut wild, mut other) = (memory.clone(), state);
             wild[at] = f64::NAN;
             let mut method = self::method();
-            OneStep::<With<Sleigh, (Bowl, Drag)>, 3, 1>::recall(&mut method, &wild, &other);
+            OneStep::<3, 1>::recall(&mut method, &wild, &other);
             method.step(&system(), 0.0, STEP, &mut other).unwrap();
             assert!(other.v().iter().all(|v| v.is_finite()));
         }
