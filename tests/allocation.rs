@@ -16,14 +16,14 @@ fn no_method_allocates_in_a_step() {
         let method = Method::named(info.name, None).unwrap();
         let mut state = state_of(&sleigh, &backward());
         let counts = measure(|| {
-            integrate(&sleigh, &method, &schedule, &mut state, ()).unwrap();
+            integrate(&sleigh, &method, &schedule, &mut state, &mut ()).unwrap();
         });
         assert_eq!(counts.count_total, 0, "{} allocates", info.name);
     }
     for (name, mut method) in midpoint_forms() {
         let mut state = state_of(&sleigh, &backward());
         let counts = measure(|| {
-            dla::drive(&sleigh, &mut method, &schedule, &mut state, ()).unwrap();
+            dla::drive(&sleigh, &mut method, &schedule, &mut state, &mut ()).unwrap();
         });
         assert_eq!(counts.count_total, 0, "{name} allocates");
     }

@@ -33,6 +33,6 @@ fn method(name: &str) -> Method {
 fn go<Sys: System<3, 1>>(system: &Sys, method: &Method, steps: u64) {
     let (q, v) = start();
     let mut state = State::new(q, v, system.angles());
-    integrate(black_box(system), method, &schedule(steps), &mut state, ()).expect("the steps succeed");
+    integrate(black_box(system), method, &schedule(steps), &mut state, &mut ()).expect("the steps succeed");
     black_box(state);
 }

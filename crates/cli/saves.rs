@@ -70,7 +70,7 @@ impl Saves {
         };
         let every = to.as_ref().map(|_| self.every);
         let mut saving = Saving { identity: &identity, from: read.as_ref(), every, save: &mut save };
-        let outcome = run_saved::<_, N, M>(system, method, request, &mut saving, None, progress);
+        let outcome = run_saved::<N, M>(system, method, request, &mut saving, None, progress);
         let (mut record, _) =
             outcome.map_err(|source| CliError::Checkpoint { path: from.unwrap_or_default(), source })?;
         written?;

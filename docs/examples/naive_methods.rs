@@ -15,8 +15,14 @@ use std::path::Path;
 /// Explicit Euler on the equations of motion with the multiplier eliminated: no method of the library, but a [`OneStep`].
 struct Euler;
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for Euler {
-    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+impl<const N: usize, const M: usize> OneStep<N, M> for Euler {
+    fn step(
+        &mut self,
+        system: &dyn noslip::Mechanics<N, M>,
+        t: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
         let motion = system.motion(t, state.q(), state.v()).map_err(StepError::Motion)?;
         let (q, v) = (state.v().map(|v| h * v), std::array::from_fn(|i| state.v()[i] + h * motion.acceleration[i]));
         if !v.iter().all(|v: &f64| v.is_finite()) {
@@ -30,8 +36,14 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for E
 /// The same, with the velocity projected onto the constraint after every step, orthogonally in the kinetic energy.
 struct EulerProjected;
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> OneStep<Sys, N, M> for EulerProjected {
-    fn step(&mut self, system: &Sys, t: f64, h: f64, state: &mut State<N>) -> Result<StepReport<M>, StepError> {
+impl<const N: usize, const M: usize> OneStep<N, M> for EulerProjected {
+    fn step(
+        &mut self,
+        system: &dyn noslip::Mechanics<N, M>,
+        t: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
         let report = Euler.step(system, t, h, state)?;
         onto_constraint(system, t + h, state)?;
         Ok(report)
@@ -48,7 +60,7 @@ const STEP: f64 = 0.1;
 const LOST: f64 = 1e3;
 
 /// A run in a bowl, until it is lost.
-fn series<M: OneStep<Basin, 3, 1>>(basin: &Basin, start: &SleighState, label: &str, mut method: M) -> Series {
+fn series<M: OneStep<3, 1>>(basin: &Basin, start: &SleighState, label: &str, mut method: M) -> Series {
     let (q, v) = start.to_coordinates();
     let mut state = State::new(q, v, basin.angles());
     let mut trajectory = Trajectory::<3, 1>::every(1);

@@ -94,9 +94,9 @@ pub trait Node {
     fn point(&self) -> Point;
 }
 
-struct Seen<'a, 'b, Sys, const N: usize, const M: usize>(&'a View<'b, N, M>);
+struct Seen<'a, 'b, const N: usize, const M: usize>(&'a View<'b, N, M>);
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> Node for Seen<'_, '_, Sys, N, M> {
+impl<const N: usize, const M: usize> Node for Seen<'_, '_, N, M> {
     fn t(&self) -> f64 {
         self.0.t
     }
@@ -167,7 +167,7 @@ macro_rules! case {
             fn run(&self, method: &Method, from: &Point, when: &Schedule, watch: Watch<'_>) -> Result<Point, RunError> {
                 let (q, v) = from.place();
                 let mut state = State::new(q, v, self.system.angles());
-                integrate(&self.system, method, when, &mut state, Watching(watch))?;
+                integrate(&self.system, method, when, &mut state, &mut Watching(watch))?;
                 Ok(Point::of(&(state.unwrapped(), *state.v())))
             }
             fn exact_from(&self, start: &Point, t: f64) -> Option<Point> {

@@ -127,7 +127,7 @@ fn made<Sys: System<N, M>, const N: usize, const M: usize>(
     state: &mut State<N>,
     recorder: &mut Recorder<'_, N>,
 ) -> Result<u64, dla::RunError> {
-    let mut method = InChart::new(method, "angles from a pole", |_: &Sys, q: &[f64; N]| regularity(q));
+    let mut method = InChart::new(method, "angles from a pole", regularity);
     drive(system, &mut method, schedule, state, recorder)
 }
 

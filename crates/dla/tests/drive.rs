@@ -3,8 +3,8 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
 use dla::{
-    Dla, History, NewtonError, Node, Observer, OneStep, RunError, Schedule, Stage, State, StepError, StepReport,
-    Trajectory, View, drive,
+    Dla, History, Mechanics, NewtonError, Node, Observer, OneStep, RunError, Schedule, Stage, State, StepError,
+    StepReport, Trajectory, View, drive,
 };
 use lagrangian::{Constraint, Scalar, System};
 use std::ops::ControlFlow;
@@ -34,7 +34,13 @@ const FAILURE: StepError = StepError::Newton {
 };
 
 impl OneStep<1, 1> for Counting {
-    fn step(&mut self, _: &Sys, t: f64, h: f64, state: &mut State<1>) -> Result<StepReport<1>, StepError> {
+    fn step(
+        &mut self,
+        _: &dyn Mechanics<1, 1>,
+        t: f64,
+        h: f64,
+        state: &mut State<1>,
+    ) -> Result<StepReport<1>, StepError> {
         self.times.push(t);
         if self.fails_at == Some(self.times.len()) {
             return Err(FAILURE);

@@ -20,9 +20,9 @@
 pub use assembly;
 pub use dla::{
     self, Checkpoint, CheckpointError, Crossing, Direction, Dla, Equations, Event, Form, Hermite, Hint, History,
-    InChart, Newton, NewtonError, Node, NotANumber, Observer, OneStep, RecommendError, Recommendation, RunError,
-    Samples, Schedule, Sensitivity, Stage, State, StepError, StepReport, Trajectory, View, Watch, consistent_start,
-    drive, recommend_step,
+    InChart, Mechanics, Newton, NewtonError, Node, NotANumber, Observer, OneStep, RecommendError, Recommendation,
+    RunError, Samples, Schedule, Sensitivity, Stage, State, StepError, StepReport, Trajectory, View, Watch,
+    consistent_start, drive, recommend_step,
 };
 pub use lagrangian::{
     self, AdmissibleBasis, Alpha, Attitude, ClosedStep, ClosedStepError, Constraint, Derivatives, DiscreteConstraint,

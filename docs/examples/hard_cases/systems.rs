@@ -52,7 +52,7 @@ impl System<3, 2> for TwoRows {
 /// The nodes of a run; of one that is refused on its way, those before.
 fn nodes<Sys: System<3, M>, const M: usize>(
     system: &Sys,
-    mut method: impl OneStep<Sys, 3, M>,
+    mut method: impl OneStep<3, M>,
     (q, v): ([f64; 3], [f64; 3]),
     (step, steps): (f64, u64),
 ) -> Vec<Node<3, M>> {

@@ -5,10 +5,10 @@ use crate::tools::largest;
 use dla::{Composition, Dla, Gauss, Hint, InChart, Lobatto, OneStep, State, StepError, Substepping, View};
 use models::{ChaplyginBall, Model, Suslov, TurntableBall};
 
-type Guarded<Method> = InChart<Method, fn(&AngleBall, &[f64; 5]) -> f64>;
+type Guarded<Method> = InChart<Method, fn(&[f64; 5]) -> f64>;
 
 fn guarded<Method>(method: Method) -> Guarded<Method> {
-    InChart::new(method, CHART, AngleBall::regularity)
+    InChart::new(method, CHART, |q| BALL.regularity(q))
 }
 
 const LEAST: f64 = InChart::<(), ()>::LEAST;
@@ -19,7 +19,7 @@ const BALL: AngleBall = AngleBall { mass: 1.0, radius: 1.0, inertia: [0.4; 3] };
 fn refused<Method: OneStep<5, 2>>(method: Method, omega: [f64; 3], step: f64) -> (f64, f64, StepError) {
     let steps = (10.0 / step).round() as u64;
     let ([off], end) =
-        largest(&BALL, &mut guarded(method), BALL.level(omega), (step, steps), |node: &View<'_, AngleBall, 5>| {
+        largest(&BALL, &mut guarded(method), BALL.level(omega), (step, steps), |node: &View<'_, 5, 2>| {
             let q = node.state.q();
             assert!(BALL.regularity(q) >= LEAST);
             [(q[0] - omega[1] * node.t).abs().max((q[1] + omega[0] * node.t).abs())]
@@ -81,7 +81,7 @@ fn other_steps_are_the_method_s_own() {
 #[test]
 fn no_regularity_is_none() {
     let (q, v) = BALL.level([0.0, 0.0, 1.0]);
-    let half_way = |_: &AngleBall, q: &[f64; 5]| if (0.04..0.06).contains(&q[4]) { f64::NAN } else { 1.0 };
+    let half_way = |q: &[f64; 5]| if (0.04..0.06).contains(&q[4]) { f64::NAN } else { 1.0 };
     let mut state = State::new(q, v, [false; 5]);
     let error = InChart::new(Dla::midpoint(), CHART, half_way).step(&BALL, 0.0, 0.1, &mut state).unwrap_err();
     assert!(matches!(error, StepError::Chart { regularity, .. } if regularity.is_nan()), "{error}");
@@ -130,8 +130,8 @@ fn parts_of_a_step() {
 fn no_model_has_an_end() {
     fn everywhere<Mo: Model<N, M>, const N: usize, const M: usize>(model: &Mo) {
         let (q, v) = model.start();
-        let mut method = InChart::new(Dla::midpoint(), "a quaternion", Mo::regularity);
-        largest(model, &mut method, (q, v), (0.05, 2000), |node: &View<'_, Mo, N>| {
+        let mut method = InChart::new(Dla::midpoint(), "a quaternion", |q: &[f64; N]| model.regularity(q));
+        largest(model, &mut method, (q, v), (0.05, 2000), |node: &View<'_, N, M>| {
             assert!(model.regularity(node.state.q()) == 1.0);
             [0.0]
         })

@@ -75,7 +75,7 @@ fn errors<Method: OneStep<6, 3>>(mut method: Method, from: &Attitude<f64>, a_rou
     let step = std::f64::consts::TAU / RATE / a_round as f64;
     let frequency = RATE * (RATIO / (1.0 + RATIO)).sqrt();
     let middle = -(GRAVITY + RATIO * RADIUS * RATE * SPIN) / (1.0 + RATIO) / frequency.powi(2);
-    let (found, end) = largest(&Ball, &mut method, start(from), (step, 5 * a_round), |node: &View<'_, Ball, 6>| {
+    let (found, end) = largest(&Ball, &mut method, start(from), (step, 5 * a_round), |node: &View<'_, 6, 3>| {
         let height = middle * (1.0 - (frequency * node.t).cos());
         let (q, miss) = (node.state.q(), attitude(node.state.q()).norm_miss());
         [(q[1] - height).abs(), miss.abs(), node.constraint()]

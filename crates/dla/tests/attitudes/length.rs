@@ -17,7 +17,7 @@ fn off<Mo: Model<N, M>, Method: OneStep<N, M>, const N: usize, const M: usize>(
     mut method: Method,
     steps: u64,
 ) -> f64 {
-    let ([off], end) = largest(model, &mut method, model.start(), (0.05, steps), |node: &View<'_, Mo, N>| {
+    let ([off], end) = largest(model, &mut method, model.start(), (0.05, steps), |node: &View<'_, N, M>| {
         let q = node.state.q();
         [Attitude::new([q[N - 4], q[N - 3], q[N - 2], q[N - 1]]).norm_miss().abs()]
     });

@@ -39,7 +39,7 @@ pub fn largest<Sys, Method, F, const N: usize, const M: usize, const K: usize>(
 ) -> ([f64; K], Result<State<N>, RunError>)
 where
     Sys: System<N, M>,
-    Method: OneStep<N, M>,
+    Method: OneStep<N, M> + ?Sized,
     F: FnMut(&View<'_, N, M>) -> [f64; K],
 {
     let mut state = State::new(q, v, system.angles());

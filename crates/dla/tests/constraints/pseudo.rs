@@ -9,7 +9,7 @@ use models::{CompoundPendulum, Model};
 fn drift(step: f64, steps: u64) -> f64 {
     let pendulum = CompoundPendulum::new(1.3, 0.4, 0.9, 9.81).unwrap().pseudo_holonomic();
     let (q, v) = pendulum.start();
-    let mut off = Largest::of(|node: &View<'_, CompoundPendulum, 3>| {
+    let mut off = Largest::of(|node: &View<'_, 3, 2>| {
         let [x, y] = pendulum.hinge(node.state.q());
         x.hypot(y)
     });

@@ -3,7 +3,7 @@
 use crate::balance::sine;
 use crate::tools::{Laden, laden, moving, run, sleigh, steps};
 use dla::{Dla, Form, Observer, StepReport, View};
-use lagrangian::{System, With};
+use lagrangian::With;
 use scene::Acting;
 use sleigh::effects::Thrust;
 use sleigh::{Flywheel, Sleigh};

@@ -1,7 +1,6 @@
 use crate::systems::{Friction, Particle, Potential, Wrapped, at_centre, com};
 use dla::{Dla, Energy, Gradient, Observer, OneStep, Schedule, State, StepReport, View, drive};
-use lagrangian::{System, With, energy};
-use sleigh::CentreOfMass;
+use lagrangian::{System, energy};
 use std::ops::ControlFlow;
 use std::time::Instant;
 
@@ -166,8 +165,6 @@ fn particle_keeps_its_energy() {
         held("particle", &Particle { mass: 1.3, quartic }, &([0.3, 0.5, -0.2], [0.6, -0.4, 0.3]), [SHORT / 5; 4]);
     }
 }
-
-type Damped = With<CentreOfMass, (Potential, Friction)>;
 
 /// Under friction every step loses the discrete work, which is never positive.
 fn loses_the_work<Method: OneStep<3, 1>>(mut method: Method, work: impl Fn(&Method) -> f64) {

@@ -2,9 +2,10 @@
 
 use crate::{made, sleigh};
 use dla::{
-    Composition, Dla, Gauss, OneStep, Schedule, State, StepError, StepReport, Substepping, Substeps, Undivided, drive,
+    Composition, Dla, Gauss, Mechanics, OneStep, Schedule, State, StepError, StepReport, Substepping, Substeps,
+    Undivided, drive,
 };
-use sleigh::{Exact, Sleigh, SleighState};
+use sleigh::{Exact, SleighState};
 use std::ops::ControlFlow;
 
 fn start() -> SleighState {
@@ -19,7 +20,13 @@ struct Refusing<Method> {
 }
 
 impl<Method: OneStep<3, 1>> OneStep<3, 1> for Refusing<Method> {
-    fn step(&mut self, system: &Sleigh, t: f64, h: f64, state: &mut State<3>) -> Result<StepReport<1>, StepError> {
+    fn step(
+        &mut self,
+        system: &dyn Mechanics<3, 1>,
+        t: f64,
+        h: f64,
+        state: &mut State<3>,
+    ) -> Result<StepReport<1>, StepError> {
         let third = ((t + 0.5 * h) / 0.1).floor() % 3.0 == 0.0;
         if h > if third { 0.5 } else { 1.0 } * self.longest {
             return Err(StepError::Branch);
@@ -66,7 +73,7 @@ fn what_is_resolved_is_left_alone() {
     let (q, v) = start().to_coordinates();
     let mut state = State::new(q, v, [false, false, true]);
     let schedule = Schedule { t0: 0.0, step: 0.05, steps: 200 };
-    drive::<Sleigh, _, _, 3, 1>(&sleigh(0.5), &mut Gauss::new::<3>(), &schedule, &mut state, ()).unwrap();
+    drive::<_, _, 3, 1>(&sleigh(0.5), &mut Gauss::new::<3>(), &schedule, &mut state, ()).unwrap();
     let last = run.nodes.last().unwrap();
     assert_eq!((run.divided, run.parts, last.q, last.v), (0, 0, state.unwrapped(), *state.v()));
     // The control: eight times the step.

@@ -2,7 +2,7 @@
 
 use crate::{BAR, Run, by_each, made, sleigh};
 use dla::{Composition, Dla, Schedule, State, StepError, Substepping, Substeps, drive};
-use sleigh::{Exact, Sleigh, SleighState};
+use sleigh::{Exact, SleighState};
 
 /// The whole motion at its end; places relative to the way.
 fn ends_right(label: &str, run: &Run, exact: &Exact, (step, steps): (f64, u64)) {
@@ -61,7 +61,7 @@ fn step_lengths() {
     let (q, v) = start.to_coordinates();
     let mut state = State::new(q, v, [false, false, true]);
     let schedule = Schedule { t0: 0.0, step: 1e12, steps: 10 };
-    drive::<Sleigh, _, _, 3, 1>(&sleigh(0.5), &mut Dla::midpoint(), &schedule, &mut state, ()).unwrap();
+    drive::<_, _, 3, 1>(&sleigh(0.5), &mut Dla::midpoint(), &schedule, &mut state, ()).unwrap();
     assert!((state.unwrapped()[2] - exact.at(1e13).heading).abs() > 0.5);
 }
 
@@ -76,7 +76,7 @@ fn what_needs_too_many_parts_says_so() {
     let method = Composition::suzuki4(Dla::midpoint());
     let mut method = Substepping::within(method, Substeps::new(53, 10_000)).resolving();
     let schedule = Schedule { t0: 0.0, step: 1e12, steps: 1 };
-    let error = drive::<Sleigh, _, _, 3, 1>(&sleigh(0.5), &mut method, &schedule, &mut state, ()).unwrap_err();
+    let error = drive::<_, _, 3, 1>(&sleigh(0.5), &mut method, &schedule, &mut state, ()).unwrap_err();
     let why = method.undivided().unwrap();
     assert_eq!((why.tried, state, error.source), (10_000, before, why.source));
     assert!(matches!(why.source, StepError::Closed(_)), "{why}");

@@ -1,4 +1,4 @@
-use dla::{Composition, Dla, Energy, Gauss, Lobatto, OneStep, RunError, Schedule, State, drive};
+use dla::{Composition, Dla, Energy, Gauss, Lobatto, Mechanics, OneStep, RunError, Schedule, State, drive};
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
 
 /// A cart on a rail between two springs, with drag: `V = k1/2 (x - a)^2 + k2/2 (x - b)^2`, `y' = 0`.

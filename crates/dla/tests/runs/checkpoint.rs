@@ -3,7 +3,6 @@ use dla::{
     Checkpoint, CheckpointError, Composition, Dla, Form, Gauss, Gni, OneStep, Schedule, State, Trajectory, Work,
     drive_part,
 };
-use sleigh::Sleigh;
 
 const SCHEDULE: Schedule = Schedule { t0: 0.5, step: 0.05, steps: 1000 };
 

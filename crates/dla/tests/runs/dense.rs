@@ -1,7 +1,7 @@
 use crate::{backward, sleigh, sleigh_state, state_of};
 use dla::{Composition, Dla, Gauss, Hermite, Observer, OneStep, Samples, Schedule, State, StepReport, View, drive};
 use lagrangian::constraint_residual;
-use sleigh::{Exact, Sleigh, SleighState};
+use sleigh::{Exact, SleighState};
 use std::ops::ControlFlow;
 
 /// Times of no step that is used here, in the part of the motion where it turns.

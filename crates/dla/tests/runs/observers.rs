@@ -1,6 +1,6 @@
 //! What observers are shown, and runs cut into pieces, by methods that do what they are told.
 
-use crate::scripted::{Short, start};
+use crate::scripted::{Point, Short, start};
 use approx::assert_relative_eq;
 use dla::{
     Checkpoint, Event, Observer, Part, RunError, Samples, Schedule, State, StepError, StepReport, Trajectory, View,
@@ -32,7 +32,7 @@ impl Observer<1, 1> for Log {
 
 fn shown(observer: &mut impl Observer<1, 1>) -> ControlFlow<()> {
     let state = start();
-    let node = |k| View { system: &(), k, t: k as f64, state: &state };
+    let node = |k| View { system: &Point, k, t: k as f64, state: &state };
     observer.start(&node(0));
     observer.resume(&node(0));
     let flow = observer.step(&node(1), &StepReport::of(1));
@@ -70,8 +70,8 @@ fn a_jump_over_zero_is_a_crossing() {
         let events = [Event::new("the velocity", |_, state: &State<1>| state.v()[0])];
         let mut watch = Watch::new(Short::default(), &events, ());
         let node = |v: f64| State::new([0.0], [v], [false]);
-        Observer::<(), 1, 1>::start(&mut watch, &View { system: &(), k: 3, t: 0.5, state: &node(before) });
-        Observer::<(), 1, 1>::resume(&mut watch, &View { system: &(), k: 3, t: 0.5, state: &node(after) });
+        Observer::<1, 1>::start(&mut watch, &View { system: &Point, k: 3, t: 0.5, state: &node(before) });
+        Observer::<1, 1>::resume(&mut watch, &View { system: &Point, k: 3, t: 0.5, state: &node(after) });
         let found: Vec<_> = watch.crossings().iter().map(|found| (found.rising, found.k, found.t)).collect();
         assert_eq!(found, crossing.map(|rising| (rising, 3, 0.5)).into_iter().collect::<Vec<_>>(), "{before} {after}");
     }
@@ -83,10 +83,10 @@ fn samples_begin_again_after_a_jump() {
     let times = [0.5];
     let mut samples = Samples::new(Short::default(), &times);
     let state = |q: f64, v: f64| State::new([q], [v], [false]);
-    Observer::<(), 1, 1>::start(&mut samples, &View { system: &(), k: 2, t: 0.25, state: &state(0.0, 1.0) });
-    Observer::<(), 1, 1>::resume(&mut samples, &View { system: &(), k: 2, t: 0.25, state: &state(0.0, 2.0) });
+    Observer::<1, 1>::start(&mut samples, &View { system: &Point, k: 2, t: 0.25, state: &state(0.0, 1.0) });
+    Observer::<1, 1>::resume(&mut samples, &View { system: &Point, k: 2, t: 0.25, state: &state(0.0, 2.0) });
     let end = state(1.0, 2.0);
-    let flow = samples.step(&View { system: &(), k: 3, t: 0.75, state: &end }, &StepReport::<1>::of(1));
+    let flow = samples.step(&View { system: &Point, k: 3, t: 0.75, state: &end }, &StepReport::<1>::of(1));
     assert!(flow.is_continue());
     assert_relative_eq!(samples.taken()[0].q()[0], 0.5);
 }
@@ -157,7 +157,7 @@ fn work_is_resumed() {
     let node = |t: f64| State::new([t + 1.5 * t * t], [1.0 + 3.0 * t], [false]);
     let (at, after) = (node(0.2), node(0.5));
     let mut work = Work::<1>::default();
-    Observer::<_, 1, 0>::start(&mut work, &View { system: &Falling, k: 0, t: 0.0, state: &node(0.0) });
+    Observer::<1, 0>::start(&mut work, &View { system: &Falling, k: 0, t: 0.0, state: &node(0.0) });
     let _ = work.step(&View { system: &Falling, k: 2, t: 0.2, state: &at }, &StepReport::<0>::of(1));
     // Gauss nodes along a parabola are exact: a dozen roundings of numbers below ten.
     assert_relative_eq!(work.total(), 3.0 * at.q()[0], max_relative = 1e-14);
@@ -183,8 +183,8 @@ fn a_sample_may_fail() {
     let times = [0.05, 0.2, 0.21];
     let mut samples = Samples::new(Short::default(), &times);
     let (from, to) = (start(), State::new([0.5], [1.0], [false]));
-    Observer::<(), 1, 1>::start(&mut samples, &View { system: &(), k: 0, t: 0.0, state: &from });
-    let _ = samples.step(&View { system: &(), k: 1, t: 0.5, state: &to }, &StepReport::<1>::of(1));
+    Observer::<1, 1>::start(&mut samples, &View { system: &Point, k: 0, t: 0.0, state: &from });
+    let _ = samples.step(&View { system: &Point, k: 1, t: 0.5, state: &to }, &StepReport::<1>::of(1));
     assert_eq!((samples.taken().len(), samples.failure()), (1, Some(StepError::Branch)));
     assert_eq!(samples.into_taken(), Err(StepError::Branch));
 }
@@ -205,8 +205,8 @@ fn a_crossing_is_interpolated() {
         })];
         let mut watch = Watch::new(Short::default(), &events, ());
         let (from, to) = (start(), State::new([1.0], [1.0], [false]));
-        Observer::<(), 1, 1>::start(&mut watch, &View { system: &(), k: 0, t: 1.0, state: &from });
-        let _ = watch.step(&View { system: &(), k: 1, t: 2.0, state: &to }, &StepReport::<1>::of(1));
+        Observer::<1, 1>::start(&mut watch, &View { system: &Point, k: 0, t: 1.0, state: &from });
+        let _ = watch.step(&View { system: &Point, k: 1, t: 2.0, state: &to }, &StepReport::<1>::of(1));
         let [found] = watch.crossings() else { panic!("{name}: {:?}", watch.crossings()) };
         // Rounding of the time, and of the function over its slope.
         assert_relative_eq!(found.t, 1.0 + at, max_relative = 4.0 * f64::EPSILON);
@@ -235,8 +235,8 @@ fn an_event_ends_a_step_early() {
     let mut watch = Watch::new(Short::default(), &events, Last::default());
     watch.tolerance = 0.01;
     let (from, to) = (start(), State::new([2.0], [1.0], [false]));
-    Observer::<(), 1, 1>::start(&mut watch, &View { system: &(), k: 0, t: 1.0, state: &from });
-    let flow = watch.step(&View { system: &(), k: 1, t: 3.0, state: &to }, &StepReport::<1>::of(1));
+    Observer::<1, 1>::start(&mut watch, &View { system: &Point, k: 0, t: 1.0, state: &from });
+    let flow = watch.step(&View { system: &Point, k: 1, t: 3.0, state: &to }, &StepReport::<1>::of(1));
     assert!(flow.is_break());
     let found = *watch.ended().unwrap();
     // The ends of the interval are times near two, and rounded as such.

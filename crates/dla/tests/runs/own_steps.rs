@@ -55,7 +55,7 @@ struct Closed<Method>(Method);
 impl<Method: OneStep<3, 1>> OneStep<3, 1> for Closed<Method> {
     fn step(
         &mut self,
-        system: &dyn Mechanics<3, 1>,
+        system: &dyn dla::Mechanics<3, 1>,
         t: f64,
         h: f64,
         state: &mut State<3>,

@@ -3,7 +3,7 @@ use dla::{
     Composition, Dla, Gauss, OneStep, RecommendError, Recommendation, Schedule, Trajectory, drive, recommend_step,
 };
 use lagrangian::Alpha;
-use sleigh::{Exact, Sleigh};
+use sleigh::Exact;
 
 const DURATION: f64 = 40.0;
 

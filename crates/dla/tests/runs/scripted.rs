@@ -1,7 +1,19 @@
 //! A method that does what it is told, and what is built on methods: parts of steps, memories.
 
-use dla::{Composition, Dla, OneStep, State, StepError, StepReport, Substepping};
-use sleigh::Sleigh;
+use dla::{Composition, Dla, Mechanics, OneStep, State, StepError, StepReport, Substepping};
+use lagrangian::{Constraint, Scalar, System};
+
+/// A point on a line, which methods that do what they are told ask for nothing.
+pub(crate) struct Point;
+
+impl System<1, 1> for Point {
+    fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 1], v: &[S; 1]) -> S {
+        v[0] * v[0] * 0.5
+    }
+    fn constraint<S: Scalar>(&self, _t: S, _q: &[S; 1]) -> Constraint<S, 1, 1> {
+        ([[S::zero()]], [S::zero()])
+    }
+}
 
 /// Moves with its velocity, in steps below one eighth before the time 1/4 and of any length later; it remembers them.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -10,7 +22,13 @@ pub(crate) struct Short {
 }
 
 impl OneStep<1, 1> for Short {
-    fn step(&mut self, _: &Sys, t: f64, h: f64, state: &mut State<1>) -> Result<StepReport<1>, StepError> {
+    fn step(
+        &mut self,
+        _: &dyn Mechanics<1, 1>,
+        t: f64,
+        h: f64,
+        state: &mut State<1>,
+    ) -> Result<StepReport<1>, StepError> {
         if t < 0.25 && h > 0.125 {
             return Err(StepError::Branch);
         }
@@ -35,18 +53,18 @@ pub(crate) fn start() -> State<1> {
 #[test]
 fn parts_grow_on_their_grid() {
     let (mut method, mut state) = (Substepping::new(Short::default(), 4), start());
-    let report = method.step(&(), 0.0, 1.0, &mut state).unwrap();
+    let report = method.step(&Point, 0.0, 1.0, &mut state).unwrap();
     assert_eq!(method.method.made, [0.0, 0.125, 0.125, 0.125, 0.25, 0.25, 0.5, 0.5]);
     assert_eq!((state.q()[0], report.iterations, method.divided()), (1.0, 4, 1));
     // Impulses add up, and so does the work from where it is known.
     assert_eq!(report, StepReport { impulses: [[1.0], [2.0]], iterations: 4, work: Some(0.75) });
     // A step of three halves does not end on the grid of its wholes.
     let (mut method, mut state) = (Substepping::new(Short::default(), 4), start());
-    OneStep::<1, 1>::step(&mut method, &(), 0.0625, 1.5, &mut state).unwrap();
+    OneStep::<1, 1>::step(&mut method, &Point, 0.0625, 1.5, &mut state).unwrap();
     assert_eq!(method.method.made, [0.0625, 0.09375, 0.15625, 0.09375, 0.25, 0.1875, 0.4375, 0.375, 0.8125, 0.75]);
     // Not short enough.
     let mut method = Substepping::new(Short::default(), 2);
-    assert_eq!(OneStep::<1, 1>::step(&mut method, &(), 0.0, 1.0, &mut state), Err(StepError::Branch));
+    assert_eq!(OneStep::<1, 1>::step(&mut method, &Point, 0.0, 1.0, &mut state), Err(StepError::Branch));
 }
 
 #[test]

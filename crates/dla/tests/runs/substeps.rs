@@ -2,7 +2,7 @@ use crate::{backward, sleigh, state_of};
 use approx::assert_relative_eq;
 use dla::{Dla, OneStep, State, StepError, Substepping};
 use lagrangian::{Constraint, Scalar, System, constraint_residual};
-use sleigh::{Sleigh, SleighState};
+use sleigh::SleighState;
 
 /// A spin for which a step of 2 s turns the blade by more than half a turn, and one of half a second does not.
 fn spinning() -> State<3> {

@@ -73,7 +73,7 @@ struct Impostor;
 impl OneStep<3, 1> for Impostor {
     fn step(
         &mut self,
-        system: &dyn Mechanics<3, 1>,
+        system: &dyn dla::Mechanics<3, 1>,
         t: f64,
         h: f64,
         state: &mut State<3>,

@@ -1,7 +1,7 @@
 //! One step of every family of methods.
 
 use crate::differences::{BAR, Input, Start, disagreement};
-use crate::systems::{Controlled, ControlledSleigh, Moving, Swivelling};
+use crate::systems::{Controlled, Moving, Swivelling};
 use dla::{
     Composition, Differentiable, Dla, Energy, Form, Gauss, Gradient, Lobatto, OneStep, Sensitivity, SensitivityError,
     State,

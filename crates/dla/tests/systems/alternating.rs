@@ -3,7 +3,7 @@
 //! They were made for methods of order 1 (Blanes and Moan 2002, J. Comput. Appl. Math. 142, 313-330). Where they do not
 //! pay is recorded here, with the numbers of docs/methods/compositions.md.
 
-use dla::{Composition, Dla, Form, Gauss, OneStep, Schedule, State, StepError, StepReport, drive};
+use dla::{Composition, Dla, Form, Gauss, Mechanics, OneStep, Schedule, State, StepError, StepReport, drive};
 use lagrangian::{Effect, Scalar, System, With};
 use models::ContactOscillator;
 use sleigh::{CentreOfMass, Sleigh, SleighState};

@@ -87,7 +87,8 @@ fn a_run_keeps_the_one_and_changes_the_other_as_it_must() {
     let system = rotor(None);
     let (q, v) = ([0.0, 0.0, 0.4, 0.0], [-0.4_f64.cos(), -0.4_f64.sin(), 0.1, 1.3]);
     let measured = |steps: u64| {
-        let mut meters = (MomentumMeter::new(CoordinateField(3)), MomentumMeter::new(CoordinateField(0)));
+        let mut meters =
+            (MomentumMeter::new(&system, CoordinateField(3)), MomentumMeter::new(&system, CoordinateField(0)));
         let mut state = State::new(q, v, system.angles());
         run(&system, dla, (20.0 / steps as f64, steps), &mut state, (&mut meters.0, &mut meters.1));
         meters

@@ -63,7 +63,7 @@ fn saved(
     let mut all = Vec::new();
     let mut save = |made: &Checkpoint| all.push(Checkpoint::from_text(&made.to_text()).unwrap());
     let mut saving = Saving { identity: &Checkpoint::default(), from, every: Some(7), save: &mut save };
-    let made = run_saved::<_, 3, 1>(&system(), method, &request(40, step), &mut saving, None, progress);
+    let made = run_saved::<3, 1>(&system(), method, &request(40, step), &mut saving, None, progress);
     (made.unwrap().0, all)
 }
 
@@ -116,7 +116,7 @@ fn a_run_that_is_stopped_within_a_step_goes_on_from_the_node_before() {
 fn events_are_looked_for_in_every_part() {
     let crossing = [Event::new("y", |_, state: &dla::State<3>| state.q()[1])];
     let watched = |method: &Method, request: &Request<3>, events: &[Event<'_, 3>]| {
-        run_watched::<_, 3, 1>(&system(), method, request, (events, 4), Some(1), &mut ())
+        run_watched::<3, 1>(&system(), method, request, (events, 4), Some(1), &mut ())
     };
     let right = watched(&Method::named("gauss8", None).unwrap(), &request(2000, 0.005), &crossing);
     assert!(right.crossings.len() > 20, "{}", right.crossings.len());
