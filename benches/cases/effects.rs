@@ -1,7 +1,7 @@
 use super::Case;
 use super::systems::{bowl, drag, egg_crate, from, go, sleigh, start, three, with};
-use dla::{Dla, Form, Gauss};
-use lagrangian::{System, With};
+use dla::{Dla, Form, Gauss, Mechanics};
+use lagrangian::With;
 use scene::{Acting, Scene, SceneSystem, Visitor};
 use sleigh::effects::{Hill, Hills, MovingMass, Slope, Thrust, Torque};
 use sleigh::{Flywheel, Guide, Guided, SleighState};
@@ -74,11 +74,11 @@ fn moving_mass() -> MovingMass {
     MovingMass::new(0.1, 0.2, 0.1).expect("a positive mass")
 }
 
-fn dla<Sys: System<3, M>, const M: usize>(system: &Sys, steps: u64) {
+fn dla<const M: usize>(system: &dyn Mechanics<3, M>, steps: u64) {
     go(system, Dla::midpoint().solved(Form::General), steps);
 }
 
-fn gauss<Sys: System<3, 1>>(system: &Sys, steps: u64) {
+fn gauss(system: &dyn Mechanics<3, 1>, steps: u64) {
     go(system, Gauss::new::<4>(), steps);
 }
 
@@ -94,10 +94,7 @@ struct Steps(u64);
 impl Visitor for Steps {
     type Output = ();
 
-    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N])
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    fn visit<const N: usize, const M: usize>(self, system: &dyn SceneSystem<N, M>, q: [f64; N], v: [f64; N]) {
         from(system, Dla::midpoint().solved(Form::General), self.0, (black_box(q), black_box(v)));
     }
 }

@@ -1,5 +1,5 @@
-use dla::{OneStep, Schedule, State, drive};
-use lagrangian::{System, With};
+use dla::{Mechanics, OneStep, Schedule, State, drive};
+use lagrangian::With;
 use scene::Acting;
 use sleigh::effects::{Bowl, Drag, EggCrate};
 use sleigh::{Sleigh, SleighState};
@@ -41,14 +41,14 @@ pub(super) fn start() -> ([f64; 3], [f64; 3]) {
 }
 
 /// The first steps from that start.
-pub(super) fn go<Sys: System<3, M>, const M: usize>(system: &Sys, method: impl OneStep<3, M>, steps: u64) {
+pub(super) fn go<const M: usize>(system: &dyn Mechanics<3, M>, method: impl OneStep<3, M>, steps: u64) {
     let (q, v) = start();
     from(system, method, steps, (q, v));
 }
 
 /// The first steps from a start of its own.
-pub(super) fn from<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+pub(super) fn from<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     mut method: impl OneStep<N, M>,
     steps: u64,
     (q, v): ([f64; N], [f64; N]),

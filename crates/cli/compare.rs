@@ -134,14 +134,11 @@ fn progress_of<'a>(scene: &Scene, label: &str, steps: u64, interrupt: &'a Interr
 
 impl Compare<'_> {
     /// The runs of all methods, as far as they come.
-    fn records<Sys, const N: usize, const M: usize>(
+    fn records<const N: usize, const M: usize>(
         &mut self,
-        system: &Sys,
+        system: &dyn SceneSystem<N, M>,
         request: &Request<N>,
-    ) -> Result<Vec<Record<N>>, CliError>
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    ) -> Result<Vec<Record<N>>, CliError> {
         let mut records = Vec::new();
         for method in self.methods {
             if self.interrupt.asked() {
@@ -167,10 +164,12 @@ impl Compare<'_> {
 impl Visitor for Compare<'_> {
     type Output = Result<Comparison, CliError>;
 
-    fn visit<Sys, const N: usize, const M: usize>(mut self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    fn visit<const N: usize, const M: usize>(
+        mut self,
+        system: &dyn SceneSystem<N, M>,
+        q: [f64; N],
+        v: [f64; N],
+    ) -> Self::Output {
         let request = Request { schedule: inspect::schedule(self.scene), q, v, samples: 1000 };
         let records = self.records(system, &request)?;
         let exact = self.scene.exact().ok().flatten();
@@ -229,16 +228,13 @@ enum Reference<'a> {
 }
 
 impl<'a> Reference<'a> {
-    fn of<Sys, const N: usize, const M: usize>(
-        system: &Sys,
+    fn of<const N: usize, const M: usize>(
+        system: &dyn SceneSystem<N, M>,
         exact: Option<&'a Exact>,
         schedule: &Schedule,
         mut state: State<N>,
         progress: &mut Interruptible<'_>,
-    ) -> Self
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    ) -> Self {
         if let Some(exact) = exact {
             return Self::Exact(exact);
         }
@@ -269,10 +265,7 @@ pub(crate) fn distance(a: &SleighState, b: &SleighState) -> f64 {
     if place > turn || place.is_nan() { place } else { turn }
 }
 
-fn series_of<Sys, const N: usize, const M: usize>(system: &Sys, record: &Record<N>) -> Series
-where
-    Sys: SceneSystem<N, M>,
-{
+fn series_of<const N: usize, const M: usize>(system: &dyn SceneSystem<N, M>, record: &Record<N>) -> Series {
     // A run without a step has nothing to draw.
     let samples = if record.steps == 0 { &[][..] } else { &record.samples[..] };
     let states: Vec<SleighState> = samples.iter().map(|sample| system.sleigh_state(&sample.q, &[0.0; N])).collect();

@@ -32,7 +32,7 @@ pub(crate) fn cost(arguments: &SceneArguments) -> Result<(), CliError> {
         let part = Scene { effects, ..scene.clone() };
         let ns_per_step = part.visit(Time(schedule))?;
         // Of other types than those that are timed: they evaluate as often, and are half as many to be compiled.
-        let evaluations_per_step = part.visit_listed(Evaluations(schedule))?;
+        let evaluations_per_step = part.visit(Evaluations(schedule))?;
         match ns_per_step.and_then(|ns| Ok((ns, evaluations_per_step?))) {
             Ok((ns_per_step, evaluations_per_step)) => {
                 rows.push(Row { effects: names, ns_per_step, evaluations_per_step });
@@ -81,10 +81,12 @@ struct Time(Schedule);
 impl Visitor for Time {
     type Output = Result<f64, RunError>;
 
-    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    fn visit<const N: usize, const M: usize>(
+        self,
+        system: &dyn SceneSystem<N, M>,
+        q: [f64; N],
+        v: [f64; N],
+    ) -> Self::Output {
         step_time(system, &self.0, q, v)
     }
 }
@@ -94,10 +96,12 @@ struct Evaluations(Schedule);
 impl Visitor for Evaluations {
     type Output = Result<f64, RunError>;
 
-    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    fn visit<const N: usize, const M: usize>(
+        self,
+        system: &dyn SceneSystem<N, M>,
+        q: [f64; N],
+        v: [f64; N],
+    ) -> Self::Output {
         step_evaluations(system, &self.0, q, v)
     }
 }

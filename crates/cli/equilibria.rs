@@ -6,7 +6,6 @@ use dla::{Schedule, State, Trajectory};
 use harness::analysis::{DiscreteMap, EquilibriumError, StepLimit, differentiable, relative_equilibria};
 use harness::report::{Chart, Layer, chart_svg};
 use harness::{Method, integrate_pieces};
-use lagrangian::velocity_of;
 use scene::{Scene, SceneSystem, Visitor};
 use serde_json::{Value, json};
 use sleigh::SleighState;
@@ -68,12 +67,14 @@ struct Find<'a> {
 impl Visitor for Find<'_> {
     type Output = Result<Found, CliError>;
 
-    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    fn visit<const N: usize, const M: usize>(
+        self,
+        system: &dyn SceneSystem<N, M>,
+        q: [f64; N],
+        v: [f64; N],
+    ) -> Self::Output {
         let Self { scene, method, portrait } = self;
-        if !system.jumps(0.0, scene.run.duration).is_empty() {
+        if !system.jump_times(0.0, scene.run.duration).is_empty() {
             return Err(EquilibriumError::TimeDependent.into());
         }
         let found = relative_equilibria(system, &q, &v)?;
@@ -103,8 +104,8 @@ impl Visitor for Find<'_> {
 }
 
 /// Orbits from both sides of slow turns, at some speeds forward and back.
-fn orbits<Sys: SceneSystem<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+fn orbits<const N: usize, const M: usize>(
+    system: &dyn SceneSystem<N, M>,
     scene: &Scene,
     method: &Method,
     q: &[f64; N],
@@ -121,7 +122,7 @@ fn orbits<Sys: SceneSystem<N, M>, const N: usize, const M: usize>(
         for turn in [turn, -turn] {
             let xi =
                 std::array::from_fn(|k| [level * speed, level.abs() * turn * speed].get(k).copied().unwrap_or(0.0));
-            let Ok(v) = velocity_of(system, 0.0, q, &xi) else { continue };
+            let Ok(v) = system.velocity_of(0.0, q, &xi) else { continue };
             let mut nodes = Trajectory::<N, M>::every(1);
             // An orbit that fails is shown as far as it goes.
             let _ = integrate_pieces(system, method, &schedule, &mut State::new(*q, v, system.angles()), &mut nodes);

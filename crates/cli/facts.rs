@@ -9,26 +9,25 @@ pub(crate) struct Facts<'a>(pub(crate) &'a Scene);
 impl Visitor for Facts<'_> {
     type Output = Vec<(String, String)>;
 
-    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    fn visit<const N: usize, const M: usize>(
+        self,
+        system: &dyn SceneSystem<N, M>,
+        q: [f64; N],
+        v: [f64; N],
+    ) -> Self::Output {
         of(self.0, system, &State::new(q, v, system.angles()))
     }
 }
 
 /// The facts of a scene, of its system and the state that it starts in.
-pub(crate) fn of<Sys, const N: usize, const M: usize>(
+pub(crate) fn of<const N: usize, const M: usize>(
     scene: &Scene,
-    system: &Sys,
+    system: &dyn SceneSystem<N, M>,
     state: &State<N>,
-) -> Vec<(String, String)>
-where
-    Sys: SceneSystem<N, M>,
-{
-    let first = system.piece(0.0);
+) -> Vec<(String, String)> {
+    let first = system.scene_piece(0.0);
     let start = first.sleigh_state(state.q(), state.v());
-    let energy = View { system: &first, k: 0, t: 0.0, state }.energy();
+    let energy = View { system: &*first, k: 0, t: 0.0, state }.energy();
     let imposed = scene.effects.iter().map(SceneEffect::kind).find(|kind| matches!(*kind, "servo" | "tracer"));
     let imposed = imposed.map_or_else(String::new, |kind| format!(", as the {kind} imposes it"));
     listed(scene, &start, energy, &imposed)

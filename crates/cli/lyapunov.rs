@@ -7,7 +7,6 @@ use dla::Schedule;
 use harness::Method;
 use harness::analysis::{Lyapunov, LyapunovError, LyapunovRequest, MotionVerdict, has_tangents, kaplan_yorke};
 use harness::report::{Chart, Layer};
-use lagrangian::energy;
 use scene::{Scene, SceneSystem, Visitor};
 use serde_json::{Value, json};
 
@@ -50,17 +49,14 @@ pub(crate) fn schedule(arguments: &LyapunovArguments, scene: &Scene) -> (Schedul
 }
 
 /// A start with the energy that is asked for.
-pub(crate) fn asked<Sys, const N: usize, const M: usize>(
-    system: &Sys,
+pub(crate) fn asked<const N: usize, const M: usize>(
+    system: &dyn SceneSystem<N, M>,
     start: Start<N>,
     wanted: Option<f64>,
-) -> Result<Start<N>, CliError>
-where
-    Sys: SceneSystem<N, M>,
-{
+) -> Result<Start<N>, CliError> {
     let Some(wanted) = wanted else { return Ok(start) };
     with_energy(system, &start, wanted).ok_or_else(|| {
-        let at_rest = energy(system, 0.0, &start.0, &[0.0; N]);
+        let at_rest = system.energy(0.0, &start.0, &[0.0; N]);
         CliError::Request(format!(
             "--energy {wanted:?}: no velocity along that of the start gives it; at rest there the energy is {at_rest:?} J"
         ))
@@ -84,10 +80,12 @@ struct Exponents<'a> {
 impl Visitor for Exponents<'_> {
     type Output = Result<(), CliError>;
 
-    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    fn visit<const N: usize, const M: usize>(
+        self,
+        system: &dyn SceneSystem<N, M>,
+        q: [f64; N],
+        v: [f64; N],
+    ) -> Self::Output {
         let (q, v) = asked(system, (q, v), self.arguments.energy)?;
         let (schedule, settle) = schedule(self.arguments, self.scene);
         let exponents = self.arguments.exponents.map(|count| count as usize);
@@ -95,7 +93,7 @@ impl Visitor for Exponents<'_> {
         let bar = progress::bar(self.method.info().name, settle.saturating_add(schedule.steps));
         let found = harness::analysis::lyapunov(system, &self.method, &request, &mut |steps| bar.inc(steps));
         bar.finish_and_clear();
-        self.tell(&found.map_err(refused)?, energy(system, 0.0, &q, &v), 2 * N - M)
+        self.tell(&found.map_err(refused)?, system.energy(0.0, &q, &v), 2 * N - M)
     }
 }
 

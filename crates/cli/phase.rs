@@ -115,10 +115,12 @@ struct Loops<'a> {
 impl Visitor for Loops<'_> {
     type Output = Result<Vec<f64>, RunError>;
 
-    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    fn visit<const N: usize, const M: usize>(
+        self,
+        system: &dyn SceneSystem<N, M>,
+        q: [f64; N],
+        v: [f64; N],
+    ) -> Self::Output {
         let Self { method, schedule, every } = self;
         let bar = progress::bar(method.info().name, schedule.steps);
         let mut rounds = Rounds::<N>::new(2, every);

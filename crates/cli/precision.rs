@@ -118,10 +118,12 @@ struct Measure<'a> {
 impl Visitor for Measure<'_> {
     type Output = Result<Measurement, CliError>;
 
-    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    fn visit<const N: usize, const M: usize>(
+        self,
+        system: &dyn SceneSystem<N, M>,
+        q: [f64; N],
+        v: [f64; N],
+    ) -> Self::Output {
         let place = |q: &[f64; N]| system.sleigh_state(q, &[0.0; N]);
         let apart = |a: &[f64; N], b: &[f64; N]| distance(&place(a), &place(b));
         let exact = self.scene.exact().ok().flatten();

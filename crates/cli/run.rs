@@ -60,15 +60,12 @@ impl Run<'_> {
     }
 
     /// In parts that are saved, or from a part that was.
-    fn saved<Sys, const N: usize, const M: usize>(
+    fn saved<const N: usize, const M: usize>(
         &self,
-        system: &Sys,
+        system: &dyn SceneSystem<N, M>,
         request: &Request<N>,
         progress: &mut dyn Progress,
-    ) -> Result<Made<N, M>, CliError>
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    ) -> Result<Made<N, M>, CliError> {
         let RunArguments { checkpoint, checkpoint_every, resume: from, scene, .. } = self.arguments;
         let identity = resume::identity(self.scene, &self.method, &request.schedule);
         let read = from.as_ref().map(|path| resume::read(path, &identity)).transpose()?;
@@ -90,15 +87,12 @@ impl Run<'_> {
     }
 
     /// At once, with an eye on events where there are any.
-    fn watched<Sys, const N: usize, const M: usize>(
+    fn watched<const N: usize, const M: usize>(
         &self,
-        system: &Sys,
+        system: &dyn SceneSystem<N, M>,
         request: &Request<N>,
         progress: &mut dyn Progress,
-    ) -> Made<N, M>
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    ) -> Made<N, M> {
         let RunArguments { event, until, event_samples, .. } = self.arguments;
         let reported = event.iter().map(|trigger| trigger.event(system));
         let events: Vec<_> = reported.chain(until.iter().map(|trigger| trigger.event(system).terminal())).collect();
@@ -114,10 +108,12 @@ impl Run<'_> {
 impl Visitor for Run<'_> {
     type Output = Result<(), CliError>;
 
-    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    fn visit<const N: usize, const M: usize>(
+        self,
+        system: &dyn SceneSystem<N, M>,
+        q: [f64; N],
+        v: [f64; N],
+    ) -> Self::Output {
         let RunArguments { checkpoint, resume, tolerance, .. } = self.arguments;
         let mut schedule = inspect::schedule(self.scene);
         if let Some(tolerance) = tolerance {

@@ -43,17 +43,14 @@ impl Saves {
     }
 
     /// Makes a run: at once where nothing is to be saved, else from checkpoint to checkpoint.
-    pub(crate) fn run<Sys, const N: usize, const M: usize>(
+    pub(crate) fn run<const N: usize, const M: usize>(
         &mut self,
         scene: &Scene,
-        system: &Sys,
+        system: &dyn SceneSystem<N, M>,
         method: &Method,
         request: &Request<N>,
         progress: &mut dyn Progress,
-    ) -> Result<Record<N>, CliError>
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    ) -> Result<Record<N>, CliError> {
         if self.to.is_none() && self.from.is_none() {
             return Ok(harness::run(system, method, request, progress));
         }

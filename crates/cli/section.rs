@@ -71,10 +71,12 @@ struct Crossed {
 impl Visitor for Sections<'_> {
     type Output = Result<(), CliError>;
 
-    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    fn visit<const N: usize, const M: usize>(
+        self,
+        system: &dyn SceneSystem<N, M>,
+        q: [f64; N],
+        v: [f64; N],
+    ) -> Self::Output {
         if self.scene.depends_on_time() && self.arguments.plane.period().is_none() {
             terminal::say(
                 "note",

@@ -47,10 +47,12 @@ impl Cell {
 impl Visitor for Map<'_> {
     type Output = Result<(), CliError>;
 
-    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    fn visit<const N: usize, const M: usize>(
+        self,
+        system: &dyn SceneSystem<N, M>,
+        q: [f64; N],
+        v: [f64; N],
+    ) -> Self::Output {
         let [across, up] = self.axes;
         if across.coordinate.name == up.coordinate.name {
             return Err(CliError::Request(format!("--map: both axes are {}", up.coordinate.name)));

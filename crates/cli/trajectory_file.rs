@@ -59,15 +59,12 @@ impl Columns {
     }
 
     /// A trajectory in the words of a scene: what the scene does not have has no column.
-    fn of<Sys, const N: usize, const M: usize>(system: &Sys, nodes: &[dla::Node<N, M>]) -> Self
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    fn of<const N: usize, const M: usize>(system: &dyn SceneSystem<N, M>, nodes: &[dla::Node<N, M>]) -> Self {
         let mut header: Vec<_> = COLUMNS.iter().map(|(name, unit)| ((*name).to_owned(), *unit)).collect();
         let mut rows = Vec::with_capacity(nodes.len());
         for node in nodes {
             // What holds from this node on.
-            let piece = system.piece(node.t);
+            let piece = system.scene_piece(node.t);
             let SleighState { x, y, heading, speed, turn_rate } = piece.sleigh_state(&node.q, &node.v);
             let [center_x, center_y] = piece.centre(&node.q);
             let lambda = piece.motion(node.t, &node.q, &node.v).map_or([f64::NAN; M], |motion| motion.multiplier);
@@ -115,16 +112,13 @@ pub(crate) fn check_size(steps: u64, every: u64) -> Result<(), CliError> {
 }
 
 /// Writes a trajectory in the words of a scene: a file that appears whole or not at all.
-pub(crate) fn write<Sys, const N: usize, const M: usize>(
-    system: &Sys,
+pub(crate) fn write<const N: usize, const M: usize>(
+    system: &dyn SceneSystem<N, M>,
     nodes: &[dla::Node<N, M>],
     path: &Path,
     format: Format,
     overwrite: bool,
-) -> Result<(), CliError>
-where
-    Sys: SceneSystem<N, M>,
-{
+) -> Result<(), CliError> {
     write_columns(&Columns::of(system, nodes), path, format, overwrite)
 }
 

@@ -64,10 +64,10 @@ impl Trigger {
     }
 
     /// The event in a system.
-    pub(crate) fn event<'a, Sys, const N: usize, const M: usize>(&'a self, system: &'a Sys) -> Event<'a, N>
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    pub(crate) fn event<'a, const N: usize, const M: usize>(
+        &'a self,
+        system: &'a dyn SceneSystem<N, M>,
+    ) -> Event<'a, N> {
         Event::new(self.text.clone(), move |_, state| self.value(&system.sleigh_state(&state.unwrapped(), state.v())))
     }
 
@@ -89,14 +89,11 @@ pub(crate) struct Happened<'a> {
 
 impl<'a> Happened<'a> {
     /// In a system.
-    pub(crate) fn of<Sys, const N: usize, const M: usize>(
-        system: &Sys,
+    pub(crate) fn of<const N: usize, const M: usize>(
+        system: &dyn SceneSystem<N, M>,
         triggers: &[&'a Trigger],
         crossing: &Crossing<N>,
-    ) -> Option<Self>
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    ) -> Option<Self> {
         let Crossing { event, t, within, spacing, rising, ref state, .. } = *crossing;
         let state = system.sleigh_state(&state.unwrapped(), state.v());
         triggers.get(event).map(|trigger| Self::new(trigger, [t, within, spacing], rising, state))

@@ -183,7 +183,7 @@ fn bowl(scene: &Scene) -> Option<With<Sleigh, Bowl>> {
     }
 }
 
-fn quantities<Sys>(_system: &Sys, q: &[f64; 3], v: &[f64; 3]) -> [f64; QUANTITIES] {
+fn quantities(q: &[f64; 3], v: &[f64; 3]) -> [f64; QUANTITIES] {
     words(&SleighState::from_coordinates(q, v))
 }
 
@@ -229,11 +229,8 @@ struct Alone<'a> {
 impl Visitor for Alone<'_> {
     type Output = Told;
 
-    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Told
-    where
-        Sys: SceneSystem<N, M>,
-    {
-        let of = |system: &Sys, q: &[f64; N], v: &[f64; N]| words(&system.sleigh_state(q, v));
+    fn visit<const N: usize, const M: usize>(self, system: &dyn SceneSystem<N, M>, q: [f64; N], v: [f64; N]) -> Told {
+        let of = |q: &[f64; N], v: &[f64; N]| words(&system.sleigh_state(q, v));
         let watching = Watching { schedule: self.schedule, every: self.every, of: &of };
         let (summary, failure) = summarise(system, self.method, (q, v), &watching);
         (Some(summary), failure.map(|failure| failure.to_string()))
@@ -248,10 +245,12 @@ struct Exponent<'a> {
 impl Visitor for Exponent<'_> {
     type Output = Result<f64, String>;
 
-    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    fn visit<const N: usize, const M: usize>(
+        self,
+        system: &dyn SceneSystem<N, M>,
+        q: [f64; N],
+        v: [f64; N],
+    ) -> Self::Output {
         let settle = self.schedule.steps / 10;
         let schedule = Schedule { steps: self.schedule.steps - settle, ..self.schedule };
         let request = LyapunovRequest { schedule, settle, exponents: Some(1), q, v };

@@ -145,10 +145,12 @@ struct Record<'a> {
 impl Visitor for Record<'_> {
     type Output = Recorded;
 
-    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Recorded
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    fn visit<const N: usize, const M: usize>(
+        self,
+        system: &dyn SceneSystem<N, M>,
+        q: [f64; N],
+        v: [f64; N],
+    ) -> Recorded {
         let Self { method, setup } = self;
         let look = |state: &State<N>| -> [f64; VALUES] {
             // The velocities in the angles that the method sees, the place with all its turns.

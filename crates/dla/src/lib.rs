@@ -75,7 +75,7 @@ pub use hint::Hint;
 pub use history::History;
 pub use in_chart::InChart;
 pub use lobatto::{Linearised as LinearisedStage, Lobatto, Point as StagePoint, Tables as LobattoTables};
-pub use mechanics::{Diagnosis, Mechanics, RoundedMechanics, SecondSlopes, Slopes};
+pub use mechanics::{Diagnosis, FullMechanics, Mechanics, RoundedMechanics, SecondSlopes, SeededMechanics, Slopes};
 pub use newton::{Equations, Newton, NewtonError};
 pub use not_a_number::{Derivative, NotANumber, SystemFunction, Variable, not_a_number};
 pub use one_step::{OneStep, OwnStep, Stage, StepError, StepReport};

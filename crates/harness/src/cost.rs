@@ -1,6 +1,6 @@
+use crate::counted::Counted;
 use crate::timing::median_seconds;
-use dla::{Dla, Form, RunError, Schedule, State, drive_part, piece_by_piece};
-use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Scalar, System};
+use dla::{Dla, Form, Mechanics, Part, PiecewiseMechanics, RunError, Schedule, State, drive_part, piece_by_piece};
 use std::cell::Cell;
 use std::hint::black_box;
 
@@ -9,20 +9,18 @@ use std::hint::black_box;
 ///
 /// # Errors
 /// [`RunError`] where the run fails.
-pub fn step_time<Sys, const N: usize, const M: usize>(
-    system: &Sys,
+pub fn step_time<const N: usize, const M: usize>(
+    system: &dyn PiecewiseMechanics<N, M>,
     schedule: &Schedule,
     q: [f64; N],
     v: [f64; N],
-) -> Result<f64, RunError>
-where
-    Sys: System<N, M> + Piecewise,
-{
+) -> Result<f64, RunError> {
     let start = State::new(q, v, system.angles());
-    let steps = made(system, schedule, start)?;
+    let run = |start: State<N>| made(system, schedule, start, |piece, run| run(piece));
+    let steps = run(start)?;
     let seconds = median_seconds(|| {
         // The same run has just succeeded.
-        black_box(made(system, schedule, black_box(start)).is_ok());
+        black_box(run(black_box(start)).is_ok());
     });
     Ok(1e9 * seconds / steps.max(1) as f64)
 }
@@ -31,85 +29,32 @@ where
 ///
 /// # Errors
 /// [`RunError`] where the run fails.
-pub fn step_evaluations<Sys, const N: usize, const M: usize>(
-    system: &Sys,
+pub fn step_evaluations<const N: usize, const M: usize>(
+    system: &dyn PiecewiseMechanics<N, M>,
     schedule: &Schedule,
     q: [f64; N],
     v: [f64; N],
-) -> Result<f64, RunError>
-where
-    Sys: System<N, M> + Piecewise,
-{
+) -> Result<f64, RunError> {
     let evaluations = Cell::new(0);
-    let counted = Counted { system: system.piece(schedule.t0), whole: system, evaluations: &evaluations };
-    let steps = made(&counted, schedule, State::new(q, v, system.angles()))?;
+    let counting = |piece: &dyn Mechanics<N, M>, run: &mut Run<'_, N, M>| {
+        run(&Counted { system: piece, evaluations: &evaluations })
+    };
+    let steps = made(system, schedule, State::new(q, v, system.angles()), counting)?;
     Ok(evaluations.get() as f64 / steps.max(1) as f64)
 }
 
-fn made<Sys, const N: usize, const M: usize>(
-    system: &Sys,
+/// Makes the steps of a piece, on the system that is given.
+type Run<'a, const N: usize, const M: usize> = dyn FnMut(&dyn Mechanics<N, M>) -> Result<Part, RunError> + 'a;
+
+/// A run of which `on` gives each piece, or something in its place, to the steps.
+fn made<const N: usize, const M: usize>(
+    system: &dyn PiecewiseMechanics<N, M>,
     schedule: &Schedule,
     mut state: State<N>,
-) -> Result<u64, RunError>
-where
-    Sys: System<N, M> + Piecewise,
-{
+    on: impl Fn(&dyn Mechanics<N, M>, &mut Run<'_, N, M>) -> Result<Part, RunError>,
+) -> Result<u64, RunError> {
     let mut method = Dla::midpoint().solved(Form::General);
     piece_by_piece(system, schedule, &mut state, |piece, steps, state| {
-        drive_part(piece, &mut method, schedule, steps, state, ())
+        on(piece, &mut |piece| drive_part(piece, &mut method, schedule, steps.clone(), state, ()))
     })
-}
-
-/// A system that counts how often it is evaluated.
-struct Counted<'a, Sys> {
-    system: Sys,
-    whole: &'a Sys,
-    evaluations: &'a Cell<u64>,
-}
-
-impl<Sys> Counted<'_, Sys> {
-    fn count(&self) {
-        self.evaluations.set(self.evaluations.get() + 1);
-    }
-}
-
-impl<Sys: System<N, M>, const N: usize, const M: usize> System<N, M> for Counted<'_, Sys> {
-    const MOVING: bool = Sys::MOVING;
-
-    fn lagrangian<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> S {
-        self.count();
-        self.system.lagrangian(t, q, v)
-    }
-    fn constraint<S: Scalar>(&self, t: S, q: &[S; N]) -> Constraint<S, N, M> {
-        self.count();
-        self.system.constraint(t, q)
-    }
-    fn force<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
-        let force = self.system.force(t, q, v);
-        if force.is_some() {
-            self.count();
-        }
-        force
-    }
-    fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; N]) -> Option<AdmissibleBasis<S, N, M>> {
-        self.system.admissible_basis(t, q)
-    }
-    fn holonomic<S: Scalar>(&self, t: S, q: &[S; N]) -> Option<[Option<S>; M]> {
-        self.system.holonomic(t, q)
-    }
-    fn nonlinear<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[Option<S>; M]> {
-        self.system.nonlinear(t, q, v)
-    }
-    fn angles(&self) -> [bool; N] {
-        self.system.angles()
-    }
-}
-
-impl<Sys: Piecewise> Piecewise for Counted<'_, Sys> {
-    fn jumps(&self, from: f64, to: f64) -> Vec<f64> {
-        self.whole.jumps(from, to)
-    }
-    fn piece(&self, t: f64) -> Self {
-        Self { system: self.whole.piece(t), ..*self }
-    }
 }

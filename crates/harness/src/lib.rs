@@ -8,6 +8,7 @@ pub mod analysis;
 mod assembled;
 mod baseline;
 mod cost;
+mod counted;
 mod drift;
 pub mod ensemble;
 mod method;

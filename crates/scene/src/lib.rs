@@ -48,5 +48,5 @@ pub use power::{EffectPower, SceneBody, SceneEffects};
 pub use run::{DEFAULT_METHOD, MAX_STEPS, RunSettings};
 pub use suggest::nearest;
 pub use sweep::{Sweep, SweepError};
-pub use system::{SceneSystem, Visitor};
+pub use system::{AnySystem, SceneSystem, Started, Visitor};
 pub use train::TrainError;

@@ -4,9 +4,10 @@ use crate::error::SceneError;
 use crate::fault::Fault;
 use crate::finding::Excerpt;
 use crate::run::RunSettings;
-use crate::system::FirstMisaligned;
+
 use crate::table::Table;
 use crate::{PathSpec, SceneEffect, Shape, effects, file, keys, sections};
+use lagrangian::whole_steps;
 use sleigh::{Sleigh, SleighState};
 use std::path::Path;
 use toml::de::DeTable;
@@ -72,7 +73,9 @@ impl Scene {
         {
             return Some(period);
         }
-        self.visit_first(FirstMisaligned(&self.run)).ok().flatten()
+        let step = self.run.actual_step();
+        let inside = |t: &f64| whole_steps(t / step).is_none();
+        self.jumps().ok()?.into_iter().filter(inside).min_by(f64::total_cmp)
     }
 
     /// Reads the bundled scene of that name or else the file at that path: `./turnaround` is always the file.

@@ -1,10 +1,11 @@
 use crate::power::{self, SceneBody, SceneEffects};
-use crate::{Acting, EffectPower, RunSettings, Scene, SceneEffect};
-use lagrangian::{Piecewise, System, With, quasi_velocities, velocity_of, whole_steps};
+use crate::{Acting, EffectPower, Scene, SceneEffect};
+use dla::FullMechanics;
+use lagrangian::{Piecewise, System, With};
 use sleigh::{Exact, Flywheel, Guide, Guided, SleighError, SleighState};
 
 /// A system that came from a scene, and answers in the words of a scene.
-pub trait SceneSystem<const N: usize, const M: usize>: System<N, M> + Piecewise + Sync {
+pub trait SceneSystem<const N: usize, const M: usize>: FullMechanics<N, M> + Sync {
     /// Place, heading and admissible velocities of the sleigh.
     fn sleigh_state(&self, q: &[f64; N], v: &[f64; N]) -> SleighState;
 
@@ -18,6 +19,9 @@ pub trait SceneSystem<const N: usize, const M: usize>: System<N, M> + Piecewise 
 
     /// The power of each effect that has any, where the constraints have the multipliers `lambda`.
     fn powers(&self, t: f64, q: &[f64; N], v: &[f64; N], lambda: &[f64; M]) -> Vec<EffectPower>;
+
+    /// The smooth piece that holds at the time `t` (s), continued to all times.
+    fn scene_piece(&self, t: f64) -> Box<dyn SceneSystem<N, M> + '_>;
 }
 
 impl<B, E, const N: usize, const M: usize> SceneSystem<N, M> for With<B, E>
@@ -37,17 +41,58 @@ where
     fn powers(&self, t: f64, q: &[f64; N], v: &[f64; N], lambda: &[f64; M]) -> Vec<EffectPower> {
         power::of(self, t, q, v, lambda)
     }
+
+    fn scene_piece(&self, t: f64) -> Box<dyn SceneSystem<N, M> + '_> {
+        Box::new(self.piece(t))
+    }
 }
 
-/// What is to be done with the system of a scene, whatever its type.
+/// A system with its start.
+pub struct Started<const N: usize, const M: usize> {
+    /// The system.
+    pub system: Box<dyn SceneSystem<N, M>>,
+    /// Configuration at the start.
+    pub q: [f64; N],
+    /// Velocity at the start.
+    pub v: [f64; N],
+}
+
+/// The system of a scene, by its shape: three coordinates or four, with a rotor; one constraint, the blade, or more, where a scene imposes
+/// velocities.
+#[derive(Debug)]
+pub enum AnySystem {
+    /// A sleigh.
+    Sleigh(Started<3, 1>),
+    /// A sleigh of which one velocity is imposed.
+    One(Started<3, 2>),
+    /// A sleigh of which two are.
+    Two(Started<3, 3>),
+    /// A sleigh with a rotor.
+    Rotor(Started<4, 1>),
+    /// The same with one velocity imposed.
+    RotorOne(Started<4, 2>),
+    /// The same with two.
+    RotorTwo(Started<4, 3>),
+}
+
+impl<const N: usize, const M: usize> std::fmt::Debug for Started<N, M> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Started").field("q", &self.q).field("v", &self.v).finish_non_exhaustive()
+    }
+}
+
+/// What is to be done with the system of a scene, whatever its shape.
 pub trait Visitor {
     /// What comes of it.
     type Output;
 
     /// Receives the system and its start.
-    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
-    where
-        Sys: SceneSystem<N, M>;
+    fn visit<const N: usize, const M: usize>(
+        self,
+        system: &dyn SceneSystem<N, M>,
+        q: [f64; N],
+        v: [f64; N],
+    ) -> Self::Output;
 }
 
 /// What imposes velocities on the sleigh of a scene.
@@ -59,77 +104,75 @@ enum Guiding {
 }
 
 impl Scene {
-    /// Builds the system of the scene and hands it to the visitor: the one place where a scene becomes a type.
-    ///
-    /// A body on which nothing acts becomes `With<Body, ()>`, any other a body with a list of what acts on it: an empty list
-    /// would be looked at in every evaluation. A velocity that the scene imposes replaces that of its start.
+    /// Builds the system of the scene and hands it to the visitor.
     ///
     /// # Errors
-    /// [`SleighError`] where an effect has impossible parameters, which one read from a file has not; or of a train, which
-    /// [`train`](Self::train) makes.
+    /// As [`system`](Self::system).
     pub fn visit<V: Visitor>(&self, visitor: V) -> Result<V::Output, SleighError> {
-        if self.has_trailers() {
-            return Err(SleighError::Train);
-        }
-        self.visit_first(visitor)
-    }
-
-    /// The same of the first blade alone, where others follow it.
-    pub(crate) fn visit_first<V: Visitor>(&self, visitor: V) -> Result<V::Output, SleighError> {
-        Ok(match self.guiding()? {
-            Guiding::None => self.with_rotor(self.sleigh, visitor)?,
-            Guiding::Turntable(body) => self.with_rotor(body, visitor)?,
-            Guiding::One(body) => self.with_rotor(body, visitor)?,
-            Guiding::Two(body) => self.with_rotor(body, visitor)?,
+        Ok(match self.system()? {
+            AnySystem::Sleigh(Started { system, q, v }) => visitor.visit(&*system, q, v),
+            AnySystem::One(Started { system, q, v }) => visitor.visit(&*system, q, v),
+            AnySystem::Two(Started { system, q, v }) => visitor.visit(&*system, q, v),
+            AnySystem::Rotor(Started { system, q, v }) => visitor.visit(&*system, q, v),
+            AnySystem::RotorOne(Started { system, q, v }) => visitor.visit(&*system, q, v),
+            AnySystem::RotorTwo(Started { system, q, v }) => visitor.visit(&*system, q, v),
         })
-    }
-
-    /// The same, of half as many types: a list of effects that is empty makes none of its own, and is looked at in every evaluation.
-    ///
-    /// # Errors
-    /// As [`visit`](Self::visit).
-    pub fn visit_listed<V: Visitor>(&self, visitor: V) -> Result<V::Output, SleighError> {
-        if self.has_trailers() {
-            return Err(SleighError::Train);
-        }
-        match self.guiding()? {
-            Guiding::None => self.listed(self.sleigh, visitor),
-            Guiding::Turntable(body) => self.listed(body, visitor),
-            Guiding::One(body) => self.listed(body, visitor),
-            Guiding::Two(body) => self.listed(body, visitor),
-        }
     }
 
     /// The same where the blade is the only constraint; `None` of a scene that imposes velocities.
     ///
-    /// For what needs much code for each system: a list of effects that is empty makes no type of its own here.
-    ///
     /// # Errors
     /// As [`visit`](Self::visit).
     pub fn visit_free<V: Visitor>(&self, visitor: V) -> Result<Option<V::Output>, SleighError> {
+        Ok(match self.system()? {
+            AnySystem::Sleigh(Started { system, q, v }) => Some(visitor.visit(&*system, q, v)),
+            AnySystem::Rotor(Started { system, q, v }) => Some(visitor.visit(&*system, q, v)),
+            _ => None,
+        })
+    }
+
+    /// The system of the scene: the one place where a scene becomes a type.
+    ///
+    /// A sleigh on which nothing acts is a type of its own, since its steps have a closed form that is shorter than a look at an empty
+    /// list; any other body has a list of what acts on it. A velocity that the scene imposes replaces that of its start.
+    ///
+    /// # Errors
+    /// [`SleighError`] where an effect has impossible parameters, which one read from a file has not; or of a train, which
+    /// [`train`](Self::train) makes.
+    pub fn system(&self) -> Result<AnySystem, SleighError> {
         if self.has_trailers() {
             return Err(SleighError::Train);
         }
+        self.first_blade()
+    }
+
+    /// The same of the first blade alone, where others follow it.
+    fn first_blade(&self) -> Result<AnySystem, SleighError> {
         match self.guiding()? {
-            Guiding::None => self.listed(self.sleigh, visitor).map(Some),
-            Guiding::Turntable(body) => self.listed(body, visitor).map(Some),
-            Guiding::One(_) | Guiding::Two(_) => Ok(None),
+            Guiding::None => {
+                let effects = self.acting()?;
+                if effects.is_empty() && self.rotor(&self.sleigh)?.is_none() {
+                    let (q, v) = self.start.to_coordinates();
+                    return Ok(AnySystem::Sleigh(started(With { body: self.sleigh, effects: () }, q, v)));
+                }
+                self.with_rotor(self.sleigh, AnySystem::Sleigh, AnySystem::Rotor)
+            }
+            Guiding::Turntable(body) => self.with_rotor(body, AnySystem::Sleigh, AnySystem::Rotor),
+            Guiding::One(body) => self.with_rotor(body, AnySystem::One, AnySystem::RotorOne),
+            Guiding::Two(body) => self.with_rotor(body, AnySystem::Two, AnySystem::RotorTwo),
         }
     }
 
-    /// Adds the rotor, if there is one, and the list of what acts on the body.
-    fn listed<B, V, const M: usize>(&self, body: B, visitor: V) -> Result<V::Output, SleighError>
-    where
-        B: SceneBody<3, M> + Piecewise + Clone + Sync,
-        V: Visitor,
-    {
-        let (effects, (q, v)) = (self.acting()?, self.start.to_coordinates());
-        Ok(match self.rotor(&body)? {
-            Some((body, rate)) => {
-                let (q, v) = ([q[0], q[1], q[2], 0.0], [v[0], v[1], v[2], rate]);
-                start(visitor, &With { body, effects }, q, v)
-            }
-            None => start(visitor, &With { body, effects }, q, v),
+    /// The jumps of the scene in its run (s).
+    pub(crate) fn jumps(&self) -> Result<Vec<f64>, SleighError> {
+        let end = self.run.duration;
+        Ok(match self.first_blade()? {
+            AnySystem::Sleigh(Started { system, .. }) => system.jump_times(0.0, end),
+            AnySystem::One(Started { system, .. }) => system.jump_times(0.0, end),
+            AnySystem::Two(Started { system, .. }) => system.jump_times(0.0, end),
+            AnySystem::Rotor(Started { system, .. }) => system.jump_times(0.0, end),
+            AnySystem::RotorOne(Started { system, .. }) => system.jump_times(0.0, end),
+            AnySystem::RotorTwo(Started { system, .. }) => system.jump_times(0.0, end),
         })
     }
 
@@ -189,39 +232,23 @@ impl Scene {
         })
     }
 
-    /// Adds the rotor, if there is one, and what acts on the body.
-    fn with_rotor<B, V, const M: usize>(&self, body: B, visitor: V) -> Result<V::Output, SleighError>
-    where
-        B: SceneBody<3, M> + Piecewise + Clone + Sync,
-        V: Visitor,
-    {
-        let (q, v) = self.start.to_coordinates();
-        match self.rotor(&body)? {
-            Some((body, rate)) => {
-                let (q, v) = ([q[0], q[1], q[2], 0.0], [v[0], v[1], v[2], rate]);
-                self.with_effects(body, visitor, q, v)
-            }
-            None => self.with_effects(body, visitor, q, v),
-        }
-    }
-
-    /// Adds what acts on the body, if anything does.
-    fn with_effects<B, V, const N: usize, const M: usize>(
+    /// Adds the rotor, if there is one, and the list of what acts on the body.
+    fn with_rotor<B, const M: usize>(
         &self,
         body: B,
-        visitor: V,
-        q: [f64; N],
-        v: [f64; N],
-    ) -> Result<V::Output, SleighError>
+        plain: fn(Started<3, M>) -> AnySystem,
+        rotor: fn(Started<4, M>) -> AnySystem,
+    ) -> Result<AnySystem, SleighError>
     where
-        B: SceneBody<N, M> + Piecewise + Sync,
-        V: Visitor,
+        B: SceneBody<3, M> + Piecewise + Clone + Sync + 'static,
     {
-        let effects = self.acting()?;
-        Ok(if effects.is_empty() {
-            start(visitor, &With { body, effects: () }, q, v)
-        } else {
-            start(visitor, &With { body, effects }, q, v)
+        let (effects, (q, v)) = (self.acting()?, self.start.to_coordinates());
+        Ok(match self.rotor(&body)? {
+            Some((body, rate)) => {
+                let (q, v) = ([q[0], q[1], q[2], 0.0], [v[0], v[1], v[2], rate]);
+                rotor(started(With { body, effects }, q, v))
+            }
+            None => plain(started(With { body, effects }, q, v)),
         })
     }
 
@@ -235,30 +262,22 @@ impl Scene {
     }
 }
 
-/// Hands the system over with the admissible velocity that has the quasi-velocities of the given one.
-fn start<Sys, V, const N: usize, const M: usize>(visitor: V, system: &Sys, q: [f64; N], v: [f64; N]) -> V::Output
+/// The system with the admissible velocity that has the quasi-velocities of the given one.
+fn started<B, E, const N: usize, const M: usize>(system: With<B, E>, q: [f64; N], v: [f64; N]) -> Started<N, M>
 where
-    Sys: SceneSystem<N, M>,
-    V: Visitor,
+    With<B, E>: SceneSystem<N, M> + 'static,
 {
-    let first = system.piece(0.0);
-    let admissible = quasi_velocities(&first, 0.0, &q, &v).and_then(|xi| velocity_of(&first, 0.0, &q, &xi));
-    let free = M == 1 && first.constraint(0.0, &q).1.iter().all(|b| *b == 0.0);
-    visitor.visit(system, q, if free { v } else { admissible.unwrap_or(v) })
+    of_start(Box::new(system), q, v)
 }
 
-/// The first jump that no step ends at.
-pub(crate) struct FirstMisaligned<'a>(pub(crate) &'a RunSettings);
-
-impl Visitor for FirstMisaligned<'_> {
-    type Output = Option<f64>;
-
-    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, _q: [f64; N], _v: [f64; N]) -> Option<f64>
-    where
-        Sys: SceneSystem<N, M>,
-    {
-        let step = self.0.actual_step();
-        let inside = |t: &f64| whole_steps(t / step).is_none();
-        system.jumps(0.0, self.0.duration).into_iter().filter(inside).min_by(f64::total_cmp)
-    }
+fn of_start<const N: usize, const M: usize>(
+    system: Box<dyn SceneSystem<N, M>>,
+    q: [f64; N],
+    v: [f64; N],
+) -> Started<N, M> {
+    let first = system.smooth_piece(0.0);
+    let admissible = first.quasi_velocities(0.0, &q, &v).and_then(|xi| first.velocity_of(0.0, &q, &xi));
+    let free = M == 1 && first.constraint(0.0, &q).1.iter().all(|b| *b == 0.0);
+    drop(first);
+    Started { system, q, v: if free { v } else { admissible.unwrap_or(v) } }
 }

@@ -137,10 +137,12 @@ struct AFewSteps<'a>(&'a RunSettings);
 impl Visitor for AFewSteps<'_> {
     type Output = Result<(), TestCaseError>;
 
-    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    fn visit<const N: usize, const M: usize>(
+        self,
+        system: &dyn SceneSystem<N, M>,
+        q: [f64; N],
+        v: [f64; N],
+    ) -> Self::Output {
         let schedule = Schedule { t0: 0.0, step: self.0.actual_step(), steps: self.0.steps().min(10) };
         let mut state = State::new(q, v, system.angles());
         let run = piece_by_piece(system, &schedule, &mut state, |piece, steps, state| {

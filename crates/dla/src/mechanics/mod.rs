@@ -3,9 +3,11 @@
 mod automatic;
 mod diagnosis;
 mod rounded;
+mod seeded;
 
 pub use diagnosis::Diagnosis;
 pub use rounded::RoundedMechanics;
+pub use seeded::{FullMechanics, SeededMechanics};
 
 use crate::gauss::{Collocation, Outcome};
 use crate::{State, StepError, StepReport};

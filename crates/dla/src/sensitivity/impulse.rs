@@ -1,7 +1,7 @@
 use super::equations::{Unknowns, constrained, difference};
 use super::{Differentiable, Sensitivity, SensitivityError, StepEquations, StepStart, Tangent};
 use crate::{State, StepReport, onto_constraint};
-use lagrangian::{Gradients, Scalar, Seeded, System};
+use lagrangian::{Gradients, Scalar, Seeded};
 
 /// The impulse of the constraints on a velocity that does not meet them, as a step without duration:
 /// `L_v(q, v1) = L_v(q, v0) + A' mu`, `A v1 + b = 0`, or `phi(q, v1) = 0` with its reaction along `d phi / dv1`.
@@ -32,7 +32,7 @@ impl<const N: usize, const M: usize> Differentiable<N, M> for Impulse {
     }
 }
 
-impl<Sys: System<N, M>, const N: usize, const M: usize, const P: usize> Sensitivity<'_, Sys, N, M, P> {
+impl<const N: usize, const M: usize, const P: usize> Sensitivity<'_, N, M, P> {
     /// Brings a velocity onto the constraints as [`onto_constraint`] does, and tangents with it: what happens between two
     /// smooth pieces of a run, at a node that is fixed in time.
     ///

@@ -1,9 +1,8 @@
 use super::{Differentiable, Sensitivity, SensitivityError, Tangent, TangentRunError};
 use crate::{OneStep, Schedule, State, StepReport, View};
-use lagrangian::System;
 use std::ops::ControlFlow;
 
-impl<Sys: System<N, M>, const N: usize, const M: usize, const P: usize> Sensitivity<'_, Sys, N, M, P> {
+impl<const N: usize, const M: usize, const P: usize> Sensitivity<'_, N, M, P> {
     /// Moves a state and tangents together from time `t` to `t + h`.
     ///
     /// # Errors

@@ -2,9 +2,9 @@ use super::implicit::{Elementary, Seeder};
 use super::reduced::{Columns, Frame};
 use super::{Differentiable, SensitivityError, StepDerivative, Variation};
 use crate::convergence::tolerances::NEAR_ROUNDINGS;
-use crate::{OneStep, StackUse, State, StepReport};
+use crate::{Mechanics, OneStep, SeededMechanics, StackUse, State, StepReport};
 use lagrangian::linear::{larger, largest};
-use lagrangian::{Gradients, Member, Parametrised, Scalar, Seeded, SeededMember, System, Unparametrised, from_fn};
+use lagrangian::{Gradients, Member, Parametrised, Scalar, Seeded, SeededMember, from_fn};
 use nalgebra::DMatrix;
 use std::fmt;
 
@@ -35,36 +35,31 @@ use std::fmt;
 /// assert!((derivative.from_v[1].q[1] - 0.1).abs() < 1e-15);
 /// # Ok::<(), dla::SensitivityError>(())
 /// ```
-pub struct Sensitivity<'a, Sys, const N: usize, const M: usize, const P: usize> {
-    system: &'a Sys,
+pub struct Sensitivity<'a, const N: usize, const M: usize, const P: usize> {
+    system: &'a dyn Mechanics<N, M>,
     parameters: [f64; P],
     seeder: Box<Seeder<'a, N, M>>,
 }
 
-impl<Sys, const N: usize, const M: usize, const P: usize> fmt::Debug for Sensitivity<'_, Sys, N, M, P> {
+impl<const N: usize, const M: usize, const P: usize> fmt::Debug for Sensitivity<'_, N, M, P> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Sensitivity").field("parameters", &self.parameters).finish_non_exhaustive()
     }
 }
 
-impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Sensitivity<'a, Sys, N, M, 0> {
+impl<'a, const N: usize, const M: usize> Sensitivity<'a, N, M, 0> {
     /// On a system without parameters.
     #[must_use]
-    pub fn of(system: &'a Sys) -> Self {
-        let seeder = move |_: &[Seeded]| -> Box<dyn Gradients<N, M> + 'a> {
-            Box::new(SeededMember { family: Unparametrised(system), parameters: [] })
-        };
+    pub fn of(system: &'a dyn SeededMechanics<N, M>) -> Self {
+        let seeder = move |_: &[Seeded]| system.gradients();
         Self { system, parameters: [], seeder: Box::new(seeder) }
     }
 }
 
-impl<'a, F, const N: usize, const M: usize, const P: usize> Sensitivity<'a, Member<F, P>, N, M, P>
-where
-    F: Parametrised<N, M, P>,
-{
+impl<'a, const N: usize, const M: usize, const P: usize> Sensitivity<'a, N, M, P> {
     /// On a member of a family, in whose parameters the steps are differentiated too.
     #[must_use]
-    pub fn of_member(system: &'a Member<F, P>) -> Self {
+    pub fn of_member<F: Parametrised<N, M, P>>(system: &'a Member<F, P>) -> Self {
         let seeder = move |p: &[Seeded]| -> Box<dyn Gradients<N, M> + 'a> {
             let parameters = from_fn(|k| p.get(k).copied().unwrap_or(Seeded::zero()));
             Box::new(SeededMember { family: &system.family, parameters })
@@ -76,10 +71,10 @@ where
 /// Numbers carry eight directions here, and those of a step's equations a gradient of them or two.
 const USE: StackUse = StackUse { squares: 110, rows: 60 };
 
-impl<Sys: System<N, M>, const N: usize, const M: usize, const P: usize> Sensitivity<'_, Sys, N, M, P> {
+impl<const N: usize, const M: usize, const P: usize> Sensitivity<'_, N, M, P> {
     /// The system.
     #[must_use]
-    pub fn system(&self) -> &Sys {
+    pub fn system(&self) -> &dyn Mechanics<N, M> {
         self.system
     }
 

@@ -3,7 +3,6 @@
 
 use crate::{hand, tools};
 use dla::{Composition, Dla, Form, Schedule};
-use lagrangian::Piecewise;
 use scene::{Scene, SceneSystem, Visitor};
 
 /// `golden/effects.py` writes it and says how.
@@ -28,10 +27,12 @@ struct ByDla<'a> {
 impl Visitor for ByDla<'_> {
     type Output = ([f64; 7], Vec<f64>);
 
-    fn visit<Sys, const N: usize, const M: usize>(self, system: &Sys, q: [f64; N], v: [f64; N]) -> Self::Output
-    where
-        Sys: SceneSystem<N, M>,
-    {
+    fn visit<const N: usize, const M: usize>(
+        self,
+        system: &dyn SceneSystem<N, M>,
+        q: [f64; N],
+        v: [f64; N],
+    ) -> Self::Output {
         let end = self.scene.run.duration;
         let schedule = Schedule { t0: 0.0, step: self.step, steps: (end / self.step).round() as u64 };
         let mut method = Composition::fifteen8(Dla::midpoint().solved(self.form));
@@ -39,7 +40,7 @@ impl Visitor for ByDla<'_> {
         let (q, v) = (state.unwrapped(), *state.v());
         let at = system.sleigh_state(&q, &v);
         let [psi, rate] = system.rotor(&q, &v).unwrap_or([0.0; 2]);
-        ([at.x, at.y, at.heading, at.speed, at.turn_rate, psi, rate], Piecewise::jumps(system, 0.0, end))
+        ([at.x, at.y, at.heading, at.speed, at.turn_rate, psi, rate], system.jump_times(0.0, end))
     }
 }
 

@@ -1,20 +1,19 @@
 //! Runs of systems that may jump.
 
-use dla::{Observer, OneStep, Schedule, State, drive_part, piece_by_piece};
-use lagrangian::{Piecewise, System, With};
+use dla::{Observer, OneStep, PiecewiseMechanics, Schedule, State, drive_part, piece_by_piece};
+use lagrangian::With;
 use scene::Acting;
 use sleigh::{Sleigh, SleighState};
 
 /// Runs piece by piece, as a command does.
-pub fn run<Sys, Method, Obs, const N: usize, const M: usize>(
-    system: &Sys,
+pub fn run<Method, Obs, const N: usize, const M: usize>(
+    system: &dyn PiecewiseMechanics<N, M>,
     method: &mut Method,
     schedule: &Schedule,
     (q, v): ([f64; N], [f64; N]),
     mut observer: Obs,
 ) -> State<N>
 where
-    Sys: System<N, M> + Piecewise,
     Method: OneStep<N, M>,
     Obs: Observer<N, M>,
 {

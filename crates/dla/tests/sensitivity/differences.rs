@@ -90,7 +90,7 @@ pub const BAR: f64 = 1e-9;
 
 /// The largest disagreement of derivative and differences over all directions, relative.
 pub fn disagreement<Sys, Method, const N: usize, const M: usize, const P: usize>(
-    sensitivity: &Sensitivity<'_, Sys, N, M, P>,
+    sensitivity: &Sensitivity<'_, N, M, P>,
     system: impl Fn(&[f64; P]) -> Sys,
     method: &Method,
     (start, at): (Start, &Input<N, P>),

@@ -9,7 +9,7 @@ use std::array::from_fn;
 
 /// The largest disagreement over all columns, relative; the place `v` of an input is that of the quasi-velocities.
 fn disagreement<Sys, Method, const P: usize>(
-    sensitivity: &Sensitivity<'_, Sys, 3, 1, P>,
+    sensitivity: &Sensitivity<'_, 3, 1, P>,
     system: impl Fn(&[f64; P]) -> Sys,
     method: &Method,
     at: &Input<3, P>,

@@ -2,8 +2,8 @@ use super::Equilibrium;
 use super::root::nearest_root;
 use super::spectrum::{Spectrum, size, spectrum};
 use crate::{Kind, Method, Rk4, Rk4Reduced};
-use dla::{Composition, Differentiable, Dla, Sensitivity, State, StepReport};
-use lagrangian::{System, from_fn, quasi_velocities, velocity_of};
+use dla::{Composition, Differentiable, Dla, SeededMechanics, Sensitivity, State, StepReport};
+use lagrangian::from_fn;
 use nalgebra::{DMatrix, DVector};
 
 /// A method as an object whose steps can be differentiated; none for the methods that this is not done for.
@@ -27,9 +27,9 @@ pub fn differentiable<const N: usize, const M: usize>(method: &Method) -> Option
 pub type Step<'a, const N: usize> = dyn FnMut(f64, &State<N>) -> Option<State<N>> + 'a;
 
 /// The map of one step about an equilibrium of the flow.
-pub struct DiscreteMap<'a, Sys, const N: usize, const M: usize> {
-    system: &'a Sys,
-    sensitivity: Sensitivity<'a, Sys, N, M, 0>,
+pub struct DiscreteMap<'a, const N: usize, const M: usize> {
+    system: &'a dyn SeededMechanics<N, M>,
+    sensitivity: Sensitivity<'a, N, M, 0>,
     method: &'a dyn Differentiable<N, M>,
     step: &'a mut Step<'a, N>,
 }
@@ -76,15 +76,19 @@ const FACTOR: f64 = 1.25;
 const RUNGS: i32 = 72;
 const BISECTIONS: usize = 45;
 
-impl<Sys, const N: usize, const M: usize> std::fmt::Debug for DiscreteMap<'_, Sys, N, M> {
+impl<const N: usize, const M: usize> std::fmt::Debug for DiscreteMap<'_, N, M> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("DiscreteMap").finish_non_exhaustive()
     }
 }
 
-impl<'a, Sys: System<N, M>, const N: usize, const M: usize> DiscreteMap<'a, Sys, N, M> {
+impl<'a, const N: usize, const M: usize> DiscreteMap<'a, N, M> {
     /// The map of a method whose steps `step` makes, from time zero.
-    pub fn new(system: &'a Sys, method: &'a dyn Differentiable<N, M>, step: &'a mut Step<'a, N>) -> Self {
+    pub fn new(
+        system: &'a dyn SeededMechanics<N, M>,
+        method: &'a dyn Differentiable<N, M>,
+        step: &'a mut Step<'a, N>,
+    ) -> Self {
         Self { system, sensitivity: Sensitivity::of(system), method, step }
     }
 
@@ -142,12 +146,12 @@ impl<'a, Sys: System<N, M>, const N: usize, const M: usize> DiscreteMap<'a, Sys,
         let mut q = near.q;
         shape.iter().enumerate().for_each(|(k, i)| q[*i] = z[k]);
         let xi: [f64; N] = from_fn(|a| if a < dimension { z[shape.len() + a] } else { 0.0 });
-        let v = velocity_of(self.system, 0.0, &q, &xi).ok()?;
+        let v = self.system.velocity_of(0.0, &q, &xi).ok()?;
         let start = State::new(q, v, self.system.angles());
         let end = (self.step)(h, &start)?;
         let derivative = self.sensitivity.between(self.method, (0.0, h), &start, &end, StepReport::of(0)).ok()?;
         let derivative = derivative.reduced?;
-        let (moved, after) = (end.moved_since(&start), quasi_velocities(self.system, h, end.q(), end.v()).ok()?);
+        let (moved, after) = (end.moved_since(&start), self.system.quasi_velocities(h, end.q(), end.v()).ok()?);
         let value = |row: usize| if row < N { moved[row] } else { after[row - N] - xi[row - N] };
         let rows: Vec<usize> = shape.iter().copied().chain(N..N + dimension).collect();
         let entry = |row: usize, column: usize| {

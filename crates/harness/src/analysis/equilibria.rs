@@ -1,10 +1,9 @@
 use super::reduced_field;
 use super::root::nearest_root;
 use super::spectrum::spectrum;
+use dla::SeededMechanics;
 use lagrangian::linear::Singular;
-use lagrangian::{
-    Gradients, ReducedError, SeededMember, System, Unparametrised, energy, from_fn, quasi_velocities, velocity_of,
-};
+use lagrangian::{Gradients, ReducedError, from_fn};
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
@@ -80,30 +79,29 @@ const OFFSETS: [f64; 5] = [0.0, 0.37, -0.61, 0.83, 1.9];
 ///
 /// # Errors
 /// [`EquilibriumError`].
-pub fn relative_equilibria<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+pub fn relative_equilibria<const N: usize, const M: usize>(
+    system: &dyn SeededMechanics<N, M>,
     q: &[f64; N],
     v: &[f64; N],
 ) -> Result<Vec<Equilibrium<N>>, EquilibriumError> {
     if N == M {
         return Err(EquilibriumError::NothingFree);
     }
-    let xi = quasi_velocities(system, 0.0, q, v)?;
-    let rest = velocity_of(system, 0.0, q, &[0.0; N])?;
-    let kinetic = |v: &[f64; N]| energy(system, 0.0, q, v) - energy(system, 0.0, q, &rest);
+    let xi = system.quasi_velocities(0.0, q, v)?;
+    let rest = system.velocity_of(0.0, q, &[0.0; N])?;
+    let kinetic = |v: &[f64; N]| system.energy(0.0, q, v) - system.energy(0.0, q, &rest);
     let available = kinetic(v);
     // Rest first: it is exact, where what comes to rest from elsewhere is not.
     let mut guesses = vec![[0.0; N]];
     for axis in 0..N - M {
         let unit = from_fn(|k| f64::from(u8::from(k == axis)));
-        let speed = (available / kinetic(&velocity_of(system, 0.0, q, &unit)?)).max(0.0).sqrt();
+        let speed = (available / kinetic(&system.velocity_of(0.0, q, &unit)?)).max(0.0).sqrt();
         if speed.is_finite() && speed > 0.0 {
             guesses.extend([speed, -speed].map(|speed| unit.map(|unit| unit * speed)));
         }
     }
     guesses.push(xi);
-    let model: &dyn Gradients<N, M> = &SeededMember { family: Unparametrised(system), parameters: [] };
-    search(model, q, &guesses)
+    search(&*system.gradients(), q, &guesses)
 }
 
 fn search<const N: usize, const M: usize>(

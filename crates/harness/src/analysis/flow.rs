@@ -1,4 +1,5 @@
-use lagrangian::{Gradients, Scalar, Seeded, SeededMember, System, Unparametrised, from_fn, velocity_of};
+use dla::SeededMechanics;
+use lagrangian::{Gradients, Scalar, Seeded, from_fn};
 
 /// `q' = W xi + v_b` and `xi'`.
 pub(super) type Slope<const N: usize> = [[Seeded; N]; 2];
@@ -11,15 +12,15 @@ pub(super) trait ReducedFlow<const N: usize, const M: usize> {
 
 /// The reduced equations of a system: by hand where it knows them, else from its Lagrangian.
 #[derive(Debug)]
-pub(super) struct Flow<'a, Sys>(pub(super) &'a Sys);
+pub(super) struct Flow<'a, const N: usize, const M: usize>(pub(super) &'a dyn SeededMechanics<N, M>);
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> ReducedFlow<N, M> for Flow<'_, Sys> {
+impl<const N: usize, const M: usize> ReducedFlow<N, M> for Flow<'_, N, M> {
     fn slope(&self, t: f64, q: &[Seeded; N], xi: &[Seeded; N]) -> Option<Slope<N>> {
         let t = Seeded::constant(t);
-        let velocity = velocity_of(self.0, t, q, xi).ok()?;
-        let rate = match self.0.reduced_motion(t, q, xi) {
+        let velocity = self.0.velocity_seeded(t, q, xi)?;
+        let rate = match self.0.reduced_motion_seeded(t, q, xi) {
             Some(rate) => from_fn(|a| if a < N - M { rate[a] } else { Seeded::zero() }),
-            None => implicit(&SeededMember { family: Unparametrised(self.0), parameters: [] }, t, q, xi)?,
+            None => implicit(&*self.0.gradients(), t, q, xi)?,
         };
         Some([velocity, rate])
     }

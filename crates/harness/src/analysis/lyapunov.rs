@@ -6,8 +6,7 @@ use super::verdict::{Evidence, MotionVerdict};
 use crate::run::integrate_pieces;
 use crate::timing::Ticker;
 use crate::{Method, Progress};
-use dla::{Observer, RunError, Schedule, SensitivityError, State, TangentRunError};
-use lagrangian::{Piecewise, System};
+use dla::{FullMechanics, Observer, RunError, Schedule, SeededMechanics, SensitivityError, State, TangentRunError};
 use thiserror::Error;
 
 /// What exponents are asked for.
@@ -120,15 +119,15 @@ pub enum LyapunovError {
 ///
 /// # Errors
 /// [`LyapunovError`] where the request makes no sense, or the method has no derivatives here.
-pub fn lyapunov<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
-    system: &Sys,
+pub fn lyapunov<const N: usize, const M: usize>(
+    system: &dyn FullMechanics<N, M>,
     method: &Method,
     request: &LyapunovRequest<N>,
     progress: &mut dyn Progress,
 ) -> Result<Lyapunov, LyapunovError> {
     let (first, last) =
         (request.schedule.t0, request.schedule.time(request.settle.saturating_add(request.schedule.steps)));
-    if let Some(time) = system.jumps(first, last).into_iter().min_by(f64::total_cmp) {
+    if let Some(time) = system.jump_times(first, last).into_iter().min_by(f64::total_cmp) {
         return Err(LyapunovError::Jump { time });
     }
     lyapunov_by(system, method, request, |schedule, state, observer| {
@@ -141,8 +140,8 @@ pub fn lyapunov<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(
 ///
 /// # Errors
 /// As [`lyapunov`]; jumps are not looked for.
-pub fn lyapunov_by<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+pub fn lyapunov_by<const N: usize, const M: usize>(
+    system: &dyn SeededMechanics<N, M>,
     method: &Method,
     request: &LyapunovRequest<N>,
     drive: impl FnOnce(&Schedule, &mut State<N>, &mut dyn Observer<N, M>) -> Result<u64, RunError>,

@@ -2,8 +2,8 @@ use super::discrete::differentiable;
 use super::flow::{Flow, ReducedFlow, admissible, divergence};
 use super::stages::{DIRECTIONS, Stages, TOO_MANY};
 use crate::{Kind, Method};
-use dla::{Differentiable, Energy, Lobatto, Sensitivity, SensitivityError, State, StepReport};
-use lagrangian::{System, energy, from_fn, velocity_of};
+use dla::{Differentiable, Energy, Lobatto, SeededMechanics, Sensitivity, SensitivityError, State, StepReport};
+use lagrangian::from_fn;
 use nalgebra::DMatrix;
 
 /// The derivative of single steps of a run, in the coordinates `(q, xi)` of the distribution; an object, so that what uses it
@@ -45,10 +45,10 @@ enum Rule<const N: usize, const M: usize> {
 }
 
 /// The steps of a method on a system.
-pub(super) struct Steps<'a, Sys, const N: usize, const M: usize> {
-    system: &'a Sys,
+pub(super) struct Steps<'a, const N: usize, const M: usize> {
+    system: &'a dyn SeededMechanics<N, M>,
     rule: Rule<N, M>,
-    sensitivity: Sensitivity<'a, Sys, N, M, 0>,
+    sensitivity: Sensitivity<'a, N, M, 0>,
 }
 
 /// Whether [`lyapunov`](fn@super::lyapunov) has the derivatives of this method.
@@ -96,8 +96,8 @@ fn rule<const N: usize, const M: usize>(method: &Method) -> Result<Rule<N, M>, S
     })
 }
 
-impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Steps<'a, Sys, N, M> {
-    pub(super) fn of(system: &'a Sys, method: &Method) -> Result<Self, SensitivityError> {
+impl<'a, const N: usize, const M: usize> Steps<'a, N, M> {
+    pub(super) fn of(system: &'a dyn SeededMechanics<N, M>, method: &Method) -> Result<Self, SensitivityError> {
         if 2 * N - M > DIRECTIONS {
             return Err(TOO_MANY);
         }
@@ -112,7 +112,7 @@ impl<'a, Sys: System<N, M>, const N: usize, const M: usize> Steps<'a, Sys, N, M>
 /// Steps that differ by more, relative, are different solutions; rounding is far below.
 const AGREEMENT: f64 = 1e-9;
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> StepTangent<N, M> for Steps<'_, Sys, N, M> {
+impl<const N: usize, const M: usize> StepTangent<N, M> for Steps<'_, N, M> {
     fn matrix(
         &self,
         time: (f64, f64),
@@ -141,8 +141,8 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> StepTangent<N, M> for St
 
     fn weights(&self, t: f64, state: &State<N>) -> [f64; N] {
         let of = |xi: &[f64; N]| {
-            let velocity = velocity_of(self.system, t, state.q(), xi).ok();
-            velocity.map_or(f64::NAN, |v| energy(self.system, t, state.q(), &v))
+            let velocity = self.system.velocity_of(t, state.q(), xi).ok();
+            velocity.map_or(f64::NAN, |v| self.system.energy(t, state.q(), &v))
         };
         let rest = of(&[0.0; N]);
         from_fn(|a| {

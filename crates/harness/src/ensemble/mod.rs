@@ -10,7 +10,7 @@
 //! let state = LaneState::new(&starts, [false, false, true]);
 //! let mut ensemble = ClosedEnsemble::<_, 16, 3, 1, 4, 6>::new(sleighs, 0.05, state);
 //! let schedule = Schedule { t0: 0.0, step: 0.05, steps: 800 };
-//! let speed = |_: &Sleigh, q: &[f64; 3], v: &[f64; 3]| [SleighState::from_coordinates(q, v).speed];
+//! let speed = |q: &[f64; 3], v: &[f64; 3]| [SleighState::from_coordinates(q, v).speed];
 //! let summaries = watch(&mut ensemble, &Each(&sleighs), &Watching { schedule, every: 50, of: &speed });
 //! assert!(summaries.iter().flatten().all(|summary| summary.low[0] < -0.9 && summary.end[0] > 1.0));
 //! # Ok::<(), sleigh::SleighError>(())

@@ -1,26 +1,26 @@
 use super::Summary;
 use crate::Method;
 use crate::run::integrate_pieces;
-use dla::{Ensemble, Observer, RunError, Schedule, State, StepReport, Systems, View};
-use lagrangian::{Piecewise, System, velocity_of};
+use dla::{Ensemble, Observer, PiecewiseMechanics, RunError, Schedule, State, StepReport, Systems, View};
+use lagrangian::{System, velocity_of};
 use std::fmt::{Debug, Formatter};
 use std::ops::ControlFlow;
 
 /// `K` quantities of a configuration, angles with their full turns, and a velocity.
-type Quantities<'a, Sys, const N: usize, const K: usize> = &'a dyn Fn(&Sys, &[f64; N], &[f64; N]) -> [f64; K];
+type Quantities<'a, const N: usize, const K: usize> = &'a dyn Fn(&[f64; N], &[f64; N]) -> [f64; K];
 
 /// What is looked at, and when.
 #[derive(Clone, Copy)]
-pub struct Watching<'a, Sys, const N: usize, const K: usize> {
+pub struct Watching<'a, const N: usize, const K: usize> {
     /// The steps.
     pub schedule: Schedule,
     /// Every so many of them, and at the end.
     pub every: u64,
     /// The quantities.
-    pub of: Quantities<'a, Sys, N, K>,
+    pub of: Quantities<'a, N, K>,
 }
 
-impl<Sys, const N: usize, const K: usize> Debug for Watching<'_, Sys, N, K> {
+impl<const N: usize, const K: usize> Debug for Watching<'_, N, K> {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
         let Self { schedule, every, .. } = self;
         f.debug_struct("Watching").field("schedule", schedule).field("every", every).finish_non_exhaustive()
@@ -31,7 +31,7 @@ impl<Sys, const N: usize, const K: usize> Debug for Watching<'_, Sys, N, K> {
 pub fn watch<Sys, const N: usize, const M: usize, const W: usize, const K: usize>(
     ensemble: &mut dyn Ensemble<N, W>,
     systems: &dyn Systems<Sys, W>,
-    watching: &Watching<'_, Sys, N, K>,
+    watching: &Watching<'_, N, K>,
 ) -> Vec<Option<Summary<K>>>
 where
     Sys: System<N, M>,
@@ -46,7 +46,7 @@ where
             let known = place.as_mut().filter(|_| state.is_finite(lane));
             let seen = known.zip(velocity_of(system, t, &state.q(lane), &state.xi(lane)).ok());
             match seen {
-                Some((summary, v)) => summary.see(system, t, &state.lane(lane, v), |q, v| of(system, q, v)),
+                Some((summary, v)) => summary.see(system, t, &state.lane(lane, v), of),
                 None => *place = None,
             }
         }
@@ -60,39 +60,35 @@ where
 }
 
 /// The summary of one trajectory by any method; of one that fails that of its valid part, with the failure.
-pub fn summarise<Sys, const N: usize, const M: usize, const K: usize>(
-    system: &Sys,
+pub fn summarise<const N: usize, const M: usize, const K: usize>(
+    system: &dyn PiecewiseMechanics<N, M>,
     method: &Method,
     (q, v): ([f64; N], [f64; N]),
-    watching: &Watching<'_, Sys, N, K>,
-) -> (Summary<K>, Option<RunError>)
-where
-    Sys: System<N, M> + Piecewise,
-{
-    let mut looking = Looking { system, watching, seen: Summary::new(), last: None };
+    watching: &Watching<'_, N, K>,
+) -> (Summary<K>, Option<RunError>) {
+    let mut looking = Looking { watching, seen: Summary::new(), last: None };
     let mut state = State::new(q, v, system.angles());
     let outcome = integrate_pieces(system, method, &watching.schedule, &mut state, &mut looking);
     (looking.seen, outcome.err())
 }
 
 /// The observer of one trajectory.
-struct Looking<'a, 'b, Sys, const N: usize, const K: usize> {
-    system: &'a Sys,
-    watching: &'a Watching<'b, Sys, N, K>,
+struct Looking<'a, 'b, const N: usize, const K: usize> {
+    watching: &'a Watching<'b, N, K>,
     seen: Summary<K>,
     last: Option<u64>,
 }
 
-impl<Sys, const N: usize, const K: usize> Looking<'_, '_, Sys, N, K> {
+impl<const N: usize, const K: usize> Looking<'_, '_, N, K> {
     fn see<const M: usize>(&mut self, node: &View<'_, N, M>) {
         if self.last != Some(node.k) {
             self.last = Some(node.k);
-            self.seen.see(node.system, node.t, node.state, |q, v| (self.watching.of)(self.system, q, v));
+            self.seen.see(node.system, node.t, node.state, self.watching.of);
         }
     }
 }
 
-impl<Sys, const N: usize, const M: usize, const K: usize> Observer<N, M> for Looking<'_, '_, Sys, N, K> {
+impl<const N: usize, const M: usize, const K: usize> Observer<N, M> for Looking<'_, '_, N, K> {
     fn start(&mut self, node: &View<'_, N, M>) {
         self.see(node);
     }

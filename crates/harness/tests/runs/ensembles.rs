@@ -24,7 +24,7 @@ fn group(members: Range<u64>) -> Vec<Option<Summary<3>>> {
     let starts: Vec<_> = members.map(start).collect();
     let state = LaneState::new(&starts, [false, false, true]);
     let mut ensemble = ClosedEnsemble::<_, W, 3, 1, 4, 6>::new(sleighs, 0.05, state);
-    let of = |_: &Sleigh, q: &[f64; 3], v: &[f64; 3]| words(&SleighState::from_coordinates(q, v));
+    let of = |q: &[f64; 3], v: &[f64; 3]| words(&SleighState::from_coordinates(q, v));
     let schedule = Schedule { t0: 0.0, step: 0.05, steps: 101 };
     watch(&mut ensemble, &Each(&sleighs), &Watching { schedule, every: 10, of: &of })
 }
@@ -69,7 +69,7 @@ fn the_sink_ends_it() {
 fn lanes_are_summed_up_as_single_runs_are() {
     let system = With { body: Sleigh::new(1.0, 1.0, 0.5).unwrap(), effects: () };
     let schedule = Schedule { t0: 0.0, step: 0.05, steps: 101 };
-    let of = |_: &With<Sleigh, ()>, q: &[f64; 3], v: &[f64; 3]| words(&SleighState::from_coordinates(q, v));
+    let of = |q: &[f64; 3], v: &[f64; 3]| words(&SleighState::from_coordinates(q, v));
     let watching = Watching { schedule, every: 10, of: &of };
     let method = Method::named("dla", None).unwrap();
     let mut worst = 0.0f64;
@@ -97,7 +97,7 @@ fn lanes_are_summed_up_as_single_runs_are() {
 #[test]
 fn a_run_that_fails_is_summed_up_as_far_as_it_goes() {
     let system = With { body: Sleigh::new(1.0, 1.0, 0.5).unwrap(), effects: () };
-    let of = |_: &With<Sleigh, ()>, q: &[f64; 3], v: &[f64; 3]| words(&SleighState::from_coordinates(q, v));
+    let of = |q: &[f64; 3], v: &[f64; 3]| words(&SleighState::from_coordinates(q, v));
     let schedule = Schedule { t0: 0.0, step: 2.9, steps: 10 };
     let method = Method::named("dla", None).unwrap();
     let start = ([0.0; 3], [-1.5, 0.0, 1e-3]);

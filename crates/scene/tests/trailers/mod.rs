@@ -11,11 +11,7 @@ struct Nothing;
 impl Visitor for Nothing {
     type Output = ();
 
-    fn visit<Sys, const N: usize, const M: usize>(self, _system: &Sys, _q: [f64; N], _v: [f64; N])
-    where
-        Sys: SceneSystem<N, M>,
-    {
-    }
+    fn visit<const N: usize, const M: usize>(self, _system: &dyn SceneSystem<N, M>, _q: [f64; N], _v: [f64; N]) {}
 }
 
 #[test]

@@ -1,0 +1,44 @@
+use super::Mechanics;
+use crate::PiecewiseMechanics;
+use lagrangian::{Gradients, Seeded, SeededMember, System, Unparametrised, velocity_of};
+
+/// What is asked of a system where a motion is differentiated: the same answers with derivatives in eight directions.
+///
+/// Every [`System`] is one. The trait is apart from [`Mechanics`], so that a system whose motions are not differentiated costs no such
+/// code.
+pub trait SeededMechanics<const N: usize, const M: usize>: Mechanics<N, M> {
+    /// The system on numbers with derivatives.
+    fn gradients(&self) -> Box<dyn Gradients<N, M> + '_>;
+
+    /// The velocity `W xi + v_b` of quasi-velocities; none where there is no basis.
+    fn velocity_seeded(&self, t: Seeded, q: &[Seeded; N], xi: &[Seeded; N]) -> Option<[Seeded; N]>;
+
+    /// The accelerations of the quasi-velocities, where they are known by hand.
+    fn reduced_motion_seeded(&self, t: Seeded, q: &[Seeded; N], xi: &[Seeded; N]) -> Option<[Seeded; N]>;
+}
+
+impl<Sys: System<N, M>, const N: usize, const M: usize> SeededMechanics<N, M> for Sys {
+    fn gradients(&self) -> Box<dyn Gradients<N, M> + '_> {
+        Box::new(SeededMember { family: Unparametrised(self), parameters: [] })
+    }
+
+    fn velocity_seeded(&self, t: Seeded, q: &[Seeded; N], xi: &[Seeded; N]) -> Option<[Seeded; N]> {
+        velocity_of(self, t, q, xi).ok()
+    }
+
+    fn reduced_motion_seeded(&self, t: Seeded, q: &[Seeded; N], xi: &[Seeded; N]) -> Option<[Seeded; N]> {
+        self.reduced_motion(t, q, xi)
+    }
+}
+
+impl<const N: usize, const M: usize> std::fmt::Debug for dyn SeededMechanics<N, M> + '_ {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let system: &dyn Mechanics<N, M> = self;
+        system.fmt(f)
+    }
+}
+
+/// All that is asked of a system: runs across jumps, and the derivatives of motions.
+pub trait FullMechanics<const N: usize, const M: usize>: PiecewiseMechanics<N, M> + SeededMechanics<N, M> {}
+
+impl<T: PiecewiseMechanics<N, M> + SeededMechanics<N, M>, const N: usize, const M: usize> FullMechanics<N, M> for T {}
