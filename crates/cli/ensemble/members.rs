@@ -1,21 +1,15 @@
 use crate::inspect;
-use dla::{ClosedEnsemble, Each, Ensemble, GaussEnsemble, LaneState, Same, Schedule};
+use dla::Schedule;
 use harness::analysis::{LyapunovRequest, lyapunov};
 use harness::ensemble::{Summary, Watching, summarise, watch};
 use harness::{Kind, Method};
-use lagrangian::{System, With};
-use scene::{Scene, SceneEffect, SceneSystem, Sweep, Visitor};
-use sleigh::effects::Bowl;
-use sleigh::{Sleigh, SleighState};
+use scene::{LANES, LaneMethod, Scene, SceneSystem, Sweep, Visitor, in_lanes};
+use sleigh::SleighState;
 use std::array::from_fn;
 use std::ops::Range;
 
-/// Members that are computed together: three times the lanes of the closed map and of the collocation.
+/// Members that are computed together: three times the lanes.
 pub(super) const GROUP: u64 = 48;
-
-/// Lanes of the closed map and of the collocation.
-const CLOSED: usize = 16;
-const GAUSS: usize = 16;
 
 /// What is summed up of a sleigh.
 const QUANTITIES: usize = 5;
@@ -107,79 +101,24 @@ impl Members<'_> {
 
     /// In lanes, where there are lanes for it; none of a member that needs to be looked at by itself.
     fn in_lanes(&self, scenes: &[&Scene]) -> Vec<Option<Summary<QUANTITIES>>> {
-        let Schedule { t0, step, .. } = self.schedule();
-        let time = (t0, step);
-        match (self.method.info().kind, &self.sweep.scene.effects[..]) {
-            (Kind::Dla, []) => self.registers::<CLOSED, _>(scenes, free, |sleighs, state| {
-                Some(Box::new(ClosedEnsemble::<_, CLOSED, 3, 1, 4, 6>::new(*sleighs, step, state)))
-            }),
-            (Kind::Gauss8, []) => self.registers(scenes, free, |sleighs, state| gauss::<4, _>(sleighs, time, state)),
-            (Kind::Gauss16, []) => self.registers(scenes, free, |sleighs, state| gauss::<8, _>(sleighs, time, state)),
-            (Kind::Gauss8, [SceneEffect::Bowl { .. }]) => {
-                self.registers(scenes, bowl, |bowls, state| gauss::<4, _>(bowls, time, state))
-            }
-            (Kind::Gauss16, [SceneEffect::Bowl { .. }]) => {
-                self.registers(scenes, bowl, |bowls, state| gauss::<8, _>(bowls, time, state))
-            }
-            _ => Vec::new(),
-        }
-    }
-
-    /// Register by register; the last one is filled up with its last member.
-    fn registers<const W: usize, Sys: System<3, 1>>(
-        &self,
-        scenes: &[&Scene],
-        system: impl Fn(&Scene) -> Option<Sys>,
-        ensemble: impl for<'s> Fn(&'s [Sys; W], LaneState<3, W>) -> Option<Box<dyn Ensemble<3, W> + 's>>,
-    ) -> Vec<Option<Summary<QUANTITIES>>> {
-        let watching = Watching { schedule: self.schedule(), every: self.sweep.every, of: &quantities };
-        let register = |scenes: &[&Scene]| {
-            let of = |lane: usize| scenes.get(lane).or(scenes.last()).and_then(|scene| system(scene));
-            let systems: [Option<Sys>; W] = from_fn(of);
-            let systems: Vec<Sys> = systems.into_iter().flatten().collect();
-            let systems: Box<[Sys; W]> = systems.into_boxed_slice().try_into().ok()?;
-            let starts: Vec<_> = scenes
-                .iter()
-                .map(|scene| {
-                    let SleighState { x, y, heading, speed, turn_rate } = scene.start;
-                    ([x, y, heading], [speed, turn_rate, 0.0])
-                })
-                .collect();
-            let mut ensemble = ensemble(&systems, LaneState::new(&starts, [false, false, true]))?;
-            Some(watch(ensemble.as_mut(), &Each(&systems), &watching))
+        let method = match self.method.info().kind {
+            Kind::Dla => LaneMethod::Closed,
+            Kind::Gauss8 => LaneMethod::Gauss8,
+            Kind::Gauss16 => LaneMethod::Gauss16,
+            _ => return Vec::new(),
         };
+        let schedule = self.schedule();
+        let watching = Watching { schedule, every: self.sweep.every, of: &quantities };
+        // Register by register; the last one is filled up with its last member.
         let told = |scenes: &[&Scene]| {
-            let found = register(scenes).unwrap_or_else(|| vec![None; scenes.len()]);
-            found.into_iter().take(scenes.len()).collect::<Vec<_>>()
+            let mut found = vec![None; scenes.len()];
+            in_lanes(scenes, method, (schedule.t0, schedule.step), &mut |ensemble, systems| {
+                found = watch(ensemble, systems, &watching);
+            });
+            found.truncate(scenes.len());
+            found
         };
-        scenes.chunks(W).flat_map(told).collect()
-    }
-}
-
-/// The collocation of some systems, which may be one and the same: then it takes less than half the time.
-fn gauss<'s, const S: usize, Sys: System<3, 1> + PartialEq>(
-    systems: &'s [Sys; GAUSS],
-    time: (f64, f64),
-    state: LaneState<3, GAUSS>,
-) -> Option<Box<dyn Ensemble<3, GAUSS> + 's>> {
-    let [first, others @ ..] = systems;
-    if others.iter().all(|other| other == first) {
-        Some(Box::new(GaussEnsemble::<_, _, S, GAUSS, 3, 1>::new(Same(first), time, state)?))
-    } else {
-        Some(Box::new(GaussEnsemble::<_, _, S, GAUSS, 3, 1>::new(Each(systems), time, state)?))
-    }
-}
-
-fn free(scene: &Scene) -> Option<Sleigh> {
-    Some(scene.sleigh)
-}
-
-fn bowl(scene: &Scene) -> Option<With<Sleigh, Bowl>> {
-    match scene.effects[..] {
-        [SceneEffect::Bowl { stiffness, center }] => {
-            Bowl::new(stiffness, center).ok().map(|effects| With { body: scene.sleigh, effects })
-        }
-        _ => None,
+        scenes.chunks(LANES).flat_map(told).collect()
     }
 }
 

@@ -133,7 +133,7 @@ impl Scene {
 
     /// The system of the scene: the one place where a scene becomes a type.
     ///
-    /// A sleigh on which nothing acts is a type of its own, since its steps have a closed form that is shorter than a look at an empty
+    /// A sleigh on which nothing acts, with a rotor or without, is a type of its own, since its steps are shorter than a look at an empty
     /// list; any other body has a list of what acts on it. A velocity that the scene imposes replaces that of its start.
     ///
     /// # Errors
@@ -151,15 +151,14 @@ impl Scene {
         match self.guiding()? {
             Guiding::None => {
                 let effects = self.acting()?;
-                if effects.is_empty() && self.rotor(&self.sleigh)?.is_none() {
-                    let (q, v) = self.start.to_coordinates();
-                    return Ok(AnySystem::Sleigh(started(With { body: self.sleigh, effects: () }, q, v)));
+                if effects.is_empty() {
+                    return self.with_rotor(self.sleigh, (), AnySystem::Sleigh, AnySystem::Rotor);
                 }
-                self.with_rotor(self.sleigh, AnySystem::Sleigh, AnySystem::Rotor)
+                self.with_rotor(self.sleigh, effects, AnySystem::Sleigh, AnySystem::Rotor)
             }
-            Guiding::Turntable(body) => self.with_rotor(body, AnySystem::Sleigh, AnySystem::Rotor),
-            Guiding::One(body) => self.with_rotor(body, AnySystem::One, AnySystem::RotorOne),
-            Guiding::Two(body) => self.with_rotor(body, AnySystem::Two, AnySystem::RotorTwo),
+            Guiding::Turntable(body) => self.with_rotor(body, self.acting()?, AnySystem::Sleigh, AnySystem::Rotor),
+            Guiding::One(body) => self.with_rotor(body, self.acting()?, AnySystem::One, AnySystem::RotorOne),
+            Guiding::Two(body) => self.with_rotor(body, self.acting()?, AnySystem::Two, AnySystem::RotorTwo),
         }
     }
 
@@ -232,17 +231,19 @@ impl Scene {
         })
     }
 
-    /// Adds the rotor, if there is one, and the list of what acts on the body.
-    fn with_rotor<B, const M: usize>(
+    /// Adds the rotor, if there is one, and what acts on the body.
+    fn with_rotor<B, E, const M: usize>(
         &self,
         body: B,
+        effects: E,
         plain: fn(Started<3, M>) -> AnySystem,
         rotor: fn(Started<4, M>) -> AnySystem,
     ) -> Result<AnySystem, SleighError>
     where
         B: SceneBody<3, M> + Piecewise + Clone + Sync + 'static,
+        E: SceneEffects<B, 3> + SceneEffects<Flywheel<B>, 4> + Piecewise + Sync + 'static,
     {
-        let (effects, (q, v)) = (self.acting()?, self.start.to_coordinates());
+        let (q, v) = self.start.to_coordinates();
         Ok(match self.rotor(&body)? {
             Some((body, rate)) => {
                 let (q, v) = ([q[0], q[1], q[2], 0.0], [v[0], v[1], v[2], rate]);

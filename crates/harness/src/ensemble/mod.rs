@@ -1,7 +1,7 @@
 //! Ensembles: many starts of a system, summed up one by one, in lanes where there are lanes for it, on all threads.
 //!
 //! ```
-//! use dla::{ClosedEnsemble, Each, LaneState, Schedule};
+//! use dla::{ClosedEnsemble, LaneState, Mechanics, Schedule};
 //! use harness::ensemble::{Watching, watch};
 //! use sleigh::{Sleigh, SleighState};
 //!
@@ -11,7 +11,8 @@
 //! let mut ensemble = ClosedEnsemble::<_, 16, 3, 1, 4, 6>::new(sleighs, 0.05, state);
 //! let schedule = Schedule { t0: 0.0, step: 0.05, steps: 800 };
 //! let speed = |q: &[f64; 3], v: &[f64; 3]| [SleighState::from_coordinates(q, v).speed];
-//! let summaries = watch(&mut ensemble, &Each(&sleighs), &Watching { schedule, every: 50, of: &speed });
+//! let systems = sleighs.each_ref().map(|sleigh| sleigh as &dyn Mechanics<3, 1>);
+//! let summaries = watch(&mut ensemble, &systems, &Watching { schedule, every: 50, of: &speed });
 //! assert!(summaries.iter().flatten().all(|summary| summary.low[0] < -0.9 && summary.end[0] > 1.0));
 //! # Ok::<(), sleigh::SleighError>(())
 //! ```

@@ -1,8 +1,7 @@
 use super::Summary;
 use crate::Method;
 use crate::run::integrate_pieces;
-use dla::{Ensemble, Observer, PiecewiseMechanics, RunError, Schedule, State, StepReport, Systems, View};
-use lagrangian::{System, velocity_of};
+use dla::{Ensemble, Mechanics, Observer, PiecewiseMechanics, RunError, Schedule, State, StepReport, View};
 use std::fmt::{Debug, Formatter};
 use std::ops::ControlFlow;
 
@@ -28,23 +27,20 @@ impl<const N: usize, const K: usize> Debug for Watching<'_, N, K> {
 }
 
 /// The summaries of trajectories in lanes; none of one that was lost, which [`summarise`] tells more about.
-pub fn watch<Sys, const N: usize, const M: usize, const W: usize, const K: usize>(
+pub fn watch<const N: usize, const M: usize, const W: usize, const K: usize>(
     ensemble: &mut dyn Ensemble<N, W>,
-    systems: &dyn Systems<Sys, W>,
+    systems: &[&dyn Mechanics<N, M>; W],
     watching: &Watching<'_, N, K>,
-) -> Vec<Option<Summary<K>>>
-where
-    Sys: System<N, M>,
-{
+) -> Vec<Option<Summary<K>>> {
     let Watching { schedule, every, of } = watching;
     let mut summaries = vec![Some(Summary::new()); W];
     let mut made = 0;
     loop {
         let (state, t) = (ensemble.state(), schedule.time(made));
         for (lane, place) in summaries.iter_mut().enumerate() {
-            let system = systems.of(lane);
+            let system = systems[lane];
             let known = place.as_mut().filter(|_| state.is_finite(lane));
-            let seen = known.zip(velocity_of(system, t, &state.q(lane), &state.xi(lane)).ok());
+            let seen = known.zip(system.velocity_of(t, &state.q(lane), &state.xi(lane)).ok());
             match seen {
                 Some((summary, v)) => summary.see(system, t, &state.lane(lane, v), of),
                 None => *place = None,

@@ -1,7 +1,7 @@
 //! Ensembles: the same rows on any number of threads and from any group on, and summaries that lanes and single runs share.
 
 use approx::assert_abs_diff_eq;
-use dla::{ClosedEnsemble, Each, LaneState, Schedule};
+use dla::{ClosedEnsemble, LaneState, Schedule};
 use harness::Method;
 use harness::ensemble::{Summary, Watching, in_order, summarise, watch};
 use lagrangian::{With, velocity_of};
@@ -26,7 +26,8 @@ fn group(members: Range<u64>) -> Vec<Option<Summary<3>>> {
     let mut ensemble = ClosedEnsemble::<_, W, 3, 1, 4, 6>::new(sleighs, 0.05, state);
     let of = |q: &[f64; 3], v: &[f64; 3]| words(&SleighState::from_coordinates(q, v));
     let schedule = Schedule { t0: 0.0, step: 0.05, steps: 101 };
-    watch(&mut ensemble, &Each(&sleighs), &Watching { schedule, every: 10, of: &of })
+    let systems = sleighs.each_ref().map(|sleigh| sleigh as &dyn dla::Mechanics<3, 1>);
+    watch(&mut ensemble, &systems, &Watching { schedule, every: 10, of: &of })
 }
 
 fn all(members: Range<u64>, threads: usize) -> Vec<Option<Summary<3>>> {
