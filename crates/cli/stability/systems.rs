@@ -2,10 +2,10 @@
 
 use super::lab::Lab;
 use crate::error::CliError;
-use dla::{Dependency, Dla, Energy, Gauss, InChart, Lobatto, OneStep, Schedule, State, StepError, drive};
+use dla::{Dependency, Dla, Energy, Gauss, InChart, Lobatto, Schedule, State, StepError, drive};
 use harness::stability::check::{constant, follows, measured};
 use harness::stability::{Case, Claim, Recorded, Recorder, Seen, VALUES};
-use harness::{Kind, Rk4Reduced};
+use harness::{Kind, Method, Rk4Reduced, Stepper};
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
 use models::CompoundPendulum;
 use sleigh::{Exact, Sleigh, SleighState};
@@ -107,28 +107,31 @@ where
 {
     let mut state = State::new(q, v, system.angles());
     let mut recorder = Recorder::new(1, look);
-    let run = (system, schedule, regularity);
-    let outcome = match lab.method.info().kind {
-        Kind::Dla => made(run, Dla::midpoint(), &mut state, &mut recorder),
-        Kind::Lobatto3 => made(run, Lobatto::<3>::new(), &mut state, &mut recorder),
-        Kind::Gauss8 => made(run, Gauss::new::<4>(), &mut state, &mut recorder),
-        Kind::Energy2 => made(run, Energy::new::<1>(), &mut state, &mut recorder),
-        Kind::Rk4Reduced => made(run, Rk4Reduced, &mut state, &mut recorder),
-        _ => Ok(0),
-    };
+    let outcome = stepper(&lab.method).map_or(Ok(0), |method| {
+        let mut method = InChart::new(method, "angles from a pole", regularity);
+        drive(system, &mut method, schedule, &mut state, &mut recorder)
+    });
     recorder.recorded(outcome.err())
 }
 
-/// Not inlined: what a step takes of the stack would be taken for every method at once.
-#[inline(never)]
-fn made<Sys: System<N, M>, const N: usize, const M: usize>(
-    (system, schedule, regularity): (&Sys, &Schedule, Regularity<'_, N>),
-    method: impl OneStep<N, M>,
-    state: &mut State<N>,
-    recorder: &mut Recorder<'_, N>,
-) -> Result<u64, dla::RunError> {
-    let mut method = InChart::new(method, "angles from a pole", regularity);
-    drive(system, &mut method, schedule, state, recorder)
+/// One of [`METHODS`]; none where it is another.
+fn stepper<const N: usize, const M: usize>(method: &Method) -> Option<Stepper<N, M>> {
+    let kind = method.info().kind;
+    if !METHODS.contains(&kind) {
+        return None;
+    }
+    // The shapes of scenes are compiled elsewhere, and for another the few are enough.
+    if const { N == 3 } {
+        return Some(method.stepper());
+    }
+    Some(match kind {
+        Kind::Dla => Box::new(Dla::midpoint()),
+        Kind::Lobatto3 => Box::new(Lobatto::<3>::new()),
+        Kind::Gauss8 => Box::new(Gauss::new::<4>()),
+        Kind::Energy2 => Box::new(Energy::new::<1>()),
+        Kind::Rk4Reduced => Box::new(Rk4Reduced),
+        _ => return None,
+    })
 }
 
 pub(super) const PARALLEL_BLADES: Case = Case {

@@ -46,6 +46,37 @@ pub trait OneStep<const N: usize, const M: usize> {
     }
 }
 
+impl<Method: OneStep<N, M> + ?Sized, const N: usize, const M: usize> OneStep<N, M> for Box<Method> {
+    fn step(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        t: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
+        (**self).step(system, t, h, state)
+    }
+
+    fn memory(&self) -> Vec<f64> {
+        (**self).memory()
+    }
+
+    fn recall(&mut self, memory: &[f64], state: &State<N>) {
+        (**self).recall(memory, state);
+    }
+
+    fn own_steps(
+        &self,
+        system: &dyn Mechanics<N, M>,
+        step: (f64, f64),
+        state: &State<N>,
+        memory: &mut Vec<f64>,
+        see: &mut OwnStep<'_, N>,
+    ) -> Result<(), StepError> {
+        (**self).own_steps(system, step, state, memory, see)
+    }
+}
+
 /// Looks at the end of a step that a method makes of its own, a time (s) and a state.
 pub type OwnStep<'a, const N: usize> = dyn FnMut(f64, &State<N>) -> ControlFlow<()> + 'a;
 
