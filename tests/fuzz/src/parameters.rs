@@ -14,8 +14,6 @@ use sleigh::{Sleigh, SleighError, SleighState, TimeFunction};
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
-type Wild = With<Sleigh, Vec<Acting>>;
-
 /// A number: any bits, or a tame one of some size.
 #[derive(Arbitrary, Debug, Clone, Copy)]
 enum Number {
@@ -119,7 +117,7 @@ impl Observer<3, 1> for OnConstraint {
         self.before = *node.state;
         let size: f64 = v.iter().map(|x| x.abs()).sum();
         let bound = f64::EPSILON * (4.0 + PI + turned) * size + 4.0 * f64::MIN_POSITIVE;
-        let residual = node.constraint::<1>();
+        let residual = node.constraint();
         assert!(
             !self.keeps || !counted || residual <= bound,
             "node {}: {residual:e} > {bound:e} at {q:?}, {v:?}",

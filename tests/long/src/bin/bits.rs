@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for info in METHODS {
         let (system, mut state) = bowl(0.1)?;
         let outcome =
-            integrate::<_, _, 3, 1>(&system, &Method::named(info.name, Some(0.3))?, &schedule, &mut state, ());
+            integrate::<3, 1>(&system, &Method::named(info.name, Some(0.3))?, &schedule, &mut state, &mut ());
         match outcome {
             Ok(_) => println!("{:18} {:016x}", info.name, hash(state.unwrapped().into_iter().chain(*state.v()))),
             Err(failure) => println!("{:18} {failure}", info.name),

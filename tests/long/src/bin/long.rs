@@ -3,7 +3,7 @@
 
 use dla::{Dla, Energy, Gauss, Observer, Schedule, StepReport, View, drive};
 use harness::{Blocks, Drift};
-use noslip_long::{InBowl, STEP, bowl};
+use noslip_long::{STEP, bowl};
 use std::error::Error;
 use std::ops::ControlFlow;
 use std::time::Instant;
