@@ -181,8 +181,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Corrections<'_, '_
             Err(source) => {
                 // By value, so that nothing of a step that succeeds must stay in memory.
                 let found = independent(self.of.system, self.of.t0, *self.of.state, self.some).ok_or(source)?;
-                let saddle = Saddle { block, transposed: self.of.a0, rows, right, level };
-                let (correction, lambda) = saddle.solve_some(found)?;
+                let (correction, lambda) = of_some(&block, &self.of.a0, &rows, (right, level), found)?;
                 (self.some, self.lambda, self.positive, self.jacobian) = (Some(found), lambda, None, None);
                 self.last = Last::new(correction, false, &at, &block);
                 Ok(correction)
@@ -206,6 +205,20 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Corrections<'_, '_
         let correction = factors.solve(right, level, self.of.basis.as_ref());
         Ok((factors, correction))
     }
+}
+
+/// The correction and the multipliers of some of the rows. Not inlined, so that its arrays are off the stack while the rows are
+/// looked for.
+#[cold]
+#[inline(never)]
+fn of_some<const N: usize, const M: usize>(
+    block: &[[f64; N]; N],
+    a0: &[[f64; N]; M],
+    rows: &[[f64; N]; M],
+    (right, level): ([f64; N], [f64; M]),
+    some: Rows,
+) -> Result<([f64; N], [f64; M]), Singular> {
+    Saddle { block: *block, transposed: *a0, rows: *rows, right, level }.solve_some(some)
 }
 
 /// The rows found before, or those that imply the others at the beginning of the step.

@@ -66,7 +66,9 @@ impl<'a, const N: usize, const M: usize> Projection<'a, N, M> {
 
     /// The same where a correction and a simplified one are enough, as they are of a Lagrangian that is quadratic in the
     /// velocities; in one function, since both are made in the same configuration.
-    #[inline(always)]
+    ///
+    /// Not inlined, so that its matrices are off the stack while the mean velocity is searched for.
+    #[inline(never)]
     fn at_once(&self, newton: &Newton, guess: &[f64; N]) -> Option<Projected<N, M>> {
         let Self { system, t1, q1, p1, basis, .. } = self;
         if system.is_nonlinear(*t1, q1, guess) {
