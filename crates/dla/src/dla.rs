@@ -46,6 +46,9 @@ pub enum Form {
 /// mean velocity at the rule's nodes, and by the velocity at the end. Rows that depend on one another and agree are met by
 /// as many of them as are independent, with multipliers; the others hold in the nodes, which is checked.
 ///
+/// [`System::holonomic`]: lagrangian::System::holonomic
+/// [`System::nonlinear`]: lagrangian::System::nonlinear
+///
 /// The equations of a long step may have several solutions, or only such as belong to another motion. One is accepted where
 /// it is connected with the solution of a step of length zero: the determinant of the equations has the same sign there, the
 /// constraint turns by less than a radian, and Newton's method contracts from its first step; or else the solution is

@@ -21,7 +21,7 @@ use start::Start;
 
 /// The energy-preserving collocation method with `s` Gauss nodes, of order `2 s`, for `s` from 1 to 4.
 ///
-/// With `z = (q, pi)` and `z' = B(z) grad H` as in [`Bracket`], the path of a step is the polynomial `u` of degree `s` with
+/// With `z = (q, pi)` and `z' = B(z) grad H` as in [`Bracket`](lagrangian::Bracket), the path of a step is the polynomial `u` of degree `s` with
 /// `u(0) = z0` and, at the Gauss nodes `c_i`,
 ///
 /// ```text
