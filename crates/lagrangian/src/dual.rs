@@ -1,3 +1,4 @@
+use crate::inlined::mapped;
 use crate::length::{Derived, derived_functions};
 use crate::scalar::derived_operators;
 use crate::{Function, Scalar, from_fn};
@@ -41,7 +42,7 @@ impl<S: Scalar, const N: usize> Dual<S, N> {
     #[must_use]
     #[inline(always)]
     pub fn chain(self, f: S, df: S) -> Self {
-        Self { re: f, eps: self.eps.map(|e| df * e) }
+        Self { re: f, eps: mapped(&self.eps, |e| df * e) }
     }
 }
 
@@ -71,7 +72,7 @@ impl<S: Scalar, const N: usize> Neg for Dual<S, N> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self { re: -self.re, eps: self.eps.map(|e| -e) }
+        Self { re: -self.re, eps: mapped(&self.eps, |e| -e) }
     }
 }
 impl<S: Scalar, const N: usize> Add<f64> for Dual<S, N> {
@@ -85,14 +86,14 @@ impl<S: Scalar, const N: usize> Mul<f64> for Dual<S, N> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: f64) -> Self {
-        Self { re: self.re * o, eps: self.eps.map(|e| e * o) }
+        Self { re: self.re * o, eps: mapped(&self.eps, |e| e * o) }
     }
 }
 impl<S: Scalar, const N: usize> Div<f64> for Dual<S, N> {
     type Output = Self;
     #[inline(always)]
     fn div(self, o: f64) -> Self {
-        Self { re: self.re / o, eps: self.eps.map(|e| e / o) }
+        Self { re: self.re / o, eps: mapped(&self.eps, |e| e / o) }
     }
 }
 derived_operators!([S: Scalar, const N: usize] Dual<S, N>);

@@ -1,3 +1,4 @@
+use crate::inlined::mapped;
 use crate::length::{Derived, derived_functions};
 use crate::scalar::derived_operators;
 use crate::{Function, Scalar, from_fn};
@@ -41,8 +42,8 @@ impl<S: Scalar, const P: usize, const Q: usize> HyperDual<S, P, Q> {
     pub fn chain(self, f: S, df: S, ddf: S) -> Self {
         Self {
             re: f,
-            e1: self.e1.map(|e| df * e),
-            e2: self.e2.map(|e| df * e),
+            e1: mapped(&self.e1, |e| df * e),
+            e2: mapped(&self.e2, |e| df * e),
             e12: from_fn(|i| {
                 let ddf_i = ddf * self.e1[i];
                 from_fn(|j| df * self.e12[i][j] + ddf_i * self.e2[j])
@@ -95,9 +96,9 @@ impl<S: Scalar, const P: usize, const Q: usize> Neg for HyperDual<S, P, Q> {
     fn neg(self) -> Self {
         Self {
             re: -self.re,
-            e1: self.e1.map(|e| -e),
-            e2: self.e2.map(|e| -e),
-            e12: self.e12.map(|row| row.map(|e| -e)),
+            e1: mapped(&self.e1, |e| -e),
+            e2: mapped(&self.e2, |e| -e),
+            e12: mapped(&self.e12, |row| mapped(&row, |e| -e)),
         }
     }
 }
@@ -114,9 +115,9 @@ impl<S: Scalar, const P: usize, const Q: usize> Mul<f64> for HyperDual<S, P, Q> 
     fn mul(self, o: f64) -> Self {
         Self {
             re: self.re * o,
-            e1: self.e1.map(|e| e * o),
-            e2: self.e2.map(|e| e * o),
-            e12: self.e12.map(|row| row.map(|e| e * o)),
+            e1: mapped(&self.e1, |e| e * o),
+            e2: mapped(&self.e2, |e| e * o),
+            e12: mapped(&self.e12, |row| mapped(&row, |e| e * o)),
         }
     }
 }
@@ -126,9 +127,9 @@ impl<S: Scalar, const P: usize, const Q: usize> Div<f64> for HyperDual<S, P, Q> 
     fn div(self, o: f64) -> Self {
         Self {
             re: self.re / o,
-            e1: self.e1.map(|e| e / o),
-            e2: self.e2.map(|e| e / o),
-            e12: self.e12.map(|row| row.map(|e| e / o)),
+            e1: mapped(&self.e1, |e| e / o),
+            e2: mapped(&self.e2, |e| e / o),
+            e12: mapped(&self.e12, |row| mapped(&row, |e| e / o)),
         }
     }
 }
@@ -220,9 +221,9 @@ impl<S: Scalar, const P: usize, const Q: usize> Derived for HyperDual<S, P, Q> {
     fn times(self, factor: S) -> Self {
         Self {
             re: self.re * factor,
-            e1: self.e1.map(|e| e * factor),
-            e2: self.e2.map(|e| e * factor),
-            e12: self.e12.map(|row| row.map(|e| e * factor)),
+            e1: mapped(&self.e1, |e| e * factor),
+            e2: mapped(&self.e2, |e| e * factor),
+            e12: mapped(&self.e12, |row| mapped(&row, |e| e * factor)),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Members of a sweep in the lanes of vector registers, where a scene has a method for that.
 
-use crate::{Scene, SceneEffect};
+use crate::{Acting, Scene, SceneEffect};
 use dla::{ClosedEnsemble, Each, Ensemble, GaussEnsemble, LaneState, Mechanics, Same};
 use lagrangian::{System, With};
 use sleigh::effects::Bowl;
@@ -37,18 +37,24 @@ pub fn in_lanes(scenes: &[&Scene], method: LaneMethod, (t0, step): (f64, f64), r
         .collect();
     let state = LaneState::new(&starts, [false, false, true]);
     let sleighs = std::array::from_fn(|i| lane(i).sleigh);
+    // One after the other they are the systems of scenes, whose functions are compiled already.
+    let free = sleighs.map(|body| With { body, effects: () });
     let bowls: [Option<With<Sleigh, Bowl>>; LANES] = std::array::from_fn(|i| bowl(lane(i)));
     match (method, &last.effects[..]) {
         (LaneMethod::Closed, []) => {
             let mut ensemble = ClosedEnsemble::<_, LANES, 3, 1, 4, 6>::new(sleighs, step, state);
-            run(&mut ensemble, &objects(&sleighs));
+            run(&mut ensemble, &objects(&free));
             true
         }
-        (LaneMethod::Gauss8, []) => collocated::<4, _>(&sleighs, (t0, step), state, run),
-        (LaneMethod::Gauss16, []) => collocated::<8, _>(&sleighs, (t0, step), state, run),
+        (LaneMethod::Gauss8, []) => collocated::<4, _>(&sleighs, (t0, step), state, &mut |e| run(e, &objects(&free))),
+        (LaneMethod::Gauss16, []) => collocated::<8, _>(&sleighs, (t0, step), state, &mut |e| run(e, &objects(&free))),
         (_, [SceneEffect::Bowl { .. }]) => {
             let bowls: Vec<_> = bowls.into_iter().flatten().collect();
             let Ok(bowls) = <Box<[_; LANES]>>::try_from(bowls.into_boxed_slice()) else { return false };
+            let listed = bowls
+                .each_ref()
+                .map(|bowl| With { body: bowl.body, effects: vec![Acting::Bowl(bowl.effects.clone())] });
+            let run = &mut |ensemble: &mut dyn Ensemble<3, LANES>| run(ensemble, &objects(&listed));
             match method {
                 LaneMethod::Closed => false,
                 LaneMethod::Gauss8 => collocated::<4, _>(&bowls, (t0, step), state, run),
@@ -64,15 +70,15 @@ fn collocated<const S: usize, Sys: System<3, 1> + PartialEq>(
     systems: &[Sys; LANES],
     time: (f64, f64),
     state: LaneState<3, LANES>,
-    run: &mut Run<'_>,
+    run: &mut dyn FnMut(&mut dyn Ensemble<3, LANES>),
 ) -> bool {
     let [first, others @ ..] = systems;
     if others.iter().all(|other| other == first) {
         let ensemble = GaussEnsemble::<_, _, S, LANES, 3, 1>::new(Same(first), time, state);
-        ensemble.map(|mut ensemble| run(&mut ensemble, &objects(systems))).is_some()
+        ensemble.map(|mut ensemble| run(&mut ensemble)).is_some()
     } else {
         let ensemble = GaussEnsemble::<_, _, S, LANES, 3, 1>::new(Each(systems), time, state);
-        ensemble.map(|mut ensemble| run(&mut ensemble, &objects(systems))).is_some()
+        ensemble.map(|mut ensemble| run(&mut ensemble)).is_some()
     }
 }
 
