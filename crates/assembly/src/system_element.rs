@@ -4,7 +4,7 @@ use lagrangian::linear::larger;
 use lagrangian::{
     DiscreteConstraint, DiscreteLagrangian, Dual, Midpoint, Motion, Rounded, Saddle, System, configuration_slope,
     constraint_residual, energy, force_power, from_fn, lagrangian_power, mass_matrix, momentum, position_misses,
-    position_residual, reaction_rows,
+    position_residual, reaction_rows, velocity_slope,
 };
 use std::fmt;
 
@@ -129,7 +129,7 @@ impl<Sys: System<N, M> + Send + Sync, const N: usize, const M: usize> Element fo
     fn sizes(&self, (t, h): (f64, f64), q: &[f64], v: &[f64], momentum: &mut [f64], level: &mut [f64]) {
         let (t, q, v): (_, [f64; N], [f64; N]) = (Rounded::exact(t), local(q), local(v));
         let (q, v) = (q.map(Rounded::once), v.map(Rounded::once));
-        let p = lagrangian::momentum(&self.system, t, &q, &v);
+        let p = velocity_slope(&self.system, t, &q, &v);
         let (slope, force) = (configuration_slope(&self.system, t, &q, &v), self.system.force(t, &q, &v));
         for (i, size) in momentum.iter_mut().enumerate().take(N) {
             *size = p[i].size + h.abs() * (slope[i].size + force.map_or(0.0, |force| force[i].size));

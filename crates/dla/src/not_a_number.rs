@@ -1,4 +1,4 @@
-use lagrangian::{AdmissibleBasis, Gradient, System, from_fn, quasi_velocities};
+use lagrangian::{AdmissibleBasis, Called, Gradient, System, from_fn, quasi_velocities};
 use std::fmt;
 use thiserror::Error;
 
@@ -159,7 +159,8 @@ impl fmt::Display for NotANumber {
 
 /// A number with a derivative in each of two variables, and the second one in both; or with none in one that it does not depend on,
 /// where zeros times an infinity would be no numbers.
-type Number = Gradient<Once, 1>;
+type Number = Called<Twice>;
+type Twice = Gradient<Once, 1>;
 type Once = Gradient<f64, 1>;
 
 /// What the equations of motion are made of, in the order in which it is looked for: first what every method needs.
@@ -228,12 +229,12 @@ fn first<Sys: System<N, M>, const N: usize, const M: usize>(
             let (x, y) = (variable(a), variable(b));
             let seed = |of: Variable, re: f64| {
                 let re = if of == y { Once::variable(re, 0) } else { Once::fixed(re) };
-                if of == x { Number::variable(re, 0) } else { Number::fixed(re) }
+                Called(if of == x { Twice::variable(re, 0) } else { Twice::fixed(re) })
             };
             let (q, v) =
                 (from_fn(|i| seed(Variable::Coordinate(i), q[i])), from_fn(|i| seed(Variable::Velocity(i), v[i])));
             let mut found = None;
-            visit(system, seed(Variable::Time, time), &q, &v, &mut |function, number: Number| {
+            visit(system, seed(Variable::Time, time), &q, &v, &mut |function, Called(number)| {
                 let ([once], value) = (number.gradient(), number.re.re);
                 let [twice] = once.gradient();
                 let once = once.re;

@@ -11,6 +11,7 @@ mod attitude;
 mod basis;
 mod bordered;
 mod bracket;
+mod called;
 mod classify;
 mod closed;
 mod closed_lanes;
@@ -55,9 +56,9 @@ mod rule;
 mod saddle;
 mod scalar;
 mod second;
+mod seldom;
 pub mod simd;
 mod sincos;
-mod slope;
 mod system;
 mod twofold;
 mod vector_field;
@@ -67,6 +68,7 @@ pub use attitude::Attitude;
 pub use basis::{AdmissibleBasis, linear_basis};
 pub use bordered::{Bordered, clear_multipliers};
 pub use bracket::{Bracket, EnergySlope, energy_slope, inverse_reduced_mass};
+pub use called::Called;
 pub use classify::{
     Classification, RowKind, classify, rank_is_constant, redundant_rows, row_space, rows_are_consistent,
 };
@@ -106,8 +108,8 @@ pub use rule::{Alpha, AnyRule, Midpoint, NotAWeight, Rule, RuleNode, Symmetrised
 pub use saddle::Saddle;
 pub use scalar::Scalar;
 pub use second::{AT_ONCE, TwiceDifferentiable, second_derivatives, seed};
+pub use seldom::{configuration_slope, velocity_slope};
 pub use sincos::sin_cos_wrapped;
-pub use slope::configuration_slope;
 pub use system::{Constraint, Push, System, constraint_residual};
 pub use twofold::Twofold;
 pub use vector_field::{LieBracket, VectorField};

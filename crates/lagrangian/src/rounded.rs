@@ -9,6 +9,8 @@ use std::ops::{Add, Div, Mul, Neg};
 /// order the value differs from that in exact arithmetic by at most `size` times the unit of rounding, `2^-53`. A sum that
 /// cancels keeps the size of its terms, so that a residual can be told from the rounding of the terms that make it up.
 ///
+/// The operations are called and not inlined: they are for steps that do not go as usual, and models on them are compiled sooner.
+///
 /// A function on `Dual<Rounded, N>` gives derivatives with such bounds. (Wilkinson 1986, SIAM Rev. 28, 547-568; Higham 2002,
 /// Accuracy and Stability of Numerical Algorithms, section 3.3.)
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,21 +64,21 @@ impl Rounded {
 
 impl Add for Rounded {
     type Output = Self;
-    #[inline]
+    #[inline(never)]
     fn add(self, o: Self) -> Self {
         Self::result(self.value + o.value, self.size + o.size, 1.0)
     }
 }
 impl Mul for Rounded {
     type Output = Self;
-    #[inline]
+    #[inline(never)]
     fn mul(self, o: Self) -> Self {
         Self::result(self.value * o.value, self.value.abs() * o.size + self.size * o.value.abs(), 1.0)
     }
 }
 impl Div for Rounded {
     type Output = Self;
-    #[inline]
+    #[inline(never)]
     fn div(self, o: Self) -> Self {
         let value = self.value / o.value;
         Self::result(value, (self.size + value.abs() * o.size) / o.value.abs(), 1.0)
@@ -84,28 +86,28 @@ impl Div for Rounded {
 }
 impl Neg for Rounded {
     type Output = Self;
-    #[inline]
+    #[inline(never)]
     fn neg(self) -> Self {
         Self { value: -self.value, ..self }
     }
 }
 impl Add<f64> for Rounded {
     type Output = Self;
-    #[inline]
+    #[inline(never)]
     fn add(self, o: f64) -> Self {
         Self::result(self.value + o, self.size, 1.0)
     }
 }
 impl Mul<f64> for Rounded {
     type Output = Self;
-    #[inline]
+    #[inline(never)]
     fn mul(self, o: f64) -> Self {
         Self::result(self.value * o, self.size * o.abs(), 1.0)
     }
 }
 impl Div<f64> for Rounded {
     type Output = Self;
-    #[inline]
+    #[inline(never)]
     fn div(self, o: f64) -> Self {
         Self::result(self.value / o, self.size / o.abs(), 1.0)
     }
@@ -117,52 +119,52 @@ impl Scalar for Rounded {
     fn constant(x: f64) -> Self {
         Self::exact(x)
     }
-    #[inline]
+    #[inline(never)]
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = Scalar::sin_cos(self.value);
         (self.function(sin, cos), self.function(cos, sin))
     }
-    #[inline]
+    #[inline(never)]
     fn exp(self) -> Self {
         let value = self.value.exp();
         self.function(value, value)
     }
-    #[inline]
+    #[inline(never)]
     fn ln(self) -> Self {
         self.function(self.value.ln(), self.value.recip())
     }
-    #[inline]
+    #[inline(never)]
     fn sqrt(self) -> Self {
         let value = self.value.sqrt();
         self.function(value, 0.5 / value)
     }
-    #[inline]
+    #[inline(never)]
     fn powi(self, n: i32) -> Self {
         let slope = if n == 0 { 0.0 } else { f64::from(n) * self.value.powi(n - 1) };
         let brought = if self.size > 0.0 { slope.abs() * self.size } else { 0.0 };
         Self::result(self.value.powi(n), brought, f64::from(n.unsigned_abs()).max(1.0))
     }
-    #[inline]
+    #[inline(never)]
     fn recip(self) -> Self {
         let value = self.value.recip();
         Self::result(value, value * value * self.size, 1.0)
     }
-    #[inline]
+    #[inline(never)]
     fn apply<F: Function>(self, f: F) -> Self {
         let value = f.value(self.value);
         self.function(value, f.slope(self.value, value))
     }
-    #[inline]
+    #[inline(never)]
     fn where_positive(self, then: Self, otherwise: Self) -> Self {
         if self.value > 0.0 { then } else { otherwise }
     }
     /// The slopes of the length are at most one, in sum of squares too.
-    #[inline]
+    #[inline(never)]
     fn length<const K: usize>(components: &[Self; K]) -> Self {
         let brought = f64::length(&components.map(|x| x.size));
         Self::result(f64::length(&components.map(|x| x.value)), brought, 2.0)
     }
-    #[inline]
+    #[inline(never)]
     fn atan2(self, x: Self) -> Self {
         let square = self.value * self.value + x.value * x.value;
         let moved = (x.value * self.size).abs() + (self.value * x.size).abs();

@@ -1,6 +1,6 @@
 use crate::{
     AdmissibleBasis, Dual, Motion, MotionError, Rounded, Saddle, System, configuration_slope, from_fn,
-    inverse_reduced_mass, mass_matrix, momentum, reaction_rows, redundant_rows, velocity_of,
+    inverse_reduced_mass, mass_matrix, reaction_rows, redundant_rows, velocity_of, velocity_slope,
 };
 
 /// The unit of rounding.
@@ -40,7 +40,7 @@ impl<const N: usize> MotionRounding<N> {
         // Along the motion at constant velocity.
         let along: [Dual<Rounded, 1>; N] = from_fn(|i| Dual { re: place[i], eps: [velocity[i]] });
         let time = Dual { re: Rounded::exact(t), eps: [Rounded::exact(1.0)] };
-        let carried = momentum(system, time, &along, &velocity.map(Dual::fixed));
+        let carried = velocity_slope(system, time, &along, &velocity.map(Dual::fixed));
         let a = reaction_rows(system, t, q, v);
         let force = from_fn(|i| {
             let reaction: f64 = (0..M).map(|k| (a[k][i] * multiplier[k]).abs()).sum();

@@ -1,6 +1,6 @@
 use lagrangian::{
-    Constraint, MotionError, MotionRounding, Rounded, System, configuration_slope, constraint_residual, momentum,
-    reduced_rounding,
+    Constraint, MotionError, MotionRounding, Rounded, System, configuration_slope, constraint_residual,
+    reduced_rounding, velocity_slope,
 };
 
 /// The functions of a system with bounds on the rounding of their terms, as a convergence test asks for them where corrections stall.
@@ -36,7 +36,7 @@ pub trait RoundedMechanics<const N: usize, const M: usize> {
 impl<Sys: System<N, M>, const N: usize, const M: usize> RoundedMechanics<N, M> for Sys {
     #[cold]
     fn momentum_rounded(&self, t: Rounded, q: &[Rounded; N], v: &[Rounded; N]) -> [Rounded; N] {
-        momentum(self, t, q, v)
+        velocity_slope(self, t, q, v)
     }
 
     #[cold]
