@@ -2,7 +2,7 @@ use super::Case;
 use super::systems::{bowl, drag, egg_crate, from, go, sleigh, start, three, with};
 use dla::{Dla, Form, Gauss, Mechanics};
 use lagrangian::With;
-use scene::{Acting, Scene, SceneSystem, Visitor};
+use scene::{AnyEffect, Scene, SceneSystem, Visitor};
 use sleigh::effects::{Hill, Hills, MovingMass, Slope, Thrust, Torque};
 use sleigh::{Flywheel, Guide, Guided, SleighState};
 use std::hint::black_box;
@@ -29,7 +29,7 @@ pub(super) fn cases() -> Vec<Case> {
         Case::new(DLA, "moving_mass", |steps| dla(&with((moving_mass(),)), steps)),
         Case::new(DLA, "bowl + drag", |steps| dla(&with((bowl(), drag())), steps)),
         Case::new(DLA, "bowl + drag, list", |steps| {
-            dla(&with(vec![Acting::Bowl(bowl()), Acting::Drag(drag())]), steps);
+            dla(&with(vec![AnyEffect::Bowl(bowl()), AnyEffect::Drag(drag())]), steps);
         }),
         Case::new(DLA, "bowl + drag + egg_crate", |steps| dla(&with((bowl(), drag(), egg_crate())), steps)),
         Case::new(DLA, "bowl + drag + egg_crate, list", |steps| dla(&with(three()), steps)),

@@ -1,6 +1,6 @@
 use dla::{Mechanics, OneStep, Schedule, State, drive};
 use lagrangian::With;
-use scene::Acting;
+use scene::AnyEffect;
 use sleigh::effects::{Bowl, Drag, EggCrate};
 use sleigh::{Sleigh, SleighState};
 use std::hint::black_box;
@@ -27,8 +27,8 @@ pub(super) fn egg_crate() -> EggCrate {
     EggCrate::new(0.1, [1.0; 2]).expect("finite")
 }
 
-pub(super) fn three() -> Vec<Acting> {
-    vec![Acting::Bowl(bowl()), Acting::Drag(drag()), Acting::EggCrate(egg_crate())]
+pub(super) fn three() -> Vec<AnyEffect> {
+    vec![AnyEffect::Bowl(bowl()), AnyEffect::Drag(drag()), AnyEffect::EggCrate(egg_crate())]
 }
 
 pub(super) fn schedule(steps: u64) -> Schedule {

@@ -14,7 +14,6 @@
 //! # Ok::<(), scene::SceneError>(())
 //! ```
 
-mod acting;
 mod bundled;
 mod document;
 mod draw;
@@ -25,8 +24,6 @@ mod fault;
 mod file;
 mod finding;
 mod keys;
-mod lanes;
-mod power;
 mod quantity;
 mod reading;
 mod run;
@@ -40,15 +37,15 @@ mod train;
 mod written;
 
 pub use self::scene::Scene;
-pub use acting::Acting;
 pub use bundled::{Bundled, bundled};
 pub use effect::{EFFECTS, HillSpec, PathSpec, SceneEffect, Shape, TimeSpec, TrailersSpec};
 pub use error::SceneError;
 pub use finding::{Finding, Place};
-pub use lanes::{LANES, LaneMethod, in_lanes};
-pub use power::{EffectPower, SceneBody, SceneEffects};
 pub use run::{DEFAULT_METHOD, MAX_STEPS, RunSettings};
 pub use suggest::nearest;
 pub use sweep::{Sweep, SweepError};
-pub use system::{AnySystem, SceneSystem, Started, Visitor};
+pub use system::{Visitor, in_lanes};
+pub use systems::{
+    AnyEffect, AnySystem, EffectPower, LANES, LaneMethod, SceneBody, SceneEffects, SceneSystem, Started,
+};
 pub use train::TrainError;

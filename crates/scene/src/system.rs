@@ -1,85 +1,7 @@
-use crate::power::{self, SceneBody, SceneEffects};
-use crate::{Acting, EffectPower, Scene, SceneEffect};
-use dla::FullMechanics;
-use lagrangian::{Piecewise, System, With};
-use sleigh::{Exact, Flywheel, Guide, Guided, SleighError, SleighState};
-
-/// A system that came from a scene, and answers in the words of a scene.
-pub trait SceneSystem<const N: usize, const M: usize>: FullMechanics<N, M> + Sync {
-    /// Place, heading and admissible velocities of the sleigh.
-    fn sleigh_state(&self, q: &[f64; N], v: &[f64; N]) -> SleighState;
-
-    /// The centre of mass (m).
-    fn centre(&self, q: &[f64; N]) -> [f64; 2];
-
-    /// Angle relative to the body (rad) and relative rate (rad/s) of the rotor, where there is one.
-    fn rotor(&self, q: &[f64; N], v: &[f64; N]) -> Option<[f64; 2]> {
-        (N == 4).then(|| [q[N - 1], v[N - 1]])
-    }
-
-    /// The power of each effect that has any, where the constraints have the multipliers `lambda`.
-    fn powers(&self, t: f64, q: &[f64; N], v: &[f64; N], lambda: &[f64; M]) -> Vec<EffectPower>;
-
-    /// The smooth piece that holds at the time `t` (s), continued to all times.
-    fn scene_piece(&self, t: f64) -> Box<dyn SceneSystem<N, M> + '_>;
-}
-
-impl<B, E, const N: usize, const M: usize> SceneSystem<N, M> for With<B, E>
-where
-    Self: System<N, M> + Piecewise + Sync,
-    B: SceneBody<N, M>,
-    E: SceneEffects<B, N>,
-{
-    fn sleigh_state(&self, q: &[f64; N], v: &[f64; N]) -> SleighState {
-        SleighState::from_coordinates(&[q[0], q[1], q[2]], &[v[0], v[1], v[2]])
-    }
-
-    fn centre(&self, q: &[f64; N]) -> [f64; 2] {
-        self.body.centre(q)
-    }
-
-    fn powers(&self, t: f64, q: &[f64; N], v: &[f64; N], lambda: &[f64; M]) -> Vec<EffectPower> {
-        power::of(self, t, q, v, lambda)
-    }
-
-    fn scene_piece(&self, t: f64) -> Box<dyn SceneSystem<N, M> + '_> {
-        Box::new(self.piece(t))
-    }
-}
-
-/// A system with its start.
-pub struct Started<const N: usize, const M: usize> {
-    /// The system.
-    pub system: Box<dyn SceneSystem<N, M>>,
-    /// Configuration at the start.
-    pub q: [f64; N],
-    /// Velocity at the start.
-    pub v: [f64; N],
-}
-
-/// The system of a scene, by its shape: three coordinates or four, with a rotor; one constraint, the blade, or more, where a scene imposes
-/// velocities.
-#[derive(Debug)]
-pub enum AnySystem {
-    /// A sleigh.
-    Sleigh(Started<3, 1>),
-    /// A sleigh of which one velocity is imposed.
-    One(Started<3, 2>),
-    /// A sleigh of which two are.
-    Two(Started<3, 3>),
-    /// A sleigh with a rotor.
-    Rotor(Started<4, 1>),
-    /// The same with one velocity imposed.
-    RotorOne(Started<4, 2>),
-    /// The same with two.
-    RotorTwo(Started<4, 3>),
-}
-
-impl<const N: usize, const M: usize> std::fmt::Debug for Started<N, M> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Started").field("q", &self.q).field("v", &self.v).finish_non_exhaustive()
-    }
-}
+use crate::{Scene, SceneEffect};
+use sleigh::effects::{Bowl, Drag, EggCrate, Hills, MovingMass, Slope, Thrust, Torque};
+use sleigh::{Exact, Guide, Guided, SleighError};
+use systems::{AnyEffect, AnySystem, Guiding, Lane, LaneMethod, LaneRun, Rotor, SceneSystem, Started};
 
 /// What is to be done with the system of a scene, whatever its shape.
 pub trait Visitor {
@@ -93,14 +15,6 @@ pub trait Visitor {
         q: [f64; N],
         v: [f64; N],
     ) -> Self::Output;
-}
-
-/// What imposes velocities on the sleigh of a scene.
-enum Guiding {
-    None,
-    Turntable(Guided<0>),
-    One(Guided<1>),
-    Two(Guided<2>),
 }
 
 impl Scene {
@@ -131,10 +45,7 @@ impl Scene {
         })
     }
 
-    /// The system of the scene: the one place where a scene becomes a type.
-    ///
-    /// A sleigh on which nothing acts, with a rotor or without, is a type of its own, since its steps are shorter than a look at an empty
-    /// list; any other body has a list of what acts on it. A velocity that the scene imposes replaces that of its start.
+    /// The system of the scene.
     ///
     /// # Errors
     /// [`SleighError`] where an effect has impossible parameters, which one read from a file has not; or of a train, which
@@ -148,18 +59,7 @@ impl Scene {
 
     /// The same of the first blade alone, where others follow it.
     fn first_blade(&self) -> Result<AnySystem, SleighError> {
-        match self.guiding()? {
-            Guiding::None => {
-                let effects = self.acting()?;
-                if effects.is_empty() {
-                    return self.with_rotor(self.sleigh, (), AnySystem::Sleigh, AnySystem::Rotor);
-                }
-                self.with_rotor(self.sleigh, effects, AnySystem::Sleigh, AnySystem::Rotor)
-            }
-            Guiding::Turntable(body) => self.with_rotor(body, self.acting()?, AnySystem::Sleigh, AnySystem::Rotor),
-            Guiding::One(body) => self.with_rotor(body, self.acting()?, AnySystem::One, AnySystem::RotorOne),
-            Guiding::Two(body) => self.with_rotor(body, self.acting()?, AnySystem::Two, AnySystem::RotorTwo),
-        }
+        systems::system(self.guiding()?, self.rotor()?, self.acting()?, &self.start)
     }
 
     /// The jumps of the scene in its run (s).
@@ -175,12 +75,11 @@ impl Scene {
         })
     }
 
-    /// The body with its rotor, and the rate of that (rad/s), where there is one.
-    fn rotor<B: Clone>(&self, body: &B) -> Result<Option<(Flywheel<B>, f64)>, SleighError> {
+    fn rotor(&self) -> Result<Option<Rotor>, SleighError> {
         for effect in &self.effects {
             if let SceneEffect::Flywheel { inertia, rotor_rate, torque } = effect {
                 let torque = torque.as_ref().map(crate::TimeSpec::build).transpose()?;
-                return Ok(Some((Flywheel::new(body.clone(), *inertia, torque)?, *rotor_rate)));
+                return Ok(Some(Rotor { inertia: *inertia, rate: *rotor_rate, torque }));
             }
         }
         Ok(None)
@@ -193,8 +92,8 @@ impl Scene {
     }
 
     /// The effects that act on the coordinates there are.
-    pub(crate) fn acting(&self) -> Result<Vec<Acting>, SleighError> {
-        self.effects.iter().filter_map(|effect| Acting::of(effect).transpose()).collect()
+    pub(crate) fn acting(&self) -> Result<Vec<AnyEffect>, SleighError> {
+        self.effects.iter().filter_map(|effect| effect.acting().transpose()).collect()
     }
 
     fn guiding(&self) -> Result<Guiding, SleighError> {
@@ -222,34 +121,12 @@ impl Scene {
             _ => None,
         });
         Ok(match (imposed.transpose()?, rate) {
-            (None, None) => Guiding::None,
+            (None, None) => Guiding::None(sleigh),
             (None, Some(rate)) => Guiding::Turntable(Guided::turntable(sleigh, rate)?),
             (Some(guiding), None) => guiding,
             (Some(Guiding::One(body)), Some(rate)) => Guiding::One(body.on_turntable(rate)?),
             (Some(Guiding::Two(body)), Some(rate)) => Guiding::Two(body.on_turntable(rate)?),
             (Some(guiding), Some(_)) => guiding,
-        })
-    }
-
-    /// Adds the rotor, if there is one, and what acts on the body.
-    fn with_rotor<B, E, const M: usize>(
-        &self,
-        body: B,
-        effects: E,
-        plain: fn(Started<3, M>) -> AnySystem,
-        rotor: fn(Started<4, M>) -> AnySystem,
-    ) -> Result<AnySystem, SleighError>
-    where
-        B: SceneBody<3, M> + Piecewise + Clone + Sync + 'static,
-        E: SceneEffects<B, 3> + SceneEffects<Flywheel<B>, 4> + Piecewise + Sync + 'static,
-    {
-        let (q, v) = self.start.to_coordinates();
-        Ok(match self.rotor(&body)? {
-            Some((body, rate)) => {
-                let (q, v) = ([q[0], q[1], q[2], 0.0], [v[0], v[1], v[2], rate]);
-                rotor(started(With { body, effects }, q, v))
-            }
-            None => plain(started(With { body, effects }, q, v)),
         })
     }
 
@@ -263,22 +140,38 @@ impl Scene {
     }
 }
 
-/// The system with the admissible velocity that has the quasi-velocities of the given one.
-fn started<B, E, const N: usize, const M: usize>(system: With<B, E>, q: [f64; N], v: [f64; N]) -> Started<N, M>
-where
-    With<B, E>: SceneSystem<N, M> + 'static,
-{
-    of_start(Box::new(system), q, v)
+impl SceneEffect {
+    /// The effect, where it acts on the coordinates there are; `None` of one that makes another body.
+    fn acting(&self) -> Result<Option<AnyEffect>, SleighError> {
+        Ok(Some(match self {
+            SceneEffect::Slope { gravity } => AnyEffect::Slope(Slope::new(*gravity)?),
+            SceneEffect::Bowl { stiffness, center } => AnyEffect::Bowl(Bowl::new(*stiffness, *center)?),
+            SceneEffect::EggCrate { height, wave_number } => AnyEffect::EggCrate(EggCrate::new(*height, *wave_number)?),
+            SceneEffect::Hills { hills } => {
+                AnyEffect::Hills(Hills::new(hills.iter().copied().map(Into::into).collect())?)
+            }
+            SceneEffect::Drag { along, turning } => AnyEffect::Drag(Drag::new(*along, *turning)?),
+            SceneEffect::Thrust { force } => AnyEffect::Thrust(Thrust::new(force.build()?)?),
+            SceneEffect::Torque { torque } => AnyEffect::Torque(Torque::new(torque.build()?)?),
+            SceneEffect::MovingMass { mass, x, y } => {
+                AnyEffect::MovingMass(MovingMass::new(*mass, x.build()?, y.build()?)?)
+            }
+            SceneEffect::Trailers(_)
+            | SceneEffect::Flywheel { .. }
+            | SceneEffect::Servo { .. }
+            | SceneEffect::Tracer { .. }
+            | SceneEffect::Turntable { .. } => return Ok(None),
+        }))
+    }
 }
 
-fn of_start<const N: usize, const M: usize>(
-    system: Box<dyn SceneSystem<N, M>>,
-    q: [f64; N],
-    v: [f64; N],
-) -> Started<N, M> {
-    let first = system.smooth_piece(0.0);
-    let admissible = first.quasi_velocities(0.0, &q, &v).and_then(|xi| first.velocity_of(0.0, &q, &xi));
-    let free = M == 1 && first.constraint(0.0, &q).1.iter().all(|b| *b == 0.0);
-    drop(first);
-    Started { system, q, v: if free { v } else { admissible.unwrap_or(v) } }
+/// Hands the members of a sweep over in the lanes of vector registers, as [`systems::in_lanes`], where there is such an ensemble of
+/// what acts in them.
+pub fn in_lanes(scenes: &[&Scene], method: LaneMethod, time: (f64, f64), run: &mut LaneRun<'_>) -> bool {
+    if !scenes.iter().all(|scene| matches!(scene.effects[..], [] | [SceneEffect::Bowl { .. }])) {
+        return false;
+    }
+    let lane = |scene: &&Scene| Some(Lane { sleigh: scene.sleigh, start: scene.start, effects: scene.acting().ok()? });
+    let lanes: Option<Vec<Lane>> = scenes.iter().map(lane).collect();
+    lanes.is_some_and(|lanes| systems::in_lanes(&lanes, method, time, run))
 }

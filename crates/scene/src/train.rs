@@ -1,4 +1,4 @@
-use crate::{Acting, Scene, SceneEffect, TrailersSpec};
+use crate::{AnyEffect, Scene, SceneEffect, TrailersSpec};
 use assembly::parts::{Trailer, Train};
 use assembly::{AssemblyError, State};
 use lagrangian::With;
@@ -49,7 +49,7 @@ impl Scene {
         let Some(spec) = self.trailers() else { return Ok(None) };
         let trailers = (0..spec.count).map(|k| spec.trailer(k)).collect::<Result<Vec<_>, _>>()?;
         let effects = self.acting()?;
-        let ground: Vec<Acting> = effects.iter().filter(|effect| effect.is_ground()).cloned().collect();
+        let ground: Vec<AnyEffect> = effects.iter().filter(|effect| effect.is_ground()).cloned().collect();
         let lead = With { body: self.sleigh, effects };
         let body = |trailer: &Trailer| With { body: trailer.sleigh, effects: ground.clone() };
         let train = Train::new(lead, trailers, body)?;

@@ -8,7 +8,7 @@ use dla::{Observer, Schedule, State, StepReport, View};
 use harness::{Kind, METHODS, Method, integrate};
 use lagrangian::{System, With};
 use libfuzzer_sys::fuzz_target;
-use scene::Acting;
+use scene::AnyEffect;
 use sleigh::effects::{Bowl, Drag, EggCrate, Hill, Hills, MovingMass, Slope, Thrust, Torque};
 use sleigh::{Sleigh, SleighError, SleighState, TimeFunction};
 use std::f64::consts::PI;
@@ -62,21 +62,21 @@ enum Effect {
 }
 
 impl Effect {
-    fn build(&self) -> Result<Acting, SleighError> {
+    fn build(&self) -> Result<AnyEffect, SleighError> {
         let pair = |numbers: &[Number; 2]| numbers.map(Number::value);
         Ok(match self {
-            Self::Slope(gravity) => Acting::Slope(Slope::new(pair(gravity))?),
-            Self::Bowl(stiffness, center) => Acting::Bowl(Bowl::new(pair(stiffness), pair(center))?),
-            Self::EggCrate(height, waves) => Acting::EggCrate(EggCrate::new(height.value(), pair(waves))?),
+            Self::Slope(gravity) => AnyEffect::Slope(Slope::new(pair(gravity))?),
+            Self::Bowl(stiffness, center) => AnyEffect::Bowl(Bowl::new(pair(stiffness), pair(center))?),
+            Self::EggCrate(height, waves) => AnyEffect::EggCrate(EggCrate::new(height.value(), pair(waves))?),
             Self::Hill(hill) => {
                 let [height, x, y, width] = hill.map(Number::value);
-                Acting::Hills(Hills::new(vec![Hill { height, x, y, width }])?)
+                AnyEffect::Hills(Hills::new(vec![Hill { height, x, y, width }])?)
             }
-            Self::Drag(along, turning) => Acting::Drag(Drag::new(along.value().abs(), turning.value().abs())?),
-            Self::Thrust(force) => Acting::Thrust(Thrust::new(force.build())?),
-            Self::Torque(torque) => Acting::Torque(Torque::new(torque.build())?),
+            Self::Drag(along, turning) => AnyEffect::Drag(Drag::new(along.value().abs(), turning.value().abs())?),
+            Self::Thrust(force) => AnyEffect::Thrust(Thrust::new(force.build())?),
+            Self::Torque(torque) => AnyEffect::Torque(Torque::new(torque.build())?),
             Self::MovingMass(mass, x, y) => {
-                Acting::MovingMass(MovingMass::new(mass.value().abs(), x.build(), y.build())?)
+                AnyEffect::MovingMass(MovingMass::new(mass.value().abs(), x.build(), y.build())?)
             }
         })
     }

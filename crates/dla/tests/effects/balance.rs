@@ -3,7 +3,7 @@
 use crate::tools::{Laden, assert_order, laden, moving, run, sleigh, steps};
 use dla::{Composition, Dla, Energy, Observer, OneStep, StepReport, View, Work};
 use lagrangian::{Piecewise, System};
-use scene::Acting;
+use scene::AnyEffect;
 use sleigh::effects::{Bowl, Drag, MovingMass, Slope, Thrust, Torque};
 use sleigh::{Guide, Guided, Sleigh, Table, TimeFunction};
 use std::ops::ControlFlow;
@@ -75,10 +75,10 @@ where
 #[test]
 fn forced() {
     let effects = vec![
-        Acting::Bowl(Bowl::new([0.4, 0.15], [0.2, -0.3]).unwrap()),
-        Acting::Drag(Drag::new(0.2, 0.1).unwrap()),
-        Acting::Thrust(Thrust::new(sine(0.6, 1.3, 0.4)).unwrap()),
-        Acting::Torque(Torque::new(0.2).unwrap()),
+        AnyEffect::Bowl(Bowl::new([0.4, 0.15], [0.2, -0.3]).unwrap()),
+        AnyEffect::Drag(Drag::new(0.2, 0.1).unwrap()),
+        AnyEffect::Thrust(Thrust::new(sine(0.6, 1.3, 0.4)).unwrap()),
+        AnyEffect::Torque(Torque::new(0.2).unwrap()),
     ];
     converges("forced", &laden(sleigh(), effects), moving().to_coordinates());
 }
@@ -86,7 +86,7 @@ fn forced() {
 #[test]
 fn explicit_time() {
     let mass = MovingMass::new(0.4, sine(0.3, 2.0, 0.3), 0.2).unwrap();
-    let effects = vec![Acting::MovingMass(mass), Acting::Slope(Slope::new([0.3, -0.2]).unwrap())];
+    let effects = vec![AnyEffect::MovingMass(mass), AnyEffect::Slope(Slope::new([0.3, -0.2]).unwrap())];
     converges("explicit time", &laden(sleigh(), effects), moving().to_coordinates());
 }
 
@@ -133,7 +133,7 @@ fn the_energy_methods_balance_to_rounding() {
     let drag = Drag::new(nu * sleigh().mass(), nu * sleigh().pivot_inertia()).unwrap();
     let thrust = Thrust::new(sine(0.6, 1.3, 0.4)).unwrap();
     let bowl = Bowl::new([0.4, 0.15], [0.2, -0.3]).unwrap();
-    let effects = vec![Acting::Drag(drag), Acting::Thrust(thrust), Acting::Bowl(bowl)];
+    let effects = vec![AnyEffect::Drag(drag), AnyEffect::Thrust(thrust), AnyEffect::Bowl(bowl)];
     let system: Laden<Sleigh> = laden(sleigh(), effects);
     let mut seen = Balance::default();
     let count = 20_000;

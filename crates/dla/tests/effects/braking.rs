@@ -3,7 +3,7 @@
 use crate::tools::{Laden, laden, sleigh};
 use approx::assert_relative_eq;
 use dla::{Dla, Hint, OneStep, State, StepError};
-use scene::Acting;
+use scene::AnyEffect;
 use sleigh::effects::{Drag, Thrust};
 use sleigh::{Sleigh, SleighState};
 
@@ -16,8 +16,8 @@ fn after(system: &Laden<Sleigh>, h: f64) -> Result<f64, StepError> {
     Ok(SleighState::from_coordinates(state.q(), state.v()).speed)
 }
 
-fn drag(along: f64) -> Acting {
-    Acting::Drag(Drag::new(along, 0.0).unwrap())
+fn drag(along: f64) -> AnyEffect {
+    AnyEffect::Drag(Drag::new(along, 0.0).unwrap())
 }
 
 #[test]
@@ -42,7 +42,7 @@ fn a_drag_turns_no_speed_round() {
 #[test]
 fn what_drives_may() {
     let (h, mass) = (0.05, sleigh().mass());
-    let thrust = |force: f64| Acting::Thrust(Thrust::new(force).unwrap());
+    let thrust = |force: f64| AnyEffect::Thrust(Thrust::new(force).unwrap());
     let driven = after(&laden(sleigh(), vec![thrust(-3.0 * mass / h)]), h).unwrap();
     assert_relative_eq!(driven, -2.0, epsilon = 1e-14);
     let along = mass / h;

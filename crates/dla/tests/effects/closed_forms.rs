@@ -2,7 +2,7 @@
 
 use crate::tools::{Laden, assert_order, laden, moving, run, sleigh, steps};
 use dla::{Composition, Dla, OneStep, State, Trajectory};
-use scene::Acting;
+use scene::AnyEffect;
 use sleigh::effects::{Drag, Slope};
 use sleigh::{Exact, Sleigh, SleighState};
 use std::f64::consts::TAU;
@@ -35,7 +35,7 @@ fn errors<Method: OneStep<3, 1>>(
 fn drag_in_proportion_to_the_mass() {
     let (nu, end) = (0.3_f64, 4.0);
     let effect = Drag::new(nu * sleigh().mass(), nu * sleigh().pivot_inertia()).unwrap();
-    let system = laden(sleigh(), vec![Acting::Drag(effect)]);
+    let system = laden(sleigh(), vec![AnyEffect::Drag(effect)]);
     let slowed = (-nu * end).exp();
     let free = Exact::new(&sleigh(), &moving()).unwrap().at((1.0 - slowed) / nu);
     let exact = SleighState { speed: slowed * free.speed, turn_rate: slowed * free.turn_rate, ..free };
@@ -71,7 +71,7 @@ fn skate(g: f64, u0: f64, omega: f64, t: f64) -> SleighState {
 fn skate_on_a_slope() {
     let body = Sleigh::new(1.3, 0.8, 0.0).unwrap();
     let (g, u0, omega) = (0.7, 0.4, 0.9);
-    let system = laden(body, vec![Acting::Slope(Slope::new([g, 0.0]).unwrap())]);
+    let system = laden(body, vec![AnyEffect::Slope(Slope::new([g, 0.0]).unwrap())]);
     let start = skate(g, u0, omega, 0.0);
     let exact = skate(g, u0, omega, 4.0);
     let base = Dla::midpoint();

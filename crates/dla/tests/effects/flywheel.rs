@@ -4,7 +4,7 @@ use crate::balance::sine;
 use crate::tools::{Laden, laden, moving, run, sleigh, steps};
 use dla::{Dla, Form, Observer, StepReport, View};
 use lagrangian::With;
-use scene::Acting;
+use scene::AnyEffect;
 use sleigh::effects::Thrust;
 use sleigh::{Flywheel, Sleigh};
 use std::ops::ControlFlow;
@@ -33,7 +33,7 @@ fn a_free_rotor_keeps_its_momentum() {
     let (count, rate) = (1_000_000, 3.0);
     let (q, v) = moving().to_coordinates();
     let with_rotor = ([q[0], q[1], q[2], 0.0], [v[0], v[1], v[2], rate]);
-    let back = || vec![Acting::Thrust(Thrust::new(-0.5).unwrap())];
+    let back = || vec![AnyEffect::Thrust(Thrust::new(-0.5).unwrap())];
 
     let mut spin = Spin::default();
     let body = With { body: Flywheel::new(sleigh(), 0.2, None).unwrap(), effects: () };

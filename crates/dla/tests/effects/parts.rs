@@ -4,7 +4,7 @@
 use crate::tools::{Laden, laden, moving, run, sleigh, steps};
 use dla::{Dla, RunError, Schedule, State, StepError, Trajectory, drive, drive_part, onto_constraint, pieces};
 use lagrangian::{System, constraint_residual, momentum};
-use scene::Acting;
+use scene::AnyEffect;
 use sleigh::effects::{Bowl, Torque};
 use sleigh::{Guide, Guided, Sleigh, Table, TimeFunction};
 
@@ -53,7 +53,7 @@ fn a_late_jump_is_on_its_node() {
 /// The parts of a run are the run.
 #[test]
 fn parts_make_the_whole() {
-    let system: Laden<Sleigh> = laden(sleigh(), vec![Acting::Bowl(Bowl::new([0.4, 0.15], [0.2, -0.3]).unwrap())]);
+    let system: Laden<Sleigh> = laden(sleigh(), vec![AnyEffect::Bowl(Bowl::new([0.4, 0.15], [0.2, -0.3]).unwrap())]);
     let (q, v) = moving().to_coordinates();
     let (schedule, start) = (steps(0.05, 100), State::new(q, v, system.angles()));
     let (mut whole, mut nodes) = (start, Trajectory::<3, 1>::every(1));
@@ -78,7 +78,7 @@ fn over_the_jumps_and_back() {
     let table = |values| TimeFunction::Table(Table::new(vec![0.0, 1.0, 2.5], values).unwrap());
     let torque = Torque::new(table(vec![0.4, -0.3, 0.2])).unwrap();
     let servo = Guided::<1>::servo(sleigh(), Guide::Speed(table(vec![0.7, -0.5, 0.6]))).unwrap();
-    let system = laden(servo, vec![Acting::Torque(torque)]);
+    let system = laden(servo, vec![AnyEffect::Torque(torque)]);
     let (q, v) = moving().to_coordinates();
     let end = run(&system, &mut Dla::midpoint(), &steps(0.05, 80), (q, v), ());
     let back = Schedule { t0: 4.0, step: -0.05, steps: 80 };

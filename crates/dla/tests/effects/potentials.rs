@@ -3,32 +3,32 @@
 use crate::tools::{laden, moving, sleigh};
 use dla::{Dla, Form, OneStep, State};
 use lagrangian::{System, constraint_residual};
-use scene::Acting;
+use scene::AnyEffect;
 use sleigh::TimeFunction;
 use sleigh::effects::{Bowl, Drag, EggCrate, Thrust, Torque};
 
 const STEP: f64 = 0.05;
 
-fn bowl() -> Acting {
-    Acting::Bowl(Bowl::new([0.7, 0.4], [0.2, -0.1]).unwrap())
+fn bowl() -> AnyEffect {
+    AnyEffect::Bowl(Bowl::new([0.7, 0.4], [0.2, -0.1]).unwrap())
 }
 
-fn crate_of_eggs() -> Acting {
-    Acting::EggCrate(EggCrate::new(0.3, [1.0, 1.2]).unwrap())
+fn crate_of_eggs() -> AnyEffect {
+    AnyEffect::EggCrate(EggCrate::new(0.3, [1.0, 1.2]).unwrap())
 }
 
-fn drag() -> Acting {
-    Acting::Drag(Drag::new(0.3, 0.2).unwrap())
+fn drag() -> AnyEffect {
+    AnyEffect::Drag(Drag::new(0.3, 0.2).unwrap())
 }
 
 /// A thrust and a torque that swing.
-fn pushes() -> [Acting; 2] {
+fn pushes() -> [AnyEffect; 2] {
     let swing = |phase| TimeFunction::Sine { amplitude: 0.5, frequency: 2.0, phase };
-    [Acting::Thrust(Thrust::new(swing(0.3)).unwrap()), Acting::Torque(Torque::new(swing(1.1)).unwrap())]
+    [AnyEffect::Thrust(Thrust::new(swing(0.3)).unwrap()), AnyEffect::Torque(Torque::new(swing(1.1)).unwrap())]
 }
 
 /// Along a run by the first method, the largest difference that one step of the second makes, in velocities and impulses.
-fn differences(effects: Vec<Acting>, form: Form) -> [f64; 2] {
+fn differences(effects: Vec<AnyEffect>, form: Form) -> [f64; 2] {
     let system = laden(sleigh(), effects);
     let (q, v) = moving().to_coordinates();
     let mut state = State::new(q, v, system.angles());
@@ -70,7 +70,7 @@ fn both_forms_are_the_same_map() {
 /// There and back; drag is the control.
 #[test]
 fn the_step_goes_back() {
-    let there_and_back = |effects: Vec<Acting>| {
+    let there_and_back = |effects: Vec<AnyEffect>| {
         let system = laden(sleigh(), effects);
         let (q, v) = moving().to_coordinates();
         let start = State::new(q, v, system.angles());
@@ -85,6 +85,6 @@ fn the_step_goes_back() {
     };
     let error = there_and_back(vec![bowl(), crate_of_eggs()]);
     assert!(error <= 1e-11, "returns within {error:e}");
-    let error = there_and_back(vec![bowl(), Acting::Drag(Drag::new(0.1, 0.1).unwrap())]);
+    let error = there_and_back(vec![bowl(), AnyEffect::Drag(Drag::new(0.1, 0.1).unwrap())]);
     assert!(error > 1e-3, "with drag within {error:e}");
 }

@@ -3,26 +3,26 @@
 use crate::balance::sine;
 use crate::tools::{laden, moving, run, sleigh, steps};
 use dla::{Dla, Form};
-use scene::Acting;
+use scene::AnyEffect;
 use sleigh::effects::{Bowl, Drag, EggCrate, Hill, Hills, MovingMass, Slope, Thrust, Torque};
 use sleigh::{Guided, Table, TimeFunction};
 
 /// Every effect that acts, with its strength in proportion to `k`.
-fn effects(k: f64) -> Vec<(&'static str, Acting)> {
+fn effects(k: f64) -> Vec<(&'static str, AnyEffect)> {
     let table = TimeFunction::Table(Table::new(vec![0.0, 1.0], vec![k, -2.0 * k]).unwrap());
     let hill = Hill { height: k, x: 0.5, y: 0.5, width: 0.7 };
     vec![
-        ("slope", Acting::Slope(Slope::new([k, 2.0 * k]).unwrap())),
-        ("bowl", Acting::Bowl(Bowl::new([k, 2.0 * k], [0.3, 0.1]).unwrap())),
-        ("egg_crate", Acting::EggCrate(EggCrate::new(k, [1.0, 2.0]).unwrap())),
-        ("hills", Acting::Hills(Hills::new(vec![hill, hill]).unwrap())),
-        ("drag", Acting::Drag(Drag::new(k, 2.0 * k).unwrap())),
-        ("thrust", Acting::Thrust(Thrust::new(sine(k, 1.0, 0.3)).unwrap())),
-        ("torque", Acting::Torque(Torque::new(table).unwrap())),
+        ("slope", AnyEffect::Slope(Slope::new([k, 2.0 * k]).unwrap())),
+        ("bowl", AnyEffect::Bowl(Bowl::new([k, 2.0 * k], [0.3, 0.1]).unwrap())),
+        ("egg_crate", AnyEffect::EggCrate(EggCrate::new(k, [1.0, 2.0]).unwrap())),
+        ("hills", AnyEffect::Hills(Hills::new(vec![hill, hill]).unwrap())),
+        ("drag", AnyEffect::Drag(Drag::new(k, 2.0 * k).unwrap())),
+        ("thrust", AnyEffect::Thrust(Thrust::new(sine(k, 1.0, 0.3)).unwrap())),
+        ("torque", AnyEffect::Torque(Torque::new(table).unwrap())),
         // A mass must be positive; the smallest has no effect on a double.
         (
             "moving_mass",
-            Acting::MovingMass(MovingMass::new(k.max(f64::MIN_POSITIVE), sine(0.3, 2.0, 0.0), 0.2).unwrap()),
+            AnyEffect::MovingMass(MovingMass::new(k.max(f64::MIN_POSITIVE), sine(0.3, 2.0, 0.0), 0.2).unwrap()),
         ),
     ]
 }
@@ -30,7 +30,7 @@ fn effects(k: f64) -> Vec<(&'static str, Acting)> {
 #[test]
 fn no_strength_is_no_effect() {
     let count = 100;
-    let end = |effects: Vec<Acting>| {
+    let end = |effects: Vec<AnyEffect>| {
         let mut method = Dla::midpoint().solved(Form::General);
         run(&laden(sleigh(), effects), &mut method, &steps(0.05, count), moving().to_coordinates(), ()).unwrapped()
     };

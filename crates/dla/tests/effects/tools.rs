@@ -2,7 +2,7 @@
 
 use dla::{Observer, OneStep, PiecewiseMechanics, Schedule, State, drive_part, piece_by_piece};
 use lagrangian::With;
-use scene::Acting;
+use scene::AnyEffect;
 use sleigh::{Sleigh, SleighState};
 
 /// Runs piece by piece, as a command does.
@@ -26,9 +26,9 @@ where
 }
 
 /// A body of a scene with a list of effects: the type of all runs here, so that each body is compiled once.
-pub type Laden<B> = With<B, Vec<Acting>>;
+pub type Laden<B> = With<B, Vec<AnyEffect>>;
 
-pub fn laden<B>(body: B, effects: Vec<Acting>) -> Laden<B> {
+pub fn laden<B>(body: B, effects: Vec<AnyEffect>) -> Laden<B> {
     With { body, effects }
 }
 

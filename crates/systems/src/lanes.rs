@@ -1,6 +1,6 @@
-//! Members of a sweep in the lanes of vector registers, where a scene has a method for that.
+//! Members of a sweep in the lanes of vector registers, where a body has a method for that.
 
-use crate::{Acting, Scene, SceneEffect};
+use crate::AnyEffect;
 use dla::{ClosedEnsemble, Each, Ensemble, GaussEnsemble, LaneState, Mechanics, Same};
 use lagrangian::{System, With};
 use sleigh::effects::Bowl;
@@ -20,18 +20,29 @@ pub enum LaneMethod {
     Gauss16,
 }
 
-/// What is done with the trajectories, and the system of each.
-type Run<'a> = dyn FnMut(&mut dyn Ensemble<3, LANES>, &[&dyn Mechanics<3, 1>; LANES]) + 'a;
+/// A member of a sweep.
+#[derive(Debug, Clone)]
+pub struct Lane {
+    /// The body.
+    pub sleigh: Sleigh,
+    /// Where it starts.
+    pub start: SleighState,
+    /// What acts on it.
+    pub effects: Vec<AnyEffect>,
+}
 
-/// Hands sixteen trajectories over, of so many scenes that differ in numbers only; fewer are filled up with the last. `time` is when they
-/// begin and the step (s). Whether there is such an ensemble: a free sleigh has one by each method, one in a bowl by collocations.
-pub fn in_lanes(scenes: &[&Scene], method: LaneMethod, (t0, step): (f64, f64), run: &mut Run<'_>) -> bool {
-    let Some(last) = scenes.last() else { return false };
-    let lane = |i: usize| *scenes.get(i).unwrap_or(last);
-    let starts: Vec<_> = scenes
+/// What is done with the trajectories, and the system of each.
+pub type LaneRun<'a> = dyn FnMut(&mut dyn Ensemble<3, LANES>, &[&dyn Mechanics<3, 1>; LANES]) + 'a;
+
+/// Hands sixteen trajectories over, of so many members that differ in numbers only; fewer are filled up with the last. `time` is when
+/// they begin and the step (s). Whether there is such an ensemble: a free sleigh has one by each method, one in a bowl by collocations.
+pub fn in_lanes(members: &[Lane], method: LaneMethod, (t0, step): (f64, f64), run: &mut LaneRun<'_>) -> bool {
+    let Some(last) = members.last() else { return false };
+    let lane = |i: usize| members.get(i).unwrap_or(last);
+    let starts: Vec<_> = members
         .iter()
-        .map(|scene| {
-            let SleighState { x, y, heading, speed, turn_rate } = scene.start;
+        .map(|member| {
+            let SleighState { x, y, heading, speed, turn_rate } = member.start;
             ([x, y, heading], [speed, turn_rate, 0.0])
         })
         .collect();
@@ -48,12 +59,12 @@ pub fn in_lanes(scenes: &[&Scene], method: LaneMethod, (t0, step): (f64, f64), r
         }
         (LaneMethod::Gauss8, []) => collocated::<4, _>(&sleighs, (t0, step), state, &mut |e| run(e, &objects(&free))),
         (LaneMethod::Gauss16, []) => collocated::<8, _>(&sleighs, (t0, step), state, &mut |e| run(e, &objects(&free))),
-        (_, [SceneEffect::Bowl { .. }]) => {
+        (_, [AnyEffect::Bowl(_)]) => {
             let bowls: Vec<_> = bowls.into_iter().flatten().collect();
             let Ok(bowls) = <Box<[_; LANES]>>::try_from(bowls.into_boxed_slice()) else { return false };
             let listed = bowls
                 .each_ref()
-                .map(|bowl| With { body: bowl.body, effects: vec![Acting::Bowl(bowl.effects.clone())] });
+                .map(|bowl| With { body: bowl.body, effects: vec![AnyEffect::Bowl(bowl.effects.clone())] });
             let run = &mut |ensemble: &mut dyn Ensemble<3, LANES>| run(ensemble, &objects(&listed));
             match method {
                 LaneMethod::Closed => false,
@@ -86,11 +97,9 @@ fn objects<Sys: System<3, 1>>(systems: &[Sys; LANES]) -> [&dyn Mechanics<3, 1>; 
     systems.each_ref().map(|system| system as &dyn Mechanics<3, 1>)
 }
 
-fn bowl(scene: &Scene) -> Option<With<Sleigh, Bowl>> {
-    match scene.effects[..] {
-        [SceneEffect::Bowl { stiffness, center }] => {
-            Bowl::new(stiffness, center).ok().map(|effects| With { body: scene.sleigh, effects })
-        }
+fn bowl(lane: &Lane) -> Option<With<Sleigh, Bowl>> {
+    match &lane.effects[..] {
+        [AnyEffect::Bowl(bowl)] => Some(With { body: lane.sleigh, effects: bowl.clone() }),
         _ => None,
     }
 }

@@ -1,12 +1,11 @@
-use crate::SceneEffect;
 use lagrangian::{Effect, Piecewise, Scalar};
 use sleigh::effects::{Bowl, Drag, EggCrate, Hills, MovingMass, Slope, Thrust, Torque};
-use sleigh::{Sleigh, SleighBody, SleighError};
+use sleigh::{Sleigh, SleighBody};
 
 /// An effect of a scene that acts on the coordinates there are: one type for a list of them.
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs, reason = "each arm is the effect of its name")]
-pub enum Acting {
+pub enum AnyEffect {
     Slope(Slope),
     Bowl(Bowl),
     EggCrate(EggCrate),
@@ -21,20 +20,20 @@ pub enum Acting {
 macro_rules! each {
     ($self:ident, $effect:ident => $result:expr) => {
         match $self {
-            Acting::Slope($effect) => $result,
-            Acting::Bowl($effect) => $result,
-            Acting::EggCrate($effect) => $result,
-            Acting::Hills($effect) => $result,
-            Acting::Drag($effect) => $result,
-            Acting::Thrust($effect) => $result,
-            Acting::Torque($effect) => $result,
-            Acting::MovingMass($effect) => $result,
+            AnyEffect::Slope($effect) => $result,
+            AnyEffect::Bowl($effect) => $result,
+            AnyEffect::EggCrate($effect) => $result,
+            AnyEffect::Hills($effect) => $result,
+            AnyEffect::Drag($effect) => $result,
+            AnyEffect::Thrust($effect) => $result,
+            AnyEffect::Torque($effect) => $result,
+            AnyEffect::MovingMass($effect) => $result,
         }
     };
 }
 
 /// On whichever body, an effect acts on the sleigh that it is: so that of every one there is but one to compile.
-impl<B: SleighBody, const N: usize> Effect<B, N> for Acting {
+impl<B: SleighBody, const N: usize> Effect<B, N> for AnyEffect {
     #[inline(always)]
     fn lagrangian<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<S> {
         self.lagrangian_on(body.sleigh(), t, q, v)
@@ -57,7 +56,7 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Acting {
     }
 }
 
-impl Acting {
+impl AnyEffect {
     #[inline(always)]
     fn lagrangian_on<S: Scalar, const N: usize>(&self, sleigh: &Sleigh, t: S, q: &[S; N], v: &[S; N]) -> Option<S> {
         S::apart(
@@ -94,7 +93,7 @@ impl Acting {
     }
 }
 
-impl Piecewise for Acting {
+impl Piecewise for AnyEffect {
     fn jumps(&self, from: f64, to: f64) -> Vec<f64> {
         each!(self, effect => effect.jumps(from, to))
     }
@@ -112,28 +111,10 @@ impl Piecewise for Acting {
     }
 }
 
-impl Acting {
-    /// Of an effect that acts on the coordinates there are; `None` of one that makes another body.
-    pub(crate) fn of(effect: &SceneEffect) -> Result<Option<Self>, SleighError> {
-        Ok(Some(match effect {
-            SceneEffect::Slope { gravity } => Self::Slope(Slope::new(*gravity)?),
-            SceneEffect::Bowl { stiffness, center } => Self::Bowl(Bowl::new(*stiffness, *center)?),
-            SceneEffect::EggCrate { height, wave_number } => Self::EggCrate(EggCrate::new(*height, *wave_number)?),
-            SceneEffect::Hills { hills } => Self::Hills(Hills::new(hills.iter().copied().map(Into::into).collect())?),
-            SceneEffect::Drag { along, turning } => Self::Drag(Drag::new(*along, *turning)?),
-            SceneEffect::Thrust { force } => Self::Thrust(Thrust::new(force.build()?)?),
-            SceneEffect::Torque { torque } => Self::Torque(Torque::new(torque.build()?)?),
-            SceneEffect::MovingMass { mass, x, y } => Self::MovingMass(MovingMass::new(*mass, x.build()?, y.build()?)?),
-            SceneEffect::Trailers(_)
-            | SceneEffect::Flywheel { .. }
-            | SceneEffect::Servo { .. }
-            | SceneEffect::Tracer { .. }
-            | SceneEffect::Turntable { .. } => return Ok(None),
-        }))
-    }
-
+impl AnyEffect {
     /// Whether it belongs to the ground, which every blade of a train runs on.
-    pub(crate) fn is_ground(&self) -> bool {
+    #[must_use]
+    pub fn is_ground(&self) -> bool {
         matches!(self, Self::Slope(_) | Self::Bowl(_) | Self::EggCrate(_) | Self::Hills(_))
     }
 

@@ -1,6 +1,6 @@
 //! The power of what drives or brakes a scene, by name.
 
-use crate::Acting;
+use crate::AnyEffect;
 use lagrangian::{Effect, System, With, force_power, lagrangian_power};
 use sleigh::{Flywheel, Guided, Sleigh, SleighBody};
 
@@ -28,7 +28,7 @@ impl<B, const N: usize> SceneEffects<B, N> for () {
 /// One effect alone, without a body: what it adds to a Lagrangian and to the forces.
 struct Alone<'a, B> {
     body: &'a B,
-    effect: &'a Acting,
+    effect: &'a AnyEffect,
 }
 
 impl<B: SleighBody, const N: usize> System<N, 0> for Alone<'_, B> {
@@ -43,7 +43,7 @@ impl<B: SleighBody, const N: usize> System<N, 0> for Alone<'_, B> {
     }
 }
 
-impl<B: SleighBody, const N: usize> SceneEffects<B, N> for Vec<Acting> {
+impl<B: SleighBody, const N: usize> SceneEffects<B, N> for Vec<AnyEffect> {
     fn powers(&self, body: &B, t: f64, q: &[f64; N], v: &[f64; N]) -> Vec<EffectPower> {
         let mut powers: Vec<EffectPower> = Vec::new();
         for effect in self {
