@@ -49,6 +49,12 @@ impl<const N: usize, const M: usize> Mechanics<N, M> for Counted<'_, N, M> {
         slopes
     }
 
+    fn second_slopes(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> SecondSlopes<N> {
+        let slopes = self.system.second_slopes(t, q, v);
+        self.count(3 + 2 * u64::from(slopes.force.is_some()));
+        slopes
+    }
+
     counted! {
         0 angles() -> [bool; N];
         1 lagrangian(t: f64, q: &[f64; N], v: &[f64; N]) -> f64;
@@ -56,7 +62,6 @@ impl<const N: usize, const M: usize> Mechanics<N, M> for Counted<'_, N, M> {
         1 momentum(t: f64, q: &[f64; N], v: &[f64; N]) -> [f64; N];
         2 momentum_and_rows(t: f64, q: &[f64; N], v: &[f64; N]) -> ([f64; N], Constraint<f64, N, M>);
         1 mass_matrix(t: f64, q: &[f64; N], v: &[f64; N]) -> ([f64; N], [[f64; N]; N]);
-        3 second_slopes(t: f64, q: &[f64; N], v: &[f64; N]) -> SecondSlopes<N>;
         1 at_node(t: f64, q: &[f64; N], v: &[f64; N], back: f64, ahead: f64) -> HyperDual<f64, N, N>;
         some force(t: f64, q: &[f64; N], v: &[f64; N]) -> Option<[f64; N]>;
         some force_power(t: f64, q: &[f64; N], v: &[f64; N]) -> Option<f64>;

@@ -84,20 +84,16 @@ impl<const N: usize, const M: usize> Point<N, M> {
     #[inline]
     pub fn linearised(&self, system: &dyn Mechanics<N, M>, h: f64) -> Linearised<N, M> {
         let Self { t, q, v, impulse } = self;
-        let SecondSlopes { l_q, l_qq, l_qv: mixed, l_v: p, l_vv: p_v } = system.second_slopes(*t, q, v);
+        let SecondSlopes { l_q, l_qq, l_qv: mixed, l_v: p, l_vv: p_v, force } = system.second_slopes(*t, q, v);
 
         let mut w = l_q.map(|x| h * x);
         let mut w_q = l_qq.map(|row| row.map(|x| h * x));
         let mut w_v = mixed.map(|row| row.map(|x| h * x));
-        if let Some(force) = system.force_along(*t, q, v, 1.0, 0.0) {
+        if let Some([in_place, in_velocity]) = force {
             for i in 0..N {
-                w[i] += h * force[i].re;
-                w_q[i] = from_fn(|j| w_q[i][j] + h * force[i].eps[j]);
-            }
-        }
-        if let Some(force) = system.force_along(*t, q, v, 0.0, 1.0) {
-            for i in 0..N {
-                w_v[i] = from_fn(|j| w_v[i][j] + h * force[i].eps[j]);
+                w[i] += h * in_place[i].re;
+                w_q[i] = from_fn(|j| w_q[i][j] + h * in_place[i].eps[j]);
+                w_v[i] = from_fn(|j| w_v[i][j] + h * in_velocity[i].eps[j]);
             }
         }
 

@@ -46,7 +46,9 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Mechanics<N, M> for Sys 
         let in_q = second_in_place(self, t, q, v);
         let l_qv = second_in_both(self, t, q, v).e12;
         let (l_v, l_vv) = mass_matrix(self, t, q, v);
-        SecondSlopes { l_q: in_q.e1, l_qq: in_q.e12, l_qv, l_v, l_vv }
+        let in_place = self.force_along(t, q, v, 1.0, 0.0);
+        let force = in_place.and_then(|in_place| Some([in_place, self.force_along(t, q, v, 0.0, 1.0)?]));
+        SecondSlopes { l_q: in_q.e1, l_qq: in_q.e12, l_qv, l_v, l_vv, force }
     }
 
     fn at_node(&self, t: f64, q: &[f64; N], v: &[f64; N], back: f64, ahead: f64) -> HyperDual<f64, N, N> {
@@ -65,6 +67,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Mechanics<N, M> for Sys 
         lagrangian_power(self, t, q, v)
     }
 
+    #[inline]
     fn force_along(&self, t: f64, q: &[f64; N], v: &[f64; N], in_q: f64, in_v: f64) -> Option<[Dual<f64, N>; N]> {
         let along = |x: &[f64; N], by: f64| -> [Dual<f64, N>; N] {
             from_fn(|i| Dual { re: x[i], eps: from_fn(|j| if i == j { by } else { 0.0 }) })

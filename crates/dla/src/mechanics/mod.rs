@@ -28,7 +28,7 @@ pub struct Slopes<const N: usize> {
     pub force: Option<[f64; N]>,
 }
 
-/// The Lagrangian's first and second derivatives at a state.
+/// The Lagrangian's first and second derivatives at a state, and the forces with their first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SecondSlopes<const N: usize> {
     /// `L_q`.
@@ -41,6 +41,8 @@ pub struct SecondSlopes<const N: usize> {
     pub l_v: [f64; N],
     /// `L_vv`, the mass matrix.
     pub l_vv: [[f64; N]; N],
+    /// The forces with their derivatives in the coordinates, and with those in the velocities.
+    pub force: Option<[[Dual<f64, N>; N]; 2]>,
 }
 
 /// What a method asks of a system: values and derivatives as numbers, never a scalar that carries derivatives.
