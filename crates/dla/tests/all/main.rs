@@ -1,0 +1,20 @@
+//! The tests of the crate, in one program: a method is compiled once for a shape, and not once in
+//! each of a dozen.
+
+#![allow(missing_docs)]
+
+mod attitudes;
+mod constraints;
+mod corners;
+mod drive;
+mod effects;
+mod energy;
+mod large;
+mod lobatto;
+mod newton;
+mod parts;
+mod rest;
+mod runs;
+mod sensitivity;
+mod state;
+mod systems;

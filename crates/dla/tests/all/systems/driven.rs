@@ -1,0 +1,137 @@
+//! Forces, explicit time, affine constraints, and discrete Lagrangians that a user writes.
+
+use crate::systems::models::{Oscillator, Particle, Pushed};
+use crate::systems::tools::{assert_order, errors, forms, run};
+use dla::{Dla, Form, HandMade};
+use lagrangian::{
+    Constraint, Derivatives, DiscreteLagrangian, Midpoint, Scalar, Symmetrised, System, Trapezoid, constraint_residual,
+};
+use std::array::from_fn;
+
+#[test]
+fn drag_and_drive() {
+    let symmetrised = Symmetrised::new(0.2).unwrap();
+    for (damping, drive) in [(0.1, 0.0), (0.0, 0.5), (0.2, 0.7)] {
+        let system = Oscillator { damping, drive };
+        let exact = |t| system.exact(t);
+        assert_order("midpoint", errors(&system, Dla::midpoint(), 5.0, exact), 2.0);
+        assert_order("trapezoid", errors(&system, Dla::trapezoid(), 5.0, exact), 2.0);
+        assert_order("symmetrised", errors(&system, Dla::new(symmetrised, symmetrised), 5.0, exact), 2.0);
+    }
+    let system = Particle { damping: 0.4, ..Particle::FREE };
+    for (form, method) in forms(Dla::midpoint()) {
+        assert_order(form, errors(&system, method, 3.0, |t| system.exact(t)), 2.0);
+    }
+    let mixed = Dla::new(Midpoint, Trapezoid);
+    assert_order("mixed", errors(&system, mixed, 3.0, |t| system.exact(t)), 2.0);
+}
+
+#[test]
+fn an_affine_constraint_with_time() {
+    for (form, method) in forms(Dla::midpoint()) {
+        assert_order(form, errors(&Pushed, method, 3.0, Pushed::exact), 2.0);
+    }
+    assert_order("trapezoid", errors(&Pushed, Dla::trapezoid(), 3.0, Pushed::exact), 2.0);
+    assert_order("mixed", errors(&Pushed, Dla::new(Midpoint, Trapezoid), 3.0, Pushed::exact), 2.0);
+}
+
+/// The multipliers are those of the motion: `(y x')' - sin t` for the unit mass in `z`, at the middle of the step.
+#[test]
+fn multipliers_are_the_forces_of_the_constraint() {
+    let (h, steps) = (0.01, 300);
+    let trajectory = run::<_, _, 3, 1>(&Pushed, Dla::midpoint(), Pushed::exact(0.0), h * steps as f64, steps);
+    for node in &trajectory.nodes()[1..] {
+        let (before, after) = (Pushed::exact(node.t - h).1[2], Pushed::exact(node.t).1[2]);
+        // Third derivatives below 5.
+        approx::assert_abs_diff_eq!(node.multipliers.unwrap()[0], (after - before) / h, epsilon = 5.0 * h * h);
+    }
+}
+
+/// The particle with `z' = y x'` in a well without closed form.
+#[derive(Debug, Clone, Copy)]
+struct Well;
+
+impl Well {
+    fn potential<S: Scalar>(q: &[S; 3]) -> S {
+        (q[0] * q[0] + q[1].powi(4) - q[2].cos()) * 0.5
+    }
+    fn gradient<S: Scalar>(q: &[S; 3]) -> [S; 3] {
+        [q[0], q[1].powi(3) * 2.0, q[2].sin() * 0.5]
+    }
+}
+
+impl System<3, 1> for Well {
+    fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 3], v: &[S; 3]) -> S {
+        Particle::FREE.lagrangian(t, q, v) - Self::potential(q)
+    }
+    fn constraint<S: Scalar>(&self, t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
+        Particle::FREE.constraint(t, q)
+    }
+}
+
+/// `v^2 / 2 - (V(q0) + V(q1)) / 2`, with its derivatives by hand: the trapezoidal rule, since the mass is constant.
+#[derive(Debug, Clone, Copy)]
+struct Leapfrog;
+
+impl DiscreteLagrangian<Well, 3, 1> for Leapfrog {
+    fn average<S: Scalar>(&self, system: &Well, t0: S, h: S, q0: &[S; 3], v: &[S; 3]) -> S {
+        let q1: [S; 3] = from_fn(|i| q0[i] + h * v[i]);
+        system.lagrangian(t0, q0, v) + (Well::potential(q0) - Well::potential(&q1)) * 0.5
+    }
+    fn derivatives<S: Scalar>(&self, system: &Well, t0: S, h: S, q0: &[S; 3], v: &[S; 3]) -> Derivatives<S, 3> {
+        let (start, end) = (Well::gradient(q0), Well::gradient(&from_fn(|i| q0[i] + h * v[i])));
+        let diagonal = |i, j| if i == j { -h.recip() } else { S::zero() };
+        Derivatives {
+            value: self.value(system, t0, h, q0, v),
+            d1: from_fn(|i| -v[i] - h * start[i] * 0.5),
+            d2: from_fn(|i| v[i] - h * end[i] * 0.5),
+            d1d2: from_fn(|i| from_fn(|j| diagonal(i, j))),
+        }
+    }
+}
+
+/// Half the potential at the middle and a sixth at the two ends would be Simpson's rule: only a value, no derivatives.
+#[derive(Debug, Clone, Copy)]
+struct Simpson;
+
+impl DiscreteLagrangian<Well, 3, 1> for Simpson {
+    fn average<S: Scalar>(&self, system: &Well, t0: S, h: S, q0: &[S; 3], v: &[S; 3]) -> S {
+        let (middle, ends) = (Midpoint.average(system, t0, h, q0, v), Trapezoid.average(system, t0, h, q0, v));
+        (middle * 2.0 + ends) / 3.0
+    }
+}
+
+/// The method of a discrete Lagrangian that is written by hand.
+fn by_hand<L>(lagrangian: L) -> Dla<HandMade<'static, Well, L, Midpoint>> {
+    Dla::of(HandMade { system: &Well, lagrangian, constraint: Midpoint })
+}
+
+#[test]
+fn discrete_lagrangians_by_hand() {
+    let start = ([0.4, 0.3, 0.2], [0.6, -0.5, 0.18]);
+    assert!(constraint_residual(&Well, 0.0, &start.0, &start.1)[0].abs() < 1e-16);
+    let end = |steps| {
+        let leapfrog = run::<_, _, 3, 1>(&Well, by_hand(Leapfrog), start, 4.0, steps);
+        let by_rule = run::<_, _, 3, 1>(&Well, Dla::new(Trapezoid, Midpoint), start, 4.0, steps);
+        for (a, b) in leapfrog.nodes().iter().zip(by_rule.nodes()) {
+            // The same equations; 160 steps with some roundings each.
+            approx::assert_abs_diff_eq!(&a.q[..], &b.q[..], epsilon = 1e-12);
+            approx::assert_abs_diff_eq!(&a.v[..], &b.v[..], epsilon = 1e-12);
+        }
+        let simpson = run::<_, _, 3, 1>(&Well, by_hand(Simpson), start, 4.0, steps);
+        [leapfrog, simpson].map(|run| run.nodes()[steps as usize].q)
+    };
+    // Differences of successive halvings: second order without knowing the limit.
+    let ends = [80, 160, 320, 640].map(end);
+    for method in 0..2 {
+        let differences: Vec<f64> = ends
+            .windows(2)
+            .map(|pair| (0..3).map(|i| (pair[0][method][i] - pair[1][method][i]).abs()).fold(0.0, f64::max))
+            .collect();
+        let slope = (differences[0] / differences[2]).log2() / 2.0;
+        assert!((slope - 2.0).abs() <= 0.05, "{slope}, {differences:?}");
+    }
+    // Neither has a closed form or a basis: every way of solving is the one with multipliers.
+    let solved = |form| run::<_, _, 3, 1>(&Well, by_hand(Simpson).solved(form), start, 4.0, 80);
+    assert_eq!(solved(Form::Best), solved(Form::Multipliers));
+}
