@@ -1,7 +1,7 @@
 //! Baselines on sixty coordinates, on threads with the stack that methods count on.
 
 #[allow(unreachable_pub, reason = "shared with the tests of another crate")]
-#[path = "../../../dla/tests/large/fleet.rs"]
+#[path = "../../../dla/tests/all/large/fleet.rs"]
 mod fleet;
 
 use dla::{OneStep, StackUse};
