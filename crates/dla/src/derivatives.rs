@@ -1,35 +1,37 @@
 use lagrangian::linear::{Inverse, larger};
 use lagrangian::{from_fn, mul_add};
 
-/// Systems of more coordinates or constraints are not remembered.
+/// Larger systems, by coordinates or constraints, have no frozen Jacobian: each of their steps is made without memory.
 pub(crate) const COORDINATES: usize = 8;
 
-/// After so many corrections one is looked at again, and none goes unseen before as many have been made with the same derivatives.
+/// A correction is accepted without a check of its residual at most so many times in a row, and only after so many steps with the same
+/// Jacobian.
 const OFTEN: u32 = 16;
-/// A correction is a part of the unknowns that is larger than this where steps before do not foretell it to their rounding: it is looked
-/// at.
+/// A correction that is larger than this part of the unknowns is always checked: the predictor was then off by more than round-off.
 const SLIGHT: f64 = 1e-12;
 
 pub(crate) type Row = [f64; COORDINATES];
 
-/// The inverse of a matrix of derivatives, by columns, which serves several steps.
+/// A frozen Jacobian: the inverse of a matrix of derivatives, by columns, which serves several steps (chord method).
+///
+/// It is renewed where the corrections that it cost more than a new one would take as long as a new one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(64))]
 pub(crate) struct Derivatives {
     columns: [Row; COORDINATES],
     /// Whether its determinant is positive.
     pub(crate) positive: bool,
-    /// Whether it is time for new ones.
+    /// Whether it is to be renewed.
     pub(crate) stale: bool,
-    /// The corrections that the first search with them took, and how many more all took after it.
+    /// The corrections that the first step with it took, and how many more all later steps took together.
     least: u32,
     more: u32,
-    /// How many they were.
+    /// How many steps it has served.
     searches: u32,
-    /// For how many searches each is to have its own.
+    /// For how many more steps it is renewed in every step.
     own: u32,
-    /// A part of the unknowns by which a correction with them changed these and was seen to leave rounding, and how many have gone
-    /// unseen since.
+    /// The largest correction, relative to the unknowns, of which a check has shown that it leaves a residual of round-off; and how many
+    /// corrections have been accepted without a check since.
     seen: f64,
     unseen: u32,
 }
@@ -47,10 +49,10 @@ impl Derivatives {
         unseen: 0,
     };
 
-    /// New ones, given by rows; none where they have no inverse, or one that loses digits.
+    /// A new Jacobian, given by rows; none where it has no inverse, or one that loses digits.
     #[inline(never)]
     pub(crate) fn renew<const N: usize>(&mut self, matrix: &[[f64; N]; N]) -> Option<()> {
-        /// More than three digits are left to the general search, which may have a basis to keep them in.
+        /// Where more than three digits are lost, the step is made without memory, perhaps in a basis that keeps them.
         const CLEAR: f64 = 1e3;
         let inverse = Inverse::new(matrix).ok()?;
         // The diagonal of |K| |K^-1|, whatever the scale of rows and columns. (Skeel 1979, J. ACM 26, 494-526.)
@@ -65,28 +67,28 @@ impl Derivatives {
         (condition <= CLEAR).then_some(())
     }
 
-    /// As if there had been none.
+    /// Forgets the Jacobian.
     #[inline(always)]
     pub(crate) fn forget(&mut self) {
         (self.stale, self.own, self.seen) = (true, 0, 0.0);
     }
 
-    /// Whether a correction of the size `d` of unknowns of the size `x` leaves rounding because one as large has been seen to. What a
-    /// correction with these derivatives leaves is a part of it that grows with the steps since they were made: not beyond twice
-    /// of what was seen before the next one is looked at (as rates of contraction are remembered, Hairer and Wanner 1996, IV.8).
+    /// Whether a correction of the size `d` of unknowns of the size `x` may be accepted without a check, since a check of one as large has
+    /// shown a residual of round-off. The residual after a correction is a part of it that grows with the age of the Jacobian; between
+    /// two checks it does not grow beyond twice. (Rates of contraction are remembered likewise, Hairer and Wanner 1996, IV.8.)
     #[inline(always)]
     pub(crate) fn suffice(&self, d: f64, x: f64) -> bool {
         d <= self.seen * x && self.unseen < OFTEN
     }
 
-    /// That one was believed to.
+    /// Counts a correction that was accepted without a check.
     #[inline(always)]
     pub(crate) fn go_unseen(&mut self) {
         self.unseen = self.unseen.saturating_add(1);
     }
 
-    /// That a correction of the size `d` of unknowns of the size `x` has left rounding, which is to be `sure`. What was seen longer
-    /// ago counts ever less.
+    /// Records that a check of a correction of the size `d` of unknowns of the size `x` found round-off, where `sure` confirms it. Older
+    /// records count half at every new one.
     #[inline(always)]
     pub(crate) fn have_sufficed(&mut self, d: f64, x: f64, sure: impl FnOnce() -> bool) {
         if d <= SLIGHT * x && self.searches >= OFTEN && sure() {
@@ -94,7 +96,7 @@ impl Derivatives {
         }
     }
 
-    /// That one has not.
+    /// Records that a check found more than round-off.
     #[inline(always)]
     pub(crate) fn have_not_sufficed(&mut self) {
         self.seen = 0.0;
@@ -106,13 +108,13 @@ impl Derivatives {
         if N <= 4 { self.times_of::<N, N>(x) } else { self.times_of::<N, COORDINATES>(x) }
     }
 
-    /// The same by columns of `W` places: beyond four whole registers are quicker.
+    /// The same by columns padded to `W` places: beyond four, whole vector registers are quicker.
     #[inline(always)]
     fn times_of<const N: usize, const W: usize>(&self, x: &[f64; N]) -> [f64; N] {
         let mut sum = [0.0; W];
         for (column, x) in self.columns.iter().zip(x) {
             for i in 0..W {
-                // Of few, sums wait for less where products do not wait with them.
+                // Of few, the chain of dependent operations is one addition a column where products are not fused into it.
                 sum[i] = if W > 4 { mul_add(column[i], *x, sum[i]) } else { sum[i] + column[i] * x };
             }
         }
@@ -129,16 +131,16 @@ impl Derivatives {
         sum
     }
 
-    /// That a search with them took so many corrections. They are to be renewed where they have cost more than that.
+    /// Records how many corrections a step took with it, and marks it stale where the surplus has reached the cost of a new one.
     #[inline(always)]
     pub(crate) fn took<const N: usize>(&mut self, corrections: u32) {
-        // About as many corrections take the time of new derivatives.
+        // The cost of a new Jacobian, in corrections, about.
         let price = const { (N * N * N).div_ceil(27) as u32 };
         self.took_at(price, corrections);
     }
 
-    /// The same in the basis of admissible velocities, where a search takes a correction more now and then without derivatives that are
-    /// any older, since the basis itself turns along the way.
+    /// The same in the basis of admissible velocities, where a step takes one correction more now and then although the Jacobian is no
+    /// older, since the basis itself turns within the step.
     #[inline(always)]
     pub(crate) fn took_in_basis<const N: usize>(&mut self, corrections: u32) {
         let price = const { 8 + (N * N * N).div_ceil(27) as u32 };
@@ -147,7 +149,7 @@ impl Derivatives {
 
     #[inline(always)]
     fn took_at(&mut self, price: u32, corrections: u32) {
-        /// So many searches in a row have their own where a second one is not worth it.
+        /// So many steps in a row have a Jacobian of their own where already the second step with one reaches its cost.
         const OWN: u32 = 16;
         self.searches = self.searches.saturating_add(1);
         if self.searches == 1 {
@@ -181,7 +183,7 @@ impl Derivatives {
 pub(crate) fn counted(count: &mut u32, visit: &mut impl FnMut(&mut f64)) {
     let mut number = f64::from(*count);
     visit(&mut number);
-    // What is no count becomes one.
+    // A number from a file that is no count saturates to one.
     *count = number as u32;
 }
 
@@ -233,7 +235,7 @@ mod tests {
         assert!(none.renew(&[[1e-20, 1.0], [2.0, 4e20]]).is_some());
     }
 
-    /// They serve until the corrections that they cost more would have paid for new ones: for more of them, the larger they are.
+    /// It serves until its surplus of corrections would have paid for a new one: the larger the matrix, the more of them.
     #[test]
     fn they_are_renewed_when_they_have_cost_as_much() {
         fn served<const N: usize>(corrections: impl Fn(u32) -> u32) -> u32 {
@@ -252,7 +254,7 @@ mod tests {
         assert_eq!(served::<7>(|k| if k < 5 { 2 } else { 3 }), 5 + 12);
     }
 
-    /// A correction goes unseen where one as large was seen lately, with derivatives that are no longer new.
+    /// A correction is accepted without a check where one as large was checked lately, with a Jacobian that is no longer new.
     #[test]
     fn what_was_seen_is_believed_for_a_while() {
         let unit = [[1.0, 0.0], [0.0, 1.0]];
@@ -284,7 +286,7 @@ mod tests {
         }
     }
 
-    /// Where the second search already costs as much, sixteen have their own.
+    /// Where already the second step reaches the cost, sixteen have a Jacobian of their own.
     #[test]
     fn each_has_its_own_where_a_second_is_not_worth_it() {
         let unit = [[1.0, 0.0], [0.0, 1.0]];

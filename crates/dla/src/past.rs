@@ -2,35 +2,37 @@ use crate::{Checkpoint, CheckpointError};
 use lagrangian::mul_add;
 use std::fmt;
 
-/// As many steps give an extrapolation of order 7 in the step.
+/// So many steps give a predictor of order 7 in the step.
 const USUAL: usize = 7;
-/// Fewer say less than the last acceleration.
+/// From fewer the predictor is worse than that from the last acceleration.
 const FEWEST: usize = 3;
 
-/// The increments of the last steps, all of one length, from which the next one is extrapolated: a search that begins there
-/// is short, and what begins it need not wait for the end of the step before.
+/// A predictor: the increments of the last steps, all of one length, and the next one extrapolated from them by backward differences.
+///
+/// An iteration that starts there is short. The prediction is made when an increment is stored, so that the next step does not load what
+/// has just been stored.
 #[derive(Clone, Copy)]
 pub(crate) struct Past<const N: usize, const K: usize = USUAL> {
     /// The increment of one more step.
     next: [f64; N],
-    /// Each stands here twice, `K` places apart, so that the last ones stand together wherever the last is, and none is ever
-    /// moved.
+    /// A ring buffer that holds each increment twice, `K` places apart: so the last `K` are contiguous wherever the last one is, and
+    /// none is ever moved.
     increments: [[[f64; N]; K]; 2],
     step: f64,
     made: usize,
-    /// Where the last one stands; those before it follow.
+    /// The index of the last one; earlier ones follow it.
     last: usize,
 }
 
 impl<const N: usize, const K: usize> fmt::Debug for Past<N, K> {
-    /// Not where they happen to stand.
+    /// Without the positions in the buffer.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Past").field("step", &self.step).field("increments", &self.increments()).finish()
     }
 }
 
 impl<const N: usize, const K: usize> PartialEq for Past<N, K> {
-    /// What has been forgotten is no part of it.
+    /// Forgotten increments do not count.
     fn eq(&self, other: &Self) -> bool {
         let same_step = self.made == 0 || self.step.to_bits() == other.step.to_bits();
         self.made == other.made && same_step && self.increments() == other.increments()
@@ -38,7 +40,7 @@ impl<const N: usize, const K: usize> PartialEq for Past<N, K> {
 }
 
 impl<const N: usize, const K: usize> Past<N, K> {
-    /// Of one more than the index, binomial coefficients: with them the next difference vanishes.
+    /// Binomial coefficients, for one increment more than the index: with them the next backward difference vanishes.
     const WEIGHTS: [[f64; K]; K] = {
         let mut all = [[0.0; K]; K];
         let mut made = 1;
@@ -74,8 +76,8 @@ impl<const N: usize, const K: usize> Past<N, K> {
         self.extrapolate(increment);
     }
 
-    /// Finds the increment of one more step after the last one. That is done here, and not where it is asked for, since what has
-    /// just been stored would be waited for there.
+    /// Computes the prediction for one more step, from the last increment in registers. Where the prediction is asked for, the increments
+    /// would be loaded in another width than they were stored in, and loads cannot be forwarded from such stores.
     #[inline(always)]
     fn extrapolate(&mut self, last: &[f64; N]) {
         let Some((weights, rows)) = Self::WEIGHTS.get(self.made.wrapping_sub(1)).zip(self.rows()) else { return };
@@ -90,43 +92,43 @@ impl<const N: usize, const K: usize> Past<N, K> {
         }
     }
 
-    /// Whether as many are remembered as are of use.
+    /// Whether all `K` increments are there.
     #[inline(always)]
     pub(crate) fn is_full(&self) -> bool {
         self.made >= K
     }
 
-    /// No step yet, again.
+    /// Forgets all increments.
     #[inline(always)]
     pub(crate) fn forget(&mut self) {
         self.made = 0;
     }
 
-    /// That of the last step; zero of no step.
+    /// The increment of the last step; zero before the first.
     #[inline(always)]
     pub(crate) fn last(&self) -> [f64; N] {
         self.increments[0].get(self.last).copied().unwrap_or([0.0; N])
     }
 
-    /// The last first, with what stands after those that there are.
+    /// All `K` places, the last increment first; beyond those that were made, anything.
     #[inline(always)]
     fn rows(&self) -> Option<&[[f64; N]; K]> {
         self.increments.as_flattened().get(self.last..)?.first_chunk()
     }
 
-    /// The last first.
+    /// The increments, the last one first.
     fn increments(&self) -> &[[f64; N]] {
         self.rows().map_or(&[], |rows| &rows[..self.made])
     }
 
-    /// The increment of one more step of length `h`, with which the next difference of those that are there would vanish.
+    /// The prediction for one more step of length `h`; none from fewer than three steps of that length.
     #[inline(always)]
     #[allow(clippy::float_cmp, reason = "only steps of the very same length are points of one sequence")]
     pub(crate) fn next(&self, h: f64) -> Option<[f64; N]> {
         (self.step == h && self.made >= FEWEST).then_some(self.next)
     }
 
-    /// The same from however few there are.
+    /// The same from however few.
     #[inline(always)]
     #[allow(clippy::float_cmp, reason = "only steps of the very same length are points of one sequence")]
     pub(crate) fn following(&self, h: f64) -> Option<[f64; N]> {
@@ -137,10 +139,10 @@ impl<const N: usize, const K: usize> Past<N, K> {
     pub(crate) fn visit(&mut self, mut visit: impl FnMut(&mut f64)) {
         let mut made = self.made as f64;
         visit(&mut made);
-        // What is no number of steps becomes one.
+        // A number from a file that is no count saturates to one.
         self.made = K.min(made as usize);
         visit(&mut self.step);
-        // The last first, wherever they stand.
+        // The last first, wherever it is in the buffer.
         let mut increments = self.rows().copied().unwrap_or([[0.0; N]; K]);
         increments.as_flattened_mut().iter_mut().for_each(visit);
         (self.last, self.increments) = (0, [increments; 2]);

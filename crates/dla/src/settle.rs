@@ -2,13 +2,13 @@ use crate::convergence::tolerances::{SHRINKING, SLIGHT, STALL};
 use crate::convergence::{Kind, is_settled};
 use lagrangian::from_fn;
 
-/// The fewest looks of a search: one for its first correction, and one that finds its equations met.
+/// The fewest evaluations of the residual in an iteration: one for the first correction, and one that finds the equations met.
 pub(crate) const LEAST: u32 = 2;
 
-/// More corrections are not worth it.
+/// After more corrections the step is made without memory.
 pub(crate) const CORRECTIONS: u32 = 8;
 
-/// How a search with derivatives of another point goes on from its first correction until it has settled.
+/// The iteration with a frozen Jacobian, from its first correction until it has converged.
 pub(crate) struct Settle<const N: usize> {
     /// Relative tolerance of every component.
     pub(crate) tolerance: f64,
@@ -17,9 +17,9 @@ pub(crate) struct Settle<const N: usize> {
 }
 
 impl<const N: usize> Settle<N> {
-    /// Improves `x` until its equations are met, of which there is then no correction, or every component is settled by the rule
-    /// of [`Newton`](crate::Newton) for simplified corrections; and says after how many looks, with that before the first
-    /// correction. None where corrections do not shrink as they should.
+    /// Corrects `x` until the equations are met, where `correction` gives none, or until every component has converged by the rule
+    /// of [`Newton`](crate::Newton) for simplified corrections. Gives the number of evaluations, that before the first correction
+    /// included; none where corrections do not shrink as they should.
     #[inline(always)]
     pub(crate) fn search(
         &self,
@@ -45,7 +45,7 @@ impl<const N: usize> Settle<N> {
         None
     }
 
-    /// Whether every component of `x` has settled with the correction `d`, after one with components of the sizes `last`.
+    /// Whether every component of `x` has converged with the correction `d`, after one with components of the sizes `last`.
     #[inline(always)]
     fn has_settled(&self, x: &[f64; N], d: &[f64; N], last: &[f64; N], rounding: bool) -> bool {
         (0..N).fold(true, |all, i| {
@@ -55,10 +55,10 @@ impl<const N: usize> Settle<N> {
     }
 }
 
-/// The size of the largest component; what is not a number is passed over.
+/// The size of the largest component; NaN is passed over.
 #[inline(always)]
 pub(crate) fn sup<const N: usize>(x: &[f64; N]) -> f64 {
-    // A loop, since a fold over more than a few is left a call.
+    // A loop, since the compiler does not inline a fold over more than a few.
     let mut most = 0.0;
     for x in x {
         most = if x.abs() > most { x.abs() } else { most };
@@ -72,7 +72,7 @@ mod tests {
 
     const TOLERANCE: f64 = 4.0 * f64::EPSILON;
 
-    /// `x <- x + rate (1 - x)`, with the derivative of another point: corrections shrink by `1 - rate`.
+    /// `x <- x + rate (1 - x)`, as with a frozen Jacobian: corrections shrink by `1 - rate`.
     fn search(rate: f64) -> Option<(u32, f64)> {
         let correction = |x: &[f64; 2]| [rate * (1.0 - x[0]), rate * (1e-3 - x[1])];
         let start = [0.9, 1e-3 * 0.9];
@@ -92,7 +92,7 @@ mod tests {
         assert!(search(0.99).unwrap().0 > search(1.0).unwrap().0);
     }
 
-    /// Where the equations are met nothing is added, and rounding until it is seen not to shrink.
+    /// Where the equations are met nothing is added; round-off is added until it no longer shrinks.
     #[test]
     fn a_search_ends() {
         let start = [0.5, 1e-3];
@@ -106,7 +106,7 @@ mod tests {
         assert_eq!((settle.search(&mut x, rounding), x), (Some(2), [start[0] + d, start[1] + e]));
     }
 
-    /// Corrections that shrink slowly, and such as are no numbers.
+    /// Corrections that shrink slowly, and NaN.
     #[test]
     fn others_are_given_up() {
         assert_eq!(search(0.8), None);

@@ -1,40 +1,41 @@
 use crate::derivatives::{counted, switch};
 
-/// In which unknowns the steps of a run go on: coordinates with multipliers, or the basis of admissible velocities.
+/// The formulation of predicted steps: coordinates with multipliers, or the basis of admissible velocities (null space).
 ///
-/// Derivatives in coordinates serve long where the mass matrix is constant, those in a basis where that turns with a body. So the basis
-/// is tried where derivatives in coordinates are often renewed; and a run stays in it where they are renewed half as often there.
+/// A frozen Jacobian serves long in coordinates where the mass matrix is constant, and in the basis where the basis turns with a body.
+/// So the basis is tried where the Jacobian in coordinates is renewed often; and a run stays in the basis where it is renewed at most
+/// half as often there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Unknowns {
-    /// Whether it is the basis.
+    /// Whether steps are solved in the basis.
     pub(crate) in_basis: bool,
-    /// Whether it is to be.
+    /// Whether the next step made without memory is to change to it.
     pub(crate) wanted: bool,
-    /// Whether it stays as it is.
+    /// Whether the choice is final.
     pub(crate) decided: bool,
-    /// Steps that have been looked at, and in how many of them derivatives had to be renewed.
+    /// Steps of the present trial, and in how many of them the Jacobian had to be renewed.
     steps: u32,
     renewed: u32,
-    /// In how many they had to be in coordinates.
+    /// In how many steps of the trial in coordinates it had to be renewed.
     before: u32,
 }
 
 impl Unknowns {
-    /// Of no step.
+    /// Before the first step.
     pub(crate) const UNDECIDED: Self =
         Self { in_basis: false, wanted: false, decided: false, steps: 0, renewed: 0, before: 0 };
-    /// So many steps are looked at,
+    /// Steps of a trial.
     const TRIAL: u32 = 32;
-    /// of which so many may renew their derivatives: each takes the time of some two corrections.
+    /// The basis is tried where so many of them renew the Jacobian, each time for the cost of some two corrections.
     const MANY: u32 = 4;
 
-    /// That a step begins, in the basis or not as there is one.
+    /// Begins a series of predicted steps, in the basis or in coordinates; a system without a basis decides for coordinates.
     pub(crate) fn begin(&mut self, in_basis: bool) {
         self.decided |= self.wanted && !in_basis;
         (self.in_basis, self.wanted) = (in_basis, in_basis);
     }
 
-    /// That a step has gone on from the last; and whether the next one is to begin anew, in the other unknowns.
+    /// Counts a predicted step; whether the next one is to be made without memory, to change the formulation.
     pub(crate) fn are_to_change(&mut self, renewed: bool) -> bool {
         self.steps += 1;
         self.renewed += u32::from(renewed);
@@ -60,7 +61,7 @@ impl Unknowns {
         }
         for count in [steps, renewed, before] {
             counted(count, &mut visit);
-            // What stands in a file may be any number.
+            // A file may hold any number.
             *count = Self::TRIAL.min(*count);
         }
     }
@@ -70,7 +71,7 @@ impl Unknowns {
 mod tests {
     use super::*;
 
-    /// After how many steps, of which every `nth` renews its derivatives, others are wanted.
+    /// After how many steps, of which every `nth` renews the Jacobian, a change is wanted.
     fn change(unknowns: &mut Unknowns, nth: u32) -> Option<u32> {
         (1_u32..=100).find(|k| !unknowns.decided && unknowns.are_to_change(k.is_multiple_of(nth)))
     }
@@ -82,11 +83,11 @@ mod tests {
         let mut unknowns = Unknowns::UNDECIDED;
         assert_eq!(change(&mut unknowns, 4), Some(32));
         assert!(unknowns.wanted && !unknowns.decided);
-        // Where there is none, that is all.
+        // A system without a basis stays in coordinates.
         let mut without = unknowns;
         without.begin(false);
         assert!(without.decided && !without.wanted);
-        // Where they last no longer in it, it is left, for good.
+        // Where the Jacobian lasts no longer in the basis, the run leaves it for good.
         unknowns.begin(true);
         let (mut poor, mut good) = (unknowns, unknowns);
         assert_eq!(change(&mut poor, 5), Some(32));
