@@ -4,11 +4,11 @@ use crate::Mechanics;
 use lagrangian::from_fn;
 use lagrangian::linear::larger;
 
-/// What turns by less than this in a step (rad) is near its start.
+/// A solution whose constraint turns by less than this in the step (rad) counts as near its start.
 pub(crate) const NEAR: f64 = 1.0;
 
-/// By how much a step with this mean velocity turns the constraint that turns most (rad): a rate times the step, which
-/// shows what the two ends do not, whole turns. Zero where no angle turns by as much as is near.
+/// By how much a step with this mean velocity turns the constraint that turns most (rad): the rate times the step, since the two ends do
+/// not show whole turns. Zero where no angle turns by more than [`NEAR`].
 #[inline(always)]
 #[must_use]
 pub fn turn<const N: usize, const M: usize>(
@@ -40,16 +40,16 @@ fn turned<const N: usize, const M: usize>(
     turns.iter().fold(0.0, |most, turn| larger(most, *turn))
 }
 
-/// The solution at the end of the branch that begins with `start` at length zero, where `solve` finds the solution near a
-/// guess for a part of the length, or shows that it is not certain to be that one; by parts of no more than `longest`.
+/// Numerical continuation in the step length: the solution at the end of the branch that begins with `start` at length zero. `solve` finds
+/// the solution near a guess for a part of the length, and gives none where it may be another one; parts are at most `longest`.
 pub(crate) fn followed<X: Copy>(
     start: &X,
     longest: f64,
     mut solve: impl FnMut(f64, &mut X) -> Option<()>,
 ) -> Option<X> {
-    /// A branch that needs shorter parts is taken to end.
+    /// Where shorter parts are needed, the branch counts as ended.
     const SHORTEST: f64 = 1.0 / 1024.0;
-    // However far the whole step turns, or if that is no number, the parts are not without end.
+    // A lower bound on the parts, also where the turn of the whole step is huge or NaN.
     let longest = longest.max(SHORTEST);
     let (mut x, mut reached, mut part) = (*start, 0.0, f64::min(longest, 0.25));
     while reached < 1.0 {

@@ -5,24 +5,24 @@ use crate::{Discretisation, Equations, Mechanics, State};
 use lagrangian::linear::{Singular, largest};
 use lagrangian::{FactoredSaddle, Rounded, Rows, Saddle, from_fn};
 
-/// The corrections of a search for the mean velocity of a step: Newton's own by one second-order evaluation, and simplified
-/// ones by first-order evaluations as long as they converge as well.
+/// The corrections of the mean velocity of a step: Newton's own, by one second-order evaluation, and then simplified ones, with its
+/// Jacobian and first-order evaluations, as long as they converge as well.
 pub(crate) struct Corrections<'e, 'a, D, const N: usize, const M: usize> {
     of: &'e Increment<'a, D, N, M>,
-    /// The rows that are solved for, where they depend on one another and agree.
+    /// The independent rows that are solved for, where rows are dependent and consistent.
     pub(crate) some: Option<Rows>,
     /// Their multipliers.
     lambda: [f64; M],
     /// Whether the determinant of the last correction was positive; none of one with some of the rows.
     positive: Option<bool>,
-    /// The derivatives of the last of Newton's own corrections, for the simplified ones after it.
+    /// The Jacobian of the last of Newton's own corrections, for the simplified ones after it.
     jacobian: Option<Jacobian<N, M>>,
-    /// The last correction, and what was known where it was made.
+    /// The last correction, and the momenta where it was made.
     last: Last<N>,
     /// The correction before the last, which led to where the last was made.
     before: [f64; N],
-    /// Whether the part of the momenta that the multipliers take up is left out of the equations: where it is large, its rounding in
-    /// their solution is larger than that of what is left.
+    /// Whether the reaction, the part of the momenta that the multipliers take up, is subtracted before the linear equations are solved:
+    /// where it is large, its round-off in their solution is larger than that of the rest.
     refined: bool,
 }
 
@@ -38,7 +38,7 @@ struct Jacobian<const N: usize, const M: usize> {
 struct Last<const N: usize> {
     correction: [f64; N],
     simplified: bool,
-    /// `r + K d`: what of the momenta at the beginning is left to the multipliers, at `v + d`.
+    /// `r + K d`: the part of the momenta at the beginning that the multipliers balance, at `v + d`.
     rest: [f64; N],
     /// `D2 L_d + f_d^+ - K d`: with `dD2/dv = -K + O(h)` the momenta at the end, for a small `d` at `v + d`.
     arriving: [f64; N],
@@ -82,7 +82,7 @@ impl<'e, 'a, D: Discretisation<N, M>, const N: usize, const M: usize> Correction
         }
     }
 
-    /// The derivatives of the last of Newton's own corrections, where it solved for all rows.
+    /// The Jacobian of the last of Newton's own corrections, where it solved for all rows.
     #[inline(always)]
     pub(crate) fn block(&self) -> Option<[[f64; N]; N]> {
         self.jacobian.as_ref().map(|jacobian| jacobian.block)
@@ -141,7 +141,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Equations<N> for C
         }
     }
 
-    /// A velocity that was come to by a correction has the rounding of that one too.
+    /// A velocity that a correction was added to has the round-off of that correction too.
     fn roundings(&self, v: &[f64; N]) -> Option<f64> {
         let velocity = from_fn(|i| Rounded { value: v[i], size: v[i].abs() + self.before[i].abs() });
         Some(self.of.roundings(&velocity, self.some))
@@ -165,7 +165,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Equations<N> for C
 impl<D: Discretisation<N, M>, const N: usize, const M: usize> Corrections<'_, '_, D, N, M> {
     /// Newton's own correction, by one second-order evaluation.
     ///
-    /// Not inlined: it is called from each of the searches that a step may make, and is long.
+    /// Not inlined: it is long, and called from each of the iterations that a step may make.
     #[inline(never)]
     fn own_correction(&mut self, v: &[f64; N]) -> Result<[f64; N], Singular> {
         let (at, block) = self.of.linearised(v);
@@ -179,7 +179,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Corrections<'_, '_
                 Ok(correction)
             }
             Err(source) => {
-                // By value, so that nothing of a step that succeeds must stay in memory.
+                // The state by value: a reference that escapes would keep it in memory in steps that succeed.
                 let found = independent(self.of.system, self.of.t0, *self.of.state, self.some).ok_or(source)?;
                 let (correction, lambda) = of_some(&block, &self.of.a0, &rows, (right, level), found)?;
                 (self.some, self.lambda, self.positive, self.jacobian) = (Some(found), lambda, None, None);
@@ -207,8 +207,8 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Corrections<'_, '_
     }
 }
 
-/// The correction and the multipliers of some of the rows. Not inlined, so that its arrays are off the stack while the rows are
-/// looked for.
+/// The correction and the multipliers of some of the rows. Not inlined, so that its arrays are not on the stack while the independent
+/// rows are determined.
 #[cold]
 #[inline(never)]
 fn of_some<const N: usize, const M: usize>(

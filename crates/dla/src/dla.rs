@@ -150,7 +150,7 @@ impl<D> Dla<D> {
         if const { USE.exceeds::<N, M>() } {
             return Err(USE.refusal::<N, M>());
         }
-        // What a closed form may have left that did not end.
+        // Forgets what a closed form left that did not find the step.
         state.forget_closed();
         match self.continued_step(system, t0, h, state) {
             Some(report) => Ok(report),
@@ -158,7 +158,7 @@ impl<D> Dla<D> {
         }
     }
 
-    /// The step in its general form. Compiled once for a system, whatever is composed of it.
+    /// The step in its general form without memory. Compiled once for a shape, whatever is composed of it.
     #[inline(never)]
     fn solved_step<const N: usize, const M: usize>(
         &mut self,
@@ -222,8 +222,8 @@ pub(crate) fn expected<const N: usize>(state: &State<N>, h: f64) -> Option<[f64;
     state.expected(h).map(|d| from_fn(|i| d[i] / h))
 }
 
-/// The mean velocity of a step: the one that is expected, or with the acceleration of the last one; none where
-/// that is not known, or would change the velocity so much that a search from there might lead elsewhere.
+/// The predictor of the mean velocity: the extrapolated one, or that with the acceleration of the last step. None where neither is
+/// known, or where it would change the velocity so much that Newton's method might converge to another solution.
 #[inline(always)]
 pub(crate) fn predicted<const N: usize>(state: &State<N>, h: f64, expected: Option<[f64; N]>) -> Option<[f64; N]> {
     const MOST: f64 = 0.125;

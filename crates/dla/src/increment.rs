@@ -30,13 +30,13 @@ pub(crate) struct Mean<const N: usize, const M: usize> {
     pub(crate) iterations: u32,
     /// The rows that were solved for, where not all.
     pub(crate) some: Option<Rows>,
-    /// The derivatives of the momenta at the beginning that the search ended with.
+    /// The last Jacobian of the momenta at the beginning.
     pub(crate) block: Option<[[f64; N]; N]>,
 }
 
 impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N, M> {
-    /// The solution that continues the motion, from the velocity `v0` at the beginning; first looked for near a
-    /// guess where there is one.
+    /// The solution that continues the motion, from the velocity `v0` at the beginning. Newton's method starts at the predictor `guess`
+    /// where there is one, and where it fails from there at `v0`.
     ///
     /// # Errors
     /// [`StepError::Newton`] where none is found, [`StepError::Branch`] where what is found belongs to another motion.
@@ -47,7 +47,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N
         v0: [f64; N],
         guess: Option<[f64; N]>,
     ) -> Result<Mean<N, M>, StepError> {
-        // Of rows that depend on one another there is none, and then it is not looked at.
+        // Dependent rows have no sign, and then it is not compared.
         let positive = Saddle::is_positive_at_rest(&self.a0, self.basis.as_ref());
         let time = (self.t0, self.h);
         let (mut search, mut v) = (Corrections::new(self), guess.unwrap_or(v0));
@@ -74,7 +74,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N
         Ok(Mean { v, p1, lambda, iterations, some, block: search.block() })
     }
 
-    /// The multipliers that take up the rest of the momenta.
+    /// The multipliers whose reaction balances the rest of the momenta.
     #[inline(always)]
     pub(crate) fn multipliers(&self, rest: &[f64; N]) -> Result<[f64; M], Singular> {
         normal_solve(&self.a0, &rest.map(|r| -r))
@@ -134,7 +134,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N
         self.momenta_along(v, v)
     }
 
-    /// The same with the configurations of a step of the mean velocity `way`, which is near to `v`.
+    /// The same with the nodes placed by the mean velocity `way`, which is near to `v`.
     #[inline]
     pub(crate) fn momenta_along(&self, way: &[f64; N], v: &[f64; N]) -> Departure<N> {
         let Self { rules, system, t0, h, q0, .. } = *self;
@@ -155,8 +155,8 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N
         at
     }
 
-    /// How many roundings of their terms the equations at the mean velocity are missed by, at most: those of the momenta at the
-    /// beginning without what the multipliers take up, and the constraints, of which `some` may be all that are solved for.
+    /// The largest residual of the equations at the mean velocity, in units of the round-off of its terms: of the momenta at the beginning
+    /// without the reaction, and of the constraints, or of `some` of them where only these are solved for.
     #[cold]
     #[inline(never)]
     pub(crate) fn roundings(&self, velocity: &[Rounded; N], some: Option<Rows>) -> f64 {

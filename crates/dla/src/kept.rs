@@ -5,27 +5,27 @@ use crate::settle::LEAST;
 use crate::unknowns::Unknowns;
 use lagrangian::{AdmissibleBasis, from_fn};
 
-/// What a step of the general form remembers of those before it, with which the search of the next one begins.
+/// What a step of the general form takes over from the steps before it: predictors and frozen Jacobians.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Kept {
-    /// Whether the next step may go on from the last.
+    /// Whether the next step may be a predicted one.
     ready: bool,
-    /// For how many steps it is not to be tried, and for how many where it fails again.
+    /// For how many steps no prediction is tried, and for how many after the next failure.
     pause: u32,
     next_pause: u32,
-    /// In which unknowns a step goes on.
+    /// The formulation of predicted steps.
     unknowns: Unknowns,
-    /// Of `h D1 D2 L_d`, with the derivatives of the forces: `W(q0)' h D1 D2 L_d W` in the basis.
+    /// The frozen Jacobian `h D1 D2 L_d`, with the derivatives of the forces; `W(q0)' h D1 D2 L_d W` in the basis.
     pub(crate) block: Derivatives,
-    /// Of the mass matrix: `W' M W` in the basis.
+    /// The frozen mass matrix; `W' M W` in the basis.
     pub(crate) mass: Derivatives,
-    /// The velocities at the last nodes, in coordinates.
+    /// Predictor of the velocity at the end, in coordinates.
     pub(crate) velocities: Past<COORDINATES>,
-    /// In the basis the mean velocities of the last steps, in coordinates and in it, and the quasi-velocities at the last nodes.
+    /// Predictors in the basis: of the mean velocity, of the mean quasi-velocities, and of the quasi-velocities at the end.
     pub(crate) ways: Past<COORDINATES, MORE>,
     pub(crate) means: Past<COORDINATES, MORE>,
     pub(crate) ends: Past<COORDINATES, MORE>,
-    /// Where the last step ended, and with what velocity.
+    /// The state at the end of the last step.
     q: Row,
     v: Row,
 }
@@ -36,12 +36,12 @@ pub(crate) type Bases<const N: usize, const M: usize> = [AdmissibleBasis<f64, N,
 /// `h D1 D2 L_d`, with the derivatives of the forces, and the mass matrix.
 pub(crate) type Matrices<const N: usize> = ([[f64; N]; N], [[f64; N]; N]);
 
-/// As many steps give an extrapolation of order 9, in the basis: velocities in coordinates turn with a body, and the step waits for how
-/// well the way is known.
+/// Predictors in the basis are of order 9. Velocities in coordinates turn with a body, so the mean velocity needs more orders there; and
+/// the number of iterations depends on its error.
 const MORE: usize = 9;
 
 impl Kept {
-    /// Of no step.
+    /// Before the first step.
     pub(crate) const NONE: Self = Self {
         ready: false,
         pause: 0,
@@ -57,7 +57,7 @@ impl Kept {
         v: [0.0; COORDINATES],
     };
 
-    /// Forgets all unless the last step ended in this state: what begins anew is to be the same whatever was before.
+    /// Forgets all unless the last step ended in this state: a run must not depend on what its method was used for before.
     #[inline(always)]
     #[allow(clippy::float_cmp, reason = "only the very same state goes on")]
     pub(crate) fn follows<const N: usize>(&mut self, state: &State<N>) {
@@ -71,25 +71,25 @@ impl Kept {
         }
     }
 
-    /// Whether the next step may go on from the last.
+    /// Whether the next step may be a predicted one.
     #[inline(always)]
     pub(crate) fn is_ready(&self) -> bool {
         self.ready
     }
 
-    /// Whether it does so in the basis of admissible velocities.
+    /// Whether predicted steps are solved in the basis of admissible velocities.
     #[inline(always)]
     pub(crate) fn is_in_basis(&self) -> bool {
         self.unknowns.in_basis
     }
 
-    /// Whether derivatives are wanted that are in the basis.
+    /// Whether the next step made without memory is to give its Jacobians in the basis.
     pub(crate) fn wants_basis(&self) -> bool {
         self.unknowns.wanted
     }
 
-    /// That a step of length `h` has ended at `q` with the velocity `v` and did not go on from one before; the next may, where its
-    /// derivatives and mass matrix are given: in the basis where they are given for it, with the quasi-velocities.
+    /// Records a step of length `h` that was made without memory, and ended at `q` with the velocity `v`. The next step may be a predicted
+    /// one where the Jacobian and the mass matrix of this one are given; it is solved in the basis where the bases are given too.
     #[inline(never)]
     pub(crate) fn begins<const N: usize, const M: usize>(
         &mut self,
@@ -120,7 +120,7 @@ impl Kept {
                 block = in_bases(&block, start, middle_of_step);
                 mass = in_bases(&mass, end, end);
             }
-            // They are near enough to those of the next step, whose own search would hardly have taken more.
+            // The Jacobians are near to those of the next step, for which fresh ones would hardly save a correction.
             let renewed = self.block.renew(&block).and(self.mass.renew(&mass));
             self.block.took::<N>(LEAST);
             self.mass.took::<N>(LEAST);
@@ -138,23 +138,23 @@ impl Kept {
         self.q = row(q);
     }
 
-    /// That a step could not go on from the last.
+    /// Records that a predicted step failed.
     #[cold]
     pub(crate) fn fails(&mut self) {
-        /// It is tried again after as many steps at most.
+        /// A prediction is tried again after so many steps at most.
         const LONGEST: u32 = 64;
         (self.ready, self.pause) = (false, self.next_pause);
         self.next_pause = LONGEST.min(self.next_pause.saturating_mul(2));
     }
 
-    /// That a step of length `h` that went on from the last has ended at `q` with the velocity `v`.
+    /// Records a predicted step of length `h` that ended at `q` with the velocity `v`.
     #[inline(always)]
     pub(crate) fn ended<const N: usize>(&mut self, h: f64, q: &[f64; N], v: &[f64; N]) {
         self.velocities.push(h, &row(v));
         self.q = row(q);
     }
 
-    /// The same in the basis, with the mean velocity, and the quasi-velocities of it and at the end.
+    /// The same in the basis, with the mean velocity `way`, its quasi-velocities, and those at the end.
     #[inline(always)]
     pub(crate) fn ended_in_basis<const N: usize>(
         &mut self,
@@ -169,11 +169,11 @@ impl Kept {
         (self.q, self.v) = (row(q), row(v));
     }
 
-    /// That a step went on from the last.
+    /// Records that a predicted step succeeded.
     #[inline(always)]
     pub(crate) fn succeeds(&mut self) {
         self.next_pause = 1;
-        // Not while extrapolations are from few steps, and corrections large.
+        // While predictors have few steps, corrections are large and say nothing of the formulation.
         if !self.unknowns.decided
             && if self.unknowns.in_basis { self.ends.is_full() } else { self.velocities.is_full() }
         {
@@ -181,7 +181,7 @@ impl Kept {
         }
     }
 
-    /// All of it as numbers; none of no step.
+    /// All of it as numbers; an empty list before the first step.
     pub(crate) fn save(&self) -> Vec<f64> {
         if *self == Self::NONE {
             return Vec::new();
@@ -192,7 +192,7 @@ impl Kept {
         numbers
     }
 
-    /// From what [`save`](Self::save) gave; of no step from anything else.
+    /// From what [`save`](Self::save) gave; from anything else as before the first step.
     pub(crate) fn load(numbers: &[f64]) -> Self {
         let mut kept = Self::NONE;
         let (mut numbers, mut filled) = (numbers.iter(), true);

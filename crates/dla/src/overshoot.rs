@@ -1,7 +1,7 @@
 use crate::{Mechanics, StepError};
 use lagrangian::from_fn;
 
-/// That the forces of a step brake its velocity and do not turn it round.
+/// Checks that the step is short enough for its damping: friction may brake a velocity in a step, and must not reverse it.
 ///
 /// A rule for the mean velocity `v` leads from `v0` past it to `v1`. With `w = v1 - v`, a damping that changes the force by
 /// `-C w` makes of it, for the part of the velocity that it acts on,
@@ -36,7 +36,7 @@ fn against_inertia<const N: usize, const M: usize>(
     (v, v1): (&[f64; N], &[f64; N]),
     damping: f64,
 ) -> Result<(), StepError> {
-    /// A change of the velocity by a smaller part of it (squared) is compared with rounding.
+    /// Where the change of the velocity is a smaller part of the velocity (squared), it is round-off.
     const ROUNDING: f64 = 1e-16;
     let (mean, end) = (system.momentum(t, q, v), system.momentum(t, q, v1));
     let along = |of: &dyn Fn(usize) -> f64| (0..N).map(of).sum::<f64>();

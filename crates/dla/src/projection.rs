@@ -14,7 +14,7 @@ pub(crate) struct Projection<'a, const N: usize, const M: usize> {
     basis: Option<AdmissibleBasis<f64, N, M>>,
     some: Option<Rows>,
     mu: [f64; M],
-    /// Whether the part of the momenta that the multipliers take up is left out of the equations, as for the increment.
+    /// Whether the reaction is subtracted before the linear equations are solved, as for the increment.
     refined: bool,
 }
 
@@ -64,10 +64,10 @@ impl<'a, const N: usize, const M: usize> Projection<'a, N, M> {
         Ok(Projected { v1, mu: self.mu, mass: None })
     }
 
-    /// The same where a correction and a simplified one are enough, as they are of a Lagrangian that is quadratic in the
-    /// velocities; in one function, since both are made in the same configuration.
+    /// The same by one correction and a simplified one, which are enough for a Lagrangian that is quadratic in the velocities. Both are
+    /// made in the same configuration, so the rows and the mass matrix are evaluated once.
     ///
-    /// Not inlined, so that its matrices are off the stack while the mean velocity is searched for.
+    /// Not inlined, so that its matrices are not on the stack while the mean velocity is solved for.
     #[inline(never)]
     fn at_once(&self, newton: &Newton, guess: &[f64; N]) -> Option<Projected<N, M>> {
         let Self { system, t1, q1, p1, basis, .. } = self;
@@ -87,7 +87,7 @@ impl<'a, const N: usize, const M: usize> Projection<'a, N, M> {
         let second = factors.solve(&missing, &slip(&v1), basis.as_ref());
         let v1: [f64; N] = from_fn(|i| v1[i] + second[i]);
 
-        // As `Newton` sees that they have settled; below the rounding of the largest component all that is left is rounding.
+        // The convergence test of `Newton`; below the round-off of the largest component all is round-off.
         let size = newton.tolerance * largest(&v1);
         let settled = (0..N).all(|i| {
             let d = second[i].abs();
@@ -99,8 +99,8 @@ impl<'a, const N: usize, const M: usize> Projection<'a, N, M> {
     }
 }
 
-/// The velocity that meets the constraints, by the impulse that they give one that does not: `L_v(q, v1) = L_v(q, v) + A' mu`.
-/// Rows that depend on one another and agree are no obstacle.
+/// The velocity that meets the constraints, after the impulse that they give to the velocity `v`: `L_v(q, v1) = L_v(q, v) + A' mu`.
+/// Rows may be dependent where they are consistent.
 ///
 /// # Errors
 /// [`StepError::Newton`] where the constraints do not determine it, [`StepError::Dependent`] where rows drop or disagree.

@@ -46,7 +46,8 @@ impl<D> Dla<D> {
             self.kept.mass.have_sufficed(size, large, || true);
             return Some(Found { v, lambda: minus_mu.map(|m| -m), corrections: LEAST });
         }
-        // Taken apart, so that what is found without it need not be where a call leaves its result.
+        // Destructured and rebuilt, so that the results above stay in registers: returned as it is, all would go through the memory in
+        // which the call leaves its result.
         let Found { v, lambda, corrections } = here.settled(v, p, d)?;
         self.kept.mass.have_not_sufficed();
         Some(Found { v, lambda, corrections })
@@ -81,8 +82,8 @@ impl<const N: usize, const M: usize> Here<'_, N, M> {
         are_met(&from_fn(|i| p[i] - self.p1[i]), &self.a1, minus_mu, &self.p1, self.tolerance)
     }
 
-    /// The search to its end, after the correction `d` to `v`, which has the momenta `p`. By value, so that nothing of one that
-    /// is at its end need be in memory.
+    /// Iterates to convergence, after the correction `d` to `v`, which has the momenta `p`. Takes `self` by value, so that nothing of it
+    /// must be in memory where the first correction is enough.
     #[inline(never)]
     fn settled(self, mut v: [f64; N], p: [f64; N], d: [f64; N]) -> Option<Found<N, M>> {
         let (mut known, mut minus_mu) = (Some(p), [0.0; M]);

@@ -8,7 +8,7 @@ use crate::settle::{LEAST, Settle, sup};
 use crate::{Discretisation, Mechanics, State};
 use lagrangian::{Bordered, from_fn};
 
-/// The square of a correction that is smaller, relative to the velocity, is below all rounding.
+/// The square of a correction that is smaller, relative to the velocity, is below round-off.
 const SMALL: f64 = 1e-9;
 
 impl<D> Dla<D> {
@@ -26,7 +26,7 @@ impl<D> Dla<D> {
         let v = predicted(state, h, expected(state, h))?;
         let rules = &self.rules;
         let (q0, v0) = (*state.q(), state.v());
-        // Of the system as it is now, which may not be the one of the step before.
+        // Momenta and rows are evaluated again: the system may have been changed since the last step.
         let (p0, (a0, _)) = system.momentum_and_rows(t0, &q0, v0);
         let increment = Increment { rules, system, t0, h, state, q0, p0, a0, basis: None };
         let at = if self.kept.block.stale {
@@ -61,36 +61,37 @@ impl<D> Dla<D> {
         let (first, at, tolerance) = (at, increment.momenta(&moved), self.newton.tolerance);
         if size <= SMALL * large && are_met(&at.residual, &a0, &lambda, &p0, tolerance) {
             let both = ends(&at);
-            // Each of the sums is rounded twice.
+            // Each of the sums has two roundings.
             let same = || sup(&difference(&both, &ends(&first))) <= 2.0 * f64::EPSILON * sup(&both);
             self.kept.block.have_sufficed(size, large, same);
             return Some((Found { v: moved, lambda, corrections: LEAST }, with_reaction(both, &a0, &lambda)));
         }
         let begun = Begun { increment, block, bordered, tolerance, v: moved, d, lambda, first, at };
-        // Taken apart, so that what is found without it need not be where a call leaves its result.
+        // Destructured and rebuilt, so that the results above stay in registers: returned as it is, all would go through the memory in
+        // which the call leaves its result.
         let (Found { v, lambda, corrections }, p1) = begun.settled()?;
         self.kept.block.have_not_sufficed();
         Some((Found { v, lambda, corrections }, p1))
     }
 }
 
-/// A search after its first correction.
+/// The iteration after its first correction.
 struct Begun<'a, D, const N: usize, const M: usize> {
     increment: Increment<'a, D, N, M>,
     block: &'a Derivatives,
     bordered: Bordered<N, M>,
     tolerance: f64,
     v: [f64; N],
-    /// The first correction, with the impulse that it was found with and what was known where it was made.
+    /// The first correction, the impulse that was solved for with it, and the momenta where it was made.
     d: [f64; N],
     lambda: [f64; M],
     first: Departure<N>,
-    /// What is known at `v`.
+    /// The momenta at `v`.
     at: Departure<N>,
 }
 
 impl<D: Discretisation<N, M>, const N: usize, const M: usize> Begun<'_, D, N, M> {
-    /// The search to its end. By value, so that nothing of one that is at its end need be in memory.
+    /// Iterates to convergence. Takes `self` by value, so that nothing of it must be in memory where the first correction is enough.
     #[inline(never)]
     fn settled(self) -> Option<(Found<N, M>, [f64; N])> {
         let Self { increment, block, bordered, tolerance, mut v, d, mut lambda, first, at } = self;
@@ -105,7 +106,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Begun<'_, D, N, M>
                 let sums = ends(&at);
                 change = sup(&difference(&sums, &both));
                 both = sums;
-                // A correction meets the constraint but for its product with the way from where the rows are.
+                // After a correction the constraint is met up to its product with the distance from where its rows were taken.
                 let met = moved * size <= (SMALL * sup(v)).powi(2);
                 if met && are_met(&at.residual, &a0, &lambda, &p0, tolerance) {
                     change = 0.0;
@@ -119,8 +120,8 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Begun<'_, D, N, M>
                 Some(d)
             },
         )?;
-        // With the equations at `v` met, the momenta at the end are what those at both ends sum to, and the impulse: of that
-        // the last correction changes as much in its size as the one before.
+        // Where the equations at `v` are met, the momenta at the end are the sum of those at both ends and the reaction. The last
+        // correction changes that sum in proportion to its size, as the one before did.
         if change * size > f64::EPSILON * before * sup(&both) {
             both = ends(&increment.momenta(&v));
         }
@@ -133,7 +134,7 @@ fn difference<const N: usize>(x: &[f64; N], y: &[f64; N]) -> [f64; N] {
     from_fn(|i| x[i] - y[i])
 }
 
-// A loop, since `map` over more than a few is left a call.
+// A loop, since the compiler does not inline `map` over more than a few.
 #[inline(always)]
 fn negative<const N: usize>(x: &[f64; N]) -> [f64; N] {
     let mut minus = *x;

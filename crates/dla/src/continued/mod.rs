@@ -1,4 +1,4 @@
-//! A step that goes on from the last one: it begins with the derivatives that are kept, and has rows of the constraint of its own.
+//! The predicted step: modified Newton, started at a predictor, with a frozen Jacobian of the momenta and fresh rows of the constraint.
 
 mod arrival;
 mod in_basis;
@@ -12,14 +12,14 @@ use crate::settle::LEAST;
 use crate::{Discretisation, Mechanics, State, StepReport};
 use lagrangian::from_fn;
 
-/// The velocity that a search has found, with the impulse of the constraints, and in how many corrections.
+/// The velocity that an iteration has found, the impulse of the constraints, and the number of corrections.
 struct Found<const N: usize, const M: usize> {
     v: [f64; N],
     lambda: [f64; M],
     corrections: u32,
 }
 
-/// Whether `r + A' lambda = 0` to the rounding of momenta `p` that are among the terms of `r`.
+/// Whether `r + A' lambda = 0` to the round-off of momenta `p` that are among the terms of `r`.
 #[inline(always)]
 fn are_met<const N: usize, const M: usize>(
     r: &[f64; N],
@@ -59,9 +59,10 @@ fn with_reaction<const N: usize, const M: usize>(mut p: [f64; N], a: &[[f64; N];
 }
 
 impl<D> Dla<D> {
-    /// The step in its general form where it goes on from the last one; none where it does not.
+    /// The step in its general form by modified Newton from the predictor; none where that does not converge, or where nothing is
+    /// remembered.
     ///
-    /// The equations are those of [`Dla`], with multipliers. The derivatives are of a step before, so that a correction takes
+    /// The equations are those of [`Dla`], with multipliers. The Jacobian is that of an earlier step, so that a correction takes
     /// first-order evaluations alone, and no elimination beyond the multipliers.
     #[inline(always)]
     pub(crate) fn continued_step<const N: usize, const M: usize>(
@@ -90,8 +91,8 @@ impl<D> Dla<D> {
     }
 }
 
-/// Moves the state by a step with the mean velocity `v`, to `q1` with the velocity `v1`; none where forces overshoot, or where these are
-/// no numbers.
+/// Moves the state by a step with the mean velocity `v`, to `q1` with the velocity `v1`; none where forces overshoot, or where `q1` or `v1`
+/// is not finite.
 #[inline(always)]
 fn advanced<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
@@ -102,7 +103,7 @@ fn advanced<const N: usize, const M: usize>(
     q1: &[f64; N],
 ) -> Option<()> {
     brakes_only(system, (t0, h), state.q(), (v, v1)).ok()?;
-    // One by one they would be waited for.
+    // All checks in one value, without a branch between: each branch would depend on a number of its own.
     if !(0..N).fold(true, |all, i| all & q1[i].is_finite() & v1[i].is_finite()) {
         return None;
     }
@@ -111,7 +112,7 @@ fn advanced<const N: usize, const M: usize>(
     Some(())
 }
 
-// Twice in a build for any machine, as the loop over steps is (`drive_part`).
+// Compiled twice in a build for any x86-64, as the loop over steps is (`drive_part`).
 #[cfg_attr(not(target_feature = "avx2"), multiversion::multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt")))]
 #[inline(never)]
 fn going_on<D: Discretisation<N, M>, const N: usize, const M: usize>(
@@ -138,7 +139,7 @@ fn going_on<D: Discretisation<N, M>, const N: usize, const M: usize>(
     advanced(system, (t0, h), state, &d, (&v, &v1), &q1)?;
     method.kept.block.took::<N>(corrections.max(LEAST));
     method.kept.mass.took::<N>(end.corrections.max(LEAST));
-    // Not the velocity of the state, which has just been stored and would be waited for.
+    // `v1` and not the velocity of the state: that has just been stored, and the load would stall on store forwarding.
     method.kept.ended(h, state.q(), &v1);
     Some(StepReport { impulses: [lambda, end.lambda], iterations: corrections, work: None })
 }
@@ -178,7 +179,7 @@ mod tests {
         Dla::midpoint().solved(Form::General)
     }
 
-    /// How many of a hundred steps go on from the last.
+    /// How many of a hundred steps are predicted ones.
     fn going_on(system: &Disk, method: &mut Dla, state: &mut State<4>) -> u32 {
         let mut count = 0;
         for k in 0..100 {
@@ -198,7 +199,7 @@ mod tests {
         let (mut method, mut state) = (method(), start());
         assert_eq!(going_on(&SMOOTH, &mut method, &mut state), 99);
         assert!(!method.kept.block.stale && !method.kept.mass.stale);
-        // Elsewhere, reversed, or without what the state remembers.
+        // From another place, reversed, or without what the state remembers.
         let place = *state.q();
         for mut other in [start(), state.reversed(), State::new(place, [0.0; 4], [false, false, true, true])] {
             assert!(method.clone().continued_step::<4, 2>(&SMOOTH, 0.0, STEP, &mut other).is_none());
@@ -220,7 +221,7 @@ mod tests {
         }
     }
 
-    /// Most corrections of a smooth motion go unseen, and it is that of a search of its own for every step.
+    /// Most corrections of a smooth motion are accepted without a check, and the motion is that of steps made without memory.
     #[test]
     fn what_goes_unseen_is_rounding() {
         let start = State::new([0.4, -0.3, 0.2], [0.1, 0.6, 0.6 * (1.5 + 0.4_f64.sin())], [false; 3]);
@@ -253,7 +254,7 @@ mod tests {
         }
     }
 
-    /// What no prediction is near is left to the general search, and tried ever more rarely.
+    /// Where predictions fail, steps are made without memory, and predictions are tried ever more rarely.
     #[test]
     fn rough_motions_are_left_alone() {
         let rough = Disk { trembling: 1e3 };

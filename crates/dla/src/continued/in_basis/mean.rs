@@ -23,7 +23,7 @@ pub(super) fn mean<D: Discretisation<N, M>, const N: usize, const M: usize>(
     let xi = first(method.kept.means.following(h)?);
     let rules = &method.rules;
     let (q0, v0) = (*state.q(), *state.v());
-    // Of the system as it is now, which may not be the one of the step before.
+    // Momenta and rows are evaluated again: the system may have been changed since the last step.
     let (p0, (a0, w0)) = (system.momentum(t0, &q0, &v0), system.linear_basis(t0, &q0)?);
     let increment = Increment { rules, system, t0, h, state, q0, p0, a0, basis: None };
     let basis = |way: &[f64; N]| increment.rules.basis_along(system, (t0, h), &q0, way);
@@ -43,7 +43,7 @@ pub(super) fn mean<D: Discretisation<N, M>, const N: usize, const M: usize>(
     let d = correction(&at);
     let xi = from_fn(|a| xi[a] - d[a]);
     let v = w.combine(&xi);
-    // Of the way, and of the quasi-velocities.
+    // The correction of the mean velocity at which the nodes are placed, and that of the quasi-velocities.
     let size = sup(&from_fn::<f64, N, _>(|i| (v[i] - way[i]).abs() + (v[i] - guess[i]).abs()));
     let large = sup(&v);
     if size > SHRINKING * large {
@@ -65,7 +65,7 @@ pub(super) fn mean<D: Discretisation<N, M>, const N: usize, const M: usize>(
         let off = sup(&from_fn::<f64, N, _>(|i| v[i] - way[i]));
         if off <= tolerance * large && are_met(&w0, &at.residual, &p0, tolerance) {
             let both = ends(&at);
-            // Each of the sums is rounded twice.
+            // Each of the sums has two roundings.
             let same = || sup(&from_fn::<f64, N, _>(|i| both[i] - first[i])) <= 2.0 * f64::EPSILON * sup(&both);
             match corrections {
                 LEAST => method.kept.block.have_sufficed(sized, large, same),

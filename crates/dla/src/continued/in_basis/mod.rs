@@ -1,5 +1,5 @@
-//! The step in the basis of admissible velocities, `v = W xi`: there are no multipliers to eliminate, and the derivatives hardly change
-//! where the basis turns with a body.
+//! The predicted step in the basis of admissible velocities, `v = W xi`: there are no multipliers to eliminate, and the Jacobian hardly
+//! changes where the basis turns with a body.
 
 mod arrival;
 mod mean;
@@ -27,7 +27,7 @@ fn first<const N: usize>(row: [f64; COORDINATES]) -> [f64; N] {
     from_fn(|i| row[i])
 }
 
-// Twice in a build for any machine, as the loop over steps is (`drive_part`).
+// Compiled twice in a build for any x86-64, as the loop over steps is (`drive_part`).
 #[cfg_attr(not(target_feature = "avx2"), multiversion::multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt")))]
 #[inline(never)]
 pub(super) fn going_on<D: Discretisation<N, M>, const N: usize, const M: usize>(
@@ -50,12 +50,12 @@ pub(super) fn going_on<D: Discretisation<N, M>, const N: usize, const M: usize>(
     advanced(system, (t0, h), state, &d, (&v, &v1), &q1)?;
     method.kept.block.took_in_basis::<N>(corrections.max(LEAST));
     method.kept.mass.took_in_basis::<N>(end.found.corrections.max(LEAST));
-    // Not the velocity of the state, which has just been stored and would be waited for.
+    // `v1` and not the velocity of the state: that has just been stored, and the load would stall on store forwarding.
     method.kept.ended_in_basis(h, (state.q(), &v1), &v, [&xi, &end.xi]);
     Some(StepReport { impulses: [lambda, end.found.lambda], iterations: corrections, work: None })
 }
 
-/// Whether corrections `d` of the quasi-velocities are within the tolerance, or, among rounding, shrink no more.
+/// Whether every correction `d` of the quasi-velocities is within the tolerance, or stalls at round-off.
 #[inline(always)]
 fn has_settled<const N: usize>(d: &[f64; N], xi: &[f64; N], last: &[f64; N], tolerance: f64) -> bool {
     (0..N).fold(true, |all, a| {
@@ -64,7 +64,7 @@ fn has_settled<const N: usize>(d: &[f64; N], xi: &[f64; N], last: &[f64; N], tol
     })
 }
 
-/// Whether `W' r = 0` to the rounding of momenta `p` that are among the terms of `r`.
+/// Whether `W' r = 0` to the round-off of momenta `p` that are among the terms of `r`.
 #[inline(always)]
 fn are_met<const N: usize, const M: usize>(
     basis: &AdmissibleBasis<f64, N, M>,
@@ -108,7 +108,7 @@ mod tests {
         State::new(q, v, [false, false, true])
     }
 
-    /// Where the mass matrix turns with a body, and not where it is constant; nor where multipliers are asked for.
+    /// Steps change to the basis where the mass matrix turns with a body; not where it is constant, nor where multipliers are asked for.
     #[test]
     fn a_run_goes_on_in_the_basis_where_derivatives_last_longer_in_it() {
         let (mut turning, mut asked) = (method(), Dla::midpoint().solved(Form::Multipliers));
@@ -128,7 +128,7 @@ mod tests {
         assert!(!constant.kept.is_in_basis() && constant.kept.is_ready());
     }
 
-    /// Every step is that of a search of its own, to the rounding of its momenta: with its impulses.
+    /// Every step is the one made without memory, to the round-off of its momenta, with its impulses.
     #[test]
     fn the_step_is_the_same() {
         let (mut used, mut state, mut count) = (method(), start(), 0);
@@ -151,7 +151,7 @@ mod tests {
         assert!(count > 900, "{count} steps in the basis");
     }
 
-    /// By the trapezoidal rule no step is in the basis: a memory that says so is none.
+    /// By the trapezoidal rule no step is in the basis: a memory that says so is forgotten.
     #[test]
     fn a_rule_of_two_nodes_forgets_a_basis() {
         let (mut used, mut state) = (method(), start());
@@ -167,7 +167,7 @@ mod tests {
         assert_eq!(state, expected);
     }
 
-    /// What is remembered is part of a checkpoint, to the last bit; and where it is wild the step is searched for.
+    /// The memory is part of a checkpoint, to the last bit; where it is damaged, the step is made without it.
     #[test]
     fn a_run_is_resumed_in_the_basis() {
         let (mut method, mut state) = (method(), start());
