@@ -22,7 +22,7 @@ pub struct Checkpoint {
 /// Why a run cannot go on from a checkpoint.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum CheckpointError {
-    /// It is none.
+    /// The text is not a checkpoint.
     #[error("this is no checkpoint: it does not begin with `{HEADER}`")]
     NotOne,
     /// It is one of another version of the format.
@@ -105,7 +105,7 @@ impl Checkpoint {
         found.map(|(_, words)| &words[..]).ok_or_else(|| CheckpointError::Missing { name: name.to_owned(), count })
     }
 
-    /// That it belongs to the run of `expected`, which need not hold any numbers.
+    /// Checks that it belongs to the run of `expected`, which need not hold any numbers.
     ///
     /// # Errors
     /// [`CheckpointError::Other`] names the first thing that differs.

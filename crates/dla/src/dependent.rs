@@ -98,7 +98,7 @@ pub(crate) fn named_at<const N: usize, const M: usize>(
     if !error.is_singular() {
         return error;
     }
-    // That rows are redundant is seen at the beginning of the step, and is no error of the place.
+    // Redundant rows show at the beginning of the step already, and are not an error of the place.
     independent_rows(system, t, q, v, error).err().unwrap_or(error)
 }
 
@@ -154,7 +154,7 @@ fn dependent_at<const N: usize, const M: usize>(
     Dependent { rows: found.involved, time: t, distance: found.distance, dependency }.into()
 }
 
-/// That at the end of a step the rows that it left out hold, too.
+/// Checks that at the end of a step the rows that it left out hold, too.
 ///
 /// # Errors
 /// [`StepError::Dependent`] names those that do not, with all they depended on.

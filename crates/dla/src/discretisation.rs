@@ -14,8 +14,8 @@ pub trait Discretisation<const N: usize, const M: usize> {
         false
     }
 
-    /// `D1 L_d` and `D2 L_d` with the discrete forces, at the mean velocity `v`, the configurations being those of a step of the mean
-    /// velocity `way`, which is near to `v`: what depends on them alone need not be worked out for `v` again.
+    /// `D1 L_d` and `D2 L_d` with the discrete forces, at the mean velocity `v`, with the nodes placed by the mean velocity `way`, which is
+    /// near to `v`: what depends on the nodes alone need not be evaluated again for `v`.
     fn momenta(
         &self,
         system: &dyn Mechanics<N, M>,
@@ -84,7 +84,7 @@ pub struct RoundedStep<const N: usize, const M: usize> {
 
 /// A quadrature rule for the discrete Lagrangian and the discrete forces, and one for the discrete constraint.
 ///
-/// Rules are values and no types: a step is compiled once for all of them.
+/// Rules are values, not types: a step is compiled once for all of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rules {
     /// Of `L_d`.
@@ -141,8 +141,8 @@ impl<const N: usize, const M: usize> Discretisation<N, M> for Rules {
         EndMomenta { slopes: [d1, d2], forces }
     }
 
-    /// Seeded at the nodes, where the configuration depends on both ends by `dq = (1 - alpha) dq0 + alpha dq1`: no product of derivatives is
-    /// made on the way there.
+    /// Dual numbers are seeded at the nodes, where the configuration depends on both ends by `dq = (1 - alpha) dq0 + alpha dq1`: the nodes
+    /// themselves are computed in plain numbers.
     #[inline]
     fn linearised(
         &self,

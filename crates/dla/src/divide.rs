@@ -12,7 +12,7 @@ pub struct Substeps {
     most: u64,
 }
 
-/// A step that cannot be made in parts either.
+/// A step that has no solution in sub-steps either.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[error("{source}; in parts: {tried} were tried, the last of {part:e} s from t = {time} s")]
 pub struct Undivided<E> {

@@ -219,8 +219,8 @@ pub struct Part {
 ///
 /// # Errors
 /// As [`drive`].
-// Inlined into the one place that names all methods, their loops would be one function, and slow to compile. In a build for any
-// machine there is a second one with the instructions that most have: the same bits, in .75 to .8 of the time.
+// Not inlined: the loops of all methods would become one function, and slow to compile. A build for any x86-64 has a second one with the
+// instructions of AVX2: the same bits, in .75 to .8 of the time.
 #[cfg_attr(not(target_feature = "avx2"), multiversion::multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt")))]
 #[inline(never)]
 pub fn drive_part<Method, Obs, const N: usize, const M: usize>(
@@ -244,7 +244,7 @@ where
     }
     let (mut outcome, mut stopped) = (Ok(()), false);
     while made < steps.end {
-        // Worked out anew where a step fails: only a step that reads the time then has it.
+        // The time is computed again where a step fails, so that it need not be kept during the step.
         match method.step(system, schedule.time(made), schedule.step, state) {
             Ok(report) => {
                 made += 1;

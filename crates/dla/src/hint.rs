@@ -11,9 +11,9 @@ pub enum Hint {
         /// The part.
         part: f64,
     },
-    /// The search still converges quickly where it was cut off: allow it more iterations.
+    /// The iteration still converges quickly where it was cut off: allow more iterations.
     MoreIterations,
-    /// The search moves by rounding only: ask for fewer digits.
+    /// The iteration moves by round-off only: ask for fewer digits.
     LooserTolerance,
     /// The constraints or the mass matrix determine no velocity, at any step: look for rows that say the same.
     Constraints,
@@ -94,7 +94,7 @@ impl NewtonError {
     fn hint(&self, stage: Stage) -> Hint {
         let history = self.history();
         match self {
-            // A pivot that is no number says nothing of the rows.
+            // A pivot that is NaN says nothing of the rows.
             Self::Singular { source, .. } if is_overflow(source) => Hint::Numbers,
             // This matrix does not depend on the step.
             Self::Singular { .. } if stage == Stage::Projection => Hint::Constraints,
@@ -140,9 +140,9 @@ impl StepError {
         }
     }
 
-    /// Whether shorter steps may do what this one has not: it was too long, or its search did not end.
+    /// Whether shorter steps may succeed: this one was too long, or its iteration did not converge.
     ///
-    /// Numbers that are no longer finite say so only where a search has left their range: a state does so by what led there.
+    /// Numbers that are not finite count only where an iteration has left their range; where a state has, shorter steps do not help.
     #[must_use]
     pub fn may_hold_in_parts(&self) -> bool {
         use NewtonError::{Diverged, IterationLimit, NotFinite, Singular};

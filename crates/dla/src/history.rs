@@ -1,6 +1,6 @@
 use std::fmt;
 
-/// The sizes of the last corrections of a search for a solution: of `F'(x)^-1 F(x)`, which is the residual in the units of
+/// The sizes of the last corrections of an iteration: of `F'(x)^-1 F(x)`, which is the residual in the units of
 /// the unknowns, whatever those of the equations are (Deuflhard 2004, Newton Methods for Nonlinear Problems, section 1.4).
 ///
 /// Of a fixed size, so that an error that carries it can be copied.
@@ -55,7 +55,7 @@ impl History {
         (self.made - kept..self.made).map(|i| self.sizes[i as usize % Self::KEPT])
     }
 
-    /// By how much the last correction was larger or smaller than the one before; none of fewer than two.
+    /// The ratio of the last correction to the one before; none of fewer than two.
     #[must_use]
     pub fn last_ratio(&self) -> Option<f64> {
         let [before, last] = [2, 1].map(|back| self.made.checked_sub(back));
@@ -63,7 +63,7 @@ impl History {
         before.zip(last).map(|(before, last)| size(last) / size(before))
     }
 
-    /// The last correction; none of none.
+    /// The last correction, where there was one.
     #[must_use]
     pub fn last(&self) -> Option<f64> {
         self.made.checked_sub(1).map(|i| self.sizes[i as usize % Self::KEPT])

@@ -58,7 +58,7 @@ impl<Method, Regularity> InChart<Method, Regularity> {
     fn check(&self, seen: &[f64]) -> Result<(), StepError> {
         let regularity = seen.iter().fold(f64::INFINITY, |m, r| if *r < m || r.is_nan() { *r } else { m });
         let change = seen.iter().fold(0.0, |m, r| larger(m, (r - seen[0]).abs()));
-        // What is not a number is not enough.
+        // NaN counts as too little.
         if regularity >= self.least && regularity >= change {
             return Ok(());
         }
@@ -83,7 +83,7 @@ where
         let start = at(before.q());
         self.check(&[start])?;
         let report = self.method.step(system, t, h, state).map_err(|error| {
-            // Where it was on its way to the end, the method's own error would say less.
+            // Where the step approaches the end of the coordinates, this error says more than the method's own.
             let towards = |part: f64| at(&from_fn(|i| part.mul_add(h * before.v()[i], before.q()[i])));
             self.check(&[start, towards(0.5), towards(1.0)]).err().unwrap_or(error)
         })?;

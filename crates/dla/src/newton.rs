@@ -12,15 +12,15 @@ pub trait Equations<const U: usize> {
     /// [`Singular`] where `F'(x)` has no inverse.
     fn correction(&mut self, x: &[f64; U]) -> Result<[f64; U], Singular>;
 
-    /// How many roundings of their terms the residuals are at most at `x`, where the last correction was made
+    /// The largest residual at `x`, where the last correction was made, in units of the round-off of its terms
     /// ([`Rounded::roundings`](lagrangian::Rounded::roundings)); none where that is not known. Asked for only where corrections
     /// stall.
     fn roundings(&self, _x: &[f64; U]) -> Option<f64> {
         None
     }
 
-    /// Makes further corrections with less rounding, where that is possible; whether it is. Asked for where corrections stall
-    /// though the residuals are not rounding.
+    /// Has further linear equations solved with less round-off, where that is possible; whether it is. Asked for where corrections stall
+    /// though the residuals are not round-off.
     fn refine(&mut self) -> bool {
         false
     }
@@ -44,10 +44,10 @@ pub(crate) trait BlockEquations<const U: usize, const S: usize> {
     /// The correction `-F'(x)^-1 F(x)` at `x`.
     fn correction(&mut self, x: &[[f64; U]; S]) -> Result<[[f64; U]; S], Singular>;
 
-    /// How many roundings of their terms the residuals are at most at `x`, where the last correction was made.
+    /// The largest residual at `x`, where the last correction was made, in units of the round-off of its terms.
     fn roundings(&self, x: &[[f64; U]; S]) -> Option<f64>;
 
-    /// Makes further corrections with less rounding, where that is possible; whether it is.
+    /// Has further linear equations solved with less round-off, where that is possible; whether it is.
     fn refine(&mut self) -> bool {
         false
     }
@@ -100,7 +100,7 @@ impl<E: Equations<U>, const U: usize> BlockEquations<U, 1> for Single<'_, E> {
 pub struct Newton {
     /// Relative tolerance of every component. The default, `4 * 2^-52`, asks for all digits.
     pub tolerance: f64,
-    /// Iterations after which the search is given up.
+    /// Iterations after which the method fails.
     pub max_iterations: u32,
 }
 
@@ -163,10 +163,10 @@ impl NewtonError {
 }
 
 impl Newton {
-    /// Improves `x` until every component is settled, and says in how many iterations.
+    /// Corrects `x` until every component has converged; the number of iterations.
     ///
     /// # Errors
-    /// [`NewtonError`]; `x` is then where the search ended.
+    /// [`NewtonError`]; `x` is then the last iterate.
     #[inline]
     pub fn solve<const U: usize>(
         &self,

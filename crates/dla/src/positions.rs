@@ -2,10 +2,10 @@ use crate::{History, Mechanics, NewtonError, Stage, State, StepError};
 use lagrangian::linear::larger;
 use lagrangian::{Dual, RowSpace, Saddle};
 
-/// The increment of a step with its end moved onto the constraints on positions, `g(q1) = 0`, by the shortest way in the
-/// kinetic metric: Newton's method with the gradients of the place it has come to. Nothing is done without such constraints.
+/// The increment of a step with its end projected onto the constraints on positions, `g(q1) = 0`, in the kinetic metric: Newton's method
+/// with the gradients at the iterate. Without such constraints nothing is done.
 ///
-/// Rows that depend on one another move the end by those that do not.
+/// Of dependent rows only independent ones are used.
 ///
 /// # Errors
 /// [`StepError::Newton`] where no such place is found.
@@ -35,13 +35,13 @@ pub(crate) fn onto_positions<const N: usize, const M: usize>(
         if !step.is_finite() {
             return Err(fail(NewtonError::NotFinite { iteration, history }));
         }
-        // Where corrections of rounding no longer shrink, nothing is nearer.
+        // Where corrections stall at round-off, the iteration has converged.
         if step <= 16.0 * N as f64 * f64::EPSILON * size && step >= 0.25 * before {
             let off = misses.iter().flatten().any(|g| {
                 let rounding: f64 = (0..N).map(|i| (g.eps[i] * q1[i]).abs()).sum();
                 g.re.abs() > RowSpace::<N, M>::ROUNDING * rounding
             });
-            // Rows that depend on one another and disagree leave a rest that no move takes away.
+            // Dependent rows that contradict one another leave a residual that no move removes.
             return match off {
                 true => {
                     Err(fail(NewtonError::IterationLimit { iterations: iteration, correction: step / size, history }))

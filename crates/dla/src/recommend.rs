@@ -16,7 +16,7 @@ pub struct Recommendation {
 /// Why there is no step for a tolerance.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum RecommendError {
-    /// The tolerance or the duration is none.
+    /// The tolerance or the duration is not a positive number.
     #[error("the tolerance and the duration must be positive and finite, and are {tolerance} and {duration} s")]
     Request {
         /// The tolerance.
@@ -182,7 +182,7 @@ fn reference<const N: usize>(
                 }
             }
         }
-        // Small changes that twice have not shrunk are rounding.
+        // Small changes that have stalled twice are round-off.
         stalls = if change > best.0 && change <= ROUNDING * size { stalls + 1 } else { 0 };
         if stalls == 2 {
             break;
@@ -227,7 +227,7 @@ fn refined<const N: usize>(
             if error <= aim {
                 break (steps, error);
             }
-            // A method of any order would gain more; what does not is rounding.
+            // A method of any order would gain more; an error that does not shrink is round-off.
             if error > 0.75 * few.1 || steps > MOST {
                 let step = duration / few.0 as f64;
                 return Err(RecommendError::OutOfReach { tolerance, best: few.1, step, steps: few.0 });

@@ -5,14 +5,14 @@ use lagrangian::linear::larger;
 /// One coordinate of a step that was made whole, and again in two halves.
 ///
 /// A method may make a step that has little to do with the motion: the midpoint rule has a solution in a bowl that swings sixteen
-/// times within the step, and one for a sleigh that turns a million times. Such a step betrays itself in one of two ways.
-/// Its halves lead elsewhere; or, where they make the same mistake, the velocities at the nodes do not account for the way.
-/// Velocities are asked of each coordinate for itself, so that what is small beside the rest is resolved too.
+/// times within the step, and one for a sleigh that turns a million times. Such a step shows in one of two ways: its halves lead elsewhere;
+/// or, where they make the same mistake, the velocities at the nodes do not integrate to the distance. Every coordinate is tested by
+/// itself, so that a small one beside large ones is resolved too.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Halved {
     /// The velocities before the step, after its first half, after the second, and after the whole.
     pub v: [f64; 4],
-    /// The way of the halves and that of the whole.
+    /// The distance by the halves, and by the whole step.
     pub moved: [f64; 2],
 }
 
@@ -20,27 +20,28 @@ impl Halved {
     /// The halves and the whole may differ by this part of the largest of the velocities. Of a method of order 2, whose velocities
     /// differ by some `(h/T)^3/16`, that is a step of an eighth of a time constant `T`.
     const AGREEMENT: f64 = 1e-4;
-    /// And by this part of the way with the geometric mean of that velocity and the largest of all, of which they miss
-    /// `(h/T)^2/16`: a step of a tenth of a time constant. Where a coordinate turns back, its own velocity says nothing of its way.
+    /// The distances may differ by this part of the distance at the geometric mean of that velocity and the largest of all; they differ
+    /// by `(h/T)^2/16` of it: a step of a tenth of a time constant. Where a coordinate turns back, its own velocity is no measure of its
+    /// distance.
     const AGREED_WAY: f64 = 5e-4;
-    /// Simpson's rule may miss the way by this part of it. Through a turn by the angle `a` it misses `a^4/2880`, so that methods of
-    /// high order may go on by nearly two radians a step.
+    /// Simpson's rule may miss the distance by this part of it. Through a turn by the angle `a` it misses `a^4/2880`, so that methods of
+    /// high order may turn by nearly two radians a step.
     const WAY: f64 = 1e-2;
-    /// A velocity below this part of the largest of all is not looked at.
+    /// A velocity below this part of the largest of all is not tested.
     const NOTHING: f64 = 1e-12;
-    /// So many roundings of the largest coordinate are no way.
+    /// A distance of so many roundings of the largest coordinate counts as zero.
     const ROUNDINGS: f64 = 8.0;
-    /// What is smaller has lost its digits.
+    /// A smaller number has lost its digits.
     const LEAST: f64 = 1e-290;
 
-    /// The velocity that is none, in a step of length `h` in which these are the largest coordinate and velocity.
+    /// The velocity that counts as zero, in a step of length `h` in which these are the largest coordinate and velocity.
     #[must_use]
     pub fn nothing(h: f64, q: f64, v: f64) -> f64 {
         Self::NOTHING * v + Self::ROUNDINGS * f64::EPSILON * q / h.abs() + Self::LEAST
     }
 
     /// Whether a step of length `h` resolves the coordinate, where `all` is the largest velocity of all coordinates and
-    /// [`nothing`](Self::nothing) what is none.
+    /// [`nothing`](Self::nothing) the velocity that counts as zero.
     #[must_use]
     pub fn is_resolved(&self, h: f64, all: f64, nothing: f64) -> bool {
         let Self { v: [v0, middle, end, whole], moved: [halves, once] } = *self;

@@ -23,7 +23,7 @@ pub struct Start<const N: usize> {
 ///
 /// The configuration is the stationary point of `(q1 - q)' M(q) (q1 - q)` on `g(q1, t) = 0`, found from the given one by
 /// Newton's method; the velocity is that of `L_v(q1, v1) = L_v(q1, v) + A' mu` with `A v1 + b = 0`, which is the nearest where
-/// the Lagrangian is quadratic in velocities. Rows that depend on one another and agree are no obstacle.
+/// the Lagrangian is quadratic in velocities. Rows may be dependent where they are consistent.
 ///
 /// # Errors
 /// [`StepError::Newton`] where there is none nearby, or positions contradict one another; [`StepError::Dependent`] where the rank of the constraints drops there,

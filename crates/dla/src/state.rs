@@ -16,8 +16,8 @@ const COUNTED: f64 = 1_125_899_906_842_624.0;
 /// the constraint and the energy at round-off over any length of run. A method that works with quasi-velocities leaves
 /// them beside the velocity, so that the next step need not recover them; one that works with quasi-momenta leaves those
 /// too, with twice the digits, since they too are sums of many increments. One that solves for the mean velocity leaves the
-/// acceleration, from which the next search begins nearer to its solution; and from three steps of one length on the increment of
-/// the next is extrapolated from theirs.
+/// acceleration, from which the next step has its predictor; after three steps of one length the predictor is the increment extrapolated
+/// from theirs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State<const N: usize> {
     q: [f64; N],
@@ -135,7 +135,7 @@ impl<const N: usize> State<N> {
     #[inline(always)]
     pub fn stays_finite(&self, increment: &[f64; N], v: &[f64; N]) -> Result<(), StepError> {
         let ahead = self.ahead(increment);
-        // A sum is no number, or not finite, where one of its terms is not.
+        // A sum is not finite where one of its terms is not.
         if (sum(&ahead) + sum(v)).abs() <= f64::MAX || too_large_together(ahead, *v) {
             Ok(())
         } else {
@@ -169,7 +169,7 @@ impl<const N: usize> State<N> {
             within &= q[i].abs() <= self.bounds[i];
         }
         let left = Left::Velocities(xi);
-        // Most steps go nowhere where an angle has to be wrapped, and a coordinate within its bounds is finite.
+        // Most steps wrap no angle, and a coordinate within its bounds is finite: one comparison for both.
         if within & (sum(&v).abs() <= f64::MAX) {
             self.past.forget();
             (self.q, self.rest, self.v, self.left) = (q, rest, v, left);
@@ -300,7 +300,7 @@ impl<const N: usize> State<N> {
     fn wrap(&mut self) {
         for i in 0..N {
             if self.q[i].abs() > self.bounds[i] {
-                // By value, since few steps come here: what the others have just found need not be read again.
+                // By value, since few steps come here: in the others the numbers stay in registers.
                 let turns;
                 (self.q[i], self.rest[i], turns) = wrapped(self.q[i], self.rest[i]);
                 self.turns[i] += turns;
@@ -309,7 +309,7 @@ impl<const N: usize> State<N> {
     }
 }
 
-/// What a step in closed form has left, of which there may be less than there is place for.
+/// What a step in closed form has left; the list may be shorter than its capacity.
 fn remembered(checkpoint: &Checkpoint) -> Result<Memory, CheckpointError> {
     let (numbers, mut memory) = (checkpoint.list("closed")?, Memory::EMPTY);
     let missing = || CheckpointError::Missing { name: "closed".to_owned(), count: Memory::SIZE };
@@ -334,7 +334,7 @@ fn bounds<const N: usize>(angles: [bool; N]) -> [f64; N] {
 }
 
 /// An angle with its rest, wrapped, and the turns that were taken out of it.
-// Apart, since few steps come here.
+// A function of its own, since few steps come here.
 #[cold]
 #[inline(never)]
 pub(crate) fn wrapped(q: f64, rest: f64) -> (f64, f64, f64) {
@@ -348,7 +348,7 @@ fn within_half_a_turn(q: f64, rest: f64) -> (f64, f64, f64) {
         // The first difference is exact; what many turns leave in the second belongs to the angle.
         two_sum((-turns).mul_add(TAU, q), rest - turns * TAU_REST)
     } else {
-        // A rest says nothing there, and the angle that the velocity has been found at is without it.
+        // So far from zero the rest is below the last digit; and the velocity belongs to the angle without it.
         (within_many(q), 0.0)
     };
     (q, rest, turns)

@@ -17,7 +17,7 @@ impl StepError {
             Self::Motion(MotionError { source, .. })
             | Self::Reduced(ReducedError::Motion(MotionError { source, .. })) => lost(source),
             Self::Energy { defect, .. } => !defect.is_finite(),
-            // An adaptive method takes shorter and shorter steps where there are no numbers.
+            // An adaptive method takes shorter and shorter steps where a function is NaN.
             Self::NotFinite | Self::Tolerance { .. } => true,
             _ => false,
         }

@@ -4,52 +4,51 @@ use super::tolerances::{
 use crate::{History, NewtonError};
 use lagrangian::linear::largest;
 
-/// How corrections follow one another, by which the next one is known before it is made.
+/// How corrections follow one another, by which the next one is predicted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// With the derivatives of the point itself: with `w` the bound on the curvature, a correction `d` leaves `w d^2/2`.
+    /// With the Jacobian of the point itself: with `w` the bound on the curvature, a correction `d` leaves `w d^2/2`.
     Newton,
-    /// With those of the point before: the first is `d = w d_before^2/2`, and leaves `w d_before d`.
+    /// With the Jacobian of the point before: the first is `d = w d_before^2/2`, and leaves `w d_before d`.
     Simplified,
-    /// With those of a step before, which are kept: each shrinks by the same factor. Of thousands of components, some of which
-    /// would always shrink a little, what is rounding beside the largest counts as settled.
+    /// With the frozen Jacobian of an earlier step: each shrinks by the same factor. Of thousands of components some always shrink a
+    /// little by chance; so a component whose correction is round-off beside the largest one counts as converged.
     Chord,
 }
 
-/// What a search asks of every correction.
+/// What an iteration asks of every correction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Demand {
     /// How the correction was made.
     pub kind: Kind,
     /// Relative tolerance of every component.
     pub tolerance: f64,
-    /// Corrections after which the search is given up.
+    /// Corrections after which the iteration fails.
     pub limit: u32,
-    /// Whether corrections can still be made with less rounding than they are.
+    /// Whether the linear equations can still be solved with less round-off.
     pub refinable: bool,
     /// A correction below this leads to no other solution: it moves the place of the step by its rounding only
     /// ([`rounding_of_place`]).
     pub near: f64,
 }
 
-/// The velocity that in a step of length `h` moves the configuration `q` by its rounding only: what corrects a constraint on positions by
-/// the last digits of these is no less, however slow the motion is.
+/// The velocity that in a step of length `h` moves the configuration `q` by its round-off only. A correction of a constraint on
+/// positions by the last digits of these is not smaller, however slow the motion is.
 #[must_use]
 #[inline(always)]
 pub fn rounding_of_place(q: &[f64], h: f64) -> f64 {
     NEAR_ROUNDINGS * 0.5 * f64::EPSILON * largest(q) / h.abs()
 }
 
-/// The test of a search by corrections: Newton's method, with any of its approximations, on any number of unknowns.
+/// The convergence test of Newton's method, with any of its approximations, on any number of unknowns.
 ///
-/// A component is settled when its correction is below the tolerance relative to it, or the next one is predicted to be; or when
-/// it no longer shrinks and the residuals of all equations are rounding of their terms; or when simplified corrections take it to
-/// zero.
+/// A component has converged when its correction is below the tolerance relative to it, or the next one is predicted to be; or when
+/// it stalls and the residuals of all equations are round-off of their terms; or when simplified corrections take it to zero.
 #[derive(Debug)]
 pub struct Convergence<'a> {
     /// The last corrections of the components.
     last: &'a mut [f64],
-    /// The components that have been seen to move by rounding only.
+    /// The components of which a check has shown that they move by round-off only.
     rounding: &'a mut [bool],
     /// The components at the start: one that goes to zero is known by them.
     start: &'a [f64],
@@ -59,18 +58,18 @@ pub struct Convergence<'a> {
     growths: u32,
     history: History,
     first: f64,
-    /// Whether the next correction is to show that the search contracts.
+    /// Whether the next correction is to show that the iteration contracts.
     watched: bool,
     certain: bool,
-    /// Whether the residuals have been seen to be rounding.
+    /// Whether a check has shown that the residuals are round-off.
     met: bool,
-    /// Whether corrections stall whose residuals are not.
+    /// Whether corrections stall although the residuals are not round-off.
     unmet: bool,
     made: u32,
 }
 
 impl<'a> Convergence<'a> {
-    /// A search that begins at `start`, with memory for as many components.
+    /// An iteration that starts at `start`, with memory for as many components.
     #[inline(always)]
     pub fn new(last: &'a mut [f64], rounding: &'a mut [bool], start: &'a [f64]) -> Self {
         last.fill(f64::INFINITY);
@@ -113,25 +112,25 @@ impl<'a> Convergence<'a> {
         self.first
     }
 
-    /// Whether the search contracted from its start, so that what it found is the solution near there.
+    /// Whether the iteration contracted from its start, so that its result is the solution near there.
     #[inline(always)]
     #[must_use]
     pub fn is_certain(&self) -> bool {
         self.certain
     }
 
-    /// Whether corrections stall though the residuals are not rounding: what is left is the rounding of the corrections.
+    /// Whether corrections stall though the residuals are not round-off of their terms: they are that of the linear equations.
     #[inline(always)]
     #[must_use]
     pub fn is_unmet(&self) -> bool {
         self.unmet
     }
 
-    /// Looks at a correction that leads to `x`, and says whether every component is settled. `roundings` tells how many
-    /// roundings of their terms the residuals are where the correction was made, at most; none where the equations do not know.
+    /// Tests a correction that leads to `x`: whether every component has converged. `roundings` gives the largest residual where the
+    /// correction was made, in units of the round-off of its terms; none where the equations do not know.
     ///
     /// # Errors
-    /// [`NewtonError`] where the search leads nowhere.
+    /// [`NewtonError`] where the iteration does not converge.
     #[inline(always)]
     pub fn check(
         &mut self,
@@ -160,26 +159,26 @@ impl<'a> Convergence<'a> {
         for i in 0..x.len() {
             let (d, x, last) = (correction[i].abs(), x[i].abs(), self.last[i]);
             let stall = d >= STALL * last;
-            // Once a component has been seen to move by rounding only, it stays so.
+            // A component that moves by round-off stays so.
             self.rounding[i] |= (slight | self.met) & stall;
             let ends = self.rounding[i] || d <= least || is_settled(kind, tolerance, x, d, last);
             let open = !(ends || (kind == Kind::Simplified && self.is_gone(i, d)));
             settled &= !open;
             stalls |= open & stall;
         }
-        // Where the next correction is predicted to be rounding in all components, those that have not settled never will.
+        // Where the next correction is predicted to be round-off in all components, those that have not converged never will.
         settled |= kind == Kind::Chord && step <= BLIND * size && step * (step / before).min(1.0) <= UNBIASED * size;
         self.watched &= !contracts;
         let stuck = (stalls && step >= STALL * before) || iteration >= limit;
         if !contracts || (stuck && !(settled || slight || self.met)) {
             let most = roundings();
             let within = |bound: f64| most.map_or(step <= BLIND * size, |most| most <= bound);
-            // Where nothing more can be done about the rounding of corrections, that counts too.
+            // Where the linear equations cannot be solved with less round-off, that counts too.
             let chord = kind == Kind::Chord;
             let met = within(if chord || !refinable { OF_CORRECTION } else { ROUNDINGS });
             self.met |= met;
             self.unmet = !met;
-            // By corrections with less rounding it may yet be seen.
+            // Corrections with less round-off may yet show contraction.
             self.watched = !contracts && !met && refinable;
             self.certain &= contracts || within(NEAR_ROUNDINGS) || refinable;
             if met && !settled {
@@ -213,7 +212,7 @@ impl<'a> Convergence<'a> {
         d <= GONE * if start == 0.0 { self.size } else { start }
     }
 
-    /// That the components that stall move by rounding only; whether all do, or have settled in another way.
+    /// Marks the components that stall as moving by round-off; whether all components have converged then.
     #[cold]
     fn stalled(&mut self, correction: &[f64]) -> bool {
         let mut all = true;
@@ -225,8 +224,8 @@ impl<'a> Convergence<'a> {
     }
 }
 
-/// Whether a component of the size `x` is settled by its correction `d` after `last`: by that, or by the next one as it is
-/// predicted. A correction larger than what it leaves brings rounding of its own, and predicts nothing.
+/// Whether a component of the size `x` has converged with its correction `d` after `last`: by that correction, or by the predicted next
+/// one. A correction larger than the component that it leaves brings round-off of its own, and predicts nothing.
 #[inline(always)]
 pub(crate) fn is_settled(kind: Kind, tolerance: f64, x: f64, d: f64, last: f64) -> bool {
     let shrink = d / last;

@@ -3,16 +3,16 @@ use crate::{History, NewtonError};
 
 /// The test of a fixed-point iteration: every component by itself, in `G` groups of `N` components with one unit each.
 ///
-/// A component is settled when linear convergence, at the rate of the last two iterations, predicts a next change of less than
+/// A component has converged when linear convergence, at the rate of the last two iterations, predicts a next change of less than
 /// [`UNBIASED`] of it; or when its changes have twice not shrunk and are rounding: slight beside the largest component, or a few roundings of the terms that it is made of. Stopping any earlier would leave an error of the same sign in every
 /// step.
 #[derive(Debug)]
 pub struct FixedPoint<const G: usize, const N: usize> {
     components: [[Component; N]; G],
-    /// The rounding of every component, once it has been asked for.
+    /// The round-off of every component, once it has been asked for.
     noise: Option<[[f64; N]; G]>,
     least: f64,
-    /// Iterations in turn that changed nothing but by rounding.
+    /// Consecutive iterations that changed nothing but by round-off.
     quiet: u32,
     /// The relative change that may still be to come.
     left: f64,
@@ -21,7 +21,7 @@ pub struct FixedPoint<const G: usize, const N: usize> {
     history: History,
 }
 
-/// The last two changes of a component, and how often they have not shrunk and were rounding.
+/// The last two changes of a component, and how often it stalled at round-off.
 #[derive(Debug, Clone, Copy)]
 struct Component {
     last: f64,
@@ -29,11 +29,11 @@ struct Component {
     stalls: u32,
 }
 
-/// Faster convergence than the first is taken for an accident, slower convergence than the second for none.
+/// The estimated contraction factor is never taken below the first; above the second an iteration counts as not converging.
 const RATES: (f64, f64) = (0.02, 0.9);
 
 impl<const G: usize, const N: usize> FixedPoint<G, N> {
-    /// An iteration that is given up after `limit`.
+    /// An iteration that fails after `limit`.
     #[must_use]
     #[inline(always)]
     pub fn new(limit: u32) -> Self {
@@ -58,7 +58,7 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
         self
     }
 
-    /// That the last iteration led to where there is nothing to iterate.
+    /// The error where the last iteration led to a place in which the equations cannot be evaluated.
     #[cold]
     #[must_use]
     pub fn lost(&self) -> NewtonError {
@@ -66,12 +66,12 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
         NewtonError::Diverged { iteration: self.iteration + 1, correction, before, history: self.history }
     }
 
-    /// Sees the largest changes and sizes of the components after an iteration; the iteration's number if it was the last. `noise`
-    /// tells the rounding of the components, `2^-53` times the sums of the sizes of their terms; `least` is a rounding that all
+    /// Tests the largest changes and sizes of the components after an iteration; the iteration's number if it was the last. `noise`
+    /// gives the round-off of the components, `2^-53` times the sums of the sizes of their terms; `least` is the round-off that all
     /// have.
     ///
     /// # Errors
-    /// [`NewtonError`] where the iteration leads nowhere.
+    /// [`NewtonError`] where the iteration does not converge.
     #[inline(always)]
     pub fn see(
         &mut self,
@@ -100,7 +100,7 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
                 noisiest = noisiest.max(rounding);
             }
         }
-        // What goes round among roundings need not stall in every component.
+        // A cycle of round-off need not stall in every component.
         self.quiet = if worst == 0.0 { self.quiet + 1 } else { 0 };
         if settled || self.quiet >= QUIET {
             return Ok(Some(iteration));
@@ -124,12 +124,12 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
 }
 
 impl Component {
-    /// Whether it is settled, and whether its change has not shrunk.
+    /// Whether it has converged, and whether its change has stalled.
     #[inline(always)]
     fn settles(&mut self, change: f64, size: f64, rounding: f64, left: f64) -> (bool, bool) {
         let (fast, slow) = RATES;
         let rate = (change / self.last).max((change / self.before_last).sqrt()).max(fast);
-        // Before there is a rate, only no change at all settles.
+        // Before there is a rate, only no change at all is convergence.
         let next = if self.last.is_finite() && rate < slow { change * rate / (1.0 - rate) } else { change };
         let stalls = change >= slow * self.last.max(self.before_last);
         self.stalls += u32::from(stalls && change <= rounding);
@@ -154,13 +154,13 @@ mod tests {
         }
     }
 
-    /// What shrinks is seen to end before it has; what stalls ends where its terms are no better known.
+    /// Changes that shrink end by the predicted next one; changes that stall end at the round-off of the terms.
     #[test]
     fn an_iteration_ends_at_its_rounding() {
         assert_eq!(iterations(|k| 0.1_f64.powi(k as i32), 0.0).unwrap(), 17);
         let stalls = |k: u32| 0.1_f64.powi(k as i32).max(3e-9 * (1.0 + 0.3 * f64::from(k * 7 % 5)));
         assert!(iterations(stalls, 1e-9).unwrap() < 30);
-        // The positive control: what is no rounding is no end, and growth is none.
+        // The positive control: changes above round-off are not convergence, and growth is not.
         assert!(matches!(iterations(stalls, 1e-12), Err(NewtonError::IterationLimit { .. })));
         assert!(matches!(iterations(|k| 2.0_f64.powi(k as i32), 1e-12), Err(NewtonError::Diverged { .. })));
         assert!(matches!(iterations(|_| f64::NAN, 1.0), Err(NewtonError::NotFinite { .. })));

@@ -1,7 +1,7 @@
 use lagrangian::linear::normal_solve;
 use lagrangian::{Rounded, from_fn};
 
-/// What is left of a covector without its part along the rows, which the multipliers take up: `r - Q Q' r` with an orthonormal
+/// A covector without its part along the rows, the reaction, which the multipliers balance: `r - Q Q' r` with an orthonormal
 /// basis `Q` of the rows, by modified Gram-Schmidt, twice (Bjorck 1967, BIT 7, 1-21). Rows that depend on those before them
 /// are passed over.
 pub(crate) fn without_reaction<const N: usize, const M: usize>(
@@ -19,7 +19,7 @@ pub(crate) fn without_reaction<const N: usize, const M: usize>(
             }
         }
         let left = norm(&row);
-        // Of a row of zeros, or of one that the others imply, there is nothing.
+        // A row of zeros, or one that the others imply, adds nothing.
         if left > DEPENDENT {
             basis[k] = row.map(|x| x / left);
         }
@@ -31,8 +31,8 @@ pub(crate) fn without_reaction<const N: usize, const M: usize>(
     r
 }
 
-/// A covector as a part along the rows, `A' lambda`, and what is left; none of rows that depend on one another. Twice, since the
-/// normal equations lose digits.
+/// Splits a covector into its part along the rows, `A' lambda`, and the rest; none for dependent rows. Done twice, since the normal
+/// equations lose digits.
 pub(crate) fn parted<const N: usize, const M: usize>(
     rows: &[[f64; N]; M],
     r: &[f64; N],
@@ -48,14 +48,14 @@ pub(crate) fn parted<const N: usize, const M: usize>(
     Some((left, lambda))
 }
 
-/// A row of which less is left beside those before is rounding.
+/// A row whose part beside the rows before it is smaller counts as dependent on them.
 const DEPENDENT: f64 = 1e-12;
 
 fn norm<const N: usize>(row: &[f64; N]) -> f64 {
     row.iter().fold(0.0_f64, |length, x| length.hypot(*x))
 }
 
-/// The most roundings of its terms that one of the residuals is.
+/// The largest residual in units of the round-off of its terms.
 pub(crate) fn most_roundings(residuals: impl IntoIterator<Item = Rounded>) -> f64 {
     residuals.into_iter().fold(0.0, |most, residual| residual.roundings().max(most))
 }
@@ -67,7 +67,7 @@ mod tests {
     #[test]
     fn a_reaction_leaves_nothing() {
         let rows = [[1.0, 2.0, 0.5, 0.0], [2.0, 4.0, 1.0, 0.0], [0.0; 4], [0.3, -1.0, 2.0, 1e3]];
-        // A' (1, 0, 0, 2), and a hundred times rounding across it.
+        // A' (1, 0, 0, 2), and a hundred times its round-off across it.
         let reaction: [f64; 4] = from_fn(|i| rows[0][i] + 2.0 * rows[3][i]);
         let left = without_reaction(&rows, reaction.map(Rounded::once));
         assert!(most_roundings(left) <= 1.0, "{left:?}");

@@ -24,7 +24,7 @@ pub(super) struct Averages<const N: usize> {
     pub(super) h_q: [Lanes; N],
     /// The averages of `H_pi = xi`.
     pub(super) h_pi: [Lanes; N],
-    /// The largest `|H_q|` seen.
+    /// The largest `|H_q|` of the points.
     pub(super) steepest: [f64; N],
     /// How far rounding may move the averages from one iteration to the next, if further than that of the points.
     pub(super) noise: f64,
@@ -67,7 +67,7 @@ pub(super) fn average<const N: usize, const M: usize>(
 
 /// `grad H(z) + k (z1 - z0)` at the middle `z`, with the `k` that makes its product with `z1 - z0` the change of energy.
 ///
-/// Where the ends coincide `k` is `0/0`; it is left out where the change that it would make up for is rounding.
+/// Where the ends coincide `k` is `0/0`; it is left out where the change that it would correct is round-off.
 #[inline(always)]
 pub(super) fn gonzalez<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,

@@ -129,7 +129,7 @@ impl<const N: usize, const M: usize> Step<'_, N, M> {
     /// The energy may miss the work by so many roundings; more is an error of the quadrature.
     const ROUNDINGS: f64 = 1024.0;
 
-    /// Iterations after which the search is given up.
+    /// Iterations after which the step fails.
     const LIMIT: u32 = 200;
 
     /// With the widest instructions that the machine has.
@@ -205,7 +205,7 @@ impl<const N: usize, const M: usize> Step<'_, N, M> {
         End { increment, xi, pi: from_fn(sum), work, iterations }
     }
 
-    /// That the energy has changed by the work of the forces.
+    /// Checks that the energy has changed by the work of the forces.
     #[inline(always)]
     fn check(&self, ends: &Ends, work: f64, steepest: &[f64; N], path: &Path<N>) -> Result<(), StepError> {
         let defect = ends.after - ends.before - work;
@@ -215,8 +215,8 @@ impl<const N: usize, const M: usize> Step<'_, N, M> {
         if defect.abs() <= bound { Ok(()) } else { self.check_at_rest((defect, bound), steepest, path) }
     }
 
-    /// The same where the energy is small because its terms cancel, as on a way across a slope; or where the motion is as small as the
-    /// rounding of the place, by whose second order the energy then changes: the rounding of the forces times the way that it is off.
+    /// The same where the energy is small because its terms cancel, as in a motion across a slope; or where the motion is as small as the
+    /// round-off of the place, and the energy changes by its second order: the round-off of the forces times that of the place.
     #[cold]
     #[inline(never)]
     fn check_at_rest(&self, (defect, bound): (f64, f64), steepest: &[f64; N], path: &Path<N>) -> Result<(), StepError> {

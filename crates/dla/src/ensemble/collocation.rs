@@ -74,7 +74,7 @@ impl<const S: usize> Collocation<S> {
         half + half
     }
 
-    /// The slopes as their polynomial goes on over the next step.
+    /// The slopes of the next step, by the polynomial of these.
     #[inline(always)]
     pub(crate) fn extrapolate<Si: Simd, const R: usize>(&self, slopes: &mut [Pack<Si, R>; S]) {
         let before = *slopes;

@@ -14,7 +14,7 @@ pub(super) struct Eight<Si: Simd, const R: usize, const S: usize, const N: usize
     pub(super) stages: Stages<Si, R, S, N>,
     pub(super) velocity: [[Pack<Si, R>; S]; N],
     pub(super) acceleration: [[Pack<Si, R>; S]; N],
-    /// How many iterations the last step took; zero where it says nothing of the next.
+    /// The number of iterations of the last step; zero where there is no predictor.
     pub(super) iterations: u32,
 }
 
@@ -71,7 +71,7 @@ impl<Si: Simd, const R: usize, const S: usize, const N: usize> Eight<Si, R, S, N
         }
     }
 
-    /// Adds a number to all of each lane, zero or what is none.
+    /// Adds a number to all of each lane: zero, or NaN.
     #[inline(always)]
     pub(super) fn lose(&mut self, lost: &[f64; LANES]) {
         let lost = Pack::load(self.simd, lost);

@@ -12,8 +12,8 @@ use std::marker::PhantomData;
 /// `W` trajectories by Gauss collocation with `S` stages, an even number: the method [`Gauss`](crate::Gauss), eight
 /// trajectories to a register.
 ///
-/// Stages are found by fixed-point iteration, from the collocation polynomial of the step before; within an iteration angles
-/// come before what depends on them. It ends where in each of the eight lanes the next change would be rounding. Coordinates
+/// Stages are found by fixed-point iteration, with the collocation polynomial of the step before as predictor; within an iteration angles
+/// come before what depends on them. It ends where in each of the eight lanes the next change would be round-off. Coordinates
 /// that nothing depends on are quadratures, made at the end of a step.
 ///
 /// One system for all ([`Same`](super::Same)) is evaluated in registers; where each has its own

@@ -22,7 +22,7 @@ pub use taylor::TaylorEnsemble;
 /// Trajectories that go side by side.
 const LANES: usize = 8;
 
-/// After so many steps angles are wrapped, and frames found anew from the configurations, so that their rounding does not add up.
+/// After so many steps angles are wrapped, and frames computed from the configurations again, so that their round-off does not add up.
 const BLOCK: u64 = 64;
 
 /// `W` trajectories that make their steps together.

@@ -1,22 +1,22 @@
 use super::{LaneState, Systems};
 use lagrangian::{System, velocity_of};
 
-/// In which order the coordinates of the stages are found, and which of them wait until the end of a step.
+/// The order in which the coordinates of the stages are computed, and which of them are computed only at the end of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Order<const N: usize> {
     /// The coordinates of an iteration: angles, and the others after them.
     pub(super) iterated: [[bool; N]; 2],
-    /// Of these, those that velocities are found from before they are found themselves: they begin where the step before leads.
+    /// Of these, those that velocities are computed from before they are computed themselves: they start at the predictor.
     pub(super) carried: [bool; N],
     /// Coordinates that nothing depends on, or only what is not iterated either: quadratures.
     pub(super) quadratures: [[bool; N]; 2],
 }
 
 impl<const N: usize> Order<N> {
-    /// That of all systems; none where one has no reduced equations by hand.
+    /// The order for all systems; none where one has no reduced equations by hand.
     ///
-    /// A model computes the same whatever its numbers are, so that what depends on a coordinate is no number where the
-    /// coordinate is none.
+    /// Dependence is found by evaluating the model with NaN in place of a coordinate: a result that depends on it becomes NaN, since a
+    /// model has no branches.
     pub(super) fn of<Sys, const W: usize, const M: usize>(
         systems: &impl Systems<Sys, W>,
         t: f64,

@@ -4,7 +4,7 @@ use crate::convergence::tolerances::{OF_ROW, SLOWEST, STALL_OF_FIXED_POINT};
 /// Which of eight lanes still iterate.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Settling {
-    /// Relative changes that may still be to come.
+    /// The largest next change, as estimated and relative, with which a lane has converged.
     settled: f64,
     open: [bool; LANES],
     /// The last changes; none yet.
@@ -17,21 +17,21 @@ impl Settling {
         Self { settled, open: [true; LANES], before: None }
     }
 
-    /// Looks at the changes of an iteration, and the sizes of what changed; whether a lane goes on. A lane that has settled is
-    /// not asked again.
+    /// Tests the changes of an iteration against the sizes of what changed; whether any lane iterates on. A lane that has converged is not
+    /// tested again.
     #[inline(always)]
     pub(super) fn look(&mut self, moved: &[f64; LANES], size: &[f64; LANES]) -> bool {
         let (first, before) = (self.before.is_none(), self.before.unwrap_or([0.0; LANES]));
         let mut any = false;
         for lane in 0..LANES {
             let (moved, size, before) = (moved[lane], size[lane], before[lane]);
-            // From change to change the factor is about the same, so that the next one is known before it is made, but not
-            // believed to be smaller than it may become; in the rounding changes no longer shrink.
+            // Linear convergence: the next change is predicted by the contraction factor, which is never taken below a bound. At round-off
+            // changes stall.
             let slowest = SLOWEST * before;
             let next = moved * if moved > slowest { moved } else { slowest };
             let stalls = (moved <= OF_ROW * size) & (moved >= STALL_OF_FIXED_POINT * before) & !first;
             let shrinks = (next <= self.settled * size * before) & (moved <= 0.5 * before);
-            // What is no number is not larger either.
+            // A comparison with NaN is false.
             self.open[lane] &= (moved > self.settled * size) & !shrinks & !stalls;
             any |= self.open[lane];
         }
@@ -39,7 +39,7 @@ impl Settling {
         any
     }
 
-    /// Zero in every lane, and not a number where one that still iterates changes by more than rounding.
+    /// Zero in every lane, and NaN where a lane that still iterates changes by more than round-off.
     #[inline(always)]
     pub(super) fn lost(&self, size: &[f64; LANES]) -> [f64; LANES] {
         let before = self.before.unwrap_or([0.0; LANES]);
@@ -54,7 +54,7 @@ impl Settling {
 mod tests {
     use super::*;
 
-    /// The changes of every lane, iteration by iteration, of numbers of size one; how many are looked at.
+    /// The changes of every lane, iteration by iteration, of numbers of size one; how many are tested.
     fn looks(lanes: impl Fn(i32) -> [f64; LANES]) -> (i32, Settling) {
         let mut settling = Settling::to(1e-17);
         let made = (1..60).find(|k| !settling.look(&lanes(*k), &[1.0; LANES])).unwrap_or(60);
@@ -70,7 +70,7 @@ mod tests {
         assert!((42..=43).contains(&looks(slow).0));
     }
 
-    /// Rounding goes up and down, in each lane at other times: each has settled by its first rise.
+    /// Round-off goes up and down, in each lane at other times: each has converged by its first rise.
     #[test]
     fn rounding_ends_an_iteration() {
         let (made, settling) = looks(|k| {
@@ -83,7 +83,7 @@ mod tests {
         assert!(!settling.lost(&[1.0; LANES]).iter().any(|x| x.is_nan()));
     }
 
-    /// A lane that does not settle is lost, and no other; one that is no number loses itself.
+    /// A lane that does not converge is lost, and no other; so is one with NaN.
     #[test]
     fn a_lane_that_goes_on_is_lost() {
         let (made, settling) = looks(|k| {

@@ -4,7 +4,7 @@ use lagrangian::{KnownAngle, Scalar, System, array, velocity_of};
 
 /// `S` stages of eight trajectories.
 ///
-/// A row of eight numbers fills a line of the cache, where it begins at one.
+/// A row of eight numbers fills a cache line, to which it is aligned.
 #[repr(align(64))]
 pub(super) struct Stages<Si: Simd, const R: usize, const S: usize, const N: usize> {
     pub(super) q: [[Pack<Si, R>; S]; N],
@@ -36,7 +36,7 @@ struct Points<Si: Simd, const R: usize, const N: usize> {
 }
 
 impl<Si: Simd, const R: usize, const S: usize, const N: usize> Stages<Si, R, S, N> {
-    /// All of them at one place, whose sines are not known yet.
+    /// All points at one place, whose sines are not computed yet.
     #[inline(always)]
     pub(super) fn still(q: &[Pack<Si, R>; N], xi: &[Pack<Si, R>; N]) -> Self {
         let none = [[q[0]; S]; N];
@@ -109,7 +109,7 @@ impl<Si: Simd, const R: usize, const S: usize, const N: usize> Stages<Si, R, S, 
 }
 
 impl<Si: Simd, const R: usize, const N: usize> Points<Si, R, N> {
-    /// What a system gives there; not a number where it does not know.
+    /// What a system gives there; NaN where it does not know.
     #[inline(always)]
     fn slope<Sys: System<N, M>, const M: usize>(
         &self,

@@ -15,10 +15,10 @@ pub(super) struct Step<'a, Sys, Each, const S: usize, const W: usize, const N: u
     times: [f64; S],
 }
 
-/// Iterations after which a step is given up.
+/// Iterations after which a step fails.
 const MOST: u32 = 100;
 
-/// So many iterations of a step are looked at, if it takes as many as the one before.
+/// So many iterations of a step have a convergence test, if the step takes as many as the last one.
 const SEEN: u32 = 3;
 
 impl<'a, Sys, Each, const S: usize, const W: usize, const N: usize, const M: usize> Step<'a, Sys, Each, S, W, N, M>
@@ -82,7 +82,7 @@ where
         iterations
     }
 
-    /// The slopes of a first step: nothing changes.
+    /// The slopes of a first step: zero.
     #[inline(always)]
     fn begin<Si: Simd, const R: usize>(&self, eight: &mut Eight<Si, R, S, N>) {
         let angles = self.of.systems.of(0).angles();
@@ -94,7 +94,7 @@ where
         self.accelerations::<false, _, _>(eight, &[self.t; S]);
     }
 
-    /// The slopes as those of the last step go on, and the coordinates from which velocities are found.
+    /// The predictor: the slopes of the last step continued to this one, and the coordinates from which velocities are computed.
     #[inline(always)]
     fn begin_after_another<Si: Simd, const R: usize>(&self, eight: &mut Eight<Si, R, S, N>) {
         let collocation = &self.of.collocation;
@@ -152,7 +152,7 @@ where
         }
     }
 
-    /// The accelerations of the stages at these times; how far they have moved and how large they are, where that is looked at.
+    /// The accelerations of the stages at these times; their changes and sizes, where the iteration has a test.
     #[inline(always)]
     fn accelerations<const LOOK: bool, Si: Simd, const R: usize>(
         &self,

@@ -1,9 +1,9 @@
 /// The systems of `W` trajectories that go together.
 pub trait Systems<Sys, const W: usize> {
-    /// That of a lane.
+    /// The system of a lane.
     fn of(&self, lane: usize) -> &Sys;
 
-    /// That of all lanes, where they have one in common.
+    /// The system of all lanes, where they share one.
     fn common(&self) -> Option<&Sys>;
 }
 
@@ -11,7 +11,7 @@ pub trait Systems<Sys, const W: usize> {
 #[derive(Debug)]
 pub struct Same<'a, Sys>(pub &'a Sys);
 
-/// Each its own.
+/// A system for each lane.
 #[derive(Debug)]
 pub struct Each<'a, Sys, const W: usize>(pub &'a [Sys; W]);
 

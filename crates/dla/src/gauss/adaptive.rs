@@ -24,8 +24,8 @@ pub struct GaussAdaptive {
     tolerance: f64,
     /// How rough a step may be.
     aim: f64,
-    /// Of the polynomial by which the slopes of a step are continued to the next: the further they are allowed to be from it, the
-    /// sooner it leads astray.
+    /// The degree of the predictor, the polynomial by which the slopes of a step are continued to the next. The looser the tolerance, the
+    /// further slopes are from it, and the lower the best degree.
     degree: usize,
     /// The next step, in quarter octaves of a second.
     quarters: Option<i32>,
@@ -43,7 +43,7 @@ impl GaussAdaptive {
     }
 }
 
-/// What a step said of its length.
+/// What a step shows of the length that it should have had.
 struct Tried<const N: usize> {
     taken: Taken<N>,
     /// The step that would have met the tolerance, in quarter octaves from this one.
@@ -122,7 +122,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for GaussAdaptive {
     }
 
     fn recall(&mut self, memory: &[f64], _state: &State<N>) {
-        // From a file it may be any number.
+        // A number from a file may be anything.
         self.quarters = memory.first().map(|&quarters| (quarters as i32).clamp(-CUT, CUT));
         self.gauss.memory = Memory::load(memory.get(1..).unwrap_or_default());
     }
@@ -190,7 +190,7 @@ impl GaussAdaptive {
             if see(t0 + made, state).is_break() {
                 return Ok(StepReport::of(iterations));
             }
-            // After one that was too long none is longer at once.
+            // After a step that was too long the next one is not longer.
             quarters += if refused { longer.min(0) } else { longer };
             refused = false;
         }

@@ -1,36 +1,36 @@
 use crate::convergence::tolerances::{SLOWEST, STALL_OF_FIXED_POINT};
 use lagrangian::linear::larger;
 
-/// When an iteration has come to its end, by changes in units of what they count.
+/// The convergence test of a fixed-point iteration in registers, on changes relative to a unit for each component.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ending {
-    /// What the next change may still be.
+    /// The largest next change, as estimated, with which the iteration has converged.
     pub(super) left: f64,
-    /// Changes below this that do not shrink, twice, are rounding.
+    /// Changes below this that stall twice are round-off.
     pub(super) rounding: f64,
-    /// And once.
+    /// Changes below this that stall once are round-off.
     pub(super) noise: f64,
-    /// Iterations after which the search is given up.
+    /// Iterations after which the step fails.
     pub(super) limit: u32,
-    /// Changes that shrink by no more than this do not converge.
+    /// An iteration whose contraction factor is above this does not converge.
     pub(super) hopeless: f64,
-    /// Iterations that are made before any is looked at, where there was a step before.
+    /// Iterations that are made without a test, where there is a predictor.
     pub(super) unseen: u32,
 }
 
-/// A search under way.
+/// An iteration under way.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Search {
     ending: Ending,
     pub(super) iterations: u32,
-    /// The last change, and by how much it shrank.
+    /// The last change, and the contraction factor.
     last: f64,
     pub(super) rate: f64,
-    /// Changes that were rounding, or may have been.
+    /// How many small changes have stalled.
     stalled: u32,
 }
 
-/// What a change says.
+/// What follows from a change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict {
     Continue,
@@ -39,35 +39,35 @@ pub(super) enum Verdict {
 }
 
 impl Ending {
-    /// A search that begins where a step before leads, or anew.
+    /// An iteration that starts at the predictor of the last step, or without one.
     #[inline(always)]
     pub(super) fn begin(self, led: bool) -> Search {
-        // What is remembered may come from a file: the limit holds all the same.
+        // The count may come from a file: the limit holds all the same.
         let unseen = if led { self.unseen } else { ANEW }.min(self.limit.saturating_sub(1));
         Search { ending: Self { unseen, ..self }, iterations: 0, last: f64::INFINITY, rate: 1.0, stalled: 0 }
     }
 }
 
 impl Search {
-    /// Counts an iteration; whether nobody looks at it.
+    /// Counts an iteration; whether it is made without a test.
     #[inline(always)]
     pub(super) fn next_is_unseen(&mut self) -> bool {
         self.iterations += 1;
         self.iterations <= self.ending.unseen
     }
 
-    /// Looks at the largest change of an iteration.
+    /// Tests the largest change of an iteration.
     #[inline(always)]
     pub(super) fn look(&mut self, moved: f64) -> Verdict {
         let Ending { left, rounding, noise, limit, hopeless, unseen } = self.ending;
         let seen = self.iterations - unseen;
         let (slower, now) = (if seen > 2 { self.rate } else { 0.0 }, moved / self.last);
         self.rate = if seen > 1 { now } else { self.rate };
-        // A search that begins near its end may shrink faster at first than it goes on.
+        // From a good predictor the first iterations may contract faster than the later ones.
         let expected = larger(larger(self.rate, slower), SLOWEST);
         let settled = seen > 1 && self.rate < 1.0 && moved * expected <= left * (1.0 - self.rate);
-        // Once may be an iteration that turns the error round before it shrinks. Not one after the other: rounding may shrink
-        // in between, and grow.
+        // One stall may be an iteration that rotates the error before it shrinks. The two stalls need not follow one another: round-off may
+        // shrink in between, and grow again.
         let small = moved <= rounding;
         let stalls = small && moved >= STALL_OF_FIXED_POINT * self.last;
         self.stalled += u32::from(stalls);
@@ -84,8 +84,8 @@ impl Search {
     }
 }
 
-/// Iterations that are made before any is looked at, where there was no step before: at first slopes may be zero that are not so in
-/// the end, and measure nothing.
+/// Iterations that are made without a test where there is no predictor: at first slopes may be zero that are not zero in the end, and give
+/// no unit for changes.
 const ANEW: u32 = 3;
 
 #[cfg(test)]
@@ -95,7 +95,7 @@ mod tests {
 
     const ENDING: Ending = Ending { left: LEFT, rounding: OF_ROW, noise: NOISE, limit: 100, hopeless: 2.0, unseen: 12 };
 
-    /// What these changes say, one after the other, and after how many of them the search is over.
+    /// The verdict after these changes, one after the other, and after how many of them it was reached.
     fn search(changes: &[f64]) -> (usize, Verdict) {
         let mut search = ENDING.begin(true);
         while search.next_is_unseen() {}
@@ -108,7 +108,7 @@ mod tests {
         (changes.len(), Verdict::Continue)
     }
 
-    /// Rounding that shrinks in between and grows is the end of a search all the same, and no failure.
+    /// Round-off that shrinks in between and grows again is convergence all the same.
     #[test]
     fn rounding_may_go_round() {
         assert_eq!(
@@ -116,18 +116,18 @@ mod tests {
             (8, Verdict::Done)
         );
         assert_eq!(search(&[3e-16, 2.2e-16]), (2, Verdict::Done));
-        // One above the noise may be an iteration that turns the error round.
+        // One stall above the noise may be an iteration that rotates the error.
         assert_eq!(search(&[1e-14, 8e-15, 1e-15, 1e-16]), (4, Verdict::Continue));
     }
 
-    /// Changes that grow above rounding do not converge, nor do those that are no numbers.
+    /// Changes that grow above round-off do not converge, nor does NaN.
     #[test]
     fn growth_is_failure() {
         assert_eq!(search(&[1e-3, 1e-4, 1e-5, 3e-5]), (4, Verdict::Failed));
         assert_eq!(search(&[1e-3, f64::NAN]), (2, Verdict::Failed));
     }
 
-    /// A search ends when what is to come is less than what may be left, and not before two changes told it.
+    /// An iteration has converged when the estimated next change is small enough, and not before two changes gave the estimate.
     #[test]
     fn the_rate_tells_what_is_to_come() {
         assert_eq!(search(&[1e-18]), (1, Verdict::Continue));
@@ -135,7 +135,7 @@ mod tests {
         assert_eq!(search(&[1e-9, 1e-12]), (2, Verdict::Continue));
     }
 
-    /// A search that begins anew is not looked at first; no search is never looked at.
+    /// Without a predictor the first iterations have no test; every iteration has one in the end.
     #[test]
     fn some_are_not_looked_at() {
         assert_eq!((ENDING.begin(false).ending.unseen, ENDING.begin(true).ending.unseen), (ANEW, 12));

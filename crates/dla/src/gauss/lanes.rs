@@ -21,7 +21,7 @@ impl<const N: usize> Slopes<N> {
     /// None yet.
     pub(super) const ZERO: Self = Self { velocity: [[0.0; 8]; N], acceleration: [[0.0; 8]; N] };
 
-    /// The largest sum over stages, by these factors, of a slope times what it counts.
+    /// The largest sum over stages, by these factors, of a slope in its unit.
     pub(super) fn weighed(&self, factors: &[f64; 8], counts: &[[f64; N]; 2]) -> f64 {
         let sums = |rows: &Rows<N>| rows.map(|x| (0..8).map(|i| factors[i] * x[i]).sum::<f64>());
         let sums = [sums(&self.velocity), sums(&self.acceleration)];
@@ -29,17 +29,17 @@ impl<const N: usize> Slopes<N> {
     }
 }
 
-/// The stages of a collocation that are to be found at once: what a method gives to the system that finds them.
+/// The equations of a collocation whose stages are solved all at once: what a method gives to the system, whose kernel solves them.
 pub struct Collocation<'a, const N: usize> {
     pub(super) rule: &'a Eight,
     pub(super) t: f64,
     pub(super) h: f64,
     pub(super) q0: &'a [f64; N],
     pub(super) xi0: &'a [f64; N],
-    /// The slopes of the step before and what continues them to this one.
+    /// The slopes of the last step, and the matrix that continues their polynomial to this one.
     pub(super) before: Option<([&'a Rows<N>; 2], &'a Square)>,
     pub(super) ending: Ending,
-    /// What one of the velocities and of the accelerations counts; as much as its own size where nothing is given.
+    /// Inverse units of the velocities and of the accelerations; their own sizes where none are given.
     pub(super) counts: Option<[[f64; N]; 2]>,
     /// Where the slopes are left.
     pub(super) slopes: &'a mut Slopes<N>,
@@ -47,7 +47,7 @@ pub struct Collocation<'a, const N: usize> {
 
 /// The rule of collocation in registers.
 struct Along<S: Simd, const R: usize> {
-    /// Not times h: rounded so, the coefficients would lose the symmetry that they have to the last bit.
+    /// Not multiplied by h: the round-off of the products would break the symmetry that the coefficients have to the last bit.
     square: [Pack<S, R>; 8],
     h: Pack<S, R>,
 }
@@ -60,7 +60,7 @@ impl<S: Simd, const R: usize> Along<S, R> {
     }
 }
 
-/// What came of a search.
+/// The result of the iteration.
 #[derive(Debug)]
 pub enum Outcome<const N: usize> {
     /// The system does not know its reduced equations by hand.
@@ -78,10 +78,10 @@ pub struct Found<const N: usize> {
     pub(super) increment: [f64; N],
     /// `h sum_j b_j a_j`.
     pub(super) gain: [f64; N],
-    /// The largest of the highest Legendre coefficients of the slopes, by what they count; zero where nothing was given.
+    /// The largest of the highest Legendre coefficients of the slopes, in their units; zero where none were given.
     pub(super) roughness: f64,
     pub(super) iterations: u32,
-    /// By how much the last changes shrank.
+    /// The contraction factor of the last iteration.
     pub(super) rate: f64,
 }
 
@@ -93,7 +93,7 @@ impl<const N: usize> fmt::Debug for Collocation<'_, N> {
     }
 }
 
-/// Finds the stages of a system, with the widest registers that the machine has; none where it has none.
+/// Solves for the stages of a system in vector registers; none where the machine has none that are known here.
 #[inline]
 pub(crate) fn collocate<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
@@ -118,7 +118,7 @@ impl<'a, Sys, const N: usize, const M: usize> Deref for Stages<'a, Sys, N, M> {
 }
 
 impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
-    /// The places of the stages where nothing moves.
+    /// The places of the stages for zero velocity.
     #[inline(always)]
     fn still<S: Simd, const R: usize>(&self, simd: S) -> [Pack<S, R>; N] {
         everywhere(simd, self.q0)
@@ -206,7 +206,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
         let cascade = self.system.reconstruction();
         let alone = cascade.is_some() && self.system.stands_alone();
 
-        // Where no step was before, nothing changes at first.
+        // Without a predictor the slopes are zero at first.
         let (mut v, mut a) = match self.before {
             Some(([velocity, acceleration], continued)) => {
                 let continued = loaded(simd, &continued.terms);
@@ -221,7 +221,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
         };
         let mut search = self.ending.begin(self.before.is_some());
         loop {
-            // The accelerations are called at one place: for a list of effects they are much code.
+            // One call site for the accelerations: for a list of effects their inlined code is long.
             let xi = self.xi(&along, &a);
             let v1 = match cascade {
                 _ if alone => Some(v),
@@ -229,7 +229,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
                 None => self.velocity(simd, &q, &xi),
             };
             let Some(v1) = v1 else { return Outcome::Unknown };
-            // What is known of the places by now serves the accelerations.
+            // Gauss-Seidel order: the accelerations use the new places.
             if !alone {
                 q = self.q(&along, &v1);
             }
@@ -260,7 +260,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
                 Verdict::Failed => return Outcome::Failed,
             }
         }
-        // The last accelerations' own.
+        // The velocities that belong to the last accelerations.
         if let Some(quadratures) = cascade {
             match self.reconstructed(&along, quadratures, &self.xi(&along, &a)) {
                 Some(last) => v = last,

@@ -1,12 +1,12 @@
 use super::lanes::Slopes;
 use crate::State;
 
-/// Systems of more coordinates are not remembered.
+/// Of larger systems nothing is remembered.
 const COORDINATES: usize = 6;
 
-/// The slopes of the last step, from which the next search begins nearer to its solution.
+/// The predictor of the stages: the slopes of the last step, whose polynomial is continued to the nodes of the next.
 ///
-/// They say nothing of where it ends; what they change is in the last bit. So they belong to a checkpoint.
+/// It changes the result in the last bit at most; so it belongs to a checkpoint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Memory {
     /// Whether there was a step.
@@ -16,15 +16,15 @@ pub(super) struct Memory {
     /// The step, and its length in quarter octaves where it is one of them.
     h: f64,
     pub(super) quarters: i32,
-    /// How many iterations it took.
+    /// The number of iterations of the last step.
     iterations: u32,
-    /// Where it ended, and how fast.
+    /// The state at its end.
     q: [f64; COORDINATES],
     v: [f64; COORDINATES],
 }
 
 impl Memory {
-    /// Of no step.
+    /// Before the first step.
     pub(super) const NONE: Self = Self {
         known: false,
         velocity: [[0.0; 8]; COORDINATES],
@@ -55,7 +55,7 @@ impl Memory {
         }
     }
 
-    /// The slopes, if it was the step before the one from `state`.
+    /// The slopes, where the last step ended in `state`.
     #[inline(always)]
     pub(super) fn rows<const N: usize>(&self, state: &State<N>) -> Option<[&[[f64; 8]; N]; 2]> {
         if !self.known || self.q.first_chunk::<N>() != Some(state.q()) || self.v.first_chunk::<N>() != Some(state.v()) {
@@ -64,20 +64,20 @@ impl Memory {
         Some([self.velocity.first_chunk()?, self.acceleration.first_chunk()?])
     }
 
-    /// How many iterations of the next step need not be looked at: it will take about as many as this one, and two that are seen
-    /// tell their rate. (Looking takes a third of the time.)
+    /// How many iterations of the next step are made without a convergence test, which takes a third of their time. The step will take
+    /// about as many iterations as the last one, and the tests of the last few show the rate of contraction.
     #[inline(always)]
     pub(super) fn unseen(&self) -> u32 {
         self.iterations.saturating_sub(4)
     }
 
-    /// Whether it was of that length.
+    /// Whether the last step had that length.
     #[inline(always)]
     pub(super) fn is_of_length(&self, h: f64) -> bool {
         self.h.to_bits() == h.to_bits()
     }
 
-    /// All of it as numbers; none of no step.
+    /// All of it as numbers; an empty list before the first step.
     pub(super) fn save(&self) -> Vec<f64> {
         if !self.known {
             return Vec::new();
@@ -87,7 +87,7 @@ impl Memory {
         rows.chain(&rest).chain(&self.q).chain(&self.v).copied().collect()
     }
 
-    /// From what [`save`](Self::save) gave; of no step from anything else.
+    /// From what [`save`](Self::save) gave; from anything else as before the first step.
     pub(super) fn load(numbers: &[f64]) -> Self {
         let mut memory = Self { known: true, ..Self::NONE };
         let mut length = [0.0; 3];

@@ -25,7 +25,7 @@ use rule::Eight;
 /// velocities, with `s` stages, of order `2 s`.
 ///
 /// Symmetric, and on the constraint by construction. Stages are found by fixed-point iteration, which converges for steps
-/// below the time constants of the motion, until their changes are rounding; what does not settle is an error.
+/// below the time constants of the motion, until their changes are round-off; where it does not converge the step fails.
 ///
 /// Where a system knows its reduced equations by hand ([`System::reduced_motion`](lagrangian::System::reduced_motion)), up to eight stages are computed at once,
 /// in the vector registers of the machine, beginning with the polynomial of the step before; elsewhere one after another. The
@@ -42,7 +42,7 @@ pub struct Gauss {
     /// Whether all stages may be computed at once.
     together: bool,
     memory: Memory,
-    /// Iterations after which the search is given up.
+    /// Iterations after which the step fails.
     pub max_iterations: u32,
 }
 
@@ -128,7 +128,7 @@ impl Gauss {
         from_fn(|i| h * (0..self.stages()).map(|j| factor(j) * slopes[j][i]).sum::<f64>())
     }
 
-    /// Iterates the slopes of the stages until they move by rounding only; returns how many times.
+    /// Iterates the slopes of the stages until they change by round-off only; returns the number of iterations.
     #[inline]
     fn solve<const N: usize, const M: usize>(
         &self,
@@ -145,7 +145,7 @@ impl Gauss {
                 let (dq, dxi) = (self.sum(h, a, &stages.velocity), self.sum(h, a, &stages.acceleration));
                 let (q, xi) = (from_fn(|k| q0[k] + dq[k]), from_fn(|k| xi0[k] + dxi[k]));
                 let fail = |source| StepError::Newton { stage: Stage::Collocation, source };
-                // The start has a slope: a stage without one is where the iteration has led.
+                // The start has a slope, so a stage without one means that the iteration diverged.
                 let slope = system.reduced_slope(t + self.rule.nodes[i] * h, &q, &xi);
                 let slope = slope.map_err(|_| fail(convergence.lost()))?;
                 let new = [slope.velocity, slope.acceleration];

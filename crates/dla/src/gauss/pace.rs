@@ -3,15 +3,15 @@ use super::rule::{LONGER, SHORTER};
 use crate::octaves::octaves;
 use lagrangian::linear::larger;
 
-/// How rough a step may be at the tolerance one.
+/// The largest roughness of a step at the tolerance one.
 const SMOOTHNESS: f64 = 2.0;
-/// By how many octaves the changes of the stages are to shrink in an iteration, from a search that has few to go, whose steps
-/// may well be longer, to one that has many.
+/// The contraction, in octaves an iteration, that the next step should have: from one that needs few iterations, whose steps may well be
+/// longer, to one that needs many.
 const SHRINKING: [f64; 2] = [0.75, 1.75];
-/// And in so many iterations a search is to be over, between the two.
+/// Numbers of iterations that count as few and as many.
 const ITERATIONS: f64 = 12.0;
 
-/// How rough a step may be at the tolerance `epsilon`: its power `2 s / (s - 1)` is about the error of the step.
+/// The largest roughness of a step at the tolerance `epsilon`: its power `2 s / (s - 1)` is about the error of the step.
 pub(super) fn roughest(stages: usize, epsilon: f64) -> f64 {
     let s = stages as f64;
     SMOOTHNESS * epsilon.powf((s - 1.0) / (2.0 * s))
@@ -23,8 +23,8 @@ pub(super) fn degree(stages: usize, epsilon: f64) -> usize {
     (1.5 - 0.5 * epsilon.log10()).clamp(0.0, stages as f64 - 1.0) as usize
 }
 
-/// By how many quarter octaves the next step may be longer than one that was `rough` by what it may be, and whose changes shrank by
-/// `rate` in the last of its iterations.
+/// By how many quarter octaves the next step may be longer than one that had `rough` times the largest roughness, and the contraction
+/// factor `rate` in the last of its iterations.
 #[inline(always)]
 pub(super) fn longer(stages: usize, rough: f64, rate: f64, iterations: u32) -> i32 {
     // Roughness goes with the power s - 1 of the step.
@@ -33,7 +33,7 @@ pub(super) fn longer(stages: usize, rough: f64, rate: f64, iterations: u32) -> i
     let few = shrinking * f64::from(iterations) / ITERATIONS;
     let converging = shrinking - few.clamp(SHRINKING[0], SHRINKING[1]);
     let longer = (4.0 * smooth.min(converging)).floor().clamp(-f64::from(SHORTER), f64::from(LONGER)) as i32;
-    // A step that is smooth enough is not refused for its iterations.
+    // A step that is smooth enough is not rejected for its iterations.
     if smooth >= 0.0 { longer.max(if converging < 0.0 { -1 } else { 0 }) } else { longer }
 }
 
@@ -47,8 +47,8 @@ pub(super) fn quarters_of(length: f64) -> i32 {
 mod tests {
     use super::*;
 
-    /// Rougher steps and slower searches are followed by shorter ones; a smooth step with a short search may grow although the
-    /// search converges slowly, one with a long search may not.
+    /// Rougher steps and slower iterations are followed by shorter steps; a smooth step with few iterations may grow although they converge
+    /// slowly, one with many iterations may not.
     #[test]
     fn the_next_step_follows_from_the_last() {
         assert!(longer(8, 1e-9, 0.01, 8) == LONGER && longer(8, 1e-300, 0.0, 1) == LONGER);

@@ -1,10 +1,10 @@
-//! What all stages of all coordinates are brought into registers by.
+//! Arrays of numbers to registers: a pack holds one coordinate of all stages.
 use super::lanes::Rows;
 use lagrangian::array;
 use lagrangian::linear::larger;
 use lagrangian::simd::{Pack, Simd, Wide};
 
-/// Numbers that may have something in common, each in its registers.
+/// Numbers that may be uniform over the stages, each in its registers.
 #[inline(always)]
 pub(super) fn packed<S: Simd, const R: usize, const N: usize>(simd: S, x: &[Wide<S, R>; N]) -> [Pack<S, R>; N] {
     array(
@@ -34,7 +34,7 @@ pub(super) fn loaded<S: Simd, const R: usize, const N: usize>(simd: S, x: &Rows<
     )
 }
 
-/// Rows as their polynomials go on.
+/// Rows continued by their polynomials to the next step.
 #[inline(always)]
 pub(super) fn ahead<S: Simd, const R: usize, const N: usize>(
     simd: S,
@@ -48,7 +48,7 @@ pub(super) fn ahead<S: Simd, const R: usize, const N: usize>(
     )
 }
 
-/// Each number in all places.
+/// Each number broadcast to all lanes.
 #[inline(always)]
 pub(super) fn everywhere<S: Simd, const R: usize, const N: usize>(simd: S, x: &[f64; N]) -> [Pack<S, R>; N] {
     array(
@@ -83,5 +83,5 @@ pub(super) fn integral<S: Simd, const R: usize, const N: usize>(
     )
 }
 
-/// Nothing is measured by less: its inverse is finite.
+/// The smallest unit of a change: its inverse is finite.
 const SMALLEST: f64 = 1e-290;

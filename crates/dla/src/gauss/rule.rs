@@ -3,7 +3,7 @@ use lagrangian::quadrature::{gauss_collocation, gauss_legendre, lagrange, shifte
 use lagrangian::simd::Square;
 use std::sync::OnceLock;
 
-/// A rule of at most eight nodes for eight places at once; those beyond its nodes stay at the beginning of the step.
+/// A rule of at most eight nodes for eight lanes; lanes beyond its nodes stay at the beginning of the step.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Eight {
     pub(crate) nodes: [f64; 8],
@@ -16,14 +16,15 @@ pub(crate) struct Eight {
     pub(crate) highest: [f64; 8],
     /// How many nodes there are.
     pub(crate) stages: usize,
-    /// What continues the slopes of one step to the nodes of the next, by the degree of the polynomial and the ratio of the lengths.
+    /// The matrices that continue the slopes of one step to the nodes of the next, by the degree of the polynomial and the ratio of the
+    /// lengths.
     continued: [OnceLock<[Square; (SHORTER + LONGER + 1) as usize]>; 8],
 }
 
-/// Lengths of steps are powers of the fourth root of two. As many quarter octaves longer is the next at most: stages of a step
-/// that is much longer may not converge, and are lost.
+/// Lengths of steps are powers of the fourth root of two. The next step is longer by so many quarter octaves at most: the iteration of a
+/// much longer one may not converge, and is lost.
 pub(super) const LONGER: i32 = 2;
-/// And shorter.
+/// The next step is shorter by so many quarter octaves at most.
 pub(super) const SHORTER: i32 = 8;
 
 impl Eight {
@@ -55,7 +56,7 @@ impl Eight {
         }
     }
 
-    /// What continues the slopes of a step to the nodes of one that is `2^(quarters/4)` times as long, by the polynomial through
+    /// The matrix that continues the slopes of a step to the nodes of one that is `2^(quarters/4)` times as long, by the polynomial through
     /// the last `degree + 1` of them.
     #[inline(always)]
     pub(crate) fn continued(&self, degree: usize, quarters: i32) -> Option<&Square> {
@@ -110,7 +111,7 @@ mod tests {
         assert!(rule.continued(8, 0).is_none());
     }
 
-    /// Slopes that are a polynomial go on as it does, whatever the ratio of the steps, and no others.
+    /// Slopes that are a polynomial of the degree are continued exactly, whatever the ratio of the steps, and no others.
     #[test]
     fn polynomials_go_on() {
         check::<1>();

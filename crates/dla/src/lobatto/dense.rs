@@ -12,7 +12,7 @@ pub(super) struct Dense<const N: usize, const M: usize, const S: usize> {
     right: Row<N, S>,
 }
 
-/// A pivot below it, relative to its row and column, is rounding.
+/// A pivot below it, relative to its row and column, is round-off.
 const THRESHOLD: f64 = 4.0 * f64::EPSILON;
 
 #[inline]

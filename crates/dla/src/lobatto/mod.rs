@@ -71,9 +71,9 @@ impl<const S: usize> Lobatto<S> {
         Self { tables: Tables::new(), newton: Newton::default() }
     }
 
-    /// The stages that a search from `v` leads to, and in how many iterations; and whether they are those near the start: the
-    /// search contracted, and began within `part` of its end, or where the two differ by the rounding of the place or of the
-    /// equations.
+    /// The stages to which Newton's method converges from `v`, and the number of iterations; and whether they are the solution near the
+    /// start: the iteration contracted, and started within `part` of its end, or the two differ by the round-off of the place or of
+    /// the equations.
     #[inline(always)]
     fn found_near<const N: usize, const M: usize>(
         &self,

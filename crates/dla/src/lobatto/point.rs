@@ -61,8 +61,8 @@ impl<const N: usize, const M: usize> Point<N, M> {
         })
     }
 
-    /// What the equations are made of here, with the rounding of their terms; `way` is the sum of the sizes of the increments
-    /// that led to the configuration.
+    /// The terms of the equations here, with bounds on their round-off; `way` is the sum of the sizes of the increments that led to the
+    /// configuration.
     pub(super) fn terms(&self, system: &dyn Mechanics<N, M>, h: f64, way: &[f64; N]) -> Terms<N, M> {
         let t = Rounded::exact(self.t);
         let q: [Rounded; N] = from_fn(|i| Rounded { value: self.q[i], size: self.q[i].abs() + way[i] });

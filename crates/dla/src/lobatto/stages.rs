@@ -62,7 +62,7 @@ impl<const N: usize, const M: usize, const S: usize> Stages<'_, N, M, S> {
         })
     }
 
-    /// What the rounding of forces, and of the functions of constraints on positions, makes of the velocities over the step.
+    /// The round-off of the velocities that the round-off of forces, and of constraints on positions, causes over the step.
     #[cold]
     #[inline(never)]
     pub(super) fn velocity_rounding(&self) -> [f64; N] {
@@ -84,8 +84,8 @@ impl<const N: usize, const M: usize, const S: usize> Stages<'_, N, M, S> {
         velocity
     }
 
-    /// How many roundings of their terms the equations are missed by, at most, by these velocities and the impulses. Velocities meet the
-    /// constraints no better than the rounding of the forces lets them be known; at the nodes the projection sees to that.
+    /// The largest residual of the equations, in units of the round-off of its terms, with these velocities and the impulses. Velocities
+    /// meet the constraints no better than the round-off of the forces allows; at the nodes the projection removes that.
     #[cold]
     #[inline(never)]
     pub(super) fn missed(&self, v: &[[f64; N]; S]) -> f64 {
@@ -188,12 +188,12 @@ impl<const N: usize, const M: usize, const S: usize> BlockEquations<N, S> for St
         Some(Self { impulses: self.before, ..*self }.missed(v))
     }
 
-    /// Not inlined: it is called from each of the searches that a step may make, and is long.
+    /// Not inlined: it is long, and called from each of the iterations that a step may make.
     #[inline(never)]
     fn correction(&mut self, v: &[[f64; N]; S]) -> Result<[[f64; N]; S], Singular> {
         let points = self.points(v);
         let at = points.map(|point| point.linearised(self.system, self.h));
-        // Filled where it stands: a second one would be on the stack beside it.
+        // Filled in place: a second matrix would be on the stack beside it.
         let mut dense = Dense::zero();
         self.equations(&points, &at, &mut dense);
         dense.solve()?;

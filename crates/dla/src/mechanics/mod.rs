@@ -47,10 +47,10 @@ pub struct SecondSlopes<const N: usize> {
 
 /// What a method asks of a system: values and derivatives as numbers, never a scalar that carries derivatives.
 ///
-/// Every [`System`](lagrangian::System) is one, by automatic derivatives. The trait is the seam between methods and systems: it can be
+/// Every [`System`](lagrangian::System) is one, by automatic derivatives. The trait stands between methods and systems, and can be
 /// an object, so that a method is compiled once for all systems of a shape `(N, M)`, and a system without any method. Entries
-/// are whole questions: what is asked together shares the functions of the place, and no dual number crosses the seam, of which most
-/// places would be zeros.
+/// are whole questions: values that are asked for together share sines and other functions of the configuration; and no array of dual
+/// numbers, mostly zeros, goes through memory at the call.
 pub trait Mechanics<const N: usize, const M: usize>: RoundedMechanics<N, M> + Diagnosis<N, M> {
     /// Which coordinates are angles.
     fn angles(&self) -> [bool; N];

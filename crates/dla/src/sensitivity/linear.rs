@@ -9,7 +9,7 @@ pub(super) struct Scaled {
     columns: DVector<f64>,
 }
 
-/// A pivot below it, relative to its row and column, is rounding.
+/// A pivot below it, relative to its row and column, is round-off.
 const THRESHOLD: f64 = 4.0 * f64::EPSILON;
 
 impl Scaled {
@@ -43,7 +43,7 @@ impl Scaled {
         for mut column in right.column_iter_mut() {
             column.component_mul_assign(&self.rows);
         }
-        // Always there: the pivots have been looked at.
+        // Always there: the pivots have been checked.
         if !self.lu.solve_mut(&mut right) {
             right.fill(f64::NAN);
         }
