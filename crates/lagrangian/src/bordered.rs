@@ -28,8 +28,8 @@ impl<const N: usize, const M: usize> Bordered<N, M> {
         Ok(Self { rows: *rows, response, schur: Inverse::above(&schur, Saddle::<N, M>::DEPENDENT)? })
     }
 
-    /// The same where the elimination of up to three multipliers loses no more than three digits, whatever the scale of rows; of
-    /// more it is not looked at.
+    /// The same where the elimination of up to three multipliers loses no more than three digits, whatever the scale of rows; for more
+    /// multipliers that is not checked.
     #[inline(always)]
     pub fn clear(
         inverse: impl Fn(&[f64; N]) -> [f64; N],
@@ -83,7 +83,7 @@ impl<const N: usize, const M: usize> Bordered<N, M> {
 }
 
 /// The least-squares solution `lambda` of `A' lambda = b`, `A` given by its `M` rows, where the elimination of up to three rows loses
-/// no more than three digits; of more it is not looked at.
+/// no more than three digits; for more rows that is not checked.
 #[must_use]
 #[inline(always)]
 pub fn clear_multipliers<const N: usize, const M: usize>(rows: &[[f64; N]; M], b: &[f64; N]) -> Option<[f64; M]> {

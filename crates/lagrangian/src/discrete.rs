@@ -64,8 +64,8 @@ pub trait DiscreteLagrangian<Sys, const N: usize, const M: usize> {
         [d1, self.d2(system, t0, h, q0, v)]
     }
 
-    /// The same with the configurations of a step of the mean velocity `way`, which is near to `v`: what depends on them alone need
-    /// not be worked out for `v` again. At those of `v` itself unless given.
+    /// The same with the nodes placed by the mean velocity `way`, which is near to `v`: what depends on the nodes alone need not be
+    /// evaluated again for `v`. By default the nodes are placed by `v`.
     #[inline(always)]
     fn slopes_along(
         &self,
@@ -138,15 +138,15 @@ impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteLagrang
         sum.unwrap_or(S::zero())
     }
 
-    /// Seeded at the nodes, where the configuration depends on both ends by `dq = (1 - alpha) dq0 + alpha dq1`: no product
-    /// of derivatives is made on the way there.
+    /// Dual numbers are seeded at the nodes, where the configuration depends on both ends by `dq = (1 - alpha) dq0 + alpha dq1`: the nodes
+    /// themselves are computed in plain numbers.
     #[inline]
     fn derivatives<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> Derivatives<S, N> {
         if const { N > AT_ONCE } {
             let l = second_derivatives(&AtNodes { rule: self, system, t0, h, q0, v });
             return Derivatives { value: h * l.re, d1: l.e1, d2: l.e2, d1d2: l.e12.map(|row| row.map(|x| x / h)) };
         }
-        // The same once more, in place: from a function of its own a step of few coordinates takes a twentieth more instructions.
+        // Inlined here: called as a function, it makes a step of few coordinates a twentieth more instructions.
         let (zero, one) = (S::zero(), S::constant(1.0));
         let unit = |x: S, i: usize| -> [S; N] { from_fn(|k| if k == i { x } else { zero }) };
         let in_v: [HyperDual<S, N, N>; N] = from_fn(|i| HyperDual::linear(v[i], unit(-one, i), unit(one, i)));
@@ -246,8 +246,8 @@ impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteConstra
     }
 }
 
-/// `D1 L_d` and `D2 L_d` by the derivatives in the configuration and the velocity `v` of every node, which are on the way of the mean
-/// velocity `way`.
+/// `D1 L_d` and `D2 L_d` by the derivatives in the configuration and the velocity `v` at every node; nodes are placed by the mean velocity
+/// `way`.
 #[inline(always)]
 fn slopes_at_nodes<R: Rule, Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
     rule: &R,

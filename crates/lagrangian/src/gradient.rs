@@ -3,12 +3,12 @@ use crate::scalar::derived_operators;
 use crate::{Function, Scalar, array};
 use std::ops::{Add, Div, Mul, Neg};
 
-/// A number with its gradient in `N` variables, or a number that depends on none of them: which of the two, a model says when it is
-/// compiled.
+/// A number with its gradient in `N` variables, or a number that depends on none of them; which of the two is known when a model is
+/// compiled, after inlining.
 ///
-/// So a Lagrangian that is differentiated in its velocities has plain numbers for all that depends on the place alone, where
-/// [`Dual`](crate::Dual) would carry zeros through; in what depends on the variables both are the same. (That a gradient is none
-/// swallows an infinity or a NaN that zeros would be multiplied by.)
+/// So where a Lagrangian is differentiated in its velocities, functions of the configuration are computed in plain numbers, where
+/// [`Dual`](crate::Dual) would carry zeros along; for functions of the variables both are the same. (A missing gradient hides an
+/// infinity or a NaN that zeros would be multiplied by.)
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gradient<S, const N: usize> {
     /// The value.
@@ -17,8 +17,8 @@ pub struct Gradient<S, const N: usize> {
     parts: Option<[S; N]>,
 }
 
-/// Calls a function of systems of `N` coordinates whose last parameter is the number of places for derivatives in them; of those
-/// beyond `N` the derivatives are zero: whole registers are quicker.
+/// Calls a function of systems of `N` coordinates whose last parameter is the length of gradients: of five to eight coordinates it is
+/// eight, padded with zeros, which fills whole vector registers.
 macro_rules! by_places {
     ($by:ident::<$($parameter:ident),+>$arguments:tt) => {
         match N {

@@ -1,9 +1,8 @@
-/// An array by its places, as [`std::array::from_fn`] makes it, but inlined whatever the compiler thinks of it; `blank` is what
-/// stands there before.
+/// An array by a function of the index, as [`std::array::from_fn`] makes it, but always inlined; the array is filled with `blank` first.
 ///
-/// What is compiled for registers that only some machines have must be one function: in a call that remains in it nothing is
-/// known of them. So what computes with numbers in registers calls this one, with a closure that is marked `#[inline(always)]`;
-/// a model calls [`Scalar::array`](crate::Scalar::array), which for other numbers is a function as any.
+/// Target features are a property of a function: a call that is not inlined is compiled without the vector registers that only some
+/// machines have. So code on registers calls this function, with a closure that is marked `#[inline(always)]`; a model calls
+/// [`Scalar::array`](crate::Scalar::array), which for other numbers is an ordinary function.
 #[inline(always)]
 pub fn array<T: Copy, const N: usize>(blank: T, f: impl Fn(usize) -> T) -> [T; N] {
     let mut all = [blank; N];
@@ -15,13 +14,13 @@ pub fn array<T: Copy, const N: usize>(blank: T, f: impl Fn(usize) -> T) -> [T; N
     all
 }
 
-/// An array by its places in their order, as [`std::array::from_fn`] makes it, of numbers that can be copied.
+/// An array by a function of the index, in order, as [`std::array::from_fn`] makes it, of numbers that can be copied.
 ///
-/// That one calls a function for every place, which is inlined where a program is optimised as a whole. In one that is not, as
-/// with the profile that cargo gives, general steps take 1.1 to 1.75 times as long by it, and by the trapezoidal rule twice.
+/// The standard one calls a function for every index, which is inlined only with link-time optimisation. With cargo's own release profile
+/// general steps take 1.1 to 1.75 times as long with the standard one, and by the trapezoidal rule twice (Zen 3).
 #[inline]
 pub fn from_fn<T: Copy, const N: usize, F: FnMut(usize) -> T>(mut f: F) -> [T; N] {
-    // Known when it is compiled, so that the library's way, which is a handful of functions, is compiled for empty arrays alone.
+    // A constant condition: the standard function, which is a handful of functions, is compiled for empty arrays only.
     if const { N == 0 } {
         return std::array::from_fn(f);
     }
@@ -34,8 +33,8 @@ pub fn from_fn<T: Copy, const N: usize, F: FnMut(usize) -> T>(mut f: F) -> [T; N
     all
 }
 
-/// What a function makes of each place of an array of numbers that can be copied: as the `map` of an array, which is a handful of
-/// functions that are compiled for every closure.
+/// A function applied to each element of an array of numbers that can be copied: the `map` of an array, without the handful of functions
+/// that are compiled for every closure of that.
 #[inline]
 pub(crate) fn mapped<S: Copy, T: Copy, const N: usize>(of: &[S; N], mut f: impl FnMut(S) -> T) -> [T; N] {
     from_fn(|i| f(of[i]))
@@ -45,7 +44,7 @@ pub(crate) fn mapped<S: Copy, T: Copy, const N: usize>(of: &[S; N], mut f: impl 
 mod tests {
     use super::*;
 
-    /// Of a function that remembers: each place is asked for once, in order.
+    /// With a closure that has a state: it is called once for each index, in order.
     #[test]
     fn places_are_those_of_the_standard_library() {
         fn same<const N: usize>() {

@@ -24,7 +24,7 @@ impl<const U: usize> Inverse<U> {
         Self::above(a, THRESHOLD)
     }
 
-    /// The same for a matrix whose entries carry more rounding: pivots up to `threshold` count as zero.
+    /// The same for a matrix whose entries carry more round-off: pivots up to `threshold` count as zero.
     ///
     /// # Errors
     /// As [`Lu::new`].
@@ -36,10 +36,11 @@ impl<const U: usize> Inverse<U> {
         }
     }
 
-    /// The same where the elimination of up to three rows loses no more than three digits; of more it is not looked at.
+    /// The same where the elimination of up to three rows loses no more than three digits; for more rows that is not checked.
     #[inline(always)]
     pub(crate) fn clear_above(a: &[[f64; U]; U], threshold: f64) -> Option<Self> {
-        // Decided by the number of rows alone: an inverse that might be of either kind would go through memory, and be waited for.
+        // Decided by the number of rows alone, at compile time: a result that may be of either kind would be stored and loaded again,
+        // with the latency of store forwarding.
         match U {
             0..=3 => Self::by_cofactors(a),
             _ => Self::factorised(a, threshold).ok(),

@@ -29,9 +29,9 @@ impl Lanes {
 
 /// Runs `f` compiled for the widest vector instructions of the machine, found at run time.
 ///
-/// What `f` calls takes part as far as it is inlined into `f`; mark closures and kernels `#[inline(always)]`. A portable
-/// build keeps the speed of a native one this way. The bits of the result do not depend on the choice.
-// A build for machines that have vectors of four has one of them: three times as much to compile else, for no machine that it is for.
+/// Functions that `f` calls use these instructions only where they are inlined into `f`; mark closures and kernels
+/// `#[inline(always)]`. So a build for any machine is as quick as a native one. The bits of the result do not depend on the choice.
+// A build for a machine with AVX2 has one version: all of them would take three times as long to compile.
 #[cfg_attr(
     not(target_feature = "avx2"),
     multiversion::multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2", "aarch64+neon"))

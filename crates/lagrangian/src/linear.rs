@@ -15,7 +15,7 @@ pub struct Singular {
     pub pivot: f64,
 }
 
-/// A pivot below it, relative to its row and column, is rounding.
+/// A pivot below it, relative to its row and column, is round-off.
 pub(crate) const THRESHOLD: f64 = 4.0 * f64::EPSILON;
 
 /// A factorisation `P A = L U` by elimination with scaled partial pivoting.
@@ -39,7 +39,7 @@ impl<const U: usize> Lu<U> {
         Self::above(matrix, THRESHOLD)
     }
 
-    /// The same for a matrix whose entries carry more rounding: pivots up to `threshold` count as zero.
+    /// The same for a matrix whose entries carry more round-off: pivots up to `threshold` count as zero.
     ///
     /// # Errors
     /// As [`Lu::new`].
@@ -52,7 +52,7 @@ impl<const U: usize> Lu<U> {
         let column: [f64; U] = crate::from_fn(|j| largest(&crate::from_fn::<_, U, _>(|i| a[i][j] * row[i])).recip());
         let mut positive = true;
         for k in 0..U {
-            // Exchanged one by one, at places that are known when the program is compiled.
+            // Exchanged element by element, at indices that are known at compile time, so that the matrix can stay in registers.
             for i in k + 1..U {
                 if (a[i][k] * row[i]).abs() > (a[k][k] * row[k]).abs() {
                     a.swap(k, i);
@@ -63,7 +63,7 @@ impl<const U: usize> Lu<U> {
             }
             let pivot = (a[k][k] * row[k] * column[k]).abs();
             if pivot <= threshold || !pivot.is_finite() {
-                // Of finite entries it is no number only where a row or a column is empty, and has no scale.
+                // With finite entries it is NaN only where a row or a column is zero, and has no scale.
                 let empty = !pivot.is_finite() && a.as_flattened().iter().all(|x| x.is_finite());
                 return Err(Singular { column: k, pivot: if empty { 0.0 } else { pivot } });
             }
@@ -138,7 +138,7 @@ pub fn larger(m: f64, x: f64) -> f64 {
     if size > m || size.is_nan() { size } else { m }
 }
 
-/// The size of the largest component; not a number where one of them is none.
+/// The size of the largest component; NaN where one of them is NaN.
 #[must_use]
 #[inline(always)]
 pub fn largest(x: &[f64]) -> f64 {

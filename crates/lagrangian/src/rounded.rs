@@ -3,13 +3,13 @@ use crate::functions::Function;
 use crate::scalar::derived_operators;
 use std::ops::{Add, Div, Mul, Neg};
 
-/// A number with a bound on what rounding has done to it: a running error analysis.
+/// A number with a bound on its round-off: a running error analysis.
 ///
 /// `size` is the sum of the sizes of all intermediate results, each times the derivative of the value in that result. To first
 /// order the value differs from that in exact arithmetic by at most `size` times the unit of rounding, `2^-53`. A sum that
 /// cancels keeps the size of its terms, so that a residual can be told from the rounding of the terms that make it up.
 ///
-/// The operations are called and not inlined: they are for steps that do not go as usual, and models on them are compiled sooner.
+/// The operations are calls, never inlined: they are for rare steps, and models on them compile sooner.
 ///
 /// A function on `Dual<Rounded, N>` gives derivatives with such bounds. (Wilkinson 1986, SIAM Rev. 28, 547-568; Higham 2002,
 /// Accuracy and Stability of Numerical Algorithms, section 3.3.)
@@ -17,7 +17,7 @@ use std::ops::{Add, Div, Mul, Neg};
 pub struct Rounded {
     /// The value.
     pub value: f64,
-    /// The bound on its rounding, in units of `2^-53`.
+    /// The bound on its round-off, in units of `2^-53`.
     pub size: f64,
 }
 
@@ -36,8 +36,8 @@ impl Rounded {
         Self { value, size: value.abs() }
     }
 
-    /// How many roundings of its terms the value is; infinite where that is no number. Below the smallest normal number
-    /// rounding no longer shrinks with the terms, and everything is rounding.
+    /// The value in units of the round-off of its terms; infinite where that is NaN. Below the smallest normal number round-off no longer
+    /// shrinks with the terms, and every number is round-off.
     #[must_use]
     #[inline]
     pub fn roundings(&self) -> f64 {
@@ -46,10 +46,10 @@ impl Rounded {
         if count.is_nan() || self.size.is_infinite() { f64::INFINITY } else { count }
     }
 
-    /// A result whose own rounding is `units` of the last place, with what its operand brought along.
+    /// A result whose own rounding is `units` of the last place, with the round-off of its operand.
     #[inline]
     fn result(value: f64, brought: f64, units: f64) -> Self {
-        // An operand that is exact brings nothing along, however steep the function is.
+        // An exact operand brings no round-off, however steep the function is.
         Self { value, size: brought + units * value.abs() }
     }
 

@@ -24,7 +24,7 @@ pub struct Saddle<const N: usize, const M: usize> {
 }
 
 impl<const N: usize, const M: usize> Saddle<N, M> {
-    /// A pivot of the Schur complement below it, relative to its row and column, is rounding: each entry is a sum of `N`
+    /// A pivot of the Schur complement below it, relative to its row and column, is round-off: each entry is a sum of `N`
     /// products, and up to `M` of them have been eliminated.
     pub(crate) const DEPENDENT: f64 = 4.0 * (N + M) as f64 * f64::EPSILON;
 

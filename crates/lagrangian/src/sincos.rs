@@ -1,4 +1,4 @@
-//! Sine and cosine of several numbers at once, without a branch that would keep them apart.
+//! Sine and cosine of several numbers at once, without branches, so that loops over lanes become vector instructions.
 //!
 //! Reduction by Cody and Waite in three parts of `pi/2`, then the polynomials of the FreeBSD mathematics library
 //! (`k_sin.c`, `k_cos.c`, Sun Microsystems 1993) on `[-pi/4, pi/4]`. No fused operations, so that every machine gives
@@ -50,7 +50,8 @@ pub(crate) fn sin_cos<const W: usize>(x: &[f64; W]) -> ([f64; W], [f64; W]) {
     (sin, cos)
 }
 
-/// Sine and cosine of an angle (rad), within two units of `2^-53` of the truth. Of half a turn at most they are no call, and fused.
+/// Sine and cosine of an angle (rad), with an error of at most two units of `2^-53`. For angles within half a turn they are inlined
+/// polynomials with fused operations, and no call.
 #[must_use]
 #[inline(always)]
 pub fn sin_cos_wrapped(x: f64) -> (f64, f64) {

@@ -8,7 +8,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 pub struct Twofold {
     /// The number, rounded.
     pub hi: f64,
-    /// What rounding left out.
+    /// The rounding error of `hi`.
     pub lo: f64,
 }
 

@@ -1,10 +1,10 @@
 use std::fmt::Debug;
 
-/// Four numbers in one register, for what has four unknowns and one trajectory.
+/// Four numbers in one register, for one trajectory with four unknowns.
 ///
-/// Whatever carries them, the results have the same bits.
+/// The results have the same bits in registers and in plain numbers.
 pub trait Four: Copy + Debug {
-    /// The same number in every place.
+    /// A number broadcast to every lane.
     #[must_use]
     fn like(self, x: f64) -> Self;
     /// These numbers.
@@ -16,19 +16,19 @@ pub trait Four: Copy + Debug {
     /// The first number.
     #[must_use]
     fn first(self) -> f64;
-    /// The first number in every place.
+    /// The first number broadcast to every lane.
     #[must_use]
     fn spread(self) -> Self;
-    /// The numbers with places 0 and 1, and 2 and 3, exchanged.
+    /// The permutation that exchanges lanes 0 and 1, and 2 and 3.
     #[must_use]
     fn neighbours(self) -> Self;
-    /// The numbers with places 0 and 2, and 1 and 3, exchanged.
+    /// The permutation that exchanges lanes 0 and 2, and 1 and 3.
     #[must_use]
     fn opposites(self) -> Self;
     /// The sum.
     #[must_use]
     fn plus(self, o: Self) -> Self;
-    /// The product, place by place.
+    /// The product, lane by lane.
     #[must_use]
     fn times(self, o: Self) -> Self;
     /// `self * factor + term`, rounded once.

@@ -1,7 +1,7 @@
-/// An instruction set, with the exchanges of places that `pulp` has no name for.
+/// An instruction set, with the permutations of lanes that `pulp` has no name for.
 pub trait Simd: pulp::Simd {
-    /// Brings each number of a register to the place whose number differs by the bits of `D`, which is 2, 4 or 6; bits beyond the
-    /// places of a register change nothing.
+    /// Permutes the lanes of a register: lane `i` to lane `i xor D`, with `D` 2, 4 or 6; bits of `D` beyond the lanes of a register are
+    /// ignored.
     fn exchanged<const D: usize>(self, x: Self::f64s) -> Self::f64s;
 }
 

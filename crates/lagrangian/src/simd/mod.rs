@@ -1,8 +1,8 @@
 //! Numbers in the vector registers of the machine, found at run time.
 //!
-//! [`Lanes`](crate::Lanes) leaves the choice of instructions to the compiler, which does well where every lane goes its own
-//! way. Where lanes are mixed, as the stages of a step are, it takes the wrong loops for the vectors; a [`Pack`] is always the
-//! instructions that it says. The crate `pulp` gives them without a line of `unsafe`.
+//! [`Lanes`](crate::Lanes) leaves the choice of instructions to the compiler, which does well where lanes are independent.
+//! Where lanes are mixed, as the stages of a step are, it vectorises the wrong loops; a [`Pack`] is always the instructions
+//! that it says. The crate `pulp` gives them without a line of `unsafe`.
 
 mod four;
 mod instructions;
@@ -49,7 +49,7 @@ pub fn dispatch<K: Kernel>(kernel: K) -> Option<K::Output> {
 }
 
 /// Runs a kernel with the widest registers there are, or one number after another where none are known here: for many
-/// trajectories, whose numbers do not wait for one another.
+/// trajectories, whose operations are independent, so that throughput counts and not latency.
 #[inline(always)]
 pub fn dispatch_widest<K: Kernel>(kernel: K) -> K::Output {
     #[cfg(target_arch = "x86_64")]
@@ -78,8 +78,8 @@ fn run<S: Simd, K: Kernel, const R: usize>(simd: S, kernel: K) -> K::Output {
     )
 }
 
-/// What is known of the machine when the program is built. What is known to be absent or not to be used is not compiled: a build
-/// for one machine, as builds from this checkout are, has one kernel instead of three, which take most of the time to compile.
+/// The vector registers as far as they are known when the program is built. Kernels that cannot be used are not compiled: a build for one
+/// machine, as builds from this checkout are, has one kernel instead of three, which take most of the time to compile.
 #[cfg(target_arch = "x86_64")]
 mod build {
     /// Registers of four numbers.
@@ -98,16 +98,16 @@ mod build {
         target_feature = "avx512dq",
         target_feature = "avx512vl"
     ));
-    /// None of eight: the machine that builds the program is the one that it is for, and has none.
+    /// No registers of eight: the program is built for the machine that builds it, and that has none.
     pub(super) const NOT_WIDE: bool = cfg!(this_machine) && !WIDE;
-    /// These in halves, one after the other.
+    /// Registers of eight whose operations are made in halves, one after the other.
     pub(super) const HALVED: bool =
         WIDE && cfg!(all(target_feature = "sse4a", not(target_feature = "avx512vp2intersect")));
 }
 
-/// Whether registers of eight numbers are computed in halves, one after the other: then eight numbers that wait for one another
-/// are quicker in two registers of four. Processors do not tell; of those that do it so far, AMD's Zen 4, no other has the same
-/// instructions.
+/// Whether the processor makes operations on registers of eight numbers in halves, one after the other: then a chain of dependent
+/// operations is quicker in two registers of four. There is no flag for it; AMD's Zen 4, which does so, is recognised by its set of
+/// instructions, which no other processor has.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 fn halved() -> bool {
@@ -116,8 +116,8 @@ fn halved() -> bool {
 
 /// Runs a part of a kernel as a function of its own, in the same registers.
 ///
-/// All of a kernel is one function otherwise, in which a model stands as often as it is called, and compiling takes longer than
-/// in proportion to its length. A call costs some nanoseconds: it is for what a step does once.
+/// Otherwise a kernel is one function, in which a model is inlined at every call, and the time to compile grows faster than its length. A
+/// call costs some nanoseconds: it is for what a step does once.
 #[inline(never)]
 pub fn apart<S: Simd, T>(simd: S, part: impl FnOnce() -> T) -> T {
     struct Part<F>(F);

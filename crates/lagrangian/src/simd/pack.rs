@@ -9,8 +9,8 @@ pub struct Pack<S: Simd, const R: usize> {
     registers: [S::f64s; R],
 }
 
-/// Does the same with every register. One needs no loop, of which the compiler would have one to unroll for every operation of a
-/// kernel; the loop over several keeps what is done standing once until it is unrolled, and has no iterator.
+/// Does the same with every register. For one register there is no loop, which the compiler would have to unroll in every operation of a
+/// kernel; for several there is one without an iterator, so that the code is short until it is unrolled.
 macro_rules! each_register {
     ($i:ident => $act:expr) => {
         if const { R == 1 } {
@@ -31,7 +31,7 @@ macro_rules! each_register {
     reason = "a function may stay a call, in which the registers are not known"
 )]
 impl<S: Simd, const R: usize> Pack<S, R> {
-    /// The same number in every place.
+    /// A number broadcast to every lane.
     #[must_use]
     #[inline(always)]
     pub fn splat(simd: S, x: f64) -> Self {
@@ -48,11 +48,11 @@ impl<S: Simd, const R: usize> Pack<S, R> {
         Self { simd, registers: all }
     }
 
-    /// The same numbers, as one value: from memory straight into a [`Wide`](super::Wide) the compiler would bring them one by one.
+    /// The same numbers as one value: loaded from memory straight into a [`Wide`](super::Wide), they would be moved lane by lane.
     #[must_use]
     #[inline(always)]
     pub fn whole(self) -> Self {
-        // No instruction is left of it.
+        // This compiles to no instruction.
         self.map(
             #[inline(always)]
             |s, x| s.transmute_f64s_u64s(s.xor_u64s(s.transmute_u64s_f64s(x), s.splat_u64s(0))),
@@ -127,8 +127,8 @@ impl<S: Simd, const R: usize> Pack<S, R> {
         self
     }
 
-    /// The larger of this number and the absolute value of the other, in every place; where one is not a number the machine
-    /// chooses, and those of `dispatch` take the other.
+    /// The larger of this number and the absolute value of the other, in every lane; where one is NaN the result depends on the
+    /// machine, and is the other with the registers of `dispatch`.
     #[must_use]
     #[inline(always)]
     pub fn max_abs(self, o: Self) -> Self {
@@ -139,7 +139,7 @@ impl<S: Simd, const R: usize> Pack<S, R> {
         )
     }
 
-    /// The smaller of this number and the other, in every place; where one is not a number the machine chooses.
+    /// The smaller of this number and the other, in every lane; where one is NaN the result depends on the machine.
     #[must_use]
     #[inline(always)]
     pub fn min(self, o: Self) -> Self {
@@ -173,7 +173,7 @@ impl<S: Simd, const R: usize> Pack<S, R> {
         let mut far = terms[4] * x4;
         far = terms[5].mul_add(x4.neighbours_exchanged(), far);
         if const { R == 1 } {
-            // Numbers come late from the other end of a register: nothing waits for all of them.
+            // Permutations across the halves of a register have a longer latency: their products are summed by themselves.
             near + (far + terms[7].mul_add(x6.neighbours_exchanged(), terms[6] * x6))
         } else {
             far = terms[6].mul_add(x6, far);
@@ -192,7 +192,7 @@ impl<S: Simd, const R: usize> Pack<S, R> {
         sum.lanes()[0]
     }
 
-    /// Each number in the place whose number differs by the bits of `D`, which is 2, 4 or 6.
+    /// The permutation of lane `i` to lane `i xor D`, with `D` 2, 4 or 6.
     #[inline(always)]
     fn exchanged<const D: usize>(self) -> Self {
         const { assert!(R <= 2, "registers of four or eight numbers") };
@@ -206,7 +206,7 @@ impl<S: Simd, const R: usize> Pack<S, R> {
         )
     }
 
-    /// Each number in the place of its neighbour.
+    /// The permutation of lane `i` to lane `i xor 1`.
     #[inline(always)]
     fn neighbours_exchanged(self) -> Self {
         self.map(

@@ -2,15 +2,15 @@ use super::{Pack, Simd};
 use crate::{Function, Scalar, array};
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// Eight numbers for a model to be carried on: a [`Pack`], or what all eight have in common.
+/// Eight numbers on which a model is evaluated: a [`Pack`], or one number that is the same in all lanes.
 ///
-/// A model says which of its numbers are constant or zero when it is compiled, so the cases cost nothing when it runs; a
-/// zero of the model takes no instruction at all. (It swallows an infinity or a NaN that it is multiplied by.)
+/// Which case a number is, is known when a model is compiled, after inlining, so the cases cost nothing at run time; a zero of the model
+/// takes no instruction at all. (It hides an infinity or a NaN that it is multiplied by.)
 #[derive(Debug, Clone, Copy)]
 pub enum Wide<S: Simd, const R: usize> {
     /// Zero, by the model.
     Zero,
-    /// The same number everywhere.
+    /// The same number in all lanes.
     Same(f64),
     /// Eight numbers.
     Each(Pack<S, R>),
