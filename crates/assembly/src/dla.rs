@@ -20,8 +20,8 @@ use lagrangian::linear::{larger, largest};
 /// then the velocity at the end by projection, `sum_e L_v(q1, v1) = sum_e (D2 L_d + f_d^+) + A(q1)' mu`, `A(q1) v1 = 0`. Each
 /// Newton iteration is a sparse saddle-point system of `N + M` unknowns; both stages have the same pattern.
 ///
-/// A step that turns a constraint by more than a radian, or whose search does not contract from its start, is refused: the
-/// static method follows the solution from a step of length zero there. (The book, (3.1) and (3.2).)
+/// A step that turns a constraint by more than a radian, or whose iteration does not contract from its start, is refused: the
+/// static method continues the solution from a step of length zero there. (The book, (3.1) and (3.2).)
 pub struct Dla {
     equations: Equations,
     q0: Vec<f64>,
@@ -168,9 +168,9 @@ impl Dla {
         turns.fold(0.0, larger)
     }
 
-    /// That the forces of the step brake its velocity and do not turn it round: see [`dla::StepError::Overshoot`].
+    /// Checks that the step is short enough for its damping, which must not reverse a velocity: see [`dla::StepError::Overshoot`].
     fn brakes_only(&self, assembly: &Assembly, step: (f64, f64)) -> Result<(), AssemblyError> {
-        /// A change of the velocity by a smaller part of it (squared) is compared with rounding.
+        /// Where the change of the velocity is a smaller part of the velocity (squared), it is round-off.
         const ROUNDING: f64 = 1e-16;
         let mut sums = [0.0; 3];
         for placed in assembly.placed().iter().filter(|placed| placed.element.acts()) {
@@ -232,8 +232,8 @@ pub(crate) fn relative(
     then(&q1[..origins.len()]);
 }
 
-/// The mean velocity of a step, extrapolated from those of the last ones, or if the accelerations are those of the last one;
-/// `v0` where neither is known, or would change the velocity so much that a search from there might lead elsewhere.
+/// The predictor of the mean velocity: extrapolated from the last steps, or with the acceleration of the last one. `v0` where neither is
+/// known, or where it would change the velocity so much that Newton's method might converge to another solution.
 pub(crate) fn predict(state: &State, h: f64, v0: &[f64], v: &mut [f64]) {
     const MOST: f64 = 0.125;
     let gained = |i: usize| {

@@ -26,7 +26,7 @@ impl Equations {
     }
 
     /// Solves for the unknowns `x`: `evaluate` writes the right side at `x`, and the matrix where it is told so, which it is not
-    /// while the factors of the last one still serve; `terms` adds the sums of the sizes of the terms of the equations.
+    /// while the factors of the last one are good enough; `terms` adds the sums of the sizes of the terms of the equations.
     pub(crate) fn newton(
         &mut self,
         of: (&Assembly, Stage),
@@ -73,7 +73,7 @@ impl Equations {
             let done = convergence.check(demand, x, correction, || {
                 sizes.fill(0.0);
                 terms(sizes);
-                // The multipliers are found anew each time: by how much they changed.
+                // The multipliers are solved for as a whole in every iteration: their correction is the change.
                 reactions.iter_mut().zip(multipliers).for_each(|(before, now)| *before = now - *before);
                 Some(linear.most_roundings((x, multipliers, reactions), sizes, changes))
             });

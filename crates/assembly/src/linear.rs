@@ -17,7 +17,7 @@ pub(crate) struct Linear {
     pub(crate) solution: Vec<f64>,
 }
 
-/// A pivot below it, relative to its column, is rounding.
+/// A pivot below it, relative to its column, is round-off.
 const SINGULAR: f64 = 1e-13;
 
 impl Linear {
@@ -58,11 +58,12 @@ impl Linear {
         }
     }
 
-    /// How many roundings of their terms the equations are moved by the last correction, at most: `K d + G' dlambda` and `C d` against
-    /// the sums of the `sizes` of the terms, to which those of the unknowns, `|K| |x|`, and of the reactions `G' lambda` are added here.
+    /// The largest change of the equations by the last correction, in units of the round-off of their terms: `K d + G' dlambda` and `C d`
+    /// against the sums of the `sizes` of the terms, to which those of the unknowns, `|K| |x|`, and of the reactions `G' lambda` are added
+    /// here.
     ///
-    /// The correction `dlambda` of the multipliers belongs to it: what the rounding of a constraint moves the unknowns by, `g/h` of
-    /// a joint in a short step, the reactions answer.
+    /// The correction `dlambda` of the multipliers belongs to it: where the round-off of a constraint moves the unknowns, by `g/h` of a joint
+    /// in a short step, the reactions balance that.
     #[cold]
     pub(crate) fn most_roundings(
         &self,

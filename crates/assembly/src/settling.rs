@@ -1,7 +1,7 @@
 use dla::Newton;
 
-/// What the convergence test of a search by an assembly remembers: [`Convergence`](dla::convergence::Convergence) of as many
-/// components as there are unknowns.
+/// The arrays of the convergence test of an assembly's iteration: of [`Convergence`](dla::convergence::Convergence) with as many components
+/// as there are unknowns.
 #[derive(Debug, Default)]
 pub(crate) struct Settling {
     pub(crate) newton: Newton,
@@ -11,19 +11,19 @@ pub(crate) struct Settling {
     /// The sums of the sizes of the terms of the equations, and by how much a correction changes these.
     pub(crate) sizes: Vec<f64>,
     pub(crate) changes: Vec<f64>,
-    /// The multipliers that were found with the correction before.
+    /// The multipliers of the correction before.
     pub(crate) reactions: Vec<f64>,
-    /// Whether the last search contracted from its start, so that what it found is the solution near there.
+    /// Whether the last iteration contracted from its start, so that its result is the solution near there.
     pub(crate) certain: bool,
     /// A correction below this leads to no other solution: see [`rounding_of_place`](dla::convergence::rounding_of_place).
     pub(crate) near: f64,
 }
 
-/// Linear equations are refined so often where corrections stall above the rounding of the equations.
+/// Linear equations are refined so often where corrections stall above the round-off of the equations.
 pub(crate) const REFINEMENTS: u32 = 2;
 
 impl Settling {
-    /// Of so many unknowns, and constraints.
+    /// Arrays for so many unknowns and constraints.
     pub(crate) fn new(unknowns: usize, rows: usize) -> Self {
         Self {
             newton: Newton::default(),

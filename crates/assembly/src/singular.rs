@@ -8,8 +8,8 @@ const NAMED: usize = 6;
 
 /// The constraints that depend on one another in a matrix that is singular: those with a part in its null vector.
 ///
-/// Below the constraints the diagonal is made a little less than zero, `-delta`, as if each could give way by that. Inverse
-/// iteration then turns any vector into that of the smallest eigenvalue: multipliers that add up to no force.
+/// The diagonal block of the constraints is made a little less than zero, `-delta` (a regularisation). Inverse iteration then converges to
+/// the vector of the smallest eigenvalue: multipliers whose forces cancel.
 #[cold]
 pub(crate) fn dependent(
     assembly: &Assembly,

@@ -18,10 +18,10 @@ pub(crate) struct Sparse {
     parts: Vec<Part>,
     pub(crate) linear: Linear,
     unknowns: usize,
-    /// Whether the next search may begin with the factors of the last.
+    /// Whether the next iteration may use the factors of the last one: a frozen Jacobian.
     pub(crate) factors_serve: bool,
-    /// Whether a search that has settled is corrected once more: what the linear convergence with a matrix that is not exact
-    /// leaves out would be the same in every step.
+    /// Whether one more correction is made after convergence: the error that linear convergence with a frozen Jacobian leaves has the
+    /// same sign in every step, and adds up.
     pub(crate) polishes: bool,
 }
 
@@ -29,7 +29,7 @@ pub(crate) struct Sparse {
 const KEPT: f64 = 0.05;
 
 impl Sparse {
-    /// Of `n` unknowns and `m` constraints.
+    /// Equations for `n` unknowns and `m` constraints.
     pub(crate) fn new(n: usize, m: usize, parts: Vec<Part>, solver: Solver) -> Result<Self, AssemblyError> {
         Ok(Self {
             linear: Linear::new(Pattern::of_parts((n, m), &parts), solver)?,
@@ -86,7 +86,7 @@ impl Sparse {
     }
 
     /// Solves for the unknowns `x` and the multipliers: `evaluate` writes the right side at these, and the matrix where it is
-    /// told so, which it is not while the factors of the last one still serve; `terms` adds the sums of the sizes of the terms of
+    /// told so, which it is not while the factors of the last one are good enough; `terms` adds the sums of the sizes of the terms of
     /// the equations, those of the unknowns and then those of the constraints.
     pub(crate) fn newton(
         &mut self,

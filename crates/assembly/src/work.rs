@@ -133,7 +133,7 @@ impl Work {
         h * sum
     }
 
-    /// Whether forces or time have power at an end of the step, or at a node of the straight way between them.
+    /// Whether forces or time have power at an end of the step, or at a node on the straight line between them.
     fn is_powered(&mut self, assembly: &Assembly, t0: f64, h: f64) -> bool {
         let [first, last] = &self.ends;
         [0.0, 1.0].into_iter().chain(self.nodes).any(|c| {

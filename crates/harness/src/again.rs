@@ -2,9 +2,9 @@ use crate::substeps::{Report, substepped_part};
 use crate::{Dop853, Kind, Method};
 use dla::{Mechanics, OneStep, OwnStep, Schedule, State, StepError, StepReport};
 
-/// A method by its name, as a map of one step: every step is a run of its own, without what the method remembers of others.
+/// A method by its name, as a map of one step: every step is a run of its own, without the memory of other steps.
 ///
-/// It uses the code of whole runs, and makes the method anew each time: for the few steps between nodes.
+/// It uses the code of whole runs, and constructs the method each time: for the few steps between nodes.
 #[derive(Debug, Clone, Copy)]
 pub struct Again<'a>(pub &'a Method);
 
@@ -24,7 +24,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Again<'_> {
         Ok(report.0)
     }
 
-    /// Of the one method in the table that has any.
+    /// Only `dop853` has any.
     fn own_steps(
         &self,
         system: &dyn Mechanics<N, M>,

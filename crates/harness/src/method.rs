@@ -306,10 +306,10 @@ pub enum MethodError {
         /// What was asked for.
         name: String,
     },
-    /// The weight of `dla-alpha` is no weight.
+    /// The weight of `dla-alpha` is not between 0 and 1.
     #[error(transparent)]
     Alpha(#[from] NotAWeight),
-    /// The tolerance of `dop853` is none.
+    /// The tolerance of `dop853` is not a positive number.
     #[error("the tolerance must be positive and finite, and is {tolerance}")]
     Tolerance {
         /// What was given.
@@ -328,7 +328,7 @@ impl Method {
     /// The method of that name; `alpha` is the weight of `dla-alpha`, `1/2` where none is given.
     ///
     /// # Errors
-    /// [`MethodError`] where the name or the weight is none.
+    /// [`MethodError`] where the name is unknown, or the weight not between 0 and 1.
     pub fn named(name: &str, alpha: Option<f64>) -> Result<Self, MethodError> {
         let found = METHODS.iter().find(|info| info.name == name);
         let mut info = *found.ok_or_else(|| MethodError::Unknown { name: name.to_owned() })?;

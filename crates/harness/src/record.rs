@@ -63,7 +63,7 @@ pub struct Record<const N: usize> {
     /// The same of the discrete constraint `w_d` of a step, `A(q) (q1 - q0)/h + b` by the rule of the method (see
     /// `docs/methods/drift.md`), over all steps.
     pub step_constraint_max: f64,
-    /// `max |g(q, t)|` over all nodes, the distance from the leaf `g = 0`; none where no constraint is the rate of
+    /// `max |g(q, t)|` over all nodes, the residual of the constraints on positions; none where no constraint is the rate of
     /// a function `g` of the positions ([`System::holonomic`](lagrangian::System::holonomic)).
     pub leaf_max: Option<f64>,
     /// Time at the end (s).

@@ -8,13 +8,13 @@ use dla::{
 use std::ops::Range;
 use std::time::Instant;
 
-/// How a run is saved, and from where it goes on.
+/// How a run is saved, and the checkpoint from which it is resumed.
 pub struct Saving<'a> {
     /// What tells the run from all others: a checkpoint without numbers.
     pub identity: &'a Checkpoint,
     /// The checkpoint to go on from; the start where there is none.
     pub from: Option<&'a Checkpoint>,
-    /// A checkpoint is made after every so many steps; none where there is none.
+    /// A checkpoint is made after every so many steps; no checkpoints where there is no number.
     pub every: Option<u64>,
     /// Receives every checkpoint.
     pub save: &'a mut dyn FnMut(&Checkpoint),
@@ -37,7 +37,7 @@ struct Progressing<const N: usize, const M: usize> {
 /// checkpoint is made; so is one at its end, from which the same record comes again at once.
 ///
 /// # Errors
-/// [`CheckpointError`] where the checkpoint is none of this run; nothing is then done.
+/// [`CheckpointError`] where the checkpoint does not belong to this run; nothing is then done.
 pub fn run_saved<const N: usize, const M: usize>(
     system: &dyn PiecewiseMechanics<N, M>,
     method: &Method,
@@ -55,7 +55,7 @@ pub fn run_saved<const N: usize, const M: usize>(
         }
         None => None,
     };
-    // What has made no step begins anew: its first node is shown again.
+    // A run that has made no step starts again: its first node is shown.
     let mut run = match loaded.filter(|run| run.made > 0) {
         Some(run) => run,
         None => Progressing {

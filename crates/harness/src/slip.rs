@@ -2,7 +2,8 @@ use crate::Method;
 use dla::{Checkpoint, CheckpointError, Discretisation, Rules, State, View};
 use lagrangian::linear::{larger, largest};
 
-/// How far a run is from its constraints besides at the velocities of its nodes: over each step, and in the positions.
+/// The constraint residuals of a run besides those of the velocities at its nodes: of the discrete constraint over each step, and of
+/// constraints on positions.
 #[derive(Debug)]
 pub(crate) struct Slip<const N: usize> {
     rules: Rules,
@@ -42,7 +43,7 @@ impl<const N: usize> Slip<N> {
 
     /// A part of a step.
     pub(crate) fn part<const M: usize>(&mut self, node: &View<'_, N, M>) {
-        // Where the parts are too short for the time, there is nothing to be told from their ends.
+        // Sub-steps so short that the time does not change show nothing.
         match self.before.as_ref().map(|(t, _)| node.t - t) {
             Some(h) if h != 0.0 => self.over(node, h),
             _ => self.resume(node),

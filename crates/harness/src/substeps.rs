@@ -35,8 +35,8 @@ impl SubstepSummary {
     }
 }
 
-/// A part of a run, in which steps are divided where the method may: the step is then made anew, and so is each part, without
-/// what the method remembers, which makes a run the same from every checkpoint.
+/// A part of a run, in which steps are divided where the method may: the step is then made again in sub-steps, each without the memory
+/// of the method, so that a run is the same from every checkpoint.
 ///
 /// It goes through the code of whole steps, a step at a time. Without limits of division it is that code.
 pub(crate) fn substepped_part<const N: usize, const M: usize>(

@@ -67,7 +67,7 @@ pub struct Energy {
     q0: Vec<f64>,
     v0: Vec<f64>,
     v1: Vec<f64>,
-    /// Masses where the search begins.
+    /// The masses at the start of the iteration.
     unused: Vec<f64>,
 }
 
@@ -201,7 +201,7 @@ impl Energy {
         change.abs() <= f64::EPSILON * assembly.placed().iter().map(energies).sum::<f64>()
     }
 
-    /// That the energy has changed by the work of the forces.
+    /// Checks that the energy has changed by the work of the forces.
     fn check(&self, assembly: &Assembly, (t0, h): (f64, f64), work: f64) -> Result<(), AssemblyError> {
         let (mut defect, mut size) = (-work, 0.0);
         for placed in assembly.placed() {
@@ -214,7 +214,7 @@ impl Energy {
         if defect.abs() <= bound { Ok(()) } else { self.check_at_rest(assembly, (t0, h), (defect, bound)) }
     }
 
-    /// The same where the terms of the energy cancel, or where the motion is as small as the rounding of the place, as in the static
+    /// The same where the terms of the energy cancel, or where the motion is as small as the round-off of the place, as in the static
     /// methods.
     #[cold]
     fn check_at_rest(
@@ -270,7 +270,7 @@ impl OneStep for Energy {
             self.path.end(&self.frames, (assembly, t0, h), (&self.q0, state), &self.x)?;
             let [asked, twice_kinetic] = self.finish(assembly, t0 + h, near)?;
             let (change, before) = (asked - kappa, history.last().unwrap_or(f64::INFINITY));
-            // Where it no longer shrinks it is rounding, if that of the energy is no less.
+            // A change that stalls is round-off where it is not above that of the energy.
             let stalls = change.abs() >= STALL * before;
             if change.abs() <= Self::SETTLED || (stalls && self.is_rounding(assembly, t0, change * twice_kinetic)) {
                 break work;

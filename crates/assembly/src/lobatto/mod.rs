@@ -1,4 +1,4 @@
-//! Methods of higher order for assemblies, all stages at once.
+//! Methods of higher order for assemblies, with all stages in one system of equations.
 
 mod element;
 mod stages;
@@ -25,8 +25,8 @@ use stages::{Room, Rule, Stages, increment};
 /// stages and the impulses of all but the last, `S N + (S - 1) M`, in a matrix that has `S x S` numbers for each of the assembly's,
 /// found once. Joints hold at every stage, `g(Q_i) = 0`; the velocity is projected at the end.
 ///
-/// A step that turns a constraint by more than a radian, or whose search does not contract from its start, is refused: the
-/// static method follows the solution from a step of length zero there. (The book, (4.3) to (4.5).)
+/// A step that turns a constraint by more than a radian, or whose iteration does not contract from its start, is refused: the
+/// static method continues the solution from a step of length zero there. (The book, (4.3) to (4.5).)
 pub struct Lobatto {
     rule: Rule,
     stages: Sparse,

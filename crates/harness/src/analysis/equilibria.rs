@@ -51,7 +51,7 @@ pub enum EquilibriumError {
     /// Something acts that depends on time.
     #[error("forces or constraints depend on time: no motion is steady")]
     TimeDependent,
-    /// The search ended without any.
+    /// The search found no equilibrium.
     #[error("no relative equilibrium was found from {guesses} first guesses: there may be none")]
     NoneFound {
         /// How many.
@@ -61,7 +61,7 @@ pub enum EquilibriumError {
 
 /// Rates below this are none, relative to one plus the size of the point.
 const ROOT: f64 = 1e-12;
-/// A derivative below this, relative to the largest, is rounding.
+/// A derivative below this, relative to the largest, is round-off.
 const CYCLIC: f64 = 1e-10;
 /// A singular value below this, relative to the largest, is a direction of the family.
 const FAMILY: f64 = 1e-9;
@@ -122,7 +122,7 @@ fn search<const N: usize, const M: usize>(
             let (place, xi) = placed(z);
             rates(model, &place, &xi, &shape)
         };
-        // At a symmetric start the search may stand on a ridge: then from beside it.
+        // From a symmetric start the search may get stuck: then it starts beside it.
         let offsets = if shape.is_empty() { &OFFSETS[..1] } else { &OFFSETS };
         let from = |offset: &f64| {
             let place = shape.iter().map(|i| q[*i] + offset * (0.5 + *i as f64).cos());

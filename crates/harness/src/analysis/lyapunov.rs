@@ -14,7 +14,7 @@ use thiserror::Error;
 pub struct LyapunovRequest<const N: usize> {
     /// When the counted steps are.
     pub schedule: Schedule,
-    /// So many steps are made before them, until the motion and the frame have settled.
+    /// So many steps are made before them, until the motion and the tangent vectors have settled.
     pub settle: u64,
     /// How many exponents, the largest first; all where none is said.
     pub exponents: Option<usize>,
@@ -156,7 +156,7 @@ pub fn lyapunov_by<const N: usize, const M: usize>(
     let all = Schedule { steps: settle.saturating_add(schedule.steps), ..schedule };
     let outcome = drive(&all, &mut State::new(q, v, system.angles()), &mut stretch);
     let failure = stretch.failure.or(outcome.err().map(Into::into));
-    // A frame that is counted at once has had a step to turn.
+    // Also where all steps are counted, the tangent vectors have had one step to align.
     let before = settle.max(1) as f64 * schedule.step.abs();
     Ok(result(&stretch, before, failure))
 }

@@ -12,7 +12,7 @@ const MAX_SWEEPS: u32 = 100;
 
 /// A Runge-Kutta method on the reduced equations: collocation, or an explicit one.
 ///
-/// Its stages are iterated on numbers with derivatives, value and derivatives together, until both move by rounding only:
+/// Its stages are iterated on dual numbers, value and derivatives together, until both change by round-off only:
 /// the end then has the exact derivative of the discrete map in its start.
 #[derive(Debug, Clone)]
 pub(super) struct Stages {
@@ -21,7 +21,7 @@ pub(super) struct Stages {
     coefficients: Vec<Vec<f64>>,
 }
 
-/// How far values, or derivatives, moved in a sweep, how large they are, and by how much the rounding of the start moves them.
+/// The changes of values, or of derivatives, in an iteration, their sizes, and the effect of the round-off of the start on them.
 #[derive(Debug, Clone, Copy, Default)]
 struct Change {
     moved: f64,
@@ -43,7 +43,7 @@ impl Change {
         self.size = if size <= self.size { self.size } else { size };
     }
 
-    /// Whether it is rounding: by its size, or because it is small and does not shrink any more.
+    /// Whether the change is round-off: by its size, or because it is small and stalls.
     ///
     /// Far from the origin the places in a wave are rounded to more than the slopes are, and where forces cancel the slopes are
     /// smaller than what makes them.

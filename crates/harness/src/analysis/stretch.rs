@@ -21,8 +21,8 @@ pub(super) struct Sums {
     pub(super) time: f64,
 }
 
-/// The observer that carries an orthonormal frame along a run by the derivatives of its steps, and sums up the logarithms of
-/// what it is stretched by: `D Phi Q = Q' R`, with the next frame `Q'` and `ln R_ii` (Benettin et al. 1980, Meccanica 15, 9-20).
+/// The observer that propagates orthonormal tangent vectors by the tangent maps of the steps, and sums up the logarithms of their growth:
+/// `D Phi Q = Q' R`, with the next vectors `Q'` and `ln R_ii` (Benettin et al. 1980, Meccanica 15, 9-20).
 pub(super) struct Stretch<'a, const N: usize, const M: usize> {
     tangent: &'a dyn StepTangent<N, M>,
     frame: DMatrix<f64>,
@@ -43,7 +43,7 @@ pub(super) struct Stretch<'a, const N: usize, const M: usize> {
 }
 
 impl<'a, const N: usize, const M: usize> Stretch<'a, N, M> {
-    /// A frame of `count` vectors, of which `settle` steps are not counted and `steps` are, by a method of that order.
+    /// An observer with `count` tangent vectors, for `settle` steps that are not counted and `steps` that are, of a method of that order.
     pub(super) fn new(
         tangent: &'a dyn StepTangent<N, M>,
         order: u32,

@@ -2,7 +2,7 @@ use std::fmt;
 
 /// What a motion is, as far as a run can tell.
 ///
-/// Judged by the quasi-velocities, which are all that a motion is but for where it is: where the basis of admissible velocities
+/// Judged by the quasi-velocities, which determine a motion up to its place: where the basis of admissible velocities
 /// turns and moves with the body, a motion with constant ones is a relative equilibrium, and one with periodic ones is periodic
 /// but for a displacement. So a sleigh that drives away along a straight line does not run away: its velocities stay. (Of a system whose
 /// basis is no such frame, places can be irregular while the velocities are steady or periodic; that is not seen here.)
@@ -56,7 +56,7 @@ pub struct Evidence {
     pub period: Option<f64>,
 }
 
-/// In so many parts of a run the largest velocities are looked at.
+/// The largest velocities are taken in so many parts of a run.
 pub const PARTS: usize = 16;
 /// Velocities that change by less, relative to the largest of the run, are constant: what a motion that settles has left, and
 /// what rounding does to a steady one, is far below after the times at which anybody looks.

@@ -11,7 +11,7 @@ use std::ops::ControlFlow;
 /// since the last checkpoint. Where the progress ends the run a last checkpoint is made; so is one at its end.
 ///
 /// # Errors
-/// [`CheckpointError`] where the checkpoint is none of this run; nothing is then done.
+/// [`CheckpointError`] where the checkpoint does not belong to this run; nothing is then done.
 pub fn run_assembly_saved(
     assembly: &Assembly,
     method: &Method,

@@ -92,7 +92,7 @@ struct Slopes<'a, const N: usize, const M: usize> {
     q0: [f64; N],
     /// Slopes that are still used. What the library asks for beyond them serves its interpolant, which nobody reads.
     left: Cell<u32>,
-    /// Why the last slope that does not exist does not. The library takes such a step again, shorter.
+    /// Why the last slope could not be evaluated. The library makes such a step again, shorter.
     failure: Cell<Option<StepError>>,
 }
 

@@ -16,7 +16,7 @@ use dla::{Mechanics, OneStep, StackUse, Stage, State, StepError, StepReport};
 /// The acceleration is found by fixed-point iteration, which converges for steps below the time constants of the motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ImplicitMidpoint {
-    /// Iterations after which the search is given up.
+    /// Iterations after which the step fails.
     pub max_iterations: u32,
 }
 

@@ -1,6 +1,6 @@
 use differential_equations::traits::State;
 
-/// A point of the reduced equations: the way from where an interval began, and the quasi-velocities.
+/// A point of the reduced equations: the increment since the start of an interval, and the quasi-velocities.
 ///
 /// Of the latter the first `N - M` count, so that there are `2 N - M` components.
 #[derive(Debug, Clone, Copy, PartialEq)]

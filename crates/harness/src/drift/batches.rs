@@ -66,8 +66,8 @@ impl Batches {
         sums / (BATCHES as f64 * squared)
     }
 
-    /// Whether the increments go on all along, as those of a walk do: not one of them, nor one half of the series, makes up
-    /// nearly all of their squares, as where a series jumps or settles.
+    /// Whether the increments are spread over the whole series, as those of a random walk are: neither one of them nor one half of the
+    /// series has nearly all of the sum of squares, as where a series jumps or settles.
     pub(super) fn walks(&self) -> bool {
         let all = squares(&self.increments);
         let largest = self.increments.iter().map(|d| d * d).fold(0.0, f64::max);

@@ -13,7 +13,7 @@ use std::fmt;
 /// What the slow part of a series does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// It stays where it is: it is stationary, or moves too little beside the fast part to be seen.
+    /// It is stationary, or moves too little beside the amplitude to be seen.
     Bounded,
     /// It grows with the time.
     LinearDrift,
@@ -66,8 +66,8 @@ const T99: f64 = 2.750;
 const STATIONARY: f64 = 0.146;
 /// Between the growth exponents of a bounded series and of a random walk.
 const BETWEEN: f64 = 0.25;
-/// What the slow part may do beside the fast one and be unseen: a sine that is cut at the ends of the run and of the
-/// batches feigns a slope of `(6/pi) P/T` amplitudes a run, and one of a 32nd of it `0.06`.
+/// A change over the run below this part of the amplitude counts as none: a sine of period `P` that is cut at the ends of the run and of
+/// the batches has a least-squares slope of `(6/pi) P/T` amplitudes a run, which is `0.06` for a period of 1/32 of the run.
 const SEEN: f64 = 1.0 / 16.0;
 
 impl Drift {

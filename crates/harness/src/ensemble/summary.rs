@@ -1,7 +1,7 @@
 use dla::{Mechanics, State};
 use lagrangian::linear::larger;
 
-/// A trajectory in a few numbers: its end, and extremes over the nodes that were looked at.
+/// A trajectory in a few numbers: its end, and extremes over the observed nodes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Summary<const K: usize> {
     /// Time of the end (s).
@@ -21,7 +21,7 @@ pub struct Summary<const K: usize> {
 }
 
 impl<const K: usize> Summary<K> {
-    /// Of nothing yet.
+    /// A summary before the first node.
     pub(super) fn new() -> Self {
         Self {
             t: 0.0,

@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 /// `K` quantities of a configuration, angles with their full turns, and a velocity.
 type Quantities<'a, const N: usize, const K: usize> = &'a dyn Fn(&[f64; N], &[f64; N]) -> [f64; K];
 
-/// What is looked at, and when.
+/// Which quantities are observed, and at which nodes.
 #[derive(Clone, Copy)]
 pub struct Watching<'a, const N: usize, const K: usize> {
     /// The steps.

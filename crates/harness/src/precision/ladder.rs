@@ -14,7 +14,7 @@ pub(super) struct Rung {
     pub(super) mark: Option<Mark>,
 }
 
-/// Errors beyond this (m or rad) tell of no accuracy at all; a ladder begins below.
+/// Errors above this (m or rad) are no accuracy at all; a ladder starts below.
 const SATURATED: f64 = 0.1;
 /// Below this a curve that hardly falls is on its plateau; above, its steps are still too coarse.
 const FINE: f64 = 1e-9;
@@ -82,7 +82,7 @@ pub(super) fn climb(bench: &Bench<'_>, method: &Method, limits: &Limits) -> Resu
             wanted = (steps + 1).max((steps as f64 * ratio).round() as u64);
         }
     }
-    // What falls again was no plateau.
+    // Errors that fall again were not on a plateau.
     let (end, near) = (rungs.len() - plateau(&rungs), CLEAR * bench.reference_error);
     for rung in &mut rungs[..end] {
         rung.mark = rung.mark.take().filter(|mark| *mark != Mark::Plateau || rung.error <= Some(near));

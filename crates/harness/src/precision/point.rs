@@ -82,7 +82,7 @@ impl Point {
         Some([self.error.filter(usable)?, self.seconds().filter(usable)?])
     }
 
-    /// Whether the error tells of the method rather than of rounding.
+    /// Whether the error is that of the method and not round-off.
     #[must_use]
     pub fn is_regular(&self) -> bool {
         self.mark.is_none() && self.error.is_some()

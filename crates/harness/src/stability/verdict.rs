@@ -30,7 +30,7 @@ pub struct Trial {
     pub label: String,
     /// What was measured in its valid part.
     pub findings: Vec<Finding>,
-    /// What no run may do: a number that is none, no end, an error that does not say what to change.
+    /// What no run may do: NaN, no end, an error that does not say what to change.
     pub broken: Option<String>,
     /// The error that ended it, and what to change.
     pub error: Option<String>,
