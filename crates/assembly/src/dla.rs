@@ -235,6 +235,7 @@ pub(crate) fn relative(
 /// The predictor of the mean velocity: extrapolated from the last steps, or with the acceleration of the last one. `v0` where neither is
 /// known, or where it would change the velocity so much that Newton's method might converge to another solution.
 pub(crate) fn predict(state: &State, h: f64, v0: &[f64], v: &mut [f64]) {
+    /// The largest change of the velocity by a predictor, relative to the velocity, as in the static method.
     const MOST: f64 = 0.125;
     let gained = |i: usize| {
         let expected = state.expected(i, h).map(|dq| dq / h - v0[i]);

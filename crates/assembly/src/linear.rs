@@ -62,8 +62,8 @@ impl Linear {
     /// against the sums of the `sizes` of the terms, to which those of the unknowns, `|K| |x|`, and of the reactions `G' lambda` are added
     /// here.
     ///
-    /// The correction `dlambda` of the multipliers belongs to it: where the round-off of a constraint moves the unknowns, by `g/h` of a joint
-    /// in a short step, the reactions balance that.
+    /// The correction `dlambda` of the multipliers belongs to it: where the round-off of a constraint moves the unknowns, by `g/h` of a
+    /// joint in a short step, the reactions balance that.
     #[cold]
     pub(crate) fn most_roundings(
         &self,

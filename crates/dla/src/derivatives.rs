@@ -134,7 +134,7 @@ impl Derivatives {
     /// Records how many corrections a step took with it, and marks it stale where the surplus has reached the cost of a new one.
     #[inline(always)]
     pub(crate) fn took<const N: usize>(&mut self, corrections: u32) {
-        // The cost of a new Jacobian, in corrections, about.
+        // The cost of a new Jacobian in corrections, about: `(N/3)^3`, one for three coordinates.
         let price = const { (N * N * N).div_ceil(27) as u32 };
         self.took_at(price, corrections);
     }

@@ -226,6 +226,7 @@ pub(crate) fn expected<const N: usize>(state: &State<N>, h: f64) -> Option<[f64;
 /// known, or where it would change the velocity so much that Newton's method might converge to another solution.
 #[inline(always)]
 pub(crate) fn predicted<const N: usize>(state: &State<N>, h: f64, expected: Option<[f64; N]>) -> Option<[f64; N]> {
+    /// The largest change of the velocity by a predictor, relative to the velocity (`docs/methods/discrete-lagrange-dalembert.md`).
     const MOST: f64 = 0.125;
     let v0 = state.v();
     let near = |v: &[f64; N]| sup(&from_fn::<_, N, _>(|i| v[i] - v0[i])) <= MOST * sup(v0);

@@ -5,10 +5,10 @@ use lagrangian::linear::larger;
 
 /// The largest roughness of a step at the tolerance one.
 const SMOOTHNESS: f64 = 2.0;
-/// The contraction, in octaves an iteration, that the next step should have: from one that needs few iterations, whose steps may well be
-/// longer, to one that needs many.
+/// Bounds on the contraction that the next step should have, in octaves an iteration: a contraction factor of `2^-0.75 = .6` is enough where
+/// few iterations are needed, `2^-1.75 = .3` where many are (`docs/methods/gauss.md`).
 const SHRINKING: [f64; 2] = [0.75, 1.75];
-/// Numbers of iterations that count as few and as many.
+/// Between these bounds the iteration of a step is to converge within so many.
 const ITERATIONS: f64 = 12.0;
 
 /// The largest roughness of a step at the tolerance `epsilon`: its power `2 s / (s - 1)` is about the error of the step.
@@ -17,8 +17,8 @@ pub(super) fn roughest(stages: usize, epsilon: f64) -> f64 {
     SMOOTHNESS * epsilon.powf((s - 1.0) / (2.0 * s))
 }
 
-/// The degree of the polynomial by which the slopes of a step are continued to the next: the further they are allowed to be
-/// from it, the sooner it leads astray.
+/// The degree of the predictor, the polynomial by which the slopes of a step are continued to the next: the looser the tolerance, the further
+/// slopes are from it, and the lower the best degree (`docs/methods/gauss.md`).
 pub(super) fn degree(stages: usize, epsilon: f64) -> usize {
     (1.5 - 0.5 * epsilon.log10()).clamp(0.0, stages as f64 - 1.0) as usize
 }

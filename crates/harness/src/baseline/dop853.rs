@@ -179,7 +179,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Dop853<N, M> {
     }
 }
 
-/// Where an interval leads in which nothing moves by as much as a number whose square is one: the library's measure of errors is a sum of
+/// The end of an interval in which every change is so small that its square underflows: the library's measure of errors is a sum of
 /// squares, and refuses every step of a motion that has come so near to rest.
 #[cold]
 fn at_rest<const N: usize, const M: usize>(
