@@ -5,8 +5,8 @@ use lagrangian::linear::larger;
 
 /// The largest roughness of a step at the tolerance one.
 const SMOOTHNESS: f64 = 2.0;
-/// Bounds on the contraction that the next step should have, in octaves an iteration: a contraction factor of `2^-0.75 = .6` is enough where
-/// few iterations are needed, `2^-1.75 = .3` where many are (`docs/methods/gauss.md`).
+/// Bounds on the contraction that the next step should have, in octaves an iteration: a contraction factor of `2^-0.75 = .6` is enough
+/// where few iterations are needed, `2^-1.75 = .3` where many are (`docs/methods/gauss.md`).
 const SHRINKING: [f64; 2] = [0.75, 1.75];
 /// Between these bounds the iteration of a step is to converge within so many.
 const ITERATIONS: f64 = 12.0;
@@ -17,8 +17,8 @@ pub(super) fn roughest(stages: usize, epsilon: f64) -> f64 {
     SMOOTHNESS * epsilon.powf((s - 1.0) / (2.0 * s))
 }
 
-/// The degree of the predictor, the polynomial by which the slopes of a step are continued to the next: the looser the tolerance, the further
-/// slopes are from it, and the lower the best degree (`docs/methods/gauss.md`).
+/// The degree of the predictor, the polynomial by which the slopes of a step are continued to the next: the looser the tolerance, the
+/// further slopes are from it, and the lower the best degree (`docs/methods/gauss.md`).
 pub(super) fn degree(stages: usize, epsilon: f64) -> usize {
     (1.5 - 0.5 * epsilon.log10()).clamp(0.0, stages as f64 - 1.0) as usize
 }

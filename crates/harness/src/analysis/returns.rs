@@ -3,7 +3,7 @@ use lagrangian::from_fn;
 /// What velocities may differ by where they repeat, relative to their range, and times relative to the period: what cubics between nodes leave,
 /// `(h Omega)^4/384` of motions of the frequency `Omega`, is below it for `h Omega < 0.7`.
 const REPEATS: f64 = 1e-3;
-/// A plane is crossed at most so often in a period, and a period is accepted after so many repetitions (`docs/chaos.md`).
+/// A plane is crossed at most so often in a period, and at least so many periods are needed (`docs/chaos.md`).
 const MOST: usize = 64;
 const PERIODS: usize = 4;
 /// So many crossings are kept.
