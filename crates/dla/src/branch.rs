@@ -8,7 +8,7 @@ use lagrangian::linear::larger;
 pub(crate) const NEAR: f64 = 1.0;
 
 /// By how much a step with this mean velocity turns the constraint that turns most (rad): the rate times the step, since the two ends do
-/// not show whole turns. Zero where no angle turns by more than [`NEAR`].
+/// not show whole turns. Zero where no angle turns by more than 1 rad.
 #[inline(always)]
 #[must_use]
 pub fn turn<const N: usize, const M: usize>(
