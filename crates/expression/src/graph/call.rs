@@ -1,0 +1,56 @@
+use super::{Expression, Graph, Kind};
+use crate::Function;
+
+impl Graph {
+    /// A function of its arguments: those that are missing are the first, those that are too many are left out.
+    pub fn call(&mut self, function: Function, arguments: &[Expression]) -> Expression {
+        let Some(&first) = arguments.first() else { return self.constant(f64::NAN) };
+        let last = if function.arguments() == 1 { first } else { arguments.get(1).copied().unwrap_or(first) };
+        if let (Some(a), Some(b)) = (self.value(first), self.value(last)) {
+            return self.constant(function.of(a, b));
+        }
+        match function {
+            Function::Sqrt => self.power(first, 0.5),
+            // Even and odd functions.
+            Function::Cos | Function::Cosh | Function::Abs => {
+                let (_, e) = self.without_sign(first);
+                if function == Function::Abs && matches!(self.kind(e), Kind::Call(Function::Abs, _)) {
+                    return e;
+                }
+                self.called(function, [e, e])
+            }
+            Function::Sin
+            | Function::Tan
+            | Function::Asin
+            | Function::Atan
+            | Function::Sinh
+            | Function::Tanh
+            | Function::Sign => {
+                let (negative, e) = self.without_sign(first);
+                let called = self.called(function, [e, e]);
+                if negative { self.negated(called) } else { called }
+            }
+            Function::Exp => match *self.kind(first) {
+                Kind::Call(Function::Log, [u, _]) => u,
+                _ => self.called(function, [first; 2]),
+            },
+            Function::Log => match *self.kind(first) {
+                Kind::Call(Function::Exp, [u, _]) => u,
+                _ => self.called(function, [first; 2]),
+            },
+            Function::Min | Function::Max if first == last => first,
+            Function::Min | Function::Max => self.called(function, [first.min(last), first.max(last)]),
+            Function::Acos | Function::Atan2 => self.called(function, [first, last]),
+        }
+    }
+
+    fn called(&mut self, function: Function, arguments: [Expression; 2]) -> Expression {
+        self.intern(Kind::Call(function, arguments))
+    }
+
+    /// Whether the first coefficient is negative, and the expression with all of them turned round if so.
+    fn without_sign(&mut self, e: Expression) -> (bool, Expression) {
+        let negative = matches!(self.kind(e), Kind::Sum { terms, .. } if terms.first().is_some_and(|t| t.1.value() < 0.0));
+        (negative, if negative { self.negated(e) } else { e })
+    }
+}

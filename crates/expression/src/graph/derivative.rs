@@ -1,0 +1,150 @@
+use super::product::Product;
+use super::sum::Sum;
+use super::{Expression, Graph, Kind, bit};
+use crate::Function;
+
+impl Graph {
+    /// The derivative in a variable.
+    ///
+    /// Those of `abs`, `min` and `max` are written with `sign`, at a corner the mean of those on its two sides; that of `sign` is zero.
+    /// Elsewhere it is what the rules of differentiation make of the text: where a root vanishes, or the vector of `atan2`, it is
+    /// infinite or no number.
+    ///
+    /// What was derived once is kept.
+    pub fn derivative(&mut self, e: Expression, variable: u32) -> Expression {
+        let (bits, derivatives) = (bit(variable), &self.derivatives);
+        let unknown = |e: Expression| self.bits(e) & bits != 0 && !derivatives.contains_key(&(e, variable));
+        for part in self.reached(&[e], unknown) {
+            let derivative = self.rule(part, variable);
+            self.derivatives.insert((part, variable), derivative);
+        }
+        self.known(e, variable)
+    }
+
+    /// The derivatives in these variables.
+    pub fn gradient(&mut self, e: Expression, variables: &[u32]) -> Vec<Expression> {
+        variables.iter().map(|&k| self.derivative(e, k)).collect()
+    }
+
+    /// The derivatives of several expressions, a row for each.
+    pub fn jacobian(&mut self, expressions: &[Expression], variables: &[u32]) -> Vec<Vec<Expression>> {
+        expressions.iter().map(|&e| self.gradient(e, variables)).collect()
+    }
+
+    /// The second derivatives: a row for each of `rows`, in it one for each of `columns`.
+    pub fn hessian(&mut self, e: Expression, rows: &[u32], columns: &[u32]) -> Vec<Vec<Expression>> {
+        // The order of two derivatives is the same for a pair and for the pair turned round, so that both are one expression.
+        let second = |graph: &mut Self, a: u32, b: u32| {
+            let first = graph.derivative(e, a.min(b));
+            graph.derivative(first, a.max(b))
+        };
+        rows.iter().map(|&a| columns.iter().map(|&b| second(self, a, b)).collect()).collect()
+    }
+
+    fn known(&mut self, e: Expression, variable: u32) -> Expression {
+        match self.derivatives.get(&(e, variable)) {
+            Some(&derivative) => derivative,
+            None => self.constant(0.0),
+        }
+    }
+
+    /// The rule for one expression, the derivatives of its parts being known.
+    fn rule(&mut self, e: Expression, variable: u32) -> Expression {
+        match self.kind(e).clone() {
+            Kind::Constant(_) => self.constant(0.0),
+            Kind::Variable(k) => self.constant(if k == variable { 1.0 } else { 0.0 }),
+            Kind::Sum { terms, .. } => {
+                let mut sum = Sum::default();
+                for &(term, c) in &terms {
+                    let derivative = self.known(term, variable);
+                    self.add_to(&mut sum, derivative, c.value());
+                }
+                self.finish_sum(sum)
+            }
+            Kind::Product(factors) => {
+                let mut sum = Sum::default();
+                for &(base, halves) in &factors {
+                    let inner = self.known(base, variable);
+                    if self.value(inner) != Some(0.0) {
+                        let mut product = Product::default();
+                        for &(other, h) in &factors {
+                            self.multiply(&mut product, other, if other == base { h - 2 } else { h });
+                        }
+                        self.multiply(&mut product, inner, 2);
+                        let term = self.finish_product(product);
+                        self.add_to(&mut sum, term, 0.5 * f64::from(halves));
+                    }
+                }
+                self.finish_sum(sum)
+            }
+            Kind::Power(base, p) => {
+                let (slope, inner) = (self.power(base, p.value() - 1.0), self.known(base, variable));
+                let product = self.product(&[slope, inner]);
+                self.scaled(product, p.value())
+            }
+            Kind::Call(Function::Atan2, [y, x]) => {
+                let [dy, dx] = [y, x].map(|part| self.known(part, variable));
+                let (a, b) = (self.product(&[x, dy]), self.product(&[y, dx]));
+                let [y, x] = [y, x].map(|part| self.power(part, 2.0));
+                let (turned, square) = (self.difference(a, b), self.sum(&[x, y]));
+                self.quotient(turned, square)
+            }
+            Kind::Call(function @ (Function::Min | Function::Max), [a, b]) => {
+                let [da, db] = [a, b].map(|part| self.known(part, variable));
+                let (apart, mean) = (self.difference(a, b), self.sum(&[da, db]));
+                let (sign, half) = (self.call(Function::Sign, &[apart]), self.difference(da, db));
+                let turned = self.product(&[sign, half]);
+                let twice = if function == Function::Max { self.sum(&[mean, turned]) } else { self.difference(mean, turned) };
+                self.scaled(twice, 0.5)
+            }
+            Kind::Call(function, [u, _]) => {
+                let (slope, inner) = (self.slope(function, u, e), self.known(u, variable));
+                self.product(&[slope, inner])
+            }
+        }
+    }
+
+    /// The derivative of a function of one argument in that, where its value is `f`.
+    fn slope(&mut self, function: Function, u: Expression, f: Expression) -> Expression {
+        let square = |graph: &mut Self, e, c: f64| {
+            let (square, one) = (graph.power(e, 2.0), graph.constant(1.0));
+            let scaled = graph.scaled(square, c);
+            graph.sum(&[one, scaled])
+        };
+        match function {
+            Function::Sin => self.call(Function::Cos, &[u]),
+            Function::Cos => {
+                let sin = self.call(Function::Sin, &[u]);
+                self.negated(sin)
+            }
+            Function::Tan => square(self, f, 1.0),
+            Function::Asin | Function::Acos => {
+                // 1 - u^2 in factors: near 1 the square has lost digits.
+                let one = self.constant(1.0);
+                let [above, below] = [self.sum(&[one, u]), self.difference(one, u)];
+                let product = self.product(&[above, below]);
+                let slope = self.power(product, -0.5);
+                if function == Function::Acos { self.negated(slope) } else { slope }
+            }
+            Function::Atan => {
+                let square = square(self, u, 1.0);
+                self.power(square, -1.0)
+            }
+            Function::Sinh => self.call(Function::Cosh, &[u]),
+            Function::Cosh => self.call(Function::Sinh, &[u]),
+            // Not 1 - tanh^2, which has no digits left where that is small.
+            Function::Tanh => {
+                let cosh = self.call(Function::Cosh, &[u]);
+                self.power(cosh, -2.0)
+            }
+            Function::Exp => f,
+            Function::Log => self.power(u, -1.0),
+            Function::Abs => self.call(Function::Sign, &[u]),
+            Function::Sqrt => {
+                let inverse = self.power(u, -0.5);
+                self.scaled(inverse, 0.5)
+            }
+            Function::Sign | Function::Atan2 | Function::Min | Function::Max => self.constant(0.0),
+        }
+    }
+}

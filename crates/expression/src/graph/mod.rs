@@ -1,0 +1,163 @@
+//! Expressions that share what they have in common.
+
+mod build;
+mod call;
+mod derivative;
+mod kind;
+mod power;
+mod product;
+mod sum;
+mod text;
+mod walk;
+
+pub use kind::Expression;
+pub(crate) use kind::{Kind, Number};
+
+use crate::{Error, Limits};
+use indexmap::IndexSet;
+use std::collections::HashMap;
+
+/// Lists longer than this are not searched, and not opened within others: so that no text takes the square of its length.
+pub(crate) const LONG: usize = 32;
+
+/// Expressions, each of them once, simplified as they are made.
+///
+/// Sums and products are lists in the order in which their parts were made, so that `a + (b + c)` and `(c + a) + b` are one expression;
+/// constants are folded, equal terms and factors gathered, signs brought outward, `sin(u)^2 + cos(u)^2` is 1. Products are not multiplied
+/// out. Where an expression has a value as it was written, the simplified one has that value too, but for round-off; it may have a value
+/// in more places (`x/x` is 1, at zero too). The same calls in the same order make the same graph, to the last bit.
+///
+/// ```
+/// use expression::Graph;
+/// let mut graph = Graph::new();
+/// let [x, y] = [0, 1].map(|k| graph.variable(k));
+/// let (a, b) = (graph.sum(&[x, y]), graph.sum(&[y, x]));
+/// assert_eq!(a, b);
+/// let square = graph.product(&[x, x]);
+/// let two = graph.constant(2.0);
+/// assert_eq!(square, graph.power(x, 2.0));
+/// assert_eq!(graph.derivative(square, 0), graph.product(&[two, x]));
+/// ```
+///
+/// An expression of another graph means some other expression in this one, or `NaN`.
+#[derive(Debug, Clone)]
+pub struct Graph {
+    kinds: IndexSet<Kind>,
+    /// The variables of each, folded into as many bits as there are: none where the bit is not set.
+    variables: Vec<u64>,
+    derivatives: HashMap<(Expression, u32), Expression>,
+    size: usize,
+    limit: usize,
+    full: bool,
+    limits: Limits,
+}
+
+impl Default for Graph {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Graph {
+    /// The terms and factors that a graph may have where nothing else is said.
+    pub const LIMIT: usize = 1 << 22;
+
+    /// A graph without expressions.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::with_limit(Self::LIMIT)
+    }
+
+    /// A graph that may have so many terms and factors, all of its expressions and their derivatives together. What goes beyond is `NaN`,
+    /// and [`check`](Self::check) tells.
+    #[must_use]
+    pub fn with_limit(limit: usize) -> Self {
+        Self {
+            kinds: IndexSet::new(),
+            variables: Vec::new(),
+            derivatives: HashMap::new(),
+            size: 0,
+            limit: limit.min(u32::MAX as usize >> 1),
+            full: false,
+            limits: Limits::default(),
+        }
+    }
+
+    /// Whether all that was asked for had room.
+    ///
+    /// # Errors
+    /// [`Error::GraphFull`].
+    pub fn check(&self) -> Result<(), Error> {
+        if self.full { Err(Error::GraphFull { limit: self.limit }) } else { Ok(()) }
+    }
+
+    /// How many expressions there are, with all their parts.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.kinds.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.kinds.is_empty()
+    }
+
+    /// A constant.
+    pub fn constant(&mut self, x: f64) -> Expression {
+        self.intern(Kind::Constant(Number::new(x)))
+    }
+
+    /// The variable of that number: the tape takes its value from that place.
+    pub fn variable(&mut self, k: u32) -> Expression {
+        self.intern(Kind::Variable(k))
+    }
+
+    /// The number that an expression is, where it is constant.
+    #[must_use]
+    pub fn value(&self, e: Expression) -> Option<f64> {
+        if let Kind::Constant(x) = self.kind(e) { Some(x.value()) } else { None }
+    }
+
+    pub(crate) fn kind(&self, e: Expression) -> &Kind {
+        self.kinds.get_index(e.index()).unwrap_or(&Kind::NOT_A_NUMBER)
+    }
+
+    /// The expression of that kind, if it is there.
+    pub(crate) fn find(&self, kind: &Kind) -> Option<Expression> {
+        self.kinds.get_index_of(kind).map(|k| Expression(k as u32))
+    }
+
+    /// The bits of the variables of an expression, see [`bit`].
+    pub(crate) fn bits(&self, e: Expression) -> u64 {
+        self.variables.get(e.index()).copied().unwrap_or(0)
+    }
+
+    pub(crate) fn intern(&mut self, kind: Kind) -> Expression {
+        let constant = matches!(kind, Kind::Constant(_));
+        // One constant more always has room: the one that stands for all that has none.
+        if !constant && self.size + kind.size() > self.limit {
+            if let Some(there) = self.find(&kind) {
+                return there;
+            }
+            self.full = true;
+            return self.constant(f64::NAN);
+        }
+        let size = kind.size();
+        let bits = match kind {
+            Kind::Variable(k) => bit(k),
+            _ => kind.parts().fold(0, |bits, part| bits | self.bits(part)),
+        };
+        let (index, new) = self.kinds.insert_full(kind);
+        if new {
+            self.size += size;
+            self.variables.push(bits);
+        }
+        Expression(index as u32)
+    }
+}
+
+/// The bit of a variable in those of an expression.
+pub(crate) fn bit(variable: u32) -> u64 {
+    1 << (variable % 64)
+}

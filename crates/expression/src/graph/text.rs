@@ -1,0 +1,175 @@
+use super::{Expression, Graph, Kind, Number};
+use crate::{Error, Names};
+
+/// What stands in a text without parentheses: everything, products, powers, or only what is one word.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+enum Level {
+    Sum,
+    Product,
+    Power,
+    Word,
+}
+
+/// A part of a text that is still to be written.
+enum Piece {
+    Text(&'static str),
+    Number(f64),
+    Part(Expression, Level),
+}
+
+impl Graph {
+    /// An expression as a text, in which what is shared is written out again and again. The variables have the names of the table, by
+    /// their numbers.
+    ///
+    /// [`parse`](crate::parse) and [`build`](Self::build) make the same expression of it.
+    ///
+    /// ```
+    /// use expression::{Graph, Names, parse};
+    /// let names = Names::of(["m", "x", "x'"])?;
+    /// let mut graph = Graph::new();
+    /// let variables = [0, 1, 2].map(|k| graph.variable(k));
+    /// let e = graph.build(&parse("-(-m/2*x_dot**2 + 1)*sqrt(x)/x", &names)?, &variables)?;
+    /// assert_eq!(graph.text(e, &names)?, "(0.5*m*x'^2 - 1)/sqrt(x)");
+    /// # Ok::<(), expression::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::TextTooLong`].
+    pub fn text(&self, e: Expression, names: &Names) -> Result<String, Error> {
+        let limit = self.limits.length;
+        let (mut text, mut waiting) = (String::new(), vec![Piece::Part(e, Level::Sum)]);
+        while let Some(piece) = waiting.pop() {
+            match piece {
+                Piece::Text(word) => text.push_str(word),
+                Piece::Number(x) => text.push_str(&number(x)),
+                Piece::Part(e, least) => {
+                    if let &Kind::Variable(k) = self.kind(e) {
+                        let name = names.all().get(k as usize);
+                        text.push_str(&name.cloned().unwrap_or_else(|| format!("variable_{k}")));
+                        continue;
+                    }
+                    let (level, mut pieces) = self.pieces(e);
+                    if level < least {
+                        pieces.insert(0, Piece::Text("("));
+                        pieces.push(Piece::Text(")"));
+                    }
+                    waiting.extend(pieces.into_iter().rev());
+                }
+            }
+            if text.len() > limit || waiting.len() > limit {
+                return Err(Error::TextTooLong { limit });
+            }
+        }
+        Ok(text)
+    }
+
+    fn pieces(&self, e: Expression) -> (Level, Vec<Piece>) {
+        match self.kind(e) {
+            Kind::Constant(x) => constant(x.value()),
+            Kind::Variable(_) => (Level::Word, Vec::new()),
+            Kind::Sum { constant, terms } => {
+                let mut pieces = Vec::new();
+                for &(term, c) in terms {
+                    pieces.push(sign(c.value(), pieces.is_empty()));
+                    pieces.extend(self.multiple(c.value().abs(), term));
+                }
+                let single = terms.len() == 1 && *constant == Number::ZERO;
+                let positive = terms.first().is_some_and(|(_, c)| c.value() > 0.0);
+                if *constant != Number::ZERO {
+                    pieces.push(sign(constant.value(), pieces.is_empty()));
+                    pieces.push(Piece::Number(constant.value().abs()));
+                }
+                (if single && positive { Level::Product } else { Level::Sum }, pieces)
+            }
+            Kind::Product(factors) => match **factors {
+                [(base, halves)] if halves > 0 => {
+                    (if halves == 1 { Level::Word } else { Level::Power }, factor(base, halves))
+                }
+                _ => (Level::Product, self.multiple(1.0, e)),
+            },
+            Kind::Power(base, p) => (Level::Power, raised(*base, p.value())),
+            Kind::Call(function, [a, b]) => {
+                let mut pieces = vec![Piece::Text(function.name()), Piece::Text("("), Piece::Part(*a, Level::Sum)];
+                if function.arguments() == 2 {
+                    pieces.extend([Piece::Text(", "), Piece::Part(*b, Level::Sum)]);
+                }
+                pieces.push(Piece::Text(")"));
+                (Level::Word, pieces)
+            }
+        }
+    }
+
+    /// `c` times a term, `c` not negative.
+    fn multiple(&self, c: f64, term: Expression) -> Vec<Piece> {
+        let single = [(term, 2)];
+        let factors = if let Kind::Product(factors) = self.kind(term) { &**factors } else { &single };
+        let mut pieces = Vec::new();
+        if c.to_bits() != 1.0_f64.to_bits() || factors.iter().all(|&(_, halves)| halves < 0) {
+            pieces.push(Piece::Number(c));
+        }
+        for &(base, halves) in factors.iter().filter(|(_, halves)| *halves > 0) {
+            if !pieces.is_empty() {
+                pieces.push(Piece::Text("*"));
+            }
+            pieces.extend(factor(base, halves));
+        }
+        let below: Vec<_> = factors.iter().filter(|(_, halves)| *halves < 0).collect();
+        if let [first, rest @ ..] = &below[..] {
+            pieces.push(Piece::Text(if rest.is_empty() { "/" } else { "/(" }));
+            pieces.extend(factor(first.0, -first.1));
+            for (base, halves) in rest {
+                pieces.push(Piece::Text("*"));
+                pieces.extend(factor(*base, -halves));
+            }
+            if !rest.is_empty() {
+                pieces.push(Piece::Text(")"));
+            }
+        }
+        pieces
+    }
+}
+
+fn sign(x: f64, first: bool) -> Piece {
+    Piece::Text(match (x < 0.0, first) {
+        (true, true) => "-",
+        (false, true) => "",
+        (true, false) => " - ",
+        (false, false) => " + ",
+    })
+}
+
+/// A constant by itself: negative ones and those that are no number are written as operations.
+fn constant(x: f64) -> (Level, Vec<Piece>) {
+    if x.is_nan() {
+        (Level::Product, vec![Piece::Text("0/0")])
+    } else if x.is_infinite() {
+        (Level::Sum, vec![sign(x, true), Piece::Text("1/0")])
+    } else if x < 0.0 {
+        (Level::Sum, vec![sign(x, true), Piece::Number(-x)])
+    } else {
+        (Level::Word, vec![Piece::Number(x)])
+    }
+}
+
+/// `base^(halves/2)` with a positive exponent.
+fn factor(base: Expression, halves: i32) -> Vec<Piece> {
+    match halves {
+        1 => vec![Piece::Text("sqrt("), Piece::Part(base, Level::Sum), Piece::Text(")")],
+        2 => vec![Piece::Part(base, Level::Power)],
+        _ => raised(base, 0.5 * f64::from(halves)),
+    }
+}
+
+fn raised(base: Expression, p: f64) -> Vec<Piece> {
+    let (open, close) = if p < 0.0 { ("^(-", ")") } else { ("^", "") };
+    vec![Piece::Part(base, Level::Word), Piece::Text(open), Piece::Number(p.abs()), Piece::Text(close)]
+}
+
+/// A number that is not negative, with as many digits as it has.
+fn number(x: f64) -> String {
+    let text = format!("{x:?}");
+    match text.strip_suffix(".0") {
+        Some(whole) => whole.to_owned(),
+        None => text,
+    }
+}

@@ -1,0 +1,61 @@
+use super::{Expression, Graph, Kind};
+use std::collections::HashMap;
+
+impl Graph {
+    /// The expressions that these are made of, themselves among them, parts before what is made of them.
+    pub(crate) fn reached(&self, roots: &[Expression], mut enter: impl FnMut(Expression) -> bool) -> Vec<Expression> {
+        let mut seen = vec![false; self.kinds.len()];
+        let mut waiting = roots.to_vec();
+        let mut reached = Vec::new();
+        while let Some(e) = waiting.pop() {
+            if let Some(seen) = seen.get_mut(e.index()).filter(|seen| !**seen) {
+                *seen = true;
+                if enter(e) {
+                    reached.push(e);
+                    waiting.extend(self.kind(e).parts());
+                }
+            }
+        }
+        reached.sort_unstable();
+        reached
+    }
+
+    /// The variables that an expression depends on, in order.
+    #[must_use]
+    pub fn variables(&self, e: Expression) -> Vec<u32> {
+        let variable = |e| if let &Kind::Variable(k) = self.kind(e) { Some(k) } else { None };
+        let mut variables: Vec<u32> = self.reached(&[e], |_| true).into_iter().filter_map(variable).collect();
+        variables.sort_unstable();
+        variables
+    }
+
+    /// The expression with others in place of variables.
+    pub fn substitute(&mut self, e: Expression, meanings: &[(u32, Expression)]) -> Expression {
+        let mut by: HashMap<Expression, Expression> = HashMap::new();
+        for part in self.reached(&[e], |_| true) {
+            let new = |e: Expression| by.get(&e).copied().unwrap_or(e);
+            let replaced = match self.kind(part).clone() {
+                Kind::Constant(_) => part,
+                Kind::Variable(k) => meanings.iter().find(|(variable, _)| *variable == k).map_or(part, |m| m.1),
+                Kind::Sum { constant, terms } => {
+                    let terms: Vec<_> = terms.iter().map(|&(term, c)| (new(term), c.value())).collect();
+                    let mut sum = super::sum::Sum::default();
+                    let constant = self.constant(constant.value());
+                    self.add_to(&mut sum, constant, 1.0);
+                    for (term, c) in terms {
+                        self.add_to(&mut sum, term, c);
+                    }
+                    self.finish_sum(sum)
+                }
+                Kind::Product(factors) => {
+                    let factors: Vec<_> = factors.iter().map(|&(base, h)| (new(base), h)).collect();
+                    self.product_of(1.0, &factors)
+                }
+                Kind::Power(base, p) => self.power(new(base), p.value()),
+                Kind::Call(function, [a, b]) => self.call(function, &[new(a), new(b)]),
+            };
+            by.insert(part, replaced);
+        }
+        by.get(&e).copied().unwrap_or(e)
+    }
+}

@@ -1,0 +1,209 @@
+use crate::names::{PI, shortened};
+use crate::syntax::{Action, Step};
+use crate::tokens::{Token, Tokens};
+use crate::{Error, Function, Limits, Names, Syntax, nearest};
+
+/// Reads a text.
+///
+/// Operators are `+ - * /`, `^` or `**`, which binds tighter than a sign before it and groups to the right, as in writing: `-x^2` is
+/// `-(x^2)`, `2^-x^2` is `2^(-(x^2))`. Names are those of the table, the [functions](Function) (`ln` is `log`), and `pi`.
+///
+/// # Errors
+/// What is wrong, where, and what would be right there; and [limits](Limits) that the text exceeds.
+pub fn parse(text: &str, names: &Names) -> Result<Syntax, Error> {
+    parse_within(text, names, &Limits::default())
+}
+
+/// The same with limits of one's own.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_within(text: &str, names: &Names, limits: &Limits) -> Result<Syntax, Error> {
+    // A character has at least one byte: most texts need not be counted.
+    if text.len() > limits.length {
+        let length = text.chars().count();
+        if length > limits.length {
+            return Err(Error::TooLong { length, limit: limits.length });
+        }
+    }
+    let mut parser = Parser { tokens: Tokens::new(text), names, limits, open: Vec::new(), steps: Vec::new() };
+    parser.read()?;
+    Ok(Syntax { steps: parser.steps })
+}
+
+/// An operation that waits for its right operand, or a parenthesis for its end.
+#[derive(Debug, Clone, Copy)]
+enum Open {
+    Operation { column: usize, action: Action, binds: u8 },
+    Group { column: usize },
+    Call { column: usize, at: usize, function: Function, commas: usize },
+}
+
+const SUM: u8 = 1;
+const PRODUCT: u8 = 2;
+const SIGN: u8 = 3;
+const POWER: u8 = 4;
+
+/// Dijkstra's shunting yard: what is open stands in a list, not on the stack of the program.
+struct Parser<'a> {
+    tokens: Tokens<'a>,
+    names: &'a Names,
+    limits: &'a Limits,
+    open: Vec<Open>,
+    steps: Vec<Step>,
+}
+
+impl Parser<'_> {
+    /// Reads operands and operators in turn until the text ends.
+    fn read(&mut self) -> Result<(), Error> {
+        let mut wants_operand = true;
+        loop {
+            let (column, token) = self.tokens.next()?;
+            if wants_operand {
+                wants_operand = self.operand(column, token)?;
+            } else if token == Token::End {
+                return self.end();
+            } else {
+                wants_operand = self.operator(column, token)?;
+            }
+        }
+    }
+
+    /// What may begin an operand; whether the operand is still to come.
+    fn operand(&mut self, column: usize, token: Token<'_>) -> Result<bool, Error> {
+        match token {
+            Token::Number(x) => self.push(column, Action::Number(x))?,
+            Token::Name(name) => return self.name(column, name),
+            Token::Plus => return Ok(true),
+            Token::Minus => {
+                self.open(column, Open::Operation { column, action: Action::Negate, binds: SIGN })?;
+                return Ok(true);
+            }
+            Token::Open => {
+                self.open(column, Open::Group { column })?;
+                return Ok(true);
+            }
+            found => return Err(Error::ExpectedOperand { column, found: found.shown() }),
+        }
+        Ok(false)
+    }
+
+    fn name(&mut self, column: usize, name: &str) -> Result<bool, Error> {
+        let function = if name == "ln" { Some(Function::Log) } else { Function::named(name) };
+        let position = self.names.position(name);
+        if function.is_none() && position.is_none() && name != PI && !self.tokens.opens() {
+            return Err(self.names.unknown(name, column));
+        }
+        match (function, self.tokens.opens()) {
+            (Some(function), true) => {
+                let (at, _) = self.tokens.next()?;
+                self.open(column, Open::Call { column, at, function, commas: 0 })?;
+                Ok(true)
+            }
+            (Some(function), false) => Err(Error::NoArguments { column, name: function.name() }),
+            (None, true) => {
+                let functions = Function::ALL.map(Function::name);
+                let nearest = nearest(name, functions).map(str::to_owned);
+                let known = functions.map(str::to_owned).to_vec();
+                Err(Error::NotAFunction { column, name: shortened(name), nearest, known })
+            }
+            (None, false) => {
+                self.push(column, position.map_or(Action::Number(std::f64::consts::PI), Action::Name))?;
+                Ok(false)
+            }
+        }
+    }
+
+    /// What may follow an operand; whether another operand is to come.
+    fn operator(&mut self, column: usize, token: Token<'_>) -> Result<bool, Error> {
+        let (action, binds) = match token {
+            Token::Plus => (Action::Add, SUM),
+            Token::Minus => (Action::Subtract, SUM),
+            Token::Times => (Action::Multiply, PRODUCT),
+            Token::Over => (Action::Divide, PRODUCT),
+            Token::Power => (Action::Power, POWER),
+            Token::Close => return self.close(column),
+            Token::Comma => return self.comma(column),
+            found => return Err(self.expected_operator(column, &found)),
+        };
+        // A power waits for the one to its right.
+        self.finish(if binds == POWER { POWER + 1 } else { binds })?;
+        self.open(column, Open::Operation { column, action, binds })?;
+        Ok(true)
+    }
+
+    fn close(&mut self, column: usize) -> Result<bool, Error> {
+        self.finish(0)?;
+        match self.open.pop() {
+            Some(Open::Group { .. }) => Ok(false),
+            Some(Open::Call { column, function, commas, .. }) => {
+                let (expected, found) = (function.arguments(), commas + 1);
+                if found != expected {
+                    return Err(Error::ArgumentCount { column, name: function.name(), expected, found });
+                }
+                self.push(column, Action::Call(function))?;
+                Ok(false)
+            }
+            _ => Err(Error::Unopened { column }),
+        }
+    }
+
+    fn comma(&mut self, column: usize) -> Result<bool, Error> {
+        self.finish(0)?;
+        match self.open.last_mut() {
+            Some(Open::Call { commas, .. }) => {
+                *commas += 1;
+                Ok(true)
+            }
+            _ => Err(self.expected_operator(column, &Token::Comma)),
+        }
+    }
+
+    fn end(&mut self) -> Result<(), Error> {
+        self.finish(0)?;
+        match self.open.last() {
+            None => Ok(()),
+            Some(&(Open::Group { column } | Open::Call { at: column, .. } | Open::Operation { column, .. })) => {
+                Err(Error::Unclosed { column })
+            }
+        }
+    }
+
+    fn expected_operator(&self, column: usize, found: &Token<'_>) -> Error {
+        let inner = self.open.iter().rev().find(|open| !matches!(open, Open::Operation { .. }));
+        let expected = match inner {
+            None => "the end of the text",
+            Some(Open::Call { function, .. }) if function.arguments() > 1 => "`,` or `)`",
+            Some(_) => "`)`",
+        };
+        Error::ExpectedOperator { column, found: found.shown(), expected }
+    }
+
+    /// Ends the operations whose right operand is complete: those that bind at least so.
+    fn finish(&mut self, least: u8) -> Result<(), Error> {
+        while let Some(&Open::Operation { column, action, binds }) = self.open.last() {
+            if binds < least {
+                break;
+            }
+            self.open.pop();
+            self.push(column, action)?;
+        }
+        Ok(())
+    }
+
+    fn open(&mut self, column: usize, open: Open) -> Result<(), Error> {
+        if self.open.len() >= self.limits.depth {
+            return Err(Error::TooDeep { column, limit: self.limits.depth });
+        }
+        self.open.push(open);
+        Ok(())
+    }
+
+    fn push(&mut self, column: usize, action: Action) -> Result<(), Error> {
+        if self.steps.len() >= self.limits.nodes {
+            return Err(Error::TooManyNodes { column, limit: self.limits.nodes });
+        }
+        self.steps.push(Step { column, action });
+        Ok(())
+    }
+}

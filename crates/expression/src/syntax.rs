@@ -1,0 +1,132 @@
+use crate::function::power;
+use crate::{Error, Function};
+use lagrangian::Scalar;
+
+/// A text as it was written, its names resolved: numbers, names and operations, operands before what is done with them.
+///
+/// It has no tree, so that nothing that is done with it recurs, however deep the text is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Syntax {
+    pub(crate) steps: Vec<Step>,
+}
+
+/// A number, a name or an operation, and the column where it stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Step {
+    pub(crate) column: usize,
+    pub(crate) action: Action,
+}
+
+/// What a step does with the operands before it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Action {
+    Number(f64),
+    /// By its position in the table.
+    Name(usize),
+    Negate,
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Power,
+    Call(Function),
+}
+
+impl Action {
+    /// How many operands it takes.
+    pub(crate) fn operands(self) -> usize {
+        match self {
+            Self::Number(_) | Self::Name(_) => 0,
+            Self::Negate => 1,
+            Self::Call(function) => function.arguments(),
+            _ => 2,
+        }
+    }
+}
+
+/// A number that is a constant of the text, or depends on a name.
+#[derive(Debug, Clone, Copy)]
+enum Operand<S> {
+    Constant(f64),
+    Variable(S),
+}
+
+impl<S: Scalar> Operand<S> {
+    fn scalar(self) -> S {
+        match self {
+            Self::Constant(x) => S::constant(x),
+            Self::Variable(x) => x,
+        }
+    }
+}
+
+impl Syntax {
+    /// The value with the operations in the order of the text, nothing simplified; `values` are those of the names by their position.
+    ///
+    /// This is what the other ways to a value are tested against, and allocates. `a^b` is a product or a root where `b` is a constant
+    /// of the text, else `exp(b log(a))`, which is no number where `a` is negative.
+    ///
+    /// # Errors
+    /// [`Error::TooFew`] values.
+    pub fn evaluate<S: Scalar>(&self, values: &[S]) -> Result<S, Error> {
+        let mut stack: Vec<Operand<S>> = Vec::new();
+        for step in &self.steps {
+            let pushed = match step.action {
+                Action::Number(x) => Operand::Constant(x),
+                Action::Name(k) => Operand::Variable(*values.get(k).ok_or_else(|| too_few(k + 1, values.len()))?),
+                action => {
+                    let b = if action.operands() == 2 { stack.pop() } else { None };
+                    let a = stack.pop().unwrap_or(Operand::Constant(f64::NAN));
+                    applied(action, a, b.unwrap_or(a))
+                }
+            };
+            stack.push(pushed);
+        }
+        Ok(stack.pop().map_or(S::constant(f64::NAN), Operand::scalar))
+    }
+
+    /// The positions of the names that occur, in order.
+    #[must_use]
+    pub fn names(&self) -> Vec<usize> {
+        let name = |step: &Step| if let Action::Name(k) = step.action { Some(k) } else { None };
+        let mut names: Vec<usize> = self.steps.iter().filter_map(name).collect();
+        names.sort_unstable();
+        names.dedup();
+        names
+    }
+
+    /// The column in which a function is first used.
+    #[must_use]
+    pub fn first_use(&self, function: Function) -> Option<usize> {
+        let here = |step: &&Step| step.action == Action::Call(function);
+        self.steps.iter().filter(here).map(|step| step.column).min()
+    }
+}
+
+pub(crate) fn too_few(expected: usize, found: usize) -> Error {
+    Error::TooFew { what: "values", expected, found }
+}
+
+fn applied<S: Scalar>(action: Action, a: Operand<S>, b: Operand<S>) -> Operand<S> {
+    if let (Operand::Constant(a), Operand::Constant(b)) = (a, b) {
+        return Operand::Constant(result(action, a, b, Some(b)));
+    }
+    let constant = if let Operand::Constant(b) = b { Some(b) } else { None };
+    Operand::Variable(result(action, a.scalar(), b.scalar(), constant))
+}
+
+fn result<S: Scalar>(action: Action, a: S, b: S, constant: Option<f64>) -> S {
+    match action {
+        Action::Number(_) | Action::Name(_) => a,
+        Action::Negate => -a,
+        Action::Add => a + b,
+        Action::Subtract => a - b,
+        Action::Multiply => a * b,
+        Action::Divide => a / b,
+        Action::Power => match constant {
+            Some(b) => power(a, b),
+            None => (b * a.ln()).exp(),
+        },
+        Action::Call(function) => function.of(a, b),
+    }
+}
