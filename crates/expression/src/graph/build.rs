@@ -34,9 +34,7 @@ impl Graph {
         for step in &syntax.steps {
             let operand = match step.action {
                 Action::Number(x) => Operand::Done(self.constant(x)),
-                Action::Name(k) => {
-                    Operand::Done(*meanings.get(k).ok_or_else(|| too_few(k + 1, meanings.len()))?)
-                }
+                Action::Name(k) => Operand::Done(*meanings.get(k).ok_or_else(|| too_few(k + 1, meanings.len()))?),
                 action => {
                     let b = if action.operands() == 2 { stack.pop() } else { None };
                     let a = stack.pop();
@@ -56,13 +54,7 @@ impl Graph {
         Ok(done)
     }
 
-    fn applied(
-        &mut self,
-        action: Action,
-        a: Operand,
-        b: Option<Expression>,
-        column: usize,
-    ) -> Result<Operand, Error> {
+    fn applied(&mut self, action: Action, a: Operand, b: Option<Expression>, column: usize) -> Result<Operand, Error> {
         Ok(match (action, b) {
             (Action::Add | Action::Subtract, Some(b)) => {
                 let mut sum = match a {

@@ -50,7 +50,8 @@ impl Graph {
 
     /// Whether the first coefficient is negative, and the expression with all of them turned round if so.
     fn without_sign(&mut self, e: Expression) -> (bool, Expression) {
-        let negative = matches!(self.kind(e), Kind::Sum { terms, .. } if terms.first().is_some_and(|t| t.1.value() < 0.0));
+        let negative =
+            matches!(self.kind(e), Kind::Sum { terms, .. } if terms.first().is_some_and(|t| t.1.value() < 0.0));
         (negative, if negative { self.negated(e) } else { e })
     }
 }

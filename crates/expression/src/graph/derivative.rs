@@ -94,7 +94,8 @@ impl Graph {
                 let (apart, mean) = (self.difference(a, b), self.sum(&[da, db]));
                 let (sign, half) = (self.call(Function::Sign, &[apart]), self.difference(da, db));
                 let turned = self.product(&[sign, half]);
-                let twice = if function == Function::Max { self.sum(&[mean, turned]) } else { self.difference(mean, turned) };
+                let twice =
+                    if function == Function::Max { self.sum(&[mean, turned]) } else { self.difference(mean, turned) };
                 self.scaled(twice, 0.5)
             }
             Kind::Call(function, [u, _]) => {

@@ -108,8 +108,12 @@ impl Graph {
         self.intern(Kind::Constant(Number::new(x)))
     }
 
-    /// The variable of that number: the tape takes its value from that place.
+    /// The variable of that number: the tape takes its value from that place. A number beyond [`LIMIT`](Self::LIMIT) has no room.
     pub fn variable(&mut self, k: u32) -> Expression {
+        if k as usize >= Self::LIMIT {
+            self.full = true;
+            return self.constant(f64::NAN);
+        }
         self.intern(Kind::Variable(k))
     }
 

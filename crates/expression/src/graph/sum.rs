@@ -1,3 +1,5 @@
+#![allow(clippy::float_cmp, reason = "a coefficient is one where its bits are")]
+
 use super::{Expression, Graph, Kind, LONG, Number};
 use crate::Function;
 
@@ -86,7 +88,9 @@ impl Graph {
             return (1.0, e);
         }
         let alike = |x: &Number| x.value().abs() == leading.abs();
-        let common = rest.iter().all(|(_, x)| alike(x)) && (*constant == Number::ZERO || alike(constant));
+        // A multiple of a sum among the terms would become that sum, which is then no term.
+        let plain = terms.iter().all(|&(term, _)| !matches!(self.kind(term), Kind::Sum { .. }));
+        let common = plain && rest.iter().all(|(_, x)| alike(x)) && (*constant == Number::ZERO || alike(constant));
         let factor = if common { leading } else { leading.signum() };
         if factor == 1.0 {
             return (1.0, e);

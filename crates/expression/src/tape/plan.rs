@@ -1,0 +1,226 @@
+use crate::graph::{Expression, Graph, Kind};
+use crate::{Error, Function};
+use std::collections::HashMap;
+
+/// A part of a sum or of a product.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Item {
+    pub(crate) part: u32,
+    pub(crate) negative: bool,
+}
+
+impl Item {
+    pub(crate) fn positive(part: u32) -> Self {
+        Self { part, negative: false }
+    }
+}
+
+/// What is to be computed from other steps.
+#[derive(Debug, Clone)]
+pub(crate) enum Step {
+    Constant(f64),
+    Variable(u32),
+    /// A constant and parts with their coefficients.
+    Combination(f64, Vec<(u32, f64)>),
+    Sum(Vec<Item>),
+    Product(Vec<Item>),
+    Divide(u32, u32),
+    Invert(u32),
+    Square(u32),
+    Whole(u32, i32),
+    Real(u32, f64),
+    Call(Function, u32, u32),
+}
+
+impl Step {
+    pub(crate) fn parts(&self) -> Vec<u32> {
+        match self {
+            Self::Constant(_) | Self::Variable(_) => Vec::new(),
+            Self::Combination(_, parts) => parts.iter().map(|&(part, _)| part).collect(),
+            Self::Sum(items) | Self::Product(items) => items.iter().map(|item| item.part).collect(),
+            Self::Call(function, a, b) if function.arguments() == 2 => vec![*a, *b],
+            Self::Divide(a, b) => vec![*a, *b],
+            Self::Invert(a) | Self::Square(a) | Self::Whole(a, _) | Self::Real(a, _) | Self::Call(_, a, _) => vec![*a],
+        }
+    }
+}
+
+/// Powers that several steps have in common.
+#[derive(Debug, PartialEq, Eq, Hash)]
+enum Shared {
+    Power(u32, i32),
+    Root(u32),
+    Inverse(u32),
+}
+
+/// Steps for some expressions: sums and products are lists still, in which common parts can be looked for.
+#[derive(Debug)]
+pub(crate) struct Plan {
+    pub(crate) steps: Vec<Step>,
+    pub(crate) outputs: Vec<u32>,
+    shared: HashMap<Shared, u32>,
+}
+
+/// Higher powers are left to the function for them; it takes as many products, one after another.
+const HIGH: i32 = 16;
+
+impl Plan {
+    pub(crate) fn new(graph: &Graph, outputs: &[Expression]) -> Result<Self, Error> {
+        graph.check()?;
+        let live = graph.reached(outputs, |_| true);
+        // A number that several products are divided by is inverted once.
+        let mut divides: HashMap<(Expression, bool), u32> = HashMap::new();
+        for &e in &live {
+            if let Kind::Product(factors) = graph.kind(e) {
+                for &(base, halves) in factors.iter().filter(|(_, halves)| *halves < 0) {
+                    for root in [false, true] {
+                        let has = if root { halves % 2 != 0 } else { halves < -1 };
+                        *divides.entry((base, root)).or_default() += u32::from(has);
+                    }
+                }
+            }
+        }
+        let often = |base, root| divides.get(&(base, root)).is_some_and(|&count| count > 1);
+        let mut plan = Self { steps: Vec::new(), outputs: Vec::new(), shared: HashMap::new() };
+        let mut steps: HashMap<Expression, u32> = HashMap::new();
+        for &e in &live {
+            let of = |e: &Expression| steps.get(e).copied().unwrap_or(0);
+            let step = match graph.kind(e) {
+                Kind::Constant(x) => plan.push(Step::Constant(x.value())),
+                Kind::Variable(k) => plan.push(Step::Variable(*k)),
+                Kind::Sum { constant, terms } => {
+                    let terms: Vec<_> = terms.iter().map(|(term, c)| (of(term), c.value())).collect();
+                    plan.sum(constant.value(), &terms)
+                }
+                Kind::Product(factors) => {
+                    let (mut above, mut below) = (Vec::new(), Vec::new());
+                    for &(base, halves) in factors {
+                        let part = of(&base);
+                        let root = (halves % 2 != 0).then(|| plan.root(part));
+                        for (part, n, is_root) in [(Some(part), halves / 2, false), (root, halves % 2, true)] {
+                            let Some(part) = part.filter(|_| n != 0) else { continue };
+                            if n > 0 {
+                                above.push(Item::positive(plan.power(part, n)));
+                            } else if often(base, is_root) {
+                                let inverse = plan.inverse(part);
+                                above.push(Item::positive(plan.power(inverse, -n)));
+                            } else {
+                                below.push(Item::positive(plan.power(part, -n)));
+                            }
+                        }
+                    }
+                    plan.quotient(above, below)
+                }
+                Kind::Power(base, p) => plan.push(Step::Real(of(base), p.value())),
+                Kind::Call(function, [a, b]) => plan.push(Step::Call(*function, of(a), of(b))),
+            };
+            steps.insert(e, step);
+        }
+        // An expression of another graph has no step.
+        let not_a_number = plan.push(Step::Constant(f64::NAN));
+        plan.outputs = outputs.iter().map(|e| steps.get(e).copied().unwrap_or(not_a_number)).collect();
+        Ok(plan)
+    }
+
+    pub(crate) fn push(&mut self, step: Step) -> u32 {
+        self.steps.push(step);
+        self.steps.len() as u32 - 1
+    }
+
+    /// A sum whose terms with the same coefficient, but for signs, are added before they are multiplied.
+    fn sum(&mut self, constant: f64, terms: &[(u32, f64)]) -> u32 {
+        let mut groups: Vec<(f64, Vec<Item>)> = Vec::new();
+        let mut places: HashMap<u64, usize> = HashMap::new();
+        for &(part, c) in terms {
+            let place = *places.entry(c.abs().to_bits()).or_insert(groups.len());
+            if place == groups.len() {
+                groups.push((c, Vec::new()));
+            }
+            let (first, items) = &mut groups[place];
+            items.push(Item { part, negative: (c < 0.0) != (*first < 0.0) });
+        }
+        let mut parts = Vec::new();
+        for (c, items) in groups {
+            parts.push(match items[..] {
+                [Item { part, .. }] => (part, c),
+                _ => (self.push(Step::Sum(items)), c),
+            });
+        }
+        match parts[..] {
+            [(part, 1.0)] if constant == 0.0 => part,
+            _ => self.push(Step::Combination(constant, parts)),
+        }
+    }
+
+    fn quotient(&mut self, above: Vec<Item>, below: Vec<Item>) -> u32 {
+        if below.is_empty() {
+            return self.list(above);
+        }
+        let divisor = self.list(below);
+        if above.is_empty() {
+            return self.push(Step::Invert(divisor));
+        }
+        let dividend = self.list(above);
+        self.push(Step::Divide(dividend, divisor))
+    }
+
+    /// A product of at least one item.
+    pub(crate) fn list(&mut self, items: Vec<Item>) -> u32 {
+        match items[..] {
+            [Item { part, .. }] => part,
+            _ => self.push(Step::Product(items)),
+        }
+    }
+
+    fn power(&mut self, part: u32, n: i32) -> u32 {
+        if n == 1 {
+            return part;
+        }
+        if let Some(&there) = self.shared.get(&Shared::Power(part, n)) {
+            return there;
+        }
+        let step = if n > HIGH {
+            self.push(Step::Whole(part, n))
+        } else {
+            let half = self.power(part, n / 2);
+            let square = self.push(Step::Square(half));
+            if n % 2 == 0 {
+                square
+            } else {
+                self.push(Step::Product(vec![Item::positive(square), Item::positive(part)]))
+            }
+        };
+        self.shared.insert(Shared::Power(part, n), step);
+        step
+    }
+
+    fn root(&mut self, part: u32) -> u32 {
+        self.once(Shared::Root(part), Step::Call(Function::Sqrt, part, part))
+    }
+
+    fn inverse(&mut self, part: u32) -> u32 {
+        self.once(Shared::Inverse(part), Step::Invert(part))
+    }
+
+    fn once(&mut self, key: Shared, step: Step) -> u32 {
+        if let Some(&there) = self.shared.get(&key) {
+            return there;
+        }
+        let new = self.push(step);
+        self.shared.insert(key, new);
+        new
+    }
+
+    /// How many steps and outputs use each step, of those that an output needs.
+    pub(crate) fn uses(&self) -> Vec<u32> {
+        let mut uses = vec![0; self.steps.len()];
+        let mut waiting = self.outputs.clone();
+        while let Some(step) = waiting.pop() {
+            uses[step as usize] += 1;
+            if uses[step as usize] == 1 {
+                waiting.extend(self.steps[step as usize].parts());
+            }
+        }
+        uses
+    }
+}
