@@ -44,20 +44,11 @@ impl Action {
     }
 }
 
-/// A number that is a constant of the text, or depends on a name.
+/// A number, and again without derivatives where no name stands in it: exponents are told from that.
 #[derive(Debug, Clone, Copy)]
-enum Operand<S> {
-    Constant(f64),
-    Variable(S),
-}
-
-impl<S: Scalar> Operand<S> {
-    fn scalar(self) -> S {
-        match self {
-            Self::Constant(x) => S::constant(x),
-            Self::Variable(x) => x,
-        }
-    }
+struct Operand<S> {
+    value: S,
+    constant: Option<f64>,
 }
 
 impl Syntax {
@@ -72,17 +63,22 @@ impl Syntax {
         let mut stack: Vec<Operand<S>> = Vec::new();
         for step in &self.steps {
             let pushed = match step.action {
-                Action::Number(x) => Operand::Constant(x),
-                Action::Name(k) => Operand::Variable(*values.get(k).ok_or_else(|| too_few(k + 1, values.len()))?),
+                Action::Number(x) => Operand { value: S::constant(x), constant: Some(x) },
+                Action::Name(k) => {
+                    let value = *values.get(k).ok_or_else(|| too_few(k + 1, values.len()))?;
+                    Operand { value, constant: None }
+                }
                 action => {
                     let b = if action.operands() == 2 { stack.pop() } else { None };
-                    let a = stack.pop().unwrap_or(Operand::Constant(f64::NAN));
-                    applied(action, a, b.unwrap_or(a))
+                    let a = stack.pop().unwrap_or(Operand { value: S::constant(f64::NAN), constant: None });
+                    let b = b.unwrap_or(a);
+                    let constant = a.constant.zip(b.constant).map(|(a, b)| applied(action, a, b, Some(b)));
+                    Operand { value: applied(action, a.value, b.value, b.constant), constant }
                 }
             };
             stack.push(pushed);
         }
-        Ok(stack.pop().map_or(S::constant(f64::NAN), Operand::scalar))
+        Ok(stack.pop().map_or(S::constant(f64::NAN), |last| last.value))
     }
 
     /// The positions of the names that occur, in order.
@@ -107,15 +103,7 @@ pub(crate) fn too_few(expected: usize, found: usize) -> Error {
     Error::TooFew { what: "values", expected, found }
 }
 
-fn applied<S: Scalar>(action: Action, a: Operand<S>, b: Operand<S>) -> Operand<S> {
-    if let (Operand::Constant(a), Operand::Constant(b)) = (a, b) {
-        return Operand::Constant(result(action, a, b, Some(b)));
-    }
-    let constant = if let Operand::Constant(b) = b { Some(b) } else { None };
-    Operand::Variable(result(action, a.scalar(), b.scalar(), constant))
-}
-
-fn result<S: Scalar>(action: Action, a: S, b: S, constant: Option<f64>) -> S {
+fn applied<S: Scalar>(action: Action, a: S, b: S, constant: Option<f64>) -> S {
     match action {
         Action::Number(_) | Action::Name(_) => a,
         Action::Negate => -a,

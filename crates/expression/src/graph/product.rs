@@ -64,7 +64,9 @@ impl Graph {
                 let opened: Option<Vec<_>> =
                     inner.iter().map(|&(b, h)| Some((b, opened(h, halves, inner.len() == 1)?))).collect();
                 match opened {
-                    Some(opened) => product.factors.extend(opened),
+                    Some(opened) if halves == 2 => product.factors.extend(opened),
+                    // With another exponent a factor may be opened in its turn; exponents are limited, and so is how often.
+                    Some(opened) => opened.into_iter().for_each(|(base, halves)| self.multiply(product, base, halves)),
                     None => product.factors.push((e, halves)),
                 }
             }
