@@ -53,9 +53,8 @@ fn derivatives_are_those_of_dual_numbers(source: &str, x: [f64; 4]) {
     let tape = Tape::new(&graph, &outputs).unwrap();
     let computed = evaluated(&tape, &x.map(Rounded::exact));
     let syntax = read(source);
-    let seeds: [Dual<Dual<Rounded, 4>, 4>; 4] = std::array::from_fn(|i| {
-        Dual::variable(Dual::variable(Rounded::exact(x[i]), i), i)
-    });
+    let seeds: [Dual<Dual<Rounded, 4>, 4>; 4] =
+        std::array::from_fn(|i| Dual::variable(Dual::variable(Rounded::exact(x[i]), i), i));
     let dual = syntax.evaluate(&seeds).unwrap();
     for i in 0..4 {
         assert!(

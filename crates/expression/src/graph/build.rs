@@ -30,71 +30,76 @@ impl Graph {
     /// # Errors
     /// [`Error::TooFew`] meanings, a part that is [not finite](Error::NotFinite) whatever the variables are, [`Error::GraphFull`].
     pub fn build(&mut self, syntax: &Syntax, meanings: &[Expression]) -> Result<Expression, Error> {
-        let mut stack: Vec<Operand> = Vec::new();
+        let mut stack: Vec<(Operand, usize)> = Vec::new();
         for step in &syntax.steps {
             let operand = match step.action {
                 Action::Number(x) => Operand::Done(self.constant(x)),
-                Action::Name(k) => Operand::Done(*meanings.get(k).ok_or_else(|| too_few(k + 1, meanings.len()))?),
+                Action::Name(k) => {
+                    let meaning = meanings.get(k).ok_or_else(|| too_few(k + 1, meanings.len()))?;
+                    Operand::Done(*meaning)
+                }
                 action => {
-                    let b = if action.operands() == 2 { stack.pop() } else { None };
-                    let a = stack.pop();
-                    let b = b.map(|b| self.done(b, step.column)).transpose()?;
-                    match a {
-                        Some(a) => self.applied(action, a, b, step.column)?,
+                    let last = if action.operands() == 2 { stack.pop() } else { None };
+                    match stack.pop() {
+                        Some(first) => self.applied(action, first, last)?,
                         None => Operand::Done(self.constant(f64::NAN)),
                     }
                 }
             };
-            stack.push(operand);
+            stack.push((operand, step.column));
         }
-        let last = stack.pop().unwrap_or(Operand::Done(Expression(u32::MAX)));
-        let column = syntax.steps.last().map_or(1, |step| step.column);
-        let done = self.done(last, column)?;
-        self.check()?;
-        Ok(done)
+        let last = stack.pop().unwrap_or((Operand::Sum(Sum::default()), 1));
+        self.done(last)
     }
 
-    fn applied(&mut self, action: Action, a: Operand, b: Option<Expression>, column: usize) -> Result<Operand, Error> {
-        Ok(match (action, b) {
-            (Action::Add | Action::Subtract, Some(b)) => {
-                let mut sum = match a {
-                    Operand::Sum(sum) => sum,
+    /// An operation on its first operand and its last, if it has two. What is done is done in the order of the text.
+    fn applied(
+        &mut self,
+        action: Action,
+        first: (Operand, usize),
+        last: Option<(Operand, usize)>,
+    ) -> Result<Operand, Error> {
+        Ok(match (action, first, last) {
+            (Action::Add | Action::Subtract, first, Some(last)) => {
+                let mut sum = match first {
+                    (Operand::Sum(sum), _) => sum,
                     other => {
-                        let (first, mut sum) = (self.done(other, column)?, Sum::default());
+                        let (first, mut sum) = (self.done(other)?, Sum::default());
                         self.add_to(&mut sum, first, 1.0);
                         sum
                     }
                 };
-                self.add_to(&mut sum, b, if action == Action::Add { 1.0 } else { -1.0 });
+                let last = self.done(last)?;
+                self.add_to(&mut sum, last, if action == Action::Add { 1.0 } else { -1.0 });
                 Operand::Sum(sum)
             }
-            (Action::Multiply | Action::Divide, Some(b)) => {
-                let mut product = match a {
-                    Operand::Product(product) => product,
+            (Action::Multiply | Action::Divide, first, Some(last)) => {
+                let mut product = match first {
+                    (Operand::Product(product), _) => product,
                     other => {
-                        let (first, mut product) = (self.done(other, column)?, Product::default());
+                        let (first, mut product) = (self.done(other)?, Product::default());
                         self.multiply(&mut product, first, 2);
                         product
                     }
                 };
-                self.multiply(&mut product, b, if action == Action::Multiply { 2 } else { -2 });
+                let last = self.done(last)?;
+                self.multiply(&mut product, last, if action == Action::Multiply { 2 } else { -2 });
                 Operand::Product(product)
             }
-            (action, b) => {
-                let a = self.done(a, column)?;
-                let e = match (action, b) {
-                    (Action::Negate, _) => self.negated(a),
-                    (Action::Power, Some(b)) => self.raised(a, b),
-                    (Action::Call(function), Some(b)) => self.call(function, &[a, b]),
-                    (Action::Call(function), None) => self.call(function, &[a]),
+            (action, first, last) => {
+                let a = self.done(first)?;
+                let b = last.map_or(Ok(a), |last| self.done(last))?;
+                Operand::Done(match action {
+                    Action::Negate => self.negated(a),
+                    Action::Power => self.raised(a, b),
+                    Action::Call(function) => self.call(function, &[a, b]),
                     _ => a,
-                };
-                Operand::Done(self.finite(e, column)?)
+                })
             }
         })
     }
 
-    fn done(&mut self, operand: Operand, column: usize) -> Result<Expression, Error> {
+    fn done(&mut self, (operand, column): (Operand, usize)) -> Result<Expression, Error> {
         let e = match operand {
             Operand::Done(e) => e,
             Operand::Sum(sum) => self.finish_sum(sum),

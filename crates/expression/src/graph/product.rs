@@ -49,7 +49,8 @@ impl Graph {
     /// Multiplies by `e^(halves/2)`; constants, products and powers are opened where that is right for all of their values.
     pub(crate) fn multiply(&mut self, product: &mut Product, e: Expression, halves: i32) {
         let (content, primitive) = if halves % 2 == 0 { self.content(e) } else { (1.0, e) };
-        if !product.scale(power(content, f64::from(halves / 2))) {
+        let outside = power(content, f64::from(halves / 2));
+        if !(outside.is_normal() && product.scale(outside)) {
             product.factors.push((e, halves));
             return;
         }

@@ -140,7 +140,12 @@ impl Plan {
             items.push(Item { part, negative: (c < 0.0) != (*first < 0.0) });
         }
         let mut parts = Vec::new();
-        for (c, items) in groups {
+        for (mut c, mut items) in groups {
+            // Turned round where that leaves a term to begin with.
+            if c < 0.0 && items.iter().any(|item| item.negative) {
+                c = -c;
+                items.iter_mut().for_each(|item| item.negative = !item.negative);
+            }
             parts.push(match items[..] {
                 [Item { part, .. }] => (part, c),
                 _ => (self.push(Step::Sum(items)), c),

@@ -5,6 +5,7 @@
     missing_docs,
     clippy::unwrap_used,
     clippy::expect_used,
+    clippy::float_cmp,
     reason = "every test file uses its own part"
 )]
 
@@ -108,5 +109,5 @@ pub fn agree(a: Rounded, b: Rounded) -> bool {
     let blurred = a.size * unit > 1e-6 * a.value.abs().max(1.0);
     // Far out parts of it may be out of the range of numbers.
     let far = a.size > 1e60 || (a.size < 1e-60 && a.size > 0.0);
-    !a.value.is_finite() || !a.size.is_finite() || blurred || far || (a.value - b.value).abs() <= bound
+    a.value == b.value || !a.value.is_finite() || !a.size.is_finite() || blurred || far || (a.value - b.value).abs() <= bound
 }
