@@ -39,8 +39,8 @@ fn tape_has_the_value(source: &str, x: [f64; 4]) {
     let x = off_zero(source, x);
     let Some((graph, e)) = graph(source) else { return };
     let tape = Tape::new(&graph, &[e]).unwrap();
-    let exact = x.map(Rounded::exact);
-    let (direct, computed) = (read(source).evaluate(&exact).unwrap(), evaluated(&tape, &exact)[0]);
+    let once = x.map(Rounded::once);
+    let (direct, computed) = (read(source).evaluate(&once).unwrap(), evaluated(&tape, &once)[0]);
     assert!(agree(direct, computed), "{source} at {x:?}: {direct:?}, {computed:?} by {}", text(&graph, e));
 }
 
@@ -51,10 +51,10 @@ fn derivatives_are_those_of_dual_numbers(source: &str, x: [f64; 4]) {
     let hessian = graph.hessian(e, &ALL, &ALL);
     let outputs: Vec<_> = gradient.iter().chain(hessian.iter().flatten()).copied().collect();
     let tape = Tape::new(&graph, &outputs).unwrap();
-    let computed = evaluated(&tape, &x.map(Rounded::exact));
+    let computed = evaluated(&tape, &x.map(Rounded::once));
     let syntax = read(source);
     let seeds: [Dual<Dual<Rounded, 4>, 4>; 4] =
-        std::array::from_fn(|i| Dual::variable(Dual::variable(Rounded::exact(x[i]), i), i));
+        std::array::from_fn(|i| Dual::variable(Dual::variable(Rounded::once(x[i]), i), i));
     let dual = syntax.evaluate(&seeds).unwrap();
     for i in 0..4 {
         assert!(

@@ -133,11 +133,8 @@ impl Graph {
             }
             Function::Sinh => self.call(Function::Cosh, &[u]),
             Function::Cosh => self.call(Function::Sinh, &[u]),
-            // Not 1 - tanh^2, which has no digits left where that is small.
-            Function::Tanh => {
-                let cosh = self.call(Function::Cosh, &[u]);
-                self.power(cosh, -2.0)
-            }
+            // Its digits are lost where it is small; but of a friction tanh(1000 v) the cosine is out of range soon.
+            Function::Tanh => square(self, f, -1.0),
             Function::Exp => f,
             Function::Log => self.power(u, -1.0),
             Function::Abs => self.call(Function::Sign, &[u]),

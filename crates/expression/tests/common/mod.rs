@@ -101,13 +101,18 @@ pub fn expression() -> impl Strategy<Value = String> {
 }
 
 /// Whether two evaluations of one function agree to rounding, by the bounds that they carry with them; where the first has no value, or
-/// one that is nothing but rounding, they do. What is folded into constants counts nowhere in the second: at most as many roundings as the
-/// first has, and those of powers.
+/// one that is nothing but rounding, they do. Values are taken as rounded once, since what is
+/// folded into constants counts nowhere in the second: at most as many roundings as the first has, and those of powers.
 pub fn agree(a: Rounded, b: Rounded) -> bool {
     let unit = 0.5 * f64::EPSILON;
     let bound = 4.0 * (a.size + b.size) * unit + 1e-280;
     let blurred = a.size * unit > 1e-6 * a.value.abs().max(1.0);
     // Far out parts of it may be out of the range of numbers.
     let far = a.size > 1e60 || (a.size < 1e-60 && a.size > 0.0);
-    a.value == b.value || !a.value.is_finite() || !a.size.is_finite() || blurred || far || (a.value - b.value).abs() <= bound
+    a.value == b.value
+        || !a.value.is_finite()
+        || !a.size.is_finite()
+        || blurred
+        || far
+        || (a.value - b.value).abs() <= bound
 }
