@@ -1,6 +1,6 @@
 //! What is simplified, derived and put on a tape against the text evaluated as it was written.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp, clippy::panic)]
 mod common;
 
 use common::{NAMES, agree, built, expression, names, off_corners, read, text, values, variables};

@@ -186,14 +186,12 @@ impl Plan {
         }
         let step = if n > HIGH {
             self.push(Step::Whole(part, n))
-        } else {
+        } else if n % 2 == 0 {
             let half = self.power(part, n / 2);
-            let square = self.push(Step::Square(half));
-            if n % 2 == 0 {
-                square
-            } else {
-                self.push(Step::Product(vec![Item::positive(square), Item::positive(part)]))
-            }
+            self.push(Step::Square(half))
+        } else {
+            let even = self.power(part, n - 1);
+            self.push(Step::Product(vec![Item::positive(even), Item::positive(part)]))
         };
         self.shared.insert(Shared::Power(part, n), step);
         step
