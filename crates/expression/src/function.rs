@@ -1,113 +1,101 @@
 use lagrangian::Scalar;
 
-/// The functions that a text may use.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[allow(missing_docs, reason = "each has the name of its function")]
-pub enum Function {
-    Sin,
-    Cos,
-    Tan,
-    Asin,
-    Acos,
-    Atan,
-    Sinh,
-    Cosh,
-    Tanh,
-    Exp,
-    Log,
-    Sqrt,
-    Abs,
-    Sign,
-    Atan2,
-    Min,
-    Max,
+/// Functions by name: how a text writes them, how many arguments they take, and their value.
+macro_rules! functions {
+    ($($(#[$doc:meta])* $function:ident $name:literal $arguments:literal |$a:ident, $b:ident| $value:expr;)*) => {
+        /// The functions that a text may use.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Function {
+            $($(#[$doc])* $function,)*
+        }
+
+        impl Function {
+            /// All of them.
+            pub const ALL: [Self; [$($name),*].len()] = [$(Self::$function),*];
+
+            /// The name in a text.
+            #[must_use]
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$function => $name,)*
+                }
+            }
+
+            /// How many arguments it takes.
+            #[must_use]
+            pub fn arguments(self) -> usize {
+                match self {
+                    $(Self::$function => $arguments,)*
+                }
+            }
+
+            /// Its value; a function of one argument does not look at the second.
+            #[must_use]
+            #[inline(always)]
+            pub fn of<S: Scalar>(self, a: S, b: S) -> S {
+                match self {
+                    $(Self::$function => {
+                        let ($a, $b) = (a, b);
+                        $value
+                    })*
+                }
+            }
+        }
+    };
+}
+
+functions! {
+    /// Sine.
+    Sin "sin" 1 |a, _b| a.sin();
+    /// Cosine.
+    Cos "cos" 1 |a, _b| a.cos();
+    /// Tangent.
+    Tan "tan" 1 |a, _b| a.tan();
+    /// Arc sine.
+    Asin "asin" 1 |a, _b| a.asin();
+    /// Arc cosine.
+    Acos "acos" 1 |a, _b| a.acos();
+    /// Arc tangent.
+    Atan "atan" 1 |a, _b| a.atan();
+    /// Hyperbolic sine.
+    Sinh "sinh" 1 |a, _b| a.sinh();
+    /// Hyperbolic cosine.
+    Cosh "cosh" 1 |a, _b| a.cosh();
+    /// Hyperbolic tangent.
+    Tanh "tanh" 1 |a, _b| a.tanh();
+    /// Exponential.
+    Exp "exp" 1 |a, _b| a.exp();
+    /// Natural logarithm.
+    Log "log" 1 |a, _b| a.ln();
+    /// Square root.
+    Sqrt "sqrt" 1 |a, _b| a.sqrt();
+    /// Absolute value.
+    Abs "abs" 1 |a, _b| a.abs();
+    /// Sign: -1, 0 of zero, or 1.
+    Sign "sign" 1 |a, _b| a.sign();
+    /// Reciprocal, and 0 of zero: in the derivatives of a length, which has none where it vanishes.
+    Inverse "inverse" 1 |a, _b| a.abs().where_positive(a.recip(), a * 0.0);
+    /// The angle of the vector `(second, first)`.
+    Atan2 "atan2" 2 |a, b| a.atan2(b);
+    /// The smaller of two.
+    Min "min" 2 |a, b| a.min(b);
+    /// The larger of two.
+    Max "max" 2 |a, b| a.max(b);
 }
 
 impl Function {
-    /// All of them.
-    pub const ALL: [Self; 17] = [
-        Self::Sin,
-        Self::Cos,
-        Self::Tan,
-        Self::Asin,
-        Self::Acos,
-        Self::Atan,
-        Self::Sinh,
-        Self::Cosh,
-        Self::Tanh,
-        Self::Exp,
-        Self::Log,
-        Self::Sqrt,
-        Self::Abs,
-        Self::Sign,
-        Self::Atan2,
-        Self::Min,
-        Self::Max,
-    ];
-
-    /// The name in a text.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Sin => "sin",
-            Self::Cos => "cos",
-            Self::Tan => "tan",
-            Self::Asin => "asin",
-            Self::Acos => "acos",
-            Self::Atan => "atan",
-            Self::Sinh => "sinh",
-            Self::Cosh => "cosh",
-            Self::Tanh => "tanh",
-            Self::Exp => "exp",
-            Self::Log => "log",
-            Self::Sqrt => "sqrt",
-            Self::Abs => "abs",
-            Self::Sign => "sign",
-            Self::Atan2 => "atan2",
-            Self::Min => "min",
-            Self::Max => "max",
-        }
-    }
-
     /// The function of that name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|f| f.name() == name)
     }
+}
 
-    /// How many arguments it takes.
-    #[must_use]
-    pub fn arguments(self) -> usize {
-        match self {
-            Self::Atan2 | Self::Min | Self::Max => 2,
-            _ => 1,
-        }
-    }
-
-    /// Its value; a function of one argument does not look at the second.
-    #[must_use]
-    #[inline(always)]
-    pub fn of<S: Scalar>(self, a: S, b: S) -> S {
-        match self {
-            Self::Sin => a.sin(),
-            Self::Cos => a.cos(),
-            Self::Tan => a.tan(),
-            Self::Asin => a.asin(),
-            Self::Acos => a.acos(),
-            Self::Atan => a.atan(),
-            Self::Sinh => a.sinh(),
-            Self::Cosh => a.cosh(),
-            Self::Tanh => a.tanh(),
-            Self::Exp => a.exp(),
-            Self::Log => a.ln(),
-            Self::Sqrt => a.sqrt(),
-            Self::Abs => a.abs(),
-            Self::Sign => a.sign(),
-            Self::Atan2 => a.atan2(b),
-            Self::Min => a.min(b),
-            Self::Max => a.max(b),
-        }
-    }
+/// The root of a sum of squares, a length: without derivative where it vanishes, as [`Scalar::length`].
+#[must_use]
+#[inline(always)]
+pub(crate) fn length<S: Scalar>(square: S) -> S {
+    square.where_positive(square.sqrt(), square * 0.0)
 }
 
 /// `a^b` of a number with a constant exponent: a product where the exponent is whole, a root where it is a half.

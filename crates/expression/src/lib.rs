@@ -42,7 +42,7 @@
 //! # What a text may say
 //! Numbers (`1`, `.5`, `1.5e-3`), names (letters of any alphabet, digits, `_`; with a prime for a rate, `x'`, or `x_dot`), `+ - * /`, powers
 //! with `^` or `**`, parentheses, `pi`, and the [functions](Function): `sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt abs sign
-//! min max`. A power with an exponent that is no constant is `exp(b log(a))`, and so no number where the base is negative.
+//! inverse min max`. A power with an exponent that is no constant is `exp(b log(a))`, and so no number where the base is negative.
 
 mod error;
 mod function;

@@ -25,6 +25,7 @@ impl Graph {
             | Function::Atan
             | Function::Sinh
             | Function::Tanh
+            | Function::Inverse
             | Function::Sign => {
                 let (negative, e) = self.without_sign(first);
                 let called = self.called(function, [e, e]);

@@ -7,8 +7,9 @@ impl Graph {
     /// The derivative in a variable.
     ///
     /// Those of `abs`, `min` and `max` are written with `sign`, at a corner the mean of those on its two sides; that of `sign` is zero.
-    /// Elsewhere it is what the rules of differentiation make of the text: where a root vanishes, or the vector of `atan2`, it is
-    /// infinite or no number.
+    /// A length, the root of a sum of squares, has the derivative zero where it vanishes, and so have the angles of `atan2` where their
+    /// vector does: written with `inverse`. Elsewhere it is what the rules of differentiation make of the text: where another root
+    /// vanishes it is infinite or no number.
     ///
     /// What was derived once is kept.
     pub fn derivative(&mut self, e: Expression, variable: u32) -> Expression {
@@ -68,7 +69,15 @@ impl Graph {
                     if self.value(inner) != Some(0.0) {
                         let mut product = Product::default();
                         for &(other, h) in &factors {
-                            self.multiply(&mut product, other, if other == base { h - 2 } else { h });
+                            if other != base {
+                                self.multiply(&mut product, other, h);
+                            } else if h == 1 && self.is_square(base) {
+                                let length = self.power(base, 0.5);
+                                let inverse = self.call(Function::Inverse, &[length]);
+                                self.multiply(&mut product, inverse, 2);
+                            } else {
+                                self.multiply(&mut product, base, h - 2);
+                            }
                         }
                         self.multiply(&mut product, inner, 2);
                         let term = self.finish_product(product);
@@ -87,7 +96,8 @@ impl Graph {
                 let (a, b) = (self.product(&[x, dy]), self.product(&[y, dx]));
                 let [y, x] = [y, x].map(|part| self.power(part, 2.0));
                 let (turned, square) = (self.difference(a, b), self.sum(&[x, y]));
-                self.quotient(turned, square)
+                let inverse = self.call(Function::Inverse, &[square]);
+                self.product(&[turned, inverse])
             }
             Kind::Call(function @ (Function::Min | Function::Max), [a, b]) => {
                 let [da, db] = [a, b].map(|part| self.known(part, variable));
@@ -141,6 +151,10 @@ impl Graph {
             Function::Sqrt => {
                 let inverse = self.power(u, -0.5);
                 self.scaled(inverse, 0.5)
+            }
+            Function::Inverse => {
+                let square = self.power(f, 2.0);
+                self.negated(square)
             }
             Function::Sign | Function::Atan2 | Function::Min | Function::Max => self.constant(0.0),
         }

@@ -1,4 +1,4 @@
-use super::{Expression, Graph, Kind};
+use super::{Expression, Graph, Kind, Number};
 use std::collections::HashMap;
 
 impl Graph {
@@ -27,6 +27,18 @@ impl Graph {
         let mut variables: Vec<u32> = self.reached(&[e], |_| true).into_iter().filter_map(variable).collect();
         variables.sort_unstable();
         variables
+    }
+
+    /// Whether this is a sum of squares that may all vanish: its root is a length.
+    pub(crate) fn is_square(&self, e: Expression) -> bool {
+        let square =
+            |e| matches!(self.kind(e), Kind::Product(factors) if factors.iter().all(|&(_, h)| h > 0 && h % 4 == 0));
+        match self.kind(e) {
+            Kind::Sum { constant, terms } => {
+                *constant == Number::ZERO && terms.iter().all(|&(term, c)| c.value() > 0.0 && square(term))
+            }
+            _ => square(e),
+        }
     }
 
     /// The expression with others in place of variables.

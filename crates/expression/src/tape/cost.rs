@@ -51,10 +51,12 @@ impl Tape {
                 | Operation::From { .. } => &mut cost.sums,
                 Operation::Multiply { .. } | Operation::Times { .. } | Operation::Square { .. } => &mut cost.products,
                 Operation::Divide { .. } | Operation::Invert { .. } => &mut cost.quotients,
+                Operation::Length { .. } => &mut cost.roots,
                 Operation::Whole { .. } | Operation::Real { .. } => &mut cost.powers,
                 Operation::SinCos { .. } => &mut cost.angles,
                 Operation::Call { function, .. } => match function {
                     Function::Sqrt => &mut cost.roots,
+                    Function::Inverse => &mut cost.quotients,
                     Function::Exp | Function::Log | Function::Sinh | Function::Cosh | Function::Tanh => {
                         &mut cost.exponentials
                     }

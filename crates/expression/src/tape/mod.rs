@@ -11,6 +11,7 @@ mod rust;
 
 pub use cost::Cost;
 
+use crate::function::length;
 use crate::{Error, Expression, Graph};
 use lagrangian::Scalar;
 use operation::{Instruction, Operation};
@@ -105,6 +106,7 @@ impl Tape {
                 Operation::PlusProduct { a, b, c } => x[c as usize] + x[a as usize] * x[b as usize],
                 Operation::MinusProduct { a, b, c } => x[c as usize] - x[a as usize] * x[b as usize],
                 Operation::Square { a } => x[a as usize].squared(),
+                Operation::Length { a } => length(x[a as usize]),
                 Operation::Whole { a, n } => x[a as usize].powi(n),
                 Operation::Real { a, k } => x[a as usize].powf(constants[k as usize]),
                 Operation::SinCos { a, cos } => {

@@ -31,6 +31,8 @@ pub(crate) enum Operation {
     MinusProduct { a: u32, b: u32, c: u32 },
     /// `a * a`
     Square { a: u32 },
+    /// The root of a sum of squares.
+    Length { a: u32 },
     /// `a^n`
     Whole { a: u32, n: i32 },
     /// `a^k`
@@ -61,6 +63,7 @@ impl Operation {
             Self::PlusProduct { a, b, c } => Self::PlusProduct { a: f(a), b: f(b), c: f(c) },
             Self::MinusProduct { a, b, c } => Self::MinusProduct { a: f(a), b: f(b), c: f(c) },
             Self::Square { a } => Self::Square { a: f(a) },
+            Self::Length { a } => Self::Length { a: f(a) },
             Self::Whole { a, n } => Self::Whole { a: f(a), n },
             Self::Real { a, k } => Self::Real { a: f(a), k },
             Self::SinCos { a, cos } => Self::SinCos { a: f(a), cos },
@@ -86,6 +89,7 @@ impl Operation {
             | Self::From { a, .. }
             | Self::Times { a, .. }
             | Self::Square { a }
+            | Self::Length { a }
             | Self::Whole { a, .. }
             | Self::Real { a, .. }
             | Self::SinCos { a, .. }

@@ -27,6 +27,8 @@ pub(crate) enum Step {
     Divide(u32, u32),
     Invert(u32),
     Square(u32),
+    /// The root of a sum of squares.
+    Length(u32),
     Whole(u32, i32),
     Real(u32, f64),
     Call(Function, u32, u32),
@@ -40,7 +42,12 @@ impl Step {
             Self::Sum(items) | Self::Product(items) => items.iter().map(|item| item.part).collect(),
             Self::Call(function, a, b) if function.arguments() == 2 => vec![*a, *b],
             Self::Divide(a, b) => vec![*a, *b],
-            Self::Invert(a) | Self::Square(a) | Self::Whole(a, _) | Self::Real(a, _) | Self::Call(_, a, _) => vec![*a],
+            Self::Invert(a)
+            | Self::Square(a)
+            | Self::Length(a)
+            | Self::Whole(a, _)
+            | Self::Real(a, _)
+            | Self::Call(_, a, _) => vec![*a],
         }
     }
 }
@@ -96,7 +103,7 @@ impl Plan {
                     let (mut above, mut below) = (Vec::new(), Vec::new());
                     for &(base, halves) in factors {
                         let part = of(&base);
-                        let root = (halves % 2 != 0).then(|| plan.root(part));
+                        let root = (halves % 2 != 0).then(|| plan.root(part, graph.is_square(base)));
                         for (part, n, is_root) in [(Some(part), halves / 2, false), (root, halves % 2, true)] {
                             let Some(part) = part.filter(|_| n != 0) else { continue };
                             if n > 0 {
@@ -197,8 +204,9 @@ impl Plan {
         step
     }
 
-    fn root(&mut self, part: u32) -> u32 {
-        self.once(Shared::Root(part), Step::Call(Function::Sqrt, part, part))
+    fn root(&mut self, part: u32, square: bool) -> u32 {
+        let step = if square { Step::Length(part) } else { Step::Call(Function::Sqrt, part, part) };
+        self.once(Shared::Root(part), step)
     }
 
     fn inverse(&mut self, part: u32) -> u32 {

@@ -111,6 +111,7 @@ impl Program {
             Step::Divide(a, b) => self.emit(Operation::Divide { a: self.result(a), b: self.result(b) }),
             Step::Invert(a) => self.emit(Operation::Invert { a: self.result(a) }),
             Step::Square(a) => self.emit(Operation::Square { a: self.result(a) }),
+            Step::Length(a) => self.emit(Operation::Length { a: self.result(a) }),
             Step::Whole(a, n) => self.emit(Operation::Whole { a: self.result(a), n }),
             Step::Real(a, p) => {
                 let k = self.number(p);

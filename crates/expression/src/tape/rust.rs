@@ -46,6 +46,15 @@ impl Graph {
         for (place, variable) in places.iter_mut().zip(&variables[..expected]) {
             place.0 = (*variable).to_owned();
         }
+        // What stands there twice has a name.
+        let mut twice = vec![false; program.places as usize];
+        for instruction in &program.instructions {
+            if let Operation::Length { a } | Operation::Call { function: Function::Inverse, a, .. } =
+                instruction.operation
+            {
+                twice[a as usize] = true;
+            }
+        }
         let (mut body, mut results, mut names) = (String::new(), Vec::new(), 0);
         for &Instruction { to, operation } in &program.instructions {
             let (text, level) = written(operation, &places, &program.constants);
@@ -54,7 +63,7 @@ impl Graph {
                 continue;
             }
             let both = if let Operation::SinCos { cos, .. } = operation { Some(cos) } else { None };
-            if both.is_none() && reads[to as usize] == 1 && text.len() <= INLINE {
+            if both.is_none() && !twice[to as usize] && reads[to as usize] == 1 && text.len() <= INLINE {
                 places[to as usize] = (text, level);
                 continue;
             }
@@ -104,11 +113,19 @@ fn written(operation: Operation, places: &[(String, Level)], constants: &[f64]) 
         }
         Operation::Invert { a } => method(a, "recip()"),
         Operation::Square { a } => method(a, "squared()"),
+        Operation::Length { a } => {
+            let a = at(a, Level::Word);
+            (format!("{a}.where_positive({a}.sqrt(), {a} * 0.0)"), Level::Word)
+        }
         Operation::Whole { a, n } => method(a, &format!("powi({n})")),
         Operation::Real { a, k: c } => method(a, &format!("powf({})", number(k(c)))),
         Operation::SinCos { a, .. } => method(a, "sin_cos()"),
         Operation::Call { function, a, b } => {
             let name = if function == Function::Log { "ln" } else { function.name() };
+            if function == Function::Inverse {
+                let a = at(a, Level::Word);
+                return (format!("{a}.abs().where_positive({a}.recip(), {a} * 0.0)"), Level::Word);
+            }
             let second = if function.arguments() == 2 { at(b, Level::Sum) } else { String::new() };
             method(a, &format!("{name}({second})"))
         }

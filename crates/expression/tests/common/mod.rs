@@ -80,6 +80,8 @@ pub fn expression() -> impl Strategy<Value = String> {
             "log(2 + sin(A))",
             "ln(A^2 + 1)",
             "sqrt(A^2 + 1)",
+            "sqrt(x^2 + 3*mass^2)",
+            "inverse(A^2 + 1)",
             "abs(A)",
             "atan2(A, 1 + A^2)",
             "((A^2 + 1)^(x/2))",
