@@ -78,6 +78,7 @@ fn sentences() -> impl Strategy<Value = String> {
         "exp(x)",
         "1e-320",
         "tan(x)",
+        "sqrt(x)^1.5",
     ]);
     let operator = prop::sample::select(vec!["+", "-", "*", "/", "^", "**", "*", "+"]);
     prop::collection::vec((operand, operator, 0..4_usize), 1..16).prop_map(|words| {
@@ -168,6 +169,18 @@ fn long_texts() {
         "θ".repeat(2_000_000),
     ] {
         survives(&text);
+    }
+}
+
+/// What a fuzzer has found.
+#[test]
+fn texts_that_have_failed() {
+    for text in [
+        // The root of x for itself and in the power of a root: a factor that stood there twice.
+        "sqrt(x)*sqrt(x)^1.5 + sqrt(x)*sqrt(x)^1.5*y - mass*sqrt(x)^1.5/sqrt(x)^1.75*sqrt(x)",
+        "(x -  y^-0^00)^20e30^y/sqrt(x^x + 9.^2)^510e30^y/sqrt(x^x + 1^y)^log(x -  y^-0^00)^20e30/y/sqrt(x^x + 5.^2)^510e30^y/sqrt(x)^0.5",
+    ] {
+        survives(text);
     }
 }
 

@@ -157,6 +157,7 @@ fn known_values() {
         ("log(exp(x))", 2.0),
         ("mass^0.5^1", 2.0),
         ("(x*y)^-1*6", 1.0),
+        ("sqrt(mass)*sqrt(mass)^1.5/2^1.5 + sqrt(mass)^1.5*y/2^1.5", 5.0),
         ("sin(pi/2) + cos(0) + tan(0) + asin(0) + acos(1) + atan(0)", 2.0),
         ("sinh(0) + cosh(0) + tanh(0)", 1.0),
     ] {

@@ -1,7 +1,7 @@
 use super::factors::SEARCHED;
 use super::plan::{Item, Plan, Step};
 use std::cmp::Reverse;
-use std::collections::{BinaryHeap, HashMap};
+use std::collections::{BinaryHeap, HashMap, HashSet};
 
 /// Two parts that stand beside each other in lists, with the same sign or not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -59,7 +59,9 @@ impl Plan {
 
 impl Search {
     fn add(&mut self, step: usize, items: &[Item]) {
-        if items.len() > SEARCHED {
+        // Of a part that stands there twice, since coefficients that are out of range together are kept apart, pairs could not be counted.
+        let parts: HashSet<u32> = items.iter().map(|item| item.part).collect();
+        if items.len() > SEARCHED || parts.len() < items.len() {
             return;
         }
         let list = self.lists.len();

@@ -165,6 +165,7 @@ impl Plan {
     }
 
     fn quotient(&mut self, above: Vec<Item>, below: Vec<Item>) -> u32 {
+        let (above, below) = (self.distinct(above), self.distinct(below));
         if below.is_empty() {
             return self.list(above);
         }
@@ -174,6 +175,17 @@ impl Plan {
         }
         let dividend = self.list(above);
         self.push(Step::Divide(dividend, divisor))
+    }
+
+    /// The factors, none of them twice: the root of `x` may stand there for itself, and for `sqrt(x)^1.5`.
+    fn distinct(&mut self, mut items: Vec<Item>) -> Vec<Item> {
+        loop {
+            let again = |at: &usize| items[..*at].contains(&items[*at]);
+            let Some(second) = (1..items.len()).find(again) else { return items };
+            let Item { part, .. } = items.remove(second);
+            items.retain(|item| item.part != part);
+            items.push(Item::positive(self.power(part, 2)));
+        }
     }
 
     /// A product of at least one item.

@@ -81,6 +81,7 @@ pub fn expression() -> impl Strategy<Value = String> {
             "ln(A^2 + 1)",
             "sqrt(A^2 + 1)",
             "sqrt(x^2 + 3*mass^2)",
+            "(sqrt(y^2)^0.5*sqrt(A^2 + 1)^1.5*sqrt(A^2 + 1))",
             "inverse(A^2 + 1)",
             "abs(A)",
             "atan2(A, 1 + A^2)",
