@@ -176,6 +176,9 @@ fn long_texts() {
 #[test]
 fn texts_that_have_failed() {
     for text in [
+        // A constant out of range, which was none.
+        "-(1e308*2*2)",
+        "-(1e308 + 1e308) + x",
         // The root of x for itself and in the power of a root: a factor that stood there twice.
         "sqrt(x)*sqrt(x)^1.5 + sqrt(x)*sqrt(x)^1.5*y - mass*sqrt(x)^1.5/sqrt(x)^1.75*sqrt(x)",
         "(x -  y^-0^00)^20e30^y/sqrt(x^x + 9.^2)^510e30^y/sqrt(x^x + 1^y)^log(x -  y^-0^00)^20e30/y/sqrt(x^x + 5.^2)^510e30^y/sqrt(x)^0.5",

@@ -54,6 +54,8 @@ fn errors_name_column_and_what_would_be_right() {
         (".", 1, "`.` is not a number (column 1)".to_owned()),
         ("x + 1e999", 5, "`1e999` is not a number (column 5)".to_owned()),
         ("x + y/(1 - 1)", 6, "this is inf, whatever the variables are (column 6)".to_owned()),
+        ("-(1e308*2*2)", 10, "this is inf, whatever the variables are (column 10)".to_owned()),
+        ("sin(1e308 + 1e308)", 11, "this is inf, whatever the variables are (column 11)".to_owned()),
         ("x*log(-1)", 3, "this is NaN, whatever the variables are (column 3)".to_owned()),
     ] {
         let (at, said) = message(text);

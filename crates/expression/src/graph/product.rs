@@ -85,7 +85,13 @@ impl Graph {
                 break;
             }
         }
-        let Product { coefficient, mut factors } = product;
+        let Product { mut coefficient, mut factors } = product;
+        // Constants that were kept apart, and nothing else.
+        let values: Option<Vec<_>> = factors.iter().map(|&(base, halves)| Some((self.value(base)?, halves))).collect();
+        if let Some(values) = values {
+            coefficient *= values.iter().map(|&(x, halves)| power(x, 0.5 * f64::from(halves))).product::<f64>();
+            factors.clear();
+        }
         if coefficient == 0.0 || !coefficient.is_finite() {
             return self.constant(coefficient);
         }

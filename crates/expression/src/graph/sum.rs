@@ -109,6 +109,11 @@ impl Graph {
             self.circles(&mut constant, &mut terms);
             self.open(&mut constant, &mut terms);
         }
+        let values: Option<Vec<_>> = terms.iter().map(|&(term, c)| Some(c * self.value(term)?)).collect();
+        if let Some(values) = values {
+            constant += values.iter().sum::<f64>();
+            terms.clear();
+        }
         if !constant.is_finite() {
             return self.constant(constant);
         }
