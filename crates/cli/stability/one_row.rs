@@ -93,8 +93,8 @@ pub(super) fn gauge(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const FORCE_WITH_A_CORNER: Case = Case {
     name: "force-with-a-corner",
-    hard: "A skate falls from rest against a drag -c |v| v: the length of a velocity has no derivative where there is none, and a \
-           search that takes one there has 0/0.",
+    hard: "A skate falls from rest against a drag -c |v| v: the length of a velocity has no derivative where there is none, and an \
+           iteration that takes one there has 0/0.",
     shows: "u = sqrt(g/c) tanh(sqrt(g c) t), straight down.",
     bar: "The method's order over the run, relative to the speed that is never reached.",
     claim: Claim::Order,
