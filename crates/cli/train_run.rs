@@ -16,7 +16,7 @@ use harness::{
     Assembled, AssemblyCrossing, AssemblyNode, Method, Progress, Saving, recommend_assembly, run_assembly_saved,
     run_assembly_watched,
 };
-use scene::Scene;
+use scene::{Column, Scene};
 use serde_json::json;
 use sleigh::SleighState;
 use std::path::Path;
@@ -176,9 +176,9 @@ fn columns(train: &Train, nodes: &[AssemblyNode]) -> Columns {
         ("constraint", "m/s"),
         ("hinges", "m"),
     ];
-    let mut header: Vec<(String, &'static str)> = own.map(|(name, unit)| (name.to_owned(), unit)).to_vec();
+    let mut header = own.map(|(name, unit)| Column::new(name, unit)).to_vec();
     let trailers = 1..=train.trailers().len();
-    header.extend(trailers.clone().map(|k| (format!("heading_{k}"), "rad")));
+    header.extend(trailers.clone().map(|k| Column::new(format!("heading_{k}"), "rad")));
     let row = |node: &AssemblyNode| {
         let SleighState { x, y, heading, speed, turn_rate } = first(&node.q, &node.v);
         let AssemblyNode { t, energy, work, constraint, joint, .. } = *node;

@@ -1,8 +1,7 @@
 use crate::error::CliError;
 use crate::files::write_whole;
 use crate::first_error::FirstError;
-use scene::SceneSystem;
-use sleigh::SleighState;
+use scene::{Column, SceneSystem};
 use std::io::{Error, Seek, Write};
 use std::path::Path;
 
@@ -31,70 +30,27 @@ impl Format {
     }
 }
 
-/// Names and units of the columns of every trajectory; in a `.npz` file the name alone is that of the array.
-const COLUMNS: [(&str, &str); 11] = [
-    ("t", "s"),
-    ("x", "m"),
-    ("y", "m"),
-    ("heading", "rad"),
-    ("speed", "m/s"),
-    ("turn_rate", "rad/s"),
-    ("energy", "J"),
-    ("constraint", "m/s"),
-    ("constraint_force", "N"),
-    ("center_x", "m"),
-    ("center_y", "m"),
-];
-
 /// A table of numbers, with a header.
 pub(crate) struct Columns {
-    header: Vec<(String, &'static str)>,
+    header: Vec<Column>,
     pub(crate) rows: Vec<Vec<f64>>,
 }
 
 impl Columns {
     /// Names with their units, and rows of as many numbers.
-    pub(crate) fn new(header: Vec<(String, &'static str)>, rows: Vec<Vec<f64>>) -> Self {
+    pub(crate) fn new(header: Vec<Column>, rows: Vec<Vec<f64>>) -> Self {
         Self { header, rows }
     }
 
     /// A trajectory in the words of a scene: what the scene does not have has no column.
     fn of<const N: usize, const M: usize>(system: &dyn SceneSystem<N, M>, nodes: &[dla::Node<N, M>]) -> Self {
-        let mut header: Vec<_> = COLUMNS.iter().map(|(name, unit)| ((*name).to_owned(), *unit)).collect();
-        let mut rows = Vec::with_capacity(nodes.len());
-        for node in nodes {
-            // What holds from this node on.
-            let piece = system.scene_piece(node.t);
-            let SleighState { x, y, heading, speed, turn_rate } = piece.sleigh_state(&node.q, &node.v);
-            let [center_x, center_y] = piece.centre(&node.q);
-            let lambda = piece.motion(node.t, &node.q, &node.v).map_or([f64::NAN; M], |motion| motion.multiplier);
-            // The first constraint is that of the blade.
-            let force = lambda.first().copied().unwrap_or(0.0);
-            let mut row = vec![node.t, x, y, heading, speed, turn_rate, node.energy, node.constraint, force];
-            row.extend([center_x, center_y]);
-            let (rotor, powers) = (piece.rotor(&node.q, &node.v), piece.powers(node.t, &node.q, &node.v, &lambda));
-            if rows.is_empty() {
-                if rotor.is_some() {
-                    header.extend([("rotor_angle".to_owned(), "rad"), ("rotor_rate".to_owned(), "rad/s")]);
-                }
-                if !powers.is_empty() {
-                    header.push(("work".to_owned(), "J"));
-                }
-                header.extend(powers.iter().map(|power| (format!("power_{}", power.name), "W")));
-            }
-            row.extend(rotor.into_iter().flatten());
-            if !powers.is_empty() {
-                row.push(node.work);
-            }
-            row.extend(powers.iter().map(|power| power.power));
-            rows.push(row);
-        }
-        Self { header, rows }
+        let header = nodes.first().map_or_else(Vec::new, |first| system.columns(first));
+        Self { header, rows: nodes.iter().map(|node| system.row(node)).collect() }
     }
 
     /// The names of the columns, each with its unit.
     pub(crate) fn names(&self) -> impl Iterator<Item = String> {
-        self.header.iter().map(|(name, unit)| format!("{name} [{unit}]"))
+        self.header.iter().map(|Column { name, unit }| format!("{name} [{unit}]"))
     }
 }
 
@@ -156,7 +112,7 @@ fn npz(file: &mut (impl Write + Seek), columns: &Columns) -> Result<(), Error> {
     let mut archive = zip::ZipWriter::new(file);
     let options =
         zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored).large_file(true);
-    for (column, (name, _)) in columns.header.iter().enumerate() {
+    for (column, Column { name, .. }) in columns.header.iter().enumerate() {
         archive.start_file(npyz::npz::file_name_from_array_name(name), options)?;
         let mut array = npyz::WriteOptions::new()
             .default_dtype()

@@ -46,6 +46,6 @@ pub use suggest::nearest;
 pub use sweep::{Sweep, SweepError};
 pub use system::{Visitor, in_lanes};
 pub use systems::{
-    AnyEffect, AnySystem, EffectPower, LANES, LaneMethod, SceneBody, SceneEffects, SceneSystem, Started,
+    AnyEffect, AnySystem, Column, EffectPower, LANES, LaneMethod, SceneBody, SceneEffects, SceneSystem, Started,
 };
 pub use train::TrainError;

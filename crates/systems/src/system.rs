@@ -1,6 +1,6 @@
 use crate::power::{self, SceneBody, SceneEffects};
-use crate::{AnyEffect, EffectPower};
-use dla::FullMechanics;
+use crate::{AnyEffect, Column, EffectPower, columns};
+use dla::{FullMechanics, Node};
 use lagrangian::{Piecewise, System, With};
 use sleigh::{Flywheel, Guided, Sleigh, SleighError, SleighState, TimeFunction};
 
@@ -22,6 +22,16 @@ pub trait SceneSystem<const N: usize, const M: usize>: FullMechanics<N, M> + Syn
 
     /// The smooth piece that holds at the time `t` (s), continued to all times.
     fn scene_piece(&self, t: f64) -> Box<dyn SceneSystem<N, M> + '_>;
+
+    /// The columns of a trajectory that begins at this node.
+    fn columns(&self, first: &Node<N, M>) -> Vec<Column> {
+        columns::of_sleigh(self, first)
+    }
+
+    /// The numbers of a node, one for each of the [`columns`](Self::columns).
+    fn row(&self, node: &Node<N, M>) -> Vec<f64> {
+        columns::row_of_sleigh(self, node)
+    }
 }
 
 impl<B, E, const N: usize, const M: usize> SceneSystem<N, M> for With<B, E>
