@@ -3,7 +3,6 @@ use harness::analysis::EquilibriumError;
 use harness::{MethodError, report::ReportError};
 use scene::SceneError;
 use std::path::PathBuf;
-use std::process::ExitCode;
 use thiserror::Error;
 
 /// Why a command did not do what it was asked. `main` puts `error: ` in front of each.
@@ -78,29 +77,27 @@ impl CliError {
     }
 
     /// 1: the computation failed, or what it gave could not be written. 2: the request was wrong.
-    pub(crate) fn exit_code(&self) -> ExitCode {
+    pub(crate) fn exit_code(&self) -> u8 {
         match self {
-            Self::Case { .. } | Self::Train(_) => ExitCode::from(2),
+            Self::Case { .. } | Self::Train(_) => 2,
             Self::Scene(_)
             | Self::Sweep(_)
             | Self::Sleigh(_)
             | Self::Method(_)
             | Self::Exists { .. }
-            | Self::Ending { .. } => ExitCode::from(2),
+            | Self::Ending { .. } => 2,
             #[cfg(not(feature = "parquet"))]
-            Self::WithoutParquet { .. } => ExitCode::from(2),
-            Self::ChartEnding { .. } | Self::Request(_) => ExitCode::from(2),
-            Self::Read { .. } | Self::Checkpoint { .. } => ExitCode::from(2),
-            Self::Tolerance(error) if matches!(**error, RecommendError::Request { .. }) => ExitCode::from(2),
-            Self::TooManyNodes { .. } | Self::Points { .. } | Self::Report(ReportError::Exists { .. }) => {
-                ExitCode::from(2)
-            }
+            Self::WithoutParquet { .. } => 2,
+            Self::ChartEnding { .. } | Self::Request(_) => 2,
+            Self::Read { .. } | Self::Checkpoint { .. } => 2,
+            Self::Tolerance(error) if matches!(**error, RecommendError::Request { .. }) => 2,
+            Self::TooManyNodes { .. } | Self::Points { .. } | Self::Report(ReportError::Exists { .. }) => 2,
             // That a search ends without any is no fault of the request.
-            Self::Equilibria(EquilibriumError::NoneFound { .. } | EquilibriumError::Singular(_)) => ExitCode::FAILURE,
-            Self::Equilibria(_) | Self::NotDifferentiated { .. } | Self::WithoutTracer { .. } => ExitCode::from(2),
-            Self::Interrupted { .. } => ExitCode::from(crate::interrupt::EXIT_CODE),
-            Self::Write { .. } | Self::Folder { .. } | Self::Output(_) => ExitCode::FAILURE,
-            Self::Report(_) | Self::Computation(_) | Self::Tolerance(_) => ExitCode::FAILURE,
+            Self::Equilibria(EquilibriumError::NoneFound { .. } | EquilibriumError::Singular(_)) => 1,
+            Self::Equilibria(_) | Self::NotDifferentiated { .. } | Self::WithoutTracer { .. } => 2,
+            Self::Interrupted { .. } => crate::interrupt::EXIT_CODE,
+            Self::Write { .. } | Self::Folder { .. } | Self::Output(_) => 1,
+            Self::Report(_) | Self::Computation(_) | Self::Tolerance(_) => 1,
         }
     }
 }

@@ -1,3 +1,4 @@
+use crate::called;
 use crate::interrupt::Interrupt;
 use harness::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -10,6 +11,7 @@ pub(crate) fn bar(label: &str, steps: u64) -> ProgressBar {
         bar.set_style(style);
     }
     bar.set_message(label.to_owned());
+    called::watch(&bar);
     bar
 }
 

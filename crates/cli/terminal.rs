@@ -1,3 +1,4 @@
+use crate::called;
 use crate::error::CliError;
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
@@ -5,6 +6,9 @@ use std::io::{ErrorKind, Write};
 /// Prints a result. Standard output may be full, which is an error, or closed by a reader who has seen enough, which
 /// is none: the rest of the work is done all the same.
 pub(crate) fn print(text: &str) -> Result<(), CliError> {
+    if called::keep_out(text) {
+        return Ok(());
+    }
     let mut out = std::io::stdout().lock();
     accept_closed(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
 }
@@ -23,13 +27,20 @@ pub(crate) fn print_json(value: &serde_json::Value) -> Result<(), CliError> {
 
 /// Prints what clap has to say: on standard output the help or the version, on standard error what is wrong.
 pub(crate) fn print_usage(usage: &clap::Error) -> Result<(), CliError> {
+    let keep = if usage.use_stderr() { called::keep_err } else { called::keep_out };
+    if keep(&usage.to_string()) {
+        return Ok(());
+    }
     let printed = usage.print().and_then(|()| std::io::stdout().flush());
     if usage.use_stderr() { Ok(()) } else { accept_closed(printed) }
 }
 
 /// Says something on standard error. Where that cannot be written to, there is nobody left to tell.
 pub(crate) fn say(level: &str, message: &impl Display) {
-    let _ = writeln!(std::io::stderr(), "{level}: {message}");
+    let line = format!("{level}: {message}\n");
+    if !called::keep_err(&line) {
+        let _ = std::io::stderr().write_all(line.as_bytes());
+    }
 }
 
 fn accept_closed(written: std::io::Result<()>) -> Result<(), CliError> {

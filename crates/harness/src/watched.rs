@@ -1,5 +1,6 @@
 use crate::record::Meter;
-use crate::run::{integrate_pieces, timed};
+use crate::run::integrate_pieces;
+use crate::stopwatch::take;
 use crate::timing::Ticker;
 use crate::{Again, Method, Progress, Record, Request};
 use dla::{
@@ -23,7 +24,7 @@ pub struct Watched<const N: usize, const M: usize> {
 /// Into how many parts a step is divided to look for events, where nobody says ([`Watch::samples`]).
 pub const EVENT_SAMPLES: u32 = 4;
 
-/// Makes a run, measures it, looks for events, in so many parts of each step, and keeps every `keep`-th node where that is asked
+/// Makes a run, once, measures it with what looks on, looks for events, in so many parts of each step, and keeps every `keep`-th node where that is asked
 /// for.
 pub fn run_watched<const N: usize, const M: usize>(
     system: &dyn PiecewiseMechanics<N, M>,
@@ -41,14 +42,13 @@ pub fn run_watched<const N: usize, const M: usize>(
     let inner = (&mut meter, (&mut trajectory, &mut ticker));
     let mut watch = Watch::new(Again(method), events, inner);
     watch.samples = samples;
-    let outcome = integrate_pieces(system, method, &schedule, &mut start.clone(), &mut watch);
+    let mut outcome = Ok(0);
+    let mut state = start;
+    // The run is made once: its time has what looks on in it.
+    let taken = take(1, || outcome = integrate_pieces(system, method, &schedule, &mut state, &mut watch));
     let (crossings, close) = (watch.crossings().to_vec(), watch.close());
-    let made = outcome.unwrap_or_else(|failure| failure.valid_steps());
-    // An event within a divided step ends it there, before it is made.
-    let steps = watch.ended().map_or(made, |ended| made.max(ended.k + 1));
     let interrupted = ticker.stopped;
-    let seconds = timed(system, method, request, steps, progress);
-    let record = Record { interrupted, ..meter.record(method.info(), seconds, outcome.err()) };
+    let record = Record { interrupted, ..meter.record(method.info(), taken.wall, outcome.err()) };
     Watched { record, trajectory, crossings, close }
 }
 

@@ -1,0 +1,102 @@
+use indicatif::{ProgressBar, ProgressDrawTarget};
+use std::cell::RefCell;
+use std::ffi::OsString;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// What a program that calls a command has to do with it while it goes on: it may end the command, and see how far it has come.
+#[derive(Debug, Clone, Default)]
+pub struct Caller {
+    stop: Arc<AtomicBool>,
+    bar: Arc<Mutex<Option<ProgressBar>>>,
+}
+
+impl Caller {
+    /// Ends the command soon, as Ctrl-C does; what is done is kept.
+    pub fn stop(&self) {
+        self.stop.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether the command is to end.
+    #[must_use]
+    pub fn stops(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    /// What is being done, how much of it is done, and how much there is in all.
+    #[must_use]
+    pub fn progress(&self) -> Option<(String, u64, u64)> {
+        let bar = self.bar.lock().unwrap_or_else(PoisonError::into_inner);
+        bar.as_ref().map(|bar| (bar.message(), bar.position(), bar.length().unwrap_or(0)))
+    }
+
+    /// A bar that the caller sees, and no terminal.
+    pub(crate) fn bar(&self, label: &str, steps: u64) -> ProgressBar {
+        let bar = ProgressBar::hidden().with_message(label.to_owned());
+        bar.set_length(steps);
+        self.watch(&bar);
+        bar
+    }
+
+    /// Shows a bar to the caller in place of the terminal.
+    fn watch(&self, bar: &ProgressBar) {
+        bar.set_draw_target(ProgressDrawTarget::hidden());
+        *self.bar.lock().unwrap_or_else(PoisonError::into_inner) = Some(bar.clone());
+    }
+}
+
+/// What a command that was called came to.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Called {
+    /// The exit code: 0 done, 1 the computation failed, 2 the request was wrong, 130 ended by the caller.
+    pub code: u8,
+    /// What the program writes to standard output.
+    pub out: String,
+    /// What the program writes to standard error.
+    pub err: String,
+}
+
+/// The caller of a command, with the output so far.
+struct Session {
+    caller: Caller,
+    output: Called,
+}
+
+thread_local! {
+    /// A command runs on one thread, and so does all that it prints.
+    static SESSION: RefCell<Option<Session>> = const { RefCell::new(None) };
+}
+
+/// Makes a command, whose arguments follow the name of the program, on this thread; its output goes to the caller, not to the terminal.
+///
+/// A command called from within a command ends the output of the outer one; no command does so.
+pub fn call(arguments: impl IntoIterator<Item = OsString>, caller: &Caller) -> Called {
+    SESSION.set(Some(Session { caller: caller.clone(), output: Called::default() }));
+    let code = crate::obey(std::iter::once(OsString::from("noslip")).chain(arguments));
+    let output = SESSION.take().map(|session| session.output).unwrap_or_default();
+    Called { code, ..output }
+}
+
+/// Hands a text of standard output to the caller, where there is one.
+pub(crate) fn keep_out(text: &str) -> bool {
+    with(|session| session.output.out.push_str(text)).is_some()
+}
+
+/// Hands a text of standard error to the caller, where there is one.
+pub(crate) fn keep_err(text: &str) -> bool {
+    with(|session| session.output.err.push_str(text)).is_some()
+}
+
+/// Who ends this command, where that is not Ctrl-C.
+pub(crate) fn caller() -> Option<Caller> {
+    with(|session| session.caller.clone())
+}
+
+/// Shows a bar to the caller, where there is one.
+pub(crate) fn watch(bar: &ProgressBar) {
+    with(|session| session.caller.watch(bar));
+}
+
+fn with<T>(action: impl FnOnce(&mut Session) -> T) -> Option<T> {
+    SESSION.with_borrow_mut(|session| session.as_mut().map(action))
+}

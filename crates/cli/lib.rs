@@ -1,0 +1,96 @@
+//! The command line of noslip, as a library: [`main`] is the program, [`call`] a command whose output its caller keeps, and [`run`] a
+//! run whose nodes its caller keeps.
+
+mod args;
+mod called;
+mod chart_file;
+mod compare;
+mod compare_numbers;
+mod coordinate;
+mod cost;
+mod ensemble;
+mod equilibria;
+mod error;
+mod facts;
+mod files;
+mod first_error;
+mod in_memory;
+mod inspect;
+mod interrupt;
+mod job;
+mod json;
+mod lyapunov;
+#[cfg(feature = "parquet")]
+mod parquet_file;
+mod phase;
+mod plane;
+mod points_file;
+mod precision;
+mod precision_text;
+mod progress;
+mod resume;
+mod run;
+mod saves;
+mod section;
+mod stability;
+mod stability_map;
+mod starts;
+mod substeps;
+mod table;
+mod terminal;
+mod train;
+mod train_run;
+mod trajectory_file;
+mod trigger;
+
+use args::{Arguments, Command};
+use clap::Parser;
+use error::CliError;
+use std::process::ExitCode;
+
+pub use called::{Called, Caller, call};
+pub use in_memory::{RunError, RunRequest, RunResult, run};
+
+/// The program: the command of its arguments, with its exit code.
+#[must_use]
+pub fn main() -> ExitCode {
+    ExitCode::from(obey(std::env::args_os()))
+}
+
+/// Does what the arguments say, the first of which is the name of the program, and gives the exit code.
+fn obey(arguments: impl Iterator<Item = std::ffi::OsString>) -> u8 {
+    let (outcome, done) = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => (command(arguments), 0),
+        // The help and the version are no errors to anybody but clap.
+        Err(usage) => {
+            let done = if usage.use_stderr() { 2 } else { 0 };
+            (terminal::print_usage(&usage), done)
+        }
+    };
+    match outcome {
+        Ok(()) => done,
+        Err(error) => {
+            terminal::say("error", &error);
+            error.exit_code()
+        }
+    }
+}
+
+fn command(arguments: Arguments) -> Result<(), CliError> {
+    match arguments.command {
+        None => job::main_job(&arguments.job),
+        Some(Command::Run(arguments)) => run::run(&arguments),
+        Some(Command::Compare(arguments)) => compare::compare(&arguments),
+        Some(Command::Precision(arguments)) => precision::precision(&arguments),
+        Some(Command::Stability(arguments)) => stability::stability(&arguments),
+        Some(Command::Cost(arguments)) => cost::cost(&arguments),
+        Some(Command::Equilibria(arguments)) => equilibria::equilibria(&arguments),
+        Some(Command::Phase(arguments)) => phase::phase(&arguments),
+        Some(Command::Lyapunov(arguments)) => lyapunov::lyapunov(&arguments),
+        Some(Command::Section(arguments)) => section::section(&arguments),
+        Some(Command::Ensemble(arguments)) => ensemble::ensemble(&arguments),
+        Some(Command::Check(arguments)) => inspect::check(&arguments),
+        Some(Command::List(arguments)) => inspect::list(&arguments),
+        Some(Command::New(arguments)) => inspect::new(&arguments),
+    }
+}
