@@ -1,0 +1,32 @@
+"""Structure-preserving integrators for mechanical systems with velocity constraints.
+
+>>> import noslip
+>>> run = noslip.scene("turnaround").run(method="gauss16", step=0.05)
+>>> run["x"].shape
+(801,)
+
+`scene` reads a scene, `Sleigh` makes one; a `Scene` has the commands of the program as methods.
+"""
+
+from ._noslip import ComputationError, NoslipError, RequestError
+from .ensembles import Ensemble, ensemble
+from .errors import Interrupted, RunError
+from .results import Run
+from .scenes import Scene, methods, scene, scenes
+from .sleigh import Sleigh
+
+__all__ = [
+    "ComputationError",
+    "Ensemble",
+    "Interrupted",
+    "NoslipError",
+    "RequestError",
+    "Run",
+    "RunError",
+    "Scene",
+    "Sleigh",
+    "ensemble",
+    "methods",
+    "scene",
+    "scenes",
+]

@@ -1,0 +1,212 @@
+"""Scenes: a system, its start and how to run it."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Iterable, Mapping
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from . import _noslip
+from .errors import Interrupted, RunError
+from .progress import Progress, shown
+from .results import Run
+
+Texts = str | Iterable[str] | None
+
+
+def _list(texts: Texts) -> list[str]:
+    return [texts] if isinstance(texts, str) else list(texts or ())
+
+
+def methods() -> dict[str, dict[str, Any]]:
+    """The methods by name, with their order, what they keep to round-off, and what they are."""
+    return {
+        name: {"order": order, "keeps": keeps, "summary": summary} for name, order, keeps, summary in _noslip.methods()
+    }
+
+
+def scenes() -> list[str]:
+    """The names of the bundled scenes."""
+    return [name for name, _ in _noslip.bundled()]
+
+
+def scene(source: str | PathLike[str] | Mapping[str, Any]) -> Scene:
+    """The bundled scene of that name, the scene of a file, or the one that a dictionary has the tables of.
+
+    Raises `noslip.RequestError` with the line and the field that is wrong.
+    """
+    if isinstance(source, Mapping):
+        return Scene(tomli_w.dumps(dict(source)), str(source.get("title") or "scene"))
+    named = dict(_noslip.bundled())
+    name = str(source).replace("_", "-")
+    if name in named:
+        return Scene(named[name], name)
+    try:
+        return Scene(Path(source).read_text(encoding="utf-8"), str(source))
+    except (OSError, UnicodeDecodeError) as error:
+        known = ", ".join(named)
+        message = f"{source}: no file that can be read ({error}); the bundled scenes are {known}"
+        raise _noslip.RequestError(message) from None
+
+
+class Scene:
+    """A scene; its methods are the commands of the program.
+
+    `text` is the scene as a file has it. Scenes can be pickled, compared and hashed.
+    """
+
+    def __init__(self, text: str, origin: str = "scene") -> None:
+        self._checked = _noslip.Scene(text, origin)
+        self.text = text
+        self.origin = origin
+
+    @property
+    def name(self) -> str:
+        """The name."""
+        return self._checked.name
+
+    @property
+    def title(self) -> str:
+        """The title; the name where there is none."""
+        return self._checked.title
+
+    @property
+    def method(self) -> str:
+        """The method of its run."""
+        return self._checked.method
+
+    @property
+    def step(self) -> float:
+        """The largest step of its run (s)."""
+        return self._checked.step
+
+    @property
+    def duration(self) -> float:
+        """The duration of its run (s)."""
+        return self._checked.duration
+
+    def __reduce__(self) -> tuple[type[Scene], tuple[str, str]]:
+        return Scene, (self.text, self.origin)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Scene) and (self.text, self.name) == (other.text, other.name)
+
+    def __hash__(self) -> int:
+        return hash((self.text, self.name))
+
+    def __repr__(self) -> str:
+        return f"<noslip.Scene {self.name}: {self.title}>"
+
+    def run(
+        self,
+        *,
+        method: str | None = None,
+        step: float | None = None,
+        tolerance: float | None = None,
+        duration: float | None = None,
+        alpha: float | None = None,
+        t_eval: Iterable[float] | None = None,
+        every: int = 1,
+        substep: bool = False,
+        events: Texts = None,
+        until: Texts = None,
+        progress: bool | Progress | None = None,
+    ) -> Run:
+        """Makes a run, and keeps every `every`-th node, or the motion at the times `t_eval` (s, in order).
+
+        `events` and `until` are texts as `"speed=0"`: what is reported, and what ends the run. `progress` is `True` for a
+        bar of tqdm, or is called with a label, the steps done, and all steps. Arguments left out are those of the scene.
+
+        Raises `noslip.RequestError`; `noslip.RunError` where a step fails, with the run so far; `noslip.Interrupted`, a
+        `KeyboardInterrupt` with the run so far, after Ctrl-C.
+        """
+        if every < 1:
+            raise _noslip.RequestError(f"every = {every}: accepted are whole numbers from 1")
+        checked = _noslip.Scene(self.text, self.origin, method, step, duration, alpha)
+        times = [] if t_eval is None else [float(t) for t in t_eval]
+        with shown(progress) as tell:
+            made = checked.run(every, times, tolerance, substep, _list(events), _list(until), tell)
+        columns, units, text, failure, ended = made
+        result = Run(columns, dict(units), json.loads(text))
+        if isinstance(ended, KeyboardInterrupt):
+            raise Interrupted(result) from None
+        if ended is not None:
+            raise ended
+        if failure is not None:
+            raise RunError(failure, result)
+        return result
+
+    def compare(
+        self, *, methods: Texts = None, progress: bool | Progress | None = None, **settings: Any
+    ) -> dict[str, Any]:
+        """Long-run constraint and energy, method by method: the object of `noslip compare --json`."""
+        return self._command("compare", progress, settings, methods)
+
+    def precision(
+        self, *, methods: Texts = None, progress: bool | Progress | None = None, **settings: Any
+    ) -> dict[str, Any]:
+        """What accuracy costs in time: the object of `noslip precision --json`."""
+        return self._command("precision", progress, settings, methods)
+
+    def equilibria(self, *, progress: bool | Progress | None = None, **settings: Any) -> dict[str, Any]:
+        """The steady motions and their stability: the object of `noslip equilibria --json`."""
+        return self._command("equilibria", progress, settings)
+
+    def lyapunov(self, *, progress: bool | Progress | None = None, **settings: Any) -> dict[str, Any]:
+        """The Lyapunov exponents: the object of `noslip lyapunov --json`."""
+        return self._command("lyapunov", progress, settings)
+
+    def section(self, *, progress: bool | Progress | None = None, **settings: Any) -> dict[str, Any]:
+        """Where motions cross a plane: the object of `noslip section --json`."""
+        return self._command("section", progress, settings)
+
+    def cost(self, *, progress: bool | Progress | None = None, **settings: Any) -> dict[str, Any]:
+        """What each effect costs a step: the object of `noslip cost --json`."""
+        return self._command("cost", progress, settings)
+
+    def _command(
+        self,
+        command: str,
+        progress: bool | Progress | None,
+        settings: Mapping[str, Any],
+        methods: Texts = None,
+    ) -> dict[str, Any]:
+        listed = _list(methods)
+        chosen = [f"--methods={','.join(listed)}"] if listed else []
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / f"{self.name}.toml"
+            file.write_text(self.text, encoding="utf-8")
+            return call([command, str(file), "--json", *chosen, *flags(settings)], progress)
+
+
+def flags(settings: Mapping[str, Any]) -> list[str]:
+    """Keyword arguments as flags: `event_samples=8` is `--event-samples=8`, `True` is a flag alone."""
+    given = []
+    for key, value in settings.items():
+        flag = f"--{key.replace('_', '-')}"
+        if value is True:
+            given.append(flag)
+        elif value is not None and value is not False:
+            given.append(f"{flag}={value}")
+    return given
+
+
+def call(arguments: list[str], progress: bool | Progress | None = None) -> dict[str, Any]:
+    """The object that a command of the program prints; its errors as exceptions."""
+    with shown(progress) as tell:
+        code, out, err, ended = _noslip.command(arguments, tell)
+    object: dict[str, Any] = json.loads(out) if out else {}
+    if isinstance(ended, KeyboardInterrupt):
+        raise Interrupted(object) from None
+    if ended is not None:
+        raise ended
+    if code == 2:
+        raise _noslip.RequestError(err.strip())
+    if code != 0 and not object:
+        raise _noslip.ComputationError(err.strip())
+    return object

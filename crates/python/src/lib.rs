@@ -1,0 +1,21 @@
+//! The Python package of noslip: scenes, runs in memory as NumPy arrays, and the commands of the program.
+//!
+//! What a user of Python sees is in `python/noslip`; this library gives it numbers.
+
+mod commands;
+mod errors;
+mod scenes;
+mod supervise;
+
+use pyo3::prelude::*;
+
+/// The native part of the package `noslip`.
+#[pymodule]
+mod _noslip {
+    #[pymodule_export]
+    use crate::commands::command;
+    #[pymodule_export]
+    use crate::errors::{ComputationError, NoslipError, RequestError};
+    #[pymodule_export]
+    use crate::scenes::{Scene, bundled, methods};
+}

@@ -1,0 +1,113 @@
+use crate::errors::{ComputationError, RequestError};
+use crate::supervise::{Supervised, supervised};
+use cli::{RunError, RunRequest, RunResult};
+use harness::METHODS;
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use scene::bundled as scenes;
+
+fn names() -> Vec<&'static str> {
+    METHODS.iter().map(|info| info.name).collect()
+}
+
+/// The bundled scenes: name and text.
+#[pyfunction]
+pub(crate) fn bundled() -> Vec<(&'static str, &'static str)> {
+    scenes().iter().map(|scene| (scene.name, scene.text)).collect()
+}
+
+/// The methods: name, order, what each keeps to round-off, and what it is.
+#[pyfunction]
+pub(crate) fn methods() -> Vec<(&'static str, u32, &'static str, &'static str)> {
+    METHODS.iter().map(|info| (info.name, info.order, info.keeps, info.summary)).collect()
+}
+
+/// A scene, checked: a system, its start and how to run it.
+#[pyclass(frozen)]
+pub(crate) struct Scene {
+    scene: scene::Scene,
+}
+
+/// What a run gave: the columns with their numbers, their units, the object of `noslip run --json` as text, why the run failed, and the
+/// exception that ended it.
+type Made<'py> = (Bound<'py, PyDict>, Vec<(String, String)>, String, Option<String>, Option<Py<PyAny>>);
+
+#[pymethods]
+impl Scene {
+    /// Reads a scene from its text; messages show `origin`, and the scene is named after it.
+    #[new]
+    #[pyo3(signature = (text, origin, method=None, step=None, duration=None, alpha=None))]
+    fn new(
+        text: &str,
+        origin: &str,
+        method: Option<&str>,
+        step: Option<f64>,
+        duration: Option<f64>,
+        alpha: Option<f64>,
+    ) -> PyResult<Self> {
+        let scene = scene::Scene::parse(text, origin, &names())
+            .and_then(|scene| scene.with_overrides(method, step, duration, alpha, &names()))
+            .map_err(|error| RequestError::new_err(error.to_string()))?;
+        Ok(Self { scene })
+    }
+
+    /// The name.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.scene.name
+    }
+
+    /// The title; the name where there is none.
+    #[getter]
+    fn title(&self) -> &str {
+        &self.scene.title
+    }
+
+    /// The method of the run.
+    #[getter]
+    fn method(&self) -> &str {
+        &self.scene.run.method
+    }
+
+    /// The largest step (s).
+    #[getter]
+    fn step(&self) -> f64 {
+        self.scene.run.step
+    }
+
+    /// The duration (s).
+    #[getter]
+    fn duration(&self) -> f64 {
+        self.scene.run.duration
+    }
+
+    /// Makes the run, and keeps every `every`-th node, or the motion at `times`.
+    #[allow(clippy::too_many_arguments, reason = "the arguments of Python are the fields of a request")]
+    #[pyo3(signature = (every, times, tolerance, substep, events, until, progress))]
+    fn run<'py>(
+        &self,
+        py: Python<'py>,
+        every: u64,
+        times: Vec<f64>,
+        tolerance: Option<f64>,
+        substep: bool,
+        events: Vec<String>,
+        until: Vec<String>,
+        progress: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Made<'py>> {
+        let request = RunRequest { every, times, tolerance, substep, events, until };
+        let Supervised { value, ended } =
+            supervised(py, progress, |caller| cli::run(&self.scene, &request, caller))?;
+        let RunResult { columns, numbers, object, failure, .. } = value.map_err(|RunError { message, request }| {
+            if request { RequestError::new_err(message) } else { ComputationError::new_err(message) }
+        })?;
+        let arrays = PyDict::new(py);
+        for (column, numbers) in columns.iter().zip(numbers) {
+            arrays.set_item(&column.name, PyArray1::from_vec(py, numbers))?;
+        }
+        let units = columns.into_iter().map(|column| (column.name, column.unit)).collect();
+        let ended = ended.map(|error| error.into_value(py).into_any());
+        Ok((arrays, units, object.to_string(), failure, ended))
+    }
+}

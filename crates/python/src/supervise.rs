@@ -1,0 +1,60 @@
+use cli::Caller;
+use pyo3::prelude::*;
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
+
+/// How often Python is asked for signals, and told of the progress, while work goes on without the interpreter.
+const OFTEN: Duration = Duration::from_millis(10);
+
+/// What came of work that was watched.
+pub(crate) struct Supervised<T> {
+    /// What the work gave; of work that was ended, what it had so far.
+    pub(crate) value: T,
+    /// The exception that ended it: `KeyboardInterrupt`, or that of the progress callable.
+    pub(crate) ended: Option<PyErr>,
+}
+
+/// Does work on another thread, the interpreter released, and looks for Ctrl-C meanwhile; `progress(label, done, of)` is told how far
+/// it has come.
+pub(crate) fn supervised<T: Send>(
+    py: Python<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+    work: impl FnOnce(&Caller) -> T + Send,
+) -> PyResult<Supervised<T>> {
+    let caller = Caller::default();
+    let progress = progress.map(|progress| progress.clone().unbind());
+    py.detach(|| {
+        std::thread::scope(|scope| {
+            let (sender, receiver) = channel();
+            let its = caller.clone();
+            let worker = scope.spawn(move || {
+                let value = work(&its);
+                // The other end waits as long as this thread is there.
+                let _ = sender.send(());
+                value
+            });
+            let mut ended = None;
+            while let Err(RecvTimeoutError::Timeout) = receiver.recv_timeout(OFTEN) {
+                if ended.is_none()
+                    && let Err(error) = Python::attach(|py| asked(py, progress.as_ref(), &caller))
+                {
+                    caller.stop();
+                    ended = Some(error);
+                }
+            }
+            match worker.join() {
+                Ok(value) => Ok(Supervised { value, ended }),
+                Err(_) => Err(crate::errors::NoslipError::new_err("a panic in the library: please report it")),
+            }
+        })
+    })
+}
+
+/// Whether Python has something against going on.
+fn asked(py: Python<'_>, progress: Option<&Py<PyAny>>, caller: &Caller) -> PyResult<()> {
+    py.check_signals()?;
+    if let (Some(progress), Some(told)) = (progress, caller.progress()) {
+        progress.call1(py, told)?;
+    }
+    Ok(())
+}
