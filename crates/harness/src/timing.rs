@@ -12,7 +12,7 @@ pub trait Progress {
     /// So many more steps are done.
     fn advance(&mut self, steps: u64);
 
-    /// Whether the run is to end here, with what it has; asked every 2^14 steps, and after every part of a divided one.
+    /// Whether the run is to end here, with what it has; asked every 2^10 steps, and after every part of a divided one.
     fn stops(&self) -> bool {
         false
     }
@@ -36,7 +36,7 @@ pub(crate) struct Ticker<'a> {
 }
 
 impl<'a> Ticker<'a> {
-    const EVERY: u64 = 1 << 14;
+    const EVERY: u64 = 1 << 10;
 
     /// A run that has told of so many steps already.
     pub(crate) fn new(progress: &'a mut dyn Progress, told: u64) -> Self {

@@ -6,6 +6,9 @@ use std::time::Duration;
 /// How often Python is asked for signals, and told of the progress, while work goes on without the interpreter.
 const OFTEN: Duration = Duration::from_millis(10);
 
+/// The stack of the work (bytes), as large as that of a program: methods keep their memory there.
+const STACK: usize = 8 << 20;
+
 /// What came of work that was watched.
 pub(crate) struct Supervised<T> {
     /// What the work gave; of work that was ended, what it had so far.
@@ -27,12 +30,13 @@ pub(crate) fn supervised<T: Send>(
         std::thread::scope(|scope| {
             let (sender, receiver) = channel();
             let its = caller.clone();
-            let worker = scope.spawn(move || {
+            let thread = std::thread::Builder::new().stack_size(STACK);
+            let worker = thread.spawn_scoped(scope, move || {
                 let value = work(&its);
                 // The other end waits as long as this thread is there.
                 let _ = sender.send(());
                 value
-            });
+            })?;
             let mut ended = None;
             while let Err(RecvTimeoutError::Timeout) = receiver.recv_timeout(OFTEN) {
                 if ended.is_none()

@@ -1,0 +1,115 @@
+"""Runs in memory: the numbers of the command line, to the last bit."""
+
+import json
+import pickle
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import noslip
+
+METHODS = ["dla", "dla4", "gauss8", "energy4", "rk4"]
+
+
+def program() -> list[str]:
+    """The program of this checkout, which `.ci/run` has built before."""
+    root = Path(__file__).parents[3]
+    import os
+
+    target = Path(os.environ.get("CARGO_TARGET_DIR", root / "target"))
+    for profile in ("debug", "release"):
+        if (target / profile / "noslip").exists():
+            return [str(target / profile / "noslip")]
+    pytest.skip("the program is not built: cargo build")
+
+
+@pytest.mark.parametrize("name", noslip.scenes())
+def test_columns_are_those_of_the_files_of_the_program(name: str, tmp_path: Path) -> None:
+    for method in METHODS:
+        file = tmp_path / f"{method}.npz"
+        arguments = ["run", name, "--method", method, "--duration", "2", "--out", str(file), "--json"]
+        made = subprocess.run([*program(), *arguments], capture_output=True, text=True)
+        if made.returncode != 0:
+            with pytest.raises(noslip.NoslipError):
+                noslip.scene(name).run(method=method, duration=2.0)
+            continue
+        run = noslip.scene(name).run(method=method, duration=2.0)
+        with np.load(file) as archive:
+            for column in run:
+                np.testing.assert_array_equal(run[column], archive[column], err_msg=f"{name} {method} {column}")
+        told = json.loads(made.stdout)
+        for key in ("final", "energy", "constraint", "steps"):
+            assert told[key] == run.object[key]
+
+
+def test_a_run_at_given_times_is_the_motion_there() -> None:
+    scene = noslip.scene("bowl")
+    nodes = scene.run(method="gauss8", step=0.05, duration=2.0)
+    times = nodes["t"][::4]
+    sampled = scene.run(method="gauss8", step=0.05, duration=2.0, t_eval=times)
+    np.testing.assert_array_equal(sampled["t"], times)
+    np.testing.assert_array_equal(sampled["x"], nodes["x"][::4])
+    between = scene.run(method="gauss8", step=0.05, duration=2.0, t_eval=[0.025, 1.234])
+    fine = scene.run(method="gauss8", step=0.0005, duration=2.0, t_eval=[0.025, 1.234])
+    np.testing.assert_allclose(between["x"], fine["x"], atol=1e-10)
+
+
+def test_every_keeps_every_so_many_nodes() -> None:
+    scene = noslip.scene("turnaround")
+    whole, some = scene.run(), scene.run(every=7)
+    np.testing.assert_array_equal(some["speed"][:-1], whole["speed"][:-1:7])
+    assert some["t"][-1] == whole["t"][-1]
+
+
+def test_a_run_names_its_columns() -> None:
+    run = noslip.scene("turnaround").run()
+    assert run.units["speed"] == "m/s"
+    assert run.x is run["x"]
+    assert run.final["x"] == run["x"][-1]
+    assert run.energy_error < 1e-2
+    with pytest.raises(KeyError, match="the columns are t, x, y"):
+        run["place"]
+    with pytest.raises(AttributeError, match="no attribute or column"):
+        run.place
+    assert "turnaround" in repr(run)
+    assert "<svg" in run._repr_html_()
+
+
+def test_events_are_found_and_end_runs() -> None:
+    scene = noslip.scene("turnaround")
+    run = scene.run(events="speed=0")
+    assert run.events and abs(run.events[0]["speed"]) < 1e-9
+    ended = scene.run(until=["speed=0"])
+    assert ended["t"][-1] <= run.events[0]["t"] + 1e-9 < run["t"][-1]
+
+
+def test_a_tolerance_chooses_the_step() -> None:
+    coarse, fine = (noslip.scene("bowl").run(tolerance=tol, duration=5.0) for tol in (1e-2, 1e-5))
+    assert fine.step < coarse.step
+
+
+def test_scenes_can_be_made_pickled_and_compared() -> None:
+    sleigh = noslip.Sleigh(speed=-1.0, turn_rate=0.1, duration=2.0)
+    again = pickle.loads(pickle.dumps(sleigh))
+    assert again == sleigh and hash(again) == hash(sleigh)
+    np.testing.assert_array_equal(again.run()["x"], sleigh.run()["x"])
+    tables = {
+        "sleigh": {"mass": 1.0, "inertia": 1.0, "offset": 0.5},
+        "start": {"speed": -1.0, "turn_rate": 0.1},
+        "run": {"method": "dla", "step": 0.05, "duration": 2.0},
+    }
+    np.testing.assert_array_equal(noslip.scene(tables).run()["x"], sleigh.run()["x"])
+
+
+def test_results_become_frames_and_figures() -> None:
+    run = noslip.scene("turnaround").run(duration=2.0)
+    pytest.importorskip("pandas")
+    frame = run.to_pandas()
+    assert frame["x"].iloc[-1] == run["x"][-1] and frame.index.name == "t"
+    pytest.importorskip("xarray")
+    assert run.to_xarray()["speed"].attrs["units"] == "m/s"
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    assert len(run.plot().axes) == 4
