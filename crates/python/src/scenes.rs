@@ -97,11 +97,13 @@ impl Scene {
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Made<'py>> {
         let request = RunRequest { every, times, tolerance, substep, events, until };
-        let Supervised { value, ended } =
-            supervised(py, progress, |caller| cli::run(&self.scene, &request, caller))?;
-        let RunResult { columns, numbers, object, failure, .. } = value.map_err(|RunError { message, request }| {
-            if request { RequestError::new_err(message) } else { ComputationError::new_err(message) }
-        })?;
+        let Supervised { value, ended } = supervised(py, progress, |caller| cli::run(&self.scene, &request, caller))?;
+        let RunResult { columns, numbers, object, failure, .. } =
+            value.map_err(
+                |RunError { message, request }| {
+                    if request { RequestError::new_err(message) } else { ComputationError::new_err(message) }
+                },
+            )?;
         let arrays = PyDict::new(py);
         for (column, numbers) in columns.iter().zip(numbers) {
             arrays.set_item(&column.name, PyArray1::from_vec(py, numbers))?;
