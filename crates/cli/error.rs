@@ -41,6 +41,9 @@ pub(crate) enum CliError {
     Write { path: PathBuf, source: std::io::Error },
     #[error("cannot write {}: in the folder {}: {source}", path.display(), folder.display())]
     Folder { path: PathBuf, folder: PathBuf, source: std::io::Error },
+    /// Another process writes the same output.
+    #[error("{}: another process is writing {}: wait for its end, or choose another --out", path.display(), out.display())]
+    Busy { path: PathBuf, out: PathBuf },
     #[error("cannot read {}: {source}", path.display())]
     Read { path: PathBuf, source: std::io::Error },
     #[error("{}: {source}", path.display())]
@@ -89,7 +92,7 @@ impl CliError {
             #[cfg(not(feature = "parquet"))]
             Self::WithoutParquet { .. } => 2,
             Self::ChartEnding { .. } | Self::Request(_) => 2,
-            Self::Read { .. } | Self::Checkpoint { .. } => 2,
+            Self::Busy { .. } | Self::Read { .. } | Self::Checkpoint { .. } => 2,
             Self::Tolerance(error) if matches!(**error, RecommendError::Request { .. }) => 2,
             Self::TooManyNodes { .. } | Self::Points { .. } | Self::Report(ReportError::Exists { .. }) => 2,
             // That a search ends without any is no fault of the request.

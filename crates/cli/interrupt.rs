@@ -1,34 +1,41 @@
 use crate::called::{self, Caller};
+use crate::terminal;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The exit code of a command that Ctrl-C ended: 128 and the number of the signal, as shells have it.
+/// The exit code of a command that a signal ended: 128 and the number of SIGINT, as shells have it.
 pub(crate) const EXIT_CODE: u8 = 130;
 
-/// Whether somebody pressed Ctrl-C: the work then ends soon, and keeps what is done.
+/// Whether the work is to end soon and to keep what is done: after Ctrl-C (SIGINT), SIGTERM or SIGHUP.
 #[derive(Debug, Clone)]
 pub(crate) enum Interrupt {
-    /// Set by Ctrl-C.
+    /// Set by a signal.
     Signal(Arc<AtomicBool>),
     /// A program has called the command, and has the signals of its process to itself.
     Caller(Caller),
 }
 
 impl Interrupt {
-    /// Looks out for it from now on. Who presses it twice does not want to wait.
+    /// Looks out for signals from now on. Who sends two does not want to wait: the second ends the process.
     pub(crate) fn listen() -> Self {
+        Self::listen_saying("")
+    }
+
+    /// The same; the first signal is answered with that note.
+    pub(crate) fn listen_saying(note: &'static str) -> Self {
         if let Some(caller) = called::caller() {
             return Self::Caller(caller);
         }
         let asked = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&asked);
-        let handler = move || {
+        handle(move || {
             if flag.swap(true, Ordering::Relaxed) {
                 std::process::exit(i32::from(EXIT_CODE));
             }
-        };
-        // Where the system has no such signals, nobody can send one.
-        let _ = ctrlc::set_handler(handler);
+            if !note.is_empty() {
+                terminal::say("note", &note);
+            }
+        });
         Self::Signal(asked)
     }
 
@@ -39,4 +46,29 @@ impl Interrupt {
             Self::Caller(caller) => caller.stops(),
         }
     }
+}
+
+/// Calls `act` at every signal, in a thread of its own. Where there are no signals to be had, nobody can send one.
+#[cfg(unix)]
+fn handle(act: impl Fn() + Send + 'static) {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    let hangs_up = (!is_ignored(SIGHUP)).then_some(SIGHUP);
+    if let Ok(mut signals) = signal_hook::iterator::Signals::new([SIGINT, SIGTERM].into_iter().chain(hangs_up)) {
+        let _ = std::thread::Builder::new().spawn(move || signals.forever().for_each(|_| act()));
+    }
+}
+
+/// Whether the process was started so that a signal does nothing, as `nohup` starts one; known on Linux only.
+#[cfg(unix)]
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    mask.is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
+}
+
+/// The same for Ctrl-C alone.
+#[cfg(not(unix))]
+fn handle(act: impl Fn() + Send + 'static) {
+    let _ = ctrlc::set_handler(act);
 }

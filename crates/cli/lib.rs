@@ -22,6 +22,7 @@ mod json;
 mod lyapunov;
 #[cfg(feature = "parquet")]
 mod parquet_file;
+mod part;
 mod phase;
 mod plane;
 mod points_file;

@@ -8,9 +8,6 @@ use sleigh::SleighState;
 use std::array::from_fn;
 use std::ops::Range;
 
-/// Members that are computed together: three times the lanes.
-pub(super) const GROUP: u64 = 48;
-
 /// What is summed up of a sleigh.
 const QUANTITIES: usize = 5;
 
@@ -58,6 +55,25 @@ impl Members<'_> {
         inspect::schedule(&self.sweep.scene)
     }
 
+    /// How many members are computed together: those of one register, or one. They are the same at any time, since a member in lanes may
+    /// share its numbers with the others there.
+    pub(super) fn group(&self) -> u64 {
+        let (mut lanes, schedule) = (false, self.schedule());
+        if let Some(method) = self.lane_method() {
+            in_lanes(&[&self.sweep.scene], method, (schedule.t0, schedule.step), &mut |_, _| lanes = true);
+        }
+        if lanes { LANES as u64 } else { 1 }
+    }
+
+    fn lane_method(&self) -> Option<LaneMethod> {
+        match self.method.info().kind {
+            Kind::Dla => Some(LaneMethod::Closed),
+            Kind::Gauss8 => Some(LaneMethod::Gauss8),
+            Kind::Gauss16 => Some(LaneMethod::Gauss16),
+            _ => None,
+        }
+    }
+
     /// Some members, in order.
     pub(super) fn rows(&self, range: Range<u64>) -> Vec<Row> {
         let made: Vec<_> = range.map(|member| (member, self.sweep.member(member, self.names))).collect();
@@ -101,12 +117,7 @@ impl Members<'_> {
 
     /// In lanes, where there are lanes for it; none of a member that needs to be looked at by itself.
     fn in_lanes(&self, scenes: &[&Scene]) -> Vec<Option<Summary<QUANTITIES>>> {
-        let method = match self.method.info().kind {
-            Kind::Dla => LaneMethod::Closed,
-            Kind::Gauss8 => LaneMethod::Gauss8,
-            Kind::Gauss16 => LaneMethod::Gauss16,
-            _ => return Vec::new(),
-        };
+        let Some(method) = self.lane_method() else { return Vec::new() };
         let schedule = self.schedule();
         let watching = Watching { schedule, every: self.sweep.every, of: &quantities };
         // Register by register; the last one is filled up with its last member.

@@ -1,6 +1,8 @@
 //! `noslip ensemble`: many variants of a scene.
 
+mod lines;
 mod members;
+mod result;
 mod spool;
 mod totals;
 
@@ -10,15 +12,15 @@ use crate::files::check_file;
 use crate::interrupt::Interrupt;
 use crate::trajectory_file::Format;
 use crate::{compare, inspect, progress, terminal};
+use dla::Checkpoint;
 use harness::Method;
 use harness::analysis::has_tangents;
 use harness::ensemble::in_order;
-use members::{COLUMNS, GROUP, Members, Row};
+use indicatif::ProgressBar;
+use members::{COLUMNS, Members, Row};
 use scene::Sweep;
-use spool::Spool;
-use std::hash::{DefaultHasher, Hash, Hasher};
-use std::ops::ControlFlow;
-use std::path::Path;
+use spool::{Asked, Spool};
+use std::ops::{ControlFlow, Range};
 use std::time::Instant;
 use totals::Totals;
 
@@ -38,48 +40,29 @@ pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
         }
         None => None,
     };
+    let interrupt = Interrupt::listen_saying("stopping after the members that have begun; Ctrl-C again ends at once");
     let mut totals = Totals::new(sweep.keys().count());
-    let (mut spool, done) = opened(arguments, &sweep, out.map(|(path, _)| path), &mut totals)?;
-
-    let interrupt = Interrupt::listen();
+    let identity = identity(&sweep);
+    let mut spool = match out {
+        Some((path, _)) => {
+            let of = (identity.as_str(), sweep.count(), header(&sweep).len());
+            let asked = Asked { resume: arguments.resume, force: arguments.force };
+            Some(Spool::open(path, of, asked, |values, error| totals.add(values, error))?)
+        }
+        None => None,
+    };
+    let done = spool.as_ref().map_or(0, Spool::rows);
     let bar = progress::bar(method.info().name, sweep.count());
     bar.inc(done);
-    let members = Members { sweep: &sweep, method, names: &names };
     let begin = Instant::now();
-    let compute = |range: std::ops::Range<u64>| {
-        if interrupt.asked() {
-            return (Vec::new(), String::new());
-        }
-        let rows = members.rows(range);
-        let text = rows.iter().map(spool::text).collect();
-        (rows, text)
-    };
-    // A group that had begun is made again, without what is there of it.
-    let mut skip = done % GROUP;
-    let outcome = in_order(done - skip..sweep.count(), GROUP, compute, |(rows, text): (Vec<Row>, String)| {
-        if rows.is_empty() {
-            return ControlFlow::Break(Ok(()));
-        }
-        let fresh = std::mem::take(&mut skip) as usize;
-        rows[fresh..].iter().for_each(|row| totals.add(&row.values, row.error.as_deref()));
-        bar.inc((rows.len() - fresh) as u64);
-        let from = text.split_inclusive('\n').take(fresh).map(str::len).sum();
-        match spool.as_mut().map_or(Ok(()), |spool| spool.add(&text[from..])) {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(error) => ControlFlow::Break(Err(error)),
-        }
-    });
+    let outcome = compute(&Members { sweep: &sweep, method, names: &names }, &mut spool, &mut totals, &interrupt, &bar);
     bar.finish_and_clear();
     let seconds = begin.elapsed().as_secs_f64();
-    let stopped = match outcome {
-        ControlFlow::Break(Err(error)) => return Err(error),
-        ControlFlow::Break(Ok(())) => true,
-        ControlFlow::Continue(()) => false,
-    };
+    outcome?;
+    let stopped = totals.count() < sweep.count();
     let written = match (spool, out) {
-        (Some(mut spool), _) if stopped => spool.flush(),
-        (Some(spool), Some((path, format))) => {
-            spool.finish(path, format, &header(&sweep), sweep.count(), arguments.force)
+        (Some(spool), Some((path, format))) if !stopped => {
+            spool.finish(path, format, &header(&sweep), (sweep.count(), arguments.force))
         }
         _ => Ok(()),
     };
@@ -98,36 +81,50 @@ pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
     compare::unless_interrupted(made, None, failed)
 }
 
-/// The file of the rows, new or that of an interrupted run, and how many there are in it.
-fn opened(
-    arguments: &EnsembleArguments,
-    sweep: &Sweep,
-    out: Option<&Path>,
+/// Computes the members that are not there yet, as far as a signal lets it come; each group is in the spool, and in the totals, as soon
+/// as it and those before it are done.
+fn compute(
+    members: &Members<'_>,
+    spool: &mut Option<Spool>,
     totals: &mut Totals,
-) -> Result<(Option<Spool>, u64), CliError> {
-    let Some(out) = out else { return Ok((None, 0)) };
-    let identity = identity(sweep);
-    if arguments.resume {
-        let (spool, done) = Spool::resume(out, &identity, |numbers, failed| {
-            totals.add(numbers, failed.then_some("failed before"));
-        })?;
-        return Ok((Some(spool), done));
+    interrupt: &Interrupt,
+    bar: &ProgressBar,
+) -> Result<(), CliError> {
+    let (size, count) = (members.group(), members.sweep.count());
+    let lines = spool.as_ref().map(Spool::lines).cloned();
+    let mut done = spool.as_ref().map_or(0, Spool::rows);
+    let todo = done - done % size..count;
+    let each = |range: Range<u64>| {
+        let rows = members.rows(range);
+        let texts: Vec<String> = lines.iter().flat_map(|lines| rows.iter().map(|row| lines.line(row))).collect();
+        (rows, texts)
+    };
+    let sink = |groups: Vec<(Vec<Row>, Vec<String>)>| {
+        let mut text = String::new();
+        let before = done;
+        for (rows, texts) in &groups {
+            // A group that had begun is made again, without the rows that are there of it.
+            let fresh = rows.iter().take_while(|row| row.member < before).count();
+            rows[fresh..].iter().for_each(|row| totals.add(&row.values, row.error.as_deref()));
+            text.extend(texts.iter().skip(fresh).map(String::as_str));
+            done += (rows.len() - fresh) as u64;
+        }
+        bar.inc(done - before);
+        match spool.as_mut().map_or(Ok(()), |spool| spool.add(&text, done - before)) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(error) => ControlFlow::Break(error),
+        }
+    };
+    match in_order(todo, size, || interrupt.asked(), each, sink) {
+        ControlFlow::Break(error) => Err(error),
+        ControlFlow::Continue(()) => Ok(()),
     }
-    let part = Spool::path_of(out);
-    if part.exists() && !arguments.force {
-        return Err(CliError::Request(format!(
-            "{} is there, of an interrupted run; --resume goes on, --force begins anew",
-            part.display()
-        )));
-    }
-    Spool::begin(out, &identity).map(|spool| (Some(spool), 0))
 }
 
 /// What tells a sweep from others: all that its rows depend on.
 fn identity(sweep: &Sweep) -> String {
-    let mut hasher = DefaultHasher::new();
-    format!("{sweep:?}").hash(&mut hasher);
-    format!("noslip ensemble {} {:016x}", env!("CARGO_PKG_VERSION"), hasher.finish())
+    let contents = Checkpoint::fingerprint(&format!("{sweep:?}"));
+    format!("noslip ensemble {} rows with checksums {contents}", env!("CARGO_PKG_VERSION"))
 }
 
 /// Names and units of the columns.

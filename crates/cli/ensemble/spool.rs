@@ -1,173 +1,197 @@
-use super::members::Row;
+use super::lines::{Damage, Lines, parsed};
+use super::result;
 use crate::error::CliError;
-use crate::files::write_whole;
-use crate::first_error::FirstError;
+use crate::files::{check_file, write_whole};
+use crate::part::Part;
+use crate::terminal;
 use crate::trajectory_file::Format;
-use std::fs::{File, OpenOptions};
-use std::io::{BufRead, BufReader, BufWriter, Error, ErrorKind, Seek, Write};
-use std::path::{Path, PathBuf};
+use std::io::{BufRead, BufReader, Error, ErrorKind, Seek, SeekFrom, Write};
+use std::path::Path;
 
-/// Rows on their way: a file beside the result, to which every row is added when its member is done, and from which the result
-/// is made at the end. So the memory holds few of them, and what an interrupted run has done is not lost.
+/// Rows on their way: a file beside the result, to which every row is added when its member is done, and from which the result is made
+/// at the end. So the memory holds few of them, and what an interrupted run has done is not lost.
 pub(super) struct Spool {
-    path: PathBuf,
-    file: BufWriter<File>,
+    part: Part,
+    lines: Lines,
+    /// How many are in it: those of the members from 0 on.
+    rows: u64,
+    /// Its first line.
+    header: String,
+}
+
+/// What is to be done with what is there.
+#[derive(Clone, Copy)]
+pub(super) struct Asked {
+    /// Go on from the rows of an interrupted run.
+    pub(super) resume: bool,
+    /// Overwrite them, and the result.
+    pub(super) force: bool,
 }
 
 impl Spool {
-    /// The name of the file beside `out`.
-    pub(super) fn path_of(out: &Path) -> PathBuf {
-        let mut name = out.file_name().unwrap_or_default().to_owned();
-        name.push(".part");
-        out.with_file_name(name)
-    }
-
-    /// A new file, which belongs to the sweep with that identity.
-    pub(super) fn begin(out: &Path, identity: &str) -> Result<Self, CliError> {
-        let path = Self::path_of(out);
-        let failed = |source| CliError::Write { path: path.clone(), source };
-        let mut file = BufWriter::new(File::create(&path).map_err(failed)?);
-        writeln!(file, "{identity}").map_err(failed)?;
-        Ok(Self { path, file })
-    }
-
-    /// The file of an interrupted run of the same sweep; `seen` receives the numbers and the error of every row in it.
-    pub(super) fn resume(
+    /// The spool of a sweep with that identity and so many members, whose rows have so many numbers; `seen` receives the values and the
+    /// error of every row that is taken over.
+    pub(super) fn open(
         out: &Path,
-        identity: &str,
-        mut seen: impl FnMut(&[f64], bool),
-    ) -> Result<(Self, u64), CliError> {
-        let path = Self::path_of(out);
-        let unreadable = |source| CliError::Read { path: path.clone(), source };
-        let mut reader = BufReader::new(File::open(&path).map_err(unreadable)?);
-        let mut line = String::new();
-        reader.read_line(&mut line).map_err(unreadable)?;
-        if line.trim_end() != identity {
+        (identity, members, numbers): (&str, u64, usize),
+        asked: Asked,
+        seen: impl FnMut(&[f64], Option<&str>),
+    ) -> Result<Self, CliError> {
+        let part = Part::lock(out)?;
+        let found = part.file().metadata().map_err(|source| part.failed(source))?.len();
+        // Whoever had the lock may have written the result meanwhile.
+        if let Err(error) = check_file(out, asked.force) {
+            if found == 0 {
+                part.remove();
+            }
+            return Err(error);
+        }
+        let (lines, header) = (Lines::new(identity, numbers), format!("{identity}\n"));
+        let mut spool = Self { part, lines, rows: 0, header };
+        let begun = found >= spool.header.len() as u64 || !spool.has_begun_only(found)?;
+        if begun && asked.resume {
+            spool.take_over(members, seen)?;
+        } else if begun && !asked.force {
             return Err(CliError::Request(format!(
-                "{}: belongs to another sweep; without --resume, --force begins anew",
-                path.display()
+                "{} is there, of an interrupted run; --resume goes on, --force begins anew",
+                spool.part.path().display()
+            )));
+        } else {
+            spool.begin().map_err(|source| spool.part.failed(source))?;
+        }
+        Ok(spool)
+    }
+
+    /// How many rows are in it.
+    pub(super) fn rows(&self) -> u64 {
+        self.rows
+    }
+
+    /// The format of its lines.
+    pub(super) fn lines(&self) -> &Lines {
+        &self.lines
+    }
+
+    /// Whether there is only a beginning of the first line: a process was ended while it wrote that.
+    fn has_begun_only(&self, size: u64) -> Result<bool, CliError> {
+        let mut text = Vec::new();
+        let mut reader = self.reader().map_err(|source| self.part.failed(source))?;
+        reader.read_until(b'\n', &mut text).map_err(|source| self.part.failed(source))?;
+        Ok(text.len() as u64 == size && self.header.as_bytes().starts_with(&text))
+    }
+
+    fn begin(&mut self) -> Result<(), Error> {
+        let mut file = self.part.file();
+        file.set_len(0)?;
+        file.seek(SeekFrom::Start(0))?;
+        file.write_all(self.header.as_bytes())
+    }
+
+    fn reader(&self) -> Result<BufReader<&std::fs::File>, Error> {
+        let mut file = self.part.file();
+        file.seek(SeekFrom::Start(0))?;
+        Ok(BufReader::with_capacity(1 << 16, file))
+    }
+
+    /// Keeps the rows that are whole and in order; the first that is not, and all after it, are made again.
+    fn take_over(&mut self, members: u64, mut seen: impl FnMut(&[f64], Option<&str>)) -> Result<(), CliError> {
+        let unreadable = |source| CliError::Read { path: self.part.path().to_owned(), source };
+        let (mut reader, mut line) = (self.reader().map_err(unreadable)?, Vec::new());
+        reader.read_until(b'\n', &mut line).map_err(unreadable)?;
+        if line != self.header.as_bytes() {
+            return Err(CliError::Request(format!(
+                "{}:1: belongs to another sweep or another version of the program, or is damaged; without --resume, --force begins anew",
+                self.part.path().display()
             )));
         }
         let (mut whole, mut rows) = (line.len() as u64, 0);
-        loop {
+        let damage = loop {
             line.clear();
-            // A row that was being written when the program ended has no end.
-            if reader.read_line(&mut line).map_err(unreadable)? == 0 || !line.ends_with('\n') {
-                break;
+            if reader.read_until(b'\n', &mut line).map_err(unreadable)? == 0 {
+                break None;
             }
-            let (numbers, failed) = parsed(&line).map_err(unreadable)?;
-            seen(&numbers[1..], failed);
+            let text = match self.lines.row(&line, rows) {
+                Ok(text) if rows < members => text,
+                Ok(_) => break Some(Damage::Member(rows.to_string())),
+                Err(damage) => break Some(damage),
+            };
+            let (values, error) = parsed(text);
+            seen(&values, error.as_deref());
             (whole, rows) = (whole + line.len() as u64, rows + 1);
-        }
-        let failed = |source| CliError::Write { path: path.clone(), source };
-        let mut file = OpenOptions::new().write(true).open(&path).map_err(failed)?;
-        file.set_len(whole).and_then(|()| file.seek(std::io::SeekFrom::End(0)).map(drop)).map_err(failed)?;
-        Ok((Self { path, file: BufWriter::new(file) }, rows))
-    }
-
-    /// Adds rows, as [`text`] made them.
-    pub(super) fn add(&mut self, text: &str) -> Result<(), CliError> {
-        self.file.write_all(text.as_bytes()).map_err(|source| CliError::Write { path: self.path.clone(), source })
-    }
-
-    /// Writes all to the disk.
-    pub(super) fn flush(&mut self) -> Result<(), CliError> {
-        self.file.flush().map_err(|source| CliError::Write { path: self.path.clone(), source })
-    }
-
-    /// Makes the result of the rows, which appears whole or not at all, and removes the file.
-    pub(super) fn finish(
-        mut self,
-        out: &Path,
-        format: Format,
-        header: &[(String, &'static str)],
-        rows: u64,
-        overwrite: bool,
-    ) -> Result<(), CliError> {
-        self.flush()?;
-        let lines = || -> Result<_, Error> {
-            let mut reader = BufReader::new(File::open(&self.path)?);
-            reader.skip_until(b'\n')?;
-            Ok(reader)
         };
-        write_whole(out, overwrite, |file| match format {
-            Format::Csv => {
-                let names: Vec<String> = header.iter().map(|(name, unit)| label(name, unit)).collect();
-                writeln!(file, "{},error", names.join(","))?;
-                std::io::copy(&mut lines()?, file).map(drop)
-            }
-            Format::Npz => {
-                let mut file = FirstError::new(file);
-                let outcome = npz(&mut file, header, rows, lines);
-                file.into_result().and(outcome)
-            }
-            #[cfg(feature = "parquet")]
-            Format::Parquet => {
-                let names = header.iter().map(|(name, unit)| label(name, unit)).collect();
-                let lines = lines()?.lines().map(|line| parsed(&line?).map(|(numbers, _)| numbers));
-                crate::parquet_file::write_groups(file, names, lines)
-            }
-        })?;
-        // The result is there; that something is left beside it does no harm.
-        let _ = std::fs::remove_file(&self.path);
+        drop(reader);
+        // A row that was being written when the program ended has no end; that is no news.
+        if let Some(damage) = damage.filter(|damage| *damage != Damage::Cut) {
+            let (path, number) = (self.part.path().display(), rows + 2);
+            let told = format!("{path}:{number}: damaged: {damage}; the members from {rows} on are made again");
+            terminal::say("warning", &told);
+        }
+        let mut file = self.part.file();
+        file.set_len(whole).and_then(|()| file.seek(SeekFrom::End(0))).map_err(|source| self.part.failed(source))?;
+        self.rows = rows;
         Ok(())
     }
-}
 
-fn label(name: &str, unit: &str) -> String {
-    if unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") }
-}
-
-/// A row as a line: numbers that read back as the same ones, and the error in quotes.
-pub(super) fn text(row: &Row) -> String {
-    use std::fmt::Write;
-    let mut text = row.member.to_string();
-    for value in &row.values {
-        // Writing to a string cannot fail.
-        let _ = write!(text, ",{value:?}");
+    /// Adds so many rows, as [`Lines::line`] made them; they are with the operating system when this returns.
+    pub(super) fn add(&mut self, text: &str, rows: u64) -> Result<(), CliError> {
+        self.rows += rows;
+        let mut file = self.part.file();
+        file.write_all(text.as_bytes()).map_err(|source| self.part.failed(source))
     }
-    text.push(',');
-    if let Some(error) = &row.error {
-        let line = error.split_whitespace().collect::<Vec<_>>().join(" ").replace('"', "\"\"");
-        let _ = write!(text, "\"{line}\"");
+
+    /// Makes the result of the rows 0 to `members - 1`, each of which must be there once; it appears whole or not at all. Then the
+    /// file is removed.
+    pub(super) fn finish(
+        self,
+        out: &Path,
+        format: Format,
+        columns: &[(String, &'static str)],
+        (members, overwrite): (u64, bool),
+    ) -> Result<(), CliError> {
+        let rows = || self.whole_rows(members);
+        write_whole(out, overwrite, |file| result::write(file, format, columns, members, &rows))?;
+        self.part.remove();
+        Ok(())
     }
-    text.push('\n');
-    text
+
+    /// A reader of the rows, which fails where they are not those of the members in order.
+    fn whole_rows(&self, members: u64) -> Result<Rows<'_>, Error> {
+        let mut reader = self.reader()?;
+        reader.skip_until(b'\n')?;
+        Ok(Rows { spool: self, reader, line: Vec::new(), next: 0, members })
+    }
 }
 
-/// The numbers of a line, and whether it has an error.
-fn parsed(line: &str) -> Result<(Vec<f64>, bool), Error> {
-    let (numbers, error) = match line.trim_end().split_once(",\"") {
-        Some((numbers, _)) => (numbers, true),
-        None => (line.trim_end().trim_end_matches(','), false),
-    };
-    let number = |text: &str| text.parse().map_err(|_| Error::new(ErrorKind::InvalidData, "a row that is none"));
-    Ok((numbers.split(',').map(number).collect::<Result<_, _>>()?, error))
+/// Reads the rows of a spool, one after the other.
+pub(super) struct Rows<'a> {
+    spool: &'a Spool,
+    reader: BufReader<&'a std::fs::File>,
+    line: Vec<u8>,
+    next: u64,
+    members: u64,
 }
 
-/// An archive with an array for each column, one after the other.
-fn npz<R: BufRead>(
-    file: &mut (impl Write + Seek),
-    header: &[(String, &'static str)],
-    rows: u64,
-    lines: impl Fn() -> Result<R, Error>,
-) -> Result<(), Error> {
-    use npyz::WriterBuilder;
-    let mut archive = zip::ZipWriter::new(file);
-    let options =
-        zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored).large_file(true);
-    let failed = header.len();
-    let names = header.iter().map(|(name, _)| name.as_str()).chain(["failed"]);
-    for (column, name) in names.enumerate() {
-        archive.start_file(npyz::npz::file_name_from_array_name(name), options)?;
-        let mut array = npyz::WriteOptions::new().default_dtype().shape(&[rows]).writer(&mut archive).begin_nd()?;
-        for line in lines()?.lines() {
-            let (numbers, error) = parsed(&line?)?;
-            let value = if column == failed { f64::from(u8::from(error)) } else { numbers[column] };
-            array.push(&value)?;
+impl Rows<'_> {
+    /// The text of the next row; none after the last one.
+    pub(super) fn next(&mut self) -> Result<Option<&str>, Error> {
+        self.line.clear();
+        let read = self.reader.read_until(b'\n', &mut self.line)?;
+        if read == 0 && self.next == self.members {
+            return Ok(None);
         }
-        array.finish()?;
+        let row = self.spool.lines.row(&self.line, self.next);
+        self.next += 1;
+        match row {
+            Ok(text) if self.next <= self.members => Ok(Some(text)),
+            Ok(_) => Err(self.damaged(&Damage::Member((self.next - 1).to_string()))),
+            Err(damage) => Err(self.damaged(&damage)),
+        }
     }
-    archive.finish()?;
-    Ok(())
+
+    fn damaged(&self, damage: &Damage) -> Error {
+        let path = self.spool.part.path().display();
+        let problem =
+            format!("{path}:{}: damaged: {damage}; --resume makes the members from there on again", self.next + 1);
+        Error::new(ErrorKind::InvalidData, problem)
+    }
 }

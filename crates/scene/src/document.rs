@@ -47,6 +47,11 @@ impl Document<'_> {
         Some(if table.is_empty() { key.trim().to_owned() } else { format!("{table}.{}", key.trim()) })
     }
 
+    /// The number of the line of a place, from 1.
+    pub(crate) fn line(&self, index: usize) -> usize {
+        1 + self.text[..self.text.floor_char_boundary(index)].matches('\n').count()
+    }
+
     /// The line and column where `span` begins, and the part of it on that line.
     fn locate(&self, span: &Range<usize>) -> (Place, Excerpt) {
         let text = self.text;
@@ -57,10 +62,7 @@ impl Document<'_> {
         let line = line.strip_suffix('\r').unwrap_or(line);
         let in_line = |index: usize| line.floor_char_boundary(index.saturating_sub(line_start));
         let marked = in_line(start)..in_line(span.end.max(start));
-        let place = Place {
-            line: 1 + text[..line_start].matches('\n').count(),
-            column: 1 + line[..marked.start].chars().count(),
-        };
+        let place = Place { line: self.line(line_start), column: 1 + line[..marked.start].chars().count() };
         (place, Excerpt { line: line.to_owned(), span: marked })
     }
 }

@@ -1,6 +1,10 @@
-use crate::sweep::number;
+use crate::table::as_f64;
 use std::f64::consts::TAU;
-use toml::Value;
+use toml::de::DeValue;
+
+/// What a value of `[random]` may be.
+pub(crate) const ACCEPTED: &str = "{ uniform = [a, b] } with a at most b, { log_uniform = [a, b] } with 0 < a at most b, or \
+                                   { normal = [mean, deviation] } with a deviation of 0 or more";
 
 /// How a number is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,33 +18,56 @@ pub(crate) enum Draw {
 }
 
 impl Draw {
-    /// Reads `{ uniform = [a, b] }` and the like.
-    pub(crate) fn read(value: &Value) -> Result<Self, String> {
-        let accepted = "accepted is { uniform = [a, b] }, { log_uniform = [a, b] } with positive numbers, or { normal = [mean, deviation] }";
-        let fail = || format!("is no distribution; {accepted}");
-        let table = value.as_table().filter(|table| table.len() == 1).ok_or_else(fail)?;
-        let (kind, pair) = table.iter().next().ok_or_else(fail)?;
-        let pair = pair.as_array().filter(|pair| pair.len() == 2).ok_or_else(fail)?;
-        let (a, b) = number(&pair[0]).zip(number(&pair[1])).ok_or_else(fail)?;
-        match kind.as_str() {
+    /// Reads `{ uniform = [a, b] }` and the like; the error says what is wrong with it.
+    pub(crate) fn read(value: &DeValue<'_>) -> Result<Self, &'static str> {
+        const NONE: &str = "is not a distribution";
+        let table = value.as_table().filter(|table| table.len() == 1).ok_or(NONE)?;
+        let (kind, pair) = table.iter().next().ok_or(NONE)?;
+        let pair = pair.get_ref().as_array().filter(|pair| pair.len() == 2).ok_or(NONE)?;
+        let number = |i: usize| as_f64(pair[i].get_ref()).filter(|number| number.is_finite());
+        let (a, b) = number(0).zip(number(1)).ok_or("has an end that is not a finite number")?;
+        match kind.get_ref().as_ref() {
+            "uniform" | "log_uniform" if a > b => Err("has its larger end first"),
             "uniform" => Ok(Self::Uniform(a, b)),
-            "log_uniform" if a > 0.0 && b > 0.0 => Ok(Self::LogUniform(a, b)),
+            "log_uniform" if a > 0.0 => Ok(Self::LogUniform(a, b)),
+            "log_uniform" => Err("has an end that is not positive"),
             "normal" if b >= 0.0 => Ok(Self::Normal(a, b)),
-            _ => Err(fail()),
+            "normal" => Err("has a negative deviation"),
+            _ => Err(NONE),
         }
     }
 
-    /// The number that a member draws for its key `k`: a function of these and of the seed, and of nothing that was drawn before.
-    pub(crate) fn sample(self, seed: u64, member: u64, k: u64) -> f64 {
-        let bits = |i: u64| mixed(mixed(mixed(seed) ^ member) ^ (2 * k + i));
+    /// The number that is drawn from a stream.
+    pub(crate) fn sample(self, stream: Stream) -> f64 {
         // From 53 bits, the middle of their interval: neither 0 nor 1.
-        let unit = |i: u64| ((bits(i) >> 11) as f64 + 0.5) * (1.0 / 9_007_199_254_740_992.0);
+        let unit = |i: u64| ((stream.and(i).0 >> 11) as f64 + 0.5) * (1.0 / 9_007_199_254_740_992.0);
         match self {
             Self::Uniform(a, b) => a + (b - a) * unit(0),
             Self::LogUniform(a, b) => (a.ln() + (b.ln() - a.ln()) * unit(0)).exp(),
             // Box and Muller 1958.
             Self::Normal(mean, deviation) => mean + deviation * (-2.0 * unit(0).ln()).sqrt() * (TAU * unit(1)).cos(),
         }
+    }
+}
+
+/// Random bits that belong to a list of numbers and names, and to nothing that was drawn before.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stream(u64);
+
+impl Stream {
+    /// Of a seed alone.
+    pub(crate) fn of(seed: u64) -> Self {
+        Self(mixed(seed))
+    }
+
+    /// With one more number.
+    pub(crate) fn and(self, number: u64) -> Self {
+        Self(mixed(self.0 ^ number))
+    }
+
+    /// With one more name.
+    pub(crate) fn named(self, name: &str) -> Self {
+        name.bytes().fold(self, |stream, byte| stream.and(u64::from(byte)))
     }
 }
 

@@ -34,6 +34,7 @@ mod sweep;
 mod system;
 mod table;
 mod train;
+mod variation;
 mod written;
 
 pub use self::scene::Scene;

@@ -1,8 +1,13 @@
 use crate::bundled::bundled;
-use crate::draw::Draw;
-use crate::{Scene, SceneError, file, suggest};
+use crate::document::Document;
+use crate::draw::{Draw, Stream};
+use crate::fault::Fault;
+use crate::keys::{DURATION, STEP};
+use crate::table::Table as SceneTable;
+use crate::{Scene, SceneError, file, suggest, variation};
 use sleigh::Sleigh;
 use thiserror::Error;
+use toml::de::DeTable;
 use toml::{Table, Value};
 
 /// Numbers that every scene has, though its text may not have all of them.
@@ -17,8 +22,9 @@ const COMMON: [&str; 8] = [
     "sleigh.offset",
 ];
 
-const UNKNOWN: &str = "is no number that the scene has; accepted are keys of its start, its sleigh and its effects, like \
-                       start.speed, sleigh.offset, effects.0.stiffness.1";
+const UNKNOWN: &str = "is not a number of the scene";
+const NUMBERS: &str = "keys of the scene's start, sleigh and effects that have a number, like start.speed, sleigh.offset, \
+                       effects.0.stiffness.1";
 
 /// The most members of a sweep.
 const MOST: u64 = 1_000_000_000_000;
@@ -26,7 +32,9 @@ const MOST: u64 = 1_000_000_000_000;
 /// Many variants of a scene: a grid of values, and random samples at each of its points.
 ///
 /// Members are numbered; each is made from its number alone, so that any of them can be made at any time. Keys are in
-/// the order of the alphabet; on the grid the last one varies fastest.
+/// the order of the alphabet; on the grid the last one varies fastest. A random number belongs to the seed, the key, the number of the
+/// sample, and to the places of the member's values in the lists of the grid, unless the points of the grid have
+/// their samples in common: more samples, and longer lists, leave the others as they were.
 #[derive(Debug, Clone)]
 pub struct Sweep {
     /// The scene that is varied, with the method, the step and the duration of the sweep.
@@ -41,26 +49,20 @@ pub struct Sweep {
     random: Vec<(String, Draw)>,
     samples: u64,
     seed: u64,
+    /// Whether the points of the grid have the same samples.
+    common: bool,
 }
 
-/// What is wrong with the file of a sweep.
+/// What is wrong with a sweep.
 #[derive(Debug, Error)]
 pub enum SweepError {
-    /// The scene, or the file itself.
+    /// The sweep's file, with its line, or the scene.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The file is not TOML.
-    #[error("{origin}: {problem}")]
-    Syntax {
-        /// The file.
-        origin: String,
-        /// What and where.
-        problem: String,
-    },
-    /// A key has no possible value.
+    /// A member's value for a key makes no scene.
     #[error("{origin}: `{key}` {problem}")]
     Key {
-        /// The file.
+        /// The scene.
         origin: String,
         /// The key.
         key: String,
@@ -83,22 +85,23 @@ impl Sweep {
     /// # Errors
     /// As [`load`](Self::load).
     pub fn parse(text: &str, origin: &str, methods: &[&str]) -> Result<Self, SweepError> {
-        let file: Table = text.parse().map_err(|error: toml::de::Error| SweepError::Syntax {
-            origin: origin.to_owned(),
-            problem: error.to_string(),
-        })?;
-        let reader = Reader { origin };
-        reader.known("", &file, &["scene", "method", "step", "duration", "grid", "random", "output"])?;
-        let name = reader
-            .text(&file, "scene")?
-            .ok_or_else(|| reader.fail("scene", "is missing: a file, or the name of a bundled scene"))?;
+        // A byte-order mark is no part of the first line.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let document = Document { origin, text };
+        let entries = DeTable::parse(text).map_err(|error| document.syntax(&error))?.into_inner();
+        let known = ["scene", "method", "step", "duration", "grid", "random", "output"];
+        let root = SceneTable::whole(document, &entries).with_keys_of("a sweep", &known)?;
+        let accepted = "a scene file, or the name of a bundled scene, in quotes";
+        let name = root.text("scene", accepted)?.ok_or_else(|| root.missing("scene", accepted.to_owned()))?;
+        let method = root.text("method", &format!("a string, one of {}", suggest::list(methods)))?;
+        let (step, duration) = (root.number(&STEP)?, root.number(&DURATION)?);
         let bundled_text =
             bundled().iter().find(|scene| scene.name == name.replace('_', "-")).map(|scene| scene.text.to_owned());
         let scene_text = bundled_text.map_or_else(|| file::read(name), Ok)?;
-        let method = reader.text(&file, "method")?;
-        let (step, duration) = (reader.number(&file, "step")?, reader.number(&file, "duration")?);
-        let mut table: Table =
-            Scene::parse(&scene_text, name, methods).and(Ok(scene_text.parse().unwrap_or_default()))?;
+        let scene = Scene::parse(&scene_text, name, methods)?;
+        let scene =
+            scene.with_overrides(method, step, duration, None, methods).map_err(|error| in_sweep(&root, error))?;
+        let mut table: Table = scene_text.parse().unwrap_or_default();
         if let Some(Value::Table(run)) = table.get_mut("run") {
             let numbers = [("step", step), ("duration", duration)];
             let set = numbers.into_iter().filter_map(|(key, value)| Some((key, Value::Float(value?))));
@@ -107,45 +110,44 @@ impl Sweep {
                 run.insert(key.to_owned(), value);
             }
         }
-        let scene = Scene::parse(&table.to_string(), name, methods)?;
 
-        let (mut grid, mut random) = (Vec::new(), Vec::new());
-        for (key, value) in reader.leaves(&file, "grid", &[])? {
-            let values = reader.values(&key, value)?;
-            grid.push((key, values));
+        let (grid, random) = variation::read(&root)?;
+        // What no member could have is said before the first one.
+        let unknown = |key: &str| set(&mut table.clone(), key, 0.0).is_none();
+        if let Some(leaf) = grid.iter().find(|leaf| unknown(&leaf.key)) {
+            return Err(leaf.fail(&root, UNKNOWN, NUMBERS).into());
         }
-        for (key, value) in reader.leaves(&file, "random", &["count", "seed"])? {
-            let draw = Draw::read(value).map_err(|problem| reader.fail(&key, &problem))?;
-            random.push((key, draw));
+        if let Some(leaf) = random.iter().find(|leaf| unknown(&leaf.key)) {
+            return Err(leaf.fail(&root, UNKNOWN, NUMBERS).into());
         }
-        let section = |name: &str| file.get(name).and_then(Value::as_table).cloned().unwrap_or_default();
-        let (choice, output) = (section("random"), section("output"));
-        reader.known("output", &output, &["every", "exponent"])?;
-        let samples = reader.whole(&choice, "count")?.unwrap_or(1);
+        let section = |name| root.section(name);
+        let (choice, output) = (section("random")?, section("output")?);
+        let output = output.map(|output| output.with_keys_of("a sweep", &["every", "exponent"])).transpose()?;
+        let whole =
+            |table: &Option<SceneTable<'_>>, key| table.as_ref().map_or(Ok(None), |table| table.whole_number(key));
+        let truth = |table: &Option<SceneTable<'_>>, key| table.as_ref().map_or(Ok(false), |table| table.truth(key));
+        let samples = whole(&choice, "count")?.unwrap_or(1);
         let sweep = Self {
-            every: reader.whole(&output, "every")?.unwrap_or_else(|| scene.run.steps().div_ceil(100)).max(1),
-            exponent: match output.get("exponent") {
-                None => false,
-                Some(Value::Boolean(exponent)) => *exponent,
-                Some(_) => return Err(reader.fail("output.exponent", "is neither true nor false")),
-            },
-            seed: reader.whole(&choice, "seed")?.unwrap_or(0),
+            every: whole(&output, "every")?.unwrap_or_else(|| scene.run.steps().div_ceil(100)).max(1),
+            exponent: truth(&output, "exponent")?,
+            seed: whole(&choice, "seed")?.unwrap_or(0),
+            common: truth(&choice, "common")?,
             scene,
             text: table,
             origin: name.to_owned(),
-            grid,
-            random,
+            grid: grid.into_iter().map(|leaf| (leaf.key, leaf.values)).collect(),
+            random: random.into_iter().map(|leaf| (leaf.key, leaf.values)).collect(),
             samples,
         };
-        let count = sweep.grid.iter().try_fold(samples, |count, (_, values)| count.checked_mul(values.len() as u64));
-        if count.is_none_or(|count| count == 0 || count > MOST) {
-            return Err(reader.fail("random.count", "makes no members, or more than 1e12 of them"));
-        }
-        // What no member could have is said before the first one.
-        let unknown = sweep.keys().find(|key| set(&mut sweep.text.clone(), key, 0.0).is_none()).map(str::to_owned);
-        match unknown {
-            Some(key) => Err(reader.fail(&key, UNKNOWN)),
-            None => Ok(sweep),
+        let mut grid = sweep.grid.iter().map(|(_, values)| values.len() as u64);
+        match grid.try_fold(samples, |count: u64, values| count.checked_mul(values)) {
+            Some(1..=MOST) => Ok(sweep),
+            _ => {
+                let table = choice.unwrap_or(root);
+                let problem = "makes no members, or more than 1e12 of them";
+                let accepted = "a count that, times the number of values of each key of the grid, is from 1 to 1e12";
+                Err(table.wrong("count", problem, accepted.to_owned()).into())
+            }
         }
     }
 
@@ -175,8 +177,22 @@ impl Sweep {
             }
             point /= count;
         }
-        let found = self.random.iter().enumerate().find(|(_, (name, _))| name == key);
-        found.map_or(f64::NAN, |(i, (_, draw))| draw.sample(self.seed, member, i as u64))
+        let found = self.random.iter().find(|(name, _)| name == key);
+        found.map_or(f64::NAN, |(_, draw)| draw.sample(self.stream(member).named(key)))
+    }
+
+    /// What a member's random numbers belong to: the seed, its values' places in the lists of the grid, and its sample.
+    fn stream(&self, member: u64) -> Stream {
+        let mut stream = Stream::of(self.seed);
+        if !self.common {
+            let mut point = member / self.samples;
+            for (name, values) in self.grid.iter().rev() {
+                let count = values.len() as u64;
+                stream = stream.named(name).and(point % count);
+                point /= count;
+            }
+        }
+        stream.and(member % self.samples)
     }
 
     /// The scene of a member.
@@ -251,100 +267,32 @@ fn set(table: &mut Table, path: &str, value: f64) -> Option<()> {
     }
     match place {
         Value::Table(table) if COMMON.contains(&path) => drop(table.insert(last.to_owned(), Value::Float(value))),
-        Value::Table(table) => *table.get_mut(last).filter(|old| number(old).is_some())? = Value::Float(value),
+        Value::Table(table) => {
+            *table.get_mut(last).filter(|old| old.is_float() || old.is_integer())? = Value::Float(value);
+        }
         Value::Array(list) => *list.get_mut(last.parse::<usize>().ok()?)? = Value::Float(value),
         _ => return None,
     }
     Some(())
 }
 
-struct Reader<'a> {
-    origin: &'a str,
-}
-
-impl Reader<'_> {
-    fn fail(&self, key: &str, problem: &str) -> SweepError {
-        SweepError::Key { origin: self.origin.to_owned(), key: key.to_owned(), problem: problem.to_owned() }
+/// An error of the settings that a sweep gives its scene, at the place in the sweep's file.
+fn in_sweep(root: &SceneTable<'_>, error: SceneError) -> SceneError {
+    let variant =
+        if matches!(error, SceneError::UnknownName(_)) { SceneError::UnknownName } else { SceneError::OutOfRange };
+    let given = ["method", "step", "duration"].into_iter().find_map(|key| {
+        let finding = error.finding()?;
+        (finding.field.as_deref()?.strip_prefix("--") == Some(key)).then_some((key, finding))
+    });
+    match given {
+        Some((key, finding)) => root.fail(Fault {
+            variant,
+            key,
+            problem: finding.problem.clone(),
+            found: None,
+            accepted: finding.accepted.clone(),
+            help: finding.help.clone(),
+        }),
+        None => error,
     }
-
-    fn known(&self, path: &str, table: &Table, keys: &[&str]) -> Result<(), SweepError> {
-        match table.keys().find(|key| !keys.contains(&key.as_str())) {
-            None => Ok(()),
-            Some(key) => Err(self.fail(
-                &format!("{path}{}{key}", if path.is_empty() { "" } else { "." }),
-                &format!("is no key of a sweep; accepted are {}", suggest::list(keys)),
-            )),
-        }
-    }
-
-    fn text<'t>(&self, table: &'t Table, key: &str) -> Result<Option<&'t str>, SweepError> {
-        match table.get(key) {
-            None => Ok(None),
-            Some(Value::String(text)) => Ok(Some(text)),
-            Some(_) => Err(self.fail(key, "is no text in quotes")),
-        }
-    }
-
-    fn number(&self, table: &Table, key: &str) -> Result<Option<f64>, SweepError> {
-        let Some(value) = table.get(key) else { return Ok(None) };
-        number(value).map(Some).ok_or_else(|| self.fail(key, "is no finite number"))
-    }
-
-    fn whole(&self, table: &Table, key: &str) -> Result<Option<u64>, SweepError> {
-        let Some(value) = table.get(key) else { return Ok(None) };
-        let whole = value.as_integer().and_then(|whole| u64::try_from(whole).ok());
-        whole.map(Some).ok_or_else(|| self.fail(key, "is no whole number from 0 on"))
-    }
-
-    /// The keys below a table, dotted, with their values: a table that says how a number varies has no table in it.
-    fn leaves<'t>(&self, file: &'t Table, section: &str, own: &[&str]) -> Result<Vec<(String, &'t Value)>, SweepError> {
-        let table = match file.get(section) {
-            None => return Ok(Vec::new()),
-            Some(Value::Table(table)) => table,
-            Some(_) => return Err(self.fail(section, "is no table")),
-        };
-        let mut found = Vec::new();
-        let mut open: Vec<(String, &Value)> = table
-            .iter()
-            .rev()
-            .filter(|(key, _)| !own.contains(&key.as_str()))
-            .map(|(key, value)| (key.clone(), value))
-            .collect();
-        while let Some((path, value)) = open.pop() {
-            match value {
-                Value::Table(inner)
-                    if !["from", "uniform", "normal", "log_uniform"].iter().any(|key| inner.contains_key(*key)) =>
-                {
-                    open.extend(inner.iter().rev().map(|(key, value)| (format!("{path}.{key}"), value)));
-                }
-                value => found.push((path, value)),
-            }
-        }
-        Ok(found)
-    }
-
-    /// The values of a key of the grid.
-    fn values(&self, key: &str, value: &Value) -> Result<Vec<f64>, SweepError> {
-        let accepted = "is neither a list of numbers nor { from, to, count }";
-        let values: Option<Vec<f64>> = match value {
-            Value::Array(list) => list.iter().map(number).collect(),
-            Value::Table(range) => {
-                self.known(key, range, &["from", "to", "count"])?;
-                let ends = range.get("from").and_then(number).zip(range.get("to").and_then(number));
-                let count = range.get("count").and_then(Value::as_integer).and_then(|n| u32::try_from(n).ok());
-                ends.zip(count).map(|((from, to), count)| {
-                    let part = |i: u32| f64::from(i) / f64::from(count.max(2) - 1);
-                    (0..count).map(|i| (1.0 - part(i)) * from + part(i) * to).collect()
-                })
-            }
-            _ => None,
-        };
-        values.filter(|values| !values.is_empty()).ok_or_else(|| self.fail(key, accepted))
-    }
-}
-
-/// A finite number.
-pub(crate) fn number(value: &Value) -> Option<f64> {
-    let number = value.as_float().or_else(|| value.as_integer().map(|integer| integer as f64));
-    number.filter(|number| number.is_finite())
 }

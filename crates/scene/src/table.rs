@@ -22,7 +22,12 @@ pub(crate) struct Table<'s> {
 impl<'s> Table<'s> {
     /// The document itself, whose keys are all known.
     pub(crate) fn root(document: Document<'s>, entries: &'s DeTable<'s>) -> Result<Self, SceneError> {
-        Self { document, path: String::new(), entries, header: (0, 0) }.with_known_keys(keys::of(""))
+        Self::whole(document, entries).with_known_keys(keys::of(""))
+    }
+
+    /// The document itself, whatever its keys.
+    pub(crate) fn whole(document: Document<'s>, entries: &'s DeTable<'s>) -> Self {
+        Self { document, path: String::new(), entries, header: (0, 0) }
     }
 
     /// The required table `key`, whose keys are all known.
@@ -58,13 +63,18 @@ impl<'s> Table<'s> {
 
     /// Refuses keys that the table does not have, the first in the text before the others.
     pub(crate) fn with_known_keys(self, known: &[&str]) -> Result<Self, SceneError> {
+        self.with_keys_of("a scene", known)
+    }
+
+    /// The same for a file of that kind.
+    pub(crate) fn with_keys_of(self, kind: &str, known: &[&str]) -> Result<Self, SceneError> {
         let unknown = self.entries.keys().filter(|key| !known.contains(&key.get_ref().as_ref()));
         let Some(key) = unknown.min_by_key(|key| key.span().start) else {
             return Ok(self);
         };
         let name: &str = key.get_ref();
         // An effect shares keys with the other tables.
-        let home = keys::home(name).filter(|_| !self.path.starts_with("effects"));
+        let home = keys::home(name).filter(|_| !self.path.starts_with("effects") && kind == "a scene");
         let help = match (home, suggest::nearest(name, known.iter().copied())) {
             (Some(""), _) if name == "title" => Some("`title` belongs at the top, before the first table".to_owned()),
             (Some(""), _) if name == "effects" => Some("effects are headed `[[effects]]`".to_owned()),
@@ -76,7 +86,7 @@ impl<'s> Table<'s> {
         let fault = Fault {
             variant: SceneError::UnknownKey,
             key: "",
-            problem: "is not a key of a scene".to_owned(),
+            problem: format!("is not a key of {kind}"),
             found: None,
             accepted: suggest::list(known),
             help,
@@ -113,6 +123,29 @@ impl<'s> Table<'s> {
                 DeValue::String(text) => Ok(Some(text)),
                 _ => Err(self.wrong_type(key, value, accepted.to_owned())),
             },
+        }
+    }
+
+    /// The whole number `key`, 0 or more, if the table has it.
+    pub(crate) fn whole_number(&self, key: &'static str) -> Result<Option<u64>, SceneError> {
+        let Some(value) = self.get(key) else { return Ok(None) };
+        let whole = value.get_ref().as_integer().and_then(|n| u64::from_str_radix(n.as_str(), n.radix()).ok());
+        let accepted = || "a whole number from 0 on, without a point or an exponent".to_owned();
+        whole.map(Some).ok_or_else(|| self.wrong(key, "is not a whole number from 0 on", accepted()))
+    }
+
+    /// The truth value `key`; false where the table does not have it.
+    pub(crate) fn truth(&self, key: &'static str) -> Result<bool, SceneError> {
+        let Some(value) = self.get(key) else { return Ok(false) };
+        value.get_ref().as_bool().ok_or_else(|| self.wrong_type(key, value, "true or false".to_owned()))
+    }
+
+    /// The table `key`, whatever its keys, if this one has it.
+    pub(crate) fn section(&self, key: &'static str) -> Result<Option<Self>, SceneError> {
+        let Some(value) = self.get(key) else { return Ok(None) };
+        match value.get_ref() {
+            DeValue::Table(entries) => Ok(Some(self.unchecked(key.to_owned(), entries, value.span()))),
+            _ => Err(self.wrong_type(key, value, format!("the table `[{key}]`"))),
         }
     }
 

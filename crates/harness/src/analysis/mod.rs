@@ -34,6 +34,7 @@ pub use lyapunov::{
 };
 pub use measure::{enclosed_area, measure_defect};
 pub use momentum_meter::MomentumMeter;
+pub(crate) use parallel::STACK;
 pub use parallel::in_parallel;
 pub use phase::{Rounds, weighted_mean};
 pub use section::{Section, section};

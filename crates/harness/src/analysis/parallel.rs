@@ -3,7 +3,7 @@ use std::sync::Once;
 
 /// Of a thread (bytes; taken as it is used). Kernels in registers are one function each; in a build without any optimisation
 /// every number in it has a place of its own, some megabytes in all.
-const STACK: usize = 32 << 20;
+pub(crate) const STACK: usize = 32 << 20;
 
 /// `each(0)` to `each(count - 1)`, in that order, computed on all threads.
 ///

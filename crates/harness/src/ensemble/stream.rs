@@ -1,32 +1,154 @@
-use crate::analysis::in_parallel;
+use crate::analysis::STACK;
+use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
-/// Groups that are computed between two visits to the sink.
-const GROUPS: u64 = 256;
+/// Members whose results wait in memory for those before them, at most; and groups for each thread, at least.
+const AHEAD: u64 = 4096;
+const GROUPS_A_THREAD: u64 = 4;
 
-/// Computes members in groups of `size`, on all threads, and hands what each group gives to `sink`, in order; `Break` ends it.
+/// Computes members in groups of `size`, on all threads, and hands what the groups give to `sink`, in order and as soon as it is done:
+/// all results that follow on the last one, at least one. `Break` ends it. Once `stops` says so no further group begins; those that have
+/// begun are finished and handed on.
 ///
 /// A group is the same members always, counted from zero, and knows nothing of the others, so that the number of threads
-/// (`RAYON_NUM_THREADS`), and where a sequence is taken up again, change no bit. Only a few groups are in memory.
+/// (`RAYON_NUM_THREADS`), and where a sequence is taken up again, change no bit. Where one group takes long the others
+/// get some thousand members ahead of it, and then wait: the memory is bounded.
 pub fn in_order<T: Send, E>(
     members: Range<u64>,
     size: u64,
+    stops: impl Fn() -> bool + Sync,
     each: impl Fn(Range<u64>) -> T + Sync,
-    mut sink: impl FnMut(T) -> ControlFlow<E>,
+    mut sink: impl FnMut(Vec<T>) -> ControlFlow<E>,
 ) -> ControlFlow<E> {
     let size = size.max(1);
-    let groups = members.end.div_ceil(size);
-    let mut next = members.start / size;
-    while next < groups {
-        let count = GROUPS.min(groups - next);
-        let group = |i: usize| {
-            let begin = (next + i as u64) * size;
-            each(begin..members.end.min(begin + size))
-        };
-        for result in in_parallel(count as usize, group) {
-            sink(result)?;
+    let threads = rayon::current_num_threads();
+    let groups = members.start / size..members.end.div_ceil(size);
+    let ahead = (AHEAD / size).max(GROUPS_A_THREAD * threads as u64);
+    let line = Line::new(groups, ahead, threads);
+    let compute = |group: u64| {
+        let begin = group * size;
+        line.put(group, each(begin..members.end.min(begin + size)));
+    };
+    let work = || {
+        let _leaving = Leaving(&line);
+        while let Some(group) = line.next(&stops) {
+            compute(group);
         }
-        next += count;
+    };
+    std::thread::scope(|scope| {
+        // Threads of its own: those of a pool may be waiting for this very call.
+        let started = (0..threads).map(|_| std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work));
+        let missing = started.filter(Result::is_err).count();
+        (0..missing).for_each(|_| line.leave());
+        // Where no thread is to be had this one does the work.
+        while missing == threads
+            && let Some(group) = line.next(&stops)
+        {
+            compute(group);
+            sink(line.ready().unwrap_or_default())?;
+        }
+        while let Some(ready) = line.ready() {
+            if let ControlFlow::Break(end) = sink(ready) {
+                line.close();
+                return ControlFlow::Break(end);
+            }
+        }
+        ControlFlow::Continue(())
+    })
+}
+
+/// Groups that are to be computed, and results that wait until those before them are there.
+struct Line<T> {
+    state: Mutex<State<T>>,
+    changed: Condvar,
+    end: u64,
+    ahead: u64,
+}
+
+struct State<T> {
+    /// The next group to be computed, and the next to be handed on.
+    next: u64,
+    handed: u64,
+    done: BTreeMap<u64, T>,
+    threads: usize,
+}
+
+impl<T> Line<T> {
+    fn new(groups: Range<u64>, ahead: u64, threads: usize) -> Self {
+        let state = State { next: groups.start, handed: groups.start, done: BTreeMap::new(), threads };
+        Self { state: Mutex::new(state), changed: Condvar::new(), end: groups.end, ahead }
     }
-    ControlFlow::Continue(())
+
+    fn lock(&self) -> MutexGuard<'_, State<T>> {
+        // Nothing is left half done where a thread panics.
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn wait<'a>(&self, state: MutexGuard<'a, State<T>>) -> MutexGuard<'a, State<T>> {
+        self.changed.wait(state).unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The next group to compute, once there is room for its result; none where all have begun, or none is to begin.
+    fn next(&self, stops: &impl Fn() -> bool) -> Option<u64> {
+        let mut state = self.lock();
+        while state.next < self.end && state.next >= state.handed.saturating_add(self.ahead) {
+            state = self.wait(state);
+        }
+        let group = state.next;
+        if group >= self.end || stops() {
+            return None;
+        }
+        state.next += 1;
+        Some(group)
+    }
+
+    fn put(&self, group: u64, result: T) {
+        self.lock().done.insert(group, result);
+        self.changed.notify_all();
+    }
+
+    /// All results that are next; none once no thread is left to make one.
+    fn ready(&self) -> Option<Vec<T>> {
+        let mut state = self.lock();
+        loop {
+            let mut ready = Vec::new();
+            while let Some(result) = {
+                let next = state.handed;
+                state.done.remove(&next)
+            } {
+                ready.push(result);
+                state.handed += 1;
+            }
+            if !ready.is_empty() {
+                self.changed.notify_all();
+                return Some(ready);
+            }
+            if state.threads == 0 {
+                return None;
+            }
+            state = self.wait(state);
+        }
+    }
+
+    /// No further group begins.
+    fn close(&self) {
+        self.lock().next = self.end;
+        self.changed.notify_all();
+    }
+
+    /// A thread has ended.
+    fn leave(&self) {
+        self.lock().threads -= 1;
+        self.changed.notify_all();
+    }
+}
+
+/// Leaves when it is dropped, also where a thread panics.
+struct Leaving<'a, T>(&'a Line<T>);
+
+impl<T> Drop for Leaving<'_, T> {
+    fn drop(&mut self) {
+        self.0.leave();
+    }
 }

@@ -7,6 +7,7 @@ use harness::ensemble::{Summary, Watching, in_order, summarise, watch};
 use lagrangian::{With, velocity_of};
 use sleigh::{Sleigh, SleighState};
 use std::ops::{ControlFlow, Range};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 const W: usize = 16;
 
@@ -34,10 +35,16 @@ fn all(members: Range<u64>, threads: usize) -> Vec<Option<Summary<3>>> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let mut rows = Vec::new();
     let outcome: ControlFlow<()> = pool.install(|| {
-        in_order(members, W as u64, group, |some| {
-            rows.extend(some);
-            ControlFlow::Continue(())
-        })
+        in_order(
+            members,
+            W as u64,
+            || false,
+            group,
+            |groups| {
+                rows.extend(groups.into_iter().flatten());
+                ControlFlow::Continue(())
+            },
+        )
     });
     assert!(outcome.is_continue());
     rows
@@ -53,17 +60,77 @@ fn threads_and_where_it_begins_change_no_bit() {
 
 #[test]
 fn the_sink_ends_it() {
-    let mut seen = 0;
+    let mut seen = Vec::new();
+    let begin = |range: Range<u64>| range.start;
     let outcome = in_order(
-        0..160,
+        0..160_000,
         16,
-        |range| range.start,
-        |begin| {
-            seen += 1;
-            if begin == 32 { ControlFlow::Break("enough") } else { ControlFlow::Continue(()) }
+        || false,
+        begin,
+        |begins| {
+            seen.extend(begins);
+            if seen.len() >= 3 { ControlFlow::Break("enough") } else { ControlFlow::Continue(()) }
         },
     );
-    assert_eq!((outcome, seen), (ControlFlow::Break("enough"), 3));
+    assert_eq!(outcome, ControlFlow::Break("enough"));
+    let expected: Vec<u64> = (0..seen.len() as u64).map(|group| 16 * group).collect();
+    assert_eq!(seen, expected);
+}
+
+#[test]
+fn a_stop_keeps_what_has_begun() {
+    let begun = AtomicU64::new(0);
+    let mut seen = 0;
+    let each = |range: Range<u64>| {
+        begun.fetch_add(1, Ordering::SeqCst);
+        range.start
+    };
+    let outcome: ControlFlow<()> = in_order(
+        0..100_000,
+        1,
+        || begun.load(Ordering::SeqCst) >= 70,
+        each,
+        |begins| {
+            for begin in begins {
+                assert_eq!(begin, seen);
+                seen += 1;
+            }
+            ControlFlow::Continue(())
+        },
+    );
+    assert!(outcome.is_continue());
+    assert!(seen >= 70 && seen == begun.load(Ordering::SeqCst), "{seen}");
+}
+
+#[test]
+fn a_slow_group_holds_the_others_up_when_they_are_far_ahead() {
+    let (handed, most) = (AtomicU64::new(0), AtomicU64::new(0));
+    let each = |range: Range<u64>| {
+        if range.start == 0 {
+            // Until the others have come as far as they may, or are done.
+            while most.load(Ordering::SeqCst) < 4000 {
+                std::thread::yield_now();
+            }
+        }
+        most.fetch_max(range.start - handed.load(Ordering::SeqCst).min(range.start), Ordering::SeqCst);
+        range.start
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
+    let outcome: ControlFlow<()> = pool.install(|| {
+        in_order(
+            0..50_000,
+            1,
+            || false,
+            each,
+            |begins| {
+                handed.store(begins[begins.len() - 1], Ordering::SeqCst);
+                ControlFlow::Continue(())
+            },
+        )
+    });
+    assert!(outcome.is_continue() && handed.into_inner() == 49_999);
+    // A count of groups, and the few that may begin between two looks at it.
+    assert!(most.into_inner() <= 2 * 4096);
 }
 
 #[test]

@@ -1,0 +1,103 @@
+use super::members::Row;
+use crc32fast::Hasher;
+use std::fmt::Write;
+
+/// How a row is a line of the spool: a checksum, the number of the member, its numbers, which read back as the same ones, and the
+/// error in quotes, if it has one. The checksum begins with the identity of the sweep, so that a line of another sweep is none of this one.
+#[derive(Debug, Clone)]
+pub(super) struct Lines {
+    seed: Hasher,
+    numbers: usize,
+}
+
+/// Why a line is not the row that it should be.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum Damage {
+    /// The line has no end: the program was ended while it was written.
+    Cut,
+    /// The checksum is not that of the text.
+    Checksum,
+    /// A row of this sweep, of another member.
+    Member(String),
+    /// Another count of numbers.
+    Numbers { found: usize, expected: usize },
+}
+
+impl std::fmt::Display for Damage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Cut => write!(f, "the line has no end"),
+            Self::Checksum => write!(f, "the checksum is not that of the line"),
+            Self::Member(found) => write!(f, "the row is that of member {found}"),
+            Self::Numbers { found, expected } => write!(f, "{expected} numbers expected, found {found}"),
+        }
+    }
+}
+
+impl Lines {
+    /// The lines of the sweep of that identity, whose rows have so many numbers, that of the member included.
+    pub(super) fn new(identity: &str, numbers: usize) -> Self {
+        let mut seed = Hasher::new();
+        seed.update(identity.as_bytes());
+        Self { seed, numbers }
+    }
+
+    fn checksum(&self, text: &str) -> String {
+        let mut hasher = self.seed.clone();
+        hasher.update(text.as_bytes());
+        format!("{:08x}", hasher.finalize())
+    }
+
+    /// A row as a line.
+    pub(super) fn line(&self, row: &Row) -> String {
+        let mut text = row.member.to_string();
+        for value in &row.values {
+            // Writing to a string cannot fail.
+            let _ = write!(text, ",{value:?}");
+        }
+        text.push(',');
+        if let Some(error) = &row.error {
+            let line = error.split_whitespace().collect::<Vec<_>>().join(" ").replace('"', "\"\"");
+            let _ = write!(text, "\"{line}\"");
+        }
+        format!("{} {text}\n", self.checksum(&text))
+    }
+
+    /// The text of a line that must be the row of a member: what the `.csv` has.
+    pub(super) fn row<'l>(&self, line: &'l [u8], member: u64) -> Result<&'l str, Damage> {
+        let line = line.strip_suffix(b"\n").ok_or(Damage::Cut)?;
+        let (sum, text) = std::str::from_utf8(line).ok().and_then(|l| l.split_once(' ')).ok_or(Damage::Checksum)?;
+        if sum != self.checksum(text) {
+            return Err(Damage::Checksum);
+        }
+        let (number, _) = text.split_once(',').unwrap_or((text, ""));
+        if number.parse() != Ok(member) {
+            return Err(Damage::Member(number.to_owned()));
+        }
+        let found = numbers(text).0.split(',').count();
+        let expected = self.numbers;
+        if found == expected { Ok(text) } else { Err(Damage::Numbers { found, expected }) }
+    }
+}
+
+/// The numbers of a row, and its error in quotes.
+fn numbers(text: &str) -> (&str, Option<&str>) {
+    match text.split_once(",\"") {
+        Some((numbers, error)) => (numbers, Some(error)),
+        None => (text.strip_suffix(',').unwrap_or(text), None),
+    }
+}
+
+/// The values of a row, without the number of the member, and its error.
+pub(super) fn parsed(text: &str) -> (Vec<f64>, Option<String>) {
+    let (numbers, error) = numbers(text);
+    let values = numbers.split(',').skip(1).map(|number| number.parse().unwrap_or(f64::NAN)).collect();
+    (values, error.map(|error| error.strip_suffix('"').unwrap_or(error).replace("\"\"", "\"")))
+}
+
+/// One number of a row; beyond the last one whether it has an error.
+pub(super) fn value(text: &str, column: usize) -> f64 {
+    let (numbers, error) = numbers(text);
+    let number = numbers.split(',').nth(column).map(|number| number.parse().unwrap_or(f64::NAN));
+    number.unwrap_or(f64::from(u8::from(error.is_some())))
+}

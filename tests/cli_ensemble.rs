@@ -1,0 +1,243 @@
+//! `noslip ensemble` under faults: ended by signals, beside another process, with a damaged spool. Nothing that was computed is lost, and
+//! nothing that was not computed is in a result.
+//!
+//! `NOSLIP_TRIES=200 cargo test --test cli_ensemble` makes each fault so many times.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, reason = "what the tests share is no test")]
+
+#[path = "common/program.rs"]
+mod program;
+
+use program::Folder;
+use std::fs;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// Lanes of the closed map: groups of sixteen.
+const SWEEP: &str = "\
+scene = \"turnaround\"
+duration = 5.0
+[random]
+seed = 3
+count = 500
+\"start.turn_rate\" = { uniform = [0.05, 0.3] }
+";
+
+fn tries(few: u64) -> u64 {
+    std::env::var("NOSLIP_TRIES").ok().and_then(|tries| tries.parse().ok()).unwrap_or(few)
+}
+
+/// Numbers that look random: the high bits of a linear congruential generator (Knuth's constants).
+struct Dice(u64);
+
+impl Dice {
+    fn below(&mut self, end: u64) -> u64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) % end
+    }
+}
+
+fn started(folder: &Folder, line: &str) -> Child {
+    let mut command = folder.command(line.split_whitespace());
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+/// How it ended: the exit code, none after a signal, and what it said on standard error.
+fn ended(child: Child) -> (Option<i32>, String) {
+    let output = child.wait_with_output().unwrap();
+    (output.status.code(), String::from_utf8(output.stderr).unwrap())
+}
+
+fn send(signal: &str, child: &Child) {
+    assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
+}
+
+/// Waits until the spool has so many bytes.
+fn wait_for(folder: &Folder, name: &str, bytes: u64) {
+    while fs::metadata(folder.join(name)).map_or(0, |metadata| metadata.len()) < bytes {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// The result of a sweep that nothing disturbs, and how long it takes.
+fn undisturbed(folder: &Folder, sweep: &str) -> (Vec<u8>, Duration) {
+    let begin = Instant::now();
+    folder.done(&format!("ensemble {sweep} --out whole.csv --force"));
+    let result = fs::read(folder.join("whole.csv")).unwrap();
+    fs::remove_file(folder.join("whole.csv")).unwrap();
+    (result, begin.elapsed())
+}
+
+/// The spool of all members, as a process leaves it that could not write the result: there is another file at the end.
+fn spool(folder: &Folder, sweep: &str, out: &str) -> Vec<u8> {
+    let part = format!("{out}.part");
+    loop {
+        let child = started(folder, &format!("ensemble {sweep} --out {out}"));
+        wait_for(folder, &part, 60);
+        folder.write(out, "other");
+        let (code, told) = ended(child);
+        let bytes = fs::read(folder.join(&part));
+        fs::remove_file(folder.join(out)).unwrap();
+        if code == Some(2) && told.contains("exists already") {
+            fs::remove_file(folder.join(&part)).unwrap();
+            return bytes.unwrap();
+        }
+        // It was done before the other file was there.
+    }
+}
+
+#[test]
+fn rows_are_in_the_spool_as_soon_as_they_are_done() {
+    let folder = Folder::new();
+    // Sixteen members of the first kind are a group, of the second one is.
+    for method in ["dla", "rk4"] {
+        folder
+            .write("slow.toml", SWEEP.replace("duration = 5.0", &format!("duration = 1000.0\nmethod = \"{method}\"")));
+        let child = started(&folder, "ensemble slow.toml --out slow.csv");
+        wait_for(&folder, "slow.csv.part", 1000);
+        send("-KILL", &child);
+        assert_eq!(ended(child).0, None);
+        let text = folder.read("slow.csv.part");
+        assert!(text.starts_with("noslip ensemble ") && text.lines().count() < 400, "{method}");
+        fs::remove_file(folder.join("slow.csv.part")).unwrap();
+    }
+}
+
+#[test]
+fn killed_at_any_time_and_resumed_the_bytes_are_the_same() {
+    let (folder, mut dice) = (Folder::new(), Dice(1));
+    folder.write("sweep.toml", SWEEP);
+    let (whole, time) = undisturbed(&folder, "sweep.toml");
+    let (mut cut, mut kept) = (0, 0);
+    for number in 0..tries(9) {
+        let signal = ["-KILL", "-TERM", "-INT", "-HUP"][number as usize % 4];
+        let mut line = "ensemble sweep.toml --out k.csv".to_owned();
+        for resumed in 0.. {
+            let child = started(&folder, &line);
+            // The second process may be ended too, the third is not.
+            if resumed < 2 && dice.below(resumed + 1) == 0 {
+                std::thread::sleep(time.mul_f64(dice.below(1000) as f64 / 1000.0));
+                send(signal, &child);
+            }
+            let (code, told) = ended(child);
+            assert!(!told.contains("panicked"), "{told}");
+            if code == Some(0) {
+                break;
+            }
+            // A signal that comes before the program listens ends it as it ends any other.
+            assert!(
+                code.is_none() || code == Some(130) && told.contains("--resume goes on"),
+                "{signal}: {code:?} {told}"
+            );
+            cut += 1;
+            kept += u64::from(fs::metadata(folder.join("k.csv.part")).is_ok_and(|metadata| metadata.len() > 1000));
+            line = "ensemble sweep.toml --out k.csv --resume".to_owned();
+        }
+        assert!(fs::read(folder.join("k.csv")).unwrap() == whole, "{signal} at try {number}");
+        fs::remove_file(folder.join("k.csv")).unwrap();
+        assert_eq!(folder.names(), ["sweep.toml"]);
+    }
+    println!("{cut} runs were ended by a signal, {kept} of them with rows in the spool");
+    assert!(cut > 0);
+}
+
+#[test]
+fn a_signal_stops_it_between_members() {
+    let folder = Folder::new();
+    // Members that take long, of which a thread has at most one at a time.
+    folder.write("slow.toml", SWEEP.replace("duration = 5.0", "duration = 5000.0\nmethod = \"rk4\""));
+    for signal in ["-INT", "-TERM", "-HUP"] {
+        let child = started(&folder, "ensemble slow.toml --out slow.csv");
+        wait_for(&folder, "slow.csv.part", 100);
+        send(signal, &child);
+        let (code, told) = ended(child);
+        assert_eq!(code, Some(130), "{told}");
+        assert!(told.contains("stopping after the members that have begun; Ctrl-C again ends at once"), "{told}");
+        assert!(told.contains("of 500 members are done; the same command with --resume goes on"), "{told}");
+        fs::remove_file(folder.join("slow.csv.part")).unwrap();
+    }
+}
+
+#[test]
+fn two_processes_do_not_share_an_output() {
+    let (folder, mut dice) = (Folder::new(), Dice(2));
+    folder.write("x.toml", SWEEP);
+    folder.write("y.toml", SWEEP.replace("seed = 3", "seed = 4"));
+    let (x, time) = undisturbed(&folder, "x.toml");
+    let (y, _) = undisturbed(&folder, "y.toml");
+    assert!(x != y);
+    let mut refused = 0;
+    for number in 0..tries(6) {
+        let first = started(&folder, "ensemble x.toml --out two.csv --force");
+        std::thread::sleep(time.mul_f64(dice.below(1000) as f64 / 900.0));
+        let second = started(&folder, "ensemble y.toml --out two.csv --force");
+        let [first, second] = [ended(first), ended(second)];
+        let result = fs::read(folder.join("two.csv")).unwrap();
+        match (first.0, second.0) {
+            (Some(0), Some(2)) => assert!(result == x, "try {number}"),
+            (Some(2), Some(0)) => assert!(result == y, "try {number}"),
+            // One after the other; the later one has the file, whichever began first.
+            (Some(0), Some(0)) => assert!(result == y || result == x, "try {number}"),
+            codes => panic!("{codes:?}: {} {}", first.1, second.1),
+        }
+        for (code, told) in [&first, &second] {
+            if *code == Some(2) {
+                refused += 1;
+                assert!(told.contains("two.csv.part: another process is writing two.csv"), "{told}");
+            }
+        }
+    }
+    println!("{refused} processes were refused");
+    assert!(refused > 0);
+}
+
+/// Damages a text in one of seven ways.
+fn damaged(whole: &[u8], dice: &mut Dice) -> Vec<u8> {
+    let mut rows: Vec<Vec<u8>> = whole.split_inclusive(|byte| *byte == b'\n').map(<[u8]>::to_vec).collect();
+    let [one, other] = [(); 2].map(|()| dice.below(rows.len() as u64) as usize);
+    let at = dice.below(whole.len() as u64) as usize;
+    match dice.below(7) {
+        0 => rows.swap(one, other),
+        1 => rows.insert(other, rows[one].clone()),
+        2 => drop(rows.remove(one)),
+        3 => rows = vec![whole[..at].to_vec()],
+        4 => rows[one].truncate(at % 60),
+        5 => rows[one].extend(b"0,0.1,\"\n"),
+        _ => {
+            let mut bytes = whole.to_vec();
+            bytes[at] ^= 1 << dice.below(8);
+            return bytes;
+        }
+    }
+    rows.concat()
+}
+
+#[test]
+fn a_damaged_spool_is_refused_or_healed() {
+    let (folder, mut dice) = (Folder::new(), Dice(3));
+    folder.write("sweep.toml", SWEEP.replace("count = 500", "count = 64").replace("5.0", "200.0\nmethod = \"rk4\""));
+    let (whole, _) = undisturbed(&folder, "sweep.toml");
+    let part = spool(&folder, "sweep.toml", "d.csv");
+    assert_eq!(part.split(|byte| *byte == b'\n').count(), 1 + 64 + 1);
+    let (mut refused, mut healed) = (0, 0);
+    for number in 0..tries(40) {
+        let bytes = damaged(&part, &mut dice);
+        fs::write(folder.join("d.csv.part"), &bytes).unwrap();
+        let outcome = folder.line("ensemble sweep.toml --out d.csv --resume");
+        assert!(!outcome.stderr.contains("panicked"), "try {number}: {outcome:?}");
+        match outcome.code {
+            0 => {
+                healed += 1;
+                assert!(fs::read(folder.join("d.csv")).unwrap() == whole, "try {number}");
+                fs::remove_file(folder.join("d.csv")).unwrap();
+            }
+            _ => {
+                refused += 1;
+                outcome.assert_refused("damaged", &["d.csv.part:1:", "--force begins anew"]);
+                assert!(!folder.join("d.csv").exists());
+            }
+        }
+    }
+    println!("{refused} refused, {healed} healed");
+    assert!(healed > 0);
+}
