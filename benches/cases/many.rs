@@ -51,6 +51,7 @@ fn report() -> Report {
             constraint: time.iter().map(|t| 1e-16 * (1.0 + t)).collect(),
             energy_error: time.iter().map(|t| 1e-9 * t).collect(),
             time,
+            ..Series::default()
         }
     };
     let scene = SceneReport {

@@ -6,7 +6,7 @@ use crate::saves::Saves;
 use crate::{compare_numbers, facts, inspect, json, progress, table, terminal, train};
 use dla::{Schedule, State};
 use harness::report::{self, Report, SceneReport, Series};
-use harness::{Drift, METHODS, Method, Record, Request};
+use harness::{Drift, METHODS, Method, Record, Request, Verdict};
 use scene::{Scene, SceneSystem, Visitor};
 use sleigh::{Exact, SleighState};
 use std::path::PathBuf;
@@ -53,6 +53,10 @@ pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
         None => METHODS.iter().map(|info| info.name).collect(),
     };
     let methods = methods(&names, scene.run.alpha)?;
+    if let Some((_, name)) = names.iter().enumerate().find(|(k, name)| names[..*k].contains(*name)) {
+        let problem = format!("--methods: `{name}` is named twice; a comparison has one row for each method");
+        return Err(CliError::Request(problem));
+    }
     if let Some(folder) = &arguments.report {
         crate::files::check_folder(folder, arguments.scene.force)?;
     }
@@ -178,12 +182,13 @@ impl Visitor for Compare<'_> {
         let reference = Reference::of(system, exact.as_ref(), &request.schedule, start, &mut progress);
         progress.bar.finish_and_clear();
         let drifts: Vec<(&str, Drift)> =
-            records.iter().map(|record| (record.method.name, record.energy.drift)).collect();
+            records.iter().filter(|r| r.is_whole()).map(|r| (r.method.name, r.energy.drift)).collect();
         let (mut rows, mut series) = (Vec::new(), Vec::new());
         for record in &records {
             let end = system.sleigh_state(&record.q, &record.v);
-            let error = reference.at(record.t).map(|reference| distance(&end, &reference));
-            let better = better_than(&record.energy.drift, &drifts);
+            let whole = Some(record).filter(|record| record.is_whole());
+            let error = whole.and_then(|record| reference.at(record.t)).map(|reference| distance(&end, &reference));
+            let better = whole.map_or_else(Vec::new, |record| better_than(&record.energy.drift, &drifts));
             rows.push(Row {
                 cells: table::cells(record, error),
                 json: json::compared(&self.scene.name, record, &end, error, &better),
@@ -249,7 +254,7 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// The state at the time `t`, which is the end of the run unless the run failed.
+    /// The state at the time `t`, the end of a run.
     fn at(&self, time: f64) -> Option<SleighState> {
         match self {
             Self::Exact(exact) => Some(exact.at(time)),
@@ -277,6 +282,8 @@ fn series_of<const N: usize, const M: usize>(system: &dyn SceneSystem<N, M>, rec
         time: samples.iter().map(|sample| sample.t).collect(),
         constraint: samples.iter().map(|sample| sample.constraint).collect(),
         energy_error: samples.iter().map(|sample| sample.energy_error).collect(),
+        failed: record.failure.is_some(),
+        diverged: record.energy.drift.verdict == Verdict::Diverged,
         ..Series::default()
     }
 }

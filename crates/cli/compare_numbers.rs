@@ -25,11 +25,14 @@ const COLUMNS: [(&str, &str); 21] = [
     ("y [m]", "/final/y"),
     ("heading [rad]", "/final/heading"),
     ("Newton", "/newton/mean"),
-    ("wall_seconds [s]", "/wall_seconds"),
+    ("wall [s]", "/wall_seconds"),
     ("cost [s/s]", "/seconds_per_simulated_second"),
 ];
-/// Why there are none.
-const FAILURE: (&str, &str) = ("failure", "/failure/reason");
+/// Of a method that failed: the step, the time (s) that the run is valid up to, and why.
+const FAILURE: [(&str, &str); 3] =
+    [("failed at step", "/failure/step"), ("failed at t [s]", "/failure/time"), ("failure", "/failure/reason")];
+/// The columns that a method that failed has besides: the others would be those of a part of the run.
+const KEPT: usize = 3;
 
 /// The object that `compare --json` prints.
 pub(crate) fn json(scene: &str, rows: &[&Value], interrupted: bool) -> Value {
@@ -48,15 +51,17 @@ pub(crate) fn files(scene: &str, rows: &[&Value], interrupted: bool) -> Vec<Numb
 
 /// One line a method; what a row does not have is empty.
 fn csv(rows: &[&Value]) -> String {
-    let columns = || COLUMNS.iter().chain([&FAILURE]);
+    let columns = || COLUMNS.iter().chain(&FAILURE);
     let header: Vec<&str> = columns().map(|(name, _)| *name).collect();
     let line = |row: &&Value| {
-        let cell = |(_, place): &(&str, &str)| match row.pointer(place) {
+        let failed = row.get("failure").is_some();
+        let cell = |(k, (_, place)): (usize, &(&str, &str))| match row.pointer(place) {
+            Some(_) if failed && (KEPT..COLUMNS.len()).contains(&k) => String::new(),
             None | Some(Value::Null) => String::new(),
             Some(Value::String(text)) => quoted(text),
             Some(value) => value.to_string(),
         };
-        columns().map(cell).collect::<Vec<_>>().join(",")
+        columns().enumerate().map(cell).collect::<Vec<_>>().join(",")
     };
     let lines: Vec<String> = std::iter::once(header.join(",")).chain(rows.iter().map(line)).collect();
     lines.join("\n") + "\n"

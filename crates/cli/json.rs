@@ -49,7 +49,7 @@ pub(crate) fn record<const N: usize>(scene: &str, record: &Record<N>, end: &Slei
 }
 
 /// The same object in a row of `compare --json`, with the error at the end, the drift of the energy, the constraint in its
-/// other senses, the cost, and the methods that it overtakes.
+/// other senses, the cost, and the methods that it overtakes. A run that did not reach its end has no error there and no verdict.
 pub(crate) fn compared<const N: usize>(
     scene: &str,
     run: &Record<N>,
@@ -64,10 +64,14 @@ pub(crate) fn compared<const N: usize>(
     object["energy"]["slope"] = json!(drift.slope);
     object["energy"]["slope_ci"] = json!(drift.slope_ci);
     object["energy"]["exponent"] = json!(drift.exponent);
-    object["energy"]["verdict"] = json!(drift.verdict.name());
+    if let Some(verdict) = run.verdict() {
+        object["energy"]["verdict"] = json!(verdict.name());
+    }
     object["constraint"]["step_max"] = json!(run.step_constraint_max);
     object["constraint"]["leaf_max"] = json!(run.leaf_max);
-    object["error"] = json!(error);
+    if run.is_whole() {
+        object["error"] = json!(error);
+    }
     object["seconds_per_simulated_second"] = json!(run.seconds_per_simulated_second());
     let better = better.iter().map(|(method, from)| json!({"method": method, "from": from}));
     object["better_than"] = better.collect();

@@ -10,8 +10,7 @@ use std::fmt::Write;
 
 const POINTS: [&str; 8] = ["method", "step [s]", "tolerance", "steps", "error", "wall [s]", "CPU [s]", "spread"];
 const METHODS: [&str; 8] = ["method", "order", "slope", "points", "to 1e-3 [s]", "to 1e-6", "to 1e-9", "to 1e-12"];
-const CSV: &str =
-    "method,step [s],tolerance,steps,error [m or rad],wall_seconds [s],cpu_seconds [s],spread,mark,pareto,source";
+const CSV: &str = "method,step [s],tolerance,steps,error [m or rad],wall [s],CPU [s],spread,mark,pareto,source";
 
 /// What the columns mean.
 const INTRO: &str = "Every method over a ladder of steps, an adaptive one of tolerances. Error: distance of the end from the \
@@ -59,7 +58,13 @@ fn summary(curve: &Curve) -> (Vec<String>, String) {
     let fitted = curve.slope.map_or_else(|| "-".to_owned(), |slope| slope.points.to_string());
     let times = LEVELS.map(|level| shown(seconds_to(&curve.points, level)));
     let cells = [curve.label(), order, slope, fitted].into_iter().chain(times).collect();
-    (cells, curve.refusal.map_or_else(String::new, |reason| format!("refused: {reason}")))
+    let refused = curve.refusal.map(|reason| format!("refused: {reason}"));
+    // A method none of whose runs reached the end has no numbers in its row.
+    let failed = || match curve.points.last().map(|point| (point.error, &point.mark)) {
+        Some((None, Some(mark))) if curve.points.iter().all(|point| point.error.is_none()) => Some(mark.to_string()),
+        _ => None,
+    };
+    (cells, refused.or_else(failed).unwrap_or_default())
 }
 
 /// The best of each level, in words.

@@ -5,7 +5,6 @@ use crate::resume;
 use dla::Checkpoint;
 use harness::{Method, Progress, Record, Request, Saving, run_saved, timed};
 use scene::{Scene, SceneSystem};
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Where the runs of a comparison are saved, a checkpoint for each method, and from where they go on.
@@ -14,8 +13,6 @@ pub(crate) struct Saves {
     to: Option<PathBuf>,
     from: Option<PathBuf>,
     every: u64,
-    /// How often each method has been saved: one that is asked for twice is two runs.
-    seen: BTreeMap<&'static str, u32>,
 }
 
 impl Saves {
@@ -29,7 +26,7 @@ impl Saves {
             check_folder(folder, scene.force || resume.as_ref() == Some(folder))?;
             std::fs::create_dir_all(folder).map_err(|source| CliError::Write { path: folder.clone(), source })?;
         }
-        Ok(Self { to: checkpoint.clone(), from: resume.clone(), every: *checkpoint_every, ..Self::default() })
+        Ok(Self { to: checkpoint.clone(), from: resume.clone(), every: *checkpoint_every })
     }
 
     /// Whether runs are to be saved or resumed.
@@ -44,7 +41,7 @@ impl Saves {
 
     /// Makes a run: at once where nothing is to be saved, else from checkpoint to checkpoint.
     pub(crate) fn run<const N: usize, const M: usize>(
-        &mut self,
+        &self,
         scene: &Scene,
         system: &dyn SceneSystem<N, M>,
         method: &Method,
@@ -54,7 +51,7 @@ impl Saves {
         if self.to.is_none() && self.from.is_none() {
             return Ok(harness::run(system, method, request, progress));
         }
-        let name = self.file(method.info().name);
+        let name = format!("{}.save", method.info().name);
         let identity = resume::identity(scene, method, &request.schedule);
         let from = self.from.as_ref().map(|folder| folder.join(&name)).filter(|path| path.exists());
         let read = from.as_ref().map(|path| resume::read(path, &identity)).transpose()?;
@@ -73,11 +70,5 @@ impl Saves {
         written?;
         record.wall_seconds = timed(system, method, request, record.steps, progress);
         Ok(record)
-    }
-
-    fn file(&mut self, method: &'static str) -> String {
-        let times = self.seen.entry(method).or_default();
-        *times += 1;
-        if *times == 1 { format!("{method}.save") } else { format!("{method}-{times}.save") }
     }
 }

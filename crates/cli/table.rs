@@ -36,10 +36,13 @@ pub(crate) const INTRO: &str = "Every method from the same start with the same s
     radians, whichever is larger. Newton: iterations a step. ns/step: time of the steps alone, median of repeated runs. \
     Cost: the same for each second of the motion.";
 
-/// A row of a comparison; of a method that refuses the scene, a short one, whose last cell says why.
+/// A row of a comparison; of a method that refuses the scene or failed, a short one, whose last cell says why, and at which step.
 pub(crate) fn cells<const N: usize>(record: &Record<N>, error: Option<f64>) -> Vec<String> {
     if let Some(reason) = record.refusal() {
         return vec![record.method.name.to_owned(), record.method.order.to_string(), format!("refused: {reason}")];
+    }
+    if let Some(failure) = &record.failure {
+        return vec![record.method.name.to_owned(), record.method.order.to_string(), format!("failed at {failure}")];
     }
     let drift = &record.energy.drift;
     let slope = || format!("{:+.1e}", drift.slope);
@@ -54,7 +57,7 @@ pub(crate) fn cells<const N: usize>(record: &Record<N>, error: Option<f64>) -> V
         format!("{:.1e}", record.energy.max_error),
         format!("{:.1e}", drift.amplitude),
         drift.slope_ci.map_or_else(slope, |interval| format!("{} ± {interval:.0e}", slope())),
-        drift.verdict.to_string(),
+        record.verdict().map_or_else(|| "-".to_owned(), |verdict| verdict.to_string()),
         error.map_or_else(|| "-".to_owned(), |error| format!("{error:.1e}")),
         newton,
         format!("{:.1}", record.wall_seconds * 1e9 / record.steps.max(1) as f64),
@@ -76,25 +79,26 @@ pub(crate) fn better<const N: usize>(record: &Record<N>, better: &[(&str, f64)])
 
 /// The table of a comparison; as several tables below each other where one would be wider than there is room for.
 pub(crate) fn comparison(scene: &Scene, rows: &[Row], interrupted: Option<&str>, room: Option<usize>) -> String {
-    // What is said of a refusal needs more room than a column has: it follows the row.
-    let refusal = |row: &Row| row.cells.last().filter(|_| row.refused).cloned();
-    let own = |row: &Row| row.cells[..row.cells.len() - usize::from(row.refused)].to_vec();
+    // A refusal or a failure needs more room than a column has: its text follows the row.
+    let short = |row: &Row| row.cells.len() < COLUMNS.len();
+    let remark = |row: &Row| row.cells.last().filter(|_| short(row)).cloned();
+    let own = |row: &Row| row.cells[..row.cells.len() - usize::from(short(row))].to_vec();
     let cells: Vec<_> = rows.iter().map(own).collect();
     let mut text = format!("{} ({}), {} s\n", scene.title, scene.name, number(scene.run.duration));
     let parts = parts(&COLUMNS, &cells, room);
     for (k, columns) in parts.iter().enumerate() {
-        // A refused method has no numbers for the tables after the first.
-        let rows: Vec<_> = rows.iter().zip(&cells).filter(|(row, _)| k == 0 || !row.refused).collect();
-        let refusals = std::iter::once(None).chain(rows.iter().map(|(row, _)| refusal(row)));
+        // A short row has no numbers for the tables after the first.
+        let rows: Vec<_> = rows.iter().zip(&cells).filter(|(row, _)| k == 0 || !short(row)).collect();
+        let remarks = std::iter::once(None).chain(rows.iter().map(|(row, _)| remark(row)));
         let pick = |cells: &Vec<String>| columns.iter().filter_map(|column| cells.get(*column).cloned()).collect();
         let (cells, header): (Vec<Vec<String>>, Vec<&str>) = (
             rows.iter().map(|(_, cells)| pick(cells)).collect(),
             columns.iter().map(|column| COLUMNS[*column]).collect(),
         );
         text += if k == 0 { "" } else { "\n" };
-        for (line, refusal) in right_aligned(&header, &cells).lines().zip(refusals) {
-            let _ = match refusal {
-                Some(refusal) => writeln!(text, "{line}  {refusal}"),
+        for (line, remark) in right_aligned(&header, &cells).lines().zip(remarks) {
+            let _ = match remark {
+                Some(remark) => writeln!(text, "{line}  {remark}"),
                 None => writeln!(text, "{line}"),
             };
         }

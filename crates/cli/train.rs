@@ -12,7 +12,7 @@ use assembly::parts::Train;
 use dla::{RunError, Schedule};
 use harness::precision::{Bench, Limits, rounds, work_precision};
 use harness::report::{SceneReport, Series};
-use harness::{Assembled, AssemblyNode, Drift, Method, assembly_end, run_assembly};
+use harness::{Assembled, AssemblyNode, Drift, Method, Verdict, assembly_end, run_assembly};
 use scene::Scene;
 use sleigh::SleighState;
 use std::time::{Duration, Instant};
@@ -45,13 +45,17 @@ pub(crate) fn compare_scene(
         progress.bar.finish_and_clear();
     }
     let reference = reference(scene, train, start, &schedule, interrupt);
-    let drifts: Vec<(&str, Drift)> = runs.iter().map(|run| (run.record.method.name, run.record.energy.drift)).collect();
+    let drifts: Vec<(&str, Drift)> = runs
+        .iter()
+        .filter(|run| run.record.is_whole())
+        .map(|run| (run.record.method.name, run.record.energy.drift))
+        .collect();
     let (mut rows, mut series) = (Vec::new(), Vec::new());
     for Assembled { record, nodes, end, .. } in &runs {
         let end = train.blade(end, 0);
-        let whole = record.steps == schedule.steps;
-        let error = reference.as_ref().filter(|_| whole).map(|state| distance(&end, &train.blade(state, 0)));
-        let better = better_than(&record.energy.drift, &drifts);
+        let error =
+            reference.as_ref().filter(|_| record.is_whole()).map(|state| distance(&end, &train.blade(state, 0)));
+        let better = if record.is_whole() { better_than(&record.energy.drift, &drifts) } else { Vec::new() };
         rows.push(Row {
             cells: table::cells(record, error),
             json: json::compared(&scene.name, record, &end, error, &better),
@@ -69,6 +73,8 @@ pub(crate) fn compare_scene(
             time: drawn.iter().map(|node| node.t).collect(),
             constraint: sampled(|sample| sample.constraint),
             energy_error: sampled(|sample| sample.energy_error),
+            failed: record.failure.is_some(),
+            diverged: record.energy.drift.verdict == Verdict::Diverged,
             ..Series::default()
         });
     }

@@ -55,6 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             time: nodes.iter().map(|node| node.t).collect(),
             constraint: Vec::new(),
             energy_error: Vec::new(),
+            ..Series::default()
         };
         let scene = SceneReport {
             name: "parking".to_owned(),

@@ -1,5 +1,5 @@
 use crate::slip::Slip;
-use crate::{Blocks, Drift, Method, MethodInfo, Request, SubstepSummary, Trend};
+use crate::{Blocks, Drift, Energies, Method, MethodInfo, Request, SubstepSummary, Trend, Verdict};
 use dla::{Checkpoint, CheckpointError, Observer, RunError, State, StepError, StepReport, Undivided, View, Work};
 use lagrangian::linear::larger;
 use std::ops::ControlFlow;
@@ -89,6 +89,18 @@ impl<const N: usize> Record<N> {
         (self.steps > 0).then(|| self.wall_seconds / (self.steps as f64 * self.step.abs()))
     }
 
+    /// Whether the run reached its end: it neither failed nor was it interrupted.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.failure.is_none() && !self.interrupted
+    }
+
+    /// What the error of the energy does; none of a run that did not reach its end.
+    #[must_use]
+    pub fn verdict(&self) -> Option<Verdict> {
+        self.is_whole().then_some(self.energy.drift.verdict)
+    }
+
     /// Why the method refuses the system, where it does: no failure of a computation, since none was begun or could be.
     #[must_use]
     pub fn refusal(&self) -> Option<&'static str> {
@@ -110,6 +122,7 @@ pub(crate) struct Meter<const N: usize> {
     constraint_max: f64,
     trend: Trend,
     blocks: Blocks,
+    energies: Energies,
     slip: Slip<N>,
     work: Work<N>,
     iterations: u64,
@@ -137,6 +150,7 @@ impl<const N: usize> Meter<N> {
             constraint_max: 0.0,
             trend: Trend::default(),
             blocks: Blocks::default(),
+            energies: Energies::default(),
             slip: Slip::new(method, schedule.step),
             work: Work::default(),
             iterations: 0,
@@ -159,6 +173,7 @@ impl<const N: usize> Meter<N> {
         checkpoint.put_counts("iterations", &[self.iterations, u64::from(self.most)]);
         self.work.save(checkpoint);
         self.blocks.save(checkpoint);
+        self.energies.save(checkpoint);
         self.slip.save(checkpoint);
         if let Some(substeps) = &self.substeps {
             substeps.save(checkpoint);
@@ -184,6 +199,7 @@ impl<const N: usize> Meter<N> {
         let end = (made, t, state.unwrapped(), *state.v());
         let sizes = Self { initial, last, max_error, constraint_max, end, ..new };
         let (blocks, slip) = (Blocks::load(checkpoint)?, sizes.slip.load(checkpoint)?);
+        let energies = Energies::load(checkpoint)?;
         let list = checkpoint.list("samples")?;
         let samples = list.chunks_exact(3 + N).map(|numbers| Sample {
             t: numbers[0],
@@ -202,6 +218,7 @@ impl<const N: usize> Meter<N> {
             last_sample,
             trend,
             blocks,
+            energies,
             slip,
             work,
             iterations,
@@ -221,6 +238,7 @@ impl<const N: usize> Meter<N> {
         self.constraint_max = larger(self.constraint_max, constraint);
         self.trend.add(node.t, error);
         self.blocks.add(node.t, error);
+        self.energies.see(error, self.work.total(), || kinetic(node));
         self.bucket = (larger(self.bucket.0, error.abs()), larger(self.bucket.1, constraint));
     }
 
@@ -250,7 +268,7 @@ impl<const N: usize> Meter<N> {
                 work: self.work.total(),
                 max_error: self.max_error,
                 drift_per_time: self.trend.slope().unwrap_or(0.0),
-                drift: Drift::of(&self.blocks),
+                drift: Drift::of_energy(&self.blocks, &self.energies),
             },
             constraint_max: self.constraint_max,
             step_constraint_max: self.slip.step_max(),
@@ -269,6 +287,7 @@ impl<const N: usize> Meter<N> {
 impl<const N: usize, const M: usize> Observer<N, M> for Meter<N> {
     fn start(&mut self, node: &View<'_, N, M>) {
         self.initial = node.energy();
+        self.energies = Energies::of_start(self.initial, kinetic(node));
         self.work.start(node);
         self.slip.start(node);
         self.see(node);
@@ -317,4 +336,11 @@ impl<const N: usize, const M: usize> Observer<N, M> for Meter<N> {
         self.end = (node.k, node.t, node.state.unwrapped(), *node.state.v());
         self.last_sample = (!node.k.is_multiple_of(self.every)).then(|| self.sampled(node));
     }
+}
+
+/// The kinetic energy `v . L_v / 2` (J) of a Lagrangian of second degree in the velocities.
+fn kinetic<const N: usize, const M: usize>(node: &View<'_, N, M>) -> f64 {
+    let v = node.state.v();
+    let p = node.system.momentum(node.t, node.state.q(), v);
+    0.5 * p.iter().zip(v).map(|(p, v)| p * v).sum::<f64>()
 }

@@ -1,5 +1,7 @@
 use super::AssemblyNode;
-use crate::{Blocks, Drift, EnergySummary, Method, MethodInfo, NewtonSummary, Record, Sample, SubstepSummary, Trend};
+use crate::{
+    Blocks, Drift, Energies, EnergySummary, Method, MethodInfo, NewtonSummary, Record, Sample, SubstepSummary, Trend,
+};
 use assembly::{Assembly, AssemblyError, RunError, State, StepReport, Work};
 use dla::{Checkpoint, CheckpointError, Undivided};
 use lagrangian::linear::larger;
@@ -14,6 +16,7 @@ pub(super) struct Meter {
     work: Work,
     trend: Trend,
     blocks: Blocks,
+    energies: Energies,
     iterations: u64,
     most_iterations: u32,
     bucket: (f64, f64),
@@ -34,6 +37,7 @@ impl Meter {
             work: Work::default(),
             trend: Trend::default(),
             blocks: Blocks::default(),
+            energies: Energies::of_start(initial, kinetic(assembly, t, start)),
             iterations: 0,
             most_iterations: 0,
             bucket: (0.0, most[0]),
@@ -94,6 +98,7 @@ impl Meter {
         self.most = [larger(self.most[0], miss[0]), larger(self.most[1], miss[1])];
         self.trend.add(t, error);
         self.blocks.add(t, error);
+        self.energies.see(error, self.work.total(), || kinetic(assembly, t, state));
         self.bucket = (larger(self.bucket.0, error), larger(self.bucket.1, miss[0]));
         self.iterations += u64::from(iterations);
         self.most_iterations = self.most_iterations.max(iterations);
@@ -142,7 +147,7 @@ impl Meter {
                 work: self.work.total(),
                 max_error: self.max_error,
                 drift_per_time: self.trend.slope().unwrap_or(0.0),
-                drift: Drift::of(&self.blocks),
+                drift: Drift::of_energy(&self.blocks, &self.energies),
             },
             constraint_max: self.most[0],
             // The mean velocities of the steps are not kept; the equations of a step meet it as they do the joints.
@@ -170,6 +175,7 @@ impl Meter {
         checkpoint.put_counts("iterations", &[self.iterations, u64::from(self.most_iterations)]);
         self.work.save(checkpoint);
         self.blocks.save(checkpoint);
+        self.energies.save(checkpoint);
         if let Some(substeps) = &self.substeps {
             substeps.save(checkpoint);
         }
@@ -193,6 +199,7 @@ impl Meter {
             work: Work::load(checkpoint)?,
             trend: Trend::of_sums(checkpoint.get("trend")?),
             blocks: Blocks::load(checkpoint)?,
+            energies: Energies::load(checkpoint)?,
             iterations,
             most_iterations: u32::try_from(most).unwrap_or(u32::MAX),
             bucket: (error, slip),
@@ -201,6 +208,13 @@ impl Meter {
             substeps,
         })
     }
+}
+
+/// The kinetic energy (J): the energy less that of the same place at rest.
+fn kinetic(assembly: &Assembly, t: f64, state: &State) -> f64 {
+    let q: Vec<f64> = (0..state.len()).map(|i| state.unwrapped(i)).collect();
+    let resting = State::new(assembly, &q, &vec![0.0; state.len()]);
+    assembly.energy(t, state) - assembly.energy(t, &resting)
 }
 
 /// The first three of some numbers.

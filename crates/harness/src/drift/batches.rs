@@ -1,3 +1,5 @@
+use super::blocks::Block;
+
 /// So many batches.
 pub(super) const BATCHES: usize = 32;
 
@@ -96,6 +98,28 @@ pub(super) fn line(series: &[f64]) -> (f64, f64) {
         spread += t * t;
     }
     (center, if spread > 0.0 { products / spread } else { 0.0 })
+}
+
+/// The last so many batches of a series that runs away have so much of its sum of squares: those of an error `exp(c t)` that grows by
+/// more than `10^8` over the run. Of `t^p` they have less up to `p = 17`.
+const LAST: usize = 2;
+const NEARLY_ALL: f64 = 0.9;
+/// So many batches, each with a larger error than the one before, tell growth from a single event near the end.
+const GROWING: usize = 8;
+
+/// The largest error, where the series grows faster and faster to its end; none otherwise, and none of one that is too short.
+pub(super) fn runs_away(blocks: &[Block]) -> Option<f64> {
+    if blocks.len() < 2 * BATCHES {
+        return None;
+    }
+    let size = |block: &Block| block.min.abs().max(block.max.abs());
+    let largest = |j: usize| blocks[batch(j, blocks.len())].iter().map(size).fold(0.0, f64::max);
+    let sizes: Vec<f64> = (0..BATCHES).map(largest).collect();
+    let last = sizes[BATCHES - 1];
+    let grows = sizes[BATCHES - GROWING..].windows(2).all(|pair| pair[1] > pair[0]);
+    // In units of the last one nothing overflows.
+    let relative: Vec<f64> = sizes.iter().map(|size| size / last).collect();
+    (grows && squares(&relative[BATCHES - LAST..]) > NEARLY_ALL * squares(&relative)).then_some(last)
 }
 
 /// Half the largest range within a batch: about the line of the series or, where that is less because a drift bends, about

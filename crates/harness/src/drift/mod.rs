@@ -2,10 +2,12 @@
 
 mod batches;
 mod blocks;
+mod energies;
 mod growth;
 mod mean;
 
 pub use blocks::Blocks;
+pub use energies::Energies;
 
 use batches::Batches;
 use std::fmt;
@@ -19,6 +21,8 @@ pub enum Verdict {
     LinearDrift,
     /// It grows with the square root of the time.
     RandomWalk,
+    /// It grows beyond the energies of the motion, or faster and faster to the end: the run has blown up.
+    Diverged,
     /// The series is too short, or does none of these: it settles, jumps, wanders as slowly as the run is long.
     Undecided,
 }
@@ -31,6 +35,7 @@ impl Verdict {
             Self::Bounded => "bounded",
             Self::LinearDrift => "linear drift",
             Self::RandomWalk => "random walk",
+            Self::Diverged => "diverged",
             Self::Undecided => "undecided",
         }
     }
@@ -106,6 +111,17 @@ impl Drift {
             Verdict::Undecided
         };
         Self { slope_ci: Some(T95 * error * size / run), exponent: Some(exponent), verdict, ..measured }
+    }
+
+    /// What the error of the energy of a run does, beside the energies of its motion.
+    ///
+    /// It has diverged where it was larger than all of them; or where it ends above those of the start, nearly all of its sum of
+    /// squares is in the last batches, and it has grown from batch to batch.
+    #[must_use]
+    pub fn of_energy(blocks: &Blocks, energies: &Energies) -> Self {
+        let drift = Self::of(blocks);
+        let runs_away = || batches::runs_away(blocks.full()).is_some_and(|largest| largest > energies.start());
+        if energies.exceeded() || runs_away() { Self { verdict: Verdict::Diverged, ..drift } } else { drift }
     }
 
     /// The largest error to be expected at a time (s) after the start: the fast part and the secular one.

@@ -7,7 +7,7 @@ use super::path::view;
 use super::picture::Picture;
 use super::sleigh;
 use super::xml::escape;
-use super::{ReportError, SceneReport, Series};
+use super::{ReportError, SceneReport, Series, leading};
 use std::fmt::Write;
 
 /// Room above the frame, for the name of the upright axis.
@@ -32,9 +32,7 @@ struct Node {
 
 /// The figure; none where no run has two nodes to move between.
 pub(super) fn figure(scene: &SceneReport) -> Result<Option<String>, ReportError> {
-    let Some((method, series)) = scene.series.iter().enumerate().find(|(_, series)| series.is_drawn()) else {
-        return Ok(None);
-    };
+    let Some((method, series)) = leading(scene) else { return Ok(None) };
     let view = view(scene, TOP);
     let nodes = thinned(nodes(series, &view.frame));
     let [Some(first), Some(last)] = [nodes.first(), nodes.last()] else { return Ok(None) };

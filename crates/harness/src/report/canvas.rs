@@ -86,6 +86,12 @@ impl Canvas<'_> {
         self.fill(&outline, Ink::Method(method), 1.0)
     }
 
+    /// The mark at a point where the line of a method stops because its run failed.
+    pub(super) fn cross(&self, method: usize, [x, y]: [f64; 2]) -> Drawn {
+        let outline: Vec<[f64; 2]> = look::cross().iter().map(|[dx, dy]| [x + dx, y + dy]).collect();
+        self.fill(&outline, Ink::Method(method), 1.0)
+    }
+
     /// A line of text whose middle height is that of the point.
     pub(super) fn text(&self, text: &str, at: [f64; 2], anchor: Anchor, size: f64) -> Drawn {
         self.marks.borrow_mut().push(Mark::Text { text: text.to_owned(), at, anchor, size });

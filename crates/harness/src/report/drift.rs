@@ -8,7 +8,7 @@ use super::picture::Picture;
 use super::scale::{Scale, Trace};
 use super::thinning::peaks;
 use super::xml::label;
-use super::{ReportError, SceneReport, Series, entries};
+use super::{ReportError, SceneReport, Series, entries, failures, scaling};
 
 const WIDTH: f64 = 560.0;
 const HEIGHT: f64 = 250.0;
@@ -52,13 +52,15 @@ fn draw(
     let most = (TOGETHER / scene.series.len().max(1)).clamp(FEWEST, POINTS);
     let traces: Vec<Trace> = scene.series.iter().map(|series| peaks(&series.time, values(series), most)).collect();
     let longest = scene.series.iter().map(|series| series.time.len().min(values(series).len())).max().unwrap_or(0);
-    let scale = Scale::of(&traces);
+    let scaling: Vec<Trace> = scaling(scene).map(|series| peaks(&series.time, values(series), most)).collect();
+    let scale = Scale::of(&scaling);
     let mut caption = captioned(caption, &scale, longest > most);
     let strays = scene.series.iter().zip(&traces).filter(|(_, trace)| scale.leaves(trace));
     let strays: Vec<&str> = strays.map(|(series, _)| series.label.as_str()).collect();
     if !strays.is_empty() {
         caption += &format!(" Running out of the picture: {}.", strays.join(", "));
     }
+    caption += &failures(scene);
     let entries = entries(scene);
     let (places, legend) = axis::legend(&entries, WIDTH - 20.0);
     let up = scale.ticks();
@@ -94,6 +96,7 @@ fn draw(
             }
         }
         markers(canvas, &frame, &placed)?;
+        crosses(canvas, &frame, scene, &placed)?;
         if named { ends(canvas, &frame, &placed, &names) } else { Ok(()) }
     })
 }
@@ -133,6 +136,16 @@ fn markers(canvas: &Canvas<'_>, frame: &Frame, placed: &[Vec<Option<[f64; 2]>>])
             {
                 canvas.marker(method, *place)?;
             }
+        }
+    }
+    Ok(())
+}
+
+/// A cross where the line of a run that failed stops; at the edge where the line has left the picture upwards.
+fn crosses(canvas: &Canvas<'_>, frame: &Frame, scene: &SceneReport, placed: &[Vec<Option<[f64; 2]>>]) -> Drawn {
+    for (method, points) in placed.iter().enumerate().filter(|(method, _)| scene.series[*method].failed) {
+        if let Some([x, y]) = points.iter().rev().flatten().next() {
+            canvas.cross(method, [*x, y.clamp(frame.top, frame.bottom())])?;
         }
     }
     Ok(())

@@ -51,6 +51,11 @@ pub(super) fn marker(method: usize) -> Vec<[f64; 2]> {
     }
 }
 
+/// The outline, about the origin, of the cross where a line stops because its run failed: larger than any marker.
+pub(super) fn cross() -> Vec<[f64; 2]> {
+    star(4, 9.0, 2.0, 45.0)
+}
+
 /// A regular polygon whose first corner lies in the direction given in degrees.
 pub(super) fn regular(corners: u32, radius: f64, first: f64) -> Vec<[f64; 2]> {
     (0..corners).map(|corner| polar(radius, first + 360.0 * f64::from(corner) / f64::from(corners))).collect()

@@ -100,6 +100,10 @@ pub struct Series {
     pub constraint: Vec<f64>,
     /// The energy beyond its initial value that no work explains, `|E - E0 - W|` \[J\].
     pub energy_error: Vec<f64>,
+    /// The run failed at its last node: its lines end in a cross.
+    pub failed: bool,
+    /// The run blew up: the pictures are scaled to the others.
+    pub diverged: bool,
 }
 
 impl Series {
@@ -107,6 +111,25 @@ impl Series {
     fn is_drawn(&self) -> bool {
         !self.time.is_empty() || !self.path.is_empty()
     }
+}
+
+/// The runs that pictures are scaled to: those that did not blow up; all of them where all did.
+fn scaling(scene: &SceneReport) -> impl Iterator<Item = &Series> {
+    let all = scene.series.iter().filter(|series| series.is_drawn()).all(|series| series.diverged);
+    scene.series.iter().filter(move |series| all || !series.diverged)
+}
+
+/// The run that stands for the motion of the scene: the first that reached its end without blowing up, or the first that can be drawn.
+fn leading(scene: &SceneReport) -> Option<(usize, &Series)> {
+    let drawn = || scene.series.iter().enumerate().filter(|(_, series)| series.is_drawn());
+    drawn().find(|(_, series)| !series.failed && !series.diverged).or_else(|| drawn().next())
+}
+
+/// What a caption says of the runs that failed, if any did.
+fn failures(scene: &SceneReport) -> String {
+    let failed = scene.series.iter().filter(|series| series.is_drawn() && series.failed);
+    let failed: Vec<&str> = failed.map(|series| series.label.as_str()).collect();
+    if failed.is_empty() { String::new() } else { format!(" A cross marks where a run failed: {}.", failed.join(", ")) }
 }
 
 /// The entries of a legend: the runs that are drawn, each with its own look.

@@ -7,7 +7,7 @@ use super::look;
 use super::picture::Picture;
 use super::sleigh::{APART, sleighs};
 use super::thinning::thin;
-use super::{ReportError, SceneReport, Series, entries};
+use super::{ReportError, SceneReport, Series, entries, failures, leading, scaling};
 
 const WIDTH: f64 = 560.0;
 /// Room beside the frame.
@@ -41,10 +41,11 @@ pub(super) fn picture(scene: &SceneReport, name: &str) -> Result<Picture, Report
         for (method, series) in scene.series.iter().enumerate() {
             markers(canvas, frame, method, series, scene.series.len())?;
         }
-        match scene.series.iter().find(|series| series.is_drawn()) {
-            Some(series) => sleighs(canvas, frame, series),
-            None => Ok(()),
+        for (method, series) in scene.series.iter().enumerate().filter(|(_, series)| series.failed) {
+            let last = series.path.last().and_then(|point| frame.place(*point));
+            last.filter(|place| frame.holds(*place)).map_or(Ok(()), |place| canvas.cross(method, place))?;
         }
+        leading(scene).map_or(Ok(()), |(_, series)| sleighs(canvas, frame, series))
     })
 }
 
@@ -79,8 +80,8 @@ fn thinned(frame: &Frame, path: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
 fn caption(scene: &SceneReport, exact: bool, strays: &[&str]) -> String {
     let mut caption =
         "The path of the blade on the ground, seen from above; a metre is as long upwards as across.".to_owned();
-    if let Some(first) = scene.series.iter().find(|series| series.is_drawn()) {
-        caption += &format!(" The sleigh stands where {} puts it at equally spaced times.", first.label);
+    if let Some((_, series)) = leading(scene) {
+        caption += &format!(" The sleigh stands where {} puts it at equally spaced times.", series.label);
     }
     if exact {
         caption += " Thin grey dashes: the exact path.";
@@ -88,7 +89,7 @@ fn caption(scene: &SceneReport, exact: bool, strays: &[&str]) -> String {
     if !strays.is_empty() {
         caption += &format!(" Running out of the picture: {}.", strays.join(", "));
     }
-    caption
+    caption + &failures(scene)
 }
 
 /// The methods whose path leaves the picture.
@@ -101,8 +102,8 @@ fn strays<'a>(scene: &'a SceneReport, frame: &Frame) -> Vec<&'a str> {
 /// The frame: as high as the paths ask for, within reason, and a metre as long upwards as across.
 fn frame(scene: &SceneReport, exact: Option<&[[f64; 2]]>, top: f64) -> Frame {
     let all = |axis: usize| {
-        let paths = scene.series.iter().map(|series| series.path.as_slice()).chain(exact);
-        let behind = scene.series.iter().flat_map(|series| series.followers.iter().flatten());
+        let paths = scaling(scene).map(|series| series.path.as_slice()).chain(exact);
+        let behind = scaling(scene).flat_map(|series| series.followers.iter().flatten());
         let points = paths.flatten().copied().chain(behind.map(|[x, y, _]| [*x, *y]));
         Span::of(points.filter(|point| drawable(point[0]) && drawable(point[1])).map(|point| point[axis]))
     };

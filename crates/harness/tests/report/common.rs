@@ -18,6 +18,7 @@ pub(crate) fn circle(label: &str, nodes: usize) -> Series {
         constraint: time.iter().map(|t| 1e-16 * (1.0 + t)).collect(),
         energy_error: time.iter().map(|t| 1e-9 * t).collect(),
         time,
+        ..Series::default()
     }
 }
 
@@ -32,6 +33,7 @@ pub(crate) fn constant(path: [f64; 2], heading: f64, error: f64) -> Series {
         time: vec![0.0, 1.0, 2.0, 3.0, 4.0],
         constraint: vec![error; 5],
         energy_error: vec![error; 5],
+        ..Series::default()
     }
 }
 

@@ -6,6 +6,7 @@ mod animation;
 mod browser;
 mod colours;
 mod common;
+mod ends;
 mod files;
 mod page;
 mod pictures;

@@ -5,6 +5,7 @@
 mod baselines;
 mod chaos;
 mod charts;
+mod diverged;
 mod drift;
 mod ensembles;
 mod large;
