@@ -51,6 +51,14 @@ take circles/circles-curvature.svg circles-curvature.svg
 example parking parking.svg
 take parking.svg parking-gap.svg
 
+# Of the worked examples.
+for example in "backing dla,lobatto5 path worked-backing.svg" "rattle gauss8,dla path worked-rattle.svg" \
+    "slipping rk4,rk4-projected,dla,dla4 constraint worked-slipping.svg"; do
+    read -r scene methods kind picture <<<"$example"
+    "$noslip" compare "$root/docs/worked/$scene.toml" --methods "$methods" --report "worked-$scene" >/dev/null
+    take "worked-$scene/$scene-$kind.svg" "$picture"
+done
+
 "$noslip" equilibria turnaround --picture portrait.svg >/dev/null
 take portrait.svg straight-portrait.svg
 "$noslip" equilibria thrust-well --picture thrust.svg >/dev/null

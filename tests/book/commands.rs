@@ -7,7 +7,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 /// What takes longer than a test may: marked `# long` on its page, parsed here, and run by the ignored test.
-const LONG: [&str; 8] = [
+const LONG: [&str; 9] = [
+    "noslip compare egg-crate-attractor --duration 5000 --methods dla,dla4,gauss8,rk4-reduced,energy4",
     "noslip lyapunov docs/chaos/valley.toml --duration 20000 --out valley.svg",
     "noslip lyapunov docs/chaos/well.toml --map speed=-1.2:1.2:30 --map turn_rate=-1.1:1.1:24 --duration 200 --out map.svg",
     "noslip lyapunov egg-crate-attractor --step 0.1 --duration 20000",
@@ -64,7 +65,7 @@ fn lines(block: &Block<'_>) -> Vec<Line> {
 }
 
 /// The words of a line, files of the repository by their full names.
-fn words(line: &str) -> Vec<String> {
+pub(super) fn words(line: &str) -> Vec<String> {
     let docs = format!("{}/docs/", root().display());
     let full = |word: &str| word.strip_prefix("docs/").map_or_else(|| word.to_owned(), |rest| docs.clone() + rest);
     line.split_whitespace().skip(1).map(full).collect()

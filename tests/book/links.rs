@@ -23,6 +23,11 @@ fn every_link_resolves() {
         }
     }
     assert!(seen > 100, "only {seen} links were found");
+    // The address of the repository stands in Cargo.toml alone: links into it are relative.
+    let repository = env!("CARGO_PKG_REPOSITORY");
+    for page in pages() {
+        assert!(!page.text.contains(repository), "{}: a link to {repository}: name the file", page.path);
+    }
 }
 
 #[test]

@@ -10,11 +10,11 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 pub(super) const ROTOR_DRIVE: Case = Case {
     name: "rotor-drive",
-    hard: "A rotor that is driven to and fro speeds the sleigh up, u^3 ~ 3 <tau^2> t/(m^2 a): the relaxation of the spin \
-           becomes faster and faster than the drive.",
+    hard: "A rotor that is driven to and fro speeds the sleigh up, u^3 ~ 3 <tau^2> t/(m^2 a): the spin relaxes faster \
+           and faster than the drive.",
     shows: "The slope of u^3 over the second half of the run.",
-    bar: "The spin follows the drive up to (Omega/(c u))^2, relative, and the drive ends within a quarter of its period; the \
-          method's order over the run.",
+    bar: "The spin follows the drive up to (Omega/(c u))^2, relative, and the drive ends within a quarter of its \
+          period; the method's order over the run.",
     claim: Claim::Order,
     refusable: false,
 };
@@ -47,8 +47,8 @@ pub(super) fn rotor_drive(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const FAST_ROTOR: Case = Case {
     name: "fast-rotor",
-    hard: "A rotor at 1e6 rad/s carries nearly all of the momentum and of the energy, and turns fifty thousand times a step.",
-    shows: "The rotor decouples: the sleigh moves as without it, and the rotor's momentum is constant.",
+    hard: "A rotor at 1e6 rad/s carries nearly all of the momentum and of the energy.",
+    shows: "The sleigh moves as without it, and the rotor's momentum is constant.",
     bar: "The method's order over the run, and the rounding of the rotor's momentum in each step.",
     claim: Claim::Order,
     refusable: false,
@@ -74,8 +74,8 @@ pub(super) fn fast_rotor(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const PLANIMETER: Case = Case {
     name: "planimeter",
-    hard: "The tracer runs a circle of radius R below, at and above a: the map of the heading is elliptic, parabolic or \
-           hyperbolic, and turns from one into the other within 1e-6.",
+    hard: "The tracer runs a circle of radius R below, at and above a: the map of the heading is elliptic, parabolic \
+           or hyperbolic, and changes its kind within 1e-6.",
     shows: "The heading after a round is that of the exact (Moebius) map of tan((theta - psi)/2).",
     bar: "The method's order over the round, and rounding.",
     claim: Claim::Order,
@@ -140,7 +140,7 @@ pub(super) fn corners(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const JUMPS: Case = Case {
     name: "jumps",
-    hard: "A thrust from a table jumps. A step across a jump has no order; and a step that does not end there is easily made.",
+    hard: "A thrust from a table jumps, and a step across a jump has no order.",
     shows: "With a node at every jump a straight run is exact. A jump inside a step is refused before the first step.",
     bar: "Rounding over the steps; the refusal names the time of the jump.",
     claim: Claim::Order,
@@ -174,9 +174,9 @@ pub(super) fn jumps(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const TURNTABLE: Case = Case {
     name: "turntable",
-    hard: "On a plane that turns the constraint is affine: it does work, and neither the energy nor a basis of admissible \
-           velocities through zero exists.",
-    shows: "The constraint to rounding, and the energy but for the work that the plane does.",
+    hard: "On a plane that turns the constraint is affine: it does work, and has no basis of admissible velocities \
+           through zero.",
+    shows: "The constraint to rounding, and the energy less the work of the plane.",
     bar: "Rounding of the velocities; the method's order over the run, or that of the work's quadrature (6).",
     claim: Claim::Order,
     refusable: false,

@@ -18,8 +18,8 @@ impl Lab {
 pub(super) const STIFF_BOWL: Case = Case {
     name: "stiff-bowl",
     hard: "A bowl whose oscillation takes from 600 steps to a sixteenth of a step: sqrt(k/m) h from 0.01 to 100.",
-    shows: "Implicit rules that are stable for every step stay in the bowl; every other says that its step is too long.",
-    bar: "The energy within all of it: an unstable step multiplies it. At 0.01 the method's order over the run.",
+    shows: "Implicit rules that are stable for every step stay in the bowl; all others say that the step is too long.",
+    bar: "The energy within its own size: an unstable step multiplies it. At 0.01 the method's order over the run.",
     claim: Claim::Stiffness,
     refusable: true,
 };
@@ -43,10 +43,10 @@ pub(super) fn stiff_bowl(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const STEEP_HILL: Case = Case {
     name: "steep-hill",
-    hard: "Hills of 1 cm width in the way of a sleigh that goes 5 cm a step: a step may miss one, or feel its flank for all of \
-           its length.",
-    shows: "Methods that promise the energy keep it or refuse the step. No other can know what lies between its nodes; it goes \
-            on with finite numbers.",
+    hard: "Hills of 1 cm width in the way of a sleigh that goes 5 cm a step: a step may miss a hill, or feel its flank \
+           all along.",
+    shows: "Methods that promise the energy keep it or refuse the step. The others cannot know what lies between \
+            nodes, and go on with finite numbers.",
     bar: "Rounding of the energy.",
     claim: Claim::Energy,
     refusable: true,
@@ -65,8 +65,8 @@ pub(super) fn steep_hill(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const TURNING_POINTS: Case = Case {
     name: "turning-points",
-    hard: "In a bowl, straight to and fro: the sleigh starts at rest and stands still twice in a period. A discrete gradient \
-           divides by the way of a step, and a direction by the speed.",
+    hard: "To and fro in a bowl, standing still twice in a period. A discrete gradient divides by the way of a step, \
+           and a direction by the speed.",
     shows: "The energy, through every turning point; at rest in the middle nothing moves.",
     bar: "Rounding for the methods that keep the energy, for others their order over the run.",
     claim: Claim::Order,
@@ -94,8 +94,8 @@ fn still_at(value: usize) -> f64 {
 
 pub(super) const LOG_WELL: Case = Case {
     name: "log-well",
-    hard: "A constant backward thrust makes a well in ln|omega|: the spin goes up and down over decades for ever, and \
-           K = E + (F/c) ln|omega| tells what a method does to it.",
+    hard: "A constant backward thrust: the spin goes up and down over decades for ever, and K = E + (F/c) \
+           ln(abs(omega)) is constant.",
     shows: "K stays near its value, without a trend for a symmetric method.",
     bar: "The method's order over one oscillation where it is symmetric, over the run where it is not.",
     claim: Claim::Order,
@@ -120,8 +120,8 @@ pub(super) fn log_well(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const ATTRACTOR: Case = Case {
     name: "attractor",
-    hard: "In the egg-crate a sleigh with a > 0 is drawn to an attractor. Its mirror image is a repeller, so nothing averages \
-           out, and every symmetric method gains or loses energy at a rate ~ h^p.",
+    hard: "In the egg-crate a sleigh with a > 0 is drawn to an attractor. Its mirror image is a repeller, so every \
+           symmetric method gains or loses energy at a rate ~ h^p.",
     shows: "The energy error of a method of order p falls as h^p; methods that keep the energy keep it.",
     bar: "Half the step: 2^-p of the error, or twice that before the order is reached; rounding.",
     claim: Claim::Order,
@@ -152,8 +152,8 @@ pub(super) fn attractor(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const ROUND_BOWL: Case = Case {
     name: "round-bowl",
-    hard: "In a round bowl at high energy (8 J, a = 0.5) the motion goes to a periodic attractor. A scheme that is not \
-           symmetric under rotations, or that mistakes the turns of an angle, breaks it.",
+    hard: "A periodic attractor in a round bowl (8 J, a = 0.5). A scheme that is not symmetric under rotations, or \
+           that mistakes the turns of an angle, breaks it.",
     shows: "The same motion from a start that is rotated, and from one with a thousand turns more.",
     bar: "Rounding over the steps, times e^(kappa T), by which no disturbance grows faster.",
     claim: Claim::Order,
@@ -191,8 +191,8 @@ pub(super) fn round_bowl(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const HEAVY_DRAG: Case = Case {
     name: "heavy-drag",
-    hard: "Drag that stops the sleigh within a step, c h/m up to 1e6. Rules for the mean velocity overshoot: beyond c h/m = 2 \
-           the speed changes its sign in every step.",
+    hard: "Drag that stops the sleigh within a step, c h/m up to 1e6. Beyond c h/m = 2 rules for the mean velocity \
+           change the sign of the speed in every step.",
     shows: "The speed never changes its sign, or the step is refused.",
     bar: "No node with the wrong sign.",
     claim: Claim::Stiffness,

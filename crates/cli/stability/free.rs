@@ -9,10 +9,11 @@ use std::f64::consts::PI;
 
 pub(super) const SMALL_SPIN: Case = Case {
     name: "small-spin",
-    hard: "The sleigh starts backward with a spin of 1e-8 or 1e-12 rad/s. For a long time nothing can be seen; then it turns \
-           around. An absolute tolerance takes the spin for zero.",
-    shows: "The sign of the spin is kept at every node, the final speed is +U, and the whole turn is pi sqrt(J/(m a^2)).",
-    bar: "No node with the wrong sign. Speed and turn: the method's order over the turn, (h U/k)^p pi sigma, and rounding.",
+    hard: "The sleigh starts backward with a spin of 1e-8 or 1e-12 rad/s and turns around much later. An absolute \
+           tolerance takes the spin for zero.",
+    shows: "The sign of the spin at every node, the final speed +U, the whole turn pi sqrt(J/(m a^2)).",
+    bar: "No node with the wrong sign. Speed and turn: the method's order over the turn, (h U/k)^p pi sigma, and \
+          rounding.",
     claim: Claim::Order,
     refusable: false,
 };
@@ -26,9 +27,9 @@ pub(super) fn small_spin(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const TINY_SPIN: Case = Case {
     name: "tiny-spin",
-    hard: "The same with -1e-300 rad/s, far below the rounding of the speed: only what carries the spin by itself \
-           keeps it.",
-    shows: "The sign of the spin at every node, the final speed +U, the whole turn.",
+    hard: "A spin of -1e-300 rad/s, far below the rounding of the speed: only methods that carry the spin by itself \
+           keep it.",
+    shows: "As small-spin.",
     bar: "As small-spin.",
     claim: Claim::SmallSpin,
     refusable: false,
@@ -57,7 +58,8 @@ fn turns_around(lab: &mut Lab, spin: f64, step: f64) -> Result<(), CliError> {
 pub(super) const SUBNORMAL_SPIN: Case = Case {
     name: "subnormal-spin",
     hard: "Spins of 1e-310 and 5e-324 rad/s, the least number there is: products with them lose digits or vanish.",
-    shows: "The spin never changes its sign, on the line that repels and on the one that attracts; there it may become zero.",
+    shows: "The spin never changes its sign, on the unstable line and on the stable one. On the stable line it may \
+            become zero.",
     bar: "No node with the wrong sign while the spin grows; no spin above the first while it dies out.",
     claim: Claim::SmallSpin,
     refusable: false,
@@ -75,8 +77,8 @@ pub(super) fn subnormal_spin(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const STABLE_LINE: Case = Case {
     name: "stable-line",
-    hard: "Forward with the centre of mass ahead a spin dies out. After 40 time constants nothing is left of it but rounding, \
-           and whatever else a method carries along can be seen to grow.",
+    hard: "Forward with the centre of mass ahead a spin dies out. After 40 time constants only rounding is left, and \
+           whatever else a method carries along.",
     shows: "The spin decays and stays at rounding.",
     bar: "Rounding of each step, summed with the decay: rounding/(kappa h).",
     claim: Claim::StableLine,
@@ -92,11 +94,11 @@ pub(super) fn stable_line(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const THERE_AND_BACK: Case = Case {
     name: "there-and-back",
-    hard: "Forward until the spin is e^-17 of its start, then the velocity is reversed. All that rounding has done to the spin \
-           grows as e^(kappa t) on the way back.",
+    hard: "Forward until the spin is e^-17 of its start, then with the velocity reversed. The rounding error of the \
+           spin grows as e^(kappa t) on the way back.",
     shows: "The sleigh comes home, with the opposite velocity.",
-    bar: "Rounding over all steps, times e^(kappa T); without the factor where the spin is solved for to digits of its \
-          own, and then with T twice as long.",
+    bar: "Rounding over all steps, times e^(kappa T). Where the spin has digits of its own: without the factor, and \
+          with T twice as long.",
     claim: Claim::Symmetry,
     refusable: false,
 };
@@ -131,11 +133,11 @@ fn leads_by_cayley(method: Kind) -> bool {
 
 pub(super) const LONG_STEP: Case = Case {
     name: "long-step",
-    hard: "Steps that turn by half a turn, h omega near pi and above, and such at which the line that repels has no solution, \
-           h c |u| = 2. The equations have several solutions, one, or none.",
+    hard: "Steps that turn by half a turn and more, and steps with no solution on the unstable line, h c abs(u) = 2. \
+           The equations have several solutions, one, or none.",
     shows: "Either the solution that continues the motion, or an error that says to shorten the step.",
-    bar: "A wrong solution changes the energy by orders of magnitude, the right one by less than there is of it. Against the \
-          line the spin keeps its sign with dla and its compositions, whose step along it is the Cayley transform.",
+    bar: "A wrong solution changes the energy by orders of magnitude. On the unstable line dla and its compositions \
+          keep the sign of the spin: their step there is the Cayley transform.",
     claim: Claim::Continuation,
     refusable: true,
 };
@@ -159,10 +161,11 @@ pub(super) fn long_step(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const STEP_LENGTHS: Case = Case {
     name: "step-lengths",
-    hard: "A step of 1e-12 s moves the sleigh by less than the rounding of its place; a step of 1e3 or 1e12 s is beyond all \
-           stability.",
-    shows: "With the short one the way is right to the rounding of one place, not of a thousand. The long ones are refused, but for a straight line, which they keep.",
-    bar: "The rounding of a place of 1 m, and of the way; the energy within all of it, and on the line within rounding.",
+    hard: "A step of 1e-12 s moves the sleigh by less than the rounding of its place; one of 1e3 or 1e12 s is beyond \
+           all stability.",
+    shows: "The way is right to the rounding of one place, not of a thousand. Long steps are refused, except on a \
+            straight line, which they keep.",
+    bar: "The rounding of a place of 1 m, and of the way; the energy within its own size, on the line within rounding.",
     claim: Claim::Continuation,
     refusable: true,
 };
@@ -186,8 +189,8 @@ pub(super) fn step_lengths(lab: &mut Lab) -> Result<(), CliError> {
 pub(super) const OFFSETS: Case = Case {
     name: "offsets",
     hard: "The offset a -> 0, where the turn diverges and nothing straightens; a = 0 exactly; and a < 0.",
-    shows: "The closed form, uniformly. With a = 0 the spin is constant; with -a and -u, the axis reversed, the motion is the \
-            same.",
+    shows: "The closed form, uniformly. With a = 0 the spin is constant; with -a and -u, the axis reversed, the motion \
+            is the same.",
     bar: "The method's order over the run, and rounding; rounding alone for the constant and for the mirror image.",
     claim: Claim::Order,
     refusable: false,
@@ -218,8 +221,8 @@ pub(super) fn offsets(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const CUSP: Case = Case {
     name: "cusp",
-    hard: "The speed passes through zero, where the path has a cusp: a step by arc length stalls there, and a direction from \
-           the velocity is 0/0.",
+    hard: "The speed passes through zero, where the path has a cusp: a step by arc length stalls there, and a \
+           direction is 0/0.",
     shows: "The closed form, through the cusp, and the constraint in it.",
     bar: "The method's order over the run, and rounding; the constraint to rounding.",
     claim: Claim::Order,
@@ -232,8 +235,8 @@ pub(super) fn cusp(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const NEGATIVE_SUBSTEPS: Case = Case {
     name: "negative-substeps",
-    hard: "Compositions go back within a step. Beside the line that repels, at long steps, a part of the step may be one that \
-           has no solution though the whole step has.",
+    hard: "Compositions go back within a step. Beside the unstable line such a sub-step may have no solution though \
+           the whole step has one.",
     shows: "The sign of the spin is kept and the sleigh turns around; or an error.",
     bar: "As small-spin at h = 0.5 s; at h = 4 s the energy to its own size, and the sign as in long-step.",
     claim: Claim::Continuation,
@@ -282,10 +285,10 @@ pub(super) fn follows_exactly(lab: &mut Lab, label: &str, setup: &Setup) -> Resu
 
 pub(super) const ROUND_OFF: Case = Case {
     name: "round-off",
-    hard: "Circles for ever: 1.3e7 steps of dla, more than a million turns, and 2e4 of every other method. Rounding errors of \
-           one sign add up to a drift.",
-    shows: "The constraint does not grow; the spin and the energy change by rounding that walks, but for methods to which a \
-            circle is no exact solution (rk4, rk4-projected, implicit-midpoint, gni).",
+    hard: "Circles for ever: 1.3e7 steps of dla, more than a million turns, and 2e4 of every other method. Rounding \
+           errors of one sign add up.",
+    shows: "The constraint does not grow. Spin and energy walk at random, except with methods to which a circle is no \
+            exact solution (rk4, rk4-projected, implicit-midpoint, gni).",
     bar: "sqrt(N) roundings: a walk of independent ones stays below ten of its standard deviations.",
     claim: Claim::Constraint,
     refusable: false,

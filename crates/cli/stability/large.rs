@@ -48,11 +48,11 @@ impl System<N, BODIES> for Chain {
 
 pub(super) const MANY_BODIES: Case = Case {
     name: "many-bodies",
-    hard: "A chain of 20 points on rods, hung at one end: 60 coordinates and 20 constraints, in a thread of 2 MB. All that a step \
-           holds stands on its stack.",
-    shows: "The chain swings: the constraint and the energy hold. Or an error that names the size, before the first step; no end of \
-            the program.",
-    bar: "Rounding of the velocities; the energy by the method's order over the run, of the size of what there is.",
+    hard: "A chain of 20 points on rods: 60 coordinates and 20 constraints, in a thread of 2 MB. All that a step holds \
+           stands on its stack.",
+    shows: "The constraint and the energy hold, or an error names the size before the first step; the program never \
+            aborts.",
+    bar: "Rounding of the velocities; the energy by the method's order over the run, relative to its size.",
     claim: Claim::Order,
     refusable: true,
 };

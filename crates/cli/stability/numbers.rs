@@ -10,10 +10,10 @@ use std::f64::consts::TAU;
 
 pub(super) const FAR_AWAY: Case = Case {
     name: "far-away",
-    hard: "A place of 1e8 m has digits down to 1.5e-8 m only; a step of 5 cm added to it a thousand times loses them a \
-           thousand times, and an equation for the place itself has none left for the velocity.",
+    hard: "A place of 1e8 m has digits down to 1.5e-8 m only, and an equation for the place has none left for the \
+           velocity.",
     shows: "The motion is that at the origin, moved.",
-    bar: "The rounding of one place, 1.5e-8 m, whatever the number of steps; the velocities to rounding.",
+    bar: "The rounding of one place, 1.5e-8 m, for any number of steps; the velocities to rounding.",
     claim: Claim::Order,
     refusable: false,
 };
@@ -54,8 +54,8 @@ pub(super) fn far_away(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const MANY_TURNS: Case = Case {
     name: "many-turns",
-    hard: "A heading of a million turns has digits down to 1e-9 rad only: a turn added to it loses the rest.",
-    shows: "The motion is that from the same heading without the turns.",
+    hard: "A heading of a million turns has digits down to 1e-9 rad only.",
+    shows: "The motion from the same heading without the turns.",
     bar: "Rounding over the steps; the heading itself to the rounding of 6e6 rad.",
     claim: Claim::Order,
     refusable: false,
@@ -82,9 +82,8 @@ pub(super) fn many_turns(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const LATE: Case = Case {
     name: "late",
-    hard: "A run that has made 1e9 steps, under a force that depends on time: a time that is summed step by step is wrong by \
-           then.",
-    shows: "After a whole number of periods the motion is that from time zero.",
+    hard: "A force that depends on time, after 1e9 steps: a time summed step by step is wrong by then.",
+    shows: "After whole periods the motion is that from time zero.",
     bar: "The rounding of the phase, 4 eps omega t, in the force, and rounding over the steps.",
     claim: Claim::Order,
     refusable: false,
@@ -107,8 +106,8 @@ pub(super) fn late(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const MASSES: Case = Case {
     name: "masses",
-    hard: "Masses and inertias over twenty orders of magnitude, together and against one another, and m a^2/I down to 1e-21: \
-           an absolute tolerance loses one of them.",
+    hard: "Masses and inertias over twenty orders of magnitude, together and against one another: an absolute \
+           tolerance loses one of them.",
     shows: "The closed form, which depends on I/m and a only.",
     bar: "The method's order over the run, and rounding.",
     claim: Claim::Order,
@@ -127,8 +126,8 @@ pub(super) fn masses(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const LIGHT_INERTIA: Case = Case {
     name: "light-inertia",
-    hard: "The inertia I -> 0, m a^2/I up to 2e19: all mass in one point. The mass matrix is singular but for rounding, though \
-           not on the constraint.",
+    hard: "The inertia I -> 0, m a^2/I up to 2e19: the mass matrix is singular to rounding, though not on the \
+           constraint.",
     shows: "The closed form; or an error, of a method whose stages leave the constraint.",
     bar: "The method's order over the run, and rounding.",
     claim: Claim::LightInertia,
@@ -146,7 +145,8 @@ pub(super) fn light_inertia(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const FAST: Case = Case {
     name: "fast",
-    hard: "Speeds of 1e150 m/s, whose squares just fit into a number, and of 1e160 and 1e300 m/s, whose energy does not.",
+    hard: "Speeds of 1e150 m/s, whose squares just fit into a number, and of 1e160 and 1e300 m/s, whose energy does \
+           not.",
     shows: "The motion is that at 1 m/s, in another unit of time; or an error that names the overflow.",
     bar: "The closed form, by the method's order and rounding, all relative.",
     claim: Claim::Order,

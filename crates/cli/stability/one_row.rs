@@ -70,9 +70,9 @@ const LEAST_SQUARE: f64 = 1e-300;
 
 pub(super) const GAUGE: Case = Case {
     name: "gauge",
-    hard: "A gauge term in the Lagrangian changes no motion, but shifts the momenta: the reversal of the velocity no longer \
-           reverses what a discrete principle sees, and symmetric methods lose energy.",
-    shows: "The methods that promise the energy keep it. The drift of dla is there to be seen (tests/table/gauge.rs).",
+    hard: "A gauge term in the Lagrangian changes no motion, but shifts the momenta: symmetric methods no longer see \
+           the reversal, and lose energy.",
+    shows: "The methods that promise the energy keep it. The drift of dla is tested in tests/table/gauge.rs.",
     bar: "Rounding of the energy over the run.",
     claim: Claim::Energy,
     refusable: false,
@@ -93,10 +93,9 @@ pub(super) fn gauge(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const FORCE_WITH_A_CORNER: Case = Case {
     name: "force-with-a-corner",
-    hard: "A skate falls from rest against a drag -c |v| v: the length of a velocity has no derivative where there is none, and an \
-           iteration that takes one there has 0/0.",
+    hard: "A skate falls from rest against a drag -c abs(v) v: the length of a velocity has no derivative at rest.",
     shows: "u = sqrt(g/c) tanh(sqrt(g c) t), straight down.",
-    bar: "The method's order over the run, relative to the speed that is never reached.",
+    bar: "The method's order over the run, relative to the terminal speed.",
     claim: Claim::Order,
     refusable: false,
 };
@@ -120,10 +119,11 @@ pub(super) fn force_with_a_corner(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const CHART_END: Case = Case {
     name: "chart-end",
-    hard: "A point on a sphere, by its angle from a pole and its longitude, along a great circle that passes the pole at 0.3 and at \
-           1e-3 rad: the longitude turns by half a turn there, in a thousandth of a second.",
+    hard: "A point on a sphere, by its angle from a pole and its longitude, along a great circle that passes the pole \
+           at 0.3 and at 1e-3 rad: the longitude makes half a turn in a thousandth of a second.",
     shows: "The great circle; or an error, where the angles come near to their end.",
-    bar: "The method's order over the way, with the rate of the longitude beside the pole; rounding, as many times larger.",
+    bar: "The method's order over the way, with the rate of the longitude beside the pole; rounding, as many times \
+          larger.",
     claim: Claim::Continuation,
     refusable: true,
 };

@@ -9,11 +9,11 @@ use std::f64::consts::FRAC_PI_2;
 
 pub(super) const SETTLES: Case = Case {
     name: "settles",
-    hard: "A sleigh with drag, in a well off the origin and on the plane, until it is at rest: the velocities die out below the \
-           rounding of the forces, which do not vanish but balance.",
-    shows: "Every run reaches its end: in the well the centre of mass in its middle, everywhere no speed and no spin.",
-    bar: "What is left after three quarters of the run of 1 m or 1 m/s that die out as e^(-t/8 s); rounding over the steps; of \
-          methods whose blade slips, their order.",
+    hard: "A sleigh with drag, in a well off the origin and on the plane, until it is at rest, with velocities below \
+           the rounding of forces that balance.",
+    shows: "Every run reaches its end: no speed, no spin, and in the well the centre of mass in the middle.",
+    bar: "What is left after three quarters of the run of 1 m or 1 m/s that die out as e^(-t/8 s); rounding over the \
+          steps; of methods whose blade slips, their order.",
     claim: Claim::Order,
     refusable: false,
 };
@@ -44,10 +44,11 @@ pub(super) fn settles(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const TINY_SWING: Case = Case {
     name: "tiny-swing",
-    hard: "Through the bottom of a well off the origin at 1e-4, 1e-10 and 1e-13 m/s: the place moves by some of its last digits, \
-           and a force is the difference of two numbers that are nearly the same.",
+    hard: "Through the bottom of a well off the origin at 1e-4, 1e-10 and 1e-13 m/s: the place moves by its last \
+           digits, and a force is the difference of two numbers nearly the same.",
     shows: "u = U cos(sqrt(k/m) t), along the line of the blade.",
-    bar: "The method's order over the run, relative to U; the rounding of the place in the force, eps k |C|/m, all the time.",
+    bar: "The method's order over the run, relative to U; the rounding of the place in the force, eps k abs(C)/m, all \
+          the time.",
     claim: Claim::Order,
     refusable: false,
 };
@@ -69,9 +70,9 @@ pub(super) fn tiny_swing(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const BALANCE: Case = Case {
     name: "balance",
-    hard: "A skate at rest across a slope of 9.8 m/s^2, its blade level to 0, 1e-9 and 1e-7 rad: the blade bears all of the \
-           weight, and next to nothing drives it.",
-    shows: "u = -g sin(angle) t, and no spin; level, it stays where it is.",
+    hard: "A skate at rest across a slope of 9.8 m/s^2, its blade level to 0, 1e-9 and 1e-7 rad: the blade bears all \
+           of the weight.",
+    shows: "u = -g sin(angle) t, and no spin; a level blade stays where it is.",
     bar: "Rounding of the velocity that the weight alone would give in a step, over the steps.",
     claim: Claim::Order,
     refusable: false,
@@ -94,11 +95,11 @@ pub(super) fn balance(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const CANCELLING_FORCES: Case = Case {
     name: "cancelling-forces",
-    hard: "A sleigh between two springs of 3 and of 1e6 N/m that pull it in opposite directions, at rest where they balance and \
-           1e-9 m beside that: forces of up to 3e5 N leave 2e-3 N, or nothing.",
+    hard: "A sleigh between springs of 3 and of 1e6 N/m that balance, at rest there and 1e-9 m beside: forces of up to \
+           3e5 N leave 2e-3 N, or nothing.",
     shows: "x = x0 + s cos(sqrt(2 k/m) t), and no spin.",
-    bar: "The method's order over the run, relative to s; the rounding of the springs' lengths, as a displacement that grows with \
-          the oscillation.",
+    bar: "The method's order over the run, relative to s; the rounding of the springs' lengths, as a displacement that \
+          grows with the oscillation.",
     claim: Claim::Order,
     refusable: false,
 };

@@ -136,8 +136,7 @@ fn stepper<const N: usize, const M: usize>(method: &Method) -> Option<Stepper<N,
 
 pub(super) const PARALLEL_BLADES: Case = Case {
     name: "parallel-blades",
-    hard: "Two parallel blades side by side: the rows of the constraint are the same, A M^-1 A' is singular, and no method can \
-           tell the two forces apart.",
+    hard: "Two parallel blades side by side: A M^-1 A' is singular, and no method can tell the two forces apart.",
     shows: "The motion is that with one blade, in closed form; or an error that names the rows.",
     bar: "The method's order over the run, and rounding.",
     claim: Claim::Order,
@@ -163,7 +162,7 @@ pub(super) fn parallel_blades(lab: &mut Lab) -> Result<(), CliError> {
 
 pub(super) const DROPPING_ROW: Case = Case {
     name: "dropping-row",
-    hard: "A guide that lets go: its row of the constraint is there before x = 1 m and after it, and vanishes there.",
+    hard: "A guide that lets go: its row of the constraint vanishes at x = 1 m, and exists before and after.",
     shows: "An error that names the row, where the rank drops.",
     bar: "The error comes at x = 1 m, not before and not later, and is that of dependent rows.",
     claim: Claim::Order,
