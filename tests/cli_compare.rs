@@ -1,4 +1,4 @@
-//! `noslip compare`, and plain `noslip`.
+//! `noslip compare`, and `noslip --all`.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 #[path = "common/program.rs"]
@@ -347,20 +347,27 @@ fn a_comparison_from_its_checkpoints_is_the_same() {
 
 #[test]
 #[ignore = "minutes unless optimised: `cargo test --release --test cli_compare -- --ignored`"]
-fn plain_noslip_does_the_main_job() {
+fn every_method_on_every_scene() {
     let folder = Folder::new();
     // Somebody's folder, which stays as it is.
     fs::create_dir(folder.join("noslip-report")).unwrap();
     folder.write("noslip-report/index.html", "mine");
-    let text = folder.done("");
+    let text = folder.done("--all");
     let tables: Vec<&str> = text.split("\n\n").collect();
-    assert_eq!(tables.len(), 1 + SCENES.len(), "{text}");
+    assert_eq!(tables.len(), 2 + SCENES.len(), "{text}");
     for (scene, table) in SCENES.iter().zip(&tables) {
         assert!(table.lines().next().unwrap().contains(&format!("({scene})")), "{table}");
         let first = |line: &str| line.split_whitespace().next().unwrap().to_owned();
         assert_eq!(table.lines().skip(2).map(first).collect::<Vec<_>>(), methods());
     }
-    assert!(tables[SCENES.len()].starts_with("report: noslip-report-2"), "{text}");
+    // All together: a line for each method, which has run, refused or failed on each scene.
+    let together: Vec<&str> = tables[SCENES.len()].lines().collect();
+    assert_eq!(together.len(), 2 + methods().len(), "{text}");
+    for line in &together[2..] {
+        let counts = line.split_whitespace().skip(1).take(3).map(|count| count.parse::<usize>().unwrap());
+        assert_eq!(counts.sum::<usize>(), SCENES.len(), "{line}");
+    }
+    assert!(tables[1 + SCENES.len()].starts_with("report: noslip-report-2"), "{text}");
     let files = names(&folder.join("noslip-report-2"));
     let pictures = 3 * SCENES.len();
     assert_eq!(files.iter().filter(|name| name.ends_with(".svg")).count(), pictures, "{files:?}");
@@ -370,5 +377,5 @@ fn plain_noslip_does_the_main_job() {
 
     assert_eq!(folder.names(), ["noslip-report", "noslip-report-2"]);
     assert_eq!(folder.read("noslip-report/index.html"), "mine");
-    folder.refused("--report noslip-report", &["noslip-report", "exists already", "--force"]);
+    folder.refused("--all --report noslip-report", &["noslip-report", "exists already", "--force"]);
 }

@@ -68,6 +68,7 @@ pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
             title: format!("noslip compare {}", scene.name),
             intro: table::INTRO.to_owned(),
             scenes: vec![std::mem::take(&mut comparison.report)],
+            ..Report::default()
         };
         report::write(&report, folder, arguments.scene.force).map_err(CliError::Report)?;
     }

@@ -1,23 +1,19 @@
-use crate::args::JobArguments;
 use crate::compare::{Row, compare_scene, methods, unless_interrupted};
 use crate::error::CliError;
 use crate::inspect::method_names;
 use crate::interrupt::Interrupt;
 use crate::saves::Saves;
+use crate::totals::Totals;
 use crate::{table, terminal};
 use harness::report::{self, Report};
 use scene::Scene;
-use std::path::PathBuf;
+use std::path::Path;
 
-/// Plain `noslip`: the comparison on the bundled scenes, as tables and as a report.
-pub(crate) fn main_job(arguments: &JobArguments) -> Result<(), CliError> {
-    let folder = match &arguments.report {
-        Some(folder) => folder.clone(),
-        None => free_folder(),
-    };
-    crate::files::check_folder(&folder, arguments.force)?;
+/// `noslip --all`: the comparison of all methods on the bundled scenes, as tables and as a report.
+pub(crate) fn everything(folder: &Path, overwrite: bool) -> Result<(), CliError> {
     let mut scenes = Vec::new();
     let mut failures = Vec::new();
+    let mut totals = Totals::default();
     let (interrupt, mut interrupted) = (Interrupt::listen(), None);
     for bundled in scene::bundled() {
         let scene = Scene::load(bundled.name, &method_names())?;
@@ -25,6 +21,7 @@ pub(crate) fn main_job(arguments: &JobArguments) -> Result<(), CliError> {
         let comparison = compare_scene(&scene, &methods, &mut Saves::default(), &interrupt)?;
         comparison.print(&scene)?;
         terminal::print("\n")?;
+        comparison.rows.iter().for_each(|row| totals.add(&row.json));
         let failed = comparison.rows.into_iter().filter_map(Row::unexpected);
         failures.extend(failed.map(|failure| format!("{}: {failure}", scene.name)));
         scenes.push(comparison.report);
@@ -33,19 +30,10 @@ pub(crate) fn main_job(arguments: &JobArguments) -> Result<(), CliError> {
             break;
         }
     }
+    terminal::print(&totals.table(scenes.len()))?;
     let title = "What accuracy costs, and what structure keeps".to_owned();
-    let report = Report { title, intro: table::INTRO.to_owned(), scenes };
-    report::write(&report, &folder, arguments.force).map_err(CliError::Report)?;
-    terminal::print(&format!("report: {}\n", folder.join("index.html").display()))?;
+    let report = Report { title, intro: table::INTRO.to_owned(), scenes, ..Report::default() };
+    report::write(&report, folder, overwrite).map_err(CliError::Report)?;
+    terminal::print(&format!("\nreport: {}\n", folder.join("index.html").display()))?;
     unless_interrupted(interrupted, None, CliError::of_failures(failures))
-}
-
-/// The first of `noslip-report`, `noslip-report-2`, .. that is not there.
-fn free_folder() -> PathBuf {
-    let first = PathBuf::from("noslip-report");
-    if first.symlink_metadata().is_err() {
-        return first;
-    }
-    let numbered = |k: u32| PathBuf::from(format!("noslip-report-{k}"));
-    (2..).map(numbered).find(|folder| folder.symlink_metadata().is_err()).unwrap_or(first)
 }

@@ -13,6 +13,7 @@ mod equilibria;
 mod error;
 mod facts;
 mod files;
+mod first;
 mod first_error;
 mod in_memory;
 mod inspect;
@@ -39,6 +40,7 @@ mod starts;
 mod substeps;
 mod table;
 mod terminal;
+mod totals;
 mod train;
 mod train_run;
 mod trajectory_file;
@@ -79,7 +81,7 @@ fn obey(arguments: impl Iterator<Item = std::ffi::OsString>) -> u8 {
 
 fn command(arguments: Arguments) -> Result<(), CliError> {
     match arguments.command {
-        None => job::main_job(&arguments.job),
+        None => first::first(&arguments.job),
         Some(Command::Run(arguments)) => run::run(&arguments),
         Some(Command::Compare(arguments)) => compare::compare(&arguments),
         Some(Command::Precision(arguments)) => precision::precision(&arguments),

@@ -69,10 +69,7 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
         scene.run.duration = scene.run.duration.min(DURATION);
     }
     let chosen = arguments.duration.is_none();
-    let mut measured = match scene.train()? {
-        Some(whole) => train::measure(&scene, &whole, &methods, arguments.longest)?,
-        None => scene.visit(Measure { scene: &scene, methods: &methods, longest: arguments.longest, chosen })??,
-    };
+    let mut measured = measure(&scene, &methods, arguments.longest, chosen)?;
     measured.curves.extend(others);
     mark_pareto(&mut measured.curves, CLEAR * measured.reference.error);
 
@@ -95,6 +92,15 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
     }
     let named = arguments.methods.is_some();
     CliError::of_failures(measured.curves.iter().filter_map(|curve| failure(curve, named)))
+}
+
+/// Measures what accuracy costs on a scene, by runs of `longest` (s) at most; of a duration that is `chosen` for the user there may be
+/// less.
+pub(crate) fn measure(scene: &Scene, methods: &[Method], longest: f64, chosen: bool) -> Result<Measurement, CliError> {
+    match scene.train()? {
+        Some(whole) => train::measure(scene, &whole, methods, longest),
+        None => scene.visit(Measure { scene, methods, longest, chosen })?,
+    }
 }
 
 /// What keeps a method from having any point; a refusal only where the method was asked for by name.

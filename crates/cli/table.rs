@@ -138,11 +138,20 @@ fn parts(header: &[&str], rows: &[Vec<String>], room: Option<usize>) -> Vec<Vec<
 
 /// A table, all columns but the first aligned to the right.
 pub(crate) fn right_aligned(header: &[&str], rows: &[Vec<String>]) -> String {
+    tabulated(header, rows, CellAlignment::Right)
+}
+
+/// A table of words.
+pub(crate) fn left_aligned(header: &[&str], rows: &[Vec<String>]) -> String {
+    tabulated(header, rows, CellAlignment::Left)
+}
+
+fn tabulated(header: &[&str], rows: &[Vec<String>], alignment: CellAlignment) -> String {
     let mut table = Table::new();
     table.load_style(presets::NOTHING).set_header(header);
     table.add_rows(rows);
     for column in table.column_iter_mut().skip(1) {
-        column.set_cell_alignment(CellAlignment::Right);
+        column.set_cell_alignment(alignment);
     }
     let mut text = String::new();
     for line in table.trim_fmt().lines() {

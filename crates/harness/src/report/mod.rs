@@ -42,6 +42,8 @@ pub struct Report {
     pub title: String,
     /// What was compared, in a few sentences; an empty line starts a new paragraph.
     pub intro: String,
+    /// What the columns of the tables mean: shown at their headings, and in a list below the scenes.
+    pub notes: Vec<(String, String)>,
     /// The scenes, in the order of the page.
     pub scenes: Vec<SceneReport>,
 }

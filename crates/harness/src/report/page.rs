@@ -32,8 +32,9 @@ pub(super) fn page(report: &Report, shown: &[Shown<'_>]) -> String {
     }
     page += "</header>\n<main>\n";
     for (scene, shown) in report.scenes.iter().zip(shown) {
-        section(&mut page, scene, shown);
+        section(&mut page, scene, shown, &report.notes);
     }
+    meanings(&mut page, &report.notes);
     page + &foot()
 }
 
@@ -57,7 +58,19 @@ pub(super) fn foot() -> String {
     format!("</main>\n<script>\n{SCRIPT}</script>\n</body>\n</html>\n")
 }
 
-fn section(page: &mut String, scene: &SceneReport, shown: &Shown<'_>) {
+/// What the columns mean.
+fn meanings(page: &mut String, notes: &[(String, String)]) {
+    if notes.is_empty() {
+        return;
+    }
+    *page += "<section id=\"columns\">\n<h2>What the columns mean</h2>\n<dl class=\"notes\">\n";
+    for (column, meaning) in notes {
+        *page += &format!("<dt>{}</dt><dd>{}</dd>\n", escape(column), escape(meaning));
+    }
+    *page += "</dl>\n</section>\n";
+}
+
+fn section(page: &mut String, scene: &SceneReport, shown: &Shown<'_>, notes: &[(String, String)]) {
     let name = shown.name;
     *page += &format!("<section id=\"scene-{}\">\n<h2>{}</h2>\n", escape(name), escape(&scene.title));
     facts(page, &scene.facts);
@@ -66,7 +79,7 @@ fn section(page: &mut String, scene: &SceneReport, shown: &Shown<'_>) {
         let look = |row: &[String]| {
             scene.series.iter().position(|series| row.first() == Some(&series.label) && series.is_drawn())
         };
-        table(page, &scene.columns, &scene.rows, &look);
+        table(page, &scene.columns, &scene.rows, notes, &look);
     }
     numbers(page, name, &scene.numbers);
     let [path, constraint, energy] = shown.pictures.each_ref().map(figure);
@@ -118,11 +131,12 @@ pub(super) fn numbers(page: &mut String, name: &str, numbers: &[Numbers]) {
     *page += &format!("<p class=\"numbers\">All digits: {}</p>\n", links.collect::<Vec<_>>().join(" "));
 }
 
-/// A table; `shown` tells which look a row begins with, if with any.
+/// A table; `notes` say what columns mean, and `shown` tells which look a row begins with, if with any.
 pub(super) fn table(
     page: &mut String,
     columns: &[String],
     rows: &[Vec<String>],
+    notes: &[(String, String)],
     shown: &dyn Fn(&[String]) -> Option<usize>,
 ) {
     let width = rows.iter().map(Vec::len).fold(columns.len(), usize::max);
@@ -131,7 +145,9 @@ pub(super) fn table(
     let text = |row: &[String], column: usize| row.get(column).map_or_else(String::new, |cell| escape(cell));
     *page += "<div class=\"scroll\"><table>\n<thead><tr>";
     for column in 0..width {
-        *page += &format!("<th scope=\"col\"{}>{}</th>", class(column), text(columns, column));
+        let note = notes.iter().find(|(name, _)| columns.get(column) == Some(name));
+        let note = note.map_or_else(String::new, |(_, meaning)| format!(" title=\"{}\"", escape(meaning)));
+        *page += &format!("<th scope=\"col\"{}{note}>{}</th>", class(column), text(columns, column));
     }
     *page += "</tr></thead>\n<tbody>\n";
     for row in rows {

@@ -77,7 +77,7 @@ pub fn write_precision(
     text += "</section>\n";
     for table in &report.tables {
         text += &format!("<section>\n<h2>{}</h2>\n", escape(&table.title));
-        page::table(&mut text, &table.columns, &table.rows, &shown);
+        page::table(&mut text, &table.columns, &table.rows, &[], &shown);
         text += "</section>\n";
     }
     text += &page::foot();

@@ -51,7 +51,12 @@ pub(crate) fn scene(name: &str, series: Vec<Series>) -> SceneReport {
 }
 
 pub(crate) fn report(scenes: Vec<SceneReport>) -> Report {
-    Report { title: "A comparison".to_owned(), intro: "What was done.\n\nAnd how.".to_owned(), scenes }
+    Report {
+        title: "A comparison".to_owned(),
+        intro: "What was done.\n\nAnd how.".to_owned(),
+        notes: Vec::new(),
+        scenes,
+    }
 }
 
 pub(crate) fn names(directory: &Path) -> Vec<String> {

@@ -1,0 +1,84 @@
+//! Plain `noslip`: one scene by five methods, in seconds, with the result in words.
+
+mod words;
+
+use crate::args::JobArguments;
+use crate::compare::{Comparison, Row, compare_scene, methods, unless_interrupted};
+use crate::error::CliError;
+use crate::inspect::method_names;
+use crate::interrupt::Interrupt;
+use crate::saves::Saves;
+use crate::{files, job, precision, table, terminal};
+use harness::precision::{Cheapest, cheapest};
+use harness::report::{self, Report};
+use scene::Scene;
+use std::path::PathBuf;
+use words::Answers;
+pub(crate) use words::{Energy, slips};
+
+/// The scene: its motion is regular, so that errors grow slowly, and its energy goes to and fro between its parts, so that a method
+/// can lose some.
+const SCENE: &str = "egg-crate";
+/// Of each way to make a method: the discrete principle, its composition, collocation, energy, and the classical one.
+const METHODS: [&str; 5] = ["dla", "dla4", "gauss16", "energy4", "rk4"];
+/// A step (s) at which the methods differ, and a run (s) that is long enough to see a drift.
+const STEP: f64 = 0.1;
+const DURATION: f64 = 300.0;
+/// What accuracy costs is measured over so much of the motion (s), by runs of so much time at most (s).
+const MOTION: f64 = 20.0;
+const LONGEST: f64 = 0.01;
+/// The errors whose price is told (m or rad).
+const PRICED: [f64; 2] = [1e-3, 1e-9];
+
+/// `noslip`, and `noslip --all`, and what their columns mean.
+pub(crate) fn first(arguments: &JobArguments) -> Result<(), CliError> {
+    if arguments.explain {
+        return terminal::print(&words::explanation());
+    }
+    let folder = arguments.report.clone().unwrap_or_else(free_folder);
+    files::check_folder(&folder, arguments.force)?;
+    if arguments.all {
+        return job::everything(&folder, arguments.force);
+    }
+    let names = method_names();
+    let scene = Scene::load(SCENE, &names)?.with_overrides(None, Some(STEP), Some(DURATION), None, &names)?;
+    let methods = methods(&METHODS, None)?;
+    let Comparison { rows, mut report, interrupted } =
+        compare_scene(&scene, &methods, &mut Saves::default(), &Interrupt::listen())?;
+    let answers: Vec<Answers> = rows.iter().map(|row| Answers::of(&row.json)).collect();
+    let mut sentences = words::sentences(&answers);
+    if interrupted.is_none() {
+        let mut motion = scene.clone();
+        motion.run.duration = MOTION;
+        let measured = precision::measure(&motion, &methods, LONGEST, false)?;
+        let priced = |price: &Cheapest| PRICED.contains(&price.error);
+        let prices: Vec<Cheapest> = cheapest(&measured.curves).into_iter().filter(priced).collect();
+        sentences.push(words::prices(&prices, MOTION));
+    }
+    let heading = words::heading(&scene);
+    let cells: Vec<Vec<String>> = answers.iter().map(Answers::cells).collect();
+    terminal::print(&format!("{heading}\n\n{}\n", table::left_aligned(&words::COLUMNS, &cells)))?;
+    for sentence in &sentences {
+        terminal::print(&words::wrapped(sentence))?;
+    }
+
+    report.columns = words::COLUMNS.map(str::to_owned).to_vec();
+    report.rows = cells;
+    let intro = [vec![heading], sentences].concat().join("\n\n");
+    let title = "Five methods on one motion".to_owned();
+    let report = Report { title, intro, notes: words::notes(), scenes: vec![report] };
+    report::write(&report, &folder, arguments.force).map_err(CliError::Report)?;
+    terminal::print(&format!("\npage: {}\n\n{}", folder.join("index.html").display(), words::FURTHER))?;
+    let failed = CliError::of_failures(rows.into_iter().filter_map(Row::unexpected));
+    unless_interrupted(interrupted, None, failed)
+}
+
+/// The first of `noslip-report`, `noslip-report-2`, .. that is not there.
+fn free_folder() -> PathBuf {
+    let first = PathBuf::from("noslip-report");
+    if first.symlink_metadata().is_err() {
+        return first;
+    }
+    let numbered = |k: u32| PathBuf::from(format!("noslip-report-{k}"));
+    (2..).map(numbered).find(|folder| folder.symlink_metadata().is_err()).unwrap_or(first)
+}

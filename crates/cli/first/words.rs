@@ -1,0 +1,276 @@
+//! What the first screen says of its numbers.
+
+use crate::table::{aligned, number};
+use harness::precision::Cheapest;
+use scene::Scene;
+use serde_json::Value;
+
+/// The columns, each a question.
+pub(crate) const COLUMNS: [&str; 5] = ["method", "does it slip?", "does its energy drift?", "error at the end", "time"];
+
+/// What the columns mean.
+const MEANINGS: [&str; 5] = [
+    "The integrator, by the name that commands and files use; `noslip list methods` says what each is. All start from the same state and \
+     make the same steps.",
+    "The largest sideways speed |A(q) v + b| of the blade over all nodes, which the constraint says is zero. \"no\": it is below the \
+     rounding of so many steps, their number times 2.2e-16.",
+    "What |E - E0 - work| does over the run; the work of what drives or brakes the scene is no error. \"drifts\": the slope of its \
+     straight line differs from zero at the 99 % level. \"swings\": to and fro, without a drift. \"wanders\": like a random walk. \
+     \"rounding\": all of it is below the rounding of so many steps. \"not clear\": the run is too short; one of the length that is \
+     named shows a drift of the slope that was found.",
+    "How far the blade is at the end from where it should be (m), or its heading (rad), whichever is larger. It should be where \
+     gauss16 with a quarter of the step puts it, or where the closed form does, of scenes that have one.",
+    "Processor time of the steps alone, the median of repeated runs.",
+];
+
+/// Where to go on.
+pub(crate) const FURTHER: &str = "\
+what the columns mean            noslip --explain
+every method on every scene      noslip --all
+one run, and its picture         noslip run turnaround
+a scene of your own              noslip new my.toml; noslip compare my.toml
+";
+
+/// No line is longer.
+const WIDTH: usize = 80;
+
+/// What a run does, as the columns ask.
+#[derive(Debug)]
+pub(crate) struct Answers {
+    method: String,
+    /// The largest residual of the constraint (m/s).
+    slip: f64,
+    slips: bool,
+    energy: Energy,
+    error: Option<f64>,
+    seconds: f64,
+    /// Another method whose energy error becomes larger in a run of that length (s).
+    better: Option<(String, f64)>,
+    /// Why there is no answer.
+    failure: Option<String>,
+}
+
+/// What the energy error does; its size in J, and its slope in J/s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Energy {
+    Rounding,
+    Swings(f64),
+    Drifts(f64),
+    Wanders(f64),
+    /// Not clear: in a run of that length (s) a drift of the slope found would show.
+    Open(Option<f64>),
+}
+
+impl Energy {
+    /// Of a row of `compare --json`.
+    pub(crate) fn of(row: &Value) -> Self {
+        let number = |key: &str| row["energy"][key].as_f64();
+        let most = number("max_error").unwrap_or(f64::NAN);
+        if most <= rounding(row) * number("initial").unwrap_or(0.0).abs().max(1.0) {
+            return Self::Rounding;
+        }
+        let slope = number("slope").unwrap_or(f64::NAN);
+        match row["energy"]["verdict"].as_str() {
+            Some("bounded") => Self::Swings(number("amplitude").unwrap_or(most)),
+            Some("linear drift") => Self::Drifts(slope),
+            Some("random walk") => Self::Wanders(most),
+            _ => {
+                // The interval of a slope shrinks as the length of the run to the power -3/2; the test takes 2.75 standard errors, the
+                // interval 2.04.
+                let longer = number("slope_ci").map(|interval| (1.35 * interval / slope.abs()).powf(2.0 / 3.0));
+                let run = row["duration"].as_f64().unwrap_or(f64::NAN);
+                // Beyond that the motion has other news.
+                Self::Open(longer.filter(|longer| (1.0..100.0).contains(longer)).map(|longer| longer * run))
+            }
+        }
+    }
+
+    fn cell(self) -> String {
+        match self {
+            Self::Rounding => "no, rounding".to_owned(),
+            Self::Swings(amplitude) => format!("no, swings by {amplitude:.1e} J"),
+            Self::Drifts(slope) => format!("drifts, {slope:+.1e} J/s"),
+            Self::Wanders(most) => format!("wanders, {most:.1e} J"),
+            Self::Open(None) => "not clear".to_owned(),
+            Self::Open(Some(length)) => format!("not clear before {length:.0e} s"),
+        }
+    }
+}
+
+/// Whether the constraint is off by more than rounding.
+pub(crate) fn slips(row: &Value) -> bool {
+    row["constraint"]["max"].as_f64().is_none_or(|slip| slip > rounding(row))
+}
+
+/// What rounding may come to in a run: each step adds its own.
+fn rounding(row: &Value) -> f64 {
+    row["steps"].as_f64().unwrap_or(0.0) * f64::EPSILON
+}
+
+impl Answers {
+    /// Of a row of `compare --json`.
+    pub(crate) fn of(row: &Value) -> Self {
+        let slip = row["constraint"]["max"].as_f64().unwrap_or(f64::NAN);
+        let better = row["better_than"].as_array().and_then(|all| all.first());
+        Self {
+            method: row["method"].as_str().unwrap_or_default().to_owned(),
+            slip,
+            slips: slips(row),
+            energy: Energy::of(row),
+            error: row["error"].as_f64(),
+            seconds: row["wall_seconds"].as_f64().unwrap_or(f64::NAN),
+            better: better.and_then(|other| Some((other["method"].as_str()?.to_owned(), other["from"].as_f64()?))),
+            failure: row["failure"]["reason"].as_str().map(str::to_owned),
+        }
+    }
+
+    /// The row of the table.
+    pub(crate) fn cells(&self) -> Vec<String> {
+        if let Some(failure) = &self.failure {
+            return vec![self.method.clone(), format!("failed: {failure}")];
+        }
+        vec![
+            self.method.clone(),
+            if self.slips { format!("yes, {:.1e} m/s", self.slip) } else { "no".to_owned() },
+            self.energy.cell(),
+            self.error.map_or_else(|| "-".to_owned(), |error| format!("{error:.1e}")),
+            duration(self.seconds),
+        ]
+    }
+}
+
+/// A time, in the unit that it is read in.
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 1e-3 => format!("{:.3} ms", s * 1e3),
+        s if s < 1.0 => format!("{:.1} ms", s * 1e3),
+        s => format!("{s:.1} s"),
+    }
+}
+
+/// What is compared.
+pub(crate) fn heading(scene: &Scene) -> String {
+    let run = &scene.run;
+    format!("{}, {} s in steps of {} s", scene.title, number(run.duration), number(run.step))
+}
+
+/// Who holds the constraint, and who drifts, how fast.
+pub(crate) fn sentences(all: &[Answers]) -> Vec<String> {
+    let made: Vec<&Answers> = all.iter().filter(|one| one.failure.is_none()).collect();
+    vec![constraint(&made), energy(&made)]
+}
+
+fn constraint(made: &[&Answers]) -> String {
+    let (slipping, holding): (Vec<&&Answers>, Vec<&&Answers>) = made.iter().partition(|one| one.slips);
+    let most = |some: &[&&Answers]| some.iter().map(|one| one.slip).fold(0.0, f64::max);
+    let held = (!holding.is_empty()).then(|| {
+        let plural = if holding.len() == 1 { "s" } else { "" };
+        format!("{} hold{plural} the no-slip constraint to rounding", list(&holding))
+    });
+    let slips = (!slipping.is_empty())
+        .then(|| format!("the blade of {} slips sideways, by up to {:.1e} m/s", list(&slipping), most(&slipping)));
+    sentence(held.into_iter().chain(slips))
+}
+
+fn energy(made: &[&Answers]) -> String {
+    let of = |kind: fn(Energy) -> Option<f64>| -> (Vec<&&Answers>, f64) {
+        let some: Vec<&&Answers> = made.iter().filter(|one| kind(one.energy).is_some()).collect();
+        let most = some.iter().filter_map(|one| kind(one.energy)).map(f64::abs).fold(0.0, f64::max);
+        (some, most)
+    };
+    let kinds: [(fn(Energy) -> Option<f64>, &str); 5] = [
+        (|energy| (energy == Energy::Rounding).then_some(0.0), "keeps its value to rounding"),
+        (
+            |energy| if let Energy::Swings(by) = energy { Some(by) } else { None },
+            "swings, by up to {} J, without a drift",
+        ),
+        (|energy| if let Energy::Drifts(by) = energy { Some(by) } else { None }, "drifts, by {} J/s"),
+        (|energy| if let Energy::Wanders(by) = energy { Some(by) } else { None }, "wanders, by up to {} J"),
+        (|energy| matches!(energy, Energy::Open(_)).then_some(0.0), "needs a longer run to be told"),
+    ];
+    let mut parts = Vec::new();
+    for (kind, does) in kinds {
+        let (some, most) = of(kind);
+        if !some.is_empty() {
+            let start = if parts.is_empty() { "the energy of" } else { "that of" };
+            parts.push(format!("{start} {} {}", list(&some), does.replace("{}", &format!("{most:.1e}"))));
+        }
+    }
+    let better = made.iter().find_map(|one| Some((one, one.better.as_ref()?)));
+    parts.extend(better.map(|(one, (other, from))| {
+        format!("in runs longer than {from:.0} s the energy error of {other} is larger than that of {}", one.method)
+    }));
+    sentence(parts.into_iter())
+}
+
+/// Who is cheapest, at each of the errors.
+pub(crate) fn prices(prices: &[Cheapest], motion: f64) -> String {
+    let told = prices.iter().map(|price| {
+        let error = format!("{:e}", price.error);
+        match &price.methods[..] {
+            [] => format!("an error of {error} m is reached by none in the time allowed"),
+            [(method, seconds), rest @ ..] => {
+                let next = rest.first().zip(price.factor());
+                let next = next.map_or_else(
+                    || ", and the others do not reach it in the time allowed".to_owned(),
+                    |((other, _), factor)| format!(", and {other} takes {factor:.1} times that"),
+                );
+                format!("{method} is cheapest at an error of {error} m ({} for {motion} s{next})", duration(*seconds))
+            }
+        }
+    });
+    sentence(told)
+}
+
+/// The meaning of each column, for the page.
+pub(crate) fn notes() -> Vec<(String, String)> {
+    COLUMNS.iter().zip(MEANINGS).map(|(column, meaning)| ((*column).to_owned(), meaning.to_owned())).collect()
+}
+
+/// The same for the terminal.
+pub(crate) fn explanation() -> String {
+    let one = |(column, meaning): (&&str, &str)| {
+        let lines = wrapped_to(meaning, WIDTH - 4);
+        format!("{column}\n{}\n", lines.iter().map(|line| format!("    {line}\n")).collect::<String>())
+    };
+    let columns: String = COLUMNS.iter().zip(MEANINGS).map(one).collect();
+    columns + &aligned(&[("noslip compare SCENE", "more columns, any methods, any scene")])
+}
+
+/// A sentence on lines of its own.
+pub(crate) fn wrapped(sentence: &str) -> String {
+    wrapped_to(sentence, WIDTH).iter().map(|line| format!("{line}\n")).collect()
+}
+
+fn wrapped_to(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        let line = lines.last().map_or(0, |line| line.chars().count());
+        match lines.last_mut() {
+            Some(last) if line == 0 => last.push_str(word),
+            Some(last) if line + 1 + word.chars().count() <= width => *last += &format!(" {word}"),
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// Parts of a sentence, with its capital letter only where a word begins it: names of methods are small.
+fn sentence(parts: impl Iterator<Item = String>) -> String {
+    let text = parts.collect::<Vec<_>>().join("; ");
+    let capital = ["the ", "an "].iter().any(|word| text.starts_with(word));
+    let mut letters = text.chars();
+    match letters.next().filter(|_| capital) {
+        Some(first) => format!("{}{}.", first.to_uppercase(), letters.as_str()),
+        None => format!("{text}."),
+    }
+}
+
+/// Names as a sentence has them: `a, b and c`.
+fn list(all: &[&&Answers]) -> String {
+    let names: Vec<&str> = all.iter().map(|one| one.method.as_str()).collect();
+    match names[..] {
+        [.., _, last] => format!("{} and {last}", names[..names.len() - 1].join(", ")),
+        _ => names.concat(),
+    }
+}
