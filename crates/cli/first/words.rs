@@ -172,13 +172,16 @@ fn constraint(made: &[&Answers]) -> String {
     sentence(held.into_iter().chain(slips))
 }
 
+/// Picks one of the kinds, with its number.
+type Measured = fn(Energy) -> Option<f64>;
+
 fn energy(made: &[&Answers]) -> String {
-    let of = |kind: fn(Energy) -> Option<f64>| -> (Vec<&&Answers>, f64) {
+    let of = |kind: Measured| -> (Vec<&&Answers>, f64) {
         let some: Vec<&&Answers> = made.iter().filter(|one| kind(one.energy).is_some()).collect();
         let most = some.iter().filter_map(|one| kind(one.energy)).map(f64::abs).fold(0.0, f64::max);
         (some, most)
     };
-    let kinds: [(fn(Energy) -> Option<f64>, &str); 5] = [
+    let kinds: [(Measured, &str); 5] = [
         (|energy| (energy == Energy::Rounding).then_some(0.0), "keeps its value to rounding"),
         (
             |energy| if let Energy::Swings(by) = energy { Some(by) } else { None },
