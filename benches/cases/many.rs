@@ -64,5 +64,5 @@ fn report() -> Report {
         exact_path: None,
         numbers: Vec::new(),
     };
-    Report { title: "A bench".to_owned(), intro: String::new(), scenes: vec![scene] }
+    Report { title: "A bench".to_owned(), scenes: vec![scene], ..Report::default() }
 }

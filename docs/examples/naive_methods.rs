@@ -133,7 +133,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     ];
     if let Some(folder) = std::env::args().nth(1) {
         let title = "Naive methods beside the discrete principle".to_owned();
-        report::write(&Report { title, intro: String::new(), scenes }, Path::new(&folder), false)?;
+        report::write(&Report { title, scenes, ..Report::default() }, Path::new(&folder), false)?;
         println!("written: {folder}");
     }
     Ok(())
