@@ -2,13 +2,21 @@ use crate::coordinate::{Coordinate, Range};
 use crate::plane::{Crossed, Plane};
 use crate::trigger::Trigger;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+use scene::Setting;
 use std::path::PathBuf;
+
+/// What the exit codes say, at the end of the help.
+const EXIT_CODES: &str = "Exit codes:
+  0    done
+  1    the computation failed, or its result could not be written; what was reached is shown
+  2    the request was wrong: nothing was computed
+  130  ended by Ctrl-C; what was done is shown";
 
 /// Simulates systems with velocity constraints (blades, wheels, rolling bodies) and shows what accuracy costs.
 ///
 /// Without a command: one scene by five methods, in seconds; what holds, what drifts, what it costs; and a page with pictures.
 #[derive(Debug, Parser)]
-#[command(name = "noslip", version, args_conflicts_with_subcommands = true)]
+#[command(name = "noslip", version, args_conflicts_with_subcommands = true, after_help = EXIT_CODES)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
@@ -46,12 +54,25 @@ pub(crate) enum Command {
     ///
     /// Members are computed on all threads; their number, RAYON_NUM_THREADS, changes no result.
     Ensemble(EnsembleArguments),
-    /// Reads a scene and says what it is, or what is wrong with it
+    /// Reads scenes and says what they are, or what is wrong with them
     Check(CheckArguments),
     /// Lists what there is
     List(ListArguments),
     /// Writes a commented scene to start from
     New(NewArguments),
+    /// Compares two files of numbers, .csv or .npz: the largest difference in each column
+    Diff(DiffArguments),
+    /// Prints the completions of a shell
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Prints a page for `man`: of the program, or of one of its commands
+    #[command(hide = true)]
+    Man {
+        /// The command
+        command: Option<String>,
+    },
 }
 
 #[derive(Debug, Args)]
@@ -70,11 +91,21 @@ pub(crate) struct JobArguments {
     pub(crate) force: bool,
 }
 
+/// Values in place of those of the scene.
+#[derive(Debug, Args)]
+pub(crate) struct Settings {
+    /// Set a key of the scene, dotted, as in sleigh.offset=0.3 or effects.0.stiffness=[1, 2]; can be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<Setting>,
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct SceneArguments {
-    /// A scene file, or the name of a bundled scene (see `noslip list scenes`)
+    /// A scene file, the name of a bundled scene (see `noslip list scenes`), or - for the standard input
     #[arg(value_name = "SCENE")]
     pub(crate) scene: String,
+    #[command(flatten)]
+    pub(crate) set: Settings,
     /// Largest step [s], instead of the scene's
     #[arg(long, value_name = "H", allow_negative_numbers = true, value_parser = number)]
     pub(crate) step: Option<f64>,
@@ -159,9 +190,11 @@ pub(crate) struct CompareArguments {
 
 #[derive(Debug, Args)]
 pub(crate) struct PrecisionArguments {
-    /// A scene file, or the name of a bundled scene (see `noslip list scenes`)
+    /// A scene file, the name of a bundled scene (see `noslip list scenes`), or - for the standard input
     #[arg(value_name = "SCENE")]
     pub(crate) scene: String,
+    #[command(flatten)]
+    pub(crate) set: Settings,
     /// Methods, separated by commas [default: all]
     #[arg(long, value_name = "M,..", value_delimiter = ',')]
     pub(crate) methods: Option<Vec<String>>,
@@ -304,9 +337,14 @@ pub(crate) struct StabilityArguments {
 
 #[derive(Debug, Args)]
 pub(crate) struct CheckArguments {
-    /// A scene file, or the name of a bundled scene
-    #[arg(value_name = "SCENE")]
-    pub(crate) scene: String,
+    /// Scene files, names of bundled scenes, or - for the standard input
+    #[arg(value_name = "SCENE", required = true)]
+    pub(crate) scenes: Vec<String>,
+    #[command(flatten)]
+    pub(crate) set: Settings,
+    /// Print one JSON array, an object for each scene
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -338,6 +376,22 @@ pub(crate) struct NewArguments {
     /// Overwrite a file that is there already
     #[arg(long)]
     pub(crate) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct DiffArguments {
+    /// A file of numbers: .csv or .npz, by the ending
+    #[arg(value_name = "A")]
+    pub(crate) first: PathBuf,
+    /// The other
+    #[arg(value_name = "B")]
+    pub(crate) second: PathBuf,
+    /// Exit with 1 where a difference is larger than this
+    #[arg(long, value_name = "SIZE", allow_negative_numbers = true, value_parser = not_negative)]
+    pub(crate) within: Option<f64>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 fn count(text: &str) -> Result<u64, &'static str> {

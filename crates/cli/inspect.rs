@@ -1,8 +1,8 @@
-use crate::args::{CheckArguments, ListArguments, Listed, NewArguments, SceneArguments};
+use crate::args::{ListArguments, Listed, NewArguments, SceneArguments, Settings};
 use crate::error::CliError;
 use crate::facts::{self, Facts};
 use crate::files::write_whole;
-use crate::{table, terminal};
+use crate::{effect_keys, table, terminal};
 use dla::Schedule;
 use harness::METHODS;
 use scene::Scene;
@@ -16,19 +16,19 @@ pub(crate) fn method_names() -> Vec<&'static str> {
 
 /// The scene of a command line, with what its flags say instead.
 pub(crate) fn load(arguments: &SceneArguments, method: Option<&str>) -> Result<Scene, CliError> {
-    load_with(&arguments.scene, method, arguments.step, arguments.duration, arguments.alpha)
+    load_with((&arguments.scene, &arguments.set), method, arguments.step, arguments.duration, arguments.alpha)
 }
 
-/// The scene of that name, with other settings where they are given.
+/// The scene of that name, with the settings of the command line, of which flags come last.
 pub(crate) fn load_with(
-    scene: &str,
+    (scene, settings): (&str, &Settings),
     method: Option<&str>,
     step: Option<f64>,
     duration: Option<f64>,
     alpha: Option<f64>,
 ) -> Result<Scene, CliError> {
     let names = method_names();
-    Ok(Scene::load(scene, &names)?.with_overrides(method, step, duration, alpha, &names)?)
+    Ok(Scene::load_with(scene, &settings.set, &names)?.with_overrides(method, step, duration, alpha, &names)?)
 }
 
 /// The steps of a scene's run.
@@ -36,16 +36,14 @@ pub(crate) fn schedule(scene: &Scene) -> Schedule {
     Schedule { t0: 0.0, step: scene.run.actual_step(), steps: scene.run.steps() }
 }
 
-/// `noslip check`: what a scene is.
-pub(crate) fn check(arguments: &CheckArguments) -> Result<(), CliError> {
-    let scene = Scene::load(&arguments.scene, &method_names())?;
-    let heading = format!("{}: valid, \"{}\"\n", scene.name, scene.title);
+/// What a scene is, for a person.
+pub(crate) fn described(scene: &Scene) -> Result<Vec<(String, String)>, CliError> {
     let mut facts = match scene.train()? {
-        Some((train, start)) => facts::listed(&scene, &scene.start, train.assembly.energy(0.0, &start), ""),
-        None => scene.visit(Facts(&scene))?,
+        Some((train, start)) => facts::listed(scene, &scene.start, train.assembly.energy(0.0, &start), ""),
+        None => scene.visit(Facts(scene))?,
     };
     facts.push(("method".to_owned(), scene.run.method.clone()));
-    terminal::print(&(heading + &table::aligned(&facts)))
+    Ok(facts)
 }
 
 /// `noslip list`: what there is.
@@ -61,7 +59,9 @@ pub(crate) fn list(arguments: &ListArguments) -> Result<(), CliError> {
                 .collect(),
             Listed::Effects => scene::EFFECTS
                 .iter()
-                .map(|(name, keys, meaning)| json!({"name": name, "keys": keys, "summary": meaning}))
+                .map(|(name, keys, meaning)| {
+                    json!({"name": name, "keys": keys, "summary": meaning, "properties": effect_keys::json(name)})
+                })
                 .collect(),
             Listed::Cases => crate::stability::cases()
                 .map(|case| {
@@ -78,12 +78,7 @@ pub(crate) fn list(arguments: &ListArguments) -> Result<(), CliError> {
             let line = |m: &harness::MethodInfo| (m.name, format!("order {}, {}", m.order, m.summary));
             table::aligned(&METHODS.iter().map(line).collect::<Vec<_>>())
         }
-        Listed::Effects => {
-            let line = |(name, keys, meaning): &(&'static str, &[&str], &str)| {
-                (*name, format!("{meaning}; keys: {}", keys.join(", ")))
-            };
-            table::aligned(&scene::EFFECTS.iter().map(line).collect::<Vec<_>>())
-        }
+        Listed::Effects => effect_keys::text(),
         Listed::Cases => {
             table::aligned(&crate::stability::cases().map(|case| (case.name, case.hard)).collect::<Vec<_>>())
         }

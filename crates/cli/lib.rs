@@ -4,10 +4,15 @@
 mod args;
 mod called;
 mod chart_file;
+mod check;
+mod columns_file;
 mod compare;
 mod compare_numbers;
+mod completions;
 mod coordinate;
 mod cost;
+mod diff;
+mod effect_keys;
 mod ensemble;
 mod equilibria;
 mod error;
@@ -73,7 +78,7 @@ fn obey(arguments: impl Iterator<Item = std::ffi::OsString>) -> u8 {
     match outcome {
         Ok(()) => done,
         Err(error) => {
-            terminal::say("error", &error);
+            terminal::fail(&error);
             error.exit_code()
         }
     }
@@ -92,8 +97,11 @@ fn command(arguments: Arguments) -> Result<(), CliError> {
         Some(Command::Lyapunov(arguments)) => lyapunov::lyapunov(&arguments),
         Some(Command::Section(arguments)) => section::section(&arguments),
         Some(Command::Ensemble(arguments)) => ensemble::ensemble(&arguments),
-        Some(Command::Check(arguments)) => inspect::check(&arguments),
+        Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::List(arguments)) => inspect::list(&arguments),
         Some(Command::New(arguments)) => inspect::new(&arguments),
+        Some(Command::Diff(arguments)) => diff::diff(&arguments),
+        Some(Command::Completions { shell }) => completions::completions(shell),
+        Some(Command::Man { command }) => completions::man(command.as_deref()),
     }
 }

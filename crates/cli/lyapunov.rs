@@ -19,7 +19,8 @@ pub(crate) fn lyapunov(arguments: &LyapunovArguments) -> Result<(), CliError> {
     let usual = if arguments.map.is_empty() { DURATION } else { MAP_DURATION };
     let shared = &arguments.scene;
     let duration = shared.duration.or(Some(usual));
-    let scene = inspect::load_with(&shared.scene, Some(&arguments.method), shared.step, duration, shared.alpha)?;
+    let scene =
+        inspect::load_with((&shared.scene, &shared.set), Some(&arguments.method), shared.step, duration, shared.alpha)?;
     let method = Method::named(&scene.run.method, scene.run.alpha)?;
     has_tangents(&method).map_err(|reason| CliError::Request(format!("--method {}: {reason}", arguments.method)))?;
     let file = arguments.out.as_deref().map(|path| ChartFile::of(path, shared.force)).transpose()?;

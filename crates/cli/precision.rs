@@ -47,7 +47,8 @@ pub(crate) struct KnownEnd {
 
 /// `noslip precision`: what accuracy costs in time.
 pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> {
-    let mut scene = inspect::load_with(&arguments.scene, None, None, arguments.duration, arguments.alpha)?;
+    let mut scene =
+        inspect::load_with((&arguments.scene, &arguments.set), None, None, arguments.duration, arguments.alpha)?;
     let names: Vec<&str> = match &arguments.methods {
         Some(names) => names.iter().map(|name| name.trim()).collect(),
         None => method_names(),

@@ -22,7 +22,8 @@ const MOST_STARTS: u64 = 100_000;
 pub(crate) fn section(arguments: &SectionArguments) -> Result<(), CliError> {
     let shared = &arguments.scene;
     let duration = shared.duration.or(Some(DURATION));
-    let scene = inspect::load_with(&shared.scene, Some(&arguments.method), shared.step, duration, shared.alpha)?;
+    let scene =
+        inspect::load_with((&shared.scene, &shared.set), Some(&arguments.method), shared.step, duration, shared.alpha)?;
     let method = Method::named(&scene.run.method, scene.run.alpha)?;
     let axes = match &arguments.axes {
         Some(axes) => match axes[..] {

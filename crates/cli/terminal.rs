@@ -35,6 +35,23 @@ pub(crate) fn print_usage(usage: &clap::Error) -> Result<(), CliError> {
     if usage.use_stderr() { Ok(()) } else { accept_closed(printed) }
 }
 
+/// Says why a command failed, in colours where standard error is a terminal.
+pub(crate) fn fail(error: &CliError) {
+    let coloured = console::colors_enabled_stderr() && std::env::var_os("NO_COLOR").is_none_or(|no| no.is_empty());
+    let line = format!("error: {error}\n");
+    if called::keep_err(&line) {
+        return;
+    }
+    let level = console::Style::new().for_stderr().red().bold().force_styling(coloured).apply_to("error:");
+    let message = match error {
+        CliError::Scene(scene) if coloured => scene.finding().map(scene::Finding::coloured),
+        _ => None,
+    };
+    let line = format!("{level} {}\n", message.unwrap_or_else(|| error.to_string()));
+    // Where that cannot be written to, there is nobody left to tell.
+    let _ = std::io::stderr().write_all(line.as_bytes());
+}
+
 /// Says something on standard error. Where that cannot be written to, there is nobody left to tell.
 pub(crate) fn say(level: &str, message: &impl Display) {
     let line = format!("{level}: {message}\n");

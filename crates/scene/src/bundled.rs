@@ -38,6 +38,9 @@ pub fn bundled() -> &'static [Bundled] {
     ]
 }
 
+/// What a scene may say, as a JSON schema: keys, types, units in parentheses at the end of each description.
+pub const SCHEMA: &str = include_str!("../../../docs/scene.schema.json");
+
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {
     bundled().iter().map(|scene| scene.name)
 }

@@ -85,6 +85,20 @@ impl SceneError {
         }
     }
 
+    /// The same, to be changed.
+    pub(crate) fn finding_mut(&mut self) -> Option<&mut Finding> {
+        match self {
+            Self::Syntax(finding)
+            | Self::Encoding(finding)
+            | Self::Missing(finding)
+            | Self::UnknownKey(finding)
+            | Self::UnknownName(finding)
+            | Self::WrongType(finding)
+            | Self::OutOfRange(finding) => Some(finding),
+            Self::NotFound { .. } | Self::Directory { .. } | Self::TooLarge { .. } | Self::Unreadable { .. } => None,
+        }
+    }
+
     /// The file, bundled scene or `command line` that the error is about.
     #[must_use]
     pub fn origin(&self) -> &str {

@@ -10,20 +10,24 @@ use std::path::Path;
 /// The largest file that is read, in bytes: a path that leads to an endless device must not fill the memory.
 const LARGEST: u64 = 16 << 20;
 
-/// The text of the scene file at `origin`.
+/// The text of the scene file at `origin`, or of the standard input for `-`.
 pub(crate) fn read(origin: &str) -> Result<String, SceneError> {
     let unreadable = |error: io::Error| match error.kind() {
         io::ErrorKind::NotFound => not_found(origin),
         io::ErrorKind::IsADirectory => SceneError::Directory { origin: origin.to_owned() },
         kind => SceneError::Unreadable { origin: origin.to_owned(), kind, message: error.to_string() },
     };
-    // Not every system refuses to open a directory in words that say so.
-    if fs::metadata(origin).map_err(unreadable)?.is_dir() {
-        return Err(SceneError::Directory { origin: origin.to_owned() });
-    }
     let mut bytes = Vec::new();
-    let file = File::open(origin).map_err(unreadable)?;
-    file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    if origin == "-" {
+        io::stdin().lock().take(LARGEST + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    } else {
+        // Not every system refuses to open a directory in words that say so.
+        if fs::metadata(origin).map_err(unreadable)?.is_dir() {
+            return Err(SceneError::Directory { origin: origin.to_owned() });
+        }
+        let file = File::open(origin).map_err(unreadable)?;
+        file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    }
     if bytes.len() as u64 > LARGEST {
         return Err(SceneError::TooLarge { origin: origin.to_owned(), limit: LARGEST });
     }

@@ -60,9 +60,21 @@ impl Finding {
 
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.rendered(&Renderer::plain()))
+    }
+}
+
+impl Finding {
+    /// What [`Display`](fmt::Display) shows, with the colours of a terminal.
+    #[must_use]
+    pub fn coloured(&self) -> String {
+        self.rendered(&Renderer::styled())
+    }
+
+    fn rendered(&self, renderer: &Renderer) -> String {
         let Some(place) = self.place else {
-            write!(f, "{}\n  = accepted: {}", self.headline(), self.accepted)?;
-            return self.help.as_ref().map_or(Ok(()), |help| write!(f, "\n  = help: {help}"));
+            let help = self.help.as_ref().map_or_else(String::new, |help| format!("\n  = help: {help}"));
+            return format!("{}\n  = accepted: {}{help}", self.headline(), self.accepted);
         };
         // The caller says that this is an error: a name of the level would say it twice.
         let mut group = annotate_snippets::Group::with_title(Level::ERROR.no_name().primary_title(self.headline()));
@@ -77,6 +89,6 @@ impl fmt::Display for Finding {
         if let Some(help) = &self.help {
             group = group.element(Level::HELP.message(help.as_str()));
         }
-        f.write_str(&Renderer::plain().render(&[group]))
+        renderer.render(&[group])
     }
 }

@@ -1,4 +1,4 @@
-use crate::bundled::{TEMPLATE, bundled};
+use crate::bundled::TEMPLATE;
 use crate::document::Document;
 use crate::error::SceneError;
 use crate::fault::Fault;
@@ -6,7 +6,7 @@ use crate::finding::Excerpt;
 use crate::run::RunSettings;
 
 use crate::table::Table;
-use crate::{PathSpec, SceneEffect, Shape, effects, file, keys, sections};
+use crate::{PathSpec, SceneEffect, Shape, effects, keys, sections};
 use lagrangian::whole_steps;
 use sleigh::{Sleigh, SleighState};
 use std::path::Path;
@@ -78,18 +78,14 @@ impl Scene {
         self.jumps().ok()?.into_iter().filter(inside).min_by(f64::total_cmp)
     }
 
-    /// Reads the bundled scene of that name or else the file at that path: `./turnaround` is always the file.
+    /// Reads the bundled scene of that name, the standard input for `-`, or else the file at that path: `./turnaround` is always the
+    /// file.
     ///
     /// # Errors
     /// [`SceneError`] when there is neither, when the file cannot be read, is not UTF-8 or is larger than 16 MiB, and
     /// as [`Scene::parse`] for its text.
     pub fn load(name_or_path: &str, methods: &[&str]) -> Result<Self, SceneError> {
-        // Underscores in a name are taken for hyphens: an effect is spelled with them.
-        let name = name_or_path.replace('_', "-");
-        match bundled().iter().find(|scene| scene.name == name) {
-            Some(scene) => Self::parse(scene.text, scene.name, methods),
-            None => Self::parse(&file::read(name_or_path)?, name_or_path, methods),
-        }
+        Self::load_with(name_or_path, &[], methods)
     }
 
     /// A complete scene with comments, to start a new file from.

@@ -1,0 +1,65 @@
+//! `noslip check`: what scenes are, or what is wrong with them.
+
+use crate::args::CheckArguments;
+use crate::error::CliError;
+use crate::inspect::{described, method_names};
+use crate::{table, terminal};
+use scene::Scene;
+use serde_json::{Map, Value, json};
+
+/// All of them: one that is not valid does not hide the others.
+pub(crate) fn check(arguments: &CheckArguments) -> Result<(), CliError> {
+    let names = method_names();
+    let (mut objects, mut failed) = (Vec::new(), Vec::new());
+    let mut above = "";
+    for name in &arguments.scenes {
+        let load = || -> Result<_, CliError> {
+            let scene = Scene::load_with(name, &arguments.set.set, &names)?;
+            let facts = described(&scene)?;
+            Ok((scene, facts))
+        };
+        match load() {
+            Ok((scene, facts)) if arguments.json => objects.push(valid(&scene, &facts)),
+            Ok((scene, facts)) => {
+                let heading = format!("{above}{}: valid, \"{}\"\n", scene.name, scene.title);
+                terminal::print(&(heading + &table::aligned(&facts)))?;
+                above = "\n";
+            }
+            Err(error) => {
+                objects.push(invalid(name, &error));
+                failed.push(error);
+            }
+        }
+    }
+    if arguments.json {
+        terminal::print_json(&json!(objects))?;
+    }
+    // The last error is told by whoever called this.
+    let last = failed.pop();
+    failed.iter().for_each(terminal::fail);
+    last.map_or(Ok(()), Err)
+}
+
+fn valid(scene: &Scene, facts: &[(String, String)]) -> Value {
+    let run = &scene.run;
+    let effects: Vec<&str> = scene.effects.iter().map(scene::SceneEffect::kind).collect();
+    // Of effects there may be several, which `effects` lists.
+    let facts: Map<String, Value> =
+        facts.iter().filter(|(name, _)| name != "effect").map(|(name, value)| (name.clone(), json!(value))).collect();
+    json!({"scene": scene.name, "valid": true, "title": scene.title, "method": run.method, "step": run.actual_step(),
+           "steps": run.steps(), "duration": run.duration, "effects": effects, "facts": facts})
+}
+
+fn invalid(name: &str, error: &CliError) -> Value {
+    let mut object = json!({"scene": name, "valid": false, "error": error.to_string()});
+    if let CliError::Scene(error) = error
+        && let Some(finding) = error.finding()
+    {
+        object["field"] = json!(finding.field);
+        object["problem"] = json!(finding.problem);
+        object["accepted"] = json!(finding.accepted);
+        object["line"] = json!(finding.place.map(|place| place.line));
+        object["column"] = json!(finding.place.map(|place| place.column));
+    }
+    object
+}

@@ -1,0 +1,80 @@
+//! Reads a file of columns of numbers back: .csv or .npz.
+
+use crate::error::CliError;
+use std::fs::{self, File};
+use std::io::{Error, ErrorKind};
+use std::path::Path;
+
+/// The columns of a file, each with its name; a column of texts is not among them.
+pub(crate) type Columns = Vec<(String, Vec<f64>)>;
+
+/// Reads a file, by the ending of its name.
+pub(crate) fn read(path: &Path) -> Result<Columns, CliError> {
+    let ending = path.extension().map(std::ffi::OsStr::to_ascii_lowercase);
+    let failed = |source| CliError::Read { path: path.to_owned(), source };
+    match ending.as_ref().and_then(|ending| ending.to_str()) {
+        Some("csv") => Ok(csv(&fs::read_to_string(path).map_err(failed)?)),
+        Some("npz") => npz(path).map_err(failed),
+        _ => Err(CliError::Request(format!(
+            "{}: accepted is a file .csv or .npz, by the ending of its name",
+            path.display()
+        ))),
+    }
+}
+
+/// The columns all of whose fields are numbers. Names lose their units, so that the formats have the same.
+fn csv(text: &str) -> Columns {
+    let mut lines = text.lines().filter(|line| !line.starts_with('#') && !line.is_empty());
+    let names = lines.next().map_or_else(Vec::new, fields);
+    let mut columns: Vec<(String, Option<Vec<f64>>)> = Vec::new();
+    for name in names {
+        let name = name.split(" [").next().unwrap_or_default().to_owned();
+        let copies = columns.iter().filter(|(other, _)| *other == name).count();
+        // Two columns of one name are told apart, as pandas does it.
+        let name = if copies == 0 { name } else { format!("{name}.{copies}") };
+        columns.push((name, Some(Vec::new())));
+    }
+    for line in lines {
+        let cells = fields(line);
+        for (column, (_, values)) in columns.iter_mut().enumerate() {
+            // What is empty is not there.
+            let cell = cells.get(column).map_or("", |cell| cell.trim());
+            let number = if cell.is_empty() { Some(f64::NAN) } else { cell.parse().ok() };
+            *values = values.take().zip(number).map(|(mut values, number)| {
+                values.push(number);
+                values
+            });
+        }
+    }
+    columns.into_iter().filter_map(|(name, values)| Some((name, values?))).collect()
+}
+
+/// The fields of a line; those in quotes may have commas.
+fn fields(line: &str) -> Vec<String> {
+    let (mut fields, mut quoted) = (vec![String::new()], false);
+    for letter in line.chars() {
+        match letter {
+            '"' => quoted = !quoted,
+            ',' if !quoted => fields.push(String::new()),
+            letter => fields.last_mut().map_or((), |field| field.push(letter)),
+        }
+    }
+    fields
+}
+
+fn npz(path: &Path) -> Result<Columns, Error> {
+    let invalid = |error: zip::result::ZipError| Error::new(ErrorKind::InvalidData, error);
+    let mut archive = zip::ZipArchive::new(File::open(path)?).map_err(invalid)?;
+    let mut columns = Vec::new();
+    for number in 0..archive.len() {
+        let file = archive.by_index(number).map_err(invalid)?;
+        let name = file.name().map_err(invalid)?.into_owned();
+        let Some(name) = npyz::npz::array_name_from_file_name(&name).map(str::to_owned) else { continue };
+        let array = npyz::NpyFile::new(file)?;
+        // An array of texts is no column of numbers.
+        if let Ok(values) = array.into_vec::<f64>() {
+            columns.push((name, values));
+        }
+    }
+    Ok(columns)
+}
