@@ -39,8 +39,9 @@ impl Energies {
         if error < 0.5 * kinetic {
             self.reached = larger(self.reached, kinetic);
         } else {
+            let beyond = error > OF_THE_MOTION * kinetic;
             // Also where one of them is not a number.
-            self.exceeded |= !(error > OF_THE_MOTION * kinetic) || !error.is_finite();
+            self.exceeded |= !beyond || !error.is_finite();
         }
     }
 
