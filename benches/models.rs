@@ -3,7 +3,7 @@
 //! The generic step has the Lagrangian and the constraint, and nothing else: `dla` in its general form. By hand are the
 //! accelerations, worked out on paper ([`Model::accelerations_by_hand`]), in a classical Runge-Kutta step of plain numbers.
 
-use dla::{Dla, Form, OneStep, State};
+use dla::{Dla, OneStep, State};
 use models::{
     ChaplyginBall, CompoundPendulum, ContactOscillator, GaugedOscillator, KnifeEdge, Model, Particle,
     QuarticOscillator, RollerRacer, RollingDisk, SleighOnArm, Snakeboard, Suslov, TurntableBall,
@@ -48,7 +48,7 @@ fn row<Mo: Model<N, M> + Copy + 'static, const N: usize, const M: usize>(model: 
         name: model.name(),
         generic: Box::new(move || {
             let (model, (q, v)) = (black_box(model), model.start());
-            let (mut method, mut state) = (Dla::midpoint().solved(Form::General), State::new(q, v, model.angles()));
+            let (mut method, mut state) = (Dla::midpoint(), State::new(q, v, model.angles()));
             for k in 0..STEPS {
                 method.step(&model, f64::from(k) * STEP, STEP, &mut state).expect("the steps succeed");
             }

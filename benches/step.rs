@@ -12,7 +12,7 @@ use dla::{Dla, Form, OneStep, Schedule, State, drive};
 use harness::{Rk4, Rk4Projected, Rk4Reduced};
 use lagrangian::{System, With};
 use sleigh::effects::{Bowl, Drag};
-use sleigh::{Sleigh, SleighState};
+use sleigh::{ClosedMap, Sleigh, SleighState};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -114,18 +114,18 @@ const CASES: [Case; 14] = [
     ("rk4", || consume(library(Rk4))),
     ("rk4-projected", || consume(library(Rk4Projected))),
     ("rk4-reduced", || consume(library(Rk4Reduced))),
-    ("dla, closed map", || consume(library(Dla::midpoint()))),
-    ("dla, automatic derivatives in the basis", || consume(library(Dla::midpoint().solved(Form::General)))),
+    ("dla, closed map", || consume(library(ClosedMap::of(sleigh())))),
+    ("dla, automatic derivatives in the basis", || consume(library(Dla::midpoint()))),
     ("dla, automatic derivatives and multipliers", || {
         consume(library(Dla::midpoint().solved(Form::Multipliers)));
     }),
     ("dla-trapezoid, automatic derivatives", || consume(library(Dla::trapezoid()))),
     ("bowl: rk4 by hand", || consume(by_hand::<true, false>())),
-    ("bowl: dla, two unknowns", || consume(in_bowl(Dla::midpoint()))),
-    ("bowl: dla, automatic derivatives", || consume(in_bowl(Dla::midpoint().solved(Form::General)))),
+    ("bowl: dla, two unknowns", || consume(in_bowl(ClosedMap::of(well())))),
+    ("bowl: dla, automatic derivatives", || consume(in_bowl(Dla::midpoint()))),
     ("bowl and drag: rk4 by hand", || consume(by_hand::<true, true>())),
-    ("bowl and drag: dla, two unknowns", || consume(braked(Dla::midpoint()))),
-    ("bowl and drag: dla, automatic derivatives", || consume(braked(Dla::midpoint().solved(Form::General)))),
+    ("bowl and drag: dla, two unknowns", || consume(braked(ClosedMap::of(braked_well())))),
+    ("bowl and drag: dla, automatic derivatives", || consume(braked(Dla::midpoint()))),
 ];
 
 fn steps(criterion: &mut Criterion) {

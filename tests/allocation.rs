@@ -21,7 +21,7 @@ fn no_method_allocates_in_a_step() {
         });
         assert_eq!(counts.count_total, 0, "{} allocates", info.name);
     }
-    for (name, mut method) in midpoint_forms() {
+    for (name, mut method) in midpoint_forms(sleigh) {
         let mut state = state_of(&sleigh, &backward());
         let counts = measure(|| {
             dla::drive(&sleigh, &mut method, &schedule, &mut state, &mut ()).unwrap();

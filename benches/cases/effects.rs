@@ -1,6 +1,6 @@
 use super::Case;
 use super::systems::{bowl, drag, egg_crate, from, go, sleigh, start, three, with};
-use dla::{Dla, Form, Gauss, Mechanics};
+use dla::{Dla, Gauss, Mechanics};
 use lagrangian::With;
 use scene::{AnyEffect, Scene, SceneSystem, Visitor};
 use sleigh::effects::{Hill, Hills, MovingMass, Slope, Thrust, Torque};
@@ -37,14 +37,14 @@ pub(super) fn cases() -> Vec<Case> {
             let body = Flywheel::new(sleigh(), 0.5, None).expect("positive");
             let ([x, y, heading], [vx, vy, omega]) = start();
             let start = ([x, y, heading, 0.0], [vx, vy, omega, 2.0]);
-            from(&With { body, effects: () }, Dla::midpoint().solved(Form::General), steps, start);
+            from(&With { body, effects: () }, Dla::midpoint(), steps, start);
         }),
         Case::new(DLA, "flywheel, scene", |steps| scene(FLYWHEEL, steps)).same_as("flywheel"),
         Case::new(DLA, "servo", |steps| {
             // Forward: backward the spin would grow without end.
             let body = Guided::<1>::servo(sleigh(), Guide::Speed(0.7.into())).expect("finite");
             let start = SleighState { speed: 0.7, turn_rate: 0.1, ..SleighState::default() }.to_coordinates();
-            from(&With { body, effects: () }, Dla::midpoint().solved(Form::General), steps, start);
+            from(&With { body, effects: () }, Dla::midpoint(), steps, start);
         }),
         Case::new(DLA, "servo, scene", |steps| scene(SERVO, steps)).same_as("servo"),
         Case::new(DLA, "turntable", |steps| {
@@ -75,7 +75,7 @@ fn moving_mass() -> MovingMass {
 }
 
 fn dla<const M: usize>(system: &dyn Mechanics<3, M>, steps: u64) {
-    go(system, Dla::midpoint().solved(Form::General), steps);
+    go(system, Dla::midpoint(), steps);
 }
 
 fn gauss(system: &dyn Mechanics<3, 1>, steps: u64) {
@@ -95,6 +95,6 @@ impl Visitor for Steps {
     type Output = ();
 
     fn visit<const N: usize, const M: usize>(self, system: &dyn SceneSystem<N, M>, q: [f64; N], v: [f64; N]) {
-        from(system, Dla::midpoint().solved(Form::General), self.0, (black_box(q), black_box(v)));
+        from(system, Dla::midpoint(), self.0, (black_box(q), black_box(v)));
     }
 }

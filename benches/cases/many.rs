@@ -1,8 +1,7 @@
 use super::Case;
 use super::systems::{from, sleigh};
-use dla::Dla;
 use harness::report::{Report, SceneReport, Series, write};
-use sleigh::SleighState;
+use sleigh::{ClosedMap, SleighState};
 use std::thread;
 
 pub(super) const ENSEMBLE: &str = "ensemble";
@@ -35,7 +34,7 @@ fn run(sleighs: std::ops::Range<u64>) {
     for k in sleighs {
         let turn_rate = 0.05 + 1e-3 * (k % 100) as f64;
         let start = SleighState { speed: -1.0, turn_rate, ..SleighState::default() }.to_coordinates();
-        from(&sleigh(), Dla::midpoint(), STEPS, start);
+        from(&sleigh(), ClosedMap::of(sleigh()), STEPS, start);
     }
 }
 

@@ -249,7 +249,7 @@ impl<'a> Reference<'a> {
         }
         let Ok(method) = Method::named("gauss16", None) else { return Self::None };
         let fine = Schedule { step: 0.25 * schedule.step, steps: 4 * schedule.steps, ..*schedule };
-        match harness::integrate_on(system, &method, &fine, &mut state, &mut (), progress) {
+        match harness::integrate_on(&system, &method, &fine, &mut state, &mut (), progress) {
             Ok(made) => Self::Computed { t: fine.time(made), end: system.sleigh_state(&state.unwrapped(), state.v()) },
             Err(_) => Self::None,
         }

@@ -84,7 +84,7 @@ impl Visitor for Find<'_> {
         let h = scene.run.actual_step();
         let mut step = |step: f64, start: &State<N>| {
             let (mut end, schedule) = (*start, Schedule { t0: 0.0, step, steps: 1 });
-            integrate_pieces(system, method, &schedule, &mut end, &mut ()).ok().map(|_| end)
+            integrate_pieces(&system, method, &schedule, &mut end, &mut ()).ok().map(|_| end)
         };
         let mut map = DiscreteMap::new(system, &*steps, &mut step);
         let row = |e: &harness::analysis::Equilibrium<N>| Row {
@@ -125,7 +125,7 @@ fn orbits<const N: usize, const M: usize>(
             let Ok(v) = system.velocity_of(0.0, q, &xi) else { continue };
             let mut nodes = Trajectory::<N, M>::every(1);
             // An orbit that fails is shown as far as it goes.
-            let _ = integrate_pieces(system, method, &schedule, &mut State::new(*q, v, system.angles()), &mut nodes);
+            let _ = integrate_pieces(&system, method, &schedule, &mut State::new(*q, v, system.angles()), &mut nodes);
             let seen = nodes.nodes().iter().map(|node| system.sleigh_state(&node.q, &node.v));
             orbits.push(seen.map(|state| [state.speed, state.turn_rate]).collect());
         }

@@ -92,7 +92,7 @@ impl Visitor for Exponents<'_> {
         let exponents = self.arguments.exponents.map(|count| count as usize);
         let request = LyapunovRequest { schedule, settle, exponents, q, v };
         let bar = progress::bar(self.method.info().name, settle.saturating_add(schedule.steps));
-        let found = harness::analysis::lyapunov(system, &self.method, &request, &mut |steps| bar.inc(steps));
+        let found = harness::analysis::lyapunov((system, &system), &self.method, &request, &mut |steps| bar.inc(steps));
         bar.finish_and_clear();
         self.tell(&found.map_err(refused)?, system.energy(0.0, &q, &v), 2 * N - M)
     }

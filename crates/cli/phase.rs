@@ -126,7 +126,7 @@ impl Visitor for Loops<'_> {
         let mut rounds = Rounds::<N>::new(2, every);
         let mut state = State::new(q, v, system.angles());
         let mut advance = |steps| bar.inc(steps);
-        let outcome = integrate_on(system, method, &schedule, &mut state, &mut rounds, &mut advance);
+        let outcome = integrate_on(&system, method, &schedule, &mut state, &mut rounds, &mut advance);
         bar.finish_and_clear();
         outcome.map(|_| rounds.each())
     }

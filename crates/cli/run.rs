@@ -80,7 +80,7 @@ impl Run<'_> {
         };
         let every = checkpoint.as_ref().map(|_| *checkpoint_every);
         let mut saving = Saving { identity: &identity, from: read.as_ref(), every, save: &mut save };
-        let outcome = run_saved(system, &self.method, request, &mut saving, self.keep(), progress);
+        let outcome = run_saved(&system, &self.method, request, &mut saving, self.keep(), progress);
         let (record, trajectory) =
             outcome.map_err(|source| CliError::Checkpoint { path: from.clone().unwrap_or_default(), source })?;
         Ok(Made { record, trajectory, events: None, warning })
@@ -97,7 +97,7 @@ impl Run<'_> {
         let reported = event.iter().map(|trigger| trigger.event(system));
         let events: Vec<_> = reported.chain(until.iter().map(|trigger| trigger.event(system).terminal())).collect();
         let Watched { record, trajectory, crossings, close } =
-            run_watched(system, &self.method, request, (&events, *event_samples), self.keep(), progress);
+            run_watched(&system, &self.method, request, (&events, *event_samples), self.keep(), progress);
         let triggers: Vec<&Trigger> = event.iter().chain(until).collect();
         let happened = crossings.iter().filter_map(|crossing| Happened::of(system, &triggers, crossing));
         let events = (!triggers.is_empty()).then(|| Events::new(happened, close));
@@ -119,7 +119,7 @@ impl Visitor for Run<'_> {
         if let Some(tolerance) = tolerance {
             // Of the method itself: parts would make any step look good enough.
             let method = self.method.undivided();
-            let found = recommend(system, &method, (q, v), self.scene.run.duration, *tolerance);
+            let found = recommend(&system, &method, (q, v), self.scene.run.duration, *tolerance);
             let found = found.map_err(|error| CliError::Tolerance(Box::new(error)))?;
             schedule = Schedule { step: found.step, steps: found.steps, ..schedule };
             if self.out.is_some() {

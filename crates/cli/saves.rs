@@ -49,7 +49,7 @@ impl Saves {
         progress: &mut dyn Progress,
     ) -> Result<Record<N>, CliError> {
         if self.to.is_none() && self.from.is_none() {
-            return Ok(harness::run(system, method, request, progress));
+            return Ok(harness::run(&system, method, request, progress));
         }
         let name = format!("{}.save", method.info().name);
         let identity = resume::identity(scene, method, &request.schedule);
@@ -64,11 +64,11 @@ impl Saves {
         };
         let every = to.as_ref().map(|_| self.every);
         let mut saving = Saving { identity: &identity, from: read.as_ref(), every, save: &mut save };
-        let outcome = run_saved::<N, M>(system, method, request, &mut saving, None, progress);
+        let outcome = run_saved(&system, method, request, &mut saving, None, progress);
         let (mut record, _) =
             outcome.map_err(|source| CliError::Checkpoint { path: from.unwrap_or_default(), source })?;
         written?;
-        record.wall_seconds = timed(system, method, request, record.steps, progress);
+        record.wall_seconds = timed(&system, method, request, record.steps, progress);
         Ok(record)
     }
 }

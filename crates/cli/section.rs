@@ -95,7 +95,7 @@ impl Visitor for Sections<'_> {
             let surface = Event::new(plane.text.clone(), |t, state| plane.value(t, &at(state)));
             let surface =
                 if plane.period().is_some() { surface } else { surface.in_direction(self.arguments.direction.into()) };
-            let found = harness::analysis::section(system, &self.method, &schedule, starts[i], &surface);
+            let found = harness::analysis::section(&system, &self.method, &schedule, starts[i], &surface);
             let shown = |crossing: &dla::Crossing<N>| {
                 let place = at(&crossing.state);
                 let state = place.state;

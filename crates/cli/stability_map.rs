@@ -76,7 +76,7 @@ impl Visitor for Map<'_> {
             let cell = match start {
                 Some((q, v)) => {
                     let request = LyapunovRequest { schedule, settle, exponents: Some(1), q, v };
-                    match lyapunov(system, &self.method, &request, &mut ()) {
+                    match lyapunov((system, &system), &self.method, &request, &mut ()) {
                         Ok(found) => match found.failure {
                             Some(failure) => Cell::Failed(failure.to_string()),
                             None => Cell::Exponent(found.exponents[0], found.ci[0], found.verdict),

@@ -8,10 +8,10 @@
     reason = "every test file uses its own part"
 )]
 
-use dla::{Dla, Form, OneStep, Schedule, State, drive};
+use dla::{Dla, Form, OneStep, Schedule, State, Stepper, drive};
 use lagrangian::System;
 use proptest::prelude::*;
-use sleigh::{Sleigh, SleighState};
+use sleigh::{ClosedMap, Sleigh, SleighState};
 
 /// The sleigh of the bundled scene `turnaround`.
 pub fn sleigh() -> Sleigh {
@@ -61,10 +61,13 @@ pub fn sleigh_state(state: &State<3>) -> SleighState {
     SleighState::from_coordinates(&state.unwrapped(), state.v())
 }
 
-/// The midpoint method by its closed map, in the basis, and with multipliers.
-pub fn midpoint_forms() -> [(&'static str, Dla); 3] {
-    [("closed", Form::Best), ("basis", Form::General), ("multipliers", Form::Multipliers)]
-        .map(|(name, form)| (name, Dla::midpoint().solved(form)))
+/// The midpoint method by the closed map of this sleigh, in the basis, and with multipliers.
+pub fn midpoint_forms(sleigh: Sleigh) -> [(&'static str, Stepper<'static, 3, 1>); 3] {
+    [
+        ("closed", Box::new(ClosedMap::of(sleigh))),
+        ("basis", Box::new(Dla::midpoint())),
+        ("multipliers", Box::new(Dla::midpoint().solved(Form::Multipliers))),
+    ]
 }
 
 /// The larger of the distances in place and in heading.

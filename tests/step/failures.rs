@@ -1,9 +1,8 @@
 //! Steps that have no solution fail with an error value, and what was reached before stays.
 
 use crate::common::{midpoint_forms, sleigh, state_of};
-use dla::{Dla, Form, NewtonError, OneStep, Schedule, Stage, StepError, Trajectory, drive};
-use lagrangian::ClosedStepError;
-use sleigh::SleighState;
+use dla::{ClosedStepError, Dla, NewtonError, OneStep, Schedule, Stage, StepError, Trajectory, drive};
+use sleigh::{ClosedMap, SleighState};
 
 fn start(speed: f64, turn_rate: f64) -> SleighState {
     SleighState { speed, turn_rate, ..SleighState::default() }
@@ -15,7 +14,7 @@ fn a_step_that_turns_too_far_is_refused() {
     for turn_rate in [4.8, 100.0, -1e200] {
         let mut state = state_of(&sleigh, &start(0.1, turn_rate));
         let before = state;
-        let error = Dla::midpoint().step(&sleigh, 0.0, 1.0, &mut state).unwrap_err();
+        let error = ClosedMap::of(sleigh).step(&sleigh, 0.0, 1.0, &mut state).unwrap_err();
         assert!(matches!(error, StepError::Closed(ClosedStepError::NoSolution { .. })), "{turn_rate}: {error}");
         assert_eq!(state, before, "a failed step leaves the state");
     }
@@ -28,7 +27,7 @@ fn the_singular_step_is_refused() {
     let critical = 2.0 / sleigh.spin_gain();
     let step = |h: f64| {
         let mut state = state_of(&sleigh, &start(-1.0, 1e-3));
-        Dla::midpoint().step(&sleigh, 0.0, h, &mut state)
+        ClosedMap::of(sleigh).step(&sleigh, 0.0, h, &mut state)
     };
     assert!(step(0.9 * critical).is_ok());
     for h in [critical, 1.1 * critical, 10.0 * critical] {
@@ -41,7 +40,7 @@ fn the_singular_step_is_refused() {
 fn numbers_that_overflow_are_reported() {
     let sleigh = sleigh();
     for (speed, turn_rate) in [(1e308, 1e-3), (f64::INFINITY, 0.1), (f64::NAN, 0.1), (0.1, f64::NAN), (-1e200, 1e-3)] {
-        for (name, mut method) in midpoint_forms() {
+        for (name, mut method) in midpoint_forms(sleigh) {
             let mut state = state_of(&sleigh, &start(speed, turn_rate));
             let outcome = method.step(&sleigh, 0.0, 0.05, &mut state);
             let finite = state.v().iter().all(|v| v.is_finite());
@@ -54,7 +53,7 @@ fn numbers_that_overflow_are_reported() {
 #[test]
 fn the_general_form_reports_its_newton() {
     let sleigh = sleigh();
-    let mut method = Dla::midpoint().solved(Form::General);
+    let mut method = Dla::midpoint();
     method.newton.max_iterations = 1;
     let mut state = state_of(&sleigh, &start(-1.0, 0.5));
     let error = method.step(&sleigh, 0.0, 0.3, &mut state).unwrap_err();

@@ -5,7 +5,7 @@ use dla::{Dla, OneStep, State};
 use harness::Rk4;
 use lagrangian::System;
 use proptest::prelude::*;
-use sleigh::{CentreOfMass, Sleigh, SleighState};
+use sleigh::{CentreOfMass, ClosedMap, Sleigh, SleighState};
 
 const STEP: f64 = 0.05;
 const STEPS: u64 = 200;
@@ -26,7 +26,7 @@ where
 fn runs_return_to_their_start() {
     let sleigh = sleigh();
     let state = state_of(&sleigh, &backward());
-    for (name, mut method) in midpoint_forms() {
+    for (name, mut method) in midpoint_forms(sleigh) {
         let error = there_and_back(&sleigh, &mut method, state);
         println!("{name}: {error:.1e}");
         assert!(error <= 1e-12, "{name} returns within {error:e}");
@@ -95,7 +95,7 @@ proptest! {
         sleigh in sleighs(), start in starts(), angle in -7.0..7.0f64, dx in -10.0..10.0f64, dy in -10.0..10.0f64,
     ) {
         prop_assume!(fits(&sleigh, &start));
-        for (_, mut method) in midpoint_forms() {
+        for (_, mut method) in midpoint_forms(sleigh) {
             let step = |method: &mut _, start: &SleighState| {
                 sleigh_state(&advanced(&sleigh, method, STEP, 1, state_of(&sleigh, start)))
             };
@@ -118,7 +118,7 @@ proptest! {
             SleighState { heading: s.heading + std::f64::consts::PI, speed: -s.speed, ..*s }
         };
         let step = |sleigh: &Sleigh, start: &SleighState| {
-            let method = &mut Dla::midpoint();
+            let method = &mut ClosedMap::of(*sleigh);
             sleigh_state(&advanced(sleigh, method, STEP, 1, state_of(sleigh, start)))
         };
         assert_same(&step(&other, &flip(&start)), &flip(&step(&sleigh, &start)), 1e-12)?;

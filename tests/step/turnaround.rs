@@ -1,9 +1,8 @@
 //! The turn-around: its angle, and how little spin it needs.
 
 use crate::common::{advanced, sleigh, sleigh_state, state_of};
-use dla::Dla;
 use harness::Trend;
-use sleigh::{Exact, Sleigh, SleighState};
+use sleigh::{ClosedMap, Exact, Sleigh, SleighState};
 use std::f64::consts::PI;
 
 fn turning_angle(sleigh: &Sleigh) -> f64 {
@@ -18,7 +17,7 @@ fn the_whole_turn() {
     let start = SleighState { speed: -1.0, turn_rate: 1e-12, ..SleighState::default() };
     let turn = |h: f64| {
         let steps = (160.0 / h).round() as u64;
-        let end = advanced(&sleigh, &mut Dla::midpoint(), h, steps, state_of(&sleigh, &start));
+        let end = advanced(&sleigh, &mut ClosedMap::of(sleigh), h, steps, state_of(&sleigh, &start));
         sleigh_state(&end).heading
     };
     let mut trend = Trend::default();
@@ -45,7 +44,7 @@ fn any_spin_turns_the_sleigh_around() {
             let flip = (2.0 * (1.0 / sleigh.pivot_inertia()).sqrt() / start.turn_rate.abs()).ln() / kappa;
             let steps = ((flip + 40.0) / h).ceil() as u64;
             let mut state = state_of(&sleigh, &start);
-            let mut method = Dla::midpoint();
+            let mut method = ClosedMap::of(sleigh);
             for k in 0..steps {
                 state = advanced(&sleigh, &mut method, h, 1, state);
                 let now = sleigh_state(&state);
@@ -66,7 +65,7 @@ fn straight_motion_is_exact() {
     let sleigh = sleigh();
     for speed in [1.0, -1.0] {
         let start = SleighState { speed, heading: 0.3, ..SleighState::default() };
-        let end = sleigh_state(&advanced(&sleigh, &mut Dla::midpoint(), 0.05, 100_000, state_of(&sleigh, &start)));
+        let end = sleigh_state(&advanced(&sleigh, &mut ClosedMap::of(sleigh), 0.05, 100_000, state_of(&sleigh, &start)));
         assert_eq!(end.turn_rate, 0.0);
         assert_eq!(end.heading, 0.3);
         assert!((end.speed - speed).abs() < 1e-15);

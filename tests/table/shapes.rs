@@ -4,9 +4,7 @@
 //! arm adds is compiled once for every kind of number, since the calls are not inlined.
 
 use crate::systems::{Forces, InField, Magnetic, Moving, Thrust, Turntable};
-use lagrangian::{
-    AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Motion, MotionError, Scalar, Start, System, With,
-};
+use lagrangian::{AdmissibleBasis, Constraint, Motion, MotionError, Scalar, System, With};
 use models::{
     ChaplyginBall, ContactOscillator, GaugedOscillator, KnifeEdge, Model, Particle, QuarticOscillator, RollerRacer,
     RollingDisk, Snakeboard, Suslov,
@@ -78,18 +76,6 @@ macro_rules! shape {
                 match self {
                     $(Self::$model(x) => x.reduced_motion(t, q, xi),)*
                     $(Self::$plain(x) => x.reduced_motion(t, q, xi),)*
-                }
-            }
-            #[inline(never)]
-            fn closed_step(
-                &self,
-                t: f64,
-                h: f64,
-                start: Start<'_, $n>,
-            ) -> Option<Result<ClosedStep<$n, $m>, ClosedStepError>> {
-                match self {
-                    $(Self::$model(x) => x.closed_step(t, h, start),)*
-                    $(Self::$plain(x) => x.closed_step(t, h, start),)*
                 }
             }
         }

@@ -182,7 +182,7 @@ impl Visitor for Alone<'_> {
     fn visit<const N: usize, const M: usize>(self, system: &dyn SceneSystem<N, M>, q: [f64; N], v: [f64; N]) -> Told {
         let of = |q: &[f64; N], v: &[f64; N]| words(&system.sleigh_state(q, v));
         let watching = Watching { schedule: self.schedule, every: self.every, of: &of };
-        let (summary, failure) = summarise(system, self.method, (q, v), &watching);
+        let (summary, failure) = summarise(&system, self.method, (q, v), &watching);
         (Some(summary), failure.map(|failure| failure.to_string()))
     }
 }
@@ -204,7 +204,7 @@ impl Visitor for Exponent<'_> {
         let settle = self.schedule.steps / 10;
         let schedule = Schedule { steps: self.schedule.steps - settle, ..self.schedule };
         let request = LyapunovRequest { schedule, settle, exponents: Some(1), q, v };
-        let found = lyapunov(system, self.method, &request, &mut ()).map_err(|error| error.to_string())?;
+        let found = lyapunov((system, &system), self.method, &request, &mut ()).map_err(|error| error.to_string())?;
         match found.failure {
             Some(failure) => Err(failure.to_string()),
             None => Ok(found.exponents[0]),

@@ -2,10 +2,10 @@
 
 use super::lab::Lab;
 use crate::error::CliError;
-use dla::{Dependency, Dla, Energy, Gauss, InChart, Lobatto, Schedule, State, StepError, drive};
+use dla::{Dependency, Dla, Energy, Gauss, InChart, Lobatto, Schedule, State, StepError, Stepper, drive};
 use harness::stability::check::{constant, follows, measured};
 use harness::stability::{Case, Claim, Recorded, Recorder, Seen, VALUES};
-use harness::{Kind, Method, Rk4Reduced, Stepper};
+use harness::{Kind, Method, Rk4Reduced};
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
 use models::CompoundPendulum;
 use sleigh::{Exact, Sleigh, SleighState};
@@ -115,7 +115,7 @@ where
 }
 
 /// One of [`METHODS`]; none where it is another.
-fn stepper<const N: usize, const M: usize>(method: &Method) -> Option<Stepper<N, M>> {
+fn stepper<const N: usize, const M: usize>(method: &Method) -> Option<Stepper<'static, N, M>> {
     let kind = method.info().kind;
     if !METHODS.contains(&kind) {
         return None;

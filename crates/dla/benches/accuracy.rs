@@ -5,10 +5,11 @@
 //! With `--all` every run is shown, not only the quickest to an error.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
-use dla::{Gauss, GaussAdaptive, OneStep, Schedule, State, Taylor, drive};
-use lagrangian::{Effect, OwnPush, Scalar, Slope, System, With};
+use dla::{Gauss, GaussAdaptive, OneStep, Schedule, State, drive};
+use lagrangian::{Effect, Scalar, Slope, System, With};
 use sleigh::effects::Bowl;
-use sleigh::{RoundWell, Sleigh, SleighBody, SleighState};
+use sleigh::series::{InOwnAxes, OwnPush, PushInOwnAxes};
+use sleigh::{RoundWell, Sleigh, SleighBody, SleighState, Taylor};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -36,7 +37,9 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for AtBlade {
         (slope[0], slope[1]) = (q[0] * -self.0, q[1] * -self.0);
         Slope::Known(slope)
     }
-    #[inline(always)]
+}
+
+impl<B> PushInOwnAxes<B> for AtBlade {
     fn in_own_axes(&self, _body: &B) -> Option<OwnPush> {
         Some(OwnPush { center: Some([0.0; 2]), along: [0.0, -self.0], turning: [0.0; 2] })
     }
@@ -80,11 +83,11 @@ fn runs(of: &[f64], error: impl Fn(f64) -> Option<f64>, run: impl Fn(f64) -> Opt
 }
 
 /// Errors and times of all runs of a case, then the least times to the errors.
-fn case<Sys: System<3, 1>>(name: &str, system: &Sys, start: ([f64; 3], [f64; 3])) {
+fn case<Sys: System<3, 1> + InOwnAxes>(name: &str, system: &Sys, start: ([f64; 3], [f64; 3])) {
     let system = black_box(system);
     let equal = |steps: f64| end(system, start, Gauss::new::<8>(), steps as u64);
     let own = |tolerance: f64| end(system, start, GaussAdaptive::new::<8>(tolerance), 1);
-    let series = |tolerance: f64| end(system, start, Taylor::new(tolerance), 1);
+    let series = |tolerance: f64| end(system, start, Taylor::of(system, tolerance)?, 1);
     let exact = equal(400.0).unwrap();
     let distance = |q: [f64; 3]| (0..3).map(|k| (q[k] - exact[k]).abs()).fold(0.0, f64::max);
     let tolerances: Vec<f64> = (8..73).map(|quarter| 10f64.powf(-0.25 * f64::from(quarter))).collect();

@@ -1,12 +1,11 @@
 //! What a step of an ensemble costs, on one core: processor time, least and median of rounds.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
-use dla::{
-    ClosedEnsemble, Each, Ensemble, GaussEnsemble, LaneState, OneStep, Same, State, Systems, Taylor, TaylorEnsemble,
-};
+use dla::{Each, Ensemble, GaussEnsemble, LaneState, OneStep, Same, State, Systems};
 use lagrangian::{System, With};
 use sleigh::effects::Bowl;
-use sleigh::{RoundWell, Sleigh, SleighState};
+use sleigh::series::InOwnAxes;
+use sleigh::{ClosedEnsemble, RoundWell, Sleigh, SleighState, Taylor, TaylorEnsemble};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -29,7 +28,7 @@ fn seconds(mut f: impl FnMut()) -> (f64, f64) {
 fn closed<const W: usize>(h: f64) {
     let sleighs = black_box([Sleigh::new(1.0, 1.0, 0.5).unwrap(); W]);
     let starts: Vec<_> = (0..W).map(|i| ([0.0; 3], [-1.0, 0.05 + 1e-3 * i as f64, 0.0])).collect();
-    let ensemble = ClosedEnsemble::<_, W, 3, 1, 4, 6>::new(sleighs, h, LaneState::new(&starts, [false, false, true]));
+    let ensemble = ClosedEnsemble::<W>::new(sleighs, h, LaneState::new(&starts, [false, false, true]));
     let (least, median) = seconds(|| {
         let mut ensemble = black_box(ensemble);
         ensemble.advance(STEPS);
@@ -94,13 +93,13 @@ fn gauss<Sys: System<3, 1> + Clone, const S: usize>(
 }
 
 /// Taylor series in one step of the schedule, one trajectory after the other and eight at once.
-fn series(name: &str, system: &impl System<3, 1>, start: LaneState<3, W>, reference: &[[f64; 3]]) {
+fn series(name: &str, system: &(impl System<3, 1> + InOwnAxes), start: LaneState<3, W>, reference: &[[f64; 3]]) {
     for tolerance in [1e-6, 1e-9, 1e-10, 1e-12, 1e-13, 1e-14, 1e-15, 1e-16] {
         let alone = |lane: usize| {
             let (q, xi) = (start.q(lane), start.xi(lane));
             let v = lagrangian::velocity_of(system, 0.0, &q, &xi).unwrap();
             let mut state = State::new(q, v, system.angles());
-            Taylor::new(tolerance).step(system, 0.0, DURATION, &mut state).unwrap();
+            Taylor::of(system, tolerance).unwrap().step(system, 0.0, DURATION, &mut state).unwrap();
             state.unwrapped()
         };
         let by_ones = || (0..W).map(|lane| alone(black_box(lane))).collect::<Vec<_>>();

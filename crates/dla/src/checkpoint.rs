@@ -6,7 +6,7 @@ use thiserror::Error;
 /// It names what it belongs to, and holds lists of numbers by name. Its text has every `f64` as its bits:
 ///
 /// ```text
-/// noslip checkpoint 1
+/// noslip checkpoint 4
 /// method = dla
 /// q: 3ff0000000000000 bfe0000000000000
 /// end 9c1f4a6f0d2b7e35
@@ -55,7 +55,7 @@ pub enum CheckpointError {
 }
 
 const HEADER: &str = "noslip checkpoint";
-const VERSION: &str = "3";
+const VERSION: &str = "4";
 
 impl Checkpoint {
     /// A checkpoint of the run that these pairs of a name and a value tell from all others.

@@ -1,6 +1,6 @@
 use crate::Mechanics;
 use lagrangian::{
-    AdmissibleBasis, AnyRule, Derivatives, DiscreteConstraint, DiscreteLagrangian, Dual, HyperDual, Midpoint, Rounded,
+    AdmissibleBasis, AnyRule, Derivatives, DiscreteConstraint, DiscreteLagrangian, Dual, HyperDual, Rounded,
     Rule, System, from_fn, on_line,
 };
 
@@ -9,11 +9,6 @@ use lagrangian::{
 /// A pair `(q0, q1)` is given as `q0` and the mean velocity `v = (q1 - q0)/h`, a step by its time and length `(t0, h)`. [`Rules`] are
 /// quadrature rules for both; [`HandMade`] is what a user writes as a [`DiscreteLagrangian`].
 pub trait Discretisation<const N: usize, const M: usize> {
-    /// Whether both are the midpoint rule, of which a system may know a closed form.
-    fn is_midpoint(&self) -> bool {
-        false
-    }
-
     /// `D1 L_d` and `D2 L_d` with the discrete forces, at the mean velocity `v`, with the nodes placed by the mean velocity `way`, which is
     /// near to `v`: what depends on the nodes alone need not be evaluated again for `v`.
     fn momenta(
@@ -91,23 +86,16 @@ pub struct Rules {
     pub lagrangian: AnyRule,
     /// Of `w_d`.
     pub constraint: AnyRule,
-    midpoint: bool,
 }
 
 impl Rules {
     /// The pair.
     pub fn new(lagrangian: impl Into<AnyRule>, constraint: impl Into<AnyRule>) -> Self {
-        let (lagrangian, constraint, middle) = (lagrangian.into(), constraint.into(), AnyRule::from(Midpoint));
-        Self { lagrangian, constraint, midpoint: lagrangian == middle && constraint == middle }
+        Self { lagrangian: lagrangian.into(), constraint: constraint.into() }
     }
 }
 
 impl<const N: usize, const M: usize> Discretisation<N, M> for Rules {
-    #[inline]
-    fn is_midpoint(&self) -> bool {
-        self.midpoint
-    }
-
     /// By the derivatives in configuration and velocity at every node.
     #[inline]
     fn momenta(

@@ -10,12 +10,9 @@ use lagrangian::{Alpha, AnyRule, Midpoint, NotAWeight, Trapezoid, from_fn};
 /// How the equations of a step are solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Form {
-    /// By the system's closed form where it has one for this method, else in its basis of admissible velocities, else
-    /// with multipliers.
+    /// In the basis of admissible velocities where the system gives one, else with multipliers.
     #[default]
     Best,
-    /// In the basis of admissible velocities where the system gives one, else with multipliers.
-    General,
     /// With multipliers.
     Multipliers,
 }
@@ -97,7 +94,7 @@ impl<D> Dla<D> {
         Self { rules, newton: Newton::default(), form: Form::Best, kept: Kept::NONE }
     }
 
-    /// The same method, solved in the given form. Only the pair of midpoint rules has closed forms.
+    /// The same method, solved in the given form.
     #[must_use]
     pub fn solved(mut self, form: Form) -> Self {
         self.form = form;
@@ -105,7 +102,6 @@ impl<D> Dla<D> {
     }
 }
 
-/// Of the general form; a closed form is left to the system.
 const USE: StackUse = StackUse { squares: 31, rows: 34 };
 
 impl<D: Discretisation<N, M>, const N: usize, const M: usize> OneStep<N, M> for Dla<D> {
@@ -116,13 +112,13 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> OneStep<N, M> for 
         h: f64,
         state: &mut State<N>,
     ) -> Result<StepReport<M>, StepError> {
-        if self.form == Form::Best
-            && self.rules.is_midpoint()
-            && let Some(report) = system.closed_step(t0, h, state)
-        {
-            return report;
+        if const { USE.exceeds::<N, M>() } {
+            return Err(USE.refusal::<N, M>());
         }
-        self.general_step(system, t0, h, state)
+        match self.continued_step(system, t0, h, state) {
+            Some(report) => Ok(report),
+            None => self.solved_step(system, t0, h, state),
+        }
     }
 
     fn memory(&self) -> Vec<f64> {
@@ -135,30 +131,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> OneStep<N, M> for 
 }
 
 impl<D> Dla<D> {
-    /// The step in its general form.
-    #[inline(never)]
-    fn general_step<const N: usize, const M: usize>(
-        &mut self,
-        system: &dyn Mechanics<N, M>,
-        t0: f64,
-        h: f64,
-        state: &mut State<N>,
-    ) -> Result<StepReport<M>, StepError>
-    where
-        D: Discretisation<N, M>,
-    {
-        if const { USE.exceeds::<N, M>() } {
-            return Err(USE.refusal::<N, M>());
-        }
-        // Forgets what a closed form left that did not find the step.
-        state.forget_closed();
-        match self.continued_step(system, t0, h, state) {
-            Some(report) => Ok(report),
-            None => self.solved_step(system, t0, h, state),
-        }
-    }
-
-    /// The step in its general form without memory. Compiled once for a shape, whatever is composed of it.
+    /// The step without memory. Compiled once for a shape, whatever is composed of it.
     #[inline(never)]
     fn solved_step<const N: usize, const M: usize>(
         &mut self,

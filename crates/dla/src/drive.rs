@@ -23,6 +23,12 @@ impl Schedule {
     pub fn time(&self, k: u64) -> f64 {
         self.t0 + k as f64 * self.step
     }
+
+    /// The time in the middle of some steps.
+    #[must_use]
+    pub fn middle(&self, steps: &Range<u64>) -> f64 {
+        0.5 * (self.time(steps.start) + self.time(steps.end))
+    }
 }
 
 /// A node of a run, as an observer sees it.

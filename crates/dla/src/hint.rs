@@ -1,6 +1,6 @@
-use crate::{Derivative, History, NewtonError, NotANumber, RunError, Stage, StepError};
+use crate::{ClosedStepError, Derivative, History, NewtonError, NotANumber, RunError, Stage, StepError};
 use lagrangian::linear::Singular;
-use lagrangian::{ClosedStepError, ReducedError};
+use lagrangian::ReducedError;
 use std::fmt;
 
 /// What to change after a failure, as far as the failure tells.

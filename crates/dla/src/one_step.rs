@@ -1,5 +1,5 @@
-use crate::{Dependent, Mechanics, NewtonError, NotANumber, State};
-use lagrangian::{ClosedStepError, MotionError, ReducedError};
+use crate::{ClosedStepError, Dependent, Mechanics, NewtonError, NotANumber, State};
+use lagrangian::{MotionError, ReducedError};
 use std::ops::ControlFlow;
 use thiserror::Error;
 

@@ -1,6 +1,6 @@
 use crate::past::Past;
 use crate::{Checkpoint, CheckpointError, Mechanics, StepError};
-use lagrangian::{Memory, ReducedError, Start, Twofold, added, from_fn};
+use lagrangian::{ReducedError, Twofold, added, from_fn, two_sum};
 use std::f64::consts::{PI, TAU};
 
 /// `2 pi` minus its nearest f64.
@@ -28,7 +28,6 @@ pub struct State<const N: usize> {
     v: [f64; N],
     left: Left<N>,
     past: Past<N>,
-    memory: Memory,
 }
 
 /// What the last step leaves to the next beside the velocity.
@@ -46,7 +45,7 @@ impl<const N: usize> State<N> {
     #[must_use]
     pub fn new(q: [f64; N], v: [f64; N], angles: [bool; N]) -> Self {
         let (rest, turns, left, past) = ([0.0; N], [0.0; N], Left::Nothing, Past::new());
-        let mut state = Self { q, rest, turns, bounds: bounds(angles), v, left, past, memory: Memory::EMPTY };
+        let mut state = Self { q, rest, turns, bounds: bounds(angles), v, left, past };
         state.wrap();
         state
     }
@@ -147,17 +146,15 @@ impl<const N: usize> State<N> {
     #[inline(always)]
     pub fn advance(&mut self, increment: &[f64; N], v: [f64; N], xi: Option<[f64; N]>) {
         self.past.forget();
-        self.memory.forget();
         self.go(increment, v, xi.map_or(Left::Nothing, Left::Velocities));
     }
 
-    /// [Moves](State::advance) the state, and keeps its quasi-velocities and what a step in closed form has left to the next.
+    /// [Moves](State::advance) the state where that [leads to finite numbers](State::stays_finite): both questions in one comparison.
     ///
     /// # Errors
-    /// [`StepError::NotFinite`] where coordinates or velocities would not be finite; the state is then as it was, but for what the
-    /// step in closed form has left.
+    /// [`StepError::NotFinite`]; the state is then as it was.
     #[inline(always)]
-    pub(crate) fn advance_remembering(
+    pub fn advance_where_finite(
         &mut self,
         increment: &[f64; N],
         v: [f64; N],
@@ -175,22 +172,10 @@ impl<const N: usize> State<N> {
             (self.q, self.rest, self.v, self.left) = (q, rest, v, left);
             return Ok(());
         }
-        self.stays_finite(increment, &v).inspect_err(|_| self.memory.forget())?;
+        self.stays_finite(increment, &v)?;
         self.past.forget();
         self.go(increment, v, left);
         Ok(())
-    }
-
-    /// Where a step in closed form begins.
-    #[inline(always)]
-    pub(crate) fn begin(&mut self) -> Start<'_, N> {
-        Start { q: &self.q, v: &self.v, xi: self.xi(), memory: &mut self.memory }
-    }
-
-    /// Forgets what a step in closed form has left.
-    #[inline(always)]
-    pub(crate) fn forget_closed(&mut self) {
-        self.memory.forget();
     }
 
     #[inline(always)]
@@ -222,7 +207,6 @@ impl<const N: usize> State<N> {
     pub fn advance_with_acceleration(&mut self, h: f64, increment: &[f64; N], v: [f64; N], acceleration: [f64; N]) {
         let known = acceleration.iter().fold(true, |all, a| all & a.is_finite());
         self.past.push(h, increment);
-        self.memory.forget();
         self.go(increment, v, if known { Left::Acceleration(acceleration) } else { Left::Nothing });
     }
 
@@ -243,7 +227,7 @@ impl<const N: usize> State<N> {
             Left::Velocities(xi) | Left::Momenta(xi, _) => Left::Velocities(flipped(xi)),
             left => left,
         };
-        Self { v: flipped(self.v), left, past: Past::new(), memory: Memory::EMPTY, ..*self }
+        Self { v: flipped(self.v), left, past: Past::new(), ..*self }
     }
 
     /// Writes every bit of the state to a checkpoint; all but which coordinates are angles, which the system knows.
@@ -259,7 +243,6 @@ impl<const N: usize> State<N> {
         checkpoint.put("pi", halves.as_ref().map_or(&[], |[hi, _]| &hi[..]));
         checkpoint.put("pi_rest", halves.as_ref().map_or(&[], |[_, lo]| &lo[..]));
         self.past.save(checkpoint);
-        checkpoint.put("closed", if self.memory.is_empty() { &[] } else { &self.memory.0[..] });
     }
 
     /// The state that [`save`](Self::save) wrote.
@@ -286,14 +269,13 @@ impl<const N: usize> State<N> {
             v: checkpoint.get("v")?,
             left,
             past: Past::load(checkpoint)?,
-            memory: remembered(checkpoint)?,
         })
     }
 
     /// A state of its parts: configuration, rest and turns, all that a step leaves.
     pub(crate) fn assembled([q, rest, turns]: [[f64; N]; 3], angles: [bool; N], v: [f64; N], xi: [f64; N]) -> Self {
         let (left, past) = (Left::Velocities(xi), Past::new());
-        Self { q, rest, turns, bounds: bounds(angles), v, left, past, memory: Memory::EMPTY }
+        Self { q, rest, turns, bounds: bounds(angles), v, left, past }
     }
 
     #[inline(always)]
@@ -307,14 +289,6 @@ impl<const N: usize> State<N> {
             }
         }
     }
-}
-
-/// What a step in closed form has left; the list may be shorter than its capacity.
-fn remembered(checkpoint: &Checkpoint) -> Result<Memory, CheckpointError> {
-    let (numbers, mut memory) = (checkpoint.list("closed")?, Memory::EMPTY);
-    let missing = || CheckpointError::Missing { name: "closed".to_owned(), count: Memory::SIZE };
-    memory.0.get_mut(..numbers.len()).ok_or_else(missing)?.copy_from_slice(&numbers);
-    Ok(memory)
 }
 
 #[inline(always)]
@@ -359,12 +333,4 @@ fn within_half_a_turn(q: f64, rest: f64) -> (f64, f64, f64) {
 #[inline(never)]
 fn within_many(angle: f64) -> f64 {
     angle.sin().atan2(angle.cos())
-}
-
-/// The rounded sum and its rounding error (Knuth).
-#[inline(always)]
-pub(crate) fn two_sum(a: f64, b: f64) -> (f64, f64) {
-    let sum = a + b;
-    let part = sum - a;
-    (sum, (a - (sum - part)) + (b - part))
 }

@@ -1,7 +1,6 @@
 use crate::hermite::Hermite;
-use crate::state::two_sum;
 use crate::{Checkpoint, CheckpointError, Observer, State, StepReport, View};
-use lagrangian::from_fn;
+use lagrangian::{from_fn, two_sum};
 use lagrangian::quadrature::gauss_legendre;
 use std::ops::ControlFlow;
 

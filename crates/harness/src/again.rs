@@ -1,14 +1,25 @@
 use crate::substeps::{Report, substepped_part};
 use crate::{Dop853, Kind, Method};
-use dla::{Mechanics, OneStep, OwnStep, Schedule, State, StepError, StepReport};
+use dla::{Mechanics, OneStep, OwnMethods, OwnStep, Schedule, State, StepError, StepReport};
 
 /// A method by its name, as a map of one step: every step is a run of its own, without the memory of other steps.
 ///
 /// It uses the code of whole runs, and constructs the method each time: for the few steps between nodes.
-#[derive(Debug, Clone, Copy)]
-pub struct Again<'a>(pub &'a Method);
+#[derive(Clone, Copy)]
+pub struct Again<'a, const N: usize, const M: usize> {
+    /// The method.
+    pub method: &'a Method,
+    /// The integrators that the system brings of its own.
+    pub own: &'a dyn OwnMethods<N, M>,
+}
 
-impl<const N: usize, const M: usize> OneStep<N, M> for Again<'_> {
+impl<const N: usize, const M: usize> std::fmt::Debug for Again<'_, N, M> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_tuple("Again").field(self.method).finish()
+    }
+}
+
+impl<const N: usize, const M: usize> OneStep<N, M> for Again<'_, N, M> {
     fn step(
         &mut self,
         system: &dyn Mechanics<N, M>,
@@ -18,7 +29,8 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Again<'_> {
     ) -> Result<StepReport<M>, StepError> {
         let mut report = Report(StepReport::of(0));
         let schedule = Schedule { t0: t, step: h, steps: 1 };
-        let (mut method, limits) = (self.0.stepper(), self.0.substeps());
+        let Self { method, own } = self;
+        let (mut method, limits) = (method.stepper_of(*own, t + 0.5 * h), method.substeps());
         substepped_part(system, &mut *method, limits, &schedule, 0..1, state, &mut report)
             .map_err(|error| error.source)?;
         Ok(report.0)
@@ -33,8 +45,8 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Again<'_> {
         memory: &mut Vec<f64>,
         see: &mut OwnStep<'_, N>,
     ) -> Result<(), StepError> {
-        match self.0.info().kind {
-            Kind::Dop853 => Dop853::<N, M>::new(self.0.tolerance()).own_steps(system, step, state, memory, see),
+        match self.method.info().kind {
+            Kind::Dop853 => Dop853::<N, M>::new(self.method.tolerance()).own_steps(system, step, state, memory, see),
             _ => Ok(()),
         }
     }

@@ -1,13 +1,10 @@
 //! A system that counts how often it is evaluated.
 
-use dla::{
-    Collocation, Diagnosis, Mechanics, NotANumber, Outcome, RoundedMechanics, SecondSlopes, Slopes, State, StepError,
-    StepReport,
-};
+use dla::{Collocation, Diagnosis, Mechanics, NotANumber, Outcome, RoundedMechanics, SecondSlopes, Slopes};
 use lagrangian::linear::Singular;
 use lagrangian::{
     AdmissibleBasis, Bracket, Constraint, ConstraintSlopes, Dependence, Dual, EnergySlope, HyperDual, Lanes, Motion,
-    MotionError, MotionRounding, OwnAxes, ReducedError, ReducedSlope, Rounded, RowSpace, Rows,
+    MotionError, MotionRounding, ReducedError, ReducedSlope, Rounded, RowSpace, Rows,
 };
 use std::cell::Cell;
 
@@ -81,8 +78,6 @@ impl<const N: usize, const M: usize> Mechanics<N, M> for Counted<'_, N, M> {
         0 add_position_curvature(t: f64, q: &[f64; N], factors: &[f64; M], matrix: &mut [[f64; N]; N]);
         0 basis(t: f64, q: &[f64; N]) -> Option<AdmissibleBasis<f64, N, M>>;
         1 linear_basis(t: f64, q: &[f64; N]) -> Option<([[f64; N]; M], AdmissibleBasis<f64, N, M>)>;
-        0 closed_step(t: f64, h: f64, state: &mut State<N>) -> Option<Result<StepReport<M>, StepError>>;
-        0 own_axes() -> Option<OwnAxes>;
         3 motion(t: f64, q: &[f64; N], v: &[f64; N]) -> Result<Motion<N, M>, MotionError>;
         1 velocity_of(t: f64, q: &[f64; N], xi: &[f64; N]) -> Result<[f64; N], ReducedError>;
         1 quasi_velocities(t: f64, q: &[f64; N], v: &[f64; N]) -> Result<[f64; N], ReducedError>;

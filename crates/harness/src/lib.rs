@@ -39,7 +39,6 @@ pub use record::{EnergySummary, NewtonSummary, Record, Sample};
 pub use run::{Request, integrate, integrate_from, integrate_on, integrate_pieces, run, timed};
 pub use saved::{Saving, run_saved};
 pub use statistics::Trend;
-pub use stepper::Stepper;
 pub use substeps::SubstepSummary;
 pub use timing::Progress;
 pub use watched::{EVENT_SAMPLES, Watched, recommend, run_watched};

@@ -340,6 +340,11 @@ impl Method {
         Ok(Self { info, alpha, tolerance: Self::TOLERANCE, substeps: None })
     }
 
+    /// `dla`, the first row of the table, with the same settings.
+    pub(crate) fn as_dla(&self) -> Self {
+        Self { info: METHODS[0], ..*self }
+    }
+
     /// The same method, none of whose steps is divided.
     #[must_use]
     pub fn undivided(self) -> Self {

@@ -3,7 +3,7 @@ use crate::substeps::substepped_part;
 use crate::timing::Ticker;
 use crate::{Method, Progress, Record, Request};
 use dla::{
-    Checkpoint, CheckpointError, Part, PiecewiseMechanics, Schedule, State, Trajectory, Work, piece_by_piece_from,
+    Checkpoint, CheckpointError, Part, Schedule, State, Subject, Trajectory, Work, piece_by_piece_from,
 };
 use std::ops::Range;
 use std::time::Instant;
@@ -38,8 +38,8 @@ struct Progressing<const N: usize, const M: usize> {
 ///
 /// # Errors
 /// [`CheckpointError`] where the checkpoint does not belong to this run; nothing is then done.
-pub fn run_saved<const N: usize, const M: usize>(
-    system: &dyn PiecewiseMechanics<N, M>,
+pub fn run_saved<'a, const N: usize, const M: usize>(
+    subject: impl Into<Subject<'a, N, M>>,
     method: &Method,
     request: &Request<N>,
     saving: &mut Saving<'_>,
@@ -47,6 +47,7 @@ pub fn run_saved<const N: usize, const M: usize>(
     progress: &mut dyn Progress,
 ) -> Result<(Record<N>, Option<Trajectory<N, M>>), CheckpointError> {
     let Request { schedule, q, v, .. } = *request;
+    let Subject { system, own } = subject.into();
     let meter = Meter::new(request, method);
     let loaded = match saving.from {
         Some(checkpoint) => {
@@ -72,12 +73,12 @@ pub fn run_saved<const N: usize, const M: usize>(
     let (begin, before) = (Instant::now(), run.seconds);
     let (first, mut state) = (run.made, run.state);
     let ends = |done: &Part| saving.every.is_some() && (done.stopped || done.made == schedule.steps);
-    let mut stepper = method.stepper();
     let outcome = piece_by_piece_from(first, system, &schedule, &mut state, |piece, steps, state| {
         if steps.start > first {
             // A piece begins with a new method.
             run.memory.clear();
         }
+        let mut stepper = method.stepper_of(own, schedule.middle(&steps));
         let mut done = Part { made: steps.start, stopped: false };
         for chunk in chunks(&steps, saving.every) {
             // From what a checkpoint has, so that the run is the same with one.

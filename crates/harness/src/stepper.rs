@@ -1,11 +1,8 @@
 //! The methods by name, as objects: compiled here for the shapes of the systems of scenes, and nowhere else for these.
 
 use crate::{Dop853, ImplicitMidpoint, Kind, Method, Rk4, Rk4Projected, Rk4Reduced};
-use dla::{Composition, Dla, Energy, Gauss, Gni, Lobatto, OneStep};
+use dla::{Composition, Dla, Energy, Gauss, Gni, Lobatto, OwnMethods, Stepper};
 use std::any::Any;
-
-/// A method as an object.
-pub type Stepper<const N: usize, const M: usize> = Box<dyn OneStep<N, M>>;
 
 /// Whether the methods for systems of this shape are compiled here.
 const fn is_compiled(coordinates: usize, constraints: usize) -> bool {
@@ -13,12 +10,31 @@ const fn is_compiled(coordinates: usize, constraints: usize) -> bool {
 }
 
 impl Method {
+    /// The method, to make steps with, for a system that brings integrators of its own: the closed form that it has of `dla` takes the
+    /// place of the general one, also in compositions. It holds for the smooth piece of a run at the time `t` (s).
+    #[must_use]
+    pub fn stepper_of<'a, const N: usize, const M: usize>(
+        &self,
+        own: &'a dyn OwnMethods<N, M>,
+        t: f64,
+    ) -> Stepper<'a, N, M> {
+        let midpoint = || own.closed_map(t, self.as_dla().stepper());
+        match self.info().kind {
+            Kind::Dla => midpoint(),
+            Kind::DlaAlpha if self.alpha().is_symmetric() => midpoint(),
+            Kind::Dla4 => Box::new(Composition::suzuki4(midpoint())),
+            Kind::Dla6 => Box::new(Composition::kahan_li6(midpoint())),
+            Kind::Dla8 => Box::new(Composition::fifteen8(midpoint())),
+            _ => self.stepper(),
+        }
+    }
+
     /// The method, to make steps with.
     ///
     /// For three or four coordinates and one to three constraints it is compiled in this crate; a caller with a system of another
     /// shape compiles the methods for that shape, once.
     #[must_use]
-    pub fn stepper<const N: usize, const M: usize>(&self) -> Stepper<N, M> {
+    pub fn stepper<const N: usize, const M: usize>(&self) -> Stepper<'static, N, M> {
         // A constant condition, by which nothing of the other branch is compiled for a shape that is compiled here.
         if const { is_compiled(N, M) } {
             let compiled: Box<dyn Any> = match (N, M) {
@@ -29,7 +45,7 @@ impl Method {
                 (4, 2) => Box::new(of_4_2(self)),
                 _ => Box::new(of_4_3(self)),
             };
-            match compiled.downcast::<Stepper<N, M>>() {
+            match compiled.downcast::<Stepper<'static, N, M>>() {
                 Ok(stepper) => *stepper,
                 Err(_) => unreachable!("the shape is that of the branch"),
             }
@@ -39,32 +55,32 @@ impl Method {
     }
 }
 
-fn of_3_1(method: &Method) -> Stepper<3, 1> {
+fn of_3_1(method: &Method) -> Stepper<'static, 3, 1> {
     make(method)
 }
 
-fn of_3_2(method: &Method) -> Stepper<3, 2> {
+fn of_3_2(method: &Method) -> Stepper<'static, 3, 2> {
     make(method)
 }
 
-fn of_3_3(method: &Method) -> Stepper<3, 3> {
+fn of_3_3(method: &Method) -> Stepper<'static, 3, 3> {
     make(method)
 }
 
-fn of_4_1(method: &Method) -> Stepper<4, 1> {
+fn of_4_1(method: &Method) -> Stepper<'static, 4, 1> {
     make(method)
 }
 
-fn of_4_2(method: &Method) -> Stepper<4, 2> {
+fn of_4_2(method: &Method) -> Stepper<'static, 4, 2> {
     make(method)
 }
 
-fn of_4_3(method: &Method) -> Stepper<4, 3> {
+fn of_4_3(method: &Method) -> Stepper<'static, 4, 3> {
     make(method)
 }
 
 /// The one place where a name becomes a type.
-fn make<const N: usize, const M: usize>(method: &Method) -> Stepper<N, M> {
+fn make<const N: usize, const M: usize>(method: &Method) -> Stepper<'static, N, M> {
     match method.info().kind {
         Kind::Dla => Box::new(Dla::midpoint()),
         Kind::DlaTrapezoid | Kind::DlaAlpha => Box::new(Dla::new(method.rule(), method.rule())),

@@ -4,7 +4,7 @@ use crate::stopwatch::take;
 use crate::timing::Ticker;
 use crate::{Again, Method, Progress, Record, Request};
 use dla::{
-    Close, Crossing, Event, PiecewiseMechanics, RecommendError, Recommendation, Samples, State, Trajectory, Watch,
+    Close, Crossing, Event, RecommendError, Recommendation, Samples, State, Subject, Trajectory, Watch,
     recommend_by_trial,
 };
 
@@ -26,8 +26,8 @@ pub const EVENT_SAMPLES: u32 = 4;
 
 /// Makes a run, once, measures it with what looks on, looks for events, in so many parts of each step, and keeps every `keep`-th node where that is asked
 /// for.
-pub fn run_watched<const N: usize, const M: usize>(
-    system: &dyn PiecewiseMechanics<N, M>,
+pub fn run_watched<'a, const N: usize, const M: usize>(
+    subject: impl Into<Subject<'a, N, M>>,
     method: &Method,
     request: &Request<N>,
     (events, samples): (&[Event<'_, N>], u32),
@@ -35,17 +35,18 @@ pub fn run_watched<const N: usize, const M: usize>(
     progress: &mut dyn Progress,
 ) -> Watched<N, M> {
     let Request { schedule, q, v, .. } = *request;
-    let start = State::new(q, v, system.angles());
+    let subject = subject.into();
+    let start = State::new(q, v, subject.system.angles());
     let mut meter = Meter::new(request, method);
     let mut trajectory = keep.map(Trajectory::every);
     let mut ticker = Ticker::new(progress, 0);
     let inner = (&mut meter, (&mut trajectory, &mut ticker));
-    let mut watch = Watch::new(Again(method), events, inner);
+    let mut watch = Watch::new(Again { method, own: subject.own }, events, inner);
     watch.samples = samples;
     let mut outcome = Ok(0);
     let mut state = start;
     // The run is made once: its time has what looks on in it.
-    let taken = take(1, || outcome = integrate_pieces(system, method, &schedule, &mut state, &mut watch));
+    let taken = take(1, || outcome = integrate_pieces(subject, method, &schedule, &mut state, &mut watch));
     let (crossings, close) = (watch.crossings().to_vec(), watch.close());
     let interrupted = ticker.stopped;
     let record = Record { interrupted, ..meter.record(method.info(), taken.wall, outcome.err()) };
@@ -56,16 +57,17 @@ pub fn run_watched<const N: usize, const M: usize>(
 ///
 /// # Errors
 /// [`RecommendError`], with the best that is within reach.
-pub fn recommend<const N: usize, const M: usize>(
-    system: &dyn PiecewiseMechanics<N, M>,
+pub fn recommend<'a, const N: usize, const M: usize>(
+    subject: impl Into<Subject<'a, N, M>>,
     method: &Method,
     (q, v): ([f64; N], [f64; N]),
     duration: f64,
     tolerance: f64,
 ) -> Result<Recommendation, RecommendError> {
+    let subject = subject.into();
     recommend_by_trial(duration, tolerance, |schedule, times| {
-        let mut samples = Samples::new(Again(method), times);
-        integrate_pieces(system, method, schedule, &mut State::new(q, v, system.angles()), &mut samples)?;
+        let mut samples = Samples::new(Again { method, own: subject.own }, times);
+        integrate_pieces(subject, method, schedule, &mut State::new(q, v, subject.system.angles()), &mut samples)?;
         samples.into_taken().map_err(|source| dla::RunError { step: schedule.steps, time: schedule.t0, source })
     })
 }

@@ -9,3 +9,12 @@ pub fn added<T: Copy + Add<Output = T> + Sub<Output = T>>(sum: T, term: T) -> (T
     let new = sum + term;
     (new, term - (new - sum))
 }
+
+/// The rounded sum and its rounding error, whichever term is the larger (Knuth 1969, The Art of Computer Programming 2, section 4.2.2).
+#[must_use]
+#[inline(always)]
+pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let part = sum - a;
+    (sum, (a - (sum - part)) + (b - part))
+}

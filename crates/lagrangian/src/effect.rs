@@ -1,4 +1,4 @@
-use crate::{OwnPush, Scalar};
+use crate::Scalar;
 
 /// Something that acts on a body: it adds to the Lagrangian or to the forces, on the body's own coordinates.
 ///
@@ -38,10 +38,11 @@ pub trait Effect<B, const N: usize> {
         self.slope(body, t, q).with_force(self.force(body, t, q, v))
     }
 
-    /// The force of the effect in axes that turn with the body, where it is of the first degree there and constant in time.
+    /// Whether it may add to the forces, whatever [`force`](Self::force) gives: false where that is none at all times and states, so that
+    /// who asks for what brakes a body need not compute it.
     #[inline(always)]
-    fn in_own_axes(&self, _body: &B) -> Option<OwnPush> {
-        self.is_none().then_some(OwnPush::NOTHING)
+    fn has_force(&self) -> bool {
+        true
     }
 
     /// Whether there is no effect at all, so that the body's own closed forms hold.
@@ -86,6 +87,10 @@ impl<S: Scalar, const N: usize> Slope<S, N> {
 
 /// No effect.
 impl<B, const N: usize> Effect<B, N> for () {
+    #[inline(always)]
+    fn has_force(&self) -> bool {
+        false
+    }
     #[inline(always)]
     fn is_none(&self) -> bool {
         true
@@ -137,10 +142,8 @@ macro_rules! tuple_of_effects {
                 Slope::Nothing$(.and(self.$index.slope(body, t, q)))+
             }
             #[inline(always)]
-            fn in_own_axes(&self, body: &B) -> Option<OwnPush> {
-                let sum = OwnPush::NOTHING;
-                $(let sum = sum.and(self.$index.in_own_axes(body)?)?;)+
-                Some(sum)
+            fn has_force(&self) -> bool {
+                $(self.$index.has_force())||+
             }
             #[inline(always)]
             fn is_none(&self) -> bool {
@@ -204,8 +207,8 @@ impl<B, E: Effect<B, N>, const N: usize> Effect<B, N> for Vec<E> {
         )
     }
     #[inline(always)]
-    fn in_own_axes(&self, body: &B) -> Option<OwnPush> {
-        self.iter().try_fold(OwnPush::NOTHING, |sum, effect| sum.and(effect.in_own_axes(body)?))
+    fn has_force(&self) -> bool {
+        self.iter().any(Effect::has_force)
     }
     #[inline(always)]
     fn is_none(&self) -> bool {

@@ -1,4 +1,4 @@
-use crate::{AdmissibleBasis, ClosedStep, ClosedStepError, Motion, MotionError, OwnAxes, Scalar, Start};
+use crate::{AdmissibleBasis, Motion, MotionError, Scalar};
 
 /// The constraint `A(q, t) v + b(q, t) = 0` at one point: the `M` rows of `A`, and `b`.
 pub type Constraint<S, const N: usize, const M: usize> = ([[S; N]; M], [S; M]);
@@ -24,10 +24,6 @@ pub type Constraint<S, const N: usize, const M: usize> = ([[S; N]; M], [S; M]);
 /// # assert_eq!(lagrangian::energy(&Particle, 0.0, &[0.0; 3], &[1.0, 2.0, 0.0]), 2.5);
 /// ```
 pub trait System<const N: usize, const M: usize> {
-    /// Whether constraints are known to move, `b != 0`: a method for fixed constraints then refuses the system when the
-    /// program is compiled, and no code is made for it. Where this is false it still looks at `b`.
-    const MOVING: bool = false;
-
     /// The Lagrangian `L(t, q, v)` (J).
     fn lagrangian<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> S;
 
@@ -97,13 +93,6 @@ pub trait System<const N: usize, const M: usize> {
         None
     }
 
-    /// The reduced equations in axes that turn with the body, where they are of second degree there: of a body on the plane with
-    /// `q = (x, y, theta)`, or `(X, Y, theta)`, and `xi = (u, omega)`. They are [`System::reduced_motion`] in other words.
-    #[inline(always)]
-    fn own_axes(&self) -> Option<OwnAxes> {
-        None
-    }
-
     /// After how many quadratures the configuration is known from the quasi-velocities over time, where it is a cascade: zero
     /// says that the basis is constant; one, that it depends on coordinates alone whose rates are combinations of `xi` with
     /// constant coefficients. (The reconstruction equation; Bloch 2015, section 5.7.)
@@ -132,31 +121,6 @@ pub trait System<const N: usize, const M: usize> {
     fn reduced_response<S: Scalar>(&self, _t: S, _q: &[S; N], _force: &[S; N]) -> Option<[S; N]> {
         None
     }
-
-    /// One step of the midpoint discrete Lagrange-d'Alembert map, where the system knows a closed form of it.
-    ///
-    /// It must agree with the general one to round-off; it exists for its speed, and for the digits that a closed form keeps.
-    #[inline(always)]
-    fn closed_step(&self, _t: f64, _h: f64, _start: Start<'_, N>) -> Option<Result<ClosedStep<N, M>, ClosedStepError>> {
-        None
-    }
-
-    /// The same step with one more generalised force, taken in the middle of the step at the mean velocity.
-    ///
-    /// None where it is not known by hand, not found quickly, or where the force may overshoot: the general step is then made.
-    #[inline(always)]
-    fn pushed_step<P: Push<N>>(&self, _t: f64, _h: f64, _start: Start<'_, N>, _push: &P) -> Option<ClosedStep<N, M>> {
-        None
-    }
-}
-
-/// A generalised force.
-pub trait Push<const N: usize> {
-    /// The force at `(t, q, v)`; none where it is not known by hand.
-    fn push<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]>;
-
-    /// The part of it that may depend on the velocity; none where there is none.
-    fn brake<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]>;
 }
 
 /// The residual `A(q, t) v + b(q, t)` of each constraint, or `phi(t, q, v)` of one that is not affine.

@@ -1,8 +1,5 @@
 use crate::effect::{add_all, sum};
-use crate::{
-    AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Effect, Motion, MotionError, OwnAxes, Push, Scalar,
-    Start, System, velocity_of,
-};
+use crate::{AdmissibleBasis, Constraint, Effect, Motion, MotionError, Scalar, System, velocity_of};
 
 /// A body with the effects that act on it: again a [`System`], on the body's coordinates and constraints.
 ///
@@ -15,32 +12,7 @@ pub struct With<B, E> {
     pub effects: E,
 }
 
-/// The effects of a body.
-struct Pushing<'a, B, E>(&'a With<B, E>);
-
-impl<B, E: Effect<B, N>, const N: usize> Push<N> for Pushing<'_, B, E> {
-    #[inline(always)]
-    fn push<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
-        let Self(With { body, effects }) = self;
-        if E::MANY { called(|| effects.whole_force(body, t, q, v)) } else { effects.whole_force(body, t, q, v) }
-    }
-
-    #[inline(always)]
-    fn brake<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
-        let Self(With { body, effects }) = self;
-        if E::MANY { called(|| effects.force(body, t, q, v)) } else { effects.force(body, t, q, v) }
-    }
-}
-
-/// A function that stays one.
-#[inline(never)]
-fn called<T>(f: impl FnOnce() -> T) -> T {
-    f()
-}
-
 impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N, M> for With<B, E> {
-    const MOVING: bool = B::MOVING;
-
     #[inline(always)]
     fn lagrangian<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> S {
         let bare = self.body.lagrangian(t, q, v);
@@ -104,11 +76,6 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
     }
 
     #[inline(always)]
-    fn own_axes(&self) -> Option<OwnAxes> {
-        self.body.own_axes()?.pushed(self.effects.in_own_axes(&self.body)?)
-    }
-
-    #[inline(always)]
     fn reconstruction(&self) -> Option<u32> {
         self.body.reconstruction()
     }
@@ -126,13 +93,5 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
     #[inline(always)]
     fn reduced_response<S: Scalar>(&self, t: S, q: &[S; N], force: &[S; N]) -> Option<[S; N]> {
         self.body.reduced_response(t, q, force)
-    }
-
-    #[inline(always)]
-    fn closed_step(&self, t: f64, h: f64, start: Start<'_, N>) -> Option<Result<ClosedStep<N, M>, ClosedStepError>> {
-        if self.effects.is_none() {
-            return self.body.closed_step(t, h, start);
-        }
-        self.body.pushed_step(t, h, start, &Pushing(self)).map(Ok)
     }
 }

@@ -4,7 +4,7 @@
 
 use approx::assert_relative_eq;
 use lagrangian::simd::{Kernel, Pack, Simd, Wide, dispatch_widest};
-use lagrangian::{Dual, Gradient, HyperDual, KnownAngle, Lanes, Scalar};
+use lagrangian::{Dual, Gradient, HyperDual, Lanes, Scalar};
 use num_dual::HyperDual64;
 use proptest::prelude::*;
 use std::array::from_fn;
@@ -198,7 +198,7 @@ impl Kernel for InCommon<'_> {
 }
 
 proptest! {
-    /// Eight numbers side by side, and a number that may be a known angle, give the bits of each by itself.
+    /// Eight numbers side by side give the bits of each by itself.
     #[test]
     fn on_lanes_and_in_registers(
         x in proptest::array::uniform8(near_corners()), y in proptest::array::uniform8(near_corners()),
@@ -207,10 +207,9 @@ proptest! {
         let [one, two, three] = dispatch_widest(InCommon(&x, y[0]));
         for l in 0..8 {
             let alone = cornered(x[l], y[l]);
-            let known = cornered(KnownAngle::from(x[l]), KnownAngle::from(y[l]));
             let common = [cornered(x[l], y[0]), cornered(y[0], 0.0), cornered(0.0, y[0])];
             for (k, right) in alone.iter().enumerate() {
-                let all = [lanes[k].0[l], registers[k][l], known[k].re];
+                let all = [lanes[k].0[l], registers[k][l]];
                 prop_assert!(all.iter().all(|x| x.to_bits() == right.to_bits()), "{k}: {all:?} for {right}");
                 let all = [one[k][l], two[k][l], three[k][l]];
                 prop_assert!((0..3).all(|i| all[i] == common[i][k]), "{k}: {all:?}");

@@ -63,8 +63,6 @@ impl TurntableBall {
 }
 
 impl System<6, 3> for TurntableBall {
-    const MOVING: bool = true;
-
     /// `L = m/2 (x'^2 + y'^2) + 2 I |e'|^2`.
     #[inline(always)]
     fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 6], v: &[S; 6]) -> S {

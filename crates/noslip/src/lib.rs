@@ -13,24 +13,24 @@
 //! | run it and look on | [`drive`], [`Schedule`], [`State`], [`Observer`], [`Trajectory`] |
 //! | differentiate its steps in state, parameters and controls | [`Sensitivity`], [`Parametrised`], [`Member`] |
 //! | find events, take samples, stop and resume, choose a step | [`Event`], [`Watch`], [`Samples`], [`Checkpoint`], [`recommend_step`] |
-//! | use the Chaplygin sleigh and its closed form | [`Sleigh`], [`SleighState`], [`Exact`] |
+//! | use the Chaplygin sleigh, its closed form and its own integrator | [`Sleigh`], [`SleighState`], [`Exact`], [`ClosedMap`] |
 //! | assemble many bodies (the cargo feature `assembly`) | the crate `noslip-assembly`, here `noslip::assembly` |
 
 #[cfg(feature = "assembly")]
 pub use assembly;
 pub use dla::{
-    self, Checkpoint, CheckpointError, Crossing, Direction, Dla, Equations, Event, Form, Hermite, Hint, History,
+    self, Checkpoint, CheckpointError, ClosedStepError, Crossing, Direction, Dla, Equations, Event, Form, Hermite, Hint, History,
     InChart, Mechanics, Newton, NewtonError, Node, NotANumber, Observer, OneStep, RecommendError, Recommendation,
     RunError, Samples, Schedule, Sensitivity, Stage, State, StepError, StepReport, Trajectory, View, Watch,
     consistent_start, drive, recommend_step,
 };
 pub use lagrangian::{
-    self, AdmissibleBasis, Alpha, Attitude, ClosedStep, ClosedStepError, Constraint, Derivatives, DiscreteConstraint,
+    self, AdmissibleBasis, Alpha, Attitude, Constraint, Derivatives, DiscreteConstraint,
     DiscreteLagrangian, Dual, Effect, Function, HyperDual, Lanes, Member, Midpoint, Motion, MotionError, Parametrised,
     Rule, Scalar, Symmetrised, System, Trapezoid, With, classify, constraint_residual, energy, mass_matrix, momentum,
     vectorized,
 };
-pub use sleigh::{self, CentreOfMass, Exact, Sleigh, SleighError, SleighState};
+pub use sleigh::{self, CentreOfMass, ClosedMap, Exact, Sleigh, SleighError, SleighState};
 
 /// The examples of the README and of the book, compiled and run as tests.
 #[cfg(doctest)]

@@ -1,8 +1,5 @@
-use crate::{Sleigh, closed_map, pushed_map};
-use lagrangian::{
-    AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Motion, MotionError, Origin, OwnAxes, Push, Scalar,
-    Start, System,
-};
+use crate::Sleigh;
+use lagrangian::{AdmissibleBasis, Constraint, Motion, MotionError, Scalar, System};
 
 impl System<3, 1> for Sleigh {
     /// `L = m/2 |P'|^2 + m a omega (n . P') + J/2 omega^2`, which is `m/2 |C'|^2 + I/2 omega^2` written at the blade.
@@ -70,18 +67,6 @@ impl System<3, 1> for Sleigh {
         Some([omega * omega * self.offset(), u * omega * -self.spin_gain(), S::zero()])
     }
 
-    #[inline(always)]
-    fn own_axes(&self) -> Option<OwnAxes> {
-        Some(OwnAxes {
-            origin: Origin::Anywhere,
-            inverse: self.inverse(),
-            lead: self.offset(),
-            gain: self.spin_gain(),
-            along: [0.0; 2],
-            turning: [0.0; 2],
-        })
-    }
-
     /// The heading from the spin, and the place from the heading.
     #[inline(always)]
     fn reconstruction(&self) -> Option<u32> {
@@ -99,15 +84,5 @@ impl System<3, 1> for Sleigh {
         let (sin, cos) = q[2].sin_cos();
         let [per_mass, per_inertia] = self.inverse();
         Some([(cos * fx + sin * fy) * per_mass, tau * per_inertia, S::zero()])
-    }
-
-    #[inline(always)]
-    fn closed_step(&self, _t: f64, h: f64, start: Start<'_, 3>) -> Option<Result<ClosedStep<3, 1>, ClosedStepError>> {
-        Some(closed_map::step(self, h, start))
-    }
-
-    #[inline(always)]
-    fn pushed_step<P: Push<3>>(&self, t: f64, h: f64, start: Start<'_, 3>, push: &P) -> Option<ClosedStep<3, 1>> {
-        pushed_map::step(self, (t, h), start, push)
     }
 }

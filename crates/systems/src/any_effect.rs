@@ -1,5 +1,6 @@
 use lagrangian::{Effect, Piecewise, Scalar};
 use sleigh::effects::{Bowl, Drag, EggCrate, Hills, MovingMass, Slope, Thrust, Torque};
+use sleigh::series::{OwnPush, PushInOwnAxes};
 use sleigh::{Sleigh, SleighBody};
 
 /// An effect of a scene that acts on the coordinates there are: one type for a list of them.
@@ -51,8 +52,14 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for AnyEffect {
         self.whole_force_on(body.sleigh(), t, q, v)
     }
     #[inline(always)]
-    fn in_own_axes(&self, body: &B) -> Option<lagrangian::OwnPush> {
-        each!(self, effect => Effect::<B, N>::in_own_axes(effect, body))
+    fn has_force(&self) -> bool {
+        each!(self, effect => Effect::<B, N>::has_force(effect))
+    }
+}
+
+impl<B: SleighBody> PushInOwnAxes<B> for AnyEffect {
+    fn in_own_axes(&self, body: &B) -> Option<OwnPush> {
+        each!(self, effect => effect.in_own_axes(body))
     }
 }
 

@@ -1,10 +1,10 @@
 //! Members of a sweep in the lanes of vector registers, where a body has a method for that.
 
 use crate::AnyEffect;
-use dla::{ClosedEnsemble, Each, Ensemble, GaussEnsemble, LaneState, Mechanics, Same};
+use dla::{Each, Ensemble, GaussEnsemble, LaneState, Mechanics, Same};
 use lagrangian::{System, With};
 use sleigh::effects::Bowl;
-use sleigh::{Sleigh, SleighState};
+use sleigh::{ClosedEnsemble, Sleigh, SleighState};
 
 /// So many trajectories are moved at once.
 pub const LANES: usize = 16;
@@ -53,7 +53,7 @@ pub fn in_lanes(members: &[Lane], method: LaneMethod, (t0, step): (f64, f64), ru
     let bowls: [Option<With<Sleigh, Bowl>>; LANES] = std::array::from_fn(|i| bowl(lane(i)));
     match (method, &last.effects[..]) {
         (LaneMethod::Closed, []) => {
-            let mut ensemble = ClosedEnsemble::<_, LANES, 3, 1, 4, 6>::new(sleighs, step, state);
+            let mut ensemble = ClosedEnsemble::new(sleighs, step, state);
             run(&mut ensemble, &objects(&free));
             true
         }

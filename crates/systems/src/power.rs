@@ -2,6 +2,7 @@
 
 use crate::AnyEffect;
 use lagrangian::{Effect, System, With, force_power, lagrangian_power};
+use sleigh::closed::ClosedForm;
 use sleigh::{Flywheel, Guided, Sleigh, SleighBody};
 
 /// The power of one effect at one node.
@@ -60,7 +61,7 @@ impl<B: SleighBody, const N: usize> SceneEffects<B, N> for Vec<AnyEffect> {
 }
 
 /// A body of a scene: a sleigh, perhaps with a rotor, perhaps guided.
-pub trait SceneBody<const N: usize, const M: usize>: SleighBody + System<N, M> {
+pub trait SceneBody<const N: usize, const M: usize>: SleighBody + ClosedForm<N, M> {
     /// The power of what drives the body's own coordinates and constraints; `lambda` are the multipliers there.
     fn powers(&self, t: f64, q: &[f64; N], v: &[f64; N], lambda: &[f64; M]) -> Vec<EffectPower>;
 }

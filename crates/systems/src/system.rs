@@ -1,8 +1,9 @@
 use crate::power::{self, SceneBody, SceneEffects};
 use crate::{AnyEffect, Column, EffectPower, columns};
-use dla::{FullMechanics, Node};
+use dla::{FullMechanics, Node, OwnMethods, Stepper, Subject};
 use lagrangian::{Piecewise, System, With};
-use sleigh::{Flywheel, Guided, Sleigh, SleighError, SleighState, TimeFunction};
+use sleigh::closed::ClosedForm;
+use sleigh::{ClosedMap, Flywheel, Guided, Sleigh, SleighError, SleighState, TimeFunction};
 
 /// A system that answers in the words of a scene.
 pub trait SceneSystem<const N: usize, const M: usize>: FullMechanics<N, M> + Sync {
@@ -32,6 +33,24 @@ pub trait SceneSystem<const N: usize, const M: usize>: FullMechanics<N, M> + Syn
     fn row(&self, node: &Node<N, M>) -> Vec<f64> {
         columns::row_of_sleigh(self, node)
     }
+
+    /// As [`OwnMethods::closed_map`]: where the system is a sleigh, free or with forces, or has a rotor on a free bearing.
+    fn closed_map<'a>(&'a self, _t: f64, general: Stepper<'a, N, M>) -> Stepper<'a, N, M> {
+        general
+    }
+}
+
+impl<const N: usize, const M: usize> OwnMethods<N, M> for &dyn SceneSystem<N, M> {
+    fn closed_map<'a>(&'a self, t: f64, general: Stepper<'a, N, M>) -> Stepper<'a, N, M> {
+        (**self).closed_map(t, general)
+    }
+}
+
+/// With the integrators of the sleigh's own.
+impl<'a, const N: usize, const M: usize> From<&'a &'a dyn SceneSystem<N, M>> for Subject<'a, N, M> {
+    fn from(system: &'a &'a dyn SceneSystem<N, M>) -> Self {
+        Self { system: *system, own: system }
+    }
 }
 
 impl<B, E, const N: usize, const M: usize> SceneSystem<N, M> for With<B, E>
@@ -54,6 +73,10 @@ where
 
     fn scene_piece(&self, t: f64) -> Box<dyn SceneSystem<N, M> + '_> {
         Box::new(self.piece(t))
+    }
+
+    fn closed_map<'a>(&'a self, t: f64, general: Stepper<'a, N, M>) -> Stepper<'a, N, M> {
+        if self.has_closed_form() { Box::new(ClosedMap::backed_by(self.piece(t), general)) } else { general }
     }
 }
 

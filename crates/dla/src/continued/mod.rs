@@ -147,7 +147,7 @@ fn going_on<D: Discretisation<N, M>, const N: usize, const M: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Form, OneStep};
+    use crate::OneStep;
     use lagrangian::{Constraint, Scalar, System};
     use proptest::prelude::*;
 
@@ -176,7 +176,7 @@ mod tests {
     }
 
     fn method() -> Dla {
-        Dla::midpoint().solved(Form::General)
+        Dla::midpoint()
     }
 
     /// How many of a hundred steps are predicted ones.

@@ -1,29 +1,24 @@
 //! Many trajectories at once, one in each lane: what the starts of an ensemble are integrated with.
 
-mod closed;
 mod collocation;
 mod eight;
 mod gauss;
 mod order;
-mod series;
 mod settling;
 mod stages;
 mod state;
 mod step;
 mod systems;
-mod taylor;
 
-pub use closed::ClosedEnsemble;
 pub use gauss::GaussEnsemble;
-pub use state::LaneState;
+pub use state::{LaneState, Row, accumulate, loaded, store};
 pub use systems::{Each, Same, Systems};
-pub use taylor::TaylorEnsemble;
 
-/// Trajectories that go side by side.
-const LANES: usize = 8;
+/// Trajectories that go side by side in the registers of a machine.
+pub const LANES: usize = 8;
 
 /// After so many steps angles are wrapped, and frames computed from the configurations again, so that their round-off does not add up.
-const BLOCK: u64 = 64;
+pub const BLOCK: u64 = 64;
 
 /// `W` trajectories that make their steps together.
 pub trait Ensemble<const N: usize, const W: usize> {

@@ -1,6 +1,7 @@
 use super::{LANES, Systems};
+use crate::KnownAngle;
 use lagrangian::simd::{Pack, Simd, Wide};
-use lagrangian::{KnownAngle, Scalar, System, array, velocity_of};
+use lagrangian::{Scalar, System, array, velocity_of};
 
 /// `S` stages of eight trajectories.
 ///

@@ -7,10 +7,11 @@ use std::f64::consts::PI;
 /// One number of each of `W` trajectories.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(64))]
-pub(crate) struct Row<const W: usize>(pub(crate) [f64; W]);
+pub struct Row<const W: usize>(pub [f64; W]);
 
 impl<const W: usize> Row<W> {
-    pub(crate) const ZERO: Self = Self([0.0; W]);
+    /// Zeros.
+    pub const ZERO: Self = Self([0.0; W]);
 }
 
 /// Configurations and quasi-velocities of `W` trajectories: what [`State`] is for one.
@@ -19,11 +20,14 @@ impl<const W: usize> Row<W> {
 /// of zero.
 #[derive(Debug, Clone, Copy)]
 pub struct LaneState<const N: usize, const W: usize> {
-    pub(crate) q: [Row<W>; N],
-    pub(crate) rest: [Row<W>; N],
+    /// Configurations.
+    pub q: [Row<W>; N],
+    /// Their rounding errors.
+    pub rest: [Row<W>; N],
     turns: [Row<W>; N],
     angles: [bool; N],
-    pub(crate) xi: [Row<W>; N],
+    /// Quasi-velocities.
+    pub xi: [Row<W>; N],
 }
 
 impl<const N: usize, const W: usize> LaneState<N, W> {
@@ -65,12 +69,12 @@ impl<const N: usize, const W: usize> LaneState<N, W> {
     }
 
     /// Makes a lane no state.
-    pub(crate) fn lose(&mut self, lane: usize) {
+    pub fn lose(&mut self, lane: usize) {
         self.q.iter_mut().chain(&mut self.xi).for_each(|row| row.0[lane] = f64::NAN);
     }
 
     /// Takes a lane of another state.
-    pub(crate) fn take(&mut self, lane: usize, other: &Self) {
+    pub fn take(&mut self, lane: usize, other: &Self) {
         for k in 0..N {
             self.q[k].0[lane] = other.q[k].0[lane];
             self.rest[k].0[lane] = other.rest[k].0[lane];
@@ -80,7 +84,7 @@ impl<const N: usize, const W: usize> LaneState<N, W> {
     }
 
     /// Takes full turns out of the angles.
-    pub(crate) fn wrap(&mut self) {
+    pub fn wrap(&mut self) {
         for k in 0..N {
             if self.angles[k] && self.q[k].0.iter().fold(false, |any, q| any | (q.abs() > PI)) {
                 for lane in 0..W {
@@ -95,13 +99,13 @@ impl<const N: usize, const W: usize> LaneState<N, W> {
 
 /// Adds an increment to a number whose rounding error is kept.
 #[inline(always)]
-pub(super) fn accumulate<S: Simd, const K: usize>(q: &mut Pack<S, K>, rest: &mut Pack<S, K>, increment: Pack<S, K>) {
+pub fn accumulate<S: Simd, const K: usize>(q: &mut Pack<S, K>, rest: &mut Pack<S, K>, increment: Pack<S, K>) {
     (*q, *rest) = added(*q, increment + *rest);
 }
 
-/// Eight numbers of each row.
+/// Eight numbers of each row, those of the register `r`.
 #[inline(always)]
-pub(super) fn loaded<S: Simd, const K: usize, const W: usize, const L: usize>(
+pub fn loaded<S: Simd, const K: usize, const W: usize, const L: usize>(
     simd: S,
     rows: &[Row<W>; L],
     r: usize,
@@ -113,7 +117,8 @@ pub(super) fn loaded<S: Simd, const K: usize, const W: usize, const L: usize>(
     )
 }
 
+/// Puts eight numbers into a row.
 #[inline(always)]
-pub(super) fn store<S: Simd, const K: usize, const W: usize>(row: &mut Row<W>, r: usize, x: &Pack<S, K>) {
+pub fn store<S: Simd, const K: usize, const W: usize>(row: &mut Row<W>, r: usize, x: &Pack<S, K>) {
     row.0.as_chunks_mut().0[r] = x.row();
 }

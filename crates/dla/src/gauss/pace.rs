@@ -1,6 +1,6 @@
 //! How long the next step may be.
 use super::rule::{LONGER, SHORTER};
-use crate::octaves::octaves;
+use lagrangian::octaves;
 use lagrangian::linear::larger;
 
 /// The largest roughness of a step at the tolerance one.

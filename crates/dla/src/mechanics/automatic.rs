@@ -2,11 +2,10 @@
 
 use super::{Mechanics, SecondSlopes, Slopes};
 use crate::gauss::{Collocation, Outcome, collocate};
-use crate::{State, StepError, StepReport};
 use lagrangian::linear::Singular;
 use lagrangian::{
     AdmissibleBasis, Bracket, Constraint, ConstraintSlopes, Dual, EnergySlope, HyperDual, Lanes, Motion, MotionError,
-    OwnAxes, ReducedError, ReducedSlope, System, add_position_curvature, add_reaction_curvature, constraint_residual,
+    ReducedError, ReducedSlope, System, add_position_curvature, add_reaction_curvature, constraint_residual,
     energy, energy_slope, force_power, from_fn, gradients, inverse_reduced_mass, lagrangian_power, linear_basis,
     mass_matrix, momentum, position_misses, quasi_velocities, reaction_rows, reduced_slope, residual_along,
     second_at_node, second_in_both, second_in_place, vectorized, velocity_of,
@@ -143,22 +142,6 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Mechanics<N, M> for Sys 
 
     fn linear_basis(&self, t: f64, q: &[f64; N]) -> Option<([[f64; N]; M], AdmissibleBasis<f64, N, M>)> {
         linear_basis(self, t, q)
-    }
-
-    fn closed_step(&self, t: f64, h: f64, state: &mut State<N>) -> Option<Result<StepReport<M>, StepError>> {
-        let step = match System::closed_step(self, t, h, state.begin())? {
-            Ok(step) => step,
-            Err(source) => {
-                state.forget_closed();
-                return Some(Err(StepError::Closed(source)));
-            }
-        };
-        let report = StepReport { impulses: step.impulses, iterations: step.iterations, work: None };
-        Some(state.advance_remembering(&step.increment, step.velocity, step.xi).map(|()| report))
-    }
-
-    fn own_axes(&self) -> Option<OwnAxes> {
-        System::own_axes(self)
     }
 
     fn motion(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<Motion<N, M>, MotionError> {

@@ -10,10 +10,9 @@ pub use rounded::RoundedMechanics;
 pub use seeded::{FullMechanics, SeededMechanics};
 
 use crate::gauss::{Collocation, Outcome};
-use crate::{State, StepError, StepReport};
 use lagrangian::{
     AdmissibleBasis, Bracket, Constraint, ConstraintSlopes, Dual, EnergySlope, HyperDual, Lanes, Motion, MotionError,
-    OwnAxes, ReducedError, ReducedSlope,
+    ReducedError, ReducedSlope,
 };
 use std::fmt;
 
@@ -145,15 +144,6 @@ pub trait Mechanics<const N: usize, const M: usize>: RoundedMechanics<N, M> + Di
 
     /// The rows of linear constraints with the basis; none where the system gives none, or where `b` is not zero.
     fn linear_basis(&self, t: f64, q: &[f64; N]) -> Option<([[f64; N]; M], AdmissibleBasis<f64, N, M>)>;
-
-    /// Makes a step of the midpoint map by the system's closed form of it; none where it has none, or none for this step.
-    ///
-    /// # Errors
-    /// [`StepError`] where the closed form does not find the step; the state is then unchanged.
-    fn closed_step(&self, t: f64, h: f64, state: &mut State<N>) -> Option<Result<StepReport<M>, StepError>>;
-
-    /// The reduced equations in axes that turn with the body, where they are of second degree there.
-    fn own_axes(&self) -> Option<OwnAxes>;
 
     /// Accelerations and multipliers of the continuous system.
     ///

@@ -3,11 +3,11 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use dla::{Checkpoint, Dla, Form, OneStep, State, StepError};
+use dla::{Checkpoint, Dla, OneStep, State, StepError};
 use lagrangian::{System, Twofold, With};
 use proptest::prelude::*;
 use sleigh::effects::{Bowl, Drag, EggCrate};
-use sleigh::{Sleigh, SleighState};
+use sleigh::{ClosedMap, Sleigh, SleighState};
 use std::f64::consts::{PI, TAU};
 
 /// `2 pi` in units of `2^-100`, exact to one of them.
@@ -272,31 +272,22 @@ fn a_state_knows_how_far_it_has_moved() {
 /// What the next step begins from is part of a state: at the same place two are not the same after other steps.
 #[test]
 fn states_after_other_steps_differ() {
-    fn after<Sys: System<3, 1>>(system: &Sys, form: Form, steps: &[f64]) -> State<3> {
+    fn after<Sys: System<3, 1>>(system: &Sys, steps: &[f64]) -> State<3> {
         let mut state = State::new([0.0; 3], [0.0; 3], [false, false, true]);
         for h in steps {
-            Dla::midpoint().solved(form).step(system, 0.0, *h, &mut state).unwrap();
+            Dla::midpoint().step(system, 0.0, *h, &mut state).unwrap();
         }
         state
     }
     let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
     // At rest with its centre of mass at the lowest place.
     let well = With { body, effects: (Bowl::new([0.7, 0.4], [0.5, 0.0]).unwrap(),) };
-    for form in [Form::Best, Form::General] {
-        assert_eq!(after(&well, form, &[0.5]), after(&well, form, &[0.5]));
-        assert_ne!(after(&well, form, &[0.5]), after(&well, form, &[0.25]));
-        // A step of another length begins anew.
-        assert_eq!(after(&well, form, &[0.5]), after(&well, form, &[0.25, 0.5]));
-    }
-    // Closed forms begin as after many steps, which were all the same, but turn a heading along for 118 steps; the general step counts
-    // its increments.
-    assert_eq!(after(&well, Form::Best, &[0.5]), after(&well, Form::Best, &[0.5; 119]));
-    assert_ne!(after(&well, Form::Best, &[0.5]), after(&well, Form::Best, &[0.5; 118]));
-    assert_ne!(after(&well, Form::General, &[0.5]), after(&well, Form::General, &[0.5, 0.5]));
-    assert_eq!(after(&body, Form::Best, &[0.5]), after(&body, Form::Best, &[0.5; 119]));
-    assert_ne!(after(&body, Form::Best, &[0.5]), after(&body, Form::Best, &[0.5; 118]));
-    assert_ne!(after(&body, Form::Best, &[0.5]), after(&body, Form::Best, &[0.25]));
-    assert_eq!(after(&body, Form::Best, &[0.5]), after(&body, Form::Best, &[0.25, 0.5]));
+    assert_eq!(after(&well, &[0.5]), after(&well, &[0.5]));
+    assert_ne!(after(&well, &[0.5]), after(&well, &[0.25]));
+    // A step of another length begins anew.
+    assert_eq!(after(&well, &[0.5]), after(&well, &[0.25, 0.5]));
+    // The step counts its increments.
+    assert_ne!(after(&well, &[0.5]), after(&well, &[0.5, 0.5]));
 }
 
 /// What would not be a finite place or velocity is refused before the state has moved.
@@ -318,11 +309,11 @@ fn a_closed_step_that_fails_leaves_the_state() {
     }
     let before = state;
     assert!(before.expected(0.5).is_some());
-    let failed = Dla::midpoint().step(&body, 0.0, 1.0, &mut state).unwrap_err();
+    let failed = ClosedMap::of(body).step(&body, 0.0, 1.0, &mut state).unwrap_err();
     assert_eq!(failed, StepError::NotFinite);
     assert_eq!(state, before);
     // The control: to the other side it is a step.
-    Dla::midpoint().step(&body, 0.0, -1.0, &mut state).unwrap();
+    ClosedMap::of(body).step(&body, 0.0, -1.0, &mut state).unwrap();
     assert!(state.expected(0.5).is_none() && state != before);
 }
 
@@ -339,7 +330,7 @@ fn what_a_state_remembers_shortens_the_next_search() {
         let start = SleighState { x: 0.3, y: -0.2, heading: 0.4, speed: -1.0, turn_rate: 0.7 };
         let (q, v) = start.to_coordinates();
         let mut state = State::new(q, v, system.angles());
-        let mut method = Dla::midpoint().solved(Form::General);
+        let mut method = Dla::midpoint();
         let steps = (0..STEPS).map(|k| {
             if forget {
                 state = State::new(*state.q(), *state.v(), system.angles());

@@ -6,7 +6,7 @@ use super::verdict::{Evidence, MotionVerdict};
 use crate::run::integrate_pieces;
 use crate::timing::Ticker;
 use crate::{Method, Progress};
-use dla::{FullMechanics, Observer, RunError, Schedule, SeededMechanics, SensitivityError, State, TangentRunError};
+use dla::{FullMechanics, Observer, OwnMethods, RunError, Schedule, SeededMechanics, SensitivityError, State, Subject, TangentRunError};
 use thiserror::Error;
 
 /// What exponents are asked for.
@@ -111,7 +111,8 @@ pub enum LyapunovError {
     Sensitivity(#[from] SensitivityError),
 }
 
-/// The Lyapunov exponents of a motion, by the derivatives of the steps that a method makes along it.
+/// The Lyapunov exponents of a motion of a system, which may bring integrators of its own, by the derivatives of the steps that a method
+/// makes along it.
 ///
 /// `2 N - M` exponents belong to the distribution, in the coordinates `(q, xi)`; they do not depend on the coordinates where
 /// the motion stays in a bounded region of them or is invariant under the translations that leave it. A run that fails gives what it has,
@@ -120,7 +121,7 @@ pub enum LyapunovError {
 /// # Errors
 /// [`LyapunovError`] where the request makes no sense, or the method has no derivatives here.
 pub fn lyapunov<const N: usize, const M: usize>(
-    system: &dyn FullMechanics<N, M>,
+    (system, own): (&dyn FullMechanics<N, M>, &dyn OwnMethods<N, M>),
     method: &Method,
     request: &LyapunovRequest<N>,
     progress: &mut dyn Progress,
@@ -131,7 +132,7 @@ pub fn lyapunov<const N: usize, const M: usize>(
         return Err(LyapunovError::Jump { time });
     }
     lyapunov_by(system, method, request, |schedule, state, observer| {
-        integrate_pieces(system, method, schedule, state, &mut (observer, Ticker::new(progress, 0)))
+        integrate_pieces(Subject { system, own }, method, schedule, state, &mut (observer, Ticker::new(progress, 0)))
     })
 }
 

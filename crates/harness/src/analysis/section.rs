@@ -1,6 +1,6 @@
 use crate::run::integrate_pieces;
 use crate::{Again, Method};
-use dla::{Close, Crossing, Event, PiecewiseMechanics, RunError, Schedule, State, Watch};
+use dla::{Close, Crossing, Event, RunError, Schedule, State, Subject, Watch};
 
 /// The crossings of a surface by one motion.
 #[derive(Debug, Clone)]
@@ -17,15 +17,16 @@ pub struct Section<const N: usize> {
 const SAMPLES: u32 = 2;
 
 /// Where a motion crosses the surface on which an event's function of time and state is zero (Poincare 1881).
-pub fn section<const N: usize, const M: usize>(
-    system: &dyn PiecewiseMechanics<N, M>,
+pub fn section<'a, const N: usize, const M: usize>(
+    subject: impl Into<Subject<'a, N, M>>,
     method: &Method,
     schedule: &Schedule,
     (q, v): ([f64; N], [f64; N]),
     surface: &Event<'_, N>,
 ) -> Section<N> {
-    let mut watch = Watch::new(Again(method), std::slice::from_ref(surface), ());
+    let subject = subject.into();
+    let mut watch = Watch::new(Again { method, own: subject.own }, std::slice::from_ref(surface), ());
     watch.samples = SAMPLES;
-    let outcome = integrate_pieces(system, method, schedule, &mut State::new(q, v, system.angles()), &mut watch);
+    let outcome = integrate_pieces(subject, method, schedule, &mut State::new(q, v, subject.system.angles()), &mut watch);
     Section { crossings: watch.crossings().to_vec(), close: watch.close(), failure: outcome.err() }
 }

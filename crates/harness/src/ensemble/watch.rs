@@ -1,7 +1,7 @@
 use super::Summary;
 use crate::Method;
 use crate::run::integrate_pieces;
-use dla::{Ensemble, Mechanics, Observer, PiecewiseMechanics, RunError, Schedule, State, StepReport, View};
+use dla::{Ensemble, Mechanics, Observer, RunError, Schedule, State, StepReport, Subject, View};
 use std::fmt::{Debug, Formatter};
 use std::ops::ControlFlow;
 
@@ -56,15 +56,16 @@ pub fn watch<const N: usize, const M: usize, const W: usize, const K: usize>(
 }
 
 /// The summary of one trajectory by any method; of one that fails that of its valid part, with the failure.
-pub fn summarise<const N: usize, const M: usize, const K: usize>(
-    system: &dyn PiecewiseMechanics<N, M>,
+pub fn summarise<'a, const N: usize, const M: usize, const K: usize>(
+    subject: impl Into<Subject<'a, N, M>>,
     method: &Method,
     (q, v): ([f64; N], [f64; N]),
     watching: &Watching<'_, N, K>,
 ) -> (Summary<K>, Option<RunError>) {
     let mut looking = Looking { watching, seen: Summary::new(), last: None };
-    let mut state = State::new(q, v, system.angles());
-    let outcome = integrate_pieces(system, method, &watching.schedule, &mut state, &mut looking);
+    let subject = subject.into();
+    let mut state = State::new(q, v, subject.system.angles());
+    let outcome = integrate_pieces(subject, method, &watching.schedule, &mut state, &mut looking);
     (looking.seen, outcome.err())
 }
 

@@ -1,10 +1,10 @@
 use crate::{Method, integrate_pieces};
-use dla::{PiecewiseMechanics, RunError, Schedule, State, pieces};
+use dla::{RunError, Schedule, State, Subject, pieces};
 
 /// A motion to be computed again and again, with other methods and other steps.
 #[derive(Debug, Clone, Copy)]
 pub struct Motion<'a, const N: usize, const M: usize> {
-    system: &'a dyn PiecewiseMechanics<N, M>,
+    subject: Subject<'a, N, M>,
     q: [f64; N],
     v: [f64; N],
     duration: f64,
@@ -20,9 +20,10 @@ impl<'a, const N: usize, const M: usize> Motion<'a, N, M> {
     /// The motion of a system from `q` with the velocity `v` over `duration` (s); none where no number of steps up to a
     /// million has a node at every jump.
     #[must_use]
-    pub fn new(system: &'a dyn PiecewiseMechanics<N, M>, q: [f64; N], v: [f64; N], duration: f64) -> Option<Self> {
-        let jumps = system.jump_times(0.0, duration);
-        let motion = Self { system, q, v, duration, base: 1 };
+    pub fn new(subject: impl Into<Subject<'a, N, M>>, q: [f64; N], v: [f64; N], duration: f64) -> Option<Self> {
+        let subject = subject.into();
+        let jumps = subject.system.jump_times(0.0, duration);
+        let motion = Self { subject, q, v, duration, base: 1 };
         let aligned = |steps: &u64| pieces(&motion.schedule(*steps), jumps.clone()).is_ok();
         Some(Self { base: (1..=MOST).find(aligned)?, ..motion })
     }
@@ -54,8 +55,8 @@ impl<'a, const N: usize, const M: usize> Motion<'a, N, M> {
     /// # Errors
     /// [`RunError`] with the step that failed.
     pub fn end(&self, method: &Method, steps: u64) -> Result<[f64; N], RunError> {
-        let mut state = State::new(self.q, self.v, self.system.angles());
-        integrate_pieces(self.system, method, &self.schedule(steps), &mut state, &mut ())?;
+        let mut state = State::new(self.q, self.v, self.subject.system.angles());
+        integrate_pieces(self.subject, method, &self.schedule(steps), &mut state, &mut ())?;
         Ok(state.unwrapped())
     }
 }

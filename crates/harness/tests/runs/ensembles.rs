@@ -1,11 +1,11 @@
 //! Ensembles: the same rows on any number of threads and from any group on, and summaries that lanes and single runs share.
 
 use approx::assert_abs_diff_eq;
-use dla::{ClosedEnsemble, LaneState, Schedule};
+use dla::{LaneState, Schedule};
 use harness::Method;
 use harness::ensemble::{Summary, Watching, in_order, summarise, watch};
 use lagrangian::{With, velocity_of};
-use sleigh::{Sleigh, SleighState};
+use sleigh::{ClosedEnsemble, Sleigh, SleighState};
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -24,7 +24,7 @@ fn group(members: Range<u64>) -> Vec<Option<Summary<3>>> {
     let sleighs = [Sleigh::new(1.0, 1.0, 0.5).unwrap(); W];
     let starts: Vec<_> = members.map(start).collect();
     let state = LaneState::new(&starts, [false, false, true]);
-    let mut ensemble = ClosedEnsemble::<_, W, 3, 1, 4, 6>::new(sleighs, 0.05, state);
+    let mut ensemble = ClosedEnsemble::new(sleighs, 0.05, state);
     let of = |q: &[f64; 3], v: &[f64; 3]| words(&SleighState::from_coordinates(q, v));
     let schedule = Schedule { t0: 0.0, step: 0.05, steps: 101 };
     let systems = sleighs.each_ref().map(|sleigh| sleigh as &dyn dla::Mechanics<3, 1>);

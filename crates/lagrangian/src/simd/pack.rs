@@ -1,5 +1,4 @@
 use super::Simd;
-use crate::Side;
 use pulp::bytemuck;
 
 /// Eight numbers in `R` registers.
@@ -91,6 +90,13 @@ impl<S: Simd, const R: usize> Pack<S, R> {
             *x = f(*x);
         }
         self
+    }
+
+    /// The same constant for all.
+    #[must_use]
+    #[inline(always)]
+    pub fn like(self, x: f64) -> Self {
+        Self::splat(self.simd, x)
     }
 
     /// The instruction set.
@@ -243,21 +249,6 @@ macro_rules! with_numbers {
     )*};
 }
 with_numbers!(Add add, Mul mul);
-
-impl<S: Simd, const R: usize> Side for Pack<S, R> {
-    #[inline(always)]
-    fn like(self, x: f64) -> Self {
-        Self::splat(self.simd, x)
-    }
-    #[inline(always)]
-    fn mul_add(self, factor: Self, term: Self) -> Self {
-        Self::mul_add(self, factor, term)
-    }
-    #[inline(always)]
-    fn sin_cos(self) -> (Self, Self) {
-        Self::sin_cos(self)
-    }
-}
 
 #[allow(clippy::redundant_closure_for_method_calls, reason = "as above")]
 impl<S: Simd, const R: usize> std::ops::Neg for Pack<S, R> {

@@ -1,6 +1,6 @@
 use crate::checks::positive;
 use crate::{Sleigh, SleighBody, SleighError, TimeFunction};
-use lagrangian::{AdmissibleBasis, ClosedStep, ClosedStepError, Constraint, Piecewise, Scalar, Start, System};
+use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Scalar, System};
 
 /// A sleigh with a rotor on a bearing: the coordinate `psi`, its angle relative to the body, and the energy
 /// `I_r/2 (omega + psi')^2`.
@@ -57,8 +57,6 @@ fn with_rotor<S: Scalar>(body: &[S; 3], rotor: S) -> [S; 4] {
 }
 
 impl<B: System<3, M>, const M: usize> System<4, M> for Flywheel<B> {
-    const MOVING: bool = B::MOVING;
-
     #[inline(always)]
     fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 4], v: &[S; 4]) -> S {
         let spin = v[2] + v[3];
@@ -139,25 +137,6 @@ impl<B: System<3, M>, const M: usize> System<4, M> for Flywheel<B> {
         }
         let [u, omega, _] = self.body.reduced_response(t, &of_body(q), &[fx, fy, tau - motor])?;
         Some([u, omega, motor / self.inertia, S::zero()])
-    }
-
-    /// On a free bearing the body's own, and the rotor keeps its absolute rate.
-    #[inline(always)]
-    fn closed_step(&self, t: f64, h: f64, start: Start<'_, 4>) -> Option<Result<ClosedStep<4, M>, ClosedStepError>> {
-        if self.torque.is_some() || M != 1 {
-            return None;
-        }
-        let Start { q, v, xi, memory } = start;
-        let spin = xi.map_or_else(|| v[2] + v[3], |xi| xi[2]);
-        let (q, v, xi) = (of_body(q), of_body(v), xi.as_ref().map(of_body));
-        let body = self.body.closed_step(t, h, Start { q: &q, v: &v, xi, memory })?;
-        Some(body.map(|step| ClosedStep {
-            increment: with_rotor(&step.increment, h * spin - step.increment[2]),
-            velocity: with_rotor(&step.velocity, spin - step.velocity[2]),
-            xi: [step.xi[0], step.xi[1], spin, 0.0],
-            impulses: step.impulses,
-            iterations: step.iterations,
-        }))
     }
 }
 

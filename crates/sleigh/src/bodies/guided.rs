@@ -130,8 +130,6 @@ impl<const K: usize> Guided<K> {
 macro_rules! guided {
     ($k:literal, $m:literal) => {
         impl System<3, $m> for Guided<$k> {
-            const MOVING: bool = true;
-
             #[inline(always)]
             fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 3], v: &[S; 3]) -> S {
                 System::<3, 1>::lagrangian(&self.sleigh, t, q, v)

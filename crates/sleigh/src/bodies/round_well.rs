@@ -1,6 +1,7 @@
 use crate::checks::finite;
+use crate::series::{InOwnAxes, Origin, OwnAxes};
 use crate::{Sleigh, SleighError, SleighState};
-use lagrangian::{AdmissibleBasis, Constraint, Origin, OwnAxes, Scalar, System};
+use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
 
 /// The Chaplygin sleigh in a round well, in its own axes: what is left of the motion when its symmetry is taken out.
 ///
@@ -95,8 +96,9 @@ impl System<3, 1> for RoundWell {
         let [along, turn, none] = self.sleigh.reduced_motion(t, q, xi)?;
         Some([along - (q[0] + self.ahead) * self.pulls[0], turn - q[1] * self.pulls[1], none])
     }
+}
 
-    #[inline(always)]
+impl InOwnAxes for RoundWell {
     fn own_axes(&self) -> Option<OwnAxes> {
         let [k, torque] = self.pulls;
         Some(OwnAxes {

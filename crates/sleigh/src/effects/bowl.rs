@@ -1,6 +1,7 @@
 use crate::checks::finite;
+use crate::series::{OwnPush, PushInOwnAxes};
 use crate::{SleighBody, SleighError};
-use lagrangian::{Effect, OwnPush, Scalar, Slope};
+use lagrangian::{Effect, Scalar, Slope};
 
 /// A quadratic well: `V = k_x/2 (X - c_x)^2 + k_y/2 (Y - c_y)^2` at the centre of mass `C = (X, Y)`.
 ///
@@ -24,6 +25,11 @@ impl Bowl {
 
 impl<B: SleighBody, const N: usize> Effect<B, N> for Bowl {
     #[inline(always)]
+    fn has_force(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
     fn lagrangian<S: Scalar>(&self, body: &B, _t: S, q: &[S; N], _v: &[S; N]) -> Option<S> {
         let [x, y] = body.centre(q);
         let (x, y) = (x - self.center[0], y - self.center[1]);
@@ -36,9 +42,10 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Bowl {
         let force = [(x - self.center[0]) * -self.stiffness[0], (y - self.center[1]) * -self.stiffness[1]];
         Slope::Known(body.at_centre(q, force))
     }
+}
 
-    /// Where it is round: `-k (X + a, Y)` at the centre of mass.
-    #[inline(always)]
+/// Where it is round: `-k (X + a, Y)` at the centre of mass.
+impl<B: SleighBody> PushInOwnAxes<B> for Bowl {
     fn in_own_axes(&self, body: &B) -> Option<OwnPush> {
         let [k, a] = [self.stiffness[0], body.sleigh().offset()];
         let round = k.to_bits() == self.stiffness[1].to_bits();

@@ -24,6 +24,11 @@ impl EggCrate {
 
 impl<B: SleighBody, const N: usize> Effect<B, N> for EggCrate {
     #[inline(always)]
+    fn has_force(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
     fn lagrangian<S: Scalar>(&self, body: &B, _t: S, q: &[S; N], _v: &[S; N]) -> Option<S> {
         let [x, y] = body.centre(q);
         Some(((x * self.wave_number[0]).cos() + (y * self.wave_number[1]).cos()) * -self.height)

@@ -38,6 +38,11 @@ impl Hills {
 
 impl<B: SleighBody, const N: usize> Effect<B, N> for Hills {
     #[inline(always)]
+    fn has_force(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
     fn lagrangian<S: Scalar>(&self, body: &B, _t: S, q: &[S; N], _v: &[S; N]) -> Option<S> {
         let [x, y] = body.centre(q);
         let mut potential = S::zero();

@@ -32,6 +32,11 @@ impl MovingMass {
 
 impl<B: SleighBody, const N: usize> Effect<B, N> for MovingMass {
     #[inline(always)]
+    fn has_force(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
     fn lagrangian<S: Scalar>(&self, _body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<S> {
         let (sin, cos) = q[2].sin_cos();
         let [rx, ry] = [self.position[0].value(t), self.position[1].value(t)];

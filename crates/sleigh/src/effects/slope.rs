@@ -23,6 +23,11 @@ impl Slope {
 
 impl<B: SleighBody, const N: usize> Effect<B, N> for Slope {
     #[inline(always)]
+    fn has_force(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
     fn lagrangian<S: Scalar>(&self, body: &B, _t: S, q: &[S; N], _v: &[S; N]) -> Option<S> {
         let m = body.sleigh().mass();
         let [x, y] = body.centre(q);

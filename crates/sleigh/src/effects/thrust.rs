@@ -1,5 +1,6 @@
+use crate::series::{OwnPush, PushInOwnAxes};
 use crate::{SleighBody, SleighError, TimeFunction};
-use lagrangian::{Effect, OwnPush, Piecewise, Scalar};
+use lagrangian::{Effect, Piecewise, Scalar};
 
 /// A force `F(t)` along the blade at its contact point (N).
 ///
@@ -29,9 +30,10 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Thrust {
         force[..2].copy_from_slice(&[push * cos, push * sin]);
         Some(force)
     }
+}
 
-    /// Where it is constant.
-    #[inline(always)]
+/// Where it is constant.
+impl<B> PushInOwnAxes<B> for Thrust {
     fn in_own_axes(&self, _body: &B) -> Option<OwnPush> {
         match self.force {
             TimeFunction::Constant(force) => Some(OwnPush { center: None, along: [force, 0.0], turning: [0.0; 2] }),

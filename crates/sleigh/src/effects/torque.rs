@@ -1,5 +1,6 @@
+use crate::series::{OwnPush, PushInOwnAxes};
 use crate::{SleighBody, SleighError, TimeFunction};
-use lagrangian::{Effect, OwnPush, Piecewise, Scalar};
+use lagrangian::{Effect, Piecewise, Scalar};
 
 /// A torque `tau(t)` on the heading (N m).
 #[derive(Debug, Clone, PartialEq)]
@@ -25,9 +26,10 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Torque {
         force[2] = torque;
         Some(force)
     }
+}
 
-    /// Where it is constant.
-    #[inline(always)]
+/// Where it is constant.
+impl<B> PushInOwnAxes<B> for Torque {
     fn in_own_axes(&self, _body: &B) -> Option<OwnPush> {
         match self.torque {
             TimeFunction::Constant(torque) => Some(OwnPush { center: None, along: [0.0; 2], turning: [torque, 0.0] }),

@@ -1,9 +1,12 @@
 //! The closed step against its own equations: of the midpoint rule, in the velocities along the chord and about the blade.
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use lagrangian::{ClosedStep, ClosedStepError, Memory, Start, System};
+use dla::ClosedStepError;
+use lagrangian::With;
 use proptest::prelude::*;
-use sleigh::{Flywheel, Sleigh, SleighState};
+use sleigh::closed::{ClosedForm, ClosedStep, Memory, Start};
+use sleigh::effects::Thrust;
+use sleigh::{Flywheel, Guide, Guided, Sleigh, SleighState};
 use std::f64::consts::TAU;
 
 fn start(heading: f64, speed: f64, turn_rate: f64) -> ([f64; 3], [f64; 3]) {
@@ -12,7 +15,7 @@ fn start(heading: f64, speed: f64, turn_rate: f64) -> ([f64; 3], [f64; 3]) {
 
 fn step(sleigh: &Sleigh, h: f64, heading: f64, u: f64, omega: f64) -> Result<ClosedStep<3, 1>, ClosedStepError> {
     let (q, v) = start(heading, u, omega);
-    System::<3, 1>::closed_step(sleigh, 0.0, h, Start::new(&q, &v, &mut Memory::default())).unwrap()
+    ClosedForm::<3, 1>::closed_step(sleigh, 0.0, h, Start::new(&q, &v, &mut Memory::default())).unwrap()
 }
 
 proptest! {
@@ -52,7 +55,7 @@ proptest! {
         let from = [v[0] * heading.cos() + v[1] * heading.sin(), omega0, 0.0];
         let (v, mut memory) = ([9.0, 9.0, omega0], Memory::EMPTY);
         let again = Start { xi: Some(from), ..Start::new(&q, &v, &mut memory) };
-        let again = System::<3, 1>::closed_step(&sleigh, 0.0, h, again).unwrap().unwrap();
+        let again = ClosedForm::<3, 1>::closed_step(&sleigh, 0.0, h, again).unwrap().unwrap();
         assert_abs_diff_eq!(again.xi[0], u1, epsilon = bound);
         assert_abs_diff_eq!(again.xi[1], omega1, epsilon = bound);
     }
@@ -73,7 +76,7 @@ proptest! {
             let (mut xi, mut memory) = ([u0, omega0, 0.0], Memory::EMPTY);
             for _ in 0..steps {
                 let start = Start { xi: Some(xi), ..Start::new(&q, &v, &mut memory) };
-                let made = System::<3, 1>::closed_step(&sleigh, 0.0, h, start).unwrap().unwrap();
+                let made = ClosedForm::<3, 1>::closed_step(&sleigh, 0.0, h, start).unwrap().unwrap();
                 (xi, v) = (made.xi, made.velocity);
                 (0..3).for_each(|i| q[i] += made.increment[i]);
             }
@@ -81,7 +84,7 @@ proptest! {
             (xi, v[2]) = (xi.map(|x| factor * x), factor * v[2]);
             let [blank, known] = [Memory::EMPTY, memory].map(|mut memory| {
                 let start = Start { xi: Some(xi), ..Start::new(&q, &v, &mut memory) };
-                System::<3, 1>::closed_step(&ours, 0.0, h, start).unwrap().unwrap()
+                ClosedForm::<3, 1>::closed_step(&ours, 0.0, h, start).unwrap().unwrap()
             });
             // Numbers of order one, but for the spin, which has all its digits.
             for (x, y) in blank.increment.iter().chain(&blank.velocity).zip(known.increment.iter().chain(&known.velocity)) {
@@ -99,7 +102,7 @@ proptest! {
         let (mut xi, mut v, mut memory, mut corrections) = ([u0, omega0, 0.0], v, Memory::EMPTY, vec![]);
         for _ in 0..100 {
             let start = Start { xi: Some(xi), ..Start::new(&q, &v, &mut memory) };
-            let made = System::<3, 1>::closed_step(&sleigh, 0.0, 0.02, start).unwrap().unwrap();
+            let made = ClosedForm::<3, 1>::closed_step(&sleigh, 0.0, 0.02, start).unwrap().unwrap();
             (xi, v) = (made.xi, made.velocity);
             corrections.push(made.iterations);
         }
@@ -114,7 +117,7 @@ proptest! {
         let (mut q, mut v) = start(heading, u0, omega0);
         let mut memory = Memory::EMPTY;
         for _ in 0..500 {
-            let made = System::<3, 1>::closed_step(&sleigh, 0.0, h, Start::new(&q, &v, &mut memory)).unwrap().unwrap();
+            let made = ClosedForm::<3, 1>::closed_step(&sleigh, 0.0, h, Start::new(&q, &v, &mut memory)).unwrap().unwrap();
             v = made.velocity;
             // As a state does, within half a turn.
             (0..3).for_each(|i| q[i] += made.increment[i]);
@@ -185,7 +188,7 @@ proptest! {
             let (q, v) = ([x, y, heading, 0.7], [vx, vy, turn, if xi.is_some() { 9.0 } else { rate }]);
             let mut memory = Memory::EMPTY;
             let start = Start { xi, ..Start::new(&q, &v, &mut memory) };
-            let made = System::<4, 1>::closed_step(&rotor, 0.0, h, start).unwrap().unwrap();
+            let made = ClosedForm::<4, 1>::closed_step(&rotor, 0.0, h, start).unwrap().unwrap();
             for i in 0..3 {
                 assert_abs_diff_eq!(made.increment[i], bare.increment[i], epsilon = 1e-14);
                 assert_abs_diff_eq!(made.velocity[i], bare.velocity[i], epsilon = 1e-14);
@@ -262,10 +265,18 @@ fn sines_have_all_their_digits() {
     }
 }
 
-/// A motor has no closed step.
+/// A motor has no closed step, nor a sleigh whose speed is imposed; what has one says that it has.
 #[test]
 fn a_driven_rotor_is_not_closed() {
+    let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    let rotor = |torque| Flywheel::new(body, 0.2, torque).unwrap();
+    assert!(ClosedForm::<4, 1>::has_closed_form(&rotor(None)) && !ClosedForm::<4, 1>::has_closed_form(&rotor(Some(0.3.into()))));
+    let servo = Guided::<1>::servo(body, Guide::Speed(0.7.into())).unwrap();
+    assert!(!ClosedForm::<3, 2>::has_closed_form(&servo));
+    let thrust = || Thrust::new(0.1).unwrap();
+    assert!(ClosedForm::<3, 1>::has_closed_form(&With { body, effects: thrust() }));
+    assert!(!ClosedForm::<4, 1>::has_closed_form(&With { body: rotor(None), effects: thrust() }));
     let driven = Flywheel::new(Sleigh::new(1.0, 1.0, 0.5).unwrap(), 0.2, Some(0.3.into())).unwrap();
     let (rest, mut memory) = ([0.0; 4], Memory::EMPTY);
-    assert!(System::<4, 1>::closed_step(&driven, 0.0, 0.1, Start::new(&rest, &rest, &mut memory)).is_none());
+    assert!(ClosedForm::<4, 1>::closed_step(&driven, 0.0, 0.1, Start::new(&rest, &rest, &mut memory)).is_none());
 }

@@ -1,10 +1,11 @@
 //! Equations in the axes of the sleigh are those on the plane.
 
 use approx::assert_abs_diff_eq;
-use lagrangian::{Effect, Origin, OwnAxes, OwnPush, System, With};
+use lagrangian::{System, With};
 use proptest::prelude::*;
 use sleigh::effects::{Bowl, Drag, EggCrate, Thrust, Torque};
-use sleigh::{Flywheel, RoundWell, Sleigh, SleighState, TimeFunction};
+use sleigh::series::{InOwnAxes, Origin, OwnAxes, OwnPush, PushInOwnAxes};
+use sleigh::{RoundWell, Sleigh, SleighState, TimeFunction};
 
 /// `(u', omega')` at this place in the axes of the sleigh.
 fn accelerations(axes: &OwnAxes, [x, y]: [f64; 2], [u, omega]: [f64; 2]) -> [f64; 2] {
@@ -60,7 +61,7 @@ proptest! {
 /// What is not of second degree there has none, nor have two wells about two points.
 #[test]
 fn others_have_none() {
-    fn axes<E: Effect<Sleigh, 3>>(effects: E) -> Option<OwnAxes> {
+    fn axes<E: PushInOwnAxes<Sleigh>>(effects: E) -> Option<OwnAxes> {
         With { body: Sleigh::new(1.0, 1.0, 0.5).unwrap(), effects }.own_axes()
     }
     let bowl = |stiffness, center| Bowl::new(stiffness, center).unwrap();
@@ -72,8 +73,6 @@ fn others_have_none() {
     assert!(axes(EggCrate::new(0.1, [1.0, 1.0]).unwrap()).is_none());
     let swing = || TimeFunction::Sine { amplitude: 0.5, frequency: 2.0, phase: 0.3 };
     assert!(axes(Thrust::new(swing()).unwrap()).is_none() && axes(Torque::new(swing()).unwrap()).is_none());
-    let rotor = Flywheel::new(Sleigh::new(1.0, 1.0, 0.5).unwrap(), 0.5, None).unwrap();
-    assert!(rotor.own_axes().is_none());
     // A well that is already in the coordinates cannot be counted from a point of the plane.
     let own = RoundWell::new(Sleigh::new(1.0, 1.0, 0.5).unwrap(), 0.1, [0.0; 2]).unwrap().own_axes().unwrap();
     assert!(own.pushed(OwnPush { center: Some([0.0; 2]), ..OwnPush::NOTHING }).is_none());

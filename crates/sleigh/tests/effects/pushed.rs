@@ -1,8 +1,9 @@
 //! The step of a sleigh that is pushed against its own equations, term by term, and where it leaves the step to others.
 
 use approx::assert_abs_diff_eq;
-use lagrangian::{ClosedStep, Effect, Memory, Scalar, Slope, Start, System, With};
+use lagrangian::{Effect, Scalar, Slope, With};
 use proptest::prelude::*;
+use sleigh::closed::{ClosedForm, ClosedStep, Memory, Start};
 use sleigh::effects::{Bowl, Drag, EggCrate};
 use sleigh::{Sleigh, SleighState};
 
@@ -40,13 +41,13 @@ fn laden(m: f64, i: f64, a: f64, stiffness: [f64; 2], height: f64) -> Laden {
     With { body: Sleigh::new(m, i, a).unwrap(), effects }
 }
 
-fn step<Sys: System<3, 1>>(system: &Sys, h: f64, (heading, u, omega): (f64, f64, f64)) -> Option<ClosedStep<3, 1>> {
+fn step<Sys: ClosedForm<3, 1>>(system: &Sys, h: f64, (heading, u, omega): (f64, f64, f64)) -> Option<ClosedStep<3, 1>> {
     let (q, v) = SleighState { x: 0.3, y: -0.2, heading, speed: u, turn_rate: omega }.to_coordinates();
     system.closed_step(TIME, h, Start::new(&q, &v, &mut Memory::default())).map(Result::unwrap)
 }
 
 /// As many steps: where they end, the last one, and what it leaves.
-fn steps<Sys: System<3, 1>>(
+fn steps<Sys: ClosedForm<3, 1>>(
     system: &Sys,
     h: f64,
     (heading, u, omega): (f64, f64, f64),
@@ -151,7 +152,7 @@ fn numbers_of_another_map_are_not_taken() {
     // At rest, with the centre of mass at the lowest place: every number is zero, and would be the cosine of a half turn.
     let [mut rest, mut free] = [Memory::EMPTY; 2];
     well.closed_step(TIME, h, Start::new(&[0.0; 3], &[0.0; 3], &mut rest)).unwrap().unwrap();
-    System::<3, 1>::closed_step(&body, TIME, h, Start::new(&[0.0; 3], &[0.0; 3], &mut free)).unwrap().unwrap();
+    ClosedForm::<3, 1>::closed_step(&body, TIME, h, Start::new(&[0.0; 3], &[0.0; 3], &mut free)).unwrap().unwrap();
     for (u, omega) in [(1.0, 0.0), (0.5, -0.3), (0.0, 0.0)] {
         let (q, v) = ([0.0; 3], [u, 0.0, omega]);
         let by = |system: &dyn Fn(Start<'_, 3>) -> ClosedStep<3, 1>, memory| {
@@ -162,7 +163,7 @@ fn numbers_of_another_map_are_not_taken() {
                 assert_abs_diff_eq!(known.velocity[i], blank.velocity[i], epsilon = 1e-15);
             }
         };
-        by(&|start| System::<3, 1>::closed_step(&body, TIME, h, start).unwrap().unwrap(), rest);
+        by(&|start| ClosedForm::<3, 1>::closed_step(&body, TIME, h, start).unwrap().unwrap(), rest);
         by(&|start| well.closed_step(TIME, h, start).unwrap().unwrap(), free);
     }
 }

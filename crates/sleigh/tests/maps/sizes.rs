@@ -1,8 +1,8 @@
 //! The step in closed form at the ends of the numbers: speeds whose squares are none, spins that have few digits or one.
 
 use approx::assert_relative_eq;
-use lagrangian::{ClosedStep, Memory, Start, System};
 use proptest::prelude::*;
+use sleigh::closed::{ClosedForm, ClosedStep, Memory, Start};
 use sleigh::{Sleigh, SleighState};
 
 /// Blade speed and spin after each of some steps, with the heading carried along.

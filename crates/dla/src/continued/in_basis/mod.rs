@@ -94,7 +94,7 @@ mod tests {
     const STEP: f64 = 0.05;
 
     fn method() -> Dla {
-        Dla::midpoint().solved(Form::General)
+        Dla::midpoint()
     }
 
     fn system() -> With<Sleigh, (Bowl, Drag)> {

@@ -53,7 +53,7 @@ fn three_computations_agree() {
     let mut count = 0;
     for (scene, stored) in scenes() {
         let by_dla = |form, step| scene.visit(ByDla { scene: &scene, form, step }).unwrap();
-        let (basis, jumps) = by_dla(Form::General, 0.0125);
+        let (basis, jumps) = by_dla(Form::Best, 0.0125);
         let (multipliers, _) = by_dla(Form::Multipliers, 0.0125);
         let hand = hand::motion(&scene, &jumps, scene.run.duration, 0.05);
         let [a, b, c] = [basis, multipliers, hand].map(|end| distance(&end, &stored));

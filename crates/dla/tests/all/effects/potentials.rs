@@ -54,7 +54,7 @@ fn differences(effects: Vec<AnyEffect>, form: Form) -> [f64; 2] {
 /// Velocities below four and momenta below ten, with the condition of the mass matrix, six.
 #[test]
 fn both_forms_are_the_same_map() {
-    for form in [Form::General, Form::Multipliers] {
+    for form in [Form::Best, Form::Multipliers] {
         let [thrust, torque] = pushes();
         let all = vec![bowl(), crate_of_eggs(), drag(), thrust, torque];
         for effects in

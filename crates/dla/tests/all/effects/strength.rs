@@ -2,7 +2,7 @@
 
 use crate::effects::balance::sine;
 use crate::effects::tools::{laden, moving, run, sleigh, steps};
-use dla::{Dla, Form};
+use dla::Dla;
 use scene::AnyEffect;
 use sleigh::effects::{Bowl, Drag, EggCrate, Hill, Hills, MovingMass, Slope, Thrust, Torque};
 use sleigh::{Guided, Table, TimeFunction};
@@ -31,7 +31,7 @@ fn effects(k: f64) -> Vec<(&'static str, AnyEffect)> {
 fn no_strength_is_no_effect() {
     let count = 100;
     let end = |effects: Vec<AnyEffect>| {
-        let mut method = Dla::midpoint().solved(Form::General);
+        let mut method = Dla::midpoint();
         run(&laden(sleigh(), effects), &mut method, &steps(0.05, count), moving().to_coordinates(), ()).unwrapped()
     };
     let free = end(vec![]);
@@ -45,7 +45,7 @@ fn no_strength_is_no_effect() {
     }
 
     let on = |rate| {
-        let mut method = Dla::midpoint().solved(Form::General);
+        let mut method = Dla::midpoint();
         let system = laden(Guided::turntable(sleigh(), rate).unwrap(), vec![]);
         run(&system, &mut method, &steps(0.05, count), moving().to_coordinates(), ()).unwrapped()
     };

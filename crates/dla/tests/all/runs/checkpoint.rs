@@ -1,8 +1,9 @@
 use crate::runs::{backward, sleigh, state_of};
 use dla::{
-    Checkpoint, CheckpointError, Composition, Dla, Form, Gauss, Gni, OneStep, Schedule, State, Trajectory, Work,
+    Checkpoint, CheckpointError, Composition, Dla, Gauss, Gni, OneStep, Schedule, State, Trajectory, Work,
     drive_part,
 };
+use sleigh::ClosedMap;
 
 const SCHEDULE: Schedule = Schedule { t0: 0.5, step: 0.05, steps: 1000 };
 
@@ -42,10 +43,10 @@ where
 fn a_resumed_run_has_the_same_bits() {
     for stop in [1, 400, 555, 999] {
         for [(whole, all), (resumed, after)] in [
-            whole_and_resumed(Dla::midpoint, stop),
-            whole_and_resumed(|| Composition::suzuki4(Dla::midpoint()), stop),
+            whole_and_resumed(|| ClosedMap::of(sleigh()), stop),
+            whole_and_resumed(|| Composition::suzuki4(ClosedMap::of(sleigh())), stop),
             // Which remember derivatives.
-            whole_and_resumed(|| Dla::midpoint().solved(Form::General), stop),
+            whole_and_resumed(Dla::midpoint, stop),
             whole_and_resumed(|| Composition::suzuki4(Dla::trapezoid()), stop),
             whole_and_resumed(Gauss::new::<8>, stop),
             // It remembers a momentum.
@@ -113,7 +114,7 @@ fn what_is_no_checkpoint_of_the_run_is_refused() {
         assert!(Checkpoint::from_text(&changed).is_err(), "{changed}");
     }
     assert_eq!(Checkpoint::from_text("title = 1\n"), Err(CheckpointError::NotOne));
-    let newer = text.replacen("checkpoint 3", "checkpoint 4", 1);
+    let newer = text.replacen("checkpoint 4", "checkpoint 5", 1);
     assert_eq!(Checkpoint::from_text(&newer), Err(CheckpointError::Version { found: "4".to_owned() }));
 }
 

@@ -1,9 +1,9 @@
 //! What each failure says is to be changed.
 
 use approx::assert_relative_eq;
-use dla::{Hint, History, NewtonError, RunError, Stage, StepError};
+use dla::{ClosedStepError, Hint, History, NewtonError, RunError, Stage, StepError};
 use lagrangian::linear::Singular;
-use lagrangian::{ClosedStepError, MotionError, ReducedError};
+use lagrangian::{MotionError, ReducedError};
 
 const HALF: Option<Hint> = Some(Hint::ShorterStep { part: 0.5 });
 

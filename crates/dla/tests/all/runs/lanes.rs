@@ -1,16 +1,16 @@
 use crate::runs::{backward, sleigh};
 use approx::assert_abs_diff_eq;
 use dla::{
-    ClosedEnsemble, Dla, Each, Ensemble, Gauss, GaussAdaptive, GaussEnsemble, LaneState, OneStep, Same, Schedule,
+    Each, Ensemble, Gauss, GaussAdaptive, GaussEnsemble, LaneState, OneStep, Same, Schedule,
     State, drive,
 };
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, With, velocity_of};
 use proptest::prelude::*;
 use sleigh::effects::{Bowl, Torque};
-use sleigh::{RoundWell, Sleigh, SleighState, TimeFunction};
+use sleigh::{ClosedEnsemble, ClosedMap, RoundWell, Sleigh, SleighState, TimeFunction};
 
 const W: usize = 16;
-type Closed = ClosedEnsemble<Sleigh, W, 3, 1, 4, 6>;
+type Closed = ClosedEnsemble<W>;
 type Start = ([f64; 3], [f64; 3]);
 
 fn state_of(&([x, y, heading], [speed, turn_rate, _]): &Start) -> SleighState {
@@ -81,7 +81,7 @@ proptest! {
         let mut ensemble = Closed::new(systems, h, LaneState::new(&states, [false, false, true]));
         ensemble.advance(run.1);
         for (lane, (sleigh, start)) in members.iter().enumerate() {
-            match alone(sleigh, Dla::midpoint(), run, start) {
+            match alone(sleigh, ClosedMap::of(*sleigh), run, start) {
                 Some(state) => assert_same(&ensemble, lane, &state, rounding(sleigh, start, (h.abs(), run.1))),
                 None => prop_assert!(!ensemble.state().is_finite(lane)),
             }
@@ -150,7 +150,7 @@ fn a_lane_that_fails_leaves_the_others_alone() {
     let states: Vec<_> = (0..W).map(|i| reduced(if i == 3 { &swinging } else { &usual })).collect();
     let mut ensemble = Closed::new([sleigh; W], h, LaneState::new(&states, [false, false, true]));
     ensemble.advance(10);
-    assert!(alone(&sleigh, Dla::midpoint(), (h, 10), &states[3]).is_none());
+    assert!(alone(&sleigh, ClosedMap::of(sleigh), (h, 10), &states[3]).is_none());
     let whole: Vec<bool> = (0..W).map(|lane| ensemble.state().is_finite(lane)).collect();
     assert_eq!(whole, (0..W).map(|lane| lane != 3).collect::<Vec<_>>());
 
@@ -210,14 +210,14 @@ fn the_largest_reaction_of_every_lane() {
     ensemble.advance(steps);
     for (lane, start) in starts.iter().enumerate() {
         let mut state = State::new(start.0, velocity_of(&sleigh, 0.0, &start.0, &start.1).unwrap(), sleigh.angles());
-        let mut largest = 0.0f64;
+        let (mut map, mut largest) = (ClosedMap::of(sleigh), 0.0f64);
         for k in 0..steps {
-            let report = Dla::midpoint().step(&sleigh, k as f64 * h, h, &mut state).unwrap();
+            let report = map.step(&sleigh, k as f64 * h, h, &mut state).unwrap();
             largest = largest.max((report.impulses[0][0] + report.impulses[1][0]).abs() / h);
         }
         // A momentum has the rounding of the velocities, the masses being near one.
         let tolerance = 2.0 * rounding(&sleigh, start, (h, steps)) / h;
-        assert_abs_diff_eq!(ensemble.largest_multiplier(lane)[0], largest, epsilon = tolerance);
+        assert_abs_diff_eq!(ensemble.largest_multiplier(lane), largest, epsilon = tolerance);
         // Some have made full turns.
         assert_same(&ensemble, lane, &state, rounding(&sleigh, start, (h, steps)));
         assert!(largest > 1e3 * tolerance, "the control: {largest:e} is more than rounding, {tolerance:e}");

@@ -14,7 +14,6 @@ mod own_steps;
 mod recommend;
 mod round_well;
 mod scripted;
-mod series;
 mod substeps;
 mod trials;
 mod units;

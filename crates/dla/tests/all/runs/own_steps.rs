@@ -2,11 +2,11 @@
 
 use approx::assert_abs_diff_eq;
 use dla::{
-    Close, Crossing, Event, Gauss, GaussAdaptive, OneStep, Schedule, State, StepError, StepReport, Taylor, Watch, drive,
+    Close, Crossing, Event, Gauss, GaussAdaptive, OneStep, Schedule, State, StepError, StepReport, Watch, drive,
 };
 use lagrangian::{System, constraint_residual};
 use proptest::prelude::*;
-use sleigh::{RoundWell, Sleigh};
+use sleigh::{RoundWell, Sleigh, Taylor};
 use std::ops::ControlFlow;
 
 /// `x'' = -100 x` along a line: with `x = 0` and `x' = 1` it is `sin(10 t)/10`.
@@ -70,8 +70,8 @@ impl<Method: OneStep<3, 1>> OneStep<3, 1> for Closed<Method> {
 fn crossings_within_a_long_step_are_all_found() {
     all_twenty(&GaussAdaptive::new::<8>(1e-13));
     all_twenty(&GaussAdaptive::new::<4>(1e-12));
-    all_twenty(&Taylor::new(1e-15));
-    let (few, close) = found(&Closed(Taylor::new(1e-15)), (2.0, 3));
+    all_twenty(&Taylor::of(&spring(), 1e-15).unwrap());
+    let (few, close) = found(&Closed(Taylor::of(&spring(), 1e-15).unwrap()), (2.0, 3));
     let close = close.unwrap();
     assert!(few.len() == 4 && close.count > 0, "{few:?}");
     assert_abs_diff_eq!(close.spacing, 0.5, epsilon = 1e-15);
@@ -146,7 +146,7 @@ proptest! {
         let (start, h) = (State::new(q, v, well.angles()), if backward { -length } else { length });
         // Frequencies of ten, over two steps, which errors are enlarged by.
         are_those_of_the_run(&GaussAdaptive::new::<8>(1e-12), h, &start, 1e-8)?;
-        are_those_of_the_run(&Taylor::new(1e-14), h, &start, 1e-8)?;
+        are_those_of_the_run(&Taylor::of(&well, 1e-14).unwrap(), h, &start, 1e-8)?;
     }
 }
 

@@ -82,8 +82,7 @@ fn what_no_shorter_step_mends_and_what_is_not_asked_for_stays_an_error() {
 /// The search begins nearer to its solution where the last step left the acceleration.
 #[test]
 fn a_step_is_predicted_from_the_last() {
-    use dla::Form;
-    let (sleigh, mut method) = (sleigh(), Dla::midpoint().solved(Form::General));
+    let (sleigh, mut method) = (sleigh(), Dla::midpoint());
     let (mut carried, mut iterations) = (state_of(&backward()), [0, 0]);
     for k in 0..200 {
         let t = 0.05 * f64::from(k);

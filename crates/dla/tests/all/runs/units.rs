@@ -1,13 +1,14 @@
 //! The same motion in another unit of time, in which forces are too large for a number and their impulses are not.
 
+use crate::runs::sleigh;
 use approx::assert_relative_eq;
 use dla::{Dla, Form, Gni, OneStep, Schedule, State, drive};
 use lagrangian::System;
-use sleigh::{Sleigh, SleighState};
+use sleigh::{ClosedMap, SleighState};
 
 /// Blade velocity and spin at the end of ten seconds of the turn-around, in units of `unit` m/s.
 fn end(mut method: impl OneStep<3, 1>, unit: f64) -> [f64; 3] {
-    let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    let sleigh = sleigh();
     let start = SleighState { speed: -unit, turn_rate: 0.3 * unit, ..SleighState::default() };
     let (q, v) = start.to_coordinates();
     let mut state = State::new(q, v, sleigh.angles());
@@ -29,7 +30,7 @@ fn fast_motions_are_those_of_another_unit() {
         }
     }
     same(Dla::midpoint);
-    same(|| Dla::midpoint().solved(Form::General));
+    same(|| ClosedMap::of(sleigh()));
     same(|| Dla::midpoint().solved(Form::Multipliers));
     same(Dla::trapezoid);
     same(|| Dla::alpha(0.5).unwrap());

@@ -50,7 +50,7 @@ fn check_all<Sys: System<N, M>, const N: usize, const M: usize>(
     at: (f64, f64),
 ) -> Result<(), TestCaseError> {
     let symmetrised = Symmetrised::new(0.2).unwrap();
-    check(system, Dla::midpoint().solved(Form::General), place, at)?;
+    check(system, Dla::midpoint(), place, at)?;
     check(system, Dla::midpoint().solved(Form::Multipliers), place, at)?;
     check(system, Dla::trapezoid(), place, at)?;
     check(system, Dla::new(symmetrised, symmetrised), place, at)
@@ -115,7 +115,7 @@ proptest! {
             }
         }).collect();
         let start = ([0.4, -0.1, 0.3], [0.3f64.cos(), 0.3f64.sin(), 0.7]);
-        check_each(|k| &wheels[k as usize], Dla::midpoint().solved(Form::General), start, (0.0, 0.01))?;
+        check_each(|k| &wheels[k as usize], Dla::midpoint(), start, (0.0, 0.01))?;
         let skewed = Wheel { lead: change, ..wheel };
         let mixed = |k: u32| if k >= at { &skewed } else { &wheel };
         check_each(mixed, Dla::midpoint().solved(Form::Multipliers), start, (0.0, 0.01))?;
@@ -162,7 +162,7 @@ impl System<3, 2> for Towed {
 fn what_comes_to_rest_beside_what_moves() {
     for (heading, turning) in (0..40).map(|k| (0.17 * f64::from(k), 0.3 * f64::from(k % 8))) {
         for h in [0.0625, 0.1, 0.03] {
-            for form in [Form::General, Form::Multipliers] {
+            for form in [Form::Best, Form::Multipliers] {
                 let mut state = State::new([0.0, 0.0, heading], [0.0, 0.0, turning], [false; 3]);
                 let (mut method, steps) = (Dla::midpoint().solved(form), (3.0 / h) as u32);
                 let mut reached = 0.0f64;

@@ -57,7 +57,7 @@ impl System<3, 1> for Once {
     }
 }
 
-const FORMS: [Form; 3] = [Form::Best, Form::General, Form::Multipliers];
+const FORMS: [Form; 2] = [Form::Best, Form::Multipliers];
 
 /// With one row or with two that agree the motion is the same, whatever the form.
 fn goes_on(row: [f64; 3], factor: f64, q: [f64; 3], v: [f64; 3]) {

@@ -17,7 +17,7 @@ fn check<Sys: System<N, M>, const N: usize, const M: usize>(
     (t, h): (f64, f64),
 ) -> Result<(), TestCaseError> {
     let start = State::new(q0, v0, [false; N]);
-    let [basis, multipliers] = [Form::General, Form::Multipliers].map(|form| {
+    let [basis, multipliers] = [Form::Best, Form::Multipliers].map(|form| {
         let mut state = start;
         let report = method.solved(form).step(system, t, h, &mut state).unwrap();
         (state, report)

@@ -10,5 +10,4 @@ mod forms;
 mod free;
 mod lanes;
 mod models;
-mod taylor;
 mod tools;

@@ -1,15 +1,16 @@
-use super::series::{Axes, Eight};
-use super::{Ensemble, LANES, LaneState, Systems};
-use crate::state::two_sum;
-use crate::taylor::pace::{Interval, LOOKED_AT, Pace, size};
-use crate::taylor::place::{increment, place};
-use crate::taylor::series::ORDER;
-use crate::taylor::{Crossed, MAX_STEPS};
+use super::coefficients::ORDER;
+use super::crossing::{Crossed, MAX_STEPS};
+use super::eight::{Axes, Eight};
+use super::pace::{Interval, LOOKED_AT, Pace, size};
+use super::place::{increment, place};
+use super::{InOwnAxes, OwnAxes};
+use dla::ensemble::LANES;
+use dla::{Ensemble, LaneState, Systems};
 use lagrangian::simd::{Kernel, Pack, Simd, dispatch_widest};
-use lagrangian::{OwnAxes, System};
+use lagrangian::two_sum;
 
 /// `W` trajectories by Taylor series, each with steps of its own within a step of the schedule: the method
-/// [`Taylor`](crate::Taylor), eight trajectories to a register.
+/// [`Taylor`](super::Taylor), eight trajectories to a register.
 ///
 /// Eight go on until the last of them has crossed the interval. One whose tolerance is not met is lost, and the others go on.
 #[derive(Debug, Clone)]
@@ -22,9 +23,9 @@ pub struct TaylorEnsemble<const W: usize> {
 
 impl<const W: usize> TaylorEnsemble<W> {
     /// The systems at these states, with steps of the schedule of length `h` (s) and the tolerance `epsilon` of
-    /// [`Taylor::new`](crate::Taylor::new). None where a system is not of [second degree in its own axes](System::own_axes).
+    /// [`Taylor::of`](super::Taylor::of). None where a system is not of [second degree in its own axes](InOwnAxes).
     #[must_use]
-    pub fn new<Sys: System<3, 1>>(
+    pub fn new<Sys: InOwnAxes>(
         systems: &impl Systems<Sys, W>,
         (h, epsilon): (f64, f64),
         state: LaneState<3, W>,

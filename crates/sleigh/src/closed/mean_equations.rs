@@ -1,6 +1,8 @@
 use crate::Sleigh;
-use crate::half_turn::{half_turn, turned};
-use lagrangian::{Dual, KnownAngle, Push, from_fn, mul_add};
+use super::half_turn::{half_turn, turned};
+use super::Push;
+use dla::KnownAngle;
+use lagrangian::{Dual, from_fn, mul_add};
 
 /// The equations of a step of the pushed map for its mean velocities `U` and `w`; here what does not change with these.
 pub(crate) struct MeanEquations<'a> {

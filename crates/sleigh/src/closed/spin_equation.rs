@@ -1,6 +1,7 @@
 use crate::Sleigh;
-use crate::half_turn::half_turn;
-use lagrangian::{ClosedStepError, mul_add};
+use super::half_turn::half_turn;
+use dla::ClosedStepError;
+use lagrangian::mul_add;
 
 /// An error in `r` of this size is rounding.
 const ROUNDING: f64 = 1e-17;

@@ -1,4 +1,4 @@
-use lagrangian::OwnAxes;
+use super::OwnAxes;
 use lagrangian::simd::Four;
 
 /// The highest power of time in the series of a step.

@@ -1,9 +1,9 @@
 use super::pace::{Interval, LOOKED_AT, Pace, size};
-use super::series::{Equations, ORDER, Series};
-use crate::StepError;
-use crate::state::two_sum;
-use lagrangian::OwnAxes;
+use super::OwnAxes;
+use super::coefficients::{Equations, ORDER, Series};
+use dla::StepError;
 use lagrangian::simd::{Four, FourKernel};
+use lagrangian::two_sum;
 use std::ops::ControlFlow;
 
 /// An interval to be crossed.
@@ -60,8 +60,8 @@ impl<See: FnMut(f64, Crossed) -> ControlFlow<()>> FourKernel for Crossing<See> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Origin;
     use super::*;
-    use lagrangian::Origin;
     use lagrangian::simd::{in_fours, in_plain_fours};
     use proptest::prelude::*;
 

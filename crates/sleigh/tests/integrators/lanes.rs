@@ -1,19 +1,23 @@
 //! Taylor series in lanes are those of one trajectory.
 
 use approx::assert_abs_diff_eq;
-use dla::{Each, Ensemble, LaneState, OneStep, Same, State, Taylor, TaylorEnsemble};
+use dla::{Each, Ensemble, LaneState, OneStep, Same, State};
 use lagrangian::{System, With, velocity_of};
 use proptest::prelude::*;
 use sleigh::effects::{Bowl, EggCrate};
-use sleigh::{RoundWell, Sleigh};
+use sleigh::series::InOwnAxes;
+use sleigh::{RoundWell, Sleigh, Taylor, TaylorEnsemble};
 
 const W: usize = 16;
 
 /// One trajectory by the code of one trajectory.
-fn alone<Sys: System<3, 1>>(system: &Sys, (h, epsilon): (f64, f64), (q, xi): ([f64; 3], [f64; 3])) -> Option<State<3>> {
+fn alone<Sys>(system: &Sys, (h, epsilon): (f64, f64), (q, xi): ([f64; 3], [f64; 3])) -> Option<State<3>>
+where
+    Sys: System<3, 1> + InOwnAxes,
+{
     let v = velocity_of(system, 0.0, &q, &xi).unwrap();
     let mut state = State::new(q, v, system.angles());
-    let made = (0..3).try_for_each(|_| Taylor::new(epsilon).step(system, 0.0, h, &mut state).map(|_| ()));
+    let made = (0..3).try_for_each(|_| Taylor::of(system, epsilon).unwrap().step(system, 0.0, h, &mut state).map(|_| ()));
     made.ok().map(|()| state)
 }
 
@@ -39,7 +43,7 @@ proptest! {
             With { body: body(i), effects: Bowl::new([members[i].3; 2], center).unwrap() }
         });
         let wells: [_; W] = std::array::from_fn(|i| RoundWell::new(body(i), members[i].3, center).unwrap());
-        fn check<Sys: System<3, 1>>(systems: &[Sys; W], h: f64, state: LaneState<3, W>) {
+        fn check<Sys: System<3, 1> + InOwnAxes>(systems: &[Sys; W], h: f64, state: LaneState<3, W>) {
             let mut ensemble = TaylorEnsemble::new(&Each(systems), (h, 1e-14), state).unwrap();
             ensemble.advance(3);
             for lane in 0..W {

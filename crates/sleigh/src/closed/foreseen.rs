@@ -1,7 +1,8 @@
-use crate::differences::after_next;
-use crate::half_turn::series;
-use crate::heading::Heading;
-use lagrangian::{Memory, from_fn};
+use super::differences::after_next;
+use super::half_turn::series;
+use super::heading::Heading;
+use super::Memory;
+use lagrangian::from_fn;
 
 /// What a step of a map with `P` unknowns, the last of which is the mean spin, leaves to the next, which changes it in place.
 #[derive(Debug)]

@@ -1,5 +1,5 @@
-use crate::taylor::series::{ORDER, RECIPROCALS};
-use lagrangian::OwnAxes;
+use super::OwnAxes;
+use super::coefficients::{ORDER, RECIPROCALS};
 use lagrangian::simd::{Pack, Simd};
 
 /// The numbers of [`OwnAxes`], of eight trajectories.
@@ -29,7 +29,7 @@ impl<S: Simd, const R: usize> Axes<S, R> {
     }
 }
 
-/// The series of eight trajectories: [`Series`](crate::taylor::series::Series) with a register for every unknown.
+/// The series of eight trajectories: [`Series`](super::coefficients::Series) with a register for every unknown.
 pub(super) struct Eight<S: Simd, const R: usize> {
     pub(super) omega: [Pack<S, R>; ORDER + 1],
     pub(super) u: [Pack<S, R>; ORDER + 1],

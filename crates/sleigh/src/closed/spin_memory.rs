@@ -1,6 +1,6 @@
-use crate::foreseen::Foreseen;
-use crate::heading::NO_HEADING;
-use lagrangian::Memory;
+use super::foreseen::Foreseen;
+use super::heading::NO_HEADING;
+use super::Memory;
 
 /// As many differences of the spins are kept, with the last one itself.
 const KEPT: usize = 6;

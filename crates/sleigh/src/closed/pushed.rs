@@ -1,9 +1,10 @@
 use crate::Sleigh;
-use crate::closed_map::recovered;
-use crate::half_turn::{half_turn, turned};
-use crate::mean_equations::{Matrix, MeanEquations, Point};
-use crate::mean_memory::remembered;
-use lagrangian::{ClosedStep, Push, Start, from_fn, mul_add};
+use super::free::recovered;
+use super::half_turn::{half_turn, turned};
+use super::mean_equations::{Matrix, MeanEquations, Point};
+use super::mean_memory::remembered;
+use super::{ClosedStep, Push, Start};
+use lagrangian::{from_fn, mul_add};
 
 /// A turn in one step (rad) beyond which the general step looks for what continues the motion.
 const NEAR: f64 = 1.0;

@@ -1,12 +1,18 @@
-mod crossing;
-pub(crate) mod pace;
-pub(crate) mod place;
-pub(crate) mod series;
+//! Taylor series of motions in the axes of the sleigh: an integrator of the sleigh's own.
 
-use crate::{Mechanics, OneStep, OwnStep, State, StepError, StepReport};
-use crossing::Crossing;
-pub(crate) use crossing::{Crossed, MAX_STEPS};
-use lagrangian::OwnAxes;
+mod coefficients;
+mod crossing;
+mod eight;
+mod ensemble;
+mod own_axes;
+mod pace;
+mod place;
+
+pub use ensemble::TaylorEnsemble;
+pub use own_axes::{InOwnAxes, Origin, OwnAxes, OwnPush, PushInOwnAxes};
+
+use crossing::{Crossed, Crossing, MAX_STEPS};
+use dla::{Mechanics, OneStep, OwnStep, State, StepError, StepReport};
 use lagrangian::simd::in_fours;
 use place::{increment, place};
 use std::ops::ControlFlow;
@@ -14,30 +20,32 @@ use std::ops::ControlFlow;
 /// Taylor series of the reduced motion in the body's own axes, with steps of its own within a step of the schedule, as many as a
 /// tolerance asks for: what a motion of second degree costs least by.
 ///
-/// Where the equations are [of second degree in axes that turn with the body](Mechanics::own_axes), a coefficient of the series is a
+/// Where the equations are [of second degree in axes that turn with the body](InOwnAxes), a coefficient of the series is a
 /// sum of products of those before, of all four unknowns in one register; twenty of them take 130 ns. The velocity is
 /// on the constraint by construction. The method is explicit: neither symmetric nor variational, and it keeps energy and momenta to
-/// its tolerance only. For long runs see [`Gauss`](crate::Gauss).
+/// its tolerance only. For long runs see [`Gauss`](dla::Gauss).
 ///
-/// Systems without such equations are refused with [`StepError::Unsupported`].
+/// It has the equations of the body that it is made of, and is to be driven on this body.
 ///
 /// (Jorba and Zou 2005, Experimental Mathematics 14, 99-117.)
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Taylor {
+    axes: OwnAxes,
     tolerance: f64,
 }
 
 impl Taylor {
     /// The order of the method.
-    pub const ORDER: usize = series::ORDER;
+    pub const ORDER: usize = coefficients::ORDER;
     /// Steps within an interval before it is given up.
     pub const MAX_STEPS: u32 = MAX_STEPS;
 
-    /// The method with the tolerance `epsilon`: the error of a step is kept near `epsilon (1 + |(u, omega)|)`, as far as the terms of
-    /// the series fall off evenly. Rounding is larger where it is below some `1e-15`; it is taken to be no less than `1e-31`.
+    /// The method for this body with the tolerance `epsilon`: the error of a step is kept near `epsilon (1 + |(u, omega)|)`, as far as
+    /// the terms of the series fall off evenly. Rounding is larger where it is below some `1e-15`; it is taken to be no less than
+    /// `1e-31`. None where the body has no such equations.
     #[must_use]
-    pub fn new(epsilon: f64) -> Self {
-        Self { tolerance: epsilon }
+    pub fn of(body: &impl InOwnAxes, epsilon: f64) -> Option<Self> {
+        Some(Self { axes: body.own_axes()?, tolerance: epsilon })
     }
 }
 
@@ -52,12 +60,7 @@ struct Departure<'a> {
 
 impl<'a> Departure<'a> {
     #[inline(always)]
-    fn new(system: &dyn Mechanics<3, 1>, t: f64, state: &'a State<3>) -> Result<Self, StepError> {
-        let Some(axes) = system.own_axes() else {
-            return Err(StepError::Unsupported {
-                reason: "series need equations of second degree in axes that turn with the body",
-            });
-        };
+    fn new(axes: OwnAxes, system: &dyn Mechanics<3, 1>, t: f64, state: &'a State<3>) -> Result<Self, StepError> {
         let (q0, [u, omega, _]) = (*state.q(), state.quasi_velocities(system, t)?);
         let place = place(axes.origin, &q0);
         Ok(Self { axes, state, place, start: [omega, u, place[1], place[0]] })
@@ -89,7 +92,7 @@ impl OneStep<3, 1> for Taylor {
         h: f64,
         state: &mut State<3>,
     ) -> Result<StepReport<1>, StepError> {
-        let from = Departure::new(system, t, state)?;
+        let from = Departure::new(self.axes, system, t, state)?;
         let (axes, start, tolerance) = (from.axes, from.start, self.tolerance);
         let see = |_, _| ControlFlow::Continue(());
         let crossed = in_fours(Crossing { axes, start, whole: h, tolerance, see })?;
@@ -105,7 +108,7 @@ impl OneStep<3, 1> for Taylor {
         _memory: &mut Vec<f64>,
         see: &mut OwnStep<'_, 3>,
     ) -> Result<(), StepError> {
-        let from = Departure::new(system, t, state)?;
+        let from = Departure::new(self.axes, system, t, state)?;
         let (axes, start, tolerance, mut failure) = (from.axes, from.start, self.tolerance, None);
         let see = |made: f64, crossed: Crossed| match from.moved(system, t + made, &crossed) {
             Ok(state) => see(t + made, &state),

@@ -1,5 +1,5 @@
+use super::Origin;
 use super::crossing::Crossed;
-use lagrangian::Origin;
 
 /// The place `(X, Y)` in axes of this heading, from a place on the plane.
 #[inline(always)]

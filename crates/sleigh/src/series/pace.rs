@@ -1,7 +1,6 @@
-use super::series::ORDER;
-use crate::octaves::{octaves, of_octaves};
-use crate::state::two_sum;
+use super::coefficients::ORDER;
 use lagrangian::linear::larger;
+use lagrangian::{octaves, of_octaves, two_sum};
 
 /// A step is as long as this term and the one before allow, since the last ones come late.
 pub(crate) const LOOKED_AT: usize = ORDER - 2;

@@ -1,7 +1,8 @@
-use crate::closed_map::{Found, settled};
-use crate::spin_equation::SpinEquation;
-use crate::spin_memory::{SpinNumbers, with_digits};
-use lagrangian::{ClosedStepError, mul_add};
+use super::free::{Found, settled};
+use super::spin_equation::SpinEquation;
+use super::spin_memory::{SpinNumbers, with_digits};
+use dla::ClosedStepError;
+use lagrangian::mul_add;
 
 /// A spin below this (rad/s), for every metre a second of speed, loses digits in its products with the step: `h m a w/(2 J)` is
 /// rounded to multiples of the least number there is, 4.9e-324, and multiplied by the speed.

@@ -1,4 +1,5 @@
-use lagrangian::{ClosedStepError, mul_add};
+use dla::ClosedStepError;
+use lagrangian::mul_add;
 use std::f64::consts::FRAC_PI_2;
 
 /// The series of `sin d = d + d^3 (s_0 + s_1 d^2 + ..)` and `cos d = 1 - d^2/2 + d^4 (c_0 + c_1 d^2 + ..)`.

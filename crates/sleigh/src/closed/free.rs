@@ -1,7 +1,10 @@
-use crate::spin_equation::SpinEquation;
-use crate::spin_memory::{SpinNumbers, remembered};
-use crate::{Sleigh, least_spin};
-use lagrangian::{ClosedStep, ClosedStepError, Start, mul_add, sin_cos_wrapped};
+use super::spin_equation::SpinEquation;
+use super::spin_memory::{SpinNumbers, remembered};
+use super::least_spin;
+use crate::Sleigh;
+use super::{ClosedStep, Start};
+use dla::ClosedStepError;
+use lagrangian::{mul_add, sin_cos_wrapped};
 
 const MAX_ITERATIONS: u32 = 30;
 /// A part of the spin by which an expected one may differ from that before.

@@ -1,13 +1,15 @@
 /// About the binary logarithm of a positive number, at most .09 below it: good enough for the length of a step, and four
 /// instructions.
 #[inline(always)]
-pub(crate) fn octaves(x: f64) -> f64 {
+#[must_use]
+pub fn octaves(x: f64) -> f64 {
     (x.to_bits() as i64 - 1.0f64.to_bits() as i64) as f64 / (1u64 << 52) as f64
 }
 
 /// The number of so many octaves, of which there may be a thousand: the inverse of [`octaves`].
 #[inline(always)]
-pub(crate) fn of_octaves(octaves: f64) -> f64 {
+#[must_use]
+pub fn of_octaves(octaves: f64) -> f64 {
     f64::from_bits(((octaves * (1u64 << 52) as f64) as i64).wrapping_add(1.0f64.to_bits() as i64) as u64)
 }
 

@@ -1,3 +1,7 @@
+use crate::Sleigh;
+use crate::effects::{Drag, EggCrate, Hills, MovingMass, Slope};
+use lagrangian::With;
+
 /// The reduced equations of a body on the plane in axes that turn with it, where they are of second degree and have the turn rate
 /// for their only factor:
 ///
@@ -76,3 +80,71 @@ impl OwnAxes {
         Some(Self { origin, along, turning, ..self })
     }
 }
+
+/// A body whose reduced equations are of second degree in axes that turn with it, or may be.
+pub trait InOwnAxes {
+    /// The equations, the reduced ones of the body ([`System::reduced_motion`](lagrangian::System::reduced_motion)) in other words; none
+    /// where they are not of this form.
+    fn own_axes(&self) -> Option<OwnAxes>;
+}
+
+/// An effect whose force may be of the first degree, and constant in time, in axes that turn with a body.
+pub trait PushInOwnAxes<B> {
+    /// The force; none where it is not of this form.
+    fn in_own_axes(&self, _body: &B) -> Option<OwnPush> {
+        None
+    }
+}
+
+impl InOwnAxes for Sleigh {
+    fn own_axes(&self) -> Option<OwnAxes> {
+        Some(OwnAxes {
+            origin: Origin::Anywhere,
+            inverse: self.inverse(),
+            lead: self.offset(),
+            gain: self.spin_gain(),
+            along: [0.0; 2],
+            turning: [0.0; 2],
+        })
+    }
+}
+
+impl<B: InOwnAxes, E: PushInOwnAxes<B>> InOwnAxes for With<B, E> {
+    fn own_axes(&self) -> Option<OwnAxes> {
+        self.body.own_axes()?.pushed(self.effects.in_own_axes(&self.body)?)
+    }
+}
+
+/// No force.
+impl<B> PushInOwnAxes<B> for () {
+    fn in_own_axes(&self, _body: &B) -> Option<OwnPush> {
+        Some(OwnPush::NOTHING)
+    }
+}
+
+impl<B, E: PushInOwnAxes<B>> PushInOwnAxes<B> for Vec<E> {
+    fn in_own_axes(&self, body: &B) -> Option<OwnPush> {
+        self.iter().try_fold(OwnPush::NOTHING, |sum, effect| sum.and(effect.in_own_axes(body)?))
+    }
+}
+
+macro_rules! tuple_of_pushes {
+    ($($effect:ident $index:tt),+) => {
+        impl<B, $($effect: PushInOwnAxes<B>),+> PushInOwnAxes<B> for ($($effect,)+) {
+            fn in_own_axes(&self, body: &B) -> Option<OwnPush> {
+                let sum = OwnPush::NOTHING;
+                $(let sum = sum.and(self.$index.in_own_axes(body)?)?;)+
+                Some(sum)
+            }
+        }
+    };
+}
+tuple_of_pushes!(E0 0);
+tuple_of_pushes!(E0 0, E1 1);
+tuple_of_pushes!(E0 0, E1 1, E2 2);
+tuple_of_pushes!(E0 0, E1 1, E2 2, E3 3);
+
+macro_rules! not_of_this_form {
+    ($($effect:ident)*) => { $(impl<B> PushInOwnAxes<B> for $effect {})* };
+}
+not_of_this_form!(Slope EggCrate Hills Drag MovingMass);

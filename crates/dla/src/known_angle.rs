@@ -1,4 +1,4 @@
-use crate::{Function, Scalar, array};
+use lagrangian::{Function, Scalar, array};
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A number that may be an angle whose sine and cosine are known already: what is computed from it as from any other then

@@ -1,0 +1,112 @@
+use super::push::Pushing;
+use super::{ClosedStep, Push, Start, free, pushed};
+use crate::{Flywheel, Guided, Sleigh};
+use dla::ClosedStepError;
+use lagrangian::{Effect, System, With};
+
+/// A body whose step by the midpoint discrete Lagrange-d'Alembert map is known in closed form, or may be.
+///
+/// The step agrees with the general one of [`Dla`](dla::Dla) to round-off; it exists for its speed, and for the digits that a closed form
+/// keeps.
+pub trait ClosedForm<const N: usize, const M: usize>: System<N, M> {
+    /// Whether [`closed_step`](Self::closed_step) gives anything.
+    fn has_closed_form(&self) -> bool;
+
+    /// One step of length `h` (s) from the time `t`; none where the general step is to be made.
+    fn closed_step(&self, t: f64, h: f64, start: Start<'_, N>) -> Option<Result<ClosedStep<N, M>, ClosedStepError>>;
+
+    /// Whether [`pushed_step`](Self::pushed_step) gives anything.
+    #[inline(always)]
+    fn has_pushed_form(&self) -> bool {
+        false
+    }
+
+    /// The same step with one more generalised force, taken in the middle of the step at the mean velocity.
+    ///
+    /// None where it is not known, not found quickly, or where the force may overshoot: the general step is then made.
+    #[inline(always)]
+    fn pushed_step<P: Push<N>>(&self, _t: f64, _h: f64, _start: Start<'_, N>, _push: &P) -> Option<ClosedStep<N, M>> {
+        None
+    }
+}
+
+impl ClosedForm<3, 1> for Sleigh {
+    #[inline(always)]
+    fn has_closed_form(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn closed_step(&self, _t: f64, h: f64, start: Start<'_, 3>) -> Option<Result<ClosedStep<3, 1>, ClosedStepError>> {
+        Some(free::step(self, h, start))
+    }
+
+    #[inline(always)]
+    fn has_pushed_form(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn pushed_step<P: Push<3>>(&self, t: f64, h: f64, start: Start<'_, 3>, push: &P) -> Option<ClosedStep<3, 1>> {
+        pushed::step(self, (t, h), start, push)
+    }
+}
+
+/// Nothing is known of it in closed form.
+impl<const K: usize, const M: usize> ClosedForm<3, M> for Guided<K>
+where
+    Self: System<3, M>,
+{
+    #[inline(always)]
+    fn has_closed_form(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn closed_step(&self, _t: f64, _h: f64, _start: Start<'_, 3>) -> Option<Result<ClosedStep<3, M>, ClosedStepError>> {
+        None
+    }
+}
+
+/// On a free bearing the body's own, and the rotor keeps its absolute rate.
+impl<B: ClosedForm<3, M>, const M: usize> ClosedForm<4, M> for Flywheel<B> {
+    #[inline(always)]
+    fn has_closed_form(&self) -> bool {
+        self.torque().is_none() && M == 1 && self.body().has_closed_form()
+    }
+
+    #[inline(always)]
+    fn closed_step(&self, t: f64, h: f64, start: Start<'_, 4>) -> Option<Result<ClosedStep<4, M>, ClosedStepError>> {
+        if self.torque().is_some() || M != 1 {
+            return None;
+        }
+        let of_body = |[x, y, theta, _]: [f64; 4]| [x, y, theta];
+        let Start { q, v, xi, memory } = start;
+        let spin = xi.map_or_else(|| v[2] + v[3], |xi| xi[2]);
+        let (q, v, xi) = (of_body(*q), of_body(*v), xi.map(of_body));
+        let body = self.body().closed_step(t, h, Start { q: &q, v: &v, xi, memory })?;
+        let with_rotor = |[x, y, theta]: [f64; 3], rotor| [x, y, theta, rotor];
+        Some(body.map(|step| ClosedStep {
+            increment: with_rotor(step.increment, h * spin - step.increment[2]),
+            velocity: with_rotor(step.velocity, spin - step.velocity[2]),
+            xi: [step.xi[0], step.xi[1], spin, 0.0],
+            impulses: step.impulses,
+            iterations: step.iterations,
+        }))
+    }
+}
+
+impl<B: ClosedForm<N, M>, E: Effect<B, N>, const N: usize, const M: usize> ClosedForm<N, M> for With<B, E> {
+    #[inline(always)]
+    fn has_closed_form(&self) -> bool {
+        if self.effects.is_none() { self.body.has_closed_form() } else { self.body.has_pushed_form() }
+    }
+
+    #[inline(always)]
+    fn closed_step(&self, t: f64, h: f64, start: Start<'_, N>) -> Option<Result<ClosedStep<N, M>, ClosedStepError>> {
+        if self.effects.is_none() {
+            return self.body.closed_step(t, h, start);
+        }
+        self.body.pushed_step(t, h, start, &Pushing(self)).map(Ok)
+    }
+}
