@@ -112,7 +112,7 @@ impl Run<'_> {
     ) -> Result<Schedule, RunError> {
         let schedule = inspect::schedule(self.scene);
         let Some(tolerance) = self.request.tolerance else { return Ok(schedule) };
-        let found = recommend(system, &self.method.undivided(), start, self.scene.run.duration, tolerance);
+        let found = recommend(&system, &self.method.undivided(), start, self.scene.run.duration, tolerance);
         let found = found.map_err(|error| RunError { message: error.to_string(), request: false })?;
         Ok(Schedule { step: found.step, steps: found.steps, ..schedule })
     }
@@ -128,7 +128,7 @@ impl Run<'_> {
         let mut samples = Samples::new(Again(&self.method), times);
         let mut state = State::new(*q, *v, system.angles());
         // Why a run ends early is what the run that was watched has told.
-        let _ = integrate_on(system, &self.method, schedule, &mut state, &mut samples, shown);
+        let _ = integrate_on(&system, &self.method, schedule, &mut state, &mut samples, shown);
         let node = |(t, state): (&f64, &State<N>)| {
             let (q, v) = (state.unwrapped(), *state.v());
             let piece = system.scene_piece(*t);
@@ -162,7 +162,7 @@ impl Visitor for Run<'_> {
         let keep = times.is_empty().then_some(*every);
         let looked_for = (&looked_for[..], EVENT_SAMPLES);
         let Watched { record, trajectory, crossings, close } =
-            run_watched(system, &self.method, &request, looked_for, keep, &mut shown);
+            run_watched(&system, &self.method, &request, looked_for, keep, &mut shown);
         let sampled = if trajectory.is_none() { self.sampled(system, &request, &mut shown) } else { Vec::new() };
         let nodes = trajectory.as_ref().map_or(&sampled[..], Trajectory::nodes);
 
