@@ -65,7 +65,8 @@ fn straight_motion_is_exact() {
     let sleigh = sleigh();
     for speed in [1.0, -1.0] {
         let start = SleighState { speed, heading: 0.3, ..SleighState::default() };
-        let end = sleigh_state(&advanced(&sleigh, &mut ClosedMap::of(sleigh), 0.05, 100_000, state_of(&sleigh, &start)));
+        let end =
+            sleigh_state(&advanced(&sleigh, &mut ClosedMap::of(sleigh), 0.05, 100_000, state_of(&sleigh, &start)));
         assert_eq!(end.turn_rate, 0.0);
         assert_eq!(end.heading, 0.3);
         assert!((end.speed - speed).abs() < 1e-15);

@@ -1,7 +1,7 @@
 use crate::Mechanics;
 use lagrangian::{
-    AdmissibleBasis, AnyRule, Derivatives, DiscreteConstraint, DiscreteLagrangian, Dual, HyperDual, Rounded,
-    Rule, System, from_fn, on_line,
+    AdmissibleBasis, AnyRule, Derivatives, DiscreteConstraint, DiscreteLagrangian, Dual, HyperDual, Rounded, Rule,
+    System, from_fn, on_line,
 };
 
 /// A discrete Lagrangian and a discrete constraint, as the equations of a step ask for them: in numbers.

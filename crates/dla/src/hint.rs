@@ -1,6 +1,6 @@
 use crate::{ClosedStepError, Derivative, History, NewtonError, NotANumber, RunError, Stage, StepError};
-use lagrangian::linear::Singular;
 use lagrangian::ReducedError;
+use lagrangian::linear::Singular;
 use std::fmt;
 
 /// What to change after a failure, as far as the failure tells.

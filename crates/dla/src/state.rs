@@ -154,12 +154,7 @@ impl<const N: usize> State<N> {
     /// # Errors
     /// [`StepError::NotFinite`]; the state is then as it was.
     #[inline(always)]
-    pub fn advance_where_finite(
-        &mut self,
-        increment: &[f64; N],
-        v: [f64; N],
-        xi: [f64; N],
-    ) -> Result<(), StepError> {
+    pub fn advance_where_finite(&mut self, increment: &[f64; N], v: [f64; N], xi: [f64; N]) -> Result<(), StepError> {
         let (mut q, mut rest, mut within) = ([0.0; N], [0.0; N], true);
         for i in 0..N {
             (q[i], rest[i]) = added(self.q[i], increment[i] + self.rest[i]);

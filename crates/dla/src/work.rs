@@ -1,7 +1,7 @@
 use crate::hermite::Hermite;
 use crate::{Checkpoint, CheckpointError, Observer, State, StepReport, View};
-use lagrangian::{from_fn, two_sum};
 use lagrangian::quadrature::gauss_legendre;
+use lagrangian::{from_fn, two_sum};
 use std::ops::ControlFlow;
 
 /// The work done on a system since the start of a run (J), so that `E(t) - E(0) - work` is the error of the energy.

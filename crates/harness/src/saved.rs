@@ -2,9 +2,7 @@ use crate::record::Meter;
 use crate::substeps::substepped_part;
 use crate::timing::Ticker;
 use crate::{Method, Progress, Record, Request};
-use dla::{
-    Checkpoint, CheckpointError, Part, Schedule, State, Subject, Trajectory, Work, piece_by_piece_from,
-};
+use dla::{Checkpoint, CheckpointError, Part, Schedule, State, Subject, Trajectory, Work, piece_by_piece_from};
 use std::ops::Range;
 use std::time::Instant;
 

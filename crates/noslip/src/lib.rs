@@ -19,16 +19,15 @@
 #[cfg(feature = "assembly")]
 pub use assembly;
 pub use dla::{
-    self, Checkpoint, CheckpointError, ClosedStepError, Crossing, Direction, Dla, Equations, Event, Form, Hermite, Hint, History,
-    InChart, Mechanics, Newton, NewtonError, Node, NotANumber, Observer, OneStep, RecommendError, Recommendation,
-    RunError, Samples, Schedule, Sensitivity, Stage, State, StepError, StepReport, Trajectory, View, Watch,
-    consistent_start, drive, recommend_step,
+    self, Checkpoint, CheckpointError, ClosedStepError, Crossing, Direction, Dla, Equations, Event, Form, Hermite,
+    Hint, History, InChart, Mechanics, Newton, NewtonError, Node, NotANumber, Observer, OneStep, RecommendError,
+    Recommendation, RunError, Samples, Schedule, Sensitivity, Stage, State, StepError, StepReport, Trajectory, View,
+    Watch, consistent_start, drive, recommend_step,
 };
 pub use lagrangian::{
-    self, AdmissibleBasis, Alpha, Attitude, Constraint, Derivatives, DiscreteConstraint,
-    DiscreteLagrangian, Dual, Effect, Function, HyperDual, Lanes, Member, Midpoint, Motion, MotionError, Parametrised,
-    Rule, Scalar, Symmetrised, System, Trapezoid, With, classify, constraint_residual, energy, mass_matrix, momentum,
-    vectorized,
+    self, AdmissibleBasis, Alpha, Attitude, Constraint, Derivatives, DiscreteConstraint, DiscreteLagrangian, Dual,
+    Effect, Function, HyperDual, Lanes, Member, Midpoint, Motion, MotionError, Parametrised, Rule, Scalar, Symmetrised,
+    System, Trapezoid, With, classify, constraint_residual, energy, mass_matrix, momentum, vectorized,
 };
 pub use sleigh::{self, CentreOfMass, ClosedMap, Exact, Sleigh, SleighError, SleighState};
 

@@ -1,7 +1,7 @@
 //! How long the next step may be.
 use super::rule::{LONGER, SHORTER};
-use lagrangian::octaves;
 use lagrangian::linear::larger;
+use lagrangian::octaves;
 
 /// The largest roughness of a step at the tolerance one.
 const SMOOTHNESS: f64 = 2.0;

@@ -5,10 +5,10 @@ use crate::gauss::{Collocation, Outcome, collocate};
 use lagrangian::linear::Singular;
 use lagrangian::{
     AdmissibleBasis, Bracket, Constraint, ConstraintSlopes, Dual, EnergySlope, HyperDual, Lanes, Motion, MotionError,
-    ReducedError, ReducedSlope, System, add_position_curvature, add_reaction_curvature, constraint_residual,
-    energy, energy_slope, force_power, from_fn, gradients, inverse_reduced_mass, lagrangian_power, linear_basis,
-    mass_matrix, momentum, position_misses, quasi_velocities, reaction_rows, reduced_slope, residual_along,
-    second_at_node, second_in_both, second_in_place, vectorized, velocity_of,
+    ReducedError, ReducedSlope, System, add_position_curvature, add_reaction_curvature, constraint_residual, energy,
+    energy_slope, force_power, from_fn, gradients, inverse_reduced_mass, lagrangian_power, linear_basis, mass_matrix,
+    momentum, position_misses, quasi_velocities, reaction_rows, reduced_slope, residual_along, second_at_node,
+    second_in_both, second_in_place, vectorized, velocity_of,
 };
 
 impl<Sys: System<N, M>, const N: usize, const M: usize> Mechanics<N, M> for Sys {

@@ -6,7 +6,10 @@ use super::verdict::{Evidence, MotionVerdict};
 use crate::run::integrate_pieces;
 use crate::timing::Ticker;
 use crate::{Method, Progress};
-use dla::{FullMechanics, Observer, OwnMethods, RunError, Schedule, SeededMechanics, SensitivityError, State, Subject, TangentRunError};
+use dla::{
+    FullMechanics, Observer, OwnMethods, RunError, Schedule, SeededMechanics, SensitivityError, State, Subject,
+    TangentRunError,
+};
 use thiserror::Error;
 
 /// What exponents are asked for.

@@ -27,6 +27,7 @@ pub fn section<'a, const N: usize, const M: usize>(
     let subject = subject.into();
     let mut watch = Watch::new(Again { method, own: subject.own }, std::slice::from_ref(surface), ());
     watch.samples = SAMPLES;
-    let outcome = integrate_pieces(subject, method, schedule, &mut State::new(q, v, subject.system.angles()), &mut watch);
+    let outcome =
+        integrate_pieces(subject, method, schedule, &mut State::new(q, v, subject.system.angles()), &mut watch);
     Section { crossings: watch.crossings().to_vec(), close: watch.close(), failure: outcome.err() }
 }

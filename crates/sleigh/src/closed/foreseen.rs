@@ -1,7 +1,7 @@
+use super::Memory;
 use super::differences::after_next;
 use super::half_turn::series;
 use super::heading::Heading;
-use super::Memory;
 use lagrangian::from_fn;
 
 /// What a step of a map with `P` unknowns, the last of which is the mean spin, leaves to the next, which changes it in place.

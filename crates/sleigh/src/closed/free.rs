@@ -1,8 +1,8 @@
+use super::least_spin;
 use super::spin_equation::SpinEquation;
 use super::spin_memory::{SpinNumbers, remembered};
-use super::least_spin;
-use crate::Sleigh;
 use super::{ClosedStep, Start};
+use crate::Sleigh;
 use dla::ClosedStepError;
 use lagrangian::{mul_add, sin_cos_wrapped};
 

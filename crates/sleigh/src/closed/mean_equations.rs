@@ -1,6 +1,6 @@
-use crate::Sleigh;
-use super::half_turn::{half_turn, turned};
 use super::Push;
+use super::half_turn::{half_turn, turned};
+use crate::Sleigh;
 use dla::KnownAngle;
 use lagrangian::{Dual, from_fn, mul_add};
 

@@ -1,7 +1,7 @@
+use super::Memory;
 use super::foreseen::Foreseen;
 use super::half_turn::half_turn;
 use super::heading::NO_HEADING;
-use super::Memory;
 
 /// As many differences of the mean velocities are kept, with the last ones themselves.
 const KEPT: usize = 8;

@@ -1,9 +1,9 @@
-use crate::Sleigh;
 use super::free::recovered;
 use super::half_turn::{half_turn, turned};
 use super::mean_equations::{Matrix, MeanEquations, Point};
 use super::mean_memory::remembered;
 use super::{ClosedStep, Push, Start};
+use crate::Sleigh;
 use lagrangian::{from_fn, mul_add};
 
 /// A turn in one step (rad) beyond which the general step looks for what continues the motion.

@@ -1,5 +1,5 @@
-use crate::Sleigh;
 use super::half_turn::half_turn;
+use crate::Sleigh;
 use dla::ClosedStepError;
 use lagrangian::mul_add;
 

@@ -1,6 +1,6 @@
+use super::Memory;
 use super::foreseen::Foreseen;
 use super::heading::NO_HEADING;
-use super::Memory;
 
 /// As many differences of the spins are kept, with the last one itself.
 const KEPT: usize = 6;

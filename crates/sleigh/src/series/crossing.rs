@@ -1,6 +1,6 @@
-use super::pace::{Interval, LOOKED_AT, Pace, size};
 use super::OwnAxes;
 use super::coefficients::{Equations, ORDER, Series};
+use super::pace::{Interval, LOOKED_AT, Pace, size};
 use dla::StepError;
 use lagrangian::simd::{Four, FourKernel};
 use lagrangian::two_sum;

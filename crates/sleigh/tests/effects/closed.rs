@@ -270,7 +270,10 @@ fn sines_have_all_their_digits() {
 fn a_driven_rotor_is_not_closed() {
     let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
     let rotor = |torque| Flywheel::new(body, 0.2, torque).unwrap();
-    assert!(ClosedForm::<4, 1>::has_closed_form(&rotor(None)) && !ClosedForm::<4, 1>::has_closed_form(&rotor(Some(0.3.into()))));
+    assert!(
+        ClosedForm::<4, 1>::has_closed_form(&rotor(None))
+            && !ClosedForm::<4, 1>::has_closed_form(&rotor(Some(0.3.into())))
+    );
     let servo = Guided::<1>::servo(body, Guide::Speed(0.7.into())).unwrap();
     assert!(!ClosedForm::<3, 2>::has_closed_form(&servo));
     let thrust = || Thrust::new(0.1).unwrap();

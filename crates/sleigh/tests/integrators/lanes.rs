@@ -17,7 +17,8 @@ where
 {
     let v = velocity_of(system, 0.0, &q, &xi).unwrap();
     let mut state = State::new(q, v, system.angles());
-    let made = (0..3).try_for_each(|_| Taylor::of(system, epsilon).unwrap().step(system, 0.0, h, &mut state).map(|_| ()));
+    let made =
+        (0..3).try_for_each(|_| Taylor::of(system, epsilon).unwrap().step(system, 0.0, h, &mut state).map(|_| ()));
     made.ok().map(|()| state)
 }
 

@@ -20,7 +20,8 @@ fn well() -> With<Sleigh, Bowl> {
 #[test]
 fn memories_after_other_steps_differ() {
     fn after<Sys: ClosedForm<3, 1> + Clone>(system: &Sys, steps: &[f64]) -> Vec<u64> {
-        let (mut map, mut state) = (ClosedMap::of(system.clone()), State::new([0.0; 3], [0.0; 3], [false, false, true]));
+        let (mut map, mut state) =
+            (ClosedMap::of(system.clone()), State::new([0.0; 3], [0.0; 3], [false, false, true]));
         for h in steps {
             map.step(system, 0.0, *h, &mut state).unwrap();
         }

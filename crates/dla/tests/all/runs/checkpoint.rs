@@ -1,7 +1,6 @@
 use crate::runs::{backward, sleigh, state_of};
 use dla::{
-    Checkpoint, CheckpointError, Composition, Dla, Gauss, Gni, OneStep, Schedule, State, Trajectory, Work,
-    drive_part,
+    Checkpoint, CheckpointError, Composition, Dla, Gauss, Gni, OneStep, Schedule, State, Trajectory, Work, drive_part,
 };
 use sleigh::ClosedMap;
 

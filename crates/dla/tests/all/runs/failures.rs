@@ -1,12 +1,18 @@
 use crate::runs::{sleigh, state_of};
-use dla::{Dla, Form, Gauss, Hint, History, Newton, OneStep, Schedule, Stage, State, StepError, Stepper, Trajectory, drive};
+use dla::{
+    Dla, Form, Gauss, Hint, History, Newton, OneStep, Schedule, Stage, State, StepError, Stepper, Trajectory, drive,
+};
 use lagrangian::{Constraint, Scalar, System};
 use sleigh::{ClosedMap, SleighState};
 
 /// The midpoint map by the closed form of the sleigh, in the basis and with multipliers.
 fn forms() -> [(&'static str, Stepper<'static, 3, 1>); 3] {
     let multipliers = Dla::midpoint().solved(Form::Multipliers);
-    [("closed", Box::new(ClosedMap::of(sleigh()))), ("basis", Box::new(Dla::midpoint())), ("multipliers", Box::new(multipliers))]
+    [
+        ("closed", Box::new(ClosedMap::of(sleigh()))),
+        ("basis", Box::new(Dla::midpoint())),
+        ("multipliers", Box::new(multipliers)),
+    ]
 }
 
 fn start(speed: f64, turn_rate: f64) -> SleighState {

@@ -1,9 +1,6 @@
 use crate::runs::{backward, sleigh};
 use approx::assert_abs_diff_eq;
-use dla::{
-    Each, Ensemble, Gauss, GaussAdaptive, GaussEnsemble, LaneState, OneStep, Same, Schedule,
-    State, drive,
-};
+use dla::{Each, Ensemble, Gauss, GaussAdaptive, GaussEnsemble, LaneState, OneStep, Same, Schedule, State, drive};
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, With, velocity_of};
 use proptest::prelude::*;
 use sleigh::effects::{Bowl, Torque};
