@@ -125,7 +125,7 @@ impl Run<'_> {
         shown: &mut Shown<'_>,
     ) -> Vec<Node<N, M>> {
         let times = &self.request.times;
-        let mut samples = Samples::new(Again(&self.method), times);
+        let mut samples = Samples::new(Again { method: &self.method, own: &system }, times);
         let mut state = State::new(*q, *v, system.angles());
         // Why a run ends early is what the run that was watched has told.
         let _ = integrate_on(&system, &self.method, schedule, &mut state, &mut samples, shown);

@@ -45,7 +45,7 @@ where
     Fleet<N, false>: Known<N, M>,
     Balls<N, false>: Known<N, M>,
 {
-    ends("in the basis", on_stack::<Fleet<N, true>, _, N, M>(STACK, || Dla::midpoint()), SECOND);
+    ends("in the basis", on_stack::<Fleet<N, true>, _, N, M>(STACK, Dla::midpoint), SECOND);
     ends(
         "multipliers",
         on_stack::<Fleet<N, true>, _, N, M>(STACK, || Dla::midpoint().solved(Form::Multipliers)),
