@@ -4,6 +4,7 @@ use crate::trigger::Trigger;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 use scene::Setting;
 use std::path::PathBuf;
+use std::str::FromStr;
 
 /// What the exit codes say, at the end of the help.
 const EXIT_CODES: &str = "Exit codes:
@@ -60,6 +61,10 @@ pub(crate) enum Command {
     List(ListArguments),
     /// Writes a commented scene to start from
     New(NewArguments),
+    /// Draws a run against time, and its path: .svg, .png or .pdf, of a size and a resolution to choose
+    ///
+    /// Of a scene, the run is made; of a file that `run --out` wrote, it is drawn.
+    Plot(PlotArguments),
     /// Compares two files of numbers, .csv or .npz: the largest difference in each column
     Diff(DiffArguments),
     /// Prints the completions of a shell
@@ -376,6 +381,67 @@ pub(crate) struct NewArguments {
     /// Overwrite a file that is there already
     #[arg(long)]
     pub(crate) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PlotArguments {
+    /// A file of a run, .csv or .npz; a scene file, the name of a bundled scene, or - for a scene on the standard input
+    #[arg(value_name = "FILE_OR_SCENE")]
+    pub(crate) input: String,
+    #[command(flatten)]
+    pub(crate) set: Settings,
+    /// Methods of the runs of a scene, separated by commas [default: the scene's]
+    #[arg(long, value_name = "M,..", value_delimiter = ',')]
+    pub(crate) methods: Option<Vec<String>>,
+    /// Largest step [s], instead of the scene's
+    #[arg(long, value_name = "H", allow_negative_numbers = true, value_parser = number)]
+    pub(crate) step: Option<f64>,
+    /// Duration [s], instead of the scene's
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = number)]
+    pub(crate) duration: Option<f64>,
+    /// Weight of `dla-alpha`, from 0 to 1
+    #[arg(long, value_name = "A", allow_negative_numbers = true, value_parser = number)]
+    pub(crate) alpha: Option<f64>,
+    /// What is drawn, separated by commas: columns of the file, and `path` [default: the path and what a reader looks at first]
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
+    pub(crate) columns: Option<Vec<String>>,
+    /// Width and height, in cm, mm or in
+    #[arg(long, value_name = "WxH", default_value = "17x20cm")]
+    pub(crate) size: Size,
+    /// Pixels to an inch of a .png
+    #[arg(long, value_name = "N", default_value_t = 300, allow_negative_numbers = true, value_parser = dpi)]
+    pub(crate) dpi: u32,
+    /// The picture: .svg, .png or .pdf, by the ending [default: the name of the scene or file, .svg]
+    #[arg(long, value_name = "PICTURE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Overwrite a picture that is there already
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+/// Width and height (cm).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Size(pub(crate) [f64; 2]);
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let units = [("cm", 1.0), ("mm", 0.1), ("in", 2.54)];
+        let found = units.iter().find_map(|(unit, length)| Some((text.trim().strip_suffix(unit)?, length)));
+        let sides = found.and_then(|(sides, unit)| Some((sides.split_once('x')?, unit)));
+        let length = |side: &str, unit: f64| side.trim().parse::<f64>().ok().map(|side| side * unit);
+        let size = sides.and_then(|((width, height), unit)| Some([length(width, *unit)?, length(height, *unit)?]));
+        let fits = |size: &[f64; 2]| size.iter().all(|side| (3.0..=200.0).contains(side));
+        size.filter(fits)
+            .map(Self)
+            .ok_or_else(|| "accepted is like 16x9cm, 160x90mm or 6.3x3.5in, from 3 to 200 cm".to_owned())
+    }
+}
+
+fn dpi(text: &str) -> Result<u32, &'static str> {
+    let dpi = text.trim().parse().ok().filter(|dpi| (30..=1200).contains(dpi));
+    dpi.ok_or("accepted is a whole number from 30 to 1200")
 }
 
 #[derive(Debug, Args)]

@@ -5,8 +5,17 @@ use std::fs::{self, File};
 use std::io::{Error, ErrorKind};
 use std::path::Path;
 
-/// The columns of a file, each with its name; a column of texts is not among them.
-pub(crate) type Columns = Vec<(String, Vec<f64>)>;
+/// A column of numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct NamedColumn {
+    pub(crate) name: String,
+    /// Where the file says it.
+    pub(crate) unit: Option<String>,
+    pub(crate) values: Vec<f64>,
+}
+
+/// The columns of a file; a column of texts is not among them.
+pub(crate) type Columns = Vec<NamedColumn>;
 
 /// Reads a file, by the ending of its name.
 pub(crate) fn read(path: &Path) -> Result<Columns, CliError> {
@@ -26,17 +35,22 @@ pub(crate) fn read(path: &Path) -> Result<Columns, CliError> {
 fn csv(text: &str) -> Columns {
     let mut lines = text.lines().filter(|line| !line.starts_with('#') && !line.is_empty());
     let names = lines.next().map_or_else(Vec::new, fields);
-    let mut columns: Vec<(String, Option<Vec<f64>>)> = Vec::new();
+    let mut columns: Vec<(String, Option<String>, Option<Vec<f64>>)> = Vec::new();
+    let mut seen: Vec<String> = Vec::new();
     for name in names {
-        let name = name.split(" [").next().unwrap_or_default().to_owned();
-        let copies = columns.iter().filter(|(other, _)| *other == name).count();
+        let (name, unit) = match name.split_once(" [") {
+            Some((name, unit)) => (name.to_owned(), Some(unit.trim_end_matches(']').to_owned())),
+            None => (name, None),
+        };
+        let copies = seen.iter().filter(|other| **other == name).count();
+        seen.push(name.clone());
         // Two columns of one name are told apart, as pandas does it.
         let name = if copies == 0 { name } else { format!("{name}.{copies}") };
-        columns.push((name, Some(Vec::new())));
+        columns.push((name, unit, Some(Vec::new())));
     }
     for line in lines {
         let cells = fields(line);
-        for (column, (_, values)) in columns.iter_mut().enumerate() {
+        for (column, (_, _, values)) in columns.iter_mut().enumerate() {
             // What is empty is not there.
             let cell = cells.get(column).map_or("", |cell| cell.trim());
             let number = if cell.is_empty() { Some(f64::NAN) } else { cell.parse().ok() };
@@ -46,7 +60,7 @@ fn csv(text: &str) -> Columns {
             });
         }
     }
-    columns.into_iter().filter_map(|(name, values)| Some((name, values?))).collect()
+    columns.into_iter().filter_map(|(name, unit, values)| Some(NamedColumn { name, unit, values: values? })).collect()
 }
 
 /// The fields of a line; those in quotes may have commas.
@@ -73,7 +87,7 @@ fn npz(path: &Path) -> Result<Columns, Error> {
         let array = npyz::NpyFile::new(file)?;
         // An array of texts is no column of numbers.
         if let Ok(values) = array.into_vec::<f64>() {
-            columns.push((name, values));
+            columns.push(NamedColumn { name, unit: None, values });
         }
     }
     Ok(columns)

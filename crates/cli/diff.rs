@@ -1,7 +1,7 @@
 //! `noslip diff`: how far two files of numbers are apart.
 
 use crate::args::DiffArguments;
-use crate::columns_file::{self, Columns};
+use crate::columns_file::{self, Columns, NamedColumn};
 use crate::error::CliError;
 use crate::{table, terminal};
 use serde_json::{Value, json};
@@ -21,8 +21,8 @@ pub(crate) fn diff(arguments: &DiffArguments) -> Result<(), CliError> {
     let [a, b] = [columns_file::read(first)?, columns_file::read(second)?];
     let differences: Vec<Difference> = a
         .iter()
-        .filter_map(|(name, values)| {
-            let others = b.iter().find(|(other, _)| other == name).map(|(_, others)| others)?;
+        .filter_map(|NamedColumn { name, values, .. }| {
+            let others = &b.iter().find(|other| other.name == *name)?.values;
             Some(largest(name, values, others))
         })
         .collect();
@@ -48,12 +48,12 @@ pub(crate) fn diff(arguments: &DiffArguments) -> Result<(), CliError> {
 }
 
 fn rows(columns: &Columns) -> usize {
-    columns.iter().map(|(_, values)| values.len()).max().unwrap_or(0)
+    columns.iter().map(|column| column.values.len()).max().unwrap_or(0)
 }
 
 /// The columns of one file that the other does not have.
 fn alone<'a>(one: &'a Columns, other: &'a Columns) -> impl Iterator<Item = &'a str> {
-    one.iter().map(|(name, _)| name.as_str()).filter(|name| !other.iter().any(|(other, _)| other == name))
+    one.iter().map(|column| column.name.as_str()).filter(|name| !other.iter().any(|other| other.name == *name))
 }
 
 /// Two that are no numbers are no difference; one that is none differs from every number.

@@ -31,6 +31,7 @@ mod parquet_file;
 mod part;
 mod phase;
 mod plane;
+mod plot;
 mod points_file;
 mod precision;
 mod precision_text;
@@ -100,6 +101,7 @@ fn command(arguments: Arguments) -> Result<(), CliError> {
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::List(arguments)) => inspect::list(&arguments),
         Some(Command::New(arguments)) => inspect::new(&arguments),
+        Some(Command::Plot(arguments)) => plot::plot(&arguments),
         Some(Command::Diff(arguments)) => diff::diff(&arguments),
         Some(Command::Completions { shell }) => completions::completions(shell),
         Some(Command::Man { command }) => completions::man(command.as_deref()),

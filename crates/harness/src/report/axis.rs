@@ -88,6 +88,26 @@ pub(super) fn margin(ticks: &[Tick]) -> f64 {
 
 /// The axes of a frame with their grid; the names stand at the ends, where they need no room of their own.
 pub(super) fn draw(canvas: &Canvas<'_>, frame: &Frame, ticks: [&[Tick]; 2], names: [&str; 2]) -> Drawn {
+    bare(canvas, frame, ticks)?;
+    canvas.text(names[0], [frame.right(), frame.bottom() + 32.0], Anchor::Right, SIZE)?;
+    canvas.text(names[1], [frame.left - 8.0, frame.top - 17.0], Anchor::Left, SIZE)
+}
+
+/// The same with the names along the middles of the axes, as journals have them; the upright one at a distance from its axis.
+pub(super) fn titled(
+    canvas: &Canvas<'_>,
+    frame: &Frame,
+    ticks: [&[Tick]; 2],
+    names: [&str; 2],
+    distance: f64,
+) -> Drawn {
+    bare(canvas, frame, ticks)?;
+    canvas.text(names[0], [frame.left + 0.5 * frame.width, frame.bottom() + 31.0], Anchor::Middle, SIZE)?;
+    canvas.upright_text(names[1], [frame.left - distance, frame.top + 0.5 * frame.height], SIZE)
+}
+
+/// The axes of a frame with their grid, without names.
+fn bare(canvas: &Canvas<'_>, frame: &Frame, ticks: [&[Tick]; 2]) -> Drawn {
     let (left, right, top, bottom) = (frame.left, frame.right(), frame.top, frame.bottom());
     let [across, up] = ticks;
     for (value, text) in across {
@@ -104,9 +124,7 @@ pub(super) fn draw(canvas: &Canvas<'_>, frame: &Frame, ticks: [&[Tick]; 2], name
             canvas.text(text, [left - 8.0, y], Anchor::Right, SIZE)?;
         }
     }
-    canvas.line(&[[left, top], [left, bottom], [right, bottom]], Ink::Text, AXIS, 1.2)?;
-    canvas.text(names[0], [right, bottom + 32.0], Anchor::Right, SIZE)?;
-    canvas.text(names[1], [left - 8.0, top - 17.0], Anchor::Left, SIZE)
+    canvas.line(&[[left, top], [left, bottom], [right, bottom]], Ink::Text, AXIS, 1.2)
 }
 
 /// An entry of a legend.

@@ -8,7 +8,7 @@ use super::look;
 use plotters::coord::Shift;
 use plotters::prelude::{DrawingArea, IntoDrawingArea, IntoFont, PathElement, Polygon, SVGBackend, Text};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{Color, RGBColor, ShapeStyle, TextStyle};
+use plotters::style::{Color, FontTransform, RGBColor, ShapeStyle, TextStyle};
 use std::cell::RefCell;
 use std::io;
 
@@ -56,9 +56,25 @@ pub(super) enum Anchor {
 /// Something drawn. All lengths are in units of the picture, from its upper left corner.
 #[derive(Debug, Clone)]
 pub(super) enum Mark {
-    Line { points: Vec<[f64; 2]>, ink: Ink, opacity: f64, width: f64 },
-    Area { points: Vec<[f64; 2]>, ink: Ink, opacity: f64 },
-    Text { text: String, at: [f64; 2], anchor: Anchor, size: f64 },
+    Line {
+        points: Vec<[f64; 2]>,
+        ink: Ink,
+        opacity: f64,
+        width: f64,
+    },
+    Area {
+        points: Vec<[f64; 2]>,
+        ink: Ink,
+        opacity: f64,
+    },
+    /// Upright: read from below to above.
+    Text {
+        text: String,
+        at: [f64; 2],
+        anchor: Anchor,
+        size: f64,
+        upright: bool,
+    },
 }
 
 /// What a picture is drawn on.
@@ -94,7 +110,16 @@ impl Canvas<'_> {
 
     /// A line of text whose middle height is that of the point.
     pub(super) fn text(&self, text: &str, at: [f64; 2], anchor: Anchor, size: f64) -> Drawn {
-        self.marks.borrow_mut().push(Mark::Text { text: text.to_owned(), at, anchor, size });
+        self.write(text, at, anchor, size, false)
+    }
+
+    /// The same from below to above, with its middle at the point.
+    pub(super) fn upright_text(&self, text: &str, at: [f64; 2], size: f64) -> Drawn {
+        self.write(text, at, Anchor::Middle, size, true)
+    }
+
+    fn write(&self, text: &str, at: [f64; 2], anchor: Anchor, size: f64, upright: bool) -> Drawn {
+        self.marks.borrow_mut().push(Mark::Text { text: text.to_owned(), at, anchor, size, upright });
         let across = match anchor {
             Anchor::Left => HPos::Left,
             Anchor::Middle => HPos::Center,
@@ -102,6 +127,7 @@ impl Canvas<'_> {
         };
         // The backend divides by this number what it is given.
         let font = ("sans-serif", 1.24 * size * SCALE).into_font();
+        let font = if upright { font.transform(FontTransform::Rotate270) } else { font };
         let style = TextStyle::from(font).color(&TEXT).pos(Pos::new(across, VPos::Center));
         self.area.draw(&Text::new(text, corner(&at), style))
     }

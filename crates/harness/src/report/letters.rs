@@ -2,7 +2,7 @@
 
 use super::canvas::Anchor;
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
-use zeno::{Command, PathBuilder};
+use zeno::{Command, PathBuilder, Vector};
 
 /// Latin, Greek and the signs of mathematics; see `font/README.md`.
 const FONT: &[u8] = include_bytes!("../../font/letters.ttf");
@@ -21,8 +21,9 @@ impl Letters<'_> {
         Face::parse(FONT, 0).ok().map(|face| Self { face })
     }
 
-    /// The outline of a line of text at a point (pixels).
-    pub(super) fn outline(&self, text: &str, [x, y]: [f64; 2], anchor: Anchor, size: f64) -> Vec<Command> {
+    /// The outline of a line of text at a point (pixels), turned about the point by a quarter where it is upright.
+    pub(super) fn outline(&self, text: &str, at: [f64; 2], anchor: Anchor, size: f64, upright: bool) -> Vec<Command> {
+        let [x, y] = at;
         // A letter that the font lacks is its empty box.
         let glyphs: Vec<GlyphId> = text.chars().map(|c| self.face.glyph_index(c).unwrap_or_default()).collect();
         let scale = size / f64::from(self.face.units_per_em());
@@ -38,7 +39,20 @@ impl Letters<'_> {
             self.face.outline_glyph(*glyph, &mut pen);
             pen.origin[0] += advance(glyph);
         }
-        pen.path
+        if upright { pen.path.into_iter().map(|command| turned(command, at)).collect() } else { pen.path }
+    }
+}
+
+/// A quarter turn about a point, so that what ran to the right runs upwards.
+fn turned(command: Command, at: [f64; 2]) -> Command {
+    let [x, y] = at.map(|length| length as f32);
+    let turn = |p: Vector| Vector::new(x + (p.y - y), y - (p.x - x));
+    match command {
+        Command::MoveTo(p) => Command::MoveTo(turn(p)),
+        Command::LineTo(p) => Command::LineTo(turn(p)),
+        Command::QuadTo(a, p) => Command::QuadTo(turn(a), turn(p)),
+        Command::CurveTo(a, b, p) => Command::CurveTo(turn(a), turn(b), turn(p)),
+        Command::Close => Command::Close,
     }
 }
 

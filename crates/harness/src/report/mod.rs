@@ -16,12 +16,14 @@ mod cells;
 mod chart;
 mod diagram;
 mod drift;
+mod figure;
 mod files;
 mod geometry;
 mod letters;
 mod look;
 mod page;
 mod path;
+mod pdf;
 mod picture;
 mod png;
 mod precision;
@@ -33,6 +35,7 @@ mod xml;
 
 pub use cells::Cells;
 pub use chart::{Chart, Layer, chart_svg};
+pub use figure::{Figure, Format, Panel, Paper, figure};
 pub use precision::{PrecisionReport, Table, write_precision};
 
 /// A report: what the page says above its scenes, and the scenes.

@@ -2,9 +2,12 @@
 
 use super::ReportError;
 use super::canvas::{Canvas, Drawn, Mark, shapes, units};
+use super::figure::{Format, UNITS_PER_INCH};
 use super::xml::escape;
-use super::{look, raster};
+use super::{look, pdf, raster};
 
+/// Pixels to a unit in the PNG files of pages: sharp on a fine screen.
+const PAGE_SCALE: f64 = 2.0;
 /// How near a pointer must come to a point.
 const TIP: f64 = 6.0;
 
@@ -69,18 +72,33 @@ impl Picture {
     /// The files of the picture: SVG, and PNG for whatever shows no SVG.
     pub(super) fn files(&self) -> Result<[(String, Vec<u8>); 2], ReportError> {
         let failed = |reason| ReportError::Draw { picture: format!("{}.png", self.file), reason };
-        let png = raster::png(self.size, &self.marks).map_err(failed)?;
+        let png = raster::png(self.size, &self.marks, PAGE_SCALE, PAGE_SCALE * UNITS_PER_INCH).map_err(failed)?;
         Ok([(format!("{}.svg", self.file), self.standalone().into_bytes()), (format!("{}.png", self.file), png)])
+    }
+
+    /// The picture as the bytes of a file of that format, with so many pixels to an inch, `scale` times as large as it was drawn.
+    pub(super) fn bytes(&self, format: Format, dpi: f64, scale: f64) -> Result<Vec<u8>, ReportError> {
+        let drawn = match format {
+            Format::Svg => Ok(self.scaled(scale).into_bytes()),
+            Format::Png => raster::png(self.size, &self.marks, scale * dpi / UNITS_PER_INCH, dpi),
+            Format::Pdf => pdf::file(self.size, &self.title, &self.marks, scale),
+        };
+        drawn.map_err(|reason| ReportError::Draw { picture: self.file.clone(), reason })
     }
 
     /// The picture as a file: on a light ground of its own.
     pub(super) fn standalone(&self) -> String {
+        self.scaled(1.0)
+    }
+
+    /// The same, so many times as large as it was drawn.
+    fn scaled(&self, scale: f64) -> String {
         format!(
             "<svg{} width=\"{:.0}\" height=\"{:.0}\" color=\"{TEXT}\">\n<title>{}</title>\n\
              <rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>{}</svg>\n",
             self.frame(),
-            self.size[0],
-            self.size[1],
+            scale * self.size[0],
+            scale * self.size[1],
             escape(&self.title),
             self.shapes,
             TEXT = look::TEXT,

@@ -7,8 +7,11 @@ const LEVEL: u8 = 6;
 /// The filter `Up`.
 const UP: u8 = 2;
 
-/// The file of an image given its width and height and the red, green and blue of its pixels, row by row.
-pub(super) fn encode([width, height]: [u32; 2], colours: &[[u8; 3]]) -> Vec<u8> {
+/// Inches in a metre.
+const INCHES: f64 = 1.0 / 0.0254;
+
+/// The file of an image given its width and height, the red, green and blue of its pixels, row by row, and the pixels to an inch.
+pub(super) fn encode([width, height]: [u32; 2], colours: &[[u8; 3]], dpi: f64) -> Vec<u8> {
     let row = 3 * width as usize;
     let mut filtered = Vec::with_capacity((row + 1) * height as usize);
     let mut above = vec![0_u8; row];
@@ -22,6 +25,9 @@ pub(super) fn encode([width, height]: [u32; 2], colours: &[[u8; 3]]) -> Vec<u8> 
     header.extend([8, 2, 0, 0, 0]);
     let mut file = b"\x89PNG\r\n\x1a\n".to_vec();
     chunk(&mut file, *b"IHDR", &header);
+    // The resolution across and upwards, in pixels to the metre.
+    let resolution = ((dpi * INCHES).round() as u32).to_be_bytes();
+    chunk(&mut file, *b"pHYs", &[&resolution[..], &resolution, &[1]].concat());
     chunk(&mut file, *b"IDAT", &compress_to_vec_zlib(&filtered, LEVEL));
     chunk(&mut file, *b"IEND", &[]);
     file

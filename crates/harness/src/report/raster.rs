@@ -6,40 +6,40 @@ use super::look;
 use super::png;
 use zeno::{Cap, Command, Join, PathBuilder, Scratch, Stroke, Style};
 
-/// Pixels to a unit of the picture.
-pub(super) const SCALE: f64 = 2.0;
-
-/// The picture as the bytes of a PNG file.
-pub(super) fn png(size: [f64; 2], marks: &[Mark]) -> Result<Vec<u8>, String> {
-    let [width, height] = size.map(|length| (length * SCALE).round() as u32);
+/// The picture as the bytes of a PNG file, with so many pixels to a unit of the picture; the file says how many to an inch.
+pub(super) fn png(size: [f64; 2], marks: &[Mark], scale: f64, dpi: f64) -> Result<Vec<u8>, String> {
+    let [width, height] = size.map(|length| (length * scale).round() as u32);
     let mut pixels = Pixels::new(width as usize, height as usize);
     let letters = Letters::new().ok_or("the embedded font cannot be read")?;
     for mark in marks {
-        draw(&mut pixels, &letters, mark);
+        draw(&mut pixels, &letters, mark, scale);
     }
-    Ok(png::encode([width, height], &pixels.colours))
+    Ok(png::encode([width, height], &pixels.colours, dpi))
 }
 
-fn draw(pixels: &mut Pixels, letters: &Letters<'_>, mark: &Mark) {
+fn draw(pixels: &mut Pixels, letters: &Letters<'_>, mark: &Mark, scale: f64) {
     match mark {
         Mark::Line { points, ink, opacity, width } => {
-            let dashes: Vec<f32> = dashes(*ink).iter().map(|length| (length * SCALE) as f32).collect();
-            let mut stroke = Stroke::new((width * SCALE) as f32);
+            let dashes: Vec<f32> = dashes(*ink).iter().map(|length| (length * scale) as f32).collect();
+            let mut stroke = Stroke::new((width * scale) as f32);
             stroke.join(Join::Round).cap(Cap::Butt).dash(&dashes, 0.0);
-            pixels.draw(&path(points, false), stroke, *ink, *opacity);
+            pixels.draw(&path(points, false, scale), stroke, *ink, *opacity);
         }
-        Mark::Area { points, ink, opacity } => pixels.draw(&path(points, true), Style::default(), *ink, *opacity),
-        Mark::Text { text, at, anchor, size } => {
-            let at = at.map(|length| length * SCALE);
-            pixels.draw(&letters.outline(text, at, *anchor, size * SCALE), Style::default(), Ink::Text, 1.0);
+        Mark::Area { points, ink, opacity } => {
+            pixels.draw(&path(points, true, scale), Style::default(), *ink, *opacity)
+        }
+        Mark::Text { text, at, anchor, size, upright } => {
+            let at = at.map(|length| length * scale);
+            let outline = letters.outline(text, at, *anchor, size * scale, *upright);
+            pixels.draw(&outline, Style::default(), Ink::Text, 1.0);
         }
     }
 }
 
-fn path(points: &[[f64; 2]], closed: bool) -> Vec<Command> {
+fn path(points: &[[f64; 2]], closed: bool, scale: f64) -> Vec<Command> {
     let mut path = Vec::with_capacity(points.len() + 1);
     for (k, point) in points.iter().enumerate() {
-        let point = point.map(|length| (length * SCALE) as f32);
+        let point = point.map(|length| (length * scale) as f32);
         if k == 0 {
             path.move_to(point)
         } else {
@@ -53,7 +53,7 @@ fn path(points: &[[f64; 2]], closed: bool) -> Vec<Command> {
 }
 
 /// The dashes of an ink (units of the picture).
-fn dashes(ink: Ink) -> &'static [f64] {
+pub(super) fn dashes(ink: Ink) -> &'static [f64] {
     match ink {
         Ink::Text => &[],
         Ink::Exact => &look::EXACT,
@@ -61,7 +61,7 @@ fn dashes(ink: Ink) -> &'static [f64] {
     }
 }
 
-fn colour(ink: Ink) -> [u8; 3] {
+pub(super) fn colour(ink: Ink) -> [u8; 3] {
     let own = match ink {
         Ink::Text | Ink::Exact => None,
         Ink::Method(method) => hexadecimal(look::colour(method)),

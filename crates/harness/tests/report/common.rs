@@ -95,7 +95,7 @@ pub(crate) fn size(png: &[u8]) -> [u32; 2] {
 }
 
 /// Every coordinate is a number within the picture.
-fn check_numbers(document: &roxmltree::Document<'_>) {
+pub(crate) fn check_numbers(document: &roxmltree::Document<'_>) {
     let frame: Vec<f64> = document
         .root_element()
         .attribute("viewBox")

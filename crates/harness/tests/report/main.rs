@@ -7,6 +7,7 @@ mod browser;
 mod colours;
 mod common;
 mod ends;
+mod figure;
 mod files;
 mod page;
 mod pictures;

@@ -1,0 +1,185 @@
+//! `noslip plot`: a run against time, and its path.
+
+use crate::args::{PlotArguments, Size};
+use crate::called::Caller;
+use crate::columns_file::{self, Columns, NamedColumn};
+use crate::compare::methods;
+use crate::error::CliError;
+use crate::in_memory::{self, RunRequest};
+use crate::{files, inspect, table, terminal};
+use harness::report::{Figure, Format, Panel, Paper, figure};
+use scene::Scene;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// So many nodes of a run are drawn at most: a picture shows no more.
+const NODES: u64 = 20_000;
+/// What of a sleigh is drawn unless columns are named; `path` is x and y.
+const SLEIGH: [&str; 7] = ["path", "speed", "turn_rate", "heading", "energy", "constraint", "constraint_force"];
+/// The name of the panel of x and y.
+const PATH: &str = "path";
+
+/// Draws the run of a scene or of a file.
+pub(crate) fn plot(arguments: &PlotArguments) -> Result<(), CliError> {
+    let PlotArguments { input, columns, size: Size(size), dpi, force, .. } = arguments;
+    let ending = Path::new(input).extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    let file = matches!(ending.as_deref(), Some("csv" | "npz")).then(|| Path::new(input));
+    let scene = match file {
+        Some(_) => None,
+        None => Some(load(arguments)?),
+    };
+    let name = scene.as_ref().map_or_else(|| stem(input), |scene| scene.name.clone());
+    let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.svg")));
+    let format = format_of(&out)?;
+    files::check_file(&out, *force)?;
+    let mut failures = Vec::new();
+    let runs = match (&scene, file) {
+        (Some(scene), _) => made(scene, arguments.methods.as_deref(), &mut failures)?,
+        (None, Some(path)) => vec![(name.clone(), columns_file::read(path)?)],
+        (None, None) => Vec::new(),
+    };
+    let title = match &scene {
+        Some(scene) => title(scene, &runs),
+        None => input.clone(),
+    };
+    let drawn = drawing(title, &runs, columns.as_deref())?;
+    let paper = Paper { size: *size, dpi: f64::from(*dpi) };
+    let bytes = figure(&drawn, &paper, format).map_err(CliError::Report)?;
+    files::write_whole(&out, *force, |file| file.write_all(&bytes))?;
+    terminal::print(&format!("picture: {}\n", out.display()))?;
+    CliError::of_failures(failures)
+}
+
+fn load(arguments: &PlotArguments) -> Result<Scene, CliError> {
+    let PlotArguments { input, set, step, duration, alpha, .. } = arguments;
+    inspect::load_with((input, set), None, *step, *duration, *alpha)
+}
+
+fn stem(path: &str) -> String {
+    Path::new(path).file_stem().map_or_else(|| "picture".to_owned(), |stem| stem.to_string_lossy().into_owned())
+}
+
+fn format_of(path: &Path) -> Result<Format, CliError> {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    match ending.as_deref() {
+        Some("svg") => Ok(Format::Svg),
+        Some("png") => Ok(Format::Png),
+        Some("pdf") => Ok(Format::Pdf),
+        _ => {
+            let problem = format!("{}: a picture is .svg, .png or .pdf, by the ending of its name", path.display());
+            Err(CliError::Request(problem))
+        }
+    }
+}
+
+/// What the figure says it shows.
+fn title(scene: &Scene, runs: &[(String, Columns)]) -> String {
+    let by = match runs {
+        [(method, _)] => format!("{method}, "),
+        _ => String::new(),
+    };
+    format!("{}; {by}step {} s", scene.title, table::number(scene.run.actual_step()))
+}
+
+/// The runs of a scene, by method.
+fn made(
+    scene: &Scene,
+    names: Option<&[String]>,
+    failures: &mut Vec<String>,
+) -> Result<Vec<(String, Columns)>, CliError> {
+    let names: Vec<&str> = match names {
+        Some(names) => names.iter().map(|name| name.trim()).collect(),
+        None => vec![scene.run.method.as_str()],
+    };
+    methods(&names, scene.run.alpha)?;
+    let request = RunRequest { every: scene.run.steps().div_ceil(NODES), ..RunRequest::default() };
+    names.iter().map(|method| run(scene, method, &request, failures)).collect()
+}
+
+/// The run of a scene by a method, as far as it comes.
+fn run(
+    scene: &Scene,
+    method: &str,
+    request: &RunRequest,
+    failures: &mut Vec<String>,
+) -> Result<(String, Columns), CliError> {
+    let mut scene = scene.clone();
+    method.clone_into(&mut scene.run.method);
+    let result = in_memory::run(&scene, request, &Caller::default()).map_err(|error| match error.request {
+        true => CliError::Request(error.message),
+        false => CliError::Computation(vec![error.message]),
+    })?;
+    failures.extend(result.failure);
+    let columns = result.columns.into_iter().zip(result.numbers);
+    let columns = columns.map(|(column, values)| NamedColumn { name: column.name, unit: Some(column.unit), values });
+    Ok((method.to_owned(), columns.collect()))
+}
+
+/// The figure of some runs; of columns that are not named, what a reader looks at first.
+pub(crate) fn drawing(
+    title: String,
+    runs: &[(String, Columns)],
+    columns: Option<&[String]>,
+) -> Result<Figure, CliError> {
+    let first = runs.first().map_or(&[][..], |(_, columns)| &columns[..]);
+    let has = |name: &str| first.iter().any(|column| column.name == name);
+    let path = has("x") && has("y");
+    let known: Vec<&str> =
+        path.then_some(PATH).into_iter().chain(first.iter().map(|column| column.name.as_str())).collect();
+    let names: Vec<String> = match columns {
+        Some(names) => names.iter().map(|name| name.trim().to_owned()).collect(),
+        None if has("speed") && has("turn_rate") => {
+            SLEIGH.iter().filter(|name| known.contains(name)).map(|name| (*name).to_owned()).collect()
+        }
+        None => known.iter().filter(|name| **name != "t").map(|name| (*name).to_owned()).collect(),
+    };
+    if let Some(unknown) = names.iter().find(|name| !known.contains(&name.as_str()) || !has("t")) {
+        let problem = format!("there is no column `{unknown}` against `t`; the columns are {}", known.join(", "));
+        return Err(CliError::Request(problem));
+    }
+    let panels = names.iter().map(|name| panel(name, runs)).collect();
+    Ok(Figure { title, runs: runs.iter().map(|(name, _)| name.clone()).collect(), panels })
+}
+
+fn panel(name: &str, runs: &[(String, Columns)]) -> Panel {
+    let (across, up) = if name == PATH { ("x", "y") } else { ("t", name) };
+    let column = |columns: &'_ Columns, name: &str| columns.iter().find(|column| column.name == name).cloned();
+    let unit = |name: &str| runs.first().and_then(|(_, columns)| column(columns, name)).and_then(|column| column.unit);
+    let title = |name: &str| {
+        let unit = unit(name).filter(|unit| !unit.is_empty()).map_or_else(String::new, |unit| format!(" [{unit}]"));
+        format!("{}{unit}", words(name))
+    };
+    let mut axes = [title(across), title(up)];
+    let mut curves: Vec<Vec<[f64; 2]>> = runs
+        .iter()
+        .map(|(_, columns)| match (column(columns, across), column(columns, up)) {
+            (Some(x), Some(y)) => x.values.into_iter().zip(y.values).map(|(x, y)| [x, y]).collect(),
+            _ => Vec::new(),
+        })
+        .collect();
+    if name == "energy" && nearly_constant(&curves) {
+        for curve in &mut curves {
+            let start = curve.first().map_or(0.0, |point| point[1]);
+            curve.iter_mut().for_each(|point| point[1] -= start);
+        }
+        axes[1] = format!("E − E₀{}", axes[1].trim_start_matches("energy"));
+    }
+    let decades = name == "constraint";
+    if decades {
+        axes[1] = format!("|{}|{}", words(name), axes[1].trim_start_matches(&words(name)));
+    }
+    Panel { axes, curves, decades, path: name == PATH }
+}
+
+/// Whether a column changes by less than a hundredth of itself: then it is the change that tells something.
+fn nearly_constant(curves: &[Vec<[f64; 2]>]) -> bool {
+    curves.iter().all(|curve| {
+        let start = curve.first().map_or(0.0, |point| point[1]);
+        curve.iter().all(|point| (point[1] - start).abs() <= 0.01 * start.abs())
+    })
+}
+
+/// The name of a column in words.
+fn words(name: &str) -> String {
+    if name == "constraint_force" { "reaction".to_owned() } else { name.replace('_', " ") }
+}
