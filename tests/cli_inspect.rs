@@ -6,7 +6,7 @@ mod book;
 #[path = "common/program.rs"]
 mod program;
 
-use program::{Folder, SCENE, SCENES, keys, methods};
+use program::{Folder, SCENE, SCENES, TEXTS, keys, methods};
 use serde_json::Value;
 
 #[test]
@@ -92,11 +92,16 @@ fn lists_are_the_same_as_text_and_as_json() {
 
     let scenes = folder.json("list scenes --json");
     let text = folder.done("list scenes");
-    for ((scene, line), name) in scenes.as_array().unwrap().iter().zip(text.lines()).zip(SCENES) {
+    for ((scene, line), name) in
+        scenes.as_array().unwrap().iter().zip(text.lines()).zip(SCENES.into_iter().chain(TEXTS))
+    {
         assert_eq!(scene["name"].as_str(), Some(name));
         assert!(line.starts_with(name) && line.ends_with(scene["title"].as_str().unwrap()), "{line}");
     }
-    assert_eq!((scenes.as_array().unwrap().len(), text.lines().count()), (SCENES.len(), SCENES.len()));
+    assert_eq!(
+        (scenes.as_array().unwrap().len(), text.lines().count()),
+        (SCENES.len() + TEXTS.len(), SCENES.len() + TEXTS.len())
+    );
 
     assert!(folder.json("list effects --json").is_array());
     assert!(!folder.done("list effects").is_empty());

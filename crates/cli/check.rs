@@ -4,7 +4,7 @@ use crate::args::CheckArguments;
 use crate::error::CliError;
 use crate::inspect::{described, method_names};
 use crate::{table, terminal};
-use scene::Scene;
+use scene::AnyScene;
 use serde_json::{Map, Value, json};
 
 /// All of them: one that is not valid does not hide the others.
@@ -14,14 +14,14 @@ pub(crate) fn check(arguments: &CheckArguments) -> Result<(), CliError> {
     let mut above = "";
     for name in &arguments.scenes {
         let load = || -> Result<_, CliError> {
-            let scene = Scene::load_with(name, &arguments.set.set, &names)?;
+            let scene = AnyScene::load_with(name, &arguments.set.set, &names)?;
             let facts = described(&scene)?;
             Ok((scene, facts))
         };
         match load() {
             Ok((scene, facts)) if arguments.json => objects.push(valid(&scene, &facts)),
             Ok((scene, facts)) => {
-                let heading = format!("{above}{}: valid, \"{}\"\n", scene.name, scene.title);
+                let heading = format!("{above}{}: valid, \"{}\"\n", scene.name(), scene.title());
                 terminal::print(&(heading + &table::aligned(&facts)))?;
                 above = "\n";
             }
@@ -40,13 +40,16 @@ pub(crate) fn check(arguments: &CheckArguments) -> Result<(), CliError> {
     last.map_or(Ok(()), Err)
 }
 
-fn valid(scene: &Scene, facts: &[(String, String)]) -> Value {
-    let run = &scene.run;
-    let effects: Vec<&str> = scene.effects.iter().map(scene::SceneEffect::kind).collect();
+fn valid(scene: &AnyScene, facts: &[(String, String)]) -> Value {
+    let run = scene.run();
+    let effects: Vec<&str> = match scene {
+        AnyScene::Sleigh(scene) => scene.effects.iter().map(scene::SceneEffect::kind).collect(),
+        AnyScene::Text(_) => Vec::new(),
+    };
     // Of effects there may be several, which `effects` lists.
     let facts: Map<String, Value> =
         facts.iter().filter(|(name, _)| name != "effect").map(|(name, value)| (name.clone(), json!(value))).collect();
-    json!({"scene": scene.name, "valid": true, "title": scene.title, "method": run.method, "step": run.actual_step(),
+    json!({"scene": scene.name(), "valid": true, "title": scene.title(), "method": run.method, "step": run.actual_step(),
            "steps": run.steps(), "duration": run.duration, "effects": effects, "facts": facts})
 }
 

@@ -3,11 +3,11 @@ use crate::error::CliError;
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
 use crate::saves::Saves;
-use crate::{compare_numbers, facts, inspect, json, progress, table, terminal, train};
+use crate::{compare_numbers, facts, inspect, json, progress, table, terminal, text, train};
 use dla::{Schedule, State};
 use harness::report::{self, Report, SceneReport, Series};
 use harness::{Drift, METHODS, Method, Record, Request, Verdict};
-use scene::{Scene, SceneSystem, Visitor};
+use scene::{AnyScene, Scene, SceneSystem, Visitor};
 use sleigh::{Exact, SleighState};
 use std::path::PathBuf;
 
@@ -21,8 +21,9 @@ pub(crate) struct Comparison {
 
 impl Comparison {
     /// Prints its table.
-    pub(crate) fn print(&self, scene: &Scene) -> Result<(), CliError> {
-        let table = table::comparison(scene, &self.rows, self.interrupted.as_deref(), terminal::width());
+    pub(crate) fn print(&self, scene: &AnyScene) -> Result<(), CliError> {
+        let head = (scene.title(), scene.name(), scene.run().duration);
+        let table = table::comparison(head, &self.rows, self.interrupted.as_deref(), terminal::width());
         terminal::print(&table)
     }
 }
@@ -47,12 +48,12 @@ impl Row {
 
 /// `noslip compare`: long-run constraint and energy, method by method.
 pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
-    let scene = inspect::load(&arguments.scene, None)?;
+    let scene = inspect::load_any(&arguments.scene, None)?;
     let names: Vec<&str> = match &arguments.methods {
         Some(names) => names.iter().map(|name| name.trim()).collect(),
         None => METHODS.iter().map(|info| info.name).collect(),
     };
-    let methods = methods(&names, scene.run.alpha)?;
+    let methods = methods(&names, scene.run().alpha)?;
     if let Some((_, name)) = names.iter().enumerate().find(|(k, name)| names[..*k].contains(*name)) {
         let problem = format!("--methods: `{name}` is named twice; a comparison has one row for each method");
         return Err(CliError::Request(problem));
@@ -65,7 +66,7 @@ pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
     let mut comparison = compare_scene(&scene, &methods, &mut saves, &Interrupt::listen())?;
     if let Some(folder) = &arguments.report {
         let report = Report {
-            title: format!("noslip compare {}", scene.name),
+            title: format!("noslip compare {}", scene.name()),
             intro: table::INTRO.to_owned(),
             scenes: vec![std::mem::take(&mut comparison.report)],
             ..Report::default()
@@ -74,7 +75,7 @@ pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
     }
     if arguments.scene.json {
         let rows: Vec<_> = comparison.rows.iter().map(|row| &row.json).collect();
-        let object = compare_numbers::json(&scene.name, &rows, comparison.interrupted.is_some());
+        let object = compare_numbers::json(scene.name(), &rows, comparison.interrupted.is_some());
         terminal::print_json(&object)?;
     } else {
         comparison.print(&scene)?;
@@ -109,6 +110,19 @@ pub(crate) fn methods(names: &[&str], alpha: Option<f64>) -> Result<Vec<Method>,
 
 /// Runs every method on the scene, until Ctrl-C.
 pub(crate) fn compare_scene(
+    scene: &AnyScene,
+    methods: &[Method],
+    saves: &mut Saves,
+    interrupt: &Interrupt,
+) -> Result<Comparison, CliError> {
+    match scene {
+        AnyScene::Sleigh(scene) => compare_sleigh(scene, methods, saves, interrupt),
+        AnyScene::Text(scene) => text::compare::compare_scene(scene, methods, saves, interrupt),
+    }
+}
+
+/// The same of a sleigh.
+pub(crate) fn compare_sleigh(
     scene: &Scene,
     methods: &[Method],
     saves: &mut Saves,
@@ -133,8 +147,8 @@ struct Compare<'a> {
 }
 
 /// What shows how far a part of a comparison has come, and lets Ctrl-C end it.
-fn progress_of<'a>(scene: &Scene, label: &str, steps: u64, interrupt: &'a Interrupt) -> Interruptible<'a> {
-    Interruptible { bar: progress::bar(&format!("{} {label}", scene.name), steps), interrupt }
+pub(crate) fn progress_of<'a>(scene: &str, label: &str, steps: u64, interrupt: &'a Interrupt) -> Interruptible<'a> {
+    Interruptible { bar: progress::bar(&format!("{scene} {label}"), steps), interrupt }
 }
 
 impl Compare<'_> {
@@ -149,8 +163,15 @@ impl Compare<'_> {
             if self.interrupt.asked() {
                 break;
             }
-            let mut progress = progress_of(self.scene, method.info().name, request.schedule.steps, self.interrupt);
-            records.push(self.saves.run(self.scene, system, method, request, &mut progress)?);
+            let mut progress =
+                progress_of(&self.scene.name, method.info().name, request.schedule.steps, self.interrupt);
+            records.push(self.saves.run(
+                (&self.scene.name, self.scene),
+                (&system).into(),
+                method,
+                request,
+                &mut progress,
+            )?);
             progress.bar.finish_and_clear();
         }
         Ok(records)
@@ -179,7 +200,7 @@ impl Visitor for Compare<'_> {
         let records = self.records(system, &request)?;
         let exact = self.scene.exact().ok().flatten();
         let start = State::new(q, v, system.angles());
-        let mut progress = progress_of(self.scene, "reference", 4 * request.schedule.steps, self.interrupt);
+        let mut progress = progress_of(&self.scene.name, "reference", 4 * request.schedule.steps, self.interrupt);
         let reference = Reference::of(system, exact.as_ref(), &request.schedule, start, &mut progress);
         progress.bar.finish_and_clear();
         let drifts: Vec<(&str, Drift)> =
@@ -224,7 +245,7 @@ pub(crate) fn better_than<'a>(drift: &Drift, others: &[(&'a str, Drift)]) -> Vec
 }
 
 /// A comparison of more steps has no computed reference, which would take longer than all of it.
-const REFERRED: u64 = 1 << 22;
+pub(crate) const REFERRED: u64 = 1 << 22;
 
 /// Where the motion truly ends: in closed form, or by the method of the highest order with a quarter of the step.
 enum Reference<'a> {

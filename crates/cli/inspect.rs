@@ -2,10 +2,10 @@ use crate::args::{ListArguments, Listed, NewArguments, SceneArguments, Settings}
 use crate::error::CliError;
 use crate::facts::{self, Facts};
 use crate::files::write_whole;
-use crate::{effect_keys, table, terminal};
+use crate::{effect_keys, table, terminal, text};
 use dla::Schedule;
 use harness::METHODS;
-use scene::Scene;
+use scene::{AnyScene, RunSettings, Scene};
 use serde_json::json;
 use std::io::Write;
 
@@ -17,6 +17,14 @@ pub(crate) fn method_names() -> Vec<&'static str> {
 /// The scene of a command line, with what its flags say instead.
 pub(crate) fn load(arguments: &SceneArguments, method: Option<&str>) -> Result<Scene, CliError> {
     load_with((&arguments.scene, &arguments.set), method, arguments.step, arguments.duration, arguments.alpha)
+}
+
+/// The scene of a command line, of either kind.
+pub(crate) fn load_any(arguments: &SceneArguments, method: Option<&str>) -> Result<AnyScene, CliError> {
+    let names = method_names();
+    let SceneArguments { scene, set, step, duration, alpha, .. } = arguments;
+    let scene = AnyScene::load_with(scene, &set.set, &names)?;
+    Ok(scene.with_overrides(method, *step, *duration, *alpha, &names)?)
 }
 
 /// The scene of that name, with the settings of the command line, of which flags come last.
@@ -33,11 +41,20 @@ pub(crate) fn load_with(
 
 /// The steps of a scene's run.
 pub(crate) fn schedule(scene: &Scene) -> Schedule {
-    Schedule { t0: 0.0, step: scene.run.actual_step(), steps: scene.run.steps() }
+    steps_of(&scene.run)
+}
+
+/// The steps of a run.
+pub(crate) fn steps_of(run: &RunSettings) -> Schedule {
+    Schedule { t0: 0.0, step: run.actual_step(), steps: run.steps() }
 }
 
 /// What a scene is, for a person.
-pub(crate) fn described(scene: &Scene) -> Result<Vec<(String, String)>, CliError> {
+pub(crate) fn described(scene: &AnyScene) -> Result<Vec<(String, String)>, CliError> {
+    let scene = match scene {
+        AnyScene::Sleigh(scene) => &**scene,
+        AnyScene::Text(scene) => return Ok(text::facts::described(scene)),
+    };
     let mut facts = match scene.train()? {
         Some((train, start)) => facts::listed(scene, &scene.start, train.assembly.energy(0.0, &start), ""),
         None => scene.visit(Facts(scene))?,
@@ -89,8 +106,8 @@ pub(crate) fn list(arguments: &ListArguments) -> Result<(), CliError> {
 
 fn scenes() -> Result<Vec<(&'static str, String)>, CliError> {
     let names = method_names();
-    let title = |bundled: &scene::Bundled| Ok((bundled.name, Scene::load(bundled.name, &names)?.title));
-    scene::bundled().iter().map(title).collect()
+    let title = |bundled: &scene::Bundled| Ok((bundled.name, AnyScene::load(bundled.name, &names)?.title().to_owned()));
+    scene::bundled().iter().chain(scene::bundled_texts()).map(title).collect()
 }
 
 /// `noslip new`: a scene to start from.

@@ -6,7 +6,7 @@ use crate::saves::Saves;
 use crate::totals::Totals;
 use crate::{table, terminal};
 use harness::report::{self, Report};
-use scene::Scene;
+use scene::AnyScene;
 use std::path::Path;
 
 /// `noslip --all`: the comparison of all methods on the bundled scenes, as tables and as a report.
@@ -16,17 +16,17 @@ pub(crate) fn everything(folder: &Path, overwrite: bool) -> Result<(), CliError>
     let mut totals = Totals::default();
     let (interrupt, mut interrupted) = (Interrupt::listen(), None);
     for bundled in scene::bundled() {
-        let scene = Scene::load(bundled.name, &method_names())?;
-        let methods = methods(&method_names(), scene.run.alpha)?;
+        let scene = AnyScene::load(bundled.name, &method_names())?;
+        let methods = methods(&method_names(), scene.run().alpha)?;
         let comparison = compare_scene(&scene, &methods, &mut Saves::default(), &interrupt)?;
         comparison.print(&scene)?;
         terminal::print("\n")?;
         comparison.rows.iter().for_each(|row| totals.add(&row.json));
         let failed = comparison.rows.into_iter().filter_map(Row::unexpected);
-        failures.extend(failed.map(|failure| format!("{}: {failure}", scene.name)));
+        failures.extend(failed.map(|failure| format!("{}: {failure}", scene.name())));
         scenes.push(comparison.report);
         if let Some(made) = comparison.interrupted {
-            interrupted = Some(format!("on the scene {} {made}", scene.name));
+            interrupted = Some(format!("on the scene {} {made}", scene.name()));
             break;
         }
     }

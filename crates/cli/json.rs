@@ -2,8 +2,19 @@ use harness::Record;
 use serde_json::{Value, json};
 use sleigh::SleighState;
 
-/// The object that `run --json` prints.
-pub(crate) fn record<const N: usize>(scene: &str, record: &Record<N>, end: &SleighState) -> Value {
+/// The object that `run --json` prints of a sleigh.
+pub(crate) fn record<const N: usize>(scene: &str, run: &Record<N>, end: &SleighState) -> Value {
+    record_of(scene, run, state(run.t, end))
+}
+
+/// Where a sleigh is, and when (s).
+fn state(t: f64, at: &SleighState) -> Value {
+    let SleighState { x, y, heading, speed, turn_rate } = at;
+    json!({"t": t, "x": x, "y": y, "heading": heading, "speed": speed, "turn_rate": turn_rate})
+}
+
+/// The object that `run --json` prints, with the state at the end.
+pub(crate) fn record_of<const N: usize>(scene: &str, record: &Record<N>, end: Value) -> Value {
     let mut object = json!({
         "scene": scene,
         "method": record.method.name,
@@ -20,14 +31,7 @@ pub(crate) fn record<const N: usize>(scene: &str, record: &Record<N>, end: &Slei
             "max_error": record.energy.max_error,
         },
         "constraint": {"max": record.constraint_max},
-        "final": {
-            "t": record.t,
-            "x": end.x,
-            "y": end.y,
-            "heading": end.heading,
-            "speed": end.speed,
-            "turn_rate": end.turn_rate,
-        },
+        "final": end,
     });
     if let Some(failure) = &record.failure {
         object["failure"] = json!({
@@ -57,7 +61,18 @@ pub(crate) fn compared<const N: usize>(
     error: Option<f64>,
     better: &[(&str, f64)],
 ) -> Value {
-    let mut object = record(scene, run, end);
+    compared_of(scene, run, state(run.t, end), error, better)
+}
+
+/// The same with the state at the end.
+pub(crate) fn compared_of<const N: usize>(
+    scene: &str,
+    run: &Record<N>,
+    end: Value,
+    error: Option<f64>,
+    better: &[(&str, f64)],
+) -> Value {
+    let mut object = record_of(scene, run, end);
     object["energy"]["drift_per_time"] = json!(run.energy.drift_per_time);
     let drift = &run.energy.drift;
     object["energy"]["amplitude"] = json!(drift.amplitude);

@@ -46,6 +46,7 @@ mod starts;
 mod substeps;
 mod table;
 mod terminal;
+mod text;
 mod totals;
 mod train;
 mod train_run;

@@ -2,21 +2,24 @@ use crate::error::CliError;
 use crate::files::{check_file, write_whole};
 use dla::{Checkpoint, CheckpointError, Schedule};
 use harness::Method;
-use scene::Scene;
 use std::io::Write;
 use std::path::Path;
 
-/// What tells the run of a scene with a method from all others.
-pub(crate) fn identity(scene: &Scene, method: &Method, schedule: &Schedule) -> Checkpoint {
+/// What tells the run of a scene, of that name and with these contents, with a method from all others.
+pub(crate) fn identity(
+    (name, contents): (&str, &dyn std::fmt::Debug),
+    method: &Method,
+    schedule: &Schedule,
+) -> Checkpoint {
     let parts = method.substeps().map(|_| ("substep", "yes".to_owned()));
     let run = [
-        ("scene", scene.name.clone()),
+        ("scene", name.to_owned()),
         ("method", method.info().name.to_owned()),
         ("step", schedule.step.to_string()),
         ("steps", schedule.steps.to_string()),
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
         // All the rest: every number of the scene, with every digit.
-        ("contents", Checkpoint::fingerprint(&format!("{scene:?}"))),
+        ("contents", Checkpoint::fingerprint(&format!("{contents:?}"))),
     ];
     Checkpoint::of(run.into_iter().chain(parts))
 }

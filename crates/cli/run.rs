@@ -6,21 +6,22 @@ use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
 use crate::trajectory_file::{self, Format};
 use crate::trigger::{Events, Happened, Trigger};
-use crate::{inspect, json, progress, resume, substeps, table, terminal, train_run};
+use crate::{inspect, json, progress, resume, substeps, table, terminal, text, train_run};
 use dla::{Checkpoint, Schedule, Substeps, Trajectory};
 use harness::{Kind, Method, Progress, Record, Request, Saving, Watched, recommend, run_saved, run_watched};
-use scene::{Scene, SceneSystem, Visitor};
+use scene::{AnyScene, Scene, SceneSystem, Visitor};
 use std::path::Path;
 
 /// `noslip run`: one trajectory, as far as Ctrl-C lets it come.
 pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
-    let scene = inspect::load(&arguments.scene, arguments.method.as_deref())?;
-    let method = Method::named(&scene.run.method, scene.run.alpha)?;
+    let scene = inspect::load_any(&arguments.scene, arguments.method.as_deref())?;
+    let settings = scene.run();
+    let method = Method::named(&settings.method, settings.alpha)?;
     let method = if arguments.substep { method.with_substeps(Substeps::default()) } else { method };
     let out = match &arguments.out {
         Some(path) => {
             let format = Format::of(path)?;
-            trajectory_file::check_size(scene.run.steps(), arguments.every)?;
+            trajectory_file::check_size(settings.steps(), arguments.every)?;
             check_file(path, arguments.scene.force)?;
             Some((path.as_path(), format))
         }
@@ -30,6 +31,10 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
         let name = method.info().name;
         terminal::say("warning", &format!("--alpha is the weight of dla-alpha; {name} has none and ignores it"));
     }
+    let scene = match scene {
+        AnyScene::Sleigh(scene) => *scene,
+        AnyScene::Text(scene) => return text::run::run(arguments, &scene, &method, out),
+    };
     if scene.has_trailers() {
         return train_run::run(arguments, &scene, &method, out);
     }
@@ -67,7 +72,7 @@ impl Run<'_> {
         progress: &mut dyn Progress,
     ) -> Result<Made<N, M>, CliError> {
         let RunArguments { checkpoint, checkpoint_every, resume: from, scene, .. } = self.arguments;
-        let identity = resume::identity(self.scene, &self.method, &request.schedule);
+        let identity = resume::identity((&self.scene.name, self.scene), &self.method, &request.schedule);
         let read = from.as_ref().map(|path| resume::read(path, &identity)).transpose()?;
         if let Some(path) = checkpoint {
             resume::check(path, from.as_deref(), scene.force)?;

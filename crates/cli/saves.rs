@@ -2,9 +2,8 @@ use crate::args::CompareArguments;
 use crate::error::CliError;
 use crate::files::check_folder;
 use crate::resume;
-use dla::Checkpoint;
+use dla::{Checkpoint, Subject};
 use harness::{Method, Progress, Record, Request, Saving, run_saved, timed};
-use scene::{Scene, SceneSystem};
 use std::path::{Path, PathBuf};
 
 /// Where the runs of a comparison are saved, a checkpoint for each method, and from where they go on.
@@ -39,17 +38,18 @@ impl Saves {
         self.to.as_deref()
     }
 
-    /// Makes a run: at once where nothing is to be saved, else from checkpoint to checkpoint.
+    /// Makes a run of a scene, of that name and with these contents: at once where nothing is to be saved, else from checkpoint to
+    /// checkpoint.
     pub(crate) fn run<const N: usize, const M: usize>(
         &self,
-        scene: &Scene,
-        system: &dyn SceneSystem<N, M>,
+        scene: (&str, &dyn std::fmt::Debug),
+        subject: Subject<'_, N, M>,
         method: &Method,
         request: &Request<N>,
         progress: &mut dyn Progress,
     ) -> Result<Record<N>, CliError> {
         if self.to.is_none() && self.from.is_none() {
-            return Ok(harness::run(&system, method, request, progress));
+            return Ok(harness::run(subject, method, request, progress));
         }
         let name = format!("{}.save", method.info().name);
         let identity = resume::identity(scene, method, &request.schedule);
@@ -64,11 +64,11 @@ impl Saves {
         };
         let every = to.as_ref().map(|_| self.every);
         let mut saving = Saving { identity: &identity, from: read.as_ref(), every, save: &mut save };
-        let outcome = run_saved(&system, method, request, &mut saving, None, progress);
+        let outcome = run_saved(subject, method, request, &mut saving, None, progress);
         let (mut record, _) =
             outcome.map_err(|source| CliError::Checkpoint { path: from.unwrap_or_default(), source })?;
         written?;
-        record.wall_seconds = timed(&system, method, request, record.steps, progress);
+        record.wall_seconds = timed(subject, method, request, record.steps, progress);
         Ok(record)
     }
 }

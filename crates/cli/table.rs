@@ -78,13 +78,18 @@ pub(crate) fn better<const N: usize>(record: &Record<N>, better: &[(&str, f64)])
 }
 
 /// The table of a comparison; as several tables below each other where one would be wider than there is room for.
-pub(crate) fn comparison(scene: &Scene, rows: &[Row], interrupted: Option<&str>, room: Option<usize>) -> String {
+pub(crate) fn comparison(
+    (title, name, duration): (&str, &str, f64),
+    rows: &[Row],
+    interrupted: Option<&str>,
+    room: Option<usize>,
+) -> String {
     // A refusal or a failure needs more room than a column has: its text follows the row.
     let short = |row: &Row| row.cells.len() < COLUMNS.len();
     let remark = |row: &Row| row.cells.last().filter(|_| short(row)).cloned();
     let own = |row: &Row| row.cells[..row.cells.len() - usize::from(short(row))].to_vec();
     let cells: Vec<_> = rows.iter().map(own).collect();
-    let mut text = format!("{} ({}), {} s\n", scene.title, scene.name, number(scene.run.duration));
+    let mut text = format!("{title} ({name}), {} s\n", number(duration));
     let parts = parts(&COLUMNS, &cells, room);
     for (k, columns) in parts.iter().enumerate() {
         // A short row has no numbers for the tables after the first.
@@ -167,20 +172,35 @@ pub(crate) fn one_run<const N: usize>(
     end: &SleighState,
     out: Option<&Path>,
 ) -> String {
+    let end = [
+        ("position".to_owned(), format!("x = {} m, y = {} m", number(end.x), number(end.y))),
+        ("heading".to_owned(), format!("{} rad", number(end.heading))),
+        ("velocity".to_owned(), format!("{} m/s along the blade, {} rad/s", number(end.speed), number(end.turn_rate))),
+    ];
+    one_run_of((&scene.title, &scene.name), record, &end, out)
+}
+
+/// The result of one run of a scene of that title and name, with lines on where it ends.
+pub(crate) fn one_run_of<const N: usize>(
+    (title, name): (&str, &str),
+    record: &Record<N>,
+    end: &[(String, String)],
+    out: Option<&Path>,
+) -> String {
     let mut lines = vec![
-        ("scene", format!("{} ({})", scene.title, scene.name)),
+        ("scene", format!("{title} ({name})")),
         ("method", format!("{}, order {}", record.method.name, record.method.order)),
         ("steps", format!("{} of {} s, to t = {} s", record.steps, number(record.step), number(record.t))),
-        ("position", format!("x = {} m, y = {} m", number(end.x), number(end.y))),
-        ("heading", format!("{} rad", number(end.heading))),
-        ("velocity", format!("{} m/s along the blade, {} rad/s", number(end.speed), number(end.turn_rate))),
+    ];
+    lines.extend(end.iter().map(|(name, value)| (name.as_str(), value.clone())));
+    lines.extend([
         (
             "energy",
             format!("{} J at the start, {} J at the end", number(record.energy.initial), number(record.energy.last)),
         ),
         ("energy error", format!("{:.2e} J at most", record.energy.max_error)),
         ("constraint", format!("{:.2e} m/s at most", record.constraint_max)),
-    ];
+    ]);
     if record.newton.max > 0 {
         lines.push(("Newton", format!("{:.2} iterations a step, {} at most", record.newton.mean, record.newton.max)));
     }

@@ -122,7 +122,7 @@ impl Request<'_> {
     /// In parts that are saved, or from a part that was.
     fn saved(&self, arguments: &RunArguments, progress: &mut dyn Progress) -> Result<Made, CliError> {
         let RunArguments { checkpoint, checkpoint_every, resume: from, scene, .. } = arguments;
-        let identity = resume::identity(self.scene, self.method, self.schedule);
+        let identity = resume::identity((&self.scene.name, self.scene), self.method, self.schedule);
         let read = from.as_ref().map(|path| resume::read(path, &identity)).transpose()?;
         if let Some(path) = checkpoint {
             resume::check(path, from.as_deref(), scene.force)?;

@@ -50,7 +50,8 @@ impl Columns {
 
     /// The names of the columns, each with its unit.
     pub(crate) fn names(&self) -> impl Iterator<Item = String> {
-        self.header.iter().map(|Column { name, unit }| format!("{name} [{unit}]"))
+        let whole = |name: &str, unit: &str| if unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") };
+        self.header.iter().map(move |Column { name, unit }| whole(name, unit))
     }
 }
 

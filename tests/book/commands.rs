@@ -101,7 +101,7 @@ fn run(page: &str, block: &Block<'_>, long: bool) {
 /// Whole scenes are valid, data can be read.
 fn check(page: &str, block: &Block<'_>) {
     let text = block.lines.join("\n");
-    if block.language == "toml" && text.contains("[sleigh]") {
+    if block.language == "toml" && (text.contains("[sleigh]") || text.contains("[system]")) {
         let folder = Folder::new();
         folder.write("scene.toml", &text);
         let outcome = folder.line("check scene.toml");

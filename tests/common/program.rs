@@ -154,7 +154,19 @@ pub fn methods() -> Vec<String> {
     all.as_array().unwrap().iter().map(name).collect()
 }
 
-/// The names of the bundled scenes.
+/// The names of the bundled scenes of systems of text.
+pub const TEXTS: [&str; 8] = [
+    "knife-edge",
+    "rolling-disk",
+    "falling-disk",
+    "snakeboard",
+    "roller-racer",
+    "two-wheeled-robot",
+    "car-and-trailer",
+    "chaplygin-ball",
+];
+
+/// The names of the bundled scenes of sleighs.
 pub const SCENES: [&str; 18] = [
     "turnaround",
     "straight",

@@ -3,7 +3,7 @@
 mod words;
 
 use crate::args::JobArguments;
-use crate::compare::{Comparison, Row, compare_scene, methods, unless_interrupted};
+use crate::compare::{Comparison, Row, compare_sleigh, methods, unless_interrupted};
 use crate::error::CliError;
 use crate::inspect::method_names;
 use crate::interrupt::Interrupt;
@@ -44,7 +44,7 @@ pub(crate) fn first(arguments: &JobArguments) -> Result<(), CliError> {
     let scene = Scene::load(SCENE, &names)?.with_overrides(None, Some(STEP), Some(DURATION), None, &names)?;
     let methods = methods(&METHODS, None)?;
     let Comparison { rows, mut report, interrupted } =
-        compare_scene(&scene, &methods, &mut Saves::default(), &Interrupt::listen())?;
+        compare_sleigh(&scene, &methods, &mut Saves::default(), &Interrupt::listen())?;
     let answers: Vec<Answers> = rows.iter().map(|row| Answers::of(&row.json)).collect();
     let mut sentences = words::sentences(&answers);
     if interrupted.is_none() {

@@ -52,6 +52,12 @@ impl<const N: usize, const M: usize> Mechanics<N, M> for Counted<'_, N, M> {
         slopes
     }
 
+    fn near(&self, t: f64, q: &[f64; N], basis: u64, then: &mut dyn FnMut(u64, &dyn Mechanics<N, M>)) -> bool {
+        self.system.near(t, q, basis, &mut |number, system| {
+            then(number, &Counted { system, evaluations: self.evaluations });
+        })
+    }
+
     counted! {
         0 angles() -> [bool; N];
         1 lagrangian(t: f64, q: &[f64; N], v: &[f64; N]) -> f64;

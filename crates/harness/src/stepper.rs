@@ -1,12 +1,12 @@
 //! The methods by name, as objects: compiled here for the shapes of the systems of scenes, and nowhere else for these.
 
 use crate::{Dop853, ImplicitMidpoint, Kind, Method, Rk4, Rk4Projected, Rk4Reduced};
-use dla::{Composition, Dla, Energy, Gauss, Gni, Lobatto, OwnMethods, Stepper};
+use dla::{Composition, Dla, Energy, Gauss, Gni, Lobatto, OwnMethods, Rebased, Stepper};
 use std::any::Any;
 
 /// Whether the methods for systems of this shape are compiled here.
 const fn is_compiled(coordinates: usize, constraints: usize) -> bool {
-    matches!(coordinates, 3 | 4) && matches!(constraints, 1..=3)
+    matches!((coordinates, constraints), (3 | 4, 1..=3) | (6, 3) | (8, 4) | (12 | 18, 6))
 }
 
 impl Method {
@@ -31,8 +31,8 @@ impl Method {
 
     /// The method, to make steps with.
     ///
-    /// For three or four coordinates and one to three constraints it is compiled in this crate; a caller with a system of another
-    /// shape compiles the methods for that shape, once.
+    /// For three or four coordinates and one to three constraints, and for the shapes that systems of text have, it is compiled in this
+    /// crate; a caller with a system of another shape compiles the methods for that shape, once.
     #[must_use]
     pub fn stepper<const N: usize, const M: usize>(&self) -> Stepper<'static, N, M> {
         // A constant condition, by which nothing of the other branch is compiled for a shape that is compiled here.
@@ -43,7 +43,11 @@ impl Method {
                 (3, 3) => Box::new(of_3_3(self)),
                 (4, 1) => Box::new(of_4_1(self)),
                 (4, 2) => Box::new(of_4_2(self)),
-                _ => Box::new(of_4_3(self)),
+                (4, 3) => Box::new(of_4_3(self)),
+                (6, 3) => Box::new(of_6_3(self)),
+                (8, 4) => Box::new(of_8_4(self)),
+                (12, 6) => Box::new(of_12_6(self)),
+                _ => Box::new(of_18_6(self)),
             };
             match compiled.downcast::<Stepper<'static, N, M>>() {
                 Ok(stepper) => *stepper,
@@ -79,33 +83,49 @@ fn of_4_3(method: &Method) -> Stepper<'static, 4, 3> {
     make(method)
 }
 
+fn of_6_3(method: &Method) -> Stepper<'static, 6, 3> {
+    make(method)
+}
+
+fn of_8_4(method: &Method) -> Stepper<'static, 8, 4> {
+    make(method)
+}
+
+fn of_12_6(method: &Method) -> Stepper<'static, 12, 6> {
+    make(method)
+}
+
+fn of_18_6(method: &Method) -> Stepper<'static, 18, 6> {
+    make(method)
+}
+
 /// The one place where a name becomes a type.
 fn make<const N: usize, const M: usize>(method: &Method) -> Stepper<'static, N, M> {
     match method.info().kind {
-        Kind::Dla => Box::new(Dla::midpoint()),
-        Kind::DlaTrapezoid | Kind::DlaAlpha => Box::new(Dla::new(method.rule(), method.rule())),
-        Kind::Dla4 => Box::new(Composition::suzuki4(Dla::midpoint())),
-        Kind::Dla6 => Box::new(Composition::kahan_li6(Dla::midpoint())),
-        Kind::Dla8 => Box::new(Composition::fifteen8(Dla::midpoint())),
-        Kind::Lobatto3 => Box::new(Lobatto::<3>::new()),
-        Kind::Lobatto4 => Box::new(Lobatto::<4>::new()),
-        Kind::Lobatto5 => Box::new(Lobatto::<5>::new()),
-        Kind::Gauss4 => Box::new(Gauss::new::<2>()),
-        Kind::Gauss6 => Box::new(Gauss::new::<3>()),
-        Kind::Gauss8 => Box::new(Gauss::new::<4>()),
-        Kind::Gauss10 => Box::new(Gauss::new::<5>()),
-        Kind::Gauss12 => Box::new(Gauss::new::<6>()),
-        Kind::Gauss14 => Box::new(Gauss::new::<7>()),
-        Kind::Gauss16 => Box::new(Gauss::new::<8>()),
-        Kind::Energy2 => Box::new(Energy::new::<1>()),
-        Kind::Energy4 => Box::new(Energy::new::<2>()),
-        Kind::Energy6 => Box::new(Energy::new::<3>()),
-        Kind::Energy8 => Box::new(Energy::new::<4>()),
-        Kind::Gni => Box::new(Gni::<N>::default()),
+        Kind::Dla => Box::new(Rebased::new(Dla::midpoint())),
+        Kind::DlaTrapezoid | Kind::DlaAlpha => Box::new(Rebased::new(Dla::new(method.rule(), method.rule()))),
+        Kind::Dla4 => Box::new(Rebased::new(Composition::suzuki4(Dla::midpoint()))),
+        Kind::Dla6 => Box::new(Rebased::new(Composition::kahan_li6(Dla::midpoint()))),
+        Kind::Dla8 => Box::new(Rebased::new(Composition::fifteen8(Dla::midpoint()))),
+        Kind::Lobatto3 => Box::new(Rebased::new(Lobatto::<3>::new())),
+        Kind::Lobatto4 => Box::new(Rebased::new(Lobatto::<4>::new())),
+        Kind::Lobatto5 => Box::new(Rebased::new(Lobatto::<5>::new())),
+        Kind::Gauss4 => Box::new(Rebased::new(Gauss::new::<2>())),
+        Kind::Gauss6 => Box::new(Rebased::new(Gauss::new::<3>())),
+        Kind::Gauss8 => Box::new(Rebased::new(Gauss::new::<4>())),
+        Kind::Gauss10 => Box::new(Rebased::new(Gauss::new::<5>())),
+        Kind::Gauss12 => Box::new(Rebased::new(Gauss::new::<6>())),
+        Kind::Gauss14 => Box::new(Rebased::new(Gauss::new::<7>())),
+        Kind::Gauss16 => Box::new(Rebased::new(Gauss::new::<8>())),
+        Kind::Energy2 => Box::new(Rebased::new(Energy::new::<1>())),
+        Kind::Energy4 => Box::new(Rebased::new(Energy::new::<2>())),
+        Kind::Energy6 => Box::new(Rebased::new(Energy::new::<3>())),
+        Kind::Energy8 => Box::new(Rebased::new(Energy::new::<4>())),
+        Kind::Gni => Box::new(Rebased::new(Gni::<N>::default())),
         Kind::Rk4 => Box::new(Rk4),
         Kind::Rk4Projected => Box::new(Rk4Projected),
-        Kind::Rk4Reduced => Box::new(Rk4Reduced),
-        Kind::ImplicitMidpoint => Box::new(ImplicitMidpoint::default()),
+        Kind::Rk4Reduced => Box::new(Rebased::new(Rk4Reduced)),
+        Kind::ImplicitMidpoint => Box::new(Rebased::new(ImplicitMidpoint::default())),
         Kind::Dop853 => Box::new(Dop853::<N, M>::new(method.tolerance())),
     }
 }

@@ -45,6 +45,18 @@ pub trait System<const N: usize, const M: usize> {
         None
     }
 
+    /// The same system with its basis of admissible velocities for the neighbourhood of a configuration, and the number of that basis, for
+    /// a system whose basis holds near a configuration only. None by default: it holds wherever the system does.
+    ///
+    /// `basis` is the number of the basis in use, zero where there is none yet. It stays as long as it is well conditioned; the number of
+    /// another, from one to 2^53, says all that is to be known of it.
+    fn near(&self, _t: f64, _q: &[f64; N], _basis: u64) -> Option<(Self, u64)>
+    where
+        Self: Sized,
+    {
+        None
+    }
+
     /// The functions `g_k(q, t)` of constraints on positions, `g_k = 0`: `Some` for every row `k` that is the rate of one,
     /// `A_k = dg_k/dq` and `b_k = dg_k/dt`. None by default, and then only velocities are constrained.
     ///

@@ -41,8 +41,29 @@ pub fn bundled() -> &'static [Bundled] {
 /// What a scene may say, as a JSON schema: keys, types, units in parentheses at the end of each description.
 pub const SCHEMA: &str = include_str!("../../../docs/scene.schema.json");
 
+/// Every bundled scene of a system of text, in the order in which to present them.
+#[must_use]
+pub fn bundled_texts() -> &'static [Bundled] {
+    bundle![
+        "knife-edge",
+        "rolling-disk",
+        "falling-disk",
+        "snakeboard",
+        "roller-racer",
+        "two-wheeled-robot",
+        "car-and-trailer",
+        "chaplygin-ball",
+    ]
+}
+
+/// The bundled scene of that name, of either kind; underscores in a name are taken for hyphens, as effects are spelled with them.
+pub(crate) fn named(name: &str) -> Option<&'static Bundled> {
+    let name = name.replace('_', "-");
+    bundled().iter().chain(bundled_texts()).find(|scene| scene.name == name)
+}
+
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {
-    bundled().iter().map(|scene| scene.name)
+    bundled().iter().chain(bundled_texts()).map(|scene| scene.name)
 }
 
 pub(crate) const TEMPLATE: &str = include_str!("template.toml");

@@ -30,6 +30,9 @@ pub enum SceneError {
     /// A number that is not finite, that no body or run can have, or that does not go with another.
     #[error("{0}")]
     OutOfRange(Box<Finding>),
+    /// A text of a system that is no formula, or not one that may stand there; or a system that such texts do not determine.
+    #[error("{0}")]
+    Formula(Box<Finding>),
     /// Neither a bundled scene nor a file.
     #[error(
         "no bundled scene and no file is named `{}`{}\n  = accepted: the path of a scene file, or one of {}",
@@ -80,7 +83,8 @@ impl SceneError {
             | Self::UnknownKey(finding)
             | Self::UnknownName(finding)
             | Self::WrongType(finding)
-            | Self::OutOfRange(finding) => Some(finding),
+            | Self::OutOfRange(finding)
+            | Self::Formula(finding) => Some(finding),
             Self::NotFound { .. } | Self::Directory { .. } | Self::TooLarge { .. } | Self::Unreadable { .. } => None,
         }
     }
@@ -94,7 +98,8 @@ impl SceneError {
             | Self::UnknownKey(finding)
             | Self::UnknownName(finding)
             | Self::WrongType(finding)
-            | Self::OutOfRange(finding) => Some(finding),
+            | Self::OutOfRange(finding)
+            | Self::Formula(finding) => Some(finding),
             Self::NotFound { .. } | Self::Directory { .. } | Self::TooLarge { .. } | Self::Unreadable { .. } => None,
         }
     }

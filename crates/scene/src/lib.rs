@@ -34,12 +34,15 @@ mod suggest;
 mod sweep;
 mod system;
 mod table;
+mod text;
 mod train;
 mod variation;
 mod written;
 
 pub use self::scene::Scene;
-pub use bundled::{Bundled, SCHEMA, bundled};
+pub use self::text::{AnyScene, TextScene};
+pub use ::text::{AnyText, Coordinate, Model, Moved, Started as StartedText, TextMechanics, with_text};
+pub use bundled::{Bundled, SCHEMA, bundled, bundled_texts};
 pub use effect::{EFFECTS, HillSpec, PathSpec, SceneEffect, Shape, TimeSpec, TrailersSpec};
 pub use error::SceneError;
 pub use finding::{Finding, Place};

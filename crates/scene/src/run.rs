@@ -1,5 +1,7 @@
 use crate::error::SceneError;
 use crate::fault::Fault;
+use crate::finding::Excerpt;
+use crate::keys;
 use crate::keys::{ALPHA, DURATION, STEP};
 use crate::suggest;
 use crate::table::Table;
@@ -71,6 +73,33 @@ impl RunSettings {
         Ok(settings)
     }
 
+    /// Replaces the settings that are given. Whose settings they are, `name` says for messages.
+    pub(crate) fn replace(
+        &mut self,
+        name: &str,
+        method: Option<&str>,
+        step: Option<f64>,
+        duration: Option<f64>,
+        alpha: Option<f64>,
+        methods: &[&str],
+    ) -> Result<(), SceneError> {
+        self.method = method.map_or_else(|| std::mem::take(&mut self.method), str::to_owned);
+        self.step = step.unwrap_or(self.step);
+        self.duration = duration.unwrap_or(self.duration);
+        self.alpha = alpha.or(self.alpha);
+        // A step that no longer goes with the duration is the fault of what has changed.
+        let culprit = if duration.is_some() && step.is_none() { "duration" } else { "step" };
+        self.check(culprit, methods).map_err(|fault| {
+            let given = match fault.key {
+                "method" => method.is_some(),
+                "alpha" => alpha.is_some(),
+                "duration" => duration.is_some(),
+                _ => step.is_some(),
+            };
+            flag_error(fault, given, name)
+        })
+    }
+
     /// Checks all of it; a step that does not go with the duration is said to be the fault of `culprit`.
     pub(crate) fn check(&self, culprit: &'static str, methods: &[&str]) -> Result<(), Fault> {
         if !methods.contains(&self.method.as_str()) {
@@ -106,12 +135,19 @@ impl RunSettings {
     }
 }
 
+/// The error of a setting from the command line, or else from the scene.
+pub(crate) fn flag_error(fault: Fault, given: bool, name: &str) -> SceneError {
+    let (origin, field) =
+        if given { ("command line", format!("--{}", fault.key)) } else { (name, keys::path("run", fault.key)) };
+    fault.at(origin, None, Some(field), Excerpt::default())
+}
+
 fn unknown_method(method: &str, methods: &[&str]) -> Fault {
     Fault {
         variant: SceneError::UnknownName,
         key: "method",
         problem: "names no known method".to_owned(),
-        found: Some(format!("{:?}", crate::keys::abridged(method))),
+        found: Some(format!("{:?}", keys::abridged(method))),
         accepted: format!("one of {}", suggest::list(methods)),
         help: suggest::nearest(method, methods.iter().copied()).map(suggest::did_you_mean),
     }

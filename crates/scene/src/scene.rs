@@ -2,11 +2,9 @@ use crate::bundled::TEMPLATE;
 use crate::document::Document;
 use crate::error::SceneError;
 use crate::fault::Fault;
-use crate::finding::Excerpt;
-use crate::run::RunSettings;
-
+use crate::run::{RunSettings, flag_error};
 use crate::table::Table;
-use crate::{PathSpec, SceneEffect, Shape, effects, keys, sections};
+use crate::{PathSpec, SceneEffect, Shape, effects, sections};
 use lagrangian::whole_steps;
 use sleigh::{Sleigh, SleighState};
 use std::path::Path;
@@ -46,6 +44,9 @@ impl Scene {
         let entries = DeTable::parse(text).map_err(|error| document.syntax(&error))?.into_inner();
         if entries.is_empty() {
             return Err(empty(&document));
+        }
+        if let Some(system) = entries.get("system") {
+            return Err(document.fail(&system.span(), Some("system".to_owned()), of_text()));
         }
         let root = Table::root(document, &entries)?;
         let name = name_of(origin);
@@ -107,34 +108,12 @@ impl Scene {
         alpha: Option<f64>,
         methods: &[&str],
     ) -> Result<Self, SceneError> {
-        let run = &mut self.run;
-        run.method = method.map_or_else(|| std::mem::take(&mut run.method), str::to_owned);
-        run.step = step.unwrap_or(run.step);
-        run.duration = duration.unwrap_or(run.duration);
-        run.alpha = alpha.or(run.alpha);
-        // A step that no longer goes with the duration is the fault of what has changed.
-        let culprit = if duration.is_some() && step.is_none() { "duration" } else { "step" };
-        run.check(culprit, methods).map_err(|fault| {
-            let given = match fault.key {
-                "method" => method.is_some(),
-                "alpha" => alpha.is_some(),
-                "duration" => duration.is_some(),
-                _ => step.is_some(),
-            };
-            flag_error(fault, given, &self.name)
-        })?;
+        self.run.replace(&self.name, method, step, duration, alpha, methods)?;
         match self.misaligned() {
             None => Ok(self),
             Some(time) => Err(flag_error(unaligned(time), step.is_some(), &self.name)),
         }
     }
-}
-
-/// The error of a setting from the command line, or else from the scene.
-fn flag_error(fault: Fault, given: bool, name: &str) -> SceneError {
-    let (origin, field) =
-        if given { ("command line", format!("--{}", fault.key)) } else { (name, keys::path("run", fault.key)) };
-    fault.at(origin, None, Some(field), Excerpt::default())
 }
 
 /// A jump that falls inside a step.
@@ -149,18 +128,30 @@ fn unaligned(time: f64) -> Fault {
     }
 }
 
-fn empty(document: &Document<'_>) -> SceneError {
+/// A system of text where a sleigh is needed.
+fn of_text() -> Fault {
+    Fault {
+        variant: SceneError::UnknownKey,
+        key: "",
+        problem: "makes this a system of text, and a sleigh is needed here".to_owned(),
+        found: None,
+        accepted: "the tables `[sleigh]`, `[start]` and `[run]`".to_owned(),
+        help: Some("`run`, `compare` and `check` take systems of text".to_owned()),
+    }
+}
+
+pub(crate) fn empty(document: &Document<'_>) -> SceneError {
     let fault = Fault {
         variant: SceneError::Missing,
         key: "",
         problem: "the scene is empty".to_owned(),
         found: None,
-        accepted: "the tables `[sleigh]`, `[start]` and `[run]`".to_owned(),
+        accepted: "the tables `[sleigh]` or `[system]`, `[start]` and `[run]`".to_owned(),
         help: Some("`noslip new FILE` writes a scene to start from".to_owned()),
     };
     document.fail(&(0..0), None, fault)
 }
 
-fn name_of(origin: &str) -> String {
+pub(crate) fn name_of(origin: &str) -> String {
     Path::new(origin).file_stem().map_or_else(|| origin.to_owned(), |stem| stem.to_string_lossy().into_owned())
 }

@@ -1,10 +1,9 @@
 //! Settings of the command line: values in place of those of a scene's text, or beside them.
 
-use crate::bundled::bundled;
 use crate::error::SceneError;
 use crate::fault::Fault;
 use crate::finding::Excerpt;
-use crate::{Scene, file};
+use crate::{AnyScene, Scene, bundled, file};
 use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
@@ -124,9 +123,7 @@ fn item<'v, 'd>(list: &'v DeArray<'d>, number: &str) -> Result<&'v Spanned<DeVal
 
 /// A text of a scene, and what messages call it: the bundled scene of that name, the standard input for `-`, or else a file.
 pub(crate) fn source(name_or_path: &str) -> Result<(Cow<'static, str>, Cow<'_, str>), SceneError> {
-    // Underscores in a name are taken for hyphens: an effect is spelled with them.
-    let name = name_or_path.replace('_', "-");
-    if let Some(scene) = bundled().iter().find(|scene| scene.name == name) {
+    if let Some(scene) = bundled::named(name_or_path) {
         return Ok((Cow::Borrowed(scene.text), Cow::Borrowed(scene.name)));
     }
     let origin = if name_or_path == "-" { "stdin" } else { name_or_path };
@@ -189,6 +186,18 @@ impl Scene {
     pub fn load_with(name_or_path: &str, settings: &[Setting], methods: &[&str]) -> Result<Self, SceneError> {
         let (text, origin) = source(name_or_path)?;
         // A byte-order mark is no part of the first line.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+        parse_with(text, &origin, settings, |text, origin| Self::parse(text, origin, methods))
+    }
+}
+
+impl AnyScene {
+    /// Reads a scene of either kind, as [`Scene::load_with`].
+    ///
+    /// # Errors
+    /// As [`Scene::load_with`].
+    pub fn load_with(name_or_path: &str, settings: &[Setting], methods: &[&str]) -> Result<Self, SceneError> {
+        let (text, origin) = source(name_or_path)?;
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
         parse_with(text, &origin, settings, |text, origin| Self::parse(text, origin, methods))
     }

@@ -74,7 +74,8 @@ impl<'s> Table<'s> {
         };
         let name: &str = key.get_ref();
         // An effect shares keys with the other tables.
-        let home = keys::home(name).filter(|_| !self.path.starts_with("effects") && kind == "a scene");
+        let home = keys::home(name)
+            .filter(|home| !self.path.starts_with("effects") && kind == "a scene" && *home != self.path);
         let help = match (home, suggest::nearest(name, known.iter().copied())) {
             (Some(""), _) if name == "title" => Some("`title` belongs at the top, before the first table".to_owned()),
             (Some(""), _) if name == "effects" => Some("effects are headed `[[effects]]`".to_owned()),

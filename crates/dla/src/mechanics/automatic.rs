@@ -140,6 +140,16 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Mechanics<N, M> for Sys 
         self.admissible_basis(t, q)
     }
 
+    fn near(&self, t: f64, q: &[f64; N], basis: u64, then: &mut dyn FnMut(u64, &dyn Mechanics<N, M>)) -> bool {
+        match System::near(self, t, q, basis) {
+            Some((near, number)) => {
+                then(number, &near);
+                true
+            }
+            None => false,
+        }
+    }
+
     fn linear_basis(&self, t: f64, q: &[f64; N]) -> Option<([[f64; N]; M], AdmissibleBasis<f64, N, M>)> {
         linear_basis(self, t, q)
     }

@@ -142,6 +142,10 @@ pub trait Mechanics<const N: usize, const M: usize>: RoundedMechanics<N, M> + Di
     /// The basis of admissible velocities, where there is one.
     fn basis(&self, t: f64, q: &[f64; N]) -> Option<AdmissibleBasis<f64, N, M>>;
 
+    /// Shows the system with its basis for the neighbourhood of a configuration, and the number of that basis, where its basis holds near a
+    /// configuration only: as [`System::near`](lagrangian::System::near), which says what `basis` is. Whether it does.
+    fn near(&self, t: f64, q: &[f64; N], basis: u64, then: &mut dyn FnMut(u64, &dyn Mechanics<N, M>)) -> bool;
+
     /// The rows of linear constraints with the basis; none where the system gives none, or where `b` is not zero.
     fn linear_basis(&self, t: f64, q: &[f64; N]) -> Option<([[f64; N]; M], AdmissibleBasis<f64, N, M>)>;
 

@@ -83,12 +83,32 @@ impl Tape {
     /// [`Error::TooFew`] inputs, numbers of scratch, or outputs; more are left alone.
     #[inline(always)]
     pub fn evaluate<S: Scalar>(&self, inputs: &[S], scratch: &mut [S], outputs: &mut [S]) -> Result<(), Error> {
+        if inputs.len() < self.inputs || scratch.len() < self.scratch || outputs.len() < self.outputs {
+            return Err(self.too_few(inputs.len(), scratch.len(), outputs.len()));
+        }
+        self.evaluate_with(|k| inputs[k], scratch, |k, value| outputs[k] = value)
+    }
+
+    /// The same where the values of the variables do not lie in a row, nor are the results to: `input` says the value of a variable by its
+    /// number, `output` takes the value of an expression, each once, in any order.
+    ///
+    /// # Errors
+    /// [`Error::TooFew`] numbers of scratch.
+    #[inline(always)]
+    pub fn evaluate_with<S: Scalar>(
+        &self,
+        input: impl Fn(usize) -> S,
+        scratch: &mut [S],
+        mut output: impl FnMut(usize, S),
+    ) -> Result<(), Error> {
         let x = scratch;
-        if inputs.len() < self.inputs || x.len() < self.scratch || outputs.len() < self.outputs {
-            return Err(self.too_few(inputs.len(), x.len(), outputs.len()));
+        if x.len() < self.scratch {
+            return Err(self.too_few(self.inputs, x.len(), self.outputs));
         }
         let x = &mut x[..self.scratch];
-        x[..self.inputs].copy_from_slice(&inputs[..self.inputs]);
+        for (k, place) in x[..self.inputs].iter_mut().enumerate() {
+            *place = input(k);
+        }
         let constants = &*self.constants;
         for &Instruction { to, operation } in &self.instructions {
             let value = match operation {
@@ -116,7 +136,7 @@ impl Tape {
                 }
                 Operation::Call { function, a, b } => function.of(x[a as usize], x[b as usize]),
                 Operation::Output { a } => {
-                    outputs[to as usize] = x[a as usize];
+                    output(to as usize, x[a as usize]);
                     continue;
                 }
             };

@@ -1,0 +1,66 @@
+use super::told;
+use crate::table::number;
+use scene::TextScene;
+
+/// What a scene is, for `noslip check`.
+pub(crate) fn described(scene: &TextScene) -> Vec<(String, String)> {
+    told::note_moves(scene);
+    let mut facts = listed(scene);
+    facts.push(("method".to_owned(), scene.run.method.clone()));
+    facts
+}
+
+/// What a scene says, for a person: names and values.
+pub(crate) fn listed(scene: &TextScene) -> Vec<(String, String)> {
+    let (model, start, run) = (&scene.model, &scene.start, &scene.run);
+    let geometry = model.geometry(start);
+    let mut facts: Vec<(&str, String)> = Vec::new();
+    let units = model.coordinates().iter().map(|of| match of.unit.name() {
+        "" => of.name.clone(),
+        unit => format!("{} [{unit}]", of.name),
+    });
+    facts.push(("coordinates", units.collect::<Vec<_>>().join(", ")));
+    let parameters = scene.words.parameters.iter().map(|(name, value)| format!("{name} = {}", number(*value)));
+    let parameters: Vec<String> = parameters.collect();
+    if !parameters.is_empty() {
+        facts.push(("parameters", parameters.join(", ")));
+    }
+    let positions = match model.positions() {
+        0 => String::new(),
+        k => format!(", {k} of them on positions"),
+    };
+    facts.push(("constraints", format!("{}{positions}, rank {} at the start", model.constraints(), geometry.rank)));
+    if model.constraints() > 0 {
+        facts.push(("integrable", geometry.integrability()));
+        facts.push(("growth vector", geometry.growth_told()));
+        facts
+            .push(("basis of admissible velocities", if model.gives_basis() { "given" } else { "derived" }.to_owned()));
+    }
+    if model.has_forces() {
+        facts.push(("forces", scene.words.forces.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ")));
+    }
+    if model.depends_on_time() {
+        facts.push(("depends on time", "yes".to_owned()));
+    }
+    let [lagrangian, constraint, force] = model.operations();
+    facts.push((
+        "operations",
+        format!("{lagrangian} for the Lagrangian, {constraint} for the constraints, {force} for the forces"),
+    ));
+    let numbers = |what: &[(String, String)]| {
+        what.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ")
+    };
+    let state = told::lines(model, 0.0, &start.q, &start.v);
+    let n = model.coordinates().len();
+    facts.push(("start", numbers(&state[..n])));
+    facts.push(("start velocity", numbers(&state[n..2 * n])));
+    if state.len() > 2 * n {
+        facts.push(("outputs", numbers(&state[2 * n..])));
+    }
+    facts.push(("energy", format!("{} J", number(model.energy(0.0, &start.q, &start.v)))));
+    facts.push((
+        "run",
+        format!("{} s in {} steps of {} s", number(run.duration), run.steps(), number(run.actual_step())),
+    ));
+    facts.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+}

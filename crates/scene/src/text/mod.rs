@@ -1,0 +1,144 @@
+//! Scenes of systems that are written as text.
+
+mod faults;
+mod start;
+mod words;
+
+use crate::document::Document;
+use crate::error::SceneError;
+use crate::scene::{empty, name_of};
+use crate::table::Table;
+use crate::{RunSettings, Scene};
+use ::text::{AnyText, Model, Start, Words};
+use std::sync::Arc;
+use toml::de::DeTable;
+
+/// A scene of a system of text: its texts, their meaning, its start and its run, all checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TextScene {
+    /// The bundled name, or the file's name without directory and ending.
+    pub name: String,
+    /// What the scene calls itself; the name when it does not.
+    pub title: String,
+    /// The texts of the system.
+    pub words: Words,
+    /// What they mean.
+    pub model: Arc<Model>,
+    /// The start, which meets all constraints.
+    pub start: Start,
+    /// How to run it.
+    pub run: RunSettings,
+}
+
+/// A scene of either kind.
+#[derive(Debug, Clone, PartialEq)]
+pub enum AnyScene {
+    /// A sleigh, and what acts on it.
+    Sleigh(Box<Scene>),
+    /// A system of text.
+    Text(Box<TextScene>),
+}
+
+impl AnyScene {
+    /// Reads a scene from text, as [`Scene::parse`].
+    ///
+    /// # Errors
+    /// [`SceneError`] with the first thing that is wrong with the text.
+    pub fn parse(text: &str, origin: &str, methods: &[&str]) -> Result<Self, SceneError> {
+        let bare = text.strip_prefix('\u{feff}').unwrap_or(text);
+        // What is no TOML has no system either, and the other kind says what is wrong.
+        let has_system = DeTable::parse(bare).is_ok_and(|entries| entries.get_ref().contains_key("system"));
+        Ok(if has_system {
+            Self::Text(Box::new(TextScene::parse(text, origin, methods)?))
+        } else {
+            Self::Sleigh(Box::new(Scene::parse(text, origin, methods)?))
+        })
+    }
+
+    /// Reads the bundled scene of that name or else the file at that path, as [`Scene::load`].
+    ///
+    /// # Errors
+    /// As [`Scene::load`].
+    pub fn load(name_or_path: &str, methods: &[&str]) -> Result<Self, SceneError> {
+        Self::load_with(name_or_path, &[], methods)
+    }
+
+    /// The scene with other settings of its run, as [`Scene::with_overrides`].
+    ///
+    /// # Errors
+    /// As [`Scene::with_overrides`].
+    pub fn with_overrides(
+        self,
+        method: Option<&str>,
+        step: Option<f64>,
+        duration: Option<f64>,
+        alpha: Option<f64>,
+        methods: &[&str],
+    ) -> Result<Self, SceneError> {
+        Ok(match self {
+            Self::Sleigh(scene) => {
+                Self::Sleigh(Box::new(scene.with_overrides(method, step, duration, alpha, methods)?))
+            }
+            Self::Text(mut scene) => {
+                scene.run.replace(&scene.name, method, step, duration, alpha, methods)?;
+                Self::Text(scene)
+            }
+        })
+    }
+
+    /// The bundled name, or the file's name without directory and ending.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Sleigh(scene) => &scene.name,
+            Self::Text(scene) => &scene.name,
+        }
+    }
+
+    /// How to run it.
+    #[must_use]
+    pub fn run(&self) -> &RunSettings {
+        match self {
+            Self::Sleigh(scene) => &scene.run,
+            Self::Text(scene) => &scene.run,
+        }
+    }
+
+    /// What the scene calls itself.
+    #[must_use]
+    pub fn title(&self) -> &str {
+        match self {
+            Self::Sleigh(scene) => &scene.title,
+            Self::Text(scene) => &scene.title,
+        }
+    }
+}
+
+impl TextScene {
+    /// Reads a scene of a system of text.
+    ///
+    /// # Errors
+    /// [`SceneError`] with the first thing that is wrong, at its place.
+    pub fn parse(text: &str, origin: &str, methods: &[&str]) -> Result<Self, SceneError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let document = Document { origin, text };
+        let entries = DeTable::parse(text).map_err(|error| document.syntax(&error))?.into_inner();
+        if entries.is_empty() {
+            return Err(empty(&document));
+        }
+        let root = Table::of_system(document, &entries)?;
+        let name = name_of(origin);
+        let title = root.text("title", "a string")?.unwrap_or(&name).to_owned();
+        let (words, places) = words::read(&root)?;
+        let model = Model::new(&words).map_err(|error| places.fail(&document, &words, &error))?;
+        let start = start::read(&root, &model)?;
+        let run = RunSettings::read(&root.table("run")?, methods)?;
+        Ok(Self { name, title, words, model: Arc::new(model), start, run })
+    }
+
+    /// The system with its start; a scene that was read has one.
+    #[must_use]
+    pub fn system(&self) -> Option<AnyText> {
+        AnyText::new(&self.model, &self.start)
+    }
+}

@@ -1,0 +1,69 @@
+use crate::error::SceneError;
+use crate::fault::Fault;
+use crate::table::{Table, as_f64};
+use ::text::{Model, Start};
+use toml::de::DeValue;
+
+/// Reads `[start]` of a system of text: coordinates by their names, rates as `"x'"` or `x_dot`, all of which may be left out.
+pub(crate) fn read(root: &Table<'_>, model: &Model) -> Result<Start, SceneError> {
+    let names: Vec<&str> = model.coordinates().iter().map(|coordinate| coordinate.name.as_str()).collect();
+    let rates: Vec<[String; 2]> = names.iter().map(|name| [format!("{name}'"), format!("{name}_dot")]).collect();
+    let known: Vec<&str> = names.iter().copied().chain(rates.iter().flatten().map(String::as_str)).collect();
+    let (mut q, mut v) = (vec![None; names.len()], vec![None; names.len()]);
+    let mut header = root.header();
+    if let Some(value) = root.get("start") {
+        header = value.span();
+        let DeValue::Table(entries) = value.get_ref() else {
+            return Err(root.wrong_type("start", value, "a table of coordinates and rates".to_owned()));
+        };
+        let table = root.inner("start".to_owned(), entries, value.span(), &known)?;
+        for (i, name) in names.iter().enumerate() {
+            q[i] = number(&table, name)?;
+            let [primed, dotted] = &rates[i];
+            let both = [number(&table, primed)?, number(&table, dotted)?];
+            if let ([Some(_), Some(_)], Some(second)) = (both, table.get(dotted)) {
+                let fault = Fault {
+                    variant: SceneError::OutOfRange,
+                    key: "",
+                    problem: format!("is `{primed}`, which is there already"),
+                    found: None,
+                    accepted: "one of the two spellings of a rate".to_owned(),
+                    help: None,
+                };
+                return Err(root.document.fail(&second.span(), Some(table.path_of(dotted)), fault));
+            }
+            v[i] = both[0].or(both[1]);
+        }
+    }
+    model.start(&q, &v).map_err(|error| {
+        let fault = Fault {
+            variant: SceneError::Formula,
+            key: "",
+            problem: format!("is none of the system: {error}"),
+            found: None,
+            accepted: "coordinates and rates at which all formulas are finite, near those that meet the constraints"
+                .to_owned(),
+            help: None,
+        };
+        root.document.fail(&header, Some("start".to_owned()), fault)
+    })
+}
+
+/// The finite number of that name, if it is given.
+fn number(table: &Table<'_>, name: &str) -> Result<Option<f64>, SceneError> {
+    let Some(value) = table.get(name) else { return Ok(None) };
+    let accepted = || "a finite number".to_owned();
+    let number = as_f64(value.get_ref()).ok_or_else(|| table.wrong_type(name, value, accepted()))?;
+    if number.is_finite() {
+        return Ok(Some(number));
+    }
+    let fault = Fault {
+        variant: SceneError::OutOfRange,
+        key: "",
+        problem: "must be finite".to_owned(),
+        found: Some(format!("{number:?}")),
+        accepted: accepted(),
+        help: None,
+    };
+    Err(table.document.fail(&value.span(), Some(table.path_of(name)), fault))
+}

@@ -1,0 +1,173 @@
+use std::fmt;
+use thiserror::Error;
+
+/// Which text of a system, by its number in its list.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Entry {
+    /// The system as a whole.
+    System,
+    /// A coordinate.
+    Coordinate(usize),
+    /// A parameter.
+    Parameter(usize),
+    /// An abbreviation.
+    Abbreviation(usize),
+    /// The Lagrangian.
+    Lagrangian,
+    /// A constraint on velocities.
+    Constraint(usize),
+    /// A constraint on positions.
+    Position(usize),
+    /// A force.
+    Force(usize),
+    /// The basis as a whole.
+    Basis,
+    /// A vector of the basis.
+    Vector(usize),
+    /// A component of a vector of the basis.
+    Component(usize, usize),
+    /// An output.
+    Output(usize),
+}
+
+impl fmt::Display for Entry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::System => f.write_str("the system"),
+            Self::Coordinate(k) => write!(f, "coordinate {}", k + 1),
+            Self::Parameter(k) => write!(f, "parameter {}", k + 1),
+            Self::Abbreviation(k) => write!(f, "abbreviation {}", k + 1),
+            Self::Lagrangian => f.write_str("the Lagrangian"),
+            Self::Constraint(k) => write!(f, "constraint {}", k + 1),
+            Self::Position(k) => write!(f, "constraint {} on positions", k + 1),
+            Self::Force(k) => write!(f, "force {}", k + 1),
+            Self::Basis => f.write_str("the basis"),
+            Self::Vector(k) => write!(f, "vector {} of the basis", k + 1),
+            Self::Component(k, i) => write!(f, "component {} of vector {} of the basis", i + 1, k + 1),
+            Self::Output(k) => write!(f, "output {}", k + 1),
+        }
+    }
+}
+
+/// What is wrong with a system of texts.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("{entry}: {problem}")]
+pub struct TextError {
+    /// In which text.
+    pub entry: Entry,
+    /// What.
+    pub problem: Problem,
+}
+
+impl TextError {
+    /// The column of the text, counted in characters from one, where one column is at fault.
+    #[must_use]
+    pub fn column(&self) -> Option<usize> {
+        match &self.problem {
+            Problem::Expression(error) => error.column(),
+            Problem::Sign { column } => Some(*column),
+            _ => None,
+        }
+    }
+}
+
+/// What is wrong with one text.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum Problem {
+    /// It is no expression, or uses a name that is not known there.
+    #[error(transparent)]
+    Expression(#[from] expression::Error),
+    /// A function that jumps stands where derivatives are taken.
+    #[error("`sign` jumps, and stands in forces, in outputs and in abbreviations for them only (column {column})")]
+    Sign {
+        /// Where.
+        column: usize,
+    },
+    /// A constraint whose derivative in a rate contains rates.
+    #[error("the constraint is not affine in the rates: what `{rate}` is multiplied by contains `{other}`")]
+    NotAffine {
+        /// The rate in which it was derived.
+        rate: String,
+        /// A rate in that derivative.
+        other: String,
+    },
+    /// A constraint on velocities without any.
+    #[error("no rate stands in the constraint; a function of positions that is to vanish belongs in `positions`")]
+    NoRate,
+    /// A constraint on positions without any.
+    #[error("no coordinate stands in the constraint on positions")]
+    NoCoordinate,
+    /// A Lagrangian in which a coordinate has no inertia: the acceleration is not determined.
+    #[error(
+        "the rate `{rate}` does not stand in the Lagrangian, so that the acceleration of its coordinate is not determined"
+    )]
+    NoInertia {
+        /// The rate.
+        rate: String,
+    },
+    /// No coordinates.
+    #[error("a system has at least one coordinate")]
+    NoCoordinates,
+    /// More coordinates or constraints than there is room for.
+    #[error(
+        "{coordinates} coordinates with {constraints} constraints are too many: a system of text has at most {} coordinates and {} constraints",
+        crate::MOST_COORDINATES,
+        crate::MOST_CONSTRAINTS
+    )]
+    TooLarge {
+        /// How many coordinates there are.
+        coordinates: usize,
+        /// How many constraints.
+        constraints: usize,
+    },
+    /// More constraints than coordinates.
+    #[error("there are more constraints ({constraints}) than coordinates ({coordinates})")]
+    TooManyConstraints {
+        /// How many coordinates there are.
+        coordinates: usize,
+        /// How many constraints.
+        constraints: usize,
+    },
+    /// A force on something that is no coordinate.
+    #[error("a force acts on a coordinate, and `{name}` is none; the coordinates are {known}")]
+    NoSuchCoordinate {
+        /// The name.
+        name: String,
+        /// The coordinates.
+        known: String,
+    },
+    /// A coordinate under the name of a rate, or of time.
+    #[error("`{name}` cannot be a coordinate: `t` is time, and `x'` or `x_dot` is the rate of `x`")]
+    NotACoordinate {
+        /// The name.
+        name: String,
+    },
+    /// A name that a column has already.
+    #[error("`{name}` names another column already")]
+    Column {
+        /// The name.
+        name: String,
+    },
+    /// A parameter that is not finite.
+    #[error("a parameter is a finite number, and this is {value}")]
+    NotFinite {
+        /// Its value.
+        value: f64,
+    },
+    /// A basis of the wrong number of vectors.
+    #[error("{expected} vectors make a basis (coordinates less constraints), and here are {found}")]
+    Vectors {
+        /// How many there are to be.
+        expected: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// A vector of the wrong number of components.
+    #[error("a vector of the basis has a component for each of the {expected} coordinates, and this one has {found}")]
+    Components {
+        /// How many there are to be.
+        expected: usize,
+        /// How many there are.
+        found: usize,
+    },
+}

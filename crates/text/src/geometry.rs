@@ -1,0 +1,174 @@
+//! What the constraints of a system are at its start.
+
+use crate::basis::Pivots;
+use crate::{Model, Start};
+use expression::{Expression, Graph, Tape};
+use nalgebra::DMatrix;
+
+/// The rank of the constraints at a place, and how the directions that they admit grow by Lie brackets.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Geometry {
+    /// How many constraints are independent.
+    pub rank: usize,
+    /// The growth vector `r_1 <= r_2 <= ..` of the admissible directions at a fixed time: the rank of all brackets of up to so many
+    /// fields. It ends with the first that is all of space, with one that does not grow, or where longer brackets are too large.
+    pub growth: Vec<usize>,
+    /// How many coordinates there are.
+    pub coordinates: usize,
+}
+
+/// Brackets of so many fields are taken at most.
+const DEPTH: usize = 4;
+/// A singular value below this, relative to the largest, is none: exact derivatives leave rounding.
+const TOLERANCE: f64 = 1e-10;
+/// No more brackets are taken than so many.
+const MOST: usize = 400;
+
+impl Geometry {
+    /// Whether the constraints are those of positions, in words.
+    #[must_use]
+    pub fn integrability(&self) -> String {
+        match (self.growth.first(), self.growth.get(1)) {
+            (Some(first), Some(second)) if second > first => "no: the constraints are nonholonomic".to_owned(),
+            (Some(&first), None) if first == self.coordinates => "yes: nothing is constrained".to_owned(),
+            (Some(_), Some(_)) => "yes, at the start: brackets of admissible directions are admissible".to_owned(),
+            _ => "not known: the brackets of admissible directions are too large".to_owned(),
+        }
+    }
+
+    /// The growth vector in words.
+    #[must_use]
+    pub fn growth_told(&self) -> String {
+        let numbers: Vec<String> = self.growth.iter().map(ToString::to_string).collect();
+        let whole = match self.growth.last() {
+            Some(&last) if last == self.coordinates => ": every place nearby is reached",
+            _ => "",
+        };
+        format!("({}){whole}", numbers.join(", "))
+    }
+}
+
+impl Model {
+    /// The geometry of the constraints at a start.
+    #[must_use]
+    pub fn geometry(&self, start: &Start) -> Geometry {
+        let n = self.coordinates.len();
+        let (rows, _) = self.rows_at(0.0, &start.q);
+        let rank = rank(&rows);
+        let mut fields = Fields { graph: Graph::clone(&self.graph), n, q: &start.q };
+        let basis = match &self.fields {
+            Some(given) => given.chunks(n).map(<[Expression]>::to_vec).collect(),
+            None => fields.eliminated(&self.rows, &Pivots::best(&rows, &self.sizes(0.0, &start.q))),
+        };
+        Geometry { rank, growth: fields.growth(basis), coordinates: n }
+    }
+}
+
+fn rank(a: &DMatrix<f64>) -> usize {
+    if a.is_empty() || !a.iter().all(|x| x.is_finite()) {
+        return 0;
+    }
+    let values = a.clone().singular_values();
+    values.iter().filter(|&&value| value > TOLERANCE * values.amax()).count()
+}
+
+/// Vector fields as formulas.
+struct Fields<'a> {
+    graph: Graph,
+    n: usize,
+    q: &'a [f64],
+}
+
+type Field = Vec<Expression>;
+
+impl Fields<'_> {
+    /// The fields of free rates, by elimination of the others.
+    fn eliminated(&mut self, rows: &[Expression], pivots: &Pivots) -> Vec<Field> {
+        let (n, graph) = (self.n, &mut self.graph);
+        let mut a: Vec<Field> = rows.chunks(n).map(<[Expression]>::to_vec).collect();
+        for (r, c) in pivots.order() {
+            let pivot = a[r][c];
+            for x in &mut a[r] {
+                *x = graph.quotient(*x, pivot);
+            }
+            let row = a[r].clone();
+            for (_, other) in a.iter_mut().enumerate().filter(|(i, _)| *i != r) {
+                let factor = other[c];
+                for (x, &y) in other.iter_mut().zip(&row) {
+                    let change = graph.product(&[factor, y]);
+                    *x = graph.difference(*x, change);
+                }
+            }
+        }
+        let (zero, one) = (graph.constant(0.0), graph.constant(1.0));
+        let field = |i: usize, graph: &mut Graph| {
+            let mut field = vec![zero; n];
+            field[i] = one;
+            for (r, c) in pivots.order() {
+                field[c] = graph.negated(a[r][i]);
+            }
+            field
+        };
+        let free: Vec<usize> = pivots.free(n).collect();
+        free.into_iter().map(|i| field(i, graph)).collect()
+    }
+
+    /// The Lie bracket `[X, Y] = DY X - DX Y`.
+    fn bracket(&mut self, x: &[Expression], y: &[Expression]) -> Field {
+        let graph = &mut self.graph;
+        let along = |graph: &mut Graph, f: Expression, x: &[Expression]| {
+            let terms: Vec<Expression> = x
+                .iter()
+                .enumerate()
+                .map(|(j, &x)| {
+                    let slope = graph.derivative(f, 1 + j as u32);
+                    graph.product(&[slope, x])
+                })
+                .collect();
+            graph.sum(&terms)
+        };
+        (0..self.n)
+            .map(|i| {
+                let (ahead, back) = (along(graph, y[i], x), along(graph, x[i], y));
+                graph.difference(ahead, back)
+            })
+            .collect()
+    }
+
+    /// The values of fields, one a column; none where they are too large or not finite.
+    fn values(&self, fields: &[Field]) -> Option<DMatrix<f64>> {
+        self.graph.check().ok()?;
+        let tape = Tape::new(&self.graph, &fields.concat()).ok()?;
+        let mut values = DMatrix::zeros(self.n, fields.len());
+        let mut scratch = vec![0.0; tape.scratch()];
+        let input = |k: usize| if k == 0 { 0.0 } else { self.q.get(k - 1).copied().unwrap_or(0.0) };
+        tape.evaluate_with(input, &mut scratch, |k, x| values[(k % self.n, k / self.n)] = x).ok()?;
+        values.iter().all(|x: &f64| x.is_finite()).then_some(values)
+    }
+
+    fn growth(&mut self, basis: Vec<Field>) -> Vec<usize> {
+        let mut growth = Vec::new();
+        let (mut all, mut last) = (basis.clone(), basis.clone());
+        for depth in 1..=DEPTH {
+            let Some(values) = self.values(&all) else { break };
+            let dimension = rank(&values);
+            let stopped = growth.last() == Some(&dimension);
+            growth.push(dimension);
+            if dimension == self.n || stopped || depth == DEPTH || basis.len() * last.len() > MOST {
+                break;
+            }
+            let mut longer = Vec::new();
+            for (i, x) in basis.iter().enumerate() {
+                for (j, y) in last.iter().enumerate() {
+                    // Of two single fields one order is enough.
+                    if depth > 1 || i < j {
+                        longer.push(self.bracket(x, y));
+                    }
+                }
+            }
+            all.extend(longer.iter().cloned());
+            last = longer;
+        }
+        growth
+    }
+}

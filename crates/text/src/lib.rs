@@ -1,0 +1,49 @@
+//! Systems from text: coordinates, a Lagrangian, constraints and forces, written as formulas.
+//!
+//! 1. [`Words`] are the texts of a system, as a file or a program has them.
+//! 2. A [`Model`] is what they mean: checked, derived and put on tapes. A [`TextError`] says which text is wrong, in which column, and
+//!    what is known there.
+//! 3. A [`Start`] is the admissible state that is nearest to a given one.
+//! 4. [`AnyText`] is the system as an object. It has one of a few shapes, of which the smallest that has room is filled up: with
+//!    coordinates of unit mass that rest, and with constraints that hold them.
+//!
+//! ```
+//! use text::{Model, Unit, Words};
+//!
+//! let mut words = Words::default();
+//! for (name, unit) in [("x", Unit::other("m")), ("y", Unit::other("m")), ("theta", Unit::Angle)] {
+//!     words.coordinates.push((name.to_owned(), unit));
+//! }
+//! words.parameters.push(("m".to_owned(), 2.0));
+//! words.lagrangian = "m/2*(x'^2 + y'^2) + theta'^2/2".to_owned();
+//! words.constraints.push("y'*cos(theta) - x'*sin(theta)".to_owned());
+//! let model = Model::new(&words)?;
+//! let start = model.start(&[None; 3], &[Some(1.0), None, Some(0.5)])?;
+//! assert_eq!(start.v, [1.0, 0.0, 0.5]);
+//!
+//! words.lagrangian.push_str(" - m*g*x");
+//! let error = Model::new(&words).unwrap_err();
+//! assert_eq!(error.column(), Some(36));
+//! assert!(error.to_string().contains("no name `g` is known here"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod any;
+mod basis;
+mod build;
+mod error;
+mod formulas;
+mod geometry;
+mod model;
+mod start;
+mod system;
+mod tables;
+mod words;
+
+pub use any::{AnyText, MOST_CONSTRAINTS, MOST_COORDINATES, Started, TextMechanics};
+pub use error::{Entry, Problem, TextError};
+pub use geometry::Geometry;
+pub use model::{Coordinate, Model};
+pub use start::{Moved, Start, StartError};
+pub use system::TextSystem;
+pub use words::{Unit, Words};

@@ -1,0 +1,171 @@
+use crate::formulas::{Formulas, Point};
+use crate::{TextError, Unit, Words, build};
+use expression::{Expression, Graph};
+use lagrangian::Dual;
+use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
+
+/// A coordinate of a system.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Coordinate {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: Unit,
+}
+
+/// A system that was made of texts: its formulas, checked and derived.
+///
+/// Of `n` coordinates and `m` constraints; the last of these are those on positions, which are constraints on velocities by their rates.
+#[derive(Debug, Clone)]
+pub struct Model {
+    pub(crate) coordinates: Vec<Coordinate>,
+    /// The constraints on velocities that are not rates of positions.
+    pub(crate) velocities: usize,
+    /// The constraints on positions.
+    pub(crate) positions: usize,
+    pub(crate) lagrangian: Formulas,
+    /// `A` by rows, then `b`.
+    pub(crate) constraint: Formulas,
+    pub(crate) holonomic: Formulas,
+    /// None where no force acts.
+    pub(crate) force: Option<Formulas>,
+    /// None where it is to be derived.
+    pub(crate) basis: Option<Formulas>,
+    pub(crate) mass: Formulas,
+    pub(crate) outputs: Vec<String>,
+    pub(crate) told: Formulas,
+    pub(crate) timed: bool,
+    /// All formulas, with the rows of `A` and the given basis among them.
+    pub(crate) graph: Arc<Graph>,
+    pub(crate) rows: Vec<Expression>,
+    pub(crate) fields: Option<Vec<Expression>>,
+}
+
+/// The same formulas make the same model.
+impl PartialEq for Model {
+    fn eq(&self, other: &Self) -> bool {
+        let parts = |of: &Self| (of.coordinates.clone(), of.velocities, of.positions, of.outputs.clone(), of.timed);
+        let one = [&self.lagrangian, &self.constraint, &self.holonomic, &self.mass, &self.told];
+        let two = [&other.lagrangian, &other.constraint, &other.holonomic, &other.mass, &other.told];
+        parts(self) == parts(other) && one == two && self.force == other.force && self.basis == other.basis
+    }
+}
+
+impl Model {
+    /// The system of some texts.
+    ///
+    /// # Errors
+    /// [`TextError`] with the first text that is wrong.
+    pub fn new(words: &Words) -> Result<Self, TextError> {
+        build::model(words)
+    }
+
+    /// The coordinates.
+    #[must_use]
+    pub fn coordinates(&self) -> &[Coordinate] {
+        &self.coordinates
+    }
+
+    /// How many constraints there are, those on positions with the others.
+    #[must_use]
+    pub fn constraints(&self) -> usize {
+        self.velocities + self.positions
+    }
+
+    /// How many of the constraints are on positions.
+    #[must_use]
+    pub fn positions(&self) -> usize {
+        self.positions
+    }
+
+    /// The names of the outputs.
+    #[must_use]
+    pub fn outputs(&self) -> &[String] {
+        &self.outputs
+    }
+
+    /// Whether forces act.
+    #[must_use]
+    pub fn has_forces(&self) -> bool {
+        self.force.is_some()
+    }
+
+    /// Whether the text gives a basis of the admissible velocities; else it is derived.
+    #[must_use]
+    pub fn gives_basis(&self) -> bool {
+        self.basis.is_some()
+    }
+
+    /// Whether any formula depends on time.
+    #[must_use]
+    pub fn depends_on_time(&self) -> bool {
+        self.timed
+    }
+
+    /// How many operations the Lagrangian, the constraints and the forces take, each evaluated once.
+    #[must_use]
+    pub fn operations(&self) -> [usize; 3] {
+        let force = self.force.as_ref().map_or(0, Formulas::operations);
+        [self.lagrangian.operations(), self.constraint.operations(), force]
+    }
+
+    /// The outputs at a state.
+    #[must_use]
+    pub fn told(&self, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
+        let mut told = vec![0.0; self.outputs.len()];
+        self.told.evaluate(self.coordinates.len(), Point { t, q, v }, |k, x| told[k] = x);
+        told
+    }
+
+    /// The energy `v . L_v - L` (J).
+    #[must_use]
+    pub fn energy(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
+        let n = self.coordinates.len();
+        // Along `v` alone.
+        let rates: Vec<Dual<f64, 1>> = v.iter().map(|&v| Dual { re: v, eps: [v] }).collect();
+        let places: Vec<Dual<f64, 1>> = q.iter().map(|&q| Dual::fixed(q)).collect();
+        let mut lagrangian = Dual::fixed(0.0);
+        self.lagrangian.evaluate(n, Point { t: Dual::fixed(t), q: &places, v: &rates }, |_, x| lagrangian = x);
+        lagrangian.eps[0] - lagrangian.re
+    }
+
+    pub(crate) fn lagrangian_at(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
+        let mut lagrangian = 0.0;
+        self.lagrangian.evaluate(self.coordinates.len(), Point { t, q, v }, |_, x| lagrangian = x);
+        lagrangian
+    }
+
+    /// `A` and `b`.
+    pub(crate) fn rows_at(&self, t: f64, q: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
+        let (n, m) = (self.coordinates.len(), self.constraints());
+        let (mut a, mut b) = (DMatrix::zeros(m, n), DVector::zeros(m));
+        self.constraint.evaluate(n, Point { t, q, v: &[] }, |k, x| match k.checked_sub(n * m) {
+            Some(row) => b[row] = x,
+            None => a[(k / n, k % n)] = x,
+        });
+        (a, b)
+    }
+
+    /// The functions of the positions.
+    pub(crate) fn positions_at(&self, t: f64, q: &[f64]) -> DVector<f64> {
+        let mut g = DVector::zeros(self.positions);
+        self.holonomic.evaluate(self.coordinates.len(), Point { t, q, v: &[] }, |k, x| g[k] = x);
+        g
+    }
+
+    /// The sizes of rates with the same kinetic energy; one of a rate without.
+    pub(crate) fn sizes(&self, t: f64, q: &[f64]) -> Vec<f64> {
+        let mass = self.mass_at(t, q, &vec![0.0; q.len()]);
+        let size = |mass: f64| if mass > 0.0 && mass.is_finite() { mass.sqrt().recip() } else { 1.0 };
+        mass.diagonal().iter().map(|mass| size(*mass)).collect()
+    }
+
+    /// The mass matrix `L_vv`.
+    pub(crate) fn mass_at(&self, t: f64, q: &[f64], v: &[f64]) -> DMatrix<f64> {
+        let n = self.coordinates.len();
+        let mut mass = DMatrix::zeros(n, n);
+        self.mass.evaluate(n, Point { t, q, v }, |k, x| mass[(k / n, k % n)] = x);
+        mass
+    }
+}

@@ -1,0 +1,142 @@
+use crate::Model;
+use crate::basis::Pivots;
+use crate::formulas::Point;
+use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Scalar, System};
+use std::sync::Arc;
+
+/// A system of text, of `N` coordinates and `M` constraints.
+///
+/// Where the text has fewer, the others are filled up: each further coordinate is that of a unit mass that rests at zero, and each further
+/// constraint holds one of them. Both are exact, and take no part in the motion: all terms in which they stand are zeros.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TextSystem<const N: usize, const M: usize> {
+    model: Arc<Model>,
+    /// The sizes of rates with the same kinetic energy.
+    sizes: Arc<[f64]>,
+    pivots: Pivots,
+}
+
+impl<const N: usize, const M: usize> TextSystem<N, M> {
+    /// Whether a system of so many coordinates and constraints has room here: further constraints need coordinates to hold.
+    #[must_use]
+    pub const fn has_room(coordinates: usize, constraints: usize) -> bool {
+        coordinates <= N && constraints <= M && coordinates - constraints <= N - M
+    }
+
+    /// The system, with a basis for the neighbourhood of a configuration, at a time (s), where the text gives none; `None` where the
+    /// shape has no room for it.
+    #[must_use]
+    pub fn new(model: Arc<Model>, t: f64, q: &[f64]) -> Option<Self> {
+        let (n, m) = (model.coordinates().len(), model.constraints());
+        if m > n || !Self::has_room(n, m) || q.len() < n {
+            return None;
+        }
+        let (rows, _) = model.rows_at(t, &q[..n]);
+        let sizes: Arc<[f64]> = model.sizes(t, &q[..n]).into();
+        let pivots = Pivots::best(&rows, &sizes);
+        Some(Self { model, sizes, pivots })
+    }
+
+    /// What the texts mean.
+    #[must_use]
+    pub fn model(&self) -> &Arc<Model> {
+        &self.model
+    }
+
+    fn n(&self) -> usize {
+        self.model.coordinates.len()
+    }
+
+    fn m(&self) -> usize {
+        self.model.constraints()
+    }
+
+    fn point<'a, S>(&self, t: S, q: &'a [S; N], v: &'a [S]) -> Point<'a, S> {
+        let n = self.n();
+        Point { t, q: &q[..n], v: if v.is_empty() { v } else { &v[..n] } }
+    }
+}
+
+impl<const N: usize, const M: usize> System<N, M> for TextSystem<N, M> {
+    fn lagrangian<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> S {
+        let n = self.n();
+        let mut lagrangian = S::zero();
+        self.model.lagrangian.evaluate(n, self.point(t, q, v), |_, x| lagrangian = x);
+        for rate in &v[n..] {
+            lagrangian += rate.squared() * 0.5;
+        }
+        lagrangian
+    }
+
+    fn constraint<S: Scalar>(&self, t: S, q: &[S; N]) -> Constraint<S, N, M> {
+        let (n, m) = (self.n(), self.m());
+        let (mut a, mut b) = ([[S::zero(); N]; M], [S::zero(); M]);
+        self.model.constraint.evaluate(n, self.point(t, q, &[]), |k, x| match k.checked_sub(n * m) {
+            Some(row) => b[row] = x,
+            None => a[k / n][k % n] = x,
+        });
+        for (k, row) in a.iter_mut().enumerate().skip(m) {
+            row[n + k - m] = S::constant(1.0);
+        }
+        (a, b)
+    }
+
+    fn force<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
+        let formulas = self.model.force.as_ref()?;
+        let mut force = [S::zero(); N];
+        formulas.evaluate(self.n(), self.point(t, q, v), |i, x| force[i] = x);
+        Some(force)
+    }
+
+    fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; N]) -> Option<AdmissibleBasis<S, N, M>> {
+        let (n, m) = (self.n(), self.m());
+        let mut vectors = match &self.model.basis {
+            Some(formulas) => {
+                let mut vectors = [[S::zero(); N]; N];
+                formulas.evaluate(n, self.point(t, q, &[]), |k, x| vectors[k / n][k % n] = x);
+                vectors
+            }
+            None => self.pivots.basis(n, self.constraint(t, q).0),
+        };
+        // The coordinates that are held by no constraint rest by themselves.
+        for (vector, i) in vectors[n - m..].iter_mut().zip(n + M - m..N) {
+            vector[i] = S::constant(1.0);
+        }
+        Some(AdmissibleBasis::from_fn(|k| vectors[k]))
+    }
+
+    fn near(&self, t: f64, q: &[f64; N], basis: u64) -> Option<(Self, u64)> {
+        if self.model.basis.is_some() || self.m() == 0 {
+            return None;
+        }
+        let (n, m) = (self.n(), self.m());
+        let there = (basis != 0).then(|| Pivots::numbered(basis, m));
+        let there = there.filter(|pivots| pivots.are_good(n, self.constraint(t, q).0, &self.sizes));
+        let pivots = there.unwrap_or_else(|| Pivots::best(&self.model.rows_at(t, &q[..n]).0, &self.sizes));
+        let system = Self { model: Arc::clone(&self.model), sizes: Arc::clone(&self.sizes), pivots };
+        Some((system, pivots.number()))
+    }
+
+    fn holonomic<S: Scalar>(&self, t: S, q: &[S; N]) -> Option<[Option<S>; M]> {
+        let first = self.model.velocities;
+        if self.model.positions == 0 {
+            return None;
+        }
+        let mut functions = [None; M];
+        functions[first..first + self.model.positions].fill(Some(S::zero()));
+        self.model.holonomic.evaluate(self.n(), self.point(t, q, &[]), |k, x| functions[first + k] = Some(x));
+        Some(functions)
+    }
+
+    fn angles(&self) -> [bool; N] {
+        let coordinates = &self.model.coordinates;
+        std::array::from_fn(|i| coordinates.get(i).is_some_and(|coordinate| coordinate.unit == crate::Unit::Angle))
+    }
+}
+
+/// Formulas have no jumps.
+impl<const N: usize, const M: usize> Piecewise for TextSystem<N, M> {
+    fn piece(&self, _t: f64) -> Self {
+        self.clone()
+    }
+}

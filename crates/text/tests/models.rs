@@ -1,0 +1,188 @@
+//! A system of text is the system of the library: the same numbers over a run, by several methods.
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
+
+use dla::{Mechanics, Schedule, State, drive};
+use harness::Method;
+use lagrangian::System;
+use models::{ChaplyginBall, KnifeEdge, Model, RollerRacer, RollingDisk, Snakeboard};
+use std::sync::Arc;
+use text::{TextSystem, Unit, Words};
+
+/// Coordinates in metres or angles (a name that ends in `!`), parameters, Lagrangian, constraints.
+fn words(coordinates: &[&str], parameters: &[(&str, f64)], lagrangian: &str, constraints: &[&str]) -> Words {
+    let unit = |name: &&str| match name.strip_suffix('!') {
+        Some(name) => (name.to_owned(), Unit::Angle),
+        None => ((*name).to_owned(), Unit::other("m")),
+    };
+    Words {
+        coordinates: coordinates.iter().map(unit).collect(),
+        parameters: parameters.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect(),
+        lagrangian: lagrangian.to_owned(),
+        constraints: constraints.iter().map(|&row| row.to_owned()).collect(),
+        ..Words::default()
+    }
+}
+
+fn disk() -> Words {
+    words(
+        &["x", "y", "phi!", "theta!"],
+        &[("m", 1.3), ("R", 0.5), ("I", 0.2), ("J", 0.1)],
+        "m/2*(x'^2 + y'^2) + I/2*phi'^2 + J/2*theta'^2",
+        &["x' - R*phi'*cos(theta)", "y' - R*phi'*sin(theta)"],
+    )
+}
+
+fn racer() -> Words {
+    words(
+        &["x", "y", "theta!", "phi!"],
+        &[("m", 1.0), ("I1", 0.4), ("I2", 0.1), ("d1", 0.5), ("d2", 0.3)],
+        "m/2*(x'^2 + y'^2) + I1/2*theta'^2 + I2/2*(theta' + phi')^2",
+        &[
+            "y'*cos(theta) - x'*sin(theta)",
+            "y'*cos(theta + phi) - x'*sin(theta + phi) + (d1*cos(phi) + d2)*theta' + d2*phi'",
+        ],
+    )
+}
+
+fn edge() -> Words {
+    words(
+        &["x", "y", "theta!"],
+        &[("m", 1.5), ("I", 0.7), ("g", 2.0)],
+        "m/2*(x'^2 + y'^2) + I/2*theta'^2 + m*g*x",
+        &["y'*cos(theta) - x'*sin(theta)"],
+    )
+}
+
+fn board() -> Words {
+    words(
+        &["x", "y", "theta!", "psi!", "phi!"],
+        &[("m", 6.0), ("l", 0.2), ("J", 0.016), ("Jr", 0.072), ("Jw", 0.0013)],
+        "m/2*(x'^2 + y'^2) + J/2*theta'^2 + Jr/2*(theta' + psi')^2 + Jw/2*((theta' + phi')^2 + (theta' - phi')^2)",
+        &["y'*cos(theta) - x'*sin(theta)", "sin(phi)*(x'*cos(theta) + y'*sin(theta)) + l*cos(phi)*theta'"],
+    )
+}
+
+fn filled<const K: usize, const N: usize>(x: [f64; K]) -> [f64; N] {
+    std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
+}
+
+fn end<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    method: &str,
+    (q, v): ([f64; N], [f64; N]),
+    (step, steps): (f64, u64),
+) -> ([f64; N], [f64; N]) {
+    let method = Method::named(method, None).unwrap();
+    let mut state = State::new(q, v, system.angles());
+    let schedule = Schedule { t0: 0.0, step, steps };
+    drive(system, &mut *method.stepper(), &schedule, &mut state, ()).unwrap();
+    (state.unwrapped(), *state.v())
+}
+
+/// Both run, and every coordinate and rate ends within `tolerance` of the size of the largest; what fills the shape stays zero.
+fn same<Sys: System<N, M>, const N: usize, const M: usize, const P: usize, const R: usize>(
+    words: &Words,
+    model: &Sys,
+    start: ([f64; N], [f64; N]),
+    methods: &[&str],
+    tolerance: f64,
+) {
+    let text = Arc::new(text::Model::new(words).unwrap());
+    let system = TextSystem::<P, R>::new(text, 0.0, &start.0).unwrap();
+    for method in methods {
+        let steps = (0.02, 300);
+        let (q, v) = end(model, method, start, steps);
+        let (p, u) = end(&system, method, (filled(start.0), filled(start.1)), steps);
+        for (own, there) in [(q, p), (v, u)] {
+            let size = lagrangian::linear::largest(&own);
+            for i in 0..P {
+                let expected = own.get(i).copied().unwrap_or(0.0);
+                let bound = if i < N { tolerance * size } else { 0.0 };
+                assert!((there[i] - expected).abs() <= bound, "{method}, place {i}: {} {expected}", there[i]);
+            }
+        }
+    }
+}
+
+/// In another basis they are the same maps, but for round-off.
+const FAMILY: [&str; 4] = ["dla", "dla4", "lobatto3", "rk4"];
+const BASED: [&str; 8] = ["dla", "dla4", "lobatto3", "rk4", "dop853", "gauss8", "energy4", "rk4-reduced"];
+
+/// The basis of the disk is the derived one up to a factor; that of the racer is another.
+#[test]
+fn small_systems_move_as_those_of_the_library() {
+    let disk_there = RollingDisk::new(1.3, 0.5, 0.2, 0.1).unwrap();
+    same::<_, 4, 2, 4, 2>(&disk(), &disk_there, disk_there.start(), &FAMILY, 1e-13);
+    let racer_there = RollerRacer::new(1.0, 0.4, 0.1, 0.5, 0.3).unwrap();
+    same::<_, 4, 2, 4, 2>(&racer(), &racer_there, racer_there.start(), &FAMILY, 1e-12);
+    let edge_there = KnifeEdge::new(1.5, 0.7, 2.0).unwrap();
+    same::<_, 3, 1, 3, 1>(&edge(), &edge_there, edge_there.start(), &FAMILY, 1e-12);
+}
+
+/// The same with the basis of the library given as text: then the methods that move in it agree too.
+#[test]
+fn a_basis_that_is_given_is_that_of_the_library() {
+    let mut words = racer();
+    let vectors = [["cos(theta)", "sin(theta)", "0", "sin(phi)/d2"], ["0", "0", "1", "-d1/d2*cos(phi) - 1"]];
+    words.basis = vectors.map(|vector| vector.map(str::to_owned).to_vec()).to_vec();
+    let there = RollerRacer::new(1.0, 0.4, 0.1, 0.5, 0.3).unwrap();
+    same::<_, 4, 2, 4, 2>(&words, &there, there.start(), &BASED, 1e-12);
+}
+
+/// Five coordinates and two constraints in the shape of six and three, and of twelve and six.
+#[test]
+fn a_shape_that_is_filled_up_shows_nothing_of_it() {
+    let there = Snakeboard::new(6.0, 0.2, 0.016, 0.072, 0.0013).unwrap();
+    same::<_, 5, 2, 6, 3>(&board(), &there, there.start(), &["dla", "rk4", "lobatto3"], 1e-12);
+    same::<_, 5, 2, 12, 6>(&board(), &there, there.start(), &["dla"], 1e-12);
+}
+
+/// The ball's quaternion is held by a constraint on positions.
+#[test]
+fn constraints_on_positions_are_kept() {
+    let mut words = words(
+        &["x", "y", "e0", "e1", "e2", "e3"],
+        &[("m", 1.0), ("r", 0.7), ("I1", 0.4), ("I2", 0.6), ("I3", 0.9)],
+        "m/2*(x'^2 + y'^2) + 2*mean*(e0'^2 + e1'^2 + e2'^2 + e3'^2) + ((I1 - mean)*b1^2 + (I2 - mean)*b2^2 + (I3 - mean)*b3^2)/2",
+        &["x' - r*2*(e0*e2' - e2*e0' + e3*e1' - e1*e3')", "y' + r*2*(e0*e1' - e1*e0' + e2*e3' - e3*e2')"],
+    );
+    words.abbreviations = [
+        ("mean", "(I1 + I2 + I3)/3"),
+        ("b1", "2*(e0*e1' - e1*e0' - e2*e3' + e3*e2')"),
+        ("b2", "2*(e0*e2' - e2*e0' - e3*e1' + e1*e3')"),
+        ("b3", "2*(e0*e3' - e3*e0' - e1*e2' + e2*e1')"),
+    ]
+    .map(|(name, text)| (name.to_owned(), text.to_owned()))
+    .to_vec();
+    words.positions = vec!["(e0^2 + e1^2 + e2^2 + e3^2 - 1)/2".to_owned()];
+    let there = ChaplyginBall::new(1.0, 0.7, [0.4, 0.6, 0.9]).unwrap();
+    same::<_, 6, 3, 6, 3>(&words, &there, there.start(), &["dla", "lobatto3"], 1e-11);
+}
+
+/// A method that moves in the basis keeps its order, the energy and the constraint, wherever a derived basis has to be changed: the racer turns
+/// by several rounds, and each elimination is bad at two headings of every round.
+#[test]
+fn a_derived_basis_changes_and_the_method_keeps_its_claims() {
+    let there = RollerRacer::new(1.0, 0.4, 0.1, 0.5, 0.3).unwrap();
+    let (q, v) = there.admissible([0.0, 0.0, 0.0, 2.0], [0.3, 2.0, 0.0, 0.0]);
+    let system = TextSystem::<4, 2>::new(Arc::new(text::Model::new(&racer()).unwrap()), 0.0, &q).unwrap();
+    let reference = end(&there, "gauss16", (q, v), (0.01, 800)).0;
+    assert!(reference[2].abs() > 6.0, "it turns: {reference:?}");
+    let error = |method: &str, step: f64, steps: u64| {
+        let (p, u) = end(&system, method, (q, v), (step, steps));
+        let energy = |v: &[f64; 4]| lagrangian::energy(&there, 0.0, &p, v);
+        let slip = lagrangian::constraint_residual(&there, 0.0, &p, &u);
+        assert!(lagrangian::linear::largest(&slip) < 1e-14, "{method}: {slip:?}");
+        let drift = (energy(&u) - lagrangian::energy(&there, 0.0, &q, &v)).abs();
+        (lagrangian::linear::largest(&std::array::from_fn::<f64, 4, _>(|i| p[i] - reference[i])), drift)
+    };
+    for (method, order) in [("gauss4", 4.0), ("gauss6", 6.0), ("energy4", 4.0), ("rk4-reduced", 4.0), ("dla", 2.0)] {
+        let ((coarse, _), (fine, drift)) = (error(method, 0.02, 400), error(method, 0.01, 800));
+        let found = (coarse / fine).log2();
+        assert!((found - order).abs() < 0.35, "{method}: order {found}, errors {coarse:e} {fine:e}");
+        if method == "energy4" {
+            assert!(drift < 1e-13, "{method}: {drift:e}");
+        }
+    }
+    assert!(error("gauss16", 0.02, 400).0 < 1e-11);
+}

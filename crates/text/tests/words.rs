@@ -1,0 +1,230 @@
+//! What texts mean, and what is wrong with them.
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
+
+use proptest::prelude::*;
+use text::{Entry, Model, Problem, StartError, Unit, Words};
+
+/// A skate on a slope.
+fn skate() -> Words {
+    let named = |pairs: &[(&str, &str)]| -> Vec<(String, String)> {
+        pairs.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect()
+    };
+    Words {
+        coordinates: vec![
+            ("x".to_owned(), Unit::other("m")),
+            ("y".to_owned(), Unit::other("m")),
+            ("theta".to_owned(), Unit::Angle),
+        ],
+        parameters: vec![("m".to_owned(), 2.0), ("J".to_owned(), 0.5)],
+        abbreviations: named(&[
+            ("c", "cos(theta)"),
+            ("s", "sin(theta)"),
+            ("speed", "x'*c + y'*s"),
+            ("way", "sign(speed)"),
+        ]),
+        lagrangian: "m/2*(x'^2 + y'^2) + J/2*theta'^2 - m*x".to_owned(),
+        constraints: vec!["y'*c - x'*s".to_owned()],
+        forces: named(&[("theta", "-0.1*way*theta_dot")]),
+        outputs: named(&[("v", "speed"), ("where", "sign(x)")]),
+        ..Words::default()
+    }
+}
+
+/// The entry, the column and the words of what is wrong once the system was changed.
+fn wrong(change: impl FnOnce(&mut Words)) -> (Entry, Option<usize>, String) {
+    let mut words = skate();
+    change(&mut words);
+    let error = Model::new(&words).expect_err("the text is wrong");
+    (error.entry, error.column(), error.to_string())
+}
+
+#[test]
+fn a_system_is_what_its_texts_say() {
+    let model = Model::new(&skate()).unwrap();
+    let (q, v) = ([0.5, 0.0, 0.0], [3.0, 0.0, 2.0]);
+    assert_eq!(model.energy(0.0, &q, &v), 9.0 + 1.0 + 1.0);
+    assert_eq!(model.told(0.0, &q, &v), [3.0, 1.0]);
+    assert!(model.has_forces() && !model.gives_basis() && !model.depends_on_time());
+    assert_eq!(Model::new(&skate()).unwrap(), model);
+}
+
+#[test]
+fn errors_name_the_text_and_the_column() {
+    type Case = (fn(&mut Words), Entry, Option<usize>, &'static str);
+    let cases: [Case; 17] = [
+        (|w| w.coordinates.clear(), Entry::System, None, "at least one coordinate"),
+        (|w| w.coordinates[1].0 = "x_dot".to_owned(), Entry::Coordinate(1), None, "is the rate of `x`"),
+        (|w| w.coordinates[1].0 = "t".to_owned(), Entry::Coordinate(1), None, "`t` is time"),
+        (|w| w.coordinates[1].0 = "sin".to_owned(), Entry::Coordinate(1), None, "has a meaning in every expression"),
+        (|w| w.coordinates[1].0 = "energy".to_owned(), Entry::Coordinate(1), None, "names another column"),
+        (|w| w.parameters[1].1 = f64::NAN, Entry::Parameter(1), None, "finite"),
+        (|w| w.parameters[1].0 = "x".to_owned(), Entry::Parameter(1), None, "there already"),
+        (|w| w.abbreviations[1].1 = "sin(thet)".to_owned(), Entry::Abbreviation(1), Some(5), "did you mean `theta`"),
+        (|w| w.abbreviations[0].1 = "s".to_owned(), Entry::Abbreviation(0), Some(1), "no name `s` is known"),
+        (|w| w.lagrangian = "m/2*x'^2 + sign(x)".to_owned(), Entry::Lagrangian, Some(12), "`sign` jumps"),
+        (|w| w.lagrangian += " + way", Entry::Lagrangian, Some(42), "no name `way` is known"),
+        (|w| w.lagrangian = "x'^2 + y'^2".to_owned(), Entry::Lagrangian, None, "the rate `theta'` does not stand"),
+        (|w| w.constraints[0] = "x'*y'".to_owned(), Entry::Constraint(0), None, "`x'` is multiplied by contains `y'`"),
+        (|w| w.constraints[0] = "x - 1".to_owned(), Entry::Constraint(0), None, "belongs in `positions`"),
+        (|w| w.positions = vec!["x - y'".to_owned()], Entry::Position(0), Some(5), "no name `y'` is known"),
+        (|w| w.forces[0].0 = "phi".to_owned(), Entry::Force(0), None, "the coordinates are `x`, `y`, `theta`"),
+        (|w| w.outputs[0].0 = "x'".to_owned(), Entry::Output(0), None, "names another column"),
+    ];
+    for (change, entry, column, words) in cases {
+        let (found, at, told) = wrong(change);
+        assert_eq!((found, at), (entry, column), "{told}");
+        assert!(told.contains(words), "{told}");
+    }
+}
+
+#[test]
+fn bases_have_their_shape() {
+    let vector = |text: &str| vec![text.to_owned(); 3];
+    assert_eq!(wrong(|w| w.basis = vec![vector("0")]).0, Entry::Basis);
+    assert_eq!(wrong(|w| w.basis = vec![vector("0"), vec!["1".to_owned()]]).0, Entry::Vector(1));
+    assert_eq!(wrong(|w| w.basis = vec![vector("0"), vector("x'")]).0, Entry::Component(1, 0));
+    // That vectors are admissible is seen at the start.
+    let mut words = skate();
+    words.basis = vec![vector("1"), vector("0")];
+    let error = Model::new(&words).unwrap().start(&[None; 3], &[None; 3]).unwrap_err();
+    assert!(matches!(error, StartError::Basis { vector: 0, constraint: 0, .. }), "{error}");
+}
+
+#[test]
+fn sizes_have_limits() {
+    let mut words = Words::default();
+    for k in 0..12 {
+        words.coordinates.push((format!("q{k}"), Unit::Angle));
+        words.lagrangian += &format!("{}q{k}'^2/2", if k == 0 { "" } else { " + " });
+    }
+    words.constraints = (0..6).map(|k| format!("q{k}' - q{}'", k + 6)).collect();
+    assert!(Model::new(&words).is_ok());
+    words.constraints.push("q0' - q1'".to_owned());
+    let error = Model::new(&words).unwrap_err();
+    assert_eq!(error.problem, Problem::TooLarge { coordinates: 12, constraints: 7 });
+    words.constraints.clear();
+    words.coordinates.push(("q12".to_owned(), Unit::Angle));
+    assert_eq!(Model::new(&words).unwrap_err().problem, Problem::TooLarge { coordinates: 13, constraints: 0 });
+}
+
+#[test]
+fn rates_that_are_left_out_follow_those_that_are_given() {
+    let model = Model::new(&skate()).unwrap();
+    let start = model.start(&[None, None, Some(0.5)], &[Some(1.0), None, Some(2.0)]).unwrap();
+    assert!((start.v[1] - 0.5f64.tan()).abs() < 1e-15 && start.v[0] == 1.0 && start.v[2] == 2.0);
+    assert!(start.moved.is_empty());
+    // Given across the blade, the velocity is what of it lies along the blade.
+    let start = model.start(&[None, None, Some(0.0)], &[Some(1.0), Some(0.5), None]).unwrap();
+    assert!((start.v[0] - 1.0).abs() < 1e-15 && start.v[1].abs() < 1e-15);
+    assert_eq!(start.moved.iter().map(|moved| moved.name.as_str()).collect::<Vec<_>>(), ["y'"]);
+}
+
+#[test]
+fn coordinates_that_are_left_out_meet_the_constraints_on_positions() {
+    let mut words = skate();
+    words.positions = vec!["x^2 + y^2 - 1".to_owned()];
+    let model = Model::new(&words).unwrap();
+    let start = model.start(&[Some(0.6), None, Some(0.0)], &[None; 3]);
+    // From zero there is no way along `y`, and then all move.
+    let start = start.unwrap();
+    assert!((start.q[0].hypot(start.q[1]) - 1.0).abs() < 1e-14);
+    words.positions = vec!["x^2 + y^2 + 1".to_owned()];
+    let model = Model::new(&words).unwrap();
+    assert!(matches!(model.start(&[Some(0.6), None, None], &[None; 3]), Err(StartError::Positions { .. })));
+}
+
+#[test]
+fn a_start_where_a_formula_is_no_number_is_refused() {
+    let mut words = skate();
+    words.lagrangian += " - log(x)";
+    let error = Model::new(&words).unwrap().start(&[None; 3], &[None; 3]).unwrap_err();
+    assert!(matches!(error, StartError::NotFinite { .. }), "{error}");
+}
+
+/// Growth vectors of the literature.
+#[test]
+fn brackets_of_admissible_directions_grow() {
+    let growth = |words: &Words, q: &[f64]| {
+        let model = Model::new(words).unwrap();
+        let given: Vec<Option<f64>> = q.iter().map(|x| Some(*x)).collect();
+        let geometry = model.geometry(&model.start(&given, &vec![None; q.len()]).unwrap());
+        (geometry.rank, geometry.growth)
+    };
+    assert_eq!(growth(&skate(), &[0.0, 0.0, 0.3]), (1, vec![2, 3]));
+    let mut held = skate();
+    held.constraints = vec!["x' - y'".to_owned()];
+    assert_eq!(growth(&held, &[0.0; 3]), (1, vec![2, 2]));
+    held.constraints = vec!["x'*c - y'*c".to_owned(), "2*x' - 2*y'".to_owned()];
+    assert_eq!(growth(&held, &[0.0; 3]).0, 1);
+}
+
+/// Words of formulas and of other things, in any order.
+fn formula() -> impl Strategy<Value = String> {
+    let part = prop::sample::select(vec![
+        "x",
+        "y'",
+        "theta",
+        "theta_dot",
+        "m",
+        "c",
+        "speed",
+        "(",
+        ")",
+        "+",
+        "-",
+        "*",
+        "/",
+        "^",
+        "2",
+        "1e308",
+        "sin(",
+        "sqrt(",
+        "sign(",
+        "atan2(",
+        ",",
+        "t",
+        "é",
+        "'",
+        "",
+        " ",
+        "log(",
+        "0",
+        "**",
+        "x''",
+    ]);
+    prop::collection::vec(part, 0..24).prop_map(|parts| parts.concat())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    /// Whatever stands there, it is a model, or an error at a place within its text.
+    #[test]
+    fn no_text_panics(texts in prop::collection::vec(formula(), 6), names in prop::collection::vec("[a-z'_é0-9]{0,6}", 3)) {
+        let mut words = skate();
+        words.coordinates[1].0.clone_from(&names[0]);
+        words.parameters[0].0.clone_from(&names[1]);
+        words.abbreviations[0] = (names[2].clone(), texts[0].clone());
+        prop_assert!(Model::new(&words).is_ok() || Model::new(&words).is_err());
+        let mut words = skate();
+        words.lagrangian = format!("{} + {}", words.lagrangian, texts[1]);
+        words.constraints.push(texts[2].clone());
+        words.positions.push(texts[3].clone());
+        words.forces[0].1.clone_from(&texts[4]);
+        words.outputs[0].1.clone_from(&texts[5]);
+        for (entry, text) in [(Entry::Constraint(1), &texts[2]), (Entry::Position(0), &texts[3])] {
+            if let Err(error) = Model::new(&words)
+                && error.entry == entry
+                && let Some(column) = error.column()
+            {
+                prop_assert!(column <= text.chars().count() + 1);
+            }
+        }
+        if let Ok(model) = Model::new(&words)
+            && let Ok(start) = model.start(&[Some(0.1), Some(0.2), Some(0.3)], &[None; 3])
+        {
+            let _ = model.geometry(&start);
+            prop_assert!(start.q.iter().chain(&start.v).all(|x| x.is_finite()));
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! Scenes of systems of text: what the program makes of them, and what it says of wrong ones.
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
+
+#[path = "common/program.rs"]
+mod program;
+
+use program::{Folder, TEXTS, csv, keys};
+
+/// A skate on a slope.
+const SKATE: &str = "\
+title = \"A skate\"
+[system]
+coordinates = { x = \"m\", y = \"m\", theta = \"angle\" }
+parameters = { m = 1.0, J = 0.5, g = 9.81 }
+let = { c = \"cos(theta)\", s = \"sin(theta)\" }
+lagrangian = \"m/2*(x'^2 + y'^2) + J/2*theta'^2 - m*g*sin(0.1)*x\"
+constraints = [\"-x'*s + y'*c\"]
+outputs = { speed = \"x'*c + y'*s\" }
+[start]
+\"x'\" = 1.0
+theta_dot = 0.5
+[run]
+step = 0.02
+duration = 2.0
+";
+
+#[test]
+fn a_run_tells_every_coordinate_rate_and_output() {
+    let folder = Folder::new();
+    folder.write("skate.toml", SKATE);
+    let run = folder.json("run skate.toml --json --out run.csv");
+    assert_eq!(keys(&run["final"]), ["t", "x", "y", "theta", "x'", "y'", "theta'", "speed"]);
+    let [x, y] = ["x'", "y'"].map(|name| run["final"][name].as_f64().unwrap());
+    let (sin, cos) = run["final"]["theta"].as_f64().unwrap().sin_cos();
+    assert!((run["final"]["speed"].as_f64().unwrap() - (x * cos + y * sin)).abs() < 1e-15);
+    assert!(run["constraint"]["max"].as_f64().unwrap() < 1e-15);
+    assert!(run["energy"]["max_error"].as_f64().unwrap() < 1e-4);
+    let (header, rows) = csv(&folder.read("run.csv"));
+    let columns = ["t", "x", "y", "theta", "x'", "y'", "theta'", "energy", "work", "constraint", "speed"];
+    assert_eq!(header, columns);
+    assert_eq!(rows.len(), 101);
+    assert!(
+        folder.read("run.csv").starts_with("t [s],x [m],y [m],theta [rad],x' [m/s],y' [m/s],theta' [rad/s],energy [J]")
+    );
+    assert!(folder.done("run skate.toml").contains("theta'"));
+}
+
+/// The sleigh in the words of a text moves as the sleigh.
+#[test]
+fn a_sleigh_of_text_is_the_sleigh() {
+    let folder = Folder::new();
+    folder.write(
+        "sleigh.toml",
+        "[system]
+coordinates = { x = \"m\", y = \"m\", heading = \"angle\" }
+parameters = { m = 1.0, I = 1.0, a = 0.5 }
+lagrangian = \"\"\"m/2*((x' - a*heading'*sin(heading))^2 + (y' + a*heading'*cos(heading))^2) + I/2*heading'^2\"\"\"
+constraints = [\"y'*cos(heading) - x'*sin(heading)\"]
+basis = [[\"cos(heading)\", \"sin(heading)\", \"0\"], [\"0\", \"0\", \"1\"]]
+[start]
+\"x'\" = -1.0
+\"heading'\" = 0.1
+[run]
+step = 0.05
+duration = 20.0
+",
+    );
+    folder.write("own.toml", program::SCENE);
+    for method in ["dla", "dla4", "lobatto4", "gauss8", "energy4", "rk4"] {
+        let end =
+            |scene: &str| folder.json(&format!("run {scene} --json --method {method} --duration 20"))["final"].clone();
+        let (text, own) = (end("sleigh.toml"), end("own.toml"));
+        for name in ["x", "y", "heading"] {
+            let (a, b) = (text[name].as_f64().unwrap(), own[name].as_f64().unwrap());
+            assert!((a - b).abs() <= 1e-12 * b.abs().max(1.0), "{method} {name}: {a} {b}");
+        }
+    }
+}
+
+#[test]
+fn a_check_tells_shape_rank_and_geometry() {
+    let folder = Folder::new();
+    folder.write("skate.toml", SKATE);
+    let told = folder.done("check skate.toml");
+    for words in ["x [m], y [m], theta [rad]", "1, rank 1", "nonholonomic", "(2, 3)", "derived", "energy", "0.5625 J"] {
+        assert!(told.contains(words), "{words}: {told}");
+    }
+}
+
+#[test]
+fn a_comparison_has_a_row_for_each_method() {
+    let folder = Folder::new();
+    folder.write("skate.toml", SKATE);
+    let compared = folder.json("compare skate.toml --methods dla,rk4,gauss8,energy4 --json --report page");
+    for row in compared["rows"].as_array().unwrap() {
+        assert!(row["error"].as_f64().unwrap() < 1e-3, "{row}");
+        assert!(row["final"]["speed"].is_f64());
+    }
+    assert!(folder.read("page/index.html").contains("A skate"));
+}
+
+/// What moves in a start is told.
+#[test]
+fn a_start_that_slips_is_moved_with_a_note() {
+    let folder = Folder::new();
+    folder.write("skate.toml", SKATE.replace("theta_dot = 0.5", "\"y'\" = 0.5"));
+    let outcome = folder.noslip(["run", "skate.toml"]);
+    assert_eq!(outcome.code, 0);
+    assert!(outcome.stderr.contains("note: the constraints do not admit y' = 0.5"), "{}", outcome.stderr);
+}
+
+#[test]
+fn errors_show_file_line_column_and_what_is_known() {
+    let folder = Folder::new();
+    let cases = [
+        ("- m*g*sin(0.1)*x", "- m*gg*x", "bad.toml:6:52", "no name `gg` is known here"),
+        ("y'*c\"]", "y'*y'\"]", "bad.toml:7:16", "not affine in the rates"),
+        ("theta_dot = 0.5", "thet_dot = 0.5", "bad.toml:11:1", "theta_dot"),
+        ("outputs", "output", "bad.toml:8:1", "outputs"),
+        ("[start]", "[[effects]]\nkind = \"drag\"\n[start]", "bad.toml:9", "add potentials to `lagrangian`"),
+        ("lagrangian = ", "lagrangean = ", "bad.toml:6:1", "did you mean `lagrangian`"),
+        ("m = 1.0", "m = \"1\"", "bad.toml:4:20", "finite number"),
+        ("- m*g*sin(0.1)*x", "- m*g*log(x)", "bad.toml:9", "at the start"),
+    ];
+    for (from, to, place, words) in cases {
+        assert!(SKATE.contains(from));
+        folder.write("bad.toml", SKATE.replacen(from, to, 1));
+        let outcome = folder.noslip(["check", "bad.toml"]);
+        assert_eq!(outcome.code, 2, "{to}: {}", outcome.stderr);
+        assert!(outcome.stderr.contains(place) && outcome.stderr.contains(words), "{to}: {}", outcome.stderr);
+    }
+}
+
+#[test]
+fn what_is_not_done_is_refused_with_its_reason() {
+    let folder = Folder::new();
+    folder.write("skate.toml", SKATE);
+    for command in ["phase skate.toml", "run skate.toml --event speed=0"] {
+        let outcome = folder.noslip(command.split(' '));
+        assert_eq!(outcome.code, 2, "{command}");
+        assert!(outcome.stderr.contains("system of text"), "{}", outcome.stderr);
+    }
+}
+
+/// A run goes on from its checkpoint to the same bits.
+#[test]
+fn runs_resume() {
+    let folder = Folder::new();
+    folder.write("skate.toml", SKATE);
+    let whole = folder.json("run skate.toml --json");
+    folder.done("run skate.toml --checkpoint saved --checkpoint-every 30");
+    let resumed = folder.json("run skate.toml --json --resume saved");
+    assert_eq!(whole["final"], resumed["final"]);
+}
+
+#[test]
+fn bundled_texts_run() {
+    let folder = Folder::new();
+    for scene in TEXTS {
+        let run = folder.json(&format!("run {scene} --json --duration 1"));
+        assert!(run["constraint"]["max"].as_f64().unwrap() < 1e-10, "{run}");
+        assert!(folder.done(&format!("check {scene}")).contains("valid"), "{scene}");
+    }
+}
