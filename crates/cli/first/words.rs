@@ -27,7 +27,7 @@ const MEANINGS: [&str; 5] = [
 pub(crate) const FURTHER: &str = "\
 what the columns mean            noslip --explain
 every method on every scene      noslip --all
-one run, and its picture         noslip run turnaround
+one run, and its picture         noslip plot turnaround
 a scene of your own              noslip new my.toml; noslip compare my.toml
 ";
 

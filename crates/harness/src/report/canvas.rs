@@ -166,7 +166,7 @@ pub(super) fn shapes(size: [f64; 2], draw: impl FnOnce(&Canvas<'_>) -> Drawn) ->
     Ok((recolour(inner), marks.into_inner()))
 }
 
-/// Replaces the stand-in colours. Text cannot be mistaken for an attribute: its quotes are escaped.
+/// Replaces the stand-in colours, and says of each shape which run it belongs to. Text cannot be mistaken for an attribute: its quotes are escaped.
 fn recolour(shapes: &str) -> String {
     let mut shapes = shapes.replace("\"#000000\"", "\"currentColor\"");
     let exact = look::written(&look::EXACT, SCALE);
@@ -176,10 +176,10 @@ fn recolour(shapes: &str) -> String {
         let stand_in = format!("=\"#0100{method:02X}\"");
         if shapes.contains(&stand_in) {
             let (colour, dashes) = (look::colour(method), look::written(look::dashes(method), SCALE));
-            let stroke = format!("stroke=\"{colour}\" stroke-dasharray=\"{dashes}\"");
+            let stroke = format!("data-run=\"{method}\" stroke=\"{colour}\" stroke-dasharray=\"{dashes}\"");
             let stroke = stroke.replace(" stroke-dasharray=\"\"", "");
             shapes = shapes.replace(&format!("stroke{stand_in}"), &stroke);
-            shapes = shapes.replace(&stand_in, &format!("=\"{colour}\""));
+            shapes = shapes.replace(&format!("fill{stand_in}"), &format!("data-run=\"{method}\" fill=\"{colour}\""));
         }
     }
     // Half the height of a digit, rather than of an x, puts the digits of a tick onto its height.

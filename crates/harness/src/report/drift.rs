@@ -107,9 +107,8 @@ fn captioned(caption: &str, scale: &Scale, thinned: bool) -> String {
         caption += " Each point is the largest value of a short stretch of time.";
     }
     match &scale.floor {
-        Some((_, text)) if text == "0" => caption += " Exact zeros lie on the dashed line.",
         Some((_, text)) => {
-            caption += &format!(" Values {} and exact zeros lie on the dashed line.", text.replace("< ", "below "));
+            caption += &format!(" Values {} and exact zeros lie on the dashed line.", text.replace("≤ ", "below "));
         }
         None => {}
     }

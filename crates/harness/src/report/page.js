@@ -1,4 +1,4 @@
-// What moves in a report: the animations, and the button between light and dark. Without it the page loses nothing else.
+// What works in a report: the animations, the buttons of the legends, and the one between light and dark. Without it the page loses nothing else.
 "use strict";
 (() => {
   const root = document.documentElement;
@@ -17,6 +17,28 @@
   dark.addEventListener("change", name);
   name();
   theme.hidden = false;
+
+  // The buttons of a legend show a run in the pictures of their scene, or hide it; its name there becomes faint.
+  for (const legend of document.querySelectorAll(".legend")) {
+    const runs = Array.from(legend.querySelectorAll("[aria-pressed]"));
+    const drawings = legend.parentElement.querySelectorAll(".pictures svg");
+    const show = (button, shown) => {
+      button.setAttribute("aria-pressed", String(shown));
+      for (const drawing of drawings) {
+        for (const shape of drawing.querySelectorAll(`[data-run="${button.dataset.shows}"]`)) shape.classList.toggle("off", !shown);
+        for (const text of drawing.querySelectorAll("text")) {
+          if (text.textContent.trim() === button.textContent.trim()) text.classList.toggle("faint", !shown);
+        }
+      }
+    };
+    for (const button of runs) {
+      button.addEventListener("click", () => show(button, button.getAttribute("aria-pressed") !== "true"));
+    }
+    for (const [name, shown] of [["all", true], ["none", false]]) {
+      legend.querySelector(`[data-shows="${name}"]`).addEventListener("click", () => runs.forEach((run) => show(run, shown)));
+    }
+    legend.hidden = false;
+  }
 
   // 0.1, 0.2, 0.5, 1, 2, 5, ..: the k-th from 1 on.
   const round = (k) => Number(`${[1, 2, 5][((k % 3) + 3) % 3]}e${Math.floor(k / 3)}`);

@@ -47,15 +47,35 @@ pub(super) fn head(title: &str, intro: &str) -> String {
          <title>{title}</title>\n<style>\n{STYLE}</style>\n<script>\n{HEAD}</script>\n</head>\n<body>\n<header>\n\
          <button type=\"button\" id=\"theme\" hidden></button>\n<h1>{title}</h1>\n"
     );
+    page += "<div class=\"intro\">\n";
     for paragraph in intro.split("\n\n").filter(|paragraph| !paragraph.trim().is_empty()) {
         page += &format!("<p>{}</p>\n", escape(paragraph.trim()));
     }
-    page
+    page + "</div>\n"
 }
 
 /// What it ends with.
 pub(super) fn foot() -> String {
     format!("</main>\n<script>\n{SCRIPT}</script>\n</body>\n</html>\n")
+}
+
+/// The runs as buttons, which the script makes work: each shows its run in the pictures below, or does not.
+fn legend(page: &mut String, scene: &SceneReport) {
+    let drawn: Vec<_> = scene.series.iter().enumerate().filter(|(_, series)| series.is_drawn()).collect();
+    if drawn.len() < 2 {
+        return;
+    }
+    *page += "<div class=\"legend\" role=\"group\" aria-label=\"Methods shown in the pictures\" hidden>\n";
+    for (method, series) in drawn {
+        *page += &format!(
+            "<button type=\"button\" aria-pressed=\"true\" data-shows=\"{}\">{}{}</button>\n",
+            method % look::LOOKS,
+            look::key(method),
+            escape(&series.label)
+        );
+    }
+    *page += "<button type=\"button\" data-shows=\"all\">all</button>\n";
+    *page += "<button type=\"button\" data-shows=\"none\">none</button>\n</div>\n";
 }
 
 /// What the columns mean.
@@ -82,6 +102,7 @@ fn section(page: &mut String, scene: &SceneReport, shown: &Shown<'_>, notes: &[(
         table(page, &scene.columns, &scene.rows, notes, &look);
     }
     numbers(page, name, &scene.numbers);
+    legend(page, scene);
     let [path, constraint, energy] = shown.pictures.each_ref().map(figure);
     let left = std::iter::once(path).chain(shown.animation.clone()).collect();
     columns(page, &[left, vec![constraint, energy]]);
@@ -159,7 +180,10 @@ pub(super) fn table(
                 Some(columns) => format!(" colspan=\"{columns}\""),
                 None => class(column).to_owned(),
             };
-            *page += &format!("<td{class}>{key}{}</td>", text(row, column));
+            // On a narrow screen a row is a list, and each cell has its heading beside it.
+            let own = columns.get(column).filter(|_| spanned(row, width).is_none() || column + 1 < row.len());
+            let heading = own.map_or_else(String::new, |name| format!(" data-column=\"{}\"", escape(name)));
+            *page += &format!("<td{class}{heading}>{key}{}</td>", text(row, column));
         }
         *page += "</tr>\n";
     }

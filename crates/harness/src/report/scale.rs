@@ -11,12 +11,15 @@ const ABOVE: f64 = 24.0;
 /// The time and the size of each peak, in order; nothing where the values are not finite.
 pub(super) type Trace = Vec<Option<[f64; 2]>>;
 
-/// The upright axis: decades, and below them a line for what is zero.
+/// Methods within so many decades of the most exact one are as exact.
+const NEAR: f64 = 1.5;
+
+/// The upright axis: decades, the lowest of which is a line for all that is smaller, or zero.
 #[derive(Debug)]
 pub(super) struct Scale {
     lo: f64,
     hi: f64,
-    /// The line for what is zero, or too small for the decades.
+    /// Where and what that line is, where something lies on it.
     pub(super) floor: Option<Tick>,
 }
 
@@ -28,13 +31,18 @@ impl Scale {
         let logs = Span::of(all.iter().filter(|size| **size > 0.0).map(|size| size.log10()).filter(worth));
         // Where everything is zero, the decades below it show what it is smaller than.
         let Span { lo, hi } = logs.unwrap_or(Span { lo: -17.0, hi: -14.5 });
-        let lo = (lo + 1e-9).floor();
+        // Where the most exact method has zeros, its other values are rounding too: they come and go from node to node.
+        let rounds = |trace: &&Trace| {
+            let near = usual(trace).is_none_or(|size| size.log10() < best + NEAR);
+            near && trace.iter().skip(1).flatten().any(|point| point[1] <= 0.0)
+        };
+        let rounding = traces.iter().find(rounds).and(best.is_finite().then_some(best.ceil()));
+        let lo = rounding.unwrap_or((lo + 1e-9).floor());
         // The highest peak is not to touch the upper edge.
         let hi = (hi + 0.08).ceil().max(lo + 1.0);
         let smaller = all.iter().any(|size| *size > 0.0 && size.log10() < lo);
         let zero = all.iter().any(|size| *size <= 0.0);
-        let text = if smaller { format!("< {}", power(lo)) } else { "0".to_owned() };
-        let floor = (smaller || zero).then(|| (lo - (0.12 * (hi - lo)).max(0.4), text));
+        let floor = (smaller || zero).then(|| (lo, format!("≤ {}", power(lo))));
         Self { lo, hi, floor }
     }
 
@@ -44,14 +52,15 @@ impl Scale {
     }
 
     pub(super) fn span(&self) -> Span {
-        let lo = self.floor.as_ref().map_or(self.lo, |(floor, _)| floor - 0.03 * (self.hi - floor));
+        let lo = self.floor.as_ref().map_or(self.lo, |(floor, _)| floor - 0.05 * (self.hi - floor));
         Span { lo, hi: self.hi }
     }
 
     pub(super) fn ticks(&self) -> Vec<Tick> {
         let rough = (self.hi - self.lo) / 7.0;
         let step = [1.0, 2.0, 3.0, 4.0, 5.0, 10.0, 20.0, 50.0].into_iter().find(|step| *step >= rough).unwrap_or(100.0);
-        let first = (self.lo / step).ceil();
+        // The floor has a tick of its own.
+        let first = ((self.lo + if self.floor.is_some() { 0.5 * step } else { 0.0 }) / step).ceil();
         let decades = (0..20).map(|k| (first + f64::from(k)) * step).take_while(|decade| *decade <= self.hi);
         decades.map(|decade| (decade, power(decade))).chain(self.floor.clone()).collect()
     }
@@ -59,8 +68,7 @@ impl Scale {
     pub(super) fn place(&self, frame: &Frame, point: Option<[f64; 2]>) -> Option<[f64; 2]> {
         let [time, size] = point?;
         let log = if size > 0.0 { size.log10() } else { f64::NEG_INFINITY };
-        let floor = self.floor.as_ref().map_or(self.lo, |(floor, _)| *floor);
-        frame.place([time, if log < self.lo { floor } else { log }])
+        frame.place([time, log.max(self.lo)])
     }
 }
 

@@ -154,3 +154,76 @@ fn play_pause_and_scrub_do_what_they_say() {
         assert!(attribute(&dom, ROOT, "data-error").is_some() && attribute(&dom, ROOT, "data-ready").is_none());
     }
 }
+
+/// A reader who hides the second method, then all, and shows them again.
+const CHOOSER: &str = "<script>(() => {
+  const section = document.querySelector('section'), legend = section.querySelector('.legend');
+  const seen = (run) => Array.from(section.querySelectorAll(`.pictures [data-run='${run}']`))
+    .filter((shape) => getComputedStyle(shape).display !== 'none').length;
+  const faint = () => section.querySelectorAll('.faint').length;
+  const sights = [];
+  const see = () => sights.push([seen(0), seen(1), faint(), legend.hidden].join('|'));
+  const press = (what) => { legend.querySelector(`[data-shows='${what}']`).click(); see(); };
+  setTimeout(() => { see(); press(1); press('none'); press(0); press('all');
+    document.documentElement.dataset.sights = sights.join(';'); }, 500);
+})();</script>";
+
+#[test]
+fn methods_are_switched_on_and_off_in_the_legend() {
+    let Some(browser) = browser() else { return skipped() };
+    let folder = tempfile::tempdir().unwrap();
+    let page = page(folder.path());
+    let text = fs::read_to_string(&page).unwrap();
+    let driven = page.with_file_name("driven.html");
+    fs::write(&driven, text.replace("</body>", &format!("{CHOOSER}</body>"))).unwrap();
+    let dom = dom(&browser, &driven, "", &[]);
+    assert_eq!(attribute(&dom, ROOT, "data-error"), None);
+    let sights = attribute(&dom, ROOT, "data-sights").unwrap_or_else(|| panic!("{dom}"));
+    let sights: Vec<Vec<&str>> = sights.split(';').map(|sight| sight.split('|').collect()).collect();
+    let [start, without, none, first, all] = &sights[..] else { panic!("{sights:?}") };
+    let count = |text: &str| text.parse::<u32>().unwrap();
+    // Each of three pictures has a line, markers and a sample of each method.
+    assert!(count(start[0]) > 9 && count(start[1]) > 9 && start[3] == "false", "{sights:?}");
+    assert_eq!((without[0], without[1], none[0], none[1]), (start[0], "0", "0", "0"));
+    assert_eq!((first[0], first[1], all), (start[0], "0", start));
+    // Its name: in three legends, and at the ends of two lines.
+    assert_eq!((start[2], without[2], none[2]), ("0", "5", "10"));
+}
+
+/// At a width of 390 units, of a telephone, and of 1400, neither the page nor anything in it scrolls sideways.
+#[test]
+fn nothing_scrolls_sideways() {
+    let Some(browser) = browser() else { return skipped() };
+    let folder = tempfile::tempdir().unwrap();
+    let names = ["dla", "rk4", "implicit-midpoint"];
+    let mut wide = scene("coast", names.map(|name| circle(name, 300)).to_vec());
+    wide.columns = (0..14).map(|k| format!("column {k} [m/s]")).collect();
+    wide.rows = names
+        .map(|name| (0..14).map(|k| if k == 0 { name.to_owned() } else { "1.5e-16".to_owned() }).collect())
+        .to_vec();
+    wide.rows[1] = vec![
+        "rk4".to_owned(),
+        "refused: a reason of many words, which goes on for longer than a line has room".to_owned(),
+    ];
+    let page = write(&report(vec![wide]), &folder.path().join("out"), false).unwrap().remove(0);
+    let text = fs::read_to_string(&page).unwrap().replace('&', "&amp;").replace('"', "&quot;");
+    for width in [390, 1400] {
+        let around = format!(
+            "<!DOCTYPE html><html><body><iframe style=\"width:{width}px;height:900px;border:0\" srcdoc=\"{text}\"></iframe><script>
+            setTimeout(() => {{
+              const page = document.querySelector('iframe').contentDocument;
+              const scrolls = Array.from(page.querySelectorAll('.scroll, table, section')).filter((e) => e.scrollWidth > e.clientWidth + 1);
+              const root = document.documentElement.dataset;
+              root.width = page.documentElement.scrollWidth;
+              root.scrolls = scrolls.map((e) => e.tagName + e.className).join();
+            }}, 800);</script></body></html>"
+        );
+        let outer = page.with_file_name("around.html");
+        fs::write(&outer, around).unwrap();
+        let dom = dom(&browser, &outer, "", &["--window-size=1500,1000"]);
+        let told = ["data-width", "data-scrolls"].map(|name| attribute(&dom, ROOT, name));
+        // A bar for scrolling upwards may take some of it.
+        assert!(told[0].is_some_and(|told| told.parse::<u32>().unwrap() <= width), "{told:?}");
+        assert_eq!(told[1], Some(""), "{width}");
+    }
+}

@@ -24,7 +24,10 @@ fn the_page_holds_every_row_every_fact_and_every_picture() {
     assert!(page.contains("<p>What was done.</p>") && page.contains("<p>And how.</p>"));
     assert!(page.contains("light-dark(") && page.contains("name=\"viewport\""));
     // Numbers and what says that they are missing stand to the right, words to the left.
-    assert!(page.contains("<td class=\"n\">0.25e-7</td>") && page.contains("<td>note 0</td>"));
+    assert!(
+        page.contains("<td class=\"n\" data-column=\"error\">0.25e-7</td>")
+            && page.contains("<td data-column=\"note\">note 0</td>")
+    );
 }
 
 #[test]
@@ -36,8 +39,8 @@ fn a_method_without_a_run_stands_in_the_table_alone() {
     let (full, with) = written(&report(vec![drawn]));
     let (page, without) = written(&report(vec![left_out]));
     // The last cell takes the columns that are left, and does not make a column of words of one of numbers.
-    assert!(page.contains("<td>refuses</td><td colspan=\"2\">refused: it cannot</td>"));
-    assert!(page.contains("<td class=\"n\">1.5e-16</td>") && !full.contains("colspan"));
+    assert!(page.contains("<td data-column=\"method\">refuses</td><td colspan=\"2\">refused: it cannot</td>"));
+    assert!(page.contains("<td class=\"n\" data-column=\"error\">1.5e-16</td>") && !full.contains("colspan"));
     for ((_, with), (_, without)) in with.iter().zip(&without) {
         let named = |picture: &str, name: &str| texts(picture).iter().any(|text| text == name);
         assert!(named(with, "refuses") && !named(without, "refuses"));
