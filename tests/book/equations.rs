@@ -33,7 +33,7 @@ fn numbers_are_consecutive_and_citations_exist() {
     }
     assert!(all.len() > 40, "only {} equations", all.len());
     let citing = |page: &&Page| {
-        ["docs/theory/", "docs/guide/", "docs/phenomena/", "docs/notes", "docs/intro"]
+        ["docs/theory/", "docs/methods/", "docs/guide/", "docs/phenomena/", "docs/notes", "docs/intro"]
             .iter()
             .any(|start| page.path.starts_with(start))
     };
