@@ -1,0 +1,123 @@
+"""A system of one's own: a Lagrangian and velocity constraints, as text or as SymPy expressions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import tomli_w
+
+from ._noslip import RequestError
+from .expressions import name, text
+from .results import Run
+from .scenes import Scene
+
+Values = Mapping[Any, float] | Sequence[float] | None
+
+
+class System(Scene):
+    """A mechanical system with velocity constraints.
+
+    `coordinates` are names with their units (`"angle"` is in rad), or a list of names or of SymPy's `dynamicsymbols`.
+    `lagrangian`, `constraints` (each is zero, and affine in the rates), `forces` (by coordinate), `positions` (functions that
+    are zero), `basis` (admissible velocities, lists of a text for each coordinate) and `outputs` (further columns, by name) are
+    texts as in scene files, where `x'` is the rate of `x`, or SymPy expressions. `parameters` are numbers by name.
+
+    `q` and `v` are the start, by name or in order. Rates that are left out, and those that violate a constraint, are the nearest
+    admissible ones.
+    """
+
+    def __init__(
+        self,
+        coordinates: Mapping[Any, str] | Iterable[Any],
+        lagrangian: Any,
+        constraints: Iterable[Any] = (),
+        *,
+        parameters: Mapping[Any, float] | None = None,
+        forces: Mapping[Any, Any] | None = None,
+        positions: Iterable[Any] = (),
+        basis: Iterable[Iterable[Any]] = (),
+        outputs: Mapping[str, Any] | None = None,
+        q: Values = None,
+        v: Values = None,
+        method: str = "dla",
+        step: float = 0.01,
+        duration: float = 10.0,
+        title: str | None = None,
+    ) -> None:
+        units = coordinates if isinstance(coordinates, Mapping) else dict.fromkeys(coordinates, "1")
+        self.coordinates = [name(coordinate) for coordinate in units]
+        system: dict[str, Any] = {
+            "coordinates": dict(zip(self.coordinates, units.values(), strict=True)),
+            "parameters": {name(key): float(value) for key, value in (parameters or {}).items()},
+            "lagrangian": text(lagrangian),
+            "constraints": [text(row) for row in constraints],
+        }
+        optional = {
+            "forces": {name(key): text(force) for key, force in (forces or {}).items()},
+            "positions": [text(position) for position in positions],
+            "basis": [[text(entry) for entry in vector] for vector in basis],
+            "outputs": {key: text(output) for key, output in (outputs or {}).items()},
+        }
+        system.update({key: value for key, value in optional.items() if value})
+        self._tables: dict[str, Any] = {
+            "system": system,
+            "start": {**_named(self.coordinates, q, ""), **_named(self.coordinates, v, "'")},
+            "run": {"method": method, "step": float(step), "duration": float(duration)},
+        }
+        if title is not None:
+            self._tables["title"] = title
+        super().__init__(tomli_w.dumps(self._tables), "system")
+
+    @classmethod
+    def from_lagranges(cls, method: Any, parameters: Mapping[Any, float] | None = None, **settings: Any) -> System:
+        """The system of a `sympy.physics.mechanics.LagrangesMethod`, its forces and constraints included."""
+        equations = method.form_lagranges_equations()
+        rates = method.q.diff(_time())
+        motion = method._L.diff(rates).T.diff(_time()) if hasattr(method, "_L") else None
+        if motion is None or len(equations) != len(method.q):
+            raise RequestError("no Lagrangian in this object: System(coordinates, lagrangian, ..) takes one")
+        forces = {q: force for q, force in zip(method.q, method._term4, strict=True) if force != 0}
+        holonomic = list(method._hol_coneqs) if method._hol_coneqs else []
+        return cls(
+            list(method.q), method._L, list(method.coneqs or ()), positions=holonomic,
+            forces=forces, parameters=parameters, **settings,
+        )  # fmt: skip
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Scene, (self.text, self.origin)
+
+    def started(self, q: Values = None, v: Values = None) -> Scene:
+        """The same system with another start."""
+        start = dict(self._tables["start"])
+        start.update(_named(self.coordinates, q, ""))
+        start.update(_named(self.coordinates, v, "'"))
+        return Scene(tomli_w.dumps({**self._tables, "start": start}), self.origin)
+
+    def run(self, *, q: Values = None, v: Values = None, **settings: Any) -> Run:  # type: ignore[override]
+        """Makes a run as `Scene.run`, from the start `q`, `v` where these are given."""
+        if q is None and v is None:
+            return super().run(**settings)
+        return self.started(q, v).run(**settings)
+
+
+def _named(coordinates: list[str], values: Values, suffix: str) -> dict[str, float]:
+    """Numbers of the start by the key that each has in a scene."""
+    if values is None:
+        return {}
+    if isinstance(values, Mapping):
+        given = {name(key): float(value) for key, value in values.items()}
+        unknown = [key for key in given if key not in coordinates]
+        if unknown:
+            raise RequestError(f"no coordinate {unknown[0]!r}; the coordinates are {', '.join(coordinates)}")
+        return {f"{key}{suffix}": value for key, value in given.items()}
+    listed = [float(value) for value in values]
+    if len(listed) != len(coordinates):
+        raise RequestError(f"{len(listed)} numbers for {len(coordinates)} coordinates")
+    return {f"{key}{suffix}": value for key, value in zip(coordinates, listed, strict=True)}
+
+
+def _time() -> Any:
+    from sympy.physics.mechanics import dynamicsymbols
+
+    return dynamicsymbols._t

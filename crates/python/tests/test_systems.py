@@ -1,0 +1,170 @@
+"""Systems of one's own, as text and as SymPy expressions, against SciPy on SymPy's own equations."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+import sympy as sp
+from scipy.integrate import solve_ivp
+from sympy.physics.mechanics import LagrangesMethod, dynamicsymbols
+
+import noslip
+
+t = dynamicsymbols._t
+
+
+def oracle(coordinates: list[Any], lagrangian: Any, rows: list[Any], forces: dict[Any, Any], values: dict[Any, float]) -> Any:
+    """The equations of motion with multipliers, from SymPy, as a function of SciPy's."""
+    q = sp.Matrix(coordinates)
+    v = q.diff(t)
+    n, m = len(q), len(rows)
+    a = sp.Matrix(rows).jacobian(v) if m else sp.zeros(0, n)
+    rest = sp.Matrix(rows).subs(dict(zip(v, [0] * n))) if m else sp.zeros(0, 1)
+    mass = sp.Matrix([lagrangian]).jacobian(v).T.jacobian(v)
+    momentum = sp.Matrix([lagrangian]).jacobian(v).T
+    qs, vs = sp.symbols(f"q0:{n}"), sp.symbols(f"v0:{n}")
+    names = dict(zip(list(v) + list(q), vs + qs, strict=True))
+
+    def plain(matrix: Any) -> Any:
+        return matrix.subs(dict(list(names.items())[:n])).subs(dict(list(names.items())[n:])).subs(values)
+
+    force = sp.Matrix([forces.get(x, 0) for x in coordinates])
+    right = plain(sp.Matrix([lagrangian]).jacobian(q).T + force)
+    p = plain(momentum)
+    right -= p.jacobian(sp.Matrix(qs)) * sp.Matrix(vs) + p.diff(t)
+    a, rest = plain(a), plain(rest)
+    bias = sp.zeros(m, 1)
+    if m:
+        row = a * sp.Matrix(vs) + rest
+        bias = row.jacobian(sp.Matrix(qs)) * sp.Matrix(vs) + row.diff(t)
+    saddle = sp.Matrix(sp.BlockMatrix([[plain(mass), a.T], [a, sp.zeros(m, m)]])) if m else plain(mass)
+    system = sp.lambdify((t, qs, vs), (saddle, sp.Matrix([*right, *(-bias)])), "numpy")
+
+    def slope(time: float, state: Any) -> Any:
+        matrix, vector = system(time, state[:n], state[n:])
+        solution = np.linalg.solve(np.array(matrix, float), np.array(vector, float).ravel())
+        return np.concatenate([state[n:], solution[:n]])
+
+    return slope
+
+
+def agrees(system: noslip.System, slope: Any, duration: float) -> None:
+    run = system.run(method="gauss16", step=0.05, duration=duration)
+    names = system.coordinates
+    start = np.array([run[name][0] for name in names] + [run[f"{name}'"][0] for name in names])
+    end = solve_ivp(slope, (0.0, duration), start, method="DOP853", rtol=1e-12, atol=1e-12).y[:, -1]
+    made = np.array([run[name][-1] for name in names] + [run[f"{name}'"][-1] for name in names])
+    np.testing.assert_allclose(made, end, atol=1e-9)
+
+
+def skate() -> dict[str, Any]:
+    x, y, th = dynamicsymbols("x y theta")
+    m, inertia, g = sp.symbols("m J g")
+    return {
+        "coordinates": [x, y, th],
+        "lagrangian": m / 2 * (x.diff(t) ** 2 + y.diff(t) ** 2) + inertia / 2 * th.diff(t) ** 2 - m * g * sp.sin(0.1) * x,
+        "constraints": [-x.diff(t) * sp.sin(th) + y.diff(t) * sp.cos(th)],
+        "parameters": {m: 1.0, inertia: 0.5, g: 9.81},
+        "q": [0.0, 0.0, 0.3],
+        "v": {x: 1.0, th: 0.5},
+    }
+
+
+def pendulum_cart() -> dict[str, Any]:
+    x, th = dynamicsymbols("x theta")
+    m1, m2, length, g, k = sp.symbols("m1 m2 l g k")
+    kinetic = (m1 + m2) / 2 * x.diff(t) ** 2 + m2 * length * x.diff(t) * th.diff(t) * sp.cos(th)
+    kinetic += m2 * length**2 / 2 * th.diff(t) ** 2
+    return {
+        "coordinates": [x, th],
+        "lagrangian": kinetic + m2 * g * length * sp.cos(th) - k * x**2 / 2,
+        "parameters": {m1: 1.0, m2: 0.5, length: 0.7, g: 9.81, k: 3.0},
+        "q": [0.1, 0.8],
+        "v": [0.0, 0.2],
+    }
+
+
+def particle() -> dict[str, Any]:
+    x, y, z = dynamicsymbols("x y z")
+    return {
+        "coordinates": [x, y, z],
+        "lagrangian": sp.Rational(1, 2) * (x.diff(t) ** 2 + y.diff(t) ** 2 + z.diff(t) ** 2) - (x**2 + y**2) / 3,
+        "constraints": [z.diff(t) - y * x.diff(t)],
+        "q": [1.0, 0.2, 0.0],
+        "v": [0.3, 0.7, 0.06],
+    }
+
+
+def driven() -> dict[str, Any]:
+    x, y, th = dynamicsymbols("x y theta")
+    m, inertia, c = sp.symbols("m J c")
+    return {
+        **skate(),
+        "lagrangian": m / 2 * (x.diff(t) ** 2 + y.diff(t) ** 2) + inertia / 2 * th.diff(t) ** 2,
+        "forces": {th: sp.sin(2 * t) - c * th.diff(t), x: sp.Abs(sp.cos(th)) / 3},
+        "parameters": {m: 1.0, inertia: 0.5, c: 0.1},
+    }
+
+
+def disk() -> dict[str, Any]:
+    x, y, phi, roll = dynamicsymbols("x y phi roll")
+    m, r = sp.symbols("m r")
+    kinetic = m / 2 * (x.diff(t) ** 2 + y.diff(t) ** 2) + m * r**2 / 4 * roll.diff(t) ** 2 + m * r**2 / 8 * phi.diff(t) ** 2
+    return {
+        "coordinates": [x, y, phi, roll],
+        "lagrangian": kinetic - sp.exp(-(x**2)) / 5,
+        "constraints": [x.diff(t) - r * roll.diff(t) * sp.cos(phi), y.diff(t) - r * roll.diff(t) * sp.sin(phi)],
+        "parameters": {m: 1.0, r: 0.5},
+        "q": [0.3, 0.0, 0.2, 0.0],
+        "v": {roll: 2.0, phi: 0.3},
+    }
+
+
+@pytest.mark.parametrize("make", [skate, pendulum_cart, particle, driven, disk])
+def test_sympy_against_scipy(make: Any) -> None:
+    parts = make()
+    system = noslip.System(**parts)
+    values = parts.get("parameters", {})
+    slope = oracle(
+        parts["coordinates"], parts["lagrangian"], parts.get("constraints", []), parts.get("forces", {}), values
+    )
+    agrees(system, slope, 2.0)
+
+
+def test_text_and_sympy_are_one_system() -> None:
+    text = noslip.System(
+        {"x": "m", "y": "m", "theta": "angle"},
+        "m/2*(x'^2 + y'^2) + J/2*theta'^2 - m*g*sin(0.1)*x",
+        ["-x'*sin(theta) + y'*cos(theta)"],
+        parameters={"m": 1.0, "J": 0.5, "g": 9.81},
+        q=[0.0, 0.0, 0.3],
+        v={"x": 1.0, "theta": 0.5},
+    )
+    symbols = noslip.System(**skate())
+    a, b = text.run(duration=2.0), symbols.run(duration=2.0)
+    for name in text.coordinates:
+        np.testing.assert_allclose(a[name], b[name], atol=1e-12)
+    assert a.constraint < 1e-12
+    moved = text.run(q=[1.0, 2.0, 0.3], duration=1.0)
+    assert moved["x"][0] == 1.0
+
+
+def test_a_lagranges_method_is_a_system() -> None:
+    x, th = dynamicsymbols("x theta")
+    parts = pendulum_cart()
+    method = LagrangesMethod(parts["lagrangian"], [x, th])
+    system = noslip.System.from_lagranges(method, parameters=parts["parameters"], q=parts["q"], v=parts["v"])
+    np.testing.assert_array_equal(system.run(duration=1.0)["x"], noslip.System(**parts).run(duration=1.0)["x"])
+
+
+def test_what_a_scene_has_no_text_for_is_refused() -> None:
+    x = dynamicsymbols("x")
+    for wrong in [sp.besselj(0, x), x.diff(t, 2), sp.Integral(x, x)]:
+        with pytest.raises(noslip.RequestError):
+            noslip.System([x], x.diff(t) ** 2 / 2 - wrong)
+    with pytest.raises(noslip.RequestError, match="no coordinate"):
+        noslip.System(["x"], "x'^2/2", q={"y": 1.0})
+    with pytest.raises(noslip.RequestError, match="2 numbers for 1"):
+        noslip.System(["x"], "x'^2/2", q=[1.0, 2.0])
+    with pytest.raises(noslip.RequestError):
+        noslip.System(["x"], "x'^2/2 - unknown*x")
