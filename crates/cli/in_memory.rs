@@ -1,10 +1,12 @@
 use crate::called::Caller;
+use crate::text::told;
+use crate::trajectory_file::Columns;
 use crate::trigger::{Events, Happened, Trigger};
 use crate::{inspect, json, substeps};
-use dla::{Node, Samples, Schedule, State, Substeps, Trajectory};
+use dla::{Event, Node, Samples, Schedule, State, Subject, Substeps, Trajectory};
 use harness::{Again, EVENT_SAMPLES, Method, Progress, Request, Watched, integrate_on, recommend, run_watched};
 use indicatif::ProgressBar;
-use scene::{Column, Scene, SceneSystem, Visitor};
+use scene::{AnyScene, Column, RunSettings, SceneSystem, TextMechanics, Visitor, with_text};
 use serde_json::Value;
 use std::fmt::Display;
 
@@ -66,18 +68,26 @@ impl RunError {
 ///
 /// # Errors
 /// [`RunError`] where the request makes no sense for the scene, or no step meets the tolerance. A run that fails is a result.
-pub fn run(scene: &Scene, request: &RunRequest, caller: &Caller) -> Result<RunResult, RunError> {
-    let method = Method::named(&scene.run.method, scene.run.alpha).map_err(|error| RunError::request(&error))?;
+pub fn run(scene: &AnyScene, request: &RunRequest, caller: &Caller) -> Result<RunResult, RunError> {
+    let settings = scene.run();
+    let method = Method::named(&settings.method, settings.alpha).map_err(|error| RunError::request(&error))?;
     let method = if request.substep { method.with_substeps(Substeps::default()) } else { method };
-    if scene.has_trailers() {
-        return Err(RunError::request(&"trains are run by the command line: their nodes are not kept in memory here"));
+    let run = Run { name: scene.name(), settings, request, method, caller };
+    match scene {
+        AnyScene::Sleigh(scene) if scene.has_trailers() => {
+            Err(RunError::request(&"trains are run by the command line: their nodes are not kept in memory here"))
+        }
+        AnyScene::Sleigh(scene) => scene.visit(run).map_err(|error| RunError::request(&error))?,
+        AnyScene::Text(scene) => {
+            let system = crate::text::system(scene).map_err(|error| RunError::request(&error))?;
+            with_text!(system, started => run.of_text(&*started.system, started.q, started.v))
+        }
     }
-    let run = Run { scene, request, method, caller };
-    scene.visit(run).map_err(|error| RunError::request(&error))?
 }
 
 struct Run<'a> {
-    scene: &'a Scene,
+    name: &'a str,
+    settings: &'a RunSettings,
     request: &'a RunRequest,
     method: Method,
     caller: &'a Caller,
@@ -104,39 +114,89 @@ fn triggers(texts: &[String]) -> Result<Vec<Trigger>, RunError> {
     texts.iter().map(|text| text.parse().map_err(|error: String| RunError::request(&error))).collect()
 }
 
+/// A run that was made, and the nodes that were asked for.
+struct Made<const N: usize, const M: usize> {
+    watched: Watched<N, M>,
+    sampled: Vec<Node<N, M>>,
+}
+
+impl<const N: usize, const M: usize> Made<N, M> {
+    fn nodes(&self) -> &[Node<N, M>] {
+        self.watched.trajectory.as_ref().map_or(&self.sampled[..], Trajectory::nodes)
+    }
+
+    fn result(self, columns: Columns, mut object: Value) -> RunResult {
+        let record = &self.watched.record;
+        substeps::add_json(&mut object, record);
+        let (columns, numbers) = columns.by_column();
+        RunResult { columns, numbers, object, failure: substeps::failure(record), interrupted: record.interrupted }
+    }
+}
+
 impl Run<'_> {
     fn schedule<const N: usize, const M: usize>(
         &self,
-        system: &dyn SceneSystem<N, M>,
+        subject: Subject<'_, N, M>,
         start: ([f64; N], [f64; N]),
     ) -> Result<Schedule, RunError> {
-        let schedule = inspect::schedule(self.scene);
+        let schedule = inspect::steps_of(self.settings);
         let Some(tolerance) = self.request.tolerance else { return Ok(schedule) };
-        let found = recommend(&system, &self.method.undivided(), start, self.scene.run.duration, tolerance);
+        let found = recommend(subject, &self.method.undivided(), start, self.settings.duration, tolerance);
         let found = found.map_err(|error| RunError { message: error.to_string(), request: false })?;
         Ok(Schedule { step: found.step, steps: found.steps, ..schedule })
+    }
+
+    fn make<const N: usize, const M: usize>(
+        &self,
+        subject: Subject<'_, N, M>,
+        (q, v): ([f64; N], [f64; N]),
+        events: &[Event<'_, N>],
+    ) -> Result<Made<N, M>, RunError> {
+        let request = Request { schedule: self.schedule(subject, (q, v))?, q, v, samples: 1 };
+        let bar = self.caller.bar(self.method.info().name, request.schedule.steps);
+        let mut shown = Shown { bar, caller: self.caller };
+        let keep = self.request.times.is_empty().then_some(self.request.every);
+        let watched = run_watched(subject, &self.method, &request, (events, EVENT_SAMPLES), keep, &mut shown);
+        let sampled = if keep.is_none() { self.sampled(subject, &request, &mut shown) } else { Vec::new() };
+        Ok(Made { watched, sampled })
     }
 
     /// The motion at the times asked for, up to where the run comes; the work is not known there.
     fn sampled<const N: usize, const M: usize>(
         &self,
-        system: &dyn SceneSystem<N, M>,
+        subject: Subject<'_, N, M>,
         Request { schedule, q, v, .. }: &Request<N>,
         shown: &mut Shown<'_>,
     ) -> Vec<Node<N, M>> {
         let times = &self.request.times;
-        let mut samples = Samples::new(Again { method: &self.method, own: &system }, times);
-        let mut state = State::new(*q, *v, system.angles());
+        let mut samples = Samples::new(Again { method: &self.method, own: subject.own }, times);
+        let mut state = State::new(*q, *v, subject.system.angles());
         // Why a run ends early is what the run that was watched has told.
-        let _ = integrate_on(&system, &self.method, schedule, &mut state, &mut samples, shown);
+        let _ = integrate_on(subject, &self.method, schedule, &mut state, &mut samples, shown);
         let node = |(t, state): (&f64, &State<N>)| {
             let (q, v) = (state.unwrapped(), *state.v());
-            let piece = system.scene_piece(*t);
+            let piece = subject.system.smooth_piece(*t);
             let residual = piece.residual(*t, &q, &v).iter().fold(0.0, |most: f64, each| most.max(each.abs()));
             let energy = piece.energy(*t, &q, &v);
             Node { k: 0, t: *t, q, v, energy, work: f64::NAN, constraint: residual, multipliers: None }
         };
         times.iter().zip(samples.taken()).map(node).collect()
+    }
+
+    fn of_text<const N: usize, const M: usize>(
+        &self,
+        system: &dyn TextMechanics<N, M>,
+        q: [f64; N],
+        v: [f64; N],
+    ) -> Result<RunResult, RunError> {
+        if !self.request.events.is_empty() || !self.request.until.is_empty() {
+            return Err(RunError::request(&"events are quantities of a sleigh, which a system of text does not have"));
+        }
+        let made = self.make(system.into(), (q, v), &[])?;
+        let record = &made.watched.record;
+        let object = json::record_of(self.name, record, told::json(system.model(), record.t, &record.q, &record.v));
+        let columns = told::columns(system, made.nodes());
+        Ok(made.result(columns, object))
     }
 }
 
@@ -149,36 +209,18 @@ impl Visitor for Run<'_> {
         q: [f64; N],
         v: [f64; N],
     ) -> Self::Output {
-        let RunRequest { every, times, events, until, .. } = self.request;
-        let request = Request { schedule: self.schedule(system, (q, v))?, q, v, samples: 1 };
-        let (reported, ending) = (triggers(events)?, triggers(until)?);
-        let looked_for: Vec<_> = reported
-            .iter()
-            .map(|trigger| trigger.event(system))
-            .chain(ending.iter().map(|trigger| trigger.event(system).terminal()))
-            .collect();
-        let mut shown =
-            Shown { bar: self.caller.bar(self.method.info().name, request.schedule.steps), caller: self.caller };
-        let keep = times.is_empty().then_some(*every);
-        let looked_for = (&looked_for[..], EVENT_SAMPLES);
-        let Watched { record, trajectory, crossings, close } =
-            run_watched(&system, &self.method, &request, looked_for, keep, &mut shown);
-        let sampled = if trajectory.is_none() { self.sampled(system, &request, &mut shown) } else { Vec::new() };
-        let nodes = trajectory.as_ref().map_or(&sampled[..], Trajectory::nodes);
-
-        let columns = nodes.first().map_or_else(Vec::new, |first| system.columns(first));
-        let mut numbers: Vec<_> = columns.iter().map(|_| Vec::with_capacity(nodes.len())).collect();
-        for node in nodes {
-            numbers.iter_mut().zip(system.row(node)).for_each(|(column, number)| column.push(number));
+        let (reported, ending) = (triggers(&self.request.events)?, triggers(&self.request.until)?);
+        let ends = ending.iter().map(|trigger| trigger.event(system).terminal());
+        let events: Vec<_> = reported.iter().map(|trigger| trigger.event(system)).chain(ends).collect();
+        let made = self.make((&system).into(), (q, v), &events)?;
+        let Watched { record, crossings, close, .. } = &made.watched;
+        let mut object = json::record(self.name, record, &system.sleigh_state(&record.q, &record.v));
+        let looked_for: Vec<&Trigger> = reported.iter().chain(&ending).collect();
+        if !looked_for.is_empty() {
+            let happened = crossings.iter().filter_map(|crossing| Happened::of(system, &looked_for, crossing));
+            Events::new(happened, *close).add_to(&mut object);
         }
-        let mut object = json::record(&self.scene.name, &record, &system.sleigh_state(&record.q, &record.v));
-        substeps::add_json(&mut object, &record);
-        let looked: Vec<&Trigger> = reported.iter().chain(&ending).collect();
-        if !looked.is_empty() {
-            let happened = crossings.iter().filter_map(|crossing| Happened::of(system, &looked, crossing));
-            Events::new(happened, close).add_to(&mut object);
-        }
-        let failure = substeps::failure(&record);
-        Ok(RunResult { columns, numbers, object, failure, interrupted: record.interrupted })
+        let columns = Columns::of(system, made.nodes());
+        Ok(made.result(columns, object))
     }
 }

@@ -8,7 +8,7 @@ use crate::error::CliError;
 use crate::in_memory::{self, RunRequest};
 use crate::{files, inspect, table, terminal};
 use harness::report::{Figure, Format, Panel, Paper, figure};
-use scene::Scene;
+use scene::AnyScene;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -28,7 +28,7 @@ pub(crate) fn plot(arguments: &PlotArguments) -> Result<(), CliError> {
         Some(_) => None,
         None => Some(load(arguments)?),
     };
-    let name = scene.as_ref().map_or_else(|| stem(input), |scene| scene.name.clone());
+    let name = scene.as_ref().map_or_else(|| stem(input), |scene| scene.name().to_owned());
     let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.svg")));
     let format = format_of(&out)?;
     files::check_file(&out, *force)?;
@@ -50,9 +50,11 @@ pub(crate) fn plot(arguments: &PlotArguments) -> Result<(), CliError> {
     CliError::of_failures(failures)
 }
 
-fn load(arguments: &PlotArguments) -> Result<Scene, CliError> {
+fn load(arguments: &PlotArguments) -> Result<AnyScene, CliError> {
     let PlotArguments { input, set, step, duration, alpha, .. } = arguments;
-    inspect::load_with((input, set), None, *step, *duration, *alpha)
+    let names = inspect::method_names();
+    let scene = AnyScene::load_with(input, &set.set, &names)?;
+    Ok(scene.with_overrides(None, *step, *duration, *alpha, &names)?)
 }
 
 fn stem(path: &str) -> String {
@@ -73,38 +75,37 @@ fn format_of(path: &Path) -> Result<Format, CliError> {
 }
 
 /// What the figure says it shows.
-fn title(scene: &Scene, runs: &[(String, Columns)]) -> String {
+fn title(scene: &AnyScene, runs: &[(String, Columns)]) -> String {
     let by = match runs {
         [(method, _)] => format!("{method}, "),
         _ => String::new(),
     };
-    format!("{}; {by}step {} s", scene.title, table::number(scene.run.actual_step()))
+    format!("{}; {by}step {} s", scene.title(), table::number(scene.run().actual_step()))
 }
 
 /// The runs of a scene, by method.
 fn made(
-    scene: &Scene,
+    scene: &AnyScene,
     names: Option<&[String]>,
     failures: &mut Vec<String>,
 ) -> Result<Vec<(String, Columns)>, CliError> {
     let names: Vec<&str> = match names {
         Some(names) => names.iter().map(|name| name.trim()).collect(),
-        None => vec![scene.run.method.as_str()],
+        None => vec![scene.run().method.as_str()],
     };
-    methods(&names, scene.run.alpha)?;
-    let request = RunRequest { every: scene.run.steps().div_ceil(NODES), ..RunRequest::default() };
+    methods(&names, scene.run().alpha)?;
+    let request = RunRequest { every: scene.run().steps().div_ceil(NODES), ..RunRequest::default() };
     names.iter().map(|method| run(scene, method, &request, failures)).collect()
 }
 
 /// The run of a scene by a method, as far as it comes.
 fn run(
-    scene: &Scene,
+    scene: &AnyScene,
     method: &str,
     request: &RunRequest,
     failures: &mut Vec<String>,
 ) -> Result<(String, Columns), CliError> {
-    let mut scene = scene.clone();
-    method.clone_into(&mut scene.run.method);
+    let scene = scene.clone().with_overrides(Some(method), None, None, None, &inspect::method_names())?;
     let result = in_memory::run(&scene, request, &Caller::default()).map_err(|error| match error.request {
         true => CliError::Request(error.message),
         false => CliError::Computation(vec![error.message]),

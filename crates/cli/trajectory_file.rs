@@ -43,9 +43,19 @@ impl Columns {
     }
 
     /// A trajectory in the words of a scene: what the scene does not have has no column.
-    fn of<const N: usize, const M: usize>(system: &dyn SceneSystem<N, M>, nodes: &[dla::Node<N, M>]) -> Self {
+    pub(crate) fn of<const N: usize, const M: usize>(
+        system: &dyn SceneSystem<N, M>,
+        nodes: &[dla::Node<N, M>],
+    ) -> Self {
         let header = nodes.first().map_or_else(Vec::new, |first| system.columns(first));
         Self { header, rows: nodes.iter().map(|node| system.row(node)).collect() }
+    }
+
+    /// The columns, and the numbers of each.
+    pub(crate) fn by_column(self) -> (Vec<Column>, Vec<Vec<f64>>) {
+        let column = |k: usize| self.rows.iter().map(|row| row[k]).collect();
+        let numbers = (0..self.header.len()).map(column).collect();
+        (self.header, numbers)
     }
 
     /// The names of the columns, each with its unit.

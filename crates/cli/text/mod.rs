@@ -3,13 +3,13 @@
 pub(crate) mod compare;
 pub(crate) mod facts;
 pub(crate) mod run;
-mod told;
+pub(crate) mod told;
 
 use crate::error::CliError;
 use scene::{AnyText, TextScene};
 
 /// The system of a scene.
-fn system(scene: &TextScene) -> Result<AnyText, CliError> {
+pub(crate) fn system(scene: &TextScene) -> Result<AnyText, CliError> {
     // Sizes were checked when the scene was read.
     scene.system().ok_or_else(|| CliError::Request("the system has more coordinates than there is room for".to_owned()))
 }

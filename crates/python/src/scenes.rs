@@ -5,7 +5,7 @@ use harness::METHODS;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use scene::bundled as scenes;
+use scene::{AnyScene, bundled as scenes, bundled_texts};
 
 fn names() -> Vec<&'static str> {
     METHODS.iter().map(|info| info.name).collect()
@@ -14,7 +14,7 @@ fn names() -> Vec<&'static str> {
 /// The bundled scenes: name and text.
 #[pyfunction]
 pub(crate) fn bundled() -> Vec<(&'static str, &'static str)> {
-    scenes().iter().map(|scene| (scene.name, scene.text)).collect()
+    scenes().iter().chain(bundled_texts()).map(|scene| (scene.name, scene.text)).collect()
 }
 
 /// The methods: name, order, what each keeps to round-off, and what it is.
@@ -26,7 +26,7 @@ pub(crate) fn methods() -> Vec<(&'static str, u32, &'static str, &'static str)> 
 /// A scene, checked: a system, its start and how to run it.
 #[pyclass(frozen)]
 pub(crate) struct Scene {
-    scene: scene::Scene,
+    scene: AnyScene,
 }
 
 /// What a run gave: the columns with their numbers, their units, the object of `noslip run --json` as text, why the run failed, and the
@@ -46,7 +46,7 @@ impl Scene {
         duration: Option<f64>,
         alpha: Option<f64>,
     ) -> PyResult<Self> {
-        let scene = scene::Scene::parse(text, origin, &names())
+        let scene = AnyScene::parse(text, origin, &names())
             .and_then(|scene| scene.with_overrides(method, step, duration, alpha, &names()))
             .map_err(|error| RequestError::new_err(error.to_string()))?;
         Ok(Self { scene })
@@ -55,31 +55,42 @@ impl Scene {
     /// The name.
     #[getter]
     fn name(&self) -> &str {
-        &self.scene.name
+        self.scene.name()
     }
 
     /// The title; the name where there is none.
     #[getter]
     fn title(&self) -> &str {
-        &self.scene.title
+        self.scene.title()
     }
 
     /// The method of the run.
     #[getter]
     fn method(&self) -> &str {
-        &self.scene.run.method
+        &self.scene.run().method
     }
 
     /// The largest step (s).
     #[getter]
     fn step(&self) -> f64 {
-        self.scene.run.step
+        self.scene.run().step
     }
 
     /// The duration (s).
     #[getter]
     fn duration(&self) -> f64 {
-        self.scene.run.duration
+        self.scene.run().duration
+    }
+
+    /// Which numbers of the start the constraints did not admit: name, number given, number taken.
+    #[getter]
+    fn moved(&self) -> Vec<(String, f64, f64)> {
+        match &self.scene {
+            AnyScene::Sleigh(_) => Vec::new(),
+            AnyScene::Text(scene) => {
+                scene.start.moved.iter().map(|moved| (moved.name.clone(), moved.from, moved.to)).collect()
+            }
+        }
     }
 
     /// Makes the run, and keeps every `every`-th node, or the motion at `times`.

@@ -168,3 +168,23 @@ def test_what_a_scene_has_no_text_for_is_refused() -> None:
         noslip.System(["x"], "x'^2/2", q=[1.0, 2.0])
     with pytest.raises(noslip.RequestError):
         noslip.System(["x"], "x'^2/2 - unknown*x")
+
+
+def test_forces_and_constraints_of_a_lagranges_method_count() -> None:
+    from sympy.physics.mechanics import Point, ReferenceFrame
+
+    x, y = dynamicsymbols("x y")
+    frame, origin = ReferenceFrame("N"), Point("O")
+    mass = origin.locatenew("P", x * frame.x + y * frame.y)
+    origin.set_vel(frame, 0)
+    mass.set_vel(frame, x.diff(t) * frame.x + y.diff(t) * frame.y)
+    lagrangian = (x.diff(t) ** 2 + y.diff(t) ** 2) / 2
+    pulled = LagrangesMethod(
+        lagrangian, [x, y], forcelist=[(mass, 0.5 * frame.x)], frame=frame, nonhol_coneqs=[x.diff(t) - y.diff(t)]
+    )
+    # A force of 0.5 N on the line x' = y': an acceleration of a quarter.
+    run = noslip.System.from_lagranges(pulled).run(duration=2.0)
+    assert run["x"][-1] == pytest.approx(0.5, abs=1e-12) and run["y"][-1] == pytest.approx(0.5, abs=1e-12)
+    held = LagrangesMethod(lagrangian - 9.81 * y, [x, y], hol_coneqs=[x**2 + y**2 - 1])
+    swing = noslip.System.from_lagranges(held, q=[1.0, 0.0]).run(duration=1.0)
+    np.testing.assert_allclose(swing["x"] ** 2 + swing["y"] ** 2, 1.0, atol=1e-10)

@@ -5,7 +5,7 @@
 >>> run["x"].shape
 (801,)
 
-`scene` reads a scene, `Sleigh` makes one; a `Scene` has the commands of the program as methods.
+`scene` reads a scene, `Sleigh` and `System` make one; a `Scene` has the commands of the program as methods.
 """
 
 from ._noslip import ComputationError, NoslipError, RequestError
@@ -14,6 +14,7 @@ from .errors import Interrupted, RunError
 from .results import Run
 from .scenes import Scene, methods, scene, scenes
 from .sleigh import Sleigh
+from .system import System
 
 __all__ = [
     "ComputationError",
@@ -25,6 +26,7 @@ __all__ = [
     "RunError",
     "Scene",
     "Sleigh",
+    "System",
     "ensemble",
     "methods",
     "scene",

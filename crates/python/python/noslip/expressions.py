@@ -20,6 +20,8 @@ def text(expression: Any) -> str:
     import sympy as sp
 
     checked = sp.sympify(expression)
+    if isinstance(checked, sp.MatrixBase) and checked.shape == (1, 1):
+        checked = checked[0]
     _check(checked)
     return str(_printer().doprint(checked))
 
@@ -67,7 +69,7 @@ def _printer() -> Any:
     from sympy.core.function import AppliedUndef
     from sympy.printing.str import StrPrinter
 
-    class Printer(StrPrinter):
+    class Printer(StrPrinter):  # type: ignore[misc]
         """SymPy's own text, with the names that scenes have."""
 
         def _print_Derivative(self, expression: Any) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import tempfile
+import warnings
 from collections.abc import Iterable, Mapping
 from os import PathLike
 from pathlib import Path
@@ -64,6 +65,9 @@ class Scene:
         self._checked = _noslip.Scene(text, origin)
         self.text = text
         self.origin = origin
+        for key, given, taken in self._checked.moved:
+            message = f"the constraints do not admit {key} = {given:.6g} at the start; it is {taken:.6g}"
+            warnings.warn(message, stacklevel=3)
 
     @property
     def name(self) -> str:

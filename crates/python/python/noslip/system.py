@@ -72,17 +72,12 @@ class System(Scene):
     @classmethod
     def from_lagranges(cls, method: Any, parameters: Mapping[Any, float] | None = None, **settings: Any) -> System:
         """The system of a `sympy.physics.mechanics.LagrangesMethod`, its forces and constraints included."""
-        equations = method.form_lagranges_equations()
-        rates = method.q.diff(_time())
-        motion = method._L.diff(rates).T.diff(_time()) if hasattr(method, "_L") else None
-        if motion is None or len(equations) != len(method.q):
-            raise RequestError("no Lagrangian in this object: System(coordinates, lagrangian, ..) takes one")
+        method.form_lagranges_equations()
         forces = {q: force for q, force in zip(method.q, method._term4, strict=True) if force != 0}
-        holonomic = list(method._hol_coneqs) if method._hol_coneqs else []
-        return cls(
-            list(method.q), method._L, list(method.coneqs or ()), positions=holonomic,
-            forces=forces, parameters=parameters, **settings,
-        )  # fmt: skip
+        positions = list(method._hol_coneqs or ())
+        rows = list(method.coneqs or ())
+        settings = {"forces": forces, "positions": positions, "parameters": parameters, **settings}
+        return cls(list(method.q), method._L, rows[len(positions) :], **settings)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Scene, (self.text, self.origin)
@@ -94,7 +89,7 @@ class System(Scene):
         start.update(_named(self.coordinates, v, "'"))
         return Scene(tomli_w.dumps({**self._tables, "start": start}), self.origin)
 
-    def run(self, *, q: Values = None, v: Values = None, **settings: Any) -> Run:  # type: ignore[override]
+    def run(self, *, q: Values = None, v: Values = None, **settings: Any) -> Run:
         """Makes a run as `Scene.run`, from the start `q`, `v` where these are given."""
         if q is None and v is None:
             return super().run(**settings)
@@ -116,8 +111,3 @@ def _named(coordinates: list[str], values: Values, suffix: str) -> dict[str, flo
         raise RequestError(f"{len(listed)} numbers for {len(coordinates)} coordinates")
     return {f"{key}{suffix}": value for key, value in zip(coordinates, listed, strict=True)}
 
-
-def _time() -> Any:
-    from sympy.physics.mechanics import dynamicsymbols
-
-    return dynamicsymbols._t
