@@ -210,7 +210,7 @@ pub(crate) struct PrecisionArguments {
     #[arg(long, value_name = "A", allow_negative_numbers = true, value_parser = number)]
     pub(crate) alpha: Option<f64>,
     /// The longest run of a method [s]; up to ten times that for one that has not six points yet
-    #[arg(long, value_name = "S", default_value_t = 0.1, allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "S", default_value_t = 0.1, allow_negative_numbers = true, value_parser = at_most_a_day)]
     pub(crate) longest: f64,
     /// Points of another program to show beside these: a JSON file of the same shape; may be given again
     #[arg(long, value_name = "FILE")]
@@ -482,7 +482,10 @@ fn not_negative(text: &str) -> Result<f64, &'static str> {
     number.ok_or("accepted is a number from 0 on")
 }
 
-fn positive(text: &str) -> Result<f64, &'static str> {
-    let positive = number(text).ok().filter(|number| *number > 0.0 && number.is_finite());
-    positive.ok_or("accepted is a number greater than 0")
+/// A day, in s.
+const DAY: f64 = 86400.0;
+
+fn at_most_a_day(text: &str) -> Result<f64, &'static str> {
+    let seconds = number(text).ok().filter(|number| *number > 0.0 && *number <= DAY);
+    seconds.ok_or("accepted is a number greater than 0 and at most 86400")
 }

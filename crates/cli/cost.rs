@@ -24,7 +24,8 @@ pub(crate) fn cost(arguments: &SceneArguments) -> Result<(), CliError> {
     if scene.effects.len() > 1 {
         subsets.push(scene.effects.clone());
     }
-    let schedule = Schedule { steps: scene.run.steps().min(STEPS), ..inspect::schedule(&scene) };
+    let whole = inspect::schedule(&scene);
+    let schedule = Schedule { steps: whole.steps.min(STEPS), ..whole };
     let mut rows = Vec::new();
     let mut failures = Vec::new();
     for effects in subsets {
@@ -37,7 +38,8 @@ pub(crate) fn cost(arguments: &SceneArguments) -> Result<(), CliError> {
             Ok((ns_per_step, evaluations_per_step)) => {
                 rows.push(Row { effects: names, ns_per_step, evaluations_per_step });
             }
-            Err(failure) => failures.push(format!("with [{}]: {failure}", names.join(", "))),
+            Err(failure) if names.is_empty() => failures.push(format!("without effects: {failure}")),
+            Err(failure) => failures.push(format!("with {}: {failure}", names.join(", "))),
         }
     }
     if arguments.json {

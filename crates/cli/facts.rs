@@ -35,7 +35,7 @@ pub(crate) fn of<const N: usize, const M: usize>(
 
 /// The facts of a scene that starts in that state of its first blade, with that energy (J).
 pub(crate) fn listed(scene: &Scene, start: &SleighState, energy: f64, imposed: &str) -> Vec<(String, String)> {
-    let (sleigh, run) = (&scene.sleigh, &scene.run);
+    let (sleigh, run, schedule) = (&scene.sleigh, &scene.run, scene.schedule());
     let mut facts = vec![
         ("mass m", format!("{} kg", number(sleigh.mass()))),
         ("inertia I about the centre of mass", format!("{} kg m²", number(sleigh.inertia()))),
@@ -48,7 +48,7 @@ pub(crate) fn listed(scene: &Scene, start: &SleighState, energy: f64, imposed: &
         ("start", format!("x = {x} m, y = {y} m, heading {heading} rad")),
         ("start velocity", format!("{speed} m/s along the blade, {turn_rate} rad/s{imposed}")),
         ("energy", format!("{} J", number(energy))),
-        ("run", format!("{} s in {} steps of {} s", number(run.duration), run.steps(), number(run.actual_step()))),
+        ("run", format!("{} s in {} steps of {} s", number(run.duration), schedule.steps, number(schedule.step))),
     ]);
     facts.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
 }

@@ -5,7 +5,7 @@ use crate::files::write_whole;
 use crate::{effect_keys, table, terminal, text};
 use dla::Schedule;
 use harness::METHODS;
-use scene::{AnyScene, RunSettings, Scene};
+use scene::{AnyScene, Overrides, RunSettings, Scene};
 use serde_json::json;
 use std::io::Write;
 
@@ -23,8 +23,8 @@ pub(crate) fn load(arguments: &SceneArguments, method: Option<&str>) -> Result<S
 pub(crate) fn load_any(arguments: &SceneArguments, method: Option<&str>) -> Result<AnyScene, CliError> {
     let names = method_names();
     let SceneArguments { scene, set, step, duration, alpha, .. } = arguments;
-    let scene = AnyScene::load_with(scene, &set.set, &names)?;
-    Ok(scene.with_overrides(method, *step, *duration, *alpha, &names)?)
+    let overrides = Overrides { method, step: *step, duration: *duration, alpha: *alpha };
+    Ok(AnyScene::load_over(scene, &set.set, &overrides, &names)?)
 }
 
 /// The scene of that name, with the settings of the command line, of which flags come last.
@@ -36,15 +36,16 @@ pub(crate) fn load_with(
     alpha: Option<f64>,
 ) -> Result<Scene, CliError> {
     let names = method_names();
-    Ok(Scene::load_with(scene, &settings.set, &names)?.with_overrides(method, step, duration, alpha, &names)?)
+    let overrides = Overrides { method, step, duration, alpha };
+    Ok(Scene::load_over(scene, &settings.set, &overrides, &names)?)
 }
 
 /// The steps of a scene's run.
 pub(crate) fn schedule(scene: &Scene) -> Schedule {
-    steps_of(&scene.run)
+    scene.schedule()
 }
 
-/// The steps of a run.
+/// The steps of a run without jumps.
 pub(crate) fn steps_of(run: &RunSettings) -> Schedule {
     Schedule { t0: 0.0, step: run.actual_step(), steps: run.steps() }
 }

@@ -7,7 +7,7 @@ use dla::Schedule;
 use harness::Method;
 use harness::analysis::{Lyapunov, LyapunovError, LyapunovRequest, MotionVerdict, has_tangents, kaplan_yorke};
 use harness::report::{Chart, Layer};
-use scene::{Scene, SceneSystem, Visitor};
+use scene::{MAX_STEPS, Scene, SceneSystem, Visitor};
 use serde_json::{Value, json};
 
 /// What is measured where nobody says (s): of one motion, and of each of a map.
@@ -23,6 +23,7 @@ pub(crate) fn lyapunov(arguments: &LyapunovArguments) -> Result<(), CliError> {
         inspect::load_with((&shared.scene, &shared.set), Some(&arguments.method), shared.step, duration, shared.alpha)?;
     let method = Method::named(&scene.run.method, scene.run.alpha)?;
     has_tangents(&method).map_err(|reason| CliError::Request(format!("--method {}: {reason}", arguments.method)))?;
+    check_settle(arguments, &scene)?;
     let file = arguments.out.as_deref().map(|path| ChartFile::of(path, shared.force)).transpose()?;
     let outcome = match arguments.map[..] {
         [] => scene.visit_free(Exponents { arguments, scene: &scene, method, file })?,
@@ -30,7 +31,10 @@ pub(crate) fn lyapunov(arguments: &LyapunovArguments) -> Result<(), CliError> {
             let axes = [across, up];
             scene.visit_free(stability_map::Map { arguments, scene: &scene, method, axes, file })?
         }
-        _ => return Err(CliError::Request("--map is given twice: first across, then upwards".to_owned())),
+        _ => {
+            let problem = "--map must be given twice: the first is the axis across, the second the axis upwards";
+            return Err(CliError::Request(problem.to_owned()));
+        }
     };
     outcome.ok_or_else(imposed)?
 }
@@ -47,6 +51,18 @@ pub(crate) fn schedule(arguments: &LyapunovArguments, scene: &Scene) -> (Schedul
     let schedule = inspect::schedule(scene);
     let settle = arguments.settle.unwrap_or(0.1 * scene.run.duration) / schedule.step;
     (schedule, settle.ceil() as u64)
+}
+
+/// Refuses a time before the run that has more steps than any run may have.
+fn check_settle(arguments: &LyapunovArguments, scene: &Scene) -> Result<(), CliError> {
+    let (settle, step) = (arguments.settle.unwrap_or(0.0), scene.run.actual_step());
+    let most = MAX_STEPS as f64 * step;
+    if settle <= most {
+        return Ok(());
+    }
+    let problem =
+        format!("--settle: {settle:e} s are more than 1e12 steps of {step:?} s; accepted: at most {most:e} s");
+    Err(CliError::Request(problem))
 }
 
 /// A start with the energy that is asked for.
@@ -104,7 +120,7 @@ impl Exponents<'_> {
         let written = self.file.map_or(Ok(()), |file| {
             let rows: Vec<Vec<f64>> = found.running.iter().map(|at| [&[at.time][..], &at.exponents].concat()).collect();
             let names = (1..=found.exponents.len()).map(|i| format!("exponent_{i} [1/s]"));
-            let header: Vec<String> = std::iter::once("time [s]".to_owned()).chain(names).collect();
+            let header: Vec<String> = std::iter::once("t [s]".to_owned()).chain(names).collect();
             file.write(shared.force, &header.join(","), &rows, || self.chart(found))
         });
         let whole = found.exponents.len() == most;
@@ -198,7 +214,7 @@ impl Exponents<'_> {
         };
         Chart {
             title: format!("{}: Lyapunov exponents over a run", self.scene.title),
-            axes: ["time [s]".to_owned(), "mean so far [1/s]".to_owned()],
+            axes: ["t [s]".to_owned(), "mean so far [1/s]".to_owned()],
             decades: [true, false],
             layers: (0..found.exponents.len()).map(line).collect(),
         }

@@ -6,7 +6,7 @@ use dla::{RunError, Schedule, State};
 use harness::analysis::{Rounds, weighted_mean};
 use harness::report::{Chart, Layer, chart_svg};
 use harness::{Method, integrate_on};
-use scene::{PathSpec, Scene, SceneEffect, SceneSystem, Shape, Visitor};
+use scene::{MAX_STEPS, PathSpec, RunSettings, Scene, SceneEffect, SceneSystem, Shape, Visitor};
 use serde_json::{Value, json};
 use sleigh::ClosedPath;
 use sleigh::planimeter::Holonomy;
@@ -40,12 +40,12 @@ pub(crate) fn phase(arguments: &PhaseArguments) -> Result<(), CliError> {
     if let Some(file) = &arguments.picture {
         check_file(file, arguments.scene.force)?;
     }
-    let steps = (path.period / scene.run.actual_step()).round().max(1.0);
     let loops = arguments.loops.unwrap_or((scene.run.duration / path.period).floor().max(1.0) as u64);
-    let schedule = |loops: u64| Schedule { t0: 0.0, step: path.period / steps, steps: loops * steps as u64 };
+    let steps = steps_of_a_loop(&scene, path.period, loops)?;
+    let schedule = |loops: u64| Schedule { t0: 0.0, step: path.period / steps as f64, steps: loops * steps };
 
     let turned = |scene: &Scene, loops: u64| {
-        let turns = scene.visit(Loops { method: &method, schedule: schedule(loops), every: steps as u64 })?;
+        let turns = scene.visit(Loops { method: &method, schedule: schedule(loops), every: steps })?;
         turns.map_err(|error| CliError::Computation(vec![format!("{}: {error}", method.info().name)]))
     };
     let turns = turned(&scene, loops)?;
@@ -77,6 +77,24 @@ pub(crate) fn phase(arguments: &PhaseArguments) -> Result<(), CliError> {
     } else {
         terminal::print(&text(&scene, &method, &measured))
     }
+}
+
+/// The steps of a loop: as many as one period has at the step of the scene, or as its pieces between corners need; refused where all loops have
+/// more steps than any run may have.
+fn steps_of_a_loop(scene: &Scene, period: f64, loops: u64) -> Result<u64, CliError> {
+    let step = scene.run.actual_step();
+    let whole = (period / step).round().max(1.0);
+    let most = MAX_STEPS as f64;
+    if whole * loops as f64 > most {
+        return Err(CliError::Request(format!(
+            "--loops: {loops} loops of {whole:e} steps are more than 1e12 steps; accepted: at most {:e} loops, for the step of {step:?} s and the \
+             period of {period:?} s",
+            (most / whole).floor()
+        )));
+    }
+    let mut one = scene.clone();
+    one.run = RunSettings { step: period / whole, duration: period, ..one.run };
+    Ok(one.schedule().steps)
 }
 
 /// The scene with a path that many times as large.

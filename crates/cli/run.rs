@@ -21,7 +21,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let out = match &arguments.out {
         Some(path) => {
             let format = Format::of(path)?;
-            trajectory_file::check_size(settings.steps(), arguments.every)?;
+            let steps = if let AnyScene::Sleigh(scene) = &scene { scene.schedule().steps } else { settings.steps() };
+            trajectory_file::check_size(steps, arguments.every)?;
             check_file(path, arguments.scene.force)?;
             Some((path.as_path(), format))
         }
@@ -161,7 +162,7 @@ impl Visitor for Run<'_> {
             terminal::print(&(table::one_run(self.scene, &record, &end, file) + &substeps::told(&record) + told))?;
         }
         events.iter().for_each(Events::warn);
-        let computed = CliError::of_failures(substeps::failure(&record));
+        let computed = CliError::of_failures(substeps::failure(&record).or_else(|| table::not_finite(&record)));
         if let (Err(_), Err(error)) = (&computed, &written) {
             terminal::say("error", error);
         }

@@ -222,6 +222,15 @@ pub(crate) fn aligned<K: AsRef<str>, V: AsRef<str>>(lines: &[(K, V)]) -> String 
     text
 }
 
+/// What is wrong with a run that reached its end with a place, a velocity or an energy that is not a finite number.
+pub(crate) fn not_finite<const N: usize>(record: &Record<N>) -> Option<String> {
+    let energies = [record.energy.last, record.energy.work, record.energy.max_error];
+    let finite = record.q.iter().chain(&record.v).chain(&energies).all(|number| number.is_finite());
+    (!finite && record.failure.is_none()).then(|| {
+        format!("{}: the energy of the run is not a finite number: the velocities are too large", record.method.name)
+    })
+}
+
 /// The failure of a run, told with how far the run is valid.
 pub(crate) fn failure<const N: usize>(record: &Record<N>) -> Option<String> {
     if let Some(reason) = record.refusal() {

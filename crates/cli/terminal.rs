@@ -1,16 +1,28 @@
 use crate::called;
 use crate::error::CliError;
+use std::borrow::Cow;
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 
 /// Prints a result. Standard output may be full, which is an error, or closed by a reader who has seen enough, which
 /// is none: the rest of the work is done all the same.
 pub(crate) fn print(text: &str) -> Result<(), CliError> {
+    let text = &*harmless(text);
     if called::keep_out(text) {
         return Ok(());
     }
     let mut out = std::io::stdout().lock();
     accept_closed(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+}
+
+/// The text with its control signs written out: a title may not set the colours of a terminal, or move its cursor.
+fn harmless(text: &str) -> Cow<'_, str> {
+    let harmful = |c: char| c.is_control() && !matches!(c, '\n' | '\t');
+    if !text.contains(harmful) {
+        return Cow::Borrowed(text);
+    }
+    let shown = |c: char| if harmful(c) { c.escape_default().to_string() } else { c.to_string() };
+    Cow::Owned(text.chars().map(shown).collect())
 }
 
 /// How many columns a line of standard output has room for: what `COLUMNS` says, or the terminal; none elsewhere.
@@ -55,6 +67,7 @@ pub(crate) fn fail(error: &CliError) {
 /// Says something on standard error. Where that cannot be written to, there is nobody left to tell.
 pub(crate) fn say(level: &str, message: &impl Display) {
     let line = format!("{level}: {message}\n");
+    let line = harmless(&line);
     if !called::keep_err(&line) {
         let _ = std::io::stderr().write_all(line.as_bytes());
     }

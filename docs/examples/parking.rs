@@ -2,7 +2,7 @@
 //!
 //! `cargo run --example parking [FILE.svg]`; without a file only the plan is printed.
 
-use dla::{Dla, Schedule, State, Trajectory, drive_part, piece_by_piece};
+use dla::{Dla, Piece, Schedule, State, Trajectory, drive_part, piece_by_piece};
 use harness::report::{SceneReport, Series, path_picture};
 use lagrangian::System;
 use sleigh::parking::{Gap, Move, Plan};
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let schedule = Schedule { t0: 0.0, step: MOVE.0 / MOVE.1 as f64, steps: MOVE.1 * plan.moves.len() as u64 };
     let mut state = State::new(start.to_coordinates().0, [0.0; 3], System::<3, 3>::angles(&servo));
     let mut nodes = Trajectory::<3, 3>::every(1);
-    piece_by_piece(&servo, &schedule, &mut state, |piece, steps, state| {
+    piece_by_piece(&servo, &schedule, &mut state, |piece, Piece { steps, schedule }, state| {
         drive_part(piece, &mut Dla::midpoint(), &schedule, steps, state, &mut nodes)
     })?;
     let [x, y, heading] = state.unwrapped();

@@ -83,7 +83,9 @@ pub use mechanics::{Diagnosis, FullMechanics, Mechanics, RoundedMechanics, Secon
 pub use newton::{Equations, Newton, NewtonError};
 pub use not_a_number::{Derivative, NotANumber, SystemFunction, Variable, not_a_number};
 pub use one_step::{OneStep, OwnStep, Stage, StepError, StepReport};
-pub use pieces::{PiecewiseMechanics, onto_constraint, piece_by_piece, piece_by_piece_from, pieces};
+pub use pieces::{
+    Piece, PiecewiseMechanics, fitted, onto_constraint, piece_by_piece, piece_by_piece_from, pieces, smooth_pieces,
+};
 pub use rebased::Rebased;
 pub use recommend::{RecommendError, Recommendation, recommend_by_trial, recommend_step};
 pub use resolved::Halved;

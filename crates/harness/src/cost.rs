@@ -1,6 +1,6 @@
 use crate::counted::Counted;
 use crate::timing::median_seconds;
-use dla::{Dla, Mechanics, Part, PiecewiseMechanics, RunError, Schedule, State, drive_part, piece_by_piece};
+use dla::{Dla, Mechanics, Part, Piece, PiecewiseMechanics, RunError, Schedule, State, drive_part, piece_by_piece};
 use std::cell::Cell;
 use std::hint::black_box;
 
@@ -54,7 +54,7 @@ fn made<const N: usize, const M: usize>(
     on: impl Fn(&dyn Mechanics<N, M>, &mut Run<'_, N, M>) -> Result<Part, RunError>,
 ) -> Result<u64, RunError> {
     let mut method = Dla::midpoint();
-    piece_by_piece(system, schedule, &mut state, |piece, steps, state| {
-        on(piece, &mut |piece| drive_part(piece, &mut method, schedule, steps.clone(), state, ()))
+    piece_by_piece(system, schedule, &mut state, |piece, Piece { steps, schedule }, state| {
+        on(piece, &mut |piece| drive_part(piece, &mut method, &schedule, steps.clone(), state, ()))
     })
 }

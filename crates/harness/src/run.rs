@@ -2,7 +2,7 @@ use crate::record::Meter;
 use crate::substeps::substepped_part;
 use crate::timing::{Stopper, Ticker, median_seconds};
 use crate::{Method, Progress, Record};
-use dla::{Mechanics, Observer, RunError, Schedule, State, Subject, drive, piece_by_piece_from};
+use dla::{Mechanics, Observer, Piece, RunError, Schedule, State, Subject, drive, piece_by_piece_from};
 
 /// A run to be made.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,7 +36,7 @@ pub fn integrate<const N: usize, const M: usize>(
 /// observer.
 ///
 /// # Errors
-/// As [`integrate`]; a jump inside a step is refused before the first step is made.
+/// As [`integrate`]; a run with fewer steps than pieces is refused before the first step is made.
 pub fn integrate_pieces<'a, const N: usize, const M: usize>(
     subject: impl Into<Subject<'a, N, M>>,
     method: &Method,
@@ -61,10 +61,10 @@ pub fn integrate_from<'a, const N: usize, const M: usize>(
     observer: &mut dyn Observer<N, M>,
 ) -> Result<u64, RunError> {
     let Subject { system, own } = subject.into();
-    piece_by_piece_from(from, system, schedule, state, |piece, steps, state| {
+    piece_by_piece_from(from, system, schedule, state, |piece, Piece { steps, schedule }, state| {
         // A method for each piece: nothing that it remembers holds across a jump.
         let mut stepper = method.stepper_of(own, schedule.middle(&steps));
-        substepped_part(piece, &mut *stepper, method.substeps(), schedule, steps, state, &mut *observer)
+        substepped_part(piece, &mut *stepper, method.substeps(), &schedule, steps, state, &mut *observer)
     })
 }
 

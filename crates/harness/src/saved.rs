@@ -2,7 +2,7 @@ use crate::record::Meter;
 use crate::substeps::substepped_part;
 use crate::timing::Ticker;
 use crate::{Method, Progress, Record, Request};
-use dla::{Checkpoint, CheckpointError, Part, Schedule, State, Subject, Trajectory, Work, piece_by_piece_from};
+use dla::{Checkpoint, CheckpointError, Part, Piece, State, Subject, Trajectory, Work, piece_by_piece_from};
 use std::ops::Range;
 use std::time::Instant;
 
@@ -21,6 +21,8 @@ pub struct Saving<'a> {
 /// Everything that changes along a run.
 struct Progressing<const N: usize, const M: usize> {
     made: u64,
+    /// The time (s).
+    t: f64,
     state: State<N>,
     memory: Vec<f64>,
     meter: Meter<N>,
@@ -50,7 +52,7 @@ pub fn run_saved<'a, const N: usize, const M: usize>(
     let loaded = match saving.from {
         Some(checkpoint) => {
             checkpoint.belongs_to(saving.identity)?;
-            Some(Progressing::load(checkpoint, &schedule, system.angles(), Meter::new(request, method), keep)?)
+            Some(Progressing::load(checkpoint, system.angles(), Meter::new(request, method), keep)?)
         }
         None => None,
     };
@@ -59,6 +61,7 @@ pub fn run_saved<'a, const N: usize, const M: usize>(
         Some(run) => run,
         None => Progressing {
             made: 0,
+            t: schedule.t0,
             state: State::new(q, v, system.angles()),
             memory: Vec::new(),
             meter,
@@ -71,35 +74,36 @@ pub fn run_saved<'a, const N: usize, const M: usize>(
     let (begin, before) = (Instant::now(), run.seconds);
     let (first, mut state) = (run.made, run.state);
     let ends = |done: &Part| saving.every.is_some() && (done.stopped || done.made == schedule.steps);
-    let outcome = piece_by_piece_from(first, system, &schedule, &mut state, |piece, steps, state| {
-        if steps.start > first {
-            // A piece begins with a new method.
-            run.memory.clear();
-        }
-        let mut stepper = method.stepper_of(own, schedule.middle(&steps));
-        let mut done = Part { made: steps.start, stopped: false };
-        for chunk in chunks(&steps, saving.every) {
-            // From what a checkpoint has, so that the run is the same with one.
-            stepper.recall(&run.memory, state);
-            let limits = method.substeps();
-            let observer = &mut (&mut run.meter, (&mut run.trajectory, &mut ticker));
-            done = substepped_part(piece, &mut *stepper, limits, &schedule, chunk.clone(), state, observer)?;
-            run.memory = stepper.memory();
-            let due = saving.every.is_some_and(|every| done.made.is_multiple_of(every));
-            if due && done.made < schedule.steps || ends(&done) {
-                if done.made == steps.end && done.made < schedule.steps {
-                    run.memory.clear();
+    let outcome =
+        piece_by_piece_from(first, system, &schedule, &mut state, |piece, Piece { steps, schedule: times }, state| {
+            if steps.start > first {
+                // A piece begins with a new method.
+                run.memory.clear();
+            }
+            let mut stepper = method.stepper_of(own, times.middle(&steps));
+            let mut done = Part { made: steps.start, stopped: false };
+            for chunk in chunks(&steps, saving.every) {
+                // From what a checkpoint has, so that the run is the same with one.
+                stepper.recall(&run.memory, state);
+                let limits = method.substeps();
+                let observer = &mut (&mut run.meter, (&mut run.trajectory, &mut ticker));
+                done = substepped_part(piece, &mut *stepper, limits, &times, chunk.clone(), state, observer)?;
+                run.memory = stepper.memory();
+                let due = saving.every.is_some_and(|every| done.made.is_multiple_of(every));
+                if due && done.made < schedule.steps || ends(&done) {
+                    if done.made == steps.end && done.made < schedule.steps {
+                        run.memory.clear();
+                    }
+                    (run.made, run.t, run.state) = (done.made, times.time(done.made), *state);
+                    run.seconds = before + begin.elapsed().as_secs_f64();
+                    (saving.save)(&run.checkpoint(saving.identity));
                 }
-                (run.made, run.state) = (done.made, *state);
-                run.seconds = before + begin.elapsed().as_secs_f64();
-                (saving.save)(&run.checkpoint(saving.identity));
+                if done.stopped {
+                    break;
+                }
             }
-            if done.stopped {
-                break;
-            }
-        }
-        Ok(done)
-    });
+            Ok(done)
+        });
     let seconds = before + begin.elapsed().as_secs_f64();
     let interrupted = ticker.stopped;
     let record = Record { interrupted, ..run.meter.record(method.info(), seconds, outcome.err()) };
@@ -125,6 +129,7 @@ impl<const N: usize, const M: usize> Progressing<N, M> {
         let mut checkpoint = identity.clone();
         checkpoint.put_counts("k", &[self.made]);
         checkpoint.put("seconds", &[self.seconds]);
+        checkpoint.put("time", &[self.t]);
         self.state.save(&mut checkpoint);
         checkpoint.put("memory", &self.memory);
         self.meter.save(&mut checkpoint);
@@ -133,17 +138,17 @@ impl<const N: usize, const M: usize> Progressing<N, M> {
 
     fn load(
         checkpoint: &Checkpoint,
-        schedule: &Schedule,
         angles: [bool; N],
         meter: Meter<N>,
         keep: Option<u64>,
     ) -> Result<Self, CheckpointError> {
         let [made] = checkpoint.counts("k")?;
-        let ([seconds], t) = (checkpoint.get("seconds")?, schedule.time(made));
+        let ([seconds], [t]) = (checkpoint.get("seconds")?, checkpoint.get("time")?);
         let state = State::load(checkpoint, angles)?;
         let work = Work::load(checkpoint, t, &state)?;
         Ok(Self {
             made,
+            t,
             state,
             memory: checkpoint.list("memory")?,
             meter: Meter::load(checkpoint, meter, made, t, &state, work)?,

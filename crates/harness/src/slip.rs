@@ -38,7 +38,10 @@ impl<const N: usize> Slip<N> {
     }
 
     pub(crate) fn step<const M: usize>(&mut self, node: &View<'_, N, M>) {
-        self.over(node, self.h);
+        // A piece between jumps may have a step of its own.
+        let since = self.before.as_ref().map_or(self.h, |(t, _)| node.t - t);
+        let own = (since - self.h).abs() > 1e-6 * self.h.abs();
+        self.over(node, if own { since } else { self.h });
     }
 
     /// A part of a step.

@@ -35,6 +35,14 @@ impl TimeSpec {
         }
     }
 
+    /// No value of the function is larger.
+    pub(crate) fn largest(&self) -> f64 {
+        match self {
+            Self::Constant(value) | Self::Sine { amplitude: value, .. } => value.abs(),
+            Self::Table { values, .. } => values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs())),
+        }
+    }
+
     /// The function.
     pub(crate) fn build(&self) -> Result<TimeFunction, SleighError> {
         Ok(match self {

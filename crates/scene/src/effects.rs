@@ -5,17 +5,19 @@ use crate::keys::abridged;
 use crate::quantity::Quantity;
 use crate::suggest;
 use crate::table::Table;
+use sleigh::Sleigh;
 use toml::de::DeValue;
 
 /// Reads the entries of `[[effects]]`.
-pub(crate) fn read(root: &Table<'_>, offset: f64) -> Result<Vec<SceneEffect>, SceneError> {
+pub(crate) fn read(root: &Table<'_>, sleigh: &Sleigh) -> Result<Vec<SceneEffect>, SceneError> {
     let mut effects: Vec<SceneEffect> = Vec::new();
     for entry in root.entries_of("effects", "a list of tables, each headed `[[effects]]`")? {
         let (kind, keys, _) = kind_of(&entry)?;
         let known: Vec<&str> = ["kind"].into_iter().chain(keys.iter().copied()).collect();
         let table = entry.named(format!("effects.{kind}")).with_known_keys(&known)?;
         let effect = read_one(&table, kind)?;
-        check_company(&table, &effect, &effects, offset)?;
+        check_company(&table, &effect, &effects, sleigh.offset())?;
+        check_energy(&table, &effect, sleigh)?;
         effects.push(effect);
     }
     Ok(effects)
@@ -163,6 +165,23 @@ fn changes_body(effect: &SceneEffect) -> bool {
         }
         _ => false,
     }
+}
+
+/// Refuses imposed velocities whose kinetic energy is too large for a number.
+fn check_energy(table: &Table<'_>, effect: &SceneEffect, sleigh: &Sleigh) -> Result<(), SceneError> {
+    let SceneEffect::Servo { speed, turn_rate } = effect else { return Ok(()) };
+    let inertia = sleigh.inertia() + sleigh.mass() * sleigh.offset().powi(2);
+    for (key, function, mass, unit) in
+        [("speed", speed, sleigh.mass(), "m/s"), ("turn_rate", turn_rate, inertia, "rad/s")]
+    {
+        let largest = function.as_ref().map_or(0.0, TimeSpec::largest);
+        if !(0.5 * mass * largest * largest).is_finite() {
+            let most = (f64::MAX / mass.max(1.0)).sqrt();
+            let accepted = format!("values from -L to L with L = {most:.3e}, in {unit}");
+            return Err(table.wrong(key, "makes the kinetic energy too large for a number", accepted));
+        }
+    }
+    Ok(())
 }
 
 /// Refuses what does not go together: a second body, two ways to impose a velocity, what the sleigh cannot do.

@@ -46,7 +46,7 @@ pub use bundled::{Bundled, SCHEMA, bundled, bundled_texts};
 pub use effect::{EFFECTS, HillSpec, PathSpec, SceneEffect, Shape, TimeSpec, TrailersSpec};
 pub use error::SceneError;
 pub use finding::{Finding, Place};
-pub use run::{DEFAULT_METHOD, MAX_STEPS, RunSettings};
+pub use run::{DEFAULT_METHOD, MAX_STEPS, Overrides, RunSettings};
 pub use settings::Setting;
 pub use suggest::nearest;
 pub use sweep::{Sweep, SweepError};

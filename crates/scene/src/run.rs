@@ -12,10 +12,47 @@ pub const DEFAULT_METHOD: &str = "dla";
 /// The most steps that a run may have.
 pub const MAX_STEPS: u64 = 1_000_000_000_000;
 
+/// Settings of a run in place of those of a file, where they are given: method, step and duration in s, and alpha.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Overrides<'a> {
+    /// The method.
+    pub method: Option<&'a str>,
+    /// The largest step (s).
+    pub step: Option<f64>,
+    /// The duration (s).
+    pub duration: Option<f64>,
+    /// The weight of `dla-alpha`.
+    pub alpha: Option<f64>,
+}
+
+impl Overrides<'_> {
+    /// Whether the setting of that key is given.
+    fn have(&self, key: &str) -> bool {
+        match key {
+            "method" => self.method.is_some(),
+            "alpha" => self.alpha.is_some(),
+            "duration" => self.duration.is_some(),
+            _ => self.step.is_some(),
+        }
+    }
+
+    /// A fault of the run of the scene of that name: of the flag, where that is given.
+    pub(crate) fn error(&self, fault: Fault, name: &str) -> SceneError {
+        let given = self.have(fault.key);
+        flag_error(fault, given, name)
+    }
+
+    /// The same, at its place in the table `[run]` where no flag is given.
+    pub(crate) fn error_in(&self, table: &Table<'_>, fault: Fault, name: &str) -> SceneError {
+        if self.have(fault.key) { flag_error(fault, true, name) } else { table.fail(fault) }
+    }
+}
+
 /// How to run a scene.
 ///
-/// The run consists of [`steps`](Self::steps) equal steps of size [`actual_step`](Self::actual_step), which is `step`
-/// where the duration is a multiple of it, and otherwise as little less as makes the run end at `duration`.
+/// Unless an effect jumps between nodes (see [`Scene::schedule`](crate::Scene::schedule)), the run consists of [`steps`](Self::steps) equal
+/// steps of size [`actual_step`](Self::actual_step), which is `step` where the duration is a multiple of it, and otherwise as little less as
+/// makes the run end at `duration`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunSettings {
     /// Name of the integrator; `dla` when left out.
@@ -60,44 +97,34 @@ impl RunSettings {
         if (ratio - nearest).abs() <= tolerance { (nearest, true) } else { (ratio.ceil(), false) }
     }
 
-    /// Reads `[run]`: `step` and `duration` are required.
-    pub(crate) fn read(table: &Table<'_>, methods: &[&str]) -> Result<Self, SceneError> {
+    /// Reads `[run]`: `step` and `duration` are required. Only what holds after the command line has to go together. `name` is that of the
+    /// scene.
+    pub(crate) fn read(
+        table: &Table<'_>,
+        overrides: &Overrides<'_>,
+        name: &str,
+        methods: &[&str],
+    ) -> Result<Self, SceneError> {
         let accepted = format!("a string, one of {}", suggest::list(methods));
-        let settings = Self {
+        let mut settings = Self {
             method: table.text("method", &accepted)?.unwrap_or(DEFAULT_METHOD).to_owned(),
             alpha: table.number(&ALPHA)?,
             step: table.required(&STEP)?,
             duration: table.required(&DURATION)?,
         };
-        settings.check(STEP.key, methods).map_err(|fault| table.fail(fault))?;
+        settings.replace(overrides, methods).map_err(|fault| overrides.error_in(table, fault, name))?;
         Ok(settings)
     }
 
-    /// Replaces the settings that are given. Whose settings they are, `name` says for messages.
-    pub(crate) fn replace(
-        &mut self,
-        name: &str,
-        method: Option<&str>,
-        step: Option<f64>,
-        duration: Option<f64>,
-        alpha: Option<f64>,
-        methods: &[&str],
-    ) -> Result<(), SceneError> {
+    /// Replaces the settings that are given, and checks all of them.
+    pub(crate) fn replace(&mut self, overrides: &Overrides<'_>, methods: &[&str]) -> Result<(), Fault> {
+        let Overrides { method, step, duration, alpha } = *overrides;
         self.method = method.map_or_else(|| std::mem::take(&mut self.method), str::to_owned);
         self.step = step.unwrap_or(self.step);
         self.duration = duration.unwrap_or(self.duration);
         self.alpha = alpha.or(self.alpha);
         // A step that no longer goes with the duration is the fault of what has changed.
-        let culprit = if duration.is_some() && step.is_none() { "duration" } else { "step" };
-        self.check(culprit, methods).map_err(|fault| {
-            let given = match fault.key {
-                "method" => method.is_some(),
-                "alpha" => alpha.is_some(),
-                "duration" => duration.is_some(),
-                _ => step.is_some(),
-            };
-            flag_error(fault, given, name)
-        })
+        self.check(if duration.is_some() && step.is_none() { "duration" } else { "step" }, methods)
     }
 
     /// Checks all of it; a step that does not go with the duration is said to be the fault of `culprit`.
@@ -136,7 +163,7 @@ impl RunSettings {
 }
 
 /// The error of a setting from the command line, or else from the scene.
-pub(crate) fn flag_error(fault: Fault, given: bool, name: &str) -> SceneError {
+fn flag_error(fault: Fault, given: bool, name: &str) -> SceneError {
     let (origin, field) =
         if given { ("command line", format!("--{}", fault.key)) } else { (name, keys::path("run", fault.key)) };
     fault.at(origin, None, Some(field), Excerpt::default())

@@ -2,10 +2,9 @@ use crate::bundled::TEMPLATE;
 use crate::document::Document;
 use crate::error::SceneError;
 use crate::fault::Fault;
-use crate::run::{RunSettings, flag_error};
+use crate::run::{Overrides, RunSettings};
 use crate::table::Table;
 use crate::{PathSpec, SceneEffect, Shape, effects, sections};
-use lagrangian::whole_steps;
 use sleigh::{Sleigh, SleighState};
 use std::path::Path;
 use toml::de::DeTable;
@@ -38,6 +37,19 @@ impl Scene {
     /// [`SceneError`] with the first thing that is wrong with the text: its syntax, an unknown, missing or misplaced
     /// key, a value of the wrong type or out of its range.
     pub fn parse(text: &str, origin: &str, methods: &[&str]) -> Result<Self, SceneError> {
+        Self::parse_with(text, origin, methods, &Overrides::default())
+    }
+
+    /// The same with other settings of the run: only what then holds has to go together.
+    ///
+    /// # Errors
+    /// As [`parse`](Self::parse), and as [`with_overrides`](Self::with_overrides).
+    pub fn parse_with(
+        text: &str,
+        origin: &str,
+        methods: &[&str],
+        overrides: &Overrides<'_>,
+    ) -> Result<Self, SceneError> {
         // A byte-order mark is no part of the first line.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let document = Document { origin, text };
@@ -53,30 +65,15 @@ impl Scene {
         let title = root.text("title", "a string")?.unwrap_or(&name).to_owned();
         let sleigh = sections::sleigh(&root.table("sleigh")?)?;
         let start = sections::start(&root.table("start")?)?;
-        let run = RunSettings::read(&root.table("run")?, methods)?;
-        let effects = effects::read(&root, sleigh.offset())?;
+        let table = root.table("run")?;
+        let run = RunSettings::read(&table, overrides, &name, methods)?;
+        let effects = effects::read(&root, &sleigh)?;
         let scene = Self { name, title, sleigh, start, run, effects };
-        match scene.misaligned() {
+        scene.too_many_jumps().map_err(|fault| overrides.error_in(&table, fault, &scene.name))?;
+        match scene.not_finite() {
             None => Ok(scene),
-            Some(time) => Err(root.table("run")?.fail(unaligned(time))),
+            Some(fault) => Err(root.table("start")?.fail(fault)),
         }
-    }
-
-    /// The first time at which a table or a corner of a path jumps inside a step.
-    fn misaligned(&self) -> Option<f64> {
-        // A round within a step has a corner inside it, and a run may have more of them than memory holds.
-        let hasty = self.effects.iter().find_map(|effect| match effect {
-            SceneEffect::Tracer { path: PathSpec { shape: Shape::Polygon(_), period } } => Some(*period),
-            _ => None,
-        });
-        if let Some(period) = hasty
-            && period < self.run.actual_step()
-        {
-            return Some(period);
-        }
-        let step = self.run.actual_step();
-        let inside = |t: &f64| whole_steps(t / step).is_none();
-        self.jumps().ok()?.into_iter().filter(inside).min_by(f64::total_cmp)
     }
 
     /// Reads the bundled scene of that name, the standard input for `-`, or else the file at that path: `./turnaround` is always the
@@ -108,25 +105,71 @@ impl Scene {
         alpha: Option<f64>,
         methods: &[&str],
     ) -> Result<Self, SceneError> {
-        self.run.replace(&self.name, method, step, duration, alpha, methods)?;
-        match self.misaligned() {
-            None => Ok(self),
-            Some(time) => Err(flag_error(unaligned(time), step.is_some(), &self.name)),
+        let overrides = Overrides { method, step, duration, alpha };
+        let outcome = self.run.replace(&overrides, methods).and_then(|()| self.too_many_jumps());
+        outcome.map_err(|fault| overrides.error(fault, &self.name))?;
+        Ok(self)
+    }
+
+    /// The fault of a run with more jumps than memory holds.
+    fn too_many_jumps(&self) -> Result<(), Fault> {
+        for effect in &self.effects {
+            let SceneEffect::Tracer { path: PathSpec { shape: Shape::Polygon(corners), period } } = effect else {
+                continue;
+            };
+            let jumps = self.run.duration / period * corners.len() as f64;
+            if !(jumps <= MOST_JUMPS) {
+                let most = MOST_JUMPS / corners.len() as f64 * period;
+                return Err(Fault {
+                    variant: SceneError::OutOfRange,
+                    key: "duration",
+                    problem: "has more than 1e6 corners of the tracer's path".to_owned(),
+                    found: Some(format!("{:?}", self.run.duration)),
+                    accepted: format!(
+                        "at most {most:e} s, for a path of {} corners and a period of {period:?} s",
+                        corners.len()
+                    ),
+                    help: None,
+                });
+            }
         }
+        Ok(())
+    }
+
+    /// The fault of a start whose energy is not a finite number, if there is one: of the speed or the turn rate where its kinetic
+    /// energy overflows, else of the place.
+    fn not_finite(&self) -> Option<Fault> {
+        let (mass, inertia, offset) = (self.sleigh.mass(), self.sleigh.inertia(), self.sleigh.offset());
+        let fast = |key: &'static str, value: f64, mass: f64, unit: &str| {
+            (!(0.5 * mass * value * value).is_finite()).then(|| Fault {
+                variant: SceneError::OutOfRange,
+                key,
+                problem: "makes the kinetic energy too large for a number".to_owned(),
+                found: Some(format!("{value:?}")),
+                accepted: format!("from -L to L with L = {:.3e}, in {unit}", (f64::MAX / mass.max(1.0)).sqrt()),
+                help: None,
+            })
+        };
+        fast("speed", self.start.speed, mass, "m/s")
+            .or_else(|| fast("turn_rate", self.start.turn_rate, inertia + mass * offset * offset, "rad/s"))
+            .or_else(|| {
+                let energy = self.energy().ok().filter(|energy| !energy.is_finite())?;
+                Some(Fault {
+                    variant: SceneError::OutOfRange,
+                    key: "x",
+                    problem: format!(
+                        "and the rest of the start have the energy {energy} J, which is not a finite number"
+                    ),
+                    found: None,
+                    accepted: "a start, and effects, with an energy that is a finite number, in J".to_owned(),
+                    help: None,
+                })
+            })
     }
 }
 
-/// A jump that falls inside a step.
-fn unaligned(time: f64) -> Fault {
-    Fault {
-        variant: SceneError::OutOfRange,
-        key: "step",
-        problem: format!("makes no node at t = {time:?} s, where an effect jumps"),
-        found: None,
-        accepted: format!("a step that divides {time:?} s, and every other time at which a table or a path jumps"),
-        help: None,
-    }
-}
+/// More jumps than so many are not kept.
+const MOST_JUMPS: f64 = 1e6;
 
 /// A system of text where a sleigh is needed.
 fn of_text() -> Fault {

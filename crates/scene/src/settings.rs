@@ -3,7 +3,7 @@
 use crate::error::SceneError;
 use crate::fault::Fault;
 use crate::finding::Excerpt;
-use crate::{AnyScene, Scene, bundled, file};
+use crate::{AnyScene, Overrides, Scene, bundled, file};
 use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
@@ -184,10 +184,23 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] as [`Scene::load`], and where a setting has no place in the scene or makes it invalid.
     pub fn load_with(name_or_path: &str, settings: &[Setting], methods: &[&str]) -> Result<Self, SceneError> {
+        Self::load_over(name_or_path, settings, &Overrides::default(), methods)
+    }
+
+    /// The same with other settings of the run: only what then holds has to go together.
+    ///
+    /// # Errors
+    /// As [`load_with`](Self::load_with), and as [`with_overrides`](Self::with_overrides).
+    pub fn load_over(
+        name_or_path: &str,
+        settings: &[Setting],
+        overrides: &Overrides<'_>,
+        methods: &[&str],
+    ) -> Result<Self, SceneError> {
         let (text, origin) = source(name_or_path)?;
         // A byte-order mark is no part of the first line.
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-        parse_with(text, &origin, settings, |text, origin| Self::parse(text, origin, methods))
+        parse_with(text, &origin, settings, |text, origin| Self::parse_with(text, origin, methods, overrides))
     }
 }
 
@@ -197,8 +210,21 @@ impl AnyScene {
     /// # Errors
     /// As [`Scene::load_with`].
     pub fn load_with(name_or_path: &str, settings: &[Setting], methods: &[&str]) -> Result<Self, SceneError> {
+        Self::load_over(name_or_path, settings, &Overrides::default(), methods)
+    }
+
+    /// The same with other settings of the run: only what then holds has to go together.
+    ///
+    /// # Errors
+    /// As [`load_with`](Self::load_with), and as [`with_overrides`](Self::with_overrides).
+    pub fn load_over(
+        name_or_path: &str,
+        settings: &[Setting],
+        overrides: &Overrides<'_>,
+        methods: &[&str],
+    ) -> Result<Self, SceneError> {
         let (text, origin) = source(name_or_path)?;
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-        parse_with(text, &origin, settings, |text, origin| Self::parse(text, origin, methods))
+        parse_with(text, &origin, settings, |text, origin| Self::parse_with(text, origin, methods, overrides))
     }
 }

@@ -1,4 +1,5 @@
 use crate::{Scene, SceneEffect};
+use dla::{Schedule, fitted};
 use sleigh::effects::{Bowl, Drag, EggCrate, Hills, MovingMass, Slope, Thrust, Torque};
 use sleigh::{Exact, Guide, Guided, SleighError};
 use systems::{AnyEffect, AnySystem, Guiding, Lane, LaneMethod, LaneRun, Rotor, SceneSystem, Started};
@@ -17,20 +18,57 @@ pub trait Visitor {
     ) -> Self::Output;
 }
 
+/// Hands a system to a visitor.
+fn handed<V: Visitor>(system: AnySystem, visitor: V) -> V::Output {
+    match system {
+        AnySystem::Sleigh(Started { system, q, v }) => visitor.visit(&*system, q, v),
+        AnySystem::One(Started { system, q, v }) => visitor.visit(&*system, q, v),
+        AnySystem::Two(Started { system, q, v }) => visitor.visit(&*system, q, v),
+        AnySystem::Rotor(Started { system, q, v }) => visitor.visit(&*system, q, v),
+        AnySystem::RotorOne(Started { system, q, v }) => visitor.visit(&*system, q, v),
+        AnySystem::RotorTwo(Started { system, q, v }) => visitor.visit(&*system, q, v),
+    }
+}
+
+/// The jumps of a system up to a time (s).
+struct Jumps(f64);
+
+impl Visitor for Jumps {
+    type Output = Vec<f64>;
+
+    fn visit<const N: usize, const M: usize>(
+        self,
+        system: &dyn SceneSystem<N, M>,
+        _q: [f64; N],
+        _v: [f64; N],
+    ) -> Self::Output {
+        system.jump_times(0.0, self.0)
+    }
+}
+
+/// The energy of a system at its start (J).
+struct Energy;
+
+impl Visitor for Energy {
+    type Output = f64;
+
+    fn visit<const N: usize, const M: usize>(
+        self,
+        system: &dyn SceneSystem<N, M>,
+        q: [f64; N],
+        v: [f64; N],
+    ) -> Self::Output {
+        system.smooth_piece(0.0).energy(0.0, &q, &v)
+    }
+}
+
 impl Scene {
     /// Builds the system of the scene and hands it to the visitor.
     ///
     /// # Errors
     /// As [`system`](Self::system).
     pub fn visit<V: Visitor>(&self, visitor: V) -> Result<V::Output, SleighError> {
-        Ok(match self.system()? {
-            AnySystem::Sleigh(Started { system, q, v }) => visitor.visit(&*system, q, v),
-            AnySystem::One(Started { system, q, v }) => visitor.visit(&*system, q, v),
-            AnySystem::Two(Started { system, q, v }) => visitor.visit(&*system, q, v),
-            AnySystem::Rotor(Started { system, q, v }) => visitor.visit(&*system, q, v),
-            AnySystem::RotorOne(Started { system, q, v }) => visitor.visit(&*system, q, v),
-            AnySystem::RotorTwo(Started { system, q, v }) => visitor.visit(&*system, q, v),
-        })
+        Ok(handed(self.system()?, visitor))
     }
 
     /// The same where the blade is the only constraint; `None` of a scene that imposes velocities.
@@ -62,17 +100,27 @@ impl Scene {
         systems::system(self.guiding()?, self.rotor()?, self.acting()?, &self.start)
     }
 
+    /// The steps of the run: equal ones, no longer than `run.step`, where every jump of the scene is then at a node. Else each smooth piece
+    /// between jumps has equal steps of its own, so that every jump and the end are nodes, and the step here is the mean
+    /// ([`dla::smooth_pieces`]).
+    #[must_use]
+    pub fn schedule(&self) -> Schedule {
+        let whole = Schedule { t0: 0.0, step: self.run.actual_step(), steps: self.run.steps() };
+        // A scene whose system cannot be built has no run.
+        self.jumps().map_or(whole, |jumps| fitted(&whole, self.run.step, jumps))
+    }
+
+    /// The energy at the start (J), of the first blade where others follow it.
+    ///
+    /// # Errors
+    /// As [`system`](Self::system).
+    pub(crate) fn energy(&self) -> Result<f64, SleighError> {
+        Ok(handed(self.first_blade()?, Energy))
+    }
+
     /// The jumps of the scene in its run (s).
     pub(crate) fn jumps(&self) -> Result<Vec<f64>, SleighError> {
-        let end = self.run.duration;
-        Ok(match self.first_blade()? {
-            AnySystem::Sleigh(Started { system, .. }) => system.jump_times(0.0, end),
-            AnySystem::One(Started { system, .. }) => system.jump_times(0.0, end),
-            AnySystem::Two(Started { system, .. }) => system.jump_times(0.0, end),
-            AnySystem::Rotor(Started { system, .. }) => system.jump_times(0.0, end),
-            AnySystem::RotorOne(Started { system, .. }) => system.jump_times(0.0, end),
-            AnySystem::RotorTwo(Started { system, .. }) => system.jump_times(0.0, end),
-        })
+        Ok(handed(self.first_blade()?, Jumps(self.run.duration)))
     }
 
     fn rotor(&self) -> Result<Option<Rotor>, SleighError> {

@@ -1,7 +1,7 @@
 //! Scenes and texts at random.
 #![allow(clippy::unwrap_used, reason = "what clippy.toml allows in tests, their helpers need too")]
 
-use dla::{Dla, Schedule, State, drive_part, piece_by_piece};
+use dla::{Dla, Piece, Schedule, State, drive_part, piece_by_piece};
 use proptest::prelude::*;
 use scene::{HillSpec, PathSpec, RunSettings, Scene, SceneEffect, SceneSystem, Shape, TimeSpec, Visitor};
 use sleigh::{Sleigh, SleighState};
@@ -132,9 +132,9 @@ fn parses_or_explains(text: &str) -> Result<(), TestCaseError> {
 }
 
 /// Makes at most ten steps; an error is as good as an end, if it shows.
-struct AFewSteps<'a>(&'a RunSettings);
+struct AFewSteps(Schedule);
 
-impl Visitor for AFewSteps<'_> {
+impl Visitor for AFewSteps {
     type Output = Result<(), TestCaseError>;
 
     fn visit<const N: usize, const M: usize>(
@@ -143,9 +143,9 @@ impl Visitor for AFewSteps<'_> {
         q: [f64; N],
         v: [f64; N],
     ) -> Self::Output {
-        let schedule = Schedule { t0: 0.0, step: self.0.actual_step(), steps: self.0.steps().min(10) };
+        let schedule = Schedule { steps: self.0.steps.min(10), ..self.0 };
         let mut state = State::new(q, v, system.angles());
-        let run = piece_by_piece(system, &schedule, &mut state, |piece, steps, state| {
+        let run = piece_by_piece(system, &schedule, &mut state, |piece, Piece { steps, schedule }, state| {
             drive_part(piece, &mut Dla::midpoint(), &schedule, steps, state, ())
         });
         match run {
@@ -166,7 +166,7 @@ proptest! {
 
     #[test]
     fn scenes_run_or_say_why_not(scene in scenes()) {
-        scene.visit(AFewSteps(&scene.run)).unwrap()?;
+        scene.visit(AFewSteps(scene.schedule())).unwrap()?;
     }
 
     #[test]

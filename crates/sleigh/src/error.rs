@@ -28,7 +28,7 @@ pub enum SleighError {
         value: f64,
     },
     /// A table is not a function of time.
-    #[error("the table is no function of time: {problem}")]
+    #[error("the table is not a function of time: {problem}")]
     Table {
         /// What is wrong with it.
         problem: String,

@@ -50,7 +50,7 @@ impl Table {
             return fail(format!("it contains {bad}, which is not finite"));
         }
         if let Some(pair) = times.windows(2).find(|pair| pair[0] >= pair[1]) {
-            return fail(format!("its times do not increase: {} does not come before {}", pair[0], pair[1]));
+            return fail(format!("its times do not increase: {:?} does not come before {:?}", pair[0], pair[1]));
         }
         Ok(Self { times, values, current: 0 })
     }

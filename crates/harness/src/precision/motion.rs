@@ -9,23 +9,24 @@ pub struct Motion<'a, const N: usize, const M: usize> {
     v: [f64; N],
     duration: f64,
     base: u64,
+    /// The least that the pieces between jumps need.
+    least: u64,
 }
 
 /// The coarsest run has so many steps.
 const FEWEST: u64 = 8;
-/// The most steps that the jumps of a system may ask for.
+/// More steps than so many are not asked for so that every jump falls on a node of equal steps.
 const MOST: u64 = 1 << 20;
 
 impl<'a, const N: usize, const M: usize> Motion<'a, N, M> {
-    /// The motion of a system from `q` with the velocity `v` over `duration` (s); none where no number of steps up to a
-    /// million has a node at every jump.
+    /// The motion of a system from `q` with the velocity `v` over `duration` (s).
     #[must_use]
-    pub fn new(subject: impl Into<Subject<'a, N, M>>, q: [f64; N], v: [f64; N], duration: f64) -> Option<Self> {
+    pub fn new(subject: impl Into<Subject<'a, N, M>>, q: [f64; N], v: [f64; N], duration: f64) -> Self {
         let subject = subject.into();
         let jumps = subject.system.jump_times(0.0, duration);
-        let motion = Self { subject, q, v, duration, base: 1 };
+        let motion = Self { subject, q, v, duration, base: 1, least: 1 + jumps.len() as u64 };
         let aligned = |steps: &u64| pieces(&motion.schedule(*steps), jumps.clone()).is_ok();
-        Some(Self { base: (1..=MOST).find(aligned)?, ..motion })
+        Self { base: (1..=MOST).find(aligned).unwrap_or(1), ..motion }
     }
 
     /// How long it takes (s).
@@ -40,10 +41,11 @@ impl<'a, const N: usize, const M: usize> Motion<'a, N, M> {
         self.aligned(FEWEST)
     }
 
-    /// The first number of steps from the given one on with which every jump of the system falls on a node.
+    /// The first number of steps from the given one on with which every jump of the system falls on a node of equal steps; or, where no
+    /// usual number does, that the pieces between jumps can share.
     #[must_use]
     pub fn aligned(&self, steps: u64) -> u64 {
-        steps.max(1).div_ceil(self.base).saturating_mul(self.base)
+        steps.max(self.least).div_ceil(self.base).saturating_mul(self.base)
     }
 
     fn schedule(&self, steps: u64) -> Schedule {

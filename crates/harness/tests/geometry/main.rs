@@ -11,7 +11,7 @@ mod parking;
 mod phase;
 mod symmetries;
 
-use dla::{Dla, Gauss, Observer, OneStep, Schedule, State, drive_part, piece_by_piece};
+use dla::{Dla, Gauss, Observer, OneStep, Piece, Schedule, State, drive_part, piece_by_piece};
 use lagrangian::{Piecewise, System};
 
 /// Runs a method on a system that may jump.
@@ -27,7 +27,7 @@ fn run<Sys, Method, Obs, const N: usize, const M: usize>(
     Obs: Observer<N, M>,
 {
     let schedule = Schedule { t0: 0.0, step, steps };
-    piece_by_piece(system, &schedule, state, |piece, steps, state| {
+    piece_by_piece(system, &schedule, state, |piece, Piece { steps, schedule }, state| {
         drive_part(piece, &mut method(), &schedule, steps, state, &mut observer)
     })
     .unwrap();

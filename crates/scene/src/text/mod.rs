@@ -8,7 +8,7 @@ use crate::document::Document;
 use crate::error::SceneError;
 use crate::scene::{empty, name_of};
 use crate::table::Table;
-use crate::{RunSettings, Scene};
+use crate::{Overrides, RunSettings, Scene};
 use ::text::{AnyText, Model, Start, Words};
 use std::sync::Arc;
 use toml::de::DeTable;
@@ -45,13 +45,26 @@ impl AnyScene {
     /// # Errors
     /// [`SceneError`] with the first thing that is wrong with the text.
     pub fn parse(text: &str, origin: &str, methods: &[&str]) -> Result<Self, SceneError> {
+        Self::parse_with(text, origin, methods, &Overrides::default())
+    }
+
+    /// The same with other settings of the run: only what then holds has to go together.
+    ///
+    /// # Errors
+    /// As [`parse`](Self::parse), and as [`with_overrides`](Self::with_overrides).
+    pub fn parse_with(
+        text: &str,
+        origin: &str,
+        methods: &[&str],
+        overrides: &Overrides<'_>,
+    ) -> Result<Self, SceneError> {
         let bare = text.strip_prefix('\u{feff}').unwrap_or(text);
         // What is no TOML has no system either, and the other kind says what is wrong.
         let has_system = DeTable::parse(bare).is_ok_and(|entries| entries.get_ref().contains_key("system"));
         Ok(if has_system {
-            Self::Text(Box::new(TextScene::parse(text, origin, methods)?))
+            Self::Text(Box::new(TextScene::parse_with(text, origin, methods, overrides)?))
         } else {
-            Self::Sleigh(Box::new(Scene::parse(text, origin, methods)?))
+            Self::Sleigh(Box::new(Scene::parse_with(text, origin, methods, overrides)?))
         })
     }
 
@@ -80,7 +93,9 @@ impl AnyScene {
                 Self::Sleigh(Box::new(scene.with_overrides(method, step, duration, alpha, methods)?))
             }
             Self::Text(mut scene) => {
-                scene.run.replace(&scene.name, method, step, duration, alpha, methods)?;
+                let overrides = Overrides { method, step, duration, alpha };
+                let outcome = scene.run.replace(&overrides, methods);
+                outcome.map_err(|fault| overrides.error(fault, &scene.name))?;
                 Self::Text(scene)
             }
         })
@@ -120,6 +135,19 @@ impl TextScene {
     /// # Errors
     /// [`SceneError`] with the first thing that is wrong, at its place.
     pub fn parse(text: &str, origin: &str, methods: &[&str]) -> Result<Self, SceneError> {
+        Self::parse_with(text, origin, methods, &Overrides::default())
+    }
+
+    /// The same with other settings of the run: only what then holds has to go together.
+    ///
+    /// # Errors
+    /// As [`parse`](Self::parse).
+    pub fn parse_with(
+        text: &str,
+        origin: &str,
+        methods: &[&str],
+        overrides: &Overrides<'_>,
+    ) -> Result<Self, SceneError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let document = Document { origin, text };
         let entries = DeTable::parse(text).map_err(|error| document.syntax(&error))?.into_inner();
@@ -132,7 +160,7 @@ impl TextScene {
         let (words, places) = words::read(&root)?;
         let model = Model::new(&words).map_err(|error| places.fail(&document, &words, &error))?;
         let start = start::read(&root, &model)?;
-        let run = RunSettings::read(&root.table("run")?, methods)?;
+        let run = RunSettings::read(&root.table("run")?, overrides, &name, methods)?;
         Ok(Self { name, title, words, model: Arc::new(model), start, run })
     }
 

@@ -2,8 +2,12 @@
 #![allow(clippy::single_range_in_vec_init, reason = "a run in one piece is a list of one range")]
 
 use crate::effects::tools::{Laden, laden, moving, run, sleigh, steps};
-use dla::{Dla, RunError, Schedule, State, StepError, Trajectory, drive, drive_part, onto_constraint, pieces};
+use dla::{
+    Dla, RunError, Schedule, State, StepError, Trajectory, drive, drive_part, fitted, onto_constraint, pieces,
+    smooth_pieces,
+};
 use lagrangian::{System, constraint_residual, momentum};
+use proptest::prelude::*;
 use scene::AnyEffect;
 use sleigh::effects::{Bowl, Torque};
 use sleigh::{Guide, Guided, Sleigh, Table, TimeFunction};
@@ -47,6 +51,64 @@ fn a_late_jump_is_on_its_node() {
         assert_eq!(cut, [0..node, node..2 * node]);
         // The control: a thousandth of a step is not rounding.
         assert!(pieces(&steps(step, 2 * node), vec![time + 1e-3 * step]).is_err());
+    }
+}
+
+/// Where equal steps miss a jump, each piece has steps of its own.
+#[test]
+fn pieces_have_steps_of_their_own() {
+    // 10 s with jumps at 2 pi and 7: pieces of 6.283, 0.717 and 3 s.
+    let turn = std::f64::consts::TAU;
+    let jumps = vec![7.0, turn];
+    let schedule = fitted(&steps(0.1, 100), 0.1, jumps.clone());
+    assert_eq!(schedule.steps, 63 + 8 + 30);
+    approx::assert_relative_eq!(schedule.time(schedule.steps), 10.0, max_relative = 1e-15);
+    let cut = smooth_pieces(&schedule, jumps).unwrap();
+    let ranges: Vec<_> = cut.iter().map(|piece| piece.steps.clone()).collect();
+    assert_eq!(ranges, [0..63, 63..71, 71..101]);
+    for (piece, [from, to]) in cut.iter().zip([[0.0, turn], [turn, 7.0], [7.0, 10.0]]) {
+        approx::assert_relative_eq!(piece.schedule.time(piece.steps.start), from, max_relative = 1e-14);
+        approx::assert_relative_eq!(piece.schedule.time(piece.steps.end), to, max_relative = 1e-14);
+    }
+    // Fewer steps than pieces: nothing can be done.
+    assert_eq!(smooth_pieces(&steps(5.0, 2), vec![7.0, turn]).unwrap_err().source, StepError::Jump { time: turn });
+    // Where equal steps have every jump, they stay as they are.
+    assert_eq!(fitted(&steps(0.1, 100), 0.1, vec![0.3, 7.0]), steps(0.1, 100));
+}
+
+proptest! {
+    #[test]
+    fn every_jump_is_a_node_and_no_step_is_longer(
+        t0 in -100.0_f64..100.0,
+        forward in any::<bool>(),
+        step in 0.01_f64..1.0,
+        count in 1_u64..2000,
+        places in prop::collection::vec(0.001..0.999, 0..20),
+        finer in 1_u64..5,
+    ) {
+        let step = if forward { step } else { -step };
+        let whole = Schedule { t0, step, steps: count };
+        let end = whole.time(count);
+        let jumps: Vec<f64> = places.iter().map(|place| t0 + place * (end - t0)).collect();
+        let schedule = fitted(&whole, step, jumps.clone());
+        // The reference of a comparison has a multiple of the steps.
+        let schedule = Schedule { step: schedule.step / finer as f64, steps: schedule.steps * finer, ..schedule };
+        let cut = smooth_pieces(&schedule, jumps.clone()).unwrap();
+        let size = 1e-12 * (t0.abs() + end.abs() + 1.0);
+        let mut next = (0, t0);
+        for piece in &cut {
+            prop_assert_eq!(piece.steps.start, next.0);
+            prop_assert!((piece.schedule.time(piece.steps.start) - next.1).abs() <= size);
+            prop_assert!(piece.schedule.step.abs() * finer as f64 <= step.abs() * (1.0 + 1e-6));
+            next = (piece.steps.end, piece.schedule.time(piece.steps.end));
+        }
+        prop_assert_eq!(next.0, schedule.steps);
+        prop_assert!((next.1 - end).abs() <= size);
+        let ends: Vec<f64> = cut.iter().map(|piece| piece.schedule.time(piece.steps.end)).chain([t0]).collect();
+        for jump in jumps {
+            let off = ends.iter().map(|end| (end - jump).abs()).fold(f64::INFINITY, f64::min);
+            prop_assert!(off <= 2e-9 * step.abs() + size, "{} is off by {}", jump, off);
+        }
     }
 }
 

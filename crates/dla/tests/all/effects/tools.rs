@@ -1,6 +1,6 @@
 //! Runs of systems that may jump.
 
-use dla::{Observer, OneStep, PiecewiseMechanics, Schedule, State, drive_part, piece_by_piece};
+use dla::{Observer, OneStep, Piece, PiecewiseMechanics, Schedule, State, drive_part, piece_by_piece};
 use lagrangian::With;
 use scene::AnyEffect;
 use sleigh::{Sleigh, SleighState};
@@ -18,8 +18,8 @@ where
     Obs: Observer<N, M>,
 {
     let mut state = State::new(q, v, system.angles());
-    piece_by_piece(system, schedule, &mut state, |piece, steps, state| {
-        drive_part(piece, method, schedule, steps, state, &mut observer)
+    piece_by_piece(system, schedule, &mut state, |piece, Piece { steps, schedule }, state| {
+        drive_part(piece, method, &schedule, steps, state, &mut observer)
     })
     .unwrap();
     state

@@ -1,7 +1,7 @@
 use crate::runs::{Motion, backward, sleigh, sleigh_state, state_of};
 use dla::{
-    Close, Composition, Direction, Dla, Event, Gauss, OneStep, Schedule, State, Trajectory, Watch, close_crossings,
-    drive, drive_part, piece_by_piece,
+    Close, Composition, Direction, Dla, Event, Gauss, OneStep, Piece, Schedule, State, Trajectory, Watch,
+    close_crossings, drive, drive_part, piece_by_piece,
 };
 use lagrangian::{Constraint, Piecewise, Scalar, System};
 use proptest::prelude::*;
@@ -215,7 +215,7 @@ fn events_within_each_piece_and_in_a_jump() {
     // Steps so long that both zeros of x fall into one; the midpoint rule is exact for a constant force.
     let schedule = Schedule { t0: 0.0, step: 0.5, steps: 4 };
     let mut watch = Watch::new(Dla::midpoint(), &events, ());
-    piece_by_piece(&system, &schedule, &mut state, |piece, steps, state| {
+    piece_by_piece(&system, &schedule, &mut state, |piece, Piece { steps, schedule }, state| {
         drive_part(piece, &mut Dla::midpoint(), &schedule, steps, state, &mut watch)
     })
     .unwrap();

@@ -3,8 +3,8 @@
 use crate::runs::scripted::{Point, Short, start};
 use approx::assert_relative_eq;
 use dla::{
-    Checkpoint, Event, Observer, Part, RunError, Samples, Schedule, State, StepError, StepReport, Trajectory, View,
-    Watch, Work, piece_by_piece_from,
+    Checkpoint, Event, Observer, Part, Piece, RunError, Samples, Schedule, State, StepError, StepReport, Trajectory,
+    View, Watch, Work, piece_by_piece_from,
 };
 use lagrangian::{Constraint, Piecewise, Scalar, System};
 use std::cell::Cell;
@@ -119,7 +119,7 @@ fn pieces_from_a_node_on() {
     let run = |from: u64, steps: u64, stop: u64| {
         let schedule = Schedule { t0: 0.0, step: 0.5, steps };
         let (mut state, mut made) = (State::new([0.0], [0.0], [false]), Vec::new());
-        let outcome = piece_by_piece_from(from, &Led(1.0), &schedule, &mut state, |_, steps, state| {
+        let outcome = piece_by_piece_from(from, &Led(1.0), &schedule, &mut state, |_, Piece { steps, .. }, state| {
             made.push((steps.start, steps.end, state.v()[0]));
             Ok(Part { made: steps.end, stopped: steps.end >= stop })
         });
