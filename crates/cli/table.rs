@@ -27,14 +27,13 @@ pub(crate) const COLUMNS: [&str; 14] = [
 
 /// What the columns mean.
 pub(crate) const INTRO: &str = "Every method from the same start with the same step. Constraint: the largest \
-    |A(q) v + b| at a node, for a blade its sideways slip. Over steps: the same of the discrete constraint of a step, from node \
-    to node, which is rounding for the methods whose constraint it is. Energy error: the largest |E - E0 - work| at a node, the work of \
-    what drives or brakes the scene taken off. Amplitude: half its largest range about a line in a 32nd of the run, the fast \
-    part. Energy drift: slope of the line, the secular part, with its 95 % confidence interval. Verdict: what the slow part \
-    does, by a test. End error: \
-    distance at the end from the closed form, or from gauss16 at a quarter of the step where there is none, in metres or \
-    radians, whichever is larger. Newton: iterations a step. ns/step: time of the steps alone, median of repeated runs. \
-    Cost: the same for each second of the motion.";
+    |A(q) v + b| at a node, for a blade its sideways slip. Over steps: the largest residual of the discrete constraint between two \
+    nodes, which is round-off for the methods that solve that constraint, such as dla. Energy error: the largest |E - E0 - work| at a \
+    node; the work is that of what drives or brakes the scene. Amplitude: how much the energy error oscillates: half its range after a \
+    straight line is subtracted, over 1/32 of the run. Energy drift: the slope of that line, with its 95 % confidence interval. Verdict: \
+    whether the energy error is bounded or grows, by a test. End error: distance at the end from the closed form, or from gauss16 at a \
+    quarter of the step where there is none, in metres or radians, whichever is larger. Newton: iterations a step. ns/step: time of the \
+    steps alone, median of repeated runs. Cost: that time for each second of the motion.";
 
 /// A row of a comparison; of a method that refuses the scene or failed, a short one, whose last cell says why, and at which step.
 pub(crate) fn cells<const N: usize>(record: &Record<N>, error: Option<f64>) -> Vec<String> {
