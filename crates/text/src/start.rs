@@ -174,7 +174,9 @@ impl Model {
         for (vector, w) in vectors.column_iter().enumerate() {
             for (constraint, row) in a.row_iter().enumerate() {
                 let (residual, size) = (row.dot(&w.transpose()), row.amax() * w.amax());
-                if !(residual.abs() <= WEAK * size.max(f64::MIN_POSITIVE)) {
+                // A comparison with what is not a number is false.
+                let meets = residual.abs() <= WEAK * size.max(f64::MIN_POSITIVE);
+                if !meets {
                     return Err(StartError::Basis { vector, constraint, residual });
                 }
             }
@@ -208,8 +210,8 @@ fn missed(a: &DMatrix<f64>, b: &DVector<f64>, v: &DVector<f64>) -> Option<f64> {
     let residuals = a * v + b;
     // Beside the largest terms that the row might have: a rate that is to vanish leaves terms of rounding only.
     let size = |k: usize| a.row(k).amax() * v.amax() + b[k].abs();
-    let far = residuals.iter().enumerate().any(|(k, residual)| !(residual.abs() <= ROUNDING * size(k)));
-    far.then(|| residuals.amax())
+    let all_meet = residuals.iter().enumerate().all(|(k, residual)| residual.abs() <= ROUNDING * size(k));
+    (!all_meet).then(|| residuals.amax())
 }
 
 /// The shortest solution `u` of `A u = r` in a metric, that of least squares where there is none.

@@ -106,11 +106,8 @@ fn captioned(caption: &str, scale: &Scale, thinned: bool) -> String {
     if thinned {
         caption += " Each point is the largest value of a short stretch of time.";
     }
-    match &scale.floor {
-        Some((_, text)) => {
-            caption += &format!(" Values {} and exact zeros lie on the dashed line.", text.replace("≤ ", "below "));
-        }
-        None => {}
+    if let Some((_, text)) = &scale.floor {
+        caption += &format!(" Values {} and exact zeros lie on the dashed line.", text.replace("≤ ", "below "));
     }
     caption
 }

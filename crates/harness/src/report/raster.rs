@@ -26,7 +26,7 @@ fn draw(pixels: &mut Pixels, letters: &Letters<'_>, mark: &Mark, scale: f64) {
             pixels.draw(&path(points, false, scale), stroke, *ink, *opacity);
         }
         Mark::Area { points, ink, opacity } => {
-            pixels.draw(&path(points, true, scale), Style::default(), *ink, *opacity)
+            pixels.draw(&path(points, true, scale), Style::default(), *ink, *opacity);
         }
         Mark::Text { text, at, anchor, size, upright } => {
             let at = at.map(|length| length * scale);
