@@ -60,7 +60,7 @@ impl Model {
             Some(given) => given.chunks(n).map(<[Expression]>::to_vec).collect(),
             None => fields.eliminated(&self.rows, &Pivots::best(&rows, &self.sizes(0.0, &start.q))),
         };
-        Geometry { rank, growth: fields.growth(basis), coordinates: n }
+        Geometry { rank, growth: fields.growth(&basis), coordinates: n }
     }
 }
 
@@ -146,9 +146,9 @@ impl Fields<'_> {
         values.iter().all(|x: &f64| x.is_finite()).then_some(values)
     }
 
-    fn growth(&mut self, basis: Vec<Field>) -> Vec<usize> {
+    fn growth(&mut self, basis: &[Field]) -> Vec<usize> {
         let mut growth = Vec::new();
-        let (mut all, mut last) = (basis.clone(), basis.clone());
+        let (mut all, mut last) = (basis.to_vec(), basis.to_vec());
         for depth in 1..=DEPTH {
             let Some(values) = self.values(&all) else { break };
             let dimension = rank(&values);

@@ -48,7 +48,7 @@ fn axes_have_titles_and_the_figure_names_what_it_shows() {
     let document = Document::parse(&picture).unwrap();
     let lengths =
         ["width", "height"].map(|name| document.root_element().attribute(name).unwrap().parse::<f64>().unwrap());
-    assert_eq!(lengths, [605.0, 340.0]);
+    assert_eq!(lengths.map(f64::round).map(|length| length as u32), [605, 340]);
 }
 
 /// A straight line stays one, and rises from left to right as its numbers do.
