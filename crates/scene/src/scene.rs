@@ -118,7 +118,7 @@ impl Scene {
                 continue;
             };
             let jumps = self.run.duration / period * corners.len() as f64;
-            if !(jumps <= MOST_JUMPS) {
+            if jumps > MOST_JUMPS || jumps.is_nan() {
                 let most = MOST_JUMPS / corners.len() as f64 * period;
                 return Err(Fault {
                     variant: SceneError::OutOfRange,
