@@ -194,7 +194,7 @@ impl Run<'_> {
         }
         let made = self.make(system.into(), (q, v), &[])?;
         let record = &made.watched.record;
-        let object = json::record_of(self.name, record, told::json(system.model(), record.t, &record.q, &record.v));
+        let object = json::record_of(self.name, record, &told::json(system.model(), record.t, &record.q, &record.v));
         let columns = told::columns(system, made.nodes());
         Ok(made.result(columns, object))
     }

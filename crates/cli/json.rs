@@ -4,7 +4,7 @@ use sleigh::SleighState;
 
 /// The object that `run --json` prints of a sleigh.
 pub(crate) fn record<const N: usize>(scene: &str, run: &Record<N>, end: &SleighState) -> Value {
-    record_of(scene, run, state(run.t, end))
+    record_of(scene, run, &state(run.t, end))
 }
 
 /// Where a sleigh is, and when (s).
@@ -14,7 +14,7 @@ fn state(t: f64, at: &SleighState) -> Value {
 }
 
 /// The object that `run --json` prints, with the state at the end.
-pub(crate) fn record_of<const N: usize>(scene: &str, record: &Record<N>, end: Value) -> Value {
+pub(crate) fn record_of<const N: usize>(scene: &str, record: &Record<N>, end: &Value) -> Value {
     let mut object = json!({
         "scene": scene,
         "method": record.method.name,
@@ -61,14 +61,14 @@ pub(crate) fn compared<const N: usize>(
     error: Option<f64>,
     better: &[(&str, f64)],
 ) -> Value {
-    compared_of(scene, run, state(run.t, end), error, better)
+    compared_of(scene, run, &state(run.t, end), error, better)
 }
 
 /// The same with the state at the end.
 pub(crate) fn compared_of<const N: usize>(
     scene: &str,
     run: &Record<N>,
-    end: Value,
+    end: &Value,
     error: Option<f64>,
     better: &[(&str, f64)],
 ) -> Value {

@@ -57,7 +57,7 @@ fn compared<const N: usize, const M: usize>(
         let end = told::json(model, record.t, &record.q, &record.v);
         rows.push(Row {
             cells: table::cells(record, error),
-            json: json::compared_of(&scene.name, record, end, error, &better),
+            json: json::compared_of(&scene.name, record, &end, error, &better),
             better: table::better(record, &better),
             failure: table::failure(record),
             refused: record.refusal().is_some(),

@@ -67,7 +67,7 @@ impl Run<'_> {
         // What was computed is shown even where its file could not be written.
         if flags.json {
             let end = told::json(model, record.t, &record.q, &record.v);
-            let mut object = json::record_of(&self.scene.name, &record, end);
+            let mut object = json::record_of(&self.scene.name, &record, &end);
             substeps::add_json(&mut object, &record);
             terminal::print_json(&object)?;
         } else {
