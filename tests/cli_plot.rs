@@ -4,7 +4,7 @@
 #[path = "common/program.rs"]
 mod program;
 
-use program::{FAILING, Folder};
+use program::{FAILING, Folder, names};
 
 /// The lines of a picture, in order.
 fn lines(picture: &str) -> Vec<&str> {
@@ -86,4 +86,50 @@ fn a_run_that_fails_is_drawn_as_far_as_it_comes() {
     assert_eq!((outcome.code, outcome.stdout.as_str()), (1, "picture: large.svg\n"), "{outcome:?}");
     outcome.assert_told("plot", &["dla failed at step"]);
     assert!(folder.read("large.svg").contains("speed [m/s]"));
+}
+
+#[test]
+fn a_run_has_a_page() {
+    let folder = Folder::new();
+    let text = folder.done("run bowl --duration 5 --report pages");
+    assert!(text.starts_with("scene ") && text.ends_with("report: pages/index.html\n"), "{text}");
+    let pictures = ["path", "constraint", "energy", "run"].map(|name| format!("bowl-{name}"));
+    let mut files: Vec<String> =
+        pictures.iter().flat_map(|name| [".png", ".svg"].map(|end| format!("{name}{end}"))).collect();
+    files.push("index.html".to_owned());
+    files.sort();
+    assert_eq!(names(&folder.join("pages")), files);
+    let page = folder.read("pages/index.html");
+    let shown = ["turn rate [rad/s]", "heading [rad]", "reaction [N]", "class=\"animation\"", ">speed [m/s]</td>"];
+    for text in shown {
+        assert!(page.contains(text), "{text}");
+    }
+    // The numbers are those of the run.
+    let end = folder.json("run bowl --duration 5 --json --report json")["final"]["speed"].as_f64().unwrap();
+    assert!(page.contains(&format!("{end:.4}")), "{end}");
+    folder.refused("run bowl --report pages", &["pages exists already", "--force"]);
+    folder.refused("run bowl --report new --checkpoint a.save", &["--report", "--checkpoint"]);
+    folder.refused("run - --report new", &["read once"]);
+    assert_eq!(folder.names(), ["json", "pages"]);
+}
+
+#[test]
+fn a_system_of_text_is_drawn_in_its_own_coordinates() {
+    let folder = Folder::new();
+    folder.done("plot knife-edge --duration 2");
+    let picture = folder.read("knife-edge.svg");
+    for text in ["theta [rad]", " [m/s]", "x [m]", "The knife edge on an incline; dla"] {
+        assert!(picture.contains(text), "{text}");
+    }
+    folder.done("run knife-edge --duration 2 --report pages");
+    assert!(folder.read("pages/index.html").contains("theta [rad]"));
+}
+
+#[test]
+fn a_run_that_fails_has_a_page_of_what_it_reached() {
+    let folder = Folder::new();
+    folder.write("large.toml", FAILING);
+    let outcome = folder.line("run large.toml --report pages");
+    assert_eq!(outcome.code, 1, "{outcome:?}");
+    assert!(folder.read("pages/index.html").contains("speed [m/s]"));
 }

@@ -56,12 +56,10 @@ fn report() -> Report {
     let scene = SceneReport {
         name: "circle".to_owned(),
         title: "A circle".to_owned(),
-        facts: Vec::new(),
         columns: vec!["method".to_owned()],
         rows: vec![vec!["dla".to_owned()], vec!["rk4".to_owned()]],
         series: vec![series("dla"), series("rk4")],
-        exact_path: None,
-        numbers: Vec::new(),
+        ..SceneReport::default()
     };
     Report { title: "A bench".to_owned(), scenes: vec![scene], ..Report::default() }
 }

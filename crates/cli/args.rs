@@ -142,6 +142,9 @@ pub(crate) struct RunArguments {
     /// Write the trajectory: .csv, .npz, or .parquet (a cargo feature), by the ending
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
+    /// Write a page with pictures into this folder: the motion, the path, and the columns against time
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["checkpoint", "resume", "until", "tolerance", "substep"])]
+    pub(crate) report: Option<PathBuf>,
     /// Choose the longest step whose error, of a place or an angle, stays below this, by trial runs
     #[arg(long, value_name = "TOL", allow_negative_numbers = true, value_parser = number, conflicts_with = "step")]
     pub(crate) tolerance: Option<f64>,

@@ -14,6 +14,18 @@ pub(crate) struct NamedColumn {
     pub(crate) values: Vec<f64>,
 }
 
+impl NamedColumn {
+    /// From a heading `name [unit]`, or `name`.
+    pub(crate) fn headed(heading: &str, values: Vec<f64>) -> Self {
+        match heading.split_once(" [") {
+            Some((name, unit)) => {
+                Self { name: name.to_owned(), unit: Some(unit.trim_end_matches(']').to_owned()), values }
+            }
+            None => Self { name: heading.to_owned(), unit: None, values },
+        }
+    }
+}
+
 /// The columns of a file; a column of texts is not among them.
 pub(crate) type Columns = Vec<NamedColumn>;
 
@@ -35,32 +47,27 @@ pub(crate) fn read(path: &Path) -> Result<Columns, CliError> {
 fn csv(text: &str) -> Columns {
     let mut lines = text.lines().filter(|line| !line.starts_with('#') && !line.is_empty());
     let names = lines.next().map_or_else(Vec::new, fields);
-    let mut columns: Vec<(String, Option<String>, Option<Vec<f64>>)> = Vec::new();
-    let mut seen: Vec<String> = Vec::new();
-    for name in names {
-        let (name, unit) = match name.split_once(" [") {
-            Some((name, unit)) => (name.to_owned(), Some(unit.trim_end_matches(']').to_owned())),
-            None => (name, None),
-        };
-        let copies = seen.iter().filter(|other| **other == name).count();
-        seen.push(name.clone());
+    let mut columns: Vec<(NamedColumn, bool)> = Vec::new();
+    for heading in names {
+        let mut column = NamedColumn::headed(&heading, Vec::new());
+        let copies = columns.iter().filter(|(other, _)| other.name.split('.').next() == Some(&column.name)).count();
         // Two columns of one name are told apart, as pandas does it.
-        let name = if copies == 0 { name } else { format!("{name}.{copies}") };
-        columns.push((name, unit, Some(Vec::new())));
+        if copies > 0 {
+            column.name += &format!(".{copies}");
+        }
+        columns.push((column, true));
     }
     for line in lines {
         let cells = fields(line);
-        for (column, (_, _, values)) in columns.iter_mut().enumerate() {
+        for (number, (column, numbers)) in columns.iter_mut().enumerate() {
             // What is empty is not there.
-            let cell = cells.get(column).map_or("", |cell| cell.trim());
-            let number = if cell.is_empty() { Some(f64::NAN) } else { cell.parse().ok() };
-            *values = values.take().zip(number).map(|(mut values, number)| {
-                values.push(number);
-                values
-            });
+            let cell = cells.get(number).map_or("", |cell| cell.trim());
+            let number = if cell.is_empty() { Ok(f64::NAN) } else { cell.parse() };
+            *numbers &= number.is_ok();
+            column.values.push(number.unwrap_or(f64::NAN));
         }
     }
-    columns.into_iter().filter_map(|(name, unit, values)| Some(NamedColumn { name, unit, values: values? })).collect()
+    columns.into_iter().filter(|(_, numbers)| *numbers).map(|(column, _)| column).collect()
 }
 
 /// The fields of a line; those in quotes may have commas.

@@ -233,6 +233,7 @@ impl Visitor for Compare<'_> {
             rows: rows.iter().map(|row| row.cells.clone()).collect(),
             series,
             exact_path,
+            figure: None,
             numbers: compare_numbers::files(&self.scene.name, &objects, interrupted.is_some()),
         };
         Ok(Comparison { rows, report, interrupted })

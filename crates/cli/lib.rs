@@ -38,6 +38,7 @@ mod precision_text;
 mod progress;
 mod resume;
 mod run;
+mod run_report;
 mod saves;
 mod section;
 mod stability;
@@ -89,7 +90,7 @@ fn obey(arguments: impl Iterator<Item = std::ffi::OsString>) -> u8 {
 fn command(arguments: Arguments) -> Result<(), CliError> {
     match arguments.command {
         None => first::first(&arguments.job),
-        Some(Command::Run(arguments)) => run::run(&arguments),
+        Some(Command::Run(arguments)) => run_report::run_and_show(&arguments),
         Some(Command::Compare(arguments)) => compare::compare(&arguments),
         Some(Command::Precision(arguments)) => precision::precision(&arguments),
         Some(Command::Stability(arguments)) => stability::stability(&arguments),

@@ -75,7 +75,7 @@ fn format_of(path: &Path) -> Result<Format, CliError> {
 }
 
 /// What the figure says it shows.
-fn title(scene: &AnyScene, runs: &[(String, Columns)]) -> String {
+pub(crate) fn title(scene: &AnyScene, runs: &[(String, Columns)]) -> String {
     let by = match runs {
         [(method, _)] => format!("{method}, "),
         _ => String::new(),
@@ -84,7 +84,7 @@ fn title(scene: &AnyScene, runs: &[(String, Columns)]) -> String {
 }
 
 /// The runs of a scene, by method.
-fn made(
+pub(crate) fn made(
     scene: &AnyScene,
     names: Option<&[String]>,
     failures: &mut Vec<String>,
@@ -132,7 +132,11 @@ pub(crate) fn drawing(
         None if has("speed") && has("turn_rate") => {
             SLEIGH.iter().filter(|name| known.contains(name)).map(|name| (*name).to_owned()).collect()
         }
-        None => known.iter().filter(|name| **name != "t").map(|name| (*name).to_owned()).collect(),
+        None => {
+            // Coordinates that are drawn as a path need no panels of their own.
+            let shown = |name: &&&str| **name != "t" && !(path && matches!(**name, "x" | "y"));
+            known.iter().filter(shown).map(|name| (*name).to_owned()).collect()
+        }
     };
     if let Some(unknown) = names.iter().find(|name| !known.contains(&name.as_str()) || !has("t")) {
         let problem = format!("there is no column `{unknown}` against `t`; the columns are {}", known.join(", "));

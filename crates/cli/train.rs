@@ -89,6 +89,7 @@ pub(crate) fn compare_scene(
         rows: rows.iter().map(|row| row.cells.clone()).collect(),
         series,
         exact_path: None,
+        figure: None,
         numbers: compare_numbers::files(&scene.name, &objects, interrupted.is_some()),
     };
     Ok(Comparison { rows, report, interrupted })

@@ -60,12 +60,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let scene = SceneReport {
             name: "parking".to_owned(),
             title: "Parking".to_owned(),
-            facts: Vec::new(),
-            columns: Vec::new(),
-            rows: Vec::new(),
             series: vec![series],
-            exact_path: None,
-            numbers: Vec::new(),
+            ..SceneReport::default()
         };
         std::fs::File::create_new(&file)?.write_all(path_picture(&scene)?.as_bytes())?;
         println!("written: {file}");

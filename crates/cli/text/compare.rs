@@ -75,6 +75,7 @@ fn compared<const N: usize, const M: usize>(
         rows: rows.iter().map(|row| row.cells.clone()).collect(),
         series,
         exact_path: None,
+        figure: None,
         numbers: compare_numbers::files(&scene.name, &objects, interrupted.is_some()),
     };
     Ok(Comparison { rows, report, interrupted })

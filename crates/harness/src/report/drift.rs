@@ -20,6 +20,8 @@ const TOGETHER: usize = 2000;
 const FEWEST: usize = 75;
 /// How far apart the names at the ends of the lines are.
 const NAMES: f64 = 15.0;
+/// The decade of the rounding of numbers near 1.
+const ROUNDING: f64 = -16.0;
 /// The longest name at the end of a line.
 const LONGEST: usize = 17;
 
@@ -27,18 +29,30 @@ const LONGEST: usize = 17;
 pub(super) fn constraint(scene: &SceneReport, name: &str) -> Result<Picture, ReportError> {
     let caption =
         "How fast the blade slips sideways. Around 10⁻¹⁶ there is nothing but rounding: the constraint is kept.";
-    draw(scene, format!("{name}-constraint"), "constraint residual", "|A(q) v + b|  [m/s]", caption, |series| {
-        &series.constraint
-    })
+    draw(
+        scene,
+        format!("{name}-constraint"),
+        "constraint residual",
+        "|A(q) v + b|  [m/s]",
+        caption,
+        ROUNDING,
+        |series| &series.constraint,
+    )
 }
 
 /// Draws the picture of the energy error.
 pub(super) fn energy(scene: &SceneReport, name: &str) -> Result<Picture, ReportError> {
     let caption = "How far the energy is from its initial value and the work W of what drives or brakes the sleigh. A line \
                    that keeps climbing is drift.";
-    draw(scene, format!("{name}-energy"), "energy error", "|E − E₀ − W|  [J]", caption, |series| {
-        &series.energy_error
-    })
+    draw(
+        scene,
+        format!("{name}-energy"),
+        "energy error",
+        "|E − E₀ − W|  [J]",
+        caption,
+        f64::NEG_INFINITY,
+        |series| &series.energy_error,
+    )
 }
 
 fn draw(
@@ -47,13 +61,14 @@ fn draw(
     what: &str,
     upright: &str,
     caption: &str,
+    least: f64,
     values: impl Fn(&Series) -> &Vec<f64>,
 ) -> Result<Picture, ReportError> {
     let most = (TOGETHER / scene.series.len().max(1)).clamp(FEWEST, POINTS);
     let traces: Vec<Trace> = scene.series.iter().map(|series| peaks(&series.time, values(series), most)).collect();
     let longest = scene.series.iter().map(|series| series.time.len().min(values(series).len())).max().unwrap_or(0);
     let scaling: Vec<Trace> = scaling(scene).map(|series| peaks(&series.time, values(series), most)).collect();
-    let scale = Scale::of(&scaling);
+    let scale = Scale::of(&scaling, least);
     let mut caption = captioned(caption, &scale, longest > most);
     let strays = scene.series.iter().zip(&traces).filter(|(_, trace)| scale.leaves(trace));
     let strays: Vec<&str> = strays.map(|(series, _)| series.label.as_str()).collect();

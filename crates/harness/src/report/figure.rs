@@ -84,16 +84,49 @@ pub fn figure(figure: &Figure, paper: &Paper, format: Format) -> Result<Vec<u8>,
     draw(figure, "figure".to_owned(), String::new(), size.map(|length| length / scale))?.bytes(format, paper.dpi, scale)
 }
 
+/// The width of a picture of a page, and the height of a panel on it (units).
+const WIDTH: f64 = 560.0;
+const HEIGHT: f64 = 180.0;
+
+/// A figure as a picture of a page: its panels below each other.
+pub(super) fn column(figure: &Figure, file: String) -> Result<Picture, ReportError> {
+    let size = [WIDTH, HEADING + HEIGHT * figure.panels.len() as f64];
+    let caption = format!("{}: against time.", figure.title);
+    let cells = Cells { columns: 1, count: figure.panels.len(), size: [WIDTH, HEIGHT], wide: false };
+    drawn(figure, file, caption, size, &cells)
+}
+
 /// Draws a figure of that size (units).
-pub(super) fn draw(figure: &Figure, file: String, caption: String, size: [f64; 2]) -> Result<Picture, ReportError> {
+fn draw(figure: &Figure, file: String, caption: String, size: [f64; 2]) -> Result<Picture, ReportError> {
     let [width, height] = size;
-    let entries: Vec<Entry<'_>> = match figure.runs.len() {
+    let cells = Cells::of([width, height - above(figure, width)], &figure.panels);
+    drawn(figure, file, caption, size, &cells)
+}
+
+/// The legend of a figure.
+fn entries(figure: &Figure) -> Vec<Entry<'_>> {
+    match figure.runs.len() {
         0 | 1 => Vec::new(),
         _ => figure.runs.iter().enumerate().map(|(run, name)| (Ink::Method(run), name.as_str())).collect(),
-    };
-    let (places, legend) = axis::legend(&entries, width - 20.0);
-    let top = HEADING + if legend > 0.0 { legend + 8.0 } else { 0.0 };
-    let cells = Cells::of([width, height - top], &figure.panels);
+    }
+}
+
+/// The room above the panels: title and legend.
+fn above(figure: &Figure, width: f64) -> f64 {
+    let (_, legend) = axis::legend(&entries(figure), width - 20.0);
+    HEADING + if legend > 0.0 { legend + 8.0 } else { 0.0 }
+}
+
+fn drawn(
+    figure: &Figure,
+    file: String,
+    caption: String,
+    size: [f64; 2],
+    cells: &Cells,
+) -> Result<Picture, ReportError> {
+    let width = size[0];
+    let (entries, top) = (entries(figure), above(figure, width));
+    let (places, _) = axis::legend(&entries, width - 20.0);
     let title = label(&figure.title, (width / text_width("x", SIZE)) as usize);
     Picture::draw(file, figure.title.clone(), caption, size, |canvas| {
         canvas.text(&title, [10.0, 0.5 * HEADING], Anchor::Left, SIZE + 1.0)?;

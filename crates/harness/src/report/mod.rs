@@ -69,6 +69,8 @@ pub struct SceneReport {
     pub series: Vec<Series>,
     /// The blade's exact path \[m\], where one is known.
     pub exact_path: Option<Vec<[f64; 2]>>,
+    /// What else is shown against time, a panel below the other, as the picture `NAME-run`.
+    pub figure: Option<Figure>,
     /// Files of numbers to put beside the page as `NAME.ENDING`.
     pub numbers: Vec<Numbers>,
 }
@@ -194,8 +196,10 @@ pub fn write(report: &Report, directory: &Path, overwrite: bool) -> Result<Vec<P
         for picture in &pictures {
             contents.extend(picture.files()?);
         }
+        let figure = scene.figure.as_ref().map(|shown| figure::column(shown, format!("{name}-run"))).transpose()?;
+        contents.extend(figure.as_ref().map(picture::Picture::files).transpose()?.into_iter().flatten());
         contents.extend(numbered(name, &scene.numbers));
-        scenes.push(page::Shown { name, pictures, animation: animation::figure(scene)? });
+        scenes.push(page::Shown { name, pictures, figure, animation: animation::figure(scene)? });
     }
     contents[0].1 = page::page(report, &scenes).into_bytes();
     files::write_all(directory, &contents, overwrite)

@@ -16,6 +16,8 @@ pub(super) struct Shown<'a> {
     pub(super) name: &'a str,
     /// The paths, the constraint, the energy.
     pub(super) pictures: [Picture; 3],
+    /// What else is shown against time.
+    pub(super) figure: Option<Picture>,
     /// The figure that moves, where there is one.
     pub(super) animation: Option<String>,
 }
@@ -104,8 +106,17 @@ fn section(page: &mut String, scene: &SceneReport, shown: &Shown<'_>, notes: &[(
     numbers(page, name, &scene.numbers);
     legend(page, scene);
     let [path, constraint, energy] = shown.pictures.each_ref().map(figure);
-    let left = std::iter::once(path).chain(shown.animation.clone()).collect();
-    columns(page, &[left, vec![constraint, energy]]);
+    // A run without a path, of a system without a place, has no empty picture of one.
+    let path = scene.series.iter().any(|series| !series.path.is_empty()).then_some(path);
+    let mut left: Vec<String> = path.into_iter().chain(shown.animation.clone()).collect();
+    let mut right = vec![constraint, energy];
+    if let Some(shown) = &shown.figure {
+        left.append(&mut right);
+        right.push(figure(shown));
+    } else if left.is_empty() {
+        left.push(right.remove(0));
+    }
+    columns(page, &[left, right]);
     *page += "</section>\n";
 }
 

@@ -24,7 +24,8 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    pub(super) fn of(traces: &[Trace]) -> Self {
+    /// For these traces; of which nothing below the decade `least` is more than rounding.
+    pub(super) fn of(traces: &[Trace], least: f64) -> Self {
         let all: Vec<f64> = traces.iter().flatten().flatten().map(|point| point[1]).collect();
         let best = traces.iter().filter_map(usual).fold(f64::INFINITY, f64::min).log10();
         let worth = |log: &f64| *log >= best - BELOW && *log <= best + ABOVE;
@@ -37,7 +38,7 @@ impl Scale {
             near && trace.iter().skip(1).flatten().any(|point| point[1] <= 0.0)
         };
         let rounding = traces.iter().find(rounds).and(best.is_finite().then_some(best.ceil()));
-        let lo = rounding.unwrap_or((lo + 1e-9).floor());
+        let lo = rounding.unwrap_or((lo + 1e-9).floor()).max(least);
         // The highest peak is not to touch the upper edge.
         let hi = (hi + 0.08).ceil().max(lo + 1.0);
         let smaller = all.iter().any(|size| *size > 0.0 && size.log10() < lo);

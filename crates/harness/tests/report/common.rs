@@ -46,6 +46,7 @@ pub(crate) fn scene(name: &str, series: Vec<Series>) -> SceneReport {
         rows: series.iter().map(|series| vec![series.label.clone(), "1.5e-16".to_owned(), "kept".to_owned()]).collect(),
         exact_path: series.first().map(|series| series.path.clone()),
         series,
+        figure: None,
         numbers: vec![],
     }
 }
