@@ -145,7 +145,8 @@ pub(crate) struct RunArguments {
     /// Write a page with pictures into this folder: the motion, the path, and the columns against time
     #[arg(long, value_name = "DIR", conflicts_with_all = ["checkpoint", "resume", "until", "tolerance", "substep"])]
     pub(crate) report: Option<PathBuf>,
-    /// Choose the longest step whose error, of a place or an angle, stays below this, by trial runs
+    /// Choose the longest step whose error, of a place or an angle, stays below this, by trial runs; of a method with steps of its own
+    /// the error of each that it aims for
     #[arg(long, value_name = "TOL", allow_negative_numbers = true, value_parser = number, conflicts_with = "step")]
     pub(crate) tolerance: Option<f64>,
     /// Make a step that is refused, or that does not resolve the motion, in parts; every step then takes the time of three

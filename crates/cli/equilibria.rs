@@ -39,7 +39,7 @@ struct Row {
 /// `noslip equilibria`: the steady motions of a scene, and how stable they are, of the flow and of a method.
 pub(crate) fn equilibria(arguments: &EquilibriaArguments) -> Result<(), CliError> {
     let scene = inspect::load(&arguments.scene, arguments.method.as_deref())?;
-    let method = Method::named(&scene.run.method, scene.run.alpha)?;
+    let method = Method::of(&scene.run.method, scene.run.alpha, scene.run.tolerance)?;
     if differentiable::<3, 1>(&method).is_none() {
         return Err(CliError::NotDifferentiated { method: method.info().name });
     }
