@@ -2,8 +2,8 @@
 
 use crate::{Dop853, ImplicitMidpoint, Kind, Method, Rk4, Rk4Projected, Rk4Reduced};
 use dla::{
-    Composition, Dla, Energy, Gauss, GaussAdaptive, Gni, Lobatto, Mechanics, OneStep, OwnMethods, Rebased, State, StepError,
-    StepReport, Stepper,
+    Composition, Dla, Energy, Gauss, GaussAdaptive, Gni, Lobatto, Mechanics, OneStep, OwnMethods, Rebased, State,
+    StepError, StepReport, Stepper,
 };
 use std::any::Any;
 
