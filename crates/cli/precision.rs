@@ -2,22 +2,22 @@ use crate::args::PrecisionArguments;
 use crate::compare::{distance, methods};
 use crate::error::CliError;
 use crate::inspect::method_names;
-use crate::{facts, files, inspect, points_file, precision_text, progress, terminal, train};
+use crate::{facts, files, inspect, points_file, precision_text, progress, terminal, text, train};
 use dla::State;
 use harness::Method;
 use harness::precision::{
     Bench, Clock, Curve, Limits, Motion, Reference, ReferenceError, mark_pareto, rounds, work_precision,
 };
 use harness::report::write_precision;
-use scene::{Scene, SceneSystem, Visitor};
+use scene::{AnyScene, Scene, SceneSystem, Visitor};
 use sleigh::{Exact, SleighState};
 
 /// The longest duration (s) that is chosen without being asked for.
 const DURATION: f64 = 20.0;
 /// How well the reference is then known.
-const KNOWN: f64 = 1e-12;
+pub(crate) const KNOWN: f64 = 1e-12;
 /// How often the duration is halved for that.
-const HALVINGS: u32 = 6;
+pub(crate) const HALVINGS: u32 = 6;
 
 /// Errors within so many times that of the reference are all the same.
 const CLEAR: f64 = 10.0;
@@ -26,14 +26,14 @@ const CLEAR: f64 = 10.0;
 pub(crate) struct Measurement {
     /// How long the motion takes (s).
     pub(crate) duration: f64,
-    pub(crate) reference: KnownEnd,
+    pub(crate) reference: KnownEnd<()>,
     pub(crate) clock: Clock,
     pub(crate) facts: Vec<(String, String)>,
     pub(crate) curves: Vec<Curve>,
 }
 
 /// Where the motion truly ends.
-pub(crate) struct KnownEnd {
+pub(crate) struct KnownEnd<End = SleighState> {
     /// In closed form; else by the method.
     pub(crate) closed: bool,
     /// The method that computes it, or that the closed form is checked against.
@@ -42,21 +42,29 @@ pub(crate) struct KnownEnd {
     pub(crate) steps: u64,
     /// How far it may be off (m or rad).
     pub(crate) error: f64,
-    pub(crate) end: SleighState,
+    pub(crate) end: End,
+}
+
+impl<End> KnownEnd<End> {
+    /// How well it is known, without where it is.
+    pub(crate) fn told(&self) -> KnownEnd<()> {
+        let &Self { closed, by, steps, error, .. } = self;
+        KnownEnd { closed, by, steps, error, end: () }
+    }
 }
 
 /// `noslip precision`: what accuracy costs in time.
 pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> {
     let mut scene =
-        inspect::load_with((&arguments.scene, &arguments.set), None, None, arguments.duration, arguments.alpha)?;
+        inspect::load_any_with((&arguments.scene, &arguments.set), None, None, arguments.duration, arguments.alpha)?;
     let names: Vec<&str> = match &arguments.methods {
         Some(names) => names.iter().map(|name| name.trim()).collect(),
         None => method_names(),
     };
-    let methods = methods(&names, scene.run.alpha)?;
+    let methods = methods(&names, scene.run().alpha)?;
     let mut others = Vec::new();
     for path in &arguments.with {
-        let (curves, warnings) = points_file::read(path, &scene.name)?;
+        let (curves, warnings) = points_file::read(path, scene.name())?;
         warnings.iter().for_each(|warning| terminal::say("warning", warning));
         others.extend(curves);
     }
@@ -67,10 +75,13 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
         files::check_file(path, arguments.force)?;
     }
     if arguments.duration.is_none() {
-        scene.run.duration = scene.run.duration.min(DURATION);
+        scene.run_mut().duration = scene.run().duration.min(DURATION);
     }
     let chosen = arguments.duration.is_none();
-    let mut measured = measure(&scene, &methods, arguments.longest, chosen)?;
+    let mut measured = match &scene {
+        AnyScene::Sleigh(scene) => measure(scene, &methods, arguments.longest, chosen)?,
+        AnyScene::Text(scene) => text::precision::measure(scene, &methods, arguments.longest, chosen)?,
+    };
     measured.curves.extend(others);
     mark_pareto(&mut measured.curves, CLEAR * measured.reference.error);
 
@@ -159,7 +170,7 @@ impl Visitor for Measure<'_> {
         let mut facts = facts::of(self.scene, system, &State::new(q, v, system.angles()));
         // The steps are those of the ladders, not the scene's.
         facts.pop();
-        Ok(Measurement { duration, reference, clock, facts, curves })
+        Ok(Measurement { duration, reference: reference.told(), clock, facts, curves })
     }
 }
 

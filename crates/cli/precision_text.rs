@@ -4,7 +4,7 @@ use crate::precision::Measurement;
 use crate::table::{number, right_aligned};
 use harness::precision::{Curve, LEVELS, Mark, Point, Setting, cheapest, seconds_to};
 use harness::report::{Numbers, PrecisionReport, Table};
-use scene::Scene;
+use scene::AnyScene;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -108,8 +108,8 @@ fn clock(measured: &Measurement) -> String {
 }
 
 /// The tables on a terminal.
-pub(crate) fn text(scene: &Scene, measured: &Measurement) -> String {
-    let mut text = format!("{} ({}), {} s\n", scene.title, scene.name, number(measured.duration));
+pub(crate) fn text(scene: &AnyScene, measured: &Measurement) -> String {
+    let mut text = format!("{} ({}), {} s\n", scene.title(), scene.name(), number(measured.duration));
     let _ = writeln!(text, "reference: {}\ntimes: {}\n", reference(measured), clock(measured));
     text += &noted(&POINTS, points(&measured.curves).map(|(curve, point)| cells(curve, point)).collect());
     text.push('\n');
@@ -158,7 +158,7 @@ pub(crate) fn quoted(text: &str) -> String {
 }
 
 /// The object that `precision --json` prints.
-pub(crate) fn json(scene: &Scene, measured: &Measurement) -> Value {
+pub(crate) fn json(scene: &AnyScene, measured: &Measurement) -> Value {
     let (known, curves) = (&measured.reference, &measured.curves);
     let cheapest: Vec<Value> = cheapest(curves)
         .iter()
@@ -177,7 +177,7 @@ pub(crate) fn json(scene: &Scene, measured: &Measurement) -> Value {
         })
         .collect();
     json!({
-        "scene": scene.name,
+        "scene": scene.name(),
         "duration": measured.duration,
         "reference": {
             "kind": if known.closed { "closed form" } else { known.by },
@@ -240,7 +240,7 @@ fn json_method(curve: &Curve) -> Value {
 }
 
 /// The report.
-pub(crate) fn report(scene: &Scene, measured: &Measurement) -> PrecisionReport {
+pub(crate) fn report(scene: &AnyScene, measured: &Measurement) -> PrecisionReport {
     let mut facts = measured.facts.clone();
     let duration = format!("{} s", number(measured.duration));
     for (name, value) in [("duration", duration), ("reference", reference(measured)), ("times", clock(measured))] {
@@ -259,10 +259,10 @@ pub(crate) fn report(scene: &Scene, measured: &Measurement) -> PrecisionReport {
     };
     let rows = points(&measured.curves).map(|(curve, point)| cells(curve, point)).collect();
     PrecisionReport {
-        title: format!("noslip precision {}", scene.name),
+        title: format!("noslip precision {}", scene.name()),
         intro: format!("{INTRO}\n\n{}", verdicts(&measured.curves)),
-        name: scene.name.clone(),
-        heading: scene.title.clone(),
+        name: scene.name().to_owned(),
+        heading: scene.title().to_owned(),
         facts,
         curves: measured.curves.clone(),
         tables: vec![

@@ -134,7 +134,7 @@ pub(crate) fn measure(
     let mut facts = facts::listed(scene, &scene.start, assembly.energy(0.0, start), "");
     // The steps are those of the ladders, not the scene's.
     facts.pop();
-    Ok(Measurement { duration, reference, clock, facts, curves })
+    Ok(Measurement { duration, reference: reference.told(), clock, facts, curves })
 }
 
 /// The end by `dla8`, its steps doubled until two successive ends are no nearer than those before, or it takes too long.
