@@ -1,8 +1,8 @@
 //! What `noslip precision` says: the same values as a table, as CSV, as JSON and in the report.
 
 use crate::precision::Measurement;
-use crate::table::{number, right_aligned};
-use harness::precision::{Curve, LEVELS, Mark, Point, Setting, cheapest, seconds_to};
+use crate::table::right_aligned;
+use harness::precision::{Curve, LEVELS, Mark, Point, Setting, cheapest, number, seconds_to};
 use harness::report::{Numbers, PrecisionReport, Table};
 use scene::AnyScene;
 use serde_json::{Value, json};
@@ -76,12 +76,16 @@ fn verdicts(curves: &[Curve]) -> String {
             (Some((best, seconds)), Some((next, _)), Some(factor)) => {
                 writeln!(
                     text,
-                    "cheapest at {error}: {best}, {} s; {next} takes {factor:.2} times that",
+                    "cheapest at an error of {error}: {best} with {} s; {next} takes {factor:.2} times as long",
                     number(*seconds)
                 )
             }
-            (Some((best, seconds)), ..) => writeln!(text, "cheapest at {error}: {best}, {} s, alone", number(*seconds)),
-            (None, ..) => writeln!(text, "cheapest at {error}: none gets there"),
+            (Some((best, seconds)), ..) => writeln!(
+                text,
+                "cheapest at an error of {error}: {best} with {} s; no other method reaches this error",
+                number(*seconds)
+            ),
+            (None, ..) => writeln!(text, "no method reaches an error of {error}"),
         };
     }
     text

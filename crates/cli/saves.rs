@@ -18,6 +18,8 @@ impl Saves {
     /// What the arguments ask for; a folder that cannot be written in, or is there already, is refused before the work.
     pub(crate) fn of(arguments: &CompareArguments) -> Result<Self, CliError> {
         let CompareArguments { checkpoint, checkpoint_every, resume, scene, .. } = arguments;
+        // A comparison that is resumed goes on saving into its folder.
+        let checkpoint = checkpoint.as_ref().or(resume.as_ref());
         if let Some(folder) = resume {
             std::fs::read_dir(folder).map_err(|source| CliError::Read { path: folder.clone(), source })?;
         }
@@ -25,7 +27,7 @@ impl Saves {
             check_folder(folder, scene.force || resume.as_ref() == Some(folder))?;
             std::fs::create_dir_all(folder).map_err(|source| CliError::Write { path: folder.clone(), source })?;
         }
-        Ok(Self { to: checkpoint.clone(), from: resume.clone(), every: *checkpoint_every })
+        Ok(Self { to: checkpoint.cloned(), from: resume.clone(), every: *checkpoint_every })
     }
 
     /// Whether runs are to be saved or resumed.

@@ -191,7 +191,7 @@ impl Map<'_> {
             (
                 "starts",
                 format!(
-                    "{count}: {} measured, {failed} failed, {} that there are not",
+                    "{count}: {} measured, {failed} failed, {} outside the energy surface",
                     known.len(),
                     count - known.len() - failed
                 ),
