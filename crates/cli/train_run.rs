@@ -4,10 +4,9 @@ use crate::args::RunArguments;
 use crate::compare::unless_interrupted;
 use crate::error::CliError;
 use crate::interrupt::Interrupt;
-use crate::output::{Asked, Output};
 use crate::progress::Interruptible;
-use crate::run::{identity, of, provenance, tell};
 use crate::train::MOST_NUMBERS;
+use crate::trajectory_file::{self, Columns, Format};
 use crate::trigger::{Events, Happened, Trigger};
 use crate::{inspect, json, progress, resume, substeps, table, terminal};
 use assembly::State;
@@ -20,13 +19,14 @@ use harness::{
 use scene::{Column, Scene};
 use serde_json::json;
 use sleigh::SleighState;
+use std::path::Path;
 
 /// `noslip run` of a train.
 pub(crate) fn run(
     arguments: &RunArguments,
     scene: &Scene,
     method: &Method,
-    out: Option<Asked<'_>>,
+    out: Option<(&Path, Format)>,
 ) -> Result<(), CliError> {
     let Some((train, start)) = scene.train()? else { return Ok(()) };
     let RunArguments { checkpoint, resume, tolerance, .. } = arguments;
@@ -44,9 +44,6 @@ pub(crate) fn run(
         let problem = "--out would hold more than 1e8 numbers: choose a larger --every";
         return Err(CliError::Request(problem.to_owned()));
     }
-    // The nodes of a train are in memory until the run ends; a resumed run has those after the checkpoint.
-    let made_by = provenance(arguments, of(scene), &schedule);
-    let output = out.map(|asked| Output::open(asked, made_by, (header(&train), every), None)).transpose()?;
     let interrupt = Interrupt::listen();
     let bar = progress::bar(method.info().name, schedule.steps);
     let mut progress = Interruptible { bar, interrupt: &interrupt };
@@ -59,9 +56,8 @@ pub(crate) fn run(
     progress.bar.finish_and_clear();
     let Made { run: Assembled { record, nodes, end, failure }, events, warning } = made?;
 
-    let written = output.map_or(Ok(()), |mut output| {
-        nodes.iter().for_each(|node| output.row(0, &row(&train, node)));
-        output.finish(false)
+    let written = out.map_or(Ok(()), |(path, format)| {
+        trajectory_file::write_columns(&columns(&train, &nodes), path, format, arguments.scene.force)
     });
     let blades = train.trailers().len();
     let (first, last) = (train.blade(&end, 0), train.blade(&end, blades));
@@ -77,7 +73,7 @@ pub(crate) fn run(
         }
         terminal::print_json(&object)?;
     } else {
-        let file = out.and_then(|asked| asked.path).filter(|_| written.is_ok());
+        let file = out.and_then(|(path, _)| written.is_ok().then_some(path));
         let joints = format!("{:.2e} m at most", record.leaf_max.unwrap_or(0.0));
         let [x, y, heading] = [last.x, last.y, last.heading].map(table::number);
         let more = [
@@ -87,7 +83,7 @@ pub(crate) fn run(
         ];
         let told = events.as_ref().map_or("", |events| &events.told);
         let parts = substeps::told(&record);
-        tell(out, &(table::one_run(scene, &record, &first, file) + &parts + &table::aligned(&more) + told))?;
+        terminal::print(&(table::one_run(scene, &record, &first, file) + &parts + &table::aligned(&more) + told))?;
     }
     events.iter().for_each(Events::warn);
     // The static record does not know which hinge it was.
@@ -126,19 +122,23 @@ impl Request<'_> {
     /// In parts that are saved, or from a part that was.
     fn saved(&self, arguments: &RunArguments, progress: &mut dyn Progress) -> Result<Made, CliError> {
         let RunArguments { checkpoint, checkpoint_every, resume: from, scene, .. } = arguments;
-        let identity = identity(self.scene, self.method, self.schedule);
+        let identity = resume::identity((&self.scene.name, self.scene), self.method, self.schedule);
         let read = from.as_ref().map(|path| resume::read(path, &identity)).transpose()?;
         if let Some(path) = checkpoint {
             resume::check(path, from.as_deref(), scene.force)?;
         }
-        let mut saver = resume::Saver::new(checkpoint.as_deref());
-        let mut save = |made: &Checkpoint| saver.save(made);
+        let mut warning = Ok(());
+        let mut save = |made: &Checkpoint| {
+            if let (Some(path), Ok(())) = (checkpoint, &warning) {
+                warning = resume::write(path, made);
+            }
+        };
         let every = checkpoint.as_ref().map(|_| *checkpoint_every);
         let mut saving = Saving { identity: &identity, from: read.as_ref(), every, save: &mut save };
         let (assembly, start) = (&self.train.assembly, (self.start, self.every));
         let run = run_assembly_saved(assembly, self.method, self.schedule, start, &mut saving, progress);
         let run = run.map_err(|source| CliError::Checkpoint { path: from.clone().unwrap_or_default(), source })?;
-        Ok(Made { run, events: None, warning: saver.outcome() })
+        Ok(Made { run, events: None, warning })
     }
 
     /// At once, with an eye on events where there are any.
@@ -162,8 +162,8 @@ fn ends(train: &Train, state: &State) -> [f64; 6] {
     [first.x, first.y, first.heading, last.x, last.y, last.heading]
 }
 
-/// The columns of a train: those of its first blade, and the headings of the others.
-fn header(train: &Train) -> Vec<Column> {
+/// A trajectory of a train: that of its first blade, and the headings of the others.
+fn columns(train: &Train, nodes: &[AssemblyNode]) -> Columns {
     let own = [
         ("t", "s"),
         ("x", "m"),
@@ -176,17 +176,17 @@ fn header(train: &Train) -> Vec<Column> {
         ("constraint", "m/s"),
         ("hinges", "m"),
     ];
-    let others = (1..=train.trailers().len()).map(|k| Column::new(format!("heading_{k}"), "rad"));
-    own.into_iter().map(|(name, unit)| Column::new(name, unit)).chain(others).collect()
-}
-
-/// The numbers of a node in these columns.
-fn row(train: &Train, node: &AssemblyNode) -> Vec<f64> {
-    let SleighState { x, y, heading, speed, turn_rate } = first(&node.q, &node.v);
-    let AssemblyNode { t, energy, work, constraint, joint, .. } = *node;
-    let mut row = vec![t, x, y, heading, speed, turn_rate, energy, work, constraint, joint];
-    row.extend((1..=train.trailers().len()).map(|k| node.q[3 * k + 2]));
-    row
+    let mut header = own.map(|(name, unit)| Column::new(name, unit)).to_vec();
+    let trailers = 1..=train.trailers().len();
+    header.extend(trailers.clone().map(|k| Column::new(format!("heading_{k}"), "rad")));
+    let row = |node: &AssemblyNode| {
+        let SleighState { x, y, heading, speed, turn_rate } = first(&node.q, &node.v);
+        let AssemblyNode { t, energy, work, constraint, joint, .. } = *node;
+        let mut row = vec![t, x, y, heading, speed, turn_rate, energy, work, constraint, joint];
+        row.extend(trailers.clone().map(|k| node.q[3 * k + 2]));
+        row
+    };
+    Columns::new(header, nodes.iter().map(row).collect())
 }
 
 /// The state of the first blade.

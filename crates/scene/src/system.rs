@@ -119,10 +119,7 @@ impl Scene {
     }
 
     /// The jumps of the scene in its run (s).
-    ///
-    /// # Errors
-    /// [`SleighError`] where there is no such sleigh.
-    pub fn jumps(&self) -> Result<Vec<f64>, SleighError> {
+    pub(crate) fn jumps(&self) -> Result<Vec<f64>, SleighError> {
         Ok(handed(self.first_blade()?, Jumps(self.run.duration)))
     }
 

@@ -35,5 +35,4 @@ def ensemble(sweep: str | PathLike[str] | Mapping[str, Any], *, progress: bool |
         rows = Path(folder) / "members.npz"
         summary = call(["ensemble", str(file), "--json", "--out", str(rows)], progress)
         with np.load(rows) as archive:
-            columns = [name for name in archive.files if name != "metadata"]
-            return Ensemble({name: archive[name] for name in columns}, summary)
+            return Ensemble({name: archive[name] for name in archive.files}, summary)
