@@ -1,4 +1,5 @@
 use crate::coordinate::{Coordinate, Range};
+use crate::format::Format;
 use crate::plane::{Crossed, Plane};
 use crate::trigger::Trigger;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
@@ -139,14 +140,16 @@ pub(crate) struct RunArguments {
     /// Keep every N-th node in the output file
     #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true, value_parser = count)]
     pub(crate) every: u64,
-    /// Write the trajectory: .csv, .npz, or .parquet (a cargo feature), by the ending
+    /// Write the trajectory: .csv, .jsonl, .npz, or .parquet (a cargo feature), by the ending; - is standard output
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Write a page with pictures into this folder: the motion, the path, and the columns against time
     #[arg(long, value_name = "DIR", conflicts_with_all = ["checkpoint", "resume", "until", "tolerance", "substep"])]
     pub(crate) report: Option<PathBuf>,
-    /// Choose the longest step whose error, of a place or an angle, stays below this, by trial runs; of a method with steps of its own
-    /// the error of each that it aims for
+    /// Format of the output file, whatever its ending: csv, jsonl, npz, parquet [default for standard output: csv]
+    #[arg(long, value_name = "FORMAT", requires = "out")]
+    pub(crate) format: Option<Format>,
+    /// Choose the longest step whose error, of a place or an angle, stays below this, by trial runs
     #[arg(long, value_name = "TOL", allow_negative_numbers = true, value_parser = number, conflicts_with = "step")]
     pub(crate) tolerance: Option<f64>,
     /// Divide a step that fails, or that does not resolve the motion, into parts; every step then takes the time of three steps
@@ -159,7 +162,7 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "N", default_value_t = 1_000_000, allow_negative_numbers = true, value_parser = count,
           requires = "checkpoint")]
     pub(crate) checkpoint_every: u64,
-    /// Go on from this checkpoint, to the same last bit; --out then writes the nodes after it
+    /// Go on from this checkpoint, to the same last bit, also with a longer --duration; the file of --out is continued
     #[arg(long, value_name = "FILE")]
     pub(crate) resume: Option<PathBuf>,
     /// Find when x, y, heading (in every turn), unwrapped_heading (turns counted), speed or turn_rate crosses a value, as in
@@ -318,7 +321,7 @@ pub(crate) struct EnsembleArguments {
     /// A file that names a scene and what varies of it
     #[arg(value_name = "SWEEP")]
     pub(crate) sweep: String,
-    /// Write a row for each member: .csv, .npz, or .parquet (a cargo feature), by the ending
+    /// Write a row for each member: .csv, .jsonl, .npz, or .parquet (a cargo feature), by the ending
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Go on where an interrupted run of the same sweep ended

@@ -1,6 +1,5 @@
 use crate::called::Caller;
 use crate::text::told;
-use crate::trajectory_file::Columns;
 use crate::trigger::{Events, Happened, Trigger};
 use crate::{inspect, json, substeps};
 use dla::{Event, Node, Samples, Schedule, State, Subject, Substeps, Trajectory};
@@ -70,13 +69,7 @@ impl RunError {
 /// [`RunError`] where the request makes no sense for the scene, or no step meets the tolerance. A run that fails is a result.
 pub fn run(scene: &AnyScene, request: &RunRequest, caller: &Caller) -> Result<RunResult, RunError> {
     let settings = scene.run();
-    let tolerance = request.tolerance;
-    let method = Method::of(&settings.method, settings.alpha, settings.tolerance)
-        .and_then(|method| match tolerance {
-            Some(tolerance) if method.is_adaptive() => method.with_tolerance(tolerance),
-            _ => Ok(method),
-        })
-        .map_err(|error| RunError::request(&error))?;
+    let method = Method::named(&settings.method, settings.alpha).map_err(|error| RunError::request(&error))?;
     let method = if request.substep { method.with_substeps(Substeps::default()) } else { method };
     let run = Run { name: scene.name(), settings, request, method, caller };
     match scene {
@@ -131,10 +124,10 @@ impl<const N: usize, const M: usize> Made<N, M> {
         self.watched.trajectory.as_ref().map_or(&self.sampled[..], Trajectory::nodes)
     }
 
-    fn result(self, columns: Columns, mut object: Value) -> RunResult {
+    fn result(self, (columns, rows): (Vec<Column>, Vec<Vec<f64>>), mut object: Value) -> RunResult {
         let record = &self.watched.record;
         substeps::add_json(&mut object, record);
-        let (columns, numbers) = columns.by_column();
+        let numbers = (0..columns.len()).map(|k| rows.iter().map(|row| row[k]).collect()).collect();
         RunResult { columns, numbers, object, failure: substeps::failure(record), interrupted: record.interrupted }
     }
 }
@@ -146,8 +139,7 @@ impl Run<'_> {
         start: ([f64; N], [f64; N]),
     ) -> Result<Schedule, RunError> {
         let schedule = inspect::steps_of(self.settings);
-        let wanted = self.request.tolerance.filter(|_| !self.method.is_adaptive());
-        let Some(tolerance) = wanted else { return Ok(schedule) };
+        let Some(tolerance) = self.request.tolerance else { return Ok(schedule) };
         let found = recommend(subject, &self.method.undivided(), start, self.settings.duration, tolerance);
         let found = found.map_err(|error| RunError { message: error.to_string(), request: false })?;
         Ok(Schedule { step: found.step, steps: found.steps, ..schedule })
@@ -202,8 +194,9 @@ impl Run<'_> {
         let made = self.make(system.into(), (q, v), &[])?;
         let record = &made.watched.record;
         let object = json::record_of(self.name, record, &told::json(system.model(), record.t, &record.q, &record.v));
-        let columns = told::columns(system, made.nodes());
-        Ok(made.result(columns, object))
+        let columns = told::columns(system, 0.0, (&q, &v));
+        let rows = made.nodes().iter().map(|node| told::row(system, node)).collect();
+        Ok(made.result((columns, rows), object))
     }
 }
 
@@ -227,7 +220,8 @@ impl Visitor for Run<'_> {
             let happened = crossings.iter().filter_map(|crossing| Happened::of(system, &looked_for, crossing));
             Events::new(happened, *close).add_to(&mut object);
         }
-        let columns = Columns::of(system, made.nodes());
-        Ok(made.result(columns, object))
+        let columns = made.nodes().first().map_or_else(Vec::new, |first| system.columns(first));
+        let rows = made.nodes().iter().map(|node| system.row(node)).collect();
+        Ok(made.result((columns, rows), object))
     }
 }

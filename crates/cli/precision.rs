@@ -1,7 +1,9 @@
 use crate::args::PrecisionArguments;
-use crate::compare::{distance, methods};
+use crate::compare::{distance, methods, unless_interrupted};
 use crate::error::CliError;
 use crate::inspect::method_names;
+use crate::interrupt::Interrupt;
+use crate::progress::Interruptible;
 use crate::{facts, files, inspect, points_file, precision_text, progress, terminal, text, train};
 use dla::State;
 use harness::Method;
@@ -61,7 +63,7 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
         Some(names) => names.iter().map(|name| name.trim()).collect(),
         None => method_names(),
     };
-    let methods = methods(&names, scene.run().alpha, scene.run().tolerance)?;
+    let methods = methods(&names, scene.run().alpha)?;
     let mut others = Vec::new();
     for path in &arguments.with {
         let (curves, warnings) = points_file::read(path, scene.name())?;
@@ -78,10 +80,12 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
         scene.run_mut().duration = scene.run().duration.min(DURATION);
     }
     let chosen = arguments.duration.is_none();
+    let interrupt = Interrupt::listen();
     let mut measured = match &scene {
-        AnyScene::Sleigh(scene) => measure(scene, &methods, arguments.longest, chosen)?,
-        AnyScene::Text(scene) => text::precision::measure(scene, &methods, arguments.longest, chosen)?,
+        AnyScene::Sleigh(scene) => measure(scene, &methods, arguments.longest, chosen, &interrupt)?,
+        AnyScene::Text(scene) => text::precision::measure(scene, &methods, arguments.longest, chosen, &interrupt)?,
     };
+    let climbed = measured.curves.len();
     measured.curves.extend(others);
     mark_pareto(&mut measured.curves, CLEAR * measured.reference.error);
 
@@ -103,15 +107,23 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
         }
     }
     let named = arguments.methods.is_some();
-    CliError::of_failures(measured.curves.iter().filter_map(|curve| failure(curve, named)))
+    let made = interrupt.asked().then(|| format!("{} of {} methods are measured", climbed, methods.len()));
+    let failed = CliError::of_failures(measured.curves.iter().filter_map(|curve| failure(curve, named)));
+    unless_interrupted(made, None, failed)
 }
 
 /// Measures what accuracy costs on a scene, by runs of `longest` (s) at most; of a duration that is `chosen` for the user there may be
 /// less.
-pub(crate) fn measure(scene: &Scene, methods: &[Method], longest: f64, chosen: bool) -> Result<Measurement, CliError> {
+pub(crate) fn measure(
+    scene: &Scene,
+    methods: &[Method],
+    longest: f64,
+    chosen: bool,
+    interrupt: &Interrupt,
+) -> Result<Measurement, CliError> {
     match scene.train()? {
-        Some(whole) => train::measure(scene, &whole, methods, longest),
-        None => scene.visit(Measure { scene, methods, longest, chosen })?,
+        Some(whole) => train::measure(scene, &whole, methods, longest, interrupt),
+        None => scene.visit(Measure { scene, methods, longest, chosen, interrupt })?,
     }
 }
 
@@ -131,6 +143,7 @@ struct Measure<'a> {
     longest: f64,
     /// The duration is not the user's: it may be less.
     chosen: bool,
+    interrupt: &'a Interrupt,
 }
 
 impl Visitor for Measure<'_> {
@@ -165,8 +178,9 @@ impl Visitor for Measure<'_> {
         let bench = Bench { duration, reference_error: reference.error, end_error: &end_error, aligned: &aligned };
         let limits = Limits { fewest: motion.aligned(2), longest: self.longest };
         let bar = progress::bar(&format!("{} precision", self.scene.name), self.methods.len() as u64 + rounds());
-        let (curves, clock) = work_precision(&bench, self.methods, &limits, &mut |done| bar.inc(done));
-        bar.finish_and_clear();
+        let mut progress = Interruptible { bar, interrupt: self.interrupt };
+        let (curves, clock) = work_precision(&bench, self.methods, &limits, &mut progress);
+        progress.bar.finish_and_clear();
         let mut facts = facts::of(self.scene, system, &State::new(q, v, system.angles()));
         // The steps are those of the ladders, not the scene's.
         facts.pop();

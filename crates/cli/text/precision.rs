@@ -1,8 +1,9 @@
 use super::compare::distance;
 use super::{facts, told};
 use crate::error::CliError;
+use crate::interrupt::Interrupt;
 use crate::precision::{HALVINGS, KNOWN, KnownEnd, Measurement};
-use crate::progress;
+use crate::progress::{self, Interruptible};
 use harness::Method;
 use harness::precision::{Bench, Limits, Motion, Reference, rounds, work_precision};
 use scene::{StartedText, TextScene, with_text};
@@ -14,17 +15,18 @@ pub(crate) fn measure(
     methods: &[Method],
     longest: f64,
     chosen: bool,
+    interrupt: &Interrupt,
 ) -> Result<Measurement, CliError> {
     told::note_moves(scene);
-    with_text!(super::system(scene)?, started => measured(scene, &started, methods, longest, chosen))
+    with_text!(super::system(scene)?, started => measured(scene, &started, methods, (longest, chosen), interrupt))
 }
 
 fn measured<const N: usize, const M: usize>(
     scene: &TextScene,
     StartedText { system, q, v }: &StartedText<N, M>,
     methods: &[Method],
-    longest: f64,
-    chosen: bool,
+    (longest, chosen): (f64, bool),
+    interrupt: &Interrupt,
 ) -> Result<Measurement, CliError> {
     let failed = |reason: String| CliError::Computation(vec![reason]);
     let (mut duration, mut halvings) = (scene.run.duration, 0);
@@ -44,8 +46,9 @@ fn measured<const N: usize, const M: usize>(
     let bench = Bench { duration, reference_error: error, end_error: &end_error, aligned: &aligned };
     let limits = Limits { fewest: motion.aligned(2), longest };
     let bar = progress::bar(&format!("{} precision", scene.name), methods.len() as u64 + rounds());
-    let (curves, clock) = work_precision(&bench, methods, &limits, &mut |done| bar.inc(done));
-    bar.finish_and_clear();
+    let mut progress = Interruptible { bar, interrupt };
+    let (curves, clock) = work_precision(&bench, methods, &limits, &mut progress);
+    progress.bar.finish_and_clear();
     let mut facts = facts::listed(scene);
     // The steps are those of the ladders, not the scene's.
     facts.pop();

@@ -288,14 +288,6 @@ pub enum Kind {
     Dop853,
 }
 
-impl Kind {
-    /// Whether the method chooses steps of its own within a step of the run, by a tolerance.
-    #[must_use]
-    pub fn is_adaptive(self) -> bool {
-        matches!(self, Self::Dop853)
-    }
-}
-
 /// A method, ready to integrate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Method {
@@ -317,7 +309,7 @@ pub enum MethodError {
     /// The weight of `dla-alpha` is not between 0 and 1.
     #[error(transparent)]
     Alpha(#[from] NotAWeight),
-    /// The tolerance of an adaptive method is not a positive number.
+    /// The tolerance of `dop853` is not a positive number.
     #[error("the tolerance must be positive and finite, and is {tolerance}")]
     Tolerance {
         /// What was given.
@@ -335,8 +327,7 @@ fn names() -> Vec<&'static str> {
 }
 
 impl Method {
-    /// The tolerance of the [adaptive](Kind::is_adaptive) methods where none is given, relative and absolute: an error of `1e-12 (1 + |y|)`
-    /// in every step of a component `y`.
+    /// The tolerance of `dop853` where none is given, relative and absolute (see [`Dop853::new`](crate::Dop853::new)).
     pub const TOLERANCE: f64 = 1e-12;
 
     /// The method of that name; `alpha` is the weight of `dla-alpha`, `1/2` where none is given.
@@ -354,15 +345,6 @@ impl Method {
         Ok(Self { info, alpha, tolerance: Self::TOLERANCE, substeps: None })
     }
 
-    /// The method of that name with the settings of a run: `alpha` as in [`named`](Self::named), and the tolerance of an adaptive method,
-    /// [`TOLERANCE`](Self::TOLERANCE) where none is given.
-    ///
-    /// # Errors
-    /// [`MethodError`].
-    pub fn of(name: &str, alpha: Option<f64>, tolerance: Option<f64>) -> Result<Self, MethodError> {
-        Self::named(name, alpha)?.with_tolerance(tolerance.unwrap_or(Self::TOLERANCE))
-    }
-
     /// `dla`, the first row of the table, with the same settings.
     pub(crate) fn as_dla(&self) -> Self {
         Self { info: METHODS[0], ..*self }
@@ -374,7 +356,7 @@ impl Method {
         Self { substeps: None, ..self }
     }
 
-    /// The same method with another tolerance, which only [adaptive](Kind::is_adaptive) ones read.
+    /// The same method with another tolerance, which only `dop853` reads.
     ///
     /// # Errors
     /// [`MethodError::Tolerance`] unless it is positive and finite.
@@ -406,16 +388,10 @@ impl Method {
         self.info
     }
 
-    /// The tolerance of an adaptive method.
+    /// The tolerance of `dop853`.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
-    }
-
-    /// Whether it chooses steps of its own.
-    #[must_use]
-    pub fn is_adaptive(&self) -> bool {
-        self.info.kind.is_adaptive()
     }
 
     /// The rule of the discrete constraint: the midpoint rule, but for `dla-trapezoid` and `dla-alpha`.
