@@ -216,3 +216,24 @@ fn the_bicycle_has_the_eigenvalues_of_the_benchmark() {
         }
     }
 }
+
+/// A thin disk that rolls upright: `lambda^2 = 4/5 (g/r - 3 spin^2)`, on both sides of its threshold.
+#[test]
+fn the_disk_is_stable_above_its_threshold() {
+    let folder = Folder::new();
+    for spin in [1.5_f64, 2.0] {
+        let spun = format!("start.psi'={spin}");
+        let found = folder.noslip(["equilibria", "falling-disk", "--json", "--set", &spun, "--set", "start.theta=0"]);
+        assert_eq!(found.code, 0, "{}", found.stderr);
+        let found: serde_json::Value = serde_json::from_str(&found.stdout).unwrap();
+        let rate = |e: &serde_json::Value, name: &str| e["rates"][name].as_f64().unwrap();
+        let upright = |e: &&serde_json::Value| (rate(e, "psi'") - spin).abs() < 1e-9 && rate(e, "phi'").abs() < 1e-9;
+        let steady = found["equilibria"].as_array().unwrap().iter().find(upright).unwrap();
+        let square = 0.8 * (9.81 - 3.0 * spin * spin);
+        let part = if square < 0.0 { "im" } else { "re" };
+        let numbers = steady["flow"].as_array().unwrap().iter().map(|value| value[part].as_f64().unwrap());
+        let largest = numbers.fold(0.0, f64::max);
+        assert!((largest - square.abs().sqrt()).abs() < 1e-9, "{spin}: {largest}");
+        assert_eq!(steady["stable"].as_bool(), Some(square < 0.0));
+    }
+}
