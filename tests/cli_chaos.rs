@@ -145,7 +145,7 @@ fn a_map_does_not_depend_on_the_threads() {
     assert_eq!(cells[5][2].to_bits(), found["exponents"][1][1].as_f64().unwrap().to_bits());
     // Cells that the energy does not allow stay empty.
     let text = on("2", "--energy -1 --out map.svg");
-    assert!(text.contains("12 that there are not") && folder.read("map.svg").starts_with("<svg"), "{text}");
+    assert!(text.contains("12 outside the energy surface") && folder.read("map.svg").starts_with("<svg"), "{text}");
 }
 
 #[test]

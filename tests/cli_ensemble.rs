@@ -65,6 +65,7 @@ fn undisturbed(folder: &Folder, sweep: &str) -> (Vec<u8>, Duration) {
     folder.done(&format!("ensemble {sweep} --out whole.csv --force"));
     let result = fs::read(folder.join("whole.csv")).unwrap();
     fs::remove_file(folder.join("whole.csv")).unwrap();
+    fs::remove_file(folder.join("whole.csv-metadata.json")).unwrap();
     (result, begin.elapsed())
 }
 
@@ -135,6 +136,7 @@ fn killed_at_any_time_and_resumed_the_bytes_are_the_same() {
         }
         assert!(fs::read(folder.join("k.csv")).unwrap() == whole, "{signal} at try {number}");
         fs::remove_file(folder.join("k.csv")).unwrap();
+        fs::remove_file(folder.join("k.csv-metadata.json")).unwrap();
         assert_eq!(folder.names(), ["sweep.toml"]);
     }
     println!("{cut} runs were ended by a signal, {kept} of them with rows in the spool");
@@ -230,6 +232,7 @@ fn a_damaged_spool_is_refused_or_healed() {
                 healed += 1;
                 assert!(fs::read(folder.join("d.csv")).unwrap() == whole, "try {number}");
                 fs::remove_file(folder.join("d.csv")).unwrap();
+                fs::remove_file(folder.join("d.csv-metadata.json")).unwrap();
             }
             _ => {
                 refused += 1;
@@ -240,4 +243,38 @@ fn a_damaged_spool_is_refused_or_healed() {
     }
     println!("{refused} refused, {healed} healed");
     assert!(healed > 0);
+}
+
+/// The spools of the trial: of another version, empty, cut, with a row that is none.
+#[test]
+fn what_is_no_spool_of_the_sweep_is_refused_and_an_empty_one_begins() {
+    let folder = Folder::new();
+    folder.write("sweep.toml", SWEEP);
+    let (whole, _) = undisturbed(&folder, "sweep.toml");
+    let old = "noslip ensemble 0.1.0 e90f7cecd7d40027\n";
+    for rows in ["", "0\n", "0,0.2,1000.0\n", "0,1.0,2.0,\"x\n", "0,0.08,1000.0,\n0,0.08,1000.0,\n"] {
+        for out in ["old.csv", "old.npz"] {
+            folder.write(&format!("{out}.part"), format!("{old}{rows}"));
+            let told = [&format!("{out}.part:1:"), "another version of the program", "--force begins anew"];
+            folder.refused(&format!("ensemble sweep.toml --out {out} --resume"), &told);
+        }
+    }
+    // The first line alone, whole or cut, is a beginning; so is nothing.
+    let spool = spool(&folder, "sweep.toml", "new.csv");
+    let first = spool.iter().position(|byte| *byte == b'\n').unwrap() + 1;
+    for length in [0, 1, first - 1, first] {
+        fs::write(folder.join("new.csv.part"), &spool[..length]).unwrap();
+        folder.done("ensemble sweep.toml --out new.csv --resume");
+        assert!(fs::read(folder.join("new.csv")).unwrap() == whole, "{length} bytes");
+        fs::remove_file(folder.join("new.csv")).unwrap();
+    }
+    // Rows that are none, with or without a checksum.
+    for row in ["0\n", "00000000 0,0.1,\n", "\u{e9}\n", "\n"] {
+        fs::write(folder.join("new.csv.part"), [&spool[..first], row.as_bytes()].concat()).unwrap();
+        let outcome = folder.line("ensemble sweep.toml --out new.csv --resume");
+        assert_eq!(outcome.code, 0, "{outcome:?}");
+        assert!(outcome.stderr.contains("new.csv.part:2: damaged: the checksum"), "{}", outcome.stderr);
+        assert!(fs::read(folder.join("new.csv")).unwrap() == whole, "{row:?}");
+        fs::remove_file(folder.join("new.csv")).unwrap();
+    }
 }

@@ -32,7 +32,7 @@ fn csv_has_a_header_and_a_row_for_each_node() {
     for line in file.lines().skip(1) {
         assert!(line.split(',').all(|text| format!("{:?}", text.parse::<f64>().unwrap()) == text), "{line}");
     }
-    assert_eq!(folder.names(), ["run.csv", "scene.toml"]);
+    assert_eq!(folder.names(), ["run.csv", "run.csv-metadata.json", "scene.toml"]);
 }
 
 #[test]
@@ -64,7 +64,12 @@ fn npz_has_the_columns_of_the_csv_as_arrays() {
     let mut archive = zip::ZipArchive::new(File::open(folder.join("run.npz")).unwrap()).unwrap();
     let arrays: Vec<String> =
         archive.file_names().map(|name| name.unwrap().trim_end_matches(".npy").to_owned()).collect();
-    assert_eq!(arrays, names);
+    let all: Vec<&str> = names.iter().map(String::as_str).chain(["metadata"]).collect();
+    assert_eq!(arrays, all);
+    // An array without dimensions, of one text.
+    let metadata = npyz::NpyFile::new(archive.by_name("metadata.npy").unwrap()).unwrap();
+    assert_eq!((metadata.shape(), metadata.len()), (&[][..], 1));
+    drop(metadata);
     for (column, name) in names.iter().enumerate() {
         let array = npyz::NpyFile::new(archive.by_name(&format!("{name}.npy")).unwrap()).unwrap();
         assert_eq!(array.shape(), [rows.len() as u64]);
@@ -139,5 +144,5 @@ fn other_endings_are_refused() {
         folder.refused(&format!("run scene.toml --out {name}"), &[name, ".csv", ".npz"]);
     }
     folder.done("run scene.toml --out RUN.CSV");
-    assert_eq!(folder.names(), ["RUN.CSV", "scene.toml"]);
+    assert_eq!(folder.names(), ["RUN.CSV", "RUN.CSV-metadata.json", "scene.toml"]);
 }

@@ -267,7 +267,7 @@ fn a_checkpoint_of_another_run_is_refused() {
     folder.write("cut", &written[..written.len() / 2]);
     folder.refused("run turnaround --resume cut", &["cut", "damaged"]);
     folder.write("noise", b"\xff\xfe");
-    folder.refused("run turnaround --resume noise", &["no checkpoint"]);
+    folder.refused("run turnaround --resume noise", &["not a checkpoint"]);
     folder.write("newer", written.replacen("checkpoint 4", "checkpoint 7", 1));
     folder.refused("run turnaround --resume newer", &["version 7"]);
     // The scene of a name may change.

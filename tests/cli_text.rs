@@ -162,3 +162,78 @@ fn bundled_texts_run() {
         assert!(folder.done(&format!("check {scene}")).contains("valid"), "{scene}");
     }
 }
+
+/// What accuracy costs is measured on the coordinates.
+#[test]
+fn precision_measures_a_system_of_text() {
+    let folder = Folder::new();
+    folder.write("skate.toml", SKATE);
+    let measured = folder.json("precision skate.toml --methods dla,gauss8 --longest 0.02 --json");
+    assert!(measured["reference"]["error"].as_f64().unwrap() < 1e-11, "{measured}");
+    let points = measured["points"].as_array().unwrap();
+    for method in ["dla", "gauss8"] {
+        assert!(
+            points.iter().filter(|point| point["method"] == method && point["error"].is_f64()).count() > 1,
+            "{method}"
+        );
+    }
+}
+
+/// The eigenvalues that the benchmark of the bicycle has at three speeds, in the order weave or the slow pair, capsize, castering.
+#[test]
+fn the_bicycle_has_the_eigenvalues_of_the_benchmark() {
+    let folder = Folder::new();
+    let benchmark: [(f64, &[[f64; 2]]); 3] = [
+        (4.0, &[[0.41325331521125, 3.07910818603206], [-1.42944427361326, 0.0], [-12.15861426576447, 0.0]]),
+        (5.0, &[[-0.77534188219585, 4.46486771378823], [-0.32286642900409, 0.0], [-14.07838969279822, 0.0]]),
+        (10.0, &[[-3.72016840437287, 10.90681139476287], [0.16105338653172, 0.0], [-24.62459635017404, 0.0]]),
+    ];
+    for (speed, values) in benchmark {
+        let found = folder.noslip([
+            "equilibria",
+            "bicycle",
+            "--json",
+            "--set",
+            &format!("start.x'={speed}"),
+            "--set",
+            "start.phi'=0",
+        ]);
+        assert_eq!(found.code, 0, "{}", found.stderr);
+        let found: serde_json::Value = serde_json::from_str(&found.stdout).unwrap();
+        let steady = found["equilibria"].as_array().unwrap();
+        let ahead = |e: &&serde_json::Value| (e["rates"]["x'"].as_f64().unwrap() - speed).abs() < 1e-9;
+        let steady = steady.iter().find(ahead).unwrap_or_else(|| panic!("{found}"));
+        let flow: Vec<[f64; 2]> = steady["flow"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|value| ["re", "im"].map(|part| value[part].as_f64().unwrap()))
+            .collect();
+        for value in values {
+            let nearest =
+                flow.iter().map(|[re, im]| f64::hypot(re - value[0], im - value[1])).fold(f64::INFINITY, f64::min);
+            assert!(nearest < 1e-9, "{speed} m/s: {value:?} is {nearest:e} from {flow:?}");
+        }
+    }
+}
+
+/// A thin disk that rolls upright: `lambda^2 = 4/5 (g/r - 3 spin^2)`, on both sides of its threshold.
+#[test]
+fn the_disk_is_stable_above_its_threshold() {
+    let folder = Folder::new();
+    for spin in [1.5_f64, 2.0] {
+        let spun = format!("start.psi'={spin}");
+        let found = folder.noslip(["equilibria", "falling-disk", "--json", "--set", &spun, "--set", "start.theta=0"]);
+        assert_eq!(found.code, 0, "{}", found.stderr);
+        let found: serde_json::Value = serde_json::from_str(&found.stdout).unwrap();
+        let rate = |e: &serde_json::Value, name: &str| e["rates"][name].as_f64().unwrap();
+        let upright = |e: &&serde_json::Value| (rate(e, "psi'") - spin).abs() < 1e-9 && rate(e, "phi'").abs() < 1e-9;
+        let steady = found["equilibria"].as_array().unwrap().iter().find(upright).unwrap();
+        let square = 0.8 * (9.81 - 3.0 * spin * spin);
+        let part = if square < 0.0 { "im" } else { "re" };
+        let numbers = steady["flow"].as_array().unwrap().iter().map(|value| value[part].as_f64().unwrap());
+        let largest = numbers.fold(0.0, f64::max);
+        assert!((largest - square.abs().sqrt()).abs() < 1e-9, "{spin}: {largest}");
+        assert_eq!(steady["stable"].as_bool(), Some(square < 0.0));
+    }
+}

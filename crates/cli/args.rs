@@ -1,4 +1,5 @@
 use crate::coordinate::{Coordinate, Range};
+use crate::format::Format;
 use crate::plane::{Crossed, Plane};
 use crate::trigger::Trigger;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
@@ -139,34 +140,37 @@ pub(crate) struct RunArguments {
     /// Keep every N-th node in the output file
     #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true, value_parser = count)]
     pub(crate) every: u64,
-    /// Write the trajectory: .csv, .npz, or .parquet (a cargo feature), by the ending
+    /// Write the trajectory: .csv, .jsonl, .npz, or .parquet (a cargo feature), by the ending; - is standard output
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Write a page with pictures into this folder: the motion, the path, and the columns against time
     #[arg(long, value_name = "DIR", conflicts_with_all = ["checkpoint", "resume", "until", "tolerance", "substep"])]
     pub(crate) report: Option<PathBuf>,
+    /// Format of the output file, whatever its ending: csv, jsonl, npz, parquet [default for standard output: csv]
+    #[arg(long, value_name = "FORMAT", requires = "out")]
+    pub(crate) format: Option<Format>,
     /// Choose the longest step whose error, of a place or an angle, stays below this, by trial runs; of a method with steps of its own
     /// the error of each that it aims for
     #[arg(long, value_name = "TOL", allow_negative_numbers = true, value_parser = number, conflicts_with = "step")]
     pub(crate) tolerance: Option<f64>,
-    /// Make a step that is refused, or that does not resolve the motion, in parts; every step then takes the time of three
+    /// Divide a step that fails, or that does not resolve the motion, into parts; every step then takes the time of three steps
     #[arg(long)]
     pub(crate) substep: bool,
-    /// Save the run to this file now and then, so that it can be resumed after a stop
+    /// Save the run to this file now and then, so that --resume can go on after a stop
     #[arg(long, value_name = "FILE")]
     pub(crate) checkpoint: Option<PathBuf>,
     /// Save the run every N steps
     #[arg(long, value_name = "N", default_value_t = 1_000_000, allow_negative_numbers = true, value_parser = count,
           requires = "checkpoint")]
     pub(crate) checkpoint_every: u64,
-    /// Go on from this checkpoint, to the same last bit; --out then writes the nodes after it
+    /// Go on from this checkpoint, to the same last bit, also with a longer --duration; the file of --out is continued
     #[arg(long, value_name = "FILE")]
     pub(crate) resume: Option<PathBuf>,
     /// Find when x, y, heading (in every turn), unwrapped_heading (turns counted), speed or turn_rate crosses a value, as in
     /// speed=0; can be repeated
     #[arg(long, value_name = "NAME=VALUE", conflicts_with_all = ["checkpoint", "resume"])]
     pub(crate) event: Vec<Trigger>,
-    /// The same, and end the run there
+    /// As --event, and end the run there
     #[arg(long, value_name = "NAME=VALUE", conflicts_with_all = ["checkpoint", "resume"])]
     pub(crate) until: Vec<Trigger>,
     /// Look for events in so many parts of each step, and of each step that dop853 makes within one
@@ -176,6 +180,7 @@ pub(crate) struct RunArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(group = ArgGroup::new("saved").args(["checkpoint", "resume"]).multiple(true))]
 pub(crate) struct CompareArguments {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
@@ -188,11 +193,11 @@ pub(crate) struct CompareArguments {
     /// Save the runs into this folder now and then, and when Ctrl-C ends them, so that they can be resumed
     #[arg(long, value_name = "DIR")]
     pub(crate) checkpoint: Option<PathBuf>,
-    /// Save them every N steps
+    /// Save each run every N steps
     #[arg(long, value_name = "N", default_value_t = 10_000_000, allow_negative_numbers = true, value_parser = count,
-          requires = "checkpoint")]
+          requires = "saved")]
     pub(crate) checkpoint_every: u64,
-    /// Go on from the checkpoints in this folder; runs that are done are not made again
+    /// Go on from the checkpoints in this folder, and save there unless --checkpoint says where; finished runs are not repeated
     #[arg(long, value_name = "DIR")]
     pub(crate) resume: Option<PathBuf>,
 }
@@ -288,7 +293,7 @@ pub(crate) struct LyapunovArguments {
 pub(crate) struct SectionArguments {
     #[command(flatten)]
     pub(crate) scene: SceneArguments,
-    /// Any method
+    /// Method (see `noslip list methods`)
     #[arg(long, value_name = "M", default_value = "gauss8")]
     pub(crate) method: String,
     /// The plane: x, y, heading, speed, turn_rate, center_x, center_y, or along, across (the centre of mass as the body sees
@@ -298,7 +303,7 @@ pub(crate) struct SectionArguments {
     /// Which crossings count
     #[arg(long, value_enum, default_value_t = Crossed::Rising)]
     pub(crate) direction: Crossed,
-    /// What is shown of each, across and upwards
+    /// The two coordinates to show of each crossing: the first across, the second upwards
     #[arg(long, value_name = "A,B", value_delimiter = ',')]
     pub(crate) axes: Option<Vec<Coordinate>>,
     /// How many starts: the scene's, and others at its place and of its energy
@@ -317,7 +322,7 @@ pub(crate) struct EnsembleArguments {
     /// A file that names a scene and what varies of it
     #[arg(value_name = "SWEEP")]
     pub(crate) sweep: String,
-    /// Write a row for each member: .csv, .npz, or .parquet (a cargo feature), by the ending
+    /// Write a row for each member: .csv, .jsonl, .npz, or .parquet (a cargo feature), by the ending
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Go on where an interrupted run of the same sweep ended

@@ -80,7 +80,13 @@ fn text(files: &[String; 2], [a, b]: [&Columns; 2], differences: &[Difference]) 
         if difference.size == 0.0 {
             return vec![difference.name.clone(), size];
         }
-        vec![difference.name.clone(), size, difference.row.to_string(), table::number(a), table::number(b)]
+        vec![
+            difference.name.clone(),
+            size,
+            difference.row.to_string(),
+            harness::precision::number(a),
+            harness::precision::number(b),
+        ]
     };
     let header = ["column", "largest difference", "in row", &files[0], &files[1]];
     let mut text = table::right_aligned(&header, &differences.iter().map(cells).collect::<Vec<_>>());

@@ -1,12 +1,12 @@
 use crate::args::EquilibriaArguments;
 use crate::error::CliError;
 use crate::files::{check_file, write_whole};
-use crate::{inspect, table, terminal};
+use crate::{inspect, table, terminal, text};
 use dla::{Schedule, State, Trajectory};
 use harness::analysis::{DiscreteMap, EquilibriumError, StepLimit, differentiable, relative_equilibria};
 use harness::report::{Chart, Layer, chart_svg};
 use harness::{Method, integrate_pieces};
-use scene::{Scene, SceneSystem, Visitor};
+use scene::{AnyScene, Scene, SceneSystem, Visitor};
 use serde_json::{Value, json};
 use sleigh::SleighState;
 use std::fmt::Write;
@@ -38,7 +38,10 @@ struct Row {
 
 /// `noslip equilibria`: the steady motions of a scene, and how stable they are, of the flow and of a method.
 pub(crate) fn equilibria(arguments: &EquilibriaArguments) -> Result<(), CliError> {
-    let scene = inspect::load(&arguments.scene, arguments.method.as_deref())?;
+    let scene = match inspect::load_any(&arguments.scene, arguments.method.as_deref())? {
+        AnyScene::Sleigh(scene) => *scene,
+        AnyScene::Text(scene) => return text::equilibria::equilibria(arguments, &scene),
+    };
     let method = Method::of(&scene.run.method, scene.run.alpha, scene.run.tolerance)?;
     if differentiable::<3, 1>(&method).is_none() {
         return Err(CliError::NotDifferentiated { method: method.info().name });
@@ -54,7 +57,7 @@ pub(crate) fn equilibria(arguments: &EquilibriaArguments) -> Result<(), CliError
     if arguments.scene.json {
         terminal::print_json(&object(&scene, &method, &found.rows))
     } else {
-        terminal::print(&text(&scene, &method, &found.rows))
+        terminal::print(&told(&scene, &method, &found.rows))
     }
 }
 
@@ -155,7 +158,6 @@ fn portrait(scene: &Scene, found: &Found) -> Chart {
 }
 
 fn object(scene: &Scene, method: &Method, rows: &[Row]) -> Value {
-    let complex = |values: &[[f64; 2]]| values.iter().map(|[re, im]| json!({"re": re, "im": im})).collect::<Vec<_>>();
     let equilibria = rows.iter().map(|row| {
         json!({
             "speed": row.state.speed,
@@ -167,8 +169,8 @@ fn object(scene: &Scene, method: &Method, rows: &[Row]) -> Value {
             "depends_on": row.depends_on,
             "family": row.family,
             "stable": row.stable,
-            "flow": complex(&row.flow),
-            "map": row.map.as_deref().map(complex),
+            "flow": complex_json(&row.flow),
+            "map": row.map.as_deref().map(complex_json),
             "step_limit": row.limit.and_then(StepLimit::step),
             "step_limit_reason": row.limit.map(StepLimit::reason),
         })
@@ -181,7 +183,7 @@ fn object(scene: &Scene, method: &Method, rows: &[Row]) -> Value {
     })
 }
 
-fn text(scene: &Scene, method: &Method, rows: &[Row]) -> String {
+fn told(scene: &Scene, method: &Method, rows: &[Row]) -> String {
     let (h, name) = (scene.run.actual_step(), method.info().name);
     let mut text =
         format!("{} ({}): steady motions, and those of {name} with steps of {h} s\n", scene.title, scene.name);
@@ -195,12 +197,7 @@ fn text(scene: &Scene, method: &Method, rows: &[Row]) -> String {
             let [x, y, heading] = [x, y, heading].map(table::number);
             let _ = write!(what, ", at x = {x} m, y = {y} m, heading {heading} rad");
         }
-        let limit = match row.limit {
-            None => "none: the motion itself is unstable".to_owned(),
-            Some(StepLimit::Beyond(step)) => format!("none found up to {} s", table::number(step)),
-            Some(StepLimit::Unstable(step)) => format!("{} s: beyond, the map is unstable", table::number(step)),
-            Some(StepLimit::Ends(step)) => format!("{} s: beyond, no step stays near", table::number(step)),
-        };
+        let limit = limit_told(row.limit);
         let lines = [
             ("motion", what),
             ("", if row.stable { "stable".to_owned() } else { "unstable".to_owned() }),
@@ -214,7 +211,22 @@ fn text(scene: &Scene, method: &Method, rows: &[Row]) -> String {
     text
 }
 
-fn complex_numbers(values: &[[f64; 2]]) -> String {
+/// The longest step of a method near a steady motion, in words.
+pub(crate) fn limit_told(limit: Option<StepLimit>) -> String {
+    match limit {
+        None => "none: the motion itself is unstable".to_owned(),
+        Some(StepLimit::Beyond(step)) => format!("none found up to {} s", table::number(step)),
+        Some(StepLimit::Unstable(step)) => format!("{} s: beyond, the map is unstable", table::number(step)),
+        Some(StepLimit::Ends(step)) => format!("{} s: beyond, no step stays near", table::number(step)),
+    }
+}
+
+/// Complex numbers for a program.
+pub(crate) fn complex_json(values: &[[f64; 2]]) -> Vec<Value> {
+    values.iter().map(|[re, im]| json!({"re": re, "im": im})).collect()
+}
+
+pub(crate) fn complex_numbers(values: &[[f64; 2]]) -> String {
     let number = |[re, im]: &[f64; 2]| match *im {
         // Without the sign of a zero.
         0.0 => table::number(*re + 0.0),

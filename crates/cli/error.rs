@@ -22,7 +22,7 @@ pub(crate) enum CliError {
     Case { name: String, nearest: Option<String>, names: String },
     #[error("{} exists already; --force overwrites it", path.display())]
     Exists { path: PathBuf },
-    #[error("{}: a trajectory is written as .csv, .npz or .parquet, by the ending of its name", path.display())]
+    #[error("{}: rows are written as .csv, .jsonl, .npz or .parquet, by the ending of the name or by --format", path.display())]
     Ending { path: PathBuf },
     #[cfg(not(feature = "parquet"))]
     #[error(
@@ -35,8 +35,6 @@ pub(crate) enum CliError {
     /// What is asked for makes no sense, or cannot be had of this scene or method.
     #[error("{0}")]
     Request(String),
-    #[error("--out would hold {nodes} nodes; at most {most} are accepted, with --every {every} or more")]
-    TooManyNodes { nodes: u64, most: u64, every: u64 },
     #[error("cannot write {}: {source}", path.display())]
     Write { path: PathBuf, source: std::io::Error },
     #[error("cannot write {}: in the folder {}: {source}", path.display(), folder.display())]
@@ -94,7 +92,7 @@ impl CliError {
             Self::ChartEnding { .. } | Self::Request(_) => 2,
             Self::Busy { .. } | Self::Read { .. } | Self::Checkpoint { .. } => 2,
             Self::Tolerance(error) if matches!(**error, RecommendError::Request { .. }) => 2,
-            Self::TooManyNodes { .. } | Self::Points { .. } | Self::Report(ReportError::Exists { .. }) => 2,
+            Self::Points { .. } | Self::Report(ReportError::Exists { .. }) => 2,
             // That a search ends without any is no fault of the request.
             Self::Equilibria(EquilibriumError::NoneFound { .. } | EquilibriumError::Singular(_)) => 1,
             Self::Equilibria(_) | Self::NotDifferentiated { .. } | Self::WithoutTracer { .. } => 2,

@@ -1,8 +1,9 @@
 use crate::error::CliError;
-use std::fs::{File, OpenOptions};
+use crate::lock::{Lock, locked};
+use std::fs::File;
 use std::io::{BufWriter, Error, ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use tempfile::NamedTempFile;
+use tempfile::{NamedTempFile, TempPath};
 
 /// Refuses, before the work begins, a file that could not be written at its end.
 pub(crate) fn check_file(path: &Path, overwrite: bool) -> Result<(), CliError> {
@@ -59,15 +60,20 @@ pub(crate) fn write_whole(
     kept.map(|_| ()).map_err(|error| failed(error.error))
 }
 
-/// A file beside `path` that is removed unless it is renamed; with the usual rights of a new file.
+/// The file `NAME.noslip-new` beside `path`, that is removed unless it is renamed; with the usual rights of a new file. The name is
+/// always the same, so that a process that is killed leaves one file at most, which the next one takes.
 fn temporary(path: &Path) -> Result<NamedTempFile, CliError> {
     let folder = parent(path);
-    let create = |name: &Path| OpenOptions::new().read(true).write(true).create_new(true).open(name);
-    tempfile::Builder::new().prefix(".noslip-").make_in(&folder, create).map_err(|source| CliError::Folder {
-        path: path.to_owned(),
-        folder,
-        source,
-    })
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".noslip-new");
+    let new = folder.join(name);
+    let failed = |source| CliError::Folder { path: path.to_owned(), folder: folder.clone(), source };
+    let file = match locked(&new).map_err(failed)? {
+        Lock::Held(file) | Lock::Unlocked(file) => file,
+        Lock::Busy => return Err(CliError::Busy { path: new, out: path.to_owned() }),
+    };
+    file.set_len(0).map_err(failed)?;
+    Ok(NamedTempFile::from_parts(file, TempPath::try_from_path(new).map_err(failed)?))
 }
 
 fn parent(path: &Path) -> PathBuf {

@@ -1,6 +1,5 @@
 use crate::called::Caller;
 use crate::text::told;
-use crate::trajectory_file::Columns;
 use crate::trigger::{Events, Happened, Trigger};
 use crate::{inspect, json, substeps};
 use dla::{Event, Node, Samples, Schedule, State, Subject, Substeps, Trajectory};
@@ -131,10 +130,10 @@ impl<const N: usize, const M: usize> Made<N, M> {
         self.watched.trajectory.as_ref().map_or(&self.sampled[..], Trajectory::nodes)
     }
 
-    fn result(self, columns: Columns, mut object: Value) -> RunResult {
+    fn result(self, (columns, rows): (Vec<Column>, Vec<Vec<f64>>), mut object: Value) -> RunResult {
         let record = &self.watched.record;
         substeps::add_json(&mut object, record);
-        let (columns, numbers) = columns.by_column();
+        let numbers = (0..columns.len()).map(|k| rows.iter().map(|row| row[k]).collect()).collect();
         RunResult { columns, numbers, object, failure: substeps::failure(record), interrupted: record.interrupted }
     }
 }
@@ -202,8 +201,9 @@ impl Run<'_> {
         let made = self.make(system.into(), (q, v), &[])?;
         let record = &made.watched.record;
         let object = json::record_of(self.name, record, &told::json(system.model(), record.t, &record.q, &record.v));
-        let columns = told::columns(system, made.nodes());
-        Ok(made.result(columns, object))
+        let columns = told::columns(system, 0.0, (&q, &v));
+        let rows = made.nodes().iter().map(|node| told::row(system, node)).collect();
+        Ok(made.result((columns, rows), object))
     }
 }
 
@@ -227,7 +227,8 @@ impl Visitor for Run<'_> {
             let happened = crossings.iter().filter_map(|crossing| Happened::of(system, &looked_for, crossing));
             Events::new(happened, *close).add_to(&mut object);
         }
-        let columns = Columns::of(system, made.nodes());
-        Ok(made.result(columns, object))
+        let columns = made.nodes().first().map_or_else(Vec::new, |first| system.columns(first));
+        let rows = made.nodes().iter().map(|node| system.row(node)).collect();
+        Ok(made.result((columns, rows), object))
     }
 }

@@ -21,10 +21,20 @@ pub(crate) fn load(arguments: &SceneArguments, method: Option<&str>) -> Result<S
 
 /// The scene of a command line, of either kind.
 pub(crate) fn load_any(arguments: &SceneArguments, method: Option<&str>) -> Result<AnyScene, CliError> {
+    load_any_with((&arguments.scene, &arguments.set), method, arguments.step, arguments.duration, arguments.alpha)
+}
+
+/// The scene of that name, of either kind, with the settings of the command line, of which flags come last.
+pub(crate) fn load_any_with(
+    (scene, settings): (&str, &Settings),
+    method: Option<&str>,
+    step: Option<f64>,
+    duration: Option<f64>,
+    alpha: Option<f64>,
+) -> Result<AnyScene, CliError> {
     let names = method_names();
-    let SceneArguments { scene, set, step, duration, alpha, .. } = arguments;
-    let overrides = Overrides { method, step: *step, duration: *duration, alpha: *alpha };
-    Ok(AnyScene::load_over(scene, &set.set, &overrides, &names)?)
+    let overrides = Overrides { method, step, duration, alpha };
+    Ok(AnyScene::load_over(scene, &settings.set, &overrides, &names)?)
 }
 
 /// The scene of that name, with the settings of the command line, of which flags come last.

@@ -1,6 +1,9 @@
 use crate::args::LyapunovArguments;
 use crate::chart_file::ChartFile;
+use crate::compare::unless_interrupted;
 use crate::error::CliError;
+use crate::interrupt::Interrupt;
+use crate::progress::Interruptible;
 use crate::starts::{Start, with_energy};
 use crate::{inspect, progress, stability_map, table, terminal};
 use dla::Schedule;
@@ -107,10 +110,15 @@ impl Visitor for Exponents<'_> {
         let (schedule, settle) = schedule(self.arguments, self.scene);
         let exponents = self.arguments.exponents.map(|count| count as usize);
         let request = LyapunovRequest { schedule, settle, exponents, q, v };
+        let interrupt = Interrupt::listen();
         let bar = progress::bar(self.method.info().name, settle.saturating_add(schedule.steps));
-        let found = harness::analysis::lyapunov((system, &system), &self.method, &request, &mut |steps| bar.inc(steps));
-        bar.finish_and_clear();
-        self.tell(&found.map_err(refused)?, system.energy(0.0, &q, &v), 2 * N - M)
+        let mut progress = Interruptible { bar, interrupt: &interrupt };
+        let found = harness::analysis::lyapunov((system, &system), &self.method, &request, &mut progress);
+        progress.bar.finish_and_clear();
+        let found = found.map_err(refused)?;
+        let told = self.tell(&found, system.energy(0.0, &q, &v), 2 * N - M);
+        let made = interrupt.asked().then(|| format!("{} s are measured", table::number(found.time)));
+        unless_interrupted(made, None, told)
     }
 }
 

@@ -1,8 +1,10 @@
 use crate::error::CliError;
+use crate::lock::{Lock, locked};
 use crate::terminal;
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::File;
 use std::io::{Error, ErrorKind};
 use std::path::{Path, PathBuf};
+use tempfile::TempPath;
 
 /// The file `OUT.part` beside an output, in which rows are kept until the output can be written whole. It is locked as long as this
 /// value lives, so that two processes never write into one.
@@ -26,22 +28,13 @@ impl Part {
     /// [`CliError::Busy`] where another process has it, [`CliError::Write`] where it cannot be made.
     pub(crate) fn lock(out: &Path) -> Result<Self, CliError> {
         let path = Self::path_of(out);
-        let failed = |source| CliError::Write { path: path.clone(), source };
-        loop {
-            let mut options = OpenOptions::new();
-            let file = options.read(true).write(true).create(true).truncate(false).open(&path).map_err(failed)?;
-            match file.try_lock() {
-                Ok(()) => {}
-                Err(TryLockError::WouldBlock) => return Err(CliError::Busy { path, out: out.to_owned() }),
-                Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {
-                    let told = "the file system has no locks; no other process may write";
-                    terminal::say("warning", &format!("{}: {told} {}", path.display(), out.display()));
-                }
-                Err(TryLockError::Error(error)) => return Err(failed(error)),
-            }
-            // A process that was done may have removed the file between the two calls: the lock is then that of a file without a name.
-            if is_at(&file, &path) {
-                return Ok(Self { path, file });
+        match locked(&path).map_err(|source| CliError::Write { path: path.clone(), source })? {
+            Lock::Held(file) => Ok(Self { path, file }),
+            Lock::Busy => Err(CliError::Busy { path, out: out.to_owned() }),
+            Lock::Unlocked(file) => {
+                let told = "the file system has no locks; no other process may write";
+                terminal::say("warning", &format!("{}: {told} {}", path.display(), out.display()));
+                Ok(Self { path, file })
             }
         }
     }
@@ -61,22 +54,26 @@ impl Part {
         CliError::Write { path: self.path.clone(), source }
     }
 
+    /// Gives the file the name of the output.
+    pub(crate) fn becomes(self, out: &Path, overwrite: bool) -> Result<(), CliError> {
+        let failed = |source| CliError::Write { path: out.to_owned(), source };
+        // What is overwritten through a link is the file that the link leads to.
+        let target = if overwrite { out.canonicalize().unwrap_or_else(|_| out.to_owned()) } else { out.to_owned() };
+        let path = TempPath::try_from_path(&self.path).map_err(failed)?;
+        let renamed = if overwrite { path.persist(target) } else { path.persist_noclobber(target) };
+        renamed.map_err(|error| {
+            // The rows stay where they are.
+            let _ = error.path.keep();
+            if error.error.kind() == ErrorKind::AlreadyExists {
+                CliError::Exists { path: out.to_owned() }
+            } else {
+                failed(error.error)
+            }
+        })
+    }
+
     /// Removes the file. Should that fail a file is left that does no harm.
     pub(crate) fn remove(self) {
         let _ = std::fs::remove_file(&self.path);
     }
-}
-
-/// Whether the path still leads to the open file.
-#[cfg(unix)]
-fn is_at(file: &File, path: &Path) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    let [open, found] = [file.metadata(), path.metadata()].map(|metadata| metadata.map(|m| (m.dev(), m.ino())).ok());
-    open.is_some() && open == found
-}
-
-/// An open file cannot be removed here.
-#[cfg(not(unix))]
-fn is_at(_file: &File, _path: &Path) -> bool {
-    true
 }

@@ -1,23 +1,25 @@
 use crate::args::PrecisionArguments;
-use crate::compare::{distance, methods};
+use crate::compare::{distance, methods, unless_interrupted};
 use crate::error::CliError;
 use crate::inspect::method_names;
-use crate::{facts, files, inspect, points_file, precision_text, progress, terminal, train};
+use crate::interrupt::Interrupt;
+use crate::progress::Interruptible;
+use crate::{facts, files, inspect, points_file, precision_text, progress, terminal, text, train};
 use dla::State;
 use harness::Method;
 use harness::precision::{
     Bench, Clock, Curve, Limits, Motion, Reference, ReferenceError, mark_pareto, rounds, work_precision,
 };
 use harness::report::write_precision;
-use scene::{Scene, SceneSystem, Visitor};
+use scene::{AnyScene, Scene, SceneSystem, Visitor};
 use sleigh::{Exact, SleighState};
 
 /// The longest duration (s) that is chosen without being asked for.
 const DURATION: f64 = 20.0;
 /// How well the reference is then known.
-const KNOWN: f64 = 1e-12;
+pub(crate) const KNOWN: f64 = 1e-12;
 /// How often the duration is halved for that.
-const HALVINGS: u32 = 6;
+pub(crate) const HALVINGS: u32 = 6;
 
 /// Errors within so many times that of the reference are all the same.
 const CLEAR: f64 = 10.0;
@@ -26,14 +28,14 @@ const CLEAR: f64 = 10.0;
 pub(crate) struct Measurement {
     /// How long the motion takes (s).
     pub(crate) duration: f64,
-    pub(crate) reference: KnownEnd,
+    pub(crate) reference: KnownEnd<()>,
     pub(crate) clock: Clock,
     pub(crate) facts: Vec<(String, String)>,
     pub(crate) curves: Vec<Curve>,
 }
 
 /// Where the motion truly ends.
-pub(crate) struct KnownEnd {
+pub(crate) struct KnownEnd<End = SleighState> {
     /// In closed form; else by the method.
     pub(crate) closed: bool,
     /// The method that computes it, or that the closed form is checked against.
@@ -42,21 +44,29 @@ pub(crate) struct KnownEnd {
     pub(crate) steps: u64,
     /// How far it may be off (m or rad).
     pub(crate) error: f64,
-    pub(crate) end: SleighState,
+    pub(crate) end: End,
+}
+
+impl<End> KnownEnd<End> {
+    /// How well it is known, without where it is.
+    pub(crate) fn told(&self) -> KnownEnd<()> {
+        let &Self { closed, by, steps, error, .. } = self;
+        KnownEnd { closed, by, steps, error, end: () }
+    }
 }
 
 /// `noslip precision`: what accuracy costs in time.
 pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> {
     let mut scene =
-        inspect::load_with((&arguments.scene, &arguments.set), None, None, arguments.duration, arguments.alpha)?;
+        inspect::load_any_with((&arguments.scene, &arguments.set), None, None, arguments.duration, arguments.alpha)?;
     let names: Vec<&str> = match &arguments.methods {
         Some(names) => names.iter().map(|name| name.trim()).collect(),
         None => method_names(),
     };
-    let methods = methods(&names, scene.run.alpha, scene.run.tolerance)?;
+    let methods = methods(&names, scene.run().alpha, scene.run().tolerance)?;
     let mut others = Vec::new();
     for path in &arguments.with {
-        let (curves, warnings) = points_file::read(path, &scene.name)?;
+        let (curves, warnings) = points_file::read(path, scene.name())?;
         warnings.iter().for_each(|warning| terminal::say("warning", warning));
         others.extend(curves);
     }
@@ -67,10 +77,15 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
         files::check_file(path, arguments.force)?;
     }
     if arguments.duration.is_none() {
-        scene.run.duration = scene.run.duration.min(DURATION);
+        scene.run_mut().duration = scene.run().duration.min(DURATION);
     }
     let chosen = arguments.duration.is_none();
-    let mut measured = measure(&scene, &methods, arguments.longest, chosen)?;
+    let interrupt = Interrupt::listen();
+    let mut measured = match &scene {
+        AnyScene::Sleigh(scene) => measure(scene, &methods, arguments.longest, chosen, &interrupt)?,
+        AnyScene::Text(scene) => text::precision::measure(scene, &methods, arguments.longest, chosen, &interrupt)?,
+    };
+    let climbed = measured.curves.len();
     measured.curves.extend(others);
     mark_pareto(&mut measured.curves, CLEAR * measured.reference.error);
 
@@ -92,15 +107,23 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
         }
     }
     let named = arguments.methods.is_some();
-    CliError::of_failures(measured.curves.iter().filter_map(|curve| failure(curve, named)))
+    let made = interrupt.asked().then(|| format!("{} of {} methods are measured", climbed, methods.len()));
+    let failed = CliError::of_failures(measured.curves.iter().filter_map(|curve| failure(curve, named)));
+    unless_interrupted(made, None, failed)
 }
 
 /// Measures what accuracy costs on a scene, by runs of `longest` (s) at most; of a duration that is `chosen` for the user there may be
 /// less.
-pub(crate) fn measure(scene: &Scene, methods: &[Method], longest: f64, chosen: bool) -> Result<Measurement, CliError> {
+pub(crate) fn measure(
+    scene: &Scene,
+    methods: &[Method],
+    longest: f64,
+    chosen: bool,
+    interrupt: &Interrupt,
+) -> Result<Measurement, CliError> {
     match scene.train()? {
-        Some(whole) => train::measure(scene, &whole, methods, longest),
-        None => scene.visit(Measure { scene, methods, longest, chosen })?,
+        Some(whole) => train::measure(scene, &whole, methods, longest, interrupt),
+        None => scene.visit(Measure { scene, methods, longest, chosen, interrupt })?,
     }
 }
 
@@ -120,6 +143,7 @@ struct Measure<'a> {
     longest: f64,
     /// The duration is not the user's: it may be less.
     chosen: bool,
+    interrupt: &'a Interrupt,
 }
 
 impl Visitor for Measure<'_> {
@@ -154,12 +178,13 @@ impl Visitor for Measure<'_> {
         let bench = Bench { duration, reference_error: reference.error, end_error: &end_error, aligned: &aligned };
         let limits = Limits { fewest: motion.aligned(2), longest: self.longest };
         let bar = progress::bar(&format!("{} precision", self.scene.name), self.methods.len() as u64 + rounds());
-        let (curves, clock) = work_precision(&bench, self.methods, &limits, &mut |done| bar.inc(done));
-        bar.finish_and_clear();
+        let mut progress = Interruptible { bar, interrupt: self.interrupt };
+        let (curves, clock) = work_precision(&bench, self.methods, &limits, &mut progress);
+        progress.bar.finish_and_clear();
         let mut facts = facts::of(self.scene, system, &State::new(q, v, system.angles()));
         // The steps are those of the ladders, not the scene's.
         facts.pop();
-        Ok(Measurement { duration, reference, clock, facts, curves })
+        Ok(Measurement { duration, reference: reference.told(), clock, facts, curves })
     }
 }
 

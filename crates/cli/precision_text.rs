@@ -1,10 +1,10 @@
 //! What `noslip precision` says: the same values as a table, as CSV, as JSON and in the report.
 
 use crate::precision::Measurement;
-use crate::table::{number, right_aligned};
-use harness::precision::{Curve, LEVELS, Mark, Point, Setting, cheapest, seconds_to};
+use crate::table::right_aligned;
+use harness::precision::{Curve, LEVELS, Mark, Point, Setting, cheapest, number, seconds_to};
 use harness::report::{Numbers, PrecisionReport, Table};
-use scene::Scene;
+use scene::AnyScene;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -76,12 +76,16 @@ fn verdicts(curves: &[Curve]) -> String {
             (Some((best, seconds)), Some((next, _)), Some(factor)) => {
                 writeln!(
                     text,
-                    "cheapest at {error}: {best}, {} s; {next} takes {factor:.2} times that",
+                    "cheapest at an error of {error}: {best} with {} s; {next} takes {factor:.2} times as long",
                     number(*seconds)
                 )
             }
-            (Some((best, seconds)), ..) => writeln!(text, "cheapest at {error}: {best}, {} s, alone", number(*seconds)),
-            (None, ..) => writeln!(text, "cheapest at {error}: none gets there"),
+            (Some((best, seconds)), ..) => writeln!(
+                text,
+                "cheapest at an error of {error}: {best} with {} s; no other method reaches this error",
+                number(*seconds)
+            ),
+            (None, ..) => writeln!(text, "no method reaches an error of {error}"),
         };
     }
     text
@@ -108,8 +112,8 @@ fn clock(measured: &Measurement) -> String {
 }
 
 /// The tables on a terminal.
-pub(crate) fn text(scene: &Scene, measured: &Measurement) -> String {
-    let mut text = format!("{} ({}), {} s\n", scene.title, scene.name, number(measured.duration));
+pub(crate) fn text(scene: &AnyScene, measured: &Measurement) -> String {
+    let mut text = format!("{} ({}), {} s\n", scene.title(), scene.name(), number(measured.duration));
     let _ = writeln!(text, "reference: {}\ntimes: {}\n", reference(measured), clock(measured));
     text += &noted(&POINTS, points(&measured.curves).map(|(curve, point)| cells(curve, point)).collect());
     text.push('\n');
@@ -158,7 +162,7 @@ pub(crate) fn quoted(text: &str) -> String {
 }
 
 /// The object that `precision --json` prints.
-pub(crate) fn json(scene: &Scene, measured: &Measurement) -> Value {
+pub(crate) fn json(scene: &AnyScene, measured: &Measurement) -> Value {
     let (known, curves) = (&measured.reference, &measured.curves);
     let cheapest: Vec<Value> = cheapest(curves)
         .iter()
@@ -177,7 +181,7 @@ pub(crate) fn json(scene: &Scene, measured: &Measurement) -> Value {
         })
         .collect();
     json!({
-        "scene": scene.name,
+        "scene": scene.name(),
         "duration": measured.duration,
         "reference": {
             "kind": if known.closed { "closed form" } else { known.by },
@@ -240,7 +244,7 @@ fn json_method(curve: &Curve) -> Value {
 }
 
 /// The report.
-pub(crate) fn report(scene: &Scene, measured: &Measurement) -> PrecisionReport {
+pub(crate) fn report(scene: &AnyScene, measured: &Measurement) -> PrecisionReport {
     let mut facts = measured.facts.clone();
     let duration = format!("{} s", number(measured.duration));
     for (name, value) in [("duration", duration), ("reference", reference(measured)), ("times", clock(measured))] {
@@ -259,10 +263,10 @@ pub(crate) fn report(scene: &Scene, measured: &Measurement) -> PrecisionReport {
     };
     let rows = points(&measured.curves).map(|(curve, point)| cells(curve, point)).collect();
     PrecisionReport {
-        title: format!("noslip precision {}", scene.name),
+        title: format!("noslip precision {}", scene.name()),
         intro: format!("{INTRO}\n\n{}", verdicts(&measured.curves)),
-        name: scene.name.clone(),
-        heading: scene.title.clone(),
+        name: scene.name().to_owned(),
+        heading: scene.title().to_owned(),
         facts,
         curves: measured.curves.clone(),
         tables: vec![

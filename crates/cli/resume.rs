@@ -1,28 +1,48 @@
 use crate::error::CliError;
 use crate::files::{check_file, write_whole};
+use crate::terminal;
 use dla::{Checkpoint, CheckpointError, Schedule};
 use harness::Method;
+use scene::RunSettings;
 use std::io::Write;
 use std::path::Path;
 
-/// What tells the run of a scene, of that name and with these contents, with a method from all others.
-pub(crate) fn identity(
-    (name, contents): (&str, &dyn std::fmt::Debug),
+/// What tells the run of a scene, of that name and with these contents, with a method from all others. The contents have no duration: a
+/// longer run begins with the shorter one.
+pub(crate) fn identity(scene: (&str, &dyn std::fmt::Debug), method: &Method, schedule: &Schedule) -> Checkpoint {
+    Checkpoint::of(pairs(scene, method, schedule))
+}
+
+/// The same of a run whose record depends on its length too.
+pub(crate) fn identity_of_whole(
+    scene: (&str, &dyn std::fmt::Debug),
     method: &Method,
     schedule: &Schedule,
 ) -> Checkpoint {
+    Checkpoint::of(pairs(scene, method, schedule).chain([("steps", schedule.steps.to_string())]))
+}
+
+/// The settings of a run without its duration.
+pub(crate) fn endless(run: &RunSettings) -> RunSettings {
+    RunSettings { duration: 0.0, ..run.clone() }
+}
+
+fn pairs(
+    (name, contents): (&str, &dyn std::fmt::Debug),
+    method: &Method,
+    schedule: &Schedule,
+) -> impl Iterator<Item = (&'static str, String)> {
     let parts = method.substeps().map(|_| ("substep", "yes".to_owned()));
     let run = [
         ("scene", name.to_owned()),
         ("method", method.info().name.to_owned()),
         ("step", schedule.step.to_string()),
-        ("steps", schedule.steps.to_string()),
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
         // All the rest: every number of the scene, with every digit.
         ("contents", Checkpoint::fingerprint(&format!("{contents:?}"))),
     ];
     let tolerance = method.is_adaptive().then(|| ("tolerance", method.tolerance().to_string()));
-    Checkpoint::of(run.into_iter().chain(parts).chain(tolerance))
+    run.into_iter().chain(parts).chain(tolerance)
 }
 
 /// Refuses, before the work begins, a checkpoint that could not be written; one that is resumed may be overwritten.
@@ -40,7 +60,37 @@ pub(crate) fn read(path: &Path, identity: &Checkpoint) -> Result<Checkpoint, Cli
     Ok(checkpoint)
 }
 
+/// Writes the checkpoints of a run to a file, where there is one. A save that fails is warned of at once, and the next is tried all the same.
+#[derive(Debug)]
+pub(crate) struct Saver<'a> {
+    path: Option<&'a Path>,
+    failed: Option<CliError>,
+}
+
+impl<'a> Saver<'a> {
+    /// Saves to that file.
+    pub(crate) fn new(path: Option<&'a Path>) -> Self {
+        Self { path, failed: None }
+    }
+
+    /// Saves a checkpoint.
+    pub(crate) fn save(&mut self, made: &Checkpoint) {
+        let Some(path) = self.path else { return };
+        let failed = write(path, made).err();
+        // Once: what fails for lack of room fails at every save until there is room.
+        if let (None, Some(error)) = (&self.failed, &failed) {
+            terminal::say("warning", &format!("{error}; the run goes on, and the next save is tried"));
+        }
+        self.failed = failed;
+    }
+
+    /// Whether the run is saved as far as it came.
+    pub(crate) fn outcome(self) -> Result<(), CliError> {
+        self.failed.map_or(Ok(()), Err)
+    }
+}
+
 /// Writes a checkpoint, whole or not at all, over the one before.
-pub(crate) fn write(path: &Path, checkpoint: &Checkpoint) -> Result<(), CliError> {
+fn write(path: &Path, checkpoint: &Checkpoint) -> Result<(), CliError> {
     write_whole(path, true, |file| file.write_all(checkpoint.to_text().as_bytes()))
 }

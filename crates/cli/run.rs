@@ -1,16 +1,17 @@
 use crate::args::RunArguments;
 use crate::compare::unless_interrupted;
 use crate::error::CliError;
-use crate::files::check_file;
 use crate::interrupt::Interrupt;
+use crate::output::{Asked, Output, Position};
 use crate::progress::Interruptible;
-use crate::trajectory_file::{self, Format};
+use crate::provenance::Provenance;
 use crate::trigger::{Events, Happened, Trigger};
 use crate::{inspect, json, progress, resume, substeps, table, terminal, text, train_run};
-use dla::{Checkpoint, Schedule, Substeps, Trajectory};
-use harness::{Kind, Method, Progress, Record, Request, Saving, Watched, recommend, run_saved, run_watched};
-use scene::{AnyScene, Scene, SceneSystem, Visitor};
-use std::path::Path;
+use dla::{Checkpoint, Node, Nodes, Schedule, Substeps};
+use harness::{Kind, Method, Progress, Record, Request, Saving, Watched, recommend, run_observed, run_saved};
+use scene::{AnyScene, RunSettings, Scene, SceneSystem, Visitor};
+use serde_json::json;
+use std::cell::RefCell;
 
 /// `noslip run`: one trajectory, as far as Ctrl-C lets it come.
 pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
@@ -22,16 +23,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
         Some(tolerance) if method.is_adaptive() => method.with_tolerance(tolerance)?,
         _ => method,
     };
-    let out = match &arguments.out {
-        Some(path) => {
-            let format = Format::of(path)?;
-            let steps = if let AnyScene::Sleigh(scene) = &scene { scene.schedule().steps } else { settings.steps() };
-            trajectory_file::check_size(steps, arguments.every)?;
-            check_file(path, arguments.scene.force)?;
-            Some((path.as_path(), format))
-        }
-        None => None,
-    };
+    let out = asked(arguments)?;
     if arguments.scene.alpha.is_some() && method.info().kind != Kind::DlaAlpha {
         let name = method.info().name;
         terminal::say("warning", &format!("--alpha is the weight of dla-alpha; {name} has none and ignores it"));
@@ -46,54 +38,133 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
     scene.visit(Run { arguments, scene: &scene, method, out })?
 }
 
+/// Where the rows are to be written, if anywhere.
+fn asked(arguments: &RunArguments) -> Result<Option<Asked<'_>>, CliError> {
+    let RunArguments { out, format, resume, scene, .. } = arguments;
+    let Some(path) = out.as_deref() else { return Ok(None) };
+    let asked = Asked::new(path, *format, scene.force, resume.is_some())?;
+    if asked.path.is_none() && scene.json {
+        return Err(CliError::Request("--json and --out - both write to standard output: choose one".to_owned()));
+    }
+    Ok(Some(asked))
+}
+
+/// What made the rows of a run, and the command that makes them again: with the step and the duration that were taken.
+pub(crate) fn provenance(
+    arguments: &RunArguments,
+    (title, run, text): (&str, &RunSettings, Option<String>),
+    schedule: &Schedule,
+) -> Provenance {
+    let RunArguments { every, substep, event, until, event_samples, out, .. } = arguments;
+    let duration = format!("{:?}", run.duration);
+    let mut command = ["noslip", "run", &arguments.scene.scene, "--method", &run.method].map(str::to_owned).to_vec();
+    let mut add = |flag: &str, value: String| command.extend([flag.to_owned(), value]);
+    add("--step", format!("{:?}", schedule.step));
+    add("--duration", duration);
+    run.alpha.iter().for_each(|alpha| add("--alpha", format!("{alpha:?}")));
+    event.iter().for_each(|trigger| add("--event", trigger.text.clone()));
+    until.iter().for_each(|trigger| add("--until", trigger.text.clone()));
+    if !event.is_empty() || !until.is_empty() {
+        add("--event-samples", event_samples.to_string());
+    }
+    add("--every", every.to_string());
+    if let Some(out) = out {
+        add("--out", out.display().to_string());
+    }
+    if *substep {
+        command.push("--substep".to_owned());
+    }
+    let mut notes = json!({
+        "method": run.method, "step": schedule.step, "duration": run.duration, "every": every,
+    });
+    if let Some(text) = text {
+        notes["scene"] = json!(text);
+    }
+    Provenance::new(title, &command, notes)
+}
+
+/// A scene as its provenance tells it: with the numbers as they were used, whatever the command line said instead of the file.
+pub(crate) fn of(scene: &Scene) -> (&str, &RunSettings, Option<String>) {
+    (&scene.title, &scene.run, scene.to_toml().ok())
+}
+
+/// What tells the run of a sleigh or a train from others.
+pub(crate) fn identity(scene: &Scene, method: &Method, schedule: &Schedule) -> Checkpoint {
+    // The steps of a smooth piece are chosen for its length: a longer run has others after the last jump.
+    if scene.jumps().is_ok_and(|jumps| !jumps.is_empty()) {
+        return resume::identity_of_whole((&scene.name, scene), method, schedule);
+    }
+    let contents = Scene { run: resume::endless(&scene.run), ..scene.clone() };
+    resume::identity((&scene.name, &contents), method, schedule)
+}
+
+/// How far the output of a checkpoint had come.
+pub(crate) fn position(checkpoint: Option<&Checkpoint>) -> Option<Position> {
+    checkpoint?.counts("out").ok()
+}
+
+/// A checkpoint that knows how far the output has come.
+pub(crate) fn with_position(made: &Checkpoint, output: &RefCell<Option<Output<'_>>>) -> Checkpoint {
+    let mut made = made.clone();
+    if let Some(position) = output.borrow_mut().as_mut().and_then(Output::position) {
+        made.put_counts("out", &position);
+    }
+    made
+}
+
+/// A run that ends when nobody reads its rows any more.
+pub(crate) struct Read<'a, 'b> {
+    pub(crate) progress: &'a mut dyn Progress,
+    pub(crate) output: &'a RefCell<Option<Output<'b>>>,
+}
+
+impl Progress for Read<'_, '_> {
+    fn advance(&mut self, steps: u64) {
+        self.progress.advance(steps);
+    }
+
+    fn stops(&self) -> bool {
+        self.progress.stops() || self.output.try_borrow().is_ok_and(|out| out.as_ref().is_some_and(Output::is_closed))
+    }
+}
+
 struct Run<'a> {
     arguments: &'a RunArguments,
     scene: &'a Scene,
     method: Method,
-    out: Option<(&'a Path, Format)>,
+    out: Option<Asked<'a>>,
 }
 
-/// A run that was made, with the nodes that are to be written.
-struct Made<const N: usize, const M: usize> {
+/// A run that was made.
+struct Made<const N: usize> {
     record: Record<N>,
-    trajectory: Option<Trajectory<N, M>>,
     /// What happened, where that was asked for.
     events: Option<Events>,
     /// What else went wrong.
     warning: Result<(), CliError>,
 }
 
-impl Run<'_> {
-    /// Every how many nodes are kept, where any are.
-    fn keep(&self) -> Option<u64> {
-        self.out.map(|_| self.arguments.every)
-    }
-
-    /// In parts that are saved, or from a part that was.
+impl<'a> Run<'a> {
+    /// In parts that are saved, or from a part that was, with the output as far as it had come.
     fn saved<const N: usize, const M: usize>(
         &self,
         system: &dyn SceneSystem<N, M>,
         request: &Request<N>,
+        (identity, read): (&Checkpoint, Option<&Checkpoint>),
+        output: &RefCell<Option<Output<'a>>>,
         progress: &mut dyn Progress,
-    ) -> Result<Made<N, M>, CliError> {
-        let RunArguments { checkpoint, checkpoint_every, resume: from, scene, .. } = self.arguments;
-        let identity = resume::identity((&self.scene.name, self.scene), &self.method, &request.schedule);
-        let read = from.as_ref().map(|path| resume::read(path, &identity)).transpose()?;
-        if let Some(path) = checkpoint {
-            resume::check(path, from.as_deref(), scene.force)?;
-        }
-        let mut warning = Ok(());
-        let mut save = |made: &Checkpoint| {
-            if let (Some(path), Ok(())) = (checkpoint, &warning) {
-                warning = resume::write(path, made);
-            }
-        };
+    ) -> Result<Made<N>, CliError> {
+        let RunArguments { checkpoint, checkpoint_every, resume: from, .. } = self.arguments;
+        let mut saver = resume::Saver::new(checkpoint.as_deref());
+        let mut save = |made: &Checkpoint| saver.save(&with_position(made, output));
         let every = checkpoint.as_ref().map(|_| *checkpoint_every);
-        let mut saving = Saving { identity: &identity, from: read.as_ref(), every, save: &mut save };
-        let outcome = run_saved(&system, &self.method, request, &mut saving, self.keep(), progress);
-        let (record, trajectory) =
+        let mut saving = Saving { identity, from: read, every, save: &mut save };
+        let mut sink = |node: &Node<N, M>| write(system, node, output);
+        let nodes = self.out.map(|_| Nodes::every(self.arguments.every, &mut sink));
+        let outcome = run_saved(&system, &self.method, request, &mut saving, nodes, progress);
+        let record =
             outcome.map_err(|source| CliError::Checkpoint { path: from.clone().unwrap_or_default(), source })?;
-        Ok(Made { record, trajectory, events: None, warning })
+        Ok(Made { record, events: None, warning: saver.outcome() })
     }
 
     /// At once, with an eye on events where there are any.
@@ -101,17 +172,48 @@ impl Run<'_> {
         &self,
         system: &dyn SceneSystem<N, M>,
         request: &Request<N>,
+        output: &RefCell<Option<Output<'a>>>,
         progress: &mut dyn Progress,
-    ) -> Made<N, M> {
-        let RunArguments { event, until, event_samples, .. } = self.arguments;
+    ) -> Made<N> {
+        let RunArguments { event, until, event_samples, every, .. } = self.arguments;
         let reported = event.iter().map(|trigger| trigger.event(system));
         let events: Vec<_> = reported.chain(until.iter().map(|trigger| trigger.event(system).terminal())).collect();
-        let Watched { record, trajectory, crossings, close } =
-            run_watched(&system, &self.method, request, (&events, *event_samples), self.keep(), progress);
+        let mut sink = |node: &Node<N, M>| write(system, node, output);
+        let mut nodes = self.out.map(|_| Nodes::every(*every, &mut sink));
+        let Watched { record, crossings, close, .. } =
+            run_observed(&system, &self.method, request, (&events, *event_samples), &mut nodes, progress);
         let triggers: Vec<&Trigger> = event.iter().chain(until).collect();
         let happened = crossings.iter().filter_map(|crossing| Happened::of(system, &triggers, crossing));
         let events = (!triggers.is_empty()).then(|| Events::new(happened, close));
-        Made { record, trajectory, events, warning: Ok(()) }
+        Made { record, events, warning: Ok(()) }
+    }
+
+    /// The output, begun, or as far as it had come.
+    fn output<const N: usize, const M: usize>(
+        &self,
+        system: &dyn SceneSystem<N, M>,
+        Request { schedule, q, v, .. }: &Request<N>,
+        read: Option<&Checkpoint>,
+    ) -> Result<Option<Output<'a>>, CliError> {
+        let Some(asked) = self.out else { return Ok(None) };
+        let start =
+            Node { k: 0, t: schedule.t0, q: *q, v: *v, energy: 0.0, work: 0.0, constraint: 0.0, multipliers: None };
+        let provenance = provenance(self.arguments, of(self.scene), schedule);
+        let columns = (system.columns(&start), self.arguments.every);
+        // A run that had made no step begins.
+        let read = read.filter(|read| read.counts("k").is_ok_and(|[made]| made > 0));
+        Output::open(asked, provenance, columns, position(read)).map(Some)
+    }
+}
+
+/// Hands a node to the output.
+fn write<const N: usize, const M: usize>(
+    system: &dyn SceneSystem<N, M>,
+    node: &Node<N, M>,
+    output: &RefCell<Option<Output<'_>>>,
+) {
+    if let Some(output) = output.borrow_mut().as_mut() {
+        output.row(node.k, &system.row(node));
     }
 }
 
@@ -132,25 +234,31 @@ impl Visitor for Run<'_> {
             let found = recommend(&system, &method, (q, v), self.scene.run.duration, tolerance);
             let found = found.map_err(|error| CliError::Tolerance(Box::new(error)))?;
             schedule = Schedule { step: found.step, steps: found.steps, ..schedule };
-            if self.out.is_some() {
-                trajectory_file::check_size(schedule.steps, self.arguments.every)?;
-            }
+        }
+        let request = Request { schedule, q, v, samples: 1 };
+        let identity = identity(self.scene, &self.method, &schedule);
+        let read = resume.as_ref().map(|path| resume::read(path, &identity)).transpose()?;
+        if let Some(path) = checkpoint {
+            resume::check(path, resume.as_deref(), self.arguments.scene.force)?;
         }
         let interrupt = Interrupt::listen();
+        let output = RefCell::new(self.output(system, &request, read.as_ref())?);
         let bar = progress::bar(self.method.info().name, schedule.steps);
-        let mut progress = Interruptible { bar, interrupt: &interrupt };
-        let request = Request { schedule, q, v, samples: 1 };
+        let mut shown = Interruptible { bar, interrupt: &interrupt };
+        let mut progress = Read { progress: &mut shown, output: &output };
         let made = if checkpoint.is_some() || resume.is_some() {
-            self.saved(system, &request, &mut progress)
+            self.saved(system, &request, (&identity, read.as_ref()), &output, &mut progress)
         } else {
-            Ok(self.watched(system, &request, &mut progress))
+            Ok(self.watched(system, &request, &output, &mut progress))
         };
-        progress.bar.finish_and_clear();
-        let Made { record, trajectory, events, warning } = made?;
+        shown.bar.finish_and_clear();
+        let Made { mut record, events, warning } = made?;
 
-        let written = self.out.zip(trajectory).map_or(Ok(()), |((path, format), trajectory)| {
-            trajectory_file::write(system, trajectory.nodes(), path, format, self.arguments.scene.force)
-        });
+        let closed = output.borrow().as_ref().is_some_and(Output::is_closed);
+        let goes_on = checkpoint.is_some() && record.interrupted;
+        let written = output.into_inner().map_or(Ok(()), |output| output.finish(goes_on));
+        // A reader who has seen enough is no interruption.
+        record.interrupted &= !closed;
         let end = system.sleigh_state(&record.q, &record.v);
         // What was computed is shown even where its file could not be written.
         if self.arguments.scene.json {
@@ -161,9 +269,10 @@ impl Visitor for Run<'_> {
             }
             terminal::print_json(&object)?;
         } else {
-            let file = self.out.and_then(|(path, _)| written.is_ok().then_some(path));
+            let file = self.out.and_then(|asked| asked.path).filter(|_| written.is_ok());
             let told = events.as_ref().map_or("", |events| &events.told);
-            terminal::print(&(table::one_run(self.scene, &record, &end, file) + &substeps::told(&record) + told))?;
+            let text = table::one_run(self.scene, &record, &end, file) + &substeps::told(&record) + told;
+            tell(self.out, &text)?;
         }
         events.iter().for_each(Events::warn);
         let computed = CliError::of_failures(substeps::failure(&record).or_else(|| table::not_finite(&record)));
@@ -173,4 +282,13 @@ impl Visitor for Run<'_> {
         let made = record.interrupted.then(|| format!("the run is made up to t = {} s", table::number(record.t)));
         unless_interrupted(made, checkpoint.clone(), computed.and(written).and(warning))
     }
+}
+
+/// Tells what a run came to, where its rows do not go: on standard error where they go to standard output.
+pub(crate) fn tell(out: Option<Asked<'_>>, text: &str) -> Result<(), CliError> {
+    if out.is_some_and(|asked| asked.path.is_none()) {
+        terminal::tell(text);
+        return Ok(());
+    }
+    terminal::print(text)
 }

@@ -18,6 +18,8 @@ impl Saves {
     /// What the arguments ask for; a folder that cannot be written in, or is there already, is refused before the work.
     pub(crate) fn of(arguments: &CompareArguments) -> Result<Self, CliError> {
         let CompareArguments { checkpoint, checkpoint_every, resume, scene, .. } = arguments;
+        // A comparison that is resumed goes on saving into its folder.
+        let checkpoint = checkpoint.as_ref().or(resume.as_ref());
         if let Some(folder) = resume {
             std::fs::read_dir(folder).map_err(|source| CliError::Read { path: folder.clone(), source })?;
         }
@@ -25,7 +27,7 @@ impl Saves {
             check_folder(folder, scene.force || resume.as_ref() == Some(folder))?;
             std::fs::create_dir_all(folder).map_err(|source| CliError::Write { path: folder.clone(), source })?;
         }
-        Ok(Self { to: checkpoint.clone(), from: resume.clone(), every: *checkpoint_every })
+        Ok(Self { to: checkpoint.cloned(), from: resume.clone(), every: *checkpoint_every })
     }
 
     /// Whether runs are to be saved or resumed.
@@ -52,22 +54,17 @@ impl Saves {
             return Ok(harness::run(subject, method, request, progress));
         }
         let name = format!("{}.save", method.info().name);
-        let identity = resume::identity(scene, method, &request.schedule);
+        let identity = resume::identity_of_whole(scene, method, &request.schedule);
         let from = self.from.as_ref().map(|folder| folder.join(&name)).filter(|path| path.exists());
         let read = from.as_ref().map(|path| resume::read(path, &identity)).transpose()?;
         let to = self.to.as_ref().map(|folder| folder.join(&name));
-        let mut written = Ok(());
-        let mut save = |made: &Checkpoint| {
-            if let (Some(path), Ok(())) = (&to, &written) {
-                written = resume::write(path, made);
-            }
-        };
+        let mut saver = resume::Saver::new(to.as_deref());
+        let mut save = |made: &Checkpoint| saver.save(made);
         let every = to.as_ref().map(|_| self.every);
         let mut saving = Saving { identity: &identity, from: read.as_ref(), every, save: &mut save };
         let outcome = run_saved(subject, method, request, &mut saving, None, progress);
-        let (mut record, _) =
-            outcome.map_err(|source| CliError::Checkpoint { path: from.unwrap_or_default(), source })?;
-        written?;
+        let mut record = outcome.map_err(|source| CliError::Checkpoint { path: from.unwrap_or_default(), source })?;
+        saver.outcome()?;
         record.wall_seconds = timed(subject, method, request, record.steps, progress);
         Ok(record)
     }

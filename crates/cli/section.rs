@@ -1,7 +1,9 @@
 use crate::args::SectionArguments;
 use crate::chart_file::ChartFile;
+use crate::compare::unless_interrupted;
 use crate::coordinate::Coordinate;
 use crate::error::CliError;
+use crate::interrupt::Interrupt;
 use crate::lyapunov::{asked, imposed};
 use crate::starts::{Start, place, spread};
 use crate::trigger::in_doubt;
@@ -62,6 +64,8 @@ struct Sections<'a> {
 
 /// The crossings of one start.
 struct Crossed {
+    /// The number of the start.
+    start: usize,
     /// Time (s), `x`, `y`, heading, speed, turn rate, and the two quantities shown.
     points: Vec<[f64; 8]>,
     failure: Option<String>,
@@ -88,9 +92,13 @@ impl Visitor for Sections<'_> {
         let first = asked(system, (q, v), self.arguments.energy)?;
         let starts: Vec<Start<N>> = spread(system, &first, &self.scene.sleigh, self.arguments.starts);
         let schedule = inspect::schedule(self.scene);
+        let interrupt = Interrupt::of_starts();
         let bar = progress::bar("starts", starts.len() as u64);
         let plane = &self.arguments.plane;
         let crossed = in_parallel(starts.len(), |i| {
+            if interrupt.asked() {
+                return None;
+            }
             let at = |state: &dla::State<N>| place(system, &state.unwrapped(), state.v());
             let surface = Event::new(plane.text.clone(), |t, state| plane.value(t, &at(state)));
             let surface =
@@ -112,14 +120,17 @@ impl Visitor for Sections<'_> {
                 ])
             };
             bar.inc(1);
-            Crossed {
+            Some(Crossed {
+                start: i,
                 points: found.crossings.iter().filter_map(shown).collect(),
                 failure: found.failure.map(|failure| failure.to_string()),
                 close: found.close,
-            }
+            })
         });
         bar.finish_and_clear();
-        self.tell(&crossed)
+        let done: Vec<Crossed> = crossed.into_iter().flatten().collect();
+        let made = (done.len() < starts.len()).then(|| format!("{} of {} starts are done", done.len(), starts.len()));
+        unless_interrupted(made, None, self.tell(&done))
     }
 }
 
@@ -127,10 +138,9 @@ impl Sections<'_> {
     fn tell(&self, crossed: &[Crossed]) -> Result<(), CliError> {
         let shared = &self.arguments.scene;
         let written = self.file.map_or(Ok(()), |file| {
-            let numbered = crossed.iter().enumerate();
-            let row = |(i, point): (usize, &[f64; 8])| [&[i as f64][..], &point[..6], &point[6..]].concat();
+            let row = |i: usize, point: &[f64; 8]| [&[i as f64][..], &point[..6], &point[6..]].concat();
             let rows: Vec<Vec<f64>> =
-                numbered.flat_map(|(i, start)| start.points.iter().map(move |point| row((i, point)))).collect();
+                crossed.iter().flat_map(|one| one.points.iter().map(move |point| row(one.start, point))).collect();
             let state = "x [m],y [m],heading [rad],speed [m/s],turn_rate [rad/s]";
             // A column of the state is another than the one that is shown: its heading counts the turns.
             let taken = |label: &str| state.split(',').any(|other| other == label);
@@ -173,8 +183,7 @@ impl Sections<'_> {
         }
         let failed = crossed
             .iter()
-            .enumerate()
-            .filter_map(|(i, start)| start.failure.as_ref().map(|failure| format!("start {i}: {failure}")));
+            .filter_map(|one| one.failure.as_ref().map(|failure| format!("start {}: {failure}", one.start)));
         CliError::of_failures(failed).and(written)
     }
 

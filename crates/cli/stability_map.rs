@@ -1,7 +1,9 @@
 use crate::args::LyapunovArguments;
 use crate::chart_file::ChartFile;
+use crate::compare::unless_interrupted;
 use crate::coordinate::Range;
 use crate::error::CliError;
+use crate::interrupt::Interrupt;
 use crate::lyapunov::{refused, schedule};
 use crate::starts::{moved, with_energy};
 use crate::{progress, table, terminal};
@@ -32,6 +34,8 @@ enum Cell {
     None,
     Failed(String),
     Refused(LyapunovError),
+    /// A signal came before.
+    Left,
 }
 
 /// The names of the verdicts, in the order in which they are counted.
@@ -42,6 +46,11 @@ impl Cell {
     fn verdict(&self) -> Option<&'static str> {
         if let Self::Exponent(.., verdict) = self { Some(verdict.name()) } else { None }
     }
+}
+
+/// How many starts were left out since a signal came.
+fn count_left(cells: &[Cell]) -> usize {
+    cells.iter().filter(|cell| matches!(cell, Cell::Left)).count()
 }
 
 impl Visitor for Map<'_> {
@@ -63,8 +72,12 @@ impl Visitor for Map<'_> {
         }
         let (schedule, settle) = schedule(self.arguments, self.scene);
         let first = system.sleigh_state(&q, &v);
+        let interrupt = Interrupt::of_starts();
         let bar = progress::bar("starts", count as u64);
         let cells = in_parallel(count, |i| {
+            if interrupt.asked() {
+                return Cell::Left;
+            }
             let mut state = first;
             across.apply(&mut state, i % across.cells);
             up.apply(&mut state, i / across.cells);
@@ -131,7 +144,9 @@ impl Map<'_> {
         let failed = failures
             .first()
             .map(|first| format!("{} of {} starts failed, the first so: {first}", failures.len(), cells.len()));
-        CliError::of_failures(failed).and(written)
+        let left = count_left(cells);
+        let made = (left > 0).then(|| format!("{} of {} starts are done", cells.len() - left, cells.len()));
+        unless_interrupted(made, None, CliError::of_failures(failed).and(written))
     }
 
     fn chart(&self, values: Vec<Option<f64>>) -> Chart {
@@ -172,7 +187,7 @@ impl Map<'_> {
     }
 
     fn text(&self, known: &[f64], cells: &[Cell], failed: usize) -> String {
-        let (run, count) = (&self.scene.run, cells.len());
+        let (run, count, left) = (&self.scene.run, cells.len(), count_left(cells));
         let (least, largest) =
             known.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
         let counted = |name: &&str| cells.iter().filter(|cell| cell.verdict() == Some(name)).count();
@@ -191,9 +206,10 @@ impl Map<'_> {
             (
                 "starts",
                 format!(
-                    "{count}: {} measured, {failed} failed, {} that there are not",
+                    "{count}: {} measured, {failed} failed, {} outside the energy surface{}",
                     known.len(),
-                    count - known.len() - failed
+                    count - known.len() - failed - left,
+                    if left > 0 { format!(", {left} left out") } else { String::new() }
                 ),
             ),
             (

@@ -1,7 +1,7 @@
 use crate::compare::Row;
 use comfy_table::{CellAlignment, Table, presets};
 use harness::Record;
-pub(crate) use harness::precision::number;
+use lagrangian::Shown;
 use scene::Scene;
 use sleigh::SleighState;
 use std::fmt::Write;
@@ -31,9 +31,15 @@ pub(crate) const INTRO: &str = "Every method from the same start with the same s
     nodes, which is round-off for the methods that solve that constraint, such as dla. Energy error: the largest |E - E0 - work| at a \
     node; the work is that of what drives or brakes the scene. Amplitude: how much the energy error oscillates: half its range after a \
     straight line is subtracted, over 1/32 of the run. Energy drift: the slope of that line, with its 95 % confidence interval. Verdict: \
-    whether the energy error is bounded or grows, by a test. End error: distance at the end from the closed form, or from gauss16 at a \
+    whether the energy error is bounded, grows, or has diverged, by a test. End error: distance at the end from the closed form, or from gauss16 at a \
     quarter of the step where there is none, in metres or radians, whichever is larger. Newton: iterations a step. ns/step: time of the \
-    steps alone, median of repeated runs. Cost: that time for each second of the motion.";
+    steps alone, median of repeated runs. Cost: that time for each second of the motion. A method \
+    that failed has no numbers: its row says at which step, when and why.";
+
+/// A number on the screen: six digits. Files have all digits.
+pub(crate) fn number(value: f64) -> String {
+    Shown(value).to_string()
+}
 
 /// A row of a comparison; of a method that refuses the scene or failed, a short one, whose last cell says why, and at which step.
 pub(crate) fn cells<const N: usize>(record: &Record<N>, error: Option<f64>) -> Vec<String> {
@@ -238,11 +244,13 @@ pub(crate) fn failure<const N: usize>(record: &Record<N>) -> Option<String> {
     record.failure.as_ref().map(|failure| {
         let mut told = format!(
             "{} failed at {failure}; the trajectory is valid up to t = {} s ({} steps)",
-            record.method.name, record.t, record.steps
+            record.method.name,
+            Shown(record.t),
+            record.steps
         );
         // Writing to a string cannot fail.
         if let Some(history) = failure.source.history().filter(|history| history.made() > 0) {
-            let _ = write!(told, "; corrections {history}");
+            let _ = write!(told, "; the corrections of the iteration were {history}");
         }
         if let Some(hint) = failure.hint() {
             let _ = write!(told, "; {hint}");

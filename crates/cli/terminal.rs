@@ -25,6 +25,28 @@ fn harmless(text: &str) -> Cow<'_, str> {
     Cow::Owned(text.chars().map(shown).collect())
 }
 
+/// Standard output as a writer, for more than is held in memory.
+#[derive(Debug)]
+pub(crate) struct Out;
+
+impl Write for Out {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        if called::keep_out(&String::from_utf8_lossy(bytes)) { Ok(bytes.len()) } else { std::io::stdout().write(bytes) }
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        std::io::stdout().flush()
+    }
+}
+
+/// Tells a result on standard error, where standard output has another.
+pub(crate) fn tell(text: &str) {
+    if !called::keep_err(text) {
+        // Where that cannot be written to, there is nobody left to tell.
+        let _ = std::io::stderr().write_all(text.as_bytes());
+    }
+}
+
 /// How many columns a line of standard output has room for: what `COLUMNS` says, or the terminal; none elsewhere.
 pub(crate) fn width() -> Option<usize> {
     let asked = std::env::var("COLUMNS").ok().and_then(|columns| columns.trim().parse().ok());

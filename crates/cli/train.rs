@@ -115,6 +115,7 @@ pub(crate) fn measure(
     (train, start): &(Train, State),
     methods: &[Method],
     longest: f64,
+    interrupt: &Interrupt,
 ) -> Result<Measurement, CliError> {
     let (assembly, duration) = (&train.assembly, scene.run.duration);
     let end = |method: &Method, steps: u64| -> Result<SleighState, RunError> {
@@ -129,12 +130,13 @@ pub(crate) fn measure(
     let bench = Bench { duration, reference_error: reference.error, end_error: &end_error, aligned: &|steps| steps };
     let limits = Limits { fewest: 2, longest };
     let bar = progress::bar(&format!("{} precision", scene.name), methods.len() as u64 + rounds());
-    let (curves, clock) = work_precision(&bench, methods, &limits, &mut |done| bar.inc(done));
-    bar.finish_and_clear();
+    let mut progress = Interruptible { bar, interrupt };
+    let (curves, clock) = work_precision(&bench, methods, &limits, &mut progress);
+    progress.bar.finish_and_clear();
     let mut facts = facts::listed(scene, &scene.start, assembly.energy(0.0, start), "");
     // The steps are those of the ladders, not the scene's.
     facts.pop();
-    Ok(Measurement { duration, reference, clock, facts, curves })
+    Ok(Measurement { duration, reference: reference.told(), clock, facts, curves })
 }
 
 /// The end by `dla8`, its steps doubled until two successive ends are no nearer than those before, or it takes too long.

@@ -4,9 +4,10 @@ use crate::args::RunArguments;
 use crate::compare::unless_interrupted;
 use crate::error::CliError;
 use crate::interrupt::Interrupt;
+use crate::output::{Asked, Output};
 use crate::progress::Interruptible;
+use crate::run::{identity, of, provenance, tell};
 use crate::train::MOST_NUMBERS;
-use crate::trajectory_file::{self, Columns, Format};
 use crate::trigger::{Events, Happened, Trigger};
 use crate::{inspect, json, progress, resume, substeps, table, terminal};
 use assembly::State;
@@ -19,14 +20,13 @@ use harness::{
 use scene::{Column, Scene};
 use serde_json::json;
 use sleigh::SleighState;
-use std::path::Path;
 
 /// `noslip run` of a train.
 pub(crate) fn run(
     arguments: &RunArguments,
     scene: &Scene,
     method: &Method,
-    out: Option<(&Path, Format)>,
+    out: Option<Asked<'_>>,
 ) -> Result<(), CliError> {
     let Some((train, start)) = scene.train()? else { return Ok(()) };
     let RunArguments { checkpoint, resume, tolerance, .. } = arguments;
@@ -44,6 +44,9 @@ pub(crate) fn run(
         let problem = "--out would hold more than 1e8 numbers: choose a larger --every";
         return Err(CliError::Request(problem.to_owned()));
     }
+    // The nodes of a train are in memory until the run ends; a resumed run has those after the checkpoint.
+    let made_by = provenance(arguments, of(scene), &schedule);
+    let output = out.map(|asked| Output::open(asked, made_by, (header(&train), every), None)).transpose()?;
     let interrupt = Interrupt::listen();
     let bar = progress::bar(method.info().name, schedule.steps);
     let mut progress = Interruptible { bar, interrupt: &interrupt };
@@ -56,8 +59,9 @@ pub(crate) fn run(
     progress.bar.finish_and_clear();
     let Made { run: Assembled { record, nodes, end, failure }, events, warning } = made?;
 
-    let written = out.map_or(Ok(()), |(path, format)| {
-        trajectory_file::write_columns(&columns(&train, &nodes), path, format, arguments.scene.force)
+    let written = output.map_or(Ok(()), |mut output| {
+        nodes.iter().for_each(|node| output.row(0, &row(&train, node)));
+        output.finish(false)
     });
     let blades = train.trailers().len();
     let (first, last) = (train.blade(&end, 0), train.blade(&end, blades));
@@ -73,7 +77,7 @@ pub(crate) fn run(
         }
         terminal::print_json(&object)?;
     } else {
-        let file = out.and_then(|(path, _)| written.is_ok().then_some(path));
+        let file = out.and_then(|asked| asked.path).filter(|_| written.is_ok());
         let joints = format!("{:.2e} m at most", record.leaf_max.unwrap_or(0.0));
         let [x, y, heading] = [last.x, last.y, last.heading].map(table::number);
         let more = [
@@ -83,7 +87,7 @@ pub(crate) fn run(
         ];
         let told = events.as_ref().map_or("", |events| &events.told);
         let parts = substeps::told(&record);
-        terminal::print(&(table::one_run(scene, &record, &first, file) + &parts + &table::aligned(&more) + told))?;
+        tell(out, &(table::one_run(scene, &record, &first, file) + &parts + &table::aligned(&more) + told))?;
     }
     events.iter().for_each(Events::warn);
     // The static record does not know which hinge it was.
@@ -122,23 +126,19 @@ impl Request<'_> {
     /// In parts that are saved, or from a part that was.
     fn saved(&self, arguments: &RunArguments, progress: &mut dyn Progress) -> Result<Made, CliError> {
         let RunArguments { checkpoint, checkpoint_every, resume: from, scene, .. } = arguments;
-        let identity = resume::identity((&self.scene.name, self.scene), self.method, self.schedule);
+        let identity = identity(self.scene, self.method, self.schedule);
         let read = from.as_ref().map(|path| resume::read(path, &identity)).transpose()?;
         if let Some(path) = checkpoint {
             resume::check(path, from.as_deref(), scene.force)?;
         }
-        let mut warning = Ok(());
-        let mut save = |made: &Checkpoint| {
-            if let (Some(path), Ok(())) = (checkpoint, &warning) {
-                warning = resume::write(path, made);
-            }
-        };
+        let mut saver = resume::Saver::new(checkpoint.as_deref());
+        let mut save = |made: &Checkpoint| saver.save(made);
         let every = checkpoint.as_ref().map(|_| *checkpoint_every);
         let mut saving = Saving { identity: &identity, from: read.as_ref(), every, save: &mut save };
         let (assembly, start) = (&self.train.assembly, (self.start, self.every));
         let run = run_assembly_saved(assembly, self.method, self.schedule, start, &mut saving, progress);
         let run = run.map_err(|source| CliError::Checkpoint { path: from.clone().unwrap_or_default(), source })?;
-        Ok(Made { run, events: None, warning })
+        Ok(Made { run, events: None, warning: saver.outcome() })
     }
 
     /// At once, with an eye on events where there are any.
@@ -162,8 +162,8 @@ fn ends(train: &Train, state: &State) -> [f64; 6] {
     [first.x, first.y, first.heading, last.x, last.y, last.heading]
 }
 
-/// A trajectory of a train: that of its first blade, and the headings of the others.
-fn columns(train: &Train, nodes: &[AssemblyNode]) -> Columns {
+/// The columns of a train: those of its first blade, and the headings of the others.
+fn header(train: &Train) -> Vec<Column> {
     let own = [
         ("t", "s"),
         ("x", "m"),
@@ -176,17 +176,17 @@ fn columns(train: &Train, nodes: &[AssemblyNode]) -> Columns {
         ("constraint", "m/s"),
         ("hinges", "m"),
     ];
-    let mut header = own.map(|(name, unit)| Column::new(name, unit)).to_vec();
-    let trailers = 1..=train.trailers().len();
-    header.extend(trailers.clone().map(|k| Column::new(format!("heading_{k}"), "rad")));
-    let row = |node: &AssemblyNode| {
-        let SleighState { x, y, heading, speed, turn_rate } = first(&node.q, &node.v);
-        let AssemblyNode { t, energy, work, constraint, joint, .. } = *node;
-        let mut row = vec![t, x, y, heading, speed, turn_rate, energy, work, constraint, joint];
-        row.extend(trailers.clone().map(|k| node.q[3 * k + 2]));
-        row
-    };
-    Columns::new(header, nodes.iter().map(row).collect())
+    let others = (1..=train.trailers().len()).map(|k| Column::new(format!("heading_{k}"), "rad"));
+    own.into_iter().map(|(name, unit)| Column::new(name, unit)).chain(others).collect()
+}
+
+/// The numbers of a node in these columns.
+fn row(train: &Train, node: &AssemblyNode) -> Vec<f64> {
+    let SleighState { x, y, heading, speed, turn_rate } = first(&node.q, &node.v);
+    let AssemblyNode { t, energy, work, constraint, joint, .. } = *node;
+    let mut row = vec![t, x, y, heading, speed, turn_rate, energy, work, constraint, joint];
+    row.extend((1..=train.trailers().len()).map(|k| node.q[3 * k + 2]));
+    row
 }
 
 /// The state of the first blade.

@@ -10,7 +10,7 @@ use std::str::FromStr;
 #[derive(Debug, Clone)]
 pub(crate) struct Trigger {
     /// As it was written.
-    text: String,
+    pub(crate) text: String,
     quantity: Quantity,
     value: f64,
 }

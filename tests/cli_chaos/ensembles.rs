@@ -22,7 +22,7 @@ fn rows_are_those_of_single_runs_in_order() {
         ["scene", "method", "step", "duration", "keys", "members", "failed", "wall_seconds", "computed", "columns"];
     assert_eq!(keys(&object), expected);
     assert_eq!((object["members"].as_u64(), object["failed"].as_u64()), (Some(150), Some(0)));
-    assert_eq!(folder.names(), ["all.csv", "sweep.toml"]);
+    assert_eq!(folder.names(), ["all.csv", "all.csv-metadata.json", "sweep.toml"]);
     let text = folder.read("all.csv").replace(",\n", "\n").replace(",error", "");
     let (header, rows) = csv(&text);
     assert_eq!(header[..4], ["member", "start.speed", "start.turn_rate", "t"]);

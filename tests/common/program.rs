@@ -155,7 +155,7 @@ pub fn methods() -> Vec<String> {
 }
 
 /// The names of the bundled scenes of systems of text.
-pub const TEXTS: [&str; 8] = [
+pub const TEXTS: [&str; 9] = [
     "knife-edge",
     "rolling-disk",
     "falling-disk",
@@ -164,6 +164,7 @@ pub const TEXTS: [&str; 8] = [
     "two-wheeled-robot",
     "car-and-trailer",
     "chaplygin-ball",
+    "bicycle",
 ];
 
 /// The names of the bundled scenes of sleighs.

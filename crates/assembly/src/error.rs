@@ -1,5 +1,6 @@
 use crate::{Assembly, State};
 use dla::{History, NewtonError, NotANumber, Stage, StepError};
+use lagrangian::Shown;
 use lagrangian::linear::Singular;
 use std::fmt;
 use thiserror::Error;
@@ -25,7 +26,7 @@ impl fmt::Display for ConstraintRow {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum AssemblyError {
     /// An element names a coordinate that is not there, or one twice.
-    #[error("the {name} is placed on coordinate {coordinate}, which is not there or is named twice")]
+    #[error("the {name} is placed on coordinate {coordinate}, which does not exist or is named twice")]
     Coordinates {
         /// The element's name.
         name: &'static str,
@@ -78,20 +79,20 @@ pub enum AssemblyError {
         source: NewtonError,
     },
     /// The equations have a solution, but it cannot be shown to continue the motion.
-    #[error("no solution is certain to continue the motion: a constraint would turn by {turn:.2} rad in one step")]
+    #[error("the step is too long: a constraint would turn by {turn:.2} rad in one step")]
     Branch {
         /// By how much the constraint turns that turns most (rad).
         turn: f64,
     },
     /// Forces that depend on the velocity are too stiff for the step.
-    #[error("forces that brake would drive the velocity past where they vanish: the step is {:.2} times too long", part.recip())]
+    #[error("the step is too long: the braking forces would reverse the velocity; a step {} times shorter resolves them", Shown(part.recip()))]
     Overshoot {
         /// The longest part of the step for which they do not.
         part: f64,
     },
     /// A method that keeps the energy has not kept it: along the step it is too rough for the quadrature, or the kinetic energy
     /// is not one that the method does.
-    #[error("the energy misses the work by {defect:e} J, and rounding explains {bound:e} J")]
+    #[error("the energy changes by {defect:.2e} J besides the work, and round-off explains {bound:.2e} J")]
     Energy {
         /// By how much more than the work the energy has changed (J).
         defect: f64,
@@ -113,7 +114,7 @@ pub enum AssemblyError {
         source: NotANumber,
     },
     /// The method makes the step, but its halves lead elsewhere (see [`dla::Halved`]); asked only of steps that may be made in parts.
-    #[error("the step does not resolve the motion: its halves lead elsewhere")]
+    #[error("the step does not resolve the motion: two steps of half the length end elsewhere")]
     Unresolved,
     /// The method cannot do assemblies.
     #[error("{reason}")]
@@ -180,7 +181,7 @@ fn involved(constraints: &[ConstraintRow]) -> String {
 
 /// A run that ended early; the state is that of the last good node.
 #[derive(Debug, Clone, PartialEq, Error)]
-#[error("step {step}, from t = {time} s: {source}")]
+#[error("step {step}, from t = {} s: {source}", Shown(*time))]
 pub struct RunError {
     /// The number of the failed step, from 1.
     pub step: u64,

@@ -9,8 +9,10 @@ mod totals;
 use crate::args::EnsembleArguments;
 use crate::error::CliError;
 use crate::files::check_file;
+use crate::format::Format;
 use crate::interrupt::Interrupt;
-use crate::trajectory_file::Format;
+use crate::output::metadata_of;
+use crate::provenance::Provenance;
 use crate::{compare, inspect, progress, terminal};
 use dla::Checkpoint;
 use harness::Method;
@@ -18,9 +20,12 @@ use harness::analysis::has_tangents;
 use harness::ensemble::in_order;
 use indicatif::ProgressBar;
 use members::{COLUMNS, Members, Row};
-use scene::Sweep;
+use result::Shape;
+use scene::{Column, Sweep};
+use serde_json::json;
 use spool::{Asked, Spool};
 use std::ops::{ControlFlow, Range};
+use std::path::Path;
 use std::time::Instant;
 use totals::Totals;
 
@@ -35,8 +40,11 @@ pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
     }
     let out = match &arguments.out {
         Some(path) => {
-            let format = Format::of(path)?;
+            let format = Format::of(path, None)?;
             check_file(path, arguments.force)?;
+            if format.is_text() {
+                check_file(&metadata_of(path), arguments.force || arguments.resume)?;
+            }
             Some((path.as_path(), format))
         }
         None => None,
@@ -63,7 +71,10 @@ pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
     let stopped = totals.count() < sweep.count();
     let written = match (spool, out) {
         (Some(spool), Some((path, format))) if !stopped => {
-            spool.finish(path, format, &header(&sweep), (sweep.count(), arguments.force))
+            let columns = header(&sweep);
+            let metadata = metadata(arguments, &sweep, path, &columns);
+            let shape = Shape { format, columns: &columns, count: sweep.count(), metadata: &metadata };
+            spool.finish(path, &shape, arguments.force)
         }
         _ => Ok(()),
     };
@@ -124,14 +135,32 @@ fn compute(
 
 /// What tells a sweep from others: all that its rows depend on.
 fn identity(sweep: &Sweep) -> String {
-    let contents = Checkpoint::fingerprint(&format!("{sweep:?}"));
+    // Not the text of its file: comments change no row.
+    let mut bare = sweep.clone();
+    bare.file.clear();
+    let contents = Checkpoint::fingerprint(&format!("{bare:?}"));
     format!("noslip ensemble {} rows with checksums {contents}", env!("CARGO_PKG_VERSION"))
 }
 
-/// Names and units of the columns.
-fn header(sweep: &Sweep) -> Vec<(String, &'static str)> {
-    let exponent = sweep.exponent.then(|| ("exponent".to_owned(), "1/s"));
-    let keys = sweep.keys().map(|key| (key.to_owned(), ""));
-    let columns = COLUMNS.iter().map(|(name, unit)| ((*name).to_owned(), *unit));
-    std::iter::once(("member".to_owned(), "")).chain(keys).chain(columns).chain(exponent).collect()
+/// Names and units of the columns. Those of the keys have no unit: a key may be any number of the scene.
+fn header(sweep: &Sweep) -> Vec<Column> {
+    let exponent = sweep.exponent.then(|| Column::new("exponent", "1/s"));
+    let keys = sweep.keys().map(|key| Column::new(key, ""));
+    let columns = COLUMNS.iter().map(|(name, unit)| Column::new(*name, *unit));
+    std::iter::once(Column::new("member", "")).chain(keys).chain(columns).chain(exponent).collect()
+}
+
+/// What made the result: the command, the sweep and its scene.
+fn metadata(arguments: &EnsembleArguments, sweep: &Sweep, out: &Path, columns: &[Column]) -> String {
+    let name = out.file_name().unwrap_or_default().to_string_lossy();
+    let command = ["noslip", "ensemble", &arguments.sweep, "--out", &out.display().to_string()].map(str::to_owned);
+    let scene = &sweep.scene;
+    let mut notes = json!({
+        "method": scene.run.method, "step": scene.run.actual_step(), "duration": scene.run.duration, "sweep": sweep.file,
+    });
+    if let Ok(text) = scene.to_toml() {
+        notes["scene"] = json!(text);
+    }
+    let provenance = Provenance::new(&scene.title, &command, notes);
+    format!("{:#}\n", provenance.document(&name, columns))
 }

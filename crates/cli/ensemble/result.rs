@@ -1,32 +1,53 @@
 use super::lines;
 use super::spool::Rows;
-use crate::first_error::FirstError;
-use crate::trajectory_file::Format;
+use crate::format::Format;
+use crate::npz;
+use crate::provenance::label;
+use scene::Column;
 use std::io::{Error, Seek, Write};
+
+/// The columns of a result, and what it says of itself.
+pub(super) struct Shape<'a> {
+    pub(super) format: Format,
+    pub(super) columns: &'a [Column],
+    pub(super) count: u64,
+    pub(super) metadata: &'a str,
+}
 
 /// Writes a result in a format; `rows` begins to read them again.
 pub(super) fn write<'a>(
     file: &mut (impl Write + Seek + Send),
-    format: Format,
-    columns: &[(String, &'static str)],
-    count: u64,
+    shape: &Shape<'_>,
     rows: &impl Fn() -> Result<Rows<'a>, Error>,
 ) -> Result<(), Error> {
-    let labels = columns.iter().map(|(name, unit)| label(name, unit));
+    let Shape { format, columns, count, metadata } = *shape;
     match format {
         Format::Csv => {
-            writeln!(file, "{},error", labels.collect::<Vec<_>>().join(","))?;
+            let labels: Vec<String> = columns.iter().map(label).collect();
+            writeln!(file, "{},error", labels.join(","))?;
             let mut rows = rows()?;
             while let Some(row) = rows.next()? {
                 writeln!(file, "{row}")?;
             }
             Ok(())
         }
+        Format::Jsonl => {
+            let mut rows = rows()?;
+            while let Some(row) = rows.next()? {
+                writeln!(file, "{}", object(columns, row))?;
+            }
+            Ok(())
+        }
         Format::Npz => {
-            let mut file = FirstError::new(file);
-            let outcome = npz(&mut file, columns, count, rows);
-            // What stopped the file is the reason of whatever the archive then stumbled over.
-            file.into_result().and(outcome)
+            // One more column says which members failed.
+            let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).chain(["failed"]).collect();
+            npz::write(file, &names, count, metadata, |column, push| {
+                let mut rows = rows()?;
+                while let Some(row) = rows.next()? {
+                    push(lines::value(row, column))?;
+                }
+                Ok(())
+            })
         }
         #[cfg(feature = "parquet")]
         Format::Parquet => {
@@ -34,36 +55,20 @@ pub(super) fn write<'a>(
             let all = 0..columns.len();
             let row = |text: &str| all.clone().map(|column| lines::value(text, column)).collect();
             let next = || rows.next().map(|text| text.map(row)).transpose();
-            crate::parquet_file::write_groups(file, labels.collect(), std::iter::from_fn(next))
+            let labels = columns.iter().map(label).collect();
+            crate::parquet_file::write(file, labels, metadata, std::iter::from_fn(next))
         }
     }
 }
 
-fn label(name: &str, unit: &str) -> String {
-    if unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") }
-}
-
-/// An archive with an array for each column, one after the other, and one that says which members failed.
-fn npz<'a>(
-    file: &mut (impl Write + Seek),
-    columns: &[(String, &'static str)],
-    count: u64,
-    rows: &impl Fn() -> Result<Rows<'a>, Error>,
-) -> Result<(), Error> {
-    use npyz::WriterBuilder;
-    let mut archive = zip::ZipWriter::new(file);
-    let options =
-        zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored).large_file(true);
-    let names = columns.iter().map(|(name, _)| name.as_str()).chain(["failed"]);
-    for (column, name) in names.enumerate() {
-        archive.start_file(npyz::npz::file_name_from_array_name(name), options)?;
-        let mut array = npyz::WriteOptions::new().default_dtype().shape(&[count]).writer(&mut archive).begin_nd()?;
-        let mut rows = rows()?;
-        while let Some(row) = rows.next()? {
-            array.push(&lines::value(row, column))?;
-        }
-        array.finish()?;
+/// A row as an object; its member is a whole number, and what is not finite is null.
+fn object(columns: &[Column], row: &str) -> serde_json::Value {
+    let (values, error) = lines::parsed(row);
+    let member: Option<u64> = row.split(',').next().and_then(|number| number.parse().ok());
+    let mut object = serde_json::json!({ "member": member });
+    for (column, value) in columns.iter().skip(1).zip(values) {
+        object[column.name.as_str()] = serde_json::Number::from_f64(value).into();
     }
-    archive.finish()?;
-    Ok(())
+    object["error"] = error.into();
+    object
 }

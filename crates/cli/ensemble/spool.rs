@@ -1,10 +1,10 @@
 use super::lines::{Damage, Lines, parsed};
-use super::result;
+use super::result::{self, Shape};
 use crate::error::CliError;
 use crate::files::{check_file, write_whole};
+use crate::output::metadata_of;
 use crate::part::Part;
 use crate::terminal;
-use crate::trajectory_file::Format;
 use std::io::{BufRead, BufReader, Error, ErrorKind, Seek, SeekFrom, Write};
 use std::path::Path;
 
@@ -141,15 +141,12 @@ impl Spool {
 
     /// Makes the result of the rows 0 to `members - 1`, each of which must be there once; it appears whole or not at all. Then the
     /// file is removed.
-    pub(super) fn finish(
-        self,
-        out: &Path,
-        format: Format,
-        columns: &[(String, &'static str)],
-        (members, overwrite): (u64, bool),
-    ) -> Result<(), CliError> {
-        let rows = || self.whole_rows(members);
-        write_whole(out, overwrite, |file| result::write(file, format, columns, members, &rows))?;
+    pub(super) fn finish(self, out: &Path, shape: &Shape<'_>, overwrite: bool) -> Result<(), CliError> {
+        let rows = || self.whole_rows(shape.count);
+        write_whole(out, overwrite, |file| result::write(file, shape, &rows))?;
+        if shape.format.is_text() {
+            write_whole(&metadata_of(out), true, |file| file.write_all(shape.metadata.as_bytes()))?;
+        }
         self.part.remove();
         Ok(())
     }

@@ -43,14 +43,15 @@ pub(crate) fn first(arguments: &JobArguments) -> Result<(), CliError> {
     let names = method_names();
     let scene = Scene::load(SCENE, &names)?.with_overrides(None, Some(STEP), Some(DURATION), None, &names)?;
     let methods = methods(&METHODS, None, None)?;
+    let interrupt = Interrupt::listen();
     let Comparison { rows, mut report, interrupted } =
-        compare_sleigh(&scene, &methods, &mut Saves::default(), &Interrupt::listen())?;
+        compare_sleigh(&scene, &methods, &mut Saves::default(), &interrupt)?;
     let answers: Vec<Answers> = rows.iter().map(|row| Answers::of(&row.json)).collect();
     let mut sentences = words::sentences(&answers);
     if interrupted.is_none() {
         let mut motion = scene.clone();
         motion.run.duration = MOTION;
-        let measured = precision::measure(&motion, &methods, LONGEST, false)?;
+        let measured = precision::measure(&motion, &methods, LONGEST, false, &interrupt)?;
         let priced = |price: &Cheapest| PRICED.contains(&price.error);
         let prices: Vec<Cheapest> = cheapest(&measured.curves).into_iter().filter(priced).collect();
         sentences.push(words::prices(&prices, MOTION));

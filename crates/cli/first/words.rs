@@ -216,7 +216,7 @@ pub(crate) fn prices(prices: &[Cheapest], motion: f64) -> String {
                 let next = rest.first().zip(price.factor());
                 let next = next.map_or_else(
                     || ", and the others do not reach it in the time allowed".to_owned(),
-                    |((other, _), factor)| format!(", and {other} takes {factor:.1} times that"),
+                    |((other, _), factor)| format!(", and {other} takes {factor:.1} times as long"),
                 );
                 format!("{method} is cheapest at an error of {error} m ({} for {motion} s{next})", duration(*seconds))
             }

@@ -11,9 +11,10 @@ mod rest;
 mod systems;
 
 use crate::args::StabilityArguments;
-use crate::compare::methods;
+use crate::compare::{methods, unless_interrupted};
 use crate::error::CliError;
 use crate::inspect::method_names;
+use crate::interrupt::Interrupt;
 use crate::{progress, table, terminal};
 use harness::stability::{Case, Outcome, Verdict, claims, judge};
 use lab::Lab;
@@ -106,8 +107,9 @@ pub(crate) fn stability(arguments: &StabilityArguments) -> Result<(), CliError> 
         .flat_map(|(case, try_it)| methods.iter().map(move |method| (case, *try_it, *method)))
         .filter(|(case, _, method)| !OTHER_SYSTEMS.contains(case) || systems::METHODS.contains(&method.info().kind))
         .collect();
+    let interrupt = Interrupt::listen_saying("stopping after the cases that have begun; Ctrl-C again ends at once");
     let bar = progress::bar("cases", pairs.len() as u64);
-    let rows = in_parallel(&pairs, |(case, try_it, method)| {
+    let rows = in_parallel(&pairs, &interrupt, |(case, try_it, method)| {
         let mut lab = Lab::new(*method);
         let tried = try_it(&mut lab);
         bar.inc(1);
@@ -124,20 +126,24 @@ pub(crate) fn stability(arguments: &StabilityArguments) -> Result<(), CliError> 
         terminal::print(&text(&rows))?;
     }
     let failed = rows.iter().filter(|row| row.verdict.outcome == Outcome::Failed);
-    CliError::of_failures(failed.map(|row| format!("{}, {} failed: {}", row.case, row.method, row.verdict.why)))
+    let failed = failed.map(|row| format!("{}, {} failed: {}", row.case, row.method, row.verdict.why));
+    let made = (rows.len() < pairs.len()).then(|| format!("{} of {} rows are done", rows.len(), pairs.len()));
+    unless_interrupted(made, None, CliError::of_failures(failed))
 }
 
-/// Each of the rows on whatever thread is free, in their order.
+/// Each of the rows on whatever thread is free, in their order; after a signal those that have begun.
 fn in_parallel<T: Sync, R: Send>(
     pairs: &[T],
+    interrupt: &Interrupt,
     row: impl Fn(&T) -> Result<R, CliError> + Sync,
 ) -> Result<Vec<R>, CliError> {
     let threads = std::thread::available_parallelism().map_or(1, usize::from).min(pairs.len().max(1));
     let next = AtomicUsize::new(0);
     let work = || {
         let mut made = Vec::new();
-        while let Some((at, pair)) =
-            Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|at| Some((at, pairs.get(at)?)))
+        while !interrupt.asked()
+            && let Some((at, pair)) =
+                Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|at| Some((at, pairs.get(at)?)))
         {
             made.push((at, row(pair)));
         }
@@ -152,7 +158,7 @@ fn in_parallel<T: Sync, R: Send>(
             all
         })
     });
-    if made.len() < pairs.len() {
+    if made.len() < pairs.len() && !interrupt.asked() {
         return Err(CliError::Computation(vec![format!("{} rows are missing", pairs.len() - made.len())]));
     }
     made.sort_by_key(|(at, _)| *at);

@@ -1,7 +1,9 @@
 //! Scenes of systems of text: what the commands make of them.
 
 pub(crate) mod compare;
+pub(crate) mod equilibria;
 pub(crate) mod facts;
+pub(crate) mod precision;
 pub(crate) mod run;
 pub(crate) mod told;
 

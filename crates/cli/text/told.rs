@@ -2,7 +2,6 @@
 
 use crate::table::number;
 use crate::terminal;
-use crate::trajectory_file::Columns;
 use scene::{Column, Model, TextMechanics, TextScene};
 use serde_json::{Map, Value, json};
 
@@ -34,28 +33,33 @@ pub(crate) fn lines(model: &Model, t: f64, q: &[f64], v: &[f64]) -> Vec<(String,
     state(model, t, q, v).into_iter().map(line).collect()
 }
 
-/// A trajectory: time, coordinates, rates, energy, work, constraint, outputs.
+/// The columns of a trajectory: time, coordinates, rates, energy, work, constraint, outputs.
 pub(crate) fn columns<const N: usize, const M: usize>(
     system: &dyn TextMechanics<N, M>,
-    nodes: &[dla::Node<N, M>],
-) -> Columns {
+    t: f64,
+    (q, v): (&[f64; N], &[f64; N]),
+) -> Vec<Column> {
     let model = system.model();
-    let own = 2 * model.coordinates().len();
-    let named = |name: &str, unit: &str| Column::new(name, unit);
-    let mut header = vec![named("t", "s")];
-    let states: Vec<_> = nodes.iter().map(|node| state(model, node.t, &node.q, &node.v)).collect();
-    let names = states.first().cloned().unwrap_or_default();
-    header.extend(names[..own.min(names.len())].iter().map(|(name, unit, _)| named(name, unit)));
-    header.extend([named("energy", "J"), named("work", "J"), named("constraint", "")]);
-    header.extend(names.iter().skip(own).map(|(name, unit, _)| named(name, unit)));
-    let row = |(node, state): (&dla::Node<N, M>, &Vec<(String, String, f64)>)| {
-        let mut row = vec![node.t];
-        row.extend(state[..own].iter().map(|(.., x)| *x));
-        row.extend([node.energy, node.work, node.constraint]);
-        row.extend(state[own..].iter().map(|(.., x)| *x));
-        row
-    };
-    Columns::new(header, nodes.iter().zip(&states).map(row).collect())
+    let names = state(model, t, q, v).into_iter().map(|(name, unit, _)| Column::new(name, unit));
+    between(names.collect(), 2 * model.coordinates().len(), Column::new("t", "s"), || {
+        [("energy", "J"), ("work", "J"), ("constraint", "")].map(|(name, unit)| Column::new(name, unit))
+    })
+}
+
+/// The numbers of a node in these columns.
+pub(crate) fn row<const N: usize, const M: usize>(
+    system: &dyn TextMechanics<N, M>,
+    node: &dla::Node<N, M>,
+) -> Vec<f64> {
+    let model = system.model();
+    let numbers = state(model, node.t, &node.q, &node.v).into_iter().map(|(.., x)| x);
+    between(numbers.collect(), 2 * model.coordinates().len(), node.t, || [node.energy, node.work, node.constraint])
+}
+
+/// The time, what is first of a state, what is told of the motion, and the rest of the state.
+fn between<T>(mut state: Vec<T>, first: usize, time: T, told: impl Fn() -> [T; 3]) -> Vec<T> {
+    let rest = state.split_off(first.min(state.len()));
+    std::iter::once(time).chain(state).chain(told()).chain(rest).collect()
 }
 
 /// Says which numbers of the start the constraints do not admit.

@@ -23,19 +23,21 @@ pub struct Checkpoint {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum CheckpointError {
     /// The text is not a checkpoint.
-    #[error("this is no checkpoint: it does not begin with `{HEADER}`")]
+    #[error("the file is not a checkpoint, or is damaged: a checkpoint is a text that begins with `{HEADER}`")]
     NotOne,
     /// It is one of another version of the format.
-    #[error("this checkpoint is of version {found}; the one that can be read is {VERSION}")]
+    #[error("the checkpoint has the format version {found}; this program reads version {VERSION}")]
     Version {
         /// Its version.
         found: String,
     },
     /// It is cut or changed.
-    #[error("this checkpoint is damaged: its text is not the one that was written")]
+    #[error("the checkpoint is damaged: its text does not have its checksum")]
     Damaged,
     /// It belongs to another run.
-    #[error("this checkpoint belongs to another run: its {what} is `{found}`, that of the run is `{expected}`")]
+    #[error(
+        "the checkpoint belongs to another run: in the checkpoint, `{what}` is `{found}`; in this run, `{what}` is `{expected}`"
+    )]
     Other {
         /// What differs first.
         what: String,
@@ -45,7 +47,7 @@ pub enum CheckpointError {
         expected: String,
     },
     /// It lacks numbers that the run needs.
-    #[error("this checkpoint has not what the run needs: {count} numbers `{name}`")]
+    #[error("the checkpoint lacks the {count} numbers `{name}`, which the run needs")]
     Missing {
         /// Their name.
         name: String,

@@ -1,10 +1,11 @@
+use lagrangian::Shown;
 use thiserror::Error;
 
 /// Why a step in closed form does not exist or was not found.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum ClosedStepError {
     /// The equations of the step have no solution on the branch that continues the motion.
-    #[error("no solution continues the motion: {quantity} would be {value:e}, and must stay below {bound:e}")]
+    #[error("the step is too long: {quantity} would be {}, and must stay below {}", Shown(*value), Shown(*bound))]
     NoSolution {
         /// The dimensionless quantity that bounds the step.
         quantity: &'static str,
@@ -14,7 +15,7 @@ pub enum ClosedStepError {
         bound: f64,
     },
     /// The iteration did not settle.
-    #[error("no convergence in {iterations} iterations, last relative correction {correction:e}")]
+    #[error("no convergence in {iterations} iterations; the last relative correction is {correction:.2e}")]
     IterationLimit {
         /// Iterations taken.
         iterations: u32,

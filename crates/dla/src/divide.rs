@@ -1,3 +1,4 @@
+use lagrangian::Shown;
 use std::ops::ControlFlow;
 use thiserror::Error;
 
@@ -14,7 +15,7 @@ pub struct Substeps {
 
 /// A step that has no solution in sub-steps either.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[error("{source}; in parts: {tried} were tried, the last of {part:e} s from t = {time} s")]
+#[error("{source}; {tried} parts of the step were tried, the last of {} s from t = {} s", Shown(*part), Shown(*time))]
 pub struct Undivided<E> {
     /// The parts that were tried, those that held among them.
     pub tried: u64,

@@ -1,6 +1,7 @@
 use crate::dependent::named;
 use crate::suspect::suspect_along;
 use crate::{Mechanics, OneStep, State, StepError, StepReport, Undivided};
+use lagrangian::Shown;
 use lagrangian::linear::largest;
 use std::ops::{ControlFlow, Range};
 use thiserror::Error;
@@ -181,7 +182,7 @@ impl<O: Observer<N, M> + ?Sized, const N: usize, const M: usize> Observer<N, M> 
 
 /// A run that ended early. Its observers keep what they saw, the state is that of the last good node.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[error("step {step}, from t = {time} s: {source}")]
+#[error("step {step}, from t = {} s: {source}", Shown(*time))]
 pub struct RunError {
     /// The number of the failed step, from 1.
     pub step: u64,

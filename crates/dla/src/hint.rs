@@ -1,5 +1,6 @@
 use crate::{ClosedStepError, Derivative, History, NewtonError, NotANumber, RunError, Stage, StepError};
 use lagrangian::ReducedError;
+use lagrangian::Shown;
 use lagrangian::linear::Singular;
 use std::fmt;
 
@@ -38,23 +39,23 @@ pub enum Hint {
 impl fmt::Display for Hint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::ShorterStep { part } => write!(f, "shorten the step to {part:.2} of it or less"),
-            Self::MoreIterations => f.write_str("it was still converging: allow more iterations"),
-            Self::LooserTolerance => f.write_str("the search moves by rounding only: ask for fewer digits"),
+            Self::ShorterStep { part } => write!(f, "shorten the step to {} of its length or less", Shown(*part)),
+            Self::MoreIterations => f.write_str("the iteration was still converging: allow more iterations"),
+            Self::LooserTolerance => f.write_str("the iteration moves by round-off only: ask for fewer digits"),
             Self::Constraints => f.write_str(
-                "constraints or mass matrix determine no velocity here: look for constraint rows that say the same",
+                "the constraints and the mass matrix do not determine the velocity: look for dependent constraint rows",
             ),
             Self::OtherMethod => f.write_str("choose another method"),
             Self::LessStack => f.write_str(
-                "choose a method that takes less of the stack, as `dla` or `rk4` do, or assemble the system of its bodies",
+                "choose a method that needs less of the stack, such as `dla` or `rk4`, or assemble the system of its bodies",
             ),
-            Self::NodeAt { time } => write!(f, "choose a step that has a node at t = {time} s"),
+            Self::NodeAt { time } => write!(f, "choose a shorter step, so that the jump at t = {} s can be a node", Shown(*time)),
             Self::Corner => f.write_str(
                 "write the function so that it has a derivative there: `Scalar::length` for the root of a sum of squares, `abs`, \
                  `min`, `max`, a power of at least 1 (of at least 2 in the Lagrangian)",
             ),
             Self::OtherCoordinates => f.write_str(
-                "use coordinates that do not end there, for an attitude a unit quaternion, or turn these away from the motion",
+                "use coordinates without a singularity, a unit quaternion for an attitude, or turn the coordinates away from the motion",
             ),
             Self::Numbers => f.write_str(
                 "a number is too large or undefined: look at the start and the parameters, then at the step",

@@ -99,5 +99,5 @@ pub use start::{Start, consistent_start};
 pub use state::State;
 pub use subject::{OwnMethods, Stepper, Subject};
 pub use substepping::Substepping;
-pub use trajectory::{Node, Trajectory};
+pub use trajectory::{Node, Nodes, Trajectory};
 pub use work::Work;

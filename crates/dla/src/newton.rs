@@ -124,7 +124,7 @@ pub enum NewtonError {
         history: History,
     },
     /// The corrections grow.
-    #[error("corrections grow: relative {correction:e} after {before:e} at iteration {iteration}")]
+    #[error("Newton's corrections grow: {correction:.2e} after {before:.2e}, relative, at iteration {iteration}")]
     Diverged {
         /// The iteration, from 1.
         iteration: u32,
@@ -136,7 +136,7 @@ pub enum NewtonError {
         history: History,
     },
     /// The iteration limit is reached.
-    #[error("no convergence in {iterations} iterations, last relative correction {correction:e}")]
+    #[error("no convergence in {iterations} iterations; the last relative correction is {correction:.2e}")]
     IterationLimit {
         /// How many were made.
         iterations: u32,

@@ -1,4 +1,5 @@
 use crate::{ClosedStepError, Dependent, Mechanics, NewtonError, NotANumber, State};
+use lagrangian::Shown;
 use lagrangian::{MotionError, ReducedError};
 use std::ops::ControlFlow;
 use thiserror::Error;
@@ -177,8 +178,8 @@ pub enum StepError {
     },
     /// The system has more coordinates and constraints than the method has room for on the stack; no step was begun.
     #[error(
-        "a system of {coordinates} coordinates and {constraints} constraints is too large for this method: a step would \
-         take {bytes} bytes of the stack, and may take {limit}"
+        "a system of {coordinates} coordinates and {constraints} constraints is too large for this method: a step needs \
+         {bytes} bytes of the stack; the limit is {limit} bytes"
     )]
     TooLarge {
         /// `N`.
@@ -192,8 +193,8 @@ pub enum StepError {
     },
     /// The step of an energy-preserving method changes the energy by more than the work of the forces.
     #[error(
-        "the energy would change by {defect:e} J besides the work of the forces, above its rounding of {bound:e} J: the \
-         step is too long, or the energy along it too rough, for the quadrature"
+        "the energy would change by {defect:.2e} J besides the work of the forces, and round-off explains {bound:.2e} J: the \
+         step is too long for the quadrature of the energy"
     )]
     Energy {
         /// The change (J).
@@ -202,22 +203,22 @@ pub enum StepError {
         bound: f64,
     },
     /// Forces or constraints jump inside the step, across which no method has an order.
-    #[error("forces or constraints jump at t = {time} s, inside the step: choose a step that has a node there")]
+    #[error("forces or constraints jump at t = {} s, inside the step: the run has fewer steps than pieces between jumps", Shown(*time))]
     Jump {
         /// When (s).
         time: f64,
     },
     /// The equations of the step have a solution, but it belongs to another motion, or cannot be shown to continue this one.
-    #[error("no solution continues the motion: the one that was found is not connected with the start of the step")]
+    #[error("the step is too long: Newton's method converged to a solution on another branch")]
     Branch,
     /// Forces that depend on the velocity are too stiff for the step: it would drive the velocity past where they vanish.
-    #[error("forces that brake would drive the velocity past where they vanish: the step is {:.2} times too long", part.recip())]
+    #[error("the step is too long: the braking forces would reverse the velocity; a step {} times shorter resolves them", Shown(part.recip()))]
     Overshoot {
         /// The longest part of the step for which they do not.
         part: f64,
     },
     /// An adaptive method does not meet its tolerance within a step.
-    #[error("the tolerance is not met: after {tries} steps within the interval the next would be {step:e} s")]
+    #[error("the tolerance is not met: after {tries} steps within the interval the next step would have {} s", Shown(*step))]
     Tolerance {
         /// The steps tried, refused ones included.
         tries: u32,
@@ -226,9 +227,9 @@ pub enum StepError {
     },
     /// The coordinates of the system come near to where they end, as [`InChart`](crate::InChart) is told.
     #[error(
-        "the coordinates come near to their end ({chart}): their regularity is {regularity:.1e}, where {least} and the change in \
-         the step, {change:.1e}, are the least; use coordinates that do not end there, for an attitude a unit quaternion, or turn \
-         these away from the motion"
+        "the coordinates come near to their singularity ({chart}): their regularity is {regularity:.1e}, and must stay above {least} and \
+         above its change in the step, {change:.1e}; use coordinates without a singularity, a unit quaternion for an attitude, or turn \
+         the coordinates away from the motion"
     )]
     Chart {
         /// Which coordinates, and where they end.
@@ -245,7 +246,7 @@ pub enum StepError {
     NotFinite,
     /// The method makes the step, but its two halves lead elsewhere, or its velocities do not account for its way (see
     /// [`Halved`](crate::Halved)); asked only of steps that may be made in parts.
-    #[error("the step does not resolve the motion: its halves lead elsewhere")]
+    #[error("the step does not resolve the motion: two steps of half the length end elsewhere")]
     Unresolved,
 }
 

@@ -26,7 +26,7 @@ pub enum RecommendError {
     },
     /// The method does not reach the tolerance: rounding, or the steps, are too many.
     #[error(
-        "the tolerance {tolerance:e} is out of reach: the best found is about {best:e}, with {steps} steps of {step:e} s"
+        "the tolerance {tolerance:e} is out of reach: the best found is about {best:.2e}, with {steps} steps of {step:.3e} s"
     )]
     OutOfReach {
         /// The tolerance.
@@ -39,7 +39,7 @@ pub enum RecommendError {
         steps: u64,
     },
     /// The run fails with the shortest step tried.
-    #[error("the run fails even with steps of {step:e} s: {source}")]
+    #[error("the run fails even with steps of {step:.3e} s: {source}")]
     Fails {
         /// The step (s).
         step: f64,

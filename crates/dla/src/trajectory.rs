@@ -22,37 +22,25 @@ pub struct Node<const N: usize, const M: usize> {
     pub multipliers: Option<[f64; M]>,
 }
 
-/// The observer that keeps the first node, every `every`-th and the last.
+/// Which nodes are kept: the first, every `every`-th and the last.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Trajectory<const N: usize, const M: usize> {
-    nodes: Vec<Node<N, M>>,
+struct Choice<const N: usize, const M: usize> {
     every: u64,
     time: f64,
     multipliers: Option<[f64; M]>,
     work: Work<N>,
+    /// The number of the last one that was kept.
+    last: Option<u64>,
 }
 
-impl<const N: usize, const M: usize> Trajectory<N, M> {
-    /// Keeps every `every`-th node; 0 counts as 1.
-    #[must_use]
-    pub fn every(every: u64) -> Self {
-        Self { nodes: Vec::new(), every: every.max(1), time: 0.0, multipliers: None, work: Work::default() }
+impl<const N: usize, const M: usize> Choice<N, M> {
+    fn every(every: u64) -> Self {
+        Self { every: every.max(1), time: 0.0, multipliers: None, work: Work::default(), last: None }
     }
 
-    /// The same for a run that goes on from a checkpoint, whose work [`Work::load`] gave: keeps the nodes after it.
-    #[must_use]
-    pub fn resumed(every: u64, t: f64, work: Work<N>) -> Self {
-        Self { time: t, work, ..Self::every(every) }
-    }
-
-    /// The nodes kept, in the order of time.
-    #[must_use]
-    pub fn nodes(&self) -> &[Node<N, M>] {
-        &self.nodes
-    }
-
-    fn keep(&mut self, view: &View<'_, N, M>) {
-        self.nodes.push(Node {
+    fn node(&mut self, view: &View<'_, N, M>) -> Node<N, M> {
+        self.last = Some(view.k);
+        Node {
             k: view.k,
             t: view.t,
             q: view.state.unwrapped(),
@@ -61,40 +49,132 @@ impl<const N: usize, const M: usize> Trajectory<N, M> {
             work: self.work.total(),
             constraint: view.constraint(),
             multipliers: self.multipliers,
-        });
+        }
+    }
+
+    fn start(&mut self, view: &View<'_, N, M>) -> Node<N, M> {
+        (self.time, self.multipliers) = (view.t, None);
+        self.work.start(view);
+        self.node(view)
+    }
+
+    fn step(&mut self, view: &View<'_, N, M>, report: &StepReport<M>) -> Option<Node<N, M>> {
+        // Work never ends a run.
+        let _ = self.work.step(view, report);
+        self.multipliers = Some(report.multipliers(view.t - self.time));
+        self.time = view.t;
+        view.k.is_multiple_of(self.every).then(|| self.node(view))
+    }
+
+    fn end(&mut self, view: &View<'_, N, M>) -> Option<Node<N, M>> {
+        self.work.end(view);
+        (self.last != Some(view.k)).then(|| self.node(view))
+    }
+}
+
+/// The observer that keeps the first node, every `every`-th and the last.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trajectory<const N: usize, const M: usize> {
+    nodes: Vec<Node<N, M>>,
+    choice: Choice<N, M>,
+}
+
+impl<const N: usize, const M: usize> Trajectory<N, M> {
+    /// Keeps every `every`-th node; 0 counts as 1.
+    #[must_use]
+    pub fn every(every: u64) -> Self {
+        Self { nodes: Vec::new(), choice: Choice::every(every) }
+    }
+
+    /// The same for a run that goes on from a checkpoint, whose work [`Work::load`] gave: keeps the nodes after it.
+    #[must_use]
+    pub fn resumed(every: u64, t: f64, work: Work<N>) -> Self {
+        Self { nodes: Vec::new(), choice: Choice { time: t, work, ..Choice::every(every) } }
+    }
+
+    /// The nodes kept, in the order of time.
+    #[must_use]
+    pub fn nodes(&self) -> &[Node<N, M>] {
+        &self.nodes
     }
 }
 
 impl<const N: usize, const M: usize> Observer<N, M> for Trajectory<N, M> {
     fn start(&mut self, node: &View<'_, N, M>) {
-        (self.time, self.multipliers) = (node.t, None);
-        self.work.start(node);
-        self.keep(node);
+        let node = self.choice.start(node);
+        self.nodes.push(node);
     }
 
     fn resume(&mut self, node: &View<'_, N, M>) {
-        self.work.resume(node);
+        self.choice.work.resume(node);
     }
 
     fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
-        // Work never ends a run.
-        let _ = self.work.step(node, report);
-        self.multipliers = Some(report.multipliers(node.t - self.time));
-        self.time = node.t;
-        if node.k.is_multiple_of(self.every) {
-            self.keep(node);
+        let node = self.choice.step(node, report);
+        self.nodes.extend(node);
+        ControlFlow::Continue(())
+    }
+
+    fn part(&mut self, end: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
+        self.choice.work.part(end, report)
+    }
+
+    fn end(&mut self, node: &View<'_, N, M>) {
+        let node = self.choice.end(node);
+        self.nodes.extend(node);
+    }
+}
+
+/// The observer that hands on the nodes a [`Trajectory`] would keep, as they come: the memory holds none of them.
+pub struct Nodes<'a, const N: usize, const M: usize> {
+    choice: Choice<N, M>,
+    sink: &'a mut dyn FnMut(&Node<N, M>),
+}
+
+impl<'a, const N: usize, const M: usize> Nodes<'a, N, M> {
+    /// Hands on every `every`-th node, besides the first and the last; 0 counts as 1.
+    pub fn every(every: u64, sink: &'a mut dyn FnMut(&Node<N, M>)) -> Self {
+        Self { choice: Choice::every(every), sink }
+    }
+
+    /// The same for a run that goes on from a checkpoint after `k` steps, at time `t` (s), whose work [`Work::load`] gave: the nodes are
+    /// those that a run without the checkpoint would have handed on after it.
+    #[must_use]
+    pub fn resumed(self, (k, t): (u64, f64), work: Work<N>) -> Self {
+        let last = k.is_multiple_of(self.choice.every).then_some(k);
+        Self { choice: Choice { time: t, work, last, ..self.choice }, ..self }
+    }
+}
+
+impl<const N: usize, const M: usize> std::fmt::Debug for Nodes<'_, N, M> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Nodes").field("choice", &self.choice).finish_non_exhaustive()
+    }
+}
+
+impl<const N: usize, const M: usize> Observer<N, M> for Nodes<'_, N, M> {
+    fn start(&mut self, node: &View<'_, N, M>) {
+        (self.sink)(&self.choice.start(node));
+    }
+
+    fn resume(&mut self, node: &View<'_, N, M>) {
+        self.choice.work.resume(node);
+    }
+
+    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
+        if let Some(node) = self.choice.step(node, report) {
+            (self.sink)(&node);
         }
         ControlFlow::Continue(())
     }
 
     fn part(&mut self, end: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
-        self.work.part(end, report)
+        self.choice.work.part(end, report)
     }
 
     fn end(&mut self, node: &View<'_, N, M>) {
-        self.work.end(node);
-        if self.nodes.last().is_none_or(|last| last.k != node.k) {
-            self.keep(node);
+        if let Some(node) = self.choice.end(node) {
+            (self.sink)(&node);
         }
     }
 }

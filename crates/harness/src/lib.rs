@@ -41,4 +41,4 @@ pub use saved::{Saving, run_saved};
 pub use statistics::Trend;
 pub use substeps::SubstepSummary;
 pub use timing::Progress;
-pub use watched::{EVENT_SAMPLES, Watched, recommend, run_watched};
+pub use watched::{EVENT_SAMPLES, Watched, recommend, run_observed, run_watched};

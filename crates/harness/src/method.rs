@@ -329,7 +329,7 @@ pub struct Method {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum MethodError {
     /// No method has this name.
-    #[error("unknown method `{name}`; the methods are {}", names().join(", "))]
+    #[error("{}; the methods are {}", unknown(name), names().join(", "))]
     Unknown {
         /// What was asked for.
         name: String,
@@ -343,6 +343,11 @@ pub enum MethodError {
         /// What was given.
         tolerance: f64,
     },
+}
+
+/// What is wrong with a name that no method has.
+fn unknown(name: &str) -> String {
+    if name.is_empty() { "an empty name is not a method".to_owned() } else { format!("unknown method `{name}`") }
 }
 
 fn names() -> Vec<&'static str> {

@@ -2,7 +2,7 @@ use crate::record::Meter;
 use crate::substeps::substepped_part;
 use crate::timing::Ticker;
 use crate::{Method, Progress, Record, Request};
-use dla::{Checkpoint, CheckpointError, Part, Piece, State, Subject, Trajectory, Work, piece_by_piece_from};
+use dla::{Checkpoint, CheckpointError, Nodes, Part, Piece, State, Subject, Work, piece_by_piece_from};
 use std::ops::Range;
 use std::time::Instant;
 
@@ -19,22 +19,22 @@ pub struct Saving<'a> {
 }
 
 /// Everything that changes along a run.
-struct Progressing<const N: usize, const M: usize> {
+struct Progressing<const N: usize> {
     made: u64,
     /// The time (s).
     t: f64,
     state: State<N>,
     memory: Vec<f64>,
     meter: Meter<N>,
-    trajectory: Option<Trajectory<N, M>>,
     seconds: f64,
 }
 
-/// Makes a run once, measures it, and keeps every `keep`-th node where that is asked for.
+/// Makes a run once, measures it, and shows its nodes to `nodes` where that is asked for.
 ///
 /// The record is the same to the last bit whether the run was made at once or in parts, but for its time, which is that of
-/// all parts, with what looks on. The nodes are those since the last checkpoint. Where the progress ends the run a last
-/// checkpoint is made; so is one at its end, from which the same record comes again at once.
+/// all parts, with what looks on; so are the nodes, of which a resumed run shows those after the checkpoint. A run may be resumed with
+/// more steps than it had. Where the progress ends the run a last checkpoint is made; so is one at its end, from which the same record
+/// comes again at once.
 ///
 /// # Errors
 /// [`CheckpointError`] where the checkpoint does not belong to this run; nothing is then done.
@@ -43,29 +43,34 @@ pub fn run_saved<'a, const N: usize, const M: usize>(
     method: &Method,
     request: &Request<N>,
     saving: &mut Saving<'_>,
-    keep: Option<u64>,
+    nodes: Option<Nodes<'_, N, M>>,
     progress: &mut dyn Progress,
-) -> Result<(Record<N>, Option<Trajectory<N, M>>), CheckpointError> {
+) -> Result<Record<N>, CheckpointError> {
     let Request { schedule, q, v, .. } = *request;
     let Subject { system, own } = subject.into();
     let meter = Meter::new(request, method);
     let loaded = match saving.from {
         Some(checkpoint) => {
             checkpoint.belongs_to(saving.identity)?;
-            Some(Progressing::load(checkpoint, system.angles(), Meter::new(request, method), keep)?)
+            let [made] = checkpoint.counts("k")?;
+            within(made, schedule.steps)?;
+            Some(Progressing::load(checkpoint, system.angles(), Meter::new(request, method))?)
         }
         None => None,
     };
     // A run that has made no step starts again: its first node is shown.
-    let mut run = match loaded.filter(|run| run.made > 0) {
-        Some(run) => run,
+    let mut nodes = nodes;
+    let mut run = match loaded.filter(|(run, _)| run.made > 0) {
+        Some((run, work)) => {
+            nodes = nodes.map(|nodes| nodes.resumed((run.made, run.t), work));
+            run
+        }
         None => Progressing {
             made: 0,
             t: schedule.t0,
             state: State::new(q, v, system.angles()),
             memory: Vec::new(),
             meter,
-            trajectory: keep.map(Trajectory::every),
             seconds: 0.0,
         },
     };
@@ -86,7 +91,7 @@ pub fn run_saved<'a, const N: usize, const M: usize>(
                 // From what a checkpoint has, so that the run is the same with one.
                 stepper.recall(&run.memory, state);
                 let limits = method.substeps();
-                let observer = &mut (&mut run.meter, (&mut run.trajectory, &mut ticker));
+                let observer = &mut (&mut run.meter, (&mut nodes, &mut ticker));
                 done = substepped_part(piece, &mut *stepper, limits, &times, chunk.clone(), state, observer)?;
                 run.memory = stepper.memory();
                 let due = saving.every.is_some_and(|every| done.made.is_multiple_of(every));
@@ -106,8 +111,16 @@ pub fn run_saved<'a, const N: usize, const M: usize>(
         });
     let seconds = before + begin.elapsed().as_secs_f64();
     let interrupted = ticker.stopped;
-    let record = Record { interrupted, ..run.meter.record(method.info(), seconds, outcome.err()) };
-    Ok((record, run.trajectory))
+    Ok(Record { interrupted, ..run.meter.record(method.info(), seconds, outcome.err()) })
+}
+
+/// Refuses a checkpoint beyond the end of a run.
+pub(crate) fn within(made: u64, steps: u64) -> Result<(), CheckpointError> {
+    if made <= steps {
+        return Ok(());
+    }
+    let what = "number of steps that are made".to_owned();
+    Err(CheckpointError::Other { what, found: made.to_string(), expected: format!("at most {steps}") })
 }
 
 /// The parts of some steps that end at the multiples of `every`; at least one, though it be empty.
@@ -124,7 +137,7 @@ fn chunks(steps: &Range<u64>, every: Option<u64>) -> Vec<Range<u64>> {
     }
 }
 
-impl<const N: usize, const M: usize> Progressing<N, M> {
+impl<const N: usize> Progressing<N> {
     fn checkpoint(&self, identity: &Checkpoint) -> Checkpoint {
         let mut checkpoint = identity.clone();
         checkpoint.put_counts("k", &[self.made]);
@@ -136,25 +149,13 @@ impl<const N: usize, const M: usize> Progressing<N, M> {
         checkpoint
     }
 
-    fn load(
-        checkpoint: &Checkpoint,
-        angles: [bool; N],
-        meter: Meter<N>,
-        keep: Option<u64>,
-    ) -> Result<Self, CheckpointError> {
+    fn load(checkpoint: &Checkpoint, angles: [bool; N], meter: Meter<N>) -> Result<(Self, Work<N>), CheckpointError> {
         let [made] = checkpoint.counts("k")?;
         let ([seconds], [t]) = (checkpoint.get("seconds")?, checkpoint.get("time")?);
         let state = State::load(checkpoint, angles)?;
         let work = Work::load(checkpoint, t, &state)?;
-        Ok(Self {
-            made,
-            t,
-            state,
-            memory: checkpoint.list("memory")?,
-            meter: Meter::load(checkpoint, meter, made, t, &state, work)?,
-            trajectory: keep.map(|keep| Trajectory::resumed(keep, t, work)),
-            seconds,
-        })
+        let meter = Meter::load(checkpoint, meter, made, t, &state, work)?;
+        Ok((Self { made, t, state, memory: checkpoint.list("memory")?, meter, seconds }, work))
     }
 }
 

@@ -4,7 +4,7 @@ use crate::stopwatch::take;
 use crate::timing::Ticker;
 use crate::{Again, Method, Progress, Record, Request};
 use dla::{
-    Close, Crossing, Event, RecommendError, Recommendation, Samples, State, Subject, Trajectory, Watch,
+    Close, Crossing, Event, Observer, RecommendError, Recommendation, Samples, State, Subject, Trajectory, Watch,
     recommend_by_trial,
 };
 
@@ -24,23 +24,36 @@ pub struct Watched<const N: usize, const M: usize> {
 /// Into how many parts a step is divided to look for events, where nobody says ([`Watch::samples`]).
 pub const EVENT_SAMPLES: u32 = 4;
 
-/// Makes a run, once, measures it with what looks on, looks for events, in so many parts of each step, and keeps every `keep`-th node where that is asked
-/// for.
+/// Makes a run, once, measures it with what looks on, looks for events, in so many parts of each step, and keeps every `keep`-th node
+/// where that is asked for.
 pub fn run_watched<'a, const N: usize, const M: usize>(
     subject: impl Into<Subject<'a, N, M>>,
     method: &Method,
     request: &Request<N>,
-    (events, samples): (&[Event<'_, N>], u32),
+    events: (&[Event<'_, N>], u32),
     keep: Option<u64>,
+    progress: &mut dyn Progress,
+) -> Watched<N, M> {
+    let mut trajectory = keep.map(Trajectory::every);
+    let made = run_observed(subject, method, request, events, &mut trajectory, progress);
+    Watched { trajectory, ..made }
+}
+
+/// The same with any observer, which sees the nodes as they come; none of them is kept.
+pub fn run_observed<'a, const N: usize, const M: usize>(
+    subject: impl Into<Subject<'a, N, M>>,
+    method: &Method,
+    request: &Request<N>,
+    (events, samples): (&[Event<'_, N>], u32),
+    observer: &mut dyn Observer<N, M>,
     progress: &mut dyn Progress,
 ) -> Watched<N, M> {
     let Request { schedule, q, v, .. } = *request;
     let subject = subject.into();
     let start = State::new(q, v, subject.system.angles());
     let mut meter = Meter::new(request, method);
-    let mut trajectory = keep.map(Trajectory::every);
     let mut ticker = Ticker::new(progress, 0);
-    let inner = (&mut meter, (&mut trajectory, &mut ticker));
+    let inner = (&mut meter, (observer, &mut ticker));
     let mut watch = Watch::new(Again { method, own: subject.own }, events, inner);
     watch.samples = samples;
     let mut outcome = Ok(0);
@@ -50,7 +63,7 @@ pub fn run_watched<'a, const N: usize, const M: usize>(
     let (crossings, close) = (watch.crossings().to_vec(), watch.close());
     let interrupted = ticker.stopped;
     let record = Record { interrupted, ..meter.record(method.info(), taken.wall, outcome.err()) };
-    Watched { record, trajectory, crossings, close }
+    Watched { record, trajectory: None, crossings, close }
 }
 
 /// The longest step of a whole run from time zero that meets a tolerance (see [`dla::recommend_step`]).

@@ -53,6 +53,7 @@ pub fn bundled_texts() -> &'static [Bundled] {
         "two-wheeled-robot",
         "car-and-trailer",
         "chaplygin-ball",
+        "bicycle",
     ]
 }
 

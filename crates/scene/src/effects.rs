@@ -104,10 +104,10 @@ fn read_one(table: &Table<'_>, kind: &str) -> Result<SceneEffect, SceneError> {
 const MOST_TRAILERS: f64 = 100_000.0;
 
 fn trailers(table: &Table<'_>) -> Result<TrailersSpec, SceneError> {
-    let count = table.required(&Quantity::positive("count", "blades"))?;
-    if count.fract() != 0.0 || count > MOST_TRAILERS {
+    let count = table.required(&Quantity::finite("count", "blades"))?;
+    if count.fract() != 0.0 || !(1.0..=MOST_TRAILERS).contains(&count) {
         let accepted = format!("a whole number from 1 to {MOST_TRAILERS}");
-        return Err(table.wrong("count", "is no number of trailers", accepted));
+        return Err(table.wrong("count", "is not a number of trailers", accepted));
     }
     let count = count as usize;
     let each = |quantity: &Quantity| {
@@ -201,7 +201,7 @@ fn check_company(table: &Table<'_>, new: &SceneEffect, others: &[SceneEffect], o
     if (is_train(new) && others.iter().any(changes_body)) || (changes_body(new) && others.iter().any(is_train)) {
         let accepted = "what acts on its coordinates: `slope`, `bowl`, `egg_crate`, `hills` for every blade, `drag`, \
                         `thrust`, `torque` and `moving_mass` for the first, without tables of times";
-        return Err(table.wrong("kind", "does not go with `trailers`", accepted.to_owned()));
+        return Err(table.wrong("kind", "cannot act on a train: the scene has `trailers`", accepted.to_owned()));
     }
     let imposes = |effect: &SceneEffect| matches!(effect, SceneEffect::Servo { .. } | SceneEffect::Tracer { .. });
     if imposes(new) && others.iter().any(imposes) {

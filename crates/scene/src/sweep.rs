@@ -43,6 +43,8 @@ pub struct Sweep {
     pub every: u64,
     /// Whether the largest Lyapunov exponent of every member is wanted.
     pub exponent: bool,
+    /// The text of the sweep's file.
+    pub file: String,
     text: Table,
     origin: String,
     grid: Vec<(String, Vec<f64>)>,
@@ -133,6 +135,7 @@ impl Sweep {
             seed: whole(&choice, "seed")?.unwrap_or(0),
             common: truth(&choice, "common")?,
             scene,
+            file: text.to_owned(),
             text: table,
             origin: name.to_owned(),
             grid: grid.into_iter().map(|leaf| (leaf.key, leaf.values)).collect(),

@@ -119,7 +119,10 @@ impl Scene {
     }
 
     /// The jumps of the scene in its run (s).
-    pub(crate) fn jumps(&self) -> Result<Vec<f64>, SleighError> {
+    ///
+    /// # Errors
+    /// [`SleighError`] where there is no such sleigh.
+    pub fn jumps(&self) -> Result<Vec<f64>, SleighError> {
         Ok(handed(self.first_blade()?, Jumps(self.run.duration)))
     }
 

@@ -174,7 +174,7 @@ fn empty_texts_are_empty_scenes() {
         let error = Scene::parse(text, "empty.toml", METHODS).unwrap_err();
         let message = error.to_string();
         assert!(matches!(error, SceneError::Missing(_)));
-        for fragment in ["the scene is empty", "empty.toml:1:1", "`[sleigh]`, `[start]` and `[run]`"] {
+        for fragment in ["the scene is empty", "empty.toml:1:1", "`[sleigh]` or `[system]`, `[start]` and `[run]`"] {
             assert!(message.contains(fragment), "{text:?}:\n{message}");
         }
     }

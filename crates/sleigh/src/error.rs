@@ -4,7 +4,7 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SleighError {
     /// A mass or a moment of inertia is not a finite positive number.
-    #[error("{quantity} must be a finite positive number, and is {value}")]
+    #[error("{quantity} must be a finite positive number, and is {value:?}")]
     NotPositive {
         /// Which parameter.
         quantity: &'static str,
@@ -12,7 +12,7 @@ pub enum SleighError {
         value: f64,
     },
     /// A number is infinite or not a number.
-    #[error("{quantity} must be finite, and is {value}")]
+    #[error("{quantity} must be finite, and is {value:?}")]
     NotFinite {
         /// Which parameter, state variable or derived quantity.
         quantity: &'static str,
@@ -20,7 +20,7 @@ pub enum SleighError {
         value: f64,
     },
     /// A coefficient is negative or not finite.
-    #[error("{quantity} must be a finite number and not negative, and is {value}")]
+    #[error("{quantity} must be a finite number and not negative, and is {value:?}")]
     Negative {
         /// Which parameter.
         quantity: &'static str,
@@ -35,7 +35,7 @@ pub enum SleighError {
     },
     /// What is wanted needs a system of a few coordinates, and this is a train of many.
     #[error(
-        "it has `trailers`, and a train of blades is no system of a few coordinates: `run`, `compare` and `precision` do trains, with dla, dla4, dla6, dla8, lobatto3, lobatto4, lobatto5 and energy2"
+        "the scene has `trailers`, and this command has no trains: `run`, `compare` and `precision` have trains, with dla, dla4, dla6, dla8, lobatto3, lobatto4, lobatto5 and energy2"
     )]
     Train,
     /// A path cannot be followed.

@@ -56,7 +56,7 @@ impl Model {
         let (rows, _) = self.rows_at(0.0, &start.q);
         let rank = rank(&rows);
         let mut fields = Fields { graph: Graph::clone(&self.graph), n, q: &start.q };
-        let basis = match &self.fields {
+        let basis: Vec<Field> = match &self.fields {
             Some(given) => given.chunks(n).map(<[Expression]>::to_vec).collect(),
             None => fields.eliminated(&self.rows, &Pivots::best(&rows, &self.sizes(0.0, &start.q))),
         };

@@ -107,6 +107,12 @@ impl Model {
                 break;
             }
         }
+        // What is rounding beside the others is nothing, if the constraints are met without.
+        let rounding = f64::EPSILON * 64.0 * rate.amax();
+        let without = rate.map(|x| if x.abs() <= rounding { 0.0 } else { x });
+        if missed(&a, &b, &without).is_none() {
+            rate = without;
+        }
         if let Some(missed) = missed(&a, &b, &rate) {
             return Err(StartError::Velocities { missed });
         }

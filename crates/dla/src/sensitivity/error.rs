@@ -1,4 +1,5 @@
 use crate::{NewtonError, StepError};
+use lagrangian::Shown;
 use thiserror::Error;
 
 /// Why a step has no derivative.
@@ -18,7 +19,7 @@ pub enum SensitivityError {
     Equations(#[source] NewtonError),
     /// The equations of the step have another solution than the one that the method took.
     #[error(
-        "the equations of the step have a solution that is off the method's by {defect:e}, relative: choose a shorter step"
+        "the step of the method misses the equations of its derivative by {defect:.2e}, relative: choose a shorter step"
     )]
     OtherSolution {
         /// The largest difference of configurations or velocities, relative.
@@ -28,7 +29,7 @@ pub enum SensitivityError {
 
 /// A run with tangents that ended early; state and tangents are those of the last good node.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[error("step {step}, from t = {time} s: {source}")]
+#[error("step {step}, from t = {} s: {source}", Shown(*time))]
 pub struct TangentRunError {
     /// The number of the failed step, from 1.
     pub step: u64,

@@ -141,7 +141,7 @@ fn derivative<const N: usize, const M: usize, const P: usize>(
         model.holonomic(first_t, &first_q).is_some() || model.nonlinear(first_t, &first_q, &first_v).is_some();
     if classes && !method.carries_every_class() {
         return Err(SensitivityError::Unsupported {
-            reason: "constraints on positions, and such as are not affine in the velocities, are differentiated in the \
+            reason: "constraints on positions, and constraints that are not affine in the velocities, are differentiated in the \
                      methods of the family `dla` only",
         });
     }

@@ -46,10 +46,10 @@ pub enum EquilibriumError {
     #[error("the equations of motion are degenerate: {0}")]
     Singular(#[from] Singular),
     /// The constraints leave no velocity free.
-    #[error("every velocity is imposed: nothing is left that could be steady or not")]
+    #[error("every velocity is imposed: the scene has no free motion that could be steady")]
     NothingFree,
     /// Something acts that depends on time.
-    #[error("forces or constraints depend on time: no motion is steady")]
+    #[error("forces or constraints depend on time: a scene that depends on time has no steady motion")]
     TimeDependent,
     /// The search found no equilibrium.
     #[error("no relative equilibrium was found from {guesses} first guesses: there may be none")]

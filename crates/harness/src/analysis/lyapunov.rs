@@ -78,7 +78,7 @@ pub enum LyapunovFailure {
     #[error(
         "until {time:.6} s all exponents together are {:+.6e} 1/s by the steps, and {:+.6e} 1/s by the divergence of the equations, where at \
          most {allowed:.1e} may lie between: the derivatives of the steps are not those of the motion, for the steps are too long, or the \
-         motion is so quick that rounding takes their digits; told are the exponents until then; take shorter steps, or a shorter run",
+         motion is so quick that round-off takes their digits; the exponents are those until then; take shorter steps, or a shorter run",
         sums[0],
         sums[1]
     )]
@@ -96,7 +96,9 @@ pub enum LyapunovFailure {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum LyapunovError {
     /// There are no so many.
-    #[error("{asked} exponents; accepted is a number from 1 to {most}, the dimension of the distribution")]
+    #[error(
+        "{asked} exponents are asked for; accepted is a number from 1 to {most}, the dimension of the distribution"
+    )]
     Count {
         /// How many were asked for.
         asked: usize,
@@ -104,7 +106,7 @@ pub enum LyapunovError {
         most: usize,
     },
     /// Forces or constraints jump along the run, and a step across a jump has no derivative.
-    #[error("forces or constraints jump at t = {time} s, where a motion has no derivative")]
+    #[error("forces or constraints jump at t = {time:?} s, and a motion has no derivative there")]
     Jump {
         /// When (s).
         time: f64,

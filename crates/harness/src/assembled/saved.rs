@@ -1,5 +1,6 @@
 use super::Assembled;
 use super::making::{Making, Ticker};
+use crate::saved::within;
 use crate::{Method, Progress, Saving};
 use assembly::{Assembly, State};
 use dla::{CheckpointError, Schedule};
@@ -23,6 +24,8 @@ pub fn run_assembly_saved(
     let mut making = match saving.from {
         Some(checkpoint) => {
             checkpoint.belongs_to(saving.identity)?;
+            let [made] = checkpoint.counts("k")?;
+            within(made, schedule.steps)?;
             Making::load(assembly, method, schedule, every, checkpoint)?
         }
         None => Making::new(assembly, method, schedule, start, every),

@@ -64,7 +64,8 @@ pub struct Clock {
 
 /// Measures every method; the points come from coarse to fine, their [Pareto front](mark_pareto) is not yet marked.
 ///
-/// `progress` is told of each ladder that is climbed, and of each [round](rounds) of the timing.
+/// `progress` is told of each ladder that is climbed, and of each [round](rounds) of the timing; where it ends the work, the curves are
+/// those of the ladders that were climbed, with the times of the rounds that were made.
 pub fn work_precision(
     bench: &Bench<'_>,
     methods: &[Method],
@@ -74,6 +75,9 @@ pub fn work_precision(
     let pinned = Pinned::here();
     let mut ladders = Vec::with_capacity(methods.len());
     for method in methods {
+        if progress.stops() {
+            break;
+        }
         ladders.push(ladder::climb(bench, method, limits));
         progress.advance(1);
     }

@@ -31,6 +31,9 @@ pub(super) fn race(
 ) -> Vec<Option<Measured>> {
     let mut batches: Vec<Vec<Taken>> = vec![Vec::new(); rungs.len()];
     for round in 0..ROUNDS {
+        if progress.stops() {
+            break;
+        }
         for (rung, batches) in rungs.iter().zip(&mut batches) {
             if rung.error.is_none() || !has_turn(rung.seconds, round) {
                 continue;

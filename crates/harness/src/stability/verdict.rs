@@ -69,7 +69,7 @@ impl Trial {
 pub struct Verdict {
     /// In a word.
     pub outcome: Outcome,
-    /// The measured number that comes nearest to its bar, or is farthest above it.
+    /// The worst of the measured numbers, relative to its bar.
     pub worst: Option<Finding>,
     /// In a line.
     pub why: String,

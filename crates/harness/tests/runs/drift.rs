@@ -181,7 +181,7 @@ fn part(method: &str, steps: u64, from: Option<&Checkpoint>, stop: Option<u64>) 
     let mut saving = Saving { identity: &identity, from, every: Some(1 << 20), save: &mut save };
     let system = Particle::of(1.0);
     let made = run_saved::<3, 1>(&system, &method, &request(steps, 0.05), &mut saving, None, &mut Until(0, stop));
-    (made.unwrap().0, last)
+    (made.unwrap(), last)
 }
 
 #[test]

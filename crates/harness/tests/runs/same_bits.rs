@@ -30,7 +30,7 @@ fn saved(info: &MethodInfo, from: Option<&Checkpoint>) -> (String, Vec<Checkpoin
     let mut saving = Saving { identity: &Checkpoint::default(), from, every: Some(EVERY), save: &mut save };
     let method = Method::named(info.name, Some(0.3)).unwrap();
     let made = run_saved::<3, 1>(&system(), &method, &request(STEPS, 0.05), &mut saving, None, &mut ());
-    (told(made.unwrap().0), all)
+    (told(made.unwrap()), all)
 }
 
 #[test]

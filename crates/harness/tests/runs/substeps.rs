@@ -64,7 +64,7 @@ fn saved(
     let mut save = |made: &Checkpoint| all.push(Checkpoint::from_text(&made.to_text()).unwrap());
     let mut saving = Saving { identity: &Checkpoint::default(), from, every: Some(7), save: &mut save };
     let made = run_saved::<3, 1>(&system(), method, &request(40, step), &mut saving, None, progress);
-    (made.unwrap().0, all)
+    (made.unwrap(), all)
 }
 
 /// All but the time.

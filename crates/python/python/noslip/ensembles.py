@@ -35,4 +35,5 @@ def ensemble(sweep: str | PathLike[str] | Mapping[str, Any], *, progress: bool |
         rows = Path(folder) / "members.npz"
         summary = call(["ensemble", str(file), "--json", "--out", str(rows)], progress)
         with np.load(rows) as archive:
-            return Ensemble({name: archive[name] for name in archive.files}, summary)
+            columns = [name for name in archive.files if name != "metadata"]
+            return Ensemble({name: archive[name] for name in columns}, summary)

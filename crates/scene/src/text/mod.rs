@@ -119,6 +119,14 @@ impl AnyScene {
         }
     }
 
+    /// The same, to be changed.
+    pub fn run_mut(&mut self) -> &mut RunSettings {
+        match self {
+            Self::Sleigh(scene) => &mut scene.run,
+            Self::Text(scene) => &mut scene.run,
+        }
+    }
+
     /// What the scene calls itself.
     #[must_use]
     pub fn title(&self) -> &str {

@@ -96,7 +96,7 @@ fn what_is_no_checkpoint_of_the_run_is_refused() {
     let other = read.belongs_to(&of("dla4", "1.2\n3 = ä")).unwrap_err();
     assert_eq!(
         other.to_string(),
-        "this checkpoint belongs to another run: its method is `dla`, that of the run is `dla4`"
+        "the checkpoint belongs to another run: in the checkpoint, `method` is `dla`; in this run, `method` is `dla4`"
     );
     assert!(read.belongs_to(&Checkpoint::of([("method", "dla".to_owned())])).is_err(), "one thing more");
     assert_eq!(read.get::<2>("q"), Err(CheckpointError::Missing { name: "q".to_owned(), count: 2 }));

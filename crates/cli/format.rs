@@ -1,0 +1,55 @@
+use crate::error::CliError;
+use std::path::Path;
+
+/// The formats in which rows of numbers are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Format {
+    /// Comma-separated values, with a header.
+    Csv,
+    /// A JSON object on each line.
+    Jsonl,
+    /// An archive of NumPy arrays.
+    Npz,
+    #[cfg(feature = "parquet")]
+    Parquet,
+}
+
+impl Format {
+    /// The one that is asked for, or that the ending of the file's name says.
+    pub(crate) fn of(path: &Path, asked: Option<Self>) -> Result<Self, CliError> {
+        if let Some(format) = asked {
+            return Ok(format);
+        }
+        let ending = path.extension().map(std::ffi::OsStr::to_ascii_lowercase);
+        match ending.as_ref().and_then(|ending| ending.to_str()) {
+            #[cfg(not(feature = "parquet"))]
+            Some("parquet") => Err(CliError::WithoutParquet { path: path.to_owned() }),
+            ending => ending.and_then(Self::named).ok_or_else(|| CliError::Ending { path: path.to_owned() }),
+        }
+    }
+
+    fn named(name: &str) -> Option<Self> {
+        match name {
+            "csv" => Some(Self::Csv),
+            "jsonl" => Some(Self::Jsonl),
+            "npz" => Some(Self::Npz),
+            #[cfg(feature = "parquet")]
+            "parquet" => Some(Self::Parquet),
+            _ => None,
+        }
+    }
+
+    /// Whether rows are lines of text, that can be written as they come.
+    pub(crate) fn is_text(self) -> bool {
+        matches!(self, Self::Csv | Self::Jsonl)
+    }
+}
+
+impl std::str::FromStr for Format {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let without = if cfg!(feature = "parquet") { "" } else { "; this program was built without parquet" };
+        Self::named(name).ok_or_else(|| format!("accepted are csv, jsonl, npz and parquet{without}"))
+    }
+}

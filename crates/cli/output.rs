@@ -1,0 +1,290 @@
+use crate::error::CliError;
+use crate::files::{check_file, write_whole};
+use crate::format::Format;
+use crate::npz;
+use crate::part::Part;
+use crate::provenance::{Provenance, label};
+use crate::terminal;
+use crc32fast::Hasher;
+use scene::Column;
+use std::fs::File;
+use std::io::{BufReader, BufWriter, Error, ErrorKind, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+/// Where the rows of a run are to be written.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Asked<'a> {
+    /// The file; none for standard output.
+    pub(crate) path: Option<&'a Path>,
+    format: Format,
+    force: bool,
+}
+
+impl<'a> Asked<'a> {
+    /// Refused, before the work begins, where the rows could not be written at its end; a run that is resumed may find its own file.
+    pub(crate) fn new(path: &'a Path, format: Option<Format>, force: bool, resumed: bool) -> Result<Self, CliError> {
+        if path == Path::new("-") {
+            let format = format.unwrap_or(Format::Csv);
+            if !format.is_text() {
+                let problem = "--out -: standard output takes --format csv or jsonl; the others need a file";
+                return Err(CliError::Request(problem.to_owned()));
+            }
+            return Ok(Self { path: None, format, force });
+        }
+        let format = Format::of(path, format)?;
+        check_file(path, force || resumed)?;
+        if format.is_text() {
+            check_file(&metadata_of(path), force || resumed)?;
+        }
+        Ok(Self { path: Some(path), format, force })
+    }
+}
+
+/// Where the provenance of a file of text is: beside it, as "CSV on the Web" has it.
+pub(crate) fn metadata_of(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push("-metadata.json");
+    path.with_file_name(name)
+}
+
+/// How far an output has come, as a checkpoint tells it: the bytes, their checksum, and every how many nodes are in it.
+pub(crate) type Position = [u64; 3];
+
+/// Rows of numbers on their way to a file, or to standard output. Lines of text are written as they come, those of a file to `OUT.part`,
+/// which gets its name at the end; of the other formats that file holds the numbers, and the output is made of it at the end.
+pub(crate) struct Output<'a> {
+    asked: Asked<'a>,
+    provenance: Provenance,
+    columns: Vec<Column>,
+    every: u64,
+    part: Option<Part>,
+    writer: BufWriter<Box<dyn Write>>,
+    line: Vec<u8>,
+    bytes: u64,
+    checksum: Hasher,
+    /// The position before the last row, where that is there only since the run ends with it.
+    before_last: Option<Position>,
+    failed: Option<Error>,
+    /// The file of before may be replaced: it is that of this run.
+    own: bool,
+}
+
+impl<'a> Output<'a> {
+    /// Begins, or goes on from where a checkpoint says.
+    pub(crate) fn open(
+        asked: Asked<'a>,
+        provenance: Provenance,
+        (columns, every): (Vec<Column>, u64),
+        from: Option<Position>,
+    ) -> Result<Self, CliError> {
+        let part = asked.path.map(Part::lock).transpose()?;
+        let writer: Box<dyn Write> = match &part {
+            Some(part) => Box::new(part.file().try_clone().map_err(|source| part.failed(source))?),
+            None => Box::new(terminal::Out),
+        };
+        let (line, checksum) = (Vec::new(), Hasher::new());
+        let writer = BufWriter::with_capacity(1 << 16, writer);
+        let mut output = Self {
+            asked,
+            provenance,
+            columns,
+            every,
+            part,
+            writer,
+            line,
+            bytes: 0,
+            checksum,
+            before_last: None,
+            failed: None,
+            own: false,
+        };
+        if let (Some(position), Some(path)) = (from, asked.path)
+            && output.goes_on(path, position)?
+        {
+            return Ok(output);
+        }
+        if let (None, Some(path)) = (from, asked.path) {
+            check_file(path, asked.force)?;
+        }
+        if let Some(part) = &output.part {
+            let mut file = part.file();
+            file.set_len(0).and_then(|()| file.seek(SeekFrom::Start(0))).map_err(|source| part.failed(source))?;
+        }
+        if asked.format == Format::Csv {
+            let labels: Vec<String> = output.columns.iter().map(label).collect();
+            output.line = format!("{}\n", labels.join(",")).into_bytes();
+            output.write();
+        }
+        Ok(output)
+    }
+
+    /// Takes over the rows up to a position, from `OUT.part` or from the output of a run that was ended; false where there is neither.
+    fn goes_on(&mut self, path: &Path, [bytes, checksum, every]: Position) -> Result<bool, CliError> {
+        let Some(part) = &self.part else { return Ok(false) };
+        let unreadable = |source| CliError::Read { path: part.path().to_owned(), source };
+        let mut file = part.file();
+        let there = file.metadata().map_err(unreadable)?.len();
+        let mut found = summed(file, bytes, &mut std::io::sink()).map_err(unreadable)?;
+        let old = File::open(path).ok();
+        let same = |sum: &Option<Hasher>| sum.clone().is_some_and(|sum| u64::from(sum.finalize()) == checksum);
+        if let (false, true, Some(old)) = (same(&found), self.asked.format.is_text(), &old)
+            && same(&summed(old, bytes, &mut std::io::sink()).map_err(unreadable)?)
+        {
+            file.set_len(0).and_then(|()| file.seek(SeekFrom::Start(0))).map_err(unreadable)?;
+            found = summed(old, bytes, &mut file).map_err(unreadable)?;
+        }
+        match found.filter(|sum| same(&Some(sum.clone()))) {
+            Some(_) if every != self.every => {
+                let problem = format!("--every {}: the rows before the checkpoint are every {every}", self.every);
+                Err(CliError::Request(problem))
+            }
+            Some(sum) => {
+                file.set_len(bytes).and_then(|()| file.seek(SeekFrom::End(0))).map_err(unreadable)?;
+                (self.bytes, self.checksum, self.own) = (bytes, sum, true);
+                Ok(true)
+            }
+            None if there == 0 && old.is_none() => {
+                let told = "there are no rows from before the checkpoint; the file begins after it";
+                terminal::say("warning", &format!("{}: {told}", path.display()));
+                Ok(false)
+            }
+            None if self.asked.force => Ok(false),
+            None => Err(CliError::Request(format!(
+                "{}: neither this file nor {} begins with the rows that the checkpoint goes on from; --force begins a new file after it",
+                path.display(),
+                part.path().display()
+            ))),
+        }
+    }
+
+    /// Adds the row of node `k`. An error is kept until the end: the run goes on.
+    pub(crate) fn row(&mut self, k: u64, row: &[f64]) {
+        // A node that is not due is the last one of a run that was ended; the run that goes on does not have it.
+        self.before_last = (!k.is_multiple_of(self.every)).then(|| self.here());
+        self.line.clear();
+        match self.asked.format {
+            Format::Csv => {
+                for (i, value) in row.iter().enumerate() {
+                    let comma = if i > 0 { "," } else { "" };
+                    // `{:?}` prints the shortest text that reads back as the same number. Writing to memory cannot fail.
+                    let _ = write!(self.line, "{comma}{value:?}");
+                }
+                self.line.push(b'\n');
+            }
+            Format::Jsonl => {
+                for (i, (column, value)) in self.columns.iter().zip(row).enumerate() {
+                    let comma = if i > 0 { "," } else { "{" };
+                    let name = serde_json::Value::from(column.name.as_str());
+                    let _ = match value.is_finite() {
+                        true => write!(self.line, "{comma}{name}:{value:?}"),
+                        false => write!(self.line, "{comma}{name}:null"),
+                    };
+                }
+                self.line.extend(b"}\n");
+            }
+            _ => self.line.extend(row.iter().flat_map(|value| value.to_le_bytes())),
+        }
+        self.write();
+    }
+
+    fn write(&mut self) {
+        if self.failed.is_none() {
+            self.checksum.update(&self.line);
+            self.bytes += self.line.len() as u64;
+            self.failed = self.writer.write_all(&self.line).err();
+        }
+    }
+
+    /// Whether nobody reads any more.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.failed.as_ref().is_some_and(|error| error.kind() == ErrorKind::BrokenPipe)
+    }
+
+    /// How far it has come, without a last row that is not due; all of that is then on the disk.
+    pub(crate) fn position(&mut self) -> Option<Position> {
+        if self.failed.is_some() {
+            return None;
+        }
+        let kept = self.writer.flush().and_then(|()| self.part.as_ref().map_or(Ok(()), |part| part.file().sync_data()));
+        self.failed = kept.err();
+        let kept = self.part.is_some() && self.failed.is_none();
+        kept.then(|| self.before_last.unwrap_or_else(|| self.here()))
+    }
+
+    fn here(&self) -> Position {
+        [self.bytes, u64::from(self.checksum.clone().finalize()), self.every]
+    }
+
+    /// Ends the output: a file appears whole, or not at all. What a run that is to be resumed needs is kept.
+    pub(crate) fn finish(mut self, goes_on: bool) -> Result<(), CliError> {
+        let flushed = self.writer.flush();
+        let failed = self.failed.take().map_or(flushed, Err);
+        let (Some(path), Some(part)) = (self.asked.path, self.part) else {
+            return match failed {
+                Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(CliError::Output(error)),
+                _ => Ok(()),
+            };
+        };
+        failed.map_err(|source| part.failed(source))?;
+        let overwrite = self.asked.force || self.own;
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let document = format!("{:#}\n", self.provenance.document(&name, &self.columns));
+        if self.asked.format.is_text() {
+            let whole = part.file().sync_all();
+            whole.map_err(|source| part.failed(source))?;
+            part.becomes(path, overwrite)?;
+            return write_whole(&metadata_of(path), true, |file| file.write_all(document.as_bytes()));
+        }
+        let width = 8 * self.columns.len();
+        let rows = if width == 0 { 0 } else { self.bytes / width as u64 };
+        write_whole(path, overwrite, |file| match self.asked.format {
+            Format::Npz => {
+                let names: Vec<&str> = self.columns.iter().map(|column| column.name.as_str()).collect();
+                npz::write(file, &names, rows, &document, |column, push| {
+                    for row in numbers(part.file(), width)? {
+                        push(row?[column])?;
+                    }
+                    Ok(())
+                })
+            }
+            #[cfg(feature = "parquet")]
+            Format::Parquet => {
+                let names = self.columns.iter().map(label).collect();
+                crate::parquet_file::write(file, names, &document, numbers(part.file(), width)?)
+            }
+            Format::Csv | Format::Jsonl => Ok(()),
+        })?;
+        if !goes_on {
+            part.remove();
+        }
+        Ok(())
+    }
+}
+
+/// The checksum of the first bytes of a file, which are copied; none where there are not so many.
+fn summed(mut file: &File, bytes: u64, copy: &mut impl Write) -> Result<Option<Hasher>, Error> {
+    file.seek(SeekFrom::Start(0))?;
+    let (mut sum, mut left, mut block) = (Hasher::new(), bytes, vec![0; 1 << 16]);
+    while left > 0 {
+        let wanted = left.min(block.len() as u64) as usize;
+        let read = file.read(&mut block[..wanted])?;
+        if read == 0 {
+            return Ok(None);
+        }
+        sum.update(&block[..read]);
+        copy.write_all(&block[..read])?;
+        left -= read as u64;
+    }
+    Ok(Some(sum))
+}
+
+/// The rows of numbers in a file, from its beginning.
+fn numbers(mut file: &File, width: usize) -> Result<impl Iterator<Item = Result<Vec<f64>, Error>>, Error> {
+    file.seek(SeekFrom::Start(0))?;
+    let (mut reader, mut bytes) = (BufReader::with_capacity(1 << 16, file), vec![0; width]);
+    Ok(std::iter::from_fn(move || match reader.read_exact(&mut bytes) {
+        Ok(()) => Some(Ok(bytes.as_chunks().0.iter().map(|number| f64::from_le_bytes(*number)).collect())),
+        Err(error) if error.kind() == ErrorKind::UnexpectedEof => None,
+        Err(error) => Some(Err(error)),
+    }))
+}
