@@ -42,7 +42,7 @@ fn exponents_are_told_with_what_they_sum_up_to() {
     assert_abs_diff_eq!(found["energy"].as_f64().unwrap(), 1.2, epsilon = 1e-3);
     // The estimates on the way end where the run does.
     let (names, rows) = csv(&folder.read("run.csv"));
-    assert_eq!(names[..2], ["time", "exponent_1"]);
+    assert_eq!(names[..2], ["t", "exponent_1"]);
     assert_eq!(rows.last().unwrap()[1..], exponents);
     let text = folder.done("lyapunov egg-crate-attractor --step 0.1 --duration 300");
     for told in ["exponent 5", "mean divergence", "dimension", "verdict"] {
@@ -252,7 +252,7 @@ fn what_makes_no_sense_is_refused() {
         ("lyapunov bowl --energy -3", &["--energy", "at rest"]),
         ("lyapunov bowl --out run.txt", &["run.txt", ".csv", ".svg"]),
         ("lyapunov planimeter", &["imposes velocities"]),
-        ("lyapunov jumps.toml --duration 2", &["jump", "t = 1 s"]),
+        ("lyapunov jumps.toml --duration 2", &["jump", "t = 1.0 s"]),
         ("lyapunov bowl --map speed=-1:1:4", &["--map", "twice"]),
         ("lyapunov bowl --map speed=-1:1:4 --map speed=-1:1:4", &["--map", "speed"]),
         ("lyapunov bowl --map speed=1:-1:4 --map y=0:1:4", &["NAME=FROM:TO:CELLS"]),

@@ -52,6 +52,13 @@ fn send(signal: &str, child: &Child) {
     assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
 }
 
+/// Whether a closed terminal ends processes that are started here: `nohup` keeps that from them.
+fn hangs_up() -> bool {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_none_or(|mask| mask & 1 == 0)
+}
+
 /// Waits until the spool has so many bytes.
 fn wait_for(folder: &Folder, name: &str, bytes: u64) {
     while fs::metadata(folder.join(name)).map_or(0, |metadata| metadata.len()) < bytes {
@@ -122,7 +129,8 @@ fn killed_at_any_time_and_resumed_the_bytes_are_the_same() {
             }
             let (code, told) = ended(child);
             assert!(!told.contains("panicked"), "{told}");
-            if code == Some(0) {
+            // A process may be killed when its result is there already, and what lies beside it is not yet removed.
+            if code == Some(0) || code.is_none() && folder.join("k.csv").exists() {
                 break;
             }
             // A signal that comes before the program listens ends it as it ends any other.
@@ -136,7 +144,9 @@ fn killed_at_any_time_and_resumed_the_bytes_are_the_same() {
         }
         assert!(fs::read(folder.join("k.csv")).unwrap() == whole, "{signal} at try {number}");
         fs::remove_file(folder.join("k.csv")).unwrap();
-        fs::remove_file(folder.join("k.csv-metadata.json")).unwrap();
+        for beside in ["k.csv-metadata.json", "k.csv.part"] {
+            let _ = fs::remove_file(folder.join(beside));
+        }
         assert_eq!(folder.names(), ["sweep.toml"]);
     }
     println!("{cut} runs were ended by a signal, {kept} of them with rows in the spool");
@@ -148,7 +158,7 @@ fn a_signal_stops_it_between_members() {
     let folder = Folder::new();
     // Members that take long, of which a thread has at most one at a time.
     folder.write("slow.toml", SWEEP.replace("duration = 5.0", "duration = 5000.0\nmethod = \"rk4\""));
-    for signal in ["-INT", "-TERM", "-HUP"] {
+    for signal in ["-INT", "-TERM", "-HUP"].into_iter().filter(|signal| *signal != "-HUP" || hangs_up()) {
         let child = started(&folder, "ensemble slow.toml --out slow.csv");
         wait_for(&folder, "slow.csv.part", 100);
         send(signal, &child);
@@ -185,7 +195,7 @@ fn two_processes_do_not_share_an_output() {
         for (code, told) in [&first, &second] {
             if *code == Some(2) {
                 refused += 1;
-                assert!(told.contains("two.csv.part: another process is writing two.csv"), "{told}");
+                assert!(told.contains(": another process is writing two.csv"), "{told}");
             }
         }
     }

@@ -102,7 +102,7 @@ fn long_runs_that_are_well_are_not_called_diverged() {
 fn precision_says_why_no_run_of_a_method_succeeds() {
     let folder = Folder::new();
     folder.write("fast.toml", no_step().replace("duration = 40.0", "duration = 10.0"));
-    let outcome = folder.line("precision fast.toml --methods rk4,gauss8 --longest 0.0001 --csv points.csv");
+    let outcome = folder.line("precision fast.toml --methods rk4,gauss8 --longest 0.0000001 --csv points.csv");
     let told = outcome.stdout.lines().filter(|line| line.starts_with(" gauss8 "));
     let told: Vec<bool> = told.map(|line| line.contains("failed: step 1, from t = 0 s: ")).collect();
     assert_eq!(told, [true, true], "{}", outcome.stdout);

@@ -103,7 +103,7 @@ fn rows_that_are_not_those_of_the_run_are_not_continued() {
     let outcome = folder.line("run scene.toml --out k.rest.csv --resume k.save");
     assert_eq!(outcome.code, 0, "{outcome:?}");
     assert!(outcome.stderr.contains("warning: k.rest.csv: there are no rows"), "{}", outcome.stderr);
-    assert!(folder.read("k.rest.csv").lines().nth(1).unwrap().starts_with("100.05,"));
+    assert!(folder.read("k.rest.csv").lines().nth(1).unwrap().starts_with("100.05"));
 }
 
 #[test]

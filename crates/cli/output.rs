@@ -215,8 +215,20 @@ impl<'a> Output<'a> {
         [self.bytes, u64::from(self.checksum.clone().finalize()), self.every]
     }
 
-    /// Ends the output: a file appears whole, or not at all. What a run that is to be resumed needs is kept.
-    pub(crate) fn finish(mut self, goes_on: bool) -> Result<(), CliError> {
+    /// Ends the output: a file appears whole, or not at all. A run with a checkpoint keeps what resuming it needs; of another, whose file
+    /// cannot be written, nothing is left.
+    pub(crate) fn finish(self, checkpoint: bool, interrupted: bool) -> Result<(), CliError> {
+        let beside = self.part.as_ref().map(|part| part.path().to_owned());
+        let outcome = self.written(checkpoint && interrupted);
+        if let (Err(CliError::Write { .. } | CliError::Folder { .. }), Some(beside), false) =
+            (&outcome, beside, checkpoint)
+        {
+            let _ = std::fs::remove_file(beside);
+        }
+        outcome
+    }
+
+    fn written(mut self, goes_on: bool) -> Result<(), CliError> {
         let flushed = self.writer.flush();
         let failed = self.failed.take().map_or(flushed, Err);
         let (Some(path), Some(part)) = (self.asked.path, self.part) else {

@@ -255,8 +255,8 @@ impl Visitor for Run<'_> {
         let Made { mut record, events, warning } = made?;
 
         let closed = output.borrow().as_ref().is_some_and(Output::is_closed);
-        let goes_on = checkpoint.is_some() && record.interrupted;
-        let written = output.into_inner().map_or(Ok(()), |output| output.finish(goes_on));
+        let interrupted = record.interrupted;
+        let written = output.into_inner().map_or(Ok(()), |output| output.finish(checkpoint.is_some(), interrupted));
         // A reader who has seen enough is no interruption.
         record.interrupted &= !closed;
         let end = system.sleigh_state(&record.q, &record.v);

@@ -61,7 +61,7 @@ pub(crate) fn run(
 
     let written = output.map_or(Ok(()), |mut output| {
         nodes.iter().for_each(|node| output.row(0, &row(&train, node)));
-        output.finish(false)
+        output.finish(false, false)
     });
     let blades = train.trailers().len();
     let (first, last) = (train.blade(&end, 0), train.blade(&end, blades));

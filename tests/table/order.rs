@@ -18,8 +18,18 @@ fn rounding(case: &dyn Case, reference: &Point) -> f64 {
     other.distance(reference).max(16.0 * f64::EPSILON * reference.size())
 }
 
+/// How many steps of its base a step of a method is.
+fn parts(info: &MethodInfo) -> f64 {
+    match info.name {
+        "dla4" => 5.0,
+        "dla6" => 9.0,
+        "dla8" => 15.0,
+        _ => 1.0,
+    }
+}
+
 /// Steps and errors, from long steps to short ones, as far as rounding is a fiftieth of the error at most, each step adding
-/// a tenth of one. Steps that are too long for a method are left out.
+/// a tenth of one; those of the parts of a composition add like steps of a random walk. Steps that are too long for a method are left out.
 fn ladder(case: &dyn Case, info: &MethodInfo, reference: &Point, rounding: f64) -> Vec<(f64, f64)> {
     let ratio = if info.order <= 4 { 1.6 } else { 1.25 };
     let mut ladder = Vec::new();
@@ -29,7 +39,7 @@ fn ladder(case: &dyn Case, info: &MethodInfo, reference: &Point, rounding: f64) 
         let steps = if info.name == "gni" { 2 * pairs.round() as u64 } else { (2.0 * pairs).round() as u64 };
         if let Ok(end) = case.end(&method(info.name), steps) {
             let error = end.distance(reference);
-            let plateau = rounding.max(0.1 * f64::EPSILON * reference.size() * steps as f64);
+            let plateau = rounding.max(0.1 * f64::EPSILON * reference.size() * parts(info).sqrt() * steps as f64);
             if error < 50.0 * plateau {
                 break;
             }

@@ -67,8 +67,8 @@ impl<'a> Run<'a> {
         let (mut record, warning) = made?;
 
         let closed = output.borrow().as_ref().is_some_and(Output::is_closed);
-        let goes_on = checkpoint.is_some() && record.interrupted;
-        let written = output.into_inner().map_or(Ok(()), |output| output.finish(goes_on));
+        let interrupted = record.interrupted;
+        let written = output.into_inner().map_or(Ok(()), |output| output.finish(checkpoint.is_some(), interrupted));
         // A reader who has seen enough is no interruption.
         record.interrupted &= !closed;
         let model = system.model();

@@ -50,7 +50,7 @@ fn what_does_not_go_with_trailers_is_refused() {
     let said = with("kind = \"trailers\"\ncount = 1\nmass = 1.0\ninertia = 1.0\nbar = 1.0");
     assert!(said.contains("is there already"), "{said}");
     for (from, to, expected) in [
-        ("count = 12", "count = 1.5", "no number of trailers"),
+        ("count = 12", "count = 1.5", "a whole number from 1 to 100000"),
         ("mass = 0.3", "mass = [0.3, 0.4]", "wrong length"),
         ("bar = 0.5", "bar = -0.5", "must be positive"),
         ("count = 12", "count = 2", "more than the trailers"),

@@ -47,8 +47,14 @@ where
         state: &mut State<N>,
     ) -> Result<StepReport<M>, StepError> {
         let Self { body, memory, general } = self;
-        let start = Start { q: state.q(), v: state.v(), xi: state.xi(), memory };
-        match body.closed_step(t, h, start) {
+        let remembered = !memory.is_empty();
+        let mut closed = body.closed_step(t, h, Start { q: state.q(), v: state.v(), xi: state.xi(), memory });
+        if remembered && matches!(closed, Some(Err(_))) {
+            // A search from the last step may lead to a solution too far away, where the one from the line of the motion does not.
+            memory.forget();
+            closed = body.closed_step(t, h, Start { q: state.q(), v: state.v(), xi: state.xi(), memory });
+        }
+        match closed {
             Some(Ok(step)) => {
                 let moved = state.advance_where_finite(&step.increment, step.velocity, step.xi);
                 moved.inspect_err(|_| memory.forget())?;

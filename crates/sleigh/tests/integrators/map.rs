@@ -122,3 +122,20 @@ proptest! {
         check(&vec![drag(), drag()], true, at);
     }
 }
+
+/// A turn of nearly half a circle in a step: a search from the last step leads to a solution far away, which is none of the motion.
+#[test]
+fn a_search_that_goes_astray_begins_anew() {
+    let sleigh = Sleigh::new(1.742_366_497_515_934_3, 2.742_763_814_089_562, -0.080_240_034_845_077_33).unwrap();
+    let start =
+        SleighState { speed: -0.363_992_962_674_344_9, turn_rate: 8.159_472_232_238_036, ..SleighState::default() };
+    let (q, v) = start.to_coordinates();
+    let schedule = Schedule { t0: 0.0, step: 0.357_930_678_136_489_27, steps: 70 };
+    let [mut closed, mut general] = [State::new(q, v, sleigh.angles()); 2];
+    drive(&sleigh, &mut ClosedMap::of(sleigh), &schedule, &mut closed, ()).unwrap();
+    drive(&sleigh, &mut Dla::midpoint(), &schedule, &mut general, ()).unwrap();
+    // The position is some hundred metres away.
+    for (a, b) in closed.unwrapped().iter().zip(general.unwrapped()) {
+        approx::assert_abs_diff_eq!(*a, b, epsilon = 70.0 * 100.0 * f64::EPSILON);
+    }
+}

@@ -121,8 +121,9 @@ fn parts_make_the_whole() {
     let (mut whole, mut nodes) = (start, Trajectory::<3, 1>::every(1));
     drive(&system, &mut Dla::midpoint(), &schedule, &mut whole, &mut nodes).unwrap();
     let (mut parts, mut seen) = (start, Trajectory::<3, 1>::every(1));
+    let mut method = Dla::midpoint();
     for (part, made) in [(0..30, 30), (30..31, 31), (31..100, 100)] {
-        let done = drive_part(&system, &mut Dla::midpoint(), &schedule, part, &mut parts, &mut seen).unwrap();
+        let done = drive_part(&system, &mut method, &schedule, part, &mut parts, &mut seen).unwrap();
         assert!(done.made == made && !done.stopped);
     }
     assert_eq!(parts, whole);

@@ -1,8 +1,8 @@
 //! The free sleigh, in steps that nearly every method refuses, against the motion in closed form.
 
 use crate::parts::{BAR, Run, by_each, made, sleigh};
-use dla::{Composition, Dla, Schedule, State, StepError, Substepping, Substeps, drive};
-use sleigh::{Exact, SleighState};
+use dla::{Composition, Schedule, State, StepError, Substepping, Substeps, drive};
+use sleigh::{ClosedMap, Exact, SleighState};
 
 /// The whole motion at its end; places relative to the way.
 fn ends_right(label: &str, run: &Run, exact: &Exact, (step, steps): (f64, u64)) {
@@ -54,14 +54,14 @@ fn step_lengths() {
         ends_right(&format!("{name}, h = 1e3 s"), &run, &exact, (1e3, 10));
         assert!(run.divided > 0 && run.parts < 4000, "{name}: {}", run.parts);
     }
-    let run = made(&sleigh(0.5), Dla::midpoint(), &start, (1e12, 10));
+    let run = made(&sleigh(0.5), ClosedMap::of(sleigh(0.5)), &start, (1e12, 10));
     ends_right("dla, h = 1e12 s", &run, &exact, (1e12, 10));
     assert!(run.divided > 0 && run.parts < 1000, "{}", run.parts);
     // What would be taken for the motion: the mean spin is nothing, and no node says so but by its own.
     let (q, v) = start.to_coordinates();
     let mut state = State::new(q, v, [false, false, true]);
     let schedule = Schedule { t0: 0.0, step: 1e12, steps: 10 };
-    drive::<_, _, 3, 1>(&sleigh(0.5), &mut Dla::midpoint(), &schedule, &mut state, ()).unwrap();
+    drive::<_, _, 3, 1>(&sleigh(0.5), &mut ClosedMap::of(sleigh(0.5)), &schedule, &mut state, ()).unwrap();
     assert!((state.unwrapped()[2] - exact.at(1e13).heading).abs() > 0.5);
 }
 
@@ -73,7 +73,7 @@ fn what_needs_too_many_parts_says_so() {
     let (q, v) = start.to_coordinates();
     let mut state = State::new(q, v, [false, false, true]);
     let before = state;
-    let method = Composition::suzuki4(Dla::midpoint());
+    let method = Composition::suzuki4(ClosedMap::of(sleigh(0.5)));
     let mut method = Substepping::within(method, Substeps::new(53, 10_000)).resolving();
     let schedule = Schedule { t0: 0.0, step: 1e12, steps: 1 };
     let error = drive::<_, _, 3, 1>(&sleigh(0.5), &mut method, &schedule, &mut state, ()).unwrap_err();
@@ -81,5 +81,5 @@ fn what_needs_too_many_parts_says_so() {
     assert_eq!((why.tried, state, error.source), (10_000, before, why.source));
     assert!(matches!(why.source, StepError::Closed(_)), "{why}");
     assert!(why.part < 10.0 && why.time > 1e3 && why.time < 1e6, "{why}");
-    assert!(why.to_string().contains("10000 were tried"), "{why}");
+    assert!(why.to_string().contains("10000 parts of the step were tried"), "{why}");
 }
