@@ -42,7 +42,7 @@ pub(crate) fn equilibria(arguments: &EquilibriaArguments) -> Result<(), CliError
         AnyScene::Sleigh(scene) => *scene,
         AnyScene::Text(scene) => return text::equilibria::equilibria(arguments, &scene),
     };
-    let method = Method::of(&scene.run.method, scene.run.alpha, scene.run.tolerance)?;
+    let method = Method::named(&scene.run.method, scene.run.alpha)?;
     if differentiable::<3, 1>(&method).is_none() {
         return Err(CliError::NotDifferentiated { method: method.info().name });
     }

@@ -69,13 +69,7 @@ impl RunError {
 /// [`RunError`] where the request makes no sense for the scene, or no step meets the tolerance. A run that fails is a result.
 pub fn run(scene: &AnyScene, request: &RunRequest, caller: &Caller) -> Result<RunResult, RunError> {
     let settings = scene.run();
-    let tolerance = request.tolerance;
-    let method = Method::of(&settings.method, settings.alpha, settings.tolerance)
-        .and_then(|method| match tolerance {
-            Some(tolerance) if method.is_adaptive() => method.with_tolerance(tolerance),
-            _ => Ok(method),
-        })
-        .map_err(|error| RunError::request(&error))?;
+    let method = Method::named(&settings.method, settings.alpha).map_err(|error| RunError::request(&error))?;
     let method = if request.substep { method.with_substeps(Substeps::default()) } else { method };
     let run = Run { name: scene.name(), settings, request, method, caller };
     match scene {
@@ -145,8 +139,7 @@ impl Run<'_> {
         start: ([f64; N], [f64; N]),
     ) -> Result<Schedule, RunError> {
         let schedule = inspect::steps_of(self.settings);
-        let wanted = self.request.tolerance.filter(|_| !self.method.is_adaptive());
-        let Some(tolerance) = wanted else { return Ok(schedule) };
+        let Some(tolerance) = self.request.tolerance else { return Ok(schedule) };
         let found = recommend(subject, &self.method.undivided(), start, self.settings.duration, tolerance);
         let found = found.map_err(|error| RunError { message: error.to_string(), request: false })?;
         Ok(Schedule { step: found.step, steps: found.steps, ..schedule })

@@ -24,7 +24,7 @@ pub(crate) fn lyapunov(arguments: &LyapunovArguments) -> Result<(), CliError> {
     let duration = shared.duration.or(Some(usual));
     let scene =
         inspect::load_with((&shared.scene, &shared.set), Some(&arguments.method), shared.step, duration, shared.alpha)?;
-    let method = Method::of(&scene.run.method, scene.run.alpha, scene.run.tolerance)?;
+    let method = Method::named(&scene.run.method, scene.run.alpha)?;
     has_tangents(&method).map_err(|reason| CliError::Request(format!("--method {}: {reason}", arguments.method)))?;
     check_settle(arguments, &scene)?;
     let file = arguments.out.as_deref().map(|path| ChartFile::of(path, shared.force)).transpose()?;

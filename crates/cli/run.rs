@@ -17,12 +17,8 @@ use std::cell::RefCell;
 pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let scene = inspect::load_any(&arguments.scene, arguments.method.as_deref())?;
     let settings = scene.run();
-    let method = Method::of(&settings.method, settings.alpha, settings.tolerance)?;
+    let method = Method::named(&settings.method, settings.alpha)?;
     let method = if arguments.substep { method.with_substeps(Substeps::default()) } else { method };
-    let method = match arguments.tolerance {
-        Some(tolerance) if method.is_adaptive() => method.with_tolerance(tolerance)?,
-        _ => method,
-    };
     let out = asked(arguments)?;
     if arguments.scene.alpha.is_some() && method.info().kind != Kind::DlaAlpha {
         let name = method.info().name;
@@ -228,10 +224,10 @@ impl Visitor for Run<'_> {
     ) -> Self::Output {
         let RunArguments { checkpoint, resume, tolerance, .. } = self.arguments;
         let mut schedule = inspect::schedule(self.scene);
-        if let Some(tolerance) = tolerance.filter(|_| !self.method.is_adaptive()) {
+        if let Some(tolerance) = tolerance {
             // Of the method itself: parts would make any step look good enough.
             let method = self.method.undivided();
-            let found = recommend(&system, &method, (q, v), self.scene.run.duration, tolerance);
+            let found = recommend(&system, &method, (q, v), self.scene.run.duration, *tolerance);
             let found = found.map_err(|error| CliError::Tolerance(Box::new(error)))?;
             schedule = Schedule { step: found.step, steps: found.steps, ..schedule };
         }

@@ -26,7 +26,7 @@ pub(crate) fn section(arguments: &SectionArguments) -> Result<(), CliError> {
     let duration = shared.duration.or(Some(DURATION));
     let scene =
         inspect::load_with((&shared.scene, &shared.set), Some(&arguments.method), shared.step, duration, shared.alpha)?;
-    let method = Method::of(&scene.run.method, scene.run.alpha, scene.run.tolerance)?;
+    let method = Method::named(&scene.run.method, scene.run.alpha)?;
     let axes = match &arguments.axes {
         Some(axes) => match axes[..] {
             [across, up] if across.name != up.name => [across, up],

@@ -33,8 +33,7 @@ use totals::Totals;
 pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
     let names = inspect::method_names();
     let sweep = Sweep::load(&arguments.sweep, &names)?;
-    let run = &sweep.scene.run;
-    let method = Method::of(&run.method, run.alpha, run.tolerance)?;
+    let method = Method::named(&sweep.scene.run.method, sweep.scene.run.alpha)?;
     if sweep.exponent {
         has_tangents(&method).map_err(|reason| CliError::Request(format!("output.exponent: {reason}")))?;
     }

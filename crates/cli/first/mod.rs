@@ -42,7 +42,7 @@ pub(crate) fn first(arguments: &JobArguments) -> Result<(), CliError> {
     }
     let names = method_names();
     let scene = Scene::load(SCENE, &names)?.with_overrides(None, Some(STEP), Some(DURATION), None, &names)?;
-    let methods = methods(&METHODS, None, None)?;
+    let methods = methods(&METHODS, None)?;
     let interrupt = Interrupt::listen();
     let Comparison { rows, mut report, interrupted } =
         compare_sleigh(&scene, &methods, &mut Saves::default(), &interrupt)?;

@@ -16,6 +16,7 @@ use crate::error::CliError;
 use crate::inspect::method_names;
 use crate::interrupt::Interrupt;
 use crate::{progress, table, terminal};
+use harness::Kind;
 use harness::stability::{Case, Outcome, Verdict, claims, judge};
 use lab::Lab;
 use serde_json::{Value, json};
@@ -101,7 +102,7 @@ pub(crate) fn stability(arguments: &StabilityArguments) -> Result<(), CliError> 
         Some(names) => names.iter().map(|name| name.trim()).collect(),
         None => method_names(),
     };
-    let methods = methods(&names, None, None)?;
+    let methods = methods(&names, None)?;
     let pairs: Vec<_> = chosen
         .iter()
         .flat_map(|(case, try_it)| methods.iter().map(move |method| (case, *try_it, *method)))
@@ -210,4 +211,11 @@ fn text(rows: &[Row]) -> String {
     let [pass, refused, failed] = [Outcome::Pass, Outcome::Refused, Outcome::Failed].map(count);
     let _ = writeln!(text, "{pass} pass, {refused} refused, {failed} failed");
     text
+}
+
+impl Lab {
+    /// Whether its error is a tolerance instead of an order.
+    fn is_adaptive(&self) -> bool {
+        self.method.info().kind == Kind::Dop853
+    }
 }

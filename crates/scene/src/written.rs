@@ -33,8 +33,6 @@ struct RunTable<'s> {
     method: &'s str,
     #[serde(skip_serializing_if = "Option::is_none")]
     alpha: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    tolerance: Option<f64>,
     step: f64,
     duration: f64,
 }
@@ -56,13 +54,7 @@ impl Scene {
                 speed: start.speed,
                 turn_rate: start.turn_rate,
             },
-            run: RunTable {
-                method: &run.method,
-                alpha: run.alpha,
-                tolerance: run.tolerance,
-                step: run.step,
-                duration: run.duration,
-            },
+            run: RunTable { method: &run.method, alpha: run.alpha, step: run.step, duration: run.duration },
             effects,
         })
     }
