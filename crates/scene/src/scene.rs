@@ -50,18 +50,21 @@ impl Scene {
         methods: &[&str],
         overrides: &Overrides<'_>,
     ) -> Result<Self, SceneError> {
-        // A byte-order mark is no part of the first line.
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let document = Document { origin, text };
-        let entries = DeTable::parse(text).map_err(|error| document.syntax(&error))?.into_inner();
-        if entries.is_empty() {
-            return Err(empty(&document));
-        }
-        if let Some(system) = entries.get("system") {
-            return Err(document.fail(&system.span(), Some("system".to_owned()), of_text()));
-        }
-        let root = Table::root(document, &entries)?;
-        let name = name_of(origin);
+        opened(text, origin, |document, entries| match entries.get("system") {
+            Some(system) => Err(document.fail(&system.span(), Some("system".to_owned()), of_text())),
+            None => Self::of(document, entries, methods, overrides),
+        })
+    }
+
+    /// The scene of the tables of its text.
+    pub(crate) fn of(
+        document: Document<'_>,
+        entries: &DeTable<'_>,
+        methods: &[&str],
+        overrides: &Overrides<'_>,
+    ) -> Result<Self, SceneError> {
+        let root = Table::root(document, entries)?;
+        let name = name_of(document.origin);
         let title = root.text("title", "a string")?.unwrap_or(&name).to_owned();
         let sleigh = sections::sleigh(&root.table("sleigh")?)?;
         let start = sections::start(&root.table("start")?)?;
@@ -172,6 +175,22 @@ impl Scene {
 const MOST_JUMPS: f64 = 1e6;
 
 /// A system of text where a sleigh is needed.
+/// Reads the tables of a scene's text, of whichever kind the scene is.
+pub(crate) fn opened<T>(
+    text: &str,
+    origin: &str,
+    read: impl FnOnce(Document<'_>, &DeTable<'_>) -> Result<T, SceneError>,
+) -> Result<T, SceneError> {
+    // A byte-order mark is no part of the first line.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let document = Document { origin, text };
+    let entries = DeTable::parse(text).map_err(|error| document.syntax(&error))?.into_inner();
+    if entries.is_empty() {
+        return Err(empty(&document));
+    }
+    read(document, &entries)
+}
+
 fn of_text() -> Fault {
     Fault {
         variant: SceneError::UnknownKey,
@@ -183,7 +202,7 @@ fn of_text() -> Fault {
     }
 }
 
-pub(crate) fn empty(document: &Document<'_>) -> SceneError {
+fn empty(document: &Document<'_>) -> SceneError {
     let fault = Fault {
         variant: SceneError::Missing,
         key: "",

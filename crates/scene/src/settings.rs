@@ -130,6 +130,17 @@ pub(crate) fn source(name_or_path: &str) -> Result<(Cow<'static, str>, Cow<'_, s
     Ok((Cow::Owned(file::read(name_or_path)?), Cow::Borrowed(origin)))
 }
 
+/// Parses the text of that name or path with settings.
+fn loaded<T>(
+    name_or_path: &str,
+    settings: &[Setting],
+    parse: impl Fn(&str, &str) -> Result<T, SceneError>,
+) -> Result<T, SceneError> {
+    let (text, origin) = source(name_or_path)?;
+    // A byte-order mark is no part of the first line.
+    parse_with(text.strip_prefix('\u{feff}').unwrap_or(&text), &origin, settings, parse)
+}
+
 /// Parses a text with settings. An error of the text itself shows its line; one of the settings, the settings.
 pub(crate) fn parse_with<T>(
     text: &str,
@@ -197,10 +208,7 @@ impl Scene {
         overrides: &Overrides<'_>,
         methods: &[&str],
     ) -> Result<Self, SceneError> {
-        let (text, origin) = source(name_or_path)?;
-        // A byte-order mark is no part of the first line.
-        let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-        parse_with(text, &origin, settings, |text, origin| Self::parse_with(text, origin, methods, overrides))
+        loaded(name_or_path, settings, |text, origin| Self::parse_with(text, origin, methods, overrides))
     }
 }
 
@@ -223,8 +231,6 @@ impl AnyScene {
         overrides: &Overrides<'_>,
         methods: &[&str],
     ) -> Result<Self, SceneError> {
-        let (text, origin) = source(name_or_path)?;
-        let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-        parse_with(text, &origin, settings, |text, origin| Self::parse_with(text, origin, methods, overrides))
+        loaded(name_or_path, settings, |text, origin| Self::parse_with(text, origin, methods, overrides))
     }
 }

@@ -6,7 +6,7 @@ mod words;
 
 use crate::document::Document;
 use crate::error::SceneError;
-use crate::scene::{empty, name_of};
+use crate::scene::{name_of, opened};
 use crate::table::Table;
 use crate::{Overrides, RunSettings, Scene};
 use ::text::{AnyText, Model, Start, Words};
@@ -58,13 +58,12 @@ impl AnyScene {
         methods: &[&str],
         overrides: &Overrides<'_>,
     ) -> Result<Self, SceneError> {
-        let bare = text.strip_prefix('\u{feff}').unwrap_or(text);
-        // What is no TOML has no system either, and the other kind says what is wrong.
-        let has_system = DeTable::parse(bare).is_ok_and(|entries| entries.get_ref().contains_key("system"));
-        Ok(if has_system {
-            Self::Text(Box::new(TextScene::parse_with(text, origin, methods, overrides)?))
-        } else {
-            Self::Sleigh(Box::new(Scene::parse_with(text, origin, methods, overrides)?))
+        opened(text, origin, |document, entries| {
+            Ok(if entries.contains_key("system") {
+                Self::Text(Box::new(TextScene::of(document, entries, methods, overrides)?))
+            } else {
+                Self::Sleigh(Box::new(Scene::of(document, entries, methods, overrides)?))
+            })
         })
     }
 
@@ -156,14 +155,17 @@ impl TextScene {
         methods: &[&str],
         overrides: &Overrides<'_>,
     ) -> Result<Self, SceneError> {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let document = Document { origin, text };
-        let entries = DeTable::parse(text).map_err(|error| document.syntax(&error))?.into_inner();
-        if entries.is_empty() {
-            return Err(empty(&document));
-        }
-        let root = Table::of_system(document, &entries)?;
-        let name = name_of(origin);
+        opened(text, origin, |document, entries| Self::of(document, entries, methods, overrides))
+    }
+
+    fn of(
+        document: Document<'_>,
+        entries: &DeTable<'_>,
+        methods: &[&str],
+        overrides: &Overrides<'_>,
+    ) -> Result<Self, SceneError> {
+        let root = Table::of_system(document, entries)?;
+        let name = name_of(document.origin);
         let title = root.text("title", "a string")?.unwrap_or(&name).to_owned();
         let (words, places) = words::read(&root)?;
         let model = Model::new(&words).map_err(|error| places.fail(&document, &words, &error))?;
