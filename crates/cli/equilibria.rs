@@ -1,9 +1,10 @@
 use crate::args::EquilibriaArguments;
 use crate::error::CliError;
 use crate::files::{check_file, write_whole};
+use crate::steady::{self, Stability};
 use crate::{inspect, table, terminal, text};
 use dla::{Schedule, State, Trajectory};
-use harness::analysis::{DiscreteMap, EquilibriumError, StepLimit, differentiable, relative_equilibria};
+use harness::analysis::{DiscreteMap, EquilibriumError, differentiable, relative_equilibria};
 use harness::report::{Chart, Layer, chart_svg};
 use harness::{Method, integrate_pieces};
 use scene::{AnyScene, Scene, SceneSystem, Visitor};
@@ -28,12 +29,7 @@ struct Row {
     state: SleighState,
     rotor_rate: Option<f64>,
     depends_on: Vec<&'static str>,
-    family: usize,
-    flow: Vec<[f64; 2]>,
-    stable: bool,
-    map: Option<Vec<[f64; 2]>>,
-    /// Where the flow is stable.
-    limit: Option<StepLimit>,
+    stability: Stability,
 }
 
 /// `noslip equilibria`: the steady motions of a scene, and how stable they are, of the flow and of a method.
@@ -94,11 +90,13 @@ impl Visitor for Find<'_> {
             state: system.sleigh_state(&e.q, &e.v),
             rotor_rate: system.rotor(&e.q, &e.v).map(|[_, rate]| rate),
             depends_on: e.shape.iter().filter_map(|i| COORDINATES.get(*i).copied()).collect(),
-            family: e.family,
-            stable: e.stable,
-            map: map.spectrum(h, e),
-            limit: e.stable.then(|| map.limit(h, e)),
-            flow: e.flow.clone(),
+            stability: Stability {
+                family: e.family,
+                stable: e.stable,
+                map: map.spectrum(h, e),
+                limit: e.stable.then(|| map.limit(h, e)),
+                flow: e.flow.clone(),
+            },
         };
         let rows = found.iter().map(row).collect();
         let orbits = if portrait { orbits(system, scene, method, &q, &v) } else { Vec::new() };
@@ -138,7 +136,7 @@ fn orbits<const N: usize, const M: usize>(
 
 fn portrait(scene: &Scene, found: &Found) -> Chart {
     let steady = |stable: bool| {
-        let rows = found.rows.iter().filter(|row| row.stable == stable);
+        let rows = found.rows.iter().filter(|row| row.stability.stable == stable);
         rows.map(|row| vec![[row.state.speed, row.state.turn_rate]]).collect()
     };
     let starts = found.orbits.iter().filter_map(|orbit| orbit.first().map(|start| vec![*start])).collect();
@@ -158,36 +156,24 @@ fn portrait(scene: &Scene, found: &Found) -> Chart {
 }
 
 fn object(scene: &Scene, method: &Method, rows: &[Row]) -> Value {
-    let equilibria = rows.iter().map(|row| {
-        json!({
-            "speed": row.state.speed,
-            "turn_rate": row.state.turn_rate,
-            "rotor_rate": row.rotor_rate,
-            "x": row.state.x,
-            "y": row.state.y,
-            "heading": row.state.heading,
-            "depends_on": row.depends_on,
-            "family": row.family,
-            "stable": row.stable,
-            "flow": complex_json(&row.flow),
-            "map": row.map.as_deref().map(complex_json),
-            "step_limit": row.limit.and_then(StepLimit::step),
-            "step_limit_reason": row.limit.map(StepLimit::reason),
-        })
-    });
-    json!({
-        "scene": scene.name,
-        "method": method.info().name,
-        "step": scene.run.actual_step(),
-        "equilibria": equilibria.collect::<Vec<_>>(),
-    })
+    let motion = |row: &Row| {
+        let SleighState { x, y, heading, speed, turn_rate } = row.state;
+        let fields = [
+            ("speed", json!(speed)),
+            ("turn_rate", json!(turn_rate)),
+            ("rotor_rate", json!(row.rotor_rate)),
+            ("x", json!(x)),
+            ("y", json!(y)),
+            ("heading", json!(heading)),
+            ("depends_on", json!(row.depends_on)),
+        ];
+        row.stability.object(fields.into_iter().map(|(key, value)| (key.to_owned(), value)).collect())
+    };
+    steady::object(&scene.name, method, scene.run.actual_step(), rows.iter().map(motion))
 }
 
 fn told(scene: &Scene, method: &Method, rows: &[Row]) -> String {
-    let (h, name) = (scene.run.actual_step(), method.info().name);
-    let mut text =
-        format!("{} ({}): steady motions, and those of {name} with steps of {h} s\n", scene.title, scene.name);
-    for row in rows {
+    let motion = |row: &Row| {
         let mut what = format!("{} m/s, {} rad/s", table::number(row.state.speed), table::number(row.state.turn_rate));
         if let Some(rate) = row.rotor_rate {
             let _ = write!(what, ", rotor {} rad/s", table::number(rate));
@@ -197,40 +183,8 @@ fn told(scene: &Scene, method: &Method, rows: &[Row]) -> String {
             let [x, y, heading] = [x, y, heading].map(table::number);
             let _ = write!(what, ", at x = {x} m, y = {y} m, heading {heading} rad");
         }
-        let limit = limit_told(row.limit);
-        let lines = [
-            ("motion", what),
-            ("", if row.stable { "stable".to_owned() } else { "unstable".to_owned() }),
-            ("parameters", row.family.to_string()),
-            ("flow [1/s]", complex_numbers(&row.flow)),
-            ("map", row.map.as_deref().map_or_else(|| "no step stays near".to_owned(), complex_numbers)),
-            ("longest step", limit),
-        ];
-        text += &format!("\n{}", table::aligned(&lines));
-    }
-    text
-}
-
-/// The longest step of a method near a steady motion, in words.
-pub(crate) fn limit_told(limit: Option<StepLimit>) -> String {
-    match limit {
-        None => "none: the motion itself is unstable".to_owned(),
-        Some(StepLimit::Beyond(step)) => format!("none found up to {} s", table::number(step)),
-        Some(StepLimit::Unstable(step)) => format!("{} s: beyond, the map is unstable", table::number(step)),
-        Some(StepLimit::Ends(step)) => format!("{} s: beyond, no step stays near", table::number(step)),
-    }
-}
-
-/// Complex numbers for a program.
-pub(crate) fn complex_json(values: &[[f64; 2]]) -> Vec<Value> {
-    values.iter().map(|[re, im]| json!({"re": re, "im": im})).collect()
-}
-
-pub(crate) fn complex_numbers(values: &[[f64; 2]]) -> String {
-    let number = |[re, im]: &[f64; 2]| match *im {
-        // Without the sign of a zero.
-        0.0 => table::number(*re + 0.0),
-        im => format!("{} {} {} i", table::number(*re), if im < 0.0 { '-' } else { '+' }, table::number(im.abs())),
+        row.stability.lines(vec![("motion", what)])
     };
-    values.iter().map(number).collect::<Vec<_>>().join(", ")
+    let heading = steady::heading((&scene.title, &scene.name), method, scene.run.actual_step());
+    std::iter::once(heading).chain(rows.iter().map(motion)).collect()
 }

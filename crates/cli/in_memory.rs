@@ -2,7 +2,7 @@ use crate::called::Caller;
 use crate::text::told;
 use crate::trigger::{Events, Happened, Trigger};
 use crate::{inspect, json, substeps};
-use dla::{Event, Node, Samples, Schedule, State, Subject, Substeps, Trajectory};
+use dla::{Event, Node, Samples, Schedule, State, Subject, Substeps, Trajectory, View};
 use harness::{Again, EVENT_SAMPLES, Method, Progress, Request, Watched, integrate_on, recommend, run_watched};
 use indicatif::ProgressBar;
 use scene::{AnyScene, Column, RunSettings, SceneSystem, TextMechanics, Visitor, with_text};
@@ -173,11 +173,10 @@ impl Run<'_> {
         // Why a run ends early is what the run that was watched has told.
         let _ = integrate_on(subject, &self.method, schedule, &mut state, &mut samples, shown);
         let node = |(t, state): (&f64, &State<N>)| {
-            let (q, v) = (state.unwrapped(), *state.v());
             let piece = subject.system.smooth_piece(*t);
-            let residual = piece.residual(*t, &q, &v).iter().fold(0.0, |most: f64, each| most.max(each.abs()));
-            let energy = piece.energy(*t, &q, &v);
-            Node { k: 0, t: *t, q, v, energy, work: f64::NAN, constraint: residual, multipliers: None }
+            let view = View { system: &*piece, k: 0, t: *t, state };
+            let (q, v, energy, constraint) = (state.unwrapped(), *state.v(), view.energy(), view.constraint());
+            Node { k: 0, t: *t, q, v, energy, work: f64::NAN, constraint, multipliers: None }
         };
         times.iter().zip(samples.taken()).map(node).collect()
     }

@@ -49,6 +49,7 @@ mod section;
 mod stability;
 mod stability_map;
 mod starts;
+mod steady;
 mod substeps;
 mod table;
 mod terminal;

@@ -1,24 +1,20 @@
 use super::told;
 use crate::args::EquilibriaArguments;
-use crate::equilibria::{complex_json, complex_numbers, limit_told};
 use crate::error::CliError;
-use crate::table::{self, number};
+use crate::steady::{self, Stability};
+use crate::table::number;
 use crate::terminal;
 use dla::{Schedule, State};
-use harness::analysis::{DiscreteMap, EquilibriumError, StepLimit, differentiable, relative_equilibria};
+use harness::analysis::{DiscreteMap, EquilibriumError, differentiable, relative_equilibria};
 use harness::{Method, integrate_pieces};
 use scene::{StartedText, TextScene, with_text};
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 /// A relative equilibrium: its rates by their names, and the coordinates on which the equations depend, with their values.
 struct Row {
     rates: Vec<(String, f64)>,
     depends_on: Vec<(String, f64)>,
-    family: usize,
-    flow: Vec<[f64; 2]>,
-    stable: bool,
-    map: Option<Vec<[f64; 2]>>,
-    limit: Option<StepLimit>,
+    stability: Stability,
 }
 
 /// `noslip equilibria` of a system of text.
@@ -63,11 +59,13 @@ fn found<const N: usize, const M: usize>(
     let mut row = |e: &harness::analysis::Equilibrium<N>| Row {
         rates: coordinates.iter().zip(e.v).map(|(of, rate)| (format!("{}'", of.name), rate)).collect(),
         depends_on: e.shape.iter().filter_map(|&i| Some((coordinates.get(i)?.name.clone(), e.q[i]))).collect(),
-        family: e.family.saturating_sub(filling),
-        stable: e.stable,
-        map: map.spectrum(h, e).map(|values| without(values, [1.0, 0.0], filling)),
-        limit: e.stable.then(|| map.limit(h, e)),
-        flow: without(e.flow.clone(), [0.0, 0.0], filling),
+        stability: Stability {
+            family: e.family.saturating_sub(filling),
+            stable: e.stable,
+            map: map.spectrum(h, e).map(|values| without(values, [1.0, 0.0], filling)),
+            limit: e.stable.then(|| map.limit(h, e)),
+            flow: without(e.flow.clone(), [0.0, 0.0], filling),
+        },
     };
     // Those that differ only in what fills up the shape are one.
     let own = |e: &harness::analysis::Equilibrium<N>| e.v[..n].iter().chain(&e.q[..n]).copied().collect::<Vec<_>>();
@@ -98,48 +96,23 @@ fn without(mut values: Vec<[f64; 2]>, known: [f64; 2], count: usize) -> Vec<[f64
 }
 
 fn object(scene: &TextScene, method: &Method, rows: &[Row]) -> Value {
-    let numbers = |of: &[(String, f64)]| -> Map<String, Value> {
-        of.iter().map(|(name, value)| (name.clone(), json!(value))).collect()
+    let numbers =
+        |of: &[(String, f64)]| -> Value { of.iter().map(|(name, value)| (name.clone(), json!(value))).collect() };
+    let motion = |row: &Row| {
+        let fields = [("rates", numbers(&row.rates)), ("depends_on", numbers(&row.depends_on))];
+        row.stability.object(fields.into_iter().map(|(key, value)| (key.to_owned(), value)).collect())
     };
-    let equilibria = rows.iter().map(|row| {
-        json!({
-            "rates": numbers(&row.rates),
-            "depends_on": numbers(&row.depends_on),
-            "family": row.family,
-            "stable": row.stable,
-            "flow": complex_json(&row.flow),
-            "map": row.map.as_deref().map(complex_json),
-            "step_limit": row.limit.and_then(StepLimit::step),
-            "step_limit_reason": row.limit.map(StepLimit::reason),
-        })
-    });
-    json!({
-        "scene": scene.name,
-        "method": method.info().name,
-        "step": scene.run.actual_step(),
-        "equilibria": equilibria.collect::<Vec<_>>(),
-    })
+    steady::object(&scene.name, method, scene.run.actual_step(), rows.iter().map(motion))
 }
 
 fn text(scene: &TextScene, method: &Method, rows: &[Row]) -> String {
-    let (h, name) = (scene.run.actual_step(), method.info().name);
-    let mut text =
-        format!("{} ({}): steady motions, and those of {name} with steps of {h} s\n", scene.title, scene.name);
     let numbers = |of: &[(String, f64)]| {
         of.iter().map(|(name, value)| format!("{name} = {}", number(*value))).collect::<Vec<_>>().join(", ")
     };
-    for row in rows {
+    let motion = |row: &Row| {
         let place = if row.depends_on.is_empty() { "any".to_owned() } else { numbers(&row.depends_on) };
-        let lines = [
-            ("motion", numbers(&row.rates)),
-            ("place", place),
-            ("", if row.stable { "stable".to_owned() } else { "unstable".to_owned() }),
-            ("parameters", row.family.to_string()),
-            ("flow [1/s]", complex_numbers(&row.flow)),
-            ("map", row.map.as_deref().map_or_else(|| "no step stays near".to_owned(), complex_numbers)),
-            ("longest step", limit_told(row.limit)),
-        ];
-        text += &format!("\n{}", table::aligned(&lines));
-    }
-    text
+        row.stability.lines(vec![("motion", numbers(&row.rates)), ("place", place)])
+    };
+    let heading = steady::heading((&scene.title, &scene.name), method, scene.run.actual_step());
+    std::iter::once(heading).chain(rows.iter().map(motion)).collect()
 }

@@ -37,19 +37,21 @@ type Made<'py> = (Bound<'py, PyDict>, Vec<(String, String)>, String, Option<Stri
 impl Scene {
     /// Reads a scene from its text; messages show `origin`, and the scene is named after it.
     #[new]
-    #[pyo3(signature = (text, origin, method=None, step=None, duration=None, alpha=None))]
-    fn new(
-        text: &str,
-        origin: &str,
+    fn new(text: &str, origin: &str) -> PyResult<Self> {
+        let scene = AnyScene::parse(text, origin, &names());
+        Ok(Self { scene: scene.map_err(|error| RequestError::new_err(error.to_string()))? })
+    }
+
+    /// The scene with other settings of its run, where they are given.
+    fn with_settings(
+        &self,
         method: Option<&str>,
         step: Option<f64>,
         duration: Option<f64>,
         alpha: Option<f64>,
     ) -> PyResult<Self> {
-        let scene = AnyScene::parse(text, origin, &names())
-            .and_then(|scene| scene.with_overrides(method, step, duration, alpha, &names()))
-            .map_err(|error| RequestError::new_err(error.to_string()))?;
-        Ok(Self { scene })
+        let scene = self.scene.clone().with_overrides(method, step, duration, alpha, &names());
+        Ok(Self { scene: scene.map_err(|error| RequestError::new_err(error.to_string()))? })
     }
 
     /// The name.

@@ -14,14 +14,9 @@ def command(
 ) -> tuple[int, str, str, BaseException | None]: ...
 
 class Scene:
-    def __new__(
-        cls,
-        text: str,
-        origin: str,
-        method: str | None = None,
-        step: float | None = None,
-        duration: float | None = None,
-        alpha: float | None = None,
+    def __new__(cls, text: str, origin: str) -> Scene: ...
+    def with_settings(
+        self, method: str | None, step: float | None, duration: float | None, alpha: float | None
     ) -> Scene: ...
     @property
     def name(self) -> str: ...

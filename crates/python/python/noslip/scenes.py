@@ -131,7 +131,7 @@ class Scene:
         """
         if every < 1:
             raise _noslip.RequestError(f"every = {every}: accepted are whole numbers from 1")
-        checked = _noslip.Scene(self.text, self.origin, method, step, duration, alpha)
+        checked = self._checked.with_settings(method, step, duration, alpha)
         times = [] if t_eval is None else [float(t) for t in t_eval]
         with shown(progress) as tell:
             made = checked.run(every, times, tolerance, substep, _list(events), _list(until), tell)

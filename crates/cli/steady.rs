@@ -1,0 +1,82 @@
+//! Steady motions as `noslip equilibria` tells them, whatever their scene is.
+
+use crate::table;
+use harness::Method;
+use harness::analysis::StepLimit;
+use serde_json::{Map, Value, json};
+
+/// How stable a steady motion is, of the flow and of a method.
+pub(crate) struct Stability {
+    /// Of how many parameters there are motions like this one.
+    pub(crate) family: usize,
+    pub(crate) stable: bool,
+    /// The eigenvalues of the flow (1/s), real and imaginary part.
+    pub(crate) flow: Vec<[f64; 2]>,
+    /// Those of a step of the method; none where no step stays near.
+    pub(crate) map: Option<Vec<[f64; 2]>>,
+    /// The longest step, where the flow is stable.
+    pub(crate) limit: Option<StepLimit>,
+}
+
+impl Stability {
+    /// The object of a motion, which begins with what its scene says of the motion.
+    pub(crate) fn object(&self, mut motion: Map<String, Value>) -> Value {
+        let fields = [
+            ("family", json!(self.family)),
+            ("stable", json!(self.stable)),
+            ("flow", json!(complex_json(&self.flow))),
+            ("map", json!(self.map.as_deref().map(complex_json))),
+            ("step_limit", json!(self.limit.and_then(StepLimit::step))),
+            ("step_limit_reason", json!(self.limit.map(StepLimit::reason))),
+        ];
+        motion.extend(fields.map(|(key, value)| (key.to_owned(), value)));
+        Value::Object(motion)
+    }
+
+    /// The lines of a motion, which begin with those of its scene.
+    pub(crate) fn lines(&self, mut motion: Vec<(&'static str, String)>) -> String {
+        motion.extend([
+            ("", if self.stable { "stable".to_owned() } else { "unstable".to_owned() }),
+            ("parameters", self.family.to_string()),
+            ("flow [1/s]", complex_numbers(&self.flow)),
+            ("map", self.map.as_deref().map_or_else(|| "no step stays near".to_owned(), complex_numbers)),
+            ("longest step", limit_told(self.limit)),
+        ]);
+        format!("\n{}", table::aligned(&motion))
+    }
+}
+
+/// What `noslip equilibria --json` prints of a scene, with the step (s).
+pub(crate) fn object(scene: &str, method: &Method, step: f64, motions: impl Iterator<Item = Value>) -> Value {
+    json!({"scene": scene, "method": method.info().name, "step": step, "equilibria": motions.collect::<Vec<_>>()})
+}
+
+/// What the motions of a scene are headed with.
+pub(crate) fn heading((title, name): (&str, &str), method: &Method, step: f64) -> String {
+    format!("{title} ({name}): steady motions, and those of {} with steps of {step} s\n", method.info().name)
+}
+
+/// The longest step of a method near a steady motion, in words.
+fn limit_told(limit: Option<StepLimit>) -> String {
+    match limit {
+        None => "none: the motion itself is unstable".to_owned(),
+        Some(StepLimit::Beyond(step)) => format!("none found up to {} s", table::number(step)),
+        Some(StepLimit::Unstable(step)) => format!("{} s: beyond, the map is unstable", table::number(step)),
+        Some(StepLimit::Ends(step)) => format!("{} s: beyond, no step stays near", table::number(step)),
+    }
+}
+
+/// Complex numbers for a program.
+fn complex_json(values: &[[f64; 2]]) -> Vec<Value> {
+    values.iter().map(|[re, im]| json!({"re": re, "im": im})).collect()
+}
+
+/// Complex numbers for a person.
+fn complex_numbers(values: &[[f64; 2]]) -> String {
+    let number = |[re, im]: &[f64; 2]| match *im {
+        // Without the sign of a zero.
+        0.0 => table::number(*re + 0.0),
+        im => format!("{} {} {} i", table::number(*re), if im < 0.0 { '-' } else { '+' }, table::number(im.abs())),
+    };
+    values.iter().map(number).collect::<Vec<_>>().join(", ")
+}
