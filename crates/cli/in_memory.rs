@@ -3,7 +3,7 @@ use crate::text::told;
 use crate::trigger::{Events, Happened, Trigger};
 use crate::{inspect, json, substeps};
 use dla::{Event, Node, Samples, Schedule, State, Subject, Substeps, Trajectory, View};
-use harness::{Again, EVENT_SAMPLES, Method, Progress, Request, Watched, integrate_on, recommend, run_watched};
+use harness::{Again, EVENT_SAMPLES, Method, Progress, Request, Watched, recommend, run_observed, run_watched};
 use indicatif::ProgressBar;
 use scene::{AnyScene, Column, RunSettings, SceneSystem, TextMechanics, Visitor, with_text};
 use serde_json::Value;
@@ -154,31 +154,23 @@ impl Run<'_> {
         let request = Request { schedule: self.schedule(subject, (q, v))?, q, v, samples: 1 };
         let bar = self.caller.bar(self.method.info().name, request.schedule.steps);
         let mut shown = Shown { bar, caller: self.caller };
-        let keep = self.request.times.is_empty().then_some(self.request.every);
-        let watched = run_watched(subject, &self.method, &request, (events, EVENT_SAMPLES), keep, &mut shown);
-        let sampled = if keep.is_none() { self.sampled(subject, &request, &mut shown) } else { Vec::new() };
-        Ok(Made { watched, sampled })
-    }
-
-    /// The motion at the times asked for, up to where the run comes; the work is not known there.
-    fn sampled<const N: usize, const M: usize>(
-        &self,
-        subject: Subject<'_, N, M>,
-        Request { schedule, q, v, .. }: &Request<N>,
-        shown: &mut Shown<'_>,
-    ) -> Vec<Node<N, M>> {
-        let times = &self.request.times;
-        let mut samples = Samples::new(Again { method: &self.method, own: subject.own }, times);
-        let mut state = State::new(*q, *v, subject.system.angles());
-        // Why a run ends early is what the run that was watched has told.
-        let _ = integrate_on(subject, &self.method, schedule, &mut state, &mut samples, shown);
+        let (Self { method, .. }, RunRequest { every, times, .. }) = (self, self.request);
+        let looked_for = (events, EVENT_SAMPLES);
+        if times.is_empty() {
+            let watched = run_watched(subject, method, &request, looked_for, Some(*every), &mut shown);
+            return Ok(Made { watched, sampled: Vec::new() });
+        }
+        let mut samples = Samples::new(Again { method, own: subject.own }, times);
+        let watched = run_observed(subject, method, &request, looked_for, &mut samples, &mut shown);
+        // The motion at the times asked for, up to where the run comes; the work is not known there.
         let node = |(t, state): (&f64, &State<N>)| {
             let piece = subject.system.smooth_piece(*t);
             let view = View { system: &*piece, k: 0, t: *t, state };
             let (q, v, energy, constraint) = (state.unwrapped(), *state.v(), view.energy(), view.constraint());
             Node { k: 0, t: *t, q, v, energy, work: f64::NAN, constraint, multipliers: None }
         };
-        times.iter().zip(samples.taken()).map(node).collect()
+        let sampled = times.iter().zip(samples.taken()).map(node).collect();
+        Ok(Made { watched, sampled })
     }
 
     fn of_text<const N: usize, const M: usize>(
