@@ -28,7 +28,7 @@ pub(super) fn cases() -> Vec<Case> {
         }),
         Case::new(MECHANICS, "motion, by hand", |times| {
             let (q, v) = start();
-            repeat(times, || black_box(well()).motion(0.0, &q, &v));
+            repeat(times, || Motion::of(&black_box(well()), 0.0, &q, &v));
         }),
         Case::new(MECHANICS, "motion, automatic", |times| {
             let (q, v) = start();

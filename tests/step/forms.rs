@@ -4,7 +4,8 @@ use crate::common::{midpoint_forms, sleighs, starts, state_of};
 use approx::assert_relative_eq;
 use dla::{Dla, OneStep};
 use lagrangian::{
-    AnyRule, DiscreteConstraint, DiscreteLagrangian, Midpoint, Rule, System, Trapezoid, constraint_residual, momentum,
+    AnyRule, DiscreteConstraint, DiscreteLagrangian, Midpoint, Motion, Rule, System, Trapezoid, constraint_residual,
+    momentum,
 };
 use proptest::prelude::*;
 use sleigh::{CentreOfMass, ClosedMap};
@@ -58,9 +59,9 @@ proptest! {
         let h = 1e-3;
         prop_assume!(step_fits(&sleigh, &start, h));
         let mut state = state_of(&sleigh, &start);
-        let before = sleigh.motion(0.0, state.q(), state.v()).unwrap().multiplier[0];
+        let before = Motion::of(&sleigh, 0.0, state.q(), state.v()).unwrap().multiplier[0];
         let report = ClosedMap::of(sleigh).step(&sleigh, 0.0, h, &mut state).unwrap();
-        let after = sleigh.motion(h, state.q(), state.v()).unwrap().multiplier[0];
+        let after = Motion::of(&sleigh, h, state.q(), state.v()).unwrap().multiplier[0];
         let mean = report.multipliers(h)[0];
         // Velocities below 2 and rates c u, omega below 10: the second derivative of the force, times h^2.
         let tolerance = 1e3 * h * h * sleigh.mass() * 10.0 + 1e-12 / h;

@@ -4,7 +4,7 @@
 //! arm adds is compiled once for every kind of number, since the calls are not inlined.
 
 use crate::systems::{Forces, InField, Magnetic, Moving, Thrust, Turntable};
-use lagrangian::{AdmissibleBasis, Constraint, Motion, MotionError, Scalar, System, With};
+use lagrangian::{AdmissibleBasis, Constraint, Motion, Reduced, Scalar, System, With};
 use models::{
     ChaplyginBall, ContactOscillator, GaugedOscillator, KnifeEdge, Model, Particle, QuarticOscillator, RollerRacer,
     RollingDisk, Snakeboard, Suslov,
@@ -67,15 +67,24 @@ macro_rules! shape {
             fn angles(&self) -> [bool; $n] {
                 match self { $(Self::$model(x) => x.angles(),)* $(Self::$plain(x) => x.angles(),)* }
             }
+            fn reduced(&self) -> impl Reduced<$n, $m> {
+                self
+            }
+        }
+
+        impl Reduced<$n, $m> for $name {
             #[inline(never)]
-            fn motion(&self, t: f64, q: &[f64; $n], v: &[f64; $n]) -> Result<Motion<$n, $m>, MotionError> {
-                match self { $(Self::$model(x) => x.motion(t, q, v),)* $(Self::$plain(x) => x.motion(t, q, v),)* }
+            fn motion(&self, t: f64, q: &[f64; $n], v: &[f64; $n]) -> Option<Motion<$n, $m>> {
+                match self {
+                    $(Self::$model(x) => x.reduced().motion(t, q, v),)*
+                    $(Self::$plain(x) => x.reduced().motion(t, q, v),)*
+                }
             }
             #[inline(never)]
             fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; $n], xi: &[S; $n]) -> Option<[S; $n]> {
                 match self {
-                    $(Self::$model(x) => x.reduced_motion(t, q, xi),)*
-                    $(Self::$plain(x) => x.reduced_motion(t, q, xi),)*
+                    $(Self::$model(x) => x.reduced().reduced_motion(t, q, xi),)*
+                    $(Self::$plain(x) => x.reduced().reduced_motion(t, q, xi),)*
                 }
             }
         }

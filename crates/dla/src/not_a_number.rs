@@ -1,4 +1,4 @@
-use lagrangian::{AdmissibleBasis, Called, Gradient, System, from_fn, quasi_velocities};
+use lagrangian::{AdmissibleBasis, Called, Gradient, Reduced, System, from_fn, quasi_velocities};
 use std::fmt;
 use thiserror::Error;
 
@@ -203,7 +203,7 @@ fn by_hand<Sys: System<N, M>, const N: usize, const M: usize>(
     (time, q, v): (f64, &[f64; N], &[f64; N]),
 ) -> Option<NotANumber> {
     let xi = quasi_velocities(system, time, q, v).ok()?;
-    let accelerations = system.reduced_motion(time, q, &xi)?;
+    let accelerations = system.reduced().reduced_motion(time, q, &xi)?;
     let quasi_velocity = accelerations.iter().take(N.saturating_sub(M)).position(|x| !x.is_finite())?;
     let function = SystemFunction::ReducedMotion { quasi_velocity };
     Some(NotANumber { function, derivative: Derivative::Value, time, at_node: true })

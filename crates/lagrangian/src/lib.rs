@@ -11,6 +11,7 @@ mod attitude;
 mod basis;
 mod bordered;
 mod bracket;
+mod by_hand;
 mod called;
 mod classify;
 mod compensated;
@@ -66,6 +67,7 @@ pub use attitude::Attitude;
 pub use basis::{AdmissibleBasis, linear_basis};
 pub use bordered::{Bordered, clear_multipliers};
 pub use bracket::{Bracket, EnergySlope, energy_slope, inverse_reduced_mass};
+pub use by_hand::Reduced;
 pub use called::Called;
 pub use classify::{
     Classification, RowKind, classify, rank_is_constant, redundant_rows, row_space, rows_are_consistent,

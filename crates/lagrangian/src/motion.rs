@@ -1,6 +1,7 @@
 use crate::linear::Singular;
 use crate::{
-    Dual, HyperDual, Saddle, System, constraint_residual, from_fn, mass_matrix, reaction_rows, redundant_rows,
+    Dual, HyperDual, Reduced as _, Saddle, System, constraint_residual, from_fn, mass_matrix, reaction_rows,
+    redundant_rows,
 };
 use std::ops::Add;
 use thiserror::Error;
@@ -70,6 +71,18 @@ impl<const N: usize, const M: usize> Motion<N, M> {
             rows: a,
             right: from_fn(|i| l_q[i] + force.map_or(0.0, |f| f[i]) - transport[i][0]),
             level: rate.map(|r| -r.eps[0]),
+        }
+    }
+
+    /// The motion of a system, by hand where that is known, else by automatic derivatives.
+    ///
+    /// # Errors
+    /// [`MotionError`] where the mass matrix or the constraint is degenerate.
+    #[inline]
+    pub fn of<Sys: System<N, M>>(system: &Sys, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<Self, MotionError> {
+        match system.reduced().motion(t, q, v) {
+            Some(by_hand) => Ok(by_hand),
+            None => Self::automatic(system, t, q, v),
         }
     }
 

@@ -1,6 +1,6 @@
 use crate::linear::largest;
 use crate::vector_field::rate_along;
-use crate::{Dual, MotionError, System, VectorField, from_fn, reaction_rows};
+use crate::{Dual, Motion, MotionError, System, VectorField, from_fn, reaction_rows};
 
 /// The momentum `p . X` along a field `X`, and what changes it.
 ///
@@ -73,7 +73,7 @@ pub fn momentum_balance<Sys: System<N, M>, X: VectorField<N>, const N: usize, co
     let dot = |a: &[f64; N], b: &[f64; N]| (0..N).map(|i| a[i] * b[i]).sum::<f64>();
     let size = |a: &[f64; N], b: &[f64; N]| (0..N).map(|i| (a[i] * b[i]).abs()).sum::<f64>();
     let crossing = rows.map(|row| dot(&row, &x));
-    let multiplier = system.motion(t, q, v)?.multiplier;
+    let multiplier = Motion::of(system, t, q, v)?.multiplier;
     Ok(MomentumBalance {
         momentum: dot(&p, &x),
         lagrangian_rate: dot(&slope, &x) + dot(&p, &turned),

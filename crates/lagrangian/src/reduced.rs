@@ -1,5 +1,5 @@
 use crate::linear::{Lu, Singular};
-use crate::{AdmissibleBasis, Dual, Motion, MotionError, Scalar, System, from_fn};
+use crate::{AdmissibleBasis, Dual, Motion, MotionError, Reduced as _, Scalar, System, from_fn};
 use thiserror::Error;
 
 /// Why there are no reduced equations.
@@ -79,7 +79,7 @@ pub fn reduced_slope<Sys: System<N, M>, const N: usize, const M: usize>(
     xi: &[f64; N],
 ) -> Result<ReducedSlope<N>, ReducedError> {
     let velocity = velocity_of(system, t, q, xi)?;
-    let acceleration = match system.reduced_motion(t, q, xi) {
+    let acceleration = match system.reduced().reduced_motion(t, q, xi) {
         Some(acceleration) => acceleration,
         None => reduced_acceleration(system, t, q, xi)?,
     };
@@ -98,7 +98,7 @@ pub fn reduced_acceleration<Sys: System<N, M>, const N: usize, const M: usize>(
 ) -> Result<[f64; N], ReducedError> {
     let basis = system.admissible_basis(t, q).ok_or(ReducedError::NoBasis)?;
     let v = velocity_of(system, t, q, xi)?;
-    let Motion { acceleration, .. } = system.motion(t, q, &v)?;
+    let Motion { acceleration, .. } = Motion::of(system, t, q, &v)?;
     let along: [Dual<f64, 1>; N] = from_fn(|i| Dual { re: q[i], eps: [v[i]] });
     let turning = velocity_of(system, Dual { re: t, eps: [1.0] }, &along, &xi.map(Dual::fixed))?;
     let rest = from_fn(|i| acceleration[i] - turning[i].eps[0]);

@@ -1,5 +1,5 @@
 use crate::{
-    AdmissibleBasis, Dual, Motion, MotionError, Rounded, Saddle, System, configuration_slope, from_fn,
+    AdmissibleBasis, Dual, Motion, MotionError, Reduced, Rounded, Saddle, System, configuration_slope, from_fn,
     inverse_reduced_mass, mass_matrix, reaction_rows, redundant_rows, velocity_of, velocity_slope,
 };
 
@@ -33,7 +33,7 @@ impl<const N: usize> MotionRounding<N> {
         q: &[f64; N],
         v: &[f64; N],
     ) -> Result<Self, MotionError> {
-        let Motion { multiplier, .. } = system.motion(t, q, v)?;
+        let Motion { multiplier, .. } = Motion::of(system, t, q, v)?;
         let (place, velocity) = (q.map(Rounded::once), v.map(Rounded::once));
         let slope = configuration_slope(system, Rounded::exact(t), &place, &velocity);
         let pushed = system.force(Rounded::exact(t), &place, &velocity);
@@ -102,7 +102,7 @@ pub fn reduced_rounding<Sys: System<N, M>, const N: usize, const M: usize>(
 ) -> Option<[[f64; N]; 2]> {
     let (time, place, quasi) = (Rounded::exact(t), q.map(Rounded::once), xi.map(Rounded::once));
     let basis = system.admissible_basis(t, q)?;
-    let acceleration = match system.reduced_motion(time, &place, &quasi) {
+    let acceleration = match system.reduced().reduced_motion(time, &place, &quasi) {
         Some(by_hand) => by_hand.map(|x| UNIT * x.size),
         None => {
             let v = velocity_of(system, t, q, xi).ok()?;

@@ -1,4 +1,4 @@
-use crate::{AdmissibleBasis, Motion, MotionError, Scalar};
+use crate::{AdmissibleBasis, Reduced, Scalar};
 
 /// The constraint `A(q, t) v + b(q, t) = 0` at one point: the `M` rows of `A`, and `b`.
 pub type Constraint<S, const N: usize, const M: usize> = ([[S; N]; M], [S; M]);
@@ -85,54 +85,10 @@ pub trait System<const N: usize, const M: usize> {
         [false; N]
     }
 
-    /// Accelerations and multipliers of the continuous system, by automatic derivatives unless given by hand.
-    ///
-    /// # Errors
-    /// [`MotionError`] where the mass matrix or the constraint is degenerate.
-    #[inline]
-    fn motion(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<Motion<N, M>, MotionError>
-    where
-        Self: Sized,
-    {
-        Motion::automatic(self, t, q, v)
-    }
-
-    /// The accelerations `xi'` of the quasi-velocities in [`System::admissible_basis`], where they are known by hand.
-    ///
-    /// Only the first `N - M` places of `xi` and of the result count.
+    /// The equations of motion that are known by hand: `self` of a system that implements [`Reduced`]. None by default, and then all are
+    /// derived from the Lagrangian.
     #[inline(always)]
-    fn reduced_motion<S: Scalar>(&self, _t: S, _q: &[S; N], _xi: &[S; N]) -> Option<[S; N]> {
-        None
-    }
-
-    /// After how many quadratures the configuration is known from the quasi-velocities over time, where it is a cascade: zero
-    /// says that the basis is constant; one, that it depends on coordinates alone whose rates are combinations of `xi` with
-    /// constant coefficients. (The reconstruction equation; Bloch 2015, section 5.7.)
-    ///
-    /// A collocation then iterates on the quasi-velocities alone, and each iteration is a whole cascade.
-    #[inline(always)]
-    fn reconstruction(&self) -> Option<u32> {
-        None
-    }
-
-    /// Whether the equations of the quasi-velocities stand alone, `xi' = f(xi)` without time and place, as those of a free body
-    /// do (Euler-Poincare-Suslov equations; Bloch 2015, section 5.7). The configuration then waits until they are solved.
-    #[inline(always)]
-    fn stands_alone(&self) -> bool {
-        false
-    }
-
-    /// What one more generalised force would add to [`System::motion`], where that is known by hand.
-    #[inline(always)]
-    fn response(&self, _t: f64, _q: &[f64; N], _force: &[f64; N]) -> Option<Motion<N, M>> {
-        None
-    }
-
-    /// What one more generalised force would add to [`System::reduced_motion`], where that is known by hand.
-    #[inline(always)]
-    fn reduced_response<S: Scalar>(&self, _t: S, _q: &[S; N], _force: &[S; N]) -> Option<[S; N]> {
-        None
-    }
+    fn reduced(&self) -> impl Reduced<N, M> {}
 }
 
 /// The residual `A(q, t) v + b(q, t)` of each constraint, or `phi(t, q, v)` of one that is not affine.

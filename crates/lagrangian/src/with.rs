@@ -1,5 +1,5 @@
 use crate::effect::{add_all, sum};
-use crate::{AdmissibleBasis, Constraint, Effect, Motion, MotionError, Scalar, System, velocity_of};
+use crate::{AdmissibleBasis, Constraint, Effect, Motion, Reduced, Scalar, System, velocity_of};
 
 /// A body with the effects that act on it: again a [`System`], on the body's coordinates and constraints.
 ///
@@ -52,46 +52,52 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
         self.body.angles()
     }
 
-    /// The body's own and its response to the effects, where both are known by hand.
+    #[inline(always)]
+    fn reduced(&self) -> impl Reduced<N, M> {
+        self
+    }
+}
+
+impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> Reduced<N, M> for With<B, E> {
+    /// The body's own and its response to the effects, where both are known.
     #[inline]
-    fn motion(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<Motion<N, M>, MotionError> {
+    fn motion(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<Motion<N, M>> {
+        let bare = self.body.reduced().motion(t, q, v)?;
         if self.effects.is_none() {
-            return self.body.motion(t, q, v);
+            return Some(bare);
         }
-        match self.effects.whole_force(&self.body, t, q, v).and_then(|push| self.body.response(t, q, &push)) {
-            Some(response) => Ok(self.body.motion(t, q, v)? + response),
-            None => Motion::automatic(self, t, q, v),
-        }
+        let push = self.effects.whole_force(&self.body, t, q, v)?;
+        Some(bare + self.body.reduced().response(t, q, &push)?)
     }
 
     #[inline(always)]
     fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; N], xi: &[S; N]) -> Option<[S; N]> {
-        let bare = self.body.reduced_motion(t, q, xi)?;
+        let bare = self.body.reduced().reduced_motion(t, q, xi)?;
         if self.effects.is_none() {
             return Some(bare);
         }
         let push = self.effects.whole_force(&self.body, t, q, &velocity_of(&self.body, t, q, xi).ok()?)?;
-        let response = self.body.reduced_response(t, q, &push)?;
+        let response = self.body.reduced().reduced_response(t, q, &push)?;
         Some(sum(&bare, &response))
     }
 
     #[inline(always)]
     fn reconstruction(&self) -> Option<u32> {
-        self.body.reconstruction()
+        self.body.reduced().reconstruction()
     }
 
     #[inline(always)]
     fn stands_alone(&self) -> bool {
-        self.effects.is_none() && self.body.stands_alone()
+        self.effects.is_none() && self.body.reduced().stands_alone()
     }
 
     #[inline(always)]
     fn response(&self, t: f64, q: &[f64; N], force: &[f64; N]) -> Option<Motion<N, M>> {
-        self.body.response(t, q, force)
+        self.body.reduced().response(t, q, force)
     }
 
     #[inline(always)]
     fn reduced_response<S: Scalar>(&self, t: S, q: &[S; N], force: &[S; N]) -> Option<[S; N]> {
-        self.body.reduced_response(t, q, force)
+        self.body.reduced().reduced_response(t, q, force)
     }
 }

@@ -174,7 +174,7 @@ proptest! {
     #[test]
     fn the_equations_of_motion_hold(c in vector(), t in component(), q in vector(), v in vector()) {
         let system = Everything { c };
-        let Ok(Motion { acceleration, multiplier }) = system.motion(t, &q, &v) else {
+        let Ok(Motion { acceleration, multiplier }) = Motion::of(&system, t, &q, &v) else {
             return Err(TestCaseError::reject("degenerate"));
         };
         let (a, _) = system.constraint(t, &q);

@@ -1,5 +1,5 @@
 use crate::Sleigh;
-use lagrangian::{AdmissibleBasis, Constraint, Motion, MotionError, Scalar, System};
+use lagrangian::{AdmissibleBasis, Constraint, Motion, Reduced, Scalar, System};
 
 impl System<3, 1> for Sleigh {
     /// `L = m/2 |P'|^2 + m a omega (n . P') + J/2 omega^2`, which is `m/2 |C'|^2 + I/2 omega^2` written at the blade.
@@ -32,17 +32,24 @@ impl System<3, 1> for Sleigh {
         [false, false, true]
     }
 
-    /// By hand, for any velocity, admissible or not: with `s = n . P'` the slip and `u = e . P'`,
+    #[inline(always)]
+    fn reduced(&self) -> impl Reduced<3, 1> {
+        self
+    }
+}
+
+impl Reduced<3, 1> for Sleigh {
+    /// With `s = n . P'` the slip and `u = e . P'`,
     /// `u' = a omega^2 + s omega`, `omega' = -(m a / J) u omega`, `s' = 0`, `lambda = (m I / J) u omega`.
     #[inline]
-    fn motion(&self, _t: f64, q: &[f64; 3], v: &[f64; 3]) -> Result<Motion<3, 1>, MotionError> {
+    fn motion(&self, _t: f64, q: &[f64; 3], v: &[f64; 3]) -> Option<Motion<3, 1>> {
         let a = self.offset();
         let (sin, cos) = q[2].sin_cos();
         let omega = v[2];
         let u = cos * v[0] + sin * v[1];
         // P'' = (u' - omega s) e + (s' + omega u) n, and u' - omega s = a omega^2.
         let (along, across) = (a * omega * omega, u * omega);
-        Ok(Motion {
+        Some(Motion {
             acceleration: [along * cos - across * sin, along * sin + across * cos, -self.spin_gain() * across],
             multiplier: [self.mass() * across * (self.inertia() / self.pivot_inertia())],
         })

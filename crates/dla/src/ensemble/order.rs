@@ -1,5 +1,5 @@
 use super::{LaneState, Systems};
-use lagrangian::{System, velocity_of};
+use lagrangian::{Reduced, System, velocity_of};
 
 /// The order in which the coordinates of the stages are computed, and which of them are computed only at the end of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,11 +29,11 @@ impl<const N: usize> Order<N> {
         let (mut iterated, mut along) = ([false; N], [[false; N]; N]);
         for lane in 0..W {
             let (system, xi) = (systems.of(lane), state.xi(lane));
-            system.reduced_motion(t, &state.q(lane), &xi)?;
+            system.reduced().reduced_motion(t, &state.q(lane), &xi)?;
             for k in 0..N {
                 let mut q = state.q(lane);
                 q[k] = f64::NAN;
-                iterated[k] |= system.reduced_motion(t, &q, &xi)?[..N - M].iter().any(|a| a.is_nan());
+                iterated[k] |= system.reduced().reduced_motion(t, &q, &xi)?[..N - M].iter().any(|a| a.is_nan());
                 let velocity = velocity_of(system, t, &q, &xi).ok()?;
                 for j in 0..N {
                     along[j][k] |= velocity[j].is_nan();

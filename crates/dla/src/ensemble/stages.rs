@@ -1,7 +1,7 @@
 use super::{LANES, Systems};
 use crate::KnownAngle;
 use lagrangian::simd::{Pack, Simd, Wide};
-use lagrangian::{Scalar, System, array, velocity_of};
+use lagrangian::{Reduced, Scalar, System, array, velocity_of};
 
 /// `S` stages of eight trajectories.
 ///
@@ -134,7 +134,7 @@ impl<Si: Simd, const R: usize, const N: usize> Points<Si, R, N> {
         );
         let found = match slope {
             Slope::Velocity => velocity_of(system, t, &q, &xi).ok(),
-            Slope::Acceleration => system.reduced_motion(t, &q, &xi),
+            Slope::Acceleration => system.reduced().reduced_motion(t, &q, &xi),
         };
         let simd = self.q[0].simd();
         match found {

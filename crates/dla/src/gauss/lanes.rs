@@ -3,7 +3,7 @@ use super::packs::{ahead, each, everywhere, integral, loaded, own, packed};
 use super::rule::Eight;
 use lagrangian::linear::larger;
 use lagrangian::simd::{Kernel, Pack, Simd, Square, Wide, dispatch};
-use lagrangian::{System, array, from_fn, velocity_of};
+use lagrangian::{Reduced, System, array, from_fn, velocity_of};
 use std::fmt;
 use std::ops::Deref;
 
@@ -189,7 +189,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
         q: &[Pack<S, R>; N],
         xi: &[Wide<S, R>; N],
     ) -> Option<[Pack<S, R>; N]> {
-        match self.system.reduced_motion(self.times(simd), &each(q), xi) {
+        match self.system.reduced().reduced_motion(self.times(simd), &each(q), xi) {
             Some(a) => Some(packed(simd, &a)),
             None => None,
         }
@@ -203,8 +203,8 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
     #[inline(always)]
     fn run<S: Simd, const R: usize>(self, simd: S) -> Outcome<N> {
         let along = Along::<S, R> { square: loaded(simd, &self.rule.square.terms), h: Pack::splat(simd, self.h) };
-        let cascade = self.system.reconstruction();
-        let alone = cascade.is_some() && self.system.stands_alone();
+        let cascade = self.system.reduced().reconstruction();
+        let alone = cascade.is_some() && self.system.reduced().stands_alone();
 
         // Without a predictor the slopes are zero at first.
         let (mut v, mut a) = match self.before {

@@ -155,7 +155,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Mechanics<N, M> for Sys 
     }
 
     fn motion(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<Motion<N, M>, MotionError> {
-        System::motion(self, t, q, v)
+        Motion::of(self, t, q, v)
     }
 
     fn velocity_of(&self, t: f64, q: &[f64; N], xi: &[f64; N]) -> Result<[f64; N], ReducedError> {

@@ -1,6 +1,6 @@
 use super::Mechanics;
 use crate::PiecewiseMechanics;
-use lagrangian::{Gradients, Seeded, SeededMember, System, Unparametrised, velocity_of};
+use lagrangian::{Gradients, Reduced, Seeded, SeededMember, System, Unparametrised, velocity_of};
 
 /// What is asked of a system where a motion is differentiated: the same answers with derivatives in eight directions.
 ///
@@ -27,7 +27,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> SeededMechanics<N, M> fo
     }
 
     fn reduced_motion_seeded(&self, t: Seeded, q: &[Seeded; N], xi: &[Seeded; N]) -> Option<[Seeded; N]> {
-        self.reduced_motion(t, q, xi)
+        System::reduced(self).reduced_motion(t, q, xi)
     }
 }
 

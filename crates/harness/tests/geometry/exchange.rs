@@ -3,7 +3,7 @@
 use crate::run;
 use approx::assert_relative_eq;
 use dla::{Dla, State, Trajectory};
-use lagrangian::{System, constraint_residual};
+use lagrangian::{Motion, System, constraint_residual};
 use sleigh::{Sleigh, SleighState};
 
 #[test]
@@ -16,7 +16,7 @@ fn the_energy_goes_from_speed_to_spin_and_back_and_the_blade_does_no_work() {
     for node in nodes.nodes() {
         let state = SleighState::from_coordinates(&node.q, &node.v);
         let (u, omega) = (state.speed, state.turn_rate);
-        let lambda = sleigh.motion(node.t, &node.q, &node.v).unwrap().multiplier[0];
+        let lambda = Motion::of(&sleigh, node.t, &node.q, &node.v).unwrap().multiplier[0];
         // lambda = m u omega I/J, along n, where nothing moves.
         assert_relative_eq!(lambda, u * omega / 1.25, epsilon = 1e-15);
         let power = lambda * constraint_residual::<_, _, 3, 1>(&sleigh, node.t, &node.q, &node.v)[0];

@@ -6,7 +6,7 @@ use dla::{
     drive,
 };
 use harness::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced};
-use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
+use lagrangian::{AdmissibleBasis, Constraint, Reduced, Scalar, System};
 use std::cell::Cell;
 
 /// A point of unit mass in the plane with `y' = 0`, so that it moves along a line.
@@ -214,6 +214,12 @@ impl System<2, 1> for Counting {
     fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; 2]) -> Option<AdmissibleBasis<S, 2, 1>> {
         Line(Spring).admissible_basis(t, q)
     }
+    fn reduced(&self) -> impl Reduced<2, 1> {
+        self
+    }
+}
+
+impl Reduced<2, 1> for Counting {
     fn reduced_motion<S: Scalar>(&self, _t: S, q: &[S; 2], _xi: &[S; 2]) -> Option<[S; 2]> {
         self.0.set(self.0.get() + 1);
         Some([-q[0], S::zero()])

@@ -7,7 +7,7 @@ use harness::Method;
 use harness::analysis::{
     Evidence, Lyapunov, LyapunovFailure, LyapunovRequest, MotionVerdict, PARTS, Undecided, lyapunov_by,
 };
-use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, With};
+use lagrangian::{AdmissibleBasis, Constraint, Reduced, Scalar, System, With};
 use proptest::prelude::*;
 use sleigh::effects::{Bowl, Drag, Thrust};
 use sleigh::{Sleigh, SleighState};
@@ -241,6 +241,12 @@ impl System<3, 1> for Wrong {
     fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, 1>> {
         self.0.admissible_basis(t, q)
     }
+    fn reduced(&self) -> impl Reduced<3, 1> {
+        self
+    }
+}
+
+impl Reduced<3, 1> for Wrong {
     fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; 3], xi: &[S; 3]) -> Option<[S; 3]> {
         let right = self.0.reduced_motion(t, q, xi)?;
         Some([right[0], right[1] * 1.1, right[2]])

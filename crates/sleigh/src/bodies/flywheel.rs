@@ -1,6 +1,6 @@
 use crate::checks::positive;
 use crate::{Sleigh, SleighBody, SleighError, TimeFunction};
-use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Scalar, System};
+use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Reduced, Scalar, System};
 
 /// A sleigh with a rotor on a bearing: the coordinate `psi`, its angle relative to the body, and the energy
 /// `I_r/2 (omega + psi')^2`.
@@ -106,13 +106,20 @@ impl<B: System<3, M>, const M: usize> System<4, M> for Flywheel<B> {
         [x, y, theta, true]
     }
 
+    #[inline(always)]
+    fn reduced(&self) -> impl Reduced<4, M> {
+        self
+    }
+}
+
+impl<B: System<3, M>, const M: usize> Reduced<4, M> for Flywheel<B> {
     /// The body's own, and `I_r (omega + psi')' = tau`, where the constraints leave the body two freedoms.
     #[inline(always)]
     fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; 4], xi: &[S; 4]) -> Option<[S; 4]> {
         if M != 1 {
             return None;
         }
-        let [u, omega, _] = self.body.reduced_motion(t, &of_body(q), &of_body(xi))?;
+        let [u, omega, _] = self.body.reduced().reduced_motion(t, &of_body(q), &of_body(xi))?;
         let zero = S::zero();
         let Some(torque) = &self.torque else { return Some([u, omega, zero, zero]) };
         let driven = self.reduced_response(t, q, &[zero, zero, zero, torque.value(t)])?;
@@ -121,12 +128,12 @@ impl<B: System<3, M>, const M: usize> System<4, M> for Flywheel<B> {
 
     #[inline(always)]
     fn reconstruction(&self) -> Option<u32> {
-        if M == 1 { self.body.reconstruction() } else { None }
+        if M == 1 { self.body.reduced().reconstruction() } else { None }
     }
 
     #[inline(always)]
     fn stands_alone(&self) -> bool {
-        self.torque.is_none() && M == 1 && self.body.stands_alone()
+        self.torque.is_none() && M == 1 && self.body.reduced().stands_alone()
     }
 
     /// A torque on the rotor acts on the body the other way.
@@ -135,7 +142,7 @@ impl<B: System<3, M>, const M: usize> System<4, M> for Flywheel<B> {
         if M != 1 {
             return None;
         }
-        let [u, omega, _] = self.body.reduced_response(t, &of_body(q), &[fx, fy, tau - motor])?;
+        let [u, omega, _] = self.body.reduced().reduced_response(t, &of_body(q), &[fx, fy, tau - motor])?;
         Some([u, omega, motor / self.inertia, S::zero()])
     }
 }

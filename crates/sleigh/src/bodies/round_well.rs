@@ -1,7 +1,7 @@
 use crate::checks::finite;
 use crate::series::{InOwnAxes, Origin, OwnAxes};
 use crate::{Sleigh, SleighError, SleighState};
-use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
+use lagrangian::{AdmissibleBasis, Constraint, Reduced, Scalar, System};
 
 /// The Chaplygin sleigh in a round well, in its own axes: what is left of the motion when its symmetry is taken out.
 ///
@@ -90,6 +90,13 @@ impl System<3, 1> for RoundWell {
         [false, false, true]
     }
 
+    #[inline(always)]
+    fn reduced(&self) -> impl Reduced<3, 1> {
+        self
+    }
+}
+
+impl Reduced<3, 1> for RoundWell {
     /// That of the free sleigh, and the pull of the well.
     #[inline(always)]
     fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; 3], xi: &[S; 3]) -> Option<[S; 3]> {

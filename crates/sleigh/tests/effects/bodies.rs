@@ -1,7 +1,7 @@
 //! What a body with a rotor passes on from the body, and which coordinates are angles.
 
 use approx::assert_abs_diff_eq;
-use lagrangian::{Constraint, Scalar, System};
+use lagrangian::{Constraint, Reduced, Scalar, System};
 use sleigh::{CentreOfMass, Flywheel, Sleigh};
 
 /// A body whose constraint is of positions, and one more that is not affine.
@@ -63,14 +63,15 @@ fn responses_to_forces() {
     }
     assert_abs_diff_eq!(made.multiplier[0], m * a * tau / j - (cos * fy - sin * fx), epsilon = 1e-15);
     let rotor = Flywheel::new(sleigh, 0.25, None).unwrap();
-    let made = System::<4, 1>::reduced_response(&rotor, 0.0, &[0.1, 0.2, heading, 5.0], &[fx, fy, tau, motor]).unwrap();
+    let made =
+        Reduced::<4, 1>::reduced_response(&rotor, 0.0, &[0.1, 0.2, heading, 5.0], &[fx, fy, tau, motor]).unwrap();
     for (found, expected) in made.into_iter().zip([along, (tau - motor) / j, motor / 0.25, 0.0]) {
         assert_abs_diff_eq!(found, expected, epsilon = 1e-15);
     }
     // With a motor that pushes, the free motion and that: `u' = a omega^2`, `omega' = -(m a/J) u omega - tau/J`.
     let driven = Flywheel::new(sleigh, 0.25, Some(motor.into())).unwrap();
     let (u, omega) = (0.6, -0.8);
-    let made = System::<4, 1>::reduced_motion(&driven, 0.0, &[0.1, 0.2, heading, 5.0], &[u, omega, 2.0, 0.0]).unwrap();
+    let made = Reduced::<4, 1>::reduced_motion(&driven, 0.0, &[0.1, 0.2, heading, 5.0], &[u, omega, 2.0, 0.0]).unwrap();
     let expected = [a * omega * omega, -m * a / j * u * omega - motor / j, motor / 0.25, 0.0];
     for (found, expected) in made.into_iter().zip(expected) {
         assert_abs_diff_eq!(found, expected, epsilon = 1e-15);

@@ -1,7 +1,7 @@
 //! Derivatives of Lagrangian, forces and constraints by the dual numbers of the methods and by those of `num-dual`.
 
 use approx::assert_relative_eq;
-use lagrangian::{Dual, Effect, HyperDual, Lanes, Motion, Scalar, System, With, reduced_acceleration};
+use lagrangian::{Dual, Effect, HyperDual, Lanes, Motion, Reduced, Scalar, System, With, reduced_acceleration};
 use num_dual::{Dual64, HyperDual64};
 use proptest::prelude::*;
 use sleigh::effects::{Bowl, Drag, EggCrate, Hill, Hills, MovingMass, Slope, Thrust, Torque};
@@ -121,7 +121,7 @@ proptest! {
         }
 
         let known = With { body: sleigh(), effects: (fields.clone(), drag.clone(), thrust.clone(), torque.clone()) };
-        let (hand, automatic) = (known.motion(t, &q, &v).unwrap(), Motion::automatic(&known, t, &q, &v).unwrap());
+        let (hand, automatic) = (Motion::of(&known, t, &q, &v).unwrap(), Motion::automatic(&known, t, &q, &v).unwrap());
         for i in 0..3 {
             assert_relative_eq!(hand.acceleration[i], automatic.acceleration[i], epsilon = 10.0 * ROUNDING);
         }

@@ -1,7 +1,7 @@
 //! Equations in the axes of the sleigh are those on the plane.
 
 use approx::assert_abs_diff_eq;
-use lagrangian::{System, With};
+use lagrangian::{Reduced, With};
 use proptest::prelude::*;
 use sleigh::effects::{Bowl, Drag, EggCrate, Thrust, Torque};
 use sleigh::series::{InOwnAxes, Origin, OwnAxes, OwnPush, PushInOwnAxes};

@@ -1,8 +1,7 @@
 //! The sleigh in a round well, in its own axes, is the sleigh in a bowl.
 
 use approx::assert_relative_eq;
-use lagrangian::System;
-use lagrangian::{With, constraint_residual, energy, reduced_acceleration};
+use lagrangian::{Reduced, With, constraint_residual, energy, reduced_acceleration};
 use proptest::prelude::*;
 use sleigh::effects::Bowl;
 use sleigh::{RoundWell, Sleigh, SleighState};

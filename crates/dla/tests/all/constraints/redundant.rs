@@ -6,7 +6,7 @@ use dla::{
     Dependency, Dependent, Dla, Gauss, Lobatto, OneStep, RunError, Schedule, State, StepError, consistent_start, drive,
     onto_constraint,
 };
-use lagrangian::{Constraint, Rows, Scalar, System};
+use lagrangian::{Constraint, Motion, Rows, Scalar, System};
 use models::{CompoundPendulum, Model};
 use std::array::from_fn;
 
@@ -79,7 +79,7 @@ fn redundant_rows_that_agree() {
 fn redundant_rows_outside_of_steps() {
     let (pendulum, redundant) = (pendulum(), third_row(0.0, 0.0));
     let (q, v) = pendulum.start();
-    let motion = redundant.motion(0.0, &q, &v).unwrap();
+    let motion = Motion::of(&redundant, 0.0, &q, &v).unwrap();
     approx::assert_abs_diff_eq!(
         &motion.acceleration[..],
         &pendulum.accelerations_by_hand(0.0, &q, &v)[..],

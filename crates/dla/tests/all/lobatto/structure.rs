@@ -1,7 +1,7 @@
 use crate::lobatto::systems::{Forces, Moving, Potential, at_centre, com, distance, run, sleigh};
 use allocation_counter::measure;
 use dla::{Dla, Lobatto, OneStep, State};
-use lagrangian::{System, constraint_residual};
+use lagrangian::{Motion, System, constraint_residual};
 
 const MOVING: ([f64; 3], [f64; 3]) = ([0.3, 0.0, 0.0], [0.6, 0.5, -0.36]);
 
@@ -98,7 +98,7 @@ fn the_impulses_are_those_of_the_motion() {
     let h = 0.1;
     let mut state = State::new(start.0, start.1, system.angles());
     let report = Lobatto::<5>::new().step(&system, 0.0, h, &mut state).unwrap();
-    let multiplier = |s: &State<3>| system.motion(0.0, s.q(), s.v()).unwrap().multiplier[0];
+    let multiplier = |s: &State<3>| Motion::of(&system, 0.0, s.q(), s.v()).unwrap().multiplier[0];
     // Simpson's rule on a fine subdivision.
     let (mut fine, mut sum) = (State::new(start.0, start.1, system.angles()), 0.0);
     for k in 0..=20 {

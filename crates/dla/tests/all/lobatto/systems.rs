@@ -1,5 +1,5 @@
 use dla::{OneStep, Schedule, State, drive};
-use lagrangian::{Constraint, Effect, Scalar, System, With};
+use lagrangian::{Constraint, Effect, Motion, Scalar, System, With};
 use sleigh::{CentreOfMass, Sleigh};
 use std::array::from_fn;
 
@@ -129,7 +129,7 @@ fn runge_kutta<Sys: System<N, M>, const N: usize, const M: usize>(
         for (stage, weight) in [(0.0, 1.0 / 6.0), (0.5, 1.0 / 3.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 6.0)] {
             let at_v: [f64; N] = from_fn(|i| v[i] + stage * h * last_v[i]);
             let at_q: [f64; N] = from_fn(|i| q[i] + stage * h * last_q[i]);
-            let rate = system.motion(t + stage * h, &at_q, &at_v).unwrap().acceleration;
+            let rate = Motion::of(system, t + stage * h, &at_q, &at_v).unwrap().acceleration;
             (dq, dv) = (from_fn(|i| dq[i] + h * weight * at_v[i]), from_fn(|i| dv[i] + h * weight * rate[i]));
             (last_q, last_v) = (at_v, rate);
         }

@@ -1,7 +1,7 @@
 use crate::runs::{backward, sleigh};
 use approx::assert_abs_diff_eq;
 use dla::{Each, Ensemble, Gauss, GaussAdaptive, GaussEnsemble, LaneState, OneStep, Same, Schedule, State, drive};
-use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, With, velocity_of};
+use lagrangian::{AdmissibleBasis, Constraint, Reduced, Scalar, System, With, velocity_of};
 use proptest::prelude::*;
 use sleigh::effects::{Bowl, Torque};
 use sleigh::{ClosedEnsemble, ClosedMap, RoundWell, Sleigh, SleighState, TimeFunction};
@@ -291,6 +291,12 @@ impl System<2, 1> for Turning {
         let (sin, cos) = (t * Self::RATE).sin_cos();
         Some(AdmissibleBasis::new([[cos, sin]]))
     }
+    fn reduced(&self) -> impl Reduced<2, 1> {
+        self
+    }
+}
+
+impl Reduced<2, 1> for Turning {
     fn reduced_motion<S: Scalar>(&self, t: S, _q: &[S; 2], _xi: &[S; 2]) -> Option<[S; 2]> {
         Some([(t * Self::RATE).cos(), S::zero()])
     }

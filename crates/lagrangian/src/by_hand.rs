@@ -1,0 +1,85 @@
+use crate::{Motion, Scalar};
+
+/// The equations of motion of a system as they are known by hand, or by computer algebra.
+///
+/// Every method works without them, on derivatives of the Lagrangian; with them it is quicker. A system that has some implements this
+/// trait and says so, `fn reduced(&self) -> impl Reduced<N, M> { self }` in its [`System`](crate::System).
+pub trait Reduced<const N: usize, const M: usize> {
+    /// Accelerations and multipliers, for any velocity, admissible or not.
+    #[inline(always)]
+    fn motion(&self, _t: f64, _q: &[f64; N], _v: &[f64; N]) -> Option<Motion<N, M>> {
+        None
+    }
+
+    /// The accelerations `xi'` of the quasi-velocities in [`System::admissible_basis`](crate::System::admissible_basis).
+    ///
+    /// Only the first `N - M` places of `xi` and of the result count.
+    #[inline(always)]
+    fn reduced_motion<S: Scalar>(&self, _t: S, _q: &[S; N], _xi: &[S; N]) -> Option<[S; N]> {
+        None
+    }
+
+    /// After how many quadratures the configuration is known from the quasi-velocities over time, where it is a cascade: zero
+    /// says that the basis is constant; one, that it depends on coordinates alone whose rates are combinations of `xi` with
+    /// constant coefficients. (The reconstruction equation; Bloch 2015, section 5.7.)
+    ///
+    /// A collocation then iterates on the quasi-velocities alone, and each iteration is a whole cascade.
+    #[inline(always)]
+    fn reconstruction(&self) -> Option<u32> {
+        None
+    }
+
+    /// Whether the equations of the quasi-velocities stand alone, `xi' = f(xi)` without time and place, as those of a free body
+    /// do (Euler-Poincare-Suslov equations; Bloch 2015, section 5.7). The configuration then waits until they are solved.
+    #[inline(always)]
+    fn stands_alone(&self) -> bool {
+        false
+    }
+
+    /// What one more generalised force would add to [`motion`](Self::motion).
+    #[inline(always)]
+    fn response(&self, _t: f64, _q: &[f64; N], _force: &[f64; N]) -> Option<Motion<N, M>> {
+        None
+    }
+
+    /// What one more generalised force would add to [`reduced_motion`](Self::reduced_motion).
+    #[inline(always)]
+    fn reduced_response<S: Scalar>(&self, _t: S, _q: &[S; N], _force: &[S; N]) -> Option<[S; N]> {
+        None
+    }
+}
+
+/// Nothing is known by hand.
+impl<const N: usize, const M: usize> Reduced<N, M> for () {}
+
+impl<R: Reduced<N, M>, const N: usize, const M: usize> Reduced<N, M> for &R {
+    #[inline(always)]
+    fn motion(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<Motion<N, M>> {
+        R::motion(self, t, q, v)
+    }
+
+    #[inline(always)]
+    fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; N], xi: &[S; N]) -> Option<[S; N]> {
+        R::reduced_motion(self, t, q, xi)
+    }
+
+    #[inline(always)]
+    fn reconstruction(&self) -> Option<u32> {
+        R::reconstruction(self)
+    }
+
+    #[inline(always)]
+    fn stands_alone(&self) -> bool {
+        R::stands_alone(self)
+    }
+
+    #[inline(always)]
+    fn response(&self, t: f64, q: &[f64; N], force: &[f64; N]) -> Option<Motion<N, M>> {
+        R::response(self, t, q, force)
+    }
+
+    #[inline(always)]
+    fn reduced_response<S: Scalar>(&self, t: S, q: &[S; N], force: &[S; N]) -> Option<[S; N]> {
+        R::reduced_response(self, t, q, force)
+    }
+}
