@@ -4,6 +4,9 @@
 #[path = "common/program.rs"]
 mod program;
 
+#[path = "cli_text/events.rs"]
+mod events;
+
 use program::{Folder, TEXTS, csv, keys};
 
 /// A skate on a slope.
@@ -23,6 +26,28 @@ theta_dot = 0.5
 step = 0.02
 duration = 2.0
 ";
+
+/// The sleigh in the words of a text.
+const SLEIGH: &str = "\
+[system]
+coordinates = { x = \"m\", y = \"m\", heading = \"angle\" }
+parameters = { m = 1.0, I = 1.0, a = 0.5 }
+lagrangian = \"\"\"m/2*((x' - a*heading'*sin(heading))^2 + (y' + a*heading'*cos(heading))^2) + I/2*heading'^2\"\"\"
+constraints = [\"y'*cos(heading) - x'*sin(heading)\"]
+basis = [[\"cos(heading)\", \"sin(heading)\", \"0\"], [\"0\", \"0\", \"1\"]]
+[start]
+\"x'\" = -1.0
+\"heading'\" = 0.1
+[run]
+step = 0.05
+duration = 20.0
+";
+
+/// That two numbers are the same, relative to the second or to one.
+fn agree(a: &serde_json::Value, b: &serde_json::Value, within: f64) {
+    let (a, b) = (a.as_f64().unwrap(), b.as_f64().unwrap());
+    assert!((a - b).abs() <= within * b.abs().max(1.0), "{a} {b}");
+}
 
 #[test]
 fn a_run_tells_every_coordinate_rate_and_output() {
@@ -49,30 +74,14 @@ fn a_run_tells_every_coordinate_rate_and_output() {
 #[test]
 fn a_sleigh_of_text_is_the_sleigh() {
     let folder = Folder::new();
-    folder.write(
-        "sleigh.toml",
-        "[system]
-coordinates = { x = \"m\", y = \"m\", heading = \"angle\" }
-parameters = { m = 1.0, I = 1.0, a = 0.5 }
-lagrangian = \"\"\"m/2*((x' - a*heading'*sin(heading))^2 + (y' + a*heading'*cos(heading))^2) + I/2*heading'^2\"\"\"
-constraints = [\"y'*cos(heading) - x'*sin(heading)\"]
-basis = [[\"cos(heading)\", \"sin(heading)\", \"0\"], [\"0\", \"0\", \"1\"]]
-[start]
-\"x'\" = -1.0
-\"heading'\" = 0.1
-[run]
-step = 0.05
-duration = 20.0
-",
-    );
+    folder.write("sleigh.toml", SLEIGH);
     folder.write("own.toml", program::SCENE);
     for method in ["dla", "dla4", "lobatto4", "gauss8", "energy4", "rk4"] {
         let end =
             |scene: &str| folder.json(&format!("run {scene} --json --method {method} --duration 20"))["final"].clone();
         let (text, own) = (end("sleigh.toml"), end("own.toml"));
         for name in ["x", "y", "heading"] {
-            let (a, b) = (text[name].as_f64().unwrap(), own[name].as_f64().unwrap());
-            assert!((a - b).abs() <= 1e-12 * b.abs().max(1.0), "{method} {name}: {a} {b}");
+            agree(&text[name], &own[name], 1e-12);
         }
     }
 }
@@ -135,10 +144,8 @@ fn errors_show_file_line_column_and_what_is_known() {
 fn what_is_not_done_is_refused_with_its_reason() {
     let folder = Folder::new();
     folder.write("skate.toml", SKATE);
-    for command in ["phase skate.toml", "run skate.toml --event speed=0"] {
-        let outcome = folder.noslip(command.split(' '));
-        assert_eq!(outcome.code, 2, "{command}");
-        assert!(outcome.stderr.contains("system of text"), "{}", outcome.stderr);
+    for command in ["phase skate.toml", "equilibria skate.toml --picture p.svg"] {
+        folder.refused(command, &["system of text"]);
     }
 }
 

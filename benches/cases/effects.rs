@@ -2,7 +2,7 @@ use super::Case;
 use super::systems::{bowl, drag, egg_crate, from, go, sleigh, start, three, with};
 use dla::{Dla, Gauss, Mechanics};
 use lagrangian::With;
-use scene::{AnyEffect, Scene, SceneSystem, Visitor};
+use scene::{AnyEffect, Built, Scene, Visitor};
 use sleigh::effects::{Hill, Hills, MovingMass, Slope, Thrust, Torque};
 use sleigh::{Flywheel, Guide, Guided, SleighState};
 use std::hint::black_box;
@@ -94,7 +94,7 @@ struct Steps(u64);
 impl Visitor for Steps {
     type Output = ();
 
-    fn visit<const N: usize, const M: usize>(self, system: &dyn SceneSystem<N, M>, q: [f64; N], v: [f64; N]) {
-        from(system, Dla::midpoint(), self.0, (black_box(q), black_box(v)));
+    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) {
+        from(&*system, Dla::midpoint(), self.0, (black_box(q), black_box(v)));
     }
 }

@@ -1,4 +1,4 @@
-use crate::coordinate::{Coordinate, Range};
+use crate::coordinate::Range;
 use crate::format::Format;
 use crate::plane::{Crossed, Plane};
 use crate::trigger::Trigger;
@@ -165,8 +165,8 @@ pub(crate) struct RunArguments {
     /// Go on from this checkpoint, to the same last bit, also with a longer --duration; the file of --out is continued
     #[arg(long, value_name = "FILE")]
     pub(crate) resume: Option<PathBuf>,
-    /// Find when x, y, heading (in every turn), unwrapped_heading (turns counted), speed or turn_rate crosses a value, as in
-    /// speed=0; can be repeated
+    /// Find when a quantity crosses a value, as in speed=0; of a sleigh x, y, heading (in every turn), unwrapped_heading (turns counted),
+    /// speed, turn_rate, center_x, energy .., of a system of text any coordinate, rate (x') or output; can be repeated
     #[arg(long, value_name = "NAME=VALUE", conflicts_with_all = ["checkpoint", "resume"])]
     pub(crate) event: Vec<Trigger>,
     /// As --event, and end the run there
@@ -304,7 +304,7 @@ pub(crate) struct SectionArguments {
     pub(crate) direction: Crossed,
     /// The two coordinates to show of each crossing: the first across, the second upwards
     #[arg(long, value_name = "A,B", value_delimiter = ',')]
-    pub(crate) axes: Option<Vec<Coordinate>>,
+    pub(crate) axes: Option<Vec<String>>,
     /// How many starts: the scene's, and others at its place and of its energy
     #[arg(long, value_name = "N", default_value_t = 12, allow_negative_numbers = true, value_parser = count)]
     pub(crate) starts: u64,

@@ -2,7 +2,8 @@
 
 use crate::args::CheckArguments;
 use crate::error::CliError;
-use crate::inspect::{described, method_names};
+use crate::facts::described;
+use crate::inspect::method_names;
 use crate::{table, terminal};
 use scene::AnyScene;
 use serde_json::{Map, Value, json};

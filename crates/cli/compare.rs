@@ -3,12 +3,12 @@ use crate::error::CliError;
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
 use crate::saves::Saves;
-use crate::{compare_numbers, facts, inspect, json, progress, table, terminal, text, train};
+use crate::{account, compare_numbers, facts, inspect, json, notes, progress, table, terminal, train};
 use dla::{Schedule, State};
 use harness::report::{self, Report, SceneReport, Series};
 use harness::{Drift, METHODS, Method, Record, Request, Verdict};
-use scene::{AnyScene, Scene, SceneSystem, Visitor};
-use sleigh::{Exact, SleighState};
+use scene::{AnyScene, Built, Visitor};
+use sleigh::Exact;
 use std::path::PathBuf;
 
 /// A comparison on one scene: the runs, method by method, with what the closed form says of them.
@@ -115,20 +115,9 @@ pub(crate) fn compare_scene(
     saves: &mut Saves,
     interrupt: &Interrupt,
 ) -> Result<Comparison, CliError> {
-    match scene {
-        AnyScene::Sleigh(scene) => compare_sleigh(scene, methods, saves, interrupt),
-        AnyScene::Text(scene) => text::compare::compare_scene(scene, methods, saves, interrupt),
-    }
-}
-
-/// The same of a sleigh.
-pub(crate) fn compare_sleigh(
-    scene: &Scene,
-    methods: &[Method],
-    saves: &mut Saves,
-    interrupt: &Interrupt,
-) -> Result<Comparison, CliError> {
-    if let Some(whole) = scene.train()? {
+    if let AnyScene::Sleigh(scene) = scene
+        && let Some(whole) = scene.train()?
+    {
         if saves.are_asked_for() {
             let problem = "--checkpoint and --resume of a comparison do not do scenes with `trailers`, whose pictures need the \
                            nodes of all blades, and no checkpoint has them; `run` saves and resumes a train";
@@ -136,11 +125,12 @@ pub(crate) fn compare_sleigh(
         }
         return train::compare_scene(scene, &whole, methods, interrupt);
     }
+    notes::moves(scene);
     scene.visit(Compare { scene, methods, saves, interrupt })?
 }
 
 struct Compare<'a> {
-    scene: &'a Scene,
+    scene: &'a AnyScene,
     methods: &'a [Method],
     saves: &'a mut Saves,
     interrupt: &'a Interrupt,
@@ -155,23 +145,21 @@ impl Compare<'_> {
     /// The runs of all methods, as far as they come.
     fn records<const N: usize, const M: usize>(
         &mut self,
-        system: &dyn SceneSystem<N, M>,
+        system: &Built<'_, N, M>,
         request: &Request<N>,
     ) -> Result<Vec<Record<N>>, CliError> {
+        let name = self.scene.name();
         let mut records = Vec::new();
         for method in self.methods {
             if self.interrupt.asked() {
                 break;
             }
-            let mut progress =
-                progress_of(&self.scene.name, method.info().name, request.schedule.steps, self.interrupt);
-            records.push(self.saves.run(
-                (&self.scene.name, self.scene),
-                (&system).into(),
-                method,
-                request,
-                &mut progress,
-            )?);
+            let mut progress = progress_of(name, method.info().name, request.schedule.steps, self.interrupt);
+            let scene: (&str, &dyn std::fmt::Debug) = match self.scene {
+                AnyScene::Sleigh(scene) => (name, scene),
+                AnyScene::Text(scene) => (name, &(&scene.words, &scene.start, &scene.run)),
+            };
+            records.push(self.saves.run(scene, system.into(), method, request, &mut progress)?);
             progress.bar.finish_and_clear();
         }
         Ok(records)
@@ -192,33 +180,34 @@ impl Visitor for Compare<'_> {
 
     fn visit<const N: usize, const M: usize>(
         mut self,
-        system: &dyn SceneSystem<N, M>,
+        system: Built<'_, N, M>,
         q: [f64; N],
         v: [f64; N],
     ) -> Self::Output {
-        let request = Request { schedule: inspect::schedule(self.scene), q, v, samples: 1000 };
-        let records = self.records(system, &request)?;
-        let exact = self.scene.exact().ok().flatten();
+        let name = self.scene.name();
+        let request = Request { schedule: self.scene.schedule(), q, v, samples: 1000 };
+        let records = self.records(&system, &request)?;
+        let exact = exact(self.scene);
         let start = State::new(q, v, system.angles());
-        let mut progress = progress_of(&self.scene.name, "reference", 4 * request.schedule.steps, self.interrupt);
-        let reference = Reference::of(system, exact.as_ref(), &request.schedule, start, &mut progress);
+        let mut progress = progress_of(name, "reference", 4 * request.schedule.steps, self.interrupt);
+        let reference = Reference::of(&system, exact.as_ref(), &request.schedule, start, &mut progress);
         progress.bar.finish_and_clear();
         let drifts: Vec<(&str, Drift)> =
             records.iter().filter(|r| r.is_whole()).map(|r| (r.method.name, r.energy.drift)).collect();
         let (mut rows, mut series) = (Vec::new(), Vec::new());
         for record in &records {
-            let end = system.sleigh_state(&record.q, &record.v);
             let whole = Some(record).filter(|record| record.is_whole());
-            let error = whole.and_then(|record| reference.at(record.t)).map(|reference| distance(&end, &reference));
+            let there = whole.and_then(|record| reference.at(record.t));
+            let error = there.map(|end| system.distance(&record.q, &end));
             let better = whole.map_or_else(Vec::new, |record| better_than(&record.energy.drift, &drifts));
             rows.push(Row {
                 cells: table::cells(record, error),
-                json: json::compared(&self.scene.name, record, &end, error, &better),
+                json: json::compared_of(name, record, &account::state(&system, record), error, &better),
                 better: table::better(record, &better),
                 failure: table::failure(record),
                 refused: record.refusal().is_some(),
             });
-            series.push(series_of(system, record));
+            series.push(series_of(&system, record));
         }
         // The longest run: one that failed ends before the others.
         let times = series.iter().map(|series| &series.time).max_by_key(|time| time.len()).cloned().unwrap_or_default();
@@ -226,18 +215,32 @@ impl Visitor for Compare<'_> {
         let interrupted = self.interrupted(&records);
         let objects: Vec<_> = rows.iter().map(|row| &row.json).collect();
         let report = SceneReport {
-            name: self.scene.name.clone(),
-            title: self.scene.title.clone(),
-            facts: facts::of(self.scene, system, &start),
+            name: name.to_owned(),
+            title: self.scene.title().to_owned(),
+            facts: facts::of(self.scene)?,
             columns: table::COLUMNS.iter().map(|column| (*column).to_owned()).collect(),
             rows: rows.iter().map(|row| row.cells.clone()).collect(),
             series,
             exact_path,
             figure: None,
-            numbers: compare_numbers::files(&self.scene.name, &objects, interrupted.is_some()),
+            numbers: compare_numbers::files(name, &objects, interrupted.is_some()),
         };
         Ok(Comparison { rows, report, interrupted })
     }
+}
+
+/// The motion of a scene in closed form, where it has one.
+pub(crate) fn exact(scene: &AnyScene) -> Option<Exact> {
+    match scene {
+        AnyScene::Sleigh(scene) => scene.exact().ok().flatten(),
+        AnyScene::Text(_) => None,
+    }
+}
+
+/// The configuration of a sleigh in closed form: a rotor is not told of.
+pub(crate) fn place_at<const N: usize>(exact: &Exact, t: f64) -> [f64; N] {
+    let (place, _) = exact.at(t).to_coordinates();
+    std::array::from_fn(|i| place.get(i).copied().unwrap_or(0.0))
 }
 
 /// The methods whose energy error starts smaller and becomes larger, each with the length of run (s) from which it is so.
@@ -249,15 +252,15 @@ pub(crate) fn better_than<'a>(drift: &Drift, others: &[(&'a str, Drift)]) -> Vec
 pub(crate) const REFERRED: u64 = 1 << 22;
 
 /// Where the motion truly ends: in closed form, or by the method of the highest order with a quarter of the step.
-enum Reference<'a> {
+enum Reference<'a, const N: usize> {
     Exact(&'a Exact),
-    Computed { t: f64, end: SleighState },
+    Computed { t: f64, end: [f64; N] },
     None,
 }
 
-impl<'a> Reference<'a> {
-    fn of<const N: usize, const M: usize>(
-        system: &dyn SceneSystem<N, M>,
+impl<'a, const N: usize> Reference<'a, N> {
+    fn of<const M: usize>(
+        system: &Built<'_, N, M>,
         exact: Option<&'a Exact>,
         schedule: &Schedule,
         mut state: State<N>,
@@ -271,37 +274,38 @@ impl<'a> Reference<'a> {
         }
         let Ok(method) = Method::named("gauss16", None) else { return Self::None };
         let fine = Schedule { step: 0.25 * schedule.step, steps: 4 * schedule.steps, ..*schedule };
-        match harness::integrate_on(&system, &method, &fine, &mut state, &mut (), progress) {
-            Ok(made) => Self::Computed { t: fine.time(made), end: system.sleigh_state(&state.unwrapped(), state.v()) },
+        match harness::integrate_on(system, &method, &fine, &mut state, &mut (), progress) {
+            Ok(made) => Self::Computed { t: fine.time(made), end: state.unwrapped() },
             Err(_) => Self::None,
         }
     }
 
-    /// The state at the time `t`, the end of a run.
-    fn at(&self, time: f64) -> Option<SleighState> {
+    /// The configuration at the time `t`, the end of a run.
+    fn at(&self, time: f64) -> Option<[f64; N]> {
         match self {
-            Self::Exact(exact) => Some(exact.at(time)),
+            Self::Exact(exact) => Some(place_at(exact, time)),
             Self::Computed { t, end } if (t - time).abs() <= 1e-9 * t.abs() => Some(*end),
             Self::Computed { .. } | Self::None => None,
         }
     }
 }
 
-/// The larger of the distances in position [m] and in heading [rad].
-pub(crate) fn distance(a: &SleighState, b: &SleighState) -> f64 {
-    let (place, turn) = (f64::hypot(a.x - b.x, a.y - b.y), (a.heading - b.heading).abs());
-    if place > turn || place.is_nan() { place } else { turn }
-}
-
-fn series_of<const N: usize, const M: usize>(system: &dyn SceneSystem<N, M>, record: &Record<N>) -> Series {
+/// What the pictures show: the path, where there are coordinates `x` and `y`, with the heading, where an angle has a name of one, and a rotor.
+fn series_of<const N: usize, const M: usize>(system: &Built<'_, N, M>, record: &Record<N>) -> Series {
     // A run without a step has nothing to draw.
     let samples = if record.steps == 0 { &[][..] } else { &record.samples[..] };
-    let states: Vec<SleighState> = samples.iter().map(|sample| system.sleigh_state(&sample.q, &[0.0; N])).collect();
+    let column = |k: Option<usize>| -> Vec<f64> {
+        let of = |k: usize| samples.iter().map(move |sample| system.value(k, sample.t, &sample.q, &[0.0; N]));
+        k.map_or_else(Vec::new, |k| of(k).collect())
+    };
+    let path = system.named("x").zip(system.named("y"));
+    let heading = path.and_then(|_| ["heading", "theta", "phi", "psi"].into_iter().find_map(|name| system.named(name)));
+    let [x, y] = [path.map(|(x, _)| x), path.map(|(_, y)| y)].map(column);
     Series {
         label: record.method.name.to_owned(),
-        path: states.iter().map(|state| [state.x, state.y]).collect(),
-        heading: states.iter().map(|state| state.heading).collect(),
-        rotor: samples.iter().filter_map(|sample| system.rotor(&sample.q, &[0.0; N])).map(|[angle, _]| angle).collect(),
+        path: x.into_iter().zip(y).map(|(x, y)| [x, y]).collect(),
+        heading: column(heading),
+        rotor: column(system.named("rotor_angle")),
         time: samples.iter().map(|sample| sample.t).collect(),
         constraint: samples.iter().map(|sample| sample.constraint).collect(),
         energy_error: samples.iter().map(|sample| sample.energy_error).collect(),

@@ -1,59 +1,56 @@
-use sleigh::SleighState;
+use scene::{Built, Quantity};
 use std::f64::consts::{PI, TAU};
 use std::str::FromStr;
 
-/// A quantity of the sleigh by its name, for planes and axes.
-#[derive(Debug, Clone, Copy)]
+/// A quantity of a system, found by its name: for planes, axes and events.
+#[derive(Debug, Clone)]
 pub(crate) struct Coordinate {
-    pub(crate) name: &'static str,
-    unit: &'static str,
-    value: fn(&Place) -> f64,
-    /// Where a start is given by it: how.
-    set: Option<fn(&mut SleighState, f64)>,
+    /// Its place in the list of the system's quantities.
+    k: usize,
+    pub(crate) quantity: Quantity,
 }
 
-/// Where the sleigh is, and its centre of mass.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Place {
-    pub(crate) state: SleighState,
-    pub(crate) centre: [f64; 2],
-}
+impl Coordinate {
+    /// The quantity that a system has by that name.
+    ///
+    /// # Errors
+    /// What is wrong, with the names that there are.
+    pub(crate) fn of<const N: usize, const M: usize>(system: &Built<'_, N, M>, name: &str) -> Result<Self, String> {
+        let mut quantities = system.quantities();
+        match system.named(name.trim()) {
+            Some(k) => Ok(Self { k, quantity: quantities.swap_remove(k) }),
+            None => Err(format!("no quantity `{}`; accepted are {}", name.trim(), names(quantities))),
+        }
+    }
 
-impl Place {
-    /// The centre of mass, as the body sees it: its place along the blade and across it, from the origin.
-    fn turned(&self) -> [f64; 2] {
-        let (sin, cos) = self.state.heading.sin_cos();
-        let [x, y] = self.centre;
-        [x * cos + y * sin, y * cos - x * sin]
+    /// Its value at a state, as it is: an angle with its turns.
+    pub(crate) fn value<const N: usize, const M: usize>(
+        &self,
+        system: &Built<'_, N, M>,
+        t: f64,
+        q: &[f64; N],
+        v: &[f64; N],
+    ) -> f64 {
+        system.value(self.k, t, q, v)
+    }
+
+    /// The same, an angle within half a turn of zero.
+    pub(crate) fn shown<const N: usize, const M: usize>(
+        &self,
+        system: &Built<'_, N, M>,
+        t: f64,
+        q: &[f64; N],
+        v: &[f64; N],
+    ) -> f64 {
+        let value = self.value(system, t, q, v);
+        if self.quantity.angle { within_a_turn(value) } else { value }
     }
 }
 
-pub(crate) const COORDINATES: [Coordinate; 9] = [
-    Coordinate { name: "x", unit: "m", value: |at| at.state.x, set: Some(|state, value| state.x = value) },
-    Coordinate { name: "y", unit: "m", value: |at| at.state.y, set: Some(|state, value| state.y = value) },
-    Coordinate {
-        name: "heading",
-        unit: "rad",
-        value: |at| within_a_turn(at.state.heading),
-        set: Some(|state, value| state.heading = value),
-    },
-    Coordinate {
-        name: "speed",
-        unit: "m/s",
-        value: |at| at.state.speed,
-        set: Some(|state, value| state.speed = value),
-    },
-    Coordinate {
-        name: "turn_rate",
-        unit: "rad/s",
-        value: |at| at.state.turn_rate,
-        set: Some(|state, value| state.turn_rate = value),
-    },
-    Coordinate { name: "center_x", unit: "m", value: |at| at.centre[0], set: None },
-    Coordinate { name: "center_y", unit: "m", value: |at| at.centre[1], set: None },
-    Coordinate { name: "along", unit: "m", value: |at| at.turned()[0], set: None },
-    Coordinate { name: "across", unit: "m", value: |at| at.turned()[1], set: None },
-];
+/// The names of quantities, for a message.
+pub(crate) fn names(quantities: Vec<Quantity>) -> String {
+    quantities.into_iter().map(|quantity| quantity.name).collect::<Vec<_>>().join(", ")
+}
 
 /// The angle within half a turn of zero.
 fn within_a_turn(angle: f64) -> f64 {
@@ -61,38 +58,18 @@ fn within_a_turn(angle: f64) -> f64 {
     if within <= -PI { within + TAU } else { within }
 }
 
-impl Coordinate {
-    pub(crate) fn at(&self, place: &Place) -> f64 {
-        (self.value)(place)
-    }
-
-    pub(crate) fn is_angle(&self) -> bool {
-        self.name == "heading"
-    }
-
-    /// Its name and unit, for an axis.
-    pub(crate) fn label(&self) -> String {
-        format!("{} [{}]", self.name, self.unit)
-    }
+/// A name and a number, as in `speed=0`.
+pub(crate) fn name_and_value(text: &str, accepted: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or(accepted)?;
+    let number = value.trim().parse().ok().filter(|value: &f64| value.is_finite());
+    let value = number.ok_or_else(|| format!("`{}` is not a number; {accepted}", value.trim()))?;
+    Ok((name.trim().to_owned(), value))
 }
 
-impl FromStr for Coordinate {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let found = COORDINATES.iter().find(|known| known.name == text.trim());
-        found.copied().ok_or_else(|| {
-            let names: Vec<&str> = COORDINATES.iter().map(|known| known.name).collect();
-            format!("no quantity `{}`; accepted are {}", text.trim(), names.join(", "))
-        })
-    }
-}
-
-/// A range of starts: a quantity, from where to where, in how many cells.
-#[derive(Debug, Clone, Copy)]
+/// A range of starts: a quantity by its name, from where to where, in how many cells.
+#[derive(Debug, Clone)]
 pub(crate) struct Range {
-    pub(crate) coordinate: Coordinate,
-    set: fn(&mut SleighState, f64),
+    pub(crate) name: String,
     pub(crate) ends: [f64; 2],
     pub(crate) cells: usize,
 }
@@ -104,10 +81,22 @@ impl Range {
         from + (to - from) * (cell as f64 + 0.5) / self.cells as f64
     }
 
-    pub(crate) fn apply(&self, state: &mut SleighState, cell: usize) {
-        (self.set)(state, self.value(cell));
+    /// The quantity by which starts of a system are given.
+    ///
+    /// # Errors
+    /// What is wrong, with the names that are accepted.
+    pub(crate) fn on<const N: usize, const M: usize>(&self, system: &Built<'_, N, M>) -> Result<usize, String> {
+        let starts = system.quantities().into_iter().enumerate().filter(|(k, _)| system.gives_start(*k));
+        let accepted = || format!("{RANGE}, of {}", names(starts.map(|(_, quantity)| quantity).collect()));
+        match system.named(&self.name) {
+            Some(k) if system.gives_start(k) => Ok(k),
+            Some(_) => Err(format!("no start is given by `{}`; {}", self.name, accepted())),
+            None => Err(format!("no start has `{}`; {}", self.name, accepted())),
+        }
     }
 }
+
+const RANGE: &str = "accepted is NAME=FROM:TO:CELLS as in speed=-1:1:40";
 
 /// The most cells along an axis.
 const MOST: usize = 2000;
@@ -116,17 +105,14 @@ impl FromStr for Range {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let accepted = "accepted is NAME=FROM:TO:CELLS as in speed=-1:1:40, of x, y, heading, speed, turn_rate";
-        let (name, range) = text.split_once('=').ok_or(accepted)?;
-        let coordinate: Coordinate = name.parse().map_err(|_| format!("no start has `{}`; {accepted}", name.trim()))?;
-        let set = coordinate.set.ok_or_else(|| format!("no start is given by `{}`; {accepted}", name.trim()))?;
+        let (name, range) = text.split_once('=').ok_or(RANGE)?;
         let parts: Vec<&str> = range.split(':').map(str::trim).collect();
-        let [from, to, cells] = parts[..] else { return Err(accepted.to_owned()) };
+        let [from, to, cells] = parts[..] else { return Err(RANGE.to_owned()) };
         let number = |text: &str| text.parse().ok().filter(|x: &f64| x.is_finite());
         let ends = number(from).zip(number(to)).filter(|(from, to)| from < to);
-        let (from, to) = ends.ok_or_else(|| format!("`{range}` is no range; {accepted}"))?;
+        let (from, to) = ends.ok_or_else(|| format!("`{range}` is no range; {RANGE}"))?;
         let cells = cells.parse().ok().filter(|cells| (1..=MOST).contains(cells));
-        let cells = cells.ok_or_else(|| format!("from 1 to {MOST} cells; {accepted}"))?;
-        Ok(Self { coordinate, set, ends: [from, to], cells })
+        let cells = cells.ok_or_else(|| format!("from 1 to {MOST} cells; {RANGE}"))?;
+        Ok(Self { name: name.trim().to_owned(), ends: [from, to], cells })
     }
 }

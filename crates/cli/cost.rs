@@ -3,7 +3,7 @@ use crate::error::CliError;
 use crate::{inspect, table, terminal};
 use dla::{RunError, Schedule};
 use harness::{step_evaluations, step_time};
-use scene::{Scene, SceneEffect, SceneSystem, Visitor};
+use scene::{Built, Scene, SceneEffect, Visitor};
 use serde_json::json;
 
 /// The steps over which a cost is a mean.
@@ -83,13 +83,8 @@ struct Time(Schedule);
 impl Visitor for Time {
     type Output = Result<f64, RunError>;
 
-    fn visit<const N: usize, const M: usize>(
-        self,
-        system: &dyn SceneSystem<N, M>,
-        q: [f64; N],
-        v: [f64; N],
-    ) -> Self::Output {
-        step_time(system, &self.0, q, v)
+    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
+        step_time(&*system, &self.0, q, v)
     }
 }
 
@@ -98,12 +93,7 @@ struct Evaluations(Schedule);
 impl Visitor for Evaluations {
     type Output = Result<f64, RunError>;
 
-    fn visit<const N: usize, const M: usize>(
-        self,
-        system: &dyn SceneSystem<N, M>,
-        q: [f64; N],
-        v: [f64; N],
-    ) -> Self::Output {
-        step_evaluations(system, &self.0, q, v)
+    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
+        step_evaluations(&*system, &self.0, q, v)
     }
 }

@@ -1,19 +1,15 @@
 use crate::args::EquilibriaArguments;
 use crate::error::CliError;
 use crate::files::{check_file, write_whole};
-use crate::steady::{self, Stability};
-use crate::{inspect, table, terminal, text};
+use crate::steady::{self, Motion, Stability};
+use crate::{inspect, notes, terminal};
 use dla::{Schedule, State, Trajectory};
-use harness::analysis::{DiscreteMap, EquilibriumError, differentiable, relative_equilibria};
+use harness::analysis::{DiscreteMap, Equilibrium, EquilibriumError, differentiable, relative_equilibria};
 use harness::report::{Chart, Layer, chart_svg};
 use harness::{Method, integrate_pieces};
-use scene::{AnyScene, Scene, SceneSystem, Visitor};
-use serde_json::{Value, json};
-use sleigh::SleighState;
-use std::fmt::Write;
+use scene::{AnyScene, Built, SceneSystem, Visitor};
+use sleigh::Sleigh;
 
-/// The names of the coordinates.
-const COORDINATES: [&str; 4] = ["x", "y", "heading", "rotor"];
 /// The speeds at which orbits of the phase portrait begin, relative to that of the scene's energy, and their turn rates,
 /// relative to its turn rate.
 const PORTRAIT: ([f64; 3], f64) = ([0.4, 0.7, 1.0], 0.03);
@@ -26,39 +22,46 @@ struct Found {
 
 /// A relative equilibrium in the words of a scene.
 struct Row {
-    state: SleighState,
-    rotor_rate: Option<f64>,
-    depends_on: Vec<&'static str>,
+    motion: Motion,
+    /// Speed and turn rate, of a sleigh.
+    rates: Option<[f64; 2]>,
     stability: Stability,
 }
 
 /// `noslip equilibria`: the steady motions of a scene, and how stable they are, of the flow and of a method.
 pub(crate) fn equilibria(arguments: &EquilibriaArguments) -> Result<(), CliError> {
-    let scene = match inspect::load_any(&arguments.scene, arguments.method.as_deref())? {
-        AnyScene::Sleigh(scene) => *scene,
-        AnyScene::Text(scene) => return text::equilibria::equilibria(arguments, &scene),
-    };
-    let method = Method::named(&scene.run.method, scene.run.alpha)?;
+    let scene = inspect::load_any(&arguments.scene, arguments.method.as_deref())?;
+    let run = scene.run();
+    let method = Method::named(&run.method, run.alpha)?;
     if differentiable::<3, 1>(&method).is_none() {
         return Err(CliError::NotDifferentiated { method: method.info().name });
     }
     if let Some(path) = &arguments.picture {
+        if matches!(scene, AnyScene::Text(_)) {
+            let problem = "--picture draws speed against turn rate of a sleigh, which a system of text does not have";
+            return Err(CliError::Request(problem.to_owned()));
+        }
         check_file(path, arguments.scene.force)?;
     }
+    notes::moves(&scene);
     let found = scene.visit(Find { scene: &scene, method: &method, portrait: arguments.picture.is_some() })??;
     if let Some(path) = &arguments.picture {
         let picture = chart_svg(&portrait(&scene, &found)).map_err(CliError::Report)?;
         write_whole(path, arguments.scene.force, |file| std::io::Write::write_all(file, picture.as_bytes()))?;
     }
+    let (step, rows) = (run.actual_step(), found.rows);
     if arguments.scene.json {
-        terminal::print_json(&object(&scene, &method, &found.rows))
+        let motions = rows.into_iter().map(|row| row.stability.object(row.motion.fields));
+        terminal::print_json(&steady::object(scene.name(), &method, step, motions))
     } else {
-        terminal::print(&told(&scene, &method, &found.rows))
+        let heading = steady::heading((scene.title(), scene.name()), &method, step);
+        let motions = rows.into_iter().map(|row| row.stability.lines(row.motion.lines));
+        terminal::print(&std::iter::once(heading).chain(motions).collect::<String>())
     }
 }
 
 struct Find<'a> {
-    scene: &'a Scene,
+    scene: &'a AnyScene,
     method: &'a Method,
     portrait: bool,
 }
@@ -66,78 +69,111 @@ struct Find<'a> {
 impl Visitor for Find<'_> {
     type Output = Result<Found, CliError>;
 
-    fn visit<const N: usize, const M: usize>(
-        self,
-        system: &dyn SceneSystem<N, M>,
-        q: [f64; N],
-        v: [f64; N],
-    ) -> Self::Output {
+    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
         let Self { scene, method, portrait } = self;
-        if !system.jump_times(0.0, scene.run.duration).is_empty() {
+        if !system.jump_times(0.0, scene.run().duration).is_empty() {
             return Err(EquilibriumError::TimeDependent.into());
         }
-        let found = relative_equilibria(system, &q, &v)?;
         let Some(steps) = differentiable::<N, M>(method) else {
             return Err(CliError::NotDifferentiated { method: method.info().name });
         };
-        let h = scene.run.actual_step();
+        let (n, m) = system.own();
+        if n == m {
+            return Err(EquilibriumError::NothingFree.into());
+        }
+        let found = relative_equilibria(&*system, &q, &v)?;
+        let h = scene.run().actual_step();
         let mut step = |step: f64, start: &State<N>| {
             let (mut end, schedule) = (*start, Schedule { t0: 0.0, step, steps: 1 });
             integrate_pieces(&system, method, &schedule, &mut end, &mut ()).ok().map(|_| end)
         };
-        let mut map = DiscreteMap::new(system, &*steps, &mut step);
-        let row = |e: &harness::analysis::Equilibrium<N>| Row {
-            state: system.sleigh_state(&e.q, &e.v),
-            rotor_rate: system.rotor(&e.q, &e.v).map(|[_, rate]| rate),
-            depends_on: e.shape.iter().filter_map(|i| COORDINATES.get(*i).copied()).collect(),
+        let mut map = DiscreteMap::new(&*system, &*steps, &mut step);
+        // Coordinates that fill up the shape, and that no constraint holds, go on at any rate: eigenvalues of theirs are no news.
+        let filling = (N - M) - (n - m);
+        let mut row = |e: &Equilibrium<N>| Row {
+            motion: steady::motion(&system, e),
+            rates: system.sleigh().map(|sleigh| sleigh.sleigh_state(&e.q, &e.v)).map(|at| [at.speed, at.turn_rate]),
             stability: Stability {
-                family: e.family,
+                family: e.family.saturating_sub(filling),
                 stable: e.stable,
-                map: map.spectrum(h, e),
+                map: map.spectrum(h, e).map(|values| without(values, [1.0, 0.0], filling)),
                 limit: e.stable.then(|| map.limit(h, e)),
-                flow: e.flow.clone(),
+                flow: without(e.flow.clone(), [0.0, 0.0], filling),
             },
         };
-        let rows = found.iter().map(row).collect();
-        let orbits = if portrait { orbits(system, scene, method, &q, &v) } else { Vec::new() };
+        let rows = different(&found, if filling == 0 { N } else { n }).into_iter().map(&mut row).collect();
+        let orbits = match (scene, system.sleigh()) {
+            (AnyScene::Sleigh(scene), Some(blade)) if portrait => {
+                let start = blade.sleigh_state(&q, &v);
+                orbits((&system, blade), &scene.sleigh, [start.speed, start.turn_rate], method, &scene.schedule(), q)
+            }
+            _ => Vec::new(),
+        };
         Ok(Found { rows, orbits })
     }
 }
 
-/// Orbits from both sides of slow turns, at some speeds forward and back.
+/// Those that differ in more than what fills up the shape, which has `n` coordinates of its own.
+fn different<const N: usize>(found: &[Equilibrium<N>], n: usize) -> Vec<&Equilibrium<N>> {
+    if n == N {
+        return found.iter().collect();
+    }
+    let own = |e: &Equilibrium<N>| e.v[..n].iter().chain(&e.q[..n]).copied().collect::<Vec<_>>();
+    let same =
+        |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-8 * (1.0 + a.abs().max(b.abs())));
+    let mut kept: Vec<&Equilibrium<N>> = Vec::new();
+    for e in found {
+        if !kept.iter().any(|other| same(&own(other), &own(e))) {
+            kept.push(e);
+        }
+    }
+    kept
+}
+
+/// The eigenvalues without so many that are nearest to a known one.
+fn without(mut values: Vec<[f64; 2]>, known: [f64; 2], count: usize) -> Vec<[f64; 2]> {
+    for _ in 0..count.min(values.len()) {
+        let far = |[re, im]: &[f64; 2]| f64::hypot(re - known[0], im - known[1]);
+        let nearest = values.iter().enumerate().min_by(|(_, a), (_, b)| far(a).total_cmp(&far(b)));
+        if let Some((k, _)) = nearest {
+            values.remove(k);
+        }
+    }
+    values
+}
+
+/// Orbits from both sides of slow turns, at some speeds forward and back, of the energy of that speed and turn rate.
 fn orbits<const N: usize, const M: usize>(
-    system: &dyn SceneSystem<N, M>,
-    scene: &Scene,
+    (system, blade): (&Built<'_, N, M>, &dyn SceneSystem<N, M>),
+    sleigh: &Sleigh,
+    [speed, turn_rate]: [f64; 2],
     method: &Method,
-    q: &[f64; N],
-    v: &[f64; N],
+    schedule: &Schedule,
+    q: [f64; N],
 ) -> Vec<Vec<[f64; 2]>> {
-    let start = system.sleigh_state(q, v);
-    let sleigh = &scene.sleigh;
-    let energy = sleigh.mass() * start.speed * start.speed + sleigh.pivot_inertia() * start.turn_rate * start.turn_rate;
+    let energy = sleigh.mass() * speed * speed + sleigh.pivot_inertia() * turn_rate * turn_rate;
     let speed = (energy / sleigh.mass()).sqrt();
-    let schedule = inspect::schedule(scene);
     let (levels, turn) = PORTRAIT;
     let mut orbits = Vec::new();
     for level in levels.into_iter().flat_map(|level| [level, -level]) {
         for turn in [turn, -turn] {
             let xi =
                 std::array::from_fn(|k| [level * speed, level.abs() * turn * speed].get(k).copied().unwrap_or(0.0));
-            let Ok(v) = system.velocity_of(0.0, q, &xi) else { continue };
+            let Ok(v) = system.velocity_of(0.0, &q, &xi) else { continue };
             let mut nodes = Trajectory::<N, M>::every(1);
             // An orbit that fails is shown as far as it goes.
-            let _ = integrate_pieces(&system, method, &schedule, &mut State::new(*q, v, system.angles()), &mut nodes);
-            let seen = nodes.nodes().iter().map(|node| system.sleigh_state(&node.q, &node.v));
+            let _ = integrate_pieces(system, method, schedule, &mut State::new(q, v, system.angles()), &mut nodes);
+            let seen = nodes.nodes().iter().map(|node| blade.sleigh_state(&node.q, &node.v));
             orbits.push(seen.map(|state| [state.speed, state.turn_rate]).collect());
         }
     }
     orbits
 }
 
-fn portrait(scene: &Scene, found: &Found) -> Chart {
+fn portrait(scene: &AnyScene, found: &Found) -> Chart {
     let steady = |stable: bool| {
         let rows = found.rows.iter().filter(|row| row.stability.stable == stable);
-        rows.map(|row| vec![[row.state.speed, row.state.turn_rate]]).collect()
+        rows.filter_map(|row| Some(vec![row.rates?])).collect()
     };
     let starts = found.orbits.iter().filter_map(|orbit| orbit.first().map(|start| vec![*start])).collect();
     let kinds = [
@@ -148,43 +184,9 @@ fn portrait(scene: &Scene, found: &Found) -> Chart {
     ];
     let kinds = kinds.into_iter().filter(|(_, curves)| !curves.is_empty());
     Chart {
-        title: format!("{}: phase portrait", scene.title),
+        title: format!("{}: phase portrait", scene.title()),
         axes: ["speed [m/s]".to_owned(), "turn rate [rad/s]".to_owned()],
         decades: [false; 2],
         layers: kinds.map(|(label, curves)| Layer::Curves { label: label.to_owned(), curves }).collect(),
     }
-}
-
-fn object(scene: &Scene, method: &Method, rows: &[Row]) -> Value {
-    let motion = |row: &Row| {
-        let SleighState { x, y, heading, speed, turn_rate } = row.state;
-        let fields = [
-            ("speed", json!(speed)),
-            ("turn_rate", json!(turn_rate)),
-            ("rotor_rate", json!(row.rotor_rate)),
-            ("x", json!(x)),
-            ("y", json!(y)),
-            ("heading", json!(heading)),
-            ("depends_on", json!(row.depends_on)),
-        ];
-        row.stability.object(fields.into_iter().map(|(key, value)| (key.to_owned(), value)).collect())
-    };
-    steady::object(&scene.name, method, scene.run.actual_step(), rows.iter().map(motion))
-}
-
-fn told(scene: &Scene, method: &Method, rows: &[Row]) -> String {
-    let motion = |row: &Row| {
-        let mut what = format!("{} m/s, {} rad/s", table::number(row.state.speed), table::number(row.state.turn_rate));
-        if let Some(rate) = row.rotor_rate {
-            let _ = write!(what, ", rotor {} rad/s", table::number(rate));
-        }
-        if !row.depends_on.is_empty() {
-            let SleighState { x, y, heading, .. } = row.state;
-            let [x, y, heading] = [x, y, heading].map(table::number);
-            let _ = write!(what, ", at x = {x} m, y = {y} m, heading {heading} rad");
-        }
-        row.stability.lines(vec![("motion", what)])
-    };
-    let heading = steady::heading((&scene.title, &scene.name), method, scene.run.actual_step());
-    std::iter::once(heading).chain(rows.iter().map(motion)).collect()
 }

@@ -17,6 +17,8 @@ pub(crate) enum CliError {
     #[error("the scene: {0}")]
     Sleigh(#[from] sleigh::SleighError),
     #[error("the scene: {0}")]
+    Build(#[from] scene::BuildError),
+    #[error("the scene: {0}")]
     Train(#[from] scene::TrainError),
     #[error("unknown case `{name}`{}; the cases are {names}", nearest.as_ref().map_or_else(String::new, |n| format!(", did you mean `{n}`?")))]
     Case { name: String, nearest: Option<String>, names: String },
@@ -84,6 +86,7 @@ impl CliError {
             Self::Scene(_)
             | Self::Sweep(_)
             | Self::Sleigh(_)
+            | Self::Build(_)
             | Self::Method(_)
             | Self::Exists { .. }
             | Self::Ending { .. } => 2,

@@ -1,11 +1,10 @@
 use crate::args::{ListArguments, Listed, NewArguments, SceneArguments, Settings};
 use crate::error::CliError;
-use crate::facts::{self, Facts};
 use crate::files::write_whole;
-use crate::{effect_keys, table, terminal, text};
+use crate::{effect_keys, table, terminal};
 use dla::Schedule;
 use harness::METHODS;
-use scene::{AnyScene, Overrides, RunSettings, Scene};
+use scene::{AnyScene, Overrides, Scene};
 use serde_json::json;
 use std::io::Write;
 
@@ -53,25 +52,6 @@ pub(crate) fn load_with(
 /// The steps of a scene's run.
 pub(crate) fn schedule(scene: &Scene) -> Schedule {
     scene.schedule()
-}
-
-/// The steps of a run without jumps.
-pub(crate) fn steps_of(run: &RunSettings) -> Schedule {
-    Schedule { t0: 0.0, step: run.actual_step(), steps: run.steps() }
-}
-
-/// What a scene is, for a person.
-pub(crate) fn described(scene: &AnyScene) -> Result<Vec<(String, String)>, CliError> {
-    let scene = match scene {
-        AnyScene::Sleigh(scene) => &**scene,
-        AnyScene::Text(scene) => return Ok(text::facts::described(scene)),
-    };
-    let mut facts = match scene.train()? {
-        Some((train, start)) => facts::listed(scene, &scene.start, train.assembly.energy(0.0, &start), ""),
-        None => scene.visit(Facts(scene))?,
-    };
-    facts.push(("method".to_owned(), scene.run.method.clone()));
-    Ok(facts)
 }
 
 /// `noslip list`: what there is.

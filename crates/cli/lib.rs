@@ -1,6 +1,7 @@
 //! The command line of noslip, as a library: [`main`] is the program, [`call`] a command whose output its caller keeps, and [`run`] a
 //! run whose nodes its caller keeps.
 
+mod account;
 mod args;
 mod called;
 mod chart_file;
@@ -28,6 +29,7 @@ mod job;
 mod json;
 mod lock;
 mod lyapunov;
+mod notes;
 mod npz;
 mod output;
 #[cfg(feature = "parquet")]
@@ -53,7 +55,6 @@ mod steady;
 mod substeps;
 mod table;
 mod terminal;
-mod text;
 mod totals;
 mod train;
 mod train_run;

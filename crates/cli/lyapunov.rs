@@ -5,12 +5,12 @@ use crate::error::CliError;
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
 use crate::starts::{Start, with_energy};
-use crate::{inspect, progress, stability_map, table, terminal};
+use crate::{inspect, notes, progress, stability_map, table, terminal};
 use dla::Schedule;
 use harness::Method;
 use harness::analysis::{Lyapunov, LyapunovError, LyapunovRequest, MotionVerdict, has_tangents, kaplan_yorke};
 use harness::report::{Chart, Layer};
-use scene::{MAX_STEPS, Scene, SceneSystem, Visitor};
+use scene::{AnyScene, Built, MAX_STEPS, Visitor};
 use serde_json::{Value, json};
 
 /// What is measured where nobody says (s): of one motion, and of each of a map.
@@ -22,13 +22,14 @@ pub(crate) fn lyapunov(arguments: &LyapunovArguments) -> Result<(), CliError> {
     let usual = if arguments.map.is_empty() { DURATION } else { MAP_DURATION };
     let shared = &arguments.scene;
     let duration = shared.duration.or(Some(usual));
-    let scene =
-        inspect::load_with((&shared.scene, &shared.set), Some(&arguments.method), shared.step, duration, shared.alpha)?;
-    let method = Method::named(&scene.run.method, scene.run.alpha)?;
+    let from = (shared.scene.as_str(), &shared.set);
+    let scene = inspect::load_any_with(from, Some(&arguments.method), shared.step, duration, shared.alpha)?;
+    let method = Method::named(&scene.run().method, scene.run().alpha)?;
     has_tangents(&method).map_err(|reason| CliError::Request(format!("--method {}: {reason}", arguments.method)))?;
     check_settle(arguments, &scene)?;
     let file = arguments.out.as_deref().map(|path| ChartFile::of(path, shared.force)).transpose()?;
-    let outcome = match arguments.map[..] {
+    notes::moves(&scene);
+    let outcome = match &arguments.map[..] {
         [] => scene.visit_free(Exponents { arguments, scene: &scene, method, file })?,
         [across, up] => {
             let axes = [across, up];
@@ -50,15 +51,15 @@ pub(crate) fn imposed() -> CliError {
 }
 
 /// The steps that are counted, and those before them.
-pub(crate) fn schedule(arguments: &LyapunovArguments, scene: &Scene) -> (Schedule, u64) {
-    let schedule = inspect::schedule(scene);
-    let settle = arguments.settle.unwrap_or(0.1 * scene.run.duration) / schedule.step;
+pub(crate) fn schedule(arguments: &LyapunovArguments, scene: &AnyScene) -> (Schedule, u64) {
+    let schedule = scene.schedule();
+    let settle = arguments.settle.unwrap_or(0.1 * scene.run().duration) / schedule.step;
     (schedule, settle.ceil() as u64)
 }
 
 /// Refuses a time before the run that has more steps than any run may have.
-fn check_settle(arguments: &LyapunovArguments, scene: &Scene) -> Result<(), CliError> {
-    let (settle, step) = (arguments.settle.unwrap_or(0.0), scene.run.actual_step());
+fn check_settle(arguments: &LyapunovArguments, scene: &AnyScene) -> Result<(), CliError> {
+    let (settle, step) = (arguments.settle.unwrap_or(0.0), scene.run().actual_step());
     let most = MAX_STEPS as f64 * step;
     if settle <= most {
         return Ok(());
@@ -70,7 +71,7 @@ fn check_settle(arguments: &LyapunovArguments, scene: &Scene) -> Result<(), CliE
 
 /// A start with the energy that is asked for.
 pub(crate) fn asked<const N: usize, const M: usize>(
-    system: &dyn SceneSystem<N, M>,
+    system: &Built<'_, N, M>,
     start: Start<N>,
     wanted: Option<f64>,
 ) -> Result<Start<N>, CliError> {
@@ -92,7 +93,7 @@ pub(crate) fn refused(error: LyapunovError) -> CliError {
 
 struct Exponents<'a> {
     arguments: &'a LyapunovArguments,
-    scene: &'a Scene,
+    scene: &'a AnyScene,
     method: Method,
     file: Option<ChartFile<'a>>,
 }
@@ -100,20 +101,15 @@ struct Exponents<'a> {
 impl Visitor for Exponents<'_> {
     type Output = Result<(), CliError>;
 
-    fn visit<const N: usize, const M: usize>(
-        self,
-        system: &dyn SceneSystem<N, M>,
-        q: [f64; N],
-        v: [f64; N],
-    ) -> Self::Output {
-        let (q, v) = asked(system, (q, v), self.arguments.energy)?;
+    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
+        let (q, v) = asked(&system, (q, v), self.arguments.energy)?;
         let (schedule, settle) = schedule(self.arguments, self.scene);
         let exponents = self.arguments.exponents.map(|count| count as usize);
         let request = LyapunovRequest { schedule, settle, exponents, q, v };
         let interrupt = Interrupt::listen();
         let bar = progress::bar(self.method.info().name, settle.saturating_add(schedule.steps));
         let mut progress = Interruptible { bar, interrupt: &interrupt };
-        let found = harness::analysis::lyapunov((system, &system), &self.method, &request, &mut progress);
+        let found = harness::analysis::lyapunov((&*system, &system), &self.method, &request, &mut progress);
         progress.bar.finish_and_clear();
         let found = found.map_err(refused)?;
         let told = self.tell(&found, system.energy(0.0, &q, &v), 2 * N - M);
@@ -148,9 +144,9 @@ impl Exponents<'_> {
         let running: Vec<Value> =
             doublings(found).map(|at| json!({"time": at.time, "exponents": at.exponents})).collect();
         let mut object = json!({
-            "scene": self.scene.name,
+            "scene": self.scene.name(),
             "method": self.method.info().name,
-            "step": self.scene.run.actual_step(),
+            "step": self.scene.run().actual_step(),
             "duration": found.time,
             "energy": energy,
             "exponents": found.exponents,
@@ -176,14 +172,14 @@ impl Exponents<'_> {
     }
 
     fn text(&self, found: &Lyapunov, energy: f64, whole: bool) -> String {
-        let run = &self.scene.run;
+        let run = self.scene.run();
         let exponent = |(value, ci): (&f64, &Option<f64>)| match ci {
             Some(ci) => format!("{value:+.5} ± {ci:.5}"),
             None => format!("{value:+.5}"),
         };
         let each = |i: usize| exponent((&found.exponents[i], &found.ci[i]));
         let mut lines = vec![
-            ("scene".to_owned(), format!("{} ({})", self.scene.title, self.scene.name)),
+            ("scene".to_owned(), format!("{} ({})", self.scene.title(), self.scene.name())),
             (
                 "run".to_owned(),
                 format!(
@@ -221,7 +217,7 @@ impl Exponents<'_> {
             curves: vec![found.running.iter().map(|at| [at.time, at.exponents[i]]).collect()],
         };
         Chart {
-            title: format!("{}: Lyapunov exponents over a run", self.scene.title),
+            title: format!("{}: Lyapunov exponents over a run", self.scene.title()),
             axes: ["t [s]".to_owned(), "mean so far [1/s]".to_owned()],
             decades: [true, false],
             layers: (0..found.exponents.len()).map(line).collect(),

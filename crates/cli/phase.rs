@@ -6,7 +6,7 @@ use dla::{RunError, Schedule, State};
 use harness::analysis::{Rounds, weighted_mean};
 use harness::report::{Chart, Layer, chart_svg};
 use harness::{Method, integrate_on};
-use scene::{MAX_STEPS, PathSpec, RunSettings, Scene, SceneEffect, SceneSystem, Shape, Visitor};
+use scene::{Built, MAX_STEPS, PathSpec, RunSettings, Scene, SceneEffect, Shape, Visitor};
 use serde_json::{Value, json};
 use sleigh::ClosedPath;
 use sleigh::planimeter::Holonomy;
@@ -133,12 +133,7 @@ struct Loops<'a> {
 impl Visitor for Loops<'_> {
     type Output = Result<Vec<f64>, RunError>;
 
-    fn visit<const N: usize, const M: usize>(
-        self,
-        system: &dyn SceneSystem<N, M>,
-        q: [f64; N],
-        v: [f64; N],
-    ) -> Self::Output {
+    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
         let Self { method, schedule, every } = self;
         let bar = progress::bar(method.info().name, schedule.steps);
         let mut rounds = Rounds::<N>::new(2, every);

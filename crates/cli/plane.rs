@@ -1,9 +1,10 @@
-use crate::coordinate::{Coordinate, Place};
+use crate::coordinate::{Coordinate, name_and_value};
 use clap::ValueEnum;
+use scene::Built;
 use std::f64::consts::PI;
 use std::str::FromStr;
 
-/// The surface of a Poincare section.
+/// The surface of a Poincare section, as it was asked for.
 #[derive(Debug, Clone)]
 pub(crate) struct Plane {
     /// As it was written.
@@ -11,11 +12,18 @@ pub(crate) struct Plane {
     what: What,
 }
 
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 enum What {
     /// A quantity that has a value.
-    Of(Coordinate, f64),
+    Of(String, f64),
     /// Every multiple of a period (s).
+    Period(f64),
+}
+
+/// The surface in a system.
+#[derive(Debug, Clone)]
+pub(crate) enum Surface {
+    Of(Coordinate, f64),
     Period(f64),
 }
 
@@ -50,57 +58,97 @@ impl From<Crossed> for dla::Direction {
     }
 }
 
+const ACCEPTED: &str = "accepted is NAME=VALUE, as in center_y=0, or t=PERIOD";
+
 impl FromStr for Plane {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let accepted = "accepted is NAME=VALUE, as in center_y=0, or t=PERIOD";
-        let (name, value) = text.split_once('=').ok_or(accepted)?;
-        let number = value.trim().parse().ok().filter(|value: &f64| value.is_finite());
-        let value = number.ok_or_else(|| format!("`{}` is not a number; {accepted}", value.trim()))?;
-        let what = if name.trim() == "t" {
-            if value <= 0.0 {
-                return Err(format!("a period is greater than 0; {accepted}"));
+        let what = match name_and_value(text, ACCEPTED)? {
+            (name, period) if name == "t" && period <= 0.0 => {
+                return Err(format!("a period is greater than 0; {ACCEPTED}"));
             }
-            What::Period(value)
-        } else {
-            What::Of(name.parse().map_err(|error| format!("{error}, or t; {accepted}"))?, value)
+            (name, period) if name == "t" => What::Period(period),
+            (name, value) => What::Of(name, value),
         };
         Ok(Self { text: text.to_owned(), what })
     }
 }
 
 impl Plane {
-    /// The function whose zeros are on the surface; of an angle, also the opposite ones.
-    pub(crate) fn value(&self, t: f64, place: &Place) -> f64 {
-        match self.what {
-            What::Of(coordinate, value) if coordinate.is_angle() => (coordinate.at(place) - value).sin(),
-            What::Of(coordinate, value) => coordinate.at(place) - value,
-            What::Period(period) => (PI * t / period).sin(),
-        }
-    }
-
-    /// Whether a zero of the function is on the surface.
-    pub(crate) fn holds(&self, place: &Place) -> bool {
-        match self.what {
-            What::Of(coordinate, value) if coordinate.is_angle() => (coordinate.at(place) - value).cos() > 0.0,
-            _ => true,
-        }
-    }
-
     /// The period of a section in time (s).
     pub(crate) fn period(&self) -> Option<f64> {
         if let What::Period(period) = self.what { Some(period) } else { None }
     }
 
-    /// What a section shows where nobody says.
-    pub(crate) fn axes(&self) -> [&'static str; 2] {
-        match self.what {
-            What::Of(Coordinate { name: "heading", .. }, _) => ["speed", "turn_rate"],
-            What::Of(Coordinate { name: "turn_rate", .. }, _) => ["heading", "speed"],
-            What::Of(Coordinate { name: "along", .. }, _) => ["across", "turn_rate"],
-            What::Of(Coordinate { name: "across", .. }, _) => ["along", "turn_rate"],
+    /// The surface in a system.
+    ///
+    /// # Errors
+    /// That the system has no such quantity.
+    pub(crate) fn on<const N: usize, const M: usize>(&self, system: &Built<'_, N, M>) -> Result<Surface, String> {
+        Ok(match &self.what {
+            What::Of(name, value) => {
+                let quantity = Coordinate::of(system, name).map_err(|error| format!("{error}, or t; {ACCEPTED}"))?;
+                Surface::Of(quantity, *value)
+            }
+            What::Period(period) => Surface::Period(*period),
+        })
+    }
+
+    /// What a section shows where nobody says: of a sleigh what it turns by, else the first coordinate that is not the plane's, and its
+    /// rate.
+    pub(crate) fn axes<const N: usize, const M: usize>(&self, system: &Built<'_, N, M>) -> [String; 2] {
+        let name = if let What::Of(name, _) = &self.what { name.as_str() } else { "t" };
+        let axes = match name {
+            "heading" => ["speed", "turn_rate"],
+            "turn_rate" => ["heading", "speed"],
+            "along" => ["across", "turn_rate"],
+            "across" => ["along", "turn_rate"],
             _ => ["heading", "turn_rate"],
+        };
+        if system.sleigh().is_some() {
+            return axes.map(str::to_owned);
+        }
+        let names: Vec<String> = system.quantities().into_iter().map(|quantity| quantity.name).collect();
+        let plane = system.named(name);
+        let rate = |k: usize| k + system.own().0;
+        let shown = (0..system.own().0).find(|&k| plane.is_none_or(|plane| plane != k && plane != rate(k)));
+        let k = shown.unwrap_or(0);
+        [k, rate(k)].map(|k| names[k].clone())
+    }
+}
+
+impl Surface {
+    /// The function whose zeros are on the surface; of an angle, also the opposite ones.
+    pub(crate) fn value<const N: usize, const M: usize>(
+        &self,
+        system: &Built<'_, N, M>,
+        t: f64,
+        q: &[f64; N],
+        v: &[f64; N],
+    ) -> f64 {
+        match self {
+            Self::Of(coordinate, value) => {
+                let off = coordinate.value(system, t, q, v) - value;
+                if coordinate.quantity.angle { off.sin() } else { off }
+            }
+            Self::Period(period) => (PI * t / period).sin(),
+        }
+    }
+
+    /// Whether a zero of the function is on the surface.
+    pub(crate) fn holds<const N: usize, const M: usize>(
+        &self,
+        system: &Built<'_, N, M>,
+        t: f64,
+        q: &[f64; N],
+        v: &[f64; N],
+    ) -> bool {
+        match self {
+            Self::Of(coordinate, value) if coordinate.quantity.angle => {
+                (coordinate.value(system, t, q, v) - value).cos() > 0.0
+            }
+            _ => true,
         }
     }
 }

@@ -1,25 +1,23 @@
 use crate::args::PrecisionArguments;
-use crate::compare::{distance, methods, unless_interrupted};
+use crate::compare::{exact, methods, place_at, unless_interrupted};
 use crate::error::CliError;
 use crate::inspect::method_names;
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
-use crate::{facts, files, inspect, points_file, precision_text, progress, terminal, text, train};
-use dla::State;
+use crate::{facts, files, inspect, notes, points_file, precision_text, progress, terminal, train};
 use harness::Method;
 use harness::precision::{
     Bench, Clock, Curve, Limits, Motion, Reference, ReferenceError, mark_pareto, rounds, work_precision,
 };
 use harness::report::write_precision;
-use scene::{AnyScene, Scene, SceneSystem, Visitor};
-use sleigh::{Exact, SleighState};
+use scene::{AnyScene, Built, Visitor};
 
 /// The longest duration (s) that is chosen without being asked for.
 const DURATION: f64 = 20.0;
 /// How well the reference is then known.
-pub(crate) const KNOWN: f64 = 1e-12;
+const KNOWN: f64 = 1e-12;
 /// How often the duration is halved for that.
-pub(crate) const HALVINGS: u32 = 6;
+const HALVINGS: u32 = 6;
 
 /// Errors within so many times that of the reference are all the same.
 const CLEAR: f64 = 10.0;
@@ -35,7 +33,7 @@ pub(crate) struct Measurement {
 }
 
 /// Where the motion truly ends.
-pub(crate) struct KnownEnd<End = SleighState> {
+pub(crate) struct KnownEnd<End> {
     /// In closed form; else by the method.
     pub(crate) closed: bool,
     /// The method that computes it, or that the closed form is checked against.
@@ -81,10 +79,7 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
     }
     let chosen = arguments.duration.is_none();
     let interrupt = Interrupt::listen();
-    let mut measured = match &scene {
-        AnyScene::Sleigh(scene) => measure(scene, &methods, arguments.longest, chosen, &interrupt)?,
-        AnyScene::Text(scene) => text::precision::measure(scene, &methods, arguments.longest, chosen, &interrupt)?,
-    };
+    let mut measured = measure(&scene, &methods, arguments.longest, chosen, &interrupt)?;
     let climbed = measured.curves.len();
     measured.curves.extend(others);
     mark_pareto(&mut measured.curves, CLEAR * measured.reference.error);
@@ -115,16 +110,19 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
 /// Measures what accuracy costs on a scene, by runs of `longest` (s) at most; of a duration that is `chosen` for the user there may be
 /// less.
 pub(crate) fn measure(
-    scene: &Scene,
+    scene: &AnyScene,
     methods: &[Method],
     longest: f64,
     chosen: bool,
     interrupt: &Interrupt,
 ) -> Result<Measurement, CliError> {
-    match scene.train()? {
-        Some(whole) => train::measure(scene, &whole, methods, longest, interrupt),
-        None => scene.visit(Measure { scene, methods, longest, chosen, interrupt })?,
+    if let AnyScene::Sleigh(scene) = scene
+        && let Some(whole) = scene.train()?
+    {
+        return train::measure(scene, &whole, methods, longest, interrupt);
     }
+    notes::moves(scene);
+    scene.visit(Measure { scene, methods, longest, chosen, interrupt })?
 }
 
 /// What keeps a method from having any point; a refusal only where the method was asked for by name.
@@ -138,7 +136,7 @@ fn failure(curve: &Curve, named: bool) -> Option<String> {
 }
 
 struct Measure<'a> {
-    scene: &'a Scene,
+    scene: &'a AnyScene,
     methods: &'a [Method],
     longest: f64,
     /// The duration is not the user's: it may be less.
@@ -149,22 +147,18 @@ struct Measure<'a> {
 impl Visitor for Measure<'_> {
     type Output = Result<Measurement, CliError>;
 
-    fn visit<const N: usize, const M: usize>(
-        self,
-        system: &dyn SceneSystem<N, M>,
-        q: [f64; N],
-        v: [f64; N],
-    ) -> Self::Output {
-        let place = |q: &[f64; N]| system.sleigh_state(q, &[0.0; N]);
-        let apart = |a: &[f64; N], b: &[f64; N]| distance(&place(a), &place(b));
-        let exact = self.scene.exact().ok().flatten();
-        let mut duration = self.scene.run.duration;
+    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
+        let apart = |a: &[f64; N], b: &[f64; N]| system.distance(a, b);
+        let exact = exact(self.scene);
+        let mut duration = self.scene.run().duration;
         let mut halvings = 0;
         let (motion, reference) = loop {
             let motion = Motion::new(&system, q, v, duration);
-            let reference =
-                Reference::converged(&motion, &apart).map(|found| known(exact.as_ref(), duration, &found, place));
-            let unsure = reference.as_ref().map_or(true, |reference: &KnownEnd| reference.error > KNOWN);
+            let reference = Reference::converged(&motion, &apart).map(|found| {
+                let exact = exact.as_ref().map(|exact| place_at(exact, duration));
+                known(exact, &found, apart)
+            });
+            let unsure = reference.as_ref().map_or(true, |reference| reference.error > KNOWN);
             if !(self.chosen && unsure && halvings < HALVINGS) {
                 break (motion, reference);
             }
@@ -172,16 +166,15 @@ impl Visitor for Measure<'_> {
             halvings += 1;
         };
         let reference = reference.map_err(|error: ReferenceError| CliError::Computation(vec![error.to_string()]))?;
-        let end_error =
-            |method: &Method, steps: u64| motion.end(method, steps).map(|q| distance(&place(&q), &reference.end));
+        let end_error = |method: &Method, steps: u64| motion.end(method, steps).map(|q| apart(&q, &reference.end));
         let aligned = |steps: u64| motion.aligned(steps);
         let bench = Bench { duration, reference_error: reference.error, end_error: &end_error, aligned: &aligned };
         let limits = Limits { fewest: motion.aligned(2), longest: self.longest };
-        let bar = progress::bar(&format!("{} precision", self.scene.name), self.methods.len() as u64 + rounds());
+        let bar = progress::bar(&format!("{} precision", self.scene.name()), self.methods.len() as u64 + rounds());
         let mut progress = Interruptible { bar, interrupt: self.interrupt };
         let (curves, clock) = work_precision(&bench, self.methods, &limits, &mut progress);
         progress.bar.finish_and_clear();
-        let mut facts = facts::of(self.scene, system, &State::new(q, v, system.angles()));
+        let mut facts = facts::of(self.scene)?;
         // The steps are those of the ladders, not the scene's.
         facts.pop();
         Ok(Measurement { duration, reference: reference.told(), clock, facts, curves })
@@ -190,15 +183,15 @@ impl Visitor for Measure<'_> {
 
 /// The end in closed form, with its distance from the computed one as its error; the computed end where there is none.
 fn known<const N: usize>(
-    exact: Option<&Exact>,
-    duration: f64,
+    exact: Option<[f64; N]>,
     computed: &Reference<N>,
-    place: impl Fn(&[f64; N]) -> SleighState,
-) -> KnownEnd {
-    let (end, Reference { steps, error, .. }) = (place(&computed.q), *computed);
-    match exact.map(|exact| exact.at(duration)) {
+    apart: impl Fn(&[f64; N], &[f64; N]) -> f64,
+) -> KnownEnd<[f64; N]> {
+    let Reference { q: end, steps, error, .. } = *computed;
+    match exact {
         Some(exact) => {
-            KnownEnd { closed: true, by: "gauss16", steps, error: distance(&exact, &end).max(f64::EPSILON), end: exact }
+            let error = apart(&exact, &end).max(f64::EPSILON);
+            KnownEnd { closed: true, by: "gauss16", steps, error, end: exact }
         }
         None => KnownEnd { closed: false, by: "gauss16", steps, error, end },
     }

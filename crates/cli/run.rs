@@ -1,3 +1,4 @@
+use crate::account::{Account, Made};
 use crate::args::RunArguments;
 use crate::compare::unless_interrupted;
 use crate::error::CliError;
@@ -5,11 +6,11 @@ use crate::interrupt::Interrupt;
 use crate::output::{Asked, Output, Position};
 use crate::progress::Interruptible;
 use crate::provenance::Provenance;
-use crate::trigger::{Events, Happened, Trigger};
-use crate::{inspect, json, progress, resume, substeps, table, terminal, text, train_run};
+use crate::trigger::Events;
+use crate::{inspect, notes, progress, resume, substeps, table, terminal, train_run};
 use dla::{Checkpoint, Node, Nodes, Schedule, Substeps};
-use harness::{Kind, Method, Progress, Record, Request, Saving, Watched, recommend, run_observed, run_saved};
-use scene::{AnyScene, RunSettings, Scene, SceneSystem, Visitor};
+use harness::{Kind, Method, Progress, Saving, run_saved};
+use scene::{AnyScene, Built, RunSettings, Scene, Visitor};
 use serde_json::json;
 use std::cell::RefCell;
 
@@ -24,14 +25,13 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
         let name = method.info().name;
         terminal::say("warning", &format!("--alpha is the weight of dla-alpha; {name} has none and ignores it"));
     }
-    let scene = match scene {
-        AnyScene::Sleigh(scene) => *scene,
-        AnyScene::Text(scene) => return text::run::run(arguments, &scene, &method, out),
-    };
-    if scene.has_trailers() {
-        return train_run::run(arguments, &scene, &method, out);
+    if let AnyScene::Sleigh(scene) = &scene
+        && scene.has_trailers()
+    {
+        return train_run::run(arguments, scene, &method, out);
     }
-    scene.visit(Run { arguments, scene: &scene, method, out })?
+    notes::moves(&scene);
+    scene.visit(Run { arguments, scene: &scene, method: &method, out })?
 }
 
 /// Where the rows are to be written, if anywhere.
@@ -84,7 +84,18 @@ pub(crate) fn of(scene: &Scene) -> (&str, &RunSettings, Option<String>) {
     (&scene.title, &scene.run, scene.to_toml().ok())
 }
 
-/// What tells the run of a sleigh or a train from others.
+/// What tells the run of a scene from others.
+fn identity_of(scene: &AnyScene, method: &Method, schedule: &Schedule) -> Checkpoint {
+    match scene {
+        AnyScene::Sleigh(scene) => identity(scene, method, schedule),
+        AnyScene::Text(scene) => {
+            let contents = (&scene.words, &scene.start, resume::endless(&scene.run));
+            resume::identity((&scene.name, &contents), method, schedule)
+        }
+    }
+}
+
+/// The same of a sleigh or a train.
 pub(crate) fn identity(scene: &Scene, method: &Method, schedule: &Schedule) -> Checkpoint {
     // The steps of a smooth piece are chosen for its length: a longer run has others after the last jump.
     if scene.jumps().is_ok_and(|jumps| !jumps.is_empty()) {
@@ -126,76 +137,46 @@ impl Progress for Read<'_, '_> {
 
 struct Run<'a> {
     arguments: &'a RunArguments,
-    scene: &'a Scene,
-    method: Method,
+    scene: &'a AnyScene,
+    method: &'a Method,
     out: Option<Asked<'a>>,
 }
 
-/// A run that was made.
-struct Made<const N: usize> {
-    record: Record<N>,
-    /// What happened, where that was asked for.
-    events: Option<Events>,
-    /// What else went wrong.
-    warning: Result<(), CliError>,
-}
-
 impl<'a> Run<'a> {
-    /// In parts that are saved, or from a part that was, with the output as far as it had come.
+    /// In parts that are saved, or from a part that was, with the output as far as it had come; and what else went wrong.
     fn saved<const N: usize, const M: usize>(
         &self,
-        system: &dyn SceneSystem<N, M>,
-        request: &Request<N>,
+        account: &Account<'_, N, M>,
         (identity, read): (&Checkpoint, Option<&Checkpoint>),
         output: &RefCell<Option<Output<'a>>>,
         progress: &mut dyn Progress,
-    ) -> Result<Made<N>, CliError> {
+    ) -> Result<(Made<N>, Result<(), CliError>), CliError> {
         let RunArguments { checkpoint, checkpoint_every, resume: from, .. } = self.arguments;
+        let Account { system, method, request, .. } = account;
         let mut saver = resume::Saver::new(checkpoint.as_deref());
         let mut save = |made: &Checkpoint| saver.save(&with_position(made, output));
         let every = checkpoint.as_ref().map(|_| *checkpoint_every);
         let mut saving = Saving { identity, from: read, every, save: &mut save };
         let mut sink = |node: &Node<N, M>| write(system, node, output);
         let nodes = self.out.map(|_| Nodes::every(self.arguments.every, &mut sink));
-        let outcome = run_saved(&system, &self.method, request, &mut saving, nodes, progress);
+        let outcome = run_saved(system, method, request, &mut saving, nodes, progress);
         let record =
             outcome.map_err(|source| CliError::Checkpoint { path: from.clone().unwrap_or_default(), source })?;
-        Ok(Made { record, events: None, warning: saver.outcome() })
-    }
-
-    /// At once, with an eye on events where there are any.
-    fn watched<const N: usize, const M: usize>(
-        &self,
-        system: &dyn SceneSystem<N, M>,
-        request: &Request<N>,
-        output: &RefCell<Option<Output<'a>>>,
-        progress: &mut dyn Progress,
-    ) -> Made<N> {
-        let RunArguments { event, until, event_samples, every, .. } = self.arguments;
-        let reported = event.iter().map(|trigger| trigger.event(system));
-        let events: Vec<_> = reported.chain(until.iter().map(|trigger| trigger.event(system).terminal())).collect();
-        let mut sink = |node: &Node<N, M>| write(system, node, output);
-        let mut nodes = self.out.map(|_| Nodes::every(*every, &mut sink));
-        let Watched { record, crossings, close, .. } =
-            run_observed(&system, &self.method, request, (&events, *event_samples), &mut nodes, progress);
-        let triggers: Vec<&Trigger> = event.iter().chain(until).collect();
-        let happened = crossings.iter().filter_map(|crossing| Happened::of(system, &triggers, crossing));
-        let events = (!triggers.is_empty()).then(|| Events::new(happened, close));
-        Made { record, events, warning: Ok(()) }
+        Ok((Made { record, events: None }, saver.outcome()))
     }
 
     /// The output, begun, or as far as it had come.
     fn output<const N: usize, const M: usize>(
         &self,
-        system: &dyn SceneSystem<N, M>,
-        Request { schedule, q, v, .. }: &Request<N>,
+        account: &Account<'_, N, M>,
         read: Option<&Checkpoint>,
     ) -> Result<Option<Output<'a>>, CliError> {
         let Some(asked) = self.out else { return Ok(None) };
-        let start =
-            Node { k: 0, t: schedule.t0, q: *q, v: *v, energy: 0.0, work: 0.0, constraint: 0.0, multipliers: None };
-        let provenance = provenance(self.arguments, of(self.scene), schedule);
-        let columns = (system.columns(&start), self.arguments.every);
+        let (t, q, v) = (account.request.schedule.t0, account.request.q, account.request.v);
+        let start = Node { k: 0, t, q, v, energy: 0.0, work: 0.0, constraint: 0.0, multipliers: None };
+        let scene = (self.scene.title(), self.scene.run(), self.scene.to_toml().ok());
+        let provenance = provenance(self.arguments, scene, &account.request.schedule);
+        let columns = (account.system.columns(&start), self.arguments.every);
         // A run that had made no step begins.
         let read = read.filter(|read| read.counts("k").is_ok_and(|[made]| made > 0));
         Output::open(asked, provenance, columns, position(read)).map(Some)
@@ -204,7 +185,7 @@ impl<'a> Run<'a> {
 
 /// Hands a node to the output.
 fn write<const N: usize, const M: usize>(
-    system: &dyn SceneSystem<N, M>,
+    system: &Built<'_, N, M>,
     node: &Node<N, M>,
     output: &RefCell<Option<Output<'_>>>,
 ) {
@@ -216,62 +197,49 @@ fn write<const N: usize, const M: usize>(
 impl Visitor for Run<'_> {
     type Output = Result<(), CliError>;
 
-    fn visit<const N: usize, const M: usize>(
-        self,
-        system: &dyn SceneSystem<N, M>,
-        q: [f64; N],
-        v: [f64; N],
-    ) -> Self::Output {
-        let RunArguments { checkpoint, resume, tolerance, .. } = self.arguments;
-        let mut schedule = inspect::schedule(self.scene);
-        if let Some(tolerance) = tolerance {
-            // Of the method itself: parts would make any step look good enough.
-            let method = self.method.undivided();
-            let found = recommend(&system, &method, (q, v), self.scene.run.duration, *tolerance);
-            let found = found.map_err(|error| CliError::Tolerance(Box::new(error)))?;
-            schedule = Schedule { step: found.step, steps: found.steps, ..schedule };
-        }
-        let request = Request { schedule, q, v, samples: 1 };
-        let identity = identity(self.scene, &self.method, &schedule);
+    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
+        let RunArguments { checkpoint, resume, tolerance, event, until, event_samples, .. } = self.arguments;
+        let run = (self.scene, self.method);
+        let account = Account::new(system, run, (q, v), *tolerance, (event, until))?;
+        let schedule = &account.request.schedule;
+        let identity = identity_of(self.scene, self.method, schedule);
         let read = resume.as_ref().map(|path| resume::read(path, &identity)).transpose()?;
         if let Some(path) = checkpoint {
             resume::check(path, resume.as_deref(), self.arguments.scene.force)?;
         }
         let interrupt = Interrupt::listen();
-        let output = RefCell::new(self.output(system, &request, read.as_ref())?);
+        let output = RefCell::new(self.output(&account, read.as_ref())?);
         let bar = progress::bar(self.method.info().name, schedule.steps);
         let mut shown = Interruptible { bar, interrupt: &interrupt };
         let mut progress = Read { progress: &mut shown, output: &output };
         let made = if checkpoint.is_some() || resume.is_some() {
-            self.saved(system, &request, (&identity, read.as_ref()), &output, &mut progress)
+            self.saved(&account, (&identity, read.as_ref()), &output, &mut progress)
         } else {
-            Ok(self.watched(system, &request, &output, &mut progress))
+            let mut sink = |node: &Node<N, M>| write(&system, node, &output);
+            let mut nodes = self.out.map(|_| Nodes::every(self.arguments.every, &mut sink));
+            Ok((account.observed(*event_samples, &mut nodes, &mut progress), Ok(())))
         };
         shown.bar.finish_and_clear();
-        let Made { mut record, events, warning } = made?;
+        let (mut made, warning) = made?;
 
         let closed = output.borrow().as_ref().is_some_and(Output::is_closed);
-        let interrupted = record.interrupted;
+        let interrupted = made.record.interrupted;
         let written = output.into_inner().map_or(Ok(()), |output| output.finish(checkpoint.is_some(), interrupted));
         // A reader who has seen enough is no interruption.
-        record.interrupted &= !closed;
-        let end = system.sleigh_state(&record.q, &record.v);
+        made.record.interrupted &= !closed;
+        let Made { record, events } = &made;
         // What was computed is shown even where its file could not be written.
         if self.arguments.scene.json {
-            let mut object = json::record(&self.scene.name, &record, &end);
-            substeps::add_json(&mut object, &record);
-            if let Some(events) = &events {
-                events.add_to(&mut object);
-            }
-            terminal::print_json(&object)?;
+            terminal::print_json(&account.object(&made))?;
         } else {
             let file = self.out.and_then(|asked| asked.path).filter(|_| written.is_ok());
             let told = events.as_ref().map_or("", |events| &events.told);
-            let text = table::one_run(self.scene, &record, &end, file) + &substeps::told(&record) + told;
+            let name = (self.scene.title(), self.scene.name());
+            let text = table::one_run_of(name, record, &account.end(record), file) + &substeps::told(record) + told;
             tell(self.out, &text)?;
         }
         events.iter().for_each(Events::warn);
-        let computed = CliError::of_failures(substeps::failure(&record).or_else(|| table::not_finite(&record)));
+        let computed = CliError::of_failures(substeps::failure(record).or_else(|| table::not_finite(record)));
         if let (Err(_), Err(error)) = (&computed, &written) {
             terminal::say("error", error);
         }

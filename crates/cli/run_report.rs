@@ -3,7 +3,7 @@
 use crate::args::RunArguments;
 use crate::columns_file::{Columns, NamedColumn};
 use crate::error::CliError;
-use crate::{files, inspect, plot, table, terminal};
+use crate::{facts, files, inspect, plot, table, terminal};
 use harness::report::{self, Report, SceneReport, Series};
 use scene::AnyScene;
 
@@ -40,7 +40,7 @@ pub(crate) fn run_and_show(arguments: &RunArguments) -> Result<(), CliError> {
     let shown = SceneReport {
         name: scene.name().to_owned(),
         title: scene.title().to_owned(),
-        facts: inspect::described(&scene)?,
+        facts: facts::described(&scene)?,
         columns: ["column", "start", "end", "least", "largest"].map(str::to_owned).to_vec(),
         rows: columns.iter().map(row).collect(),
         series: vec![series],

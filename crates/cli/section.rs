@@ -5,14 +5,14 @@ use crate::coordinate::Coordinate;
 use crate::error::CliError;
 use crate::interrupt::Interrupt;
 use crate::lyapunov::{asked, imposed};
-use crate::starts::{Start, place, spread};
+use crate::starts::{Start, spread};
 use crate::trigger::in_doubt;
-use crate::{inspect, progress, table, terminal};
+use crate::{inspect, notes, progress, table, terminal};
 use dla::{Close, Event};
 use harness::Method;
 use harness::analysis::in_parallel;
 use harness::report::{Chart, Layer};
-use scene::{Scene, SceneSystem, Visitor};
+use scene::{AnyScene, Built, Quantity, Visitor};
 use serde_json::{Value, json};
 
 /// How long each motion is followed where nobody says (s).
@@ -24,41 +24,30 @@ const MOST_STARTS: u64 = 100_000;
 pub(crate) fn section(arguments: &SectionArguments) -> Result<(), CliError> {
     let shared = &arguments.scene;
     let duration = shared.duration.or(Some(DURATION));
-    let scene =
-        inspect::load_with((&shared.scene, &shared.set), Some(&arguments.method), shared.step, duration, shared.alpha)?;
-    let method = Method::named(&scene.run.method, scene.run.alpha)?;
-    let axes = match &arguments.axes {
-        Some(axes) => match axes[..] {
-            [across, up] if across.name != up.name => [across, up],
-            _ => {
-                return Err(CliError::Request(
-                    "--axes: accepted are two different quantities, as in heading,speed".to_owned(),
-                ));
-            }
-        },
-        None => {
-            let named = arguments.plane.axes().map(str::parse);
-            let [Ok(across), Ok(up)] = named else { return Err(CliError::Request("--axes: which?".to_owned())) };
-            [across, up]
-        }
-    };
+    let from = (shared.scene.as_str(), &shared.set);
+    let scene = inspect::load_any_with(from, Some(&arguments.method), shared.step, duration, shared.alpha)?;
+    let method = Method::named(&scene.run().method, scene.run().alpha)?;
+    if arguments.axes.as_ref().is_some_and(|axes| axes.len() != 2 || axes[0].trim() == axes[1].trim()) {
+        let problem = "--axes: accepted are two different quantities, as in heading,speed";
+        return Err(CliError::Request(problem.to_owned()));
+    }
     if arguments.starts > MOST_STARTS {
         return Err(CliError::Request(format!("--starts: accepted are from 1 to {MOST_STARTS}")));
     }
-    if arguments.plane.period().is_some_and(|period| period < scene.run.actual_step()) {
+    if arguments.plane.period().is_some_and(|period| period < scene.run().actual_step()) {
         return Err(CliError::Request(
             "--plane: the period is shorter than a step; --step makes that shorter".to_owned(),
         ));
     }
     let file = arguments.out.as_deref().map(|path| ChartFile::of(path, shared.force)).transpose()?;
-    scene.visit_free(Sections { arguments, scene: &scene, method, axes, file })?.ok_or_else(imposed)?
+    notes::moves(&scene);
+    scene.visit_free(Sections { arguments, scene: &scene, method, file })?.ok_or_else(imposed)?
 }
 
 struct Sections<'a> {
     arguments: &'a SectionArguments,
-    scene: &'a Scene,
+    scene: &'a AnyScene,
     method: Method,
-    axes: [Coordinate; 2],
     file: Option<ChartFile<'a>>,
 }
 
@@ -66,63 +55,78 @@ struct Sections<'a> {
 struct Crossed {
     /// The number of the start.
     start: usize,
-    /// Time (s), `x`, `y`, heading, speed, turn rate, and the two quantities shown.
-    points: Vec<[f64; 8]>,
+    points: Vec<Point>,
     failure: Option<String>,
     /// Which may not be all.
     close: Option<Close>,
 }
 
+/// A crossing.
+struct Point {
+    /// When (s).
+    t: f64,
+    /// The quantities that tell the state.
+    state: Vec<f64>,
+    /// The two that are shown.
+    shown: [f64; 2],
+}
+
+/// What is told of a section: the quantities of the system that tell its state, and those shown.
+struct Told {
+    state: Vec<String>,
+    axes: [Quantity; 2],
+}
+
 impl Visitor for Sections<'_> {
     type Output = Result<(), CliError>;
 
-    fn visit<const N: usize, const M: usize>(
-        self,
-        system: &dyn SceneSystem<N, M>,
-        q: [f64; N],
-        v: [f64; N],
-    ) -> Self::Output {
-        if self.scene.depends_on_time() && self.arguments.plane.period().is_none() {
+    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
+        let plane = &self.arguments.plane;
+        let asked_for = |flag: &'static str| move |problem: String| CliError::Request(format!("{flag}: {problem}"));
+        let surface = plane.on(&system).map_err(asked_for("--plane"))?;
+        let axis = |name: &str| Coordinate::of(&system, name).map_err(asked_for("--axes"));
+        let axes = match self.arguments.axes.as_deref() {
+            Some([across, up]) => [axis(across)?, axis(up)?],
+            _ => {
+                let [across, up] = plane.axes(&system);
+                [axis(&across)?, axis(&up)?]
+            }
+        };
+        if self.scene.depends_on_time() && plane.period().is_none() {
             terminal::say(
                 "note",
                 &"the scene depends on time, and so does where a motion goes from a point of this section; --plane t=PERIOD takes \
                   all points at the same phase",
             );
         }
-        let first = asked(system, (q, v), self.arguments.energy)?;
-        let starts: Vec<Start<N>> = spread(system, &first, &self.scene.sleigh, self.arguments.starts);
-        let schedule = inspect::schedule(self.scene);
+        let first = asked(&system, (q, v), self.arguments.energy)?;
+        let sleigh = if let AnyScene::Sleigh(scene) = self.scene { Some(&scene.sleigh) } else { None };
+        let starts: Vec<Start<N>> = spread(&system, &first, sleigh, self.arguments.starts);
+        let schedule = self.scene.schedule();
         let interrupt = Interrupt::of_starts();
         let bar = progress::bar("starts", starts.len() as u64);
-        let plane = &self.arguments.plane;
+        let in_state = system.in_state();
         let crossed = in_parallel(starts.len(), |i| {
             if interrupt.asked() {
                 return None;
             }
-            let at = |state: &dla::State<N>| place(system, &state.unwrapped(), state.v());
-            let surface = Event::new(plane.text.clone(), |t, state| plane.value(t, &at(state)));
-            let surface =
-                if plane.period().is_some() { surface } else { surface.in_direction(self.arguments.direction.into()) };
-            let found = harness::analysis::section(&system, &self.method, &schedule, starts[i], &surface);
-            let shown = |crossing: &dla::Crossing<N>| {
-                let place = at(&crossing.state);
-                let state = place.state;
-                let [a, b] = self.axes.map(|axis| axis.at(&place));
-                plane.holds(&place).then_some([
-                    crossing.t,
-                    state.x,
-                    state.y,
-                    state.heading,
-                    state.speed,
-                    state.turn_rate,
-                    a,
-                    b,
-                ])
+            let function = |t: f64, state: &dla::State<N>| surface.value(&system, t, &state.unwrapped(), state.v());
+            let event = Event::new(plane.text.clone(), function);
+            let event =
+                if plane.period().is_some() { event } else { event.in_direction(self.arguments.direction.into()) };
+            let found = harness::analysis::section(&system, &self.method, &schedule, starts[i], &event);
+            let point = |crossing: &dla::Crossing<N>| {
+                let (t, q, v) = (crossing.t, crossing.state.unwrapped(), crossing.state.v());
+                surface.holds(&system, t, &q, v).then(|| Point {
+                    t,
+                    state: (0..in_state).map(|k| system.value(k, t, &q, v)).collect(),
+                    shown: axes.each_ref().map(|axis| axis.shown(&system, t, &q, v)),
+                })
             };
             bar.inc(1);
             Some(Crossed {
                 start: i,
-                points: found.crossings.iter().filter_map(shown).collect(),
+                points: found.crossings.iter().filter_map(point).collect(),
                 failure: found.failure.map(|failure| failure.to_string()),
                 close: found.close,
             })
@@ -130,35 +134,33 @@ impl Visitor for Sections<'_> {
         bar.finish_and_clear();
         let done: Vec<Crossed> = crossed.into_iter().flatten().collect();
         let made = (done.len() < starts.len()).then(|| format!("{} of {} starts are done", done.len(), starts.len()));
-        unless_interrupted(made, None, self.tell(&done))
+        let state = system.quantities().iter().take(in_state).map(Quantity::label).collect();
+        let told = Told { state, axes: axes.map(|axis| axis.quantity) };
+        unless_interrupted(made, None, self.tell(&told, &done))
     }
 }
 
 impl Sections<'_> {
-    fn tell(&self, crossed: &[Crossed]) -> Result<(), CliError> {
+    fn tell(&self, told: &Told, crossed: &[Crossed]) -> Result<(), CliError> {
         let shared = &self.arguments.scene;
         let written = self.file.map_or(Ok(()), |file| {
-            let row = |i: usize, point: &[f64; 8]| [&[i as f64][..], &point[..6], &point[6..]].concat();
+            let row = |i: usize, Point { t, state, shown }: &Point| [&[i as f64, *t][..], state, shown].concat();
             let rows: Vec<Vec<f64>> =
                 crossed.iter().flat_map(|one| one.points.iter().map(move |point| row(one.start, point))).collect();
-            let state = "x [m],y [m],heading [rad],speed [m/s],turn_rate [rad/s]";
-            // A column of the state is another than the one that is shown: its heading counts the turns.
-            let taken = |label: &str| state.split(',').any(|other| other == label);
-            let [a, b] = self
-                .axes
-                .map(|axis| axis.label())
-                .map(|label| if taken(&label) { format!("shown_{label}") } else { label });
-            let header = format!("start,t [s],{state},{a},{b}");
-            file.write(shared.force, &header, &rows, || self.chart(crossed))
+            // A column of the state is another than the one that is shown: its angles count the turns.
+            let own = |label: String| if told.state.contains(&label) { format!("shown_{label}") } else { label };
+            let [a, b] = told.axes.each_ref().map(Quantity::label).map(own);
+            let header = format!("start,t [s],{},{a},{b}", told.state.join(","));
+            file.write(shared.force, &header, &rows, || self.chart(told, crossed))
         });
         let count: usize = crossed.iter().map(|start| start.points.len()).sum();
         if shared.json {
-            terminal::print_json(&self.json(crossed))?;
+            terminal::print_json(&self.json(told, crossed))?;
         } else {
-            let run = &self.scene.run;
+            let run = self.scene.run();
             let duration = table::number(run.duration);
             let lines = [
-                ("scene", format!("{} ({})", self.scene.title, self.scene.name)),
+                ("scene", format!("{} ({})", self.scene.title(), self.scene.name())),
                 (
                     "run",
                     format!(
@@ -187,9 +189,9 @@ impl Sections<'_> {
         CliError::of_failures(failed).and(written)
     }
 
-    fn json(&self, crossed: &[Crossed]) -> Value {
+    fn json(&self, told: &Told, crossed: &[Crossed]) -> Value {
         let one = |start: &Crossed| {
-            let points: Vec<Value> = start.points.iter().map(|p| json!([p[0], p[6], p[7]])).collect();
+            let points: Vec<Value> = start.points.iter().map(|p| json!([p.t, p.shown[0], p.shown[1]])).collect();
             let mut object = json!({"points": points, "in_doubt": start.close.map_or(0, |close| close.count)});
             if let Some(failure) = &start.failure {
                 object["failure"] = json!(failure);
@@ -197,26 +199,23 @@ impl Sections<'_> {
             object
         };
         json!({
-            "scene": self.scene.name,
+            "scene": self.scene.name(),
             "method": self.method.info().name,
-            "step": self.scene.run.actual_step(),
-            "duration": self.scene.run.duration,
+            "step": self.scene.run().actual_step(),
+            "duration": self.scene.run().duration,
             "plane": self.arguments.plane.text,
             "direction": self.arguments.direction.name(),
-            "axes": self.axes.map(|axis| axis.name),
+            "axes": told.axes.each_ref().map(|axis| &axis.name),
             "starts": crossed.iter().map(one).collect::<Vec<_>>(),
         })
     }
 
-    fn chart(&self, crossed: &[Crossed]) -> Chart {
+    fn chart(&self, told: &Told, crossed: &[Crossed]) -> Chart {
         Chart {
-            title: format!("{}: section at {}", self.scene.title, self.arguments.plane.text),
-            axes: self.axes.map(|axis| axis.label()),
+            title: format!("{}: section at {}", self.scene.title(), self.arguments.plane.text),
+            axes: told.axes.each_ref().map(Quantity::label),
             decades: [false; 2],
-            layers: crossed
-                .iter()
-                .map(|start| Layer::Dots(start.points.iter().map(|p| [p[6], p[7]]).collect()))
-                .collect(),
+            layers: crossed.iter().map(|start| Layer::Dots(start.points.iter().map(|p| p.shown).collect())).collect(),
         }
     }
 }

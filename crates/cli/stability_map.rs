@@ -5,12 +5,12 @@ use crate::coordinate::Range;
 use crate::error::CliError;
 use crate::interrupt::Interrupt;
 use crate::lyapunov::{refused, schedule};
-use crate::starts::{moved, with_energy};
+use crate::starts::with_energy;
 use crate::{progress, table, terminal};
 use harness::Method;
 use harness::analysis::{LyapunovError, LyapunovRequest, MotionVerdict, in_parallel, lyapunov};
 use harness::report::{Cells, Chart, Layer};
-use scene::{Scene, SceneSystem, Visitor};
+use scene::{AnyScene, Built, Visitor};
 use serde_json::{Value, json};
 
 /// The most starts.
@@ -19,10 +19,10 @@ const MOST: usize = 1_000_000;
 /// The largest exponent of every start of a grid.
 pub(crate) struct Map<'a> {
     pub(crate) arguments: &'a LyapunovArguments,
-    pub(crate) scene: &'a Scene,
+    pub(crate) scene: &'a AnyScene,
     pub(crate) method: Method,
     /// Across and upwards.
-    pub(crate) axes: [Range; 2],
+    pub(crate) axes: [&'a Range; 2],
     pub(crate) file: Option<ChartFile<'a>>,
 }
 
@@ -56,40 +56,35 @@ fn count_left(cells: &[Cell]) -> usize {
 impl Visitor for Map<'_> {
     type Output = Result<(), CliError>;
 
-    fn visit<const N: usize, const M: usize>(
-        self,
-        system: &dyn SceneSystem<N, M>,
-        q: [f64; N],
-        v: [f64; N],
-    ) -> Self::Output {
+    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
         let [across, up] = self.axes;
-        if across.coordinate.name == up.coordinate.name {
-            return Err(CliError::Request(format!("--map: both axes are {}", up.coordinate.name)));
+        let on = |range: &Range| range.on(&system).map_err(|problem| CliError::Request(format!("--map: {problem}")));
+        let quantities = [on(across)?, on(up)?];
+        let [across_of, up_of] = quantities;
+        if across_of == up_of {
+            return Err(CliError::Request(format!("--map: both axes are {}", up.name)));
         }
         let count = across.cells * up.cells;
         if count > MOST {
             return Err(CliError::Request(format!("--map: {count} starts; accepted are at most {MOST}")));
         }
         let (schedule, settle) = schedule(self.arguments, self.scene);
-        let first = system.sleigh_state(&q, &v);
         let interrupt = Interrupt::of_starts();
         let bar = progress::bar("starts", count as u64);
         let cells = in_parallel(count, |i| {
             if interrupt.asked() {
                 return Cell::Left;
             }
-            let mut state = first;
-            across.apply(&mut state, i % across.cells);
-            up.apply(&mut state, i / across.cells);
-            let start = moved(system, &(q, v), &state);
+            let start = system.with(&(q, v), across_of, across.value(i % across.cells));
+            let start = start.and_then(|start| system.with(&start, up_of, up.value(i / across.cells)));
             let start = match self.arguments.energy {
-                Some(wanted) => start.and_then(|start| with_energy(system, &start, wanted)),
+                Some(wanted) => start.and_then(|start| with_energy(&system, &start, wanted)),
                 None => start,
             };
             let cell = match start {
                 Some((q, v)) => {
                     let request = LyapunovRequest { schedule, settle, exponents: Some(1), q, v };
-                    match lyapunov((system, &system), &self.method, &request, &mut ()) {
+                    match lyapunov((&*system, &system), &self.method, &request, &mut ()) {
                         Ok(found) => match found.failure {
                             Some(failure) => Cell::Failed(failure.to_string()),
                             None => Cell::Exponent(found.exponents[0], found.ci[0], found.verdict),
@@ -103,12 +98,13 @@ impl Visitor for Map<'_> {
             cell
         });
         bar.finish_and_clear();
-        self.tell(&cells)
+        let labels = quantities.map(|k| system.quantities()[k].label());
+        self.tell(&labels, &cells)
     }
 }
 
 impl Map<'_> {
-    fn tell(&self, cells: &[Cell]) -> Result<(), CliError> {
+    fn tell(&self, labels: &[String; 2], cells: &[Cell]) -> Result<(), CliError> {
         if let Some(error) =
             cells.iter().find_map(|cell| if let Cell::Refused(error) = cell { Some(*error) } else { None })
         {
@@ -130,8 +126,8 @@ impl Map<'_> {
                 _ => None,
             };
             let rows: Vec<Vec<f64>> = cells.iter().enumerate().filter_map(row).collect();
-            let header = format!("{},{},exponent [1/s],ci [1/s]", across.coordinate.label(), up.coordinate.label());
-            file.write(shared.force, &header, &rows, || self.chart(values.clone()))
+            let header = format!("{},exponent [1/s],ci [1/s]", labels.join(","));
+            file.write(shared.force, &header, &rows, || self.chart(labels, values.clone()))
         });
         if shared.json {
             terminal::print_json(&self.json(cells, &values, failures.len()))?;
@@ -149,14 +145,11 @@ impl Map<'_> {
         unless_interrupted(made, None, CliError::of_failures(failed).and(written))
     }
 
-    fn chart(&self, values: Vec<Option<f64>>) -> Chart {
+    fn chart(&self, labels: &[String; 2], values: Vec<Option<f64>>) -> Chart {
         let [across, up] = &self.axes;
         Chart {
-            title: format!("{}: largest Lyapunov exponent over starts", self.scene.title),
-            axes: [
-                format!("{} at the start", across.coordinate.label()),
-                format!("{} at the start", up.coordinate.label()),
-            ],
+            title: format!("{}: largest Lyapunov exponent over starts", self.scene.title()),
+            axes: labels.each_ref().map(|label| format!("{label} at the start")),
             decades: [false; 2],
             layers: vec![Layer::Cells(Cells {
                 label: "exponent [1/s]".to_owned(),
@@ -169,16 +162,16 @@ impl Map<'_> {
 
     fn json(&self, cells: &[Cell], values: &[Option<f64>], failed: usize) -> Value {
         let [across, _] = &self.axes;
-        let axis = |range: &Range| json!({"name": range.coordinate.name, "from": range.ends[0], "to": range.ends[1], "cells": range.cells});
+        let axis = |range: &Range| json!({"name": range.name, "from": range.ends[0], "to": range.ends[1], "cells": range.cells});
         let ci: Vec<Option<f64>> =
             cells.iter().map(|cell| if let Cell::Exponent(_, ci, _) = cell { *ci } else { None }).collect();
         let verdicts: Vec<Option<&str>> = cells.iter().map(Cell::verdict).collect();
         json!({
-            "scene": self.scene.name,
+            "scene": self.scene.name(),
             "method": self.method.info().name,
-            "step": self.scene.run.actual_step(),
-            "duration": self.scene.run.duration,
-            "axes": self.axes.iter().map(axis).collect::<Vec<_>>(),
+            "step": self.scene.run().actual_step(),
+            "duration": self.scene.run().duration,
+            "axes": self.axes.iter().map(|range| axis(range)).collect::<Vec<_>>(),
             "exponents": values.chunks(across.cells).collect::<Vec<_>>(),
             "ci": ci.chunks(across.cells).collect::<Vec<_>>(),
             "verdicts": verdicts.chunks(across.cells).collect::<Vec<_>>(),
@@ -187,13 +180,13 @@ impl Map<'_> {
     }
 
     fn text(&self, known: &[f64], cells: &[Cell], failed: usize) -> String {
-        let (run, count, left) = (&self.scene.run, cells.len(), count_left(cells));
+        let (run, count, left) = (self.scene.run(), cells.len(), count_left(cells));
         let (least, largest) =
             known.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
         let counted = |name: &&str| cells.iter().filter(|cell| cell.verdict() == Some(name)).count();
         let verdicts: Vec<String> = VERDICTS.iter().map(|name| format!("{} {name}", counted(name))).collect();
         let lines = [
-            ("scene", format!("{} ({})", self.scene.title, self.scene.name)),
+            ("scene", format!("{} ({})", self.scene.title(), self.scene.name())),
             (
                 "run",
                 format!(

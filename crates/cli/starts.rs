@@ -1,36 +1,13 @@
-use crate::coordinate::Place;
-use scene::SceneSystem;
-use sleigh::{Sleigh, SleighState};
+use scene::{Built, SceneSystem, StartPlace};
+use sleigh::Sleigh;
 use std::f64::consts::TAU;
 
 /// Configuration and velocity of a start.
-pub(crate) type Start<const N: usize> = ([f64; N], [f64; N]);
-
-/// Where the sleigh is.
-pub(crate) fn place<const N: usize, const M: usize>(
-    system: &dyn SceneSystem<N, M>,
-    q: &[f64; N],
-    v: &[f64; N],
-) -> Place {
-    Place { state: system.sleigh_state(q, v), centre: system.centre(q) }
-}
-
-/// The start with the sleigh in another state, and all else as it is.
-pub(crate) fn moved<const N: usize, const M: usize>(
-    system: &dyn SceneSystem<N, M>,
-    (q, v): &Start<N>,
-    state: &SleighState,
-) -> Option<Start<N>> {
-    let (place, velocity) = state.to_coordinates();
-    let with = |x: &[f64; N], first: &[f64; 3]| std::array::from_fn(|i| first.get(i).copied().unwrap_or(x[i]));
-    let (q, v) = (with(q, &place), with(v, &velocity));
-    let xi = system.quasi_velocities(0.0, &q, &v).ok()?;
-    Some((q, system.velocity_of(0.0, &q, &xi).ok()?))
-}
+pub(crate) type Start<const N: usize> = StartPlace<N>;
 
 /// The start with velocities so many times as large that it has that energy (J); none where it cannot.
 pub(crate) fn with_energy<const N: usize, const M: usize>(
-    system: &dyn SceneSystem<N, M>,
+    system: &Built<'_, N, M>,
     (q, v): &Start<N>,
     wanted: f64,
 ) -> Option<Start<N>> {
@@ -43,27 +20,72 @@ pub(crate) fn with_energy<const N: usize, const M: usize>(
     (factor.is_finite() && factor >= 0.0).then(|| (*q, v.map(|v| factor * v)))
 }
 
-/// `count` starts: the first as it is, and others at the same place and of the same energy, with headings and directions of
-/// motion that fill the circle evenly (the sequence R2 of Roberts 2018). Those that the energy does not allow are left out.
+/// The steps of sequences that fill squares and cubes evenly (Roberts 2018): powers of the roots of `x^(d + 1) = x + 1`.
+fn sequence(dimensions: usize) -> impl Fn(u64, usize) -> f64 {
+    let mut root = 2.0_f64;
+    for _ in 0..64 {
+        root = (1.0 + root).powf(1.0 / (dimensions as f64 + 1.0));
+    }
+    move |i, k| (root.powi(-(k as i32 + 1)) * i as f64).fract()
+}
+
+/// `count` starts: the first as it is, and others at the same place and of the same energy, with directions of motion that fill the sphere of
+/// directions evenly; those of a sleigh differ in heading too. Those that the energy does not allow are left out.
 pub(crate) fn spread<const N: usize, const M: usize>(
-    system: &dyn SceneSystem<N, M>,
+    system: &Built<'_, N, M>,
     first: &Start<N>,
-    sleigh: &Sleigh,
+    sleigh: Option<&Sleigh>,
     count: u64,
 ) -> Vec<Start<N>> {
     let wanted = system.energy(0.0, &first.0, &first.1);
-    let state = system.sleigh_state(&first.0, &first.1);
-    let other = |i: u64| {
-        let [turn, direction] =
-            [0.754_877_666_246_692_7, 0.569_840_290_998_053_2].map(|step| TAU * (step * i as f64).fract());
-        let (sin, cos) = direction.sin_cos();
-        let state = SleighState {
-            heading: state.heading + turn,
-            speed: cos / sleigh.mass().sqrt(),
-            turn_rate: sin / sleigh.pivot_inertia().sqrt(),
-            ..state
-        };
-        with_energy(system, &moved(system, first, &state)?, wanted)
+    let turned = |i: u64| match system.sleigh().zip(sleigh) {
+        Some((blade, sleigh)) => turned(system, blade, sleigh, first, i),
+        None => directed(system, first, i),
     };
+    let other = |i: u64| with_energy(system, &turned(i)?, wanted);
     std::iter::once(*first).chain((1..count).filter_map(other)).collect()
+}
+
+/// The sleigh with another heading, moving in another direction.
+fn turned<const N: usize, const M: usize>(
+    system: &Built<'_, N, M>,
+    blade: &dyn SceneSystem<N, M>,
+    sleigh: &Sleigh,
+    first: &Start<N>,
+    i: u64,
+) -> Option<Start<N>> {
+    let [turn, direction] =
+        [0.754_877_666_246_692_7, 0.569_840_290_998_053_2].map(|step| TAU * (step * i as f64).fract());
+    let (sin, cos) = direction.sin_cos();
+    let heading = blade.sleigh_state(&first.0, &first.1).heading + turn;
+    let values = [heading, cos / sleigh.mass().sqrt(), sin / sleigh.pivot_inertia().sqrt()];
+    ["heading", "speed", "turn_rate"]
+        .into_iter()
+        .zip(values)
+        .try_fold(*first, |start, (name, value)| system.with(&start, system.named(name)?, value))
+}
+
+/// The system at the same place, its quasi-velocities in a direction of which the kinetic energy is a sphere.
+fn directed<const N: usize, const M: usize>(system: &Built<'_, N, M>, first: &Start<N>, i: u64) -> Option<Start<N>> {
+    let (n, m) = system.own();
+    let count = n - m;
+    let next = sequence(count);
+    // Two numbers make two that are normally distributed (Box and Muller 1958), and those are in no direction more than in another.
+    let direction: Vec<f64> = (0..count)
+        .map(|k| {
+            let [a, b] = [2 * (k / 2), 2 * (k / 2) + 1].map(|k| next(i, k));
+            let (sin, cos) = (TAU * b).sin_cos();
+            (-2.0 * (1.0 - a).ln()).sqrt() * if k % 2 == 0 { cos } else { sin }
+        })
+        .collect();
+    let q = &first.0;
+    let energy = |xi: &[f64; N]| Some(system.energy(0.0, q, &system.velocity_of(0.0, q, xi).ok()?));
+    let rest = energy(&[0.0; N])?;
+    let unit = |k: usize, sign: f64| std::array::from_fn(|j| if j == k { sign } else { 0.0 });
+    let mut xi = [0.0; N];
+    for (k, part) in direction.iter().enumerate() {
+        let twice = energy(&unit(k, 1.0))? + energy(&unit(k, -1.0))? - 2.0 * rest;
+        xi[k] = if twice > 0.0 { part / twice.sqrt() } else { 0.0 };
+    }
+    Some((*q, system.velocity_of(0.0, q, &xi).ok()?))
 }

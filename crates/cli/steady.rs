@@ -2,8 +2,70 @@
 
 use crate::table;
 use harness::Method;
-use harness::analysis::StepLimit;
+use harness::analysis::{Equilibrium, StepLimit};
+use scene::{Built, Coordinate, SceneSystem};
 use serde_json::{Map, Value, json};
+use sleigh::SleighState;
+
+/// What a scene says of a steady motion, for a program and for a person.
+pub(crate) struct Motion {
+    pub(crate) fields: Map<String, Value>,
+    pub(crate) lines: Vec<(&'static str, String)>,
+}
+
+/// The names of the coordinates of a sleigh.
+const COORDINATES: [&str; 4] = ["x", "y", "heading", "rotor"];
+
+/// A steady motion of a system, in the words of its scene.
+pub(crate) fn motion<const N: usize, const M: usize>(system: &Built<'_, N, M>, e: &Equilibrium<N>) -> Motion {
+    match system {
+        Built::Sleigh(sleigh) => of_sleigh(*sleigh, e),
+        Built::Text(text) => of_text(text.model().coordinates(), e),
+    }
+}
+
+fn fields<const K: usize>(fields: [(&str, Value); K]) -> Map<String, Value> {
+    fields.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+}
+
+fn of_sleigh<const N: usize, const M: usize>(system: &dyn SceneSystem<N, M>, e: &Equilibrium<N>) -> Motion {
+    let SleighState { x, y, heading, speed, turn_rate } = system.sleigh_state(&e.q, &e.v);
+    let rotor_rate = system.rotor(&e.q, &e.v).map(|[_, rate]| rate);
+    let depends_on: Vec<&str> = e.shape.iter().filter_map(|i| COORDINATES.get(*i).copied()).collect();
+    let mut what = format!("{} m/s, {} rad/s", table::number(speed), table::number(turn_rate));
+    if let Some(rate) = rotor_rate {
+        what += &format!(", rotor {} rad/s", table::number(rate));
+    }
+    if !depends_on.is_empty() {
+        let [x, y, heading] = [x, y, heading].map(table::number);
+        what += &format!(", at x = {x} m, y = {y} m, heading {heading} rad");
+    }
+    let fields = fields([
+        ("speed", json!(speed)),
+        ("turn_rate", json!(turn_rate)),
+        ("rotor_rate", json!(rotor_rate)),
+        ("x", json!(x)),
+        ("y", json!(y)),
+        ("heading", json!(heading)),
+        ("depends_on", json!(depends_on)),
+    ]);
+    Motion { fields, lines: vec![("motion", what)] }
+}
+
+/// Its rates by their names, and the coordinates on which the equations depend, with their values.
+fn of_text<const N: usize>(coordinates: &[Coordinate], e: &Equilibrium<N>) -> Motion {
+    let rates: Vec<_> = coordinates.iter().zip(e.v).map(|(of, rate)| (format!("{}'", of.name), rate)).collect();
+    let place = e.shape.iter().filter_map(|&i| Some((coordinates.get(i)?.name.clone(), e.q[i])));
+    let place: Vec<(String, f64)> = place.collect();
+    let object =
+        |of: &[(String, f64)]| -> Value { of.iter().map(|(name, value)| (name.clone(), json!(value))).collect() };
+    let told = |of: &[(String, f64)]| {
+        of.iter().map(|(name, value)| format!("{name} = {}", table::number(*value))).collect::<Vec<_>>().join(", ")
+    };
+    let fields = fields([("rates", object(&rates)), ("depends_on", object(&place))]);
+    let place = if place.is_empty() { "any".to_owned() } else { told(&place) };
+    Motion { fields, lines: vec![("motion", told(&rates)), ("place", place)] }
+}
 
 /// How stable a steady motion is, of the flow and of a method.
 pub(crate) struct Stability {

@@ -2,7 +2,6 @@ use crate::compare::Row;
 use comfy_table::{CellAlignment, Table, presets};
 use harness::Record;
 use lagrangian::Shown;
-use scene::Scene;
 use sleigh::SleighState;
 use std::fmt::Write;
 use std::path::Path;
@@ -170,19 +169,14 @@ fn tabulated(header: &[&str], rows: &[Vec<String>], alignment: CellAlignment) ->
     text
 }
 
-/// The result of one run, for a person.
-pub(crate) fn one_run<const N: usize>(
-    scene: &Scene,
-    record: &Record<N>,
-    end: &SleighState,
-    out: Option<&Path>,
-) -> String {
-    let end = [
-        ("position".to_owned(), format!("x = {} m, y = {} m", number(end.x), number(end.y))),
-        ("heading".to_owned(), format!("{} rad", number(end.heading))),
-        ("velocity".to_owned(), format!("{} m/s along the blade, {} rad/s", number(end.speed), number(end.turn_rate))),
+/// Where the run of a sleigh ends, for a person.
+pub(crate) fn end_of_sleigh(end: &SleighState) -> Vec<(String, String)> {
+    let lines = [
+        ("position", format!("x = {} m, y = {} m", number(end.x), number(end.y))),
+        ("heading", format!("{} rad", number(end.heading))),
+        ("velocity", format!("{} m/s along the blade, {} rad/s", number(end.speed), number(end.turn_rate))),
     ];
-    one_run_of((&scene.title, &scene.name), record, &end, out)
+    lines.map(|(name, value)| (name.to_owned(), value)).to_vec()
 }
 
 /// The result of one run of a scene of that title and name, with lines on where it ends.

@@ -1,7 +1,7 @@
 //! Scenes with trailers: assemblies, whose number of coordinates is not known to the compiler. What `compare` and `precision` make
 //! of them; `run` is in `train_run`.
 
-use crate::compare::{Comparison, Row, better_than, distance};
+use crate::compare::{Comparison, Row, better_than};
 use crate::error::CliError;
 use crate::interrupt::Interrupt;
 use crate::precision::{KnownEnd, Measurement};
@@ -84,7 +84,7 @@ pub(crate) fn compare_scene(
     let report = SceneReport {
         name: scene.name.clone(),
         title: scene.title.clone(),
-        facts: facts::listed(scene, &scene.start, assembly.energy(0.0, start), ""),
+        facts: facts::of_sleigh(scene, &scene.start, assembly.energy(0.0, start), ""),
         columns: table::COLUMNS.iter().map(|column| (*column).to_owned()).collect(),
         rows: rows.iter().map(|row| row.cells.clone()).collect(),
         series,
@@ -133,19 +133,19 @@ pub(crate) fn measure(
     let mut progress = Interruptible { bar, interrupt };
     let (curves, clock) = work_precision(&bench, methods, &limits, &mut progress);
     progress.bar.finish_and_clear();
-    let mut facts = facts::listed(scene, &scene.start, assembly.energy(0.0, start), "");
+    let mut facts = facts::of_sleigh(scene, &scene.start, assembly.energy(0.0, start), "");
     // The steps are those of the ladders, not the scene's.
     facts.pop();
     Ok(Measurement { duration, reference: reference.told(), clock, facts, curves })
 }
 
 /// The end by `dla8`, its steps doubled until two successive ends are no nearer than those before, or it takes too long.
-fn converged(end: &dyn Fn(&Method, u64) -> Result<SleighState, RunError>) -> Result<KnownEnd, CliError> {
+fn converged(end: &dyn Fn(&Method, u64) -> Result<SleighState, RunError>) -> Result<KnownEnd<SleighState>, CliError> {
     /// Of one run.
     const LONG: Duration = Duration::from_secs(10);
     const FEWEST: u64 = 32;
     let dla8 = Method::named("dla8", None)?;
-    let mut best: Option<KnownEnd> = None;
+    let mut best: Option<KnownEnd<SleighState>> = None;
     let (mut before, mut steps, mut failure) = (None, FEWEST, String::new());
     while steps <= FEWEST << 12 {
         let clock = Instant::now();
@@ -175,4 +175,10 @@ fn followers(train: &Train, nodes: &[AssemblyNode]) -> Vec<Vec<[f64; 3]>> {
     let shown = 1..=train.trailers().len().min(SHOWN);
     let blade = |node: &AssemblyNode, k: usize| [node.q[3 * k], node.q[3 * k + 1], node.q[3 * k + 2]];
     shown.map(|k| nodes.iter().map(|node| blade(node, k)).collect()).collect()
+}
+
+/// The larger of the distances in position [m] and in heading [rad].
+fn distance(a: &SleighState, b: &SleighState) -> f64 {
+    let (place, turn) = (f64::hypot(a.x - b.x, a.y - b.y), (a.heading - b.heading).abs());
+    if place > turn || place.is_nan() { place } else { turn }
 }

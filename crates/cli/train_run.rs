@@ -8,7 +8,7 @@ use crate::output::{Asked, Output};
 use crate::progress::Interruptible;
 use crate::run::{identity, of, provenance, tell};
 use crate::train::MOST_NUMBERS;
-use crate::trigger::{Events, Happened, Trigger};
+use crate::trigger::{Events, Happened};
 use crate::{inspect, json, progress, resume, substeps, table, terminal};
 use assembly::State;
 use assembly::parts::Train;
@@ -29,7 +29,8 @@ pub(crate) fn run(
     out: Option<Asked<'_>>,
 ) -> Result<(), CliError> {
     let Some((train, start)) = scene.train()? else { return Ok(()) };
-    let RunArguments { checkpoint, resume, tolerance, .. } = arguments;
+    let RunArguments { checkpoint, resume, tolerance, event, until, .. } = arguments;
+    event.iter().chain(until).try_for_each(|trigger| trigger.on_blade().map(drop))?;
     let mut schedule = inspect::schedule(scene);
     if let Some(tolerance) = tolerance {
         let (assembly, duration) = (&train.assembly, scene.run.duration);
@@ -54,7 +55,7 @@ pub(crate) fn run(
     let made = if checkpoint.is_some() || resume.is_some() {
         request.saved(arguments, &mut progress)
     } else {
-        Ok(request.watched(arguments, &mut progress))
+        request.watched(arguments, &mut progress)
     };
     progress.bar.finish_and_clear();
     let Made { run: Assembled { record, nodes, end, failure }, events, warning } = made?;
@@ -87,7 +88,13 @@ pub(crate) fn run(
         ];
         let told = events.as_ref().map_or("", |events| &events.told);
         let parts = substeps::told(&record);
-        tell(out, &(table::one_run(scene, &record, &first, file) + &parts + &table::aligned(&more) + told))?;
+        tell(
+            out,
+            &(table::one_run_of((&scene.title, &scene.name), &record, &table::end_of_sleigh(&first), file)
+                + &parts
+                + &table::aligned(&more)
+                + told),
+        )?;
     }
     events.iter().for_each(Events::warn);
     // The static record does not know which hinge it was.
@@ -142,17 +149,18 @@ impl Request<'_> {
     }
 
     /// At once, with an eye on events where there are any.
-    fn watched(&self, arguments: &RunArguments, progress: &mut dyn Progress) -> Made {
+    fn watched(&self, arguments: &RunArguments, progress: &mut dyn Progress) -> Result<Made, CliError> {
         let RunArguments { event, until, event_samples, .. } = arguments;
-        let reported = event.iter().map(|trigger| trigger.of_train(self.train, false));
-        let events: Vec<_> = reported.chain(until.iter().map(|trigger| trigger.of_train(self.train, true))).collect();
-        let (assembly, start, watched) =
+        let on_blade = event.iter().chain(until).map(|trigger| trigger.on_blade());
+        let watched = on_blade.collect::<Result<Vec<_>, _>>()?;
+        let is_last = |k: usize| k >= event.len();
+        let events: Vec<_> = watched.iter().enumerate().map(|(k, one)| one.event(self.train, is_last(k))).collect();
+        let (assembly, start, looked_for) =
             (&self.train.assembly, (self.start, self.every), (&events[..], *event_samples));
-        let (run, crossings) = run_assembly_watched(assembly, self.method, self.schedule, start, watched, progress);
-        let triggers: Vec<&Trigger> = event.iter().chain(until).collect();
-        let happened = crossings.iter().filter_map(|crossing| Happened::of_train(self.train, &triggers, crossing));
-        let events = (!triggers.is_empty()).then(|| Events::new(happened, AssemblyCrossing::close(&crossings)));
-        Made { run, events, warning: Ok(()) }
+        let (run, crossings) = run_assembly_watched(assembly, self.method, self.schedule, start, looked_for, progress);
+        let happened = crossings.iter().filter_map(|crossing| Happened::of_train(self.train, &watched, crossing));
+        let events = (!watched.is_empty()).then(|| Events::new(happened, AssemblyCrossing::close(&crossings)));
+        Ok(Made { run, events, warning: Ok(()) })
     }
 }
 

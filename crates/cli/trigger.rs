@@ -1,79 +1,131 @@
+use crate::coordinate::{Coordinate, name_and_value, names};
+use crate::error::CliError;
+use crate::table::number;
 use assembly::parts::Train;
 use dla::{Close, Crossing, Event};
 use harness::{AssemblyCrossing, AssemblyEvent};
-use scene::SceneSystem;
-use serde_json::{Value, json};
+use scene::{Built, QUANTITIES, Quantity, SleighQuantity};
+use serde_json::{Map, Value, json};
 use sleigh::SleighState;
 use std::str::FromStr;
 
-/// A quantity of the sleigh that is to cross a value.
+/// A quantity by its name, and a value that it is to cross.
 #[derive(Debug, Clone)]
 pub(crate) struct Trigger {
     /// As it was written.
     pub(crate) text: String,
-    quantity: Quantity,
+    name: String,
     value: f64,
 }
 
-#[derive(Debug, Clone, Copy)]
-enum Quantity {
-    Number(fn(&SleighState) -> f64),
-    /// The heading, whose values a turn apart are the same.
-    Heading,
-}
-
-const QUANTITIES: [(&str, Quantity); 6] = [
-    ("x", Quantity::Number(|state| state.x)),
-    ("y", Quantity::Number(|state| state.y)),
-    ("heading", Quantity::Heading),
-    ("unwrapped_heading", Quantity::Number(|state| state.heading)),
-    ("speed", Quantity::Number(|state| state.speed)),
-    ("turn_rate", Quantity::Number(|state| state.turn_rate)),
-];
+/// An angle under this and its own name is one whose turns count.
+const UNWRAPPED: &str = "unwrapped_";
+/// The quantities of the first blade of a train.
+const BLADE: &[SleighQuantity] = QUANTITIES.split_at(5).0;
 
 impl FromStr for Trigger {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let accepted = "accepted are x, y, heading, unwrapped_heading, speed or turn_rate with a value, as in speed=0";
-        let (name, value) = text.split_once('=').ok_or(accepted)?;
-        let found = QUANTITIES.iter().find(|(known, _)| *known == name.trim());
-        let (_, quantity) = found.ok_or_else(|| format!("no quantity `{}`; {accepted}", name.trim()))?;
-        let number = value.trim().parse().ok().filter(|value: &f64| value.is_finite());
-        let value = number.ok_or_else(|| format!("`{}` is not a number; {accepted}", value.trim()))?;
-        Ok(Self { text: text.to_owned(), quantity: *quantity, value })
+        let (name, value) = name_and_value(text, "accepted is NAME=VALUE, as in speed=0")?;
+        Ok(Self { text: text.to_owned(), name, value })
     }
 }
 
-impl Trigger {
-    /// The function that is zero where the quantity has the value. Of an angle it is the sine of half of what is missing: it has no
-    /// other zero in a turn, where that of the whole has one half a turn away, and it has the other sign in the next turn.
-    fn value(&self, state: &SleighState) -> f64 {
-        match self.quantity {
-            Quantity::Number(of) => of(state) - self.value,
-            Quantity::Heading => (0.5 * (state.heading - self.value)).sin(),
-        }
+/// What a quantity does at a trigger: the function that is zero there.
+#[derive(Debug, Clone, Copy)]
+struct Function {
+    value: f64,
+    /// Values a turn apart are the same.
+    turns: bool,
+}
+
+impl Function {
+    /// Of an angle it is the sine of half of what is missing: it has no other zero in a turn, where that of the whole has one half a turn
+    /// away, and it has the other sign in the next turn.
+    fn of(self, number: f64) -> f64 {
+        if self.turns { (0.5 * (number - self.value)).sin() } else { number - self.value }
     }
 
     /// Whether the quantity rises where the function does, or falls.
-    fn rises(&self, state: &SleighState, function_rises: bool) -> bool {
-        match self.quantity {
-            Quantity::Number(_) => function_rises,
-            Quantity::Heading => function_rises == ((0.5 * (state.heading - self.value)).cos() > 0.0),
-        }
+    fn rises(self, number: f64, function_rises: bool) -> bool {
+        if self.turns { function_rises == ((0.5 * (number - self.value)).cos() > 0.0) } else { function_rises }
+    }
+}
+
+/// A trigger on the quantity that a system has by its name.
+#[derive(Debug)]
+pub(crate) struct Watched<'a, Q> {
+    trigger: &'a Trigger,
+    quantity: Q,
+    function: Function,
+}
+
+impl Trigger {
+    /// The quantity of its name among those of a system; with the prefix that counts turns where that is an angle.
+    fn find<'a, Q>(
+        &'a self,
+        find: impl Fn(&str) -> Option<(Q, bool)>,
+        known: impl Fn() -> Vec<Quantity>,
+    ) -> Result<Watched<'a, Q>, CliError> {
+        let unwrapped =
+            || find(self.name.strip_prefix(UNWRAPPED)?).filter(|(_, angle)| *angle).map(|(of, _)| (of, false));
+        let Some((quantity, turns)) = find(&self.name).or_else(unwrapped) else {
+            let angle = known().into_iter().find(|quantity| quantity.angle);
+            let turns = angle.map_or_else(String::new, |of| format!(", {UNWRAPPED}{}", of.name));
+            return Err(CliError::Request(format!(
+                "--event, --until: no quantity `{}`; accepted are {}{turns} with a value, as in {}={:?}",
+                self.name,
+                names(known()),
+                known().first().map_or("x", |first| &first.name),
+                self.value,
+            )));
+        };
+        Ok(Watched { trigger: self, quantity, function: Function { value: self.value, turns } })
     }
 
+    /// The trigger on a system.
+    ///
+    /// # Errors
+    /// [`CliError::Request`] where the system has no such quantity.
+    pub(crate) fn on<const N: usize, const M: usize>(
+        &self,
+        system: &Built<'_, N, M>,
+    ) -> Result<Watched<'_, Coordinate>, CliError> {
+        let find = |name: &str| Coordinate::of(system, name).ok().map(|found| (found.clone(), found.quantity.angle));
+        self.find(find, || system.quantities())
+    }
+
+    /// The trigger on the first blade of a train.
+    ///
+    /// # Errors
+    /// As [`on`](Self::on).
+    pub(crate) fn on_blade(&self) -> Result<Watched<'_, SleighQuantity>, CliError> {
+        let find = |name: &str| BLADE.iter().find(|known| known.name == name).map(|known| (*known, known.is_angle()));
+        let quantity =
+            |of: &SleighQuantity| Quantity { name: of.name.to_owned(), unit: of.unit.to_owned(), angle: of.is_angle() };
+        self.find(find, || BLADE.iter().map(quantity).collect())
+    }
+}
+
+impl Watched<'_, Coordinate> {
     /// The event in a system.
-    pub(crate) fn event<'a, const N: usize, const M: usize>(
-        &'a self,
-        system: &'a dyn SceneSystem<N, M>,
-    ) -> Event<'a, N> {
-        Event::new(self.text.clone(), move |_, state| self.value(&system.sleigh_state(&state.unwrapped(), state.v())))
+    pub(crate) fn event<'a, const N: usize, const M: usize>(&'a self, system: &'a Built<'a, N, M>) -> Event<'a, N> {
+        let of = move |t, q: &[f64; N], v: &[f64; N]| self.function.of(self.quantity.value(system, t, q, v));
+        Event::new(self.trigger.text.clone(), move |t, state| of(t, &state.unwrapped(), state.v()))
+    }
+}
+
+impl Watched<'_, SleighQuantity> {
+    fn number(&self, state: SleighState) -> f64 {
+        self.quantity.value(state, [f64::NAN; 2])
     }
 
     /// The event of the first blade of a train.
-    pub(crate) fn of_train<'a>(&'a self, train: &'a Train, terminal: bool) -> AssemblyEvent<'a> {
-        AssemblyEvent::new(self.text.clone(), terminal, move |_, state| self.value(&train.blade(state, 0)))
+    pub(crate) fn event<'a>(&'a self, train: &'a Train, terminal: bool) -> AssemblyEvent<'a> {
+        AssemblyEvent::new(self.trigger.text.clone(), terminal, move |_, state| {
+            self.function.of(self.number(train.blade(state, 0)))
+        })
     }
 }
 
@@ -84,54 +136,52 @@ pub(crate) struct Happened<'a> {
     within: f64,
     spacing: f64,
     rising: bool,
-    state: SleighState,
+    state: Map<String, Value>,
 }
 
 impl<'a> Happened<'a> {
     /// In a system.
     pub(crate) fn of<const N: usize, const M: usize>(
-        system: &dyn SceneSystem<N, M>,
-        triggers: &[&'a Trigger],
+        system: &Built<'_, N, M>,
+        watched: &[Watched<'a, Coordinate>],
         crossing: &Crossing<N>,
     ) -> Option<Self> {
         let Crossing { event, t, within, spacing, rising, ref state, .. } = *crossing;
-        let state = system.sleigh_state(&state.unwrapped(), state.v());
-        triggers.get(event).map(|trigger| Self::new(trigger, [t, within, spacing], rising, state))
+        let Watched { trigger, quantity, function } = watched.get(event)?;
+        let (q, v) = (state.unwrapped(), state.v());
+        let rising = function.rises(quantity.value(system, t, &q, v), rising);
+        let state = system.state(t, &q, v).into_iter().map(|(quantity, value)| (quantity.name, json!(value))).collect();
+        Some(Self { name: &trigger.text, t, within, spacing, rising, state })
     }
 
     /// Of the first blade of a train.
-    pub(crate) fn of_train(train: &Train, triggers: &[&'a Trigger], crossing: &AssemblyCrossing) -> Option<Self> {
+    pub(crate) fn of_train(
+        train: &Train,
+        watched: &[Watched<'a, SleighQuantity>],
+        crossing: &AssemblyCrossing,
+    ) -> Option<Self> {
         let AssemblyCrossing { event, t, within, spacing, rising, ref state, .. } = *crossing;
-        let state = train.blade(state, 0);
-        triggers.get(event).map(|trigger| Self::new(trigger, [t, within, spacing], rising, state))
-    }
-
-    fn new(trigger: &'a Trigger, [t, within, spacing]: [f64; 3], rising: bool, state: SleighState) -> Self {
-        let rising = trigger.rises(&state, rising);
-        Self { name: &trigger.text, t, within, spacing, rising, state }
+        let of = watched.get(event)?;
+        let blade = train.blade(state, 0);
+        let rising = of.function.rises(of.number(blade), rising);
+        let value = |known: &SleighQuantity| (known.name.to_owned(), json!(known.value(blade, [f64::NAN; 2])));
+        Some(Self { name: &of.trigger.text, t, within, spacing, rising, state: BLADE.iter().map(value).collect() })
     }
 
     /// In the words of a scene, for `run --json`.
-    pub(crate) fn json(&self) -> Value {
+    pub(crate) fn json(self) -> Value {
         let Self { name, t, within, spacing, rising, state } = self;
-        json!({
-            "event": name,
-            "t": t,
-            "within": within,
-            "spacing": spacing,
-            "rising": rising,
-            "x": state.x,
-            "y": state.y,
-            "heading": state.heading,
-            "speed": state.speed,
-            "turn_rate": state.turn_rate,
-        })
+        let mut object = json!({"event": name, "t": t, "within": within, "spacing": spacing, "rising": rising});
+        if let Value::Object(fields) = &mut object {
+            fields.extend(state);
+        }
+        object
     }
 
     /// For a person.
     pub(crate) fn told(&self) -> String {
         let how = if self.rising { "rising" } else { "falling" };
-        format!("event      {}, {how}, at t = {} s\n", self.name, crate::table::number(self.t))
+        format!("event      {}, {how}, at t = {} s\n", self.name, number(self.t))
     }
 }
 
@@ -144,7 +194,8 @@ pub(crate) struct Events {
 
 impl Events {
     pub(crate) fn new<'a>(happened: impl Iterator<Item = Happened<'a>>, close: Option<Close>) -> Self {
-        let (values, told): (Vec<Value>, Vec<String>) = happened.map(|event| (event.json(), event.told())).unzip();
+        let told_and_value = |event: Happened<'a>| (event.told(), event.json());
+        let (told, values): (Vec<String>, Vec<Value>) = happened.map(told_and_value).unzip();
         Self { values, told: told.concat(), close }
     }
 

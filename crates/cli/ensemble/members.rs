@@ -3,7 +3,7 @@ use dla::Schedule;
 use harness::analysis::{LyapunovRequest, lyapunov};
 use harness::ensemble::{Summary, Watching, summarise, watch};
 use harness::{Kind, Method};
-use scene::{LANES, LaneMethod, Scene, SceneSystem, Sweep, Visitor, in_lanes};
+use scene::{Built, LANES, LaneMethod, Scene, Sweep, Visitor, in_lanes};
 use sleigh::SleighState;
 use std::array::from_fn;
 use std::ops::Range;
@@ -179,8 +179,8 @@ struct Alone<'a> {
 impl Visitor for Alone<'_> {
     type Output = Told;
 
-    fn visit<const N: usize, const M: usize>(self, system: &dyn SceneSystem<N, M>, q: [f64; N], v: [f64; N]) -> Told {
-        let of = |q: &[f64; N], v: &[f64; N]| words(&system.sleigh_state(q, v));
+    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Told {
+        let of = |q: &[f64; N], v: &[f64; N]| from_fn(|k| system.value(k, 0.0, q, v));
         let watching = Watching { schedule: self.schedule, every: self.every, of: &of };
         let (summary, failure) = summarise(&system, self.method, (q, v), &watching);
         (Some(summary), failure.map(|failure| failure.to_string()))
@@ -195,16 +195,11 @@ struct Exponent<'a> {
 impl Visitor for Exponent<'_> {
     type Output = Result<f64, String>;
 
-    fn visit<const N: usize, const M: usize>(
-        self,
-        system: &dyn SceneSystem<N, M>,
-        q: [f64; N],
-        v: [f64; N],
-    ) -> Self::Output {
+    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
         let settle = self.schedule.steps / 10;
         let schedule = Schedule { steps: self.schedule.steps - settle, ..self.schedule };
         let request = LyapunovRequest { schedule, settle, exponents: Some(1), q, v };
-        let found = lyapunov((system, &system), self.method, &request, &mut ()).map_err(|error| error.to_string())?;
+        let found = lyapunov((&*system, &system), self.method, &request, &mut ()).map_err(|error| error.to_string())?;
         match found.failure {
             Some(failure) => Err(failure.to_string()),
             None => Ok(found.exponents[0]),

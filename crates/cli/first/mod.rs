@@ -3,7 +3,7 @@
 mod words;
 
 use crate::args::JobArguments;
-use crate::compare::{Comparison, Row, compare_sleigh, methods, unless_interrupted};
+use crate::compare::{Comparison, Row, compare_scene, methods, unless_interrupted};
 use crate::error::CliError;
 use crate::inspect::method_names;
 use crate::interrupt::Interrupt;
@@ -11,7 +11,7 @@ use crate::saves::Saves;
 use crate::{files, job, precision, table, terminal};
 use harness::precision::{Cheapest, cheapest};
 use harness::report::{self, Report};
-use scene::Scene;
+use scene::AnyScene;
 use std::path::PathBuf;
 use words::Answers;
 pub(crate) use words::{Energy, slips};
@@ -41,16 +41,16 @@ pub(crate) fn first(arguments: &JobArguments) -> Result<(), CliError> {
         return job::everything(&folder, arguments.force);
     }
     let names = method_names();
-    let scene = Scene::load(SCENE, &names)?.with_overrides(None, Some(STEP), Some(DURATION), None, &names)?;
+    let scene = AnyScene::load(SCENE, &names)?.with_overrides(None, Some(STEP), Some(DURATION), None, &names)?;
     let methods = methods(&METHODS, None)?;
     let interrupt = Interrupt::listen();
     let Comparison { rows, mut report, interrupted } =
-        compare_sleigh(&scene, &methods, &mut Saves::default(), &interrupt)?;
+        compare_scene(&scene, &methods, &mut Saves::default(), &interrupt)?;
     let answers: Vec<Answers> = rows.iter().map(|row| Answers::of(&row.json)).collect();
     let mut sentences = words::sentences(&answers);
     if interrupted.is_none() {
         let mut motion = scene.clone();
-        motion.run.duration = MOTION;
+        motion.run_mut().duration = MOTION;
         let measured = precision::measure(&motion, &methods, LONGEST, false, &interrupt)?;
         let priced = |price: &Cheapest| PRICED.contains(&price.error);
         let prices: Vec<Cheapest> = cheapest(&measured.curves).into_iter().filter(priced).collect();

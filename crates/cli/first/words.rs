@@ -2,7 +2,7 @@
 
 use crate::table::{aligned, number};
 use harness::precision::Cheapest;
-use scene::Scene;
+use scene::AnyScene;
 use serde_json::Value;
 
 /// The columns, each a question.
@@ -149,9 +149,9 @@ fn duration(seconds: f64) -> String {
 }
 
 /// What is compared.
-pub(crate) fn heading(scene: &Scene) -> String {
-    let run = &scene.run;
-    format!("{}, {} s in steps of {} s", scene.title, number(run.duration), number(run.step))
+pub(crate) fn heading(scene: &AnyScene) -> String {
+    let run = scene.run();
+    format!("{}, {} s in steps of {} s", scene.title(), number(run.duration), number(run.step))
 }
 
 /// Who holds the constraint, and who drifts, how fast.

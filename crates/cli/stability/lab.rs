@@ -2,7 +2,7 @@ use crate::error::CliError;
 use dla::{Schedule, State};
 use harness::stability::{Claim, Finding, Recorded, Recorder, Trial, VALUES, check, claims};
 use harness::{Kind, Method, integrate_from};
-use scene::{RunSettings, Scene, SceneEffect, SceneSystem, Visitor};
+use scene::{Built, RunSettings, Scene, SceneEffect, Visitor};
 use sleigh::{Exact, Sleigh, SleighError, SleighState};
 
 /// What the cases look at in a scene, by its place among the values of a node.
@@ -145,19 +145,15 @@ struct Record<'a> {
 impl Visitor for Record<'_> {
     type Output = Recorded;
 
-    fn visit<const N: usize, const M: usize>(
-        self,
-        system: &dyn SceneSystem<N, M>,
-        q: [f64; N],
-        v: [f64; N],
-    ) -> Recorded {
+    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Recorded {
         let Self { method, setup } = self;
+        // After place and heading are speed and turn rate.
+        let rotor = system.named("rotor_rate");
         let look = |state: &State<N>| -> [f64; VALUES] {
             // The velocities in the angles that the method sees, the place with all its turns.
-            let now = system.sleigh_state(state.q(), state.v());
+            let now = |k: usize| system.value(k, 0.0, state.q(), state.v());
             let [x, y, heading] = [0, 1, 2].map(|i| state.unwrapped()[i]);
-            let rotor = system.rotor(state.q(), state.v()).map_or(0.0, |[_, rate]| rate);
-            [x, y, heading, now.speed, now.turn_rate, rotor]
+            [x, y, heading, now(3), now(4), rotor.map_or(0.0, now)]
         };
         let mut state = State::new(q, v, system.angles());
         let mut recorder = Recorder::new(setup.every, &look);

@@ -14,6 +14,7 @@
 //! # Ok::<(), scene::SceneError>(())
 //! ```
 
+mod built;
 mod bundled;
 mod document;
 mod draw;
@@ -39,9 +40,10 @@ mod train;
 mod variation;
 mod written;
 
+pub use self::built::{Built, Place as StartPlace, QUANTITIES, Quantity, SleighQuantity, text_quantities};
 pub use self::scene::Scene;
-pub use self::text::{AnyScene, TextScene};
-pub use ::text::{AnyText, Coordinate, Model, Moved, Started as StartedText, TextMechanics, with_text};
+pub use self::text::{AnyScene, BuildError, TextScene};
+pub use ::text::{AnyText, Coordinate, Model, Moved, TextMechanics};
 pub use bundled::{Bundled, SCHEMA, bundled, bundled_texts};
 pub use effect::{EFFECTS, HillSpec, PathSpec, SceneEffect, Shape, TimeSpec, TrailersSpec};
 pub use error::SceneError;

@@ -1,8 +1,8 @@
-use crate::{Scene, SceneEffect};
+use crate::{Built, Scene, SceneEffect};
 use dla::{Schedule, fitted};
 use sleigh::effects::{Bowl, Drag, EggCrate, Hills, MovingMass, Slope, Thrust, Torque};
 use sleigh::{Exact, Guide, Guided, SleighError};
-use systems::{AnyEffect, AnySystem, Guiding, Lane, LaneMethod, LaneRun, Rotor, SceneSystem, Started};
+use systems::{AnyEffect, AnySystem, Guiding, Lane, LaneMethod, LaneRun, Rotor, Started};
 
 /// What is to be done with the system of a scene, whatever its shape.
 pub trait Visitor {
@@ -10,23 +10,18 @@ pub trait Visitor {
     type Output;
 
     /// Receives the system and its start.
-    fn visit<const N: usize, const M: usize>(
-        self,
-        system: &dyn SceneSystem<N, M>,
-        q: [f64; N],
-        v: [f64; N],
-    ) -> Self::Output;
+    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output;
 }
 
 /// Hands a system to a visitor.
 fn handed<V: Visitor>(system: AnySystem, visitor: V) -> V::Output {
     match system {
-        AnySystem::Sleigh(Started { system, q, v }) => visitor.visit(&*system, q, v),
-        AnySystem::One(Started { system, q, v }) => visitor.visit(&*system, q, v),
-        AnySystem::Two(Started { system, q, v }) => visitor.visit(&*system, q, v),
-        AnySystem::Rotor(Started { system, q, v }) => visitor.visit(&*system, q, v),
-        AnySystem::RotorOne(Started { system, q, v }) => visitor.visit(&*system, q, v),
-        AnySystem::RotorTwo(Started { system, q, v }) => visitor.visit(&*system, q, v),
+        AnySystem::Sleigh(Started { system, q, v }) => visitor.visit(Built::Sleigh(&*system), q, v),
+        AnySystem::One(Started { system, q, v }) => visitor.visit(Built::Sleigh(&*system), q, v),
+        AnySystem::Two(Started { system, q, v }) => visitor.visit(Built::Sleigh(&*system), q, v),
+        AnySystem::Rotor(Started { system, q, v }) => visitor.visit(Built::Sleigh(&*system), q, v),
+        AnySystem::RotorOne(Started { system, q, v }) => visitor.visit(Built::Sleigh(&*system), q, v),
+        AnySystem::RotorTwo(Started { system, q, v }) => visitor.visit(Built::Sleigh(&*system), q, v),
     }
 }
 
@@ -36,12 +31,7 @@ struct Jumps(f64);
 impl Visitor for Jumps {
     type Output = Vec<f64>;
 
-    fn visit<const N: usize, const M: usize>(
-        self,
-        system: &dyn SceneSystem<N, M>,
-        _q: [f64; N],
-        _v: [f64; N],
-    ) -> Self::Output {
+    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, _q: [f64; N], _v: [f64; N]) -> Vec<f64> {
         system.jump_times(0.0, self.0)
     }
 }
@@ -52,12 +42,7 @@ struct Energy;
 impl Visitor for Energy {
     type Output = f64;
 
-    fn visit<const N: usize, const M: usize>(
-        self,
-        system: &dyn SceneSystem<N, M>,
-        q: [f64; N],
-        v: [f64; N],
-    ) -> Self::Output {
+    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> f64 {
         system.smooth_piece(0.0).energy(0.0, &q, &v)
     }
 }
@@ -77,8 +62,8 @@ impl Scene {
     /// As [`visit`](Self::visit).
     pub fn visit_free<V: Visitor>(&self, visitor: V) -> Result<Option<V::Output>, SleighError> {
         Ok(match self.system()? {
-            AnySystem::Sleigh(Started { system, q, v }) => Some(visitor.visit(&*system, q, v)),
-            AnySystem::Rotor(Started { system, q, v }) => Some(visitor.visit(&*system, q, v)),
+            AnySystem::Sleigh(Started { system, q, v }) => Some(visitor.visit(Built::Sleigh(&*system), q, v)),
+            AnySystem::Rotor(Started { system, q, v }) => Some(visitor.visit(Built::Sleigh(&*system), q, v)),
             _ => None,
         })
     }

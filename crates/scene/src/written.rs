@@ -1,4 +1,4 @@
-use crate::{Scene, SceneEffect};
+use crate::{RunSettings, Scene, SceneEffect};
 use serde::Serialize;
 
 /// A scene as its file has it.
@@ -29,12 +29,18 @@ struct StartTable {
 }
 
 #[derive(Serialize)]
-struct RunTable<'s> {
+pub(crate) struct RunTable<'s> {
     method: &'s str,
     #[serde(skip_serializing_if = "Option::is_none")]
     alpha: Option<f64>,
     step: f64,
     duration: f64,
+}
+
+impl<'s> RunTable<'s> {
+    pub(crate) fn of(run: &'s RunSettings) -> Self {
+        Self { method: &run.method, alpha: run.alpha, step: run.step, duration: run.duration }
+    }
 }
 
 impl Scene {
@@ -54,7 +60,7 @@ impl Scene {
                 speed: start.speed,
                 turn_rate: start.turn_rate,
             },
-            run: RunTable { method: &run.method, alpha: run.alpha, step: run.step, duration: run.duration },
+            run: RunTable::of(run),
             effects,
         })
     }

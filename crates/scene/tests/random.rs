@@ -3,7 +3,7 @@
 
 use dla::{Dla, Piece, Schedule, State, drive_part, piece_by_piece};
 use proptest::prelude::*;
-use scene::{HillSpec, PathSpec, RunSettings, Scene, SceneEffect, SceneError, SceneSystem, Shape, TimeSpec, Visitor};
+use scene::{Built, HillSpec, PathSpec, RunSettings, Scene, SceneEffect, SceneError, Shape, TimeSpec, Visitor};
 use sleigh::{Sleigh, SleighState};
 
 const METHODS: &[&str] = &["dla", "dla-alpha", "rk4"];
@@ -137,15 +137,10 @@ struct AFewSteps(Schedule);
 impl Visitor for AFewSteps {
     type Output = Result<(), TestCaseError>;
 
-    fn visit<const N: usize, const M: usize>(
-        self,
-        system: &dyn SceneSystem<N, M>,
-        q: [f64; N],
-        v: [f64; N],
-    ) -> Self::Output {
+    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
         let schedule = Schedule { steps: self.0.steps.min(10), ..self.0 };
         let mut state = State::new(q, v, system.angles());
-        let run = piece_by_piece(system, &schedule, &mut state, |piece, Piece { steps, schedule }, state| {
+        let run = piece_by_piece(&*system, &schedule, &mut state, |piece, Piece { steps, schedule }, state| {
             drive_part(piece, &mut Dla::midpoint(), &schedule, steps, state, ())
         });
         match run {

@@ -1,6 +1,6 @@
 use crate::power::{self, SceneBody, SceneEffects};
 use crate::{AnyEffect, Column, EffectPower, columns};
-use dla::{FullMechanics, Node, OwnMethods, Stepper, Subject};
+use dla::{FullMechanics, Node, Stepper};
 use lagrangian::{Piecewise, System, With};
 use sleigh::closed::ClosedForm;
 use sleigh::{ClosedMap, Flywheel, Guided, Sleigh, SleighError, SleighState, TimeFunction};
@@ -34,22 +34,9 @@ pub trait SceneSystem<const N: usize, const M: usize>: FullMechanics<N, M> + Syn
         columns::row_of_sleigh(self, node)
     }
 
-    /// As [`OwnMethods::closed_map`]: where the system is a sleigh, free or with forces, or has a rotor on a free bearing.
+    /// As [`closed_map`](dla::OwnMethods::closed_map): where the system is a sleigh, free or with forces, or has a rotor on a free bearing.
     fn closed_map<'a>(&'a self, _t: f64, general: Stepper<'a, N, M>) -> Stepper<'a, N, M> {
         general
-    }
-}
-
-impl<const N: usize, const M: usize> OwnMethods<N, M> for &dyn SceneSystem<N, M> {
-    fn closed_map<'a>(&'a self, t: f64, general: Stepper<'a, N, M>) -> Stepper<'a, N, M> {
-        (**self).closed_map(t, general)
-    }
-}
-
-/// With the integrators of the sleigh's own.
-impl<'a, const N: usize, const M: usize> From<&'a &'a dyn SceneSystem<N, M>> for Subject<'a, N, M> {
-    fn from(system: &'a &'a dyn SceneSystem<N, M>) -> Self {
-        Self { system: *system, own: system }
     }
 }
 

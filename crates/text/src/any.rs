@@ -1,5 +1,5 @@
 use crate::{Model, Start, TextSystem};
-use dla::{FullMechanics, Subject};
+use dla::FullMechanics;
 use std::sync::Arc;
 
 /// A system of text has at most so many coordinates.
@@ -16,13 +16,6 @@ pub trait TextMechanics<const N: usize, const M: usize>: FullMechanics<N, M> + S
 impl<const N: usize, const M: usize> TextMechanics<N, M> for TextSystem<N, M> {
     fn model(&self) -> &Model {
         TextSystem::model(self)
-    }
-}
-
-/// It brings no integrators of its own.
-impl<'a, const N: usize, const M: usize> From<&'a dyn TextMechanics<N, M>> for Subject<'a, N, M> {
-    fn from(system: &'a dyn TextMechanics<N, M>) -> Self {
-        Self { system, own: &() }
     }
 }
 

@@ -118,6 +118,18 @@ impl Model {
         told
     }
 
+    /// One of the outputs at a state; none of a number beyond them.
+    #[must_use]
+    pub fn output(&self, k: usize, t: f64, q: &[f64], v: &[f64]) -> Option<f64> {
+        let mut told = (k < self.outputs.len()).then_some(0.0)?;
+        self.told.evaluate(self.coordinates.len(), Point { t, q, v }, |i, x| {
+            if i == k {
+                told = x;
+            }
+        });
+        Some(told)
+    }
+
     /// The energy `v . L_v - L` (J).
     #[must_use]
     pub fn energy(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {

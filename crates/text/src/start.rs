@@ -130,6 +130,20 @@ impl Model {
         Ok(Start { q: place.as_slice().to_vec(), v: rate.as_slice().to_vec(), moved })
     }
 
+    /// The rates of an admissible state with that of the coordinate `i` changed to a value, the others as near to what they were as the
+    /// constraints admit, in the kinetic metric at time zero; none where they do not admit it.
+    #[must_use]
+    pub fn with_rate(&self, q: &[f64], v: &[f64], i: usize, value: f64) -> Option<Vec<f64>> {
+        let mut rate = DVector::from_column_slice(v);
+        *rate.as_mut_slice().get_mut(i)? = value;
+        let others: Vec<usize> = (0..v.len()).filter(|&k| k != i).collect();
+        let ((a, b), mass) = (self.rows_at(0.0, q), self.mass_at(0.0, q, v));
+        for _ in 0..2 {
+            move_onto(&a, &b, &mass, &mut rate, &others);
+        }
+        missed(&a, &b, &rate).is_none().then(|| rate.as_slice().to_vec())
+    }
+
     /// Moves some coordinates until the constraints on positions are met; whether they are.
     fn onto_positions(&self, q: &mut DVector<f64>, moving: &[usize]) -> bool {
         const TRIES: usize = 50;

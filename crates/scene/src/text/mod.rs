@@ -3,14 +3,18 @@
 mod faults;
 mod start;
 mod words;
+mod written;
 
 use crate::document::Document;
 use crate::error::SceneError;
 use crate::scene::{name_of, opened};
 use crate::table::Table;
-use crate::{Overrides, RunSettings, Scene};
-use ::text::{AnyText, Model, Start, Words};
+use crate::{Built, Overrides, RunSettings, Scene, Visitor};
+use ::sleigh::SleighError;
+use ::text::{AnyText, Model, Start, Words, with_text};
+use dla::Schedule;
 use std::sync::Arc;
+use thiserror::Error;
 use toml::de::DeTable;
 
 /// A scene of a system of text: its texts, their meaning, its start and its run, all checked.
@@ -37,6 +41,17 @@ pub enum AnyScene {
     Sleigh(Box<Scene>),
     /// A system of text.
     Text(Box<TextScene>),
+}
+
+/// Why a scene has no system.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum BuildError {
+    /// Of a sleigh.
+    #[error(transparent)]
+    Sleigh(#[from] SleighError),
+    /// A system of text is too large.
+    #[error("the system has more coordinates than there is room for")]
+    NoRoom,
 }
 
 impl AnyScene {
@@ -109,6 +124,46 @@ impl AnyScene {
         }
     }
 
+    /// Builds the system of the scene and hands it to the visitor.
+    ///
+    /// # Errors
+    /// [`BuildError`] where there is no such system.
+    pub fn visit<V: Visitor>(&self, visitor: V) -> Result<V::Output, BuildError> {
+        match self {
+            Self::Sleigh(scene) => Ok(scene.visit(visitor)?),
+            Self::Text(scene) => scene.visit(visitor),
+        }
+    }
+
+    /// The same of a scene whose motion is its own; `None` of a sleigh of which velocities are imposed.
+    ///
+    /// # Errors
+    /// As [`visit`](Self::visit).
+    pub fn visit_free<V: Visitor>(&self, visitor: V) -> Result<Option<V::Output>, BuildError> {
+        match self {
+            Self::Sleigh(scene) => Ok(scene.visit_free(visitor)?),
+            Self::Text(scene) => scene.visit(visitor).map(Some),
+        }
+    }
+
+    /// Whether anything in the scene is a function of time.
+    #[must_use]
+    pub fn depends_on_time(&self) -> bool {
+        match self {
+            Self::Sleigh(scene) => scene.depends_on_time(),
+            Self::Text(scene) => scene.model.depends_on_time(),
+        }
+    }
+
+    /// The steps of the run, as [`Scene::schedule`].
+    #[must_use]
+    pub fn schedule(&self) -> Schedule {
+        match self {
+            Self::Sleigh(scene) => scene.schedule(),
+            Self::Text(scene) => Schedule { t0: 0.0, step: scene.run.actual_step(), steps: scene.run.steps() },
+        }
+    }
+
     /// How to run it.
     #[must_use]
     pub fn run(&self) -> &RunSettings {
@@ -174,9 +229,12 @@ impl TextScene {
         Ok(Self { name, title, words, model: Arc::new(model), start, run })
     }
 
-    /// The system with its start; a scene that was read has one.
-    #[must_use]
-    pub fn system(&self) -> Option<AnyText> {
-        AnyText::new(&self.model, &self.start)
+    /// Builds the system and hands it to the visitor.
+    ///
+    /// # Errors
+    /// [`BuildError::NoRoom`] of a scene that was not read from a text: sizes were checked there.
+    pub fn visit<V: Visitor>(&self, visitor: V) -> Result<V::Output, BuildError> {
+        let system = AnyText::new(&self.model, &self.start).ok_or(BuildError::NoRoom)?;
+        Ok(with_text!(system, started => visitor.visit(Built::Text(&*started.system), started.q, started.v)))
     }
 }

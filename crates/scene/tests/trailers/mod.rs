@@ -1,5 +1,5 @@
 //! Scenes with trailers: assemblies.
-use scene::{Scene, SceneSystem, Visitor};
+use scene::{Built, Scene, Visitor};
 use sleigh::SleighError;
 
 const METHODS: &[&str] = &["dla"];
@@ -11,7 +11,7 @@ struct Nothing;
 impl Visitor for Nothing {
     type Output = ();
 
-    fn visit<const N: usize, const M: usize>(self, _system: &dyn SceneSystem<N, M>, _q: [f64; N], _v: [f64; N]) {}
+    fn visit<const N: usize, const M: usize>(self, _system: Built<'_, N, M>, _q: [f64; N], _v: [f64; N]) {}
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use crate::effects::{hand, tools};
 use dla::{Composition, Dla, Form, Schedule};
-use scene::{Scene, SceneSystem, Visitor};
+use scene::{Built, Scene, Visitor};
 
 /// `golden/effects.py` writes it and says how.
 const GOLDEN: &str = include_str!("golden/effects.txt");
@@ -27,19 +27,15 @@ struct ByDla<'a> {
 impl Visitor for ByDla<'_> {
     type Output = ([f64; 7], Vec<f64>);
 
-    fn visit<const N: usize, const M: usize>(
-        self,
-        system: &dyn SceneSystem<N, M>,
-        q: [f64; N],
-        v: [f64; N],
-    ) -> Self::Output {
+    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
         let end = self.scene.run.duration;
         let schedule = Schedule { t0: 0.0, step: self.step, steps: (end / self.step).round() as u64 };
         let mut method = Composition::fifteen8(Dla::midpoint().solved(self.form));
-        let state = tools::run(system, &mut method, &schedule, (q, v), ());
+        let state = tools::run(&*system, &mut method, &schedule, (q, v), ());
         let (q, v) = (state.unwrapped(), *state.v());
-        let at = system.sleigh_state(&q, &v);
-        let [psi, rate] = system.rotor(&q, &v).unwrap_or([0.0; 2]);
+        let sleigh = system.sleigh().unwrap();
+        let at = sleigh.sleigh_state(&q, &v);
+        let [psi, rate] = sleigh.rotor(&q, &v).unwrap_or([0.0; 2]);
         ([at.x, at.y, at.heading, at.speed, at.turn_rate, psi, rate], system.jump_times(0.0, end))
     }
 }

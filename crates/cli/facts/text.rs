@@ -1,14 +1,5 @@
-use super::told;
 use crate::table::number;
-use scene::TextScene;
-
-/// What a scene is, for `noslip check`.
-pub(crate) fn described(scene: &TextScene) -> Vec<(String, String)> {
-    told::note_moves(scene);
-    let mut facts = listed(scene);
-    facts.push(("method".to_owned(), scene.run.method.clone()));
-    facts
-}
+use scene::{Model, Quantity, TextScene};
 
 /// What a scene says, for a person: names and values.
 pub(crate) fn listed(scene: &TextScene) -> Vec<(String, String)> {
@@ -50,7 +41,7 @@ pub(crate) fn listed(scene: &TextScene) -> Vec<(String, String)> {
     let numbers = |what: &[(String, String)]| {
         what.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ")
     };
-    let state = told::lines(model, 0.0, &start.q, &start.v);
+    let state = state(model, &start.q, &start.v);
     let n = model.coordinates().len();
     facts.push(("start", numbers(&state[..n])));
     facts.push(("start velocity", numbers(&state[n..2 * n])));
@@ -63,4 +54,12 @@ pub(crate) fn listed(scene: &TextScene) -> Vec<(String, String)> {
         format!("{} s in {} steps of {} s", number(run.duration), run.steps(), number(run.actual_step())),
     ));
     facts.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+}
+
+/// Coordinates, rates and outputs, with their units.
+fn state(model: &Model, q: &[f64], v: &[f64]) -> Vec<(String, String)> {
+    let line = |of: &Quantity, x: f64| (of.name.clone(), format!("{} {}", number(x), of.unit).trim_end().to_owned());
+    let outputs = model.told(0.0, q, v);
+    let values = q.iter().chain(v).chain(&outputs);
+    scene::text_quantities(model).iter().zip(values).map(|(of, x)| line(of, *x)).collect()
 }

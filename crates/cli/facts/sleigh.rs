@@ -1,36 +1,28 @@
 use crate::table::number;
 use dla::{State, View};
-use scene::{PathSpec, Scene, SceneEffect, SceneSystem, Shape, TimeSpec, TrailersSpec, Visitor};
-use sleigh::SleighState;
+use scene::{Built, PathSpec, Scene, SceneEffect, Shape, TimeSpec, TrailersSpec, Visitor};
+use sleigh::{SleighError, SleighState};
 
-/// What a scene says, for a person: names and values.
-pub(crate) struct Facts<'a>(pub(crate) &'a Scene);
+/// The state that a scene starts in, and its energy (J).
+struct Begins;
 
-impl Visitor for Facts<'_> {
-    type Output = Vec<(String, String)>;
+impl Visitor for Begins {
+    type Output = Option<(SleighState, f64)>;
 
-    fn visit<const N: usize, const M: usize>(
-        self,
-        system: &dyn SceneSystem<N, M>,
-        q: [f64; N],
-        v: [f64; N],
-    ) -> Self::Output {
-        of(self.0, system, &State::new(q, v, system.angles()))
+    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
+        let first = system.sleigh()?.scene_piece(0.0);
+        let state = State::new(q, v, system.angles());
+        let energy = View { system: &*first, k: 0, t: 0.0, state: &state }.energy();
+        Some((first.sleigh_state(state.q(), state.v()), energy))
     }
 }
 
-/// The facts of a scene, of its system and the state that it starts in.
-pub(crate) fn of<const N: usize, const M: usize>(
-    scene: &Scene,
-    system: &dyn SceneSystem<N, M>,
-    state: &State<N>,
-) -> Vec<(String, String)> {
-    let first = system.scene_piece(0.0);
-    let start = first.sleigh_state(state.q(), state.v());
-    let energy = View { system: &*first, k: 0, t: 0.0, state }.energy();
+/// The facts of a scene, with the state that it starts in.
+pub(crate) fn of(scene: &Scene) -> Result<Vec<(String, String)>, SleighError> {
+    let (start, energy) = scene.visit(Begins)?.unwrap_or((scene.start, f64::NAN));
     let imposed = scene.effects.iter().map(SceneEffect::kind).find(|kind| matches!(*kind, "servo" | "tracer"));
     let imposed = imposed.map_or_else(String::new, |kind| format!(", as the {kind} imposes it"));
-    listed(scene, &start, energy, &imposed)
+    Ok(listed(scene, &start, energy, &imposed))
 }
 
 /// The facts of a scene that starts in that state of its first blade, with that energy (J).

@@ -1,0 +1,112 @@
+//! What is the same of a run wherever its rows go, and whichever kind its scene is of.
+
+use crate::coordinate::Coordinate;
+use crate::error::CliError;
+use crate::table::number;
+use crate::trigger::{Events, Happened, Trigger, Watched};
+use crate::{json, substeps};
+use dla::{Event, Observer, Schedule};
+use harness::{Method, Progress, Record, Request, recommend, run_observed};
+use scene::{AnyScene, Built, StartPlace};
+use serde_json::{Map, Value, json};
+
+/// A run to be made.
+pub(crate) struct Account<'a, const N: usize, const M: usize> {
+    pub(crate) system: Built<'a, N, M>,
+    pub(crate) scene: &'a AnyScene,
+    pub(crate) method: &'a Method,
+    pub(crate) request: Request<N>,
+    /// What is reported, and then what ends the run, `ends` of them.
+    watched: Vec<Watched<'a, Coordinate>>,
+    ends: usize,
+}
+
+/// A run that was made.
+pub(crate) struct Made<const N: usize> {
+    pub(crate) record: Record<N>,
+    /// What happened, where that was asked for.
+    pub(crate) events: Option<Events>,
+}
+
+impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
+    /// The run of a scene from its start, with the steps of the scene or the longest that meet a tolerance (m or rad).
+    ///
+    /// # Errors
+    /// [`CliError`] where the system has no such quantity, or no step meets the tolerance.
+    pub(crate) fn new(
+        system: Built<'a, N, M>,
+        (scene, method): (&'a AnyScene, &'a Method),
+        (q, v): StartPlace<N>,
+        tolerance: Option<f64>,
+        (reported, ending): (&'a [Trigger], &'a [Trigger]),
+    ) -> Result<Self, CliError> {
+        let watched = reported.iter().chain(ending).map(|trigger| trigger.on(&system)).collect::<Result<_, _>>()?;
+        let mut schedule = scene.schedule();
+        if let Some(tolerance) = tolerance {
+            // Of the method itself: parts would make any step look good enough.
+            let whole = method.undivided();
+            let found = recommend(&system, &whole, (q, v), scene.run().duration, tolerance);
+            let found = found.map_err(|error| CliError::Tolerance(Box::new(error)))?;
+            schedule = Schedule { step: found.step, steps: found.steps, ..schedule };
+        }
+        let request = Request { schedule, q, v, samples: 1 };
+        Ok(Self { system, scene, method, request, watched, ends: ending.len() })
+    }
+
+    /// Makes it at once, with an eye on the events in so many parts of each step.
+    pub(crate) fn observed(
+        &self,
+        samples: u32,
+        observer: &mut dyn Observer<N, M>,
+        progress: &mut dyn Progress,
+    ) -> Made<N> {
+        let (reported, ending) = self.watched.split_at(self.watched.len() - self.ends);
+        let ends = ending.iter().map(|watched| watched.event(&self.system).terminal());
+        let events: Vec<Event<'_, N>> =
+            reported.iter().map(|watched| watched.event(&self.system)).chain(ends).collect();
+        let made = run_observed(&self.system, self.method, &self.request, (&events, samples), observer, progress);
+        let happened = made.crossings.iter().filter_map(|crossing| Happened::of(&self.system, &self.watched, crossing));
+        let events = (!self.watched.is_empty()).then(|| Events::new(happened, made.close));
+        Made { record: made.record, events }
+    }
+
+    /// The object of `run --json`.
+    pub(crate) fn object(&self, made: &Made<N>) -> Value {
+        let Made { record, events } = made;
+        let mut object = json::record_of(self.scene.name(), record, &state(&self.system, record));
+        substeps::add_json(&mut object, record);
+        if let Some(events) = events {
+            events.add_to(&mut object);
+        }
+        object
+    }
+
+    /// Where a run ends, a line for each number; those of a sleigh together.
+    pub(crate) fn end(&self, record: &Record<N>) -> Vec<(String, String)> {
+        if let Some(system) = self.system.sleigh() {
+            return crate::table::end_of_sleigh(&system.sleigh_state(&record.q, &record.v));
+        }
+        numbers(&self.system, record.t, &record.q, &record.v)
+    }
+}
+
+/// Where a run ends, by name.
+pub(crate) fn state<const N: usize, const M: usize>(system: &Built<'_, N, M>, record: &Record<N>) -> Value {
+    let mut end = Map::new();
+    end.insert("t".to_owned(), json!(record.t));
+    let state = system.state(record.t, &record.q, &record.v).into_iter();
+    end.extend(state.map(|(quantity, value)| (quantity.name, json!(value))));
+    Value::Object(end)
+}
+
+/// A state, a line for each number.
+pub(crate) fn numbers<const N: usize, const M: usize>(
+    system: &Built<'_, N, M>,
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+) -> Vec<(String, String)> {
+    let line = |value: f64, unit: &str| format!("{} {unit}", number(value)).trim_end().to_owned();
+    let state = system.state(t, q, v).into_iter();
+    state.map(|(quantity, value)| (quantity.name, line(value, &quantity.unit))).collect()
+}

@@ -1,0 +1,103 @@
+//! Sleighs in the words of their scenes.
+
+use super::{Place, Quantity};
+use ::sleigh::SleighState;
+use systems::SceneSystem;
+
+/// Where a sleigh is, how it moves, and where its centre of mass is (m).
+type Seen = (SleighState, [f64; 2]);
+
+/// A quantity of a sleigh.
+#[derive(Debug, Clone, Copy)]
+pub struct SleighQuantity {
+    /// Its name.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    value: fn(&Seen) -> f64,
+}
+
+impl SleighQuantity {
+    /// Its value, of a sleigh in that state with its centre of mass there (m).
+    #[must_use]
+    pub fn value(&self, state: SleighState, centre: [f64; 2]) -> f64 {
+        (self.value)(&(state, centre))
+    }
+
+    /// Whether values a turn apart are the same place.
+    #[must_use]
+    pub fn is_angle(&self) -> bool {
+        self.name == "heading"
+    }
+}
+
+/// The first so many tell a state.
+pub(super) const IN_STATE: usize = 5;
+
+/// The quantities that every sleigh has.
+pub const QUANTITIES: [SleighQuantity; 9] = [
+    SleighQuantity { name: "x", unit: "m", value: |(at, _)| at.x },
+    SleighQuantity { name: "y", unit: "m", value: |(at, _)| at.y },
+    SleighQuantity { name: "heading", unit: "rad", value: |(at, _)| at.heading },
+    SleighQuantity { name: "speed", unit: "m/s", value: |(at, _)| at.speed },
+    SleighQuantity { name: "turn_rate", unit: "rad/s", value: |(at, _)| at.turn_rate },
+    SleighQuantity { name: "center_x", unit: "m", value: |(_, [x, _])| *x },
+    SleighQuantity { name: "center_y", unit: "m", value: |(_, [_, y])| *y },
+    SleighQuantity { name: "along", unit: "m", value: |seen| turned(seen)[0] },
+    SleighQuantity { name: "across", unit: "m", value: |seen| turned(seen)[1] },
+];
+
+/// And those of a rotor.
+const ROTOR: [(&str, &str); 2] = [("rotor_angle", "rad"), ("rotor_rate", "rad/s")];
+
+/// The centre of mass, as the body sees it: its place along the blade and across it, from the origin.
+fn turned((at, [x, y]): &Seen) -> [f64; 2] {
+    let (sin, cos) = at.heading.sin_cos();
+    [x * cos + y * sin, y * cos - x * sin]
+}
+
+pub(super) fn quantities<const N: usize, const M: usize>(system: &dyn SceneSystem<N, M>) -> Vec<Quantity> {
+    let of = |name: &str, unit: &str, angle| Quantity { name: name.to_owned(), unit: unit.to_owned(), angle };
+    let own = QUANTITIES.iter().map(|known| of(known.name, known.unit, known.is_angle()));
+    let rotor = system.rotor(&[0.0; N], &[0.0; N]).map_or(&[][..], |_| &ROTOR);
+    own.chain(rotor.iter().map(|(name, unit)| of(name, unit, false))).collect()
+}
+
+/// The value of a quantity, where it is one of these.
+pub(super) fn value<const N: usize, const M: usize>(
+    system: &dyn SceneSystem<N, M>,
+    k: usize,
+    q: &[f64; N],
+    v: &[f64; N],
+) -> Option<f64> {
+    match QUANTITIES.get(k) {
+        Some(quantity) => {
+            let centre = if k < IN_STATE { [0.0; 2] } else { system.centre(q) };
+            Some((quantity.value)(&(system.sleigh_state(q, v), centre)))
+        }
+        None => system.rotor(q, v)?.get(k - QUANTITIES.len()).copied(),
+    }
+}
+
+/// The larger of the distances in position (m) and in heading (rad).
+pub(super) fn distance<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
+    let [[ax, ay, a], [bx, by, b]] = [a, b].map(|q| std::array::from_fn(|i| q.get(i).copied().unwrap_or(0.0)));
+    let (place, turn) = (f64::hypot(ax - bx, ay - by), (a - b).abs());
+    if place > turn || place.is_nan() { place } else { turn }
+}
+
+pub(super) fn with<const N: usize, const M: usize>(
+    system: &dyn SceneSystem<N, M>,
+    (q, v): &Place<N>,
+    k: usize,
+    value: f64,
+) -> Option<Place<N>> {
+    let mut state = system.sleigh_state(q, v);
+    let SleighState { x, y, heading, speed, turn_rate } = &mut state;
+    **[x, y, heading, speed, turn_rate].get_mut(k)? = value;
+    let (place, velocity) = state.to_coordinates();
+    let with = |x: &[f64; N], first: &[f64; 3]| std::array::from_fn(|i| first.get(i).copied().unwrap_or(x[i]));
+    let (q, v) = (with(q, &place), with(v, &velocity));
+    let xi = system.quasi_velocities(0.0, &q, &v).ok()?;
+    Some((q, system.velocity_of(0.0, &q, &xi).ok()?))
+}

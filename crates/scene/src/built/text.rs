@@ -1,0 +1,80 @@
+//! Systems of text in the words of their scenes.
+
+use super::{Place, Quantity};
+use ::text::{Coordinate, Model, TextMechanics, Unit};
+use dla::Node;
+use systems::Column;
+
+/// The quantities of a system of text: coordinates, rates and outputs.
+#[must_use]
+pub fn quantities(model: &Model) -> Vec<Quantity> {
+    let coordinates = model.coordinates();
+    let of = |name: String, unit: String, angle| Quantity { name, unit, angle };
+    let place = |c: &Coordinate| of(c.name.clone(), c.unit.name().to_owned(), c.unit == Unit::Angle);
+    let rate_unit = |c: &Coordinate| match c.unit.name() {
+        "" => "1/s".to_owned(),
+        unit => format!("{unit}/s"),
+    };
+    let rate = |c: &Coordinate| of(format!("{}'", c.name), rate_unit(c), false);
+    let outputs = model.outputs().iter().map(|name| of(name.clone(), String::new(), false));
+    coordinates.iter().map(place).chain(coordinates.iter().map(rate)).chain(outputs).collect()
+}
+
+pub(super) fn in_state(model: &Model) -> usize {
+    2 * model.coordinates().len() + model.outputs().len()
+}
+
+/// The value of a quantity, where it is one of these.
+pub(super) fn value(model: &Model, k: usize, t: f64, q: &[f64], v: &[f64]) -> Option<f64> {
+    let n = model.coordinates().len();
+    match k.checked_sub(n) {
+        None => Some(q[k]),
+        Some(k) if k < n => Some(v[k]),
+        Some(k) => model.output(k - n, t, &q[..n], &v[..n]),
+    }
+}
+
+/// Time, coordinates, rates, energy, work, constraint, outputs.
+pub(super) fn columns(model: &Model) -> Vec<Column> {
+    let names = quantities(model).into_iter().map(|quantity| Column::new(quantity.name, quantity.unit));
+    between(names.collect(), 2 * model.coordinates().len(), Column::new("t", "s"), || {
+        [("energy", "J"), ("work", "J"), ("constraint", "")].map(|(name, unit)| Column::new(name, unit))
+    })
+}
+
+/// The numbers of a node in these columns.
+pub(super) fn row<const N: usize, const M: usize>(model: &Model, node: &Node<N, M>) -> Vec<f64> {
+    let n = model.coordinates().len();
+    let (q, v) = (&node.q[..n], &node.v[..n]);
+    let numbers = q.iter().chain(v).copied().chain(model.told(node.t, q, v));
+    between(numbers.collect(), 2 * n, node.t, || [node.energy, node.work, node.constraint])
+}
+
+/// The time, what is first of a state, what is told of the motion, and the rest of the state.
+fn between<T>(mut state: Vec<T>, first: usize, time: T, told: impl Fn() -> [T; 3]) -> Vec<T> {
+    let rest = state.split_off(first.min(state.len()));
+    std::iter::once(time).chain(state).chain(told()).chain(rest).collect()
+}
+
+/// A place with its quasi-velocities as they are, or a rate with the others as near as the constraints admit.
+pub(super) fn with<const N: usize, const M: usize>(
+    system: &dyn TextMechanics<N, M>,
+    (q, v): &Place<N>,
+    k: usize,
+    value: f64,
+) -> Option<Place<N>> {
+    let model = system.model();
+    let n = model.coordinates().len();
+    let filled = |x: &[f64]| std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0));
+    if k >= n {
+        return Some((*q, filled(&model.with_rate(&q[..n], &v[..n], k - n, value)?)));
+    }
+    let xi = system.quasi_velocities(0.0, q, v).ok()?;
+    let mut q = *q;
+    q[k] = value;
+    let v = system.velocity_of(0.0, &q, &xi).ok()?;
+    // Constraints on positions may ask for another place.
+    let given = |x: &[f64]| -> Vec<Option<f64>> { x[..n].iter().copied().map(Some).collect() };
+    let start = model.start(&given(&q), &given(&v)).ok()?;
+    (start.q[k] - value).abs().le(&(1e-9 * value.abs().max(1.0))).then(|| (filled(&start.q), filled(&start.v)))
+}

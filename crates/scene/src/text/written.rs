@@ -1,0 +1,88 @@
+use super::{AnyScene, TextScene};
+use ::text::Unit;
+use serde::{Serialize, Serializer};
+
+/// A scene of a system of text as its file has it: what is no table before the tables.
+#[derive(Serialize)]
+struct File<'s> {
+    title: &'s str,
+    system: System<'s>,
+    start: Table<'s, f64>,
+    run: crate::written::RunTable<'s>,
+}
+
+#[derive(Serialize)]
+struct System<'s> {
+    lagrangian: &'s str,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    constraints: &'s [String],
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    positions: &'s [String],
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    basis: &'s [Vec<String>],
+    coordinates: Table<'s, &'s str>,
+    parameters: Table<'s, f64>,
+    #[serde(rename = "let")]
+    abbreviations: Table<'s, &'s str>,
+    forces: Table<'s, &'s str>,
+    outputs: Table<'s, &'s str>,
+}
+
+/// A table whose keys stay in their order.
+struct Table<'s, T>(Vec<(&'s str, T)>);
+
+impl<T: Serialize> Serialize for Table<'_, T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(key, value)| (key, value)))
+    }
+}
+
+fn formulas(pairs: &[(String, String)]) -> Table<'_, &str> {
+    Table(pairs.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect())
+}
+
+fn unit(unit: &Unit) -> &str {
+    if *unit == Unit::Angle { "angle" } else { unit.name() }
+}
+
+impl TextScene {
+    /// The scene as a file that reads back as the same scene, its numbers as they were used.
+    ///
+    /// # Errors
+    /// [`toml::ser::Error`], which a scene of finite numbers does not give.
+    pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
+        let Self { title, words, start, run, .. } = self;
+        let names: Vec<&str> = words.coordinates.iter().map(|(name, _)| name.as_str()).collect();
+        let rates: Vec<String> = names.iter().map(|name| format!("{name}'")).collect();
+        let state = names.iter().copied().chain(rates.iter().map(String::as_str));
+        toml::to_string(&File {
+            title,
+            system: System {
+                lagrangian: &words.lagrangian,
+                constraints: &words.constraints,
+                positions: &words.positions,
+                basis: &words.basis,
+                coordinates: Table(words.coordinates.iter().map(|(name, of)| (name.as_str(), unit(of))).collect()),
+                parameters: Table(words.parameters.iter().map(|(name, value)| (name.as_str(), *value)).collect()),
+                abbreviations: formulas(&words.abbreviations),
+                forces: formulas(&words.forces),
+                outputs: formulas(&words.outputs),
+            },
+            start: Table(state.zip(start.q.iter().chain(&start.v).copied()).collect()),
+            run: crate::written::RunTable::of(run),
+        })
+    }
+}
+
+impl AnyScene {
+    /// The scene as a file, as [`Scene::to_toml`](crate::Scene::to_toml).
+    ///
+    /// # Errors
+    /// As there.
+    pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
+        match self {
+            Self::Sleigh(scene) => scene.to_toml(),
+            Self::Text(scene) => scene.to_toml(),
+        }
+    }
+}
