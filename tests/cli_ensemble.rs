@@ -5,12 +5,14 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "what the tests share is no test")]
 
+#[path = "common/processes.rs"]
+mod processes;
 #[path = "common/program.rs"]
 mod program;
 
+use processes::{Dice, damaged, ended, send, signals, started, tries, wait_for};
 use program::Folder;
 use std::fs;
-use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// Lanes of the closed map: groups of sixteen.
@@ -22,49 +24,6 @@ seed = 3
 count = 500
 \"start.turn_rate\" = { uniform = [0.05, 0.3] }
 ";
-
-fn tries(few: u64) -> u64 {
-    std::env::var("NOSLIP_TRIES").ok().and_then(|tries| tries.parse().ok()).unwrap_or(few)
-}
-
-/// Numbers that look random: the high bits of a linear congruential generator (Knuth's constants).
-struct Dice(u64);
-
-impl Dice {
-    fn below(&mut self, end: u64) -> u64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) % end
-    }
-}
-
-fn started(folder: &Folder, line: &str) -> Child {
-    let mut command = folder.command(line.split_whitespace());
-    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
-}
-
-/// How it ended: the exit code, none after a signal, and what it said on standard error.
-fn ended(child: Child) -> (Option<i32>, String) {
-    let output = child.wait_with_output().unwrap();
-    (output.status.code(), String::from_utf8(output.stderr).unwrap())
-}
-
-fn send(signal: &str, child: &Child) {
-    assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
-}
-
-/// Whether a closed terminal ends processes that are started here: `nohup` keeps that from them.
-fn hangs_up() -> bool {
-    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_none_or(|mask| mask & 1 == 0)
-}
-
-/// Waits until the spool has so many bytes.
-fn wait_for(folder: &Folder, name: &str, bytes: u64) {
-    while fs::metadata(folder.join(name)).map_or(0, |metadata| metadata.len()) < bytes {
-        std::thread::sleep(Duration::from_millis(1));
-    }
-}
 
 /// The result of a sweep that nothing disturbs, and how long it takes.
 fn undisturbed(folder: &Folder, sweep: &str) -> (Vec<u8>, Duration) {
@@ -158,7 +117,7 @@ fn a_signal_stops_it_between_members() {
     let folder = Folder::new();
     // Members that take long, of which a thread has at most one at a time.
     folder.write("slow.toml", SWEEP.replace("duration = 5.0", "duration = 5000.0\nmethod = \"rk4\""));
-    for signal in ["-INT", "-TERM", "-HUP"].into_iter().filter(|signal| *signal != "-HUP" || hangs_up()) {
+    for signal in signals() {
         let child = started(&folder, "ensemble slow.toml --out slow.csv");
         wait_for(&folder, "slow.csv.part", 100);
         send(signal, &child);
@@ -201,27 +160,6 @@ fn two_processes_do_not_share_an_output() {
     }
     println!("{refused} processes were refused");
     assert!(refused > 0);
-}
-
-/// Damages a text in one of seven ways.
-fn damaged(whole: &[u8], dice: &mut Dice) -> Vec<u8> {
-    let mut rows: Vec<Vec<u8>> = whole.split_inclusive(|byte| *byte == b'\n').map(<[u8]>::to_vec).collect();
-    let [one, other] = [(); 2].map(|()| dice.below(rows.len() as u64) as usize);
-    let at = dice.below(whole.len() as u64) as usize;
-    match dice.below(7) {
-        0 => rows.swap(one, other),
-        1 => rows.insert(other, rows[one].clone()),
-        2 => drop(rows.remove(one)),
-        3 => rows = vec![whole[..at].to_vec()],
-        4 => rows[one].truncate(at % 60),
-        5 => rows[one].extend(b"0,0.1,\"\n"),
-        _ => {
-            let mut bytes = whole.to_vec();
-            bytes[at] ^= 1 << dice.below(8);
-            return bytes;
-        }
-    }
-    rows.concat()
 }
 
 #[test]

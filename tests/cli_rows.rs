@@ -15,10 +15,13 @@ use std::process::Stdio;
 /// Every 7th of 4000 nodes: neither the checkpoints nor the end are due.
 const RUN: &str = "run scene.toml --every 7";
 const DRAG: &str = "[[effects]]\nkind = \"drag\"\nalong = 0.1\n[[effects]]\nkind = \"thrust\"\nforce = 0.2\n";
+const TRAILER: &str = "[[effects]]\nkind = \"trailers\"\ncount = 1\nmass = 0.5\ninertia = 0.1\nbar = 1.0\n";
 
 fn folder() -> Folder {
     let folder = Folder::new();
-    folder.write("scene.toml", format!("{}{DRAG}", SCENE.replace("duration = 2.0", "duration = 200.0")));
+    let scene = format!("{}{DRAG}", SCENE.replace("duration = 2.0", "duration = 200.0"));
+    folder.write("train.toml", format!("{scene}{TRAILER}"));
+    folder.write("scene.toml", scene);
     folder
 }
 
@@ -40,12 +43,16 @@ fn undisturbed(folder: &Folder, file: &str) -> Vec<u8> {
 #[test]
 fn a_longer_run_begins_with_the_shorter_one() {
     let folder = folder();
-    for file in ["k.csv", "k.jsonl"] {
-        let whole = undisturbed(&folder, file);
+    let formats = ["k.csv", "k.jsonl", "k.npz"].into_iter().chain(cfg!(feature = "parquet").then_some("k.parquet"));
+    for (scene, file) in formats.flat_map(|file| ["scene.toml", "train.toml"].map(|scene| (scene, file))) {
+        let run = RUN.replace("scene.toml", scene);
+        folder.done(&format!("{run} --out {file}"));
+        let whole = fs::read(folder.join(file)).unwrap();
+        clear(&folder);
         for duration in ["17.35", "50", "100"] {
-            folder.done(&format!("{RUN} --duration {duration} --out {file} --checkpoint k.save"));
-            folder.done(&format!("{RUN} --out {file} --resume k.save"));
-            assert!(fs::read(folder.join(file)).unwrap() == whole, "{file} from {duration} s");
+            folder.done(&format!("{run} --duration {duration} --out {file} --checkpoint k.save"));
+            folder.done(&format!("{run} --out {file} --resume k.save"));
+            assert!(fs::read(folder.join(file)).unwrap() == whole, "{file} of {scene} from {duration} s");
             clear(&folder);
         }
     }
@@ -97,6 +104,17 @@ fn rows_that_are_not_those_of_the_run_are_not_continued() {
     folder.refused(&resume, &["k.csv", "begins with the rows", "--force"]);
     folder.write("k.csv", &rows[..rows.len() / 2]);
     folder.refused(&resume, &["k.csv", "begins with the rows", "--force"]);
+    folder.done(&format!("{RUN} --duration 100 --out k.npz --checkpoint n.save"));
+    folder.done("run scene.toml --duration 50 --every 7 --out k.npz --force");
+    folder.refused(
+        &resume.replace("k.csv --resume k", "k.npz --resume n"),
+        &["k.npz", "begins with the rows", "--force"],
+    );
+    folder.write("k.npz", "no archive");
+    folder.refused(
+        &resume.replace("k.csv --resume k", "k.npz --resume n"),
+        &["k.npz", "begins with the rows", "--force"],
+    );
     folder.write("k.csv", &rows);
     folder.refused("run scene.toml --every 3 --out k.csv --resume k.save", &["--every 3", "every 7"]);
     // A file of another name has the rest.

@@ -383,7 +383,7 @@ pub(crate) enum Listed {
 
 #[derive(Debug, Args)]
 pub(crate) struct NewArguments {
-    /// The file to write
+    /// The file to write; - is standard output
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
     /// Overwrite a file that is there already

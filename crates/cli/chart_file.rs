@@ -1,6 +1,8 @@
 use crate::error::CliError;
 use crate::files::{check_file, write_whole};
+use crate::provenance::label;
 use harness::report::{Chart, chart_svg};
+use scene::Column;
 use std::io::Write;
 use std::path::Path;
 
@@ -28,15 +30,15 @@ impl<'a> ChartFile<'a> {
     pub(crate) fn write(
         self,
         overwrite: bool,
-        header: &str,
+        columns: &[Column],
         rows: &[Vec<f64>],
         chart: impl FnOnce() -> Chart,
     ) -> Result<(), CliError> {
         match self {
             Self::Csv(path) => write_whole(path, overwrite, |file| {
-                writeln!(file, "{header}")?;
+                writeln!(file, "{}", columns.iter().map(label).collect::<Vec<_>>().join(","))?;
                 for row in rows {
-                    let cells: Vec<String> = row.iter().map(|x| format!("{x:?}")).collect();
+                    let cells: Vec<String> = columns.iter().zip(row).map(|(column, x)| cell(column, *x)).collect();
                     writeln!(file, "{}", cells.join(","))?;
                 }
                 Ok(())
@@ -47,4 +49,9 @@ impl<'a> ChartFile<'a> {
             }
         }
     }
+}
+
+/// A number as a file has it: one of a column of whole numbers without a point.
+fn cell(column: &Column, x: f64) -> String {
+    if column.whole { format!("{x:.0}") } else { format!("{x:?}") }
 }

@@ -7,6 +7,7 @@ use harness::METHODS;
 use scene::{AnyScene, Overrides, Scene};
 use serde_json::json;
 use std::io::Write;
+use std::path::Path;
 
 /// The names that a scene's `method` may have.
 pub(crate) fn method_names() -> Vec<&'static str> {
@@ -101,8 +102,11 @@ fn scenes() -> Result<Vec<(&'static str, String)>, CliError> {
     scene::bundled().iter().chain(scene::bundled_texts()).map(title).collect()
 }
 
-/// `noslip new`: a scene to start from.
+/// `noslip new`: a scene to start from; `-` is standard output.
 pub(crate) fn new(arguments: &NewArguments) -> Result<(), CliError> {
+    if arguments.file == Path::new("-") {
+        return terminal::print(Scene::template());
+    }
     write_whole(&arguments.file, arguments.force, |file| file.write_all(Scene::template().as_bytes()))?;
     terminal::print(&format!("written: {}\n", arguments.file.display()))
 }

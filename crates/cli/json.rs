@@ -1,3 +1,4 @@
+use dla::RunError;
 use harness::Record;
 use serde_json::{Value, json};
 use sleigh::SleighState;
@@ -34,14 +35,7 @@ pub(crate) fn record_of<const N: usize>(scene: &str, record: &Record<N>, end: &V
         "final": end,
     });
     if let Some(failure) = &record.failure {
-        object["failure"] = json!({
-            "step": failure.step,
-            "time": failure.time,
-            "reason": failure.source.to_string(),
-            "iterations": failure.source.iterations(),
-            "corrections": failure.source.history().map(|history| history.iter().collect::<Vec<_>>()),
-            "hint": failure.hint().map(|hint| hint.to_string()),
-        });
+        object["failure"] = self::failure(failure);
     }
     if record.refusal().is_some() {
         object["refused"] = json!(true);
@@ -50,6 +44,18 @@ pub(crate) fn record_of<const N: usize>(scene: &str, record: &Record<N>, end: &V
         object["interrupted"] = json!(true);
     }
     object
+}
+
+/// What failed, at which step, when and why.
+pub(crate) fn failure(failure: &RunError) -> Value {
+    json!({
+        "step": failure.step,
+        "time": failure.time,
+        "reason": failure.source.to_string(),
+        "iterations": failure.source.iterations(),
+        "corrections": failure.source.history().map(|history| history.iter().collect::<Vec<_>>()),
+        "hint": failure.hint().map(|hint| hint.to_string()),
+    })
 }
 
 /// The same object in a row of `compare --json`, with the error at the end, the drift of the energy, the constraint in its

@@ -44,6 +44,7 @@ mod precision_text;
 mod progress;
 mod provenance;
 mod resume;
+mod rows_back;
 mod run;
 mod run_report;
 mod saves;

@@ -5,12 +5,14 @@ use crate::error::CliError;
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
 use crate::starts::{Start, with_energy};
-use crate::{inspect, notes, progress, stability_map, table, terminal};
+use crate::{inspect, json, notes, progress, stability_map, table, terminal};
 use dla::Schedule;
 use harness::Method;
-use harness::analysis::{Lyapunov, LyapunovError, LyapunovRequest, MotionVerdict, has_tangents, kaplan_yorke};
+use harness::analysis::{
+    Lyapunov, LyapunovError, LyapunovFailure, LyapunovRequest, MotionVerdict, has_tangents, kaplan_yorke,
+};
 use harness::report::{Chart, Layer};
-use scene::{AnyScene, Built, MAX_STEPS, Visitor};
+use scene::{AnyScene, Built, Column, MAX_STEPS, Visitor};
 use serde_json::{Value, json};
 
 /// What is measured where nobody says (s): of one motion, and of each of a map.
@@ -123,9 +125,9 @@ impl Exponents<'_> {
         let shared = &self.arguments.scene;
         let written = self.file.map_or(Ok(()), |file| {
             let rows: Vec<Vec<f64>> = found.running.iter().map(|at| [&[at.time][..], &at.exponents].concat()).collect();
-            let names = (1..=found.exponents.len()).map(|i| format!("exponent_{i} [1/s]"));
-            let header: Vec<String> = std::iter::once("t [s]".to_owned()).chain(names).collect();
-            file.write(shared.force, &header.join(","), &rows, || self.chart(found))
+            let each = (1..=found.exponents.len()).map(|i| Column::new(format!("exponent_{i}"), "1/s"));
+            let columns: Vec<Column> = std::iter::once(Column::new("t", "s")).chain(each).collect();
+            file.write(shared.force, &columns, &rows, || self.chart(found))
         });
         let whole = found.exponents.len() == most;
         if shared.json {
@@ -167,6 +169,9 @@ impl Exponents<'_> {
         }
         if let Some(failure) = found.failure {
             object["failure"] = json!(failure.to_string());
+            if let LyapunovFailure::Step(failure) = &failure {
+                object["failed_at"] = json::failure(failure);
+            }
         }
         object
     }

@@ -1,14 +1,15 @@
 use crate::first_error::FirstError;
+use scene::Column;
 use std::io::{Error, Seek, Write};
 
-/// Writes an archive of NumPy arrays of one length, column by column, and one array `metadata` that holds a text alone; `column` gives
-/// the numbers of a column to its sink.
+/// Writes an archive of NumPy arrays of one length, column by column, and one array `metadata` that holds a text alone; `numbers` gives
+/// the numbers of a column to its sink. A column of whole numbers is an array of 64-bit integers.
 pub(crate) fn write(
     file: &mut (impl Write + Seek),
-    names: &[&str],
+    columns: &[Column],
     count: u64,
     metadata: &str,
-    mut column: impl FnMut(usize, &mut dyn FnMut(f64) -> Result<(), Error>) -> Result<(), Error>,
+    mut numbers: impl FnMut(usize, &mut dyn FnMut(f64) -> Result<(), Error>) -> Result<(), Error>,
 ) -> Result<(), Error> {
     use npyz::WriterBuilder;
     let mut file = FirstError::new(file);
@@ -16,12 +17,19 @@ pub(crate) fn write(
         let mut archive = zip::ZipWriter::new(&mut file);
         let stored = zip::CompressionMethod::Stored;
         let options = zip::write::SimpleFileOptions::default().compression_method(stored).large_file(true);
-        for (number, name) in names.iter().enumerate() {
-            archive.start_file(npyz::npz::file_name_from_array_name(name), options)?;
-            let mut array =
-                npyz::WriteOptions::new().default_dtype().shape(&[count]).writer(&mut archive).begin_nd()?;
-            column(number, &mut |value| array.push(&value))?;
-            array.finish()?;
+        for (number, column) in columns.iter().enumerate() {
+            archive.start_file(npyz::npz::file_name_from_array_name(&column.name), options)?;
+            if column.whole {
+                let mut array =
+                    npyz::WriteOptions::new().default_dtype().shape(&[count]).writer(&mut archive).begin_nd()?;
+                numbers(number, &mut |value| array.push(&(value as i64)))?;
+                array.finish()?;
+            } else {
+                let mut array =
+                    npyz::WriteOptions::new().default_dtype().shape(&[count]).writer(&mut archive).begin_nd()?;
+                numbers(number, &mut |value| array.push(&value))?;
+                array.finish()?;
+            }
         }
         archive.start_file(npyz::npz::file_name_from_array_name("metadata"), options)?;
         archive.write_all(&text_array(metadata))?;

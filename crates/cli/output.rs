@@ -4,6 +4,7 @@ use crate::format::Format;
 use crate::npz;
 use crate::part::Part;
 use crate::provenance::{Provenance, label};
+use crate::rows_back;
 use crate::terminal;
 use crc32fast::Hasher;
 use scene::Column;
@@ -127,11 +128,11 @@ impl<'a> Output<'a> {
         let mut found = summed(file, bytes, &mut std::io::sink()).map_err(unreadable)?;
         let old = File::open(path).ok();
         let same = |sum: &Option<Hasher>| sum.clone().is_some_and(|sum| u64::from(sum.finalize()) == checksum);
-        if let (false, true, Some(old)) = (same(&found), self.asked.format.is_text(), &old)
-            && same(&summed(old, bytes, &mut std::io::sink()).map_err(unreadable)?)
-        {
-            file.set_len(0).and_then(|()| file.seek(SeekFrom::Start(0))).map_err(unreadable)?;
-            found = summed(old, bytes, &mut file).map_err(unreadable)?;
+        if let (false, Some(old)) = (same(&found), &old) {
+            let from_old = self.is_from(path, old, bytes, same)?;
+            if from_old {
+                found = summed(file, bytes, &mut std::io::sink()).map_err(unreadable)?;
+            }
         }
         match found.filter(|sum| same(&Some(sum.clone()))) {
             Some(_) if every != self.every => {
@@ -155,6 +156,42 @@ impl<'a> Output<'a> {
                 part.path().display()
             ))),
         }
+    }
+
+    /// Whether the finished output of before begins with these rows; they are then in `OUT.part`.
+    fn is_from(
+        &self,
+        path: &Path,
+        old: &File,
+        bytes: u64,
+        same: impl Fn(&Option<Hasher>) -> bool,
+    ) -> Result<bool, CliError> {
+        let Some(part) = &self.part else { return Ok(false) };
+        let unreadable = |source| CliError::Read { path: path.to_owned(), source };
+        let mut file = part.file();
+        let begin = |mut file: &File| file.set_len(0).and_then(|()| file.seek(SeekFrom::Start(0)).map(drop));
+        if self.asked.format.is_text() {
+            if !same(&summed(old, bytes, &mut std::io::sink()).map_err(unreadable)?) {
+                return Ok(false);
+            }
+            begin(file).map_err(|source| part.failed(source))?;
+            summed(old, bytes, &mut file).map_err(unreadable)?;
+            return Ok(true);
+        }
+        let Some(rows) = bytes.checked_div(8 * self.columns.len() as u64) else { return Ok(false) };
+        // Looked at before the rows that may be in `OUT.part` are given up.
+        let mut sum = Summed(Hasher::new());
+        match rows_back::copy(path, self.asked.format, &self.columns, rows, &mut sum) {
+            Ok(()) if same(&Some(sum.0)) => {}
+            Ok(()) => return Ok(false),
+            Err(error) if error.kind() == ErrorKind::InvalidData => return Ok(false),
+            Err(error) => return Err(unreadable(error)),
+        }
+        begin(file).map_err(|source| part.failed(source))?;
+        let mut writer = BufWriter::with_capacity(1 << 16, file);
+        let copied = rows_back::copy(path, self.asked.format, &self.columns, rows, &mut writer);
+        copied.and_then(|()| writer.flush()).map_err(|source| part.failed(source))?;
+        Ok(true)
     }
 
     /// Adds the row of node `k`. An error is kept until the end: the run goes on.
@@ -250,25 +287,33 @@ impl<'a> Output<'a> {
         let width = 8 * self.columns.len();
         let rows = if width == 0 { 0 } else { self.bytes / width as u64 };
         write_whole(path, overwrite, |file| match self.asked.format {
-            Format::Npz => {
-                let names: Vec<&str> = self.columns.iter().map(|column| column.name.as_str()).collect();
-                npz::write(file, &names, rows, &document, |column, push| {
-                    for row in numbers(part.file(), width)? {
-                        push(row?[column])?;
-                    }
-                    Ok(())
-                })
-            }
+            Format::Npz => npz::write(file, &self.columns, rows, &document, |column, push| {
+                for row in numbers(part.file(), width)? {
+                    push(row?[column])?;
+                }
+                Ok(())
+            }),
             #[cfg(feature = "parquet")]
-            Format::Parquet => {
-                let names = self.columns.iter().map(label).collect();
-                crate::parquet_file::write(file, names, &document, numbers(part.file(), width)?)
-            }
+            Format::Parquet => crate::parquet_file::write(file, &self.columns, &document, numbers(part.file(), width)?),
             Format::Csv | Format::Jsonl => Ok(()),
         })?;
         if !goes_on {
             part.remove();
         }
+        Ok(())
+    }
+}
+
+/// The checksum of what is written.
+struct Summed(Hasher);
+
+impl Write for Summed {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize, Error> {
+        self.0.update(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> Result<(), Error> {
         Ok(())
     }
 }

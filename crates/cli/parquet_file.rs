@@ -1,37 +1,44 @@
+use crate::provenance::label;
 use parquet::basic::{Repetition, Type as Physical};
-use parquet::data_type::DoubleType;
+use parquet::column::reader::get_typed_column_reader;
+use parquet::data_type::{DoubleType, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
+use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
-use parquet::schema::types::Type;
-use std::io::{Error, Write};
+use parquet::schema::types::{ColumnDescriptor, Type};
+use scene::Column;
+use std::fs::File;
+use std::io::{Error, ErrorKind, Write};
+use std::path::Path;
 use std::sync::Arc;
 
 /// The rows of a group.
 const GROUP: usize = 1 << 16;
 
-/// Writes a table of numbers with these names, whose rows need not be in memory all at once; `metadata` is the value of the key `noslip`.
+/// Writes a table of numbers with these columns, whose rows need not be in memory all at once; `metadata` is the value of the key `noslip`.
 pub(crate) fn write(
     file: &mut (impl Write + Send),
-    names: Vec<String>,
+    columns: &[Column],
     metadata: &str,
     rows: impl Iterator<Item = Result<Vec<f64>, Error>>,
 ) -> Result<(), Error> {
-    write_table(file, names, metadata, rows).map_err(Error::other)
+    write_table(file, columns, metadata, rows).map_err(Error::other)
 }
 
 fn write_table(
     file: &mut (impl Write + Send),
-    names: Vec<String>,
+    columns: &[Column],
     metadata: &str,
     mut rows: impl Iterator<Item = Result<Vec<f64>, Error>>,
 ) -> Result<(), ParquetError> {
-    let field = |name: String| {
-        let field = Type::primitive_type_builder(&name, Physical::DOUBLE).with_repetition(Repetition::REQUIRED);
+    let field = |column: &Column| {
+        let physical = if column.whole { Physical::INT64 } else { Physical::DOUBLE };
+        let field = Type::primitive_type_builder(&label(column), physical).with_repetition(Repetition::REQUIRED);
         field.build().map(Arc::new)
     };
-    let fields = names.into_iter().map(field).collect::<Result<_, _>>()?;
+    let fields = columns.iter().map(field).collect::<Result<_, _>>()?;
     let schema = Type::group_type_builder("trajectory").with_fields(fields).build()?;
     // Hardly any number of a trajectory comes twice.
     let pairs = vec![KeyValue::new("noslip".to_owned(), metadata.to_owned())];
@@ -44,14 +51,62 @@ fn write_table(
             break;
         }
         let mut group = file.next_row_group()?;
-        let mut column = 0;
+        let mut number = 0;
         while let Some(mut writer) = group.next_column()? {
-            let values: Vec<f64> = some.iter().map(|row| row[column]).collect();
-            writer.typed::<DoubleType>().write_batch(&values, None, None)?;
+            let values = some.iter().map(|row| row[number]);
+            if columns[number].whole {
+                let values: Vec<i64> = values.map(|value| value as i64).collect();
+                writer.typed::<Int64Type>().write_batch(&values, None, None)?;
+            } else {
+                writer.typed::<DoubleType>().write_batch(&values.collect::<Vec<f64>>(), None, None)?;
+            }
             writer.close()?;
-            column += 1;
+            number += 1;
         }
         group.close()?;
     }
     file.close().map(drop)
+}
+
+/// Gives the first rows of such a file to a sink.
+///
+/// # Errors
+/// Those of the file and of the sink, and [`ErrorKind::InvalidData`] where the file is not a table of numbers with these names.
+pub(crate) fn read(
+    path: &Path,
+    names: &[String],
+    rows: u64,
+    mut sink: impl FnMut(&[f64]) -> Result<(), Error>,
+) -> Result<(), Error> {
+    let invalid = |error: ParquetError| Error::new(ErrorKind::InvalidData, error);
+    let file = SerializedFileReader::new(File::open(path)?).map_err(invalid)?;
+    let schema = file.metadata().file_metadata().schema_descr();
+    let known = |column: &ColumnDescriptor| (column.name().to_owned(), column.physical_type());
+    let expected = names.iter().map(|name| (name.clone(), Physical::DOUBLE));
+    if !expected.eq(schema.columns().iter().map(|column| known(column))) {
+        return Err(Error::new(ErrorKind::InvalidData, "the file has other columns"));
+    }
+    let mut left = rows;
+    for group in 0..file.num_row_groups() {
+        let group = file.get_row_group(group).map_err(invalid)?;
+        let count = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
+        let mut columns = Vec::new();
+        for column in 0..names.len() {
+            let reader = group.get_column_reader(column).map_err(invalid)?;
+            let mut values = Vec::with_capacity(count);
+            get_typed_column_reader::<DoubleType>(reader)
+                .read_records(count, None, None, &mut values)
+                .map_err(invalid)?;
+            columns.push(values);
+        }
+        for row in 0..count {
+            if left == 0 {
+                return Ok(());
+            }
+            let numbers: Option<Vec<f64>> = columns.iter().map(|values| values.get(row).copied()).collect();
+            sink(&numbers.ok_or_else(|| Error::new(ErrorKind::InvalidData, "a column is too short"))?)?;
+            left -= 1;
+        }
+    }
+    Ok(())
 }

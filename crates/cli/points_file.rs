@@ -41,7 +41,7 @@ fn point(entry: &Value, source: &str) -> Result<Point, String> {
         None | Some(Value::Null) => None,
         Some(steps) => Some(steps.as_u64().ok_or("`steps` is no whole number")?),
     };
-    let failure = entry.get("failure").and_then(Value::as_str).map(|reason| Mark::Failed(reason.to_owned()));
+    let failure = entry.get("failure").and_then(Value::as_str).map(|reason| Mark::Failed(reason.to_owned(), None));
     let plateau = entry.get("mark").and_then(Value::as_str).filter(|mark| *mark == "plateau").map(|_| Mark::Plateau);
     Ok(Point {
         method: method.ok_or("`method` is no name")?.to_owned(),

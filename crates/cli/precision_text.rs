@@ -1,5 +1,6 @@
 //! What `noslip precision` says: the same values as a table, as CSV, as JSON and in the report.
 
+use crate::json::failure;
 use crate::precision::Measurement;
 use crate::table::right_aligned;
 use harness::precision::{Curve, LEVELS, Mark, Point, Setting, cheapest, number, seconds_to};
@@ -215,7 +216,13 @@ fn json_point(point: &Point) -> Value {
     object["pareto"] = json!(point.pareto);
     match &point.mark {
         Some(Mark::Plateau) => object["mark"] = json!("plateau"),
-        Some(Mark::Failed(reason)) => (object["mark"], object["failure"]) = (json!("failed"), json!(reason)),
+        Some(Mark::Failed(reason, run)) => {
+            (object["mark"], object["failure"]) = (json!("failed"), json!(reason));
+            // `failure` is a text here; `run` and `compare` have this object there.
+            if let Some(run) = run {
+                object["failed_at"] = failure(run);
+            }
+        }
         None => {}
     }
     if let Some(source) = &point.source {

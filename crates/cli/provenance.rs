@@ -20,7 +20,7 @@ impl Provenance {
     /// The document of a file of that name.
     pub(crate) fn document(&self, name: &str, columns: &[Column]) -> Value {
         let columns = columns.iter().map(|column| {
-            let mut object = json!({"titles": label(column), "name": column.name, "datatype": "double"});
+            let mut object = json!({"titles": label(column), "name": column.name, "datatype": datatype(column)});
             if !column.unit.is_empty() {
                 object["schema:unitText"] = json!(column.unit);
             }
@@ -37,8 +37,13 @@ impl Provenance {
 }
 
 /// A column as a header shows it.
-pub(crate) fn label(Column { name, unit }: &Column) -> String {
+pub(crate) fn label(Column { name, unit, .. }: &Column) -> String {
     if unit.is_empty() { name.clone() } else { format!("{name} [{unit}]") }
+}
+
+/// The type of the numbers of a column, by its name in XML Schema.
+fn datatype(column: &Column) -> &'static str {
+    if column.whole { "integer" } else { "double" }
 }
 
 /// A word as a shell reads it.

@@ -236,7 +236,7 @@ impl Visitor for Run<'_> {
             let told = events.as_ref().map_or("", |events| &events.told);
             let name = (self.scene.title(), self.scene.name());
             let text = table::one_run_of(name, record, &account.end(record), file) + &substeps::told(record) + told;
-            tell(self.out, &text)?;
+            tell(self.out, &table::realigned(&text))?;
         }
         events.iter().for_each(Events::warn);
         let computed = CliError::of_failures(substeps::failure(record).or_else(|| table::not_finite(record)));

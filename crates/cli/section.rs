@@ -7,12 +7,12 @@ use crate::interrupt::Interrupt;
 use crate::lyapunov::{asked, imposed};
 use crate::starts::{Start, spread};
 use crate::trigger::in_doubt;
-use crate::{inspect, notes, progress, table, terminal};
-use dla::{Close, Event};
+use crate::{inspect, json, notes, progress, table, terminal};
+use dla::{Close, Event, RunError};
 use harness::Method;
 use harness::analysis::in_parallel;
 use harness::report::{Chart, Layer};
-use scene::{AnyScene, Built, Quantity, Visitor};
+use scene::{AnyScene, Built, Column, Quantity, Visitor};
 use serde_json::{Value, json};
 
 /// How long each motion is followed where nobody says (s).
@@ -56,7 +56,7 @@ struct Crossed {
     /// The number of the start.
     start: usize,
     points: Vec<Point>,
-    failure: Option<String>,
+    failure: Option<RunError>,
     /// Which may not be all.
     close: Option<Close>,
 }
@@ -73,7 +73,7 @@ struct Point {
 
 /// What is told of a section: the quantities of the system that tell its state, and those shown.
 struct Told {
-    state: Vec<String>,
+    state: Vec<Column>,
     axes: [Quantity; 2],
 }
 
@@ -99,11 +99,11 @@ impl Visitor for Sections<'_> {
                   all points at the same phase",
             );
         }
+        let interrupt = Interrupt::of_starts();
         let first = asked(&system, (q, v), self.arguments.energy)?;
         let sleigh = if let AnyScene::Sleigh(scene) = self.scene { Some(&scene.sleigh) } else { None };
         let starts: Vec<Start<N>> = spread(&system, &first, sleigh, self.arguments.starts);
         let schedule = self.scene.schedule();
-        let interrupt = Interrupt::of_starts();
         let bar = progress::bar("starts", starts.len() as u64);
         let in_state = system.in_state();
         let crossed = in_parallel(starts.len(), |i| {
@@ -127,14 +127,14 @@ impl Visitor for Sections<'_> {
             Some(Crossed {
                 start: i,
                 points: found.crossings.iter().filter_map(point).collect(),
-                failure: found.failure.map(|failure| failure.to_string()),
+                failure: found.failure,
                 close: found.close,
             })
         });
         bar.finish_and_clear();
         let done: Vec<Crossed> = crossed.into_iter().flatten().collect();
         let made = (done.len() < starts.len()).then(|| format!("{} of {} starts are done", done.len(), starts.len()));
-        let state = system.quantities().iter().take(in_state).map(Quantity::label).collect();
+        let state = system.quantities().iter().take(in_state).map(Quantity::column).collect();
         let told = Told { state, axes: axes.map(|axis| axis.quantity) };
         unless_interrupted(made, None, self.tell(&told, &done))
     }
@@ -148,10 +148,14 @@ impl Sections<'_> {
             let rows: Vec<Vec<f64>> =
                 crossed.iter().flat_map(|one| one.points.iter().map(move |point| row(one.start, point))).collect();
             // A column of the state is another than the one that is shown: its angles count the turns.
-            let own = |label: String| if told.state.contains(&label) { format!("shown_{label}") } else { label };
-            let [a, b] = told.axes.each_ref().map(Quantity::label).map(own);
-            let header = format!("start,t [s],{},{a},{b}", told.state.join(","));
-            file.write(shared.force, &header, &rows, || self.chart(told, crossed))
+            let own = |column: Column| match told.state.contains(&column) {
+                true => Column { name: format!("shown_{}", column.name), ..column },
+                false => column,
+            };
+            let mut columns = vec![Column::whole("start"), Column::new("t", "s")];
+            columns.extend(told.state.iter().cloned());
+            columns.extend(told.axes.each_ref().map(Quantity::column).map(own));
+            file.write(shared.force, &columns, &rows, || self.chart(told, crossed))
         });
         let count: usize = crossed.iter().map(|start| start.points.len()).sum();
         if shared.json {
@@ -194,7 +198,8 @@ impl Sections<'_> {
             let points: Vec<Value> = start.points.iter().map(|p| json!([p.t, p.shown[0], p.shown[1]])).collect();
             let mut object = json!({"points": points, "in_doubt": start.close.map_or(0, |close| close.count)});
             if let Some(failure) = &start.failure {
-                object["failure"] = json!(failure);
+                object["failure"] = json!(failure.to_string());
+                object["failed_at"] = json::failure(failure);
             }
             object
         };

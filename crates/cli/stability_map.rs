@@ -5,12 +5,13 @@ use crate::coordinate::Range;
 use crate::error::CliError;
 use crate::interrupt::Interrupt;
 use crate::lyapunov::{refused, schedule};
+use crate::provenance::label;
 use crate::starts::with_energy;
 use crate::{progress, table, terminal};
 use harness::Method;
 use harness::analysis::{LyapunovError, LyapunovRequest, MotionVerdict, in_parallel, lyapunov};
 use harness::report::{Cells, Chart, Layer};
-use scene::{AnyScene, Built, Visitor};
+use scene::{AnyScene, Built, Column, Visitor};
 use serde_json::{Value, json};
 
 /// The most starts.
@@ -98,13 +99,13 @@ impl Visitor for Map<'_> {
             cell
         });
         bar.finish_and_clear();
-        let labels = quantities.map(|k| system.quantities()[k].label());
-        self.tell(&labels, &cells)
+        let columns = quantities.map(|k| system.quantities()[k].column());
+        self.tell(&columns, &cells)
     }
 }
 
 impl Map<'_> {
-    fn tell(&self, labels: &[String; 2], cells: &[Cell]) -> Result<(), CliError> {
+    fn tell(&self, axes: &[Column; 2], cells: &[Cell]) -> Result<(), CliError> {
         if let Some(error) =
             cells.iter().find_map(|cell| if let Cell::Refused(error) = cell { Some(*error) } else { None })
         {
@@ -126,8 +127,8 @@ impl Map<'_> {
                 _ => None,
             };
             let rows: Vec<Vec<f64>> = cells.iter().enumerate().filter_map(row).collect();
-            let header = format!("{},exponent [1/s],ci [1/s]", labels.join(","));
-            file.write(shared.force, &header, &rows, || self.chart(labels, values.clone()))
+            let columns = [&axes[..], &["exponent", "ci"].map(|name| Column::new(name, "1/s"))].concat();
+            file.write(shared.force, &columns, &rows, || self.chart(&axes.each_ref().map(label), values.clone()))
         });
         if shared.json {
             terminal::print_json(&self.json(cells, &values, failures.len()))?;

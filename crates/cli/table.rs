@@ -221,6 +221,16 @@ pub(crate) fn aligned<K: AsRef<str>, V: AsRef<str>>(lines: &[(K, V)]) -> String 
     text
 }
 
+/// Lines of names and values, as [`aligned`] makes them here and there, in the same two columns.
+pub(crate) fn realigned(text: &str) -> String {
+    let lines: Vec<(&str, &str)> = text
+        .lines()
+        .map(|line| line.split_once("  ").unwrap_or((line, "")))
+        .map(|(a, b)| (a, b.trim_start()))
+        .collect();
+    aligned(&lines)
+}
+
 /// What is wrong with a run that reached its end with a place, a velocity or an energy that is not a finite number.
 pub(crate) fn not_finite<const N: usize>(record: &Record<N>) -> Option<String> {
     let energies = [record.energy.last, record.energy.work, record.energy.max_error];

@@ -17,8 +17,8 @@ use scene::Scene;
 use sleigh::SleighState;
 use std::time::{Duration, Instant};
 
-/// So many numbers of a run are kept at most, for a file or a report.
-pub(crate) const MOST_NUMBERS: u64 = 100_000_000;
+/// So many numbers of the runs of a comparison are kept at most, for its report.
+const MOST_NUMBERS: u64 = 100_000_000;
 /// A report shows so many blades of a train.
 const SHOWN: usize = 60;
 /// A comparison of more steps of blades has no computed reference.

@@ -6,20 +6,20 @@ use crate::error::CliError;
 use crate::interrupt::Interrupt;
 use crate::output::{Asked, Output};
 use crate::progress::Interruptible;
-use crate::run::{identity, of, provenance, tell};
-use crate::train::MOST_NUMBERS;
+use crate::run::{Read, identity, of, position, provenance, tell, with_position};
 use crate::trigger::{Events, Happened};
 use crate::{inspect, json, progress, resume, substeps, table, terminal};
 use assembly::State;
 use assembly::parts::Train;
 use dla::{Checkpoint, Schedule};
 use harness::{
-    Assembled, AssemblyCrossing, AssemblyNode, Method, Progress, Saving, recommend_assembly, run_assembly_saved,
-    run_assembly_watched,
+    Assembled, AssemblyCrossing, AssemblyNode, AssemblyNodes, Method, Progress, Saving, recommend_assembly,
+    run_assembly_saved, run_assembly_watched,
 };
 use scene::{Column, Scene};
 use serde_json::json;
 use sleigh::SleighState;
+use std::cell::RefCell;
 
 /// `noslip run` of a train.
 pub(crate) fn run(
@@ -40,30 +40,34 @@ pub(crate) fn run(
         let found = found.map_err(|error| CliError::Tolerance(Box::new(error)))?;
         schedule = Schedule { step: found.step, steps: found.steps, ..schedule };
     }
-    let every = out.map_or(schedule.steps, |_| arguments.every);
-    if schedule.steps / every.max(1) * 2 * start.len() as u64 > MOST_NUMBERS {
-        let problem = "--out would hold more than 1e8 numbers: choose a larger --every";
-        return Err(CliError::Request(problem.to_owned()));
+    let identity = identity(scene, method, &schedule);
+    let read = resume.as_ref().map(|path| resume::read(path, &identity)).transpose()?;
+    if let Some(path) = checkpoint {
+        resume::check(path, resume.as_deref(), arguments.scene.force)?;
     }
-    // The nodes of a train are in memory until the run ends; a resumed run has those after the checkpoint.
-    let made_by = provenance(arguments, of(scene), &schedule);
-    let output = out.map(|asked| Output::open(asked, made_by, (header(&train), every), None)).transpose()?;
     let interrupt = Interrupt::listen();
+    let made_by = || provenance(arguments, of(scene), &schedule);
+    // A run that had made no step begins.
+    let begun = read.as_ref().filter(|read| read.counts("k").is_ok_and(|[made]| made > 0));
+    let open = |asked| Output::open(asked, made_by(), (header(&train), arguments.every), position(begun));
+    let output = RefCell::new(out.map(open).transpose()?);
     let bar = progress::bar(method.info().name, schedule.steps);
-    let mut progress = Interruptible { bar, interrupt: &interrupt };
-    let request = Request { scene, method, train: &train, start: &start, schedule: &schedule, every };
+    let mut shown = Interruptible { bar, interrupt: &interrupt };
+    let mut progress = Read { progress: &mut shown, output: &output };
+    let request = Request { method, train: &train, start: &start, schedule: &schedule, output: &output };
     let made = if checkpoint.is_some() || resume.is_some() {
-        request.saved(arguments, &mut progress)
+        request.saved(arguments, (&identity, read.as_ref()), &mut progress)
     } else {
         request.watched(arguments, &mut progress)
     };
-    progress.bar.finish_and_clear();
-    let Made { run: Assembled { record, nodes, end, failure }, events, warning } = made?;
+    shown.bar.finish_and_clear();
+    let Made { run: Assembled { mut record, end, failure, .. }, events, warning } = made?;
 
-    let written = output.map_or(Ok(()), |mut output| {
-        nodes.iter().for_each(|node| output.row(0, &row(&train, node)));
-        output.finish(false, false)
-    });
+    let closed = output.borrow().as_ref().is_some_and(Output::is_closed);
+    let interrupted = record.interrupted;
+    let written = output.into_inner().map_or(Ok(()), |output| output.finish(checkpoint.is_some(), interrupted));
+    // A reader who has seen enough is no interruption.
+    record.interrupted &= !closed;
     let blades = train.trailers().len();
     let (first, last) = (train.blade(&end, 0), train.blade(&end, blades));
     if arguments.scene.json {
@@ -88,13 +92,9 @@ pub(crate) fn run(
         ];
         let told = events.as_ref().map_or("", |events| &events.told);
         let parts = substeps::told(&record);
-        tell(
-            out,
-            &(table::one_run_of((&scene.title, &scene.name), &record, &table::end_of_sleigh(&first), file)
-                + &parts
-                + &table::aligned(&more)
-                + told),
-        )?;
+        let name = (scene.title.as_str(), scene.name.as_str());
+        let text = table::one_run_of(name, &record, &table::end_of_sleigh(&first), file) + &parts;
+        tell(out, &table::realigned(&(text + &table::aligned(&more) + told)))?;
     }
     events.iter().for_each(Events::warn);
     // The static record does not know which hinge it was.
@@ -111,13 +111,12 @@ pub(crate) fn run(
 }
 
 /// A run of a train to be made.
-struct Request<'a> {
-    scene: &'a Scene,
+struct Request<'a, 'o> {
     method: &'a Method,
     train: &'a Train,
     start: &'a State,
     schedule: &'a Schedule,
-    every: u64,
+    output: &'a RefCell<Option<Output<'o>>>,
 }
 
 /// A run that was made.
@@ -129,23 +128,37 @@ struct Made {
     warning: Result<(), CliError>,
 }
 
-impl Request<'_> {
-    /// In parts that are saved, or from a part that was.
-    fn saved(&self, arguments: &RunArguments, progress: &mut dyn Progress) -> Result<Made, CliError> {
-        let RunArguments { checkpoint, checkpoint_every, resume: from, scene, .. } = arguments;
-        let identity = identity(self.scene, self.method, self.schedule);
-        let read = from.as_ref().map(|path| resume::read(path, &identity)).transpose()?;
-        if let Some(path) = checkpoint {
-            resume::check(path, from.as_deref(), scene.force)?;
+impl Request<'_, '_> {
+    /// Hands a node to the output.
+    fn write(&self, k: u64, node: &AssemblyNode) {
+        if let Some(output) = self.output.borrow_mut().as_mut() {
+            output.row(k, &row(self.train, node));
         }
+    }
+
+    /// In parts that are saved, or from a part that was, with the output as far as it had come.
+    fn saved(
+        &self,
+        arguments: &RunArguments,
+        (identity, read): (&Checkpoint, Option<&Checkpoint>),
+        progress: &mut dyn Progress,
+    ) -> Result<Made, CliError> {
+        let RunArguments { checkpoint, checkpoint_every, resume: from, .. } = arguments;
         let mut saver = resume::Saver::new(checkpoint.as_deref());
-        let mut save = |made: &Checkpoint| saver.save(made);
+        let mut save = |made: &Checkpoint| saver.save(&with_position(made, self.output));
         let every = checkpoint.as_ref().map(|_| *checkpoint_every);
-        let mut saving = Saving { identity: &identity, from: read.as_ref(), every, save: &mut save };
-        let (assembly, start) = (&self.train.assembly, (self.start, self.every));
+        let mut saving = Saving { identity, from: read, every, save: &mut save };
+        let mut sink = |k: u64, node: &AssemblyNode| self.write(k, node);
+        let (assembly, start) = (&self.train.assembly, (self.start, self.nodes(arguments, &mut sink)));
         let run = run_assembly_saved(assembly, self.method, self.schedule, start, &mut saving, progress);
         let run = run.map_err(|source| CliError::Checkpoint { path: from.clone().unwrap_or_default(), source })?;
         Ok(Made { run, events: None, warning: saver.outcome() })
+    }
+
+    /// The nodes that are written, if any are.
+    fn nodes<'s>(&self, arguments: &RunArguments, sink: &'s mut dyn FnMut(u64, &AssemblyNode)) -> AssemblyNodes<'s> {
+        let every = if arguments.out.is_some() { arguments.every } else { u64::MAX };
+        AssemblyNodes::Shown(every, sink)
     }
 
     /// At once, with an eye on events where there are any.
@@ -155,8 +168,9 @@ impl Request<'_> {
         let watched = on_blade.collect::<Result<Vec<_>, _>>()?;
         let is_last = |k: usize| k >= event.len();
         let events: Vec<_> = watched.iter().enumerate().map(|(k, one)| one.event(self.train, is_last(k))).collect();
-        let (assembly, start, looked_for) =
-            (&self.train.assembly, (self.start, self.every), (&events[..], *event_samples));
+        let mut sink = |k: u64, node: &AssemblyNode| self.write(k, node);
+        let (assembly, looked_for) = (&self.train.assembly, (&events[..], *event_samples));
+        let start = (self.start, self.nodes(arguments, &mut sink));
         let (run, crossings) = run_assembly_watched(assembly, self.method, self.schedule, start, looked_for, progress);
         let happened = crossings.iter().filter_map(|crossing| Happened::of_train(self.train, &watched, crossing));
         let events = (!watched.is_empty()).then(|| Events::new(happened, AssemblyCrossing::close(&crossings)));

@@ -146,7 +146,7 @@ fn header(sweep: &Sweep) -> Vec<Column> {
     let exponent = sweep.exponent.then(|| Column::new("exponent", "1/s"));
     let keys = sweep.keys().map(|key| Column::new(key, ""));
     let columns = COLUMNS.iter().map(|(name, unit)| Column::new(*name, *unit));
-    std::iter::once(Column::new("member", "")).chain(keys).chain(columns).chain(exponent).collect()
+    std::iter::once(Column::whole("member")).chain(keys).chain(columns).chain(exponent).collect()
 }
 
 /// What made the result: the command, the sweep and its scene.

@@ -39,9 +39,8 @@ pub(super) fn write<'a>(
             Ok(())
         }
         Format::Npz => {
-            // One more column says which members failed.
-            let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).chain(["failed"]).collect();
-            npz::write(file, &names, count, metadata, |column, push| {
+            let columns = with_failed(columns);
+            npz::write(file, &columns, count, metadata, |column, push| {
                 let mut rows = rows()?;
                 while let Some(row) = rows.next()? {
                     push(lines::value(row, column))?;
@@ -51,14 +50,18 @@ pub(super) fn write<'a>(
         }
         #[cfg(feature = "parquet")]
         Format::Parquet => {
-            let mut rows = rows()?;
+            let (mut rows, columns) = (rows()?, with_failed(columns));
             let all = 0..columns.len();
             let row = |text: &str| all.clone().map(|column| lines::value(text, column)).collect();
             let next = || rows.next().map(|text| text.map(row)).transpose();
-            let labels = columns.iter().map(label).collect();
-            crate::parquet_file::write(file, labels, metadata, std::iter::from_fn(next))
+            crate::parquet_file::write(file, &columns, metadata, std::iter::from_fn(next))
         }
     }
+}
+
+/// The columns of a file of numbers alone: one more says which members failed, by 0 or 1.
+fn with_failed(columns: &[Column]) -> Vec<Column> {
+    columns.iter().cloned().chain([Column::whole("failed")]).collect()
 }
 
 /// A row as an object; its member is a whole number, and what is not finite is null.

@@ -46,6 +46,7 @@ mod projection;
 mod rebased;
 mod recommend;
 mod resolved;
+mod runaway;
 mod samples;
 mod sensitivity;
 mod settle;
@@ -89,6 +90,7 @@ pub use pieces::{
 pub use rebased::Rebased;
 pub use recommend::{RecommendError, Recommendation, recommend_by_trial, recommend_step};
 pub use resolved::Halved;
+pub use runaway::Runaway;
 pub use samples::Samples;
 pub use sensitivity::{
     Differentiable, ReducedDerivative, ReducedVariation, Sensitivity, SensitivityError, StepDerivative, StepEquations,

@@ -1,4 +1,4 @@
-use crate::{Mechanics, OneStep, RunError, Samples, Schedule, State, StepError, drive};
+use crate::{Mechanics, OneStep, RunError, Runaway, Samples, Schedule, State, StepError, drive};
 use lagrangian::linear::larger;
 use thiserror::Error;
 
@@ -62,6 +62,10 @@ const REFINEMENTS: u32 = 12;
 const ROUNDING: f64 = 1e-7;
 /// No trial has more steps.
 const MOST: u64 = 1 << 26;
+/// Nor so many, unless shorter steps are seen to help.
+const UNSEEN: u64 = 1 << 22;
+/// Runs of more steps than this say when a motion leaves the range of numbers.
+const FINE: u64 = 1 << 16;
 
 /// The longest constant step with which a run from `state` at time zero reaches its tolerance, the largest error of a
 /// coordinate in its own units, found by trial.
@@ -137,8 +141,8 @@ fn reference<const N: usize>(
     let mut trials: Trials<N> = Vec::new();
     let mut extrapolated: Option<Sampled<N>> = None;
     let (mut change, mut best) = (f64::INFINITY, (f64::INFINITY, 1));
-    let mut failure = None;
-    let (mut steps, mut stalls, mut size) = (4, 0, 0.0);
+    let (mut failure, mut runaway) = (None, Runaway::default());
+    let (mut steps, mut stalls, mut size, mut largest) = (4, 0, 0.0, 0.0);
     while steps <= MOST {
         match trial(steps) {
             Ok(now) => {
@@ -150,6 +154,7 @@ fn reference<const N: usize>(
                     if change < 0.75 * best.0 {
                         best = (change, steps);
                     }
+                    largest = larger(largest, change);
                     // A ratio of two is an error of order one.
                     let better = (ratio >= 1.9).then(|| {
                         let gain = (ratio.log2().round().clamp(1.0, 20.0).exp2() - 1.0).recip();
@@ -168,6 +173,11 @@ fn reference<const N: usize>(
                         return Ok((now, trials));
                     }
                     extrapolated = better;
+                    // Numbers of that size do not have the digits, or nothing is gained by all these steps.
+                    let coarse = f64::EPSILON * size > tolerance && change < 0.5 * size;
+                    if coarse || (steps >= UNSEEN && change > 0.5 * largest) {
+                        break;
+                    }
                 } else {
                     trials.push((steps, now));
                 }
@@ -177,7 +187,9 @@ fn reference<const N: usize>(
                 failure = Some(error);
                 trials.clear();
                 (change, extrapolated) = (f64::INFINITY, None);
-                if matches!(error.source, StepError::Unsupported { .. } | StepError::TooLarge { .. }) {
+                let hopeless = matches!(error.source, StepError::Unsupported { .. } | StepError::TooLarge { .. });
+                let costly = error.step > UNSEEN / 2;
+                if hopeless || costly || runaway.sees(&error, duration / steps as f64, FINE) {
                     break;
                 }
             }

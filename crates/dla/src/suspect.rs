@@ -4,7 +4,7 @@ use lagrangian::{MotionError, ReducedError, from_fn};
 
 impl StepError {
     /// Whether the step may have failed because something is not a number, or not finite.
-    fn has_lost_numbers(&self) -> bool {
+    pub(crate) fn has_lost_numbers(&self) -> bool {
         let lost = |source: &Singular| !source.pivot.is_finite();
         match self {
             Self::Newton { source, .. } => match source {

@@ -20,7 +20,10 @@ impl Document<'_> {
 
     /// An error of the TOML parser.
     pub(crate) fn syntax(&self, error: &toml::de::Error) -> SceneError {
-        let span = error.span().unwrap_or(0..0);
+        let span = match error.span() {
+            None if error.message().contains("recurs") => return self.too_deep(error),
+            span => span.unwrap_or(0..0),
+        };
         // The parser says "problem, expected this, that".
         let (problem, expected) = match error.message().split_once(", expected ") {
             None if error.message() == "duplicate key" => ("duplicate key", "every key and table once"),
@@ -35,6 +38,28 @@ impl Document<'_> {
         };
         let fault = Fault { variant: SceneError::Syntax, key: "", problem, found: None, accepted, help: None };
         self.fail(&span, field, fault)
+    }
+
+    /// The parser gives no place for what nests deeper than it reads: a key with that many dots, or that many brackets.
+    fn too_deep(&self, error: &toml::de::Error) -> SceneError {
+        let depth = |line: &str| line.chars().filter(|c| ".[{".contains(*c)).count();
+        let lines = self.text.split_inclusive('\n').scan(0, |start, line| {
+            let span = *start..*start + line.trim_end().len();
+            *start += line.len();
+            Some((span, depth(line)))
+        });
+        // Of lines that nest as deep, the first.
+        let (span, _) = lines.reduce(|most, line| if line.1 > most.1 { line } else { most }).unwrap_or((0..0, 0));
+        let fault = Fault {
+            variant: SceneError::Syntax,
+            key: "",
+            problem: format!("not TOML that is read: {}", error.message()),
+            found: None,
+            accepted: "keys of fewer than 80 parts, and lists and tables within one another fewer than 80 deep"
+                .to_owned(),
+            help: None,
+        };
+        self.fail(&span, None, fault)
     }
 
     /// The path of the key whose value `index` is in, as far as its line and the last header before it tell.

@@ -10,15 +10,18 @@ use toml::de::DeValue;
 
 /// Reads the entries of `[[effects]]`.
 pub(crate) fn read(root: &Table<'_>, sleigh: &Sleigh) -> Result<Vec<SceneEffect>, SceneError> {
-    let mut effects: Vec<SceneEffect> = Vec::new();
+    let (mut effects, mut tables): (Vec<SceneEffect>, Vec<Table<'_>>) = (Vec::new(), Vec::new());
     for entry in root.entries_of("effects", "a list of tables, each headed `[[effects]]`")? {
         let (kind, keys, _) = kind_of(&entry)?;
         let known: Vec<&str> = ["kind"].into_iter().chain(keys.iter().copied()).collect();
-        let table = entry.named(format!("effects.{kind}")).with_known_keys(&known)?;
+        let path = entry.path_of(kind);
+        let table = entry.named(path).with_known_keys(&known)?;
         let effect = read_one(&table, kind)?;
         check_company(&table, &effect, &effects, sleigh.offset())?;
         check_energy(&table, &effect, sleigh)?;
         effects.push(effect);
+        tables.push(table);
+        check_train(&tables, &effects)?;
     }
     Ok(effects)
 }
@@ -184,6 +187,28 @@ fn check_energy(table: &Table<'_>, effect: &SceneEffect, sleigh: &Sleigh) -> Res
     Ok(())
 }
 
+/// Refuses what does not act on a train, at the effect that does not.
+fn check_train(tables: &[Table<'_>], effects: &[SceneEffect]) -> Result<(), SceneError> {
+    if !effects.iter().any(|effect| matches!(effect, SceneEffect::Trailers(_))) {
+        return Ok(());
+    }
+    let Some((table, effect)) = tables.iter().zip(effects).find(|(_, effect)| changes_body(effect)) else {
+        return Ok(());
+    };
+    let table_of_times = match effect {
+        SceneEffect::Thrust { .. } => Some("force"),
+        SceneEffect::Torque { .. } => Some("torque"),
+        _ => None,
+    };
+    if let Some(key) = table_of_times {
+        let problem = "is a table of times, which does not act on a train: the scene has `trailers`";
+        return Err(table.wrong(key, problem, "a number or `{amplitude, frequency, phase}`".to_owned()));
+    }
+    let accepted = "what acts on its coordinates: `slope`, `bowl`, `egg_crate`, `hills` for every blade, `drag`, \
+                    `thrust`, `torque` and `moving_mass` for the first, without tables of times";
+    Err(table.wrong("kind", "cannot act on a train: the scene has `trailers`", accepted.to_owned()))
+}
+
 /// Refuses what does not go together: a second body, two ways to impose a velocity, what the sleigh cannot do.
 fn check_company(table: &Table<'_>, new: &SceneEffect, others: &[SceneEffect], offset: f64) -> Result<(), SceneError> {
     let only_once = matches!(
@@ -196,12 +221,6 @@ fn check_company(table: &Table<'_>, new: &SceneEffect, others: &[SceneEffect], o
     );
     if only_once && others.iter().any(|other| other.kind() == new.kind()) {
         return Err(table.wrong("kind", "is there already", format!("one `{}` in a scene", new.kind())));
-    }
-    let is_train = |effect: &SceneEffect| matches!(effect, SceneEffect::Trailers(_));
-    if (is_train(new) && others.iter().any(changes_body)) || (changes_body(new) && others.iter().any(is_train)) {
-        let accepted = "what acts on its coordinates: `slope`, `bowl`, `egg_crate`, `hills` for every blade, `drag`, \
-                        `thrust`, `torque` and `moving_mass` for the first, without tables of times";
-        return Err(table.wrong("kind", "cannot act on a train: the scene has `trailers`", accepted.to_owned()));
     }
     let imposes = |effect: &SceneEffect| matches!(effect, SceneEffect::Servo { .. } | SceneEffect::Tracer { .. });
     if imposes(new) && others.iter().any(imposes) {

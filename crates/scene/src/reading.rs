@@ -78,17 +78,22 @@ impl<'s> Table<'s> {
         self.inner(self.path_of(key), entries, value.span(), known).map(Some)
     }
 
-    /// The entries of a list of tables, whatever their keys; none where the table has no such list.
+    /// The entries of a list of tables, whatever their keys; none where the table has no such list. Where there are several the path of
+    /// each has its number, from 0 as in `--set`.
     pub(crate) fn entries_of(&self, key: &str, accepted: &str) -> Result<Vec<Self>, SceneError> {
         let Some(value) = self.get(key) else { return Ok(Vec::new()) };
         let DeValue::Array(entries) = value.get_ref() else {
             return Err(self.wrong_type(key, value, accepted.to_owned()));
         };
-        let table = |entry: &'s Spanned<DeValue<'s>>| match entry.get_ref() {
-            DeValue::Table(table) => Ok(self.unchecked(self.path_of(key), table, entry.span())),
+        let path = |number: usize| match entries.len() {
+            1 => self.path_of(key),
+            _ => format!("{}[{number}]", self.path_of(key)),
+        };
+        let table = |(number, entry): (usize, &'s Spanned<DeValue<'s>>)| match entry.get_ref() {
+            DeValue::Table(table) => Ok(self.unchecked(path(number), table, entry.span())),
             _ => Err(self.wrong_type(key, entry, accepted.to_owned())),
         };
-        entries.iter().map(table).collect()
+        entries.iter().enumerate().map(table).collect()
     }
 
     /// The value of `key` as a list of tables with these keys.

@@ -9,12 +9,19 @@ pub struct Column {
     pub name: String,
     /// The unit, as a reader of the file sees it.
     pub unit: String,
+    /// Whether all of its numbers are whole ones: a file stores them as integers.
+    pub whole: bool,
 }
 
 impl Column {
     /// A column.
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
-        Self { name: name.into(), unit: unit.into() }
+        Self { name: name.into(), unit: unit.into(), whole: false }
+    }
+
+    /// A column of whole numbers without a unit, such as the number of a member.
+    pub fn whole(name: impl Into<String>) -> Self {
+        Self { whole: true, ..Self::new(name, "") }
     }
 }
 

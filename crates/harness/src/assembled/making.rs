@@ -1,3 +1,4 @@
+use super::AssemblyNodes;
 use super::meter::Meter;
 use super::parts::{Parted, in_parts, resolves, shorter};
 use super::{Assembled, assembly_method};
@@ -8,13 +9,13 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 /// A run of an assembly while it is made.
-pub(super) struct Making<'a> {
+pub(super) struct Making<'a, 'n> {
     assembly: &'a Assembly,
     schedule: &'a Schedule,
     info: MethodInfo,
     limits: Option<Substeps>,
     method: Option<Box<dyn OneStep>>,
-    meter: Meter,
+    meter: Meter<'n>,
     state: State,
     pub(super) made: u64,
     seconds: f64,
@@ -36,15 +37,15 @@ pub(super) struct Step<'a> {
 /// The node at which a run ends within a step: the time (s) and the state.
 pub(super) type Last = (f64, State);
 
-impl<'a> Making<'a> {
+impl<'a, 'n> Making<'a, 'n> {
     pub(super) fn new(
         assembly: &'a Assembly,
         method: &Method,
         schedule: &'a Schedule,
         start: &State,
-        every: u64,
+        nodes: AssemblyNodes<'n>,
     ) -> Self {
-        let meter = Meter::new(assembly, method, schedule.t0, start, every.max(1));
+        let meter = Meter::new(assembly, method, schedule.t0, start, nodes);
         Self::of(assembly, method, schedule, (meter, start.clone(), 0, 0.0))
     }
 
@@ -52,7 +53,7 @@ impl<'a> Making<'a> {
         assembly: &'a Assembly,
         method: &Method,
         schedule: &'a Schedule,
-        (meter, state, made, seconds): (Meter, State, u64, f64),
+        (meter, state, made, seconds): (Meter<'n>, State, u64, f64),
     ) -> Self {
         let (method, info, limits) = (assembly_method(assembly, method), method.info(), method.substeps());
         let (method, failure) = match method {
@@ -150,7 +151,7 @@ impl<'a> Making<'a> {
     pub(super) fn assembled(mut self, stopped: bool) -> Assembled {
         let interrupted = stopped && !self.is_over();
         let t = self.ended.unwrap_or_else(|| self.schedule.time(self.made));
-        self.meter.finish(self.assembly, t, &self.state);
+        self.meter.finish(self.assembly, (self.made, t), &self.state);
         let cost = (t, self.made, self.seconds);
         let record = self.meter.record(self.info, self.schedule.step, cost, &self.state, self.failure.as_ref());
         let record = Record { interrupted, ..record };
@@ -172,12 +173,12 @@ impl<'a> Making<'a> {
         assembly: &'a Assembly,
         method: &Method,
         schedule: &'a Schedule,
-        every: u64,
+        nodes: AssemblyNodes<'n>,
         checkpoint: &Checkpoint,
     ) -> Result<Self, CheckpointError> {
         let ([made], [seconds]) = (checkpoint.counts("k")?, checkpoint.get("seconds")?);
         let state = State::load(checkpoint, assembly)?;
-        let meter = Meter::load(checkpoint, method, every.max(1))?;
+        let meter = Meter::load(checkpoint, method, (made, schedule.time(made)), nodes)?;
         Ok(Self::of(assembly, method, schedule, (meter, state, made, seconds)))
     }
 }

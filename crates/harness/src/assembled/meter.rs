@@ -1,4 +1,4 @@
-use super::AssemblyNode;
+use super::{AssemblyNode, AssemblyNodes};
 use crate::{
     Blocks, Drift, Energies, EnergySummary, Method, MethodInfo, NewtonSummary, Record, Sample, SubstepSummary, Trend,
 };
@@ -7,7 +7,10 @@ use dla::{Checkpoint, CheckpointError, Undivided};
 use lagrangian::linear::larger;
 
 /// What a run of an assembly is measured by.
-pub(super) struct Meter {
+pub(super) struct Meter<'a> {
+    /// Where nodes go that are not kept, every how manieth, and the time (s) of the last one.
+    shown: Option<(u64, &'a mut dyn FnMut(u64, &AssemblyNode), f64)>,
+    /// Every so manieth node is a sample, and is kept unless nodes are shown.
     every: u64,
     initial: f64,
     last: f64,
@@ -25,10 +28,12 @@ pub(super) struct Meter {
     substeps: Option<SubstepSummary>,
 }
 
-impl Meter {
-    pub(super) fn new(assembly: &Assembly, method: &Method, t: f64, start: &State, every: u64) -> Self {
+impl<'a> Meter<'a> {
+    pub(super) fn new(assembly: &Assembly, method: &Method, t: f64, start: &State, nodes: AssemblyNodes<'a>) -> Self {
+        let (every, shown) = split(nodes, f64::NEG_INFINITY);
         let (initial, most) = (assembly.energy(t, start), assembly.misses(t, start));
         let mut meter = Self {
+            shown,
             every,
             initial,
             last: initial,
@@ -48,6 +53,7 @@ impl Meter {
         meter.trend.add(t, 0.0);
         meter.blocks.add(t, 0.0);
         meter.keep(assembly, t, start);
+        meter.show(assembly, (0, t), start);
         meter
     }
 
@@ -105,22 +111,44 @@ impl Meter {
         if made.is_multiple_of(self.every) {
             self.keep(assembly, t, state);
         }
+        if self.shown.as_ref().is_some_and(|(every, ..)| made.is_multiple_of(*every)) {
+            self.show(assembly, (made, t), state);
+        }
+    }
+
+    fn node(&self, assembly: &Assembly, t: f64, state: &State) -> AssemblyNode {
+        let (q, v) = (0..state.len()).map(|i| (state.unwrapped(i), state.v(i))).unzip();
+        let [constraint, joint] = assembly.misses(t, state);
+        AssemblyNode { t, q, v, energy: assembly.energy(t, state), work: self.work.total(), constraint, joint }
     }
 
     fn keep(&mut self, assembly: &Assembly, t: f64, state: &State) {
-        let q: Vec<f64> = (0..state.len()).map(|i| state.unwrapped(i)).collect();
-        let [constraint, joint] = assembly.misses(t, state);
-        let v = (0..state.len()).map(|i| state.v(i)).collect();
-        self.samples.push(Sample { t, q: first(&q), energy_error: self.bucket.0, constraint: self.bucket.1 });
+        let node = self.node(assembly, t, state);
+        self.samples.push(Sample { t, q: first(&node.q), energy_error: self.bucket.0, constraint: self.bucket.1 });
         self.bucket = (0.0, 0.0);
-        let (energy, work) = (assembly.energy(t, state), self.work.total());
-        self.nodes.push(AssemblyNode { t, q, v, energy, work, constraint, joint });
+        if self.shown.is_none() {
+            self.nodes.push(node);
+        }
     }
 
-    /// Keeps the last node, where that is no regular one.
-    pub(super) fn finish(&mut self, assembly: &Assembly, t: f64, state: &State) {
+    /// Hands on the node of that number, where nodes are handed on.
+    fn show(&mut self, assembly: &Assembly, (made, t): (u64, f64), state: &State) {
+        if self.shown.is_some() {
+            let node = self.node(assembly, t, state);
+            if let Some((_, sink, last)) = &mut self.shown {
+                sink(made, &node);
+                *last = t;
+            }
+        }
+    }
+
+    /// Keeps and hands on the last node, where that is no regular one.
+    pub(super) fn finish(&mut self, assembly: &Assembly, (made, t): (u64, f64), state: &State) {
         if self.samples.last().is_none_or(|sample| sample.t < t) {
             self.keep(assembly, t, state);
+        }
+        if self.shown.as_ref().is_some_and(|(.., last)| *last < t) {
+            self.show(assembly, (made, t), state);
         }
     }
 
@@ -183,14 +211,25 @@ impl Meter {
         checkpoint.put("samples", &samples.collect::<Vec<_>>());
     }
 
-    /// The meter that [`save`](Self::save) wrote; it keeps nodes from there on.
-    pub(super) fn load(checkpoint: &Checkpoint, method: &Method, every: u64) -> Result<Self, CheckpointError> {
+    /// The meter that [`save`](Self::save) wrote after so many steps, at the time `t`; nodes are those from there on.
+    pub(super) fn load(
+        checkpoint: &Checkpoint,
+        method: &Method,
+        (made, t): (u64, f64),
+        nodes: AssemblyNodes<'a>,
+    ) -> Result<Self, CheckpointError> {
+        let (every, mut shown) = split(nodes, f64::NEG_INFINITY);
+        // A node that is due was handed on before.
+        if let Some((_, _, last)) = shown.as_mut().filter(|(every, ..)| made.is_multiple_of(*every)) {
+            *last = t;
+        }
         let [initial, last, max_error, constraint, joint, error, slip] = checkpoint.get("meter")?;
         let [iterations, most] = checkpoint.counts("iterations")?;
         let substeps = method.substeps().map(|_| SubstepSummary::load(checkpoint)).transpose()?;
         let samples = checkpoint.list("samples")?;
         let sample = |x: &[f64]| Sample { t: x[0], energy_error: x[1], constraint: x[2], q: [x[3], x[4], x[5]] };
         Ok(Self {
+            shown,
             every,
             initial,
             last,
@@ -207,6 +246,14 @@ impl Meter {
             nodes: Vec::new(),
             substeps,
         })
+    }
+}
+
+/// Every how manieth node is a sample, and where nodes go that are not kept.
+fn split(nodes: AssemblyNodes<'_>, last: f64) -> (u64, Option<(u64, &mut dyn FnMut(u64, &AssemblyNode), f64)>) {
+    match nodes {
+        AssemblyNodes::Kept(every) => (every.max(1), None),
+        AssemblyNodes::Shown(every, sink) => (u64::MAX, Some((every.max(1), sink, last))),
     }
 }
 

@@ -37,12 +37,30 @@ pub struct AssemblyNode {
     pub joint: f64,
 }
 
+/// What becomes of the nodes of a run of an assembly.
+pub enum AssemblyNodes<'a> {
+    /// Every so manieth and the last are kept in memory.
+    Kept(u64),
+    /// They are handed on with their numbers, every so manieth and the last, as they are made; none is kept. A run that is resumed hands on
+    /// those after the checkpoint.
+    Shown(u64, &'a mut dyn FnMut(u64, &AssemblyNode)),
+}
+
+impl std::fmt::Debug for AssemblyNodes<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Kept(every) => f.debug_tuple("Kept").field(every).finish(),
+            Self::Shown(every, _) => f.debug_tuple("Shown").field(every).finish_non_exhaustive(),
+        }
+    }
+}
+
 /// A run of an assembly, measured.
 #[derive(Debug, Clone)]
 pub struct Assembled {
     /// The record, whose coordinates are the first three of the assembly; [`Record::leaf_max`] is that of its joints.
     pub record: Record<3>,
-    /// The nodes kept.
+    /// The nodes that were kept.
     pub nodes: Vec<AssemblyNode>,
     /// The state at the end.
     pub end: State,
@@ -110,7 +128,7 @@ pub fn run_assembly(
     every: u64,
     progress: &mut dyn Progress,
 ) -> Assembled {
-    run_assembly_watched(assembly, method, schedule, (start, every), (&[], 1), progress).0
+    run_assembly_watched(assembly, method, schedule, (start, AssemblyNodes::Kept(every)), (&[], 1), progress).0
 }
 
 /// The same, with an eye on events in so many parts of each step; one that is terminal ends the run at its first crossing. Returns
@@ -121,11 +139,11 @@ pub fn run_assembly_watched(
     assembly: &Assembly,
     method: &Method,
     schedule: &Schedule,
-    (start, every): (&State, u64),
+    (start, nodes): (&State, AssemblyNodes<'_>),
     events: (&[AssemblyEvent<'_>], u32),
     progress: &mut dyn Progress,
 ) -> (Assembled, Vec<AssemblyCrossing>) {
-    let mut making = Making::new(assembly, method, schedule, start, every);
+    let mut making = Making::new(assembly, method, schedule, start, nodes);
     let (mut ticker, mut crossings) = (Ticker::new(progress, 0), Vec::new());
     making.go(schedule.steps, &mut ticker, |method, step| {
         let last = ended(assembly, method, &step, events, &mut crossings);

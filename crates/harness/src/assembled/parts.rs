@@ -22,7 +22,7 @@ pub(super) fn in_parts(
     assembly: &Assembly,
     method: &mut dyn OneStep,
     (limits, (k, t, h), failure): (Substeps, (u64, f64, f64), AssemblyError),
-    (state, meter): (&mut State, &mut Meter),
+    (state, meter): (&mut State, &mut Meter<'_>),
     stops: impl Fn() -> bool,
     mut look: impl FnMut(&mut dyn OneStep, Step<'_>) -> ControlFlow<Last>,
 ) -> Result<Option<Parted>, Undivided<AssemblyError>> {

@@ -1,5 +1,5 @@
-use super::Assembled;
 use super::making::{Making, Ticker};
+use super::{Assembled, AssemblyNodes};
 use crate::saved::within;
 use crate::{Method, Progress, Saving};
 use assembly::{Assembly, State};
@@ -17,7 +17,7 @@ pub fn run_assembly_saved(
     assembly: &Assembly,
     method: &Method,
     schedule: &Schedule,
-    (start, every): (&State, u64),
+    (start, nodes): (&State, AssemblyNodes<'_>),
     saving: &mut Saving<'_>,
     progress: &mut dyn Progress,
 ) -> Result<Assembled, CheckpointError> {
@@ -26,9 +26,9 @@ pub fn run_assembly_saved(
             checkpoint.belongs_to(saving.identity)?;
             let [made] = checkpoint.counts("k")?;
             within(made, schedule.steps)?;
-            Making::load(assembly, method, schedule, every, checkpoint)?
+            Making::load(assembly, method, schedule, nodes, checkpoint)?
         }
-        None => Making::new(assembly, method, schedule, start, every),
+        None => Making::new(assembly, method, schedule, start, nodes),
     };
     progress.advance(making.made);
     let mut ticker = Ticker::new(progress, making.made);

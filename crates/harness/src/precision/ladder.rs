@@ -64,10 +64,10 @@ pub(super) fn climb(bench: &Bench<'_>, method: &Method, limits: &Limits) -> Resu
         let rung = Rung { method: tuned, steps, seconds, error: None, mark: None };
         rungs.push(match outcome {
             Ok(error) if error.is_finite() => Rung { error: Some(error), ..rung },
-            Ok(_) => Rung { mark: Some(Mark::Failed("the end is not a number".to_owned())), ..rung },
+            Ok(_) => Rung { mark: Some(Mark::Failed("the end is not a number".to_owned(), None)), ..rung },
             Err(failure) => match failure.source {
                 StepError::Unsupported { reason } => return Err(reason),
-                _ => Rung { mark: Some(Mark::Failed(failure.to_string())), ..rung },
+                _ => Rung { mark: Some(Mark::Failed(failure.to_string(), Some(failure))), ..rung },
             },
         });
         mark_plateau(&mut rungs, bench.reference_error, method.info().order);

@@ -1,4 +1,5 @@
 use super::Slope;
+use dla::RunError;
 use std::fmt;
 
 /// What is varied along the curve of a method.
@@ -15,8 +16,8 @@ pub enum Setting {
 pub enum Mark {
     /// Its error is within ten times that of the reference, or finer steps no longer make it smaller: rounding.
     Plateau,
-    /// The run failed, with the reason.
-    Failed(String),
+    /// The run failed, with the reason, and with the failure itself where this program made the run.
+    Failed(String, Option<RunError>),
 }
 
 impl fmt::Display for Setting {
@@ -38,7 +39,7 @@ impl fmt::Display for Mark {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Plateau => f.write_str("plateau"),
-            Self::Failed(reason) => write!(f, "failed: {reason}"),
+            Self::Failed(reason, _) => write!(f, "failed: {reason}"),
         }
     }
 }

@@ -1,6 +1,6 @@
 use super::Motion;
 use crate::{Method, MethodError};
-use dla::RunError;
+use dla::{RunError, Runaway};
 use lagrangian::linear::larger;
 use thiserror::Error;
 
@@ -31,6 +31,17 @@ pub enum ReferenceError {
     /// The method is not there.
     #[error(transparent)]
     Method(#[from] MethodError),
+    /// The best end is no end.
+    #[error(
+        "the reference, gauss16 with {steps} steps, is off by {error:.3e} m or rad: no error can be measured from it; a shorter \
+         --duration has a better one"
+    )]
+    Vague {
+        /// Steps of the best run.
+        steps: u64,
+        /// How far it may be off (m or rad).
+        error: f64,
+    },
     /// Not two runs succeeded.
     #[error("the reference: too few runs of gauss16 succeed")]
     TooFew,
@@ -40,6 +51,10 @@ pub enum ReferenceError {
 const RATIO: f64 = 1.5;
 /// Runs at most; the last has 1.5^31 times the steps of the first.
 const RUNS: usize = 32;
+/// Runs of more steps than this say when a motion leaves the range of numbers.
+const FINE: u64 = 1 << 10;
+/// A reference that is off by more (m or rad) is none.
+const VAGUE: f64 = 0.1;
 /// So many runs on, nothing has improved: rounding is reached.
 const PATIENCE: usize = 3;
 
@@ -60,7 +75,7 @@ impl<const N: usize> Reference<N> {
         // The distances of successive ends, the best of them and where it is.
         let mut steps: Vec<f64> = Vec::new();
         let mut best = (f64::INFINITY, 0);
-        let (mut wanted, mut failure) = (motion.fewest(), None);
+        let (mut wanted, mut failure, mut runaway) = (motion.fewest(), None, Runaway::default());
         for _ in 0..RUNS {
             let count = motion.aligned(wanted);
             match motion.end(&gauss16, count) {
@@ -74,7 +89,13 @@ impl<const N: usize> Reference<N> {
                     }
                     ends.push((count, q));
                 }
-                Err(source) => failure = Some(ReferenceError::Run { steps: count, source }),
+                Err(source) => {
+                    let over = runaway.sees(&source, motion.duration() / count as f64, FINE);
+                    failure = Some(ReferenceError::Run { steps: count, source });
+                    if over {
+                        break;
+                    }
+                }
             }
             if best.0.is_finite() && steps.len() > best.1 + PATIENCE {
                 break;
@@ -90,6 +111,10 @@ impl<const N: usize> Reference<N> {
         if let Ok(other) = motion.end(&gauss14, count) {
             error = larger(error, distance(&other, &q));
         }
-        Ok(Self { q, steps: count, error })
+        if error > VAGUE {
+            Err(ReferenceError::Vague { steps: count, error })
+        } else {
+            Ok(Self { q, steps: count, error })
+        }
     }
 }

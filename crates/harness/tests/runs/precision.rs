@@ -107,7 +107,7 @@ fn what_fails_in_every_run_is_told_of_its_finest() {
     let (curves, _) = work_precision(&bench, &[Method::named("dla", None).unwrap()], &limits, &mut ());
     let [point] = &curves[0].points[..] else { panic!("{curves:?}") };
     assert!(point.error.is_none() && point.cpu_seconds.is_none() && !point.pareto);
-    assert!(matches!(&point.mark, Some(Mark::Failed(reason)) if reason.starts_with("step 1, from t = 0 s")));
+    assert!(matches!(&point.mark, Some(Mark::Failed(reason, Some(_))) if reason.starts_with("step 1, from t = 0 s")));
 }
 
 fn point(method: &str, error: f64, seconds: f64) -> Point {

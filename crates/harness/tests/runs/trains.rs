@@ -3,8 +3,8 @@ use approx::assert_abs_diff_eq;
 use assembly::parts::{Trailer, Train};
 use dla::{Checkpoint, CheckpointError, RecommendError, Schedule, Substeps};
 use harness::{
-    AssemblyEvent, Method, Progress, Saving, assembly_end, recommend_assembly, run_assembly, run_assembly_saved,
-    run_assembly_watched,
+    AssemblyEvent, AssemblyNodes, Method, Progress, Saving, assembly_end, recommend_assembly, run_assembly,
+    run_assembly_saved, run_assembly_watched,
 };
 use lagrangian::With;
 use sleigh::effects::{Drag, Thrust};
@@ -85,8 +85,14 @@ fn events_along_a_train() {
         let method = Method::named(name, None).unwrap();
         let x = |value: f64| move |_: f64, state: &assembly::State| state.unwrapped(0) - value;
         let events = [AssemblyEvent::new("x=0.513", false, x(0.513)), AssemblyEvent::new("x=0.911", true, x(0.911))];
-        let (run, crossings) =
-            run_assembly_watched(&train.assembly, &method, &SCHEDULE, (&start, 1000), (&events, 4), &mut ());
+        let (run, crossings) = run_assembly_watched(
+            &train.assembly,
+            &method,
+            &SCHEDULE,
+            (&start, AssemblyNodes::Kept(1000)),
+            (&events, 4),
+            &mut (),
+        );
         assert_eq!(crossings.iter().map(|crossing| crossing.event).collect::<Vec<_>>(), [0, 1]);
         for (crossing, value) in crossings.iter().zip([0.513, 0.911]) {
             assert!(crossing.rising && crossing.within < 1e-15);
@@ -120,7 +126,7 @@ fn a_saved_run_goes_on_as_if_it_had_not_stopped() {
         let mut save = |made: &Checkpoint| files.push(made.to_text());
         let mut saving = Saving { identity: &identity, from: None, every: Some(64), save: &mut save };
         let run = |saving: &mut Saving<'_>| {
-            run_assembly_saved(&train.assembly, &method, &SCHEDULE, (&start, 10), saving, &mut ())
+            run_assembly_saved(&train.assembly, &method, &SCHEDULE, (&start, AssemblyNodes::Kept(10)), saving, &mut ())
         };
         let parts = run(&mut saving).unwrap();
         assert_eq!(bits(&parts), bits(&whole));
@@ -188,17 +194,32 @@ fn long_steps_of_trains_are_made_in_parts() {
         let mut save = |made: &Checkpoint| files.push(made.clone());
         let identity = Checkpoint::default();
         let mut saving = Saving { identity: &identity, from: None, every: Some(2), save: &mut save };
-        let whole = run_assembly_saved(&train.assembly, &method, &long, (&start, 1), &mut saving, &mut ()).unwrap();
+        let whole =
+            run_assembly_saved(&train.assembly, &method, &long, (&start, AssemblyNodes::Kept(1)), &mut saving, &mut ())
+                .unwrap();
         assert_eq!(bits(&whole), bits(&run), "{name}");
         for file in &files {
             let mut saving = Saving { identity: &identity, from: Some(file), every: None, save: &mut |_| () };
-            let again = run_assembly_saved(&train.assembly, &method, &long, (&start, 1), &mut saving, &mut ());
+            let again = run_assembly_saved(
+                &train.assembly,
+                &method,
+                &long,
+                (&start, AssemblyNodes::Kept(1)),
+                &mut saving,
+                &mut (),
+            );
             assert_eq!(bits(&again.unwrap()), bits(&run), "{name}");
         }
 
         let events = [AssemblyEvent::new("x", true, |_, state| state.q(0) - 1.0)];
-        let (ended, crossings) =
-            run_assembly_watched(&train.assembly, &method, &long, (&start, 1), (&events, 4), &mut ());
+        let (ended, crossings) = run_assembly_watched(
+            &train.assembly,
+            &method,
+            &long,
+            (&start, AssemblyNodes::Kept(1)),
+            (&events, 4),
+            &mut (),
+        );
         assert_eq!((crossings.len(), ended.record.t), (1, crossings[0].t), "{name}");
         assert_abs_diff_eq!(ended.end.q(0), 1.0, epsilon = 1e-9);
     }

@@ -2,7 +2,7 @@
 use assembly::parts::{Trailer, Train};
 use assembly::{Assembly, Energy, OneStep, Solver, State, StepReport, Work};
 use dla::Schedule;
-use harness::{AssemblyEvent, Method, Record, Request, run_assembly, run_assembly_watched};
+use harness::{AssemblyEvent, AssemblyNodes, Method, Record, Request, run_assembly, run_assembly_watched};
 use lagrangian::linear::larger;
 use lagrangian::{Piecewise, System, With};
 use proptest::prelude::*;
@@ -164,7 +164,14 @@ fn the_work_of_a_step_that_an_event_ends() {
         let method = Method::named(name, None).unwrap();
         let at = |t: f64, _: &State| t - 4.567_89;
         let events = [AssemblyEvent::new("t", true, at)];
-        let (run, _) = run_assembly_watched(&train.assembly, &method, &schedule, (&start, 1000), (&events, 4), &mut ());
+        let (run, _) = run_assembly_watched(
+            &train.assembly,
+            &method,
+            &schedule,
+            (&start, AssemblyNodes::Kept(1000)),
+            (&events, 4),
+            &mut (),
+        );
         assert!((run.record.t - 4.567_89).abs() < 1e-12);
         println!("{name} {:e}", run.record.energy.max_error);
         assert!(run.record.energy.max_error < most, "{name}: {:e}", run.record.energy.max_error);

@@ -40,6 +40,12 @@ impl Quantity {
     pub fn label(&self) -> String {
         if self.unit.is_empty() { self.name.clone() } else { format!("{} [{}]", self.name, self.unit) }
     }
+
+    /// Its column in a file.
+    #[must_use]
+    pub fn column(&self) -> Column {
+        Column::new(self.name.as_str(), self.unit.as_str())
+    }
 }
 
 /// Configuration and velocity of a start.
