@@ -31,6 +31,43 @@ pub use lagrangian::{
 };
 pub use sleigh::{self, CentreOfMass, ClosedMap, Exact, Sleigh, SleighError, SleighState};
 
+#[doc(hidden)]
+pub use macros;
+
+/// A system from its texts, at compile time.
+///
+/// The keys and the texts are those of `[system]` in a scene file (the book, *Scene files*), with a structure before them. Its fields are
+/// the parameters, and their values in the text its [`Default`]. It is a [`System`] whose formulas are simplified, on any [`Scalar`]; where
+/// a basis of the admissible velocities is given, or can be seen, its [reduced equations](Reduced) are derived too. Each of the `outputs`
+/// is a function of time, coordinates and rates. A wrong text is an error of the compiler at its place.
+///
+/// ```
+/// use noslip::{Dla, Schedule, State, System, drive};
+///
+/// noslip::system! {
+///     /// A skate on a slope.
+///     struct Skate;
+///     coordinates = { x = "m", y = "m", theta = "angle" }
+///     parameters = { m = 1.0, J = 0.5, g = 1.0 }
+///     lagrangian = "m/2*(x'^2 + y'^2) + J/2*theta'^2 + m*g*x"
+///     constraints = ["y'*cos(theta) - x'*sin(theta)"]
+///     outputs = { speed = "x'*cos(theta) + y'*sin(theta)" }
+/// }
+///
+/// let skate = Skate { m: 2.0, ..Skate::default() };
+/// let mut state = State::new([0.0; 3], [0.0, 0.0, 1.0], skate.angles());
+/// drive(&skate, &mut Dla::midpoint(), &Schedule { t0: 0.0, step: 0.01, steps: 2000 }, &mut state, ())?;
+/// assert!((skate.speed(20.0, state.q(), state.v()) - 20.0_f64.sin()).abs() < 1e-3);
+/// # Ok::<(), noslip::RunError>(())
+/// ```
+///
+/// A structure of your own becomes such a system by `impl Name;` in place of `struct Name;`. The values of the parameters are then Rust:
+/// `parameters = { m = self.mass }`.
+#[macro_export]
+macro_rules! system {
+    ($($text:tt)*) => { $crate::macros::system! { $crate::lagrangian; $($text)* } };
+}
+
 /// The examples of the README and of the book, compiled and run as tests.
 #[cfg(doctest)]
 mod book {

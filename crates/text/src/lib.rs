@@ -30,20 +30,15 @@
 
 mod any;
 mod basis;
-mod build;
-mod error;
-mod formulas;
 mod geometry;
 mod model;
 mod start;
 mod system;
-mod tables;
-mod words;
+mod tapes;
 
+pub use ::formulas::{Entry, Problem, TextError, Unit, Words};
 pub use any::{AnyText, MOST_CONSTRAINTS, MOST_COORDINATES, Started, TextMechanics};
-pub use error::{Entry, Problem, TextError};
 pub use geometry::Geometry;
 pub use model::{Coordinate, Model};
 pub use start::{Moved, Start, StartError};
 pub use system::TextSystem;
-pub use words::{Unit, Words};

@@ -1,5 +1,6 @@
-use crate::formulas::{Formulas, Point};
-use crate::{TextError, Unit, Words, build};
+use crate::tapes::{Point, Tapes};
+use crate::{Entry, MOST_CONSTRAINTS, MOST_COORDINATES, Problem, TextError, Unit, Words};
+use ::formulas::{Formulas, Parameters};
 use expression::{Expression, Graph};
 use lagrangian::Dual;
 use nalgebra::{DMatrix, DVector};
@@ -24,17 +25,17 @@ pub struct Model {
     pub(crate) velocities: usize,
     /// The constraints on positions.
     pub(crate) positions: usize,
-    pub(crate) lagrangian: Formulas,
+    pub(crate) lagrangian: Tapes,
     /// `A` by rows, then `b`.
-    pub(crate) constraint: Formulas,
-    pub(crate) holonomic: Formulas,
+    pub(crate) constraint: Tapes,
+    pub(crate) holonomic: Tapes,
     /// None where no force acts.
-    pub(crate) force: Option<Formulas>,
+    pub(crate) force: Option<Tapes>,
     /// None where it is to be derived.
-    pub(crate) basis: Option<Formulas>,
-    pub(crate) mass: Formulas,
+    pub(crate) basis: Option<Tapes>,
+    pub(crate) mass: Tapes,
     pub(crate) outputs: Vec<String>,
-    pub(crate) told: Formulas,
+    pub(crate) told: Tapes,
     pub(crate) timed: bool,
     /// All formulas, with the rows of `A` and the given basis among them.
     pub(crate) graph: Arc<Graph>,
@@ -58,7 +59,45 @@ impl Model {
     /// # Errors
     /// [`TextError`] with the first text that is wrong.
     pub fn new(words: &Words) -> Result<Self, TextError> {
-        build::model(words)
+        let (n, m) = (words.coordinates.len(), words.constraints.len() + words.positions.len());
+        if n > 0 && (n > MOST_COORDINATES || m > MOST_CONSTRAINTS) {
+            let most = [MOST_COORDINATES, MOST_CONSTRAINTS];
+            let problem = Problem::TooLarge { coordinates: n, constraints: m, most };
+            return Err(TextError { entry: Entry::System, problem });
+        }
+        Self::of(words, Formulas::of(words, Parameters::Numbers)?)
+    }
+
+    fn of(words: &Words, formulas: Formulas) -> Result<Self, TextError> {
+        let all = formulas.rates();
+        let Formulas { mut graph, lagrangian, rows, level, positions, force, basis, outputs, .. } = formulas;
+        let mass: Vec<Expression> = graph.hessian(lagrangian, &all, &all).concat();
+        // `A` by rows, then `b`.
+        let constraint = [&rows[..], &level].concat();
+        let tapes = |formulas: &[Expression], entry| {
+            Tapes::new(&graph, formulas).map_err(|error| TextError { entry, problem: error.into() })
+        };
+        let mut every = [&constraint[..], &positions, &outputs, &[lagrangian]].concat();
+        every.extend(force.iter().chain(&basis).flatten());
+        let timed = every.into_iter().any(|e| graph.variables(e).first() == Some(&0));
+        let named = |(name, unit): &(String, Unit)| Coordinate { name: name.clone(), unit: unit.clone() };
+        Ok(Self {
+            coordinates: words.coordinates.iter().map(named).collect(),
+            velocities: words.constraints.len(),
+            positions: words.positions.len(),
+            lagrangian: tapes(&[lagrangian], Entry::Lagrangian)?,
+            constraint: tapes(&constraint, Entry::System)?,
+            holonomic: tapes(&positions, Entry::System)?,
+            force: force.map(|force| tapes(&force, Entry::System)).transpose()?,
+            basis: basis.as_ref().map(|basis| tapes(basis, Entry::Basis)).transpose()?,
+            mass: tapes(&mass, Entry::Lagrangian)?,
+            outputs: words.outputs.iter().map(|(name, _)| name.clone()).collect(),
+            told: tapes(&outputs, Entry::System)?,
+            timed,
+            rows,
+            fields: basis,
+            graph: Arc::new(graph),
+        })
     }
 
     /// The coordinates.
@@ -106,7 +145,7 @@ impl Model {
     /// How many operations the Lagrangian, the constraints and the forces take, each evaluated once.
     #[must_use]
     pub fn operations(&self) -> [usize; 3] {
-        let force = self.force.as_ref().map_or(0, Formulas::operations);
+        let force = self.force.as_ref().map_or(0, Tapes::operations);
         [self.lagrangian.operations(), self.constraint.operations(), force]
     }
 

@@ -189,7 +189,7 @@ impl Model {
         let n = self.coordinates.len();
         let Some(basis) = &self.basis else { return Ok(()) };
         let mut vectors = DMatrix::<f64>::zeros(n, n - a.nrows());
-        let at = crate::formulas::Point { t: 0.0, q: q.as_slice(), v: &[] };
+        let at = crate::tapes::Point { t: 0.0, q: q.as_slice(), v: &[] };
         basis.evaluate(n, at, |k, x| vectors[(k % n, k / n)] = x);
         for (vector, w) in vectors.column_iter().enumerate() {
             for (constraint, row) in a.row_iter().enumerate() {

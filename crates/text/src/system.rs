@@ -1,6 +1,6 @@
 use crate::Model;
 use crate::basis::Pivots;
-use crate::formulas::Point;
+use crate::tapes::Point;
 use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Scalar, System};
 use std::sync::Arc;
 
@@ -134,7 +134,7 @@ impl<const N: usize, const M: usize> System<N, M> for TextSystem<N, M> {
     }
 }
 
-/// Formulas have no jumps.
+/// Tapes have no jumps.
 impl<const N: usize, const M: usize> Piecewise for TextSystem<N, M> {
     fn piece(&self, _t: f64) -> Self {
         self.clone()

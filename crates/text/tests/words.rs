@@ -101,10 +101,13 @@ fn sizes_have_limits() {
     assert!(Model::new(&words).is_ok());
     words.constraints.push("q0' - q1'".to_owned());
     let error = Model::new(&words).unwrap_err();
-    assert_eq!(error.problem, Problem::TooLarge { coordinates: 12, constraints: 7 });
+    assert_eq!(error.problem, Problem::TooLarge { coordinates: 12, constraints: 7, most: [12, 6] });
     words.constraints.clear();
     words.coordinates.push(("q12".to_owned(), Unit::Angle));
-    assert_eq!(Model::new(&words).unwrap_err().problem, Problem::TooLarge { coordinates: 13, constraints: 0 });
+    assert_eq!(
+        Model::new(&words).unwrap_err().problem,
+        Problem::TooLarge { coordinates: 13, constraints: 0, most: [12, 6] }
+    );
 }
 
 #[test]

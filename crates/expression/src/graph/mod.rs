@@ -3,6 +3,7 @@
 mod build;
 mod call;
 mod derivative;
+mod expand;
 mod kind;
 mod power;
 mod product;

@@ -36,15 +36,43 @@ impl Graph {
     /// # Errors
     /// [`Error::TooFew`] variables, [`Error::GraphFull`].
     pub fn rust(&self, outputs: &[Expression], variables: &[&str]) -> Result<String, Error> {
+        let (mut body, results) = self.rust_pieces(outputs, variables, variables.len())?;
+        let _ = writeln!(body, "[{}]", results.join(", "));
+        Ok(body)
+    }
+
+    /// The statements of such a body, and behind them a piece of Rust for each of the expressions. The variables from `first_number` on
+    /// are numbers: plain `f64`, as are all parts that depend on them alone.
+    ///
+    /// ```
+    /// use expression::{Graph, Names, parse};
+    /// let names = Names::of(["x", "m"])?;
+    /// let mut graph = Graph::new();
+    /// let variables = [0, 1].map(|k| graph.variable(k));
+    /// let e = graph.build(&parse("sqrt(m)*x^2", &names)?, &variables)?;
+    /// let (statements, results) = graph.rust_pieces(&[e, variables[1]], &["q[0]", "self.m"], 1)?;
+    /// assert_eq!(statements, "");
+    /// assert_eq!(results, ["q[0].squared() * self.m.sqrt()", "S::constant(self.m)"]);
+    /// # Ok::<(), expression::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`rust`](Self::rust).
+    pub fn rust_pieces(
+        &self,
+        outputs: &[Expression],
+        variables: &[&str],
+        first_number: usize,
+    ) -> Result<(String, Vec<String>), Error> {
         let program = Program::new(self, outputs)?;
         let (expected, found) = (program.inputs as usize, variables.len());
         if found < expected {
             return Err(Error::TooFew { what: "variables", expected, found });
         }
         let reads = program.reads();
-        let mut places: Vec<(String, Level)> = vec![(String::new(), Level::Word); program.places as usize];
-        for (place, variable) in places.iter_mut().zip(&variables[..expected]) {
-            place.0 = (*variable).to_owned();
+        let mut places = vec![Piece::word(String::new(), false); program.places as usize];
+        for (k, (place, variable)) in places.iter_mut().zip(&variables[..expected]).enumerate() {
+            *place = Piece::word((*variable).to_owned(), k >= first_number);
         }
         // What stands there twice has a name.
         let mut twice = vec![false; program.places as usize];
@@ -57,79 +85,144 @@ impl Graph {
         }
         let (mut body, mut results, mut names) = (String::new(), Vec::new(), 0);
         for &Instruction { to, operation } in &program.instructions {
-            let (text, level) = written(operation, &places, &program.constants);
+            let piece = written(operation, &places, &program.constants);
             if let Operation::Output { .. } = operation {
-                results.push(text);
+                results.push(piece.scalar(Level::Sum));
                 continue;
             }
             let both = if let Operation::SinCos { cos, .. } = operation { Some(cos) } else { None };
-            if both.is_none() && !twice[to as usize] && reads[to as usize] == 1 && text.len() <= INLINE {
-                places[to as usize] = (text, level);
+            if both.is_none() && !twice[to as usize] && reads[to as usize] == 1 && piece.text.len() <= INLINE {
+                places[to as usize] = piece;
                 continue;
             }
             // A string takes what is written to it.
-            let _ = writeln!(body, "let x{names} = {text};");
-            places[to as usize] = (format!("x{names}{}", if both.is_some() { ".0" } else { "" }), Level::Word);
+            let _ = writeln!(body, "let x{names} = {};", piece.text);
+            let named = |part: &str| Piece::word(format!("x{names}{part}"), piece.number);
+            places[to as usize] = named(if both.is_some() { ".0" } else { "" });
             if let Some(cos) = both {
-                places[cos as usize] = (format!("x{names}.1"), Level::Word);
+                places[cos as usize] = named(".1");
             }
             names += 1;
         }
-        let _ = writeln!(body, "[{}]", results.join(", "));
-        Ok(body)
+        Ok((body, results))
     }
 }
 
-/// An operation in Rust, and how tightly it binds.
-fn written(operation: Operation, places: &[(String, Level)], constants: &[f64]) -> (String, Level) {
-    let at = |place: u32, least: Level| {
-        let (text, level) = &places[place as usize];
-        if *level < least { format!("({text})") } else { text.clone() }
+/// A piece of Rust.
+#[derive(Debug, Clone)]
+struct Piece {
+    text: String,
+    level: Level,
+    /// Whether it is a plain `f64`.
+    number: bool,
+}
+
+impl Piece {
+    fn word(text: String, number: bool) -> Self {
+        Self { text, level: Level::Word, number }
+    }
+
+    /// The text, in parentheses where it binds less than that.
+    fn at(&self, least: Level) -> String {
+        if self.level < least { format!("({})", self.text) } else { self.text.clone() }
+    }
+
+    /// The same as a scalar.
+    fn scalar(&self, least: Level) -> String {
+        if self.number { format!("S::constant({})", self.text) } else { self.at(least) }
+    }
+}
+
+/// An operation in Rust.
+///
+/// Of a scalar and a number the scalar stands first. A number that is a constant of the program is one only where all else is.
+fn written(operation: Operation, places: &[Piece], constants: &[f64]) -> Piece {
+    let of = |place: u32| &places[place as usize];
+    let k = |k: u32| number(constants[k as usize]);
+    let negative = |k: u32| constants[k as usize] < 0.0;
+    let opposite = |k: u32| number(-constants[k as usize]);
+    let piece = |text: String, level: Level, number: bool| Piece { text, level, number };
+    let method = |a: &Piece, call: &str| piece(format!("{}.{call}", a.at(Level::Word)), Level::Word, a.number);
+    // `a + b`, `a - b`, `a * b`.
+    let plus = |a: &Piece, b: &Piece| {
+        let (a, b) = if a.number && !b.number { (b, a) } else { (a, b) };
+        piece(format!("{} + {}", a.at(Level::Sum), b.at(Level::Product)), Level::Sum, a.number)
     };
-    let k = |k: u32| constants[k as usize];
-    let method = |a: u32, call: &str| (format!("{}.{call}", at(a, Level::Word)), Level::Word);
-    let (sum, product) = (|text| (text, Level::Sum), |text| (text, Level::Product));
+    let minus = |a: &Piece, b: &Piece| {
+        if a.number && !b.number {
+            piece(format!("-{} + {}", b.at(Level::Word), a.at(Level::Product)), Level::Sum, false)
+        } else {
+            piece(format!("{} - {}", a.at(Level::Sum), b.at(Level::Product)), Level::Sum, a.number)
+        }
+    };
+    let times = |a: &Piece, b: &Piece| {
+        let (a, b) = if a.number && !b.number { (b, a) } else { (a, b) };
+        piece(format!("{} * {}", a.at(Level::Product), b.at(Level::Sign)), Level::Product, a.number)
+    };
     match operation {
-        Operation::Constant { k: c } => (format!("S::constant({})", number(k(c))), Level::Word),
-        Operation::Add { a, b } => sum(format!("{} + {}", at(a, Level::Sum), at(b, Level::Product))),
-        Operation::Subtract { a, b } => sum(format!("{} - {}", at(a, Level::Sum), at(b, Level::Product))),
-        Operation::Multiply { a, b } => product(format!("{} * {}", at(a, Level::Product), at(b, Level::Sign))),
-        Operation::Divide { a, b } => product(format!("{} / {}", at(a, Level::Product), at(b, Level::Sign))),
-        Operation::Negate { a } => (format!("-{}", at(a, Level::Word)), Level::Sign),
-        Operation::Plus { a, k: c } if k(c) < 0.0 => sum(format!("{} - {}", at(a, Level::Sum), number(-k(c)))),
-        Operation::Plus { a, k: c } => sum(format!("{} + {}", at(a, Level::Sum), number(k(c)))),
-        Operation::From { a, k: c } if k(c) < 0.0 => sum(format!("-{} - {}", at(a, Level::Word), number(-k(c)))),
-        Operation::From { a, k: c } => sum(format!("-{} + {}", at(a, Level::Word), number(k(c)))),
-        Operation::Times { a, k: c } => product(format!("{} * {}", at(a, Level::Product), number(k(c)))),
+        Operation::Constant { k: c } => piece(k(c), if negative(c) { Level::Sign } else { Level::Word }, true),
+        Operation::Add { a, b } => plus(of(a), of(b)),
+        Operation::Subtract { a, b } => minus(of(a), of(b)),
+        Operation::Multiply { a, b } => times(of(a), of(b)),
+        Operation::Divide { a, b } => {
+            let (a, b) = (of(a), of(b));
+            if a.number && !b.number {
+                times(&method(b, "recip()"), a)
+            } else {
+                piece(format!("{} / {}", a.at(Level::Product), b.at(Level::Sign)), Level::Product, a.number)
+            }
+        }
+        Operation::Negate { a } => piece(format!("-{}", of(a).at(Level::Word)), Level::Sign, of(a).number),
+        Operation::Plus { a, k: c } => {
+            let (sign, c) = if negative(c) { ("-", opposite(c)) } else { ("+", k(c)) };
+            piece(format!("{} {sign} {c}", of(a).at(Level::Sum)), Level::Sum, of(a).number)
+        }
+        Operation::From { a, k: c } => {
+            let (sign, c) = if negative(c) { ("-", opposite(c)) } else { ("+", k(c)) };
+            piece(format!("-{} {sign} {c}", of(a).at(Level::Word)), Level::Sum, of(a).number)
+        }
+        Operation::Times { a, k: c } => {
+            piece(format!("{} * {}", of(a).at(Level::Product), k(c)), Level::Product, of(a).number)
+        }
         Operation::PlusTimes { a, b, k: c } => {
-            let (sign, c) = if k(c) < 0.0 { ("-", -k(c)) } else { ("+", k(c)) };
-            sum(format!("{} {sign} {} * {}", at(a, Level::Sum), at(b, Level::Product), number(c)))
+            let scaled = |c: String| piece(format!("{} * {c}", of(b).at(Level::Product)), Level::Product, of(b).number);
+            if negative(c) { minus(of(a), &scaled(opposite(c))) } else { plus(of(a), &scaled(k(c))) }
         }
-        Operation::PlusProduct { a, b, c } => {
-            sum(format!("{} + {} * {}", at(c, Level::Sum), at(a, Level::Product), at(b, Level::Sign)))
-        }
-        Operation::MinusProduct { a, b, c } => {
-            sum(format!("{} - {} * {}", at(c, Level::Sum), at(a, Level::Product), at(b, Level::Sign)))
-        }
-        Operation::Invert { a } => method(a, "recip()"),
-        Operation::Square { a } => method(a, "squared()"),
+        Operation::PlusProduct { a, b, c } => plus(of(c), &times(of(a), of(b))),
+        Operation::MinusProduct { a, b, c } => minus(of(c), &times(of(a), of(b))),
+        Operation::Invert { a } => method(of(a), "recip()"),
+        Operation::Square { a } => method(of(a), "squared()"),
         Operation::Length { a } => {
-            let a = at(a, Level::Word);
-            (format!("{a}.where_positive({a}.sqrt(), {a} * 0.0)"), Level::Word)
+            let (text, a) = (of(a).at(Level::Word), of(a));
+            method(a, &format!("where_positive({text}.sqrt(), {text} * 0.0)"))
         }
-        Operation::Whole { a, n } => method(a, &format!("powi({n})")),
-        Operation::Real { a, k: c } => method(a, &format!("powf({})", number(k(c)))),
-        Operation::SinCos { a, .. } => method(a, "sin_cos()"),
+        Operation::Whole { a, n } => method(of(a), &format!("powi({n})")),
+        Operation::Real { a, k: c } => method(of(a), &format!("powf({})", k(c))),
+        Operation::SinCos { a, .. } => method(of(a), "sin_cos()"),
         Operation::Call { function, a, b } => {
             let name = if function == Function::Log { "ln" } else { function.name() };
+            let a = of(a);
             if function == Function::Inverse {
-                let a = at(a, Level::Word);
-                return (format!("{a}.abs().where_positive({a}.recip(), {a} * 0.0)"), Level::Word);
+                let text = a.at(Level::Word);
+                return method(&method(a, "abs()"), &format!("where_positive({text}.recip(), {text} * 0.0)"));
             }
-            let second = if function.arguments() == 2 { at(b, Level::Sum) } else { String::new() };
-            method(a, &format!("{name}({second})"))
+            if function.arguments() < 2 {
+                return method(a, &format!("{name}()"));
+            }
+            let b = of(b);
+            if a.number && b.number {
+                // Of two constants and numbers the first may be a literal, which has no methods.
+                let call = format!("Scalar::{name}({}, {})", a.at(Level::Sum), b.at(Level::Sum));
+                return piece(call, Level::Word, true);
+            }
+            let first = Piece {
+                text: a.scalar(Level::Sum),
+                level: if a.number { Level::Word } else { a.level },
+                number: false,
+            };
+            method(&first, &format!("{name}({})", b.scalar(Level::Sum)))
         }
-        Operation::Output { a } => (at(a, Level::Sum), Level::Sum),
+        Operation::Output { a } => of(a).clone(),
     }
 }
 

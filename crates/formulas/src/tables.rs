@@ -93,7 +93,7 @@ impl Tables {
         let smooth = parse(text, &self.moving.names)
             .ok()
             .is_some_and(|syntax: Syntax| syntax.first_use(Function::Sign).is_none());
-        let moves = self.graph.variables(formula).into_iter().any(|k| k > self.n as u32);
+        let moves = self.graph.variables(formula).into_iter().any(|k| k > self.n as u32 && k <= 2 * self.n as u32);
         Ok((
             formula,
             if !smooth {

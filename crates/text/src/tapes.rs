@@ -5,11 +5,11 @@ use lagrangian::Scalar;
 ///
 /// Of `n` coordinates the variable 0 is time, `1 + i` the coordinate `i`, `1 + n + i` its rate.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Formulas {
+pub(crate) struct Tapes {
     tape: Tape,
     /// Which formula each output of the tape is.
     places: Box<[usize]>,
-    /// Formulas that are constant, without the zeros.
+    /// Tapes that are constant, without the zeros.
     constants: Box<[(usize, f64)]>,
 }
 
@@ -22,7 +22,7 @@ pub(crate) struct Point<'a, S> {
     pub(crate) v: &'a [S],
 }
 
-impl Formulas {
+impl Tapes {
     pub(crate) fn new(graph: &Graph, formulas: &[Expression]) -> Result<Self, Error> {
         let (mut places, mut constants, mut computed) = (Vec::new(), Vec::new(), Vec::new());
         for (k, &formula) in formulas.iter().enumerate() {

@@ -1,66 +1,35 @@
-use crate::formulas::Formulas;
 use crate::tables::{May, Tables};
-use crate::{Coordinate, Entry, MOST_CONSTRAINTS, MOST_COORDINATES, Model, Problem, TextError, Words};
+use crate::{Entry, Formulas, Parameters, Problem, TextError, Words};
 use expression::Expression;
-use std::sync::Arc;
 
 /// The names of columns that every trajectory has.
 const COLUMNS: [&str; 4] = ["t", "energy", "constraint", "work"];
 
-/// The model of some texts.
-pub(crate) fn model(words: &Words) -> Result<Model, TextError> {
-    let (n, m) = (words.coordinates.len(), words.constraints.len() + words.positions.len());
-    let whole = |problem| Err(TextError { entry: Entry::System, problem });
-    if n == 0 {
-        return whole(Problem::NoCoordinates);
+impl Formulas {
+    /// What the texts of a system mean.
+    ///
+    /// # Errors
+    /// [`TextError`] with the first text that is wrong.
+    pub fn of(words: &Words, parameters: Parameters) -> Result<Self, TextError> {
+        let (n, m) = (words.coordinates.len(), words.constraints.len() + words.positions.len());
+        let whole = |problem| Err(TextError { entry: Entry::System, problem });
+        if n == 0 {
+            return whole(Problem::NoCoordinates);
+        }
+        if m > n {
+            return whole(Problem::TooManyConstraints { coordinates: n, constraints: m });
+        }
+        let mut tables = names(words, parameters)?;
+        let lagrangian = lagrangian(&mut tables, words)?;
+        let (velocities, rest) = constraints(&mut tables, words)?;
+        let (positions, rates) = positions(&mut tables, words)?;
+        let force = forces(&mut tables, words)?;
+        let basis = basis(&mut tables, words, n - m)?;
+        let outputs = outputs(&mut tables, words)?;
+        let rows = velocities.into_iter().chain(rates.iter().flat_map(|(a, _)| a.clone())).collect();
+        let level = rest.into_iter().chain(rates.iter().map(|(_, b)| *b)).collect();
+        Ok(Self { n, m, graph: tables.graph, lagrangian, rows, level, positions, force, basis, outputs })
     }
-    if n > MOST_COORDINATES || m > MOST_CONSTRAINTS {
-        return whole(Problem::TooLarge { coordinates: n, constraints: m });
-    }
-    if m > n {
-        return whole(Problem::TooManyConstraints { coordinates: n, constraints: m });
-    }
-    let mut tables = names(words)?;
-    let lagrangian = lagrangian(&mut tables, words)?;
-    let (velocities, rest) = constraints(&mut tables, words)?;
-    let (functions, rates) = positions(&mut tables, words)?;
-    let force = forces(&mut tables, words)?;
-    let basis = basis(&mut tables, words, n - m)?;
-    let told = outputs(&mut tables, words)?;
-
-    let all: Vec<u32> = tables.rates();
-    let mass: Vec<Expression> = tables.graph.hessian(lagrangian, &all, &all).concat();
-    // `A` by rows, then `b`.
-    let mut rows: Vec<Expression> = velocities.into_iter().chain(rates.iter().flat_map(|(a, _)| a.clone())).collect();
-    rows.extend(rest.into_iter().chain(rates.iter().map(|(_, b)| *b)));
-
-    let graph = &tables.graph;
-    let formulas =
-        |formulas: &[Expression], entry| Formulas::new(graph, formulas).map_err(|error| of(entry, error.into()));
-    let mut every = [&rows[..], &functions, &told, &[lagrangian]].concat();
-    every.extend(force.iter().chain(&basis).flatten());
-    let timed = every.into_iter().any(|e| graph.variables(e).first() == Some(&0));
-    Ok(Model {
-        coordinates: words
-            .coordinates
-            .iter()
-            .map(|(name, unit)| Coordinate { name: name.clone(), unit: unit.clone() })
-            .collect(),
-        velocities: words.constraints.len(),
-        positions: words.positions.len(),
-        lagrangian: formulas(&[lagrangian], Entry::Lagrangian)?,
-        constraint: formulas(&rows, Entry::System)?,
-        holonomic: formulas(&functions, Entry::System)?,
-        force: force.map(|force| formulas(&force, Entry::System)).transpose()?,
-        basis: basis.as_ref().map(|basis| formulas(basis, Entry::Basis)).transpose()?,
-        mass: formulas(&mass, Entry::Lagrangian)?,
-        outputs: words.outputs.iter().map(|(name, _)| name.clone()).collect(),
-        told: formulas(&told, Entry::System)?,
-        timed,
-        rows: rows[..n * m].to_vec(),
-        fields: basis,
-        graph: Arc::new(tables.graph),
-    })
 }
 
 fn of(entry: Entry, problem: Problem) -> TextError {
@@ -68,7 +37,7 @@ fn of(entry: Entry, problem: Problem) -> TextError {
 }
 
 /// Time, coordinates, rates, parameters and abbreviations.
-fn names(words: &Words) -> Result<Tables, TextError> {
+fn names(words: &Words, parameters: Parameters) -> Result<Tables, TextError> {
     let n = words.coordinates.len();
     let mut tables = Tables::new(n);
     let time = tables.graph.variable(0);
@@ -90,8 +59,11 @@ fn names(words: &Words) -> Result<Tables, TextError> {
         if !value.is_finite() {
             return Err(of(entry, Problem::NotFinite { value: *value }));
         }
-        let constant = tables.graph.constant(*value);
-        tables.add(name, constant, May::Place, entry)?;
+        let meaning = match parameters {
+            Parameters::Numbers => tables.graph.constant(*value),
+            Parameters::Variables => tables.graph.variable((1 + 2 * n + k) as u32),
+        };
+        tables.add(name, meaning, May::Place, entry)?;
     }
     for (k, (name, text)) in words.abbreviations.iter().enumerate() {
         let entry = Entry::Abbreviation(k);

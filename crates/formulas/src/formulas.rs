@@ -1,0 +1,63 @@
+use expression::{Expression, Graph};
+
+/// What the parameters of a system are in its formulas.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Parameters {
+    /// Their values.
+    Numbers,
+    /// Variables, behind those of time, coordinates and rates.
+    Variables,
+}
+
+/// What the texts of a system mean, as expressions of one graph.
+///
+/// Of `n` coordinates the variable 0 is time, `1 + i` the coordinate `i`, `1 + n + i` its rate, and `1 + 2 n + k` the parameter `k`.
+#[derive(Debug, Clone)]
+pub struct Formulas {
+    /// The number of coordinates.
+    pub n: usize,
+    /// The number of constraints, of which the last are the rates of those on positions.
+    pub m: usize,
+    /// All expressions.
+    pub graph: Graph,
+    /// The Lagrangian.
+    pub lagrangian: Expression,
+    /// The matrix `A` of the constraints, `m` rows of `n` entries.
+    pub rows: Vec<Expression>,
+    /// `b` of the constraints `A v + b = 0`.
+    pub level: Vec<Expression>,
+    /// The functions of the constraints on positions.
+    pub positions: Vec<Expression>,
+    /// A generalised force for each coordinate; none where no text gives one.
+    pub force: Option<Vec<Expression>>,
+    /// The basis of the admissible velocities, `n - m` vectors of `n` components; none where no text gives it.
+    pub basis: Option<Vec<Expression>>,
+    /// What is told besides.
+    pub outputs: Vec<Expression>,
+}
+
+impl Formulas {
+    /// The variable of a coordinate.
+    #[must_use]
+    pub fn coordinate(&self, i: usize) -> u32 {
+        (1 + i) as u32
+    }
+
+    /// The variable of the rate of a coordinate.
+    #[must_use]
+    pub fn rate(&self, i: usize) -> u32 {
+        (1 + self.n + i) as u32
+    }
+
+    /// The variable of a parameter.
+    #[must_use]
+    pub fn parameter(&self, k: usize) -> u32 {
+        (1 + 2 * self.n + k) as u32
+    }
+
+    /// The variables of all rates.
+    #[must_use]
+    pub fn rates(&self) -> Vec<u32> {
+        (0..self.n).map(|i| self.rate(i)).collect()
+    }
+}

@@ -1,0 +1,210 @@
+//! Systems by `system!` move as those written by hand: the same numbers over 10^4 steps, by every method that applies.
+
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
+
+use dla::{Schedule, State, drive};
+use harness::{METHODS, Method};
+use lagrangian::{Piecewise, Reduced, System, quasi_velocities, reduced_acceleration};
+use models::{ChaplyginBall, Model, RollerRacer, RollingDisk, Snakeboard};
+use sleigh::{Sleigh, SleighState};
+
+macros::system! {
+    ::lagrangian;
+    /// The Chaplygin sleigh.
+    pub struct Blade;
+    coordinates = { x = "m", y = "m", theta = "angle" }
+    parameters = { m = 1.0, I = 1.0, a = 0.5 }
+    let = { across = "y'*cos(theta) - x'*sin(theta)" }
+    lagrangian = "m/2*(x'^2 + y'^2) + m*a*theta'*across + (I + m*a^2)/2*theta'^2"
+    constraints = ["across"]
+    outputs = { speed = "x'*cos(theta) + y'*sin(theta)" }
+}
+
+macros::system! {
+    ::lagrangian;
+    struct Disk;
+    coordinates = { x = "m", y = "m", phi = "angle", theta = "angle" }
+    parameters = { m = 1.3, R = 0.5, I = 0.2, J = 0.1 }
+    lagrangian = "m/2*(x'^2 + y'^2) + I/2*phi'^2 + J/2*theta'^2"
+    constraints = ["x' - R*phi'*cos(theta)", "y' - R*phi'*sin(theta)"]
+}
+
+macros::system! {
+    ::lagrangian;
+    struct Racer;
+    coordinates = { x = "m", y = "m", theta = "angle", phi = "angle" }
+    parameters = { m = 1.0, I1 = 0.4, I2 = 0.1, d1 = 0.5, d2 = 0.3 }
+    lagrangian = "m/2*(x'^2 + y'^2) + I1/2*theta'^2 + I2/2*(theta' + phi')^2"
+    constraints = [
+        "y'*cos(theta) - x'*sin(theta)",
+        "y'*cos(theta + phi) - x'*sin(theta + phi) + (d1*cos(phi) + d2)*theta' + d2*phi'",
+    ]
+}
+
+macros::system! {
+    ::lagrangian;
+    struct Board;
+    coordinates = { x = "m", y = "m", theta = "angle", psi = "angle", phi = "angle" }
+    parameters = { m = 6.0, l = 0.2, J = 0.016, Jr = 0.072, Jw = 0.0013 }
+    let = { c = "cos(theta)", s = "sin(theta)" }
+    lagrangian = "m/2*(x'^2 + y'^2) + J/2*theta'^2 + Jr/2*(theta' + psi')^2 + Jw/2*((theta' + phi')^2 + (theta' - phi')^2)"
+    constraints = ["y'*c - x'*s", "sin(phi)*(x'*c + y'*s) + l*cos(phi)*theta'"]
+    basis = [
+        ["l*cos(phi)*c", "l*cos(phi)*s", "-sin(phi)", "0", "0"],
+        ["0", "0", "0", "1", "0"],
+        ["0", "0", "0", "0", "1"],
+    ]
+}
+
+macros::system! {
+    ::lagrangian;
+    struct Ball;
+    coordinates = { x = "m", y = "m", e0 = "", e1 = "", e2 = "", e3 = "" }
+    parameters = { m = 1.2, r = 0.8, I1 = 0.4, I2 = 0.6, I3 = 0.9 }
+    let = {
+        mean = "(I1 + I2 + I3)/3",
+        // The angular velocity in the body, and in space.
+        b1 = "2*(e0*e1' - e1*e0' - e2*e3' + e3*e2')",
+        b2 = "2*(e0*e2' - e2*e0' - e3*e1' + e1*e3')",
+        b3 = "2*(e0*e3' - e3*e0' - e1*e2' + e2*e1')",
+        w1 = "2*(e0*e1' - e1*e0' + e2*e3' - e3*e2')",
+        w2 = "2*(e0*e2' - e2*e0' + e3*e1' - e1*e3')",
+    }
+    lagrangian = "m/2*(x'^2 + y'^2) + 2*mean*(e0'^2 + e1'^2 + e2'^2 + e3'^2)
+        + ((I1 - mean)*b1^2 + (I2 - mean)*b2^2 + (I3 - mean)*b3^2)/2"
+    constraints = ["x' - r*w2", "y' + r*w1"]
+    positions = ["(e0^2 + e1^2 + e2^2 + e3^2 - 1)/2"]
+    basis = [
+        ["2*r*(e1*e2 + e0*e3)", "-r*(e0^2 + e1^2 - e2^2 - e3^2)", "-e1/2", "e0/2", "e3/2", "-e2/2"],
+        ["r*(e0^2 - e1^2 + e2^2 - e3^2)", "-2*r*(e1*e2 - e0*e3)", "-e2/2", "-e3/2", "e0/2", "e1/2"],
+        ["2*r*(e2*e3 - e0*e1)", "-2*r*(e1*e3 + e0*e2)", "-e3/2", "e2/2", "-e1/2", "e0/2"],
+    ]
+}
+
+/// A structure of one's own.
+struct Point {
+    mass: f64,
+}
+
+macros::system! {
+    ::lagrangian;
+    impl Point;
+    coordinates = { x = "m", y = "m" }
+    parameters = { m = self.mass, k = 2.0 * self.mass }
+    lagrangian = "m/2*(x'^2 + y'^2) - k*x"
+    forces = { y = "min(k, 5)*t" }
+}
+
+#[test]
+fn a_structure_of_ones_own() {
+    let point = Point { mass: 1.5 };
+    assert_eq!(point.lagrangian(0.0, &[1.0, 0.0], &[2.0, 0.0]), 0.0);
+    assert_eq!(point.force(2.0, &[0.0; 2], &[0.0; 2]), Some([0.0, 6.0]));
+    assert_eq!(point.reduced_motion(2.0, &[0.0; 2], &[0.0; 2]), Some([-2.0, 4.0]));
+}
+
+/// The largest difference after some steps, relative to how far the coordinates and velocities have gone.
+fn apart<A, B, const N: usize, const M: usize>(
+    a: &A,
+    b: &B,
+    method: &Method,
+    start: ([f64; N], [f64; N]),
+    h: f64,
+) -> f64
+where
+    A: System<N, M> + Piecewise,
+    B: System<N, M>,
+{
+    let schedule = Schedule { t0: 0.0, step: h, steps: 10_000 };
+    let mut states = [start; 2].map(|(q, v)| State::new(q, v, a.angles()));
+    drive(a, &mut *method.stepper(), &schedule, &mut states[0], ()).unwrap();
+    drive(b, &mut *method.stepper(), &schedule, &mut states[1], ()).unwrap();
+    let [one, two] = states;
+    let far = |x: [f64; N]| x.into_iter().fold(1.0, |far: f64, x| far.max(x.abs()));
+    let (far_q, far_v) = (far(one.unwrapped()), far(*one.v()));
+    let apart = |a: f64, b: f64, far: f64| (a - b).abs() / far;
+    (0..N)
+        .map(|i| apart(one.unwrapped()[i], two.unwrapped()[i], far_q).max(apart(one.v()[i], two.v()[i], far_v)))
+        .fold(0.0, f64::max)
+}
+
+/// What is allowed: round-off, in the one method whose multipliers amplify it some more.
+fn close<A, B, const N: usize, const M: usize>(a: &A, b: &B, methods: &[&str], start: ([f64; N], [f64; N]), h: f64)
+where
+    A: System<N, M> + Piecewise,
+    B: System<N, M>,
+{
+    for name in methods {
+        let method = Method::named(name, None).unwrap();
+        let apart = apart(a, b, &method, start, h);
+        let allowed = if *name == "gni" { 1e-9 } else { 1e-13 };
+        assert!(apart <= allowed, "{name}: {apart:e}");
+    }
+}
+
+/// The equations by `system!` and those by derivatives of the hand-written Lagrangian, at a few states.
+fn same_equations<A, B, const N: usize, const M: usize>(a: &A, b: &B, states: &[([f64; N], [f64; N])])
+where
+    A: System<N, M>,
+    B: System<N, M>,
+{
+    for (q, v) in states {
+        let xi = quasi_velocities(a, 0.3, q, v).unwrap();
+        let derived = a.reduced().reduced_motion(0.3, q, &xi).unwrap();
+        let right = reduced_acceleration(a, 0.3, q, &xi).unwrap();
+        for k in 0..N - M {
+            assert!((derived[k] - right[k]).abs() <= 1e-13 * (1.0 + right[k].abs()), "{k}: {derived:?} {right:?}");
+        }
+        let near = |one: f64, two: f64| assert!((one - two).abs() <= 1e-14 * (1.0 + two.abs()), "{one} {two}");
+        near(a.lagrangian(0.3, q, v), b.lagrangian(0.3, q, v));
+        let [one, two] = [a.constraint(0.3, q), b.constraint(0.3, q)];
+        (0..M).for_each(|k| (0..N).for_each(|i| near(one.0[k][i], two.0[k][i])));
+    }
+}
+
+const MOST: [&str; 7] = ["dla", "dla8", "lobatto4", "gauss4", "gauss16", "energy4", "rk4-reduced"];
+
+#[test]
+fn the_sleigh() {
+    let (blade, sleigh) = (Blade { m: 1.3, I: 0.7, a: 0.4 }, Sleigh::new(1.3, 0.7, 0.4).unwrap());
+    let start = SleighState { speed: -1.0, turn_rate: 0.3, heading: 0.4, ..SleighState::default() }.to_coordinates();
+    same_equations(&blade, &sleigh, &[start]);
+    assert!((blade.speed(0.0, &start.0, &start.1) + 1.0).abs() < 1e-15);
+    assert_eq!((blade.reduced().stands_alone(), blade.reduced().reconstruction()), (true, Some(1)));
+    assert_eq!((Blade::COORDINATES, Blade::default().a), (["x", "y", "theta"], 0.5));
+    let methods: Vec<&str> = METHODS.iter().map(|info| info.name).collect();
+    close(&blade, &sleigh, &methods, start, 0.01);
+}
+
+#[test]
+fn the_rolling_disk() {
+    let (disk, model) = (Disk { R: 0.6, ..Disk::default() }, RollingDisk::new(1.3, 0.6, 0.2, 0.1).unwrap());
+    same_equations(&disk, &model, &[model.start()]);
+    close(&disk, &model, &MOST, model.start(), 0.01);
+}
+
+#[test]
+fn the_roller_racer() {
+    let (racer, model) = (Racer::default(), RollerRacer::new(1.0, 0.4, 0.1, 0.5, 0.3).unwrap());
+    same_equations(&racer, &model, &[model.start(), model.admissible([0.1, 0.2, 0.7, -1.0], [0.5, -0.4, 0.0, 0.0])]);
+    close(&racer, &model, &MOST, model.start(), 0.002);
+}
+
+#[test]
+fn the_snakeboard() {
+    let (board, model) = (Board::default(), Snakeboard::new(6.0, 0.2, 0.016, 0.072, 0.0013).unwrap());
+    same_equations(
+        &board,
+        &model,
+        &[model.start(), model.admissible([0.1, 0.2, 0.7, -1.0, 1.2], [0.5, -0.4, 0.3, 0.0, 0.0])],
+    );
+    assert_eq!(board.reduced().reconstruction(), Some(2));
+    close(&board, &model, &MOST, model.start(), 0.01);
+}
+
+#[test]
+fn chaplygins_ball() {
+    let (ball, model) = (Ball::default(), ChaplyginBall::new(1.2, 0.8, [0.4, 0.6, 0.9]).unwrap());
+    same_equations(&ball, &model, &[model.start()]);
+    close(&ball, &model, &["dla", "gauss4", "gauss16", "rk4-reduced"], model.start(), 0.002);
+}
