@@ -59,6 +59,9 @@ for example in "backing dla,lobatto5 path worked-backing.svg" "rattle gauss8,dla
     take "worked-$scene/$scene-$kind.svg" "$picture"
 done
 
+"$noslip" plot "$root/docs/worked/gait.toml" --columns path,theta,speed --size 15x12cm --out gait.svg >/dev/null
+take gait.svg worked-gait.svg
+
 "$noslip" equilibria turnaround --picture portrait.svg >/dev/null
 take portrait.svg straight-portrait.svg
 "$noslip" equilibria thrust-well --picture thrust.svg >/dev/null

@@ -1,6 +1,7 @@
+use crate::convergence::{most_roundings, tolerances::OF_CORRECTION};
 use crate::{History, Mechanics, NewtonError, Stage, State, StepError};
 use lagrangian::linear::larger;
-use lagrangian::{Dual, RowSpace, Saddle};
+use lagrangian::{Dual, Rounded, RowSpace, Saddle, from_fn};
 
 /// The increment of a step with its end projected onto the constraints on positions, `g(q1) = 0`, in the kinetic metric: Newton's method
 /// with the gradients at the iterate. Without such constraints nothing is done.
@@ -37,10 +38,10 @@ pub(crate) fn onto_positions<const N: usize, const M: usize>(
         }
         // Where corrections stall at round-off, the iteration has converged.
         if step <= 16.0 * N as f64 * f64::EPSILON * size && step >= 0.25 * before {
-            let off = misses.iter().flatten().any(|g| {
-                let rounding: f64 = (0..N).map(|i| (g.eps[i] * q1[i]).abs()).sum();
-                g.re.abs() > RowSpace::<N, M>::ROUNDING * rounding
-            });
+            // A place near zero is known to the rounding of the increment that leads there.
+            let rounded = from_fn(|i| Rounded { value: q1[i], size: q1[i].abs() + increment[i].abs() });
+            let left = system.positions_rounded(Rounded::exact(t1), &rounded);
+            let off = most_roundings(left.into_iter().flatten().flatten()) > OF_CORRECTION;
             // Dependent rows that contradict one another leave a residual that no move removes.
             return match off {
                 true => {

@@ -4,6 +4,7 @@
 
 mod affine;
 mod classes;
+mod driven;
 mod holonomic;
 mod nonlinear;
 mod pseudo;
