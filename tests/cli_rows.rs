@@ -3,9 +3,12 @@
 //! `NOSLIP_TRIES=200 cargo test --test cli_rows` makes each fault so many times.
 #![allow(clippy::unwrap_used, reason = "what the tests share is no test")]
 
+#[path = "common/processes.rs"]
+mod processes;
 #[path = "common/program.rs"]
 mod program;
 
+use processes::{Dice, damaged, tries};
 use program::{Folder, SCENE};
 use serde_json::Value;
 use std::fs;
@@ -64,7 +67,7 @@ fn a_longer_run_begins_with_the_shorter_one() {
 #[test]
 fn ended_by_a_signal_and_resumed_the_bytes_are_the_same() {
     let folder = folder();
-    let tries: u64 = std::env::var("NOSLIP_TRIES").ok().and_then(|tries| tries.parse().ok()).unwrap_or(9);
+    let tries = tries(9);
     let formats = ["k.csv", "k.npz", "k.jsonl"];
     let long = folder.read("scene.toml").replace("duration = 200.0", "duration = 2000.0");
     folder.write("scene.toml", long);
@@ -122,6 +125,35 @@ fn rows_that_are_not_those_of_the_run_are_not_continued() {
     assert_eq!(outcome.code, 0, "{outcome:?}");
     assert!(outcome.stderr.contains("warning: k.rest.csv: there are no rows"), "{}", outcome.stderr);
     assert!(folder.read("k.rest.csv").lines().nth(1).unwrap().starts_with("100.05"));
+}
+
+/// A checkpoint of which a bit is flipped, or a line is exchanged, doubled, removed or cut.
+#[test]
+fn a_damaged_checkpoint_is_refused_or_the_bytes_are_the_same() {
+    let (folder, mut dice) = (folder(), Dice(5));
+    let run = "run scene.toml --every 7 --out k.csv";
+    folder.done(&format!("{run} --duration 20"));
+    let whole = fs::read(folder.join("k.csv")).unwrap();
+    clear(&folder);
+    folder.done(&format!("{run} --duration 10 --checkpoint k.save"));
+    let [save, rows] = ["k.save", "k.csv"].map(|name| fs::read(folder.join(name)).unwrap());
+    let (mut refused, mut same) = (0, 0);
+    for number in 0..tries(40) {
+        fs::write(folder.join("k.csv"), &rows).unwrap();
+        let bytes = damaged(&save, &mut dice);
+        fs::write(folder.join("k.save"), &bytes).unwrap();
+        let outcome = folder.line(&format!("{run} --duration 20 --resume k.save"));
+        if outcome.code == 0 {
+            same += 1;
+            assert!(fs::read(folder.join("k.csv")).unwrap() == whole, "try {number}");
+        } else {
+            refused += 1;
+            outcome.assert_refused("damaged", &["k.save"]);
+            assert!(fs::read(folder.join("k.csv")).unwrap() == rows, "try {number}");
+        }
+    }
+    println!("{refused} refused, {same} to the same bytes");
+    assert!(refused > 0);
 }
 
 #[test]

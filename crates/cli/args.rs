@@ -1,4 +1,5 @@
 use crate::coordinate::Range;
+use crate::ensemble::Share;
 use crate::format::Format;
 use crate::plane::{Crossed, Plane};
 use crate::trigger::Trigger;
@@ -56,6 +57,10 @@ pub(crate) enum Command {
     ///
     /// Members are computed on all threads; their number, RAYON_NUM_THREADS, changes no result.
     Ensemble(EnsembleArguments),
+    /// Makes the result of a sweep of the parts that `ensemble --part` wrote, once all of them are there
+    ///
+    /// The result has the bytes that one process would have written.
+    Merge(MergeArguments),
     /// Reads scenes and says what they are, or what is wrong with them
     Check(CheckArguments),
     /// Lists what there is
@@ -317,16 +322,36 @@ pub(crate) struct SectionArguments {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct MergeArguments {
+    /// The folder of the parts
+    #[arg(value_name = "DIR")]
+    pub(crate) folder: PathBuf,
+    /// The file to write: .csv, .jsonl, .npz, or .parquet (a cargo feature), by the ending; DIR.csv where none is named
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Overwrite output that is there already
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct EnsembleArguments {
     /// A file that names a scene and what varies of it
     #[arg(value_name = "SWEEP")]
     pub(crate) sweep: String,
-    /// Write a row for each member: .csv, .jsonl, .npz, or .parquet (a cargo feature), by the ending
+    /// Write a row for each member: .csv, .jsonl, .npz, or .parquet (a cargo feature), by the ending; with --part, the folder of the parts
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Go on where an interrupted run of the same sweep ended
     #[arg(long, requires = "out")]
     pub(crate) resume: bool,
+    /// Compute part I of N equal parts, 1 to N, into the folder --out; `noslip merge` makes the result of all. A part that is there is kept,
+    /// an interrupted one goes on
+    #[arg(long, value_name = "I/N", requires = "out")]
+    pub(crate) part: Option<Share>,
     /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,

@@ -107,6 +107,7 @@ fn command(arguments: Arguments) -> Result<(), CliError> {
         Some(Command::Lyapunov(arguments)) => lyapunov::lyapunov(&arguments),
         Some(Command::Section(arguments)) => section::section(&arguments),
         Some(Command::Ensemble(arguments)) => ensemble::ensemble(&arguments),
+        Some(Command::Merge(arguments)) => ensemble::merge(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::List(arguments)) => inspect::list(&arguments),
         Some(Command::New(arguments)) => inspect::new(&arguments),

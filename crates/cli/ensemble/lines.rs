@@ -15,6 +15,8 @@ pub(super) struct Lines {
 pub(super) enum Damage {
     /// The line has no end: the program was ended while it was written.
     Cut,
+    /// The first line is not the identity of the sweep.
+    Header,
     /// The checksum is not that of the text.
     Checksum,
     /// A row of this sweep, of another member.
@@ -27,6 +29,7 @@ impl std::fmt::Display for Damage {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Cut => write!(f, "the line has no end"),
+            Self::Header => write!(f, "the first line is that of another sweep or of another version of the program"),
             Self::Checksum => write!(f, "the checksum is not that of the line"),
             Self::Member(found) => write!(f, "the row is that of member {found}"),
             Self::Numbers { found, expected } => write!(f, "{expected} numbers expected, found {found}"),

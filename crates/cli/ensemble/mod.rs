@@ -1,10 +1,18 @@
 //! `noslip ensemble`: many variants of a scene.
 
+mod about;
 mod lines;
 mod members;
+mod merge;
+mod parts;
 mod result;
+mod rows;
+mod share;
 mod spool;
 mod totals;
+
+pub(crate) use merge::merge;
+pub(crate) use share::Share;
 
 use crate::args::EnsembleArguments;
 use crate::error::CliError;
@@ -12,8 +20,8 @@ use crate::files::check_file;
 use crate::format::Format;
 use crate::interrupt::Interrupt;
 use crate::output::metadata_of;
-use crate::provenance::Provenance;
 use crate::{compare, inspect, progress, terminal};
+use about::About;
 use dla::Checkpoint;
 use harness::Method;
 use harness::analysis::has_tangents;
@@ -22,10 +30,8 @@ use indicatif::ProgressBar;
 use members::{COLUMNS, Members, Row};
 use result::Shape;
 use scene::{Column, Sweep};
-use serde_json::json;
 use spool::{Asked, Spool};
 use std::ops::{ControlFlow, Range};
-use std::path::Path;
 use std::time::Instant;
 use totals::Totals;
 
@@ -36,6 +42,11 @@ pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
     let method = Method::named(&sweep.scene.run.method, sweep.scene.run.alpha)?;
     if sweep.exponent {
         has_tangents(&method).map_err(|reason| CliError::Request(format!("output.exponent: {reason}")))?;
+    }
+    let identity = identity(&sweep);
+    let about = About::new(&arguments.sweep, &sweep, &identity);
+    if let Some(share) = arguments.part {
+        return parts::make(arguments, &about, &Members { sweep: &sweep, method, names: &names }, share);
     }
     let out = match &arguments.out {
         Some(path) => {
@@ -49,29 +60,28 @@ pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
         None => None,
     };
     let interrupt = Interrupt::listen_saying("stopping after the members that have begun; Ctrl-C again ends at once");
-    let mut totals = Totals::new(sweep.keys().count());
-    let identity = identity(&sweep);
+    let mut totals = Totals::new(sweep.keys().count(), 0);
     let mut spool = match out {
         Some((path, _)) => {
-            let of = (identity.as_str(), sweep.count(), header(&sweep).len());
+            let of = (identity.as_str(), 0..sweep.count(), header(&sweep).len());
             let asked = Asked { resume: arguments.resume, force: arguments.force };
             Some(Spool::open(path, of, asked, |values, error| totals.add(values, error))?)
         }
         None => None,
     };
-    let done = spool.as_ref().map_or(0, Spool::rows);
+    let done = spool.as_ref().map_or(0, Spool::next);
     let bar = progress::bar(method.info().name, sweep.count());
     bar.inc(done);
     let begin = Instant::now();
-    let outcome = compute(&Members { sweep: &sweep, method, names: &names }, &mut spool, &mut totals, &interrupt, &bar);
+    let members = Members { sweep: &sweep, method, names: &names };
+    let outcome = compute(&members, sweep.count(), &mut spool, &mut totals, &interrupt, &bar);
     bar.finish_and_clear();
     let seconds = begin.elapsed().as_secs_f64();
     outcome?;
     let stopped = totals.count() < sweep.count();
     let written = match (spool, out) {
         (Some(spool), Some((path, format))) if !stopped => {
-            let columns = header(&sweep);
-            let metadata = metadata(arguments, &sweep, path, &columns);
+            let (columns, metadata) = (about.columns(), about.metadata(path));
             let shape = Shape { format, columns: &columns, count: sweep.count(), metadata: &metadata };
             spool.finish(path, &shape, arguments.force)
         }
@@ -79,10 +89,10 @@ pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
     };
     let computed = totals.count() - done;
     if arguments.json {
-        terminal::print_json(&totals.json(&sweep, seconds, computed))?;
+        terminal::print_json(&totals.json(&about, seconds, computed))?;
     } else {
         let file = out.map(|(path, _)| path).filter(|_| written.is_ok() && !stopped);
-        terminal::print(&totals.text(&sweep, seconds, computed, file))?;
+        terminal::print(&totals.text(&about, seconds, computed, file))?;
     }
     let failed = CliError::of_failures(totals.failures()).and(written);
     let made = stopped.then(|| {
@@ -92,19 +102,20 @@ pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
     compare::unless_interrupted(made, None, failed)
 }
 
-/// Computes the members that are not there yet, as far as a signal lets it come; each group is in the spool, and in the totals, as soon
+/// Computes the members up to `end` that are not there yet, as far as a signal lets it come; each group is in the spool, and in the totals, as soon
 /// as it and those before it are done.
 fn compute(
     members: &Members<'_>,
+    end: u64,
     spool: &mut Option<Spool>,
     totals: &mut Totals,
     interrupt: &Interrupt,
     bar: &ProgressBar,
 ) -> Result<(), CliError> {
-    let (size, count) = (members.group(), members.sweep.count());
+    let size = members.group();
     let lines = spool.as_ref().map(Spool::lines).cloned();
-    let mut done = spool.as_ref().map_or(0, Spool::rows);
-    let todo = done - done % size..count;
+    let mut done = spool.as_ref().map_or(0, Spool::next);
+    let todo = done - done % size..end;
     let each = |range: Range<u64>| {
         let rows = members.rows(range);
         let texts: Vec<String> = lines.iter().flat_map(|lines| rows.iter().map(|row| lines.line(row))).collect();
@@ -147,19 +158,4 @@ fn header(sweep: &Sweep) -> Vec<Column> {
     let keys = sweep.keys().map(|key| Column::new(key, ""));
     let columns = COLUMNS.iter().map(|(name, unit)| Column::new(*name, *unit));
     std::iter::once(Column::whole("member")).chain(keys).chain(columns).chain(exponent).collect()
-}
-
-/// What made the result: the command, the sweep and its scene.
-fn metadata(arguments: &EnsembleArguments, sweep: &Sweep, out: &Path, columns: &[Column]) -> String {
-    let name = out.file_name().unwrap_or_default().to_string_lossy();
-    let command = ["noslip", "ensemble", &arguments.sweep, "--out", &out.display().to_string()].map(str::to_owned);
-    let scene = &sweep.scene;
-    let mut notes = json!({
-        "method": scene.run.method, "step": scene.run.actual_step(), "duration": scene.run.duration, "sweep": sweep.file,
-    });
-    if let Ok(text) = scene.to_toml() {
-        notes["scene"] = json!(text);
-    }
-    let provenance = Provenance::new(&scene.title, &command, notes);
-    format!("{:#}\n", provenance.document(&name, columns))
 }

@@ -1,5 +1,5 @@
 use super::lines;
-use super::spool::Rows;
+use super::rows::Rows;
 use crate::format::Format;
 use crate::npz;
 use crate::provenance::label;

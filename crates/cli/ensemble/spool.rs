@@ -1,11 +1,13 @@
 use super::lines::{Damage, Lines, parsed};
 use super::result::{self, Shape};
+use super::rows::{Rows, Source};
 use crate::error::CliError;
 use crate::files::{check_file, write_whole};
 use crate::output::metadata_of;
 use crate::part::Part;
 use crate::terminal;
-use std::io::{BufRead, BufReader, Error, ErrorKind, Seek, SeekFrom, Write};
+use std::io::{BufRead, BufReader, Error, Seek, SeekFrom, Write};
+use std::ops::Range;
 use std::path::Path;
 
 /// Rows on their way: a file beside the result, to which every row is added when its member is done, and from which the result is made
@@ -13,8 +15,10 @@ use std::path::Path;
 pub(super) struct Spool {
     part: Part,
     lines: Lines,
-    /// How many are in it: those of the members from 0 on.
-    rows: u64,
+    /// The first member of which it has the row.
+    first: u64,
+    /// The first member of which it does not have the row yet.
+    next: u64,
     /// Its first line.
     header: String,
 }
@@ -29,11 +33,11 @@ pub(super) struct Asked {
 }
 
 impl Spool {
-    /// The spool of a sweep with that identity and so many members, whose rows have so many numbers; `seen` receives the values and the
+    /// The spool of some members of a sweep with that identity, whose rows have so many numbers; `seen` receives the values and the
     /// error of every row that is taken over.
     pub(super) fn open(
         out: &Path,
-        (identity, members, numbers): (&str, u64, usize),
+        (identity, members, numbers): (&str, Range<u64>, usize),
         asked: Asked,
         seen: impl FnMut(&[f64], Option<&str>),
     ) -> Result<Self, CliError> {
@@ -47,10 +51,10 @@ impl Spool {
             return Err(error);
         }
         let (lines, header) = (Lines::new(identity, numbers), format!("{identity}\n"));
-        let mut spool = Self { part, lines, rows: 0, header };
+        let mut spool = Self { part, lines, first: members.start, next: members.start, header };
         let begun = found >= spool.header.len() as u64 || !spool.has_begun_only(found)?;
         if begun && asked.resume {
-            spool.take_over(members, seen)?;
+            spool.take_over(members.end, seen)?;
         } else if begun && !asked.force {
             return Err(CliError::Request(format!(
                 "{} is there, of an interrupted run; --resume goes on, --force begins anew",
@@ -62,9 +66,9 @@ impl Spool {
         Ok(spool)
     }
 
-    /// How many rows are in it.
-    pub(super) fn rows(&self) -> u64 {
-        self.rows
+    /// The first member of which it does not have the row yet.
+    pub(super) fn next(&self) -> u64 {
+        self.next
     }
 
     /// The format of its lines.
@@ -104,7 +108,7 @@ impl Spool {
                 self.part.path().display()
             )));
         }
-        let (mut whole, mut rows) = (line.len() as u64, 0);
+        let (mut whole, mut rows) = (line.len() as u64, self.first);
         let damage = loop {
             line.clear();
             if reader.read_until(b'\n', &mut line).map_err(unreadable)? == 0 {
@@ -122,19 +126,19 @@ impl Spool {
         drop(reader);
         // A row that was being written when the program ended has no end; that is no news.
         if let Some(damage) = damage.filter(|damage| *damage != Damage::Cut) {
-            let (path, number) = (self.part.path().display(), rows + 2);
+            let (path, number) = (self.part.path().display(), rows - self.first + 2);
             let told = format!("{path}:{number}: damaged: {damage}; the members from {rows} on are made again");
             terminal::say("warning", &told);
         }
         let mut file = self.part.file();
         file.set_len(whole).and_then(|()| file.seek(SeekFrom::End(0))).map_err(|source| self.part.failed(source))?;
-        self.rows = rows;
+        self.next = rows;
         Ok(())
     }
 
     /// Adds so many rows, as [`Lines::line`] made them; they are with the operating system when this returns.
     pub(super) fn add(&mut self, text: &str, rows: u64) -> Result<(), CliError> {
-        self.rows += rows;
+        self.next += rows;
         let mut file = self.part.file();
         file.write_all(text.as_bytes()).map_err(|source| self.part.failed(source))
     }
@@ -151,44 +155,24 @@ impl Spool {
         Ok(())
     }
 
+    /// Gives the file the name of a part of a sweep, if every row is there once.
+    pub(super) fn becomes_part(self, out: &Path, members: u64) -> Result<(), CliError> {
+        let unreadable = |source| CliError::Read { path: self.part.path().to_owned(), source };
+        let mut rows = self.whole_rows(members).map_err(unreadable)?;
+        while rows.next().map_err(unreadable)?.is_some() {}
+        drop(rows);
+        self.part.file().sync_all().map_err(|source| self.part.failed(source))?;
+        self.part.becomes(out, true)
+    }
+
     /// A reader of the rows, which fails where they are not those of the members in order.
     fn whole_rows(&self, members: u64) -> Result<Rows<'_>, Error> {
-        let mut reader = self.reader()?;
-        reader.skip_until(b'\n')?;
-        Ok(Rows { spool: self, reader, line: Vec::new(), next: 0, members })
-    }
-}
-
-/// Reads the rows of a spool, one after the other.
-pub(super) struct Rows<'a> {
-    spool: &'a Spool,
-    reader: BufReader<&'a std::fs::File>,
-    line: Vec<u8>,
-    next: u64,
-    members: u64,
-}
-
-impl Rows<'_> {
-    /// The text of the next row; none after the last one.
-    pub(super) fn next(&mut self) -> Result<Option<&str>, Error> {
-        self.line.clear();
-        let read = self.reader.read_until(b'\n', &mut self.line)?;
-        if read == 0 && self.next == self.members {
-            return Ok(None);
-        }
-        let row = self.spool.lines.row(&self.line, self.next);
-        self.next += 1;
-        match row {
-            Ok(text) if self.next <= self.members => Ok(Some(text)),
-            Ok(_) => Err(self.damaged(&Damage::Member((self.next - 1).to_string()))),
-            Err(damage) => Err(self.damaged(&damage)),
-        }
-    }
-
-    fn damaged(&self, damage: &Damage) -> Error {
-        let path = self.spool.part.path().display();
-        let problem =
-            format!("{path}:{}: damaged: {damage}; --resume makes the members from there on again", self.next + 1);
-        Error::new(ErrorKind::InvalidData, problem)
+        let source = Source::Open(self.part.path().to_owned(), self.part.file().try_clone()?);
+        Ok(Rows::new(
+            (&self.lines, &self.header),
+            vec![source],
+            self.first..members,
+            "--resume makes the members from there on again",
+        ))
     }
 }

@@ -1,12 +1,15 @@
+use super::about::About;
+use super::lines::parsed;
 use super::members::COLUMNS;
 use crate::table;
-use scene::Sweep;
 use serde_json::{Value, json};
 use std::path::Path;
 
 /// What all members came to.
 pub(super) struct Totals {
     keys: usize,
+    /// The number of the first member.
+    begin: u64,
     count: u64,
     failed: u64,
     first: Option<String>,
@@ -23,9 +26,10 @@ struct Column {
 }
 
 impl Totals {
-    pub(super) fn new(keys: usize) -> Self {
+    /// Of members from that one on, with so many keys.
+    pub(super) fn new(keys: usize, begin: u64) -> Self {
         let none = Column { low: f64::INFINITY, high: f64::NEG_INFINITY, sum: 0.0, count: 0 };
-        Self { keys, count: 0, failed: 0, first: None, columns: vec![none; COLUMNS.len() + 1] }
+        Self { keys, begin, count: 0, failed: 0, first: None, columns: vec![none; COLUMNS.len() + 1] }
     }
 
     /// Takes in a member.
@@ -33,7 +37,7 @@ impl Totals {
         self.count += 1;
         if let Some(error) = error {
             self.failed += 1;
-            let number = self.count - 1;
+            let number = self.begin + self.count - 1;
             self.first.get_or_insert_with(|| format!("member {number}: {error}"));
             return;
         }
@@ -43,6 +47,12 @@ impl Totals {
                 (column.sum, column.count) = (column.sum + value, column.count + 1);
             }
         }
+    }
+
+    /// Takes in a member by its row.
+    pub(super) fn take(&mut self, row: &str) {
+        let (values, error) = parsed(row);
+        self.add(&values, error.as_deref());
     }
 
     pub(super) fn count(&self) -> u64 {
@@ -63,17 +73,16 @@ impl Totals {
             .map(|((name, unit), column)| (name, unit, *column))
     }
 
-    pub(super) fn json(&self, sweep: &Sweep, seconds: f64, computed: u64) -> Value {
+    pub(super) fn json(&self, of: &About, seconds: f64, computed: u64) -> Value {
         let column = |(name, _, c): (&str, &str, Column)| {
             (name.to_owned(), json!({"min": c.low, "max": c.high, "mean": c.sum / c.count as f64}))
         };
-        let run = &sweep.scene.run;
         json!({
-            "scene": sweep.scene.name,
-            "method": run.method,
-            "step": run.actual_step(),
-            "duration": run.duration,
-            "keys": sweep.keys().collect::<Vec<_>>(),
+            "scene": of.scene,
+            "method": of.method,
+            "step": of.step,
+            "duration": of.duration,
+            "keys": of.keys,
             "members": self.count,
             "failed": self.failed,
             "wall_seconds": seconds,
@@ -82,28 +91,30 @@ impl Totals {
         })
     }
 
-    pub(super) fn text(&self, sweep: &Sweep, seconds: f64, computed: u64, file: Option<&Path>) -> String {
-        let run = &sweep.scene.run;
+    pub(super) fn text(&self, of: &About, seconds: f64, computed: u64, file: Option<&Path>) -> String {
         let mut lines = vec![
-            ("scene".to_owned(), format!("{} ({})", sweep.scene.title, sweep.scene.name)),
+            ("scene".to_owned(), format!("{} ({})", of.title, of.scene)),
             (
                 "run".to_owned(),
                 format!(
                     "{} s by {} with steps of {} s, each",
-                    table::number(run.duration),
-                    run.method,
-                    table::number(run.actual_step())
+                    table::number(of.duration),
+                    of.method,
+                    table::number(of.step)
                 ),
             ),
-            ("varied".to_owned(), sweep.keys().collect::<Vec<_>>().join(", ")),
-            ("members".to_owned(), format!("{} of {}, {} failed", self.count, sweep.count(), self.failed)),
+            ("varied".to_owned(), of.keys.join(", ")),
+            ("members".to_owned(), format!("{} of {}, {} failed", self.count, of.members, self.failed)),
         ];
         for (name, unit, c) in self.named().skip(1) {
             let [low, high, mean] = [c.low, c.high, c.sum / c.count as f64].map(table::number);
             lines.push((name.to_owned(), format!("from {low} to {high} {unit}, {mean} on average")));
         }
-        let each = 1e6 * seconds / computed.max(1) as f64;
-        lines.push(("time".to_owned(), format!("{seconds:.3e} s, {each:.2} us a member")));
+        // Of what was only put together there is no time.
+        if computed > 0 {
+            let each = 1e6 * seconds / computed as f64;
+            lines.push(("time".to_owned(), format!("{seconds:.3e} s, {each:.2} us a member")));
+        }
         if let Some(path) = file {
             lines.push(("written".to_owned(), path.display().to_string()));
         }

@@ -1,0 +1,89 @@
+use super::header;
+use crate::error::CliError;
+use crate::provenance::Provenance;
+use scene::{Column, Sweep};
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use std::io::Write;
+use std::path::Path;
+
+/// What is told of a sweep, with its members or with their summary: all that a result needs beside its rows.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct About {
+    /// The first line of its files of rows: what tells it from other sweeps and other versions of the program.
+    pub(super) identity: String,
+    /// The file of the sweep, as it was named.
+    pub(super) sweep: String,
+    /// Its scene.
+    pub(super) scene: String,
+    pub(super) title: String,
+    pub(super) method: String,
+    /// The step (s).
+    pub(super) step: f64,
+    /// The duration (s).
+    pub(super) duration: f64,
+    /// What varies.
+    pub(super) keys: Vec<String>,
+    pub(super) members: u64,
+    /// Name, unit and whether it has whole numbers, of every column.
+    columns: Vec<(String, String, bool)>,
+    notes: Value,
+}
+
+impl About {
+    /// That sweep, from a file of that name.
+    pub(super) fn new(file: &str, sweep: &Sweep, identity: &str) -> Self {
+        let scene = &sweep.scene;
+        let mut notes = json!({
+            "method": scene.run.method, "step": scene.run.actual_step(), "duration": scene.run.duration, "sweep": sweep.file,
+        });
+        if let Ok(text) = scene.to_toml() {
+            notes["scene"] = json!(text);
+        }
+        Self {
+            identity: identity.to_owned(),
+            sweep: file.to_owned(),
+            scene: scene.name.clone(),
+            title: scene.title.clone(),
+            method: scene.run.method.clone(),
+            step: scene.run.actual_step(),
+            duration: scene.run.duration,
+            keys: sweep.keys().map(ToString::to_string).collect(),
+            members: sweep.count(),
+            columns: header(sweep).into_iter().map(|Column { name, unit, whole }| (name, unit, whole)).collect(),
+            notes,
+        }
+    }
+
+    /// The columns of the result.
+    pub(super) fn columns(&self) -> Vec<Column> {
+        self.columns.iter().map(|(name, unit, whole)| Column { whole: *whole, ..Column::new(name, unit) }).collect()
+    }
+
+    /// What made a result: the command that makes it at once, the sweep and its scene.
+    pub(super) fn metadata(&self, out: &Path) -> String {
+        let name = out.file_name().unwrap_or_default().to_string_lossy();
+        let command = ["noslip", "ensemble", &self.sweep, "--out", &out.display().to_string()].map(str::to_owned);
+        let provenance = Provenance::new(&self.title, &command, self.notes.clone());
+        format!("{:#}\n", provenance.document(&name, &self.columns()))
+    }
+
+    /// Reads it from a file beside parts; none where the file is another one.
+    pub(super) fn read(path: &Path) -> Option<Self> {
+        serde_json::from_str(&std::fs::read_to_string(path).ok()?).ok()
+    }
+
+    /// Writes it beside parts, whole or not at all; processes that do so at the same time write the same.
+    pub(super) fn write(&self, path: &Path) -> Result<(), CliError> {
+        if Self::read(path).as_ref() == Some(self) {
+            return Ok(());
+        }
+        let failed = |source| CliError::Write { path: path.to_owned(), source };
+        let text = serde_json::to_string_pretty(self).map_err(|error| failed(error.into()))?;
+        let folder = path.parent().unwrap_or(Path::new("."));
+        // Of a name of its own: the other processes write too.
+        let mut file = tempfile::Builder::new().prefix(".sweep").tempfile_in(folder).map_err(failed)?;
+        writeln!(file, "{text}").and_then(|()| file.as_file().sync_all()).map_err(failed)?;
+        file.persist(path).map(drop).map_err(|error| failed(error.error))
+    }
+}

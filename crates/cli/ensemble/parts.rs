@@ -1,0 +1,181 @@
+//! Parts of a sweep that are computed by processes of their own: files of rows in a folder, and one on the sweep.
+
+use super::about::About;
+use super::compute;
+use super::lines::Lines;
+use super::members::Members;
+use super::rows::{Rows, Source};
+use super::share::Share;
+use super::spool::{Asked, Spool};
+use super::totals::Totals;
+use crate::args::EnsembleArguments;
+use crate::error::CliError;
+use crate::interrupt::Interrupt;
+use crate::{compare, progress, terminal};
+use dla::Checkpoint;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// What makes a part that is not as it was written.
+const ADVICE: &str = "the command of the part, `noslip ensemble SWEEP --out DIR --part I/N`, makes it again";
+
+/// A file of rows of some members.
+#[derive(Debug, Clone)]
+pub(super) struct Part {
+    pub(super) path: PathBuf,
+    pub(super) members: Range<u64>,
+}
+
+/// The beginning of the names of the files of a sweep: a hash of all that its rows depend on.
+pub(super) fn stem(identity: &str) -> String {
+    format!("{}-{}", Checkpoint::fingerprint(identity), env!("CARGO_PKG_VERSION"))
+}
+
+/// The name of the file of some members.
+fn name(stem: &str, members: &Range<u64>) -> String {
+    format!("{stem}-{}-{}.rows", members.start, members.end)
+}
+
+/// The members in such a name.
+pub(super) fn members_of(stem: &str, name: &str) -> Option<Range<u64>> {
+    let (start, end) = name.strip_prefix(stem)?.strip_prefix('-')?.strip_suffix(".rows")?.split_once('-')?;
+    Some(start.parse().ok()?..end.parse().ok()?)
+}
+
+/// A reader of the rows of parts that follow on each other.
+pub(super) fn rows<'a>(of: (&'a Lines, &'a str), parts: &[Part]) -> Rows<'a> {
+    let members = parts.first().map_or(0, |part| part.members.start)..parts.last().map_or(0, |part| part.members.end);
+    Rows::new(of, parts.iter().map(|part| Source::At(part.path.clone())).collect(), members, ADVICE)
+}
+
+/// Computes a part of a sweep, unless it is there already; an interrupted one goes on.
+pub(super) fn make(
+    arguments: &EnsembleArguments,
+    about: &About,
+    members: &Members<'_>,
+    share: Share,
+) -> Result<(), CliError> {
+    let Some(folder) = arguments.out.as_deref() else {
+        return Err(CliError::Request("--part needs --out DIR, the folder of the parts".to_owned()));
+    };
+    std::fs::create_dir_all(folder).map_err(|source| CliError::Write { path: folder.to_owned(), source })?;
+    let stem = stem(&about.identity);
+    about.write(&folder.join(format!("{stem}.json")))?;
+    let range = share.members(about.members, members.group());
+    let path = folder.join(name(&stem, &range));
+    let (numbers, header) = (about.columns().len(), format!("{}\n", about.identity));
+    let part = Part { path: path.clone(), members: range.clone() };
+    let mut totals = Totals::new(about.keys.len(), range.start);
+    let mut seconds = 0.0;
+    let mut computed = 0;
+    let there = !arguments.force && path.exists();
+    if there && is_whole(&part, (&Lines::new(&about.identity, numbers), &header), &mut totals) {
+        terminal::say("note", &format!("{} is there already", path.display()));
+    } else {
+        if there {
+            terminal::say("warning", &format!("{} is damaged; it is made again", path.display()));
+        }
+        totals = Totals::new(about.keys.len(), range.start);
+        let note = "stopping after the members that have begun; Ctrl-C again ends at once";
+        let interrupt = Interrupt::listen_saying(note);
+        // The same command goes on, as a batch system gives it again.
+        let asked = Asked { resume: !arguments.force, force: true };
+        let of = (about.identity.as_str(), range.clone(), numbers);
+        let spool = Spool::open(&path, of, asked, |values, error| totals.add(values, error))?;
+        let done = spool.next() - range.start;
+        let bar = progress::bar(&format!("{} {share}", members.method.info().name), range.end - range.start);
+        bar.inc(done);
+        let (begin, mut spool) = (Instant::now(), Some(spool));
+        let outcome = compute(members, range.end, &mut spool, &mut totals, &interrupt, &bar);
+        bar.finish_and_clear();
+        outcome?;
+        (seconds, computed) = (begin.elapsed().as_secs_f64(), totals.count() - done);
+        let whole = range.end - range.start;
+        if totals.count() < whole {
+            let made = format!("{} of {whole} members of the part are done; the same command goes on", totals.count());
+            return compare::unless_interrupted(Some(made), None, Ok(()));
+        }
+        if let Some(spool) = spool {
+            spool.becomes_part(&path, range.end)?;
+        }
+    }
+    // A member that failed is a row of the part: it is the merged result that tells of it by its exit code.
+    if let Some(failures) = totals.failures() {
+        terminal::say("warning", &failures);
+    }
+    match arguments.json {
+        true => terminal::print_json(&totals.json(about, seconds, computed)),
+        false => terminal::print(&totals.text(about, seconds, computed, Some(&path))),
+    }
+}
+
+/// Whether a part has every row; its members are added to the totals.
+fn is_whole(part: &Part, of: (&Lines, &str), totals: &mut Totals) -> bool {
+    let mut rows = rows(of, std::slice::from_ref(part));
+    loop {
+        match rows.next() {
+            Ok(Some(text)) => totals.take(text),
+            Ok(None) => return true,
+            Err(_) => return false,
+        }
+    }
+}
+
+/// The parts that follow on each other from the first member to the last, of those that are there.
+///
+/// # Errors
+/// The members that are missing.
+pub(super) fn chain(mut parts: Vec<Part>, members: u64) -> Result<Vec<Part>, Range<u64>> {
+    // From the end: a part is of use where another one goes on from its end.
+    parts.sort_by_key(|part| (std::cmp::Reverse(part.members.start), part.members.end));
+    let mut onward: std::collections::BTreeMap<u64, Part> = std::collections::BTreeMap::new();
+    for part in &parts {
+        let Range { start, end } = part.members;
+        if start < end && (end == members || onward.contains_key(&end)) {
+            onward.insert(start, part.clone());
+        }
+    }
+    let mut chain = Vec::new();
+    let mut at = 0;
+    while at < members {
+        let Some(part) = onward.get(&at) else { return Err(missing(&parts, members)) };
+        at = part.members.end;
+        chain.push(part.clone());
+    }
+    Ok(chain)
+}
+
+/// The first members that are in no part; of parts that overlap and do not follow on each other, those after the first such part.
+fn missing(parts: &[Part], members: u64) -> Range<u64> {
+    let mut at = 0;
+    while let Some(end) =
+        parts.iter().filter(|part| part.members.start <= at && part.members.end > at).map(|part| part.members.end).max()
+    {
+        at = end;
+    }
+    let next = parts.iter().map(|part| part.members.start).filter(|start| *start > at).min();
+    if at < members { at..next.unwrap_or(members).min(members) } else { 0..members }
+}
+
+/// The sweep of the parts in a folder, and the parts.
+pub(super) fn found(folder: &Path) -> Result<(About, Vec<Part>), CliError> {
+    let unreadable = |source| CliError::Read { path: folder.to_owned(), source };
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(unreadable)? {
+        names.extend(entry.map_err(unreadable)?.file_name().into_string());
+    }
+    names.sort();
+    let of = |name: &String| Some((name.strip_suffix(".json")?.to_owned(), About::read(&folder.join(name))?));
+    let sweeps: Vec<(String, About)> =
+        names.iter().filter_map(of).filter(|(s, about)| *s == stem(&about.identity)).collect();
+    let [(stem, about)] = &sweeps[..] else {
+        let problem = match sweeps.len() {
+            0 => "there are no parts of a sweep, or those of another version of the program".to_owned(),
+            many => format!("there are parts of {many} sweeps: keep those of one here"),
+        };
+        return Err(CliError::Request(format!("{}: {problem}", folder.display())));
+    };
+    let part = |name: &String| Some(Part { path: folder.join(name), members: members_of(stem, name)? });
+    Ok((about.clone(), names.iter().filter_map(part).collect()))
+}

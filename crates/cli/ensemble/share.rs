@@ -1,0 +1,38 @@
+use std::ops::Range;
+use std::str::FromStr;
+
+/// One of some equal parts of the members of a sweep, such as `3/64`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Share {
+    number: u64,
+    of: u64,
+}
+
+impl Share {
+    /// Its members, of so many, in whole groups of `group`: members of a group are computed together.
+    pub(super) fn members(self, count: u64, group: u64) -> Range<u64> {
+        let groups = count.div_ceil(group);
+        let until = |part: u64| (u128::from(groups) * u128::from(part) / u128::from(self.of)) as u64;
+        let at = |part: u64| (until(part) * group).min(count);
+        at(self.number - 1)..at(self.number)
+    }
+}
+
+impl std::fmt::Display for Share {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}/{}", self.number, self.of)
+    }
+}
+
+impl FromStr for Share {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers =
+            text.split_once('/').and_then(|(number, of)| Some((number.trim().parse().ok()?, of.trim().parse().ok()?)));
+        match numbers {
+            Some((number, of)) if 1 <= number && number <= of => Ok(Self { number, of }),
+            _ => Err("accepted is I/N as in 3/64: part I, from 1 to N, of N parts".to_owned()),
+        }
+    }
+}
