@@ -7,7 +7,7 @@ use crate::interrupt::Interrupt;
 use crate::output::{Asked, Output};
 use crate::progress::Interruptible;
 use crate::run::{Read, identity, of, position, provenance, tell, with_position};
-use crate::trigger::{Events, Happened};
+use crate::trigger::{Events, Happened, Trigger};
 use crate::{inspect, json, progress, resume, substeps, table, terminal};
 use assembly::State;
 use assembly::parts::Train;
@@ -164,7 +164,7 @@ impl Request<'_, '_> {
     /// At once, with an eye on events where there are any.
     fn watched(&self, arguments: &RunArguments, progress: &mut dyn Progress) -> Result<Made, CliError> {
         let RunArguments { event, until, event_samples, .. } = arguments;
-        let on_blade = event.iter().chain(until).map(|trigger| trigger.on_blade());
+        let on_blade = event.iter().chain(until).map(Trigger::on_blade);
         let watched = on_blade.collect::<Result<Vec<_>, _>>()?;
         let is_last = |k: usize| k >= event.len();
         let events: Vec<_> = watched.iter().enumerate().map(|(k, one)| one.event(self.train, is_last(k))).collect();

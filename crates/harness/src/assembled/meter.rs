@@ -8,8 +8,8 @@ use lagrangian::linear::larger;
 
 /// What a run of an assembly is measured by.
 pub(super) struct Meter<'a> {
-    /// Where nodes go that are not kept, every how manieth, and the time (s) of the last one.
-    shown: Option<(u64, &'a mut dyn FnMut(u64, &AssemblyNode), f64)>,
+    /// Where nodes go that are not kept.
+    shown: Option<Shown<'a>>,
     /// Every so manieth node is a sample, and is kept unless nodes are shown.
     every: u64,
     initial: f64,
@@ -28,9 +28,17 @@ pub(super) struct Meter<'a> {
     substeps: Option<SubstepSummary>,
 }
 
+/// Where nodes go.
+struct Shown<'a> {
+    every: u64,
+    sink: &'a mut dyn FnMut(u64, &AssemblyNode),
+    /// The time (s) of the last one.
+    last: f64,
+}
+
 impl<'a> Meter<'a> {
     pub(super) fn new(assembly: &Assembly, method: &Method, t: f64, start: &State, nodes: AssemblyNodes<'a>) -> Self {
-        let (every, shown) = split(nodes, f64::NEG_INFINITY);
+        let (every, shown) = split(nodes);
         let (initial, most) = (assembly.energy(t, start), assembly.misses(t, start));
         let mut meter = Self {
             shown,
@@ -111,7 +119,7 @@ impl<'a> Meter<'a> {
         if made.is_multiple_of(self.every) {
             self.keep(assembly, t, state);
         }
-        if self.shown.as_ref().is_some_and(|(every, ..)| made.is_multiple_of(*every)) {
+        if self.shown.as_ref().is_some_and(|shown| made.is_multiple_of(shown.every)) {
             self.show(assembly, (made, t), state);
         }
     }
@@ -135,9 +143,9 @@ impl<'a> Meter<'a> {
     fn show(&mut self, assembly: &Assembly, (made, t): (u64, f64), state: &State) {
         if self.shown.is_some() {
             let node = self.node(assembly, t, state);
-            if let Some((_, sink, last)) = &mut self.shown {
-                sink(made, &node);
-                *last = t;
+            if let Some(shown) = &mut self.shown {
+                (shown.sink)(made, &node);
+                shown.last = t;
             }
         }
     }
@@ -147,7 +155,7 @@ impl<'a> Meter<'a> {
         if self.samples.last().is_none_or(|sample| sample.t < t) {
             self.keep(assembly, t, state);
         }
-        if self.shown.as_ref().is_some_and(|(.., last)| *last < t) {
+        if self.shown.as_ref().is_some_and(|shown| shown.last < t) {
             self.show(assembly, (made, t), state);
         }
     }
@@ -218,10 +226,10 @@ impl<'a> Meter<'a> {
         (made, t): (u64, f64),
         nodes: AssemblyNodes<'a>,
     ) -> Result<Self, CheckpointError> {
-        let (every, mut shown) = split(nodes, f64::NEG_INFINITY);
+        let (every, mut shown) = split(nodes);
         // A node that is due was handed on before.
-        if let Some((_, _, last)) = shown.as_mut().filter(|(every, ..)| made.is_multiple_of(*every)) {
-            *last = t;
+        if let Some(shown) = shown.as_mut().filter(|shown| made.is_multiple_of(shown.every)) {
+            shown.last = t;
         }
         let [initial, last, max_error, constraint, joint, error, slip] = checkpoint.get("meter")?;
         let [iterations, most] = checkpoint.counts("iterations")?;
@@ -250,10 +258,12 @@ impl<'a> Meter<'a> {
 }
 
 /// Every how manieth node is a sample, and where nodes go that are not kept.
-fn split(nodes: AssemblyNodes<'_>, last: f64) -> (u64, Option<(u64, &mut dyn FnMut(u64, &AssemblyNode), f64)>) {
+fn split(nodes: AssemblyNodes<'_>) -> (u64, Option<Shown<'_>>) {
     match nodes {
         AssemblyNodes::Kept(every) => (every.max(1), None),
-        AssemblyNodes::Shown(every, sink) => (u64::MAX, Some((every.max(1), sink, last))),
+        AssemblyNodes::Shown(every, sink) => {
+            (u64::MAX, Some(Shown { every: every.max(1), sink, last: f64::NEG_INFINITY }))
+        }
     }
 }
 
