@@ -316,6 +316,27 @@ fn events_are_found_and_end_a_run() {
     folder.refused("run turnaround --until speed=fast", &["fast"]);
 }
 
+/// Of a method with steps of its own a tolerance is what each of them aims for, on the command line and in the scene.
+#[test]
+fn a_tolerance_is_that_of_own_steps() {
+    let folder = Folder::new();
+    for method in ["gauss-adaptive", "taylor", "dop853"] {
+        let end = |flags: &str| {
+            let run = folder.json(&format!("run bowl --method {method} --duration 20 --json {flags}"));
+            assert_eq!(run["steps"].as_u64(), Some(400), "{run}");
+            ["x", "y", "heading"].map(|key| run["final"][key].as_f64().unwrap())
+        };
+        let [exact, loose, set] = ["", "--tolerance 1e-5", "--set run.tolerance=1e-5"].map(end);
+        assert_eq!(loose.map(f64::to_bits), set.map(f64::to_bits), "{method}");
+        let off = (0..3).map(|i| (exact[i] - loose[i]).abs()).fold(0.0, f64::max);
+        // Four hundred steps of 1e-5 at most, which 20 s in the bowl enlarge by less than ten times; and no two methods agree to the bit.
+        assert!(off > 0.0 && off < 4e-2, "{method}: {off:e}");
+    }
+    folder.refused("run bowl --method taylor --tolerance 0", &["tolerance", "positive"]);
+    let refused = folder.line("run egg-crate --method taylor");
+    assert!(refused.code == 1 && refused.stderr.contains("series need a sleigh"), "{refused:?}");
+}
+
 #[test]
 fn a_step_is_found_for_a_tolerance() {
     let folder = Folder::new();

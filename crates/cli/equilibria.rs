@@ -31,8 +31,7 @@ struct Row {
 /// `noslip equilibria`: the steady motions of a scene, and how stable they are, of the flow and of a method.
 pub(crate) fn equilibria(arguments: &EquilibriaArguments) -> Result<(), CliError> {
     let scene = inspect::load_any(&arguments.scene, arguments.method.as_deref())?;
-    let run = scene.run();
-    let method = Method::named(&run.method, run.alpha)?;
+    let method = inspect::method(scene.run())?;
     if differentiable::<3, 1>(&method).is_none() {
         return Err(CliError::NotDifferentiated { method: method.info().name });
     }

@@ -3,8 +3,8 @@ use crate::error::CliError;
 use crate::files::write_whole;
 use crate::{effect_keys, table, terminal};
 use dla::Schedule;
-use harness::METHODS;
-use scene::{AnyScene, Overrides, Scene};
+use harness::{METHODS, Method};
+use scene::{AnyScene, Overrides, RunSettings, Scene};
 use serde_json::json;
 use std::io::Write;
 use std::path::Path;
@@ -53,6 +53,11 @@ pub(crate) fn load_with(
 /// The steps of a scene's run.
 pub(crate) fn schedule(scene: &Scene) -> Schedule {
     scene.schedule()
+}
+
+/// The method of a run, with its settings.
+pub(crate) fn method(run: &RunSettings) -> Result<Method, CliError> {
+    Ok(Method::of(&run.method, run.alpha, run.tolerance)?)
 }
 
 /// `noslip list`: what there is.

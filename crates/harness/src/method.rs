@@ -150,6 +150,22 @@ pub const METHODS: &[MethodInfo] = &[
         reference: "Hairer, Lubich and Wanner 2006, section II.1.3",
     },
     MethodInfo {
+        kind: Kind::GaussAdaptive,
+        name: "gauss-adaptive",
+        order: 16,
+        keeps: "constraint",
+        summary: "Gauss collocation with 8 stages in steps of its own, as a tolerance asks for",
+        reference: "compare Antonana, Makazaga and Murua 2017, Numer. Algorithms 76, 861-880",
+    },
+    MethodInfo {
+        kind: Kind::Taylor,
+        name: "taylor",
+        order: 20,
+        keeps: "constraint",
+        summary: "Taylor series in the axes of a sleigh that is free, in a round well or pushed constantly, in steps of its own",
+        reference: "Jorba and Zou 2005, Experimental Mathematics 14, 99-117",
+    },
+    MethodInfo {
         kind: Kind::Energy2,
         name: "energy2",
         order: 2,
@@ -266,6 +282,10 @@ pub enum Kind {
     Gauss14,
     /// `gauss16`
     Gauss16,
+    /// `gauss-adaptive`
+    GaussAdaptive,
+    /// `taylor`
+    Taylor,
     /// `energy2`
     Energy2,
     /// `energy4`
@@ -286,6 +306,14 @@ pub enum Kind {
     ImplicitMidpoint,
     /// `dop853`
     Dop853,
+}
+
+impl Kind {
+    /// Whether the method chooses steps of its own within a step of the run, by a tolerance.
+    #[must_use]
+    pub fn is_adaptive(self) -> bool {
+        matches!(self, Self::GaussAdaptive | Self::Taylor | Self::Dop853)
+    }
 }
 
 /// A method, ready to integrate.
@@ -309,7 +337,7 @@ pub enum MethodError {
     /// The weight of `dla-alpha` is not between 0 and 1.
     #[error(transparent)]
     Alpha(#[from] NotAWeight),
-    /// The tolerance of `dop853` is not a positive number.
+    /// The tolerance of an adaptive method is not a positive number.
     #[error("the tolerance must be positive and finite, and is {tolerance}")]
     Tolerance {
         /// What was given.
@@ -327,7 +355,8 @@ fn names() -> Vec<&'static str> {
 }
 
 impl Method {
-    /// The tolerance of `dop853` where none is given, relative and absolute (see [`Dop853::new`](crate::Dop853::new)).
+    /// The tolerance of the [adaptive](Kind::is_adaptive) methods where none is given, relative and absolute: an error of `1e-12 (1 + |y|)`
+    /// in every step of a component `y`.
     pub const TOLERANCE: f64 = 1e-12;
 
     /// The method of that name; `alpha` is the weight of `dla-alpha`, `1/2` where none is given.
@@ -345,6 +374,15 @@ impl Method {
         Ok(Self { info, alpha, tolerance: Self::TOLERANCE, substeps: None })
     }
 
+    /// The method of that name with the settings of a run: `alpha` as in [`named`](Self::named), and the tolerance of an adaptive method,
+    /// [`TOLERANCE`](Self::TOLERANCE) where none is given.
+    ///
+    /// # Errors
+    /// [`MethodError`].
+    pub fn of(name: &str, alpha: Option<f64>, tolerance: Option<f64>) -> Result<Self, MethodError> {
+        Self::named(name, alpha)?.with_tolerance(tolerance.unwrap_or(Self::TOLERANCE))
+    }
+
     /// `dla`, the first row of the table, with the same settings.
     pub(crate) fn as_dla(&self) -> Self {
         Self { info: METHODS[0], ..*self }
@@ -356,7 +394,7 @@ impl Method {
         Self { substeps: None, ..self }
     }
 
-    /// The same method with another tolerance, which only `dop853` reads.
+    /// The same method with another tolerance, which only [adaptive](Kind::is_adaptive) ones read.
     ///
     /// # Errors
     /// [`MethodError::Tolerance`] unless it is positive and finite.
@@ -366,6 +404,15 @@ impl Method {
         } else {
             Err(MethodError::Tolerance { tolerance })
         }
+    }
+
+    /// The same method for the tolerance that a run is asked for, if any: an adaptive one aims for it in each of its steps; the step of any
+    /// other is to be found by [`recommend`](crate::recommend), and the method stays as it is.
+    ///
+    /// # Errors
+    /// As [`with_tolerance`](Self::with_tolerance).
+    pub fn aiming_for(self, tolerance: Option<f64>) -> Result<Self, MethodError> {
+        tolerance.filter(|_| self.is_adaptive()).map_or(Ok(self), |tolerance| self.with_tolerance(tolerance))
     }
 
     /// The same method, whose steps are made in parts where it cannot make them whole, or where a whole one does not resolve the
@@ -388,10 +435,16 @@ impl Method {
         self.info
     }
 
-    /// The tolerance of `dop853`.
+    /// The tolerance of an adaptive method.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
+    }
+
+    /// Whether it chooses steps of its own.
+    #[must_use]
+    pub fn is_adaptive(&self) -> bool {
+        self.info.kind.is_adaptive()
     }
 
     /// The rule of the discrete constraint: the midpoint rule, but for `dla-trapezoid` and `dla-alpha`.

@@ -1,7 +1,10 @@
 //! The methods by name, as objects: compiled here for the shapes of the systems of scenes, and nowhere else for these.
 
 use crate::{Dop853, ImplicitMidpoint, Kind, Method, Rk4, Rk4Projected, Rk4Reduced};
-use dla::{Composition, Dla, Energy, Gauss, Gni, Lobatto, OwnMethods, Rebased, Stepper};
+use dla::{
+    Composition, Dla, Energy, Gauss, GaussAdaptive, Gni, Lobatto, Mechanics, OneStep, OwnMethods, Rebased, State,
+    StepError, StepReport, Stepper,
+};
 use std::any::Any;
 
 /// Whether the methods for systems of this shape are compiled here.
@@ -11,7 +14,7 @@ const fn is_compiled(coordinates: usize, constraints: usize) -> bool {
 
 impl Method {
     /// The method, to make steps with, for a system that brings integrators of its own: the closed form that it has of `dla` takes the
-    /// place of the general one, also in compositions. It holds for the smooth piece of a run at the time `t` (s).
+    /// place of the general one, also in compositions, and `taylor` is its series. It holds for the smooth piece of a run at the time `t` (s).
     #[must_use]
     pub fn stepper_of<'a, const N: usize, const M: usize>(
         &self,
@@ -25,6 +28,7 @@ impl Method {
             Kind::Dla4 => Box::new(Composition::suzuki4(midpoint())),
             Kind::Dla6 => Box::new(Composition::kahan_li6(midpoint())),
             Kind::Dla8 => Box::new(Composition::fifteen8(midpoint())),
+            Kind::Taylor => own.series(t, self.tolerance()).unwrap_or_else(|| self.stepper()),
             _ => self.stepper(),
         }
     }
@@ -117,6 +121,8 @@ fn make<const N: usize, const M: usize>(method: &Method) -> Stepper<'static, N, 
         Kind::Gauss12 => Box::new(Rebased::new(Gauss::new::<6>())),
         Kind::Gauss14 => Box::new(Rebased::new(Gauss::new::<7>())),
         Kind::Gauss16 => Box::new(Rebased::new(Gauss::new::<8>())),
+        Kind::GaussAdaptive => Box::new(Rebased::new(GaussAdaptive::new::<8>(method.tolerance()))),
+        Kind::Taylor => Box::new(NoSeries),
         Kind::Energy2 => Box::new(Rebased::new(Energy::new::<1>())),
         Kind::Energy4 => Box::new(Rebased::new(Energy::new::<2>())),
         Kind::Energy6 => Box::new(Rebased::new(Energy::new::<3>())),
@@ -127,5 +133,23 @@ fn make<const N: usize, const M: usize>(method: &Method) -> Stepper<'static, N, 
         Kind::Rk4Reduced => Box::new(Rebased::new(Rk4Reduced)),
         Kind::ImplicitMidpoint => Box::new(Rebased::new(ImplicitMidpoint::default())),
         Kind::Dop853 => Box::new(Dop853::<N, M>::new(method.tolerance())),
+    }
+}
+
+/// The method `taylor` on a system that brings no series.
+struct NoSeries;
+
+impl<const N: usize, const M: usize> OneStep<N, M> for NoSeries {
+    fn step(
+        &mut self,
+        _system: &dyn Mechanics<N, M>,
+        _t: f64,
+        _h: f64,
+        _state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
+        Err(StepError::Unsupported {
+            reason: "series need a sleigh whose equations are of second degree in axes that turn with it: free, in a round well, under a \
+                     constant thrust or torque",
+        })
     }
 }

@@ -75,8 +75,8 @@ fn rule<const N: usize, const M: usize>(method: &Method) -> Result<Rule<N, M>, S
         Kind::Energy2 => Rule::Equations(Box::new(Energy::new::<1>())),
         Kind::Energy4 => Rule::Equations(Box::new(Energy::new::<2>())),
         Kind::Gni => return refuse("gni carries a multiplier from step to step, and its step is no map of (q, v)"),
-        Kind::Dop853 => {
-            return refuse("dop853 chooses its steps from the state, and how many there are changes by jumps");
+        Kind::GaussAdaptive | Kind::Taylor | Kind::Dop853 => {
+            return refuse("the method chooses its steps from the state, and how many there are changes by jumps");
         }
         Kind::Rk4 | Kind::Rk4Projected | Kind::ImplicitMidpoint => {
             return refuse(

@@ -56,7 +56,8 @@ pub fn claims(method: Kind, claim: Claim) -> Result<(), &'static str> {
         ),
         (K::Gni, C::LightInertia) => Err(HIDDEN_MODE),
 
-        (K::Rk4 | K::Rk4Projected | K::Rk4Reduced | K::Dop853, C::Symmetry) => Err("is not its own adjoint"),
+        (K::Rk4 | K::Rk4Projected | K::Rk4Reduced, C::Symmetry) => Err("is not its own adjoint"),
+        (K::GaussAdaptive | K::Taylor | K::Dop853, C::Symmetry) => Err("is not its own adjoint"),
         (K::Energy2 | K::Energy4 | K::Energy6 | K::Energy8, C::Energy) => Ok(()),
         (_, C::Energy) => Err("keeps the energy to its order only"),
         (K::Rk4 | K::Rk4Projected | K::Rk4Reduced, C::Continuation | C::Stiffness) => Err(EXPLICIT),
