@@ -1,8 +1,8 @@
 use crate::account::Account;
 use crate::called::Caller;
 use crate::error::CliError;
-use crate::substeps;
 use crate::trigger::Trigger;
+use crate::{inspect, substeps};
 use dla::{Node, Samples, State, Substeps, Trajectory, View};
 use harness::{Again, EVENT_SAMPLES, Method, Progress};
 use indicatif::ProgressBar;

@@ -15,7 +15,6 @@ use crate::output::metadata_of;
 use crate::provenance::Provenance;
 use crate::{compare, inspect, progress, terminal};
 use dla::Checkpoint;
-use harness::Method;
 use harness::analysis::has_tangents;
 use harness::ensemble::in_order;
 use indicatif::ProgressBar;
