@@ -73,8 +73,9 @@ pub(crate) fn list(arguments: &ListArguments) -> Result<(), CliError> {
                 .collect(),
             Listed::Effects => scene::EFFECTS
                 .iter()
-                .map(|(name, keys, meaning)| {
-                    json!({"name": name, "keys": keys, "summary": meaning, "properties": effect_keys::json(name)})
+                .map(|effect| {
+                    let scene::EffectInfo { name, keys, summary, .. } = effect;
+                    json!({"name": name, "keys": keys, "summary": summary, "properties": effect_keys::json(name)})
                 })
                 .collect(),
             Listed::Cases => crate::stability::cases()
