@@ -68,7 +68,8 @@ pub(crate) fn list(arguments: &ListArguments) -> Result<(), CliError> {
                 .iter()
                 .map(|m| {
                     json!({"name": m.name, "order": m.order, "keeps": m.keeps, "summary": m.summary,
-                           "reference": m.reference})
+                           "reference": m.reference, "adaptive": m.kind.is_adaptive(), "assemblies": m.assemblies,
+                           "lanes": m.lanes, "tangent": m.tangent.is_ok()})
                 })
                 .collect(),
             Listed::Effects => scene::EFFECTS

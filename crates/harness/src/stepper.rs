@@ -25,9 +25,7 @@ impl Method {
         match self.info().kind {
             Kind::Dla => midpoint(),
             Kind::DlaAlpha if self.alpha().is_symmetric() => midpoint(),
-            Kind::Dla4 => Box::new(Composition::suzuki4(midpoint())),
-            Kind::Dla6 => Box::new(Composition::kahan_li6(midpoint())),
-            Kind::Dla8 => Box::new(Composition::fifteen8(midpoint())),
+            Kind::Composed(order) => Box::new(composed(order, midpoint())),
             Kind::Taylor => own.series(t, self.tolerance()).unwrap_or_else(|| self.stepper()),
             _ => self.stepper(),
         }
@@ -108,31 +106,52 @@ fn make<const N: usize, const M: usize>(method: &Method) -> Stepper<'static, N, 
     match method.info().kind {
         Kind::Dla => Box::new(Rebased::new(Dla::midpoint())),
         Kind::DlaTrapezoid | Kind::DlaAlpha => Box::new(Rebased::new(Dla::new(method.rule(), method.rule()))),
-        Kind::Dla4 => Box::new(Rebased::new(Composition::suzuki4(Dla::midpoint()))),
-        Kind::Dla6 => Box::new(Rebased::new(Composition::kahan_li6(Dla::midpoint()))),
-        Kind::Dla8 => Box::new(Rebased::new(Composition::fifteen8(Dla::midpoint()))),
-        Kind::Lobatto3 => Box::new(Rebased::new(Lobatto::<3>::new())),
-        Kind::Lobatto4 => Box::new(Rebased::new(Lobatto::<4>::new())),
-        Kind::Lobatto5 => Box::new(Rebased::new(Lobatto::<5>::new())),
-        Kind::Gauss4 => Box::new(Rebased::new(Gauss::new::<2>())),
-        Kind::Gauss6 => Box::new(Rebased::new(Gauss::new::<3>())),
-        Kind::Gauss8 => Box::new(Rebased::new(Gauss::new::<4>())),
-        Kind::Gauss10 => Box::new(Rebased::new(Gauss::new::<5>())),
-        Kind::Gauss12 => Box::new(Rebased::new(Gauss::new::<6>())),
-        Kind::Gauss14 => Box::new(Rebased::new(Gauss::new::<7>())),
-        Kind::Gauss16 => Box::new(Rebased::new(Gauss::new::<8>())),
+        Kind::Composed(order) => Box::new(Rebased::new(composed(order, Dla::midpoint()))),
+        Kind::Lobatto(3) => Box::new(Rebased::new(Lobatto::<3>::new())),
+        Kind::Lobatto(4) => Box::new(Rebased::new(Lobatto::<4>::new())),
+        Kind::Lobatto(_) => Box::new(Rebased::new(Lobatto::<5>::new())),
+        Kind::Gauss(stages) => Box::new(Rebased::new(gauss(stages))),
         Kind::GaussAdaptive => Box::new(Rebased::new(GaussAdaptive::new::<8>(method.tolerance()))),
         Kind::Taylor => Box::new(NoSeries),
-        Kind::Energy2 => Box::new(Rebased::new(Energy::new::<1>())),
-        Kind::Energy4 => Box::new(Rebased::new(Energy::new::<2>())),
-        Kind::Energy6 => Box::new(Rebased::new(Energy::new::<3>())),
-        Kind::Energy8 => Box::new(Rebased::new(Energy::new::<4>())),
+        Kind::Energy(stages) => Box::new(Rebased::new(energy(stages))),
         Kind::Gni => Box::new(Rebased::new(Gni::<N>::default())),
         Kind::Rk4 => Box::new(Rk4),
         Kind::Rk4Projected => Box::new(Rk4Projected),
         Kind::Rk4Reduced => Box::new(Rebased::new(Rk4Reduced)),
         Kind::ImplicitMidpoint => Box::new(Rebased::new(ImplicitMidpoint::default())),
         Kind::Dop853 => Box::new(Dop853::<N, M>::new(method.tolerance())),
+    }
+}
+
+/// The composition of that order, of those in the table of methods.
+pub(crate) fn composed<Step>(order: u32, step: Step) -> Composition<Step> {
+    match order {
+        4 => Composition::suzuki4(step),
+        6 => Composition::kahan_li6(step),
+        _ => Composition::fifteen8(step),
+    }
+}
+
+/// The collocation with so many stages, of those in the table of methods.
+fn gauss(stages: usize) -> Gauss {
+    match stages {
+        2 => Gauss::new::<2>(),
+        3 => Gauss::new::<3>(),
+        4 => Gauss::new::<4>(),
+        5 => Gauss::new::<5>(),
+        6 => Gauss::new::<6>(),
+        7 => Gauss::new::<7>(),
+        _ => Gauss::new::<8>(),
+    }
+}
+
+/// The energy-preserving method with so many stages, of those in the table of methods.
+pub(crate) fn energy(stages: usize) -> Energy {
+    match stages {
+        1 => Energy::new::<1>(),
+        2 => Energy::new::<2>(),
+        3 => Energy::new::<3>(),
+        _ => Energy::new::<4>(),
     }
 }
 
