@@ -78,7 +78,8 @@ fn lists_are_the_same_as_text_and_as_json() {
     let text = folder.done("list methods");
     assert_eq!(text.lines().count(), listed.as_array().unwrap().len());
     for (line, method) in text.lines().zip(listed.as_array().unwrap()) {
-        assert_eq!(keys(method), ["name", "order", "keeps", "summary", "reference"]);
+        let columns = ["name", "order", "keeps", "summary", "reference", "adaptive", "assemblies", "lanes", "tangent"];
+        assert_eq!(keys(method), columns);
         assert!(line.starts_with(method["name"].as_str().unwrap()), "{line}");
         assert!(line.contains(&format!("order {}", method["order"])), "{line}");
         for key in ["keeps", "summary", "reference"] {
@@ -88,6 +89,15 @@ fn lists_are_the_same_as_text_and_as_json() {
     let baselines = ["rk4", "rk4-projected", "rk4-reduced", "implicit-midpoint", "dop853"];
     for baseline in ["dla", "dla-trapezoid", "dla-alpha"].into_iter().chain(baselines) {
         assert!(methods().iter().any(|name| name == baseline), "{baseline}");
+    }
+
+    // What the pages say of trains is what the table says.
+    let of_trains = listed.as_array().unwrap().iter().filter(|method| method["assemblies"] == true);
+    let names: Vec<String> = of_trains.map(|method| format!("`{}`", method["name"].as_str().unwrap())).collect();
+    let (last, others) = names.split_last().unwrap();
+    let said = format!("{} and {last}", others.join(", "));
+    for page in [include_str!("../docs/scenes.md"), include_str!("../docs/guide/many-bodies.md")] {
+        assert!(page.split_whitespace().collect::<Vec<_>>().join(" ").contains(&said), "{said}");
     }
 
     let scenes = folder.json("list scenes --json");

@@ -58,7 +58,8 @@ fn every_method_comes_to_rest_in_a_well() {
     for (k, well) in WELLS.iter().enumerate() {
         let file = format!("well-{k}.toml");
         folder.write(&file, well.scene());
-        for method in program::methods() {
+        // Series are for wells without drag.
+        for method in program::methods().into_iter().filter(|method| method != "taylor") {
             let run = folder.json(&format!("run {file} --method {method} --json"));
             let number = |key: &str| run["final"][key].as_f64().unwrap_or_else(|| panic!("{file}, {method}: {run}"));
             let [x, y, heading] = ["x", "y", "heading"].map(number);

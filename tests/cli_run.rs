@@ -316,6 +316,51 @@ fn events_are_found_and_end_a_run() {
     folder.refused("run turnaround --until speed=fast", &["fast"]);
 }
 
+/// Of a method with steps of its own a tolerance is what each of them aims for, on the command line and in the scene.
+#[test]
+fn a_tolerance_is_that_of_own_steps() {
+    let folder = Folder::new();
+    for method in ["gauss-adaptive", "taylor", "dop853"] {
+        let end = |flags: &str| {
+            let run = folder.json(&format!("run bowl --method {method} --duration 20 --json {flags}"));
+            assert_eq!(run["steps"].as_u64(), Some(400), "{run}");
+            ["x", "y", "heading"].map(|key| run["final"][key].as_f64().unwrap())
+        };
+        let [exact, loose, set] = ["", "--tolerance 1e-5", "--set run.tolerance=1e-5"].map(end);
+        assert_eq!(loose.map(f64::to_bits), set.map(f64::to_bits), "{method}");
+        let off = (0..3).map(|i| (exact[i] - loose[i]).abs()).fold(0.0, f64::max);
+        // Four hundred steps of 1e-5 at most, which 20 s in the bowl enlarge by less than ten times; and no two methods agree to the bit.
+        assert!(off > 0.0 && off < 4e-2, "{method}: {off:e}");
+    }
+    folder.refused("run bowl --method taylor --tolerance 0", &["tolerance", "positive"]);
+    // What is no sleigh with such equations, another system and a train have no series.
+    for scene in ["egg-crate", "rolling-disk"] {
+        let refused = folder.line(&format!("run {scene} --method taylor"));
+        assert!(refused.code == 1 && refused.stderr.contains("series need a sleigh"), "{scene}: {refused:?}");
+    }
+    folder.write("train.toml", format!("{CIRCLE}{TRAILER}"));
+    for method in ["gauss-adaptive", "taylor"] {
+        let refused = folder.line(&format!("run train.toml --method {method} --tolerance 1e-6"));
+        assert!(refused.code == 1 && refused.stderr.contains("trains and other assemblies"), "{method}: {refused:?}");
+    }
+}
+
+/// A step is where the nodes lie, whose own steps are as the tolerance says; of all other methods both would choose the step.
+#[test]
+fn a_step_goes_with_the_tolerance_of_own_steps() {
+    let folder = Folder::new();
+    let steps = |flags: &str| folder.json(&format!("run bowl --duration 20 --step 2 --json {flags}"))["steps"].clone();
+    assert_eq!(steps("--method gauss-adaptive --tolerance 1e-8").as_u64(), Some(10));
+    folder.refused("run bowl --step 2 --tolerance 1e-8", &["--step and --tolerance", "dla"]);
+    // Systems of formulas have the same methods.
+    let end = |tolerance: &str| {
+        let run = folder
+            .json(&format!("run rolling-disk --method gauss-adaptive --duration 2 --json --tolerance {tolerance}"));
+        run["final"].to_string()
+    };
+    assert_ne!(end("1e-4"), end("1e-12"));
+}
+
 #[test]
 fn a_step_is_found_for_a_tolerance() {
     let folder = Folder::new();
@@ -354,6 +399,16 @@ turn_rate = 0.0
 "#;
 
 /// A circle of radius 1 m, at 1 rad/s: `x = sin t`, `y = 1 - cos t`.
+const TRAILER: &str = "[[effects]]
+kind = \"trailers\"
+count = 1
+mass = 1e-9
+inertia = 1e-9
+offset = 0.0
+hitch = 0.0
+bar = 0.5
+";
+
 const CIRCLE: &str = r#"
 [sleigh]
 mass = 1.0
@@ -487,8 +542,7 @@ fn events_and_sections_agree_on_angles() {
     assert_times(&times(&ended), &[0.5, 0.5 + TAU, 0.5 + 2.0 * TAU, turns], 1e-13);
     assert_eq!(run("circle.toml --until heading=1")["events"].as_array().unwrap().len(), 1);
     // Of the first blade of a train too: its trailer is light, and it goes round as without.
-    let trailer = "[[effects]]\nkind = \"trailers\"\ncount = 1\nmass = 1e-9\ninertia = 1e-9\noffset = 0.0\nhitch = 0.0\nbar = 0.5\n";
-    folder.write("train.toml", format!("{CIRCLE}{trailer}"));
+    folder.write("train.toml", format!("{CIRCLE}{TRAILER}"));
     let found = folder.json("run train.toml --method dla4 --event heading=1 --event unwrapped_heading=1 --json");
     let names: Vec<_> = found["events"].as_array().unwrap().iter().map(|event| event["event"].as_str()).collect();
     assert_eq!(names.iter().filter(|name| **name == Some("heading=1")).count(), 4, "{found}");

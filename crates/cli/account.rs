@@ -29,7 +29,8 @@ pub(crate) struct Made<const N: usize> {
 }
 
 impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
-    /// The run of a scene from its start, with the steps of the scene or the longest that meet a tolerance (m or rad).
+    /// The run of a scene from its start, with the steps of the scene or the longest that meet a tolerance (m or rad); a method that chooses
+    /// steps of its own is to aim for it already.
     ///
     /// # Errors
     /// [`CliError`] where the system has no such quantity, or no step meets the tolerance.
@@ -42,7 +43,7 @@ impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
     ) -> Result<Self, CliError> {
         let watched = reported.iter().chain(ending).map(|trigger| trigger.on(&system)).collect::<Result<_, _>>()?;
         let mut schedule = scene.schedule();
-        if let Some(tolerance) = tolerance {
+        if let Some(tolerance) = tolerance.filter(|_| !method.is_adaptive()) {
             // Of the method itself: parts would make any step look good enough.
             let whole = method.undivided();
             let found = recommend(&system, &whole, (q, v), scene.run().duration, tolerance);

@@ -154,8 +154,9 @@ pub(crate) struct RunArguments {
     /// Format of the output file, whatever its ending: csv, jsonl, npz, parquet [default for standard output: csv]
     #[arg(long, value_name = "FORMAT", requires = "out")]
     pub(crate) format: Option<Format>,
-    /// Choose the longest step whose error, of a place or an angle, stays below this, by trial runs
-    #[arg(long, value_name = "TOL", allow_negative_numbers = true, value_parser = number, conflicts_with = "step")]
+    /// Choose the longest step whose error, of a place or an angle, stays below this, by trial runs; of a method with steps of its own
+    /// the error of each that it aims for
+    #[arg(long, value_name = "TOL", allow_negative_numbers = true, value_parser = number)]
     pub(crate) tolerance: Option<f64>,
     /// Divide a step that fails, or that does not resolve the motion, into parts; every step then takes the time of three steps
     #[arg(long)]

@@ -53,7 +53,7 @@ pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
         Some(names) => names.iter().map(|name| name.trim()).collect(),
         None => METHODS.iter().map(|info| info.name).collect(),
     };
-    let methods = methods(&names, scene.run().alpha)?;
+    let methods = methods(&names, scene.run().alpha, scene.run().tolerance)?;
     if let Some((_, name)) = names.iter().enumerate().find(|(k, name)| names[..*k].contains(*name)) {
         let problem = format!("--methods: `{name}` is named twice; a comparison has one row for each method");
         return Err(CliError::Request(problem));
@@ -104,8 +104,8 @@ pub(crate) fn unless_interrupted(
     Err(CliError::Interrupted { made, resume })
 }
 
-pub(crate) fn methods(names: &[&str], alpha: Option<f64>) -> Result<Vec<Method>, CliError> {
-    Ok(names.iter().map(|name| Method::named(name, alpha)).collect::<Result<_, _>>()?)
+pub(crate) fn methods(names: &[&str], alpha: Option<f64>, tolerance: Option<f64>) -> Result<Vec<Method>, CliError> {
+    Ok(names.iter().map(|name| Method::of(name, alpha, tolerance)).collect::<Result<_, _>>()?)
 }
 
 /// Runs every method on the scene, until Ctrl-C.

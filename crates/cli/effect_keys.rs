@@ -18,7 +18,7 @@ struct Key {
 fn keys(kind: &str) -> Vec<Key> {
     let schema: Value = serde_json::from_str(scene::SCHEMA).unwrap_or_default();
     let definition = &schema["$defs"][kind];
-    let names = EFFECTS.iter().find(|(name, _, _)| *name == kind).map_or(&[][..], |(_, keys, _)| keys);
+    let names = EFFECTS.iter().find(|info| info.name == kind).map_or(&[][..], |info| info.keys);
     let key = |name: &&'static str| {
         let property = &definition["properties"][name];
         let said = property["description"].as_str().unwrap_or_default();
@@ -74,9 +74,9 @@ pub(crate) fn json(kind: &str) -> Value {
 /// For a person: the effects, and below each its keys.
 pub(crate) fn text() -> String {
     let mut text = String::new();
-    for (kind, _, meaning) in EFFECTS {
-        let _ = writeln!(text, "{kind}: {meaning}");
-        for key in keys(kind) {
+    for info in EFFECTS {
+        let _ = writeln!(text, "{}: {}", info.name, info.summary);
+        for key in keys(info.name) {
             let unit = key.unit.as_ref().map_or_else(String::new, |unit| format!("  {unit}"));
             let needed = if key.required { "required".to_owned() } else { default(&key.default) };
             let said = if key.meaning.is_empty() { String::new() } else { format!("; {}", key.meaning) };

@@ -31,8 +31,7 @@ struct Row {
 /// `noslip equilibria`: the steady motions of a scene, and how stable they are, of the flow and of a method.
 pub(crate) fn equilibria(arguments: &EquilibriaArguments) -> Result<(), CliError> {
     let scene = inspect::load_any(&arguments.scene, arguments.method.as_deref())?;
-    let run = scene.run();
-    let method = Method::named(&run.method, run.alpha)?;
+    let method = inspect::method(scene.run())?;
     if differentiable::<3, 1>(&method).is_none() {
         return Err(CliError::NotDifferentiated { method: method.info().name });
     }
@@ -49,7 +48,7 @@ pub(crate) fn equilibria(arguments: &EquilibriaArguments) -> Result<(), CliError
         let picture = chart_svg(&portrait(&scene, &found)).map_err(CliError::Report)?;
         write_whole(path, arguments.scene.force, |file| std::io::Write::write_all(file, picture.as_bytes()))?;
     }
-    let (step, rows) = (run.actual_step(), found.rows);
+    let (step, rows) = (scene.run().actual_step(), found.rows);
     if arguments.scene.json {
         let motions = rows.into_iter().map(|row| row.stability.object(row.motion.fields));
         terminal::print_json(&steady::object(scene.name(), &method, step, motions))

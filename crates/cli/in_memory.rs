@@ -1,8 +1,8 @@
 use crate::account::Account;
 use crate::called::Caller;
 use crate::error::CliError;
-use crate::substeps;
 use crate::trigger::Trigger;
+use crate::{inspect, substeps};
 use dla::{Node, Samples, State, Substeps, Trajectory, View};
 use harness::{Again, EVENT_SAMPLES, Method, Progress};
 use indicatif::ProgressBar;
@@ -68,8 +68,7 @@ impl From<CliError> for RunError {
 /// # Errors
 /// [`RunError`] where the request makes no sense for the scene, or no step meets the tolerance. A run that fails is a result.
 pub fn run(scene: &AnyScene, request: &RunRequest, caller: &Caller) -> Result<RunResult, RunError> {
-    let settings = scene.run();
-    let method = Method::named(&settings.method, settings.alpha).map_err(CliError::from)?;
+    let method = inspect::method(scene.run())?.aiming_for(request.tolerance).map_err(CliError::from)?;
     let method = if request.substep { method.with_substeps(Substeps::default()) } else { method };
     if matches!(scene, AnyScene::Sleigh(scene) if scene.has_trailers()) {
         let problem = "trains are run by the command line: their nodes are not kept in memory here";

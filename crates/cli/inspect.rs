@@ -3,8 +3,8 @@ use crate::error::CliError;
 use crate::files::write_whole;
 use crate::{effect_keys, table, terminal};
 use dla::Schedule;
-use harness::METHODS;
-use scene::{AnyScene, Overrides, Scene};
+use harness::{METHODS, Method};
+use scene::{AnyScene, Overrides, RunSettings, Scene};
 use serde_json::json;
 use std::io::Write;
 use std::path::Path;
@@ -55,6 +55,11 @@ pub(crate) fn schedule(scene: &Scene) -> Schedule {
     scene.schedule()
 }
 
+/// The method of a run, with its settings.
+pub(crate) fn method(run: &RunSettings) -> Result<Method, CliError> {
+    Ok(Method::of(&run.method, run.alpha, run.tolerance)?)
+}
+
 /// `noslip list`: what there is.
 pub(crate) fn list(arguments: &ListArguments) -> Result<(), CliError> {
     if arguments.json {
@@ -63,13 +68,15 @@ pub(crate) fn list(arguments: &ListArguments) -> Result<(), CliError> {
                 .iter()
                 .map(|m| {
                     json!({"name": m.name, "order": m.order, "keeps": m.keeps, "summary": m.summary,
-                           "reference": m.reference})
+                           "reference": m.reference, "adaptive": m.kind.is_adaptive(), "assemblies": m.assemblies,
+                           "lanes": m.lanes, "tangent": m.tangent.is_ok()})
                 })
                 .collect(),
             Listed::Effects => scene::EFFECTS
                 .iter()
-                .map(|(name, keys, meaning)| {
-                    json!({"name": name, "keys": keys, "summary": meaning, "properties": effect_keys::json(name)})
+                .map(|effect| {
+                    let scene::EffectInfo { name, keys, summary, .. } = effect;
+                    json!({"name": name, "keys": keys, "summary": summary, "properties": effect_keys::json(name)})
                 })
                 .collect(),
             Listed::Cases => crate::stability::cases()

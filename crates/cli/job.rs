@@ -17,7 +17,7 @@ pub(crate) fn everything(folder: &Path, overwrite: bool) -> Result<(), CliError>
     let (interrupt, mut interrupted) = (Interrupt::listen(), None);
     for bundled in scene::bundled() {
         let scene = AnyScene::load(bundled.name, &method_names())?;
-        let methods = methods(&method_names(), scene.run().alpha)?;
+        let methods = methods(&method_names(), scene.run().alpha, scene.run().tolerance)?;
         let comparison = compare_scene(&scene, &methods, &mut Saves::default(), &interrupt)?;
         comparison.print(&scene)?;
         terminal::print("\n")?;

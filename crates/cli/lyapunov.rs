@@ -26,7 +26,7 @@ pub(crate) fn lyapunov(arguments: &LyapunovArguments) -> Result<(), CliError> {
     let duration = shared.duration.or(Some(usual));
     let from = (shared.scene.as_str(), &shared.set);
     let scene = inspect::load_any_with(from, Some(&arguments.method), shared.step, duration, shared.alpha)?;
-    let method = Method::named(&scene.run().method, scene.run().alpha)?;
+    let method = inspect::method(scene.run())?;
     has_tangents(&method).map_err(|reason| CliError::Request(format!("--method {}: {reason}", arguments.method)))?;
     check_settle(arguments, &scene)?;
     let file = arguments.out.as_deref().map(|path| ChartFile::of(path, shared.force)).transpose()?;

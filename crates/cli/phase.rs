@@ -31,7 +31,7 @@ struct Measured {
 /// `noslip phase`: what the tracer's loops turn the blade by.
 pub(crate) fn phase(arguments: &PhaseArguments) -> Result<(), CliError> {
     let scene = inspect::load(&arguments.scene, arguments.method.as_deref())?;
-    let method = Method::named(&scene.run.method, scene.run.alpha)?;
+    let method = inspect::method(&scene.run)?;
     let path = scene.effects.iter().find_map(|effect| match effect {
         SceneEffect::Tracer { path } => Some(path),
         _ => None,

@@ -93,7 +93,7 @@ pub(crate) fn made(
         Some(names) => names.iter().map(|name| name.trim()).collect(),
         None => vec![scene.run().method.as_str()],
     };
-    methods(&names, scene.run().alpha)?;
+    methods(&names, scene.run().alpha, scene.run().tolerance)?;
     let request = RunRequest { every: scene.run().steps().div_ceil(NODES), ..RunRequest::default() };
     names.iter().map(|method| run(scene, method, &request, failures)).collect()
 }

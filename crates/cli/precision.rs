@@ -61,7 +61,7 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
         Some(names) => names.iter().map(|name| name.trim()).collect(),
         None => method_names(),
     };
-    let methods = methods(&names, scene.run().alpha)?;
+    let methods = methods(&names, scene.run().alpha, scene.run().tolerance)?;
     let mut others = Vec::new();
     for path in &arguments.with {
         let (curves, warnings) = points_file::read(path, scene.name())?;

@@ -41,7 +41,8 @@ fn pairs(
         // All the rest: every number of the scene, with every digit.
         ("contents", Checkpoint::fingerprint(&format!("{contents:?}"))),
     ];
-    run.into_iter().chain(parts)
+    let tolerance = method.is_adaptive().then(|| ("tolerance", method.tolerance().to_string()));
+    run.into_iter().chain(parts).chain(tolerance)
 }
 
 /// Refuses, before the work begins, a checkpoint that could not be written; one that is resumed may be overwritten.

@@ -17,9 +17,13 @@ use std::cell::RefCell;
 /// `noslip run`: one trajectory, as far as Ctrl-C lets it come.
 pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let scene = inspect::load_any(&arguments.scene, arguments.method.as_deref())?;
-    let settings = scene.run();
-    let method = Method::named(&settings.method, settings.alpha)?;
+    let method = inspect::method(scene.run())?.aiming_for(arguments.tolerance)?;
     let method = if arguments.substep { method.with_substeps(Substeps::default()) } else { method };
+    if arguments.tolerance.is_some() && arguments.scene.step.is_some() && !method.is_adaptive() {
+        let name = method.info().name;
+        let problem = format!("--step and --tolerance both choose the step of {name}: give one of them");
+        return Err(CliError::Request(problem));
+    }
     let out = asked(arguments)?;
     if arguments.scene.alpha.is_some() && method.info().kind != Kind::DlaAlpha {
         let name = method.info().name;

@@ -26,7 +26,7 @@ pub(crate) fn section(arguments: &SectionArguments) -> Result<(), CliError> {
     let duration = shared.duration.or(Some(DURATION));
     let from = (shared.scene.as_str(), &shared.set);
     let scene = inspect::load_any_with(from, Some(&arguments.method), shared.step, duration, shared.alpha)?;
-    let method = Method::named(&scene.run().method, scene.run().alpha)?;
+    let method = inspect::method(scene.run())?;
     if arguments.axes.as_ref().is_some_and(|axes| axes.len() != 2 || axes[0].trim() == axes[1].trim()) {
         let problem = "--axes: accepted are two different quantities, as in heading,speed";
         return Err(CliError::Request(problem.to_owned()));

@@ -29,7 +29,7 @@ fn worst(tenths: &[f64; 10]) -> f64 {
 #[test]
 fn it_holds_for_long() {
     let case = named("balanced sleigh");
-    for info in METHODS {
+    for info in METHODS.iter().filter(|info| refuses(info, case.facts()).is_none()) {
         let tenths = slip(case.as_ref(), info.name, &case.start(), 0.05, 100_000);
         println!("{:<14} 10^5 steps: slip {:.1e}", info.name, worst(&tenths));
         if info.keeps.contains("constraint") {

@@ -64,7 +64,7 @@ fn every_method_has_its_order() {
         for (info, seen) in METHODS.iter().zip(&mut seen) {
             // The error of an unsymmetric method has every power of the step, and one of order 8 is at its rounding before
             // the lowest is alone: its order shows on gentler motions only, as those above eight do.
-            let not_for_it = info.name == "dop853" || info.name == "gni" && facts.momentum_is_not_mass_times_velocity;
+            let not_for_it = info.kind.is_adaptive() || info.name == "gni" && facts.momentum_is_not_mass_times_velocity;
             if info.order > facts.highest_order || refuses(info, facts).is_some() || not_for_it {
                 continue;
             }
@@ -85,7 +85,7 @@ fn every_method_has_its_order() {
         }
     }
     for (info, [rows, forced, timed]) in METHODS.iter().zip(seen) {
-        let few = info.order > 8 || info.name == "dop853";
+        let few = info.order > 8 || info.kind.is_adaptive();
         let energy = info.name.starts_with("energy");
         assert!(few || (rows >= 5 && forced >= 1 && (timed >= 1 || energy)), "{}: {rows} rows", info.name);
     }

@@ -66,10 +66,12 @@ impl Members<'_> {
     }
 
     fn lane_method(&self) -> Option<LaneMethod> {
-        match self.method.info().kind {
+        let info = self.method.info();
+        match info.kind {
+            _ if !info.lanes => None,
             Kind::Dla => Some(LaneMethod::Closed),
-            Kind::Gauss8 => Some(LaneMethod::Gauss8),
-            Kind::Gauss16 => Some(LaneMethod::Gauss16),
+            Kind::Gauss(4) => Some(LaneMethod::Gauss8),
+            Kind::Gauss(8) => Some(LaneMethod::Gauss16),
             _ => None,
         }
     }

@@ -23,7 +23,6 @@ use crate::output::metadata_of;
 use crate::{compare, inspect, progress, terminal};
 use about::About;
 use dla::Checkpoint;
-use harness::Method;
 use harness::analysis::has_tangents;
 use harness::ensemble::in_order;
 use indicatif::ProgressBar;
@@ -39,7 +38,7 @@ use totals::Totals;
 pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
     let names = inspect::method_names();
     let sweep = Sweep::load(&arguments.sweep, &names)?;
-    let method = Method::named(&sweep.scene.run.method, sweep.scene.run.alpha)?;
+    let method = inspect::method(&sweep.scene.run)?;
     if sweep.exponent {
         has_tangents(&method).map_err(|reason| CliError::Request(format!("output.exponent: {reason}")))?;
     }

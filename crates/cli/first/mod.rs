@@ -42,7 +42,7 @@ pub(crate) fn first(arguments: &JobArguments) -> Result<(), CliError> {
     }
     let names = method_names();
     let scene = AnyScene::load(SCENE, &names)?.with_overrides(None, Some(STEP), Some(DURATION), None, &names)?;
-    let methods = methods(&METHODS, None)?;
+    let methods = methods(&METHODS, None, None)?;
     let interrupt = Interrupt::listen();
     let Comparison { rows, mut report, interrupted } =
         compare_scene(&scene, &methods, &mut Saves::default(), &interrupt)?;

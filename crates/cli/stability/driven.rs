@@ -164,7 +164,9 @@ pub(super) fn jumps(lab: &mut Lab) -> Result<(), CliError> {
         let misses =
             [1.0, 2.5].map(|jump| run.nodes.iter().map(|node| (node.t - jump).abs()).fold(f64::INFINITY, f64::min));
         let late = measured("a jump from the nearest node (s)", misses[0].max(misses[1]), 8.0 * f64::EPSILON * 2.5);
-        [follows(run, [PLACE[0], SPEED], exact, bar), late]
+        // A run that was refused has no nodes at all.
+        let late = run.failure.is_none().then_some(late);
+        [follows(run, [PLACE[0], SPEED], exact, bar)].into_iter().chain(late)
     })
 }
 

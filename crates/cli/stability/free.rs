@@ -128,7 +128,7 @@ fn keeps_small_digits(method: Kind) -> bool {
 /// What leads along the line by `(1 - h c u/2)/(1 + h c u/2)`, or a composition of it: it has no solution where that would
 /// change the sign of the spin. A higher order may be wrong by more than the spin.
 fn leads_by_cayley(method: Kind) -> bool {
-    matches!(method, Kind::Dla | Kind::DlaTrapezoid | Kind::DlaAlpha | Kind::Dla4 | Kind::Dla6 | Kind::Dla8)
+    matches!(method, Kind::Dla | Kind::DlaTrapezoid | Kind::DlaAlpha | Kind::Composed(_))
 }
 
 pub(super) const LONG_STEP: Case = Case {

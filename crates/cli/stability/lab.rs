@@ -1,7 +1,7 @@
 use crate::error::CliError;
 use dla::{Schedule, State};
 use harness::stability::{Claim, Finding, Recorded, Recorder, Trial, VALUES, check, claims};
-use harness::{Kind, Method, integrate_from};
+use harness::{Method, integrate_from};
 use scene::{Built, RunSettings, Scene, SceneEffect, Visitor};
 use sleigh::{Exact, Sleigh, SleighError, SleighState};
 
@@ -72,7 +72,13 @@ impl Setup {
             title: String::new(),
             sleigh: self.sleigh()?,
             start: self.start,
-            run: RunSettings { method: String::new(), alpha: None, step: self.step, duration: self.duration() },
+            run: RunSettings {
+                method: String::new(),
+                alpha: None,
+                tolerance: None,
+                step: self.step,
+                duration: self.duration(),
+            },
             effects: self.effects.clone(),
         })
     }
@@ -95,13 +101,19 @@ impl Lab {
         self.method.info().order
     }
 
+    /// Whether its error is a tolerance instead of an order.
+    pub(super) fn is_adaptive(&self) -> bool {
+        self.method.is_adaptive()
+    }
+
     /// What a relative error may be: of the method over `length` time constants, with steps of `part` of one, and of
     /// rounding over so many steps.
     pub(super) fn accuracy(&self, part: f64, length: f64, steps: u64) -> f64 {
-        // The adaptive method has no error of its step, but its tolerance in each.
-        let own = match self.method.info().kind {
-            Kind::Dop853 => Method::TOLERANCE * steps as f64,
-            _ => check::truncation(self.order(), part, length),
+        // An adaptive method has no error of its step, but its tolerance in each.
+        let own = if self.is_adaptive() {
+            Method::TOLERANCE * steps as f64
+        } else {
+            check::truncation(self.order(), part, length)
         };
         own + check::rounding(steps as usize, 1.0)
     }

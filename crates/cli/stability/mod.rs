@@ -16,7 +16,6 @@ use crate::error::CliError;
 use crate::inspect::method_names;
 use crate::interrupt::Interrupt;
 use crate::{progress, table, terminal};
-use harness::Kind;
 use harness::stability::{Case, Outcome, Verdict, claims, judge};
 use lab::Lab;
 use serde_json::{Value, json};
@@ -102,7 +101,7 @@ pub(crate) fn stability(arguments: &StabilityArguments) -> Result<(), CliError> 
         Some(names) => names.iter().map(|name| name.trim()).collect(),
         None => method_names(),
     };
-    let methods = methods(&names, None)?;
+    let methods = methods(&names, None, None)?;
     let pairs: Vec<_> = chosen
         .iter()
         .flat_map(|(case, try_it)| methods.iter().map(move |method| (case, *try_it, *method)))
@@ -211,11 +210,4 @@ fn text(rows: &[Row]) -> String {
     let [pass, refused, failed] = [Outcome::Pass, Outcome::Refused, Outcome::Failed].map(count);
     let _ = writeln!(text, "{pass} pass, {refused} refused, {failed} failed");
     text
-}
-
-impl Lab {
-    /// Whether its error is a tolerance instead of an order.
-    fn is_adaptive(&self) -> bool {
-        self.method.info().kind == Kind::Dop853
-    }
 }

@@ -12,7 +12,7 @@ use sleigh::{Exact, Sleigh, SleighState};
 use std::f64::consts::PI;
 
 /// The methods that make these cases.
-pub(super) const METHODS: [Kind; 5] = [Kind::Dla, Kind::Lobatto3, Kind::Gauss8, Kind::Energy2, Kind::Rk4Reduced];
+pub(super) const METHODS: [Kind; 5] = [Kind::Dla, Kind::Lobatto(3), Kind::Gauss(4), Kind::Energy(1), Kind::Rk4Reduced];
 
 /// The systems with two constraints, of one type, so that every method is compiled once for all of them.
 #[derive(Debug, Clone, Copy)]
@@ -126,9 +126,9 @@ fn stepper<const N: usize, const M: usize>(method: &Method) -> Option<Stepper<'s
     }
     Some(match kind {
         Kind::Dla => Box::new(Dla::midpoint()),
-        Kind::Lobatto3 => Box::new(Lobatto::<3>::new()),
-        Kind::Gauss8 => Box::new(Gauss::new::<4>()),
-        Kind::Energy2 => Box::new(Energy::new::<1>()),
+        Kind::Lobatto(3) => Box::new(Lobatto::<3>::new()),
+        Kind::Gauss(4) => Box::new(Gauss::new::<4>()),
+        Kind::Energy(1) => Box::new(Energy::new::<1>()),
         Kind::Rk4Reduced => Box::new(Rk4Reduced),
         _ => return None,
     })

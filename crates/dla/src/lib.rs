@@ -69,7 +69,7 @@ pub use dependent::{Dependency, Dependent};
 pub use discretisation::{Discretisation, EndMomenta, HandMade, RoundedStep, Rules};
 pub use divide::{Substeps, Undivided};
 pub use drive::{Observer, Part, RunError, Schedule, View, drive, drive_part};
-pub use energy::{Energy, Gradient};
+pub use energy::Energy;
 pub use ensemble::{Each, Ensemble, GaussEnsemble, LaneState, Same, Systems};
 pub use events::{Close, Crossing, Direction, Event, Watch, Zero, close_crossings, zeros};
 pub use gauss::{Collocation, Gauss, GaussAdaptive, Outcome};

@@ -12,6 +12,12 @@ pub trait OwnMethods<const N: usize, const M: usize> {
     fn closed_map<'a>(&'a self, _t: f64, general: Stepper<'a, N, M>) -> Stepper<'a, N, M> {
         general
     }
+
+    /// The series of the motion that holds at the time `t` (s), with steps of its own as the tolerance asks for; none where the system
+    /// has none.
+    fn series(&self, _t: f64, _tolerance: f64) -> Option<Stepper<'_, N, M>> {
+        None
+    }
 }
 
 /// None.

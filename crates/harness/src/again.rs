@@ -1,5 +1,5 @@
+use crate::Method;
 use crate::substeps::{Report, substepped_part};
-use crate::{Dop853, Kind, Method};
 use dla::{Mechanics, OneStep, OwnMethods, OwnStep, Schedule, State, StepError, StepReport};
 
 /// A method by its name, as a map of one step: every step is a run of its own, without the memory of other steps.
@@ -36,7 +36,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Again<'_, N, M> {
         Ok(report.0)
     }
 
-    /// Only `dop853` has any.
+    /// Adaptive methods have some.
     fn own_steps(
         &self,
         system: &dyn Mechanics<N, M>,
@@ -45,9 +45,10 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Again<'_, N, M> {
         memory: &mut Vec<f64>,
         see: &mut OwnStep<'_, N>,
     ) -> Result<(), StepError> {
-        match self.method.info().kind {
-            Kind::Dop853 => Dop853::<N, M>::new(self.method.tolerance()).own_steps(system, step, state, memory, see),
-            _ => Ok(()),
+        if !self.method.is_adaptive() {
+            return Ok(());
         }
+        let (t, h) = step;
+        self.method.stepper_of(self.own, t + 0.5 * h).own_steps(system, step, state, memory, see)
     }
 }

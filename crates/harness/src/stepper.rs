@@ -1,7 +1,10 @@
 //! The methods by name, as objects: compiled here for the shapes of the systems of scenes, and nowhere else for these.
 
 use crate::{Dop853, ImplicitMidpoint, Kind, Method, Rk4, Rk4Projected, Rk4Reduced};
-use dla::{Composition, Dla, Energy, Gauss, Gni, Lobatto, OwnMethods, Rebased, Stepper};
+use dla::{
+    Composition, Dla, Energy, Gauss, GaussAdaptive, Gni, Lobatto, Mechanics, OneStep, OwnMethods, Rebased, State,
+    StepError, StepReport, Stepper,
+};
 use std::any::Any;
 
 /// Whether the methods for systems of this shape are compiled here.
@@ -11,7 +14,7 @@ const fn is_compiled(coordinates: usize, constraints: usize) -> bool {
 
 impl Method {
     /// The method, to make steps with, for a system that brings integrators of its own: the closed form that it has of `dla` takes the
-    /// place of the general one, also in compositions. It holds for the smooth piece of a run at the time `t` (s).
+    /// place of the general one, also in compositions, and `taylor` is its series. It holds for the smooth piece of a run at the time `t` (s).
     #[must_use]
     pub fn stepper_of<'a, const N: usize, const M: usize>(
         &self,
@@ -22,9 +25,8 @@ impl Method {
         match self.info().kind {
             Kind::Dla => midpoint(),
             Kind::DlaAlpha if self.alpha().is_symmetric() => midpoint(),
-            Kind::Dla4 => Box::new(Composition::suzuki4(midpoint())),
-            Kind::Dla6 => Box::new(Composition::kahan_li6(midpoint())),
-            Kind::Dla8 => Box::new(Composition::fifteen8(midpoint())),
+            Kind::Composed(order) => Box::new(composed(order, midpoint())),
+            Kind::Taylor => own.series(t, self.tolerance()).unwrap_or_else(|| self.stepper()),
             _ => self.stepper(),
         }
     }
@@ -104,28 +106,69 @@ fn make<const N: usize, const M: usize>(method: &Method) -> Stepper<'static, N, 
     match method.info().kind {
         Kind::Dla => Box::new(Rebased::new(Dla::midpoint())),
         Kind::DlaTrapezoid | Kind::DlaAlpha => Box::new(Rebased::new(Dla::new(method.rule(), method.rule()))),
-        Kind::Dla4 => Box::new(Rebased::new(Composition::suzuki4(Dla::midpoint()))),
-        Kind::Dla6 => Box::new(Rebased::new(Composition::kahan_li6(Dla::midpoint()))),
-        Kind::Dla8 => Box::new(Rebased::new(Composition::fifteen8(Dla::midpoint()))),
-        Kind::Lobatto3 => Box::new(Rebased::new(Lobatto::<3>::new())),
-        Kind::Lobatto4 => Box::new(Rebased::new(Lobatto::<4>::new())),
-        Kind::Lobatto5 => Box::new(Rebased::new(Lobatto::<5>::new())),
-        Kind::Gauss4 => Box::new(Rebased::new(Gauss::new::<2>())),
-        Kind::Gauss6 => Box::new(Rebased::new(Gauss::new::<3>())),
-        Kind::Gauss8 => Box::new(Rebased::new(Gauss::new::<4>())),
-        Kind::Gauss10 => Box::new(Rebased::new(Gauss::new::<5>())),
-        Kind::Gauss12 => Box::new(Rebased::new(Gauss::new::<6>())),
-        Kind::Gauss14 => Box::new(Rebased::new(Gauss::new::<7>())),
-        Kind::Gauss16 => Box::new(Rebased::new(Gauss::new::<8>())),
-        Kind::Energy2 => Box::new(Rebased::new(Energy::new::<1>())),
-        Kind::Energy4 => Box::new(Rebased::new(Energy::new::<2>())),
-        Kind::Energy6 => Box::new(Rebased::new(Energy::new::<3>())),
-        Kind::Energy8 => Box::new(Rebased::new(Energy::new::<4>())),
+        Kind::Composed(order) => Box::new(Rebased::new(composed(order, Dla::midpoint()))),
+        Kind::Lobatto(3) => Box::new(Rebased::new(Lobatto::<3>::new())),
+        Kind::Lobatto(4) => Box::new(Rebased::new(Lobatto::<4>::new())),
+        Kind::Lobatto(_) => Box::new(Rebased::new(Lobatto::<5>::new())),
+        Kind::Gauss(stages) => Box::new(Rebased::new(gauss(stages))),
+        Kind::GaussAdaptive => Box::new(Rebased::new(GaussAdaptive::new::<8>(method.tolerance()))),
+        Kind::Taylor => Box::new(NoSeries),
+        Kind::Energy(stages) => Box::new(Rebased::new(energy(stages))),
         Kind::Gni => Box::new(Rebased::new(Gni::<N>::default())),
         Kind::Rk4 => Box::new(Rk4),
         Kind::Rk4Projected => Box::new(Rk4Projected),
         Kind::Rk4Reduced => Box::new(Rebased::new(Rk4Reduced)),
         Kind::ImplicitMidpoint => Box::new(Rebased::new(ImplicitMidpoint::default())),
         Kind::Dop853 => Box::new(Dop853::<N, M>::new(method.tolerance())),
+    }
+}
+
+/// The composition of that order, of those in the table of methods.
+pub(crate) fn composed<Step>(order: u32, step: Step) -> Composition<Step> {
+    match order {
+        4 => Composition::suzuki4(step),
+        6 => Composition::kahan_li6(step),
+        _ => Composition::fifteen8(step),
+    }
+}
+
+/// The collocation with so many stages, of those in the table of methods.
+fn gauss(stages: usize) -> Gauss {
+    match stages {
+        2 => Gauss::new::<2>(),
+        3 => Gauss::new::<3>(),
+        4 => Gauss::new::<4>(),
+        5 => Gauss::new::<5>(),
+        6 => Gauss::new::<6>(),
+        7 => Gauss::new::<7>(),
+        _ => Gauss::new::<8>(),
+    }
+}
+
+/// The energy-preserving method with so many stages, of those in the table of methods.
+pub(crate) fn energy(stages: usize) -> Energy {
+    match stages {
+        1 => Energy::new::<1>(),
+        2 => Energy::new::<2>(),
+        3 => Energy::new::<3>(),
+        _ => Energy::new::<4>(),
+    }
+}
+
+/// The method `taylor` on a system that brings no series.
+struct NoSeries;
+
+impl<const N: usize, const M: usize> OneStep<N, M> for NoSeries {
+    fn step(
+        &mut self,
+        _system: &dyn Mechanics<N, M>,
+        _t: f64,
+        _h: f64,
+        _state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
+        Err(StepError::Unsupported {
+            reason: "series need a sleigh whose equations are of second degree in axes that turn with it: free, in a round well, under a \
+                     constant thrust or torque",
+        })
     }
 }

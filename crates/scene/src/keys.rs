@@ -11,18 +11,20 @@ pub(crate) const SPEED: Quantity = Quantity::finite("speed", "m/s");
 pub(crate) const TURN_RATE: Quantity = Quantity::finite("turn_rate", "rad/s");
 
 pub(crate) const ALPHA: Quantity = Quantity::fraction("alpha");
+pub(crate) const TOLERANCE: Quantity = Quantity::positive("tolerance", "");
 pub(crate) const STEP: Quantity = Quantity::positive("step", "s");
 pub(crate) const DURATION: Quantity = Quantity::positive("duration", "s");
 
 /// The keys that hold a number: no two tables share one.
-const QUANTITIES: &[Quantity] = &[MASS, INERTIA, OFFSET, X, Y, HEADING, SPEED, TURN_RATE, ALPHA, STEP, DURATION];
+const QUANTITIES: &[Quantity] =
+    &[MASS, INERTIA, OFFSET, X, Y, HEADING, SPEED, TURN_RATE, ALPHA, TOLERANCE, STEP, DURATION];
 
 /// The tables of a scene, by path, and the keys of each; the path of the document itself is empty.
 pub(crate) const TABLES: &[(&str, &[&str])] = &[
     ("", &["title", "sleigh", "start", "run", "effects"]),
     ("sleigh", &[MASS.key, INERTIA.key, OFFSET.key]),
     ("start", &[X.key, Y.key, HEADING.key, SPEED.key, TURN_RATE.key]),
-    ("run", &["method", ALPHA.key, STEP.key, DURATION.key]),
+    ("run", &["method", ALPHA.key, TOLERANCE.key, STEP.key, DURATION.key]),
 ];
 
 /// What the value of the key of that path may be; `None` for tables and for what is no key of a scene.

@@ -47,6 +47,7 @@ impl Quantity {
     pub(crate) fn accepted(&self) -> String {
         match self.range {
             Range::Finite => format!("a finite number, in {}", self.unit),
+            Range::Positive if self.unit.is_empty() => "a finite number greater than 0".to_owned(),
             Range::Positive => format!("a finite number greater than 0, in {}", self.unit),
             Range::NotNegative => format!("a finite number, 0 or greater, in {}", self.unit),
             Range::Fraction => "a number from 0 to 1".to_owned(),

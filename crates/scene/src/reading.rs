@@ -1,6 +1,6 @@
 //! The values of effects: points, lists, functions of time, paths.
 
-use crate::effect::{PathSpec, Shape, TimeSpec};
+use crate::effects::{PathSpec, Shape, TimeSpec};
 use crate::error::SceneError;
 use crate::fault::Fault;
 use crate::quantity::Quantity;

@@ -2,7 +2,7 @@ use crate::error::SceneError;
 use crate::fault::Fault;
 use crate::finding::Excerpt;
 use crate::keys;
-use crate::keys::{ALPHA, DURATION, STEP};
+use crate::keys::{ALPHA, DURATION, STEP, TOLERANCE};
 use crate::suggest;
 use crate::table::Table;
 
@@ -60,6 +60,9 @@ pub struct RunSettings {
     /// Where in the step the method `dla-alpha` evaluates the Lagrangian, from 0 to 1; other methods do not read it.
     /// May be left out.
     pub alpha: Option<f64>,
+    /// The error of a step that a method aims for which chooses steps of its own; positive. Other methods do not read it. May be left
+    /// out.
+    pub tolerance: Option<f64>,
     /// The largest step to take, in s; positive.
     pub step: f64,
     /// Length of the run, in s; positive and no less than the step.
@@ -109,6 +112,7 @@ impl RunSettings {
         let mut settings = Self {
             method: table.text("method", &accepted)?.unwrap_or(DEFAULT_METHOD).to_owned(),
             alpha: table.number(&ALPHA)?,
+            tolerance: table.number(&TOLERANCE)?,
             step: table.required(&STEP)?,
             duration: table.required(&DURATION)?,
         };
@@ -135,6 +139,7 @@ impl RunSettings {
         STEP.check(self.step)?;
         DURATION.check(self.duration)?;
         self.alpha.map_or(Ok(()), |alpha| ALPHA.check(alpha))?;
+        self.tolerance.map_or(Ok(()), |tolerance| TOLERANCE.check(tolerance))?;
         let Self { step, duration, .. } = *self;
         let blames_step = culprit == STEP.key;
         let too_many = duration / step > MAX_STEPS as f64;

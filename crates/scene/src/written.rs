@@ -33,13 +33,15 @@ pub(crate) struct RunTable<'s> {
     method: &'s str,
     #[serde(skip_serializing_if = "Option::is_none")]
     alpha: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tolerance: Option<f64>,
     step: f64,
     duration: f64,
 }
 
 impl<'s> RunTable<'s> {
     pub(crate) fn of(run: &'s RunSettings) -> Self {
-        Self { method: &run.method, alpha: run.alpha, step: run.step, duration: run.duration }
+        Self { method: &run.method, alpha: run.alpha, tolerance: run.tolerance, step: run.step, duration: run.duration }
     }
 }
 

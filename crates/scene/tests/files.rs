@@ -36,9 +36,13 @@ fn bundled_scenes_are_what_their_names_say() {
 fn the_template_is_a_scene_with_every_key() {
     let scene = Scene::parse(Scene::template(), "mine.toml", METHODS).unwrap();
     assert_eq!((scene.name.as_str(), scene.title.as_str()), ("mine", "My scene"));
-    let text = Scene::template().replace("# alpha", "alpha").replace("\"dla\"      #", "\"dla-alpha\" #");
+    let text = Scene::template()
+        .replace("# alpha", "alpha")
+        .replace("# tolerance", "tolerance")
+        .replace("\"dla\"      #", "\"dla-alpha\" #");
     let scene = Scene::parse(&text, "mine.toml", METHODS).unwrap();
     assert_eq!((scene.run.method.as_str(), scene.run.alpha), ("dla-alpha", Some(0.5)));
+    assert_eq!(scene.run.tolerance, Some(1e-12));
 }
 
 #[test]
@@ -49,7 +53,7 @@ fn what_may_be_left_out_may_be_left_out() {
     assert_eq!((scene.name.as_str(), scene.title.as_str()), ("short.scene", "short.scene"));
     let sleigh = sleigh::Sleigh::new(2.0, 16.0, 0.0).unwrap();
     let start = sleigh::SleighState { speed: 1.0, turn_rate: -10.0, ..Default::default() };
-    let run = RunSettings { method: "dla".to_owned(), alpha: None, step: 1.0, duration: 7.0 };
+    let run = RunSettings { method: "dla".to_owned(), alpha: None, tolerance: None, step: 1.0, duration: 7.0 };
     assert_eq!((scene.sleigh, scene.start, scene.run), (sleigh, start, run));
 }
 

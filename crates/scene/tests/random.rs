@@ -98,6 +98,7 @@ prop_compose! {
         start in prop::array::uniform5(finite()),
         method in prop::sample::select(METHODS),
         alpha in prop::option::of(0.0..=1.0),
+        tolerance in prop::option::of(positive()),
         (step, ratio) in (positive(), 1.0_f64..1e11),
         mut effects in effects(),
     ) -> Scene {
@@ -110,7 +111,13 @@ prop_compose! {
             title,
             sleigh: Sleigh::new(mass, inertia, offset).unwrap(),
             start: SleighState { x, y, heading, speed, turn_rate },
-            run: RunSettings { method: method.to_owned(), alpha, step, duration: f64::max(step * ratio, step) },
+            run: RunSettings {
+                method: method.to_owned(),
+                alpha,
+                tolerance,
+                step,
+                duration: f64::max(step * ratio, step),
+            },
             effects,
         }
     }

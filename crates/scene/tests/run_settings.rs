@@ -8,7 +8,7 @@ use scene::{MAX_STEPS, RunSettings, Scene, SceneError};
 const METHODS: &[&str] = &["dla", "dla-alpha", "rk4"];
 
 fn run(step: f64, duration: f64) -> RunSettings {
-    RunSettings { method: "dla".to_owned(), alpha: None, step, duration }
+    RunSettings { method: "dla".to_owned(), alpha: None, tolerance: None, step, duration }
 }
 
 #[test]
@@ -62,7 +62,8 @@ fn overrides_replace_what_they_name() {
     let scene = Scene::load("circle", METHODS).unwrap();
     assert_eq!(overridden((None, None, None, None)).unwrap(), scene);
     let changed = overridden((Some("dla-alpha"), Some(0.5), Some(2.0), Some(0.25))).unwrap();
-    let run = RunSettings { method: "dla-alpha".to_owned(), alpha: Some(0.25), step: 0.5, duration: 2.0 };
+    let run =
+        RunSettings { method: "dla-alpha".to_owned(), alpha: Some(0.25), tolerance: None, step: 0.5, duration: 2.0 };
     assert_eq!(changed, Scene { run, ..scene });
 }
 

@@ -1,9 +1,11 @@
 //! The power of what drives or brakes a scene, by name.
 
 use crate::AnyEffect;
+use dla::Stepper;
 use lagrangian::{Effect, System, With, force_power, lagrangian_power};
 use sleigh::closed::ClosedForm;
-use sleigh::{Flywheel, Guided, Sleigh, SleighBody};
+use sleigh::series::{InOwnAxes, OwnPush, PushInOwnAxes};
+use sleigh::{Flywheel, Guided, Sleigh, SleighBody, Taylor};
 
 /// The power of one effect at one node.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,7 +17,7 @@ pub struct EffectPower {
 }
 
 /// The list of effects of a scene, none or some.
-pub trait SceneEffects<B, const N: usize>: Effect<B, N> {
+pub trait SceneEffects<B, const N: usize>: Effect<B, N> + PushInOwnAxes<B> {
     /// The power of each effect that has any.
     fn powers(&self, body: &B, t: f64, q: &[f64; N], v: &[f64; N]) -> Vec<EffectPower>;
 }
@@ -64,9 +66,18 @@ impl<B: SleighBody, const N: usize> SceneEffects<B, N> for Vec<AnyEffect> {
 pub trait SceneBody<const N: usize, const M: usize>: SleighBody + ClosedForm<N, M> {
     /// The power of what drives the body's own coordinates and constraints; `lambda` are the multipliers there.
     fn powers(&self, t: f64, q: &[f64; N], v: &[f64; N], lambda: &[f64; M]) -> Vec<EffectPower>;
+
+    /// The series of the body under this force, with this tolerance; none where it has none.
+    fn series(&self, _push: OwnPush, _tolerance: f64) -> Option<Stepper<'static, N, M>> {
+        None
+    }
 }
 
 impl SceneBody<3, 1> for Sleigh {
+    fn series(&self, push: OwnPush, tolerance: f64) -> Option<Stepper<'static, 3, 1>> {
+        Some(Box::new(Taylor::in_axes(self.own_axes()?.pushed(push)?, tolerance)))
+    }
+
     fn powers(&self, _t: f64, _q: &[f64; 3], _v: &[f64; 3], _lambda: &[f64; 1]) -> Vec<EffectPower> {
         Vec::new()
     }

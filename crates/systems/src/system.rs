@@ -38,6 +38,11 @@ pub trait SceneSystem<const N: usize, const M: usize>: FullMechanics<N, M> + Syn
     fn closed_map<'a>(&'a self, _t: f64, general: Stepper<'a, N, M>) -> Stepper<'a, N, M> {
         general
     }
+
+    /// As [`OwnMethods::series`]: where the system is a sleigh that is free, in a round well, or under a constant thrust or torque.
+    fn series(&self, _t: f64, _tolerance: f64) -> Option<Stepper<'_, N, M>> {
+        None
+    }
 }
 
 impl<B, E, const N: usize, const M: usize> SceneSystem<N, M> for With<B, E>
@@ -64,6 +69,11 @@ where
 
     fn closed_map<'a>(&'a self, t: f64, general: Stepper<'a, N, M>) -> Stepper<'a, N, M> {
         if self.has_closed_form() { Box::new(ClosedMap::backed_by(self.piece(t), general)) } else { general }
+    }
+
+    fn series(&self, t: f64, tolerance: f64) -> Option<Stepper<'_, N, M>> {
+        let With { body, effects } = self.piece(t);
+        body.series(effects.in_own_axes(&body)?, tolerance)
     }
 }
 

@@ -140,8 +140,8 @@ fn run(case: &Case) -> Result<(), Box<dyn std::error::Error>> {
     let method = Method::named(info.name, Some(f64::from(case.alpha) / 255.0))?;
     let (q, v) = SleighState { x, y, heading, speed, turn_rate }.to_coordinates();
     let mut state = State::new(q, v, System::<3, 1>::angles(&system));
-    // The adaptive one may make a hundred thousand steps within each.
-    let most = if info.kind == Kind::Dop853 { 2 } else { 40 };
+    // An adaptive one may make a hundred thousand steps within each.
+    let most = if info.kind.is_adaptive() { 2 } else { 40 };
     let schedule = Schedule { t0: 0.0, step, steps: u64::from(case.steps % most) };
     // A projection leaves the rounding of the velocity before it: any number of times that of the velocity after it.
     let keeps = info.keeps.contains("constraint") && info.kind != Kind::Rk4Projected;

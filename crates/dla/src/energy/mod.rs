@@ -7,8 +7,6 @@ mod rule;
 mod sensitivity;
 mod start;
 
-pub use gradient::Gradient;
-
 use crate::convergence::FixedPoint;
 use crate::positions::{affine_only, velocities_only};
 use crate::{Mechanics, OneStep, StackUse, Stage, State, StepError, StepReport};
@@ -31,7 +29,7 @@ use start::Start;
 /// Since `B` is skew, `H(z1) - H(z0) = h sum_i b_i g_i . u'(c_i)` is the discrete work
 /// `h sum_i b_i F(u(c_i), q'(c_i)) . q'(c_i)` of the forces, and zero without them; with the forces taken at the velocity
 /// `q'(c_i)` of the path, a dissipative one can only lower the energy. The new velocity is `W(q1) xi1`, so the constraint
-/// holds too. Both are exact but for rounding. The method is symmetric. `s = 1` with the averaged gradient is the discrete
+/// holds too. Both are exact but for rounding. The method is symmetric. `s = 1` is the discrete
 /// gradient method `(z1 - z0)/h = B((z0 + z1)/2) DG(z0, z1)`.
 ///
 /// Cohen and Hairer 2011, BIT 51, 91-101; on `D*`, Celledoni, Farre Puiggali, Hoiseth and Martin de Diego 2019,
@@ -43,22 +41,15 @@ use start::Start;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Energy {
     rule: Rule,
-    gradient: Gradient,
     work: f64,
 }
 
 impl Energy {
-    /// The method with `S` nodes, from one to four, and averaged gradients. The number is a value of the method and no part of its type:
+    /// The method with `S` nodes, from one to four. The number is a value of the method and no part of its type:
     /// a step is compiled once for all of them.
     #[must_use]
     pub fn new<const S: usize>() -> Self {
-        Self { rule: Rule::new::<S>(), gradient: Gradient::Average, work: 0.0 }
-    }
-
-    /// The method of order 2 with the given discrete gradient.
-    #[must_use]
-    pub fn with(gradient: Gradient) -> Self {
-        Self { gradient, ..Self::new::<1>() }
+        Self { rule: Rule::new::<S>(), work: 0.0 }
     }
 
     /// The discrete work of the forces over the last step (J): by so much the energy has changed.
@@ -83,7 +74,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Energy {
         affine_only(system, t0, state)?;
         velocities_only(system, t0, state, POSITIONS)?;
         let start = Start::new(system, t0, h, state)?;
-        let end = Step { system, rule: &self.rule, gradient: self.gradient, t0, h, start: &start }.solved()?;
+        let end = Step { system, rule: &self.rule, t0, h, start: &start }.solved()?;
         let q1 = state.ahead(&end.increment);
         let v1 = system.basis(t0 + h, &q1).ok_or(NO_BASIS)?.combine(&end.xi);
         state.stays_finite(&end.increment, &v1)?;
@@ -110,7 +101,6 @@ const POSITIONS: &str = "the energy-preserving methods let positions drift from 
 struct Step<'a, const N: usize, const M: usize> {
     system: &'a dyn Mechanics<N, M>,
     rule: &'a Rule,
-    gradient: Gradient,
     t0: f64,
     h: f64,
     start: &'a Start<N>,
@@ -143,7 +133,7 @@ impl<const N: usize, const M: usize> Step<'_, N, M> {
 
     #[inline(always)]
     fn solve(&self) -> Result<End<N>, StepError> {
-        let Self { system, rule, start, t0, h, .. } = *self;
+        let Self { system, rule, start, t0, h } = *self;
         let time = |tau: Lanes| tau * h + t0;
         let (mut path, mut points, mut nodes) = (Path::rest(), Points::at(start), Points::at(start));
         let mut convergence = FixedPoint::<3, N>::new(Self::LIMIT);
@@ -154,14 +144,8 @@ impl<const N: usize, const M: usize> Step<'_, N, M> {
             let bracket = system.bracket(t, &points.q, &points.xi).ok_or(NO_BASIS)?;
             points.pi = bracket.quasi_momenta();
             let ends = Ends::of(rule, &bracket, &points, start);
-            let averages = match self.gradient {
-                Gradient::Average => {
-                    nodes.follow(&path, rule.integrals_to_nodes(), start, h);
-                    gradient::average(system, rule, time(rule.nodes), &mut nodes)
-                }
-                Gradient::Gonzalez => gradient::gonzalez(system, rule, t, &path, &points, &ends, h),
-            }
-            .ok_or(NO_BASIS)?;
+            nodes.follow(&path, rule.integrals_to_nodes(), start, h);
+            let averages = gradient::average(system, rule, time(rule.nodes), &mut nodes).ok_or(NO_BASIS)?;
 
             let (q_rate, mut pi_rate) = bracket.rates(&averages.h_q, &averages.h_pi);
             let mut power = Lanes::zero();
@@ -179,7 +163,7 @@ impl<const N: usize, const M: usize> Step<'_, N, M> {
                 compared(&points.xi, &before, rule.stages..rule.stages + 1),
             ];
             path = Path { q_rate, pi_rate };
-            let settled = convergence.see(changes, averages.noise, || start.rounding(system, t0, h));
+            let settled = convergence.see(changes, 0.0, || start.rounding(system, t0, h));
             let settled = settled.map_err(|source| StepError::Newton { stage: Stage::Collocation, source })?;
             if let Some(iterations) = settled {
                 let work = h * rule.weighted(&power);

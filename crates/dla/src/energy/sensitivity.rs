@@ -1,5 +1,5 @@
+use super::Energy;
 use super::rule::MOST;
-use super::{Energy, Gradient};
 use crate::sensitivity::{
     Differentiable, NO_BASIS, SensitivityError, StepEquations, StepStart, Unknowns, advanced, constrained, difference,
     dimension, product,
@@ -60,12 +60,6 @@ impl<const N: usize, const M: usize> Differentiable<N, M> for Energy {
         let b: Vec<f64> = self.rule.b().iter().map(|b| b.hi).collect();
         let end = on_path(1.0, &b)?;
 
-        if self.gradient == Gradient::Gonzalez {
-            for i in 0..stages {
-                let (dq, dpi) = (q_rates[i].map(|k| h * k), pi_rates[i].map(|k| h * k));
-                (h_q[i], h_pi[i]) = points[i].corrected(model, (&first, &end), (&dq, &dpi))?;
-            }
-        }
         for (i, point) in points.iter().enumerate() {
             let q_rate = point.basis_combined(&h_pi[i]);
             residual.extend(difference(&q_rates[i], &q_rate));
@@ -125,29 +119,6 @@ impl<const N: usize, const M: usize> Point<N, M> {
             h_q[j] -= product(&self.turning(model, &unit)?, &self.xi);
         }
         Ok(h_q)
-    }
-
-    /// `H = v . p - L`.
-    fn energy(&self, model: &dyn Gradients<N, M>) -> Seeded {
-        product(&self.velocity, &self.momentum) - model.lagrangian(self.t, &self.q, &self.velocity)
-    }
-
-    /// The gradient in the middle, corrected along the increment: [`Gradient::Gonzalez`].
-    fn corrected(
-        &self,
-        model: &dyn Gradients<N, M>,
-        (first, end): (&Self, &Self),
-        (dq, dpi): (&[Seeded; N], &[Seeded; N]),
-    ) -> Result<([Seeded; N], [Seeded; N]), SensitivityError> {
-        let (h_q, h_pi) = (self.energy_slope(model)?, self.xi);
-        let square = product(dq, dq) + product(dpi, dpi);
-        if square.re == 0.0 {
-            // At rest, and in the first iteration, the correction is 0/0 and the method leaves it out.
-            return Ok((h_q, h_pi));
-        }
-        let missing = end.energy(model) - first.energy(model) - product(&h_q, dq) - product(&h_pi, dpi);
-        let k = missing / square;
-        Ok((from_fn(|i| h_q[i] + k * dq[i]), from_fn(|i| h_pi[i] + k * dpi[i])))
     }
 
     /// `-W_a . h_q - <p, [W_a, W_b]> h_pi_b + W_a . F`, the force at the velocity of the path.

@@ -23,9 +23,12 @@ pub(super) struct Ending {
 pub(super) struct Search {
     ending: Ending,
     pub(super) iterations: u32,
-    /// The last change, and the contraction factor.
+    /// The last change, and its ratio to the one before.
     last: f64,
-    pub(super) rate: f64,
+    rate: f64,
+    /// The contraction factor: the last of these ratios that is not one of round-off; zero where there was none, as of a motion whose
+    /// slopes are constant.
+    pub(super) contraction: f64,
     /// How many small changes have stalled.
     stalled: u32,
 }
@@ -44,7 +47,14 @@ impl Ending {
     pub(super) fn begin(self, led: bool) -> Search {
         // The count may come from a file: the limit holds all the same.
         let unseen = if led { self.unseen } else { ANEW }.min(self.limit.saturating_sub(1));
-        Search { ending: Self { unseen, ..self }, iterations: 0, last: f64::INFINITY, rate: 1.0, stalled: 0 }
+        Search {
+            ending: Self { unseen, ..self },
+            iterations: 0,
+            last: f64::INFINITY,
+            rate: 1.0,
+            contraction: 0.0,
+            stalled: 0,
+        }
     }
 }
 
@@ -71,6 +81,9 @@ impl Search {
         let small = moved <= rounding;
         let stalls = small && moved >= STALL_OF_FIXED_POINT * self.last;
         self.stalled += u32::from(stalls);
+        if seen > 1 && !stalls {
+            self.contraction = now;
+        }
         if moved == 0.0 || settled || (stalls && (self.stalled > 1 || moved <= noise)) {
             return Verdict::Done;
         }
@@ -118,6 +131,23 @@ mod tests {
         assert_eq!(search(&[3e-16, 2.2e-16]), (2, Verdict::Done));
         // One stall above the noise may be an iteration that rotates the error.
         assert_eq!(search(&[1e-14, 8e-15, 1e-15, 1e-16]), (4, Verdict::Continue));
+    }
+
+    /// Round-off does not contract, and says nothing of how fast the iteration does: nor does a first change that is nothing.
+    #[test]
+    fn rounding_tells_no_contraction() {
+        let contraction = |changes: &[f64]| {
+            let mut search = ENDING.begin(true);
+            while search.next_is_unseen() {}
+            for &moved in changes {
+                search.look(moved);
+                search.iterations += 1;
+            }
+            search.contraction
+        };
+        assert_eq!([contraction(&[0.0]), contraction(&[2e-16, 2e-16])], [0.0; 2]);
+        assert!((contraction(&[1e-3, 1e-5]) - 1e-2).abs() < 1e-15);
+        assert!((contraction(&[1e-12, 1e-14, 1e-14]) - 1e-2).abs() < 1e-15);
     }
 
     /// Changes that grow above round-off do not converge, nor does NaN.

@@ -277,7 +277,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
             gain: integral(self.h, weights, &a),
             roughness: 0.0,
             iterations: search.iterations,
-            rate: search.rate,
+            rate: search.contraction,
         };
         if let Some([cv, ca]) = self.counts {
             let highest = Pack::load(simd, &self.rule.highest);

@@ -1,8 +1,9 @@
 use super::Equilibrium;
 use super::root::nearest_root;
 use super::spectrum::{Spectrum, size, spectrum};
+use crate::stepper::composed;
 use crate::{Kind, Method, Rk4, Rk4Reduced};
-use dla::{Composition, Differentiable, Dla, SeededMechanics, Sensitivity, State, StepReport};
+use dla::{Differentiable, Dla, SeededMechanics, Sensitivity, State, StepReport};
 use lagrangian::from_fn;
 use nalgebra::{DMatrix, DVector};
 
@@ -14,9 +15,7 @@ pub fn differentiable<const N: usize, const M: usize>(method: &Method) -> Option
     Some(match method.info().kind {
         Kind::Dla => Box::new(Dla::midpoint()),
         Kind::DlaTrapezoid | Kind::DlaAlpha => Box::new(Dla::new(method.rule(), method.rule())),
-        Kind::Dla4 => Box::new(Composition::suzuki4(Dla::midpoint())),
-        Kind::Dla6 => Box::new(Composition::kahan_li6(Dla::midpoint())),
-        Kind::Dla8 => Box::new(Composition::fifteen8(Dla::midpoint())),
+        Kind::Composed(order) => Box::new(composed(order, Dla::midpoint())),
         Kind::Rk4 => Box::new(Rk4),
         Kind::Rk4Reduced => Box::new(Rk4Reduced),
         _ => return None,

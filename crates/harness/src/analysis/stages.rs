@@ -55,8 +55,20 @@ impl Change {
 }
 
 impl Stages {
-    /// Gauss collocation with `S` stages (Hairer, Lubich and Wanner 2006, section II.1.3).
-    pub(super) fn gauss<const S: usize>() -> Self {
+    /// Gauss collocation with so many stages, of those in the table of methods (Hairer, Lubich and Wanner 2006, section II.1.3).
+    pub(super) fn gauss(stages: usize) -> Self {
+        match stages {
+            2 => Self::collocation::<2>(),
+            3 => Self::collocation::<3>(),
+            4 => Self::collocation::<4>(),
+            5 => Self::collocation::<5>(),
+            6 => Self::collocation::<6>(),
+            7 => Self::collocation::<7>(),
+            _ => Self::collocation::<8>(),
+        }
+    }
+
+    fn collocation<const S: usize>() -> Self {
         let (nodes, weights) = gauss_legendre::<S>();
         let coefficients = gauss_collocation(&nodes, &weights);
         Self {

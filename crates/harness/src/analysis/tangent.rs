@@ -1,8 +1,9 @@
 use super::discrete::differentiable;
 use super::flow::{Flow, ReducedFlow, admissible, divergence};
 use super::stages::{DIRECTIONS, Stages, TOO_MANY};
+use crate::stepper::energy;
 use crate::{Kind, Method};
-use dla::{Differentiable, Energy, Lobatto, SeededMechanics, Sensitivity, SensitivityError, State, StepReport};
+use dla::{Differentiable, Lobatto, SeededMechanics, Sensitivity, SensitivityError, State, StepReport};
 use lagrangian::from_fn;
 use nalgebra::DMatrix;
 
@@ -60,38 +61,17 @@ pub fn has_tangents(method: &Method) -> Result<(), SensitivityError> {
 }
 
 fn rule<const N: usize, const M: usize>(method: &Method) -> Result<Rule<N, M>, SensitivityError> {
-    let refuse = |reason| Err(SensitivityError::Unsupported { reason });
-    Ok(match method.info().kind {
-        Kind::Gauss4 => Rule::Stages(Stages::gauss::<2>()),
-        Kind::Gauss6 => Rule::Stages(Stages::gauss::<3>()),
-        Kind::Gauss8 => Rule::Stages(Stages::gauss::<4>()),
-        Kind::Gauss10 => Rule::Stages(Stages::gauss::<5>()),
-        Kind::Gauss12 => Rule::Stages(Stages::gauss::<6>()),
-        Kind::Gauss14 => Rule::Stages(Stages::gauss::<7>()),
-        Kind::Gauss16 => Rule::Stages(Stages::gauss::<8>()),
+    let info = method.info();
+    info.tangent.map_err(|reason| SensitivityError::Unsupported { reason })?;
+    Ok(match info.kind {
+        Kind::Gauss(stages) => Rule::Stages(Stages::gauss(stages)),
         Kind::Rk4Reduced => Rule::Stages(Stages::rk4()),
-        Kind::Lobatto3 => Rule::Equations(Box::new(Lobatto::<3>::new())),
-        Kind::Lobatto4 => Rule::Equations(Box::new(Lobatto::<4>::new())),
-        Kind::Energy2 => Rule::Equations(Box::new(Energy::new::<1>())),
-        Kind::Energy4 => Rule::Equations(Box::new(Energy::new::<2>())),
-        Kind::Gni => return refuse("gni carries a multiplier from step to step, and its step is no map of (q, v)"),
-        Kind::Dop853 => {
-            return refuse("dop853 chooses its steps from the state, and how many there are changes by jumps");
-        }
-        Kind::Rk4 | Kind::Rk4Projected | Kind::ImplicitMidpoint => {
-            return refuse(
-                "the method works in full coordinates, off the distribution that exponents are of: take \
-                           rk4-reduced",
-            );
-        }
+        Kind::Lobatto(3) => Rule::Equations(Box::new(Lobatto::<3>::new())),
+        Kind::Lobatto(_) => Rule::Equations(Box::new(Lobatto::<4>::new())),
+        Kind::Energy(stages) => Rule::Equations(Box::new(energy(stages))),
         _ => match differentiable(method) {
             Some(method) => Rule::Equations(method),
-            None => {
-                return refuse(
-                    "the derivatives of this method are in the library, dla::Sensitivity, but not in this program: \
-                     take gauss8",
-                );
-            }
+            None => return Err(SensitivityError::Unsupported { reason: "its steps are not differentiated here" }),
         },
     })
 }

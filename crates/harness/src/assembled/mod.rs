@@ -11,12 +11,13 @@ pub use events::{AssemblyCrossing, AssemblyEvent};
 pub use recommend::recommend_assembly;
 pub use saved::run_assembly_saved;
 
-use crate::{Kind, Method, Progress, Record};
+use crate::{Kind, METHODS, Method, Progress, Record};
 use assembly::{Assembly, AssemblyError, Composition, Dla, Energy, Lobatto, OneStep, RunError, Solver, State};
 use dla::Schedule;
 use events::ended;
 use making::{Making, Ticker};
 use std::ops::ControlFlow;
+use std::sync::LazyLock;
 
 /// A node of an assembly that was kept.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,26 +70,27 @@ pub struct Assembled {
 }
 
 /// Why a method is refused.
-const OTHERS: &str = "the method is for systems of a few coordinates; trains and other assemblies are done by dla, dla4, \
-                      dla6, dla8, lobatto3, lobatto4, lobatto5 and energy2";
+static OTHERS: LazyLock<String> = LazyLock::new(|| {
+    let able: Vec<&str> = METHODS.iter().filter(|info| info.assemblies).map(|info| info.name).collect();
+    let (last, others) = able.split_last().map_or(("none", &[][..]), |(last, others)| (*last, others));
+    let others = others.join(", ");
+    format!(
+        "the method is for systems of a few coordinates; trains and other assemblies are done by {others} and {last}"
+    )
+});
 
 /// The method of that name for an assembly.
 ///
 /// # Errors
 /// [`AssemblyError::Unsupported`] for one that does none.
 pub fn assembly_method(assembly: &Assembly, method: &Method) -> Result<Box<dyn OneStep>, AssemblyError> {
-    let staged = |stages| Lobatto::new(assembly, Solver::Best, stages).map(|method| Box::new(method) as _);
-    let composed = |order| Composition::new(assembly, Solver::Best, order).map(|method| Box::new(method) as _);
+    let best = Solver::Best;
     match method.info().kind {
-        Kind::Dla => Dla::new(assembly, Solver::Best).map(|method| Box::new(method) as _),
-        Kind::Dla4 => composed(4),
-        Kind::Dla6 => composed(6),
-        Kind::Dla8 => composed(8),
-        Kind::Lobatto3 => staged(3),
-        Kind::Lobatto4 => staged(4),
-        Kind::Lobatto5 => staged(5),
-        Kind::Energy2 => Energy::new(assembly, Solver::Best).map(|method| Box::new(method) as _),
-        _ => Err(AssemblyError::Unsupported { reason: OTHERS }),
+        Kind::Dla => Dla::new(assembly, best).map(|method| Box::new(method) as _),
+        Kind::Composed(order) => Composition::new(assembly, best, order).map(|method| Box::new(method) as _),
+        Kind::Lobatto(stages) => Lobatto::new(assembly, best, stages).map(|method| Box::new(method) as _),
+        Kind::Energy(1) => Energy::new(assembly, best).map(|method| Box::new(method) as _),
+        _ => Err(AssemblyError::Unsupported { reason: OTHERS.as_str() }),
     }
 }
 

@@ -1,5 +1,5 @@
 use super::{Bench, Limits, Mark};
-use crate::{Kind, Method};
+use crate::Method;
 use dla::StepError;
 use std::time::Instant;
 
@@ -43,7 +43,7 @@ fn ratio(order: u32) -> f64 {
 
 /// Runs a method with ever finer steps, until rounding or the limit of time; or says why the method refuses.
 pub(super) fn climb(bench: &Bench<'_>, method: &Method, limits: &Limits) -> Result<Vec<Rung>, &'static str> {
-    let adaptive = method.info().kind == Kind::Dop853;
+    let adaptive = method.is_adaptive();
     let ratio = ratio(method.info().order);
     let mut rungs: Vec<Rung> = Vec::new();
     let mut wanted = if adaptive { 1 } else { limits.fewest };

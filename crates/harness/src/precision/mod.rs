@@ -18,7 +18,7 @@ pub use slope::Slope;
 pub use verdict::{Cheapest, LEVELS, cheapest, mark_pareto, seconds_to};
 
 use crate::stopwatch::{Pinned, has_thread_time};
-use crate::{Kind, Method, Progress};
+use crate::{Method, Progress};
 use dla::RunError;
 use std::fmt;
 
@@ -101,7 +101,7 @@ pub fn rounds() -> u64 {
 }
 
 fn point(rung: &ladder::Rung, time: Option<race::Measured>, duration: f64) -> Point {
-    let adaptive = rung.method.info().kind == Kind::Dop853;
+    let adaptive = rung.method.is_adaptive();
     let step = duration / rung.steps as f64;
     Point {
         method: rung.method.info().name.to_owned(),

@@ -16,7 +16,7 @@ fn made_up(method: &Method, steps: u64) -> Result<f64, RunError> {
     let h = DURATION / steps as f64;
     let info = method.info();
     match info.kind {
-        Kind::Energy2 => Err(failed(StepError::Unsupported { reason: "made up" })),
+        Kind::Energy(1) => Err(failed(StepError::Unsupported { reason: "made up" })),
         Kind::Dop853 => Ok(method.tolerance() + FLOOR),
         _ if h > 1.0 => Err(failed(StepError::Jump { time: h })),
         _ => Ok(0.1 * h.powi(i32::try_from(info.order).unwrap()) + FLOOR),

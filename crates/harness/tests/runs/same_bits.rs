@@ -1,8 +1,8 @@
 //! Every method gives the same bits each time: again, on several threads at once, and from any checkpoint.
 
-use super::{Particle, request};
+use super::{Particle, general, request};
 use dla::Checkpoint;
-use harness::{METHODS, Method, MethodInfo, Record, Request, Saving, run, run_saved};
+use harness::{Method, MethodInfo, Record, Request, Saving, run, run_saved};
 
 /// The end of the run is no checkpoint of its own, nor the end of a piece.
 const STEPS: u64 = 1100;
@@ -35,7 +35,7 @@ fn saved(info: &MethodInfo, from: Option<&Checkpoint>) -> (String, Vec<Checkpoin
 
 #[test]
 fn threads_give_the_same_bits() {
-    let alone: Vec<String> = METHODS.iter().map(once).collect();
+    let alone: Vec<String> = general().map(once).collect();
     std::thread::scope(|scope| {
         // Each begins with another method, so that different ones run side by side.
         let threads: Vec<_> = (0..4).map(|first| scope.spawn(move || from(first))).collect();
@@ -48,12 +48,12 @@ fn threads_give_the_same_bits() {
 }
 
 fn from(first: usize) -> Vec<String> {
-    METHODS.iter().cycle().skip(first).take(METHODS.len()).map(once).collect()
+    general().cycle().skip(first).take(general().count()).map(once).collect()
 }
 
 #[test]
 fn every_checkpoint_leads_to_the_same_bits() {
-    for info in METHODS {
+    for info in general() {
         let (whole, checkpoints) = saved(info, None);
         assert_eq!(whole, once(info), "{}: watched in parts, and at once", info.name);
         assert_eq!(checkpoints.len() as u64, STEPS.div_ceil(EVERY), "{}", info.name);
@@ -66,7 +66,7 @@ fn every_checkpoint_leads_to_the_same_bits() {
 /// The control: what is compared tells the smallest change of a start.
 #[test]
 fn a_bit_of_the_start_shows() {
-    for info in METHODS {
+    for info in general() {
         let method = Method::named(info.name, Some(0.3)).unwrap();
         let Request { q, .. } = request(STEPS, 0.05);
         let request = Request { q: [q[0].next_up(), q[1], q[2]], ..request(STEPS, 0.05) };

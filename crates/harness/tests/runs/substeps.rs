@@ -1,8 +1,8 @@
 //! Runs whose steps may be made in parts: measured, watched, saved, stopped, and those of trains.
 
-use super::{Particle, request};
+use super::{Particle, general, request};
 use dla::{Checkpoint, Event, Substeps, Trajectory};
-use harness::{METHODS, Method, Progress, Record, Request, Saving, run, run_saved, run_watched};
+use harness::{Method, Progress, Record, Request, Saving, run, run_saved, run_watched};
 
 fn in_parts(name: &str) -> Method {
     Method::named(name, Some(0.3)).unwrap().with_substeps(Substeps::default())
@@ -40,7 +40,7 @@ fn steps_that_are_too_long_are_made_in_parts() {
 #[test]
 fn where_nothing_is_divided_no_bit_is_changed() {
     let (system, request) = (Particle { basis: true, ..Particle::of(1.0) }, request(200, 0.01));
-    for info in METHODS {
+    for info in general() {
         let plain = run(&system, &Method::named(info.name, Some(0.3)).unwrap(), &request, &mut ());
         let record = run(&system, &in_parts(info.name), &request, &mut ());
         if record.substeps.unwrap().divided == 0 {

@@ -1,10 +1,12 @@
 //! Runs of assemblies.
 use approx::assert_abs_diff_eq;
+use assembly::AssemblyError;
 use assembly::parts::{Trailer, Train};
 use dla::{Checkpoint, CheckpointError, RecommendError, Schedule, Substeps};
+use harness::analysis::has_tangents;
 use harness::{
-    AssemblyEvent, AssemblyNodes, Method, Progress, Saving, assembly_end, recommend_assembly, run_assembly,
-    run_assembly_saved, run_assembly_watched,
+    AssemblyEvent, AssemblyNodes, METHODS, Method, Progress, Saving, assembly_end, assembly_method, recommend_assembly,
+    run_assembly, run_assembly_saved, run_assembly_watched,
 };
 use lagrangian::With;
 use sleigh::effects::{Drag, Thrust};
@@ -52,6 +54,24 @@ fn other_methods_refuse_trains() {
     let run = run_assembly(&train.assembly, &method, &SCHEDULE, &start, 10, &mut ());
     assert!(run.record.refusal().unwrap().contains("dla8"));
     assert_eq!(run.record.steps, 0);
+}
+
+/// The table of methods says of each what it does: trains, and derivatives of its steps.
+#[test]
+fn rows_say_what_methods_do() {
+    let train = train();
+    for info in METHODS {
+        let method = Method::named(info.name, None).unwrap();
+        let made = assembly_method(&train.assembly, &method);
+        assert_eq!(made.is_ok(), info.assemblies, "{}", info.name);
+        assert_eq!(has_tangents(&method).is_ok(), info.tangent.is_ok(), "{}", info.name);
+        let Err(AssemblyError::Unsupported { reason }) = made else { continue };
+        // The refusal names those that do.
+        let named: Vec<&str> =
+            reason.split([' ', ',']).filter(|word| METHODS.iter().any(|m| m.name == *word)).collect();
+        let able: Vec<&str> = METHODS.iter().filter(|info| info.assemblies).map(|info| info.name).collect();
+        assert_eq!(named, able);
+    }
 }
 
 /// Somebody who stops a run as soon as asked.

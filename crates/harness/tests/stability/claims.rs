@@ -12,7 +12,8 @@ fn who_claims_what() {
         assert_eq!(claimed(Claim::StableLine), info.kind != Kind::Gni, "{}", info.name);
         assert_eq!(claimed(Claim::Constraint), info.keeps.contains("constraint"), "{}", info.name);
         assert_eq!(claimed(Claim::Energy), info.keeps.contains("energy"), "{}", info.name);
-        let explicit = matches!(info.kind, Kind::Rk4 | Kind::Rk4Projected | Kind::Rk4Reduced | Kind::Dop853);
+        let explicit =
+            matches!(info.kind, Kind::Rk4 | Kind::Rk4Projected | Kind::Rk4Reduced) || info.kind.is_adaptive();
         assert_eq!(claimed(Claim::Symmetry), !explicit && info.kind != Kind::Gni, "{}", info.name);
     }
 }

@@ -195,6 +195,13 @@ impl<const N: usize, const M: usize> OwnMethods<N, M> for Built<'_, N, M> {
             Self::Text(_) => general,
         }
     }
+
+    fn series(&self, t: f64, tolerance: f64) -> Option<Stepper<'_, N, M>> {
+        match self {
+            Self::Sleigh(system) => system.series(t, tolerance),
+            Self::Text(_) => None,
+        }
+    }
 }
 
 impl<'a, const N: usize, const M: usize> From<&'a Built<'a, N, M>> for Subject<'a, N, M> {

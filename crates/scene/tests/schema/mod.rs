@@ -1,7 +1,8 @@
 //! docs/scene.schema.json and the program say the same of a scene.
+mod dictionary;
 mod validator;
 
-use scene::{EFFECTS, Scene, SceneError, bundled};
+use scene::{EFFECTS, EffectInfo, Scene, SceneEffect, SceneError, bundled};
 use serde_json::Value;
 use validator::validate;
 
@@ -152,13 +153,17 @@ fn what_is_wrong_is_wrong_to_both() {
         // The effect alone is what changes.
         let text = format!("[[effects]]\n{entry}\n\n{}", HEAD.replacen("title = \"A test\"\n", "", 1));
         check(&text, mutants);
+        // Each row of the table reads the effect of its name, and no other.
+        let scene = Scene::parse(&text, "scene.toml", METHODS).unwrap();
+        let kinds: Vec<&str> = scene.effects.iter().map(SceneEffect::kind).collect();
+        assert!(kinds.len() == 1 && entry.starts_with(&format!("kind = \"{}\"", kinds[0])), "{entry}: {kinds:?}");
     }
 }
 
 #[test]
 fn every_kind_has_its_keys_and_an_entry_here() {
     let schema = schema();
-    let kinds: Vec<&str> = EFFECTS.iter().map(|(kind, _, _)| *kind).collect();
+    let kinds: Vec<&str> = EFFECTS.iter().map(|info| info.name).collect();
     let named: Vec<&str> = schema["properties"]["effects"]["items"]["oneOf"]
         .as_array()
         .unwrap()
@@ -166,7 +171,7 @@ fn every_kind_has_its_keys_and_an_entry_here() {
         .map(|one| one["$ref"].as_str().unwrap().strip_prefix("#/$defs/").unwrap())
         .collect();
     assert_eq!(named, kinds);
-    for (kind, keys, _) in EFFECTS {
+    for EffectInfo { name: kind, keys, .. } in EFFECTS {
         let properties: Vec<&str> =
             schema["$defs"][kind]["properties"].as_object().unwrap().keys().map(String::as_str).collect();
         let mut expected: Vec<&str> = ["kind"].iter().chain(*keys).copied().collect();

@@ -45,7 +45,13 @@ impl Taylor {
     /// `1e-31`. None where the body has no such equations.
     #[must_use]
     pub fn of(body: &impl InOwnAxes, epsilon: f64) -> Option<Self> {
-        Some(Self { axes: body.own_axes()?, tolerance: epsilon })
+        Some(Self::in_axes(body.own_axes()?, epsilon))
+    }
+
+    /// The same of these equations.
+    #[must_use]
+    pub fn in_axes(axes: OwnAxes, epsilon: f64) -> Self {
+        Self { axes, tolerance: epsilon }
     }
 }
 

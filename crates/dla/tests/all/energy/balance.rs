@@ -1,5 +1,5 @@
 use crate::energy::systems::{Friction, Particle, Potential, Wrapped, at_centre, com};
-use dla::{Dla, Energy, Gradient, Observer, OneStep, Schedule, State, StepReport, View, drive};
+use dla::{Dla, Energy, Observer, OneStep, Schedule, State, StepReport, View, drive};
 use lagrangian::{System, energy};
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -126,10 +126,6 @@ fn held<Sys, const N: usize, const M: usize>(
         assert!(run.worst <= random_walk(*steps), "{name}, {steps} steps: {run:?}");
         assert!(run.slip < 1e-13, "{name}: {run:?}");
     }
-    let gonzalez = Energy::with(Gradient::Gonzalez);
-    let steps = two.min(20_000);
-    let run = balance(&format!("{name}, Gonzalez"), system, &mut { gonzalez }, start, steps);
-    assert!(run.worst < 1e-10 && run.slip < 1e-13, "{name}: {run:?}");
 }
 
 const LONG: u64 = 1_000_000;
@@ -191,7 +187,6 @@ fn loses_the_work<Method: OneStep<3, 1>>(mut method: Method, work: impl Fn(&Meth
 #[test]
 fn the_work_of_friction_is_the_loss() {
     loses_the_work(Energy::new::<1>(), Energy::work);
-    loses_the_work(Energy::with(Gradient::Gonzalez), Energy::work);
     loses_the_work(Energy::new::<2>(), Energy::work);
     loses_the_work(Energy::new::<3>(), Energy::work);
     loses_the_work(Energy::new::<4>(), Energy::work);

@@ -3,8 +3,7 @@
 use crate::sensitivity::differences::{BAR, Input, Start, disagreement};
 use crate::sensitivity::systems::{Controlled, Moving, Swivelling};
 use dla::{
-    Composition, Differentiable, Dla, Energy, Form, Gauss, Gradient, Lobatto, OneStep, Sensitivity, SensitivityError,
-    State,
+    Composition, Differentiable, Dla, Energy, Form, Gauss, Lobatto, OneStep, Sensitivity, SensitivityError, State,
 };
 use lagrangian::{Midpoint, Symmetrised, System, Trapezoid};
 use models::{IsokineticParticle, Model, SleighOnArm, Snakeboard};
@@ -46,7 +45,6 @@ fn a_sleigh_with_parameters_and_controls() {
     controlled("gauss8", &Gauss::new::<4>());
     controlled("energy2", &Energy::new::<1>());
     controlled("energy4", &Energy::new::<2>());
-    controlled("gonzalez", &Energy::with(Gradient::Gonzalez));
 }
 
 /// Its closed step and its accelerations by hand are differentiated through the general equations.

@@ -310,3 +310,17 @@ fn a_million_steps_lose_no_energy_but_by_rounding() {
     }
     assert!((at(&state) - at(&begin)).abs() > walk(100_000));
 }
+
+/// Where the slopes are constant there is nothing to contract: an interval is crossed in one step, however often.
+#[test]
+fn a_steady_motion_takes_no_more_steps() {
+    let circle = Sleigh::new(1.0, 1.0, 0.0).unwrap();
+    let mut method = GaussAdaptive::new::<8>(1e-12);
+    for start in [[0.0; 3], [1.0, 0.0, 0.0], [0.5, 0.0, 0.7]] {
+        let mut state = State::new([0.3, -0.2, 0.0], start, [false, false, true]);
+        for k in 0..200 {
+            let report = method.step(&circle, 0.05 * f64::from(k), 0.05, &mut state).unwrap();
+            assert!(report.iterations <= 8, "{start:?}, step {k}: {} iterations", report.iterations);
+        }
+    }
+}

@@ -1,0 +1,254 @@
+use super::Kind;
+
+/// What is known of a method: one row of [`METHODS`], from which every list of methods is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MethodInfo {
+    /// Which one it is.
+    pub kind: Kind,
+    /// The name in files and commands.
+    pub name: &'static str,
+    /// The order of accuracy.
+    pub order: u32,
+    /// What it keeps to round-off.
+    pub keeps: &'static str,
+    /// What it is.
+    pub summary: &'static str,
+    /// Where it comes from.
+    pub reference: &'static str,
+    /// Whether it makes steps of trains and other assemblies: [`assembly_method`](crate::assembly_method).
+    pub assemblies: bool,
+    /// Whether ensembles of sleighs are computed in SIMD lanes by it.
+    pub lanes: bool,
+    /// Whether its steps are differentiated for exponents ([`lyapunov`](fn@crate::analysis::lyapunov)), or why not.
+    pub tangent: Result<(), &'static str>,
+}
+
+const fn row(
+    kind: Kind,
+    (name, order): (&'static str, u32),
+    keeps: &'static str,
+    summary: &'static str,
+    reference: &'static str,
+) -> MethodInfo {
+    MethodInfo { kind, name, order, keeps, summary, reference, assemblies: false, lanes: false, tangent: Ok(()) }
+}
+
+impl MethodInfo {
+    const fn for_assemblies(self) -> Self {
+        Self { assemblies: true, ..self }
+    }
+
+    const fn in_lanes(self) -> Self {
+        Self { lanes: true, ..self }
+    }
+
+    const fn without_tangent(self, reason: &'static str) -> Self {
+        Self { tangent: Err(reason), ..self }
+    }
+}
+
+/// A row of a family, whose summary has the number of stages.
+macro_rules! staged {
+    ($kind:ident, $name:literal, $stages:literal, order $order:literal, $keeps:expr, $head:literal, $tail:literal, $reference:expr) => {
+        row(
+            Kind::$kind($stages),
+            ($name, $order),
+            $keeps,
+            concat!($head, " with ", $stages, " stages", $tail),
+            $reference,
+        )
+    };
+}
+
+macro_rules! gauss {
+    ($name:literal, $stages:literal, $order:literal) => {
+        staged!(
+            Gauss,
+            $name,
+            $stages,
+            order $order,
+            CONSTRAINT,
+            "Gauss collocation",
+            ", in a basis of admissible velocities",
+            "Hairer, Lubich and Wanner 2006, section II.1.3"
+        )
+    };
+}
+
+macro_rules! lobatto {
+    ($name:literal, $stages:literal, $order:literal) => {
+        staged!(
+            Lobatto,
+            $name,
+            $stages,
+            order $order,
+            CONSTRAINT,
+            "variational Lobatto IIIA-IIIB pair",
+            ", self-adjoint, on any system",
+            "Jay 2003, BIT 43, 93-106"
+        )
+        .for_assemblies()
+    };
+}
+
+macro_rules! energy {
+    ($name:literal, $stages:literal, $order:literal) => {
+        staged!(
+            Energy,
+            $name,
+            $stages,
+            order $order,
+            ENERGY,
+            "energy-preserving collocation",
+            " on the dual of the distribution",
+            "Cohen and Hairer 2011, BIT 51, 91-101"
+        )
+    };
+}
+
+const CONSTRAINT: &str = "constraint";
+const ENERGY: &str = "constraint, energy";
+const NOTHING: &str = "nothing";
+const CORTES: &str = "Cortes and Martinez 2001, Nonlinearity 14, 1365-1392";
+
+const OWN_STEPS: &str = "the method chooses its steps from the state, and how many there are changes by jumps";
+const OFF_THE_DISTRIBUTION: &str =
+    "the method works in full coordinates, off the distribution that exponents are of: take rk4-reduced";
+const NOT_HERE: &str =
+    "the derivatives of this method are in the library, dla::Sensitivity, but not in this program: take gauss8";
+const NO_MAP: &str = "gni carries a multiplier from step to step, and its step is no map of (q, v)";
+
+/// Every method, in the order in which tables show them.
+pub const METHODS: &[MethodInfo] = &[
+    row(
+        Kind::Dla,
+        ("dla", 2),
+        CONSTRAINT,
+        "discrete Lagrange-d'Alembert, midpoint rule, self-adjoint (the default)",
+        CORTES,
+    )
+    .for_assemblies()
+    .in_lanes(),
+    row(
+        Kind::DlaTrapezoid,
+        ("dla-trapezoid", 2),
+        CONSTRAINT,
+        "discrete Lagrange-d'Alembert, trapezoidal rule, self-adjoint",
+        CORTES,
+    ),
+    row(
+        Kind::DlaAlpha,
+        ("dla-alpha", 1),
+        CONSTRAINT,
+        "discrete Lagrange-d'Alembert, one node at the fraction `alpha` of the step; order 2 at alpha = 0.5 only",
+        "Marsden and West 2001, Acta Numerica 10, section 2.3",
+    ),
+    row(
+        Kind::Composed(4),
+        ("dla4", 4),
+        CONSTRAINT,
+        "five steps of dla, Suzuki's composition",
+        "Suzuki 1990, Phys. Lett. A 146, 319-323",
+    )
+    .for_assemblies(),
+    row(
+        Kind::Composed(6),
+        ("dla6", 6),
+        CONSTRAINT,
+        "nine steps of dla, the composition of Kahan and Li",
+        "Kahan and Li 1997, Math. Comp. 66, 1089-1099",
+    )
+    .for_assemblies(),
+    row(
+        Kind::Composed(8),
+        ("dla8", 8),
+        CONSTRAINT,
+        "fifteen steps of dla, composed",
+        "Hairer, Lubich and Wanner 2006, (V.3.12)",
+    )
+    .for_assemblies(),
+    lobatto!("lobatto3", 3, 4),
+    lobatto!("lobatto4", 4, 6),
+    lobatto!("lobatto5", 5, 8).without_tangent(NOT_HERE),
+    gauss!("gauss4", 2, 4),
+    gauss!("gauss6", 3, 6),
+    gauss!("gauss8", 4, 8).in_lanes(),
+    gauss!("gauss10", 5, 10),
+    gauss!("gauss12", 6, 12),
+    gauss!("gauss14", 7, 14),
+    gauss!("gauss16", 8, 16).in_lanes(),
+    row(
+        Kind::GaussAdaptive,
+        ("gauss-adaptive", 16),
+        CONSTRAINT,
+        "Gauss collocation with 8 stages in steps of its own, as a tolerance asks for",
+        "compare Antonana, Makazaga and Murua 2017, Numer. Algorithms 76, 861-880",
+    )
+    .without_tangent(OWN_STEPS),
+    row(
+        Kind::Taylor,
+        ("taylor", 20),
+        CONSTRAINT,
+        "Taylor series in the axes of a sleigh that is free, in a round well or pushed constantly, in steps of its own",
+        "Jorba and Zou 2005, Experimental Mathematics 14, 99-117",
+    )
+    .without_tangent(OWN_STEPS),
+    row(
+        Kind::Energy(1),
+        ("energy2", 2),
+        ENERGY,
+        "discrete gradient method on the dual of the distribution, averaged gradient, self-adjoint",
+        "Celledoni, Farre Puiggali, Hoiseth and Martin de Diego 2019, J. Nonlinear Sci. 29, 1523-1562",
+    )
+    .for_assemblies(),
+    energy!("energy4", 2, 4),
+    energy!("energy6", 3, 6).without_tangent(NOT_HERE),
+    energy!("energy8", 4, 8).without_tangent(NOT_HERE),
+    row(
+        Kind::Gni,
+        ("gni", 2),
+        "constraint at nodes",
+        "counter-example: geometric nonholonomic integrator, whose hidden multiplier mode grows about stable motions",
+        "Ferraro, Iglesias and Martin de Diego 2008, Nonlinearity 21, 1911-1928",
+    )
+    .without_tangent(NO_MAP),
+    row(
+        Kind::Rk4,
+        ("rk4", 4),
+        NOTHING,
+        "baseline: classical Runge-Kutta in full coordinates, multiplier eliminated by index reduction",
+        "Kutta 1901; Hairer and Wanner 1996, section VII.1",
+    )
+    .without_tangent(OFF_THE_DISTRIBUTION),
+    row(
+        Kind::Rk4Projected,
+        ("rk4-projected", 4),
+        CONSTRAINT,
+        "baseline: rk4 with the velocity projected onto the constraint after every step",
+        "Hairer, Lubich and Wanner 2006, section IV.4",
+    )
+    .without_tangent(OFF_THE_DISTRIBUTION),
+    row(
+        Kind::Rk4Reduced,
+        ("rk4-reduced", 4),
+        CONSTRAINT,
+        "baseline: classical Runge-Kutta on the reduced equations, in a basis of admissible velocities",
+        "Bloch 2015, Nonholonomic Mechanics and Control, section 5.2",
+    ),
+    row(
+        Kind::ImplicitMidpoint,
+        ("implicit-midpoint", 2),
+        NOTHING,
+        "baseline: implicit midpoint rule in full coordinates, multiplier eliminated by index reduction",
+        "Hairer, Lubich and Wanner 2006, section II.1.2",
+    )
+    .without_tangent(OFF_THE_DISTRIBUTION),
+    row(
+        Kind::Dop853,
+        ("dop853", 8),
+        CONSTRAINT,
+        "baseline: adaptive Dormand-Prince 8(5,3) on the reduced equations, tolerance 1e-12 within each step",
+        "Hairer, Norsett and Wanner 1993, section II.10",
+    )
+    .without_tangent(OWN_STEPS),
+];

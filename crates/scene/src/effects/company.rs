@@ -1,0 +1,92 @@
+//! What effects of a scene do not go with each other, or with the sleigh.
+
+use super::effect::SceneEffect;
+use super::specs::TimeSpec;
+use super::table::EffectInfo;
+use crate::error::SceneError;
+use crate::table::Table;
+use sleigh::Sleigh;
+
+/// Whether it changes the coordinates or the constraints, or jumps in time: what a train does not carry.
+fn changes_body(effect: &SceneEffect) -> bool {
+    match effect {
+        SceneEffect::Flywheel { .. }
+        | SceneEffect::Servo { .. }
+        | SceneEffect::Tracer { .. }
+        | SceneEffect::Turntable { .. } => true,
+        SceneEffect::Thrust { force: function } | SceneEffect::Torque { torque: function } => {
+            matches!(function, TimeSpec::Table { .. })
+        }
+        _ => false,
+    }
+}
+
+/// Refuses imposed velocities whose kinetic energy is too large for a number.
+pub(super) fn check_energy(table: &Table<'_>, effect: &SceneEffect, sleigh: &Sleigh) -> Result<(), SceneError> {
+    let SceneEffect::Servo { speed, turn_rate } = effect else { return Ok(()) };
+    let inertia = sleigh.inertia() + sleigh.mass() * sleigh.offset().powi(2);
+    for (key, function, mass, unit) in
+        [("speed", speed, sleigh.mass(), "m/s"), ("turn_rate", turn_rate, inertia, "rad/s")]
+    {
+        let largest = function.as_ref().map_or(0.0, TimeSpec::largest);
+        if !(0.5 * mass * largest * largest).is_finite() {
+            let most = (f64::MAX / mass.max(1.0)).sqrt();
+            let accepted = format!("values from -L to L with L = {most:.3e}, in {unit}");
+            return Err(table.wrong(key, "makes the kinetic energy too large for a number", accepted));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses what does not act on a train, at the effect that does not.
+pub(super) fn check_train(tables: &[Table<'_>], effects: &[SceneEffect]) -> Result<(), SceneError> {
+    if !effects.iter().any(|effect| matches!(effect, SceneEffect::Trailers(_))) {
+        return Ok(());
+    }
+    let Some((table, effect)) = tables.iter().zip(effects).find(|(_, effect)| changes_body(effect)) else {
+        return Ok(());
+    };
+    let table_of_times = match effect {
+        SceneEffect::Thrust { .. } => Some("force"),
+        SceneEffect::Torque { .. } => Some("torque"),
+        _ => None,
+    };
+    if let Some(key) = table_of_times {
+        let problem = "is a table of times, which does not act on a train: the scene has `trailers`";
+        return Err(table.wrong(key, problem, "a number or `{amplitude, frequency, phase}`".to_owned()));
+    }
+    let accepted = "what acts on its coordinates: `slope`, `bowl`, `egg_crate`, `hills` for every blade, `drag`, \
+                    `thrust`, `torque` and `moving_mass` for the first, without tables of times";
+    Err(table.wrong("kind", "cannot act on a train: the scene has `trailers`", accepted.to_owned()))
+}
+
+/// Refuses what does not go together: a second body, two ways to impose a velocity, what the sleigh cannot do.
+pub(super) fn check_company(
+    table: &Table<'_>,
+    (info, new): (&EffectInfo, &SceneEffect),
+    others: &[SceneEffect],
+    offset: f64,
+) -> Result<(), SceneError> {
+    if info.only_once && others.iter().any(|other| other.kind() == info.name) {
+        return Err(table.wrong("kind", "is there already", format!("one `{}` in a scene", info.name)));
+    }
+    let imposes = |effect: &SceneEffect| matches!(effect, SceneEffect::Servo { .. } | SceneEffect::Tracer { .. });
+    if imposes(new) && others.iter().any(imposes) {
+        let problem = "imposes velocities that another effect imposes already";
+        return Err(table.wrong("kind", problem, "either a `servo` or a `tracer`".to_owned()));
+    }
+    if matches!(new, SceneEffect::Tracer { .. }) && offset == 0.0 {
+        let problem = "cannot lead a centre of mass that lies at the blade, which does not move sideways";
+        return Err(table.wrong("kind", problem, "a `tracer` where `sleigh.offset` is not 0".to_owned()));
+    }
+    if let SceneEffect::MovingMass { x, y, .. } = new {
+        let jumps = |f: &TimeSpec| matches!(f, TimeSpec::Table { times, .. } if times.len() > 1);
+        for (key, function) in [("x", x), ("y", y)] {
+            if jumps(function) {
+                let accepted = "a number or `{amplitude, frequency, phase}`, in m".to_owned();
+                return Err(table.wrong(key, "would make the mass jump", accepted));
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,132 @@
+use serde::Serialize;
+use sleigh::effects::Hill;
+use sleigh::{ClosedPath, SleighError, Table, TimeFunction};
+
+/// A function of time as a scene writes it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum TimeSpec {
+    /// The same at all times.
+    Constant(f64),
+    /// `amplitude sin(frequency t + phase)`.
+    Sine {
+        /// In the unit of the quantity.
+        amplitude: f64,
+        /// Angular frequency (rad/s).
+        frequency: f64,
+        /// At `t = 0` (rad).
+        phase: f64,
+    },
+    /// `values[i]` from `times[i]` on.
+    Table {
+        /// Increasing (s).
+        times: Vec<f64>,
+        /// In the unit of the quantity.
+        values: Vec<f64>,
+    },
+}
+
+impl TimeSpec {
+    pub(super) fn varies(&self) -> bool {
+        match self {
+            Self::Constant(_) => false,
+            Self::Sine { amplitude, frequency, .. } => *amplitude != 0.0 && *frequency != 0.0,
+            Self::Table { values, .. } => values.windows(2).any(|pair| pair[0].to_bits() != pair[1].to_bits()),
+        }
+    }
+
+    /// No value of the function is larger.
+    pub(crate) fn largest(&self) -> f64 {
+        match self {
+            Self::Constant(value) | Self::Sine { amplitude: value, .. } => value.abs(),
+            Self::Table { values, .. } => values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs())),
+        }
+    }
+
+    /// The function.
+    pub(crate) fn build(&self) -> Result<TimeFunction, SleighError> {
+        Ok(match self {
+            Self::Constant(value) => TimeFunction::Constant(*value),
+            Self::Sine { amplitude, frequency, phase } => {
+                TimeFunction::Sine { amplitude: *amplitude, frequency: *frequency, phase: *phase }
+            }
+            Self::Table { times, values } => TimeFunction::Table(Table::new(times.clone(), values.clone())?),
+        })
+    }
+}
+
+/// A closed path as a scene writes it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PathSpec {
+    /// What is run through.
+    #[serde(flatten)]
+    pub shape: Shape,
+    /// Time for one round (s).
+    pub period: f64,
+}
+
+/// The shape of a closed path.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Shape {
+    /// A circle, counterclockwise from `center + (radius, 0)`.
+    Circle {
+        /// Radius (m).
+        radius: f64,
+        /// Middle (m).
+        center: [f64; 2],
+    },
+    /// A polygon with these vertices (m), from the first.
+    Polygon(Vec<[f64; 2]>),
+}
+
+impl PathSpec {
+    /// The path.
+    ///
+    /// # Errors
+    /// [`SleighError`] where it cannot be followed, which one read from a file can.
+    pub fn build(&self) -> Result<ClosedPath, SleighError> {
+        match &self.shape {
+            Shape::Circle { radius, center } => ClosedPath::circle(*radius, *center, self.period),
+            Shape::Polygon(vertices) => ClosedPath::polygon(vertices.clone(), self.period),
+        }
+    }
+}
+
+/// A hill as a scene writes it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct HillSpec {
+    /// Height (J).
+    pub height: f64,
+    /// Middle (m).
+    pub x: f64,
+    /// Middle (m).
+    pub y: f64,
+    /// Width (m).
+    pub width: f64,
+}
+
+impl From<HillSpec> for Hill {
+    fn from(HillSpec { height, x, y, width }: HillSpec) -> Self {
+        Self { height, x, y, width }
+    }
+}
+
+/// The trailers of a scene; each list has one number for every trailer, or one for all.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TrailersSpec {
+    /// How many there are.
+    pub count: usize,
+    /// Masses (kg).
+    pub mass: Vec<f64>,
+    /// Moments of inertia about the centres of mass (kg m^2).
+    pub inertia: Vec<f64>,
+    /// Distances of the centres of mass ahead of the blades (m).
+    pub offset: Vec<f64>,
+    /// Distances of the hinges behind the blades before them (m).
+    pub hitch: Vec<f64>,
+    /// Distances of the hinges ahead of the trailers' own blades (m).
+    pub bar: Vec<f64>,
+    /// Headings at the start (rad); those that are missing are that of the blade before.
+    pub headings: Vec<f64>,
+}
