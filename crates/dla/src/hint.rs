@@ -184,6 +184,8 @@ impl StepError {
                 Hint::Numbers
             }
             Self::Motion(_) | Self::Dependent(_) | Self::Reduced(ReducedError::Motion(_)) => Hint::Constraints,
+            // It says itself what to do.
+            Self::Slips { .. } => return None,
         })
     }
 }

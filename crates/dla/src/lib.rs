@@ -97,7 +97,7 @@ pub use sensitivity::{
     StepStart, Tangent, TangentRunError, Unknowns, Variation,
 };
 pub use stack::StackUse;
-pub use start::{Start, consistent_start};
+pub use start::{Start, consistent_start, slip};
 pub use state::State;
 pub use subject::{OwnMethods, Stepper, Subject};
 pub use substepping::Substepping;

@@ -167,6 +167,16 @@ pub enum StepError {
     /// Rows of the constraint depend on one another.
     #[error(transparent)]
     Dependent(#[from] Dependent),
+    /// The velocity at the start of a run is not admissible.
+    #[error(
+        "the start does not obey constraint {}: its residual is {}; `consistent_start` gives the nearest state that does", row + 1, Shown(*residual)
+    )]
+    Slips {
+        /// The row, from zero.
+        row: usize,
+        /// What it misses.
+        residual: f64,
+    },
     /// A function of the system, or a derivative of one, is not a number or not finite.
     #[error(transparent)]
     NotANumber(#[from] NotANumber),

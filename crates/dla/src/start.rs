@@ -57,6 +57,26 @@ pub fn consistent_start<const N: usize, const M: usize>(
     Ok(Start { q: q1, v: v1, moved: length(&way), changed: length(&from_fn(|i| v1[i] - v[i])) })
 }
 
+/// A row misses by more than this part of its terms only where the start is not meant to obey it: numbers that were typed have fewer
+/// digits than computed ones.
+const SLIP: f64 = 1e-6;
+
+/// The first constraint that the velocity at the start of a run does not obey, as [`StepError::Slips`].
+#[must_use]
+pub fn slip<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    t: f64,
+    state: &State<N>,
+) -> Option<StepError> {
+    let (q, v) = (state.q(), state.v());
+    let (residuals, rows, (_, b)) = (system.residual(t, q, v), system.reaction_rows(t, q, v), system.constraint(t, q));
+    (0..M).find_map(|row| {
+        let terms = (0..N).map(|i| (rows[row][i] * v[i]).abs()).sum::<f64>() + b[row].abs();
+        let residual = residuals[row];
+        (residual.abs() > SLIP * terms).then_some(StepError::Slips { row, residual })
+    })
+}
+
 /// The equations for the move `d` to the nearest place: `M d + A(q + d)' nu = 0`, `g(q + d) = 0`.
 struct Nearest<'a, const N: usize, const M: usize> {
     system: &'a dyn Mechanics<N, M>,

@@ -1,4 +1,5 @@
 use crate::{Observer, StepReport, View, Work};
+use std::io;
 use std::ops::ControlFlow;
 
 /// A node that was kept.
@@ -96,6 +97,34 @@ impl<const N: usize, const M: usize> Trajectory<N, M> {
     #[must_use]
     pub fn nodes(&self) -> &[Node<N, M>] {
         &self.nodes
+    }
+
+    /// Writes the nodes as CSV: time, the coordinates under these names, their rates (`x'`), energy, work and the largest residual of
+    /// a constraint, all digits of each. The columns are those of a trajectory of a system of text.
+    ///
+    /// ```
+    /// # use dla::Trajectory;
+    /// let mut text = Vec::new();
+    /// Trajectory::<2, 1>::every(1).write_csv(&mut text, ["x", "theta"])?;
+    /// assert_eq!(text, b"t,x,theta,x',theta',energy,work,constraint\n");
+    /// # Ok::<(), std::io::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of writing.
+    pub fn write_csv(&self, mut to: impl io::Write, names: [&str; N]) -> io::Result<()> {
+        let rates = names.map(|name| format!("{name}'"));
+        let names = names.iter().copied().chain(rates.iter().map(String::as_str));
+        let columns: Vec<&str> = ["t"].into_iter().chain(names).chain(["energy", "work", "constraint"]).collect();
+        writeln!(to, "{}", columns.join(","))?;
+        for node in &self.nodes {
+            write!(to, "{:?}", node.t)?;
+            for x in node.q.iter().chain(&node.v).chain(&[node.energy, node.work, node.constraint]) {
+                write!(to, ",{x:?}")?;
+            }
+            writeln!(to)?;
+        }
+        Ok(())
     }
 }
 

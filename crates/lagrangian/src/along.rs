@@ -2,6 +2,9 @@
 
 use crate::{AdmissibleBasis, Dual, HyperDual, Scalar, System, from_fn, velocity_of};
 
+/// A pivot below this, relative to its entry, counts as none.
+const DEGENERATE: f64 = 1e-13;
+
 /// The accelerations `xi'` of the quasi-velocities by derivatives of the order `K = N - M`: none of a matrix of all coordinates. (Book, (1.5).)
 ///
 /// `W' L_vv W xi' = W' (L_q + F - d/dt L_v at frozen xi)`: one evaluation of the Lagrangian with the mixed derivatives along the vectors of
@@ -77,7 +80,10 @@ fn along<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize, const K: 
     // L D L'.
     let mut matrix: [[S; K]; K] = from_fn(|a| from_fn(|b| second[a][b]));
     for k in 0..K {
-        let pivot = matrix[k][k].recip();
+        let pivot = matrix[k][k];
+        // What is left of a degenerate matrix is the rounding of its entries: no number.
+        let left = pivot.abs() - second[k][k].abs() * DEGENERATE;
+        let pivot = left.where_positive(pivot, S::constant(f64::NAN)).recip();
         for i in k + 1..K {
             let factor = matrix[i][k] * pivot;
             for j in k + 1..K {

@@ -5,6 +5,9 @@ use crate::{Motion, Scalar};
 /// Every method works without them, on derivatives of the Lagrangian; with them it is quicker. A system that has some implements this
 /// trait and says so, `fn reduced(&self) -> impl Reduced<N, M> { self }` in its [`System`](crate::System).
 pub trait Reduced<const N: usize, const M: usize> {
+    /// Whether anything may be known: true of all but `()`.
+    const ANY: bool = true;
+
     /// Accelerations and multipliers, for any velocity, admissible or not.
     #[inline(always)]
     fn motion(&self, _t: f64, _q: &[f64; N], _v: &[f64; N]) -> Option<Motion<N, M>> {
@@ -50,9 +53,13 @@ pub trait Reduced<const N: usize, const M: usize> {
 }
 
 /// Nothing is known by hand.
-impl<const N: usize, const M: usize> Reduced<N, M> for () {}
+impl<const N: usize, const M: usize> Reduced<N, M> for () {
+    const ANY: bool = false;
+}
 
 impl<R: Reduced<N, M>, const N: usize, const M: usize> Reduced<N, M> for &R {
+    const ANY: bool = R::ANY;
+
     #[inline(always)]
     fn motion(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<Motion<N, M>> {
         R::motion(self, t, q, v)

@@ -7,6 +7,7 @@
 //!
 //! This crate knows no integrator and no particular system.
 
+mod along;
 mod attitude;
 mod basis;
 mod bordered;
@@ -63,6 +64,7 @@ mod twofold;
 mod vector_field;
 mod with;
 
+pub use along::acceleration_along;
 pub use attitude::Attitude;
 pub use basis::{AdmissibleBasis, linear_basis};
 pub use bordered::{Bordered, clear_multipliers};
@@ -96,7 +98,10 @@ pub use parametrised::{Member, Parametrised, Unparametrised};
 pub use piecewise::{Piecewise, whole_steps};
 pub use power::{force_power, lagrangian_power};
 pub use reaction::{position_misses, position_residual, position_rows, reaction_rows};
-pub use reduced::{ReducedError, ReducedSlope, quasi_velocities, reduced_acceleration, reduced_slope, velocity_of};
+pub use reduced::{
+    ReducedError, ReducedSlope, derived_acceleration, quasi_velocities, reduced_acceleration, reduced_slope,
+    velocity_of,
+};
 pub use rounded::Rounded;
 pub use rounding::{MotionRounding, reduced_rounding};
 pub use row_space::{Dependence, RowSpace};

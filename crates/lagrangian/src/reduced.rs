@@ -1,5 +1,5 @@
 use crate::linear::{Lu, Singular};
-use crate::{AdmissibleBasis, Dual, Motion, MotionError, Reduced as _, Scalar, System, from_fn};
+use crate::{AdmissibleBasis, Dual, Motion, MotionError, Reduced as _, Scalar, System, acceleration_along, from_fn};
 use thiserror::Error;
 
 /// Why there are no reduced equations.
@@ -66,8 +66,8 @@ pub fn quasi_velocities<Sys: System<N, M>, const N: usize, const M: usize>(
     split(system, t, q, &v, &basis)
 }
 
-/// The reduced equations of motion, by hand where the system gives them, else from its motion in full coordinates:
-/// `v' = W xi' + (W' xi + v_b')`.
+/// The reduced equations of motion, by hand where the system gives them, else by derivatives along its basis, or from its motion in full
+/// coordinates: `v' = W xi' + (W' xi + v_b')`.
 ///
 /// # Errors
 /// [`ReducedError`] where there is no basis, or where equations are degenerate.
@@ -81,9 +81,27 @@ pub fn reduced_slope<Sys: System<N, M>, const N: usize, const M: usize>(
     let velocity = velocity_of(system, t, q, xi)?;
     let acceleration = match system.reduced().reduced_motion(t, q, xi) {
         Some(acceleration) => acceleration,
-        None => reduced_acceleration(system, t, q, xi)?,
+        None => derived_acceleration(system, t, q, xi)?,
     };
     Ok(ReducedSlope { velocity, acceleration })
+}
+
+/// The accelerations `xi'` of a system that does not know them by hand: by derivatives [along its basis](acceleration_along), and what
+/// these cannot do from the motion in full coordinates.
+///
+/// # Errors
+/// As [`reduced_acceleration`].
+#[inline(never)]
+pub fn derived_acceleration<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    q: &[f64; N],
+    xi: &[f64; N],
+) -> Result<[f64; N], ReducedError> {
+    match acceleration_along(system, t, q, xi) {
+        Some(acceleration) if acceleration.iter().all(|x| x.is_finite()) => Ok(acceleration),
+        _ => reduced_acceleration(system, t, q, xi),
+    }
 }
 
 /// The accelerations `xi'` from the motion in full coordinates.

@@ -5,7 +5,10 @@ mod common;
 
 use common::{Draws, draws, parameters, state};
 use lagrangian::linear::Lu;
-use lagrangian::{Dual, Motion, classify, constraint_residual, mass_matrix, reduced_acceleration, velocity_of};
+use lagrangian::{
+    Dual, Lanes, Motion, acceleration_along, classify, constraint_residual, mass_matrix, quasi_velocities,
+    reduced_acceleration, velocity_of,
+};
 use models::{
     ChaplyginBall, CompoundPendulum, ContactOscillator, GaugedOscillator, KnifeEdge, Model, Particle,
     QuarticOscillator, RollerRacer, RollingDisk, SleighOnArm, Snakeboard, State, Suslov, TurntableBall,
@@ -102,6 +105,29 @@ check!(TwoFormulations(draws, model, N, M) {
     for i in 0..N {
         let error = (hand[i] - machine[i]).abs();
         assert!(error <= tolerance, "{}, {i}: {hand:?}, not {machine:?}: {error:e} > {tolerance:e}", model.name());
+    }
+});
+
+check!(AlongTheBasis(draws, model, N, M) {
+    let (q, v) = state(model, draws);
+    let xi = quasi_velocities(model, 0.0, &q, &v).unwrap();
+    let Some(along) = acceleration_along(model, 0.0, &q, &xi) else {
+        assert!(N == M || N - M > 5, "{}", model.name());
+        return;
+    };
+    let machine = Motion::automatic(model, 0.0, &q, &v).unwrap().acceleration;
+    let right = reduced_acceleration(model, 0.0, &q, &xi).unwrap();
+    // The quasi-velocities are found again from velocities, by a matrix of its own condition.
+    let tolerance = 64.0 * ROUNDING * condition(model, &q, &v) * terms(&q, &v, &machine);
+    for k in 0..N - M {
+        let error = (along[k] - right[k]).abs();
+        assert!(error <= tolerance, "{}, {k}: {along:?}, not {right:?}: {error:e} > {tolerance:e}", model.name());
+    }
+    // Eight at once are eight times one, but for the sines of lanes.
+    let lanes = |x: f64| Lanes([x; 8]);
+    let eight = acceleration_along(model, lanes(0.0), &q.map(lanes), &xi.map(lanes)).unwrap();
+    for k in 0..N - M {
+        assert!((eight[k].0[5] - along[k]).abs() <= tolerance, "{}", model.name());
     }
 });
 
@@ -266,6 +292,11 @@ proptest! {
     #[test]
     fn two_formulations_agree(p in parameters(), draws in draws()) {
         every_model(&p, &mut TwoFormulations(draws));
+    }
+
+    #[test]
+    fn derivatives_along_the_basis_give_the_same_accelerations(p in parameters(), draws in draws()) {
+        every_model(&p, &mut AlongTheBasis(draws));
     }
 
     #[test]

@@ -22,7 +22,7 @@ pub use dla::{
     self, Checkpoint, CheckpointError, ClosedStepError, Crossing, Direction, Dla, Equations, Event, Form, Hermite,
     Hint, History, InChart, Mechanics, Newton, NewtonError, Node, NotANumber, Observer, OneStep, RecommendError,
     Recommendation, RunError, Samples, Schedule, Sensitivity, Stage, State, StepError, StepReport, Trajectory, View,
-    Watch, consistent_start, drive, recommend_step,
+    Watch, consistent_start, recommend_step, slip,
 };
 pub use lagrangian::{
     self, AdmissibleBasis, Alpha, Attitude, Constraint, Derivatives, DiscreteConstraint, DiscreteLagrangian, Dual,
@@ -66,6 +66,133 @@ pub use macros;
 #[macro_export]
 macro_rules! system {
     ($($text:tt)*) => { $crate::macros::system! { $crate::lagrangian; $($text)* } };
+}
+
+/// Makes the steps of a schedule from a start that obeys the constraints, and shows every node to the observer; returns how many steps were
+/// made. As [`dla::drive`], which begins anywhere: its first step leads from a start that slips onto the constraint.
+///
+/// # Errors
+/// [`StepError::Slips`] where the start does not obey the constraints to six digits, with the residual: [`consistent_start`] gives the
+/// nearest state that does. [`RunError`] with the step that failed; `state` then is the last good node.
+pub fn drive<Method, Obs, const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    method: &mut Method,
+    schedule: &Schedule,
+    state: &mut State<N>,
+    observer: Obs,
+) -> Result<u64, RunError>
+where
+    Method: OneStep<N, M> + ?Sized,
+    Obs: Observer<N, M>,
+{
+    match slip(system, schedule.t0, state) {
+        Some(source) => Err(RunError { step: 1, time: schedule.t0, source }),
+        None => dla::drive(system, method, schedule, state, observer),
+    }
+}
+
+/// What a program with a system of its own uses: `use noslip::prelude::*`.
+pub mod prelude {
+    pub use crate::{
+        AdmissibleBasis, Constraint, Dla, OneStep, Reduced, Scalar, Schedule, State, System, Trajectory,
+        consistent_start, drive, method, system,
+    };
+    pub use lagrangian::Piecewise;
+}
+
+/// A method by its name in the table of methods: `noslip::method!("gauss16")`. Only the methods that a program names are compiled for its
+/// system. A name that is no method is an error of the compiler.
+///
+/// ```
+/// use noslip::prelude::*;
+///
+/// # struct Free;
+/// # impl System<1, 0> for Free {
+/// #     fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 1], v: &[S; 1]) -> S {
+/// #         v[0] * v[0] * 0.5
+/// #     }
+/// #     fn constraint<S: Scalar>(&self, _t: S, _q: &[S; 1]) -> Constraint<S, 1, 0> {
+/// #         ([], [])
+/// #     }
+/// # }
+/// let mut state = State::new([0.0], [2.0], [false]);
+/// drive(&Free, &mut method!("dla4"), &Schedule { t0: 0.0, step: 0.1, steps: 10 }, &mut state, ())?;
+/// assert!((state.q()[0] - 2.0).abs() < 1e-14);
+/// # Ok::<(), noslip::RunError>(())
+/// ```
+///
+/// ```compile_fail
+/// let method = noslip::method!("gauss17");
+/// ```
+#[macro_export]
+macro_rules! method {
+    ("dla") => {
+        $crate::Dla::midpoint()
+    };
+    ("dla-trapezoid") => {
+        $crate::Dla::new($crate::Trapezoid, $crate::Trapezoid)
+    };
+    ("dla4") => {
+        $crate::dla::Composition::suzuki4($crate::Dla::midpoint())
+    };
+    ("dla6") => {
+        $crate::dla::Composition::kahan_li6($crate::Dla::midpoint())
+    };
+    ("dla8") => {
+        $crate::dla::Composition::fifteen8($crate::Dla::midpoint())
+    };
+    ("lobatto3") => {
+        $crate::dla::Lobatto::<3>::new()
+    };
+    ("lobatto4") => {
+        $crate::dla::Lobatto::<4>::new()
+    };
+    ("lobatto5") => {
+        $crate::dla::Lobatto::<5>::new()
+    };
+    ("gauss4") => {
+        $crate::dla::Gauss::new::<2>()
+    };
+    ("gauss6") => {
+        $crate::dla::Gauss::new::<3>()
+    };
+    ("gauss8") => {
+        $crate::dla::Gauss::new::<4>()
+    };
+    ("gauss10") => {
+        $crate::dla::Gauss::new::<5>()
+    };
+    ("gauss12") => {
+        $crate::dla::Gauss::new::<6>()
+    };
+    ("gauss14") => {
+        $crate::dla::Gauss::new::<7>()
+    };
+    ("gauss16") => {
+        $crate::dla::Gauss::new::<8>()
+    };
+    ("energy2") => {
+        $crate::dla::Energy::new::<1>()
+    };
+    ("energy4") => {
+        $crate::dla::Energy::new::<2>()
+    };
+    ("energy6") => {
+        $crate::dla::Energy::new::<3>()
+    };
+    ("energy8") => {
+        $crate::dla::Energy::new::<4>()
+    };
+    ("gni") => {
+        $crate::dla::Gni::default()
+    };
+    ($other:literal) => {
+        compile_error!(concat!(
+            "no method of the library is called `",
+            $other,
+            "`; the baselines are in the crate `harness`"
+        ))
+    };
 }
 
 /// The examples of the README and of the book, compiled and run as tests.

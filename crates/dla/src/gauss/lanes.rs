@@ -3,7 +3,7 @@ use super::packs::{ahead, each, everywhere, integral, loaded, own, packed};
 use super::rule::Eight;
 use lagrangian::linear::larger;
 use lagrangian::simd::{Kernel, Pack, Simd, Square, Wide, dispatch};
-use lagrangian::{Reduced, System, array, from_fn, velocity_of};
+use lagrangian::{Reduced, System, array, derived_acceleration, from_fn, velocity_of};
 use std::fmt;
 use std::ops::Deref;
 
@@ -189,10 +189,37 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
         q: &[Pack<S, R>; N],
         xi: &[Wide<S, R>; N],
     ) -> Option<[Pack<S, R>; N]> {
-        match self.system.reduced().reduced_motion(self.times(simd), &each(q), xi) {
+        let by_hand = self.system.reduced();
+        match by_hand.reduced_motion(self.times(simd), &each(q), xi) {
             Some(a) => Some(packed(simd, &a)),
-            None => None,
+            None => self.derived(simd, &by_hand, q, xi),
         }
+    }
+
+    /// `xi'` by derivatives along the basis, of a system that knows nothing by hand: stage by stage, since all numbers that carry
+    /// derivatives in eight lanes are too many to be held in registers, and are then no quicker than one lane after another.
+    #[inline(always)]
+    fn derived<By: Reduced<N, M>, S: Simd, const R: usize>(
+        &self,
+        simd: S,
+        _by_hand: &By,
+        q: &[Pack<S, R>; N],
+        xi: &[Wide<S, R>; N],
+    ) -> Option<[Pack<S, R>; N]> {
+        if const { By::ANY } {
+            return None;
+        }
+        let (q, xi) = (q.map(|q| q.row()), xi.map(|xi| xi.pack(simd).row()));
+        let mut a = [[0.0; 8]; N];
+        // Lanes beyond the stages stay at the beginning of the step, and count for nothing.
+        for i in 0..self.rule.stages {
+            let t = self.t + self.rule.nodes[i] * self.h;
+            let found = derived_acceleration(self.system, t, &from_fn(|k| q[k][i]), &from_fn(|k| xi[k][i])).ok()?;
+            for k in 0..N {
+                a[k][i] = found[k];
+            }
+        }
+        Some(loaded(simd, &a))
     }
 }
 
