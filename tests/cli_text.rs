@@ -7,6 +7,9 @@ mod program;
 #[path = "cli_text/events.rs"]
 mod events;
 
+#[path = "cli_text/analyses.rs"]
+mod analyses;
+
 use program::{Folder, TEXTS, csv, keys};
 
 /// A skate on a slope.

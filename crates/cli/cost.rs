@@ -1,36 +1,38 @@
 use crate::args::SceneArguments;
 use crate::error::CliError;
-use crate::{inspect, table, terminal};
+use crate::{inspect, notes, table, terminal};
 use dla::{RunError, Schedule};
 use harness::{step_evaluations, step_time};
-use scene::{Built, Scene, SceneEffect, Visitor};
+use scene::{AnyScene, Built, Scene, SceneEffect, TextScene, Visitor};
 use serde_json::json;
 
 /// The steps over which a cost is a mean.
 const STEPS: u64 = 2000;
 
-/// One row: some of a scene's effects, and what a step costs with them.
+/// One row: a part of a scene, and what a step costs with it.
 struct Row {
     effects: Vec<&'static str>,
     ns_per_step: f64,
     evaluations_per_step: f64,
 }
 
-/// `noslip cost`: what each effect of a scene costs a step, for the scene with none, with each alone, and with all.
+/// A part of a scene: the effects of a sleigh, or the forces of a system of text, that are in it.
+type Part = (Vec<&'static str>, AnyScene);
+
+/// `noslip cost`: what each effect of a scene costs a step, for the scene with none, with each alone, and with all; of a system of text what
+/// its forces cost.
 pub(crate) fn cost(arguments: &SceneArguments) -> Result<(), CliError> {
-    let scene = inspect::load(arguments, None)?;
-    let mut subsets: Vec<Vec<SceneEffect>> = vec![Vec::new()];
-    subsets.extend(scene.effects.iter().map(|effect| vec![effect.clone()]));
-    if scene.effects.len() > 1 {
-        subsets.push(scene.effects.clone());
-    }
-    let whole = inspect::schedule(&scene);
+    let scene = inspect::load_any(arguments, None)?;
+    notes::moves(&scene);
+    let (parts, operations) = match &scene {
+        AnyScene::Sleigh(scene) => (with_effects(scene), None),
+        AnyScene::Text(scene) => (with_forces(scene)?, Some(scene.model.operations())),
+    };
+    let whole = scene.schedule();
     let schedule = Schedule { steps: whole.steps.min(STEPS), ..whole };
     let mut rows = Vec::new();
     let mut failures = Vec::new();
-    for effects in subsets {
-        let names: Vec<&'static str> = effects.iter().map(SceneEffect::kind).collect();
-        let part = Scene { effects, ..scene.clone() };
+    for (names, part) in parts {
         let ns_per_step = part.visit(Time(schedule))?;
         // Of other types than those that are timed: they evaluate as often, and are half as many to be compiled.
         let evaluations_per_step = part.visit(Evaluations(schedule))?;
@@ -53,13 +55,44 @@ pub(crate) fn cost(arguments: &SceneArguments) -> Result<(), CliError> {
                 })
             })
             .collect();
-        terminal::print_json(&json!({"scene": scene.name, "rows": rows}))?;
+        let mut object = json!({"scene": scene.name(), "rows": rows});
+        if let Some([lagrangian, constraints, forces]) = operations {
+            object["operations"] = json!({"lagrangian": lagrangian, "constraints": constraints, "forces": forces});
+        }
+        terminal::print_json(&object)?;
     } else {
-        let heading =
-            format!("{} ({}): a step of dla by automatic derivatives, the mean over a run\n", scene.title, scene.name);
-        terminal::print(&(heading + &table::right_aligned(&COLUMNS, &cells(&rows))))?;
+        let name = format!("{} ({})", scene.title(), scene.name());
+        let heading = format!("{name}: a step of dla by automatic derivatives, the mean over a run\n");
+        let counted = operations.map_or_else(String::new, |[lagrangian, constraints, forces]| {
+            format!("operations: {lagrangian} for the Lagrangian, {constraints} for the constraints, {forces} for the forces\n")
+        });
+        terminal::print(&(heading + &table::right_aligned(&COLUMNS, &cells(&rows)) + &counted))?;
     }
     CliError::of_failures(failures)
+}
+
+/// The scene without effects, with each alone, and with all.
+fn with_effects(scene: &Scene) -> Vec<Part> {
+    let mut subsets: Vec<Vec<SceneEffect>> = vec![Vec::new()];
+    subsets.extend(scene.effects.iter().map(|effect| vec![effect.clone()]));
+    if scene.effects.len() > 1 {
+        subsets.push(scene.effects.clone());
+    }
+    let part = |effects: Vec<SceneEffect>| {
+        let names = effects.iter().map(SceneEffect::kind).collect();
+        (names, AnyScene::Sleigh(Box::new(Scene { effects, ..scene.clone() })))
+    };
+    subsets.into_iter().map(part).collect()
+}
+
+/// The system without its forces and, where it has any, with them.
+fn with_forces(scene: &TextScene) -> Result<Vec<Part>, CliError> {
+    let bare = scene.without_forces().map_err(|error| CliError::Request(error.to_string()))?;
+    let mut parts = vec![(Vec::new(), AnyScene::Text(Box::new(bare)))];
+    if scene.model.has_forces() {
+        parts.push((vec!["forces"], AnyScene::Text(Box::new(scene.clone()))));
+    }
+    Ok(parts)
 }
 
 const COLUMNS: [&str; 4] = ["effects", "ns/step", "more", "evaluations/step"];

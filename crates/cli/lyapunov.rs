@@ -111,10 +111,11 @@ impl Visitor for Exponents<'_> {
         let interrupt = Interrupt::listen();
         let bar = progress::bar(self.method.info().name, settle.saturating_add(schedule.steps));
         let mut progress = Interruptible { bar, interrupt: &interrupt };
-        let found = harness::analysis::lyapunov((&*system, &system), &self.method, &request, &mut progress);
+        let its = system.own();
+        let found = harness::analysis::lyapunov_within((&*system, &system), its, &self.method, &request, &mut progress);
         progress.bar.finish_and_clear();
         let found = found.map_err(refused)?;
-        let told = self.tell(&found, system.energy(0.0, &q, &v), 2 * N - M);
+        let told = self.tell(&found, system.energy(0.0, &q, &v), 2 * its.0 - its.1);
         let made = interrupt.asked().then(|| format!("{} s are measured", table::number(found.time)));
         unless_interrupted(made, None, told)
     }

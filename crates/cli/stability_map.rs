@@ -9,7 +9,7 @@ use crate::provenance::label;
 use crate::starts::with_energy;
 use crate::{progress, table, terminal};
 use harness::Method;
-use harness::analysis::{LyapunovError, LyapunovRequest, MotionVerdict, in_parallel, lyapunov};
+use harness::analysis::{LyapunovError, LyapunovRequest, MotionVerdict, in_parallel, lyapunov_within};
 use harness::report::{Cells, Chart, Layer};
 use scene::{AnyScene, Built, Column, Visitor};
 use serde_json::{Value, json};
@@ -85,7 +85,7 @@ impl Visitor for Map<'_> {
             let cell = match start {
                 Some((q, v)) => {
                     let request = LyapunovRequest { schedule, settle, exponents: Some(1), q, v };
-                    match lyapunov((&*system, &system), &self.method, &request, &mut ()) {
+                    match lyapunov_within((&*system, &system), system.own(), &self.method, &request, &mut ()) {
                         Ok(found) => match found.failure {
                             Some(failure) => Cell::Failed(failure.to_string()),
                             None => Cell::Exponent(found.exponents[0], found.ci[0], found.verdict),

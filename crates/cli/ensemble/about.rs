@@ -1,4 +1,5 @@
 use super::header;
+use super::members::Summed;
 use crate::error::CliError;
 use crate::provenance::Provenance;
 use scene::{Column, Sweep};
@@ -32,10 +33,10 @@ pub(super) struct About {
 
 impl About {
     /// That sweep, from a file of that name.
-    pub(super) fn new(file: &str, sweep: &Sweep, identity: &str) -> Self {
-        let scene = &sweep.scene;
+    pub(super) fn new(file: &str, sweep: &Sweep, summed: &Summed, identity: &str) -> Self {
+        let (scene, run) = (&sweep.scene, sweep.scene.run());
         let mut notes = json!({
-            "method": scene.run.method, "step": scene.run.actual_step(), "duration": scene.run.duration, "sweep": sweep.file,
+            "method": run.method, "step": run.actual_step(), "duration": run.duration, "sweep": sweep.file,
         });
         if let Ok(text) = scene.to_toml() {
             notes["scene"] = json!(text);
@@ -43,14 +44,17 @@ impl About {
         Self {
             identity: identity.to_owned(),
             sweep: file.to_owned(),
-            scene: scene.name.clone(),
-            title: scene.title.clone(),
-            method: scene.run.method.clone(),
-            step: scene.run.actual_step(),
-            duration: scene.run.duration,
+            scene: scene.name().to_owned(),
+            title: scene.title().to_owned(),
+            method: run.method.clone(),
+            step: run.actual_step(),
+            duration: run.duration,
             keys: sweep.keys().map(ToString::to_string).collect(),
             members: sweep.count(),
-            columns: header(sweep).into_iter().map(|Column { name, unit, whole }| (name, unit, whole)).collect(),
+            columns: header(sweep, summed)
+                .into_iter()
+                .map(|Column { name, unit, whole }| (name, unit, whole))
+                .collect(),
             notes,
         }
     }

@@ -1,36 +1,72 @@
-use crate::inspect;
 use dla::Schedule;
-use harness::analysis::{LyapunovRequest, lyapunov};
+use harness::analysis::{LyapunovRequest, lyapunov_within};
 use harness::ensemble::{Summary, Watching, summarise, watch};
 use harness::{Kind, Method};
-use scene::{Built, LANES, LaneMethod, Scene, Sweep, Visitor, in_lanes};
+use scene::{AnyScene, Built, Column, LANES, LaneMethod, Quantity, Scene, Sweep, SweepError, Visitor, in_lanes};
 use sleigh::SleighState;
-use std::array::from_fn;
+
+use crate::error::CliError;
 use std::ops::Range;
 
 /// What is summed up of a sleigh.
 const QUANTITIES: usize = 5;
 
-/// The columns after those of the keys, with their units.
-pub(super) const COLUMNS: [(&str, &str); 17] = [
-    ("t", "s"),
-    ("x", "m"),
-    ("y", "m"),
-    ("heading", "rad"),
-    ("speed", "m/s"),
-    ("turn_rate", "rad/s"),
-    ("x_min", "m"),
-    ("x_max", "m"),
-    ("y_min", "m"),
-    ("y_max", "m"),
-    ("speed_min", "m/s"),
-    ("speed_max", "m/s"),
-    ("turn_rate_min", "rad/s"),
-    ("turn_rate_max", "rad/s"),
-    ("energy", "J"),
-    ("energy_deviation", "J"),
-    ("constraint", "m/s"),
-];
+/// What is summed up of the members of a sweep: the quantities that tell a state.
+#[derive(Debug)]
+pub(super) struct Summed {
+    state: Vec<Quantity>,
+    /// Those that have extremes that mean anything: angles have none.
+    extremes: Vec<usize>,
+    constraint: &'static str,
+}
+
+/// The quantities that tell a state.
+struct Names;
+
+impl Visitor for Names {
+    type Output = Vec<Quantity>;
+
+    fn visit<const N: usize, const M: usize>(
+        self,
+        system: Built<'_, N, M>,
+        _q: [f64; N],
+        _v: [f64; N],
+    ) -> Self::Output {
+        let mut state = system.quantities();
+        state.truncate(system.in_state());
+        state
+    }
+}
+
+impl Summed {
+    pub(super) fn of(sweep: &Sweep) -> Result<Self, CliError> {
+        let constraint = if matches!(sweep.scene, AnyScene::Sleigh(_)) { "m/s" } else { "" };
+        let state = sweep.scene.visit(Names)?;
+        let extremes = (0..state.len()).filter(|k| !state[*k].angle).collect();
+        Ok(Self { state, extremes, constraint })
+    }
+
+    /// The columns after those of the keys.
+    pub(super) fn columns(&self) -> Vec<Column> {
+        let of = |quantity: &Quantity, end: &str| Column::new(format!("{}{end}", quantity.name), quantity.unit.clone());
+        let state = self.state.iter().map(|quantity| of(quantity, ""));
+        let extremes = self.extremes.iter().flat_map(|k| ["_min", "_max"].map(|end| of(&self.state[*k], end)));
+        let energy = [("energy", "J"), ("energy_deviation", "J"), ("constraint", self.constraint)];
+        let last = energy.map(|(name, unit)| Column::new(name, unit));
+        std::iter::once(Column::new("t", "s")).chain(state).chain(extremes).chain(last).collect()
+    }
+
+    /// The numbers of these columns; NaN where there is no summary.
+    fn numbers<Q: AsRef<[f64]>>(&self, summary: Option<&Summary<Q>>) -> Vec<f64> {
+        let Some(Summary { t, end, low, high, energy, energy_deviation, constraint }) = summary else {
+            return vec![f64::NAN; 4 + self.state.len() + 2 * self.extremes.len()];
+        };
+        let (low, high) = (low.as_ref(), high.as_ref());
+        let extremes = self.extremes.iter().flat_map(|k| [low[*k], high[*k]]);
+        let last = [energy[1], *energy_deviation, *constraint];
+        std::iter::once(*t).chain(end.as_ref().iter().copied()).chain(extremes).chain(last).collect()
+    }
+}
 
 /// A member that was computed.
 pub(super) struct Row {
@@ -46,21 +82,23 @@ pub(super) struct Members<'a> {
     pub(super) sweep: &'a Sweep,
     pub(super) method: Method,
     pub(super) names: &'a [&'static str],
+    pub(super) summed: &'a Summed,
 }
 
-type Told = (Option<Summary<QUANTITIES>>, Option<String>);
+/// The numbers of the columns, and why the run ended early.
+type Told = (Vec<f64>, Option<String>);
 
 impl Members<'_> {
     fn schedule(&self) -> Schedule {
-        inspect::schedule(&self.sweep.scene)
+        self.sweep.scene.schedule()
     }
 
     /// How many members are computed together: those of one register, or one. They are the same at any time, since a member in lanes may
     /// share its numbers with the others there.
     pub(super) fn group(&self) -> u64 {
         let (mut lanes, schedule) = (false, self.schedule());
-        if let Some(method) = self.lane_method() {
-            in_lanes(&[&self.sweep.scene], method, (schedule.t0, schedule.step), &mut |_, _| lanes = true);
+        if let (Some(method), AnyScene::Sleigh(scene)) = (self.lane_method(), &self.sweep.scene) {
+            in_lanes(&[scene], method, (schedule.t0, schedule.step), &mut |_, _| lanes = true);
         }
         if lanes { LANES as u64 } else { 1 }
     }
@@ -79,18 +117,21 @@ impl Members<'_> {
     /// Some members, in order.
     pub(super) fn rows(&self, range: Range<u64>) -> Vec<Row> {
         let made: Vec<_> = range.map(|member| (member, self.sweep.member(member, self.names))).collect();
-        let scenes: Vec<&Scene> = made.iter().filter_map(|(_, scene)| scene.as_ref().ok()).collect();
-        let mut in_lanes = self.in_lanes(&scenes).into_iter();
-        let row = |(member, scene): &(u64, Result<Scene, scene::SweepError>)| {
+        let sleighs = made.iter().filter_map(|(_, scene)| match scene {
+            Ok(AnyScene::Sleigh(scene)) => Some(&**scene),
+            _ => None,
+        });
+        let mut in_lanes = self.in_lanes(&sleighs.collect::<Vec<_>>()).into_iter();
+        let row = |(member, scene): &(u64, Result<AnyScene, SweepError>)| {
             let mut values = self.sweep.values(*member);
-            let (summary, mut error) = match scene {
+            let (numbers, mut error) = match scene {
                 Ok(scene) => match in_lanes.next().flatten() {
-                    Some(summary) => (Some(summary), None),
+                    Some(summary) => (self.summed.numbers(Some(&summary)), None),
                     None => self.alone(scene),
                 },
-                Err(error) => (None, Some(error.to_string())),
+                Err(error) => (self.summed.numbers::<Vec<f64>>(None), Some(error.to_string())),
             };
-            values.extend(numbers(summary.as_ref()));
+            values.extend(numbers);
             if self.sweep.exponent {
                 let exponent = scene.as_ref().ok().filter(|_| error.is_none()).map(|scene| self.exponent(scene));
                 values.push(exponent.as_ref().and_then(|found| found.as_ref().ok()).copied().unwrap_or(f64::NAN));
@@ -102,13 +143,14 @@ impl Members<'_> {
     }
 
     /// One by itself: any scene, any method.
-    fn alone(&self, scene: &Scene) -> Told {
+    fn alone(&self, scene: &AnyScene) -> Told {
         let alone = Alone { method: &self.method, schedule: self.schedule(), every: self.sweep.every };
-        scene.visit(alone).unwrap_or_else(|error| (None, Some(error.to_string())))
+        let (summary, failure) = scene.visit(alone).unwrap_or_else(|error| (None, Some(error.to_string())));
+        (self.summed.numbers(summary.as_ref()), failure)
     }
 
     /// The largest Lyapunov exponent (1/s), after a tenth of the run.
-    fn exponent(&self, scene: &Scene) -> Result<f64, String> {
+    fn exponent(&self, scene: &AnyScene) -> Result<f64, String> {
         let found = scene.visit_free(Exponent { method: &self.method, schedule: self.schedule() });
         match found {
             Ok(Some(found)) => found,
@@ -118,7 +160,7 @@ impl Members<'_> {
     }
 
     /// In lanes, where there are lanes for it; none of a member that needs to be looked at by itself.
-    fn in_lanes(&self, scenes: &[&Scene]) -> Vec<Option<Summary<QUANTITIES>>> {
+    fn in_lanes(&self, scenes: &[&Scene]) -> Vec<Option<Summary<[f64; QUANTITIES]>>> {
         let Some(method) = self.lane_method() else { return Vec::new() };
         let schedule = self.schedule();
         let watching = Watching { schedule, every: self.sweep.every, of: &quantities };
@@ -135,41 +177,10 @@ impl Members<'_> {
     }
 }
 
-fn quantities(q: &[f64; 3], v: &[f64; 3]) -> [f64; QUANTITIES] {
-    words(&SleighState::from_coordinates(q, v))
-}
-
-fn words(state: &SleighState) -> [f64; QUANTITIES] {
-    [state.x, state.y, state.heading, state.speed, state.turn_rate]
-}
-
-/// The numbers of the columns.
-fn numbers(summary: Option<&Summary<QUANTITIES>>) -> [f64; COLUMNS.len()] {
-    let Some(Summary { t, end, low, high, energy, energy_deviation, constraint }) = summary else {
-        return [f64::NAN; COLUMNS.len()];
-    };
-    let [x, y, heading, speed, turn_rate] = *end;
-    // The heading has no extremes that mean anything.
-    let [[x_min, x_max], [y_min, y_max], _, [u_min, u_max], [w_min, w_max]] = from_fn(|k| [low[k], high[k]]);
-    [
-        *t,
-        x,
-        y,
-        heading,
-        speed,
-        turn_rate,
-        x_min,
-        x_max,
-        y_min,
-        y_max,
-        u_min,
-        u_max,
-        w_min,
-        w_max,
-        energy[1],
-        *energy_deviation,
-        *constraint,
-    ]
+/// What tells the state of a sleigh, as [`Built::state`] has it.
+fn quantities(_t: f64, q: &[f64; 3], v: &[f64; 3]) -> [f64; QUANTITIES] {
+    let SleighState { x, y, heading, speed, turn_rate } = SleighState::from_coordinates(q, v);
+    [x, y, heading, speed, turn_rate]
 }
 
 struct Alone<'a> {
@@ -179,13 +190,15 @@ struct Alone<'a> {
 }
 
 impl Visitor for Alone<'_> {
-    type Output = Told;
+    type Output = (Option<Summary<Vec<f64>>>, Option<String>);
 
-    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Told {
-        let of = |q: &[f64; N], v: &[f64; N]| from_fn(|k| system.value(k, 0.0, q, v));
+    fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
+        let count = system.in_state();
+        let of =
+            |t: f64, q: &[f64; N], v: &[f64; N]| (0..count).map(|k| system.value(k, t, q, v)).collect::<Vec<f64>>();
         let watching = Watching { schedule: self.schedule, every: self.every, of: &of };
         let (summary, failure) = summarise(&system, self.method, (q, v), &watching);
-        (Some(summary), failure.map(|failure| failure.to_string()))
+        (summary, failure.map(|failure| failure.to_string()))
     }
 }
 
@@ -201,7 +214,8 @@ impl Visitor for Exponent<'_> {
         let settle = self.schedule.steps / 10;
         let schedule = Schedule { steps: self.schedule.steps - settle, ..self.schedule };
         let request = LyapunovRequest { schedule, settle, exponents: Some(1), q, v };
-        let found = lyapunov((&*system, &system), self.method, &request, &mut ()).map_err(|error| error.to_string())?;
+        let found = lyapunov_within((&*system, &system), system.own(), self.method, &request, &mut ());
+        let found = found.map_err(|error| error.to_string())?;
         match found.failure {
             Some(failure) => Err(failure.to_string()),
             None => Ok(found.exponents[0]),

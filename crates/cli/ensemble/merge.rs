@@ -30,7 +30,7 @@ pub(crate) fn merge(arguments: &MergeArguments) -> Result<(), CliError> {
     let lines = Lines::new(&about.identity, columns.len());
     let rows = || -> Result<_, Error> { Ok(parts::rows((&lines, &header), &parts)) };
     let unreadable = |source| CliError::Read { path: folder.clone(), source };
-    let mut totals = Totals::new(about.keys.len(), 0);
+    let mut totals = Totals::new(&about, 0);
     let mut all = rows().map_err(unreadable)?;
     while let Some(text) = all.next().map_err(unreadable)? {
         totals.take(text);

@@ -26,7 +26,7 @@ use dla::Checkpoint;
 use harness::analysis::has_tangents;
 use harness::ensemble::in_order;
 use indicatif::ProgressBar;
-use members::{COLUMNS, Members, Row};
+use members::{Members, Row, Summed};
 use result::Shape;
 use scene::{Column, Sweep};
 use spool::{Asked, Spool};
@@ -38,14 +38,15 @@ use totals::Totals;
 pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
     let names = inspect::method_names();
     let sweep = Sweep::load(&arguments.sweep, &names)?;
-    let method = inspect::method(&sweep.scene.run)?;
+    let method = inspect::method(sweep.scene.run())?;
     if sweep.exponent {
         has_tangents(&method).map_err(|reason| CliError::Request(format!("output.exponent: {reason}")))?;
     }
-    let identity = identity(&sweep);
-    let about = About::new(&arguments.sweep, &sweep, &identity);
+    let (identity, summed) = (identity(&sweep), Summed::of(&sweep)?);
+    let about = About::new(&arguments.sweep, &sweep, &summed, &identity);
+    let members = Members { sweep: &sweep, method, names: &names, summed: &summed };
     if let Some(share) = arguments.part {
-        return parts::make(arguments, &about, &Members { sweep: &sweep, method, names: &names }, share);
+        return parts::make(arguments, &about, &members, share);
     }
     let out = match &arguments.out {
         Some(path) => {
@@ -59,20 +60,19 @@ pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
         None => None,
     };
     let interrupt = Interrupt::listen_saying("stopping after the members that have begun; Ctrl-C again ends at once");
-    let mut totals = Totals::new(sweep.keys().count(), 0);
+    let mut totals = Totals::new(&about, 0);
     let mut spool = match out {
         Some((path, _)) => {
-            let of = (identity.as_str(), 0..sweep.count(), header(&sweep).len());
+            let of = (identity.as_str(), 0..sweep.count(), about.columns().len());
             let asked = Asked { resume: arguments.resume, force: arguments.force };
             Some(Spool::open(path, of, asked, |values, error| totals.add(values, error))?)
         }
         None => None,
     };
     let done = spool.as_ref().map_or(0, Spool::next);
-    let bar = progress::bar(method.info().name, sweep.count());
+    let bar = progress::bar(members.method.info().name, sweep.count());
     bar.inc(done);
     let begin = Instant::now();
-    let members = Members { sweep: &sweep, method, names: &names };
     let outcome = compute(&members, sweep.count(), &mut spool, &mut totals, &interrupt, &bar);
     bar.finish_and_clear();
     let seconds = begin.elapsed().as_secs_f64();
@@ -152,9 +152,8 @@ fn identity(sweep: &Sweep) -> String {
 }
 
 /// Names and units of the columns. Those of the keys have no unit: a key may be any number of the scene.
-fn header(sweep: &Sweep) -> Vec<Column> {
+fn header(sweep: &Sweep, summed: &Summed) -> Vec<Column> {
     let exponent = sweep.exponent.then(|| Column::new("exponent", "1/s"));
     let keys = sweep.keys().map(|key| Column::new(key, ""));
-    let columns = COLUMNS.iter().map(|(name, unit)| Column::new(*name, *unit));
-    std::iter::once(Column::whole("member")).chain(keys).chain(columns).chain(exponent).collect()
+    std::iter::once(Column::whole("member")).chain(keys).chain(summed.columns()).chain(exponent).collect()
 }

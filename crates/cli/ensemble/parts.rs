@@ -66,7 +66,7 @@ pub(super) fn make(
     let path = folder.join(name(&stem, &range));
     let (numbers, header) = (about.columns().len(), format!("{}\n", about.identity));
     let part = Part { path: path.clone(), members: range.clone() };
-    let mut totals = Totals::new(about.keys.len(), range.start);
+    let mut totals = Totals::new(about, range.start);
     let mut seconds = 0.0;
     let mut computed = 0;
     let there = !arguments.force && path.exists();
@@ -76,7 +76,7 @@ pub(super) fn make(
         if there {
             terminal::say("warning", &format!("{} is damaged; it is made again", path.display()));
         }
-        totals = Totals::new(about.keys.len(), range.start);
+        totals = Totals::new(about, range.start);
         let note = "stopping after the members that have begun; Ctrl-C again ends at once";
         let interrupt = Interrupt::listen_saying(note);
         // The same command goes on, as a batch system gives it again.

@@ -1,7 +1,7 @@
 use super::about::About;
 use super::lines::parsed;
-use super::members::COLUMNS;
 use crate::table;
+use scene::Column;
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -14,11 +14,11 @@ pub(super) struct Totals {
     failed: u64,
     first: Option<String>,
     /// Least, largest and sum of every column, and of the exponent; how many there are of each.
-    columns: Vec<Column>,
+    columns: Vec<(Column, Extent)>,
 }
 
 #[derive(Clone, Copy)]
-struct Column {
+struct Extent {
     low: f64,
     high: f64,
     sum: f64,
@@ -26,10 +26,13 @@ struct Column {
 }
 
 impl Totals {
-    /// Of members from that one on, with so many keys.
-    pub(super) fn new(keys: usize, begin: u64) -> Self {
-        let none = Column { low: f64::INFINITY, high: f64::NEG_INFINITY, sum: 0.0, count: 0 };
-        Self { keys, begin, count: 0, failed: 0, first: None, columns: vec![none; COLUMNS.len() + 1] }
+    /// Of members of a sweep from that one on.
+    pub(super) fn new(of: &About, begin: u64) -> Self {
+        let none = Extent { low: f64::INFINITY, high: f64::NEG_INFINITY, sum: 0.0, count: 0 };
+        let keys = of.keys.len();
+        // After the number of the member and its keys.
+        let columns = of.columns().into_iter().skip(1 + keys).map(|column| (column, none)).collect();
+        Self { keys, begin, count: 0, failed: 0, first: None, columns }
     }
 
     /// Takes in a member.
@@ -41,7 +44,7 @@ impl Totals {
             self.first.get_or_insert_with(|| format!("member {number}: {error}"));
             return;
         }
-        for (column, value) in self.columns.iter_mut().zip(&values[self.keys..]) {
+        for ((_, column), value) in self.columns.iter_mut().zip(&values[self.keys..]) {
             if !value.is_nan() {
                 (column.low, column.high) = (column.low.min(*value), column.high.max(*value));
                 (column.sum, column.count) = (column.sum + value, column.count + 1);
@@ -65,17 +68,13 @@ impl Totals {
         Some(format!("{} of {} members failed, the first so: {first}", self.failed, self.count))
     }
 
-    fn named(&self) -> impl Iterator<Item = (&'static str, &'static str, Column)> {
-        let names = COLUMNS.iter().copied().chain([("exponent", "1/s")]);
-        names
-            .zip(&self.columns)
-            .filter(|(_, column)| column.count > 0)
-            .map(|((name, unit), column)| (name, unit, *column))
+    fn named(&self) -> impl Iterator<Item = &(Column, Extent)> {
+        self.columns.iter().filter(|(_, extent)| extent.count > 0)
     }
 
     pub(super) fn json(&self, of: &About, seconds: f64, computed: u64) -> Value {
-        let column = |(name, _, c): (&str, &str, Column)| {
-            (name.to_owned(), json!({"min": c.low, "max": c.high, "mean": c.sum / c.count as f64}))
+        let column = |(column, c): &(Column, Extent)| {
+            (column.name.clone(), json!({"min": c.low, "max": c.high, "mean": c.sum / c.count as f64}))
         };
         json!({
             "scene": of.scene,
@@ -106,9 +105,10 @@ impl Totals {
             ("varied".to_owned(), of.keys.join(", ")),
             ("members".to_owned(), format!("{} of {}, {} failed", self.count, of.members, self.failed)),
         ];
-        for (name, unit, c) in self.named().skip(1) {
+        for (Column { name, unit, .. }, c) in self.named().skip(1) {
             let [low, high, mean] = [c.low, c.high, c.sum / c.count as f64].map(table::number);
-            lines.push((name.to_owned(), format!("from {low} to {high} {unit}, {mean} on average")));
+            let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+            lines.push((name.clone(), format!("from {low} to {high}{unit}, {mean} on average")));
         }
         // Of what was only put together there is no time.
         if computed > 0 {

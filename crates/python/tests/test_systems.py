@@ -157,6 +157,24 @@ def test_a_lagranges_method_is_a_system() -> None:
     np.testing.assert_array_equal(system.run(duration=1.0)["x"], noslip.System(**parts).run(duration=1.0)["x"])
 
 
+def test_events_and_analyses_take_a_system() -> None:
+    # The skate turns evenly, from 0.3 rad at 0.5 rad/s.
+    system = noslip.System(**skate())
+    run = system.run(method="gauss16", step=0.05, duration=2.0, events=["theta=1", "theta_dot=2"])
+    assert [event["t"] for event in run.events] == [pytest.approx(1.4, abs=1e-9)]
+    ended = system.run(method="gauss16", step=0.05, duration=2.0, until="theta=1")
+    assert ended.final["theta"] == pytest.approx(1.0, abs=1e-9)
+    with pytest.raises(noslip.RequestError, match="no quantity `speed`"):
+        system.run(events="speed=0")
+    found = system.lyapunov(step=0.05, duration=20.0, settle=2.0)
+    assert len(found["exponents"]) == 5 and abs(found["sum"] - found["divergence_mean"]) < 1e-2
+    section = system.section(plane="theta=1", axes="x,y", step=0.05, duration=20.0)
+    assert section["starts"][0]["points"][0][0] == pytest.approx(1.4, abs=1e-9)
+    assert system.cost(step=0.05, duration=1.0)["operations"]["forces"] == 0
+    rows = noslip.ensemble({"scene": "knife-edge", "duration": 2.0, "grid": {"parameters.slope": [0.1, 0.2]}})
+    assert rows["speed"][0] < rows["speed"][1]
+
+
 def test_what_a_scene_has_no_text_for_is_refused() -> None:
     x = dynamicsymbols("x")
     for wrong in [sp.besselj(0, x), x.diff(t, 2), sp.Integral(x, x)]:

@@ -41,7 +41,7 @@ mod written;
 
 pub use self::built::{Built, Place as StartPlace, QUANTITIES, Quantity, SleighQuantity, text_quantities};
 pub use self::scene::Scene;
-pub use self::text::{AnyScene, BuildError, TextScene};
+pub use self::text::{AnyScene, BuildError, Given, TextScene};
 pub use ::text::{AnyText, Coordinate, Model, Moved, TextMechanics};
 pub use bundled::{Bundled, SCHEMA, bundled, bundled_texts};
 pub use effects::{EFFECTS, EffectInfo, HillSpec, PathSpec, SceneEffect, Shape, TimeSpec, TrailersSpec};

@@ -198,7 +198,7 @@ fn of_text() -> Fault {
         problem: "makes this a system of text, and a sleigh is needed here".to_owned(),
         found: None,
         accepted: "the tables `[sleigh]`, `[start]` and `[run]`".to_owned(),
-        help: Some("`run`, `compare`, `precision`, `equilibria` and `check` take systems of text".to_owned()),
+        help: Some("every command but `phase` takes systems of text".to_owned()),
     }
 }
 

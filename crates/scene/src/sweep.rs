@@ -1,10 +1,11 @@
-use crate::bundled::bundled;
+use crate::bundled;
 use crate::document::Document;
 use crate::draw::{Draw, Stream};
 use crate::fault::Fault;
 use crate::keys::{DURATION, STEP};
 use crate::table::Table as SceneTable;
-use crate::{Scene, SceneError, file, suggest, variation};
+use crate::text::varied;
+use crate::{AnyScene, Scene, SceneError, file, suggest, variation};
 use sleigh::Sleigh;
 use thiserror::Error;
 use toml::de::DeTable;
@@ -22,7 +23,7 @@ const COMMON: [&str; 8] = [
     "sleigh.offset",
 ];
 
-const UNKNOWN: &str = "is not a number of the scene";
+pub(crate) const UNKNOWN: &str = "is not a number of the scene";
 const NUMBERS: &str = "keys of the scene's start, sleigh and effects that have a number, like start.speed, sleigh.offset, \
                        effects.0.stiffness.1";
 
@@ -38,7 +39,7 @@ const MOST: u64 = 1_000_000_000_000;
 #[derive(Debug, Clone)]
 pub struct Sweep {
     /// The scene that is varied, with the method, the step and the duration of the sweep.
-    pub scene: Scene,
+    pub scene: AnyScene,
     /// Extremes are looked for at every so many steps.
     pub every: u64,
     /// Whether the largest Lyapunov exponent of every member is wanted.
@@ -97,10 +98,9 @@ impl Sweep {
         let name = root.text("scene", accepted)?.ok_or_else(|| root.missing("scene", accepted.to_owned()))?;
         let method = root.text("method", &format!("a string, one of {}", suggest::list(methods)))?;
         let (step, duration) = (root.number(&STEP)?, root.number(&DURATION)?);
-        let bundled_text =
-            bundled().iter().find(|scene| scene.name == name.replace('_', "-")).map(|scene| scene.text.to_owned());
+        let bundled_text = bundled::named(name).map(|scene| scene.text.to_owned());
         let scene_text = bundled_text.map_or_else(|| file::read(name), Ok)?;
-        let scene = Scene::parse(&scene_text, name, methods)?;
+        let scene = AnyScene::parse(&scene_text, name, methods)?;
         let scene =
             scene.with_overrides(method, step, duration, None, methods).map_err(|error| in_sweep(&root, error))?;
         let mut table: Table = scene_text.parse().unwrap_or_default();
@@ -115,12 +115,15 @@ impl Sweep {
 
         let (grid, random) = variation::read(&root)?;
         // What no member could have is said before the first one.
-        let unknown = |key: &str| set(&mut table.clone(), key, 0.0).is_none();
+        let (unknown, accepted): (&dyn Fn(&str) -> bool, _) = match &scene {
+            AnyScene::Sleigh(_) => (&|key| set(&mut table.clone(), key, 0.0).is_none(), NUMBERS),
+            AnyScene::Text(scene) => (&|key| !scene.varies(key), varied::NUMBERS),
+        };
         if let Some(leaf) = grid.iter().find(|leaf| unknown(&leaf.key)) {
-            return Err(leaf.fail(&root, UNKNOWN, NUMBERS).into());
+            return Err(leaf.fail(&root, UNKNOWN, accepted).into());
         }
         if let Some(leaf) = random.iter().find(|leaf| unknown(&leaf.key)) {
-            return Err(leaf.fail(&root, UNKNOWN, NUMBERS).into());
+            return Err(leaf.fail(&root, UNKNOWN, accepted).into());
         }
         let section = |name| root.section(name);
         let (choice, output) = (section("random")?, section("output")?);
@@ -130,7 +133,7 @@ impl Sweep {
         let truth = |table: &Option<SceneTable<'_>>, key| table.as_ref().map_or(Ok(false), |table| table.truth(key));
         let samples = whole(&choice, "count")?.unwrap_or(1);
         let sweep = Self {
-            every: whole(&output, "every")?.unwrap_or_else(|| scene.run.steps().div_ceil(100)).max(1),
+            every: whole(&output, "every")?.unwrap_or_else(|| scene.run().steps().div_ceil(100)).max(1),
             exponent: truth(&output, "exponent")?,
             seed: whole(&choice, "seed")?.unwrap_or(0),
             common: truth(&choice, "common")?,
@@ -202,14 +205,26 @@ impl Sweep {
     ///
     /// # Errors
     /// [`SweepError`] where its values make no scene.
-    pub fn member(&self, member: u64, methods: &[&str]) -> Result<Scene, SweepError> {
+    pub fn member(&self, member: u64, methods: &[&str]) -> Result<AnyScene, SweepError> {
         let values: Vec<_> = self.keys().map(|key| (key.to_owned(), self.value(member, key))).collect();
         self.with(&values, methods)
     }
 
     /// The scene with other values.
-    fn with(&self, values: &[(String, f64)], methods: &[&str]) -> Result<Scene, SweepError> {
-        let mut scene = self.scene.clone();
+    fn with(&self, values: &[(String, f64)], methods: &[&str]) -> Result<AnyScene, SweepError> {
+        match &self.scene {
+            AnyScene::Sleigh(scene) => {
+                self.sleigh((**scene).clone(), values, methods).map(Box::new).map(AnyScene::Sleigh)
+            }
+            AnyScene::Text(scene) => {
+                let varied = scene.with_values(values).map_err(|(key, problem)| self.fail(&key, problem))?;
+                Ok(AnyScene::Text(Box::new(varied)))
+            }
+        }
+    }
+
+    /// A sleigh with other values.
+    fn sleigh(&self, mut scene: Scene, values: &[(String, f64)], methods: &[&str]) -> Result<Scene, SweepError> {
         let mut body = [scene.sleigh.mass(), scene.sleigh.inertia(), scene.sleigh.offset()];
         let mut deep = None;
         for (key, value) in values {

@@ -10,6 +10,15 @@ pub trait SeededMechanics<const N: usize, const M: usize>: Mechanics<N, M> {
     /// The system on numbers with derivatives.
     fn gradients(&self) -> Box<dyn Gradients<N, M> + '_>;
 
+    /// As [`Mechanics::near`].
+    fn near_seeded(
+        &self,
+        t: f64,
+        q: &[f64; N],
+        basis: u64,
+        then: &mut dyn FnMut(u64, &dyn SeededMechanics<N, M>),
+    ) -> bool;
+
     /// The velocity `W xi + v_b` of quasi-velocities; none where there is no basis.
     fn velocity_seeded(&self, t: Seeded, q: &[Seeded; N], xi: &[Seeded; N]) -> Option<[Seeded; N]>;
 
@@ -20,6 +29,16 @@ pub trait SeededMechanics<const N: usize, const M: usize>: Mechanics<N, M> {
 impl<Sys: System<N, M>, const N: usize, const M: usize> SeededMechanics<N, M> for Sys {
     fn gradients(&self) -> Box<dyn Gradients<N, M> + '_> {
         Box::new(SeededMember { family: Unparametrised(self), parameters: [] })
+    }
+
+    fn near_seeded(
+        &self,
+        t: f64,
+        q: &[f64; N],
+        basis: u64,
+        then: &mut dyn FnMut(u64, &dyn SeededMechanics<N, M>),
+    ) -> bool {
+        System::near(self, t, q, basis).map(|(near, number)| then(number, &near)).is_some()
     }
 
     fn velocity_seeded(&self, t: Seeded, q: &[Seeded; N], xi: &[Seeded; N]) -> Option<[Seeded; N]> {

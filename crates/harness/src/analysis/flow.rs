@@ -73,26 +73,81 @@ fn implicit<const N: usize, const M: usize>(
 /// and the rates `xi'`.
 pub(super) fn divergence<const N: usize, const M: usize>(
     flow: &dyn ReducedFlow<N, M>,
+    variables: &Variables,
     t: f64,
     q: &[f64; N],
     xi: &[f64; N],
 ) -> Option<(f64, [f64; N])> {
-    let [velocity, rate] = flow.slope(t, &seeded(q, 0), &seeded(&admissible::<N, M>(xi), N))?;
-    let of_q: f64 = (0..N).map(|i| velocity[i].eps[i]).sum();
-    let of_xi: f64 = (0..N - M).map(|a| rate[a].eps[N + a]).sum();
-    Some((of_q + of_xi, from_fn(|a| if a < N - M { rate[a].re } else { 0.0 })))
+    let xi = admissible::<N, M>(xi);
+    let (mut sum, mut rates) = (0.0, [0.0; N]);
+    for block in variables.blocks() {
+        let slope = flow.slope(t, &block.seeded(q, 0), &block.seeded(&xi, N))?;
+        // Of each variable the derivative of its own rate.
+        sum += block.all().map(|(direction, variable)| entry(&slope, variable).eps[direction]).sum::<f64>();
+        rates = from_fn(|a| if a < N - M { slope[1][a].re } else { 0.0 });
+    }
+    Some((sum, rates))
 }
 
-/// Variables that are seeded in the directions from `first` on, as far as there are directions.
-pub(super) fn seeded<const N: usize>(x: &[f64; N], first: usize) -> [Seeded; N] {
-    from_fn(|i| {
-        let mut number = Seeded::constant(x[i]);
-        if let Some(eps) = number.eps.get_mut(first + i) {
-            *eps = 1.0;
-        }
-        number
-    })
+/// The component of a slope, or of an increment, that belongs to a variable.
+pub(super) fn entry<const N: usize>([of_q, of_xi]: &Slope<N>, variable: usize) -> &Seeded {
+    if variable < N { &of_q[variable] } else { &of_xi[variable - N] }
 }
+
+/// The variables of the reduced equations: of `N` coordinates and their quasi-velocities, numbered `N + a`, those that are not there to
+/// fill up a shape.
+#[derive(Debug, Clone)]
+pub(super) struct Variables(Vec<usize>);
+
+/// Some of the variables, no more than there are directions to be seeded in.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Block<'a> {
+    variables: &'a [usize],
+    /// The place of the first among all.
+    pub(super) first: usize,
+}
+
+impl Variables {
+    /// Of a shape of `N` coordinates those of `n` coordinates and `m` constraints, which stand first.
+    pub(super) fn new<const N: usize>((n, m): (usize, usize)) -> Self {
+        Self((0..n.min(N)).chain(N..N + n.saturating_sub(m).min(N)).collect())
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    /// The variable in that place.
+    pub(super) fn at(&self, place: usize) -> usize {
+        self.0[place]
+    }
+
+    pub(super) fn blocks(&self) -> impl Iterator<Item = Block<'_>> {
+        let parts = self.0.chunks(DIRECTIONS).enumerate();
+        parts.map(|(k, variables)| Block { variables, first: k * DIRECTIONS })
+    }
+}
+
+impl Block<'_> {
+    /// The directions with their variables.
+    pub(super) fn all(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.variables.iter().copied().enumerate()
+    }
+
+    /// The variables from `first` on, each seeded in its direction where it is one of these.
+    pub(super) fn seeded<const N: usize>(&self, x: &[f64; N], first: usize) -> [Seeded; N] {
+        let mut numbers = x.map(Seeded::constant);
+        for (direction, variable) in self.all() {
+            if let Some(number) = variable.checked_sub(first).and_then(|i| numbers.get_mut(i)) {
+                number.eps[direction] = 1.0;
+            }
+        }
+        numbers
+    }
+}
+
+/// What seeds there are directions for.
+const DIRECTIONS: usize = 8;
 
 /// Quasi-velocities with zeros in the places that do not count.
 pub(super) fn admissible<const N: usize, const M: usize>(xi: &[f64; N]) -> [f64; N] {

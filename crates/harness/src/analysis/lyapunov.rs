@@ -1,7 +1,7 @@
 use super::neutral::bias;
 use super::pace::Pace;
 use super::stretch::Stretch;
-use super::tangent::Steps;
+use super::tangent::{StepTangent, Steps};
 use super::verdict::{Evidence, MotionVerdict};
 use crate::run::integrate_pieces;
 use crate::timing::Ticker;
@@ -126,7 +126,22 @@ pub enum LyapunovError {
 /// # Errors
 /// [`LyapunovError`] where the request makes no sense, or the method has no derivatives here.
 pub fn lyapunov<const N: usize, const M: usize>(
+    subject: (&dyn FullMechanics<N, M>, &dyn OwnMethods<N, M>),
+    method: &Method,
+    request: &LyapunovRequest<N>,
+    progress: &mut dyn Progress,
+) -> Result<Lyapunov, LyapunovError> {
+    lyapunov_within(subject, (N, M), method, request, progress)
+}
+
+/// The same of a system of which so many coordinates and constraints, the first, are its own: the others fill up the shape, and have no
+/// exponents.
+///
+/// # Errors
+/// As [`lyapunov`].
+pub fn lyapunov_within<const N: usize, const M: usize>(
     (system, own): (&dyn FullMechanics<N, M>, &dyn OwnMethods<N, M>),
+    its: (usize, usize),
     method: &Method,
     request: &LyapunovRequest<N>,
     progress: &mut dyn Progress,
@@ -136,7 +151,7 @@ pub fn lyapunov<const N: usize, const M: usize>(
     if let Some(time) = system.jump_times(first, last).into_iter().min_by(f64::total_cmp) {
         return Err(LyapunovError::Jump { time });
     }
-    lyapunov_by(system, method, request, |schedule, state, observer| {
+    lyapunov_of(system, its, method, request, |schedule, state, observer| {
         integrate_pieces(Subject { system, own }, method, schedule, state, &mut (observer, Ticker::new(progress, 0)))
     })
 }
@@ -152,12 +167,27 @@ pub fn lyapunov_by<const N: usize, const M: usize>(
     request: &LyapunovRequest<N>,
     drive: impl FnOnce(&Schedule, &mut State<N>, &mut dyn Observer<N, M>) -> Result<u64, RunError>,
 ) -> Result<Lyapunov, LyapunovError> {
+    lyapunov_of(system, (N, M), method, request, drive)
+}
+
+/// The same of a system of which so many coordinates and constraints, the first, are its own: the others fill up the shape.
+///
+/// # Errors
+/// As [`lyapunov_by`].
+fn lyapunov_of<const N: usize, const M: usize>(
+    system: &dyn SeededMechanics<N, M>,
+    own: (usize, usize),
+    method: &Method,
+    request: &LyapunovRequest<N>,
+    drive: impl FnOnce(&Schedule, &mut State<N>, &mut dyn Observer<N, M>) -> Result<u64, RunError>,
+) -> Result<Lyapunov, LyapunovError> {
     let LyapunovRequest { schedule, settle, q, v, .. } = *request;
-    let (count, most) = (request.exponents.unwrap_or(2 * N - M), 2 * N - M);
+    let tangent = Steps::of(system, own, method)?;
+    let most = tangent.count();
+    let count = request.exponents.unwrap_or(most);
     if count == 0 || count > most {
         return Err(LyapunovError::Count { asked: count, most });
     }
-    let tangent = Steps::of(system, method)?;
     let mut stretch = Stretch::new(&tangent, method.info().order, count, (settle, schedule.steps));
     let all = Schedule { steps: settle.saturating_add(schedule.steps), ..schedule };
     let outcome = drive(&all, &mut State::new(q, v, system.angles()), &mut stretch);

@@ -31,6 +31,7 @@ pub use equilibria::{Equilibrium, EquilibriumError, relative_equilibria};
 pub use linearised::{ReducedField, reduced_field};
 pub use lyapunov::{
     Lyapunov, LyapunovError, LyapunovFailure, LyapunovRequest, Running, kaplan_yorke, lyapunov, lyapunov_by,
+    lyapunov_within,
 };
 pub use measure::{enclosed_area, measure_defect};
 pub use momentum_meter::MomentumMeter;

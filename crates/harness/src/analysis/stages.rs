@@ -1,4 +1,4 @@
-use super::flow::{ReducedFlow, Slope, admissible, seeded};
+use super::flow::{Block, ReducedFlow, Slope, admissible};
 use dla::convergence::tolerances::{BLIND, ROUNDINGS, SETTLED, STALL_OF_FIXED_POINT};
 use dla::{History, NewtonError, SensitivityError};
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
@@ -6,8 +6,6 @@ use lagrangian::{Scalar, Seeded, from_fn};
 
 /// The most stages of a method.
 const MOST: usize = 8;
-/// What seeds there are directions for.
-pub(super) const DIRECTIONS: usize = 8;
 const MAX_SWEEPS: u32 = 100;
 
 /// A Runge-Kutta method on the reduced equations: collocation, or an explicit one.
@@ -88,19 +86,18 @@ impl Stages {
         }
     }
 
-    /// The increments of `q` and `xi` over a step from `t` to `t + h`, with their derivatives in `(q0, xi0)`.
+    /// The increments of `q` and `xi` over a step from `t` to `t + h`, with their derivatives in some variables of `(q0, xi0)`.
     pub(super) fn increments<const N: usize, const M: usize>(
         &self,
         flow: &dyn ReducedFlow<N, M>,
         (t, h): (f64, f64),
         q0: &[f64; N],
         xi0: &[f64; N],
+        block: Block<'_>,
     ) -> Result<Slope<N>, SensitivityError> {
-        if 2 * N - M > DIRECTIONS {
-            return Err(TOO_MANY);
-        }
-        let (q0, xi0) = (seeded(q0, 0), seeded(&admissible::<N, M>(xi0), N));
-        let start: Vec<f64> = q0.iter().chain(&xi0[..N - M]).map(|x| x.re).collect();
+        let variables = block.all().map(|(_, variable)| if variable < N { q0[variable] } else { xi0[variable - N] });
+        let start: Vec<f64> = variables.collect();
+        let (q0, xi0) = (block.seeded(q0, 0), block.seeded(&admissible::<N, M>(xi0), N));
         let count = self.nodes.len().min(MOST);
         let first = flow.slope(t, &q0, &xi0).ok_or(NO_EQUATIONS)?;
         let mut slopes = [first; MOST];
@@ -134,9 +131,6 @@ impl Stages {
         Err(SensitivityError::Equations(NewtonError::IterationLimit { iterations: MAX_SWEEPS, correction, history }))
     }
 }
-
-pub(super) const TOO_MANY: SensitivityError =
-    SensitivityError::Unsupported { reason: "the system has more than eight coordinates and velocities" };
 
 const NO_EQUATIONS: SensitivityError =
     SensitivityError::Unsupported { reason: "the system has no reduced equations, or they are degenerate" };

@@ -1,6 +1,6 @@
 use super::lyapunov::{LyapunovFailure, Running};
 use super::pace::Pace;
-use super::tangent::{Local, StepTangent};
+use super::tangent::{Local, StepTangent, Stepped};
 use super::volume::Volume;
 use crate::Blocks;
 use dla::{Observer, SensitivityError, State, StepReport, TangentRunError, View};
@@ -55,7 +55,7 @@ impl<'a, const N: usize, const M: usize> Stretch<'a, N, M> {
         let sums = Sums { logs: vec![0.0; count], divergence: 0.0, time: 0.0 };
         Self {
             tangent,
-            frame: DMatrix::from_fn(2 * N - M, count, part).qr().q(),
+            frame: DMatrix::from_fn(tangent.count(), count, part).qr().q(),
             settle,
             steps,
             before: None,
@@ -70,7 +70,7 @@ impl<'a, const N: usize, const M: usize> Stretch<'a, N, M> {
     }
 
     fn begin(&mut self, t: f64, state: &State<N>) -> Result<(), TangentRunError> {
-        let local = self.tangent.local(t, state).map_err(|source| TangentRunError { step: 1, time: t, source })?;
+        let local = self.tangent.begin(t, state).map_err(|source| TangentRunError { step: 1, time: t, source })?;
         let mut pace = Pace::new(self.tangent.weights(t, state), self.settle, self.steps);
         pace.add(0, t, &local.xi, &local.rate);
         self.pace = Some(pace);
@@ -82,7 +82,8 @@ impl<'a, const N: usize, const M: usize> Stretch<'a, N, M> {
         let Some((t0, start, local)) = self.before else { return Ok(()) };
         let failed = |source| TangentRunError { step: k, time: t0, source };
         let h = t - t0;
-        let matrix = self.tangent.matrix((t0, h), &start, state, *report).map_err(failed)?;
+        let Stepped { matrix, change, end, next } =
+            self.tangent.step((t0, h), &start, state, *report).map_err(failed)?;
         let qr = (&matrix * &self.frame).qr();
         let logs: Vec<f64> = qr.r().diagonal().iter().map(|r| r.abs().ln()).collect();
         if !logs.iter().all(|log| log.is_finite()) {
@@ -90,15 +91,14 @@ impl<'a, const N: usize, const M: usize> Stretch<'a, N, M> {
             return Err(failed(SensitivityError::Unsupported { reason }).into());
         }
         self.frame = qr.q();
-        let next = self.tangent.local(t, state).map_err(failed)?;
         self.before = Some((t, *state, next));
         if let Some(pace) = &mut self.pace {
             pace.add(k, t, &next.xi, &next.rate);
         }
-        let ends = [local.divergence, next.divergence];
+        let ends = [local.divergence, end.divergence];
         if k > self.settle {
             self.sums.time += h;
-            self.sums.divergence += 0.5 * h * (ends[0] + ends[1]);
+            self.sums.divergence += 0.5 * h * (ends[0] + ends[1]) + change;
             for (i, log) in logs.iter().enumerate() {
                 self.sums.logs[i] += log;
                 self.blocks[i].add(t, log / h);
@@ -107,7 +107,8 @@ impl<'a, const N: usize, const M: usize> Stretch<'a, N, M> {
         // A whole frame spans all volumes.
         let whole = logs.len() == matrix.nrows();
         let determinant = if whole { logs.iter().sum() } else { matrix.determinant().abs().ln() };
-        match self.volume.add(h, &logs, determinant, ends) {
+        // A change of the basis is none of the motion.
+        match self.volume.add(h, &logs, determinant - change, ends) {
             Some(Ok(())) => self.agreed.clone_from(&self.sums),
             Some(Err(apart)) => {
                 // What came after the last agreement is not told.

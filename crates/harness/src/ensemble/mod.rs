@@ -10,7 +10,7 @@
 //! let state = LaneState::new(&starts, [false, false, true]);
 //! let mut ensemble = ClosedEnsemble::new(sleighs, 0.05, state);
 //! let schedule = Schedule { t0: 0.0, step: 0.05, steps: 800 };
-//! let speed = |q: &[f64; 3], v: &[f64; 3]| [SleighState::from_coordinates(q, v).speed];
+//! let speed = |_: f64, q: &[f64; 3], v: &[f64; 3]| [SleighState::from_coordinates(q, v).speed];
 //! let systems = sleighs.each_ref().map(|sleigh| sleigh as &dyn Mechanics<3, 1>);
 //! let summaries = watch(&mut ensemble, &systems, &Watching { schedule, every: 50, of: &speed });
 //! assert!(summaries.iter().flatten().all(|summary| summary.low[0] < -0.9 && summary.end[0] > 1.0));
@@ -22,5 +22,5 @@ mod summary;
 mod watch;
 
 pub use stream::in_order;
-pub use summary::Summary;
+pub use summary::{Quantities, Summary};
 pub use watch::{Watching, summarise, watch};

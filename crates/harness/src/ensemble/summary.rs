@@ -1,17 +1,24 @@
 use dla::{Mechanics, State};
 use lagrangian::linear::larger;
 
+/// A list of numbers: an array, or a vector where their number is not known before.
+pub trait Quantities: AsRef<[f64]> + AsMut<[f64]> + Clone {}
+
+impl<T: AsRef<[f64]> + AsMut<[f64]> + Clone> Quantities for T {}
+
 /// A trajectory in a few numbers: its end, and extremes over the observed nodes.
+///
+/// `Q` is the list of the quantities, an array or a vector.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Summary<const K: usize> {
+pub struct Summary<Q> {
     /// Time of the end (s).
     pub t: f64,
     /// The quantities at the end.
-    pub end: [f64; K],
+    pub end: Q,
     /// The least of each.
-    pub low: [f64; K],
+    pub low: Q,
     /// The largest of each.
-    pub high: [f64; K],
+    pub high: Q,
     /// Energy at the start and at the end (J).
     pub energy: [f64; 2],
     /// `max |E - E0|` (J): an error, where nothing does work.
@@ -20,18 +27,20 @@ pub struct Summary<const K: usize> {
     pub constraint: f64,
 }
 
-impl<const K: usize> Summary<K> {
-    /// A summary before the first node.
-    pub(super) fn new() -> Self {
-        Self {
-            t: 0.0,
-            end: [0.0; K],
-            low: [f64::INFINITY; K],
-            high: [f64::NEG_INFINITY; K],
-            energy: [f64::NAN; 2],
-            energy_deviation: 0.0,
-            constraint: 0.0,
-        }
+impl<Q: Quantities> Summary<Q> {
+    /// The summary of the first node alone.
+    pub(super) fn first<const N: usize, const M: usize>(
+        system: &dyn Mechanics<N, M>,
+        t: f64,
+        state: &State<N>,
+        of: &dyn Fn(f64, &[f64; N], &[f64; N]) -> Q,
+    ) -> Self {
+        let end = of(t, &state.unwrapped(), state.v());
+        let energy = system.energy(t, state.q(), state.v());
+        let (low, high) = (end.clone(), end.clone());
+        let mut first = Self { t, end, low, high, energy: [energy; 2], energy_deviation: 0.0, constraint: 0.0 };
+        first.look(system, t, state);
+        first
     }
 
     /// Takes in one more node.
@@ -40,16 +49,18 @@ impl<const K: usize> Summary<K> {
         system: &dyn Mechanics<N, M>,
         t: f64,
         state: &State<N>,
-        of: impl Fn(&[f64; N], &[f64; N]) -> [f64; K],
+        of: &dyn Fn(f64, &[f64; N], &[f64; N]) -> Q,
     ) {
-        (self.t, self.end) = (t, of(&state.unwrapped(), state.v()));
-        for k in 0..K {
-            (self.low[k], self.high[k]) = (self.low[k].min(self.end[k]), self.high[k].max(self.end[k]));
+        (self.t, self.end) = (t, of(t, &state.unwrapped(), state.v()));
+        for (k, value) in self.end.as_ref().iter().enumerate() {
+            let (low, high) = (&mut self.low.as_mut()[k], &mut self.high.as_mut()[k]);
+            (*low, *high) = (low.min(*value), high.max(*value));
         }
         self.energy[1] = system.energy(t, state.q(), state.v());
-        if self.energy[0].is_nan() {
-            self.energy[0] = self.energy[1];
-        }
+        self.look(system, t, state);
+    }
+
+    fn look<const N: usize, const M: usize>(&mut self, system: &dyn Mechanics<N, M>, t: f64, state: &State<N>) {
         self.energy_deviation = larger(self.energy_deviation, (self.energy[1] - self.energy[0]).abs());
         let residual = system.residual(t, state.q(), state.v());
         self.constraint = residual.iter().fold(self.constraint, |most, residual| larger(most, residual.abs()));

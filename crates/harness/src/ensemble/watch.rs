@@ -1,25 +1,25 @@
-use super::Summary;
+use super::{Quantities, Summary};
 use crate::Method;
 use crate::run::integrate_pieces;
 use dla::{Ensemble, Mechanics, Observer, RunError, Schedule, State, StepReport, Subject, View};
 use std::fmt::{Debug, Formatter};
 use std::ops::ControlFlow;
 
-/// `K` quantities of a configuration, angles with their full turns, and a velocity.
-type Quantities<'a, const N: usize, const K: usize> = &'a dyn Fn(&[f64; N], &[f64; N]) -> [f64; K];
+/// Quantities of a time (s), a configuration, angles with their full turns, and a velocity.
+type Of<'a, Q, const N: usize> = &'a dyn Fn(f64, &[f64; N], &[f64; N]) -> Q;
 
 /// Which quantities are observed, and at which nodes.
 #[derive(Clone, Copy)]
-pub struct Watching<'a, const N: usize, const K: usize> {
+pub struct Watching<'a, Q, const N: usize> {
     /// The steps.
     pub schedule: Schedule,
     /// Every so many of them, and at the end.
     pub every: u64,
     /// The quantities.
-    pub of: Quantities<'a, N, K>,
+    pub of: Of<'a, Q, N>,
 }
 
-impl<const N: usize, const K: usize> Debug for Watching<'_, N, K> {
+impl<Q, const N: usize> Debug for Watching<'_, Q, N> {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
         let Self { schedule, every, .. } = self;
         f.debug_struct("Watching").field("schedule", schedule).field("every", every).finish_non_exhaustive()
@@ -27,23 +27,24 @@ impl<const N: usize, const K: usize> Debug for Watching<'_, N, K> {
 }
 
 /// The summaries of trajectories in lanes; none of one that was lost, which [`summarise`] tells more about.
-pub fn watch<const N: usize, const M: usize, const W: usize, const K: usize>(
+pub fn watch<Q: Quantities, const N: usize, const M: usize, const W: usize>(
     ensemble: &mut dyn Ensemble<N, W>,
     systems: &[&dyn Mechanics<N, M>; W],
-    watching: &Watching<'_, N, K>,
-) -> Vec<Option<Summary<K>>> {
+    watching: &Watching<'_, Q, N>,
+) -> Vec<Option<Summary<Q>>> {
     let Watching { schedule, every, of } = watching;
-    let mut summaries = vec![Some(Summary::new()); W];
+    let mut summaries: Vec<Option<Summary<Q>>> = vec![None; W];
     let mut made = 0;
     loop {
         let (state, t) = (ensemble.state(), schedule.time(made));
         for (lane, place) in summaries.iter_mut().enumerate() {
             let system = systems[lane];
-            let known = place.as_mut().filter(|_| state.is_finite(lane));
-            let seen = known.zip(system.velocity_of(t, &state.q(lane), &state.xi(lane)).ok());
-            match seen {
-                Some((summary, v)) => summary.see(system, t, &state.lane(lane, v), of),
-                None => *place = None,
+            let there = state.is_finite(lane) && (made == 0 || place.is_some());
+            let seen = there.then(|| system.velocity_of(t, &state.q(lane), &state.xi(lane)).ok()).flatten();
+            match (seen, place.as_mut()) {
+                (Some(v), Some(summary)) => summary.see(system, t, &state.lane(lane, v), of),
+                (Some(v), None) => *place = Some(Summary::first(system, t, &state.lane(lane, v), of)),
+                (None, _) => *place = None,
             }
         }
         if made >= schedule.steps {
@@ -56,13 +57,13 @@ pub fn watch<const N: usize, const M: usize, const W: usize, const K: usize>(
 }
 
 /// The summary of one trajectory by any method; of one that fails that of its valid part, with the failure.
-pub fn summarise<'a, const N: usize, const M: usize, const K: usize>(
+pub fn summarise<'a, Q: Quantities, const N: usize, const M: usize>(
     subject: impl Into<Subject<'a, N, M>>,
     method: &Method,
     (q, v): ([f64; N], [f64; N]),
-    watching: &Watching<'_, N, K>,
-) -> (Summary<K>, Option<RunError>) {
-    let mut looking = Looking { watching, seen: Summary::new(), last: None };
+    watching: &Watching<'_, Q, N>,
+) -> (Option<Summary<Q>>, Option<RunError>) {
+    let mut looking = Looking { watching, seen: None, last: None };
     let subject = subject.into();
     let mut state = State::new(q, v, subject.system.angles());
     let outcome = integrate_pieces(subject, method, &watching.schedule, &mut state, &mut looking);
@@ -70,22 +71,27 @@ pub fn summarise<'a, const N: usize, const M: usize, const K: usize>(
 }
 
 /// The observer of one trajectory.
-struct Looking<'a, 'b, const N: usize, const K: usize> {
-    watching: &'a Watching<'b, N, K>,
-    seen: Summary<K>,
+struct Looking<'a, 'b, Q, const N: usize> {
+    watching: &'a Watching<'b, Q, N>,
+    seen: Option<Summary<Q>>,
     last: Option<u64>,
 }
 
-impl<const N: usize, const K: usize> Looking<'_, '_, N, K> {
+impl<Q: Quantities, const N: usize> Looking<'_, '_, Q, N> {
     fn see<const M: usize>(&mut self, node: &View<'_, N, M>) {
-        if self.last != Some(node.k) {
-            self.last = Some(node.k);
-            self.seen.see(node.system, node.t, node.state, self.watching.of);
+        if self.last == Some(node.k) {
+            return;
+        }
+        self.last = Some(node.k);
+        let of = self.watching.of;
+        match &mut self.seen {
+            Some(seen) => seen.see(node.system, node.t, node.state, of),
+            None => self.seen = Some(Summary::first(node.system, node.t, node.state, of)),
         }
     }
 }
 
-impl<const N: usize, const M: usize, const K: usize> Observer<N, M> for Looking<'_, '_, N, K> {
+impl<Q: Quantities, const N: usize, const M: usize> Observer<N, M> for Looking<'_, '_, Q, N> {
     fn start(&mut self, node: &View<'_, N, M>) {
         self.see(node);
     }

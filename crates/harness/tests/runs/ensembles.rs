@@ -20,18 +20,18 @@ fn words(state: &SleighState) -> [f64; 3] {
 }
 
 /// The summaries of some members by the closed map.
-fn group(members: Range<u64>) -> Vec<Option<Summary<3>>> {
+fn group(members: Range<u64>) -> Vec<Option<Summary<[f64; 3]>>> {
     let sleighs = [Sleigh::new(1.0, 1.0, 0.5).unwrap(); W];
     let starts: Vec<_> = members.map(start).collect();
     let state = LaneState::new(&starts, [false, false, true]);
     let mut ensemble = ClosedEnsemble::new(sleighs, 0.05, state);
-    let of = |q: &[f64; 3], v: &[f64; 3]| words(&SleighState::from_coordinates(q, v));
+    let of = |_: f64, q: &[f64; 3], v: &[f64; 3]| words(&SleighState::from_coordinates(q, v));
     let schedule = Schedule { t0: 0.0, step: 0.05, steps: 101 };
     let systems = sleighs.each_ref().map(|sleigh| sleigh as &dyn dla::Mechanics<3, 1>);
     watch(&mut ensemble, &systems, &Watching { schedule, every: 10, of: &of })
 }
 
-fn all(members: Range<u64>, threads: usize) -> Vec<Option<Summary<3>>> {
+fn all(members: Range<u64>, threads: usize) -> Vec<Option<Summary<[f64; 3]>>> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let mut rows = Vec::new();
     let outcome: ControlFlow<()> = pool.install(|| {
@@ -137,7 +137,7 @@ fn a_slow_group_holds_the_others_up_when_they_are_far_ahead() {
 fn lanes_are_summed_up_as_single_runs_are() {
     let system = With { body: Sleigh::new(1.0, 1.0, 0.5).unwrap(), effects: () };
     let schedule = Schedule { t0: 0.0, step: 0.05, steps: 101 };
-    let of = |q: &[f64; 3], v: &[f64; 3]| words(&SleighState::from_coordinates(q, v));
+    let of = |_: f64, q: &[f64; 3], v: &[f64; 3]| words(&SleighState::from_coordinates(q, v));
     let watching = Watching { schedule, every: 10, of: &of };
     let method = Method::named("dla", None).unwrap();
     let mut worst = 0.0f64;
@@ -147,9 +147,10 @@ fn lanes_are_summed_up_as_single_runs_are() {
         let v = velocity_of(&system, 0.0, &q, &xi).unwrap();
         let (alone, failure) = summarise(&system, &method, (q, v), &watching);
         assert!(failure.is_none());
+        let alone = alone.unwrap();
         // A hundred steps of numbers below 10, rounded.
         let tolerance = 100.0 * 10.0 * f64::EPSILON;
-        let numbers = |s: &Summary<3>| [s.end, s.low, s.high].concat();
+        let numbers = |s: &Summary<[f64; 3]>| [s.end, s.low, s.high].concat();
         for (a, b) in numbers(&in_lanes).iter().zip(numbers(&alone)) {
             assert_abs_diff_eq!(*a, b, epsilon = tolerance);
         }
@@ -165,12 +166,12 @@ fn lanes_are_summed_up_as_single_runs_are() {
 #[test]
 fn a_run_that_fails_is_summed_up_as_far_as_it_goes() {
     let system = With { body: Sleigh::new(1.0, 1.0, 0.5).unwrap(), effects: () };
-    let of = |q: &[f64; 3], v: &[f64; 3]| words(&SleighState::from_coordinates(q, v));
+    let of = |_: f64, q: &[f64; 3], v: &[f64; 3]| words(&SleighState::from_coordinates(q, v));
     let schedule = Schedule { t0: 0.0, step: 2.9, steps: 10 };
     let method = Method::named("dla", None).unwrap();
     let start = ([0.0; 3], [-1.5, 0.0, 1e-3]);
     let (summary, failure) = summarise(&system, &method, start, &Watching { schedule, every: 1, of: &of });
-    let failure = failure.unwrap();
+    let (summary, failure) = (summary.unwrap(), failure.unwrap());
     assert_abs_diff_eq!(summary.t, failure.time, epsilon = 0.0);
     assert!(summary.end.iter().all(|x| x.is_finite()));
 }

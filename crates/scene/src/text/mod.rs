@@ -2,9 +2,11 @@
 
 mod faults;
 mod start;
+pub(crate) mod varied;
 mod words;
 mod written;
 
+pub use self::start::Given;
 use crate::document::Document;
 use crate::error::SceneError;
 use crate::scene::{name_of, opened};
@@ -28,6 +30,8 @@ pub struct TextScene {
     pub words: Words,
     /// What they mean.
     pub model: Arc<Model>,
+    /// What its start gives.
+    pub given: Given,
     /// The start, which meets all constraints.
     pub start: Start,
     /// How to run it.
@@ -224,9 +228,9 @@ impl TextScene {
         let title = root.text("title", "a string")?.unwrap_or(&name).to_owned();
         let (words, places) = words::read(&root)?;
         let model = Model::new(&words).map_err(|error| places.fail(&document, &words, &error))?;
-        let start = start::read(&root, &model)?;
+        let (start, given) = start::read(&root, &model)?;
         let run = RunSettings::read(&root.table("run")?, overrides, &name, methods)?;
-        Ok(Self { name, title, words, model: Arc::new(model), start, run })
+        Ok(Self { name, title, words, model: Arc::new(model), given, start, run })
     }
 
     /// Builds the system and hands it to the visitor.

@@ -4,8 +4,28 @@ use crate::table::{Table, as_f64};
 use ::text::{Model, Start};
 use toml::de::DeValue;
 
+/// What a start gives: coordinates and rates, `None` for those that are left out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Given {
+    /// The coordinates.
+    pub q: Vec<Option<f64>>,
+    /// Their rates.
+    pub v: Vec<Option<f64>>,
+}
+
+impl Given {
+    /// The number of that name: a coordinate, or a rate as `x'` or `x_dot`.
+    pub(super) fn named(&mut self, name: &str, model: &Model) -> Option<&mut Option<f64>> {
+        let place = |name: &str| model.coordinates().iter().position(|coordinate| coordinate.name == name);
+        match name.strip_suffix('\'').or_else(|| name.strip_suffix("_dot")).and_then(place) {
+            Some(i) => self.v.get_mut(i),
+            None => self.q.get_mut(place(name)?),
+        }
+    }
+}
+
 /// Reads `[start]` of a system of text: coordinates by their names, rates as `"x'"` or `x_dot`, all of which may be left out.
-pub(crate) fn read(root: &Table<'_>, model: &Model) -> Result<Start, SceneError> {
+pub(crate) fn read(root: &Table<'_>, model: &Model) -> Result<(Start, Given), SceneError> {
     let names: Vec<&str> = model.coordinates().iter().map(|coordinate| coordinate.name.as_str()).collect();
     let rates: Vec<[String; 2]> = names.iter().map(|name| [format!("{name}'"), format!("{name}_dot")]).collect();
     let known: Vec<&str> = names.iter().copied().chain(rates.iter().flatten().map(String::as_str)).collect();
@@ -35,7 +55,7 @@ pub(crate) fn read(root: &Table<'_>, model: &Model) -> Result<Start, SceneError>
             v[i] = both[0].or(both[1]);
         }
     }
-    model.start(&q, &v).map_err(|error| {
+    let start = model.start(&q, &v).map_err(|error| {
         let fault = Fault {
             variant: SceneError::Formula,
             key: "",
@@ -46,7 +66,8 @@ pub(crate) fn read(root: &Table<'_>, model: &Model) -> Result<Start, SceneError>
             help: None,
         };
         root.document.fail(&header, Some("start".to_owned()), fault)
-    })
+    })?;
+    Ok((start, Given { q, v }))
 }
 
 /// The finite number of that name, if it is given.

@@ -33,9 +33,22 @@ pub(super) fn validate(root: &Value, schema: &Value, value: &Value) -> Result<()
                 true
             }
             "additionalProperties" => {
-                assert_eq!(says.as_bool(), Some(false));
-                value.as_object().is_none_or(|object| object.keys().all(|key| schema["properties"].get(key).is_some()))
+                let known = |key: &str| schema.get("properties").is_some_and(|known| known.get(key).is_some());
+                let others = value.as_object().into_iter().flatten().filter(|(key, _)| !known(key));
+                match says.as_bool() {
+                    Some(allowed) => allowed || others.count() == 0,
+                    None => {
+                        others.map(|(_, inner)| inner).try_for_each(|inner| validate(root, says, inner))?;
+                        true
+                    }
+                }
             }
+            "if" => {
+                let branch = if holds(validate(root, says, value)) { "then" } else { "else" };
+                validate(root, &schema[branch], value)?;
+                true
+            }
+            "then" | "else" => true,
             "items" => {
                 value.as_array().into_iter().flatten().try_for_each(|item| validate(root, says, item))?;
                 true

@@ -1,7 +1,7 @@
 //! Sweeps: the numbers of members, what is drawn, and what is wrong with a file.
 
 use approx::assert_abs_diff_eq;
-use scene::{Scene, SceneEffect, Sweep};
+use scene::{AnyScene, Scene, SceneEffect, Sweep};
 
 const METHODS: [&str; 2] = ["dla", "gauss16"];
 
@@ -30,14 +30,15 @@ fn members_are_made_from_their_numbers() {
     assert_eq!(sweep.count(), 2 * 3 * 4);
     let keys: Vec<_> = sweep.keys().collect();
     assert_eq!(keys, ["sleigh.offset", "start.speed", "effects.0.stiffness.1", "start.turn_rate"]);
-    assert_eq!((sweep.scene.run.method.as_str(), sweep.scene.run.steps()), ("gauss16", 50));
+    assert_eq!((sweep.scene.run().method.as_str(), sweep.scene.run().steps()), ("gauss16", 50));
     // The last key of the grid varies fastest, samples within a point.
     let grid = |member: u64| sweep.values(member)[..2].to_vec();
     for (member, offset, speed) in [(0, 0.1, -1.0), (3, 0.1, -1.0), (4, 0.1, 0.5), (8, 0.2, -1.0), (23, 0.3, 0.5)] {
         assert_abs_diff_eq!(grid(member)[..], [offset, speed], epsilon = 1e-15);
     }
     for member in 0..sweep.count() {
-        let Scene { sleigh, start, effects, .. } = sweep.member(member, &METHODS).unwrap();
+        let AnyScene::Sleigh(scene) = sweep.member(member, &METHODS).unwrap() else { panic!("a sleigh") };
+        let Scene { sleigh, start, effects, .. } = *scene;
         let SceneEffect::Bowl { stiffness, .. } = effects[0] else { panic!("a bowl") };
         let found = [sleigh.offset(), start.speed, stiffness[1], start.turn_rate];
         assert_eq!(found.map(f64::to_bits)[..], sweep.values(member).iter().map(|x| x.to_bits()).collect::<Vec<_>>());
