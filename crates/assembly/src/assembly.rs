@@ -31,14 +31,14 @@ pub const WIDEST: usize = 24;
 /// ```
 #[derive(Debug, Default)]
 pub struct Assembly {
-    placed: Vec<Placed>,
+    placed: Vec<PlacedElement>,
     angles: Vec<bool>,
     rows: usize,
 }
 
 /// An element where it acts.
 #[derive(Debug)]
-pub(crate) struct Placed {
+pub(crate) struct PlacedElement {
     pub(crate) element: Box<dyn Element>,
     pub(crate) name: &'static str,
     /// The coordinates of the assembly that are those of the element.
@@ -50,7 +50,7 @@ pub(crate) struct Placed {
     pub(crate) origins: Option<Box<[Option<usize>]>>,
 }
 
-impl Placed {
+impl PlacedElement {
     /// The element's part of a vector of the assembly.
     #[inline(always)]
     pub(crate) fn gather(&self, from: impl Fn(usize) -> f64, into: &mut [f64; WIDEST]) -> usize {
@@ -129,7 +129,7 @@ impl Assembly {
         let mut origins = vec![None; at.len()];
         element.origins(&mut origins);
         let origins = origins.iter().any(Option::is_some).then(|| origins.into());
-        self.placed.push(Placed { element, name, at: at.into(), row: self.rows, rows, origins });
+        self.placed.push(PlacedElement { element, name, at: at.into(), row: self.rows, rows, origins });
         self.rows += rows;
     }
 
@@ -157,7 +157,7 @@ impl Assembly {
         &self.angles
     }
 
-    pub(crate) fn placed(&self) -> &[Placed] {
+    pub(crate) fn placed(&self) -> &[PlacedElement] {
         &self.placed
     }
 

@@ -1,4 +1,4 @@
-use crate::assembly::{Placed, WIDEST};
+use crate::assembly::{PlacedElement, WIDEST};
 use crate::element::{Blocks, Element};
 use crate::pattern::Pattern;
 use crate::{Assembly, State};
@@ -14,7 +14,7 @@ pub(crate) struct Contributions {
 }
 
 /// What an element is asked for.
-pub(crate) type Ask<'a> = dyn Fn(&Placed, Blocks<'_>) + Sync + 'a;
+pub(crate) type Ask<'a> = dyn Fn(&PlacedElement, Blocks<'_>) + Sync + 'a;
 
 impl Contributions {
     pub(crate) fn of(assembly: &Assembly, parallel: usize) -> Self {
@@ -38,7 +38,7 @@ impl Contributions {
 
     /// The contributions of an element.
     #[inline(always)]
-    fn one(&self, k: usize, placed: &Placed) -> Answer<'_> {
+    fn one(&self, k: usize, placed: &PlacedElement) -> Answer<'_> {
         let (n, m) = (placed.at.len(), placed.rows);
         let all = &self.each[self.starts[k]..self.starts[k + 1]];
         let (momentum, rest) = all.split_at(n);
@@ -118,7 +118,7 @@ fn blank(assembly: &Assembly, pattern: &Pattern, values: &mut [f64]) {
 /// So many elements are not divided further.
 const PIECE: usize = 512;
 
-fn ask_all(elements: &[Placed], starts: &[usize], out: &mut [f64], ask: (&Ask<'_>, bool), grain: usize) {
+fn ask_all(elements: &[PlacedElement], starts: &[usize], out: &mut [f64], ask: (&Ask<'_>, bool), grain: usize) {
     if elements.len() > grain {
         let half = elements.len() / 2;
         let (first, last) = elements.split_at(half);
@@ -142,7 +142,7 @@ fn ask_all(elements: &[Placed], starts: &[usize], out: &mut [f64], ask: (&Ask<'_
 
 /// Coordinates of an element, by `of`, handed on.
 #[inline(always)]
-pub(crate) fn gathered<T>(placed: &Placed, of: impl Fn(usize) -> f64, then: impl FnOnce(&[f64]) -> T) -> T {
+pub(crate) fn gathered<T>(placed: &PlacedElement, of: impl Fn(usize) -> f64, then: impl FnOnce(&[f64]) -> T) -> T {
     let mut local = [0.0; WIDEST];
     let n = placed.gather(of, &mut local);
     then(&local[..n])
@@ -150,12 +150,16 @@ pub(crate) fn gathered<T>(placed: &Placed, of: impl Fn(usize) -> f64, then: impl
 
 /// The coordinates and velocities of an element, handed on.
 #[inline(always)]
-pub(crate) fn at<T>(placed: &Placed, q: &[f64], v: &[f64], then: impl FnOnce(&[f64], &[f64]) -> T) -> T {
+pub(crate) fn at<T>(placed: &PlacedElement, q: &[f64], v: &[f64], then: impl FnOnce(&[f64], &[f64]) -> T) -> T {
     gathered(placed, |i| q[i], |q| gathered(placed, |i| v[i], |v| then(q, v)))
 }
 
 /// Configuration and velocity of an element.
 #[inline(always)]
-pub(crate) fn at_state<T>(placed: &Placed, state: &State, then: impl FnOnce(&dyn Element, &[f64], &[f64]) -> T) -> T {
+pub(crate) fn at_state<T>(
+    placed: &PlacedElement,
+    state: &State,
+    then: impl FnOnce(&dyn Element, &[f64], &[f64]) -> T,
+) -> T {
     gathered(placed, |i| state.q(i), |q| gathered(placed, |i| state.v(i), |v| then(placed.element.as_ref(), q, v)))
 }

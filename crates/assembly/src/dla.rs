@@ -1,6 +1,6 @@
-use crate::assembly::{Placed, WIDEST};
+use crate::assembly::{PlacedElement, WIDEST};
 use crate::contributions::{Part, at_state, gathered};
-use crate::equations::Equations;
+use crate::equations::AssemblyEquations;
 use crate::linear::Linear;
 use crate::terms;
 use crate::{Assembly, AssemblyError, OneStep, Solver, State, StepReport};
@@ -23,7 +23,7 @@ use lagrangian::linear::{larger, largest};
 /// A step that turns a constraint by more than a radian, or whose iteration does not contract from its start, is refused: the
 /// static method continues the solution from a step of length zero there. (The book, (3.1) and (3.2).)
 pub struct Dla {
-    equations: Equations,
+    equations: AssemblyEquations,
     q0: Vec<f64>,
     q1: Vec<f64>,
     v0: Vec<f64>,
@@ -52,7 +52,7 @@ impl Dla {
     pub fn new(assembly: &Assembly, solver: Solver) -> Result<Self, AssemblyError> {
         let zeros = || vec![0.0; assembly.coordinates()];
         Ok(Self {
-            equations: Equations::of(assembly, solver, PARALLEL)?,
+            equations: AssemblyEquations::of(assembly, solver, PARALLEL)?,
             q0: zeros(),
             q1: zeros(),
             v0: zeros(),
@@ -77,11 +77,11 @@ impl Dla {
         });
         p.fill(0.0);
         equations.contributions.add_momenta(assembly, 1.0, p);
-        let Equations { contributions, linear: Linear { pattern, values, .. }, .. } = equations;
+        let AssemblyEquations { contributions, linear: Linear { pattern, values, .. }, .. } = equations;
         contributions.write_matrix(assembly, pattern, Part::Transposed, values);
 
         predict(state, h, v0, v);
-        let evaluate = |equations: &mut Equations, v: &[f64], derivatives: bool| {
+        let evaluate = |equations: &mut AssemblyEquations, v: &[f64], derivatives: bool| {
             for (i, q1) in q1.iter_mut().enumerate() {
                 *q1 = state.ahead(i, h * v[i]);
             }
@@ -136,7 +136,7 @@ impl Dla {
         // The right side of the equations is what the momenta still lack.
         equations.contributions.add_momenta(assembly, -1.0, p);
         v1.copy_from_slice(v);
-        let evaluate = |equations: &mut Equations, v1: &[f64], derivatives: bool| {
+        let evaluate = |equations: &mut AssemblyEquations, v1: &[f64], derivatives: bool| {
             equations.contributions.ask(assembly, derivatives, &|placed, out| {
                 gathered(
                     placed,
@@ -195,7 +195,7 @@ impl Dla {
     }
 }
 
-impl Equations {
+impl AssemblyEquations {
     /// The right side, minus the momenta and the levels; and a part of the matrix.
     fn write(&mut self, assembly: &Assembly, part: Option<Part>, p: &[f64]) {
         let Self { contributions, linear: Linear { pattern, values, right, .. }, .. } = self;
@@ -215,7 +215,7 @@ impl Equations {
 /// The coordinates of a joint at the end of a step with the mean velocity `v`, those that have an origin measured from it: the
 /// difference keeps the digits that the coordinates have lost far away.
 pub(crate) fn relative(
-    placed: &Placed,
+    placed: &PlacedElement,
     origins: &[Option<usize>],
     h: f64,
     state: &State,

@@ -1,27 +1,27 @@
 use crate::contributions::Contributions;
 use crate::linear::Linear;
 use crate::pattern::Pattern;
-use crate::settling::{REFINEMENTS, Settling};
+use crate::settling::{AssemblySettling, REFINEMENTS};
 use crate::{Assembly, AssemblyError, Solver};
 use dla::Stage;
 use dla::convergence::{Convergence, Demand, Kind};
 
 /// The linear equations of an assembly, and Newton's method on them.
-pub(crate) struct Equations {
+pub(crate) struct AssemblyEquations {
     pub(crate) linear: Linear,
     pub(crate) contributions: Contributions,
-    pub(crate) settling: Settling,
+    pub(crate) settling: AssemblySettling,
 }
 
 /// Where a correction is no more than this part of the one before, the matrix of that is good enough for the next.
 const CHORD: f64 = 1e-3;
 
-impl Equations {
+impl AssemblyEquations {
     pub(crate) fn of(assembly: &Assembly, solver: Solver, parallel: usize) -> Result<Self, AssemblyError> {
         Ok(Self {
             linear: Linear::new(Pattern::of(assembly), solver)?,
             contributions: Contributions::of(assembly, parallel),
-            settling: Settling::new(assembly.coordinates(), assembly.rows()),
+            settling: AssemblySettling::new(assembly.coordinates(), assembly.rows()),
         })
     }
 
@@ -42,13 +42,13 @@ impl Equations {
 
     fn search(
         &mut self,
-        settling: &mut Settling,
+        settling: &mut AssemblySettling,
         (assembly, stage): (&Assembly, Stage),
         x: &mut [f64],
         mut terms: impl FnMut(&mut [f64]),
         mut evaluate: impl FnMut(&mut Self, &[f64], bool),
     ) -> Result<u32, AssemblyError> {
-        let Settling { newton, last, rounding, start, sizes, changes, reactions, certain, near } = settling;
+        let AssemblySettling { newton, last, rounding, start, sizes, changes, reactions, certain, near } = settling;
         start.copy_from_slice(x);
         let mut convergence = Convergence::new(last, rounding, start);
         let (mut before, mut fresh, mut refinements) = (f64::INFINITY, true, 0);

@@ -31,10 +31,10 @@ pub(crate) struct Factor {
     forward: Vec<u32>,
     inverse: Vec<u32>,
     memory: MemBuffer,
-    kind: Kind,
+    kind: FactorKind,
 }
 
-enum Kind {
+enum FactorKind {
     Sparse { columns: Perm<u32>, factors: Box<simplicial::SimplicialLu<u32, f64>> },
     Dense { factors: Mat<f64> },
 }
@@ -49,13 +49,13 @@ impl Factor {
                 simplicial::factorize_simplicial_numeric_lu_scratch::<u32, f64>(n, n),
                 simplicial::solve_in_place_scratch::<u32, f64>(n, 1, Par::Seq),
             ]);
-            (Kind::Sparse { columns, factors: Box::default() }, scratch)
+            (FactorKind::Sparse { columns, factors: Box::default() }, scratch)
         } else {
             let scratch = StackReq::any_of(&[
                 dense::lu_in_place_scratch::<u32, f64>(n, n, Par::Seq, Spec::default()),
                 dense_solve::solve_in_place_scratch::<u32, f64>(n, 1, Par::Seq),
             ]);
-            (Kind::Dense { factors: Mat::zeros(n, n) }, scratch)
+            (FactorKind::Dense { factors: Mat::zeros(n, n) }, scratch)
         };
         Ok(Self { forward: vec![0; n], inverse: vec![0; n], memory: buffer(scratch, n)?, kind })
     }
@@ -77,7 +77,7 @@ impl Factor {
             }
         };
         match kind {
-            Kind::Sparse { columns, factors } => {
+            FactorKind::Sparse { columns, factors } => {
                 let matrix = SparseColMatRef::new(pattern.symbolic.as_ref(), values);
                 let order = columns.as_ref();
                 match simplicial::factorize_simplicial_numeric_lu(forward, inverse, factors, matrix, order, stack) {
@@ -90,7 +90,7 @@ impl Factor {
                 let order = order.arrays().0;
                 Ok(pivots.zip(order).map(|(pivot, j)| pivot / largest(*j as usize)).fold(f64::INFINITY, least))
             }
-            Kind::Dense { factors } => {
+            FactorKind::Dense { factors } => {
                 factors.fill(0.0);
                 for j in 0..n {
                     for (i, value) in pattern.column(values, j) {
@@ -110,10 +110,10 @@ impl Factor {
         let rows = PermRef::new_checked(forward, inverse, n);
         let x = MatMut::from_column_major_slice_mut(x, n, 1);
         match kind {
-            Kind::Sparse { columns, factors } => {
+            FactorKind::Sparse { columns, factors } => {
                 factors.solve_in_place_with_conj(rows, columns.as_ref(), Conj::No, x, Par::Seq, stack);
             }
-            Kind::Dense { factors } => {
+            FactorKind::Dense { factors } => {
                 let lu = factors.as_ref();
                 dense_solve::solve_in_place_with_conj(lu, lu, rows, Conj::No, x, Par::Seq, stack);
             }

@@ -5,14 +5,14 @@ use crate::{Assembly, AssemblyError, Solver};
 use dla::Stage;
 
 /// The continuous equations of motion of an assembly, `M v' = F + .. + A' lambda` and `d/dt (A v + b) = 0`, summed over its elements
-/// as the discrete ones are: see [`lagrangian::Motion`].
-pub(crate) struct Motion {
+/// as the discrete ones are: see [`lagrangian::ElementMotion`].
+pub(crate) struct ElementMotion {
     linear: Linear,
     contributions: Contributions,
     coordinates: usize,
 }
 
-impl Motion {
+impl ElementMotion {
     pub(crate) fn of(assembly: &Assembly) -> Result<Self, AssemblyError> {
         Ok(Self {
             linear: Linear::new(Pattern::of(assembly), Solver::Best)?,

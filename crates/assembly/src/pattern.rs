@@ -1,10 +1,10 @@
 use crate::Assembly;
-use crate::assembly::Placed;
+use crate::assembly::PlacedElement;
 use faer::sparse::SymbolicSparseColMat;
 
 /// What fills a part of the matrix: some unknowns, and constraints that they take part in.
 #[derive(Debug, Clone)]
-pub(crate) struct Part {
+pub(crate) struct PatternPart {
     pub(crate) at: Box<[usize]>,
     /// The first of its constraints, and how many there are.
     pub(crate) row: usize,
@@ -34,7 +34,7 @@ pub(crate) struct Pattern {
 }
 
 /// The places of one element.
-pub(crate) struct Places<'a> {
+pub(crate) struct MatrixPlaces<'a> {
     pub(crate) block: &'a [u32],
     pub(crate) transposed: &'a [u32],
     pub(crate) rows: &'a [u32],
@@ -42,18 +42,18 @@ pub(crate) struct Places<'a> {
 
 impl Pattern {
     pub(crate) fn of(assembly: &Assembly) -> Self {
-        let part = |placed: &Placed| Part {
+        let part = |placed: &PlacedElement| PatternPart {
             at: placed.at.clone(),
             row: placed.row,
             rows: placed.rows,
             acts: placed.element.acts(),
         };
-        let parts: Vec<Part> = assembly.placed().iter().map(part).collect();
+        let parts: Vec<PatternPart> = assembly.placed().iter().map(part).collect();
         Self::of_parts((assembly.coordinates(), assembly.rows()), &parts)
     }
 
     /// That of `n` unknowns and `m` constraints.
-    pub(crate) fn of_parts((n, m): (usize, usize), parts: &[Part]) -> Self {
+    pub(crate) fn of_parts((n, m): (usize, usize), parts: &[PatternPart]) -> Self {
         let unknowns = n + m;
         // Columns first, so that the sorted keys are the compressed columns.
         let (mut wanted, mut starts) = (Vec::<u64>::new(), vec![0]);
@@ -97,11 +97,11 @@ impl Pattern {
 
     /// Those of the element, which has so many coordinates and rows.
     #[inline(always)]
-    pub(crate) fn places(&self, element: usize, (n, m): (usize, usize), acts: bool) -> Places<'_> {
+    pub(crate) fn places(&self, element: usize, (n, m): (usize, usize), acts: bool) -> MatrixPlaces<'_> {
         let all = &self.places[self.starts[element]..self.starts[element + 1]];
         let (block, constraints) = all.split_at(if acts { n * n } else { 0 });
         let (transposed, rows) = constraints.split_at(n * m);
-        Places { block, transposed, rows }
+        MatrixPlaces { block, transposed, rows }
     }
 
     /// The rows and the values of a column.
@@ -140,7 +140,7 @@ impl Pattern {
 }
 
 /// The unknowns in the order of the coordinates, each constraint after the last of its own.
-fn along(n: usize, parts: &[Part]) -> Vec<u32> {
+fn along(n: usize, parts: &[PatternPart]) -> Vec<u32> {
     let mut keyed: Vec<(usize, usize)> = (0..n).map(|i| (i, i)).collect();
     for placed in parts {
         let last = placed.at.iter().copied().max().unwrap_or(0);

@@ -3,7 +3,7 @@ use dla::Newton;
 /// The arrays of the convergence test of an assembly's iteration: of [`Convergence`](dla::convergence::Convergence) with as many components
 /// as there are unknowns.
 #[derive(Debug, Default)]
-pub(crate) struct Settling {
+pub(crate) struct AssemblySettling {
     pub(crate) newton: Newton,
     pub(crate) last: Vec<f64>,
     pub(crate) rounding: Vec<bool>,
@@ -22,7 +22,7 @@ pub(crate) struct Settling {
 /// Linear equations are refined so often where corrections stall above the round-off of the equations.
 pub(crate) const REFINEMENTS: u32 = 2;
 
-impl Settling {
+impl AssemblySettling {
     /// Arrays for so many unknowns and constraints.
     pub(crate) fn new(unknowns: usize, rows: usize) -> Self {
         Self {

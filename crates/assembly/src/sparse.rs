@@ -1,6 +1,6 @@
 use crate::linear::Linear;
-use crate::pattern::{Part, Pattern};
-use crate::settling::{REFINEMENTS, Settling};
+use crate::pattern::{Pattern, PatternPart};
+use crate::settling::{AssemblySettling, REFINEMENTS};
 use crate::{AssemblyError, Solver};
 use dla::Stage;
 use dla::convergence::{Convergence, Demand, Kind};
@@ -15,7 +15,7 @@ use lagrangian::linear::largest;
 /// and Newton's method on them. Multipliers are corrected as the unknowns are, so that neither `K` nor `G` need be exact: that
 /// the right side vanishes is all that a solution is.
 pub(crate) struct Sparse {
-    parts: Vec<Part>,
+    parts: Vec<PatternPart>,
     pub(crate) linear: Linear,
     unknowns: usize,
     /// Whether the next iteration may use the factors of the last one: a frozen Jacobian.
@@ -30,7 +30,7 @@ const KEPT: f64 = 0.05;
 
 impl Sparse {
     /// Equations for `n` unknowns and `m` constraints.
-    pub(crate) fn new(n: usize, m: usize, parts: Vec<Part>, solver: Solver) -> Result<Self, AssemblyError> {
+    pub(crate) fn new(n: usize, m: usize, parts: Vec<PatternPart>, solver: Solver) -> Result<Self, AssemblyError> {
         Ok(Self {
             linear: Linear::new(Pattern::of_parts((n, m), &parts), solver)?,
             unknowns: n,
@@ -66,7 +66,7 @@ impl Sparse {
 
     /// Adds to the block of a part, by rows.
     pub(crate) fn add_block(&mut self, k: usize, block: &[f64]) {
-        let Part { at, rows, acts, .. } = &self.parts[k];
+        let PatternPart { at, rows, acts, .. } = &self.parts[k];
         let places = self.linear.pattern.places(k, (at.len(), *rows), *acts);
         for (place, x) in places.block.iter().zip(block) {
             self.linear.values[*place as usize] += x;
@@ -75,7 +75,7 @@ impl Sparse {
 
     /// Writes the rows `G` and `C` of the constraints of a part.
     pub(crate) fn write_rows(&mut self, k: usize, acting: &[f64], rows: &[f64]) {
-        let Part { at, rows: count, acts, .. } = &self.parts[k];
+        let PatternPart { at, rows: count, acts, .. } = &self.parts[k];
         let places = self.linear.pattern.places(k, (at.len(), *count), *acts);
         for (place, x) in places.transposed.iter().zip(acting) {
             self.linear.values[*place as usize] = *x;
@@ -90,13 +90,13 @@ impl Sparse {
     /// the equations, those of the unknowns and then those of the constraints.
     pub(crate) fn newton(
         &mut self,
-        (settling, stage): (&mut Settling, Stage),
+        (settling, stage): (&mut AssemblySettling, Stage),
         x: &mut [f64],
         multipliers: &mut [f64],
         mut terms: impl FnMut(&mut [f64]),
         mut evaluate: impl FnMut(&mut Self, &[f64], &[f64], bool) -> Result<(), AssemblyError>,
     ) -> Result<u32, AssemblyError> {
-        let Settling { newton, last, rounding, start, sizes, changes, certain, near, .. } = settling;
+        let AssemblySettling { newton, last, rounding, start, sizes, changes, certain, near, .. } = settling;
         start.copy_from_slice(x);
         let mut convergence = Convergence::new(last, rounding, start);
         let mut refinements = 0;

@@ -1,5 +1,5 @@
 use crate::Assembly;
-use crate::assembly::{Placed, WIDEST};
+use crate::assembly::{PlacedElement, WIDEST};
 use crate::contributions::gathered;
 
 /// The sums of the sizes of the terms that an element adds to the equations of a step of length `h`, at the configuration and
@@ -9,7 +9,7 @@ pub(crate) fn for_each(
     (t, h): (f64, f64),
     q: impl Fn(usize) -> f64,
     v: impl Fn(usize) -> f64,
-    mut then: impl FnMut(usize, &Placed, &[f64], &[f64]),
+    mut then: impl FnMut(usize, &PlacedElement, &[f64], &[f64]),
 ) {
     for (k, placed) in assembly.placed().iter().enumerate() {
         let (mut momentum, mut level) = ([0.0; WIDEST], [0.0; WIDEST]);

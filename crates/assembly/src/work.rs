@@ -1,7 +1,7 @@
 use crate::assembly::WIDEST;
 use crate::contributions::{at, gathered};
 use crate::element::Blocks;
-use crate::motion::Motion;
+use crate::motion::ElementMotion;
 use crate::{Assembly, State, StepReport};
 use dla::{Checkpoint, CheckpointError, Hermite};
 use lagrangian::added;
@@ -20,21 +20,21 @@ pub struct Work {
     nodes: [f64; 4],
     weights: [f64; 4],
     /// What finds accelerations, where some were needed; `Err` where the memory did not suffice.
-    motion: Option<Result<Motion, ()>>,
-    ends: [End; 2],
+    motion: Option<Result<ElementMotion, ()>>,
+    ends: [WorkEnd; 2],
     q: Vec<f64>,
     v: Vec<f64>,
 }
 
 /// An end of a step.
 #[derive(Debug, Clone, Default)]
-struct End {
+struct WorkEnd {
     q: Vec<f64>,
     v: Vec<f64>,
     a: Vec<f64>,
 }
 
-impl End {
+impl WorkEnd {
     fn see(&mut self, state: &State) {
         self.q.clear();
         self.v.clear();
@@ -52,7 +52,7 @@ impl std::fmt::Debug for Work {
 impl Default for Work {
     fn default() -> Self {
         let (nodes, weights) = gauss_legendre();
-        let (ends, none) = ([End::default(), End::default()], Vec::new);
+        let (ends, none) = ([WorkEnd::default(), WorkEnd::default()], Vec::new);
         Self { total: 0.0, rest: 0.0, nodes, weights, motion: None, ends, q: none(), v: none() }
     }
 }
@@ -106,9 +106,9 @@ impl Work {
         if !moved && !self.is_powered(assembly, t0, h) {
             return 0.0;
         }
-        let motion = self.motion.get_or_insert_with(|| Motion::of(assembly).map_err(|_| ()));
+        let motion = self.motion.get_or_insert_with(|| ElementMotion::of(assembly).map_err(|_| ()));
         let Ok(motion) = motion else { return f64::NAN };
-        for (t, End { q, v, a }) in [t0, t1].into_iter().zip(&mut self.ends) {
+        for (t, WorkEnd { q, v, a }) in [t0, t1].into_iter().zip(&mut self.ends) {
             let Ok((accelerations, _)) = motion.solved(assembly, t, q, v) else { return f64::NAN };
             a.clear();
             a.extend_from_slice(accelerations);
@@ -119,7 +119,7 @@ impl Work {
             self.q.resize(first.q.len(), 0.0);
             self.v.resize(first.q.len(), 0.0);
             for (i, (q, v)) in self.q.iter_mut().zip(&mut self.v).enumerate() {
-                let end = |end: &End| [[end.q[i]], [end.v[i]], [end.a[i]]];
+                let end = |end: &WorkEnd| [[end.q[i]], [end.v[i]], [end.a[i]]];
                 ([*q], [*v]) = Hermite::through((t0, h), end(first), end(last)).at_part(c);
             }
             let (t, q, v) = (t0 + c * h, &self.q[..], &self.v[..]);

@@ -18,7 +18,7 @@ pub(crate) struct Corrections<'e, 'a, D, const N: usize, const M: usize> {
     /// The Jacobian of the last of Newton's own corrections, for the simplified ones after it.
     jacobian: Option<Jacobian<N, M>>,
     /// The last correction, and the momenta where it was made.
-    last: Last<N>,
+    last: LastCorrection<N>,
     /// The correction before the last, which led to where the last was made.
     before: [f64; N],
     /// Whether the reaction, the part of the momenta that the multipliers take up, is subtracted before the linear equations are solved:
@@ -35,7 +35,7 @@ struct Jacobian<const N: usize, const M: usize> {
 
 /// A correction `d` at a mean velocity `v`.
 #[derive(Clone, Copy)]
-struct Last<const N: usize> {
+struct LastCorrection<const N: usize> {
     correction: [f64; N],
     simplified: bool,
     /// `r + K d`: the part of the momenta at the beginning that the multipliers balance, at `v + d`.
@@ -44,14 +44,14 @@ struct Last<const N: usize> {
     arriving: [f64; N],
 }
 
-impl<const N: usize> Default for Last<N> {
+impl<const N: usize> Default for LastCorrection<N> {
     fn default() -> Self {
         let zero = [0.0; N];
         Self { correction: zero, simplified: false, rest: zero, arriving: zero }
     }
 }
 
-impl<const N: usize> Last<N> {
+impl<const N: usize> LastCorrection<N> {
     #[inline(always)]
     fn new(correction: [f64; N], simplified: bool, at: &Departure<N>, block: &[[f64; N]; N]) -> Self {
         let gained: [f64; N] = from_fn(|i| (0..N).map(|j| block[i][j] * correction[j]).sum());
@@ -76,7 +76,7 @@ impl<'e, 'a, D: Discretisation<N, M>, const N: usize, const M: usize> Correction
             lambda: [0.0; M],
             positive: None,
             jacobian: None,
-            last: Last::default(),
+            last: LastCorrection::default(),
             before: [0.0; N],
             refined: false,
         }
@@ -126,7 +126,7 @@ impl<'e, 'a, D: Discretisation<N, M>, const N: usize, const M: usize> Correction
         if !good {
             return None;
         }
-        self.last = Last::new(correction, true, &at, block);
+        self.last = LastCorrection::new(correction, true, &at, block);
         Some(correction)
     }
 }
@@ -175,7 +175,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Corrections<'_, '_
             Ok((factors, correction)) => {
                 self.positive = Some(factors.is_positive());
                 self.jacobian = Some(Jacobian { block, factors });
-                self.last = Last::new(correction, false, &at, &block);
+                self.last = LastCorrection::new(correction, false, &at, &block);
                 Ok(correction)
             }
             Err(source) => {
@@ -183,7 +183,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Corrections<'_, '_
                 let found = independent(self.of.system, self.of.t0, *self.of.state, self.some).ok_or(source)?;
                 let (correction, lambda) = of_some(&block, &self.of.a0, &rows, (right, level), found)?;
                 (self.some, self.lambda, self.positive, self.jacobian) = (Some(found), lambda, None, None);
-                self.last = Last::new(correction, false, &at, &block);
+                self.last = LastCorrection::new(correction, false, &at, &block);
                 Ok(correction)
             }
         }

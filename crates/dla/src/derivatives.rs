@@ -10,7 +10,7 @@ const OFTEN: u32 = 16;
 /// A correction that is larger than this part of the unknowns is always checked: the predictor was then off by more than round-off.
 const SLIGHT: f64 = 1e-12;
 
-pub(crate) type Row = [f64; COORDINATES];
+pub(crate) type UnknownsRow = [f64; COORDINATES];
 
 /// A frozen Jacobian: the inverse of a matrix of derivatives, by columns, which serves several steps (chord method).
 ///
@@ -18,7 +18,7 @@ pub(crate) type Row = [f64; COORDINATES];
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(64))]
 pub(crate) struct Derivatives {
-    columns: [Row; COORDINATES],
+    columns: [UnknownsRow; COORDINATES],
     /// Whether its determinant is positive.
     pub(crate) positive: bool,
     /// Whether it is to be renewed.

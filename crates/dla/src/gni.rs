@@ -26,12 +26,12 @@ use lagrangian::{Rounded, Saddle, Trapezoid, from_fn};
 pub struct Gni<const N: usize, D = Rules> {
     rules: D,
     newton: Newton,
-    memory: Option<Memory<N>>,
+    memory: Option<GniMemory<N>>,
 }
 
 /// The node that the last step led to, and the momentum it arrived with.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Memory<const N: usize> {
+struct GniMemory<const N: usize> {
     node: State<N>,
     arriving: [f64; N],
 }
@@ -90,7 +90,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> OneStep<N, M> for 
             }
             _ => system.momentum(t, &q0, &v0),
         };
-        let mut equations = Departure { rules: &self.rules, system, t, h, q0, departing };
+        let mut equations = GniDeparture { rules: &self.rules, system, t, h, q0, departing };
         let mut v = v0;
         let iterations = self
             .newton
@@ -109,7 +109,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> OneStep<N, M> for 
         state.stays_finite(&increment, &v1)?;
         brakes_only(system, (t, h), &q0, (&v, &v1))?;
         state.advance(&increment, v1, None);
-        self.memory = Some(Memory { node: *state, arriving });
+        self.memory = Some(GniMemory { node: *state, arriving });
         Ok(StepReport::of(iterations))
     }
 
@@ -118,12 +118,12 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> OneStep<N, M> for 
     }
 
     fn recall(&mut self, memory: &[f64], state: &State<N>) {
-        self.memory = <[f64; N]>::try_from(memory).ok().map(|arriving| Memory { node: *state, arriving });
+        self.memory = <[f64; N]>::try_from(memory).ok().map(|arriving| GniMemory { node: *state, arriving });
     }
 }
 
 /// The equations `p+ + D1 L_d(q0, q0 + h v) + f_d^- = 0` for the mean velocity of a step; nothing constrains it.
-struct Departure<'a, D, const N: usize, const M: usize> {
+struct GniDeparture<'a, D, const N: usize, const M: usize> {
     rules: &'a D,
     system: &'a dyn Mechanics<N, M>,
     t: f64,
@@ -132,7 +132,7 @@ struct Departure<'a, D, const N: usize, const M: usize> {
     departing: [f64; N],
 }
 
-impl<D: Discretisation<N, M>, const N: usize, const M: usize> Equations<N> for Departure<'_, D, N, M> {
+impl<D: Discretisation<N, M>, const N: usize, const M: usize> Equations<N> for GniDeparture<'_, D, N, M> {
     #[cold]
     #[inline(never)]
     fn roundings(&self, v: &[f64; N]) -> Option<f64> {

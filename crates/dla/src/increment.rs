@@ -2,7 +2,7 @@ use crate::branch;
 use crate::convergence::{most_roundings, without_reaction};
 use crate::corrections::{Corrections, Departure};
 use crate::dependent::named_along;
-use crate::newton::Found;
+use crate::newton::NewtonRoot;
 use crate::{Discretisation, EndMomenta, Mechanics, Newton, NewtonError, RoundedStep, State, StepError};
 use lagrangian::linear::{Singular, normal_solve};
 use lagrangian::{AdmissibleBasis, Rounded, Rows, Saddle, from_fn};
@@ -56,7 +56,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N
             (search, v) = (Corrections::new(self), v0);
             found = newton.search(&mut search, &mut v);
         }
-        let Found { mut iterations, certain, .. } =
+        let NewtonRoot { mut iterations, certain, .. } =
             found.map_err(|source| named_along(self.system, time, *self.state, v, source))?;
         let turn = self.turn(&v);
         if !(certain && search.continues(positive) && turn <= branch::NEAR) {

@@ -1,5 +1,5 @@
 use crate::State;
-use crate::derivatives::{COORDINATES, Derivatives, Row, counted, switch};
+use crate::derivatives::{COORDINATES, Derivatives, UnknownsRow, counted, switch};
 use crate::past::Past;
 use crate::settle::LEAST;
 use crate::unknowns::Unknowns;
@@ -26,8 +26,8 @@ pub(crate) struct Kept {
     pub(crate) means: Past<COORDINATES, MORE>,
     pub(crate) ends: Past<COORDINATES, MORE>,
     /// The state at the end of the last step.
-    q: Row,
-    v: Row,
+    q: UnknownsRow,
+    v: UnknownsRow,
 }
 
 /// The bases of admissible velocities at the beginning of a step, for its mean velocity, and at its end.
@@ -225,7 +225,7 @@ impl Kept {
 }
 
 #[inline(always)]
-fn row<const N: usize>(x: &[f64; N]) -> Row {
+fn row<const N: usize>(x: &[f64; N]) -> UnknownsRow {
     let mut row = [0.0; COORDINATES];
     for (place, x) in row.iter_mut().zip(x) {
         *place = *x;

@@ -182,7 +182,7 @@ impl Newton {
         &self,
         equations: &mut impl Equations<U>,
         x: &mut [f64; U],
-    ) -> Result<Found, NewtonError> {
+    ) -> Result<NewtonRoot, NewtonError> {
         self.search_blocks(&mut Single(equations), std::array::from_mut(x))
     }
 
@@ -192,7 +192,7 @@ impl Newton {
         &self,
         equations: &mut impl BlockEquations<U, S>,
         x: &mut [[f64; U]; S],
-    ) -> Result<Found, NewtonError> {
+    ) -> Result<NewtonRoot, NewtonError> {
         let (start, mut last, mut rounding) = (*x, [[0.0; U]; S], [[false; U]; S]);
         let flat = (last.as_flattened_mut(), rounding.as_flattened_mut());
         let mut convergence = Convergence::new(flat.0, flat.1, start.as_flattened());
@@ -211,7 +211,7 @@ impl Newton {
             let demand = Demand { kind, tolerance: self.tolerance, limit: self.max_iterations, refinable, near };
             let (x, correction) = (x.as_flattened(), correction.as_flattened());
             if convergence.check(demand, x, correction, || equations.roundings(&at))? {
-                return Ok(Found {
+                return Ok(NewtonRoot {
                     iterations: convergence.made(),
                     first: convergence.first(),
                     certain: convergence.is_certain(),
@@ -226,7 +226,7 @@ impl Newton {
 
 /// How Newton's method found a solution.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Found {
+pub(crate) struct NewtonRoot {
     pub(crate) iterations: u32,
     /// The size of the first correction.
     pub(crate) first: f64,

@@ -159,13 +159,13 @@ impl fmt::Display for NotANumber {
 
 /// A number with a derivative in each of two variables, and the second one in both; or with none in one that it does not depend on,
 /// where zeros times an infinity would be no numbers.
-type Number = Called<Twice>;
+type AnyNumber = Called<Twice>;
 type Twice = Gradient<Once, 1>;
 type Once = Gradient<f64, 1>;
 
 /// What the equations of motion are made of, in the order in which it is looked for: first what every method needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Order {
+enum DerivativeOrder {
     /// Values of forces and constraints, first derivatives of the Lagrangian.
     Values,
     /// First derivatives of forces and constraints, second ones of the Lagrangian.
@@ -191,10 +191,10 @@ pub fn not_a_number<Sys: System<N, M>, const N: usize, const M: usize>(
         return None;
     }
     let found = |order| first(system, (t, q, v), order);
-    found(Order::Values)
-        .or_else(|| found(Order::Slopes))
+    found(DerivativeOrder::Values)
+        .or_else(|| found(DerivativeOrder::Slopes))
         .or_else(|| by_hand(system, (t, q, v)))
-        .or_else(|| found(Order::Energy))
+        .or_else(|| found(DerivativeOrder::Energy))
 }
 
 /// An acceleration that the system gives by hand and that is not finite.
@@ -212,7 +212,7 @@ fn by_hand<Sys: System<N, M>, const N: usize, const M: usize>(
 fn first<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
     (time, q, v): (f64, &[f64; N], &[f64; N]),
-    order: Order,
+    order: DerivativeOrder,
 ) -> Option<NotANumber> {
     let variable = |k: usize| match k {
         k if k < N => Variable::Velocity(k),
@@ -223,7 +223,7 @@ fn first<Sys: System<N, M>, const N: usize, const M: usize>(
     for a in 0..count {
         for b in a..count {
             // Only the Lagrangian is differentiated twice.
-            if b > a && order != Order::Slopes {
+            if b > a && order != DerivativeOrder::Slopes {
                 break;
             }
             let (x, y) = (variable(a), variable(b));
@@ -240,11 +240,11 @@ fn first<Sys: System<N, M>, const N: usize, const M: usize>(
                 let once = once.re;
                 let of_lagrangian = function == SystemFunction::Lagrangian;
                 let (missing, derivative) = match order {
-                    Order::Values if of_lagrangian => (!once.is_finite(), Derivative::First(x)),
-                    Order::Slopes if of_lagrangian => (!twice.is_finite(), Derivative::Second(x, y)),
-                    Order::Slopes => (!once.is_finite(), Derivative::First(x)),
-                    Order::Energy => (of_lagrangian && value.is_nan(), Derivative::Value),
-                    Order::Values => (!value.is_finite(), Derivative::Value),
+                    DerivativeOrder::Values if of_lagrangian => (!once.is_finite(), Derivative::First(x)),
+                    DerivativeOrder::Slopes if of_lagrangian => (!twice.is_finite(), Derivative::Second(x, y)),
+                    DerivativeOrder::Slopes => (!once.is_finite(), Derivative::First(x)),
+                    DerivativeOrder::Energy => (of_lagrangian && value.is_nan(), Derivative::Value),
+                    DerivativeOrder::Values => (!value.is_finite(), Derivative::Value),
                 };
                 if missing && found.is_none() {
                     // Of what is itself not finite no derivative is told.
@@ -263,10 +263,10 @@ fn first<Sys: System<N, M>, const N: usize, const M: usize>(
 /// Shows every number that the system is given by.
 fn visit<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
-    t: Number,
-    q: &[Number; N],
-    v: &[Number; N],
-    see: &mut dyn FnMut(SystemFunction, Number),
+    t: AnyNumber,
+    q: &[AnyNumber; N],
+    v: &[AnyNumber; N],
+    see: &mut dyn FnMut(SystemFunction, AnyNumber),
 ) {
     see(SystemFunction::Lagrangian, system.lagrangian(t, q, v));
     for (coordinate, force) in system.force(t, q, v).iter().flatten().enumerate() {

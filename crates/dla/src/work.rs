@@ -18,13 +18,13 @@ pub struct Work<const N: usize> {
     /// Time, place and velocity at the node before.
     before: Option<(f64, [f64; N], [f64; N])>,
     /// What was known at the last node, while a step is made in parts.
-    at_node: Option<Known<N>>,
+    at_node: Option<KnownWork<N>>,
     nodes: [f64; 4],
     weights: [f64; 4],
 }
 
 /// The sum with its rest; time, place and velocity.
-type Known<const N: usize> = ([f64; 2], Option<(f64, [f64; N], [f64; N])>);
+type KnownWork<const N: usize> = ([f64; 2], Option<(f64, [f64; N], [f64; N])>);
 
 impl<const N: usize> Default for Work<N> {
     fn default() -> Self {

@@ -1,5 +1,5 @@
 use crate::Method;
-use crate::substeps::{Report, substepped_part};
+use crate::substeps::{LastReport, substepped_part};
 use dla::{Mechanics, OneStep, OwnMethods, OwnStep, Schedule, State, StepError, StepReport};
 
 /// A method by its name, as a map of one step: every step is a run of its own, without the memory of other steps.
@@ -27,7 +27,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Again<'_, N, M> {
         h: f64,
         state: &mut State<N>,
     ) -> Result<StepReport<M>, StepError> {
-        let mut report = Report(StepReport::of(0));
+        let mut report = LastReport(StepReport::of(0));
         let schedule = Schedule { t0: t, step: h, steps: 1 };
         let Self { method, own } = self;
         let (mut method, limits) = (method.stepper_of(*own, t + 0.5 * h), method.substeps());

@@ -36,7 +36,7 @@ pub fn step_evaluations<const N: usize, const M: usize>(
     v: [f64; N],
 ) -> Result<f64, RunError> {
     let evaluations = Cell::new(0);
-    let counting = |piece: &dyn Mechanics<N, M>, run: &mut Run<'_, N, M>| {
+    let counting = |piece: &dyn Mechanics<N, M>, run: &mut PieceRun<'_, N, M>| {
         run(&Counted { system: piece, evaluations: &evaluations })
     };
     let steps = made(system, schedule, State::new(q, v, system.angles()), counting)?;
@@ -44,14 +44,14 @@ pub fn step_evaluations<const N: usize, const M: usize>(
 }
 
 /// Makes the steps of a piece, on the system that is given.
-type Run<'a, const N: usize, const M: usize> = dyn FnMut(&dyn Mechanics<N, M>) -> Result<Part, RunError> + 'a;
+type PieceRun<'a, const N: usize, const M: usize> = dyn FnMut(&dyn Mechanics<N, M>) -> Result<Part, RunError> + 'a;
 
 /// A run of which `on` gives each piece, or something in its place, to the steps.
 fn made<const N: usize, const M: usize>(
     system: &dyn PiecewiseMechanics<N, M>,
     schedule: &Schedule,
     mut state: State<N>,
-    on: impl Fn(&dyn Mechanics<N, M>, &mut Run<'_, N, M>) -> Result<Part, RunError>,
+    on: impl Fn(&dyn Mechanics<N, M>, &mut PieceRun<'_, N, M>) -> Result<Part, RunError>,
 ) -> Result<u64, RunError> {
     let mut method = Dla::midpoint();
     piece_by_piece(system, schedule, &mut state, |piece, Piece { steps, schedule }, state| {

@@ -91,7 +91,7 @@ fn step<const N: usize, const M: usize>(
     let (t, h) = (schedule.time(k), schedule.step);
     // From what a checkpoint has.
     method.recall(&remembered, state);
-    let mut report = Report(StepReport::of(0));
+    let mut report = LastReport(StepReport::of(0));
     let mut memory = Vec::new();
     let whole = drive_part(system, method, schedule, k..k + 1, state, &mut report)
         .map_err(|error| error.source)
@@ -156,16 +156,16 @@ pub(crate) fn one<const N: usize, const M: usize>(
     state: &mut State<N>,
 ) -> Result<StepReport<M>, StepError> {
     method.recall(&[], state);
-    let mut report = Report(StepReport::of(0));
+    let mut report = LastReport(StepReport::of(0));
     let alone = Schedule { t0: t, step: h, steps: 1 };
     drive_part(system, method, &alone, 0..1, state, &mut report).map_err(|error| error.source)?;
     Ok(report.0)
 }
 
 /// What the last step reported.
-pub(crate) struct Report<const M: usize>(pub(crate) StepReport<M>);
+pub(crate) struct LastReport<const M: usize>(pub(crate) StepReport<M>);
 
-impl<const N: usize, const M: usize> Observer<N, M> for Report<M> {
+impl<const N: usize, const M: usize> Observer<N, M> for LastReport<M> {
     fn start(&mut self, _node: &View<'_, N, M>) {}
 
     fn step(&mut self, _node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {

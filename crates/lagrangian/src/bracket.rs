@@ -56,7 +56,7 @@ impl<S: Scalar, const N: usize, const M: usize> Bracket<S, N, M> {
 
     /// The basis, the velocity, the Lagrangian in it, and `p . DW_a`, a covector, of every vector of the basis.
     #[inline(always)]
-    fn with_slopes<Sys: System<N, M>>(system: &Sys, t: S, q: &[S; N], xi: &[S; N]) -> Option<Slopes<S, N, M>> {
+    fn with_slopes<Sys: System<N, M>>(system: &Sys, t: S, q: &[S; N], xi: &[S; N]) -> Option<BracketSlopes<S, N, M>> {
         let frame = system.admissible_basis(Dual::fixed(t), &Dual::variables(q))?;
         let mut basis = AdmissibleBasis::empty();
         let mut along = [[S::zero(); N]; N];
@@ -77,7 +77,12 @@ impl<S: Scalar, const N: usize, const M: usize> Bracket<S, N, M> {
 
     /// The same of many coordinates, along one after another: with its derivatives in all of them a basis has `N^3` numbers.
     #[inline(always)]
-    fn with_slopes_in_turn<Sys: System<N, M>>(system: &Sys, t: S, q: &[S; N], xi: &[S; N]) -> Option<Slopes<S, N, M>> {
+    fn with_slopes_in_turn<Sys: System<N, M>>(
+        system: &Sys,
+        t: S,
+        q: &[S; N],
+        xi: &[S; N],
+    ) -> Option<BracketSlopes<S, N, M>> {
         let basis = system.admissible_basis(t, q)?;
         let mut along = [[S::zero(); N]; N];
         let velocity = basis.combine(xi);
@@ -144,7 +149,7 @@ impl<S: Scalar, const N: usize, const M: usize> Bracket<S, N, M> {
 }
 
 /// See [`Bracket::with_slopes`].
-type Slopes<S, const N: usize, const M: usize> = (AdmissibleBasis<S, N, M>, [S; N], Dual<S, N>, [[S; N]; N]);
+type BracketSlopes<S, const N: usize, const M: usize> = (AdmissibleBasis<S, N, M>, [S; N], Dual<S, N>, [[S; N]; N]);
 
 /// The place `q`, its coordinate number `j` the only variable.
 #[inline(always)]

@@ -197,7 +197,7 @@ fn kinds<Sys: System<N, M>, const N: usize, const M: usize>(
 ) -> [RowKind; M] {
     let g = system.holonomic(t, q).unwrap_or([None; M]);
     let phi = system.nonlinear(t, q, v).unwrap_or([None; M]);
-    let InPlace { b, b_q, .. } = InPlace::at(system, t, q);
+    let RowsInPlace { b, b_q, .. } = RowsInPlace::at(system, t, q);
     let (_, later) = system.constraint(Dual { re: t, eps: [1.0] }, &q.map(Dual::fixed));
     from_fn(|k| match (phi[k], g[k]) {
         (Some(_), _) => RowKind::Nonlinear,
@@ -221,7 +221,7 @@ fn mismatched<Sys: System<N, M>, const N: usize, const M: usize>(system: &Sys, t
 }
 
 /// A constraint with its derivatives in the coordinates.
-struct InPlace<const N: usize, const M: usize> {
+struct RowsInPlace<const N: usize, const M: usize> {
     a: [[f64; N]; M],
     b: [f64; M],
     /// `dA_k/dq`, row `i` the derivatives of `A_ki`; not in an array, which of many coordinates would fill a stack.
@@ -229,7 +229,7 @@ struct InPlace<const N: usize, const M: usize> {
     b_q: [[f64; N]; M],
 }
 
-impl<const N: usize, const M: usize> InPlace<N, M> {
+impl<const N: usize, const M: usize> RowsInPlace<N, M> {
     fn at<Sys: System<N, M>>(system: &Sys, t: f64, q: &[f64; N]) -> Self {
         let mut all = Self { a: [[0.0; N]; M], b: [0.0; M], a_q: vec![[[0.0; N]; N]; M], b_q: [[0.0; N]; M] };
         match const { N <= AT_ONCE } {
@@ -268,7 +268,7 @@ fn brackets<Sys: System<N, M>, const N: usize, const M: usize>(
     kinds: &[RowKind; M],
     space: &RowSpace<N, M>,
 ) -> usize {
-    let InPlace { a, b, a_q: in_q, b_q } = InPlace::at(system, t, q);
+    let RowsInPlace { a, b, a_q: in_q, b_q } = RowsInPlace::at(system, t, q);
     let (in_t, _) = system.constraint(Dual { re: t, eps: [1.0] }, &q.map(Dual::fixed));
     let here: Constraint<f64, N, M> = (a, b);
     let rows: Vec<usize> = space.dependence().independent.iter().filter(|k| kinds[*k] != RowKind::Nonlinear).collect();

@@ -28,7 +28,7 @@ pub fn add_position_curvature<Sys: System<N, M>, const N: usize, const M: usize>
     factors: &[f64; M],
     matrix: &mut [[f64; N]; N],
 ) {
-    add(&Positions { system, t, q }, factors, matrix);
+    add(&PositionCurvature { system, t, q }, factors, matrix);
 }
 
 /// Of few variables in one evaluation, of many in blocks, as [`second_derivatives`](crate::second_derivatives).
@@ -87,13 +87,13 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Curved<N, M> for Nonline
     }
 }
 
-struct Positions<'a, Sys, const N: usize, const M: usize> {
+struct PositionCurvature<'a, Sys, const N: usize, const M: usize> {
     system: &'a Sys,
     t: f64,
     q: &'a [f64; N],
 }
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> Curved<N, M> for Positions<'_, Sys, N, M> {
+impl<Sys: System<N, M>, const N: usize, const M: usize> Curved<N, M> for PositionCurvature<'_, Sys, N, M> {
     #[inline(always)]
     fn at<const P: usize>(&self, first: usize, second: usize) -> Option<[Option<HyperDual<f64, P, P>>; M]> {
         let Self { system, t, q } = *self;

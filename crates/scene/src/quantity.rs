@@ -6,11 +6,11 @@ use crate::fault::Fault;
 pub(crate) struct Quantity {
     pub(crate) key: &'static str,
     pub(crate) unit: &'static str,
-    range: Range,
+    range: AcceptedRange,
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Range {
+enum AcceptedRange {
     Finite,
     Positive,
     NotNegative,
@@ -20,22 +20,22 @@ enum Range {
 impl Quantity {
     /// Any finite number.
     pub(crate) const fn finite(key: &'static str, unit: &'static str) -> Self {
-        Self { key, unit, range: Range::Finite }
+        Self { key, unit, range: AcceptedRange::Finite }
     }
 
     /// A finite number greater than 0.
     pub(crate) const fn positive(key: &'static str, unit: &'static str) -> Self {
-        Self { key, unit, range: Range::Positive }
+        Self { key, unit, range: AcceptedRange::Positive }
     }
 
     /// A finite number, 0 or greater.
     pub(crate) const fn not_negative(key: &'static str, unit: &'static str) -> Self {
-        Self { key, unit, range: Range::NotNegative }
+        Self { key, unit, range: AcceptedRange::NotNegative }
     }
 
     /// A number from 0 to 1, without a unit.
     pub(crate) const fn fraction(key: &'static str) -> Self {
-        Self { key, unit: "", range: Range::Fraction }
+        Self { key, unit: "", range: AcceptedRange::Fraction }
     }
 
     /// The same kind of number under another key.
@@ -46,11 +46,11 @@ impl Quantity {
     /// The values it may have, as messages say it.
     pub(crate) fn accepted(&self) -> String {
         match self.range {
-            Range::Finite => format!("a finite number, in {}", self.unit),
-            Range::Positive if self.unit.is_empty() => "a finite number greater than 0".to_owned(),
-            Range::Positive => format!("a finite number greater than 0, in {}", self.unit),
-            Range::NotNegative => format!("a finite number, 0 or greater, in {}", self.unit),
-            Range::Fraction => "a number from 0 to 1".to_owned(),
+            AcceptedRange::Finite => format!("a finite number, in {}", self.unit),
+            AcceptedRange::Positive if self.unit.is_empty() => "a finite number greater than 0".to_owned(),
+            AcceptedRange::Positive => format!("a finite number greater than 0, in {}", self.unit),
+            AcceptedRange::NotNegative => format!("a finite number, 0 or greater, in {}", self.unit),
+            AcceptedRange::Fraction => "a number from 0 to 1".to_owned(),
         }
     }
 
@@ -58,10 +58,12 @@ impl Quantity {
     pub(crate) fn check(&self, value: f64) -> Result<(), Fault> {
         let problem = match self.range {
             _ if !value.is_finite() => "must be finite",
-            Range::Positive if value <= 0.0 => "must be positive",
-            Range::NotNegative if value < 0.0 => "must not be negative",
-            Range::Fraction if !(0.0..=1.0).contains(&value) => "must be between 0 and 1",
-            Range::Finite | Range::Positive | Range::NotNegative | Range::Fraction => return Ok(()),
+            AcceptedRange::Positive if value <= 0.0 => "must be positive",
+            AcceptedRange::NotNegative if value < 0.0 => "must not be negative",
+            AcceptedRange::Fraction if !(0.0..=1.0).contains(&value) => "must be between 0 and 1",
+            AcceptedRange::Finite | AcceptedRange::Positive | AcceptedRange::NotNegative | AcceptedRange::Fraction => {
+                return Ok(());
+            }
         };
         Err(Fault {
             variant: SceneError::OutOfRange,

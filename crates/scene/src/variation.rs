@@ -27,10 +27,10 @@ impl<T> Varied<'_, T> {
 }
 
 /// The keys of `[grid]` with their values, and those of `[random]` with their distributions, in the order of the alphabet.
-type Variation<'s> = (Vec<Varied<'s, Vec<f64>>>, Vec<Varied<'s, Draw>>);
+type SweepVariation<'s> = (Vec<Varied<'s, Vec<f64>>>, Vec<Varied<'s, Draw>>);
 
 /// Reads both tables; a key that comes twice in them is refused.
-pub(crate) fn read<'s>(root: &Table<'s>) -> Result<Variation<'s>, SceneError> {
+pub(crate) fn read<'s>(root: &Table<'s>) -> Result<SweepVariation<'s>, SceneError> {
     let (grid, random) = (leaves(root, "grid", &[])?, leaves(root, "random", &["count", "seed", "common"])?);
     let mut seen: Vec<&Varied<'_, ()>> = grid.iter().chain(&random).collect();
     seen.sort_by(|a, b| (&a.key, a.span.start).cmp(&(&b.key, b.span.start)));

@@ -29,12 +29,12 @@ impl<B, const N: usize> SceneEffects<B, N> for () {
 }
 
 /// One effect alone, without a body: what it adds to a Lagrangian and to the forces.
-struct Alone<'a, B> {
+struct EffectAlone<'a, B> {
     body: &'a B,
     effect: &'a AnyEffect,
 }
 
-impl<B: SleighBody, const N: usize> System<N, 0> for Alone<'_, B> {
+impl<B: SleighBody, const N: usize> System<N, 0> for EffectAlone<'_, B> {
     fn lagrangian<S: lagrangian::Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> S {
         self.effect.lagrangian(self.body, t, q, v).unwrap_or(S::zero())
     }
@@ -51,7 +51,7 @@ impl<B: SleighBody, const N: usize> SceneEffects<B, N> for Vec<AnyEffect> {
         let mut powers: Vec<EffectPower> = Vec::new();
         for effect in self {
             let Some(kind) = effect.powered() else { continue };
-            let alone = Alone { body, effect };
+            let alone = EffectAlone { body, effect };
             let power = force_power(&alone, t, q, v).unwrap_or(0.0) + lagrangian_power(&alone, t, q, v);
             let before = self.iter().take_while(|other| !std::ptr::eq(*other, effect));
             let number = 1 + before.filter(|other| other.powered() == Some(kind)).count();

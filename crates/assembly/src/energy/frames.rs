@@ -1,12 +1,12 @@
 use crate::Assembly;
-use crate::pattern::Part;
+use crate::pattern::PatternPart;
 use crate::terms;
 use std::ops::Range;
 
 /// The bodies of an assembly, and what their quasi-velocities are to the coordinates.
 #[derive(Debug)]
 pub(super) struct Frames {
-    pub(super) bodies: Vec<Body>,
+    pub(super) bodies: Vec<BodyFrame>,
     /// For each coordinate, where its row of a frame begins, its first quasi-velocity, and how many there are.
     links: Vec<Link>,
     /// How many quasi-velocities there are in all.
@@ -14,12 +14,12 @@ pub(super) struct Frames {
     /// How many numbers the frames of all bodies have.
     pub(super) room: usize,
     /// For each element the quasi-velocities that it takes part in, with its constraints that no frame meets.
-    pub(super) parts: Vec<Part>,
+    pub(super) parts: Vec<PatternPart>,
 }
 
 /// A body: an element that brings coordinates of its own.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Body {
+pub(super) struct BodyFrame {
     pub(super) element: usize,
     /// Its first coordinate, and how many there are.
     at: usize,
@@ -32,7 +32,7 @@ pub(super) struct Body {
     pub(super) mass: usize,
 }
 
-impl Body {
+impl BodyFrame {
     pub(super) fn coordinates(&self) -> Range<usize> {
         self.at..self.at + self.size
     }
@@ -68,7 +68,7 @@ impl Frames {
                 let quasi = placed.element.quasi_velocities();
                 rows = if quasi < size { 0 } else { all };
                 let (at, first, frame) = (frames.links.len(), frames.quasi, frames.room);
-                frames.bodies.push(Body { element, at, size, first, quasi, frame, mass });
+                frames.bodies.push(BodyFrame { element, at, size, first, quasi, frame, mass });
                 frames.links.extend((0..size).map(|i| Link { frame: frame + i * quasi, first, quasi }));
                 frames.quasi += quasi;
                 frames.room += size * quasi;
@@ -82,7 +82,7 @@ impl Frames {
                 .collect();
             at.sort_unstable();
             at.dedup();
-            frames.parts.push(Part { at: at.into(), row, rows, acts: placed.element.acts() });
+            frames.parts.push(PatternPart { at: at.into(), row, rows, acts: placed.element.acts() });
             row += rows;
         }
         frames
@@ -94,13 +94,13 @@ impl Frames {
     }
 
     /// The row of a coordinate in the frames `w`, and where its quasi-velocities are among those of a part.
-    fn row<'a>(&self, w: &'a [f64], part: &Part, coordinate: usize) -> (&'a [f64], usize) {
+    fn row<'a>(&self, w: &'a [f64], part: &PatternPart, coordinate: usize) -> (&'a [f64], usize) {
         let Link { frame, first, quasi } = self.links[coordinate];
         (&w[frame..frame + quasi], part.at.partition_point(|at| *at < first))
     }
 
     /// `W' f` of a covector of an element.
-    pub(super) fn reduce(&self, w: &[f64], part: &Part, at: &[usize], f: &[f64], out: &mut [f64]) {
+    pub(super) fn reduce(&self, w: &[f64], part: &PatternPart, at: &[usize], f: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         for (i, f) in at.iter().zip(f) {
             let (row, place) = self.row(w, part, *i);
@@ -111,7 +111,7 @@ impl Frames {
     }
 
     /// `G W` of the rows `G` of an element.
-    pub(super) fn reduce_rows(&self, w: &[f64], part: &Part, at: &[usize], rows: &[f64], out: &mut [f64]) {
+    pub(super) fn reduce_rows(&self, w: &[f64], part: &PatternPart, at: &[usize], rows: &[f64], out: &mut [f64]) {
         let (n, k) = (at.len(), part.at.len());
         if k > 0 {
             for (row, out) in rows.chunks_exact(n).zip(out.chunks_exact_mut(k)) {
@@ -124,7 +124,7 @@ impl Frames {
     pub(super) fn reduce_block(
         &self,
         [w, u]: [&[f64]; 2],
-        part: &Part,
+        part: &PatternPart,
         at: &[usize],
         block: &[f64],
         (half, out): (&mut [f64], &mut [f64]),
@@ -170,7 +170,7 @@ impl Frames {
                         *to += w.abs() * size;
                     }
                 }
-                let Part { row, rows, .. } = self.parts[k];
+                let PatternPart { row, rows, .. } = self.parts[k];
                 for (to, size) in sizes[self.quasi + row..][..rows].iter_mut().zip(level) {
                     *to += size;
                 }

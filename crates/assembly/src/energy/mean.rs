@@ -1,6 +1,6 @@
 use super::element::{Average, NO_BASIS, Swing};
-use super::frames::{Body, Frames};
-use crate::assembly::{Placed, WIDEST};
+use super::frames::{BodyFrame, Frames};
+use crate::assembly::{PlacedElement, WIDEST};
 use crate::contributions::{at, gathered};
 use crate::dla::relative;
 use crate::element::Blocks;
@@ -9,7 +9,7 @@ use crate::{Assembly, AssemblyError, State};
 use dla::Stage;
 
 /// What the mean quasi-velocities of a step say of it.
-pub(super) struct Path {
+pub(super) struct MeanPath {
     /// The mean velocities `W(q_m) x`, and where they lead.
     pub(super) v: Vec<f64>,
     pub(super) q1: Vec<f64>,
@@ -34,7 +34,7 @@ struct Room {
 }
 
 /// The equations for the mean quasi-velocities.
-pub(super) struct Mean<'a> {
+pub(super) struct MeanEquations<'a> {
     pub(super) assembly: &'a Assembly,
     pub(super) frames: &'a Frames,
     pub(super) rule: &'a Average,
@@ -44,12 +44,12 @@ pub(super) struct Mean<'a> {
     pub(super) xi0: &'a [f64],
     pub(super) q0: &'a [f64],
     pub(super) kappa: f64,
-    pub(super) path: &'a mut Path,
+    pub(super) path: &'a mut MeanPath,
     /// That of the forces, as last evaluated (J).
     pub(super) work: f64,
 }
 
-impl Path {
+impl MeanPath {
     pub(super) fn of(assembly: &Assembly, frames: &Frames) -> Self {
         let mut starts = vec![0];
         for part in &frames.parts {
@@ -80,7 +80,7 @@ impl Path {
     fn swing(
         &mut self,
         (assembly, step): (&Assembly, (f64, f64)),
-        body: &Body,
+        body: &BodyFrame,
         q0: &[f64],
         x: &[f64],
     ) -> Result<(), AssemblyError> {
@@ -161,7 +161,7 @@ impl Path {
     }
 }
 
-impl Mean<'_> {
+impl MeanEquations<'_> {
     /// Right side and, where it is asked for, the matrix: that of the potentials in the middle of the step, and without the
     /// change of `Y` and `W`, which are of the second order in the step.
     pub(super) fn evaluate(
@@ -189,7 +189,7 @@ impl Mean<'_> {
     }
 
     /// `2 M (x - xi0) + h S x - kappa M x`.
-    fn add_body(&mut self, system: &mut Sparse, body: &Body, x: &[f64], matrix: bool) {
+    fn add_body(&mut self, system: &mut Sparse, body: &BodyFrame, x: &[f64], matrix: bool) {
         let (h, kappa, k) = (self.step.1, self.kappa, body.quasi);
         let Room { full, vector, block, reduced, .. } = &mut self.path.room;
         let (x, x0) = (&x[body.quasi_velocities()], &self.xi0[body.quasi_velocities()]);
@@ -208,9 +208,9 @@ impl Mean<'_> {
     }
 
     /// `-W' (-h V_q + h F)`.
-    fn add_push(&mut self, system: &mut Sparse, k: usize, placed: &Placed, matrix: bool) {
+    fn add_push(&mut self, system: &mut Sparse, k: usize, placed: &PlacedElement, matrix: bool) {
         let (frames, part, n) = (self.frames, &self.frames.parts[k], placed.at.len());
-        let Path { v, middle, slope, room, .. } = &mut *self.path;
+        let MeanPath { v, middle, slope, room, .. } = &mut *self.path;
         let Room { full, vector, half, block, reduced, .. } = room;
         let out = (&mut vector[..n], &mut full[..n * n]);
         self.work += at(placed, self.q0, v, |q, v| placed.element.push(self.step, self.rule, q, v, out));
@@ -226,9 +226,16 @@ impl Mean<'_> {
     }
 
     /// `-Y lambda`, and `g(q1) = 0` or `A(q_m) v = 0`.
-    fn add_constraint(&mut self, system: &mut Sparse, k: usize, placed: &Placed, impulses: &[f64], matrix: bool) {
+    fn add_constraint(
+        &mut self,
+        system: &mut Sparse,
+        k: usize,
+        placed: &PlacedElement,
+        impulses: &[f64],
+        matrix: bool,
+    ) {
         let (frames, part, n) = (self.frames, &self.frames.parts[k], placed.at.len());
-        let Path { v, q1, middle, slope, mean_rows, starts, room } = &mut *self.path;
+        let MeanPath { v, q1, middle, slope, mean_rows, starts, room } = &mut *self.path;
         let Room { full, vector, half, block, reduced, rows, levels } = room;
         let (m, columns, mean) = (part.rows, part.at.len(), &mut mean_rows[starts[k]..starts[k + 1]]);
         at(placed, self.q0, v, |q, v| {

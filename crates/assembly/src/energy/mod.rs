@@ -6,10 +6,10 @@ mod mean;
 
 pub use element::{Average, EnergyElement, Swing};
 
-use crate::assembly::Placed;
+use crate::assembly::PlacedElement;
 use crate::contributions::at;
 use crate::dla::predict;
-use crate::settling::Settling;
+use crate::settling::AssemblySettling;
 use crate::sparse::Sparse;
 use crate::terms;
 use crate::{Assembly, AssemblyError, OneStep, Solver, State, StepReport};
@@ -19,7 +19,7 @@ use dla::{History, NewtonError, Stage};
 use element::NO_BASIS;
 use frames::Frames;
 use lagrangian::linear::larger;
-use mean::{Mean, Path};
+use mean::{MeanEquations, MeanPath};
 
 /// The energy-preserving method of order 2 of an assembly, whose joints and blades hold at every node: symmetric.
 ///
@@ -51,7 +51,7 @@ pub struct Energy {
     frames: Frames,
     system: Sparse,
     projection: Sparse,
-    settling: Settling,
+    settling: AssemblySettling,
     rule: Average,
     mass: Vec<f64>,
     xi0: Vec<f64>,
@@ -59,7 +59,7 @@ pub struct Energy {
     xi1: Vec<f64>,
     momenta: Vec<f64>,
     impulses: Vec<f64>,
-    path: Path,
+    path: MeanPath,
     /// The frames `W(q1)`.
     end: Vec<f64>,
     /// The frames `W(q0)`, where they are needed.
@@ -100,7 +100,7 @@ impl Energy {
         system.polishes = true;
         let masses = frames.bodies.last().map_or(0, |body| body.masses().end);
         Ok(Self {
-            settling: Settling::new(frames.quasi, rows),
+            settling: AssemblySettling::new(frames.quasi, rows),
             start: vec![0.0; frames.room],
             system,
             projection: Sparse::new(frames.quasi, rows, frames.parts.clone(), solver)?,
@@ -112,7 +112,7 @@ impl Energy {
             xi1: quasi(),
             momenta: quasi(),
             impulses: vec![0.0; rows],
-            path: Path::of(assembly, &frames),
+            path: MeanPath::of(assembly, &frames),
             end: vec![0.0; frames.room],
             q0: all(),
             v0: all(),
@@ -145,7 +145,7 @@ impl Energy {
 
     /// The mean quasi-velocities to begin with, those of the mean velocities that the last steps let expect.
     fn guess(&mut self, assembly: &Assembly, (t0, h): (f64, f64), state: &State) -> Result<(), AssemblyError> {
-        let Self { frames, x, path: Path { v, q1: middle, .. }, q0, v0, unused, .. } = self;
+        let Self { frames, x, path: MeanPath { v, q1: middle, .. }, q0, v0, unused, .. } = self;
         predict(state, h, v0, v);
         for (middle, (q0, v)) in middle.iter_mut().zip(q0.iter().zip(&*v)) {
             *middle = q0 + 0.5 * h * v;
@@ -190,14 +190,15 @@ impl Energy {
 
     /// By how much the constraint turns that turns most (rad).
     fn turn(&self, assembly: &Assembly, step: (f64, f64)) -> f64 {
-        let turn = |placed: &Placed| at(placed, &self.q0, &self.path.v, |q, v| placed.element.turn(step, q, v));
+        let turn = |placed: &PlacedElement| at(placed, &self.q0, &self.path.v, |q, v| placed.element.turn(step, q, v));
         assembly.placed().iter().map(turn).fold(0.0, larger)
     }
 
     /// Whether a change of the energy is below the rounding of that at the start.
     #[cold]
     fn is_rounding(&self, assembly: &Assembly, t0: f64, change: f64) -> bool {
-        let energies = |placed: &Placed| at(placed, &self.q0, &self.v0, |q, v| placed.element.energies(t0, q, v)[1]);
+        let energies =
+            |placed: &PlacedElement| at(placed, &self.q0, &self.v0, |q, v| placed.element.energies(t0, q, v)[1]);
         change.abs() <= f64::EPSILON * assembly.placed().iter().map(energies).sum::<f64>()
     }
 
@@ -257,7 +258,8 @@ impl OneStep for Energy {
         let work = loop {
             let Self { frames, system, settling, rule, mass, xi0, x, impulses, path, start, q0, v0, .. } = self;
             system.factors_serve = near;
-            let mut mean = Mean { assembly, frames, rule, step: (t0, h), state, mass, xi0, q0, kappa, path, work: 0.0 };
+            let mut mean =
+                MeanEquations { assembly, frames, rule, step: (t0, h), state, mass, xi0, q0, kappa, path, work: 0.0 };
             let evaluate = |system: &mut Sparse, x: &[f64], impulses: &[f64], fresh: bool| {
                 mean.evaluate(system, x, impulses, fresh)
             };

@@ -5,18 +5,18 @@ mod stages;
 
 pub use element::{StageElement, StageTerms};
 
-use crate::assembly::Placed;
+use crate::assembly::PlacedElement;
 use crate::contributions::{at_state, gathered};
 use crate::element::Blocks;
-use crate::pattern::Part;
-use crate::settling::Settling;
+use crate::pattern::PatternPart;
+use crate::settling::AssemblySettling;
 use crate::sparse::Sparse;
 use crate::terms;
 use crate::{Assembly, AssemblyError, OneStep, Solver, State, StepReport};
 use dla::Stage;
 use dla::convergence::rounding_of_place;
 use lagrangian::linear::{larger, largest};
-use stages::{Room, Rule, Stages, increment};
+use stages::{AssemblyStages, LobattoRule, StageRoom, increment};
 
 /// The variational partitioned Runge-Kutta method of the Lobatto pair IIIA and IIIB for an assembly: order `2 S - 2` with `S`
 /// stages, self-adjoint.
@@ -28,12 +28,12 @@ use stages::{Room, Rule, Stages, increment};
 /// A step that turns a constraint by more than a radian, or whose iteration does not contract from its start, is refused: the
 /// static method continues the solution from a step of length zero there. (The book, (4.3) to (4.5).)
 pub struct Lobatto {
-    rule: Rule,
+    rule: LobattoRule,
     stages: Sparse,
     end: Sparse,
-    settling: [Settling; 2],
+    settling: [AssemblySettling; 2],
     terms: Vec<StageTerms>,
-    room: Room,
+    room: StageRoom,
     p: Vec<f64>,
     /// The velocities of the stages of one coordinate after the other.
     v: Vec<f64>,
@@ -61,15 +61,15 @@ impl Lobatto {
     /// [`AssemblyError::Unsupported`] for other numbers; [`AssemblyError::Factorisation`] where the memory does not suffice.
     pub fn new(assembly: &Assembly, solver: Solver, stages: usize) -> Result<Self, AssemblyError> {
         let rule = match stages {
-            3 => Rule::of::<3>(),
-            4 => Rule::of::<4>(),
-            5 => Rule::of::<5>(),
+            3 => LobattoRule::of::<3>(),
+            4 => LobattoRule::of::<4>(),
+            5 => LobattoRule::of::<5>(),
             _ => return Err(AssemblyError::Unsupported { reason: "lobatto of assemblies has 3, 4 or 5 stages" }),
         };
         let (n, m) = (assembly.coordinates(), assembly.rows());
         // Local unknowns are stage by stage, global ones coordinate by coordinate, so that neighbours stay near.
         let part = |s: usize, r: usize| {
-            move |placed: &Placed| Part {
+            move |placed: &PlacedElement| PatternPart {
                 at: (0..s).flat_map(|stage| placed.at.iter().map(move |i| i * s + stage)).collect(),
                 row: r * placed.row,
                 rows: r * placed.rows,
@@ -81,9 +81,9 @@ impl Lobatto {
         Ok(Self {
             stages: Sparse::new(stages * n, (stages - 1) * m, parts(stages, stages - 1), solver)?,
             end: Sparse::new(n, m, parts(1, 1), solver)?,
-            settling: [Settling::new(stages * n, (stages - 1) * m), Settling::new(n, m)],
+            settling: [AssemblySettling::new(stages * n, (stages - 1) * m), AssemblySettling::new(n, m)],
             terms: vec![StageTerms::new(); stages],
-            room: Room::of(assembly, stages),
+            room: StageRoom::of(assembly, stages),
             p: vec![0.0; n],
             v: vec![0.0; stages * n],
             impulses: vec![0.0; (stages - 1) * m],
@@ -139,7 +139,7 @@ impl Lobatto {
             }
         }
         impulses.fill(0.0);
-        let mut equations = Stages { assembly, rule, step, state, p0: p, terms, room };
+        let mut equations = AssemblyStages { assembly, rule, step, state, p0: p, terms, room };
         let (s, unknowns) = (rule.stages, rule.stages * assembly.coordinates());
         let sizes = |sizes: &mut [f64]| {
             let (q, v) = (|i: usize| state.q(i), |i: usize| state.v(i));
@@ -164,7 +164,7 @@ impl Lobatto {
             },
         )?;
         // The momenta that all stages give.
-        let mut gains = Stages { assembly, rule, step, state, p0: &[], terms, room };
+        let mut gains = AssemblyStages { assembly, rule, step, state, p0: &[], terms, room };
         for placed in assembly.placed() {
             gains.ask(placed, v, impulses);
             for (x, i) in placed.at.iter().enumerate() {
@@ -220,7 +220,7 @@ impl Lobatto {
 
     /// By how much the constraint turns that turns most (rad).
     fn turn(&self, assembly: &Assembly, step: (f64, f64), state: &State) -> f64 {
-        let turn = |placed: &Placed| {
+        let turn = |placed: &PlacedElement| {
             gathered(
                 placed,
                 |i| state.q(i),

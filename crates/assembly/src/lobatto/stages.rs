@@ -1,5 +1,5 @@
 use super::element::StageTerms;
-use crate::assembly::{Placed, WIDEST};
+use crate::assembly::{PlacedElement, WIDEST};
 use crate::contributions::gathered;
 use crate::sparse::Sparse;
 use crate::{Assembly, State};
@@ -7,7 +7,7 @@ use dla::LobattoTables;
 
 /// The coefficients of a Lobatto pair, their number a value: see [`LobattoTables`].
 #[derive(Debug, Clone)]
-pub(super) struct Rule {
+pub(super) struct LobattoRule {
     pub(super) stages: usize,
     pub(super) c: Vec<f64>,
     pub(super) b: Vec<f64>,
@@ -17,7 +17,7 @@ pub(super) struct Rule {
     blind: Vec<f64>,
 }
 
-impl Rule {
+impl LobattoRule {
     pub(super) fn of<const S: usize>() -> Self {
         let LobattoTables { c, b, a, a_hat, blind } = LobattoTables::<S>::new();
         let flat = |x: &[[f64; S]; S]| x.as_flattened().to_vec();
@@ -41,18 +41,18 @@ pub(super) fn increment(h: f64, factors: &[f64], share: f64, v0: f64, v: &[f64])
 }
 
 /// The equations for the velocities of all stages of a step, and the impulses of all but the last.
-pub(super) struct Stages<'a> {
+pub(super) struct AssemblyStages<'a> {
     pub(super) assembly: &'a Assembly,
-    pub(super) rule: &'a Rule,
+    pub(super) rule: &'a LobattoRule,
     pub(super) step: (f64, f64),
     pub(super) state: &'a State,
     pub(super) p0: &'a [f64],
     pub(super) terms: &'a mut [StageTerms],
-    pub(super) room: &'a mut Room,
+    pub(super) room: &'a mut StageRoom,
 }
 
 /// Room for what one element says of all stages.
-pub(super) struct Room {
+pub(super) struct StageRoom {
     right: Vec<f64>,
     block: Vec<f64>,
     levels: Vec<f64>,
@@ -60,7 +60,7 @@ pub(super) struct Room {
     rows: Vec<f64>,
 }
 
-impl Room {
+impl StageRoom {
     /// For the widest of the elements.
     pub(super) fn of(assembly: &Assembly, stages: usize) -> Self {
         let widest = assembly.placed().iter().map(|placed| placed.at.len()).max().unwrap_or(0) * stages;
@@ -69,9 +69,9 @@ impl Room {
     }
 }
 
-impl Stages<'_> {
+impl AssemblyStages<'_> {
     /// What an element says at every stage, in the terms: `v` has the velocities of the stages of one coordinate after the other.
-    pub(super) fn ask(&mut self, placed: &Placed, v: &[f64], impulses: &[f64]) {
+    pub(super) fn ask(&mut self, placed: &PlacedElement, v: &[f64], impulses: &[f64]) {
         let (t0, h, s) = (self.step.0, self.step.1, self.rule.stages);
         let state = self.state;
         let own = |i: usize| &v[i * s..][..s];
@@ -162,7 +162,7 @@ impl Stages<'_> {
     /// `g_i - blind_i g_0 = 0`, or of positions `g_i = 0`, of all stages but the first; and how the impulses act.
     fn constraints(&mut self, n: usize, m: usize) {
         let (h, s, rule, terms) = (self.step.1, self.rule.stages, self.rule, &*self.terms);
-        let Room { levels, acting, rows, .. } = &mut *self.room;
+        let StageRoom { levels, acting, rows, .. } = &mut *self.room;
         for i in 1..s {
             for k in 0..m {
                 let equation = (i - 1) * m + k;

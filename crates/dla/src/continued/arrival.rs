@@ -1,4 +1,4 @@
-use super::{Found, are_met};
+use super::{FoundMean, are_met};
 use crate::Mechanics;
 use crate::derivatives::Derivatives;
 use crate::dla::Dla;
@@ -14,7 +14,7 @@ impl<D> Dla<D> {
         (t1, q1): (f64, &[f64; N]),
         p1: [f64; N],
         guess: [f64; N],
-    ) -> Option<Found<N, M>> {
+    ) -> Option<FoundMean<N, M>> {
         let (p, (a1, b1)) = if self.kept.mass.stale {
             let (p, mass) = system.mass_matrix(t1, q1, &guess);
             self.kept.mass.renew(&mass)?;
@@ -39,18 +39,18 @@ impl<D> Dla<D> {
         }
         if mass.suffice(size, large) {
             self.kept.mass.go_unseen();
-            return Some(Found { v, lambda: minus_mu.map(|m| -m), corrections: 1 });
+            return Some(FoundMean { v, lambda: minus_mu.map(|m| -m), corrections: 1 });
         }
         let p = system.momentum(t1, q1, &v);
         if here.is_met(&p, &minus_mu) {
             self.kept.mass.have_sufficed(size, large, || true);
-            return Some(Found { v, lambda: minus_mu.map(|m| -m), corrections: LEAST });
+            return Some(FoundMean { v, lambda: minus_mu.map(|m| -m), corrections: LEAST });
         }
         // Destructured and rebuilt, so that the results above stay in registers: returned as it is, all would go through the memory in
         // which the call leaves its result.
-        let Found { v, lambda, corrections } = here.settled(v, p, d)?;
+        let FoundMean { v, lambda, corrections } = here.settled(v, p, d)?;
         self.kept.mass.have_not_sufficed();
-        Some(Found { v, lambda, corrections })
+        Some(FoundMean { v, lambda, corrections })
     }
 }
 
@@ -85,7 +85,7 @@ impl<const N: usize, const M: usize> Here<'_, N, M> {
     /// Iterates to convergence, after the correction `d` to `v`, which has the momenta `p`. Takes `self` by value, so that nothing of it
     /// must be in memory where the first correction is enough.
     #[inline(never)]
-    fn settled(self, mut v: [f64; N], p: [f64; N], d: [f64; N]) -> Option<Found<N, M>> {
+    fn settled(self, mut v: [f64; N], p: [f64; N], d: [f64; N]) -> Option<FoundMean<N, M>> {
         let (mut known, mut minus_mu) = (Some(p), [0.0; M]);
         let corrections = Settle { tolerance: self.tolerance, first: d }.search(
             &mut v,
@@ -105,6 +105,6 @@ impl<const N: usize, const M: usize> Here<'_, N, M> {
                 Some(d)
             },
         )?;
-        Some(Found { v, lambda: minus_mu.map(|m| -m), corrections })
+        Some(FoundMean { v, lambda: minus_mu.map(|m| -m), corrections })
     }
 }

@@ -1,4 +1,4 @@
-use super::{Found, are_met, ends, with_reaction};
+use super::{FoundMean, are_met, ends, with_reaction};
 use crate::convergence::tolerances::SHRINKING;
 use crate::corrections::Departure;
 use crate::derivatives::Derivatives;
@@ -19,7 +19,7 @@ impl<D> Dla<D> {
         system: &dyn Mechanics<N, M>,
         (t0, h): (f64, f64),
         state: &State<N>,
-    ) -> Option<(Found<N, M>, [f64; N])>
+    ) -> Option<(FoundMean<N, M>, [f64; N])>
     where
         D: Discretisation<N, M>,
     {
@@ -56,7 +56,7 @@ impl<D> Dla<D> {
         }
         if block.suffice(size, large) {
             self.kept.block.go_unseen();
-            return Some((Found { v: moved, lambda, corrections: 1 }, with_reaction(ends(&at), &a0, &lambda)));
+            return Some((FoundMean { v: moved, lambda, corrections: 1 }, with_reaction(ends(&at), &a0, &lambda)));
         }
         let (first, at, tolerance) = (at, increment.momenta(&moved), self.newton.tolerance);
         if size <= SMALL * large && are_met(&at.residual, &a0, &lambda, &p0, tolerance) {
@@ -64,14 +64,14 @@ impl<D> Dla<D> {
             // Each of the sums has two roundings.
             let same = || sup(&difference(&both, &ends(&first))) <= 2.0 * f64::EPSILON * sup(&both);
             self.kept.block.have_sufficed(size, large, same);
-            return Some((Found { v: moved, lambda, corrections: LEAST }, with_reaction(both, &a0, &lambda)));
+            return Some((FoundMean { v: moved, lambda, corrections: LEAST }, with_reaction(both, &a0, &lambda)));
         }
         let begun = Begun { increment, block, bordered, tolerance, v: moved, d, lambda, first, at };
         // Destructured and rebuilt, so that the results above stay in registers: returned as it is, all would go through the memory in
         // which the call leaves its result.
-        let (Found { v, lambda, corrections }, p1) = begun.settled()?;
+        let (FoundMean { v, lambda, corrections }, p1) = begun.settled()?;
         self.kept.block.have_not_sufficed();
-        Some((Found { v, lambda, corrections }, p1))
+        Some((FoundMean { v, lambda, corrections }, p1))
     }
 }
 
@@ -93,7 +93,7 @@ struct Begun<'a, D, const N: usize, const M: usize> {
 impl<D: Discretisation<N, M>, const N: usize, const M: usize> Begun<'_, D, N, M> {
     /// Iterates to convergence. Takes `self` by value, so that nothing of it must be in memory where the first correction is enough.
     #[inline(never)]
-    fn settled(self) -> Option<(Found<N, M>, [f64; N])> {
+    fn settled(self) -> Option<(FoundMean<N, M>, [f64; N])> {
         let Self { increment, block, bordered, tolerance, mut v, d, mut lambda, first, at } = self;
         let Increment { a0, p0, .. } = increment;
         let (mut both, mut size, mut known) = (ends(&first), sup(&d), Some(at));
@@ -125,7 +125,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Begun<'_, D, N, M>
         if change * size > f64::EPSILON * before * sup(&both) {
             both = ends(&increment.momenta(&v));
         }
-        Some((Found { v, lambda, corrections }, with_reaction(both, &a0, &lambda)))
+        Some((FoundMean { v, lambda, corrections }, with_reaction(both, &a0, &lambda)))
     }
 }
 

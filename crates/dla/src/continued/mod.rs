@@ -13,7 +13,7 @@ use crate::{Discretisation, Mechanics, State, StepReport};
 use lagrangian::from_fn;
 
 /// The velocity that an iteration has found, the impulse of the constraints, and the number of corrections.
-struct Found<const N: usize, const M: usize> {
+struct FoundMean<const N: usize, const M: usize> {
     v: [f64; N],
     lambda: [f64; M],
     corrections: u32,
@@ -122,7 +122,7 @@ fn going_on<D: Discretisation<N, M>, const N: usize, const M: usize>(
     state: &mut State<N>,
 ) -> Option<StepReport<M>> {
     let (q0, v0) = (*state.q(), *state.v());
-    let (Found { v, lambda, corrections }, p1) = method.mean(system, (t0, h), state)?;
+    let (FoundMean { v, lambda, corrections }, p1) = method.mean(system, (t0, h), state)?;
     if branch::turn(system, (t0, h), &q0, &v) > branch::NEAR {
         return None;
     }

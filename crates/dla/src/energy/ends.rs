@@ -1,6 +1,6 @@
-use super::path::Points;
-use super::rule::Rule;
-use super::start::Start;
+use super::path::PathPoints;
+use super::rule::EnergyRule;
+use super::start::EnergyStart;
 use lagrangian::{Bracket, Lanes};
 
 /// The energies at the two ends of a step.
@@ -15,10 +15,10 @@ pub(super) struct Ends {
 impl Ends {
     #[inline(always)]
     pub(super) fn of<const N: usize, const M: usize>(
-        rule: &Rule,
+        rule: &EnergyRule,
         bracket: &Bracket<Lanes, N, M>,
-        points: &Points<N>,
-        begin: &Start<N>,
+        points: &PathPoints<N>,
+        begin: &EnergyStart<N>,
     ) -> Self {
         let (end, start) = rule.ends();
         // H_pi = xi makes up for what the iteration for xi still misses; a discrete gradient divides it by the step.

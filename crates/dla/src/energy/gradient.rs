@@ -1,5 +1,5 @@
-use super::path::Points;
-use super::rule::Rule;
+use super::path::PathPoints;
+use super::rule::EnergyRule;
 use crate::Mechanics;
 use lagrangian::{Lanes, Scalar};
 
@@ -17,9 +17,9 @@ pub(super) struct Averages<const N: usize> {
 #[inline(always)]
 pub(super) fn average<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
-    rule: &Rule,
+    rule: &EnergyRule,
     t: Lanes,
-    nodes: &mut Points<N>,
+    nodes: &mut PathPoints<N>,
 ) -> Option<Averages<N>> {
     let slope = system.energy_slope(t, &nodes.q, &nodes.xi)?;
     nodes.pi = slope.pi;

@@ -13,9 +13,9 @@ use crate::{Mechanics, OneStep, StackUse, Stage, State, StepError, StepReport};
 use ends::Ends;
 use lagrangian::linear::larger;
 use lagrangian::{AT_ONCE, Lanes, Scalar, Twofold, from_fn, vectorized};
-use path::{Path, Points};
-use rule::Rule;
-use start::Start;
+use path::{EnergyPath, PathPoints};
+use rule::EnergyRule;
+use start::EnergyStart;
 
 /// The energy-preserving collocation method with `s` Gauss nodes, of order `2 s`, for `s` from 1 to 4.
 ///
@@ -40,7 +40,7 @@ use start::Start;
 /// The system must have a basis of admissible velocities, `b = 0` and no explicit time; forces may depend on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Energy {
-    rule: Rule,
+    rule: EnergyRule,
     work: f64,
 }
 
@@ -49,7 +49,7 @@ impl Energy {
     /// a step is compiled once for all of them.
     #[must_use]
     pub fn new<const S: usize>() -> Self {
-        Self { rule: Rule::new::<S>(), work: 0.0 }
+        Self { rule: EnergyRule::new::<S>(), work: 0.0 }
     }
 
     /// The discrete work of the forces over the last step (J): by so much the energy has changed.
@@ -73,8 +73,8 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Energy {
         }
         affine_only(system, t0, state)?;
         velocities_only(system, t0, state, POSITIONS)?;
-        let start = Start::new(system, t0, h, state)?;
-        let end = Step { system, rule: &self.rule, t0, h, start: &start }.solved()?;
+        let start = EnergyStart::new(system, t0, h, state)?;
+        let end = StepEnergy { system, rule: &self.rule, t0, h, start: &start }.solved()?;
         let q1 = state.ahead(&end.increment);
         let v1 = system.basis(t0 + h, &q1).ok_or(NO_BASIS)?.combine(&end.xi);
         state.stays_finite(&end.increment, &v1)?;
@@ -98,16 +98,16 @@ const POSITIONS: &str = "the energy-preserving methods let positions drift from 
                          projected positions would change the energy";
 
 /// The equations of one step.
-struct Step<'a, const N: usize, const M: usize> {
+struct StepEnergy<'a, const N: usize, const M: usize> {
     system: &'a dyn Mechanics<N, M>,
-    rule: &'a Rule,
+    rule: &'a EnergyRule,
     t0: f64,
     h: f64,
-    start: &'a Start<N>,
+    start: &'a EnergyStart<N>,
 }
 
 /// The end of a step.
-struct End<const N: usize> {
+struct PathEnd<const N: usize> {
     increment: [f64; N],
     xi: [f64; N],
     pi: [Twofold; N],
@@ -115,7 +115,7 @@ struct End<const N: usize> {
     iterations: u32,
 }
 
-impl<const N: usize, const M: usize> Step<'_, N, M> {
+impl<const N: usize, const M: usize> StepEnergy<'_, N, M> {
     /// The energy may miss the work by so many roundings; more is an error of the quadrature.
     const ROUNDINGS: f64 = 1024.0;
 
@@ -124,7 +124,7 @@ impl<const N: usize, const M: usize> Step<'_, N, M> {
 
     /// With the widest instructions that the machine has.
     #[inline(never)]
-    fn solved(&self) -> Result<End<N>, StepError> {
+    fn solved(&self) -> Result<PathEnd<N>, StepError> {
         vectorized(
             #[inline(always)]
             || self.solve(),
@@ -132,10 +132,10 @@ impl<const N: usize, const M: usize> Step<'_, N, M> {
     }
 
     #[inline(always)]
-    fn solve(&self) -> Result<End<N>, StepError> {
+    fn solve(&self) -> Result<PathEnd<N>, StepError> {
         let Self { system, rule, start, t0, h } = *self;
         let time = |tau: Lanes| tau * h + t0;
-        let (mut path, mut points, mut nodes) = (Path::rest(), Points::at(start), Points::at(start));
+        let (mut path, mut points, mut nodes) = (EnergyPath::rest(), PathPoints::at(start), PathPoints::at(start));
         let mut convergence = FixedPoint::<3, N>::new(Self::LIMIT);
         loop {
             let before = points.xi;
@@ -162,7 +162,7 @@ impl<const N: usize, const M: usize> Step<'_, N, M> {
                 compared(&pi_rate, &path.pi_rate, 0..rule.stages),
                 compared(&points.xi, &before, rule.stages..rule.stages + 1),
             ];
-            path = Path { q_rate, pi_rate };
+            path = EnergyPath { q_rate, pi_rate };
             let settled = convergence.see(changes, 0.0, || start.rounding(system, t0, h));
             let settled = settled.map_err(|source| StepError::Newton { stage: Stage::Collocation, source })?;
             if let Some(iterations) = settled {
@@ -175,7 +175,7 @@ impl<const N: usize, const M: usize> Step<'_, N, M> {
 
     /// Increment and quasi-velocities at the end of the path.
     #[inline(always)]
-    fn end(&self, path: &Path<N>, points: &Points<N>, work: f64, iterations: u32) -> End<N> {
+    fn end(&self, path: &EnergyPath<N>, points: &PathPoints<N>, work: f64, iterations: u32) -> PathEnd<N> {
         let (increment, gained) = path.increments(self.rule, self.h);
         let (start, last) = (self.start, self.rule.ends().0);
         let mut xi = points.xi.map(|xi| xi.0[last]);
@@ -186,12 +186,12 @@ impl<const N: usize, const M: usize> Step<'_, N, M> {
             }
         }
         let sum = |a: usize| Twofold::from(start.pi[a]) + Twofold::from(gained[a]) + Twofold::from(start.rest[a]);
-        End { increment, xi, pi: from_fn(sum), work, iterations }
+        PathEnd { increment, xi, pi: from_fn(sum), work, iterations }
     }
 
     /// Checks that the energy has changed by the work of the forces.
     #[inline(always)]
-    fn check(&self, ends: &Ends, work: f64, steepest: &[f64; N], path: &Path<N>) -> Result<(), StepError> {
+    fn check(&self, ends: &Ends, work: f64, steepest: &[f64; N], path: &EnergyPath<N>) -> Result<(), StepError> {
         let defect = ends.after - ends.before - work;
         let size = ends.rounded_size(self.start.state.q(), steepest);
         // An energy among the last numbers is rounded by as much as the least normal one is.
@@ -203,7 +203,12 @@ impl<const N: usize, const M: usize> Step<'_, N, M> {
     /// round-off of the place, and the energy changes by its second order: the round-off of the forces times that of the place.
     #[cold]
     #[inline(never)]
-    fn check_at_rest(&self, (defect, bound): (f64, f64), steepest: &[f64; N], path: &Path<N>) -> Result<(), StepError> {
+    fn check_at_rest(
+        &self,
+        (defect, bound): (f64, f64),
+        steepest: &[f64; N],
+        path: &EnergyPath<N>,
+    ) -> Result<(), StepError> {
         let (way, _) = path.increments(self.rule, self.h);
         let along: f64 = (0..N).map(|i| steepest[i] * way[i].abs()).sum();
         let noise = f64::EPSILON * along + self.start.energy_rounding(self.system, self.t0, self.h);

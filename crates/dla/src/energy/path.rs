@@ -1,16 +1,16 @@
-use super::rule::{Rule, Weights};
-use super::start::Start;
+use super::rule::{EnergyRule, Weights};
+use super::start::EnergyStart;
 use lagrangian::{Lanes, Scalar, from_fn};
 
 /// The path of a step, a polynomial in the coordinates and the quasi-momenta: its derivatives at the collocation nodes,
 /// one in each of the first lanes.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Path<const N: usize> {
+pub(super) struct EnergyPath<const N: usize> {
     pub(super) q_rate: [Lanes; N],
     pub(super) pi_rate: [Lanes; N],
 }
 
-impl<const N: usize> Path<N> {
+impl<const N: usize> EnergyPath<N> {
     /// No motion.
     #[inline(always)]
     pub(super) fn rest() -> Self {
@@ -19,7 +19,7 @@ impl<const N: usize> Path<N> {
 
     /// The increments of coordinates and quasi-momenta over the step.
     #[inline(always)]
-    pub(super) fn increments(&self, rule: &Rule, h: f64) -> ([f64; N], [f64; N]) {
+    pub(super) fn increments(&self, rule: &EnergyRule, h: f64) -> ([f64; N], [f64; N]) {
         let sum = |k: &Lanes| h * rule.weighted(k);
         (from_fn(|i| sum(&self.q_rate[i])), from_fn(|i| sum(&self.pi_rate[i])))
     }
@@ -27,7 +27,7 @@ impl<const N: usize> Path<N> {
 
 /// Eight points on the path, and what is known of their quasi-velocities.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Points<const N: usize> {
+pub(super) struct PathPoints<const N: usize> {
     pub(super) q: [Lanes; N],
     pub(super) xi: [Lanes; N],
     /// The quasi-momenta gained on the path since the start.
@@ -36,10 +36,10 @@ pub(super) struct Points<const N: usize> {
     pub(super) pi: [Lanes; N],
 }
 
-impl<const N: usize> Points<N> {
+impl<const N: usize> PathPoints<N> {
     /// All at the start of the step.
     #[inline(always)]
-    pub(super) fn at(start: &Start<N>) -> Self {
+    pub(super) fn at(start: &EnergyStart<N>) -> Self {
         let same = |x: [f64; N]| x.map(Lanes::constant);
         Self { q: same(*start.state.q()), xi: same(start.xi), gain: same(start.rest), pi: same(start.pi) }
     }
@@ -49,7 +49,7 @@ impl<const N: usize> Points<N> {
     /// The quasi-velocities follow the quasi-momenta by one correction with the mass matrix of the start: exact where
     /// that is constant in the basis, else one more fixed-point iteration within the others.
     #[inline(always)]
-    pub(super) fn follow(&mut self, path: &Path<N>, weights: &[Weights], start: &Start<N>, h: f64) {
+    pub(super) fn follow(&mut self, path: &EnergyPath<N>, weights: &[Weights], start: &EnergyStart<N>, h: f64) {
         let moved = |k: &Lanes| {
             let (mut sum, mut rest) = (Lanes::zero(), Lanes::zero());
             for (weights, k) in weights.iter().zip(k.0) {
@@ -76,7 +76,7 @@ impl<const N: usize> Points<N> {
     }
     /// The quasi-momenta on the path less those last evaluated. Differences from the start keep the digits.
     #[inline(always)]
-    pub(super) fn missing(&self, start: &Start<N>) -> [Lanes; N] {
+    pub(super) fn missing(&self, start: &EnergyStart<N>) -> [Lanes; N] {
         from_fn(|a| self.gain[a] - (self.pi[a] + -start.pi[a]))
     }
 }

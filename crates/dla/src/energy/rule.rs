@@ -14,7 +14,7 @@ use lagrangian::{Lanes, Twofold, from_fn};
 ///
 /// The number of nodes is a value and no type, so that a step is compiled once for all of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Rule {
+pub(super) struct EnergyRule {
     /// How many collocation nodes there are; `S` above.
     pub(super) stages: usize,
     /// `b_i`, the integral of `l_i`.
@@ -64,7 +64,7 @@ impl Weights {
     }
 }
 
-impl Rule {
+impl EnergyRule {
     /// Of the points, the first are the collocation nodes; then come the end and the start of the step.
     #[inline(always)]
     pub(super) fn ends(&self) -> (usize, usize) {
@@ -131,12 +131,12 @@ impl Rule {
 
 #[cfg(test)]
 mod tests {
-    use super::Rule;
+    use super::EnergyRule;
 
     /// Weights and matrix of the Gauss methods (Hairer, Lubich and Wanner 2006, table II.1.1).
     #[test]
     fn gauss_coefficients() {
-        let rule = Rule::new::<2>();
+        let rule = EnergyRule::new::<2>();
         let root = 3.0_f64.sqrt() / 6.0;
         let expected = [[0.25, 0.25 - root], [0.25 + root, 0.25]];
         for i in 0..2 {
@@ -152,7 +152,7 @@ mod tests {
 
     /// Collocation integrates powers below `2 S` exactly over the step, and below `S` up to every point.
     fn check<const S: usize>() {
-        let rule = Rule::new::<S>();
+        let rule = EnergyRule::new::<S>();
         for power in 0..2 * S as i32 {
             let sum: f64 = (0..S).map(|i| rule.b[i].hi * rule.points.0[i].powi(power)).sum();
             assert!((sum - f64::from(power + 1).recip()).abs() < 4e-16, "S = {S}, power {power}: {sum}");

@@ -29,14 +29,14 @@ impl<const N: usize, const M: usize> Differentiable<N, M> for Energy {
             (0..stages).map(|_| (unknowns.take(), unknowns.take_some(dimension))).unzip();
 
         let (a0, _) = model.constraint(t, &q0);
-        let first = Point::at(model, t, &q0, &xi0)?;
+        let first = EnergyPoint::at(model, t, &q0, &xi0)?;
         let mut residual = difference(&constrained(&first.velocity, &a0, &eta), &v0).to_vec();
         let pi0 = first.quasi_momenta();
 
         // The point of the path at `tau`, where the integrals of the Lagrange polynomials are `weights`.
-        let mut on_path = |tau: f64, weights: &[f64]| -> Result<Point<N, M>, SensitivityError> {
+        let mut on_path = |tau: f64, weights: &[f64]| -> Result<EnergyPoint<N, M>, SensitivityError> {
             let q = advanced(&q0, h, weights, &q_rates);
-            let point = Point::at(model, t + h * tau, &q, &unknowns.take_some(dimension))?;
+            let point = EnergyPoint::at(model, t + h * tau, &q, &unknowns.take_some(dimension))?;
             let missing = difference(&point.quasi_momenta(), &advanced(&pi0, h, weights, &pi_rates));
             residual.extend(&missing[..dimension]);
             Ok(point)
@@ -73,7 +73,7 @@ impl<const N: usize, const M: usize> Differentiable<N, M> for Energy {
 
 /// A point of `D*` with what the bracket there is made of.
 #[derive(Debug, Clone)]
-struct Point<const N: usize, const M: usize> {
+struct EnergyPoint<const N: usize, const M: usize> {
     t: Seeded,
     q: [Seeded; N],
     xi: [Seeded; N],
@@ -82,7 +82,7 @@ struct Point<const N: usize, const M: usize> {
     momentum: [Seeded; N],
 }
 
-impl<const N: usize, const M: usize> Point<N, M> {
+impl<const N: usize, const M: usize> EnergyPoint<N, M> {
     fn at(model: &dyn Gradients<N, M>, t: Seeded, q: &[Seeded; N], xi: &[Seeded; N]) -> Result<Self, SensitivityError> {
         let basis = model.basis(t, q).ok_or(NO_BASIS)?;
         let velocity = basis.combine(xi);

@@ -6,7 +6,7 @@ use lagrangian::{Lanes, MotionError, MotionRounding, Scalar, Twofold, from_fn};
 
 /// The beginning of a step on `D*`.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Start<const N: usize> {
+pub(super) struct EnergyStart<const N: usize> {
     /// The state, whose configuration is carried with more digits than it shows.
     pub(super) state: State<N>,
     /// Quasi-velocities.
@@ -19,7 +19,7 @@ pub(super) struct Start<const N: usize> {
     pub(super) inverse_mass: [[f64; N]; N],
 }
 
-impl<const N: usize> Start<N> {
+impl<const N: usize> EnergyStart<N> {
     /// # Errors
     /// [`StepError::Unsupported`] for a system that the methods on `D*` cannot do; [`StepError::Motion`] where its mass
     /// matrix is degenerate.
@@ -46,7 +46,7 @@ impl<const N: usize> Start<N> {
     }
 }
 
-impl<const N: usize> Start<N> {
+impl<const N: usize> EnergyStart<N> {
     /// The rounding of the rates of the coordinates and of the quasi-momenta, and of the quasi-velocities, over a step from here;
     /// none where the motion is degenerate.
     #[cold]

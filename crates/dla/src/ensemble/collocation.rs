@@ -9,7 +9,7 @@ use lagrangian::simd::{Pack, Simd};
 /// the even part `e_k = f_k + f_(S-1-k)` of the slopes to the odd part of their sums, and the odd part to the even one. Two
 /// matrices of `S/2` rows are left of one of `S`.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Collocation<const S: usize> {
+pub(crate) struct LaneCollocation<const S: usize> {
     pub(crate) nodes: [f64; S],
     /// `h b/2`, and `h/2 (B_ik -+ B_i(S-1-k))`; the first `S/2` places count.
     half_weights: [f64; S],
@@ -19,7 +19,7 @@ pub(crate) struct Collocation<const S: usize> {
     next: [[f64; S]; S],
 }
 
-impl<const S: usize> Collocation<S> {
+impl<const S: usize> LaneCollocation<S> {
     pub(crate) fn new(h: f64) -> Self {
         const { assert!(S.is_multiple_of(2), "stages go in pairs") };
         let (nodes, weights) = gauss_legendre::<S>();

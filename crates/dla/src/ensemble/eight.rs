@@ -1,24 +1,24 @@
-use super::collocation::Collocation;
-use super::stages::Stages;
+use super::collocation::LaneCollocation;
+use super::stages::LaneStages;
 use super::state::{accumulate, loaded, store};
 use super::{GaussEnsemble, LANES};
 use lagrangian::simd::{Pack, Simd};
 
 /// Eight trajectories of a collocation in registers.
 #[repr(align(64))]
-pub(super) struct Eight<Si: Simd, const R: usize, const S: usize, const N: usize> {
+pub(super) struct EightLanes<Si: Simd, const R: usize, const S: usize, const N: usize> {
     pub(super) simd: Si,
     pub(super) q: [Pack<Si, R>; N],
     rest: [Pack<Si, R>; N],
     pub(super) xi: [Pack<Si, R>; N],
-    pub(super) stages: Stages<Si, R, S, N>,
+    pub(super) stages: LaneStages<Si, R, S, N>,
     pub(super) velocity: [[Pack<Si, R>; S]; N],
     pub(super) acceleration: [[Pack<Si, R>; S]; N],
     /// The number of iterations of the last step; zero where there is no predictor.
     pub(super) iterations: u32,
 }
 
-impl<Si: Simd, const R: usize, const S: usize, const N: usize> Eight<Si, R, S, N> {
+impl<Si: Simd, const R: usize, const S: usize, const N: usize> EightLanes<Si, R, S, N> {
     /// The trajectories of one register of the ensemble.
     #[inline(always)]
     pub(super) fn load<Sys, Each, const W: usize, const M: usize>(
@@ -38,7 +38,7 @@ impl<Si: Simd, const R: usize, const S: usize, const N: usize> Eight<Si, R, S, N
             acceleration[k] = loaded(simd, &of.slopes[1][k], register);
         }
         let iterations = of.iterations[LANES * register];
-        Self { simd, q, rest, xi, stages: Stages::still(&q, &xi), velocity, acceleration, iterations }
+        Self { simd, q, rest, xi, stages: LaneStages::still(&q, &xi), velocity, acceleration, iterations }
     }
 
     /// Puts them back.
@@ -62,7 +62,7 @@ impl<Si: Simd, const R: usize, const S: usize, const N: usize> Eight<Si, R, S, N
 
     /// From the slopes to the end of the step, with compensated sums; the first `free` quasi-velocities count.
     #[inline(always)]
-    pub(super) fn end(&mut self, collocation: &Collocation<S>, free: usize) {
+    pub(super) fn end(&mut self, collocation: &LaneCollocation<S>, free: usize) {
         for k in 0..N {
             accumulate(&mut self.q[k], &mut self.rest[k], collocation.increment(&self.velocity[k]));
         }

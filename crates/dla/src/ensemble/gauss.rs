@@ -1,8 +1,8 @@
-use super::collocation::Collocation;
-use super::eight::Eight;
+use super::collocation::LaneCollocation;
+use super::eight::EightLanes;
 use super::order::Order;
 use super::state::Row;
-use super::step::Step;
+use super::step::LaneStep;
 use super::{BLOCK, Ensemble, LANES, LaneState, Systems};
 use crate::convergence::tolerances::LEFT;
 use lagrangian::System;
@@ -21,7 +21,7 @@ use std::marker::PhantomData;
 #[derive(Debug, Clone)]
 pub struct GaussEnsemble<Sys, Each, const S: usize, const W: usize, const N: usize, const M: usize> {
     pub(super) systems: Each,
-    pub(super) collocation: Collocation<S>,
+    pub(super) collocation: LaneCollocation<S>,
     pub(super) order: Order<N>,
     /// Time of the start, and length of a step (s).
     pub(super) schedule: (f64, f64),
@@ -49,7 +49,7 @@ where
         Some(Self {
             order: Order::of(&systems, t0, &state)?,
             systems,
-            collocation: Collocation::new(h),
+            collocation: LaneCollocation::new(h),
             schedule: (t0, h),
             state,
             slopes: [[[Row::ZERO; S]; N]; 2],
@@ -82,7 +82,7 @@ where
         let end = self.made + steps;
         while self.made < end {
             let steps = BLOCK.min(end - self.made);
-            dispatch_widest(Steps { of: self, steps });
+            dispatch_widest(GaussLaneSteps { of: self, steps });
             self.made += steps;
             self.state.wrap();
         }
@@ -90,13 +90,13 @@ where
 }
 
 /// Steps of all lanes, of one register after another.
-struct Steps<'a, Sys, Each, const S: usize, const W: usize, const N: usize, const M: usize> {
+struct GaussLaneSteps<'a, Sys, Each, const S: usize, const W: usize, const N: usize, const M: usize> {
     of: &'a mut GaussEnsemble<Sys, Each, S, W, N, M>,
     steps: u64,
 }
 
 impl<Sys, Each, const S: usize, const W: usize, const N: usize, const M: usize> Kernel
-    for Steps<'_, Sys, Each, S, W, N, M>
+    for GaussLaneSteps<'_, Sys, Each, S, W, N, M>
 where
     Sys: System<N, M>,
     Each: Systems<Sys, W>,
@@ -107,9 +107,9 @@ where
     fn run<Si: Simd, const R: usize>(self, simd: Si) {
         let Self { of, steps } = self;
         for register in 0..W / LANES {
-            let mut eight = Eight::<Si, R, S, N>::load(simd, of, register);
+            let mut eight = EightLanes::<Si, R, S, N>::load(simd, of, register);
             for made in of.made..of.made + steps {
-                of.sweeps += u64::from(Step::after(made, of, register).make(&mut eight));
+                of.sweeps += u64::from(LaneStep::after(made, of, register).make(&mut eight));
             }
             eight.store(of, register);
         }

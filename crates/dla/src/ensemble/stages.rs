@@ -7,7 +7,7 @@ use lagrangian::{Reduced, Scalar, System, array, velocity_of};
 ///
 /// A row of eight numbers fills a cache line, to which it is aligned.
 #[repr(align(64))]
-pub(super) struct Stages<Si: Simd, const R: usize, const S: usize, const N: usize> {
+pub(super) struct LaneStages<Si: Simd, const R: usize, const S: usize, const N: usize> {
     pub(super) q: [[Pack<Si, R>; S]; N],
     /// Sines and cosines of those coordinates that are angles.
     sin: [[Pack<Si, R>; S]; N],
@@ -17,7 +17,7 @@ pub(super) struct Stages<Si: Simd, const R: usize, const S: usize, const N: usiz
 
 /// What is asked of a system.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Slope {
+pub(super) enum StageSlope {
     /// The velocity of the quasi-velocities.
     Velocity,
     /// The accelerations of the quasi-velocities.
@@ -25,18 +25,18 @@ pub(super) enum Slope {
 }
 
 /// A number of a model: eight at once, angles with their sines.
-type Known<Si, const R: usize> = KnownAngle<Wide<Si, R>>;
+type KnownStage<Si, const R: usize> = KnownAngle<Wide<Si, R>>;
 
 /// Where a model is evaluated, at eight points.
 #[repr(align(64))]
-struct Points<Si: Simd, const R: usize, const N: usize> {
+struct StagePoints<Si: Simd, const R: usize, const N: usize> {
     q: [Pack<Si, R>; N],
     sin: [Pack<Si, R>; N],
     cos: [Pack<Si, R>; N],
     xi: [Pack<Si, R>; N],
 }
 
-impl<Si: Simd, const R: usize, const S: usize, const N: usize> Stages<Si, R, S, N> {
+impl<Si: Simd, const R: usize, const S: usize, const N: usize> LaneStages<Si, R, S, N> {
     /// All points at one place, whose sines are not computed yet.
     #[inline(always)]
     pub(super) fn still(q: &[Pack<Si, R>; N], xi: &[Pack<Si, R>; N]) -> Self {
@@ -56,7 +56,7 @@ impl<Si: Simd, const R: usize, const S: usize, const N: usize> Stages<Si, R, S, 
     #[inline(always)]
     pub(super) fn slopes<Sys, const W: usize, const M: usize>(
         &self,
-        slope: Slope,
+        slope: StageSlope,
         systems: &impl Systems<Sys, W>,
         register: usize,
         times: &[f64; S],
@@ -66,7 +66,7 @@ impl<Si: Simd, const R: usize, const S: usize, const N: usize> Stages<Si, R, S, 
     {
         if let Some(system) = systems.common() {
             for i in 0..S {
-                let t = Known::constant(times[i]);
+                let t = KnownStage::constant(times[i]);
                 found(i, self.points(i).slope::<Sys, M>(slope, system, t));
             }
             return;
@@ -93,14 +93,19 @@ impl<Si: Simd, const R: usize, const S: usize, const N: usize> Stages<Si, R, S, 
 
     /// All lanes of a stage.
     #[inline(always)]
-    fn points(&self, i: usize) -> Points<Si, R, N> {
-        Points { q: across(&self.q, i), sin: across(&self.sin, i), cos: across(&self.cos, i), xi: across(&self.xi, i) }
+    fn points(&self, i: usize) -> StagePoints<Si, R, N> {
+        StagePoints {
+            q: across(&self.q, i),
+            sin: across(&self.sin, i),
+            cos: across(&self.cos, i),
+            xi: across(&self.xi, i),
+        }
     }
 
     /// All stages of a lane.
     #[inline(always)]
-    fn points_of_lane(&self, lane: usize) -> Points<Si, R, N> {
-        Points {
+    fn points_of_lane(&self, lane: usize) -> StagePoints<Si, R, N> {
+        StagePoints {
             q: along(&self.q, lane),
             sin: along(&self.sin, lane),
             cos: along(&self.cos, lane),
@@ -109,18 +114,18 @@ impl<Si: Simd, const R: usize, const S: usize, const N: usize> Stages<Si, R, S, 
     }
 }
 
-impl<Si: Simd, const R: usize, const N: usize> Points<Si, R, N> {
+impl<Si: Simd, const R: usize, const N: usize> StagePoints<Si, R, N> {
     /// What a system gives there; NaN where it does not know.
     #[inline(always)]
     fn slope<Sys: System<N, M>, const M: usize>(
         &self,
-        slope: Slope,
+        slope: StageSlope,
         system: &Sys,
-        t: Known<Si, R>,
+        t: KnownStage<Si, R>,
     ) -> [Pack<Si, R>; N] {
         let angles = system.angles();
         let q = array(
-            Known::zero(),
+            KnownStage::zero(),
             #[inline(always)]
             |k| match angles[k] {
                 true => KnownAngle::new(wide(self.q[k]), wide(self.sin[k]), wide(self.cos[k])),
@@ -128,13 +133,13 @@ impl<Si: Simd, const R: usize, const N: usize> Points<Si, R, N> {
             },
         );
         let xi = array(
-            Known::zero(),
+            KnownStage::zero(),
             #[inline(always)]
-            |k| if k < N - M { KnownAngle::from(wide(self.xi[k])) } else { Known::zero() },
+            |k| if k < N - M { KnownAngle::from(wide(self.xi[k])) } else { KnownStage::zero() },
         );
         let found = match slope {
-            Slope::Velocity => velocity_of(system, t, &q, &xi).ok(),
-            Slope::Acceleration => system.reduced().reduced_motion(t, &q, &xi),
+            StageSlope::Velocity => velocity_of(system, t, &q, &xi).ok(),
+            StageSlope::Acceleration => system.reduced().reduced_motion(t, &q, &xi),
         };
         let simd = self.q[0].simd();
         match found {

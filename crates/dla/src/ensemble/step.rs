@@ -1,12 +1,12 @@
-use super::eight::Eight;
+use super::eight::EightLanes;
 use super::settling::Settling;
-use super::stages::Slope;
+use super::stages::StageSlope;
 use super::{GaussEnsemble, LANES, Systems};
 use lagrangian::System;
 use lagrangian::simd::{Pack, Simd, apart};
 
 /// A step of the eight trajectories of one register.
-pub(super) struct Step<'a, Sys, Each, const S: usize, const W: usize, const N: usize, const M: usize> {
+pub(super) struct LaneStep<'a, Sys, Each, const S: usize, const W: usize, const N: usize, const M: usize> {
     of: &'a GaussEnsemble<Sys, Each, S, W, N, M>,
     register: usize,
     first: bool,
@@ -21,7 +21,7 @@ const MOST: u32 = 100;
 /// So many iterations of a step have a convergence test, if the step takes as many as the last one.
 const SEEN: u32 = 3;
 
-impl<'a, Sys, Each, const S: usize, const W: usize, const N: usize, const M: usize> Step<'a, Sys, Each, S, W, N, M>
+impl<'a, Sys, Each, const S: usize, const W: usize, const N: usize, const M: usize> LaneStep<'a, Sys, Each, S, W, N, M>
 where
     Sys: System<N, M>,
     Each: Systems<Sys, W>,
@@ -40,7 +40,7 @@ where
 
     /// Makes it; how many iterations it took.
     #[inline(always)]
-    pub(super) fn make<Si: Simd, const R: usize>(&self, eight: &mut Eight<Si, R, S, N>) -> u32 {
+    pub(super) fn make<Si: Simd, const R: usize>(&self, eight: &mut EightLanes<Si, R, S, N>) -> u32 {
         let Self { of, .. } = self;
         apart(
             eight.simd,
@@ -84,7 +84,7 @@ where
 
     /// The slopes of a first step: zero.
     #[inline(always)]
-    fn begin<Si: Simd, const R: usize>(&self, eight: &mut Eight<Si, R, S, N>) {
+    fn begin<Si: Simd, const R: usize>(&self, eight: &mut EightLanes<Si, R, S, N>) {
         let angles = self.of.systems.of(0).angles();
         for k in 0..N {
             if angles[k] {
@@ -96,7 +96,7 @@ where
 
     /// The predictor: the slopes of the last step continued to this one, and the coordinates from which velocities are computed.
     #[inline(always)]
-    fn begin_after_another<Si: Simd, const R: usize>(&self, eight: &mut Eight<Si, R, S, N>) {
+    fn begin_after_another<Si: Simd, const R: usize>(&self, eight: &mut EightLanes<Si, R, S, N>) {
         let collocation = &self.of.collocation;
         for k in 0..N - M {
             collocation.extrapolate(&mut eight.acceleration[k]);
@@ -117,7 +117,7 @@ where
     #[inline(always)]
     fn coordinates<const ANGLES: bool, Si: Simd, const R: usize>(
         &self,
-        eight: &mut Eight<Si, R, S, N>,
+        eight: &mut EightLanes<Si, R, S, N>,
         chosen: &[bool; N],
     ) {
         let mut any = false;
@@ -129,7 +129,7 @@ where
         }
         let (angles, velocity) = (self.of.systems.of(0).angles(), &mut eight.velocity);
         eight.stages.slopes(
-            Slope::Velocity,
+            StageSlope::Velocity,
             &self.of.systems,
             self.register,
             &self.times,
@@ -156,14 +156,14 @@ where
     #[inline(always)]
     fn accelerations<const LOOK: bool, Si: Simd, const R: usize>(
         &self,
-        eight: &mut Eight<Si, R, S, N>,
+        eight: &mut EightLanes<Si, R, S, N>,
         times: &[f64; S],
     ) -> [Pack<Si, R>; 2] {
         let zero = Pack::splat(eight.simd, 0.0);
         let (mut moved, mut size) = (zero, zero);
         let acceleration = &mut eight.acceleration;
         eight.stages.slopes(
-            Slope::Acceleration,
+            StageSlope::Acceleration,
             &self.of.systems,
             self.register,
             times,

@@ -14,7 +14,7 @@ pub enum Direction {
 }
 
 /// Of the time (s) and the state.
-type Function<'a, const N: usize> = Box<dyn Fn(f64, &State<N>) -> f64 + 'a>;
+type EventFunction<'a, const N: usize> = Box<dyn Fn(f64, &State<N>) -> f64 + 'a>;
 
 /// A function of time and state whose crossings of zero are looked for.
 ///
@@ -26,7 +26,7 @@ pub struct Event<'a, const N: usize> {
     pub direction: Direction,
     /// Whether the first crossing ends the run.
     pub terminal: bool,
-    function: Function<'a, N>,
+    function: EventFunction<'a, N>,
 }
 
 impl<'a, const N: usize> Event<'a, N> {

@@ -3,7 +3,7 @@ use super::{Crossing, Event, Zero, zeros};
 use crate::{Mechanics, OneStep, State, StepReport};
 
 /// A step, or one of those that a method makes of its own within it, to be made again in parts.
-pub(super) struct Interval<'a, Method, const N: usize, const M: usize> {
+pub(super) struct EventInterval<'a, Method, const N: usize, const M: usize> {
     pub(super) system: &'a dyn Mechanics<N, M>,
     pub(super) method: &'a Method,
     pub(super) t0: f64,
@@ -12,7 +12,7 @@ pub(super) struct Interval<'a, Method, const N: usize, const M: usize> {
     pub(super) end: &'a State<N>,
 }
 
-impl<Method, const N: usize, const M: usize> Interval<'_, Method, N, M>
+impl<Method, const N: usize, const M: usize> EventInterval<'_, Method, N, M>
 where
     Method: OneStep<N, M> + Clone,
 {

@@ -1,11 +1,11 @@
-use super::root::Point;
+use super::root::RootPoint;
 
 /// Intervals, each with a change of sign, of a function on `[0, 1]` of which some values are known.
 ///
 /// `points` are in order, reach a little beyond both ends, and hold no value that is not a number. Between neighbours a
 /// single crossing shows by the signs. Two crossings show no sign, but a dip: where the size of three neighbours of one
 /// sign is least in the middle, and could fall to zero, its least value is searched for until it changes sign.
-pub(super) fn isolate(points: &[Point], mut f: impl FnMut(f64) -> f64) -> Vec<(Point, Point)> {
+pub(super) fn isolate(points: &[RootPoint], mut f: impl FnMut(f64) -> f64) -> Vec<(RootPoint, RootPoint)> {
     let mut found = Vec::new();
     for (i, pair) in points.windows(2).enumerate() {
         let [a, b] = [pair[0], pair[1]];
@@ -28,7 +28,7 @@ pub(super) fn isolate(points: &[Point], mut f: impl FnMut(f64) -> f64) -> Vec<(P
 }
 
 /// The part in `[0, 1]` of an interval of one sign, with a point in it of the other, if there is one.
-fn dip([a, b, c]: [Point; 3], f: &mut impl FnMut(f64) -> f64) -> Option<(Point, Point, Point)> {
+fn dip([a, b, c]: [RootPoint; 3], f: &mut impl FnMut(f64) -> f64) -> Option<(RootPoint, RootPoint, RootPoint)> {
     let side = b.value.signum();
     let [left, middle, right] = [a, b, c].map(|point| side * point.value);
     // The parabola through the points dips below the middle by an eighth of this at most.
@@ -40,14 +40,14 @@ fn dip([a, b, c]: [Point; 3], f: &mut impl FnMut(f64) -> f64) -> Option<(Point, 
     // The ends of the step are among the points.
     let (from, to) = (if a.at < 0.0 { b } else { a }, if c.at > 1.0 { b } else { c });
     let least = negative([from.at, to.at], |at| side * f(at))?;
-    Some((from, Point { at: least.at, value: side * least.value }, to))
+    Some((from, RootPoint { at: least.at, value: side * least.value }, to))
 }
 
 /// A point between the ends where the function is negative, on the way to its least value: the golden section, to the
 /// half of the digits that a flat place has.
-fn negative([mut from, mut to]: [f64; 2], mut f: impl FnMut(f64) -> f64) -> Option<Point> {
+fn negative([mut from, mut to]: [f64; 2], mut f: impl FnMut(f64) -> f64) -> Option<RootPoint> {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let mut point = |at: f64| Point { at, value: f(at) };
+    let mut point = |at: f64| RootPoint { at, value: f(at) };
     let (mut one, mut two) = (point(to - GOLDEN * (to - from)), point(from + GOLDEN * (to - from)));
     while to - from > 1e-8 {
         let found = [one, two].into_iter().find(|point| point.value < 0.0);

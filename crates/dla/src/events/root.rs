@@ -1,6 +1,6 @@
 /// A point where a function takes a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Point {
+pub(super) struct RootPoint {
     pub(super) at: f64,
     pub(super) value: f64,
 }
@@ -12,7 +12,7 @@ const LIMIT: u32 = 100;
 ///
 /// Inverse quadratic interpolation where the last three points say that it will do, bisection elsewhere, so that it ends
 /// at the latest with the bisections. (Chandrupatla 1997, Adv. Eng. Software 28, 145-149.)
-pub(super) fn root(from: Point, to: Point, tolerance: f64, mut f: impl FnMut(f64) -> f64) -> (f64, f64) {
+pub(super) fn root(from: RootPoint, to: RootPoint, tolerance: f64, mut f: impl FnMut(f64) -> f64) -> (f64, f64) {
     let (mut a, mut b) = (to, from);
     let mut part = 0.5_f64;
     for _ in 0..LIMIT {
@@ -26,7 +26,7 @@ pub(super) fn root(from: Point, to: Point, tolerance: f64, mut f: impl FnMut(f64
             return (best.at, width);
         }
         let at = a.at + part.clamp(least, 1.0 - least) * (b.at - a.at);
-        let new = Point { at, value: f(at) };
+        let new = RootPoint { at, value: f(at) };
         if new.value.is_nan() {
             return (best.at, width);
         }
@@ -38,7 +38,7 @@ pub(super) fn root(from: Point, to: Point, tolerance: f64, mut f: impl FnMut(f64
 }
 
 /// Where between `a` and `b` the inverse quadratic through all three points is zero; none where it is not monotone.
-fn next(a: Point, b: Point, c: Point) -> Option<f64> {
+fn next(a: RootPoint, b: RootPoint, c: RootPoint) -> Option<f64> {
     let xi = (a.at - b.at) / (c.at - b.at);
     let phi = (a.value - b.value) / (c.value - b.value);
     let monotone = phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi;

@@ -1,4 +1,4 @@
-use super::interval::Interval;
+use super::interval::EventInterval;
 use super::{Close, Crossing, Direction, Event, close_crossings};
 use crate::{Observer, OneStep, State, StepError, StepReport, Undivided, View};
 use std::ops::ControlFlow;
@@ -81,7 +81,7 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
             self.look_within(node, (t0, start));
             if let Some((crossing, _)) = &self.ended {
                 let (system, method, h) = (node.system, &self.method, node.t - t0);
-                let step = Interval { system, method, t0, h, start: &start, end: node.state };
+                let step = EventInterval { system, method, t0, h, start: &start, end: node.state };
                 let report = step.after((crossing.t - t0) / h).map_or(*report, |(_, report)| report);
                 let last = View { system, k: node.k, t: crossing.t, state: &crossing.state };
                 // The run ends here, whatever the inner observer says.
@@ -121,7 +121,7 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
     where
         Method: OneStep<N, M> + Clone,
     {
-        let interval = Interval { system: node.system, method: &self.method, t0, h: t - t0, start, end };
+        let interval = EventInterval { system: node.system, method: &self.method, t0, h: t - t0, start, end };
         let found = interval.crossings(self.events, (self.samples, self.tolerance), node.k.saturating_sub(1));
         let ends = found.into_iter().any(|crossing| self.note(crossing, node.k));
         if ends { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }

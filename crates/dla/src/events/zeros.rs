@@ -1,5 +1,5 @@
 use super::isolate::isolate;
-use super::root::{Point, root};
+use super::root::{RootPoint, root};
 
 /// A crossing of zero within a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,14 +32,14 @@ fn searched(
     counts: &dyn Fn(bool) -> bool,
     mut f: &mut dyn FnMut(f64) -> f64,
 ) -> Vec<Zero> {
-    let points: Vec<Point> = known
+    let points: Vec<RootPoint> = known
         .iter()
-        .map(|(at, value)| Point { at: *at, value: *value })
+        .map(|(at, value)| RootPoint { at: *at, value: *value })
         .filter(|point| !point.value.is_nan())
         .collect();
     let found = isolate(&points, &mut f).into_iter().filter(|(from, _)| counts(from.value < 0.0));
-    let found: Vec<(Point, Point)> = found.collect();
-    let zero = |(from, to): (Point, Point)| {
+    let found: Vec<(RootPoint, RootPoint)> = found.collect();
+    let zero = |(from, to): (RootPoint, RootPoint)| {
         let (at, within) = root(from, to, tolerance, &mut f);
         Zero { at, within, rising: from.value < 0.0 }
     };

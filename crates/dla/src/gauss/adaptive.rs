@@ -1,9 +1,9 @@
 use super::ending::Ending;
-use super::lanes::{Collocation, Outcome, Slopes};
-use super::memory::Memory;
+use super::lanes::{Collocation, Outcome, StageSlopes};
+use super::memory::GaussMemory;
 use super::pace::{degree, longer, quarters_of, roughest};
 use super::rule::quarter_octaves;
-use super::{Gauss, Taken};
+use super::{Gauss, TakenStep};
 use crate::positions::affine_only;
 use crate::{Mechanics, OneStep, OwnStep, State, StepError, StepReport};
 use lagrangian::linear::larger;
@@ -45,7 +45,7 @@ impl GaussAdaptive {
 
 /// What a step shows of the length that it should have had.
 struct Tried<const N: usize> {
-    taken: Taken<N>,
+    taken: TakenStep<N>,
     /// The step that would have met the tolerance, in quarter octaves from this one.
     longer: i32,
 }
@@ -63,7 +63,7 @@ impl GaussAdaptive {
         (t, h, quarters): (f64, f64, i32),
         state: &State<N>,
         xi0: &[f64; N],
-        slopes: &mut Slopes<N>,
+        slopes: &mut StageSlopes<N>,
     ) -> Option<Tried<N>> {
         let rule = self.gauss.rule;
         let (q0, epsilon) = (state.q(), self.tolerance);
@@ -77,7 +77,7 @@ impl GaussAdaptive {
         let ending = Ending { left: 0.5, rounding, noise: rounding, limit, hopeless, unseen };
         let stages = Collocation { rule, t, h, q0, xi0, before, ending, counts: Some(counts), slopes };
         let (taken, rate, roughness) = match system.collocate(stages) {
-            Some(Outcome::Found(found)) => (Taken::at_once(&found)?, found.rate, found.roughness),
+            Some(Outcome::Found(found)) => (TakenStep::at_once(&found)?, found.rate, found.roughness),
             Some(Outcome::Failed) => return None,
             Some(Outcome::Unknown) | None => {
                 let taken = self.gauss.in_turn(system, (t, h), (q0, xi0), slopes).ok()?;
@@ -124,7 +124,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for GaussAdaptive {
     fn recall(&mut self, memory: &[f64], _state: &State<N>) {
         // A number from a file may be anything.
         self.quarters = memory.first().map(|&quarters| (quarters as i32).clamp(-CUT, CUT));
-        self.gauss.memory = Memory::load(memory.get(1..).unwrap_or_default());
+        self.gauss.memory = GaussMemory::load(memory.get(1..).unwrap_or_default());
     }
 
     fn own_steps(
@@ -158,7 +158,7 @@ impl GaussAdaptive {
     ) -> Result<StepReport<M>, StepError> {
         let (mut made, mut iterations, mut refused) = (0.0, 0, false);
         let mut quarters = self.quarters.unwrap_or_else(|| first(system, t0, whole, state));
-        let mut slopes = Slopes::ZERO;
+        let mut slopes = StageSlopes::ZERO;
         for tries in 1..=Self::MAX_TRIES {
             let full = quarter_octaves(quarters);
             let rest = whole - made;

@@ -20,7 +20,7 @@ pub(super) struct Ending {
 
 /// An iteration under way.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Search {
+pub(super) struct StageSearch {
     ending: Ending,
     pub(super) iterations: u32,
     /// The last change, and its ratio to the one before.
@@ -35,7 +35,7 @@ pub(super) struct Search {
 
 /// What follows from a change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Verdict {
+pub(super) enum EndingVerdict {
     Continue,
     Done,
     Failed,
@@ -44,10 +44,10 @@ pub(super) enum Verdict {
 impl Ending {
     /// An iteration that starts at the predictor of the last step, or without one.
     #[inline(always)]
-    pub(super) fn begin(self, led: bool) -> Search {
+    pub(super) fn begin(self, led: bool) -> StageSearch {
         // The count may come from a file: the limit holds all the same.
         let unseen = if led { self.unseen } else { ANEW }.min(self.limit.saturating_sub(1));
-        Search {
+        StageSearch {
             ending: Self { unseen, ..self },
             iterations: 0,
             last: f64::INFINITY,
@@ -58,7 +58,7 @@ impl Ending {
     }
 }
 
-impl Search {
+impl StageSearch {
     /// Counts an iteration; whether it is made without a test.
     #[inline(always)]
     pub(super) fn next_is_unseen(&mut self) -> bool {
@@ -68,7 +68,7 @@ impl Search {
 
     /// Tests the largest change of an iteration.
     #[inline(always)]
-    pub(super) fn look(&mut self, moved: f64) -> Verdict {
+    pub(super) fn look(&mut self, moved: f64) -> EndingVerdict {
         let Ending { left, rounding, noise, limit, hopeless, unseen } = self.ending;
         let seen = self.iterations - unseen;
         let (slower, now) = (if seen > 2 { self.rate } else { 0.0 }, moved / self.last);
@@ -85,14 +85,14 @@ impl Search {
             self.contraction = now;
         }
         if moved == 0.0 || settled || (stalls && (self.stalled > 1 || moved <= noise)) {
-            return Verdict::Done;
+            return EndingVerdict::Done;
         }
         let grows = seen > 3 && self.rate > hopeless && !small;
         self.last = moved;
         if moved.is_nan() || moved.is_infinite() || grows || self.iterations >= limit {
-            Verdict::Failed
+            EndingVerdict::Failed
         } else {
-            Verdict::Continue
+            EndingVerdict::Continue
         }
     }
 }
@@ -109,16 +109,16 @@ mod tests {
     const ENDING: Ending = Ending { left: LEFT, rounding: OF_ROW, noise: NOISE, limit: 100, hopeless: 2.0, unseen: 12 };
 
     /// The verdict after these changes, one after the other, and after how many of them it was reached.
-    fn search(changes: &[f64]) -> (usize, Verdict) {
+    fn search(changes: &[f64]) -> (usize, EndingVerdict) {
         let mut search = ENDING.begin(true);
         while search.next_is_unseen() {}
         for (seen, &moved) in (1..).zip(changes) {
             match search.look(moved) {
-                Verdict::Continue => search.iterations += 1,
+                EndingVerdict::Continue => search.iterations += 1,
                 verdict => return (seen, verdict),
             }
         }
-        (changes.len(), Verdict::Continue)
+        (changes.len(), EndingVerdict::Continue)
     }
 
     /// Round-off that shrinks in between and grows again is convergence all the same.
@@ -126,11 +126,11 @@ mod tests {
     fn rounding_may_go_round() {
         assert_eq!(
             search(&[4.5e-14, 2.1e-14, 5.1e-15, 2.2e-15, 6.2e-16, 3.0e-15, 3.1e-16, 3.2e-15]),
-            (8, Verdict::Done)
+            (8, EndingVerdict::Done)
         );
-        assert_eq!(search(&[3e-16, 2.2e-16]), (2, Verdict::Done));
+        assert_eq!(search(&[3e-16, 2.2e-16]), (2, EndingVerdict::Done));
         // One stall above the noise may be an iteration that rotates the error.
-        assert_eq!(search(&[1e-14, 8e-15, 1e-15, 1e-16]), (4, Verdict::Continue));
+        assert_eq!(search(&[1e-14, 8e-15, 1e-15, 1e-16]), (4, EndingVerdict::Continue));
     }
 
     /// Round-off does not contract, and says nothing of how fast the iteration does: nor does a first change that is nothing.
@@ -153,16 +153,16 @@ mod tests {
     /// Changes that grow above round-off do not converge, nor does NaN.
     #[test]
     fn growth_is_failure() {
-        assert_eq!(search(&[1e-3, 1e-4, 1e-5, 3e-5]), (4, Verdict::Failed));
-        assert_eq!(search(&[1e-3, f64::NAN]), (2, Verdict::Failed));
+        assert_eq!(search(&[1e-3, 1e-4, 1e-5, 3e-5]), (4, EndingVerdict::Failed));
+        assert_eq!(search(&[1e-3, f64::NAN]), (2, EndingVerdict::Failed));
     }
 
     /// An iteration has converged when the estimated next change is small enough, and not before two changes gave the estimate.
     #[test]
     fn the_rate_tells_what_is_to_come() {
-        assert_eq!(search(&[1e-18]), (1, Verdict::Continue));
-        assert_eq!(search(&[1e-13, 1e-16]), (2, Verdict::Done));
-        assert_eq!(search(&[1e-9, 1e-12]), (2, Verdict::Continue));
+        assert_eq!(search(&[1e-18]), (1, EndingVerdict::Continue));
+        assert_eq!(search(&[1e-13, 1e-16]), (2, EndingVerdict::Done));
+        assert_eq!(search(&[1e-9, 1e-12]), (2, EndingVerdict::Continue));
     }
 
     /// Without a predictor the first iterations have no test; every iteration has one in the end.

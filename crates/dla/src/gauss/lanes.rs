@@ -1,6 +1,6 @@
-use super::ending::{Ending, Verdict};
+use super::ending::{Ending, EndingVerdict};
 use super::packs::{ahead, each, everywhere, integral, loaded, own, packed};
-use super::rule::Eight;
+use super::rule::GaussRule;
 use lagrangian::linear::larger;
 use lagrangian::simd::{Kernel, Pack, Simd, Square, Wide, dispatch};
 use lagrangian::{Reduced, System, array, derived_acceleration, from_fn, velocity_of};
@@ -8,22 +8,22 @@ use std::fmt;
 use std::ops::Deref;
 
 /// Eight stages of `N` slopes.
-pub(super) type Rows<const N: usize> = [[f64; 8]; N];
+pub(super) type StageRows<const N: usize> = [[f64; 8]; N];
 
 /// The slopes of the stages, velocities and accelerations of quasi-velocities.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Slopes<const N: usize> {
-    pub(super) velocity: Rows<N>,
-    pub(super) acceleration: Rows<N>,
+pub(super) struct StageSlopes<const N: usize> {
+    pub(super) velocity: StageRows<N>,
+    pub(super) acceleration: StageRows<N>,
 }
 
-impl<const N: usize> Slopes<N> {
+impl<const N: usize> StageSlopes<N> {
     /// None yet.
     pub(super) const ZERO: Self = Self { velocity: [[0.0; 8]; N], acceleration: [[0.0; 8]; N] };
 
     /// The largest sum over stages, by these factors, of a slope in its unit.
     pub(super) fn weighed(&self, factors: &[f64; 8], counts: &[[f64; N]; 2]) -> f64 {
-        let sums = |rows: &Rows<N>| rows.map(|x| (0..8).map(|i| factors[i] * x[i]).sum::<f64>());
+        let sums = |rows: &StageRows<N>| rows.map(|x| (0..8).map(|i| factors[i] * x[i]).sum::<f64>());
         let sums = [sums(&self.velocity), sums(&self.acceleration)];
         sums.iter().flatten().zip(counts.iter().flatten()).fold(0.0, |most, (x, count)| larger(most, (x * count).abs()))
     }
@@ -31,28 +31,28 @@ impl<const N: usize> Slopes<N> {
 
 /// The equations of a collocation whose stages are solved all at once: what a method gives to the system, whose kernel solves them.
 pub struct Collocation<'a, const N: usize> {
-    pub(super) rule: &'a Eight,
+    pub(super) rule: &'a GaussRule,
     pub(super) t: f64,
     pub(super) h: f64,
     pub(super) q0: &'a [f64; N],
     pub(super) xi0: &'a [f64; N],
     /// The slopes of the last step, and the matrix that continues their polynomial to this one.
-    pub(super) before: Option<([&'a Rows<N>; 2], &'a Square)>,
+    pub(super) before: Option<([&'a StageRows<N>; 2], &'a Square)>,
     pub(super) ending: Ending,
     /// Inverse units of the velocities and of the accelerations; their own sizes where none are given.
     pub(super) counts: Option<[[f64; N]; 2]>,
     /// Where the slopes are left.
-    pub(super) slopes: &'a mut Slopes<N>,
+    pub(super) slopes: &'a mut StageSlopes<N>,
 }
 
 /// The rule of collocation in registers.
-struct Along<S: Simd, const R: usize> {
+struct RuleInLanes<S: Simd, const R: usize> {
     /// Not multiplied by h: the round-off of the products would break the symmetry that the coefficients have to the last bit.
     square: [Pack<S, R>; 8],
     h: Pack<S, R>,
 }
 
-impl<S: Simd, const R: usize> Along<S, R> {
+impl<S: Simd, const R: usize> RuleInLanes<S, R> {
     /// `from + h A slopes`.
     #[inline(always)]
     fn from(&self, from: f64, slopes: &Pack<S, R>) -> Pack<S, R> {
@@ -99,16 +99,16 @@ pub(crate) fn collocate<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
     of: Collocation<'_, N>,
 ) -> Option<Outcome<N>> {
-    dispatch(Stages { system, of })
+    dispatch(StagesAtOnce { system, of })
 }
 
 /// The equations of a collocation step, all stages at once.
-struct Stages<'a, Sys, const N: usize, const M: usize> {
+struct StagesAtOnce<'a, Sys, const N: usize, const M: usize> {
     system: &'a Sys,
     of: Collocation<'a, N>,
 }
 
-impl<'a, Sys, const N: usize, const M: usize> Deref for Stages<'a, Sys, N, M> {
+impl<'a, Sys, const N: usize, const M: usize> Deref for StagesAtOnce<'a, Sys, N, M> {
     type Target = Collocation<'a, N>;
 
     #[inline(always)]
@@ -117,7 +117,7 @@ impl<'a, Sys, const N: usize, const M: usize> Deref for Stages<'a, Sys, N, M> {
     }
 }
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
+impl<Sys: System<N, M>, const N: usize, const M: usize> StagesAtOnce<'_, Sys, N, M> {
     /// The places of the stages for zero velocity.
     #[inline(always)]
     fn still<S: Simd, const R: usize>(&self, simd: S) -> [Pack<S, R>; N] {
@@ -126,7 +126,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
 
     /// The places of the stages.
     #[inline(always)]
-    fn q<S: Simd, const R: usize>(&self, along: &Along<S, R>, v: &[Pack<S, R>; N]) -> [Pack<S, R>; N] {
+    fn q<S: Simd, const R: usize>(&self, along: &RuleInLanes<S, R>, v: &[Pack<S, R>; N]) -> [Pack<S, R>; N] {
         array(
             Pack::splat(along.h.simd(), 0.0),
             #[inline(always)]
@@ -136,7 +136,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
 
     /// The quasi-velocities of the stages.
     #[inline(always)]
-    fn xi<S: Simd, const R: usize>(&self, along: &Along<S, R>, a: &[Pack<S, R>; N]) -> [Wide<S, R>; N] {
+    fn xi<S: Simd, const R: usize>(&self, along: &RuleInLanes<S, R>, a: &[Pack<S, R>; N]) -> [Wide<S, R>; N] {
         array(
             Wide::Zero,
             #[inline(always)]
@@ -148,7 +148,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
     #[inline(always)]
     fn reconstructed<S: Simd, const R: usize>(
         &self,
-        along: &Along<S, R>,
+        along: &RuleInLanes<S, R>,
         quadratures: u32,
         xi: &[Wide<S, R>; N],
     ) -> Option<[Pack<S, R>; N]> {
@@ -224,12 +224,12 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Stages<'_, Sys, N, M> {
 }
 
 #[allow(clippy::manual_map, reason = "a closure may stay a call, in which the registers are not known")]
-impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sys, N, M> {
+impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for StagesAtOnce<'_, Sys, N, M> {
     type Output = Outcome<N>;
 
     #[inline(always)]
     fn run<S: Simd, const R: usize>(self, simd: S) -> Outcome<N> {
-        let along = Along::<S, R> { square: loaded(simd, &self.rule.square.terms), h: Pack::splat(simd, self.h) };
+        let along = RuleInLanes::<S, R> { square: loaded(simd, &self.rule.square.terms), h: Pack::splat(simd, self.h) };
         let cascade = self.system.reduced().reconstruction();
         let alone = cascade.is_some() && self.system.reduced().stands_alone();
 
@@ -262,7 +262,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
             }
             let Some(a1) = self.acceleration(simd, &q, &xi) else { return Outcome::Unknown };
             let verdict = if search.next_is_unseen() {
-                Verdict::Continue
+                EndingVerdict::Continue
             } else {
                 let [cv, ca] = match counts {
                     Some(counts) => counts,
@@ -282,9 +282,9 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for Stages<'_, Sy
             };
             (v, a) = (v1, a1);
             match verdict {
-                Verdict::Continue => {}
-                Verdict::Done => break,
-                Verdict::Failed => return Outcome::Failed,
+                EndingVerdict::Continue => {}
+                EndingVerdict::Done => break,
+                EndingVerdict::Failed => return Outcome::Failed,
             }
         }
         // The velocities that belong to the last accelerations.

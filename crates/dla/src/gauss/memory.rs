@@ -1,4 +1,4 @@
-use super::lanes::Slopes;
+use super::lanes::StageSlopes;
 use crate::State;
 
 /// Of larger systems nothing is remembered.
@@ -8,7 +8,7 @@ const COORDINATES: usize = 6;
 ///
 /// It changes the result in the last bit at most; so it belongs to a checkpoint.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Memory {
+pub(super) struct GaussMemory {
     /// Whether there was a step.
     known: bool,
     velocity: [[f64; 8]; COORDINATES],
@@ -23,7 +23,7 @@ pub(super) struct Memory {
     v: [f64; COORDINATES],
 }
 
-impl Memory {
+impl GaussMemory {
     /// Before the first step.
     pub(super) const NONE: Self = Self {
         known: false,
@@ -40,7 +40,7 @@ impl Memory {
     #[inline(always)]
     pub(super) fn keep<const N: usize>(
         &mut self,
-        slopes: &Slopes<N>,
+        slopes: &StageSlopes<N>,
         iterations: u32,
         (h, quarters): (f64, i32),
         state: &State<N>,

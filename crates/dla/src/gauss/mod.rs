@@ -17,9 +17,9 @@ use crate::{Mechanics, OneStep, StackUse, Stage, State, StepError, StepReport};
 use ending::Ending;
 use lagrangian::from_fn;
 use lagrangian::linear::larger;
-use lanes::Slopes;
-use memory::Memory;
-use rule::Eight;
+use lanes::StageSlopes;
+use memory::GaussMemory;
+use rule::GaussRule;
 
 /// Gauss collocation on the constraint: the reduced equations `q' = W xi + v_b`, `xi' = ..` in the basis of admissible
 /// velocities, with `s` stages, of order `2 s`.
@@ -38,16 +38,16 @@ use rule::Eight;
 /// Algorithms 76, 861-880.)
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gauss {
-    pub(crate) rule: &'static Eight,
+    pub(crate) rule: &'static GaussRule,
     /// Whether all stages may be computed at once.
     together: bool,
-    memory: Memory,
+    memory: GaussMemory,
     /// Iterations after which the step fails.
     pub max_iterations: u32,
 }
 
 /// The slopes of the stages, in the first places.
-struct Stages<const N: usize> {
+struct StagesInTurn<const N: usize> {
     velocity: [[f64; N]; 8],
     acceleration: [[f64; N]; 8],
 }
@@ -57,7 +57,7 @@ impl Gauss {
     /// once for all of them.
     #[must_use]
     pub fn new<const S: usize>() -> Self {
-        Self { rule: Eight::gauss::<S>(), together: true, memory: Memory::NONE, max_iterations: 100 }
+        Self { rule: GaussRule::gauss::<S>(), together: true, memory: GaussMemory::NONE, max_iterations: 100 }
     }
 
     /// The number of stages.
@@ -80,8 +80,8 @@ impl Gauss {
         (t, h): (f64, f64),
         state: &State<N>,
         xi0: &[f64; N],
-        slopes: &mut Slopes<N>,
-    ) -> Option<Taken<N>> {
+        slopes: &mut StageSlopes<N>,
+    ) -> Option<TakenStep<N>> {
         if !self.together {
             return None;
         }
@@ -98,7 +98,7 @@ impl Gauss {
         };
         let q0 = state.q();
         match system.collocate(Collocation { rule, t, h, q0, xi0, before, ending, counts: None, slopes })? {
-            Outcome::Found(found) => Taken::at_once(&found),
+            Outcome::Found(found) => TakenStep::at_once(&found),
             Outcome::Unknown | Outcome::Failed => None,
         }
     }
@@ -109,17 +109,17 @@ impl Gauss {
         system: &dyn Mechanics<N, M>,
         (t, h): (f64, f64),
         (q0, xi0): (&[f64; N], &[f64; N]),
-        slopes: &mut Slopes<N>,
-    ) -> Result<Taken<N>, StepError> {
+        slopes: &mut StageSlopes<N>,
+    ) -> Result<TakenStep<N>, StepError> {
         let start = system.reduced_slope(t, q0, xi0)?;
-        let mut stages = Stages { velocity: [start.velocity; 8], acceleration: [start.acceleration; 8] };
+        let mut stages = StagesInTurn { velocity: [start.velocity; 8], acceleration: [start.acceleration; 8] };
         let iterations = self.solve(system, (t, h), (q0, xi0), &mut stages)?;
         let increment = self.sum(h, |j| self.rule.weights[j], &stages.velocity);
         let gain = self.sum(h, |j| self.rule.weights[j], &stages.acceleration);
         let count = self.stages();
         let by_rows = |slopes: &[[f64; N]; 8]| from_fn(|k| from_fn(|i| if i < count { slopes[i][k] } else { 0.0 }));
-        *slopes = Slopes { velocity: by_rows(&stages.velocity), acceleration: by_rows(&stages.acceleration) };
-        Ok(Taken { increment, gain, iterations })
+        *slopes = StageSlopes { velocity: by_rows(&stages.velocity), acceleration: by_rows(&stages.acceleration) };
+        Ok(TakenStep { increment, gain, iterations })
     }
 
     /// The sum `h sum_j factors(j) slopes[j]` over the stages.
@@ -135,7 +135,7 @@ impl Gauss {
         system: &dyn Mechanics<N, M>,
         (t, h): (f64, f64),
         (q0, xi0): (&[f64; N], &[f64; N]),
-        stages: &mut Stages<N>,
+        stages: &mut StagesInTurn<N>,
     ) -> Result<u32, StepError> {
         let mut convergence = FixedPoint::<2, N>::new(self.max_iterations);
         loop {
@@ -169,13 +169,13 @@ impl Gauss {
 }
 
 /// A step, its stages found.
-struct Taken<const N: usize> {
+struct TakenStep<const N: usize> {
     increment: [f64; N],
     gain: [f64; N],
     iterations: u32,
 }
 
-impl<const N: usize> Taken<N> {
+impl<const N: usize> TakenStep<N> {
     /// By stages that were found at once; none where they are not numbers.
     #[inline(always)]
     fn at_once(found: &lanes::Found<N>) -> Option<Self> {
@@ -219,7 +219,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Gauss {
         }
         affine_only(system, t, state)?;
         let xi0 = state.quasi_velocities(system, t)?;
-        let mut slopes = Slopes::ZERO;
+        let mut slopes = StageSlopes::ZERO;
         let taken = match self.at_once(system, (t, h), state, &xi0, &mut slopes) {
             Some(taken) => taken,
             None => self.in_turn(system, (t, h), (state.q(), &xi0), &mut slopes)?,
@@ -236,6 +236,6 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Gauss {
     }
 
     fn recall(&mut self, memory: &[f64], _state: &State<N>) {
-        self.memory = Memory::load(memory);
+        self.memory = GaussMemory::load(memory);
     }
 }

@@ -1,5 +1,5 @@
 //! Arrays of numbers to registers: a pack holds one coordinate of all stages.
-use super::lanes::Rows;
+use super::lanes::StageRows;
 use lagrangian::array;
 use lagrangian::linear::larger;
 use lagrangian::simd::{Pack, Simd, Wide};
@@ -26,7 +26,7 @@ pub(super) fn each<S: Simd, const R: usize, const N: usize>(x: &[Pack<S, R>; N])
 
 /// Rows of eight numbers.
 #[inline(always)]
-pub(super) fn loaded<S: Simd, const R: usize, const N: usize>(simd: S, x: &Rows<N>) -> [Pack<S, R>; N] {
+pub(super) fn loaded<S: Simd, const R: usize, const N: usize>(simd: S, x: &StageRows<N>) -> [Pack<S, R>; N] {
     array(
         Pack::splat(simd, 0.0),
         #[inline(always)]
@@ -38,7 +38,7 @@ pub(super) fn loaded<S: Simd, const R: usize, const N: usize>(simd: S, x: &Rows<
 #[inline(always)]
 pub(super) fn ahead<S: Simd, const R: usize, const N: usize>(
     simd: S,
-    x: &Rows<N>,
+    x: &StageRows<N>,
     continued: &[Pack<S, R>; 8],
 ) -> [Pack<S, R>; N] {
     array(

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 /// A rule of at most eight nodes for eight lanes; lanes beyond its nodes stay at the beginning of the step.
 #[derive(Debug, PartialEq)]
-pub(crate) struct Eight {
+pub(crate) struct GaussRule {
     pub(crate) nodes: [f64; 8],
     pub(crate) weights: [f64; 8],
     /// The coefficients `a[i][j]` by columns: column `j` has those of slope `j` in every stage.
@@ -27,10 +27,10 @@ pub(super) const LONGER: i32 = 2;
 /// The next step is shorter by so many quarter octaves at most.
 pub(super) const SHORTER: i32 = 8;
 
-impl Eight {
+impl GaussRule {
     /// The rule with `S` nodes.
     pub(crate) fn gauss<const S: usize>() -> &'static Self {
-        static RULES: [OnceLock<Eight>; 9] = [const { OnceLock::new() }; 9];
+        static RULES: [OnceLock<GaussRule>; 9] = [const { OnceLock::new() }; 9];
         const { assert!(1 <= S && S <= 8, "one to eight stages") };
         RULES[S].get_or_init(Self::compute::<S>)
     }
@@ -92,7 +92,7 @@ mod tests {
     }
 
     fn check<const S: usize>() {
-        let rule = Eight::gauss::<S>();
+        let rule = GaussRule::gauss::<S>();
         for degree in 0..S {
             for quarters in -SHORTER..=LONGER {
                 let square = rule.continued(degree, quarters).expect("a ratio that steps have");

@@ -1,27 +1,27 @@
 use lagrangian::linear::{Singular, larger};
 
 /// A row of the matrix: `2 N` places a stage, which is room for `N` velocities and up to `N` multipliers.
-type Row<const N: usize, const S: usize> = [[[f64; N]; 2]; S];
+type StagesRow<const N: usize, const S: usize> = [[[f64; N]; 2]; S];
 
 /// Linear equations in the velocities and multipliers of all stages, on the stack.
 ///
 /// Their number `S N + (S - 1) M` cannot yet be written as the length of an array, so there is room for `2 S N`.
 #[derive(Debug, Clone)]
 pub(super) struct Dense<const N: usize, const M: usize, const S: usize> {
-    rows: [[[Row<N, S>; N]; 2]; S],
-    right: Row<N, S>,
+    rows: [[[StagesRow<N, S>; N]; 2]; S],
+    right: StagesRow<N, S>,
 }
 
 /// A pivot below it, relative to its row and column, is round-off.
 const THRESHOLD: f64 = 4.0 * f64::EPSILON;
 
 #[inline]
-fn flat<const N: usize, const S: usize>(row: &Row<N, S>) -> &[f64] {
+fn flat<const N: usize, const S: usize>(row: &StagesRow<N, S>) -> &[f64] {
     row.as_flattened().as_flattened()
 }
 
 #[inline]
-fn flat_mut<const N: usize, const S: usize>(row: &mut Row<N, S>) -> &mut [f64] {
+fn flat_mut<const N: usize, const S: usize>(row: &mut StagesRow<N, S>) -> &mut [f64] {
     row.as_flattened_mut().as_flattened_mut()
 }
 

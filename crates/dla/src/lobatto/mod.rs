@@ -7,13 +7,13 @@ mod tables;
 use crate::branch;
 use crate::convergence::tolerances::NEAR_ROUNDINGS;
 use crate::dependent::{named_along, named_at};
-use crate::newton::{BlockEquations, Found};
+use crate::newton::{BlockEquations, NewtonRoot};
 use crate::positions::affine_only;
 use crate::projection::{Projected, Projection};
 use crate::{Mechanics, Newton, NewtonError, OneStep, StackUse, Stage, State, StepError, StepReport};
 use lagrangian::from_fn;
 use lagrangian::linear::largest;
-use stages::Stages;
+use stages::LobattoStages;
 use std::f64::consts::PI;
 
 pub use point::{Linearised, Point};
@@ -78,11 +78,11 @@ impl<const S: usize> Lobatto<S> {
     fn found_near<const N: usize, const M: usize>(
         &self,
         part: f64,
-        stages: &mut Stages<'_, N, M, S>,
+        stages: &mut LobattoStages<'_, N, M, S>,
         v: &mut [[f64; N]; S],
     ) -> Result<(u32, bool), NewtonError> {
         let begun = *stages;
-        let Found { iterations, first, certain } = self.newton.search_blocks(stages, v)?;
+        let NewtonRoot { iterations, first, certain } = self.newton.search_blocks(stages, v)?;
         let near = first <= part * largest(v.as_flattened())
             || first <= begun.near()
             || first <= NEAR_ROUNDINGS * largest(&begun.velocity_rounding());
@@ -94,12 +94,12 @@ impl<const S: usize> Lobatto<S> {
     #[inline(never)]
     fn followed<const N: usize, const M: usize>(
         &self,
-        whole: &Stages<'_, N, M, S>,
+        whole: &LobattoStages<'_, N, M, S>,
         turn: f64,
         v0: [f64; N],
     ) -> Option<[[f64; N]; S]> {
         branch::followed(&[v0; S], 0.5 * branch::NEAR / turn, |part, guess| {
-            let mut stages = Stages { h: part * whole.h, ..*whole };
+            let mut stages = LobattoStages { h: part * whole.h, ..*whole };
             let near = self.found_near(0.1, &mut stages, guess).ok()?.1;
             (near && stages.turn(guess) < PI).then_some(())
         })
@@ -132,7 +132,7 @@ impl<const N: usize, const M: usize, const S: usize> OneStep<N, M> for Lobatto<S
         }
         let mut impulses = [impulse; S];
         impulses[S - 1] = [0.0; M];
-        let first = Stages { tables: &self.tables, system, t0, h, start: state, p0, impulses, before: impulses };
+        let first = LobattoStages { tables: &self.tables, system, t0, h, start: state, p0, impulses, before: impulses };
         let mut stages = first;
         let (mut iterations, near) = self
             .found_near(0.3, &mut stages, &mut v)

@@ -9,7 +9,7 @@ use lagrangian::linear::Singular;
 use lagrangian::{Rounded, Saddle, from_fn};
 
 /// The equations for the velocities of all stages of a step, with the impulses of the constraint at all but the last.
-pub(super) struct Stages<'a, const N: usize, const M: usize, const S: usize> {
+pub(super) struct LobattoStages<'a, const N: usize, const M: usize, const S: usize> {
     pub(super) tables: &'a Tables<S>,
     pub(super) system: &'a dyn Mechanics<N, M>,
     pub(super) t0: f64,
@@ -22,15 +22,15 @@ pub(super) struct Stages<'a, const N: usize, const M: usize, const S: usize> {
     pub(super) before: [[f64; M]; S],
 }
 
-impl<const N: usize, const M: usize, const S: usize> Clone for Stages<'_, N, M, S> {
+impl<const N: usize, const M: usize, const S: usize> Clone for LobattoStages<'_, N, M, S> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<const N: usize, const M: usize, const S: usize> Copy for Stages<'_, N, M, S> {}
+impl<const N: usize, const M: usize, const S: usize> Copy for LobattoStages<'_, N, M, S> {}
 
-impl<const N: usize, const M: usize, const S: usize> Stages<'_, N, M, S> {
+impl<const N: usize, const M: usize, const S: usize> LobattoStages<'_, N, M, S> {
     /// The increment `h sum_j factors[j] v[j]`, `share` the sum of the factors.
     ///
     /// Summed about the velocity at the start, so that the rounding of the factors multiplies differences only.
@@ -178,7 +178,7 @@ impl<const N: usize, const M: usize, const S: usize> Stages<'_, N, M, S> {
     }
 }
 
-impl<const N: usize, const M: usize, const S: usize> BlockEquations<N, S> for Stages<'_, N, M, S> {
+impl<const N: usize, const M: usize, const S: usize> BlockEquations<N, S> for LobattoStages<'_, N, M, S> {
     #[inline(always)]
     fn near(&self) -> f64 {
         rounding_of_place(self.start.q(), self.h)

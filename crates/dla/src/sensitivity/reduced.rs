@@ -46,7 +46,7 @@ impl<const N: usize, const P: usize> ReducedDerivative<N, P> {
 }
 
 /// Basis and `W xi + v_b` at one end of a step, with their derivatives at fixed `xi`.
-pub(super) struct Frame<const N: usize, const P: usize> {
+pub(super) struct BasisFrame<const N: usize, const P: usize> {
     /// The basis vectors; the last `M` are zero.
     pub(super) basis: [[f64; N]; N],
     pub(super) in_q: [[f64; N]; N],
@@ -57,7 +57,7 @@ pub(super) struct Frame<const N: usize, const P: usize> {
     dimension: usize,
 }
 
-impl<const N: usize, const P: usize> Frame<N, P> {
+impl<const N: usize, const P: usize> BasisFrame<N, P> {
     /// None where the system has no basis, or one that does not span the distribution.
     pub(super) fn new<const M: usize>(
         seeder: &Seeder<'_, N, M>,
@@ -112,7 +112,7 @@ impl<const N: usize, const P: usize> Frame<N, P> {
 }
 
 /// The columns of a derivative, in `(q0, v0, p)`, then in time and step.
-pub(super) struct Columns<'a, const N: usize, const P: usize> {
+pub(super) struct BasisColumns<'a, const N: usize, const P: usize> {
     pub(super) from_q: &'a [Variation<N>; N],
     pub(super) from_v: &'a [Variation<N>; N],
     pub(super) from_parameters: &'a [Variation<N>; P],
@@ -120,9 +120,9 @@ pub(super) struct Columns<'a, const N: usize, const P: usize> {
     pub(super) from_step: &'a Variation<N>,
 }
 
-impl<const N: usize, const P: usize> Columns<'_, N, P> {
+impl<const N: usize, const P: usize> BasisColumns<'_, N, P> {
     /// The same columns with the quasi-velocities of `start` and `end`.
-    pub(super) fn reduced(&self, start: &Frame<N, P>, end: &Frame<N, P>) -> ReducedDerivative<N, P> {
+    pub(super) fn reduced(&self, start: &BasisFrame<N, P>, end: &BasisFrame<N, P>) -> ReducedDerivative<N, P> {
         // What a change of v0 alone does.
         let through = |v: &[f64; N]| (0..N).fold(Variation::ZERO, |sum, i| sum.plus(v[i], &self.from_v[i]));
         let none = [0.0; N];

@@ -1,5 +1,5 @@
 use super::implicit::{Elementary, Seeder};
-use super::reduced::{Columns, Frame};
+use super::reduced::{BasisColumns, BasisFrame};
 use super::{Differentiable, SensitivityError, StepDerivative, Variation};
 use crate::convergence::tolerances::NEAR_ROUNDINGS;
 use crate::{Mechanics, OneStep, SeededMechanics, StackUse, State, StepReport};
@@ -178,14 +178,14 @@ fn derivative<const N: usize, const M: usize, const P: usize>(
     let (from_q, from_v) = (from_fn(column), from_fn(|j| column(N + j)));
     let (from_time, from_step) = (column(2 * N), column(2 * N + 1));
     let from_parameters = from_fn(|k| column(2 * N + 2 + k));
-    let columns = Columns {
+    let columns = BasisColumns {
         from_q: &from_q,
         from_v: &from_v,
         from_parameters: &from_parameters,
         from_time: &from_time,
         from_step: &from_step,
     };
-    let frame = |t, state: &State<N>| Frame::new(seeder, parameters, t, state.q(), state.v());
+    let frame = |t, state: &State<N>| BasisFrame::new(seeder, parameters, t, state.q(), state.v());
     let reduced = match (frame(t, start), frame(t + h, end)) {
         (Some(start), Some(end)) => Some(columns.reduced(&start, &end)),
         _ => None,

@@ -1,10 +1,10 @@
-use super::making::{Last, Step};
+use super::making::{AssemblyStep, LastNode};
 use assembly::{Assembly, OneStep, State};
 use dla::{Close, Zero, close_crossings, zeros};
 use std::fmt;
 
 /// Of the time (s) and the state.
-type Function<'a> = Box<dyn Fn(f64, &State) -> f64 + 'a>;
+type AssemblyFunction<'a> = Box<dyn Fn(f64, &State) -> f64 + 'a>;
 
 /// A function of time and state whose crossings of zero are looked for along a run of an assembly.
 pub struct AssemblyEvent<'a> {
@@ -12,7 +12,7 @@ pub struct AssemblyEvent<'a> {
     pub name: String,
     /// Whether the first crossing ends the run.
     pub terminal: bool,
-    function: Function<'a>,
+    function: AssemblyFunction<'a>,
 }
 
 impl<'a> AssemblyEvent<'a> {
@@ -60,10 +60,10 @@ impl AssemblyCrossing {
 pub(super) fn ended(
     assembly: &Assembly,
     method: &mut dyn OneStep,
-    step: &Step<'_>,
+    step: &AssemblyStep<'_>,
     (events, samples): (&[AssemblyEvent<'_>], u32),
     crossings: &mut Vec<AssemblyCrossing>,
-) -> Option<Last> {
+) -> Option<LastNode> {
     if events.is_empty() {
         return None;
     }

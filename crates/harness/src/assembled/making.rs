@@ -1,5 +1,5 @@
 use super::AssemblyNodes;
-use super::meter::Meter;
+use super::meter::AssemblyMeter;
 use super::parts::{Parted, in_parts, resolves, shorter};
 use super::{Assembled, assembly_method};
 use crate::{Method, MethodInfo, Progress, Record};
@@ -15,7 +15,7 @@ pub(super) struct Making<'a, 'n> {
     info: MethodInfo,
     limits: Option<Substeps>,
     method: Option<Box<dyn OneStep>>,
-    meter: Meter<'n>,
+    meter: AssemblyMeter<'n>,
     state: State,
     pub(super) made: u64,
     seconds: f64,
@@ -25,7 +25,7 @@ pub(super) struct Making<'a, 'n> {
 }
 
 /// A step that was made.
-pub(super) struct Step<'a> {
+pub(super) struct AssemblyStep<'a> {
     /// The number of the node it began at, and the time (s).
     pub(super) k: u64,
     pub(super) t0: f64,
@@ -35,7 +35,7 @@ pub(super) struct Step<'a> {
 }
 
 /// The node at which a run ends within a step: the time (s) and the state.
-pub(super) type Last = (f64, State);
+pub(super) type LastNode = (f64, State);
 
 impl<'a, 'n> Making<'a, 'n> {
     pub(super) fn new(
@@ -45,7 +45,7 @@ impl<'a, 'n> Making<'a, 'n> {
         start: &State,
         nodes: AssemblyNodes<'n>,
     ) -> Self {
-        let meter = Meter::new(assembly, method, schedule.t0, start, nodes);
+        let meter = AssemblyMeter::new(assembly, method, schedule.t0, start, nodes);
         Self::of(assembly, method, schedule, (meter, start.clone(), 0, 0.0))
     }
 
@@ -53,7 +53,7 @@ impl<'a, 'n> Making<'a, 'n> {
         assembly: &'a Assembly,
         method: &Method,
         schedule: &'a Schedule,
-        (meter, state, made, seconds): (Meter<'n>, State, u64, f64),
+        (meter, state, made, seconds): (AssemblyMeter<'n>, State, u64, f64),
     ) -> Self {
         let (method, info, limits) = (assembly_method(assembly, method), method.info(), method.substeps());
         let (method, failure) = match method {
@@ -76,8 +76,8 @@ impl<'a, 'n> Making<'a, 'n> {
     pub(super) fn go(
         &mut self,
         to: u64,
-        ticker: &mut Ticker<'_>,
-        mut look: impl FnMut(&mut dyn OneStep, Step<'_>) -> ControlFlow<Last>,
+        ticker: &mut AssemblyTicker<'_>,
+        mut look: impl FnMut(&mut dyn OneStep, AssemblyStep<'_>) -> ControlFlow<LastNode>,
     ) {
         let Self { assembly, schedule, limits, method: Some(method), meter, state, made, seconds, .. } = self else {
             return;
@@ -95,7 +95,7 @@ impl<'a, 'n> Making<'a, 'n> {
             let Parted { last, iterations, parts } = match (whole, *limits) {
                 (Ok(report), _) => {
                     let iterations = report.iterations;
-                    let step = Step { k, t0, h, before: &before, after: state };
+                    let step = AssemblyStep { k, t0, h, before: &before, after: state };
                     let last = match look(method.as_mut(), step) {
                         ControlFlow::Continue(()) => {
                             meter.over(assembly, (t0, &before), (schedule.time(k + 1), state), &report);
@@ -178,20 +178,20 @@ impl<'a, 'n> Making<'a, 'n> {
     ) -> Result<Self, CheckpointError> {
         let ([made], [seconds]) = (checkpoint.counts("k")?, checkpoint.get("seconds")?);
         let state = State::load(checkpoint, assembly)?;
-        let meter = Meter::load(checkpoint, method, (made, schedule.time(made)), nodes)?;
+        let meter = AssemblyMeter::load(checkpoint, method, (made, schedule.time(made)), nodes)?;
         Ok(Self::of(assembly, method, schedule, (meter, state, made, seconds)))
     }
 }
 
 /// Tells a [`Progress`] now and then: a step may take long.
-pub(super) struct Ticker<'a> {
+pub(super) struct AssemblyTicker<'a> {
     progress: &'a mut dyn Progress,
     told: u64,
     clock: Instant,
     pub(super) stopped: bool,
 }
 
-impl<'a> Ticker<'a> {
+impl<'a> AssemblyTicker<'a> {
     const EVERY: Duration = Duration::from_millis(50);
 
     /// Of a run that has made so many steps already.

@@ -7,7 +7,7 @@ use dla::{Checkpoint, CheckpointError, Undivided};
 use lagrangian::linear::larger;
 
 /// What a run of an assembly is measured by.
-pub(super) struct Meter<'a> {
+pub(super) struct AssemblyMeter<'a> {
     /// Where nodes go that are not kept.
     shown: Option<Shown<'a>>,
     /// Every so manieth node is a sample, and is kept unless nodes are shown.
@@ -36,7 +36,7 @@ struct Shown<'a> {
     last: f64,
 }
 
-impl<'a> Meter<'a> {
+impl<'a> AssemblyMeter<'a> {
     pub(super) fn new(assembly: &Assembly, method: &Method, t: f64, start: &State, nodes: AssemblyNodes<'a>) -> Self {
         let (every, shown) = split(nodes);
         let (initial, most) = (assembly.energy(t, start), assembly.misses(t, start));

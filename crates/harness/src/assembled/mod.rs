@@ -15,7 +15,7 @@ use crate::{Kind, METHODS, Method, Progress, Record};
 use assembly::{Assembly, AssemblyError, Composition, Dla, Energy, Lobatto, OneStep, RunError, Solver, State};
 use dla::Schedule;
 use events::ended;
-use making::{Making, Ticker};
+use making::{AssemblyTicker, Making};
 use std::ops::ControlFlow;
 use std::sync::LazyLock;
 
@@ -107,7 +107,8 @@ pub fn assembly_end(
 ) -> Result<Option<State>, RunError> {
     let mut state = start.clone();
     let fail = |k: u64| move |source| RunError { step: k + 1, time: schedule.time(k), source };
-    let (mut method, mut ticker) = (assembly_method(assembly, method).map_err(fail(0))?, Ticker::new(progress, 0));
+    let (mut method, mut ticker) =
+        (assembly_method(assembly, method).map_err(fail(0))?, AssemblyTicker::new(progress, 0));
     for k in 0..schedule.steps {
         method.step(assembly, schedule.time(k), schedule.step, &mut state).map_err(fail(k))?;
         if ticker.stops(k + 1) {
@@ -146,7 +147,7 @@ pub fn run_assembly_watched(
     progress: &mut dyn Progress,
 ) -> (Assembled, Vec<AssemblyCrossing>) {
     let mut making = Making::new(assembly, method, schedule, start, nodes);
-    let (mut ticker, mut crossings) = (Ticker::new(progress, 0), Vec::new());
+    let (mut ticker, mut crossings) = (AssemblyTicker::new(progress, 0), Vec::new());
     making.go(schedule.steps, &mut ticker, |method, step| {
         let last = ended(assembly, method, &step, events, &mut crossings);
         last.map_or(ControlFlow::Continue(()), ControlFlow::Break)

@@ -1,5 +1,5 @@
-use super::making::{Last, Step};
-use super::meter::Meter;
+use super::making::{AssemblyStep, LastNode};
+use super::meter::AssemblyMeter;
 use assembly::{Assembly, AssemblyError, OneStep, State, StepReport};
 use dla::{Halved, Substeps, Undivided};
 use lagrangian::linear::larger;
@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 /// A step that was made in parts.
 pub(super) struct Parted {
     /// The node at which an event has ended the run within it.
-    pub(super) last: Option<Last>,
+    pub(super) last: Option<LastNode>,
     pub(super) iterations: u32,
     pub(super) parts: u64,
 }
@@ -22,9 +22,9 @@ pub(super) fn in_parts(
     assembly: &Assembly,
     method: &mut dyn OneStep,
     (limits, (k, t, h), failure): (Substeps, (u64, f64, f64), AssemblyError),
-    (state, meter): (&mut State, &mut Meter<'_>),
+    (state, meter): (&mut State, &mut AssemblyMeter<'_>),
     stops: impl Fn() -> bool,
-    mut look: impl FnMut(&mut dyn OneStep, Step<'_>) -> ControlFlow<Last>,
+    mut look: impl FnMut(&mut dyn OneStep, AssemblyStep<'_>) -> ControlFlow<LastNode>,
 ) -> Result<Option<Parted>, Undivided<AssemblyError>> {
     let mut start = state.clone();
     let (mut last, mut iterations, mut parts) = (None, 0, 0);
@@ -36,7 +36,9 @@ pub(super) fn in_parts(
             return Err(failure);
         }
         (iterations, parts) = (iterations + report.iterations, parts + 1);
-        if let ControlFlow::Break((end, found)) = look(method, Step { k, t0: t, h, before: &start, after: state }) {
+        if let ControlFlow::Break((end, found)) =
+            look(method, AssemblyStep { k, t0: t, h, before: &start, after: state })
+        {
             let shorter = shorter(assembly, method, (t, end), &start, report);
             meter.over(assembly, (t, &start), (end, &found), &shorter);
             last = Some((end, found));

@@ -1,4 +1,4 @@
-use super::making::{Making, Ticker};
+use super::making::{AssemblyTicker, Making};
 use super::{Assembled, AssemblyNodes};
 use crate::saved::within;
 use crate::{Method, Progress, Saving};
@@ -31,7 +31,7 @@ pub fn run_assembly_saved(
         None => Making::new(assembly, method, schedule, start, nodes),
     };
     progress.advance(making.made);
-    let mut ticker = Ticker::new(progress, making.made);
+    let mut ticker = AssemblyTicker::new(progress, making.made);
     loop {
         let next =
             saving.every.map_or(schedule.steps, |every| (making.made / every).saturating_add(1).saturating_mul(every));

@@ -12,12 +12,12 @@ use std::ops::ControlFlow;
 /// coordinates counted from the beginning of the interval. (Hairer, Norsett and Wanner 1993, section II.10; crate
 /// `differential-equations`.)
 pub struct Dop853<const N: usize, const M: usize> {
-    solver: Solver<N, M>,
+    solver: Dop853Solver<N, M>,
     /// The step to begin with (s); none before the first interval.
     proposed: Option<f64>,
 }
 
-type Solver<const N: usize, const M: usize> =
+type Dop853Solver<const N: usize, const M: usize> =
     ExplicitRungeKutta<Ordinary, DormandPrince, f64, ReducedPoint<N, M>, 8, 12, 16>;
 
 impl<const N: usize, const M: usize> Dop853<N, M> {
@@ -31,7 +31,7 @@ impl<const N: usize, const M: usize> Dop853<N, M> {
     #[must_use]
     pub fn new(epsilon: f64) -> Self {
         // The limit of the library would count over all intervals.
-        let solver = Solver::dop853().rtol(epsilon).atol(epsilon).max_steps(usize::MAX);
+        let solver = Dop853Solver::dop853().rtol(epsilon).atol(epsilon).max_steps(usize::MAX);
         Self { solver, proposed: None }
     }
 
@@ -39,7 +39,7 @@ impl<const N: usize, const M: usize> Dop853<N, M> {
     #[inline]
     fn cross(
         &mut self,
-        slopes: &Slopes<'_, N, M>,
+        slopes: &ReducedSlopes<'_, N, M>,
         h: f64,
         xi: [f64; N],
         mut see: impl FnMut(f64, &ReducedPoint<N, M>) -> ControlFlow<()>,
@@ -86,7 +86,7 @@ impl<const N: usize, const M: usize> std::fmt::Debug for Dop853<N, M> {
 }
 
 /// The reduced equations as the library wants them.
-struct Slopes<'a, const N: usize, const M: usize> {
+struct ReducedSlopes<'a, const N: usize, const M: usize> {
     system: &'a dyn Mechanics<N, M>,
     t0: f64,
     q0: [f64; N],
@@ -96,7 +96,7 @@ struct Slopes<'a, const N: usize, const M: usize> {
     failure: Cell<Option<StepError>>,
 }
 
-impl<'a, const N: usize, const M: usize> Slopes<'a, N, M> {
+impl<'a, const N: usize, const M: usize> ReducedSlopes<'a, N, M> {
     /// Of an interval from `state` at the time `t0` (s).
     #[inline]
     fn new(system: &'a dyn Mechanics<N, M>, t0: f64, state: &State<N>) -> Self {
@@ -104,7 +104,7 @@ impl<'a, const N: usize, const M: usize> Slopes<'a, N, M> {
     }
 }
 
-impl<const N: usize, const M: usize> ODE<f64, ReducedPoint<N, M>> for Slopes<'_, N, M> {
+impl<const N: usize, const M: usize> ODE<f64, ReducedPoint<N, M>> for ReducedSlopes<'_, N, M> {
     #[inline]
     fn diff(&self, t: f64, y: &ReducedPoint<N, M>, slope: &mut ReducedPoint<N, M>) {
         let Some(left) = self.left.get().checked_sub(1) else { return };
@@ -136,7 +136,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Dop853<N, M> {
             return Err(USE.refusal::<N, M>());
         }
         let xi0 = state.quasi_velocities(system, t)?;
-        match self.cross(&Slopes::new(system, t, state), h, xi0, |_, _| ControlFlow::Continue(())) {
+        match self.cross(&ReducedSlopes::new(system, t, state), h, xi0, |_, _| ControlFlow::Continue(())) {
             Ok(_) => moved(system, t + h, self.solver.y(), state),
             Err(error) => match at_rest(system, (t, h), state, &xi0) {
                 Some(point) => moved(system, t + h, &point, state),
@@ -163,7 +163,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Dop853<N, M> {
     ) -> Result<(), StepError> {
         let mut method = Self { solver: self.solver.clone(), proposed: memory.first().copied() };
         let (xi0, mut failure) = (state.quasi_velocities(system, t)?, None);
-        method.cross(&Slopes::new(system, t, state), h, xi0, |made, point| {
+        method.cross(&ReducedSlopes::new(system, t, state), h, xi0, |made, point| {
             let mut inner = *state;
             match moved::<N, M>(system, t + made, point, &mut inner) {
                 Ok(_) => see(t + made, &inner),

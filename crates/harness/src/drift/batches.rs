@@ -1,4 +1,4 @@
-use super::blocks::Block;
+use super::blocks::DriftBlock;
 
 /// So many batches.
 pub(super) const BATCHES: usize = 32;
@@ -108,11 +108,11 @@ const NEARLY_ALL: f64 = 0.9;
 const GROWING: usize = 8;
 
 /// The largest error, where the series grows faster and faster to its end; none otherwise, and none of one that is too short.
-pub(super) fn runs_away(blocks: &[Block]) -> Option<f64> {
+pub(super) fn runs_away(blocks: &[DriftBlock]) -> Option<f64> {
     if blocks.len() < 2 * BATCHES {
         return None;
     }
-    let size = |block: &Block| block.min.abs().max(block.max.abs());
+    let size = |block: &DriftBlock| block.min.abs().max(block.max.abs());
     let largest = |j: usize| blocks[batch(j, blocks.len())].iter().map(size).fold(0.0, f64::max);
     let sizes: Vec<f64> = (0..BATCHES).map(largest).collect();
     let last = sizes[BATCHES - 1];

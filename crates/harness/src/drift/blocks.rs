@@ -12,9 +12,9 @@ pub struct Blocks {
     /// Values of a block.
     length: u64,
     /// Those that are full.
-    full: Vec<Block>,
+    full: Vec<DriftBlock>,
     /// The one that is being filled, and how many values it has.
-    last: Block,
+    last: DriftBlock,
     filled: u64,
     /// The time of the first value and of the last (s).
     times: [f64; 2],
@@ -23,13 +23,13 @@ pub struct Blocks {
 
 /// Sum and extremes of the values of a block.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Block {
+pub(super) struct DriftBlock {
     sum: f64,
     pub(super) min: f64,
     pub(super) max: f64,
 }
 
-impl Block {
+impl DriftBlock {
     const EMPTY: Self = Self { sum: 0.0, min: f64::INFINITY, max: f64::NEG_INFINITY };
 
     fn with(self, other: Self) -> Self {
@@ -39,7 +39,14 @@ impl Block {
 
 impl Default for Blocks {
     fn default() -> Self {
-        Self { length: 1, full: Vec::with_capacity(MOST), last: Block::EMPTY, filled: 0, times: [0.0; 2], count: 0 }
+        Self {
+            length: 1,
+            full: Vec::with_capacity(MOST),
+            last: DriftBlock::EMPTY,
+            filled: 0,
+            times: [0.0; 2],
+            count: 0,
+        }
     }
 }
 
@@ -52,10 +59,10 @@ impl Blocks {
         }
         self.times[1] = t;
         self.count += 1;
-        self.last = self.last.with(Block { sum: value, min: value, max: value });
+        self.last = self.last.with(DriftBlock { sum: value, min: value, max: value });
         self.filled += 1;
         if self.filled == self.length {
-            self.full.push(std::mem::replace(&mut self.last, Block::EMPTY));
+            self.full.push(std::mem::replace(&mut self.last, DriftBlock::EMPTY));
             self.filled = 0;
             if self.full.len() == MOST {
                 self.halve();
@@ -73,7 +80,7 @@ impl Blocks {
     }
 
     /// The full blocks, in the order of time.
-    pub(super) fn full(&self) -> &[Block] {
+    pub(super) fn full(&self) -> &[DriftBlock] {
         &self.full
     }
 
@@ -117,9 +124,9 @@ impl Blocks {
         let sums = checkpoint.list("block_sums")?;
         let (minima, maxima) = (checkpoint.list("block_minima")?, checkpoint.list("block_maxima")?);
         let extremes = minima.into_iter().zip(maxima);
-        let mut full: Vec<Block> =
-            sums.into_iter().zip(extremes).map(|(sum, (min, max))| Block { sum, min, max }).collect();
-        let last = full.pop().unwrap_or(Block::EMPTY);
+        let mut full: Vec<DriftBlock> =
+            sums.into_iter().zip(extremes).map(|(sum, (min, max))| DriftBlock { sum, min, max }).collect();
+        let last = full.pop().unwrap_or(DriftBlock::EMPTY);
         full.truncate(MOST - 1);
         Ok(Self { length: length.max(1), full, last, filled, times, count })
     }

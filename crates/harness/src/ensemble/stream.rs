@@ -60,13 +60,13 @@ pub fn in_order<T: Send, E>(
 
 /// Groups that are to be computed, and results that wait until those before them are there.
 struct Line<T> {
-    state: Mutex<State<T>>,
+    state: Mutex<LineState<T>>,
     changed: Condvar,
     end: u64,
     ahead: u64,
 }
 
-struct State<T> {
+struct LineState<T> {
     /// The next group to be computed, and the next to be handed on.
     next: u64,
     handed: u64,
@@ -76,16 +76,16 @@ struct State<T> {
 
 impl<T> Line<T> {
     fn new(groups: Range<u64>, ahead: u64, threads: usize) -> Self {
-        let state = State { next: groups.start, handed: groups.start, done: BTreeMap::new(), threads };
+        let state = LineState { next: groups.start, handed: groups.start, done: BTreeMap::new(), threads };
         Self { state: Mutex::new(state), changed: Condvar::new(), end: groups.end, ahead }
     }
 
-    fn lock(&self) -> MutexGuard<'_, State<T>> {
+    fn lock(&self) -> MutexGuard<'_, LineState<T>> {
         // Nothing is left half done where a thread panics.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn wait<'a>(&self, state: MutexGuard<'a, State<T>>) -> MutexGuard<'a, State<T>> {
+    fn wait<'a>(&self, state: MutexGuard<'a, LineState<T>>) -> MutexGuard<'a, LineState<T>> {
         self.changed.wait(state).unwrap_or_else(PoisonError::into_inner)
     }
 

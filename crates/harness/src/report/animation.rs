@@ -1,7 +1,7 @@
 //! The scene in motion: what `page.js` moves, and where it moves it.
 
 use super::canvas::{Ink, units};
-use super::geometry::Frame;
+use super::geometry::PlotFrame;
 use super::look;
 use super::path::view;
 use super::picture::Picture;
@@ -23,7 +23,7 @@ const GAP: usize = 40;
 const TICKS: f64 = 2e5;
 
 /// A node as the picture has it: the time (s), the place (units of the picture), heading and rotor (degrees).
-struct Node {
+struct DrawnNode {
     t: f64,
     at: [f64; 4],
     /// Of each blade behind it, its place and its heading.
@@ -92,7 +92,7 @@ pub(super) fn figure(scene: &SceneReport) -> Result<Option<String>, ReportError>
 }
 
 /// What moves, at the first node, cut off at the frame.
-fn stage(method: usize, frame: &Frame, first: &Node, rotor: bool) -> String {
+fn stage(method: usize, frame: &PlotFrame, first: &DrawnNode, rotor: bool) -> String {
     let [left, top, width, height] = [frame.left, frame.top, frame.width, frame.height].map(units);
     let [x, y, heading, _] = first.at;
     let [x, y] = [x, y].map(units);
@@ -109,7 +109,7 @@ fn stage(method: usize, frame: &Frame, first: &Node, rotor: bool) -> String {
 }
 
 /// The blades behind the sleigh and their bars, at the first node.
-fn behind(first: &Node) -> String {
+fn behind(first: &DrawnNode) -> String {
     if first.followers.is_empty() {
         return String::new();
     }
@@ -132,9 +132,9 @@ fn behind(first: &Node) -> String {
 }
 
 /// The nodes that can be drawn, in order of time.
-fn nodes(series: &Series, frame: &Frame) -> Vec<Node> {
+fn nodes(series: &Series, frame: &PlotFrame) -> Vec<DrawnNode> {
     let count = series.path.len().min(series.heading.len()).min(series.time.len());
-    let mut nodes: Vec<Node> = Vec::with_capacity(count);
+    let mut nodes: Vec<DrawnNode> = Vec::with_capacity(count);
     for k in 0..count {
         let rotor = series.rotor.get(k).copied().unwrap_or(0.0);
         let (t, heading) = (series.time[k], series.heading[k]);
@@ -155,14 +155,14 @@ fn nodes(series: &Series, frame: &Frame) -> Vec<Node> {
                 last
             });
             let followers = followers.collect();
-            nodes.push(Node { t, at: [x, y, heading.to_degrees(), rotor.to_degrees()], followers });
+            nodes.push(DrawnNode { t, at: [x, y, heading.to_degrees(), rotor.to_degrees()], followers });
         }
     }
     nodes
 }
 
 /// Leaves out nodes that a straight line between their neighbours stands for.
-fn thinned(nodes: Vec<Node>) -> Vec<Node> {
+fn thinned(nodes: Vec<DrawnNode>) -> Vec<DrawnNode> {
     let straight = |from: usize, to: usize| {
         nodes[from + 1..to].iter().all(|node| {
             let [a, b] = [&nodes[from], &nodes[to]];

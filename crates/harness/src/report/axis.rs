@@ -1,7 +1,7 @@
 //! Axes: where the ticks are, what they say, and the legend above.
 
 use super::canvas::{Anchor, Canvas, Drawn, Ink, text_width};
-use super::geometry::{Frame, Span};
+use super::geometry::{PlotFrame, Span};
 use super::xml::label;
 
 /// The size of the figures at the ticks and of the names.
@@ -87,7 +87,7 @@ pub(super) fn margin(ticks: &[Tick]) -> f64 {
 }
 
 /// The axes of a frame with their grid; the names stand at the ends, where they need no room of their own.
-pub(super) fn draw(canvas: &Canvas<'_>, frame: &Frame, ticks: [&[Tick]; 2], names: [&str; 2]) -> Drawn {
+pub(super) fn draw(canvas: &Canvas<'_>, frame: &PlotFrame, ticks: [&[Tick]; 2], names: [&str; 2]) -> Drawn {
     bare(canvas, frame, ticks)?;
     canvas.text(names[0], [frame.right(), frame.bottom() + 32.0], Anchor::Right, SIZE)?;
     canvas.text(names[1], [frame.left - 8.0, frame.top - 17.0], Anchor::Left, SIZE)
@@ -96,7 +96,7 @@ pub(super) fn draw(canvas: &Canvas<'_>, frame: &Frame, ticks: [&[Tick]; 2], name
 /// The same with the names along the middles of the axes, as journals have them; the upright one at a distance from its axis.
 pub(super) fn titled(
     canvas: &Canvas<'_>,
-    frame: &Frame,
+    frame: &PlotFrame,
     ticks: [&[Tick]; 2],
     names: [&str; 2],
     distance: f64,
@@ -107,7 +107,7 @@ pub(super) fn titled(
 }
 
 /// The axes of a frame with their grid, without names.
-fn bare(canvas: &Canvas<'_>, frame: &Frame, ticks: [&[Tick]; 2]) -> Drawn {
+fn bare(canvas: &Canvas<'_>, frame: &PlotFrame, ticks: [&[Tick]; 2]) -> Drawn {
     let (left, right, top, bottom) = (frame.left, frame.right(), frame.top, frame.bottom());
     let [across, up] = ticks;
     for (value, text) in across {
@@ -128,7 +128,7 @@ fn bare(canvas: &Canvas<'_>, frame: &Frame, ticks: [&[Tick]; 2]) -> Drawn {
 }
 
 /// An entry of a legend.
-pub(super) type Entry<'a> = (Ink, &'a str);
+pub(super) type LegendEntry<'a> = (Ink, &'a str);
 
 /// Height of a line of the legend, length of its samples, room between entries.
 const ROW: f64 = 19.0;
@@ -136,7 +136,7 @@ const SAMPLE: f64 = 28.0;
 const BETWEEN: f64 = 18.0;
 
 /// Where the entries of a legend go, relative to its corner, and how high it is.
-pub(super) fn legend(entries: &[Entry<'_>], width: f64) -> (Vec<[f64; 2]>, f64) {
+pub(super) fn legend(entries: &[LegendEntry<'_>], width: f64) -> (Vec<[f64; 2]>, f64) {
     let mut corner = [0.0, 0.0];
     let mut places = Vec::with_capacity(entries.len());
     for (_, name) in entries {
@@ -151,7 +151,12 @@ pub(super) fn legend(entries: &[Entry<'_>], width: f64) -> (Vec<[f64; 2]>, f64) 
 }
 
 /// Draws a legend with its upper left corner at a point.
-pub(super) fn draw_legend(canvas: &Canvas<'_>, entries: &[Entry<'_>], places: &[[f64; 2]], at: [f64; 2]) -> Drawn {
+pub(super) fn draw_legend(
+    canvas: &Canvas<'_>,
+    entries: &[LegendEntry<'_>],
+    places: &[[f64; 2]],
+    at: [f64; 2],
+) -> Drawn {
     for ((ink, name), place) in entries.iter().zip(places) {
         let [x, y] = [at[0] + place[0], at[1] + place[1] + 0.5 * ROW];
         if let Ink::Method(method) = *ink {

@@ -55,7 +55,7 @@ pub(super) enum Anchor {
 
 /// Something drawn. All lengths are in units of the picture, from its upper left corner.
 #[derive(Debug, Clone)]
-pub(super) enum Mark {
+pub(super) enum CanvasMark {
     Line {
         points: Vec<[f64; 2]>,
         ink: Ink,
@@ -80,18 +80,18 @@ pub(super) enum Mark {
 /// What a picture is drawn on.
 pub(super) struct Canvas<'a> {
     area: DrawingArea<SVGBackend<'a>, Shift>,
-    marks: &'a RefCell<Vec<Mark>>,
+    marks: &'a RefCell<Vec<CanvasMark>>,
 }
 
 impl Canvas<'_> {
     pub(super) fn line(&self, points: &[[f64; 2]], ink: Ink, opacity: f64, width: f64) -> Drawn {
-        self.marks.borrow_mut().push(Mark::Line { points: points.to_vec(), ink, opacity, width });
+        self.marks.borrow_mut().push(CanvasMark::Line { points: points.to_vec(), ink, opacity, width });
         let style = ShapeStyle::from(ink.stand_in().mix(opacity)).stroke_width(units(width).unsigned_abs());
         self.area.draw(&PathElement::new(points.iter().map(corner).collect::<Vec<_>>(), style))
     }
 
     pub(super) fn fill(&self, points: &[[f64; 2]], ink: Ink, opacity: f64) -> Drawn {
-        self.marks.borrow_mut().push(Mark::Area { points: points.to_vec(), ink, opacity });
+        self.marks.borrow_mut().push(CanvasMark::Area { points: points.to_vec(), ink, opacity });
         let style = ShapeStyle::from(ink.stand_in().mix(opacity)).filled();
         self.area.draw(&Polygon::new(points.iter().map(corner).collect::<Vec<_>>(), style))
     }
@@ -119,7 +119,7 @@ impl Canvas<'_> {
     }
 
     fn write(&self, text: &str, at: [f64; 2], anchor: Anchor, size: f64, upright: bool) -> Drawn {
-        self.marks.borrow_mut().push(Mark::Text { text: text.to_owned(), at, anchor, size, upright });
+        self.marks.borrow_mut().push(CanvasMark::Text { text: text.to_owned(), at, anchor, size, upright });
         let across = match anchor {
             Anchor::Left => HPos::Left,
             Anchor::Middle => HPos::Center,
@@ -151,7 +151,7 @@ pub(super) fn units(length: f64) -> i32 {
 }
 
 /// What the backend draws, without the `svg` element around it, and the same as marks.
-pub(super) fn shapes(size: [f64; 2], draw: impl FnOnce(&Canvas<'_>) -> Drawn) -> Drawn<(String, Vec<Mark>)> {
+pub(super) fn shapes(size: [f64; 2], draw: impl FnOnce(&Canvas<'_>) -> Drawn) -> Drawn<(String, Vec<CanvasMark>)> {
     let mut document = String::new();
     let marks = RefCell::new(Vec::new());
     let [width, height] = size.map(|length| units(length).unsigned_abs());

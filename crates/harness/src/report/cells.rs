@@ -2,7 +2,7 @@
 
 use super::axis::{self, SIZE};
 use super::canvas::{Anchor, Canvas, Drawn, Ink, units};
-use super::geometry::{Frame, Span};
+use super::geometry::{PlotFrame, Span};
 
 /// The map viridis: its lightness grows evenly, so that any eye, and a grey print, can order its colours.
 const COLOURS: [&str; 16] = [
@@ -37,7 +37,7 @@ impl Cells {
     }
 
     /// One path for each colour.
-    pub(super) fn shapes(&self, frame: &Frame) -> String {
+    pub(super) fn shapes(&self, frame: &PlotFrame) -> String {
         let span = self.span();
         let edge = |axis: usize, k: usize, count: usize| {
             let [lo, hi] = self.ranges[axis];
@@ -60,7 +60,7 @@ impl Cells {
     }
 
     /// The colours of the bar, beside the frame.
-    pub(super) fn bar(&self, frame: &Frame) -> String {
+    pub(super) fn bar(&self, frame: &PlotFrame) -> String {
         let height = frame.height / COLOURS.len() as f64;
         let cell = |(k, colour): (usize, &&str)| {
             let top = frame.bottom() - height * (k + 1) as f64;
@@ -71,7 +71,7 @@ impl Cells {
     }
 
     /// The figures of the bar.
-    pub(super) fn figures(&self, canvas: &Canvas<'_>, frame: &Frame) -> Drawn {
+    pub(super) fn figures(&self, canvas: &Canvas<'_>, frame: &PlotFrame) -> Drawn {
         let span = self.span();
         let x = frame.right() + 16.0 + BAR;
         for (value, text) in axis::linear(span, 6.0) {

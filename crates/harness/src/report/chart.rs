@@ -1,9 +1,9 @@
 //! A chart of lines, dots or cells over two axes.
 
-use super::axis::{self, Entry};
+use super::axis::{self, LegendEntry};
 use super::canvas::{Ink, units};
 use super::cells::Cells;
-use super::geometry::{Frame, Span, drawable, visible};
+use super::geometry::{PlotFrame, Span, drawable, visible};
 use super::picture::Picture;
 use super::thinning::thin;
 use super::{ReportError, look};
@@ -51,7 +51,7 @@ pub enum Layer {
 pub fn chart_svg(chart: &Chart) -> Result<String, ReportError> {
     let scaled =
         |point: [f64; 2]| [0, 1].map(|axis| if chart.decades[axis] { point[axis].log10() } else { point[axis] });
-    let (mut points, mut entries): (Vec<[f64; 2]>, Vec<Entry<'_>>) = (Vec::new(), Vec::new());
+    let (mut points, mut entries): (Vec<[f64; 2]>, Vec<LegendEntry<'_>>) = (Vec::new(), Vec::new());
     let mut cells = None;
     for (number, layer) in chart.layers.iter().enumerate() {
         match layer {
@@ -81,7 +81,7 @@ pub fn chart_svg(chart: &Chart) -> Result<String, ReportError> {
     });
     let left = axis::margin(&up).max(44.0);
     let right = if cells.is_some() { 84.0 } else { 24.0 };
-    let frame = Frame { left, top: legend + 34.0, width: WIDTH - left - right, height: HEIGHT, x, y };
+    let frame = PlotFrame { left, top: legend + 34.0, width: WIDTH - left - right, height: HEIGHT, x, y };
     let file = "chart.svg".to_owned();
     let picture = Picture::draw(file, chart.title.clone(), String::new(), [WIDTH, frame.bottom() + 44.0], |canvas| {
         axis::draw_legend(canvas, &entries, &places, [10.0, 4.0])?;

@@ -3,7 +3,7 @@
 use super::ReportError;
 use super::axis::{self, SIZE};
 use super::canvas::{Anchor, Canvas, Drawn, Ink, text_width};
-use super::geometry::{Frame, Span};
+use super::geometry::{PlotFrame, Span};
 use super::look;
 use super::picture::Picture;
 use crate::precision::{Curve, Mark, Point, Setting, number};
@@ -51,7 +51,7 @@ pub(super) fn picture(
     let [x, y] = [0, 1].map(|axis| decades(all.iter().map(|point| point[axis])));
     let labels: Vec<String> = curves.iter().map(Curve::label).collect();
     let shown = |curve: &Curve| curve.points.iter().any(|point| placed(point).is_some());
-    let entries: Vec<axis::Entry<'_>> = curves
+    let entries: Vec<axis::LegendEntry<'_>> = curves
         .iter()
         .zip(&labels)
         .enumerate()
@@ -61,7 +61,7 @@ pub(super) fn picture(
     let (places, legend) = axis::legend(&entries, WIDTH - 20.0);
     let (across, up) = (axis::decades(x, 9.0), axis::decades(y, 12.0));
     let left = axis::margin(&up);
-    let frame = Frame { left, top: legend + 34.0, width: WIDTH - left - 24.0, height: HEIGHT, x, y };
+    let frame = PlotFrame { left, top: legend + 34.0, width: WIDTH - left - 24.0, height: HEIGHT, x, y };
     let mut tips = Vec::new();
     for curve in curves {
         let seen = |point: &Point| Some((frame.place(placed(point)?)?, told(&curve.label(), point)));
@@ -116,7 +116,7 @@ fn decades(values: impl Iterator<Item = f64>) -> Span {
 }
 
 /// The slopes of the orders, from the upper corner where the steps are coarse.
-fn guides(canvas: &Canvas<'_>, frame: &Frame, abscissa: Abscissa) -> Drawn {
+fn guides(canvas: &Canvas<'_>, frame: &PlotFrame, abscissa: Abscissa) -> Drawn {
     let (from, fine) = match abscissa {
         Abscissa::Seconds => (frame.x.lo, frame.x.hi),
         Abscissa::Step => (frame.x.hi, frame.x.lo),
@@ -137,7 +137,7 @@ fn guides(canvas: &Canvas<'_>, frame: &Frame, abscissa: Abscissa) -> Drawn {
 }
 
 /// The front of the points that nothing beats, as a broad band behind the curves.
-fn front(canvas: &Canvas<'_>, frame: &Frame, curves: &[Curve], abscissa: Abscissa) -> Drawn {
+fn front(canvas: &Canvas<'_>, frame: &PlotFrame, curves: &[Curve], abscissa: Abscissa) -> Drawn {
     if matches!(abscissa, Abscissa::Step) {
         return Ok(());
     }

@@ -2,7 +2,7 @@
 
 use super::axis;
 use super::canvas::{Anchor, Canvas, Drawn, Ink, text_width};
-use super::geometry::{Frame, Span, visible};
+use super::geometry::{PlotFrame, Span, visible};
 use super::look;
 use super::picture::Picture;
 use super::scale::{Scale, Trace};
@@ -84,7 +84,7 @@ fn draw(
     let named = entries.len() as f64 * NAMES <= HEIGHT;
     let right = names.iter().filter(|_| named).map(|name| text_width(name, axis::SIZE)).fold(0.0, f64::max) + 26.0;
     let left = axis::margin(&up);
-    let frame = Frame {
+    let frame = PlotFrame {
         left,
         top: legend + 34.0,
         width: WIDTH - left - right,
@@ -137,7 +137,7 @@ fn times(scene: &SceneReport) -> Span {
 }
 
 /// A few markers on each line, at other times for each method.
-fn markers(canvas: &Canvas<'_>, frame: &Frame, placed: &[Vec<Option<[f64; 2]>>]) -> Drawn {
+fn markers(canvas: &Canvas<'_>, frame: &PlotFrame, placed: &[Vec<Option<[f64; 2]>>]) -> Drawn {
     for (method, points) in placed.iter().enumerate() {
         let last = points.len().saturating_sub(1) as f64;
         for k in 0..6_u32 {
@@ -153,7 +153,7 @@ fn markers(canvas: &Canvas<'_>, frame: &Frame, placed: &[Vec<Option<[f64; 2]>>])
 }
 
 /// A cross where the line of a run that failed stops; at the edge where the line has left the picture upwards.
-fn crosses(canvas: &Canvas<'_>, frame: &Frame, scene: &SceneReport, placed: &[Vec<Option<[f64; 2]>>]) -> Drawn {
+fn crosses(canvas: &Canvas<'_>, frame: &PlotFrame, scene: &SceneReport, placed: &[Vec<Option<[f64; 2]>>]) -> Drawn {
     for (method, points) in placed.iter().enumerate().filter(|(method, _)| scene.series[*method].failed) {
         if let Some([x, y]) = points.iter().rev().flatten().next() {
             canvas.cross(method, [*x, y.clamp(frame.top, frame.bottom())])?;
@@ -163,7 +163,7 @@ fn crosses(canvas: &Canvas<'_>, frame: &Frame, scene: &SceneReport, placed: &[Ve
 }
 
 /// The names at the ends of the lines, moved apart where they would cover each other.
-fn ends(canvas: &Canvas<'_>, frame: &Frame, placed: &[Vec<Option<[f64; 2]>>], names: &[String]) -> Drawn {
+fn ends(canvas: &Canvas<'_>, frame: &PlotFrame, placed: &[Vec<Option<[f64; 2]>>], names: &[String]) -> Drawn {
     let inside = |[x, y]: [f64; 2]| [x, y.clamp(frame.top, frame.bottom())];
     let last = |points: &Vec<Option<[f64; 2]>>| points.iter().rev().flatten().next().copied().map(inside);
     let mut ends: Vec<(usize, [f64; 2])> =

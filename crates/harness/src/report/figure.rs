@@ -1,9 +1,9 @@
 //! A figure for a paper: columns of runs against time, and their paths, with the titles of axes where journals have them.
 
 use super::ReportError;
-use super::axis::{self, Entry, SIZE, Tick};
+use super::axis::{self, LegendEntry, SIZE, Tick};
 use super::canvas::{Anchor, Canvas, Drawn, Ink, text_width};
-use super::geometry::{Frame, Span, drawable, visible};
+use super::geometry::{PlotFrame, Span, drawable, visible};
 use super::picture::Picture;
 use super::thinning::{peaks, thin};
 use super::xml::label;
@@ -79,7 +79,7 @@ pub enum Format {
 /// [`ReportError::Draw`] if the drawing library fails.
 pub fn figure(figure: &Figure, paper: &Paper, format: Format) -> Result<Vec<u8>, ReportError> {
     let size = paper.size.map(|length| length / CENTIMETRES_PER_INCH * UNITS_PER_INCH);
-    let low = Cells::of(size, &figure.panels).size[1] / LOWEST;
+    let low = FigureCells::of(size, &figure.panels).size[1] / LOWEST;
     let scale = low.clamp(SMALLEST, 1.0);
     draw(figure, "figure".to_owned(), String::new(), size.map(|length| length / scale))?.bytes(format, paper.dpi, scale)
 }
@@ -92,19 +92,19 @@ const HEIGHT: f64 = 180.0;
 pub(super) fn column(figure: &Figure, file: String) -> Result<Picture, ReportError> {
     let size = [WIDTH, HEADING + HEIGHT * figure.panels.len() as f64];
     let caption = format!("{}: against time.", figure.title);
-    let cells = Cells { columns: 1, count: figure.panels.len(), size: [WIDTH, HEIGHT], wide: false };
+    let cells = FigureCells { columns: 1, count: figure.panels.len(), size: [WIDTH, HEIGHT], wide: false };
     drawn(figure, file, caption, size, &cells)
 }
 
 /// Draws a figure of that size (units).
 fn draw(figure: &Figure, file: String, caption: String, size: [f64; 2]) -> Result<Picture, ReportError> {
     let [width, height] = size;
-    let cells = Cells::of([width, height - above(figure, width)], &figure.panels);
+    let cells = FigureCells::of([width, height - above(figure, width)], &figure.panels);
     drawn(figure, file, caption, size, &cells)
 }
 
 /// The legend of a figure.
-fn entries(figure: &Figure) -> Vec<Entry<'_>> {
+fn entries(figure: &Figure) -> Vec<LegendEntry<'_>> {
     match figure.runs.len() {
         0 | 1 => Vec::new(),
         _ => figure.runs.iter().enumerate().map(|(run, name)| (Ink::Method(run), name.as_str())).collect(),
@@ -122,7 +122,7 @@ fn drawn(
     file: String,
     caption: String,
     size: [f64; 2],
-    cells: &Cells,
+    cells: &FigureCells,
 ) -> Result<Picture, ReportError> {
     let width = size[0];
     let (entries, top) = (entries(figure), above(figure, width));
@@ -139,7 +139,7 @@ fn drawn(
 }
 
 /// How a sheet is divided.
-struct Cells {
+struct FigureCells {
     columns: usize,
     count: usize,
     /// Of a cell (units).
@@ -148,7 +148,7 @@ struct Cells {
     wide: bool,
 }
 
-impl Cells {
+impl FigureCells {
     /// The division of which a cell has the ratio nearest to the one that it should have.
     fn of([width, height]: [f64; 2], panels: &[Panel]) -> Self {
         let count = panels.len();
@@ -176,7 +176,7 @@ impl Cells {
 /// A panel with its place on the sheet.
 struct Placed<'a> {
     panel: &'a Panel,
-    frame: Frame,
+    frame: PlotFrame,
     ticks: [Vec<Tick>; 2],
     /// What is drawn: of a panel of decades, the logarithms of peaks.
     curves: Vec<Vec<Option<[f64; 2]>>>,
@@ -207,7 +207,7 @@ impl<'a> Placed<'a> {
         } else if wide(x) > x.half() {
             x = Span::about(x.middle(), wide(x));
         }
-        let frame = Frame { left: corner[0] + margin, top: corner[1] + ABOVE, width, height, x, y };
+        let frame = PlotFrame { left: corner[0] + margin, top: corner[1] + ABOVE, width, height, x, y };
         let figures = axis::margin(&axis::linear(x, 5.0));
         let across = ticks(x, (width / (1.5 * figures)).min(7.0), width / (1.1 * figures));
         Self { panel, frame, ticks: [across, upwards(y)], curves }

@@ -62,7 +62,7 @@ pub(super) fn visible(half: f64, largest: f64) -> f64 {
 
 /// A rectangle of a picture and the ranges that it shows; upwards in the one is downwards in the other.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frame {
+pub(super) struct PlotFrame {
     pub(super) left: f64,
     pub(super) top: f64,
     pub(super) width: f64,
@@ -71,7 +71,7 @@ pub(super) struct Frame {
     pub(super) y: Span,
 }
 
-impl Frame {
+impl PlotFrame {
     pub(super) fn right(&self) -> f64 {
         self.left + self.width
     }

@@ -140,7 +140,7 @@ fn failures(scene: &SceneReport) -> String {
 }
 
 /// The entries of a legend: the runs that are drawn, each with its own look.
-fn entries(scene: &SceneReport) -> Vec<axis::Entry<'_>> {
+fn entries(scene: &SceneReport) -> Vec<axis::LegendEntry<'_>> {
     let drawn = scene.series.iter().enumerate().filter(|(_, series)| series.is_drawn());
     drawn.map(|(method, series)| (canvas::Ink::Method(method), series.label.as_str())).collect()
 }
@@ -199,7 +199,7 @@ pub fn write(report: &Report, directory: &Path, overwrite: bool) -> Result<Vec<P
         let figure = scene.figure.as_ref().map(|shown| figure::column(shown, format!("{name}-run"))).transpose()?;
         contents.extend(figure.as_ref().map(picture::Picture::files).transpose()?.into_iter().flatten());
         contents.extend(numbered(name, &scene.numbers));
-        scenes.push(page::Shown { name, pictures, figure, animation: animation::figure(scene)? });
+        scenes.push(page::ShownScene { name, pictures, figure, animation: animation::figure(scene)? });
     }
     contents[0].1 = page::page(report, &scenes).into_bytes();
     files::write_all(directory, &contents, overwrite)

@@ -11,7 +11,7 @@ const HEAD: &str = include_str!("head.js");
 const SCRIPT: &str = include_str!("page.js");
 
 /// What the page shows of a scene beside its text.
-pub(super) struct Shown<'a> {
+pub(super) struct ShownScene<'a> {
     /// The name that its files start with.
     pub(super) name: &'a str,
     /// The paths, the constraint, the energy.
@@ -23,7 +23,7 @@ pub(super) struct Shown<'a> {
 }
 
 /// The page of a report, given what it shows of its scenes.
-pub(super) fn page(report: &Report, shown: &[Shown<'_>]) -> String {
+pub(super) fn page(report: &Report, shown: &[ShownScene<'_>]) -> String {
     let mut page = head(&report.title, &report.intro);
     if report.scenes.len() > 1 {
         page += "<nav aria-label=\"Scenes\"><ul>\n";
@@ -92,7 +92,7 @@ fn meanings(page: &mut String, notes: &[(String, String)]) {
     *page += "</dl>\n</section>\n";
 }
 
-fn section(page: &mut String, scene: &SceneReport, shown: &Shown<'_>, notes: &[(String, String)]) {
+fn section(page: &mut String, scene: &SceneReport, shown: &ShownScene<'_>, notes: &[(String, String)]) {
     let name = shown.name;
     *page += &format!("<section id=\"scene-{}\">\n<h2>{}</h2>\n", escape(name), escape(&scene.title));
     facts(page, &scene.facts);

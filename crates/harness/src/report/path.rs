@@ -2,7 +2,7 @@
 
 use super::axis;
 use super::canvas::{Canvas, Drawn, Ink};
-use super::geometry::{Frame, Span, distance, drawable, visible};
+use super::geometry::{PlotFrame, Span, distance, drawable, visible};
 use super::look;
 use super::picture::Picture;
 use super::sleigh::{APART, sleighs};
@@ -50,18 +50,18 @@ pub(super) fn picture(scene: &SceneReport, name: &str) -> Result<Picture, Report
 }
 
 /// The ground seen from above.
-pub(super) struct View {
-    pub(super) frame: Frame,
+pub(super) struct PathView {
+    pub(super) frame: PlotFrame,
     ticks: [Vec<axis::Tick>; 2],
 }
 
 /// The view that the paths of a scene ask for, with so much room above.
-pub(super) fn view(scene: &SceneReport, top: f64) -> View {
+pub(super) fn view(scene: &SceneReport, top: f64) -> PathView {
     let frame = frame(scene, scene.exact_path.as_deref().filter(|path| !path.is_empty()), top);
-    View { frame, ticks: ticks(&frame) }
+    PathView { frame, ticks: ticks(&frame) }
 }
 
-impl View {
+impl PathView {
     pub(super) fn axes(&self, canvas: &Canvas<'_>) -> Drawn {
         let [across, up] = &self.ticks;
         axis::draw(canvas, &self.frame, [across, up], ["x [m]", "y [m]"])
@@ -73,7 +73,7 @@ impl View {
 }
 
 /// What the frame shows of a path, in unbroken lines of not too many points.
-fn thinned(frame: &Frame, path: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
+fn thinned(frame: &PlotFrame, path: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
     thin(frame.lines(path.iter().map(|point| frame.place(*point))), POINTS)
 }
 
@@ -93,14 +93,14 @@ fn caption(scene: &SceneReport, exact: bool, strays: &[&str]) -> String {
 }
 
 /// The methods whose path leaves the picture.
-fn strays<'a>(scene: &'a SceneReport, frame: &Frame) -> Vec<&'a str> {
+fn strays<'a>(scene: &'a SceneReport, frame: &PlotFrame) -> Vec<&'a str> {
     let outside = |point: &[f64; 2]| !frame.place(*point).is_some_and(|place| frame.holds(place));
     let stray = scene.series.iter().filter(|series| series.path.iter().any(outside));
     stray.map(|series| series.label.as_str()).collect()
 }
 
 /// The frame: as high as the paths ask for, within reason, and a metre as long upwards as across.
-fn frame(scene: &SceneReport, exact: Option<&[[f64; 2]]>, top: f64) -> Frame {
+fn frame(scene: &SceneReport, exact: Option<&[[f64; 2]]>, top: f64) -> PlotFrame {
     let all = |axis: usize| {
         let paths = scaling(scene).map(|series| series.path.as_slice()).chain(exact);
         let behind = scaling(scene).flat_map(|series| series.followers.iter().flatten());
@@ -120,7 +120,7 @@ fn frame(scene: &SceneReport, exact: Option<&[[f64; 2]]>, top: f64) -> Frame {
     let ratio = half_y / half_x.max(1e-3 * half);
     let height = ((width - 2.0 * PADDING) * ratio + 2.0 * PADDING).clamp(0.26 * width, 0.8 * width);
     let metre = (2.0 * half_x / (width - 2.0 * PADDING)).max(2.0 * half_y / (height - 2.0 * PADDING));
-    Frame {
+    PlotFrame {
         left,
         top,
         width,
@@ -142,7 +142,7 @@ fn near(exact: &[[f64; 2]], all: [Span; 2]) -> [Span; 2] {
     [reach(x, all[0]), reach(y, all[1])]
 }
 
-fn ticks(frame: &Frame) -> [Vec<axis::Tick>; 2] {
+fn ticks(frame: &PlotFrame) -> [Vec<axis::Tick>; 2] {
     let across = axis::linear(frame.x, 6.0);
     // Figures as wide as their distance would run into each other.
     let widest = axis::margin(&across);
@@ -153,7 +153,7 @@ fn ticks(frame: &Frame) -> [Vec<axis::Tick>; 2] {
 }
 
 /// A few markers on a path, at other places for each method.
-fn markers(canvas: &Canvas<'_>, frame: &Frame, method: usize, series: &Series, methods: usize) -> Drawn {
+fn markers(canvas: &Canvas<'_>, frame: &PlotFrame, method: usize, series: &Series, methods: usize) -> Drawn {
     let last = series.path.len().saturating_sub(1) as f64;
     let mut before: Option<[f64; 2]> = None;
     for k in 0..5_u32 {

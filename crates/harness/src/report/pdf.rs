@@ -1,6 +1,6 @@
 //! A picture as a PDF file of one page: lines and outlines, which a printer draws as finely as it can.
 
-use super::canvas::Mark;
+use super::canvas::CanvasMark;
 use super::letters::Letters;
 use super::raster::{colour, dashes};
 use miniz_oxide::deflate::compress_to_vec_zlib;
@@ -13,7 +13,7 @@ const POINTS: f64 = 0.75;
 const LEVEL: u8 = 6;
 
 /// The picture as the bytes of a PDF file, so many times as large as it was drawn.
-pub(super) fn file(size: [f64; 2], title: &str, marks: &[Mark], scale: f64) -> Result<Vec<u8>, String> {
+pub(super) fn file(size: [f64; 2], title: &str, marks: &[CanvasMark], scale: f64) -> Result<Vec<u8>, String> {
     let letters = Letters::new().ok_or("the embedded font cannot be read")?;
     let mut content = Content::new();
     // Upwards in a PDF is downwards in a picture.
@@ -40,22 +40,22 @@ pub(super) fn file(size: [f64; 2], title: &str, marks: &[Mark], scale: f64) -> R
     Ok(pdf.finish())
 }
 
-fn draw(content: &mut Content, letters: &Letters<'_>, mark: &Mark) {
+fn draw(content: &mut Content, letters: &Letters<'_>, mark: &CanvasMark) {
     match mark {
-        Mark::Line { points, ink, opacity, width } => {
+        CanvasMark::Line { points, ink, opacity, width } => {
             let [red, green, blue] = on_white(colour(*ink), *opacity);
             content.set_stroke_rgb(red, green, blue).set_line_width(*width as f32);
             content.set_dash_pattern(dashes(*ink).iter().map(|length| *length as f32), 0.0);
             outline(content, points);
             content.stroke();
         }
-        Mark::Area { points, ink, opacity } => {
+        CanvasMark::Area { points, ink, opacity } => {
             let [red, green, blue] = on_white(colour(*ink), *opacity);
             content.set_fill_rgb(red, green, blue);
             outline(content, points);
             content.close_path().fill_nonzero();
         }
-        Mark::Text { text, at, anchor, size, upright } => {
+        CanvasMark::Text { text, at, anchor, size, upright } => {
             let [red, green, blue] = on_white(colour(super::canvas::Ink::Text), 1.0);
             content.set_fill_rgb(red, green, blue);
             written(content, &letters.outline(text, *at, *anchor, *size, *upright));

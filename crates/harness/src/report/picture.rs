@@ -1,7 +1,7 @@
 //! A picture, and the forms in which it appears: in the page, and as files.
 
 use super::ReportError;
-use super::canvas::{Canvas, Drawn, Mark, shapes, units};
+use super::canvas::{Canvas, CanvasMark, Drawn, shapes, units};
 use super::figure::{Format, UNITS_PER_INCH};
 use super::xml::escape;
 use super::{look, pdf, raster};
@@ -22,7 +22,7 @@ pub(super) struct Picture {
     pub(super) caption: String,
     size: [f64; 2],
     shapes: String,
-    marks: Vec<Mark>,
+    marks: Vec<CanvasMark>,
 }
 
 impl Picture {

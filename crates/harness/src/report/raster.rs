@@ -1,13 +1,13 @@
 //! A picture as pixels: the marks of its canvas, with the look that its SVG has on a light ground.
 
-use super::canvas::{Ink, Mark};
+use super::canvas::{CanvasMark, Ink};
 use super::letters::Letters;
 use super::look;
 use super::png;
 use zeno::{Cap, Command, Join, PathBuilder, Scratch, Stroke, Style};
 
 /// The picture as the bytes of a PNG file, with so many pixels to a unit of the picture; the file says how many to an inch.
-pub(super) fn png(size: [f64; 2], marks: &[Mark], scale: f64, dpi: f64) -> Result<Vec<u8>, String> {
+pub(super) fn png(size: [f64; 2], marks: &[CanvasMark], scale: f64, dpi: f64) -> Result<Vec<u8>, String> {
     let [width, height] = size.map(|length| (length * scale).round() as u32);
     let mut pixels = Pixels::new(width as usize, height as usize);
     let letters = Letters::new().ok_or("the embedded font cannot be read")?;
@@ -17,18 +17,18 @@ pub(super) fn png(size: [f64; 2], marks: &[Mark], scale: f64, dpi: f64) -> Resul
     Ok(png::encode([width, height], &pixels.colours, dpi))
 }
 
-fn draw(pixels: &mut Pixels, letters: &Letters<'_>, mark: &Mark, scale: f64) {
+fn draw(pixels: &mut Pixels, letters: &Letters<'_>, mark: &CanvasMark, scale: f64) {
     match mark {
-        Mark::Line { points, ink, opacity, width } => {
+        CanvasMark::Line { points, ink, opacity, width } => {
             let dashes: Vec<f32> = dashes(*ink).iter().map(|length| (length * scale) as f32).collect();
             let mut stroke = Stroke::new((width * scale) as f32);
             stroke.join(Join::Round).cap(Cap::Butt).dash(&dashes, 0.0);
             pixels.draw(&path(points, false, scale), stroke, *ink, *opacity);
         }
-        Mark::Area { points, ink, opacity } => {
+        CanvasMark::Area { points, ink, opacity } => {
             pixels.draw(&path(points, true, scale), Style::default(), *ink, *opacity);
         }
-        Mark::Text { text, at, anchor, size, upright } => {
+        CanvasMark::Text { text, at, anchor, size, upright } => {
             let at = at.map(|length| length * scale);
             let outline = letters.outline(text, at, *anchor, size * scale, *upright);
             pixels.draw(&outline, Style::default(), Ink::Text, 1.0);

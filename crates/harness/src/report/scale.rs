@@ -1,7 +1,7 @@
 //! The upright axis of what should stay zero.
 
 use super::axis::{self, Tick};
-use super::geometry::{Frame, Span};
+use super::geometry::{PlotFrame, Span};
 
 /// Values that many decades below the usual ones of the most exact method say no more than that they are small.
 const BELOW: f64 = 8.0;
@@ -66,7 +66,7 @@ impl Scale {
         decades.map(|decade| (decade, power(decade))).chain(self.floor.clone()).collect()
     }
 
-    pub(super) fn place(&self, frame: &Frame, point: Option<[f64; 2]>) -> Option<[f64; 2]> {
+    pub(super) fn place(&self, frame: &PlotFrame, point: Option<[f64; 2]>) -> Option<[f64; 2]> {
         let [time, size] = point?;
         let log = if size > 0.0 { size.log10() } else { f64::NEG_INFINITY };
         frame.place([time, log.max(self.lo)])

@@ -3,7 +3,7 @@
 use super::Series;
 use super::axis;
 use super::canvas::{Anchor, Canvas, Drawn, Ink, units};
-use super::geometry::{Frame, distance};
+use super::geometry::{PlotFrame, distance};
 
 /// The body with its nose ahead, about the blade's contact point; ahead, then to the left.
 const BODY: [[f64; 2]; 9] = [
@@ -28,7 +28,7 @@ const SLEIGHS: usize = 9;
 pub(super) const APART: f64 = 32.0;
 
 /// The sleigh at equally spaced times, except where it would hide itself, and the start.
-pub(super) fn sleighs(canvas: &Canvas<'_>, frame: &Frame, series: &Series) -> Drawn {
+pub(super) fn sleighs(canvas: &Canvas<'_>, frame: &PlotFrame, series: &Series) -> Drawn {
     let nodes = series.path.len().min(series.heading.len());
     let mut drawn: Vec<[f64; 2]> = Vec::new();
     for node in moments(&series.time, nodes) {
@@ -47,7 +47,7 @@ pub(super) fn sleighs(canvas: &Canvas<'_>, frame: &Frame, series: &Series) -> Dr
 }
 
 /// The blades behind it at a node, and the bars from each to the next.
-fn followers(canvas: &Canvas<'_>, frame: &Frame, series: &Series, node: usize, first: [f64; 2]) -> Drawn {
+fn followers(canvas: &Canvas<'_>, frame: &PlotFrame, series: &Series, node: usize, first: [f64; 2]) -> Drawn {
     let mut bars = vec![first];
     for follower in &series.followers {
         let Some([x, y, heading]) = follower.get(node).copied().filter(|place| place.iter().all(|x| x.is_finite()))
@@ -74,7 +74,7 @@ pub(super) fn blade() -> String {
 }
 
 /// The word beside the start where it is farthest from the path: behind the sleigh, ahead of it, or to a side.
-fn start(canvas: &Canvas<'_>, frame: &Frame, series: &Series) -> Drawn {
+fn start(canvas: &Canvas<'_>, frame: &PlotFrame, series: &Series) -> Drawn {
     let Some(place) = series.path.first().and_then(|point| frame.place(*point)).filter(|place| frame.holds(*place))
     else {
         return Ok(());

@@ -4,7 +4,7 @@ use super::geometry::{distance, drawable};
 use std::collections::HashSet;
 
 /// Lines as a picture draws them.
-type Lines = Vec<Vec<[f64; 2]>>;
+type Polylines = Vec<Vec<[f64; 2]>>;
 
 /// How far a line may pass by a point that is left out: less than anti-aliasing shows.
 const BESIDE: f64 = 0.15;
@@ -12,14 +12,14 @@ const BESIDE: f64 = 0.15;
 /// Leaves out points that lie closer to their predecessor than the eye can tell, or on the straight line between others;
 /// where more than `most` are left before the latter, also what lies on itself, as in a circle run through a thousand
 /// times, and then points a little further apart.
-pub(super) fn thin(lines: Lines, most: usize) -> Lines {
+pub(super) fn thin(lines: Polylines, most: usize) -> Polylines {
     let mut lines = few(lines, most);
     lines.iter_mut().for_each(straighten);
     lines
 }
 
-fn few(lines: Lines, most: usize) -> Lines {
-    let few = |lines: &Lines| lines.iter().map(Vec::len).sum::<usize>() <= most;
+fn few(lines: Polylines, most: usize) -> Polylines {
+    let few = |lines: &Polylines| lines.iter().map(Vec::len).sum::<usize>() <= most;
     let fine = sparser(lines, 0.7);
     if few(&fine) {
         return fine;
@@ -64,7 +64,7 @@ fn beside(point: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
 }
 
 /// Keeps points that lie at least `tolerance` from the one kept before, and both ends.
-fn sparser(mut lines: Lines, tolerance: f64) -> Lines {
+fn sparser(mut lines: Polylines, tolerance: f64) -> Polylines {
     for line in &mut lines {
         if let [first, .., last] = line[..] {
             let mut kept = first;
@@ -83,9 +83,9 @@ fn sparser(mut lines: Lines, tolerance: f64) -> Lines {
 }
 
 /// Leaves out short pieces of line that run between places where the line has been before.
-fn first_visits(lines: Lines) -> Lines {
+fn first_visits(lines: Polylines) -> Polylines {
     let mut visited = HashSet::new();
-    let mut fresh: Lines = Vec::new();
+    let mut fresh: Polylines = Vec::new();
     for line in lines {
         let mut open = false;
         let mut before: Option<([f64; 2], bool)> = None;

@@ -120,13 +120,13 @@ fn halved() -> bool {
 /// call costs some nanoseconds: it is for what a step does once.
 #[inline(never)]
 pub fn apart<S: Simd, T>(simd: S, part: impl FnOnce() -> T) -> T {
-    struct Part<F>(F);
-    impl<T, F: FnOnce() -> T> pulp::WithSimd for Part<F> {
+    struct SimdPart<F>(F);
+    impl<T, F: FnOnce() -> T> pulp::WithSimd for SimdPart<F> {
         type Output = T;
         #[inline(always)]
         fn with_simd<S: pulp::Simd>(self, _simd: S) -> T {
             self.0()
         }
     }
-    simd.vectorize(Part(part))
+    simd.vectorize(SimdPart(part))
 }

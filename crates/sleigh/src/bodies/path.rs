@@ -7,12 +7,12 @@ use std::f64::consts::TAU;
 /// A closed path that a point runs once in every period, at constant speed: a circle, or a polygon.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClosedPath {
-    shape: Shape,
+    shape: ClosedShape,
     period: f64,
 }
 
 #[derive(Debug, Clone, PartialEq)]
-enum Shape {
+enum ClosedShape {
     Circle {
         radius: f64,
         center: [f64; 2],
@@ -35,7 +35,7 @@ impl ClosedPath {
         positive("radius", radius)?;
         positive("period", period)?;
         finite("center", center)?;
-        Ok(Self { shape: Shape::Circle { radius, center }, period })
+        Ok(Self { shape: ClosedShape::Circle { radius, center }, period })
     }
 
     /// The polygon with these vertices (m), in their order and back to the first.
@@ -67,15 +67,15 @@ impl ClosedPath {
         for begin in &mut begins {
             *begin /= length;
         }
-        Ok(Self { shape: Shape::Polygon { vertices, begins, current: 0 }, period })
+        Ok(Self { shape: ClosedShape::Polygon { vertices, begins, current: 0 }, period })
     }
 
     /// Where the path begins at `t = 0` (m).
     #[must_use]
     pub fn start(&self) -> [f64; 2] {
         match &self.shape {
-            Shape::Circle { radius, center } => [center[0] + radius, center[1]],
-            Shape::Polygon { vertices, .. } => vertices[0],
+            ClosedShape::Circle { radius, center } => [center[0] + radius, center[1]],
+            ClosedShape::Polygon { vertices, .. } => vertices[0],
         }
     }
 
@@ -89,8 +89,8 @@ impl ClosedPath {
     #[must_use]
     pub fn area(&self) -> f64 {
         match &self.shape {
-            Shape::Circle { radius, .. } => 0.5 * TAU * radius * radius,
-            Shape::Polygon { vertices, .. } => {
+            ClosedShape::Circle { radius, .. } => 0.5 * TAU * radius * radius,
+            ClosedShape::Polygon { vertices, .. } => {
                 let twice = |k: usize| {
                     let (a, b) = (vertices[k], vertices[(k + 1) % vertices.len()]);
                     a[0] * b[1] - b[0] * a[1]
@@ -104,8 +104,8 @@ impl ClosedPath {
     #[must_use]
     pub fn legs(&self) -> Vec<Leg> {
         match &self.shape {
-            Shape::Circle { radius, .. } => vec![Leg::Arc { radius: *radius, from: 0.0, by: TAU }],
-            Shape::Polygon { vertices, .. } => {
+            ClosedShape::Circle { radius, .. } => vec![Leg::Arc { radius: *radius, from: 0.0, by: TAU }],
+            ClosedShape::Polygon { vertices, .. } => {
                 let next = |k: usize| vertices[(k + 1) % vertices.len()];
                 let edges = vertices.iter().enumerate();
                 edges.map(|(k, from)| Leg::Segment([next(k)[0] - from[0], next(k)[1] - from[1]])).collect()
@@ -125,12 +125,12 @@ impl ClosedPath {
     #[inline(always)]
     pub fn velocity<S: Scalar>(&self, t: S) -> [S; 2] {
         match &self.shape {
-            Shape::Circle { radius, .. } => {
+            ClosedShape::Circle { radius, .. } => {
                 let rate = TAU / self.period;
                 let (sin, cos) = (t * rate).sin_cos();
                 [sin * (-radius * rate), cos * (radius * rate)]
             }
-            Shape::Polygon { vertices, begins, current } => {
+            ClosedShape::Polygon { vertices, begins, current } => {
                 let (from, to) = (vertices[*current], vertices[(current + 1) % vertices.len()]);
                 let time = (begins[current + 1] - begins[*current]) * self.period;
                 [0, 1].map(|i| S::constant((to[i] - from[i]) / time))
@@ -141,7 +141,7 @@ impl ClosedPath {
 
 impl Piecewise for ClosedPath {
     fn jumps(&self, from: f64, to: f64) -> Vec<f64> {
-        let Shape::Polygon { begins, .. } = &self.shape else {
+        let ClosedShape::Polygon { begins, .. } = &self.shape else {
             return Vec::new();
         };
         let (first, last) = ((from / self.period).floor(), (to / self.period).ceil());
@@ -157,7 +157,7 @@ impl Piecewise for ClosedPath {
 
     fn piece(&self, t: f64) -> Self {
         let mut piece = self.clone();
-        if let Shape::Polygon { begins, current, vertices } = &mut piece.shape {
+        if let ClosedShape::Polygon { begins, current, vertices } = &mut piece.shape {
             let fraction = (t / self.period).rem_euclid(1.0);
             let begun = begins.partition_point(|begin| *begin <= fraction);
             *current = begun.saturating_sub(1).min(vertices.len() - 1);

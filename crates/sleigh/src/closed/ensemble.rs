@@ -17,13 +17,13 @@ pub struct ClosedEnsemble<const W: usize> {
     sleighs: [Sleigh; W],
     step: f64,
     prepared: [Row<W>; 4],
-    run: Run<W>,
+    run: LaneSteps<W>,
     begun: bool,
 }
 
 /// What a block of steps changes.
 #[derive(Debug, Clone, Copy)]
-struct Run<const W: usize> {
+struct LaneSteps<const W: usize> {
     state: LaneState<3, W>,
     frame: [Row<W>; 6],
     largest: Row<W>,
@@ -38,7 +38,7 @@ impl<const W: usize> ClosedEnsemble<W> {
         let each: [[f64; 4]; W] = from_fn(|lane| prepared(&sleighs[lane], h));
         let prepared = from_fn(|k| Row(from_fn(|lane| each[lane][k])));
         let frame = [Row([f64::NAN; W]); 6];
-        let run = Run { state, frame, largest: Row::ZERO, bad: [false; W] };
+        let run = LaneSteps { state, frame, largest: Row::ZERO, bad: [false; W] };
         Self { sleighs, step: h, prepared, run, begun: false }
     }
 
@@ -51,9 +51,9 @@ impl<const W: usize> ClosedEnsemble<W> {
     /// Makes a block again from its beginning, and takes of it the lanes whose steps were not good: by wide steps, and where
     /// these are not good either by the map of one sleigh.
     #[cold]
-    fn repair(&mut self, steps: u64, before: &Run<W>) {
+    fn repair(&mut self, steps: u64, before: &LaneSteps<W>) {
         let mut wide = *before;
-        dispatch_widest(Block::<true, _> { prepared: &self.prepared, steps, run: &mut wide });
+        dispatch_widest(LaneBlock::<true, _> { prepared: &self.prepared, steps, run: &mut wide });
         let Self { sleighs, step, run, .. } = self;
         for lane in 0..W {
             if run.bad[lane] {
@@ -80,7 +80,7 @@ impl<const W: usize> Ensemble<3, W> for ClosedEnsemble<W> {
             let block = if self.begun { BLOCK } else { FIRST }.min(steps - made);
             self.begun = true;
             let before = self.run;
-            dispatch_widest(Block::<false, _> { prepared: &self.prepared, steps: block, run: &mut self.run });
+            dispatch_widest(LaneBlock::<false, _> { prepared: &self.prepared, steps: block, run: &mut self.run });
             if self.run.bad.contains(&true) {
                 self.repair(block, &before);
             }
@@ -91,14 +91,14 @@ impl<const W: usize> Ensemble<3, W> for ClosedEnsemble<W> {
 }
 
 /// Steps of all lanes; those that were not good are marked.
-struct Block<'a, const WIDE: bool, const W: usize> {
+struct LaneBlock<'a, const WIDE: bool, const W: usize> {
     prepared: &'a [Row<W>; 4],
     steps: u64,
-    run: &'a mut Run<W>,
+    run: &'a mut LaneSteps<W>,
 }
 
 /// Eight trajectories in registers.
-struct Eight<S: Simd, const K: usize> {
+struct EightSleighs<S: Simd, const K: usize> {
     prepared: [Pack<S, K>; 4],
     q: [Pack<S, K>; 3],
     rest: [Pack<S, K>; 3],
@@ -109,7 +109,7 @@ struct Eight<S: Simd, const K: usize> {
     lowest: Pack<S, K>,
 }
 
-impl<S: Simd, const K: usize> Eight<S, K> {
+impl<S: Simd, const K: usize> EightSleighs<S, K> {
     #[inline(always)]
     fn step<const WIDE: bool>(&mut self) {
         let LaneStep { increment, xi, frame, impulse, doubts, positive } =
@@ -128,7 +128,7 @@ impl<S: Simd, const K: usize> Eight<S, K> {
     }
 }
 
-impl<const WIDE: bool, const W: usize> Kernel for Block<'_, WIDE, W> {
+impl<const WIDE: bool, const W: usize> Kernel for LaneBlock<'_, WIDE, W> {
     type Output = ();
 
     #[inline(always)]
@@ -156,13 +156,13 @@ impl<const WIDE: bool, const W: usize> Kernel for Block<'_, WIDE, W> {
     }
 }
 
-impl<const WIDE: bool, const W: usize> Block<'_, WIDE, W> {
+impl<const WIDE: bool, const W: usize> LaneBlock<'_, WIDE, W> {
     #[inline(always)]
-    fn eight<S: Simd, const K: usize>(&self, simd: S, r: usize) -> Eight<S, K> {
-        let Run { state, frame: before, largest, .. } = &*self.run;
+    fn eight<S: Simd, const K: usize>(&self, simd: S, r: usize) -> EightSleighs<S, K> {
+        let LaneSteps { state, frame: before, largest, .. } = &*self.run;
         let q = loaded(simd, &state.q, r);
         let [largest] = loaded(simd, &[*largest], r);
-        Eight {
+        EightSleighs {
             prepared: loaded(simd, self.prepared, r),
             q,
             rest: loaded(simd, &state.rest, r),
@@ -175,10 +175,10 @@ impl<const WIDE: bool, const W: usize> Block<'_, WIDE, W> {
     }
 }
 
-impl<const W: usize> Run<W> {
+impl<const W: usize> LaneSteps<W> {
     /// Puts eights back after their steps, which were good where their doubts are within the bounds.
     #[inline(always)]
-    fn end<S: Simd, const K: usize>(&mut self, r: usize, eight: &Eight<S, K>, bounds: [f64; 2]) {
+    fn end<S: Simd, const K: usize>(&mut self, r: usize, eight: &EightSleighs<S, K>, bounds: [f64; 2]) {
         let Self { state, frame, largest, bad } = self;
         for k in 0..3 {
             store(&mut state.q[k], r, &eight.q[k]);
@@ -208,8 +208,8 @@ impl<const W: usize> Run<W> {
 /// Steps of one lane by the map of one sleigh; none where a step has no solution.
 #[cold]
 #[inline(never)]
-fn one_by_one<const W: usize>(sleigh: &Sleigh, h: f64, steps: u64, lane: usize, run: &mut Run<W>) -> Option<()> {
-    let (Run { state, frame, largest, .. }, unit) = (run, impulse_unit(sleigh));
+fn one_by_one<const W: usize>(sleigh: &Sleigh, h: f64, steps: u64, lane: usize, run: &mut LaneSteps<W>) -> Option<()> {
+    let (LaneSteps { state, frame, largest, .. }, unit) = (run, impulse_unit(sleigh));
     for _ in 0..steps {
         let (q, xi) = (state.q(lane), state.xi(lane));
         let v = sleigh.admissible_basis(0.0, &q)?.combine(&xi);

@@ -87,7 +87,7 @@ pub(crate) fn step(
 }
 
 /// What a search has found.
-pub(crate) struct Found {
+pub(crate) struct FoundTurn {
     /// The spin, with sine and cosine of the half turn.
     pub(crate) w: f64,
     pub(crate) half_turn: (f64, f64),
@@ -107,7 +107,7 @@ fn search(
     h: f64,
     (u0, omega0): (f64, f64),
     numbers: &mut SpinNumbers,
-) -> Result<Found, ClosedStepError> {
+) -> Result<FoundTurn, ClosedStepError> {
     let equation = SpinEquation::new(sleigh, h);
     if least_spin::is_one(u0, omega0) {
         return least_spin::search(equation, (u0, omega0), numbers);
@@ -118,14 +118,18 @@ fn search(
 }
 
 /// The spin that Newton's method settles at from a first one, and after how many corrections.
-pub(crate) fn settled(equation: &SpinEquation, first: f64, (u0, omega0): (f64, f64)) -> Result<Found, ClosedStepError> {
+pub(crate) fn settled(
+    equation: &SpinEquation,
+    first: f64,
+    (u0, omega0): (f64, f64),
+) -> Result<FoundTurn, ClosedStepError> {
     let mut point = equation.at(first)?;
     let (mut settled, mut iterations) = (false, 0);
     loop {
         let correction = equation.correction(&point, u0, omega0);
         // With one more: near a right angle what the last one leaves of the tangent is more than rounding.
         if settled {
-            return Ok(Found { w: point.w, half_turn: (point.sin, point.cos), correction, omega0, iterations });
+            return Ok(FoundTurn { w: point.w, half_turn: (point.sin, point.cos), correction, omega0, iterations });
         }
         (settled, iterations) = (equation.settles(correction), iterations + 1);
         if !settled && (correction.is_nan() || iterations == MAX_ITERATIONS) {

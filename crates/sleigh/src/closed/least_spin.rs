@@ -1,4 +1,4 @@
-use super::free::{Found, settled};
+use super::free::{FoundTurn, settled};
 use super::spin_equation::SpinEquation;
 use super::spin_memory::{SpinNumbers, with_digits};
 use dla::ClosedStepError;
@@ -23,11 +23,11 @@ pub(crate) fn search(
     equation: SpinEquation,
     (u0, omega0): (f64, f64),
     numbers: &mut SpinNumbers,
-) -> Result<Found, ClosedStepError> {
+) -> Result<FoundTurn, ClosedStepError> {
     let equation = equation.in_units_of(omega0);
     let found = settled(&equation, equation.guess(u0, 1.0), (u0, 1.0))?;
     let r = found.w + found.correction;
     let (w, omega1) = (omega0 * r, with_digits(numbers, omega0, mul_add(2.0, r, -1.0)));
     // The end of the step is found as 2 w minus its beginning: sums of such numbers are exact.
-    Ok(Found { w, correction: 0.0, omega0: 2.0 * w - omega1, ..found })
+    Ok(FoundTurn { w, correction: 0.0, omega0: 2.0 * w - omega1, ..found })
 }

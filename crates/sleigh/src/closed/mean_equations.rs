@@ -20,7 +20,7 @@ pub(crate) struct MeanEquations<'a> {
 
 /// What the equations are at one point.
 #[derive(Clone, Copy)]
-pub(crate) struct Point {
+pub(crate) struct MeanPoint {
     /// By how much they are missed.
     pub(crate) missing: [f64; 2],
     /// The sums of the sizes of their terms.
@@ -80,7 +80,7 @@ impl<'a> MeanEquations<'a> {
     }
 
     #[inline(always)]
-    fn point(&self, [speed, w]: [f64; 2], half_turn: [f64; 2], chord: [f64; 2], [fx, fy, tau]: [f64; 3]) -> Point {
+    fn point(&self, [speed, w]: [f64; 2], half_turn: [f64; 2], chord: [f64; 2], [fx, fy, tau]: [f64; 3]) -> MeanPoint {
         let ([u0, omega0], [sin, cos], a) = (self.start, half_turn, self.sleigh.offset());
         let [of_mass, of_inertia, k] = self.gains;
         let force @ [along, across] = [mul_add(chord[1], fx, chord[0] * fy), mul_add(chord[1], fy, -chord[0] * fx)];
@@ -89,7 +89,7 @@ impl<'a> MeanEquations<'a> {
         // The force is what takes longest.
         let missing = [mul_add(-of_mass, pushed, (carried - turned) - u0), mul_add(-of_inertia, tau, grown - omega0)];
         let [pushed, torque] = [of_mass * pushed, of_inertia * tau];
-        Point {
+        MeanPoint {
             missing,
             terms: [carried.abs() + turned.abs() + u0.abs() + pushed.abs(), grown.abs() + omega0.abs() + torque.abs()],
             half_turn,
@@ -100,7 +100,7 @@ impl<'a> MeanEquations<'a> {
     /// The equations at the velocities `x`; none where the blade would turn by a right angle in half the step, or the force is not
     /// known by hand.
     #[inline(always)]
-    pub(crate) fn at<P: Push<3>>(&self, push: &P, x: [f64; 2]) -> Option<Point> {
+    pub(crate) fn at<P: Push<3>>(&self, push: &P, x: [f64; 2]) -> Option<MeanPoint> {
         let half_turn = half_turn(0.5 * self.h * x[1]).ok()?.into();
         let (chord, [qx, qy, heading]) = self.middle(x, half_turn);
         let heading = KnownAngle::new(heading, chord[0], chord[1]);
@@ -143,7 +143,12 @@ impl<'a> MeanEquations<'a> {
 
     /// The equations with their derivatives, where sine and cosine of the half turn are known.
     #[inline(always)]
-    pub(crate) fn linearised<P: Push<3>>(&self, push: &P, x: [f64; 2], half_turn: [f64; 2]) -> Option<(Matrix, Point)> {
+    pub(crate) fn linearised<P: Push<3>>(
+        &self,
+        push: &P,
+        x: [f64; 2],
+        half_turn: [f64; 2],
+    ) -> Option<(Matrix, MeanPoint)> {
         let (chord, [qx, qy, heading]) = self.middle(x, half_turn);
         let ([speed, w], half) = (x, 0.5 * self.h);
         let way = half * speed;

@@ -1,6 +1,6 @@
 use super::free::recovered;
 use super::half_turn::{half_turn, turned};
-use super::mean_equations::{Matrix, MeanEquations, Point};
+use super::mean_equations::{Matrix, MeanEquations, MeanPoint};
 use super::mean_memory::remembered;
 use super::{ClosedStep, Push, Start};
 use crate::Sleigh;
@@ -60,7 +60,7 @@ pub(crate) fn step<P: Push<3>>(
     if !(matrix.keeps_sign() & slight(0) & slight(1)) {
         // Built anew, so that what stands above need not be in memory.
         let equations = MeanEquations::new(sleigh, (t, h), (q, heading), start);
-        Found { x, d, at, matrix, iterations } = search(&equations, push, (x, d, matrix))?;
+        FoundPushed { x, d, at, matrix, iterations } = search(&equations, push, (x, d, matrix))?;
     }
 
     // What is left to correct is linear to rounding.
@@ -95,11 +95,11 @@ pub(crate) fn step<P: Push<3>>(
 }
 
 /// What a search has found.
-struct Found {
+struct FoundPushed {
     x: [f64; 2],
     /// The correction that led there, from a point with these equations and about these derivatives.
     d: [f64; 2],
-    at: Point,
+    at: MeanPoint,
     matrix: Matrix,
     iterations: u32,
 }
@@ -109,7 +109,11 @@ struct Found {
 // Out of line, and given and giving numbers alone, so that it is no part of a step that ends at once.
 #[cold]
 #[inline(never)]
-fn search<P: Push<3>>(equations: &MeanEquations<'_>, push: &P, tried: ([f64; 2], [f64; 2], Matrix)) -> Option<Found> {
+fn search<P: Push<3>>(
+    equations: &MeanEquations<'_>,
+    push: &P,
+    tried: ([f64; 2], [f64; 2], Matrix),
+) -> Option<FoundPushed> {
     let &MeanEquations { h, start, .. } = equations;
     let newton = |x: [f64; 2]| {
         let (matrix, at) = equations.linearised(push, x, half_turn(0.5 * h * x[1]).ok()?.into())?;
@@ -137,7 +141,7 @@ fn search<P: Push<3>>(equations: &MeanEquations<'_>, push: &P, tried: ([f64; 2],
             let settled =
                 (0..2).all(|i| d[i].abs() <= rounding(i) || 2.0 * d[i] * d[i] <= rounding(i) * before[i].abs());
             if settled && (h * d[1]).abs() <= SMALL {
-                return ((h * x[1]).abs() <= NEAR).then_some(Found { x, d, at, matrix, iterations });
+                return ((h * x[1]).abs() <= NEAR).then_some(FoundPushed { x, d, at, matrix, iterations });
             }
         }
         (x, d, matrix) = newton(x)?;

@@ -1,5 +1,5 @@
 use super::gauss::panel;
-use super::point::Point;
+use super::point::ExactPoint;
 use super::reduced::{Moment, Reduced};
 
 /// Up to these distances in `s` and turns (rad) the path is integrated over time directly.
@@ -29,12 +29,12 @@ pub(super) struct Path {
     /// `sign(a omega0)`.
     mirror: f64,
     s0: f64,
-    start: Point,
+    start: ExactPoint,
 }
 
 /// The parts of the motion, in the order of `s`.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
-enum Part {
+enum PathPart {
     Past,
     Turning,
     Future,
@@ -51,7 +51,7 @@ impl Path {
             ell_per_sigma: k.copysign(k_per_a),
             mirror,
             s0: reduced.s0(),
-            start: Point::new(reduced, &start, mirror),
+            start: ExactPoint::new(reduced, &start, mirror),
         }
     }
 
@@ -62,64 +62,64 @@ impl Path {
             let panels = (distance / PANEL).max(turn / PANEL_TURN).ceil().max(1.0);
             return over_time(reduced, t / panels, panels);
         }
-        let end = Point::new(reduced, moment, self.mirror);
+        let end = ExactPoint::new(reduced, moment, self.mirror);
         let (part, last) = (self.part(&self.start), self.part(&end));
         let [x, y] = self.journey(self.start, part, end, last);
         [x, self.mirror * y]
     }
 
     /// From part to part.
-    fn journey(&self, mut from: Point, mut part: Part, end: Point, last: Part) -> [f64; 2] {
+    fn journey(&self, mut from: ExactPoint, mut part: PathPart, end: ExactPoint, last: PathPart) -> [f64; 2] {
         let mut sum = [0.0; 2];
         while part != last {
             let forward = part < last;
-            let future_edge = matches!((part, forward), (Part::Turning, true) | (Part::Future, false));
+            let future_edge = matches!((part, forward), (PathPart::Turning, true) | (PathPart::Future, false));
             let edge = self.edge(if future_edge { 1.0 } else { -1.0 });
             let [x, y] = self.piece(part, &from, &edge);
             sum = [sum[0] + x, sum[1] + y];
             from = edge;
             part = match part {
-                Part::Turning if forward => Part::Future,
-                Part::Turning => Part::Past,
-                _ => Part::Turning,
+                PathPart::Turning if forward => PathPart::Future,
+                PathPart::Turning => PathPart::Past,
+                _ => PathPart::Turning,
             };
         }
         let [x, y] = self.piece(part, &from, &end);
         [sum[0] + x, sum[1] + y]
     }
 
-    fn part(&self, point: &Point) -> Part {
+    fn part(&self, point: &ExactPoint) -> PathPart {
         if self.sigma * point.g < 1.0 {
-            if point.tanh < 0.0 { Part::Past } else { Part::Future }
+            if point.tanh < 0.0 { PathPart::Past } else { PathPart::Future }
         } else {
-            Part::Turning
+            PathPart::Turning
         }
     }
 
-    fn piece(&self, part: Part, from: &Point, to: &Point) -> [f64; 2] {
+    fn piece(&self, part: PathPart, from: &ExactPoint, to: &ExactPoint) -> [f64; 2] {
         match part {
-            Part::Turning => {
+            PathPart::Turning => {
                 let ([x0, y0], [x1, y1]) = (self.upwards(from), self.upwards(to));
                 [self.ell_per_sigma * (x0 - x1), self.ell_per_sigma * (y0 - y1)]
             }
-            Part::Past => self.tail(-1.0, from, to),
-            Part::Future => self.tail(1.0, from, to),
+            PathPart::Past => self.tail(-1.0, from, to),
+            PathPart::Future => self.tail(1.0, from, to),
         }
     }
 
     /// `psi` of the straight line before (`side = -1`) or after (`side = 1`) all turns.
     fn psi_limit(&self, side: f64) -> f64 {
-        let Point { tanh, g, .. } = self.start;
+        let ExactPoint { tanh, g, .. } = self.start;
         // e^(-side s0), with all its digits.
         let decay = if side * tanh >= 0.0 { g } else { g.recip() };
         side * 2.0 * self.sigma * decay.atan()
     }
 
     /// Where a tail meets the part between: `g = 1/sigma`.
-    fn edge(&self, side: f64) -> Point {
+    fn edge(&self, side: f64) -> ExactPoint {
         let g = self.sigma.recip();
         let one_plus = g.mul_add(g, 1.0);
-        Point {
+        ExactPoint {
             tau: side * self.sigma.ln() - self.s0,
             psi: self.psi_limit(side) - side * 2.0 * self.sigma * g.atan(),
             tanh: side * (1.0 - g) * (1.0 + g) / one_plus,
@@ -129,7 +129,7 @@ impl Path {
     }
 
     /// `ell` times the integral along a tail.
-    fn tail(&self, side: f64, from: &Point, to: &Point) -> [f64; 2] {
+    fn tail(&self, side: f64, from: &ExactPoint, to: &ExactPoint) -> [f64; 2] {
         let ([x0, y0], [x1, y1]) = (self.bend(from.g), self.bend(to.g));
         // The two tails are each other's mirror image: s -> -s conjugates F.
         let (along, across) = (to.tau - from.tau - side * (x1 - x0), -(y1 - y0));
@@ -155,9 +155,9 @@ impl Path {
 
     /// `i e^(i psi) int_0^inf tan(phi + i q/sigma) e^-q dq`, cut where `e^-q` is below rounding. The poles of the tangent
     /// are at `q = +-i sigma (pi/2 -+ phi)`, at least `pi/2` away in the part between the tails: the panels widen with `q`.
-    fn upwards(&self, point: &Point) -> [f64; 2] {
+    fn upwards(&self, point: &ExactPoint) -> [f64; 2] {
         const PANELS: [f64; 5] = [0.0, 2.0, 6.0, 14.0, 40.0];
-        let Point { tanh, sech, psi, .. } = *point;
+        let ExactPoint { tanh, sech, psi, .. } = *point;
         let mut sum = [0.0; 2];
         for ends in PANELS.windows(2) {
             let [x, y] = panel(ends[0], ends[1], |q| {

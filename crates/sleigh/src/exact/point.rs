@@ -2,7 +2,7 @@ use super::reduced::{Moment, Reduced};
 
 /// A point of the motion as the path needs it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Point {
+pub(super) struct ExactPoint {
     /// `s - s0`.
     pub(super) tau: f64,
     pub(super) psi: f64,
@@ -12,7 +12,7 @@ pub(super) struct Point {
     pub(super) g: f64,
 }
 
-impl Point {
+impl ExactPoint {
     /// `mirror` is the sign of `a omega0`.
     pub(super) fn new(reduced: &Reduced, moment: &Moment, mirror: f64) -> Self {
         let spin = reduced.gyration * moment.turn_rate.abs();

@@ -16,13 +16,13 @@ pub(crate) const RECIPROCALS: [f64; ORDER + 4] = {
 
 /// The unknowns `z = (omega, u, Y, X)`, of which [`OwnAxes`] says `z' = constant + linear o P z + omega y` with
 /// `y = turned o N z`, place by place, `N` exchanging neighbours and `P` pairs.
-pub(super) struct Equations<F> {
+pub(super) struct SeriesEquations<F> {
     constant: F,
     linear: F,
     turned: F,
 }
 
-impl<F: Four> Equations<F> {
+impl<F: Four> SeriesEquations<F> {
     #[inline(always)]
     pub(super) fn new(zero: F, axes: &OwnAxes) -> Self {
         let OwnAxes { lead, gain, along, turning, .. } = *axes;
@@ -37,13 +37,13 @@ impl<F: Four> Equations<F> {
 /// The coefficients `z_k` of `z(t + s) = sum_k z_k s^k`, with those of `y` and `omega`.
 ///
 /// `(k + 1) z_{k+1} = linear o P z_k + sum_j omega_j y_{k-j}`. (Jorba and Zou 2005, Experimental Mathematics 14, 99-117, section 2.)
-pub(super) struct Series<F> {
+pub(super) struct SeriesTerms<F> {
     pub(super) z: [F; ORDER + 1],
     y: [F; ORDER],
     omega: [f64; ORDER + 4],
 }
 
-impl<F: Four> Series<F> {
+impl<F: Four> SeriesTerms<F> {
     #[inline(always)]
     pub(super) fn new(zero: F) -> Self {
         Self { z: [zero; ORDER + 1], y: [zero; ORDER], omega: [0.0; ORDER + 4] }
@@ -51,7 +51,7 @@ impl<F: Four> Series<F> {
 
     /// The series about `z`.
     #[inline(always)]
-    pub(super) fn expand(&mut self, equations: &Equations<F>, z: F) {
+    pub(super) fn expand(&mut self, equations: &SeriesEquations<F>, z: F) {
         macro_rules! orders {
             ($($k:literal)*) => {{
                 // Written out, so that every sum has a length that is known when it is compiled.
@@ -69,7 +69,7 @@ impl<F: Four> Series<F> {
     /// Every coefficient waits for the one before, so that what is known earlier is summed earlier: in the sum the middle comes first
     /// and the newest last, and nothing but two products waits for `z`.
     #[inline(always)]
-    fn next<const K: usize>(&mut self, equations: &Equations<F>, (y0, turned): (F, F), z: F) -> F {
+    fn next<const K: usize>(&mut self, equations: &SeriesEquations<F>, (y0, turned): (F, F), z: F) -> F {
         let (neighbours, opposites, omega) = (z.neighbours(), z.opposites(), z.spread());
         (self.z[K], self.omega[K]) = (z, z.first());
         if const { K == 0 } {

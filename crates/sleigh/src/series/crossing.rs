@@ -1,13 +1,13 @@
 use super::OwnAxes;
-use super::coefficients::{Equations, ORDER, Series};
-use super::pace::{Interval, LOOKED_AT, Pace, size};
+use super::coefficients::{ORDER, SeriesEquations, SeriesTerms};
+use super::pace::{Interval, LOOKED_AT, SeriesPace, size};
 use dla::StepError;
 use lagrangian::simd::{Four, FourKernel};
 use lagrangian::two_sum;
 use std::ops::ControlFlow;
 
 /// An interval to be crossed.
-pub(crate) struct Crossing<See> {
+pub(crate) struct SeriesCrossing<See> {
     pub(crate) axes: OwnAxes,
     /// `(omega, u, Y, X)` at its beginning.
     pub(crate) start: [f64; 4],
@@ -21,7 +21,7 @@ pub(crate) struct Crossing<See> {
 
 /// Where it ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Crossed {
+pub(crate) struct SeriesEnd {
     /// `(omega, u, Y, X)`.
     pub(crate) end: [f64; 4],
     /// By how much the heading has turned (rad).
@@ -31,16 +31,16 @@ pub(crate) struct Crossed {
 /// Steps within an interval before it is given up.
 pub(crate) const MAX_STEPS: u32 = 10_000_000;
 
-impl<See: FnMut(f64, Crossed) -> ControlFlow<()>> FourKernel for Crossing<See> {
-    type Output = Result<Crossed, StepError>;
+impl<See: FnMut(f64, SeriesEnd) -> ControlFlow<()>> FourKernel for SeriesCrossing<See> {
+    type Output = Result<SeriesEnd, StepError>;
 
     #[inline(always)]
     fn run<F: Four>(mut self, zero: F) -> Self::Output {
-        let equations = Equations::new(zero, &self.axes);
-        let mut series = Series::new(zero);
+        let equations = SeriesEquations::new(zero, &self.axes);
+        let mut series = SeriesTerms::new(zero);
         // The turn is a sum of many, with its rounding.
         let (mut z, mut turn, mut interval) = (zero.of(&self.start), (0.0, 0.0), Interval::new(self.whole));
-        let (pace, mut full) = (Pace::new(self.tolerance), f64::NAN);
+        let (pace, mut full) = (SeriesPace::new(self.tolerance), f64::NAN);
         for tries in 1..=MAX_STEPS {
             series.expand(&equations, z);
             let [omega, u, ..] = series.z[0].row();
@@ -50,8 +50,8 @@ impl<See: FnMut(f64, Crossed) -> ControlFlow<()>> FourKernel for Crossing<See> {
             let (next, by) = series.after(h);
             z = next;
             turn = two_sum(turn.0, turn.1 + by);
-            if ends || (self.see)(interval.made(), Crossed { end: z.row(), turn: turn.0 }).is_break() {
-                return Ok(Crossed { end: z.row(), turn: turn.0 });
+            if ends || (self.see)(interval.made(), SeriesEnd { end: z.row(), turn: turn.0 }).is_break() {
+                return Ok(SeriesEnd { end: z.row(), turn: turn.0 });
             }
         }
         Err(StepError::Tolerance { tries: MAX_STEPS, step: full })
@@ -66,7 +66,7 @@ mod tests {
     use proptest::prelude::*;
 
     /// Keeps what it is shown.
-    fn keep(seen: &mut Vec<(f64, Crossed)>) -> impl FnMut(f64, Crossed) -> ControlFlow<()> + '_ {
+    fn keep(seen: &mut Vec<(f64, SeriesEnd)>) -> impl FnMut(f64, SeriesEnd) -> ControlFlow<()> + '_ {
         |t, crossed| {
             seen.push((t, crossed));
             ControlFlow::Continue(())
@@ -84,10 +84,10 @@ mod tests {
             // Of another sign than the lead the gain would be that of no body, whose spin could grow without bounds.
             let gain = share * lead;
             let axes = OwnAxes { origin: Origin::Anywhere, inverse: [1.0; 2], lead, gain, along, turning };
-            let bits = |crossed: Crossed| (crossed.end.map(f64::to_bits), crossed.turn.to_bits());
+            let bits = |crossed: SeriesEnd| (crossed.end.map(f64::to_bits), crossed.turn.to_bits());
             let mut seen = [Vec::new(), Vec::new()];
             let [one, other] = &mut seen;
-            let crossing = |seen| Crossing { axes, start, whole, tolerance: 10f64.powi(exponent), see: keep(seen) };
+            let crossing = |seen| SeriesCrossing { axes, start, whole, tolerance: 10f64.powi(exponent), see: keep(seen) };
             let (one, other) = (in_fours(crossing(one)).unwrap(), in_plain_fours(crossing(other)).unwrap());
             prop_assert_eq!(bits(one), bits(other));
             let [one, other] = seen.map(|seen| seen.iter().map(|(t, at)| (t.to_bits(), bits(*at))).collect::<Vec<_>>());

@@ -29,15 +29,15 @@ impl<S: Simd, const R: usize> Axes<S, R> {
     }
 }
 
-/// The series of eight trajectories: [`Series`](super::coefficients::Series) with a register for every unknown.
-pub(super) struct Eight<S: Simd, const R: usize> {
+/// The series of eight trajectories: [`SeriesTerms`](super::coefficients::Series) with a register for every unknown.
+pub(super) struct EightSeries<S: Simd, const R: usize> {
     pub(super) omega: [Pack<S, R>; ORDER + 1],
     pub(super) u: [Pack<S, R>; ORDER + 1],
     pub(super) y: [Pack<S, R>; ORDER + 1],
     pub(super) x: [Pack<S, R>; ORDER + 1],
 }
 
-impl<S: Simd, const R: usize> Eight<S, R> {
+impl<S: Simd, const R: usize> EightSeries<S, R> {
     /// About these numbers.
     #[inline(always)]
     pub(super) fn about([omega, u, y, x]: [Pack<S, R>; 4]) -> Self {

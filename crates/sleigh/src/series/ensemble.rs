@@ -1,7 +1,7 @@
 use super::coefficients::ORDER;
-use super::crossing::{Crossed, MAX_STEPS};
-use super::eight::{Axes, Eight};
-use super::pace::{Interval, LOOKED_AT, Pace, size};
+use super::crossing::{MAX_STEPS, SeriesEnd};
+use super::eight::{Axes, EightSeries};
+use super::pace::{Interval, LOOKED_AT, SeriesPace, size};
 use super::place::{increment, place};
 use super::{InOwnAxes, OwnAxes};
 use dla::ensemble::LANES;
@@ -16,7 +16,7 @@ use lagrangian::two_sum;
 #[derive(Debug, Clone)]
 pub struct TaylorEnsemble<const W: usize> {
     axes: [OwnAxes; W],
-    pace: Pace,
+    pace: SeriesPace,
     h: f64,
     state: LaneState<3, W>,
 }
@@ -35,7 +35,7 @@ impl<const W: usize> TaylorEnsemble<W> {
         for (lane, axes) in axes.iter_mut().enumerate() {
             *axes = systems.of(lane).own_axes()?;
         }
-        Some(Self { axes, pace: Pace::new(epsilon), h, state })
+        Some(Self { axes, pace: SeriesPace::new(epsilon), h, state })
     }
 }
 
@@ -53,7 +53,7 @@ impl<const W: usize> Ensemble<3, W> for TaylorEnsemble<W> {
                     let ([u, omega, _], [x, y]) = (self.state.xi(lanes[i]), places[i]);
                     [omega, u, y, x]
                 });
-                let crossed = dispatch_widest(Crossing { axes: &axes, starts, pace: self.pace, whole: self.h });
+                let crossed = dispatch_widest(LaneCrossing { axes: &axes, starts, pace: self.pace, whole: self.h });
                 for (i, crossed) in crossed.iter().enumerate() {
                     self.arrive(lanes[i], places[i], crossed.as_ref());
                 }
@@ -68,7 +68,7 @@ impl<const W: usize> TaylorEnsemble<W> {
         place(self.axes[lane].origin, &self.state.q(lane))
     }
 
-    fn arrive(&mut self, lane: usize, start: [f64; 2], crossed: Option<&Crossed>) {
+    fn arrive(&mut self, lane: usize, start: [f64; 2], crossed: Option<&SeriesEnd>) {
         let Some(crossed) = crossed.filter(|crossed| crossed.end.iter().all(|x| x.is_finite())) else {
             return self.state.lose(lane);
         };
@@ -82,16 +82,16 @@ impl<const W: usize> TaylorEnsemble<W> {
 }
 
 /// An interval to be crossed by eight trajectories; those that do not are none in the result.
-struct Crossing<'a> {
+struct LaneCrossing<'a> {
     axes: &'a [OwnAxes; LANES],
     /// `(omega, u, Y, X)` of each.
     starts: [[f64; 4]; LANES],
-    pace: Pace,
+    pace: SeriesPace,
     whole: f64,
 }
 
-impl Kernel for Crossing<'_> {
-    type Output = [Option<Crossed>; LANES];
+impl Kernel for LaneCrossing<'_> {
+    type Output = [Option<SeriesEnd>; LANES];
 
     #[inline(always)]
     fn run<S: Simd, const R: usize>(self, simd: S) -> Self::Output {
@@ -109,7 +109,7 @@ impl Kernel for Crossing<'_> {
         let (mut intervals, mut turns) = ([Interval::new(whole); LANES], [(0.0, 0.0); LANES]);
         let (mut lost, mut crossed) = ([false; LANES], [None; LANES]);
         for _ in 0..MAX_STEPS {
-            let mut series = Eight::about(z);
+            let mut series = EightSeries::about(z);
             series.expand(&axes);
             let (omega, u) = (z[0].row(), z[1].row());
             let [looked_at, before, last] = [LOOKED_AT, LOOKED_AT - 1, ORDER].map(|k| series.largest(k).row());
@@ -132,7 +132,7 @@ impl Kernel for Crossing<'_> {
                 turns[lane] = two_sum(turns[lane].0, turns[lane].1 + by[lane]);
                 if arrives[lane] {
                     let end = [omega[lane], u[lane], y[lane], x[lane]];
-                    crossed[lane] = Some(Crossed { end, turn: turns[lane].0 });
+                    crossed[lane] = Some(SeriesEnd { end, turn: turns[lane].0 });
                 }
             }
             if (0..LANES).all(|lane| lost[lane] || crossed[lane].is_some()) {

@@ -11,7 +11,7 @@ mod place;
 pub use ensemble::TaylorEnsemble;
 pub use own_axes::{InOwnAxes, Origin, OwnAxes, OwnPush, PushInOwnAxes};
 
-use crossing::{Crossed, Crossing, MAX_STEPS};
+use crossing::{MAX_STEPS, SeriesCrossing, SeriesEnd};
 use dla::{Mechanics, OneStep, OwnStep, State, StepError, StepReport};
 use lagrangian::simd::in_fours;
 use place::{increment, place};
@@ -56,7 +56,7 @@ impl Taylor {
 }
 
 /// Where a step begins.
-struct Departure<'a> {
+struct SeriesDeparture<'a> {
     axes: OwnAxes,
     state: &'a State<3>,
     place: [f64; 2],
@@ -64,7 +64,7 @@ struct Departure<'a> {
     start: [f64; 4],
 }
 
-impl<'a> Departure<'a> {
+impl<'a> SeriesDeparture<'a> {
     #[inline(always)]
     fn new(axes: OwnAxes, system: &dyn Mechanics<3, 1>, t: f64, state: &'a State<3>) -> Result<Self, StepError> {
         let (q0, [u, omega, _]) = (*state.q(), state.quasi_velocities(system, t)?);
@@ -74,7 +74,7 @@ impl<'a> Departure<'a> {
 
     /// The state at the time `t` (s), where the motion has come so far.
     #[inline(always)]
-    fn moved(&self, system: &dyn Mechanics<3, 1>, t: f64, crossed: &Crossed) -> Result<State<3>, StepError> {
+    fn moved(&self, system: &dyn Mechanics<3, 1>, t: f64, crossed: &SeriesEnd) -> Result<State<3>, StepError> {
         let Self { axes, state, place, .. } = self;
         let increment = increment(axes.origin, state.q(), *place, crossed);
         let xi1 = [crossed.end[1], crossed.end[0], 0.0];
@@ -98,10 +98,10 @@ impl OneStep<3, 1> for Taylor {
         h: f64,
         state: &mut State<3>,
     ) -> Result<StepReport<1>, StepError> {
-        let from = Departure::new(self.axes, system, t, state)?;
+        let from = SeriesDeparture::new(self.axes, system, t, state)?;
         let (axes, start, tolerance) = (from.axes, from.start, self.tolerance);
         let see = |_, _| ControlFlow::Continue(());
-        let crossed = in_fours(Crossing { axes, start, whole: h, tolerance, see })?;
+        let crossed = in_fours(SeriesCrossing { axes, start, whole: h, tolerance, see })?;
         *state = from.moved(system, t + h, &crossed)?;
         Ok(StepReport::of(0))
     }
@@ -114,16 +114,16 @@ impl OneStep<3, 1> for Taylor {
         _memory: &mut Vec<f64>,
         see: &mut OwnStep<'_, 3>,
     ) -> Result<(), StepError> {
-        let from = Departure::new(self.axes, system, t, state)?;
+        let from = SeriesDeparture::new(self.axes, system, t, state)?;
         let (axes, start, tolerance, mut failure) = (from.axes, from.start, self.tolerance, None);
-        let see = |made: f64, crossed: Crossed| match from.moved(system, t + made, &crossed) {
+        let see = |made: f64, crossed: SeriesEnd| match from.moved(system, t + made, &crossed) {
             Ok(state) => see(t + made, &state),
             Err(error) => {
                 failure = Some(error);
                 ControlFlow::Break(())
             }
         };
-        in_fours(Crossing { axes, start, whole: h, tolerance, see })?;
+        in_fours(SeriesCrossing { axes, start, whole: h, tolerance, see })?;
         failure.map_or(Ok(()), Err)
     }
 }

@@ -15,12 +15,12 @@ const SHORTER: f64 = 0.75;
 
 /// How long steps may be, by the terms of their series.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Pace {
+pub(crate) struct SeriesPace {
     /// The octaves of the error of a step, in units of `1 + |(omega, u)|`.
     tolerance: f64,
 }
 
-impl Pace {
+impl SeriesPace {
     /// At this error of a step, which is taken to be no less than `1e-31`, also where it is no number.
     #[inline(always)]
     pub(crate) fn new(tolerance: f64) -> Self {

@@ -1,5 +1,5 @@
 use super::Origin;
-use super::crossing::Crossed;
+use super::crossing::SeriesEnd;
 
 /// The place `(X, Y)` in axes of this heading, from a place on the plane.
 #[inline(always)]
@@ -20,8 +20,8 @@ pub(crate) fn place(origin: Origin, q0: &[f64; 3]) -> [f64; 2] {
 
 /// The increment of the coordinates from `q0`, with the place `(X, Y)` there, to the end of an interval.
 #[inline(always)]
-pub(crate) fn increment(origin: Origin, q0: &[f64; 3], [x0, y0]: [f64; 2], crossed: &Crossed) -> [f64; 3] {
-    let Crossed { end: [_, _, y, x], turn } = *crossed;
+pub(crate) fn increment(origin: Origin, q0: &[f64; 3], [x0, y0]: [f64; 2], crossed: &SeriesEnd) -> [f64; 3] {
+    let SeriesEnd { end: [_, _, y, x], turn } = *crossed;
     let [dx, dy] = match origin {
         Origin::Coordinates => [x - x0, y - y0],
         Origin::Point(_) | Origin::Anywhere => {

@@ -1,6 +1,6 @@
 use super::{InBasis, are_met, first, has_settled};
 use crate::Mechanics;
-use crate::continued::Found;
+use crate::continued::FoundMean;
 use crate::convergence::tolerances::{SHRINKING, SLIGHT};
 use crate::dla::Dla;
 use crate::kept::in_bases;
@@ -42,7 +42,7 @@ pub(super) fn arrival<D, const N: usize, const M: usize>(
         if are_met(&w1, &left, &p1, tolerance) || (rounding && has_settled(&d, &xi, &last, tolerance)) {
             // `L_v(q1, v1) - p1 = A(q1)' mu`.
             let lambda = clear_multipliers(&a1, &left)?.map(|mu| -mu);
-            return Some(InBasis { found: Found { v, lambda, corrections }, xi });
+            return Some(InBasis { found: FoundMean { v, lambda, corrections }, xi });
         }
         if !(next <= SHRINKING * size || rounding) {
             return None;

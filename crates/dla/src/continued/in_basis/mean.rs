@@ -1,5 +1,5 @@
 use super::{InBasis, are_met, first, has_settled};
-use crate::continued::{Found, ends, with_reaction};
+use crate::continued::{FoundMean, ends, with_reaction};
 use crate::convergence::tolerances::{SHRINKING, SLIGHT};
 use crate::corrections::Departure;
 use crate::dla::{Dla, predicted};
@@ -100,5 +100,5 @@ fn with_impulse<const N: usize, const M: usize>(
     corrections: u32,
 ) -> Option<(InBasis<N, M>, [f64; N])> {
     let lambda = clear_multipliers(a0, &at.residual)?.map(|lambda| -lambda);
-    Some((InBasis { found: Found { v, lambda, corrections }, xi }, with_reaction(ends(at), a0, &lambda)))
+    Some((InBasis { found: FoundMean { v, lambda, corrections }, xi }, with_reaction(ends(at), a0, &lambda)))
 }

@@ -4,7 +4,7 @@
 mod arrival;
 mod mean;
 
-use super::{Found, advanced};
+use super::{FoundMean, advanced};
 use crate::branch;
 use crate::convergence::tolerances::STALL;
 use crate::derivatives::COORDINATES;
@@ -17,7 +17,7 @@ use mean::mean;
 
 /// A velocity with its quasi-velocities, and the impulse of the constraints.
 struct InBasis<const N: usize, const M: usize> {
-    found: Found<N, M>,
+    found: FoundMean<N, M>,
     xi: [f64; N],
 }
 
@@ -37,7 +37,7 @@ pub(super) fn going_on<D: Discretisation<N, M>, const N: usize, const M: usize>(
     state: &mut State<N>,
 ) -> Option<StepReport<M>> {
     let q0 = *state.q();
-    let (InBasis { found: Found { v, lambda, corrections }, xi }, p1) = mean(method, system, (t0, h), state)?;
+    let (InBasis { found: FoundMean { v, lambda, corrections }, xi }, p1) = mean(method, system, (t0, h), state)?;
     if branch::turn(system, (t0, h), &q0, &v) > branch::NEAR {
         return None;
     }
