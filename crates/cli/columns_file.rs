@@ -92,10 +92,14 @@ fn npz(path: &Path) -> Result<Columns, Error> {
         let name = file.name().map_err(invalid)?.into_owned();
         let Some(name) = npyz::npz::array_name_from_file_name(&name).map(str::to_owned) else { continue };
         let array = npyz::NpyFile::new(file)?;
-        // An array of texts is no column of numbers.
-        if let Ok(values) = array.into_vec::<f64>() {
-            columns.push(NamedColumn { name, unit: None, values });
-        }
+        // An array of texts is not a column of numbers.
+        let values: Option<Vec<f64>> = match array.try_data::<f64>() {
+            Ok(numbers) => Some(numbers.collect::<Result<_, _>>()?),
+            Err(array) => {
+                array.into_vec::<i64>().ok().map(|whole| whole.into_iter().map(|number| number as f64).collect())
+            }
+        };
+        columns.extend(values.map(|values| NamedColumn { name, unit: None, values }));
     }
     Ok(columns)
 }
