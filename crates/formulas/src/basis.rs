@@ -100,7 +100,7 @@ fn turned(graph: &mut Graph, across: &[Expression], vectors: &[Vec<Expression>])
             }
             let squares = [i, j].map(|k| graph.power(across[k], 2.0));
             let square = graph.sum(&squares);
-            if graph.value(square).is_none_or(|x| !(x > 0.0)) {
+            if !graph.value(square).is_some_and(|x| x > 0.0) {
                 continue;
             }
             let pair = |graph: &mut Graph, a: Expression, b: Expression| -> Vec<Expression> {

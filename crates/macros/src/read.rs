@@ -121,7 +121,7 @@ impl Described {
                 }
             }
             _ => {
-                let near = expression::nearest(name, KEYS.into_iter());
+                let near = expression::nearest(name, KEYS);
                 let meant = near.map_or(".".to_owned(), |near| format!("; did you mean `{near}`?"));
                 let known = KEYS.join("`, `");
                 return Err(Error::new(key.span(), format!("a system has no `{name}`{meant} Its keys are `{known}`.")));

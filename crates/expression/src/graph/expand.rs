@@ -1,3 +1,5 @@
+#![allow(clippy::float_cmp, reason = "a coefficient is one where its bits are")]
+
 use super::sum::Sum;
 use super::{Expression, Graph, Kind, Number};
 use crate::Function;
