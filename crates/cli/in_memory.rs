@@ -86,9 +86,9 @@ struct Run<'a> {
 }
 
 /// Shows a run to the caller, who may end it.
-struct Shown<'a> {
-    bar: ProgressBar,
-    caller: &'a Caller,
+pub(crate) struct Shown<'a> {
+    pub(crate) bar: ProgressBar,
+    pub(crate) caller: &'a Caller,
 }
 
 impl Progress for Shown<'_> {

@@ -1,5 +1,5 @@
-//! The command line of noslip, as a library: [`main`] is the program, [`call`] a command whose output its caller keeps, and [`run`] a
-//! run whose nodes its caller keeps.
+//! The command line of noslip, as a library: [`main`] is the program, [`call`] a command whose output its caller keeps, [`run`] a
+//! run whose nodes its caller keeps, and [`sensitivities`] what such a run depends on.
 
 mod account;
 mod args;
@@ -49,6 +49,7 @@ mod run;
 mod run_report;
 mod saves;
 mod section;
+mod sensitivities;
 mod stability;
 mod stability_map;
 mod starts;
@@ -68,6 +69,7 @@ use std::process::ExitCode;
 
 pub use called::{Called, Caller, call};
 pub use in_memory::{RunError, RunRequest, RunResult, run};
+pub use sensitivities::{Sensitivities, SensitivityRequest, full_key, sensitivities};
 
 /// The program: the command of its arguments, with its exit code.
 #[must_use]

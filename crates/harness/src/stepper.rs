@@ -133,7 +133,7 @@ pub(crate) fn composed<Step>(order: u32, step: Step) -> Composition<Step> {
 }
 
 /// The collocation with so many stages, of those in the table of methods.
-fn gauss(stages: usize) -> Gauss {
+pub(crate) fn gauss(stages: usize) -> Gauss {
     match stages {
         2 => Gauss::new::<2>(),
         3 => Gauss::new::<3>(),

@@ -1,11 +1,11 @@
 use crate::errors::{ComputationError, RequestError};
 use crate::supervise::{Supervised, supervised};
-use cli::{RunError, RunRequest, RunResult};
+use cli::{RunError, RunRequest, RunResult, SensitivityRequest, full_key};
 use harness::METHODS;
-use numpy::PyArray1;
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use scene::{AnyScene, bundled as scenes, bundled_texts};
+use scene::{AnyScene, Setting, bundled as scenes, bundled_texts, with_settings};
 
 fn names() -> Vec<&'static str> {
     METHODS.iter().map(|info| info.name).collect()
@@ -32,6 +32,13 @@ pub(crate) struct Scene {
 /// What a run gave: the columns with their numbers, their units, the object of `noslip run --json` as text, why the run failed, and the
 /// exception that ended it.
 type Made<'py> = (Bound<'py, PyDict>, Vec<(String, String)>, String, Option<String>, Option<Py<PyAny>>);
+
+/// Derivatives of a run: the columns, the times, the numbers, and a row for each number; or the exception that ended it.
+type Derived<'py> = (Vec<String>, Vec<f64>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>);
+
+fn raised(RunError { message, request }: RunError) -> PyErr {
+    if request { RequestError::new_err(message) } else { ComputationError::new_err(message) }
+}
 
 #[pymethods]
 impl Scene {
@@ -111,12 +118,7 @@ impl Scene {
     ) -> PyResult<Made<'py>> {
         let request = RunRequest { every, times, tolerance, substep, events, until };
         let Supervised { value, ended } = supervised(py, progress, |caller| cli::run(&self.scene, &request, caller))?;
-        let RunResult { columns, numbers, object, failure, .. } =
-            value.map_err(
-                |RunError { message, request }| {
-                    if request { RequestError::new_err(message) } else { ComputationError::new_err(message) }
-                },
-            )?;
+        let RunResult { columns, numbers, object, failure, .. } = value.map_err(raised)?;
         let arrays = PyDict::new(py);
         for (column, numbers) in columns.iter().zip(numbers) {
             arrays.set_item(&column.name, PyArray1::from_vec(py, numbers))?;
@@ -124,5 +126,35 @@ impl Scene {
         let units = columns.into_iter().map(|column| (column.name, column.unit)).collect();
         let ended = ended.map(|error| error.into_value(py).into_any());
         Ok((arrays, units, object.to_string(), failure, ended))
+    }
+
+    /// The text of the scene with other numbers, by their keys.
+    fn varied(&self, text: &str, origin: &str, values: Vec<(String, f64)>) -> PyResult<String> {
+        let setting = |(key, value): &(String, f64)| format!("{}={value:?}", full_key(&self.scene, key)).parse();
+        let settings: Result<Vec<Setting>, String> = values.iter().map(setting).collect();
+        let settings = settings.map_err(RequestError::new_err)?;
+        with_settings(text, origin, &settings).map_err(|error| RequestError::new_err(error.to_string()))
+    }
+
+    /// Derivatives of columns of the run in the numbers of the scene with these keys, at times or at its end.
+    fn sensitivities<'py>(
+        &self,
+        py: Python<'py>,
+        keys: Vec<String>,
+        columns: Vec<String>,
+        times: Vec<f64>,
+        progress: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Derived<'py>> {
+        let count = keys.len();
+        let request = SensitivityRequest { keys, columns, times };
+        let Supervised { value, ended } =
+            supervised(py, progress, |caller| cli::sensitivities(&self.scene, &request, caller))?;
+        if let Some(ended) = ended {
+            return Err(ended);
+        }
+        let made = value.map_err(raised)?;
+        let rows = made.values.len();
+        let jacobian = PyArray1::from_vec(py, made.jacobian).reshape([rows, count])?;
+        Ok((made.columns, made.times, PyArray1::from_vec(py, made.values), jacobian))
     }
 }

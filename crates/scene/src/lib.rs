@@ -42,17 +42,18 @@ mod written;
 pub use self::built::{Built, Place as StartPlace, QUANTITIES, Quantity, SleighQuantity, text_quantities};
 pub use self::scene::Scene;
 pub use self::text::{AnyScene, BuildError, Given, TextScene};
-pub use ::text::{AnyText, Coordinate, Model, Moved, TextMechanics};
+pub use ::text::{AnyText, Coordinate, FREE, Family, FamilySystem, Model, Moved, TextMechanics, Varied};
 pub use bundled::{Bundled, SCHEMA, bundled, bundled_texts};
 pub use effects::{EFFECTS, EffectInfo, HillSpec, PathSpec, SceneEffect, Shape, TimeSpec, TrailersSpec};
 pub use error::SceneError;
 pub use finding::{Finding, Place};
 pub use run::{DEFAULT_METHOD, MAX_STEPS, Overrides, RunSettings};
-pub use settings::Setting;
+pub use settings::{Setting, with_settings};
 pub use suggest::nearest;
 pub use sweep::{Sweep, SweepError};
 pub use system::{Visitor, in_lanes};
 pub use systems::{
-    AnyEffect, AnySystem, Column, EffectPower, LANES, LaneMethod, SceneBody, SceneEffects, SceneSystem, Started,
+    AnyEffect, AnySystem, Column, EffectPower, LANES, LaneMethod, PARAMETERS, SceneBody, SceneEffects, SceneSystem,
+    SleighFamily, Started,
 };
 pub use train::TrainError;

@@ -151,6 +151,18 @@ pub(crate) fn parse_with<T>(
     if settings.is_empty() || DeTable::parse(text).is_err() {
         return parse(text, origin);
     }
+    let set = with_settings(text, origin, settings)?;
+    parse(&set, origin).map_err(|error| match parse(text, origin) {
+        Err(own) => own,
+        Ok(_) => error.of_settings(settings, origin),
+    })
+}
+
+/// The text of a scene with other values in it; what it says besides stays as it is.
+///
+/// # Errors
+/// [`SceneError`] where a setting has no place in it. Whether the values make a scene is not looked at.
+pub fn with_settings(text: &str, origin: &str, settings: &[Setting]) -> Result<String, SceneError> {
     let mut set = text.to_owned();
     for setting in settings {
         // What a setting has made of a valid text is one, or it had no place.
@@ -158,10 +170,7 @@ pub(crate) fn parse_with<T>(
         let put = put.and_then(|scene| setting.put(&set, scene.get_ref()));
         set = put.map_err(|problem| no_place(setting, origin, problem))?;
     }
-    parse(&set, origin).map_err(|error| match parse(text, origin) {
-        Err(own) => own,
-        Ok(_) => error.of_settings(settings, origin),
-    })
+    Ok(set)
 }
 
 fn no_place(setting: &Setting, origin: &str, problem: String) -> SceneError {

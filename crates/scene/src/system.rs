@@ -2,7 +2,7 @@ use crate::{Built, Scene, SceneEffect};
 use dla::{Schedule, fitted};
 use sleigh::effects::{Bowl, Drag, EggCrate, Hills, MovingMass, Slope, Thrust, Torque};
 use sleigh::{Exact, Guide, Guided, SleighError};
-use systems::{AnyEffect, AnySystem, Guiding, Lane, LaneMethod, LaneRun, Rotor, Started};
+use systems::{AnyEffect, AnySystem, Guiding, Lane, LaneMethod, LaneRun, Rotor, SleighFamily, Started};
 
 /// What is to be done with the system of a scene, whatever its shape.
 pub trait Visitor {
@@ -78,6 +78,16 @@ impl Scene {
             return Err(SleighError::Train);
         }
         self.first_blade()
+    }
+
+    /// The sleigh as a function of its parameters, with `N` coordinates; `None` where it has another number of them, and of a scene that
+    /// imposes velocities.
+    ///
+    /// # Errors
+    /// As [`system`](Self::system).
+    pub fn family<const N: usize>(&self) -> Result<Option<SleighFamily<N>>, SleighError> {
+        let Guiding::None(sleigh) = self.guiding()? else { return Ok(None) };
+        Ok(SleighFamily::new(sleigh, self.rotor()?, &self.acting()?, 0.5 * self.run.duration))
     }
 
     /// The same of the first blade alone, where others follow it.

@@ -16,12 +16,14 @@
 
 mod any_effect;
 mod columns;
+mod family;
 mod lanes;
 mod power;
 mod system;
 
 pub use any_effect::AnyEffect;
 pub use columns::Column;
+pub use family::{PARAMETERS, SleighFamily};
 pub use lanes::{LANES, Lane, LaneMethod, LaneRun, in_lanes};
 pub use power::{EffectPower, SceneBody, SceneEffects};
 pub use system::{AnySystem, Guiding, Rotor, SceneSystem, Started, system};

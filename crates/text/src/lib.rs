@@ -30,15 +30,19 @@
 
 mod any;
 mod basis;
+mod family;
 mod geometry;
 mod model;
 mod start;
+mod start_along;
 mod system;
 mod tapes;
 
 pub use ::formulas::{Entry, Problem, TextError, Unit, Words};
 pub use any::{AnyText, MOST_CONSTRAINTS, MOST_COORDINATES, Started, TextMechanics};
+pub use family::{FREE, Family, FamilySystem};
 pub use geometry::Geometry;
 pub use model::{Coordinate, Model};
 pub use start::{Moved, Start, StartError};
+pub use start_along::Varied;
 pub use system::TextSystem;

@@ -68,7 +68,7 @@ impl Model {
         Self::of(words, Formulas::of(words, Parameters::Numbers)?)
     }
 
-    fn of(words: &Words, formulas: Formulas) -> Result<Self, TextError> {
+    pub(crate) fn of(words: &Words, formulas: Formulas) -> Result<Self, TextError> {
         let all = formulas.rates();
         let Formulas { mut graph, lagrangian, rows, level, positions, force, basis, outputs, .. } = formulas;
         let mass: Vec<Expression> = graph.hessian(lagrangian, &all, &all).concat();
@@ -153,7 +153,7 @@ impl Model {
     #[must_use]
     pub fn told(&self, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
         let mut told = vec![0.0; self.outputs.len()];
-        self.told.evaluate(self.coordinates.len(), Point { t, q, v }, |k, x| told[k] = x);
+        self.told.evaluate(self.coordinates.len(), Point::new(t, q, v), |k, x| told[k] = x);
         told
     }
 
@@ -161,7 +161,7 @@ impl Model {
     #[must_use]
     pub fn output(&self, k: usize, t: f64, q: &[f64], v: &[f64]) -> Option<f64> {
         let mut told = (k < self.outputs.len()).then_some(0.0)?;
-        self.told.evaluate(self.coordinates.len(), Point { t, q, v }, |i, x| {
+        self.told.evaluate(self.coordinates.len(), Point::new(t, q, v), |i, x| {
             if i == k {
                 told = x;
             }
@@ -177,13 +177,13 @@ impl Model {
         let rates: Vec<Dual<f64, 1>> = v.iter().map(|&v| Dual { re: v, eps: [v] }).collect();
         let places: Vec<Dual<f64, 1>> = q.iter().map(|&q| Dual::fixed(q)).collect();
         let mut lagrangian = Dual::fixed(0.0);
-        self.lagrangian.evaluate(n, Point { t: Dual::fixed(t), q: &places, v: &rates }, |_, x| lagrangian = x);
+        self.lagrangian.evaluate(n, Point::new(Dual::fixed(t), &places, &rates), |_, x| lagrangian = x);
         lagrangian.eps[0] - lagrangian.re
     }
 
     pub(crate) fn lagrangian_at(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
         let mut lagrangian = 0.0;
-        self.lagrangian.evaluate(self.coordinates.len(), Point { t, q, v }, |_, x| lagrangian = x);
+        self.lagrangian.evaluate(self.coordinates.len(), Point::new(t, q, v), |_, x| lagrangian = x);
         lagrangian
     }
 
@@ -191,7 +191,7 @@ impl Model {
     pub(crate) fn rows_at(&self, t: f64, q: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
         let (n, m) = (self.coordinates.len(), self.constraints());
         let (mut a, mut b) = (DMatrix::zeros(m, n), DVector::zeros(m));
-        self.constraint.evaluate(n, Point { t, q, v: &[] }, |k, x| match k.checked_sub(n * m) {
+        self.constraint.evaluate(n, Point::new(t, q, &[]), |k, x| match k.checked_sub(n * m) {
             Some(row) => b[row] = x,
             None => a[(k / n, k % n)] = x,
         });
@@ -201,7 +201,7 @@ impl Model {
     /// The functions of the positions.
     pub(crate) fn positions_at(&self, t: f64, q: &[f64]) -> DVector<f64> {
         let mut g = DVector::zeros(self.positions);
-        self.holonomic.evaluate(self.coordinates.len(), Point { t, q, v: &[] }, |k, x| g[k] = x);
+        self.holonomic.evaluate(self.coordinates.len(), Point::new(t, q, &[]), |k, x| g[k] = x);
         g
     }
 
@@ -216,7 +216,7 @@ impl Model {
     pub(crate) fn mass_at(&self, t: f64, q: &[f64], v: &[f64]) -> DMatrix<f64> {
         let n = self.coordinates.len();
         let mut mass = DMatrix::zeros(n, n);
-        self.mass.evaluate(n, Point { t, q, v }, |k, x| mass[(k / n, k % n)] = x);
+        self.mass.evaluate(n, Point::new(t, q, v), |k, x| mass[(k / n, k % n)] = x);
         mass
     }
 }

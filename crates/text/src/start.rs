@@ -11,6 +11,8 @@ pub struct Start {
     pub v: Vec<f64>,
     /// What was given otherwise.
     pub moved: Vec<Moved>,
+    /// Which coordinates, and which rates, were left out.
+    pub left_out: [Vec<bool>; 2],
 }
 
 /// A number of a start that the constraints do not admit.
@@ -127,7 +129,8 @@ impl Model {
             changed.then_some(Moved { name, from, to })
         });
         let moved = moved.collect();
-        Ok(Start { q: place.as_slice().to_vec(), v: rate.as_slice().to_vec(), moved })
+        let left_out = [&given_q, &given_v].map(|given| given.iter().map(Option::is_none).collect());
+        Ok(Start { q: place.as_slice().to_vec(), v: rate.as_slice().to_vec(), moved, left_out })
     }
 
     /// The rates of an admissible state with that of the coordinate `i` changed to a value, the others as near to what they were as the
@@ -189,7 +192,7 @@ impl Model {
         let n = self.coordinates.len();
         let Some(basis) = &self.basis else { return Ok(()) };
         let mut vectors = DMatrix::<f64>::zeros(n, n - a.nrows());
-        let at = crate::tapes::Point { t: 0.0, q: q.as_slice(), v: &[] };
+        let at = crate::tapes::Point::new(0.0, q.as_slice(), &[]);
         basis.evaluate(n, at, |k, x| vectors[(k % n, k / n)] = x);
         for (vector, w) in vectors.column_iter().enumerate() {
             for (constraint, row) in a.row_iter().enumerate() {
@@ -235,7 +238,7 @@ fn missed(a: &DMatrix<f64>, b: &DVector<f64>, v: &DVector<f64>) -> Option<f64> {
 }
 
 /// The shortest solution `u` of `A u = r` in a metric, that of least squares where there is none.
-fn least(a: &DMatrix<f64>, mass: &DMatrix<f64>, r: &DVector<f64>) -> Option<DVector<f64>> {
+pub(crate) fn least(a: &DMatrix<f64>, mass: &DMatrix<f64>, r: &DVector<f64>) -> Option<DVector<f64>> {
     if a.ncols() == 0 || a.nrows() == 0 {
         return Some(DVector::zeros(a.ncols()));
     }

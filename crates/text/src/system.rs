@@ -51,27 +51,39 @@ impl<const N: usize, const M: usize> TextSystem<N, M> {
         self.model.constraints()
     }
 
-    fn point<'a, S>(&self, t: S, q: &'a [S; N], v: &'a [S]) -> Point<'a, S> {
+    /// The same with another basis, of that number, for the neighbourhood of a configuration; zero is the one it has.
+    pub(crate) fn rebased(&self, basis: u64) -> Self {
+        let pivots = if basis == 0 { self.pivots } else { Pivots::numbered(basis, self.m()) };
+        Self { model: Arc::clone(&self.model), sizes: Arc::clone(&self.sizes), pivots }
+    }
+
+    /// The same with another model, of the same coordinates and constraints.
+    pub(crate) fn of_model(self, model: &Arc<Model>) -> Self {
+        Self { model: Arc::clone(model), ..self }
+    }
+
+    fn point<'a, S>(&self, p: &'a [S], t: S, q: &'a [S; N], v: &'a [S]) -> Point<'a, S> {
         let n = self.n();
-        Point { t, q: &q[..n], v: if v.is_empty() { v } else { &v[..n] } }
+        Point { t, q: &q[..n], v: if v.is_empty() { v } else { &v[..n] }, p }
     }
 }
 
-impl<const N: usize, const M: usize> System<N, M> for TextSystem<N, M> {
-    fn lagrangian<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> S {
+/// What a system is made of, at the values `p` of the parameters that its model leaves free.
+impl<const N: usize, const M: usize> TextSystem<N, M> {
+    pub(crate) fn lagrangian_at<S: Scalar>(&self, p: &[S], t: S, q: &[S; N], v: &[S; N]) -> S {
         let n = self.n();
         let mut lagrangian = S::zero();
-        self.model.lagrangian.evaluate(n, self.point(t, q, v), |_, x| lagrangian = x);
+        self.model.lagrangian.evaluate(n, self.point(p, t, q, v), |_, x| lagrangian = x);
         for rate in &v[n..] {
             lagrangian += rate.squared() * 0.5;
         }
         lagrangian
     }
 
-    fn constraint<S: Scalar>(&self, t: S, q: &[S; N]) -> Constraint<S, N, M> {
+    pub(crate) fn constraint_at<S: Scalar>(&self, p: &[S], t: S, q: &[S; N]) -> Constraint<S, N, M> {
         let (n, m) = (self.n(), self.m());
         let (mut a, mut b) = ([[S::zero(); N]; M], [S::zero(); M]);
-        self.model.constraint.evaluate(n, self.point(t, q, &[]), |k, x| match k.checked_sub(n * m) {
+        self.model.constraint.evaluate(n, self.point(p, t, q, &[]), |k, x| match k.checked_sub(n * m) {
             Some(row) => b[row] = x,
             None => a[k / n][k % n] = x,
         });
@@ -81,28 +93,57 @@ impl<const N: usize, const M: usize> System<N, M> for TextSystem<N, M> {
         (a, b)
     }
 
-    fn force<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
+    pub(crate) fn force_at<S: Scalar>(&self, p: &[S], t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
         let formulas = self.model.force.as_ref()?;
         let mut force = [S::zero(); N];
-        formulas.evaluate(self.n(), self.point(t, q, v), |i, x| force[i] = x);
+        formulas.evaluate(self.n(), self.point(p, t, q, v), |i, x| force[i] = x);
         Some(force)
     }
 
-    fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; N]) -> Option<AdmissibleBasis<S, N, M>> {
+    pub(crate) fn basis_at<S: Scalar>(&self, p: &[S], t: S, q: &[S; N]) -> AdmissibleBasis<S, N, M> {
         let (n, m) = (self.n(), self.m());
         let mut vectors = match &self.model.basis {
             Some(formulas) => {
                 let mut vectors = [[S::zero(); N]; N];
-                formulas.evaluate(n, self.point(t, q, &[]), |k, x| vectors[k / n][k % n] = x);
+                formulas.evaluate(n, self.point(p, t, q, &[]), |k, x| vectors[k / n][k % n] = x);
                 vectors
             }
-            None => self.pivots.basis(n, self.constraint(t, q).0),
+            None => self.pivots.basis(n, self.constraint_at(p, t, q).0),
         };
         // The coordinates that are held by no constraint rest by themselves.
         for (vector, i) in vectors[n - m..].iter_mut().zip(n + M - m..N) {
             vector[i] = S::constant(1.0);
         }
-        Some(AdmissibleBasis::from_fn(|k| vectors[k]))
+        AdmissibleBasis::from_fn(|k| vectors[k])
+    }
+
+    pub(crate) fn holonomic_at<S: Scalar>(&self, p: &[S], t: S, q: &[S; N]) -> Option<[Option<S>; M]> {
+        let first = self.model.velocities;
+        if self.model.positions == 0 {
+            return None;
+        }
+        let mut functions = [None; M];
+        functions[first..first + self.model.positions].fill(Some(S::zero()));
+        self.model.holonomic.evaluate(self.n(), self.point(p, t, q, &[]), |k, x| functions[first + k] = Some(x));
+        Some(functions)
+    }
+}
+
+impl<const N: usize, const M: usize> System<N, M> for TextSystem<N, M> {
+    fn lagrangian<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> S {
+        self.lagrangian_at(&[], t, q, v)
+    }
+
+    fn constraint<S: Scalar>(&self, t: S, q: &[S; N]) -> Constraint<S, N, M> {
+        self.constraint_at(&[], t, q)
+    }
+
+    fn force<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
+        self.force_at(&[], t, q, v)
+    }
+
+    fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; N]) -> Option<AdmissibleBasis<S, N, M>> {
+        Some(self.basis_at(&[], t, q))
     }
 
     fn near(&self, t: f64, q: &[f64; N], basis: u64) -> Option<(Self, u64)> {
@@ -118,14 +159,7 @@ impl<const N: usize, const M: usize> System<N, M> for TextSystem<N, M> {
     }
 
     fn holonomic<S: Scalar>(&self, t: S, q: &[S; N]) -> Option<[Option<S>; M]> {
-        let first = self.model.velocities;
-        if self.model.positions == 0 {
-            return None;
-        }
-        let mut functions = [None; M];
-        functions[first..first + self.model.positions].fill(Some(S::zero()));
-        self.model.holonomic.evaluate(self.n(), self.point(t, q, &[]), |k, x| functions[first + k] = Some(x));
-        Some(functions)
+        self.holonomic_at(&[], t, q)
     }
 
     fn angles(&self) -> [bool; N] {

@@ -3,7 +3,8 @@ use lagrangian::Scalar;
 
 /// Some formulas of time, coordinates and rates, the constants among them told apart from those that are computed.
 ///
-/// Of `n` coordinates the variable 0 is time, `1 + i` the coordinate `i`, `1 + n + i` its rate.
+/// Of `n` coordinates the variable 0 is time, `1 + i` the coordinate `i`, `1 + n + i` its rate, and `1 + 2 n + k` the parameter `k` of
+/// those that are left free.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Tapes {
     tape: Tape,
@@ -20,6 +21,15 @@ pub(crate) struct Point<'a, S> {
     pub(crate) q: &'a [S],
     /// None for formulas in which no rates stand.
     pub(crate) v: &'a [S],
+    /// The parameters that are left free: none of a system that has a value for each.
+    pub(crate) p: &'a [S],
+}
+
+impl<'a, S> Point<'a, S> {
+    /// Where no parameter is left free.
+    pub(crate) fn new(t: S, q: &'a [S], v: &'a [S]) -> Self {
+        Self { t, q, v, p: &[] }
+    }
 }
 
 impl Tapes {
@@ -87,7 +97,8 @@ fn interpret<S: Scalar>(tape: &Tape, n: usize, at: Point<'_, S>, scratch: &mut [
     let input = |k: usize| match k.checked_sub(1) {
         None => at.t,
         Some(i) if i < n => at.q[i],
-        Some(i) => at.v.get(i - n).copied().unwrap_or(at.t),
+        Some(i) if i < 2 * n => at.v.get(i - n).copied().unwrap_or(at.t),
+        Some(i) => at.p.get(i - 2 * n).copied().unwrap_or(at.t),
     };
     let output = |k: usize, x: S| {
         if let Some(place) = computed.get_mut(k) {

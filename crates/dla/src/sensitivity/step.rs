@@ -66,6 +66,18 @@ impl<'a, const N: usize, const M: usize, const P: usize> Sensitivity<'a, N, M, P
         };
         Self { system, parameters: system.parameters, seeder: Box::new(seeder) }
     }
+
+    /// On a system that `seeder` gives on numbers with derivatives, at values of its parameters; `parameters` are those of `system`.
+    ///
+    /// For families that are known at run time, and for a system whose equations on such numbers are another object than itself.
+    #[must_use]
+    pub fn seeded(
+        system: &'a dyn Mechanics<N, M>,
+        parameters: [f64; P],
+        seeder: impl Fn(&[Seeded]) -> Box<dyn Gradients<N, M> + 'a> + 'a,
+    ) -> Self {
+        Self { system, parameters, seeder: Box::new(seeder) }
+    }
 }
 
 /// Numbers carry eight directions here, and those of a step's equations a gradient of them or two.

@@ -13,6 +13,7 @@ from .ensembles import Ensemble, ensemble
 from .errors import Interrupted, RunError
 from .results import Run
 from .scenes import Scene, methods, scene, scenes
+from .sensitivities import Prediction, Sensitivities
 from .sleigh import Sleigh
 from .system import System
 
@@ -21,10 +22,12 @@ __all__ = [
     "Ensemble",
     "Interrupted",
     "NoslipError",
+    "Prediction",
     "RequestError",
     "Run",
     "RunError",
     "Scene",
+    "Sensitivities",
     "Sleigh",
     "System",
     "ensemble",

@@ -40,3 +40,11 @@ class Scene:
         until: list[str],
         progress: Callable[[str, int, int], object] | None,
     ) -> tuple[dict[str, NDArray[np.float64]], list[tuple[str, str]], str, str | None, BaseException | None]: ...
+    def varied(self, text: str, origin: str, values: list[tuple[str, float]]) -> str: ...
+    def sensitivities(
+        self,
+        keys: list[str],
+        columns: list[str],
+        times: list[float],
+        progress: Callable[[str, int, int], object] | None,
+    ) -> tuple[list[str], list[float], NDArray[np.float64], NDArray[np.float64]]: ...

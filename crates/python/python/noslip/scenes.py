@@ -16,6 +16,7 @@ from . import _noslip
 from .errors import Interrupted, RunError
 from .progress import Progress, shown
 from .results import Run
+from .sensitivities import Prediction, Sensitivities
 
 Texts = str | Iterable[str] | None
 
@@ -144,6 +145,63 @@ class Scene:
         if failure is not None:
             raise RunError(failure, result)
         return result
+
+    def varied(self, values: Mapping[str, float]) -> Scene:
+        """The scene with other numbers, by their keys: `{"sleigh.mass": 2.0, "start.speed": 0.5}`.
+
+        The numbers that `sensitivities` takes derivatives in go by their names alone too: `mass`, `x'`, or a parameter's.
+        """
+        numbers = [(key, float(value)) for key, value in values.items()]
+        return Scene(self._checked.varied(self.text, self.origin, numbers), self.origin)
+
+    def sensitivities(
+        self,
+        keys: str | Iterable[str] | Mapping[str, float],
+        *,
+        columns: Texts = None,
+        t_eval: Iterable[float] | None = None,
+        method: str | None = None,
+        step: float | None = None,
+        duration: float | None = None,
+        alpha: float | None = None,
+        progress: bool | Progress | None = None,
+    ) -> Sensitivities:
+        """The exact derivatives of a run in numbers of its start and in parameters, at the times `t_eval` or at its end.
+
+        `keys` are numbers of the scene: of a sleigh `mass`, `inertia`, `offset`, `x`, `y`, `heading`, `speed` and
+        `turn_rate`, of a `System` its parameters, coordinates and rates. With a dictionary the run is made at its values. Where a
+        number of the start has to stay admissible, the derivative is that of the admissible start that is taken.
+
+        `columns` are coordinates, velocities, `energy`, a sleigh's `center_x` and `center_y`, and the outputs of a `System`.
+
+        The derivatives are those of the steps that the method makes, to round-off, not of the equations that it approximates. A
+        method whose steps have none is refused with `noslip.RequestError`, which names those that have.
+        """
+        if isinstance(keys, Mapping):
+            return self.varied(keys).sensitivities(
+                list(keys),
+                columns=columns,
+                t_eval=t_eval,
+                method=method,
+                step=step,
+                duration=duration,
+                alpha=alpha,
+                progress=progress,
+            )
+        checked = self._checked.with_settings(method, step, duration, alpha)
+        times = [] if t_eval is None else [float(t) for t in t_eval]
+        asked = _list(keys)
+        with shown(progress) as tell:
+            told, t, values, jacobian = checked.sensitivities(asked, _list(columns), times, tell)
+        return Sensitivities(asked, told, t, values, jacobian)
+
+    def prediction(self, keys: str | Iterable[str], **settings: Any) -> Prediction:
+        """Numbers of a run as a function of the scene's numbers with these keys, for `scipy.optimize`.
+
+        Arguments besides are those of `sensitivities`.
+        """
+        asked = _list(keys)
+        return Prediction(asked, lambda values: self.sensitivities(values, **settings))
 
     def compare(
         self, *, methods: Texts = None, progress: bool | Progress | None = None, **settings: Any

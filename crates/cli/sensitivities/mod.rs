@@ -1,0 +1,135 @@
+//! How a run depends on its start and on parameters, exactly: for fits, optimisation and error bars.
+
+mod motion;
+mod sleigh;
+mod text;
+
+use crate::called::Caller;
+use crate::in_memory::RunError;
+use dla::Schedule;
+use harness::{Method, SensitivitiesError};
+use scene::{AnyScene, FREE};
+use std::fmt::Display;
+
+/// Which derivatives of a run are asked for.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SensitivityRequest {
+    /// In what: numbers of the start and parameters, by their keys in the scene, as `start.speed`, `sleigh.mass`, `parameters.m`, or by
+    /// their names alone.
+    pub keys: Vec<String>,
+    /// Of what: columns of the run; coordinates and velocities where none are named.
+    pub columns: Vec<String>,
+    /// When (s), in order; at the end of the run where none are given.
+    pub times: Vec<f64>,
+}
+
+/// Numbers of a run, with their derivatives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sensitivities {
+    /// The columns.
+    pub columns: Vec<String>,
+    /// The times (s).
+    pub times: Vec<f64>,
+    /// The numbers of all columns at the first time, then at the next.
+    pub values: Vec<f64>,
+    /// The derivatives of each of these numbers, in all keys.
+    pub jacobian: Vec<f64>,
+}
+
+/// The directions of a block of keys: numbers carry so many at once.
+const BLOCK: usize = FREE;
+
+/// The numbers of a run at some times, each with its derivatives in a block of keys.
+struct Rows {
+    columns: Vec<String>,
+    times: Vec<f64>,
+    numbers: Vec<(f64, [f64; BLOCK])>,
+}
+
+/// What is asked of a scene, for each block of keys.
+struct Asked<'a> {
+    method: &'a Method,
+    schedule: Schedule,
+    request: &'a SensitivityRequest,
+    caller: &'a Caller,
+}
+
+/// The derivatives of a run, at its end or at some times, in numbers of its start and in parameters.
+///
+/// They are those of the discrete motion, exact but for round-off, as the numbers are those that [`run`](crate::run) gives, to the last
+/// bit.
+///
+/// # Errors
+/// [`RunError`] where the request makes no sense for the scene, the method has no derivatives, a step fails, or the caller ends the
+/// run.
+pub fn sensitivities(
+    scene: &AnyScene,
+    request: &SensitivityRequest,
+    caller: &Caller,
+) -> Result<Sensitivities, RunError> {
+    let settings = scene.run();
+    let method = Method::named(&settings.method, settings.alpha).map_err(|error| refused(&error))?;
+    if request.keys.is_empty() {
+        return Err(refused(&"no keys are given, in which derivatives are to be taken"));
+    }
+    let (within, order) = (0.0..=settings.duration, request.times.is_sorted());
+    if !order || request.times.iter().any(|t| !within.contains(t)) {
+        let problem = format!("the times are not in order, or not within the run, from 0 to {:?} s", settings.duration);
+        return Err(refused(&problem));
+    }
+    let asked = Asked { method: &method, schedule: scene.schedule(), request, caller };
+    let blocks = request.keys.chunks(BLOCK).map(|keys| match scene {
+        AnyScene::Sleigh(sleigh) => sleigh::rows(sleigh, &asked, keys),
+        AnyScene::Text(text) => text::rows(text, &asked, keys),
+    });
+    let blocks: Vec<Rows> = blocks.collect::<Result<_, _>>()?;
+    let Some(Rows { columns, times, numbers }) = blocks.first() else {
+        return Err(refused(&"no keys are given"));
+    };
+    let mut jacobian = Vec::with_capacity(numbers.len() * request.keys.len());
+    for row in 0..numbers.len() {
+        for (block, keys) in blocks.iter().zip(request.keys.chunks(BLOCK)) {
+            jacobian.extend(&block.numbers[row].1[..keys.len()]);
+        }
+    }
+    let values = numbers.iter().map(|(value, _)| *value).collect();
+    Ok(Sensitivities { columns: columns.clone(), times: times.clone(), values, jacobian })
+}
+
+/// The key in full of a number that derivatives can be taken in, `start.speed` of `speed`; any other key as it stands.
+#[must_use]
+pub fn full_key(scene: &AnyScene, key: &str) -> String {
+    let full = match scene {
+        AnyScene::Sleigh(_) => sleigh::full_key(key),
+        AnyScene::Text(scene) => text::full_key(scene, key),
+    };
+    full.unwrap_or_else(|| key.to_owned())
+}
+
+/// An error of the request.
+fn refused(problem: &impl Display) -> RunError {
+    RunError { message: problem.to_string(), request: true }
+}
+
+/// Whether an error is one of the request, or of the computation.
+fn failed(error: &SensitivitiesError) -> RunError {
+    let request = matches!(error, SensitivitiesError::Method { .. } | SensitivitiesError::Jump { .. });
+    RunError { message: error.to_string(), request }
+}
+
+/// What is said of a key that derivatives cannot be taken in.
+fn no_key(key: &str, known: &impl Display) -> RunError {
+    refused(&format!("no derivatives can be taken in `{key}`; the keys are {known}"))
+}
+
+/// The places of the columns that are asked for among those that have derivatives, all of the first `usual` where none are.
+fn chosen(asked: &[String], known: &[String], usual: usize) -> Result<Vec<usize>, RunError> {
+    if asked.is_empty() {
+        return Ok((0..usual).collect());
+    }
+    let place = |name: &String| {
+        let unknown = || format!("no derivatives are taken of `{name}`; the columns are {}", known.join(", "));
+        known.iter().position(|other| other == name).ok_or_else(|| refused(&unknown()))
+    };
+    asked.iter().map(place).collect()
+}

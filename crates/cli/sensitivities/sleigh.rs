@@ -1,0 +1,96 @@
+use super::motion::{Carried, Motion, of_parameter, of_start};
+use super::{Asked, BLOCK, Rows, no_key, refused};
+use crate::in_memory::RunError;
+use dla::Tangent;
+use harness::ParametrisedMechanics;
+use lagrangian::{Gradients, Scalar, Seeded};
+use scene::{AnySystem, Built, PARAMETERS, Scene, SleighFamily, Started};
+
+/// The keys of the start.
+const START: [&str; 5] = ["start.x", "start.y", "start.heading", "start.speed", "start.turn_rate"];
+
+/// The columns that have derivatives; those of a rotor are told of a scene with one.
+const COLUMNS: [&str; 5] = ["x", "y", "heading", "speed", "turn_rate"];
+const OF_ROTOR: [&str; 2] = ["rotor_angle", "rotor_rate"];
+const FURTHER: [&str; 3] = ["energy", "center_x", "center_y"];
+
+struct Family<'a, const N: usize>(&'a SleighFamily<N>);
+
+/// Its basis holds everywhere.
+impl<const N: usize> ParametrisedMechanics<N, 1, BLOCK> for Family<'_, N> {
+    fn at(&self, _basis: u64, p: &[Seeded; BLOCK]) -> Box<dyn Gradients<N, 1> + '_> {
+        self.0.at(p)
+    }
+}
+
+/// The numbers of a run of a sleigh, with their derivatives in a block of keys.
+pub(super) fn rows(scene: &Scene, asked: &Asked<'_>, keys: &[String]) -> Result<Rows, RunError> {
+    match scene.system().map_err(|error| refused(&error))? {
+        AnySystem::Sleigh(started) => of_shape(scene, &started, asked, keys),
+        AnySystem::Rotor(started) => of_shape(scene, &started, asked, keys),
+        _ => Err(imposed()),
+    }
+}
+
+fn imposed() -> RunError {
+    refused(&"derivatives of runs are taken of scenes that impose no velocities")
+}
+
+fn of_shape<const N: usize>(
+    scene: &Scene,
+    Started { system, q, v }: &Started<N, 1>,
+    asked: &Asked<'_>,
+    keys: &[String],
+) -> Result<Rows, RunError> {
+    let family = scene.family::<N>().map_err(|error| refused(&error))?.ok_or_else(imposed)?;
+    let start = keys.iter().map(|key| tangent(key, q, v)).collect::<Result<Vec<_>, _>>()?;
+    let rotor: &[&str] = if N > 3 { &OF_ROTOR } else { &[] };
+    let known: Vec<String> = COLUMNS.iter().chain(rotor).chain(&FURTHER).map(|name| (*name).to_owned()).collect();
+    let usual = known.len() - FURTHER.len();
+    let told = |at: &Carried<N>| {
+        let Carried { q, v, p, .. } = at;
+        let (sin, cos) = q[2].sin_cos();
+        let mut told = vec![q[0], q[1], q[2], v[0] * cos + v[1] * sin, v[2]];
+        told.extend(q.iter().zip(v).skip(3).flat_map(|(angle, rate)| [*angle, *rate]));
+        told.extend([at.energy(&*family.at(p)), q[0] + cos * p[2], q[1] + sin * p[2]]);
+        told
+    };
+    let motion = Motion {
+        system: Built::Sleigh(&**system),
+        family: &Family(&family),
+        parameters: family.values(),
+        q: *q,
+        v: *v,
+    };
+    motion.rows(asked, start, (&known, usual), told)
+}
+
+/// Whether a key is the known one, in full or by its name.
+fn is(known: &str, key: &str) -> bool {
+    known == key || known.split_once('.').is_some_and(|(_, name)| name == key)
+}
+
+/// The key in full.
+pub(super) fn full_key(key: &str) -> Option<String> {
+    START.iter().chain(&PARAMETERS).find(|known| is(known, key)).map(|known| (*known).to_owned())
+}
+
+/// How the run begins in a key.
+fn tangent<const N: usize>(key: &str, q: &[f64; N], v: &[f64; N]) -> Result<Tangent<N, BLOCK>, RunError> {
+    if let Some(place) = PARAMETERS.iter().position(|known| is(known, key)) {
+        return Ok(of_parameter(place));
+    }
+    let Some(place) = START.iter().position(|known| is(known, key)) else {
+        return Err(no_key(key, &START.iter().chain(&PARAMETERS).copied().collect::<Vec<_>>().join(", ")));
+    };
+    let (sin, cos) = q[2].sin_cos();
+    let (mut dq, mut dv) = ([0.0; N], [0.0; N]);
+    match place {
+        // The velocity turns with the blade.
+        2 => (dq[2], dv[0], dv[1]) = (1.0, -v[1], v[0]),
+        3 => (dv[0], dv[1]) = (cos, sin),
+        4 => dv[2] = 1.0,
+        place => dq[place] = 1.0,
+    }
+    Ok(of_start(dq, dv))
+}
