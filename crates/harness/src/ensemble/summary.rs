@@ -27,13 +27,16 @@ pub struct Summary<Q> {
     pub constraint: f64,
 }
 
+/// Quantities of a time (s), a configuration, angles with their full turns, and a velocity.
+pub(super) type Of<'a, Q, const N: usize> = &'a dyn Fn(f64, &[f64; N], &[f64; N]) -> Q;
+
 impl<Q: Quantities> Summary<Q> {
     /// The summary of the first node alone.
     pub(super) fn first<const N: usize, const M: usize>(
         system: &dyn Mechanics<N, M>,
         t: f64,
         state: &State<N>,
-        of: &dyn Fn(f64, &[f64; N], &[f64; N]) -> Q,
+        of: Of<'_, Q, N>,
     ) -> Self {
         let end = of(t, &state.unwrapped(), state.v());
         let energy = system.energy(t, state.q(), state.v());
@@ -49,7 +52,7 @@ impl<Q: Quantities> Summary<Q> {
         system: &dyn Mechanics<N, M>,
         t: f64,
         state: &State<N>,
-        of: &dyn Fn(f64, &[f64; N], &[f64; N]) -> Q,
+        of: Of<'_, Q, N>,
     ) {
         (self.t, self.end) = (t, of(t, &state.unwrapped(), state.v()));
         for (k, value) in self.end.as_ref().iter().enumerate() {

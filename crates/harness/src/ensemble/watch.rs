@@ -1,12 +1,10 @@
+use super::summary::Of;
 use super::{Quantities, Summary};
 use crate::Method;
 use crate::run::integrate_pieces;
 use dla::{Ensemble, Mechanics, Observer, RunError, Schedule, State, StepReport, Subject, View};
 use std::fmt::{Debug, Formatter};
 use std::ops::ControlFlow;
-
-/// Quantities of a time (s), a configuration, angles with their full turns, and a velocity.
-type Of<'a, Q, const N: usize> = &'a dyn Fn(f64, &[f64; N], &[f64; N]) -> Q;
 
 /// Which quantities are observed, and at which nodes.
 #[derive(Clone, Copy)]
