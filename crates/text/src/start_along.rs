@@ -102,7 +102,7 @@ impl Family {
             let (part, dpart) = (a.select_columns(left_out), da.select_columns(left_out));
             let u = DVector::from_iterator(left_out.len(), left_out.iter().map(|&i| v[i]));
             if let Some(change) = smallest_along((&part, &dpart), &sizes, &u, &missing)
-                && (&part * &change - &missing).amax() <= MET * missing.amax()
+                && (&part * &change - &missing).amax() <= MET * (missing.amax() + part.amax() * change.amax())
             {
                 let mut moved = dv;
                 left_out.iter().zip(&change).for_each(|(&i, change)| moved[i] += change);
