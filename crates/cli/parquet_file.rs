@@ -35,8 +35,8 @@ fn write_table(
 ) -> Result<(), ParquetError> {
     let field = |column: &Column| {
         let physical = if column.whole { Physical::INT64 } else { Physical::DOUBLE };
-        let field = Type::primitive_type_builder(&label(column), physical).with_repetition(Repetition::REQUIRED);
-        field.build().map(Arc::new)
+        let label = label(column);
+        Type::primitive_type_builder(&label, physical).with_repetition(Repetition::REQUIRED).build().map(Arc::new)
     };
     let fields = columns.iter().map(field).collect::<Result<_, _>>()?;
     let schema = Type::group_type_builder("trajectory").with_fields(fields).build()?;

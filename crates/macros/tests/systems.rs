@@ -1,6 +1,6 @@
 //! Systems by `system!` move as those written by hand: the same numbers over 10^4 steps, by every method that applies.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
 use dla::{Schedule, State, drive};
 use harness::{METHODS, Method};
