@@ -130,8 +130,8 @@ impl Scene {
 
     /// The text of the scene with other numbers, by their keys.
     fn varied(&self, text: &str, origin: &str, values: Vec<(String, f64)>) -> PyResult<String> {
-        let setting = |(key, value): &(String, f64)| format!("{}={value:?}", full_key(&self.scene, key)).parse();
-        let settings: Result<Vec<Setting>, String> = values.iter().map(setting).collect();
+        let setting = |(key, value): (String, f64)| format!("{}={value:?}", full_key(&self.scene, &key)).parse();
+        let settings: Result<Vec<Setting>, String> = values.into_iter().map(setting).collect();
         let settings = settings.map_err(RequestError::new_err)?;
         with_settings(text, origin, &settings).map_err(|error| RequestError::new_err(error.to_string()))
     }
