@@ -159,7 +159,10 @@ fn json_has_the_reference_the_points_and_the_cheapest() {
         let points = result["points"].as_array().unwrap().iter().filter(|point| point["method"] == method["method"]);
         let errors: Vec<f64> =
             points.filter(|point| point.get("mark").is_none()).map(|point| point["error"].as_f64().unwrap()).collect();
-        assert!(errors.len() >= 6 && errors.windows(2).all(|pair| pair[1] < pair[0]), "{method} {errors:?}");
+        // Near its rounding a tolerance may be met better than the next one is.
+        let most = if ADAPTIVE.iter().any(|name| method["method"] == *name) { 2.0 } else { 1.0 };
+        assert!(errors.len() >= 6 && errors.windows(2).all(|pair| pair[1] < most * pair[0]), "{method} {errors:?}");
+        assert!(errors[errors.len() - 1] < 1e-3 * errors[0], "{method} {errors:?}");
     }
     // The next power of the step is two orders away: at the steps of the fit, all below 0.3 s, less than a tenth of
     // this one, which tilts a line over the two decades of error by less than ln(1.1) / ln(100) of the slope.

@@ -1,10 +1,11 @@
 use crate::{Mechanics, OneStep, OwnStep, State, StepError, StepReport};
+use std::ops::ControlFlow;
 
 /// A method on systems whose basis of admissible velocities holds near a configuration only: the basis is changed at nodes, where it
 /// becomes badly conditioned.
 ///
-/// Within a step the basis is one and the same, so that a method has the order that it has in any basis. Of a system whose basis holds
-/// everywhere the method makes its steps by itself.
+/// Within a step the basis is one and the same, so that a method has the order that it has in any basis; a method that makes steps of its
+/// own changes it between these too. Of a system whose basis holds everywhere the method makes its steps by itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rebased<Method> {
     method: Method,
@@ -18,6 +19,65 @@ impl<Method> Rebased<Method> {
     /// The method, with its basis changed where the system asks for that.
     pub fn new(method: Method) -> Self {
         Self { method, basis: 0, local: None }
+    }
+}
+
+/// The time at which a step of a method ends of its own, before that of the run does, where the basis of this number holds no longer; none
+/// where it holds throughout.
+fn holds_until<Method: OneStep<N, M>, const N: usize, const M: usize>(
+    method: &Method,
+    (system, near): (&dyn Mechanics<N, M>, &dyn Mechanics<N, M>),
+    number: u64,
+    step: (f64, f64),
+    state: &State<N>,
+) -> Option<f64> {
+    let mut end = None;
+    let mut see = |time: f64, node: &State<N>| {
+        if holds(system, number, time, node) {
+            return ControlFlow::Continue(());
+        }
+        end = Some(time);
+        ControlFlow::Break(())
+    };
+    // What fails here fails in the step itself, which tells.
+    let _ = method.own_steps(near, step, state, &mut method.memory(), &mut see);
+    end
+}
+
+/// Whether the basis of this number is well conditioned at a node.
+fn holds<const N: usize, const M: usize>(system: &dyn Mechanics<N, M>, number: u64, t: f64, node: &State<N>) -> bool {
+    let mut best = number;
+    system.near(t, node.q(), number, &mut |number, _| best = number);
+    best == number
+}
+
+impl<Method> Rebased<Method> {
+    /// The step, or as much of it as the basis holds in which it begins, and then the time at which that ends.
+    fn part<const N: usize, const M: usize>(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        (t, h): (f64, f64),
+        state: &mut State<N>,
+    ) -> Result<(StepReport<M>, Option<f64>), StepError>
+    where
+        Method: OneStep<N, M>,
+    {
+        let (mut outcome, q) = (None, *state.q());
+        let Self { method, basis, local } = self;
+        let known = *basis;
+        system.near(t, &q, known, &mut |number, near| {
+            if number != known {
+                // What is remembered is in the other basis.
+                method.recall(&[], state);
+                state.advance(&[0.0; N], *state.v(), None);
+            }
+            let end = holds_until(method, (system, near), number, (t, h), state);
+            *basis = number;
+            let made = method.step(near, t, end.map_or(h, |end| end - t), state);
+            outcome = Some(made.map(|report| (report, end)));
+        });
+        *local = Some(outcome.is_some());
+        outcome.unwrap_or_else(|| Ok((method.step(system, t, h, state)?, None)))
     }
 }
 
@@ -36,29 +96,23 @@ where
         if self.local == Some(false) {
             return self.method.step(system, t, h, state);
         }
-        let (mut outcome, q) = (None, *state.q());
-        let Self { method, basis, local } = self;
-        let known = *basis;
-        system.near(t, &q, known, &mut |number, near| {
-            let (before, remembered) = (*state, method.memory());
-            if number != known {
-                // What is remembered is in the other basis.
-                method.recall(&[], state);
-                state.advance(&[0.0; N], *before.v(), None);
+        let (before, remembered, basis) = (*state, self.method.memory(), self.basis);
+        // Of a step in one part the length is that of the step, to the last bit.
+        let (mut total, mut rest) = (None::<StepReport<M>>, (t, h));
+        loop {
+            match self.part(system, rest, state) {
+                Ok((report, end)) => {
+                    let made = total.map_or(report, |total| total.then(&report));
+                    let Some(end) = end else { return Ok(made) };
+                    (total, rest) = (Some(made), (end, t + h - end));
+                }
+                Err(error) => {
+                    *state = before;
+                    self.basis = basis;
+                    self.method.recall(&remembered, state);
+                    return Err(error);
+                }
             }
-            let made = method.step(near, t, h, state);
-            if made.is_ok() {
-                *basis = number;
-            } else if number != known {
-                *state = before;
-                method.recall(&remembered, state);
-            }
-            outcome = Some(made);
-        });
-        *local = Some(outcome.is_some());
-        match outcome {
-            Some(made) => made,
-            None => self.method.step(system, t, h, state),
         }
     }
 
@@ -81,22 +135,39 @@ where
         memory: &mut Vec<f64>,
         see: &mut OwnStep<'_, N>,
     ) -> Result<(), StepError> {
-        let basis = memory.pop().unwrap_or(0.0);
-        let mut outcome = None;
-        system.near(step.0, state.q(), basis as u64, &mut |number, near| {
-            let mut start = *state;
-            if number != basis as u64 {
-                memory.clear();
-                start.advance(&[0.0; N], *state.v(), None);
+        let (mut rest, mut start) = (step, *state);
+        loop {
+            let basis = memory.pop().unwrap_or(0.0);
+            let (mut outcome, mut turned, mut stopped) = (None, None, false);
+            let q = *start.q();
+            system.near(rest.0, &q, basis as u64, &mut |number, near| {
+                if number != basis as u64 {
+                    memory.clear();
+                    start.advance(&[0.0; N], *start.v(), None);
+                }
+                let mut look = |time: f64, node: &State<N>| {
+                    stopped = see(time, node).is_break();
+                    if !stopped && holds(system, number, time, node) {
+                        return ControlFlow::Continue(());
+                    }
+                    turned = Some((time, *node));
+                    ControlFlow::Break(())
+                };
+                outcome = Some(self.method.own_steps(near, rest, &start, memory, &mut look));
+                *memory = numbered(std::mem::take(memory), number as f64);
+            });
+            match (outcome, turned) {
+                (Some(Ok(())), Some((time, node))) if !stopped => {
+                    (rest, start) = ((time, step.0 + step.1 - time), node)
+                }
+                (Some(made), _) => return made,
+                (None, _) => {
+                    let made = self.method.own_steps(system, step, state, memory, see);
+                    *memory = numbered(std::mem::take(memory), basis);
+                    return made;
+                }
             }
-            outcome = Some(self.method.own_steps(near, step, &start, memory, see));
-            *memory = numbered(std::mem::take(memory), number as f64);
-        });
-        outcome.unwrap_or_else(|| {
-            let made = self.method.own_steps(system, step, state, memory, see);
-            *memory = numbered(std::mem::take(memory), basis);
-            made
-        })
+        }
     }
 }
 

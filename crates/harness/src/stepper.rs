@@ -119,7 +119,7 @@ fn make<const N: usize, const M: usize>(method: &Method) -> Stepper<'static, N, 
         Kind::Rk4Projected => Box::new(Rk4Projected),
         Kind::Rk4Reduced => Box::new(Rebased::new(Rk4Reduced)),
         Kind::ImplicitMidpoint => Box::new(Rebased::new(ImplicitMidpoint::default())),
-        Kind::Dop853 => Box::new(Dop853::<N, M>::new(method.tolerance())),
+        Kind::Dop853 => Box::new(Rebased::new(Dop853::<N, M>::new(method.tolerance()))),
     }
 }
 
