@@ -1,6 +1,6 @@
 //! `method!` makes the methods of the table.
 
-#![allow(missing_docs, clippy::unwrap_used)]
+#![allow(missing_docs, clippy::unwrap_used, clippy::float_cmp)]
 
 use harness::{METHODS, Method};
 use noslip::prelude::*;

@@ -102,6 +102,7 @@ impl StageSearch {
 const ANEW: u32 = 3;
 
 #[cfg(test)]
+#[allow(clippy::float_cmp)]
 mod tests {
     use super::*;
     use crate::convergence::tolerances::{LEFT, NOISE, OF_ROW};
