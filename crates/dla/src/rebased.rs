@@ -158,7 +158,7 @@ where
             });
             match (outcome, turned) {
                 (Some(Ok(())), Some((time, node))) if !stopped => {
-                    (rest, start) = ((time, step.0 + step.1 - time), node)
+                    (rest, start) = ((time, step.0 + step.1 - time), node);
                 }
                 (Some(made), _) => return made,
                 (None, _) => {
