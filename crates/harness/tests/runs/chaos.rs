@@ -220,9 +220,12 @@ fn three_ways_to_differentiate_a_step() {
 fn what_has_no_exponents_says_why() {
     let (system, (q, v)) = valley();
     let schedule = Schedule { t0: 0.0, step: 0.1, steps: 10 };
-    for (name, exponents, told) in
-        [("gauss8", Some(0), "1 to 5"), ("gauss8", Some(6), "1 to 5"), ("gni", None, "gni"), ("dop853", None, "dop853")]
-    {
+    for (name, exponents, told) in [
+        ("gauss8", Some(0), "1 to 5"),
+        ("gauss8", Some(6), "1 to 5"),
+        ("gni", None, "gni"),
+        ("dop853", None, "chooses its steps"),
+    ] {
         let request = LyapunovRequest { schedule, settle: 0, exponents, q, v };
         let method = Method::named(name, None).unwrap();
         let error = lyapunov_by(&system, &method, &request, |_, _, _| panic!("nothing is to run")).unwrap_err();
