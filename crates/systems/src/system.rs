@@ -39,7 +39,7 @@ pub trait SceneSystem<const N: usize, const M: usize>: FullMechanics<N, M> + Syn
         general
     }
 
-    /// As [`OwnMethods::series`]: where the system is a sleigh that is free, in a round well, or under a constant thrust or torque.
+    /// As [`series`](dla::OwnMethods::series): where the system is a sleigh that is free, in a round well, or under a constant thrust or torque.
     fn series(&self, _t: f64, _tolerance: f64) -> Option<Stepper<'_, N, M>> {
         None
     }

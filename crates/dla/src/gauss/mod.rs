@@ -27,7 +27,7 @@ use rule::GaussRule;
 /// Symmetric, and on the constraint by construction. Stages are found by fixed-point iteration, which converges for steps
 /// below the time constants of the motion, until their changes are round-off; where it does not converge the step fails.
 ///
-/// Where a system knows its reduced equations by hand ([`System::reduced_motion`](lagrangian::System::reduced_motion)), up to eight stages are computed at once,
+/// Where a system knows its reduced equations by hand ([`System::reduced`](lagrangian::System::reduced)), up to eight stages are computed at once,
 /// in the vector registers of the machine, beginning with the polynomial of the step before; elsewhere one after another. The
 /// two agree to round-off. Vector registers multiply and add with one rounding, so the last bits depend on the machine.
 ///

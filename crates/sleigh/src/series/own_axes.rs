@@ -83,7 +83,7 @@ impl OwnAxes {
 
 /// A body whose reduced equations are of second degree in axes that turn with it, or may be.
 pub trait InOwnAxes {
-    /// The equations, the reduced ones of the body ([`System::reduced_motion`](lagrangian::System::reduced_motion)) in other words; none
+    /// The equations, the reduced ones of the body ([`System::reduced`](lagrangian::System::reduced)) in other words; none
     /// where they are not of this form.
     fn own_axes(&self) -> Option<OwnAxes>;
 }
