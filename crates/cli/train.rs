@@ -7,7 +7,7 @@ use crate::interrupt::Interrupt;
 use crate::precision::{KnownEnd, Measurement};
 use crate::progress::Interruptible;
 use crate::{compare_numbers, facts, inspect, json, progress, table};
-use assembly::State;
+use assembly::AssemblyState;
 use assembly::parts::Train;
 use dla::{RunError, Schedule};
 use harness::precision::{Bench, Limits, rounds, work_precision};
@@ -27,7 +27,7 @@ const REFERRED: u64 = 1 << 22;
 /// Runs every method on a train, until Ctrl-C.
 pub(crate) fn compare_scene(
     scene: &Scene,
-    (train, start): &(Train, State),
+    (train, start): &(Train, AssemblyState),
     methods: &[Method],
     interrupt: &Interrupt,
 ) -> Result<Comparison, CliError> {
@@ -96,7 +96,13 @@ pub(crate) fn compare_scene(
 }
 
 /// Where the motion ends by dla8 with a quarter of the step; none of a run that would take longer than all others.
-fn reference(scene: &Scene, train: &Train, start: &State, schedule: &Schedule, interrupt: &Interrupt) -> Option<State> {
+fn reference(
+    scene: &Scene,
+    train: &Train,
+    start: &AssemblyState,
+    schedule: &Schedule,
+    interrupt: &Interrupt,
+) -> Option<AssemblyState> {
     if schedule.steps.saturating_mul(start.len() as u64) > REFERRED || interrupt.asked() {
         return None;
     }
@@ -112,7 +118,7 @@ fn reference(scene: &Scene, train: &Train, start: &State, schedule: &Schedule, i
 /// What accuracy costs on a train: error of the first blade at the end against the time of a run.
 pub(crate) fn measure(
     scene: &Scene,
-    (train, start): &(Train, State),
+    (train, start): &(Train, AssemblyState),
     methods: &[Method],
     longest: f64,
     interrupt: &Interrupt,

@@ -9,7 +9,7 @@ use crate::progress::Interruptible;
 use crate::run::{Read, identity, of, position, provenance, tell, with_position};
 use crate::trigger::{Events, Happened, Trigger};
 use crate::{inspect, json, progress, resume, substeps, table, terminal};
-use assembly::State;
+use assembly::AssemblyState;
 use assembly::parts::Train;
 use dla::{Checkpoint, Schedule};
 use harness::{
@@ -114,7 +114,7 @@ pub(crate) fn run(
 struct Request<'a, 'o> {
     method: &'a Method,
     train: &'a Train,
-    start: &'a State,
+    start: &'a AssemblyState,
     schedule: &'a Schedule,
     output: &'a RefCell<Option<Output<'o>>>,
 }
@@ -179,7 +179,7 @@ impl Request<'_, '_> {
 }
 
 /// Place and heading of the first and of the last blade, by which a tolerance is met.
-fn ends(train: &Train, state: &State) -> [f64; 6] {
+fn ends(train: &Train, state: &AssemblyState) -> [f64; 6] {
     let [first, last] = [0, train.trailers().len()].map(|k| train.blade(state, k));
     [first.x, first.y, first.heading, last.x, last.y, last.heading]
 }

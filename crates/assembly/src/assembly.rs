@@ -1,7 +1,7 @@
 use crate::element::Element;
 use crate::joint::{Joint, JointElement};
 use crate::system_element::SystemElement;
-use crate::{AssemblyError, ConstraintRow, State};
+use crate::{AssemblyError, AssemblyState, ConstraintRow};
 use dla::NotANumber;
 use lagrangian::System;
 use lagrangian::linear::larger;
@@ -172,7 +172,7 @@ impl Assembly {
     /// What each element says of a state, from its coordinates and velocities.
     pub(crate) fn say<T>(
         &self,
-        state: &State,
+        state: &AssemblyState,
         mut of: impl FnMut(&dyn Element, &[f64], &[f64]) -> T,
         mut with: impl FnMut(T),
     ) {
@@ -191,7 +191,7 @@ impl Assembly {
     /// numbers of the assembly.
     #[must_use]
     #[cold]
-    pub fn not_a_number(&self, t: f64, state: &State) -> Option<(usize, &'static str, NotANumber)> {
+    pub fn not_a_number(&self, t: f64, state: &AssemblyState) -> Option<(usize, &'static str, NotANumber)> {
         let (mut places, mut found) = (self.placed.iter().enumerate(), None);
         self.say(
             state,
@@ -209,7 +209,7 @@ impl Assembly {
 
     /// The energy (J).
     #[must_use]
-    pub fn energy(&self, t: f64, state: &State) -> f64 {
+    pub fn energy(&self, t: f64, state: &AssemblyState) -> f64 {
         let mut total = 0.0;
         self.say(state, |element, q, v| element.energy(t, q, v), |energy| total += energy);
         total
@@ -217,7 +217,7 @@ impl Assembly {
 
     /// The power of all forces and of time (W).
     #[must_use]
-    pub fn power(&self, t: f64, state: &State) -> f64 {
+    pub fn power(&self, t: f64, state: &AssemblyState) -> f64 {
         let mut total = 0.0;
         self.say(state, |element, q, v| element.power(t, q, v), |power| total += power);
         total
@@ -225,7 +225,7 @@ impl Assembly {
 
     /// The largest residual `|A v + b|` of all constraints (m/s), and the largest `|g|` of those on positions (m).
     #[must_use]
-    pub fn misses(&self, t: f64, state: &State) -> [f64; 2] {
+    pub fn misses(&self, t: f64, state: &AssemblyState) -> [f64; 2] {
         let mut most = [0.0; 2];
         let each = |miss: [f64; 2]| most = [larger(most[0], miss[0]), larger(most[1], miss[1])];
         self.say(state, |element, q, v| element.misses(t, q, v), each);

@@ -1,19 +1,19 @@
-use crate::{Assembly, AssemblyError, Dla, OneStep, Solver, State, StepReport};
+use crate::{Assembly, AssemblyError, AssemblyMethod, AssemblyReport, AssemblyState, Solver, SparseDla};
 
 /// A symmetric composition of the steps of an assembly, `S_(g_1 h) S_(g_2 h) .. S_(g_n h)`, with the weights of
 /// [`dla::Composition`].
 #[derive(Debug)]
-pub struct Composition {
-    base: Dla,
+pub struct SparseComposition {
+    base: SparseDla,
     weights: Vec<f64>,
-    inner: State,
+    inner: AssemblyState,
 }
 
-impl Composition {
+impl SparseComposition {
     /// The composition of order 4, 6 or 8: five stages of Suzuki, nine of Kahan and Li, fifteen of Suzuki and Umeno.
     ///
     /// # Errors
-    /// [`AssemblyError::Unsupported`] for other orders; as [`Dla::new`].
+    /// [`AssemblyError::Unsupported`] for other orders; as [`SparseDla::new`].
     pub fn new(assembly: &Assembly, solver: Solver, order: u32) -> Result<Self, AssemblyError> {
         let weights = match order {
             4 => dla::Composition::suzuki4(()).weights().to_vec(),
@@ -21,12 +21,18 @@ impl Composition {
             8 => dla::Composition::fifteen8(()).weights().to_vec(),
             _ => return Err(AssemblyError::Unsupported { reason: "compositions have the orders 4, 6 and 8" }),
         };
-        Ok(Self { base: Dla::new(assembly, solver)?, weights, inner: State::new(assembly, &[], &[]) })
+        Ok(Self { base: SparseDla::new(assembly, solver)?, weights, inner: AssemblyState::new(assembly, &[], &[]) })
     }
 }
 
-impl OneStep for Composition {
-    fn step(&mut self, assembly: &Assembly, t: f64, h: f64, state: &mut State) -> Result<StepReport, AssemblyError> {
+impl AssemblyMethod for SparseComposition {
+    fn step(
+        &mut self,
+        assembly: &Assembly,
+        t: f64,
+        h: f64,
+        state: &mut AssemblyState,
+    ) -> Result<AssemblyReport, AssemblyError> {
         self.inner.copy_from(state);
         let (mut iterations, mut done) = (0, 0.0);
         for weight in &self.weights {
@@ -34,6 +40,6 @@ impl OneStep for Composition {
             done += weight;
         }
         std::mem::swap(state, &mut self.inner);
-        Ok(StepReport::of(iterations))
+        Ok(AssemblyReport::of(iterations))
     }
 }

@@ -1,7 +1,7 @@
 use crate::assembly::{PlacedElement, WIDEST};
-use crate::element::{Blocks, Element};
+use crate::element::{Element, ElementBlocks};
 use crate::pattern::Pattern;
-use crate::{Assembly, State};
+use crate::{Assembly, AssemblyState};
 
 /// What the elements contribute at one point, each in its own place, and the matrix and the vectors that these make.
 #[derive(Debug)]
@@ -14,7 +14,7 @@ pub(crate) struct Contributions {
 }
 
 /// What an element is asked for.
-pub(crate) type Ask<'a> = dyn Fn(&PlacedElement, Blocks<'_>) + Sync + 'a;
+pub(crate) type Ask<'a> = dyn Fn(&PlacedElement, ElementBlocks<'_>) + Sync + 'a;
 
 impl Contributions {
     pub(crate) fn of(assembly: &Assembly, parallel: usize) -> Self {
@@ -63,15 +63,15 @@ impl Contributions {
         }
     }
 
-    /// Writes the blocks, and the rows where `Part` says.
-    pub(crate) fn write_matrix(&self, assembly: &Assembly, pattern: &Pattern, part: Part, values: &mut [f64]) {
-        if part != Part::Transposed {
+    /// Writes the blocks, and the rows where `MatrixPart` says.
+    pub(crate) fn write_matrix(&self, assembly: &Assembly, pattern: &Pattern, part: MatrixPart, values: &mut [f64]) {
+        if part != MatrixPart::Transposed {
             blank(assembly, pattern, values);
         }
         for (k, placed) in assembly.placed().iter().enumerate() {
             let (size, acts) = (placed.element.size(), placed.element.acts());
             let (places, answer) = (pattern.places(k, size, acts), self.one(k, placed));
-            if part != Part::Transposed {
+            if part != MatrixPart::Transposed {
                 for (place, x) in places.block.iter().zip(answer.block) {
                     values[*place as usize] += x;
                 }
@@ -79,7 +79,7 @@ impl Contributions {
                     values[*place as usize] = *x;
                 }
             }
-            if part != Part::Blocks {
+            if part != MatrixPart::ElementBlocks {
                 for (place, x) in places.transposed.iter().zip(answer.rows) {
                     values[*place as usize] = *x;
                 }
@@ -90,11 +90,11 @@ impl Contributions {
 
 /// Which part of the matrix is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Part {
+pub(crate) enum MatrixPart {
     /// `G'` alone.
     Transposed,
     /// `K` and `C`.
-    Blocks,
+    ElementBlocks,
     /// All, `G` and `C` the same.
     All,
 }
@@ -136,7 +136,7 @@ fn ask_all(elements: &[PlacedElement], starts: &[usize], out: &mut [f64], ask: (
         let (level, rest) = rest.split_at_mut(m);
         let rest = if ask.1 { rest } else { &mut [] };
         let (block, rows) = rest.split_at_mut(rest.len().saturating_sub(m * n));
-        ask.0(placed, Blocks { momentum, level, block, rows, derivatives: ask.1 });
+        ask.0(placed, ElementBlocks { momentum, level, block, rows, derivatives: ask.1 });
     }
 }
 
@@ -158,7 +158,7 @@ pub(crate) fn at<T>(placed: &PlacedElement, q: &[f64], v: &[f64], then: impl FnO
 #[inline(always)]
 pub(crate) fn at_state<T>(
     placed: &PlacedElement,
-    state: &State,
+    state: &AssemblyState,
     then: impl FnOnce(&dyn Element, &[f64], &[f64]) -> T,
 ) -> T {
     gathered(placed, |i| state.q(i), |q| gathered(placed, |i| state.v(i), |v| then(placed.element.as_ref(), q, v)))

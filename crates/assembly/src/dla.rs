@@ -1,9 +1,9 @@
 use crate::assembly::{PlacedElement, WIDEST};
-use crate::contributions::{Part, at_state, gathered};
+use crate::contributions::{MatrixPart, at_state, gathered};
 use crate::equations::AssemblyEquations;
 use crate::linear::Linear;
 use crate::terms;
-use crate::{Assembly, AssemblyError, OneStep, Solver, State, StepReport};
+use crate::{Assembly, AssemblyError, AssemblyMethod, AssemblyReport, AssemblyState, Solver};
 use dla::Stage;
 use dla::convergence::rounding_of_place;
 use lagrangian::linear::{larger, largest};
@@ -22,7 +22,7 @@ use lagrangian::linear::{larger, largest};
 ///
 /// A step that turns a constraint by more than a radian, or whose iteration does not contract from its start, is refused: the
 /// static method continues the solution from a step of length zero there. (The book, (3.1) and (3.2).)
-pub struct Dla {
+pub struct SparseDla {
     equations: AssemblyEquations,
     q0: Vec<f64>,
     q1: Vec<f64>,
@@ -38,13 +38,13 @@ const NEAR: f64 = 1.0;
 /// With fewer elements, threads cost more than they gain.
 const PARALLEL: usize = 2048;
 
-impl std::fmt::Debug for Dla {
+impl std::fmt::Debug for SparseDla {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Dla").field("unknowns", &self.equations.linear.right.len()).finish_non_exhaustive()
     }
 }
 
-impl Dla {
+impl SparseDla {
     /// The method for that assembly, whose pattern it finds and whose memory it keeps.
     ///
     /// # Errors
@@ -70,7 +70,12 @@ impl Dla {
     }
 
     /// The mean velocity of the step, in `v`.
-    fn increment(&mut self, assembly: &Assembly, (t0, h): (f64, f64), state: &State) -> Result<u32, AssemblyError> {
+    fn increment(
+        &mut self,
+        assembly: &Assembly,
+        (t0, h): (f64, f64),
+        state: &AssemblyState,
+    ) -> Result<u32, AssemblyError> {
         let Self { equations, q0, q1, v0, v, p, .. } = self;
         equations.contributions.ask(assembly, true, &|placed, out| {
             at_state(placed, state, |element, q, v| element.beginning(t0, q, v, out));
@@ -78,7 +83,7 @@ impl Dla {
         p.fill(0.0);
         equations.contributions.add_momenta(assembly, 1.0, p);
         let AssemblyEquations { contributions, linear: Linear { pattern, values, .. }, .. } = equations;
-        contributions.write_matrix(assembly, pattern, Part::Transposed, values);
+        contributions.write_matrix(assembly, pattern, MatrixPart::Transposed, values);
 
         predict(state, h, v0, v);
         let evaluate = |equations: &mut AssemblyEquations, v: &[f64], derivatives: bool| {
@@ -113,7 +118,7 @@ impl Dla {
                     },
                 );
             });
-            equations.write(assembly, derivatives.then_some(Part::Blocks), p);
+            equations.write(assembly, derivatives.then_some(MatrixPart::ElementBlocks), p);
         };
         let terms = |sizes: &mut [f64]| terms::add(assembly, (t0, h), |i| state.q(i), |i| state.v(i), sizes);
         equations.newton((assembly, Stage::Increment), v, terms, evaluate)
@@ -146,7 +151,7 @@ impl Dla {
                     },
                 );
             });
-            equations.write(assembly, derivatives.then_some(Part::All), p);
+            equations.write(assembly, derivatives.then_some(MatrixPart::All), p);
         };
         let terms = |sizes: &mut [f64]| terms::add(assembly, (t0 + h, h), |i| q1[i], |i| v[i], sizes);
         equations.newton((assembly, Stage::Projection), v1, terms, evaluate)
@@ -197,7 +202,7 @@ impl Dla {
 
 impl AssemblyEquations {
     /// The right side, minus the momenta and the levels; and a part of the matrix.
-    fn write(&mut self, assembly: &Assembly, part: Option<Part>, p: &[f64]) {
+    fn write(&mut self, assembly: &Assembly, part: Option<MatrixPart>, p: &[f64]) {
         let Self { contributions, linear: Linear { pattern, values, right, .. }, .. } = self;
         let n = assembly.coordinates();
         let (momenta, levels) = right.split_at_mut(n);
@@ -218,7 +223,7 @@ pub(crate) fn relative(
     placed: &PlacedElement,
     origins: &[Option<usize>],
     h: f64,
-    state: &State,
+    state: &AssemblyState,
     v: &[f64],
     then: impl FnOnce(&[f64]),
 ) {
@@ -234,7 +239,7 @@ pub(crate) fn relative(
 
 /// The predictor of the mean velocity: extrapolated from the last steps, or with the acceleration of the last one. `v0` where neither is
 /// known, or where it would change the velocity so much that Newton's method might converge to another solution.
-pub(crate) fn predict(state: &State, h: f64, v0: &[f64], v: &mut [f64]) {
+pub(crate) fn predict(state: &AssemblyState, h: f64, v0: &[f64], v: &mut [f64]) {
     /// The largest change of the velocity by a predictor, relative to the velocity, as in the static method.
     const MOST: f64 = 0.125;
     let gained = |i: usize| {
@@ -255,8 +260,14 @@ pub(crate) fn predict(state: &State, h: f64, v0: &[f64], v: &mut [f64]) {
     }
 }
 
-impl OneStep for Dla {
-    fn step(&mut self, assembly: &Assembly, t0: f64, h: f64, state: &mut State) -> Result<StepReport, AssemblyError> {
+impl AssemblyMethod for SparseDla {
+    fn step(
+        &mut self,
+        assembly: &Assembly,
+        t0: f64,
+        h: f64,
+        state: &mut AssemblyState,
+    ) -> Result<AssemblyReport, AssemblyError> {
         for i in 0..state.len() {
             (self.q0[i], self.v0[i]) = (state.q(i), state.v(i));
         }
@@ -278,6 +289,6 @@ impl OneStep for Dla {
             let (v, v1) = (self.v[i], self.v1[i]);
             state.advance(h, i, h * v, v1, (v1 - v) / (0.5 * h));
         }
-        Ok(StepReport::of(iterations))
+        Ok(AssemblyReport::of(iterations))
     }
 }

@@ -7,7 +7,7 @@ use std::fmt::Debug;
 ///
 /// Matrices are given by rows.
 #[derive(Debug)]
-pub struct Blocks<'a> {
+pub struct ElementBlocks<'a> {
     /// Momenta or the residuals of the momentum equations, `N`.
     pub momentum: &'a mut [f64],
     /// What the constraints are to be met by, `M`.
@@ -41,18 +41,18 @@ pub trait Element: EnergyElement + StageElement + Debug + Send + Sync {
     fn origins(&self, _origins: &mut [Option<usize>]) {}
 
     /// At the beginning of a step, `momentum = L_v(q, v)` and `rows = A(q)`.
-    fn beginning(&self, t: f64, q: &[f64], v: &[f64], out: Blocks<'_>);
+    fn beginning(&self, t: f64, q: &[f64], v: &[f64], out: ElementBlocks<'_>);
 
     /// The equations for the mean velocity `v` of a step from `q[0]` to `q[1] = q[0] + h v`: `momentum = D1 L_d + f_d^-` with
     /// its derivatives in `v`, and the constraints in `v` with their negative residuals: `g(q1)/h` of one on positions, `w_d` of
     /// others.
-    fn increment(&self, step: (f64, f64), q: [&[f64]; 2], v: &[f64], out: Blocks<'_>);
+    fn increment(&self, step: (f64, f64), q: [&[f64]; 2], v: &[f64], out: ElementBlocks<'_>);
 
     /// The momentum at the end of a step, `D2 L_d + f_d^+`.
     fn end(&self, step: (f64, f64), q0: &[f64], v: &[f64], p1: &mut [f64]);
 
     /// At a velocity, `momentum = L_v(q, v)`, `block = L_vv`, `rows = A(q)` and `level = -(A v + b)`.
-    fn velocity(&self, t: f64, q: &[f64], v: &[f64], out: Blocks<'_>);
+    fn velocity(&self, t: f64, q: &[f64], v: &[f64], out: ElementBlocks<'_>);
 
     /// The sums of the sizes of the terms of its equations, for a bound on their rounding: `L_v` and `h (L_q + F)` in `momentum`, and
     /// the constraints, `A v + b` and of those on positions `g/h`, in `level`.
@@ -60,7 +60,7 @@ pub trait Element: EnergyElement + StageElement + Debug + Send + Sync {
 
     /// The continuous equations for accelerations: `block = L_vv`, `momentum = F + L_q - (d/dt L_v at v' = 0)`, `rows = A(q)` and
     /// `level = -(d/dt (A v + b) at v' = 0)`.
-    fn motion(&self, t: f64, q: &[f64], v: &[f64], out: Blocks<'_>);
+    fn motion(&self, t: f64, q: &[f64], v: &[f64], out: ElementBlocks<'_>);
 
     /// The energy `v . L_v - L` (J).
     fn energy(&self, t: f64, q: &[f64], v: &[f64]) -> f64;

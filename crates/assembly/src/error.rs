@@ -1,4 +1,4 @@
-use crate::{Assembly, State};
+use crate::{Assembly, AssemblyState};
 use dla::{History, NewtonError, NotANumber, Stage, StepError};
 use lagrangian::Shown;
 use lagrangian::linear::Singular;
@@ -128,7 +128,7 @@ impl AssemblyError {
     /// The error of a step from `state` at `t` (s), with the function named that is not finite there, if it may have failed by that.
     #[must_use]
     #[cold]
-    pub fn named(self, assembly: &Assembly, t: f64, state: &State) -> Self {
+    pub fn named(self, assembly: &Assembly, t: f64, state: &AssemblyState) -> Self {
         let lost = match &self {
             Self::NotFinite | Self::Singular { .. } => true,
             Self::Newton { source, .. } => matches!(source, NewtonError::NotFinite { .. }),
@@ -182,7 +182,7 @@ fn involved(constraints: &[ConstraintRow]) -> String {
 /// A run that ended early; the state is that of the last good node.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("step {step}, from t = {} s: {source}", Shown(*time))]
-pub struct RunError {
+pub struct AssemblyRunError {
     /// The number of the failed step, from 1.
     pub step: u64,
     /// The time it began at, which is how far the trajectory is valid (s).

@@ -1,4 +1,4 @@
-use crate::element::{Blocks, Element, local};
+use crate::element::{Element, ElementBlocks, local};
 use dla::{Derivative, NotANumber, SystemFunction, Variable};
 use lagrangian::linear::larger;
 use lagrangian::{Dual, HyperDual, Scalar};
@@ -66,11 +66,11 @@ impl<J: Joint<N, M>, const N: usize, const M: usize> Element for JointElement<J,
         origins.copy_from_slice(&self.joint.origins());
     }
 
-    fn beginning(&self, t: f64, q: &[f64], _v: &[f64], out: Blocks<'_>) {
+    fn beginning(&self, t: f64, q: &[f64], _v: &[f64], out: ElementBlocks<'_>) {
         Self::write_rows(&self.in_positions(t, q), out.rows);
     }
 
-    fn increment(&self, (t0, h): (f64, f64), [_, q1]: [&[f64]; 2], _v: &[f64], out: Blocks<'_>) {
+    fn increment(&self, (t0, h): (f64, f64), [_, q1]: [&[f64]; 2], _v: &[f64], out: ElementBlocks<'_>) {
         let g = self.in_positions(t0 + h, q1);
         if out.derivatives {
             Self::write_rows(&g, out.rows);
@@ -86,7 +86,7 @@ impl<J: Joint<N, M>, const N: usize, const M: usize> Element for JointElement<J,
         p1.fill(0.0);
     }
 
-    fn velocity(&self, t: f64, q: &[f64], v: &[f64], out: Blocks<'_>) {
+    fn velocity(&self, t: f64, q: &[f64], v: &[f64], out: ElementBlocks<'_>) {
         if out.derivatives {
             Self::write_rows(&self.in_positions(t, q), out.rows);
         }
@@ -104,7 +104,7 @@ impl<J: Joint<N, M>, const N: usize, const M: usize> Element for JointElement<J,
         }
     }
 
-    fn motion(&self, t: f64, q: &[f64], v: &[f64], out: Blocks<'_>) {
+    fn motion(&self, t: f64, q: &[f64], v: &[f64], out: ElementBlocks<'_>) {
         Self::write_rows(&self.in_positions(t, q), out.rows);
         // The second derivative of g along the motion as it would be without acceleration.
         let (q, v): ([f64; N], [f64; N]) = (local(q), local(v));

@@ -1,7 +1,7 @@
 //! Assemblies of many bodies: the discrete Lagrange-d'Alembert principle for systems of thousands of coordinates.
 //!
 //! An [`Assembly`] is a list of elements, each a small static [`System`](lagrangian::System) or a [`Joint`] on coordinates that
-//! it shares with others. Its equations are sparse: [`Dla`] finds their pattern once and solves them with `faer`, so that a step
+//! it shares with others. Its equations are sparse: [`SparseDla`] finds their pattern once and solves them with `faer`, so that a step
 //! of a chain costs time and memory in proportion to its length.
 //!
 //! Ready parts are in [`parts`].
@@ -31,14 +31,14 @@ mod terms;
 mod work;
 
 pub use crate::assembly::{Assembly, WIDEST};
-pub use crate::dla::Dla;
-pub use crate::error::{AssemblyError, ConstraintRow, RunError};
-pub use composition::Composition;
-pub use element::{Blocks, Element};
-pub use energy::{Average, Energy, EnergyElement, Swing};
+pub use crate::dla::SparseDla;
+pub use crate::error::{AssemblyError, AssemblyRunError, ConstraintRow};
+pub use composition::SparseComposition;
+pub use element::{Element, ElementBlocks};
+pub use energy::{Average, EnergyElement, SparseEnergy, Swing};
 pub use factor::Solver;
 pub use joint::Joint;
-pub use lobatto::{Lobatto, StageElement, StageTerms};
-pub use one_step::{OneStep, StepReport};
-pub use state::State;
-pub use work::Work;
+pub use lobatto::{SparseLobatto, StageElement, StageTerms};
+pub use one_step::{AssemblyMethod, AssemblyReport};
+pub use state::AssemblyState;
+pub use work::AssemblyWork;

@@ -1,4 +1,4 @@
-use crate::contributions::{Contributions, Part, at};
+use crate::contributions::{Contributions, MatrixPart, at};
 use crate::linear::Linear;
 use crate::pattern::Pattern;
 use crate::{Assembly, AssemblyError, Solver};
@@ -35,7 +35,7 @@ impl ElementMotion {
         forces.fill(0.0);
         contributions.add_momenta(assembly, 1.0, forces);
         contributions.write_levels(assembly, levels);
-        contributions.write_matrix(assembly, &linear.pattern, Part::All, &mut linear.values);
+        contributions.write_matrix(assembly, &linear.pattern, MatrixPart::All, &mut linear.values);
         linear.factorise(Stage::Projection, None)?;
         linear.solve(1);
         Ok(linear.solution.split_at(*coordinates))

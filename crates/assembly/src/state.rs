@@ -7,11 +7,11 @@ use crate::Assembly;
 /// Each coordinate is a [`dla::State`] of its own: compensated sums, angles within a turn and their turns apart, as in the
 /// static integrators.
 #[derive(Debug, Clone, PartialEq)]
-pub struct State {
+pub struct AssemblyState {
     coordinates: Vec<dla::State<1>>,
 }
 
-impl State {
+impl AssemblyState {
     /// A state at `q` with velocity `v`; numbers that are missing are zero.
     #[must_use]
     pub fn new(assembly: &Assembly, q: &[f64], v: &[f64]) -> Self {

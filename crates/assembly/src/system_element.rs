@@ -1,4 +1,4 @@
-use crate::element::{Blocks, Element, local};
+use crate::element::{Element, ElementBlocks, local};
 use dla::NotANumber;
 use lagrangian::linear::larger;
 use lagrangian::{
@@ -21,7 +21,13 @@ impl<Sys, const N: usize, const M: usize> fmt::Debug for SystemElement<Sys, N, M
 
 impl<Sys: System<N, M>, const N: usize, const M: usize> SystemElement<Sys, N, M> {
     /// The equations for the mean velocity without their derivatives.
-    fn residual(&self, (t0, h): (f64, f64), (q0, q1): (&[f64; N], &[f64; N]), v: &[f64; N], out: &mut Blocks<'_>) {
+    fn residual(
+        &self,
+        (t0, h): (f64, f64),
+        (q0, q1): (&[f64; N], &[f64; N]),
+        v: &[f64; N],
+        out: &mut ElementBlocks<'_>,
+    ) {
         let system = &self.system;
         // D1 of L_d / h in units of h, as in `DiscreteLagrangian::derivatives`: q0 = h a, v = b - a.
         let along = |re: f64, i: usize, slope: f64| {
@@ -59,13 +65,13 @@ impl<Sys: System<N, M> + Send + Sync, const N: usize, const M: usize> Element fo
         angles.copy_from_slice(&self.system.angles());
     }
 
-    fn beginning(&self, t: f64, q: &[f64], v: &[f64], out: Blocks<'_>) {
+    fn beginning(&self, t: f64, q: &[f64], v: &[f64], out: ElementBlocks<'_>) {
         let (q, v) = (local(q), local(v));
         out.momentum.copy_from_slice(&momentum(&self.system, t, &q, &v));
         out.rows.copy_from_slice(reaction_rows(&self.system, t, &q, &v).as_flattened());
     }
 
-    fn increment(&self, (t0, h): (f64, f64), [q0, q1]: [&[f64]; 2], v: &[f64], mut out: Blocks<'_>) {
+    fn increment(&self, (t0, h): (f64, f64), [q0, q1]: [&[f64]; 2], v: &[f64], mut out: ElementBlocks<'_>) {
         let system = &self.system;
         let (q0, q1, v): ([f64; N], [f64; N], [f64; N]) = (local(q0), local(q1), local(v));
         if !out.derivatives {
@@ -112,7 +118,7 @@ impl<Sys: System<N, M> + Send + Sync, const N: usize, const M: usize> Element fo
         p1.copy_from_slice(&p);
     }
 
-    fn velocity(&self, t: f64, q: &[f64], v: &[f64], out: Blocks<'_>) {
+    fn velocity(&self, t: f64, q: &[f64], v: &[f64], out: ElementBlocks<'_>) {
         let (q, v) = (local(q), local(v));
         if out.derivatives {
             let (p, mass) = mass_matrix(&self.system, t, &q, &v);
@@ -142,7 +148,7 @@ impl<Sys: System<N, M> + Send + Sync, const N: usize, const M: usize> Element fo
         }
     }
 
-    fn motion(&self, t: f64, q: &[f64], v: &[f64], out: Blocks<'_>) {
+    fn motion(&self, t: f64, q: &[f64], v: &[f64], out: ElementBlocks<'_>) {
         let Saddle { block, rows, right, level, .. } = Motion::equations(&self.system, t, &local(q), &local(v));
         out.momentum.copy_from_slice(&right);
         out.block.copy_from_slice(block.as_flattened());

@@ -1,8 +1,8 @@
 use crate::assembly::WIDEST;
 use crate::contributions::{at, gathered};
-use crate::element::Blocks;
+use crate::element::ElementBlocks;
 use crate::motion::ElementMotion;
-use crate::{Assembly, State, StepReport};
+use crate::{Assembly, AssemblyReport, AssemblyState};
 use dla::{Checkpoint, CheckpointError, Hermite};
 use lagrangian::added;
 use lagrangian::quadrature::gauss_legendre;
@@ -14,7 +14,7 @@ use lagrangian::quadrature::gauss_legendre;
 /// path would be taken for a drift. Elsewhere the power `F . v - dL/dt - lambda . b` is integrated with four Gauss nodes along
 /// the polynomial of degree five that has the positions, velocities and accelerations of both ends of the step, which is of order 6.
 /// A step whose forces and moving constraints have no power costs no acceleration.
-pub struct Work {
+pub struct AssemblyWork {
     total: f64,
     rest: f64,
     nodes: [f64; 4],
@@ -35,7 +35,7 @@ struct WorkEnd {
 }
 
 impl WorkEnd {
-    fn see(&mut self, state: &State) {
+    fn see(&mut self, state: &AssemblyState) {
         self.q.clear();
         self.v.clear();
         self.q.extend((0..state.len()).map(|i| state.unwrapped(i)));
@@ -43,13 +43,13 @@ impl WorkEnd {
     }
 }
 
-impl std::fmt::Debug for Work {
+impl std::fmt::Debug for AssemblyWork {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Work").field("total", &self.total).field("rest", &self.rest).finish_non_exhaustive()
     }
 }
 
-impl Default for Work {
+impl Default for AssemblyWork {
     fn default() -> Self {
         let (nodes, weights) = gauss_legendre();
         let (ends, none) = ([WorkEnd::default(), WorkEnd::default()], Vec::new);
@@ -57,7 +57,7 @@ impl Default for Work {
     }
 }
 
-impl Work {
+impl AssemblyWork {
     /// The work so far (J).
     #[must_use]
     pub fn total(&self) -> f64 {
@@ -90,7 +90,13 @@ impl Work {
     }
 
     /// Adds the work of a step, from one time and state to another. It is not a number where the accelerations are not determined.
-    pub fn step(&mut self, assembly: &Assembly, before: (f64, &State), after: (f64, &State), report: &StepReport) {
+    pub fn step(
+        &mut self,
+        assembly: &Assembly,
+        before: (f64, &AssemblyState),
+        after: (f64, &AssemblyState),
+        report: &AssemblyReport,
+    ) {
         let work = report.work.unwrap_or_else(|| self.over_step(assembly, before, after));
         if work != 0.0 {
             // With compensation.
@@ -98,7 +104,12 @@ impl Work {
         }
     }
 
-    fn over_step(&mut self, assembly: &Assembly, (t0, before): (f64, &State), (t1, after): (f64, &State)) -> f64 {
+    fn over_step(
+        &mut self,
+        assembly: &Assembly,
+        (t0, before): (f64, &AssemblyState),
+        (t1, after): (f64, &AssemblyState),
+    ) -> f64 {
         let [first, last] = &mut self.ends;
         first.see(before);
         last.see(after);
@@ -160,7 +171,7 @@ fn moves(assembly: &Assembly, t: f64, q: &[f64]) -> bool {
     assembly.placed().iter().filter(|placed| placed.rows > 0).any(|placed| {
         let (n, m) = (placed.at.len(), placed.rows);
         let level = &mut level[..m];
-        let out = Blocks {
+        let out = ElementBlocks {
             momentum: &mut momentum[..n],
             level: &mut *level,
             block: &mut [],
@@ -179,7 +190,7 @@ fn carried(assembly: &Assembly, t: f64, q: &[f64], v: &[f64], multipliers: &[f64
         let (n, m) = (placed.at.len(), placed.rows);
         let rows = &mut rows[..m * n];
         at(placed, q, v, |q, v| {
-            let out = Blocks {
+            let out = ElementBlocks {
                 momentum: &mut momentum[..n],
                 level: &mut [],
                 block: &mut [],

@@ -18,6 +18,21 @@ pub trait OneStep<const N: usize, const M: usize> {
         state: &mut State<N>,
     ) -> Result<StepReport<M>, StepError>;
 
+    /// As [`step`](Self::step), but looks where the steps end that the method makes of its own within it, all but the last, and ends there
+    /// after a `Break`: the time (s) at which it ended then, and none where it came to the end.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    fn step_until(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        (t, h): (f64, f64),
+        state: &mut State<N>,
+        _see: &mut OwnStep<'_, N>,
+    ) -> Result<(StepReport<M>, Option<f64>), StepError> {
+        Ok((self.step(system, t, h, state)?, None))
+    }
+
     /// What it remembers besides the state, for a checkpoint: nothing, if it is the map that it should be.
     fn memory(&self) -> Vec<f64> {
         Vec::new()
@@ -56,6 +71,16 @@ impl<Method: OneStep<N, M> + ?Sized, const N: usize, const M: usize> OneStep<N, 
         state: &mut State<N>,
     ) -> Result<StepReport<M>, StepError> {
         (**self).step(system, t, h, state)
+    }
+
+    fn step_until(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        step: (f64, f64),
+        state: &mut State<N>,
+        see: &mut OwnStep<'_, N>,
+    ) -> Result<(StepReport<M>, Option<f64>), StepError> {
+        (**self).step_until(system, step, state, see)
     }
 
     fn memory(&self) -> Vec<f64> {

@@ -22,28 +22,6 @@ impl<Method> Rebased<Method> {
     }
 }
 
-/// The time at which a step of a method ends of its own, before that of the run does, where the basis of this number holds no longer; none
-/// where it holds throughout.
-fn holds_until<Method: OneStep<N, M>, const N: usize, const M: usize>(
-    method: &Method,
-    (system, near): (&dyn Mechanics<N, M>, &dyn Mechanics<N, M>),
-    number: u64,
-    step: (f64, f64),
-    state: &State<N>,
-) -> Option<f64> {
-    let mut end = None;
-    let mut see = |time: f64, node: &State<N>| {
-        if holds(system, number, time, node) {
-            return ControlFlow::Continue(());
-        }
-        end = Some(time);
-        ControlFlow::Break(())
-    };
-    // What fails here fails in the step itself, which tells.
-    let _ = method.own_steps(near, step, state, &mut method.memory(), &mut see);
-    end
-}
-
 /// Whether the basis of this number is well conditioned at a node.
 fn holds<const N: usize, const M: usize>(system: &dyn Mechanics<N, M>, number: u64, t: f64, node: &State<N>) -> bool {
     let mut best = number;
@@ -56,13 +34,13 @@ impl<Method> Rebased<Method> {
     fn part<const N: usize, const M: usize>(
         &mut self,
         system: &dyn Mechanics<N, M>,
-        (t, h): (f64, f64),
+        step: (f64, f64),
         state: &mut State<N>,
     ) -> Result<(StepReport<M>, Option<f64>), StepError>
     where
         Method: OneStep<N, M>,
     {
-        let (mut outcome, q) = (None, *state.q());
+        let (mut outcome, q, (t, h)) = (None, *state.q(), step);
         let Self { method, basis, local } = self;
         let known = *basis;
         system.near(t, &q, known, &mut |number, near| {
@@ -71,10 +49,12 @@ impl<Method> Rebased<Method> {
                 method.recall(&[], state);
                 state.advance(&[0.0; N], *state.v(), None);
             }
-            let end = holds_until(method, (system, near), number, (t, h), state);
             *basis = number;
-            let made = method.step(near, t, end.map_or(h, |end| end - t), state);
-            outcome = Some(made.map(|report| (report, end)));
+            let mut look = |time: f64, node: &State<N>| match holds(system, number, time, node) {
+                true => ControlFlow::Continue(()),
+                false => ControlFlow::Break(()),
+            };
+            outcome = Some(method.step_until(near, step, state, &mut look));
         });
         *local = Some(outcome.is_some());
         outcome.unwrap_or_else(|| Ok((method.step(system, t, h, state)?, None)))
@@ -96,7 +76,7 @@ where
         if self.local == Some(false) {
             return self.method.step(system, t, h, state);
         }
-        let (before, remembered, basis) = (*state, self.method.memory(), self.basis);
+        let (before, basis) = (*state, self.basis);
         // Of a step in one part the length is that of the step, to the last bit.
         let (mut total, mut rest) = (None::<StepReport<M>>, (t, h));
         loop {
@@ -108,8 +88,11 @@ where
                 }
                 Err(error) => {
                     *state = before;
-                    self.basis = basis;
-                    self.method.recall(&remembered, state);
+                    if total.is_some() || self.basis != basis {
+                        // What the method remembers is of another place or in another basis.
+                        self.basis = basis;
+                        self.method.recall(&[], state);
+                    }
                     return Err(error);
                 }
             }

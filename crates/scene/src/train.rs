@@ -1,6 +1,6 @@
 use crate::{AnyEffect, Scene, SceneEffect, TrailersSpec};
 use assembly::parts::{Trailer, Train};
-use assembly::{AssemblyError, State};
+use assembly::{AssemblyError, AssemblyState};
 use lagrangian::With;
 use sleigh::SleighError;
 use thiserror::Error;
@@ -45,7 +45,7 @@ impl Scene {
     ///
     /// # Errors
     /// [`TrainError`] where a trailer or an effect has impossible parameters, which one read from a file has not.
-    pub fn train(&self) -> Result<Option<(Train, State)>, TrainError> {
+    pub fn train(&self) -> Result<Option<(Train, AssemblyState)>, TrainError> {
         let Some(spec) = self.trailers() else { return Ok(None) };
         let trailers = (0..spec.count).map(|k| spec.trailer(k)).collect::<Result<Vec<_>, _>>()?;
         let effects = self.acting()?;

@@ -47,7 +47,7 @@ pub struct Swing<'a> {
     pub turning_slope: &'a mut [f64],
 }
 
-/// What an element says of a step that keeps the energy: see [`Energy`](crate::Energy).
+/// What an element says of a step that keeps the energy: see [`SparseEnergy`](crate::SparseEnergy).
 pub trait EnergyElement {
     /// How many quasi-velocities it has as a body: as many as its basis of admissible velocities, or as coordinates where it has
     /// none. Rows that no basis meets are constraints of the assembly.

@@ -3,9 +3,9 @@ use super::frames::{BodyFrame, Frames};
 use crate::assembly::{PlacedElement, WIDEST};
 use crate::contributions::{at, gathered};
 use crate::dla::relative;
-use crate::element::Blocks;
+use crate::element::ElementBlocks;
 use crate::sparse::Sparse;
-use crate::{Assembly, AssemblyError, State};
+use crate::{Assembly, AssemblyError, AssemblyState};
 use dla::Stage;
 
 /// What the mean quasi-velocities of a step say of it.
@@ -34,12 +34,12 @@ struct Room {
 }
 
 /// The equations for the mean quasi-velocities.
-pub(super) struct MeanEquations<'a> {
+pub(super) struct SparseMeanEquations<'a> {
     pub(super) assembly: &'a Assembly,
     pub(super) frames: &'a Frames,
     pub(super) rule: &'a Average,
     pub(super) step: (f64, f64),
-    pub(super) state: &'a State,
+    pub(super) state: &'a AssemblyState,
     pub(super) mass: &'a [f64],
     pub(super) xi0: &'a [f64],
     pub(super) q0: &'a [f64],
@@ -100,7 +100,7 @@ impl MeanPath {
         &mut self,
         frames: &Frames,
         (assembly, t0, h): (&Assembly, f64, f64),
-        (q0, state): (&[f64], &State),
+        (q0, state): (&[f64], &AssemblyState),
         x: &[f64],
     ) -> Result<(), AssemblyError> {
         for body in &frames.bodies {
@@ -110,7 +110,7 @@ impl MeanPath {
         Ok(())
     }
 
-    fn advance(&mut self, h: f64, state: &State) {
+    fn advance(&mut self, h: f64, state: &AssemblyState) {
         for (i, (q1, v)) in self.q1.iter_mut().zip(&self.v).enumerate() {
             *q1 = state.ahead(i, h * v);
         }
@@ -137,7 +137,7 @@ impl MeanPath {
             let Room { full, vector, half, block, rows, levels, .. } = &mut self.room;
             let (n, m, reduced) = (placed.at.len(), part.rows, part.at.len());
             at(placed, &self.q1, v1, |q, v| {
-                let out = Blocks {
+                let out = ElementBlocks {
                     momentum: &mut vector[..n],
                     level: &mut levels[..m],
                     block: &mut full[..if placed.element.acts() { n * n } else { 0 }],
@@ -161,7 +161,7 @@ impl MeanPath {
     }
 }
 
-impl MeanEquations<'_> {
+impl SparseMeanEquations<'_> {
     /// Right side and, where it is asked for, the matrix: that of the potentials in the middle of the step, and without the
     /// change of `Y` and `W`, which are of the second order in the step.
     pub(super) fn evaluate(
@@ -249,7 +249,7 @@ impl MeanEquations<'_> {
         }
         system.add_right(k, acting);
 
-        let out = Blocks {
+        let out = ElementBlocks {
             momentum: &mut vector[..n],
             level: &mut levels[..m],
             block: &mut full[..if part.acts { n * n } else { 0 }],

@@ -12,14 +12,14 @@ use crate::dla::predict;
 use crate::settling::AssemblySettling;
 use crate::sparse::Sparse;
 use crate::terms;
-use crate::{Assembly, AssemblyError, OneStep, Solver, State, StepReport};
+use crate::{Assembly, AssemblyError, AssemblyMethod, AssemblyReport, AssemblyState, Solver};
 use dla::convergence::rounding_of_place;
 use dla::convergence::tolerances::STALL;
 use dla::{History, NewtonError, Stage};
 use element::NO_BASIS;
 use frames::Frames;
 use lagrangian::linear::larger;
-use mean::{MeanEquations, MeanPath};
+use mean::{MeanPath, SparseMeanEquations};
 
 /// The energy-preserving method of order 2 of an assembly, whose joints and blades hold at every node: symmetric.
 ///
@@ -47,7 +47,7 @@ use mean::{MeanEquations, MeanPath};
 /// The kinetic energy of each body must be a constant quadratic form in its quasi-velocities, as that of a sleigh, a rigid body
 /// of the plane or a rotor is; constraints do not move, and time does not enter but in forces. What else is refused, as is a
 /// step along which the energy is too rough for the eight nodes of its averages.
-pub struct Energy {
+pub struct SparseEnergy {
     frames: Frames,
     system: Sparse,
     projection: Sparse,
@@ -71,7 +71,7 @@ pub struct Energy {
     unused: Vec<f64>,
 }
 
-impl std::fmt::Debug for Energy {
+impl std::fmt::Debug for SparseEnergy {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Energy").field("quasi_velocities", &self.frames.quasi).finish_non_exhaustive()
     }
@@ -80,7 +80,7 @@ impl std::fmt::Debug for Energy {
 /// What turns by less than this in a step (rad) is near its start.
 const NEAR: f64 = 1.0;
 
-impl Energy {
+impl SparseEnergy {
     /// So many times `kappa` is computed at most: it is of the third order in the step, and so is each change of it.
     const PASSES: u32 = 12;
     /// A change of `kappa` by so little changes the energy by less than its rounding.
@@ -122,7 +122,7 @@ impl Energy {
     }
 
     /// Quasi-velocities and masses at the start; refuses what cannot keep the energy.
-    fn begin(&mut self, assembly: &Assembly, (t0, h): (f64, f64), state: &State) -> Result<(), AssemblyError> {
+    fn begin(&mut self, assembly: &Assembly, (t0, h): (f64, f64), state: &AssemblyState) -> Result<(), AssemblyError> {
         for i in 0..state.len() {
             (self.q0[i], self.v0[i]) = (state.q(i), state.v(i));
         }
@@ -144,7 +144,7 @@ impl Energy {
     }
 
     /// The mean quasi-velocities to begin with, those of the mean velocities that the last steps let expect.
-    fn guess(&mut self, assembly: &Assembly, (t0, h): (f64, f64), state: &State) -> Result<(), AssemblyError> {
+    fn guess(&mut self, assembly: &Assembly, (t0, h): (f64, f64), state: &AssemblyState) -> Result<(), AssemblyError> {
         let Self { frames, x, path: MeanPath { v, q1: middle, .. }, q0, v0, unused, .. } = self;
         predict(state, h, v0, v);
         for (middle, (q0, v)) in middle.iter_mut().zip(q0.iter().zip(&*v)) {
@@ -244,8 +244,14 @@ impl Energy {
 
 const INERTIA: &str = "energy2 of assemblies is for parts with inertia that have coordinates of their own";
 
-impl OneStep for Energy {
-    fn step(&mut self, assembly: &Assembly, t0: f64, h: f64, state: &mut State) -> Result<StepReport, AssemblyError> {
+impl AssemblyMethod for SparseEnergy {
+    fn step(
+        &mut self,
+        assembly: &Assembly,
+        t0: f64,
+        h: f64,
+        state: &mut AssemblyState,
+    ) -> Result<AssemblyReport, AssemblyError> {
         self.begin(assembly, (t0, h), state)?;
         self.settling.near = rounding_of_place(&self.q0, h);
         /// Ends whose `kappa` differ by no more are near each other.
@@ -258,8 +264,19 @@ impl OneStep for Energy {
         let work = loop {
             let Self { frames, system, settling, rule, mass, xi0, x, impulses, path, start, q0, v0, .. } = self;
             system.factors_serve = near;
-            let mut mean =
-                MeanEquations { assembly, frames, rule, step: (t0, h), state, mass, xi0, q0, kappa, path, work: 0.0 };
+            let mut mean = SparseMeanEquations {
+                assembly,
+                frames,
+                rule,
+                step: (t0, h),
+                state,
+                mass,
+                xi0,
+                q0,
+                kappa,
+                path,
+                work: 0.0,
+            };
             let evaluate = |system: &mut Sparse, x: &[f64], impulses: &[f64], fresh: bool| {
                 mean.evaluate(system, x, impulses, fresh)
             };
@@ -298,6 +315,6 @@ impl OneStep for Energy {
             let (v, v1) = (self.path.v[i], self.v1[i]);
             state.advance(h, i, h * v, v1, (v1 - v) / (0.5 * h));
         }
-        Ok(StepReport { iterations, work: Some(work) })
+        Ok(AssemblyReport { iterations, work: Some(work) })
     }
 }

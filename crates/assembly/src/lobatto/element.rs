@@ -80,7 +80,7 @@ impl StageTerms {
     }
 }
 
-/// What an element says of the stages of a step: see [`Lobatto`](crate::Lobatto).
+/// What an element says of the stages of a step: see [`SparseLobatto`](crate::SparseLobatto).
 pub trait StageElement {
     /// All that the equations need at the time `t` of a step of length `h`, with the impulses `h Lambda` of its rows.
     fn stage(&self, time: (f64, f64), q: &[f64], v: &[f64], impulses: &[f64], out: &mut StageTerms);

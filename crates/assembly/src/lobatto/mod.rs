@@ -7,12 +7,12 @@ pub use element::{StageElement, StageTerms};
 
 use crate::assembly::PlacedElement;
 use crate::contributions::{at_state, gathered};
-use crate::element::Blocks;
+use crate::element::ElementBlocks;
 use crate::pattern::PatternPart;
 use crate::settling::AssemblySettling;
 use crate::sparse::Sparse;
 use crate::terms;
-use crate::{Assembly, AssemblyError, OneStep, Solver, State, StepReport};
+use crate::{Assembly, AssemblyError, AssemblyMethod, AssemblyReport, AssemblyState, Solver};
 use dla::Stage;
 use dla::convergence::rounding_of_place;
 use lagrangian::linear::{larger, largest};
@@ -27,7 +27,7 @@ use stages::{AssemblyStages, LobattoRule, StageRoom, increment};
 ///
 /// A step that turns a constraint by more than a radian, or whose iteration does not contract from its start, is refused: the
 /// static method continues the solution from a step of length zero there. (The book, (4.3) to (4.5).)
-pub struct Lobatto {
+pub struct SparseLobatto {
     rule: LobattoRule,
     stages: Sparse,
     end: Sparse,
@@ -48,13 +48,13 @@ pub struct Lobatto {
 /// What turns by less than this in a step (rad) is near its start.
 const NEAR: f64 = 1.0;
 
-impl std::fmt::Debug for Lobatto {
+impl std::fmt::Debug for SparseLobatto {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Lobatto").field("stages", &self.rule.stages).finish_non_exhaustive()
     }
 }
 
-impl Lobatto {
+impl SparseLobatto {
     /// The method with 3, 4 or 5 stages for that assembly, whose pattern it finds and whose memory it keeps.
     ///
     /// # Errors
@@ -97,13 +97,13 @@ impl Lobatto {
     }
 
     /// The momenta at the start, in `p`.
-    fn begin(&mut self, assembly: &Assembly, t0: f64, state: &State) -> Result<(), AssemblyError> {
+    fn begin(&mut self, assembly: &Assembly, t0: f64, state: &AssemblyState) -> Result<(), AssemblyError> {
         self.p.fill(0.0);
         let [momentum, level, block, rows] = &mut self.each;
         for placed in assembly.placed() {
             let (n, m) = (placed.at.len(), placed.rows);
             let affine = at_state(placed, state, |element, q, v| {
-                let out = Blocks {
+                let out = ElementBlocks {
                     momentum: &mut momentum[..n],
                     level: &mut level[..m],
                     block: &mut block[..0],
@@ -125,7 +125,7 @@ impl Lobatto {
     }
 
     /// The velocities of the stages, from those of uniform acceleration.
-    fn solve(&mut self, assembly: &Assembly, step: (f64, f64), state: &State) -> Result<u32, AssemblyError> {
+    fn solve(&mut self, assembly: &Assembly, step: (f64, f64), state: &AssemblyState) -> Result<u32, AssemblyError> {
         /// More acceleration than this leads too far from the start.
         const MOST: f64 = 0.125;
         let Self { rule, stages, settling, terms, room, p, v, impulses, .. } = self;
@@ -185,7 +185,7 @@ impl Lobatto {
             system.linear.right[..p.len()].copy_from_slice(p);
             for (k, placed) in assembly.placed().iter().enumerate() {
                 let (n, m, acts) = (placed.at.len(), placed.rows, placed.element.acts());
-                let out = Blocks {
+                let out = ElementBlocks {
                     momentum: &mut momentum[..n],
                     level: &mut level[..m],
                     block: &mut block[..if acts { n * n } else { 0 }],
@@ -219,7 +219,7 @@ impl Lobatto {
     }
 
     /// By how much the constraint turns that turns most (rad).
-    fn turn(&self, assembly: &Assembly, step: (f64, f64), state: &State) -> f64 {
+    fn turn(&self, assembly: &Assembly, step: (f64, f64), state: &AssemblyState) -> f64 {
         let turn = |placed: &PlacedElement| {
             gathered(
                 placed,
@@ -231,8 +231,14 @@ impl Lobatto {
     }
 }
 
-impl OneStep for Lobatto {
-    fn step(&mut self, assembly: &Assembly, t0: f64, h: f64, state: &mut State) -> Result<StepReport, AssemblyError> {
+impl AssemblyMethod for SparseLobatto {
+    fn step(
+        &mut self,
+        assembly: &Assembly,
+        t0: f64,
+        h: f64,
+        state: &mut AssemblyState,
+    ) -> Result<AssemblyReport, AssemblyError> {
         self.begin(assembly, t0, state)?;
         for (i, q1) in self.q1.iter_mut().enumerate() {
             *q1 = state.q(i);
@@ -258,6 +264,6 @@ impl OneStep for Lobatto {
             let acceleration = (v[s - 1] - v[s - 2]) / (h * (self.rule.c[s - 1] - self.rule.c[s - 2]));
             state.advance(h, i, moved, self.v1[i], acceleration);
         }
-        Ok(StepReport::of(iterations))
+        Ok(AssemblyReport::of(iterations))
     }
 }

@@ -2,7 +2,7 @@ use super::element::StageTerms;
 use crate::assembly::{PlacedElement, WIDEST};
 use crate::contributions::gathered;
 use crate::sparse::Sparse;
-use crate::{Assembly, State};
+use crate::{Assembly, AssemblyState};
 use dla::LobattoTables;
 
 /// The coefficients of a Lobatto pair, their number a value: see [`LobattoTables`].
@@ -45,7 +45,7 @@ pub(super) struct AssemblyStages<'a> {
     pub(super) assembly: &'a Assembly,
     pub(super) rule: &'a LobattoRule,
     pub(super) step: (f64, f64),
-    pub(super) state: &'a State,
+    pub(super) state: &'a AssemblyState,
     pub(super) p0: &'a [f64],
     pub(super) terms: &'a mut [StageTerms],
     pub(super) room: &'a mut StageRoom,

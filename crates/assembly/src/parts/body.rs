@@ -31,12 +31,12 @@ impl System<3, 0> for Body {
 
 /// What turns about its own centre: a rotor, an axle. `q` is its angle in space (rad).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rotor {
+pub struct RotorElement {
     /// Moment of inertia (kg m^2).
     pub inertia: f64,
 }
 
-impl System<1, 0> for Rotor {
+impl System<1, 0> for RotorElement {
     /// `L = I/2 q'^2`.
     #[inline(always)]
     fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 1], v: &[S; 1]) -> S {

@@ -6,6 +6,6 @@ mod hinge;
 mod train;
 
 pub use blade::{Blade, SteeredBlade};
-pub use body::{Body, Rotor};
+pub use body::{Body, RotorElement};
 pub use hinge::Hinge;
 pub use train::{Trailer, Train};

@@ -1,5 +1,5 @@
 use crate::parts::Hinge;
-use crate::{Assembly, AssemblyError, State};
+use crate::{Assembly, AssemblyError, AssemblyState};
 use lagrangian::System;
 use sleigh::{Sleigh, SleighError, SleighState};
 
@@ -79,7 +79,7 @@ impl Train {
     ///
     /// With the hinge `H = P - b e` of a blade, the next has `P+ = H - d e+`, `omega+ = n+ . H' / d` and `u+ = e+ . H'`.
     #[must_use]
-    pub fn start(&self, start: &SleighState, headings: &[f64]) -> State {
+    pub fn start(&self, start: &SleighState, headings: &[f64]) -> AssemblyState {
         let (mut q, mut v) = (Vec::new(), Vec::new());
         let ([mut x, mut y, mut heading], [mut vx, mut vy, mut rate]) = start.to_coordinates();
         q.extend([x, y, heading]);
@@ -97,12 +97,12 @@ impl Train {
             q.extend([x, y, heading]);
             v.extend([vx, vy, rate]);
         }
-        State::new(&self.assembly, &q, &v)
+        AssemblyState::new(&self.assembly, &q, &v)
     }
 
     /// Place, heading, speed and turn rate of a blade, counted from 0.
     #[must_use]
-    pub fn blade(&self, state: &State, k: usize) -> SleighState {
+    pub fn blade(&self, state: &AssemblyState, k: usize) -> SleighState {
         let (q, v) = ([0, 1, 2].map(|i| state.unwrapped(3 * k + i)), [0, 1, 2].map(|i| state.v(3 * k + i)));
         SleighState::from_coordinates(&q, &v)
     }

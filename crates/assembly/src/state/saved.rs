@@ -1,4 +1,4 @@
-use super::State;
+use super::AssemblyState;
 use crate::Assembly;
 use dla::{Checkpoint, CheckpointError};
 
@@ -11,7 +11,7 @@ const SOME: [&str; 2] = ["acceleration", "past"];
 /// What a static state has beside, and a coordinate of an assembly does not.
 const NONE: [&str; 4] = ["xi", "pi", "pi_rest", "closed"];
 
-impl State {
+impl AssemblyState {
     /// Writes every bit that the next step depends on to a checkpoint.
     pub fn save(&self, checkpoint: &mut Checkpoint) {
         let each: Vec<Checkpoint> = self.coordinates.iter().map(saved).collect();

@@ -1,7 +1,7 @@
 //! A car with one to eight trailers, against its kinematics with one equation of motion, integrated by themselves.
 use approx::assert_abs_diff_eq;
-use assembly::parts::{Rotor, SteeredBlade, Trailer, Train};
-use assembly::{Assembly, Joint, Lobatto, OneStep, Solver, State, Work};
+use assembly::parts::{RotorElement, SteeredBlade, Trailer, Train};
+use assembly::{Assembly, AssemblyMethod, AssemblyState, AssemblyWork, Joint, Solver, SparseLobatto};
 use lagrangian::Scalar;
 use sleigh::{Sleigh, SleighState};
 
@@ -30,16 +30,16 @@ fn trailers(count: usize) -> Vec<Trailer> {
 }
 
 /// The car and its trailers, the wheels straight and beginning to turn.
-fn steered(count: usize) -> (Train, State) {
+fn steered(count: usize) -> (Train, AssemblyState) {
     let mut train = Train::new(car(), trailers(count), |trailer| trailer.sleigh).unwrap();
-    let [wheels] = train.assembly.body("front wheels", Rotor { inertia: WHEELS });
+    let [wheels] = train.assembly.body("front wheels", RotorElement { inertia: WHEELS });
     train.assembly.attach("front axle", SteeredBlade { ahead: WHEELBASE }, [0, 1, 2, wheels]).unwrap();
     train.assembly.join("steering", Steering, [2, wheels]).unwrap();
     let start = train.start(&SleighState { speed: 1.0, ..SleighState::default() }, &[0.2]);
     // The wheels begin to turn at the rate of their joint.
     let (q, mut v): (Vec<f64>, Vec<f64>) = (0..start.len()).map(|i| (start.q(i), start.v(i))).unzip();
     v[wheels] = AMPLITUDE * FREQUENCY;
-    let start = State::new(&train.assembly, &q, &v);
+    let start = AssemblyState::new(&train.assembly, &q, &v);
     (train, start)
 }
 
@@ -47,7 +47,7 @@ fn steered(count: usize) -> (Train, State) {
 fn assembled(count: usize, steps: u32) -> (Vec<f64>, [f64; 2]) {
     let (train, mut state) = steered(count);
     let assembly: &Assembly = &train.assembly;
-    let mut method = Lobatto::new(assembly, Solver::Best, 5).unwrap();
+    let mut method = SparseLobatto::new(assembly, Solver::Best, 5).unwrap();
     let (h, mut most) = (DURATION / f64::from(steps), [0.0f64; 2]);
     for k in 0..steps {
         method.step(assembly, f64::from(k) * h, h, &mut state).unwrap();
@@ -145,7 +145,7 @@ fn the_driver_does_the_work() {
     let of = |steps: u32| {
         let (train, mut state) = steered(2);
         let (assembly, h) = (&train.assembly, DURATION / f64::from(steps));
-        let (mut method, mut work) = (Lobatto::new(assembly, Solver::Best, 5).unwrap(), Work::default());
+        let (mut method, mut work) = (SparseLobatto::new(assembly, Solver::Best, 5).unwrap(), AssemblyWork::default());
         let initial = assembly.energy(0.0, &state);
         let (mut error, mut most) = (0.0f64, 0.0f64);
         for k in 0..steps {

@@ -1,12 +1,12 @@
 //! A chain of unlike blades that rolls over hills, its own weight on each.
 use crate::tools::{bent, slope, weighted};
 use assembly::parts::Train;
-use assembly::{Dla, Energy, OneStep, Solver};
+use assembly::{AssemblyMethod, Solver, SparseDla, SparseEnergy};
 
 const DURATION: f64 = 40.0;
 
 /// The largest relative energy error of a run.
-fn error(train: &Train, method: &mut dyn OneStep, h: f64) -> f64 {
+fn error(train: &Train, method: &mut dyn AssemblyMethod, h: f64) -> f64 {
     let (assembly, mut state) = (&train.assembly, bent(train));
     let initial = assembly.energy(0.0, &state);
     let mut most = 0.0f64;
@@ -20,7 +20,7 @@ fn error(train: &Train, method: &mut dyn OneStep, h: f64) -> f64 {
 /// The exponent of the step in the error, and the error with the shortest.
 fn fitted(train: &Train) -> (f64, f64) {
     let points = [0.04, 0.02, 0.01].map(|h| {
-        let error = error(train, &mut Dla::new(&train.assembly, Solver::Best).unwrap(), h);
+        let error = error(train, &mut SparseDla::new(&train.assembly, Solver::Best).unwrap(), h);
         (f64::ln(h), error.ln())
     });
     (slope(&points), points[2].1.exp())
@@ -36,7 +36,7 @@ fn its_energy_error_is_of_second_order() {
     println!("order {order}, {least:e}; with drag {control}, {taken:e}");
     assert!((order - 2.0).abs() < 0.1, "order {order}");
     assert!(control < 0.5 && taken > 10.0 * least, "{control}");
-    let kept = error(&chain, &mut Energy::new(&chain.assembly, Solver::Best).unwrap(), 0.04);
+    let kept = error(&chain, &mut SparseEnergy::new(&chain.assembly, Solver::Best).unwrap(), 0.04);
     println!("energy2: {kept:e}");
     // A thousand steps of rounding that walks at random.
     assert!(kept < 4.0 * f64::EPSILON * 1000f64.sqrt(), "{kept:e}");
@@ -49,7 +49,7 @@ fn its_energy_error_is_of_second_order() {
 fn its_energy_does_not_drift() {
     let chain = weighted(10, 0.0);
     let (assembly, mut state) = (&chain.assembly, bent(&chain));
-    let mut method = Energy::new(assembly, Solver::Best).unwrap();
+    let mut method = SparseEnergy::new(assembly, Solver::Best).unwrap();
     let mut energies = vec![assembly.energy(0.0, &state)];
     for k in 1..=100_000 {
         method.step(assembly, f64::from(k - 1) * 0.04, 0.04, &mut state).unwrap();

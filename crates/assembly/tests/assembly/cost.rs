@@ -1,6 +1,6 @@
 use crate::tools::{bent, slope, train};
 use assembly::parts::Train;
-use assembly::{Dla, Energy, Lobatto, OneStep, Solver};
+use assembly::{AssemblyMethod, Solver, SparseDla, SparseEnergy, SparseLobatto};
 use rustix::time::{ClockId, clock_gettime};
 
 /// The processor time of this thread (s): that of the clock on the wall is of all who work here.
@@ -12,11 +12,11 @@ fn seconds() -> f64 {
 /// Processor seconds of the fastest of some steps.
 fn step(blades: usize, solver: Solver, steps: u32) -> f64 {
     let train = train(blades);
-    let mut method = Dla::new(&train.assembly, solver).unwrap().on_one_thread();
+    let mut method = SparseDla::new(&train.assembly, solver).unwrap().on_one_thread();
     of(&train, &mut method, steps)
 }
 
-fn of(train: &Train, method: &mut dyn OneStep, steps: u32) -> f64 {
+fn of(train: &Train, method: &mut dyn AssemblyMethod, steps: u32) -> f64 {
     let mut state = bent(train);
     let mut fastest = f64::INFINITY;
     for k in 0..steps {
@@ -68,11 +68,11 @@ fn figures_of_methods() {
     for blades in [10, 100, 1000, 10_000] {
         let train = train(blades);
         let assembly = &train.assembly;
-        let new: [(&str, Box<dyn OneStep>); 4] = [
-            ("dla", Box::new(Dla::new(assembly, Solver::Best).unwrap().on_one_thread())),
-            ("energy2", Box::new(Energy::new(assembly, Solver::Best).unwrap())),
-            ("lobatto3", Box::new(Lobatto::new(assembly, Solver::Best, 3).unwrap())),
-            ("lobatto5", Box::new(Lobatto::new(assembly, Solver::Best, 5).unwrap())),
+        let new: [(&str, Box<dyn AssemblyMethod>); 4] = [
+            ("dla", Box::new(SparseDla::new(assembly, Solver::Best).unwrap().on_one_thread())),
+            ("energy2", Box::new(SparseEnergy::new(assembly, Solver::Best).unwrap())),
+            ("lobatto3", Box::new(SparseLobatto::new(assembly, Solver::Best, 3).unwrap())),
+            ("lobatto5", Box::new(SparseLobatto::new(assembly, Solver::Best, 5).unwrap())),
         ];
         for (name, mut method) in new {
             println!("{blades:>5} blades, {name}: {:.4} ms a step", of(&train, method.as_mut(), 5) * 1e3);

@@ -1,8 +1,10 @@
 //! The method that keeps the energy: of one sleigh the static one, of trains with joints and blades held.
 use crate::tools::{bent, ground, hilly};
 use approx::assert_abs_diff_eq;
-use assembly::parts::{Blade, Body, Hinge, Rotor, Trailer, Train};
-use assembly::{Assembly, AssemblyError, Composition, Dla, Energy, Joint, OneStep, Solver, State};
+use assembly::parts::{Blade, Body, Hinge, RotorElement, Trailer, Train};
+use assembly::{
+    Assembly, AssemblyError, AssemblyMethod, AssemblyState, Joint, Solver, SparseComposition, SparseDla, SparseEnergy,
+};
 use lagrangian::linear::larger;
 use lagrangian::{Constraint, Scalar, System, With};
 use sleigh::effects::Drag;
@@ -15,8 +17,8 @@ fn one_sleigh_is_the_static_sleigh() {
         let mut alone = Assembly::new();
         let _: [usize; 3] = alone.body("blade", system.clone());
         let (q, v) = SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() }.to_coordinates();
-        let (mut state, mut fixed) = (State::new(&alone, &q, &v), dla::State::new(q, v, [false, false, true]));
-        let (mut method, mut reference) = (Energy::new(&alone, Solver::Best).unwrap(), dla::Energy::new::<1>());
+        let (mut state, mut fixed) = (AssemblyState::new(&alone, &q, &v), dla::State::new(q, v, [false, false, true]));
+        let (mut method, mut reference) = (SparseEnergy::new(&alone, Solver::Best).unwrap(), dla::Energy::new::<1>());
         let h = 0.05;
         for k in 0..400 {
             method.step(&alone, f64::from(k) * h, h, &mut state).unwrap();
@@ -36,7 +38,7 @@ fn one_sleigh_is_the_static_sleigh() {
 }
 
 /// The largest relative error of the energy, and what the constraints and the joints miss most.
-fn worst(train: &Train, method: &mut dyn OneStep, h: f64, steps: u32) -> [f64; 3] {
+fn worst(train: &Train, method: &mut dyn AssemblyMethod, h: f64, steps: u32) -> [f64; 3] {
     let assembly = &train.assembly;
     let mut state = bent(train);
     let initial = assembly.energy(0.0, &state);
@@ -57,8 +59,8 @@ fn worst(train: &Train, method: &mut dyn OneStep, h: f64, steps: u32) -> [f64; 3
 #[test]
 fn a_train_on_hills_keeps_its_energy() {
     let train = hilly(6);
-    let kept = worst(&train, &mut Energy::new(&train.assembly, Solver::Best).unwrap(), 0.02, 10_000);
-    let control = worst(&train, &mut Dla::new(&train.assembly, Solver::Best).unwrap(), 0.02, 1000);
+    let kept = worst(&train, &mut SparseEnergy::new(&train.assembly, Solver::Best).unwrap(), 0.02, 10_000);
+    let control = worst(&train, &mut SparseDla::new(&train.assembly, Solver::Best).unwrap(), 0.02, 1000);
     // Rounding that walks at random, a few ulps a step.
     assert!(kept[0] < 4.0 * f64::EPSILON * 10_000f64.sqrt(), "{kept:?}");
     assert!(kept[1] < 1e-14 && kept[2] < 1e-14, "{kept:?}");
@@ -73,7 +75,7 @@ fn drag_only_takes_energy() {
         Train::new(lead, vec![Trailer::new(0.5, 0.1, 0.1, 0.2, 0.8).unwrap(); 3], |trailer| trailer.sleigh).unwrap()
     };
     let mut state = bent(&train);
-    let mut method = Energy::new(&train.assembly, Solver::Best).unwrap();
+    let mut method = SparseEnergy::new(&train.assembly, Solver::Best).unwrap();
     let first = train.assembly.energy(0.0, &state);
     let mut before = first;
     for k in 0..200 {
@@ -111,15 +113,16 @@ impl System<6, 0> for HeavySpring {
 #[test]
 fn what_takes_the_energy_is_refused() {
     let refused = |assembly: &Assembly| {
-        let mut state = State::new(assembly, &[], &[]);
-        let error = Energy::new(assembly, Solver::Best).unwrap().step(assembly, 0.0, 0.1, &mut state).unwrap_err();
+        let mut state = AssemblyState::new(assembly, &[], &[]);
+        let error =
+            SparseEnergy::new(assembly, Solver::Best).unwrap().step(assembly, 0.0, 0.1, &mut state).unwrap_err();
         assert!(matches!(error, AssemblyError::Unsupported { .. }), "{error}");
         error.to_string()
     };
     let body = Body { mass: 1.0, inertia: 1.0 };
     let mut car = Assembly::new();
     let [x, y, turn] = car.body("car", body);
-    let [wheels] = car.body("wheels", Rotor { inertia: 0.1 });
+    let [wheels] = car.body("wheels", RotorElement { inertia: 0.1 });
     car.join("steering", Steering, [x, y, turn, wheels]).unwrap();
     assert!(refused(&car).contains("moves"));
     let mut pair = Assembly::new();
@@ -144,10 +147,10 @@ fn a_step_is_its_own_adjoint() {
     let along = hinge[0] * angle.cos() + hinge[1] * angle.sin();
     let q = [0.0, 0.0, 0.0, 0.7 + 0.4 * angle.cos(), 0.4 * angle.sin(), angle];
     let v = [1.0, 0.0, 0.3, along * angle.cos(), along * angle.sin(), rate];
-    let start = State::new(&racer, &q, &v);
+    let start = AssemblyState::new(&racer, &q, &v);
     let [slip, joint] = racer.misses(0.0, &start);
     assert!(slip < 1e-15 && joint < 1e-15, "{slip} {joint}");
-    let (mut state, mut method) = (start.clone(), Energy::new(&racer, Solver::Best).unwrap());
+    let (mut state, mut method) = (start.clone(), SparseEnergy::new(&racer, Solver::Best).unwrap());
     let energy = racer.energy(0.0, &start);
     for k in 0..50 {
         method.step(&racer, 0.04 * f64::from(k), 0.04, &mut state).unwrap();
@@ -166,16 +169,16 @@ fn a_step_is_its_own_adjoint() {
 fn order_two() {
     let train = hilly(4);
     let assembly = &train.assembly;
-    let end = |method: &mut dyn OneStep, steps: u32| {
+    let end = |method: &mut dyn AssemblyMethod, steps: u32| {
         let (mut state, h) = (bent(&train), 2.0 / f64::from(steps));
         for k in 0..steps {
             method.step(assembly, f64::from(k) * h, h, &mut state).unwrap();
         }
         state
     };
-    let exact = end(&mut Composition::new(assembly, Solver::Best, 8).unwrap(), 160);
+    let exact = end(&mut SparseComposition::new(assembly, Solver::Best, 8).unwrap(), 160);
     let errors =
-        [40, 80, 160].map(|steps| end(&mut Energy::new(assembly, Solver::Best).unwrap(), steps).distance(&exact));
+        [40, 80, 160].map(|steps| end(&mut SparseEnergy::new(assembly, Solver::Best).unwrap(), steps).distance(&exact));
     let orders = [(errors[0] / errors[1]).log2(), (errors[1] / errors[2]).log2()];
     println!("{errors:?} {orders:?}");
     assert!(orders.iter().all(|order| (order - 2.0).abs() < 0.1), "{orders:?}");

@@ -1,7 +1,7 @@
 //! The Lobatto methods: of one sleigh the static ones, of trains with joints and blades held.
 use crate::tools::{bent, ground, hilly};
 use approx::assert_abs_diff_eq;
-use assembly::{Assembly, AssemblyError, Lobatto, OneStep, Solver, State};
+use assembly::{Assembly, AssemblyError, AssemblyMethod, AssemblyState, Solver, SparseLobatto};
 use lagrangian::linear::larger;
 use lagrangian::{System, With};
 use sleigh::{Sleigh, SleighState};
@@ -14,8 +14,8 @@ fn compare<Sys: System<3, 1> + Clone + Send + Sync + 'static>(
     let mut alone = Assembly::new();
     let _: [usize; 3] = alone.body("blade", system.clone());
     let (q, v) = SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() }.to_coordinates();
-    let (mut state, mut fixed) = (State::new(&alone, &q, &v), dla::State::new(q, v, [false, false, true]));
-    let mut method = Lobatto::new(&alone, Solver::Best, stages).unwrap();
+    let (mut state, mut fixed) = (AssemblyState::new(&alone, &q, &v), dla::State::new(q, v, [false, false, true]));
+    let mut method = SparseLobatto::new(&alone, Solver::Best, stages).unwrap();
     let h = 0.1;
     for k in 0..200 {
         method.step(&alone, f64::from(k) * h, h, &mut state).unwrap();
@@ -41,7 +41,7 @@ fn one_sleigh_is_the_static_sleigh() {
 }
 
 /// The end of a run, and what the constraints and the joints miss most.
-fn end(method: &mut dyn OneStep, steps: u32) -> (State, [f64; 2]) {
+fn end(method: &mut dyn AssemblyMethod, steps: u32) -> (AssemblyState, [f64; 2]) {
     let train = hilly(4);
     let (mut state, h, mut most) = (bent(&train), 2.0 / f64::from(steps), [0.0; 2]);
     for k in 0..steps {
@@ -56,7 +56,7 @@ fn end(method: &mut dyn OneStep, steps: u32) -> (State, [f64; 2]) {
 #[test]
 fn orders_on_a_train() {
     let train = hilly(4);
-    let method = |stages| Lobatto::new(&train.assembly, Solver::Best, stages).unwrap();
+    let method = |stages| SparseLobatto::new(&train.assembly, Solver::Best, stages).unwrap();
     let (exact, _) = end(&mut method(5), 80);
     for (stages, counts, expected) in [(3, [20, 40, 80], 4.0), (4, [10, 14, 20], 6.0), (5, [8, 10, 14], 8.0)] {
         let mut most = [0.0; 2];
@@ -70,5 +70,5 @@ fn orders_on_a_train() {
         assert!((fitted - expected).abs() < 0.1 * expected, "{stages}: {fitted}");
         assert!(most[0] < 4e-15 && most[1] < 4e-15, "{most:?}");
     }
-    assert!(matches!(Lobatto::new(&train.assembly, Solver::Best, 2), Err(AssemblyError::Unsupported { .. })));
+    assert!(matches!(SparseLobatto::new(&train.assembly, Solver::Best, 2), Err(AssemblyError::Unsupported { .. })));
 }

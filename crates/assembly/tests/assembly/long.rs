@@ -1,14 +1,14 @@
 use crate::tools::{bent, train};
 use approx::assert_abs_diff_eq;
 use assembly::parts::Train;
-use assembly::{Dla, OneStep, Solver};
+use assembly::{AssemblyMethod, Solver, SparseDla};
 use lagrangian::linear::larger;
 use sleigh::SleighState;
 
 /// The largest constraint, joint equation and energy error of a run, the latter relative.
 fn worst(train: &Train, h: f64, steps: u32, told: u32) -> [f64; 3] {
     let assembly = &train.assembly;
-    let (mut state, mut method) = (bent(train), Dla::new(assembly, Solver::Best).unwrap());
+    let (mut state, mut method) = (bent(train), SparseDla::new(assembly, Solver::Best).unwrap());
     let initial = assembly.energy(0.0, &state);
     let mut most = [0.0; 3];
     for k in 1..=steps {

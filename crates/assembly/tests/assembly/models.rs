@@ -1,7 +1,7 @@
 //! Snakeboard and roller racer as assemblies, against their forms in few coordinates; a car with trailers; springs.
 use approx::assert_abs_diff_eq;
-use assembly::parts::{Blade, Body, Hinge, Rotor, SteeredBlade, Trailer, Train};
-use assembly::{Assembly, Composition, Dla, Joint, OneStep, Solver, State};
+use assembly::parts::{Blade, Body, Hinge, RotorElement, SteeredBlade, Trailer, Train};
+use assembly::{Assembly, AssemblyMethod, AssemblyState, Joint, Solver, SparseComposition, SparseDla};
 use lagrangian::{Constraint, Scalar, System};
 use models::{Model, RollerRacer, Snakeboard};
 use sleigh::{Sleigh, SleighState};
@@ -10,8 +10,8 @@ const STEP: f64 = 0.05;
 const STEPS: u32 = 40;
 
 /// The end of a run of order 8.
-fn end(assembly: &Assembly, mut state: State) -> State {
-    let mut method = Composition::new(assembly, Solver::Best, 8).unwrap();
+fn end(assembly: &Assembly, mut state: AssemblyState) -> AssemblyState {
+    let mut method = SparseComposition::new(assembly, Solver::Best, 8).unwrap();
     for k in 0..STEPS {
         method.step(assembly, f64::from(k) * STEP, STEP, &mut state).unwrap();
     }
@@ -54,7 +54,7 @@ fn roller_racer() {
         v[0] - d1 * v[2] * q[2].sin() - d2 * turn * heading.sin(),
         v[1] + d1 * v[2] * q[2].cos() + d2 * turn * heading.cos(),
     ];
-    let start = State::new(
+    let start = AssemblyState::new(
         &racer,
         &[q[0], q[1], q[2], place[0], place[1], heading],
         &[v[0], v[1], v[2], velocity[0], velocity[1], turn],
@@ -88,14 +88,14 @@ fn snakeboard() {
 
     let mut board = Assembly::new();
     let body = board.body("board", Body { mass: m, inertia: j });
-    let [rotor] = board.body("rotor", Rotor { inertia: j_r });
-    let [back] = board.body("back axle", Rotor { inertia: j_w });
-    let [front] = board.body("front axle", Rotor { inertia: j_w });
+    let [rotor] = board.body("rotor", RotorElement { inertia: j_r });
+    let [back] = board.body("back axle", RotorElement { inertia: j_w });
+    let [front] = board.body("front axle", RotorElement { inertia: j_w });
     for (name, ahead, angle) in [("back wheels", -l, back), ("front wheels", l, front)] {
         board.attach(name, SteeredBlade { ahead }, [body[0], body[1], body[2], angle]).unwrap();
     }
     board.join("steering", Opposite, [body[2], back, front]).unwrap();
-    let start = State::new(
+    let start = AssemblyState::new(
         &board,
         &[q[0], q[1], q[2], q[2] + q[3], q[2] + q[4], q[2] - q[4]],
         &[v[0], v[1], v[2], v[2] + v[3], v[2] + v[4], v[2] - v[4]],
@@ -126,7 +126,7 @@ impl Joint<2, 1> for Steering {
 fn car_with_trailers() {
     let trailers = vec![Trailer::new(0.5, 0.1, 0.1, 0.2, 0.8).unwrap(); 5];
     let mut train = Train::new(Sleigh::new(1.0, 0.5, 0.4).unwrap(), trailers, |trailer| trailer.sleigh).unwrap();
-    let [wheels] = train.assembly.body("front wheels", Rotor { inertia: 0.01 });
+    let [wheels] = train.assembly.body("front wheels", RotorElement { inertia: 0.01 });
     train.assembly.attach("front axle", SteeredBlade { ahead: 1.0 }, [0, 1, 2, wheels]).unwrap();
     train.assembly.join("steering", Steering, [2, wheels]).unwrap();
     let start = train.start(&SleighState { speed: 1.0, ..SleighState::default() }, &[]);
@@ -134,8 +134,8 @@ fn car_with_trailers() {
     let mut v: Vec<f64> = (0..start.len()).map(|i| start.v(i)).collect();
     v[wheels] = 0.15;
     let q: Vec<f64> = (0..start.len()).map(|i| start.q(i)).collect();
-    let mut state = State::new(&train.assembly, &q, &v);
-    let mut method = Dla::new(&train.assembly, Solver::Best).unwrap();
+    let mut state = AssemblyState::new(&train.assembly, &q, &v);
+    let mut method = SparseDla::new(&train.assembly, Solver::Best).unwrap();
     let (mut most, mut turned) = ([0.0f64; 2], 0.0f64);
     for k in 0..300 {
         let t = f64::from(k) * 0.02;
@@ -177,9 +177,9 @@ fn spring_and_damper() {
         let mut pair = Assembly::new();
         let [a, b] = [0, 1].map(|_| pair.body::<_, 3, 0>("body", Body { mass: 1.0, inertia: 1.0 }));
         pair.attach("spring", Spring { stiffness: 2.0, damping }, [a[0], a[1], a[2], b[0], b[1], b[2]]).unwrap();
-        let mut state = State::new(&pair, &[-0.5, 0.0, 0.0, 0.5, 0.0, 0.0], &[0.0; 6]);
+        let mut state = AssemblyState::new(&pair, &[-0.5, 0.0, 0.0, 0.5, 0.0, 0.0], &[0.0; 6]);
         let initial = pair.energy(0.0, &state);
-        let mut method = Composition::new(&pair, Solver::Best, 8).unwrap();
+        let mut method = SparseComposition::new(&pair, Solver::Best, 8).unwrap();
         for k in 0..100 {
             method.step(&pair, 0.02 * f64::from(k), 0.02, &mut state).unwrap();
         }

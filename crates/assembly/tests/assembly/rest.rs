@@ -2,7 +2,7 @@
 
 use crate::tools::train;
 use assembly::parts::{Trailer, Train};
-use assembly::{Composition, Dla, Energy, Lobatto, OneStep, Solver, State};
+use assembly::{AssemblyMethod, AssemblyState, Solver, SparseComposition, SparseDla, SparseEnergy, SparseLobatto};
 use lagrangian::With;
 use sleigh::effects::{Bowl, Drag};
 use sleigh::{Sleigh, SleighState};
@@ -16,18 +16,18 @@ fn damped() -> Train {
     Train::new(lead, vec![trailer; 2], body).unwrap()
 }
 
-fn methods(train: &Train) -> Vec<(&'static str, Box<dyn OneStep>)> {
+fn methods(train: &Train) -> Vec<(&'static str, Box<dyn AssemblyMethod>)> {
     let (assembly, solver) = (&train.assembly, Solver::Best);
     vec![
-        ("dla", Box::new(Dla::new(assembly, solver).unwrap())),
-        ("dla4", Box::new(Composition::new(assembly, solver, 4).unwrap())),
-        ("lobatto3", Box::new(Lobatto::new(assembly, solver, 3).unwrap())),
-        ("lobatto5", Box::new(Lobatto::new(assembly, solver, 5).unwrap())),
-        ("energy2", Box::new(Energy::new(assembly, solver).unwrap())),
+        ("dla", Box::new(SparseDla::new(assembly, solver).unwrap())),
+        ("dla4", Box::new(SparseComposition::new(assembly, solver, 4).unwrap())),
+        ("lobatto3", Box::new(SparseLobatto::new(assembly, solver, 3).unwrap())),
+        ("lobatto5", Box::new(SparseLobatto::new(assembly, solver, 5).unwrap())),
+        ("energy2", Box::new(SparseEnergy::new(assembly, solver).unwrap())),
     ]
 }
 
-fn run(train: &Train, method: &mut dyn OneStep, name: &str, state: &mut State, steps: u32) {
+fn run(train: &Train, method: &mut dyn AssemblyMethod, name: &str, state: &mut AssemblyState, steps: u32) {
     for k in 0..steps {
         let step = method.step(&train.assembly, f64::from(k) * 0.02, 0.02, state);
         step.unwrap_or_else(|error| panic!("{name}, step {k}: {error}"));

@@ -1,7 +1,7 @@
 use crate::tools::{bent, run, train};
 use approx::assert_abs_diff_eq;
 use assembly::parts::{Hinge, Trailer, Train};
-use assembly::{Assembly, Dla, Joint, OneStep, Solver, State};
+use assembly::{Assembly, AssemblyMethod, AssemblyState, Joint, Solver, SparseDla};
 use dla::Form;
 use lagrangian::{Constraint, Scalar, System, position_rows};
 use sleigh::{Sleigh, SleighState};
@@ -12,11 +12,11 @@ fn one_sleigh_is_the_static_sleigh() {
     let mut alone = Assembly::new();
     let _: [usize; 3] = alone.body("blade", sleigh);
     let (q, v) = SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() }.to_coordinates();
-    let mut state = State::new(&alone, &q, &v);
+    let mut state = AssemblyState::new(&alone, &q, &v);
     let mut fixed = dla::State::new(q, v, [false, false, true]);
     for solver in [Solver::Dense, Solver::Sparse] {
         let (mut method, mut reference) =
-            (Dla::new(&alone, solver).unwrap(), dla::Dla::midpoint().solved(Form::Multipliers));
+            (SparseDla::new(&alone, solver).unwrap(), dla::Dla::midpoint().solved(Form::Multipliers));
         let h = 0.05;
         for k in 0..400 {
             method.step(&alone, f64::from(k) * h, h, &mut state).unwrap();
@@ -69,7 +69,7 @@ fn a_hinged_pair_is_the_same_written_both_ways() {
     let pair = Pair(sleigh, hinge);
     let (q, v) = (std::array::from_fn(|i| state.q(i)), std::array::from_fn(|i| state.v(i)));
     let mut fixed = dla::State::new(q, v, pair.angles());
-    let (mut method, mut reference) = (Dla::new(&train.assembly, Solver::Best).unwrap(), dla::Dla::midpoint());
+    let (mut method, mut reference) = (SparseDla::new(&train.assembly, Solver::Best).unwrap(), dla::Dla::midpoint());
     for k in 0..200 {
         method.step(&train.assembly, f64::from(k) * h, h, &mut state).unwrap();
         dla::OneStep::step(&mut reference, &pair, f64::from(k) * h, h, &mut fixed).unwrap();

@@ -1,6 +1,9 @@
 use crate::tools::{bent, train};
 use assembly::parts::Hinge;
-use assembly::{Assembly, AssemblyError, Composition, Dla, Energy, Lobatto, OneStep, Solver, State};
+use assembly::{
+    Assembly, AssemblyError, AssemblyMethod, AssemblyState, Solver, SparseComposition, SparseDla, SparseEnergy,
+    SparseLobatto,
+};
 use dla::{Hint, Stage};
 use lagrangian::{Constraint, Scalar, System};
 use sleigh::Sleigh;
@@ -10,9 +13,9 @@ use sleigh::Sleigh;
 fn a_step_allocates_nothing() {
     let train = train(8);
     let all = [Solver::Sparse, Solver::Dense].into_iter().flat_map(|solver| {
-        let dla: Box<dyn OneStep> = Box::new(Dla::new(&train.assembly, solver).unwrap());
-        let energy = Box::new(Energy::new(&train.assembly, solver).unwrap());
-        [(solver, dla), (solver, energy), (solver, Box::new(Lobatto::new(&train.assembly, solver, 3).unwrap()))]
+        let dla: Box<dyn AssemblyMethod> = Box::new(SparseDla::new(&train.assembly, solver).unwrap());
+        let energy = Box::new(SparseEnergy::new(&train.assembly, solver).unwrap());
+        [(solver, dla), (solver, energy), (solver, Box::new(SparseLobatto::new(&train.assembly, solver, 3).unwrap()))]
     });
     for (solver, mut method) in all {
         let mut state = bent(&train);
@@ -45,9 +48,9 @@ fn dependent_constraints_are_named() {
         bodies.join("second hinge", hinge, at).unwrap();
         let q: Vec<f64> = (0..5).flat_map(|k| [-f64::from(k), 0.0, 0.0]).collect();
         let v: Vec<f64> = (0..5).flat_map(|_| [1.0, 0.0, 0.0]).collect();
-        let mut state = State::new(&bodies, &q, &v);
+        let mut state = AssemblyState::new(&bodies, &q, &v);
         let before = state.clone();
-        let error = Dla::new(&bodies, solver).unwrap().step(&bodies, 0.0, 0.1, &mut state).unwrap_err();
+        let error = SparseDla::new(&bodies, solver).unwrap().step(&bodies, 0.0, 0.1, &mut state).unwrap_err();
         println!("{error}");
         let AssemblyError::Singular { stage: Stage::Increment, constraints, .. } = error else { panic!("{error}") };
         let mut elements: Vec<usize> = constraints.iter().map(|constraint| constraint.element).collect();
@@ -63,34 +66,34 @@ fn dependent_constraints_are_named() {
 fn compositions_have_their_order() {
     let train = train(4);
     let assembly = &train.assembly;
-    let end = |method: &mut dyn OneStep, steps: u32| {
+    let end = |method: &mut dyn AssemblyMethod, steps: u32| {
         let (mut state, h) = (bent(&train), 2.0 / f64::from(steps));
         for k in 0..steps {
             method.step(assembly, f64::from(k) * h, h, &mut state).unwrap();
         }
         state
     };
-    let exact = end(&mut Composition::new(assembly, Solver::Best, 8).unwrap(), 160);
-    let order = |method: &mut dyn OneStep, steps: u32| {
+    let exact = end(&mut SparseComposition::new(assembly, Solver::Best, 8).unwrap(), 160);
+    let order = |method: &mut dyn AssemblyMethod, steps: u32| {
         (end(method, steps).distance(&exact) / end(method, 2 * steps).distance(&exact)).log2()
     };
     let orders = [
-        order(&mut Dla::new(assembly, Solver::Best).unwrap(), 40),
-        order(&mut Composition::new(assembly, Solver::Best, 4).unwrap(), 20),
-        order(&mut Composition::new(assembly, Solver::Best, 6).unwrap(), 10),
+        order(&mut SparseDla::new(assembly, Solver::Best).unwrap(), 40),
+        order(&mut SparseComposition::new(assembly, Solver::Best, 4).unwrap(), 20),
+        order(&mut SparseComposition::new(assembly, Solver::Best, 6).unwrap(), 10),
     ];
     println!("{orders:?}");
     for (order, expected) in orders.into_iter().zip([2.0, 4.0, 6.0]) {
         assert!((order - expected).abs() < 0.3, "{orders:?}");
     }
-    assert!(matches!(Composition::new(assembly, Solver::Best, 3), Err(AssemblyError::Unsupported { .. })));
+    assert!(matches!(SparseComposition::new(assembly, Solver::Best, 3), Err(AssemblyError::Unsupported { .. })));
 }
 
 /// There and back again.
 #[test]
 fn a_step_is_its_own_adjoint() {
     let train = train(10);
-    let (start, mut method) = (bent(&train), Dla::new(&train.assembly, Solver::Best).unwrap());
+    let (start, mut method) = (bent(&train), SparseDla::new(&train.assembly, Solver::Best).unwrap());
     let mut state = start.clone();
     for k in 0..50 {
         method.step(&train.assembly, 0.02 * f64::from(k), 0.02, &mut state).unwrap();
@@ -131,11 +134,11 @@ fn a_force_without_a_derivative_is_named() {
         let second = bodies.body("slowed", Slowed { smooth });
         let at = [first[0], first[1], first[2], second[0], second[1], second[2]];
         bodies.join("hinge", hinge, at).unwrap();
-        let rest = State::new(&bodies, &[0.0, 0.0, 0.0, -1.0, 0.0, 0.0], &[0.0; 6]);
-        let methods: [Box<dyn OneStep>; 3] = [
-            Box::new(Dla::new(&bodies, Solver::Best).unwrap()),
-            Box::new(Composition::new(&bodies, Solver::Best, 4).unwrap()),
-            Box::new(Lobatto::new(&bodies, Solver::Best, 3).unwrap()),
+        let rest = AssemblyState::new(&bodies, &[0.0, 0.0, 0.0, -1.0, 0.0, 0.0], &[0.0; 6]);
+        let methods: [Box<dyn AssemblyMethod>; 3] = [
+            Box::new(SparseDla::new(&bodies, Solver::Best).unwrap()),
+            Box::new(SparseComposition::new(&bodies, Solver::Best, 4).unwrap()),
+            Box::new(SparseLobatto::new(&bodies, Solver::Best, 3).unwrap()),
         ];
         for mut method in methods {
             let mut state = rest.clone();

@@ -1,5 +1,5 @@
 use assembly::parts::{Trailer, Train};
-use assembly::{Dla, OneStep, Solver, State};
+use assembly::{AssemblyMethod, AssemblyState, Solver, SparseDla};
 use lagrangian::With;
 use sleigh::effects::{Bowl, Drag, Hill, Hills};
 use sleigh::{Sleigh, SleighState};
@@ -11,13 +11,13 @@ pub(crate) fn train(blades: usize) -> Train {
 }
 
 /// Turning, each blade a little beside the one before.
-pub(crate) fn bent(train: &Train) -> State {
+pub(crate) fn bent(train: &Train) -> AssemblyState {
     let headings: Vec<f64> = (1..=train.trailers().len()).map(|k| 0.3 * (0.37 * k as f64).sin()).collect();
     train.start(&SleighState { speed: 1.0, turn_rate: 0.3, ..SleighState::default() }, &headings)
 }
 
-pub(crate) fn run(train: &Train, solver: Solver, h: f64, steps: u32, state: &mut State) {
-    let mut method = Dla::new(&train.assembly, solver).unwrap();
+pub(crate) fn run(train: &Train, solver: Solver, h: f64, steps: u32, state: &mut AssemblyState) {
+    let mut method = SparseDla::new(&train.assembly, solver).unwrap();
     for k in 0..steps {
         method.step(&train.assembly, f64::from(k) * h, h, state).unwrap();
     }

@@ -1,5 +1,5 @@
 use assembly::parts::{Trailer, Train};
-use assembly::{Dla, OneStep, Solver, State};
+use assembly::{AssemblyMethod, AssemblyState, Solver, SparseDla};
 use nalgebra::{Complex, DMatrix};
 use sleigh::{Sleigh, SleighState};
 
@@ -58,8 +58,8 @@ fn predicted(train: &Train, u: f64) -> Vec<Complex<f64>> {
 fn computed(train: &Train, u: f64) -> Vec<Complex<f64>> {
     const SMALL: f64 = 1e-4;
     let n = train.trailers().len();
-    let mut method = Dla::new(&train.assembly, Solver::Best).unwrap();
-    let departure = |state: &State| -> Vec<f64> {
+    let mut method = SparseDla::new(&train.assembly, Solver::Best).unwrap();
+    let departure = |state: &AssemblyState| -> Vec<f64> {
         let blades: Vec<SleighState> = (0..=n).map(|k| train.blade(state, k)).collect();
         std::iter::once(blades[0].turn_rate).chain((0..n).map(|k| blades[k + 1].heading - blades[k].heading)).collect()
     };
@@ -105,7 +105,7 @@ fn a_train_pushed_backward_jack_knifes() {
     let train = train();
     let bend = |u: f64| {
         let mut state = train.start(&SleighState { speed: u, ..SleighState::default() }, &[0.01, 0.02]);
-        let mut method = Dla::new(&train.assembly, Solver::Best).unwrap();
+        let mut method = SparseDla::new(&train.assembly, Solver::Best).unwrap();
         let mut most: f64 = 0.0;
         for k in 0..200 {
             method.step(&train.assembly, 0.02 * f64::from(k), 0.02, &mut state).unwrap();

@@ -104,12 +104,23 @@ impl<const N: usize, const M: usize> OneStep<N, M> for GaussAdaptive {
         h: f64,
         state: &mut State<N>,
     ) -> Result<StepReport<M>, StepError> {
+        Ok(self.step_until(system, (t, h), state, &mut |_, _| ControlFlow::Continue(()))?.0)
+    }
+
+    #[inline]
+    fn step_until(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        step: (f64, f64),
+        state: &mut State<N>,
+        see: &mut OwnStep<'_, N>,
+    ) -> Result<(StepReport<M>, Option<f64>), StepError> {
         if const { super::USE.exceeds::<N, M>() } {
             return Err(super::USE.refusal::<N, M>());
         }
-        affine_only(system, t, state)?;
+        affine_only(system, step.0, state)?;
         let (quarters, start) = (self.quarters, *state);
-        let found = self.cross(system, t, h, state, |_, _| ControlFlow::Continue(()));
+        let found = self.cross(system, step, state, see);
         if found.is_err() {
             (self.quarters, *state) = (quarters, start);
         }
@@ -130,7 +141,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for GaussAdaptive {
     fn own_steps(
         &self,
         system: &dyn Mechanics<N, M>,
-        (t, h): (f64, f64),
+        step: (f64, f64),
         state: &State<N>,
         memory: &mut Vec<f64>,
         see: &mut OwnStep<'_, N>,
@@ -139,23 +150,21 @@ impl<const N: usize, const M: usize> OneStep<N, M> for GaussAdaptive {
         if !memory.is_empty() {
             OneStep::<N, M>::recall(&mut method, memory, &state);
         }
-        method.cross::<N, M>(system, t, h, &mut state, see)?;
+        method.cross::<N, M>(system, step, &mut state, see)?;
         *memory = OneStep::<N, M>::memory(&method);
         Ok(())
     }
 }
 
 impl GaussAdaptive {
-    /// Crosses an interval, and shows where its steps end within it.
-    #[inline(always)]
+    /// Crosses an interval, shows where its steps end within it, and tells where it was stopped.
     fn cross<const N: usize, const M: usize>(
         &mut self,
         system: &dyn Mechanics<N, M>,
-        t0: f64,
-        whole: f64,
+        (t0, whole): (f64, f64),
         state: &mut State<N>,
-        mut see: impl FnMut(f64, &State<N>) -> ControlFlow<()>,
-    ) -> Result<StepReport<M>, StepError> {
+        see: &mut OwnStep<'_, N>,
+    ) -> Result<(StepReport<M>, Option<f64>), StepError> {
         let (mut made, mut iterations, mut refused) = (0.0, 0, false);
         let mut quarters = self.quarters.unwrap_or_else(|| first(system, t0, whole, state));
         let mut slopes = StageSlopes::ZERO;
@@ -184,15 +193,16 @@ impl GaussAdaptive {
             if last {
                 // A step cut at the end of the interval says little of the next.
                 self.quarters = Some(quarters + longer.min(0));
-                return Ok(StepReport::of(iterations));
+                return Ok((StepReport::of(iterations), None));
             }
             made += h;
-            if see(t0 + made, state).is_break() {
-                return Ok(StepReport::of(iterations));
-            }
             // After a step that was too long the next one is not longer.
             quarters += if refused { longer.min(0) } else { longer };
             refused = false;
+            if see(t0 + made, state).is_break() {
+                self.quarters = Some(quarters);
+                return Ok((StepReport::of(iterations), Some(t0 + made)));
+            }
         }
         Err(StepError::Tolerance { tries: Self::MAX_TRIES, step: quarter_octaves(quarters) })
     }

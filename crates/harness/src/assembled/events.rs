@@ -1,10 +1,10 @@
 use super::making::{AssemblyStep, LastNode};
-use assembly::{Assembly, OneStep, State};
+use assembly::{Assembly, AssemblyMethod, AssemblyState};
 use dla::{Close, Zero, close_crossings, zeros};
 use std::fmt;
 
 /// Of the time (s) and the state.
-type AssemblyFunction<'a> = Box<dyn Fn(f64, &State) -> f64 + 'a>;
+type AssemblyFunction<'a> = Box<dyn Fn(f64, &AssemblyState) -> f64 + 'a>;
 
 /// A function of time and state whose crossings of zero are looked for along a run of an assembly.
 pub struct AssemblyEvent<'a> {
@@ -17,7 +17,7 @@ pub struct AssemblyEvent<'a> {
 
 impl<'a> AssemblyEvent<'a> {
     /// The event `function(t, state) = 0`, in both directions.
-    pub fn new(name: impl Into<String>, terminal: bool, function: impl Fn(f64, &State) -> f64 + 'a) -> Self {
+    pub fn new(name: impl Into<String>, terminal: bool, function: impl Fn(f64, &AssemblyState) -> f64 + 'a) -> Self {
         Self { name: name.into(), terminal, function: Box::new(function) }
     }
 }
@@ -45,7 +45,7 @@ pub struct AssemblyCrossing {
     /// Whether the function rises through zero.
     pub rising: bool,
     /// The state then: a step of the method, shortened to end there.
-    pub state: State,
+    pub state: AssemblyState,
 }
 
 impl AssemblyCrossing {
@@ -59,7 +59,7 @@ impl AssemblyCrossing {
 /// Notes the crossings within a step, up to the first that ends the run: there it ends. The step is divided into so many parts.
 pub(super) fn ended(
     assembly: &Assembly,
-    method: &mut dyn OneStep,
+    method: &mut dyn AssemblyMethod,
     step: &AssemblyStep<'_>,
     (events, samples): (&[AssemblyEvent<'_>], u32),
     crossings: &mut Vec<AssemblyCrossing>,
@@ -78,7 +78,7 @@ pub(super) fn ended(
     };
     let samples = i64::from(samples.max(1));
     let parts = (-1..=samples + 1).map(|j| j as f64 / samples as f64);
-    let states: Vec<(f64, State)> = parts.filter_map(|part| Some((part, after(part)?))).collect();
+    let states: Vec<(f64, AssemblyState)> = parts.filter_map(|part| Some((part, after(part)?))).collect();
     let mut found = Vec::new();
     for (event, AssemblyEvent { function, .. }) in events.iter().enumerate() {
         let known: Vec<(f64, f64)> = states.iter().map(|(part, state)| (*part, function(time(*part), state))).collect();

@@ -3,7 +3,7 @@ use super::meter::AssemblyMeter;
 use super::parts::{Parted, in_parts, resolves, shorter};
 use super::{Assembled, assembly_method};
 use crate::{Method, MethodInfo, Progress, Record};
-use assembly::{Assembly, OneStep, RunError, State};
+use assembly::{Assembly, AssemblyMethod, AssemblyRunError, AssemblyState};
 use dla::{Checkpoint, CheckpointError, Schedule, Substeps};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -14,14 +14,14 @@ pub(super) struct Making<'a, 'n> {
     schedule: &'a Schedule,
     info: MethodInfo,
     limits: Option<Substeps>,
-    method: Option<Box<dyn OneStep>>,
+    method: Option<Box<dyn AssemblyMethod>>,
     meter: AssemblyMeter<'n>,
-    state: State,
+    state: AssemblyState,
     pub(super) made: u64,
     seconds: f64,
     /// The time of the last node, where an event has ended the run there.
     ended: Option<f64>,
-    failure: Option<RunError>,
+    failure: Option<AssemblyRunError>,
 }
 
 /// A step that was made.
@@ -30,19 +30,19 @@ pub(super) struct AssemblyStep<'a> {
     pub(super) k: u64,
     pub(super) t0: f64,
     pub(super) h: f64,
-    pub(super) before: &'a State,
-    pub(super) after: &'a State,
+    pub(super) before: &'a AssemblyState,
+    pub(super) after: &'a AssemblyState,
 }
 
 /// The node at which a run ends within a step: the time (s) and the state.
-pub(super) type LastNode = (f64, State);
+pub(super) type LastNode = (f64, AssemblyState);
 
 impl<'a, 'n> Making<'a, 'n> {
     pub(super) fn new(
         assembly: &'a Assembly,
         method: &Method,
         schedule: &'a Schedule,
-        start: &State,
+        start: &AssemblyState,
         nodes: AssemblyNodes<'n>,
     ) -> Self {
         let meter = AssemblyMeter::new(assembly, method, schedule.t0, start, nodes);
@@ -53,12 +53,12 @@ impl<'a, 'n> Making<'a, 'n> {
         assembly: &'a Assembly,
         method: &Method,
         schedule: &'a Schedule,
-        (meter, state, made, seconds): (AssemblyMeter<'n>, State, u64, f64),
+        (meter, state, made, seconds): (AssemblyMeter<'n>, AssemblyState, u64, f64),
     ) -> Self {
         let (method, info, limits) = (assembly_method(assembly, method), method.info(), method.substeps());
         let (method, failure) = match method {
             Ok(method) => (Some(method), None),
-            Err(source) => (None, Some(RunError { step: 1, time: schedule.t0, source })),
+            Err(source) => (None, Some(AssemblyRunError { step: 1, time: schedule.t0, source })),
         };
         Self { assembly, schedule, info, limits, method, meter, state, made, seconds, ended: None, failure }
     }
@@ -77,7 +77,7 @@ impl<'a, 'n> Making<'a, 'n> {
         &mut self,
         to: u64,
         ticker: &mut AssemblyTicker<'_>,
-        mut look: impl FnMut(&mut dyn OneStep, AssemblyStep<'_>) -> ControlFlow<LastNode>,
+        mut look: impl FnMut(&mut dyn AssemblyMethod, AssemblyStep<'_>) -> ControlFlow<LastNode>,
     ) {
         let Self { assembly, schedule, limits, method: Some(method), meter, state, made, seconds, .. } = self else {
             return;
@@ -111,7 +111,7 @@ impl<'a, 'n> Making<'a, 'n> {
                 }
                 (Err(source), None) => {
                     let source = source.named(assembly, t0, state);
-                    self.failure = Some(RunError { step: k + 1, time: t0, source });
+                    self.failure = Some(AssemblyRunError { step: k + 1, time: t0, source });
                     return;
                 }
                 (Err(source), Some(limits)) => {
@@ -126,7 +126,8 @@ impl<'a, 'n> Making<'a, 'n> {
                         match parted {
                             Err(undivided) => {
                                 meter.undivided(&undivided);
-                                self.failure = Some(RunError { step: k + 1, time: t0, source: undivided.source });
+                                self.failure =
+                                    Some(AssemblyRunError { step: k + 1, time: t0, source: undivided.source });
                             }
                             Ok(_) => ticker.stopped = true,
                         }
@@ -177,7 +178,7 @@ impl<'a, 'n> Making<'a, 'n> {
         checkpoint: &Checkpoint,
     ) -> Result<Self, CheckpointError> {
         let ([made], [seconds]) = (checkpoint.counts("k")?, checkpoint.get("seconds")?);
-        let state = State::load(checkpoint, assembly)?;
+        let state = AssemblyState::load(checkpoint, assembly)?;
         let meter = AssemblyMeter::load(checkpoint, method, (made, schedule.time(made)), nodes)?;
         Ok(Self::of(assembly, method, schedule, (meter, state, made, seconds)))
     }

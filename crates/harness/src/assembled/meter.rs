@@ -2,7 +2,7 @@ use super::{AssemblyNode, AssemblyNodes};
 use crate::{
     Blocks, Drift, Energies, EnergySummary, Method, MethodInfo, NewtonSummary, Record, Sample, SubstepSummary, Trend,
 };
-use assembly::{Assembly, AssemblyError, RunError, State, StepReport, Work};
+use assembly::{Assembly, AssemblyError, AssemblyReport, AssemblyRunError, AssemblyState, AssemblyWork};
 use dla::{Checkpoint, CheckpointError, Undivided};
 use lagrangian::linear::larger;
 
@@ -16,7 +16,7 @@ pub(super) struct AssemblyMeter<'a> {
     last: f64,
     max_error: f64,
     most: [f64; 2],
-    work: Work,
+    work: AssemblyWork,
     trend: Trend,
     blocks: Blocks,
     energies: Energies,
@@ -37,7 +37,13 @@ struct Shown<'a> {
 }
 
 impl<'a> AssemblyMeter<'a> {
-    pub(super) fn new(assembly: &Assembly, method: &Method, t: f64, start: &State, nodes: AssemblyNodes<'a>) -> Self {
+    pub(super) fn new(
+        assembly: &Assembly,
+        method: &Method,
+        t: f64,
+        start: &AssemblyState,
+        nodes: AssemblyNodes<'a>,
+    ) -> Self {
         let (every, shown) = split(nodes);
         let (initial, most) = (assembly.energy(t, start), assembly.misses(t, start));
         let mut meter = Self {
@@ -47,7 +53,7 @@ impl<'a> AssemblyMeter<'a> {
             last: initial,
             max_error: 0.0,
             most,
-            work: Work::default(),
+            work: AssemblyWork::default(),
             trend: Trend::default(),
             blocks: Blocks::default(),
             energies: Energies::of_start(initial, kinetic(assembly, t, start)),
@@ -69,9 +75,9 @@ impl<'a> AssemblyMeter<'a> {
     pub(super) fn over(
         &mut self,
         assembly: &Assembly,
-        before: (f64, &State),
-        after: (f64, &State),
-        report: &StepReport,
+        before: (f64, &AssemblyState),
+        after: (f64, &AssemblyState),
+        report: &AssemblyReport,
     ) {
         self.work.step(assembly, before, after, report);
     }
@@ -99,7 +105,7 @@ impl<'a> AssemblyMeter<'a> {
         &mut self,
         assembly: &Assembly,
         (made, t): (u64, f64),
-        state: &State,
+        state: &AssemblyState,
         iterations: u32,
         parts: u64,
     ) {
@@ -124,13 +130,13 @@ impl<'a> AssemblyMeter<'a> {
         }
     }
 
-    fn node(&self, assembly: &Assembly, t: f64, state: &State) -> AssemblyNode {
+    fn node(&self, assembly: &Assembly, t: f64, state: &AssemblyState) -> AssemblyNode {
         let (q, v) = (0..state.len()).map(|i| (state.unwrapped(i), state.v(i))).unzip();
         let [constraint, joint] = assembly.misses(t, state);
         AssemblyNode { t, q, v, energy: assembly.energy(t, state), work: self.work.total(), constraint, joint }
     }
 
-    fn keep(&mut self, assembly: &Assembly, t: f64, state: &State) {
+    fn keep(&mut self, assembly: &Assembly, t: f64, state: &AssemblyState) {
         let node = self.node(assembly, t, state);
         self.samples.push(Sample { t, q: first(&node.q), energy_error: self.bucket.0, constraint: self.bucket.1 });
         self.bucket = (0.0, 0.0);
@@ -140,7 +146,7 @@ impl<'a> AssemblyMeter<'a> {
     }
 
     /// Hands on the node of that number, where nodes are handed on.
-    fn show(&mut self, assembly: &Assembly, (made, t): (u64, f64), state: &State) {
+    fn show(&mut self, assembly: &Assembly, (made, t): (u64, f64), state: &AssemblyState) {
         if self.shown.is_some() {
             let node = self.node(assembly, t, state);
             if let Some(shown) = &mut self.shown {
@@ -151,7 +157,7 @@ impl<'a> AssemblyMeter<'a> {
     }
 
     /// Keeps and hands on the last node, where that is no regular one.
-    pub(super) fn finish(&mut self, assembly: &Assembly, (made, t): (u64, f64), state: &State) {
+    pub(super) fn finish(&mut self, assembly: &Assembly, (made, t): (u64, f64), state: &AssemblyState) {
         if self.samples.last().is_none_or(|sample| sample.t < t) {
             self.keep(assembly, t, state);
         }
@@ -165,8 +171,8 @@ impl<'a> AssemblyMeter<'a> {
         method: MethodInfo,
         step: f64,
         (t, steps, wall_seconds): (f64, u64, f64),
-        state: &State,
-        failure: Option<&RunError>,
+        state: &AssemblyState,
+        failure: Option<&AssemblyRunError>,
     ) -> Record<3> {
         let coordinates: Vec<[f64; 2]> = (0..state.len().min(3)).map(|i| [state.unwrapped(i), state.v(i)]).collect();
         let of = |which: usize| first(&coordinates.iter().map(|pair| pair[which]).collect::<Vec<_>>());
@@ -243,7 +249,7 @@ impl<'a> AssemblyMeter<'a> {
             last,
             max_error,
             most: [constraint, joint],
-            work: Work::load(checkpoint)?,
+            work: AssemblyWork::load(checkpoint)?,
             trend: Trend::of_sums(checkpoint.get("trend")?),
             blocks: Blocks::load(checkpoint)?,
             energies: Energies::load(checkpoint)?,
@@ -268,9 +274,9 @@ fn split(nodes: AssemblyNodes<'_>) -> (u64, Option<Shown<'_>>) {
 }
 
 /// The kinetic energy (J): the energy less that of the same place at rest.
-fn kinetic(assembly: &Assembly, t: f64, state: &State) -> f64 {
+fn kinetic(assembly: &Assembly, t: f64, state: &AssemblyState) -> f64 {
     let q: Vec<f64> = (0..state.len()).map(|i| state.unwrapped(i)).collect();
-    let resting = State::new(assembly, &q, &vec![0.0; state.len()]);
+    let resting = AssemblyState::new(assembly, &q, &vec![0.0; state.len()]);
     assembly.energy(t, state) - assembly.energy(t, &resting)
 }
 

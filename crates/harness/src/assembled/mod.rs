@@ -12,7 +12,10 @@ pub use recommend::recommend_assembly;
 pub use saved::run_assembly_saved;
 
 use crate::{Kind, METHODS, Method, Progress, Record};
-use assembly::{Assembly, AssemblyError, Composition, Dla, Energy, Lobatto, OneStep, RunError, Solver, State};
+use assembly::{
+    Assembly, AssemblyError, AssemblyMethod, AssemblyRunError, AssemblyState, Solver, SparseComposition, SparseDla,
+    SparseEnergy, SparseLobatto,
+};
 use dla::Schedule;
 use events::ended;
 use making::{AssemblyTicker, Making};
@@ -64,9 +67,9 @@ pub struct Assembled {
     /// The nodes that were kept.
     pub nodes: Vec<AssemblyNode>,
     /// The state at the end.
-    pub end: State,
+    pub end: AssemblyState,
     /// Why the run ended early, where it did, with the constraints that are the cause.
-    pub failure: Option<RunError>,
+    pub failure: Option<AssemblyRunError>,
 }
 
 /// Why a method is refused.
@@ -83,13 +86,13 @@ static OTHERS: LazyLock<String> = LazyLock::new(|| {
 ///
 /// # Errors
 /// [`AssemblyError::Unsupported`] for one that does none.
-pub fn assembly_method(assembly: &Assembly, method: &Method) -> Result<Box<dyn OneStep>, AssemblyError> {
+pub fn assembly_method(assembly: &Assembly, method: &Method) -> Result<Box<dyn AssemblyMethod>, AssemblyError> {
     let best = Solver::Best;
     match method.info().kind {
-        Kind::Dla => Dla::new(assembly, best).map(|method| Box::new(method) as _),
-        Kind::Composed(order) => Composition::new(assembly, best, order).map(|method| Box::new(method) as _),
-        Kind::Lobatto(stages) => Lobatto::new(assembly, best, stages).map(|method| Box::new(method) as _),
-        Kind::Energy(1) => Energy::new(assembly, best).map(|method| Box::new(method) as _),
+        Kind::Dla => SparseDla::new(assembly, best).map(|method| Box::new(method) as _),
+        Kind::Composed(order) => SparseComposition::new(assembly, best, order).map(|method| Box::new(method) as _),
+        Kind::Lobatto(stages) => SparseLobatto::new(assembly, best, stages).map(|method| Box::new(method) as _),
+        Kind::Energy(1) => SparseEnergy::new(assembly, best).map(|method| Box::new(method) as _),
         _ => Err(AssemblyError::Unsupported { reason: OTHERS.as_str() }),
     }
 }
@@ -97,16 +100,16 @@ pub fn assembly_method(assembly: &Assembly, method: &Method) -> Result<Box<dyn O
 /// The state at the end of a run, nothing looking on but the progress; none where that stops it.
 ///
 /// # Errors
-/// [`RunError`] with the step that failed.
+/// [`AssemblyRunError`] with the step that failed.
 pub fn assembly_end(
     assembly: &Assembly,
     method: &Method,
     schedule: &Schedule,
-    start: &State,
+    start: &AssemblyState,
     progress: &mut dyn Progress,
-) -> Result<Option<State>, RunError> {
+) -> Result<Option<AssemblyState>, AssemblyRunError> {
     let mut state = start.clone();
-    let fail = |k: u64| move |source| RunError { step: k + 1, time: schedule.time(k), source };
+    let fail = |k: u64| move |source| AssemblyRunError { step: k + 1, time: schedule.time(k), source };
     let (mut method, mut ticker) =
         (assembly_method(assembly, method).map_err(fail(0))?, AssemblyTicker::new(progress, 0));
     for k in 0..schedule.steps {
@@ -122,12 +125,12 @@ pub fn assembly_end(
 /// Makes a run of an assembly and measures it, keeping every `every`-th node and the last.
 ///
 /// The time is that of the steps alone. Work is that of the method's own forces where it knows it, else integrated along the
-/// polynomial of degree five of each step, which is of order 6 ([`assembly::Work`]). A run that fails gives the record of its valid part.
+/// polynomial of degree five of each step, which is of order 6 ([`assembly::AssemblyWork`]). A run that fails gives the record of its valid part.
 pub fn run_assembly(
     assembly: &Assembly,
     method: &Method,
     schedule: &Schedule,
-    start: &State,
+    start: &AssemblyState,
     every: u64,
     progress: &mut dyn Progress,
 ) -> Assembled {
@@ -142,7 +145,7 @@ pub fn run_assembly_watched(
     assembly: &Assembly,
     method: &Method,
     schedule: &Schedule,
-    (start, nodes): (&State, AssemblyNodes<'_>),
+    (start, nodes): (&AssemblyState, AssemblyNodes<'_>),
     events: (&[AssemblyEvent<'_>], u32),
     progress: &mut dyn Progress,
 ) -> (Assembled, Vec<AssemblyCrossing>) {

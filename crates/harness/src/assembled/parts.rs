@@ -1,6 +1,6 @@
 use super::making::{AssemblyStep, LastNode};
 use super::meter::AssemblyMeter;
-use assembly::{Assembly, AssemblyError, OneStep, State, StepReport};
+use assembly::{Assembly, AssemblyError, AssemblyMethod, AssemblyReport, AssemblyState};
 use dla::{Halved, Substeps, Undivided};
 use lagrangian::linear::larger;
 use std::ops::ControlFlow;
@@ -20,11 +20,11 @@ pub(super) struct Parted {
 /// [`Undivided`] where it cannot be made in parts either.
 pub(super) fn in_parts(
     assembly: &Assembly,
-    method: &mut dyn OneStep,
+    method: &mut dyn AssemblyMethod,
     (limits, (k, t, h), failure): (Substeps, (u64, f64, f64), AssemblyError),
-    (state, meter): (&mut State, &mut AssemblyMeter<'_>),
+    (state, meter): (&mut AssemblyState, &mut AssemblyMeter<'_>),
     stops: impl Fn() -> bool,
-    mut look: impl FnMut(&mut dyn OneStep, AssemblyStep<'_>) -> ControlFlow<LastNode>,
+    mut look: impl FnMut(&mut dyn AssemblyMethod, AssemblyStep<'_>) -> ControlFlow<LastNode>,
 ) -> Result<Option<Parted>, Undivided<AssemblyError>> {
     let mut start = state.clone();
     let (mut last, mut iterations, mut parts) = (None, 0, 0);
@@ -54,12 +54,12 @@ pub(super) fn in_parts(
 /// What a step did that is shortened to end at an event, between two times; without its work where it cannot be made.
 pub(super) fn shorter(
     assembly: &Assembly,
-    method: &mut dyn OneStep,
+    method: &mut dyn AssemblyMethod,
     (t, end): (f64, f64),
-    before: &State,
-    whole: StepReport,
-) -> StepReport {
-    let unknown = StepReport { work: None, ..whole };
+    before: &AssemblyState,
+    whole: AssemblyReport,
+) -> AssemblyReport {
+    let unknown = AssemblyReport { work: None, ..whole };
     method.step(assembly, t, end - t, &mut before.clone()).unwrap_or(unknown)
 }
 
@@ -69,9 +69,9 @@ pub(super) fn shorter(
 /// [`AssemblyError::Unresolved`] where it does not, and that of a half that fails.
 pub(super) fn resolves(
     assembly: &Assembly,
-    method: &mut dyn OneStep,
+    method: &mut dyn AssemblyMethod,
     (t, h): (f64, f64),
-    (before, after): (&State, &State),
+    (before, after): (&AssemblyState, &AssemblyState),
 ) -> Result<(), AssemblyError> {
     let half = 0.5 * h;
     let mut middle = before.clone();

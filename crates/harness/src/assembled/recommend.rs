@@ -1,6 +1,6 @@
 use super::assembly_method;
 use crate::Method;
-use assembly::{Assembly, State};
+use assembly::{Assembly, AssemblyState};
 use dla::{RecommendError, Recommendation, RunError, recommend_by_trial};
 
 /// The longest step of a whole run of an assembly from time zero with which some of its coordinates meet a tolerance: see
@@ -11,12 +11,12 @@ use dla::{RecommendError, Recommendation, RunError, recommend_by_trial};
 pub fn recommend_assembly<const N: usize>(
     assembly: &Assembly,
     method: &Method,
-    start: &State,
+    start: &AssemblyState,
     duration: f64,
     tolerance: f64,
-    seen: impl Fn(&State) -> [f64; N],
+    seen: impl Fn(&AssemblyState) -> [f64; N],
 ) -> Result<Recommendation, RecommendError> {
-    let seen = |state: &State| dla::State::new(seen(state), [0.0; N], [false; N]);
+    let seen = |state: &AssemblyState| dla::State::new(seen(state), [0.0; N], [false; N]);
     recommend_by_trial(duration, tolerance, |schedule, times| {
         let failed = |k: u64, source: assembly::AssemblyError| RunError {
             step: k + 1,

@@ -2,7 +2,7 @@ use super::making::{AssemblyTicker, Making};
 use super::{Assembled, AssemblyNodes};
 use crate::saved::within;
 use crate::{Method, Progress, Saving};
-use assembly::{Assembly, State};
+use assembly::{Assembly, AssemblyState};
 use dla::{CheckpointError, Schedule};
 use std::ops::ControlFlow;
 
@@ -17,7 +17,7 @@ pub fn run_assembly_saved(
     assembly: &Assembly,
     method: &Method,
     schedule: &Schedule,
-    (start, nodes): (&State, AssemblyNodes<'_>),
+    (start, nodes): (&AssemblyState, AssemblyNodes<'_>),
     saving: &mut Saving<'_>,
     progress: &mut dyn Progress,
 ) -> Result<Assembled, CheckpointError> {

@@ -153,29 +153,51 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Dop853<N, M> {
         self.proposed = memory.first().copied();
     }
 
+    fn step_until(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        (t, h): (f64, f64),
+        state: &mut State<N>,
+        see: &mut OwnStep<'_, N>,
+    ) -> Result<(StepReport<M>, Option<f64>), StepError> {
+        if const { USE.exceeds::<N, M>() } {
+            return Err(USE.refusal::<N, M>());
+        }
+        let (xi0, mut end, mut failure) = (state.quasi_velocities(system, t)?, None, None);
+        let crossed = self.cross(&ReducedSlopes::new(system, t, state), h, xi0, |made, point| {
+            let mut inner = *state;
+            match moved::<N, M>(system, t + made, point, &mut inner) {
+                Ok(_) if see(t + made, &inner).is_continue() => return ControlFlow::Continue(()),
+                Ok(_) => end = Some(t + made),
+                Err(error) => failure = Some(error),
+            }
+            ControlFlow::Break(())
+        });
+        if let Some(error) = failure {
+            return Err(error);
+        }
+        match crossed {
+            Ok(_) => Ok((moved(system, end.unwrap_or(t + h), self.solver.y(), state)?, end)),
+            Err(error) => match at_rest(system, (t, h), state, &xi0) {
+                Some(point) => Ok((moved(system, t + h, &point, state)?, None)),
+                None => Err(error),
+            },
+        }
+    }
+
     fn own_steps(
         &self,
         system: &dyn Mechanics<N, M>,
-        (t, h): (f64, f64),
+        step: (f64, f64),
         state: &State<N>,
         memory: &mut Vec<f64>,
         see: &mut OwnStep<'_, N>,
     ) -> Result<(), StepError> {
         let mut method = Self { solver: self.solver.clone(), proposed: memory.first().copied() };
-        let (xi0, mut failure) = (state.quasi_velocities(system, t)?, None);
-        method.cross(&ReducedSlopes::new(system, t, state), h, xi0, |made, point| {
-            let mut inner = *state;
-            match moved::<N, M>(system, t + made, point, &mut inner) {
-                Ok(_) => see(t + made, &inner),
-                Err(error) => {
-                    failure = Some(error);
-                    ControlFlow::Break(())
-                }
-            }
-        })?;
+        method.step_until(system, step, &mut { *state }, see)?;
         memory.clear();
         memory.extend(method.proposed);
-        failure.map_or(Ok(()), Err)
+        Ok(())
     }
 }
 

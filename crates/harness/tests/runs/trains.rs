@@ -103,7 +103,7 @@ fn events_along_a_train() {
     let start = train.start(&SleighState { speed: 1.0, turn_rate: 0.5, ..SleighState::default() }, &[0.1, 0.2]);
     for name in ["dla4", "energy2"] {
         let method = Method::named(name, None).unwrap();
-        let x = |value: f64| move |_: f64, state: &assembly::State| state.unwrapped(0) - value;
+        let x = |value: f64| move |_: f64, state: &assembly::AssemblyState| state.unwrapped(0) - value;
         let events = [AssemblyEvent::new("x=0.513", false, x(0.513)), AssemblyEvent::new("x=0.911", true, x(0.911))];
         let (run, crossings) = run_assembly_watched(
             &train.assembly,
@@ -169,7 +169,7 @@ fn a_saved_run_goes_on_as_if_it_had_not_stopped() {
 fn a_step_for_a_tolerance() {
     let train = train();
     let start = train.start(&SleighState { speed: 1.0, turn_rate: 0.5, ..SleighState::default() }, &[0.1, 0.2]);
-    let last = |state: &assembly::State| [state.unwrapped(9), state.unwrapped(10), state.unwrapped(11)];
+    let last = |state: &assembly::AssemblyState| [state.unwrapped(9), state.unwrapped(10), state.unwrapped(11)];
     let (dla, tolerance) = (Method::named("dla", None).unwrap(), 1e-4);
     let found = recommend_assembly(&train.assembly, &dla, &start, 4.0, tolerance, last).unwrap();
     let end = |method: &Method, steps: u64| {

@@ -1,6 +1,6 @@
 //! The work that is taken off the energy of an assembly is that of the method's own forces.
 use assembly::parts::{Trailer, Train};
-use assembly::{Assembly, Energy, OneStep, Solver, State, StepReport, Work};
+use assembly::{Assembly, AssemblyMethod, AssemblyReport, AssemblyState, AssemblyWork, Solver, SparseEnergy};
 use dla::Schedule;
 use harness::{AssemblyEvent, AssemblyNodes, Method, Record, Request, run_assembly, run_assembly_watched};
 use lagrangian::linear::larger;
@@ -10,7 +10,7 @@ use sleigh::effects::{Drag, Thrust, Torque};
 use sleigh::{Sleigh, SleighState, TimeFunction};
 
 /// A sleigh under a constant thrust of 0.2 N with one trailer, bent by 0.5 rad less its heading.
-fn thrust() -> (Train, State) {
+fn thrust() -> (Train, AssemblyState) {
     let lead = With { body: lead(), effects: Thrust::new(TimeFunction::Constant(0.2)).unwrap() };
     let train = Train::new(lead, vec![trailer(1.0)], |trailer| trailer.sleigh).unwrap();
     let start = train.start(&START, &[0.5]);
@@ -28,7 +28,7 @@ fn trailer(bar: f64) -> Trailer {
 const START: SleighState = SleighState { x: 0.0, y: 0.0, heading: 0.0, speed: 1.0, turn_rate: 0.3 };
 
 /// Thrust and torque that change with time on the lead, drag on every blade.
-fn driven() -> (Train, State) {
+fn driven() -> (Train, AssemblyState) {
     let wave = |size: f64, rate: f64| TimeFunction::Sine { amplitude: size, frequency: rate, phase: 0.3 };
     let effects =
         (Thrust::new(wave(0.8, 1.3)).unwrap(), (Torque::new(wave(0.5, 2.1)).unwrap(), Drag::new(0.1, 0.05).unwrap()));
@@ -38,7 +38,7 @@ fn driven() -> (Train, State) {
     (train, start)
 }
 
-fn free() -> (Train, State) {
+fn free() -> (Train, AssemblyState) {
     let train = Train::new(lead(), vec![trailer(0.8); 3], |trailer| trailer.sleigh).unwrap();
     let start = train.start(&START, &[0.3, -0.2]);
     (train, start)
@@ -48,7 +48,7 @@ fn schedule(step: f64, duration: f64) -> Schedule {
     Schedule { t0: 0.0, step, steps: (duration / step).round() as u64 }
 }
 
-fn measured((train, start): &(Train, State), name: &str, schedule: &Schedule) -> Record<3> {
+fn measured((train, start): &(Train, AssemblyState), name: &str, schedule: &Schedule) -> Record<3> {
     let method = Method::named(name, None).unwrap();
     let run = run_assembly(&train.assembly, &method, schedule, start, schedule.steps, &mut ());
     assert!(run.failure.is_none(), "{name}: {:?}", run.failure);
@@ -122,7 +122,7 @@ fn another_work_and_another_step_are_seen() {
     let (train, start) = thrust();
     let assembly = &train.assembly;
     let errors = |step: f64, along: bool, wrong: bool| {
-        let (mut method, mut work) = (Energy::new(assembly, Solver::Best).unwrap(), Work::default());
+        let (mut method, mut work) = (SparseEnergy::new(assembly, Solver::Best).unwrap(), AssemblyWork::default());
         let (mut state, initial, mut most) = (start.clone(), assembly.energy(0.0, &start), 0.0);
         let schedule = schedule(step, 20.0);
         for k in 0..schedule.steps {
@@ -132,7 +132,7 @@ fn another_work_and_another_step_are_seen() {
             if wrong && k == schedule.steps / 2 {
                 state = faster(assembly, &state, 1.0 + WRONG);
             }
-            let report = if along { StepReport { work: None, ..report } } else { report };
+            let report = if along { AssemblyReport { work: None, ..report } } else { report };
             work.step(assembly, (t0, &before), (t1, &state), &report);
             most = larger(most, assembly.energy(t1, &state) - initial - work.total());
         }
@@ -150,9 +150,9 @@ fn another_work_and_another_step_are_seen() {
 }
 
 /// The same place with all velocities multiplied.
-fn faster(assembly: &Assembly, state: &State, by: f64) -> State {
+fn faster(assembly: &Assembly, state: &AssemblyState, by: f64) -> AssemblyState {
     let of = |what: &dyn Fn(usize) -> f64| (0..state.len()).map(what).collect::<Vec<_>>();
-    State::new(assembly, &of(&|i| state.unwrapped(i)), &of(&|i| by * state.v(i)))
+    AssemblyState::new(assembly, &of(&|i| state.unwrapped(i)), &of(&|i| by * state.v(i)))
 }
 
 /// Of the step that an event ends only the part before it counts.
@@ -162,7 +162,7 @@ fn the_work_of_a_step_that_an_event_ends() {
     let schedule = schedule(0.1, 20.0);
     for (name, most) in [("energy2", 1e-14), ("dla8", 1e-10)] {
         let method = Method::named(name, None).unwrap();
-        let at = |t: f64, _: &State| t - 4.567_89;
+        let at = |t: f64, _: &AssemblyState| t - 4.567_89;
         let events = [AssemblyEvent::new("t", true, at)];
         let (run, _) = run_assembly_watched(
             &train.assembly,
@@ -185,7 +185,7 @@ fn one_sleigh_is_measured_as_the_static_sleigh() {
         let mut alone = Assembly::new();
         let _: [usize; 3] = alone.body("blade", system.clone());
         let (q, v) = START.to_coordinates();
-        let start = State::new(&alone, &q, &v);
+        let start = AssemblyState::new(&alone, &q, &v);
         let schedule = schedule(0.05, 20.0);
         for name in ["dla", "dla4", "dla6", "dla8", "lobatto3", "lobatto4", "lobatto5", "energy2"] {
             let method = Method::named(name, None).unwrap();
