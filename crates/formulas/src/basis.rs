@@ -30,6 +30,15 @@ impl Written {
     }
 }
 
+/// How a row of the constraints makes one vector fewer of those that the rows before it admit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RowElimination {
+    /// The row solves for the vector of this number, which goes.
+    Solved(usize),
+    /// Two vectors are turned in their plane: the one that the row forbids goes, the other takes the first place.
+    Turned(usize, usize),
+}
+
 impl Formulas {
     /// A basis of the admissible velocities: the one that the texts give, else one that is derived. None where none is seen that holds
     /// everywhere.
@@ -41,58 +50,146 @@ impl Formulas {
         self.whole_basis_as(Written::Plainly)
     }
 
+    /// How each row makes one vector fewer, where a derived basis is seen that holds everywhere.
+    pub fn eliminations(&mut self) -> Option<Vec<RowElimination>> {
+        Some(self.seen(Written::Plainly)?.1)
+    }
+
+    /// The basis that these eliminations derive, one for each row.
+    pub fn basis_by(&mut self, eliminations: &[RowElimination]) -> Vec<Vec<Expression>> {
+        let mut vectors = self.coordinate_vectors();
+        for (row, how) in eliminations.iter().enumerate() {
+            let across = self.across(row, &vectors, Written::Plainly);
+            vectors = how.applied(&mut self.graph, &across, &vectors);
+        }
+        vectors
+    }
+
     pub(crate) fn whole_basis_as(&mut self, written: Written) -> Option<Vec<Vec<Expression>>> {
-        let n = self.n;
         if let Some(given) = &self.basis {
-            return Some(given.chunks(n).map(<[Expression]>::to_vec).collect());
+            return Some(given.chunks(self.n).map(<[Expression]>::to_vec).collect());
         }
-        let (zero, one) = (self.graph.constant(0.0), self.graph.constant(1.0));
-        let mut vectors: Vec<Vec<Expression>> =
-            (0..n).map(|k| (0..n).map(|i| if i == k { one } else { zero }).collect()).collect();
-        let first_parameter = self.parameter(0);
-        for row in 0..self.m {
-            let row = &self.rows[row * n..(row + 1) * n];
-            let graph = &mut self.graph;
-            let across: Vec<Expression> = vectors
-                .iter()
-                .map(|w| {
-                    let across = dot(graph, row, w);
-                    written.of(graph, across)
-                })
-                .collect();
-            vectors = solved(graph, first_parameter, &across, &vectors).or_else(|| turned(graph, &across, &vectors))?;
-        }
+        let mut vectors = self.seen(written)?.0;
         for e in vectors.iter_mut().flatten() {
             *e = written.of(&mut self.graph, *e);
         }
         Some(vectors)
     }
-}
 
-/// The vectors without one along which the row is a number, and along which the others are corrected.
-fn solved(
-    graph: &mut Graph,
-    first_parameter: u32,
-    across: &[Expression],
-    vectors: &[Vec<Expression>],
-) -> Option<Vec<Vec<Expression>>> {
-    // Rather a number than a product of parameters.
-    let fixed = |graph: &Graph, e: Expression| graph.value(e).is_some_and(|x| x != 0.0);
-    let known = |graph: &Graph, e: Expression| {
-        graph.value(e) != Some(0.0) && graph.variables(e).iter().all(|&k| k >= first_parameter)
-    };
-    let pivot =
-        across.iter().position(|&e| fixed(graph, e)).or_else(|| across.iter().position(|&e| known(graph, e)))?;
-    let mut rest = Vec::new();
-    for (k, vector) in vectors.iter().enumerate().filter(|(k, _)| *k != pivot) {
-        let factor = graph.quotient(across[k], across[pivot]);
-        rest.push(less(graph, vector, factor, &vectors[pivot]));
+    /// The basis that is seen, and how.
+    fn seen(&mut self, written: Written) -> Option<(Vec<Vec<Expression>>, Vec<RowElimination>)> {
+        let mut vectors = self.coordinate_vectors();
+        let mut all = Vec::new();
+        let first_parameter = self.parameter(0);
+        for row in 0..self.m {
+            let across = self.across(row, &vectors, written);
+            let graph = &mut self.graph;
+            let how = solved(graph, first_parameter, &across).or_else(|| turned(graph, &across))?;
+            vectors = how.applied(graph, &across, &vectors);
+            all.push(how);
+        }
+        Some((vectors, all))
     }
-    Some(rest)
+
+    fn coordinate_vectors(&mut self) -> Vec<Vec<Expression>> {
+        let (zero, one) = (self.graph.constant(0.0), self.graph.constant(1.0));
+        (0..self.n).map(|k| (0..self.n).map(|i| if i == k { one } else { zero }).collect()).collect()
+    }
+
+    /// The products of a row with vectors.
+    fn across(&mut self, row: usize, vectors: &[Vec<Expression>], written: Written) -> Vec<Expression> {
+        let row = &self.rows[row * self.n..(row + 1) * self.n];
+        let graph = &mut self.graph;
+        let product = |w: &Vec<Expression>| {
+            let across = dot(graph, row, w);
+            written.of(graph, across)
+        };
+        vectors.iter().map(product).collect()
+    }
 }
 
-/// The vectors with two turned in their plane, one of which goes.
-fn turned(graph: &mut Graph, across: &[Expression], vectors: &[Vec<Expression>]) -> Option<Vec<Vec<Expression>>> {
+impl RowElimination {
+    /// The vectors that are left, of which the row has the products `across`.
+    fn applied(self, graph: &mut Graph, across: &[Expression], vectors: &[Vec<Expression>]) -> Vec<Vec<Expression>> {
+        match self {
+            Self::Solved(pivot) => {
+                let mut rest = Vec::new();
+                for (k, vector) in vectors.iter().enumerate().filter(|(k, _)| *k != pivot) {
+                    let factor = graph.quotient(across[k], across[pivot]);
+                    rest.push(less(graph, vector, factor, &vectors[pivot]));
+                }
+                rest
+            }
+            Self::Turned(i, j) => {
+                let pair = |graph: &mut Graph, a: Expression, b: Expression| -> Vec<Expression> {
+                    let terms = |k: usize| [(a, vectors[i][k]), (b, vectors[j][k])];
+                    let all = (0..vectors[i].len()).map(|k| {
+                        let terms = terms(k).map(|(factor, x)| graph.product(&[factor, x]));
+                        graph.sum(&terms)
+                    });
+                    all.collect()
+                };
+                let squares = [i, j].map(|k| graph.power(across[k], 2.0));
+                let (square, opposite) = (graph.sum(&squares), graph.negated(across[i]));
+                let (along, forbidden) = (pair(graph, across[j], opposite), pair(graph, across[i], across[j]));
+                let mut rest = vec![along];
+                for k in (0..vectors.len()).filter(|k| *k != i && *k != j) {
+                    let factor = graph.quotient(across[k], square);
+                    rest.push(less(graph, &vectors[k], factor, &forbidden));
+                }
+                rest
+            }
+        }
+    }
+}
+
+impl Formulas {
+    /// The basis by elimination: row after row is solved for the rate of its coordinate, `order` has the two. It holds where no pivot
+    /// vanishes. Each vector has the rate one of a coordinate that is free, in their order.
+    pub fn eliminated_basis(&mut self, order: &[(usize, usize)]) -> Vec<Vec<Expression>> {
+        let (n, graph) = (self.n, &mut self.graph);
+        let mut a: Vec<Vec<Expression>> = self.rows.chunks(n.max(1)).map(<[Expression]>::to_vec).collect();
+        for &(r, c) in order {
+            let pivot = a[r][c];
+            for x in &mut a[r] {
+                *x = graph.quotient(*x, pivot);
+            }
+            let row = a[r].clone();
+            for (_, other) in a.iter_mut().enumerate().filter(|(i, _)| *i != r) {
+                let factor = other[c];
+                *other = less(graph, other, factor, &row);
+            }
+        }
+        let (zero, one) = (graph.constant(0.0), graph.constant(1.0));
+        let free = (0..n).filter(|i| order.iter().all(|(_, c)| c != i));
+        free.map(|i| {
+            let mut vector = vec![zero; n];
+            vector[i] = one;
+            for &(r, c) in order {
+                vector[c] = graph.negated(a[r][i]);
+            }
+            vector
+        })
+        .collect()
+    }
+}
+
+/// The vector along which the row is a number.
+fn solved(graph: &Graph, first_parameter: u32, across: &[Expression]) -> Option<RowElimination> {
+    // Rather a number than a product of parameters, and of numbers the first of the largest.
+    let size = |e: Expression| graph.value(e).filter(|x| *x != 0.0).map(f64::abs);
+    let larger = |best: Option<(usize, f64)>, (k, x): (usize, f64)| match best {
+        Some((_, most)) if most >= x => best,
+        _ => Some((k, x)),
+    };
+    let fixed = across.iter().enumerate().filter_map(|(k, &e)| Some((k, size(e)?))).fold(None, larger);
+    let known = |e: Expression| graph.value(e) != Some(0.0) && graph.variables(e).iter().all(|&k| k >= first_parameter);
+    let pivot = fixed.map(|(k, _)| k).or_else(|| across.iter().position(|&e| known(e)));
+    pivot.map(RowElimination::Solved)
+}
+
+/// Two vectors with which the products of the row are a sine and a cosine.
+fn turned(graph: &mut Graph, across: &[Expression]) -> Option<RowElimination> {
     for i in 0..across.len() {
         for j in i + 1..across.len() {
             if [i, j].iter().any(|&k| graph.value(across[k]) == Some(0.0)) {
@@ -100,25 +197,9 @@ fn turned(graph: &mut Graph, across: &[Expression], vectors: &[Vec<Expression>])
             }
             let squares = [i, j].map(|k| graph.power(across[k], 2.0));
             let square = graph.sum(&squares);
-            if !graph.value(square).is_some_and(|x| x > 0.0) {
-                continue;
+            if graph.value(square).is_some_and(|x| x > 0.0) {
+                return Some(RowElimination::Turned(i, j));
             }
-            let pair = |graph: &mut Graph, a: Expression, b: Expression| -> Vec<Expression> {
-                (0..vectors[i].len())
-                    .map(|k| {
-                        let terms = [graph.product(&[a, vectors[i][k]]), graph.product(&[b, vectors[j][k]])];
-                        graph.sum(&terms)
-                    })
-                    .collect()
-            };
-            let opposite = graph.negated(across[i]);
-            let (along, forbidden) = (pair(graph, across[j], opposite), pair(graph, across[i], across[j]));
-            let mut rest = vec![along];
-            for k in (0..vectors.len()).filter(|k| *k != i && *k != j) {
-                let factor = graph.quotient(across[k], square);
-                rest.push(less(graph, &vectors[k], factor, &forbidden));
-            }
-            return Some(rest);
         }
     }
     None

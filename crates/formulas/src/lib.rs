@@ -14,6 +14,7 @@ mod reduced;
 mod tables;
 mod words;
 
+pub use basis::RowElimination;
 pub use error::{Entry, Problem, TextError};
 pub use formulas::{Formulas, Parameters};
 pub use reduced::Reduced;

@@ -41,6 +41,16 @@ impl Formulas {
 
     fn reduced_as(&mut self, of_basis: Written, written: Written) -> Option<Reduced> {
         let basis = self.whole_basis_as(of_basis)?;
+        self.reduced_along(basis, written)
+    }
+
+    /// The reduced equations in a basis of the admissible velocities, written in the way that is shorter entry by entry: quicker to derive
+    /// than the shortest of [`reduced`](Self::reduced). None where they are too large.
+    pub fn reduced_in(&mut self, basis: Vec<Vec<Expression>>) -> Option<Reduced> {
+        self.reduced_along(basis, Written::Shorter)
+    }
+
+    fn reduced_along(&mut self, basis: Vec<Vec<Expression>>, written: Written) -> Option<Reduced> {
         let n = self.n;
         let freedoms = basis.len();
         let rates = self.rates();

@@ -80,8 +80,9 @@ pub fn reduced_slope<Sys: System<N, M>, const N: usize, const M: usize>(
 ) -> Result<ReducedSlope<N>, ReducedError> {
     let velocity = velocity_of(system, t, q, xi)?;
     let acceleration = match system.reduced().reduced_motion(t, q, xi) {
-        Some(acceleration) => acceleration,
-        None => derived_acceleration(system, t, q, xi)?,
+        Some(acceleration) if acceleration[..N - M].iter().all(|x| x.is_finite()) => acceleration,
+        // Of equations that are degenerate these tell where.
+        _ => derived_acceleration(system, t, q, xi)?,
     };
     Ok(ReducedSlope { velocity, acceleration })
 }

@@ -38,7 +38,7 @@ impl Family {
         texts.abbreviations = fixed.map(|(name, value)| (name.clone(), format!("{value:?}"))).collect();
         texts.abbreviations.extend(words.abbreviations.iter().cloned());
         texts.parameters.clone_from(&free);
-        let model = Model::of(&texts, Formulas::of(&texts, Parameters::Variables)?)?;
+        let model = Model::of(&texts, Formulas::of(&texts, Parameters::Variables)?, member.eliminations.clone())?;
         let values = from_fn(|k| free.get(k).map_or(0.0, |(_, value)| *value));
         Ok(Self { member: Arc::clone(member), free: Arc::new(model), values })
     }

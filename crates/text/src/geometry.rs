@@ -2,6 +2,7 @@
 
 use crate::basis::Pivots;
 use crate::{Model, Start};
+use ::formulas::Formulas;
 use expression::{Expression, Graph, Tape};
 use nalgebra::DMatrix;
 
@@ -55,11 +56,15 @@ impl Model {
         let n = self.coordinates.len();
         let (rows, _) = self.rows_at(0.0, &start.q);
         let rank = rank(&rows);
-        let mut fields = Fields { graph: Graph::clone(&self.graph), n, q: &start.q };
-        let basis: Vec<Field> = match &self.fields {
+        let mut formulas = Formulas::clone(&self.formulas);
+        let basis: Vec<Field> = match &formulas.basis {
             Some(given) => given.chunks(n).map(<[Expression]>::to_vec).collect(),
-            None => fields.eliminated(&self.rows, &Pivots::best(&rows, &self.sizes(0.0, &start.q))),
+            None => {
+                let pivots: Vec<_> = Pivots::best(&rows, &self.sizes(0.0, &start.q)).order().collect();
+                formulas.eliminated_basis(&pivots)
+            }
         };
+        let mut fields = Fields { graph: formulas.graph, n, q: &start.q };
         Geometry { rank, growth: fields.growth(&basis), coordinates: n }
     }
 }
@@ -82,37 +87,6 @@ struct Fields<'a> {
 type Field = Vec<Expression>;
 
 impl Fields<'_> {
-    /// The fields of free rates, by elimination of the others.
-    fn eliminated(&mut self, rows: &[Expression], pivots: &Pivots) -> Vec<Field> {
-        let (n, graph) = (self.n, &mut self.graph);
-        let mut a: Vec<Field> = rows.chunks(n).map(<[Expression]>::to_vec).collect();
-        for (r, c) in pivots.order() {
-            let pivot = a[r][c];
-            for x in &mut a[r] {
-                *x = graph.quotient(*x, pivot);
-            }
-            let row = a[r].clone();
-            for (_, other) in a.iter_mut().enumerate().filter(|(i, _)| *i != r) {
-                let factor = other[c];
-                for (x, &y) in other.iter_mut().zip(&row) {
-                    let change = graph.product(&[factor, y]);
-                    *x = graph.difference(*x, change);
-                }
-            }
-        }
-        let (zero, one) = (graph.constant(0.0), graph.constant(1.0));
-        let field = |i: usize, graph: &mut Graph| {
-            let mut field = vec![zero; n];
-            field[i] = one;
-            for (r, c) in pivots.order() {
-                field[c] = graph.negated(a[r][i]);
-            }
-            field
-        };
-        let free: Vec<usize> = pivots.free(n).collect();
-        free.into_iter().map(|i| field(i, graph)).collect()
-    }
-
     /// The Lie bracket `[X, Y] = DY X - DX Y`.
     fn bracket(&mut self, x: &[Expression], y: &[Expression]) -> Field {
         let graph = &mut self.graph;

@@ -33,6 +33,7 @@ mod basis;
 mod family;
 mod geometry;
 mod model;
+mod reduced;
 mod start;
 mod start_along;
 mod system;

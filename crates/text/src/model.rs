@@ -1,7 +1,8 @@
+use crate::reduced::EquationsOfBases;
 use crate::tapes::{Point, Tapes};
 use crate::{Entry, MOST_CONSTRAINTS, MOST_COORDINATES, Problem, TextError, Unit, Words};
-use ::formulas::{Formulas, Parameters};
-use expression::{Expression, Graph};
+use ::formulas::{Formulas, Parameters, RowElimination};
+use expression::Expression;
 use lagrangian::Dual;
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
@@ -31,16 +32,16 @@ pub struct Model {
     pub(crate) holonomic: Tapes,
     /// None where no force acts.
     pub(crate) force: Option<Tapes>,
-    /// None where it is to be derived.
+    /// A basis of the admissible velocities that holds everywhere, given or seen; none where one holds near a configuration only.
     pub(crate) basis: Option<Tapes>,
     pub(crate) mass: Tapes,
     pub(crate) outputs: Vec<String>,
     pub(crate) told: Tapes,
     pub(crate) timed: bool,
-    /// All formulas, with the rows of `A` and the given basis among them.
-    pub(crate) graph: Arc<Graph>,
-    pub(crate) rows: Vec<Expression>,
-    pub(crate) fields: Option<Vec<Expression>>,
+    pub(crate) formulas: Arc<Formulas>,
+    /// How a basis that holds everywhere is derived; none where the text gives one, or none is seen.
+    pub(crate) eliminations: Option<Vec<RowElimination>>,
+    pub(crate) equations: EquationsOfBases,
 }
 
 /// The same formulas make the same model.
@@ -65,12 +66,21 @@ impl Model {
             let problem = Problem::TooLarge { coordinates: n, constraints: m, most };
             return Err(TextError { entry: Entry::System, problem });
         }
-        Self::of(words, Formulas::of(words, Parameters::Numbers)?)
+        let mut formulas = Formulas::of(words, Parameters::Numbers)?;
+        let eliminations = if formulas.basis.is_some() { None } else { formulas.eliminations() };
+        Self::of(words, formulas, eliminations)
     }
 
-    pub(crate) fn of(words: &Words, formulas: Formulas) -> Result<Self, TextError> {
+    pub(crate) fn of(
+        words: &Words,
+        mut formulas: Formulas,
+        eliminations: Option<Vec<RowElimination>>,
+    ) -> Result<Self, TextError> {
         let all = formulas.rates();
-        let Formulas { mut graph, lagrangian, rows, level, positions, force, basis, outputs, .. } = formulas;
+        let derived = eliminations.as_ref().map(|all| formulas.basis_by(all).concat());
+        let basis = formulas.basis.clone().or(derived);
+        let given = formulas.clone();
+        let Formulas { mut graph, lagrangian, rows, level, positions, force, outputs, .. } = formulas;
         let mass: Vec<Expression> = graph.hessian(lagrangian, &all, &all).concat();
         // `A` by rows, then `b`.
         let constraint = [&rows[..], &level].concat();
@@ -94,9 +104,9 @@ impl Model {
             outputs: words.outputs.iter().map(|(name, _)| name.clone()).collect(),
             told: tapes(&outputs, Entry::System)?,
             timed,
-            rows,
-            fields: basis,
-            graph: Arc::new(graph),
+            formulas: Arc::new(given),
+            eliminations,
+            equations: EquationsOfBases::default(),
         })
     }
 
@@ -133,7 +143,7 @@ impl Model {
     /// Whether the text gives a basis of the admissible velocities; else it is derived.
     #[must_use]
     pub fn gives_basis(&self) -> bool {
-        self.basis.is_some()
+        self.formulas.basis.is_some()
     }
 
     /// Whether any formula depends on time.

@@ -1,19 +1,28 @@
 use crate::Model;
 use crate::basis::Pivots;
+use crate::reduced::Equations;
 use crate::tapes::Point;
-use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Scalar, System};
+use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Reduced, Scalar, System};
 use std::sync::Arc;
 
 /// A system of text, of `N` coordinates and `M` constraints.
 ///
 /// Where the text has fewer, the others are filled up: each further coordinate is that of a unit mass that rests at zero, and each further
 /// constraint holds one of them. Both are exact, and take no part in the motion: all terms in which they stand are zeros.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct TextSystem<const N: usize, const M: usize> {
-    model: Arc<Model>,
+    pub(crate) model: Arc<Model>,
     /// The sizes of rates with the same kinetic energy.
     sizes: Arc<[f64]>,
-    pivots: Pivots,
+    pub(crate) pivots: Pivots,
+    pub(crate) equations: Equations,
+}
+
+/// The reduced equations follow from the rest.
+impl<const N: usize, const M: usize> PartialEq for TextSystem<N, M> {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.model, &self.sizes, self.pivots) == (&other.model, &other.sizes, other.pivots)
+    }
 }
 
 impl<const N: usize, const M: usize> TextSystem<N, M> {
@@ -34,7 +43,12 @@ impl<const N: usize, const M: usize> TextSystem<N, M> {
         let (rows, _) = model.rows_at(t, &q[..n]);
         let sizes: Arc<[f64]> = model.sizes(t, &q[..n]).into();
         let pivots = Pivots::best(&rows, &sizes);
-        Some(Self { model, sizes, pivots })
+        Some(Self::with(model, sizes, pivots))
+    }
+
+    fn with(model: Arc<Model>, sizes: Arc<[f64]>, pivots: Pivots) -> Self {
+        let equations = model.equations.of(model.basis_number(&pivots));
+        Self { model, sizes, pivots, equations }
     }
 
     /// What the texts mean.
@@ -54,12 +68,12 @@ impl<const N: usize, const M: usize> TextSystem<N, M> {
     /// The same with another basis, of that number, for the neighbourhood of a configuration; zero is the one it has.
     pub(crate) fn rebased(&self, basis: u64) -> Self {
         let pivots = if basis == 0 { self.pivots } else { Pivots::numbered(basis, self.m()) };
-        Self { model: Arc::clone(&self.model), sizes: Arc::clone(&self.sizes), pivots }
+        Self::with(Arc::clone(&self.model), Arc::clone(&self.sizes), pivots)
     }
 
     /// The same with another model, of the same coordinates and constraints.
     pub(crate) fn of_model(self, model: &Arc<Model>) -> Self {
-        Self { model: Arc::clone(model), ..self }
+        Self::with(Arc::clone(model), self.sizes, self.pivots)
     }
 
     fn point<'a, S>(&self, p: &'a [S], t: S, q: &'a [S; N], v: &'a [S]) -> Point<'a, S> {
@@ -154,12 +168,15 @@ impl<const N: usize, const M: usize> System<N, M> for TextSystem<N, M> {
         let there = (basis != 0).then(|| Pivots::numbered(basis, m));
         let there = there.filter(|pivots| pivots.are_good(n, self.constraint(t, q).0, &self.sizes));
         let pivots = there.unwrap_or_else(|| Pivots::best(&self.model.rows_at(t, &q[..n]).0, &self.sizes));
-        let system = Self { model: Arc::clone(&self.model), sizes: Arc::clone(&self.sizes), pivots };
-        Some((system, pivots.number()))
+        Some((Self::with(Arc::clone(&self.model), Arc::clone(&self.sizes), pivots), pivots.number()))
     }
 
     fn holonomic<S: Scalar>(&self, t: S, q: &[S; N]) -> Option<[Option<S>; M]> {
         self.holonomic_at(&[], t, q)
+    }
+
+    fn reduced(&self) -> impl Reduced<N, M> {
+        self
     }
 
     fn angles(&self) -> [bool; N] {

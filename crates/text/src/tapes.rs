@@ -64,11 +64,11 @@ impl Tapes {
         // Most formulas need few places, and small numbers room for more of them.
         const FEW: usize = 24;
         const MANY: usize = 128;
-        if size_of::<S>() <= 64 && all <= MANY {
-            let mut room = [S::zero(); MANY];
-            self.computed(n, at, room.split_at_mut(scratch), &mut result);
-        } else if size_of::<S>() <= 2048 && all <= FEW {
+        if size_of::<S>() <= 2048 && all <= FEW {
             let mut room = [S::zero(); FEW];
+            self.computed(n, at, room.split_at_mut(scratch), &mut result);
+        } else if size_of::<S>() <= 192 && all <= MANY {
+            let mut room = [S::zero(); MANY];
             self.computed(n, at, room.split_at_mut(scratch), &mut result);
         } else {
             let mut room = vec![S::zero(); all];
