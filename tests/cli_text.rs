@@ -152,6 +152,25 @@ fn what_is_not_done_is_refused_with_its_reason() {
     }
 }
 
+/// The skate of the test has the equations of the book in its own basis: `u' = g sin(slope) cos(theta)`, `theta'' = 0`; a sleigh is refused.
+#[test]
+fn equations_are_those_of_the_book() {
+    let folder = Folder::new();
+    folder.write("skate.toml", SKATE);
+    let told = folder.json("equations skate.toml --json");
+    assert_eq!(told["unknowns"], serde_json::json!(["x", "y", "theta", "xi1", "xi2"]));
+    assert_eq!(told["rates"].as_array().unwrap().len(), 5);
+    assert_eq!(told["rates"][4], "0");
+    assert_eq!(told["start"].as_array().unwrap().len(), 5);
+    let shown = folder.done("equations skate.toml");
+    assert!(shown.contains("xi2' = 0") && shown.contains("theta' = xi2"), "{shown}");
+    for scene in TEXTS {
+        let told = folder.json(&format!("equations {scene} --json"));
+        assert_eq!(told["rates"].as_array().unwrap().len(), told["start"].as_array().unwrap().len(), "{scene}");
+    }
+    folder.refused("equations turnaround", &["turnaround is a sleigh"]);
+}
+
 /// A run goes on from its checkpoint to the same bits.
 #[test]
 fn runs_resume() {

@@ -63,6 +63,8 @@ pub(crate) enum Command {
     Merge(MergeArguments),
     /// Reads scenes and says what they are, or what is wrong with them
     Check(CheckArguments),
+    /// Prints the equations of motion of a system of text, reduced to a basis of its admissible velocities, for other programs
+    Equations(EquationsArguments),
     /// Lists what there is
     List(ListArguments),
     /// Writes a commented scene to start from
@@ -382,6 +384,18 @@ pub(crate) struct CheckArguments {
     #[command(flatten)]
     pub(crate) set: Settings,
     /// Print one JSON array, an object for each scene
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct EquationsArguments {
+    /// A scene file, the name of a bundled scene, or - for the standard input
+    #[arg(value_name = "SCENE")]
+    pub(crate) scene: String,
+    #[command(flatten)]
+    pub(crate) set: Settings,
+    /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,
 }

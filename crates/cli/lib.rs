@@ -15,6 +15,7 @@ mod cost;
 mod diff;
 mod effect_keys;
 mod ensemble;
+mod equations;
 mod equilibria;
 mod error;
 mod facts;
@@ -111,6 +112,7 @@ fn command(arguments: Arguments) -> Result<(), CliError> {
         Some(Command::Ensemble(arguments)) => ensemble::ensemble(&arguments),
         Some(Command::Merge(arguments)) => ensemble::merge(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
+        Some(Command::Equations(arguments)) => equations::equations(&arguments),
         Some(Command::List(arguments)) => inspect::list(&arguments),
         Some(Command::New(arguments)) => inspect::new(&arguments),
         Some(Command::Plot(arguments)) => plot::plot(&arguments),

@@ -56,7 +56,7 @@ mod tokens;
 
 pub use error::Error;
 pub use function::Function;
-pub use graph::{Expression, Graph};
+pub use graph::{Expression, Graph, Statements};
 pub use limits::Limits;
 pub use names::{Names, nearest};
 pub use parser::{parse, parse_within};

@@ -11,6 +11,8 @@ use expression::{Expression, Graph};
 pub struct Reduced {
     /// The vectors of the basis.
     pub basis: Vec<Vec<Expression>>,
+    /// The rates of the coordinates.
+    pub velocity: Vec<Expression>,
     /// The accelerations of the quasi-velocities.
     pub acceleration: Vec<Expression>,
     /// After how many quadratures the configuration is known from the quasi-velocities over time; none where it is no cascade.
@@ -123,7 +125,7 @@ impl Formulas {
         let stands_alone = acceleration.iter().all(|&e| !here(graph, e));
         let reconstruction = cascade(graph, &v, n);
         graph.check().ok()?;
-        Some(Reduced { basis, acceleration, reconstruction, stands_alone })
+        Some(Reduced { basis, velocity: v, acceleration, reconstruction, stands_alone })
     }
 
     /// The shortest velocity that meets an affine constraint, `v_b = -A' (A A')^-1 b`.

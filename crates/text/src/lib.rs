@@ -38,6 +38,7 @@ mod start;
 mod start_along;
 mod system;
 mod tapes;
+mod written;
 
 pub use ::formulas::{Entry, Problem, TextError, Unit, Words};
 pub use any::{AnyText, MOST_CONSTRAINTS, MOST_COORDINATES, Started, TextMechanics};
@@ -47,3 +48,4 @@ pub use model::{Coordinate, Model};
 pub use start::{Moved, Start, StartError};
 pub use start_along::Varied;
 pub use system::TextSystem;
+pub use written::WrittenEquations;

@@ -38,15 +38,22 @@ impl Model {
     }
 
     fn derived(&self, pivots: &Pivots) -> Option<ReducedTapes> {
+        let (formulas, reduced) = self.reduced_formulas(pivots)?;
+        let Derived { acceleration, reconstruction, stands_alone, .. } = reduced;
+        let acceleration = Tapes::new(&formulas.graph, &acceleration).ok()?;
+        Some(ReducedTapes { acceleration, reconstruction, stands_alone })
+    }
+
+    /// The reduced equations in the basis in use; none where they are too large.
+    pub(crate) fn reduced_formulas(&self, pivots: &Pivots) -> Option<(Formulas, Derived)> {
         let mut formulas = Formulas::clone(&self.formulas);
         let basis = match (&formulas.basis, &self.eliminations) {
             (Some(given), _) => given.chunks(formulas.n).map(<[_]>::to_vec).collect(),
             (None, Some(eliminations)) => formulas.basis_by(eliminations),
             (None, None) => formulas.eliminated_basis(&pivots.order().collect::<Vec<_>>()),
         };
-        let Derived { acceleration, reconstruction, stands_alone, .. } = formulas.reduced_in(basis)?;
-        let acceleration = Tapes::new(&formulas.graph, &acceleration).ok()?;
-        Some(ReducedTapes { acceleration, reconstruction, stands_alone })
+        let reduced = formulas.reduced_in(basis)?;
+        Some((formulas, reduced))
     }
 }
 

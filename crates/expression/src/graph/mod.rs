@@ -13,6 +13,7 @@ mod walk;
 
 pub use kind::Expression;
 pub(crate) use kind::{Kind, Number};
+pub use text::Statements;
 
 use crate::{Error, Limits};
 use indexmap::IndexSet;

@@ -1,5 +1,12 @@
 use super::{Expression, Graph, Kind, Number};
 use crate::{Error, Names};
+use std::collections::HashMap;
+
+/// Names with the texts that they stand for, and texts in which they stand.
+pub type Statements = (Vec<(String, String)>, Vec<String>);
+
+/// The names of expressions that are shared.
+type Shared = HashMap<Expression, String>;
 
 /// What stands in a text without parentheses: everything, products, powers, or only what is one word.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
@@ -36,6 +43,47 @@ impl Graph {
     /// # Errors
     /// [`Error::TextTooLong`].
     pub fn text(&self, e: Expression, names: &Names) -> Result<String, Error> {
+        self.text_with(e, names, &Shared::new())
+    }
+
+    /// Expressions as texts, in which what is shared has a name: the statements that give a text to each name, in their order, and the
+    /// texts of the expressions. A name is the word with a number.
+    ///
+    /// ```
+    /// use expression::{Graph, Names, parse};
+    /// let names = Names::of(["x", "y"])?;
+    /// let mut graph = Graph::new();
+    /// let variables = [0, 1].map(|k| graph.variable(k));
+    /// let e = graph.build(&parse("sin(x*y) + sin(x*y)^2*y", &names)?, &variables)?;
+    /// let (statements, texts) = graph.statements(&[e], &names, "s")?;
+    /// assert_eq!(statements, [("s1".to_owned(), "sin(x*y)".to_owned())]);
+    /// assert_eq!(texts, ["s1 + y*s1^2"]);
+    /// # Ok::<(), expression::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::TextTooLong`].
+    pub fn statements(&self, all: &[Expression], names: &Names, word: &str) -> Result<Statements, Error> {
+        let mut uses: HashMap<Expression, usize> = HashMap::new();
+        let reached = self.reached(all, |_| true);
+        for &e in &reached {
+            self.kind(e).parts().into_iter().for_each(|part| *uses.entry(part).or_default() += 1);
+        }
+        all.iter().for_each(|e| *uses.entry(*e).or_default() += 1);
+        let (mut shared, mut statements) = (Shared::new(), Vec::new());
+        for e in reached {
+            let simple = matches!(self.kind(e), Kind::Variable(_) | Kind::Constant(_));
+            if !simple && uses.get(&e).is_some_and(|&uses| uses > 1) {
+                let name = format!("{word}{}", statements.len() + 1);
+                statements.push((name.clone(), self.text_with(e, names, &shared)?));
+                shared.insert(e, name);
+            }
+        }
+        let texts = all.iter().map(|&e| self.text_with(e, names, &shared)).collect::<Result<_, _>>()?;
+        Ok((statements, texts))
+    }
+
+    fn text_with(&self, e: Expression, names: &Names, shared: &Shared) -> Result<String, Error> {
         let limit = self.limits.length;
         let (mut text, mut waiting) = (String::new(), vec![Piece::Part(e, Level::Sum)]);
         while let Some(piece) = waiting.pop() {
@@ -43,12 +91,16 @@ impl Graph {
                 Piece::Text(word) => text.push_str(word),
                 Piece::Number(x) => text.push_str(&number(x)),
                 Piece::Part(e, least) => {
+                    if let Some(name) = shared.get(&e) {
+                        text.push_str(name);
+                        continue;
+                    }
                     if let &Kind::Variable(k) = self.kind(e) {
                         let name = names.all().get(k as usize);
                         text.push_str(&name.cloned().unwrap_or_else(|| format!("variable_{k}")));
                         continue;
                     }
-                    let (level, mut pieces) = self.pieces(e);
+                    let (level, mut pieces) = self.pieces(e, shared);
                     if level < least {
                         pieces.insert(0, Piece::Text("("));
                         pieces.push(Piece::Text(")"));
@@ -63,7 +115,7 @@ impl Graph {
         Ok(text)
     }
 
-    fn pieces(&self, e: Expression) -> (Level, Vec<Piece>) {
+    fn pieces(&self, e: Expression, shared: &Shared) -> (Level, Vec<Piece>) {
         match self.kind(e) {
             Kind::Constant(x) => constant(x.value()),
             Kind::Variable(_) => (Level::Word, Vec::new()),
@@ -71,7 +123,7 @@ impl Graph {
                 let mut pieces = Vec::new();
                 for &(term, c) in terms {
                     pieces.push(sign(c.value(), pieces.is_empty()));
-                    pieces.extend(self.multiple(c.value().abs(), term));
+                    pieces.extend(self.multiple(c.value().abs(), term, shared));
                 }
                 let single = terms.len() == 1 && *constant == Number::ZERO;
                 let positive = terms.first().is_some_and(|(_, c)| c.value() > 0.0);
@@ -85,7 +137,7 @@ impl Graph {
                 [(base, halves)] if halves > 0 => {
                     (if halves == 1 { Level::Word } else { Level::Power }, factor(base, halves))
                 }
-                _ => (Level::Product, self.multiple(1.0, e)),
+                _ => (Level::Product, self.multiple(1.0, e, shared)),
             },
             Kind::Power(base, p) => (Level::Power, raised(*base, p.value())),
             Kind::Call(function, [a, b]) => {
@@ -100,9 +152,12 @@ impl Graph {
     }
 
     /// `c` times a term, `c` not negative.
-    fn multiple(&self, c: f64, term: Expression) -> Vec<Piece> {
+    fn multiple(&self, c: f64, term: Expression, shared: &Shared) -> Vec<Piece> {
         let single = [(term, 2)];
-        let factors = if let Kind::Product(factors) = self.kind(term) { &**factors } else { &single };
+        let factors = match self.kind(term) {
+            Kind::Product(factors) if !shared.contains_key(&term) => &**factors,
+            _ => &single,
+        };
         let mut pieces = Vec::new();
         if c.to_bits() != 1.0_f64.to_bits() || factors.iter().all(|&(_, halves)| halves < 0) {
             pieces.push(Piece::Number(c));
