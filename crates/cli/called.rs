@@ -54,6 +54,8 @@ pub struct Called {
     pub out: String,
     /// What the program writes to standard error.
     pub err: String,
+    /// Whether the request was wrong for now only: another process writes the same output.
+    pub busy: bool,
 }
 
 /// The caller of a command, with the output so far.
@@ -85,6 +87,11 @@ pub(crate) fn keep_out(text: &str) -> bool {
 /// Hands a text of standard error to the caller, where there is one.
 pub(crate) fn keep_err(text: &str) -> bool {
     with(|session| session.output.err.push_str(text)).is_some()
+}
+
+/// Tells the caller, where there is one, whether another process writes the output.
+pub(crate) fn note_busy(busy: bool) {
+    with(|session| session.output.busy = busy);
 }
 
 /// Who ends this command, where that is not Ctrl-C.

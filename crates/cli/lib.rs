@@ -1,5 +1,5 @@
 //! The command line of noslip, as a library: [`main`] is the program, [`call`] a command whose output its caller keeps, [`run`] a
-//! run whose nodes its caller keeps, and [`sensitivities`] what such a run depends on.
+//! run whose nodes its caller keeps, [`sensitivities`] what such a run depends on, and [`plan`] the parts of a sweep.
 
 mod account;
 mod args;
@@ -69,6 +69,7 @@ use error::CliError;
 use std::process::ExitCode;
 
 pub use called::{Called, Caller, call};
+pub use ensemble::{Plan, plan};
 pub use in_memory::{RunError, RunRequest, RunResult, run};
 pub use sensitivities::{Sensitivities, SensitivityRequest, full_key, sensitivities};
 
@@ -92,6 +93,7 @@ fn obey(arguments: impl Iterator<Item = std::ffi::OsString>) -> u8 {
         Ok(()) => done,
         Err(error) => {
             terminal::fail(&error);
+            called::note_busy(matches!(error, CliError::Busy { .. }));
             error.exit_code()
         }
     }

@@ -5,6 +5,7 @@ mod lines;
 mod members;
 mod merge;
 mod parts;
+mod plan;
 mod result;
 mod rows;
 mod share;
@@ -12,6 +13,7 @@ mod spool;
 mod totals;
 
 pub(crate) use merge::merge;
+pub use plan::{Plan, plan};
 pub(crate) use share::Share;
 
 use crate::args::EnsembleArguments;
@@ -23,6 +25,7 @@ use crate::output::metadata_of;
 use crate::{compare, inspect, progress, terminal};
 use about::About;
 use dla::Checkpoint;
+use harness::Method;
 use harness::analysis::has_tangents;
 use harness::ensemble::in_order;
 use indicatif::ProgressBar;
@@ -38,10 +41,7 @@ use totals::Totals;
 pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
     let names = inspect::method_names();
     let sweep = Sweep::load(&arguments.sweep, &names)?;
-    let method = inspect::method(sweep.scene.run())?;
-    if sweep.exponent {
-        has_tangents(&method).map_err(|reason| CliError::Request(format!("output.exponent: {reason}")))?;
-    }
+    let method = method_of(&sweep)?;
     let (identity, summed) = (identity(&sweep), Summed::of(&sweep)?);
     let about = About::new(&arguments.sweep, &sweep, &summed, &identity);
     let members = Members { sweep: &sweep, method, names: &names, summed: &summed };
@@ -140,6 +140,15 @@ fn compute(
         ControlFlow::Break(error) => Err(error),
         ControlFlow::Continue(()) => Ok(()),
     }
+}
+
+/// The method of a sweep.
+fn method_of(sweep: &Sweep) -> Result<Method, CliError> {
+    let method = inspect::method(sweep.scene.run())?;
+    if sweep.exponent {
+        has_tangents(&method).map_err(|reason| CliError::Request(format!("output.exponent: {reason}")))?;
+    }
+    Ok(method)
 }
 
 /// What tells a sweep from others: all that its rows depend on.

@@ -33,7 +33,7 @@ pub(super) fn stem(identity: &str) -> String {
 }
 
 /// The name of the file of some members.
-fn name(stem: &str, members: &Range<u64>) -> String {
+pub(super) fn name(stem: &str, members: &Range<u64>) -> String {
     format!("{stem}-{}-{}.rows", members.start, members.end)
 }
 

@@ -9,6 +9,11 @@ pub(crate) struct Share {
 }
 
 impl Share {
+    /// That part, from 1 on, of so many.
+    pub(super) fn new(number: u64, of: u64) -> Self {
+        Self { number, of }
+    }
+
     /// Its members, of so many, in whole groups of `group`: members of a group are computed together.
     pub(super) fn members(self, count: u64, group: u64) -> Range<u64> {
         let groups = count.div_ceil(group);

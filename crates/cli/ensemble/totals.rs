@@ -13,7 +13,7 @@ pub(super) struct Totals {
     count: u64,
     failed: u64,
     first: Option<String>,
-    /// Least, largest and sum of every column, and of the exponent; how many there are of each.
+    /// Least, largest, mean and deviation of every column, and of the exponent; how many there are of each.
     columns: Vec<(Column, Extent)>,
 }
 
@@ -23,15 +23,39 @@ struct Extent {
     high: f64,
     sum: f64,
     count: u64,
+    /// The mean so far, and the sum of the squares of the distances from the mean, kept so that no digits cancel (Welford 1962).
+    center: f64,
+    squares: f64,
+}
+
+impl Extent {
+    const NONE: Self =
+        Self { low: f64::INFINITY, high: f64::NEG_INFINITY, sum: 0.0, count: 0, center: 0.0, squares: 0.0 };
+
+    fn add(&mut self, value: f64) {
+        (self.low, self.high) = (self.low.min(value), self.high.max(value));
+        (self.sum, self.count) = (self.sum + value, self.count + 1);
+        let off = value - self.center;
+        self.center += off / self.count as f64;
+        self.squares += off * (value - self.center);
+    }
+
+    fn mean(&self) -> f64 {
+        self.sum / self.count as f64
+    }
+
+    /// The standard deviation of what the numbers are a sample of; not a number of a single one.
+    fn deviation(&self) -> f64 {
+        (self.squares / (self.count as f64 - 1.0)).sqrt()
+    }
 }
 
 impl Totals {
     /// Of members of a sweep from that one on.
     pub(super) fn new(of: &About, begin: u64) -> Self {
-        let none = Extent { low: f64::INFINITY, high: f64::NEG_INFINITY, sum: 0.0, count: 0 };
         let keys = of.keys.len();
         // After the number of the member and its keys.
-        let columns = of.columns().into_iter().skip(1 + keys).map(|column| (column, none)).collect();
+        let columns = of.columns().into_iter().skip(1 + keys).map(|column| (column, Extent::NONE)).collect();
         Self { keys, begin, count: 0, failed: 0, first: None, columns }
     }
 
@@ -46,8 +70,7 @@ impl Totals {
         }
         for ((_, column), value) in self.columns.iter_mut().zip(&values[self.keys..]) {
             if !value.is_nan() {
-                (column.low, column.high) = (column.low.min(*value), column.high.max(*value));
-                (column.sum, column.count) = (column.sum + value, column.count + 1);
+                column.add(*value);
             }
         }
     }
@@ -74,7 +97,8 @@ impl Totals {
 
     pub(super) fn json(&self, of: &About, seconds: f64, computed: u64) -> Value {
         let column = |(column, c): &(Column, Extent)| {
-            (column.name.clone(), json!({"min": c.low, "max": c.high, "mean": c.sum / c.count as f64}))
+            let told = json!({"min": c.low, "max": c.high, "mean": c.mean(), "deviation": c.deviation()});
+            (column.name.clone(), told)
         };
         json!({
             "scene": of.scene,
@@ -106,7 +130,7 @@ impl Totals {
             ("members".to_owned(), format!("{} of {}, {} failed", self.count, of.members, self.failed)),
         ];
         for (Column { name, unit, .. }, c) in self.named().skip(1) {
-            let [low, high, mean] = [c.low, c.high, c.sum / c.count as f64].map(table::number);
+            let [low, high, mean] = [c.low, c.high, c.mean()].map(table::number);
             let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
             lines.push((name.clone(), format!("from {low} to {high}{unit}, {mean} on average")));
         }

@@ -1,10 +1,14 @@
+use crate::errors::{BusyError, raised};
 use crate::supervise::{Supervised, supervised};
-use cli::Called;
+use cli::{Called, Plan};
 use pyo3::prelude::*;
 use std::ffi::OsString;
 
 /// The exit code, standard output and standard error of a command, and the exception that ended it.
 type Output = (u8, String, String, Option<Py<PyAny>>);
+
+/// The beginning of the names of the files of a sweep, the number of its members, and the names of its parts.
+type Planned = (String, u64, Vec<String>);
 
 /// Does a command of the program `noslip`, with these arguments.
 #[pyfunction]
@@ -15,6 +19,14 @@ pub(crate) fn command(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Output> {
     let Supervised { value, ended } = supervised(py, progress, |caller| cli::call(arguments, caller))?;
-    let Called { code, out, err } = value;
+    let Called { code, out, err, busy } = value;
+    let ended = if busy { Some(BusyError::new_err(err.trim().to_owned())) } else { ended };
     Ok((code, out, err, ended.map(|error| error.into_value(py).into_any())))
+}
+
+/// The parts that the sweep in a file is computed in.
+#[pyfunction]
+pub(crate) fn plan(sweep: &str, parts: u64) -> PyResult<Planned> {
+    let Plan { stem, members, parts } = cli::plan(sweep, parts).map_err(raised)?;
+    Ok((stem, members, parts))
 }

@@ -1,3 +1,5 @@
+use cli::RunError;
+use pyo3::PyErr;
 use pyo3::create_exception;
 use pyo3::exceptions::PyException;
 
@@ -9,3 +11,9 @@ create_exception!(
     "The request was wrong: a scene, a method or a value that is not accepted."
 );
 create_exception!(noslip, ComputationError, NoslipError, "The computation failed, or no step meets a tolerance.");
+create_exception!(noslip, BusyError, RequestError, "Another process writes the same output.");
+
+/// The exception of what was not computed.
+pub(crate) fn raised(RunError { message, request }: RunError) -> PyErr {
+    if request { RequestError::new_err(message) } else { ComputationError::new_err(message) }
+}

@@ -13,9 +13,9 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _noslip {
     #[pymodule_export]
-    use crate::commands::command;
+    use crate::commands::{command, plan};
     #[pymodule_export]
-    use crate::errors::{ComputationError, NoslipError, RequestError};
+    use crate::errors::{BusyError, ComputationError, NoslipError, RequestError};
     #[pymodule_export]
     use crate::scenes::{Scene, bundled, methods};
 }

@@ -1,6 +1,6 @@
-use crate::errors::{ComputationError, RequestError};
+use crate::errors::{RequestError, raised};
 use crate::supervise::{Supervised, supervised};
-use cli::{RunError, RunRequest, RunResult, SensitivityRequest, full_key};
+use cli::{RunRequest, RunResult, SensitivityRequest, full_key};
 use harness::METHODS;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -35,10 +35,6 @@ type Made<'py> = (Bound<'py, PyDict>, Vec<(String, String)>, String, Option<Stri
 
 /// Derivatives of a run: the columns, the times, the numbers, and a row for each number; or the exception that ended it.
 type Derived<'py> = (Vec<String>, Vec<f64>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>);
-
-fn raised(RunError { message, request }: RunError) -> PyErr {
-    if request { RequestError::new_err(message) } else { ComputationError::new_err(message) }
-}
 
 #[pymethods]
 impl Scene {

@@ -38,6 +38,14 @@ def test_an_ensemble_has_a_row_for_each_member() -> None:
     members = noslip.ensemble(sweep)
     np.testing.assert_array_equal(members["start.turn_rate"], [0.1, 0.2, 0.3])
     assert len(members["member"]) == 3 and members.summary
+    speed = members.summary["columns"]["speed"]
+    assert speed["mean"] == pytest.approx(np.mean(members["speed"]), rel=1e-14)
+    assert speed["deviation"] == pytest.approx(np.std(members["speed"], ddof=1), rel=1e-12)
+    np.testing.assert_array_equal(members.quantiles(0.0, 0.5)["start.turn_rate"], [0.1, 0.2])
+    pytest.importorskip("pandas")
+    assert members.to_pandas()["start.turn_rate"][1] == 0.2
+    alone = noslip.ensemble({**sweep, "grid": {"start.turn_rate": [0.1]}})
+    assert alone.summary["columns"]["speed"]["deviation"] is None
 
 
 def test_methods_are_told() -> None:

@@ -113,3 +113,40 @@ def test_results_become_frames_and_figures() -> None:
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
     assert len(run.plot().axes) == 4
+
+
+def test_a_saved_run_goes_on_to_the_same_bits(tmp_path: Path) -> None:
+    scene, save = noslip.scene("bowl"), tmp_path / "run.save"
+    whole = scene.run(method="gauss8", step=0.05, duration=20.0, every=3)
+    first = scene.run(method="gauss8", step=0.05, duration=8.0, every=3, checkpoint=save, checkpoint_every=50)
+    assert first["t"][-1] == pytest.approx(8.0) and save.exists()
+    gone_on = scene.run(method="gauss8", step=0.05, duration=20.0, every=3, checkpoint=save)
+    assert list(gone_on) == list(whole) and gone_on.units == whole.units
+    for column in whole:
+        np.testing.assert_array_equal(gone_on[column], whole[column], err_msg=column)
+    assert gone_on.final == whole.final and gone_on.steps == whole.steps
+    with pytest.raises(noslip.RequestError, match="another"):
+        scene.run(method="dla", duration=20.0, checkpoint=save)
+    for wrong in [{"t_eval": [1.0]}, {"events": "speed=0"}, {"until": "speed=0"}]:
+        with pytest.raises(noslip.RequestError, match="a run that is saved"):
+            scene.run(checkpoint=save, **wrong)  # type: ignore[arg-type]
+
+
+def test_a_saved_run_that_progress_stopped_goes_on(tmp_path: Path) -> None:
+    scene, save = noslip.scene("bowl"), tmp_path / "run.save"
+
+    def stop(label: str, done: int, of: int) -> None:
+        raise RuntimeError("enough")
+
+    settings = {"method": "rk4", "step": 1e-4, "duration": 20.0, "every": 1000, "checkpoint": save}
+    with pytest.raises(RuntimeError, match="enough"):
+        scene.run(progress=stop, **settings)  # type: ignore[arg-type]
+    made = scene.run(**settings)  # type: ignore[arg-type]
+    np.testing.assert_array_equal(made["x"], scene.run(**{**settings, "checkpoint": None})["x"])  # type: ignore[arg-type]
+
+
+def test_a_saved_run_that_fails_keeps_what_was_made(tmp_path: Path) -> None:
+    sleigh = noslip.Sleigh(speed=1.0, turn_rate=255.0, step=0.05, duration=2.0)
+    with pytest.raises(noslip.RunError) as caught:
+        sleigh.run(method="dla", checkpoint=tmp_path / "run.save")
+    assert caught.value.step == caught.value.result.steps + 1 and caught.value.reason

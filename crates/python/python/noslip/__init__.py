@@ -8,7 +8,7 @@
 `scene` reads a scene, `Sleigh` and `System` make one; a `Scene` has the commands of the program as methods.
 """
 
-from ._noslip import ComputationError, NoslipError, RequestError
+from ._noslip import BusyError, ComputationError, NoslipError, RequestError
 from .ensembles import Ensemble, ensemble
 from .errors import Interrupted, RunError
 from .results import Run
@@ -18,6 +18,7 @@ from .sleigh import Sleigh
 from .system import System
 
 __all__ = [
+    "BusyError",
     "ComputationError",
     "Ensemble",
     "Interrupted",

@@ -27,6 +27,9 @@ class RunError(ComputationError):
         self.hint: str | None = failure.get("hint")
         self.corrections: list[float] = failure.get("corrections") or []
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return RunError, (str(self), self.result)
+
 
 class Interrupted(KeyboardInterrupt):
     """Ctrl-C; `result` is what was done until then."""
@@ -34,3 +37,6 @@ class Interrupted(KeyboardInterrupt):
     def __init__(self, result: object) -> None:
         super().__init__("interrupted; `result` has what was done")
         self.result = result
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Interrupted, (self.result,)

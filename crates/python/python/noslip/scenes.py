@@ -13,9 +13,11 @@ from typing import Any
 import tomli_w
 
 from . import _noslip
+from .commands import call, flags
 from .errors import Interrupted, RunError
 from .progress import Progress, shown
 from .results import Run
+from .saved import saved_run
 from .sensitivities import Prediction, Sensitivities
 
 Texts = str | Iterable[str] | None
@@ -120,6 +122,8 @@ class Scene:
         substep: bool = False,
         events: Texts = None,
         until: Texts = None,
+        checkpoint: str | PathLike[str] | None = None,
+        checkpoint_every: int | None = None,
         progress: bool | Progress | None = None,
     ) -> Run:
         """Makes a run, and keeps every `every`-th node, or the motion at the times `t_eval` (s, in order).
@@ -127,12 +131,29 @@ class Scene:
         `events` and `until` are texts as `"speed=0"`: what is reported, and what ends the run. `progress` is `True` for a
         bar of tqdm, or is called with a label, the steps done, and all steps. Arguments left out are those of the scene.
 
+        With `checkpoint`, a file, the run is saved there at every `checkpoint_every`-th step (a million, if not said) and after
+        Ctrl-C, its nodes beside it. The same call goes on from there, to the same last bit; so does one with a longer duration.
+
         Raises `noslip.RequestError`; `noslip.RunError` where a step fails, with the run so far; `noslip.Interrupted`, a
         `KeyboardInterrupt` with the run so far, after Ctrl-C.
         """
         if every < 1:
             raise _noslip.RequestError(f"every = {every}: accepted are whole numbers from 1")
         checked = self._checked.with_settings(method, step, duration, alpha)
+        if checkpoint is not None:
+            if t_eval is not None or events or until:
+                raise _noslip.RequestError("checkpoint: a run that is saved has no t_eval, events and until")
+            settings = {
+                "method": method,
+                "step": step,
+                "tolerance": tolerance,
+                "duration": duration,
+                "alpha": alpha,
+                "every": every,
+                "substep": substep,
+                "checkpoint_every": checkpoint_every,
+            }
+            return saved_run(self.text, self.name, Path(checkpoint), settings, progress)
         times = [] if t_eval is None else [float(t) for t in t_eval]
         with shown(progress) as tell:
             made = checked.run(every, times, tolerance, substep, _list(events), _list(until), tell)
@@ -244,31 +265,3 @@ class Scene:
             file = Path(folder) / f"{self.name}.toml"
             file.write_text(self.text, encoding="utf-8")
             return call([command, str(file), "--json", *chosen, *flags(settings)], progress)
-
-
-def flags(settings: Mapping[str, Any]) -> list[str]:
-    """Keyword arguments as flags: `event_samples=8` is `--event-samples=8`, `True` is a flag alone."""
-    given = []
-    for key, value in settings.items():
-        flag = f"--{key.replace('_', '-')}"
-        if value is True:
-            given.append(flag)
-        elif value is not None and value is not False:
-            given.append(f"{flag}={value}")
-    return given
-
-
-def call(arguments: list[str], progress: bool | Progress | None = None) -> dict[str, Any]:
-    """The object that a command of the program prints; its errors as exceptions."""
-    with shown(progress) as tell:
-        code, out, err, ended = _noslip.command(arguments, tell)
-    object: dict[str, Any] = json.loads(out) if out else {}
-    if isinstance(ended, KeyboardInterrupt):
-        raise Interrupted(object) from None
-    if ended is not None:
-        raise ended
-    if code == 2:
-        raise _noslip.RequestError(err.strip())
-    if code != 0 and not object:
-        raise _noslip.ComputationError(err.strip())
-    return object

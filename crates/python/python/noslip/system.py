@@ -9,6 +9,7 @@ import tomli_w
 
 from ._noslip import RequestError
 from .expressions import name, text
+from .mechanics import of_kanes, of_lagranges
 from .results import Run
 from .scenes import Scene
 
@@ -72,12 +73,16 @@ class System(Scene):
     @classmethod
     def from_lagranges(cls, method: Any, parameters: Mapping[Any, float] | None = None, **settings: Any) -> System:
         """The system of a `sympy.physics.mechanics.LagrangesMethod`, its forces and constraints included."""
-        method.form_lagranges_equations()
-        forces = {q: force for q, force in zip(method.q, method._term4, strict=True) if force != 0}
-        positions = list(method._hol_coneqs or ())
-        rows = list(method.coneqs or ())
-        settings = {"forces": forces, "positions": positions, "parameters": parameters, **settings}
-        return cls(list(method.q), method._L, rows[len(positions) :], **settings)
+        return cls(**{**of_lagranges(method), "parameters": parameters, **settings})
+
+    @classmethod
+    def from_kanes(cls, method: Any, parameters: Mapping[Any, float] | None = None, **settings: Any) -> System:
+        """The system of a `sympy.physics.mechanics.KanesMethod`, its loads and constraints included.
+
+        The start is given by rates of coordinates, as for any system, not by generalised speeds. Bodies whose velocities have
+        constraints put into them already are refused.
+        """
+        return cls(**{**of_kanes(method), "parameters": parameters, **settings})
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Scene, (self.text, self.origin)
