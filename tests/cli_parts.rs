@@ -61,6 +61,22 @@ fn merged_parts_have_the_bytes_of_one_process() {
 }
 
 #[test]
+fn parts_of_a_system_of_text_are_those_of_one_sweep() {
+    // What tells the sweep from others is the same in every process.
+    let folder = Folder::new();
+    folder.write(
+        "sweep.toml",
+        "scene = \"knife-edge\"\nduration = 1.0\n[grid]\n\"parameters.slope\" = [0.1, 0.2, 0.3]\n",
+    );
+    folder.done("ensemble sweep.toml --out whole.csv");
+    for part in [2, 1, 3] {
+        folder.done(&format!("ensemble sweep.toml --out parts --part {part}/3"));
+    }
+    folder.done("merge parts --out merged.csv");
+    assert!(fs::read(folder.join("merged.csv")).unwrap() == fs::read(folder.join("whole.csv")).unwrap());
+}
+
+#[test]
 fn a_part_that_is_made_twice_has_the_same_bytes_and_one_that_is_missing_is_named() {
     let folder = folder();
     folder.done("ensemble sweep.toml --out parts --part 1/3");
