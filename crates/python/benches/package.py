@@ -29,12 +29,12 @@ except noslip.Interrupted as interrupted:
 
 
 def least(action: Callable[[], object], rounds: int = ROUNDS) -> float:
-    """The least time of some rounds (s): what others do on the machine only adds to it."""
+    """The least processor time of some rounds (s): what others do on the machine only adds to it."""
     times = []
     for _ in range(rounds):
-        begin = time.perf_counter()
+        begin = time.process_time()
         action()
-        times.append(time.perf_counter() - begin)
+        times.append(time.process_time() - begin)
     return min(times)
 
 
