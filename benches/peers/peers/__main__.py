@@ -11,7 +11,7 @@ import warnings
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from . import measure, rust, scene, selftest
+from . import measure, race, rust, scene, selftest, text
 from .reference import reference
 
 MODULES = ("heyoka_lines", "scipy_lines", "sundials_lines", "solve_dae_lines", "exudyn_lines")
@@ -43,6 +43,34 @@ def version_of(package):
         return version(package)
     except PackageNotFoundError:
         return "unknown"
+
+
+def read(name, duration):
+    """The problem of a scene: a sleigh, or a system of text."""
+    return text.read(name, duration) if text.is_text(name) else scene.read(name, duration)
+
+
+def against(name, problem, options):
+    """The rows of the race for one scene: the peers that integrate it are made ready once."""
+    if isinstance(problem, text.TextProblem):
+        exact, lines, size = text.reference(problem).end, text.lines(problem), text.distance
+        crates = lambda: []
+    else:
+        exact, size = reference(problem).end, measure.largest
+        lines = [line for module in load()[0] if module.__name__.endswith("heyoka_lines") for line in module.lines(problem) if line.lanes == 1]
+        crates = lambda: rust.climb(problem, exact, options.limit, options.budget, methods=options.methods)[0]
+
+    def theirs():
+        ladders = {}
+        for line in lines:
+            if wanted(line.method, options):
+                ladders[line.method] = measure.climb(line, version_of(line.package), exact, options.limit, options.budget, size=size)[0]
+        for point in crates():
+            ladders.setdefault(point["method"], []).append(point)
+        return ladders
+
+    say(f"{name}: {problem.duration:g} s")
+    return race.row(name, problem, theirs, options.ours)
 
 
 def wanted(method, options):
@@ -127,6 +155,8 @@ def main():
     parser.add_argument("--methods", type=lambda s: s.split(","), help="only those that begin so")
     parser.add_argument("--limit", type=float, default=5.0, help="a ladder ends with the first run longer than this (s)")
     parser.add_argument("--budget", type=float, default=0.2, help="what is spent on repeating a run (s)")
+    parser.add_argument("--race", action="store_true", help="noslip beside the best peer on each scene, systems of text too")
+    parser.add_argument("--ours", type=lambda s: s.split(","), help="of noslip only these methods (--race)")
     parser.add_argument("--energy", action="store_true", help="energy and slip of long runs in a bowl, against their time")
     parser.add_argument("--self-test", action="store_true", help="all peers against closed forms, loosely")
     options = parser.parse_args()
@@ -137,6 +167,15 @@ def main():
             return selftest.main(load)
         if options.duration is not None and not options.duration > 0.0:
             raise scene.Refused("--duration must be positive")
+        if options.race:
+            print("\n".join(race.HEAD), flush=True)
+            for name in options.scenes:
+                try:
+                    rows = against(name, read(name, options.duration), options)
+                except (scene.Refused, RuntimeError) as refused:
+                    rows = [f"| {name} | - | - | - | {refused} |"]
+                print("\n".join(rows), flush=True)
+            return 0
         problems = [scene.read(name, options.duration) for name in options.scenes]
         problems += [scene.case(name, options.duration) for name in options.case]
         if not problems:

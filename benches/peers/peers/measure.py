@@ -73,7 +73,7 @@ def again(kept, budget):
         point["repeats"] += repeats
 
 
-def climb(line, version, reference, limit, budget, kept=None):
+def climb(line, version, reference, limit, budget, kept=None, size=largest):
     """The points and failures of a line. It ends with the first run that takes longer than `limit` (s).
 
     Short runs are put into `kept`, for `again`.
@@ -105,7 +105,7 @@ def climb(line, version, reference, limit, budget, kept=None):
             failures.append({"method": line.method, line.rung: value, "message": message})
             continue
         points.append({
-            "method": line.method, line.rung: value, "steps": int(steps), "error": largest(map(mpf, end), reference),
+            "method": line.method, line.rung: value, "steps": int(steps), "error": size(list(map(mpf, end)), reference),
             "wall_seconds": wall / line.lanes, "cpu_seconds": cpu / line.lanes, "package": line.package, "version": version,
             "form": line.form, "setup_seconds": setup, "repeats": repeats,
         })

@@ -1,0 +1,70 @@
+"""noslip beside the peers, scene by scene: the same duration and measure of errors, in one run."""
+
+import json
+import math
+import subprocess
+import tempfile
+from pathlib import Path
+from statistics import median
+
+from . import measure, text
+
+TARGETS = (1e-3, 1e-6, 1e-9, 1e-12)
+# Other people's integrators, which noslip has beside its own.
+NOT_OURS = {"dop853", "rk4", "rk4-projected", "rk4-reduced", "implicit-midpoint"}
+ROUNDS = 3
+
+
+def own(scene, duration, methods):
+    """Seconds to each error, of the best method of noslip, with its name."""
+    with tempfile.TemporaryDirectory() as folder:
+        command = [text.program(), "precision", scene, "--duration", repr(duration), "--json"]
+        if methods:
+            command += ["--methods", ",".join(methods)]
+        done = subprocess.run(command, capture_output=True, text=True, cwd=folder, check=False)
+    try:
+        points = json.loads(done.stdout)["points"]
+    except ValueError:
+        raise RuntimeError(done.stderr.strip() or "no points") from None
+    ladders = {}
+    for point in points:
+        if point["method"] not in NOT_OURS:
+            ladders.setdefault(point["method"], []).append(point)
+    return best(ladders)
+
+
+def best(ladders):
+    """The least time of any ladder to each target, with its name; None where none gets there."""
+    found = []
+    for target in TARGETS:
+        times = [(measure.time_to(points, target), name) for name, points in ladders.items()]
+        found.append(min((pair for pair in times if pair[0] is not None), default=None))
+    return found
+
+
+def row(name, problem, theirs, methods):
+    """The lines of the table for a scene. `theirs()` measures the peers once."""
+    pairs = []
+    for turn in range(ROUNDS):
+        # The methods that came nearest to the front in the first round are enough for the others.
+        ours = own(name, problem.duration, methods)
+        pairs.append((ours, best(theirs())))
+        methods = sorted({pair[1] for pair in ours if pair}) or methods
+    lines = []
+    for k, target in enumerate(TARGETS):
+        one = [ours[k] for ours, _ in pairs if ours[k]]
+        other = [peers[k] for _, peers in pairs if peers[k]]
+        if not one or not other:
+            cell = lambda found: f"{found[0][1]} {1e6 * median(t for t, _ in found):.3g} us" if found else "-"
+            lines.append(f"| {name} | {target:g} | {cell(one)} | {cell(other)} | - |")
+            continue
+        ratios = [theirs_[k][0] / ours[k][0] for ours, theirs_ in pairs if ours[k] and theirs_[k]]
+        spread = math.exp(max(ratios and [abs(math.log(r / median(ratios))) for r in ratios], default=0.0))
+        lines.append(
+            f"| {name} | {target:g} | {one[0][1]} {1e6 * median(t for t, _ in one):.3g} us |"
+            f" {other[0][1]} {1e6 * median(t for t, _ in other):.3g} us | {median(ratios):.2f} (x/{spread:.2f}) |"
+        )
+    return lines
+
+
+HEAD = ["| scene | error | noslip | best peer | peer over noslip |", "|---|---|---|---|---|"]
