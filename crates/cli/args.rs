@@ -105,7 +105,7 @@ pub(crate) struct JobArguments {
 }
 
 /// Values in place of those of the scene.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(crate) struct Settings {
     /// Set a key of the scene, dotted, as in sleigh.offset=0.3 or effects.0.stiffness=[1, 2]; can be repeated
     #[arg(long, value_name = "KEY=VALUE")]

@@ -1,6 +1,6 @@
 use crate::error::CliError;
 use crate::files::{check_file, write_whole};
-use crate::provenance::label;
+use crate::provenance::{Provenance, label, metadata_of};
 use harness::report::{Chart, chart_svg};
 use scene::Column;
 use std::io::Write;
@@ -23,26 +23,32 @@ impl<'a> ChartFile<'a> {
             _ => return Err(CliError::ChartEnding { path: path.to_owned() }),
         };
         check_file(path, overwrite)?;
+        if let Self::Csv(path) = file {
+            check_file(&metadata_of(path), overwrite)?;
+        }
         Ok(file)
     }
 
-    /// Writes the rows below their header, or the chart.
+    /// Writes the rows below their header, with what made them in a file beside; or the chart.
     pub(crate) fn write(
         self,
         overwrite: bool,
-        columns: &[Column],
-        rows: &[Vec<f64>],
+        provenance: &Provenance,
+        (columns, rows): (&[Column], &[Vec<f64>]),
         chart: impl FnOnce() -> Chart,
     ) -> Result<(), CliError> {
         match self {
-            Self::Csv(path) => write_whole(path, overwrite, |file| {
-                writeln!(file, "{}", columns.iter().map(label).collect::<Vec<_>>().join(","))?;
-                for row in rows {
-                    let cells: Vec<String> = columns.iter().zip(row).map(|(column, x)| cell(column, *x)).collect();
-                    writeln!(file, "{}", cells.join(","))?;
-                }
-                Ok(())
-            }),
+            Self::Csv(path) => {
+                write_whole(path, overwrite, |file| {
+                    writeln!(file, "{}", columns.iter().map(label).collect::<Vec<_>>().join(","))?;
+                    for row in rows {
+                        let cells: Vec<String> = columns.iter().zip(row).map(|(column, x)| cell(column, *x)).collect();
+                        writeln!(file, "{}", cells.join(","))?;
+                    }
+                    Ok(())
+                })?;
+                provenance.write_beside(path, columns)
+            }
             Self::Svg(path) => {
                 let text = chart_svg(&chart()).map_err(CliError::Report)?;
                 write_whole(path, overwrite, |file| file.write_all(text.as_bytes()))

@@ -223,7 +223,12 @@ impl Visitor for Compare<'_> {
             series,
             exact_path,
             figure: None,
-            numbers: compare_numbers::files(name, &objects, interrupted.is_some()),
+            numbers: compare_numbers::files(
+                name,
+                (self.scene.title(), self.scene.to_toml().ok()),
+                &objects,
+                interrupted.as_deref(),
+            ),
         };
         Ok(Comparison { rows, report, interrupted })
     }

@@ -1,36 +1,43 @@
 //! The numbers of a comparison for programs: as one JSON object, and as CSV with the same digits.
 
-use crate::precision_text::quoted;
-use harness::report::Numbers;
+use crate::precision_csv::quoted;
+use crate::provenance::{Described, Provenance};
+use harness::report::{Numbers, file_stem};
 use serde_json::{Value, json};
 
-/// The columns of the CSV file, and where the JSON row has them.
-const COLUMNS: [(&str, &str); 21] = [
-    ("method", "/method"),
-    ("order", "/order"),
-    ("step [s]", "/step"),
-    ("steps", "/steps"),
-    ("duration [s]", "/duration"),
-    ("constraint [m/s]", "/constraint/max"),
-    ("over steps [m/s]", "/constraint/step_max"),
-    ("leaf", "/constraint/leaf_max"),
-    ("energy error [J]", "/energy/max_error"),
-    ("amplitude [J]", "/energy/amplitude"),
-    ("energy drift [W]", "/energy/slope"),
-    ("its interval [W]", "/energy/slope_ci"),
-    ("exponent", "/energy/exponent"),
-    ("verdict", "/energy/verdict"),
-    ("end error [m or rad]", "/error"),
-    ("x [m]", "/final/x"),
-    ("y [m]", "/final/y"),
-    ("heading [rad]", "/final/heading"),
-    ("Newton", "/newton/mean"),
-    ("wall [s]", "/wall_seconds"),
-    ("cost [s/s]", "/seconds_per_simulated_second"),
+/// A column of the CSV file, where the JSON row has its field, and the type of the field.
+type Told = (&'static str, &'static str, &'static str);
+
+/// The columns of a run.
+const COLUMNS: [Told; 21] = [
+    ("method", "/method", "string"),
+    ("order", "/order", "integer"),
+    ("step [s]", "/step", "double"),
+    ("steps", "/steps", "integer"),
+    ("duration [s]", "/duration", "double"),
+    ("constraint [m/s]", "/constraint/max", "double"),
+    ("over steps [m/s]", "/constraint/step_max", "double"),
+    ("leaf", "/constraint/leaf_max", "double"),
+    ("energy error [J]", "/energy/max_error", "double"),
+    ("amplitude [J]", "/energy/amplitude", "double"),
+    ("energy drift [W]", "/energy/slope", "double"),
+    ("its interval [W]", "/energy/slope_ci", "double"),
+    ("exponent", "/energy/exponent", "double"),
+    ("verdict", "/energy/verdict", "string"),
+    ("end error [m or rad]", "/error", "double"),
+    ("x [m]", "/final/x", "double"),
+    ("y [m]", "/final/y", "double"),
+    ("heading [rad]", "/final/heading", "double"),
+    ("Newton", "/newton/mean", "double"),
+    ("wall [s]", "/wall_seconds", "double"),
+    ("cost [s/s]", "/seconds_per_simulated_second", "double"),
 ];
 /// Of a method that failed: the step, the time (s) that the run is valid up to, and why.
-const FAILURE: [(&str, &str); 3] =
-    [("failed at step", "/failure/step"), ("failed at t [s]", "/failure/time"), ("failure", "/failure/reason")];
+const FAILURE: [Told; 3] = [
+    ("failed at step", "/failure/step", "integer"),
+    ("failed at t [s]", "/failure/time", "double"),
+    ("failure", "/failure/reason", "string"),
+];
 /// The columns that a method that failed has besides: the others would be those of a part of the run.
 const KEPT: usize = 3;
 
@@ -44,18 +51,33 @@ pub(crate) fn json(scene: &str, rows: &[&Value], interrupted: bool) -> Value {
 }
 
 /// The files beside the page.
-pub(crate) fn files(scene: &str, rows: &[&Value], interrupted: bool) -> Vec<Numbers> {
-    let json = format!("{:#}\n", json(scene, rows, interrupted));
-    vec![Numbers { ending: "csv", text: csv(rows) }, Numbers { ending: "json", text: json }]
+pub(crate) fn files(
+    name: &str,
+    scene: (&str, Option<String>),
+    rows: &[&Value],
+    interrupted: Option<&str>,
+) -> Vec<Numbers> {
+    let text = format!("{:#}\n", json(name, rows, interrupted.is_some()));
+    let provenance = Provenance::on(scene, None, json!({})).interrupted(interrupted);
+    let described = columns().map(|(heading, _, datatype)| Described::headed(heading, datatype));
+    let metadata = provenance.document(&format!("{}.csv", file_stem(name)), described);
+    vec![
+        Numbers { ending: "csv", text: csv(rows) },
+        Numbers { ending: "csv-metadata.json", text: metadata },
+        Numbers { ending: "json", text },
+    ]
+}
+
+fn columns() -> impl Iterator<Item = &'static Told> {
+    COLUMNS.iter().chain(&FAILURE)
 }
 
 /// One line a method; what a row does not have is empty.
 fn csv(rows: &[&Value]) -> String {
-    let columns = || COLUMNS.iter().chain(&FAILURE);
-    let header: Vec<&str> = columns().map(|(name, _)| *name).collect();
+    let header: Vec<&str> = columns().map(|(name, ..)| *name).collect();
     let line = |row: &&Value| {
         let failed = row.get("failure").is_some();
-        let cell = |(k, (_, place)): (usize, &(&str, &str))| match row.pointer(place) {
+        let cell = |(k, (_, place, _)): (usize, &Told)| match row.pointer(place) {
             Some(_) if failed && (KEPT..COLUMNS.len()).contains(&k) => String::new(),
             None | Some(Value::Null) => String::new(),
             Some(Value::String(text)) => quoted(text),

@@ -1,5 +1,6 @@
 use scene::{Built, Quantity};
 use std::f64::consts::{PI, TAU};
+use std::fmt;
 use std::str::FromStr;
 
 /// A quantity of a system, found by its name: for planes, axes and events.
@@ -93,6 +94,14 @@ impl Range {
             Some(_) => Err(format!("no start is given by `{}`; {}", self.name, accepted())),
             None => Err(format!("no start has `{}`; {}", self.name, accepted())),
         }
+    }
+}
+
+/// As it is written on the command line, with all digits.
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [from, to] = self.ends;
+        write!(f, "{}={from:?}:{to:?}:{}", self.name, self.cells)
     }
 }
 

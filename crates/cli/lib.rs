@@ -2,6 +2,7 @@
 //! run whose nodes its caller keeps, [`sensitivities`] what such a run depends on, and [`plan`] the parts of a sweep.
 
 mod account;
+mod again;
 mod args;
 mod called;
 mod chart_file;
@@ -41,6 +42,7 @@ mod plane;
 mod plot;
 mod points_file;
 mod precision;
+mod precision_csv;
 mod precision_text;
 mod progress;
 mod provenance;

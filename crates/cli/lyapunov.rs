@@ -1,9 +1,11 @@
+use crate::again::Again;
 use crate::args::LyapunovArguments;
 use crate::chart_file::ChartFile;
 use crate::compare::unless_interrupted;
 use crate::error::CliError;
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
+use crate::provenance::Provenance;
 use crate::starts::{Start, with_energy};
 use crate::{inspect, json, notes, progress, stability_map, table, terminal};
 use dla::Schedule;
@@ -18,6 +20,8 @@ use serde_json::{Value, json};
 /// What is measured where nobody says (s): of one motion, and of each of a map.
 const DURATION: f64 = 10_000.0;
 const MAP_DURATION: f64 = 500.0;
+/// The part of it before the run that is not counted, where nobody says.
+const SETTLE: f64 = 0.1;
 
 /// `noslip lyapunov`: the exponents of one motion, or the largest of many.
 pub(crate) fn lyapunov(arguments: &LyapunovArguments) -> Result<(), CliError> {
@@ -55,8 +59,22 @@ pub(crate) fn imposed() -> CliError {
 /// The steps that are counted, and those before them.
 pub(crate) fn schedule(arguments: &LyapunovArguments, scene: &AnyScene) -> (Schedule, u64) {
     let schedule = scene.schedule();
-    let settle = arguments.settle.unwrap_or(0.1 * scene.run().duration) / schedule.step;
+    let settle = arguments.settle.unwrap_or(SETTLE * scene.run().duration) / schedule.step;
     (schedule, settle.ceil() as u64)
+}
+
+/// What made exponents, and where a signal ended the work.
+pub(crate) fn provenance(arguments: &LyapunovArguments, scene: &AnyScene, interrupted: Option<&str>) -> Provenance {
+    let LyapunovArguments { scene: shared, exponents, settle, energy, map, out, .. } = arguments;
+    let (run, step) = (scene.run(), scene.schedule().step);
+    let settle = settle.unwrap_or(SETTLE * run.duration);
+    let command = Again::of("lyapunov", &shared.scene, &shared.set).run(run, step).number("--settle", settle);
+    let command = command.maybe("--exponents", *exponents);
+    let command = command.maybe("--energy", energy.map(|energy| format!("{energy:?}")));
+    let command = map.iter().fold(command, |command, range| command.with("--map", range));
+    let command = command.maybe("--out", out.as_ref().map(|out| out.display()));
+    let notes = json!({"method": run.method, "step": step, "duration": run.duration, "settle": settle});
+    Provenance::on((scene.title(), scene.to_toml().ok()), Some(&command), notes).interrupted(interrupted)
 }
 
 /// Refuses a time before the run that has more steps than any run may have.
@@ -115,20 +133,21 @@ impl Visitor for Exponents<'_> {
         let found = harness::analysis::lyapunov_within((&*system, &system), its, &self.method, &request, &mut progress);
         progress.bar.finish_and_clear();
         let found = found.map_err(refused)?;
-        let told = self.tell(&found, system.energy(0.0, &q, &v), 2 * its.0 - its.1);
         let made = interrupt.asked().then(|| format!("{} s are measured", table::number(found.time)));
+        let told = self.tell(&found, system.energy(0.0, &q, &v), 2 * its.0 - its.1, made.as_deref());
         unless_interrupted(made, None, told)
     }
 }
 
 impl Exponents<'_> {
-    fn tell(&self, found: &Lyapunov, energy: f64, most: usize) -> Result<(), CliError> {
+    fn tell(&self, found: &Lyapunov, energy: f64, most: usize, interrupted: Option<&str>) -> Result<(), CliError> {
         let shared = &self.arguments.scene;
         let written = self.file.map_or(Ok(()), |file| {
             let rows: Vec<Vec<f64>> = found.running.iter().map(|at| [&[at.time][..], &at.exponents].concat()).collect();
             let each = (1..=found.exponents.len()).map(|i| Column::new(format!("exponent_{i}"), "1/s"));
             let columns: Vec<Column> = std::iter::once(Column::new("t", "s")).chain(each).collect();
-            file.write(shared.force, &columns, &rows, || self.chart(found))
+            let provenance = provenance(self.arguments, self.scene, interrupted);
+            file.write(shared.force, &provenance, (&columns, &rows), || self.chart(found))
         });
         let whole = found.exponents.len() == most;
         if shared.json {

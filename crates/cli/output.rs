@@ -3,14 +3,14 @@ use crate::files::{check_file, write_whole};
 use crate::format::Format;
 use crate::npz;
 use crate::part::Part;
-use crate::provenance::{Provenance, label};
+use crate::provenance::{Provenance, label, metadata_of};
 use crate::rows_back;
 use crate::terminal;
 use crc32fast::Hasher;
 use scene::Column;
 use std::fs::File;
 use std::io::{BufReader, BufWriter, Error, ErrorKind, Read, Seek, SeekFrom, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Where the rows of a run are to be written.
 #[derive(Debug, Clone, Copy)]
@@ -39,13 +39,6 @@ impl<'a> Asked<'a> {
         }
         Ok(Self { path: Some(path), format, force })
     }
-}
-
-/// Where the provenance of a file of text is: beside it, as "CSV on the Web" has it.
-pub(crate) fn metadata_of(path: &Path) -> PathBuf {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push("-metadata.json");
-    path.with_file_name(name)
 }
 
 /// How far an output has come, as a checkpoint tells it: the bytes, their checksum, and every how many nodes are in it.
@@ -256,7 +249,7 @@ impl<'a> Output<'a> {
     /// cannot be written, nothing is left.
     pub(crate) fn finish(self, checkpoint: bool, interrupted: bool) -> Result<(), CliError> {
         let beside = self.part.as_ref().map(|part| part.path().to_owned());
-        let outcome = self.written(checkpoint && interrupted);
+        let outcome = self.written(checkpoint, interrupted);
         if let (Err(CliError::Write { .. } | CliError::Folder { .. }), Some(beside), false) =
             (&outcome, beside, checkpoint)
         {
@@ -265,7 +258,7 @@ impl<'a> Output<'a> {
         outcome
     }
 
-    fn written(mut self, goes_on: bool) -> Result<(), CliError> {
+    fn written(mut self, checkpoint: bool, interrupted: bool) -> Result<(), CliError> {
         let flushed = self.writer.flush();
         let failed = self.failed.take().map_or(flushed, Err);
         let (Some(path), Some(part)) = (self.asked.path, self.part) else {
@@ -276,14 +269,14 @@ impl<'a> Output<'a> {
         };
         failed.map_err(|source| part.failed(source))?;
         let overwrite = self.asked.force || self.own;
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let document = format!("{:#}\n", self.provenance.document(&name, &self.columns));
+        let provenance = self.provenance.interrupted(interrupted.then_some("a signal ended the run"));
         if self.asked.format.is_text() {
             let whole = part.file().sync_all();
             whole.map_err(|source| part.failed(source))?;
             part.becomes(path, overwrite)?;
-            return write_whole(&metadata_of(path), true, |file| file.write_all(document.as_bytes()));
+            return provenance.write_beside(path, &self.columns);
         }
+        let document = provenance.document(&path.file_name().unwrap_or_default().to_string_lossy(), &self.columns);
         let width = 8 * self.columns.len();
         let rows = if width == 0 { 0 } else { self.bytes / width as u64 };
         write_whole(path, overwrite, |file| match self.asked.format {
@@ -297,7 +290,8 @@ impl<'a> Output<'a> {
             Format::Parquet => crate::parquet_file::write(file, &self.columns, &document, numbers(part.file(), width)?),
             Format::Csv | Format::Jsonl => Ok(()),
         })?;
-        if !goes_on {
+        // Rows that a run goes on from are kept.
+        if !(checkpoint && interrupted) {
             part.remove();
         }
         Ok(())

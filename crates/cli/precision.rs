@@ -1,16 +1,19 @@
+use crate::again::Again;
 use crate::args::PrecisionArguments;
 use crate::compare::{exact, methods, place_at, unless_interrupted};
 use crate::error::CliError;
 use crate::inspect::method_names;
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
-use crate::{facts, files, inspect, notes, points_file, precision_text, progress, terminal, train};
+use crate::provenance::{Provenance, metadata_of};
+use crate::{facts, files, inspect, notes, points_file, precision_csv, precision_text, progress, terminal, train};
 use harness::Method;
 use harness::precision::{
     Bench, Clock, Curve, Limits, Motion, Reference, ReferenceError, mark_pareto, rounds, work_precision,
 };
 use harness::report::write_precision;
 use scene::{AnyScene, Built, Visitor};
+use serde_json::json;
 
 /// The longest duration (s) that is chosen without being asked for.
 const DURATION: f64 = 20.0;
@@ -73,6 +76,7 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
     }
     if let Some(path) = &arguments.csv {
         files::check_file(path, arguments.force)?;
+        files::check_file(&metadata_of(path), arguments.force)?;
     }
     if arguments.duration.is_none() {
         scene.run_mut().duration = scene.run().duration.min(DURATION);
@@ -84,12 +88,15 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
     measured.curves.extend(others);
     mark_pareto(&mut measured.curves, CLEAR * measured.reference.error);
 
+    let made = interrupt.asked().then(|| format!("{} of {} methods are measured", climbed, methods.len()));
+    let provenance = provenance(arguments, &scene, &measured).interrupted(made.as_deref());
     if let Some(path) = &arguments.csv {
-        let text = precision_text::csv(&measured.curves);
+        let text = precision_csv::text(&measured.curves);
         files::write_whole(path, arguments.force, |file| std::io::Write::write_all(file, text.as_bytes()))?;
+        provenance.write_beside(path, precision_csv::described())?;
     }
     if let Some(folder) = &arguments.report {
-        let report = precision_text::report(&scene, &measured);
+        let report = precision_text::report(&scene, &measured, &provenance);
         write_precision(&report, folder, arguments.force).map_err(CliError::Report)?;
     }
     if arguments.json {
@@ -102,9 +109,22 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
         }
     }
     let named = arguments.methods.is_some();
-    let made = interrupt.asked().then(|| format!("{} of {} methods are measured", climbed, methods.len()));
     let failed = CliError::of_failures(measured.curves.iter().filter_map(|curve| failure(curve, named)));
     unless_interrupted(made, None, failed)
+}
+
+/// What made the points.
+fn provenance(arguments: &PrecisionArguments, scene: &AnyScene, measured: &Measurement) -> Provenance {
+    let PrecisionArguments { methods, alpha, longest, with, csv, report, .. } = arguments;
+    let command = Again::of("precision", &arguments.scene, &arguments.set);
+    let command = command.maybe("--methods", methods.as_ref().map(|methods| methods.join(",")));
+    let command = command.number("--duration", measured.duration);
+    let command = command.maybe("--alpha", alpha.map(|alpha| format!("{alpha:?}"))).number("--longest", *longest);
+    let command = with.iter().fold(command, |command, path| command.with("--with", path.display()));
+    let command = command.maybe("--csv", csv.as_ref().map(|path| path.display()));
+    let command = command.maybe("--report", report.as_ref().map(|path| path.display()));
+    let notes = json!({"duration": measured.duration, "reference": precision_text::reference(measured)});
+    Provenance::on((scene.title(), scene.to_toml().ok()), Some(&command), notes)
 }
 
 /// Measures what accuracy costs on a scene, by runs of `longest` (s) at most; of a duration that is `chosen` for the user there may be

@@ -1,17 +1,18 @@
-//! What `noslip precision` says: the same values as a table, as CSV, as JSON and in the report.
+//! What `noslip precision` says: the same values as a table, as JSON and in the report.
 
 use crate::json::failure;
 use crate::precision::Measurement;
+use crate::precision_csv;
+use crate::provenance::Provenance;
 use crate::table::right_aligned;
 use harness::precision::{Curve, LEVELS, Mark, Point, Setting, cheapest, number, seconds_to};
-use harness::report::{Numbers, PrecisionReport, Table};
+use harness::report::{Numbers, PrecisionReport, Table, file_stem};
 use scene::AnyScene;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
 const POINTS: [&str; 8] = ["method", "step [s]", "tolerance", "steps", "error", "wall [s]", "CPU [s]", "spread"];
 const METHODS: [&str; 8] = ["method", "order", "slope", "points", "to 1e-3 [s]", "to 1e-6", "to 1e-9", "to 1e-12"];
-const CSV: &str = "method,step [s],tolerance,steps,error [m or rad],wall [s],CPU [s],spread,mark,pareto,source";
 
 /// What the columns mean.
 const INTRO: &str = "Every method over a ladder of steps, an adaptive one of tolerances. Error: distance of the end from the \
@@ -24,7 +25,7 @@ const INTRO: &str = "Every method over a ladder of steps, an adaptive one of tol
     processor time to that error, between two points along the line through their logarithms.";
 
 /// Step and tolerance, one of which a point has.
-fn settings(point: &Point) -> [Option<f64>; 2] {
+pub(crate) fn settings(point: &Point) -> [Option<f64>; 2] {
     match point.setting {
         Some(Setting::Step(step)) => [Some(step), None],
         Some(Setting::Tolerance(tolerance)) => [None, Some(tolerance)],
@@ -32,7 +33,7 @@ fn settings(point: &Point) -> [Option<f64>; 2] {
     }
 }
 
-fn points(curves: &[Curve]) -> impl Iterator<Item = (&Curve, &Point)> {
+pub(crate) fn points(curves: &[Curve]) -> impl Iterator<Item = (&Curve, &Point)> {
     curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point)))
 }
 
@@ -93,7 +94,7 @@ fn verdicts(curves: &[Curve]) -> String {
 }
 
 /// What the errors are measured from, in words.
-fn reference(measured: &Measurement) -> String {
+pub(crate) fn reference(measured: &Measurement) -> String {
     let known = &measured.reference;
     let (steps, error) = (known.steps, number(known.error));
     if known.closed {
@@ -132,34 +133,6 @@ fn noted(columns: &[&str], rows: Vec<(Vec<String>, String)>) -> String {
         let _ = writeln!(text, "{}", format!("{line}  {note}").trim_end());
     }
     text
-}
-
-/// The points, one on a line.
-pub(crate) fn csv(curves: &[Curve]) -> String {
-    let mut text = format!("{CSV}\n");
-    let some = |value: Option<f64>| value.map_or_else(String::new, number);
-    for (_, point) in points(curves) {
-        let [step, tolerance] = settings(point).map(some);
-        let steps = point.steps.map_or_else(String::new, |steps| steps.to_string());
-        let [error, wall, cpu, spread] = [point.error, point.wall_seconds, point.cpu_seconds, point.spread].map(some);
-        let [method, mark, source] = [
-            point.method.clone(),
-            point.mark.as_ref().map_or_else(String::new, ToString::to_string),
-            point.source.clone().unwrap_or_default(),
-        ]
-        .map(|text| quoted(&text));
-        let pareto = point.pareto;
-        let _ = writeln!(
-            text,
-            "{method},{step},{tolerance},{steps},{error},{wall},{cpu},{spread},{mark},{pareto},{source}"
-        );
-    }
-    text
-}
-
-/// A field of text (RFC 4180).
-pub(crate) fn quoted(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }
 
 /// The object that `precision --json` prints.
@@ -251,7 +224,7 @@ fn json_method(curve: &Curve) -> Value {
 }
 
 /// The report.
-pub(crate) fn report(scene: &AnyScene, measured: &Measurement) -> PrecisionReport {
+pub(crate) fn report(scene: &AnyScene, measured: &Measurement, provenance: &Provenance) -> PrecisionReport {
     let mut facts = measured.facts.clone();
     let duration = format!("{} s", number(measured.duration));
     for (name, value) in [("duration", duration), ("reference", reference(measured)), ("times", clock(measured))] {
@@ -269,6 +242,7 @@ pub(crate) fn report(scene: &AnyScene, measured: &Measurement) -> PrecisionRepor
             .collect(),
     };
     let rows = points(&measured.curves).map(|(curve, point)| cells(curve, point)).collect();
+    let csv = format!("{}.csv", file_stem(scene.name()));
     PrecisionReport {
         title: format!("noslip precision {}", scene.name()),
         intro: format!("{INTRO}\n\n{}", verdicts(&measured.curves)),
@@ -281,7 +255,8 @@ pub(crate) fn report(scene: &AnyScene, measured: &Measurement) -> PrecisionRepor
             table("Every point", &POINTS, rows),
         ],
         numbers: vec![
-            Numbers { ending: "csv", text: csv(&measured.curves) },
+            Numbers { ending: "csv", text: precision_csv::text(&measured.curves) },
+            Numbers { ending: "csv-metadata.json", text: provenance.document(&csv, precision_csv::described()) },
             Numbers { ending: "json", text: format!("{:#}\n", json(scene, measured)) },
         ],
     }

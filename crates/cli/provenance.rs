@@ -1,5 +1,10 @@
+use crate::again::Again;
+use crate::error::CliError;
+use crate::files::write_whole;
 use scene::Column;
 use serde_json::{Value, json};
+use std::io::Write;
+use std::path::{Path, PathBuf};
 
 /// What made a file, and the units of its columns: a document of "CSV on the Web" (W3C 2015), whose notes name the program, the command
 /// that makes the file again, and the scene.
@@ -11,47 +16,96 @@ pub(crate) struct Provenance {
 
 impl Provenance {
     /// Of rows that a command computes; `notes` are an object with whatever else is to be told.
-    pub(crate) fn new(title: &str, command: &[String], mut notes: Value) -> Self {
+    pub(crate) fn new(title: &str, command: Option<&Again>, mut notes: Value) -> Self {
         notes["program"] = json!(format!("noslip {}", env!("CARGO_PKG_VERSION")));
-        notes["command"] = json!(command.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" "));
+        if let Some(command) = command {
+            notes["command"] = json!(command.to_string());
+        }
         Self { title: title.to_owned(), notes }
     }
 
-    /// The document of a file of that name.
-    pub(crate) fn document(&self, name: &str, columns: &[Column]) -> Value {
-        let columns = columns.iter().map(|column| {
-            let mut object = json!({"titles": label(column), "name": column.name, "datatype": datatype(column)});
-            if !column.unit.is_empty() {
-                object["schema:unitText"] = json!(column.unit);
-            }
-            object
-        });
-        json!({
+    /// Of rows that are computed on a scene: its title, and its text with all numbers as they were used, whatever the command line said
+    /// instead of the file.
+    pub(crate) fn on((title, text): (&str, Option<String>), command: Option<&Again>, mut notes: Value) -> Self {
+        if let Some(text) = text {
+            notes["scene"] = json!(text);
+        }
+        Self::new(title, command, notes)
+    }
+
+    /// Says how far the work came, where a signal ended it.
+    pub(crate) fn interrupted(mut self, made: Option<&str>) -> Self {
+        made.into_iter().for_each(|made| self.notes["interrupted"] = json!(made));
+        self
+    }
+
+    /// The document of a file of that name, with a newline at its end.
+    pub(crate) fn document<D: Into<Described>>(&self, name: &str, columns: impl IntoIterator<Item = D>) -> String {
+        let columns: Vec<Value> = columns.into_iter().map(|column| column.into().object()).collect();
+        let document = json!({
             "@context": "http://www.w3.org/ns/csvw",
             "url": name,
             "dc:title": self.title,
             "notes": [self.notes],
-            "tableSchema": {"columns": columns.collect::<Vec<_>>()},
-        })
+            "tableSchema": {"columns": columns},
+        });
+        format!("{document:#}\n")
+    }
+
+    /// Writes the document of a file of text beside it.
+    pub(crate) fn write_beside<D: Into<Described>>(
+        &self,
+        path: &Path,
+        columns: impl IntoIterator<Item = D>,
+    ) -> Result<(), CliError> {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let document = self.document(&name, columns);
+        write_whole(&metadata_of(path), true, |file| file.write_all(document.as_bytes()))
+    }
+}
+
+/// Where the provenance of a file of text is: beside it, as "CSV on the Web" has it.
+pub(crate) fn metadata_of(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push("-metadata.json");
+    path.with_file_name(name)
+}
+
+/// A column as a document describes it.
+#[derive(Debug, Clone)]
+pub(crate) struct Described {
+    title: String,
+    name: String,
+    unit: String,
+    /// The type of its fields, by its name in XML Schema.
+    datatype: &'static str,
+}
+
+impl Described {
+    /// By its heading, `NAME [UNIT]` or `NAME`; a name in the document has no spaces.
+    pub(crate) fn headed(heading: &str, datatype: &'static str) -> Self {
+        let (name, unit) = heading.split_once(" [").unwrap_or((heading, ""));
+        let unit = unit.trim_end_matches(']').to_owned();
+        Self { title: heading.to_owned(), name: name.replace(' ', "_"), unit, datatype }
+    }
+
+    fn object(self) -> Value {
+        let mut object = json!({"titles": self.title, "name": self.name, "datatype": self.datatype});
+        if !self.unit.is_empty() {
+            object["schema:unitText"] = json!(self.unit);
+        }
+        object
+    }
+}
+
+impl From<&Column> for Described {
+    fn from(column: &Column) -> Self {
+        let datatype = if column.whole { "integer" } else { "double" };
+        Self { title: label(column), name: column.name.clone(), unit: column.unit.clone(), datatype }
     }
 }
 
 /// A column as a header shows it.
 pub(crate) fn label(Column { name, unit, .. }: &Column) -> String {
     if unit.is_empty() { name.clone() } else { format!("{name} [{unit}]") }
-}
-
-/// The type of the numbers of a column, by its name in XML Schema.
-fn datatype(column: &Column) -> &'static str {
-    if column.whole { "integer" } else { "double" }
-}
-
-/// A word as a shell reads it.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,+:@%".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', "'\\''"))
-    }
 }

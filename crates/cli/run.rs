@@ -1,4 +1,5 @@
 use crate::account::{Account, Made};
+use crate::again::Again;
 use crate::args::RunArguments;
 use crate::compare::unless_interrupted;
 use crate::error::CliError;
@@ -9,15 +10,19 @@ use crate::provenance::Provenance;
 use crate::trigger::Events;
 use crate::{inspect, notes, progress, resume, substeps, table, terminal, train_run};
 use dla::{Checkpoint, Node, Nodes, Schedule, Substeps};
-use harness::{Kind, Method, Progress, Saving, run_saved};
+use harness::{Kind, METHODS, Method, Progress, Saving, run_saved};
 use scene::{AnyScene, Built, RunSettings, Scene, Visitor};
 use serde_json::json;
 use std::cell::RefCell;
 
 /// `noslip run`: one trajectory, as far as Ctrl-C lets it come.
 pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
-    let scene = inspect::load_any(&arguments.scene, arguments.method.as_deref())?;
+    let mut scene = inspect::load_any(&arguments.scene, arguments.method.as_deref())?;
     let method = inspect::method(scene.run())?.aiming_for(arguments.tolerance)?;
+    if method.is_adaptive() {
+        let run = scene.run_mut();
+        run.tolerance = arguments.tolerance.or(run.tolerance);
+    }
     let method = if arguments.substep { method.with_substeps(Substeps::default()) } else { method };
     if arguments.tolerance.is_some() && arguments.scene.step.is_some() && !method.is_adaptive() {
         let name = method.info().name;
@@ -55,32 +60,22 @@ pub(crate) fn provenance(
     (title, run, text): (&str, &RunSettings, Option<String>),
     schedule: &Schedule,
 ) -> Provenance {
-    let RunArguments { every, substep, event, until, event_samples, out, .. } = arguments;
-    let duration = format!("{:?}", run.duration);
-    let mut command = ["noslip", "run", &arguments.scene.scene, "--method", &run.method].map(str::to_owned).to_vec();
-    let mut add = |flag: &str, value: String| command.extend([flag.to_owned(), value]);
-    add("--step", format!("{:?}", schedule.step));
-    add("--duration", duration);
-    run.alpha.iter().for_each(|alpha| add("--alpha", format!("{alpha:?}")));
-    event.iter().for_each(|trigger| add("--event", trigger.text.clone()));
-    until.iter().for_each(|trigger| add("--until", trigger.text.clone()));
+    let RunArguments { scene, every, substep, event, until, event_samples, tolerance, out, .. } = arguments;
+    let mut command = Again::of("run", &scene.scene, &scene.set).run(run, schedule.step);
+    // Of other methods the tolerance has chosen the step.
+    let adaptive = METHODS.iter().any(|info| info.name == run.method && info.kind.is_adaptive());
+    command = command.maybe("--tolerance", tolerance.filter(|_| adaptive));
+    command = event.iter().fold(command, |command, trigger| command.with("--event", &trigger.text));
+    command = until.iter().fold(command, |command, trigger| command.with("--until", &trigger.text));
     if !event.is_empty() || !until.is_empty() {
-        add("--event-samples", event_samples.to_string());
+        command = command.with("--event-samples", event_samples);
     }
-    add("--every", every.to_string());
-    if let Some(out) = out {
-        add("--out", out.display().to_string());
-    }
-    if *substep {
-        command.push("--substep".to_owned());
-    }
-    let mut notes = json!({
+    command = command.with("--every", every).maybe("--out", out.as_ref().map(|out| out.display()));
+    command = command.flag("--substep", *substep);
+    let notes = json!({
         "method": run.method, "step": schedule.step, "duration": run.duration, "every": every,
     });
-    if let Some(text) = text {
-        notes["scene"] = json!(text);
-    }
-    Provenance::new(title, &command, notes)
+    Provenance::on((title, text), Some(&command), notes)
 }
 
 /// A scene as its provenance tells it: with the numbers as they were used, whatever the command line said instead of the file.

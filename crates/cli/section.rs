@@ -1,3 +1,4 @@
+use crate::again::Again;
 use crate::args::SectionArguments;
 use crate::chart_file::ChartFile;
 use crate::compare::unless_interrupted;
@@ -5,6 +6,7 @@ use crate::coordinate::Coordinate;
 use crate::error::CliError;
 use crate::interrupt::Interrupt;
 use crate::lyapunov::{asked, imposed};
+use crate::provenance::Provenance;
 use crate::starts::{Start, spread};
 use crate::trigger::in_doubt;
 use crate::{inspect, json, notes, progress, table, terminal};
@@ -136,12 +138,30 @@ impl Visitor for Sections<'_> {
         let made = (done.len() < starts.len()).then(|| format!("{} of {} starts are done", done.len(), starts.len()));
         let state = system.quantities().iter().take(in_state).map(Quantity::column).collect();
         let told = Told { state, axes: axes.map(|axis| axis.quantity) };
-        unless_interrupted(made, None, self.tell(&told, &done))
+        let written = self.tell(&told, &done, made.as_deref());
+        unless_interrupted(made, None, written)
     }
 }
 
 impl Sections<'_> {
-    fn tell(&self, told: &Told, crossed: &[Crossed]) -> Result<(), CliError> {
+    /// What made the points.
+    fn provenance(&self, axes: &[Quantity; 2]) -> Provenance {
+        let SectionArguments { scene: shared, plane, direction, starts, energy, out, .. } = self.arguments;
+        let (run, step) = (self.scene.run(), self.scene.schedule().step);
+        let axes = axes.each_ref().map(|axis| axis.name.as_str());
+        let command = Again::of("section", &shared.scene, &shared.set).run(run, step);
+        let command = command.with("--plane", &plane.text).with("--direction", direction.name());
+        let command = command.with("--axes", axes.join(",")).with("--starts", starts);
+        let command = command.maybe("--energy", energy.map(|energy| format!("{energy:?}")));
+        let command = command.maybe("--out", out.as_ref().map(|out| out.display()));
+        let notes = json!({
+            "method": run.method, "step": step, "duration": run.duration, "plane": plane.text,
+            "direction": direction.name(), "axes": axes, "starts": starts,
+        });
+        Provenance::on((self.scene.title(), self.scene.to_toml().ok()), Some(&command), notes)
+    }
+
+    fn tell(&self, told: &Told, crossed: &[Crossed], interrupted: Option<&str>) -> Result<(), CliError> {
         let shared = &self.arguments.scene;
         let written = self.file.map_or(Ok(()), |file| {
             let row = |i: usize, Point { t, state, shown }: &Point| [&[i as f64, *t][..], state, shown].concat();
@@ -155,7 +175,8 @@ impl Sections<'_> {
             let mut columns = vec![Column::whole("start"), Column::new("t", "s")];
             columns.extend(told.state.iter().cloned());
             columns.extend(told.axes.each_ref().map(Quantity::column).map(own));
-            file.write(shared.force, &columns, &rows, || self.chart(told, crossed))
+            let provenance = self.provenance(&told.axes).interrupted(interrupted);
+            file.write(shared.force, &provenance, (&columns, &rows), || self.chart(told, crossed))
         });
         let count: usize = crossed.iter().map(|start| start.points.len()).sum();
         if shared.json {

@@ -4,7 +4,7 @@ use crate::compare::unless_interrupted;
 use crate::coordinate::Range;
 use crate::error::CliError;
 use crate::interrupt::Interrupt;
-use crate::lyapunov::{refused, schedule};
+use crate::lyapunov::{provenance, refused, schedule};
 use crate::provenance::label;
 use crate::starts::with_energy;
 use crate::{progress, table, terminal};
@@ -118,6 +118,8 @@ impl Map<'_> {
         let failures: Vec<&String> =
             cells.iter().filter_map(|cell| if let Cell::Failed(why) = cell { Some(why) } else { None }).collect();
         let shared = &self.arguments.scene;
+        let left = count_left(cells);
+        let made = (left > 0).then(|| format!("{} of {} starts are done", cells.len() - left, cells.len()));
         let written = self.file.map_or(Ok(()), |file| {
             let row = |(i, cell): (usize, &Cell)| match cell {
                 Cell::Exponent(value, ci, _) => {
@@ -128,7 +130,9 @@ impl Map<'_> {
             };
             let rows: Vec<Vec<f64>> = cells.iter().enumerate().filter_map(row).collect();
             let columns = [&axes[..], &["exponent", "ci"].map(|name| Column::new(name, "1/s"))].concat();
-            file.write(shared.force, &columns, &rows, || self.chart(&axes.each_ref().map(label), values.clone()))
+            let provenance = provenance(self.arguments, self.scene, made.as_deref());
+            let chart = || self.chart(&axes.each_ref().map(label), values.clone());
+            file.write(shared.force, &provenance, (&columns, &rows), chart)
         });
         if shared.json {
             terminal::print_json(&self.json(cells, &values, failures.len()))?;
@@ -141,8 +145,6 @@ impl Map<'_> {
         let failed = failures
             .first()
             .map(|first| format!("{} of {} starts failed, the first so: {first}", failures.len(), cells.len()));
-        let left = count_left(cells);
-        let made = (left > 0).then(|| format!("{} of {} starts are done", cells.len() - left, cells.len()));
         unless_interrupted(made, None, CliError::of_failures(failed).and(written))
     }
 

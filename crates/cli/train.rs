@@ -90,7 +90,12 @@ pub(crate) fn compare_scene(
         series,
         exact_path: None,
         figure: None,
-        numbers: compare_numbers::files(&scene.name, &objects, interrupted.is_some()),
+        numbers: compare_numbers::files(
+            &scene.name,
+            (&scene.title, scene.to_toml().ok()),
+            &objects,
+            interrupted.as_deref(),
+        ),
     };
     Ok(Comparison { rows, report, interrupted })
 }

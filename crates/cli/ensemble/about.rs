@@ -1,7 +1,11 @@
 use super::header;
 use super::members::Summed;
+use super::result::failed;
+use crate::again::Again;
+use crate::args::Settings;
 use crate::error::CliError;
-use crate::provenance::Provenance;
+use crate::format::Format;
+use crate::provenance::{Described, Provenance};
 use scene::{Column, Sweep};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -64,12 +68,14 @@ impl About {
         self.columns.iter().map(|(name, unit, whole)| Column { whole: *whole, ..Column::new(name, unit) }).collect()
     }
 
-    /// What made a result: the command that makes it at once, the sweep and its scene.
-    pub(super) fn metadata(&self, out: &Path) -> String {
+    /// What made a result: the command that makes it at once, the sweep and its scene; and its columns, of which the last tells the
+    /// members that failed.
+    pub(super) fn metadata(&self, out: &Path, format: Format) -> String {
         let name = out.file_name().unwrap_or_default().to_string_lossy();
-        let command = ["noslip", "ensemble", &self.sweep, "--out", &out.display().to_string()].map(str::to_owned);
-        let provenance = Provenance::new(&self.title, &command, self.notes.clone());
-        format!("{:#}\n", provenance.document(&name, &self.columns()))
+        let command = Again::of("ensemble", &self.sweep, &Settings::default()).with("--out", out.display());
+        let provenance = Provenance::new(&self.title, Some(&command), self.notes.clone());
+        let last = if format.is_text() { Described::headed("error", "string") } else { (&failed()).into() };
+        provenance.document(&name, self.columns().iter().map(Described::from).chain([last]))
     }
 
     /// Reads it from a file beside parts; none where the file is another one.

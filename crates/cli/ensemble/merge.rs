@@ -6,7 +6,7 @@ use crate::args::MergeArguments;
 use crate::error::CliError;
 use crate::files::{check_file, write_whole};
 use crate::format::Format;
-use crate::output::metadata_of;
+use crate::provenance::metadata_of;
 use crate::terminal;
 use std::io::{Error, Write};
 use std::path::PathBuf;
@@ -35,7 +35,7 @@ pub(crate) fn merge(arguments: &MergeArguments) -> Result<(), CliError> {
     while let Some(text) = all.next().map_err(unreadable)? {
         totals.take(text);
     }
-    let metadata = about.metadata(&out);
+    let metadata = about.metadata(&out, format);
     let shape = Shape { format, columns: &columns, count: about.members, metadata: &metadata };
     write_whole(&out, *force, |file| result::write(file, &shape, &rows))?;
     if format.is_text() {

@@ -21,7 +21,7 @@ use crate::error::CliError;
 use crate::files::check_file;
 use crate::format::Format;
 use crate::interrupt::Interrupt;
-use crate::output::metadata_of;
+use crate::provenance::metadata_of;
 use crate::{compare, inspect, progress, terminal};
 use about::About;
 use dla::Checkpoint;
@@ -80,7 +80,7 @@ pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
     let stopped = totals.count() < sweep.count();
     let written = match (spool, out) {
         (Some(spool), Some((path, format))) if !stopped => {
-            let (columns, metadata) = (about.columns(), about.metadata(path));
+            let (columns, metadata) = (about.columns(), about.metadata(path, format));
             let shape = Shape { format, columns: &columns, count: sweep.count(), metadata: &metadata };
             spool.finish(path, &shape, arguments.force)
         }

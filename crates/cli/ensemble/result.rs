@@ -61,7 +61,12 @@ pub(super) fn write<'a>(
 
 /// The columns of a file of numbers alone: one more says which members failed, by 0 or 1.
 fn with_failed(columns: &[Column]) -> Vec<Column> {
-    columns.iter().cloned().chain([Column::whole("failed")]).collect()
+    columns.iter().cloned().chain([failed()]).collect()
+}
+
+/// Whether a member failed: 1, or 0.
+pub(super) fn failed() -> Column {
+    Column::whole("failed")
 }
 
 /// A row as an object; its member is a whole number, and what is not finite is null.

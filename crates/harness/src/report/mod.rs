@@ -78,7 +78,7 @@ pub struct SceneReport {
 /// A file of numbers.
 #[derive(Debug, Clone)]
 pub struct Numbers {
-    /// The ending of its name, such as `csv`.
+    /// The ending of its name, such as `csv`, or `csv-metadata.json` of what describes that file.
     pub ending: &'static str,
     /// What is in it.
     pub text: String,
@@ -218,6 +218,12 @@ pub fn path_picture(scene: &SceneReport) -> Result<String, ReportError> {
 /// The three pictures of a scene.
 fn pictures(scene: &SceneReport, name: &str) -> Result<[picture::Picture; 3], ReportError> {
     Ok([path::picture(scene, name)?, drift::constraint(scene, name)?, drift::energy(scene, name)?])
+}
+
+/// What the names of the files of a scene in a report begin with, if no other scene of the report has the same name.
+#[must_use]
+pub fn file_stem(name: &str) -> String {
+    files::stems(std::iter::once(name)).concat()
 }
 
 /// Files of numbers with their names.

@@ -157,9 +157,13 @@ pub(super) fn numbers(page: &mut String, name: &str, numbers: &[Numbers]) {
     if numbers.is_empty() {
         return;
     }
+    let shown = |ending: &str| match ending.split_once('-') {
+        Some((ending, _)) => format!("metadata of the {}", ending.to_uppercase()),
+        None => ending.to_uppercase(),
+    };
     let links = numbers
         .iter()
-        .map(|Numbers { ending, .. }| format!("<a href=\"{}.{ending}\">{}</a>", escape(name), ending.to_uppercase()));
+        .map(|Numbers { ending, .. }| format!("<a href=\"{}.{ending}\">{}</a>", escape(name), shown(ending)));
     *page += &format!("<p class=\"numbers\">All digits: {}</p>\n", links.collect::<Vec<_>>().join(" "));
 }
 
