@@ -88,7 +88,7 @@ fn steady_periodic_and_runaway_motions_are_named() {
     for rest in ["--duration 60", "--duration 90", "--duration 60 --settle 60"] {
         let outcome = folder.line(&format!("lyapunov ridge.toml {rest} --json"));
         assert_eq!(outcome.code, 1, "{rest}: {outcome:?}");
-        for told in ["exponents together", "by the divergence", "shorter steps"] {
+        for told in ["sum of the exponents", "by the divergence", "shorter steps"] {
             assert!(outcome.stderr.contains(told), "{rest}: {outcome:?}");
         }
         let found: Value = serde_json::from_str(&outcome.stdout).unwrap();
@@ -243,12 +243,12 @@ fn what_makes_no_sense_is_refused() {
     folder.write("jumps.toml", format!("{SCENE}{jumps}"));
     for (line, told) in [
         ("lyapunov bowl --exponents 6", &["--exponents", "1 to 5"][..]),
-        ("lyapunov bowl --exponents 0", &["--exponents", "from 1 on"]),
+        ("lyapunov bowl --exponents 0", &["--exponents", "of 1 or more"]),
         ("lyapunov bowl --method gni", &["gni", "multiplier"]),
         ("lyapunov bowl --method rk4", &["rk4-reduced"]),
         ("lyapunov bowl --method euler", &["euler"]),
         ("lyapunov bowl --duration 0", &["duration"]),
-        ("lyapunov bowl --settle -1", &["--settle", "from 0 on"]),
+        ("lyapunov bowl --settle -1", &["--settle", "of 0 or more"]),
         ("lyapunov bowl --energy -3", &["--energy", "at rest"]),
         ("lyapunov bowl --out run.txt", &["run.txt", ".csv", ".svg"]),
         ("lyapunov planimeter", &["imposes velocities"]),
@@ -264,7 +264,7 @@ fn what_makes_no_sense_is_refused() {
         ("section bowl --plane y=nan", &["nan", "NAME=VALUE"]),
         ("section bowl --plane t=0", &["period"]),
         ("section bowl --plane t=1e-3", &["period", "step"]),
-        ("section bowl --plane y=0 --starts 0", &["--starts", "from 1 on"]),
+        ("section bowl --plane y=0 --starts 0", &["--starts", "of 1 or more"]),
         ("section bowl --plane y=0 --axes speed", &["--axes", "two different"]),
         ("section bowl --plane y=0 --axes speed,speed", &["--axes", "two different"]),
         ("section bowl --plane y=0 --direction up", &["--direction", "rising"]),

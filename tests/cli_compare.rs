@@ -297,7 +297,7 @@ fn ctrl_c_keeps_what_is_done_and_the_rest_is_resumed() {
     let line = |more: &str| format!("compare turnaround --step 0.01 --methods dla,gauss4 --json {more}");
     let long = line("--duration 3e6 --checkpoint saves --checkpoint-every 1000000");
     let outcome = interrupted(&folder, &long, "saves/dla.save");
-    outcome.assert_told("ctrl-c", &["interrupted: 0 of 2 methods are done, dla up to t = ", "--resume saves goes on"]);
+    outcome.assert_told("ctrl-c", &["interrupted: 0 of 2 methods finished, dla up to t = ", "--resume saves continues"]);
     let object: Value = serde_json::from_str(&outcome.stdout).unwrap();
     let rows = object["rows"].as_array().unwrap();
     assert_eq!((&object["interrupted"], rows.len()), (&Value::Bool(true), 1), "{object}");
@@ -316,7 +316,7 @@ fn ctrl_c_keeps_the_run_and_its_nodes() {
     let line = "run turnaround --step 0.01 --duration 3e6 --out path.csv --every 100000 --checkpoint run.save \
                 --checkpoint-every 1000000 --json";
     let outcome = interrupted(&folder, line, "run.save");
-    outcome.assert_told("ctrl-c", &["interrupted: the run is made up to t = ", "--resume run.save goes on"]);
+    outcome.assert_told("ctrl-c", &["interrupted: the run reached t = ", "--resume run.save continues"]);
     let object: Value = serde_json::from_str(&outcome.stdout).unwrap();
     let steps = object["steps"].as_u64().unwrap();
     assert!((1_000_000..300_000_000).contains(&steps) && object["interrupted"] == true, "{object}");

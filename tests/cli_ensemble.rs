@@ -94,7 +94,7 @@ fn killed_at_any_time_and_resumed_the_bytes_are_the_same() {
             }
             // A signal that comes before the program listens ends it as it ends any other.
             assert!(
-                code.is_none() || code == Some(130) && told.contains("--resume goes on"),
+                code.is_none() || code == Some(130) && told.contains("--resume continues"),
                 "{signal}: {code:?} {told}"
             );
             cut += 1;
@@ -124,7 +124,7 @@ fn a_signal_stops_it_between_members() {
         let (code, told) = ended(child);
         assert_eq!(code, Some(130), "{told}");
         assert!(told.contains("stopping after the members that have begun; Ctrl-C again ends at once"), "{told}");
-        assert!(told.contains("of 500 members are done; the same command with --resume goes on"), "{told}");
+        assert!(told.contains("of 500 members finished; the same command with --resume continues"), "{told}");
         fs::remove_file(folder.join("slow.csv.part")).unwrap();
     }
 }

@@ -109,7 +109,7 @@ fn a_run_has_a_page() {
     assert!(page.contains(&format!("{end:.4}")), "{end}");
     folder.refused("run bowl --report pages", &["pages exists already", "--force"]);
     folder.refused("run bowl --report new --checkpoint a.save", &["--report", "--checkpoint"]);
-    folder.refused("run - --report new", &["read once"]);
+    folder.refused("run - --report new", &["read only once"]);
     assert_eq!(folder.names(), ["json", "pages"]);
 }
 

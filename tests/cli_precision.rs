@@ -201,7 +201,7 @@ fn points_that_are_none_are_refused_before_the_runs() {
     let folder = Folder::new();
     for (content, told) in [
         ("", "EOF"),
-        ("{}", "there are no points"),
+        ("{}", "the file has no points"),
         (r#"{"points": [{"error": 1.0}]}"#, "points[0]: `method` is no name"),
         (r#"{"points": [{"method": "m", "error": "small"}]}"#, "points[0]: `error` is \"small\""),
         (r#"{"points": [{"method": "m", "wall_seconds": -1}]}"#, "`wall_seconds` is -1"),

@@ -377,7 +377,7 @@ fn a_step_is_found_for_a_tolerance() {
     folder.refused("run turnaround --tolerance 1e-3 --step 0.1", &["--step"]);
     let out_of_reach = folder.line("run turnaround --method gauss8 --tolerance 1e-17");
     assert_eq!(out_of_reach.code, 1);
-    assert!(out_of_reach.stderr.contains("out of reach: the best found is about "), "{}", out_of_reach.stderr);
+    assert!(out_of_reach.stderr.contains("out of reach: the best error found is about "), "{}", out_of_reach.stderr);
 }
 
 /// The speed is `cos 10 t` at any time: the place is `sin(10 t)/10`, and crosses 0.05 twenty times in 6 s.

@@ -119,8 +119,9 @@ pub(crate) fn compare_scene(
         && let Some(whole) = scene.train()?
     {
         if saves.are_asked_for() {
-            let problem = "--checkpoint and --resume of a comparison do not do scenes with `trailers`, whose pictures need the \
-                           nodes of all blades, and no checkpoint has them; `run` saves and resumes a train";
+            let problem = "--checkpoint, --resume: a comparison of a scene with `trailers` cannot be saved, since \
+                its pictures need the nodes of all blades and a checkpoint has no nodes; `noslip run` saves and \
+                resumes a train";
             return Err(CliError::Request(problem.to_owned()));
         }
         return train::compare_scene(scene, &whole, methods, interrupt);
@@ -171,7 +172,7 @@ impl Compare<'_> {
         let part = records.iter().find(|record| record.interrupted);
         let part = part.map(|record| format!(", {} up to t = {} s", record.method.name, table::number(record.t)));
         (whole < self.methods.len())
-            .then(|| format!("{whole} of {} methods are done{}", self.methods.len(), part.unwrap_or_default()))
+            .then(|| format!("{whole} of {} methods finished{}", self.methods.len(), part.unwrap_or_default()))
     }
 }
 

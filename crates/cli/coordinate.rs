@@ -20,7 +20,7 @@ impl Coordinate {
         let mut quantities = system.quantities();
         match system.named(name.trim()) {
             Some(k) => Ok(Self { k, quantity: quantities.swap_remove(k) }),
-            None => Err(format!("no quantity `{}`; accepted are {}", name.trim(), names(quantities))),
+            None => Err(format!("the scene has no quantity `{}`; accepted are {}", name.trim(), names(quantities))),
         }
     }
 
@@ -88,11 +88,11 @@ impl Range {
     /// What is wrong, with the names that are accepted.
     pub(crate) fn on<const N: usize, const M: usize>(&self, system: &Built<'_, N, M>) -> Result<usize, String> {
         let starts = system.quantities().into_iter().enumerate().filter(|(k, _)| system.gives_start(*k));
-        let accepted = || format!("{RANGE}, of {}", names(starts.map(|(_, quantity)| quantity).collect()));
+        let accepted = || format!("{RANGE}; NAME is one of {}", names(starts.map(|(_, quantity)| quantity).collect()));
         match system.named(&self.name) {
             Some(k) if system.gives_start(k) => Ok(k),
-            Some(_) => Err(format!("no start is given by `{}`; {}", self.name, accepted())),
-            None => Err(format!("no start has `{}`; {}", self.name, accepted())),
+            Some(_) => Err(format!("`{}` is not a quantity that a start has; {}", self.name, accepted())),
+            None => Err(format!("the scene has no quantity `{}`; {}", self.name, accepted())),
         }
     }
 }
@@ -105,7 +105,7 @@ impl fmt::Display for Range {
     }
 }
 
-const RANGE: &str = "accepted is NAME=FROM:TO:CELLS as in speed=-1:1:40";
+const RANGE: &str = "accepted is NAME=FROM:TO:CELLS, for example speed=-1:1:40";
 
 /// The most cells along an axis.
 const MOST: usize = 2000;
@@ -119,9 +119,9 @@ impl FromStr for Range {
         let [from, to, cells] = parts[..] else { return Err(RANGE.to_owned()) };
         let number = |text: &str| text.parse().ok().filter(|x: &f64| x.is_finite());
         let ends = number(from).zip(number(to)).filter(|(from, to)| from < to);
-        let (from, to) = ends.ok_or_else(|| format!("`{range}` is no range; {RANGE}"))?;
+        let (from, to) = ends.ok_or_else(|| format!("`{range}` is not a range with FROM less than TO; {RANGE}"))?;
         let cells = cells.parse().ok().filter(|cells| (1..=MOST).contains(cells));
-        let cells = cells.ok_or_else(|| format!("from 1 to {MOST} cells; {RANGE}"))?;
+        let cells = cells.ok_or_else(|| format!("CELLS must be a whole number from 1 to {MOST}; {RANGE}"))?;
         Ok(Self { name: name.trim().to_owned(), ends: [from, to], cells })
     }
 }

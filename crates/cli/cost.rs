@@ -62,7 +62,7 @@ pub(crate) fn cost(arguments: &SceneArguments) -> Result<(), CliError> {
         terminal::print_json(&object)?;
     } else {
         let name = format!("{} ({})", scene.title(), scene.name());
-        let heading = format!("{name}: a step of dla by automatic derivatives, the mean over a run\n");
+        let heading = format!("{name}: mean time of a step of dla with automatic derivatives\n");
         let counted = operations.map_or_else(String::new, |[lagrangian, constraints, forces]| {
             format!("operations: {lagrangian} for the Lagrangian, {constraints} for the constraints, {forces} for the forces\n")
         });

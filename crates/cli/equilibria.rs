@@ -37,7 +37,7 @@ pub(crate) fn equilibria(arguments: &EquilibriaArguments) -> Result<(), CliError
     }
     if let Some(path) = &arguments.picture {
         if matches!(scene, AnyScene::Text(_)) {
-            let problem = "--picture draws speed against turn rate of a sleigh, which a system of text does not have";
+            let problem = "--picture draws the speed and the turn rate of a sleigh; the scene is a system of text";
             return Err(CliError::Request(problem.to_owned()));
         }
         check_file(path, arguments.scene.force)?;

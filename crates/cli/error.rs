@@ -24,15 +24,17 @@ pub(crate) enum CliError {
     Case { name: String, nearest: Option<String>, names: String },
     #[error("{} exists already; --force overwrites it", path.display())]
     Exists { path: PathBuf },
-    #[error("{}: rows are written as .csv, .jsonl, .npz or .parquet, by the ending of the name or by --format", path.display())]
+    #[error("{}: rows are written as .csv, .jsonl, .npz or .parquet; the ending of the name or --format chooses the \
+        format", path.display())]
     Ending { path: PathBuf },
     #[cfg(not(feature = "parquet"))]
     #[error(
-        "{}: this program was built without Parquet; `cargo build --release --features parquet` builds it with it",
+        "{}: this program was built without Parquet; `cargo build --release --features parquet` builds a program \
+            with Parquet",
         path.display()
     )]
     WithoutParquet { path: PathBuf },
-    #[error("{}: accepted is .csv or a picture .svg, by the ending of its name", path.display())]
+    #[error("{}: accepted are numbers (.csv) and a picture (.svg), by the ending of the name", path.display())]
     ChartEnding { path: PathBuf },
     /// What is asked for makes no sense, or cannot be had of this scene or method.
     #[error("{0}")]
@@ -55,17 +57,21 @@ pub(crate) enum CliError {
     #[error("steady motions: {0}")]
     Equilibria(#[from] EquilibriumError),
     #[error(
-        "the steps of {method} are not differentiated here; accepted are the methods of the family dla, rk4 and rk4-reduced (--method)"
+        "--method: noslip equilibria has no derivatives of the steps of {method}; accepted are the family dla, rk4 \
+            and rk4-reduced"
     )]
     NotDifferentiated { method: &'static str },
-    #[error("the scene {scene} has no tracer, whose loops have a phase; `noslip phase planimeter` shows one")]
+    #[error(
+        "the scene {scene} has no `tracer`: noslip phase measures the loops of a tracer, as in `noslip phase \
+        planimeter`"
+    )]
     WithoutTracer { scene: String },
     #[error("cannot write to standard output: {0}")]
     Output(std::io::Error),
     #[error("the report: {0}")]
     Report(ReportError),
     /// Ctrl-C; what was done has been shown.
-    #[error("interrupted: {made}{}", resume.as_ref().map_or_else(String::new, |d| format!("; --resume {} goes on", d.display())))]
+    #[error("interrupted: {made}{}", resume.as_ref().map_or_else(String::new, |d| format!("; --resume {} continues", d.display())))]
     Interrupted { made: String, resume: Option<PathBuf> },
     /// The computation failed; what was reached has been shown.
     #[error("{}", .0.join("\nerror: "))]

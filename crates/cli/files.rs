@@ -13,7 +13,7 @@ pub(crate) fn check_file(path: &Path, overwrite: bool) -> Result<(), CliError> {
     }
     // A rename would put a file in the place of a device or a pipe.
     if path.metadata().is_ok_and(|existing| !existing.is_file()) {
-        let source = Error::new(ErrorKind::InvalidInput, "there is something that is not a regular file");
+        let source = Error::new(ErrorKind::InvalidInput, "the path is not a regular file");
         return Err(CliError::Write { path: path.to_owned(), source });
     }
     // The way to learn whether a folder can be written in is to write in it.

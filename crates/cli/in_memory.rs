@@ -71,7 +71,7 @@ pub fn run(scene: &AnyScene, request: &RunRequest, caller: &Caller) -> Result<Ru
     let method = inspect::method(scene.run())?.aiming_for(request.tolerance).map_err(CliError::from)?;
     let method = if request.substep { method.with_substeps(Substeps::default()) } else { method };
     if matches!(scene, AnyScene::Sleigh(scene) if scene.has_trailers()) {
-        let problem = "trains are run by the command line: their nodes are not kept in memory here";
+        let problem = "a train cannot be kept in memory: run the train by `noslip run` on the command line";
         return Err(CliError::Request(problem.to_owned()).into());
     }
     let made = scene.visit(Run { scene, request, method: &method, caller }).map_err(CliError::from)?;

@@ -26,7 +26,7 @@ pub(crate) fn everything(folder: &Path, overwrite: bool) -> Result<(), CliError>
         failures.extend(failed.map(|failure| format!("{}: {failure}", scene.name())));
         scenes.push(comparison.report);
         if let Some(made) = comparison.interrupted {
-            interrupted = Some(format!("on the scene {} {made}", scene.name()));
+            interrupted = Some(format!("on the scene {}, {made}", scene.name()));
             break;
         }
     }

@@ -42,7 +42,7 @@ pub(crate) fn lyapunov(arguments: &LyapunovArguments) -> Result<(), CliError> {
             scene.visit_free(stability_map::Map { arguments, scene: &scene, method, axes, file })?
         }
         _ => {
-            let problem = "--map must be given twice: the first is the axis across, the second the axis upwards";
+            let problem = "--map must be given twice: first the horizontal axis, then the vertical axis";
             return Err(CliError::Request(problem.to_owned()));
         }
     };
@@ -99,7 +99,8 @@ pub(crate) fn asked<const N: usize, const M: usize>(
     with_energy(system, &start, wanted).ok_or_else(|| {
         let at_rest = system.energy(0.0, &start.0, &[0.0; N]);
         CliError::Request(format!(
-            "--energy {wanted:?}: no velocity along that of the start gives it; at rest there the energy is {at_rest:?} J"
+            "--energy {wanted:?}: no multiple of the velocity of the start has this energy; at rest at the start the \
+                energy is {at_rest:?} J"
         ))
     })
 }
@@ -133,7 +134,7 @@ impl Visitor for Exponents<'_> {
         let found = harness::analysis::lyapunov_within((&*system, &system), its, &self.method, &request, &mut progress);
         progress.bar.finish_and_clear();
         let found = found.map_err(refused)?;
-        let made = interrupt.asked().then(|| format!("{} s are measured", table::number(found.time)));
+        let made = interrupt.asked().then(|| format!("the exponents cover {} s", table::number(found.time)));
         let told = self.tell(&found, system.energy(0.0, &q, &v), 2 * its.0 - its.1, made.as_deref());
         unless_interrupted(made, None, told)
     }
@@ -225,11 +226,11 @@ impl Exponents<'_> {
                 lines.push(("sum".to_owned(), format!("{:+.7} 1/s", found.sum())));
                 lines.push(("mean divergence".to_owned(), divergence));
             } else {
-                lines.push(("mean divergence".to_owned(), format!("{divergence}, the sum of all")));
+                lines.push(("mean divergence".to_owned(), format!("{divergence}, the sum of all exponents")));
             }
             if whole && has_attractor(found.verdict) {
                 let dimension = kaplan_yorke(&found.exponents);
-                lines.push(("dimension".to_owned(), format!("{dimension:.3}, by Kaplan and Yorke")));
+                lines.push(("dimension".to_owned(), format!("{dimension:.3}, by the formula of Kaplan and Yorke")));
             }
         }
         lines.push(("verdict".to_owned(), found.verdict.to_string()));
@@ -243,7 +244,7 @@ impl Exponents<'_> {
         };
         Chart {
             title: format!("{}: Lyapunov exponents over a run", self.scene.title()),
-            axes: ["t [s]".to_owned(), "mean so far [1/s]".to_owned()],
+            axes: ["t [s]".to_owned(), "running mean [1/s]".to_owned()],
             decades: [true, false],
             layers: (0..found.exponents.len()).map(line).collect(),
         }

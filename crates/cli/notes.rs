@@ -7,7 +7,11 @@ pub(crate) fn moves(scene: &AnyScene) {
     let AnyScene::Text(scene) = scene else { return };
     for moved in &scene.start.moved {
         let (from, to) = (number(moved.from), number(moved.to));
-        let note = format!("the constraints do not admit {} = {from} at the start; it is {to}", moved.name);
+        let note = format!(
+            "the constraints do not admit {} = {from} at the start; the run starts with \
+            {to}",
+            moved.name
+        );
         terminal::say("note", &note);
     }
 }

@@ -27,7 +27,7 @@ impl<'a> Asked<'a> {
         if path == Path::new("-") {
             let format = format.unwrap_or(Format::Csv);
             if !format.is_text() {
-                let problem = "--out -: standard output takes --format csv or jsonl; the others need a file";
+                let problem = "--out -: standard output takes --format csv or jsonl; the other formats need a file";
                 return Err(CliError::Request(problem.to_owned()));
             }
             return Ok(Self { path: None, format, force });
@@ -129,7 +129,11 @@ impl<'a> Output<'a> {
         }
         match found.filter(|sum| same(&Some(sum.clone()))) {
             Some(_) if every != self.every => {
-                let problem = format!("--every {}: the rows before the checkpoint are every {every}", self.every);
+                let problem = format!(
+                    "--every {}: the rows before the checkpoint were written with --every \
+                    {every}",
+                    self.every
+                );
                 Err(CliError::Request(problem))
             }
             Some(sum) => {
@@ -138,13 +142,14 @@ impl<'a> Output<'a> {
                 Ok(true)
             }
             None if there == 0 && old.is_none() => {
-                let told = "there are no rows from before the checkpoint; the file begins after it";
+                let told = "no rows from before the checkpoint are left; the file begins after the checkpoint";
                 terminal::say("warning", &format!("{}: {told}", path.display()));
                 Ok(false)
             }
             None if self.asked.force => Ok(false),
             None => Err(CliError::Request(format!(
-                "{}: neither this file nor {} begins with the rows that the checkpoint goes on from; --force begins a new file after it",
+                "{}: neither this file nor {} begins with the rows from before the checkpoint; --force begins a new \
+                    file after the checkpoint",
                 path.display(),
                 part.path().display()
             ))),

@@ -32,9 +32,9 @@ pub(crate) enum Surface {
 pub(crate) enum Crossed {
     /// Where the quantity rises through the value
     Rising,
-    /// Where it falls
+    /// Where the quantity falls through the value
     Falling,
-    /// All
+    /// In both directions
     Both,
 }
 
@@ -58,7 +58,7 @@ impl From<Crossed> for dla::Direction {
     }
 }
 
-const ACCEPTED: &str = "accepted is NAME=VALUE, as in center_y=0, or t=PERIOD";
+const ACCEPTED: &str = "accepted is NAME=VALUE, for example center_y=0, or t=PERIOD";
 
 impl FromStr for Plane {
     type Err = String;
@@ -66,7 +66,7 @@ impl FromStr for Plane {
     fn from_str(text: &str) -> Result<Self, String> {
         let what = match name_and_value(text, ACCEPTED)? {
             (name, period) if name == "t" && period <= 0.0 => {
-                return Err(format!("a period is greater than 0; {ACCEPTED}"));
+                return Err(format!("the period must be greater than 0; {ACCEPTED}"));
             }
             (name, period) if name == "t" => What::Period(period),
             (name, value) => What::Of(name, value),

@@ -68,7 +68,11 @@ fn format_of(path: &Path) -> Result<Format, CliError> {
         Some("png") => Ok(Format::Png),
         Some("pdf") => Ok(Format::Pdf),
         _ => {
-            let problem = format!("{}: a picture is .svg, .png or .pdf, by the ending of its name", path.display());
+            let problem = format!(
+                "{}: a picture is written as .svg, .png or .pdf, by the ending of the \
+                name",
+                path.display()
+            );
             Err(CliError::Request(problem))
         }
     }
@@ -139,7 +143,7 @@ pub(crate) fn drawing(
         }
     };
     if let Some(unknown) = names.iter().find(|name| !known.contains(&name.as_str()) || !has("t")) {
-        let problem = format!("there is no column `{unknown}` against `t`; the columns are {}", known.join(", "));
+        let problem = format!("the run has no column `{unknown}` to draw against `t`; the columns are {}", known.join(", "));
         return Err(CliError::Request(problem));
     }
     let panels = names.iter().map(|name| panel(name, runs)).collect();

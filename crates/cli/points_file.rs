@@ -8,7 +8,8 @@ pub(crate) fn read(path: &Path, scene: &str) -> Result<(Vec<Curve>, Vec<String>)
     let refused = |problem: String| CliError::Points { path: path.to_owned(), problem };
     let text = std::fs::read_to_string(path).map_err(|error| refused(error.to_string()))?;
     let file: Value = serde_json::from_str(&text).map_err(|error| refused(error.to_string()))?;
-    let points = file.get("points").and_then(Value::as_array).ok_or_else(|| refused("there are no points".into()))?;
+    let points =
+        file.get("points").and_then(Value::as_array).ok_or_else(|| refused("the file has no points".into()))?;
     let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     let source = file.get("program").and_then(Value::as_str).map_or(stem, str::to_owned);
     let mut methods: Vec<(String, Vec<Point>)> = Vec::new();
@@ -23,7 +24,7 @@ pub(crate) fn read(path: &Path, scene: &str) -> Result<(Vec<Curve>, Vec<String>)
     if let Some(other) = file.get("scene").and_then(Value::as_str)
         && other.replace('_', "-") != scene
     {
-        warnings.push(format!("{}: the points are of the scene {other:?}, not of {scene:?}", path.display()));
+        warnings.push(format!("{}: the points belong to the scene {other:?}, not to {scene:?}", path.display()));
     }
     let curve = |(method, mut points): (String, Vec<Point>)| {
         // From coarse to fine, which takes longer.
@@ -39,12 +40,12 @@ fn point(entry: &Value, source: &str) -> Result<Point, String> {
     let setting = step.map(Setting::Step).or(tolerance.map(Setting::Tolerance));
     let steps = match entry.get("steps") {
         None | Some(Value::Null) => None,
-        Some(steps) => Some(steps.as_u64().ok_or("`steps` is no whole number")?),
+        Some(steps) => Some(steps.as_u64().ok_or("`steps` is not a whole number")?),
     };
     let failure = entry.get("failure").and_then(Value::as_str).map(|reason| Mark::Failed(reason.to_owned(), None));
     let plateau = entry.get("mark").and_then(Value::as_str).filter(|mark| *mark == "plateau").map(|_| Mark::Plateau);
     Ok(Point {
-        method: method.ok_or("`method` is no name")?.to_owned(),
+        method: method.ok_or("`method` is not a name")?.to_owned(),
         source: Some(source.to_owned()),
         setting,
         steps,
@@ -63,7 +64,7 @@ fn number(entry: &Value, key: &str) -> Result<Option<f64>, String> {
         None | Some(Value::Null) => Ok(None),
         Some(value) => match value.as_f64().filter(|number| *number >= 0.0) {
             Some(number) => Ok(Some(number)),
-            None => Err(format!("`{key}` is {value}, and no number from 0 on")),
+            None => Err(format!("`{key}` must be a number of 0 or more, and is {value}")),
         },
     }
 }

@@ -88,7 +88,7 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
     measured.curves.extend(others);
     mark_pareto(&mut measured.curves, CLEAR * measured.reference.error);
 
-    let made = interrupt.asked().then(|| format!("{} of {} methods are measured", climbed, methods.len()));
+    let made = interrupt.asked().then(|| format!("{} of {} methods finished", climbed, methods.len()));
     let provenance = provenance(arguments, &scene, &measured).interrupted(made.as_deref());
     if let Some(path) = &arguments.csv {
         let text = precision_csv::text(&measured.curves);

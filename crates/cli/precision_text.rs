@@ -15,14 +15,17 @@ const POINTS: [&str; 8] = ["method", "step [s]", "tolerance", "steps", "error", 
 const METHODS: [&str; 8] = ["method", "order", "slope", "points", "to 1e-3 [s]", "to 1e-6", "to 1e-9", "to 1e-12"];
 
 /// What the columns mean.
-const INTRO: &str = "Every method over a ladder of steps, an adaptive one of tolerances. Error: distance of the end from the \
+const INTRO: &str = "Each method runs with a ladder of steps, an adaptive method with a ladder of tolerances. \
+    Error: distance of the end from the \
     reference, in metres or radians, whichever is larger. Wall, CPU: elapsed time and processor time of a whole run, medians \
-    of batches of warm runs, all methods in turn; spread: the middle half of the processor times over their median. Pareto: no \
-    other point is both faster and more exact. Plateau: within ten times the error of the reference, or no longer falling: \
-    rounding. Slope: the exponent of the step (for an adaptive method of the tolerance) that the error follows, by least \
+        of batches of warm runs, with all methods in turn; spread: the interquartile range of the processor times \
+        over their median. Pareto: no \
+    other point is both faster and more exact. Plateau: the error is within ten times the error of the reference, or \
+        no longer falls: \
+        round-off. Slope: the exponent of the step (for an adaptive method of the tolerance) that the error follows, by least \
     squares over the longest row of points whose slopes from one to the next agree within a tenth, among errors from 0.01 down \
-    to ten times the plateau; points: how many these are. To 1e-3 ..: \
-    processor time to that error, between two points along the line through their logarithms.";
+    to ten times the plateau; points: the number of points in that row. To 1e-3 ..: processor time to that error, \
+        interpolated between the logarithms of two points.";
 
 /// Step and tolerance, one of which a point has.
 pub(crate) fn settings(point: &Point) -> [Option<f64>; 2] {
@@ -101,7 +104,7 @@ pub(crate) fn reference(measured: &Measurement) -> String {
         format!("closed form; gauss16 with {steps} steps ends {error} away")
     } else {
         let other = if known.by == "gauss16" { " and gauss14" } else { "" };
-        format!("{} with {steps} steps, off by {error} at most, from finer runs{other}", known.by)
+        format!("{} with {steps} steps, in error by at most {error}, from finer runs{other}", known.by)
     }
 }
 

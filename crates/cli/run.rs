@@ -32,7 +32,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let out = asked(arguments)?;
     if arguments.scene.alpha.is_some() && method.info().kind != Kind::DlaAlpha {
         let name = method.info().name;
-        terminal::say("warning", &format!("--alpha is the weight of dla-alpha; {name} has none and ignores it"));
+        terminal::say("warning", &format!("--alpha is the weight of dla-alpha; {name} ignores --alpha"));
     }
     if let AnyScene::Sleigh(scene) = &scene
         && scene.has_trailers()
@@ -242,7 +242,7 @@ impl Visitor for Run<'_> {
         if let (Err(_), Err(error)) = (&computed, &written) {
             terminal::say("error", error);
         }
-        let made = record.interrupted.then(|| format!("the run is made up to t = {} s", table::number(record.t)));
+        let made = record.interrupted.then(|| format!("the run reached t = {} s", table::number(record.t)));
         unless_interrupted(made, checkpoint.clone(), computed.and(written).and(warning))
     }
 }

@@ -12,12 +12,16 @@ pub(crate) fn run_and_show(arguments: &RunArguments) -> Result<(), CliError> {
     let Some(folder) = &arguments.report else { return crate::run::run(arguments) };
     let shared = &arguments.scene;
     if shared.scene == "-" {
-        return Err(CliError::Request("--report reads the scene a second time, and - can be read once".to_owned()));
+        return Err(CliError::Request(
+            "--report reads the scene twice, and the standard input can be read only \
+            once"
+                .to_owned(),
+        ));
     }
     files::check_folder(folder, shared.force)?;
     let scene = inspect::load_any(shared, arguments.method.as_deref())?;
     if matches!(&scene, AnyScene::Sleigh(scene) if scene.has_trailers()) {
-        let problem = "--report does not show trains; `compare --report` does";
+        let problem = "--report: noslip run has no page for trains; `noslip compare --report` has";
         return Err(CliError::Request(problem.to_owned()));
     }
     let outcome = crate::run::run(arguments);

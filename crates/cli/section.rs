@@ -30,15 +30,15 @@ pub(crate) fn section(arguments: &SectionArguments) -> Result<(), CliError> {
     let scene = inspect::load_any_with(from, Some(&arguments.method), shared.step, duration, shared.alpha)?;
     let method = inspect::method(scene.run())?;
     if arguments.axes.as_ref().is_some_and(|axes| axes.len() != 2 || axes[0].trim() == axes[1].trim()) {
-        let problem = "--axes: accepted are two different quantities, as in heading,speed";
+        let problem = "--axes: accepted are two different quantities, for example heading,speed";
         return Err(CliError::Request(problem.to_owned()));
     }
     if arguments.starts > MOST_STARTS {
-        return Err(CliError::Request(format!("--starts: accepted are from 1 to {MOST_STARTS}")));
+        return Err(CliError::Request(format!("--starts: accepted is a whole number from 1 to {MOST_STARTS}")));
     }
     if arguments.plane.period().is_some_and(|period| period < scene.run().actual_step()) {
         return Err(CliError::Request(
-            "--plane: the period is shorter than a step; --step makes that shorter".to_owned(),
+            "--plane: the period is shorter than a step; choose a shorter --step".to_owned(),
         ));
     }
     let file = arguments.out.as_deref().map(|path| ChartFile::of(path, shared.force)).transpose()?;
@@ -97,8 +97,8 @@ impl Visitor for Sections<'_> {
         if self.scene.depends_on_time() && plane.period().is_none() {
             terminal::say(
                 "note",
-                &"the scene depends on time, and so does where a motion goes from a point of this section; --plane t=PERIOD takes \
-                  all points at the same phase",
+                &"the scene depends on time, so a point of this section does not determine the motion after it; \
+                    --plane t=PERIOD takes all points at the same phase",
             );
         }
         let interrupt = Interrupt::of_starts();
@@ -135,7 +135,7 @@ impl Visitor for Sections<'_> {
         });
         bar.finish_and_clear();
         let done: Vec<Crossed> = crossed.into_iter().flatten().collect();
-        let made = (done.len() < starts.len()).then(|| format!("{} of {} starts are done", done.len(), starts.len()));
+        let made = (done.len() < starts.len()).then(|| format!("{} of {} starts finished", done.len(), starts.len()));
         let state = system.quantities().iter().take(in_state).map(Quantity::column).collect();
         let told = Told { state, axes: axes.map(|axis| axis.quantity) };
         let written = self.tell(&told, &done, made.as_deref());
@@ -206,7 +206,7 @@ impl Sections<'_> {
         let all =
             |all: Close, one: Close| Close { count: all.count + one.count, spacing: all.spacing.max(one.spacing) };
         if let Some(close) = crossed.iter().filter_map(|start| start.close).reduce(all) {
-            terminal::say("warning", &format!("{}; a shorter --step looks at more places", in_doubt(&close)));
+            terminal::say("warning", &format!("{}; a shorter --step samples more times", in_doubt(&close)));
         }
         let failed = crossed
             .iter()

@@ -63,7 +63,10 @@ impl Visitor for Map<'_> {
         let quantities = [on(across)?, on(up)?];
         let [across_of, up_of] = quantities;
         if across_of == up_of {
-            return Err(CliError::Request(format!("--map: both axes are {}", up.name)));
+            return Err(CliError::Request(format!(
+                "--map: both axes are {}; choose two different quantities",
+                up.name
+            )));
         }
         let count = across.cells * up.cells;
         if count > MOST {
@@ -119,7 +122,7 @@ impl Map<'_> {
             cells.iter().filter_map(|cell| if let Cell::Failed(why) = cell { Some(why) } else { None }).collect();
         let shared = &self.arguments.scene;
         let left = count_left(cells);
-        let made = (left > 0).then(|| format!("{} of {} starts are done", cells.len() - left, cells.len()));
+        let made = (left > 0).then(|| format!("{} of {} starts finished", cells.len() - left, cells.len()));
         let written = self.file.map_or(Ok(()), |file| {
             let row = |(i, cell): (usize, &Cell)| match cell {
                 Cell::Exponent(value, ci, _) => {
@@ -144,7 +147,7 @@ impl Map<'_> {
         }
         let failed = failures
             .first()
-            .map(|first| format!("{} of {} starts failed, the first so: {first}", failures.len(), cells.len()));
+            .map(|first| format!("{} of {} starts failed; the first failure: {first}", failures.len(), cells.len()));
         unless_interrupted(made, None, CliError::of_failures(failed).and(written))
     }
 

@@ -22,7 +22,7 @@ pub(crate) fn told<const N: usize>(record: &Record<N>) -> String {
     let Some(SubstepSummary { divided, parts, most, .. }) = record.substeps else { return String::new() };
     let told = match divided {
         0 => format!("none of {} steps was divided", record.steps),
-        _ => format!("{divided} of {} steps in {parts} parts, {most} at most", record.steps),
+        _ => format!("{divided} of {} steps divided, into {parts} parts in all and {most} parts at most", record.steps),
     };
     table::aligned(&[("substeps", told)])
 }
@@ -32,7 +32,7 @@ pub(crate) fn failure<const N: usize>(record: &Record<N>) -> Option<String> {
     let failure = table::failure(record)?;
     let more = match &record.substeps {
         Some(SubstepSummary { undivided: Some(why), .. }) => format!(
-            "; in parts as well: {} were tried, the last of {:e} s from t = {} s",
+            "; the step failed in parts too: {} parts were tried, the last of {:e} s from t = {} s",
             why.tried, why.part, why.time
         ),
         _ => offer(record).map_or_else(String::new, |offer| format!(", or {offer}")),
@@ -43,5 +43,5 @@ pub(crate) fn failure<const N: usize>(record: &Record<N>) -> Option<String> {
 /// What may be done about a step that is too long, where it has not been tried.
 fn offer<const N: usize>(record: &Record<N>) -> Option<&'static str> {
     let failed = record.failure.as_ref().filter(|_| record.substeps.is_none())?;
-    failed.source.may_hold_in_parts().then_some("make such steps in parts (--substep)")
+    failed.source.may_hold_in_parts().then_some("divide such steps into parts (--substep)")
 }

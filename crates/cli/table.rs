@@ -78,7 +78,7 @@ fn over_steps(most: f64) -> String {
 pub(crate) fn better<const N: usize>(record: &Record<N>, better: &[(&str, f64)]) -> Option<String> {
     let overtaken: Vec<String> = better.iter().map(|(name, from)| format!("{name} from {from:.1e} s")).collect();
     let name = record.method.name;
-    (!overtaken.is_empty()).then(|| format!("{name} has the smaller energy error than {}", overtaken.join(", ")))
+    (!overtaken.is_empty()).then(|| format!("{name} has a smaller energy error than {}", overtaken.join(", ")))
 }
 
 /// The table of a comparison; as several tables below each other where one would be wider than there is room for.
@@ -211,6 +211,12 @@ pub(crate) fn one_run_of<const N: usize>(
     aligned(&lines)
 }
 
+/// A number of things: `1 step`, `2 steps`.
+pub(crate) fn counted(count: u64, thing: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {thing}{plural}")
+}
+
 /// Names and values in two columns.
 pub(crate) fn aligned<K: AsRef<str>, V: AsRef<str>>(lines: &[(K, V)]) -> String {
     let width = lines.iter().map(|(name, _)| name.as_ref().chars().count()).max().unwrap_or(0);
@@ -247,10 +253,10 @@ pub(crate) fn failure<const N: usize>(record: &Record<N>) -> Option<String> {
     }
     record.failure.as_ref().map(|failure| {
         let mut told = format!(
-            "{} failed at {failure}; the trajectory is valid up to t = {} s ({} steps)",
+            "{} failed at {failure}; the trajectory is valid up to t = {} s ({})",
             record.method.name,
             Shown(record.t),
-            record.steps
+            counted(record.steps, "step")
         );
         // Writing to a string cannot fail.
         if let Some(history) = failure.source.history().filter(|history| history.made() > 0) {

@@ -79,7 +79,7 @@ pub(crate) fn compare_scene(
         });
     }
     let whole = runs.iter().filter(|run| !run.record.interrupted).count();
-    let interrupted = (whole < methods.len()).then(|| format!("{whole} of {} methods are done", methods.len()));
+    let interrupted = (whole < methods.len()).then(|| format!("{whole} of {} methods finished", methods.len()));
     let objects: Vec<_> = rows.iter().map(|row| &row.json).collect();
     let report = SceneReport {
         name: scene.name.clone(),

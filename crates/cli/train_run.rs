@@ -106,7 +106,7 @@ pub(crate) fn run(
     if let (Err(_), Err(error)) = (&computed, &written) {
         terminal::say("error", error);
     }
-    let made = record.interrupted.then(|| format!("the run is made up to t = {} s", table::number(record.t)));
+    let made = record.interrupted.then(|| format!("the run reached t = {} s", table::number(record.t)));
     unless_interrupted(made, checkpoint.clone(), computed.and(written).and(warning))
 }
 

@@ -27,7 +27,7 @@ impl FromStr for Trigger {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (name, value) = name_and_value(text, "accepted is NAME=VALUE, as in speed=0")?;
+        let (name, value) = name_and_value(text, "accepted is NAME=VALUE, for example speed=0")?;
         Ok(Self { text: text.to_owned(), name, value })
     }
 }
@@ -74,7 +74,8 @@ impl Trigger {
             let angle = known().into_iter().find(|quantity| quantity.angle);
             let turns = angle.map_or_else(String::new, |of| format!(", {UNWRAPPED}{}", of.name));
             return Err(CliError::Request(format!(
-                "--event, --until: no quantity `{}`; accepted are {}{turns} with a value, as in {}={:?}",
+                "--event, --until: the scene has no quantity `{}`; accepted are {}{turns} with a value, for example \
+                    {}={:?}",
                 self.name,
                 names(known()),
                 known().first().map_or("x", |first| &first.name),
@@ -208,7 +209,7 @@ impl Events {
     /// Says where events may have been missed.
     pub(crate) fn warn(&self) {
         if let Some(close) = self.close {
-            let advice = "--event-samples N looks at more places, a shorter --step too";
+            let advice = "--event-samples N and a shorter --step sample more times";
             crate::terminal::say("warning", &format!("{}; {advice}", in_doubt(&close)));
         }
     }
@@ -218,7 +219,7 @@ impl Events {
 pub(crate) fn in_doubt(Close { count, spacing }: &Close) -> String {
     let follow = if *count == 1 { "crossing follows" } else { "crossings follow" };
     format!(
-        "{count} {follow} another so closely, beside the {spacing:.2e} s between the places of a step that were looked at, that others may \
-         have been missed"
+        "{count} {follow} another by little more than {spacing:.2e} s, the time between two samples, so other \
+            crossings may have been missed"
     )
 }

@@ -60,7 +60,11 @@ pub enum AssemblyError {
         reason: String,
     },
     /// The matrix of a step does not determine its solution.
-    #[error("{stage}: the matrix is singular to rounding (pivot {pivot:e} of its column){}", involved(constraints))]
+    #[error(
+        "{stage}: the matrix is singular to round-off (pivot {pivot:e}, relative to its \
+        column){}",
+        involved(constraints)
+    )]
     Singular {
         /// In which equations.
         stage: Stage,
@@ -92,7 +96,10 @@ pub enum AssemblyError {
     },
     /// A method that keeps the energy has not kept it: along the step it is too rough for the quadrature, or the kinetic energy
     /// is not one that the method does.
-    #[error("the energy changes by {defect:.2e} J besides the work, and round-off explains {bound:.2e} J")]
+    #[error(
+        "the energy changes by {defect:.2e} J more than the work of the forces, and round-off explains only \
+        {bound:.2e} J"
+    )]
     Energy {
         /// By how much more than the work the energy has changed (J).
         defect: f64,

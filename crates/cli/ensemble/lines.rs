@@ -28,10 +28,10 @@ pub(super) enum Damage {
 impl std::fmt::Display for Damage {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Cut => write!(f, "the line has no end"),
-            Self::Header => write!(f, "the first line is that of another sweep or of another version of the program"),
-            Self::Checksum => write!(f, "the checksum is not that of the line"),
-            Self::Member(found) => write!(f, "the row is that of member {found}"),
+            Self::Cut => write!(f, "the line does not end with a line break"),
+            Self::Header => write!(f, "the first line belongs to another sweep or to another version of the program"),
+            Self::Checksum => write!(f, "the checksum does not match the line"),
+            Self::Member(found) => write!(f, "the row belongs to member {found}"),
             Self::Numbers { found, expected } => write!(f, "{expected} numbers expected, found {found}"),
         }
     }

@@ -23,8 +23,13 @@ pub(crate) fn merge(arguments: &MergeArguments) -> Result<(), CliError> {
     }
     let parts = chain(all, about.members).map_err(|missing| {
         let (first, last) = (missing.start, missing.end.saturating_sub(1));
-        let problem = format!("{}: members {first} to {last} of {} are in no part", folder.display(), about.members);
-        CliError::Request(format!("{problem} that goes on from the others; merged is only what is complete"))
+        let problem = format!(
+            "{}: no part continues the others with members {first} to {last} of \
+            {}",
+            folder.display(),
+            about.members
+        );
+        CliError::Request(format!("{problem}; compute the missing parts, then merge"))
     })?;
     let (columns, header) = (about.columns(), format!("{}\n", about.identity));
     let lines = Lines::new(&about.identity, columns.len());

@@ -95,8 +95,8 @@ pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
     }
     let failed = CliError::of_failures(totals.failures()).and(written);
     let made = stopped.then(|| {
-        let on = if out.is_some() { "; the same command with --resume goes on" } else { "" };
-        format!("{} of {} members are done{on}", totals.count(), sweep.count())
+        let on = if out.is_some() { "; the same command with --resume continues" } else { "" };
+        format!("{} of {} members finished{on}", totals.count(), sweep.count())
     });
     compare::unless_interrupted(made, None, failed)
 }

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// What makes a part that is not as it was written.
-const ADVICE: &str = "the command of the part, `noslip ensemble SWEEP --out DIR --part I/N`, makes it again";
+const ADVICE: &str = "`noslip ensemble SWEEP --out DIR --part I/N` computes the part again";
 
 /// A file of rows of some members.
 #[derive(Debug, Clone)]
@@ -71,10 +71,10 @@ pub(super) fn make(
     let mut computed = 0;
     let there = !arguments.force && path.exists();
     if there && is_whole(&part, (&Lines::new(&about.identity, numbers), &header), &mut totals) {
-        terminal::say("note", &format!("{} is there already", path.display()));
+        terminal::say("note", &format!("{}: the part exists already and is kept", path.display()));
     } else {
         if there {
-            terminal::say("warning", &format!("{} is damaged; it is made again", path.display()));
+            terminal::say("warning", &format!("{}: the part is damaged and is computed again", path.display()));
         }
         totals = Totals::new(about, range.start);
         let note = "stopping after the members that have begun; Ctrl-C again ends at once";
@@ -93,7 +93,11 @@ pub(super) fn make(
         (seconds, computed) = (begin.elapsed().as_secs_f64(), totals.count() - done);
         let whole = range.end - range.start;
         if totals.count() < whole {
-            let made = format!("{} of {whole} members of the part are done; the same command goes on", totals.count());
+            let made = format!(
+                "{} of {whole} members of the part finished; the same command \
+                continues",
+                totals.count()
+            );
             return compare::unless_interrupted(Some(made), None, Ok(()));
         }
         if let Some(spool) = spool {
@@ -171,8 +175,8 @@ pub(super) fn found(folder: &Path) -> Result<(About, Vec<Part>), CliError> {
         names.iter().filter_map(of).filter(|(s, about)| *s == stem(&about.identity)).collect();
     let [(stem, about)] = &sweeps[..] else {
         let problem = match sweeps.len() {
-            0 => "there are no parts of a sweep, or those of another version of the program".to_owned(),
-            many => format!("there are parts of {many} sweeps: keep those of one here"),
+            0 => "the folder has no parts of a sweep, or parts of another version of the program".to_owned(),
+            many => format!("the folder has parts of {many} sweeps: keep the parts of one sweep"),
         };
         return Err(CliError::Request(format!("{}: {problem}", folder.display())));
     };

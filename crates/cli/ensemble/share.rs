@@ -37,7 +37,7 @@ impl FromStr for Share {
             text.split_once('/').and_then(|(number, of)| Some((number.trim().parse().ok()?, of.trim().parse().ok()?)));
         match numbers {
             Some((number, of)) if 1 <= number && number <= of => Ok(Self { number, of }),
-            _ => Err("accepted is I/N as in 3/64: part I, from 1 to N, of N parts".to_owned()),
+            _ => Err("accepted is I/N, for example 3/64: part I of N parts, with I from 1 to N".to_owned()),
         }
     }
 }

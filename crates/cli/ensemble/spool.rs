@@ -57,7 +57,7 @@ impl Spool {
             spool.take_over(members.end, seen)?;
         } else if begun && !asked.force {
             return Err(CliError::Request(format!(
-                "{} is there, of an interrupted run; --resume goes on, --force begins anew",
+                "{} has the rows of an interrupted run; --resume continues the run, --force begins anew",
                 spool.part.path().display()
             )));
         } else {
@@ -104,7 +104,8 @@ impl Spool {
         reader.read_until(b'\n', &mut line).map_err(unreadable)?;
         if line != self.header.as_bytes() {
             return Err(CliError::Request(format!(
-                "{}:1: belongs to another sweep or another version of the program, or is damaged; without --resume, --force begins anew",
+                "{}:1: the file belongs to another sweep or to another version of the program, or is damaged; \
+                    without --resume, --force begins anew",
                 self.part.path().display()
             )));
         }
@@ -127,7 +128,7 @@ impl Spool {
         // A row that was being written when the program ended has no end; that is no news.
         if let Some(damage) = damage.filter(|damage| *damage != Damage::Cut) {
             let (path, number) = (self.part.path().display(), rows - self.first + 2);
-            let told = format!("{path}:{number}: damaged: {damage}; the members from {rows} on are made again");
+            let told = format!("{path}:{number}: damaged: {damage}; the members from number {rows} are computed again");
             terminal::say("warning", &told);
         }
         let mut file = self.part.file();
@@ -172,7 +173,7 @@ impl Spool {
             (&self.lines, &self.header),
             vec![source],
             self.first..members,
-            "--resume makes the members from there on again",
+            "--resume computes the members from there again",
         ))
     }
 }

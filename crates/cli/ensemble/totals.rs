@@ -88,7 +88,7 @@ impl Totals {
     /// What failed, told in one line.
     pub(super) fn failures(&self) -> Option<String> {
         let first = self.first.as_ref()?;
-        Some(format!("{} of {} members failed, the first so: {first}", self.failed, self.count))
+        Some(format!("{} of {} members failed; the first failure: {first}", self.failed, self.count))
     }
 
     fn named(&self) -> impl Iterator<Item = &(Column, Extent)> {
@@ -120,7 +120,7 @@ impl Totals {
             (
                 "run".to_owned(),
                 format!(
-                    "{} s by {} with steps of {} s, each",
+                    "each member: {} s by {} with steps of {} s",
                     table::number(of.duration),
                     of.method,
                     table::number(of.step)
@@ -132,7 +132,7 @@ impl Totals {
         for (Column { name, unit, .. }, c) in self.named().skip(1) {
             let [low, high, mean] = [c.low, c.high, c.mean()].map(table::number);
             let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
-            lines.push((name.clone(), format!("from {low} to {high}{unit}, {mean} on average")));
+            lines.push((name.clone(), format!("from {low} to {high}{unit}, mean {mean}")));
         }
         // Of what was only put together there is no time.
         if computed > 0 {

@@ -1,4 +1,4 @@
-use crate::table::number;
+use crate::table::{counted, number};
 use dla::{State, View};
 use scene::{Built, PathSpec, Scene, SceneEffect, Shape, TimeSpec, TrailersSpec, Visitor};
 use sleigh::{SleighError, SleighState};
@@ -40,7 +40,10 @@ pub(crate) fn listed(scene: &Scene, start: &SleighState, energy: f64, imposed: &
         ("start", format!("x = {x} m, y = {y} m, heading {heading} rad")),
         ("start velocity", format!("{speed} m/s along the blade, {turn_rate} rad/s{imposed}")),
         ("energy", format!("{} J", number(energy))),
-        ("run", format!("{} s in {} steps of {} s", number(run.duration), schedule.steps, number(schedule.step))),
+        (
+            "run",
+            format!("{} s in {} of {} s", number(run.duration), counted(schedule.steps, "step"), number(schedule.step)),
+        ),
     ]);
     facts.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
 }
@@ -68,7 +71,7 @@ fn words(effect: &SceneEffect) -> String {
                 Some(torque) => format!("motor torque {}", function(torque, "N m")),
                 None => "running free".to_owned(),
             };
-            format!("flywheel of {} kg m², first at {} rad/s, {motor}", number(*inertia), number(*rotor_rate))
+            format!("flywheel of {} kg m², initially at {} rad/s, {motor}", number(*inertia), number(*rotor_rate))
         }
         SceneEffect::Drag { along, turning } => {
             format!("drag: {} kg/s along the blade, {} kg m²/s against turning", number(*along), number(*turning))
@@ -96,7 +99,8 @@ fn words(effect: &SceneEffect) -> String {
             };
             let [mass, bar, hitch] = [mass, bar, hitch].map(|list| all(list));
             format!(
-                "{count} trailers of {mass} kg, each blade {bar} m behind a hinge {hitch} m behind the blade before"
+                "{} of {mass} kg, each blade {bar} m behind a hinge {hitch} m behind the blade before",
+                counted(*count as u64, "trailer")
             )
         }
         SceneEffect::Turntable { rate } => format!("turntable: the plane turns at {} rad/s", number(*rate)),
@@ -120,7 +124,7 @@ fn function(function: &TimeSpec, unit: &str) -> String {
         }
         TimeSpec::Table { times, values } => {
             let value = |value: Option<&f64>| value.copied().map_or_else(String::new, number);
-            format!("a table of {} values, {} {unit} at first", times.len(), value(values.first()))
+            format!("a table of {}, {} {unit} at first", counted(times.len() as u64, "value"), value(values.first()))
         }
     }
 }

@@ -1,4 +1,4 @@
-use crate::table::number;
+use crate::table::{counted, number};
 use scene::{Model, Quantity, TextScene};
 
 /// What a scene says, for a person: names and values.
@@ -51,7 +51,7 @@ pub(crate) fn listed(scene: &TextScene) -> Vec<(String, String)> {
     facts.push(("energy", format!("{} J", number(model.energy(0.0, &start.q, &start.v)))));
     facts.push((
         "run",
-        format!("{} s in {} steps of {} s", number(run.duration), run.steps(), number(run.actual_step())),
+        format!("{} s in {} of {} s", number(run.duration), counted(run.steps(), "step"), number(run.actual_step())),
     ));
     facts.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
 }

@@ -10,16 +10,17 @@ pub(crate) const COLUMNS: [&str; 5] = ["method", "does it slip?", "does its ener
 
 /// What the columns mean.
 const MEANINGS: [&str; 5] = [
-    "The integrator, by the name that commands and files use; `noslip list methods` says what each is. All start from the same state and \
-     make the same steps.",
-    "The largest sideways speed |A(q) v + b| of the blade over all nodes, which the constraint says is zero. \"no\": it is below the \
-     rounding of so many steps, their number times 2.2e-16.",
+    "The integrator, by the name that commands and files use; `noslip list methods` says what each is. All methods \
+        start from the same state and make the same steps.",
+    "The largest sideways speed |A(q) v + b| of the blade over all nodes, which the constraint says is zero. \"no\": \
+        the speed is below round-off, the number of steps times 2.2e-16.",
     "What |E - E0 - work| does over the run; the work of what drives or brakes the scene is no error. \"drifts\": the slope of its \
      straight line differs from zero at the 99 % level. \"swings\": to and fro, without a drift. \"wanders\": like a random walk. \
-     \"rounding\": all of it is below the rounding of so many steps. \"not clear\": the run is too short; one of the length that is \
-     named shows a drift of the slope that was found.",
-    "How far the blade is at the end from where it should be (m), or its heading (rad), whichever is larger. It should be where \
-     gauss16 with a quarter of the step puts it, or where the closed form does, of scenes that have one.",
+     \"rounding\": the energy error is below the round-off of all \
+         steps. \"not clear\": the run is too short; a run of the named length would show a drift of the measured \
+             slope.",
+    "How far the blade (m) or its heading (rad) is from the reference at the end, whichever is larger. The reference \
+        is the closed form of the motion, or gauss16 with a quarter of the step where no closed form is known.",
     "Processor time of the steps alone, the median of repeated runs.",
 ];
 
@@ -165,7 +166,7 @@ fn constraint(made: &[&Answers]) -> String {
     let most = |some: &[&&Answers]| some.iter().map(|one| one.slip).fold(0.0, f64::max);
     let held = (!holding.is_empty()).then(|| {
         let plural = if holding.len() == 1 { "s" } else { "" };
-        format!("{} hold{plural} the no-slip constraint to rounding", list(&holding))
+        format!("{} hold{plural} the no-slip constraint to round-off", list(&holding))
     });
     let slips = (!slipping.is_empty())
         .then(|| format!("the blade of {} slips sideways, by up to {:.1e} m/s", list(&slipping), most(&slipping)));
@@ -182,21 +183,20 @@ fn energy(made: &[&Answers]) -> String {
         (some, most)
     };
     let kinds: [(Measured, &str); 5] = [
-        (|energy| (energy == Energy::Rounding).then_some(0.0), "keeps its value to rounding"),
+        (|energy| (energy == Energy::Rounding).then_some(0.0), "keeps its value to round-off"),
         (
             |energy| if let Energy::Swings(by) = energy { Some(by) } else { None },
             "swings, by up to {} J, without a drift",
         ),
         (|energy| if let Energy::Drifts(by) = energy { Some(by) } else { None }, "drifts, by {} J/s"),
         (|energy| if let Energy::Wanders(by) = energy { Some(by) } else { None }, "wanders, by up to {} J"),
-        (|energy| matches!(energy, Energy::Open(_)).then_some(0.0), "needs a longer run to be told"),
+        (|energy| matches!(energy, Energy::Open(_)).then_some(0.0), "needs a longer run to show its drift"),
     ];
     let mut parts = Vec::new();
     for (kind, does) in kinds {
         let (some, most) = of(kind);
         if !some.is_empty() {
-            let start = if parts.is_empty() { "the energy of" } else { "that of" };
-            parts.push(format!("{start} {} {}", list(&some), does.replace("{}", &format!("{most:.1e}"))));
+            parts.push(format!("the energy of {} {}", list(&some), does.replace("{}", &format!("{most:.1e}"))));
         }
     }
     let better = made.iter().find_map(|one| Some((one, one.better.as_ref()?)));
@@ -211,11 +211,11 @@ pub(crate) fn prices(prices: &[Cheapest], motion: f64) -> String {
     let told = prices.iter().map(|price| {
         let error = format!("{:e}", price.error);
         match &price.methods[..] {
-            [] => format!("an error of {error} m is reached by none in the time allowed"),
+            [] => format!("no method reaches an error of {error} m in the time allowed"),
             [(method, seconds), rest @ ..] => {
                 let next = rest.first().zip(price.factor());
                 let next = next.map_or_else(
-                    || ", and the others do not reach it in the time allowed".to_owned(),
+                    || ", and no other method reaches this error in the time allowed".to_owned(),
                     |((other, _), factor)| format!(", and {other} takes {factor:.1} times as long"),
                 );
                 format!("{method} is cheapest at an error of {error} m ({} for {motion} s{next})", duration(*seconds))

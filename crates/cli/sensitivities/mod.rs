@@ -70,11 +70,11 @@ pub fn sensitivities(
     let settings = scene.run();
     let method = Method::named(&settings.method, settings.alpha).map_err(|error| refused(&error))?;
     if request.keys.is_empty() {
-        return Err(refused(&"no keys are given, in which derivatives are to be taken"));
+        return Err(refused(&"no keys are given with respect to which derivatives are to be taken"));
     }
     let (within, order) = (0.0..=settings.duration, request.times.is_sorted());
     if !order || request.times.iter().any(|t| !within.contains(t)) {
-        let problem = format!("the times are not in order, or not within the run, from 0 to {:?} s", settings.duration);
+        let problem = format!("the times must increase, and lie within the run, from 0 to {:?} s", settings.duration);
         return Err(refused(&problem));
     }
     let asked = Asked { method: &method, schedule: scene.schedule(), request, caller };
@@ -119,7 +119,7 @@ fn failed(error: &SensitivitiesError) -> RunError {
 
 /// What is said of a key that derivatives cannot be taken in.
 fn no_key(key: &str, known: &impl Display) -> RunError {
-    refused(&format!("no derivatives can be taken in `{key}`; the keys are {known}"))
+    refused(&format!("no derivative with respect to `{key}` is available; the keys are {known}"))
 }
 
 /// The places of the columns that are asked for among those that have derivatives, all of the first `usual` where none are.
@@ -128,7 +128,7 @@ fn chosen(asked: &[String], known: &[String], usual: usize) -> Result<Vec<usize>
         return Ok((0..usual).collect());
     }
     let place = |name: &String| {
-        let unknown = || format!("no derivatives are taken of `{name}`; the columns are {}", known.join(", "));
+        let unknown = || format!("no derivative of `{name}` is available; the columns are {}", known.join(", "));
         known.iter().position(|other| other == name).ok_or_else(|| refused(&unknown()))
     };
     asked.iter().map(place).collect()

@@ -33,7 +33,7 @@ pub(super) fn rows(scene: &Scene, asked: &Asked<'_>, keys: &[String]) -> Result<
 }
 
 fn imposed() -> RunError {
-    refused(&"derivatives of runs are taken of scenes that impose no velocities")
+    refused(&"the scene imposes velocities (servo, tracer), and its runs have no derivatives")
 }
 
 fn of_shape<const N: usize>(

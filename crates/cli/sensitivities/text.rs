@@ -40,7 +40,7 @@ impl Visitor for Of<'_> {
         let Self { scene, family, varied, asked } = self;
         let n = scene.model.coordinates().len();
         let Some(shaped) = family.shaped::<N, M>(0.0, &scene.start.q) else {
-            return Err(refused(&"the system has more coordinates than there is room for"));
+            return Err(refused(&"the system has more coordinates than this program supports"));
         };
         let filled = |x: &[f64]| std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0));
         let start = varied.iter().map(|&varied| {

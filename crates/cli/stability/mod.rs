@@ -127,7 +127,7 @@ pub(crate) fn stability(arguments: &StabilityArguments) -> Result<(), CliError> 
     }
     let failed = rows.iter().filter(|row| row.verdict.outcome == Outcome::Failed);
     let failed = failed.map(|row| format!("{}, {} failed: {}", row.case, row.method, row.verdict.why));
-    let made = (rows.len() < pairs.len()).then(|| format!("{} of {} rows are done", rows.len(), pairs.len()));
+    let made = (rows.len() < pairs.len()).then(|| format!("{} of {} rows finished", rows.len(), pairs.len()));
     unless_interrupted(made, None, CliError::of_failures(failed))
 }
 
@@ -159,7 +159,7 @@ fn in_parallel<T: Sync, R: Send>(
         })
     });
     if made.len() < pairs.len() && !interrupt.asked() {
-        return Err(CliError::Computation(vec![format!("{} rows are missing", pairs.len() - made.len())]));
+        return Err(CliError::Computation(vec![format!("only {} of {} rows finished", made.len(), pairs.len())]));
     }
     made.sort_by_key(|(at, _)| *at);
     made.into_iter().map(|(_, row)| row).collect()

@@ -37,13 +37,14 @@ impl fmt::Display for Dependent {
         } else {
             write!(
                 f,
-                "{rows} of the constraint depend on one another at t = {time} s, to {distance:.0e} of their size"
+                "{rows} of the constraint are linearly dependent at t = {time} s, to a relative distance of \
+                    {distance:.0e}"
             )?;
         }
         f.write_str(match dependency {
-            Dependency::Redundant => ": leave out what the others imply, or take a method of the family `dla`",
+            Dependency::Redundant => ": leave out the rows that the others imply, or take a method of the family `dla`",
             Dependency::RankDrops => ": the rank drops there, and the motion beyond is not determined",
-            Dependency::Contradictory => ": they contradict one another",
+            Dependency::Contradictory => ": the rows contradict one another",
         })
     }
 }
@@ -83,7 +84,7 @@ pub(crate) fn independent_rows<const N: usize, const M: usize>(
 }
 
 /// The error of the equations at a place, with the function named that is not finite there, or the rows of the constraint where their
-/// rank drops there or they contradict one another.
+/// rank drops there or the rows contradict one another.
 #[cold]
 #[inline(never)]
 pub(crate) fn named_at<const N: usize, const M: usize>(

@@ -228,8 +228,8 @@ pub enum StepError {
     },
     /// The step of an energy-preserving method changes the energy by more than the work of the forces.
     #[error(
-        "the energy would change by {defect:.2e} J besides the work of the forces, and round-off explains {bound:.2e} J: the \
-         step is too long for the quadrature of the energy"
+        "the energy would change by {defect:.2e} J more than the work of the forces, and round-off explains only \
+            {bound:.2e} J: the step is too long for the quadrature of the energy"
     )]
     Energy {
         /// The change (J).
@@ -253,7 +253,8 @@ pub enum StepError {
         part: f64,
     },
     /// An adaptive method does not meet its tolerance within a step.
-    #[error("the tolerance is not met: after {tries} steps within the interval the next step would have {} s", Shown(*step))]
+    #[error("the method does not meet the tolerance: after {tries} inner steps the next inner step would have {} \
+        s", Shown(*step))]
     Tolerance {
         /// The steps tried, refused ones included.
         tries: u32,
@@ -262,7 +263,8 @@ pub enum StepError {
     },
     /// The coordinates of the system come near to where they end, as [`InChart`](crate::InChart) is told.
     #[error(
-        "the coordinates come near to their singularity ({chart}): their regularity is {regularity:.1e}, and must stay above {least} and \
+        "the coordinates come near their singularity \
+            ({chart}): their regularity is {regularity:.1e}, and must stay above {least} and \
          above its change in the step, {change:.1e}; use coordinates without a singularity, a unit quaternion for an attitude, or turn \
          the coordinates away from the motion"
     )]

@@ -90,8 +90,8 @@ pub(crate) fn affine_only<const N: usize, const M: usize>(
     match system.is_nonlinear(t, state.q(), state.v()) {
         false => Ok(()),
         true => Err(StepError::Unsupported {
-            reason: "the method is for constraints that are affine in the velocities, and one of these is not: the family \
-                     `dla` does it",
+            reason: "the method needs constraints that are affine in the velocities, and a constraint of the system \
+                is not: take a method of the family `dla`",
         }),
     }
 }

@@ -26,7 +26,8 @@ pub enum RecommendError {
     },
     /// The method does not reach the tolerance: rounding, or the steps, are too many.
     #[error(
-        "the tolerance {tolerance:e} is out of reach: the best found is about {best:.2e}, with {steps} steps of {step:.3e} s"
+        "the tolerance {tolerance:e} is out of reach: the best error found is about {best:.2e}, with a step of \
+            {step:.3e} s"
     )]
     OutOfReach {
         /// The tolerance.

@@ -94,7 +94,7 @@ pub enum Error {
         column: usize,
     },
     /// A text of too many characters.
-    #[error("the text has {length} characters, and no more than {limit} are read")]
+    #[error("the text has {length} characters; the limit is {limit}")]
     TooLong {
         /// Its length.
         length: usize,
@@ -102,7 +102,7 @@ pub enum Error {
         limit: usize,
     },
     /// Parentheses, powers or signs within each other too many times.
-    #[error("more than {limit} operations are open here, within each other (column {column})")]
+    #[error("more than {limit} operations are nested here (column {column})")]
     TooDeep {
         /// Where the limit is passed.
         column: usize,
@@ -118,7 +118,7 @@ pub enum Error {
         limit: usize,
     },
     /// A part of a text that is a constant, and not a finite number.
-    #[error("this is {value}, whatever the variables are (column {column})")]
+    #[error("this expression is {value} for all values of the variables (column {column})")]
     NotFinite {
         /// Where the operation stands.
         column: usize,
@@ -144,19 +144,19 @@ pub enum Error {
         name: String,
     },
     /// A name that means something in every text.
-    #[error("`{name}` has a meaning in every expression, and cannot be another name")]
+    #[error("`{name}` is reserved: it has a meaning in every expression")]
     ReservedName {
         /// The name.
         name: String,
     },
     /// A name that is in the table already, perhaps in its other spelling.
-    #[error("the name `{name}` is there already")]
+    #[error("the name `{name}` is defined already")]
     DuplicateName {
         /// The name.
         name: String,
     },
     /// Fewer numbers than are needed.
-    #[error("{found} {what} are too few: {expected} are needed")]
+    #[error("too few {what}: {expected} are needed, and {found} are given")]
     TooFew {
         /// Of what.
         what: &'static str,
@@ -201,7 +201,11 @@ fn hint(nearest: &Option<String>, known: &[String]) -> String {
     match nearest {
         Some(name) => format!("; did you mean `{name}`?"),
         None if known.is_empty() => String::new(),
-        None if known.len() > 24 => format!("; {} others are", known.len()),
-        None => format!("; known are {}", known.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ")),
+        None if known.len() > 24 => format!("; {} other names are known", known.len()),
+        None => format!(
+            "; the known names are \
+            {}",
+            known.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ")
+        ),
     }
 }

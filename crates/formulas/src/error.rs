@@ -78,13 +78,13 @@ pub enum Problem {
     #[error(transparent)]
     Expression(#[from] expression::Error),
     /// A function that jumps stands where derivatives are taken.
-    #[error("`sign` jumps, and stands in forces, in outputs and in abbreviations for them only (column {column})")]
+    #[error("`sign` jumps, and is accepted only in forces, in outputs and in abbreviations for them (column {column})")]
     Sign {
         /// Where.
         column: usize,
     },
     /// A constraint whose derivative in a rate contains rates.
-    #[error("the constraint is not affine in the rates: what `{rate}` is multiplied by contains `{other}`")]
+    #[error("the constraint is not affine in the rates: the factor of `{rate}` contains `{other}`")]
     NotAffine {
         /// The rate in which it was derived.
         rate: String,
@@ -92,14 +92,14 @@ pub enum Problem {
         other: String,
     },
     /// A constraint on velocities without any.
-    #[error("no rate stands in the constraint; a function of positions that is to vanish belongs in `positions`")]
+    #[error("the constraint contains no rate; a constraint on positions belongs in `positions`")]
     NoRate,
     /// A constraint on positions without any.
-    #[error("no coordinate stands in the constraint on positions")]
+    #[error("the constraint on positions contains no coordinate")]
     NoCoordinate,
     /// A Lagrangian in which a coordinate has no inertia: the acceleration is not determined.
     #[error(
-        "the rate `{rate}` does not stand in the Lagrangian, so that the acceleration of its coordinate is not determined"
+        "the Lagrangian does not contain the rate `{rate}`, so the acceleration of its coordinate is not determined"
     )]
     NoInertia {
         /// The rate.
@@ -131,7 +131,7 @@ pub enum Problem {
         constraints: usize,
     },
     /// A force on something that is no coordinate.
-    #[error("a force acts on a coordinate, and `{name}` is none; the coordinates are {known}")]
+    #[error("`{name}` is not a coordinate, and a force acts on a coordinate; the coordinates are {known}")]
     NoSuchCoordinate {
         /// The name.
         name: String,
@@ -151,13 +151,13 @@ pub enum Problem {
         name: String,
     },
     /// A parameter that is not finite.
-    #[error("a parameter is a finite number, and this is {value}")]
+    #[error("a parameter must be a finite number, and is {value}")]
     NotFinite {
         /// Its value.
         value: f64,
     },
     /// A basis of the wrong number of vectors.
-    #[error("{expected} vectors make a basis (coordinates less constraints), and here are {found}")]
+    #[error("a basis needs {expected} vectors (coordinates less constraints), and {found} are given")]
     Vectors {
         /// How many there are to be.
         expected: usize,
@@ -165,7 +165,10 @@ pub enum Problem {
         found: usize,
     },
     /// A vector of the wrong number of components.
-    #[error("a vector of the basis has a component for each of the {expected} coordinates, and this one has {found}")]
+    #[error(
+        "a vector of the basis has a component for each of the {expected} coordinates, and this vector has \
+        {found}"
+    )]
     Components {
         /// How many there are to be.
         expected: usize,

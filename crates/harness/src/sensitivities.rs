@@ -34,7 +34,8 @@ pub struct Moving<const N: usize, const P: usize> {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SensitivitiesError {
     /// The steps of the method have no derivative.
-    #[error("{method} has no derivatives of its steps: {reason}; those that have are {}", differentiated().join(", "))]
+    #[error("{method} has no derivatives of its steps: {reason}; the methods that have derivatives are \
+        {}", differentiated().join(", "))]
     Method {
         /// The method.
         method: &'static str,
@@ -66,7 +67,7 @@ fn equations<const N: usize, const M: usize>(method: &Method) -> Result<Box<dyn 
         Kind::Lobatto(3) => Box::new(Lobatto::<3>::new()),
         Kind::Energy(stages) => Box::new(energy(stages)),
         _ => {
-            const ELSEWHERE: &str = "they are in the library, dla::Sensitivity, but not in this program";
+            const ELSEWHERE: &str = "the derivatives are in the library (dla::Sensitivity) and not in this program";
             return differentiable(method).ok_or(info.tangent.err().unwrap_or(ELSEWHERE));
         }
     })

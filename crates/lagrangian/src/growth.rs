@@ -26,7 +26,7 @@ struct Elimination<const M: usize> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum GrowthError {
     /// A constraint is not affine in the velocities.
-    #[error("constraint {row} is not affine in the velocities: what it admits is no space of directions")]
+    #[error("constraint {row} is not affine in the velocities: its admissible velocities are not a linear space")]
     Nonlinear {
         /// Which row, from 0.
         row: usize,

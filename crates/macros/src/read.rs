@@ -58,7 +58,7 @@ impl Parse for Described {
             let key = input.call(Ident::parse_any)?;
             let name = key.to_string();
             if seen.contains(&name) {
-                return Err(Error::new(key.span(), format!("`{name}` is there already")));
+                return Err(Error::new(key.span(), format!("`{name}` is given twice")));
             }
             input.parse::<Token![=]>()?;
             described.entry(&key, &name, input)?;

@@ -53,7 +53,7 @@ impl Document<'_> {
         let fault = Fault {
             variant: SceneError::Syntax,
             key: "",
-            problem: format!("not TOML that is read: {}", error.message()),
+            problem: format!("TOML that this program does not read: {}", error.message()),
             found: None,
             accepted: "keys of fewer than 80 parts, and lists and tables within one another fewer than 80 deep"
                 .to_owned(),

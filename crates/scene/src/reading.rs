@@ -62,7 +62,7 @@ impl<'s> Table<'s> {
             variant: SceneError::OutOfRange,
             key: quantity.key,
             problem: "has the wrong length".to_owned(),
-            found: Some(format!("{found} of them")),
+            found: Some(format!("a list of {found}")),
             accepted: two(quantity),
             help: None,
         };

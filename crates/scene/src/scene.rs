@@ -195,10 +195,10 @@ fn of_text() -> Fault {
     Fault {
         variant: SceneError::UnknownKey,
         key: "",
-        problem: "makes this a system of text, and a sleigh is needed here".to_owned(),
+        problem: "makes the scene a system of text, and this command needs a sleigh".to_owned(),
         found: None,
         accepted: "the tables `[sleigh]`, `[start]` and `[run]`".to_owned(),
-        help: Some("every command but `phase` takes systems of text".to_owned()),
+        help: Some("all commands except `phase` take systems of text".to_owned()),
     }
 }
 

@@ -14,7 +14,7 @@ pub(crate) fn sleigh(table: &Table<'_>) -> Result<Sleigh, SceneError> {
         table.fail(Fault {
             variant: SceneError::OutOfRange,
             key: OFFSET.key,
-            problem: format!("makes no sleigh: {error}"),
+            problem: format!("does not give a sleigh: {error}"),
             found: None,
             accepted: "an offset such that inertia + mass * offset^2 is finite".to_owned(),
             help: None,

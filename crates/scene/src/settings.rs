@@ -30,9 +30,9 @@ impl FromStr for Setting {
     fn from_str(text: &str) -> Result<Self, String> {
         let parts = text.split_once('=').map(|(key, value)| (key.trim(), value.trim()));
         let Some((key, value)) = parts.filter(|(key, _)| key.split('.').all(|part| !part.is_empty())) else {
-            return Err(
-                "accepted is KEY=VALUE, a dotted key of the scene and its value, as in sleigh.offset=0.3".to_owned()
-            );
+            return Err("accepted is KEY=VALUE, a dotted key of the scene and its value, for example \
+                    sleigh.offset=0.3"
+                .to_owned());
         };
         // More lines than one could be more keys than one.
         let toml = format!("value = {value}").parse::<Table>().is_ok_and(|table| table.len() == 1);
@@ -101,7 +101,7 @@ impl Setting {
                 let empty = text[span.start + 1..].trim_start().starts_with('}');
                 inserted(span.start + 1, format!("{line}{}", if empty { "" } else { ", " }))
             }
-            _ => Err("has no place: its table is not headed in the scene".to_owned()),
+            _ => Err("has no place: the scene has no heading of this table".to_owned()),
         }
     }
 }

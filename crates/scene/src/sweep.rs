@@ -150,7 +150,7 @@ impl Sweep {
             Some(1..=MOST) => Ok(sweep),
             _ => {
                 let table = choice.unwrap_or(root);
-                let problem = "makes no members, or more than 1e12 of them";
+                let problem = "gives no members, or more than 1e12 members";
                 let accepted = "a count that, times the number of values of each key of the grid, is from 1 to 1e12";
                 Err(table.wrong("count", problem, accepted.to_owned()).into())
             }
@@ -257,7 +257,7 @@ impl Sweep {
         }
         let [mass, inertia, offset] = body;
         scene.sleigh = Sleigh::new(mass, inertia, offset)
-            .map_err(|error| self.fail("sleigh", format!("makes no sleigh: {error}")))?;
+            .map_err(|error| self.fail("sleigh", format!("does not give a sleigh: {error}")))?;
         Ok(scene)
     }
 

@@ -41,16 +41,16 @@ impl Table {
     pub fn new(times: Vec<f64>, values: Vec<f64>) -> Result<Self, SleighError> {
         let fail = |problem| Err(SleighError::Table { problem });
         if times.is_empty() {
-            return fail("it is empty".to_owned());
+            return fail("the table has no times".to_owned());
         }
         if times.len() != values.len() {
-            return fail(format!("it has {} times and {} values", times.len(), values.len()));
+            return fail(format!("the table has {} times and {} values", times.len(), values.len()));
         }
         if let Some(bad) = times.iter().chain(&values).find(|x| !x.is_finite()) {
-            return fail(format!("it contains {bad}, which is not finite"));
+            return fail(format!("{bad} is not finite"));
         }
         if let Some(pair) = times.windows(2).find(|pair| pair[0] >= pair[1]) {
-            return fail(format!("its times do not increase: {:?} does not come before {:?}", pair[0], pair[1]));
+            return fail(format!("the times do not increase: {:?} does not come before {:?}", pair[0], pair[1]));
         }
         Ok(Self { times, values, current: 0 })
     }
@@ -86,7 +86,7 @@ impl Pulses {
     /// [`SleighError::Table`] where the lengths do not go together, the times do not increase, or a number is not finite.
     pub fn new(times: Vec<f64>, areas: Vec<f64>) -> Result<Self, SleighError> {
         if times.len() != areas.len() + 1 {
-            let problem = format!("it has {} times for {} pulses", times.len(), areas.len());
+            let problem = format!("the table has {} times for {} pulses", times.len(), areas.len());
             return Err(SleighError::Table { problem });
         }
         // The rest is what a table is asked for.

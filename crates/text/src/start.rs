@@ -38,19 +38,26 @@ pub enum StartError {
         value: f64,
     },
     /// No configuration nearby meets the constraints on positions.
-    #[error("no configuration near the start meets the constraints on positions: {missed:.1e} is left")]
+    #[error(
+        "no configuration near the start satisfies the constraints on positions: the residual stays at \
+        {missed:.1e}"
+    )]
     Positions {
         /// The largest residual.
         missed: f64,
     },
     /// No velocity meets the constraints.
-    #[error("no velocity at the start meets all constraints, which contradict one another there: {missed:.1e} is left")]
+    #[error(
+        "no velocity at the start satisfies all constraints: the constraints contradict one another, and the \
+        residual stays at {missed:.1e}"
+    )]
     Velocities {
         /// The largest residual.
         missed: f64,
     },
     /// A vector of a basis that was given is not admissible.
-    #[error("vector {} of the basis is not admissible at the start: constraint {} gives {residual:.1e} of it, and not zero", vector + 1, constraint + 1)]
+    #[error("vector {} of the basis is not admissible at the start: the residual of constraint {} is {residual:.1e}, \
+        not zero", vector + 1, constraint + 1)]
     Basis {
         /// Which vector.
         vector: usize,

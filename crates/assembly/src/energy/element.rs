@@ -86,16 +86,17 @@ pub trait EnergyElement {
 }
 
 const UNSUPPORTED_TIME: AssemblyError = AssemblyError::Unsupported {
-    reason: "the energy-preserving methods are for systems without explicit time, and this one depends on it",
+    reason: "the energy-preserving methods need systems that do not depend on time explicitly, and this assembly does",
 };
 const UNSUPPORTED_MOVING: AssemblyError = AssemblyError::Unsupported {
-    reason: "the energy is conserved only under constraints with b = 0, and one of these moves",
+    reason: "the energy is conserved only under constraints with b = 0, and a constraint of the assembly has another b",
 };
 const UNSUPPORTED_ROWS: AssemblyError = AssemblyError::Unsupported {
-    reason: "energy2 is for constraints that are affine in the velocities, and one is not",
+    reason: "energy2 needs constraints that are affine in the velocities, and a constraint of the assembly is not",
 };
 const UNSUPPORTED_LINEAR: AssemblyError = AssemblyError::Unsupported {
-    reason: "energy2 of assemblies is for kinetic energies that are quadratic in the velocities, and one is not",
+    reason: "energy2 needs kinetic energies that are quadratic in the velocities, and a kinetic energy of the \
+        assembly is not",
 };
 
 impl<Sys: System<N, M>, const N: usize, const M: usize> SystemElement<Sys, N, M> {

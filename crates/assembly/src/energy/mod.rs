@@ -242,7 +242,7 @@ impl SparseEnergy {
     }
 }
 
-const INERTIA: &str = "energy2 of assemblies is for parts with inertia that have coordinates of their own";
+const INERTIA: &str = "energy2 of assemblies needs parts whose inertia is in coordinates of their own";
 
 impl AssemblyMethod for SparseEnergy {
     fn step(

@@ -90,12 +90,12 @@ const fn stack<const N: usize>() -> StackUse {
 }
 
 const NO_BASIS: StepError = StepError::Unsupported {
-    reason: "the energy-preserving methods need a basis of the admissible velocities, and the system gives none",
+    reason: "the energy-preserving methods need a basis of the admissible velocities, and the system has no basis",
 };
 
 /// To project the positions would change the potential energy, and at a turning point no velocity makes up for it.
-const POSITIONS: &str = "the energy-preserving methods let positions drift from a constraint on them, by their order, and \
-                         projected positions would change the energy";
+const POSITIONS: &str = "the energy-preserving methods do not keep constraints on positions: positions drift by the \
+    error of the method, and a projection of positions would change the energy";
 
 /// The equations of one step.
 struct StepEnergy<'a, const N: usize, const M: usize> {

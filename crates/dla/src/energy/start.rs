@@ -83,8 +83,10 @@ fn rounding<const N: usize>(carried: &[Twofold; N], pi: &[f64; N]) -> [f64; N] {
     if largest(&rest) <= BLIND * largest(pi) { rest } else { [0.0; N] }
 }
 
-pub(super) const MOVING: StepError =
-    StepError::Unsupported { reason: "the energy is conserved only under constraints with b = 0, and this one moves" };
+pub(super) const MOVING: StepError = StepError::Unsupported {
+    reason: "the energy is conserved only under constraints with b = 0, and a constraint of \
+        the system has another b",
+};
 
 /// Refuses `b != 0` and a Lagrangian, constraint or basis that changes with time.
 ///
@@ -102,7 +104,8 @@ fn autonomous<const N: usize, const M: usize>(
     }
     if system.depends_on_time(t, place, v) {
         return Err(StepError::Unsupported {
-            reason: "the energy-preserving methods are for systems without explicit time, and this one depends on it",
+            reason: "the energy-preserving methods need systems that do not depend on time explicitly, and this \
+                system does",
         });
     }
     Ok(())

@@ -106,7 +106,7 @@ pub(crate) fn product<const N: usize>(w: &[Seeded; N], f: &[Seeded; N]) -> Seede
 
 /// What a method in a basis of admissible velocities says of a system without one.
 pub(crate) const NO_BASIS: SensitivityError = SensitivityError::Unsupported {
-    reason: "the method needs a basis of the admissible velocities, and the system gives none",
+    reason: "the method needs a basis of the admissible velocities, and the system has no basis",
 };
 
 /// The dimension `N - M` of the distribution.

@@ -19,7 +19,8 @@ pub enum SensitivityError {
     Equations(#[source] NewtonError),
     /// The equations of the step have another solution than the one that the method took.
     #[error(
-        "the step of the method misses the equations of its derivative by {defect:.2e}, relative: choose a shorter step"
+        "the step of the method does not satisfy the equations that the derivative is taken of: their relative \
+            residual is {defect:.2e}; choose a shorter step"
     )]
     OtherSolution {
         /// The largest difference of configurations or velocities, relative.

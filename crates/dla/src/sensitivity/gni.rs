@@ -15,8 +15,8 @@ impl<D, const N: usize, const M: usize> Differentiable<N, M> for Gni<N, D> {
         _z: &[Seeded],
     ) -> Result<StepEquations<N>, SensitivityError> {
         Err(SensitivityError::Unsupported {
-            reason: "the step is no map of configuration and velocity: it carries a momentum across the constraint from step \
-                     to step",
+            reason: "the step of gni is not a map of configuration and velocity: gni carries a momentum across the \
+                constraint from step to step",
         })
     }
 }

@@ -75,9 +75,7 @@ impl<const N: usize, const M: usize> Elementary<'_, '_, N, M> {
             self.parameters.iter().enumerate().map(|(i, p)| input(*p, 2 * N + 2 + i)).collect();
         let at = self.method.equations(&*(self.seeder)(&parameters), &start, &unknowns)?;
         if at.residual.len() != z.len() || z.is_empty() {
-            return Err(SensitivityError::Unsupported {
-                reason: "the method states other equations than it has unknowns",
-            });
+            return Err(SensitivityError::Unsupported { reason: "the numbers of equations and of unknowns differ" });
         }
         Ok(at)
     }

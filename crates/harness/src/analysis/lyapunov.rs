@@ -76,9 +76,10 @@ pub enum LyapunovFailure {
     /// The sum of all exponents by the derivatives of the steps is not the mean divergence of the equations, which it is by Liouville's
     /// theorem. What is told of the run ends where they agreed last.
     #[error(
-        "until {time:.6} s all exponents together are {:+.6e} 1/s by the steps, and {:+.6e} 1/s by the divergence of the equations, where at \
-         most {allowed:.1e} may lie between: the derivatives of the steps are not those of the motion, for the steps are too long, or the \
-         motion is so quick that round-off takes their digits; the exponents are those until then; take shorter steps, or a shorter run",
+        "until t = {time:.6} s the sum of the exponents is {:+.6e} 1/s by the steps and {:+.6e} 1/s by the \
+            divergence of the equations, and the two may differ by at most {allowed:.1e}: the steps are too long, or \
+            the motion is so quick that round-off takes the digits of its derivatives; the exponents up to that time \
+            are shown; take shorter steps or a shorter run",
         sums[0],
         sums[1]
     )]

@@ -79,7 +79,7 @@ pub fn has_tangents(method: &Method) -> Result<(), SensitivityError> {
 }
 
 const TOO_LARGE: SensitivityError = SensitivityError::Unsupported {
-    reason: "the steps of this method are differentiated here for systems of up to four coordinates: take gauss8",
+    reason: "derivatives of the steps of this method are available for systems of up to four coordinates: take gauss8",
 };
 
 fn rule<const N: usize, const M: usize>(method: &Method) -> Result<Rule<N, M>, SensitivityError> {
@@ -268,7 +268,7 @@ fn weights<const N: usize, const M: usize>(system: &dyn SeededMechanics<N, M>, t
 }
 
 const NO_BASIS: SensitivityError = SensitivityError::Unsupported {
-    reason: "exponents need a basis of the admissible velocities, and the system gives none",
+    reason: "exponents need a basis of the admissible velocities, and the system has no basis",
 };
 
 /// The matrix of a step by stages, after a look whether it ends where the step did.

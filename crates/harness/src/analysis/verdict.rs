@@ -130,8 +130,14 @@ impl MotionVerdict {
 impl fmt::Display for MotionVerdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: ", self.name())?;
-        let neighbours =
-            |unstable| if unstable { "and neighbours leave it" } else { "and no exponent is seen to be positive" };
+        let neighbours = |unstable| {
+            if unstable {
+                "and neighbouring motions leave \
+                it"
+            } else {
+                "and no exponent is seen to be positive"
+            }
+        };
         match self {
             Self::Steady { unstable } => write!(f, "the velocities do not change, {}", neighbours(*unstable)),
             Self::Periodic { period, unstable } => {
@@ -141,9 +147,10 @@ impl fmt::Display for MotionVerdict {
             Self::Regular => f.write_str("bounded, and no exponent is seen to be positive"),
             Self::Chaotic => f.write_str("bounded, neither steady nor periodic, and the largest exponent is positive"),
             Self::Undecided(Undecided::TooShort) => f.write_str("the run is too short for a confidence interval"),
-            Self::Undecided(Undecided::NotBounded) => {
-                f.write_str("the velocities of its second half go beyond those of the first: a longer run may tell")
-            }
+            Self::Undecided(Undecided::NotBounded) => f.write_str(
+                "the velocities in the second half of the run exceed the velocities in the first half: a \
+                    longer run may decide",
+            ),
         }
     }
 }

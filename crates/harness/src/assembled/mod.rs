@@ -77,9 +77,7 @@ static OTHERS: LazyLock<String> = LazyLock::new(|| {
     let able: Vec<&str> = METHODS.iter().filter(|info| info.assemblies).map(|info| info.name).collect();
     let (last, others) = able.split_last().map_or(("none", &[][..]), |(last, others)| (*last, others));
     let others = others.join(", ");
-    format!(
-        "the method is for systems of a few coordinates; trains and other assemblies are done by {others} and {last}"
-    )
+    format!("the method is for systems of a few coordinates; for trains and other assemblies take {others} or {last}")
 });
 
 /// The method of that name for an assembly.

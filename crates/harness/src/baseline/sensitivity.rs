@@ -125,7 +125,7 @@ impl<const N: usize, const M: usize> Differentiable<N, M> for Rk4Reduced {
 }
 
 const NO_BASIS: SensitivityError =
-    SensitivityError::Unsupported { reason: "the reduced equations need a basis, and the system gives none" };
+    SensitivityError::Unsupported { reason: "the reduced equations need a basis, and the system has no basis" };
 
 /// In the acceleration and the multipliers in the middle.
 impl<const N: usize, const M: usize> Differentiable<N, M> for ImplicitMidpoint {
@@ -162,7 +162,8 @@ impl<const N: usize, const M: usize> Differentiable<N, M> for Dop853<N, M> {
         _z: &[Seeded],
     ) -> Result<StepEquations<N>, SensitivityError> {
         Err(SensitivityError::Unsupported {
-            reason: "an adaptive method chooses its steps from the state, and how many there are changes by jumps",
+            reason: "an adaptive method chooses its steps from the state, so the number of steps jumps where the \
+                state changes",
         })
     }
 }

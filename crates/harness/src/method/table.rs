@@ -111,12 +111,13 @@ const ENERGY: &str = "constraint, energy";
 const NOTHING: &str = "nothing";
 const CORTES: &str = "Cortes and Martinez 2001, Nonlinearity 14, 1365-1392";
 
-const OWN_STEPS: &str = "the method chooses its steps from the state, and how many there are changes by jumps";
-const OFF_THE_DISTRIBUTION: &str =
-    "the method works in full coordinates, off the distribution that exponents are of: take rk4-reduced";
+const OWN_STEPS: &str = "the method chooses its steps from the state, so the number of steps jumps where the state \
+    changes";
+const OFF_THE_DISTRIBUTION: &str = "the method works in full coordinates and leaves the distribution, on which exponents are defined: take \
+        rk4-reduced";
 const NOT_HERE: &str =
-    "the derivatives of this method are in the library, dla::Sensitivity, but not in this program: take gauss8";
-const NO_MAP: &str = "gni carries a multiplier from step to step, and its step is no map of (q, v)";
+    "the derivatives of this method are in the library (dla::Sensitivity) and not in this program: take gauss8";
+const NO_MAP: &str = "gni carries a multiplier from step to step, so its step is not a map of (q, v)";
 
 /// Every method, in the order in which tables show them.
 pub const METHODS: &[MethodInfo] = &[

@@ -82,10 +82,11 @@ pub(super) fn figure(scene: &SceneReport) -> Result<Option<String>, ReportError>
         figure.push(']');
     }
     figure += "}</script>\n";
-    let turning = if rotor { " The wheel on it is the rotor, turning as it does." } else { "" };
+    let turning = if rotor { " The wheel on the sleigh is the rotor, and turns with the rotor." } else { "" };
     let _ = writeln!(
         figure,
-        "<figcaption>The sleigh as {} moves it, its path so far, and in grey all of its path.{turning}</figcaption>\n</figure>",
+        "<figcaption>The motion of the sleigh by {}, with the path so far, and in grey the whole \
+            path.{turning}</figcaption>\n</figure>",
         escape(&series.label)
     );
     Ok(Some(figure))

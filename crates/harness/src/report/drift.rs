@@ -42,8 +42,8 @@ pub(super) fn constraint(scene: &SceneReport, name: &str) -> Result<Picture, Rep
 
 /// Draws the picture of the energy error.
 pub(super) fn energy(scene: &SceneReport, name: &str) -> Result<Picture, ReportError> {
-    let caption = "How far the energy is from its initial value and the work W of what drives or brakes the sleigh. A line \
-                   that keeps climbing is drift.";
+    let caption = "The energy error: the energy less its initial value, and less the work W of whatever drives or \
+        brakes the sleigh. A line that keeps climbing is drift.";
     draw(
         scene,
         format!("{name}-energy"),
@@ -73,7 +73,7 @@ fn draw(
     let strays = scene.series.iter().zip(&traces).filter(|(_, trace)| scale.leaves(trace));
     let strays: Vec<&str> = strays.map(|(series, _)| series.label.as_str()).collect();
     if !strays.is_empty() {
-        caption += &format!(" Running out of the picture: {}.", strays.join(", "));
+        caption += &format!(" Curves that leave the picture: {}.", strays.join(", "));
     }
     caption += &failures(scene);
     let entries = entries(scene);

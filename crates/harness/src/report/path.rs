@@ -79,15 +79,15 @@ fn thinned(frame: &PlotFrame, path: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
 
 fn caption(scene: &SceneReport, exact: bool, strays: &[&str]) -> String {
     let mut caption =
-        "The path of the blade on the ground, seen from above; a metre is as long upwards as across.".to_owned();
+        "The path of the blade on the ground, seen from above, with the same scale on both axes.".to_owned();
     if let Some((_, series)) = leading(scene) {
-        caption += &format!(" The sleigh stands where {} puts it at equally spaced times.", series.label);
+        caption += &format!(" The sleigh is drawn at equally spaced times of the run by {}.", series.label);
     }
     if exact {
         caption += " Thin grey dashes: the exact path.";
     }
     if !strays.is_empty() {
-        caption += &format!(" Running out of the picture: {}.", strays.join(", "));
+        caption += &format!(" Curves that leave the picture: {}.", strays.join(", "));
     }
     caption + &failures(scene)
 }

@@ -53,8 +53,9 @@ pub fn write_precision(
     }
     let name = files::stems(std::iter::once(report.name.as_str())).remove(0);
     let time = "What accuracy costs: the error at the end against the time of a run. A point further down is more exact, \
-                one further left is faster. The broad band joins the points that no other beats in both; thin dashes have \
-                the slopes of the orders; small dots are rounding. A pointer over a point is told its numbers.";
+                one further left is faster. The broad band joins the points that no other point beats in both; thin \
+                    dashes have the slopes of the orders; small dots are round-off. A pointer over a point shows its \
+                    numbers.";
     let step = "The same errors against the step, where a slope is the order of the method.";
     let pictures = [("time", Abscissa::Seconds, time), ("step", Abscissa::Step, step)]
         .into_iter()

@@ -66,7 +66,7 @@ fn a_rotor_turns_where_there_is_one() {
     series.rotor = series.time.iter().map(|t| 3.0 * t).collect();
     let (page, _) = written(&report(vec![alone(series)]));
     let animation = animation(&page).unwrap();
-    assert!(animation.contains("class=\"rotor\"") && animation.contains("The wheel on it is the rotor"));
+    assert!(animation.contains("class=\"rotor\"") && animation.contains("The wheel on the sleigh is the rotor"));
     let (t, rotor) = (list(animation, "t"), list(animation, "rotor"));
     assert_abs_diff_eq!(*rotor.last().unwrap(), (3.0 * t.last().unwrap()).to_degrees(), epsilon = 0.1);
 }

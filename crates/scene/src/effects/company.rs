@@ -68,7 +68,7 @@ pub(super) fn check_company(
     offset: f64,
 ) -> Result<(), SceneError> {
     if info.only_once && others.iter().any(|other| other.kind() == info.name) {
-        return Err(table.wrong("kind", "is there already", format!("one `{}` in a scene", info.name)));
+        return Err(table.wrong("kind", "is given twice", format!("one `{}` in a scene", info.name)));
     }
     let imposes = |effect: &SceneEffect| matches!(effect, SceneEffect::Servo { .. } | SceneEffect::Tracer { .. });
     if imposes(new) && others.iter().any(imposes) {
@@ -76,7 +76,7 @@ pub(super) fn check_company(
         return Err(table.wrong("kind", problem, "either a `servo` or a `tracer`".to_owned()));
     }
     if matches!(new, SceneEffect::Tracer { .. }) && offset == 0.0 {
-        let problem = "cannot lead a centre of mass that lies at the blade, which does not move sideways";
+        let problem = "cannot lead a centre of mass that lies at the blade, since the blade does not move sideways";
         return Err(table.wrong("kind", problem, "a `tracer` where `sleigh.offset` is not 0".to_owned()));
     }
     if let SceneEffect::MovingMass { x, y, .. } = new {

@@ -66,7 +66,7 @@ pub enum BuildError {
     #[error(transparent)]
     Sleigh(#[from] SleighError),
     /// A system of text is too large.
-    #[error("the system has more coordinates than there is room for")]
+    #[error("the system has more coordinates than this program supports")]
     NoRoom,
 }
 

@@ -45,7 +45,7 @@ pub(crate) fn read(root: &Table<'_>, model: &Model) -> Result<(Start, Given), Sc
                 let fault = Fault {
                     variant: SceneError::OutOfRange,
                     key: "",
-                    problem: format!("is `{primed}`, which is there already"),
+                    problem: format!("is another spelling of `{primed}`, which is given already"),
                     found: None,
                     accepted: "one of the two spellings of a rate".to_owned(),
                     help: None,
@@ -59,7 +59,7 @@ pub(crate) fn read(root: &Table<'_>, model: &Model) -> Result<(Start, Given), Sc
         let fault = Fault {
             variant: SceneError::Formula,
             key: "",
-            problem: format!("is none of the system: {error}"),
+            problem: format!("is not a coordinate or a rate of the system: {error}"),
             found: None,
             accepted: "coordinates and rates at which all formulas are finite, near those that meet the constraints"
                 .to_owned(),

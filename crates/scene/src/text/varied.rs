@@ -62,12 +62,20 @@ impl TextScene {
             }
         }
         if let Some(key) = parameters {
-            let model = Model::new(&scene.words).map_err(|error| (key.clone(), format!("makes no system: {error}")))?;
+            let model = Model::new(&scene.words).map_err(|error| {
+                (
+                    key.clone(),
+                    format!(
+                        "does not give a system: \
+                {error}"
+                    ),
+                )
+            })?;
             scene.model = Arc::new(model);
         }
         let Given { q, v } = &scene.given;
         let start = scene.model.start(q, v);
-        scene.start = start.map_err(|error| ("start".to_owned(), format!("makes no start: {error}")))?;
+        scene.start = start.map_err(|error| ("start".to_owned(), format!("does not give a start: {error}")))?;
         Ok(scene)
     }
 }

@@ -141,7 +141,7 @@ fn offset(a: f64) -> Result<(), SleighError> {
 fn parts(length: f64) -> Result<u32, SleighError> {
     let parts = (length.abs() / PIECE).ceil().max(1.0);
     if parts > 1e6 {
-        let problem = format!("it is {length} times as long as the offset; up to a million is accepted");
+        let problem = format!("the path is {length} times as long as the offset; at most a million times is accepted");
         return Err(SleighError::Path { problem });
     }
     Ok(parts as u32)
