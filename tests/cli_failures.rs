@@ -80,7 +80,7 @@ fn what_blows_up_is_called_diverged_and_does_not_scale_the_pictures() {
     }
     let page = folder.read("short/index.html");
     assert!(
-        page.contains("Running out of the picture: rk4.") && page.contains("A cross marks where a run failed: rk4.")
+        page.contains("Curves that leave the picture: rk4.") && page.contains("A cross marks where a run failed: rk4.")
     );
     assert!(!folder.read("short/short-path.svg").contains("×10⁴²"));
     // The control: of runs that reach the end no picture speaks of failures.

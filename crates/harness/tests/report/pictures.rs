@@ -146,7 +146,7 @@ fn a_method_that_blows_up_does_not_hide_the_others() {
         blown.energy_error[node] = size;
     }
     let (page, pictures) = written(&report(vec![scene("coast", vec![circle("dla", 50), blown])]));
-    assert_eq!(page.matches("Running out of the picture: euler.").count(), 3);
+    assert_eq!(page.matches("Curves that leave the picture: euler.").count(), 3);
     assert!(texts(&pictures[0].1).contains(&"0.2".to_owned()), "{:?}", texts(&pictures[0].1));
     assert!(texts(&pictures[1].1).contains(&"10⁻¹⁶".to_owned()), "{:?}", texts(&pictures[1].1));
 }
