@@ -75,7 +75,8 @@ fn the_report_is_whole_and_overwritten_on_demand_only() {
     let line = "compare circle --methods dla,rk4 --duration 2 --report pages";
     let text = folder.done(line);
     assert!(text.contains("report: pages"), "{text}");
-    let mut files: Vec<String> = ["circle.csv", "circle.json", "index.html"].map(str::to_owned).to_vec();
+    let mut files: Vec<String> =
+        ["circle.csv", "circle.csv-metadata.json", "circle.json", "index.html"].map(str::to_owned).to_vec();
     let pictures = ["path", "constraint", "energy"];
     files.extend(pictures.iter().flat_map(|what| ["svg", "png"].map(|ending| format!("circle-{what}.{ending}"))));
     files.sort();
@@ -297,7 +298,8 @@ fn ctrl_c_keeps_what_is_done_and_the_rest_is_resumed() {
     let line = |more: &str| format!("compare turnaround --step 0.01 --methods dla,gauss4 --json {more}");
     let long = line("--duration 3e6 --checkpoint saves --checkpoint-every 1000000");
     let outcome = interrupted(&folder, &long, "saves/dla.save");
-    outcome.assert_told("ctrl-c", &["interrupted: 0 of 2 methods finished, dla up to t = ", "--resume saves continues"]);
+    outcome
+        .assert_told("ctrl-c", &["interrupted: 0 of 2 methods finished, dla up to t = ", "--resume saves continues"]);
     let object: Value = serde_json::from_str(&outcome.stdout).unwrap();
     let rows = object["rows"].as_array().unwrap();
     assert_eq!((&object["interrupted"], rows.len()), (&Value::Bool(true), 1), "{object}");
@@ -372,8 +374,8 @@ fn every_method_on_every_scene() {
     let files = names(&folder.join("noslip-report-2"));
     let pictures = 3 * SCENES.len();
     assert_eq!(files.iter().filter(|name| name.ends_with(".svg")).count(), pictures, "{files:?}");
-    // Each picture twice, as SVG and as PNG; the numbers of each scene twice, as CSV and as JSON.
-    assert_eq!(files.len(), 1 + 2 * pictures + 2 * SCENES.len(), "{files:?}");
+    // Each picture twice, as SVG and as PNG; the numbers of each scene twice, as CSV and as JSON, with the metadata of the CSV.
+    assert_eq!(files.len(), 1 + 2 * pictures + 3 * SCENES.len(), "{files:?}");
     assert!(files.contains(&"index.html".to_owned()), "{files:?}");
 
     assert_eq!(folder.names(), ["noslip-report", "noslip-report-2"]);

@@ -81,7 +81,10 @@ fn a_part_that_is_made_twice_has_the_same_bytes_and_one_that_is_missing_is_named
     let folder = folder();
     folder.done("ensemble sweep.toml --out parts --part 1/3");
     folder.done("ensemble sweep.toml --out parts --part 3/3");
-    folder.refused("merge parts", &["no part continues the others with members 160 to 335 of 501", "compute the missing parts"]);
+    folder.refused(
+        "merge parts",
+        &["no part continues the others with members 160 to 335 of 501", "compute the missing parts"],
+    );
     let first = fs::read(folder.join("parts").join(&parts(&folder)[0])).unwrap();
     let again = folder.line("ensemble sweep.toml --out parts --part 1/3");
     assert!(again.code == 0 && again.stderr.contains("exists already and is kept"), "{again:?}");
@@ -93,7 +96,8 @@ fn a_part_that_is_made_twice_has_the_same_bytes_and_one_that_is_missing_is_named
     folder.refused("merge parts", &["parts of 2 sweeps"]);
     folder.refused("merge .", &["the folder has no parts of a sweep"]);
     for wrong in ["0/3", "4/3", "1", "a/b", "1/0"] {
-        folder.refused(&format!("ensemble sweep.toml --out parts --part {wrong}"), &["--part", "I/N, for example 3/64"]);
+        folder
+            .refused(&format!("ensemble sweep.toml --out parts --part {wrong}"), &["--part", "I/N, for example 3/64"]);
     }
 }
 

@@ -126,7 +126,8 @@ fn table_csv_json_page_and_plot_say_the_same() {
         }
     }
     let pictures = ["step.png", "step.svg", "time.png", "time.svg"].map(|what| format!("turnaround-{what}"));
-    let mut files: Vec<String> = ["index.html", "turnaround.csv", "turnaround.json"].map(str::to_owned).to_vec();
+    let mut files: Vec<String> =
+        ["index.html", "turnaround.csv", "turnaround.csv-metadata.json", "turnaround.json"].map(str::to_owned).to_vec();
     files.extend(pictures);
     files.sort();
     assert_eq!(names(&folder.join("a")), files);

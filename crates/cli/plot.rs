@@ -143,7 +143,8 @@ pub(crate) fn drawing(
         }
     };
     if let Some(unknown) = names.iter().find(|name| !known.contains(&name.as_str()) || !has("t")) {
-        let problem = format!("the run has no column `{unknown}` to draw against `t`; the columns are {}", known.join(", "));
+        let problem =
+            format!("the run has no column `{unknown}` to draw against `t`; the columns are {}", known.join(", "));
         return Err(CliError::Request(problem));
     }
     let panels = names.iter().map(|name| panel(name, runs)).collect();
