@@ -201,7 +201,7 @@ fn a_refusal_is_shown_and_fails_only_who_asked_for_it() {
         assert_eq!((extra, keys(row).len()), (vec!["failure", "refused"], keys(made[0]).len() + 1));
     }
     // One row says why; the pictures leave out what has no path, and the others keep their looks.
-    let reason = "refused: the energy-preserving methods are for systems without explicit time";
+    let reason = "refused: the energy-preserving methods need systems that do not depend on time explicitly";
     let text = folder.done("compare shaken.toml");
     let row = text.lines().find(|line| line.starts_with(" energy2 ")).unwrap();
     assert!(row.contains(reason) && row.split_whitespace().nth(1) == Some("2"), "{row}");

@@ -203,7 +203,7 @@ fn points_that_are_none_are_refused_before_the_runs() {
     for (content, told) in [
         ("", "EOF"),
         ("{}", "the file has no points"),
-        (r#"{"points": [{"error": 1.0}]}"#, "points[0]: `method` is no name"),
+        (r#"{"points": [{"error": 1.0}]}"#, "points[0]: `method` is not a name"),
         (r#"{"points": [{"method": "m", "error": "small"}]}"#, "points[0]: `error` is \"small\""),
         (r#"{"points": [{"method": "m", "wall_seconds": -1}]}"#, "`wall_seconds` is -1"),
     ] {
@@ -233,7 +233,7 @@ fn a_refusal_is_a_row_and_fails_only_who_asked_for_it() {
     folder.write("shaken.toml", format!("{SCENE}{shaken}"));
     let outcome = folder.line("precision shaken.toml --longest 0.001 --methods energy2,rk4");
     assert_eq!(outcome.code, 1, "{outcome:?}");
-    let reason = "refused: the energy-preserving methods are for systems without explicit time";
+    let reason = "refused: the energy-preserving methods need systems that do not depend on time explicitly";
     outcome.assert_told("precision", &["energy2", reason]);
     let row = outcome.stdout.lines().find(|line| line.starts_with(" energy2 ")).unwrap();
     assert!(row.contains(reason), "{row}");

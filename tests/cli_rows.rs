@@ -123,7 +123,7 @@ fn rows_that_are_not_those_of_the_run_are_not_continued() {
     // A file of another name has the rest.
     let outcome = folder.line("run scene.toml --out k.rest.csv --resume k.save");
     assert_eq!(outcome.code, 0, "{outcome:?}");
-    assert!(outcome.stderr.contains("warning: k.rest.csv: there are no rows"), "{}", outcome.stderr);
+    assert!(outcome.stderr.contains("warning: k.rest.csv: no rows"), "{}", outcome.stderr);
     assert!(folder.read("k.rest.csv").lines().nth(1).unwrap().starts_with("100.05"));
 }
 

@@ -131,7 +131,7 @@ fn a_difference_is_found_in_its_column_and_row() {
     assert_eq!(told.code, 1);
     told.assert_told("diff", &["speed differs by", "more than 1e-9"]);
     assert!(told.stdout.lines().next().unwrap().contains("largest difference"), "{told:?}");
-    assert!(folder.done("diff a.csv c.csv").contains("41 and 21 rows: the first 21 are compared"));
+    assert!(folder.done("diff a.csv c.csv").contains("41 and 21 rows: only the first 21 are compared"));
     assert_eq!(folder.line("diff a.csv c.csv --within 1").code, 1);
     folder.refused("diff a.csv none.csv", &["none.csv"]);
     folder.refused("diff a.csv a.txt", &["a.txt", ".csv or .npz"]);

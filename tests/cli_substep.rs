@@ -33,7 +33,12 @@ fn a_step_that_is_refused_is_made_in_parts() {
 
         let text = folder.done(&format!("run large.toml --method {method} --substep"));
         let line = text.lines().find(|line| line.starts_with("substeps")).unwrap();
-        assert!(line.ends_with(&format!("{divided} of 10 steps in {parts} parts, {most} at most")), "{line}");
+        assert!(
+            line.ends_with(&format!(
+                "{divided} of 10 steps divided, into {parts} parts in all and {most} parts at most"
+            )),
+            "{line}"
+        );
     }
 }
 
@@ -58,8 +63,8 @@ fn a_refusal_offers_it() {
     let outcome = folder.line("run large.toml --json");
     let run: Value = serde_json::from_str(&outcome.stdout).unwrap();
     assert_eq!(outcome.code, 1);
-    assert!(run["failure"]["hint"].as_str().unwrap().ends_with("or make such steps in parts (--substep)"), "{run}");
-    assert!(outcome.stderr.contains("or make such steps in parts (--substep)"), "{}", outcome.stderr);
+    assert!(run["failure"]["hint"].as_str().unwrap().ends_with("or divide such steps into parts (--substep)"), "{run}");
+    assert!(outcome.stderr.contains("or divide such steps into parts (--substep)"), "{}", outcome.stderr);
     let compared = folder.line("compare large.toml --methods dla");
     assert!(!compared.stderr.contains("--substep") && compared.stderr.contains("shorten"), "{}", compared.stderr);
     // What no shorter step mends gets no such offer, and is refused with it as without.

@@ -85,7 +85,7 @@ fn a_member_that_fails_has_its_row_and_the_rest_are_kept() {
     folder.write("sweep.toml", SWINGING);
     let outcome = folder.line("ensemble sweep.toml --out all.csv");
     assert_eq!(outcome.code, 1);
-    assert!(outcome.stderr.contains("1 of 3 members failed, the first so: member 1:"), "{}", outcome.stderr);
+    assert!(outcome.stderr.contains("1 of 3 members failed; the first failure: member 1:"), "{}", outcome.stderr);
     let text = folder.read("all.csv");
     let errors: Vec<bool> = text.lines().skip(1).map(|line| line.ends_with('"')).collect();
     assert_eq!(errors, [false, true, false]);

@@ -20,7 +20,7 @@ fn message(text: &str) -> (Option<usize>, String) {
 #[test]
 fn errors_name_column_and_what_would_be_right() {
     const OPERAND: &str = "stands where a number, a name, a function or `(` is expected";
-    let known = "known are `x`, `y`, `x'`, `mass`";
+    let known = "the known names are `x`, `y`, `x'`, `mass`";
     for (text, column, expected) in [
         ("", 1, format!("the end of the text {OPERAND} (column 1)")),
         ("x + ", 5, format!("the end of the text {OPERAND} (column 5)")),
@@ -53,10 +53,10 @@ fn errors_name_column_and_what_would_be_right() {
         ("2e*x", 1, "`2e` is not a number (column 1)".to_owned()),
         (".", 1, "`.` is not a number (column 1)".to_owned()),
         ("x + 1e999", 5, "`1e999` is not a number (column 5)".to_owned()),
-        ("x + y/(1 - 1)", 6, "this is inf, whatever the variables are (column 6)".to_owned()),
-        ("-(1e308*2*2)", 10, "this is inf, whatever the variables are (column 10)".to_owned()),
-        ("sin(1e308 + 1e308)", 11, "this is inf, whatever the variables are (column 11)".to_owned()),
-        ("x*log(-1)", 3, "this is NaN, whatever the variables are (column 3)".to_owned()),
+        ("x + y/(1 - 1)", 6, "this expression is inf for all values of the variables (column 6)".to_owned()),
+        ("-(1e308*2*2)", 10, "this expression is inf for all values of the variables (column 10)".to_owned()),
+        ("sin(1e308 + 1e308)", 11, "this expression is inf for all values of the variables (column 11)".to_owned()),
+        ("x*log(-1)", 3, "this expression is NaN for all values of the variables (column 3)".to_owned()),
     ] {
         let (at, said) = message(text);
         assert_eq!(at, Some(column), "{text}: {said}");

@@ -40,10 +40,10 @@ fn errors_stand_at_their_places() {
         ("\"s\", \"0\"]", "\"s\", \"x'\"]", "no name `x'`", "\"x'\""),
         ("outputs = { speed", "outputs = { energy", "names another column", "\"x'*c + y'*s\""),
         ("m = 1.0", "m = \"1\"", "is a number", "\"1\""),
-        ("m = 1.0", "x = 1.0", "there already", "x"),
+        ("m = 1.0", "x = 1.0", "defined already", "x"),
         ("constraints", "constraint", "did you mean `constraints`?", "constraint"),
-        ("forces", "let", "is there already", "let"),
-        ("coordinates", "outputs", "there already", "outputs"),
+        ("forces", "let", "is given twice", "let"),
+        ("coordinates", "outputs", "is given twice", "outputs"),
         ("struct Skate", "enum Skate", "expected `struct`", "enum"),
     ];
     for (from, to, message, place) in cases {

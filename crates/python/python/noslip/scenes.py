@@ -69,7 +69,7 @@ class Scene:
         self.text = text
         self.origin = origin
         for key, given, taken in self._checked.moved:
-            message = f"the constraints do not admit {key} = {given:.6g} at the start; it is {taken:.6g}"
+            message = f"the constraints do not admit {key} = {given:.6g} at the start; the run starts with {taken:.6g}"
             warnings.warn(message, stacklevel=3)
 
     @property

@@ -48,7 +48,7 @@ fn what_does_not_go_with_trailers_is_refused() {
         assert!(said.contains("act on a train: the scene has `trailers`"), "{said}");
     }
     let said = with("kind = \"trailers\"\ncount = 1\nmass = 1.0\ninertia = 1.0\nbar = 1.0");
-    assert!(said.contains("is there already"), "{said}");
+    assert!(said.contains("is given twice"), "{said}");
     for (from, to, expected) in [
         ("count = 12", "count = 1.5", "a whole number from 1 to 100000"),
         ("mass = 0.3", "mass = [0.3, 0.4]", "wrong length"),
