@@ -13,6 +13,7 @@ impl Again {
     }
 
     /// A flag and its value.
+    #[expect(clippy::needless_pass_by_value, reason = "callers have numbers and displays as often as references")]
     pub(crate) fn with(mut self, flag: &str, value: impl ToString) -> Self {
         self.0.extend([flag.to_owned(), value.to_string()]);
         self

@@ -67,7 +67,7 @@ impl Graph {
         let mut uses: HashMap<Expression, usize> = HashMap::new();
         let reached = self.reached(all, |_| true);
         for &e in &reached {
-            self.kind(e).parts().into_iter().for_each(|part| *uses.entry(part).or_default() += 1);
+            self.kind(e).parts().for_each(|part| *uses.entry(part).or_default() += 1);
         }
         all.iter().for_each(|e| *uses.entry(*e).or_default() += 1);
         let (mut shared, mut statements) = (Shared::new(), Vec::new());
