@@ -115,10 +115,11 @@ impl Visitor for Run<'_> {
         let account = Account::new(system, (scene, method), (q, v), *tolerance, (&reported, &ending))?;
         let bar = caller.bar(method.info().name, account.request.schedule.steps);
         let mut shown = Shown { bar, caller };
+        let (mut trajectory, sampled): (_, Vec<Node<N, M>>);
         let (made, nodes) = if times.is_empty() {
-            let mut trajectory = Trajectory::every(*every);
+            trajectory = Trajectory::every(*every);
             let made = account.observed(EVENT_SAMPLES, &mut trajectory, &mut shown);
-            (made, trajectory.nodes().to_vec())
+            (made, trajectory.nodes())
         } else {
             let mut samples = Samples::new(Again { method, own: &system }, times);
             let made = account.observed(EVENT_SAMPLES, &mut samples, &mut shown);
@@ -129,11 +130,14 @@ impl Visitor for Run<'_> {
                 let (q, v, energy, constraint) = (state.unwrapped(), *state.v(), view.energy(), view.constraint());
                 Node { k: 0, t: *t, q, v, energy, work: f64::NAN, constraint, multipliers: None }
             };
-            (made, times.iter().zip(samples.taken()).map(node).collect())
+            sampled = times.iter().zip(samples.taken()).map(node).collect();
+            (made, &sampled[..])
         };
         let columns = nodes.first().map_or_else(Vec::new, |first| system.columns(first));
-        let rows: Vec<Vec<f64>> = nodes.iter().map(|node| system.row(node)).collect();
-        let numbers = (0..columns.len()).map(|k| rows.iter().map(|row| row[k]).collect()).collect();
+        let mut numbers = vec![Vec::with_capacity(nodes.len()); columns.len()];
+        for node in nodes {
+            numbers.iter_mut().zip(system.row(node)).for_each(|(column, x)| column.push(x));
+        }
         let (object, record) = (account.object(&made), &made.record);
         let (failure, interrupted) = (substeps::failure(record), record.interrupted);
         Ok(RunResult { columns, numbers, object, failure, interrupted })
