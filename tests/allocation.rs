@@ -6,7 +6,7 @@ mod common;
 use allocation_counter::measure;
 use common::{backward, midpoint_forms, sleigh, state_of};
 use dla::{Schedule, Stepper};
-use harness::{Kind, METHODS, Method};
+use harness::{METHODS, Method, MethodKind};
 use sleigh::Taylor;
 
 #[test]
@@ -16,7 +16,7 @@ fn no_method_allocates_in_a_step() {
     for info in METHODS {
         // Made once for a run, on the heap.
         let mut stepper: Stepper<'_, 3, 1> = match info.kind {
-            Kind::Taylor => Box::new(Taylor::of(&sleigh, Method::TOLERANCE).unwrap()),
+            MethodKind::Taylor => Box::new(Taylor::of(&sleigh, Method::TOLERANCE).unwrap()),
             _ => Method::named(info.name, None).unwrap().stepper(),
         };
         let mut state = state_of(&sleigh, &backward());

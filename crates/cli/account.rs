@@ -3,7 +3,7 @@
 use crate::coordinate::Coordinate;
 use crate::error::CliError;
 use crate::table::number;
-use crate::trigger::{Events, Happened, Trigger, Watched};
+use crate::trigger::{Events, Happened, Trigger, WatchedTriggers};
 use crate::{json, substeps};
 use dla::{Event, Observer, Schedule};
 use harness::{Method, Progress, Record, Request, recommend, run_observed};
@@ -17,7 +17,7 @@ pub(crate) struct Account<'a, const N: usize, const M: usize> {
     pub(crate) method: &'a Method,
     pub(crate) request: Request<N>,
     /// What is reported, and then what ends the run, `ends` of them.
-    watched: Vec<Watched<'a, Coordinate>>,
+    watched: Vec<WatchedTriggers<'a, Coordinate>>,
     ends: usize,
 }
 

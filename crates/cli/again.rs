@@ -3,9 +3,9 @@ use scene::RunSettings;
 
 /// A command line that makes a file again, word by word.
 #[derive(Debug, Clone)]
-pub(crate) struct Again(Vec<String>);
+pub(crate) struct CommandLine(Vec<String>);
 
-impl Again {
+impl CommandLine {
     /// `noslip COMMAND SCENE`, with the settings in place of those of the scene.
     pub(crate) fn of(command: &str, scene: &str, set: &Settings) -> Self {
         let line = Self(["noslip", command, scene].map(str::to_owned).to_vec());
@@ -42,7 +42,7 @@ impl Again {
     }
 }
 
-impl std::fmt::Display for Again {
+impl std::fmt::Display for CommandLine {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let words: Vec<String> = self.0.iter().map(|word| quoted(word)).collect();
         f.write_str(&words.join(" "))

@@ -47,7 +47,7 @@ impl Caller {
 
 /// What a command that was called came to.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Called {
+pub struct CommandOutput {
     /// The exit code: 0 done, 1 the computation failed, 2 the request was wrong, 130 ended by the caller.
     pub code: u8,
     /// What the program writes to standard output.
@@ -61,7 +61,7 @@ pub struct Called {
 /// The caller of a command, with the output so far.
 struct Session {
     caller: Caller,
-    output: Called,
+    output: CommandOutput,
 }
 
 thread_local! {
@@ -72,11 +72,11 @@ thread_local! {
 /// Makes a command, whose arguments follow the name of the program, on this thread; its output goes to the caller, not to the terminal.
 ///
 /// A command called from within a command ends the output of the outer one; no command does so.
-pub fn call(arguments: impl IntoIterator<Item = OsString>, caller: &Caller) -> Called {
-    SESSION.set(Some(Session { caller: caller.clone(), output: Called::default() }));
+pub fn call(arguments: impl IntoIterator<Item = OsString>, caller: &Caller) -> CommandOutput {
+    SESSION.set(Some(Session { caller: caller.clone(), output: CommandOutput::default() }));
     let code = crate::obey(std::iter::once(OsString::from("noslip")).chain(arguments));
     let output = SESSION.take().map(|session| session.output).unwrap_or_default();
-    Called { code, ..output }
+    CommandOutput { code, ..output }
 }
 
 /// Hands a text of standard output to the caller, where there is one.

@@ -6,14 +6,14 @@ use crate::saves::Saves;
 use crate::{account, compare_numbers, facts, inspect, json, notes, progress, table, terminal, train};
 use dla::{Schedule, State};
 use harness::report::{self, Report, SceneReport, Series};
-use harness::{Drift, METHODS, Method, Record, Request, Verdict};
+use harness::{Drift, DriftVerdict, METHODS, Method, Record, Request};
 use scene::{AnyScene, Built, Visitor};
 use sleigh::Exact;
 use std::path::PathBuf;
 
 /// A comparison on one scene: the runs, method by method, with what the closed form says of them.
 pub(crate) struct Comparison {
-    pub(crate) rows: Vec<Row>,
+    pub(crate) rows: Vec<ComparisonRow>,
     pub(crate) report: SceneReport,
     /// How far it came, where Ctrl-C ended it.
     pub(crate) interrupted: Option<String>,
@@ -29,7 +29,7 @@ impl Comparison {
 }
 
 /// One method's run, the number of coordinates forgotten.
-pub(crate) struct Row {
+pub(crate) struct ComparisonRow {
     pub(crate) cells: Vec<String>,
     pub(crate) json: serde_json::Value,
     /// Whom it overtakes in a longer run, where it does.
@@ -39,7 +39,7 @@ pub(crate) struct Row {
     pub(crate) refused: bool,
 }
 
-impl Row {
+impl ComparisonRow {
     /// The failure, unless all that happened is that a method which nobody asked for by name refuses the scene.
     pub(crate) fn unexpected(self) -> Option<String> {
         self.failure.filter(|_| !self.refused)
@@ -191,7 +191,7 @@ impl Visitor for Compare<'_> {
         let exact = exact(self.scene);
         let start = State::new(q, v, system.angles());
         let mut progress = progress_of(name, "reference", 4 * request.schedule.steps, self.interrupt);
-        let reference = Reference::of(&system, exact.as_ref(), &request.schedule, start, &mut progress);
+        let reference = ComparisonReference::of(&system, exact.as_ref(), &request.schedule, start, &mut progress);
         progress.bar.finish_and_clear();
         let drifts: Vec<(&str, Drift)> =
             records.iter().filter(|r| r.is_whole()).map(|r| (r.method.name, r.energy.drift)).collect();
@@ -201,7 +201,7 @@ impl Visitor for Compare<'_> {
             let there = whole.and_then(|record| reference.at(record.t));
             let error = there.map(|end| system.distance(&record.q, &end));
             let better = whole.map_or_else(Vec::new, |record| better_than(&record.energy.drift, &drifts));
-            rows.push(Row {
+            rows.push(ComparisonRow {
                 cells: table::cells(record, error),
                 json: json::compared_of(name, record, &account::state(&system, record), error, &better),
                 better: table::better(record, &better),
@@ -258,13 +258,13 @@ pub(crate) fn better_than<'a>(drift: &Drift, others: &[(&'a str, Drift)]) -> Vec
 pub(crate) const REFERRED: u64 = 1 << 22;
 
 /// Where the motion truly ends: in closed form, or by the method of the highest order with a quarter of the step.
-enum Reference<'a, const N: usize> {
+enum ComparisonReference<'a, const N: usize> {
     Exact(&'a Exact),
     Computed { t: f64, end: [f64; N] },
     None,
 }
 
-impl<'a, const N: usize> Reference<'a, N> {
+impl<'a, const N: usize> ComparisonReference<'a, N> {
     fn of<const M: usize>(
         system: &Built<'_, N, M>,
         exact: Option<&'a Exact>,
@@ -316,7 +316,7 @@ fn series_of<const N: usize, const M: usize>(system: &Built<'_, N, M>, record: &
         constraint: samples.iter().map(|sample| sample.constraint).collect(),
         energy_error: samples.iter().map(|sample| sample.energy_error).collect(),
         failed: record.failure.is_some(),
-        diverged: record.energy.drift.verdict == Verdict::Diverged,
+        diverged: record.energy.drift.verdict == DriftVerdict::Diverged,
         ..Series::default()
     }
 }

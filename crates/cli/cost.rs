@@ -10,7 +10,7 @@ use serde_json::json;
 const STEPS: u64 = 2000;
 
 /// One row: a part of a scene, and what a step costs with it.
-struct Row {
+struct CostRow {
     effects: Vec<&'static str>,
     ns_per_step: f64,
     evaluations_per_step: f64,
@@ -38,7 +38,7 @@ pub(crate) fn cost(arguments: &SceneArguments) -> Result<(), CliError> {
         let evaluations_per_step = part.visit(Evaluations(schedule))?;
         match ns_per_step.and_then(|ns| Ok((ns, evaluations_per_step?))) {
             Ok((ns_per_step, evaluations_per_step)) => {
-                rows.push(Row { effects: names, ns_per_step, evaluations_per_step });
+                rows.push(CostRow { effects: names, ns_per_step, evaluations_per_step });
             }
             Err(failure) if names.is_empty() => failures.push(format!("without effects: {failure}")),
             Err(failure) => failures.push(format!("with {}: {failure}", names.join(", "))),
@@ -98,9 +98,9 @@ fn with_forces(scene: &TextScene) -> Result<Vec<Part>, CliError> {
 const COLUMNS: [&str; 4] = ["effects", "ns/step", "more", "evaluations/step"];
 
 /// The rows as text, each with what it costs more than the first.
-fn cells(rows: &[Row]) -> Vec<Vec<String>> {
+fn cells(rows: &[CostRow]) -> Vec<Vec<String>> {
     let bare = rows.first().map_or(f64::NAN, |row| row.ns_per_step);
-    let cells = |row: &Row| {
+    let cells = |row: &CostRow| {
         vec![
             if row.effects.is_empty() { "none".to_owned() } else { row.effects.join(", ") },
             format!("{:.1}", row.ns_per_step),

@@ -1,7 +1,7 @@
 use crate::args::EquilibriaArguments;
 use crate::error::CliError;
 use crate::files::{check_file, write_whole};
-use crate::steady::{self, Motion, Stability};
+use crate::steady::{self, Stability, SteadyMotion};
 use crate::{inspect, notes, terminal};
 use dla::{Schedule, State, Trajectory};
 use harness::analysis::{DiscreteMap, Equilibrium, EquilibriumError, differentiable, relative_equilibria};
@@ -15,14 +15,14 @@ use sleigh::Sleigh;
 const PORTRAIT: ([f64; 3], f64) = ([0.4, 0.7, 1.0], 0.03);
 
 /// What was found, and the orbits of a picture of it.
-struct Found {
-    rows: Vec<Row>,
+struct FoundMotions {
+    rows: Vec<MotionRow>,
     orbits: Vec<Vec<[f64; 2]>>,
 }
 
 /// A relative equilibrium in the words of a scene.
-struct Row {
-    motion: Motion,
+struct MotionRow {
+    motion: SteadyMotion,
     /// Speed and turn rate, of a sleigh.
     rates: Option<[f64; 2]>,
     stability: Stability,
@@ -66,7 +66,7 @@ struct Find<'a> {
 }
 
 impl Visitor for Find<'_> {
-    type Output = Result<Found, CliError>;
+    type Output = Result<FoundMotions, CliError>;
 
     fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
         let Self { scene, method, portrait } = self;
@@ -89,7 +89,7 @@ impl Visitor for Find<'_> {
         let mut map = DiscreteMap::new(&*system, &*steps, &mut step);
         // Coordinates that fill up the shape, and that no constraint holds, go on at any rate: eigenvalues of theirs are no news.
         let filling = (N - M) - (n - m);
-        let mut row = |e: &Equilibrium<N>| Row {
+        let mut row = |e: &Equilibrium<N>| MotionRow {
             motion: steady::motion(&system, e),
             rates: system.sleigh().map(|sleigh| sleigh.sleigh_state(&e.q, &e.v)).map(|at| [at.speed, at.turn_rate]),
             stability: Stability {
@@ -108,7 +108,7 @@ impl Visitor for Find<'_> {
             }
             _ => Vec::new(),
         };
-        Ok(Found { rows, orbits })
+        Ok(FoundMotions { rows, orbits })
     }
 }
 
@@ -169,7 +169,7 @@ fn orbits<const N: usize, const M: usize>(
     orbits
 }
 
-fn portrait(scene: &AnyScene, found: &Found) -> Chart {
+fn portrait(scene: &AnyScene, found: &FoundMotions) -> Chart {
     let steady = |stable: bool| {
         let rows = found.rows.iter().filter(|row| row.stability.stable == stable);
         rows.filter_map(|row| Some(vec![row.rates?])).collect()

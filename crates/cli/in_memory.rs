@@ -50,14 +50,14 @@ pub struct RunResult {
 
 /// Why no run was made.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct RunError {
+pub struct Refusal {
     /// What is wrong.
     pub message: String,
     /// Whether the request is: else the computation failed.
     pub request: bool,
 }
 
-impl From<CliError> for RunError {
+impl From<CliError> for Refusal {
     fn from(error: CliError) -> Self {
         Self { message: error.to_string(), request: error.exit_code() == 2 }
     }
@@ -66,19 +66,19 @@ impl From<CliError> for RunError {
 /// Makes the run of a scene, with its method, step and duration.
 ///
 /// # Errors
-/// [`RunError`] where the request makes no sense for the scene, or no step meets the tolerance. A run that fails is a result.
-pub fn run(scene: &AnyScene, request: &RunRequest, caller: &Caller) -> Result<RunResult, RunError> {
+/// [`Refusal`] where the request makes no sense for the scene, or no step meets the tolerance. A run that fails is a result.
+pub fn run(scene: &AnyScene, request: &RunRequest, caller: &Caller) -> Result<RunResult, Refusal> {
     let method = inspect::method(scene.run())?.aiming_for(request.tolerance).map_err(CliError::from)?;
     let method = if request.substep { method.with_substeps(Substeps::default()) } else { method };
     if matches!(scene, AnyScene::Sleigh(scene) if scene.has_trailers()) {
         let problem = "a train cannot be kept in memory: run the train by `noslip run` on the command line";
         return Err(CliError::Request(problem.to_owned()).into());
     }
-    let made = scene.visit(Run { scene, request, method: &method, caller }).map_err(CliError::from)?;
+    let made = scene.visit(InMemory { scene, request, method: &method, caller }).map_err(CliError::from)?;
     Ok(made?)
 }
 
-struct Run<'a> {
+struct InMemory<'a> {
     scene: &'a AnyScene,
     request: &'a RunRequest,
     method: &'a Method,
@@ -86,12 +86,12 @@ struct Run<'a> {
 }
 
 /// Shows a run to the caller, who may end it.
-pub(crate) struct Shown<'a> {
+pub(crate) struct ShownToCaller<'a> {
     pub(crate) bar: ProgressBar,
     pub(crate) caller: &'a Caller,
 }
 
-impl Progress for Shown<'_> {
+impl Progress for ShownToCaller<'_> {
     fn advance(&mut self, steps: u64) {
         self.bar.inc(steps);
     }
@@ -106,7 +106,7 @@ fn triggers(texts: &[String]) -> Result<Vec<Trigger>, CliError> {
     texts.iter().map(|text| text.parse().map_err(CliError::Request)).collect()
 }
 
-impl Visitor for Run<'_> {
+impl Visitor for InMemory<'_> {
     type Output = Result<RunResult, CliError>;
 
     fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
@@ -114,7 +114,7 @@ impl Visitor for Run<'_> {
         let (reported, ending) = (triggers(events)?, triggers(until)?);
         let account = Account::new(system, (scene, method), (q, v), *tolerance, (&reported, &ending))?;
         let bar = caller.bar(method.info().name, account.request.schedule.steps);
-        let mut shown = Shown { bar, caller };
+        let mut shown = ShownToCaller { bar, caller };
         let (mut trajectory, sampled): (_, Vec<Node<N, M>>);
         let (made, nodes) = if times.is_empty() {
             trajectory = Trajectory::every(*every);

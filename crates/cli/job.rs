@@ -1,4 +1,4 @@
-use crate::compare::{Row, compare_scene, methods, unless_interrupted};
+use crate::compare::{ComparisonRow, compare_scene, methods, unless_interrupted};
 use crate::error::CliError;
 use crate::inspect::method_names;
 use crate::interrupt::Interrupt;
@@ -22,7 +22,7 @@ pub(crate) fn everything(folder: &Path, overwrite: bool) -> Result<(), CliError>
         comparison.print(&scene)?;
         terminal::print("\n")?;
         comparison.rows.iter().for_each(|row| totals.add(&row.json));
-        let failed = comparison.rows.into_iter().filter_map(Row::unexpected);
+        let failed = comparison.rows.into_iter().filter_map(ComparisonRow::unexpected);
         failures.extend(failed.map(|failure| format!("{}: {failure}", scene.name())));
         scenes.push(comparison.report);
         if let Some(made) = comparison.interrupted {

@@ -70,9 +70,9 @@ use clap::Parser;
 use error::CliError;
 use std::process::ExitCode;
 
-pub use called::{Called, Caller, call};
-pub use ensemble::{Plan, plan};
-pub use in_memory::{RunError, RunRequest, RunResult, run};
+pub use called::{Caller, CommandOutput, call};
+pub use ensemble::{SweepPlan, plan};
+pub use in_memory::{Refusal, RunRequest, RunResult, run};
 pub use sensitivities::{Sensitivities, SensitivityRequest, full_key, sensitivities};
 
 /// The program: the command of its arguments, with its exit code.

@@ -1,4 +1,4 @@
-use crate::again::Again;
+use crate::again::CommandLine;
 use crate::args::LyapunovArguments;
 use crate::chart_file::ChartFile;
 use crate::compare::unless_interrupted;
@@ -68,7 +68,7 @@ pub(crate) fn provenance(arguments: &LyapunovArguments, scene: &AnyScene, interr
     let LyapunovArguments { scene: shared, exponents, settle, energy, map, out, .. } = arguments;
     let (run, step) = (scene.run(), scene.schedule().step);
     let settle = settle.unwrap_or(SETTLE * run.duration);
-    let command = Again::of("lyapunov", &shared.scene, &shared.set).run(run, step).number("--settle", settle);
+    let command = CommandLine::of("lyapunov", &shared.scene, &shared.set).run(run, step).number("--settle", settle);
     let command = command.maybe("--exponents", *exponents);
     let command = command.maybe("--energy", energy.map(|energy| format!("{energy:?}")));
     let command = map.iter().fold(command, |command, range| command.with("--map", range));

@@ -2,7 +2,7 @@ use crate::error::CliError;
 use crate::files::{check_file, write_whole};
 use crate::format::Format;
 use crate::npz;
-use crate::part::Part;
+use crate::part::PartFile;
 use crate::provenance::{Provenance, label, metadata_of};
 use crate::rows_back;
 use crate::terminal;
@@ -14,14 +14,14 @@ use std::path::Path;
 
 /// Where the rows of a run are to be written.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Asked<'a> {
+pub(crate) struct OutputRequest<'a> {
     /// The file; none for standard output.
     pub(crate) path: Option<&'a Path>,
     format: Format,
     force: bool,
 }
 
-impl<'a> Asked<'a> {
+impl<'a> OutputRequest<'a> {
     /// Refused, before the work begins, where the rows could not be written at its end; a run that is resumed may find its own file.
     pub(crate) fn new(path: &'a Path, format: Option<Format>, force: bool, resumed: bool) -> Result<Self, CliError> {
         if path == Path::new("-") {
@@ -47,11 +47,11 @@ pub(crate) type Position = [u64; 3];
 /// Rows of numbers on their way to a file, or to standard output. Lines of text are written as they come, those of a file to `OUT.part`,
 /// which gets its name at the end; of the other formats that file holds the numbers, and the output is made of it at the end.
 pub(crate) struct Output<'a> {
-    asked: Asked<'a>,
+    asked: OutputRequest<'a>,
     provenance: Provenance,
     columns: Vec<Column>,
     every: u64,
-    part: Option<Part>,
+    part: Option<PartFile>,
     writer: BufWriter<Box<dyn Write>>,
     line: Vec<u8>,
     bytes: u64,
@@ -66,12 +66,12 @@ pub(crate) struct Output<'a> {
 impl<'a> Output<'a> {
     /// Begins, or goes on from where a checkpoint says.
     pub(crate) fn open(
-        asked: Asked<'a>,
+        asked: OutputRequest<'a>,
         provenance: Provenance,
         (columns, every): (Vec<Column>, u64),
         from: Option<Position>,
     ) -> Result<Self, CliError> {
-        let part = asked.path.map(Part::lock).transpose()?;
+        let part = asked.path.map(PartFile::lock).transpose()?;
         let writer: Box<dyn Write> = match &part {
             Some(part) => Box::new(part.file().try_clone().map_err(|source| part.failed(source))?),
             None => Box::new(terminal::Out),
@@ -178,7 +178,7 @@ impl<'a> Output<'a> {
         }
         let Some(rows) = bytes.checked_div(8 * self.columns.len() as u64) else { return Ok(false) };
         // Looked at before the rows that may be in `OUT.part` are given up.
-        let mut sum = Summed(Hasher::new());
+        let mut sum = SummedColumn(Hasher::new());
         match rows_back::copy(path, self.asked.format, &self.columns, rows, &mut sum) {
             Ok(()) if same(&Some(sum.0)) => {}
             Ok(()) => return Ok(false),
@@ -304,9 +304,9 @@ impl<'a> Output<'a> {
 }
 
 /// The checksum of what is written.
-struct Summed(Hasher);
+struct SummedColumn(Hasher);
 
-impl Write for Summed {
+impl Write for SummedColumn {
     fn write(&mut self, bytes: &[u8]) -> Result<usize, Error> {
         self.0.update(bytes);
         Ok(bytes.len())

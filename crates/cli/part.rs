@@ -9,12 +9,12 @@ use tempfile::TempPath;
 /// The file `OUT.part` beside an output, in which rows are kept until the output can be written whole. It is locked as long as this
 /// value lives, so that two processes never write into one.
 #[derive(Debug)]
-pub(crate) struct Part {
+pub(crate) struct PartFile {
     path: PathBuf,
     file: File,
 }
 
-impl Part {
+impl PartFile {
     /// The name of the file beside `out`.
     pub(crate) fn path_of(out: &Path) -> PathBuf {
         let mut name = out.file_name().unwrap_or_default().to_owned();

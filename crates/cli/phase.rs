@@ -6,7 +6,7 @@ use dla::{RunError, Schedule, State};
 use harness::analysis::{Rounds, weighted_mean};
 use harness::report::{Chart, Layer, chart_svg};
 use harness::{Method, integrate_on};
-use scene::{Built, MAX_STEPS, PathSpec, RunSettings, Scene, SceneEffect, Shape, Visitor};
+use scene::{Built, MAX_STEPS, PathShape, PathSpec, RunSettings, Scene, SceneEffect, Visitor};
 use serde_json::{Value, json};
 use sleigh::ClosedPath;
 use sleigh::planimeter::Holonomy;
@@ -18,7 +18,7 @@ const HALVINGS: i32 = 6;
 const POINTS: u32 = 360;
 
 /// What was measured.
-struct Measured {
+struct MeasuredPhase {
     step: f64,
     turns: Vec<f64>,
     area: f64,
@@ -51,7 +51,7 @@ pub(crate) fn phase(arguments: &PhaseArguments) -> Result<(), CliError> {
     let turns = turned(&scene, loops)?;
     let built = path.build()?;
     let moving = scene.effects.iter().any(|effect| matches!(effect, SceneEffect::Turntable { .. }));
-    let mut measured = Measured {
+    let mut measured = MeasuredPhase {
         step: schedule(1).step,
         turns,
         area: built.area(),
@@ -103,8 +103,8 @@ fn smaller(scene: &Scene, size: f64) -> Scene {
     for effect in &mut scene.effects {
         if let SceneEffect::Tracer { path: PathSpec { shape, .. } } = effect {
             match shape {
-                Shape::Circle { radius, .. } => *radius *= size,
-                Shape::Polygon(vertices) => vertices.iter_mut().flatten().for_each(|x| *x *= size),
+                PathShape::Circle { radius, .. } => *radius *= size,
+                PathShape::Polygon(vertices) => vertices.iter_mut().flatten().for_each(|x| *x *= size),
             }
         }
     }
@@ -145,7 +145,7 @@ impl Visitor for Loops<'_> {
     }
 }
 
-impl Measured {
+impl MeasuredPhase {
     fn mean(&self) -> f64 {
         weighted_mean(&self.turns).unwrap_or(f64::NAN)
     }
@@ -162,7 +162,7 @@ impl Measured {
     }
 }
 
-fn circle_map(scene: &Scene, measured: &Measured) -> Chart {
+fn circle_map(scene: &Scene, measured: &MeasuredPhase) -> Chart {
     let points = measured.headings().zip(&measured.turns).map(|(heading, turn)| vec![[heading, *turn]]).collect();
     let mut layers = Vec::new();
     if let Some(exact) = &measured.exact {
@@ -181,7 +181,7 @@ fn circle_map(scene: &Scene, measured: &Measured) -> Chart {
     }
 }
 
-fn object(scene: &Scene, method: &Method, path: &ClosedPath, measured: &Measured) -> Value {
+fn object(scene: &Scene, method: &Method, path: &ClosedPath, measured: &MeasuredPhase) -> Value {
     let exact = measured.exact.as_ref().map(|exact| {
         json!({
             "turn": exact.turn(measured.heading),
@@ -208,7 +208,7 @@ fn object(scene: &Scene, method: &Method, path: &ClosedPath, measured: &Measured
     })
 }
 
-fn text(scene: &Scene, method: &Method, measured: &Measured) -> String {
+fn text(scene: &Scene, method: &Method, measured: &MeasuredPhase) -> String {
     let number = |x: f64| table::number(x);
     let law = measured.area_law();
     let [first, last] = [measured.turns.first(), measured.turns.last()].map(|turn| turn.copied().unwrap_or(f64::NAN));

@@ -7,7 +7,7 @@ use crate::compare::methods;
 use crate::error::CliError;
 use crate::in_memory::{self, RunRequest};
 use crate::{files, inspect, table, terminal};
-use harness::report::{Figure, Format, Panel, Paper, figure};
+use harness::report::{Figure, FigureFormat, Panel, Paper, figure};
 use scene::AnyScene;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -61,12 +61,12 @@ fn stem(path: &str) -> String {
     Path::new(path).file_stem().map_or_else(|| "picture".to_owned(), |stem| stem.to_string_lossy().into_owned())
 }
 
-fn format_of(path: &Path) -> Result<Format, CliError> {
+fn format_of(path: &Path) -> Result<FigureFormat, CliError> {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
     match ending.as_deref() {
-        Some("svg") => Ok(Format::Svg),
-        Some("png") => Ok(Format::Png),
-        Some("pdf") => Ok(Format::Pdf),
+        Some("svg") => Ok(FigureFormat::Svg),
+        Some("png") => Ok(FigureFormat::Png),
+        Some("pdf") => Ok(FigureFormat::Pdf),
         _ => {
             let problem = format!(
                 "{}: a picture is written as .svg, .png or .pdf, by the ending of the \

@@ -1,5 +1,5 @@
 use crate::error::CliError;
-use harness::precision::{Curve, Mark, Point, Setting};
+use harness::precision::{Curve, Mark, PrecisionPoint, RungSetting};
 use serde_json::Value;
 use std::path::Path;
 
@@ -12,7 +12,7 @@ pub(crate) fn read(path: &Path, scene: &str) -> Result<(Vec<Curve>, Vec<String>)
         file.get("points").and_then(Value::as_array).ok_or_else(|| refused("the file has no points".into()))?;
     let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     let source = file.get("program").and_then(Value::as_str).map_or(stem, str::to_owned);
-    let mut methods: Vec<(String, Vec<Point>)> = Vec::new();
+    let mut methods: Vec<(String, Vec<PrecisionPoint>)> = Vec::new();
     for (k, entry) in points.iter().enumerate() {
         let point = point(entry, &source).map_err(|problem| refused(format!("points[{k}]: {problem}")))?;
         match methods.iter_mut().find(|(method, _)| *method == point.method) {
@@ -26,7 +26,7 @@ pub(crate) fn read(path: &Path, scene: &str) -> Result<(Vec<Curve>, Vec<String>)
     {
         warnings.push(format!("{}: the points belong to the scene {other:?}, not to {scene:?}", path.display()));
     }
-    let curve = |(method, mut points): (String, Vec<Point>)| {
+    let curve = |(method, mut points): (String, Vec<PrecisionPoint>)| {
         // From coarse to fine, which takes longer.
         points.sort_by(|a, b| f64::total_cmp(&a.seconds().unwrap_or(0.0), &b.seconds().unwrap_or(0.0)));
         Curve::new(method, Some(source.clone()), None, points)
@@ -34,17 +34,17 @@ pub(crate) fn read(path: &Path, scene: &str) -> Result<(Vec<Curve>, Vec<String>)
     Ok((methods.into_iter().map(curve).collect(), warnings))
 }
 
-fn point(entry: &Value, source: &str) -> Result<Point, String> {
+fn point(entry: &Value, source: &str) -> Result<PrecisionPoint, String> {
     let method = entry.get("method").and_then(Value::as_str).filter(|method| !method.trim().is_empty());
     let (step, tolerance) = (number(entry, "step")?, number(entry, "tolerance")?);
-    let setting = step.map(Setting::Step).or(tolerance.map(Setting::Tolerance));
+    let setting = step.map(RungSetting::Step).or(tolerance.map(RungSetting::Tolerance));
     let steps = match entry.get("steps") {
         None | Some(Value::Null) => None,
         Some(steps) => Some(steps.as_u64().ok_or("`steps` is not a whole number")?),
     };
     let failure = entry.get("failure").and_then(Value::as_str).map(|reason| Mark::Failed(reason.to_owned(), None));
     let plateau = entry.get("mark").and_then(Value::as_str).filter(|mark| *mark == "plateau").map(|_| Mark::Plateau);
-    Ok(Point {
+    Ok(PrecisionPoint {
         method: method.ok_or("`method` is not a name")?.to_owned(),
         source: Some(source.to_owned()),
         setting,

@@ -1,4 +1,4 @@
-use crate::again::Again;
+use crate::again::CommandLine;
 use crate::args::PrecisionArguments;
 use crate::compare::{exact, methods, place_at, unless_interrupted};
 use crate::error::CliError;
@@ -9,7 +9,7 @@ use crate::provenance::{Provenance, metadata_of};
 use crate::{facts, files, inspect, notes, points_file, precision_csv, precision_text, progress, terminal, train};
 use harness::Method;
 use harness::precision::{
-    Bench, Clock, Curve, Limits, Motion, Reference, ReferenceError, mark_pareto, rounds, work_precision,
+    Bench, Clock, Curve, LadderLimits, Reference, ReferenceError, ReferenceMotion, mark_pareto, rounds, work_precision,
 };
 use harness::report::write_precision;
 use scene::{AnyScene, Built, Visitor};
@@ -116,7 +116,7 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
 /// What made the points.
 fn provenance(arguments: &PrecisionArguments, scene: &AnyScene, measured: &Measurement) -> Provenance {
     let PrecisionArguments { methods, alpha, longest, with, csv, report, .. } = arguments;
-    let command = Again::of("precision", &arguments.scene, &arguments.set);
+    let command = CommandLine::of("precision", &arguments.scene, &arguments.set);
     let command = command.maybe("--methods", methods.as_ref().map(|methods| methods.join(",")));
     let command = command.number("--duration", measured.duration);
     let command = command.maybe("--alpha", alpha.map(|alpha| format!("{alpha:?}"))).number("--longest", *longest);
@@ -173,7 +173,7 @@ impl Visitor for Measure<'_> {
         let mut duration = self.scene.run().duration;
         let mut halvings = 0;
         let (motion, reference) = loop {
-            let motion = Motion::new(&system, q, v, duration);
+            let motion = ReferenceMotion::new(&system, q, v, duration);
             let reference = Reference::converged(&motion, &apart).map(|found| {
                 let exact = exact.as_ref().map(|exact| place_at(exact, duration));
                 known(exact, &found, apart)
@@ -189,7 +189,7 @@ impl Visitor for Measure<'_> {
         let end_error = |method: &Method, steps: u64| motion.end(method, steps).map(|q| apart(&q, &reference.end));
         let aligned = |steps: u64| motion.aligned(steps);
         let bench = Bench { duration, reference_error: reference.error, end_error: &end_error, aligned: &aligned };
-        let limits = Limits { fewest: motion.aligned(2), longest: self.longest };
+        let limits = LadderLimits { fewest: motion.aligned(2), longest: self.longest };
         let bar = progress::bar(&format!("{} precision", self.scene.name()), self.methods.len() as u64 + rounds());
         let mut progress = Interruptible { bar, interrupt: self.interrupt };
         let (curves, clock) = work_precision(&bench, self.methods, &limits, &mut progress);

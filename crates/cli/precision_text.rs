@@ -5,8 +5,8 @@ use crate::precision::Measurement;
 use crate::precision_csv;
 use crate::provenance::Provenance;
 use crate::table::right_aligned;
-use harness::precision::{Curve, LEVELS, Mark, Point, Setting, cheapest, number, seconds_to};
-use harness::report::{Numbers, PrecisionReport, Table, file_stem};
+use harness::precision::{Curve, LEVELS, Mark, PrecisionPoint, RungSetting, cheapest, number, seconds_to};
+use harness::report::{Numbers, PrecisionReport, PrecisionTable, file_stem};
 use scene::AnyScene;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -28,15 +28,15 @@ const INTRO: &str = "Each method runs with a ladder of steps, an adaptive method
         interpolated between the logarithms of two points.";
 
 /// Step and tolerance, one of which a point has.
-pub(crate) fn settings(point: &Point) -> [Option<f64>; 2] {
+pub(crate) fn settings(point: &PrecisionPoint) -> [Option<f64>; 2] {
     match point.setting {
-        Some(Setting::Step(step)) => [Some(step), None],
-        Some(Setting::Tolerance(tolerance)) => [None, Some(tolerance)],
+        Some(RungSetting::Step(step)) => [Some(step), None],
+        Some(RungSetting::Tolerance(tolerance)) => [None, Some(tolerance)],
         None => [None, None],
     }
 }
 
-pub(crate) fn points(curves: &[Curve]) -> impl Iterator<Item = (&Curve, &Point)> {
+pub(crate) fn points(curves: &[Curve]) -> impl Iterator<Item = (&Curve, &PrecisionPoint)> {
     curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point)))
 }
 
@@ -45,7 +45,7 @@ fn shown(value: Option<f64>) -> String {
 }
 
 /// A row of the table of points, and what follows it.
-fn cells(curve: &Curve, point: &Point) -> (Vec<String>, String) {
+fn cells(curve: &Curve, point: &PrecisionPoint) -> (Vec<String>, String) {
     let [step, tolerance] = settings(point);
     let steps = point.steps.map_or_else(|| "-".to_owned(), |steps| steps.to_string());
     let numbers = [point.error, point.wall_seconds, point.cpu_seconds, point.spread].map(shown);
@@ -177,11 +177,11 @@ pub(crate) fn json(scene: &AnyScene, measured: &Measurement) -> Value {
     })
 }
 
-fn json_point(point: &Point) -> Value {
+fn json_point(point: &PrecisionPoint) -> Value {
     let mut object = json!({"method": point.method});
     match point.setting {
-        Some(Setting::Step(step)) => object["step"] = json!(step),
-        Some(Setting::Tolerance(tolerance)) => object["tolerance"] = json!(tolerance),
+        Some(RungSetting::Step(step)) => object["step"] = json!(step),
+        Some(RungSetting::Tolerance(tolerance)) => object["tolerance"] = json!(tolerance),
         None => object["step"] = Value::Null,
     }
     object["steps"] = json!(point.steps);
@@ -233,7 +233,7 @@ pub(crate) fn report(scene: &AnyScene, measured: &Measurement, provenance: &Prov
     for (name, value) in [("duration", duration), ("reference", reference(measured)), ("times", clock(measured))] {
         facts.push((name.to_owned(), value));
     }
-    let table = |title: &str, columns: &[&str], rows: Vec<(Vec<String>, String)>| Table {
+    let table = |title: &str, columns: &[&str], rows: Vec<(Vec<String>, String)>| PrecisionTable {
         title: title.to_owned(),
         columns: columns.iter().map(|column| (*column).to_owned()).chain([String::new()]).collect(),
         rows: rows

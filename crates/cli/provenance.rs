@@ -1,4 +1,4 @@
-use crate::again::Again;
+use crate::again::CommandLine;
 use crate::error::CliError;
 use crate::files::write_whole;
 use scene::Column;
@@ -16,7 +16,7 @@ pub(crate) struct Provenance {
 
 impl Provenance {
     /// Of rows that a command computes; `notes` are an object with whatever else is to be told.
-    pub(crate) fn new(title: &str, command: Option<&Again>, mut notes: Value) -> Self {
+    pub(crate) fn new(title: &str, command: Option<&CommandLine>, mut notes: Value) -> Self {
         notes["program"] = json!(format!("noslip {}", env!("CARGO_PKG_VERSION")));
         if let Some(command) = command {
             notes["command"] = json!(command.to_string());
@@ -26,7 +26,7 @@ impl Provenance {
 
     /// Of rows that are computed on a scene: its title, and its text with all numbers as they were used, whatever the command line said
     /// instead of the file.
-    pub(crate) fn on((title, text): (&str, Option<String>), command: Option<&Again>, mut notes: Value) -> Self {
+    pub(crate) fn on((title, text): (&str, Option<String>), command: Option<&CommandLine>, mut notes: Value) -> Self {
         if let Some(text) = text {
             notes["scene"] = json!(text);
         }

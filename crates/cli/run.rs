@@ -1,16 +1,16 @@
 use crate::account::{Account, Made};
-use crate::again::Again;
+use crate::again::CommandLine;
 use crate::args::RunArguments;
 use crate::compare::unless_interrupted;
 use crate::error::CliError;
 use crate::interrupt::Interrupt;
-use crate::output::{Asked, Output, Position};
+use crate::output::{Output, OutputRequest, Position};
 use crate::progress::Interruptible;
 use crate::provenance::Provenance;
 use crate::trigger::Events;
 use crate::{inspect, notes, progress, resume, substeps, table, terminal, train_run};
 use dla::{Checkpoint, Node, Nodes, Schedule, Substeps};
-use harness::{Kind, METHODS, Method, Progress, Saving, run_saved};
+use harness::{METHODS, Method, MethodKind, Progress, Saving, run_saved};
 use scene::{AnyScene, Built, RunSettings, Scene, Visitor};
 use serde_json::json;
 use std::cell::RefCell;
@@ -30,7 +30,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
         return Err(CliError::Request(problem));
     }
     let out = asked(arguments)?;
-    if arguments.scene.alpha.is_some() && method.info().kind != Kind::DlaAlpha {
+    if arguments.scene.alpha.is_some() && method.info().kind != MethodKind::DlaAlpha {
         let name = method.info().name;
         terminal::say("warning", &format!("--alpha is the weight of dla-alpha; {name} ignores --alpha"));
     }
@@ -44,10 +44,10 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
 }
 
 /// Where the rows are to be written, if anywhere.
-fn asked(arguments: &RunArguments) -> Result<Option<Asked<'_>>, CliError> {
+fn asked(arguments: &RunArguments) -> Result<Option<OutputRequest<'_>>, CliError> {
     let RunArguments { out, format, resume, scene, .. } = arguments;
     let Some(path) = out.as_deref() else { return Ok(None) };
-    let asked = Asked::new(path, *format, scene.force, resume.is_some())?;
+    let asked = OutputRequest::new(path, *format, scene.force, resume.is_some())?;
     if asked.path.is_none() && scene.json {
         return Err(CliError::Request("--json and --out - both write to standard output: choose one".to_owned()));
     }
@@ -61,7 +61,7 @@ pub(crate) fn provenance(
     schedule: &Schedule,
 ) -> Provenance {
     let RunArguments { scene, every, substep, event, until, event_samples, tolerance, out, .. } = arguments;
-    let mut command = Again::of("run", &scene.scene, &scene.set).run(run, schedule.step);
+    let mut command = CommandLine::of("run", &scene.scene, &scene.set).run(run, schedule.step);
     // Of other methods the tolerance has chosen the step.
     let adaptive = METHODS.iter().any(|info| info.name == run.method && info.kind.is_adaptive());
     command = command.maybe("--tolerance", tolerance.filter(|_| adaptive));
@@ -138,7 +138,7 @@ struct Run<'a> {
     arguments: &'a RunArguments,
     scene: &'a AnyScene,
     method: &'a Method,
-    out: Option<Asked<'a>>,
+    out: Option<OutputRequest<'a>>,
 }
 
 impl<'a> Run<'a> {
@@ -248,7 +248,7 @@ impl Visitor for Run<'_> {
 }
 
 /// Tells what a run came to, where its rows do not go: on standard error where they go to standard output.
-pub(crate) fn tell(out: Option<Asked<'_>>, text: &str) -> Result<(), CliError> {
+pub(crate) fn tell(out: Option<OutputRequest<'_>>, text: &str) -> Result<(), CliError> {
     if out.is_some_and(|asked| asked.path.is_none()) {
         terminal::tell(text);
         return Ok(());

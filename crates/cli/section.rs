@@ -1,4 +1,4 @@
-use crate::again::Again;
+use crate::again::CommandLine;
 use crate::args::SectionArguments;
 use crate::chart_file::ChartFile;
 use crate::compare::unless_interrupted;
@@ -54,17 +54,17 @@ struct Sections<'a> {
 }
 
 /// The crossings of one start.
-struct Crossed {
+struct PlaneCrossing {
     /// The number of the start.
     start: usize,
-    points: Vec<Point>,
+    points: Vec<SectionPoint>,
     failure: Option<RunError>,
     /// Which may not be all.
     close: Option<Close>,
 }
 
 /// A crossing.
-struct Point {
+struct SectionPoint {
     /// When (s).
     t: f64,
     /// The quantities that tell the state.
@@ -119,14 +119,14 @@ impl Visitor for Sections<'_> {
             let found = harness::analysis::section(&system, &self.method, &schedule, starts[i], &event);
             let point = |crossing: &dla::Crossing<N>| {
                 let (t, q, v) = (crossing.t, crossing.state.unwrapped(), crossing.state.v());
-                surface.holds(&system, t, &q, v).then(|| Point {
+                surface.holds(&system, t, &q, v).then(|| SectionPoint {
                     t,
                     state: (0..in_state).map(|k| system.value(k, t, &q, v)).collect(),
                     shown: axes.each_ref().map(|axis| axis.shown(&system, t, &q, v)),
                 })
             };
             bar.inc(1);
-            Some(Crossed {
+            Some(PlaneCrossing {
                 start: i,
                 points: found.crossings.iter().filter_map(point).collect(),
                 failure: found.failure,
@@ -134,7 +134,7 @@ impl Visitor for Sections<'_> {
             })
         });
         bar.finish_and_clear();
-        let done: Vec<Crossed> = crossed.into_iter().flatten().collect();
+        let done: Vec<PlaneCrossing> = crossed.into_iter().flatten().collect();
         let made = (done.len() < starts.len()).then(|| format!("{} of {} starts finished", done.len(), starts.len()));
         let state = system.quantities().iter().take(in_state).map(Quantity::column).collect();
         let told = Told { state, axes: axes.map(|axis| axis.quantity) };
@@ -149,7 +149,7 @@ impl Sections<'_> {
         let SectionArguments { scene: shared, plane, direction, starts, energy, out, .. } = self.arguments;
         let (run, step) = (self.scene.run(), self.scene.schedule().step);
         let axes = axes.each_ref().map(|axis| axis.name.as_str());
-        let command = Again::of("section", &shared.scene, &shared.set).run(run, step);
+        let command = CommandLine::of("section", &shared.scene, &shared.set).run(run, step);
         let command = command.with("--plane", &plane.text).with("--direction", direction.name());
         let command = command.with("--axes", axes.join(",")).with("--starts", starts);
         let command = command.maybe("--energy", energy.map(|energy| format!("{energy:?}")));
@@ -161,10 +161,12 @@ impl Sections<'_> {
         Provenance::on((self.scene.title(), self.scene.to_toml().ok()), Some(&command), notes)
     }
 
-    fn tell(&self, told: &Told, crossed: &[Crossed], interrupted: Option<&str>) -> Result<(), CliError> {
+    fn tell(&self, told: &Told, crossed: &[PlaneCrossing], interrupted: Option<&str>) -> Result<(), CliError> {
         let shared = &self.arguments.scene;
         let written = self.file.map_or(Ok(()), |file| {
-            let row = |i: usize, Point { t, state, shown }: &Point| [&[i as f64, *t][..], state, shown].concat();
+            let row = |i: usize, SectionPoint { t, state, shown }: &SectionPoint| {
+                [&[i as f64, *t][..], state, shown].concat()
+            };
             let rows: Vec<Vec<f64>> =
                 crossed.iter().flat_map(|one| one.points.iter().map(move |point| row(one.start, point))).collect();
             // A column of the state is another than the one that is shown: its angles count the turns.
@@ -214,8 +216,8 @@ impl Sections<'_> {
         CliError::of_failures(failed).and(written)
     }
 
-    fn json(&self, told: &Told, crossed: &[Crossed]) -> Value {
-        let one = |start: &Crossed| {
+    fn json(&self, told: &Told, crossed: &[PlaneCrossing]) -> Value {
+        let one = |start: &PlaneCrossing| {
             let points: Vec<Value> = start.points.iter().map(|p| json!([p.t, p.shown[0], p.shown[1]])).collect();
             let mut object = json!({"points": points, "in_doubt": start.close.map_or(0, |close| close.count)});
             if let Some(failure) = &start.failure {
@@ -236,7 +238,7 @@ impl Sections<'_> {
         })
     }
 
-    fn chart(&self, told: &Told, crossed: &[Crossed]) -> Chart {
+    fn chart(&self, told: &Told, crossed: &[PlaneCrossing]) -> Chart {
         Chart {
             title: format!("{}: section at {}", self.scene.title(), self.arguments.plane.text),
             axes: told.axes.each_ref().map(Quantity::label),

@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 use sleigh::SleighState;
 
 /// What a scene says of a steady motion, for a program and for a person.
-pub(crate) struct Motion {
+pub(crate) struct SteadyMotion {
     pub(crate) fields: Map<String, Value>,
     pub(crate) lines: Vec<(&'static str, String)>,
 }
@@ -17,7 +17,7 @@ pub(crate) struct Motion {
 const COORDINATES: [&str; 4] = ["x", "y", "heading", "rotor"];
 
 /// A steady motion of a system, in the words of its scene.
-pub(crate) fn motion<const N: usize, const M: usize>(system: &Built<'_, N, M>, e: &Equilibrium<N>) -> Motion {
+pub(crate) fn motion<const N: usize, const M: usize>(system: &Built<'_, N, M>, e: &Equilibrium<N>) -> SteadyMotion {
     match system {
         Built::Sleigh(sleigh) => of_sleigh(*sleigh, e),
         Built::Text(text) => of_text(text.model().coordinates(), e),
@@ -28,7 +28,7 @@ fn fields<const K: usize>(fields: [(&str, Value); K]) -> Map<String, Value> {
     fields.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
 }
 
-fn of_sleigh<const N: usize, const M: usize>(system: &dyn SceneSystem<N, M>, e: &Equilibrium<N>) -> Motion {
+fn of_sleigh<const N: usize, const M: usize>(system: &dyn SceneSystem<N, M>, e: &Equilibrium<N>) -> SteadyMotion {
     let SleighState { x, y, heading, speed, turn_rate } = system.sleigh_state(&e.q, &e.v);
     let rotor_rate = system.rotor(&e.q, &e.v).map(|[_, rate]| rate);
     let depends_on: Vec<&str> = e.shape.iter().filter_map(|i| COORDINATES.get(*i).copied()).collect();
@@ -49,11 +49,11 @@ fn of_sleigh<const N: usize, const M: usize>(system: &dyn SceneSystem<N, M>, e: 
         ("heading", json!(heading)),
         ("depends_on", json!(depends_on)),
     ]);
-    Motion { fields, lines: vec![("motion", what)] }
+    SteadyMotion { fields, lines: vec![("motion", what)] }
 }
 
 /// Its rates by their names, and the coordinates on which the equations depend, with their values.
-fn of_text<const N: usize>(coordinates: &[Coordinate], e: &Equilibrium<N>) -> Motion {
+fn of_text<const N: usize>(coordinates: &[Coordinate], e: &Equilibrium<N>) -> SteadyMotion {
     let rates: Vec<_> = coordinates.iter().zip(e.v).map(|(of, rate)| (format!("{}'", of.name), rate)).collect();
     let place = e.shape.iter().filter_map(|&i| Some((coordinates.get(i)?.name.clone(), e.q[i])));
     let place: Vec<(String, f64)> = place.collect();
@@ -64,7 +64,7 @@ fn of_text<const N: usize>(coordinates: &[Coordinate], e: &Equilibrium<N>) -> Mo
     };
     let fields = fields([("rates", object(&rates)), ("depends_on", object(&place))]);
     let place = if place.is_empty() { "any".to_owned() } else { told(&place) };
-    Motion { fields, lines: vec![("motion", told(&rates)), ("place", place)] }
+    SteadyMotion { fields, lines: vec![("motion", told(&rates)), ("place", place)] }
 }
 
 /// How stable a steady motion is, of the flow and of a method.

@@ -1,4 +1,4 @@
-use crate::compare::Row;
+use crate::compare::ComparisonRow;
 use comfy_table::{CellAlignment, Table, presets};
 use harness::Record;
 use lagrangian::Shown;
@@ -29,7 +29,7 @@ pub(crate) const INTRO: &str = "Every method from the same start with the same s
     |A(q) v + b| at a node, for a blade its sideways slip. Over steps: the largest residual of the discrete constraint between two \
     nodes, which is round-off for the methods that solve that constraint, such as dla. Energy error: the largest |E - E0 - work| at a \
     node; the work is that of what drives or brakes the scene. Amplitude: how much the energy error oscillates: half its range after a \
-    straight line is subtracted, over 1/32 of the run. Energy drift: the slope of that line, with its 95 % confidence interval. Verdict: \
+    straight line is subtracted, over 1/32 of the run. Energy drift: the slope of that line, with its 95 % confidence interval. DriftVerdict: \
     whether the energy error is bounded, grows, or has diverged, by a test. End error: distance at the end from the closed form, or from gauss16 at a \
     quarter of the step where there is none, in metres or radians, whichever is larger. Newton: iterations a step. ns/step: time of the \
     steps alone, median of repeated runs. Cost: that time for each second of the motion. A method \
@@ -84,14 +84,14 @@ pub(crate) fn better<const N: usize>(record: &Record<N>, better: &[(&str, f64)])
 /// The table of a comparison; as several tables below each other where one would be wider than there is room for.
 pub(crate) fn comparison(
     (title, name, duration): (&str, &str, f64),
-    rows: &[Row],
+    rows: &[ComparisonRow],
     interrupted: Option<&str>,
     room: Option<usize>,
 ) -> String {
     // A refusal or a failure needs more room than a column has: its text follows the row.
-    let short = |row: &Row| row.cells.len() < COLUMNS.len();
-    let remark = |row: &Row| row.cells.last().filter(|_| short(row)).cloned();
-    let own = |row: &Row| row.cells[..row.cells.len() - usize::from(short(row))].to_vec();
+    let short = |row: &ComparisonRow| row.cells.len() < COLUMNS.len();
+    let remark = |row: &ComparisonRow| row.cells.last().filter(|_| short(row)).cloned();
+    let own = |row: &ComparisonRow| row.cells[..row.cells.len() - usize::from(short(row))].to_vec();
     let cells: Vec<_> = rows.iter().map(own).collect();
     let mut text = format!("{title} ({name}), {} s\n", number(duration));
     let parts = parts(&COLUMNS, &cells, room);

@@ -78,7 +78,7 @@ pub(crate) fn fail(error: &CliError) {
     }
     let level = console::Style::new().for_stderr().red().bold().force_styling(coloured).apply_to("error:");
     let message = match error {
-        CliError::Scene(scene) if coloured => scene.finding().map(scene::Finding::coloured),
+        CliError::Scene(scene) if coloured => scene.finding().map(scene::SceneFinding::coloured),
         _ => None,
     };
     let line = format!("{level} {}\n", message.unwrap_or_else(|| error.to_string()));

@@ -1,7 +1,7 @@
 //! Scenes with trailers: assemblies, whose number of coordinates is not known to the compiler. What `compare` and `precision` make
 //! of them; `run` is in `train_run`.
 
-use crate::compare::{Comparison, Row, better_than};
+use crate::compare::{Comparison, ComparisonRow, better_than};
 use crate::error::CliError;
 use crate::interrupt::Interrupt;
 use crate::precision::{KnownEnd, Measurement};
@@ -10,9 +10,9 @@ use crate::{compare_numbers, facts, inspect, json, progress, table};
 use assembly::AssemblyState;
 use assembly::parts::Train;
 use dla::{RunError, Schedule};
-use harness::precision::{Bench, Limits, rounds, work_precision};
+use harness::precision::{Bench, LadderLimits, rounds, work_precision};
 use harness::report::{SceneReport, Series};
-use harness::{Assembled, AssemblyNode, Drift, Method, Verdict, assembly_end, run_assembly};
+use harness::{Assembled, AssemblyNode, Drift, DriftVerdict, Method, assembly_end, run_assembly};
 use scene::Scene;
 use sleigh::SleighState;
 use std::time::{Duration, Instant};
@@ -56,7 +56,7 @@ pub(crate) fn compare_scene(
         let error =
             reference.as_ref().filter(|_| record.is_whole()).map(|state| distance(&end, &train.blade(state, 0)));
         let better = if record.is_whole() { better_than(&record.energy.drift, &drifts) } else { Vec::new() };
-        rows.push(Row {
+        rows.push(ComparisonRow {
             cells: table::cells(record, error),
             json: json::compared(&scene.name, record, &end, error, &better),
             better: table::better(record, &better),
@@ -74,7 +74,7 @@ pub(crate) fn compare_scene(
             constraint: sampled(|sample| sample.constraint),
             energy_error: sampled(|sample| sample.energy_error),
             failed: record.failure.is_some(),
-            diverged: record.energy.drift.verdict == Verdict::Diverged,
+            diverged: record.energy.drift.verdict == DriftVerdict::Diverged,
             ..Series::default()
         });
     }
@@ -139,7 +139,7 @@ pub(crate) fn measure(
     let reference = converged(&end)?;
     let end_error = |method: &Method, steps: u64| end(method, steps).map(|state| distance(&state, &reference.end));
     let bench = Bench { duration, reference_error: reference.error, end_error: &end_error, aligned: &|steps| steps };
-    let limits = Limits { fewest: 2, longest };
+    let limits = LadderLimits { fewest: 2, longest };
     let bar = progress::bar(&format!("{} precision", scene.name), methods.len() as u64 + rounds());
     let mut progress = Interruptible { bar, interrupt };
     let (curves, clock) = work_precision(&bench, methods, &limits, &mut progress);

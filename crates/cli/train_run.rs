@@ -4,7 +4,7 @@ use crate::args::RunArguments;
 use crate::compare::unless_interrupted;
 use crate::error::CliError;
 use crate::interrupt::Interrupt;
-use crate::output::{Asked, Output};
+use crate::output::{Output, OutputRequest};
 use crate::progress::Interruptible;
 use crate::run::{Read, identity, of, position, provenance, tell, with_position};
 use crate::trigger::{Events, Happened, Trigger};
@@ -26,7 +26,7 @@ pub(crate) fn run(
     arguments: &RunArguments,
     scene: &Scene,
     method: &Method,
-    out: Option<Asked<'_>>,
+    out: Option<OutputRequest<'_>>,
 ) -> Result<(), CliError> {
     let Some((train, start)) = scene.train()? else { return Ok(()) };
     let RunArguments { checkpoint, resume, tolerance, event, until, .. } = arguments;
@@ -54,14 +54,14 @@ pub(crate) fn run(
     let bar = progress::bar(method.info().name, schedule.steps);
     let mut shown = Interruptible { bar, interrupt: &interrupt };
     let mut progress = Read { progress: &mut shown, output: &output };
-    let request = Request { method, train: &train, start: &start, schedule: &schedule, output: &output };
+    let request = TrainRequest { method, train: &train, start: &start, schedule: &schedule, output: &output };
     let made = if checkpoint.is_some() || resume.is_some() {
         request.saved(arguments, (&identity, read.as_ref()), &mut progress)
     } else {
         request.watched(arguments, &mut progress)
     };
     shown.bar.finish_and_clear();
-    let Made { run: Assembled { mut record, end, failure, .. }, events, warning } = made?;
+    let MadeTrain { run: Assembled { mut record, end, failure, .. }, events, warning } = made?;
 
     let closed = output.borrow().as_ref().is_some_and(Output::is_closed);
     let interrupted = record.interrupted;
@@ -111,7 +111,7 @@ pub(crate) fn run(
 }
 
 /// A run of a train to be made.
-struct Request<'a, 'o> {
+struct TrainRequest<'a, 'o> {
     method: &'a Method,
     train: &'a Train,
     start: &'a AssemblyState,
@@ -120,7 +120,7 @@ struct Request<'a, 'o> {
 }
 
 /// A run that was made.
-struct Made {
+struct MadeTrain {
     run: Assembled,
     /// What happened, where that was asked for.
     events: Option<Events>,
@@ -128,7 +128,7 @@ struct Made {
     warning: Result<(), CliError>,
 }
 
-impl Request<'_, '_> {
+impl TrainRequest<'_, '_> {
     /// Hands a node to the output.
     fn write(&self, k: u64, node: &AssemblyNode) {
         if let Some(output) = self.output.borrow_mut().as_mut() {
@@ -142,7 +142,7 @@ impl Request<'_, '_> {
         arguments: &RunArguments,
         (identity, read): (&Checkpoint, Option<&Checkpoint>),
         progress: &mut dyn Progress,
-    ) -> Result<Made, CliError> {
+    ) -> Result<MadeTrain, CliError> {
         let RunArguments { checkpoint, checkpoint_every, resume: from, .. } = arguments;
         let mut saver = resume::Saver::new(checkpoint.as_deref());
         let mut save = |made: &Checkpoint| saver.save(&with_position(made, self.output));
@@ -152,7 +152,7 @@ impl Request<'_, '_> {
         let (assembly, start) = (&self.train.assembly, (self.start, self.nodes(arguments, &mut sink)));
         let run = run_assembly_saved(assembly, self.method, self.schedule, start, &mut saving, progress);
         let run = run.map_err(|source| CliError::Checkpoint { path: from.clone().unwrap_or_default(), source })?;
-        Ok(Made { run, events: None, warning: saver.outcome() })
+        Ok(MadeTrain { run, events: None, warning: saver.outcome() })
     }
 
     /// The nodes that are written, if any are.
@@ -162,7 +162,7 @@ impl Request<'_, '_> {
     }
 
     /// At once, with an eye on events where there are any.
-    fn watched(&self, arguments: &RunArguments, progress: &mut dyn Progress) -> Result<Made, CliError> {
+    fn watched(&self, arguments: &RunArguments, progress: &mut dyn Progress) -> Result<MadeTrain, CliError> {
         let RunArguments { event, until, event_samples, .. } = arguments;
         let on_blade = event.iter().chain(until).map(Trigger::on_blade);
         let watched = on_blade.collect::<Result<Vec<_>, _>>()?;
@@ -174,7 +174,7 @@ impl Request<'_, '_> {
         let (run, crossings) = run_assembly_watched(assembly, self.method, self.schedule, start, looked_for, progress);
         let happened = crossings.iter().filter_map(|crossing| Happened::of_train(self.train, &watched, crossing));
         let events = (!watched.is_empty()).then(|| Events::new(happened, AssemblyCrossing::close(&crossings)));
-        Ok(Made { run, events, warning: Ok(()) })
+        Ok(MadeTrain { run, events, warning: Ok(()) })
     }
 }
 

@@ -34,13 +34,13 @@ impl FromStr for Trigger {
 
 /// What a quantity does at a trigger: the function that is zero there.
 #[derive(Debug, Clone, Copy)]
-struct Function {
+struct TriggerFunction {
     value: f64,
     /// Values a turn apart are the same.
     turns: bool,
 }
 
-impl Function {
+impl TriggerFunction {
     /// Of an angle it is the sine of half of what is missing: it has no other zero in a turn, where that of the whole has one half a turn
     /// away, and it has the other sign in the next turn.
     fn of(self, number: f64) -> f64 {
@@ -55,10 +55,10 @@ impl Function {
 
 /// A trigger on the quantity that a system has by its name.
 #[derive(Debug)]
-pub(crate) struct Watched<'a, Q> {
+pub(crate) struct WatchedTriggers<'a, Q> {
     trigger: &'a Trigger,
     quantity: Q,
-    function: Function,
+    function: TriggerFunction,
 }
 
 impl Trigger {
@@ -67,7 +67,7 @@ impl Trigger {
         &'a self,
         find: impl Fn(&str) -> Option<(Q, bool)>,
         known: impl Fn() -> Vec<Quantity>,
-    ) -> Result<Watched<'a, Q>, CliError> {
+    ) -> Result<WatchedTriggers<'a, Q>, CliError> {
         let unwrapped =
             || find(self.name.strip_prefix(UNWRAPPED)?).filter(|(_, angle)| *angle).map(|(of, _)| (of, false));
         let Some((quantity, turns)) = find(&self.name).or_else(unwrapped) else {
@@ -82,7 +82,7 @@ impl Trigger {
                 self.value,
             )));
         };
-        Ok(Watched { trigger: self, quantity, function: Function { value: self.value, turns } })
+        Ok(WatchedTriggers { trigger: self, quantity, function: TriggerFunction { value: self.value, turns } })
     }
 
     /// The trigger on a system.
@@ -92,7 +92,7 @@ impl Trigger {
     pub(crate) fn on<const N: usize, const M: usize>(
         &self,
         system: &Built<'_, N, M>,
-    ) -> Result<Watched<'_, Coordinate>, CliError> {
+    ) -> Result<WatchedTriggers<'_, Coordinate>, CliError> {
         let find = |name: &str| Coordinate::of(system, name).ok().map(|found| (found.clone(), found.quantity.angle));
         self.find(find, || system.quantities())
     }
@@ -101,7 +101,7 @@ impl Trigger {
     ///
     /// # Errors
     /// As [`on`](Self::on).
-    pub(crate) fn on_blade(&self) -> Result<Watched<'_, SleighQuantity>, CliError> {
+    pub(crate) fn on_blade(&self) -> Result<WatchedTriggers<'_, SleighQuantity>, CliError> {
         let find = |name: &str| BLADE.iter().find(|known| known.name == name).map(|known| (*known, known.is_angle()));
         let quantity =
             |of: &SleighQuantity| Quantity { name: of.name.to_owned(), unit: of.unit.to_owned(), angle: of.is_angle() };
@@ -109,7 +109,7 @@ impl Trigger {
     }
 }
 
-impl Watched<'_, Coordinate> {
+impl WatchedTriggers<'_, Coordinate> {
     /// The event in a system.
     pub(crate) fn event<'a, const N: usize, const M: usize>(&'a self, system: &'a Built<'a, N, M>) -> Event<'a, N> {
         let of = move |t, q: &[f64; N], v: &[f64; N]| self.function.of(self.quantity.value(system, t, q, v));
@@ -117,7 +117,7 @@ impl Watched<'_, Coordinate> {
     }
 }
 
-impl Watched<'_, SleighQuantity> {
+impl WatchedTriggers<'_, SleighQuantity> {
     fn number(&self, state: SleighState) -> f64 {
         self.quantity.value(state, [f64::NAN; 2])
     }
@@ -144,11 +144,11 @@ impl<'a> Happened<'a> {
     /// In a system.
     pub(crate) fn of<const N: usize, const M: usize>(
         system: &Built<'_, N, M>,
-        watched: &[Watched<'a, Coordinate>],
+        watched: &[WatchedTriggers<'a, Coordinate>],
         crossing: &Crossing<N>,
     ) -> Option<Self> {
         let Crossing { event, t, within, spacing, rising, ref state, .. } = *crossing;
-        let Watched { trigger, quantity, function } = watched.get(event)?;
+        let WatchedTriggers { trigger, quantity, function } = watched.get(event)?;
         let (q, v) = (state.unwrapped(), state.v());
         let rising = function.rises(quantity.value(system, t, &q, v), rising);
         let state = system.state(t, &q, v).into_iter().map(|(quantity, value)| (quantity.name, json!(value))).collect();
@@ -158,7 +158,7 @@ impl<'a> Happened<'a> {
     /// Of the first blade of a train.
     pub(crate) fn of_train(
         train: &Train,
-        watched: &[Watched<'a, SleighQuantity>],
+        watched: &[WatchedTriggers<'a, SleighQuantity>],
         crossing: &AssemblyCrossing,
     ) -> Option<Self> {
         let AssemblyCrossing { event, t, within, spacing, rising, ref state, .. } = *crossing;

@@ -5,7 +5,7 @@
 use dla::{Dla, Piece, Schedule, State, Trajectory, drive_part, piece_by_piece};
 use harness::report::{SceneReport, Series, path_picture};
 use lagrangian::System;
-use sleigh::parking::{Gap, Move, Plan};
+use sleigh::parking::{Gap, Move, ParkingPlan};
 use sleigh::{Guided, Sleigh, SleighState};
 use std::error::Error;
 use std::io::Write;
@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let goal = SleighState { x: 0.0, y: 0.0, heading: 0.0, ..SleighState::default() };
     // Between two others in a row: half a metre ahead and back, 0.8 m from the lane on the right.
     let gap = Gap { depth: 0.8, play: 0.5, swing: 0.45 };
-    let plan = Plan::park(&start, &goal, &gap)?;
+    let plan = ParkingPlan::park(&start, &goal, &gap)?;
 
     for (k, step) in plan.moves.iter().enumerate() {
         match step {

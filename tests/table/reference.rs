@@ -7,12 +7,12 @@ use crate::tools::method;
 use models::{Attitude, KnifeEdge, Model, Particle, RollingDisk, Suslov};
 use sleigh::{CentreOfMass, Sleigh};
 
-fn row<Shape, const N: usize>(
+fn row<PathShape, const N: usize>(
     name: &'static str,
-    system: impl Into<Shape>,
+    system: impl Into<PathShape>,
     start: Place<N>,
     duration: f64,
-) -> Row<Shape, N> {
+) -> Row<PathShape, N> {
     Row { name, system: system.into(), start, duration, facts: Facts::default() }
 }
 

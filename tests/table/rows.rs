@@ -17,17 +17,17 @@ impl<Sys, const N: usize> Row<Sys, N> {
 }
 
 /// A model from its own start, reversible where its label says so.
-fn model<Shape: From<Mo> + 'static, Mo, const N: usize, const M: usize>(
+fn model<PathShape: From<Mo> + 'static, Mo, const N: usize, const M: usize>(
     model: Mo,
     duration: f64,
     facts: Facts,
 ) -> Box<dyn Case>
 where
     Mo: Model<N, M>,
-    Row<Shape, N>: Case,
+    Row<PathShape, N>: Case,
 {
     let (name, start, reversible) = (model.name(), model.start(), model.labels().reversible);
-    Box::new(Row::<Shape, N>::new(name, model, start, duration, Facts { reversible, ..facts }))
+    Box::new(Row::<PathShape, N>::new(name, model, start, duration, Facts { reversible, ..facts }))
 }
 
 fn three(name: &'static str, system: impl Into<Three>, start: Place<3>, duration: f64, facts: Facts) -> Box<dyn Case> {

@@ -4,7 +4,7 @@ use crate::pattern::Pattern;
 use crate::settling::{AssemblySettling, REFINEMENTS};
 use crate::{Assembly, AssemblyError, Solver};
 use dla::Stage;
-use dla::convergence::{Convergence, Demand, Kind};
+use dla::convergence::{Convergence, CorrectionKind, Demand};
 
 /// The linear equations of an assembly, and Newton's method on them.
 pub(crate) struct AssemblyEquations {
@@ -64,7 +64,7 @@ impl AssemblyEquations {
             let step = lagrangian::linear::largest(correction);
             x.iter_mut().zip(correction).for_each(|(x, d)| *x += d);
             let demand = Demand {
-                kind: Kind::Chord,
+                kind: CorrectionKind::Chord,
                 tolerance: newton.tolerance,
                 limit: newton.max_iterations,
                 refinable: refinements == 0,

@@ -3,7 +3,7 @@ use crate::pattern::{Pattern, PatternPart};
 use crate::settling::{AssemblySettling, REFINEMENTS};
 use crate::{AssemblyError, Solver};
 use dla::Stage;
-use dla::convergence::{Convergence, Demand, Kind};
+use dla::convergence::{Convergence, CorrectionKind, Demand};
 use lagrangian::linear::largest;
 
 /// Linear equations of parts that share unknowns,
@@ -119,7 +119,7 @@ impl Sparse {
             let step = largest(correction);
             x.iter_mut().zip(correction).for_each(|(x, d)| *x += d);
             let demand = Demand {
-                kind: Kind::Chord,
+                kind: CorrectionKind::Chord,
                 tolerance: newton.tolerance,
                 limit: newton.max_iterations,
                 refinable: refinements == 0,

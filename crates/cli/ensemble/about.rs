@@ -1,7 +1,7 @@
 use super::header;
 use super::members::Summed;
 use super::result::failed;
-use crate::again::Again;
+use crate::again::CommandLine;
 use crate::args::Settings;
 use crate::error::CliError;
 use crate::format::Format;
@@ -72,7 +72,7 @@ impl About {
     /// members that failed.
     pub(super) fn metadata(&self, out: &Path, format: Format) -> String {
         let name = out.file_name().unwrap_or_default().to_string_lossy();
-        let command = Again::of("ensemble", &self.sweep, &Settings::default()).with("--out", out.display());
+        let command = CommandLine::of("ensemble", &self.sweep, &Settings::default()).with("--out", out.display());
         let provenance = Provenance::new(&self.title, Some(&command), self.notes.clone());
         let last = if format.is_text() { Described::headed("error", "string") } else { (&failed()).into() };
         provenance.document(&name, self.columns().iter().map(Described::from).chain([last]))

@@ -1,4 +1,4 @@
-use super::members::Row;
+use super::members::MemberRow;
 use crc32fast::Hasher;
 use std::fmt::Write;
 
@@ -52,7 +52,7 @@ impl Lines {
     }
 
     /// A row as a line.
-    pub(super) fn line(&self, row: &Row) -> String {
+    pub(super) fn line(&self, row: &MemberRow) -> String {
         let mut text = row.member.to_string();
         for value in &row.values {
             // Writing to a string cannot fail.

@@ -1,7 +1,7 @@
 use dla::Schedule;
 use harness::analysis::{LyapunovRequest, lyapunov_within};
 use harness::ensemble::{Summary, Watching, summarise, watch};
-use harness::{Kind, Method};
+use harness::{Method, MethodKind};
 use scene::{AnyScene, Built, Column, LANES, LaneMethod, Quantity, Scene, Sweep, SweepError, Visitor, in_lanes};
 use sleigh::SleighState;
 
@@ -21,9 +21,9 @@ pub(super) struct Summed {
 }
 
 /// The quantities that tell a state.
-struct Names;
+struct MemberNames;
 
-impl Visitor for Names {
+impl Visitor for MemberNames {
     type Output = Vec<Quantity>;
 
     fn visit<const N: usize, const M: usize>(
@@ -41,7 +41,7 @@ impl Visitor for Names {
 impl Summed {
     pub(super) fn of(sweep: &Sweep) -> Result<Self, CliError> {
         let constraint = if matches!(sweep.scene, AnyScene::Sleigh(_)) { "m/s" } else { "" };
-        let state = sweep.scene.visit(Names)?;
+        let state = sweep.scene.visit(MemberNames)?;
         let extremes = (0..state.len()).filter(|k| !state[*k].angle).collect();
         Ok(Self { state, extremes, constraint })
     }
@@ -69,7 +69,7 @@ impl Summed {
 }
 
 /// A member that was computed.
-pub(super) struct Row {
+pub(super) struct MemberRow {
     pub(super) member: u64,
     /// Keys, columns, and the exponent where it is wanted; NaN where there is none.
     pub(super) values: Vec<f64>,
@@ -107,15 +107,15 @@ impl Members<'_> {
         let info = self.method.info();
         match info.kind {
             _ if !info.lanes => None,
-            Kind::Dla => Some(LaneMethod::Closed),
-            Kind::Gauss(4) => Some(LaneMethod::Gauss8),
-            Kind::Gauss(8) => Some(LaneMethod::Gauss16),
+            MethodKind::Dla => Some(LaneMethod::Closed),
+            MethodKind::Gauss(4) => Some(LaneMethod::Gauss8),
+            MethodKind::Gauss(8) => Some(LaneMethod::Gauss16),
             _ => None,
         }
     }
 
     /// Some members, in order.
-    pub(super) fn rows(&self, range: Range<u64>) -> Vec<Row> {
+    pub(super) fn rows(&self, range: Range<u64>) -> Vec<MemberRow> {
         let made: Vec<_> = range.map(|member| (member, self.sweep.member(member, self.names))).collect();
         let sleighs = made.iter().filter_map(|(_, scene)| match scene {
             Ok(AnyScene::Sleigh(scene)) => Some(&**scene),
@@ -137,7 +137,7 @@ impl Members<'_> {
                 values.push(exponent.as_ref().and_then(|found| found.as_ref().ok()).copied().unwrap_or(f64::NAN));
                 error = error.or(exponent.and_then(Result::err));
             }
-            Row { member: *member, values, error }
+            MemberRow { member: *member, values, error }
         };
         made.iter().map(row).collect()
     }

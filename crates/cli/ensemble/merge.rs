@@ -1,7 +1,7 @@
 use super::lines::Lines;
 use super::parts::{self, chain, found};
 use super::result::{self, Shape};
-use super::totals::Totals;
+use super::totals::EnsembleTotals;
 use crate::args::MergeArguments;
 use crate::error::CliError;
 use crate::files::{check_file, write_whole};
@@ -35,7 +35,7 @@ pub(crate) fn merge(arguments: &MergeArguments) -> Result<(), CliError> {
     let lines = Lines::new(&about.identity, columns.len());
     let rows = || -> Result<_, Error> { Ok(parts::rows((&lines, &header), &parts)) };
     let unreadable = |source| CliError::Read { path: folder.clone(), source };
-    let mut totals = Totals::new(&about, 0);
+    let mut totals = EnsembleTotals::new(&about, 0);
     let mut all = rows().map_err(unreadable)?;
     while let Some(text) = all.next().map_err(unreadable)? {
         totals.take(text);

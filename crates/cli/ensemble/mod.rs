@@ -13,7 +13,7 @@ mod spool;
 mod totals;
 
 pub(crate) use merge::merge;
-pub use plan::{Plan, plan};
+pub use plan::{SweepPlan, plan};
 pub(crate) use share::Share;
 
 use crate::args::EnsembleArguments;
@@ -29,13 +29,13 @@ use harness::Method;
 use harness::analysis::has_tangents;
 use harness::ensemble::in_order;
 use indicatif::ProgressBar;
-use members::{Members, Row, Summed};
+use members::{MemberRow, Members, Summed};
 use result::Shape;
 use scene::{Column, Sweep};
-use spool::{Asked, Spool};
+use spool::{Spool, SpoolRequest};
 use std::ops::{ControlFlow, Range};
 use std::time::Instant;
-use totals::Totals;
+use totals::EnsembleTotals;
 
 /// Computes the members of a sweep in order, writes a row for each, and says what they came to.
 pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
@@ -60,11 +60,11 @@ pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
         None => None,
     };
     let interrupt = Interrupt::listen_saying("stopping after the members that have begun; Ctrl-C again ends at once");
-    let mut totals = Totals::new(&about, 0);
+    let mut totals = EnsembleTotals::new(&about, 0);
     let mut spool = match out {
         Some((path, _)) => {
             let of = (identity.as_str(), 0..sweep.count(), about.columns().len());
-            let asked = Asked { resume: arguments.resume, force: arguments.force };
+            let asked = SpoolRequest { resume: arguments.resume, force: arguments.force };
             Some(Spool::open(path, of, asked, |values, error| totals.add(values, error))?)
         }
         None => None,
@@ -107,7 +107,7 @@ fn compute(
     members: &Members<'_>,
     end: u64,
     spool: &mut Option<Spool>,
-    totals: &mut Totals,
+    totals: &mut EnsembleTotals,
     interrupt: &Interrupt,
     bar: &ProgressBar,
 ) -> Result<(), CliError> {
@@ -120,7 +120,7 @@ fn compute(
         let texts: Vec<String> = lines.iter().flat_map(|lines| rows.iter().map(|row| lines.line(row))).collect();
         (rows, texts)
     };
-    let sink = |groups: Vec<(Vec<Row>, Vec<String>)>| {
+    let sink = |groups: Vec<(Vec<MemberRow>, Vec<String>)>| {
         let mut text = String::new();
         let before = done;
         for (rows, texts) in &groups {

@@ -4,10 +4,10 @@ use super::about::About;
 use super::compute;
 use super::lines::Lines;
 use super::members::Members;
-use super::rows::{Rows, Source};
+use super::rows::{Source, SpoolRows};
 use super::share::Share;
-use super::spool::{Asked, Spool};
-use super::totals::Totals;
+use super::spool::{Spool, SpoolRequest};
+use super::totals::EnsembleTotals;
 use crate::args::EnsembleArguments;
 use crate::error::CliError;
 use crate::interrupt::Interrupt;
@@ -22,7 +22,7 @@ const ADVICE: &str = "`noslip ensemble SWEEP --out DIR --part I/N` computes the 
 
 /// A file of rows of some members.
 #[derive(Debug, Clone)]
-pub(super) struct Part {
+pub(super) struct SweepPart {
     pub(super) path: PathBuf,
     pub(super) members: Range<u64>,
 }
@@ -44,9 +44,9 @@ pub(super) fn members_of(stem: &str, name: &str) -> Option<Range<u64>> {
 }
 
 /// A reader of the rows of parts that follow on each other.
-pub(super) fn rows<'a>(of: (&'a Lines, &'a str), parts: &[Part]) -> Rows<'a> {
+pub(super) fn rows<'a>(of: (&'a Lines, &'a str), parts: &[SweepPart]) -> SpoolRows<'a> {
     let members = parts.first().map_or(0, |part| part.members.start)..parts.last().map_or(0, |part| part.members.end);
-    Rows::new(of, parts.iter().map(|part| Source::At(part.path.clone())).collect(), members, ADVICE)
+    SpoolRows::new(of, parts.iter().map(|part| Source::At(part.path.clone())).collect(), members, ADVICE)
 }
 
 /// Computes a part of a sweep, unless it is there already; an interrupted one goes on.
@@ -65,8 +65,8 @@ pub(super) fn make(
     let range = share.members(about.members, members.group());
     let path = folder.join(name(&stem, &range));
     let (numbers, header) = (about.columns().len(), format!("{}\n", about.identity));
-    let part = Part { path: path.clone(), members: range.clone() };
-    let mut totals = Totals::new(about, range.start);
+    let part = SweepPart { path: path.clone(), members: range.clone() };
+    let mut totals = EnsembleTotals::new(about, range.start);
     let mut seconds = 0.0;
     let mut computed = 0;
     let there = !arguments.force && path.exists();
@@ -76,11 +76,11 @@ pub(super) fn make(
         if there {
             terminal::say("warning", &format!("{}: the part is damaged and is computed again", path.display()));
         }
-        totals = Totals::new(about, range.start);
+        totals = EnsembleTotals::new(about, range.start);
         let note = "stopping after the members that have begun; Ctrl-C again ends at once";
         let interrupt = Interrupt::listen_saying(note);
         // The same command goes on, as a batch system gives it again.
-        let asked = Asked { resume: !arguments.force, force: true };
+        let asked = SpoolRequest { resume: !arguments.force, force: true };
         let of = (about.identity.as_str(), range.clone(), numbers);
         let spool = Spool::open(&path, of, asked, |values, error| totals.add(values, error))?;
         let done = spool.next() - range.start;
@@ -115,7 +115,7 @@ pub(super) fn make(
 }
 
 /// Whether a part has every row; its members are added to the totals.
-fn is_whole(part: &Part, of: (&Lines, &str), totals: &mut Totals) -> bool {
+fn is_whole(part: &SweepPart, of: (&Lines, &str), totals: &mut EnsembleTotals) -> bool {
     let mut rows = rows(of, std::slice::from_ref(part));
     loop {
         match rows.next() {
@@ -130,10 +130,10 @@ fn is_whole(part: &Part, of: (&Lines, &str), totals: &mut Totals) -> bool {
 ///
 /// # Errors
 /// The members that are missing.
-pub(super) fn chain(mut parts: Vec<Part>, members: u64) -> Result<Vec<Part>, Range<u64>> {
+pub(super) fn chain(mut parts: Vec<SweepPart>, members: u64) -> Result<Vec<SweepPart>, Range<u64>> {
     // From the end: a part is of use where another one goes on from its end.
     parts.sort_by_key(|part| (std::cmp::Reverse(part.members.start), part.members.end));
-    let mut onward: std::collections::BTreeMap<u64, Part> = std::collections::BTreeMap::new();
+    let mut onward: std::collections::BTreeMap<u64, SweepPart> = std::collections::BTreeMap::new();
     for part in &parts {
         let Range { start, end } = part.members;
         if start < end && (end == members || onward.contains_key(&end)) {
@@ -151,7 +151,7 @@ pub(super) fn chain(mut parts: Vec<Part>, members: u64) -> Result<Vec<Part>, Ran
 }
 
 /// The first members that are in no part; of parts that overlap and do not follow on each other, those after the first such part.
-fn missing(parts: &[Part], members: u64) -> Range<u64> {
+fn missing(parts: &[SweepPart], members: u64) -> Range<u64> {
     let mut at = 0;
     while let Some(end) =
         parts.iter().filter(|part| part.members.start <= at && part.members.end > at).map(|part| part.members.end).max()
@@ -163,7 +163,7 @@ fn missing(parts: &[Part], members: u64) -> Range<u64> {
 }
 
 /// The sweep of the parts in a folder, and the parts.
-pub(super) fn found(folder: &Path) -> Result<(About, Vec<Part>), CliError> {
+pub(super) fn found(folder: &Path) -> Result<(About, Vec<SweepPart>), CliError> {
     let unreadable = |source| CliError::Read { path: folder.to_owned(), source };
     let mut names = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(unreadable)? {
@@ -180,6 +180,6 @@ pub(super) fn found(folder: &Path) -> Result<(About, Vec<Part>), CliError> {
         };
         return Err(CliError::Request(format!("{}: {problem}", folder.display())));
     };
-    let part = |name: &String| Some(Part { path: folder.join(name), members: members_of(stem, name)? });
+    let part = |name: &String| Some(SweepPart { path: folder.join(name), members: members_of(stem, name)? });
     Ok((about.clone(), names.iter().filter_map(part).collect()))
 }

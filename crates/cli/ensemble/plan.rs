@@ -3,13 +3,13 @@ use super::parts::{name, stem};
 use super::share::Share;
 use super::{identity, method_of};
 use crate::error::CliError;
-use crate::in_memory::RunError;
+use crate::in_memory::Refusal;
 use crate::inspect;
 use scene::Sweep;
 
 /// The parts that a sweep is computed in.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Plan {
+pub struct SweepPlan {
     /// The beginning of the names of its files: a hash of all that its rows depend on, and the version of the program.
     pub stem: String,
     /// How many members there are.
@@ -21,12 +21,12 @@ pub struct Plan {
 /// The parts of the sweep in that file, `parts` of them; fewer where there are not so many groups of members that are computed together.
 ///
 /// # Errors
-/// [`RunError`] with the first thing that is wrong with the sweep, or where no parts are asked for.
-pub fn plan(sweep: &str, parts: u64) -> Result<Plan, RunError> {
+/// [`Refusal`] with the first thing that is wrong with the sweep, or where no parts are asked for.
+pub fn plan(sweep: &str, parts: u64) -> Result<SweepPlan, Refusal> {
     Ok(made(sweep, parts)?)
 }
 
-fn made(sweep: &str, parts: u64) -> Result<Plan, CliError> {
+fn made(sweep: &str, parts: u64) -> Result<SweepPlan, CliError> {
     if parts == 0 {
         return Err(CliError::Request("0 parts: accepted are whole numbers from 1".to_owned()));
     }
@@ -37,5 +37,5 @@ fn made(sweep: &str, parts: u64) -> Result<Plan, CliError> {
     let group = Members { sweep: &sweep, method, names: &names, summed: &summed }.group();
     let of = parts.min(members.div_ceil(group));
     let part = |number| name(&stem, &Share::new(number, of).members(members, group));
-    Ok(Plan { parts: (1..=of).map(part).collect(), stem, members })
+    Ok(SweepPlan { parts: (1..=of).map(part).collect(), stem, members })
 }

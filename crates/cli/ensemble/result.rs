@@ -1,5 +1,5 @@
 use super::lines;
-use super::rows::Rows;
+use super::rows::SpoolRows;
 use crate::format::Format;
 use crate::npz;
 use crate::provenance::label;
@@ -18,7 +18,7 @@ pub(super) struct Shape<'a> {
 pub(super) fn write<'a>(
     file: &mut (impl Write + Seek + Send),
     shape: &Shape<'_>,
-    rows: &impl Fn() -> Result<Rows<'a>, Error>,
+    rows: &impl Fn() -> Result<SpoolRows<'a>, Error>,
 ) -> Result<(), Error> {
     let Shape { format, columns, count, metadata } = *shape;
     match format {

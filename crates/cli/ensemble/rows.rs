@@ -13,7 +13,7 @@ pub(super) enum Source {
 }
 
 /// Reads the rows of some members, one after the other, from one file after the other.
-pub(super) struct Rows<'a> {
+pub(super) struct SpoolRows<'a> {
     lines: &'a Lines,
     header: &'a str,
     sources: std::vec::IntoIter<Source>,
@@ -31,7 +31,7 @@ struct Reading {
     number: u64,
 }
 
-impl<'a> Rows<'a> {
+impl<'a> SpoolRows<'a> {
     /// The rows of those members, whose lines and whose first line are these; `advice` says what to do where they are not there.
     pub(super) fn new(
         (lines, header): (&'a Lines, &'a str),

@@ -1,9 +1,9 @@
 use super::lines::{Damage, Lines, parsed};
 use super::result::{self, Shape};
-use super::rows::{Rows, Source};
+use super::rows::{Source, SpoolRows};
 use crate::error::CliError;
 use crate::files::{check_file, write_whole};
-use crate::part::Part;
+use crate::part::PartFile;
 use crate::provenance::metadata_of;
 use crate::terminal;
 use std::io::{BufRead, BufReader, Error, Seek, SeekFrom, Write};
@@ -13,7 +13,7 @@ use std::path::Path;
 /// Rows on their way: a file beside the result, to which every row is added when its member is done, and from which the result is made
 /// at the end. So the memory holds few of them, and what an interrupted run has done is not lost.
 pub(super) struct Spool {
-    part: Part,
+    part: PartFile,
     lines: Lines,
     /// The first member of which it has the row.
     first: u64,
@@ -25,7 +25,7 @@ pub(super) struct Spool {
 
 /// What is to be done with what is there.
 #[derive(Clone, Copy)]
-pub(super) struct Asked {
+pub(super) struct SpoolRequest {
     /// Go on from the rows of an interrupted run.
     pub(super) resume: bool,
     /// Overwrite them, and the result.
@@ -38,10 +38,10 @@ impl Spool {
     pub(super) fn open(
         out: &Path,
         (identity, members, numbers): (&str, Range<u64>, usize),
-        asked: Asked,
+        asked: SpoolRequest,
         seen: impl FnMut(&[f64], Option<&str>),
     ) -> Result<Self, CliError> {
-        let part = Part::lock(out)?;
+        let part = PartFile::lock(out)?;
         let found = part.file().metadata().map_err(|source| part.failed(source))?.len();
         // Whoever had the lock may have written the result meanwhile.
         if let Err(error) = check_file(out, asked.force) {
@@ -167,9 +167,9 @@ impl Spool {
     }
 
     /// A reader of the rows, which fails where they are not those of the members in order.
-    fn whole_rows(&self, members: u64) -> Result<Rows<'_>, Error> {
+    fn whole_rows(&self, members: u64) -> Result<SpoolRows<'_>, Error> {
         let source = Source::Open(self.part.path().to_owned(), self.part.file().try_clone()?);
-        Ok(Rows::new(
+        Ok(SpoolRows::new(
             (&self.lines, &self.header),
             vec![source],
             self.first..members,

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use std::path::Path;
 
 /// What all members came to.
-pub(super) struct Totals {
+pub(super) struct EnsembleTotals {
     keys: usize,
     /// The number of the first member.
     begin: u64,
@@ -50,7 +50,7 @@ impl Extent {
     }
 }
 
-impl Totals {
+impl EnsembleTotals {
     /// Of members of a sweep from that one on.
     pub(super) fn new(of: &About, begin: u64) -> Self {
         let keys = of.keys.len();

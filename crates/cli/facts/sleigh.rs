@@ -1,6 +1,6 @@
 use crate::table::{counted, number};
 use dla::{State, View};
-use scene::{Built, PathSpec, Scene, SceneEffect, Shape, TimeSpec, TrailersSpec, Visitor};
+use scene::{Built, PathShape, PathSpec, Scene, SceneEffect, TimeSpec, TrailersSpec, Visitor};
 use sleigh::{SleighError, SleighState};
 
 /// The state that a scene starts in, and its energy (J).
@@ -131,10 +131,10 @@ fn function(function: &TimeSpec, unit: &str) -> String {
 
 fn round(path: &PathSpec) -> String {
     let shape = match &path.shape {
-        Shape::Circle { radius, center } => {
+        PathShape::Circle { radius, center } => {
             format!("a circle of radius {} m about {} m", number(*radius), pair(center))
         }
-        Shape::Polygon(vertices) => format!("a polygon of {} vertices", vertices.len()),
+        PathShape::Polygon(vertices) => format!("a polygon of {} vertices", vertices.len()),
     };
     format!("{shape}, once every {} s", number(path.period))
 }

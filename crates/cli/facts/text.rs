@@ -1,5 +1,5 @@
 use crate::table::{counted, number};
-use scene::{Model, Quantity, TextScene};
+use scene::{Quantity, TextModel, TextScene};
 
 /// What a scene says, for a person: names and values.
 pub(crate) fn listed(scene: &TextScene) -> Vec<(String, String)> {
@@ -57,7 +57,7 @@ pub(crate) fn listed(scene: &TextScene) -> Vec<(String, String)> {
 }
 
 /// Coordinates, rates and outputs, with their units.
-fn state(model: &Model, q: &[f64], v: &[f64]) -> Vec<(String, String)> {
+fn state(model: &TextModel, q: &[f64], v: &[f64]) -> Vec<(String, String)> {
     let line = |of: &Quantity, x: f64| (of.name.clone(), format!("{} {}", number(x), of.unit).trim_end().to_owned());
     let outputs = model.told(0.0, q, v);
     let values = q.iter().chain(v).chain(&outputs);

@@ -3,7 +3,7 @@
 mod words;
 
 use crate::args::JobArguments;
-use crate::compare::{Comparison, Row, compare_scene, methods, unless_interrupted};
+use crate::compare::{Comparison, ComparisonRow, compare_scene, methods, unless_interrupted};
 use crate::error::CliError;
 use crate::inspect::method_names;
 use crate::interrupt::Interrupt;
@@ -70,7 +70,7 @@ pub(crate) fn first(arguments: &JobArguments) -> Result<(), CliError> {
     let report = Report { title, intro, notes: words::notes(), scenes: vec![report] };
     report::write(&report, &folder, arguments.force).map_err(CliError::Report)?;
     terminal::print(&format!("\npage: {}\n\n{}", folder.join("index.html").display(), words::FURTHER))?;
-    let failed = CliError::of_failures(rows.into_iter().filter_map(Row::unexpected));
+    let failed = CliError::of_failures(rows.into_iter().filter_map(ComparisonRow::unexpected));
     unless_interrupted(interrupted, None, failed)
 }
 

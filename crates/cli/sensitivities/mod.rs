@@ -5,7 +5,7 @@ mod sleigh;
 mod text;
 
 use crate::called::Caller;
-use crate::in_memory::RunError;
+use crate::in_memory::Refusal;
 use dla::Schedule;
 use harness::{Method, SensitivitiesError};
 use scene::{AnyScene, FREE};
@@ -40,7 +40,7 @@ pub struct Sensitivities {
 const BLOCK: usize = FREE;
 
 /// The numbers of a run at some times, each with its derivatives in a block of keys.
-struct Rows {
+struct SensitivityRows {
     columns: Vec<String>,
     times: Vec<f64>,
     numbers: Vec<(f64, [f64; BLOCK])>,
@@ -60,13 +60,13 @@ struct Asked<'a> {
 /// bit.
 ///
 /// # Errors
-/// [`RunError`] where the request makes no sense for the scene, the method has no derivatives, a step fails, or the caller ends the
+/// [`Refusal`] where the request makes no sense for the scene, the method has no derivatives, a step fails, or the caller ends the
 /// run.
 pub fn sensitivities(
     scene: &AnyScene,
     request: &SensitivityRequest,
     caller: &Caller,
-) -> Result<Sensitivities, RunError> {
+) -> Result<Sensitivities, Refusal> {
     let settings = scene.run();
     let method = Method::named(&settings.method, settings.alpha).map_err(|error| refused(&error))?;
     if request.keys.is_empty() {
@@ -82,8 +82,8 @@ pub fn sensitivities(
         AnyScene::Sleigh(sleigh) => sleigh::rows(sleigh, &asked, keys),
         AnyScene::Text(text) => text::rows(text, &asked, keys),
     });
-    let blocks: Vec<Rows> = blocks.collect::<Result<_, _>>()?;
-    let Some(Rows { columns, times, numbers }) = blocks.first() else {
+    let blocks: Vec<SensitivityRows> = blocks.collect::<Result<_, _>>()?;
+    let Some(SensitivityRows { columns, times, numbers }) = blocks.first() else {
         return Err(refused(&"no keys are given"));
     };
     let mut jacobian = Vec::with_capacity(numbers.len() * request.keys.len());
@@ -107,23 +107,23 @@ pub fn full_key(scene: &AnyScene, key: &str) -> String {
 }
 
 /// An error of the request.
-fn refused(problem: &impl Display) -> RunError {
-    RunError { message: problem.to_string(), request: true }
+fn refused(problem: &impl Display) -> Refusal {
+    Refusal { message: problem.to_string(), request: true }
 }
 
 /// Whether an error is one of the request, or of the computation.
-fn failed(error: &SensitivitiesError) -> RunError {
+fn failed(error: &SensitivitiesError) -> Refusal {
     let request = matches!(error, SensitivitiesError::Method { .. } | SensitivitiesError::Jump { .. });
-    RunError { message: error.to_string(), request }
+    Refusal { message: error.to_string(), request }
 }
 
 /// What is said of a key that derivatives cannot be taken in.
-fn no_key(key: &str, known: &impl Display) -> RunError {
+fn no_key(key: &str, known: &impl Display) -> Refusal {
     refused(&format!("no derivative with respect to `{key}` is available; the keys are {known}"))
 }
 
 /// The places of the columns that are asked for among those that have derivatives, all of the first `usual` where none are.
-fn chosen(asked: &[String], known: &[String], usual: usize) -> Result<Vec<usize>, RunError> {
+fn chosen(asked: &[String], known: &[String], usual: usize) -> Result<Vec<usize>, Refusal> {
     if asked.is_empty() {
         return Ok((0..usual).collect());
     }

@@ -1,5 +1,5 @@
-use super::{Asked, BLOCK, Rows, chosen, failed};
-use crate::in_memory::{RunError, Shown};
+use super::{Asked, BLOCK, SensitivityRows, chosen, failed};
+use crate::in_memory::{Refusal, ShownToCaller};
 use dla::{Node, Tangent, Variation, View};
 use harness::{Moving, ParametrisedMechanics, Request, sensitivities};
 use lagrangian::{Gradients, Scalar, Seeded};
@@ -39,7 +39,7 @@ impl<const N: usize> Carried<N> {
 }
 
 /// The motion of one scene, in a block of keys.
-pub(super) struct Motion<'a, const N: usize, const M: usize> {
+pub(super) struct DifferentiatedMotion<'a, const N: usize, const M: usize> {
     pub(super) system: Built<'a, N, M>,
     pub(super) family: &'a dyn ParametrisedMechanics<N, M, BLOCK>,
     pub(super) parameters: [f64; BLOCK],
@@ -47,7 +47,7 @@ pub(super) struct Motion<'a, const N: usize, const M: usize> {
     pub(super) v: [f64; N],
 }
 
-impl<const N: usize, const M: usize> Motion<'_, N, M> {
+impl<const N: usize, const M: usize> DifferentiatedMotion<'_, N, M> {
     /// The rows of a run: `start` is how it begins in each of the keys, `told` gives all numbers of a state that have derivatives, by the
     /// names `known`, the first `usual` of which are told where no columns are asked for.
     pub(super) fn rows(
@@ -56,11 +56,11 @@ impl<const N: usize, const M: usize> Motion<'_, N, M> {
         start: Vec<Tangent<N, BLOCK>>,
         (known, usual): (&[String], usize),
         told: impl Fn(&Carried<N>) -> Vec<Seeded>,
-    ) -> Result<Rows, RunError> {
+    ) -> Result<SensitivityRows, Refusal> {
         let chosen = chosen(&request.columns, known, usual)?;
         let run = Request { schedule, q: self.q, v: self.v, samples: 1 };
         let bar = caller.bar(method.info().name, schedule.steps);
-        let mut shown = Shown { bar, caller };
+        let mut shown = ShownToCaller { bar, caller };
         let (family, system) = ((self.family, self.parameters), (&*self.system, (&self.system).into()));
         let made = sensitivities(system, method, &run, &request.times, family, start, &mut shown);
         let made = made.map_err(|error| failed(&error))?;
@@ -75,7 +75,7 @@ impl<const N: usize, const M: usize> Motion<'_, N, M> {
             };
             chosen.iter().map(number).collect::<Vec<_>>()
         });
-        Ok(Rows {
+        Ok(SensitivityRows {
             columns: chosen.iter().map(|place| known[*place].clone()).collect(),
             times: made.iter().map(|at| at.t).collect(),
             numbers: numbers.collect(),

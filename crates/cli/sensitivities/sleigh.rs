@@ -1,6 +1,6 @@
-use super::motion::{Carried, Motion, of_parameter, of_start};
-use super::{Asked, BLOCK, Rows, no_key, refused};
-use crate::in_memory::RunError;
+use super::motion::{Carried, DifferentiatedMotion, of_parameter, of_start};
+use super::{Asked, BLOCK, SensitivityRows, no_key, refused};
+use crate::in_memory::Refusal;
 use dla::Tangent;
 use harness::ParametrisedMechanics;
 use lagrangian::{Gradients, Scalar, Seeded};
@@ -24,7 +24,7 @@ impl<const N: usize> ParametrisedMechanics<N, 1, BLOCK> for Family<'_, N> {
 }
 
 /// The numbers of a run of a sleigh, with their derivatives in a block of keys.
-pub(super) fn rows(scene: &Scene, asked: &Asked<'_>, keys: &[String]) -> Result<Rows, RunError> {
+pub(super) fn rows(scene: &Scene, asked: &Asked<'_>, keys: &[String]) -> Result<SensitivityRows, Refusal> {
     match scene.system().map_err(|error| refused(&error))? {
         AnySystem::Sleigh(started) => of_shape(scene, &started, asked, keys),
         AnySystem::Rotor(started) => of_shape(scene, &started, asked, keys),
@@ -32,7 +32,7 @@ pub(super) fn rows(scene: &Scene, asked: &Asked<'_>, keys: &[String]) -> Result<
     }
 }
 
-fn imposed() -> RunError {
+fn imposed() -> Refusal {
     refused(&"the scene imposes velocities (servo, tracer), and its runs have no derivatives")
 }
 
@@ -41,7 +41,7 @@ fn of_shape<const N: usize>(
     Started { system, q, v }: &Started<N, 1>,
     asked: &Asked<'_>,
     keys: &[String],
-) -> Result<Rows, RunError> {
+) -> Result<SensitivityRows, Refusal> {
     let family = scene.family::<N>().map_err(|error| refused(&error))?.ok_or_else(imposed)?;
     let start = keys.iter().map(|key| tangent(key, q, v)).collect::<Result<Vec<_>, _>>()?;
     let rotor: &[&str] = if N > 3 { &OF_ROTOR } else { &[] };
@@ -55,7 +55,7 @@ fn of_shape<const N: usize>(
         told.extend([at.energy(&*family.at(p)), q[0] + cos * p[2], q[1] + sin * p[2]]);
         told
     };
-    let motion = Motion {
+    let motion = DifferentiatedMotion {
         system: Built::Sleigh(&**system),
         family: &Family(&family),
         parameters: family.values(),
@@ -76,7 +76,7 @@ pub(super) fn full_key(key: &str) -> Option<String> {
 }
 
 /// How the run begins in a key.
-fn tangent<const N: usize>(key: &str, q: &[f64; N], v: &[f64; N]) -> Result<Tangent<N, BLOCK>, RunError> {
+fn tangent<const N: usize>(key: &str, q: &[f64; N], v: &[f64; N]) -> Result<Tangent<N, BLOCK>, Refusal> {
     if let Some(place) = PARAMETERS.iter().position(|known| is(known, key)) {
         return Ok(of_parameter(place));
     }

@@ -1,9 +1,9 @@
-use super::motion::{Carried, Motion, of_parameter, of_start};
-use super::{Asked, BLOCK, Rows, no_key, refused};
-use crate::in_memory::RunError;
+use super::motion::{Carried, DifferentiatedMotion, of_parameter, of_start};
+use super::{Asked, BLOCK, SensitivityRows, no_key, refused};
+use crate::in_memory::Refusal;
 use harness::ParametrisedMechanics;
 use lagrangian::{Gradients, Seeded};
-use scene::{Built, Family, FamilySystem, Model, TextScene, Varied, Visitor};
+use scene::{Built, Family, FamilySystem, TextModel, TextScene, Varied, Visitor};
 
 struct Shaped<const N: usize, const M: usize>(FamilySystem<N, M>);
 
@@ -14,7 +14,7 @@ impl<const N: usize, const M: usize> ParametrisedMechanics<N, M, BLOCK> for Shap
 }
 
 /// The numbers of a run of a system of text, with their derivatives in a block of keys.
-pub(super) fn rows(scene: &TextScene, asked: &Asked<'_>, keys: &[String]) -> Result<Rows, RunError> {
+pub(super) fn rows(scene: &TextScene, asked: &Asked<'_>, keys: &[String]) -> Result<SensitivityRows, Refusal> {
     let found = keys.iter().map(|key| found(scene, key)).collect::<Result<Vec<_>, _>>()?;
     let parameters: Vec<String> = found.iter().filter_map(|key| key.as_ref().err()).cloned().collect();
     let family = Family::new(&scene.words, &scene.model, &parameters).map_err(|error| refused(&error))?;
@@ -34,7 +34,7 @@ struct Of<'a> {
 }
 
 impl Visitor for Of<'_> {
-    type Output = Result<Rows, RunError>;
+    type Output = Result<SensitivityRows, Refusal>;
 
     fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
         let Self { scene, family, varied, asked } = self;
@@ -58,13 +58,13 @@ impl Visitor for Of<'_> {
             told
         };
         let family = &Shaped(shaped.clone());
-        let motion = Motion { system, family, parameters: *self.family.values(), q, v };
+        let motion = DifferentiatedMotion { system, family, parameters: *self.family.values(), q, v };
         motion.rows(asked, start.collect(), (&columns(&scene.model), 2 * n), told)
     }
 }
 
 /// Coordinates, rates, energy and outputs.
-fn columns(model: &Model) -> Vec<String> {
+fn columns(model: &TextModel) -> Vec<String> {
     let names = model.coordinates().iter().map(|of| of.name.clone());
     let rates = names.clone().map(|name| format!("{name}'"));
     names.chain(rates).chain(["energy".to_owned()]).chain(model.outputs().iter().cloned()).collect()
@@ -82,7 +82,7 @@ pub(super) fn full_key(scene: &TextScene, key: &str) -> Option<String> {
 }
 
 /// What a key varies: a number of the start, or else the parameter of that name.
-fn found(scene: &TextScene, key: &str) -> Result<Result<Varied, String>, RunError> {
+fn found(scene: &TextScene, key: &str) -> Result<Result<Varied, String>, Refusal> {
     let names: Vec<&str> = scene.model.coordinates().iter().map(|of| of.name.as_str()).collect();
     let bare = key.strip_prefix("start.").unwrap_or(key);
     if let Some(i) = names.iter().position(|name| *name == bare) {

@@ -4,7 +4,7 @@ use super::lab::{HEADING, Lab, PLACE, ROTOR, SPEED, SPIN, Setup};
 use crate::error::CliError;
 use harness::stability::check::{energy, follows, measured, rounding};
 use harness::stability::{Case, Claim};
-use scene::{PathSpec, SceneEffect, Shape, TimeSpec};
+use scene::{PathShape, PathSpec, SceneEffect, TimeSpec};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 pub(super) const ROTOR_DRIVE: Case = Case {
@@ -85,7 +85,7 @@ pub(super) fn planimeter(lab: &mut Lab) -> Result<(), CliError> {
     let (offset, period) = (0.5, 10.0);
     for ratio in [0.5, 1.0 - 1e-6, 1.0, 1.0 + 1e-6, 2.0] {
         let radius = ratio * offset;
-        let path = PathSpec { shape: Shape::Circle { radius, center: [0.0; 2] }, period };
+        let path = PathSpec { shape: PathShape::Circle { radius, center: [0.0; 2] }, period };
         let mut setup = Setup::new(0.0, 0.0, 0.05, period).with(SceneEffect::Tracer { path });
         // Along the circle, the tracer in its rightmost point.
         (setup.start.x, setup.start.y, setup.start.heading) = (radius, -offset, FRAC_PI_2);
@@ -120,7 +120,7 @@ pub(super) const CORNERS: Case = Case {
 pub(super) fn corners(lab: &mut Lab) -> Result<(), CliError> {
     let (offset, period, first) = (0.5, 8.0, 1.0f64);
     let vertices = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-    let path = PathSpec { shape: Shape::Polygon(vertices), period };
+    let path = PathSpec { shape: PathShape::Polygon(vertices), period };
     let mut setup = Setup::new(0.0, 0.0, 0.05, period).with(SceneEffect::Tracer { path });
     (setup.start.x, setup.start.y) = (-offset * first.cos(), -offset * first.sin());
     setup.start.heading = first;

@@ -2,7 +2,7 @@
 
 use super::lab::{HEADING, Lab, MOTION, PLACE, SPEED, SPIN, Setup};
 use crate::error::CliError;
-use harness::Kind;
+use harness::MethodKind;
 use harness::stability::check::{agrees, constraint, ends_at, energy, follows, rounding, sign_kept, stays_below};
 use harness::stability::{Case, Claim, claims};
 use std::f64::consts::PI;
@@ -120,15 +120,15 @@ pub(super) fn there_and_back(lab: &mut Lab) -> Result<(), CliError> {
 
 /// What solves for the spin relative to itself, not to the speed: closed forms, and explicit stages of quasi-velocities. The
 /// methods that keep the energy settle at the rounding of the largest momentum.
-fn keeps_small_digits(method: Kind) -> bool {
+fn keeps_small_digits(method: MethodKind) -> bool {
     let energy = claims(method, Claim::Energy).is_ok();
     claims(method, Claim::SmallSpin).is_ok() && !energy
 }
 
 /// What leads along the line by `(1 - h c u/2)/(1 + h c u/2)`, or a composition of it: it has no solution where that would
 /// change the sign of the spin. A higher order may be wrong by more than the spin.
-fn leads_by_cayley(method: Kind) -> bool {
-    matches!(method, Kind::Dla | Kind::DlaTrapezoid | Kind::DlaAlpha | Kind::Composed(_))
+fn leads_by_cayley(method: MethodKind) -> bool {
+    matches!(method, MethodKind::Dla | MethodKind::DlaTrapezoid | MethodKind::DlaAlpha | MethodKind::Composed(_))
 }
 
 pub(super) const LONG_STEP: Case = Case {
@@ -296,15 +296,17 @@ pub(super) const ROUND_OFF: Case = Case {
 
 pub(super) fn round_off(lab: &mut Lab) -> Result<(), CliError> {
     // The one that the case is about is fast, and makes them all.
-    let steps = if lab.method.info().kind == Kind::Dla { 13_000_000 } else { 20_000 };
+    let steps = if lab.method.info().kind == MethodKind::Dla { 13_000_000 } else { 20_000 };
     let mut setup = Setup { body: [1.0, 1.0, 0.0], steps, every: 100, ..Setup::new(1.0, 1.0, 0.5, 1.0) };
-    if lab.order() < 8 && lab.method.info().kind != Kind::Dla {
+    if lab.order() < 8 && lab.method.info().kind != MethodKind::Dla {
         setup.step = 0.05;
     }
     let walk = 10.0 * (steps as f64).sqrt() * f64::EPSILON;
     // Circles are not exact to these: what they lose is not rounding.
-    let dissipates =
-        matches!(lab.method.info().kind, Kind::Rk4 | Kind::Rk4Projected | Kind::ImplicitMidpoint | Kind::Gni);
+    let dissipates = matches!(
+        lab.method.info().kind,
+        MethodKind::Rk4 | MethodKind::Rk4Projected | MethodKind::ImplicitMidpoint | MethodKind::Gni
+    );
     lab.run("", &setup, |run| {
         let mut found = vec![constraint(run, 1.0)];
         if !dissipates {

@@ -126,7 +126,7 @@ impl Lab {
 
     /// Makes a run without judging it.
     pub(super) fn record(&self, setup: &Setup) -> Result<Recorded, CliError> {
-        Ok(setup.scene()?.visit(Record { method: &self.method, setup })?)
+        Ok(setup.scene()?.visit(LabRecord { method: &self.method, setup })?)
     }
 
     /// Makes a run, and keeps what `check` finds in it.
@@ -149,12 +149,12 @@ impl Lab {
     }
 }
 
-struct Record<'a> {
+struct LabRecord<'a> {
     method: &'a Method,
     setup: &'a Setup,
 }
 
-impl Visitor for Record<'_> {
+impl Visitor for LabRecord<'_> {
     type Output = Recorded;
 
     fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Recorded {

@@ -86,7 +86,7 @@ pub(crate) fn cases() -> impl Iterator<Item = &'static Case> {
 }
 
 /// A case, a method, and what came of them.
-struct Row {
+struct CaseRow {
     case: &'static str,
     method: &'static str,
     verdict: Verdict,
@@ -113,7 +113,7 @@ pub(crate) fn stability(arguments: &StabilityArguments) -> Result<(), CliError> 
         let mut lab = Lab::new(*method);
         let tried = try_it(&mut lab);
         bar.inc(1);
-        tried.map(|()| Row {
+        tried.map(|()| CaseRow {
             case: case.name,
             method: method.info().name,
             verdict: judge(case, claims(method.info().kind, case.claim), &lab.trials),
@@ -174,7 +174,7 @@ fn named(name: &str) -> Result<&'static (Case, Trying), CliError> {
     })
 }
 
-fn object(row: &Row) -> Value {
+fn object(row: &CaseRow) -> Value {
     let worst = row.verdict.worst;
     // A number that is none has no place in JSON.
     let number = |x: Option<f64>| x.filter(|x| x.is_finite());
@@ -188,7 +188,7 @@ fn object(row: &Row) -> Value {
     })
 }
 
-fn text(rows: &[Row]) -> String {
+fn text(rows: &[CaseRow]) -> String {
     let number = |x: Option<f64>| x.map_or_else(|| "-".to_owned(), |x| format!("{x:.1e}"));
     let cells: Vec<_> = rows
         .iter()

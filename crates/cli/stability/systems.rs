@@ -5,14 +5,15 @@ use crate::error::CliError;
 use dla::{Dependency, Dla, Energy, Gauss, InChart, Lobatto, Schedule, State, StepError, Stepper, drive};
 use harness::stability::check::{constant, follows, measured};
 use harness::stability::{Case, Claim, Recorded, Recorder, Seen, VALUES};
-use harness::{Kind, Method, Rk4Reduced};
+use harness::{Method, MethodKind, Rk4Reduced};
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
 use models::CompoundPendulum;
 use sleigh::{Exact, Sleigh, SleighState};
 use std::f64::consts::PI;
 
 /// The methods that make these cases.
-pub(super) const METHODS: [Kind; 5] = [Kind::Dla, Kind::Lobatto(3), Kind::Gauss(4), Kind::Energy(1), Kind::Rk4Reduced];
+pub(super) const METHODS: [MethodKind; 5] =
+    [MethodKind::Dla, MethodKind::Lobatto(3), MethodKind::Gauss(4), MethodKind::Energy(1), MethodKind::Rk4Reduced];
 
 /// The systems with two constraints, of one type, so that every method is compiled once for all of them.
 #[derive(Debug, Clone, Copy)]
@@ -125,11 +126,11 @@ fn stepper<const N: usize, const M: usize>(method: &Method) -> Option<Stepper<'s
         return Some(method.stepper());
     }
     Some(match kind {
-        Kind::Dla => Box::new(Dla::midpoint()),
-        Kind::Lobatto(3) => Box::new(Lobatto::<3>::new()),
-        Kind::Gauss(4) => Box::new(Gauss::new::<4>()),
-        Kind::Energy(1) => Box::new(Energy::new::<1>()),
-        Kind::Rk4Reduced => Box::new(Rk4Reduced),
+        MethodKind::Dla => Box::new(Dla::midpoint()),
+        MethodKind::Lobatto(3) => Box::new(Lobatto::<3>::new()),
+        MethodKind::Gauss(4) => Box::new(Gauss::new::<4>()),
+        MethodKind::Energy(1) => Box::new(Energy::new::<1>()),
+        MethodKind::Rk4Reduced => Box::new(Rk4Reduced),
         _ => return None,
     })
 }

@@ -6,7 +6,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use dla::{Gauss, GaussAdaptive, OneStep, Schedule, State, drive};
-use lagrangian::{Effect, Scalar, Slope, System, With};
+use lagrangian::{Effect, EffectSlope, Scalar, System, With};
 use sleigh::effects::Bowl;
 use sleigh::series::{InOwnAxes, OwnPush, PushInOwnAxes};
 use sleigh::{RoundWell, Sleigh, SleighBody, SleighState, Taylor};
@@ -32,10 +32,10 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for AtBlade {
         Some((q[0] * q[0] + q[1] * q[1]) * (-0.5 * self.0))
     }
     #[inline(always)]
-    fn slope<S: Scalar>(&self, _body: &B, _t: S, q: &[S; N]) -> Slope<S, N> {
+    fn slope<S: Scalar>(&self, _body: &B, _t: S, q: &[S; N]) -> EffectSlope<S, N> {
         let mut slope = [S::zero(); N];
         (slope[0], slope[1]) = (q[0] * -self.0, q[1] * -self.0);
-        Slope::Known(slope)
+        EffectSlope::Known(slope)
     }
 }
 

@@ -17,7 +17,7 @@ pub(crate) type UnknownsRow = [f64; COORDINATES];
 /// It is renewed where the corrections that it cost more than a new one would take as long as a new one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(64))]
-pub(crate) struct Derivatives {
+pub(crate) struct StepDerivatives {
     columns: [UnknownsRow; COORDINATES],
     /// Whether its determinant is positive.
     pub(crate) positive: bool,
@@ -36,7 +36,7 @@ pub(crate) struct Derivatives {
     unseen: u32,
 }
 
-impl Derivatives {
+impl StepDerivatives {
     pub(crate) const NONE: Self = Self {
         columns: [[0.0; COORDINATES]; COORDINATES],
         positive: true,
@@ -199,8 +199,8 @@ mod tests {
     use super::*;
     use approx::assert_abs_diff_eq;
 
-    fn renewed<const N: usize>(matrix: &[[f64; N]; N]) -> Derivatives {
-        let mut derivatives = Derivatives::NONE;
+    fn renewed<const N: usize>(matrix: &[[f64; N]; N]) -> StepDerivatives {
+        let mut derivatives = StepDerivatives::NONE;
         derivatives.renew(matrix).unwrap();
         derivatives
     }
@@ -228,7 +228,7 @@ mod tests {
         undoes::<4>();
         undoes::<7>();
         undoes::<8>();
-        let mut none = Derivatives::NONE;
+        let mut none = StepDerivatives::NONE;
         assert!(none.renew(&[[1.0, 2.0], [2.0, 4.0]]).is_none());
         // Nearly so; and of very different sizes, which is no loss.
         assert!(none.renew(&[[1.0, 2.0], [2.0, 4.0001]]).is_none());
@@ -277,9 +277,9 @@ mod tests {
         assert!(!derivatives.suffice(1e-13, 1.0), "for too long");
         derivatives.have_sufficed(1e-14, 1.0, || true);
         assert!(derivatives.suffice(0.5e-13, 1.0) && !derivatives.suffice(0.6e-13, 1.0), "half of what it was");
-        for forget in
-            [Derivatives::have_not_sufficed, Derivatives::forget, |d: &mut Derivatives| d.renew(&[[2.0]]).unwrap()]
-        {
+        for forget in [StepDerivatives::have_not_sufficed, StepDerivatives::forget, |d: &mut StepDerivatives| {
+            d.renew(&[[2.0]]).unwrap();
+        }] {
             let mut other = derivatives;
             forget(&mut other);
             assert!(!other.suffice(1e-14, 1.0));

@@ -1,5 +1,5 @@
 use crate::State;
-use crate::derivatives::{COORDINATES, Derivatives, UnknownsRow, counted, switch};
+use crate::derivatives::{COORDINATES, StepDerivatives, UnknownsRow, counted, switch};
 use crate::past::Past;
 use crate::settle::LEAST;
 use crate::unknowns::Unknowns;
@@ -16,9 +16,9 @@ pub(crate) struct Kept {
     /// The formulation of predicted steps.
     unknowns: Unknowns,
     /// The frozen Jacobian `h D1 D2 L_d`, with the derivatives of the forces; `W(q0)' h D1 D2 L_d W` in the basis.
-    pub(crate) block: Derivatives,
+    pub(crate) block: StepDerivatives,
     /// The frozen mass matrix; `W' M W` in the basis.
-    pub(crate) mass: Derivatives,
+    pub(crate) mass: StepDerivatives,
     /// Predictor of the velocity at the end, in coordinates.
     pub(crate) velocities: Past<COORDINATES>,
     /// Predictors in the basis: of the mean velocity, of the mean quasi-velocities, and of the quasi-velocities at the end.
@@ -47,8 +47,8 @@ impl Kept {
         pause: 0,
         next_pause: 1,
         unknowns: Unknowns::UNDECIDED,
-        block: Derivatives::NONE,
-        mass: Derivatives::NONE,
+        block: StepDerivatives::NONE,
+        mass: StepDerivatives::NONE,
         velocities: Past::new(),
         ways: Past::new(),
         means: Past::new(),

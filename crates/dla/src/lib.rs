@@ -72,14 +72,14 @@ pub use drive::{Observer, Part, RunError, Schedule, View, drive, drive_part};
 pub use energy::Energy;
 pub use ensemble::{Each, Ensemble, GaussEnsemble, LaneState, Same, Systems};
 pub use events::{Close, Crossing, Direction, Event, Watch, Zero, close_crossings, zeros};
-pub use gauss::{Collocation, Gauss, GaussAdaptive, Outcome};
+pub use gauss::{Collocation, CollocationOutcome, Gauss, GaussAdaptive};
 pub use gni::Gni;
 pub use hermite::Hermite;
 pub use hint::Hint;
 pub use history::History;
 pub use in_chart::InChart;
 pub use known_angle::KnownAngle;
-pub use lobatto::{Linearised as LinearisedStage, Lobatto, Point as StagePoint, Tables as LobattoTables};
+pub use lobatto::{LinearisedStage, Lobatto, LobattoTables, StagePoint};
 pub use mechanics::{Diagnosis, FullMechanics, Mechanics, RoundedMechanics, SecondSlopes, SeededMechanics, Slopes};
 pub use newton::{Equations, Newton, NewtonError};
 pub use not_a_number::{Derivative, NotANumber, SystemFunction, Variable, not_a_number};
@@ -94,7 +94,7 @@ pub use runaway::Runaway;
 pub use samples::Samples;
 pub use sensitivity::{
     Differentiable, ReducedDerivative, ReducedVariation, Sensitivity, SensitivityError, StepDerivative, StepEquations,
-    StepStart, Tangent, TangentRunError, Unknowns, Variation,
+    StepStart, StepUnknowns, Tangent, TangentRunError, Variation,
 };
 pub use stack::StackUse;
 pub use start::{Start, consistent_start, slip};

@@ -1,6 +1,6 @@
 use crate::History;
 use crate::convergence::tolerances::SETTLED;
-use crate::convergence::{Convergence, Demand, Kind};
+use crate::convergence::{Convergence, CorrectionKind, Demand};
 use lagrangian::linear::Singular;
 use thiserror::Error;
 
@@ -207,7 +207,7 @@ impl Newton {
             for (x, d) in x.as_flattened_mut().iter_mut().zip(correction.as_flattened()) {
                 *x += d;
             }
-            let kind = if equations.is_simplified() { Kind::Simplified } else { Kind::Newton };
+            let kind = if equations.is_simplified() { CorrectionKind::Simplified } else { CorrectionKind::Newton };
             let demand = Demand { kind, tolerance: self.tolerance, limit: self.max_iterations, refinable, near };
             let (x, correction) = (x.as_flattened(), correction.as_flattened());
             if convergence.check(demand, x, correction, || equations.roundings(&at))? {

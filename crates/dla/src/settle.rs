@@ -1,5 +1,5 @@
 use crate::convergence::tolerances::{SHRINKING, SLIGHT, STALL};
-use crate::convergence::{Kind, is_settled};
+use crate::convergence::{CorrectionKind, is_settled};
 use lagrangian::from_fn;
 
 /// The fewest evaluations of the residual in an iteration: one for the first correction, and one that finds the equations met.
@@ -50,7 +50,8 @@ impl<const N: usize> Settle<N> {
     fn has_settled(&self, x: &[f64; N], d: &[f64; N], last: &[f64; N], rounding: bool) -> bool {
         (0..N).fold(true, |all, i| {
             let (d, x, last) = (d[i].abs(), x[i].abs(), last[i]);
-            all & (is_settled(Kind::Simplified, self.tolerance, x, d, last) | (rounding & (d >= STALL * last)))
+            all & (is_settled(CorrectionKind::Simplified, self.tolerance, x, d, last)
+                | (rounding & (d >= STALL * last)))
         })
     }
 }

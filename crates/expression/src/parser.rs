@@ -1,5 +1,5 @@
 use crate::names::{PI, shortened};
-use crate::syntax::{Action, Step};
+use crate::syntax::{Action, SyntaxStep};
 use crate::tokens::{Token, Tokens};
 use crate::{Error, Function, Limits, Names, Syntax, nearest};
 
@@ -50,7 +50,7 @@ struct Parser<'a> {
     names: &'a Names,
     limits: &'a Limits,
     open: Vec<Open>,
-    steps: Vec<Step>,
+    steps: Vec<SyntaxStep>,
 }
 
 impl Parser<'_> {
@@ -203,7 +203,7 @@ impl Parser<'_> {
         if self.steps.len() >= self.limits.nodes {
             return Err(Error::TooManyNodes { column, limit: self.limits.nodes });
         }
-        self.steps.push(Step { column, action });
+        self.steps.push(SyntaxStep { column, action });
         Ok(())
     }
 }

@@ -7,12 +7,12 @@ use lagrangian::Scalar;
 /// It has no tree, so that nothing that is done with it recurs, however deep the text is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Syntax {
-    pub(crate) steps: Vec<Step>,
+    pub(crate) steps: Vec<SyntaxStep>,
 }
 
 /// A number, a name or an operation, and the column where it stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Step {
+pub(crate) struct SyntaxStep {
     pub(crate) column: usize,
     pub(crate) action: Action,
 }
@@ -84,7 +84,7 @@ impl Syntax {
     /// The positions of the names that occur, in order.
     #[must_use]
     pub fn names(&self) -> Vec<usize> {
-        let name = |step: &Step| if let Action::Name(k) = step.action { Some(k) } else { None };
+        let name = |step: &SyntaxStep| if let Action::Name(k) = step.action { Some(k) } else { None };
         let mut names: Vec<usize> = self.steps.iter().filter_map(name).collect();
         names.sort_unstable();
         names.dedup();
@@ -94,7 +94,7 @@ impl Syntax {
     /// The column in which a function is first used.
     #[must_use]
     pub fn first_use(&self, function: Function) -> Option<usize> {
-        let here = |step: &&Step| step.action == Action::Call(function);
+        let here = |step: &&SyntaxStep| step.action == Action::Call(function);
         self.steps.iter().filter(here).map(|step| step.column).min()
     }
 }

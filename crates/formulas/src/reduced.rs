@@ -8,7 +8,7 @@ use expression::{Expression, Graph};
 ///
 /// The variable of the quasi-velocity `k` is that of the rate of the coordinate `k`.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Reduced {
+pub struct ReducedFormulas {
     /// The vectors of the basis.
     pub basis: Vec<Vec<Expression>>,
     /// The rates of the coordinates.
@@ -26,8 +26,8 @@ impl Formulas {
     /// `W' L_vv W xi' = W' (L_q + F - d/dt L_v at frozen xi)`, solved symbolically.
     ///
     /// They are written in several ways, with products as they come or multiplied out; the shortest is taken.
-    pub fn reduced(&mut self) -> Option<Reduced> {
-        let mut best: Option<(usize, Reduced)> = None;
+    pub fn reduced(&mut self) -> Option<ReducedFormulas> {
+        let mut best: Option<(usize, ReducedFormulas)> = None;
         for of_basis in [Written::Expanded, Written::Plainly] {
             for written in [Written::Shorter, Written::Expanded, Written::Plainly] {
                 let Some(reduced) = self.reduced_as(of_basis, written) else { continue };
@@ -41,18 +41,18 @@ impl Formulas {
         Some(best?.1)
     }
 
-    fn reduced_as(&mut self, of_basis: Written, written: Written) -> Option<Reduced> {
+    fn reduced_as(&mut self, of_basis: Written, written: Written) -> Option<ReducedFormulas> {
         let basis = self.whole_basis_as(of_basis)?;
         self.reduced_along(basis, written)
     }
 
     /// The reduced equations in a basis of the admissible velocities, written in the way that is shorter entry by entry: quicker to derive
     /// than the shortest of [`reduced`](Self::reduced). None where they are too large.
-    pub fn reduced_in(&mut self, basis: Vec<Vec<Expression>>) -> Option<Reduced> {
+    pub fn reduced_in(&mut self, basis: Vec<Vec<Expression>>) -> Option<ReducedFormulas> {
         self.reduced_along(basis, Written::Shorter)
     }
 
-    fn reduced_along(&mut self, basis: Vec<Vec<Expression>>, written: Written) -> Option<Reduced> {
+    fn reduced_along(&mut self, basis: Vec<Vec<Expression>>, written: Written) -> Option<ReducedFormulas> {
         let n = self.n;
         let freedoms = basis.len();
         let rates = self.rates();
@@ -125,7 +125,7 @@ impl Formulas {
         let stands_alone = acceleration.iter().all(|&e| !here(graph, e));
         let reconstruction = cascade(graph, &v, n);
         graph.check().ok()?;
-        Some(Reduced { basis, velocity: v, acceleration, reconstruction, stands_alone })
+        Some(ReducedFormulas { basis, velocity: v, acceleration, reconstruction, stands_alone })
     }
 
     /// The shortest velocity that meets an affine constraint, `v_b = -A' (A A')^-1 b`.

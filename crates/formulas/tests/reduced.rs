@@ -3,7 +3,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use expression::{Names, Tape};
-use formulas::{Formulas, Parameters, Reduced, Unit, Words};
+use formulas::{Formulas, Parameters, ReducedFormulas, Unit, Words};
 
 /// A system by its coordinates (angles with a star), parameters, Lagrangian and constraints.
 fn formulas(coordinates: &str, parameters: &str, lagrangian: &str, constraints: &[&str]) -> (Formulas, Names) {
@@ -28,7 +28,7 @@ fn formulas(coordinates: &str, parameters: &str, lagrangian: &str, constraints: 
 }
 
 /// The vectors of the basis, the accelerations, and how many operations these take.
-fn told(formulas: &Formulas, names: &Names, reduced: &Reduced) -> (Vec<String>, Vec<String>, usize) {
+fn told(formulas: &Formulas, names: &Names, reduced: &ReducedFormulas) -> (Vec<String>, Vec<String>, usize) {
     let text = |e| formulas.graph.text(e, names).unwrap();
     let tape = Tape::new(&formulas.graph, &reduced.acceleration).unwrap();
     let vectors = reduced.basis.iter().map(|w| w.iter().map(|&e| text(e)).collect::<Vec<_>>().join(", ")).collect();

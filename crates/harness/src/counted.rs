@@ -1,6 +1,6 @@
 //! A system that counts how often it is evaluated.
 
-use dla::{Collocation, Diagnosis, Mechanics, NotANumber, Outcome, RoundedMechanics, SecondSlopes, Slopes};
+use dla::{Collocation, CollocationOutcome, Diagnosis, Mechanics, NotANumber, RoundedMechanics, SecondSlopes, Slopes};
 use lagrangian::linear::Singular;
 use lagrangian::{
     AdmissibleBasis, Bracket, Constraint, ConstraintSlopes, Dependence, Dual, EnergySlope, HyperDual, Lanes, Motion,
@@ -92,7 +92,7 @@ impl<const N: usize, const M: usize> Mechanics<N, M> for Counted<'_, N, M> {
         1 bracket(t: Lanes, q: &[Lanes; N], xi: &[Lanes; N]) -> Option<Bracket<Lanes, N, M>>;
         1 energy_slope(t: Lanes, q: &[Lanes; N], xi: &[Lanes; N]) -> Option<EnergySlope<Lanes, N>>;
         some force_at_eight(t: Lanes, q: &[Lanes; N], v: &[Lanes; N]) -> Option<[Lanes; N]>;
-        0 collocate(stages: Collocation<'_, N>) -> Option<Outcome<N>>;
+        0 collocate(stages: Collocation<'_, N>) -> Option<CollocationOutcome<N>>;
     }
 }
 

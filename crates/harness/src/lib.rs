@@ -34,8 +34,8 @@ pub use assembled::{
 };
 pub use baseline::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced};
 pub use cost::{step_evaluations, step_time};
-pub use drift::{Blocks, Drift, Energies, Verdict};
-pub use method::{Kind, METHODS, Method, MethodError, MethodInfo};
+pub use drift::{Blocks, Drift, DriftVerdict, Energies};
+pub use method::{METHODS, Method, MethodError, MethodInfo, MethodKind};
 pub use record::{EnergySummary, NewtonSummary, Record, Sample};
 pub use run::{Request, integrate, integrate_from, integrate_on, integrate_pieces, run, timed};
 pub use saved::{Saving, run_saved};

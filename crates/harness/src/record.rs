@@ -1,5 +1,5 @@
 use crate::slip::Slip;
-use crate::{Blocks, Drift, Energies, Method, MethodInfo, Request, SubstepSummary, Trend, Verdict};
+use crate::{Blocks, Drift, DriftVerdict, Energies, Method, MethodInfo, Request, SubstepSummary, Trend};
 use dla::{Checkpoint, CheckpointError, Observer, RunError, State, StepError, StepReport, Undivided, View, Work};
 use lagrangian::linear::larger;
 use std::ops::ControlFlow;
@@ -97,7 +97,7 @@ impl<const N: usize> Record<N> {
 
     /// What the error of the energy does; none of a run that did not reach its end.
     #[must_use]
-    pub fn verdict(&self) -> Option<Verdict> {
+    pub fn verdict(&self) -> Option<DriftVerdict> {
         self.is_whole().then_some(self.energy.drift.verdict)
     }
 

@@ -4,7 +4,7 @@ use crate::analysis::differentiable;
 use crate::run::integrate_pieces;
 use crate::stepper::{energy, gauss};
 use crate::timing::Ticker;
-use crate::{Again, Kind, METHODS, Method, Progress, Request};
+use crate::{Again, METHODS, Method, MethodKind, Progress, Request};
 use dla::{
     Differentiable, FullMechanics, Lobatto, Observer, OneStep, RunError, Sensitivity, SensitivityError, State,
     StepReport, Subject, Tangent, TangentRunError, View,
@@ -63,9 +63,9 @@ pub enum SensitivitiesError {
 fn equations<const N: usize, const M: usize>(method: &Method) -> Result<Box<dyn Differentiable<N, M>>, &'static str> {
     let info = method.info();
     Ok(match info.kind {
-        Kind::Gauss(stages) => Box::new(gauss(stages)),
-        Kind::Lobatto(3) => Box::new(Lobatto::<3>::new()),
-        Kind::Energy(stages) => Box::new(energy(stages)),
+        MethodKind::Gauss(stages) => Box::new(gauss(stages)),
+        MethodKind::Lobatto(3) => Box::new(Lobatto::<3>::new()),
+        MethodKind::Energy(stages) => Box::new(energy(stages)),
         _ => {
             const ELSEWHERE: &str = "the derivatives are in the library (dla::Sensitivity) and not in this program";
             return differentiable(method).ok_or(info.tangent.err().unwrap_or(ELSEWHERE));

@@ -1,6 +1,6 @@
 //! The methods by name, as objects: compiled here for the shapes of the systems of scenes, and nowhere else for these.
 
-use crate::{Dop853, ImplicitMidpoint, Kind, Method, Rk4, Rk4Projected, Rk4Reduced};
+use crate::{Dop853, ImplicitMidpoint, Method, MethodKind, Rk4, Rk4Projected, Rk4Reduced};
 use dla::{
     Composition, Dla, Energy, Gauss, GaussAdaptive, Gni, Lobatto, Mechanics, OneStep, OwnMethods, Rebased, State,
     StepError, StepReport, Stepper,
@@ -23,10 +23,10 @@ impl Method {
     ) -> Stepper<'a, N, M> {
         let midpoint = || own.closed_map(t, self.as_dla().stepper());
         match self.info().kind {
-            Kind::Dla => midpoint(),
-            Kind::DlaAlpha if self.alpha().is_symmetric() => midpoint(),
-            Kind::Composed(order) => Box::new(composed(order, midpoint())),
-            Kind::Taylor => own.series(t, self.tolerance()).unwrap_or_else(|| self.stepper()),
+            MethodKind::Dla => midpoint(),
+            MethodKind::DlaAlpha if self.alpha().is_symmetric() => midpoint(),
+            MethodKind::Composed(order) => Box::new(composed(order, midpoint())),
+            MethodKind::Taylor => own.series(t, self.tolerance()).unwrap_or_else(|| self.stepper()),
             _ => self.stepper(),
         }
     }
@@ -104,22 +104,24 @@ fn of_18_6(method: &Method) -> Stepper<'static, 18, 6> {
 /// The one place where a name becomes a type.
 fn make<const N: usize, const M: usize>(method: &Method) -> Stepper<'static, N, M> {
     match method.info().kind {
-        Kind::Dla => Box::new(Rebased::new(Dla::midpoint())),
-        Kind::DlaTrapezoid | Kind::DlaAlpha => Box::new(Rebased::new(Dla::new(method.rule(), method.rule()))),
-        Kind::Composed(order) => Box::new(Rebased::new(composed(order, Dla::midpoint()))),
-        Kind::Lobatto(3) => Box::new(Rebased::new(Lobatto::<3>::new())),
-        Kind::Lobatto(4) => Box::new(Rebased::new(Lobatto::<4>::new())),
-        Kind::Lobatto(_) => Box::new(Rebased::new(Lobatto::<5>::new())),
-        Kind::Gauss(stages) => Box::new(Rebased::new(gauss(stages))),
-        Kind::GaussAdaptive => Box::new(Rebased::new(GaussAdaptive::new::<8>(method.tolerance()))),
-        Kind::Taylor => Box::new(NoSeries),
-        Kind::Energy(stages) => Box::new(Rebased::new(energy(stages))),
-        Kind::Gni => Box::new(Rebased::new(Gni::<N>::default())),
-        Kind::Rk4 => Box::new(Rk4),
-        Kind::Rk4Projected => Box::new(Rk4Projected),
-        Kind::Rk4Reduced => Box::new(Rebased::new(Rk4Reduced)),
-        Kind::ImplicitMidpoint => Box::new(Rebased::new(ImplicitMidpoint::default())),
-        Kind::Dop853 => Box::new(Rebased::new(Dop853::<N, M>::new(method.tolerance()))),
+        MethodKind::Dla => Box::new(Rebased::new(Dla::midpoint())),
+        MethodKind::DlaTrapezoid | MethodKind::DlaAlpha => {
+            Box::new(Rebased::new(Dla::new(method.rule(), method.rule())))
+        }
+        MethodKind::Composed(order) => Box::new(Rebased::new(composed(order, Dla::midpoint()))),
+        MethodKind::Lobatto(3) => Box::new(Rebased::new(Lobatto::<3>::new())),
+        MethodKind::Lobatto(4) => Box::new(Rebased::new(Lobatto::<4>::new())),
+        MethodKind::Lobatto(_) => Box::new(Rebased::new(Lobatto::<5>::new())),
+        MethodKind::Gauss(stages) => Box::new(Rebased::new(gauss(stages))),
+        MethodKind::GaussAdaptive => Box::new(Rebased::new(GaussAdaptive::new::<8>(method.tolerance()))),
+        MethodKind::Taylor => Box::new(NoSeries),
+        MethodKind::Energy(stages) => Box::new(Rebased::new(energy(stages))),
+        MethodKind::Gni => Box::new(Rebased::new(Gni::<N>::default())),
+        MethodKind::Rk4 => Box::new(Rk4),
+        MethodKind::Rk4Projected => Box::new(Rk4Projected),
+        MethodKind::Rk4Reduced => Box::new(Rebased::new(Rk4Reduced)),
+        MethodKind::ImplicitMidpoint => Box::new(Rebased::new(ImplicitMidpoint::default())),
+        MethodKind::Dop853 => Box::new(Rebased::new(Dop853::<N, M>::new(method.tolerance()))),
     }
 }
 

@@ -25,10 +25,10 @@ pub trait Effect<B, const N: usize> {
     /// The derivative `dL/dq` of what the effect adds to the Lagrangian, by hand: for a term without velocities, as a
     /// potential is. The equations of motion of a body that knows its own then need no automatic ones.
     #[inline(always)]
-    fn slope<S: Scalar>(&self, body: &B, t: S, q: &[S; N]) -> Slope<S, N> {
+    fn slope<S: Scalar>(&self, body: &B, t: S, q: &[S; N]) -> EffectSlope<S, N> {
         match self.lagrangian(body, t, q, &[S::zero(); N]) {
-            Some(_) => Slope::Unknown,
-            None => Slope::Nothing,
+            Some(_) => EffectSlope::Unknown,
+            None => EffectSlope::Nothing,
         }
     }
 
@@ -54,7 +54,7 @@ pub trait Effect<B, const N: usize> {
 
 /// What [`Effect::slope`] knows.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Slope<S, const N: usize> {
+pub enum EffectSlope<S, const N: usize> {
     /// The effect adds nothing to the Lagrangian.
     Nothing,
     /// The derivative, by hand.
@@ -63,7 +63,7 @@ pub enum Slope<S, const N: usize> {
     Unknown,
 }
 
-impl<S: Scalar, const N: usize> Slope<S, N> {
+impl<S: Scalar, const N: usize> EffectSlope<S, N> {
     #[inline(always)]
     fn and(self, other: Self) -> Self {
         match (self, other) {
@@ -138,8 +138,8 @@ macro_rules! tuple_of_effects {
                 sum
             }
             #[inline(always)]
-            fn slope<S: Scalar>(&self, body: &B, t: S, q: &[S; N]) -> Slope<S, N> {
-                Slope::Nothing$(.and(self.$index.slope(body, t, q)))+
+            fn slope<S: Scalar>(&self, body: &B, t: S, q: &[S; N]) -> EffectSlope<S, N> {
+                EffectSlope::Nothing$(.and(self.$index.slope(body, t, q)))+
             }
             #[inline(always)]
             fn has_force(&self) -> bool {
@@ -181,10 +181,10 @@ impl<B, E: Effect<B, N>, const N: usize> Effect<B, N> for Vec<E> {
         )
     }
     #[inline(always)]
-    fn slope<S: Scalar>(&self, body: &B, t: S, q: &[S; N]) -> Slope<S, N> {
+    fn slope<S: Scalar>(&self, body: &B, t: S, q: &[S; N]) -> EffectSlope<S, N> {
         S::over(
             self,
-            Slope::Nothing,
+            EffectSlope::Nothing,
             #[inline(always)]
             |sum, effect| sum.and(effect.slope(body, t, q)),
         )

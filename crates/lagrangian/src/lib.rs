@@ -79,7 +79,7 @@ pub use constraint_slopes::ConstraintSlopes;
 pub use curvature::{add_position_curvature, add_reaction_curvature};
 pub use discrete::{Derivatives, DiscreteConstraint, DiscreteLagrangian, gradients, on_line, residual_along};
 pub use dual::Dual;
-pub use effect::{Effect, Slope};
+pub use effect::{Effect, EffectSlope};
 pub use factored::FactoredSaddle;
 pub use functions::Function;
 pub use fused::mul_add;

@@ -1,6 +1,6 @@
 use crate::read::{Described, Kind};
 use expression::Expression;
-use formulas::{Formulas, Parameters, Reduced, TextError, Unit};
+use formulas::{Formulas, Parameters, ReducedFormulas, TextError, Unit};
 use proc_macro2::TokenStream;
 use quote::{ToTokens, quote};
 use std::str::FromStr;
@@ -85,7 +85,7 @@ fn structure(
 }
 
 /// The functions of `System`.
-fn functions(printer: &Printer<'_>, reduced: Option<&Reduced>) -> Result<TokenStream> {
+fn functions(printer: &Printer<'_>, reduced: Option<&ReducedFormulas>) -> Result<TokenStream> {
     let formulas = printer.formulas;
     let (n, m) = (formulas.n, formulas.m);
     let lagrangian = printer.one(formulas.lagrangian, "v")?;
@@ -139,7 +139,7 @@ fn functions(printer: &Printer<'_>, reduced: Option<&Reduced>) -> Result<TokenSt
 }
 
 /// The reduced equations.
-fn by_hand(printer: &Printer<'_>, reduced: &Reduced) -> Result<TokenStream> {
+fn by_hand(printer: &Printer<'_>, reduced: &ReducedFormulas) -> Result<TokenStream> {
     let (n, m, name) = (printer.formulas.n, printer.formulas.m, &printer.described.name);
     let rest = (reduced.acceleration.len()..n).map(|_| quote!(S::zero()));
     let motion = printer.all(&reduced.acceleration, "xi", |results| quote!(Some([#(#results,)* #(#rest),*])))?;

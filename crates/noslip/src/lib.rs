@@ -211,7 +211,7 @@ mod book {
     #[doc = include_str!("../../../docs/phenomena/parking.md")]
     pub struct Parking;
     #[doc = include_str!("../../../docs/phenomena/flywheel.md")]
-    pub struct Flywheel;
+    pub struct FlywheelPage;
     #[doc = include_str!("../../../docs/sensitivities.md")]
-    pub struct Sensitivities;
+    pub struct SensitivitiesPage;
 }

@@ -1,6 +1,6 @@
 use crate::errors::{BusyError, raised};
 use crate::supervise::{Supervised, supervised};
-use cli::{Called, Plan};
+use cli::{CommandOutput, SweepPlan};
 use pyo3::prelude::*;
 use std::ffi::OsString;
 
@@ -19,7 +19,7 @@ pub(crate) fn command(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Output> {
     let Supervised { value, ended } = supervised(py, progress, |caller| cli::call(arguments, caller))?;
-    let Called { code, out, err, busy } = value;
+    let CommandOutput { code, out, err, busy } = value;
     let ended = if busy { Some(BusyError::new_err(err.trim().to_owned())) } else { ended };
     Ok((code, out, err, ended.map(|error| error.into_value(py).into_any())))
 }
@@ -27,6 +27,6 @@ pub(crate) fn command(
 /// The parts that the sweep in a file is computed in.
 #[pyfunction]
 pub(crate) fn plan(sweep: &str, parts: u64) -> PyResult<Planned> {
-    let Plan { stem, members, parts } = cli::plan(sweep, parts).map_err(raised)?;
+    let SweepPlan { stem, members, parts } = cli::plan(sweep, parts).map_err(raised)?;
     Ok((stem, members, parts))
 }

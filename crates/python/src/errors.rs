@@ -1,4 +1,4 @@
-use cli::RunError;
+use cli::Refusal;
 use pyo3::PyErr;
 use pyo3::create_exception;
 use pyo3::exceptions::PyException;
@@ -14,6 +14,6 @@ create_exception!(noslip, ComputationError, NoslipError, "The computation failed
 create_exception!(noslip, BusyError, RequestError, "Another process writes the same output.");
 
 /// The exception of what was not computed.
-pub(crate) fn raised(RunError { message, request }: RunError) -> PyErr {
+pub(crate) fn raised(Refusal { message, request }: Refusal) -> PyErr {
     if request { RequestError::new_err(message) } else { ComputationError::new_err(message) }
 }

@@ -1,4 +1,4 @@
-use crate::finding::Finding;
+use crate::finding::SceneFinding;
 use std::io;
 use thiserror::Error;
 
@@ -11,28 +11,28 @@ use thiserror::Error;
 pub enum SceneError {
     /// The text is not TOML.
     #[error("{0}")]
-    Syntax(Box<Finding>),
+    Syntax(Box<SceneFinding>),
     /// The file's bytes are not UTF-8.
     #[error("{0}")]
-    Encoding(Box<Finding>),
+    Encoding(Box<SceneFinding>),
     /// A table or a required key is not there.
     #[error("{0}")]
-    Missing(Box<Finding>),
+    Missing(Box<SceneFinding>),
     /// A key that no scene has.
     #[error("{0}")]
-    UnknownKey(Box<Finding>),
+    UnknownKey(Box<SceneFinding>),
     /// A method or an effect that this version does not have.
     #[error("{0}")]
-    UnknownName(Box<Finding>),
+    UnknownName(Box<SceneFinding>),
     /// Not a number, not a string or not a table where one belongs.
     #[error("{0}")]
-    WrongType(Box<Finding>),
+    WrongType(Box<SceneFinding>),
     /// A number that is not finite, that no body or run can have, or that does not go with another.
     #[error("{0}")]
-    OutOfRange(Box<Finding>),
+    OutOfRange(Box<SceneFinding>),
     /// A text of a system that is no formula, or not one that may stand there; or a system that such texts do not determine.
     #[error("{0}")]
-    Formula(Box<Finding>),
+    Formula(Box<SceneFinding>),
     /// Neither a bundled scene nor a file.
     #[error(
         "no bundled scene and no file is named `{}`{}\n  = accepted: the path of a scene file, or one of {}",
@@ -75,7 +75,7 @@ pub enum SceneError {
 impl SceneError {
     /// Where in the text the error is and what is accepted there; `None` when there is no text.
     #[must_use]
-    pub fn finding(&self) -> Option<&Finding> {
+    pub fn finding(&self) -> Option<&SceneFinding> {
         match self {
             Self::Syntax(finding)
             | Self::Encoding(finding)
@@ -90,7 +90,7 @@ impl SceneError {
     }
 
     /// The same, to be changed.
-    pub(crate) fn finding_mut(&mut self) -> Option<&mut Finding> {
+    pub(crate) fn finding_mut(&mut self) -> Option<&mut SceneFinding> {
         match self {
             Self::Syntax(finding)
             | Self::Encoding(finding)

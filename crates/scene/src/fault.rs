@@ -1,12 +1,12 @@
 use crate::error::SceneError;
-use crate::finding::{Excerpt, Finding, Place};
+use crate::finding::{Excerpt, Place, SceneFinding};
 
 /// A fault that has no place yet: what the checks of values return, whether the values come from a file or from the
 /// command line.
 #[derive(Debug)]
 pub(crate) struct Fault {
     /// The variant to become.
-    pub(crate) variant: fn(Box<Finding>) -> SceneError,
+    pub(crate) variant: fn(Box<SceneFinding>) -> SceneError,
     /// The key at fault, without the path of its table.
     pub(crate) key: &'static str,
     pub(crate) problem: String,
@@ -18,7 +18,7 @@ pub(crate) struct Fault {
 impl Fault {
     /// The error at a place of a text; what the text says there is shown and need not be found again.
     pub(crate) fn at(self, origin: &str, place: Option<Place>, field: Option<String>, excerpt: Excerpt) -> SceneError {
-        (self.variant)(Box::new(Finding {
+        (self.variant)(Box::new(SceneFinding {
             origin: origin.to_owned(),
             place,
             field,

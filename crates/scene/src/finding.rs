@@ -7,7 +7,7 @@ use std::ops::Range;
 /// Displayed, it is several lines of plain text without colours.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct Finding {
+pub struct SceneFinding {
     /// The file's name as it was given, the bundled scene's name, or `command line`.
     pub origin: String,
     /// Where in the text; `None` for what the command line gives.
@@ -41,7 +41,7 @@ pub(crate) struct Excerpt {
     pub(crate) span: Range<usize>,
 }
 
-impl Finding {
+impl SceneFinding {
     fn headline(&self) -> String {
         let mut headline = match &self.field {
             Some(field) => format!("`{field}` {}", self.problem),
@@ -58,13 +58,13 @@ impl Finding {
     }
 }
 
-impl fmt::Display for Finding {
+impl fmt::Display for SceneFinding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.rendered(&Renderer::plain()))
     }
 }
 
-impl Finding {
+impl SceneFinding {
     /// What [`Display`](fmt::Display) shows, with the colours of a terminal.
     #[must_use]
     pub fn coloured(&self) -> String {

@@ -1,22 +1,22 @@
-use crate::quantity::Quantity;
+use crate::quantity::KeyQuantity;
 
-pub(crate) const MASS: Quantity = Quantity::positive("mass", "kg");
-pub(crate) const INERTIA: Quantity = Quantity::positive("inertia", "kg m^2");
-pub(crate) const OFFSET: Quantity = Quantity::finite("offset", "m");
+pub(crate) const MASS: KeyQuantity = KeyQuantity::positive("mass", "kg");
+pub(crate) const INERTIA: KeyQuantity = KeyQuantity::positive("inertia", "kg m^2");
+pub(crate) const OFFSET: KeyQuantity = KeyQuantity::finite("offset", "m");
 
-pub(crate) const X: Quantity = Quantity::finite("x", "m");
-pub(crate) const Y: Quantity = Quantity::finite("y", "m");
-pub(crate) const HEADING: Quantity = Quantity::finite("heading", "rad");
-pub(crate) const SPEED: Quantity = Quantity::finite("speed", "m/s");
-pub(crate) const TURN_RATE: Quantity = Quantity::finite("turn_rate", "rad/s");
+pub(crate) const X: KeyQuantity = KeyQuantity::finite("x", "m");
+pub(crate) const Y: KeyQuantity = KeyQuantity::finite("y", "m");
+pub(crate) const HEADING: KeyQuantity = KeyQuantity::finite("heading", "rad");
+pub(crate) const SPEED: KeyQuantity = KeyQuantity::finite("speed", "m/s");
+pub(crate) const TURN_RATE: KeyQuantity = KeyQuantity::finite("turn_rate", "rad/s");
 
-pub(crate) const ALPHA: Quantity = Quantity::fraction("alpha");
-pub(crate) const TOLERANCE: Quantity = Quantity::positive("tolerance", "");
-pub(crate) const STEP: Quantity = Quantity::positive("step", "s");
-pub(crate) const DURATION: Quantity = Quantity::positive("duration", "s");
+pub(crate) const ALPHA: KeyQuantity = KeyQuantity::fraction("alpha");
+pub(crate) const TOLERANCE: KeyQuantity = KeyQuantity::positive("tolerance", "");
+pub(crate) const STEP: KeyQuantity = KeyQuantity::positive("step", "s");
+pub(crate) const DURATION: KeyQuantity = KeyQuantity::positive("duration", "s");
 
 /// The keys that hold a number: no two tables share one.
-const QUANTITIES: &[Quantity] =
+const QUANTITIES: &[KeyQuantity] =
     &[MASS, INERTIA, OFFSET, X, Y, HEADING, SPEED, TURN_RATE, ALPHA, TOLERANCE, STEP, DURATION];
 
 /// The tables of a scene, by path, and the keys of each; the path of the document itself is empty.

@@ -3,7 +3,7 @@ use crate::fault::Fault;
 
 /// A number of a scene: its key, its unit and the values it may have.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Quantity {
+pub(crate) struct KeyQuantity {
     pub(crate) key: &'static str,
     pub(crate) unit: &'static str,
     range: AcceptedRange,
@@ -17,7 +17,7 @@ enum AcceptedRange {
     Fraction,
 }
 
-impl Quantity {
+impl KeyQuantity {
     /// Any finite number.
     pub(crate) const fn finite(key: &'static str, unit: &'static str) -> Self {
         Self { key, unit, range: AcceptedRange::Finite }

@@ -1,29 +1,29 @@
 //! The values of effects: points, lists, functions of time, paths.
 
-use crate::effects::{PathSpec, Shape, TimeSpec};
+use crate::effects::{PathShape, PathSpec, TimeSpec};
 use crate::error::SceneError;
 use crate::fault::Fault;
-use crate::quantity::Quantity;
-use crate::table::{Table, as_f64};
+use crate::quantity::KeyQuantity;
+use crate::table::{TomlTable, as_f64};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::DeValue;
 
-const FREQUENCY: Quantity = Quantity::finite("frequency", "rad/s");
-const PHASE: Quantity = Quantity::finite("phase", "rad");
-const TIMES: Quantity = Quantity::finite("times", "s");
-const RADIUS: Quantity = Quantity::positive("radius", "m");
-const CENTER: Quantity = Quantity::finite("center", "m");
-const PERIOD: Quantity = Quantity::positive("period", "s");
+const FREQUENCY: KeyQuantity = KeyQuantity::finite("frequency", "rad/s");
+const PHASE: KeyQuantity = KeyQuantity::finite("phase", "rad");
+const TIMES: KeyQuantity = KeyQuantity::finite("times", "s");
+const RADIUS: KeyQuantity = KeyQuantity::positive("radius", "m");
+const CENTER: KeyQuantity = KeyQuantity::finite("center", "m");
+const PERIOD: KeyQuantity = KeyQuantity::positive("period", "s");
 
-impl<'s> Table<'s> {
+impl<'s> TomlTable<'s> {
     /// A list of numbers, each within the range of the quantity, if the table has it.
-    pub(crate) fn numbers(&self, quantity: &Quantity) -> Result<Option<Vec<f64>>, SceneError> {
+    pub(crate) fn numbers(&self, quantity: &KeyQuantity) -> Result<Option<Vec<f64>>, SceneError> {
         self.get(quantity.key).map(|value| self.list(quantity, value)).transpose()
     }
 
     /// The same, where a number alone is a list of one.
-    pub(crate) fn number_or_numbers(&self, quantity: &Quantity) -> Result<Option<Vec<f64>>, SceneError> {
+    pub(crate) fn number_or_numbers(&self, quantity: &KeyQuantity) -> Result<Option<Vec<f64>>, SceneError> {
         let Some(value) = self.get(quantity.key) else { return Ok(None) };
         match as_f64(value.get_ref()) {
             Some(_) => Ok(self.number(quantity)?.map(|number| vec![number])),
@@ -31,7 +31,7 @@ impl<'s> Table<'s> {
         }
     }
 
-    fn list(&self, quantity: &Quantity, value: &Spanned<DeValue<'_>>) -> Result<Vec<f64>, SceneError> {
+    fn list(&self, quantity: &KeyQuantity, value: &Spanned<DeValue<'_>>) -> Result<Vec<f64>, SceneError> {
         let accepted = || format!("a list of numbers, each {}", quantity.accepted());
         let DeValue::Array(entries) = value.get_ref() else {
             return Err(self.wrong_type(quantity.key, value, accepted()));
@@ -45,7 +45,7 @@ impl<'s> Table<'s> {
     }
 
     /// A pair of numbers, if the table has it.
-    pub(crate) fn pair(&self, quantity: &Quantity) -> Result<Option<[f64; 2]>, SceneError> {
+    pub(crate) fn pair(&self, quantity: &KeyQuantity) -> Result<Option<[f64; 2]>, SceneError> {
         let Some(value) = self.get(quantity.key) else { return Ok(None) };
         let list = self.list(quantity, value)?;
         let pair = <[f64; 2]>::try_from(list.as_slice());
@@ -53,11 +53,11 @@ impl<'s> Table<'s> {
     }
 
     /// A pair of numbers.
-    pub(crate) fn required_pair(&self, quantity: &Quantity) -> Result<[f64; 2], SceneError> {
+    pub(crate) fn required_pair(&self, quantity: &KeyQuantity) -> Result<[f64; 2], SceneError> {
         self.pair(quantity)?.ok_or_else(|| self.missing(quantity.key, two(quantity)))
     }
 
-    fn wrong_length(&self, quantity: &Quantity, found: usize, span: Range<usize>) -> SceneError {
+    fn wrong_length(&self, quantity: &KeyQuantity, found: usize, span: Range<usize>) -> SceneError {
         let fault = Fault {
             variant: SceneError::OutOfRange,
             key: quantity.key,
@@ -105,7 +105,7 @@ impl<'s> Table<'s> {
     }
 
     /// A function of time: a number, a sine or a table; if the table has it.
-    pub(crate) fn time_function(&self, quantity: &Quantity) -> Result<Option<TimeSpec>, SceneError> {
+    pub(crate) fn time_function(&self, quantity: &KeyQuantity) -> Result<Option<TimeSpec>, SceneError> {
         let Some(value) = self.get(quantity.key) else { return Ok(None) };
         if as_f64(value.get_ref()).is_some() {
             return Ok(self.number(quantity)?.map(TimeSpec::Constant));
@@ -116,7 +116,7 @@ impl<'s> Table<'s> {
             if let Some(key) = ["amplitude", "frequency", "phase"].into_iter().find(|key| table.get(key).is_some()) {
                 return Err(table.wrong(key, "does not go with `times` and `values`", function(quantity)));
             }
-            let numbers = |quantity: &Quantity| {
+            let numbers = |quantity: &KeyQuantity| {
                 let list = table.numbers(quantity)?;
                 list.ok_or_else(|| table.missing(quantity.key, "a list of numbers".to_owned()))
             };
@@ -133,7 +133,7 @@ impl<'s> Table<'s> {
     }
 
     /// A function of time.
-    pub(crate) fn required_function(&self, quantity: &Quantity) -> Result<TimeSpec, SceneError> {
+    pub(crate) fn required_function(&self, quantity: &KeyQuantity) -> Result<TimeSpec, SceneError> {
         self.time_function(quantity)?.ok_or_else(|| self.missing(quantity.key, function(quantity)))
     }
 
@@ -149,9 +149,9 @@ impl<'s> Table<'s> {
         let shape = match (table.nested("circle", &["radius", "center"], accepted)?, table.get("polygon")) {
             (Some(circle), None) => {
                 let center = circle.pair(&CENTER)?.unwrap_or([0.0; 2]);
-                Shape::Circle { radius: circle.required(&RADIUS)?, center }
+                PathShape::Circle { radius: circle.required(&RADIUS)?, center }
             }
-            (None, Some(value)) => Shape::Polygon(table.vertices(value)?),
+            (None, Some(value)) => PathShape::Polygon(table.vertices(value)?),
             (Some(_), Some(_)) => return Err(table.wrong("polygon", "does not go with `circle`", accepted())),
             (None, None) => return Err(table.missing("circle", accepted())),
         };
@@ -161,7 +161,7 @@ impl<'s> Table<'s> {
     }
 
     fn vertices(&self, value: &Spanned<DeValue<'_>>) -> Result<Vec<[f64; 2]>, SceneError> {
-        const VERTEX: Quantity = Quantity::finite("polygon", "m");
+        const VERTEX: KeyQuantity = KeyQuantity::finite("polygon", "m");
         let DeValue::Array(entries) = value.get_ref() else {
             return Err(self.wrong_type("polygon", value, format!("a list of vertices, each {}", two(&VERTEX))));
         };
@@ -179,11 +179,11 @@ impl<'s> Table<'s> {
     }
 }
 
-fn two(quantity: &Quantity) -> String {
+fn two(quantity: &KeyQuantity) -> String {
     format!("a list of two numbers, in {}", quantity.unit)
 }
 
-fn function(quantity: &Quantity) -> String {
+fn function(quantity: &KeyQuantity) -> String {
     format!(
         "a function of time in {}: a number, `{{amplitude, frequency, phase}}` or `{{times = [..], values = [..]}}`",
         quantity.unit

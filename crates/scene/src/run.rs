@@ -4,7 +4,7 @@ use crate::finding::Excerpt;
 use crate::keys;
 use crate::keys::{ALPHA, DURATION, STEP, TOLERANCE};
 use crate::suggest;
-use crate::table::Table;
+use crate::table::TomlTable;
 
 /// The method of a scene that names none.
 pub const DEFAULT_METHOD: &str = "dla";
@@ -43,7 +43,7 @@ impl Overrides<'_> {
     }
 
     /// The same, at its place in the table `[run]` where no flag is given.
-    pub(crate) fn error_in(&self, table: &Table<'_>, fault: Fault, name: &str) -> SceneError {
+    pub(crate) fn error_in(&self, table: &TomlTable<'_>, fault: Fault, name: &str) -> SceneError {
         if self.have(fault.key) { flag_error(fault, true, name) } else { table.fail(fault) }
     }
 }
@@ -103,7 +103,7 @@ impl RunSettings {
     /// Reads `[run]`: `step` and `duration` are required. Only what holds after the command line has to go together. `name` is that of the
     /// scene.
     pub(crate) fn read(
-        table: &Table<'_>,
+        table: &TomlTable<'_>,
         overrides: &Overrides<'_>,
         name: &str,
         methods: &[&str],

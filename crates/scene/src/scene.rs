@@ -3,8 +3,8 @@ use crate::document::Document;
 use crate::error::SceneError;
 use crate::fault::Fault;
 use crate::run::{Overrides, RunSettings};
-use crate::table::Table;
-use crate::{PathSpec, SceneEffect, Shape, effects, sections};
+use crate::table::TomlTable;
+use crate::{PathShape, PathSpec, SceneEffect, effects, sections};
 use sleigh::{Sleigh, SleighState};
 use std::path::Path;
 use toml::de::DeTable;
@@ -63,7 +63,7 @@ impl Scene {
         methods: &[&str],
         overrides: &Overrides<'_>,
     ) -> Result<Self, SceneError> {
-        let root = Table::root(document, entries)?;
+        let root = TomlTable::root(document, entries)?;
         let name = name_of(document.origin);
         let title = root.text("title", "a string")?.unwrap_or(&name).to_owned();
         let sleigh = sections::sleigh(&root.table("sleigh")?)?;
@@ -117,7 +117,7 @@ impl Scene {
     /// The fault of a run with more jumps than memory holds.
     fn too_many_jumps(&self) -> Result<(), Fault> {
         for effect in &self.effects {
-            let SceneEffect::Tracer { path: PathSpec { shape: Shape::Polygon(corners), period } } = effect else {
+            let SceneEffect::Tracer { path: PathSpec { shape: PathShape::Polygon(corners), period } } = effect else {
                 continue;
             };
             let jumps = self.run.duration / period * corners.len() as f64;

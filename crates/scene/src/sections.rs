@@ -1,11 +1,11 @@
 use crate::error::SceneError;
 use crate::fault::Fault;
 use crate::keys::{HEADING, INERTIA, MASS, OFFSET, SPEED, TURN_RATE, X, Y};
-use crate::table::Table;
+use crate::table::TomlTable;
 use sleigh::{Sleigh, SleighState};
 
 /// Reads `[sleigh]`: `mass`, `inertia` and `offset` are all required.
-pub(crate) fn sleigh(table: &Table<'_>) -> Result<Sleigh, SceneError> {
+pub(crate) fn sleigh(table: &TomlTable<'_>) -> Result<Sleigh, SceneError> {
     let mass = table.required(&MASS)?;
     let inertia = table.required(&INERTIA)?;
     let offset = table.required(&OFFSET)?;
@@ -23,7 +23,7 @@ pub(crate) fn sleigh(table: &Table<'_>) -> Result<Sleigh, SceneError> {
 }
 
 /// Reads `[start]`: `speed` and `turn_rate` are required, `x`, `y` and `heading` are 0 when left out.
-pub(crate) fn start(table: &Table<'_>) -> Result<SleighState, SceneError> {
+pub(crate) fn start(table: &TomlTable<'_>) -> Result<SleighState, SceneError> {
     Ok(SleighState {
         x: table.number(&X)?.unwrap_or(0.0),
         y: table.number(&Y)?.unwrap_or(0.0),

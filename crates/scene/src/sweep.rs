@@ -3,7 +3,7 @@ use crate::document::Document;
 use crate::draw::{Draw, Stream};
 use crate::fault::Fault;
 use crate::keys::{DURATION, STEP};
-use crate::table::Table as SceneTable;
+use crate::table::TomlTable;
 use crate::text::varied;
 use crate::{AnyScene, Scene, SceneError, file, suggest, variation};
 use sleigh::Sleigh;
@@ -93,7 +93,7 @@ impl Sweep {
         let document = Document { origin, text };
         let entries = DeTable::parse(text).map_err(|error| document.syntax(&error))?.into_inner();
         let known = ["scene", "method", "step", "duration", "grid", "random", "output"];
-        let root = SceneTable::whole(document, &entries).with_keys_of("a sweep", &known)?;
+        let root = TomlTable::whole(document, &entries).with_keys_of("a sweep", &known)?;
         let accepted = "a scene file, or the name of a bundled scene, in quotes";
         let name = root.text("scene", accepted)?.ok_or_else(|| root.missing("scene", accepted.to_owned()))?;
         let method = root.text("method", &format!("a string, one of {}", suggest::list(methods)))?;
@@ -129,8 +129,8 @@ impl Sweep {
         let (choice, output) = (section("random")?, section("output")?);
         let output = output.map(|output| output.with_keys_of("a sweep", &["every", "exponent"])).transpose()?;
         let whole =
-            |table: &Option<SceneTable<'_>>, key| table.as_ref().map_or(Ok(None), |table| table.whole_number(key));
-        let truth = |table: &Option<SceneTable<'_>>, key| table.as_ref().map_or(Ok(false), |table| table.truth(key));
+            |table: &Option<TomlTable<'_>>, key| table.as_ref().map_or(Ok(None), |table| table.whole_number(key));
+        let truth = |table: &Option<TomlTable<'_>>, key| table.as_ref().map_or(Ok(false), |table| table.truth(key));
         let samples = whole(&choice, "count")?.unwrap_or(1);
         let sweep = Self {
             every: whole(&output, "every")?.unwrap_or_else(|| scene.run().steps().div_ceil(100)).max(1),
@@ -295,7 +295,7 @@ fn set(table: &mut Table, path: &str, value: f64) -> Option<()> {
 }
 
 /// An error of the settings that a sweep gives its scene, at the place in the sweep's file.
-fn in_sweep(root: &SceneTable<'_>, error: SceneError) -> SceneError {
+fn in_sweep(root: &TomlTable<'_>, error: SceneError) -> SceneError {
     let variant =
         if matches!(error, SceneError::UnknownName(_)) { SceneError::UnknownName } else { SceneError::OutOfRange };
     let given = ["method", "step", "duration"].into_iter().find_map(|key| {

@@ -2,7 +2,7 @@ use crate::document::Document;
 use crate::error::SceneError;
 use crate::fault::Fault;
 use crate::keys;
-use crate::quantity::Quantity;
+use crate::quantity::KeyQuantity;
 use crate::suggest;
 use std::ops::Range;
 use toml::Spanned;
@@ -10,7 +10,7 @@ use toml::de::{DeTable, DeValue};
 
 /// One table of a scene, read key by key.
 #[derive(Debug, Clone)]
-pub(crate) struct Table<'s> {
+pub(crate) struct TomlTable<'s> {
     pub(crate) document: Document<'s>,
     /// The path of the table, empty for the document itself.
     path: String,
@@ -19,7 +19,7 @@ pub(crate) struct Table<'s> {
     header: (usize, usize),
 }
 
-impl<'s> Table<'s> {
+impl<'s> TomlTable<'s> {
     /// The document itself, whose keys are all known.
     pub(crate) fn root(document: Document<'s>, entries: &'s DeTable<'s>) -> Result<Self, SceneError> {
         Self::whole(document, entries).with_known_keys(keys::of(""))
@@ -101,7 +101,7 @@ impl<'s> Table<'s> {
     }
 
     /// The number `quantity`, within its range, if the table has it.
-    pub(crate) fn number(&self, quantity: &Quantity) -> Result<Option<f64>, SceneError> {
+    pub(crate) fn number(&self, quantity: &KeyQuantity) -> Result<Option<f64>, SceneError> {
         let Some(value) = self.get(quantity.key) else {
             return Ok(None);
         };
@@ -112,7 +112,7 @@ impl<'s> Table<'s> {
     }
 
     /// The number `quantity`, within its range.
-    pub(crate) fn required(&self, quantity: &Quantity) -> Result<f64, SceneError> {
+    pub(crate) fn required(&self, quantity: &KeyQuantity) -> Result<f64, SceneError> {
         self.number(quantity)?.ok_or_else(|| self.missing(quantity.key, quantity.accepted()))
     }
 

@@ -5,13 +5,13 @@ use crate::error::SceneError;
 use crate::fault::Fault;
 use crate::keys::abridged;
 use crate::suggest;
-use crate::table::{Table, as_f64};
+use crate::table::{TomlTable, as_f64};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// A key of the scene in a sweep, with what the sweep gives it.
-pub(crate) struct Varied<'s, T> {
+pub(crate) struct VariedScene<'s, T> {
     pub(crate) key: String,
     pub(crate) values: T,
     value: &'s Spanned<DeValue<'s>>,
@@ -19,20 +19,20 @@ pub(crate) struct Varied<'s, T> {
     span: Range<usize>,
 }
 
-impl<T> Varied<'_, T> {
+impl<T> VariedScene<'_, T> {
     /// An error of the key.
-    pub(crate) fn fail(&self, root: &Table<'_>, problem: &str, accepted: &str) -> SceneError {
+    pub(crate) fn fail(&self, root: &TomlTable<'_>, problem: &str, accepted: &str) -> SceneError {
         fail(root, &self.key, &self.span, None, problem, accepted)
     }
 }
 
 /// The keys of `[grid]` with their values, and those of `[random]` with their distributions, in the order of the alphabet.
-type SweepVariation<'s> = (Vec<Varied<'s, Vec<f64>>>, Vec<Varied<'s, Draw>>);
+type SweepVariation<'s> = (Vec<VariedScene<'s, Vec<f64>>>, Vec<VariedScene<'s, Draw>>);
 
 /// Reads both tables; a key that comes twice in them is refused.
-pub(crate) fn read<'s>(root: &Table<'s>) -> Result<SweepVariation<'s>, SceneError> {
+pub(crate) fn read<'s>(root: &TomlTable<'s>) -> Result<SweepVariation<'s>, SceneError> {
     let (grid, random) = (leaves(root, "grid", &[])?, leaves(root, "random", &["count", "seed", "common"])?);
-    let mut seen: Vec<&Varied<'_, ()>> = grid.iter().chain(&random).collect();
+    let mut seen: Vec<&VariedScene<'_, ()>> = grid.iter().chain(&random).collect();
     seen.sort_by(|a, b| (&a.key, a.span.start).cmp(&(&b.key, b.span.start)));
     if let Some([first, second]) = seen.windows(2).find(|pair| pair[0].key == pair[1].key) {
         let problem = format!("varies already, at line {}", root.document.line(first.span.start));
@@ -40,7 +40,7 @@ pub(crate) fn read<'s>(root: &Table<'s>) -> Result<SweepVariation<'s>, SceneErro
     }
     let grid = grid.into_iter().map(|leaf| {
         let values = values(root, &leaf)?;
-        Ok(Varied { key: leaf.key, values, value: leaf.value, span: leaf.span })
+        Ok(VariedScene { key: leaf.key, values, value: leaf.value, span: leaf.span })
     });
     let random = random.into_iter().map(|leaf| {
         let draw = Draw::read(leaf.value.get_ref());
@@ -48,13 +48,17 @@ pub(crate) fn read<'s>(root: &Table<'s>) -> Result<SweepVariation<'s>, SceneErro
             let span = leaf.value.span();
             fail(root, &leaf.key, &span, found(root, &span), problem, draw::ACCEPTED)
         })?;
-        Ok(Varied { key: leaf.key, values, value: leaf.value, span: leaf.span })
+        Ok(VariedScene { key: leaf.key, values, value: leaf.value, span: leaf.span })
     });
     Ok((grid.collect::<Result<_, _>>()?, random.collect::<Result<_, _>>()?))
 }
 
 /// The keys below a table, dotted: a table that says how a number varies has no table in it.
-fn leaves<'s>(root: &Table<'s>, section: &'static str, own: &[&str]) -> Result<Vec<Varied<'s, ()>>, SceneError> {
+fn leaves<'s>(
+    root: &TomlTable<'s>,
+    section: &'static str,
+    own: &[&str],
+) -> Result<Vec<VariedScene<'s, ()>>, SceneError> {
     let Some(value) = root.get(section) else { return Ok(Vec::new()) };
     let DeValue::Table(table) = value.get_ref() else {
         return Err(root.wrong_type(section, value, format!("the table `[{section}]`, with keys of the scene")));
@@ -66,7 +70,7 @@ fn leaves<'s>(root: &Table<'s>, section: &'static str, own: &[&str]) -> Result<V
     Ok(found)
 }
 
-fn collect<'s>(table: &'s DeTable<'s>, path: &str, found: &mut Vec<Varied<'s, ()>>) {
+fn collect<'s>(table: &'s DeTable<'s>, path: &str, found: &mut Vec<VariedScene<'s, ()>>) {
     for (key, value) in table {
         // `effects.00` is `effects.0`.
         let part = |part: &str| part.parse::<usize>().map_or_else(|_| part.to_owned(), |index| index.to_string());
@@ -79,13 +83,13 @@ fn collect<'s>(table: &'s DeTable<'s>, path: &str, found: &mut Vec<Varied<'s, ()
             {
                 collect(inner, &path, found);
             }
-            _ => found.push(Varied { key: path, values: (), value, span: key.span() }),
+            _ => found.push(VariedScene { key: path, values: (), value, span: key.span() }),
         }
     }
 }
 
 /// The values of a key of the grid.
-fn values(root: &Table<'_>, leaf: &Varied<'_, ()>) -> Result<Vec<f64>, SceneError> {
+fn values(root: &TomlTable<'_>, leaf: &VariedScene<'_, ()>) -> Result<Vec<f64>, SceneError> {
     const ACCEPTED: &str = "a list of finite numbers, or { from, to, count }";
     let wrong = |span: Range<usize>, problem: &str, accepted: &str| {
         fail(root, &leaf.key, &span, found(root, &span), problem, accepted)
@@ -121,12 +125,12 @@ fn values(root: &Table<'_>, leaf: &Varied<'_, ()>) -> Result<Vec<f64>, SceneErro
 }
 
 /// What the text has at a place.
-fn found(root: &Table<'_>, span: &Range<usize>) -> Option<String> {
+fn found(root: &TomlTable<'_>, span: &Range<usize>) -> Option<String> {
     Some(abridged(&root.document.text[span.clone()]))
 }
 
 fn fail(
-    root: &Table<'_>,
+    root: &TomlTable<'_>,
     key: &str,
     span: &Range<usize>,
     found: Option<String>,

@@ -3,7 +3,7 @@ use serde::Serialize;
 
 /// A scene as its file has it.
 #[derive(Serialize)]
-struct File<'s> {
+struct WrittenFile<'s> {
     title: &'s str,
     sleigh: SleighTable,
     start: StartTable,
@@ -52,7 +52,7 @@ impl Scene {
     /// [`toml::ser::Error`], which a scene of finite numbers does not give.
     pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
         let Self { title, sleigh, start, run, effects, .. } = self;
-        toml::to_string(&File {
+        toml::to_string(&WrittenFile {
             title,
             sleigh: SleighTable { mass: sleigh.mass(), inertia: sleigh.inertia(), offset: sleigh.offset() },
             start: StartTable {

@@ -3,7 +3,7 @@
 
 use dla::{Dla, Piece, Schedule, State, drive_part, piece_by_piece};
 use proptest::prelude::*;
-use scene::{Built, HillSpec, PathSpec, RunSettings, Scene, SceneEffect, SceneError, Shape, TimeSpec, Visitor};
+use scene::{Built, HillSpec, PathShape, PathSpec, RunSettings, Scene, SceneEffect, SceneError, TimeSpec, Visitor};
 use sleigh::{Sleigh, SleighState};
 
 const METHODS: &[&str] = &["dla", "dla-alpha", "rk4"];
@@ -76,7 +76,7 @@ fn effects() -> impl Strategy<Value = Vec<SceneEffect>> {
             .prop_map(|(speed, turn_rate)| SceneEffect::Servo { speed: Some(speed), turn_rate }),
         function().prop_map(|turn_rate| SceneEffect::Servo { speed: None, turn_rate: Some(turn_rate) }),
         (positive(), pair(), positive()).prop_map(|(radius, center, period)| SceneEffect::Tracer {
-            path: PathSpec { shape: Shape::Circle { radius, center }, period },
+            path: PathSpec { shape: PathShape::Circle { radius, center }, period },
         }),
     ];
     let turntable = number().prop_map(|rate| SceneEffect::Turntable { rate });

@@ -41,7 +41,7 @@ pub struct Gap {
 
 /// Moves, one after the other.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Plan {
+pub struct ParkingPlan {
     /// The moves.
     pub moves: Vec<Move>,
 }
@@ -63,7 +63,7 @@ pub fn sinusoidal_gait(a: f64, b: f64, frequency: f64) -> [TimeFunction; 2] {
     [sine(a * frequency, 0.0), sine(b * frequency, FRAC_PI_2)]
 }
 
-impl Plan {
+impl ParkingPlan {
     /// So many rounds in the gap at most.
     const ROUNDS: f64 = 1e4;
 

@@ -44,7 +44,7 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for AnyEffect {
         self.force_on(body.sleigh(), t, q, v)
     }
     #[inline(always)]
-    fn slope<S: Scalar>(&self, body: &B, t: S, q: &[S; N]) -> lagrangian::Slope<S, N> {
+    fn slope<S: Scalar>(&self, body: &B, t: S, q: &[S; N]) -> lagrangian::EffectSlope<S, N> {
         self.slope_on(body.sleigh(), t, q)
     }
     #[inline(always)]
@@ -79,7 +79,7 @@ impl AnyEffect {
         )
     }
     #[inline(always)]
-    fn slope_on<S: Scalar, const N: usize>(&self, sleigh: &Sleigh, t: S, q: &[S; N]) -> lagrangian::Slope<S, N> {
+    fn slope_on<S: Scalar, const N: usize>(&self, sleigh: &Sleigh, t: S, q: &[S; N]) -> lagrangian::EffectSlope<S, N> {
         S::apart(
             #[inline(always)]
             || each!(self, effect => Effect::<Sleigh, N>::slope(effect, sleigh, t, q)),

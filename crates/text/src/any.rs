@@ -1,4 +1,4 @@
-use crate::{Model, Start, TextSystem};
+use crate::{TextModel, TextStart, TextSystem};
 use dla::FullMechanics;
 use std::sync::Arc;
 
@@ -10,17 +10,17 @@ pub const MOST_CONSTRAINTS: usize = 6;
 /// A system of text as an object.
 pub trait TextMechanics<const N: usize, const M: usize>: FullMechanics<N, M> + Sync {
     /// What the texts mean.
-    fn model(&self) -> &Model;
+    fn model(&self) -> &TextModel;
 }
 
 impl<const N: usize, const M: usize> TextMechanics<N, M> for TextSystem<N, M> {
-    fn model(&self) -> &Model {
+    fn model(&self) -> &TextModel {
         TextSystem::model(self)
     }
 }
 
 /// A system with its start.
-pub struct Started<const N: usize, const M: usize> {
+pub struct StartedText<const N: usize, const M: usize> {
     /// The system.
     pub system: Box<dyn TextMechanics<N, M>>,
     /// Configuration at the start.
@@ -29,7 +29,7 @@ pub struct Started<const N: usize, const M: usize> {
     pub v: [f64; N],
 }
 
-impl<const N: usize, const M: usize> std::fmt::Debug for Started<N, M> {
+impl<const N: usize, const M: usize> std::fmt::Debug for StartedText<N, M> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Started").field("q", &self.q).field("v", &self.v).finish_non_exhaustive()
     }
@@ -41,14 +41,14 @@ macro_rules! shapes {
         /// A system of text by its shape, the first in this list that has room for it.
         #[derive(Debug)]
         pub enum AnyText {
-            $($(#[$doc])* $shape(Started<$n, $m>),)*
+            $($(#[$doc])* $shape(StartedText<$n, $m>),)*
         }
 
         impl AnyText {
             /// The system of a model; `None` where no shape has room for it, which those within the limits have.
             #[must_use]
-            pub fn new(model: &Arc<Model>, start: &Start) -> Option<Self> {
-                $(if let Some(started) = Started::new(model, start) {
+            pub fn new(model: &Arc<TextModel>, start: &TextStart) -> Option<Self> {
+                $(if let Some(started) = StartedText::new(model, start) {
                     return Some(Self::$shape(started));
                 })*
                 None
@@ -82,8 +82,8 @@ shapes! {
     Large 18 6;
 }
 
-impl<const N: usize, const M: usize> Started<N, M> {
-    fn new(model: &Arc<Model>, start: &Start) -> Option<Self> {
+impl<const N: usize, const M: usize> StartedText<N, M> {
+    fn new(model: &Arc<TextModel>, start: &TextStart) -> Option<Self> {
         let system = Box::new(TextSystem::new(Arc::clone(model), 0.0, &start.q)?);
         let filled = |x: &[f64]| std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0));
         Some(Self { system, q: filled(&start.q), v: filled(&start.v) })

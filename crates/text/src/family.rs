@@ -1,5 +1,5 @@
-use crate::tapes::Point;
-use crate::{Model, TextError, TextSystem, Words};
+use crate::tapes::TapePoint;
+use crate::{TextError, TextModel, TextSystem, Words};
 use ::formulas::{Formulas, Parameters};
 use dla::FullMechanics;
 use lagrangian::{AdmissibleBasis, Constraint, Gradients, Parametrised, Scalar, Seeded, SeededMember, System};
@@ -15,9 +15,9 @@ pub const FREE: usize = 8;
 #[derive(Debug, Clone)]
 pub struct Family {
     /// With a value for each parameter.
-    pub(crate) member: Arc<Model>,
+    pub(crate) member: Arc<TextModel>,
     /// With the parameters as variables.
-    pub(crate) free: Arc<Model>,
+    pub(crate) free: Arc<TextModel>,
     /// Their values.
     pub(crate) values: [f64; FREE],
 }
@@ -28,7 +28,7 @@ impl Family {
     ///
     /// # Errors
     /// [`TextError`] where the texts make no system.
-    pub fn new(words: &Words, member: &Arc<Model>, parameters: &[String]) -> Result<Self, TextError> {
+    pub fn new(words: &Words, member: &Arc<TextModel>, parameters: &[String]) -> Result<Self, TextError> {
         let names = parameters.get(..FREE).unwrap_or(parameters);
         let value = |name: &String| words.parameters.iter().find(|(other, _)| other == name).cloned();
         let free: Vec<(String, f64)> = names.iter().filter_map(value).collect();
@@ -38,7 +38,7 @@ impl Family {
         texts.abbreviations = fixed.map(|(name, value)| (name.clone(), format!("{value:?}"))).collect();
         texts.abbreviations.extend(words.abbreviations.iter().cloned());
         texts.parameters.clone_from(&free);
-        let model = Model::of(&texts, Formulas::of(&texts, Parameters::Variables)?, member.eliminations.clone())?;
+        let model = TextModel::of(&texts, Formulas::of(&texts, Parameters::Variables)?, member.eliminations.clone())?;
         let values = from_fn(|k| free.get(k).map_or(0.0, |(_, value)| *value));
         Ok(Self { member: Arc::clone(member), free: Arc::new(model), values })
     }
@@ -61,7 +61,7 @@ impl Family {
     #[must_use]
     pub fn told(&self, t: f64, q: &[Seeded], v: &[Seeded], p: &[Seeded; FREE]) -> Vec<Seeded> {
         let mut told = vec![Seeded::zero(); self.free.outputs.len()];
-        let at = Point { t: Seeded::constant(t), q, v, p };
+        let at = TapePoint { t: Seeded::constant(t), q, v, p };
         self.free.told.evaluate(self.free.coordinates.len(), at, |k, x| told[k] = x);
         told
     }

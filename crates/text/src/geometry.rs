@@ -1,7 +1,7 @@
 //! What the constraints of a system are at its start.
 
 use crate::basis::Pivots;
-use crate::{Model, Start};
+use crate::{TextModel, TextStart};
 use ::formulas::Formulas;
 use expression::{Expression, Graph, Tape};
 use nalgebra::DMatrix;
@@ -49,10 +49,10 @@ impl Geometry {
     }
 }
 
-impl Model {
+impl TextModel {
     /// The geometry of the constraints at a start.
     #[must_use]
-    pub fn geometry(&self, start: &Start) -> Geometry {
+    pub fn geometry(&self, start: &TextStart) -> Geometry {
         let n = self.coordinates.len();
         let (rows, _) = self.rows_at(0.0, &start.q);
         let rank = rank(&rows);

@@ -1,9 +1,9 @@
 //! Systems from text: coordinates, a Lagrangian, constraints and forces, written as formulas.
 //!
 //! 1. [`Words`] are the texts of a system, as a file or a program has them.
-//! 2. A [`Model`] is what they mean: checked, derived and put on tapes. A [`TextError`] says which text is wrong, in which column, and
+//! 2. A [`TextModel`] is what they mean: checked, derived and put on tapes. A [`TextError`] says which text is wrong, in which column, and
 //!    what is known there.
-//! 3. A [`Start`] is the admissible state that is nearest to a given one.
+//! 3. A [`TextStart`] is the admissible state that is nearest to a given one.
 //! 4. [`AnyText`] is the system as an object. It has one of a few shapes, of which the smallest that has room is filled up: with
 //!    coordinates of unit mass that rest, and with constraints that hold them.
 //!
@@ -41,11 +41,11 @@ mod tapes;
 mod written;
 
 pub use ::formulas::{Entry, Problem, TextError, Unit, Words};
-pub use any::{AnyText, MOST_CONSTRAINTS, MOST_COORDINATES, Started, TextMechanics};
+pub use any::{AnyText, MOST_CONSTRAINTS, MOST_COORDINATES, StartedText, TextMechanics};
 pub use family::{FREE, Family, FamilySystem};
 pub use geometry::Geometry;
-pub use model::{Coordinate, Model};
-pub use start::{Moved, Start, StartError};
+pub use model::{Coordinate, TextModel};
+pub use start::{Moved, StartError, TextStart};
 pub use start_along::Varied;
 pub use system::TextSystem;
 pub use written::WrittenEquations;

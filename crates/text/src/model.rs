@@ -1,5 +1,5 @@
 use crate::reduced::EquationsOfBases;
-use crate::tapes::{Point, Tapes};
+use crate::tapes::{TapePoint, Tapes};
 use crate::{Entry, MOST_CONSTRAINTS, MOST_COORDINATES, Problem, TextError, Unit, Words};
 use ::formulas::{Formulas, Parameters, RowElimination};
 use expression::Expression;
@@ -20,7 +20,7 @@ pub struct Coordinate {
 ///
 /// Of `n` coordinates and `m` constraints; the last of these are those on positions, which are constraints on velocities by their rates.
 #[derive(Debug, Clone)]
-pub struct Model {
+pub struct TextModel {
     pub(crate) coordinates: Vec<Coordinate>,
     /// The constraints on velocities that are not rates of positions.
     pub(crate) velocities: usize,
@@ -45,7 +45,7 @@ pub struct Model {
 }
 
 /// The same formulas make the same model.
-impl PartialEq for Model {
+impl PartialEq for TextModel {
     fn eq(&self, other: &Self) -> bool {
         let parts = |of: &Self| (of.coordinates.clone(), of.velocities, of.positions, of.outputs.clone(), of.timed);
         let one = [&self.lagrangian, &self.constraint, &self.holonomic, &self.mass, &self.told];
@@ -54,7 +54,7 @@ impl PartialEq for Model {
     }
 }
 
-impl Model {
+impl TextModel {
     /// The system of some texts.
     ///
     /// # Errors
@@ -163,7 +163,7 @@ impl Model {
     #[must_use]
     pub fn told(&self, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
         let mut told = vec![0.0; self.outputs.len()];
-        self.told.evaluate(self.coordinates.len(), Point::new(t, q, v), |k, x| told[k] = x);
+        self.told.evaluate(self.coordinates.len(), TapePoint::new(t, q, v), |k, x| told[k] = x);
         told
     }
 
@@ -171,7 +171,7 @@ impl Model {
     #[must_use]
     pub fn output(&self, k: usize, t: f64, q: &[f64], v: &[f64]) -> Option<f64> {
         let mut told = (k < self.outputs.len()).then_some(0.0)?;
-        self.told.evaluate(self.coordinates.len(), Point::new(t, q, v), |i, x| {
+        self.told.evaluate(self.coordinates.len(), TapePoint::new(t, q, v), |i, x| {
             if i == k {
                 told = x;
             }
@@ -187,13 +187,13 @@ impl Model {
         let rates: Vec<Dual<f64, 1>> = v.iter().map(|&v| Dual { re: v, eps: [v] }).collect();
         let places: Vec<Dual<f64, 1>> = q.iter().map(|&q| Dual::fixed(q)).collect();
         let mut lagrangian = Dual::fixed(0.0);
-        self.lagrangian.evaluate(n, Point::new(Dual::fixed(t), &places, &rates), |_, x| lagrangian = x);
+        self.lagrangian.evaluate(n, TapePoint::new(Dual::fixed(t), &places, &rates), |_, x| lagrangian = x);
         lagrangian.eps[0] - lagrangian.re
     }
 
     pub(crate) fn lagrangian_at(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
         let mut lagrangian = 0.0;
-        self.lagrangian.evaluate(self.coordinates.len(), Point::new(t, q, v), |_, x| lagrangian = x);
+        self.lagrangian.evaluate(self.coordinates.len(), TapePoint::new(t, q, v), |_, x| lagrangian = x);
         lagrangian
     }
 
@@ -201,7 +201,7 @@ impl Model {
     pub(crate) fn rows_at(&self, t: f64, q: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
         let (n, m) = (self.coordinates.len(), self.constraints());
         let (mut a, mut b) = (DMatrix::zeros(m, n), DVector::zeros(m));
-        self.constraint.evaluate(n, Point::new(t, q, &[]), |k, x| match k.checked_sub(n * m) {
+        self.constraint.evaluate(n, TapePoint::new(t, q, &[]), |k, x| match k.checked_sub(n * m) {
             Some(row) => b[row] = x,
             None => a[(k / n, k % n)] = x,
         });
@@ -211,7 +211,7 @@ impl Model {
     /// The functions of the positions.
     pub(crate) fn positions_at(&self, t: f64, q: &[f64]) -> DVector<f64> {
         let mut g = DVector::zeros(self.positions);
-        self.holonomic.evaluate(self.coordinates.len(), Point::new(t, q, &[]), |k, x| g[k] = x);
+        self.holonomic.evaluate(self.coordinates.len(), TapePoint::new(t, q, &[]), |k, x| g[k] = x);
         g
     }
 
@@ -226,7 +226,7 @@ impl Model {
     pub(crate) fn mass_at(&self, t: f64, q: &[f64], v: &[f64]) -> DMatrix<f64> {
         let n = self.coordinates.len();
         let mut mass = DMatrix::zeros(n, n);
-        self.mass.evaluate(n, Point::new(t, q, v), |k, x| mass[(k / n, k % n)] = x);
+        self.mass.evaluate(n, TapePoint::new(t, q, v), |k, x| mass[(k / n, k % n)] = x);
         mass
     }
 }

@@ -1,9 +1,9 @@
 //! The reduced equations of a system of text, derived when they are first asked for.
 
 use crate::basis::Pivots;
-use crate::tapes::{Point, Tapes};
-use crate::{Model, TextSystem};
-use ::formulas::{Formulas, Reduced as Derived};
+use crate::tapes::{TapePoint, Tapes};
+use crate::{TextModel, TextSystem};
+use ::formulas::{Formulas, ReducedFormulas};
 use lagrangian::{Reduced, Scalar};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -31,7 +31,7 @@ impl EquationsOfBases {
     }
 }
 
-impl Model {
+impl TextModel {
     /// The number of the basis in use: zero where one holds everywhere.
     pub(crate) fn basis_number(&self, pivots: &Pivots) -> u64 {
         if self.basis.is_some() { 0 } else { pivots.number() }
@@ -39,13 +39,13 @@ impl Model {
 
     fn derived(&self, pivots: &Pivots) -> Option<ReducedTapes> {
         let (formulas, reduced) = self.reduced_formulas(pivots)?;
-        let Derived { acceleration, reconstruction, stands_alone, .. } = reduced;
+        let ReducedFormulas { acceleration, reconstruction, stands_alone, .. } = reduced;
         let acceleration = Tapes::new(&formulas.graph, &acceleration).ok()?;
         Some(ReducedTapes { acceleration, reconstruction, stands_alone })
     }
 
     /// The reduced equations in the basis in use; none where they are too large.
-    pub(crate) fn reduced_formulas(&self, pivots: &Pivots) -> Option<(Formulas, Derived)> {
+    pub(crate) fn reduced_formulas(&self, pivots: &Pivots) -> Option<(Formulas, ReducedFormulas)> {
         let mut formulas = Formulas::clone(&self.formulas);
         let basis = match (&formulas.basis, &self.eliminations) {
             (Some(given), _) => given.chunks(formulas.n).map(<[_]>::to_vec).collect(),
@@ -69,7 +69,7 @@ impl<const N: usize, const M: usize> Reduced<N, M> for TextSystem<N, M> {
         let n = self.model.coordinates.len();
         let mut acceleration = [S::zero(); N];
         // The variable of the quasi-velocity `k` is that of the rate of the coordinate `k`.
-        let at = Point::new(t, &q[..n], &xi[..n]);
+        let at = TapePoint::new(t, &q[..n], &xi[..n]);
         self.equations()?.acceleration.evaluate(n, at, |k, x| acceleration[k] = x);
         Some(acceleration)
     }

@@ -1,10 +1,10 @@
-use crate::Model;
+use crate::TextModel;
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
 /// A state that meets all constraints.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Start {
+pub struct TextStart {
     /// The coordinates.
     pub q: Vec<f64>,
     /// Their rates.
@@ -75,17 +75,17 @@ const WEAK: f64 = 1e-10;
 /// A given number that changes by so much, relatively, was moved.
 const NOTED: f64 = 1e-9;
 
-impl Model {
+impl TextModel {
     /// The admissible state that is nearest to a given one at time zero, in the kinetic metric; `None` stands for numbers that are left
     /// out.
     ///
     /// Rates that are left out are the smallest that together with those given meet the constraints, each measured by its own inertia;
-    /// where that cannot be, all of them move, and [`Start::moved`] tells. Coordinates that are left out are zero, unless
+    /// where that cannot be, all of them move, and [`TextStart::moved`] tells. Coordinates that are left out are zero, unless
     /// constraints on positions ask for others; so do they move before those that are given.
     ///
     /// # Errors
     /// [`StartError`] where there is no such state nearby, a function of the system is not a number there, or a given basis is not one.
-    pub fn start(&self, q: &[Option<f64>], v: &[Option<f64>]) -> Result<Start, StartError> {
+    pub fn start(&self, q: &[Option<f64>], v: &[Option<f64>]) -> Result<TextStart, StartError> {
         let n = self.coordinates.len();
         let given = |x: &[Option<f64>]| -> Vec<Option<f64>> { (0..n).map(|i| x.get(i).copied().flatten()).collect() };
         let (given_q, given_v) = (given(q), given(v));
@@ -137,7 +137,7 @@ impl Model {
         });
         let moved = moved.collect();
         let left_out = [&given_q, &given_v].map(|given| given.iter().map(Option::is_none).collect());
-        Ok(Start { q: place.as_slice().to_vec(), v: rate.as_slice().to_vec(), moved, left_out })
+        Ok(TextStart { q: place.as_slice().to_vec(), v: rate.as_slice().to_vec(), moved, left_out })
     }
 
     /// The rates of an admissible state with that of the coordinate `i` changed to a value, the others as near to what they were as the
@@ -199,7 +199,7 @@ impl Model {
         let n = self.coordinates.len();
         let Some(basis) = &self.basis else { return Ok(()) };
         let mut vectors = DMatrix::<f64>::zeros(n, n - a.nrows());
-        let at = crate::tapes::Point::new(0.0, q.as_slice(), &[]);
+        let at = crate::tapes::TapePoint::new(0.0, q.as_slice(), &[]);
         basis.evaluate(n, at, |k, x| vectors[(k % n, k / n)] = x);
         for (vector, w) in vectors.column_iter().enumerate() {
             for (constraint, row) in a.row_iter().enumerate() {

@@ -1,6 +1,6 @@
 use crate::start::least;
-use crate::tapes::{Point, Tapes};
-use crate::{FREE, Family, Start};
+use crate::tapes::{TapePoint, Tapes};
+use crate::{FREE, Family, TextStart};
 use lagrangian::{Dual, from_fn};
 use nalgebra::{DMatrix, DVector};
 
@@ -25,11 +25,11 @@ impl Family {
     /// The derivative of a start, coordinates and rates, in one number: how the admissible state moves that is nearest to the numbers
     /// given.
     ///
-    /// As in [`Model::start`](crate::Model::start) numbers that are left out move before those that are given. Rates that are left
+    /// As in [`TextModel::start`](crate::TextModel::start) numbers that are left out move before those that are given. Rates that are left
     /// out have the derivative of the smallest that meet the constraints; coordinates that are left out move as little as they can. Where
     /// the constraints did not admit the numbers given, the derivative is that at the state that was taken.
     #[must_use]
-    pub fn start_along(&self, start: &Start, varied: Varied) -> (Vec<f64>, Vec<f64>) {
+    pub fn start_along(&self, start: &TextStart, varied: Varied) -> (Vec<f64>, Vec<f64>) {
         let n = start.q.len();
         let unit = |place: Option<usize>| DVector::from_fn(n, |i, _| f64::from(u8::from(Some(i) == place)));
         let (place, rate, parameter) = match varied {
@@ -46,7 +46,7 @@ impl Family {
     }
 
     /// How the coordinates move when some of them are given the variation `dq`.
-    fn places_along(&self, start: &Start, dq: DVector<f64>, left_out: &[usize], p: &[Along; FREE]) -> DVector<f64> {
+    fn places_along(&self, start: &TextStart, dq: DVector<f64>, left_out: &[usize], p: &[Along; FREE]) -> DVector<f64> {
         let (n, m) = (start.q.len(), self.member.positions);
         if m == 0 {
             return dq;
@@ -73,7 +73,7 @@ impl Family {
     /// How the rates move when the coordinates have the variation `dq`, and some rates are given the variation `dv`.
     fn rates_along(
         &self,
-        start: &Start,
+        start: &TextStart,
         (dq, dv): (&DVector<f64>, DVector<f64>),
         left_out: &[usize],
         p: &[Along; FREE],
@@ -151,6 +151,6 @@ fn derivatives(
     count: usize,
 ) -> DVector<f64> {
     let mut rates = DVector::zeros(count);
-    formulas.evaluate(n, Point { t: along(0.0, 0.0), q, v, p }, |k, x| rates[k] = x.eps[0]);
+    formulas.evaluate(n, TapePoint { t: along(0.0, 0.0), q, v, p }, |k, x| rates[k] = x.eps[0]);
     rates
 }

@@ -1,7 +1,7 @@
-use crate::Model;
+use crate::TextModel;
 use crate::basis::Pivots;
 use crate::reduced::Equations;
-use crate::tapes::Point;
+use crate::tapes::TapePoint;
 use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Reduced, Scalar, System};
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// constraint holds one of them. Both are exact, and take no part in the motion: all terms in which they stand are zeros.
 #[derive(Debug, Clone)]
 pub struct TextSystem<const N: usize, const M: usize> {
-    pub(crate) model: Arc<Model>,
+    pub(crate) model: Arc<TextModel>,
     /// The sizes of rates with the same kinetic energy.
     sizes: Arc<[f64]>,
     pub(crate) pivots: Pivots,
@@ -35,7 +35,7 @@ impl<const N: usize, const M: usize> TextSystem<N, M> {
     /// The system, with a basis for the neighbourhood of a configuration, at a time (s), where the text gives none; `None` where the
     /// shape has no room for it.
     #[must_use]
-    pub fn new(model: Arc<Model>, t: f64, q: &[f64]) -> Option<Self> {
+    pub fn new(model: Arc<TextModel>, t: f64, q: &[f64]) -> Option<Self> {
         let (n, m) = (model.coordinates().len(), model.constraints());
         if m > n || !Self::has_room(n, m) || q.len() < n {
             return None;
@@ -46,14 +46,14 @@ impl<const N: usize, const M: usize> TextSystem<N, M> {
         Some(Self::with(model, sizes, pivots))
     }
 
-    fn with(model: Arc<Model>, sizes: Arc<[f64]>, pivots: Pivots) -> Self {
+    fn with(model: Arc<TextModel>, sizes: Arc<[f64]>, pivots: Pivots) -> Self {
         let equations = model.equations.of(model.basis_number(&pivots));
         Self { model, sizes, pivots, equations }
     }
 
     /// What the texts mean.
     #[must_use]
-    pub fn model(&self) -> &Arc<Model> {
+    pub fn model(&self) -> &Arc<TextModel> {
         &self.model
     }
 
@@ -72,13 +72,13 @@ impl<const N: usize, const M: usize> TextSystem<N, M> {
     }
 
     /// The same with another model, of the same coordinates and constraints.
-    pub(crate) fn of_model(self, model: &Arc<Model>) -> Self {
+    pub(crate) fn of_model(self, model: &Arc<TextModel>) -> Self {
         Self::with(Arc::clone(model), self.sizes, self.pivots)
     }
 
-    fn point<'a, S>(&self, p: &'a [S], t: S, q: &'a [S; N], v: &'a [S]) -> Point<'a, S> {
+    fn point<'a, S>(&self, p: &'a [S], t: S, q: &'a [S; N], v: &'a [S]) -> TapePoint<'a, S> {
         let n = self.n();
-        Point { t, q: &q[..n], v: if v.is_empty() { v } else { &v[..n] }, p }
+        TapePoint { t, q: &q[..n], v: if v.is_empty() { v } else { &v[..n] }, p }
     }
 }
 

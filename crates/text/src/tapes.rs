@@ -16,7 +16,7 @@ pub(crate) struct Tapes {
 
 /// Where formulas are evaluated.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Point<'a, S> {
+pub(crate) struct TapePoint<'a, S> {
     pub(crate) t: S,
     pub(crate) q: &'a [S],
     /// None for formulas in which no rates stand.
@@ -25,7 +25,7 @@ pub(crate) struct Point<'a, S> {
     pub(crate) p: &'a [S],
 }
 
-impl<'a, S> Point<'a, S> {
+impl<'a, S> TapePoint<'a, S> {
     /// Where no parameter is left free.
     pub(crate) fn new(t: S, q: &'a [S], v: &'a [S]) -> Self {
         Self { t, q, v, p: &[] }
@@ -56,7 +56,7 @@ impl Tapes {
 
     /// Tells the formulas that do not vanish, by their number; `n` is the number of coordinates of which the formulas are.
     #[inline]
-    pub(crate) fn evaluate<S: Scalar>(&self, n: usize, at: Point<'_, S>, mut result: impl FnMut(usize, S)) {
+    pub(crate) fn evaluate<S: Scalar>(&self, n: usize, at: TapePoint<'_, S>, mut result: impl FnMut(usize, S)) {
         for &(k, x) in &self.constants {
             result(k, S::constant(x));
         }
@@ -80,7 +80,7 @@ impl Tapes {
     fn computed<S: Scalar>(
         &self,
         n: usize,
-        at: Point<'_, S>,
+        at: TapePoint<'_, S>,
         (scratch, computed): (&mut [S], &mut [S]),
         result: &mut impl FnMut(usize, S),
     ) {
@@ -93,7 +93,7 @@ impl Tapes {
 
 /// The tape on one kind of numbers: compiled once for all that have such numbers.
 #[inline(never)]
-fn interpret<S: Scalar>(tape: &Tape, n: usize, at: Point<'_, S>, scratch: &mut [S], computed: &mut [S]) {
+fn interpret<S: Scalar>(tape: &Tape, n: usize, at: TapePoint<'_, S>, scratch: &mut [S], computed: &mut [S]) {
     let input = |k: usize| match k.checked_sub(1) {
         None => at.t,
         Some(i) if i < n => at.q[i],

@@ -1,8 +1,8 @@
 //! The reduced equations of a system of text, as a text again.
 
 use crate::basis::Pivots;
-use crate::tapes::{Point, Tapes};
-use crate::{Model, Start};
+use crate::tapes::{TapePoint, Tapes};
+use crate::{TextModel, TextStart};
 use expression::Names;
 use nalgebra::{DMatrix, DVector};
 
@@ -19,11 +19,11 @@ pub struct WrittenEquations {
     pub start: Vec<f64>,
 }
 
-impl Model {
+impl TextModel {
     /// The reduced equations in the basis in use at a start. Where the text gives no basis and none is seen that holds everywhere, they
     /// hold near the start. None where they are too large to be written.
     #[must_use]
-    pub fn written_equations(&self, start: &Start) -> Option<WrittenEquations> {
+    pub fn written_equations(&self, start: &TextStart) -> Option<WrittenEquations> {
         let (n, m) = (self.coordinates.len(), self.constraints());
         let (rows, _) = self.rows_at(0.0, &start.q);
         let (formulas, reduced) = self.reduced_formulas(&Pivots::best(&rows, &self.sizes(0.0, &start.q)))?;
@@ -48,7 +48,7 @@ impl Model {
         let at = |xi: &[f64]| -> Option<DVector<f64>> {
             let mut v = DVector::zeros(n);
             let tapes = Tapes::new(&formulas.graph, &reduced.velocity).ok()?;
-            tapes.evaluate(n, Point::new(0.0, &start.q, xi), |i, x| v[i] = x);
+            tapes.evaluate(n, TapePoint::new(0.0, &start.q, xi), |i, x| v[i] = x);
             Some(v)
         };
         let shift = at(&vec![0.0; n])?;

@@ -3,7 +3,7 @@
 
 use dla::{Dla, OneStep, Sensitivity, State, Tangent, Variation};
 use std::sync::Arc;
-use text::{FREE, Family, Model, Start, TextSystem, Unit, Varied, Words};
+use text::{FREE, Family, TextModel, TextStart, TextSystem, Unit, Varied, Words};
 
 const PLACES: [&str; 4] = ["x", "y", "z", "th"];
 
@@ -24,8 +24,8 @@ fn words(m: f64, c: f64) -> Words {
 const MASS: f64 = 1.3;
 const SHIFT: f64 = 0.4;
 
-fn model(m: f64, c: f64) -> Arc<Model> {
-    Arc::new(Model::new(&words(m, c)).unwrap())
+fn model(m: f64, c: f64) -> Arc<TextModel> {
+    Arc::new(TextModel::new(&words(m, c)).unwrap())
 }
 
 /// Four differences with halved steps, extrapolated.
@@ -44,7 +44,7 @@ fn extrapolated(at: &dyn Fn(f64) -> Vec<f64>) -> Vec<f64> {
 /// What is given of a start, in the order of `PLACES`.
 type Given = [Option<f64>; 4];
 
-fn started(m: f64, c: f64, [q, v]: [Given; 2]) -> Start {
+fn started(m: f64, c: f64, [q, v]: [Given; 2]) -> TextStart {
     model(m, c).start(&q, &v).unwrap()
 }
 

@@ -87,7 +87,7 @@ fn same<Sys: System<N, M>, const N: usize, const M: usize, const P: usize, const
     methods: &[&str],
     tolerance: f64,
 ) {
-    let text = Arc::new(text::Model::new(words).unwrap());
+    let text = Arc::new(text::TextModel::new(words).unwrap());
     let system = TextSystem::<P, R>::new(text, 0.0, &start.0).unwrap();
     for method in methods {
         let steps = (0.02, 300);
@@ -168,9 +168,9 @@ fn a_derived_basis_changes_and_the_method_keeps_its_claims() {
     // Of a row that is scaled by a function no basis is seen that holds everywhere.
     let mut words = racer();
     words.constraints[0] = format!("(2 + cos(phi))*({})", words.constraints[0]);
-    let system = TextSystem::<4, 2>::new(Arc::new(text::Model::new(&words).unwrap()), 0.0, &q).unwrap();
+    let system = TextSystem::<4, 2>::new(Arc::new(text::TextModel::new(&words).unwrap()), 0.0, &q).unwrap();
     assert!(System::near(&system, 0.0, &q, 0).is_some());
-    let whole = TextSystem::<4, 2>::new(Arc::new(text::Model::new(&racer()).unwrap()), 0.0, &q).unwrap();
+    let whole = TextSystem::<4, 2>::new(Arc::new(text::TextModel::new(&racer()).unwrap()), 0.0, &q).unwrap();
     assert!(System::near(&whole, 0.0, &q, 0).is_none());
     let reference = end(&there, "gauss16", (q, v), (0.01, 800)).0;
     assert!(reference[2].abs() > 6.0, "it turns: {reference:?}");
@@ -218,7 +218,7 @@ fn derived_alike<const N: usize, const M: usize>(words: &Words) {
         let q: [f64; N] = std::array::from_fn(|i| if i < n { number(i, 2.0) } else { 0.0 });
         let xi: [f64; N] =
             std::array::from_fn(|i| if i < n - words.constraints.len() { number(i + 7, 1.0) } else { 0.0 });
-        let system = TextSystem::<N, M>::new(Arc::new(text::Model::new(words).unwrap()), 0.3, &q).unwrap();
+        let system = TextSystem::<N, M>::new(Arc::new(text::TextModel::new(words).unwrap()), 0.3, &q).unwrap();
         let formulas = system.reduced().reduced_motion(0.3, &q, &xi).unwrap();
         let derived = lagrangian::reduced_acceleration(&system, 0.3, &q, &xi).unwrap();
         let size = lagrangian::linear::largest(&derived).max(1.0);

@@ -2,7 +2,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
 use proptest::prelude::*;
-use text::{Entry, Model, Problem, StartError, Unit, Words};
+use text::{Entry, Problem, StartError, TextModel, Unit, Words};
 
 /// A skate on a slope.
 fn skate() -> Words {
@@ -34,18 +34,18 @@ fn skate() -> Words {
 fn wrong(change: impl FnOnce(&mut Words)) -> (Entry, Option<usize>, String) {
     let mut words = skate();
     change(&mut words);
-    let error = Model::new(&words).expect_err("the text is wrong");
+    let error = TextModel::new(&words).expect_err("the text is wrong");
     (error.entry, error.column(), error.to_string())
 }
 
 #[test]
 fn a_system_is_what_its_texts_say() {
-    let model = Model::new(&skate()).unwrap();
+    let model = TextModel::new(&skate()).unwrap();
     let (q, v) = ([0.5, 0.0, 0.0], [3.0, 0.0, 2.0]);
     assert_eq!(model.energy(0.0, &q, &v), 9.0 + 1.0 + 1.0);
     assert_eq!(model.told(0.0, &q, &v), [3.0, 1.0]);
     assert!(model.has_forces() && !model.gives_basis() && !model.depends_on_time());
-    assert_eq!(Model::new(&skate()).unwrap(), model);
+    assert_eq!(TextModel::new(&skate()).unwrap(), model);
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn bases_have_their_shape() {
     // That vectors are admissible is seen at the start.
     let mut words = skate();
     words.basis = vec![vector("1"), vector("0")];
-    let error = Model::new(&words).unwrap().start(&[None; 3], &[None; 3]).unwrap_err();
+    let error = TextModel::new(&words).unwrap().start(&[None; 3], &[None; 3]).unwrap_err();
     assert!(matches!(error, StartError::Basis { vector: 0, constraint: 0, .. }), "{error}");
 }
 
@@ -103,21 +103,21 @@ fn sizes_have_limits() {
         words.lagrangian += &format!("{}q{k}'^2/2", if k == 0 { "" } else { " + " });
     }
     words.constraints = (0..6).map(|k| format!("q{k}' - q{}'", k + 6)).collect();
-    assert!(Model::new(&words).is_ok());
+    assert!(TextModel::new(&words).is_ok());
     words.constraints.push("q0' - q1'".to_owned());
-    let error = Model::new(&words).unwrap_err();
+    let error = TextModel::new(&words).unwrap_err();
     assert_eq!(error.problem, Problem::TooLarge { coordinates: 12, constraints: 7, most: [12, 6] });
     words.constraints.clear();
     words.coordinates.push(("q12".to_owned(), Unit::Angle));
     assert_eq!(
-        Model::new(&words).unwrap_err().problem,
+        TextModel::new(&words).unwrap_err().problem,
         Problem::TooLarge { coordinates: 13, constraints: 0, most: [12, 6] }
     );
 }
 
 #[test]
 fn rates_that_are_left_out_follow_those_that_are_given() {
-    let model = Model::new(&skate()).unwrap();
+    let model = TextModel::new(&skate()).unwrap();
     let start = model.start(&[None, None, Some(0.5)], &[Some(1.0), None, Some(2.0)]).unwrap();
     assert!((start.v[1] - 0.5f64.tan()).abs() < 1e-15 && start.v[0] == 1.0 && start.v[2] == 2.0);
     assert!(start.moved.is_empty());
@@ -131,13 +131,13 @@ fn rates_that_are_left_out_follow_those_that_are_given() {
 fn coordinates_that_are_left_out_meet_the_constraints_on_positions() {
     let mut words = skate();
     words.positions = vec!["x^2 + y^2 - 1".to_owned()];
-    let model = Model::new(&words).unwrap();
+    let model = TextModel::new(&words).unwrap();
     let start = model.start(&[Some(0.6), None, Some(0.0)], &[None; 3]);
     // From zero there is no way along `y`, and then all move.
     let start = start.unwrap();
     assert!((start.q[0].hypot(start.q[1]) - 1.0).abs() < 1e-14);
     words.positions = vec!["x^2 + y^2 + 1".to_owned()];
-    let model = Model::new(&words).unwrap();
+    let model = TextModel::new(&words).unwrap();
     assert!(matches!(model.start(&[Some(0.6), None, None], &[None; 3]), Err(StartError::Positions { .. })));
 }
 
@@ -145,7 +145,7 @@ fn coordinates_that_are_left_out_meet_the_constraints_on_positions() {
 fn a_start_where_a_formula_is_no_number_is_refused() {
     let mut words = skate();
     words.lagrangian += " - log(x)";
-    let error = Model::new(&words).unwrap().start(&[None; 3], &[None; 3]).unwrap_err();
+    let error = TextModel::new(&words).unwrap().start(&[None; 3], &[None; 3]).unwrap_err();
     assert!(matches!(error, StartError::NotFinite { .. }), "{error}");
 }
 
@@ -153,7 +153,7 @@ fn a_start_where_a_formula_is_no_number_is_refused() {
 #[test]
 fn brackets_of_admissible_directions_grow() {
     let growth = |words: &Words, q: &[f64]| {
-        let model = Model::new(words).unwrap();
+        let model = TextModel::new(words).unwrap();
         let given: Vec<Option<f64>> = q.iter().map(|x| Some(*x)).collect();
         let geometry = model.geometry(&model.start(&given, &vec![None; q.len()]).unwrap());
         (geometry.rank, geometry.growth)
@@ -213,7 +213,7 @@ proptest! {
         words.coordinates[1].0.clone_from(&names[0]);
         words.parameters[0].0.clone_from(&names[1]);
         words.abbreviations[0] = (names[2].clone(), texts[0].clone());
-        prop_assert!(Model::new(&words).is_ok() || Model::new(&words).is_err());
+        prop_assert!(TextModel::new(&words).is_ok() || TextModel::new(&words).is_err());
         let mut words = skate();
         words.lagrangian = format!("{} + {}", words.lagrangian, texts[1]);
         words.constraints.push(texts[2].clone());
@@ -221,14 +221,14 @@ proptest! {
         words.forces[0].1.clone_from(&texts[4]);
         words.outputs[0].1.clone_from(&texts[5]);
         for (entry, text) in [(Entry::Constraint(1), &texts[2]), (Entry::Position(0), &texts[3])] {
-            if let Err(error) = Model::new(&words)
+            if let Err(error) = TextModel::new(&words)
                 && error.entry == entry
                 && let Some(column) = error.column()
             {
                 prop_assert!(column <= text.chars().count() + 1);
             }
         }
-        if let Ok(model) = Model::new(&words)
+        if let Ok(model) = TextModel::new(&words)
             && let Ok(start) = model.start(&[Some(0.1), Some(0.2), Some(0.3)], &[None; 3])
         {
             let _ = model.geometry(&start);

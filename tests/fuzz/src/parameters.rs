@@ -5,7 +5,7 @@
 
 use arbitrary::Arbitrary;
 use dla::{Observer, Schedule, State, StepReport, View};
-use harness::{Kind, METHODS, Method, integrate};
+use harness::{MethodKind, METHODS, Method, integrate};
 use lagrangian::{System, With};
 use libfuzzer_sys::fuzz_target;
 use scene::AnyEffect;
@@ -144,7 +144,7 @@ fn run(case: &Case) -> Result<(), Box<dyn std::error::Error>> {
     let most = if info.kind.is_adaptive() { 2 } else { 40 };
     let schedule = Schedule { t0: 0.0, step, steps: u64::from(case.steps % most) };
     // A projection leaves the rounding of the velocity before it: any number of times that of the velocity after it.
-    let keeps = info.keeps.contains("constraint") && info.kind != Kind::Rk4Projected;
+    let keeps = info.keeps.contains("constraint") && info.kind != MethodKind::Rk4Projected;
     let mut watch = OnConstraint { keeps, before: state };
     if let Err(failure) = integrate(&system, &method, &schedule, &mut state, &mut watch) {
         assert!(!failure.to_string().is_empty());

@@ -1,6 +1,6 @@
 use super::{FoundMean, are_met};
 use crate::Mechanics;
-use crate::derivatives::Derivatives;
+use crate::derivatives::StepDerivatives;
 use crate::dla::Dla;
 use crate::settle::{LEAST, Settle, sup};
 use lagrangian::{Bordered, from_fn};
@@ -62,7 +62,7 @@ struct Here<'a, const N: usize, const M: usize> {
     p1: [f64; N],
     a1: [[f64; N]; M],
     b1: [f64; M],
-    mass: &'a Derivatives,
+    mass: &'a StepDerivatives,
     bordered: Bordered<N, M>,
     tolerance: f64,
 }

@@ -1,7 +1,7 @@
 use super::{FoundMean, are_met, ends, with_reaction};
 use crate::convergence::tolerances::SHRINKING;
 use crate::corrections::Departure;
-use crate::derivatives::Derivatives;
+use crate::derivatives::StepDerivatives;
 use crate::dla::{Dla, expected, predicted};
 use crate::increment::Increment;
 use crate::settle::{LEAST, Settle, sup};
@@ -78,7 +78,7 @@ impl<D> Dla<D> {
 /// The iteration after its first correction.
 struct Begun<'a, D, const N: usize, const M: usize> {
     increment: Increment<'a, D, N, M>,
-    block: &'a Derivatives,
+    block: &'a StepDerivatives,
     bordered: Bordered<N, M>,
     tolerance: f64,
     v: [f64; N],

@@ -6,7 +6,7 @@ use lagrangian::linear::largest;
 
 /// How corrections follow one another, by which the next one is predicted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum CorrectionKind {
     /// With the Jacobian of the point itself: with `w` the bound on the curvature, a correction `d` leaves `w d^2/2`.
     Newton,
     /// With the Jacobian of the point before: the first is `d = w d_before^2/2`, and leaves `w d_before d`.
@@ -20,7 +20,7 @@ pub enum Kind {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Demand {
     /// How the correction was made.
-    pub kind: Kind,
+    pub kind: CorrectionKind,
     /// Relative tolerance of every component.
     pub tolerance: f64,
     /// Corrections after which the iteration fails.
@@ -154,7 +154,7 @@ impl<'a> Convergence<'a> {
         }
         let slight = is_slight(step, size);
         let contracts = !self.watched || slight || step <= near || step <= CONTRACTION * before;
-        let least = if kind == Kind::Chord { tolerance * size } else { 0.0 };
+        let least = if kind == CorrectionKind::Chord { tolerance * size } else { 0.0 };
         let [mut settled, mut stalls] = [true, false];
         for i in 0..x.len() {
             let (d, x, last) = (correction[i].abs(), x[i].abs(), self.last[i]);
@@ -162,19 +162,20 @@ impl<'a> Convergence<'a> {
             // A component that moves by round-off stays so.
             self.rounding[i] |= (slight | self.met) & stall;
             let ends = self.rounding[i] || d <= least || is_settled(kind, tolerance, x, d, last);
-            let open = !(ends || (kind == Kind::Simplified && self.is_gone(i, d)));
+            let open = !(ends || (kind == CorrectionKind::Simplified && self.is_gone(i, d)));
             settled &= !open;
             stalls |= open & stall;
         }
         // Where the next correction is predicted to be round-off in all components, those that have not converged never will.
-        settled |= kind == Kind::Chord && step <= BLIND * size && step * (step / before).min(1.0) <= UNBIASED * size;
+        settled |=
+            kind == CorrectionKind::Chord && step <= BLIND * size && step * (step / before).min(1.0) <= UNBIASED * size;
         self.watched &= !contracts;
         let stuck = (stalls && step >= STALL * before) || iteration >= limit;
         if !contracts || (stuck && !(settled || slight || self.met)) {
             let most = roundings();
             let within = |bound: f64| most.map_or(step <= BLIND * size, |most| most <= bound);
             // Where the linear equations cannot be solved with less round-off, that counts too.
-            let chord = kind == Kind::Chord;
+            let chord = kind == CorrectionKind::Chord;
             let met = within(if chord || !refinable { OF_CORRECTION } else { ROUNDINGS });
             self.met |= met;
             self.unmet = !met;
@@ -182,7 +183,7 @@ impl<'a> Convergence<'a> {
             self.watched = !contracts && !met && refinable;
             self.certain &= contracts || within(NEAR_ROUNDINGS) || refinable;
             if met && !settled {
-                settled = self.stalled(correction) || kind == Kind::Chord || iteration >= limit;
+                settled = self.stalled(correction) || kind == CorrectionKind::Chord || iteration >= limit;
             }
         }
         for (last, d) in self.last.iter_mut().zip(correction) {
@@ -227,12 +228,12 @@ impl<'a> Convergence<'a> {
 /// Whether a component of the size `x` has converged with its correction `d` after `last`: by that correction, or by the predicted next
 /// one. A correction larger than the component that it leaves brings round-off of its own, and predicts nothing.
 #[inline(always)]
-pub(crate) fn is_settled(kind: Kind, tolerance: f64, x: f64, d: f64, last: f64) -> bool {
+pub(crate) fn is_settled(kind: CorrectionKind, tolerance: f64, x: f64, d: f64, last: f64) -> bool {
     let shrink = d / last;
     let (next, least) = match kind {
-        Kind::Newton => (d * (shrink * shrink), tolerance),
-        Kind::Simplified => (d * (2.0 * shrink), tolerance),
-        Kind::Chord => (d * shrink, UNBIASED),
+        CorrectionKind::Newton => (d * (shrink * shrink), tolerance),
+        CorrectionKind::Simplified => (d * (2.0 * shrink), tolerance),
+        CorrectionKind::Chord => (d * shrink, UNBIASED),
     };
     let predicts = last.is_finite() && d <= x;
     d <= tolerance * x || (predicts && next <= least * x)

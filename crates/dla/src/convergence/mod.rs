@@ -15,6 +15,6 @@ mod residual;
 pub mod tolerances;
 
 pub(crate) use corrections::is_settled;
-pub use corrections::{Convergence, Demand, Kind, rounding_of_place};
+pub use corrections::{Convergence, CorrectionKind, Demand, rounding_of_place};
 pub use fixed_point::FixedPoint;
 pub(crate) use residual::{most_roundings, parted, without_reaction};

@@ -1,8 +1,8 @@
 use super::Energy;
 use super::rule::MOST;
 use crate::sensitivity::{
-    Differentiable, NO_BASIS, SensitivityError, StepEquations, StepStart, Unknowns, advanced, constrained, difference,
-    dimension, product,
+    Differentiable, NO_BASIS, SensitivityError, StepEquations, StepStart, StepUnknowns, advanced, constrained,
+    difference, dimension, product,
 };
 use lagrangian::{Dual, Gradients, Lanes, Scalar, Seeded, from_fn};
 
@@ -22,7 +22,7 @@ impl<const N: usize, const M: usize> Differentiable<N, M> for Energy {
         z: &[Seeded],
     ) -> Result<StepEquations<N>, SensitivityError> {
         let StepStart { t, h, q: q0, v: v0 } = *start;
-        let (mut unknowns, dimension) = (Unknowns(z), dimension::<N, M>());
+        let (mut unknowns, dimension) = (StepUnknowns(z), dimension::<N, M>());
         let (xi0, eta): ([Seeded; N], [Seeded; M]) = (unknowns.take_some(dimension), unknowns.take());
         let stages = self.rule.stages;
         let (q_rates, pi_rates): (Vec<[Seeded; N]>, Vec<[Seeded; N]>) =

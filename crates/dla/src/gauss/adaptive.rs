@@ -1,5 +1,5 @@
 use super::ending::Ending;
-use super::lanes::{Collocation, Outcome, StageSlopes};
+use super::lanes::{Collocation, CollocationOutcome, StageSlopes};
 use super::memory::GaussMemory;
 use super::pace::{degree, longer, quarters_of, roughest};
 use super::rule::quarter_octaves;
@@ -77,9 +77,9 @@ impl GaussAdaptive {
         let ending = Ending { left: 0.5, rounding, noise: rounding, limit, hopeless, unseen };
         let stages = Collocation { rule, t, h, q0, xi0, before, ending, counts: Some(counts), slopes };
         let (taken, rate, roughness) = match system.collocate(stages) {
-            Some(Outcome::Found(found)) => (TakenStep::at_once(&found)?, found.rate, found.roughness),
-            Some(Outcome::Failed) => return None,
-            Some(Outcome::Unknown) | None => {
+            Some(CollocationOutcome::Found(found)) => (TakenStep::at_once(&found)?, found.rate, found.roughness),
+            Some(CollocationOutcome::Failed) => return None,
+            Some(CollocationOutcome::Unknown) | None => {
                 let taken = self.gauss.in_turn(system, (t, h), (q0, xi0), slopes).ok()?;
                 (taken, 0.0, slopes.weighed(&rule.highest, &counts))
             }

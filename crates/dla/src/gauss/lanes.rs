@@ -62,7 +62,7 @@ impl<S: Simd, const R: usize> RuleInLanes<S, R> {
 
 /// The result of the iteration.
 #[derive(Debug)]
-pub enum Outcome<const N: usize> {
+pub enum CollocationOutcome<const N: usize> {
     /// The system does not know its reduced equations by hand.
     Unknown,
     /// The iteration does not converge.
@@ -98,7 +98,7 @@ impl<const N: usize> fmt::Debug for Collocation<'_, N> {
 pub(crate) fn collocate<Sys: System<N, M>, const N: usize, const M: usize>(
     system: &Sys,
     of: Collocation<'_, N>,
-) -> Option<Outcome<N>> {
+) -> Option<CollocationOutcome<N>> {
     dispatch(StagesAtOnce { system, of })
 }
 
@@ -225,10 +225,10 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> StagesAtOnce<'_, Sys, N,
 
 #[allow(clippy::manual_map, reason = "a closure may stay a call, in which the registers are not known")]
 impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for StagesAtOnce<'_, Sys, N, M> {
-    type Output = Outcome<N>;
+    type Output = CollocationOutcome<N>;
 
     #[inline(always)]
-    fn run<S: Simd, const R: usize>(self, simd: S) -> Outcome<N> {
+    fn run<S: Simd, const R: usize>(self, simd: S) -> CollocationOutcome<N> {
         let along = RuleInLanes::<S, R> { square: loaded(simd, &self.rule.square.terms), h: Pack::splat(simd, self.h) };
         let cascade = self.system.reduced().reconstruction();
         let alone = cascade.is_some() && self.system.reduced().stands_alone();
@@ -255,12 +255,12 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for StagesAtOnce<
                 Some(quadratures) => self.reconstructed(&along, quadratures, &xi),
                 None => self.velocity(simd, &q, &xi),
             };
-            let Some(v1) = v1 else { return Outcome::Unknown };
+            let Some(v1) = v1 else { return CollocationOutcome::Unknown };
             // Gauss-Seidel order: the accelerations use the new places.
             if !alone {
                 q = self.q(&along, &v1);
             }
-            let Some(a1) = self.acceleration(simd, &q, &xi) else { return Outcome::Unknown };
+            let Some(a1) = self.acceleration(simd, &q, &xi) else { return CollocationOutcome::Unknown };
             let verdict = if search.next_is_unseen() {
                 EndingVerdict::Continue
             } else {
@@ -284,14 +284,14 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for StagesAtOnce<
             match verdict {
                 EndingVerdict::Continue => {}
                 EndingVerdict::Done => break,
-                EndingVerdict::Failed => return Outcome::Failed,
+                EndingVerdict::Failed => return CollocationOutcome::Failed,
             }
         }
         // The velocities that belong to the last accelerations.
         if let Some(quadratures) = cascade {
             match self.reconstructed(&along, quadratures, &self.xi(&along, &a)) {
                 Some(last) => v = last,
-                None => return Outcome::Unknown,
+                None => return CollocationOutcome::Unknown,
             }
         }
         for k in 0..N {
@@ -314,6 +314,6 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for StagesAtOnce<
                 found.roughness = larger(found.roughness, (rough_a[k] * ca[k]).abs());
             }
         }
-        Outcome::Found(found)
+        CollocationOutcome::Found(found)
     }
 }

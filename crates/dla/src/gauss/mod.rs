@@ -8,7 +8,7 @@ mod rule;
 
 pub use adaptive::GaussAdaptive;
 pub(crate) use lanes::collocate;
-pub use lanes::{Collocation, Outcome};
+pub use lanes::{Collocation, CollocationOutcome};
 
 use crate::convergence::FixedPoint;
 use crate::convergence::tolerances::{LEFT, NOISE, OF_ROW};
@@ -98,8 +98,8 @@ impl Gauss {
         };
         let q0 = state.q();
         match system.collocate(Collocation { rule, t, h, q0, xi0, before, ending, counts: None, slopes })? {
-            Outcome::Found(found) => TakenStep::at_once(&found),
-            Outcome::Unknown | Outcome::Failed => None,
+            CollocationOutcome::Found(found) => TakenStep::at_once(&found),
+            CollocationOutcome::Unknown | CollocationOutcome::Failed => None,
         }
     }
 

@@ -16,8 +16,8 @@ use lagrangian::linear::largest;
 use stages::LobattoStages;
 use std::f64::consts::PI;
 
-pub use point::{Linearised, Point};
-pub use tables::Tables;
+pub use point::{LinearisedStage, StagePoint};
+pub use tables::LobattoTables;
 
 /// The variational partitioned Runge-Kutta method of the Lobatto pair IIIA and IIIB with `S >= 2` stages, as a one-step map
 /// on the distribution: order `2 S - 2`, self-adjoint.
@@ -50,7 +50,7 @@ pub use tables::Tables;
 /// for which that holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lobatto<const S: usize> {
-    tables: Tables<S>,
+    tables: LobattoTables<S>,
     /// The solver.
     pub newton: Newton,
 }
@@ -68,7 +68,7 @@ impl<const S: usize> Lobatto<S> {
     /// The method, with its coefficients computed to rounding.
     #[must_use]
     pub fn new() -> Self {
-        Self { tables: Tables::new(), newton: Newton::default() }
+        Self { tables: LobattoTables::new(), newton: Newton::default() }
     }
 
     /// The stages to which Newton's method converges from `v`, and the number of iterations; and whether they are the solution near the
@@ -120,7 +120,7 @@ impl<const N: usize, const M: usize, const S: usize> OneStep<N, M> for Lobatto<S
             return Err(Self::USE.refusal::<N, M>());
         }
         affine_only(system, t0, state)?;
-        let Tables { c, b, .. } = &self.tables;
+        let LobattoTables { c, b, .. } = &self.tables;
         let (q0, v0) = (*state.q(), *state.v());
         let p0 = system.momentum(t0, &q0, &v0);
 

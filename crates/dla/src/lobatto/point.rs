@@ -3,7 +3,7 @@ use lagrangian::{ConstraintSlopes, Rounded, from_fn};
 
 /// A configuration and a velocity at one time, with the impulse of the constraint there.
 #[derive(Debug, Clone, Copy)]
-pub struct Point<const N: usize, const M: usize> {
+pub struct StagePoint<const N: usize, const M: usize> {
     /// Time (s).
     pub t: f64,
     /// Configuration.
@@ -16,7 +16,7 @@ pub struct Point<const N: usize, const M: usize> {
 
 /// What the equations of a step need at one stage, with all first derivatives.
 #[derive(Debug, Clone, Copy)]
-pub struct Linearised<const N: usize, const M: usize> {
+pub struct LinearisedStage<const N: usize, const M: usize> {
     /// `p = L_v`.
     pub p: [f64; N],
     /// Its derivatives in `q`.
@@ -37,7 +37,7 @@ pub struct Linearised<const N: usize, const M: usize> {
     pub a: [[f64; N]; M],
 }
 
-/// `p`, `w`, `g` and `a` of [`Linearised`], and the functions of constraints on positions, with bounds on their rounding.
+/// `p`, `w`, `g` and `a` of [`LinearisedStage`], and the functions of constraints on positions, with bounds on their rounding.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Terms<const N: usize, const M: usize> {
     pub(super) p: [Rounded; N],
@@ -47,7 +47,7 @@ pub(super) struct Terms<const N: usize, const M: usize> {
     pub(super) positions: [Option<Rounded>; M],
 }
 
-impl<const N: usize, const M: usize> Point<N, M> {
+impl<const N: usize, const M: usize> StagePoint<N, M> {
     /// `h (L_q + F) + A' l`.
     #[must_use]
     #[inline]
@@ -82,7 +82,7 @@ impl<const N: usize, const M: usize> Point<N, M> {
     /// All that the equations need here, with its derivatives.
     #[must_use]
     #[inline]
-    pub fn linearised(&self, system: &dyn Mechanics<N, M>, h: f64) -> Linearised<N, M> {
+    pub fn linearised(&self, system: &dyn Mechanics<N, M>, h: f64) -> LinearisedStage<N, M> {
         let Self { t, q, v, impulse } = self;
         let SecondSlopes { l_q, l_qq, l_qv: mixed, l_v: p, l_vv: p_v, force } = system.second_slopes(*t, q, v);
 
@@ -99,6 +99,6 @@ impl<const N: usize, const M: usize> Point<N, M> {
 
         let ConstraintSlopes { a, g, g_q } = system.constraint_slopes(*t, (q, v), impulse, (&mut w, &mut w_q));
         let p_q = from_fn(|i| from_fn(|j| mixed[j][i]));
-        Linearised { p, p_q, p_v, w, w_q, w_v, g, g_q, a }
+        LinearisedStage { p, p_q, p_v, w, w_q, w_v, g, g_q, a }
     }
 }

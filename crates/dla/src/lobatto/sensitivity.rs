@@ -1,7 +1,7 @@
 use super::Lobatto;
-use super::tables::Tables;
+use super::tables::LobattoTables;
 use crate::sensitivity::{
-    Differentiable, SensitivityError, StepEquations, StepStart, Unknowns, advanced, constrained, difference,
+    Differentiable, SensitivityError, StepEquations, StepStart, StepUnknowns, advanced, constrained, difference,
 };
 use lagrangian::{Gradients, Scalar, Seeded, from_fn};
 
@@ -17,9 +17,9 @@ impl<const S: usize, const N: usize, const M: usize> Differentiable<N, M> for Lo
         start: &StepStart<N>,
         z: &[Seeded],
     ) -> Result<StepEquations<N>, SensitivityError> {
-        let Tables { c, b, a, a_hat, .. } = &self.tables;
+        let LobattoTables { c, b, a, a_hat, .. } = &self.tables;
         let StepStart { t, h, q: q0, v: v0 } = *start;
-        let mut unknowns = Unknowns(z);
+        let mut unknowns = StepUnknowns(z);
         let velocities: [[Seeded; N]; S] = from_fn(|_| unknowns.take());
         let impulses: [[Seeded; M]; S] = from_fn(|j| if j + 1 < S { unknowns.take() } else { [Seeded::zero(); M] });
         let (v1, mu): ([Seeded; N], [Seeded; M]) = (unknowns.take(), unknowns.take());

@@ -1,6 +1,6 @@
 use super::dense::Dense;
-use super::point::{Linearised, Point, Terms};
-use super::tables::Tables;
+use super::point::{LinearisedStage, StagePoint, Terms};
+use super::tables::LobattoTables;
 use crate::branch;
 use crate::convergence::{most_roundings, rounding_of_place};
 use crate::newton::BlockEquations;
@@ -10,7 +10,7 @@ use lagrangian::{Rounded, Saddle, from_fn};
 
 /// The equations for the velocities of all stages of a step, with the impulses of the constraint at all but the last.
 pub(super) struct LobattoStages<'a, const N: usize, const M: usize, const S: usize> {
-    pub(super) tables: &'a Tables<S>,
+    pub(super) tables: &'a LobattoTables<S>,
     pub(super) system: &'a dyn Mechanics<N, M>,
     pub(super) t0: f64,
     pub(super) h: f64,
@@ -52,9 +52,9 @@ impl<const N: usize, const M: usize, const S: usize> LobattoStages<'_, N, M, S> 
 
     /// The points of the stages.
     #[inline]
-    pub(super) fn points(&self, v: &[[f64; N]; S]) -> [Point<N, M>; S] {
-        let Tables { c, a, .. } = self.tables;
-        from_fn(|j| Point {
+    pub(super) fn points(&self, v: &[[f64; N]; S]) -> [StagePoint<N, M>; S] {
+        let LobattoTables { c, a, .. } = self.tables;
+        from_fn(|j| StagePoint {
             t: self.t0 + c[j] * self.h,
             q: self.start.ahead(&self.increment(&a[j], c[j], v)),
             v: v[j],
@@ -89,7 +89,7 @@ impl<const N: usize, const M: usize, const S: usize> LobattoStages<'_, N, M, S> 
     #[cold]
     #[inline(never)]
     pub(super) fn missed(&self, v: &[[f64; N]; S]) -> f64 {
-        let Tables { a, a_hat, blind, .. } = self.tables;
+        let LobattoTables { a, a_hat, blind, .. } = self.tables;
         let h = self.h;
         let terms: [Terms<N, M>; S] = from_fn(|j| {
             let way = |i: usize| (0..S).map(|k| (h * a[j][k] * v[k][i]).abs()).sum::<f64>();
@@ -119,8 +119,8 @@ impl<const N: usize, const M: usize, const S: usize> LobattoStages<'_, N, M, S> 
 
     /// The linear equations of Newton's method.
     #[inline]
-    fn equations(&self, points: &[Point<N, M>; S], at: &[Linearised<N, M>; S], dense: &mut Dense<N, M, S>) {
-        let Tables { a, a_hat, blind, .. } = self.tables;
+    fn equations(&self, points: &[StagePoint<N, M>; S], at: &[LinearisedStage<N, M>; S], dense: &mut Dense<N, M, S>) {
+        let LobattoTables { a, a_hat, blind, .. } = self.tables;
         let h = self.h;
         // p_i - p0 - sum_j a_hat_ij w_j = 0
         for i in 0..S {

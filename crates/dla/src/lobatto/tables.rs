@@ -3,7 +3,7 @@ use lagrangian::quadrature::shifted_legendre;
 
 /// The Lobatto nodes and weights on `[0, 1]` with the coefficients of the pair IIIA and IIIB, for any `S >= 2`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tables<const S: usize> {
+pub struct LobattoTables<const S: usize> {
     /// Nodes `c`, ascending, the two ends among them.
     pub c: [f64; S],
     /// Weights `b`, exact to degree `2 S - 3`.
@@ -18,7 +18,7 @@ pub struct Tables<const S: usize> {
     pub blind: [f64; S],
 }
 
-impl<const S: usize> Tables<S> {
+impl<const S: usize> LobattoTables<S> {
     /// Computes them to rounding.
     ///
     /// The Lagrange polynomials are expanded in Legendre's, which loses no digits (Hairer and Wanner 1996, section IV.5).
@@ -87,20 +87,20 @@ mod tests {
     /// Hairer and Wanner 1996, tables IV.5.7 to IV.5.10.
     #[test]
     fn the_published_tables() {
-        let two = Tables::<2>::new();
+        let two = LobattoTables::<2>::new();
         close(&two.c, &[0.0, 1.0], "c");
         close(&two.b, &[0.5, 0.5], "b");
         close(two.a.as_flattened(), &[0.0, 0.0, 0.5, 0.5], "IIIA");
         close(two.a_hat.as_flattened(), &[0.5, 0.0, 0.5, 0.0], "IIIB");
 
-        let three = Tables::<3>::new();
+        let three = LobattoTables::<3>::new();
         close(&three.c, &[0.0, 0.5, 1.0], "c");
         let [x, y] = [1.0 / 6.0, 2.0 / 3.0];
         close(&three.b, &[x, y, x], "b");
         close(three.a.as_flattened(), &[0.0, 0.0, 0.0, 5.0 / 24.0, 1.0 / 3.0, -1.0 / 24.0, x, y, x], "IIIA");
         close(three.a_hat.as_flattened(), &[x, -x, 0.0, x, 2.0 * x, 0.0, x, 5.0 * x, 0.0], "IIIB");
 
-        let four = Tables::<4>::new();
+        let four = LobattoTables::<4>::new();
         let r = 5f64.sqrt();
         close(&four.c, &[0.0, (5.0 - r) / 10.0, (5.0 + r) / 10.0, 1.0], "c");
         let [x, y] = [1.0 / 12.0, 5.0 / 12.0];
@@ -127,7 +127,7 @@ mod tests {
 
     /// `B(2 S - 2)`, `C(S)` of IIIA, `C(S - 2)` and `D(S)` of IIIB, `D(S - 2)` of IIIA.
     fn simplifying<const S: usize>() {
-        let Tables { c, b, a, a_hat, blind } = Tables::<S>::new();
+        let LobattoTables { c, b, a, a_hat, blind } = LobattoTables::<S>::new();
         let tolerance = 4.0 * f64::EPSILON;
         let holds = |left: f64, right: f64, what: &str| {
             assert!((left - right).abs() <= tolerance, "S = {S}, {what}: {left} and {right}");

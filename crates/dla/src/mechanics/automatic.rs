@@ -1,7 +1,7 @@
 //! Every system answers by automatic derivatives.
 
 use super::{Mechanics, SecondSlopes, Slopes};
-use crate::gauss::{Collocation, Outcome, collocate};
+use crate::gauss::{Collocation, CollocationOutcome, collocate};
 use lagrangian::linear::Singular;
 use lagrangian::{
     AdmissibleBasis, Bracket, Constraint, ConstraintSlopes, Dual, EnergySlope, HyperDual, Lanes, Motion, MotionError,
@@ -201,7 +201,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Mechanics<N, M> for Sys 
         )
     }
 
-    fn collocate(&self, stages: Collocation<'_, N>) -> Option<Outcome<N>> {
+    fn collocate(&self, stages: Collocation<'_, N>) -> Option<CollocationOutcome<N>> {
         collocate(self, stages)
     }
 }

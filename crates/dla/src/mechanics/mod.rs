@@ -9,7 +9,7 @@ pub use diagnosis::Diagnosis;
 pub use rounded::RoundedMechanics;
 pub use seeded::{FullMechanics, SeededMechanics};
 
-use crate::gauss::{Collocation, Outcome};
+use crate::gauss::{Collocation, CollocationOutcome};
 use lagrangian::{
     AdmissibleBasis, Bracket, Constraint, ConstraintSlopes, Dual, EnergySlope, HyperDual, Lanes, Motion, MotionError,
     ReducedError, ReducedSlope,
@@ -195,7 +195,7 @@ pub trait Mechanics<const N: usize, const M: usize>: RoundedMechanics<N, M> + Di
     fn force_at_eight(&self, t: Lanes, q: &[Lanes; N], v: &[Lanes; N]) -> Option<[Lanes; N]>;
 
     /// The stages of a collocation, all at once in the vector registers of the machine; none where it has none.
-    fn collocate(&self, stages: Collocation<'_, N>) -> Option<Outcome<N>>;
+    fn collocate(&self, stages: Collocation<'_, N>) -> Option<CollocationOutcome<N>>;
 }
 
 impl<const N: usize, const M: usize> fmt::Debug for dyn Mechanics<N, M> + '_ {

@@ -1,4 +1,4 @@
-use super::equations::{Unknowns, constrained, difference};
+use super::equations::{StepUnknowns, constrained, difference};
 use super::{Differentiable, SensitivityError, StepEquations, StepStart};
 use crate::Dla;
 use lagrangian::{Gradients, Rule, Scalar, Seeded, from_fn};
@@ -30,7 +30,7 @@ impl<const N: usize, const M: usize> Differentiable<N, M> for Dla {
         z: &[Seeded],
     ) -> Result<StepEquations<N>, SensitivityError> {
         let StepStart { t, h, q, v: v0 } = *start;
-        let mut unknowns = Unknowns(z);
+        let mut unknowns = StepUnknowns(z);
         let (v, lambda): ([Seeded; N], [Seeded; M]) = (unknowns.take(), unknowns.take());
         let (v1, mu): ([Seeded; N], [Seeded; M]) = (unknowns.take(), unknowns.take());
         let increment = v.map(|v| h * v);

@@ -57,9 +57,9 @@ pub trait Differentiable<const N: usize, const M: usize> {
 
 /// Reads the unknowns of a step one group after the other.
 #[derive(Debug, Clone)]
-pub struct Unknowns<'a>(pub &'a [Seeded]);
+pub struct StepUnknowns<'a>(pub &'a [Seeded]);
 
-impl Unknowns<'_> {
+impl StepUnknowns<'_> {
     /// The next `K` unknowns.
     pub fn take<const K: usize>(&mut self) -> [Seeded; K] {
         self.take_some(K)

@@ -1,4 +1,4 @@
-use super::equations::{NO_BASIS, Unknowns, advanced, constrained, difference, dimension, product};
+use super::equations::{NO_BASIS, StepUnknowns, advanced, constrained, difference, dimension, product};
 use super::{Differentiable, SensitivityError, StepEquations, StepStart};
 use crate::Gauss;
 use lagrangian::{Gradients, Scalar, Seeded, from_fn};
@@ -22,7 +22,7 @@ impl<const N: usize, const M: usize> Differentiable<N, M> for Gauss {
         z: &[Seeded],
     ) -> Result<StepEquations<N>, SensitivityError> {
         let StepStart { t, h, q: q0, v: v0 } = *start;
-        let mut unknowns = Unknowns(z);
+        let mut unknowns = StepUnknowns(z);
         let (xi0, eta): ([Seeded; N], [Seeded; M]) = (unknowns.take_some(dimension::<N, M>()), unknowns.take());
         let count = self.stages();
         let (velocities, accelerations): (Vec<[Seeded; N]>, Vec<[Seeded; N]>) =

@@ -43,7 +43,7 @@ pub(super) struct Elementary<'a, 's, const N: usize, const M: usize> {
 }
 
 /// The end of an elementary step, with its derivatives in `(q0, v0, t, h, p)`.
-pub(super) struct Linearised<const N: usize> {
+pub(super) struct LinearisedStep<const N: usize> {
     pub(super) increment: [f64; N],
     pub(super) velocity: [f64; N],
     /// `d(q1, v1)`, the rows of `q1` first.
@@ -82,7 +82,7 @@ impl<const N: usize, const M: usize> Elementary<'_, '_, N, M> {
 
     /// The solution of the equations, and then by the implicit function theorem `dz = -(R_z)^-1 R_x dx` the derivative of
     /// the end that it gives.
-    pub(super) fn linearised(&self) -> Result<Linearised<N>, SensitivityError> {
+    pub(super) fn linearised(&self) -> Result<LinearisedStep<N>, SensitivityError> {
         let z = self.solution()?;
         let (unknowns, inputs) = (z.len(), self.inputs());
         let mut r = DMatrix::zeros(unknowns, unknowns + inputs);
@@ -112,7 +112,7 @@ impl<const N: usize, const M: usize> Elementary<'_, '_, N, M> {
         let z_x = Scaled::new(r_z).map_err(|source| singular(0, source, History::new()))?.solve(-r_x);
         let derivative = end.columns(unknowns, inputs) + end.columns(0, unknowns) * z_x;
         if derivative.iter().all(|x| x.is_finite()) {
-            Ok(Linearised { increment, velocity, derivative })
+            Ok(LinearisedStep { increment, velocity, derivative })
         } else {
             Err(SensitivityError::Equations(NewtonError::NotFinite { iteration: 0, history: History::new() }))
         }

@@ -1,4 +1,4 @@
-use super::equations::{Unknowns, constrained, difference};
+use super::equations::{StepUnknowns, constrained, difference};
 use super::{Differentiable, Sensitivity, SensitivityError, StepEquations, StepStart, Tangent};
 use crate::{State, StepReport, onto_constraint};
 use lagrangian::{Gradients, Scalar, Seeded};
@@ -23,7 +23,7 @@ impl<const N: usize, const M: usize> Differentiable<N, M> for Impulse {
         z: &[Seeded],
     ) -> Result<StepEquations<N>, SensitivityError> {
         let StepStart { t, q, v: v0, .. } = *start;
-        let mut unknowns = Unknowns(z);
+        let mut unknowns = StepUnknowns(z);
         let (v1, mu): ([Seeded; N], [Seeded; M]) = (unknowns.take(), unknowns.take());
         let a = model.reaction_rows(t, &q, &v1);
         let p1 = constrained(&model.momentum(t, &q, &v0), &a, &mu);

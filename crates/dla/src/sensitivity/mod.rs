@@ -15,7 +15,7 @@ mod run;
 mod step;
 
 pub use derivative::{StepDerivative, Tangent, Variation};
-pub use equations::{Differentiable, StepEquations, StepStart, Unknowns};
+pub use equations::{Differentiable, StepEquations, StepStart, StepUnknowns};
 pub(crate) use equations::{NO_BASIS, advanced, constrained, difference, dimension, product};
 pub use error::{SensitivityError, TangentRunError};
 pub use reduced::{ReducedDerivative, ReducedVariation};

@@ -5,7 +5,7 @@ use crate::syntax::{Action, too_few};
 use crate::{Error, Syntax};
 
 /// An operand whose sum or product may still go on: a chain is gathered once, not at every link.
-enum Operand {
+enum BuiltOperand {
     Done(Expression),
     Sum(Sum),
     Product(Product),
@@ -30,25 +30,25 @@ impl Graph {
     /// # Errors
     /// [`Error::TooFew`] meanings, a part that is [not finite](Error::NotFinite) whatever the variables are, [`Error::GraphFull`].
     pub fn build(&mut self, syntax: &Syntax, meanings: &[Expression]) -> Result<Expression, Error> {
-        let mut stack: Vec<(Operand, usize)> = Vec::new();
+        let mut stack: Vec<(BuiltOperand, usize)> = Vec::new();
         for step in &syntax.steps {
             let operand = match step.action {
-                Action::Number(x) => Operand::Done(self.constant(x)),
+                Action::Number(x) => BuiltOperand::Done(self.constant(x)),
                 Action::Name(k) => {
                     let meaning = meanings.get(k).ok_or_else(|| too_few(k + 1, meanings.len()))?;
-                    Operand::Done(*meaning)
+                    BuiltOperand::Done(*meaning)
                 }
                 action => {
                     let last = if action.operands() == 2 { stack.pop() } else { None };
                     match stack.pop() {
                         Some(first) => self.applied(action, first, last)?,
-                        None => Operand::Done(self.constant(f64::NAN)),
+                        None => BuiltOperand::Done(self.constant(f64::NAN)),
                     }
                 }
             };
             stack.push((operand, step.column));
         }
-        let last = stack.pop().unwrap_or((Operand::Sum(Sum::default()), 1));
+        let last = stack.pop().unwrap_or((BuiltOperand::Sum(Sum::default()), 1));
         self.done(last)
     }
 
@@ -56,13 +56,13 @@ impl Graph {
     fn applied(
         &mut self,
         action: Action,
-        first: (Operand, usize),
-        last: Option<(Operand, usize)>,
-    ) -> Result<Operand, Error> {
+        first: (BuiltOperand, usize),
+        last: Option<(BuiltOperand, usize)>,
+    ) -> Result<BuiltOperand, Error> {
         Ok(match (action, first, last) {
             (Action::Add | Action::Subtract, first, Some(last)) => {
                 let mut sum = match first {
-                    (Operand::Sum(sum), _) => sum,
+                    (BuiltOperand::Sum(sum), _) => sum,
                     other => {
                         let (first, mut sum) = (self.done(other)?, Sum::default());
                         self.add_to(&mut sum, first, 1.0);
@@ -71,11 +71,11 @@ impl Graph {
                 };
                 let last = self.done(last)?;
                 self.add_to(&mut sum, last, if action == Action::Add { 1.0 } else { -1.0 });
-                Operand::Sum(sum)
+                BuiltOperand::Sum(sum)
             }
             (Action::Multiply | Action::Divide, first, Some(last)) => {
                 let mut product = match first {
-                    (Operand::Product(product), _) => product,
+                    (BuiltOperand::Product(product), _) => product,
                     other => {
                         let (first, mut product) = (self.done(other)?, Product::default());
                         self.multiply(&mut product, first, 2);
@@ -84,12 +84,12 @@ impl Graph {
                 };
                 let last = self.done(last)?;
                 self.multiply(&mut product, last, if action == Action::Multiply { 2 } else { -2 });
-                Operand::Product(product)
+                BuiltOperand::Product(product)
             }
             (action, first, last) => {
                 let a = self.done(first)?;
                 let b = last.map_or(Ok(a), |last| self.done(last))?;
-                Operand::Done(match action {
+                BuiltOperand::Done(match action {
                     Action::Negate => self.negated(a),
                     Action::Power => self.raised(a, b),
                     Action::Call(function) => self.call(function, &[a, b]),
@@ -99,11 +99,11 @@ impl Graph {
         })
     }
 
-    fn done(&mut self, (operand, column): (Operand, usize)) -> Result<Expression, Error> {
+    fn done(&mut self, (operand, column): (BuiltOperand, usize)) -> Result<Expression, Error> {
         let e = match operand {
-            Operand::Done(e) => e,
-            Operand::Sum(sum) => self.finish_sum(sum),
-            Operand::Product(product) => self.finish_product(product),
+            BuiltOperand::Done(e) => e,
+            BuiltOperand::Sum(sum) => self.finish_sum(sum),
+            BuiltOperand::Product(product) => self.finish_product(product),
         };
         self.finite(e, column)
     }

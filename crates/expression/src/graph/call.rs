@@ -1,4 +1,4 @@
-use super::{Expression, Graph, Kind};
+use super::{Expression, Graph, NodeKind};
 use crate::Function;
 
 impl Graph {
@@ -14,7 +14,7 @@ impl Graph {
             // Even and odd functions.
             Function::Cos | Function::Cosh | Function::Abs => {
                 let (_, e) = self.without_sign(first);
-                if function == Function::Abs && matches!(self.kind(e), Kind::Call(Function::Abs, _)) {
+                if function == Function::Abs && matches!(self.kind(e), NodeKind::Call(Function::Abs, _)) {
                     return e;
                 }
                 self.called(function, [e, e])
@@ -32,11 +32,11 @@ impl Graph {
                 if negative { self.negated(called) } else { called }
             }
             Function::Exp => match *self.kind(first) {
-                Kind::Call(Function::Log, [u, _]) => u,
+                NodeKind::Call(Function::Log, [u, _]) => u,
                 _ => self.called(function, [first; 2]),
             },
             Function::Log => match *self.kind(first) {
-                Kind::Call(Function::Exp, [u, _]) => u,
+                NodeKind::Call(Function::Exp, [u, _]) => u,
                 _ => self.called(function, [first; 2]),
             },
             Function::Min | Function::Max if first == last => first,
@@ -46,13 +46,13 @@ impl Graph {
     }
 
     fn called(&mut self, function: Function, arguments: [Expression; 2]) -> Expression {
-        self.intern(Kind::Call(function, arguments))
+        self.intern(NodeKind::Call(function, arguments))
     }
 
     /// Whether the first coefficient is negative, and the expression with all of them turned round if so.
     fn without_sign(&mut self, e: Expression) -> (bool, Expression) {
         let negative =
-            matches!(self.kind(e), Kind::Sum { terms, .. } if terms.first().is_some_and(|t| t.1.value() < 0.0));
+            matches!(self.kind(e), NodeKind::Sum { terms, .. } if terms.first().is_some_and(|t| t.1.value() < 0.0));
         (negative, if negative { self.negated(e) } else { e })
     }
 }

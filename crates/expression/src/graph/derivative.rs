@@ -1,6 +1,6 @@
 use super::product::Product;
 use super::sum::Sum;
-use super::{Expression, Graph, Kind, bit};
+use super::{Expression, Graph, NodeKind, bit};
 use crate::Function;
 
 impl Graph {
@@ -52,9 +52,9 @@ impl Graph {
     /// The rule for one expression, the derivatives of its parts being known.
     fn rule(&mut self, e: Expression, variable: u32) -> Expression {
         match self.kind(e).clone() {
-            Kind::Constant(_) => self.constant(0.0),
-            Kind::Variable(k) => self.constant(if k == variable { 1.0 } else { 0.0 }),
-            Kind::Sum { terms, .. } => {
+            NodeKind::Constant(_) => self.constant(0.0),
+            NodeKind::Variable(k) => self.constant(if k == variable { 1.0 } else { 0.0 }),
+            NodeKind::Sum { terms, .. } => {
                 let mut sum = Sum::default();
                 for &(term, c) in &terms {
                     let derivative = self.known(term, variable);
@@ -62,7 +62,7 @@ impl Graph {
                 }
                 self.finish_sum(sum)
             }
-            Kind::Product(factors) => {
+            NodeKind::Product(factors) => {
                 let mut sum = Sum::default();
                 for &(base, halves) in &factors {
                     let inner = self.known(base, variable);
@@ -86,12 +86,12 @@ impl Graph {
                 }
                 self.finish_sum(sum)
             }
-            Kind::Power(base, p) => {
+            NodeKind::Power(base, p) => {
                 let (slope, inner) = (self.power(base, p.value() - 1.0), self.known(base, variable));
                 let product = self.product(&[slope, inner]);
                 self.scaled(product, p.value())
             }
-            Kind::Call(Function::Atan2, [y, x]) => {
+            NodeKind::Call(Function::Atan2, [y, x]) => {
                 let [dy, dx] = [y, x].map(|part| self.known(part, variable));
                 let (a, b) = (self.product(&[x, dy]), self.product(&[y, dx]));
                 let [y, x] = [y, x].map(|part| self.power(part, 2.0));
@@ -99,7 +99,7 @@ impl Graph {
                 let inverse = self.call(Function::Inverse, &[square]);
                 self.product(&[turned, inverse])
             }
-            Kind::Call(function @ (Function::Min | Function::Max), [a, b]) => {
+            NodeKind::Call(function @ (Function::Min | Function::Max), [a, b]) => {
                 let [da, db] = [a, b].map(|part| self.known(part, variable));
                 let (apart, mean) = (self.difference(a, b), self.sum(&[da, db]));
                 let (sign, half) = (self.call(Function::Sign, &[apart]), self.difference(da, db));
@@ -108,7 +108,7 @@ impl Graph {
                     if function == Function::Max { self.sum(&[mean, turned]) } else { self.difference(mean, turned) };
                 self.scaled(twice, 0.5)
             }
-            Kind::Call(function, [u, _]) => {
+            NodeKind::Call(function, [u, _]) => {
                 let (slope, inner) = (self.slope(function, u, e), self.known(u, variable));
                 self.product(&[slope, inner])
             }

@@ -1,7 +1,7 @@
 #![allow(clippy::float_cmp, reason = "a coefficient is one where its bits are")]
 
 use super::sum::Sum;
-use super::{Expression, Graph, Kind, Number};
+use super::{Expression, Graph, NodeKind, Number};
 use crate::Function;
 use std::collections::HashMap;
 
@@ -23,12 +23,15 @@ impl Graph {
     pub fn expanded(&mut self, e: Expression, most: usize) -> Expression {
         let mut by: HashMap<Expression, Expression> = HashMap::new();
         let enter = |e: Expression| {
-            matches!(self.kind(e), Kind::Sum { .. } | Kind::Product(_) | Kind::Call(Function::Sin | Function::Cos, _))
+            matches!(
+                self.kind(e),
+                NodeKind::Sum { .. } | NodeKind::Product(_) | NodeKind::Call(Function::Sin | Function::Cos, _)
+            )
         };
         for part in self.reached(&[e], enter) {
             let new = |e: Expression| by.get(&e).copied().unwrap_or(e);
             let expanded = match self.kind(part).clone() {
-                Kind::Sum { constant, terms } => {
+                NodeKind::Sum { constant, terms } => {
                     let mut sum = Sum::default();
                     let constant = self.constant(constant.value());
                     self.add_to(&mut sum, constant, 1.0);
@@ -38,11 +41,11 @@ impl Graph {
                     }
                     self.finish_sum(sum)
                 }
-                Kind::Product(factors) => {
+                NodeKind::Product(factors) => {
                     let factors: Vec<_> = factors.iter().map(|&(base, halves)| (new(base), halves)).collect();
                     self.multiplied_out(&factors, most)
                 }
-                Kind::Call(function @ (Function::Sin | Function::Cos), [u, _]) => self.of_terms(function, u, part),
+                NodeKind::Call(function @ (Function::Sin | Function::Cos), [u, _]) => self.of_terms(function, u, part),
                 _ => part,
             };
             by.insert(part, expanded);
@@ -53,7 +56,7 @@ impl Graph {
     /// The terms of a sum, or the expression itself.
     fn terms(&mut self, e: Expression) -> Vec<(Expression, f64)> {
         match self.kind(e).clone() {
-            Kind::Sum { constant, terms } => {
+            NodeKind::Sum { constant, terms } => {
                 let mut terms: Vec<_> = terms.iter().map(|&(term, c)| (term, c.value())).collect();
                 if constant != Number::ZERO {
                     terms.push((self.constant(constant.value()), 1.0));
@@ -73,7 +76,7 @@ impl Graph {
 
     fn multiplied_out(&mut self, factors: &[(Expression, i32)], most: usize) -> Expression {
         let whole = self.product_of(1.0, factors);
-        let is_sum = |graph: &Self, e| matches!(graph.kind(e), Kind::Sum { .. });
+        let is_sum = |graph: &Self, e| matches!(graph.kind(e), NodeKind::Sum { .. });
         let open =
             |graph: &Self, (base, halves): (Expression, i32)| is_sum(graph, base) && halves > 0 && halves % 2 == 0;
         let (sums, rest): (Vec<_>, Vec<_>) = factors.iter().partition(|factor| open(self, **factor));
@@ -100,7 +103,7 @@ impl Graph {
     /// Sine or cosine of a sum of few terms with whole signs.
     fn of_terms(&mut self, function: Function, u: Expression, whole: Expression) -> Expression {
         let terms = match self.kind(u) {
-            Kind::Sum { constant, terms } if *constant == Number::ZERO && (2..=3).contains(&terms.len()) => {
+            NodeKind::Sum { constant, terms } if *constant == Number::ZERO && (2..=3).contains(&terms.len()) => {
                 terms.clone()
             }
             _ => return whole,

@@ -31,7 +31,7 @@ impl Number {
 
 /// What an expression is made of. Parts have smaller numbers than the whole.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub(crate) enum Kind {
+pub(crate) enum NodeKind {
     Constant(Number),
     Variable(u32),
     /// A constant and terms with their coefficients, by their numbers; no term is a constant, or a multiple of another.
@@ -47,7 +47,7 @@ pub(crate) enum Kind {
     Call(Function, [Expression; 2]),
 }
 
-impl Kind {
+impl NodeKind {
     pub(crate) const NOT_A_NUMBER: Self = Self::Constant(Number(f64::NAN.to_bits()));
 
     /// The expressions that it is made of.

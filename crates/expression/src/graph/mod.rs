@@ -12,7 +12,7 @@ mod text;
 mod walk;
 
 pub use kind::Expression;
-pub(crate) use kind::{Kind, Number};
+pub(crate) use kind::{NodeKind, Number};
 pub use text::Statements;
 
 use crate::{Error, Limits};
@@ -44,7 +44,7 @@ pub(crate) const LONG: usize = 32;
 /// An expression of another graph means some other expression in this one, or `NaN`.
 #[derive(Debug, Clone)]
 pub struct Graph {
-    kinds: IndexSet<Kind>,
+    kinds: IndexSet<NodeKind>,
     /// The variables of each, folded into as many bits as there are: none where the bit is not set.
     variables: Vec<u64>,
     derivatives: HashMap<(Expression, u32), Expression>,
@@ -107,7 +107,7 @@ impl Graph {
 
     /// A constant.
     pub fn constant(&mut self, x: f64) -> Expression {
-        self.intern(Kind::Constant(Number::new(x)))
+        self.intern(NodeKind::Constant(Number::new(x)))
     }
 
     /// The variable of that number: the tape takes its value from that place. A number beyond [`LIMIT`](Self::LIMIT) has no room.
@@ -116,21 +116,21 @@ impl Graph {
             self.full = true;
             return self.constant(f64::NAN);
         }
-        self.intern(Kind::Variable(k))
+        self.intern(NodeKind::Variable(k))
     }
 
     /// The number that an expression is, where it is constant.
     #[must_use]
     pub fn value(&self, e: Expression) -> Option<f64> {
-        if let Kind::Constant(x) = self.kind(e) { Some(x.value()) } else { None }
+        if let NodeKind::Constant(x) = self.kind(e) { Some(x.value()) } else { None }
     }
 
-    pub(crate) fn kind(&self, e: Expression) -> &Kind {
-        self.kinds.get_index(e.index()).unwrap_or(&Kind::NOT_A_NUMBER)
+    pub(crate) fn kind(&self, e: Expression) -> &NodeKind {
+        self.kinds.get_index(e.index()).unwrap_or(&NodeKind::NOT_A_NUMBER)
     }
 
     /// The expression of that kind, if it is there.
-    pub(crate) fn find(&self, kind: &Kind) -> Option<Expression> {
+    pub(crate) fn find(&self, kind: &NodeKind) -> Option<Expression> {
         self.kinds.get_index_of(kind).map(|k| Expression(k as u32))
     }
 
@@ -139,8 +139,8 @@ impl Graph {
         self.variables.get(e.index()).copied().unwrap_or(0)
     }
 
-    pub(crate) fn intern(&mut self, kind: Kind) -> Expression {
-        let constant = matches!(kind, Kind::Constant(_));
+    pub(crate) fn intern(&mut self, kind: NodeKind) -> Expression {
+        let constant = matches!(kind, NodeKind::Constant(_));
         // One constant more always has room: the one that stands for all that has none.
         if !constant && self.size + kind.size() > self.limit {
             if let Some(there) = self.find(&kind) {
@@ -151,7 +151,7 @@ impl Graph {
         }
         let size = kind.size();
         let bits = match kind {
-            Kind::Variable(k) => bit(k),
+            NodeKind::Variable(k) => bit(k),
             _ => kind.parts().fold(0, |bits, part| bits | self.bits(part)),
         };
         let (index, new) = self.kinds.insert_full(kind);

@@ -1,5 +1,5 @@
 use super::product::{MOST, Product};
-use super::{Expression, Graph, Kind, Number};
+use super::{Expression, Graph, NodeKind, Number};
 use crate::Function;
 use crate::function::power;
 
@@ -18,7 +18,7 @@ impl Graph {
         if !p.is_finite() {
             return self.constant(f64::NAN);
         }
-        self.intern(Kind::Power(e, Number::new(p)))
+        self.intern(NodeKind::Power(e, Number::new(p)))
     }
 
     /// `a^b`: a product, a root or a power where `b` is constant, else `exp(b log(a))`, which is no number where `a` is negative.

@@ -1,9 +1,9 @@
 use super::sum::exact;
-use super::{Expression, Graph, Kind, LONG, Number};
+use super::{Expression, Graph, LONG, NodeKind, Number};
 use crate::Function;
 use crate::function::power;
 
-/// Exponents beyond this, in halves, are left to [`Kind::Power`].
+/// Exponents beyond this, in halves, are left to [`NodeKind::Power`].
 pub(crate) const MOST: i32 = 1 << 20;
 
 /// A product that is being made.
@@ -56,12 +56,12 @@ impl Graph {
         }
         let e = primitive;
         match self.kind(e) {
-            Kind::Constant(x) => {
+            NodeKind::Constant(x) => {
                 if !product.scale(power(x.value(), 0.5 * f64::from(halves))) {
                     product.factors.push((e, halves));
                 }
             }
-            Kind::Product(inner) if inner.len() < LONG || halves != 2 => {
+            NodeKind::Product(inner) if inner.len() < LONG || halves != 2 => {
                 let opened: Option<Vec<_>> =
                     inner.iter().map(|&(b, h)| Some((b, opened(h, halves, inner.len() == 1)?))).collect();
                 match opened {
@@ -71,7 +71,7 @@ impl Graph {
                     None => product.factors.push((e, halves)),
                 }
             }
-            &Kind::Call(Function::Abs, [u, _]) if halves % 4 == 0 => self.multiply(product, u, halves),
+            &NodeKind::Call(Function::Abs, [u, _]) if halves % 4 == 0 => self.multiply(product, u, halves),
             _ => product.factors.push((e, halves)),
         }
     }
@@ -98,7 +98,7 @@ impl Graph {
         while factors.len() > LONG {
             let parts = factors.chunks(LONG).map(|part| match *part {
                 [one] => one,
-                _ => (self.intern(Kind::Product(part.into())), 2),
+                _ => (self.intern(NodeKind::Product(part.into())), 2),
             });
             factors = parts.collect();
             factors.sort_by_key(|&(base, _)| base);
@@ -106,7 +106,7 @@ impl Graph {
         let single = match factors[..] {
             [] => return self.constant(coefficient),
             [(base, 2)] => base,
-            _ => self.intern(Kind::Product(factors.into())),
+            _ => self.intern(NodeKind::Product(factors.into())),
         };
         self.scaled(single, coefficient)
     }
@@ -135,7 +135,7 @@ impl Graph {
                     again |= product.factors[before..] != [(base, halves)];
                 }
                 None => {
-                    let large = self.intern(Kind::Power(base, Number::new(0.5 * halves as f64)));
+                    let large = self.intern(NodeKind::Power(base, Number::new(0.5 * halves as f64)));
                     product.factors.push((large, 2));
                     again = true;
                 }

@@ -1,6 +1,6 @@
 #![allow(clippy::float_cmp, reason = "a coefficient is one where its bits are")]
 
-use super::{Expression, Graph, Kind, LONG, Number};
+use super::{Expression, Graph, LONG, NodeKind, Number};
 use crate::Function;
 
 /// A sum that is being made.
@@ -53,7 +53,7 @@ impl Graph {
             return;
         };
         match self.kind(e) {
-            Kind::Constant(x) => {
+            NodeKind::Constant(x) => {
                 let x = c * x.value();
                 if (sum.constant + x).is_finite() || !sum.constant.is_finite() || !x.is_finite() {
                     sum.constant += x;
@@ -62,7 +62,7 @@ impl Graph {
                     sum.terms.push((apart, 1.0));
                 }
             }
-            Kind::Sum { constant, terms } if c.abs() == 1.0 && terms.len() <= LONG => {
+            NodeKind::Sum { constant, terms } if c.abs() == 1.0 && terms.len() <= LONG => {
                 let total = sum.constant + c * constant.value();
                 if total.is_finite() {
                     sum.constant = total;
@@ -78,7 +78,7 @@ impl Graph {
     /// A constant factor of an expression and the rest: the coefficient of a single term, the sign of the first of several, and what the
     /// coefficients of all have in common.
     pub(crate) fn content(&mut self, e: Expression) -> (f64, Expression) {
-        let Kind::Sum { constant, terms } = self.kind(e) else { return (1.0, e) };
+        let NodeKind::Sum { constant, terms } = self.kind(e) else { return (1.0, e) };
         let [(first, leading), rest @ ..] = &**terms else { return (1.0, e) };
         let leading = leading.value();
         if rest.is_empty() && *constant == Number::ZERO {
@@ -89,7 +89,7 @@ impl Graph {
         }
         let alike = |x: &Number| x.value().abs() == leading.abs();
         // A multiple of a sum among the terms would become that sum, which is then no term.
-        let plain = terms.iter().all(|&(term, _)| !matches!(self.kind(term), Kind::Sum { .. }));
+        let plain = terms.iter().all(|&(term, _)| !matches!(self.kind(term), NodeKind::Sum { .. }));
         let common = plain && rest.iter().all(|(_, x)| alike(x)) && (*constant == Number::ZERO || alike(constant));
         let factor = if common { leading } else { leading.signum() };
         if factor == 1.0 {
@@ -97,7 +97,7 @@ impl Graph {
         }
         let divided = |x: &Number| Number::new(x.value() / factor);
         let terms = terms.iter().map(|(term, x)| (*term, divided(x))).collect();
-        let primitive = Kind::Sum { constant: divided(constant), terms };
+        let primitive = NodeKind::Sum { constant: divided(constant), terms };
         (factor, self.intern(primitive))
     }
 
@@ -122,14 +122,14 @@ impl Graph {
             [(term, 1.0)] if constant == 0.0 => term,
             _ => {
                 let terms = terms.iter().map(|&(term, c)| (term, Number::new(c))).collect();
-                self.intern(Kind::Sum { constant: Number::new(constant), terms })
+                self.intern(NodeKind::Sum { constant: Number::new(constant), terms })
             }
         }
     }
 
     /// Opens sums among the terms that have come to stand there once, or with the sign turned round, when terms were gathered.
     fn open(&mut self, constant: &mut f64, terms: &mut Vec<(Expression, f64)>) {
-        let sum = |graph: &Self, e| matches!(graph.kind(e), Kind::Sum { terms, .. } if terms.len() <= LONG);
+        let sum = |graph: &Self, e| matches!(graph.kind(e), NodeKind::Sum { terms, .. } if terms.len() <= LONG);
         for _ in 0..LONG {
             let Some(at) = terms.iter().position(|&(e, c)| c.abs() == 1.0 && sum(self, e)) else { break };
             let (e, c) = terms.remove(at);
@@ -157,15 +157,15 @@ impl Graph {
     /// Two such terms, and `r`.
     fn circle(&mut self, terms: &[(Expression, f64)]) -> Option<(usize, usize, Expression)> {
         for (i, &(term, c)) in terms.iter().enumerate() {
-            let Kind::Product(factors) = self.kind(term) else { continue };
+            let NodeKind::Product(factors) = self.kind(term) else { continue };
             for &(base, halves) in factors {
-                let Kind::Call(Function::Sin, u) = *self.kind(base) else { continue };
-                let Some(cos) = self.find(&Kind::Call(Function::Cos, u)).filter(|_| halves >= 4) else { continue };
+                let NodeKind::Call(Function::Sin, u) = *self.kind(base) else { continue };
+                let Some(cos) = self.find(&NodeKind::Call(Function::Cos, u)).filter(|_| halves >= 4) else { continue };
                 let mut partner: Vec<(Expression, i32)> = factors.to_vec();
                 change(&mut partner, base, -4);
                 let rest = partner.clone();
                 change(&mut partner, cos, 4);
-                let Some(partner) = self.find(&Kind::Product(partner.into())) else { continue };
+                let Some(partner) = self.find(&NodeKind::Product(partner.into())) else { continue };
                 if let Some(j) = terms.iter().position(|&(t, d)| t == partner && d.to_bits() == c.to_bits()) {
                     return Some((i, j, self.product_of(1.0, &rest)));
                 }

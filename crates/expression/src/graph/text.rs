@@ -1,4 +1,4 @@
-use super::{Expression, Graph, Kind, Number};
+use super::{Expression, Graph, NodeKind, Number};
 use crate::{Error, Names};
 use std::collections::HashMap;
 
@@ -10,7 +10,7 @@ type Shared = HashMap<Expression, String>;
 
 /// What stands in a text without parentheses: everything, products, powers, or only what is one word.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
-enum Level {
+enum TextLevel {
     Sum,
     Product,
     Power,
@@ -18,10 +18,10 @@ enum Level {
 }
 
 /// A part of a text that is still to be written.
-enum Piece {
+enum TextPiece {
     Text(&'static str),
     Number(f64),
-    Part(Expression, Level),
+    Part(Expression, TextLevel),
 }
 
 impl Graph {
@@ -72,7 +72,7 @@ impl Graph {
         all.iter().for_each(|e| *uses.entry(*e).or_default() += 1);
         let (mut shared, mut statements) = (Shared::new(), Vec::new());
         for e in reached {
-            let simple = matches!(self.kind(e), Kind::Variable(_) | Kind::Constant(_));
+            let simple = matches!(self.kind(e), NodeKind::Variable(_) | NodeKind::Constant(_));
             if !simple && uses.get(&e).is_some_and(|&uses| uses > 1) {
                 let name = format!("{word}{}", statements.len() + 1);
                 statements.push((name.clone(), self.text_with(e, names, &shared)?));
@@ -85,25 +85,25 @@ impl Graph {
 
     fn text_with(&self, e: Expression, names: &Names, shared: &Shared) -> Result<String, Error> {
         let limit = self.limits.length;
-        let (mut text, mut waiting) = (String::new(), vec![Piece::Part(e, Level::Sum)]);
+        let (mut text, mut waiting) = (String::new(), vec![TextPiece::Part(e, TextLevel::Sum)]);
         while let Some(piece) = waiting.pop() {
             match piece {
-                Piece::Text(word) => text.push_str(word),
-                Piece::Number(x) => text.push_str(&number(x)),
-                Piece::Part(e, least) => {
+                TextPiece::Text(word) => text.push_str(word),
+                TextPiece::Number(x) => text.push_str(&number(x)),
+                TextPiece::Part(e, least) => {
                     if let Some(name) = shared.get(&e) {
                         text.push_str(name);
                         continue;
                     }
-                    if let &Kind::Variable(k) = self.kind(e) {
+                    if let &NodeKind::Variable(k) = self.kind(e) {
                         let name = names.all().get(k as usize);
                         text.push_str(&name.cloned().unwrap_or_else(|| format!("variable_{k}")));
                         continue;
                     }
                     let (level, mut pieces) = self.pieces(e, shared);
                     if level < least {
-                        pieces.insert(0, Piece::Text("("));
-                        pieces.push(Piece::Text(")"));
+                        pieces.insert(0, TextPiece::Text("("));
+                        pieces.push(TextPiece::Text(")"));
                     }
                     waiting.extend(pieces.into_iter().rev());
                 }
@@ -115,11 +115,11 @@ impl Graph {
         Ok(text)
     }
 
-    fn pieces(&self, e: Expression, shared: &Shared) -> (Level, Vec<Piece>) {
+    fn pieces(&self, e: Expression, shared: &Shared) -> (TextLevel, Vec<TextPiece>) {
         match self.kind(e) {
-            Kind::Constant(x) => constant(x.value()),
-            Kind::Variable(_) => (Level::Word, Vec::new()),
-            Kind::Sum { constant, terms } => {
+            NodeKind::Constant(x) => constant(x.value()),
+            NodeKind::Variable(_) => (TextLevel::Word, Vec::new()),
+            NodeKind::Sum { constant, terms } => {
                 let mut pieces = Vec::new();
                 for &(term, c) in terms {
                     pieces.push(sign(c.value(), pieces.is_empty()));
@@ -129,63 +129,64 @@ impl Graph {
                 let positive = terms.first().is_some_and(|(_, c)| c.value() > 0.0);
                 if *constant != Number::ZERO {
                     pieces.push(sign(constant.value(), pieces.is_empty()));
-                    pieces.push(Piece::Number(constant.value().abs()));
+                    pieces.push(TextPiece::Number(constant.value().abs()));
                 }
-                (if single && positive { Level::Product } else { Level::Sum }, pieces)
+                (if single && positive { TextLevel::Product } else { TextLevel::Sum }, pieces)
             }
-            Kind::Product(factors) => match **factors {
+            NodeKind::Product(factors) => match **factors {
                 [(base, halves)] if halves > 0 => {
-                    (if halves == 1 { Level::Word } else { Level::Power }, factor(base, halves))
+                    (if halves == 1 { TextLevel::Word } else { TextLevel::Power }, factor(base, halves))
                 }
-                _ => (Level::Product, self.multiple(1.0, e, shared)),
+                _ => (TextLevel::Product, self.multiple(1.0, e, shared)),
             },
-            Kind::Power(base, p) => (Level::Power, raised(*base, p.value())),
-            Kind::Call(function, [a, b]) => {
-                let mut pieces = vec![Piece::Text(function.name()), Piece::Text("("), Piece::Part(*a, Level::Sum)];
+            NodeKind::Power(base, p) => (TextLevel::Power, raised(*base, p.value())),
+            NodeKind::Call(function, [a, b]) => {
+                let mut pieces =
+                    vec![TextPiece::Text(function.name()), TextPiece::Text("("), TextPiece::Part(*a, TextLevel::Sum)];
                 if function.arguments() == 2 {
-                    pieces.extend([Piece::Text(", "), Piece::Part(*b, Level::Sum)]);
+                    pieces.extend([TextPiece::Text(", "), TextPiece::Part(*b, TextLevel::Sum)]);
                 }
-                pieces.push(Piece::Text(")"));
-                (Level::Word, pieces)
+                pieces.push(TextPiece::Text(")"));
+                (TextLevel::Word, pieces)
             }
         }
     }
 
     /// `c` times a term, `c` not negative.
-    fn multiple(&self, c: f64, term: Expression, shared: &Shared) -> Vec<Piece> {
+    fn multiple(&self, c: f64, term: Expression, shared: &Shared) -> Vec<TextPiece> {
         let single = [(term, 2)];
         let factors = match self.kind(term) {
-            Kind::Product(factors) if !shared.contains_key(&term) => &**factors,
+            NodeKind::Product(factors) if !shared.contains_key(&term) => &**factors,
             _ => &single,
         };
         let mut pieces = Vec::new();
         if c.to_bits() != 1.0_f64.to_bits() || factors.iter().all(|&(_, halves)| halves < 0) {
-            pieces.push(Piece::Number(c));
+            pieces.push(TextPiece::Number(c));
         }
         for &(base, halves) in factors.iter().filter(|(_, halves)| *halves > 0) {
             if !pieces.is_empty() {
-                pieces.push(Piece::Text("*"));
+                pieces.push(TextPiece::Text("*"));
             }
             pieces.extend(factor(base, halves));
         }
         let below: Vec<_> = factors.iter().filter(|(_, halves)| *halves < 0).collect();
         if let [first, rest @ ..] = &below[..] {
-            pieces.push(Piece::Text(if rest.is_empty() { "/" } else { "/(" }));
+            pieces.push(TextPiece::Text(if rest.is_empty() { "/" } else { "/(" }));
             pieces.extend(factor(first.0, -first.1));
             for (base, halves) in rest {
-                pieces.push(Piece::Text("*"));
+                pieces.push(TextPiece::Text("*"));
                 pieces.extend(factor(*base, -halves));
             }
             if !rest.is_empty() {
-                pieces.push(Piece::Text(")"));
+                pieces.push(TextPiece::Text(")"));
             }
         }
         pieces
     }
 }
 
-fn sign(x: f64, first: bool) -> Piece {
-    Piece::Text(match (x < 0.0, first) {
+fn sign(x: f64, first: bool) -> TextPiece {
+    TextPiece::Text(match (x < 0.0, first) {
         (true, true) => "-",
         (false, true) => "",
         (true, false) => " - ",
@@ -194,30 +195,35 @@ fn sign(x: f64, first: bool) -> Piece {
 }
 
 /// A constant by itself: negative ones and those that are no number are written as operations.
-fn constant(x: f64) -> (Level, Vec<Piece>) {
+fn constant(x: f64) -> (TextLevel, Vec<TextPiece>) {
     if x.is_nan() {
-        (Level::Product, vec![Piece::Text("0/0")])
+        (TextLevel::Product, vec![TextPiece::Text("0/0")])
     } else if x.is_infinite() {
-        (Level::Sum, vec![sign(x, true), Piece::Text("1/0")])
+        (TextLevel::Sum, vec![sign(x, true), TextPiece::Text("1/0")])
     } else if x < 0.0 {
-        (Level::Sum, vec![sign(x, true), Piece::Number(-x)])
+        (TextLevel::Sum, vec![sign(x, true), TextPiece::Number(-x)])
     } else {
-        (Level::Word, vec![Piece::Number(x)])
+        (TextLevel::Word, vec![TextPiece::Number(x)])
     }
 }
 
 /// `base^(halves/2)` with a positive exponent.
-fn factor(base: Expression, halves: i32) -> Vec<Piece> {
+fn factor(base: Expression, halves: i32) -> Vec<TextPiece> {
     match halves {
-        1 => vec![Piece::Text("sqrt("), Piece::Part(base, Level::Sum), Piece::Text(")")],
-        2 => vec![Piece::Part(base, Level::Power)],
+        1 => vec![TextPiece::Text("sqrt("), TextPiece::Part(base, TextLevel::Sum), TextPiece::Text(")")],
+        2 => vec![TextPiece::Part(base, TextLevel::Power)],
         _ => raised(base, 0.5 * f64::from(halves)),
     }
 }
 
-fn raised(base: Expression, p: f64) -> Vec<Piece> {
+fn raised(base: Expression, p: f64) -> Vec<TextPiece> {
     let (open, close) = if p < 0.0 { ("^(-", ")") } else { ("^", "") };
-    vec![Piece::Part(base, Level::Word), Piece::Text(open), Piece::Number(p.abs()), Piece::Text(close)]
+    vec![
+        TextPiece::Part(base, TextLevel::Word),
+        TextPiece::Text(open),
+        TextPiece::Number(p.abs()),
+        TextPiece::Text(close),
+    ]
 }
 
 /// A number that is not negative, with as many digits as it has.

@@ -1,4 +1,4 @@
-use super::{Expression, Graph, Kind, Number};
+use super::{Expression, Graph, NodeKind, Number};
 use std::collections::HashMap;
 
 impl Graph {
@@ -23,7 +23,7 @@ impl Graph {
     /// The variables that an expression depends on, in order.
     #[must_use]
     pub fn variables(&self, e: Expression) -> Vec<u32> {
-        let variable = |e| if let &Kind::Variable(k) = self.kind(e) { Some(k) } else { None };
+        let variable = |e| if let &NodeKind::Variable(k) = self.kind(e) { Some(k) } else { None };
         let mut variables: Vec<u32> = self.reached(&[e], |_| true).into_iter().filter_map(variable).collect();
         variables.sort_unstable();
         variables
@@ -32,9 +32,9 @@ impl Graph {
     /// Whether this is a sum of squares that may all vanish: its root is a length.
     pub(crate) fn is_square(&self, e: Expression) -> bool {
         let square =
-            |e| matches!(self.kind(e), Kind::Product(factors) if factors.iter().all(|&(_, h)| h > 0 && h % 4 == 0));
+            |e| matches!(self.kind(e), NodeKind::Product(factors) if factors.iter().all(|&(_, h)| h > 0 && h % 4 == 0));
         match self.kind(e) {
-            Kind::Sum { constant, terms } => {
+            NodeKind::Sum { constant, terms } => {
                 *constant == Number::ZERO && terms.iter().all(|&(term, c)| c.value() > 0.0 && square(term))
             }
             _ => square(e),
@@ -47,9 +47,9 @@ impl Graph {
         for part in self.reached(&[e], |_| true) {
             let new = |e: Expression| by.get(&e).copied().unwrap_or(e);
             let replaced = match self.kind(part).clone() {
-                Kind::Constant(_) => part,
-                Kind::Variable(k) => meanings.iter().find(|(variable, _)| *variable == k).map_or(part, |m| m.1),
-                Kind::Sum { constant, terms } => {
+                NodeKind::Constant(_) => part,
+                NodeKind::Variable(k) => meanings.iter().find(|(variable, _)| *variable == k).map_or(part, |m| m.1),
+                NodeKind::Sum { constant, terms } => {
                     let terms: Vec<_> = terms.iter().map(|&(term, c)| (new(term), c.value())).collect();
                     let mut sum = super::sum::Sum::default();
                     let constant = self.constant(constant.value());
@@ -59,12 +59,12 @@ impl Graph {
                     }
                     self.finish_sum(sum)
                 }
-                Kind::Product(factors) => {
+                NodeKind::Product(factors) => {
                     let factors: Vec<_> = factors.iter().map(|&(base, h)| (new(base), h)).collect();
                     self.product_of(1.0, &factors)
                 }
-                Kind::Power(base, p) => self.power(new(base), p.value()),
-                Kind::Call(function, [a, b]) => self.call(function, &[new(a), new(b)]),
+                NodeKind::Power(base, p) => self.power(new(base), p.value()),
+                NodeKind::Call(function, [a, b]) => self.call(function, &[new(a), new(b)]),
             };
             by.insert(part, replaced);
         }

@@ -1,4 +1,4 @@
-use crate::graph::{Expression, Graph, Kind};
+use crate::graph::{Expression, Graph, NodeKind};
 use crate::{Error, Function};
 use std::collections::HashMap;
 
@@ -78,7 +78,7 @@ impl Plan {
         // A number that several products are divided by is inverted once.
         let mut divides: HashMap<(Expression, bool), u32> = HashMap::new();
         for &e in &live {
-            if let Kind::Product(factors) = graph.kind(e) {
+            if let NodeKind::Product(factors) = graph.kind(e) {
                 for &(base, halves) in factors.iter().filter(|(_, halves)| *halves < 0) {
                     for root in [false, true] {
                         let has = if root { halves % 2 != 0 } else { halves < -1 };
@@ -93,13 +93,13 @@ impl Plan {
         for &e in &live {
             let of = |e: &Expression| steps.get(e).copied().unwrap_or(0);
             let step = match graph.kind(e) {
-                Kind::Constant(x) => plan.push(Step::Constant(x.value())),
-                Kind::Variable(k) => plan.push(Step::Variable(*k)),
-                Kind::Sum { constant, terms } => {
+                NodeKind::Constant(x) => plan.push(Step::Constant(x.value())),
+                NodeKind::Variable(k) => plan.push(Step::Variable(*k)),
+                NodeKind::Sum { constant, terms } => {
                     let terms: Vec<_> = terms.iter().map(|(term, c)| (of(term), c.value())).collect();
                     plan.sum(constant.value(), &terms)
                 }
-                Kind::Product(factors) => {
+                NodeKind::Product(factors) => {
                     let (mut above, mut below) = (Vec::new(), Vec::new());
                     for &(base, halves) in factors {
                         let part = of(&base);
@@ -118,8 +118,8 @@ impl Plan {
                     }
                     plan.quotient(above, below)
                 }
-                Kind::Power(base, p) => plan.push(Step::Real(of(base), p.value())),
-                Kind::Call(function, [a, b]) => plan.push(Step::Call(*function, of(a), of(b))),
+                NodeKind::Power(base, p) => plan.push(Step::Real(of(base), p.value())),
+                NodeKind::Call(function, [a, b]) => plan.push(Step::Call(*function, of(a), of(b))),
             };
             steps.insert(e, step);
         }

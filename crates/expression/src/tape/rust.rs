@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 /// How tightly a piece of Rust binds: a sum, a product, a sign, or what stands before a method.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
-enum Level {
+enum RustLevel {
     Sum,
     Product,
     Sign,
@@ -70,9 +70,9 @@ impl Graph {
             return Err(Error::TooFew { what: "variables", expected, found });
         }
         let reads = program.reads();
-        let mut places = vec![Piece::word(String::new(), false); program.places as usize];
+        let mut places = vec![RustPiece::word(String::new(), false); program.places as usize];
         for (k, (place, variable)) in places.iter_mut().zip(&variables[..expected]).enumerate() {
-            *place = Piece::word((*variable).to_owned(), k >= first_number);
+            *place = RustPiece::word((*variable).to_owned(), k >= first_number);
         }
         // What stands there twice has a name.
         let mut twice = vec![false; program.places as usize];
@@ -87,7 +87,7 @@ impl Graph {
         for &Instruction { to, operation } in &program.instructions {
             let piece = written(operation, &places, &program.constants);
             if let Operation::Output { .. } = operation {
-                results.push(piece.scalar(Level::Sum));
+                results.push(piece.scalar(RustLevel::Sum));
                 continue;
             }
             let both = if let Operation::SinCos { cos, .. } = operation { Some(cos) } else { None };
@@ -97,7 +97,7 @@ impl Graph {
             }
             // A string takes what is written to it.
             let _ = writeln!(body, "let x{names} = {};", piece.text);
-            let named = |part: &str| Piece::word(format!("x{names}{part}"), piece.number);
+            let named = |part: &str| RustPiece::word(format!("x{names}{part}"), piece.number);
             places[to as usize] = named(if both.is_some() { ".0" } else { "" });
             if let Some(cos) = both {
                 places[cos as usize] = named(".1");
@@ -110,25 +110,25 @@ impl Graph {
 
 /// A piece of Rust.
 #[derive(Debug, Clone)]
-struct Piece {
+struct RustPiece {
     text: String,
-    level: Level,
+    level: RustLevel,
     /// Whether it is a plain `f64`.
     number: bool,
 }
 
-impl Piece {
+impl RustPiece {
     fn word(text: String, number: bool) -> Self {
-        Self { text, level: Level::Word, number }
+        Self { text, level: RustLevel::Word, number }
     }
 
     /// The text, in parentheses where it binds less than that.
-    fn at(&self, least: Level) -> String {
+    fn at(&self, least: RustLevel) -> String {
         if self.level < least { format!("({})", self.text) } else { self.text.clone() }
     }
 
     /// The same as a scalar.
-    fn scalar(&self, least: Level) -> String {
+    fn scalar(&self, least: RustLevel) -> String {
         if self.number { format!("S::constant({})", self.text) } else { self.at(least) }
     }
 }
@@ -136,31 +136,32 @@ impl Piece {
 /// An operation in Rust.
 ///
 /// Of a scalar and a number the scalar stands first. A number that is a constant of the program is one only where all else is.
-fn written(operation: Operation, places: &[Piece], constants: &[f64]) -> Piece {
+fn written(operation: Operation, places: &[RustPiece], constants: &[f64]) -> RustPiece {
     let of = |place: u32| &places[place as usize];
     let k = |k: u32| number(constants[k as usize]);
     let negative = |k: u32| constants[k as usize] < 0.0;
     let opposite = |k: u32| number(-constants[k as usize]);
-    let piece = |text: String, level: Level, number: bool| Piece { text, level, number };
-    let method = |a: &Piece, call: &str| piece(format!("{}.{call}", a.at(Level::Word)), Level::Word, a.number);
+    let piece = |text: String, level: RustLevel, number: bool| RustPiece { text, level, number };
+    let method =
+        |a: &RustPiece, call: &str| piece(format!("{}.{call}", a.at(RustLevel::Word)), RustLevel::Word, a.number);
     // `a + b`, `a - b`, `a * b`.
-    let plus = |a: &Piece, b: &Piece| {
+    let plus = |a: &RustPiece, b: &RustPiece| {
         let (a, b) = if a.number && !b.number { (b, a) } else { (a, b) };
-        piece(format!("{} + {}", a.at(Level::Sum), b.at(Level::Product)), Level::Sum, a.number)
+        piece(format!("{} + {}", a.at(RustLevel::Sum), b.at(RustLevel::Product)), RustLevel::Sum, a.number)
     };
-    let minus = |a: &Piece, b: &Piece| {
+    let minus = |a: &RustPiece, b: &RustPiece| {
         if a.number && !b.number {
-            piece(format!("-{} + {}", b.at(Level::Word), a.at(Level::Product)), Level::Sum, false)
+            piece(format!("-{} + {}", b.at(RustLevel::Word), a.at(RustLevel::Product)), RustLevel::Sum, false)
         } else {
-            piece(format!("{} - {}", a.at(Level::Sum), b.at(Level::Product)), Level::Sum, a.number)
+            piece(format!("{} - {}", a.at(RustLevel::Sum), b.at(RustLevel::Product)), RustLevel::Sum, a.number)
         }
     };
-    let times = |a: &Piece, b: &Piece| {
+    let times = |a: &RustPiece, b: &RustPiece| {
         let (a, b) = if a.number && !b.number { (b, a) } else { (a, b) };
-        piece(format!("{} * {}", a.at(Level::Product), b.at(Level::Sign)), Level::Product, a.number)
+        piece(format!("{} * {}", a.at(RustLevel::Product), b.at(RustLevel::Sign)), RustLevel::Product, a.number)
     };
     match operation {
-        Operation::Constant { k: c } => piece(k(c), if negative(c) { Level::Sign } else { Level::Word }, true),
+        Operation::Constant { k: c } => piece(k(c), if negative(c) { RustLevel::Sign } else { RustLevel::Word }, true),
         Operation::Add { a, b } => plus(of(a), of(b)),
         Operation::Subtract { a, b } => minus(of(a), of(b)),
         Operation::Multiply { a, b } => times(of(a), of(b)),
@@ -169,23 +170,24 @@ fn written(operation: Operation, places: &[Piece], constants: &[f64]) -> Piece {
             if a.number && !b.number {
                 times(&method(b, "recip()"), a)
             } else {
-                piece(format!("{} / {}", a.at(Level::Product), b.at(Level::Sign)), Level::Product, a.number)
+                piece(format!("{} / {}", a.at(RustLevel::Product), b.at(RustLevel::Sign)), RustLevel::Product, a.number)
             }
         }
-        Operation::Negate { a } => piece(format!("-{}", of(a).at(Level::Word)), Level::Sign, of(a).number),
+        Operation::Negate { a } => piece(format!("-{}", of(a).at(RustLevel::Word)), RustLevel::Sign, of(a).number),
         Operation::Plus { a, k: c } => {
             let (sign, c) = if negative(c) { ("-", opposite(c)) } else { ("+", k(c)) };
-            piece(format!("{} {sign} {c}", of(a).at(Level::Sum)), Level::Sum, of(a).number)
+            piece(format!("{} {sign} {c}", of(a).at(RustLevel::Sum)), RustLevel::Sum, of(a).number)
         }
         Operation::From { a, k: c } => {
             let (sign, c) = if negative(c) { ("-", opposite(c)) } else { ("+", k(c)) };
-            piece(format!("-{} {sign} {c}", of(a).at(Level::Word)), Level::Sum, of(a).number)
+            piece(format!("-{} {sign} {c}", of(a).at(RustLevel::Word)), RustLevel::Sum, of(a).number)
         }
         Operation::Times { a, k: c } => {
-            piece(format!("{} * {}", of(a).at(Level::Product), k(c)), Level::Product, of(a).number)
+            piece(format!("{} * {}", of(a).at(RustLevel::Product), k(c)), RustLevel::Product, of(a).number)
         }
         Operation::PlusTimes { a, b, k: c } => {
-            let scaled = |c: String| piece(format!("{} * {c}", of(b).at(Level::Product)), Level::Product, of(b).number);
+            let scaled =
+                |c: String| piece(format!("{} * {c}", of(b).at(RustLevel::Product)), RustLevel::Product, of(b).number);
             if negative(c) { minus(of(a), &scaled(opposite(c))) } else { plus(of(a), &scaled(k(c))) }
         }
         Operation::PlusProduct { a, b, c } => plus(of(c), &times(of(a), of(b))),
@@ -193,7 +195,7 @@ fn written(operation: Operation, places: &[Piece], constants: &[f64]) -> Piece {
         Operation::Invert { a } => method(of(a), "recip()"),
         Operation::Square { a } => method(of(a), "squared()"),
         Operation::Length { a } => {
-            let (text, a) = (of(a).at(Level::Word), of(a));
+            let (text, a) = (of(a).at(RustLevel::Word), of(a));
             method(a, &format!("where_positive({text}.sqrt(), {text} * 0.0)"))
         }
         Operation::Whole { a, n } => method(of(a), &format!("powi({n})")),
@@ -203,7 +205,7 @@ fn written(operation: Operation, places: &[Piece], constants: &[f64]) -> Piece {
             let name = if function == Function::Log { "ln" } else { function.name() };
             let a = of(a);
             if function == Function::Inverse {
-                let text = a.at(Level::Word);
+                let text = a.at(RustLevel::Word);
                 return method(&method(a, "abs()"), &format!("where_positive({text}.recip(), {text} * 0.0)"));
             }
             if function.arguments() < 2 {
@@ -212,15 +214,15 @@ fn written(operation: Operation, places: &[Piece], constants: &[f64]) -> Piece {
             let b = of(b);
             if a.number && b.number {
                 // Of two constants and numbers the first may be a literal, which has no methods.
-                let call = format!("Scalar::{name}({}, {})", a.at(Level::Sum), b.at(Level::Sum));
-                return piece(call, Level::Word, true);
+                let call = format!("Scalar::{name}({}, {})", a.at(RustLevel::Sum), b.at(RustLevel::Sum));
+                return piece(call, RustLevel::Word, true);
             }
-            let first = Piece {
-                text: a.scalar(Level::Sum),
-                level: if a.number { Level::Word } else { a.level },
+            let first = RustPiece {
+                text: a.scalar(RustLevel::Sum),
+                level: if a.number { RustLevel::Word } else { a.level },
                 number: false,
             };
-            method(&first, &format!("{name}({})", b.scalar(Level::Sum)))
+            method(&first, &format!("{name}({})", b.scalar(RustLevel::Sum)))
         }
         Operation::Output { a } => of(a).clone(),
     }

@@ -2,7 +2,7 @@ use super::Equilibrium;
 use super::root::nearest_root;
 use super::spectrum::{Spectrum, size, spectrum};
 use crate::stepper::composed;
-use crate::{Kind, Method, Rk4, Rk4Reduced};
+use crate::{Method, MethodKind, Rk4, Rk4Reduced};
 use dla::{Differentiable, Dla, SeededMechanics, Sensitivity, State, StepReport};
 use lagrangian::from_fn;
 use nalgebra::{DMatrix, DVector};
@@ -13,11 +13,11 @@ use nalgebra::{DMatrix, DVector};
 #[must_use]
 pub fn differentiable<const N: usize, const M: usize>(method: &Method) -> Option<Box<dyn Differentiable<N, M>>> {
     Some(match method.info().kind {
-        Kind::Dla => Box::new(Dla::midpoint()),
-        Kind::DlaTrapezoid | Kind::DlaAlpha => Box::new(Dla::new(method.rule(), method.rule())),
-        Kind::Composed(order) => Box::new(composed(order, Dla::midpoint())),
-        Kind::Rk4 => Box::new(Rk4),
-        Kind::Rk4Reduced => Box::new(Rk4Reduced),
+        MethodKind::Dla => Box::new(Dla::midpoint()),
+        MethodKind::DlaTrapezoid | MethodKind::DlaAlpha => Box::new(Dla::new(method.rule(), method.rule())),
+        MethodKind::Composed(order) => Box::new(composed(order, Dla::midpoint())),
+        MethodKind::Rk4 => Box::new(Rk4),
+        MethodKind::Rk4Reduced => Box::new(Rk4Reduced),
         _ => return None,
     })
 }

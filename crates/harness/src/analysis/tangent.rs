@@ -2,7 +2,7 @@ use super::discrete::differentiable;
 use super::flow::{Flow, ReducedFlow, Variables, admissible, divergence, entry};
 use super::stages::Stages;
 use crate::stepper::energy;
-use crate::{Kind, Method};
+use crate::{Method, MethodKind};
 use dla::{Differentiable, Lobatto, SeededMechanics, Sensitivity, SensitivityError, State, StepReport};
 use lagrangian::{Scalar, Seeded, from_fn};
 use nalgebra::DMatrix;
@@ -54,7 +54,7 @@ pub(super) struct Local<const N: usize> {
 }
 
 /// How the steps of a method are differentiated.
-enum Rule<const N: usize, const M: usize> {
+enum TangentRule<const N: usize, const M: usize> {
     /// A Runge-Kutta method on the reduced equations: on numbers with derivatives.
     Stages(Stages),
     /// Any other: by the implicit function theorem.
@@ -64,7 +64,7 @@ enum Rule<const N: usize, const M: usize> {
 /// The steps of a method on a system.
 pub(super) struct Steps<'a, const N: usize, const M: usize> {
     system: &'a dyn SeededMechanics<N, M>,
-    rule: Rule<N, M>,
+    rule: TangentRule<N, M>,
     variables: Variables,
     /// The number of the basis that holds now, of a system whose bases are local.
     basis: Cell<u64>,
@@ -82,25 +82,25 @@ const TOO_LARGE: SensitivityError = SensitivityError::Unsupported {
     reason: "derivatives of the steps of this method are available for systems of up to four coordinates: take gauss8",
 };
 
-fn rule<const N: usize, const M: usize>(method: &Method) -> Result<Rule<N, M>, SensitivityError> {
+fn rule<const N: usize, const M: usize>(method: &Method) -> Result<TangentRule<N, M>, SensitivityError> {
     let info = method.info();
     info.tangent.map_err(|reason| SensitivityError::Unsupported { reason })?;
     Ok(match info.kind {
-        Kind::Gauss(stages) => Rule::Stages(Stages::gauss(stages)),
-        Kind::Rk4Reduced => Rule::Stages(Stages::rk4()),
+        MethodKind::Gauss(stages) => TangentRule::Stages(Stages::gauss(stages)),
+        MethodKind::Rk4Reduced => TangentRule::Stages(Stages::rk4()),
         kind => {
             // Each is compiled for every shape: for those of sleighs, and no larger ones.
             let more: Option<Box<dyn Differentiable<N, M>>> = if const { N <= 4 } { of_four(kind) } else { None };
-            Rule::Equations(more.or_else(|| differentiable(method)).ok_or(TOO_LARGE)?)
+            TangentRule::Equations(more.or_else(|| differentiable(method)).ok_or(TOO_LARGE)?)
         }
     })
 }
 
-fn of_four<const N: usize, const M: usize>(kind: Kind) -> Option<Box<dyn Differentiable<N, M>>> {
+fn of_four<const N: usize, const M: usize>(kind: MethodKind) -> Option<Box<dyn Differentiable<N, M>>> {
     Some(match kind {
-        Kind::Lobatto(3) => Box::new(Lobatto::<3>::new()),
-        Kind::Lobatto(4) => Box::new(Lobatto::<4>::new()),
-        Kind::Energy(stages) => Box::new(energy(stages)),
+        MethodKind::Lobatto(3) => Box::new(Lobatto::<3>::new()),
+        MethodKind::Lobatto(4) => Box::new(Lobatto::<4>::new()),
+        MethodKind::Energy(stages) => Box::new(energy(stages)),
         _ => return None,
     })
 }
@@ -133,12 +133,12 @@ impl<'a, const N: usize, const M: usize> Steps<'a, N, M> {
         report: StepReport<M>,
     ) -> Result<DMatrix<f64>, SensitivityError> {
         match &self.rule {
-            Rule::Stages(stages) => {
+            TangentRule::Stages(stages) => {
                 let flow: &dyn ReducedFlow<N, M> = &Flow(based.system);
                 let xi = based.quasi_velocities(time.0, start)?;
                 of_stages(stages, flow, &self.variables, time, (start, &xi), end)
             }
-            Rule::Equations(method) => {
+            TangentRule::Equations(method) => {
                 let derivative =
                     Sensitivity::<N, M, 0>::of(based.system).between(&**method, time, start, end, report)?;
                 let rows = derivative.reduced.ok_or(NO_BASIS)?.matrix();

@@ -9,7 +9,7 @@ use lagrangian::linear::larger;
 /// What a run of an assembly is measured by.
 pub(super) struct AssemblyMeter<'a> {
     /// Where nodes go that are not kept.
-    shown: Option<Shown<'a>>,
+    shown: Option<ShownNode<'a>>,
     /// Every so manieth node is a sample, and is kept unless nodes are shown.
     every: u64,
     initial: f64,
@@ -29,7 +29,7 @@ pub(super) struct AssemblyMeter<'a> {
 }
 
 /// Where nodes go.
-struct Shown<'a> {
+struct ShownNode<'a> {
     every: u64,
     sink: &'a mut dyn FnMut(u64, &AssemblyNode),
     /// The time (s) of the last one.
@@ -264,11 +264,11 @@ impl<'a> AssemblyMeter<'a> {
 }
 
 /// Every how manieth node is a sample, and where nodes go that are not kept.
-fn split(nodes: AssemblyNodes<'_>) -> (u64, Option<Shown<'_>>) {
+fn split(nodes: AssemblyNodes<'_>) -> (u64, Option<ShownNode<'_>>) {
     match nodes {
         AssemblyNodes::Kept(every) => (every.max(1), None),
         AssemblyNodes::Shown(every, sink) => {
-            (u64::MAX, Some(Shown { every: every.max(1), sink, last: f64::NEG_INFINITY }))
+            (u64::MAX, Some(ShownNode { every: every.max(1), sink, last: f64::NEG_INFINITY }))
         }
     }
 }

@@ -11,7 +11,7 @@ pub use events::{AssemblyCrossing, AssemblyEvent};
 pub use recommend::recommend_assembly;
 pub use saved::run_assembly_saved;
 
-use crate::{Kind, METHODS, Method, Progress, Record};
+use crate::{METHODS, Method, MethodKind, Progress, Record};
 use assembly::{
     Assembly, AssemblyError, AssemblyMethod, AssemblyRunError, AssemblyState, Solver, SparseComposition, SparseDla,
     SparseEnergy, SparseLobatto,
@@ -87,10 +87,12 @@ static OTHERS: LazyLock<String> = LazyLock::new(|| {
 pub fn assembly_method(assembly: &Assembly, method: &Method) -> Result<Box<dyn AssemblyMethod>, AssemblyError> {
     let best = Solver::Best;
     match method.info().kind {
-        Kind::Dla => SparseDla::new(assembly, best).map(|method| Box::new(method) as _),
-        Kind::Composed(order) => SparseComposition::new(assembly, best, order).map(|method| Box::new(method) as _),
-        Kind::Lobatto(stages) => SparseLobatto::new(assembly, best, stages).map(|method| Box::new(method) as _),
-        Kind::Energy(1) => SparseEnergy::new(assembly, best).map(|method| Box::new(method) as _),
+        MethodKind::Dla => SparseDla::new(assembly, best).map(|method| Box::new(method) as _),
+        MethodKind::Composed(order) => {
+            SparseComposition::new(assembly, best, order).map(|method| Box::new(method) as _)
+        }
+        MethodKind::Lobatto(stages) => SparseLobatto::new(assembly, best, stages).map(|method| Box::new(method) as _),
+        MethodKind::Energy(1) => SparseEnergy::new(assembly, best).map(|method| Box::new(method) as _),
         _ => Err(AssemblyError::Unsupported { reason: OTHERS.as_str() }),
     }
 }

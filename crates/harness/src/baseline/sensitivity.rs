@@ -1,7 +1,7 @@
 //! The derivatives of the baselines: explicit methods by equations for the accelerations of their stages.
 
 use super::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced, STAGES};
-use dla::{Differentiable, SensitivityError, StepEquations, StepStart, Unknowns};
+use dla::{Differentiable, SensitivityError, StepEquations, StepStart, StepUnknowns};
 use lagrangian::{AdmissibleBasis, Gradients, Scalar, Seeded, from_fn};
 
 /// `x + h k`.
@@ -18,7 +18,7 @@ fn weighted<const N: usize>(h: Seeded, k: &[[Seeded; N]; 4]) -> [Seeded; N] {
 fn full<const N: usize, const M: usize>(
     model: &dyn Gradients<N, M>,
     start: &StepStart<N>,
-    unknowns: &mut Unknowns<'_>,
+    unknowns: &mut StepUnknowns<'_>,
 ) -> (Vec<Seeded>, [Seeded; N], [Seeded; N]) {
     let StepStart { t, h, q: q0, v: v0 } = start;
     let (mut velocities, mut accelerations) = ([[Seeded::zero(); N]; 4], [[Seeded::zero(); N]; 4]);
@@ -47,7 +47,7 @@ impl<const N: usize, const M: usize> Differentiable<N, M> for Rk4 {
         start: &StepStart<N>,
         z: &[Seeded],
     ) -> Result<StepEquations<N>, SensitivityError> {
-        let (residual, increment, gain) = full(model, start, &mut Unknowns(z));
+        let (residual, increment, gain) = full(model, start, &mut StepUnknowns(z));
         Ok(StepEquations { residual, increment, velocity: from_fn(|i| start.v[i] + gain[i]) })
     }
 }
@@ -64,7 +64,7 @@ impl<const N: usize, const M: usize> Differentiable<N, M> for Rk4Projected {
         start: &StepStart<N>,
         z: &[Seeded],
     ) -> Result<StepEquations<N>, SensitivityError> {
-        let mut unknowns = Unknowns(z);
+        let mut unknowns = StepUnknowns(z);
         let (mut residual, increment, gain) = full(model, start, &mut unknowns);
         let (correction, mu): ([Seeded; N], [Seeded; M]) = (unknowns.take(), unknowns.take());
         let (t1, q1) = (start.t + start.h, from_fn(|i| start.q[i] + increment[i]));
@@ -94,7 +94,7 @@ impl<const N: usize, const M: usize> Differentiable<N, M> for Rk4Reduced {
     ) -> Result<StepEquations<N>, SensitivityError> {
         let StepStart { t, h, q: q0, v: v0 } = *start;
         let dimension = AdmissibleBasis::<f64, N, M>::DIMENSION;
-        let mut unknowns = Unknowns(z);
+        let mut unknowns = StepUnknowns(z);
         let (xi0, eta): ([Seeded; N], [Seeded; M]) = (unknowns.take_some(dimension), unknowns.take());
         let admissible = model.velocity(t, &q0, &xi0).ok_or(NO_BASIS)?;
         let (a0, _) = model.constraint(t, &q0);
@@ -140,7 +140,7 @@ impl<const N: usize, const M: usize> Differentiable<N, M> for ImplicitMidpoint {
         z: &[Seeded],
     ) -> Result<StepEquations<N>, SensitivityError> {
         let StepStart { t, h, q: q0, v: v0 } = *start;
-        let (half, mut unknowns) = (h * 0.5, Unknowns(z));
+        let (half, mut unknowns) = (h * 0.5, StepUnknowns(z));
         let (a, lambda): ([Seeded; N], [Seeded; M]) = (unknowns.take(), unknowns.take());
         let v = shifted(&v0, half, &a);
         let (forces, slips) = model.motion(t + half, &shifted(&q0, half, &v), &v, &a, &lambda);

@@ -14,7 +14,7 @@ use std::fmt;
 
 /// What the slow part of a series does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
+pub enum DriftVerdict {
     /// It is stationary, or moves too little beside the amplitude to be seen.
     Bounded,
     /// It grows with the time.
@@ -27,7 +27,7 @@ pub enum Verdict {
     Undecided,
 }
 
-impl Verdict {
+impl DriftVerdict {
     /// Its name, in tables and files.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -41,7 +41,7 @@ impl Verdict {
     }
 }
 
-impl fmt::Display for Verdict {
+impl fmt::Display for DriftVerdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.name())
     }
@@ -61,7 +61,7 @@ pub struct Drift {
     /// Growth exponent: 0 bounded, 1/2 a random walk, 1 linear; none where the series is too short.
     pub exponent: Option<f64>,
     /// What it comes to.
-    pub verdict: Verdict,
+    pub verdict: DriftVerdict,
 }
 
 /// Student's factor for 95 % and for 99 %, both sides, at the 30 degrees of freedom of 32 batches less two.
@@ -79,13 +79,14 @@ impl Drift {
     /// What a series does.
     #[must_use]
     pub fn of(blocks: &Blocks) -> Self {
-        let nothing = Self { amplitude: 0.0, slope: 0.0, slope_ci: None, exponent: None, verdict: Verdict::Undecided };
+        let nothing =
+            Self { amplitude: 0.0, slope: 0.0, slope_ci: None, exponent: None, verdict: DriftVerdict::Undecided };
         let size = blocks.full().iter().map(|block| block.min.abs().max(block.max.abs())).fold(0.0, f64::max);
         if blocks.full().is_empty() || !blocks.means().all(f64::is_finite) {
             return nothing;
         }
         if size == 0.0 {
-            return Self { slope_ci: Some(0.0), exponent: Some(0.0), verdict: Verdict::Bounded, ..nothing };
+            return Self { slope_ci: Some(0.0), exponent: Some(0.0), verdict: DriftVerdict::Bounded, ..nothing };
         }
         // In units of the largest value and of the run's length nothing over- or underflows.
         let means: Vec<f64> = blocks.means().map(|mean| mean / size).collect();
@@ -100,15 +101,15 @@ impl Drift {
         // The means of constants differ by their rounding.
         let floor = (SEEN * amplitude).max(64.0 * f64::EPSILON);
         let verdict = if slope.abs() < floor && batches.residual() < floor {
-            Verdict::Bounded
+            DriftVerdict::Bounded
         } else if slope.abs() > T99 * error && slope.abs() > floor {
-            Verdict::LinearDrift
+            DriftVerdict::LinearDrift
         } else if stationary {
-            Verdict::Bounded
+            DriftVerdict::Bounded
         } else if exponent >= BETWEEN && batches.stationarity() >= STATIONARY && batches.walks() {
-            Verdict::RandomWalk
+            DriftVerdict::RandomWalk
         } else {
-            Verdict::Undecided
+            DriftVerdict::Undecided
         };
         Self { slope_ci: Some(T95 * error * size / run), exponent: Some(exponent), verdict, ..measured }
     }
@@ -121,7 +122,7 @@ impl Drift {
     pub fn of_energy(blocks: &Blocks, energies: &Energies) -> Self {
         let drift = Self::of(blocks);
         let runs_away = || batches::runs_away(blocks.full()).is_some_and(|largest| largest > energies.start());
-        if energies.exceeded() || runs_away() { Self { verdict: Verdict::Diverged, ..drift } } else { drift }
+        if energies.exceeded() || runs_away() { Self { verdict: DriftVerdict::Diverged, ..drift } } else { drift }
     }
 
     /// The largest error to be expected at a time (s) after the start: the fast part and the secular one.
@@ -137,7 +138,7 @@ impl Drift {
         let (own, others) = (self.slope.abs(), other.slope.abs());
         let faster = own + self.slope_ci? < others - other.slope_ci?;
         let starts_worse = self.amplitude > other.amplitude;
-        (starts_worse && faster && other.verdict == Verdict::LinearDrift)
+        (starts_worse && faster && other.verdict == DriftVerdict::LinearDrift)
             .then(|| (self.amplitude - other.amplitude) / (others - own))
     }
 }

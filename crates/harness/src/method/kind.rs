@@ -1,6 +1,6 @@
 /// The families of methods, as a program tells them apart, with the number that tells the members of a family apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum MethodKind {
     /// `dla`
     Dla,
     /// `dla-trapezoid`
@@ -33,7 +33,7 @@ pub enum Kind {
     Dop853,
 }
 
-impl Kind {
+impl MethodKind {
     /// Whether the method chooses steps of its own within a step of the run, by a tolerance.
     #[must_use]
     pub fn is_adaptive(self) -> bool {

@@ -3,7 +3,7 @@
 mod kind;
 mod table;
 
-pub use kind::Kind;
+pub use kind::MethodKind;
 pub use table::{METHODS, MethodInfo};
 
 use dla::Substeps;
@@ -49,7 +49,7 @@ fn names() -> Vec<&'static str> {
 }
 
 impl Method {
-    /// The tolerance of the [adaptive](Kind::is_adaptive) methods where none is given, relative and absolute: an error of `1e-12 (1 + |y|)`
+    /// The tolerance of the [adaptive](MethodKind::is_adaptive) methods where none is given, relative and absolute: an error of `1e-12 (1 + |y|)`
     /// in every step of a component `y`.
     pub const TOLERANCE: f64 = 1e-12;
 
@@ -61,7 +61,7 @@ impl Method {
         let found = METHODS.iter().find(|info| info.name == name);
         let mut info = *found.ok_or_else(|| MethodError::Unknown { name: name.to_owned() })?;
         let alpha = Alpha::new(alpha.unwrap_or(0.5))?;
-        if info.kind == Kind::DlaAlpha && alpha.is_symmetric() {
+        if info.kind == MethodKind::DlaAlpha && alpha.is_symmetric() {
             // The one weight that makes the rule symmetric.
             info.order = 2;
         }
@@ -88,7 +88,7 @@ impl Method {
         Self { substeps: None, ..self }
     }
 
-    /// The same method with another tolerance, which only [adaptive](Kind::is_adaptive) ones read.
+    /// The same method with another tolerance, which only [adaptive](MethodKind::is_adaptive) ones read.
     ///
     /// # Errors
     /// [`MethodError::Tolerance`] unless it is positive and finite.
@@ -144,8 +144,8 @@ impl Method {
     /// The rule of the discrete constraint: the midpoint rule, but for `dla-trapezoid` and `dla-alpha`.
     pub(crate) fn rule(&self) -> AnyRule {
         match self.info.kind {
-            Kind::DlaTrapezoid => Trapezoid.into(),
-            Kind::DlaAlpha => self.alpha.into(),
+            MethodKind::DlaTrapezoid => Trapezoid.into(),
+            MethodKind::DlaAlpha => self.alpha.into(),
             _ => Midpoint.into(),
         }
     }

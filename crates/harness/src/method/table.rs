@@ -1,10 +1,10 @@
-use super::Kind;
+use super::MethodKind;
 
 /// What is known of a method: one row of [`METHODS`], from which every list of methods is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MethodInfo {
     /// Which one it is.
-    pub kind: Kind,
+    pub kind: MethodKind,
     /// The name in files and commands.
     pub name: &'static str,
     /// The order of accuracy.
@@ -24,7 +24,7 @@ pub struct MethodInfo {
 }
 
 const fn row(
-    kind: Kind,
+    kind: MethodKind,
     (name, order): (&'static str, u32),
     keeps: &'static str,
     summary: &'static str,
@@ -51,7 +51,7 @@ impl MethodInfo {
 macro_rules! staged {
     ($kind:ident, $name:literal, $stages:literal, order $order:literal, $keeps:expr, $head:literal, $tail:literal, $reference:expr) => {
         row(
-            Kind::$kind($stages),
+            MethodKind::$kind($stages),
             ($name, $order),
             $keeps,
             concat!($head, " with ", $stages, " stages", $tail),
@@ -122,7 +122,7 @@ const NO_MAP: &str = "gni carries a multiplier from step to step, so its step is
 /// Every method, in the order in which tables show them.
 pub const METHODS: &[MethodInfo] = &[
     row(
-        Kind::Dla,
+        MethodKind::Dla,
         ("dla", 2),
         CONSTRAINT,
         "discrete Lagrange-d'Alembert, midpoint rule, self-adjoint (the default)",
@@ -131,21 +131,21 @@ pub const METHODS: &[MethodInfo] = &[
     .for_assemblies()
     .in_lanes(),
     row(
-        Kind::DlaTrapezoid,
+        MethodKind::DlaTrapezoid,
         ("dla-trapezoid", 2),
         CONSTRAINT,
         "discrete Lagrange-d'Alembert, trapezoidal rule, self-adjoint",
         CORTES,
     ),
     row(
-        Kind::DlaAlpha,
+        MethodKind::DlaAlpha,
         ("dla-alpha", 1),
         CONSTRAINT,
         "discrete Lagrange-d'Alembert, one node at the fraction `alpha` of the step; order 2 at alpha = 0.5 only",
         "Marsden and West 2001, Acta Numerica 10, section 2.3",
     ),
     row(
-        Kind::Composed(4),
+        MethodKind::Composed(4),
         ("dla4", 4),
         CONSTRAINT,
         "five steps of dla, Suzuki's composition",
@@ -153,7 +153,7 @@ pub const METHODS: &[MethodInfo] = &[
     )
     .for_assemblies(),
     row(
-        Kind::Composed(6),
+        MethodKind::Composed(6),
         ("dla6", 6),
         CONSTRAINT,
         "nine steps of dla, the composition of Kahan and Li",
@@ -161,7 +161,7 @@ pub const METHODS: &[MethodInfo] = &[
     )
     .for_assemblies(),
     row(
-        Kind::Composed(8),
+        MethodKind::Composed(8),
         ("dla8", 8),
         CONSTRAINT,
         "fifteen steps of dla, composed",
@@ -179,7 +179,7 @@ pub const METHODS: &[MethodInfo] = &[
     gauss!("gauss14", 7, 14),
     gauss!("gauss16", 8, 16).in_lanes(),
     row(
-        Kind::GaussAdaptive,
+        MethodKind::GaussAdaptive,
         ("gauss-adaptive", 16),
         CONSTRAINT,
         "Gauss collocation with 8 stages in steps of its own, as a tolerance asks for",
@@ -187,7 +187,7 @@ pub const METHODS: &[MethodInfo] = &[
     )
     .without_tangent(OWN_STEPS),
     row(
-        Kind::Taylor,
+        MethodKind::Taylor,
         ("taylor", 20),
         CONSTRAINT,
         "Taylor series in the axes of a sleigh that is free, in a round well or pushed constantly, in steps of its own",
@@ -195,7 +195,7 @@ pub const METHODS: &[MethodInfo] = &[
     )
     .without_tangent(OWN_STEPS),
     row(
-        Kind::Energy(1),
+        MethodKind::Energy(1),
         ("energy2", 2),
         ENERGY,
         "discrete gradient method on the dual of the distribution, averaged gradient, self-adjoint",
@@ -206,7 +206,7 @@ pub const METHODS: &[MethodInfo] = &[
     energy!("energy6", 3, 6).without_tangent(NOT_HERE),
     energy!("energy8", 4, 8).without_tangent(NOT_HERE),
     row(
-        Kind::Gni,
+        MethodKind::Gni,
         ("gni", 2),
         "constraint at nodes",
         "counter-example: geometric nonholonomic integrator, whose hidden multiplier mode grows about stable motions",
@@ -214,7 +214,7 @@ pub const METHODS: &[MethodInfo] = &[
     )
     .without_tangent(NO_MAP),
     row(
-        Kind::Rk4,
+        MethodKind::Rk4,
         ("rk4", 4),
         NOTHING,
         "baseline: classical Runge-Kutta in full coordinates, multiplier eliminated by index reduction",
@@ -222,7 +222,7 @@ pub const METHODS: &[MethodInfo] = &[
     )
     .without_tangent(OFF_THE_DISTRIBUTION),
     row(
-        Kind::Rk4Projected,
+        MethodKind::Rk4Projected,
         ("rk4-projected", 4),
         CONSTRAINT,
         "baseline: rk4 with the velocity projected onto the constraint after every step",
@@ -230,14 +230,14 @@ pub const METHODS: &[MethodInfo] = &[
     )
     .without_tangent(OFF_THE_DISTRIBUTION),
     row(
-        Kind::Rk4Reduced,
+        MethodKind::Rk4Reduced,
         ("rk4-reduced", 4),
         CONSTRAINT,
         "baseline: classical Runge-Kutta on the reduced equations, in a basis of admissible velocities",
         "Bloch 2015, Nonholonomic Mechanics and Control, section 5.2",
     ),
     row(
-        Kind::ImplicitMidpoint,
+        MethodKind::ImplicitMidpoint,
         ("implicit-midpoint", 2),
         NOTHING,
         "baseline: implicit midpoint rule in full coordinates, multiplier eliminated by index reduction",
@@ -245,7 +245,7 @@ pub const METHODS: &[MethodInfo] = &[
     )
     .without_tangent(OFF_THE_DISTRIBUTION),
     row(
-        Kind::Dop853,
+        MethodKind::Dop853,
         ("dop853", 8),
         CONSTRAINT,
         "baseline: adaptive Dormand-Prince 8(5,3) on the reduced equations, tolerance 1e-12 within each step",

@@ -1,4 +1,4 @@
-use super::{Bench, Limits, Mark};
+use super::{Bench, LadderLimits, Mark};
 use crate::Method;
 use dla::StepError;
 use std::time::Instant;
@@ -42,7 +42,7 @@ fn ratio(order: u32) -> f64 {
 }
 
 /// Runs a method with ever finer steps, until rounding or the limit of time; or says why the method refuses.
-pub(super) fn climb(bench: &Bench<'_>, method: &Method, limits: &Limits) -> Result<Vec<Rung>, &'static str> {
+pub(super) fn climb(bench: &Bench<'_>, method: &Method, limits: &LadderLimits) -> Result<Vec<Rung>, &'static str> {
     let adaptive = method.is_adaptive();
     let ratio = ratio(method.info().order);
     let mut rungs: Vec<Rung> = Vec::new();

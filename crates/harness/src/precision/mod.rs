@@ -11,10 +11,10 @@ mod reference;
 mod slope;
 mod verdict;
 
-pub use motion::Motion;
-pub use point::{Curve, Mark, Point, Setting, number};
+pub use motion::ReferenceMotion;
+pub use point::{Curve, Mark, PrecisionPoint, RungSetting, number};
 pub use reference::{Reference, ReferenceError};
-pub use slope::Slope;
+pub use slope::FittedSlope;
 pub use verdict::{Cheapest, LEVELS, cheapest, mark_pareto, seconds_to};
 
 use crate::stopwatch::{Pinned, has_thread_time};
@@ -44,7 +44,7 @@ impl fmt::Debug for Bench<'_> {
 
 /// How far the ladders go.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
+pub struct LadderLimits {
     /// Steps of the coarsest run.
     pub fewest: u64,
     /// The longest run (s); ten times that for a method that has not six points yet.
@@ -69,7 +69,7 @@ pub struct Clock {
 pub fn work_precision(
     bench: &Bench<'_>,
     methods: &[Method],
-    limits: &Limits,
+    limits: &LadderLimits,
     progress: &mut dyn Progress,
 ) -> (Vec<Curve>, Clock) {
     let pinned = Pinned::here();
@@ -100,13 +100,13 @@ pub fn rounds() -> u64 {
     race::ROUNDS
 }
 
-fn point(rung: &ladder::Rung, time: Option<race::Measured>, duration: f64) -> Point {
+fn point(rung: &ladder::Rung, time: Option<race::Measured>, duration: f64) -> PrecisionPoint {
     let adaptive = rung.method.is_adaptive();
     let step = duration / rung.steps as f64;
-    Point {
+    PrecisionPoint {
         method: rung.method.info().name.to_owned(),
         source: None,
-        setting: Some(if adaptive { Setting::Tolerance(rung.method.tolerance()) } else { Setting::Step(step) }),
+        setting: Some(if adaptive { RungSetting::Tolerance(rung.method.tolerance()) } else { RungSetting::Step(step) }),
         steps: Some(rung.steps),
         error: rung.error,
         wall_seconds: time.map(|time| time.wall),

@@ -3,7 +3,7 @@ use dla::{RunError, Schedule, State, Subject, pieces};
 
 /// A motion to be computed again and again, with other methods and other steps.
 #[derive(Debug, Clone, Copy)]
-pub struct Motion<'a, const N: usize, const M: usize> {
+pub struct ReferenceMotion<'a, const N: usize, const M: usize> {
     subject: Subject<'a, N, M>,
     q: [f64; N],
     v: [f64; N],
@@ -18,7 +18,7 @@ const FEWEST: u64 = 8;
 /// More steps than so many are not asked for so that every jump falls on a node of equal steps.
 const MOST: u64 = 1 << 20;
 
-impl<'a, const N: usize, const M: usize> Motion<'a, N, M> {
+impl<'a, const N: usize, const M: usize> ReferenceMotion<'a, N, M> {
     /// The motion of a system from `q` with the velocity `v` over `duration` (s).
     #[must_use]
     pub fn new(subject: impl Into<Subject<'a, N, M>>, q: [f64; N], v: [f64; N], duration: f64) -> Self {

@@ -1,10 +1,10 @@
-use super::Slope;
+use super::FittedSlope;
 use dla::RunError;
 use std::fmt;
 
 /// What is varied along the curve of a method.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Setting {
+pub enum RungSetting {
     /// The step (s).
     Step(f64),
     /// The tolerance of an adaptive method.
@@ -20,7 +20,7 @@ pub enum Mark {
     Failed(String, Option<RunError>),
 }
 
-impl fmt::Display for Setting {
+impl fmt::Display for RungSetting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Step(step) => write!(f, "step {} s", number(*step)),
@@ -46,13 +46,13 @@ impl fmt::Display for Mark {
 
 /// A run of one method, its error and its time; also one that another program made.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Point {
+pub struct PrecisionPoint {
     /// The name of the method.
     pub method: String,
     /// Where the point comes from, if not from this program.
     pub source: Option<String>,
     /// What was varied.
-    pub setting: Option<Setting>,
+    pub setting: Option<RungSetting>,
     /// Steps made: of the schedule, for an adaptive method the intervals that it crosses.
     pub steps: Option<u64>,
     /// Distance of the end from the reference; none where the run failed.
@@ -69,7 +69,7 @@ pub struct Point {
     pub pareto: bool,
 }
 
-impl Point {
+impl PrecisionPoint {
     /// The time to compare (s): the processor's, or the wall's where that is all there is.
     #[must_use]
     pub fn seconds(&self) -> Option<f64> {
@@ -99,10 +99,10 @@ pub struct Curve {
     pub source: Option<String>,
     /// The order of the method, where it is known.
     pub order: Option<u32>,
-    /// The exponent `p` of `error = c h^p`, or of the tolerance, by least squares (see [`Slope`]).
-    pub slope: Option<Slope>,
+    /// The exponent `p` of `error = c h^p`, or of the tolerance, by least squares (see [`FittedSlope`]).
+    pub slope: Option<FittedSlope>,
     /// The points.
-    pub points: Vec<Point>,
+    pub points: Vec<PrecisionPoint>,
     /// Why the method refuses the system, where it does; there are no points then.
     pub refusal: Option<&'static str>,
 }
@@ -110,9 +110,9 @@ pub struct Curve {
 impl Curve {
     /// A curve with the slope of its points.
     #[must_use]
-    pub fn new(method: String, source: Option<String>, order: Option<u32>, points: Vec<Point>) -> Self {
+    pub fn new(method: String, source: Option<String>, order: Option<u32>, points: Vec<PrecisionPoint>) -> Self {
         let curve = Self { method, source, order, slope: None, points, refusal: None };
-        Self { slope: Slope::of(&curve), ..curve }
+        Self { slope: FittedSlope::of(&curve), ..curve }
     }
 
     /// The name of the method, with where the points come from.

@@ -1,4 +1,4 @@
-use super::Motion;
+use super::ReferenceMotion;
 use crate::{Method, MethodError};
 use dla::{RunError, Runaway};
 use lagrangian::linear::larger;
@@ -67,7 +67,7 @@ impl<const N: usize> Reference<N> {
     /// # Errors
     /// [`ReferenceError`] where no run succeeds.
     pub fn converged<const M: usize>(
-        motion: &Motion<'_, N, M>,
+        motion: &ReferenceMotion<'_, N, M>,
         distance: &dyn Fn(&[f64; N], &[f64; N]) -> f64,
     ) -> Result<Self, ReferenceError> {
         let (gauss16, gauss14) = (Method::named("gauss16", None)?, Method::named("gauss14", None)?);

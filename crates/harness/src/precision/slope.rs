@@ -1,9 +1,9 @@
-use super::{Curve, Mark, Setting};
+use super::{Curve, Mark, RungSetting};
 use crate::Trend;
 
 /// The measured order of a method.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Slope {
+pub struct FittedSlope {
     /// The slope of the least-squares line through `(ln h, ln error)`; of the tolerance for an adaptive method.
     pub value: f64,
     /// How many points it goes through.
@@ -17,7 +17,7 @@ const CLEAR: f64 = 10.0;
 /// Slopes between neighbours agree where they differ by less than this fraction of their mean.
 const AGREEING: f64 = 0.1;
 
-impl Slope {
+impl FittedSlope {
     /// Fits the part of a curve above the plateau and below saturation; none with fewer than two points.
     ///
     /// Where the step is varied, it is the longest row of points with agreeing slopes from each to the next, of equally
@@ -30,11 +30,11 @@ impl Slope {
         let regular = curve.points.iter().filter(|point| point.is_regular());
         let logs: Vec<[f64; 2]> = regular
             .filter_map(|point| {
-                let (Setting::Step(size) | Setting::Tolerance(size)) = point.setting?;
+                let (RungSetting::Step(size) | RungSetting::Tolerance(size)) = point.setting?;
                 Some([size.ln(), point.error.filter(clear)?.ln()])
             })
             .collect();
-        let adaptive = curve.points.iter().any(|point| matches!(point.setting, Some(Setting::Tolerance(_))));
+        let adaptive = curve.points.iter().any(|point| matches!(point.setting, Some(RungSetting::Tolerance(_))));
         let fitted = if adaptive { &logs[..] } else { settled(&logs) };
         let mut trend = Trend::default();
         for [x, y] in fitted {

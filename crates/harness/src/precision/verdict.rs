@@ -1,4 +1,4 @@
-use super::{Curve, Point, digits};
+use super::{Curve, PrecisionPoint, digits};
 
 /// Which method is the cheapest at an error, and the one after it.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,7 +26,7 @@ pub const LEVELS: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
 /// Marks the points that no other beats in both error and time; errors below `known`, what of them is known (m or rad),
 /// are as good as that.
 pub fn mark_pareto(curves: &mut [Curve], known: f64) {
-    let mut points: Vec<&mut Point> = curves.iter_mut().flat_map(|curve| &mut curve.points).collect();
+    let mut points: Vec<&mut PrecisionPoint> = curves.iter_mut().flat_map(|curve| &mut curve.points).collect();
     let mut order: Vec<(usize, [f64; 2])> =
         points.iter().enumerate().filter_map(|(k, point)| Some((k, point.measured()?))).collect();
     order.iter_mut().for_each(|(_, [error, _])| *error = error.max(known));
@@ -60,8 +60,8 @@ pub fn cheapest(curves: &[Curve]) -> Vec<Cheapest> {
 ///
 /// None where even the finest point misses it.
 #[must_use]
-pub fn seconds_to(points: &[Point], error: f64) -> Option<f64> {
-    let measured: Vec<[f64; 2]> = points.iter().filter_map(Point::measured).collect();
+pub fn seconds_to(points: &[PrecisionPoint], error: f64) -> Option<f64> {
+    let measured: Vec<[f64; 2]> = points.iter().filter_map(PrecisionPoint::measured).collect();
     let reached = measured.iter().position(|point| point[0] <= error)?;
     let [e1, t1] = measured[reached];
     let finer = measured[reached..].iter().filter(|point| point[0] <= error).map(|point| point[1]);

@@ -6,7 +6,7 @@ use super::canvas::{Anchor, Canvas, Drawn, Ink, text_width};
 use super::geometry::{PlotFrame, Span};
 use super::look;
 use super::picture::Picture;
-use crate::precision::{Curve, Mark, Point, Setting, number};
+use crate::precision::{Curve, Mark, PrecisionPoint, RungSetting, number};
 
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 420.0;
@@ -23,11 +23,11 @@ pub(super) enum Abscissa {
 }
 
 impl Abscissa {
-    fn of(self, point: &Point) -> Option<[f64; 2]> {
+    fn of(self, point: &PrecisionPoint) -> Option<[f64; 2]> {
         let [error, seconds] = point.measured()?;
         match (self, point.setting) {
             (Self::Seconds, _) => Some([seconds, error]),
-            (Self::Step, Some(Setting::Step(step))) if step > 0.0 => Some([step, error]),
+            (Self::Step, Some(RungSetting::Step(step))) if step > 0.0 => Some([step, error]),
             (Self::Step, _) => None,
         }
     }
@@ -46,7 +46,7 @@ pub(super) fn picture(
     abscissa: Abscissa,
     [file, title, caption]: [String; 3],
 ) -> Result<Picture, ReportError> {
-    let placed = |point: &Point| abscissa.of(point).map(|[x, y]| [x.log10(), y.log10()]);
+    let placed = |point: &PrecisionPoint| abscissa.of(point).map(|[x, y]| [x.log10(), y.log10()]);
     let all: Vec<[f64; 2]> = curves.iter().flat_map(|curve| &curve.points).filter_map(placed).collect();
     let [x, y] = [0, 1].map(|axis| decades(all.iter().map(|point| point[axis])));
     let labels: Vec<String> = curves.iter().map(Curve::label).collect();
@@ -64,7 +64,7 @@ pub(super) fn picture(
     let frame = PlotFrame { left, top: legend + 34.0, width: WIDTH - left - 24.0, height: HEIGHT, x, y };
     let mut tips = Vec::new();
     for curve in curves {
-        let seen = |point: &Point| Some((frame.place(placed(point)?)?, told(&curve.label(), point)));
+        let seen = |point: &PrecisionPoint| Some((frame.place(placed(point)?)?, told(&curve.label(), point)));
         tips.extend(curve.points.iter().filter_map(seen));
     }
     let picture = Picture::draw(file, title, caption, [WIDTH, frame.bottom() + 44.0], |canvas| {
@@ -95,7 +95,7 @@ pub(super) fn picture(
 }
 
 /// What a pointer is told over a point: the numbers of the table, with the same digits.
-fn told(label: &str, point: &Point) -> String {
+fn told(label: &str, point: &PrecisionPoint) -> String {
     let mut text = label.to_owned();
     if let Some(setting) = point.setting {
         text += &format!(", {setting}");

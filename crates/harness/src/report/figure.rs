@@ -64,7 +64,7 @@ pub struct Paper {
 
 /// The format of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
+pub enum FigureFormat {
     /// Scalable Vector Graphics.
     Svg,
     /// Portable Network Graphics, with its resolution.
@@ -77,7 +77,7 @@ pub enum Format {
 ///
 /// # Errors
 /// [`ReportError::Draw`] if the drawing library fails.
-pub fn figure(figure: &Figure, paper: &Paper, format: Format) -> Result<Vec<u8>, ReportError> {
+pub fn figure(figure: &Figure, paper: &Paper, format: FigureFormat) -> Result<Vec<u8>, ReportError> {
     let size = paper.size.map(|length| length / CENTIMETRES_PER_INCH * UNITS_PER_INCH);
     let low = FigureCells::of(size, &figure.panels).size[1] / LOWEST;
     let scale = low.clamp(SMALLEST, 1.0);

@@ -35,8 +35,8 @@ mod xml;
 
 pub use cells::Cells;
 pub use chart::{Chart, Layer, chart_svg};
-pub use figure::{Figure, Format, Panel, Paper, figure};
-pub use precision::{PrecisionReport, Table, write_precision};
+pub use figure::{Figure, FigureFormat, Panel, Paper, figure};
+pub use precision::{PrecisionReport, PrecisionTable, write_precision};
 
 /// A report: what the page says above its scenes, and the scenes.
 #[derive(Debug, Clone, Default)]

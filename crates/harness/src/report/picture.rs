@@ -2,7 +2,7 @@
 
 use super::ReportError;
 use super::canvas::{Canvas, CanvasMark, Drawn, shapes, units};
-use super::figure::{Format, UNITS_PER_INCH};
+use super::figure::{FigureFormat, UNITS_PER_INCH};
 use super::xml::escape;
 use super::{look, pdf, raster};
 
@@ -77,11 +77,11 @@ impl Picture {
     }
 
     /// The picture as the bytes of a file of that format, with so many pixels to an inch, `scale` times as large as it was drawn.
-    pub(super) fn bytes(&self, format: Format, dpi: f64, scale: f64) -> Result<Vec<u8>, ReportError> {
+    pub(super) fn bytes(&self, format: FigureFormat, dpi: f64, scale: f64) -> Result<Vec<u8>, ReportError> {
         let drawn = match format {
-            Format::Svg => Ok(self.scaled(scale).into_bytes()),
-            Format::Png => raster::png(self.size, &self.marks, scale * dpi / UNITS_PER_INCH, dpi),
-            Format::Pdf => pdf::file(self.size, &self.title, &self.marks, scale),
+            FigureFormat::Svg => Ok(self.scaled(scale).into_bytes()),
+            FigureFormat::Png => raster::png(self.size, &self.marks, scale * dpi / UNITS_PER_INCH, dpi),
+            FigureFormat::Pdf => pdf::file(self.size, &self.title, &self.marks, scale),
         };
         drawn.map_err(|reason| ReportError::Draw { picture: self.file.clone(), reason })
     }

@@ -22,14 +22,14 @@ pub struct PrecisionReport {
     /// The points that the diagrams show.
     pub curves: Vec<Curve>,
     /// The tables below them.
-    pub tables: Vec<Table>,
+    pub tables: Vec<PrecisionTable>,
     /// Files of numbers to put beside the page as `NAME.ENDING`.
     pub numbers: Vec<Numbers>,
 }
 
 /// A table of finished text. The last cell of a row that is shorter than the others takes the columns that are left.
 #[derive(Debug, Clone)]
-pub struct Table {
+pub struct PrecisionTable {
     /// The heading.
     pub title: String,
     /// The headings of the columns.

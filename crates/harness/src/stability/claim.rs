@@ -1,4 +1,4 @@
-use crate::Kind;
+use crate::MethodKind;
 
 /// What a case asks of a method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,9 +27,9 @@ pub enum Claim {
 ///
 /// # Errors
 /// The reason why not.
-pub fn claims(method: Kind, claim: Claim) -> Result<(), &'static str> {
+pub fn claims(method: MethodKind, claim: Claim) -> Result<(), &'static str> {
     use Claim as C;
-    use Kind as K;
+    use MethodKind as K;
     const HIDDEN_MODE: &str = "its hidden multiplier mode grows about the stable line";
     const EXPLICIT: &str = "explicit: beyond its stability bound it grows";
     match (method, claim) {

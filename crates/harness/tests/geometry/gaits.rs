@@ -2,7 +2,7 @@ use crate::{gauss, run};
 use approx::assert_relative_eq;
 use dla::State;
 use lagrangian::System;
-use sleigh::parking::{Plan, sinusoidal_gait, square_gait};
+use sleigh::parking::{ParkingPlan, sinusoidal_gait, square_gait};
 use sleigh::{Guided, Sleigh, SleighState};
 use std::f64::consts::{PI, TAU};
 
@@ -20,7 +20,7 @@ fn bessel(x: f64) -> f64 {
 #[test]
 fn the_square_gait_moves_sideways() {
     let (d, p) = (0.7, 0.4_f64);
-    let end = *Plan { moves: square_gait(d, p).to_vec() }.poses(&SleighState::default()).last().unwrap();
+    let end = *ParkingPlan { moves: square_gait(d, p).to_vec() }.poses(&SleighState::default()).last().unwrap();
     assert_relative_eq!(end.x, d * (1.0 - p.cos()), epsilon = 1e-15);
     assert_relative_eq!(end.y, d * p.sin(), epsilon = 1e-15);
     assert!(end.heading.abs() < 1e-15);

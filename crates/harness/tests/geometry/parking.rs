@@ -1,7 +1,7 @@
 use crate::{dla, run};
 use dla::{State, Trajectory};
 use lagrangian::System;
-use sleigh::parking::{Gap, Move, Plan};
+use sleigh::parking::{Gap, Move, ParkingPlan};
 use sleigh::{Guided, Sleigh, SleighError, SleighState};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -37,7 +37,7 @@ fn a_hundred_random_pairs_are_reached() {
         let (start, goal) = (numbers.pose(), numbers.pose());
         let (depth, play) = (numbers.between(-1.5, 1.5), numbers.between(0.2, 0.5));
         let gap = Gap { depth, play, swing: numbers.between(0.3, 0.8) };
-        let plan = Plan::park(&start, &goal, &gap).unwrap();
+        let plan = ParkingPlan::park(&start, &goal, &gap).unwrap();
         let [speed, turn_rate] = plan.controls(1.0).unwrap();
         let servo = Guided::<2>::servo(sleigh, speed, turn_rate).unwrap();
         let mut state = State::new(start.to_coordinates().0, [0.0; 3], System::<3, 3>::angles(&servo));
@@ -59,7 +59,7 @@ fn a_plan_stays_in_its_gap() {
     let gap = Gap { depth: 1.2, play: 0.3, swing: 0.4 };
     let goal = SleighState { x: 2.0, y: 1.0, heading: 0.5, ..SleighState::default() };
     let start = SleighState::default();
-    let plan = Plan::park(&start, &goal, &gap).unwrap();
+    let plan = ParkingPlan::park(&start, &goal, &gap).unwrap();
     let poses = plan.poses(&start);
     // From the entry on, seen from the goal: along within the play, turned within the swing, aside only nearer.
     let (sin, cos) = goal.heading.sin_cos();
@@ -71,19 +71,19 @@ fn a_plan_stays_in_its_gap() {
         assert!((pose.heading - goal.heading).abs() <= gap.swing + 1e-12);
     }
     // Without a gap three moves are enough, and none is needed where one is already.
-    assert_eq!(Plan::park(&start, &goal, &Gap { depth: 0.0, ..gap }).unwrap().moves.len(), 3);
-    let none = Plan::park(&goal, &goal, &Gap { depth: 0.0, ..gap }).unwrap();
+    assert_eq!(ParkingPlan::park(&start, &goal, &Gap { depth: 0.0, ..gap }).unwrap().moves.len(), 3);
+    let none = ParkingPlan::park(&goal, &goal, &Gap { depth: 0.0, ..gap }).unwrap();
     assert_eq!(none.moves, [Move::Turn(0.0), Move::Drive(0.0), Move::Turn(0.0)]);
 }
 
 #[test]
 fn impossible_gaps_are_refused() {
     let (start, goal) = (SleighState::default(), SleighState { x: 1.0, ..SleighState::default() });
-    let park = |depth, play, swing| Plan::park(&start, &goal, &Gap { depth, play, swing });
+    let park = |depth, play, swing| ParkingPlan::park(&start, &goal, &Gap { depth, play, swing });
     assert!(matches!(park(1.0, 0.0, 0.3), Err(SleighError::NotPositive { quantity: "play in the gap", .. })));
     assert!(matches!(park(1.0, 0.3, -0.3), Err(SleighError::NotPositive { .. })));
     assert!(matches!(park(f64::NAN, 0.3, 0.3), Err(SleighError::NotFinite { .. })));
     assert!(matches!(park(1.0, 1e-9, 1e-9), Err(SleighError::Path { .. })));
     assert_eq!(park(1.0, 0.3, 3.0), park(1.0, 0.3, FRAC_PI_2));
-    assert!(Plan { moves: vec![Move::Drive(1.0)] }.controls(0.0).is_err());
+    assert!(ParkingPlan { moves: vec![Move::Drive(1.0)] }.controls(0.0).is_err());
 }

@@ -1,7 +1,7 @@
 //! Figures for papers: what stands where, in each format.
 
 use crate::common::{check_numbers, size, texts};
-use harness::report::{Figure, Format, Panel, Paper, figure};
+use harness::report::{Figure, FigureFormat, Panel, Paper, figure};
 use proptest::prelude::*;
 use roxmltree::Document;
 
@@ -20,7 +20,7 @@ fn sheet(panels: Vec<Panel>) -> Figure {
 }
 
 fn svg(sheet: &Figure) -> String {
-    String::from_utf8(figure(sheet, &PAPER, Format::Svg).unwrap()).unwrap()
+    String::from_utf8(figure(sheet, &PAPER, FigureFormat::Svg).unwrap()).unwrap()
 }
 
 /// The corners of the lines of a colour.
@@ -100,12 +100,12 @@ fn sizes_below_rounding_lie_on_the_floor() {
 #[test]
 fn a_png_has_its_resolution_and_a_pdf_its_size() {
     let sheet = sheet(vec![panel(["t [s]", "x [m]"], vec![line(2.0)])]);
-    let png = figure(&sheet, &PAPER, Format::Png).unwrap();
+    let png = figure(&sheet, &PAPER, FigureFormat::Png).unwrap();
     assert_eq!(size(&png), [945, 531]);
     let at = png.windows(4).position(|word| word == b"pHYs").unwrap() + 4;
     // 150 pixels to an inch.
     assert_eq!(u32::from_be_bytes(png[at..at + 4].try_into().unwrap()), 5906);
-    let pdf = figure(&sheet, &PAPER, Format::Pdf).unwrap();
+    let pdf = figure(&sheet, &PAPER, FigureFormat::Pdf).unwrap();
     let text = String::from_utf8_lossy(&pdf);
     assert!(text.starts_with("%PDF-") && text.trim_end().ends_with("%%EOF"));
     let sides = text.split_once("/MediaBox [0 0 ").unwrap().1.split(']').next().unwrap();
@@ -113,7 +113,7 @@ fn a_png_has_its_resolution_and_a_pdf_its_size() {
     for (side, length) in sides.iter().zip(PAPER.size) {
         assert!((side - length / 2.54 * 72.0).abs() < 0.01, "{sides:?}");
     }
-    assert_eq!(pdf, figure(&sheet, &PAPER, Format::Pdf).unwrap());
+    assert_eq!(pdf, figure(&sheet, &PAPER, FigureFormat::Pdf).unwrap());
 }
 
 fn any_number() -> impl Strategy<Value = f64> {
@@ -136,8 +136,8 @@ proptest! {
         let one = Panel { decades: decades && !path, path, ..panel(["t [s]", "x [m]"], vec![curve]) };
         let sheet = sheet(vec![one; panels]);
         let paper = Paper { size: [size.0, size.1], dpi: 40.0 };
-        let text = String::from_utf8(figure(&sheet, &paper, Format::Svg).unwrap()).unwrap();
+        let text = String::from_utf8(figure(&sheet, &paper, FigureFormat::Svg).unwrap()).unwrap();
         check_numbers(&Document::parse(&text).unwrap());
-        prop_assert!(figure(&sheet, &paper, Format::Png).is_ok() && figure(&sheet, &paper, Format::Pdf).is_ok());
+        prop_assert!(figure(&sheet, &paper, FigureFormat::Png).is_ok() && figure(&sheet, &paper, FigureFormat::Pdf).is_ok());
     }
 }

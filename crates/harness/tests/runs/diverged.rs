@@ -1,10 +1,10 @@
 //! A run that has blown up has the verdict `diverged`; what is merely large, late or rounded does not.
 
-use harness::{Blocks, Drift, Energies, Verdict};
+use harness::{Blocks, Drift, DriftVerdict, Energies};
 use proptest::prelude::*;
 
 /// The verdict on an error and a kinetic energy as functions of the share of the run, from a start of this energy (J).
-fn verdict(start: f64, nodes: u32, of: impl Fn(f64) -> [f64; 2]) -> Verdict {
+fn verdict(start: f64, nodes: u32, of: impl Fn(f64) -> [f64; 2]) -> DriftVerdict {
     let (mut blocks, mut energies) = (Blocks::default(), Energies::of_start(start, of(0.0)[1]));
     for k in 0..nodes {
         let share = f64::from(k) / f64::from(nodes - 1);
@@ -22,9 +22,9 @@ fn an_error_that_is_the_kinetic_energy_has_diverged() {
         let stays = |share: f64| if share > 0.5 { [1e6, 1e6] } else { [0.0, 1.0] };
         let returns = |share: f64| if (share - 0.5).abs() < 0.1 { [1e6, 1e6] } else { [0.0, 1.0] };
         let undefined = |share: f64| if share > 0.9 { [f64::INFINITY, f64::INFINITY] } else { [0.0, 1.0] };
-        assert_eq!(verdict(1.0, nodes, stays), Verdict::Diverged, "{nodes}");
-        assert_eq!(verdict(1.0, nodes, returns), Verdict::Diverged, "{nodes}");
-        assert_eq!(verdict(1.0, nodes, undefined), Verdict::Diverged, "{nodes}");
+        assert_eq!(verdict(1.0, nodes, stays), DriftVerdict::Diverged, "{nodes}");
+        assert_eq!(verdict(1.0, nodes, returns), DriftVerdict::Diverged, "{nodes}");
+        assert_eq!(verdict(1.0, nodes, undefined), DriftVerdict::Diverged, "{nodes}");
     }
 }
 
@@ -33,7 +33,7 @@ fn an_error_that_grows_exponentially_has_diverged() {
     // Twenty e-foldings and more; the kinetic energy of the motion grows as fast, so that the error is small beside it.
     for rate in [20.0, 60.0, 300.0] {
         let runs_away = |share: f64| [1e-3 * (rate * share).exp(), (rate * share).exp()];
-        assert_eq!(verdict(0.5, 5000, runs_away), Verdict::Diverged, "{rate}");
+        assert_eq!(verdict(0.5, 5000, runs_away), DriftVerdict::Diverged, "{rate}");
     }
 }
 
@@ -41,16 +41,16 @@ fn an_error_that_grows_exponentially_has_diverged() {
 fn what_does_not_blow_up_has_not_diverged() {
     let phase = |share: f64| (300.0 * share).sin();
     // An error of a third of the energy that swings; a start at rest that falls from zero energy; a drift, straight or bent.
-    assert_eq!(verdict(1.0, 5000, |share| [0.3 * phase(share), 1.0]), Verdict::Bounded);
-    assert_eq!(verdict(0.0, 5000, |share| [1e-9 * phase(share) * share, share]), Verdict::Bounded);
-    assert_eq!(verdict(1.0, 5000, |share| [0.5 * share, 1.0]), Verdict::LinearDrift);
-    assert_eq!(verdict(1.0, 5000, |share| [0.5 * share * share, 1.0]), Verdict::LinearDrift);
+    assert_eq!(verdict(1.0, 5000, |share| [0.3 * phase(share), 1.0]), DriftVerdict::Bounded);
+    assert_eq!(verdict(0.0, 5000, |share| [1e-9 * phase(share) * share, share]), DriftVerdict::Bounded);
+    assert_eq!(verdict(1.0, 5000, |share| [0.5 * share, 1.0]), DriftVerdict::LinearDrift);
+    assert_eq!(verdict(1.0, 5000, |share| [0.5 * share * share, 1.0]), DriftVerdict::LinearDrift);
     // A hill at the end of the run: the largest error is there, but it does not grow from batch to batch.
-    assert_ne!(verdict(1e-3, 5000, |share| [if share > 0.97 { 0.01 } else { 1e-16 }, 1.0]), Verdict::Diverged);
+    assert_ne!(verdict(1e-3, 5000, |share| [if share > 0.97 { 0.01 } else { 1e-16 }, 1.0]), DriftVerdict::Diverged);
     // Growth that ends far below the energy of the start.
-    assert_ne!(verdict(1.0, 5000, |share| [1e-16 * (25.0 * share).exp(), 1.0]), Verdict::Diverged);
+    assert_ne!(verdict(1.0, 5000, |share| [1e-16 * (25.0 * share).exp(), 1.0]), DriftVerdict::Diverged);
     // At rest on a saddle of zero energy: rounding of the potential beside no kinetic energy at all.
-    assert_eq!(verdict(0.0, 5000, |share| [1e-17 * phase(share), 1e-30]), Verdict::Bounded);
+    assert_eq!(verdict(0.0, 5000, |share| [1e-17 * phase(share), 1e-30]), DriftVerdict::Bounded);
 }
 
 proptest! {
@@ -63,7 +63,7 @@ proptest! {
         nodes in 5_u32..3000,
     ) {
         let of = |share: f64| [part * kinetic * f64::sin(turns * share), kinetic];
-        prop_assert_ne!(verdict(start, nodes, of), Verdict::Diverged);
+        prop_assert_ne!(verdict(start, nodes, of), DriftVerdict::Diverged);
     }
 
     #[test]
@@ -76,6 +76,6 @@ proptest! {
     ) {
         let error = times * f64::max(kinetic, 10.0);
         let of = |share: f64| if share > from { [error, error] } else { [0.0, kinetic] };
-        prop_assert_eq!(verdict(start, nodes, of), Verdict::Diverged);
+        prop_assert_eq!(verdict(start, nodes, of), DriftVerdict::Diverged);
     }
 }

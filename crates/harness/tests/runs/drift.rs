@@ -3,7 +3,7 @@
 use super::{Particle, request};
 use approx::assert_relative_eq;
 use dla::Checkpoint;
-use harness::{Blocks, Drift, Method, Record, Request, Saving, Verdict, run, run_saved};
+use harness::{Blocks, Drift, DriftVerdict, Method, Record, Request, Saving, run, run_saved};
 use std::f64::consts::TAU;
 
 /// Values a series has: not a power of two, so that blocks and periods do not agree.
@@ -44,7 +44,7 @@ fn at_all_scales(f: impl Fn() -> Box<dyn FnMut(f64) -> f64>) -> Vec<Drift> {
     drifts
 }
 
-fn verdicts(f: impl Fn() -> Box<dyn FnMut(f64) -> f64>) -> Verdict {
+fn verdicts(f: impl Fn() -> Box<dyn FnMut(f64) -> f64>) -> DriftVerdict {
     at_all_scales(f)[2].verdict
 }
 
@@ -52,9 +52,9 @@ fn verdicts(f: impl Fn() -> Box<dyn FnMut(f64) -> f64>) -> Verdict {
 fn an_oscillation_is_bounded() {
     for period in [0.01, 0.37, 3.7, 31.0, RUN / 32.0, RUN / 31.9, RUN / 1024.0, 111.0] {
         let drift = drift(1.0, |t| (TAU * t / period + 1.0).sin());
-        assert_eq!(drift.verdict, Verdict::Bounded, "period {period}: {drift:?}");
+        assert_eq!(drift.verdict, DriftVerdict::Bounded, "period {period}: {drift:?}");
     }
-    assert_eq!(verdicts(|| Box::new(|t| (TAU * t / 0.7).cos())), Verdict::Bounded);
+    assert_eq!(verdicts(|| Box::new(|t| (TAU * t / 0.7).cos())), DriftVerdict::Bounded);
     let drift = drift(1.0, |t| 5.0 + 2.0 * (TAU * t / 0.7).cos());
     // The largest and the smallest value are met to the square of the phase between two nodes.
     assert_relative_eq!(drift.amplitude, 2.0, max_relative = 1e-3);
@@ -65,16 +65,16 @@ fn a_slope_is_seen_above_the_noise_and_not_below() {
     let series = |slope: f64| drift(1.0, move |t| 2.0 * (TAU * t / 0.7).cos() + slope * t);
     for slope in [1e-3, -1e-3, 0.1] {
         let drift = series(slope);
-        assert_eq!(drift.verdict, Verdict::LinearDrift, "{drift:?}");
+        assert_eq!(drift.verdict, DriftVerdict::LinearDrift, "{drift:?}");
         assert!((drift.slope - slope).abs() <= drift.slope_ci.unwrap(), "{drift:?}");
         assert!(drift.slope_ci.unwrap() < 0.1 * slope.abs(), "{drift:?}");
         // Within a block the line is not taken off: half of a 512th of what it does over the run.
         assert!((drift.amplitude - 2.0).abs() < 2e-3 + slope.abs() * RUN / 1024.0, "{drift:?}");
     }
-    assert_eq!(series(1e-5).verdict, Verdict::Bounded);
-    assert_eq!(verdicts(|| Box::new(|t| (TAU * t / 0.7).cos() + 2e-3 * t)), Verdict::LinearDrift);
+    assert_eq!(series(1e-5).verdict, DriftVerdict::Bounded);
+    assert_eq!(verdicts(|| Box::new(|t| (TAU * t / 0.7).cos() + 2e-3 * t)), DriftVerdict::LinearDrift);
     let steep = drift(1.0, |t| 3.0 * t);
-    assert_eq!(steep.verdict, Verdict::LinearDrift);
+    assert_eq!(steep.verdict, DriftVerdict::LinearDrift);
     assert_relative_eq!(steep.slope, 3.0, max_relative = 1e-12);
     // The mean of the squares of an octave of lags, from 12 on, is not quite the square of their mean.
     assert_relative_eq!(steep.exponent.unwrap(), 1.0, max_relative = 1e-3);
@@ -89,8 +89,8 @@ fn a_random_walk_is_one_and_its_slope_is_none() {
             sum += noise.next();
             sum
         });
-        walks += u32::from(drift.verdict == Verdict::RandomWalk);
-        lines += u32::from(drift.verdict == Verdict::LinearDrift);
+        walks += u32::from(drift.verdict == DriftVerdict::RandomWalk);
+        lines += u32::from(drift.verdict == DriftVerdict::LinearDrift);
         assert!(drift.exponent.unwrap() > 0.2, "{drift:?}");
     }
     // Of a hundred, at the 5 % and 1 % of the tests and three standard deviations of their counts.
@@ -102,7 +102,7 @@ fn a_random_walk_is_one_and_its_slope_is_none() {
             sum
         }) as Box<dyn FnMut(f64) -> f64>
     };
-    assert_eq!(verdicts(walk), Verdict::RandomWalk);
+    assert_eq!(verdicts(walk), DriftVerdict::RandomWalk);
 }
 
 #[test]
@@ -115,39 +115,39 @@ fn a_chaotic_wander_is_bounded() {
             x + slope * t
         }) as Box<dyn FnMut(f64) -> f64>
     };
-    let count = |slope: f64, verdict: Verdict| {
+    let count = |slope: f64, verdict: DriftVerdict| {
         (0..100).filter(|seed| drift(1.0, wander(*seed, slope)).verdict == verdict).count()
     };
-    let bounded = count(0.0, Verdict::Bounded);
+    let bounded = count(0.0, DriftVerdict::Bounded);
     assert!(bounded >= 90, "{bounded}");
     // Positive control: a drift of two amplitudes over the run.
-    let lines = count(0.1, Verdict::LinearDrift);
+    let lines = count(0.1, DriftVerdict::LinearDrift);
     assert!(lines >= 95, "{lines}");
-    assert_eq!(verdicts(|| wander(1, 0.0)), Verdict::Bounded);
+    assert_eq!(verdicts(|| wander(1, 0.0)), DriftVerdict::Bounded);
 }
 
 #[test]
 fn constants_are_bounded_and_short_series_undecided() {
     let zero = drift(1.0, |_| 0.0);
-    assert_eq!((zero.verdict, zero.amplitude.to_bits(), zero.slope.to_bits()), (Verdict::Bounded, 0, 0));
-    assert_eq!(verdicts(|| Box::new(|_| -0.3)), Verdict::Bounded);
+    assert_eq!((zero.verdict, zero.amplitude.to_bits(), zero.slope.to_bits()), (DriftVerdict::Bounded, 0, 0));
+    assert_eq!(verdicts(|| Box::new(|_| -0.3)), DriftVerdict::Bounded);
     let mut short = Blocks::default();
     (0..63_u32).for_each(|k| short.add(f64::from(k), f64::from(k)));
     let drift = Drift::of(&short);
-    assert_eq!((drift.verdict, drift.slope_ci, drift.exponent), (Verdict::Undecided, None, None));
+    assert_eq!((drift.verdict, drift.slope_ci, drift.exponent), (DriftVerdict::Undecided, None, None));
     assert_relative_eq!(drift.slope, 1.0, max_relative = 1e-12);
-    assert_eq!(Drift::of(&Blocks::default()).verdict, Verdict::Undecided);
+    assert_eq!(Drift::of(&Blocks::default()).verdict, DriftVerdict::Undecided);
     short.add(63.0, f64::NAN);
-    assert_eq!(Drift::of(&short).verdict, Verdict::Undecided);
+    assert_eq!(Drift::of(&short).verdict, DriftVerdict::Undecided);
 }
 
 #[test]
 fn what_settles_or_jumps_is_none_of_the_three() {
     let settles = drift(1.0, |t| 1.0 - (-10.0 * t / RUN).exp());
     let jumps = drift(1.0, |t| if t > 0.4 * RUN { 1.0 } else { 0.0 });
-    assert_eq!((settles.verdict, jumps.verdict), (Verdict::Undecided, Verdict::Undecided));
+    assert_eq!((settles.verdict, jumps.verdict), (DriftVerdict::Undecided, DriftVerdict::Undecided));
     // What bends, but grows all along, drifts.
-    assert_eq!(drift(1.0, |t| t * t).verdict, Verdict::LinearDrift);
+    assert_eq!(drift(1.0, |t| t * t).verdict, DriftVerdict::LinearDrift);
 }
 
 #[test]

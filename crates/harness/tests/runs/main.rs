@@ -21,7 +21,7 @@ mod work;
 
 use approx::assert_relative_eq;
 use dla::Schedule;
-use harness::{Kind, METHODS, Method, MethodError, MethodInfo, Request, Trend, run};
+use harness::{METHODS, Method, MethodError, MethodInfo, MethodKind, Request, Trend, run};
 use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Scalar, System};
 use proptest::prelude::*;
 
@@ -123,7 +123,7 @@ fn a_run_ends_where_the_numbers_do() {
 
 /// The methods for any system: all but the series, which only a sleigh has.
 fn general() -> impl Iterator<Item = &'static MethodInfo> + Clone {
-    METHODS.iter().filter(|info| info.kind != Kind::Taylor)
+    METHODS.iter().filter(|info| info.kind != MethodKind::Taylor)
 }
 
 #[test]

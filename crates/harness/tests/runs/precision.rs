@@ -3,9 +3,9 @@
 use approx::assert_relative_eq;
 use dla::{RunError, StepError};
 use harness::precision::{
-    Bench, Curve, Limits, Mark, Point, Setting, cheapest, mark_pareto, seconds_to, work_precision,
+    Bench, Curve, LadderLimits, Mark, PrecisionPoint, RungSetting, cheapest, mark_pareto, seconds_to, work_precision,
 };
-use harness::{Kind, Method};
+use harness::{Method, MethodKind};
 
 const DURATION: f64 = 10.0;
 /// Where rounding takes over.
@@ -16,8 +16,8 @@ fn made_up(method: &Method, steps: u64) -> Result<f64, RunError> {
     let h = DURATION / steps as f64;
     let info = method.info();
     match info.kind {
-        Kind::Energy(1) => Err(failed(StepError::Unsupported { reason: "made up" })),
-        Kind::Dop853 => Ok(method.tolerance() + FLOOR),
+        MethodKind::Energy(1) => Err(failed(StepError::Unsupported { reason: "made up" })),
+        MethodKind::Dop853 => Ok(method.tolerance() + FLOOR),
         _ if h > 1.0 => Err(failed(StepError::Jump { time: h })),
         _ => Ok(0.1 * h.powi(i32::try_from(info.order).unwrap()) + FLOOR),
     }
@@ -36,7 +36,7 @@ fn curves(names: &[&str]) -> Vec<Curve> {
         aligned: &|steps| steps.div_ceil(3) * 3,
     };
     let mut told = 0;
-    let limits = Limits { fewest: 8, longest: 1e-4 };
+    let limits = LadderLimits { fewest: 8, longest: 1e-4 };
     let (curves, clock) = work_precision(&bench, &methods, &limits, &mut |done| told += done);
     assert_eq!(told, names.len() as u64 + clock.rounds);
     curves
@@ -45,7 +45,7 @@ fn curves(names: &[&str]) -> Vec<Curve> {
 #[test]
 fn a_ladder_begins_where_runs_succeed_and_ends_in_rounding() {
     for curve in curves(&["dla", "rk4", "dla8", "gauss16"]) {
-        let regular: Vec<&Point> = curve.points.iter().filter(|point| point.is_regular()).collect();
+        let regular: Vec<&PrecisionPoint> = curve.points.iter().filter(|point| point.is_regular()).collect();
         assert!(regular.len() >= 6, "{}: {} points", curve.method, regular.len());
         assert!(regular.windows(2).all(|pair| pair[1].error < pair[0].error), "{}", curve.method);
         assert!(curve.points.iter().all(|point| point.steps.unwrap().is_multiple_of(3) && point.steps.unwrap() >= 10));
@@ -60,7 +60,7 @@ fn a_ladder_begins_where_runs_succeed_and_ends_in_rounding() {
         assert!(slope.points >= 3, "{curve:?}");
         assert_relative_eq!(slope.value, order, max_relative = 1.1_f64.ln() / 100.0_f64.ln());
         for point in &curve.points {
-            let Some(Setting::Step(step)) = point.setting else { panic!("{point:?}") };
+            let Some(RungSetting::Step(step)) = point.setting else { panic!("{point:?}") };
             assert_relative_eq!(step * point.steps.unwrap() as f64, DURATION, max_relative = 1e-15);
             assert!(point.wall_seconds.is_some() && point.cpu_seconds.is_some() && point.spread.is_some());
         }
@@ -75,7 +75,7 @@ fn a_pause_is_no_plateau() {
         Ok(if (1e-12..1e-10).contains(&error) { 1e-10 } else { error })
     };
     let bench = Bench { duration: DURATION, reference_error: 1e-16, end_error: &pauses, aligned: &|steps| steps };
-    let limits = Limits { fewest: 10, longest: 1e-4 };
+    let limits = LadderLimits { fewest: 10, longest: 1e-4 };
     let (curves, _) = work_precision(&bench, &[Method::named("rk4", None).unwrap()], &limits, &mut ());
     let errors = |marked: bool| {
         let points = curves[0].points.iter().filter(move |point| point.mark.is_some() == marked);
@@ -92,7 +92,7 @@ fn an_adaptive_method_has_one_interval_and_a_ladder_of_tolerances() {
     let adaptive = &all[0];
     assert!(adaptive.points.len() >= 8, "{adaptive:?}");
     for point in &adaptive.points {
-        let Some(Setting::Tolerance(tolerance)) = point.setting else { panic!("{point:?}") };
+        let Some(RungSetting::Tolerance(tolerance)) = point.setting else { panic!("{point:?}") };
         assert_eq!(point.steps, Some(3));
         assert_relative_eq!(point.error.unwrap(), tolerance + FLOOR, max_relative = 1e-15);
     }
@@ -103,15 +103,15 @@ fn an_adaptive_method_has_one_interval_and_a_ladder_of_tolerances() {
 fn what_fails_in_every_run_is_told_of_its_finest() {
     let fails = |_: &Method, _: u64| Err(failed(StepError::Jump { time: 1.0 }));
     let bench = Bench { duration: DURATION, reference_error: 1e-15, end_error: &fails, aligned: &|steps| steps };
-    let limits = Limits { fewest: 8, longest: 1e-12 };
+    let limits = LadderLimits { fewest: 8, longest: 1e-12 };
     let (curves, _) = work_precision(&bench, &[Method::named("dla", None).unwrap()], &limits, &mut ());
     let [point] = &curves[0].points[..] else { panic!("{curves:?}") };
     assert!(point.error.is_none() && point.cpu_seconds.is_none() && !point.pareto);
     assert!(matches!(&point.mark, Some(Mark::Failed(reason, Some(_))) if reason.starts_with("step 1, from t = 0 s")));
 }
 
-fn point(method: &str, error: f64, seconds: f64) -> Point {
-    Point {
+fn point(method: &str, error: f64, seconds: f64) -> PrecisionPoint {
+    PrecisionPoint {
         method: method.to_owned(),
         source: None,
         setting: None,
@@ -178,7 +178,7 @@ fn two_identical_methods_take_the_same_time() {
     };
     let bench = Bench { duration: DURATION, reference_error: 1e-15, end_error: &work, aligned: &|steps| steps };
     let method = Method::named("dla", None).unwrap();
-    let limits = Limits { fewest: 20, longest: 0.01 };
+    let limits = LadderLimits { fewest: 20, longest: 0.01 };
     let (curves, _) = work_precision(&bench, &[method, method], &limits, &mut ());
     for (a, b) in curves[0].points.iter().zip(&curves[1].points) {
         let ratio = a.cpu_seconds.unwrap() / b.cpu_seconds.unwrap();

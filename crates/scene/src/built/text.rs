@@ -1,13 +1,13 @@
 //! Systems of text in the words of their scenes.
 
 use super::{Place, Quantity};
-use ::text::{Coordinate, Model, TextMechanics, Unit};
+use ::text::{Coordinate, TextMechanics, TextModel, Unit};
 use dla::Node;
 use systems::Column;
 
 /// The quantities of a system of text: coordinates, rates and outputs.
 #[must_use]
-pub fn quantities(model: &Model) -> Vec<Quantity> {
+pub fn quantities(model: &TextModel) -> Vec<Quantity> {
     let coordinates = model.coordinates();
     let of = |name: String, unit: String, angle| Quantity { name, unit, angle };
     let place = |c: &Coordinate| of(c.name.clone(), c.unit.name().to_owned(), c.unit == Unit::Angle);
@@ -20,12 +20,12 @@ pub fn quantities(model: &Model) -> Vec<Quantity> {
     coordinates.iter().map(place).chain(coordinates.iter().map(rate)).chain(outputs).collect()
 }
 
-pub(super) fn in_state(model: &Model) -> usize {
+pub(super) fn in_state(model: &TextModel) -> usize {
     2 * model.coordinates().len() + model.outputs().len()
 }
 
 /// The value of a quantity, where it is one of these.
-pub(super) fn value(model: &Model, k: usize, t: f64, q: &[f64], v: &[f64]) -> Option<f64> {
+pub(super) fn value(model: &TextModel, k: usize, t: f64, q: &[f64], v: &[f64]) -> Option<f64> {
     let n = model.coordinates().len();
     match k.checked_sub(n) {
         None => Some(q[k]),
@@ -35,7 +35,7 @@ pub(super) fn value(model: &Model, k: usize, t: f64, q: &[f64], v: &[f64]) -> Op
 }
 
 /// Time, coordinates, rates, energy, work, constraint, outputs.
-pub(super) fn columns(model: &Model) -> Vec<Column> {
+pub(super) fn columns(model: &TextModel) -> Vec<Column> {
     let names = quantities(model).into_iter().map(|quantity| Column::new(quantity.name, quantity.unit));
     between(names.collect(), 2 * model.coordinates().len(), Column::new("t", "s"), || {
         [("energy", "J"), ("work", "J"), ("constraint", "")].map(|(name, unit)| Column::new(name, unit))
@@ -43,7 +43,7 @@ pub(super) fn columns(model: &Model) -> Vec<Column> {
 }
 
 /// The numbers of a node in these columns.
-pub(super) fn row<const N: usize, const M: usize>(model: &Model, node: &Node<N, M>) -> Vec<f64> {
+pub(super) fn row<const N: usize, const M: usize>(model: &TextModel, node: &Node<N, M>) -> Vec<f64> {
     let n = model.coordinates().len();
     let (q, v) = (&node.q[..n], &node.v[..n]);
     let numbers = q.iter().chain(v).copied().chain(model.told(node.t, q, v));

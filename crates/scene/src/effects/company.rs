@@ -4,7 +4,7 @@ use super::effect::SceneEffect;
 use super::specs::TimeSpec;
 use super::table::EffectInfo;
 use crate::error::SceneError;
-use crate::table::Table;
+use crate::table::TomlTable;
 use sleigh::Sleigh;
 
 /// Whether it changes the coordinates or the constraints, or jumps in time: what a train does not carry.
@@ -22,7 +22,7 @@ fn changes_body(effect: &SceneEffect) -> bool {
 }
 
 /// Refuses imposed velocities whose kinetic energy is too large for a number.
-pub(super) fn check_energy(table: &Table<'_>, effect: &SceneEffect, sleigh: &Sleigh) -> Result<(), SceneError> {
+pub(super) fn check_energy(table: &TomlTable<'_>, effect: &SceneEffect, sleigh: &Sleigh) -> Result<(), SceneError> {
     let SceneEffect::Servo { speed, turn_rate } = effect else { return Ok(()) };
     let inertia = sleigh.inertia() + sleigh.mass() * sleigh.offset().powi(2);
     for (key, function, mass, unit) in
@@ -39,7 +39,7 @@ pub(super) fn check_energy(table: &Table<'_>, effect: &SceneEffect, sleigh: &Sle
 }
 
 /// Refuses what does not act on a train, at the effect that does not.
-pub(super) fn check_train(tables: &[Table<'_>], effects: &[SceneEffect]) -> Result<(), SceneError> {
+pub(super) fn check_train(tables: &[TomlTable<'_>], effects: &[SceneEffect]) -> Result<(), SceneError> {
     if !effects.iter().any(|effect| matches!(effect, SceneEffect::Trailers(_))) {
         return Ok(());
     }
@@ -62,7 +62,7 @@ pub(super) fn check_train(tables: &[Table<'_>], effects: &[SceneEffect]) -> Resu
 
 /// Refuses what does not go together: a second body, two ways to impose a velocity, what the sleigh cannot do.
 pub(super) fn check_company(
-    table: &Table<'_>,
+    table: &TomlTable<'_>,
     (info, new): (&EffectInfo, &SceneEffect),
     others: &[SceneEffect],
     offset: f64,

@@ -7,20 +7,20 @@ mod specs;
 mod table;
 
 pub use effect::SceneEffect;
-pub use specs::{HillSpec, PathSpec, Shape, TimeSpec, TrailersSpec};
+pub use specs::{HillSpec, PathShape, PathSpec, TimeSpec, TrailersSpec};
 pub use table::{EFFECTS, EffectInfo};
 
 use crate::error::SceneError;
 use crate::fault::Fault;
 use crate::keys::abridged;
 use crate::suggest;
-use crate::table::Table;
+use crate::table::TomlTable;
 use sleigh::Sleigh;
 use toml::de::DeValue;
 
 /// Reads the entries of `[[effects]]`.
-pub(crate) fn read(root: &Table<'_>, sleigh: &Sleigh) -> Result<Vec<SceneEffect>, SceneError> {
-    let (mut effects, mut tables): (Vec<SceneEffect>, Vec<Table<'_>>) = (Vec::new(), Vec::new());
+pub(crate) fn read(root: &TomlTable<'_>, sleigh: &Sleigh) -> Result<Vec<SceneEffect>, SceneError> {
+    let (mut effects, mut tables): (Vec<SceneEffect>, Vec<TomlTable<'_>>) = (Vec::new(), Vec::new());
     for entry in root.entries_of("effects", "a list of tables, each headed `[[effects]]`")? {
         let info = info_of(&entry)?;
         let known: Vec<&str> = ["kind"].into_iter().chain(info.keys.iter().copied()).collect();
@@ -37,7 +37,7 @@ pub(crate) fn read(root: &Table<'_>, sleigh: &Sleigh) -> Result<Vec<SceneEffect>
 }
 
 /// The row of [`EFFECTS`] that the entry's `kind` names.
-fn info_of(entry: &Table<'_>) -> Result<&'static EffectInfo, SceneError> {
+fn info_of(entry: &TomlTable<'_>) -> Result<&'static EffectInfo, SceneError> {
     let names: Vec<&str> = EFFECTS.iter().map(|info| info.name).collect();
     let accepted = || format!("one of {}", suggest::list(&names));
     let kind = entry.get("kind").ok_or_else(|| entry.missing("kind", accepted()))?;

@@ -60,7 +60,7 @@ impl TimeSpec {
 pub struct PathSpec {
     /// What is run through.
     #[serde(flatten)]
-    pub shape: Shape,
+    pub shape: PathShape,
     /// Time for one round (s).
     pub period: f64,
 }
@@ -68,7 +68,7 @@ pub struct PathSpec {
 /// The shape of a closed path.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Shape {
+pub enum PathShape {
     /// A circle, counterclockwise from `center + (radius, 0)`.
     Circle {
         /// Radius (m).
@@ -87,8 +87,8 @@ impl PathSpec {
     /// [`SleighError`] where it cannot be followed, which one read from a file can.
     pub fn build(&self) -> Result<ClosedPath, SleighError> {
         match &self.shape {
-            Shape::Circle { radius, center } => ClosedPath::circle(*radius, *center, self.period),
-            Shape::Polygon(vertices) => ClosedPath::polygon(vertices.clone(), self.period),
+            PathShape::Circle { radius, center } => ClosedPath::circle(*radius, *center, self.period),
+            PathShape::Polygon(vertices) => ClosedPath::polygon(vertices.clone(), self.period),
         }
     }
 }

@@ -1,7 +1,7 @@
 use super::effect::SceneEffect;
 use super::readers;
 use crate::error::SceneError;
-use crate::table::Table;
+use crate::table::TomlTable;
 
 /// A kind of effect: all that scenes, the program and its documents say of it is made from its row.
 #[derive(Debug, Clone, Copy)]
@@ -15,7 +15,7 @@ pub struct EffectInfo {
     /// Whether a scene has one of them at most, as of what is another body.
     pub only_once: bool,
     /// Reads its keys.
-    pub(super) read: fn(&Table<'_>) -> Result<SceneEffect, SceneError>,
+    pub(super) read: fn(&TomlTable<'_>) -> Result<SceneEffect, SceneError>,
 }
 
 /// Every kind of effect, in the order of the documentation.

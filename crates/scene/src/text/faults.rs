@@ -7,11 +7,11 @@ use std::ops::Range;
 
 /// Where the texts of a system stand in a file.
 #[derive(Debug, Default)]
-pub(crate) struct Places {
+pub(crate) struct TextPlaces {
     all: Vec<(Entry, String, Range<usize>)>,
 }
 
-impl Places {
+impl TextPlaces {
     /// Notes the path and the place of an entry.
     pub(crate) fn add(&mut self, entry: Entry, field: String, span: Range<usize>) {
         self.all.push((entry, field, span));

@@ -10,10 +10,10 @@ pub use self::start::Given;
 use crate::document::Document;
 use crate::error::SceneError;
 use crate::scene::{name_of, opened};
-use crate::table::Table;
+use crate::table::TomlTable;
 use crate::{Built, Overrides, RunSettings, Scene, Visitor};
 use ::sleigh::SleighError;
-use ::text::{AnyText, Model, Start, Words, with_text};
+use ::text::{AnyText, TextModel, TextStart, Words, with_text};
 use dla::Schedule;
 use std::fmt;
 use std::sync::Arc;
@@ -30,11 +30,11 @@ pub struct TextScene {
     /// The texts of the system.
     pub words: Words,
     /// What they mean.
-    pub model: Arc<Model>,
+    pub model: Arc<TextModel>,
     /// What its start gives.
     pub given: Given,
     /// The start, which meets all constraints.
-    pub start: Start,
+    pub start: TextStart,
     /// How to run it.
     pub run: RunSettings,
 }
@@ -235,11 +235,11 @@ impl TextScene {
         methods: &[&str],
         overrides: &Overrides<'_>,
     ) -> Result<Self, SceneError> {
-        let root = Table::of_system(document, entries)?;
+        let root = TomlTable::of_system(document, entries)?;
         let name = name_of(document.origin);
         let title = root.text("title", "a string")?.unwrap_or(&name).to_owned();
         let (words, places) = words::read(&root)?;
-        let model = Model::new(&words).map_err(|error| places.fail(&document, &words, &error))?;
+        let model = TextModel::new(&words).map_err(|error| places.fail(&document, &words, &error))?;
         let (start, given) = start::read(&root, &model)?;
         let run = RunSettings::read(&root.table("run")?, overrides, &name, methods)?;
         Ok(Self { name, title, words, model: Arc::new(model), given, start, run })

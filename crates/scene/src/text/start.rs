@@ -1,7 +1,7 @@
 use crate::error::SceneError;
 use crate::fault::Fault;
-use crate::table::{Table, as_f64};
-use ::text::{Model, Start};
+use crate::table::{TomlTable, as_f64};
+use ::text::{TextModel, TextStart};
 use toml::de::DeValue;
 
 /// What a start gives: coordinates and rates, `None` for those that are left out.
@@ -15,7 +15,7 @@ pub struct Given {
 
 impl Given {
     /// The number of that name: a coordinate, or a rate as `x'` or `x_dot`.
-    pub(super) fn named(&mut self, name: &str, model: &Model) -> Option<&mut Option<f64>> {
+    pub(super) fn named(&mut self, name: &str, model: &TextModel) -> Option<&mut Option<f64>> {
         let place = |name: &str| model.coordinates().iter().position(|coordinate| coordinate.name == name);
         match name.strip_suffix('\'').or_else(|| name.strip_suffix("_dot")).and_then(place) {
             Some(i) => self.v.get_mut(i),
@@ -25,7 +25,7 @@ impl Given {
 }
 
 /// Reads `[start]` of a system of text: coordinates by their names, rates as `"x'"` or `x_dot`, all of which may be left out.
-pub(crate) fn read(root: &Table<'_>, model: &Model) -> Result<(Start, Given), SceneError> {
+pub(crate) fn read(root: &TomlTable<'_>, model: &TextModel) -> Result<(TextStart, Given), SceneError> {
     let names: Vec<&str> = model.coordinates().iter().map(|coordinate| coordinate.name.as_str()).collect();
     let rates: Vec<[String; 2]> = names.iter().map(|name| [format!("{name}'"), format!("{name}_dot")]).collect();
     let known: Vec<&str> = names.iter().copied().chain(rates.iter().flatten().map(String::as_str)).collect();
@@ -71,7 +71,7 @@ pub(crate) fn read(root: &Table<'_>, model: &Model) -> Result<(Start, Given), Sc
 }
 
 /// The finite number of that name, if it is given.
-fn number(table: &Table<'_>, name: &str) -> Result<Option<f64>, SceneError> {
+fn number(table: &TomlTable<'_>, name: &str) -> Result<Option<f64>, SceneError> {
     let Some(value) = table.get(name) else { return Ok(None) };
     let accepted = || "a finite number".to_owned();
     let number = as_f64(value.get_ref()).ok_or_else(|| table.wrong_type(name, value, accepted()))?;

@@ -2,7 +2,7 @@
 
 use super::{Given, TextScene};
 use crate::sweep::UNKNOWN;
-use ::text::{Model, TextError};
+use ::text::{TextError, TextModel};
 use std::sync::Arc;
 
 /// What a sweep may give such a scene.
@@ -38,7 +38,7 @@ impl TextScene {
     pub fn without_forces(&self) -> Result<Self, TextError> {
         let mut scene = self.clone();
         scene.words.forces.clear();
-        scene.model = Arc::new(Model::new(&scene.words)?);
+        scene.model = Arc::new(TextModel::new(&scene.words)?);
         Ok(scene)
     }
 
@@ -62,7 +62,7 @@ impl TextScene {
             }
         }
         if let Some(key) = parameters {
-            let model = Model::new(&scene.words).map_err(|error| {
+            let model = TextModel::new(&scene.words).map_err(|error| {
                 (
                     key.clone(),
                     format!(

@@ -1,7 +1,7 @@
-use super::faults::Places;
+use super::faults::TextPlaces;
 use crate::error::SceneError;
 use crate::fault::Fault;
-use crate::table::{Table, as_f64};
+use crate::table::{TomlTable, as_f64};
 use ::text::{Entry, Unit, Words};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -15,10 +15,10 @@ type Value<'s> = Spanned<DeValue<'s>>;
 const FORMULA: &str = "a formula in quotes";
 
 /// Reads `[system]`: its texts, and where they stand.
-pub(crate) fn read(root: &Table<'_>) -> Result<(Words, Places), SceneError> {
+pub(crate) fn read(root: &TomlTable<'_>) -> Result<(Words, TextPlaces), SceneError> {
     let system = root.table_of("system", KEYS)?;
     let mut words = Words::default();
-    let mut places = Places::default();
+    let mut places = TextPlaces::default();
     places.add(Entry::System, "system".to_owned(), system.header());
 
     let accepted = "a table of units, as { x = \"m\", theta = \"angle\" }, in the order of the coordinates";
@@ -73,7 +73,7 @@ fn bare(field: &str) -> &str {
 }
 
 /// A string.
-fn text(system: &Table<'_>, field: &str, value: &Value<'_>, accepted: &str) -> Result<String, SceneError> {
+fn text(system: &TomlTable<'_>, field: &str, value: &Value<'_>, accepted: &str) -> Result<String, SceneError> {
     match value.get_ref() {
         DeValue::String(text) => Ok(text.to_string()),
         _ => Err(system.wrong_type(bare(field), value, accepted.to_owned())),
@@ -81,7 +81,7 @@ fn text(system: &Table<'_>, field: &str, value: &Value<'_>, accepted: &str) -> R
 }
 
 fn array<'s>(
-    system: &Table<'_>,
+    system: &TomlTable<'_>,
     key: &str,
     value: &'s Value<'s>,
     accepted: &str,
@@ -94,8 +94,8 @@ fn array<'s>(
 
 /// A list of formulas.
 fn list(
-    system: &Table<'_>,
-    places: &mut Places,
+    system: &TomlTable<'_>,
+    places: &mut TextPlaces,
     key: &'static str,
     entry: fn(usize) -> Entry,
 ) -> Result<Vec<String>, SceneError> {
@@ -112,7 +112,7 @@ fn list(
 /// The entries of a table in the order of the text, with their paths.
 type Entries<'s> = Vec<(String, String, &'s Value<'s>)>;
 
-fn entries<'s>(system: &Table<'s>, key: &'static str, accepted: &str) -> Result<Option<Entries<'s>>, SceneError> {
+fn entries<'s>(system: &TomlTable<'s>, key: &'static str, accepted: &str) -> Result<Option<Entries<'s>>, SceneError> {
     let Some(value) = system.get(key) else { return Ok(None) };
     let DeValue::Table(table) = value.get_ref() else {
         return Err(system.wrong_type(key, value, accepted.to_owned()));
@@ -131,8 +131,8 @@ fn entries<'s>(system: &Table<'s>, key: &'static str, accepted: &str) -> Result<
 
 /// A table of formulas.
 fn named(
-    system: &Table<'_>,
-    places: &mut Places,
+    system: &TomlTable<'_>,
+    places: &mut TextPlaces,
     key: &'static str,
     accepted: &str,
     entry: fn(usize) -> Entry,
@@ -146,7 +146,7 @@ fn named(
     Ok(formulas)
 }
 
-impl<'s> Table<'s> {
+impl<'s> TomlTable<'s> {
     /// The document of a system of text.
     pub(crate) fn of_system(
         document: crate::document::Document<'s>,

@@ -4,15 +4,15 @@ use serde::{Serialize, Serializer};
 
 /// A scene of a system of text as its file has it: what is no table before the tables.
 #[derive(Serialize)]
-struct File<'s> {
+struct WrittenTextFile<'s> {
     title: &'s str,
-    system: System<'s>,
-    start: Table<'s, f64>,
+    system: WrittenSystem<'s>,
+    start: WrittenTable<'s, f64>,
     run: crate::written::RunTable<'s>,
 }
 
 #[derive(Serialize)]
-struct System<'s> {
+struct WrittenSystem<'s> {
     lagrangian: &'s str,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     constraints: &'s [String],
@@ -20,25 +20,25 @@ struct System<'s> {
     positions: &'s [String],
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     basis: &'s [Vec<String>],
-    coordinates: Table<'s, &'s str>,
-    parameters: Table<'s, f64>,
+    coordinates: WrittenTable<'s, &'s str>,
+    parameters: WrittenTable<'s, f64>,
     #[serde(rename = "let")]
-    abbreviations: Table<'s, &'s str>,
-    forces: Table<'s, &'s str>,
-    outputs: Table<'s, &'s str>,
+    abbreviations: WrittenTable<'s, &'s str>,
+    forces: WrittenTable<'s, &'s str>,
+    outputs: WrittenTable<'s, &'s str>,
 }
 
 /// A table whose keys stay in their order.
-struct Table<'s, T>(Vec<(&'s str, T)>);
+struct WrittenTable<'s, T>(Vec<(&'s str, T)>);
 
-impl<T: Serialize> Serialize for Table<'_, T> {
+impl<T: Serialize> Serialize for WrittenTable<'_, T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.0.iter().map(|(key, value)| (key, value)))
     }
 }
 
-fn formulas(pairs: &[(String, String)]) -> Table<'_, &str> {
-    Table(pairs.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect())
+fn formulas(pairs: &[(String, String)]) -> WrittenTable<'_, &str> {
+    WrittenTable(pairs.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect())
 }
 
 fn unit(unit: &Unit) -> &str {
@@ -55,20 +55,24 @@ impl TextScene {
         let names: Vec<&str> = words.coordinates.iter().map(|(name, _)| name.as_str()).collect();
         let rates: Vec<String> = names.iter().map(|name| format!("{name}'")).collect();
         let state = names.iter().copied().chain(rates.iter().map(String::as_str));
-        toml::to_string(&File {
+        toml::to_string(&WrittenTextFile {
             title,
-            system: System {
+            system: WrittenSystem {
                 lagrangian: &words.lagrangian,
                 constraints: &words.constraints,
                 positions: &words.positions,
                 basis: &words.basis,
-                coordinates: Table(words.coordinates.iter().map(|(name, of)| (name.as_str(), unit(of))).collect()),
-                parameters: Table(words.parameters.iter().map(|(name, value)| (name.as_str(), *value)).collect()),
+                coordinates: WrittenTable(
+                    words.coordinates.iter().map(|(name, of)| (name.as_str(), unit(of))).collect(),
+                ),
+                parameters: WrittenTable(
+                    words.parameters.iter().map(|(name, value)| (name.as_str(), *value)).collect(),
+                ),
                 abbreviations: formulas(&words.abbreviations),
                 forces: formulas(&words.forces),
                 outputs: formulas(&words.outputs),
             },
-            start: Table(state.zip(start.q.iter().chain(&start.v).copied()).collect()),
+            start: WrittenTable(state.zip(start.q.iter().chain(&start.v).copied()).collect()),
             run: crate::written::RunTable::of(run),
         })
     }

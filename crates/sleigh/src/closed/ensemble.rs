@@ -1,5 +1,5 @@
-use super::lanes::{LaneStep, bounds, frame, impulse_unit, prepared, step};
-use super::{ClosedForm, Memory, Start};
+use super::lanes::{ClosedLaneStep, bounds, frame, impulse_unit, prepared, step};
+use super::{ClosedForm, ClosedStart, Memory};
 use crate::Sleigh;
 use dla::ensemble::{BLOCK, LANES, Row, accumulate, loaded, store};
 use dla::{Ensemble, LaneState};
@@ -112,7 +112,7 @@ struct EightSleighs<S: Simd, const K: usize> {
 impl<S: Simd, const K: usize> EightSleighs<S, K> {
     #[inline(always)]
     fn step<const WIDE: bool>(&mut self) {
-        let LaneStep { increment, xi, frame, impulse, doubts, positive } =
+        let ClosedLaneStep { increment, xi, frame, impulse, doubts, positive } =
             step::<WIDE, S, K>(&self.prepared, &self.xi, &self.frame);
         for k in 0..3 {
             accumulate(&mut self.q[k], &mut self.rest[k], increment[k]);
@@ -215,7 +215,7 @@ fn one_by_one<const W: usize>(sleigh: &Sleigh, h: f64, steps: u64, lane: usize, 
         let v = sleigh.admissible_basis(0.0, &q)?.combine(&xi);
         // Nothing is remembered, so that the steps are the same wherever a block of them begins.
         let mut memory = Memory::EMPTY;
-        let start = Start { xi: Some(xi), ..Start::new(&q, &v, &mut memory) };
+        let start = ClosedStart { xi: Some(xi), ..ClosedStart::new(&q, &v, &mut memory) };
         let step = sleigh.closed_step(0.0, h, start)?.ok()?;
         if !step.xi.iter().all(|x| x.is_finite()) {
             return None;

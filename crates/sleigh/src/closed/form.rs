@@ -1,5 +1,5 @@
 use super::push::Pushing;
-use super::{ClosedStep, Push, Start, free, pushed};
+use super::{ClosedStart, ClosedStep, Push, free, pushed};
 use crate::{Flywheel, Guided, Sleigh};
 use dla::ClosedStepError;
 use lagrangian::{Effect, System, With};
@@ -13,7 +13,12 @@ pub trait ClosedForm<const N: usize, const M: usize>: System<N, M> {
     fn has_closed_form(&self) -> bool;
 
     /// One step of length `h` (s) from the time `t`; none where the general step is to be made.
-    fn closed_step(&self, t: f64, h: f64, start: Start<'_, N>) -> Option<Result<ClosedStep<N, M>, ClosedStepError>>;
+    fn closed_step(
+        &self,
+        t: f64,
+        h: f64,
+        start: ClosedStart<'_, N>,
+    ) -> Option<Result<ClosedStep<N, M>, ClosedStepError>>;
 
     /// Whether [`pushed_step`](Self::pushed_step) gives anything.
     #[inline(always)]
@@ -25,7 +30,13 @@ pub trait ClosedForm<const N: usize, const M: usize>: System<N, M> {
     ///
     /// None where it is not known, not found quickly, or where the force may overshoot: the general step is then made.
     #[inline(always)]
-    fn pushed_step<P: Push<N>>(&self, _t: f64, _h: f64, _start: Start<'_, N>, _push: &P) -> Option<ClosedStep<N, M>> {
+    fn pushed_step<P: Push<N>>(
+        &self,
+        _t: f64,
+        _h: f64,
+        _start: ClosedStart<'_, N>,
+        _push: &P,
+    ) -> Option<ClosedStep<N, M>> {
         None
     }
 }
@@ -37,7 +48,12 @@ impl ClosedForm<3, 1> for Sleigh {
     }
 
     #[inline(always)]
-    fn closed_step(&self, _t: f64, h: f64, start: Start<'_, 3>) -> Option<Result<ClosedStep<3, 1>, ClosedStepError>> {
+    fn closed_step(
+        &self,
+        _t: f64,
+        h: f64,
+        start: ClosedStart<'_, 3>,
+    ) -> Option<Result<ClosedStep<3, 1>, ClosedStepError>> {
         Some(free::step(self, h, start))
     }
 
@@ -47,7 +63,7 @@ impl ClosedForm<3, 1> for Sleigh {
     }
 
     #[inline(always)]
-    fn pushed_step<P: Push<3>>(&self, t: f64, h: f64, start: Start<'_, 3>, push: &P) -> Option<ClosedStep<3, 1>> {
+    fn pushed_step<P: Push<3>>(&self, t: f64, h: f64, start: ClosedStart<'_, 3>, push: &P) -> Option<ClosedStep<3, 1>> {
         pushed::step(self, (t, h), start, push)
     }
 }
@@ -63,7 +79,12 @@ where
     }
 
     #[inline(always)]
-    fn closed_step(&self, _t: f64, _h: f64, _start: Start<'_, 3>) -> Option<Result<ClosedStep<3, M>, ClosedStepError>> {
+    fn closed_step(
+        &self,
+        _t: f64,
+        _h: f64,
+        _start: ClosedStart<'_, 3>,
+    ) -> Option<Result<ClosedStep<3, M>, ClosedStepError>> {
         None
     }
 }
@@ -76,15 +97,20 @@ impl<B: ClosedForm<3, M>, const M: usize> ClosedForm<4, M> for Flywheel<B> {
     }
 
     #[inline(always)]
-    fn closed_step(&self, t: f64, h: f64, start: Start<'_, 4>) -> Option<Result<ClosedStep<4, M>, ClosedStepError>> {
+    fn closed_step(
+        &self,
+        t: f64,
+        h: f64,
+        start: ClosedStart<'_, 4>,
+    ) -> Option<Result<ClosedStep<4, M>, ClosedStepError>> {
         if self.torque().is_some() || M != 1 {
             return None;
         }
         let of_body = |[x, y, theta, _]: [f64; 4]| [x, y, theta];
-        let Start { q, v, xi, memory } = start;
+        let ClosedStart { q, v, xi, memory } = start;
         let spin = xi.map_or_else(|| v[2] + v[3], |xi| xi[2]);
         let (q, v, xi) = (of_body(*q), of_body(*v), xi.map(of_body));
-        let body = self.body().closed_step(t, h, Start { q: &q, v: &v, xi, memory })?;
+        let body = self.body().closed_step(t, h, ClosedStart { q: &q, v: &v, xi, memory })?;
         let with_rotor = |[x, y, theta]: [f64; 3], rotor| [x, y, theta, rotor];
         Some(body.map(|step| ClosedStep {
             increment: with_rotor(step.increment, h * spin - step.increment[2]),
@@ -103,7 +129,12 @@ impl<B: ClosedForm<N, M>, E: Effect<B, N>, const N: usize, const M: usize> Close
     }
 
     #[inline(always)]
-    fn closed_step(&self, t: f64, h: f64, start: Start<'_, N>) -> Option<Result<ClosedStep<N, M>, ClosedStepError>> {
+    fn closed_step(
+        &self,
+        t: f64,
+        h: f64,
+        start: ClosedStart<'_, N>,
+    ) -> Option<Result<ClosedStep<N, M>, ClosedStepError>> {
         if self.effects.is_none() {
             return self.body.closed_step(t, h, start);
         }

@@ -1,7 +1,7 @@
 use super::least_spin;
 use super::spin_equation::SpinEquation;
 use super::spin_memory::{SpinNumbers, remembered};
-use super::{ClosedStep, Start};
+use super::{ClosedStart, ClosedStep};
 use crate::Sleigh;
 use dla::ClosedStepError;
 use lagrangian::{mul_add, sin_cos_wrapped};
@@ -31,7 +31,7 @@ const FAR: f64 = 0.125;
 pub(crate) fn step(
     sleigh: &Sleigh,
     h: f64,
-    Start { q, v, xi, memory }: Start<'_, 3>,
+    ClosedStart { q, v, xi, memory }: ClosedStart<'_, 3>,
 ) -> Result<ClosedStep<3, 1>, ClosedStepError> {
     let equation = SpinEquation::new(sleigh, h);
     let a = equation.a;

@@ -99,7 +99,7 @@ fn quartic<S: Simd, const R: usize>(z: Pack<S, R>, zz: Pack<S, R>, c: &[f64; 5])
 
 /// What a step of eight sleighs gives; the quantities are those of [`ClosedStep`](super::ClosedStep).
 #[derive(Clone, Copy)]
-pub(super) struct LaneStep<P> {
+pub(super) struct ClosedLaneStep<P> {
     /// The increment `q1 - q0`.
     pub(super) increment: [P; 3],
     /// The quasi-velocities at the end.
@@ -131,7 +131,7 @@ pub(super) fn frame<S: Simd, const R: usize>(q: &[Pack<S, R>; 3], before: &[Pack
     [sin, cos, before[2], before[3], before[4], before[5]]
 }
 
-/// Up to which sizes of its [doubts](LaneStep::doubts) a step is good.
+/// Up to which sizes of its [doubts](ClosedLaneStep::doubts) a step is good.
 pub(super) fn bounds<const WIDE: bool>() -> [f64; 2] {
     if WIDE { [LAST, BROAD] } else { [QUICK, NARROW] }
 }
@@ -147,7 +147,7 @@ pub(super) fn step<const WIDE: bool, S: Simd, const R: usize>(
     &[h, half, a, k]: &[Pack<S, R>; 4],
     &[u0, omega0, _]: &[Pack<S, R>; 3],
     &[sin0, cos0, r1, r2, r3, r4]: &[Pack<S, R>; 6],
-) -> LaneStep<Pack<S, R>> {
+) -> ClosedLaneStep<Pack<S, R>> {
     let equation = Equation { half, a, k, u0, omega0 };
     let Ratio { r, w, sin, cos, across, correction, turn, whole } = if WIDE {
         let mut r = equation.prediction();
@@ -166,7 +166,7 @@ pub(super) fn step<const WIDE: bool, S: Simd, const R: usize>(
     let (cos1, sin1) = ((-chord).mul_add(sin_m, cos0), chord.mul_add(cos_m, sin0));
     let mean_speed = (u0 + across) / cos;
     let (way, turned) = (h * mean_speed, mean_speed * sin);
-    LaneStep {
+    ClosedLaneStep {
         increment: [way * cos_m, way * sin_m, whole],
         xi: [u1, omega1, u0.like(0.0)],
         frame: [sin1, cos1, r, r1, r2, r3],

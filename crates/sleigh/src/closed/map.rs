@@ -1,4 +1,4 @@
-use super::{ClosedForm, Memory, Start};
+use super::{ClosedForm, ClosedStart, Memory};
 use dla::{Dla, Mechanics, OneStep, State, StepError, StepReport};
 
 /// The midpoint discrete Lagrange-d'Alembert map in the closed form that a body has of it, an integrator that agrees with
@@ -48,11 +48,11 @@ where
     ) -> Result<StepReport<M>, StepError> {
         let Self { body, memory, general } = self;
         let remembered = !memory.is_empty();
-        let mut closed = body.closed_step(t, h, Start { q: state.q(), v: state.v(), xi: state.xi(), memory });
+        let mut closed = body.closed_step(t, h, ClosedStart { q: state.q(), v: state.v(), xi: state.xi(), memory });
         if remembered && matches!(closed, Some(Err(_))) {
             // A search from the last step may lead to a solution too far away, where the one from the line of the motion does not.
             memory.forget();
-            closed = body.closed_step(t, h, Start { q: state.q(), v: state.v(), xi: state.xi(), memory });
+            closed = body.closed_step(t, h, ClosedStart { q: state.q(), v: state.v(), xi: state.xi(), memory });
         }
         match closed {
             Some(Ok(step)) => {

@@ -25,7 +25,7 @@ pub use form::ClosedForm;
 pub use map::ClosedMap;
 pub use memory::Memory;
 pub use push::Push;
-pub use step::{ClosedStep, Start};
+pub use step::{ClosedStart, ClosedStep};
 
 #[cfg(doc)]
 use dla::Dla;

@@ -2,7 +2,7 @@ use super::free::recovered;
 use super::half_turn::{half_turn, turned};
 use super::mean_equations::{Matrix, MeanEquations, MeanPoint};
 use super::mean_memory::remembered;
-use super::{ClosedStep, Push, Start};
+use super::{ClosedStart, ClosedStep, Push};
 use crate::Sleigh;
 use lagrangian::{from_fn, mul_add};
 
@@ -41,7 +41,7 @@ const MOST: u32 = 4;
 pub(crate) fn step<P: Push<3>>(
     sleigh: &Sleigh,
     (t, h): (f64, f64),
-    Start { q, v, xi, memory }: Start<'_, 3>,
+    ClosedStart { q, v, xi, memory }: ClosedStart<'_, 3>,
     push: &P,
 ) -> Option<ClosedStep<3, 1>> {
     let start = match xi {

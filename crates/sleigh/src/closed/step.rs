@@ -2,7 +2,7 @@ use super::Memory;
 
 /// Where a step in closed form begins, and what is known there. Whatever is remembered, the step is the same to round-off.
 #[derive(Debug)]
-pub struct Start<'a, const N: usize> {
+pub struct ClosedStart<'a, const N: usize> {
     /// The configuration.
     pub q: &'a [f64; N],
     /// The velocity.
@@ -13,7 +13,7 @@ pub struct Start<'a, const N: usize> {
     pub memory: &'a mut Memory,
 }
 
-impl<'a, const N: usize> Start<'a, N> {
+impl<'a, const N: usize> ClosedStart<'a, N> {
     /// Configuration, velocity, and what is remembered.
     #[must_use]
     pub fn new(q: &'a [f64; N], v: &'a [f64; N], memory: &'a mut Memory) -> Self {

@@ -1,7 +1,7 @@
 use crate::checks::finite;
 use crate::series::{OwnPush, PushInOwnAxes};
 use crate::{SleighBody, SleighError};
-use lagrangian::{Effect, Scalar, Slope};
+use lagrangian::{Effect, EffectSlope, Scalar};
 
 /// A quadratic well: `V = k_x/2 (X - c_x)^2 + k_y/2 (Y - c_y)^2` at the centre of mass `C = (X, Y)`.
 ///
@@ -37,10 +37,10 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Bowl {
     }
 
     #[inline(always)]
-    fn slope<S: Scalar>(&self, body: &B, _t: S, q: &[S; N]) -> Slope<S, N> {
+    fn slope<S: Scalar>(&self, body: &B, _t: S, q: &[S; N]) -> EffectSlope<S, N> {
         let [x, y] = body.centre(q);
         let force = [(x - self.center[0]) * -self.stiffness[0], (y - self.center[1]) * -self.stiffness[1]];
-        Slope::Known(body.at_centre(q, force))
+        EffectSlope::Known(body.at_centre(q, force))
     }
 }
 

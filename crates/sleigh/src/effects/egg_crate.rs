@@ -1,6 +1,6 @@
 use crate::checks::finite;
 use crate::{SleighBody, SleighError};
-use lagrangian::{Effect, Scalar, Slope};
+use lagrangian::{Effect, EffectSlope, Scalar};
 
 /// A periodic landscape: `V = V_0 (cos(k_x X) + cos(k_y Y))` at the centre of mass `C = (X, Y)`.
 ///
@@ -35,9 +35,9 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for EggCrate {
     }
 
     #[inline(always)]
-    fn slope<S: Scalar>(&self, body: &B, _t: S, q: &[S; N]) -> Slope<S, N> {
+    fn slope<S: Scalar>(&self, body: &B, _t: S, q: &[S; N]) -> EffectSlope<S, N> {
         let ([x, y], [kx, ky]) = (body.centre(q), self.wave_number);
         let force = [(x * kx).sin() * (kx * self.height), (y * ky).sin() * (ky * self.height)];
-        Slope::Known(body.at_centre(q, force))
+        EffectSlope::Known(body.at_centre(q, force))
     }
 }

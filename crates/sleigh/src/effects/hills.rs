@@ -1,6 +1,6 @@
 use crate::checks::{finite, positive};
 use crate::{SleighBody, SleighError};
-use lagrangian::{Effect, Scalar, Slope};
+use lagrangian::{Effect, EffectSlope, Scalar};
 
 /// One Gaussian hill, or hollow.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,7 +55,7 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Hills {
     }
 
     #[inline(always)]
-    fn slope<S: Scalar>(&self, body: &B, _t: S, q: &[S; N]) -> Slope<S, N> {
+    fn slope<S: Scalar>(&self, body: &B, _t: S, q: &[S; N]) -> EffectSlope<S, N> {
         let [x, y] = body.centre(q);
         let mut force = [S::zero(); 2];
         for hill in &self.hills {
@@ -64,6 +64,6 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Hills {
             force[0] += steepness * dx;
             force[1] += steepness * dy;
         }
-        Slope::Known(body.at_centre(q, force))
+        EffectSlope::Known(body.at_centre(q, force))
     }
 }

@@ -35,9 +35,9 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Slope {
     }
 
     #[inline(always)]
-    fn slope<S: Scalar>(&self, body: &B, _t: S, q: &[S; N]) -> lagrangian::Slope<S, N> {
+    fn slope<S: Scalar>(&self, body: &B, _t: S, q: &[S; N]) -> lagrangian::EffectSlope<S, N> {
         let m = body.sleigh().mass();
         let force = self.gravity.map(|g| S::constant(m * g));
-        lagrangian::Slope::Known(body.at_centre(q, force))
+        lagrangian::EffectSlope::Known(body.at_centre(q, force))
     }
 }

@@ -5,7 +5,7 @@ mod reduced;
 
 use crate::{Sleigh, SleighError, SleighState};
 use path::{Path, rotated};
-use reduced::Reduced;
+use reduced::ReducedSleigh;
 use std::f64::consts::PI;
 
 /// The motion of the free sleigh in closed form, at any time before or after its start.
@@ -48,7 +48,7 @@ pub struct Exact {
     sleigh: Sleigh,
     start: SleighState,
     /// Without spin there is none: the line is straight.
-    turning: Option<(Reduced, Path)>,
+    turning: Option<(ReducedSleigh, Path)>,
 }
 
 impl Exact {
@@ -72,7 +72,7 @@ impl Exact {
         let turning = if start.turn_rate == 0.0 {
             None
         } else {
-            let reduced = Reduced::new(sleigh, start.speed, start.turn_rate)?;
+            let reduced = ReducedSleigh::new(sleigh, start.speed, start.turn_rate)?;
             let path = Path::new(&reduced);
             Some((reduced, path))
         };

@@ -1,6 +1,6 @@
 use super::gauss::panel;
 use super::point::ExactPoint;
-use super::reduced::{Moment, Reduced};
+use super::reduced::{Moment, ReducedSleigh};
 
 /// Up to these distances in `s` and turns (rad) the path is integrated over time directly.
 const SHORT: f64 = 2.0;
@@ -41,7 +41,7 @@ enum PathPart {
 }
 
 impl Path {
-    pub(super) fn new(reduced: &Reduced) -> Self {
+    pub(super) fn new(reduced: &ReducedSleigh) -> Self {
         let (k, k_per_a) = (reduced.gyration, reduced.gyration_per_offset);
         let start = reduced.start();
         let mirror = k_per_a.signum() * start.turn_rate.signum();
@@ -56,7 +56,7 @@ impl Path {
     }
 
     /// The displacement from the start at time `t`, which has the reduced state `moment`.
-    pub(super) fn displacement(&self, reduced: &Reduced, t: f64, moment: &Moment) -> [f64; 2] {
+    pub(super) fn displacement(&self, reduced: &ReducedSleigh, t: f64, moment: &Moment) -> [f64; 2] {
         let (turn, distance) = (moment.turn.abs(), moment.tau.abs());
         if distance <= SHORT && turn <= SMALL_TURN {
             let panels = (distance / PANEL).max(turn / PANEL_TURN).ceil().max(1.0);
@@ -173,7 +173,7 @@ impl Path {
 }
 
 /// The integral over time in equal panels.
-fn over_time(reduced: &Reduced, step: f64, panels: f64) -> [f64; 2] {
+fn over_time(reduced: &ReducedSleigh, step: f64, panels: f64) -> [f64; 2] {
     let mut sum = [0.0; 2];
     let mut index = 0.0;
     while index < panels {

@@ -1,4 +1,4 @@
-use super::reduced::{Moment, Reduced};
+use super::reduced::{Moment, ReducedSleigh};
 
 /// A point of the motion as the path needs it.
 #[derive(Debug, Clone, Copy)]
@@ -14,7 +14,7 @@ pub(super) struct ExactPoint {
 
 impl ExactPoint {
     /// `mirror` is the sign of `a omega0`.
-    pub(super) fn new(reduced: &Reduced, moment: &Moment, mirror: f64) -> Self {
+    pub(super) fn new(reduced: &ReducedSleigh, moment: &Moment, mirror: f64) -> Self {
         let spin = reduced.gyration * moment.turn_rate.abs();
         Self {
             tau: moment.tau,

@@ -18,7 +18,7 @@ const NEAR: f64 = 0.5;
 /// `e^-|s0| = k |omega0| / (U + |u0|)` carries all its digits however small the spin, and multiplies or divides
 /// `e^(kappa t)`. An error of `kappa t` is a relative error of the spin, so `kappa t` has twice the digits.
 #[derive(Debug, Clone)]
-pub(super) struct Reduced {
+pub(super) struct ReducedSleigh {
     start: Moment,
     /// `k = sqrt(J/m)` (m).
     pub(super) gyration: f64,
@@ -48,7 +48,7 @@ pub(super) struct Moment {
     pub(super) turn: f64,
 }
 
-impl Reduced {
+impl ReducedSleigh {
     /// # Errors
     /// [`SleighError::NotFinite`] where the energy's speed `U` or the rate `kappa` leaves the range of numbers.
     pub(super) fn new(sleigh: &Sleigh, u0: f64, omega0: f64) -> Result<Self, SleighError> {

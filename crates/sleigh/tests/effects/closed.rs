@@ -4,7 +4,7 @@ use approx::{assert_abs_diff_eq, assert_relative_eq};
 use dla::ClosedStepError;
 use lagrangian::With;
 use proptest::prelude::*;
-use sleigh::closed::{ClosedForm, ClosedStep, Memory, Start};
+use sleigh::closed::{ClosedForm, ClosedStart, ClosedStep, Memory};
 use sleigh::effects::Thrust;
 use sleigh::{Flywheel, Guide, Guided, Sleigh, SleighState};
 use std::f64::consts::TAU;
@@ -15,7 +15,7 @@ fn start(heading: f64, speed: f64, turn_rate: f64) -> ([f64; 3], [f64; 3]) {
 
 fn step(sleigh: &Sleigh, h: f64, heading: f64, u: f64, omega: f64) -> Result<ClosedStep<3, 1>, ClosedStepError> {
     let (q, v) = start(heading, u, omega);
-    ClosedForm::<3, 1>::closed_step(sleigh, 0.0, h, Start::new(&q, &v, &mut Memory::default())).unwrap()
+    ClosedForm::<3, 1>::closed_step(sleigh, 0.0, h, ClosedStart::new(&q, &v, &mut Memory::default())).unwrap()
 }
 
 proptest! {
@@ -54,7 +54,7 @@ proptest! {
         let (q, v) = start(heading, u0, omega0);
         let from = [v[0] * heading.cos() + v[1] * heading.sin(), omega0, 0.0];
         let (v, mut memory) = ([9.0, 9.0, omega0], Memory::EMPTY);
-        let again = Start { xi: Some(from), ..Start::new(&q, &v, &mut memory) };
+        let again = ClosedStart { xi: Some(from), ..ClosedStart::new(&q, &v, &mut memory) };
         let again = ClosedForm::<3, 1>::closed_step(&sleigh, 0.0, h, again).unwrap().unwrap();
         assert_abs_diff_eq!(again.xi[0], u1, epsilon = bound);
         assert_abs_diff_eq!(again.xi[1], omega1, epsilon = bound);
@@ -75,7 +75,7 @@ proptest! {
             let (mut q, mut v) = start(heading, u0, omega0);
             let (mut xi, mut memory) = ([u0, omega0, 0.0], Memory::EMPTY);
             for _ in 0..steps {
-                let start = Start { xi: Some(xi), ..Start::new(&q, &v, &mut memory) };
+                let start = ClosedStart { xi: Some(xi), ..ClosedStart::new(&q, &v, &mut memory) };
                 let made = ClosedForm::<3, 1>::closed_step(&sleigh, 0.0, h, start).unwrap().unwrap();
                 (xi, v) = (made.xi, made.velocity);
                 (0..3).for_each(|i| q[i] += made.increment[i]);
@@ -83,7 +83,7 @@ proptest! {
             q[2] += turned;
             (xi, v[2]) = (xi.map(|x| factor * x), factor * v[2]);
             let [blank, known] = [Memory::EMPTY, memory].map(|mut memory| {
-                let start = Start { xi: Some(xi), ..Start::new(&q, &v, &mut memory) };
+                let start = ClosedStart { xi: Some(xi), ..ClosedStart::new(&q, &v, &mut memory) };
                 ClosedForm::<3, 1>::closed_step(&ours, 0.0, h, start).unwrap().unwrap()
             });
             // Numbers of order one, but for the spin, which has all its digits.
@@ -101,7 +101,7 @@ proptest! {
         let (q, v) = start(heading, u0, omega0);
         let (mut xi, mut v, mut memory, mut corrections) = ([u0, omega0, 0.0], v, Memory::EMPTY, vec![]);
         for _ in 0..100 {
-            let start = Start { xi: Some(xi), ..Start::new(&q, &v, &mut memory) };
+            let start = ClosedStart { xi: Some(xi), ..ClosedStart::new(&q, &v, &mut memory) };
             let made = ClosedForm::<3, 1>::closed_step(&sleigh, 0.0, 0.02, start).unwrap().unwrap();
             (xi, v) = (made.xi, made.velocity);
             corrections.push(made.iterations);
@@ -117,7 +117,7 @@ proptest! {
         let (mut q, mut v) = start(heading, u0, omega0);
         let mut memory = Memory::EMPTY;
         for _ in 0..500 {
-            let made = ClosedForm::<3, 1>::closed_step(&sleigh, 0.0, h, Start::new(&q, &v, &mut memory)).unwrap().unwrap();
+            let made = ClosedForm::<3, 1>::closed_step(&sleigh, 0.0, h, ClosedStart::new(&q, &v, &mut memory)).unwrap().unwrap();
             v = made.velocity;
             // As a state does, within half a turn.
             (0..3).for_each(|i| q[i] += made.increment[i]);
@@ -187,7 +187,7 @@ proptest! {
         for xi in [None, Some([u, omega, omega + rate, 0.0])] {
             let (q, v) = ([x, y, heading, 0.7], [vx, vy, turn, if xi.is_some() { 9.0 } else { rate }]);
             let mut memory = Memory::EMPTY;
-            let start = Start { xi, ..Start::new(&q, &v, &mut memory) };
+            let start = ClosedStart { xi, ..ClosedStart::new(&q, &v, &mut memory) };
             let made = ClosedForm::<4, 1>::closed_step(&rotor, 0.0, h, start).unwrap().unwrap();
             for i in 0..3 {
                 assert_abs_diff_eq!(made.increment[i], bare.increment[i], epsilon = 1e-14);
@@ -281,5 +281,5 @@ fn a_driven_rotor_is_not_closed() {
     assert!(!ClosedForm::<4, 1>::has_closed_form(&With { body: rotor(None), effects: thrust() }));
     let driven = Flywheel::new(Sleigh::new(1.0, 1.0, 0.5).unwrap(), 0.2, Some(0.3.into())).unwrap();
     let (rest, mut memory) = ([0.0; 4], Memory::EMPTY);
-    assert!(ClosedForm::<4, 1>::closed_step(&driven, 0.0, 0.1, Start::new(&rest, &rest, &mut memory)).is_none());
+    assert!(ClosedForm::<4, 1>::closed_step(&driven, 0.0, 0.1, ClosedStart::new(&rest, &rest, &mut memory)).is_none());
 }

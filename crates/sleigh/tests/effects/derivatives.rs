@@ -115,7 +115,7 @@ proptest! {
         let (q, v) = ([z[0], z[1], z[2]], [z[3], z[4], z[5]]);
         let zero = [Dual::<f64, 3>::zero(); 3];
         let l = fields.lagrangian(&sleigh(), Dual::fixed(t), &Dual::variables(&q), &zero).unwrap();
-        let lagrangian::Slope::Known(slope) = fields.slope(&sleigh(), t, &q) else { panic!("four potentials") };
+        let lagrangian::EffectSlope::Known(slope) = fields.slope(&sleigh(), t, &q) else { panic!("four potentials") };
         for i in 0..3 {
             assert_relative_eq!(slope[i], l.eps[i], epsilon = ROUNDING);
         }

@@ -1,7 +1,7 @@
 //! What the forces do: their power, and their components along the blade, across it and about it.
 
 use approx::assert_abs_diff_eq;
-use lagrangian::{Effect, Slope};
+use lagrangian::{Effect, EffectSlope};
 use proptest::prelude::*;
 use sleigh::effects::{Drag, EggCrate, MovingMass, Thrust, Torque};
 use sleigh::{Flywheel, Sleigh, TimeFunction};
@@ -53,7 +53,7 @@ proptest! {
         let value: f64 = crate_.lagrangian(&sleigh, 0.0, &q, &[0.0; 3]).unwrap();
         // Arguments below ten and their rounding, times the wave number.
         assert_abs_diff_eq!(value, -height * (x.cos() + y.cos()), epsilon = 1e-14);
-        let Slope::Known(slope) = crate_.slope(&sleigh, 0.0, &q) else { panic!("no slope by hand") };
+        let EffectSlope::Known(slope) = crate_.slope(&sleigh, 0.0, &q) else { panic!("no slope by hand") };
         let (fx, fy) = (height * kx * x.sin(), height * ky * y.sin());
         let expected = [fx, fy, a * (cos * fy - sin * fx)];
         for i in 0..3 {

@@ -1,9 +1,9 @@
 //! The step of a sleigh that is pushed against its own equations, term by term, and where it leaves the step to others.
 
 use approx::assert_abs_diff_eq;
-use lagrangian::{Effect, Scalar, Slope, With};
+use lagrangian::{Effect, EffectSlope, Scalar, With};
 use proptest::prelude::*;
-use sleigh::closed::{ClosedForm, ClosedStep, Memory, Start};
+use sleigh::closed::{ClosedForm, ClosedStart, ClosedStep, Memory};
 use sleigh::effects::{Bowl, Drag, EggCrate};
 use sleigh::{Sleigh, SleighState};
 
@@ -15,8 +15,8 @@ impl Effect<Sleigh, 3> for Tide {
     fn lagrangian<S: Scalar>(&self, _body: &Sleigh, t: S, q: &[S; 3], _v: &[S; 3]) -> Option<S> {
         Some(q[0] * t.cos() * self.0)
     }
-    fn slope<S: Scalar>(&self, _body: &Sleigh, t: S, _q: &[S; 3]) -> Slope<S, 3> {
-        Slope::Known([t.cos() * self.0, S::zero(), S::zero()])
+    fn slope<S: Scalar>(&self, _body: &Sleigh, t: S, _q: &[S; 3]) -> EffectSlope<S, 3> {
+        EffectSlope::Known([t.cos() * self.0, S::zero(), S::zero()])
     }
 }
 
@@ -43,7 +43,7 @@ fn laden(m: f64, i: f64, a: f64, stiffness: [f64; 2], height: f64) -> Laden {
 
 fn step<Sys: ClosedForm<3, 1>>(system: &Sys, h: f64, (heading, u, omega): (f64, f64, f64)) -> Option<ClosedStep<3, 1>> {
     let (q, v) = SleighState { x: 0.3, y: -0.2, heading, speed: u, turn_rate: omega }.to_coordinates();
-    system.closed_step(TIME, h, Start::new(&q, &v, &mut Memory::default())).map(Result::unwrap)
+    system.closed_step(TIME, h, ClosedStart::new(&q, &v, &mut Memory::default())).map(Result::unwrap)
 }
 
 /// As many steps: where they end, the last one, and what it leaves.
@@ -55,12 +55,12 @@ fn steps<Sys: ClosedForm<3, 1>>(
 ) -> ([f64; 3], ClosedStep<3, 1>, Memory) {
     let (mut q, v) = SleighState { x: 0.3, y: -0.2, heading, speed: u, turn_rate: omega }.to_coordinates();
     let mut memory = Memory::EMPTY;
-    let mut made = system.closed_step(TIME, h, Start::new(&q, &v, &mut memory)).unwrap().unwrap();
+    let mut made = system.closed_step(TIME, h, ClosedStart::new(&q, &v, &mut memory)).unwrap().unwrap();
     for k in 1..number {
         for i in 0..3 {
             q[i] += made.increment[i];
         }
-        let start = Start { xi: Some(made.xi), ..Start::new(&q, &made.velocity, &mut memory) };
+        let start = ClosedStart { xi: Some(made.xi), ..ClosedStart::new(&q, &made.velocity, &mut memory) };
         made = system.closed_step(TIME + h * f64::from(k), h, start).unwrap().unwrap();
     }
     (std::array::from_fn(|i| q[i] + made.increment[i]), made, memory)
@@ -118,7 +118,7 @@ proptest! {
             let [u, omega] = [factor * made.xi[0], factor * made.xi[1]];
             let v = [u * cos, u * sin, omega];
             let [blank, known] = [Memory::EMPTY, memory].map(|mut memory| {
-                let start = Start { xi: Some([u, omega, 0.0]), ..Start::new(&q, &v, &mut memory) };
+                let start = ClosedStart { xi: Some([u, omega, 0.0]), ..ClosedStart::new(&q, &v, &mut memory) };
                 ours.closed_step(TIME, h, start).unwrap().unwrap()
             });
             // Terms below ten, and their rounding divided by a determinant that is near one.
@@ -151,13 +151,16 @@ fn numbers_of_another_map_are_not_taken() {
     let well = With { body, effects: (Bowl::new([0.1; 2], [0.4, 0.0]).unwrap(),) };
     // At rest, with the centre of mass at the lowest place: every number is zero, and would be the cosine of a half turn.
     let [mut rest, mut free] = [Memory::EMPTY; 2];
-    well.closed_step(TIME, h, Start::new(&[0.0; 3], &[0.0; 3], &mut rest)).unwrap().unwrap();
-    ClosedForm::<3, 1>::closed_step(&body, TIME, h, Start::new(&[0.0; 3], &[0.0; 3], &mut free)).unwrap().unwrap();
+    well.closed_step(TIME, h, ClosedStart::new(&[0.0; 3], &[0.0; 3], &mut rest)).unwrap().unwrap();
+    ClosedForm::<3, 1>::closed_step(&body, TIME, h, ClosedStart::new(&[0.0; 3], &[0.0; 3], &mut free))
+        .unwrap()
+        .unwrap();
     for (u, omega) in [(1.0, 0.0), (0.5, -0.3), (0.0, 0.0)] {
         let (q, v) = ([0.0; 3], [u, 0.0, omega]);
-        let by = |system: &dyn Fn(Start<'_, 3>) -> ClosedStep<3, 1>, memory| {
-            let [blank, known] = [Memory::EMPTY, memory]
-                .map(|mut memory| system(Start { xi: Some([u, omega, 0.0]), ..Start::new(&q, &v, &mut memory) }));
+        let by = |system: &dyn Fn(ClosedStart<'_, 3>) -> ClosedStep<3, 1>, memory| {
+            let [blank, known] = [Memory::EMPTY, memory].map(|mut memory| {
+                system(ClosedStart { xi: Some([u, omega, 0.0]), ..ClosedStart::new(&q, &v, &mut memory) })
+            });
             for i in 0..3 {
                 assert_abs_diff_eq!(known.increment[i], blank.increment[i], epsilon = 1e-15);
                 assert_abs_diff_eq!(known.velocity[i], blank.velocity[i], epsilon = 1e-15);

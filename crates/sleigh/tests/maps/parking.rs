@@ -3,7 +3,7 @@
 use approx::assert_abs_diff_eq;
 use lagrangian::Piecewise;
 use proptest::prelude::*;
-use sleigh::parking::{Gap, Move, Plan, sinusoidal_gait, square_gait};
+use sleigh::parking::{Gap, Move, ParkingPlan, sinusoidal_gait, square_gait};
 use sleigh::{SleighError, SleighState};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -34,7 +34,7 @@ proptest! {
         (depth, play, swing) in (-1.5..1.5, 0.2..0.5, 0.3..2.5f64),
     ) {
         let (start, goal) = (pose(start.0, start.1, start.2), pose(goal.0, goal.1, goal.2));
-        let plan = Plan::park(&start, &goal, &Gap { depth, play, swing }).unwrap();
+        let plan = ParkingPlan::park(&start, &goal, &Gap { depth, play, swing }).unwrap();
         let poses = plan.poses(&start);
         prop_assert_eq!(poses.len(), plan.moves.len() + 1);
         prop_assert!(poses[0] == start && distance(poses.last().unwrap(), &goal) < ROUNDING);
@@ -63,7 +63,7 @@ proptest! {
     #[test]
     fn a_square_gait_goes_sideways(start in (-5.0..5.0, -5.0..5.0, -4.0..4.0), d in -1.0..1.0, p in -1.5..1.5) {
         let start = pose(start.0, start.1, start.2);
-        let end = *Plan { moves: square_gait(d, p).to_vec() }.poses(&start).last().unwrap();
+        let end = *ParkingPlan { moves: square_gait(d, p).to_vec() }.poses(&start).last().unwrap();
         let [ahead, left, turned] = seen(&start, &end);
         assert_abs_diff_eq!(ahead, d * (1.0 - p.cos()), epsilon = 1e-14);
         assert_abs_diff_eq!(left, d * p.sin(), epsilon = 1e-14);
@@ -84,29 +84,30 @@ proptest! {
 fn plans_of_three_moves() {
     let gap = Gap { depth: 0.0, play: 0.3, swing: 0.5 };
     let goal = pose(2.0, 1.0, 0.4);
-    let moves = |start| Plan::park(&start, &goal, &gap).unwrap().moves;
+    let moves = |start| ParkingPlan::park(&start, &goal, &gap).unwrap().moves;
     assert_eq!(moves(goal), [Move::Turn(0.0), Move::Drive(0.0), Move::Turn(0.0)]);
     assert_eq!(moves(pose(2.0, 1.0, 0.1))[..2], [Move::Turn(0.0), Move::Drive(0.0)]);
     assert_eq!(moves(pose(0.5, 1.0, 0.0))[..2], [Move::Turn(0.0), Move::Drive(1.5)]);
     assert_eq!(moves(pose(2.0, 0.0, 0.0))[..2], [Move::Turn(FRAC_PI_2), Move::Drive(1.0)]);
     // Velocities are not read, and poses stand still.
     let moving = SleighState { speed: 2.0, turn_rate: 3.0, ..pose(0.5, 1.0, 0.1) };
-    let plan = Plan::park(&moving, &goal, &gap).unwrap();
+    let plan = ParkingPlan::park(&moving, &goal, &gap).unwrap();
     assert!(plan.poses(&moving).iter().all(|pose| pose.speed == 0.0 && pose.turn_rate == 0.0));
 }
 
 #[test]
 fn what_no_plan_reaches() {
-    let park = |depth, play, swing| Plan::park(&pose(0.0, 0.0, 0.0), &pose(1.0, 0.0, 0.0), &Gap { depth, play, swing });
+    let park =
+        |depth, play, swing| ParkingPlan::park(&pose(0.0, 0.0, 0.0), &pose(1.0, 0.0, 0.0), &Gap { depth, play, swing });
     for (depth, play, swing) in [(f64::NAN, 0.3, 0.5), (1.0, 0.0, 0.5), (1.0, 0.3, -0.5), (1.0, f64::INFINITY, 0.5)] {
         assert!(park(depth, play, swing).is_err(), "{depth} {play} {swing}");
     }
     assert!(
-        Plan::park(&pose(f64::NAN, 0.0, 0.0), &pose(0.0, 0.0, 0.0), &Gap { depth: 1.0, play: 0.3, swing: 0.5 })
+        ParkingPlan::park(&pose(f64::NAN, 0.0, 0.0), &pose(0.0, 0.0, 0.0), &Gap { depth: 1.0, play: 0.3, swing: 0.5 })
             .is_err()
     );
     assert!(
-        Plan::park(&pose(0.0, 0.0, 0.0), &pose(0.0, f64::NAN, 0.0), &Gap { depth: 1.0, play: 0.3, swing: 0.5 })
+        ParkingPlan::park(&pose(0.0, 0.0, 0.0), &pose(0.0, f64::NAN, 0.0), &Gap { depth: 1.0, play: 0.3, swing: 0.5 })
             .is_err()
     );
     // Ten thousand pairs of rounds with a swing of a right angle: `2 n d`.
@@ -117,7 +118,7 @@ fn what_no_plan_reaches() {
 /// A pulse for each move, of its size, while the other control rests.
 #[test]
 fn controls_make_the_moves() {
-    let plan = Plan { moves: vec![Move::Turn(0.4), Move::Drive(-1.5), Move::Turn(-0.2)] };
+    let plan = ParkingPlan { moves: vec![Move::Turn(0.4), Move::Drive(-1.5), Move::Turn(-0.2)] };
     let seconds = 2.0;
     let [drive, turn] = plan.controls(seconds).unwrap();
     assert_eq!(plan.duration(seconds), 6.0);

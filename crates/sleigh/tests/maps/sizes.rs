@@ -2,7 +2,7 @@
 
 use approx::assert_relative_eq;
 use proptest::prelude::*;
-use sleigh::closed::{ClosedForm, ClosedStep, Memory, Start};
+use sleigh::closed::{ClosedForm, ClosedStart, ClosedStep, Memory};
 use sleigh::{Sleigh, SleighState};
 
 /// Blade speed and spin after each of some steps, with the heading carried along.
@@ -12,7 +12,7 @@ fn steps(sleigh: &Sleigh, start: [f64; 2], lengths: impl Iterator<Item = f64>) -
     let mut xi = [start[0], start[1], 0.0];
     lengths
         .map(|h| {
-            let start = Start { xi: Some(xi), ..Start::new(&q, &v, &mut memory) };
+            let start = ClosedStart { xi: Some(xi), ..ClosedStart::new(&q, &v, &mut memory) };
             let step = sleigh.closed_step(0.0, h, start).unwrap().unwrap();
             q = [0, 1, 2].map(|i| q[i] + step.increment[i]);
             (v, xi) = (step.velocity, step.xi);
@@ -109,7 +109,7 @@ fn digits_belong_to_one_spin() {
     let mut memory = Memory::EMPTY;
     let spin = |omega: f64, h: f64, memory: &mut Memory| {
         let v = [-1.0, 0.0, omega];
-        let start = Start { xi: Some([-1.0, omega, 0.0]), ..Start::new(&q, &v, memory) };
+        let start = ClosedStart { xi: Some([-1.0, omega, 0.0]), ..ClosedStart::new(&q, &v, memory) };
         sleigh.closed_step(0.0, h, start).unwrap().unwrap().xi[1]
     };
     let (ten, fifty) = (f64::from_bits(10), f64::from_bits(50));

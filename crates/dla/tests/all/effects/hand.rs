@@ -9,7 +9,7 @@
 //! ```
 
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
-use scene::{PathSpec, Scene, SceneEffect, Shape, TimeSpec};
+use scene::{PathShape, PathSpec, Scene, SceneEffect, TimeSpec};
 use std::array::from_fn;
 use std::f64::consts::TAU;
 
@@ -33,12 +33,12 @@ fn function(spec: &TimeSpec, t: f64, middle: f64) -> [f64; 3] {
 
 fn path_velocity(path: &PathSpec, t: f64, middle: f64) -> [f64; 2] {
     match &path.shape {
-        Shape::Circle { radius, .. } => {
+        PathShape::Circle { radius, .. } => {
             let rate = TAU / path.period;
             let (sin, cos) = (rate * t).sin_cos();
             [-radius * rate * sin, radius * rate * cos]
         }
-        Shape::Polygon(vertices) => {
+        PathShape::Polygon(vertices) => {
             let edge = |k: usize| {
                 let (a, b) = (vertices[k % vertices.len()], vertices[(k + 1) % vertices.len()]);
                 [b[0] - a[0], b[1] - a[1]]
