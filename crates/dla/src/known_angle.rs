@@ -1,4 +1,4 @@
-use lagrangian::{Function, Scalar, array};
+use lagrangian::{Scalar, ScalarFunction, array};
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A number that may be an angle whose sine and cosine are known already: what is computed from it as from any other then
@@ -113,7 +113,7 @@ impl<T: Scalar> Scalar for KnownAngle<T> {
         Self::from(self.re.recip())
     }
     #[inline(always)]
-    fn apply<F: Function>(self, f: F) -> Self {
+    fn apply<F: ScalarFunction>(self, f: F) -> Self {
         Self::from(self.re.apply(f))
     }
     #[inline(always)]

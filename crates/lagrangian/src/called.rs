@@ -1,4 +1,4 @@
-use crate::{Function, Scalar};
+use crate::{Scalar, ScalarFunction};
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A number whose operations are calls, never inlined: for evaluations that are made seldom. A model on such numbers compiles to a tenth of
@@ -82,7 +82,7 @@ impl<S: Scalar> Scalar for Called<S> {
         Self(self.0.recip())
     }
     #[inline(never)]
-    fn apply<F: Function>(self, f: F) -> Self {
+    fn apply<F: ScalarFunction>(self, f: F) -> Self {
         Self(self.0.apply(f))
     }
     #[inline(never)]

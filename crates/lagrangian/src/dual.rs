@@ -1,7 +1,7 @@
 use crate::inlined::mapped;
 use crate::length::{Derived, derived_functions};
 use crate::scalar::derived_operators;
-use crate::{Function, Scalar, from_fn};
+use crate::{Scalar, ScalarFunction, from_fn};
 use std::ops::{Add, Div, Mul, Neg};
 
 /// A first-order dual number with `N` independent infinitesimals: a value and its gradient.
@@ -135,7 +135,7 @@ impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
         self.chain(f, -(f * f))
     }
     #[inline(always)]
-    fn apply<F: Function>(self, function: F) -> Self {
+    fn apply<F: ScalarFunction>(self, function: F) -> Self {
         let f = self.re.apply(function);
         self.chain(f, function.slope(self.re, f))
     }

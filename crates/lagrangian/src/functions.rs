@@ -6,12 +6,12 @@ use crate::Scalar;
 /// it may say a finite one all the same, as [`Scalar::abs`] does.
 ///
 /// ```
-/// use lagrangian::{Dual, Function, Scalar};
+/// use lagrangian::{Dual, ScalarFunction, Scalar};
 ///
 /// /// `ln(1 + e^x)`, a ramp that begins smoothly.
 /// #[derive(Clone, Copy)]
 /// struct Softplus;
-/// impl Function for Softplus {
+/// impl ScalarFunction for Softplus {
 ///     fn value(self, x: f64) -> f64 {
 ///         x.exp().ln_1p()
 ///     }
@@ -26,7 +26,7 @@ use crate::Scalar;
 /// let ramp = Dual::<f64, 1>::variable(0.0, 0).apply(Softplus);
 /// assert_eq!((ramp.re, ramp.eps), (2.0_f64.ln(), [0.5]));
 /// ```
-pub trait Function: Copy {
+pub trait ScalarFunction: Copy {
     /// The value at `x`.
     fn value(self, x: f64) -> f64;
     /// The derivative at `x`, where the function is `f`.
@@ -40,7 +40,7 @@ macro_rules! functions {
     ($($name:ident: $value:path; |$x:ident, $f:ident| $slope:expr; |$y:ident, $g:ident, $s:ident| $curvature:expr)*) => {$(
         #[derive(Clone, Copy)]
         pub(crate) struct $name;
-        impl Function for $name {
+        impl ScalarFunction for $name {
             #[inline(always)]
             fn value(self, x: f64) -> f64 {
                 $value(x)
@@ -101,7 +101,7 @@ impl Power {
     }
 }
 
-impl Function for Power {
+impl ScalarFunction for Power {
     #[inline(always)]
     fn value(self, x: f64) -> f64 {
         x.powf(self.0)

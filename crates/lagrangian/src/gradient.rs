@@ -1,6 +1,6 @@
 use crate::length::{Derived, derived_functions};
 use crate::scalar::derived_operators;
-use crate::{Function, Scalar, array};
+use crate::{Scalar, ScalarFunction, array};
 use std::ops::{Add, Div, Mul, Neg};
 
 /// A number with its gradient in `N` variables, or a number that depends on none of them; which of the two is known when a model is
@@ -260,7 +260,7 @@ impl<S: Scalar, const N: usize> Scalar for Gradient<S, N> {
         self.chain(f, -(f * f))
     }
     #[inline(always)]
-    fn apply<F: Function>(self, function: F) -> Self {
+    fn apply<F: ScalarFunction>(self, function: F) -> Self {
         let f = self.re.apply(function);
         self.chain(f, function.slope(self.re, f))
     }

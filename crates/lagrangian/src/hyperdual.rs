@@ -1,7 +1,7 @@
 use crate::inlined::mapped;
 use crate::length::{Derived, derived_functions};
 use crate::scalar::derived_operators;
-use crate::{Function, Scalar, from_fn};
+use crate::{Scalar, ScalarFunction, from_fn};
 use std::ops::{Add, Div, Mul, Neg};
 
 /// A second-order dual number with two groups of infinitesimals, `P` of the first and `Q` of the second.
@@ -179,7 +179,7 @@ impl<S: Scalar, const P: usize, const Q: usize> Scalar for HyperDual<S, P, Q> {
         self.chain(f, df, -(df * f) * 2.0)
     }
     #[inline(always)]
-    fn apply<F: Function>(self, function: F) -> Self {
+    fn apply<F: ScalarFunction>(self, function: F) -> Self {
         let f = self.re.apply(function);
         let slope = function.slope(self.re, f);
         self.chain(f, slope, function.curvature(self.re, f, slope))

@@ -1,6 +1,6 @@
 use crate::scalar::derived_operators;
 use crate::sincos;
-use crate::{Function, Scalar, from_fn};
+use crate::{Scalar, ScalarFunction, from_fn};
 use std::ops::{Add, Div, Mul, Neg};
 
 /// Eight numbers that go through the same arithmetic at once: eight stages of one step, or eight trajectories.
@@ -122,7 +122,7 @@ impl Scalar for Lanes {
         self.map(f64::recip)
     }
     #[inline(always)]
-    fn apply<F: Function>(self, f: F) -> Self {
+    fn apply<F: ScalarFunction>(self, f: F) -> Self {
         self.map(|a| f.value(a))
     }
     #[inline(always)]

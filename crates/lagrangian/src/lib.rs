@@ -81,7 +81,7 @@ pub use discrete::{Derivatives, DiscreteConstraint, DiscreteLagrangian, gradient
 pub use dual::Dual;
 pub use effect::{Effect, EffectSlope};
 pub use factored::FactoredSaddle;
-pub use functions::Function;
+pub use functions::ScalarFunction;
 pub use fused::mul_add;
 pub use gradient::Gradient;
 pub use gradients::{Along, Gradients, Seeded, SeededMember};

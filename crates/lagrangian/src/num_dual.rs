@@ -1,6 +1,6 @@
 //! The number types of `num-dual` as scalars of a model: the oracle of the derivative tests.
 
-use crate::{Function, Scalar};
+use crate::{Scalar, ScalarFunction};
 use num_dual::{Dual2_64, Dual64, DualNum, HyperDual64};
 
 macro_rules! oracle {
@@ -28,7 +28,7 @@ macro_rules! oracle {
                 DualNum::recip(&self)
             }
             /// What the library does not know, by its series about the value.
-            fn apply<F: Function>(self, function: F) -> Self {
+            fn apply<F: ScalarFunction>(self, function: F) -> Self {
                 let f = function.value(self.re);
                 let slope = function.slope(self.re, f);
                 let curvature = function.curvature(self.re, f, slope);

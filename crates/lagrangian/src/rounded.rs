@@ -1,5 +1,5 @@
 use crate::Scalar;
-use crate::functions::Function;
+use crate::functions::ScalarFunction;
 use crate::scalar::derived_operators;
 use std::ops::{Add, Div, Mul, Neg};
 
@@ -150,7 +150,7 @@ impl Scalar for Rounded {
         Self::result(value, value * value * self.size, 1.0)
     }
     #[inline(never)]
-    fn apply<F: Function>(self, f: F) -> Self {
+    fn apply<F: ScalarFunction>(self, f: F) -> Self {
         let value = f.value(self.value);
         self.function(value, f.slope(self.value, value))
     }

@@ -1,4 +1,4 @@
-use crate::functions::{Abs, Acos, Asin, Atan, Cosh, Function, Power, Sign, Sinh, Tan, Tanh};
+use crate::functions::{Abs, Acos, Asin, Atan, Cosh, Power, ScalarFunction, Sign, Sinh, Tan, Tanh};
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -51,7 +51,7 @@ pub trait Scalar:
 
     /// A function given by its value and first two derivatives.
     #[must_use]
-    fn apply<F: Function>(self, f: F) -> Self;
+    fn apply<F: ScalarFunction>(self, f: F) -> Self;
     /// `then` where this number is positive, `otherwise` where it is zero, negative or not a number, with their derivatives. What is
     /// not chosen may be anything.
     #[must_use]
@@ -238,7 +238,7 @@ impl Scalar for f64 {
         f64::recip(self)
     }
     #[inline(always)]
-    fn apply<F: Function>(self, f: F) -> Self {
+    fn apply<F: ScalarFunction>(self, f: F) -> Self {
         f.value(self)
     }
     #[inline(always)]

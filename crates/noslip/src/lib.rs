@@ -26,8 +26,9 @@ pub use dla::{
 };
 pub use lagrangian::{
     self, AdmissibleBasis, Alpha, Attitude, Constraint, Derivatives, DiscreteConstraint, DiscreteLagrangian, Dual,
-    Effect, Function, HyperDual, Lanes, Member, Midpoint, Motion, MotionError, Parametrised, Reduced, Rule, Scalar,
-    Symmetrised, System, Trapezoid, With, classify, constraint_residual, energy, mass_matrix, momentum, vectorized,
+    Effect, HyperDual, Lanes, Member, Midpoint, Motion, MotionError, Parametrised, Reduced, Rule, Scalar,
+    ScalarFunction, Symmetrised, System, Trapezoid, With, classify, constraint_residual, energy, mass_matrix, momentum,
+    vectorized,
 };
 pub use sleigh::{self, CentreOfMass, ClosedMap, Exact, Sleigh, SleighError, SleighState};
 

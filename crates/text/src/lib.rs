@@ -8,7 +8,7 @@
 //!    coordinates of unit mass that rest, and with constraints that hold them.
 //!
 //! ```
-//! use text::{Model, Unit, Words};
+//! use text::{TextModel, Unit, Words};
 //!
 //! let mut words = Words::default();
 //! for (name, unit) in [("x", Unit::other("m")), ("y", Unit::other("m")), ("theta", Unit::Angle)] {
@@ -17,12 +17,12 @@
 //! words.parameters.push(("m".to_owned(), 2.0));
 //! words.lagrangian = "m/2*(x'^2 + y'^2) + theta'^2/2".to_owned();
 //! words.constraints.push("y'*cos(theta) - x'*sin(theta)".to_owned());
-//! let model = Model::new(&words)?;
+//! let model = TextModel::new(&words)?;
 //! let start = model.start(&[None; 3], &[Some(1.0), None, Some(0.5)])?;
 //! assert_eq!(start.v, [1.0, 0.0, 0.5]);
 //!
 //! words.lagrangian.push_str(" - m*g*x");
-//! let error = Model::new(&words).unwrap_err();
+//! let error = TextModel::new(&words).unwrap_err();
 //! assert_eq!(error.column(), Some(36));
 //! assert!(error.to_string().contains("no name `g` is known here"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -1,5 +1,5 @@
 use super::{Pack, Simd};
-use crate::{Function, Scalar, array};
+use crate::{Scalar, ScalarFunction, array};
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// Eight numbers on which a model is evaluated: a [`Pack`], or one number that is the same in all lanes.
@@ -233,7 +233,7 @@ impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
         Same(1.0) / self
     }
     #[inline(always)]
-    fn apply<F: Function>(self, f: F) -> Self {
+    fn apply<F: ScalarFunction>(self, f: F) -> Self {
         self.apart(
             #[inline(always)]
             |x| f.value(x),
