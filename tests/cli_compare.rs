@@ -194,7 +194,7 @@ fn a_refusal_is_shown_and_fails_only_who_asked_for_it() {
     assert_eq!(names, ["taylor", "energy2", "energy4", "energy6", "energy8"]);
     for row in refused {
         assert_eq!(row["refused"].as_bool(), Some(true));
-        let told = if row["method"] == "taylor" { "series" } else { "explicit time" };
+        let told = if row["method"] == "taylor" { "series" } else { "depend on time explicitly" };
         assert!(row["failure"]["reason"].as_str().unwrap().contains(told), "{row}");
         let extra: Vec<&str> = keys(row).into_iter().filter(|key| made[0].get(key).is_none()).collect();
         // It has no error at the end.

@@ -194,7 +194,10 @@ fn own_output_is_read_back() {
         assert_eq!(read.iter().filter(|point| **point == again).count(), 2);
     }
     let other = folder.line(&format!("precision turnaround --methods dla {SHORT} --with before.json"));
-    assert!(other.code == 0 && other.stderr.contains("of the scene \"egg-crate\", not of \"turnaround\""), "{other:?}");
+    assert!(
+        other.code == 0 && other.stderr.contains("the points belong to the scene \"egg-crate\", not to \"turnaround\""),
+        "{other:?}"
+    );
 }
 
 #[test]
@@ -204,8 +207,14 @@ fn points_that_are_none_are_refused_before_the_runs() {
         ("", "EOF"),
         ("{}", "the file has no points"),
         (r#"{"points": [{"error": 1.0}]}"#, "points[0]: `method` is not a name"),
-        (r#"{"points": [{"method": "m", "error": "small"}]}"#, "points[0]: `error` is \"small\""),
-        (r#"{"points": [{"method": "m", "wall_seconds": -1}]}"#, "`wall_seconds` is -1"),
+        (
+            r#"{"points": [{"method": "m", "error": "small"}]}"#,
+            "points[0]: `error` must be a number of 0 or more, and is \"small\"",
+        ),
+        (
+            r#"{"points": [{"method": "m", "wall_seconds": -1}]}"#,
+            "`wall_seconds` must be a number of 0 or more, and is -1",
+        ),
     ] {
         folder.write("bad.json", content);
         let line = "precision turnaround --with bad.json --csv out.csv --report pages";

@@ -19,7 +19,7 @@ pub fn refuses(info: &MethodInfo, facts: &Facts) -> Option<&'static str> {
         Facts { without_basis: true, .. } if reduced || energy => Some("basis"),
         Facts { affine: true, .. } if energy => Some("b = 0"),
         Facts { positions: true, .. } if energy || info.name == "gni" => Some("positions"),
-        Facts { timed: true, .. } if energy => Some("explicit time"),
+        Facts { timed: true, .. } if energy => Some("depend on time explicitly"),
         _ => None,
     }
 }

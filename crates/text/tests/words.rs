@@ -69,7 +69,7 @@ fn errors_name_the_text_and_the_column() {
             None,
             "the Lagrangian does not contain the rate `theta'`",
         ),
-        (|w| w.constraints[0] = "x'*y'".to_owned(), Entry::Constraint(0), None, "`x'` is multiplied by contains `y'`"),
+        (|w| w.constraints[0] = "x'*y'".to_owned(), Entry::Constraint(0), None, "the factor of `x'` contains `y'`"),
         (|w| w.constraints[0] = "x - 1".to_owned(), Entry::Constraint(0), None, "belongs in `positions`"),
         (|w| w.positions = vec!["x - y'".to_owned()], Entry::Position(0), Some(5), "no name `y'` is known"),
         (|w| w.forces[0].0 = "phi".to_owned(), Entry::Force(0), None, "the coordinates are `x`, `y`, `theta`"),

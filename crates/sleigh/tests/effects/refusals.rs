@@ -85,7 +85,7 @@ fn drives() {
 #[test]
 fn tables() {
     for (times, values, word) in [
-        (vec![], vec![], "empty"),
+        (vec![], vec![], "no times"),
         (vec![0.0, 1.0], vec![1.0], "2 times and 1 values"),
         (vec![0.0], vec![], "1 times and 0 values"),
         (vec![1.0, 0.0], vec![1.0, 2.0], "do not increase"),
