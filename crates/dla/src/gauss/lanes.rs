@@ -206,7 +206,9 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> StagesAtOnce<'_, Sys, N,
         q: &[Pack<S, R>; N],
         xi: &[Wide<S, R>; N],
     ) -> Option<[Pack<S, R>; N]> {
-        if const { By::ANY } {
+        // More than five accelerations come from the motion in full coordinates, whose matrices have no room on the stack beside eight
+        // stages.
+        if const { By::ANY || N - M > 5 } {
             return None;
         }
         let (q, xi) = (q.map(|q| q.row()), xi.map(|xi| xi.pack(simd).row()));
