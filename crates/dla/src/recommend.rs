@@ -65,7 +65,7 @@ const ROUNDING: f64 = 1e-7;
 const MOST: u64 = 1 << 26;
 /// Nor so many, unless shorter steps are seen to help.
 const UNSEEN: u64 = 1 << 22;
-/// Runs of more steps than this say when a motion leaves the range of numbers.
+/// Runs of more steps than this say when a motion leaves the range of numbers, and what is within reach of numbers without the digits.
 const FINE: u64 = 1 << 16;
 
 /// The longest constant step with which a run from `state` at time zero reaches its tolerance, the largest error of a
@@ -176,7 +176,7 @@ fn reference<const N: usize>(
                     extrapolated = better;
                     // Numbers of that size do not have the digits, or nothing is gained by all these steps.
                     let coarse = f64::EPSILON * size > tolerance && change < 0.5 * size;
-                    if coarse || (steps >= UNSEEN && change > 0.5 * largest) {
+                    if (coarse && steps >= FINE) || (steps >= UNSEEN && change > 0.5 * largest) {
                         break;
                     }
                 } else {
