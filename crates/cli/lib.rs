@@ -2,12 +2,12 @@
 //! run whose nodes its caller keeps, [`sensitivities`] what such a run depends on, and [`plan`] the parts of a sweep.
 
 mod account;
-mod again;
 mod args;
 mod called;
 mod chart_file;
 mod check;
 mod columns_file;
+mod command_line;
 mod compare;
 mod compare_numbers;
 mod completions;

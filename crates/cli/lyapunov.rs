@@ -1,6 +1,6 @@
-use crate::again::CommandLine;
 use crate::args::LyapunovArguments;
 use crate::chart_file::ChartFile;
+use crate::command_line::CommandLine;
 use crate::compare::unless_interrupted;
 use crate::error::CliError;
 use crate::interrupt::Interrupt;

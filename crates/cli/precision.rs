@@ -1,5 +1,5 @@
-use crate::again::CommandLine;
 use crate::args::PrecisionArguments;
+use crate::command_line::CommandLine;
 use crate::compare::{exact, methods, place_at, unless_interrupted};
 use crate::error::CliError;
 use crate::inspect::method_names;

@@ -1,4 +1,4 @@
-use crate::again::CommandLine;
+use crate::command_line::CommandLine;
 use crate::error::CliError;
 use crate::files::write_whole;
 use scene::Column;

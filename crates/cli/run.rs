@@ -1,6 +1,6 @@
 use crate::account::{Account, Made};
-use crate::again::CommandLine;
 use crate::args::RunArguments;
+use crate::command_line::CommandLine;
 use crate::compare::unless_interrupted;
 use crate::error::CliError;
 use crate::interrupt::Interrupt;

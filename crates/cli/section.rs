@@ -1,6 +1,6 @@
-use crate::again::CommandLine;
 use crate::args::SectionArguments;
 use crate::chart_file::ChartFile;
+use crate::command_line::CommandLine;
 use crate::compare::unless_interrupted;
 use crate::coordinate::Coordinate;
 use crate::error::CliError;

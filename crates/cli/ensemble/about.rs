@@ -1,8 +1,8 @@
 use super::header;
 use super::members::Summed;
 use super::result::failed;
-use crate::again::CommandLine;
 use crate::args::Settings;
+use crate::command_line::CommandLine;
 use crate::error::CliError;
 use crate::format::Format;
 use crate::provenance::{Described, Provenance};
