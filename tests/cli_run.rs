@@ -312,8 +312,37 @@ fn events_are_found_and_end_a_run() {
     );
     assert!((run["final"]["x"].as_f64().unwrap() - 1.5).abs() < 1e-14 && events[1]["t"].as_f64() == Some(t), "{run}");
     assert_eq!((rows.last().unwrap()[0], run["steps"].as_u64().unwrap() + 1), (t, rows.len() as u64));
+    // The force of the blade is `m u omega I/J`: its sign is that of the speed, for the sleigh turns one way only.
+    let run = folder.json("run turnaround --method gauss16 --event constraint_force=0 --json");
+    assert!((run["events"][0]["t"].as_f64().unwrap() - turnaround).abs() <= 1e-12, "{run}");
     folder.refused("run turnaround --event spede=0", &["spede", "turn_rate"]);
+    folder.refused("run turnaround --event speed=0:up", &["`up` is not a direction", ":rising or :falling"]);
     folder.refused("run turnaround --until speed=fast", &["fast"]);
+}
+
+/// One direction only, which of an angle is the same in every turn.
+#[test]
+fn events_have_a_direction() {
+    let folder = Folder::new();
+    let count = |line: &str| folder.json(&format!("run {line} --json"))["events"].as_array().unwrap().len();
+    assert_eq!(["", ":rising", ":falling"].map(|way| count(&format!("turnaround --event speed=0{way}"))), [1, 1, 0]);
+    // Ten seconds of one turn in 2 pi: the angle rises through a quarter of a turn twice.
+    let turns = |way: &str| count(&format!("circle --duration 10 --event heading=1.5{way}"));
+    assert_eq!(["", ":rising", ":falling"].map(turns), [2, 2, 0]);
+    // To and fro, five times each way.
+    folder.write("scene.toml", TO_AND_FRO);
+    let times = ["", ":rising", ":falling"].map(|way| count(&format!("scene.toml --event x=0.05{way} --step 0.01")));
+    assert_eq!(times, [20, 10, 10]);
+    // And what ends the run is in that direction.
+    let end = |way: &str| {
+        folder.json(&format!("run scene.toml --step 0.01 --until x=0.05{way} --json"))["final"]["t"].as_f64()
+    };
+    let [first, second] = [":rising", ":falling"].map(|way| end(way).unwrap());
+    let sixth = std::f64::consts::PI / 6.0;
+    assert!((first - 0.1 * sixth).abs() < 1e-6 && (second - 0.5 * sixth).abs() < 1e-6, "{first} and {second}");
+    // A train is asked for its first blade.
+    let trained = |way: &str| count(&format!("{TRAIN} --event x=0.5{way}"));
+    assert_eq!([":rising", ":falling"].map(trained).iter().sum::<usize>(), trained(""));
 }
 
 /// Of a method with steps of its own a tolerance is what each of them aims for, on the command line and in the scene.

@@ -179,13 +179,13 @@ pub(crate) struct RunArguments {
     /// is continued too
     #[arg(long, value_name = "FILE")]
     pub(crate) resume: Option<PathBuf>,
-    /// Find the times at which a quantity crosses a value, for example speed=0; can be repeated. A sleigh has x, y,
-    /// heading (in every turn), unwrapped_heading (turns counted), speed, turn_rate, center_x, energy and others; a
-    /// system of text has its coordinates, rates (x') and outputs
-    #[arg(long, value_name = "NAME=VALUE", conflicts_with_all = ["checkpoint", "resume"])]
+    /// Find the times at which a quantity crosses a value, for example speed=0, or speed=0:rising for one direction;
+    /// can be repeated. A sleigh has x, y, heading (in every turn), unwrapped_heading (turns counted), speed, turn_rate,
+    /// center_x, constraint_force, energy and others; a system of text has its coordinates, rates (x') and outputs
+    #[arg(long, value_name = "NAME=VALUE[:DIRECTION]", conflicts_with_all = ["checkpoint", "resume"])]
     pub(crate) event: Vec<Trigger>,
     /// Find an event as --event does, and end the run at the event
-    #[arg(long, value_name = "NAME=VALUE", conflicts_with_all = ["checkpoint", "resume"])]
+    #[arg(long, value_name = "NAME=VALUE[:DIRECTION]", conflicts_with_all = ["checkpoint", "resume"])]
     pub(crate) until: Vec<Trigger>,
     /// Look for events in N parts of each step, and in N parts of each inner step of dop853
     #[arg(long, value_name = "N", default_value_t = harness::EVENT_SAMPLES, allow_negative_numbers = true,

@@ -16,6 +16,8 @@ pub(crate) struct Trigger {
     pub(crate) text: String,
     name: String,
     value: f64,
+    /// Whether it is to rise, or to fall; both where nobody says.
+    rising: Option<bool>,
 }
 
 /// An angle under this and its own name is one whose turns count.
@@ -27,8 +29,16 @@ impl FromStr for Trigger {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (name, value) = name_and_value(text, "accepted is NAME=VALUE, for example speed=0")?;
-        Ok(Self { text: text.to_owned(), name, value })
+        let accepted =
+            "accepted is NAME=VALUE, for example speed=0, with :rising or :falling after it for one direction";
+        let (quantity, rising) = match text.rsplit_once(':') {
+            None => (text, None),
+            Some((quantity, "rising")) => (quantity, Some(true)),
+            Some((quantity, "falling")) => (quantity, Some(false)),
+            Some((_, other)) => return Err(format!("`{}` is not a direction; {accepted}", other.escape_debug())),
+        };
+        let (name, value) = name_and_value(quantity, accepted)?;
+        Ok(Self { text: text.to_owned(), name, value, rising })
     }
 }
 
@@ -113,7 +123,12 @@ impl WatchedTriggers<'_, Coordinate> {
     /// The event in a system.
     pub(crate) fn event<'a, const N: usize, const M: usize>(&'a self, system: &'a Built<'a, N, M>) -> Event<'a, N> {
         let of = move |t, q: &[f64; N], v: &[f64; N]| self.function.of(self.quantity.value(system, t, q, v));
-        Event::new(self.trigger.text.clone(), move |t, state| of(t, &state.unwrapped(), state.v()))
+        let event = Event::new(self.trigger.text.clone(), move |t, state| of(t, &state.unwrapped(), state.v()));
+        let Some(wanted) = self.trigger.rising else { return event };
+        event.where_true(move |t, state, rising| {
+            let number = self.quantity.value(system, t, &state.unwrapped(), state.v());
+            self.function.rises(number, rising) == wanted
+        })
     }
 }
 
@@ -124,9 +139,11 @@ impl WatchedTriggers<'_, SleighQuantity> {
 
     /// The event of the first blade of a train.
     pub(crate) fn event<'a>(&'a self, train: &'a Train, terminal: bool) -> AssemblyEvent<'a> {
-        AssemblyEvent::new(self.trigger.text.clone(), terminal, move |_, state| {
-            self.function.of(self.number(train.blade(state, 0)))
-        })
+        let number = move |state: &_| self.number(train.blade(state, 0));
+        let name = self.trigger.text.clone();
+        let event = AssemblyEvent::new(name, terminal, move |_, state| self.function.of(number(state)));
+        let Some(wanted) = self.trigger.rising else { return event };
+        event.where_true(move |_, state, rising| self.function.rises(number(state), rising) == wanted)
     }
 }
 

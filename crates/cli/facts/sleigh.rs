@@ -1,6 +1,6 @@
 use crate::table::{counted, number};
 use dla::{State, View};
-use scene::{Built, PathShape, PathSpec, Scene, SceneEffect, TimeSpec, TrailersSpec, Visitor};
+use scene::{Built, Interpolation, PathShape, PathSpec, Scene, SceneEffect, TimeSpec, TrailersSpec, Visitor};
 use sleigh::{SleighError, SleighState};
 
 /// The state that a scene starts in, and its energy (J).
@@ -76,6 +76,18 @@ fn words(effect: &SceneEffect) -> String {
         SceneEffect::Drag { along, turning } => {
             format!("drag: {} kg/s along the blade, {} kg m²/s against turning", number(*along), number(*turning))
         }
+        SceneEffect::QuadraticDrag { along, turning } => format!(
+            "drag by the square: {} kg/m along the blade, {} kg m² against turning",
+            number(*along),
+            number(*turning)
+        ),
+        SceneEffect::Friction { along, smoothing, turning, turning_smoothing } => format!(
+            "friction: {} N along the blade above {} m/s, {} N m against turning above {} rad/s",
+            number(*along),
+            number(*smoothing),
+            number(*turning),
+            number(*turning_smoothing)
+        ),
         SceneEffect::Thrust { force } => format!("thrust along the blade: {}", function(force, "N")),
         SceneEffect::Torque { torque } => format!("torque on the heading: {}", function(torque, "N m")),
         SceneEffect::MovingMass { mass, x, y } => {
@@ -122,9 +134,14 @@ fn function(function: &TimeSpec, unit: &str) -> String {
             let shift = if *phase == 0.0 { String::new() } else { format!(" + {}", number(*phase)) };
             format!("{} sin({} t{shift}) {unit}", number(*amplitude), number(*frequency))
         }
-        TimeSpec::Table { times, values } => {
+        TimeSpec::Formula(text) => format!("{} {unit}", text.escape_debug()),
+        TimeSpec::Table { times, values, interpolation } => {
             let value = |value: Option<&f64>| value.copied().map_or_else(String::new, number);
-            format!("a table of {}, {} {unit} at first", counted(times.len() as u64, "value"), value(values.first()))
+            let kind = match interpolation {
+                Interpolation::Steps => "a table",
+                Interpolation::Linear => "ramps",
+            };
+            format!("{kind} of {}, {} {unit} at first", counted(times.len() as u64, "value"), value(values.first()))
         }
     }
 }

@@ -37,6 +37,21 @@ pub(crate) fn read(origin: &str) -> Result<String, SceneError> {
     })
 }
 
+/// The text of a file beside a scene, or what the operating system says.
+pub(crate) fn text(path: &Path) -> Result<String, String> {
+    let mut text = String::new();
+    // A device or a pipe might never end.
+    if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
+        return Err(format!("{}: not a file", path.display()));
+    }
+    let file = File::open(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    file.take(LARGEST + 1).read_to_string(&mut text).map_err(|error| format!("{}: {error}", path.display()))?;
+    if text.len() as u64 > LARGEST {
+        return Err(format!("{}: larger than {LARGEST} bytes", path.display()));
+    }
+    Ok(text)
+}
+
 fn not_found(origin: &str) -> SceneError {
     // `turnarond.toml` and `scenes/turnaround.toml` are near `turnaround` too.
     let stem = Path::new(origin).file_stem().and_then(|stem| stem.to_str()).unwrap_or(origin);

@@ -24,6 +24,7 @@ mod fault;
 mod file;
 mod finding;
 mod keys;
+mod points;
 mod quantity;
 mod reading;
 mod run;
@@ -35,6 +36,7 @@ mod sweep;
 mod system;
 mod table;
 mod text;
+mod time;
 mod train;
 mod variation;
 mod written;
@@ -44,7 +46,9 @@ pub use self::scene::Scene;
 pub use self::text::{AnyScene, BuildError, Given, TextScene};
 pub use ::text::{AnyText, Coordinate, FREE, Family, FamilySystem, Moved, TextMechanics, TextModel, Varied};
 pub use bundled::{Bundled, SCHEMA, bundled, bundled_texts};
-pub use effects::{EFFECTS, EffectInfo, HillSpec, PathShape, PathSpec, SceneEffect, TimeSpec, TrailersSpec};
+pub use effects::{
+    EFFECTS, EffectInfo, HillSpec, Interpolation, PathShape, PathSpec, SceneEffect, TimeSpec, TrailersSpec,
+};
 pub use error::SceneError;
 pub use finding::{Place, SceneFinding};
 pub use run::{DEFAULT_METHOD, MAX_STEPS, Overrides, RunSettings};

@@ -1,6 +1,6 @@
-//! The values of effects: points, lists, functions of time, paths.
+//! The values of effects: points, lists, paths.
 
-use crate::effects::{PathShape, PathSpec, TimeSpec};
+use crate::effects::{PathShape, PathSpec};
 use crate::error::SceneError;
 use crate::fault::Fault;
 use crate::quantity::KeyQuantity;
@@ -9,9 +9,6 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::DeValue;
 
-const FREQUENCY: KeyQuantity = KeyQuantity::finite("frequency", "rad/s");
-const PHASE: KeyQuantity = KeyQuantity::finite("phase", "rad");
-const TIMES: KeyQuantity = KeyQuantity::finite("times", "s");
 const RADIUS: KeyQuantity = KeyQuantity::positive("radius", "m");
 const CENTER: KeyQuantity = KeyQuantity::finite("center", "m");
 const PERIOD: KeyQuantity = KeyQuantity::positive("period", "s");
@@ -70,7 +67,12 @@ impl<'s> TomlTable<'s> {
     }
 
     /// The value of `key` as a table with these keys.
-    fn nested(&self, key: &str, known: &[&str], accepted: impl Fn() -> String) -> Result<Option<Self>, SceneError> {
+    pub(crate) fn nested(
+        &self,
+        key: &str,
+        known: &[&str],
+        accepted: impl Fn() -> String,
+    ) -> Result<Option<Self>, SceneError> {
         let Some(value) = self.get(key) else { return Ok(None) };
         let DeValue::Table(entries) = value.get_ref() else {
             return Err(self.wrong_type(key, value, accepted()));
@@ -102,39 +104,6 @@ impl<'s> TomlTable<'s> {
             return Err(self.missing(key, accepted.to_owned()));
         }
         self.entries_of(key, accepted)?.into_iter().map(|table| table.with_known_keys(known)).collect()
-    }
-
-    /// A function of time: a number, a sine or a table; if the table has it.
-    pub(crate) fn time_function(&self, quantity: &KeyQuantity) -> Result<Option<TimeSpec>, SceneError> {
-        let Some(value) = self.get(quantity.key) else { return Ok(None) };
-        if as_f64(value.get_ref()).is_some() {
-            return Ok(self.number(quantity)?.map(TimeSpec::Constant));
-        }
-        let known = ["amplitude", "frequency", "phase", "times", "values"];
-        let Some(table) = self.nested(quantity.key, &known, || function(quantity))? else { return Ok(None) };
-        if table.get("times").is_some() || table.get("values").is_some() {
-            if let Some(key) = ["amplitude", "frequency", "phase"].into_iter().find(|key| table.get(key).is_some()) {
-                return Err(table.wrong(key, "does not go with `times` and `values`", function(quantity)));
-            }
-            let numbers = |quantity: &KeyQuantity| {
-                let list = table.numbers(quantity)?;
-                list.ok_or_else(|| table.missing(quantity.key, "a list of numbers".to_owned()))
-            };
-            let (times, values) = (numbers(&TIMES)?, numbers(&quantity.named("values"))?);
-            let spec = TimeSpec::Table { times, values };
-            spec.build().map_err(|error| table.wrong("times", &error.to_string(), function(quantity)))?;
-            return Ok(Some(spec));
-        }
-        Ok(Some(TimeSpec::Sine {
-            amplitude: table.required(&quantity.named("amplitude"))?,
-            frequency: table.required(&FREQUENCY)?,
-            phase: table.number(&PHASE)?.unwrap_or(0.0),
-        }))
-    }
-
-    /// A function of time.
-    pub(crate) fn required_function(&self, quantity: &KeyQuantity) -> Result<TimeSpec, SceneError> {
-        self.time_function(quantity)?.ok_or_else(|| self.missing(quantity.key, function(quantity)))
     }
 
     /// A closed path.
@@ -181,11 +150,4 @@ impl<'s> TomlTable<'s> {
 
 fn two(quantity: &KeyQuantity) -> String {
     format!("a list of two numbers, in {}", quantity.unit)
-}
-
-fn function(quantity: &KeyQuantity) -> String {
-    format!(
-        "a function of time in {}: a number, `{{amplitude, frequency, phase}}` or `{{times = [..], values = [..]}}`",
-        quantity.unit
-    )
 }

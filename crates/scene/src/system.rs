@@ -1,6 +1,6 @@
 use crate::{Built, Scene, SceneEffect};
 use dla::{Schedule, fitted};
-use sleigh::effects::{Bowl, Drag, EggCrate, Hills, MovingMass, Slope, Thrust, Torque};
+use sleigh::effects::{Bowl, Drag, EggCrate, Friction, Hills, MovingMass, QuadraticDrag, Slope, Thrust, Torque};
 use sleigh::{Exact, Guide, Guided, SleighError};
 use systems::{AnyEffect, AnySystem, Guiding, Lane, LaneMethod, LaneRun, Rotor, SleighFamily, Started};
 
@@ -197,6 +197,12 @@ impl SceneEffect {
                 AnyEffect::Hills(Hills::new(hills.iter().copied().map(Into::into).collect())?)
             }
             SceneEffect::Drag { along, turning } => AnyEffect::Drag(Drag::new(*along, *turning)?),
+            SceneEffect::QuadraticDrag { along, turning } => {
+                AnyEffect::QuadraticDrag(QuadraticDrag::new(*along, *turning)?)
+            }
+            SceneEffect::Friction { along, smoothing, turning, turning_smoothing } => {
+                AnyEffect::Friction(Friction::new(*along, *smoothing, *turning, *turning_smoothing)?)
+            }
             SceneEffect::Thrust { force } => AnyEffect::Thrust(Thrust::new(force.build()?)?),
             SceneEffect::Torque { torque } => AnyEffect::Torque(Torque::new(torque.build()?)?),
             SceneEffect::MovingMass { mass, x, y } => {

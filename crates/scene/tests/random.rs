@@ -3,7 +3,9 @@
 
 use dla::{Dla, Piece, Schedule, State, drive_part, piece_by_piece};
 use proptest::prelude::*;
-use scene::{Built, HillSpec, PathShape, PathSpec, RunSettings, Scene, SceneEffect, SceneError, TimeSpec, Visitor};
+use scene::{
+    Built, HillSpec, Interpolation, PathShape, PathSpec, RunSettings, Scene, SceneEffect, SceneError, TimeSpec, Visitor,
+};
 use sleigh::{Sleigh, SleighState};
 
 const METHODS: &[&str] = &["dla", "dla-alpha", "rk4"];
@@ -35,7 +37,12 @@ fn function() -> BoxedStrategy<TimeSpec> {
             frequency,
             phase
         }),
-        (number(), number()).prop_map(|(a, b)| TimeSpec::Table { times: vec![-1.0, 0.0], values: vec![a, b] }),
+        (number(), number()).prop_map(|(a, b)| TimeSpec::Table {
+            times: vec![-1.0, 0.0],
+            values: vec![a, b],
+            interpolation: Interpolation::Steps
+        }),
+        number().prop_map(|a| TimeSpec::Formula(format!("{a:?}*cos(t)"))),
     ]
     .boxed()
 }
@@ -60,6 +67,10 @@ fn acting() -> BoxedStrategy<SceneEffect> {
         (number(), pair()).prop_map(|(height, wave_number)| SceneEffect::EggCrate { height, wave_number }),
         prop::collection::vec(hill(), 0..3).prop_map(|hills| SceneEffect::Hills { hills }),
         (positive(), positive()).prop_map(|(along, turning)| SceneEffect::Drag { along, turning }),
+        (positive(), positive()).prop_map(|(along, turning)| SceneEffect::QuadraticDrag { along, turning }),
+        prop::array::uniform4(positive()).prop_map(|[along, smoothing, turning, turning_smoothing]| {
+            SceneEffect::Friction { along, smoothing, turning, turning_smoothing }
+        }),
         function().prop_map(|force| SceneEffect::Thrust { force }),
         function().prop_map(|torque| SceneEffect::Torque { torque }),
         (positive(), smooth.clone(), smooth).prop_map(|(mass, x, y)| SceneEffect::MovingMass { mass, x, y }),

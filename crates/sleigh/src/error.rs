@@ -33,6 +33,12 @@ pub enum SleighError {
         /// What is wrong with it.
         problem: String,
     },
+    /// A text is not a formula in the time.
+    #[error("the text is not a function of the time `t`: {problem}")]
+    Formula {
+        /// What is wrong with it.
+        problem: String,
+    },
     /// What is wanted needs a system of a few coordinates, and this is a train of many.
     #[error(
         "the scene has `trailers`, and this command has no trains: `run`, `compare` and `precision` have trains, with dla, dla4, dla6, dla8, lobatto3, lobatto4, lobatto5 and energy2"

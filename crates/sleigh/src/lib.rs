@@ -32,4 +32,4 @@ pub use exact::Exact;
 pub use series::{Taylor, TaylorEnsemble};
 pub use sleigh_body::SleighBody;
 pub use state::SleighState;
-pub use time_function::{Pulses, Table, TimeFunction};
+pub use time_function::{Formula, Pulses, Ramp, Table, TimeFunction};

@@ -1,5 +1,5 @@
 use lagrangian::{Effect, Piecewise, Scalar};
-use sleigh::effects::{Bowl, Drag, EggCrate, Hills, MovingMass, Slope, Thrust, Torque};
+use sleigh::effects::{Bowl, Drag, EggCrate, Friction, Hills, MovingMass, QuadraticDrag, Slope, Thrust, Torque};
 use sleigh::series::{OwnPush, PushInOwnAxes};
 use sleigh::{Sleigh, SleighBody};
 
@@ -12,6 +12,8 @@ pub enum AnyEffect {
     EggCrate(EggCrate),
     Hills(Hills),
     Drag(Drag),
+    QuadraticDrag(QuadraticDrag),
+    Friction(Friction),
     Thrust(Thrust),
     Torque(Torque),
     MovingMass(MovingMass),
@@ -26,6 +28,8 @@ macro_rules! each {
             AnyEffect::EggCrate($effect) => $result,
             AnyEffect::Hills($effect) => $result,
             AnyEffect::Drag($effect) => $result,
+            AnyEffect::QuadraticDrag($effect) => $result,
+            AnyEffect::Friction($effect) => $result,
             AnyEffect::Thrust($effect) => $result,
             AnyEffect::Torque($effect) => $result,
             AnyEffect::MovingMass($effect) => $result,
@@ -111,6 +115,8 @@ impl Piecewise for AnyEffect {
             Self::EggCrate(effect) => Self::EggCrate(effect.piece(t)),
             Self::Hills(effect) => Self::Hills(effect.piece(t)),
             Self::Drag(effect) => Self::Drag(effect.piece(t)),
+            Self::QuadraticDrag(effect) => Self::QuadraticDrag(effect.piece(t)),
+            Self::Friction(effect) => Self::Friction(effect.piece(t)),
             Self::Thrust(effect) => Self::Thrust(effect.piece(t)),
             Self::Torque(effect) => Self::Torque(effect.piece(t)),
             Self::MovingMass(effect) => Self::MovingMass(effect.piece(t)),
@@ -131,6 +137,8 @@ impl AnyEffect {
         match self {
             Self::Slope(_) | Self::Bowl(_) | Self::EggCrate(_) | Self::Hills(_) => None,
             Self::Drag(_) => Some("drag"),
+            Self::QuadraticDrag(_) => Some("quadratic_drag"),
+            Self::Friction(_) => Some("friction"),
             Self::Thrust(_) => Some("thrust"),
             Self::Torque(_) => Some("torque"),
             Self::MovingMass(_) => Some("moving_mass"),

@@ -16,6 +16,9 @@ pub enum Direction {
 /// Of the time (s) and the state.
 type EventFunction<'a, const N: usize> = Box<dyn Fn(f64, &State<N>) -> f64 + 'a>;
 
+/// Of the time (s), the state, and whether the function rises.
+type CrossingFilter<'a, const N: usize> = Box<dyn Fn(f64, &State<N>, bool) -> bool + 'a>;
+
 /// A function of time and state whose crossings of zero are looked for.
 ///
 /// A crossing changes the sign. A zero that is only touched is none, and a run that begins on one has not crossed it.
@@ -27,18 +30,32 @@ pub struct Event<'a, const N: usize> {
     /// Whether the first crossing ends the run.
     pub terminal: bool,
     function: EventFunction<'a, N>,
+    filter: Option<CrossingFilter<'a, N>>,
 }
 
 impl<'a, const N: usize> Event<'a, N> {
     /// The event `function(t, state) = 0`, in both directions, which ends nothing.
     pub fn new(name: impl Into<String>, function: impl Fn(f64, &State<N>) -> f64 + 'a) -> Self {
-        Self { name: name.into(), direction: Direction::Both, terminal: false, function: Box::new(function) }
+        Self {
+            name: name.into(),
+            direction: Direction::Both,
+            terminal: false,
+            function: Box::new(function),
+            filter: None,
+        }
     }
 
     /// The same event, of which only crossings in one direction count.
     #[must_use]
     pub fn in_direction(self, direction: Direction) -> Self {
         Self { direction, ..self }
+    }
+
+    /// The same event, of which only those crossings count that `filter(t, state, rising)` says: of those that the
+    /// [`direction`](Self::direction) leaves.
+    #[must_use]
+    pub fn where_true(self, filter: impl Fn(f64, &State<N>, bool) -> bool + 'a) -> Self {
+        Self { filter: Some(Box::new(filter)), ..self }
     }
 
     /// The same event, ending the run.
@@ -59,6 +76,11 @@ impl<'a, const N: usize> Event<'a, N> {
             Direction::Falling => !rising,
             Direction::Both => true,
         }
+    }
+
+    /// Whether a crossing that was found counts.
+    pub(super) fn admits(&self, crossing: &Crossing<N>) -> bool {
+        self.filter.as_ref().is_none_or(|filter| filter(crossing.t, &crossing.state, crossing.rising))
     }
 }
 

@@ -129,6 +129,9 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
 
     /// Notes a crossing; whether it ends the run, there at node `k`.
     fn note(&mut self, crossing: Crossing<N>, k: u64) -> bool {
+        if !self.events[crossing.event].admits(&crossing) {
+            return false;
+        }
         self.crossings.push(crossing);
         let ends = self.events[crossing.event].terminal;
         if ends {

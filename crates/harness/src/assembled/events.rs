@@ -6,6 +6,9 @@ use std::fmt;
 /// Of the time (s) and the state.
 type AssemblyFunction<'a> = Box<dyn Fn(f64, &AssemblyState) -> f64 + 'a>;
 
+/// Of the time (s), the state, and whether the function rises.
+type AssemblyFilter<'a> = Box<dyn Fn(f64, &AssemblyState, bool) -> bool + 'a>;
+
 /// A function of time and state whose crossings of zero are looked for along a run of an assembly.
 pub struct AssemblyEvent<'a> {
     /// What it is called.
@@ -13,12 +16,19 @@ pub struct AssemblyEvent<'a> {
     /// Whether the first crossing ends the run.
     pub terminal: bool,
     function: AssemblyFunction<'a>,
+    filter: AssemblyFilter<'a>,
 }
 
 impl<'a> AssemblyEvent<'a> {
     /// The event `function(t, state) = 0`, in both directions.
     pub fn new(name: impl Into<String>, terminal: bool, function: impl Fn(f64, &AssemblyState) -> f64 + 'a) -> Self {
-        Self { name: name.into(), terminal, function: Box::new(function) }
+        Self { name: name.into(), terminal, function: Box::new(function), filter: Box::new(|_, _, _| true) }
+    }
+
+    /// The same event, of which only those crossings count that `filter(t, state, rising)` says.
+    #[must_use]
+    pub fn where_true(self, filter: impl Fn(f64, &AssemblyState, bool) -> bool + 'a) -> Self {
+        Self { filter: Box::new(filter), ..self }
     }
 }
 
@@ -80,11 +90,11 @@ pub(super) fn ended(
     let parts = (-1..=samples + 1).map(|j| j as f64 / samples as f64);
     let states: Vec<(f64, AssemblyState)> = parts.filter_map(|part| Some((part, after(part)?))).collect();
     let mut found = Vec::new();
-    for (event, AssemblyEvent { function, .. }) in events.iter().enumerate() {
+    for (event, AssemblyEvent { function, filter, .. }) in events.iter().enumerate() {
         let known: Vec<(f64, f64)> = states.iter().map(|(part, state)| (*part, function(time(*part), state))).collect();
         let value = |part: f64| after(part).map_or(f64::NAN, |state| function(time(part), &state));
         for Zero { at, within, rising } in zeros(&known, 0.0, |_| true, value) {
-            if let Some(state) = after(at) {
+            if let Some(state) = after(at).filter(|state| filter(time(at), state, rising)) {
                 let (t, within, spacing) = (time(at), within * step.h.abs(), step.h.abs() / samples as f64);
                 found.push((at, AssemblyCrossing { event, k: step.k, t, within, spacing, rising, state }));
             }

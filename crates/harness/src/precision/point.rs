@@ -1,5 +1,6 @@
 use super::FittedSlope;
 use dla::RunError;
+use lagrangian::Shown;
 use std::fmt;
 
 /// What is varied along the curve of a method.
@@ -23,8 +24,8 @@ pub enum Mark {
 impl fmt::Display for RungSetting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Step(step) => write!(f, "step {} s", number(*step)),
-            Self::Tolerance(tolerance) => write!(f, "tolerance {}", number(*tolerance)),
+            Self::Step(step) => write!(f, "step {} s", Shown(*step)),
+            Self::Tolerance(tolerance) => write!(f, "tolerance {}", Shown(*tolerance)),
         }
     }
 }

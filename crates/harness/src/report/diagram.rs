@@ -6,7 +6,8 @@ use super::canvas::{Anchor, Canvas, Drawn, Ink, text_width};
 use super::geometry::{PlotFrame, Span};
 use super::look;
 use super::picture::Picture;
-use crate::precision::{Curve, Mark, PrecisionPoint, RungSetting, number};
+use crate::precision::{Curve, Mark, PrecisionPoint, RungSetting};
+use lagrangian::Shown;
 
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 420.0;
@@ -103,7 +104,7 @@ fn told(label: &str, point: &PrecisionPoint) -> String {
     for (name, value, unit) in
         [("error", point.error, ""), ("wall", point.wall_seconds, " s"), ("CPU", point.cpu_seconds, " s")]
     {
-        text += &value.map_or_else(String::new, |value| format!(", {name} {}{unit}", number(value)));
+        text += &value.map_or_else(String::new, |value| format!(", {name} {}{unit}", Shown(value)));
     }
     text + &point.mark.as_ref().map_or_else(String::new, |mark| format!(", {mark}"))
 }

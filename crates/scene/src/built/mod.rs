@@ -84,7 +84,7 @@ impl<const N: usize, const M: usize> Built<'_, N, M> {
     #[must_use]
     pub fn value(&self, k: usize, t: f64, q: &[f64; N], v: &[f64; N]) -> f64 {
         let value = match self {
-            Self::Sleigh(system) => sleigh::value(*system, k, q, v),
+            Self::Sleigh(system) => sleigh::value(*system, k, t, q, v),
             Self::Text(system) => text::value(system.model(), k, t, q, v),
         };
         // The energy is the last.

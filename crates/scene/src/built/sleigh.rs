@@ -50,6 +50,9 @@ pub const QUANTITIES: [SleighQuantity; 9] = [
 /// And those of a rotor.
 const ROTOR: [(&str, &str); 2] = [("rotor_angle", "rad"), ("rotor_rate", "rad/s")];
 
+/// The force of the blade, to the left positive: the column of this name.
+const FORCE: (&str, &str) = ("constraint_force", "N");
+
 /// The centre of mass, as the body sees it: its place along the blade and across it, from the origin.
 fn turned((at, [x, y]): &Seen) -> [f64; 2] {
     let (sin, cos) = at.heading.sin_cos();
@@ -60,23 +63,27 @@ pub(super) fn quantities<const N: usize, const M: usize>(system: &dyn SceneSyste
     let of = |name: &str, unit: &str, angle| Quantity { name: name.to_owned(), unit: unit.to_owned(), angle };
     let own = QUANTITIES.iter().map(|known| of(known.name, known.unit, known.is_angle()));
     let rotor = system.rotor(&[0.0; N], &[0.0; N]).map_or(&[][..], |_| &ROTOR);
-    own.chain(rotor.iter().map(|(name, unit)| of(name, unit, false))).collect()
+    own.chain(rotor.iter().chain([&FORCE]).map(|(name, unit)| of(name, unit, false))).collect()
 }
 
 /// The value of a quantity, where it is one of these.
 pub(super) fn value<const N: usize, const M: usize>(
     system: &dyn SceneSystem<N, M>,
     k: usize,
+    t: f64,
     q: &[f64; N],
     v: &[f64; N],
 ) -> Option<f64> {
-    match QUANTITIES.get(k) {
-        Some(quantity) => {
-            let centre = if k < IN_STATE { [0.0; 2] } else { system.centre(q) };
-            Some((quantity.value)(&(system.sleigh_state(q, v), centre)))
-        }
-        None => system.rotor(q, v)?.get(k - QUANTITIES.len()).copied(),
+    if let Some(quantity) = QUANTITIES.get(k) {
+        let centre = if k < IN_STATE { [0.0; 2] } else { system.centre(q) };
+        return Some((quantity.value)(&(system.sleigh_state(q, v), centre)));
     }
+    let rotor = system.rotor(q, v);
+    let rotor = rotor.as_ref().map_or(&[][..], |rotor| rotor);
+    let k = k - QUANTITIES.len();
+    // The first constraint is that of the blade.
+    let force = || system.scene_piece(t).motion(t, q, v).ok()?.multiplier.first().copied();
+    rotor.get(k).copied().or_else(|| (k == rotor.len()).then(|| force().unwrap_or(f64::NAN)))
 }
 
 /// The larger of the distances in position (m) and in heading (rad).

@@ -14,9 +14,7 @@ fn changes_body(effect: &SceneEffect) -> bool {
         | SceneEffect::Servo { .. }
         | SceneEffect::Tracer { .. }
         | SceneEffect::Turntable { .. } => true,
-        SceneEffect::Thrust { force: function } | SceneEffect::Torque { torque: function } => {
-            matches!(function, TimeSpec::Table { .. })
-        }
+        SceneEffect::Thrust { force: function } | SceneEffect::Torque { torque: function } => function.has_corners(),
         _ => false,
     }
 }
@@ -53,7 +51,11 @@ pub(super) fn check_train(tables: &[TomlTable<'_>], effects: &[SceneEffect]) -> 
     };
     if let Some(key) = table_of_times {
         let problem = "is a table of times, which does not act on a train: the scene has `trailers`";
-        return Err(table.wrong(key, problem, "a number or `{amplitude, frequency, phase}`".to_owned()));
+        return Err(table.wrong(
+            key,
+            problem,
+            "a number, `{amplitude, frequency, phase}` or a formula in `t`".to_owned(),
+        ));
     }
     let accepted = "what acts on its coordinates: `slope`, `bowl`, `egg_crate`, `hills` for every blade, `drag`, \
                     `thrust`, `torque` and `moving_mass` for the first, without tables of times";
@@ -80,11 +82,10 @@ pub(super) fn check_company(
         return Err(table.wrong("kind", problem, "a `tracer` where `sleigh.offset` is not 0".to_owned()));
     }
     if let SceneEffect::MovingMass { x, y, .. } = new {
-        let jumps = |f: &TimeSpec| matches!(f, TimeSpec::Table { times, .. } if times.len() > 1);
         for (key, function) in [("x", x), ("y", y)] {
-            if jumps(function) {
-                let accepted = "a number or `{amplitude, frequency, phase}`, in m".to_owned();
-                return Err(table.wrong(key, "would make the mass jump", accepted));
+            if function.has_corners() {
+                let accepted = "a number, `{amplitude, frequency, phase}` or a formula in `t`, in m".to_owned();
+                return Err(table.wrong(key, "would make the mass or its velocity jump", accepted));
             }
         }
     }

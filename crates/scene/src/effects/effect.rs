@@ -24,6 +24,10 @@ pub enum SceneEffect {
     },
     /// Viscous drag.
     Drag { along: f64, turning: f64 },
+    /// Drag by the square of the speed.
+    QuadraticDrag { along: f64, turning: f64 },
+    /// Coulomb friction, smoothed at rest.
+    Friction { along: f64, smoothing: f64, turning: f64, turning_smoothing: f64 },
     /// A force along the blade.
     Thrust { force: TimeSpec },
     /// A torque on the heading.
@@ -51,7 +55,8 @@ impl SceneEffect {
         let varies = |function: &Option<TimeSpec>| function.as_ref().is_some_and(TimeSpec::varies);
         match self {
             Self::Slope { .. } | Self::Bowl { .. } | Self::EggCrate { .. } | Self::Hills { .. } => false,
-            Self::Drag { .. } | Self::Turntable { .. } | Self::Trailers(_) => false,
+            Self::Drag { .. } | Self::QuadraticDrag { .. } | Self::Friction { .. } => false,
+            Self::Turntable { .. } | Self::Trailers(_) => false,
             Self::Flywheel { torque, .. } => varies(torque),
             Self::Thrust { force: function } | Self::Torque { torque: function } => function.varies(),
             Self::MovingMass { x, y, .. } => x.varies() || y.varies(),
@@ -70,6 +75,8 @@ impl SceneEffect {
             Self::Hills { .. } => "hills",
             Self::Flywheel { .. } => "flywheel",
             Self::Drag { .. } => "drag",
+            Self::QuadraticDrag { .. } => "quadratic_drag",
+            Self::Friction { .. } => "friction",
             Self::Thrust { .. } => "thrust",
             Self::Torque { .. } => "torque",
             Self::MovingMass { .. } => "moving_mass",

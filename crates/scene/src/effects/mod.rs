@@ -7,7 +7,7 @@ mod specs;
 mod table;
 
 pub use effect::SceneEffect;
-pub use specs::{HillSpec, PathShape, PathSpec, TimeSpec, TrailersSpec};
+pub use specs::{HillSpec, Interpolation, PathShape, PathSpec, TimeSpec, TrailersSpec};
 pub use table::{EFFECTS, EffectInfo};
 
 use crate::error::SceneError;

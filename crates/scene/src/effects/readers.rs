@@ -67,6 +67,28 @@ pub(super) fn drag(table: &TomlTable<'_>) -> Read {
     })
 }
 
+pub(super) fn quadratic_drag(table: &TomlTable<'_>) -> Read {
+    at_least_one(table, ["along", "turning"], "a coefficient of drag")?;
+    Ok(SceneEffect::QuadraticDrag {
+        along: table.number(&KeyQuantity::not_negative("along", "kg/m"))?.unwrap_or(0.0),
+        turning: table.number(&KeyQuantity::not_negative("turning", "kg m^2"))?.unwrap_or(0.0),
+    })
+}
+
+/// The speed (m/s) or turn rate (rad/s) below which friction is viscous, where a scene does not say it.
+const SMOOTHING: f64 = 0.01;
+
+pub(super) fn friction(table: &TomlTable<'_>) -> Read {
+    at_least_one(table, ["along", "turning"], "a force or a torque of friction")?;
+    let number = |quantity: KeyQuantity, left_out: f64| Ok(table.number(&quantity)?.unwrap_or(left_out));
+    Ok(SceneEffect::Friction {
+        along: number(KeyQuantity::not_negative("along", "N"), 0.0)?,
+        smoothing: number(KeyQuantity::positive("smoothing", "m/s"), SMOOTHING)?,
+        turning: number(KeyQuantity::not_negative("turning", "N m"), 0.0)?,
+        turning_smoothing: number(KeyQuantity::positive("turning_smoothing", "rad/s"), SMOOTHING)?,
+    })
+}
+
 pub(super) fn thrust(table: &TomlTable<'_>) -> Read {
     Ok(SceneEffect::Thrust { force: table.required_function(&finite("force", "N"))? })
 }

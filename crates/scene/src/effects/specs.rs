@@ -1,6 +1,6 @@
 use serde::Serialize;
 use sleigh::effects::Hill;
-use sleigh::{ClosedPath, SleighError, Table, TimeFunction};
+use sleigh::{ClosedPath, Formula, Ramp, SleighError, Table, TimeFunction};
 
 /// A function of time as a scene writes it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -17,13 +17,38 @@ pub enum TimeSpec {
         /// At `t = 0` (rad).
         phase: f64,
     },
-    /// `values[i]` from `times[i]` on.
+    /// Numbers at times.
     Table {
         /// Increasing (s).
         times: Vec<f64>,
         /// In the unit of the quantity.
         values: Vec<f64>,
+        /// What the function is between two times.
+        #[serde(skip_serializing_if = "Interpolation::is_left_out")]
+        interpolation: Interpolation,
     },
+    /// A formula in `t`.
+    Formula(String),
+}
+
+/// What a table of times is between two of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Interpolation {
+    /// `values[i]` from `times[i]` on.
+    #[default]
+    Steps,
+    /// Straight lines from point to point.
+    Linear,
+}
+
+impl Interpolation {
+    /// Every one, by its name in files.
+    pub(crate) const NAMES: [(&str, Self); 2] = [("steps", Self::Steps), ("linear", Self::Linear)];
+
+    fn is_left_out(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 impl TimeSpec {
@@ -32,14 +57,23 @@ impl TimeSpec {
             Self::Constant(_) => false,
             Self::Sine { amplitude, frequency, .. } => *amplitude != 0.0 && *frequency != 0.0,
             Self::Table { values, .. } => values.windows(2).any(|pair| pair[0].to_bits() != pair[1].to_bits()),
+            Self::Formula(text) => Formula::new(text).is_ok_and(|formula| !formula.is_constant()),
         }
     }
 
-    /// No value of the function is larger.
+    /// Whether the function, or its slope, jumps.
+    pub(super) fn has_corners(&self) -> bool {
+        matches!(self, Self::Table { times, .. } if times.len() > 1)
+    }
+
+    /// No value of the function is larger; of a formula the one at the start.
     pub(crate) fn largest(&self) -> f64 {
         match self {
             Self::Constant(value) | Self::Sine { amplitude: value, .. } => value.abs(),
             Self::Table { values, .. } => values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs())),
+            Self::Formula(text) => {
+                Formula::new(text).map_or(0.0, |formula| TimeFunction::Formula(formula).value(0.0_f64).abs())
+            }
         }
     }
 
@@ -50,7 +84,13 @@ impl TimeSpec {
             Self::Sine { amplitude, frequency, phase } => {
                 TimeFunction::Sine { amplitude: *amplitude, frequency: *frequency, phase: *phase }
             }
-            Self::Table { times, values } => TimeFunction::Table(Table::new(times.clone(), values.clone())?),
+            Self::Table { times, values, interpolation: Interpolation::Steps } => {
+                TimeFunction::Table(Table::new(times.clone(), values.clone())?)
+            }
+            Self::Table { times, values, interpolation: Interpolation::Linear } => {
+                TimeFunction::Ramp(Ramp::new(times.clone(), values.clone())?)
+            }
+            Self::Formula(text) => TimeFunction::Formula(Formula::new(text)?),
         })
     }
 }

@@ -63,6 +63,20 @@ pub const EFFECTS: &[EffectInfo] = &[
         read: readers::drag,
     },
     EffectInfo {
+        name: "quadratic_drag",
+        keys: &["along", "turning"],
+        summary: "drag by the square of the speed, and of the turn rate",
+        only_once: false,
+        read: readers::quadratic_drag,
+    },
+    EffectInfo {
+        name: "friction",
+        keys: &["along", "smoothing", "turning", "turning_smoothing"],
+        summary: "Coulomb friction or rolling resistance along the blade and against turning, smoothed at rest",
+        only_once: false,
+        read: readers::friction,
+    },
+    EffectInfo {
         name: "thrust",
         keys: &["force"],
         summary: "force along the blade, constant or a function of time",

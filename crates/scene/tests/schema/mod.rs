@@ -71,7 +71,17 @@ const ENTRIES: &[(&str, &[(&str, &str)])] = &[
     ),
     ("kind = \"drag\"\nalong = 0.0", &[("along = 0.0", ""), ("0.0", "-1.0")]),
     ("kind = \"drag\"\nturning = 0.1", &[("turning", "pivoting")]),
-    ("kind = \"thrust\"\nforce = -0.5", &[("force", "thrust"), ("-0.5", "\"-0.5\""), ("force = -0.5", "")]),
+    ("kind = \"thrust\"\nforce = -0.5", &[("force", "thrust"), ("-0.5", "true"), ("force = -0.5", "")]),
+    ("kind = \"quadratic_drag\"\nalong = 0.2", &[("along = 0.2", ""), ("0.2", "-0.2")]),
+    (
+        "kind = \"friction\"\nalong = 0.5\nsmoothing = 0.001\nturning = 0.1\nturning_smoothing = 0.002",
+        &[("0.001", "0.0"), ("0.002", "-1.0"), ("turning_smoothing", "smooth")],
+    ),
+    ("kind = \"thrust\"\nforce = \"0.2*t\"", &[("\"0.2*t\"", "[\"0.2*t\"]")]),
+    (
+        "kind = \"thrust\"\nforce = { times = [0.0, 1.0], values = [1.0, 2.0], interpolation = \"linear\" }",
+        &[("linear", "cubic"), ("times", "file"), ("\"linear\"", "1.0")],
+    ),
     (
         "kind = \"thrust\"\nforce = { times = [0.0, 1.0], values = [1.0, 2.0] }",
         &[(", values = [1.0, 2.0]", ""), ("[0.0, 1.0]", "[]"), ("values", "forces")],

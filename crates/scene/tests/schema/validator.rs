@@ -23,6 +23,7 @@ pub(super) fn validate(root: &Value, schema: &Value, value: &Value) -> Result<()
                 other => panic!("the type {other}"),
             },
             "const" => says == value,
+            "enum" => says.as_array().expect("a list").contains(value),
             "required" => value.as_object().is_none_or(|object| {
                 says.as_array().expect("a list").iter().all(|key| object.contains_key(key.as_str().expect("a name")))
             }),

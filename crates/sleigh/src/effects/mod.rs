@@ -5,8 +5,10 @@
 mod bowl;
 mod drag;
 mod egg_crate;
+mod friction;
 mod hills;
 mod moving_mass;
+mod quadratic_drag;
 mod slope;
 mod thrust;
 mod torque;
@@ -14,8 +16,10 @@ mod torque;
 pub use bowl::Bowl;
 pub use drag::Drag;
 pub use egg_crate::EggCrate;
+pub use friction::Friction;
 pub use hills::{Hill, Hills};
 pub use moving_mass::MovingMass;
+pub use quadratic_drag::QuadraticDrag;
 pub use slope::Slope;
 pub use thrust::Thrust;
 pub use torque::Torque;
@@ -32,4 +36,4 @@ macro_rules! smooth {
         })+
     };
 }
-smooth!(Bowl, Drag, EggCrate, Hills, Slope);
+smooth!(Bowl, Drag, EggCrate, Friction, Hills, QuadraticDrag, Slope);

@@ -1,5 +1,5 @@
 use crate::Sleigh;
-use crate::effects::{Drag, EggCrate, Hills, MovingMass, Slope};
+use crate::effects::{Drag, EggCrate, Friction, Hills, MovingMass, QuadraticDrag, Slope};
 use lagrangian::With;
 
 /// The reduced equations of a body on the plane in axes that turn with it, where they are of second degree and have the turn rate
@@ -147,4 +147,4 @@ tuple_of_pushes!(E0 0, E1 1, E2 2, E3 3);
 macro_rules! not_of_this_form {
     ($($effect:ident)*) => { $(impl<B> PushInOwnAxes<B> for $effect {})* };
 }
-not_of_this_form!(Slope EggCrate Hills Drag MovingMass);
+not_of_this_form!(Slope EggCrate Hills Drag Friction QuadraticDrag MovingMass);

@@ -3,7 +3,7 @@
 use approx::assert_abs_diff_eq;
 use lagrangian::{Effect, EffectSlope};
 use proptest::prelude::*;
-use sleigh::effects::{Drag, EggCrate, MovingMass, Thrust, Torque};
+use sleigh::effects::{Drag, EggCrate, Friction, MovingMass, QuadraticDrag, Thrust, Torque};
 use sleigh::{Flywheel, Sleigh, TimeFunction};
 
 /// Along the blade (N), across it (N), and about its contact point (N m).
@@ -66,6 +66,9 @@ proptest! {
         let (sin, cos) = q[2].sin_cos();
         let v = [u * cos, u * sin, w];
         close(components(&Drag::new(0.3, 0.7).unwrap(), t, &q, &v), [-0.3 * u, 0.0, -0.7 * w]);
+        close(components(&QuadraticDrag::new(0.3, 0.7).unwrap(), t, &q, &v), [-0.3 * u * u.abs(), 0.0, -0.7 * w * w.abs()]);
+        let friction = Friction::new(0.3, 0.2, 0.7, 0.4).unwrap();
+        close(components(&friction, t, &q, &v), [-0.3 * (u / 0.2).tanh(), 0.0, -0.7 * (w / 0.4).tanh()]);
         let function = TimeFunction::Sine { amplitude: 1.2, frequency: 0.9, phase: 0.4 };
         let value = 1.2 * (0.9 * t + 0.4).sin();
         close(components(&Thrust::new(function.clone()).unwrap(), t, &q, &v), [value, 0.0, 0.0]);
@@ -75,6 +78,8 @@ proptest! {
         let (q, v) = ([q[0], q[1], q[2], 0.5], [v[0], v[1], v[2], 0.6]);
         for force in [
             Drag::new(0.3, 0.7).unwrap().force(&rotor, t, &q, &v),
+            QuadraticDrag::new(0.3, 0.7).unwrap().force(&rotor, t, &q, &v),
+            friction.force(&rotor, t, &q, &v),
             Thrust::new(1.5).unwrap().force(&rotor, t, &q, &v),
             Torque::new(1.5).unwrap().force(&rotor, t, &q, &v),
         ] {

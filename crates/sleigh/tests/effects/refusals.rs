@@ -1,6 +1,6 @@
 //! What no effect and no body accepts, each beside a neighbour that it does.
 
-use sleigh::effects::{Bowl, Drag, EggCrate, Hill, Hills, MovingMass, Slope, Thrust, Torque};
+use sleigh::effects::{Bowl, Drag, EggCrate, Friction, Hill, Hills, MovingMass, QuadraticDrag, Slope, Thrust, Torque};
 use sleigh::{ClosedPath, Flywheel, Guide, Guided, Sleigh, SleighError, Table, TimeFunction};
 use std::fmt::Debug;
 
@@ -59,6 +59,17 @@ fn drives() {
         not_positive(MovingMass::new(bad, 0.0, 0.0), "mass");
         not_positive(Flywheel::new(sleigh(), bad, None), "inertia of the rotor");
     }
+    for bad in [NAN, INFINITE, -1e-300] {
+        for drag in [QuadraticDrag::new(bad, 0.0), QuadraticDrag::new(0.0, bad)] {
+            assert!(matches!(drag, Err(SleighError::Negative { .. })), "{drag:?}");
+        }
+        for friction in [Friction::new(bad, 1.0, 0.0, 1.0), Friction::new(0.0, 1.0, bad, 1.0)] {
+            assert!(matches!(friction, Err(SleighError::Negative { .. })), "{friction:?}");
+        }
+        not_positive(Friction::new(1.0, bad, 1.0, 1.0), "smoothing");
+        not_positive(Friction::new(1.0, 1.0, 1.0, bad), "turning_smoothing");
+    }
+    not_positive(Friction::new(1.0, 0.0, 1.0, 1.0), "smoothing");
     refused(Drag::new(-1.0, 0.0), "along");
     refused(Drag::new(0.0, -1.0), "turning");
     not_positive(MovingMass::new(0.0, 0.0, 0.0), "mass");

@@ -5,7 +5,7 @@ use approx::assert_relative_eq;
 use lagrangian::{Dual, Piecewise};
 use proptest::prelude::*;
 use sleigh::effects::{Thrust, Torque};
-use sleigh::{Flywheel, Guide, Guided, Pulses, Sleigh, SleighError, Table, TimeFunction};
+use sleigh::{Flywheel, Formula, Guide, Guided, Pulses, Ramp, Sleigh, SleighError, Table, TimeFunction};
 use std::f64::consts::TAU;
 
 fn steps() -> TimeFunction {
@@ -50,6 +50,52 @@ fn a_table_in_pieces() {
     assert_eq!(table.jumps(0.0, 3.0), [2.5]);
     let sine = TimeFunction::Sine { amplitude: 1.0, frequency: 2.0, phase: 0.0 };
     assert!(sine.jumps(-10.0, 10.0).is_empty() && sine.piece(3.0) == sine);
+}
+
+/// Lines from point to point, and the values at the ends beyond them.
+#[test]
+fn ramps_in_pieces() {
+    let ramps = TimeFunction::Ramp(Ramp::new(vec![1.0, 2.5, 4.0], vec![0.5, -1.0, 0.5]).unwrap());
+    for (t, value, slope) in
+        [(-9.0, 0.5, 0.0), (1.0, 0.5, -1.0), (2.0, -0.5, -1.0), (2.5, -1.0, 1.0), (3.5, 0.0, 1.0), (9.0, 0.5, 0.0)]
+    {
+        let piece = ramps.piece(t);
+        assert_eq!((piece.value(t), piece.slope(t)), (value, slope), "at {t}");
+        // A piece goes on beyond its ends.
+        assert_eq!(piece.value(t + 10.0), value + 10.0 * slope);
+    }
+    assert_eq!(ramps.jumps(-10.0, 10.0), [1.0, 2.5, 4.0]);
+    let steep = Ramp::new(vec![0.0, 1e-300], vec![0.0, 1e300]);
+    assert!(matches!(&steep, Err(SleighError::Table { problem }) if problem.contains("too steep")), "{steep:?}");
+}
+
+/// A formula and its derivatives, on every number that carries derivatives.
+#[test]
+fn formulas() {
+    let formula = TimeFunction::Formula(Formula::new("0.4*t*exp(-t)").unwrap());
+    type Second = Dual<Dual<f64, 1>, 1>;
+    for t in [0.0, 0.7, 3.0] {
+        let x = Second { re: Dual::variable(t, 0), eps: [Dual { re: 1.0, eps: [0.0] }] };
+        let found = formula.value(x);
+        let decay = 0.4 * f64::exp(-t);
+        let expected = [t * decay, (1.0 - t) * decay, (t - 2.0) * decay];
+        for (found, expected) in [found.re.re, found.eps[0].re, found.eps[0].eps[0]].into_iter().zip(expected) {
+            // Sums of two products, and the rounding of the exponential.
+            assert_relative_eq!(found, expected, max_relative = 8.0 * f64::EPSILON, epsilon = 1e-16);
+        }
+        assert_relative_eq!(formula.slope(t), expected[1], max_relative = 8.0 * f64::EPSILON, epsilon = 1e-16);
+    }
+    assert!(formula.jumps(-10.0, 10.0).is_empty() && formula.piece(3.0) == formula);
+    let refused = |text: &str, said: &str| {
+        let error = Formula::new(text).unwrap_err().to_string();
+        assert!(error.contains(said), "{text}: {error}");
+    };
+    refused("0.2*x", "no name `x`");
+    refused("0.2*", "column");
+    refused("1/t", "its value at t = 0 is");
+    let long: Vec<String> = (1..400).map(|k| format!("sin({k}*t)*cos({k}.5*t^{k})")).collect();
+    let nested = long.iter().fold("t".to_owned(), |inner, term| format!("sin({inner} + {term})"));
+    assert!(Formula::new(&nested).is_err());
 }
 
 /// What has a table jumps with it.

@@ -62,5 +62,5 @@ fn three_computations_agree() {
         assert!(distance(&other, &stored) > 1e-3, "{}: {:e}", scene.title, distance(&other, &stored));
         count += 1;
     }
-    assert_eq!(count, 30);
+    assert_eq!(count, 36);
 }

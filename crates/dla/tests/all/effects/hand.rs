@@ -9,7 +9,7 @@
 //! ```
 
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre};
-use scene::{PathShape, PathSpec, Scene, SceneEffect, TimeSpec};
+use scene::{Interpolation, PathShape, PathSpec, Scene, SceneEffect, TimeSpec};
 use std::array::from_fn;
 use std::f64::consts::TAU;
 
@@ -24,10 +24,19 @@ fn function(spec: &TimeSpec, t: f64, middle: f64) -> [f64; 3] {
             let (sin, cos) = (frequency * t + phase).sin_cos();
             [amplitude * sin, amplitude * frequency * cos, -amplitude * frequency * frequency * sin]
         }
-        TimeSpec::Table { times, values } => {
-            let last = times.iter().zip(values).rev().find(|(time, _)| **time <= middle);
-            [last.map_or(values[0], |(_, value)| *value), 0.0, 0.0]
+        TimeSpec::Table { times, values, interpolation } => {
+            let Some(i) = times.iter().rposition(|time| *time <= middle) else { return [values[0], 0.0, 0.0] };
+            let slope = match interpolation {
+                Interpolation::Linear if i + 1 < times.len() => (values[i + 1] - values[i]) / (times[i + 1] - times[i]),
+                _ => 0.0,
+            };
+            [values[i] + slope * (t - times[i]), slope, 0.0]
         }
+        TimeSpec::Formula(text) if text == "0.4*t*exp(-t)" => {
+            let decay = 0.4 * (-t).exp();
+            [t * decay, (1.0 - t) * decay, (t - 2.0) * decay]
+        }
+        TimeSpec::Formula(text) => panic!("not written by hand: {text}"),
     }
 }
 
@@ -130,6 +139,14 @@ fn terms(scene: &Scene, t: f64, middle: f64, &[x, y, theta, u, omega, ..]: &Plac
             SceneEffect::Drag { along: c_u, turning: c_omega } => {
                 along -= c_u * u;
                 turning -= c_omega * omega;
+            }
+            SceneEffect::QuadraticDrag { along: c_u, turning: c_omega } => {
+                along -= c_u * u * u.abs();
+                turning -= c_omega * omega * omega.abs();
+            }
+            SceneEffect::Friction { along: force, smoothing, turning: torque, turning_smoothing } => {
+                along -= force * (u / smoothing).tanh();
+                turning -= torque * (omega / turning_smoothing).tanh();
             }
             SceneEffect::Thrust { force } => along += function(force, t, middle)[0],
             SceneEffect::Torque { torque } => turning += function(torque, t, middle)[0],

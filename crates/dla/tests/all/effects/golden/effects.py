@@ -20,6 +20,8 @@ import numpy as np
 
 F = np.longdouble
 T = F(10)
+# The formula that these scenes have.
+FORMULA = "0.4*t*exp(-t)"
 TAU = F("6.283185307179586476925286766559")
 assert np.finfo(F).eps < 2e-19, "this needs extended precision"
 
@@ -29,9 +31,19 @@ assert np.finfo(F).eps < 2e-19, "this needs extended precision"
 def function(spec, middle):
     if isinstance(spec, float):
         return lambda t: (F(spec), F(0), F(0))
+    if spec == FORMULA:
+        return lambda t: (F("0.4") * t * np.exp(-t), F("0.4") * (1 - t) * np.exp(-t), F("0.4") * (t - 2) * np.exp(-t))
     if "amplitude" in spec:
         a, w, p = (F(spec[k]) for k in ("amplitude", "frequency", "phase"))
         return lambda t: (a * np.sin(w * t + p), a * w * np.cos(w * t + p), -a * w * w * np.sin(w * t + p))
+    if "interpolation" in spec:
+        times, values = ([F(x) for x in spec[k]] for k in ("times", "values"))
+        if middle < times[0] or middle >= times[-1]:
+            value = values[0] if middle < times[0] else values[-1]
+            return lambda t: (value, F(0), F(0))
+        i = max(k for k, time in enumerate(times) if time <= middle)
+        slope = (values[i + 1] - values[i]) / (times[i + 1] - times[i])
+        return lambda t: (values[i] + slope * (t - times[i]), slope, F(0))
     value = spec["values"][0]
     for time, new in zip(spec["times"], spec["values"]):
         if time <= middle:
@@ -71,7 +83,7 @@ def jumps(scene):
 
     def of_function(spec):
         if isinstance(spec, dict) and "times" in spec:
-            found.update(F(t) for t in spec["times"][1:])
+            found.update(F(t) for t in spec["times"][0 if "interpolation" in spec else 1:])
 
     for effect in scene["effects"]:
         for key, value in effect.items():
@@ -171,6 +183,14 @@ class Piece:
                 f = -F(e["along"]) * u
                 at_blade(f * c, f * s)
                 Q[2] -= F(e["turning"]) * w
+            elif kind == "quadratic_drag":
+                f = -F(e["along"]) * u * abs(u)
+                at_blade(f * c, f * s)
+                Q[2] -= F(e["turning"]) * w * abs(w)
+            elif kind == "friction":
+                f = -F(e["along"]) * np.tanh(u / F(e["smoothing"]))
+                at_blade(f * c, f * s)
+                Q[2] -= F(e["turning"]) * np.tanh(w / F(e["turning_smoothing"]))
             elif kind == "thrust":
                 f = row["force"](t)[0]
                 at_blade(f * c, f * s)
@@ -330,6 +350,23 @@ ALONE = {
     "turntable": [{"rate": 0.35}],
 }
 
+# From a start that only goes forward, where the square of the speed is smooth.
+FORWARD = dict(START, speed=0.8)
+
+
+def ramps(times, values):
+    return {"times": times, "values": values, "interpolation": "linear"}
+
+
+LATER = [
+    ("quadratic_drag 1", FORWARD, {"along": 0.2, "turning": 0.1}),
+    ("friction 1", START, {"along": 0.3, "smoothing": 0.4, "turning": 0.05, "turning_smoothing": 0.5}),
+    ("thrust 4", START, {"force": ramps([1.0, 2.5, 6.0], [0.5, -0.7, 0.2])}),
+    ("thrust 5", START, {"force": FORMULA}),
+    ("moving_mass 3", START, {"mass": 0.4, "x": FORMULA, "y": 0.2}),
+    ("servo 4", START, {"speed": ramps([0.0, 5.0], [0.0, 1.0]), "turn_rate": ramps([3.0, 4.0, 7.5], [0.5, -0.8, 0.3])}),
+]
+
 
 def random_scene(rng):
     def u(low, high):
@@ -389,6 +426,11 @@ def scenes():
         yield f"random {k + 1} {body}", {"sleigh": sleigh, "start": start, "effects": effects}
 
 
+def later():
+    for name, start, keys in LATER:
+        yield name, {"sleigh": SLEIGH, "start": start, "effects": [dict(kind=name.split()[0], **keys)]}
+
+
 def toml(value):
     if isinstance(value, dict):
         return "{" + ", ".join(f"{k} = {toml(v)}" for k, v in value.items()) + "}"
@@ -399,7 +441,7 @@ def toml(value):
 
 def main():
     print("# Written by effects.py, do not edit.")
-    for name, scene in scenes():
+    for name, scene in [*scenes(), *later()]:
         rough, fine = motion(scene, F("0.125")), motion(scene, F("0.1"))
         error = np.max(np.abs(fine - rough))
         print(f"{name}: {float(error):.1e}", file=sys.stderr)

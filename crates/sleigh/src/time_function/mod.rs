@@ -1,0 +1,108 @@
+//! Functions of time: forces, torques, places, imposed speeds.
+
+mod formula;
+mod pulses;
+mod ramp;
+mod table;
+
+pub use formula::Formula;
+pub use pulses::Pulses;
+pub use ramp::Ramp;
+pub use table::Table;
+
+use crate::SleighError;
+use lagrangian::{Piecewise, Scalar};
+
+/// A function of time: a force, a torque, a position.
+#[derive(Debug, Clone, PartialEq)]
+pub enum TimeFunction {
+    /// The same at all times.
+    Constant(f64),
+    /// `amplitude sin(frequency t + phase)`.
+    Sine {
+        /// Amplitude, in the unit of the function.
+        amplitude: f64,
+        /// Angular frequency (rad/s).
+        frequency: f64,
+        /// Phase at `t = 0` (rad).
+        phase: f64,
+    },
+    /// Constant between the times of a table.
+    Table(Table),
+    /// Linear between the times of a table.
+    Ramp(Ramp),
+    /// Smooth pulses, one after the other.
+    Pulses(Pulses),
+    /// A formula in `t`.
+    Formula(Formula),
+}
+
+impl TimeFunction {
+    /// The value at `t`.
+    #[inline(always)]
+    pub fn value<S: Scalar>(&self, t: S) -> S {
+        match self {
+            Self::Constant(value) => S::constant(*value),
+            Self::Sine { amplitude, frequency, phase } => (t * *frequency + *phase).sin() * *amplitude,
+            Self::Table(table) => S::constant(table.value()),
+            Self::Ramp(ramp) => ramp.value(t),
+            Self::Pulses(pulses) => pulses.value(t),
+            Self::Formula(formula) => formula.value(t),
+        }
+    }
+
+    /// The derivative in time at `t`, between the jumps.
+    #[inline(always)]
+    pub fn slope<S: Scalar>(&self, t: S) -> S {
+        match self {
+            Self::Sine { amplitude, frequency, phase } => (t * *frequency + *phase).cos() * (*amplitude * *frequency),
+            Self::Constant(_) | Self::Table(_) => S::zero(),
+            Self::Ramp(ramp) => S::constant(ramp.slope()),
+            Self::Pulses(pulses) => pulses.slope(t),
+            Self::Formula(formula) => formula.slope(t),
+        }
+    }
+
+    /// The function itself, where every number in it is finite.
+    ///
+    /// # Errors
+    /// [`SleighError::NotFinite`] names the quantity that the function stands for.
+    pub fn finite(self, quantity: &'static str) -> Result<Self, SleighError> {
+        let numbers = match self {
+            Self::Constant(value) => [value, 0.0, 0.0],
+            Self::Sine { amplitude, frequency, phase } => [amplitude, frequency, phase],
+            // Checked when they were made.
+            Self::Table(_) | Self::Ramp(_) | Self::Pulses(_) | Self::Formula(_) => [0.0; 3],
+        };
+        match numbers.into_iter().find(|x| !x.is_finite()) {
+            Some(value) => Err(SleighError::NotFinite { quantity, value }),
+            None => Ok(self),
+        }
+    }
+}
+
+impl From<f64> for TimeFunction {
+    fn from(value: f64) -> Self {
+        Self::Constant(value)
+    }
+}
+
+impl Piecewise for TimeFunction {
+    fn jumps(&self, from: f64, to: f64) -> Vec<f64> {
+        match self {
+            Self::Table(table) => table.jumps(from, to),
+            Self::Ramp(ramp) => ramp.jumps(from, to),
+            Self::Pulses(pulses) => pulses.jumps(from, to),
+            Self::Constant(_) | Self::Sine { .. } | Self::Formula(_) => Vec::new(),
+        }
+    }
+
+    fn piece(&self, t: f64) -> Self {
+        match self {
+            Self::Table(table) => Self::Table(table.piece(t)),
+            Self::Ramp(ramp) => Self::Ramp(ramp.piece(t)),
+            Self::Pulses(pulses) => Self::Pulses(pulses.piece(t)),
+            other => other.clone(),
+        }
+    }
+}
