@@ -33,7 +33,11 @@ const REFUSED: [(&str, &str, &[&str]); 11] = [
     (
         "run",
         "r13_train_with_table.toml",
-        &["r13_train_with_table.toml:13:9", "`effects[0].thrust.force` is a table of times", "a number or"],
+        &[
+            "r13_train_with_table.toml:13:9",
+            "`effects[0].thrust.force` is a table of times",
+            "a number, `{amplitude, frequency, phase}` or",
+        ],
     ),
     ("section", "r23_section.toml --plane z=0", &["no quantity `z`", "heading"]),
 ];

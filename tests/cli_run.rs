@@ -264,12 +264,12 @@ fn a_checkpoint_of_another_run_is_refused() {
     folder.refused("run turnaround --resume none", &["none"]);
     folder.refused("run turnaround --checkpoint saved", &["saved exists already", "--force"]);
     folder.refused("run turnaround --checkpoint-every 10", &["--checkpoint"]);
-    folder.refused("run turnaround --resume saved --event speed=0", &["--event"]);
+    folder.refused("run turnaround --resume saved --event speed=0", &["`events` is `-`", "`speed=0`"]);
     folder.write("cut", &written[..written.len() / 2]);
     folder.refused("run turnaround --resume cut", &["cut", "damaged"]);
     folder.write("noise", b"\xff\xfe");
     folder.refused("run turnaround --resume noise", &["not a checkpoint"]);
-    folder.write("newer", written.replacen("checkpoint 4", "checkpoint 7", 1));
+    folder.write("newer", written.replacen("checkpoint 5", "checkpoint 7", 1));
     folder.refused("run turnaround --resume newer", &["version 7"]);
     // The scene of a name may change.
     folder.write("scene.toml", SCENE);
@@ -326,9 +326,9 @@ fn events_have_a_direction() {
     let folder = Folder::new();
     let count = |line: &str| folder.json(&format!("run {line} --json"))["events"].as_array().unwrap().len();
     assert_eq!(["", ":rising", ":falling"].map(|way| count(&format!("turnaround --event speed=0{way}"))), [1, 1, 0]);
-    // Ten seconds of one turn in 2 pi: the angle rises through a quarter of a turn twice.
-    let turns = |way: &str| count(&format!("circle --duration 10 --event heading=1.5{way}"));
-    assert_eq!(["", ":rising", ":falling"].map(turns), [2, 2, 0]);
+    // A turn in 4 pi seconds: in 60 s the angle rises through 1.5 rad five times.
+    let turns = |way: &str| count(&format!("circle --event heading=1.5{way}"));
+    assert_eq!(["", ":rising", ":falling"].map(turns), [5, 5, 0]);
     // To and fro, five times each way.
     folder.write("scene.toml", TO_AND_FRO);
     let times = ["", ":rising", ":falling"].map(|way| count(&format!("scene.toml --event x=0.05{way} --step 0.01")));
@@ -343,6 +343,73 @@ fn events_have_a_direction() {
     // A train is asked for its first blade.
     let trained = |way: &str| count(&format!("{TRAIN} --event x=0.5{way}"));
     assert_eq!([":rising", ":falling"].map(trained).iter().sum::<usize>(), trained(""));
+}
+
+/// Backward in time the motion is that of the sleigh with its velocities reversed, where no force depends on time or velocity; and
+/// the closed form of the free one. A table of times is met in its order.
+#[test]
+fn a_negative_duration_goes_backward_in_time() {
+    let folder = Folder::new();
+    let end = |line: &str| folder.json(&format!("run {line} --json"))["final"].clone();
+    for method in ["dla", "dla8", "lobatto3", "gauss16", "gauss-adaptive", "energy4", "rk4", "rk4-reduced", "dop853"] {
+        for scene in ["turnaround", "bowl"] {
+            let back = end(&format!("{scene} --duration -10 --step 0.05 --method {method}"));
+            let mirrored = "--set start.speed=1.0 --set start.turn_rate=-0.1";
+            let forth = end(&format!("{scene} --duration 10 --step 0.05 --method {method} {mirrored}"));
+            assert_eq!(back["t"].as_f64(), Some(-10.0), "{back}");
+            for (key, sign) in [("x", 1.0), ("y", 1.0), ("heading", 1.0), ("speed", -1.0), ("turn_rate", -1.0)] {
+                let [back, forth] = [&back, &forth].map(|end| end[key].as_f64().unwrap());
+                // Two hundred steps of numbers below 20, and solvers that stop at rounding.
+                assert!((back - sign * forth).abs() < 1e-10, "{method} in {scene}: {key} {back} and {forth}");
+            }
+        }
+    }
+    // Backward to a place and forward from it.
+    let run = folder.json("run turnaround --duration -7 --method taylor --event y=-0.2 --json --out back.csv");
+    let (_, rows) = csv(&folder.read("back.csv"));
+    assert!(rows.windows(2).all(|pair| pair[1][0] < pair[0][0]) && rows.last().unwrap()[0] == -7.0, "{run}");
+    let metadata = folder.read("back.csv-metadata.json");
+    assert!(metadata.contains("--duration -7.0") && !metadata.contains("--step -"), "{metadata}");
+    // A servo that jumps at -2 s and 1 s.
+    let table = "[[effects]]\nkind = \"servo\"\nspeed = { times = [-9.0, -2.0, 1.0], values = [1.0, 3.0, 5.0] }\nturn_rate = 0.0\n";
+    folder.write("scene.toml", format!("{SCENE}{table}"));
+    let back = end("scene.toml --duration -5 --step 0.3 --set start.heading=0");
+    assert!((back["x"].as_f64().unwrap() + 2.0 * 3.0 + 3.0 * 1.0).abs() < 1e-12, "{back}");
+    folder.refused("compare turnaround --methods dla --duration -5", &["--duration", "greater than 0"]);
+    folder.refused(&format!("run {TRAIN} --duration -5"), &["forward in time only"]);
+    folder.refused("run turnaround --duration -5 --tolerance 1e-6", &["--tolerance", "backward"]);
+    folder.refused("run turnaround --duration 0", &["greater than 0"]);
+}
+
+/// A run that is saved has its events too, and goes on with those that it had.
+#[test]
+fn events_are_saved_and_found_again() {
+    let folder = Folder::new();
+    folder.write("scene.toml", TO_AND_FRO);
+    for method in ["dla", "gauss16", "dop853"] {
+        let run = format!("run scene.toml --method {method} --step 0.01 --event x=0.05 --json");
+        let until = "--duration 6 --until x=0.0999:rising";
+        let whole = folder.json(&format!("{run} --duration 6"));
+        let saved = folder.json(&format!("{run} --duration 6 --checkpoint whole.save --checkpoint-every 50 --force"));
+        folder.json(&format!("{run} --duration 2.5 --checkpoint part.save --checkpoint-every 50 --force"));
+        let resumed = folder.json(&format!("{run} --duration 6 --resume part.save"));
+        assert_eq!(saved["events"], resumed["events"], "{method}");
+        let times = |run: &serde_json::Value| -> Vec<f64> {
+            run["events"].as_array().unwrap().iter().map(|event| event["t"].as_f64().unwrap()).collect()
+        };
+        assert_eq!(times(&whole).len(), 20, "{method}");
+        assert_times(&times(&saved), &times(&whole), 1e-12);
+        // What ends the run ends the saved one, and again from the last save before it.
+        let ended = folder.json(&format!("{run} {until}"));
+        let saved = folder.json(&format!("{run} {until} --checkpoint end.save --checkpoint-every 3 --force"));
+        let again = folder.json(&format!("{run} {until} --resume end.save"));
+        assert_eq!((&saved["events"], &saved["final"]), (&again["events"], &again["final"]), "{method}");
+        assert_times(&times(&saved), &times(&ended), 1e-12);
+        assert!(saved["final"]["t"].as_f64().unwrap() < 0.2, "{saved}");
+        // Others are another run.
+        folder.refused("run scene.toml --resume part.save --step 0.01 --event x=0.06", &["part.save", "another run"]);
+    }
+    folder.refused(&format!("run {TRAIN} --event x=0.5 --checkpoint t.save"), &["--checkpoint", "leave out x=0.5"]);
 }
 
 /// Of a method with steps of its own a tolerance is what each of them aims for, on the command line and in the scene.

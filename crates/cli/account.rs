@@ -5,8 +5,8 @@ use crate::error::CliError;
 use crate::table::number;
 use crate::trigger::{Events, Happened, Trigger, WatchedTriggers};
 use crate::{json, substeps};
-use dla::{Event, Observer, Schedule};
-use harness::{Method, Progress, Record, Request, recommend, run_observed};
+use dla::{Close, Event, Observer, Schedule, fitted};
+use harness::{Method, Progress, Record, Request, SavedCrossing, recommend, run_observed};
 use scene::{AnyScene, Built, StartPlace};
 use serde_json::{Map, Value, json};
 
@@ -29,7 +29,7 @@ pub(crate) struct Made<const N: usize> {
 }
 
 impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
-    /// The run of a scene from its start, with the steps of the scene or the longest that meet a tolerance (m or rad); a method that chooses
+    /// The run of a scene from its start, forward or backward in time, with the steps of the scene or the longest that meet a tolerance (m or rad); a method that chooses
     /// steps of its own is to aim for it already.
     ///
     /// # Errors
@@ -38,11 +38,20 @@ impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
         system: Built<'a, N, M>,
         (scene, method): (&'a AnyScene, &'a Method),
         (q, v): StartPlace<N>,
-        tolerance: Option<f64>,
+        (tolerance, backward): (Option<f64>, bool),
         (reported, ending): (&'a [Trigger], &'a [Trigger]),
     ) -> Result<Self, CliError> {
         let watched = reported.iter().chain(ending).map(|trigger| trigger.on(&system)).collect::<Result<_, _>>()?;
         let mut schedule = scene.schedule();
+        if backward {
+            let run = scene.run();
+            let whole = Schedule { t0: 0.0, step: -run.actual_step(), steps: run.steps() };
+            schedule = fitted(&whole, run.step, system.jump_times(-run.duration, 0.0));
+        }
+        if backward && tolerance.is_some() && !method.is_adaptive() {
+            let problem = "--tolerance chooses no step for a run backward in time: give --step".to_owned();
+            return Err(CliError::Request(problem));
+        }
         if let Some(tolerance) = tolerance.filter(|_| !method.is_adaptive()) {
             // Of the method itself: parts would make any step look good enough.
             let whole = method.undivided();
@@ -54,6 +63,29 @@ impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
         Ok(Self { system, scene, method, request, watched, ends: ending.len() })
     }
 
+    /// The events of the run.
+    pub(crate) fn events(&self) -> Vec<Event<'_, N>> {
+        let (reported, ending) = self.watched.split_at(self.watched.len() - self.ends);
+        let ends = ending.iter().map(|watched| watched.event(&self.system).terminal());
+        reported.iter().map(|watched| watched.event(&self.system)).chain(ends).collect()
+    }
+
+    /// What tells a run with these events, found in so many parts of each step, from one with others: none where there are none.
+    pub(crate) fn told(&self, samples: u32) -> Option<String> {
+        let (reported, ending) = self.watched.split_at(self.watched.len() - self.ends);
+        let names = reported.iter().map(WatchedTriggers::text).chain(ending.iter().map(WatchedTriggers::text));
+        let names: Vec<&str> = names.collect();
+        let ends = if ending.is_empty() { String::new() } else { format!(", the last {} end the run", ending.len()) };
+        let parts = if samples == harness::EVENT_SAMPLES { String::new() } else { format!(", {samples} samples") };
+        (!names.is_empty()).then(|| names.join(", ") + &ends + &parts)
+    }
+
+    /// What happened, in words and numbers; none where nothing was looked for.
+    pub(crate) fn happened(&self, crossings: &[SavedCrossing<N>], close: Option<Close>) -> Option<Events> {
+        let happened = crossings.iter().filter_map(|crossing| Happened::of(&self.system, &self.watched, crossing));
+        (!self.watched.is_empty()).then(|| Events::new(happened, close))
+    }
+
     /// Makes it at once, with an eye on the events in so many parts of each step.
     pub(crate) fn observed(
         &self,
@@ -61,14 +93,10 @@ impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
         observer: &mut dyn Observer<N, M>,
         progress: &mut dyn Progress,
     ) -> Made<N> {
-        let (reported, ending) = self.watched.split_at(self.watched.len() - self.ends);
-        let ends = ending.iter().map(|watched| watched.event(&self.system).terminal());
-        let events: Vec<Event<'_, N>> =
-            reported.iter().map(|watched| watched.event(&self.system)).chain(ends).collect();
-        let made = run_observed(&self.system, self.method, &self.request, (&events, samples), observer, progress);
-        let happened = made.crossings.iter().filter_map(|crossing| Happened::of(&self.system, &self.watched, crossing));
-        let events = (!self.watched.is_empty()).then(|| Events::new(happened, made.close));
-        Made { record: made.record, events }
+        let events = (self.events(), samples);
+        let made = run_observed(&self.system, self.method, &self.request, (&events.0, events.1), observer, progress);
+        let crossings: Vec<_> = made.crossings.iter().map(SavedCrossing::from).collect();
+        Made { record: made.record, events: self.happened(&crossings, made.close) }
     }
 
     /// The object of `run --json`.

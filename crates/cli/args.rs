@@ -125,7 +125,7 @@ pub(crate) struct SceneArguments {
     /// Largest step [s], instead of the scene's
     #[arg(long, value_name = "H", allow_negative_numbers = true, value_parser = number)]
     pub(crate) step: Option<f64>,
-    /// Duration [s], instead of the scene's
+    /// Duration [s], instead of the scene's; with a negative one `noslip run` goes backward in time
     #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = number)]
     pub(crate) duration: Option<f64>,
     /// Weight of `dla-alpha`, from 0 to 1
@@ -182,10 +182,10 @@ pub(crate) struct RunArguments {
     /// Find the times at which a quantity crosses a value, for example speed=0, or speed=0:rising for one direction;
     /// can be repeated. A sleigh has x, y, heading (in every turn), unwrapped_heading (turns counted), speed, turn_rate,
     /// center_x, constraint_force, energy and others; a system of text has its coordinates, rates (x') and outputs
-    #[arg(long, value_name = "NAME=VALUE[:DIRECTION]", conflicts_with_all = ["checkpoint", "resume"])]
+    #[arg(long, value_name = "NAME=VALUE[:DIRECTION]")]
     pub(crate) event: Vec<Trigger>,
     /// Find an event as --event does, and end the run at the event
-    #[arg(long, value_name = "NAME=VALUE[:DIRECTION]", conflicts_with_all = ["checkpoint", "resume"])]
+    #[arg(long, value_name = "NAME=VALUE[:DIRECTION]")]
     pub(crate) until: Vec<Trigger>,
     /// Look for events in N parts of each step, and in N parts of each inner step of dop853
     #[arg(long, value_name = "N", default_value_t = harness::EVENT_SAMPLES, allow_negative_numbers = true,

@@ -35,9 +35,10 @@ impl CommandLine {
         self
     }
 
-    /// The method, the step (s) and the duration that were taken.
+    /// The method, the step (s) and the duration that were taken; backward in time where the step is negative.
     pub(crate) fn run(self, run: &RunSettings, step: f64) -> Self {
-        let line = self.with("--method", &run.method).number("--step", step).number("--duration", run.duration);
+        let duration = run.duration.copysign(step);
+        let line = self.with("--method", &run.method).number("--step", step.abs()).number("--duration", duration);
         line.maybe("--alpha", run.alpha.map(|alpha| format!("{alpha:?}")))
     }
 }

@@ -24,12 +24,14 @@ pub struct RunRequest {
     pub events: Vec<String>,
     /// What ends the run.
     pub until: Vec<String>,
+    /// Whether it goes backward in time.
+    pub backward: bool,
 }
 
 impl Default for RunRequest {
     fn default() -> Self {
         let (events, until) = (Vec::new(), Vec::new());
-        Self { every: 1, times: Vec::new(), tolerance: None, substep: false, events, until }
+        Self { every: 1, times: Vec::new(), tolerance: None, substep: false, events, until, backward: false }
     }
 }
 
@@ -110,9 +112,14 @@ impl Visitor for InMemory<'_> {
     type Output = Result<RunResult, CliError>;
 
     fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
-        let Self { scene, request: RunRequest { every, times, tolerance, events, until, .. }, method, caller } = self;
+        let Self {
+            scene,
+            request: RunRequest { every, times, tolerance, events, until, backward, .. },
+            method,
+            caller,
+        } = self;
         let (reported, ending) = (triggers(events)?, triggers(until)?);
-        let account = Account::new(system, (scene, method), (q, v), *tolerance, (&reported, &ending))?;
+        let account = Account::new(system, (scene, method), (q, v), (*tolerance, *backward), (&reported, &ending))?;
         let bar = caller.bar(method.info().name, account.request.schedule.steps);
         let mut shown = ShownToCaller { bar, caller };
         let (mut trajectory, sampled): (_, Vec<Node<N, M>>);

@@ -1,5 +1,5 @@
 use crate::account::{Account, Made};
-use crate::args::RunArguments;
+use crate::args::{RunArguments, SceneArguments};
 use crate::command_line::CommandLine;
 use crate::compare::unless_interrupted;
 use crate::error::CliError;
@@ -10,14 +10,17 @@ use crate::provenance::Provenance;
 use crate::trigger::Events;
 use crate::{inspect, notes, progress, resume, substeps, table, terminal, train_run};
 use dla::{Checkpoint, Node, Nodes, Schedule, Substeps};
-use harness::{METHODS, Method, MethodKind, Progress, Saving, run_saved};
+use harness::{METHODS, Method, MethodKind, Progress, Saving, run_saved_watched};
 use scene::{AnyScene, Built, RunSettings, Scene, Visitor};
 use serde_json::json;
 use std::cell::RefCell;
 
 /// `noslip run`: one trajectory, as far as Ctrl-C lets it come.
 pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
-    let mut scene = inspect::load_any(&arguments.scene, arguments.method.as_deref())?;
+    let SceneArguments { scene: name, set, step, duration, alpha, .. } = &arguments.scene;
+    // How far, whichever way.
+    let length = duration.map(f64::abs);
+    let mut scene = inspect::load_any_with((name, set), arguments.method.as_deref(), *step, length, *alpha)?;
     let method = inspect::method(scene.run())?.aiming_for(arguments.tolerance)?;
     if method.is_adaptive() {
         let run = scene.run_mut();
@@ -37,10 +40,19 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
     if let AnyScene::Sleigh(scene) = &scene
         && scene.has_trailers()
     {
+        if is_backward(arguments) {
+            let problem = "--duration: a train runs forward in time only; accepted: a number greater than 0, in s";
+            return Err(CliError::Request(problem.to_owned()));
+        }
         return train_run::run(arguments, scene, &method, out);
     }
     notes::moves(&scene);
     scene.visit(Run { arguments, scene: &scene, method: &method, out })?
+}
+
+/// Whether a run goes backward in time.
+fn is_backward(arguments: &RunArguments) -> bool {
+    arguments.scene.duration.is_some_and(|duration| duration < 0.0)
 }
 
 /// Where the rows are to be written, if anywhere.
@@ -72,9 +84,8 @@ pub(crate) fn provenance(
     }
     command = command.with("--every", every).maybe("--out", out.as_ref().map(|out| out.display()));
     command = command.flag("--substep", *substep);
-    let notes = json!({
-        "method": run.method, "step": schedule.step, "duration": run.duration, "every": every,
-    });
+    let duration = run.duration.copysign(schedule.step);
+    let notes = json!({ "method": run.method, "step": schedule.step.abs(), "duration": duration, "every": every });
     Provenance::on((title, text), Some(&command), notes)
 }
 
@@ -150,7 +161,7 @@ impl<'a> Run<'a> {
         output: &RefCell<Option<Output<'a>>>,
         progress: &mut dyn Progress,
     ) -> Result<(Made<N>, Result<(), CliError>), CliError> {
-        let RunArguments { checkpoint, checkpoint_every, resume: from, .. } = self.arguments;
+        let RunArguments { checkpoint, checkpoint_every, resume: from, event_samples, .. } = self.arguments;
         let Account { system, method, request, .. } = account;
         let mut saver = resume::Saver::new(checkpoint.as_deref());
         let mut save = |made: &Checkpoint| saver.save(&with_position(made, output));
@@ -158,10 +169,11 @@ impl<'a> Run<'a> {
         let mut saving = Saving { identity, from: read, every, save: &mut save };
         let mut sink = |node: &Node<N, M>| write(system, node, output);
         let nodes = self.out.map(|_| Nodes::every(self.arguments.every, &mut sink));
-        let outcome = run_saved(system, method, request, &mut saving, nodes, progress);
-        let record =
-            outcome.map_err(|source| CliError::Checkpoint { path: from.clone().unwrap_or_default(), source })?;
-        Ok((Made { record, events: None }, saver.outcome()))
+        let events = account.events();
+        let watched = (&events[..], *event_samples);
+        let outcome = run_saved_watched(system, method, request, watched, &mut saving, nodes, progress);
+        let made = outcome.map_err(|source| CliError::Checkpoint { path: from.clone().unwrap_or_default(), source })?;
+        Ok((Made { record: made.record, events: account.happened(&made.crossings, made.close) }, saver.outcome()))
     }
 
     /// The output, begun, or as far as it had come.
@@ -199,9 +211,12 @@ impl Visitor for Run<'_> {
     fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
         let RunArguments { checkpoint, resume, tolerance, event, until, event_samples, .. } = self.arguments;
         let run = (self.scene, self.method);
-        let account = Account::new(system, run, (q, v), *tolerance, (event, until))?;
+        let account = Account::new(system, run, (q, v), (*tolerance, is_backward(self.arguments)), (event, until))?;
         let schedule = &account.request.schedule;
-        let identity = identity_of(self.scene, self.method, schedule);
+        let mut identity = identity_of(self.scene, self.method, schedule);
+        if let Some(events) = account.told(*event_samples) {
+            identity = identity.of_run_with("events", &events);
+        }
         let read = resume.as_ref().map(|path| resume::read(path, &identity)).transpose()?;
         if let Some(path) = checkpoint {
             resume::check(path, resume.as_deref(), self.arguments.scene.force)?;

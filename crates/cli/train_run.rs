@@ -31,6 +31,10 @@ pub(crate) fn run(
     let Some((train, start)) = scene.train()? else { return Ok(()) };
     let RunArguments { checkpoint, resume, tolerance, event, until, .. } = arguments;
     event.iter().chain(until).try_for_each(|trigger| trigger.on_blade().map(drop))?;
+    if let (Some(trigger), true) = (event.iter().chain(until).next(), checkpoint.is_some() || resume.is_some()) {
+        let problem = format!("--checkpoint and --resume of a train keep no events: leave out {}", trigger.text);
+        return Err(CliError::Request(problem));
+    }
     let mut schedule = inspect::schedule(scene);
     if let Some(tolerance) = tolerance {
         let (assembly, duration) = (&train.assembly, scene.run.duration);

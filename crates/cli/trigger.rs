@@ -2,8 +2,8 @@ use crate::coordinate::{Coordinate, name_and_value, names};
 use crate::error::CliError;
 use crate::table::number;
 use assembly::parts::Train;
-use dla::{Close, Crossing, Event};
-use harness::{AssemblyCrossing, AssemblyEvent};
+use dla::{Close, Event};
+use harness::{AssemblyCrossing, AssemblyEvent, SavedCrossing};
 use scene::{Built, QUANTITIES, Quantity, SleighQuantity};
 use serde_json::{Map, Value, json};
 use sleigh::SleighState;
@@ -119,6 +119,13 @@ impl Trigger {
     }
 }
 
+impl<Q> WatchedTriggers<'_, Q> {
+    /// As it was written.
+    pub(crate) fn text(&self) -> &str {
+        &self.trigger.text
+    }
+}
+
 impl WatchedTriggers<'_, Coordinate> {
     /// The event in a system.
     pub(crate) fn event<'a, const N: usize, const M: usize>(&'a self, system: &'a Built<'a, N, M>) -> Event<'a, N> {
@@ -162,13 +169,13 @@ impl<'a> Happened<'a> {
     pub(crate) fn of<const N: usize, const M: usize>(
         system: &Built<'_, N, M>,
         watched: &[WatchedTriggers<'a, Coordinate>],
-        crossing: &Crossing<N>,
+        crossing: &SavedCrossing<N>,
     ) -> Option<Self> {
-        let Crossing { event, t, within, spacing, rising, ref state, .. } = *crossing;
-        let WatchedTriggers { trigger, quantity, function } = watched.get(event)?;
-        let (q, v) = (state.unwrapped(), state.v());
-        let rising = function.rises(quantity.value(system, t, &q, v), rising);
-        let state = system.state(t, &q, v).into_iter().map(|(quantity, value)| (quantity.name, json!(value))).collect();
+        let SavedCrossing { event, t, within, spacing, rising, q, v } = crossing;
+        let WatchedTriggers { trigger, quantity, function } = watched.get(*event)?;
+        let [t, within, spacing] = [*t, *within, *spacing];
+        let rising = function.rises(quantity.value(system, t, q, v), *rising);
+        let state = system.state(t, q, v).into_iter().map(|(quantity, value)| (quantity.name, json!(value))).collect();
         Some(Self { name: &trigger.text, t, within, spacing, rising, state })
     }
 

@@ -46,6 +46,46 @@ fn folder_scene(speed: f64, turn_rate: f64) -> String {
     )
 }
 
+/// Members with other steps, durations and methods are runs with these; of methods the column has the place in the list.
+#[test]
+fn steps_and_methods_vary_as_other_numbers_do() {
+    for scene in ["turnaround", "rolling-disk"] {
+        let folder = Folder::new();
+        let grid = "run.method = [\"rk4\", \"dla\", \"gauss8\"]\nrun.step = [0.05, 0.02]\nrun.duration = [1.0, 2.0]\n";
+        folder.write("sweep.toml", format!("scene = \"{scene}\"\n[grid]\n{grid}"));
+        folder.done("ensemble sweep.toml --out all.csv");
+        let text = folder.read("all.csv").replace(",\n", "\n").replace(",error", "");
+        let (header, rows) = csv(&text);
+        assert_eq!(header[..5], ["member", "run.duration", "run.method", "run.step", "t"]);
+        assert_eq!(rows.len(), 12);
+        for row in &rows {
+            let (duration, method, step) = (row[1], ["rk4", "dla", "gauss8"][row[2] as usize], row[3]);
+            let one = folder.json(&format!("run {scene} --method {method} --step {step} --duration {duration} --json"));
+            let (names, numbers) = (header[4..].iter(), row[4..].iter());
+            let ends = names.zip(numbers).filter_map(|(name, value)| Some((*value, one["final"][name].as_f64()?)));
+            let ends: Vec<(f64, f64)> = ends.collect();
+            assert!(ends.len() > 4, "{one}");
+            for (found, expected) in ends {
+                // A hundred steps of numbers below 10, rounded.
+                assert_abs_diff_eq!(found, expected, epsilon = 100.0 * 10.0 * f64::EPSILON);
+            }
+        }
+    }
+    let folder = Folder::new();
+    let refused = |grid: &str, said: &[&str]| {
+        folder.write("sweep.toml", format!("scene = \"turnaround\"\n{grid}"));
+        folder.refused("ensemble sweep.toml --out all.csv", said);
+    };
+    refused("[grid]\nrun.method = [\"rk5\"]\n", &["sweep.toml:3:15", "`run.method` names no known method", "`rk4`"]);
+    refused("[random]\nrun.method = { uniform = [0, 1] }\n", &["`run.method`", "not a number of the scene"]);
+    refused("[grid]\nrun.stride = [1.0]\n", &["`run.stride`", "run.step"]);
+    // What no run can have is the error of its member.
+    folder.write("sweep.toml", "scene = \"turnaround\"\n[grid]\nrun.step = [0.05, -1.0]\n");
+    let outcome = folder.line("ensemble sweep.toml --out all.csv");
+    assert_eq!(outcome.code, 1, "{outcome:?}");
+    assert!(folder.read("all.csv").lines().nth(2).unwrap().contains("`run.step` must be positive"), "{outcome:?}");
+}
+
 #[test]
 fn a_run_that_was_cut_off_goes_on_to_the_same_file() {
     let folder = Folder::new();

@@ -80,6 +80,7 @@ pub(super) struct MemberRow {
 /// The members of a sweep by one method.
 pub(super) struct Members<'a> {
     pub(super) sweep: &'a Sweep,
+    /// That of all members, unless the sweep varies it.
     pub(super) method: Method,
     pub(super) names: &'a [&'static str],
     pub(super) summed: &'a Summed,
@@ -103,10 +104,19 @@ impl Members<'_> {
         if lanes { LANES as u64 } else { 1 }
     }
 
+    /// The method and the steps of a member.
+    fn run_of(&self, scene: &AnyScene) -> Result<(Method, Schedule), String> {
+        if !self.sweep.varies_run() {
+            return Ok((self.method, self.schedule()));
+        }
+        Ok((super::method_of(self.sweep, scene.run()).map_err(|error| error.to_string())?, scene.schedule()))
+    }
+
     fn lane_method(&self) -> Option<LaneMethod> {
         let info = self.method.info();
         match info.kind {
-            _ if !info.lanes => None,
+            // Lanes make the same steps together.
+            _ if !info.lanes || self.sweep.varies_run() => None,
             MethodKind::Dla => Some(LaneMethod::Closed),
             MethodKind::Gauss(4) => Some(LaneMethod::Gauss8),
             MethodKind::Gauss(8) => Some(LaneMethod::Gauss16),
@@ -144,14 +154,19 @@ impl Members<'_> {
 
     /// One by itself: any scene, any method.
     fn alone(&self, scene: &AnyScene) -> Told {
-        let alone = Alone { method: &self.method, schedule: self.schedule(), every: self.sweep.every };
+        let (method, schedule) = match self.run_of(scene) {
+            Ok(run) => run,
+            Err(error) => return (self.summed.numbers::<Vec<f64>>(None), Some(error)),
+        };
+        let alone = Alone { method: &method, schedule, every: self.sweep.every };
         let (summary, failure) = scene.visit(alone).unwrap_or_else(|error| (None, Some(error.to_string())));
         (self.summed.numbers(summary.as_ref()), failure)
     }
 
     /// The largest Lyapunov exponent (1/s), after a tenth of the run.
     fn exponent(&self, scene: &AnyScene) -> Result<f64, String> {
-        let found = scene.visit_free(Exponent { method: &self.method, schedule: self.schedule() });
+        let (method, schedule) = self.run_of(scene)?;
+        let found = scene.visit_free(Exponent { method: &method, schedule });
         match found {
             Ok(Some(found)) => found,
             Ok(None) => Err("the scene imposes velocities, and has no exponents".to_owned()),

@@ -31,7 +31,7 @@ use harness::ensemble::in_order;
 use indicatif::ProgressBar;
 use members::{MemberRow, Members, Summed};
 use result::Shape;
-use scene::{Column, Sweep};
+use scene::{Column, RunSettings, Sweep};
 use spool::{Spool, SpoolRequest};
 use std::ops::{ControlFlow, Range};
 use std::time::Instant;
@@ -41,7 +41,7 @@ use totals::EnsembleTotals;
 pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
     let names = inspect::method_names();
     let sweep = Sweep::load(&arguments.sweep, &names)?;
-    let method = method_of(&sweep)?;
+    let method = method_of(&sweep, sweep.scene.run())?;
     let (identity, summed) = (identity(&sweep), Summed::of(&sweep)?);
     let about = About::new(&arguments.sweep, &sweep, &summed, &identity);
     let members = Members { sweep: &sweep, method, names: &names, summed: &summed };
@@ -142,9 +142,9 @@ fn compute(
     }
 }
 
-/// The method of a sweep.
-fn method_of(sweep: &Sweep) -> Result<Method, CliError> {
-    let method = inspect::method(sweep.scene.run())?;
+/// The method of a member of a sweep that is run so.
+fn method_of(sweep: &Sweep, run: &RunSettings) -> Result<Method, CliError> {
+    let method = inspect::method(run)?;
     if sweep.exponent {
         has_tangents(&method).map_err(|reason| CliError::Request(format!("output.exponent: {reason}")))?;
     }

@@ -32,7 +32,7 @@ fn made(sweep: &str, parts: u64) -> Result<SweepPlan, CliError> {
     }
     let names = inspect::method_names();
     let sweep = Sweep::load(sweep, &names)?;
-    let method = method_of(&sweep)?;
+    let method = method_of(&sweep, sweep.scene.run())?;
     let (summed, stem, members) = (Summed::of(&sweep)?, stem(&identity(&sweep)), sweep.count());
     let group = Members { sweep: &sweep, method, names: &names, summed: &summed }.group();
     let of = parts.min(members.div_ceil(group));

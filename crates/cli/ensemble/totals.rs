@@ -120,10 +120,11 @@ impl EnsembleTotals {
             (
                 "run".to_owned(),
                 format!(
-                    "each member: {} s by {} with steps of {} s",
+                    "each member: {} s by {} with steps of {} s{}",
                     table::number(of.duration),
                     of.method,
-                    table::number(of.step)
+                    table::number(of.step),
+                    if of.keys.iter().any(|key| key.starts_with("run.")) { ", where they do not vary" } else { "" }
                 ),
             ),
             ("varied".to_owned(), of.keys.join(", ")),

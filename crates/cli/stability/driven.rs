@@ -4,7 +4,7 @@ use super::lab::{HEADING, Lab, PLACE, ROTOR, SPEED, SPIN, Setup};
 use crate::error::CliError;
 use harness::stability::check::{energy, follows, measured, rounding};
 use harness::stability::{Case, Claim};
-use scene::{PathShape, PathSpec, SceneEffect, TimeSpec};
+use scene::{Interpolation, PathShape, PathSpec, SceneEffect, TimeSpec};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 pub(super) const ROTOR_DRIVE: Case = Case {
@@ -148,7 +148,7 @@ pub(super) const JUMPS: Case = Case {
 
 pub(super) fn jumps(lab: &mut Lab) -> Result<(), CliError> {
     let (times, values) = (vec![0.0, 1.0, 2.5], vec![2.0, -3.0, 1.0]);
-    let force = TimeSpec::Table { times, values };
+    let force = TimeSpec::Table { times, values, interpolation: Interpolation::Steps };
     let setup = Setup::new(0.5, 0.0, 0.0625, 4.0).with(SceneEffect::Thrust { force });
     let exact = |t: f64| {
         let parts = [(2.0, t.min(1.0)), (-3.0, (t - 1.0).clamp(0.0, 1.5)), (1.0, (t - 2.5).max(0.0))];

@@ -57,7 +57,7 @@ pub enum CheckpointError {
 }
 
 const HEADER: &str = "noslip checkpoint";
-const VERSION: &str = "4";
+const VERSION: &str = "5";
 
 impl Checkpoint {
     /// A checkpoint of the run that these pairs of a name and a value tell from all others.
@@ -65,6 +65,13 @@ impl Checkpoint {
         // One line each.
         let line = |(name, value): (&str, String)| (name.to_owned(), value.escape_debug().to_string());
         Self { identity: identity.into_iter().map(line).collect(), values: Vec::new() }
+    }
+
+    /// The same checkpoint, of a run that this pair tells from others too.
+    #[must_use]
+    pub fn of_run_with(mut self, name: &str, value: &str) -> Self {
+        self.identity.push((name.to_owned(), value.escape_debug().to_string()));
+        self
     }
 
     /// Adds numbers under a name.

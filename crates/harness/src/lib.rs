@@ -38,7 +38,7 @@ pub use drift::{Blocks, Drift, DriftVerdict, Energies};
 pub use method::{METHODS, Method, MethodError, MethodInfo, MethodKind};
 pub use record::{EnergySummary, NewtonSummary, Record, Sample};
 pub use run::{Request, integrate, integrate_from, integrate_on, integrate_pieces, run, timed};
-pub use saved::{Saving, run_saved};
+pub use saved::{SavedCrossing, SavedRun, Saving, run_saved, run_saved_watched};
 pub use sensitivities::{Moving, ParametrisedMechanics, SensitivitiesError, differentiated, sensitivities};
 pub use statistics::Trend;
 pub use substeps::SubstepSummary;

@@ -1,8 +1,11 @@
 use crate::record::Meter;
 use crate::substeps::substepped_part;
 use crate::timing::Ticker;
-use crate::{Method, Progress, Record, Request};
-use dla::{Checkpoint, CheckpointError, Nodes, Part, Piece, State, Subject, Work, piece_by_piece_from};
+use crate::{Again, Method, Progress, Record, Request};
+use dla::{
+    Checkpoint, CheckpointError, Close, Crossing, Event, Nodes, Part, Piece, State, Subject, Watch, Work,
+    close_crossings, piece_by_piece_from,
+};
 use std::ops::Range;
 use std::time::Instant;
 
@@ -18,6 +21,64 @@ pub struct Saving<'a> {
     pub save: &'a mut dyn FnMut(&Checkpoint),
 }
 
+/// An event that happened, as a checkpoint keeps it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SavedCrossing<const N: usize> {
+    /// Which one, by its place in the list of events.
+    pub event: usize,
+    /// When (s).
+    pub t: f64,
+    /// The interval of time that is known to hold the change of sign (s).
+    pub within: f64,
+    /// How far apart the samples are by which it was found (s).
+    pub spacing: f64,
+    /// Whether the function rises through zero.
+    pub rising: bool,
+    /// The configuration then, angles with their turns.
+    pub q: [f64; N],
+    /// The velocity then.
+    pub v: [f64; N],
+}
+
+/// The numbers of a crossing beside its state.
+const BESIDE: usize = 5;
+
+impl<const N: usize> From<&Crossing<N>> for SavedCrossing<N> {
+    fn from(found: &Crossing<N>) -> Self {
+        let Crossing { event, t, within, spacing, rising, ref state, .. } = *found;
+        Self { event, t, within, spacing, rising, q: state.unwrapped(), v: *state.v() }
+    }
+}
+
+impl<const N: usize> SavedCrossing<N> {
+    fn numbers(&self) -> Vec<f64> {
+        let beside = [self.event as f64, self.t, self.within, self.spacing, f64::from(u8::from(self.rising))];
+        beside.into_iter().chain(self.q).chain(self.v).collect()
+    }
+
+    /// All of a checkpoint; what is not a multiple of their length belongs to none.
+    fn all(numbers: &[f64]) -> Vec<Self> {
+        let one = |numbers: &[f64]| {
+            let (beside, state) = numbers.split_first_chunk::<BESIDE>()?;
+            let (q, v) = (state.first_chunk()?, state.last_chunk()?);
+            let [event, t, within, spacing, rising] = *beside;
+            Some(Self { event: event as usize, t, within, spacing, rising: rising != 0.0, q: *q, v: *v })
+        };
+        numbers.chunks_exact(BESIDE + 2 * N).filter_map(one).collect()
+    }
+}
+
+/// A saved run, with the events that happened.
+#[derive(Debug, Clone)]
+pub struct SavedRun<const N: usize> {
+    /// The record; where an event ended the run, its end is the event.
+    pub record: Record<N>,
+    /// The events, in the order in which they happened, also those before the checkpoint.
+    pub crossings: Vec<SavedCrossing<N>>,
+    /// Which of them are so close that others may have been missed.
+    pub close: Option<Close>,
+}
+
 /// Everything that changes along a run.
 struct Progressing<const N: usize> {
     made: u64,
@@ -27,6 +88,7 @@ struct Progressing<const N: usize> {
     memory: Vec<f64>,
     meter: Meter<N>,
     seconds: f64,
+    crossings: Vec<SavedCrossing<N>>,
 }
 
 /// Makes a run once, measures it, and shows its nodes to `nodes` where that is asked for.
@@ -46,6 +108,23 @@ pub fn run_saved<'a, const N: usize, const M: usize>(
     nodes: Option<Nodes<'_, N, M>>,
     progress: &mut dyn Progress,
 ) -> Result<Record<N>, CheckpointError> {
+    run_saved_watched(subject, method, request, (&[], 1), saving, nodes, progress).map(|made| made.record)
+}
+
+/// The same with an eye on events, in so many parts of each step, which are told from others by the identity. The event that ends a run is
+/// found again from the last checkpoint before it.
+///
+/// # Errors
+/// As [`run_saved`].
+pub fn run_saved_watched<'a, const N: usize, const M: usize>(
+    subject: impl Into<Subject<'a, N, M>>,
+    method: &Method,
+    request: &Request<N>,
+    (events, samples): (&[Event<'_, N>], u32),
+    saving: &mut Saving<'_>,
+    nodes: Option<Nodes<'_, N, M>>,
+    progress: &mut dyn Progress,
+) -> Result<SavedRun<N>, CheckpointError> {
     let Request { schedule, q, v, .. } = *request;
     let Subject { system, own } = subject.into();
     let meter = Meter::new(request, method);
@@ -72,12 +151,14 @@ pub fn run_saved<'a, const N: usize, const M: usize>(
             memory: Vec::new(),
             meter,
             seconds: 0.0,
+            crossings: Vec::new(),
         },
     };
     progress.advance(run.made);
     let mut ticker = Ticker::new(progress, run.made);
     let (begin, before) = (Instant::now(), run.seconds);
     let (first, mut state) = (run.made, run.state);
+    let mut seen = (first > 0).then_some((run.t, state));
     let ends = |done: &Part| saving.every.is_some() && (done.stopped || done.made == schedule.steps);
     let outcome =
         piece_by_piece_from(first, system, &schedule, &mut state, |piece, Piece { steps, schedule: times }, state| {
@@ -91,8 +172,21 @@ pub fn run_saved<'a, const N: usize, const M: usize>(
                 // From what a checkpoint has, so that the run is the same with one.
                 stepper.recall(&run.memory, state);
                 let limits = method.substeps();
-                let observer = &mut (&mut run.meter, (&mut nodes, &mut ticker));
-                done = substepped_part(piece, &mut *stepper, limits, &times, chunk.clone(), state, observer)?;
+                let inner = (&mut run.meter, (&mut nodes, &mut ticker));
+                let mut watch = Watch::new(Again { method, own }, events, inner);
+                watch.samples = samples;
+                let mut watch = match seen {
+                    Some((t, state)) => watch.resumed(t, state),
+                    None => watch,
+                };
+                let outcome = substepped_part(piece, &mut *stepper, limits, &times, chunk.clone(), state, &mut watch);
+                run.crossings.extend(watch.crossings().iter().map(SavedCrossing::from));
+                let ended = watch.ended().is_some();
+                done = outcome?;
+                if ended {
+                    break;
+                }
+                seen = Some((times.time(done.made), *state));
                 run.memory = stepper.memory();
                 let due = saving.every.is_some_and(|every| done.made.is_multiple_of(every));
                 if due && done.made < schedule.steps || ends(&done) {
@@ -111,7 +205,10 @@ pub fn run_saved<'a, const N: usize, const M: usize>(
         });
     let seconds = before + begin.elapsed().as_secs_f64();
     let interrupted = ticker.stopped;
-    Ok(Record { interrupted, ..run.meter.record(method.info(), seconds, outcome.err()) })
+    let record = Record { interrupted, ..run.meter.record(method.info(), seconds, outcome.err()) };
+    let looked = run.crossings.iter().map(|crossing| (crossing.event, crossing.t, crossing.spacing));
+    let close = close_crossings(looked, |event| events.get(event).is_some_and(Event::leaves_some_out));
+    Ok(SavedRun { record, crossings: run.crossings, close })
 }
 
 /// Refuses a checkpoint beyond the end of a run.
@@ -146,6 +243,8 @@ impl<const N: usize> Progressing<N> {
         self.state.save(&mut checkpoint);
         checkpoint.put("memory", &self.memory);
         self.meter.save(&mut checkpoint);
+        let crossings: Vec<f64> = self.crossings.iter().flat_map(SavedCrossing::numbers).collect();
+        checkpoint.put("crossings", &crossings);
         checkpoint
     }
 
@@ -155,7 +254,8 @@ impl<const N: usize> Progressing<N> {
         let state = State::load(checkpoint, angles)?;
         let work = Work::load(checkpoint, t, &state)?;
         let meter = Meter::load(checkpoint, meter, made, t, &state, work)?;
-        Ok((Self { made, t, state, memory: checkpoint.list("memory")?, meter, seconds }, work))
+        let crossings = SavedCrossing::all(&checkpoint.list("crossings")?);
+        Ok((Self { made, t, state, memory: checkpoint.list("memory")?, meter, seconds, crossings }, work))
     }
 }
 

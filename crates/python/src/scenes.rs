@@ -100,7 +100,7 @@ impl Scene {
 
     /// Makes the run, and keeps every `every`-th node, or the motion at `times`.
     #[allow(clippy::too_many_arguments, reason = "the arguments of Python are the fields of a request")]
-    #[pyo3(signature = (every, times, tolerance, substep, events, until, progress))]
+    #[pyo3(signature = (every, times, tolerance, substep, events, until, backward, progress))]
     fn run<'py>(
         &self,
         py: Python<'py>,
@@ -110,9 +110,10 @@ impl Scene {
         substep: bool,
         events: Vec<String>,
         until: Vec<String>,
+        backward: bool,
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Made<'py>> {
-        let request = RunRequest { every, times, tolerance, substep, events, until };
+        let request = RunRequest { every, times, tolerance, substep, events, until, backward };
         let Supervised { value, ended } = supervised(py, progress, |caller| cli::run(&self.scene, &request, caller))?;
         let RunResult { columns, numbers, object, failure, .. } = value.map_err(raised)?;
         let arrays = PyDict::new(py);

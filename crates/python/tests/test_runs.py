@@ -127,9 +127,29 @@ def test_a_saved_run_goes_on_to_the_same_bits(tmp_path: Path) -> None:
     assert gone_on.final == whole.final and gone_on.steps == whole.steps
     with pytest.raises(noslip.RequestError, match="another"):
         scene.run(method="dla", duration=20.0, checkpoint=save)
-    for wrong in [{"t_eval": [1.0]}, {"events": "speed=0"}, {"until": "speed=0"}]:
-        with pytest.raises(noslip.RequestError, match="a run that is saved"):
-            scene.run(checkpoint=save, **wrong)  # type: ignore[arg-type]
+    with pytest.raises(noslip.RequestError, match="a run that is saved"):
+        scene.run(checkpoint=save, t_eval=[1.0])
+
+
+def test_a_saved_run_has_its_events(tmp_path: Path) -> None:
+    scene, save = noslip.scene("turnaround"), tmp_path / "run.save"
+    events = ["speed=0:rising", "heading=1.5"]
+    whole = scene.run(method="gauss8", duration=40.0, events=events)
+    scene.run(method="gauss8", duration=20.0, events=events, checkpoint=save, checkpoint_every=50)
+    gone_on = scene.run(method="gauss8", duration=40.0, events=events, checkpoint=save)
+    assert [event["t"] for event in gone_on.events] == [event["t"] for event in whole.events]
+    assert len(whole.events) == 2
+
+
+def test_backward_in_time() -> None:
+    scene = noslip.scene("bowl")
+    back = scene.run(method="gauss16", duration=-10.0)
+    forth = scene.varied({"start.speed": 1.0, "start.turn_rate": -0.1}).run(method="gauss16", duration=10.0)
+    assert back["t"][-1] == -10.0
+    np.testing.assert_allclose(back["x"], forth["x"], atol=1e-12)
+    np.testing.assert_allclose(back["speed"], -forth["speed"], atol=1e-12)
+    with pytest.raises(noslip.RequestError, match="leave t_eval out"):
+        scene.run(duration=-1.0, t_eval=[-0.5])
 
 
 def test_a_saved_run_that_progress_stopped_goes_on(tmp_path: Path) -> None:

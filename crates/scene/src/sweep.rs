@@ -23,9 +23,12 @@ const COMMON: [&str; 8] = [
     "sleigh.offset",
 ];
 
+/// How a member is run.
+const RUN: [&str; 5] = ["run.alpha", "run.duration", "run.method", "run.step", "run.tolerance"];
+
 pub(crate) const UNKNOWN: &str = "is not a number of the scene";
 const NUMBERS: &str = "keys of the scene's start, sleigh and effects that have a number, like start.speed, sleigh.offset, \
-                       effects.0.stiffness.1";
+                       effects.0.stiffness.1, or run.step, run.duration, run.tolerance, run.alpha, run.method";
 
 /// The most members of a sweep.
 const MOST: u64 = 1_000_000_000_000;
@@ -50,6 +53,8 @@ pub struct Sweep {
     origin: String,
     grid: Vec<(String, Vec<f64>)>,
     random: Vec<(String, Draw)>,
+    /// The names of the methods, where these vary.
+    methods: Vec<String>,
     samples: u64,
     seed: u64,
     /// Whether the points of the grid have the same samples.
@@ -119,12 +124,16 @@ impl Sweep {
             AnyScene::Sleigh(_) => (&|key| set(&mut table.clone(), key, 0.0).is_none(), NUMBERS),
             AnyScene::Text(scene) => (&|key| !scene.varies(key), varied::NUMBERS),
         };
+        let unknown = |key: &str| !RUN.contains(&key) && unknown(key);
         if let Some(leaf) = grid.iter().find(|leaf| unknown(&leaf.key)) {
             return Err(leaf.fail(&root, UNKNOWN, accepted).into());
         }
-        if let Some(leaf) = random.iter().find(|leaf| unknown(&leaf.key)) {
+        let drawn = |key: &str| unknown(key) || key == variation::METHOD;
+        if let Some(leaf) = random.iter().find(|leaf| drawn(&leaf.key)) {
             return Err(leaf.fail(&root, UNKNOWN, accepted).into());
         }
+        let names = grid.iter().find(|leaf| leaf.key == variation::METHOD);
+        let names = names.map(|leaf| variation::method_names(&root, leaf, methods)).transpose()?.unwrap_or_default();
         let section = |name| root.section(name);
         let (choice, output) = (section("random")?, section("output")?);
         let output = output.map(|output| output.with_keys_of("a sweep", &["every", "exponent"])).transpose()?;
@@ -143,6 +152,7 @@ impl Sweep {
             origin: name.to_owned(),
             grid: grid.into_iter().map(|leaf| (leaf.key, leaf.values)).collect(),
             random: random.into_iter().map(|leaf| (leaf.key, leaf.values)).collect(),
+            methods: names,
             samples,
         };
         let mut grid = sweep.grid.iter().map(|(_, values)| values.len() as u64);
@@ -210,17 +220,46 @@ impl Sweep {
         self.with(&values, methods)
     }
 
+    /// Whether members are run in different ways: with other steps, durations or methods.
+    #[must_use]
+    pub fn varies_run(&self) -> bool {
+        self.keys().any(|key| RUN.contains(&key))
+    }
+
     /// The scene with other values.
     fn with(&self, values: &[(String, f64)], methods: &[&str]) -> Result<AnyScene, SweepError> {
-        match &self.scene {
+        let (run, values): (Vec<_>, Vec<_>) = values.iter().cloned().partition(|(key, _)| RUN.contains(&key.as_str()));
+        let scene = match &self.scene {
             AnyScene::Sleigh(scene) => {
-                self.sleigh((**scene).clone(), values, methods).map(Box::new).map(AnyScene::Sleigh)
+                self.sleigh((**scene).clone(), &values, methods).map(Box::new).map(AnyScene::Sleigh)?
             }
             AnyScene::Text(scene) => {
-                let varied = scene.with_values(values).map_err(|(key, problem)| self.fail(&key, problem))?;
-                Ok(AnyScene::Text(Box::new(varied)))
+                let varied = scene.with_values(&values).map_err(|(key, problem)| self.fail(&key, problem))?;
+                AnyScene::Text(Box::new(varied))
             }
+        };
+        if run.is_empty() { Ok(scene) } else { self.run_with(scene, &run, methods) }
+    }
+
+    /// A scene that is run in another way.
+    fn run_with(&self, scene: AnyScene, run: &[(String, f64)], methods: &[&str]) -> Result<AnyScene, SweepError> {
+        let of = |key: &str| run.iter().find(|(known, _)| known == key).map(|(_, value)| *value);
+        let method = of(variation::METHOD).and_then(|place| self.methods.get(place as usize));
+        let overrides = (method.map(String::as_str), of("run.step"), of("run.duration"), of("run.alpha"));
+        let outcome = scene.with_overrides(overrides.0, overrides.1, overrides.2, overrides.3, methods);
+        let mut scene = outcome.map_err(|error| {
+            let finding = error.finding();
+            let field = finding.and_then(|finding| finding.field.as_deref()).unwrap_or_default().replace("--", "run.");
+            let problem = finding.map_or_else(|| error.to_string(), |finding| finding.problem.clone());
+            self.fail(&field, problem)
+        })?;
+        if let Some(tolerance) = of("run.tolerance") {
+            if !(tolerance.is_finite() && tolerance > 0.0) {
+                return Err(self.fail("run.tolerance", format!("is {tolerance:?}, and not a positive number")));
+            }
+            scene.run_mut().tolerance = Some(tolerance);
         }
+        Ok(scene)
     }
 
     /// A sleigh with other values.

@@ -88,6 +88,25 @@ fn collect<'s>(table: &'s DeTable<'s>, path: &str, found: &mut Vec<VariedScene<'
     }
 }
 
+/// The key whose values are names of methods.
+pub(crate) const METHOD: &str = "run.method";
+
+/// The names in the list of the key [`METHOD`], each of which is to be a known one; its values are their places.
+pub(crate) fn method_names(
+    root: &TomlTable<'_>,
+    leaf: &VariedScene<'_, Vec<f64>>,
+    methods: &[&str],
+) -> Result<Vec<String>, SceneError> {
+    let name = |value: &Spanned<DeValue<'_>>| {
+        let known = value.get_ref().as_str().filter(|name| methods.contains(name));
+        known.map(ToOwned::to_owned).ok_or_else(|| {
+            let accepted = format!("a list of names of methods: {}", suggest::list(methods));
+            fail(root, METHOD, &value.span(), found(root, &value.span()), "names no known method", &accepted)
+        })
+    };
+    leaf.value.get_ref().as_array().into_iter().flatten().map(name).collect()
+}
+
 /// The values of a key of the grid.
 fn values(root: &TomlTable<'_>, leaf: &VariedScene<'_, ()>) -> Result<Vec<f64>, SceneError> {
     const ACCEPTED: &str = "a list of finite numbers, or { from, to, count }";
@@ -100,6 +119,8 @@ fn values(root: &TomlTable<'_>, leaf: &VariedScene<'_, ()>) -> Result<Vec<f64>, 
     };
     match leaf.value.get_ref() {
         DeValue::Array(list) if list.is_empty() => Err(wrong(leaf.value.span(), "has no values", ACCEPTED)),
+        // Of names their places.
+        DeValue::Array(list) if leaf.key == METHOD => Ok((0..list.len()).map(|place| place as f64).collect()),
         DeValue::Array(list) => list.iter().map(finite).collect(),
         DeValue::Table(range) => {
             let known = ["from", "to", "count"];

@@ -58,7 +58,7 @@ fn what_is_wrong_is_named_with_its_line() {
         }
     };
     let named = "{ file = \"points.csv\", columns = [\"t\", \"force\"] }";
-    refused(None, named, &["`effects.force.file` cannot be read", "points.csv"]);
+    refused(None, named, &["`effects.thrust.force.file` cannot be read", "points.csv"]);
     refused(Some("t,other\n0,1\n"), named, &["name `force`, which the file does not have", "two of `t`, `other`"]);
     refused(Some("t,force\n0,1\n1,one\n"), named, &["no number in line 3", "one"]);
     refused(Some("t,force\n0,1\n1\n"), named, &["is not a table", "line: 3"]);

@@ -78,6 +78,12 @@ impl<'a, const N: usize> Event<'a, N> {
         }
     }
 
+    /// Whether some crossings may not count, so that between two of them may be another.
+    #[must_use]
+    pub fn leaves_some_out(&self) -> bool {
+        self.direction != Direction::Both || self.filter.is_some()
+    }
+
     /// Whether a crossing that was found counts.
     pub(super) fn admits(&self, crossing: &Crossing<N>) -> bool {
         self.filter.as_ref().is_none_or(|filter| filter(crossing.t, &crossing.state, crossing.rising))

@@ -1,5 +1,5 @@
 use super::interval::EventInterval;
-use super::{Close, Crossing, Direction, Event, close_crossings};
+use super::{Close, Crossing, Event, close_crossings};
 use crate::{Observer, OneStep, State, StepError, StepReport, Undivided, View};
 use std::ops::ControlFlow;
 
@@ -44,6 +44,12 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
         Self { samples: 4, tolerance: 0.0, method, events, inner, before, memory, in_parts: false, crossings, ended }
     }
 
+    /// The same, of a run that has come to this time (s) and state: what it saw last.
+    #[must_use]
+    pub fn resumed(self, t: f64, state: State<N>) -> Self {
+        Self { before: Some((t, state)), ..self }
+    }
+
     /// What happened, in the order in which it did.
     #[must_use]
     pub fn crossings(&self) -> &[Crossing<N>] {
@@ -65,7 +71,7 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
     #[must_use]
     pub fn close(&self) -> Option<Close> {
         let looked = self.crossings.iter().map(|crossing| (crossing.event, crossing.t, crossing.spacing));
-        close_crossings(looked, |event| self.events[event].direction != Direction::Both)
+        close_crossings(looked, |event| self.events[event].leaves_some_out())
     }
 
     /// Looks for events on the way to a node, and shows the inner observer the last one where an event ends the run: `Break`.

@@ -40,6 +40,7 @@ class Scene:
         substep: bool,
         events: list[str],
         until: list[str],
+        backward: bool,
         progress: Callable[[str, int, int], object] | None,
     ) -> tuple[dict[str, NDArray[np.float64]], list[tuple[str, str]], str, str | None, BaseException | None]: ...
     def varied(self, text: str, origin: str, values: list[tuple[str, float]]) -> str: ...

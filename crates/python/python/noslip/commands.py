@@ -12,12 +12,14 @@ from .progress import Progress, shown
 
 
 def flags(settings: Mapping[str, Any]) -> list[str]:
-    """Keyword arguments as flags: `event_samples=8` is `--event-samples=8`, `True` is a flag alone."""
+    """Keyword arguments as flags: `event_samples=8` is `--event-samples=8`, `True` is a flag alone, a list is given item by item."""
     given = []
     for key, value in settings.items():
         flag = f"--{key.replace('_', '-')}"
         if value is True:
             given.append(flag)
+        elif isinstance(value, list):
+            given.extend(f"{flag}={one}" for one in value)
         elif value is not None and value is not False:
             given.append(f"{flag}={value}")
     return given

@@ -129,7 +129,8 @@ class Scene:
         """Makes a run, and keeps every `every`-th node, or the motion at the times `t_eval` (s, in order).
 
         `events` and `until` are texts as `"speed=0"`: what is reported, and what ends the run. `progress` is `True` for a
-        bar of tqdm, or is called with a label, the steps done, and all steps. Arguments left out are those of the scene.
+        bar of tqdm, or is called with a label, the steps done, and all steps. Arguments left out are those of the scene. A negative
+        `duration` goes backward in time.
 
         With `checkpoint`, a file, the run is saved there at every `checkpoint_every`-th step (a million, if not said) and after
         Ctrl-C, its nodes beside it. The same call goes on from there, to the same last bit; so does one with a longer duration.
@@ -139,10 +140,13 @@ class Scene:
         """
         if every < 1:
             raise _noslip.RequestError(f"every = {every}: accepted are whole numbers from 1")
-        checked = self._checked.with_settings(method, step, duration, alpha)
+        backward = duration is not None and duration < 0.0
+        if backward and t_eval is not None:
+            raise _noslip.RequestError("t_eval: a run backward in time keeps nodes; leave t_eval out")
+        checked = self._checked.with_settings(method, step, None if duration is None else abs(duration), alpha)
         if checkpoint is not None:
-            if t_eval is not None or events or until:
-                raise _noslip.RequestError("checkpoint: a run that is saved has no t_eval, events and until")
+            if t_eval is not None:
+                raise _noslip.RequestError("checkpoint: a run that is saved has no t_eval")
             settings = {
                 "method": method,
                 "step": step,
@@ -152,11 +156,13 @@ class Scene:
                 "every": every,
                 "substep": substep,
                 "checkpoint_every": checkpoint_every,
+                "event": _list(events),
+                "until": _list(until),
             }
             return saved_run(self.text, self.name, Path(checkpoint), settings, progress)
         times = [] if t_eval is None else [float(t) for t in t_eval]
         with shown(progress) as tell:
-            made = checked.run(every, times, tolerance, substep, _list(events), _list(until), tell)
+            made = checked.run(every, times, tolerance, substep, _list(events), _list(until), backward, tell)
         columns, units, text, failure, ended = made
         result = Run(columns, dict(units), json.loads(text))
         if isinstance(ended, KeyboardInterrupt):

@@ -129,7 +129,7 @@ fn what_is_wrong_is_named_with_its_line() {
         ),
         ("scene = \"bowl\"\n[grid]\neffects.3.stiffness.0 = [1.0]", "3:21", "`effects.3.stiffness.0`", "keys of"),
         ("scene = \"bowl\"\n[grid]\nstart.sped = [1.0]", "3:7", "`start.sped`", "keys of"),
-        ("scene = \"bowl\"\n[grid]\nrun.step = [1.0]", "3:5", "`run.step`", "keys of"),
+        ("scene = \"bowl\"\n[grid]\nrun.stride = [1.0]", "3:5", "`run.stride`", "keys of"),
         ("scene = \"bowl\"\n[random]\nstart.speed = { uniform = [0.0] }", "3:15", "`start.speed`", "normal"),
         ("scene = \"bowl\"\n[random]\nstart.speed = { uniform = [2.0, 1.0] }", "3:15", "larger end first", "uniform"),
         ("scene = \"bowl\"\n[random]\nstart.speed = { log_uniform = [-1.0, 1.0] }", "3:15", "positive", "normal"),

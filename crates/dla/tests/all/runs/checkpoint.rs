@@ -113,7 +113,7 @@ fn what_is_no_checkpoint_of_the_run_is_refused() {
         assert!(Checkpoint::from_text(&changed).is_err(), "{changed}");
     }
     assert_eq!(Checkpoint::from_text("title = 1\n"), Err(CheckpointError::NotOne));
-    let newer = text.replacen("checkpoint 4", "checkpoint 5", 1);
+    let newer = text.replacen("checkpoint 5", "checkpoint 6", 1);
     assert_eq!(Checkpoint::from_text(&newer), Err(CheckpointError::Version { found: "5".to_owned() }));
 }
 
