@@ -2,6 +2,9 @@
 """Makes the tables of times in docs/benchmarks.md again, and says what has moved.
 
     docs/tables.py [--program PATH] [--write]
+    docs/tables.py --race FILE... [--write]
+
+The second makes the table of noslip beside other programs from what `benches/peers/run --race SCENE...` printed to these files.
 
 The program is target/release/noslip unless another is given. Times of another machine differ, so a time has moved where it is more than
 three times as large or as small, and a method where it is overtaken by one that took twice as long. Figures that are not times are
@@ -88,19 +91,50 @@ def moved(old, new):
                         yield f"{scene}, {target:g}: {b} is now quicker than {a}"
 
 
+RACE = "| scene | 1e-3 | 1e-6 | 1e-9 | 1e-12 |"
+
+
+def raced(files):
+    """The lines of the race, a line for each scene, in the order of the files."""
+    scenes = {}
+    for file in files:
+        for line in Path(file).read_text().splitlines():
+            parts = [part.strip() for part in line.strip("|").split("|")]
+            if len(parts) == 5 and parts[0] not in ("scene", "---"):
+                scene, _, ours, peer, ratio = parts
+                ours, peer, ratio = ours.removesuffix(" us"), peer.removesuffix(" us"), ratio.split(" ")[0]
+                cell = "-" if ours == peer == "-" else f"{ours}, {peer}: **{ratio}**" if ratio != "-" else f"{ours}, {peer}"
+                scenes.setdefault(scene, []).append(cell)
+    return [RACE, "|---|---|---|---|---|", *(f"| `{scene}` | {' | '.join(cells)} |" for scene, cells in scenes.items())]
+
+
+def replaced(text, head, lines):
+    """The text with another table below this heading."""
+    begin = text.index(head)
+    end = text.index("\n\n", begin)
+    return text[:begin] + "\n".join(lines) + text[end:]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default=str(ROOT / "target" / "release" / "noslip"))
+    parser.add_argument("--race", nargs="+", metavar="FILE", help="what benches/peers/run --race printed")
     parser.add_argument("--write", action="store_true", help="put the new table into the page")
     options = parser.parse_args()
     text = PAGE.read_text()
+    if options.race:
+        lines = raced(options.race)
+        print("\n".join(lines))
+        if options.write:
+            PAGE.write_text(replaced(text, RACE, lines))
+        return 0
     begin = text.index(HEAD)
     end = text.index("\n\n", begin)
     lines = made({scene: measured(options.program, scene) for scene in SCENES})
     found = list(moved(told(text[begin:end].split("\n")), told(lines)))
     print("\n".join(found) or "nothing has moved")
     if options.write:
-        PAGE.write_text(text[:begin] + "\n".join(lines) + text[end:])
+        PAGE.write_text(replaced(text, HEAD, lines))
     return 1 if found and not options.write else 0
 
 

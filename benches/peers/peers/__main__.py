@@ -11,7 +11,7 @@ import warnings
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from . import measure, race, rust, scene, selftest, text
+from . import measure, race, rust, scene, selftest, sleigh_text, text
 from .reference import reference
 
 MODULES = ("heyoka_lines", "scipy_lines", "sundials_lines", "solve_dae_lines", "exudyn_lines")
@@ -47,7 +47,13 @@ def version_of(package):
 
 def read(name, duration):
     """The problem of a scene: a sleigh, or a system of text."""
-    return text.read(name, duration) if text.is_text(name) else scene.read(name, duration)
+    if text.is_text(name):
+        return text.read(name, duration)
+    try:
+        return scene.read(name, duration)
+    except scene.Refused:
+        # What no line knows by name may be known as formulas.
+        return sleigh_text.read(name, duration)
 
 
 def against(name, problem, options):

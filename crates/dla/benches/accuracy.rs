@@ -1,4 +1,4 @@
-//! What an error at the end costs on the cases of `docs/peers.md`: Gauss collocation of 16th order by equal steps and by steps
+//! What an error at the end costs on the cases of `benches/peers`: Gauss collocation of 16th order by equal steps and by steps
 //! of its own, on the plane and, in a round well, in the axes of the sleigh, and Taylor series. Microseconds, the least of rounds on
 //! one core.
 //!

@@ -103,7 +103,7 @@ impl Scalar for Lanes {
     }
     #[inline(always)]
     fn exp(self) -> Self {
-        self.map(f64::exp)
+        self.map(crate::scalar::exponential)
     }
     #[inline(always)]
     fn ln(self) -> Self {

@@ -142,7 +142,8 @@ impl Scene {
         self.effects.iter().filter_map(|effect| effect.acting().transpose()).collect()
     }
 
-    fn guiding(&self) -> Result<Guiding, SleighError> {
+    /// The sleigh, and what guides it.
+    pub(crate) fn guiding(&self) -> Result<Guiding, SleighError> {
         let sleigh = self.sleigh;
         let rate = self.effects.iter().find_map(|effect| match effect {
             SceneEffect::Turntable { rate } => Some(*rate),

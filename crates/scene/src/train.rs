@@ -2,7 +2,8 @@ use crate::{AnyEffect, Scene, SceneEffect, TrailersSpec};
 use assembly::parts::{Trailer, Train};
 use assembly::{AssemblyError, AssemblyState};
 use lagrangian::With;
-use sleigh::SleighError;
+use sleigh::{SleighError, SleighState};
+use systems::Guiding;
 use thiserror::Error;
 
 /// Why a scene makes no train, which one read from a file does.
@@ -50,10 +51,30 @@ impl Scene {
         let trailers = (0..spec.count).map(|k| spec.trailer(k)).collect::<Result<Vec<_>, _>>()?;
         let effects = self.acting()?;
         let ground: Vec<AnyEffect> = effects.iter().filter(|effect| effect.is_ground()).cloned().collect();
-        let lead = With { body: self.sleigh, effects };
         let body = |trailer: &Trailer| With { body: trailer.sleigh, effects: ground.clone() };
-        let train = Train::new(lead, trailers, body)?;
-        let start = train.start(&self.start, &spec.headings);
+        let train = match self.guiding()? {
+            Guiding::One(lead) => Train::new(With { body: lead, effects }, trailers, body)?,
+            Guiding::Two(lead) => Train::new(With { body: lead, effects }, trailers, body)?,
+            Guiding::None(_) | Guiding::Turntable(_) => {
+                Train::new(With { body: self.sleigh, effects }, trailers, body)?
+            }
+        };
+        let start = train.start(&self.driven_start()?, &spec.headings);
         Ok(Some((train, start)))
+    }
+
+    /// The start, with the velocities that a servo imposes in place of those of the scene.
+    fn driven_start(&self) -> Result<SleighState, SleighError> {
+        let mut start = self.start;
+        for effect in &self.effects {
+            if let SceneEffect::Servo { speed, turn_rate } = effect {
+                for (place, function) in [(&mut start.speed, speed), (&mut start.turn_rate, turn_rate)] {
+                    if let Some(function) = function {
+                        *place = function.build()?.value(0.0_f64);
+                    }
+                }
+            }
+        }
+        Ok(start)
     }
 }

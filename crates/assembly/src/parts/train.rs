@@ -36,17 +36,18 @@ pub struct Train {
 }
 
 impl Train {
-    /// A train behind the system `lead`; `trailer` makes the body of each trailer, with what acts on it.
+    /// A train behind the system `lead`, which may have constraints beside that of its blade; `body` makes the body of each trailer, with
+    /// what acts on it.
     ///
     /// # Errors
     /// [`AssemblyError::Number`] where a bar has no length, or a distance is not finite.
-    pub fn new<Lead, Body>(
+    pub fn new<Lead, Body, const M: usize>(
         lead: Lead,
         trailers: Vec<Trailer>,
         body: impl Fn(&Trailer) -> Body,
     ) -> Result<Self, AssemblyError>
     where
-        Lead: System<3, 1> + Send + Sync + 'static,
+        Lead: System<3, M> + Send + Sync + 'static,
         Body: System<3, 1> + Send + Sync + 'static,
     {
         let mut assembly = Assembly::new();

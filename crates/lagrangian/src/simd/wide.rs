@@ -214,7 +214,7 @@ impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
     }
     #[inline(always)]
     fn exp(self) -> Self {
-        self.apart(f64::exp)
+        self.apart(crate::scalar::exponential)
     }
     #[inline(always)]
     fn ln(self) -> Self {

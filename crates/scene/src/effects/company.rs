@@ -7,13 +7,11 @@ use crate::error::SceneError;
 use crate::table::TomlTable;
 use sleigh::Sleigh;
 
-/// Whether it changes the coordinates or the constraints, or jumps in time: what a train does not carry.
+/// Whether it changes the coordinates or the plane, or jumps in time: what a train does not carry.
 fn changes_body(effect: &SceneEffect) -> bool {
     match effect {
-        SceneEffect::Flywheel { .. }
-        | SceneEffect::Servo { .. }
-        | SceneEffect::Tracer { .. }
-        | SceneEffect::Turntable { .. } => true,
+        SceneEffect::Flywheel { .. } | SceneEffect::Tracer { .. } | SceneEffect::Turntable { .. } => true,
+        SceneEffect::Servo { speed, turn_rate } => [speed, turn_rate].into_iter().flatten().any(TimeSpec::has_corners),
         SceneEffect::Thrust { force: function } | SceneEffect::Torque { torque: function } => function.has_corners(),
         _ => false,
     }
@@ -47,6 +45,8 @@ pub(super) fn check_train(tables: &[TomlTable<'_>], effects: &[SceneEffect]) -> 
     let table_of_times = match effect {
         SceneEffect::Thrust { .. } => Some("force"),
         SceneEffect::Torque { .. } => Some("torque"),
+        SceneEffect::Servo { speed: Some(speed), .. } if speed.has_corners() => Some("speed"),
+        SceneEffect::Servo { .. } => Some("turn_rate"),
         _ => None,
     };
     if let Some(key) = table_of_times {
@@ -58,7 +58,8 @@ pub(super) fn check_train(tables: &[TomlTable<'_>], effects: &[SceneEffect]) -> 
         ));
     }
     let accepted = "what acts on its coordinates: `slope`, `bowl`, `egg_crate`, `hills` for every blade, `drag`, \
-                    `thrust`, `torque` and `moving_mass` for the first, without tables of times";
+                    `quadratic_drag`, `friction`, `thrust`, `torque`, `moving_mass` and `servo` for the first, without \
+                    tables of times";
     Err(table.wrong("kind", "cannot act on a train: the scene has `trailers`", accepted.to_owned()))
 }
 

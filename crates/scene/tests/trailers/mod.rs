@@ -41,7 +41,7 @@ fn what_does_not_go_with_trailers_is_refused() {
     for entry in [
         "kind = \"flywheel\"\ninertia = 1.0",
         "kind = \"turntable\"\nrate = 0.1",
-        "kind = \"servo\"\nspeed = 1.0",
+        "kind = \"servo\"\nspeed = { times = [0.0, 1.0], values = [0.0, 1.0], interpolation = \"linear\" }",
         "kind = \"thrust\"\nforce = { times = [0.0, 1.0], values = [0.0, 1.0] }",
     ] {
         let said = with(entry);
