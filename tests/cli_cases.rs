@@ -123,9 +123,9 @@ fn motions_end_where_they_should() {
         let run = backed.json(&format!("run r13_driven_train.toml --method {method} --out t.csv --force --json"));
         assert!((at(&run, "x") + 10.0).abs() < 1e-12 && at(&run, "y").abs() < 1e-12, "{run}");
         let (names, rows) = csv(&backed.read("t.csv"));
-        let column = |name: &str| names.iter().position(|known| known.starts_with(name)).unwrap();
+        let column = |name: &str| names.iter().position(|known| known == name).unwrap();
         let last = rows.last().unwrap();
-        let angle = last[column("heading_1")] - last[column("heading [")];
+        let angle = last[column("heading_1")] - last[column("heading")];
         assert!((angle - 1.276_815_674_662_5).abs() < error, "{method}: {angle}");
         // The servo pays for what the trailer takes.
         let energy = run["energy"]["max_error"].as_f64().unwrap();

@@ -170,7 +170,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for NoSeries {
     ) -> Result<StepReport<M>, StepError> {
         Err(StepError::Unsupported {
             reason: "series need a sleigh whose equations are of second degree in axes that turn with it: free, in a round well, under a \
-                     constant thrust or torque",
+                     constant thrust or torque, with viscous drag or without",
         })
     }
 }

@@ -49,6 +49,11 @@ impl<B: SleighBody> PushInOwnAxes<B> for Bowl {
     fn in_own_axes(&self, body: &B) -> Option<OwnPush> {
         let [k, a] = [self.stiffness[0], body.sleigh().offset()];
         let round = k.to_bits() == self.stiffness[1].to_bits();
-        round.then_some(OwnPush { center: Some(self.center), along: [-k * a, -k], turning: [0.0, -k * a] })
+        round.then_some(OwnPush {
+            center: Some(self.center),
+            along: [-k * a, -k],
+            turning: [0.0, -k * a],
+            ..OwnPush::NOTHING
+        })
     }
 }

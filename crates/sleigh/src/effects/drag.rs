@@ -1,4 +1,5 @@
 use crate::checks::not_negative;
+use crate::series::{OwnPush, PushInOwnAxes};
 use crate::{SleighBody, SleighError};
 use lagrangian::{Effect, Scalar};
 
@@ -28,5 +29,11 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Drag {
         let mut force = [S::zero(); N];
         force[..3].copy_from_slice(&[push * cos, push * sin, turn]);
         Some(force)
+    }
+}
+
+impl<B> PushInOwnAxes<B> for Drag {
+    fn in_own_axes(&self, _body: &B) -> Option<OwnPush> {
+        Some(OwnPush { drag: [self.along, self.turning], ..OwnPush::NOTHING })
     }
 }

@@ -36,7 +36,7 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Thrust {
 impl<B> PushInOwnAxes<B> for Thrust {
     fn in_own_axes(&self, _body: &B) -> Option<OwnPush> {
         match self.force {
-            TimeFunction::Constant(force) => Some(OwnPush { center: None, along: [force, 0.0], turning: [0.0; 2] }),
+            TimeFunction::Constant(force) => Some(OwnPush { along: [force, 0.0], ..OwnPush::NOTHING }),
             _ => None,
         }
     }

@@ -32,7 +32,7 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Torque {
 impl<B> PushInOwnAxes<B> for Torque {
     fn in_own_axes(&self, _body: &B) -> Option<OwnPush> {
         match self.torque {
-            TimeFunction::Constant(torque) => Some(OwnPush { center: None, along: [0.0; 2], turning: [torque, 0.0] }),
+            TimeFunction::Constant(torque) => Some(OwnPush { turning: [torque, 0.0], ..OwnPush::NOTHING }),
             _ => None,
         }
     }

@@ -14,10 +14,11 @@ pub(crate) const RECIPROCALS: [f64; ORDER + 4] = {
     all
 };
 
-/// The unknowns `z = (omega, u, Y, X)`, of which [`OwnAxes`] says `z' = constant + linear o P z + omega y` with
+/// The unknowns `z = (omega, u, Y, X)`, of which [`OwnAxes`] says `z' = constant + damped o z + linear o P z + omega y` with
 /// `y = turned o N z`, place by place, `N` exchanging neighbours and `P` pairs.
 pub(super) struct SeriesEquations<F> {
     constant: F,
+    damped: F,
     linear: F,
     turned: F,
 }
@@ -25,9 +26,10 @@ pub(super) struct SeriesEquations<F> {
 impl<F: Four> SeriesEquations<F> {
     #[inline(always)]
     pub(super) fn new(zero: F, axes: &OwnAxes) -> Self {
-        let OwnAxes { lead, gain, along, turning, .. } = *axes;
+        let OwnAxes { lead, gain, along, turning, damping, .. } = *axes;
         Self {
             constant: zero.of(&[turning[0], along[0], 0.0, 0.0]),
+            damped: zero.of(&[-damping[1], -damping[0], 0.0, 0.0]),
             linear: zero.of(&[turning[1], along[1], 0.0, 1.0]),
             turned: zero.of(&[-gain, lead, -1.0, 1.0]),
         }
@@ -36,7 +38,7 @@ impl<F: Four> SeriesEquations<F> {
 
 /// The coefficients `z_k` of `z(t + s) = sum_k z_k s^k`, with those of `y` and `omega`.
 ///
-/// `(k + 1) z_{k+1} = linear o P z_k + sum_j omega_j y_{k-j}`. (Jorba and Zou 2005, Experimental Mathematics 14, 99-117, section 2.)
+/// `(k + 1) z_{k+1} = damped o z_k + linear o P z_k + sum_j omega_j y_{k-j}`. (Jorba and Zou 2005, Experimental Mathematics 14, 99-117, section 2.)
 pub(super) struct SeriesTerms<F> {
     pub(super) z: [F; ORDER + 1],
     y: [F; ORDER],
@@ -49,15 +51,15 @@ impl<F: Four> SeriesTerms<F> {
         Self { z: [zero; ORDER + 1], y: [zero; ORDER], omega: [0.0; ORDER + 4] }
     }
 
-    /// The series about `z`.
+    /// The series about `z`; where nothing is damped, without the term.
     #[inline(always)]
-    pub(super) fn expand(&mut self, equations: &SeriesEquations<F>, z: F) {
+    pub(super) fn expand<const DAMPED: bool>(&mut self, equations: &SeriesEquations<F>, z: F) {
         macro_rules! orders {
             ($($k:literal)*) => {{
                 // Written out, so that every sum has a length that is known when it is compiled.
                 let y = equations.turned.times(z.neighbours());
                 let start = (y, equations.turned.times(z.spread()));
-                $(let z = self.next::<$k>(equations, start, z);)*
+                $(let z = self.next::<$k, DAMPED>(equations, start, z);)*
                 self.z[ORDER] = z;
             }};
         }
@@ -69,18 +71,25 @@ impl<F: Four> SeriesTerms<F> {
     /// Every coefficient waits for the one before, so that what is known earlier is summed earlier: in the sum the middle comes first
     /// and the newest last, and nothing but two products waits for `z`.
     #[inline(always)]
-    fn next<const K: usize>(&mut self, equations: &SeriesEquations<F>, (y0, turned): (F, F), z: F) -> F {
+    fn next<const K: usize, const DAMPED: bool>(
+        &mut self,
+        equations: &SeriesEquations<F>,
+        (y0, turned): (F, F),
+        z: F,
+    ) -> F {
         let (neighbours, opposites, omega) = (z.neighbours(), z.opposites(), z.spread());
         (self.z[K], self.omega[K]) = (z, z.first());
         if const { K == 0 } {
             self.y[0] = y0;
-            return omega.mul_add(y0, opposites.mul_add(equations.linear, equations.constant));
+            let rest = if DAMPED { z.mul_add(equations.damped, equations.constant) } else { equations.constant };
+            return omega.mul_add(y0, opposites.mul_add(equations.linear, rest));
         }
         self.y[K] = equations.turned.times(neighbours);
         let part = z.like(RECIPROCALS[K]);
         let known = self.sum::<K>(z.like(0.0), part);
         let sum = neighbours.mul_add(part.times(turned), known);
         let sum = omega.mul_add(part.times(y0), sum);
+        let sum = if DAMPED { z.mul_add(part.times(equations.damped), sum) } else { sum };
         opposites.mul_add(part.times(equations.linear), sum)
     }
 

@@ -35,14 +35,21 @@ impl<See: FnMut(f64, SeriesEnd) -> ControlFlow<()>> FourKernel for SeriesCrossin
     type Output = Result<SeriesEnd, StepError>;
 
     #[inline(always)]
-    fn run<F: Four>(mut self, zero: F) -> Self::Output {
+    fn run<F: Four>(self, zero: F) -> Self::Output {
+        if self.axes.is_damped() { self.crossed::<F, true>(zero) } else { self.crossed::<F, false>(zero) }
+    }
+}
+
+impl<See: FnMut(f64, SeriesEnd) -> ControlFlow<()>> SeriesCrossing<See> {
+    #[inline(always)]
+    fn crossed<F: Four, const DAMPED: bool>(mut self, zero: F) -> Result<SeriesEnd, StepError> {
         let equations = SeriesEquations::new(zero, &self.axes);
         let mut series = SeriesTerms::new(zero);
         // The turn is a sum of many, with its rounding.
         let (mut z, mut turn, mut interval) = (zero.of(&self.start), (0.0, 0.0), Interval::new(self.whole));
         let (pace, mut full) = (SeriesPace::new(self.tolerance), f64::NAN);
         for tries in 1..=MAX_STEPS {
-            series.expand(&equations, z);
+            series.expand::<DAMPED>(&equations, z);
             let [omega, u, ..] = series.z[0].row();
             let terms = [LOOKED_AT, LOOKED_AT - 1, ORDER].map(|k| series.z[k].largest());
             full = pace.longest(size(omega, u), terms);
@@ -79,11 +86,12 @@ mod tests {
         fn registers_change_no_bit(
             start in proptest::array::uniform4(-3.0..3.0f64), lead in -1.0..1.0f64, share in 0.1..1.0f64,
             along in proptest::array::uniform2(-0.5..0.5f64), turning in proptest::array::uniform2(-0.5..0.5f64),
-            whole in -2.0..2.0f64, exponent in -16..-2i32,
+            drag in proptest::array::uniform2(0.0..0.5f64), damped: bool, whole in -2.0..2.0f64, exponent in -16..-2i32,
         ) {
             // Of another sign than the lead the gain would be that of no body, whose spin could grow without bounds.
             let gain = share * lead;
-            let axes = OwnAxes { origin: Origin::Anywhere, inverse: [1.0; 2], lead, gain, along, turning };
+            let damping = if damped { drag } else { [0.0; 2] };
+            let axes = OwnAxes { origin: Origin::Anywhere, inverse: [1.0; 2], lead, gain, along, turning, damping };
             let bits = |crossed: SeriesEnd| (crossed.end.map(f64::to_bits), crossed.turn.to_bits());
             let mut seen = [Vec::new(), Vec::new()];
             let [one, other] = &mut seen;

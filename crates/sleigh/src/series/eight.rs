@@ -8,6 +8,8 @@ pub(super) struct Axes<S: Simd, const R: usize> {
     minus_gain: Pack<S, R>,
     along: [Pack<S, R>; 2],
     turning: [Pack<S, R>; 2],
+    /// `-d_omega` and `-d_u`, where some trajectory is damped.
+    damped: Option<[Pack<S, R>; 2]>,
 }
 
 impl<S: Simd, const R: usize> Axes<S, R> {
@@ -25,6 +27,10 @@ impl<S: Simd, const R: usize> Axes<S, R> {
             minus_gain: load(&|axes| -axes.gain),
             along: [load(&|axes| axes.along[0]), load(&|axes| axes.along[1])],
             turning: [load(&|axes| axes.turning[0]), load(&|axes| axes.turning[1])],
+            damped: of
+                .iter()
+                .any(OwnAxes::is_damped)
+                .then(|| [load(&|axes| -axes.damping[1]), load(&|axes| -axes.damping[0])]),
         }
     }
 }
@@ -65,8 +71,12 @@ impl<S: Simd, const R: usize> EightSeries<S, R> {
             let constant = |number: Pack<S, R>| if k == 0 { number } else { zero };
             let part = Pack::splat(zero.simd(), RECIPROCALS[k]);
             let pushed = |[constantly, slope]: [Pack<S, R>; 2], at| slope.mul_add(at, constant(constantly));
-            self.omega[k + 1] = part * of_u.mul_add(axes.minus_gain, pushed(axes.turning, self.y[k]));
-            self.u[k + 1] = part * of_omega.mul_add(axes.lead, pushed(axes.along, self.x[k]));
+            let (mut on_omega, mut on_u) = (pushed(axes.turning, self.y[k]), pushed(axes.along, self.x[k]));
+            if let Some([omega, u]) = axes.damped {
+                (on_omega, on_u) = (self.omega[k].mul_add(omega, on_omega), self.u[k].mul_add(u, on_u));
+            }
+            self.omega[k + 1] = part * of_u.mul_add(axes.minus_gain, on_omega);
+            self.u[k + 1] = part * of_omega.mul_add(axes.lead, on_u);
             self.y[k + 1] = -(part * of_x);
             self.x[k + 1] = part * (self.u[k] + of_y);
         }

@@ -1,11 +1,12 @@
 use crate::Sleigh;
-use crate::effects::{Drag, EggCrate, Friction, Hills, MovingMass, QuadraticDrag, Slope};
+use crate::effects::{EggCrate, Friction, Hills, MovingMass, QuadraticDrag, Slope};
 use lagrangian::With;
 
 /// The reduced equations of a body on the plane in axes that turn with it, where they are of second degree and have the turn rate
 /// for their only factor:
 ///
-/// `u' = a omega^2 + f_0 + f_1 X`, `omega' = -c u omega + g_0 + g_1 Y`, `X' = u + omega Y`, `Y' = -omega X`, `theta' = omega`.
+/// `u' = a omega^2 - d_u u + f_0 + f_1 X`, `omega' = -c u omega - d_omega omega + g_0 + g_1 Y`, `X' = u + omega Y`, `Y' = -omega X`,
+/// `theta' = omega`.
 ///
 /// `(X, Y)` is the place of the contact point in these axes (m), `xi = (u, omega)` the quasi-velocities (m/s, rad/s). No sine is
 /// left, so that their Taylor series are sums of products. The heading is needed nowhere, which is the reduction of Bloch,
@@ -24,6 +25,8 @@ pub struct OwnAxes {
     pub along: [f64; 2],
     /// `g_0` (rad/s^2) and `g_1` (1/(m s^2)).
     pub turning: [f64; 2],
+    /// `d_u` and `d_omega`, the rates by which drag takes the speed and the turn rate (1/s).
+    pub damping: [f64; 2],
 }
 
 /// Where `(X, Y)` is counted from.
@@ -37,7 +40,8 @@ pub enum Origin {
     Anywhere,
 }
 
-/// A force on such a body, `F_0 + F_1 X` along it at the contact point (N) and the torque `T_0 + T_1 Y` about it (N m).
+/// A force on such a body, `F_0 + F_1 X - D_u u` along it at the contact point (N) and the torque `T_0 + T_1 Y - D_omega omega` about it
+/// (N m).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OwnPush {
     /// What `(X, Y)` is counted from, where that matters.
@@ -46,11 +50,13 @@ pub struct OwnPush {
     pub along: [f64; 2],
     /// `T_0` (N m) and `T_1` (N).
     pub turning: [f64; 2],
+    /// `D_u` (kg/s) and `D_omega` (kg m^2/s).
+    pub drag: [f64; 2],
 }
 
 impl OwnPush {
     /// No force.
-    pub const NOTHING: Self = Self { center: None, along: [0.0; 2], turning: [0.0; 2] };
+    pub const NOTHING: Self = Self { center: None, along: [0.0; 2], turning: [0.0; 2], drag: [0.0; 2] };
 
     /// Both together; none where their places are counted from two points.
     #[must_use]
@@ -60,11 +66,21 @@ impl OwnPush {
             (one, two) => one.or(two),
         };
         let sum = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
-        Some(Self { center, along: sum(self.along, other.along), turning: sum(self.turning, other.turning) })
+        Some(Self {
+            center,
+            along: sum(self.along, other.along),
+            turning: sum(self.turning, other.turning),
+            drag: sum(self.drag, other.drag),
+        })
     }
 }
 
 impl OwnAxes {
+    /// Whether drag takes anything.
+    pub(super) fn is_damped(&self) -> bool {
+        self.damping.iter().any(|rate| *rate != 0.0)
+    }
+
     /// The same body, pushed; none where the push is counted from elsewhere.
     #[must_use]
     pub fn pushed(self, push: OwnPush) -> Option<Self> {
@@ -77,7 +93,9 @@ impl OwnAxes {
         };
         let more = |a: [f64; 2], b: [f64; 2], factor: f64| [b[0].mul_add(factor, a[0]), b[1].mul_add(factor, a[1])];
         let (along, turning) = (more(self.along, push.along, per_mass), more(self.turning, push.turning, per_inertia));
-        Some(Self { origin, along, turning, ..self })
+        let [d_u, d_omega] = self.damping;
+        let damping = [push.drag[0].mul_add(per_mass, d_u), push.drag[1].mul_add(per_inertia, d_omega)];
+        Some(Self { origin, along, turning, damping, ..self })
     }
 }
 
@@ -105,6 +123,7 @@ impl InOwnAxes for Sleigh {
             gain: self.spin_gain(),
             along: [0.0; 2],
             turning: [0.0; 2],
+            damping: [0.0; 2],
         })
     }
 }
@@ -147,4 +166,4 @@ tuple_of_pushes!(E0 0, E1 1, E2 2, E3 3);
 macro_rules! not_of_this_form {
     ($($effect:ident)*) => { $(impl<B> PushInOwnAxes<B> for $effect {})* };
 }
-not_of_this_form!(Slope EggCrate Hills Drag Friction QuadraticDrag MovingMass);
+not_of_this_form!(Slope EggCrate Hills Friction QuadraticDrag MovingMass);

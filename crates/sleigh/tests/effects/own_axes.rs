@@ -3,14 +3,17 @@
 use approx::assert_abs_diff_eq;
 use lagrangian::{Reduced, With};
 use proptest::prelude::*;
-use sleigh::effects::{Bowl, Drag, EggCrate, Thrust, Torque};
+use sleigh::effects::{Bowl, Drag, EggCrate, QuadraticDrag, Thrust, Torque};
 use sleigh::series::{InOwnAxes, Origin, OwnAxes, OwnPush, PushInOwnAxes};
 use sleigh::{RoundWell, Sleigh, SleighState, TimeFunction};
 
 /// `(u', omega')` at this place in the axes of the sleigh.
 fn accelerations(axes: &OwnAxes, [x, y]: [f64; 2], [u, omega]: [f64; 2]) -> [f64; 2] {
-    let OwnAxes { lead, gain, along, turning, .. } = axes;
-    [lead * omega * omega + along[0] + along[1] * x, -gain * u * omega + turning[0] + turning[1] * y]
+    let OwnAxes { lead, gain, along, turning, damping, .. } = axes;
+    [
+        lead * omega * omega - damping[0] * u + along[0] + along[1] * x,
+        -gain * u * omega - damping[1] * omega + turning[0] + turning[1] * y,
+    ]
 }
 
 /// The place in axes of this heading about `center`.
@@ -25,7 +28,7 @@ proptest! {
     fn they_are_the_reduced_equations(
         m in 0.1..10.0f64, inertia in 0.1..10.0f64, a in -2.0..2.0f64, k in -1.0..1.0f64,
         center in proptest::array::uniform2(-3.0..3.0f64), z in proptest::array::uniform5(-3.0..3.0f64),
-        push in proptest::array::uniform2(-3.0..3.0f64),
+        push in proptest::array::uniform2(-3.0..3.0f64), drag in proptest::array::uniform2(0.0..3.0f64),
     ) {
         let sleigh = Sleigh::new(m, inertia, a).unwrap();
         let state = SleighState { x: z[0], y: z[1], heading: z[2], speed: z[3], turn_rate: z[4] };
@@ -33,7 +36,7 @@ proptest! {
         let xi = [z[3], z[4], 0.0];
         let bowl = || Bowl::new([k, k], center).unwrap();
         let (thrust, torque) = (Thrust::new(push[0]).unwrap(), Torque::new(push[1]).unwrap());
-        let effects = (bowl(), thrust, torque, bowl());
+        let effects = (bowl(), thrust, torque, Drag::new(drag[0], drag[1]).unwrap());
         let pushed = With { body: sleigh, effects };
         let well = RoundWell::new(sleigh, k, center).unwrap();
         let in_well = well.coordinates(&state).0;
@@ -69,7 +72,8 @@ fn others_have_none() {
     assert!(axes((bowl([0.1, 0.1], [1.0, 0.0]), bowl([0.2, 0.2], [1.0, 0.0]))).is_some());
     assert!(axes((bowl([0.1, 0.1], [1.0, 0.0]), bowl([0.2, 0.2], [1.0, 0.1]))).is_none());
     assert!(axes(bowl([0.1, 0.2], [0.0; 2])).is_none());
-    assert!(axes((Drag::new(0.1, 0.1).unwrap(), bowl([0.1, 0.1], [0.0; 2]))).is_none());
+    assert!(axes((Drag::new(0.1, 0.1).unwrap(), bowl([0.1, 0.1], [0.0; 2]))).is_some());
+    assert!(axes(QuadraticDrag::new(0.1, 0.1).unwrap()).is_none());
     assert!(axes(EggCrate::new(0.1, [1.0, 1.0]).unwrap()).is_none());
     let swing = || TimeFunction::Sine { amplitude: 0.5, frequency: 2.0, phase: 0.3 };
     assert!(axes(Thrust::new(swing()).unwrap()).is_none() && axes(Torque::new(swing()).unwrap()).is_none());

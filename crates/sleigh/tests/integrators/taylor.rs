@@ -4,7 +4,7 @@ use approx::assert_abs_diff_eq;
 use dla::{Gauss, OneStep, Schedule, State, StepError, drive};
 use lagrangian::{System, With, constraint_residual, energy};
 use proptest::prelude::*;
-use sleigh::effects::{Bowl, EggCrate, Thrust, Torque};
+use sleigh::effects::{Bowl, Drag, EggCrate, Thrust, Torque};
 use sleigh::series::InOwnAxes;
 use sleigh::{Exact, RoundWell, Sleigh, SleighState, Taylor};
 
@@ -85,6 +85,7 @@ proptest! {
     fn series_and_collocation_are_one_motion(
         sleigh in sleighs(), k in -0.3..0.3f64, push in proptest::array::uniform2(-0.5..0.5f64),
         center in proptest::array::uniform2(-2.0..2.0f64), z in proptest::array::uniform5(-1.5..1.5f64), backward: bool,
+        drag in proptest::array::uniform2(0.0..0.5f64),
     ) {
         let begin = SleighState { x: z[0], y: z[1], heading: 4.0 * z[2], speed: z[3], turn_rate: z[4] };
         let h = if backward { -2.0 } else { 2.0 };
@@ -113,6 +114,9 @@ proptest! {
         let effects = (Bowl::new([k, k], center).unwrap(), pushes);
         let pushed = With { body: sleigh, effects };
         same(&run(&pushed, h), state_of(&pushed, begin.to_coordinates()));
+        let slow = (Bowl::new([k, k], center).unwrap(), Drag::new(drag[0], drag[1]).unwrap());
+        let damped = With { body: sleigh, effects: slow };
+        same(&run(&damped, h), state_of(&damped, begin.to_coordinates()));
         let well = RoundWell::new(sleigh, k, center).unwrap();
         same(&run(&well, h), state_of(&well, well.coordinates(&begin)));
     }
