@@ -394,7 +394,7 @@ fn events_are_saved_and_found_again() {
         folder.json(&format!("{run} --duration 2.5 --checkpoint part.save --checkpoint-every 50 --force"));
         let resumed = folder.json(&format!("{run} --duration 6 --resume part.save"));
         assert_eq!(saved["events"], resumed["events"], "{method}");
-        let times = |run: &serde_json::Value| -> Vec<f64> {
+        let times = |run: &Value| -> Vec<f64> {
             run["events"].as_array().unwrap().iter().map(|event| event["t"].as_f64().unwrap()).collect()
         };
         assert_eq!(times(&whole).len(), 20, "{method}");

@@ -28,7 +28,8 @@ def own(scene, duration, methods):
         raise RuntimeError(done.stderr.strip() or "no points") from None
     ladders = {}
     for point in points:
-        if point["method"] not in NOT_OURS:
+        # A run that failed has no error.
+        if point["method"] not in NOT_OURS and point["error"] is not None:
             ladders.setdefault(point["method"], []).append(point)
     return best(ladders)
 
