@@ -335,7 +335,8 @@ fn events_have_a_direction() {
     assert_eq!(times, [20, 10, 10]);
     // And what ends the run is in that direction.
     let end = |way: &str| {
-        folder.json(&format!("run scene.toml --step 0.01 --until x=0.05{way} --json"))["final"]["t"].as_f64()
+        folder.json(&format!("run scene.toml --method gauss16 --step 0.01 --until x=0.05{way} --json"))["final"]["t"]
+            .as_f64()
     };
     let [first, second] = [":rising", ":falling"].map(|way| end(way).unwrap());
     let sixth = std::f64::consts::PI / 6.0;

@@ -185,7 +185,7 @@ fn a_sweep_refuses_what_the_text_does_not_have() {
         folder.write("sweep.toml", format!("scene = \"skate.toml\"\n[grid]\n\"{key}\" = {values}\n"));
         folder.line("ensemble sweep.toml --out rows.csv --force")
     };
-    for key in ["parameters.mm", "start.z", "sleigh.mass", "effects.0.height", "system.let.c", "run.step"] {
+    for key in ["parameters.mm", "start.z", "sleigh.mass", "effects.0.height", "system.let.c", "run.stride"] {
         sweep(key, "[1.0]").assert_refused(key, &["sweep.toml:3", "parameters.NAME"]);
     }
     let failed = sweep("parameters.J", "[0.5, 0.0]");

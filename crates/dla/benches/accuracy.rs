@@ -41,7 +41,7 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for AtBlade {
 
 impl<B> PushInOwnAxes<B> for AtBlade {
     fn in_own_axes(&self, _body: &B) -> Option<OwnPush> {
-        Some(OwnPush { center: Some([0.0; 2]), along: [0.0, -self.0], turning: [0.0; 2] })
+        Some(OwnPush { center: Some([0.0; 2]), along: [0.0, -self.0], ..OwnPush::NOTHING })
     }
 }
 

@@ -103,7 +103,7 @@ fn said(error: &sleigh::SleighError) -> String {
 fn accepted(quantity: &KeyQuantity) -> String {
     format!(
         "a function of time in {}: a number, a formula in `t` in quotes, `{{amplitude, frequency, phase}}`, \
-         `{{times = [..], values = [..]}}` or `{{file, columns}}`, the last two with `interpolation = \"linear\"` for ramps",
+         `{{times, values, interpolation}}` or `{{file, columns, interpolation}}`",
         quantity.unit
     )
 }

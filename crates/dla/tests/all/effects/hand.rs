@@ -36,7 +36,8 @@ fn function(spec: &TimeSpec, t: f64, middle: f64) -> [f64; 3] {
             let decay = 0.4 * (-t).exp();
             [t * decay, (1.0 - t) * decay, (t - 2.0) * decay]
         }
-        TimeSpec::Formula(text) => panic!("not written by hand: {text}"),
+        // Not written by hand, and so in agreement with nothing.
+        TimeSpec::Formula(_) => [f64::NAN; 3],
     }
 }
 

@@ -114,7 +114,7 @@ fn what_is_no_checkpoint_of_the_run_is_refused() {
     }
     assert_eq!(Checkpoint::from_text("title = 1\n"), Err(CheckpointError::NotOne));
     let newer = text.replacen("checkpoint 5", "checkpoint 6", 1);
-    assert_eq!(Checkpoint::from_text(&newer), Err(CheckpointError::Version { found: "5".to_owned() }));
+    assert_eq!(Checkpoint::from_text(&newer), Err(CheckpointError::Version { found: "6".to_owned() }));
 }
 
 /// The published values of the FNV-1a hash of 64 bits (Fowler, Noll, Vo and Eastlake).
