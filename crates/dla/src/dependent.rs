@@ -1,7 +1,7 @@
 use crate::suspect::{suspect_along, suspect_at};
 use crate::{Mechanics, NewtonError, Stage, State, StepError};
 use lagrangian::linear::larger;
-use lagrangian::{RowSpace, Rows};
+use lagrangian::{RowSpace, Rows, Shown};
 use std::fmt;
 use thiserror::Error;
 
@@ -33,12 +33,13 @@ impl fmt::Display for Dependent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { rows, time, distance, dependency } = self;
         if rows.count() == 1 {
-            write!(f, "{rows} of the constraint vanishes at t = {time} s")?;
+            write!(f, "{rows} of the constraint vanishes at t = {} s", Shown(*time))?;
         } else {
             write!(
                 f,
-                "{rows} of the constraint are linearly dependent at t = {time} s, to a relative distance of \
-                    {distance:.0e}"
+                "{rows} of the constraint are linearly dependent at t = {} s, to a relative distance of \
+                    {distance:.0e}",
+                Shown(*time)
             )?;
         }
         f.write_str(match dependency {

@@ -153,7 +153,7 @@ impl fmt::Display for NotANumber {
             Derivative::First(x) => write!(f, "{function} has no finite derivative in {x}")?,
             Derivative::Second(x, y) => write!(f, "{function} has no finite second derivative in {x} and {y}")?,
         }
-        write!(f, " at t = {time} s")
+        write!(f, " at t = {} s", lagrangian::Shown(*time))
     }
 }
 

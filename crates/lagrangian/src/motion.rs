@@ -33,7 +33,7 @@ impl<const N: usize, const M: usize> Add for Motion<N, M> {
 
 /// Why the equations of motion do not determine the accelerations.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[error("the mass matrix on the constraint is degenerate at t = {time}: {source}")]
+#[error("the mass matrix on the constraint is degenerate at t = {}: {source}", crate::Shown(*time))]
 pub struct MotionError {
     /// The time (s).
     pub time: f64,

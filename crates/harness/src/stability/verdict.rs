@@ -1,5 +1,6 @@
 use super::{Case, Finding, Recorded, Seen};
 use dla::Hint;
+use lagrangian::Shown;
 use std::fmt;
 
 /// What a method does with a case.
@@ -46,7 +47,10 @@ impl Trial {
             Some("takes too long".to_owned())
         } else {
             let number = |node: &&Seen| node.values.iter().any(|x| !x.is_finite());
-            run.nodes.iter().find(number).map(|node| format!("not a finite number at t = {} s, and no error", node.t))
+            run.nodes
+                .iter()
+                .find(number)
+                .map(|node| format!("not a finite number at t = {} s, and no error", Shown(node.t)))
         };
         let silent = run.failure.filter(|failure| failure.hint().is_none());
         let silent = silent.map(|failure| format!("an error that does not say what to change: {failure}"));
