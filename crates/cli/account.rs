@@ -29,8 +29,8 @@ pub(crate) struct Made<const N: usize> {
 }
 
 impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
-    /// The run of a scene from its start, forward or backward in time, with the steps of the scene or the longest that meet a tolerance (m or rad); a method that chooses
-    /// steps of its own is to aim for it already.
+    /// The run of a scene from its start, forward or backward in time, with the steps of the scene or the longest that meet a tolerance
+    /// (m or rad); a method that chooses steps of its own is to aim for the tolerance already.
     ///
     /// # Errors
     /// [`CliError`] where the system has no such quantity, or no step meets the tolerance.
@@ -70,12 +70,10 @@ impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
         reported.iter().map(|watched| watched.event(&self.system)).chain(ends).collect()
     }
 
-    /// What tells a run with these events, found in so many parts of each step, from one with others: none where there are none.
-    pub(crate) fn told(&self, samples: u32) -> Option<String> {
-        let (reported, ending) = self.watched.split_at(self.watched.len() - self.ends);
-        let names = reported.iter().map(WatchedTriggers::text).chain(ending.iter().map(WatchedTriggers::text));
-        let names: Vec<&str> = names.collect();
-        let ends = if ending.is_empty() { String::new() } else { format!(", the last {} end the run", ending.len()) };
+    /// The events and the samples of a step, for the identity of a saved run; `None` where no event is looked for.
+    pub(crate) fn events_identity(&self, samples: u32) -> Option<String> {
+        let names: Vec<&str> = self.watched.iter().map(WatchedTriggers::text).collect();
+        let ends = if self.ends == 0 { String::new() } else { format!(", the last {} end the run", self.ends) };
         let parts = if samples == harness::EVENT_SAMPLES { String::new() } else { format!(", {samples} samples") };
         (!names.is_empty()).then(|| names.join(", ") + &ends + &parts)
     }
@@ -93,8 +91,8 @@ impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
         observer: &mut dyn Observer<N, M>,
         progress: &mut dyn Progress,
     ) -> Made<N> {
-        let events = (self.events(), samples);
-        let made = run_observed(&self.system, self.method, &self.request, (&events.0, events.1), observer, progress);
+        let events = self.events();
+        let made = run_observed(&self.system, self.method, &self.request, (&events, samples), observer, progress);
         let crossings: Vec<_> = made.crossings.iter().map(SavedCrossing::from).collect();
         Made { record: made.record, events: self.happened(&crossings, made.close) }
     }

@@ -214,7 +214,7 @@ impl Visitor for Run<'_> {
         let account = Account::new(system, run, (q, v), (*tolerance, is_backward(self.arguments)), (event, until))?;
         let schedule = &account.request.schedule;
         let mut identity = identity_of(self.scene, self.method, schedule);
-        if let Some(events) = account.told(*event_samples) {
+        if let Some(events) = account.events_identity(*event_samples) {
             identity = identity.of_run_with("events", &events);
         }
         let read = resume.as_ref().map(|path| resume::read(path, &identity)).transpose()?;

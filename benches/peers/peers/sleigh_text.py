@@ -39,7 +39,8 @@ def written(scene):
     start = {key: number(scene["start"], key, 0.0) for key in ("x", "y", "heading", "speed", "turn_rate")}
     terms = ["m/2*((x' - a*s*theta')^2 + (y' + a*c*theta')^2) + I/2*theta'^2"]
     forces = {"x": [], "y": [], "theta": []}
-    coordinates, rates, slip = {"x": "m", "y": "m", "theta": "angle"}, {}, "0"
+    # How fast the plane turns (rad/s): the blade moves sideways with the plane.
+    coordinates, rates, turning = {"x": "m", "y": "m", "theta": "angle"}, {}, 0.0
 
     def along(force):
         forces["x"].append(f"({force})*c")
@@ -71,13 +72,13 @@ def written(scene):
             if "torque" in effect:
                 forces["psi"] = [function(effect["torque"])[0]]
         elif kind == "turntable":
-            slip = f"{number(effect, 'rate')!r}*(x*c + y*s)"
+            turning = number(effect, "rate")
         else:
             raise Refused(f"the effect `{kind}` is no formula here")
     quoted = lambda table: "{ " + ", ".join(f'{key} = "{value}"' for key, value in table.items()) + " }"
     acting = {key: " + ".join(list_) for key, list_ in forces.items() if list_}
     cos, sin = math.cos(start["heading"]), math.sin(start["heading"])
-    sideways = sum(number(e, "rate") for e in scene.get("effects", []) if e["kind"] == "turntable") * (start["x"] * cos + start["y"] * sin)
+    sideways = turning * (start["x"] * cos + start["y"] * sin)
     rates |= {"x'": start["speed"] * cos - sideways * sin, "y'": start["speed"] * sin + sideways * cos, "theta'": start["turn_rate"]}
     run = scene["run"]
     return "\n".join([
@@ -86,7 +87,7 @@ def written(scene):
         f"parameters = {{ m = {m!r}, I = {inertia!r}, a = {a!r} }}",
         'let = { c = "cos(theta)", s = "sin(theta)" }',
         f'lagrangian = "{" + ".join(terms)}"',
-        f'''constraints = ["y'*c - x'*s - ({slip})"]''',
+        f'''constraints = ["y'*c - x'*s - ({turning!r}*(x*c + y*s))"]''',
         *([f"forces = {quoted(acting)}"] if acting else []),
         "[start]",
         *(f"{key} = {start[name]!r}" for key, name in (("x", "x"), ("y", "y"), ("theta", "heading"))),
