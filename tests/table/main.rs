@@ -18,5 +18,7 @@ mod reversal;
 mod rows;
 mod shapes;
 mod systems;
+mod text;
+mod texts;
 mod thrust;
 mod tools;

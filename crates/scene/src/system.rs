@@ -86,8 +86,11 @@ impl Scene {
     /// # Errors
     /// As [`system`](Self::system).
     pub fn family<const N: usize>(&self) -> Result<Option<SleighFamily<N>>, SleighError> {
-        let Guiding::None(sleigh) = self.guiding()? else { return Ok(None) };
-        Ok(SleighFamily::new(sleigh, self.rotor()?, &self.acting()?, 0.5 * self.run.duration))
+        if self.imposed()?.is_some() || self.table_rate().is_some() {
+            return Ok(None);
+        }
+        let acting = (&self.acting()?[..], &self.masses()?[..]);
+        Ok(SleighFamily::new(self.sleigh, self.rotor()?, acting, 0.5 * self.run.duration))
     }
 
     /// The same of the first blade alone, where others follow it.
@@ -142,13 +145,27 @@ impl Scene {
         self.effects.iter().filter_map(|effect| effect.acting().transpose()).collect()
     }
 
-    /// The sleigh, and what guides it.
-    pub(crate) fn guiding(&self) -> Result<Guiding, SleighError> {
-        let sleigh = self.sleigh;
-        let rate = self.effects.iter().find_map(|effect| match effect {
+    /// The masses that are moved in the body.
+    fn masses(&self) -> Result<Vec<MovingMass>, SleighError> {
+        let mass = |effect: &SceneEffect| match effect {
+            SceneEffect::MovingMass { mass, x, y } => Some((*mass, x.clone(), y.clone())),
+            _ => None,
+        };
+        let masses = self.effects.iter().filter_map(mass);
+        masses.map(|(mass, x, y)| MovingMass::new(mass, x.build()?, y.build()?)).collect()
+    }
+
+    /// The rate of the plane (rad/s), where it turns.
+    pub(crate) fn table_rate(&self) -> Option<f64> {
+        self.effects.iter().find_map(|effect| match effect {
             SceneEffect::Turntable { rate } => Some(*rate),
             _ => None,
-        });
+        })
+    }
+
+    /// The sleigh with the velocities that are imposed on it, where any are.
+    fn imposed(&self) -> Result<Option<Guiding>, SleighError> {
+        let sleigh = self.sleigh;
         let imposed = self.effects.iter().find_map(|effect| match effect {
             SceneEffect::Servo { speed: Some(speed), turn_rate: Some(turn_rate) } => {
                 let both = speed.build().and_then(|u| Guided::<2>::servo(sleigh, u, turn_rate.build()?));
@@ -167,13 +184,18 @@ impl Scene {
             }
             _ => None,
         });
-        Ok(match (imposed.transpose()?, rate) {
-            (None, None) => Guiding::None(sleigh),
-            (None, Some(rate)) => Guiding::Turntable(Guided::turntable(sleigh, rate)?),
-            (Some(guiding), None) => guiding,
-            (Some(Guiding::One(body)), Some(rate)) => Guiding::One(body.on_turntable(rate)?),
-            (Some(Guiding::Two(body)), Some(rate)) => Guiding::Two(body.on_turntable(rate)?),
-            (Some(guiding), Some(_)) => guiding,
+        imposed.transpose()
+    }
+
+    /// The sleigh, what guides it, and what it carries.
+    pub(crate) fn guiding(&self) -> Result<Guiding, SleighError> {
+        let (rate, masses) = (self.table_rate(), self.masses()?);
+        let on_plane = rate.unwrap_or(0.0);
+        Ok(match self.imposed()? {
+            Some(Guiding::One(body)) => Guiding::One(body.on_turntable(on_plane)?.carrying(masses)),
+            Some(Guiding::Two(body)) => Guiding::Two(body.on_turntable(on_plane)?.carrying(masses)),
+            _ if rate.is_none() && masses.is_empty() => Guiding::None(self.sleigh),
+            _ => Guiding::Zero(Guided::turntable(self.sleigh, on_plane)?.carrying(masses)),
         })
     }
 
@@ -188,7 +210,7 @@ impl Scene {
 }
 
 impl SceneEffect {
-    /// The effect, where it acts on the coordinates there are; `None` of one that makes another body.
+    /// The effect, where it acts on the coordinates there are by a potential or a force; `None` of one that makes another body.
     fn acting(&self) -> Result<Option<AnyEffect>, SleighError> {
         Ok(Some(match self {
             SceneEffect::Slope { gravity } => AnyEffect::Slope(Slope::new(*gravity)?),
@@ -206,10 +228,8 @@ impl SceneEffect {
             }
             SceneEffect::Thrust { force } => AnyEffect::Thrust(Thrust::new(force.build()?)?),
             SceneEffect::Torque { torque } => AnyEffect::Torque(Torque::new(torque.build()?)?),
-            SceneEffect::MovingMass { mass, x, y } => {
-                AnyEffect::MovingMass(MovingMass::new(*mass, x.build()?, y.build()?)?)
-            }
-            SceneEffect::Trailers(_)
+            SceneEffect::MovingMass { .. }
+            | SceneEffect::Trailers(_)
             | SceneEffect::Flywheel { .. }
             | SceneEffect::Servo { .. }
             | SceneEffect::Tracer { .. }

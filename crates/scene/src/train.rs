@@ -1,8 +1,8 @@
 use crate::{AnyEffect, Scene, SceneEffect, TrailersSpec};
 use assembly::parts::{Trailer, Train};
 use assembly::{AssemblyError, AssemblyState};
-use lagrangian::With;
-use sleigh::{SleighError, SleighState};
+use lagrangian::{System, With};
+use sleigh::{Guided, SleighError, SleighState};
 use systems::Guiding;
 use thiserror::Error;
 
@@ -15,6 +15,22 @@ pub enum TrainError {
     /// The assembly.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
+}
+
+/// The train behind a sleigh with what guides it and what acts on it.
+fn led<Body: System<3, 1> + Send + Sync + 'static>(
+    lead: Guiding,
+    trailers: Vec<Trailer>,
+    effects: Vec<AnyEffect>,
+    body: impl Fn(&Trailer) -> Body,
+) -> Result<Train, AssemblyError> {
+    match lead {
+        // As another body it would be compiled once more, for one blade of many.
+        Guiding::None(lead) => Train::new(With { body: Guided::from(lead), effects }, trailers, body),
+        Guiding::Zero(lead) => Train::new(With { body: lead, effects }, trailers, body),
+        Guiding::One(lead) => Train::new(With { body: lead, effects }, trailers, body),
+        Guiding::Two(lead) => Train::new(With { body: lead, effects }, trailers, body),
+    }
 }
 
 impl TrailersSpec {
@@ -41,8 +57,8 @@ impl Scene {
 
     /// The train of a scene with trailers, and its start.
     ///
-    /// The ground is under every blade: slopes, bowls, egg crates and hills act on each centre of mass. What else acts does so on
-    /// the first blade.
+    /// The ground is under every blade: slopes, bowls, egg crates and hills act on each centre of mass, and a turntable turns below all.
+    /// What else acts does so on the first blade.
     ///
     /// # Errors
     /// [`TrainError`] where a trailer or an effect has impossible parameters, which one read from a file has not.
@@ -51,15 +67,15 @@ impl Scene {
         let trailers = (0..spec.count).map(|k| spec.trailer(k)).collect::<Result<Vec<_>, _>>()?;
         let effects = self.acting()?;
         let ground: Vec<AnyEffect> = effects.iter().filter(|effect| effect.is_ground()).cloned().collect();
-        let body = |trailer: &Trailer| With { body: trailer.sleigh, effects: ground.clone() };
-        let train = match self.guiding()? {
-            Guiding::One(lead) => Train::new(With { body: lead, effects }, trailers, body)?,
-            Guiding::Two(lead) => Train::new(With { body: lead, effects }, trailers, body)?,
-            Guiding::None(_) | Guiding::Turntable(_) => {
-                Train::new(With { body: self.sleigh, effects }, trailers, body)?
-            }
+        let table_rate = self.table_rate();
+        let train = if let Some(rate) = table_rate {
+            let table = Guided::turntable(self.sleigh, rate)?;
+            let body = |trailer: &Trailer| With { body: table.with_sleigh(trailer.sleigh), effects: ground.clone() };
+            led(self.guiding()?, trailers, effects, body)?
+        } else {
+            led(self.guiding()?, trailers, effects, |trailer| With { body: trailer.sleigh, effects: ground.clone() })?
         };
-        let start = train.start(&self.driven_start()?, &spec.headings);
+        let start = train.start_on_turntable(table_rate.unwrap_or(0.0), &self.driven_start()?, &spec.headings);
         Ok(Some((train, start)))
     }
 

@@ -1,9 +1,9 @@
 use lagrangian::{Effect, Piecewise, Scalar};
-use sleigh::effects::{Bowl, Drag, EggCrate, Friction, Hills, MovingMass, QuadraticDrag, Slope, Thrust, Torque};
+use sleigh::effects::{Bowl, Drag, EggCrate, Friction, Hills, QuadraticDrag, Slope, Thrust, Torque};
 use sleigh::series::{OwnPush, PushInOwnAxes};
 use sleigh::{Sleigh, SleighBody};
 
-/// An effect of a scene that acts on the coordinates there are: one type for a list of them.
+/// An effect of a scene that acts on the coordinates there are as a potential or a force: one type for a list of them.
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs, reason = "each arm is the effect of its name")]
 pub enum AnyEffect {
@@ -16,7 +16,6 @@ pub enum AnyEffect {
     Friction(Friction),
     Thrust(Thrust),
     Torque(Torque),
-    MovingMass(MovingMass),
 }
 
 /// The same text for whichever effect it is.
@@ -32,7 +31,6 @@ macro_rules! each {
             AnyEffect::Friction($effect) => $result,
             AnyEffect::Thrust($effect) => $result,
             AnyEffect::Torque($effect) => $result,
-            AnyEffect::MovingMass($effect) => $result,
         }
     };
 }
@@ -119,7 +117,6 @@ impl Piecewise for AnyEffect {
             Self::Friction(effect) => Self::Friction(effect.piece(t)),
             Self::Thrust(effect) => Self::Thrust(effect.piece(t)),
             Self::Torque(effect) => Self::Torque(effect.piece(t)),
-            Self::MovingMass(effect) => Self::MovingMass(effect.piece(t)),
         }
     }
 }
@@ -141,7 +138,6 @@ impl AnyEffect {
             Self::Friction(_) => Some("friction"),
             Self::Thrust(_) => Some("thrust"),
             Self::Torque(_) => Some("torque"),
-            Self::MovingMass(_) => Some("moving_mass"),
         }
     }
 }

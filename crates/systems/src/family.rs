@@ -2,6 +2,7 @@ use crate::{AnyEffect, Rotor};
 use lagrangian::{
     AdmissibleBasis, Constraint, Effect, Gradients, Parametrised, Piecewise, Scalar, Seeded, SeededMember,
 };
+use sleigh::effects::MovingMass;
 use sleigh::{Sleigh, TimeFunction};
 
 /// The parameters of a [`SleighFamily`], in their order, as scenes call them.
@@ -18,17 +19,25 @@ pub struct SleighFamily<const N: usize> {
     /// Inertia (kg m^2) and torque of the motor.
     rotor: Option<(f64, Option<TimeFunction>)>,
     effects: Vec<AnyEffect>,
+    /// The masses that are moved in it.
+    masses: Vec<MovingMass>,
 }
 
 impl<const N: usize> SleighFamily<N> {
-    /// The family of a sleigh, with the smooth piece of what acts on it that holds at the time `t` (s); `None` where `N` is neither three,
-    /// nor four with a rotor.
+    /// The family of a sleigh that carries masses, with the smooth piece of what acts on it that holds at the time `t` (s); `None` where
+    /// `N` is neither three, nor four with a rotor.
     #[must_use]
-    pub fn new(sleigh: Sleigh, rotor: Option<Rotor>, effects: &[AnyEffect], t: f64) -> Option<Self> {
+    pub fn new(
+        sleigh: Sleigh,
+        rotor: Option<Rotor>,
+        (effects, masses): (&[AnyEffect], &[MovingMass]),
+        t: f64,
+    ) -> Option<Self> {
         let rotor = rotor.map(|rotor| (rotor.inertia, rotor.torque.map(|torque| torque.piece(t))));
         let coordinates = if rotor.is_some() { 4 } else { 3 };
         let effects = effects.iter().map(|effect| effect.piece(t)).collect();
-        (N == coordinates).then_some(Self { sleigh, rotor, effects })
+        let masses = masses.iter().map(|mass| mass.piece(t)).collect();
+        (N == coordinates).then_some(Self { sleigh, rotor, effects, masses })
     }
 
     /// The values of the parameters, zeros after them.
@@ -78,6 +87,9 @@ impl<const N: usize> Parametrised<N, 1, ROOM> for SleighFamily<N> {
             if let Some(term) = self.added(effect, p, t, q, v) {
                 sum += term;
             }
+        }
+        for mass in &self.masses {
+            sum += mass.kinetic_energy(t, q, v);
         }
         sum
     }

@@ -29,12 +29,12 @@ impl<B, const N: usize> SceneEffects<B, N> for () {
 }
 
 /// One effect alone, without a body: what it adds to a Lagrangian and to the forces.
-struct EffectAlone<'a, B> {
+struct EffectAlone<'a, B, E> {
     body: &'a B,
-    effect: &'a AnyEffect,
+    effect: &'a E,
 }
 
-impl<B: SleighBody, const N: usize> System<N, 0> for EffectAlone<'_, B> {
+impl<B, E: Effect<B, N>, const N: usize> System<N, 0> for EffectAlone<'_, B, E> {
     fn lagrangian<S: lagrangian::Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> S {
         self.effect.lagrangian(self.body, t, q, v).unwrap_or(S::zero())
     }
@@ -51,15 +51,23 @@ impl<B: SleighBody, const N: usize> SceneEffects<B, N> for Vec<AnyEffect> {
         let mut powers: Vec<EffectPower> = Vec::new();
         for effect in self {
             let Some(kind) = effect.powered() else { continue };
-            let alone = EffectAlone { body, effect };
-            let power = force_power(&alone, t, q, v).unwrap_or(0.0) + lagrangian_power(&alone, t, q, v);
             let before = self.iter().take_while(|other| !std::ptr::eq(*other, effect));
             let number = 1 + before.filter(|other| other.powered() == Some(kind)).count();
-            let name = if number == 1 { kind.to_owned() } else { format!("{kind}_{number}") };
-            powers.push(EffectPower { name, power });
+            powers.push(EffectPower { name: numbered(kind, number), power: power_of(body, effect, t, q, v) });
         }
         powers
     }
+}
+
+/// The power of an effect.
+fn power_of<B, E: Effect<B, N>, const N: usize>(body: &B, effect: &E, t: f64, q: &[f64; N], v: &[f64; N]) -> f64 {
+    let alone = EffectAlone { body, effect };
+    force_power(&alone, t, q, v).unwrap_or(0.0) + lagrangian_power(&alone, t, q, v)
+}
+
+/// The name of the effect with that number, from one, among those of its kind.
+fn numbered(kind: &str, number: usize) -> String {
+    if number == 1 { kind.to_owned() } else { format!("{kind}_{number}") }
 }
 
 /// A body of a scene: a sleigh, perhaps with a rotor, perhaps guided.
@@ -87,11 +95,15 @@ impl<const K: usize, const M: usize> SceneBody<3, M> for Guided<K>
 where
     Self: System<3, M>,
 {
+    /// Of masses that are moved what their Lagrangians tell.
     /// A constraint `A v + b = 0` with the multiplier `lambda` has the power `-lambda . b`.
-    fn powers(&self, t: f64, q: &[f64; 3], _v: &[f64; 3], lambda: &[f64; M]) -> Vec<EffectPower> {
+    fn powers(&self, t: f64, q: &[f64; 3], v: &[f64; 3], lambda: &[f64; M]) -> Vec<EffectPower> {
         let (_, b) = self.constraint(t, q);
         let power = |rows: std::ops::Range<usize>| -rows.map(|k| lambda[k] * b[k]).sum::<f64>();
-        let mut powers = Vec::new();
+        let masses = self.masses().iter().enumerate();
+        let mut powers: Vec<_> = masses
+            .map(|(k, mass)| EffectPower { name: numbered("moving_mass", k + 1), power: power_of(self, mass, t, q, v) })
+            .collect();
         if self.table_rate() != 0.0 {
             powers.push(EffectPower { name: "turntable".to_owned(), power: power(0..1) });
         }

@@ -114,10 +114,10 @@ impl<const N: usize, const M: usize> std::fmt::Debug for Started<N, M> {
 /// A sleigh with what imposes velocities on it.
 #[derive(Debug, Clone)]
 pub enum Guiding {
-    /// Nothing does.
+    /// Nothing does, and it carries nothing.
     None(Sleigh),
-    /// A plane that turns: its blade has the velocity of the plane.
-    Turntable(Guided<0>),
+    /// No velocity is imposed; its plane turns, or it carries masses that are moved.
+    Zero(Guided<0>),
     /// One velocity is imposed.
     One(Guided<1>),
     /// Two are.
@@ -153,7 +153,7 @@ pub fn system(
             with_rotor(sleigh, rotor, (), start, AnySystem::Sleigh, AnySystem::Rotor)
         }
         Guiding::None(sleigh) => with_rotor(sleigh, rotor, effects, start, AnySystem::Sleigh, AnySystem::Rotor),
-        Guiding::Turntable(body) => with_rotor(body, rotor, effects, start, AnySystem::Sleigh, AnySystem::Rotor),
+        Guiding::Zero(body) => with_rotor(body, rotor, effects, start, AnySystem::Sleigh, AnySystem::Rotor),
         Guiding::One(body) => with_rotor(body, rotor, effects, start, AnySystem::One, AnySystem::RotorOne),
         Guiding::Two(body) => with_rotor(body, rotor, effects, start, AnySystem::Two, AnySystem::RotorTwo),
     }

@@ -3,7 +3,7 @@ use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
 /// A state that meets all constraints.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct TextStart {
     /// The coordinates.
     pub q: Vec<f64>,

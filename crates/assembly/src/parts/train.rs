@@ -81,8 +81,19 @@ impl Train {
     /// With the hinge `H = P - b e` of a blade, the next has `P+ = H - d e+`, `omega+ = n+ . H' / d` and `u+ = e+ . H'`.
     #[must_use]
     pub fn start(&self, start: &SleighState, headings: &[f64]) -> AssemblyState {
+        self.start_on_turntable(0.0, start, headings)
+    }
+
+    /// The same on a plane that turns at the rate `Omega` about the origin (rad/s), where the velocity across a blade is that of the plane,
+    /// `s = Omega n . (-y, x)`: the next blade has `omega+ = (n+ . H' - s+) / d`.
+    #[must_use]
+    pub fn start_on_turntable(&self, table_rate: f64, start: &SleighState, headings: &[f64]) -> AssemblyState {
+        let across = |x: f64, y: f64, sin: f64, cos: f64| table_rate * (x * cos + y * sin);
         let (mut q, mut v) = (Vec::new(), Vec::new());
         let ([mut x, mut y, mut heading], [mut vx, mut vy, mut rate]) = start.to_coordinates();
+        let (sin, cos) = heading.sin_cos();
+        let s = across(x, y, sin, cos);
+        (vx, vy) = (vx - s * sin, vy + s * cos);
         q.extend([x, y, heading]);
         v.extend([vx, vy, rate]);
         for (k, trailer) in self.trailers.iter().enumerate() {
@@ -92,9 +103,9 @@ impl Train {
             heading = headings.get(k).copied().unwrap_or(heading);
             let (sin, cos) = heading.sin_cos();
             (x, y) = (hinge[0] - trailer.bar * cos, hinge[1] - trailer.bar * sin);
-            let along = moving[0] * cos + moving[1] * sin;
-            rate = (moving[1] * cos - moving[0] * sin) / trailer.bar;
-            (vx, vy) = (along * cos, along * sin);
+            let (along, s) = (moving[0] * cos + moving[1] * sin, across(x, y, sin, cos));
+            rate = (moving[1] * cos - moving[0] * sin - s) / trailer.bar;
+            (vx, vy) = (along * cos - s * sin, along * sin + s * cos);
             q.extend([x, y, heading]);
             v.extend([vx, vy, rate]);
         }

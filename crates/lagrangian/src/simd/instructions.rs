@@ -3,6 +3,9 @@ pub trait Simd: pulp::Simd {
     /// Permutes the lanes of a register: lane `i` to lane `i xor D`, with `D` 2, 4 or 6; bits of `D` beyond the lanes of a register are
     /// ignored.
     fn exchanged<const D: usize>(self, x: Self::f64s) -> Self::f64s;
+
+    /// The lowest twelve bits moved to where a number has its exponent; the others are lost.
+    fn as_exponent(self, x: Self::u64s) -> Self::u64s;
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -10,6 +13,10 @@ impl Simd for pulp::x86::V3 {
     #[inline(always)]
     fn exchanged<const D: usize>(self, x: Self::f64s) -> Self::f64s {
         if D & 2 == 2 { pulp::Simd::rotate_right_f64s(self, x, 2) } else { x }
+    }
+    #[inline(always)]
+    fn as_exponent(self, x: Self::u64s) -> Self::u64s {
+        self.shl_const_u64x4::<52>(x)
     }
 }
 
@@ -25,11 +32,19 @@ impl Simd for pulp::x86::V4 {
             _ => x,
         })
     }
+    #[inline(always)]
+    fn as_exponent(self, x: Self::u64s) -> Self::u64s {
+        pulp::cast(self.avx512f._mm512_slli_epi64::<52>(pulp::cast(x)))
+    }
 }
 
 impl Simd for pulp::Scalar {
     #[inline(always)]
     fn exchanged<const D: usize>(self, x: Self::f64s) -> Self::f64s {
         x
+    }
+    #[inline(always)]
+    fn as_exponent(self, x: Self::u64s) -> Self::u64s {
+        x << 52
     }
 }

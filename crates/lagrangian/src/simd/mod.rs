@@ -4,6 +4,7 @@
 //! Where lanes are mixed, as the stages of a step are, it vectorises the wrong loops; a [`Pack`] is always the instructions
 //! that it says. The crate `pulp` gives them without a line of `unsafe`.
 
+mod exp;
 mod four;
 mod instructions;
 mod pack;

@@ -214,7 +214,11 @@ impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
     }
     #[inline(always)]
     fn exp(self) -> Self {
-        self.apart(crate::scalar::exponential)
+        match self {
+            Zero => Same(1.0),
+            Same(x) => Same(crate::scalar::exponential(x)),
+            Each(x) => Each(x.exp()),
+        }
     }
     #[inline(always)]
     fn ln(self) -> Self {

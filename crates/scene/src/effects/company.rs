@@ -7,10 +7,10 @@ use crate::error::SceneError;
 use crate::table::TomlTable;
 use sleigh::Sleigh;
 
-/// Whether it changes the coordinates or the plane, or jumps in time: what a train does not carry.
+/// Whether it changes the coordinates, or jumps in time: what a train does not carry.
 fn changes_body(effect: &SceneEffect) -> bool {
     match effect {
-        SceneEffect::Flywheel { .. } | SceneEffect::Tracer { .. } | SceneEffect::Turntable { .. } => true,
+        SceneEffect::Flywheel { .. } | SceneEffect::Tracer { .. } => true,
         SceneEffect::Servo { speed, turn_rate } => [speed, turn_rate].into_iter().flatten().any(TimeSpec::has_corners),
         SceneEffect::Thrust { force: function } | SceneEffect::Torque { torque: function } => function.has_corners(),
         _ => false,
@@ -57,9 +57,9 @@ pub(super) fn check_train(tables: &[TomlTable<'_>], effects: &[SceneEffect]) -> 
             "a number, `{amplitude, frequency, phase}` or a formula in `t`".to_owned(),
         ));
     }
-    let accepted = "what acts on its coordinates: `slope`, `bowl`, `egg_crate`, `hills` for every blade, `drag`, \
-                    `quadratic_drag`, `friction`, `thrust`, `torque`, `moving_mass` and `servo` for the first, without \
-                    tables of times";
+    let accepted = "what acts on its coordinates: `slope`, `bowl`, `egg_crate`, `hills` and `turntable` for every blade, \
+                    `drag`, `quadratic_drag`, `friction`, `thrust`, `torque`, `moving_mass` and `servo` for the first, \
+                    without tables of times";
     Err(table.wrong("kind", "cannot act on a train: the scene has `trailers`", accepted.to_owned()))
 }
 

@@ -1,6 +1,7 @@
 use crate::checks::finite;
+use crate::effects::MovingMass;
 use crate::{ClosedPath, Sleigh, SleighBody, SleighError, TimeFunction};
-use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Scalar, System};
+use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Reduced, Scalar, System};
 
 /// A velocity that is imposed on the sleigh, as an affine constraint.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,16 +16,24 @@ pub enum Guide {
     TracerY(ClosedPath),
 }
 
-/// A sleigh with `K` velocities imposed, perhaps on a turning table: `1 + K` constraints.
+/// A sleigh with `K` velocities imposed, perhaps on a turning table, perhaps with masses that are moved in it: `1 + K` constraints.
 ///
 /// The first constraint is the blade's, `n . (P' - Omega (-y, x)) = 0` on a plane that turns at the rate `Omega` about the
 /// origin. Then come the imposed velocities: a servo imposes the speed, the turn rate or both; a tracer, the point `C` of
 /// the planimeter, both components of `C'`. What imposes them does work.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Guided<const K: usize> {
-    sleigh: Sleigh,
-    table_rate: f64,
-    guides: [Guide; K],
+    pub(super) sleigh: Sleigh,
+    pub(super) table_rate: f64,
+    pub(super) masses: Vec<MovingMass>,
+    pub(super) guides: [Guide; K],
+}
+
+/// On a plane that rests, with nothing imposed.
+impl From<Sleigh> for Guided<0> {
+    fn from(sleigh: Sleigh) -> Self {
+        Self { sleigh, table_rate: 0.0, masses: Vec::new(), guides: [] }
+    }
 }
 
 impl Guided<0> {
@@ -33,7 +42,7 @@ impl Guided<0> {
     /// # Errors
     /// [`SleighError::NotFinite`].
     pub fn turntable(sleigh: Sleigh, rate: f64) -> Result<Self, SleighError> {
-        Self { sleigh, table_rate: 0.0, guides: [] }.on_turntable(rate)
+        Self::from(sleigh).on_turntable(rate)
     }
 }
 
@@ -50,7 +59,7 @@ impl Guided<1> {
                 return Err(SleighError::Path { problem: "a tracer imposes both components of a velocity".to_owned() });
             }
         }];
-        Ok(Self { sleigh, table_rate: 0.0, guides })
+        Ok(Self { sleigh, table_rate: 0.0, masses: Vec::new(), guides })
     }
 }
 
@@ -61,7 +70,7 @@ impl Guided<2> {
     /// [`SleighError::NotFinite`].
     pub fn servo(sleigh: Sleigh, speed: TimeFunction, turn_rate: TimeFunction) -> Result<Self, SleighError> {
         let guides = [Guide::Speed(speed.finite("speed")?), Guide::TurnRate(turn_rate.finite("turn_rate")?)];
-        Ok(Self { sleigh, table_rate: 0.0, guides })
+        Ok(Self { sleigh, table_rate: 0.0, masses: Vec::new(), guides })
     }
 
     /// The sleigh whose centre of mass is led along a closed path: Prytz's planimeter, `theta' = (n . C')/a`.
@@ -73,7 +82,8 @@ impl Guided<2> {
             let problem = "with the centre of mass at the blade (offset 0) a tracer cannot be led sideways".to_owned();
             return Err(SleighError::Path { problem });
         }
-        Ok(Self { sleigh, table_rate: 0.0, guides: [Guide::TracerX(path.clone()), Guide::TracerY(path)] })
+        let guides = [Guide::TracerX(path.clone()), Guide::TracerY(path)];
+        Ok(Self { sleigh, table_rate: 0.0, masses: Vec::new(), guides })
     }
 }
 
@@ -85,6 +95,25 @@ impl<const K: usize> Guided<K> {
     pub fn on_turntable(self, rate: f64) -> Result<Self, SleighError> {
         finite("rate", [rate])?;
         Ok(Self { table_rate: rate, ..self })
+    }
+
+    /// Another sleigh, guided alike.
+    #[must_use]
+    pub fn with_sleigh(&self, sleigh: Sleigh) -> Self {
+        Self { sleigh, ..self.clone() }
+    }
+
+    /// The same with these masses, which are moved in the body, besides.
+    #[must_use]
+    pub fn carrying(mut self, masses: Vec<MovingMass>) -> Self {
+        self.masses.extend(masses);
+        self
+    }
+
+    /// The masses that are moved in the body.
+    #[must_use]
+    pub fn masses(&self) -> &[MovingMass] {
+        &self.masses
     }
 
     /// The rate `Omega` of the plane (rad/s).
@@ -126,13 +155,30 @@ impl<const K: usize> Guided<K> {
     }
 }
 
+/// The kinetic energy of the masses (J).
+#[inline(always)]
+fn carried_energy<S: Scalar>(masses: &[MovingMass], t: S, q: &[S; 3], v: &[S; 3]) -> S {
+    S::apart(
+        #[inline(always)]
+        || {
+            S::over(
+                masses,
+                S::zero().carried_as(t),
+                #[inline(always)]
+                |sum, mass| sum + mass.kinetic_energy(t, q, v),
+            )
+        },
+    )
+}
+
 /// One text for each number of imposed velocities.
 macro_rules! guided {
     ($k:literal, $m:literal) => {
         impl System<3, $m> for Guided<$k> {
             #[inline(always)]
             fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 3], v: &[S; 3]) -> S {
-                System::<3, 1>::lagrangian(&self.sleigh, t, q, v)
+                let bare = System::<3, 1>::lagrangian(&self.sleigh, t, q, v);
+                if self.masses.is_empty() { bare } else { bare + carried_energy(&self.masses, t, q, v) }
             }
 
             #[inline(always)]
@@ -157,6 +203,11 @@ macro_rules! guided {
             #[inline(always)]
             fn angles(&self) -> [bool; 3] {
                 [false, false, true]
+            }
+
+            #[inline(always)]
+            fn reduced(&self) -> impl Reduced<3, $m> {
+                self
             }
         }
     };
@@ -191,9 +242,9 @@ impl Piecewise for Guide {
 
 impl<const K: usize> Piecewise for Guided<K> {
     fn jumps(&self, from: f64, to: f64) -> Vec<f64> {
-        self.guides.jumps(from, to)
+        [self.guides.jumps(from, to), self.masses.jumps(from, to)].concat()
     }
     fn piece(&self, t: f64) -> Self {
-        Self { guides: self.guides.piece(t), ..self.clone() }
+        Self { masses: self.masses.piece(t), guides: self.guides.piece(t), ..*self }
     }
 }

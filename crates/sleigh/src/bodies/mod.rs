@@ -2,6 +2,8 @@
 
 mod flywheel;
 mod guided;
+mod guided_motion;
+mod moments;
 mod path;
 mod round_well;
 

@@ -30,6 +30,33 @@ impl MovingMass {
     }
 }
 
+impl MovingMass {
+    /// Mass `m_p` (kg).
+    #[must_use]
+    pub fn mass(&self) -> f64 {
+        self.mass
+    }
+
+    /// `r`, `r'` and `r''`.
+    #[inline(always)]
+    pub(crate) fn path<S: Scalar>(&self, t: S) -> [[S; 2]; 3] {
+        let [x, y] = &self.position;
+        [[x.value(t), y.value(t)], [x.slope(t), y.slope(t)], [x.curvature(t), y.curvature(t)]]
+    }
+
+    /// The kinetic energy `m_p/2 |P' + omega (r_x n - r_y e) + r_x' e + r_y' n|^2` (J); the first coordinates are `(x, y, theta)`.
+    #[inline(always)]
+    pub fn kinetic_energy<S: Scalar, const N: usize>(&self, t: S, q: &[S; N], v: &[S; N]) -> S {
+        let (sin, cos) = q[2].sin_cos();
+        let [x, y] = &self.position;
+        let along = cos * v[0] + sin * v[1] - v[2] * y.value(t) + x.slope(t);
+        let across = cos * v[1] - sin * v[0] + v[2] * x.value(t) + y.slope(t);
+        (along * along + across * across) * (0.5 * self.mass)
+    }
+}
+
+/// As an effect it is a term of the Lagrangian, on any body. A [`Guided`](crate::Guided) body [that carries it](crate::Guided::carrying)
+/// knows its equations besides.
 impl<B: SleighBody, const N: usize> Effect<B, N> for MovingMass {
     #[inline(always)]
     fn has_force(&self) -> bool {
@@ -38,11 +65,7 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for MovingMass {
 
     #[inline(always)]
     fn lagrangian<S: Scalar>(&self, _body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<S> {
-        let (sin, cos) = q[2].sin_cos();
-        let [rx, ry] = [self.position[0].value(t), self.position[1].value(t)];
-        let along = cos * v[0] + sin * v[1] - v[2] * ry + self.position[0].slope(t);
-        let across = cos * v[1] - sin * v[0] + v[2] * rx + self.position[1].slope(t);
-        Some((along * along + across * across) * (0.5 * self.mass))
+        Some(self.kinetic_energy(t, q, v))
     }
 }
 

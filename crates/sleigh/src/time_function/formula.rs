@@ -79,6 +79,12 @@ impl Formula {
     pub(super) fn slope<S: Scalar>(&self, t: S) -> S {
         t.apply(Derivative { formula: self, order: 1 })
     }
+
+    /// The second derivative in time at `t`.
+    #[inline(always)]
+    pub(super) fn curvature<S: Scalar>(&self, t: S) -> S {
+        t.apply(Derivative { formula: self, order: 2 })
+    }
 }
 
 /// Of the same text are the same derivatives.

@@ -63,6 +63,19 @@ impl TimeFunction {
         }
     }
 
+    /// The second derivative in time at `t`, between the jumps.
+    #[inline(always)]
+    pub fn curvature<S: Scalar>(&self, t: S) -> S {
+        match self {
+            Self::Sine { amplitude, frequency, phase } => {
+                (t * *frequency + *phase).sin() * -(*amplitude * *frequency * *frequency)
+            }
+            Self::Constant(_) | Self::Table(_) | Self::Ramp(_) => S::zero(),
+            Self::Pulses(pulses) => pulses.curvature(t),
+            Self::Formula(formula) => formula.curvature(t),
+        }
+    }
+
     /// The function itself, where every number in it is finite.
     ///
     /// # Errors

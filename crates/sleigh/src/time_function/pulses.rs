@@ -50,6 +50,15 @@ impl Pulses {
             ((t - begin) * (TAU / length)).sin() * (area / length * (TAU / length))
         })
     }
+
+    /// The second derivative in time at `t`.
+    #[inline(always)]
+    pub(super) fn curvature<S: Scalar>(&self, t: S) -> S {
+        self.pulse().map_or(S::zero(), |[begin, length, area]| {
+            let rate = TAU / length;
+            ((t - begin) * rate).cos() * (area / length * rate * rate)
+        })
+    }
 }
 
 impl Piecewise for Pulses {

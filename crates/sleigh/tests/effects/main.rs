@@ -6,6 +6,7 @@ mod bodies;
 mod closed;
 mod derivatives;
 mod forces;
+mod guided_motion;
 mod imposed;
 mod own_axes;
 mod paths;

@@ -29,6 +29,7 @@ proptest! {
             let slope = function.slope(Dual::<f64, 1>::variable(t, 0));
             assert_relative_eq!(slope.eps[0], -frequency * frequency * function.value(t)
                 * f64::from(u8::from(matches!(function, TimeFunction::Sine { .. }))), epsilon = 1e-14);
+            assert_relative_eq!(slope.eps[0], function.curvature(t), epsilon = 1e-14);
         }
     }
 }

@@ -1,0 +1,180 @@
+//! The equations of a sleigh that is guided or carries masses.
+//!
+//! The velocity of the contact point is `P' = u e + s n`, where `s` is that of the plane below it, and a mass `m` of the body at
+//! `r = r_x e + r_y n` has the acceleration
+//!
+//! ```text
+//! u' - omega s - r_x omega^2 - r_y omega' - 2 omega r_y' + r_x''     along e,
+//! s' + omega u + r_x omega' - r_y omega^2 + 2 omega r_x' + r_y''     along n.
+//! ```
+//!
+//! Newton's law for all masses along `e`, and about the blade, has the [`Moments`] of the body for coefficients:
+//!
+//! ```text
+//! M u'    - S_y omega' = F   + M omega s + S_x omega^2 + 2 omega S_y' - S_x'',
+//! J omega' - S_y u'    = tau - S_x (s' + omega u) - S_y omega s - 2 omega D - H,
+//! ```
+//!
+//! with `M = sum m`, `S = sum m r`, `D = sum m r . r'`, `H = sum m (r_x r_y'' - r_y r_x'')`.
+
+use super::guided::Guide;
+use super::moments::Moments;
+use crate::Guided;
+use lagrangian::{Motion, Reduced, Scalar, System};
+
+/// What the plane and the guides say of the velocity.
+struct Rates<S> {
+    /// `u` and `omega`.
+    own: [S; 2],
+    /// `u'` and `omega'`, where they are imposed.
+    imposed: [S; 2],
+    /// `s` and `s'`.
+    across: [S; 2],
+}
+
+impl<const K: usize> Guided<K> {
+    /// The velocity with the quasi-velocities `xi`.
+    #[inline(always)]
+    fn rates<S: Scalar>(&self, t: S, q: &[S; 3], xi: &[S; 3]) -> Rates<S> {
+        let zero = S::zero();
+        let (own, imposed) = match self.guides.first() {
+            Some(Guide::Speed(u)) => ([u.value(t).carried_as(t), xi[0]], [u.slope(t).carried_as(t), zero]),
+            Some(Guide::TurnRate(omega)) => {
+                ([xi[0], omega.value(t).carried_as(t)], [zero, omega.slope(t).carried_as(t)])
+            }
+            _ => ([xi[0], xi[1]], [zero; 2]),
+        };
+        Rates { own, imposed, across: self.across(q, own) }
+    }
+
+    /// `s = Omega n . (-y, x)` and its rate.
+    #[inline(always)]
+    fn across<S: Scalar>(&self, q: &[S; 3], [u, omega]: [S; 2]) -> [S; 2] {
+        let [x, y, theta] = *q;
+        if self.table_rate == 0.0 {
+            return [S::zero().carried_as(theta); 2];
+        }
+        let (sin, cos) = theta.sin_cos();
+        [(x * cos + y * sin) * self.table_rate, (u + omega * (y * cos - x * sin)) * self.table_rate]
+    }
+
+    /// The right sides of Newton's law without forces, along `e` and about the blade.
+    #[inline(always)]
+    fn inertial<S: Scalar>(moments: &Moments<S>, [u, omega]: [S; 2], [s, s_rate]: [S; 2]) -> [S; 2] {
+        let Moments { mass, first: [sx, sy], first_rate: [_, vy], first_curvature: [ax, _], growth, twist, .. } =
+            *moments;
+        [
+            mass * omega * s + sx * omega * omega + omega * vy * 2.0 - ax,
+            -(sx * (s_rate + omega * u)) - sy * omega * s - omega * growth * 2.0 - twist,
+        ]
+    }
+
+    /// The accelerations of what is not imposed, by the right sides of Newton's law.
+    #[inline(always)]
+    fn solved<S: Scalar>(&self, moments: &Moments<S>, [along, about]: [S; 2]) -> [S; 3] {
+        let Moments { mass, first: [_, sy], inertia, .. } = *moments;
+        let zero = S::zero();
+        match self.guides.first() {
+            None => {
+                let determinant = (mass * inertia - sy * sy).recip();
+                [(inertia * along + sy * about) * determinant, (sy * along + mass * about) * determinant, zero]
+            }
+            Some(Guide::Speed(_)) => [about / inertia, zero, zero],
+            Some(Guide::TurnRate(_)) => [along / mass, zero, zero],
+            Some(Guide::TracerX(_) | Guide::TracerY(_)) => [zero; 3],
+        }
+    }
+
+    /// `u' = omega s + a omega^2`, `omega' = -(m a/J) (s' + omega u)`, unless they are imposed: without masses that are moved.
+    #[inline(always)]
+    fn bare<S: Scalar>(&self, Rates { own: [u, omega], across: [s, s_rate], .. }: &Rates<S>) -> [S; 3] {
+        let (zero, omega) = (S::zero(), *omega);
+        let along = omega * *s + omega * omega * self.sleigh.offset();
+        let turn = (*s_rate + omega * *u) * -self.sleigh.spin_gain();
+        self.free([along, turn, zero])
+    }
+
+    /// Of `u'` and `omega'` those that are not imposed.
+    #[inline(always)]
+    fn free<S: Scalar>(&self, [along, turn, zero]: [S; 3]) -> [S; 3] {
+        match self.guides.first() {
+            None => [along, turn, zero],
+            Some(Guide::Speed(_)) => [turn, zero, zero],
+            Some(Guide::TurnRate(_)) => [along, zero, zero],
+            Some(Guide::TracerX(_) | Guide::TracerY(_)) => [zero; 3],
+        }
+    }
+}
+
+impl<const K: usize, const M: usize> Reduced<3, M> for Guided<K>
+where
+    Self: System<3, M>,
+{
+    /// In full coordinates where nothing is imposed, with the multiplier
+    /// `lambda = M (s' + omega u) + S_x omega' - S_y omega^2 + 2 omega S_x' + S_y''`.
+    #[inline]
+    fn motion(&self, t: f64, q: &[f64; 3], v: &[f64; 3]) -> Option<Motion<3, M>> {
+        if K > 0 {
+            return None;
+        }
+        let (sin, cos) = q[2].sin_cos();
+        let [u, s, omega] = [cos * v[0] + sin * v[1], cos * v[1] - sin * v[0], v[2]];
+        let s_rate = self.across(q, [u, omega])[1];
+        let moments = Moments::of(&self.sleigh, &self.masses, t);
+        let [u_rate, turn, _] = self.solved(&moments, Self::inertial(&moments, [u, omega], [s, s_rate]));
+        // P'' = (u' - omega s) e + (s' + omega u) n.
+        let (along, across) = (u_rate - omega * s, s_rate + omega * u);
+        let Moments { mass, first: [sx, sy], first_rate: [vx, _], first_curvature: [_, ay], .. } = moments;
+        Some(Motion {
+            acceleration: [along * cos - across * sin, along * sin + across * cos, turn],
+            multiplier: [mass * across + sx * turn - sy * omega * omega + 2.0 * omega * vx + ay; M],
+        })
+    }
+
+    #[inline]
+    fn response(&self, t: f64, q: &[f64; 3], &[fx, fy, tau]: &[f64; 3]) -> Option<Motion<3, M>> {
+        if K > 0 {
+            return None;
+        }
+        let (sin, cos) = q[2].sin_cos();
+        let moments = Moments::of(&self.sleigh, &self.masses, t);
+        let [along, turn, _] = self.solved(&moments, [cos * fx + sin * fy, tau]);
+        Some(Motion {
+            acceleration: [along * cos, along * sin, turn],
+            multiplier: [moments.first[0] * turn - (cos * fy - sin * fx); M],
+        })
+    }
+
+    #[inline(always)]
+    fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; 3], xi: &[S; 3]) -> Option<[S; 3]> {
+        if K > 1 {
+            return Some([S::zero(); 3]);
+        }
+        let rates = self.rates(t, q, xi);
+        if self.masses.is_empty() {
+            return Some(self.bare(&rates));
+        }
+        let moments = Moments::of(&self.sleigh, &self.masses, t);
+        let [along, about] = Self::inertial(&moments, rates.own, rates.across);
+        let [u_rate, turn_rate] = rates.imposed;
+        let sy = moments.first[1];
+        Some(self.solved(&moments, [along + sy * turn_rate, about + sy * u_rate]))
+    }
+
+    /// The heading from the spin, and the place from the heading; on a plane that turns, the velocity depends on the place.
+    #[inline(always)]
+    fn reconstruction(&self) -> Option<u32> {
+        (self.table_rate == 0.0 && K < 2).then_some(1)
+    }
+
+    #[inline(always)]
+    fn reduced_response<S: Scalar>(&self, t: S, q: &[S; 3], &[fx, fy, tau]: &[S; 3]) -> Option<[S; 3]> {
+        let (sin, cos) = q[2].sin_cos();
+        let along = cos * fx + sin * fy;
+        if self.masses.is_empty() {
+            let [per_mass, per_inertia] = self.sleigh.inverse();
+            return Some(self.free([along * per_mass, tau * per_inertia, S::zero()]));
+        }
+        Some(self.solved(&Moments::of(&self.sleigh, &self.masses, t), [along, tau]))
+    }
+}

@@ -1,0 +1,90 @@
+//! A row written as text moves as the row in Rust, by every method.
+
+use crate::case::{Case, Point};
+use crate::rows::table;
+use crate::texts;
+use crate::tools::{method, refuses};
+use dla::{Mechanics, RunError, Schedule, State, drive};
+use harness::{METHODS, Method};
+use std::sync::Arc;
+use text::{AnyText, TextModel, TextStart, with_text};
+
+/// Where a run of the text ends.
+fn end<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    method: &Method,
+    (q, v): ([f64; N], [f64; N]),
+    schedule: &Schedule,
+    places: usize,
+) -> Result<Point, RunError> {
+    let mut state = State::new(q, v, system.angles());
+    drive(system, &mut *method.stepper(), schedule, &mut state, ())?;
+    Ok(Point { q: state.unwrapped()[..places].to_vec(), v: state.v()[..places].to_vec() })
+}
+
+/// The text and the row, by every method that takes the row, through so many steps of the row's time; and how many pairs agree to 1e-13.
+///
+/// Both round what they compute, and a motion lets two roundings grow apart. How far is seen from a run that starts a rounding away.
+fn same(steps: u64) -> [u32; 2] {
+    let (mut pairs, mut close) = (0, 0);
+    for case in table() {
+        let Some(words) = texts::of(case.name()) else { continue };
+        let (start, facts) = (case.start(), case.facts());
+        let places = start.q.len();
+        let model = Arc::new(TextModel::new(&words).unwrap());
+        let text = AnyText::new(&model, &TextStart { q: start.q.clone(), v: start.v.clone(), ..TextStart::default() })
+            .unwrap();
+        let schedule = Schedule { t0: 0.0, step: case.duration() / steps as f64, steps };
+        for info in METHODS.iter().filter(|info| refuses(info, facts).is_none()) {
+            let method = method(info.name);
+            let Ok(rust) = case.run(&method, &start, &schedule, &mut |_| {}) else { continue };
+            let away = Point { q: start.q.iter().map(|x| x * (1.0 + f64::EPSILON)).collect(), v: start.v.clone() };
+            let near = case.run(&method, &away, &schedule, &mut |_| {}).unwrap();
+            let there =
+                with_text!(&text, started => end(&*started.system, &method, (started.q, started.v), &schedule, places))
+                    .unwrap();
+            let (apart, size) = (rust.distance(&there), rust.size());
+            // As many roundings as there are steps add up as their square root does, each grown at most as the one at the start.
+            let grown = rust.distance(&near).max(f64::EPSILON * size);
+            let bound = (10.0 * (steps as f64).sqrt() * grown).max(1e-13 * size);
+            assert!(apart <= bound, "{}, {}: {apart:.1e}, expected {bound:.1e}", case.name(), info.name);
+            pairs += 1;
+            close += u32::from(apart <= 1e-13 * size);
+        }
+    }
+    [pairs, close]
+}
+
+#[test]
+fn it_moves_as_the_row_does() {
+    let [pairs, close] = same(200);
+    println!("{close} of {pairs} pairs within 1e-13");
+    assert!(pairs > 400 && 20 * close > 19 * pairs, "{close} of {pairs} pairs within 1e-13");
+}
+
+/// Ten thousand steps: a minute of processor time.
+#[test]
+#[ignore = "long"]
+fn it_moves_as_the_row_does_for_long() {
+    let [pairs, close] = same(10_000);
+    println!("{close} of {pairs} pairs within 1e-13");
+}
+
+/// The control: of another parameter the motion is another.
+#[test]
+fn another_parameter_is_seen() {
+    let case = crate::rows::named("free sleigh");
+    let mut words = texts::of(case.name()).unwrap();
+    words.parameters[0].1 *= 1.0 + 1e-9;
+    let start = case.start();
+    let model = Arc::new(TextModel::new(&words).unwrap());
+    let text =
+        AnyText::new(&model, &TextStart { q: start.q.clone(), v: start.v.clone(), ..TextStart::default() }).unwrap();
+    let schedule = Schedule { t0: 0.0, step: 0.02, steps: 200 };
+    let rust = case.run(&method("dla"), &start, &schedule, &mut |_| {}).unwrap();
+    let there =
+        with_text!(&text, started => end(&*started.system, &method("dla"), (started.q, started.v), &schedule, 3))
+            .unwrap();
+    let apart = rust.distance(&there);
+    assert!(apart > 1e-11 && apart < 1e-7, "{apart:e}");
+}
