@@ -45,9 +45,9 @@ pub trait Reduced<const N: usize, const M: usize> {
         None
     }
 
-    /// What one more generalised force would add to [`reduced_motion`](Self::reduced_motion).
+    /// The same as [`reduced_motion`](Self::reduced_motion) under one more generalised force.
     #[inline(always)]
-    fn reduced_response<S: Scalar>(&self, _t: S, _q: &[S; N], _force: &[S; N]) -> Option<[S; N]> {
+    fn pushed_motion<S: Scalar>(&self, _t: S, _q: &[S; N], _xi: &[S; N], _force: &[S; N]) -> Option<[S; N]> {
         None
     }
 }
@@ -86,7 +86,7 @@ impl<R: Reduced<N, M>, const N: usize, const M: usize> Reduced<N, M> for &R {
     }
 
     #[inline(always)]
-    fn reduced_response<S: Scalar>(&self, t: S, q: &[S; N], force: &[S; N]) -> Option<[S; N]> {
-        R::reduced_response(self, t, q, force)
+    fn pushed_motion<S: Scalar>(&self, t: S, q: &[S; N], xi: &[S; N], force: &[S; N]) -> Option<[S; N]> {
+        R::pushed_motion(self, t, q, xi, force)
     }
 }

@@ -72,13 +72,11 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> Reduced<N
 
     #[inline(always)]
     fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; N], xi: &[S; N]) -> Option<[S; N]> {
-        let bare = self.body.reduced().reduced_motion(t, q, xi)?;
         if self.effects.is_none() {
-            return Some(bare);
+            return self.body.reduced().reduced_motion(t, q, xi);
         }
         let push = self.effects.whole_force(&self.body, t, q, &velocity_of(&self.body, t, q, xi).ok()?)?;
-        let response = self.body.reduced().reduced_response(t, q, &push)?;
-        Some(sum(&bare, &response))
+        self.body.reduced().pushed_motion(t, q, xi, &push)
     }
 
     #[inline(always)]
@@ -97,7 +95,11 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> Reduced<N
     }
 
     #[inline(always)]
-    fn reduced_response<S: Scalar>(&self, t: S, q: &[S; N], force: &[S; N]) -> Option<[S; N]> {
-        self.body.reduced().reduced_response(t, q, force)
+    fn pushed_motion<S: Scalar>(&self, t: S, q: &[S; N], xi: &[S; N], force: &[S; N]) -> Option<[S; N]> {
+        if self.effects.is_none() {
+            return self.body.reduced().pushed_motion(t, q, xi, force);
+        }
+        let push = self.effects.whole_force(&self.body, t, q, &velocity_of(&self.body, t, q, xi).ok()?)?;
+        self.body.reduced().pushed_motion(t, q, xi, &sum(&push, force))
     }
 }

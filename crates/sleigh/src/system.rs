@@ -85,11 +85,12 @@ impl Reduced<3, 1> for Sleigh {
         true
     }
 
-    /// `u' = (e . f) / m`, `omega' = tau / J`.
+    /// `u' = a omega^2 + (e . f) / m`, `omega' = -(m a / J) u omega + tau / J`.
     #[inline(always)]
-    fn reduced_response<S: Scalar>(&self, _t: S, q: &[S; 3], &[fx, fy, tau]: &[S; 3]) -> Option<[S; 3]> {
+    fn pushed_motion<S: Scalar>(&self, t: S, q: &[S; 3], xi: &[S; 3], &[fx, fy, tau]: &[S; 3]) -> Option<[S; 3]> {
+        let [along, turn, none] = self.reduced_motion(t, q, xi)?;
         let (sin, cos) = q[2].sin_cos();
         let [per_mass, per_inertia] = self.inverse();
-        Some([(cos * fx + sin * fy) * per_mass, tau * per_inertia, S::zero()])
+        Some([along + (cos * fx + sin * fy) * per_mass, turn + tau * per_inertia, none])
     }
 }

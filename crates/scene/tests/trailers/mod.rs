@@ -40,7 +40,7 @@ fn what_does_not_go_with_trailers_is_refused() {
     let with = |entry: &str| refused(&format!("{TRAIN}\n[[effects]]\n{entry}\n"));
     for entry in [
         "kind = \"flywheel\"\ninertia = 1.0",
-        "kind = \"turntable\"\nrate = 0.1",
+        "kind = \"tracer\"\npath = { circle = { radius = 1.0, center = [0.0, 0.0] }, period = 9.0 }",
         "kind = \"servo\"\nspeed = { times = [0.0, 1.0], values = [0.0, 1.0], interpolation = \"linear\" }",
         "kind = \"thrust\"\nforce = { times = [0.0, 1.0], values = [0.0, 1.0] }",
     ] {

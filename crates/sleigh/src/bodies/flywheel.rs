@@ -119,11 +119,12 @@ impl<B: System<3, M>, const M: usize> Reduced<4, M> for Flywheel<B> {
         if M != 1 {
             return None;
         }
-        let [u, omega, _] = self.body.reduced().reduced_motion(t, &of_body(q), &of_body(xi))?;
         let zero = S::zero();
-        let Some(torque) = &self.torque else { return Some([u, omega, zero, zero]) };
-        let driven = self.reduced_response(t, q, &[zero, zero, zero, torque.value(t)])?;
-        Some([u + driven[0], omega + driven[1], driven[2], zero])
+        if self.torque.is_some() {
+            return self.pushed_motion(t, q, xi, &[zero; 4]);
+        }
+        let [u, omega, _] = self.body.reduced().reduced_motion(t, &of_body(q), &of_body(xi))?;
+        Some([u, omega, zero, zero])
     }
 
     #[inline(always)]
@@ -138,11 +139,21 @@ impl<B: System<3, M>, const M: usize> Reduced<4, M> for Flywheel<B> {
 
     /// A torque on the rotor acts on the body the other way.
     #[inline(always)]
-    fn reduced_response<S: Scalar>(&self, t: S, q: &[S; 4], &[fx, fy, tau, motor]: &[S; 4]) -> Option<[S; 4]> {
+    fn pushed_motion<S: Scalar>(
+        &self,
+        t: S,
+        q: &[S; 4],
+        xi: &[S; 4],
+        &[fx, fy, tau, motor]: &[S; 4],
+    ) -> Option<[S; 4]> {
         if M != 1 {
             return None;
         }
-        let [u, omega, _] = self.body.reduced().reduced_response(t, &of_body(q), &[fx, fy, tau - motor])?;
+        let motor = match &self.torque {
+            Some(torque) => motor + torque.value(t),
+            None => motor,
+        };
+        let [u, omega, _] = self.body.reduced().pushed_motion(t, &of_body(q), &of_body(xi), &[fx, fy, tau - motor])?;
         Some([u, omega, motor / self.inertia, S::zero()])
     }
 }

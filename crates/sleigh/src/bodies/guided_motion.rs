@@ -69,39 +69,44 @@ impl<const K: usize> Guided<K> {
         ]
     }
 
-    /// The accelerations of what is not imposed, by the right sides of Newton's law.
+    /// `u'` and `omega'` by the right sides of Newton's law, where nothing is imposed.
     #[inline(always)]
-    fn solved<S: Scalar>(&self, moments: &Moments<S>, [along, about]: [S; 2]) -> [S; 3] {
+    fn solved<S: Scalar>(moments: &Moments<S>, [along, about]: [S; 2]) -> [S; 2] {
         let Moments { mass, first: [_, sy], inertia, .. } = *moments;
+        let determinant = (mass * inertia - sy * sy).recip();
+        [(inertia * along + sy * about) * determinant, (sy * along + mass * about) * determinant]
+    }
+
+    /// The accelerations of what is not imposed, under a force along `e` and a torque about the blade.
+    #[inline(always)]
+    fn accelerations<S: Scalar>(&self, t: S, q: &[S; 3], xi: &[S; 3], [force, torque]: [S; 2]) -> [S; 3] {
         let zero = S::zero();
-        match self.guides.first() {
-            None => {
-                let determinant = (mass * inertia - sy * sy).recip();
-                [(inertia * along + sy * about) * determinant, (sy * along + mass * about) * determinant, zero]
-            }
-            Some(Guide::Speed(_)) => [about / inertia, zero, zero],
-            Some(Guide::TurnRate(_)) => [along / mass, zero, zero],
-            Some(Guide::TracerX(_) | Guide::TracerY(_)) => [zero; 3],
+        if K > 1 {
+            return [zero; 3];
         }
-    }
-
-    /// `u' = omega s + a omega^2`, `omega' = -(m a/J) (s' + omega u)`, unless they are imposed: without masses that are moved.
-    #[inline(always)]
-    fn bare<S: Scalar>(&self, Rates { own: [u, omega], across: [s, s_rate], .. }: &Rates<S>) -> [S; 3] {
-        let (zero, omega) = (S::zero(), *omega);
-        let along = omega * *s + omega * omega * self.sleigh.offset();
-        let turn = (*s_rate + omega * *u) * -self.sleigh.spin_gain();
-        self.free([along, turn, zero])
-    }
-
-    /// Of `u'` and `omega'` those that are not imposed.
-    #[inline(always)]
-    fn free<S: Scalar>(&self, [along, turn, zero]: [S; 3]) -> [S; 3] {
+        let Rates { own, imposed: [u_rate, turn_rate], across } = self.rates(t, q, xi);
+        let ([u, omega], [s, s_rate]) = (own, across);
+        if self.masses.is_empty() {
+            // u' = omega s + a omega^2 + F/m, omega' = -(m a/J) (s' + omega u) + tau/J.
+            let [per_mass, per_inertia] = self.sleigh.inverse();
+            let along = omega * s + omega * omega * self.sleigh.offset() + force * per_mass;
+            let turn = (s_rate + omega * u) * -self.sleigh.spin_gain() + torque * per_inertia;
+            return match self.guides.first() {
+                Some(Guide::Speed(_)) => [turn, zero, zero],
+                Some(_) => [along, zero, zero],
+                None => [along, turn, zero],
+            };
+        }
+        let moments = Moments::of(&self.sleigh, &self.masses, t);
+        let [along, about] = Self::inertial(&moments, own, across);
+        let (along, about, sy) = (along + force, about + torque, moments.first[1]);
         match self.guides.first() {
-            None => [along, turn, zero],
-            Some(Guide::Speed(_)) => [turn, zero, zero],
-            Some(Guide::TurnRate(_)) => [along, zero, zero],
-            Some(Guide::TracerX(_) | Guide::TracerY(_)) => [zero; 3],
+            Some(Guide::Speed(_)) => [(about + sy * u_rate) / moments.inertia, zero, zero],
+            Some(_) => [(along + sy * turn_rate) / moments.mass, zero, zero],
+            None => {
+                let [along, turn] = Self::solved(&moments, [along, about]);
+                [along, turn, zero]
+            }
         }
     }
 }
@@ -121,7 +126,7 @@ where
         let [u, s, omega] = [cos * v[0] + sin * v[1], cos * v[1] - sin * v[0], v[2]];
         let s_rate = self.across(q, [u, omega])[1];
         let moments = Moments::of(&self.sleigh, &self.masses, t);
-        let [u_rate, turn, _] = self.solved(&moments, Self::inertial(&moments, [u, omega], [s, s_rate]));
+        let [u_rate, turn] = Self::solved(&moments, Self::inertial(&moments, [u, omega], [s, s_rate]));
         // P'' = (u' - omega s) e + (s' + omega u) n.
         let (along, across) = (u_rate - omega * s, s_rate + omega * u);
         let Moments { mass, first: [sx, sy], first_rate: [vx, _], first_curvature: [_, ay], .. } = moments;
@@ -138,7 +143,7 @@ where
         }
         let (sin, cos) = q[2].sin_cos();
         let moments = Moments::of(&self.sleigh, &self.masses, t);
-        let [along, turn, _] = self.solved(&moments, [cos * fx + sin * fy, tau]);
+        let [along, turn] = Self::solved(&moments, [cos * fx + sin * fy, tau]);
         Some(Motion {
             acceleration: [along * cos, along * sin, turn],
             multiplier: [moments.first[0] * turn - (cos * fy - sin * fx); M],
@@ -147,34 +152,18 @@ where
 
     #[inline(always)]
     fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; 3], xi: &[S; 3]) -> Option<[S; 3]> {
-        if K > 1 {
-            return Some([S::zero(); 3]);
-        }
-        let rates = self.rates(t, q, xi);
-        if self.masses.is_empty() {
-            return Some(self.bare(&rates));
-        }
-        let moments = Moments::of(&self.sleigh, &self.masses, t);
-        let [along, about] = Self::inertial(&moments, rates.own, rates.across);
-        let [u_rate, turn_rate] = rates.imposed;
-        let sy = moments.first[1];
-        Some(self.solved(&moments, [along + sy * turn_rate, about + sy * u_rate]))
+        Some(self.accelerations(t, q, xi, [S::zero(); 2]))
+    }
+
+    #[inline(always)]
+    fn pushed_motion<S: Scalar>(&self, t: S, q: &[S; 3], xi: &[S; 3], &[fx, fy, tau]: &[S; 3]) -> Option<[S; 3]> {
+        let (sin, cos) = q[2].sin_cos();
+        Some(self.accelerations(t, q, xi, [cos * fx + sin * fy, tau]))
     }
 
     /// The heading from the spin, and the place from the heading; on a plane that turns, the velocity depends on the place.
     #[inline(always)]
     fn reconstruction(&self) -> Option<u32> {
         (self.table_rate == 0.0 && K < 2).then_some(1)
-    }
-
-    #[inline(always)]
-    fn reduced_response<S: Scalar>(&self, t: S, q: &[S; 3], &[fx, fy, tau]: &[S; 3]) -> Option<[S; 3]> {
-        let (sin, cos) = q[2].sin_cos();
-        let along = cos * fx + sin * fy;
-        if self.masses.is_empty() {
-            let [per_mass, per_inertia] = self.sleigh.inverse();
-            return Some(self.free([along * per_mass, tau * per_inertia, S::zero()]));
-        }
-        Some(self.solved(&Moments::of(&self.sleigh, &self.masses, t), [along, tau]))
     }
 }

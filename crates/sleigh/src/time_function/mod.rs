@@ -41,39 +41,50 @@ impl TimeFunction {
     /// The value at `t`.
     #[inline(always)]
     pub fn value<S: Scalar>(&self, t: S) -> S {
-        match self {
-            Self::Constant(value) => S::constant(*value),
-            Self::Sine { amplitude, frequency, phase } => (t * *frequency + *phase).sin() * *amplitude,
-            Self::Table(table) => S::constant(table.value()),
-            Self::Ramp(ramp) => ramp.value(t),
-            Self::Pulses(pulses) => pulses.value(t),
-            Self::Formula(formula) => formula.value(t),
-        }
+        S::apart(
+            #[inline(always)]
+            || match self {
+                Self::Constant(value) => S::constant(*value),
+                Self::Sine { amplitude, frequency, phase } => (t * *frequency + *phase).sin() * *amplitude,
+                Self::Table(table) => S::constant(table.value()),
+                Self::Ramp(ramp) => ramp.value(t),
+                Self::Pulses(pulses) => pulses.value(t),
+                Self::Formula(formula) => formula.value(t),
+            },
+        )
     }
 
     /// The derivative in time at `t`, between the jumps.
     #[inline(always)]
     pub fn slope<S: Scalar>(&self, t: S) -> S {
-        match self {
-            Self::Sine { amplitude, frequency, phase } => (t * *frequency + *phase).cos() * (*amplitude * *frequency),
-            Self::Constant(_) | Self::Table(_) => S::zero(),
-            Self::Ramp(ramp) => S::constant(ramp.slope()),
-            Self::Pulses(pulses) => pulses.slope(t),
-            Self::Formula(formula) => formula.slope(t),
-        }
+        S::apart(
+            #[inline(always)]
+            || match self {
+                Self::Sine { amplitude, frequency, phase } => {
+                    (t * *frequency + *phase).cos() * (*amplitude * *frequency)
+                }
+                Self::Constant(_) | Self::Table(_) => S::zero(),
+                Self::Ramp(ramp) => S::constant(ramp.slope()),
+                Self::Pulses(pulses) => pulses.slope(t),
+                Self::Formula(formula) => formula.slope(t),
+            },
+        )
     }
 
     /// The second derivative in time at `t`, between the jumps.
     #[inline(always)]
     pub fn curvature<S: Scalar>(&self, t: S) -> S {
-        match self {
-            Self::Sine { amplitude, frequency, phase } => {
-                (t * *frequency + *phase).sin() * -(*amplitude * *frequency * *frequency)
-            }
-            Self::Constant(_) | Self::Table(_) | Self::Ramp(_) => S::zero(),
-            Self::Pulses(pulses) => pulses.curvature(t),
-            Self::Formula(formula) => formula.curvature(t),
-        }
+        S::apart(
+            #[inline(always)]
+            || match self {
+                Self::Sine { amplitude, frequency, phase } => {
+                    (t * *frequency + *phase).sin() * -(*amplitude * *frequency * *frequency)
+                }
+                Self::Constant(_) | Self::Table(_) | Self::Ramp(_) => S::zero(),
+                Self::Pulses(pulses) => pulses.curvature(t),
+                Self::Formula(formula) => formula.curvature(t),
+            },
+        )
     }
 
     /// The function itself, where every number in it is finite.

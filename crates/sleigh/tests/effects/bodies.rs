@@ -38,7 +38,7 @@ fn constraints_of_the_body_stay() {
     assert_abs_diff_eq!(velocity, 2.0 - 0.9 + 0.5, epsilon = 1e-15);
     assert_eq!(rotor.angles(), [true, false, false, true]);
     // Two rows leave the body no reduced motion of its own here.
-    assert!(rotor.reduced_motion(t, &q, &v).is_none() && rotor.reduced_response(t, &q, &v).is_none());
+    assert!(rotor.reduced_motion(t, &q, &v).is_none() && rotor.pushed_motion(t, &q, &v, &v).is_none());
 }
 
 #[test]
@@ -63,8 +63,9 @@ fn responses_to_forces() {
     }
     assert_abs_diff_eq!(made.multiplier[0], m * a * tau / j - (cos * fy - sin * fx), epsilon = 1e-15);
     let rotor = Flywheel::new(sleigh, 0.25, None).unwrap();
-    let made =
-        Reduced::<4, 1>::reduced_response(&rotor, 0.0, &[0.1, 0.2, heading, 5.0], &[fx, fy, tau, motor]).unwrap();
+    // At rest the accelerations are those of the forces alone.
+    let place = [0.1, 0.2, heading, 5.0];
+    let made = Reduced::<4, 1>::pushed_motion(&rotor, 0.0, &place, &[0.0; 4], &[fx, fy, tau, motor]).unwrap();
     for (found, expected) in made.into_iter().zip([along, (tau - motor) / j, motor / 0.25, 0.0]) {
         assert_abs_diff_eq!(found, expected, epsilon = 1e-15);
     }
