@@ -70,6 +70,52 @@ fn it_moves_as_the_row_does_for_long() {
     println!("{close} of {pairs} pairs within 1e-13");
 }
 
+/// Where a text gives no basis the methods move in a derived one, and keep their orders, the energy and the constraint.
+#[test]
+fn a_derived_basis_keeps_what_methods_promise() {
+    let (mut systems, mut seen) = (0, 0);
+    for case in table() {
+        let Some(mut words) = texts::of(case.name()) else { continue };
+        words.basis.clear();
+        systems += 1;
+        let (start, facts) = (case.start(), case.facts());
+        let (places, duration) = (start.q.len(), case.duration());
+        let model = Arc::new(TextModel::new(&words).unwrap());
+        let begin = TextStart { q: start.q.clone(), v: start.v.clone(), ..TextStart::default() };
+        let text = AnyText::new(&model, &begin).unwrap();
+        let run = |name: &str, steps: u64| {
+            let schedule = Schedule { t0: 0.0, step: duration / steps as f64, steps };
+            with_text!(&text, started => end(&*started.system, &method(name), (started.q, started.v), &schedule, places))
+        };
+        let reference = case.end(&method("gauss16"), 200).unwrap();
+        for (name, order) in [("dla", 2.0), ("gauss4", 4.0), ("rk4-reduced", 4.0), ("energy4", 4.0)] {
+            if METHODS.iter().any(|info| info.name == name && refuses(info, facts).is_some()) {
+                continue;
+            }
+            let steps = (duration / 0.04) as u64;
+            let [coarse, fine] = [steps, 2 * steps].map(|steps| run(name, steps).unwrap());
+            let [far, near] = [&coarse, &fine].map(|found| found.distance(&reference));
+            let found = (far / near).log2();
+            // The next terms of the expansion are some tenths of the first at these steps; below 1e-11 the reference counts.
+            assert!((found - order).abs() < 0.5 || near < 1e-11, "{}, {name}: order {found}, {far:e}", case.name());
+            seen += u32::from(near > 1e-11);
+            let kept = with_text!(&text, started => {
+                let system = started.system.smooth_piece(duration);
+                let place = |x: &[f64]| std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0));
+                let (q, v) = (place(&fine.q), place(&fine.v));
+                let slip = system.residual(duration, &q, &v).iter().fold(0.0, |most: f64, slip| most.max(slip.abs()));
+                let first = started.system.smooth_piece(0.0).energy(0.0, &started.q, &started.v);
+                [slip, (system.energy(duration, &q, &v) - first).abs()]
+            });
+            assert!(kept[0] < 1e-13, "{}, {name}: slips by {:e}", case.name(), kept[0]);
+            if name == "energy4" && !facts.forced {
+                assert!(kept[1] < 1e-12, "{}, {name}: energy {:e}", case.name(), kept[1]);
+            }
+        }
+    }
+    assert!(systems >= 20 && seen > 60, "{systems} systems, {seen} orders");
+}
+
 /// The control: of another parameter the motion is another.
 #[test]
 fn another_parameter_is_seen() {
