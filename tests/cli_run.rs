@@ -27,6 +27,30 @@ const KEYS: [&str; 11] = [
 ];
 const FINAL: [&str; 6] = ["t", "x", "y", "heading", "speed", "turn_rate"];
 
+const CIRCLE: &str = r#"
+[sleigh]
+mass = 1.0
+inertia = 1.0
+offset = 0.0
+[start]
+speed = 1.0
+turn_rate = 1.0
+[run]
+step = 0.1
+duration = 20.0
+"#;
+
+/// A circle of radius 1 m, at 1 rad/s: `x = sin t`, `y = 1 - cos t`.
+const TRAILER: &str = "[[effects]]
+kind = \"trailers\"
+count = 1
+mass = 1e-9
+inertia = 1e-9
+offset = 0.0
+hitch = 0.0
+bar = 0.5
+";
+
 fn assert_shape(run: &Value) {
     assert_eq!(keys(run), KEYS);
     assert_eq!(keys(&run["newton"]), ["mean", "max"]);

@@ -1,6 +1,6 @@
 //! Events of `noslip run`.
 
-use super::TRAIN;
+use super::{CIRCLE, TRAILER, TRAIN};
 use crate::program::{Folder, csv};
 use serde_json::Value;
 
@@ -116,30 +116,6 @@ duration = 6.0
 kind = "servo"
 speed = { amplitude = 1.0, frequency = 10.0, phase = 1.5707963267948966 }
 turn_rate = 0.0
-"#;
-
-/// A circle of radius 1 m, at 1 rad/s: `x = sin t`, `y = 1 - cos t`.
-const TRAILER: &str = "[[effects]]
-kind = \"trailers\"
-count = 1
-mass = 1e-9
-inertia = 1e-9
-offset = 0.0
-hitch = 0.0
-bar = 0.5
-";
-
-const CIRCLE: &str = r#"
-[sleigh]
-mass = 1.0
-inertia = 1.0
-offset = 0.0
-[start]
-speed = 1.0
-turn_rate = 1.0
-[run]
-step = 0.1
-duration = 20.0
 "#;
 
 fn times(run: &Value) -> Vec<f64> {

@@ -73,7 +73,7 @@ fn start() -> String {
 fn a_train_on_a_turntable_is_its_text() {
     let folder = Folder::new();
     folder.write("train.toml", TRAIN);
-    folder.write("words.toml", &format!("{WORDS}{}", start()));
+    folder.write("words.toml", format!("{WORDS}{}", start()));
     for method in ["dla", "lobatto5"] {
         let train = folder.json(&format!("run train.toml --method {method} --json"));
         let words = folder.json(&format!("run words.toml --method {method} --json"));
@@ -97,7 +97,7 @@ fn a_train_on_a_turntable_is_its_text() {
     assert!(energy["work"].as_f64().unwrap().abs() > 1e-3, "{energy}");
     assert!(energy["max_error"].as_f64().unwrap() < 1e-6, "{energy}");
     // Without the table it is another motion.
-    folder.write("still.toml", &TRAIN.replace("rate = 0.3", "rate = 0.0"));
+    folder.write("still.toml", TRAIN.replace("rate = 0.3", "rate = 0.0"));
     let still = folder.json("run still.toml --method lobatto5 --json");
     assert!((still["last"]["x"].as_f64().unwrap() - train["last"]["x"].as_f64().unwrap()).abs() > 0.01);
 }

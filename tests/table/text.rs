@@ -1,6 +1,6 @@
 //! A row written as text moves as the row in Rust, by every method.
 
-use crate::case::{Case, Point};
+use crate::case::Point;
 use crate::rows::table;
 use crate::texts;
 use crate::tools::{method, refuses};

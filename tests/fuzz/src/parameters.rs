@@ -10,7 +10,7 @@ use lagrangian::{System, With};
 use libfuzzer_sys::fuzz_target;
 use scene::AnyEffect;
 use sleigh::effects::{Bowl, Drag, EggCrate, Hill, Hills, MovingMass, Slope, Thrust, Torque};
-use sleigh::{Sleigh, SleighError, SleighState, TimeFunction};
+use sleigh::{Guided, Sleigh, SleighError, SleighState, TimeFunction};
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
@@ -61,10 +61,13 @@ enum Effect {
     MovingMass(Number, Function, Function),
 }
 
+/// Where effects and masses of a case go.
+type Acting = (Vec<AnyEffect>, Vec<MovingMass>);
+
 impl Effect {
-    fn build(&self) -> Result<AnyEffect, SleighError> {
+    fn add_to(&self, (effects, masses): &mut Acting) -> Result<(), SleighError> {
         let pair = |numbers: &[Number; 2]| numbers.map(Number::value);
-        Ok(match self {
+        effects.push(match self {
             Self::Slope(gravity) => AnyEffect::Slope(Slope::new(pair(gravity))?),
             Self::Bowl(stiffness, center) => AnyEffect::Bowl(Bowl::new(pair(stiffness), pair(center))?),
             Self::EggCrate(height, waves) => AnyEffect::EggCrate(EggCrate::new(height.value(), pair(waves))?),
@@ -76,9 +79,11 @@ impl Effect {
             Self::Thrust(force) => AnyEffect::Thrust(Thrust::new(force.build())?),
             Self::Torque(torque) => AnyEffect::Torque(Torque::new(torque.build())?),
             Self::MovingMass(mass, x, y) => {
-                AnyEffect::MovingMass(MovingMass::new(mass.value().abs(), x.build(), y.build())?)
+                masses.push(MovingMass::new(mass.value().abs(), x.build(), y.build())?);
+                return Ok(());
             }
-        })
+        });
+        Ok(())
     }
 }
 
@@ -129,8 +134,11 @@ impl Observer<3, 1> for OnConstraint {
 
 fn run(case: &Case) -> Result<(), Box<dyn std::error::Error>> {
     let [mass, inertia, offset] = case.body.map(Number::value);
-    let effects = case.effects.iter().take(4).map(Effect::build).collect::<Result<Vec<_>, _>>()?;
-    let system = With { body: Sleigh::new(mass.abs(), inertia.abs(), offset)?, effects };
+    let mut acting = Acting::default();
+    case.effects.iter().take(4).try_for_each(|effect| effect.add_to(&mut acting))?;
+    let (effects, masses) = acting;
+    let body = Guided::from(Sleigh::new(mass.abs(), inertia.abs(), offset)?).carrying(masses);
+    let system = With { body, effects };
     let [x, y, heading, speed, turn_rate] = case.start.map(Number::value);
     let step = case.step.value();
     if ![x, y, heading, speed, turn_rate, step].iter().all(|x| x.is_finite()) || step == 0.0 {

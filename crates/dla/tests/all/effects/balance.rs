@@ -86,8 +86,9 @@ fn forced() {
 #[test]
 fn explicit_time() {
     let mass = MovingMass::new(0.4, sine(0.3, 2.0, 0.3), 0.2).unwrap();
-    let effects = vec![AnyEffect::MovingMass(mass), AnyEffect::Slope(Slope::new([0.3, -0.2]).unwrap())];
-    converges("explicit time", &laden(sleigh(), effects), moving().to_coordinates());
+    let effects = vec![AnyEffect::Slope(Slope::new([0.3, -0.2]).unwrap())];
+    let carrying = Guided::from(sleigh()).carrying(vec![mass]);
+    converges("explicit time", &laden(carrying, effects), moving().to_coordinates());
 }
 
 #[test]

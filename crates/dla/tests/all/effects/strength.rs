@@ -19,11 +19,6 @@ fn effects(k: f64) -> Vec<(&'static str, AnyEffect)> {
         ("drag", AnyEffect::Drag(Drag::new(k, 2.0 * k).unwrap())),
         ("thrust", AnyEffect::Thrust(Thrust::new(sine(k, 1.0, 0.3)).unwrap())),
         ("torque", AnyEffect::Torque(Torque::new(table).unwrap())),
-        // A mass must be positive; the smallest has no effect on a double.
-        (
-            "moving_mass",
-            AnyEffect::MovingMass(MovingMass::new(k.max(f64::MIN_POSITIVE), sine(0.3, 2.0, 0.0), 0.2).unwrap()),
-        ),
     ]
 }
 
@@ -44,10 +39,14 @@ fn no_strength_is_no_effect() {
         assert!(none <= rounding && some > 1e-2, "{name}: {none:e} and {some:e}");
     }
 
-    let on = |rate| {
+    let guided = |body: Guided<0>| {
         let mut method = Dla::midpoint();
-        let system = laden(Guided::turntable(sleigh(), rate).unwrap(), vec![]);
-        run(&system, &mut method, &steps(0.05, count), moving().to_coordinates(), ()).unwrapped()
+        run(&laden(body, vec![]), &mut method, &steps(0.05, count), moving().to_coordinates(), ()).unwrapped()
     };
+    let on = |rate| guided(Guided::turntable(sleigh(), rate).unwrap());
     assert!(off(on(0.0), free) <= rounding && off(on(0.1), free) > 1e-2);
+    // A mass must be positive; the smallest has no effect on a double.
+    let with =
+        |mass| guided(Guided::from(sleigh()).carrying(vec![MovingMass::new(mass, sine(0.3, 2.0, 0.0), 0.2).unwrap()]));
+    assert!(off(with(f64::MIN_POSITIVE), free) <= rounding && off(with(0.1), free) > 1e-2);
 }
