@@ -4,7 +4,7 @@ use lagrangian::linear::larger;
 use lagrangian::{
     DiscreteConstraint, DiscreteLagrangian, Dual, Midpoint, Motion, Rounded, Saddle, System, configuration_slope,
     constraint_residual, energy, force_power, from_fn, lagrangian_power, mass_matrix, momentum, position_misses,
-    position_residual, reaction_rows, velocity_slope,
+    position_residual, reaction_rows, rows_along, velocity_slope,
 };
 use std::fmt;
 
@@ -174,7 +174,7 @@ impl<Sys: System<N, M> + Send + Sync, const N: usize, const M: usize> Element fo
 
     fn turn(&self, (t0, h): (f64, f64), q0: &[f64], v: &[f64]) -> f64 {
         let (q0, v): ([f64; N], [f64; N]) = (local(q0), local(v));
-        dla::turn(&self.system, (t0, h), &q0, &v)
+        dla::turn(&self.system.angles(), &from_fn(|i| h * v[i]), |step| rows_along(&self.system, (t0, h), &q0, step))
     }
 
     fn braking(&self, (t0, h): (f64, f64), q0: &[f64], [v, v1]: [&[f64]; 2]) -> [f64; 3] {

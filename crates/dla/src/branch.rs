@@ -1,8 +1,8 @@
 //! Which of several solutions of a step continues the motion.
 
 use crate::Mechanics;
-use lagrangian::from_fn;
 use lagrangian::linear::larger;
+use lagrangian::{Dual, from_fn};
 
 /// A solution whose constraint turns by less than this in the step (rad) counts as near its start.
 pub(crate) const NEAR: f64 = 1.0;
@@ -10,27 +10,33 @@ pub(crate) const NEAR: f64 = 1.0;
 /// By how much a step with this mean velocity turns the constraint that turns most (rad): the rate times the step, since the two ends do
 /// not show whole turns. Zero where no angle turns by more than 1 rad.
 #[inline(always)]
-#[must_use]
-pub fn turn<const N: usize, const M: usize>(
-    system: &dyn Mechanics<N, M>,
-    time: (f64, f64),
-    q0: &[f64; N],
-    v: &[f64; N],
-) -> f64 {
-    let angles = system.angles();
-    let far = (0..N).any(|i| angles[i] && (time.1 * v[i]).abs() > NEAR);
-    if far { turned(system, time, q0, v) } else { 0.0 }
-}
-
-#[cold]
-#[inline(never)]
-fn turned<const N: usize, const M: usize>(
+pub(crate) fn turn_of<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
     (t0, h): (f64, f64),
     q0: &[f64; N],
     v: &[f64; N],
 ) -> f64 {
-    let a = system.rows_along(t0, q0, h, &from_fn(|i| h * v[i]));
+    turn(&system.angles(), &from_fn(|i| h * v[i]), |increment| system.rows_along(t0, q0, h, increment))
+}
+
+/// By how much an increment of the coordinates turns the constraint that turns most (rad): `rows` gives the matrix `A` and its derivative
+/// along the increment.
+///
+/// Zero where no angle turns by more than 1 rad.
+#[inline(always)]
+#[must_use]
+pub fn turn<const N: usize, const M: usize>(
+    angles: &[bool; N],
+    increment: &[f64; N],
+    rows: impl FnOnce(&[f64; N]) -> [[Dual<f64, 1>; N]; M],
+) -> f64 {
+    let far = (0..N).any(|i| angles[i] && increment[i].abs() > NEAR);
+    if far { turned(rows(increment)) } else { 0.0 }
+}
+
+#[cold]
+#[inline(never)]
+fn turned<const N: usize, const M: usize>(a: [[Dual<f64, 1>; N]; M]) -> f64 {
     let size = |row: [f64; N]| row.iter().map(|x| x * x).sum::<f64>().sqrt();
     // A row that is not affine has no place in `A`.
     let turns = a.map(|row| match size(row.map(|x| x.re)) {

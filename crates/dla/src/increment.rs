@@ -189,7 +189,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N
 
     #[inline(always)]
     fn turn(&self, v: &[f64; N]) -> f64 {
-        branch::turn(self.system, (self.t0, self.h), &self.q0, v)
+        branch::turn_of(self.system, (self.t0, self.h), &self.q0, v)
     }
 }
 

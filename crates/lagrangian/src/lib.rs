@@ -97,7 +97,7 @@ pub use octaves::{octaves, of_octaves};
 pub use parametrised::{Member, Parametrised, Unparametrised};
 pub use piecewise::{Piecewise, whole_steps};
 pub use power::{force_power, lagrangian_power};
-pub use reaction::{position_misses, position_residual, position_rows, reaction_rows};
+pub use reaction::{position_misses, position_residual, position_rows, reaction_rows, rows_along};
 pub use reduced::{
     ReducedError, ReducedSlope, derived_acceleration, quasi_velocities, reduced_acceleration, reduced_slope,
     velocity_of,

@@ -18,6 +18,18 @@ where
     a
 }
 
+/// The rows `A(q, t)` and their derivative along `(t', q')`.
+#[inline]
+pub fn rows_along<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    (t, in_t): (f64, f64),
+    q: &[f64; N],
+    in_q: &[f64; N],
+) -> [[Dual<f64, 1>; N]; M] {
+    let along = |re: f64, rate: f64| Dual { re, eps: [rate] };
+    system.constraint(along(t, in_t), &from_fn(|i| along(q[i], in_q[i]))).0
+}
+
 /// The rows of the constraints on positions, `A_k = dg_k/dq` and `b_k = dg_k/dt`, from the functions of
 /// [`System::holonomic`]; zero for the others.
 ///

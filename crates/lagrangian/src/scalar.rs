@@ -93,6 +93,17 @@ pub trait Scalar:
         f()
     }
 
+    /// `f(self)` as a function that is compiled once for all that call it, in vector registers too, where a call costs some nanoseconds. How
+    /// the result is [carried](Self::carried_as) is then not known to who calls.
+    #[must_use]
+    #[inline(always)]
+    fn called<T>(self, f: impl FnOnce(Self) -> T) -> T {
+        Self::apart(
+            #[inline(always)]
+            || f(self),
+        )
+    }
+
     /// The same number, carried as the other is. Numbers in vector registers are told apart, when a model is compiled, from those
     /// that all eight have in common; where a run decides which of the two a number is, every operation after it would be there
     /// for both.

@@ -123,7 +123,7 @@ fn going_on<D: Discretisation<N, M>, const N: usize, const M: usize>(
 ) -> Option<StepReport<M>> {
     let (q0, v0) = (*state.q(), *state.v());
     let (FoundMean { v, lambda, corrections }, p1) = method.mean(system, (t0, h), state)?;
-    if branch::turn(system, (t0, h), &q0, &v) > branch::NEAR {
+    if branch::turn_of(system, (t0, h), &q0, &v) > branch::NEAR {
         return None;
     }
 

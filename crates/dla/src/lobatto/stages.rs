@@ -47,7 +47,7 @@ impl<const N: usize, const M: usize, const S: usize> LobattoStages<'_, N, M, S> 
     #[inline]
     pub(super) fn turn(&self, v: &[[f64; N]; S]) -> f64 {
         let increment = self.increment(&self.tables.b, 1.0, v);
-        branch::turn(self.system, (self.t0, self.h), self.start.q(), &increment.map(|d| d / self.h))
+        branch::turn_of(self.system, (self.t0, self.h), self.start.q(), &increment.map(|d| d / self.h))
     }
 
     /// The points of the stages.

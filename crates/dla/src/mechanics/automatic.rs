@@ -7,8 +7,8 @@ use lagrangian::{
     AdmissibleBasis, Bracket, Constraint, ConstraintSlopes, Dual, EnergySlope, HyperDual, Lanes, Motion, MotionError,
     ReducedError, ReducedSlope, System, add_position_curvature, add_reaction_curvature, constraint_residual, energy,
     energy_slope, force_power, from_fn, gradients, inverse_reduced_mass, lagrangian_power, linear_basis, mass_matrix,
-    momentum, position_misses, quasi_velocities, reaction_rows, reduced_slope, residual_along, second_at_node,
-    second_in_both, second_in_place, vectorized, velocity_of,
+    momentum, position_misses, quasi_velocities, reaction_rows, reduced_slope, residual_along, rows_along,
+    second_at_node, second_in_both, second_in_place, vectorized, velocity_of,
 };
 
 impl<Sys: System<N, M>, const N: usize, const M: usize> Mechanics<N, M> for Sys {
@@ -80,8 +80,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Mechanics<N, M> for Sys 
 
     #[cold]
     fn rows_along(&self, t: f64, q: &[f64; N], in_t: f64, in_q: &[f64; N]) -> [[Dual<f64, 1>; N]; M] {
-        let along = |re: f64, rate: f64| Dual { re, eps: [rate] };
-        System::constraint(self, along(t, in_t), &from_fn(|i| along(q[i], in_q[i]))).0
+        rows_along(self, (t, in_t), q, in_q)
     }
 
     fn residual(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> [f64; M] {

@@ -280,6 +280,17 @@ impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
         f()
     }
     #[inline(always)]
+    fn called<T>(self, f: impl FnOnce(Self) -> T) -> T {
+        match self {
+            Each(x) => super::apart(
+                x.simd(),
+                #[inline(always)]
+                || f(Each(x)),
+            ),
+            Zero | Same(_) => f(self),
+        }
+    }
+    #[inline(always)]
     fn over<I, T>(items: &[I], mut start: T, f: impl Fn(T, &I) -> T) -> T {
         for item in items {
             start = f(start, item);

@@ -38,10 +38,8 @@ impl<const K: usize> Guided<K> {
     fn rates<S: Scalar>(&self, t: S, q: &[S; 3], xi: &[S; 3]) -> Rates<S> {
         let zero = S::zero();
         let (own, imposed) = match self.guides.first() {
-            Some(Guide::Speed(u)) => ([u.value(t).carried_as(t), xi[0]], [u.slope(t).carried_as(t), zero]),
-            Some(Guide::TurnRate(omega)) => {
-                ([xi[0], omega.value(t).carried_as(t)], [zero, omega.slope(t).carried_as(t)])
-            }
+            Some(Guide::Speed(u)) => ([u.value(t), xi[0]], [u.slope(t), zero]),
+            Some(Guide::TurnRate(omega)) => ([xi[0], omega.value(t)], [zero, omega.slope(t)]),
             _ => ([xi[0], xi[1]], [zero; 2]),
         };
         Rates { own, imposed, across: self.across(q, own) }

@@ -26,19 +26,19 @@ impl<S: Scalar> Moments<S> {
     /// The moments at the time `t` (s).
     #[inline(always)]
     pub(super) fn of(sleigh: &Sleigh, masses: &[MovingMass], t: S) -> Self {
-        let none = constant(0.0, t);
-        let bare = Self {
-            mass: constant(sleigh.mass(), t),
-            first: [constant(sleigh.mass() * sleigh.offset(), t), none],
-            first_rate: [none; 2],
-            first_curvature: [none; 2],
-            inertia: constant(sleigh.pivot_inertia(), t),
-            growth: none,
-            twist: none,
-        };
-        S::apart(
+        let all = t.called(
             #[inline(always)]
-            || {
+            |t| {
+                let none = constant(0.0, t);
+                let bare = Self {
+                    mass: constant(sleigh.mass(), t),
+                    first: [constant(sleigh.mass() * sleigh.offset(), t), none],
+                    first_rate: [none; 2],
+                    first_curvature: [none; 2],
+                    inertia: constant(sleigh.pivot_inertia(), t),
+                    growth: none,
+                    twist: none,
+                };
                 S::over(
                     masses,
                     bare,
@@ -46,17 +46,27 @@ impl<S: Scalar> Moments<S> {
                     |sum, mass| sum.with(mass, t),
                 )
             },
-        )
+        );
+        all.carried_as(t)
+    }
+
+    #[inline(always)]
+    fn carried_as(self, t: S) -> Self {
+        Self {
+            mass: self.mass.carried_as(t),
+            first: two(self.first, t),
+            first_rate: two(self.first_rate, t),
+            first_curvature: two(self.first_curvature, t),
+            inertia: self.inertia.carried_as(t),
+            growth: self.growth.carried_as(t),
+            twist: self.twist.carried_as(t),
+        }
     }
 
     #[inline(always)]
     fn with(self, moving: &MovingMass, t: S) -> Self {
         let m = moving.mass();
         let [[x, y], [vx, vy], [ax, ay]] = moving.path(t);
-        let [x, y, vx, vy, ax, ay] = S::array(
-            #[inline(always)]
-            |i| [x, y, vx, vy, ax, ay][i].carried_as(t),
-        );
         Self {
             mass: self.mass + m,
             first: plus(self.first, [x, y], m),
@@ -73,6 +83,11 @@ impl<S: Scalar> Moments<S> {
 #[inline(always)]
 fn constant<S: Scalar>(x: f64, t: S) -> S {
     S::constant(x).carried_as(t)
+}
+
+#[inline(always)]
+fn two<S: Scalar>([a, b]: [S; 2], t: S) -> [S; 2] {
+    [a.carried_as(t), b.carried_as(t)]
 }
 
 /// `a + m b`.

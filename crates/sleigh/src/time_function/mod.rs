@@ -38,12 +38,25 @@ pub enum TimeFunction {
 }
 
 impl TimeFunction {
+    /// The value at all times, where the piece is constant.
+    #[inline(always)]
+    fn constant(&self) -> Option<f64> {
+        match self {
+            Self::Constant(value) => Some(*value),
+            Self::Table(table) => Some(table.value()),
+            _ => None,
+        }
+    }
+
     /// The value at `t`.
     #[inline(always)]
     pub fn value<S: Scalar>(&self, t: S) -> S {
-        S::apart(
+        if let Some(value) = self.constant() {
+            return S::constant(value).carried_as(t);
+        }
+        let value = t.called(
             #[inline(always)]
-            || match self {
+            |t| match self {
                 Self::Constant(value) => S::constant(*value),
                 Self::Sine { amplitude, frequency, phase } => (t * *frequency + *phase).sin() * *amplitude,
                 Self::Table(table) => S::constant(table.value()),
@@ -51,15 +64,19 @@ impl TimeFunction {
                 Self::Pulses(pulses) => pulses.value(t),
                 Self::Formula(formula) => formula.value(t),
             },
-        )
+        );
+        value.carried_as(t)
     }
 
     /// The derivative in time at `t`, between the jumps.
     #[inline(always)]
     pub fn slope<S: Scalar>(&self, t: S) -> S {
-        S::apart(
+        if self.constant().is_some() {
+            return S::zero().carried_as(t);
+        }
+        let slope = t.called(
             #[inline(always)]
-            || match self {
+            |t| match self {
                 Self::Sine { amplitude, frequency, phase } => {
                     (t * *frequency + *phase).cos() * (*amplitude * *frequency)
                 }
@@ -68,15 +85,19 @@ impl TimeFunction {
                 Self::Pulses(pulses) => pulses.slope(t),
                 Self::Formula(formula) => formula.slope(t),
             },
-        )
+        );
+        slope.carried_as(t)
     }
 
     /// The second derivative in time at `t`, between the jumps.
     #[inline(always)]
     pub fn curvature<S: Scalar>(&self, t: S) -> S {
-        S::apart(
+        if self.constant().is_some() {
+            return S::zero().carried_as(t);
+        }
+        let curvature = t.called(
             #[inline(always)]
-            || match self {
+            |t| match self {
                 Self::Sine { amplitude, frequency, phase } => {
                     (t * *frequency + *phase).sin() * -(*amplitude * *frequency * *frequency)
                 }
@@ -84,7 +105,8 @@ impl TimeFunction {
                 Self::Pulses(pulses) => pulses.curvature(t),
                 Self::Formula(formula) => formula.curvature(t),
             },
-        )
+        );
+        curvature.carried_as(t)
     }
 
     /// The function itself, where every number in it is finite.

@@ -38,7 +38,7 @@ pub(super) fn going_on<D: Discretisation<N, M>, const N: usize, const M: usize>(
 ) -> Option<StepReport<M>> {
     let q0 = *state.q();
     let (InBasis { found: FoundMean { v, lambda, corrections }, xi }, p1) = mean(method, system, (t0, h), state)?;
-    if branch::turn(system, (t0, h), &q0, &v) > branch::NEAR {
+    if branch::turn_of(system, (t0, h), &q0, &v) > branch::NEAR {
         return None;
     }
 
