@@ -45,10 +45,11 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Hills {
     #[inline(always)]
     fn lagrangian<S: Scalar>(&self, body: &B, _t: S, q: &[S; N], _v: &[S; N]) -> Option<S> {
         let [x, y] = body.centre(q);
-        let mut potential = S::zero();
+        let mut potential = S::zero().carried_as(x);
         for hill in &self.hills {
             // Scaled before it is squared: a narrow hill has a square that no f64 holds.
-            let (dx, dy) = ((x - hill.x) / hill.width, (y - hill.y) / hill.width);
+            let scale = hill.width.recip();
+            let (dx, dy) = ((x - hill.x) * scale, (y - hill.y) * scale);
             potential += ((dx * dx + dy * dy) * -0.5).exp() * hill.height;
         }
         Some(-potential)
@@ -57,10 +58,11 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for Hills {
     #[inline(always)]
     fn slope<S: Scalar>(&self, body: &B, _t: S, q: &[S; N]) -> EffectSlope<S, N> {
         let [x, y] = body.centre(q);
-        let mut force = [S::zero(); 2];
+        let mut force = [S::zero().carried_as(x); 2];
         for hill in &self.hills {
-            let (dx, dy) = ((x - hill.x) / hill.width, (y - hill.y) / hill.width);
-            let steepness = ((dx * dx + dy * dy) * -0.5).exp() * (hill.height / hill.width);
+            let scale = hill.width.recip();
+            let (dx, dy) = ((x - hill.x) * scale, (y - hill.y) * scale);
+            let steepness = ((dx * dx + dy * dy) * -0.5).exp() * (hill.height * scale);
             force[0] += steepness * dx;
             force[1] += steepness * dy;
         }
