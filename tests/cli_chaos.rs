@@ -100,8 +100,7 @@ fn steady_periodic_and_runaway_motions_are_named() {
     }
 }
 
-/// The free sleigh, a flywheel, and a turntable, whose equations are not known by hand: `dla` and `gauss8` agree to the order of
-/// the first.
+/// The free sleigh, a flywheel, and a turntable: `dla` and `gauss8` agree to the order of the first.
 #[test]
 fn every_free_scene_has_exponents() {
     let folder = Folder::new();

@@ -5,7 +5,7 @@ use crate::{Motion, Scalar};
 /// Every method works without them, on derivatives of the Lagrangian; with them it is quicker. A system that has some implements this
 /// trait and says so, `fn reduced(&self) -> impl Reduced<N, M> { self }` in its [`System`](crate::System).
 pub trait Reduced<const N: usize, const M: usize> {
-    /// Whether anything may be known: true of all but `()`.
+    /// Whether anything may be known: not of `()`, nor of a body whose constraints leave nothing known.
     const ANY: bool = true;
 
     /// Accelerations and multipliers, for any velocity, admissible or not.

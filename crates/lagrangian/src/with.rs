@@ -58,6 +58,12 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> System<N,
     }
 }
 
+/// Whether anything may be known of a body.
+#[inline(always)]
+fn any<R: Reduced<N, M>, const N: usize, const M: usize>(_: &R) -> bool {
+    R::ANY
+}
+
 impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> Reduced<N, M> for With<B, E> {
     /// The body's own and its response to the effects, where both are known.
     #[inline]
@@ -72,8 +78,15 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> Reduced<N
 
     #[inline(always)]
     fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; N], xi: &[S; N]) -> Option<[S; N]> {
+        if N == M {
+            return Some([S::zero(); N]);
+        }
         if self.effects.is_none() {
             return self.body.reduced().reduced_motion(t, q, xi);
+        }
+        // Known when the program is compiled: what acts is then not asked.
+        if !any(&self.body.reduced()) {
+            return None;
         }
         let push = self.effects.whole_force(&self.body, t, q, &velocity_of(&self.body, t, q, xi).ok()?)?;
         self.body.reduced().pushed_motion(t, q, xi, &push)

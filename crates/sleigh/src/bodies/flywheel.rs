@@ -113,6 +113,8 @@ impl<B: System<3, M>, const M: usize> System<4, M> for Flywheel<B> {
 }
 
 impl<B: System<3, M>, const M: usize> Reduced<4, M> for Flywheel<B> {
+    const ANY: bool = M == 1;
+
     /// The body's own, and `I_r (omega + psi')' = tau`, where the constraints leave the body two freedoms.
     #[inline(always)]
     fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; 4], xi: &[S; 4]) -> Option<[S; 4]> {
