@@ -22,7 +22,6 @@ mod error;
 mod facts;
 mod files;
 mod first;
-mod first_error;
 mod format;
 mod in_memory;
 mod inspect;
@@ -32,7 +31,6 @@ mod json;
 mod lock;
 mod lyapunov;
 mod notes;
-mod npz;
 mod output;
 #[cfg(feature = "parquet")]
 mod parquet_file;

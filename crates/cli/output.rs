@@ -1,11 +1,11 @@
 use crate::error::CliError;
 use crate::files::{check_file, write_whole};
 use crate::format::Format;
-use crate::npz;
 use crate::part::PartFile;
 use crate::provenance::{Provenance, label, metadata_of};
 use crate::rows_back;
 use crate::terminal;
+use arrays::ArrayColumn;
 use crc32fast::Hasher;
 use scene::Column;
 use std::fs::File;
@@ -285,7 +285,7 @@ impl<'a> Output<'a> {
         let width = 8 * self.columns.len();
         let rows = if width == 0 { 0 } else { self.bytes / width as u64 };
         write_whole(path, overwrite, |file| match self.asked.format {
-            Format::Npz => npz::write(file, &self.columns, rows, &document, |column, push| {
+            Format::Npz => arrays::write(file, &in_arrays(&self.columns), rows, &document, |column, push| {
                 for row in numbers(part.file(), width)? {
                     push(row?[column])?;
                 }
@@ -343,4 +343,9 @@ fn numbers(mut file: &File, width: usize) -> Result<impl Iterator<Item = Result<
         Err(error) if error.kind() == ErrorKind::UnexpectedEof => None,
         Err(error) => Some(Err(error)),
     }))
+}
+
+/// The columns as those of an archive of arrays.
+pub(crate) fn in_arrays(columns: &[Column]) -> Vec<ArrayColumn<'_>> {
+    columns.iter().map(|column| ArrayColumn { name: &column.name, whole: column.whole }).collect()
 }

@@ -1,7 +1,7 @@
 use super::lines;
 use super::rows::SpoolRows;
 use crate::format::Format;
-use crate::npz;
+use crate::output::in_arrays;
 use crate::provenance::label;
 use scene::Column;
 use std::io::{Error, Seek, Write};
@@ -40,7 +40,7 @@ pub(super) fn write<'a>(
         }
         Format::Npz => {
             let columns = with_failed(columns);
-            npz::write(file, &columns, count, metadata, |column, push| {
+            arrays::write(file, &in_arrays(&columns), count, metadata, |column, push| {
                 let mut rows = rows()?;
                 while let Some(row) = rows.next()? {
                     push(lines::value(row, column))?;

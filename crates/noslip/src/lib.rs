@@ -14,7 +14,21 @@
 //! | differentiate its steps in state, parameters and controls | [`Sensitivity`], [`Parametrised`], [`Member`] |
 //! | find events, take samples, stop and resume, choose a step | [`Event`], [`Watch`], [`Samples`], [`Checkpoint`], [`recommend_step`] |
 //! | use the Chaplygin sleigh, its closed form and its own integrator | [`Sleigh`], [`SleighState`], [`Exact`], [`ClosedMap`] |
+//! | compare methods by long runs, and by time against error (the cargo feature `compare`) | `noslip::compare`, `noslip::precision` |
+//! | write a trajectory for NumPy (the cargo feature `npz`) | `noslip::write_npz` |
 //! | assemble many bodies (the cargo feature `assembly`) | the crate `noslip-assembly`, here `noslip::assembly` |
+
+#[cfg(feature = "compare")]
+mod compare;
+#[cfg(feature = "npz")]
+mod npz;
+
+#[cfg(feature = "compare")]
+pub use compare::{Comparison, PrecisionError, WorkPrecision, compare, precision};
+#[cfg(feature = "compare")]
+pub use harness;
+#[cfg(feature = "npz")]
+pub use npz::write_npz;
 
 #[cfg(feature = "assembly")]
 pub use assembly;

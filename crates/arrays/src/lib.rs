@@ -1,12 +1,27 @@
-use crate::first_error::FirstError;
-use scene::Column;
+//! Archives of NumPy arrays (`.npz`): columns of numbers under their names, and a text that says what they are.
+
+mod first_error;
+
+use first_error::FirstError;
 use std::io::{Error, Seek, Write};
 
-/// Writes an archive of NumPy arrays of one length, column by column, and one array `metadata` that holds a text alone; `numbers` gives
-/// the numbers of a column to its sink. A column of whole numbers is an array of 64-bit integers.
-pub(crate) fn write(
+/// A column of numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ArrayColumn<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// Whether its numbers are whole: its array is then one of 64-bit integers.
+    pub whole: bool,
+}
+
+/// Writes an archive of arrays of one length, column by column, and one array `metadata` that holds a text alone; `numbers` gives the
+/// numbers of a column to its sink.
+///
+/// # Errors
+/// Those of writing, and those of `numbers`.
+pub fn write(
     file: &mut (impl Write + Seek),
-    columns: &[Column],
+    columns: &[ArrayColumn<'_>],
     count: u64,
     metadata: &str,
     mut numbers: impl FnMut(usize, &mut dyn FnMut(f64) -> Result<(), Error>) -> Result<(), Error>,
@@ -18,7 +33,7 @@ pub(crate) fn write(
         let stored = zip::CompressionMethod::Stored;
         let options = zip::write::SimpleFileOptions::default().compression_method(stored).large_file(true);
         for (number, column) in columns.iter().enumerate() {
-            archive.start_file(npyz::npz::file_name_from_array_name(&column.name), options)?;
+            archive.start_file(npyz::npz::file_name_from_array_name(column.name), options)?;
             if column.whole {
                 let mut array =
                     npyz::WriteOptions::new().default_dtype().shape(&[count]).writer(&mut archive).begin_nd()?;
