@@ -40,8 +40,8 @@ impl MovingMass {
     /// `r`, `r'` and `r''`.
     #[inline(always)]
     pub(crate) fn path<S: Scalar>(&self, t: S) -> [[S; 2]; 3] {
-        let [x, y] = &self.position;
-        [[x.value(t), y.value(t)], [x.slope(t), y.slope(t)], [x.curvature(t), y.curvature(t)]]
+        let [[x, vx, ax], [y, vy, ay]] = [self.position[0].jet(t), self.position[1].jet(t)];
+        [[x, y], [vx, vy], [ax, ay]]
     }
 
     /// The kinetic energy `m_p/2 |P' + omega (r_x n - r_y e) + r_x' e + r_y' n|^2` (J); the first coordinates are `(x, y, theta)`.

@@ -109,6 +109,19 @@ impl TimeFunction {
         curvature.carried_as(t)
     }
 
+    /// Value, slope and second derivative at `t`: those of a sine share their sine and cosine.
+    #[inline(always)]
+    pub(crate) fn jet<S: Scalar>(&self, t: S) -> [S; 3] {
+        match self {
+            Self::Sine { amplitude, frequency, phase } => {
+                let (sin, cos) = (t * *frequency + *phase).sin_cos();
+                let swing = *amplitude * *frequency;
+                [sin * *amplitude, cos * swing, sin * -(swing * *frequency)]
+            }
+            _ => [self.value(t), self.slope(t), self.curvature(t)],
+        }
+    }
+
     /// The function itself, where every number in it is finite.
     ///
     /// # Errors
