@@ -117,7 +117,7 @@ impl Drift {
     /// What the error of the energy of a run does, beside the energies of its motion.
     ///
     /// It has diverged where it was larger than all of them; or where it ends above those of the start, nearly all of its sum of
-    /// squares is in the last batches, and it has grown from batch to batch.
+    /// squares is in the last batches, most of which are larger than all before.
     #[must_use]
     pub fn of_energy(blocks: &Blocks, energies: &Energies) -> Self {
         let drift = Self::of(blocks);
