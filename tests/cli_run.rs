@@ -27,6 +27,7 @@ const KEYS: [&str; 11] = [
 ];
 const FINAL: [&str; 6] = ["t", "x", "y", "heading", "speed", "turn_rate"];
 
+/// A circle of radius 1 m, at 1 rad/s: `x = sin t`, `y = 1 - cos t`.
 const CIRCLE: &str = r#"
 [sleigh]
 mass = 1.0
@@ -40,7 +41,7 @@ step = 0.1
 duration = 20.0
 "#;
 
-/// A circle of radius 1 m, at 1 rad/s: `x = sin t`, `y = 1 - cos t`.
+/// A light trailer, which the first blade does not feel.
 const TRAILER: &str = "[[effects]]
 kind = \"trailers\"
 count = 1

@@ -7,7 +7,13 @@ use crate::tools::{method, refuses};
 use dla::{Mechanics, RunError, Schedule, State, drive};
 use harness::{METHODS, Method};
 use std::sync::Arc;
-use text::{AnyText, TextModel, TextStart, with_text};
+use text::{AnyText, TextModel, TextStart, Words, with_text};
+
+/// The system of a text, from this start.
+fn system(words: &Words, start: &Point) -> AnyText {
+    let start = TextStart { q: start.q.clone(), v: start.v.clone(), ..TextStart::default() };
+    AnyText::new(&Arc::new(TextModel::new(words).unwrap()), &start).unwrap()
+}
 
 /// Where a run of the text ends.
 fn end<const N: usize, const M: usize>(
@@ -31,9 +37,7 @@ fn same(steps: u64) -> [u32; 2] {
         let Some(words) = texts::of(case.name()) else { continue };
         let (start, facts) = (case.start(), case.facts());
         let places = start.q.len();
-        let model = Arc::new(TextModel::new(&words).unwrap());
-        let text = AnyText::new(&model, &TextStart { q: start.q.clone(), v: start.v.clone(), ..TextStart::default() })
-            .unwrap();
+        let text = system(&words, &start);
         let schedule = Schedule { t0: 0.0, step: case.duration() / steps as f64, steps };
         for info in METHODS.iter().filter(|info| refuses(info, facts).is_none()) {
             let method = method(info.name);
@@ -80,9 +84,7 @@ fn a_derived_basis_keeps_what_methods_promise() {
         systems += 1;
         let (start, facts) = (case.start(), case.facts());
         let (places, duration) = (start.q.len(), case.duration());
-        let model = Arc::new(TextModel::new(&words).unwrap());
-        let begin = TextStart { q: start.q.clone(), v: start.v.clone(), ..TextStart::default() };
-        let text = AnyText::new(&model, &begin).unwrap();
+        let text = system(&words, &start);
         let run = |name: &str, steps: u64| {
             let schedule = Schedule { t0: 0.0, step: duration / steps as f64, steps };
             with_text!(&text, started => end(&*started.system, &method(name), (started.q, started.v), &schedule, places))
@@ -123,9 +125,7 @@ fn another_parameter_is_seen() {
     let mut words = texts::of(case.name()).unwrap();
     words.parameters[0].1 *= 1.0 + 1e-9;
     let start = case.start();
-    let model = Arc::new(TextModel::new(&words).unwrap());
-    let text =
-        AnyText::new(&model, &TextStart { q: start.q.clone(), v: start.v.clone(), ..TextStart::default() }).unwrap();
+    let text = system(&words, &start);
     let schedule = Schedule { t0: 0.0, step: 0.02, steps: 200 };
     let rust = case.run(&method("dla"), &start, &schedule, &mut |_| {}).unwrap();
     let there =

@@ -23,6 +23,14 @@ pub struct Node<const N: usize, const M: usize> {
     pub multipliers: Option<[f64; M]>,
 }
 
+impl<const N: usize, const M: usize> Node<N, M> {
+    /// One number for each of the [columns](Trajectory::columns).
+    pub fn numbers(&self) -> impl Iterator<Item = f64> {
+        let Self { t, q, v, energy, work, constraint, .. } = *self;
+        [t].into_iter().chain(q).chain(v).chain([energy, work, constraint])
+    }
+}
+
 /// Which nodes are kept: the first, every `every`-th and the last.
 #[derive(Debug, Clone, PartialEq)]
 struct Choice<const N: usize, const M: usize> {
@@ -99,8 +107,16 @@ impl<const N: usize, const M: usize> Trajectory<N, M> {
         &self.nodes
     }
 
-    /// Writes the nodes as CSV: time, the coordinates under these names, their rates (`x'`), energy, work and the largest residual of
-    /// a constraint, all digits of each. The columns are those of a trajectory of a system of text.
+    /// The names of the columns of a file: time, the coordinates under these names, their rates (`x'`), energy, work and the largest residual
+    /// of a constraint. They are those of a trajectory of a system of text.
+    #[must_use]
+    pub fn columns(names: [&str; N]) -> Vec<String> {
+        let rates = names.map(|name| format!("{name}'"));
+        let own = |names: &[&str]| names.iter().copied().map(str::to_owned).collect::<Vec<_>>();
+        [own(&["t"]), own(&names), rates.to_vec(), own(&["energy", "work", "constraint"])].concat()
+    }
+
+    /// Writes the nodes as CSV, in these [columns](Self::columns), all digits of each number.
     ///
     /// ```
     /// # use dla::Trajectory;
@@ -113,14 +129,10 @@ impl<const N: usize, const M: usize> Trajectory<N, M> {
     /// # Errors
     /// Those of writing.
     pub fn write_csv(&self, mut to: impl io::Write, names: [&str; N]) -> io::Result<()> {
-        let rates = names.map(|name| format!("{name}'"));
-        let names = names.iter().copied().chain(rates.iter().map(String::as_str));
-        let columns: Vec<&str> = ["t"].into_iter().chain(names).chain(["energy", "work", "constraint"]).collect();
-        writeln!(to, "{}", columns.join(","))?;
+        writeln!(to, "{}", Self::columns(names).join(","))?;
         for node in &self.nodes {
-            write!(to, "{:?}", node.t)?;
-            for x in node.q.iter().chain(&node.v).chain(&[node.energy, node.work, node.constraint]) {
-                write!(to, ",{x:?}")?;
+            for (k, x) in node.numbers().enumerate() {
+                write!(to, "{}{x:?}", if k == 0 { "" } else { "," })?;
             }
             writeln!(to)?;
         }

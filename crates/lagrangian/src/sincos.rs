@@ -10,7 +10,7 @@ use crate::mul_add;
 const LIMIT: f64 = 1.0e6;
 const TWO_OVER_PI: f64 = std::f64::consts::FRAC_2_PI;
 /// Adding it rounds to an integer, which then stands in the lowest bits of the sum.
-const ROUNDER: f64 = 6_755_399_441_055_744.0; // 1.5 * 2^52
+pub(crate) const ROUNDER: f64 = 6_755_399_441_055_744.0; // 1.5 * 2^52
 /// `pi/2`, its first 33 bits, the next 33 bits, and the rest.
 const PIO2: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
 

@@ -148,11 +148,12 @@ impl Scene {
     /// The masses that are moved in the body.
     fn masses(&self) -> Result<Vec<MovingMass>, SleighError> {
         let mass = |effect: &SceneEffect| match effect {
-            SceneEffect::MovingMass { mass, x, y } => Some((*mass, x.clone(), y.clone())),
+            SceneEffect::MovingMass { mass, x, y } => {
+                Some(x.build().and_then(|x| MovingMass::new(*mass, x, y.build()?)))
+            }
             _ => None,
         };
-        let masses = self.effects.iter().filter_map(mass);
-        masses.map(|(mass, x, y)| MovingMass::new(mass, x.build()?, y.build()?)).collect()
+        self.effects.iter().filter_map(mass).collect()
     }
 
     /// The rate of the plane (rad/s), where it turns.

@@ -1,7 +1,6 @@
 use super::{Pack, Simd};
+use crate::sincos::ROUNDER;
 
-/// Adding it rounds to an integer, which then stands in the lowest bits of the sum.
-const ROUNDER: f64 = 6_755_399_441_055_744.0; // 1.5 * 2^52
 /// `ln 2` in two parts.
 const LN2: [f64; 2] = [std::f64::consts::LN_2, 2.319_046_813_846_299_6e-17];
 /// `1/k!`: on `[-ln(2)/2, ln(2)/2]` the first term left out is below `2^-57`.

@@ -1,10 +1,8 @@
 use super::{Pack, Simd};
-use crate::sincos::{COS, SIN};
+use crate::sincos::{COS, ROUNDER, SIN};
 
 /// Above this, `2^50`, the number of the quadrant does not fit into the lowest bits.
 const LIMIT: f64 = 1_125_899_906_842_624.0;
-/// Adding it rounds to an integer, which then stands in the lowest bits of the sum.
-const ROUNDER: f64 = 6_755_399_441_055_744.0; // 1.5 * 2^52
 /// `pi/2` in two parts.
 const PIO2: [f64; 2] = [std::f64::consts::FRAC_PI_2, 6.123_233_995_736_766e-17];
 
