@@ -88,7 +88,8 @@ impl<T: Scalar> Scalar for KnownAngle<T> {
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = match self.sin_cos {
             Some(known) => known,
-            None => self.re.sin_cos(),
+            // Called: inlined in a model, what is seldom needed would be there as often as a known angle is asked.
+            None => self.re.sin_cos_called(),
         };
         (Self::from(sin), Self::from(cos))
     }
@@ -144,6 +145,10 @@ impl<T: Scalar> Scalar for KnownAngle<T> {
     #[inline(always)]
     fn over<I, U>(items: &[I], start: U, f: impl Fn(U, &I) -> U) -> U {
         T::over(items, start, f)
+    }
+    #[inline(always)]
+    fn carried_as(self, other: Self) -> Self {
+        Self { re: self.re.carried_as(other.re), ..self }
     }
     #[inline(always)]
     fn is_zero(&self) -> bool {

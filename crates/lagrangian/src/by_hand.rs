@@ -1,4 +1,4 @@
-use crate::{Motion, Scalar};
+use crate::{Motion, ReducedError, Scalar};
 
 /// The equations of motion of a system as they are known by hand, or by computer algebra.
 ///
@@ -20,6 +20,22 @@ pub trait Reduced<const N: usize, const M: usize> {
     #[inline(always)]
     fn reduced_motion<S: Scalar>(&self, _t: S, _q: &[S; N], _xi: &[S; N]) -> Option<[S; N]> {
         None
+    }
+
+    /// The admissible velocity `W xi + v_b` of quasi-velocities; by default as `derived` gives it, from the basis and a linear system for
+    /// `v_b`. What is known by hand leaves `derived` alone, which is then not compiled.
+    ///
+    /// # Errors
+    /// [`ReducedError`] where there is none.
+    #[inline(always)]
+    fn velocity<S: Scalar>(
+        &self,
+        _t: S,
+        _q: &[S; N],
+        _xi: &[S; N],
+        derived: impl FnOnce() -> Result<[S; N], ReducedError>,
+    ) -> Result<[S; N], ReducedError> {
+        derived()
     }
 
     /// After how many quadratures the configuration is known from the quasi-velocities over time, where it is a cascade: zero
@@ -45,7 +61,8 @@ pub trait Reduced<const N: usize, const M: usize> {
         None
     }
 
-    /// The same as [`reduced_motion`](Self::reduced_motion) under one more generalised force.
+    /// The same as [`reduced_motion`](Self::reduced_motion) under one more generalised force. A body on which effects may act gives it, or
+    /// its motion is derived.
     #[inline(always)]
     fn pushed_motion<S: Scalar>(&self, _t: S, _q: &[S; N], _xi: &[S; N], _force: &[S; N]) -> Option<[S; N]> {
         None
@@ -68,6 +85,17 @@ impl<R: Reduced<N, M>, const N: usize, const M: usize> Reduced<N, M> for &R {
     #[inline(always)]
     fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; N], xi: &[S; N]) -> Option<[S; N]> {
         R::reduced_motion(self, t, q, xi)
+    }
+
+    #[inline(always)]
+    fn velocity<S: Scalar>(
+        &self,
+        t: S,
+        q: &[S; N],
+        xi: &[S; N],
+        derived: impl FnOnce() -> Result<[S; N], ReducedError>,
+    ) -> Result<[S; N], ReducedError> {
+        R::velocity(self, t, q, xi, derived)
     }
 
     #[inline(always)]

@@ -36,15 +36,23 @@ pub fn velocity_of<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>
     q: &[S; N],
     xi: &[S; N],
 ) -> Result<[S; N], ReducedError> {
-    let basis = system.admissible_basis(t, q).ok_or(ReducedError::NoBasis)?;
-    let v = basis.combine(xi);
-    Ok(match shift(system, t, q) {
-        Some(shift) => S::array(
-            #[inline(always)]
-            |i| v[i] + shift[i],
-        ),
-        None => v,
-    })
+    system.reduced().velocity(
+        t,
+        q,
+        xi,
+        #[inline(always)]
+        || {
+            let basis = system.admissible_basis(t, q).ok_or(ReducedError::NoBasis)?;
+            let v = basis.combine(xi);
+            Ok(match shift(system, t, q) {
+                Some(shift) => S::array(
+                    #[inline(always)]
+                    |i| v[i] + shift[i],
+                ),
+                None => v,
+            })
+        },
+    )
 }
 
 /// The quasi-velocities `xi` of a velocity: `v = W xi + v_b`, with what lies across the distribution left out.

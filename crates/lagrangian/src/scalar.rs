@@ -104,6 +104,27 @@ pub trait Scalar:
         )
     }
 
+    /// `f(self, vectors)` as a function in the same way: numbers in vector registers are all carried as eight, those of the result too.
+    #[must_use]
+    #[inline(always)]
+    fn called_on<const N: usize, const K: usize>(
+        self,
+        vectors: [[Self; N]; K],
+        f: impl FnOnce(Self, [[Self; N]; K]) -> Option<[Self; N]>,
+    ) -> Option<[Self; N]> {
+        Self::apart(
+            #[inline(always)]
+            || f(self, vectors),
+        )
+    }
+
+    /// Sine and cosine as a function in the same way.
+    #[must_use]
+    #[inline(always)]
+    fn sin_cos_called(self) -> (Self, Self) {
+        self.sin_cos()
+    }
+
     /// The same number, carried as the other is. Numbers in vector registers are told apart, when a model is compiled, from those
     /// that all eight have in common; where a run decides which of the two a number is, every operation after it would be there
     /// for both.

@@ -1,5 +1,5 @@
 use crate::effect::{add_all, sum};
-use crate::{AdmissibleBasis, Constraint, Effect, Motion, Reduced, Scalar, System, velocity_of};
+use crate::{AdmissibleBasis, Constraint, Effect, Motion, Reduced, ReducedError, Scalar, System, velocity_of};
 
 /// A body with the effects that act on it: again a [`System`], on the body's coordinates and constraints.
 ///
@@ -81,15 +81,25 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> Reduced<N
         if N == M {
             return Some([S::zero(); N]);
         }
-        if self.effects.is_none() {
+        if const { E::NONE } {
             return self.body.reduced().reduced_motion(t, q, xi);
         }
         // Known when the program is compiled: what acts is then not asked.
         if !any(&self.body.reduced()) {
             return None;
         }
-        let push = self.effects.whole_force(&self.body, t, q, &velocity_of(&self.body, t, q, xi).ok()?)?;
-        self.body.reduced().pushed_motion(t, q, xi, &push)
+        self.pushed_motion(t, q, xi, &[S::zero(); N])
+    }
+
+    #[inline(always)]
+    fn velocity<S: Scalar>(
+        &self,
+        t: S,
+        q: &[S; N],
+        xi: &[S; N],
+        derived: impl FnOnce() -> Result<[S; N], ReducedError>,
+    ) -> Result<[S; N], ReducedError> {
+        self.body.reduced().velocity(t, q, xi, derived)
     }
 
     #[inline(always)]
@@ -109,10 +119,16 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> Reduced<N
 
     #[inline(always)]
     fn pushed_motion<S: Scalar>(&self, t: S, q: &[S; N], xi: &[S; N], force: &[S; N]) -> Option<[S; N]> {
-        if self.effects.is_none() {
-            return self.body.reduced().pushed_motion(t, q, xi, force);
-        }
-        let push = self.effects.whole_force(&self.body, t, q, &velocity_of(&self.body, t, q, xi).ok()?)?;
-        self.body.reduced().pushed_motion(t, q, xi, &sum(&push, force))
+        // One call: the equations of a body are long where they are inlined.
+        let push = if self.effects.is_none() {
+            S::array(
+                #[inline(always)]
+                |i| force[i].carried_as(t),
+            )
+        } else {
+            let push = self.effects.whole_force(&self.body, t, q, &velocity_of(&self.body, t, q, xi).ok()?)?;
+            sum(&push, force)
+        };
+        self.body.reduced().pushed_motion(t, q, xi, &push)
     }
 }

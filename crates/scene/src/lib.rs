@@ -57,7 +57,7 @@ pub use suggest::nearest;
 pub use sweep::{Sweep, SweepError};
 pub use system::{Visitor, in_lanes};
 pub use systems::{
-    AnyEffect, AnySystem, Column, EffectPower, LANES, LaneMethod, PARAMETERS, SceneBody, SceneEffects, SceneSystem,
-    SleighFamily, Started,
+    AnyEffect, AnySystem, Column, EffectList, EffectPower, LANES, LaneMethod, PARAMETERS, SceneBody, SceneEffects,
+    SceneSystem, SleighFamily, Started,
 };
 pub use train::TrainError;

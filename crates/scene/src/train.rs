@@ -1,4 +1,4 @@
-use crate::{AnyEffect, Scene, SceneEffect, TrailersSpec};
+use crate::{AnyEffect, EffectList, Scene, SceneEffect, TrailersSpec};
 use assembly::parts::{Trailer, Train};
 use assembly::{AssemblyError, AssemblyState};
 use lagrangian::{System, With};
@@ -21,7 +21,7 @@ pub enum TrainError {
 fn led<Body: System<3, 1> + Send + Sync + 'static>(
     lead: Guiding,
     trailers: Vec<Trailer>,
-    effects: Vec<AnyEffect>,
+    effects: EffectList,
     body: impl Fn(&Trailer) -> Body,
 ) -> Result<Train, AssemblyError> {
     match lead {
@@ -67,6 +67,7 @@ impl Scene {
         let trailers = (0..spec.count).map(|k| spec.trailer(k)).collect::<Result<Vec<_>, _>>()?;
         let effects = self.acting()?;
         let ground: Vec<AnyEffect> = effects.iter().filter(|effect| effect.is_ground()).cloned().collect();
+        let (effects, ground) = (EffectList::from(effects), EffectList::from(ground));
         let table_rate = self.table_rate();
         let train = if let Some(rate) = table_rate {
             let table = Guided::turntable(self.sleigh, rate)?;

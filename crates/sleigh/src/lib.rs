@@ -8,6 +8,7 @@
 
 mod bodies;
 mod body;
+mod called;
 mod canonical;
 mod centre_of_mass;
 mod checks;

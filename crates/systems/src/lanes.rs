@@ -1,6 +1,6 @@
 //! Members of a sweep in the lanes of vector registers, where a body has a method for that.
 
-use crate::AnyEffect;
+use crate::{AnyEffect, EffectList};
 use dla::{Each, Ensemble, GaussEnsemble, LaneState, Mechanics, Same};
 use lagrangian::{System, With};
 use sleigh::effects::Bowl;
@@ -62,9 +62,10 @@ pub fn in_lanes(members: &[Lane], method: LaneMethod, (t0, step): (f64, f64), ru
         (_, [AnyEffect::Bowl(_)]) => {
             let bowls: Vec<_> = bowls.into_iter().flatten().collect();
             let Ok(bowls) = <Box<[_; LANES]>>::try_from(bowls.into_boxed_slice()) else { return false };
-            let listed = bowls
-                .each_ref()
-                .map(|bowl| With { body: bowl.body, effects: vec![AnyEffect::Bowl(bowl.effects.clone())] });
+            let listed = bowls.each_ref().map(|bowl| With {
+                body: bowl.body,
+                effects: EffectList::from(vec![AnyEffect::Bowl(bowl.effects.clone())]),
+            });
             let run = &mut |ensemble: &mut dyn Ensemble<3, LANES>| run(ensemble, &objects(&listed));
             match method {
                 LaneMethod::Closed => false,

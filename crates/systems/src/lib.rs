@@ -16,6 +16,7 @@
 
 mod any_effect;
 mod columns;
+mod effect_list;
 mod family;
 mod lanes;
 mod power;
@@ -23,6 +24,7 @@ mod system;
 
 pub use any_effect::AnyEffect;
 pub use columns::Column;
+pub use effect_list::EffectList;
 pub use family::{PARAMETERS, SleighFamily};
 pub use lanes::{LANES, Lane, LaneMethod, LaneRun, in_lanes};
 pub use power::{EffectPower, SceneBody, SceneEffects};

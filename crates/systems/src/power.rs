@@ -1,6 +1,6 @@
 //! The power of what drives or brakes a scene, by name.
 
-use crate::AnyEffect;
+use crate::EffectList;
 use dla::Stepper;
 use lagrangian::{Effect, System, With, force_power, lagrangian_power};
 use sleigh::closed::ClosedForm;
@@ -46,12 +46,12 @@ impl<B, E: Effect<B, N>, const N: usize> System<N, 0> for EffectAlone<'_, B, E> 
     }
 }
 
-impl<B: SleighBody, const N: usize> SceneEffects<B, N> for Vec<AnyEffect> {
+impl<B: SleighBody, const N: usize> SceneEffects<B, N> for EffectList {
     fn powers(&self, body: &B, t: f64, q: &[f64; N], v: &[f64; N]) -> Vec<EffectPower> {
         let mut powers: Vec<EffectPower> = Vec::new();
-        for effect in self {
+        for effect in self.all() {
             let Some(kind) = effect.powered() else { continue };
-            let before = self.iter().take_while(|other| !std::ptr::eq(*other, effect));
+            let before = self.all().iter().take_while(|other| !std::ptr::eq(*other, effect));
             let number = 1 + before.filter(|other| other.powered() == Some(kind)).count();
             powers.push(EffectPower { name: numbered(kind, number), power: power_of(body, effect, t, q, v) });
         }

@@ -1,5 +1,5 @@
 use crate::power::{self, SceneBody, SceneEffects};
-use crate::{AnyEffect, Column, EffectPower, columns};
+use crate::{AnyEffect, Column, EffectList, EffectPower, columns};
 use dla::{FullMechanics, Node, Stepper};
 use lagrangian::{Piecewise, System, With};
 use sleigh::closed::ClosedForm;
@@ -148,14 +148,15 @@ pub fn system(
     effects: Vec<AnyEffect>,
     start: &SleighState,
 ) -> Result<AnySystem, SleighError> {
+    let list = EffectList::from;
     match body {
         Guiding::None(sleigh) if effects.is_empty() => {
             with_rotor(sleigh, rotor, (), start, AnySystem::Sleigh, AnySystem::Rotor)
         }
-        Guiding::None(sleigh) => with_rotor(sleigh, rotor, effects, start, AnySystem::Sleigh, AnySystem::Rotor),
-        Guiding::Zero(body) => with_rotor(body, rotor, effects, start, AnySystem::Sleigh, AnySystem::Rotor),
-        Guiding::One(body) => with_rotor(body, rotor, effects, start, AnySystem::One, AnySystem::RotorOne),
-        Guiding::Two(body) => with_rotor(body, rotor, effects, start, AnySystem::Two, AnySystem::RotorTwo),
+        Guiding::None(sleigh) => with_rotor(sleigh, rotor, list(effects), start, AnySystem::Sleigh, AnySystem::Rotor),
+        Guiding::Zero(body) => with_rotor(body, rotor, list(effects), start, AnySystem::Sleigh, AnySystem::Rotor),
+        Guiding::One(body) => with_rotor(body, rotor, list(effects), start, AnySystem::One, AnySystem::RotorOne),
+        Guiding::Two(body) => with_rotor(body, rotor, list(effects), start, AnySystem::Two, AnySystem::RotorTwo),
     }
 }
 

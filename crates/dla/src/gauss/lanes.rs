@@ -1,8 +1,8 @@
 use super::ending::{Ending, EndingVerdict};
-use super::packs::{ahead, each, everywhere, integral, loaded, own, packed};
+use super::packs::{ahead, everywhere, integral, loaded, own};
 use super::rule::GaussRule;
 use lagrangian::linear::larger;
-use lagrangian::simd::{Kernel, Pack, Simd, Square, Wide, dispatch};
+use lagrangian::simd::{Kernel, Pack, Simd, Square, Wide, dispatch, each, packed};
 use lagrangian::{Reduced, System, array, derived_acceleration, from_fn, velocity_of};
 use std::fmt;
 use std::ops::Deref;
@@ -144,20 +144,23 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> StagesAtOnce<'_, Sys, N,
         )
     }
 
-    /// The velocities of quasi-velocities, one quadrature after another.
+    /// The velocities of quasi-velocities, from the places `q` on, by so many quadratures more.
     #[inline(always)]
     fn reconstructed<S: Simd, const R: usize>(
         &self,
         along: &RuleInLanes<S, R>,
-        quadratures: u32,
+        (mut q, quadratures): ([Pack<S, R>; N], u32),
         xi: &[Wide<S, R>; N],
     ) -> Option<[Pack<S, R>; N]> {
-        let simd = along.h.simd();
-        let mut v = self.velocity(simd, &self.still(simd), xi)?;
-        for _ in 0..quadratures {
-            v = self.velocity(simd, &self.q(along, &v), xi)?;
+        let mut left = quadratures;
+        loop {
+            let v = self.velocity(along.h.simd(), &q, xi)?;
+            if left == 0 {
+                return Some(v);
+            }
+            left -= 1;
+            q = self.q(along, &v);
         }
-        Some(v)
     }
 
     /// The times of the stages.
@@ -243,29 +246,35 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for StagesAtOnce<
             }
             None => ([Pack::splat(simd, 0.0); N], [Pack::splat(simd, 0.0); N]),
         };
-        let mut q = if cascade.is_some() { self.still(simd) } else { self.q(&along, &v) };
+        let still = self.still(simd);
+        let mut q = if cascade.is_some() { still } else { self.q(&along, &v) };
         let mut counts = match &self.counts {
             Some([v, a]) => Some([everywhere(simd, v), everywhere(simd, a)]),
             None => None,
         };
         let mut search = self.ending.begin(self.before.is_some());
+        let mut verdict = EndingVerdict::Continue;
         loop {
-            // One call site for the accelerations: for a list of effects their inlined code is long.
+            // One call site for velocities and one for accelerations: for a list of effects their inlined code is long.
             let xi = self.xi(&along, &a);
-            let v1 = match cascade {
-                _ if alone => Some(v),
-                Some(quadratures) => self.reconstructed(&along, quadratures, &xi),
-                None => self.velocity(simd, &q, &xi),
+            let found = verdict == EndingVerdict::Done;
+            let from = match cascade {
+                Some(quadratures) => (still, quadratures),
+                None => (q, 0),
             };
+            let v1 = if alone && !found { Some(v) } else { self.reconstructed(&along, from, &xi) };
             let Some(v1) = v1 else { return CollocationOutcome::Unknown };
+            if found {
+                // The velocities that belong to the last accelerations.
+                v = v1;
+                break;
+            }
             // Gauss-Seidel order: the accelerations use the new places.
             if !alone {
                 q = self.q(&along, &v1);
             }
             let Some(a1) = self.acceleration(simd, &q, &xi) else { return CollocationOutcome::Unknown };
-            let verdict = if search.next_is_unseen() {
-                EndingVerdict::Continue
-            } else {
+            if !search.next_is_unseen() {
                 let [cv, ca] = match counts {
                     Some(counts) => counts,
                     None => [own(simd, &v1), own(simd, &a1)],
@@ -280,20 +289,13 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for StagesAtOnce<
                         changes = changes.max_abs((a1[k] - a[k]) * ca[k]);
                     }
                 }
-                search.look(changes.largest())
-            };
+                verdict = search.look(changes.largest());
+            }
             (v, a) = (v1, a1);
             match verdict {
-                EndingVerdict::Continue => {}
-                EndingVerdict::Done => break,
+                EndingVerdict::Done if cascade.is_none() => break,
                 EndingVerdict::Failed => return CollocationOutcome::Failed,
-            }
-        }
-        // The velocities that belong to the last accelerations.
-        if let Some(quadratures) = cascade {
-            match self.reconstructed(&along, quadratures, &self.xi(&along, &a)) {
-                Some(last) => v = last,
-                None => return CollocationOutcome::Unknown,
+                EndingVerdict::Continue | EndingVerdict::Done => {}
             }
         }
         for k in 0..N {

@@ -2,27 +2,7 @@
 use super::lanes::StageRows;
 use lagrangian::array;
 use lagrangian::linear::larger;
-use lagrangian::simd::{Pack, Simd, Wide};
-
-/// Numbers that may be uniform over the stages, each in its registers.
-#[inline(always)]
-pub(super) fn packed<S: Simd, const R: usize, const N: usize>(simd: S, x: &[Wide<S, R>; N]) -> [Pack<S, R>; N] {
-    array(
-        Pack::splat(simd, 0.0),
-        #[inline(always)]
-        |k| x[k].pack(simd),
-    )
-}
-
-/// Numbers of stages, as a model takes them.
-#[inline(always)]
-pub(super) fn each<S: Simd, const R: usize, const N: usize>(x: &[Pack<S, R>; N]) -> [Wide<S, R>; N] {
-    array(
-        Wide::Zero,
-        #[inline(always)]
-        |k| Wide::Each(x[k]),
-    )
-}
+use lagrangian::simd::{Pack, Simd};
 
 /// Rows of eight numbers.
 #[inline(always)]

@@ -16,7 +16,7 @@ pub use four::{Four, FourKernel, in_fours, in_plain_fours};
 pub use instructions::Simd;
 pub use pack::Pack;
 pub use square::Square;
-pub use wide::Wide;
+pub use wide::{Wide, each, packed};
 
 /// Something to compute on packs of eight numbers.
 pub trait Kernel {

@@ -1,4 +1,5 @@
 use super::Simd;
+use super::sincos::sin_cos;
 use pulp::bytemuck;
 
 /// Eight numbers in `R` registers.
@@ -8,12 +9,17 @@ pub struct Pack<S: Simd, const R: usize> {
     registers: [S::f64s; R],
 }
 
-/// Does the same with every register. For one register there is no loop, which the compiler would have to unroll in every operation of a
-/// kernel; for several there is one without an iterator, so that the code is short until it is unrolled.
+/// Does the same with every register. For one register or two there is no loop, which the compiler would have to unroll in every operation
+/// of a kernel, in a time that grows with the length of the kernel.
 macro_rules! each_register {
     ($i:ident => $act:expr) => {
         if const { R == 1 } {
             let $i = 0;
+            $act;
+        } else if const { R == 2 } {
+            let $i = 0;
+            $act;
+            let $i = 1;
             $act;
         } else {
             let mut $i = 0;
@@ -118,12 +124,6 @@ impl<S: Simd, const R: usize> Pack<S, R> {
         self
     }
 
-    #[inline(always)]
-    pub(super) fn zip3(mut self, a: Self, b: Self, f: impl Fn(S, S::f64s, S::f64s, S::f64s) -> S::f64s) -> Self {
-        each_register!(i => self.registers[i] = f(self.simd, self.registers[i], a.registers[i], b.registers[i]));
-        self
-    }
-
     /// `self * factor + term`, rounded once.
     #[must_use]
     #[inline(always)]
@@ -131,6 +131,15 @@ impl<S: Simd, const R: usize> Pack<S, R> {
         let (s, f, c) = (self.simd, &factor.registers, &term.registers);
         each_register!(i => self.registers[i] = s.mul_add_e_f64s(self.registers[i], f[i], c[i]));
         self
+    }
+
+    /// Sines and cosines, within two units of `2^-53` of the truth; not a number beyond `2^50`.
+    #[must_use]
+    #[inline(always)]
+    pub fn sin_cos(self) -> (Self, Self) {
+        let (simd, mut sin, mut cos) = (self.simd, self, self);
+        each_register!(i => [sin.registers[i], cos.registers[i]] = sin_cos(simd, self.registers[i]));
+        (sin, cos)
     }
 
     /// The larger of this number and the absolute value of the other, in every lane; where one is NaN the result depends on the

@@ -54,6 +54,32 @@ impl<S: Simd, const R: usize> Wide<S, R> {
     }
 }
 
+/// Numbers, each in its registers.
+#[inline(always)]
+pub fn packed<S: Simd, const R: usize, const N: usize>(simd: S, x: &[Wide<S, R>; N]) -> [Pack<S, R>; N] {
+    array(
+        Pack::splat(simd, 0.0),
+        #[inline(always)]
+        |k| x[k].pack(simd),
+    )
+}
+
+/// Packs as a model takes them.
+#[inline(always)]
+pub fn each<S: Simd, const R: usize, const N: usize>(x: &[Pack<S, R>; N]) -> [Wide<S, R>; N] {
+    array(
+        Zero,
+        #[inline(always)]
+        |k| Each(x[k]),
+    )
+}
+
+/// What is asked at a number that all eight have in common: apart, since in a kernel no such question is there after inlining.
+#[inline(never)]
+fn uniform<T>(f: impl FnOnce() -> T) -> T {
+    f()
+}
+
 /// A function of several numbers, without vector instructions.
 #[inline(always)]
 fn together<S: Simd, const R: usize, const K: usize>(x: &[Wide<S, R>; K], f: impl Fn(&[f64; K]) -> f64) -> Wide<S, R> {
@@ -213,6 +239,24 @@ impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
         }
     }
     #[inline(always)]
+    fn sin_cos_called(self) -> (Self, Self) {
+        match self {
+            Each(x) => {
+                let (sin, cos) = super::apart(
+                    x.simd(),
+                    #[inline(always)]
+                    || x.sin_cos(),
+                );
+                (Each(sin), Each(cos))
+            }
+            Zero => (Zero, Same(1.0)),
+            Same(x) => {
+                let (sin, cos) = x.sin_cos();
+                (Same(sin), Same(cos))
+            }
+        }
+    }
+    #[inline(always)]
     fn exp(self) -> Self {
         match self {
             Zero => Same(1.0),
@@ -287,7 +331,49 @@ impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
                 #[inline(always)]
                 || f(Each(x)),
             ),
-            Zero | Same(_) => f(self),
+            Zero | Same(_) => uniform(
+                #[inline(always)]
+                || f(self),
+            ),
+        }
+    }
+    #[inline(always)]
+    fn called_on<const N: usize, const K: usize>(
+        self,
+        vectors: [[Self; N]; K],
+        f: impl FnOnce(Self, [[Self; N]; K]) -> Option<[Self; N]>,
+    ) -> Option<[Self; N]> {
+        let Each(t) = self else {
+            return uniform(
+                #[inline(always)]
+                || f(self, vectors),
+            );
+        };
+        let simd = t.simd();
+        let none = [Pack::splat(simd, 0.0); N];
+        let packs: [_; K] = array(
+            none,
+            #[inline(always)]
+            |k| packed(simd, &vectors[k]),
+        );
+        let found = super::apart(
+            simd,
+            #[inline(always)]
+            || {
+                let vectors: [_; K] = array(
+                    [Zero; N],
+                    #[inline(always)]
+                    |k| each(&packs[k]),
+                );
+                match f(Each(t), vectors) {
+                    Some(found) => Some(packed(simd, &found)),
+                    None => None,
+                }
+            },
+        );
+        match found {
+            Some(found) => Some(each(&found)),
+            None => None,
         }
     }
     #[inline(always)]

@@ -1,6 +1,6 @@
 use crate::checks::positive;
 use crate::{Sleigh, SleighBody, SleighError, TimeFunction};
-use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Reduced, Scalar, System};
+use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Reduced, ReducedError, Scalar, System, velocity_of};
 
 /// A sleigh with a rotor on a bearing: the coordinate `psi`, its angle relative to the body, and the energy
 /// `I_r/2 (omega + psi')^2`.
@@ -121,12 +121,20 @@ impl<B: System<3, M>, const M: usize> Reduced<4, M> for Flywheel<B> {
         if M != 1 {
             return None;
         }
-        let zero = S::zero();
-        if self.torque.is_some() {
-            return self.pushed_motion(t, q, xi, &[zero; 4]);
-        }
-        let [u, omega, _] = self.body.reduced().reduced_motion(t, &of_body(q), &of_body(xi))?;
-        Some([u, omega, zero, zero])
+        self.pushed_motion(t, q, xi, &[S::zero(); 4])
+    }
+
+    /// The body's own; the rotor turns with what its absolute rate, the last quasi-velocity, is more than the body's.
+    #[inline(always)]
+    fn velocity<S: Scalar>(
+        &self,
+        t: S,
+        q: &[S; 4],
+        xi: &[S; 4],
+        _derived: impl FnOnce() -> Result<[S; 4], ReducedError>,
+    ) -> Result<[S; 4], ReducedError> {
+        let v = velocity_of(&self.body, t, &of_body(q), &of_body(xi))?;
+        Ok(with_rotor(&v, xi[3 - M] - v[2]))
     }
 
     #[inline(always)]
@@ -153,7 +161,7 @@ impl<B: System<3, M>, const M: usize> Reduced<4, M> for Flywheel<B> {
         }
         let motor = match &self.torque {
             Some(torque) => motor + torque.value(t),
-            None => motor,
+            None => motor.carried_as(t),
         };
         let [u, omega, _] = self.body.reduced().pushed_motion(t, &of_body(q), &of_body(xi), &[fx, fy, tau - motor])?;
         Some([u, omega, motor / self.inertia, S::zero()])

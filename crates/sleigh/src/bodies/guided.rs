@@ -1,3 +1,4 @@
+use crate::called::called;
 use crate::checks::finite;
 use crate::effects::MovingMass;
 use crate::{ClosedPath, Sleigh, SleighBody, SleighError, TimeFunction};
@@ -135,8 +136,7 @@ impl<const K: usize> Guided<K> {
     #[inline(always)]
     fn blade<S: Scalar>(&self, q: &[S; 3]) -> ([S; 3], S) {
         let (sin, cos) = q[2].sin_cos();
-        // n . (-y, x) = y sin(theta) + x cos(theta).
-        let swept = if self.table_rate == 0.0 { S::zero() } else { (q[0] * cos + q[1] * sin) * -self.table_rate };
+        let swept = if self.table_rate == 0.0 { S::zero() } else { -self.swept(q) };
         ([-sin, cos, S::zero()], swept)
     }
 
@@ -158,7 +158,7 @@ impl<const K: usize> Guided<K> {
 /// The kinetic energy of the masses (J).
 #[inline(always)]
 fn carried_energy<S: Scalar>(masses: &[MovingMass], t: S, q: &[S; 3], v: &[S; 3]) -> S {
-    S::apart(
+    called(
         #[inline(always)]
         || {
             S::over(

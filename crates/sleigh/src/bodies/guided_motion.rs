@@ -20,40 +20,46 @@
 use super::guided::Guide;
 use super::moments::Moments;
 use crate::Guided;
-use lagrangian::{Motion, Reduced, Scalar, System};
-
-/// What the plane and the guides say of the velocity.
-struct Rates<S> {
-    /// `u` and `omega`.
-    own: [S; 2],
-    /// `u'` and `omega'`, where they are imposed.
-    imposed: [S; 2],
-    /// `s` and `s'`.
-    across: [S; 2],
-}
+use lagrangian::{Motion, Reduced, ReducedError, Scalar, System};
 
 impl<const K: usize> Guided<K> {
-    /// The velocity with the quasi-velocities `xi`.
+    /// `u` and `omega`, of which the quasi-velocities `xi` tell what is not imposed.
     #[inline(always)]
-    fn rates<S: Scalar>(&self, t: S, q: &[S; 3], xi: &[S; 3]) -> Rates<S> {
-        let zero = S::zero();
-        let (own, imposed) = match self.guides.first() {
-            Some(Guide::Speed(u)) => ([u.value(t), xi[0]], [u.slope(t), zero]),
-            Some(Guide::TurnRate(omega)) => ([xi[0], omega.value(t)], [zero, omega.slope(t)]),
-            _ => ([xi[0], xi[1]], [zero; 2]),
-        };
-        Rates { own, imposed, across: self.across(q, own) }
+    fn own<S: Scalar>(&self, t: S, q: &[S; 3], xi: &[S; 3]) -> [S; 2] {
+        if const { K == 0 } {
+            return [xi[0], xi[1]];
+        }
+        match &self.guides[..] {
+            [Guide::Speed(u), Guide::TurnRate(omega)] => [u.value(t), omega.value(t)],
+            [Guide::Speed(u)] => [u.value(t), xi[0]],
+            [Guide::TurnRate(omega)] => [xi[0], omega.value(t)],
+            [Guide::TracerX(path), ..] if K > 1 => {
+                // C' = P' + a omega n.
+                let (sin, cos) = q[2].sin_cos();
+                let [x, y] = path.velocity(t).map(|rate| rate.carried_as(t));
+                let across = cos * y - sin * x - self.swept(q);
+                [cos * x + sin * y, across / self.sleigh.offset()]
+            }
+            _ => [xi[0], xi[1]],
+        }
     }
 
-    /// `s = Omega n . (-y, x)` and its rate.
+    /// `s = Omega n . (-y, x)`.
     #[inline(always)]
-    fn across<S: Scalar>(&self, q: &[S; 3], [u, omega]: [S; 2]) -> [S; 2] {
+    pub(super) fn swept<S: Scalar>(&self, q: &[S; 3]) -> S {
+        let (sin, cos) = q[2].sin_cos();
+        if self.table_rate == 0.0 { S::zero().carried_as(sin) } else { (q[0] * cos + q[1] * sin) * self.table_rate }
+    }
+
+    /// The rate of `s`.
+    #[inline(always)]
+    fn swept_rate<S: Scalar>(&self, q: &[S; 3], [u, omega]: [S; 2]) -> S {
         let [x, y, theta] = *q;
         if self.table_rate == 0.0 {
-            return [S::zero().carried_as(theta); 2];
+            return S::zero().carried_as(theta);
         }
         let (sin, cos) = theta.sin_cos();
-        [(x * cos + y * sin) * self.table_rate, (u + omega * (y * cos - x * sin)) * self.table_rate]
+        (u + omega * (y * cos - x * sin)) * self.table_rate
     }
 
     /// The right sides of Newton's law without forces, along `e` and about the blade.
@@ -79,32 +85,32 @@ impl<const K: usize> Guided<K> {
     #[inline(always)]
     fn accelerations<S: Scalar>(&self, t: S, q: &[S; 3], xi: &[S; 3], [force, torque]: [S; 2]) -> [S; 3] {
         let zero = S::zero();
-        if K > 1 {
+        if const { K > 1 } {
             return [zero; 3];
         }
-        let Rates { own, imposed: [u_rate, turn_rate], across } = self.rates(t, q, xi);
-        let ([u, omega], [s, s_rate]) = (own, across);
+        let own = self.own(t, q, xi);
+        let ([u, omega], [s, s_rate]) = (own, [self.swept(q), self.swept_rate(q, own)]);
         if self.masses.is_empty() {
             // u' = omega s + a omega^2 + F/m, omega' = -(m a/J) (s' + omega u) + tau/J.
             let [per_mass, per_inertia] = self.sleigh.inverse();
             let along = omega * s + omega * omega * self.sleigh.offset() + force * per_mass;
             let turn = (s_rate + omega * u) * -self.sleigh.spin_gain() + torque * per_inertia;
-            return match self.guides.first() {
-                Some(Guide::Speed(_)) => [turn, zero, zero],
-                Some(_) => [along, zero, zero],
-                None => [along, turn, zero],
-            };
+            if const { K == 0 } {
+                return [along, turn, zero];
+            }
+            return [if matches!(self.guides.first(), Some(Guide::Speed(_))) { turn } else { along }, zero, zero];
         }
         let moments = Moments::of(&self.sleigh, &self.masses, t);
-        let [along, about] = Self::inertial(&moments, own, across);
+        let [along, about] = Self::inertial(&moments, own, [s, s_rate]);
         let (along, about, sy) = (along + force, about + torque, moments.first[1]);
+        if const { K == 0 } {
+            let [along, turn] = Self::solved(&moments, [along, about]);
+            return [along, turn, zero];
+        }
         match self.guides.first() {
-            Some(Guide::Speed(_)) => [(about + sy * u_rate) / moments.inertia, zero, zero],
-            Some(_) => [(along + sy * turn_rate) / moments.mass, zero, zero],
-            None => {
-                let [along, turn] = Self::solved(&moments, [along, about]);
-                [along, turn, zero]
-            }
+            Some(Guide::Speed(u)) => [(about + sy * u.slope(t)) / moments.inertia, zero, zero],
+            Some(Guide::TurnRate(omega)) => [(along + sy * omega.slope(t)) / moments.mass, zero, zero],
+            _ => [zero; 3],
         }
     }
 }
@@ -122,7 +128,7 @@ where
         }
         let (sin, cos) = q[2].sin_cos();
         let [u, s, omega] = [cos * v[0] + sin * v[1], cos * v[1] - sin * v[0], v[2]];
-        let s_rate = self.across(q, [u, omega])[1];
+        let s_rate = self.swept_rate(q, [u, omega]);
         let moments = Moments::of(&self.sleigh, &self.masses, t);
         let [u_rate, turn] = Self::solved(&moments, Self::inertial(&moments, [u, omega], [s, s_rate]));
         // P'' = (u' - omega s) e + (s' + omega u) n.
@@ -157,6 +163,20 @@ where
     fn pushed_motion<S: Scalar>(&self, t: S, q: &[S; 3], xi: &[S; 3], &[fx, fy, tau]: &[S; 3]) -> Option<[S; 3]> {
         let (sin, cos) = q[2].sin_cos();
         Some(self.accelerations(t, q, xi, [cos * fx + sin * fy, tau]))
+    }
+
+    /// `u e + s n`, and `omega`.
+    #[inline(always)]
+    fn velocity<S: Scalar>(
+        &self,
+        t: S,
+        q: &[S; 3],
+        xi: &[S; 3],
+        _derived: impl FnOnce() -> Result<[S; 3], ReducedError>,
+    ) -> Result<[S; 3], ReducedError> {
+        let (sin, cos) = q[2].sin_cos();
+        let ([u, omega], s) = (self.own(t, q, xi), self.swept(q));
+        Ok([u * cos - s * sin, u * sin + s * cos, omega])
     }
 
     /// The heading from the spin, and the place from the heading; on a plane that turns, the velocity depends on the place.

@@ -1,3 +1,4 @@
+use crate::called::called;
 use lagrangian::{Effect, Scalar, With};
 
 /// A generalised force.
@@ -28,10 +29,4 @@ impl<B, E: Effect<B, N>, const N: usize> Push<N> for Pushing<'_, B, E> {
         }
         if E::MANY { called(|| effects.force(body, t, q, v)) } else { effects.force(body, t, q, v) }
     }
-}
-
-/// A function that stays one.
-#[inline(never)]
-fn called<T>(f: impl FnOnce() -> T) -> T {
-    f()
 }

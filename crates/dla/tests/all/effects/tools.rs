@@ -2,7 +2,7 @@
 
 use dla::{Observer, OneStep, Piece, PiecewiseMechanics, Schedule, State, drive_part, piece_by_piece};
 use lagrangian::With;
-use scene::AnyEffect;
+use scene::{AnyEffect, EffectList};
 use sleigh::{Sleigh, SleighState};
 
 /// Runs piece by piece, as a command does.
@@ -26,10 +26,10 @@ where
 }
 
 /// A body of a scene with a list of effects: the type of all runs here, so that each body is compiled once.
-pub type Laden<B> = With<B, Vec<AnyEffect>>;
+pub type Laden<B> = With<B, EffectList>;
 
 pub fn laden<B>(body: B, effects: Vec<AnyEffect>) -> Laden<B> {
-    With { body, effects }
+    With { body, effects: effects.into() }
 }
 
 /// `m = 1.3`, `I = 0.8`, `a = 0.4`.

@@ -1,0 +1,132 @@
+use crate::AnyEffect;
+use dla::KnownAngle;
+use lagrangian::{Effect, EffectSlope, Piecewise, Scalar};
+use sleigh::series::{OwnPush, PushInOwnAxes};
+use sleigh::{Sleigh, SleighBody};
+
+/// The effects of a scene.
+///
+/// On whichever body, they act on the sleigh that it is: so that of every question there is but one function to compile for all bodies,
+/// in vector registers too.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct EffectList(Vec<AnyEffect>);
+
+impl From<Vec<AnyEffect>> for EffectList {
+    fn from(effects: Vec<AnyEffect>) -> Self {
+        Self(effects)
+    }
+}
+
+impl EffectList {
+    /// The effects, in their order.
+    #[must_use]
+    pub fn all(&self) -> &[AnyEffect] {
+        &self.0
+    }
+
+    #[inline(always)]
+    fn lagrangian_on<S: Scalar, const N: usize>(&self, sleigh: &Sleigh, t: S, q: &[S; N], v: &[S; N]) -> Option<S> {
+        S::apart(
+            #[inline(always)]
+            || self.0.lagrangian(sleigh, t, q, v),
+        )
+    }
+
+    #[inline(always)]
+    fn force_on<S: Scalar, const N: usize>(&self, sleigh: &Sleigh, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
+        S::apart(
+            #[inline(always)]
+            || self.0.force(sleigh, t, q, v),
+        )
+    }
+
+    #[inline(always)]
+    fn slope_on<S: Scalar, const N: usize>(&self, sleigh: &Sleigh, t: S, q: &[S; N]) -> EffectSlope<S, N> {
+        S::apart(
+            #[inline(always)]
+            || Effect::<Sleigh, N>::slope(&self.0, sleigh, t, q),
+        )
+    }
+
+    /// The sine and cosine of the heading are computed by who asks, who needs them too.
+    #[inline(always)]
+    fn whole_force_on<S: Scalar, const N: usize>(
+        &self,
+        sleigh: &Sleigh,
+        t: S,
+        q: &[S; N],
+        v: &[S; N],
+    ) -> Option<[S; N]> {
+        let (sin, cos) = q[2].sin_cos();
+        let heading = S::array(
+            #[inline(always)]
+            |i| if i == 0 { sin } else { cos },
+        );
+        t.called_on(
+            [*q, *v, heading],
+            #[inline(always)]
+            |t, [q, v, heading]| {
+                let known = KnownAngle::from;
+                let place: [_; N] = KnownAngle::array(
+                    #[inline(always)]
+                    |i| if i == 2 { KnownAngle::new(q[2], heading[0], heading[1]) } else { known(q[i]) },
+                );
+                let rates: [_; N] = KnownAngle::array(
+                    #[inline(always)]
+                    |i| known(v[i]),
+                );
+                match self.0.whole_force(sleigh, known(t), &place, &rates) {
+                    Some(force) => Some(S::array(
+                        #[inline(always)]
+                        |i| force[i].re,
+                    )),
+                    None => None,
+                }
+            },
+        )
+    }
+}
+
+impl<B: SleighBody, const N: usize> Effect<B, N> for EffectList {
+    const MANY: bool = true;
+
+    #[inline(always)]
+    fn lagrangian<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<S> {
+        self.lagrangian_on(body.sleigh(), t, q, v)
+    }
+    #[inline(always)]
+    fn force<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
+        self.force_on(body.sleigh(), t, q, v)
+    }
+    #[inline(always)]
+    fn slope<S: Scalar>(&self, body: &B, t: S, q: &[S; N]) -> EffectSlope<S, N> {
+        self.slope_on(body.sleigh(), t, q)
+    }
+    #[inline(always)]
+    fn whole_force<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
+        self.whole_force_on(body.sleigh(), t, q, v)
+    }
+    #[inline(always)]
+    fn has_force(&self) -> bool {
+        Effect::<Sleigh, N>::has_force(&self.0)
+    }
+    #[inline(always)]
+    fn is_none(&self) -> bool {
+        self.0.is_empty()
+    }
+}
+
+impl<B: SleighBody> PushInOwnAxes<B> for EffectList {
+    fn in_own_axes(&self, body: &B) -> Option<OwnPush> {
+        self.0.in_own_axes(body.sleigh())
+    }
+}
+
+impl Piecewise for EffectList {
+    fn jumps(&self, from: f64, to: f64) -> Vec<f64> {
+        self.0.jumps(from, to)
+    }
+    fn piece(&self, t: f64) -> Self {
+        Self(self.0.piece(t))
+    }
+}
