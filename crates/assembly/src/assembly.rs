@@ -75,7 +75,7 @@ impl Assembly {
     {
         let at = lagrangian::from_fn(|i| self.angles.len() + i);
         self.angles.extend(system.angles());
-        self.place(name, Box::new(SystemElement { system }), &at);
+        self.place(name, Box::new(SystemElement { system: Box::new(system) }), &at);
         at
     }
 
@@ -93,7 +93,7 @@ impl Assembly {
         Sys: System<N, M> + Send + Sync + 'static,
     {
         self.check(name, &at)?;
-        self.place(name, Box::new(SystemElement { system }), &at);
+        self.place(name, Box::new(SystemElement { system: Box::new(system) }), &at);
         Ok(())
     }
 

@@ -11,6 +11,7 @@ mod composition;
 mod contributions;
 mod dla;
 mod element;
+mod element_system;
 mod energy;
 mod equations;
 mod error;

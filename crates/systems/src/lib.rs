@@ -21,6 +21,7 @@ mod family;
 mod lanes;
 mod power;
 mod system;
+mod train;
 
 pub use any_effect::AnyEffect;
 pub use columns::Column;
@@ -29,3 +30,4 @@ pub use family::{PARAMETERS, SleighFamily};
 pub use lanes::{LANES, Lane, LaneMethod, LaneRun, in_lanes};
 pub use power::{EffectPower, SceneBody, SceneEffects};
 pub use system::{AnySystem, Guiding, Rotor, SceneSystem, Started, system};
+pub use train::train;

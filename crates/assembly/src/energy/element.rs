@@ -2,12 +2,10 @@ use crate::AssemblyError;
 use crate::element::local;
 use crate::joint::{Joint, JointElement};
 use crate::system_element::SystemElement;
+use dla::Slopes;
 use lagrangian::linear::largest;
 use lagrangian::quadrature::gauss_legendre;
-use lagrangian::{
-    AdmissibleBasis, Bracket, Dual, HyperDual, Lanes, Scalar, System, energy, from_fn, lagrangian_power, mass_matrix,
-    momentum, quasi_velocities,
-};
+use lagrangian::{Dual, Lanes, Scalar, from_fn};
 
 /// The Gauss rule with eight nodes along a step, by which gradients are averaged: exact to degree 15.
 #[derive(Debug, Clone, Copy)]
@@ -99,15 +97,11 @@ const UNSUPPORTED_LINEAR: AssemblyError = AssemblyError::Unsupported {
         assembly is not",
 };
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> SystemElement<Sys, N, M> {
+impl<const N: usize, const M: usize> SystemElement<N, M> {
     /// Whether the system gives a basis. One whose constraints hold positions too is held by its rows.
     fn has_basis(&self) -> bool {
         let (system, q) = (&self.system, &[0.0; N]);
-        M > 0 && system.holonomic(0.0, q).is_none() && system.admissible_basis(0.0, q).is_some()
-    }
-
-    fn basis<S: Scalar>(&self, t: S, q: &[S; N]) -> Option<AdmissibleBasis<S, N, M>> {
-        self.system.admissible_basis(t, q)
+        M > 0 && !system.constrains_positions(0.0, q) && system.basis(0.0, q).is_some()
     }
 }
 
@@ -125,19 +119,19 @@ fn identity<const N: usize>() -> [[f64; N]; N] {
     from_fn(|i| from_fn(|j| f64::from(u8::from(i == j))))
 }
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> EnergyElement for SystemElement<Sys, N, M> {
+impl<const N: usize, const M: usize> EnergyElement for SystemElement<N, M> {
     fn quasi_velocities(&self) -> usize {
         if self.has_basis() { N - M } else { N }
     }
 
     fn rest(&self, t: f64, q: &[f64], v: &[f64], xi: &mut [f64], mass: &mut [f64]) -> Result<(), AssemblyError> {
         let (q, v) = (local(q), local(v));
-        let (_, full) = mass_matrix(&self.system, t, &q, &v);
-        let basis = if self.has_basis() { self.basis(t, &q) } else { None };
+        let (_, full) = self.system.mass_matrix(t, &q, &v);
+        let basis = if self.has_basis() { self.system.basis(t, &q) } else { None };
         let k = xi.len();
         match &basis {
             Some(_) => {
-                let own = quasi_velocities(&self.system, t, &q, &v).map_err(|_| NO_BASIS)?;
+                let own = self.system.quasi_velocities(t, &q, &v).map_err(|_| NO_BASIS)?;
                 xi.copy_from_slice(&own[..k]);
             }
             None => xi.copy_from_slice(&v),
@@ -153,73 +147,42 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> EnergyElement for System
     }
 
     fn has_inertia(&self, t: f64, q: &[f64], v: &[f64]) -> bool {
-        let (_, mass) = mass_matrix(&self.system, t, &local(q), &local(v));
+        let (_, mass) = self.system.mass_matrix(t, &local(q), &local(v));
         mass.as_flattened().iter().any(|m| *m != 0.0)
     }
 
     fn keeps_energy(&self, t: f64, q: &[f64], v: &[f64]) -> Result<(), AssemblyError> {
         let (q, v): ([f64; N], [f64; N]) = (local(q), local(v));
-        let (_, b) = self.system.constraint(Dual { re: t, eps: [1.0] }, &q.map(Dual::fixed));
-        if b.iter().any(|b: &Dual<f64, 1>| !b.is_zero()) {
+        if self.system.has_moving_rows(t, &q) {
             return Err(UNSUPPORTED_MOVING);
         }
-        if self.system.nonlinear(t, &q, &v).is_some() {
+        if self.system.is_nonlinear(t, &q, &v) {
             return Err(UNSUPPORTED_ROWS);
         }
-        if lagrangian_power(&self.system, t, &q, &v) != 0.0 {
+        if self.system.lagrangian_power(t, &q, &v) != 0.0 {
             return Err(UNSUPPORTED_TIME);
         }
-        if largest(&momentum(&self.system, t, &q, &[0.0; N])) != 0.0 {
+        if largest(&self.system.momentum(t, &q, &[0.0; N])) != 0.0 {
             return Err(UNSUPPORTED_LINEAR);
         }
         Ok(())
     }
 
-    fn swing(&self, (t0, h): (f64, f64), q0: &[f64], xi: &[f64], out: Swing<'_>) -> Option<()> {
-        /// However the basis turns, its turn in a step of less than a radian is found with fewer.
-        const ITERATIONS: u32 = 60;
-        if !self.has_basis() {
-            out.v.copy_from_slice(xi);
-            out.slope.copy_from_slice(identity::<N>().as_flattened());
-            out.frame.copy_from_slice(identity::<N>().as_flattened());
-            out.turning.fill(0.0);
-            out.turning_slope.fill(0.0);
-            return Some(());
+    fn swing(&self, step: (f64, f64), q0: &[f64], xi: &[f64], out: Swing<'_>) -> Option<()> {
+        if self.has_basis() {
+            return self.system.swing(step, &local(q0), xi, out);
         }
-        let (q0, k): ([f64; N], usize) = (local(q0), xi.len());
-        let t = Dual::<f64, N>::fixed(t0 + 0.5 * h);
-        let x = from_fn(|a| xi.get(a).map_or(Dual::zero(), |xi| Dual::variable(*xi, a)));
-        let mut v = self.basis(t, &q0.map(Dual::fixed))?.combine(&x);
-        let middle = |v: &[Dual<f64, N>; N]| from_fn(|i| v[i] * (0.5 * h) + q0[i]);
-        for _ in 0..ITERATIONS {
-            let next = self.basis(t, &middle(&v))?.combine(&x);
-            let settled = next == v;
-            v = next;
-            if settled {
-                break;
-            }
-        }
-        let bracket = Bracket::at(&self.system, t, &middle(&v), &x)?;
-        let (_, rates) = bracket.rates(&[Dual::zero(); N], &x);
-        for i in 0..N {
-            out.v[i] = v[i].re;
-            out.slope[i * k..][..k].copy_from_slice(&v[i].eps[..k]);
-        }
-        for a in 0..k {
-            out.turning[a] = -rates[a].re;
-            for b in 0..k {
-                out.turning_slope[a * k + b] = -rates[a].eps[b];
-            }
-            for i in 0..N {
-                out.frame[i * k + a] = bracket.basis.vectors()[a][i].re;
-            }
-        }
+        out.v.copy_from_slice(xi);
+        out.slope.copy_from_slice(identity::<N>().as_flattened());
+        out.frame.copy_from_slice(identity::<N>().as_flattened());
+        out.turning.fill(0.0);
+        out.turning_slope.fill(0.0);
         Some(())
     }
 
     fn frame(&self, t: f64, q: &[f64], frame: &mut [f64]) -> Option<()> {
         if self.has_basis() {
-            columns(self.basis(t, &local(q))?.vectors(), frame);
+            columns(self.system.basis(t, &local(q))?.vectors(), frame);
         } else {
             frame.copy_from_slice(identity::<N>().as_flattened());
         }
@@ -236,22 +199,16 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> EnergyElement for System
     ) -> f64 {
         let (q0, v): ([f64; N], [f64; N]) = (local(q0), local(v));
         let (system, t) = (&self.system, t0 + 0.5 * h);
-        let path = Dual::variables(&rule.points(h, &q0, &v));
-        let l = system.lagrangian(Dual::fixed(Lanes::constant(t)), &path, &[Dual::zero(); N]);
-        // Its derivative in v: that of the gradient in the middle.
-        let unit = |i: usize| from_fn(|k| f64::from(u8::from(k == i)));
-        let middle: [HyperDual<f64, N, N>; N] =
-            from_fn(|i| HyperDual::linear(q0[i] + 0.5 * h * v[i], unit(i), unit(i)));
-        let l_qq = system.lagrangian(HyperDual::fixed(t), &middle, &[HyperDual::fixed(0.0); N]).e12;
+        let middle = from_fn(|i| q0[i] + 0.5 * h * v[i]);
+        // The derivative in v is that of the gradient in the middle.
+        let (l_q, l_qq) = system.potential_slopes(t, &rule.points(h, &q0, &v), &middle);
         for i in 0..N {
-            push[i] = h * rule.of(l.eps[i]);
+            push[i] = h * rule.of(l_q[i]);
             for j in 0..N {
                 slope[i * N + j] = 0.5 * h * h * l_qq[i][j];
             }
         }
-        let moving: [Dual<f64, N>; N] = from_fn(|i| Dual::variable(v[i], i));
-        let q = from_fn(|i| moving[i] * (0.5 * h) + q0[i]);
-        let Some(force) = system.force(Dual::fixed(t), &q, &moving) else { return 0.0 };
+        let Some(force) = system.force_along(t, &middle, &v, 0.5 * h, 1.0) else { return 0.0 };
         let mut work = 0.0;
         for i in 0..N {
             push[i] += h * force[i].re;
@@ -268,22 +225,19 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> EnergyElement for System
         let t = t0 + 0.5 * h;
         let (a, _) = self.system.constraint(t, &from_fn(|i| q0[i] + 0.5 * h * v[i]));
         rows.copy_from_slice(a.as_flattened());
-        let path = Dual::variables(&rule.points(h, &q0, &v));
-        let positions: Option<[Option<Dual<Lanes, N>>; M]> =
-            self.system.holonomic(Dual::fixed(Lanes::constant(t)), &path);
-        for (row, g) in rows.chunks_exact_mut(N).zip(positions.iter().flatten()) {
-            for (x, slope) in row.iter_mut().zip(g.iter().flat_map(|g| g.eps)) {
-                *x = rule.of(slope);
+        let positions = self.system.position_slopes(t, &rule.points(h, &q0, &v));
+        for (row, slopes) in rows.chunks_exact_mut(N).zip(positions.iter().flatten()) {
+            for (x, slope) in row.iter_mut().zip(slopes.iter().flatten()) {
+                *x = rule.of(*slope);
             }
         }
     }
 
     fn energies(&self, t: f64, q: &[f64], v: &[f64]) -> [f64; 2] {
         let (q, v): ([f64; N], [f64; N]) = (local(q), local(v));
-        let p = momentum(&self.system, t, &q, &v);
-        let l = self.system.lagrangian(Dual::fixed(t), &Dual::variables(&q), &v.map(Dual::fixed));
-        let size = l.re.abs() + (0..N).map(|i| (p[i] * v[i]).abs() + (l.eps[i] * q[i]).abs()).sum::<f64>();
-        [energy(&self.system, t, &q, &v), size]
+        let Slopes { l_q, l_v, .. } = self.system.slopes(t, &q, &v);
+        let products = (0..N).map(|i| (l_v[i] * v[i]).abs() + (l_q[i] * q[i]).abs()).sum::<f64>();
+        [self.system.energy(t, &q, &v), self.system.lagrangian(t, &q, &v).abs() + products]
     }
 }
 

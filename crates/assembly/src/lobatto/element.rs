@@ -2,8 +2,8 @@ use crate::assembly::WIDEST;
 use crate::element::local;
 use crate::joint::{Joint, JointElement};
 use crate::system_element::SystemElement;
-use dla::{LinearisedStage, StagePoint};
-use lagrangian::{Constraint, Dual, Scalar, System, position_misses, position_rows};
+use dla::{LinearisedStage, Mechanics, StagePoint};
+use lagrangian::{Constraint, Dual, Scalar, System, position_rows};
 
 /// What an element says at one stage of a step, with first derivatives: as [`LinearisedStage`], in the first places of lists
 /// that are long enough for any. Matrices by rows.
@@ -90,23 +90,23 @@ pub trait StageElement {
 }
 
 /// That of any system.
-fn stage<Sys: System<N, M>, const N: usize, const M: usize>(
-    system: &Sys,
+fn stage<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
     (t, h): (f64, f64),
     [q, v, impulses]: [&[f64]; 3],
     out: &mut StageTerms,
 ) {
     let point = StagePoint::<N, M> { t, q: local(q), v: local(v), impulse: local(impulses) };
-    out.write(&point.linearised(system, h), position_misses(system, t, &point.q));
+    out.write(&point.linearised(system, h), system.position_misses(t, &point.q));
 }
 
-impl<Sys: System<N, M>, const N: usize, const M: usize> StageElement for SystemElement<Sys, N, M> {
+impl<const N: usize, const M: usize> StageElement for SystemElement<N, M> {
     fn stage(&self, time: (f64, f64), q: &[f64], v: &[f64], impulses: &[f64], out: &mut StageTerms) {
-        stage::<Sys, N, M>(&self.system, time, [q, v, impulses], out);
+        stage::<N, M>(&*self.system, time, [q, v, impulses], out);
     }
 
     fn is_affine(&self, t: f64, q: &[f64], v: &[f64]) -> bool {
-        self.system.nonlinear(t, &local(q), &local(v)).is_none()
+        !self.system.is_nonlinear(t, &local(q), &local(v))
     }
 }
 
@@ -129,7 +129,7 @@ impl<J: Joint<N, M>, const N: usize, const M: usize> System<N, M> for Joined<'_,
 
 impl<J: Joint<N, M>, const N: usize, const M: usize> StageElement for JointElement<J, N, M> {
     fn stage(&self, time: (f64, f64), q: &[f64], v: &[f64], impulses: &[f64], out: &mut StageTerms) {
-        stage::<Joined<'_, J>, N, M>(&Joined(&self.joint), time, [q, v, impulses], out);
+        stage::<N, M>(&Joined(&self.joint), time, [q, v, impulses], out);
     }
 
     fn is_affine(&self, _t: f64, _q: &[f64], _v: &[f64]) -> bool {

@@ -35,6 +35,26 @@ pub struct Train {
     trailers: Vec<Trailer>,
 }
 
+impl Trailer {
+    fn checked(&self) -> Result<(), AssemblyError> {
+        let Self { hitch, bar, .. } = *self;
+        if !hitch.is_finite() {
+            return Err(AssemblyError::Number { what: "the hitch of a trailer", accepted: "finite", value: hitch });
+        }
+        if !bar.is_finite() || bar == 0.0 {
+            let accepted = "finite and not zero";
+            return Err(AssemblyError::Number { what: "the bar of a trailer", accepted, value: bar });
+        }
+        Ok(())
+    }
+
+    /// Hinges it to the blade before it.
+    fn hinge(&self, assembly: &mut Assembly, before: [usize; 3], own: [usize; 3]) -> Result<(), AssemblyError> {
+        let at = [before[0], before[1], before[2], own[0], own[1], own[2]];
+        assembly.join("hinge", Hinge::new([-self.hitch, 0.0], [self.bar, 0.0]), at)
+    }
+}
+
 impl Train {
     /// A train behind the system `lead`, which may have constraints beside that of its blade; `body` makes the body of each trailer, with
     /// what acts on it.
@@ -53,17 +73,9 @@ impl Train {
         let mut assembly = Assembly::new();
         let mut before = assembly.body("blade", lead);
         for trailer in &trailers {
-            let Trailer { hitch, bar, .. } = *trailer;
-            if !hitch.is_finite() {
-                return Err(AssemblyError::Number { what: "the hitch of a trailer", accepted: "finite", value: hitch });
-            }
-            if !bar.is_finite() || bar == 0.0 {
-                let accepted = "finite and not zero";
-                return Err(AssemblyError::Number { what: "the bar of a trailer", accepted, value: bar });
-            }
+            trailer.checked()?;
             let own = assembly.body("blade", body(trailer));
-            let at = [before[0], before[1], before[2], own[0], own[1], own[2]];
-            assembly.join("hinge", Hinge::new([-hitch, 0.0], [bar, 0.0]), at)?;
+            trailer.hinge(&mut assembly, before, own)?;
             before = own;
         }
         Ok(Self { assembly, trailers })
