@@ -9,17 +9,13 @@ pub struct Pack<S: Simd, const R: usize> {
     registers: [S::f64s; R],
 }
 
-/// Does the same with every register. For one register or two there is no loop, which the compiler would have to unroll in every operation
-/// of a kernel, in a time that grows with the length of the kernel.
+/// Does the same with every register. For one register there is no loop, which the compiler would have to unroll in every operation of a
+/// kernel. For several there is one: without it the compiler splits numbers before it sees that they are packs, and kernels take twice as
+/// long.
 macro_rules! each_register {
     ($i:ident => $act:expr) => {
         if const { R == 1 } {
             let $i = 0;
-            $act;
-        } else if const { R == 2 } {
-            let $i = 0;
-            $act;
-            let $i = 1;
             $act;
         } else {
             let mut $i = 0;
