@@ -76,6 +76,8 @@ impl<T: Scalar> MulAssign<f64> for KnownAngle<T> {
 }
 
 impl<T: Scalar> Scalar for KnownAngle<T> {
+    const IN_REGISTERS: bool = T::IN_REGISTERS;
+
     #[inline(always)]
     fn constant(x: f64) -> Self {
         Self::from(T::constant(x))

@@ -61,8 +61,7 @@ pub trait Reduced<const N: usize, const M: usize> {
         None
     }
 
-    /// The same as [`reduced_motion`](Self::reduced_motion) under one more generalised force. A body on which effects may act gives it, or
-    /// its motion is derived.
+    /// The same as [`reduced_motion`](Self::reduced_motion) under one more generalised force.
     #[inline(always)]
     fn pushed_motion<S: Scalar>(&self, _t: S, _q: &[S; N], _xi: &[S; N], _force: &[S; N]) -> Option<[S; N]> {
         None

@@ -10,9 +10,6 @@ pub trait Effect<B, const N: usize> {
     /// and better called than inlined where numbers are not in registers.
     const MANY: bool = false;
 
-    /// Whether it is known, when a program is compiled, that there is no effect at all.
-    const NONE: bool = false;
-
     /// What the effect adds to `L(t, q, v)` (J); a potential `V` adds `-V`.
     #[inline(always)]
     fn lagrangian<S: Scalar>(&self, _body: &B, _t: S, _q: &[S; N], _v: &[S; N]) -> Option<S> {
@@ -90,8 +87,6 @@ impl<S: Scalar, const N: usize> EffectSlope<S, N> {
 
 /// No effect.
 impl<B, const N: usize> Effect<B, N> for () {
-    const NONE: bool = true;
-
     #[inline(always)]
     fn has_force(&self) -> bool {
         false
@@ -130,8 +125,6 @@ pub(crate) fn add_all<S: Scalar, const N: usize>(a: Option<[S; N]>, b: Option<[S
 macro_rules! tuple_of_effects {
     ($($effect:ident $index:tt),+) => {
         impl<B, const N: usize, $($effect: Effect<B, N>),+> Effect<B, N> for ($($effect,)+) {
-            const NONE: bool = $($effect::NONE)&&+;
-
             #[inline(always)]
             fn lagrangian<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<S> {
                 let sum = None;

@@ -73,6 +73,9 @@ pub trait Scalar:
     /// Whether the number and all of its derivatives vanish.
     fn is_zero(&self) -> bool;
 
+    /// Whether it is a number in vector registers.
+    const IN_REGISTERS: bool = false;
+
     /// An array by its places. Numbers in vector registers inline it and what it calls, since in a function that remains a call
     /// the registers are not known; so `f` is to be marked `#[inline(always)]`.
     #[must_use]

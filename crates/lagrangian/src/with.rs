@@ -81,14 +81,15 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> Reduced<N
         if N == M {
             return Some([S::zero(); N]);
         }
-        if const { E::NONE } {
+        if self.effects.is_none() {
             return self.body.reduced().reduced_motion(t, q, xi);
         }
         // Known when the program is compiled: what acts is then not asked.
         if !any(&self.body.reduced()) {
             return None;
         }
-        self.pushed_motion(t, q, xi, &[S::zero(); N])
+        let push = self.effects.whole_force(&self.body, t, q, &velocity_of(&self.body, t, q, xi).ok()?)?;
+        self.body.reduced().pushed_motion(t, q, xi, &push)
     }
 
     #[inline(always)]
@@ -119,16 +120,10 @@ impl<B: System<N, M>, E: Effect<B, N>, const N: usize, const M: usize> Reduced<N
 
     #[inline(always)]
     fn pushed_motion<S: Scalar>(&self, t: S, q: &[S; N], xi: &[S; N], force: &[S; N]) -> Option<[S; N]> {
-        // One call: the equations of a body are long where they are inlined.
-        let push = if self.effects.is_none() {
-            S::array(
-                #[inline(always)]
-                |i| force[i].carried_as(t),
-            )
-        } else {
-            let push = self.effects.whole_force(&self.body, t, q, &velocity_of(&self.body, t, q, xi).ok()?)?;
-            sum(&push, force)
-        };
-        self.body.reduced().pushed_motion(t, q, xi, &push)
+        if self.effects.is_none() {
+            return self.body.reduced().pushed_motion(t, q, xi, force);
+        }
+        let push = self.effects.whole_force(&self.body, t, q, &velocity_of(&self.body, t, q, xi).ok()?)?;
+        self.body.reduced().pushed_motion(t, q, xi, &sum(&push, force))
     }
 }

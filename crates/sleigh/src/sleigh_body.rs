@@ -3,6 +3,9 @@ use lagrangian::Scalar;
 
 /// A body that is a sleigh, perhaps with more coordinates or constraints: its first three coordinates are `(x, y, theta)`.
 pub trait SleighBody {
+    /// Whether it is the sleigh and nothing more.
+    const ALONE: bool = false;
+
     /// The sleigh.
     fn sleigh(&self) -> &Sleigh;
 
@@ -26,6 +29,8 @@ pub trait SleighBody {
 }
 
 impl SleighBody for Sleigh {
+    const ALONE: bool = true;
+
     #[inline(always)]
     fn sleigh(&self) -> &Sleigh {
         self

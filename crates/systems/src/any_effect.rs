@@ -39,19 +39,19 @@ macro_rules! each {
 impl<B: SleighBody, const N: usize> Effect<B, N> for AnyEffect {
     #[inline(always)]
     fn lagrangian<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<S> {
-        self.lagrangian_on(body.sleigh(), t, q, v)
+        each!(self, effect => effect.lagrangian(body.sleigh(), t, q, v))
     }
     #[inline(always)]
     fn force<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
-        self.force_on(body.sleigh(), t, q, v)
+        each!(self, effect => effect.force(body.sleigh(), t, q, v))
     }
     #[inline(always)]
     fn slope<S: Scalar>(&self, body: &B, t: S, q: &[S; N]) -> lagrangian::EffectSlope<S, N> {
-        self.slope_on(body.sleigh(), t, q)
+        each!(self, effect => Effect::<Sleigh, N>::slope(effect, body.sleigh(), t, q))
     }
     #[inline(always)]
     fn whole_force<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
-        self.whole_force_on(body.sleigh(), t, q, v)
+        each!(self, effect => effect.whole_force(body.sleigh(), t, q, v))
     }
     #[inline(always)]
     fn has_force(&self) -> bool {
@@ -62,43 +62,6 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for AnyEffect {
 impl<B: SleighBody> PushInOwnAxes<B> for AnyEffect {
     fn in_own_axes(&self, body: &B) -> Option<OwnPush> {
         each!(self, effect => effect.in_own_axes(body))
-    }
-}
-
-impl AnyEffect {
-    #[inline(always)]
-    fn lagrangian_on<S: Scalar, const N: usize>(&self, sleigh: &Sleigh, t: S, q: &[S; N], v: &[S; N]) -> Option<S> {
-        S::apart(
-            #[inline(always)]
-            || each!(self, effect => effect.lagrangian(sleigh, t, q, v)),
-        )
-    }
-    #[inline(always)]
-    fn force_on<S: Scalar, const N: usize>(&self, sleigh: &Sleigh, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
-        S::apart(
-            #[inline(always)]
-            || each!(self, effect => effect.force(sleigh, t, q, v)),
-        )
-    }
-    #[inline(always)]
-    fn slope_on<S: Scalar, const N: usize>(&self, sleigh: &Sleigh, t: S, q: &[S; N]) -> lagrangian::EffectSlope<S, N> {
-        S::apart(
-            #[inline(always)]
-            || each!(self, effect => Effect::<Sleigh, N>::slope(effect, sleigh, t, q)),
-        )
-    }
-    #[inline(always)]
-    fn whole_force_on<S: Scalar, const N: usize>(
-        &self,
-        sleigh: &Sleigh,
-        t: S,
-        q: &[S; N],
-        v: &[S; N],
-    ) -> Option<[S; N]> {
-        S::apart(
-            #[inline(always)]
-            || each!(self, effect => effect.whole_force(sleigh, t, q, v)),
-        )
     }
 }
 

@@ -48,16 +48,27 @@ impl EffectList {
         )
     }
 
-    /// The sine and cosine of the heading are computed by who asks, who needs them too.
+    /// In registers: called, but of the sleigh alone, whose kernel is the one that is used most. The sine and cosine of the heading are
+    /// computed by who asks, who needs them too.
     #[inline(always)]
-    fn whole_force_on<S: Scalar, const N: usize>(
+    fn whole_force_on<B: SleighBody, S: Scalar, const N: usize>(
         &self,
-        sleigh: &Sleigh,
+        body: &B,
         t: S,
         q: &[S; N],
         v: &[S; N],
     ) -> Option<[S; N]> {
+        let sleigh = body.sleigh();
+        if const { !S::IN_REGISTERS } {
+            return S::apart(
+                #[inline(always)]
+                || self.0.whole_force(sleigh, t, q, v),
+            );
+        }
         let (sin, cos) = q[2].sin_cos();
+        if const { B::ALONE } {
+            return self.pointed(sleigh, t, (q, [sin, cos]), v);
+        }
         let heading = S::array(
             #[inline(always)]
             |i| if i == 0 { sin } else { cos },
@@ -65,25 +76,34 @@ impl EffectList {
         t.called_on(
             [*q, *v, heading],
             #[inline(always)]
-            |t, [q, v, heading]| {
-                let known = KnownAngle::from;
-                let place: [_; N] = KnownAngle::array(
-                    #[inline(always)]
-                    |i| if i == 2 { KnownAngle::new(q[2], heading[0], heading[1]) } else { known(q[i]) },
-                );
-                let rates: [_; N] = KnownAngle::array(
-                    #[inline(always)]
-                    |i| known(v[i]),
-                );
-                match self.0.whole_force(sleigh, known(t), &place, &rates) {
-                    Some(force) => Some(S::array(
-                        #[inline(always)]
-                        |i| force[i].re,
-                    )),
-                    None => None,
-                }
-            },
+            |t, [q, v, heading]| self.pointed(sleigh, t, (&q, [heading[0], heading[1]]), &v),
         )
+    }
+
+    /// The whole force at a heading whose sine and cosine are known.
+    #[inline(always)]
+    fn pointed<S: Scalar, const N: usize>(
+        &self,
+        sleigh: &Sleigh,
+        t: S,
+        (q, [sin, cos]): (&[S; N], [S; 2]),
+        v: &[S; N],
+    ) -> Option<[S; N]> {
+        let place: [_; N] = KnownAngle::array(
+            #[inline(always)]
+            |i| if i == 2 { KnownAngle::new(q[2], sin, cos) } else { KnownAngle::from(q[i]) },
+        );
+        let rates: [_; N] = KnownAngle::array(
+            #[inline(always)]
+            |i| KnownAngle::from(v[i]),
+        );
+        match self.0.whole_force(sleigh, KnownAngle::from(t), &place, &rates) {
+            Some(force) => Some(S::array(
+                #[inline(always)]
+                |i| force[i].re,
+            )),
+            None => None,
+        }
     }
 }
 
@@ -104,7 +124,7 @@ impl<B: SleighBody, const N: usize> Effect<B, N> for EffectList {
     }
     #[inline(always)]
     fn whole_force<S: Scalar>(&self, body: &B, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
-        self.whole_force_on(body.sleigh(), t, q, v)
+        self.whole_force_on(body, t, q, v)
     }
     #[inline(always)]
     fn has_force(&self) -> bool {

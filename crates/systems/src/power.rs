@@ -53,7 +53,7 @@ impl<B: SleighBody, const N: usize> SceneEffects<B, N> for EffectList {
             let Some(kind) = effect.powered() else { continue };
             let before = self.all().iter().take_while(|other| !std::ptr::eq(*other, effect));
             let number = 1 + before.filter(|other| other.powered() == Some(kind)).count();
-            powers.push(EffectPower { name: numbered(kind, number), power: power_of(body, effect, t, q, v) });
+            powers.push(EffectPower { name: numbered(kind, number), power: power_of(body.sleigh(), effect, t, q, v) });
         }
         powers
     }

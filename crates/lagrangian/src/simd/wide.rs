@@ -216,6 +216,8 @@ impl<S: Simd, const R: usize> MulAssign<f64> for Wide<S, R> {
 }
 
 impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
+    const IN_REGISTERS: bool = true;
+
     #[inline(always)]
     fn constant(x: f64) -> Self {
         Same(x)

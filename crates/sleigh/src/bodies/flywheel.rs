@@ -121,7 +121,12 @@ impl<B: System<3, M>, const M: usize> Reduced<4, M> for Flywheel<B> {
         if M != 1 {
             return None;
         }
-        self.pushed_motion(t, q, xi, &[S::zero(); 4])
+        let zero = S::zero();
+        if self.torque.is_some() {
+            return self.pushed_motion(t, q, xi, &[zero; 4]);
+        }
+        let [u, omega, _] = self.body.reduced().reduced_motion(t, &of_body(q), &of_body(xi))?;
+        Some([u, omega, zero, zero])
     }
 
     /// The body's own; the rotor turns with what its absolute rate, the last quasi-velocity, is more than the body's.
@@ -161,7 +166,7 @@ impl<B: System<3, M>, const M: usize> Reduced<4, M> for Flywheel<B> {
         }
         let motor = match &self.torque {
             Some(torque) => motor + torque.value(t),
-            None => motor.carried_as(t),
+            None => motor,
         };
         let [u, omega, _] = self.body.reduced().pushed_motion(t, &of_body(q), &of_body(xi), &[fx, fy, tau - motor])?;
         Some([u, omega, motor / self.inertia, S::zero()])
