@@ -48,8 +48,8 @@ impl EffectList {
         )
     }
 
-    /// In registers: called, but of the sleigh alone, whose kernel is the one that is used most. The sine and cosine of the heading are
-    /// computed by who asks, who needs them too.
+    /// In registers: called, but of the sleigh alone, whose kernel is the one that is used most. A call is given the sine and cosine of
+    /// the heading, which who calls needs too.
     #[inline(always)]
     fn whole_force_on<B: SleighBody, S: Scalar, const N: usize>(
         &self,
@@ -65,10 +65,10 @@ impl EffectList {
                 || self.0.whole_force(sleigh, t, q, v),
             );
         }
-        let (sin, cos) = q[2].sin_cos();
         if const { B::ALONE } {
-            return self.pointed(sleigh, t, (q, [sin, cos]), v);
+            return self.0.whole_force(sleigh, t, q, v);
         }
+        let (sin, cos) = q[2].sin_cos();
         let heading = S::array(
             #[inline(always)]
             |i| if i == 0 { sin } else { cos },
