@@ -81,6 +81,7 @@ impl EffectList {
     }
 
     /// The whole force at a heading whose sine and cosine are known.
+    #[allow(clippy::manual_map, reason = "a closure may stay a call, in which the registers are not known")]
     #[inline(always)]
     fn pointed<S: Scalar, const N: usize>(
         &self,
