@@ -144,23 +144,20 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> StagesAtOnce<'_, Sys, N,
         )
     }
 
-    /// The velocities of quasi-velocities, from the places `q` on, by so many quadratures more.
+    /// The velocities of quasi-velocities, one quadrature after another.
     #[inline(always)]
     fn reconstructed<S: Simd, const R: usize>(
         &self,
         along: &RuleInLanes<S, R>,
-        (mut q, quadratures): ([Pack<S, R>; N], u32),
+        quadratures: u32,
         xi: &[Wide<S, R>; N],
     ) -> Option<[Pack<S, R>; N]> {
-        let mut left = quadratures;
-        loop {
-            let v = self.velocity(along.h.simd(), &q, xi)?;
-            if left == 0 {
-                return Some(v);
-            }
-            left -= 1;
-            q = self.q(along, &v);
+        let simd = along.h.simd();
+        let mut v = self.velocity(simd, &self.still(simd), xi)?;
+        for _ in 0..quadratures {
+            v = self.velocity(simd, &self.q(along, &v), xi)?;
         }
+        Some(v)
     }
 
     /// The times of the stages.
@@ -246,35 +243,29 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for StagesAtOnce<
             }
             None => ([Pack::splat(simd, 0.0); N], [Pack::splat(simd, 0.0); N]),
         };
-        let still = self.still(simd);
-        let mut q = if cascade.is_some() { still } else { self.q(&along, &v) };
+        let mut q = if cascade.is_some() { self.still(simd) } else { self.q(&along, &v) };
         let mut counts = match &self.counts {
             Some([v, a]) => Some([everywhere(simd, v), everywhere(simd, a)]),
             None => None,
         };
         let mut search = self.ending.begin(self.before.is_some());
-        let mut verdict = EndingVerdict::Continue;
         loop {
-            // One call site for velocities and one for accelerations: for a list of effects their inlined code is long.
+            // One call site for the accelerations: for a list of effects their inlined code is long.
             let xi = self.xi(&along, &a);
-            let found = verdict == EndingVerdict::Done;
-            let from = match cascade {
-                Some(quadratures) => (still, quadratures),
-                None => (q, 0),
+            let v1 = match cascade {
+                _ if alone => Some(v),
+                Some(quadratures) => self.reconstructed(&along, quadratures, &xi),
+                None => self.velocity(simd, &q, &xi),
             };
-            let v1 = if alone && !found { Some(v) } else { self.reconstructed(&along, from, &xi) };
             let Some(v1) = v1 else { return CollocationOutcome::Unknown };
-            if found {
-                // The velocities that belong to the last accelerations.
-                v = v1;
-                break;
-            }
             // Gauss-Seidel order: the accelerations use the new places.
             if !alone {
                 q = self.q(&along, &v1);
             }
             let Some(a1) = self.acceleration(simd, &q, &xi) else { return CollocationOutcome::Unknown };
-            if !search.next_is_unseen() {
+            let verdict = if search.next_is_unseen() {
+                EndingVerdict::Continue
+            } else {
                 let [cv, ca] = match counts {
                     Some(counts) => counts,
                     None => [own(simd, &v1), own(simd, &a1)],
@@ -289,13 +280,20 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Kernel for StagesAtOnce<
                         changes = changes.max_abs((a1[k] - a[k]) * ca[k]);
                     }
                 }
-                verdict = search.look(changes.largest());
-            }
+                search.look(changes.largest())
+            };
             (v, a) = (v1, a1);
             match verdict {
-                EndingVerdict::Done if cascade.is_none() => break,
+                EndingVerdict::Continue => {}
+                EndingVerdict::Done => break,
                 EndingVerdict::Failed => return CollocationOutcome::Failed,
-                EndingVerdict::Continue | EndingVerdict::Done => {}
+            }
+        }
+        // The velocities that belong to the last accelerations.
+        if let Some(quadratures) = cascade {
+            match self.reconstructed(&along, quadratures, &self.xi(&along, &a)) {
+                Some(last) => v = last,
+                None => return CollocationOutcome::Unknown,
             }
         }
         for k in 0..N {

@@ -1,5 +1,4 @@
 use super::Simd;
-use super::sincos::sin_cos;
 use pulp::bytemuck;
 
 /// Eight numbers in `R` registers.
@@ -10,8 +9,8 @@ pub struct Pack<S: Simd, const R: usize> {
 }
 
 /// Does the same with every register. For one register there is no loop, which the compiler would have to unroll in every operation of a
-/// kernel. For several there is one: without it the compiler splits numbers before it sees that they are packs, and kernels take twice as
-/// long.
+/// kernel; for several there is one without an iterator: without a loop the compiler splits numbers before it sees that they are packs, and
+/// kernels take twice as long.
 macro_rules! each_register {
     ($i:ident => $act:expr) => {
         if const { R == 1 } {
@@ -120,6 +119,12 @@ impl<S: Simd, const R: usize> Pack<S, R> {
         self
     }
 
+    #[inline(always)]
+    pub(super) fn zip3(mut self, a: Self, b: Self, f: impl Fn(S, S::f64s, S::f64s, S::f64s) -> S::f64s) -> Self {
+        each_register!(i => self.registers[i] = f(self.simd, self.registers[i], a.registers[i], b.registers[i]));
+        self
+    }
+
     /// `self * factor + term`, rounded once.
     #[must_use]
     #[inline(always)]
@@ -127,15 +132,6 @@ impl<S: Simd, const R: usize> Pack<S, R> {
         let (s, f, c) = (self.simd, &factor.registers, &term.registers);
         each_register!(i => self.registers[i] = s.mul_add_e_f64s(self.registers[i], f[i], c[i]));
         self
-    }
-
-    /// Sines and cosines, within two units of `2^-53` of the truth; not a number beyond `2^50`.
-    #[must_use]
-    #[inline(always)]
-    pub fn sin_cos(self) -> (Self, Self) {
-        let (simd, mut sin, mut cos) = (self.simd, self, self);
-        each_register!(i => [sin.registers[i], cos.registers[i]] = sin_cos(simd, self.registers[i]));
-        (sin, cos)
     }
 
     /// The larger of this number and the absolute value of the other, in every lane; where one is NaN the result depends on the

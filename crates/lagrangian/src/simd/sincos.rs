@@ -1,4 +1,4 @@
-use super::Simd;
+use super::{Pack, Simd};
 use crate::sincos::{COS, ROUNDER, SIN};
 
 /// Above this, `2^50`, the number of the quadrant does not fit into the lowest bits.
@@ -6,54 +6,75 @@ const LIMIT: f64 = 1_125_899_906_842_624.0;
 /// `pi/2` in two parts.
 const PIO2: [f64; 2] = [std::f64::consts::FRAC_PI_2, 6.123_233_995_736_766e-17];
 
-/// Sine and cosine of the numbers in a register, within two units of `2^-53` of the truth; not a number beyond `2^50`. (No branch, so that
-/// sines of the same angle are computed once.)
-///
-/// Written on registers, since kernels hold many of them before the compiler finds those that are the same: on packs, each would be four
-/// times as long.
+impl<S: Simd, const R: usize> Pack<S, R> {
+    /// Sines and cosines, within two units of `2^-53` of the truth; not a number beyond `2^50`. (No branch, so that sines of the
+    /// same angle are computed once.)
+    #[must_use]
+    #[inline(always)]
+    pub fn sin_cos(self) -> (Self, Self) {
+        let simd = self.simd();
+        let known = self.map(
+            #[inline(always)]
+            |s, x| within(s, x),
+        );
+        let rounder = Self::splat(simd, ROUNDER);
+        let shifted = self.mul_add(Self::splat(simd, std::f64::consts::FRAC_2_PI), rounder);
+        let n = shifted - rounder;
+        let y = n.mul_add(Self::splat(simd, -PIO2[1]), n.mul_add(Self::splat(simd, -PIO2[0]), known));
+        let z = y * y;
+        let (zz, zzzz) = (z * z, (z * z) * (z * z));
+        let sin = (y * z).mul_add(polynomial([z, zz, zzzz], &SIN), y);
+        let cos =
+            zz.mul_add(polynomial([z, zz, zzzz], &COS), z.mul_add(Self::splat(simd, -0.5), Self::splat(simd, 1.0)));
+        (
+            shifted.zip3(
+                sin,
+                cos,
+                #[inline(always)]
+                |s, x, sin, cos| turned(s, x, [sin, cos], 0),
+            ),
+            shifted.zip3(
+                cos,
+                sin,
+                #[inline(always)]
+                |s, x, cos, sin| turned(s, x, [cos, sin], 1),
+            ),
+        )
+    }
+}
+
+/// The angle, where the number of its quadrant is known.
 #[inline(always)]
-pub(super) fn sin_cos<S: Simd>(s: S, x: S::f64s) -> [S::f64s; 2] {
-    let known = s.select_f64s(s.less_than_f64s(s.abs_f64s(x), s.splat_f64s(LIMIT)), x, s.splat_f64s(f64::NAN));
-    let rounder = s.splat_f64s(ROUNDER);
-    let shifted = s.mul_add_e_f64s(x, s.splat_f64s(std::f64::consts::FRAC_2_PI), rounder);
-    let n = s.sub_f64s(shifted, rounder);
-    let near = s.mul_add_e_f64s(n, s.splat_f64s(-PIO2[0]), known);
-    let y = s.mul_add_e_f64s(n, s.splat_f64s(-PIO2[1]), near);
-    let z = s.mul_f64s(y, y);
-    let zz = s.mul_f64s(z, z);
-    let powers = [z, zz, s.mul_f64s(zz, zz)];
-    let sin = s.mul_add_e_f64s(s.mul_f64s(y, z), polynomial(s, powers, &SIN), y);
-    let start = s.mul_add_e_f64s(z, s.splat_f64s(-0.5), s.splat_f64s(1.0));
-    let cos = s.mul_add_e_f64s(zz, polynomial(s, powers, &COS), start);
-    // The number of the quadrant is in the lowest bits.
-    let quadrant = s.transmute_u64s_f64s(shifted);
-    let odd = has(s, quadrant, 1);
-    [
-        turned(s, s.select_f64s(odd, cos, sin), has(s, quadrant, 2)),
-        turned(s, s.select_f64s(odd, sin, cos), has(s, s.add_u64s(quadrant, s.splat_u64s(1)), 2)),
-    ]
+fn within<S: Simd>(s: S, x: S::f64s) -> S::f64s {
+    s.select_f64s(s.less_than_f64s(s.abs_f64s(x), s.splat_f64s(LIMIT)), x, s.splat_f64s(f64::NAN))
 }
 
 /// The polynomial of these coefficients, from the first, second and fourth power of its variable.
 #[inline(always)]
-fn polynomial<S: Simd>(s: S, [z, zz, zzzz]: [S::f64s; 3], c: &[f64; 6]) -> S::f64s {
-    let first = s.mul_add_e_f64s(z, s.splat_f64s(c[1]), s.splat_f64s(c[0]));
-    let second = s.mul_add_e_f64s(z, s.splat_f64s(c[3]), s.splat_f64s(c[2]));
-    let third = s.mul_add_e_f64s(z, s.splat_f64s(c[5]), s.splat_f64s(c[4]));
-    s.mul_add_e_f64s(zzzz, third, s.mul_add_e_f64s(zz, second, first))
+fn polynomial<S: Simd, const R: usize>([z, zz, zzzz]: [Pack<S, R>; 3], c: &[f64; 6]) -> Pack<S, R> {
+    let k = z.simd();
+    let pair = [
+        z.mul_add(Pack::splat(k, c[1]), Pack::splat(k, c[0])),
+        z.mul_add(Pack::splat(k, c[3]), Pack::splat(k, c[2])),
+        z.mul_add(Pack::splat(k, c[5]), Pack::splat(k, c[4])),
+    ];
+    zzzz.mul_add(pair[2], zz.mul_add(pair[1], pair[0]))
 }
 
-/// Whether a bit is set.
+/// Sine or cosine from those of the angle within its quadrant, whose number is in the lowest bits of `shifted`; the cosine is
+/// the sine one quadrant on, `plus`.
 #[inline(always)]
-fn has<S: Simd>(s: S, n: S::u64s, bit: u64) -> S::m64s {
+fn turned<S: Simd>(s: S, shifted: S::f64s, [even, odd]: [S::f64s; 2], plus: u64) -> S::f64s {
+    let value = s.select_f64s(has(s, shifted, 1, 0), odd, even);
+    let sign = s.select_u64s(has(s, shifted, 2, plus), s.splat_u64s(1 << 63), s.splat_u64s(0));
+    s.transmute_f64s_u64s(s.xor_u64s(s.transmute_u64s_f64s(value), sign))
+}
+
+/// Whether a bit is set in the lowest bits, taken as a number and increased.
+#[inline(always)]
+fn has<S: Simd>(s: S, x: S::f64s, bit: u64, plus: u64) -> S::m64s {
+    let n = s.add_u64s(s.transmute_u64s_f64s(x), s.splat_u64s(plus));
     s.equal_u64s(s.and_u64s(n, s.splat_u64s(bit)), s.splat_u64s(bit))
-}
-
-/// The number with the other sign, where that is so.
-#[inline(always)]
-fn turned<S: Simd>(s: S, x: S::f64s, by_half: S::m64s) -> S::f64s {
-    let sign = s.select_u64s(by_half, s.splat_u64s(1 << 63), s.splat_u64s(0));
-    s.transmute_f64s_u64s(s.xor_u64s(s.transmute_u64s_f64s(x), sign))
 }
 
 #[cfg(test)]
