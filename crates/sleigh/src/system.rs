@@ -1,5 +1,5 @@
 use crate::Sleigh;
-use lagrangian::{AdmissibleBasis, Constraint, Motion, Reduced, Scalar, System};
+use lagrangian::{AdmissibleBasis, Constraint, Motion, Reduced, ReducedError, Scalar, System};
 
 impl System<3, 1> for Sleigh {
     /// `L = m/2 |P'|^2 + m a omega (n . P') + J/2 omega^2`, which is `m/2 |C'|^2 + I/2 omega^2` written at the blade.
@@ -72,6 +72,19 @@ impl Reduced<3, 1> for Sleigh {
     #[inline(always)]
     fn reduced_motion<S: Scalar>(&self, _t: S, _q: &[S; 3], &[u, omega, _]: &[S; 3]) -> Option<[S; 3]> {
         Some([omega * omega * self.offset(), u * omega * -self.spin_gain(), S::zero()])
+    }
+
+    /// `u e`, and `omega`.
+    #[inline(always)]
+    fn velocity<S: Scalar>(
+        &self,
+        _t: S,
+        q: &[S; 3],
+        &[u, omega, _]: &[S; 3],
+        _derived: impl FnOnce() -> Result<[S; 3], ReducedError>,
+    ) -> Result<[S; 3], ReducedError> {
+        let (sin, cos) = q[2].sin_cos();
+        Ok([cos * u, sin * u, omega])
     }
 
     /// The heading from the spin, and the place from the heading.
