@@ -129,7 +129,8 @@ impl<B: System<3, M>, const M: usize> Reduced<4, M> for Flywheel<B> {
         Some([u, omega, zero, zero])
     }
 
-    /// The body's own; the rotor turns with what its absolute rate, the last quasi-velocity, is more than the body's.
+    /// The body's own; the rotor turns with what the last quasi-velocity is more than the turn rate of the others. (It is the rotor's
+    /// absolute rate where the turn rate is not imposed.)
     #[inline(always)]
     fn velocity<S: Scalar>(
         &self,
@@ -138,8 +139,9 @@ impl<B: System<3, M>, const M: usize> Reduced<4, M> for Flywheel<B> {
         xi: &[S; 4],
         _derived: impl FnOnce() -> Result<[S; 4], ReducedError>,
     ) -> Result<[S; 4], ReducedError> {
-        let v = velocity_of(&self.body, t, &of_body(q), &of_body(xi))?;
-        Ok(with_rotor(&v, xi[3 - M] - v[2]))
+        let (place, rates) = (of_body(q), of_body(xi));
+        let turning = self.body.admissible_basis(t, &place).ok_or(ReducedError::NoBasis)?.combine(&rates)[2];
+        Ok(with_rotor(&velocity_of(&self.body, t, &place, &rates)?, xi[3 - M] - turning))
     }
 
     #[inline(always)]
