@@ -53,19 +53,14 @@ impl<const N: usize, const M: usize> Element for SystemElement<N, M> {
     fn increment(&self, step: (f64, f64), [q0, q1]: [&[f64]; 2], v: &[f64], out: ElementBlocks<'_>) {
         let (system, (t0, h)) = (&*self.system, step);
         let (q0, q1, v): ([f64; N], [f64; N], [f64; N]) = (local(q0), local(q1), local(v));
-        let momenta = if out.derivatives {
+        let (momenta, mut w_d): (_, [Dual<f64, N>; M]) = if out.derivatives {
             let (momenta, block) = rules().linearised(system, step, &q0, &v);
             out.block.copy_from_slice(block.as_flattened());
-            momenta
+            (momenta, rules().rows(system, step, &q0, &v))
         } else {
-            rules().momenta(system, step, &q0, &v, &v)
+            (rules().momenta(system, step, &q0, &v, &v), rules().residual(system, step, &q0, &v).map(Dual::fixed))
         };
         out.momentum.copy_from_slice(&with_forces(momenta)[0]);
-        let mut w_d: [Dual<f64, N>; M] = if out.derivatives {
-            rules().rows(system, step, &q0, &v)
-        } else {
-            rules().residual(system, step, &q0, &v).map(Dual::fixed)
-        };
         // Where it constrains positions, in place of the discrete constraint.
         if let Some(positions) = system.position_misses(t0 + h, &q1) {
             for (w, position) in w_d.iter_mut().zip(positions) {

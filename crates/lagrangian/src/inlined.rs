@@ -33,6 +33,12 @@ pub fn from_fn<T: Copy, const N: usize, F: FnMut(usize) -> T>(mut f: F) -> [T; N
     all
 }
 
+/// A function that stays one: for code that is long, and would be inlined in much that is compiled.
+#[inline(never)]
+pub fn called<T>(f: impl FnOnce() -> T) -> T {
+    f()
+}
+
 /// A function applied to each element of an array of numbers that can be copied: the `map` of an array, without the handful of functions
 /// that are compiled for every closure of that.
 #[inline]

@@ -88,7 +88,7 @@ pub use gradients::{Along, Gradients, Seeded, SeededMember};
 pub use growth::{AdmissibleField, Growth, GrowthError, admissible_fields, growth};
 pub use hessians::{second_at_node, second_in_both, second_in_place, second_in_velocity};
 pub use hyperdual::HyperDual;
-pub use inlined::{array, from_fn};
+pub use inlined::{array, called, from_fn};
 pub use lanes::{Lanes, vectorized};
 pub use momentum::{energy, mass_matrix, momentum};
 pub use motion::{Motion, MotionError};

@@ -8,7 +8,6 @@
 
 mod bodies;
 mod body;
-mod called;
 mod canonical;
 mod centre_of_mass;
 mod checks;

@@ -22,20 +22,7 @@ impl Trailer {
     pub fn new(mass: f64, inertia: f64, offset: f64, hitch: f64, bar: f64) -> Result<Self, SleighError> {
         Ok(Self { sleigh: Sleigh::new(mass, inertia, offset)?, hitch, bar })
     }
-}
 
-/// A train of blades: a body with a blade, and trailers each hinged to the one before it.
-///
-/// The coordinates of the assembly are `(x, y, theta)` of every blade in their order. What leads may have more: of a body with
-/// more coordinates, the first three are those.
-#[derive(Debug)]
-pub struct Train {
-    /// The assembly.
-    pub assembly: Assembly,
-    trailers: Vec<Trailer>,
-}
-
-impl Trailer {
     fn checked(&self) -> Result<(), AssemblyError> {
         let Self { hitch, bar, .. } = *self;
         if !hitch.is_finite() {
@@ -53,6 +40,17 @@ impl Trailer {
         let at = [before[0], before[1], before[2], own[0], own[1], own[2]];
         assembly.join("hinge", Hinge::new([-self.hitch, 0.0], [self.bar, 0.0]), at)
     }
+}
+
+/// A train of blades: a body with a blade, and trailers each hinged to the one before it.
+///
+/// The coordinates of the assembly are `(x, y, theta)` of every blade in their order. What leads may have more: of a body with
+/// more coordinates, the first three are those.
+#[derive(Debug)]
+pub struct Train {
+    /// The assembly.
+    pub assembly: Assembly,
+    trailers: Vec<Trailer>,
 }
 
 impl Train {

@@ -74,12 +74,6 @@ pub fn each<S: Simd, const R: usize, const N: usize>(x: &[Pack<S, R>; N]) -> [Wi
     )
 }
 
-/// What is asked at a number that all eight have in common: apart, since in a kernel no such question is there after inlining.
-#[inline(never)]
-fn uniform<T>(f: impl FnOnce() -> T) -> T {
-    f()
-}
-
 /// A function of several numbers, without vector instructions.
 #[inline(always)]
 fn together<S: Simd, const R: usize, const K: usize>(x: &[Wide<S, R>; K], f: impl Fn(&[f64; K]) -> f64) -> Wide<S, R> {
@@ -251,11 +245,10 @@ impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
                 );
                 (Each(sin), Each(cos))
             }
-            Zero => (Zero, Same(1.0)),
-            Same(x) => {
-                let (sin, cos) = x.sin_cos();
-                (Same(sin), Same(cos))
-            }
+            Zero | Same(_) => crate::called(
+                #[inline(always)]
+                || self.sin_cos(),
+            ),
         }
     }
     #[inline(always)]
@@ -333,7 +326,8 @@ impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
                 #[inline(always)]
                 || f(Each(x)),
             ),
-            Zero | Same(_) => uniform(
+            // Of a number that all eight have in common: in a kernel no such question is there after inlining.
+            Zero | Same(_) => crate::called(
                 #[inline(always)]
                 || f(self),
             ),
@@ -346,7 +340,7 @@ impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
         f: impl FnOnce(Self, [[Self; N]; K]) -> Option<[Self; N]>,
     ) -> Option<[Self; N]> {
         let Each(t) = self else {
-            return uniform(
+            return crate::called(
                 #[inline(always)]
                 || f(self, vectors),
             );

@@ -1,8 +1,7 @@
-use crate::called::called;
 use crate::checks::finite;
 use crate::effects::MovingMass;
 use crate::{ClosedPath, Sleigh, SleighBody, SleighError, TimeFunction};
-use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Reduced, Scalar, System};
+use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Reduced, Scalar, System, called};
 
 /// A velocity that is imposed on the sleigh, as an affine constraint.
 #[derive(Debug, Clone, PartialEq)]

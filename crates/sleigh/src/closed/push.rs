@@ -1,5 +1,4 @@
-use crate::called::called;
-use lagrangian::{Effect, Scalar, With};
+use lagrangian::{Effect, Scalar, With, called};
 
 /// A generalised force.
 pub trait Push<const N: usize> {
