@@ -1,5 +1,5 @@
 use crate::coordinate::Range;
-use crate::ensemble::Share;
+use crate::ensemble::share::Share;
 use crate::format::Format;
 use crate::plane::{Crossed, Plane};
 use crate::trigger::Trigger;

@@ -1,8 +1,10 @@
 use crate::args::CompareArguments;
+use crate::comparison::{Comparison, REFERRED, better_than};
 use crate::error::CliError;
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
 use crate::saves::Saves;
+use crate::table::ComparisonRow;
 use crate::{account, compare_numbers, facts, inspect, json, notes, progress, table, terminal, train};
 use dla::{Schedule, State};
 use harness::report::{self, Report, SceneReport, Series};
@@ -10,41 +12,6 @@ use harness::{Drift, DriftVerdict, METHODS, Method, Record, Request};
 use scene::{AnyScene, Built, Visitor};
 use sleigh::Exact;
 use std::path::PathBuf;
-
-/// A comparison on one scene: the runs, method by method, with what the closed form says of them.
-pub(crate) struct Comparison {
-    pub(crate) rows: Vec<ComparisonRow>,
-    pub(crate) report: SceneReport,
-    /// How far it came, where Ctrl-C ended it.
-    pub(crate) interrupted: Option<String>,
-}
-
-impl Comparison {
-    /// Prints its table.
-    pub(crate) fn print(&self, scene: &AnyScene) -> Result<(), CliError> {
-        let head = (scene.title(), scene.name(), scene.run().duration);
-        let table = table::comparison(head, &self.rows, self.interrupted.as_deref(), terminal::width());
-        terminal::print(&table)
-    }
-}
-
-/// One method's run, the number of coordinates forgotten.
-pub(crate) struct ComparisonRow {
-    pub(crate) cells: Vec<String>,
-    pub(crate) json: serde_json::Value,
-    /// Whom it overtakes in a longer run, where it does.
-    pub(crate) better: Option<String>,
-    pub(crate) failure: Option<String>,
-    /// The method refuses the scene.
-    pub(crate) refused: bool,
-}
-
-impl ComparisonRow {
-    /// The failure, unless all that happened is that a method which nobody asked for by name refuses the scene.
-    pub(crate) fn unexpected(self) -> Option<String> {
-        self.failure.filter(|_| !self.refused)
-    }
-}
 
 /// `noslip compare`: long-run constraint and energy, method by method.
 pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
@@ -248,14 +215,6 @@ pub(crate) fn place_at<const N: usize>(exact: &Exact, t: f64) -> [f64; N] {
     let (place, _) = exact.at(t).to_coordinates();
     std::array::from_fn(|i| place.get(i).copied().unwrap_or(0.0))
 }
-
-/// The methods whose energy error starts smaller and becomes larger, each with the length of run (s) from which it is so.
-pub(crate) fn better_than<'a>(drift: &Drift, others: &[(&'a str, Drift)]) -> Vec<(&'a str, f64)> {
-    others.iter().filter_map(|(name, other)| Some((*name, drift.better_from(other)?))).collect()
-}
-
-/// A comparison of more steps has no computed reference, which would take longer than all of it.
-pub(crate) const REFERRED: u64 = 1 << 22;
 
 /// Where the motion truly ends: in closed form, or by the method of the highest order with a quarter of the step.
 enum ComparisonReference<'a, const N: usize> {

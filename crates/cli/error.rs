@@ -5,6 +5,9 @@ use scene::SceneError;
 use std::path::PathBuf;
 use thiserror::Error;
 
+/// The exit code of a command that a signal ended: 128 and the number of SIGINT, as shells have it.
+pub(crate) const INTERRUPTED: u8 = 130;
+
 /// Why a command did not do what it was asked. `main` puts `error: ` in front of each.
 #[derive(Debug, Error)]
 pub(crate) enum CliError {
@@ -105,7 +108,7 @@ impl CliError {
             // That a search ends without any is no fault of the request.
             Self::Equilibria(EquilibriumError::NoneFound { .. } | EquilibriumError::Singular(_)) => 1,
             Self::Equilibria(_) | Self::NotDifferentiated { .. } | Self::WithoutTracer { .. } => 2,
-            Self::Interrupted { .. } => crate::interrupt::EXIT_CODE,
+            Self::Interrupted { .. } => INTERRUPTED,
             Self::Write { .. } | Self::Folder { .. } | Self::Output(_) => 1,
             Self::Report(_) | Self::Computation(_) | Self::Tolerance(_) => 1,
         }

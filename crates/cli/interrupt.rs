@@ -1,10 +1,8 @@
 use crate::called::{self, Caller};
+use crate::error::INTERRUPTED;
 use crate::terminal;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// The exit code of a command that a signal ended: 128 and the number of SIGINT, as shells have it.
-pub(crate) const EXIT_CODE: u8 = 130;
 
 /// Whether the work is to end soon and to keep what is done: after Ctrl-C (SIGINT), SIGTERM or SIGHUP.
 #[derive(Debug, Clone)]
@@ -30,7 +28,7 @@ impl Interrupt {
         let flag = Arc::clone(&asked);
         handle(move || {
             if flag.swap(true, Ordering::Relaxed) {
-                std::process::exit(i32::from(EXIT_CODE));
+                std::process::exit(i32::from(INTERRUPTED));
             }
             if !note.is_empty() {
                 terminal::say("note", &note);

@@ -1,8 +1,9 @@
-use crate::compare::{ComparisonRow, compare_scene, methods, unless_interrupted};
+use crate::compare::{compare_scene, methods, unless_interrupted};
 use crate::error::CliError;
 use crate::inspect::method_names;
 use crate::interrupt::Interrupt;
 use crate::saves::Saves;
+use crate::table::ComparisonRow;
 use crate::totals::Totals;
 use crate::{table, terminal};
 use harness::report::{self, Report};

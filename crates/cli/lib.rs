@@ -10,6 +10,7 @@ mod columns_file;
 mod command_line;
 mod compare;
 mod compare_numbers;
+mod comparison;
 mod completions;
 mod coordinate;
 mod cost;
@@ -19,6 +20,7 @@ mod ensemble;
 mod equations;
 mod equilibria;
 mod error;
+mod exponents;
 mod facts;
 mod files;
 mod first;
@@ -28,8 +30,10 @@ mod inspect;
 mod interrupt;
 mod job;
 mod json;
+mod list;
 mod lock;
 mod lyapunov;
+mod measurement;
 mod notes;
 mod output;
 #[cfg(feature = "parquet")]
@@ -45,9 +49,11 @@ mod precision_text;
 mod progress;
 mod provenance;
 mod resume;
+mod row_verdict;
 mod rows_back;
 mod run;
 mod run_report;
+mod run_rows;
 mod saves;
 mod section;
 mod sensitivities;
@@ -115,8 +121,8 @@ fn command(arguments: Arguments) -> Result<(), CliError> {
         Some(Command::Merge(arguments)) => ensemble::merge(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::Equations(arguments)) => equations::equations(&arguments),
-        Some(Command::List(arguments)) => inspect::list(&arguments),
-        Some(Command::New(arguments)) => inspect::new(&arguments),
+        Some(Command::List(arguments)) => list::list(&arguments),
+        Some(Command::New(arguments)) => list::new(&arguments),
         Some(Command::Plot(arguments)) => plot::plot(&arguments),
         Some(Command::Diff(arguments)) => diff::diff(&arguments),
         Some(Command::Completions { shell }) => completions::completions(shell),

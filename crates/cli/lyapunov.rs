@@ -1,18 +1,13 @@
 use crate::args::LyapunovArguments;
 use crate::chart_file::ChartFile;
-use crate::command_line::CommandLine;
 use crate::compare::unless_interrupted;
 use crate::error::CliError;
+use crate::exponents::{asked, imposed, provenance, refused, schedule};
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
-use crate::provenance::Provenance;
-use crate::starts::{Start, with_energy};
 use crate::{inspect, json, notes, progress, stability_map, table, terminal};
-use dla::Schedule;
 use harness::Method;
-use harness::analysis::{
-    Lyapunov, LyapunovError, LyapunovFailure, LyapunovRequest, MotionVerdict, has_tangents, kaplan_yorke,
-};
+use harness::analysis::{Lyapunov, LyapunovFailure, LyapunovRequest, MotionVerdict, has_tangents, kaplan_yorke};
 use harness::report::{Chart, Layer};
 use scene::{AnyScene, Built, Column, MAX_STEPS, Visitor};
 use serde_json::{Value, json};
@@ -20,8 +15,6 @@ use serde_json::{Value, json};
 /// What is measured where nobody says (s): of one motion, and of each of a map.
 const DURATION: f64 = 10_000.0;
 const MAP_DURATION: f64 = 500.0;
-/// The part of it before the run that is not counted, where nobody says.
-const SETTLE: f64 = 0.1;
 
 /// `noslip lyapunov`: the exponents of one motion, or the largest of many.
 pub(crate) fn lyapunov(arguments: &LyapunovArguments) -> Result<(), CliError> {
@@ -49,34 +42,6 @@ pub(crate) fn lyapunov(arguments: &LyapunovArguments) -> Result<(), CliError> {
     outcome.ok_or_else(imposed)?
 }
 
-/// What is said of a scene without a motion of its own.
-pub(crate) fn imposed() -> CliError {
-    CliError::Request(
-        "the scene imposes velocities (servo, tracer): accepted are scenes that only the blade constrains".to_owned(),
-    )
-}
-
-/// The steps that are counted, and those before them.
-pub(crate) fn schedule(arguments: &LyapunovArguments, scene: &AnyScene) -> (Schedule, u64) {
-    let schedule = scene.schedule();
-    let settle = arguments.settle.unwrap_or(SETTLE * scene.run().duration) / schedule.step;
-    (schedule, settle.ceil() as u64)
-}
-
-/// What made exponents, and where a signal ended the work.
-pub(crate) fn provenance(arguments: &LyapunovArguments, scene: &AnyScene, interrupted: Option<&str>) -> Provenance {
-    let LyapunovArguments { scene: shared, exponents, settle, energy, map, out, .. } = arguments;
-    let (run, step) = (scene.run(), scene.schedule().step);
-    let settle = settle.unwrap_or(SETTLE * run.duration);
-    let command = CommandLine::of("lyapunov", &shared.scene, &shared.set).run(run, step).number("--settle", settle);
-    let command = command.maybe("--exponents", *exponents);
-    let command = command.maybe("--energy", energy.map(|energy| format!("{energy:?}")));
-    let command = map.iter().fold(command, |command, range| command.with("--map", range));
-    let command = command.maybe("--out", out.as_ref().map(|out| out.display()));
-    let notes = json!({"method": run.method, "step": step, "duration": run.duration, "settle": settle});
-    Provenance::on((scene.title(), scene.to_toml().ok()), Some(&command), notes).interrupted(interrupted)
-}
-
 /// Refuses a time before the run that has more steps than any run may have.
 fn check_settle(arguments: &LyapunovArguments, scene: &AnyScene) -> Result<(), CliError> {
     let (settle, step) = (arguments.settle.unwrap_or(0.0), scene.run().actual_step());
@@ -87,29 +52,6 @@ fn check_settle(arguments: &LyapunovArguments, scene: &AnyScene) -> Result<(), C
     let problem =
         format!("--settle: {settle:e} s are more than 1e12 steps of {step:?} s; accepted: at most {most:e} s");
     Err(CliError::Request(problem))
-}
-
-/// A start with the energy that is asked for.
-pub(crate) fn asked<const N: usize, const M: usize>(
-    system: &Built<'_, N, M>,
-    start: Start<N>,
-    wanted: Option<f64>,
-) -> Result<Start<N>, CliError> {
-    let Some(wanted) = wanted else { return Ok(start) };
-    with_energy(system, &start, wanted).ok_or_else(|| {
-        let at_rest = system.energy(0.0, &start.0, &[0.0; N]);
-        CliError::Request(format!(
-            "--energy {wanted:?}: no multiple of the velocity of the start has this energy; at rest at the start the \
-                energy is {at_rest:?} J"
-        ))
-    })
-}
-
-pub(crate) fn refused(error: LyapunovError) -> CliError {
-    match error {
-        LyapunovError::Count { .. } => CliError::Request(format!("--exponents: {error}")),
-        error => CliError::Request(error.to_string()),
-    }
 }
 
 struct Exponents<'a> {

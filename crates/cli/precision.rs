@@ -4,12 +4,13 @@ use crate::compare::{exact, methods, place_at, unless_interrupted};
 use crate::error::CliError;
 use crate::inspect::method_names;
 use crate::interrupt::Interrupt;
+use crate::measurement::{KnownEnd, Measurement};
 use crate::progress::Interruptible;
 use crate::provenance::{Provenance, metadata_of};
 use crate::{facts, files, inspect, notes, points_file, precision_csv, precision_text, progress, terminal, train};
 use harness::Method;
 use harness::precision::{
-    Bench, Clock, Curve, LadderLimits, Reference, ReferenceError, ReferenceMotion, mark_pareto, rounds, work_precision,
+    Bench, Curve, LadderLimits, Reference, ReferenceError, ReferenceMotion, mark_pareto, rounds, work_precision,
 };
 use harness::report::write_precision;
 use scene::{AnyScene, Built, Visitor};
@@ -24,37 +25,6 @@ const HALVINGS: u32 = 6;
 
 /// Errors within so many times that of the reference are all the same.
 const CLEAR: f64 = 10.0;
-
-/// What was measured of a scene.
-pub(crate) struct Measurement {
-    /// How long the motion takes (s).
-    pub(crate) duration: f64,
-    pub(crate) reference: KnownEnd<()>,
-    pub(crate) clock: Clock,
-    pub(crate) facts: Vec<(String, String)>,
-    pub(crate) curves: Vec<Curve>,
-}
-
-/// Where the motion truly ends.
-pub(crate) struct KnownEnd<End> {
-    /// In closed form; else by the method.
-    pub(crate) closed: bool,
-    /// The method that computes it, or that the closed form is checked against.
-    pub(crate) by: &'static str,
-    /// Its steps.
-    pub(crate) steps: u64,
-    /// How far it may be off (m or rad).
-    pub(crate) error: f64,
-    pub(crate) end: End,
-}
-
-impl<End> KnownEnd<End> {
-    /// How well it is known, without where it is.
-    pub(crate) fn told(&self) -> KnownEnd<()> {
-        let &Self { closed, by, steps, error, .. } = self;
-        KnownEnd { closed, by, steps, error, end: () }
-    }
-}
 
 /// `noslip precision`: what accuracy costs in time.
 pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> {

@@ -1,8 +1,7 @@
 //! What `noslip precision` measured, as CSV.
 
-use crate::precision_text::{points, settings};
 use crate::provenance::Described;
-use harness::precision::{Curve, number};
+use harness::precision::{Curve, PrecisionPoint, RungSetting, number};
 use std::fmt::Write;
 
 /// The columns, and the types of their fields.
@@ -51,4 +50,17 @@ pub(crate) fn text(curves: &[Curve]) -> String {
 /// A field of text (RFC 4180).
 pub(crate) fn quoted(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+}
+
+/// Step and tolerance, one of which a point has.
+pub(crate) fn settings(point: &PrecisionPoint) -> [Option<f64>; 2] {
+    match point.setting {
+        Some(RungSetting::Step(step)) => [Some(step), None],
+        Some(RungSetting::Tolerance(tolerance)) => [None, Some(tolerance)],
+        None => [None, None],
+    }
+}
+
+pub(crate) fn points(curves: &[Curve]) -> impl Iterator<Item = (&Curve, &PrecisionPoint)> {
+    curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point)))
 }

@@ -1,8 +1,8 @@
 //! What `noslip precision` says: the same values as a table, as JSON and in the report.
 
 use crate::json::failure;
-use crate::precision::Measurement;
-use crate::precision_csv;
+use crate::measurement::Measurement;
+use crate::precision_csv::{self, points, settings};
 use crate::provenance::Provenance;
 use crate::table::{number, right_aligned};
 use harness::precision::{Curve, LEVELS, Mark, PrecisionPoint, RungSetting, cheapest, seconds_to};
@@ -26,19 +26,6 @@ const INTRO: &str = "Each method runs with a ladder of steps, an adaptive method
     squares over the longest row of points whose slopes from one to the next agree within a tenth, among errors from 0.01 down \
     to ten times the plateau; points: the number of points in that row. To 1e-3 ..: processor time to that error, \
         interpolated between the logarithms of two points.";
-
-/// Step and tolerance, one of which a point has.
-pub(crate) fn settings(point: &PrecisionPoint) -> [Option<f64>; 2] {
-    match point.setting {
-        Some(RungSetting::Step(step)) => [Some(step), None],
-        Some(RungSetting::Tolerance(tolerance)) => [None, Some(tolerance)],
-        None => [None, None],
-    }
-}
-
-pub(crate) fn points(curves: &[Curve]) -> impl Iterator<Item = (&Curve, &PrecisionPoint)> {
-    curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point)))
-}
 
 fn shown(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), number)

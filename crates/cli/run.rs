@@ -1,18 +1,16 @@
 use crate::account::{Account, Made};
 use crate::args::{RunArguments, SceneArguments};
-use crate::command_line::CommandLine;
 use crate::compare::unless_interrupted;
 use crate::error::CliError;
 use crate::interrupt::Interrupt;
-use crate::output::{Output, OutputRequest, Position};
+use crate::output::{Output, OutputRequest};
 use crate::progress::Interruptible;
-use crate::provenance::Provenance;
+use crate::run_rows::{Read, identity, position, provenance, tell, with_position};
 use crate::trigger::Events;
 use crate::{inspect, notes, progress, resume, substeps, table, terminal, train_run};
 use dla::{Checkpoint, Node, Nodes, Schedule, Substeps};
-use harness::{METHODS, Method, MethodKind, Progress, Saving, run_saved_watched};
-use scene::{AnyScene, Built, RunSettings, Scene, Visitor};
-use serde_json::json;
+use harness::{Method, MethodKind, Progress, Saving, run_saved_watched};
+use scene::{AnyScene, Built, Visitor};
 use std::cell::RefCell;
 
 /// `noslip run`: one trajectory, as far as Ctrl-C lets it come.
@@ -66,34 +64,6 @@ fn asked(arguments: &RunArguments) -> Result<Option<OutputRequest<'_>>, CliError
     Ok(Some(asked))
 }
 
-/// What made the rows of a run, and the command that makes them again: with the step and the duration that were taken.
-pub(crate) fn provenance(
-    arguments: &RunArguments,
-    (title, run, text): (&str, &RunSettings, Option<String>),
-    schedule: &Schedule,
-) -> Provenance {
-    let RunArguments { scene, every, substep, event, until, event_samples, tolerance, out, .. } = arguments;
-    let mut command = CommandLine::of("run", &scene.scene, &scene.set).run(run, schedule.step);
-    // Of other methods the tolerance has chosen the step.
-    let adaptive = METHODS.iter().any(|info| info.name == run.method && info.kind.is_adaptive());
-    command = command.maybe("--tolerance", tolerance.filter(|_| adaptive));
-    command = event.iter().fold(command, |command, trigger| command.with("--event", &trigger.text));
-    command = until.iter().fold(command, |command, trigger| command.with("--until", &trigger.text));
-    if !event.is_empty() || !until.is_empty() {
-        command = command.with("--event-samples", event_samples);
-    }
-    command = command.with("--every", every).maybe("--out", out.as_ref().map(|out| out.display()));
-    command = command.flag("--substep", *substep);
-    let duration = run.duration.copysign(schedule.step);
-    let notes = json!({ "method": run.method, "step": schedule.step.abs(), "duration": duration, "every": every });
-    Provenance::on((title, text), Some(&command), notes)
-}
-
-/// A scene as its provenance tells it: with the numbers as they were used, whatever the command line said instead of the file.
-pub(crate) fn of(scene: &Scene) -> (&str, &RunSettings, Option<String>) {
-    (&scene.title, &scene.run, scene.to_toml().ok())
-}
-
 /// What tells the run of a scene from others.
 fn identity_of(scene: &AnyScene, method: &Method, schedule: &Schedule) -> Checkpoint {
     match scene {
@@ -102,46 +72,6 @@ fn identity_of(scene: &AnyScene, method: &Method, schedule: &Schedule) -> Checkp
             let contents = (&scene.words, &scene.start, resume::endless(&scene.run));
             resume::identity((&scene.name, &contents), method, schedule)
         }
-    }
-}
-
-/// The same of a sleigh or a train.
-pub(crate) fn identity(scene: &Scene, method: &Method, schedule: &Schedule) -> Checkpoint {
-    // The steps of a smooth piece are chosen for its length: a longer run has others after the last jump.
-    if scene.jumps().is_ok_and(|jumps| !jumps.is_empty()) {
-        return resume::identity_of_whole((&scene.name, scene), method, schedule);
-    }
-    let contents = Scene { run: resume::endless(&scene.run), ..scene.clone() };
-    resume::identity((&scene.name, &contents), method, schedule)
-}
-
-/// How far the output of a checkpoint had come.
-pub(crate) fn position(checkpoint: Option<&Checkpoint>) -> Option<Position> {
-    checkpoint?.counts("out").ok()
-}
-
-/// A checkpoint that knows how far the output has come.
-pub(crate) fn with_position(made: &Checkpoint, output: &RefCell<Option<Output<'_>>>) -> Checkpoint {
-    let mut made = made.clone();
-    if let Some(position) = output.borrow_mut().as_mut().and_then(Output::position) {
-        made.put_counts("out", &position);
-    }
-    made
-}
-
-/// A run that ends when nobody reads its rows any more.
-pub(crate) struct Read<'a, 'b> {
-    pub(crate) progress: &'a mut dyn Progress,
-    pub(crate) output: &'a RefCell<Option<Output<'b>>>,
-}
-
-impl Progress for Read<'_, '_> {
-    fn advance(&mut self, steps: u64) {
-        self.progress.advance(steps);
-    }
-
-    fn stops(&self) -> bool {
-        self.progress.stops() || self.output.try_borrow().is_ok_and(|out| out.as_ref().is_some_and(Output::is_closed))
     }
 }
 
@@ -260,13 +190,4 @@ impl Visitor for Run<'_> {
         let made = record.interrupted.then(|| format!("the run reached t = {} s", table::number(record.t)));
         unless_interrupted(made, checkpoint.clone(), computed.and(written).and(warning))
     }
-}
-
-/// Tells what a run came to, where its rows do not go: on standard error where they go to standard output.
-pub(crate) fn tell(out: Option<OutputRequest<'_>>, text: &str) -> Result<(), CliError> {
-    if out.is_some_and(|asked| asked.path.is_none()) {
-        terminal::tell(text);
-        return Ok(());
-    }
-    terminal::print(text)
 }

@@ -1,4 +1,3 @@
-use crate::compare::ComparisonRow;
 use comfy_table::{CellAlignment, Table, presets};
 use harness::Record;
 use lagrangian::Shown;
@@ -34,6 +33,24 @@ pub(crate) const INTRO: &str = "Every method from the same start with the same s
     quarter of the step where there is none, in metres or radians, whichever is larger. Newton: iterations a step. ns/step: time of the \
     steps alone, median of repeated runs. Cost: that time for each second of the motion. A method \
     that failed has no numbers: its row says at which step, when and why.";
+
+/// One method's run, the number of coordinates forgotten.
+pub(crate) struct ComparisonRow {
+    pub(crate) cells: Vec<String>,
+    pub(crate) json: serde_json::Value,
+    /// Whom it overtakes in a longer run, where it does.
+    pub(crate) better: Option<String>,
+    pub(crate) failure: Option<String>,
+    /// The method refuses the scene.
+    pub(crate) refused: bool,
+}
+
+impl ComparisonRow {
+    /// The failure, unless all that happened is that a method which nobody asked for by name refuses the scene.
+    pub(crate) fn unexpected(self) -> Option<String> {
+        self.failure.filter(|_| !self.refused)
+    }
+}
 
 /// A number on the screen: six digits. Files have all digits.
 pub(crate) fn number(value: f64) -> String {

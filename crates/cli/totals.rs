@@ -1,6 +1,6 @@
 //! What each method came to over all scenes.
 
-use crate::first::{Energy, slips};
+use crate::row_verdict::{Energy, slips};
 use crate::table;
 use serde_json::Value;
 

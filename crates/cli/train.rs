@@ -1,11 +1,12 @@
 //! Scenes with trailers: assemblies, whose number of coordinates is not known to the compiler. What `compare` and `precision` make
 //! of them; `run` is in `train_run`.
 
-use crate::compare::{Comparison, ComparisonRow, better_than};
+use crate::comparison::{Comparison, REFERRED, better_than};
 use crate::error::CliError;
 use crate::interrupt::Interrupt;
-use crate::precision::{KnownEnd, Measurement};
+use crate::measurement::{KnownEnd, Measurement};
 use crate::progress::Interruptible;
+use crate::table::ComparisonRow;
 use crate::{compare_numbers, facts, inspect, json, progress, table};
 use assembly::AssemblyState;
 use assembly::parts::Train;
@@ -21,8 +22,6 @@ use std::time::{Duration, Instant};
 const MOST_NUMBERS: u64 = 100_000_000;
 /// A report shows so many blades of a train.
 const SHOWN: usize = 60;
-/// A comparison of more steps of blades has no computed reference.
-const REFERRED: u64 = 1 << 22;
 
 /// Runs every method on a train, until Ctrl-C.
 pub(crate) fn compare_scene(

@@ -6,7 +6,7 @@ use crate::error::CliError;
 use crate::interrupt::Interrupt;
 use crate::output::{Output, OutputRequest};
 use crate::progress::Interruptible;
-use crate::run::{Read, identity, of, position, provenance, tell, with_position};
+use crate::run_rows::{Read, identity, of, position, provenance, tell, with_position};
 use crate::trigger::{Events, Happened, Trigger};
 use crate::{inspect, json, progress, resume, substeps, table, terminal};
 use assembly::AssemblyState;

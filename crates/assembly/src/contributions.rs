@@ -1,5 +1,6 @@
-use crate::assembly::{PlacedElement, WIDEST};
+use crate::assembly::PlacedElement;
 use crate::element::{Element, ElementBlocks};
+use crate::local::WIDEST;
 use crate::pattern::Pattern;
 use crate::{Assembly, AssemblyState};
 

@@ -1,7 +1,8 @@
-use crate::assembly::{PlacedElement, WIDEST};
+use crate::assembly::PlacedElement;
 use crate::contributions::{MatrixPart, at_state, gathered};
 use crate::equations::AssemblyEquations;
 use crate::linear::Linear;
+use crate::local::WIDEST;
 use crate::terms;
 use crate::{Assembly, AssemblyError, AssemblyMethod, AssemblyReport, AssemblyState, Solver};
 use dla::Stage;

@@ -1,5 +1,5 @@
-use crate::energy::EnergyElement;
-use crate::lobatto::StageElement;
+use crate::energy::element::EnergyElement;
+use crate::lobatto::element::StageElement;
 use dla::NotANumber;
 use std::fmt::Debug;
 
@@ -83,10 +83,4 @@ pub trait Element: EnergyElement + StageElement + Debug + Send + Sync {
     fn not_a_number(&self, _t: f64, _q: &[f64], _v: &[f64]) -> Option<NotANumber> {
         None
     }
-}
-
-/// The first `N` numbers of a slice; zero where it is shorter, which no slice of an assembly is.
-#[inline(always)]
-pub(crate) fn local<const N: usize>(x: &[f64]) -> [f64; N] {
-    lagrangian::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
 }

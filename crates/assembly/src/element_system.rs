@@ -1,4 +1,4 @@
-use crate::energy::Swing;
+use crate::energy::element::Swing;
 use dla::Mechanics;
 use lagrangian::{Bracket, Dual, HyperDual, Lanes, Motion, Saddle, Scalar, System, from_fn};
 

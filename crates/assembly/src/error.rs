@@ -1,4 +1,3 @@
-use crate::{Assembly, AssemblyState};
 use dla::{History, NewtonError, NotANumber, Stage, StepError};
 use lagrangian::Shown;
 use lagrangian::linear::Singular;
@@ -132,20 +131,6 @@ pub enum AssemblyError {
 }
 
 impl AssemblyError {
-    /// The error of a step from `state` at `t` (s), with the function named that is not finite there, if it may have failed by that.
-    #[must_use]
-    #[cold]
-    pub fn named(self, assembly: &Assembly, t: f64, state: &AssemblyState) -> Self {
-        let lost = match &self {
-            Self::NotFinite | Self::Singular { .. } => true,
-            Self::Newton { source, .. } => matches!(source, NewtonError::NotFinite { .. }),
-            Self::Energy { defect, .. } => !defect.is_finite(),
-            _ => false,
-        };
-        let found = if lost { assembly.not_a_number(t, state) } else { None };
-        found.map_or(self, |(element, name, source)| Self::NotANumber { element, name, source })
-    }
-
     /// Whether shorter steps may do what this one has not: see [`StepError::may_hold_in_parts`]. Constraints that depend on one another
     /// do so in any step.
     #[must_use]

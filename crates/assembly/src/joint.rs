@@ -1,4 +1,5 @@
-use crate::element::{Element, ElementBlocks, local};
+use crate::element::{Element, ElementBlocks};
+use crate::local::local;
 use dla::{Derivative, NotANumber, SystemFunction, Variable};
 use lagrangian::linear::larger;
 use lagrangian::{Dual, HyperDual, Scalar};

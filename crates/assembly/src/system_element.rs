@@ -1,5 +1,6 @@
-use crate::element::{Element, ElementBlocks, local};
+use crate::element::{Element, ElementBlocks};
 use crate::element_system::ElementSystem;
+use crate::local::local;
 use dla::{Discretisation, EndMomenta, NotANumber, Rules};
 use lagrangian::linear::{larger, largest};
 use lagrangian::{Dual, Midpoint, Rounded, Saddle, from_fn};

@@ -1,6 +1,7 @@
 use crate::Assembly;
-use crate::assembly::{PlacedElement, WIDEST};
+use crate::assembly::PlacedElement;
 use crate::contributions::gathered;
+use crate::local::WIDEST;
 
 /// The sums of the sizes of the terms that an element adds to the equations of a step of length `h`, at the configuration and
 /// velocity `q` and `v`: what their rounding is a part of. See [`Convergence`](dla::convergence::Convergence).

@@ -1,6 +1,6 @@
-use crate::assembly::WIDEST;
 use crate::contributions::{at, gathered};
 use crate::element::ElementBlocks;
+use crate::local::WIDEST;
 use crate::motion::ElementMotion;
 use crate::{Assembly, AssemblyReport, AssemblyState};
 use dla::{Checkpoint, CheckpointError, Hermite};

@@ -1,4 +1,3 @@
-use super::header;
 use super::members::Summed;
 use super::result::failed;
 use crate::args::Settings;
@@ -96,4 +95,11 @@ impl About {
         writeln!(file, "{text}").and_then(|()| file.as_file().sync_all()).map_err(failed)?;
         file.persist(path).map(drop).map_err(|error| failed(error.error))
     }
+}
+
+/// Names and units of the columns. Those of the keys have no unit: a key may be any number of the scene.
+fn header(sweep: &Sweep, summed: &Summed) -> Vec<Column> {
+    let exponent = sweep.exponent.then(|| Column::new("exponent", "1/s"));
+    let keys = sweep.keys().map(|key| Column::new(key, ""));
+    std::iter::once(Column::whole("member")).chain(keys).chain(summed.columns()).chain(exponent).collect()
 }

@@ -1,8 +1,12 @@
+use crate::inspect;
 use dla::Schedule;
+use harness::analysis::has_tangents;
 use harness::analysis::{LyapunovRequest, lyapunov_within};
 use harness::ensemble::{Summary, Watching, summarise, watch};
 use harness::{Method, MethodKind};
-use scene::{AnyScene, Built, Column, LANES, LaneMethod, Quantity, Scene, Sweep, SweepError, Visitor, in_lanes};
+use scene::{
+    AnyScene, Built, Column, LANES, LaneMethod, Quantity, RunSettings, Scene, Sweep, SweepError, Visitor, in_lanes,
+};
 use sleigh::SleighState;
 
 use crate::error::CliError;
@@ -109,7 +113,7 @@ impl Members<'_> {
         if !self.sweep.varies_run() {
             return Ok((self.method, self.schedule()));
         }
-        Ok((super::method_of(self.sweep, scene.run()).map_err(|error| error.to_string())?, scene.schedule()))
+        Ok((method_of(self.sweep, scene.run()).map_err(|error| error.to_string())?, scene.schedule()))
     }
 
     fn lane_method(&self) -> Option<LaneMethod> {
@@ -236,4 +240,13 @@ impl Visitor for Exponent<'_> {
             None => Ok(found.exponents[0]),
         }
     }
+}
+
+/// The method of a member of a sweep that is run so.
+pub(super) fn method_of(sweep: &Sweep, run: &RunSettings) -> Result<Method, CliError> {
+    let method = inspect::method(run)?;
+    if sweep.exponent {
+        has_tangents(&method).map_err(|reason| CliError::Request(format!("output.exponent: {reason}")))?;
+    }
+    Ok(method)
 }

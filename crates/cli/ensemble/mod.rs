@@ -8,13 +8,12 @@ mod parts;
 mod plan;
 mod result;
 mod rows;
-mod share;
+pub(crate) mod share;
 mod spool;
 mod totals;
 
 pub(crate) use merge::merge;
 pub use plan::{SweepPlan, plan};
-pub(crate) use share::Share;
 
 use crate::args::EnsembleArguments;
 use crate::error::CliError;
@@ -25,13 +24,11 @@ use crate::provenance::metadata_of;
 use crate::{compare, inspect, progress, terminal};
 use about::About;
 use dla::Checkpoint;
-use harness::Method;
-use harness::analysis::has_tangents;
 use harness::ensemble::in_order;
 use indicatif::ProgressBar;
-use members::{MemberRow, Members, Summed};
+use members::{MemberRow, Members, Summed, method_of};
 use result::Shape;
-use scene::{Column, RunSettings, Sweep};
+use scene::Sweep;
 use spool::{Spool, SpoolRequest};
 use std::ops::{ControlFlow, Range};
 use std::time::Instant;
@@ -142,15 +139,6 @@ fn compute(
     }
 }
 
-/// The method of a member of a sweep that is run so.
-fn method_of(sweep: &Sweep, run: &RunSettings) -> Result<Method, CliError> {
-    let method = inspect::method(run)?;
-    if sweep.exponent {
-        has_tangents(&method).map_err(|reason| CliError::Request(format!("output.exponent: {reason}")))?;
-    }
-    Ok(method)
-}
-
 /// What tells a sweep from others: all that its rows depend on.
 fn identity(sweep: &Sweep) -> String {
     // Not the text of its file: comments change no row.
@@ -158,11 +146,4 @@ fn identity(sweep: &Sweep) -> String {
     bare.file.clear();
     let contents = Checkpoint::fingerprint(&format!("{bare:?}"));
     format!("noslip ensemble {} rows with checksums {contents}", env!("CARGO_PKG_VERSION"))
-}
-
-/// Names and units of the columns. Those of the keys have no unit: a key may be any number of the scene.
-fn header(sweep: &Sweep, summed: &Summed) -> Vec<Column> {
-    let exponent = sweep.exponent.then(|| Column::new("exponent", "1/s"));
-    let keys = sweep.keys().map(|key| Column::new(key, ""));
-    std::iter::once(Column::whole("member")).chain(keys).chain(summed.columns()).chain(exponent).collect()
 }

@@ -1,7 +1,7 @@
-use super::members::{Members, Summed};
+use super::identity;
+use super::members::{Members, Summed, method_of};
 use super::parts::{name, stem};
 use super::share::Share;
-use super::{identity, method_of};
 use crate::error::CliError;
 use crate::in_memory::Refusal;
 use crate::inspect;

@@ -3,18 +3,19 @@
 mod words;
 
 use crate::args::JobArguments;
-use crate::compare::{Comparison, ComparisonRow, compare_scene, methods, unless_interrupted};
+use crate::compare::{compare_scene, methods, unless_interrupted};
+use crate::comparison::Comparison;
 use crate::error::CliError;
 use crate::inspect::method_names;
 use crate::interrupt::Interrupt;
 use crate::saves::Saves;
+use crate::table::ComparisonRow;
 use crate::{files, job, precision, table, terminal};
 use harness::precision::{Cheapest, cheapest};
 use harness::report::{self, Report};
 use scene::AnyScene;
 use std::path::PathBuf;
 use words::Answers;
-pub(crate) use words::{Energy, slips};
 
 /// The scene: its motion is regular, so that errors grow slowly, and its energy goes to and fro between its parts, so that a method
 /// can lose some.

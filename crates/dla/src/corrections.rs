@@ -1,6 +1,6 @@
 use crate::convergence::tolerances::{SHRINKING, is_slight};
 use crate::convergence::{parted, rounding_of_place};
-use crate::increment::Increment;
+use crate::increment::{Departure, Increment};
 use crate::{Discretisation, Equations, Mechanics, State};
 use lagrangian::linear::{Singular, largest};
 use lagrangian::{FactoredSaddle, Rounded, Rows, Saddle, from_fn};
@@ -58,13 +58,6 @@ impl<const N: usize> LastCorrection<N> {
         let rest = from_fn(|i| at.residual[i] + gained[i]);
         Self { correction, simplified, rest, arriving: from_fn(|i| at.arriving[i] - gained[i]) }
     }
-}
-
-/// `L_v(q0, v0) + D1 L_d + f_d^-` and `D2 L_d + f_d^+` at one mean velocity.
-#[derive(Clone, Copy)]
-pub(crate) struct Departure<const N: usize> {
-    pub(crate) residual: [f64; N],
-    pub(crate) arriving: [f64; N],
 }
 
 impl<'e, 'a, D: Discretisation<N, M>, const N: usize, const M: usize> Corrections<'e, 'a, D, N, M> {

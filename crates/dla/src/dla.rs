@@ -1,6 +1,7 @@
 use crate::dependent::{named_at, rows_left_out};
-use crate::increment::{Increment, Mean};
+use crate::increment::Increment;
 use crate::kept::Kept;
+use crate::mean::Mean;
 use crate::overshoot::brakes_only;
 use crate::projection::{Projected, Projection};
 use crate::settle::sup;

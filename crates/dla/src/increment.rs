@@ -1,12 +1,7 @@
-use crate::branch;
 use crate::convergence::{most_roundings, without_reaction};
-use crate::corrections::{Corrections, Departure};
-use crate::dependent::named_along;
-use crate::newton::NewtonRoot;
-use crate::{Discretisation, EndMomenta, Mechanics, Newton, NewtonError, RoundedStep, State, StepError};
+use crate::{Discretisation, EndMomenta, Mechanics, RoundedStep, State};
 use lagrangian::linear::{Singular, normal_solve};
-use lagrangian::{AdmissibleBasis, Rounded, Rows, Saddle, from_fn};
-use std::f64::consts::PI;
+use lagrangian::{AdmissibleBasis, Rounded, Rows, from_fn};
 
 /// The equations for the mean velocity `v` of a step, with the multiplier at its beginning.
 pub(crate) struct Increment<'a, D, const N: usize, const M: usize> {
@@ -22,58 +17,14 @@ pub(crate) struct Increment<'a, D, const N: usize, const M: usize> {
     pub(crate) basis: Option<AdmissibleBasis<f64, N, M>>,
 }
 
-/// The mean velocity of a step, the impulse of the constraints at its beginning, and the momenta with which it ends.
-pub(crate) struct Mean<const N: usize, const M: usize> {
-    pub(crate) v: [f64; N],
-    pub(crate) p1: [f64; N],
-    pub(crate) lambda: [f64; M],
-    pub(crate) iterations: u32,
-    /// The rows that were solved for, where not all.
-    pub(crate) some: Option<Rows>,
-    /// The last Jacobian of the momenta at the beginning.
-    pub(crate) block: Option<[[f64; N]; N]>,
+/// `L_v(q0, v0) + D1 L_d + f_d^-` and `D2 L_d + f_d^+` at one mean velocity.
+#[derive(Clone, Copy)]
+pub(crate) struct Departure<const N: usize> {
+    pub(crate) residual: [f64; N],
+    pub(crate) arriving: [f64; N],
 }
 
 impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N, M> {
-    /// The solution that continues the motion, from the velocity `v0` at the beginning. Newton's method starts at the predictor `guess`
-    /// where there is one, and where it fails from there at `v0`.
-    ///
-    /// # Errors
-    /// [`StepError::Newton`] where none is found, [`StepError::Branch`] where what is found belongs to another motion.
-    #[inline]
-    pub(crate) fn solve(
-        &self,
-        newton: &Newton,
-        v0: [f64; N],
-        guess: Option<[f64; N]>,
-    ) -> Result<Mean<N, M>, StepError> {
-        // Dependent rows have no sign, and then it is not compared.
-        let positive = Saddle::is_positive_at_rest(&self.a0, self.basis.as_ref());
-        let time = (self.t0, self.h);
-        let (mut search, mut v) = (Corrections::new(self), guess.unwrap_or(v0));
-        let mut found = newton.search(&mut search, &mut v);
-        if found.is_err() && guess.is_some() {
-            (search, v) = (Corrections::new(self), v0);
-            found = newton.search(&mut search, &mut v);
-        }
-        let NewtonRoot { mut iterations, certain, .. } =
-            found.map_err(|source| named_along(self.system, time, *self.state, v, source))?;
-        let turn = self.turn(&v);
-        if !(certain && search.continues(positive) && turn <= branch::NEAR) {
-            v = self.followed(newton, positive, turn, &v0).ok_or(StepError::Branch)?;
-            search = Corrections::new(self);
-            iterations += newton
-                .solve(&mut search, &mut v)
-                .map_err(|source| named_along(self.system, time, *self.state, v, source))?;
-        }
-        let some = search.some;
-        let (p1, lambda) = search.ends(&v).map_err(|source| {
-            let source = NewtonError::singular(source);
-            named_along(self.system, time, *self.state, v, source)
-        })?;
-        Ok(Mean { v, p1, lambda, iterations, some, block: search.block() })
-    }
-
     /// The multipliers whose reaction balances the rest of the momenta.
     #[inline(always)]
     pub(crate) fn multipliers(&self, rest: &[f64; N]) -> Result<[f64; M], Singular> {
@@ -173,23 +124,6 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N
         }
         let solved = (0..M).filter(|k| some.is_none_or(|rows| rows.contains(*k)));
         most_roundings(without_reaction(&a0, momenta).into_iter().chain(solved.map(|k| level[k])))
-    }
-
-    /// The solution at the end of the branch that begins with a step of length zero.
-    #[cold]
-    #[inline(never)]
-    fn followed(&self, newton: &Newton, positive: Option<bool>, turn: f64, v0: &[f64; N]) -> Option<[f64; N]> {
-        branch::followed(v0, 0.5 * branch::NEAR / turn, |part, guess| {
-            let within = Self { h: part * self.h, ..*self };
-            let mut search = Corrections::new(&within);
-            let found = newton.search(&mut search, guess).ok()?;
-            (found.certain && search.continues(positive) && within.turn(guess) < PI).then_some(())
-        })
-    }
-
-    #[inline(always)]
-    fn turn(&self, v: &[f64; N]) -> f64 {
-        branch::turn_of(self.system, (self.t0, self.h), &self.q0, v)
     }
 }
 

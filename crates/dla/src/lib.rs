@@ -34,6 +34,7 @@ mod increment;
 mod kept;
 mod known_angle;
 mod lobatto;
+mod mean;
 mod mechanics;
 mod newton;
 mod not_a_number;

@@ -1,9 +1,7 @@
-use crate::basis::linear_basis;
-use crate::ends::{AtNodes, OfPair};
 use crate::gradient::by_places;
-use crate::second::{AT_ONCE, BLOCK, second_derivatives};
+use crate::second::{AT_ONCE, BLOCK, TwiceDifferentiable, second_derivatives, seed};
 use crate::system::with_nonlinear;
-use crate::{AdmissibleBasis, Dual, Gradient, HyperDual, Rule, Scalar, System, constraint_residual, from_fn};
+use crate::{AdmissibleBasis, Dual, Gradient, HyperDual, Scalar, System, from_fn};
 
 /// The derivatives of a discrete Lagrangian over one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,7 +20,7 @@ pub struct Derivatives<S, const N: usize> {
 /// rules).
 ///
 /// A pair `(q0, q1)` is given as `q0` and the mean velocity `v = (q1 - q0)/h`: far from the origin the difference of
-/// the rounded end points would lose the digits that a step needs. Every quadrature [`Rule`] is one; a hand-made one
+/// the rounded end points would lose the digits that a step needs. Every quadrature [`Rule`](crate::Rule) is one; a hand-made one
 /// implements [`DiscreteLagrangian::average`], and [`DiscreteLagrangian::derivatives`] too where a closed form pays.
 pub trait DiscreteLagrangian<Sys, const N: usize, const M: usize> {
     /// The mean Lagrangian over the step, `L_d(q0, q0 + h v) / h` (J).
@@ -126,172 +124,33 @@ pub trait DiscreteConstraint<Sys, const N: usize, const M: usize> {
     }
 }
 
-impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteLagrangian<Sys, N, M> for R {
-    #[inline(always)]
-    fn average<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> S {
-        let mut sum: Option<S> = None;
-        for node in self.nodes() {
-            let (t, q) = on_line(node.alpha, t0, h, q0, v);
-            let term = system.lagrangian(t, &q, v) * node.weight;
-            sum = Some(sum.map_or(term, |s| s + term));
-        }
-        sum.unwrap_or(S::zero())
-    }
+/// A mean Lagrangian as a function of both ends of the step.
+///
+/// In units of h these are a = q0/h and b = q1/h: then q0 = h a, v = b - a, and D1 L_d is the derivative of L_d/h in a.
+pub(crate) struct OfPair<'a, L: ?Sized, Sys, S, const N: usize, const M: usize> {
+    pub(crate) of: &'a L,
+    pub(crate) system: &'a Sys,
+    pub(crate) t0: S,
+    pub(crate) h: S,
+    pub(crate) q0: &'a [S; N],
+    pub(crate) v: &'a [S; N],
+}
 
-    /// Dual numbers are seeded at the nodes, where the configuration depends on both ends by `dq = (1 - alpha) dq0 + alpha dq1`: the nodes
-    /// themselves are computed in plain numbers.
-    #[inline]
-    fn derivatives<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> Derivatives<S, N> {
-        if const { N > AT_ONCE } {
-            let l = second_derivatives(&AtNodes { rule: self, system, t0, h, q0, v });
-            return Derivatives { value: h * l.re, d1: l.e1, d2: l.e2, d1d2: l.e12.map(|row| row.map(|x| x / h)) };
-        }
-        // Inlined here: called as a function, it makes a step of few coordinates a twentieth more instructions.
+impl<L, Sys, S: Scalar, const N: usize, const M: usize> TwiceDifferentiable<S, N> for OfPair<'_, L, Sys, S, N, M>
+where
+    L: DiscreteLagrangian<Sys, N, M> + ?Sized,
+{
+    const SYMMETRIC: bool = false;
+
+    #[inline(always)]
+    fn at<const P: usize>(&self, first: usize, second: usize) -> HyperDual<S, P, P> {
+        let Self { of, system, t0, h, q0, v } = *self;
         let (zero, one) = (S::zero(), S::constant(1.0));
-        let unit = |x: S, i: usize| -> [S; N] { from_fn(|k| if k == i { x } else { zero }) };
-        let in_v: [HyperDual<S, N, N>; N] = from_fn(|i| HyperDual::linear(v[i], unit(-one, i), unit(one, i)));
-        let mut sum: Option<HyperDual<S, N, N>> = None;
-        for node in self.nodes() {
-            let (t, q) = on_line(node.alpha, t0, h, q0, v);
-            let part = h * node.alpha;
-            let in_q: [HyperDual<S, N, N>; N] = from_fn(|i| HyperDual::linear(q[i], unit(h - part, i), unit(part, i)));
-            let term = system.lagrangian(HyperDual::fixed(t), &in_q, &in_v) * node.weight;
-            sum = Some(sum.map_or(term, |s| s + term));
-        }
-        let l = sum.unwrap_or(HyperDual::fixed(zero));
-        Derivatives { value: h * l.re, d1: l.e1, d2: l.e2, d1d2: l.e12.map(|row| row.map(|x| x / h)) }
+        let q0: [HyperDual<S, P, P>; N] = from_fn(|i| HyperDual::linear(q0[i], seed(h, i, first), [zero; P]));
+        let v: [HyperDual<S, P, P>; N] =
+            from_fn(|i| HyperDual::linear(v[i], seed(-one, i, first), seed(one, i, second)));
+        of.average(system, HyperDual::fixed(t0), HyperDual::fixed(h), &q0, &v)
     }
-
-    #[inline(always)]
-    fn slopes<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> [[S; N]; 2] {
-        slopes_at_nodes(self, system, (t0, h), q0, (v, v))
-    }
-
-    #[inline(always)]
-    fn slopes_along(
-        &self,
-        system: &Sys,
-        time: (f64, f64),
-        q0: &[f64; N],
-        way: &[f64; N],
-        v: &[f64; N],
-    ) -> [[f64; N]; 2] {
-        slopes_at_nodes(self, system, time, q0, (way, v))
-    }
-
-    #[inline]
-    fn d2<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> [S; N] {
-        let [_, d2] = DiscreteLagrangian::<Sys, N, M>::slopes(self, system, t0, h, q0, v);
-        d2
-    }
-
-    #[inline(always)]
-    fn forces<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> Option<([S; N], [S; N])> {
-        forces_at_nodes(self, system, (t0, h), q0, (v, v))
-    }
-
-    #[inline(always)]
-    fn forces_along(
-        &self,
-        system: &Sys,
-        time: (f64, f64),
-        q0: &[f64; N],
-        way: &[f64; N],
-        v: &[f64; N],
-    ) -> Option<([f64; N], [f64; N])> {
-        forces_at_nodes(self, system, time, q0, (way, v))
-    }
-}
-
-impl<R: Rule, Sys: System<N, M>, const N: usize, const M: usize> DiscreteConstraint<Sys, N, M> for R {
-    #[inline(always)]
-    fn residual<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> [S; M] {
-        let mut sum = [S::zero(); M];
-        for node in self.nodes() {
-            let (t, q) = on_line(node.alpha, t0, h, q0, v);
-            let residual = constraint_residual(system, t, &q, v);
-            for k in 0..M {
-                sum[k] += residual[k] * node.weight;
-            }
-        }
-        sum
-    }
-
-    /// Seeded at the nodes.
-    #[inline]
-    fn linearised(&self, system: &Sys, t0: f64, h: f64, q0: &[f64; N], v: &[f64; N]) -> [Dual<f64, N>; M] {
-        let mut sum = [Dual::fixed(0.0); M];
-        for node in self.nodes() {
-            let (t, q) = on_line(node.alpha, t0, h, q0, v);
-            let at_node = residual_along(system, t, &q, v, h * node.alpha);
-            for k in 0..M {
-                sum[k] += at_node[k] * node.weight;
-            }
-        }
-        sum
-    }
-
-    /// Of a single node, where the constraints are linear.
-    #[inline(always)]
-    fn basis_along(
-        &self,
-        system: &Sys,
-        (t0, h): (f64, f64),
-        q0: &[f64; N],
-        way: &[f64; N],
-    ) -> Option<AdmissibleBasis<f64, N, M>> {
-        let [node] = self.nodes() else { return None };
-        let (t, q) = on_line(node.alpha, t0, h, q0, way);
-        linear_basis(system, t, &q).map(|(_, basis)| basis)
-    }
-}
-
-/// `D1 L_d` and `D2 L_d` by the derivatives in the configuration and the velocity `v` at every node; nodes are placed by the mean velocity
-/// `way`.
-#[inline(always)]
-fn slopes_at_nodes<R: Rule, Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
-    rule: &R,
-    system: &Sys,
-    (t0, h): (S, S),
-    q0: &[S; N],
-    (way, v): (&[S; N], &[S; N]),
-) -> [[S; N]; 2] {
-    let [mut d1, mut d2] = [[S::zero(); N]; 2];
-    for node in rule.nodes() {
-        let (t, q) = on_line(node.alpha, t0, h, q0, way);
-        let part = h * node.alpha;
-        let [l_q, l_v] = match const { R::IN_PLACE } {
-            true => gradients(system, t, &q, v),
-            false => gradients_apart(system, t, &q, v),
-        };
-        for i in 0..N {
-            d1[i] += ((h - part) * l_q[i] - l_v[i]) * node.weight;
-            d2[i] += (part * l_q[i] + l_v[i]) * node.weight;
-        }
-    }
-    [d1, d2]
-}
-
-/// `f_d^-` and `f_d^+` by the forces at every node, in the same way.
-#[inline(always)]
-fn forces_at_nodes<R: Rule, Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
-    rule: &R,
-    system: &Sys,
-    (t0, h): (S, S),
-    q0: &[S; N],
-    (way, v): (&[S; N], &[S; N]),
-) -> Option<([S; N], [S; N])> {
-    let (mut minus, mut plus) = ([S::zero(); N], [S::zero(); N]);
-    for node in rule.nodes() {
-        let (t, q) = on_line(node.alpha, t0, h, q0, way);
-        let force = system.force(t, &q, v)?;
-        for i in 0..N {
-            let impulse = h * force[i] * node.weight;
-            minus[i] += impulse * (1.0 - node.alpha);
-            plus[i] += impulse * node.alpha;
-        }
-    }
-    Some((minus, plus))
 }
 
 /// The residual of each constraint with its derivatives along `(dq, dv) = (part, 1) e_j`.
@@ -370,7 +229,7 @@ pub fn gradients<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
 
 /// The same, one function for all rules.
 #[inline(never)]
-fn gradients_apart<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
+pub(crate) fn gradients_apart<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize>(
     system: &Sys,
     t: S,
     q: &[S; N],

@@ -5,6 +5,7 @@ use crate::fault::Fault;
 use crate::keys::{DURATION, STEP};
 use crate::table::TomlTable;
 use crate::text::varied;
+use crate::variation::UNKNOWN;
 use crate::{AnyScene, Scene, SceneError, file, suggest, variation};
 use sleigh::Sleigh;
 use thiserror::Error;
@@ -25,8 +26,6 @@ const COMMON: [&str; 8] = [
 
 /// How a member is run.
 const RUN: [&str; 5] = ["run.alpha", "run.duration", "run.method", "run.step", "run.tolerance"];
-
-pub(crate) const UNKNOWN: &str = "is not a number of the scene";
 const NUMBERS: &str = "keys of the scene's start, sleigh and effects that have a number, like start.speed, sleigh.offset, \
                        effects.0.stiffness.1, or run.step, run.duration, run.tolerance, run.alpha, run.method";
 

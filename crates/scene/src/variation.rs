@@ -10,6 +10,9 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+/// What is said of a key that names no number.
+pub(crate) const UNKNOWN: &str = "is not a number of the scene";
+
 /// A key of the scene in a sweep, with what the sweep gives it.
 pub(crate) struct VariedScene<'s, T> {
     pub(crate) key: String,

@@ -1,9 +1,11 @@
-use super::element::{Average, NO_BASIS, Swing};
+use super::element::{Average, Swing};
+use super::elements::NO_BASIS;
 use super::frames::{BodyFrame, Frames};
-use crate::assembly::{PlacedElement, WIDEST};
+use crate::assembly::PlacedElement;
 use crate::contributions::{at, gathered};
 use crate::dla::relative;
 use crate::element::ElementBlocks;
+use crate::local::WIDEST;
 use crate::sparse::Sparse;
 use crate::{Assembly, AssemblyError, AssemblyState};
 use dla::Stage;

@@ -1,6 +1,7 @@
 //! A method that keeps the energy of an assembly, with its joints and blades.
 
-mod element;
+pub(crate) mod element;
+mod elements;
 mod frames;
 mod mean;
 
@@ -16,7 +17,7 @@ use crate::{Assembly, AssemblyError, AssemblyMethod, AssemblyReport, AssemblySta
 use dla::convergence::rounding_of_place;
 use dla::convergence::tolerances::STALL;
 use dla::{History, NewtonError, Stage};
-use element::NO_BASIS;
+use elements::NO_BASIS;
 use frames::Frames;
 use lagrangian::linear::larger;
 use mean::{MeanPath, SparseMeanEquations};

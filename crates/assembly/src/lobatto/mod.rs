@@ -1,6 +1,7 @@
 //! Methods of higher order for assemblies, with all stages in one system of equations.
 
-mod element;
+pub(crate) mod element;
+mod elements;
 mod stages;
 
 pub use element::{StageElement, StageTerms};

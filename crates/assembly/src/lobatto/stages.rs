@@ -1,6 +1,7 @@
 use super::element::StageTerms;
-use crate::assembly::{PlacedElement, WIDEST};
+use crate::assembly::PlacedElement;
 use crate::contributions::gathered;
+use crate::local::WIDEST;
 use crate::sparse::Sparse;
 use crate::{Assembly, AssemblyState};
 use dla::LobattoTables;

@@ -1,8 +1,8 @@
 use super::{FoundMean, are_met, ends, with_reaction};
 use crate::convergence::tolerances::SHRINKING;
-use crate::corrections::Departure;
 use crate::derivatives::StepDerivatives;
 use crate::dla::{Dla, expected, predicted};
+use crate::increment::Departure;
 use crate::increment::Increment;
 use crate::settle::{LEAST, Settle, sup};
 use crate::{Discretisation, Mechanics, State};

@@ -5,8 +5,8 @@ mod in_basis;
 mod mean;
 
 use crate::branch;
-use crate::corrections::Departure;
 use crate::dla::Dla;
+use crate::increment::Departure;
 use crate::overshoot::brakes_only;
 use crate::settle::LEAST;
 use crate::{Discretisation, Mechanics, State, StepReport};

@@ -1,14 +1,11 @@
 use super::ending::{Ending, EndingVerdict};
-use super::packs::{ahead, everywhere, integral, loaded, own};
+use super::packs::{StageRows, ahead, everywhere, integral, loaded, own};
 use super::rule::GaussRule;
 use lagrangian::linear::larger;
 use lagrangian::simd::{Kernel, Pack, Simd, Square, Wide, dispatch, each, packed};
 use lagrangian::{Reduced, System, array, derived_acceleration, from_fn, velocity_of};
 use std::fmt;
 use std::ops::Deref;
-
-/// Eight stages of `N` slopes.
-pub(super) type StageRows<const N: usize> = [[f64; 8]; N];
 
 /// The slopes of the stages, velocities and accelerations of quasi-velocities.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,8 +1,10 @@
 //! Arrays of numbers to registers: a pack holds one coordinate of all stages.
-use super::lanes::StageRows;
 use lagrangian::array;
 use lagrangian::linear::larger;
 use lagrangian::simd::{Pack, Simd};
+
+/// Eight stages of `N` slopes.
+pub(super) type StageRows<const N: usize> = [[f64; 8]; N];
 
 /// Rows of eight numbers.
 #[inline(always)]

@@ -29,15 +29,13 @@ mod volume;
 pub use discrete::{DiscreteMap, Step, StepLimit, differentiable};
 pub use equilibria::{Equilibrium, EquilibriumError, relative_equilibria};
 pub use linearised::{ReducedField, reduced_field};
-pub use lyapunov::{
-    Lyapunov, LyapunovError, LyapunovFailure, LyapunovRequest, Running, kaplan_yorke, lyapunov, lyapunov_by,
-    lyapunov_within,
-};
+pub use lyapunov::{Lyapunov, LyapunovError, LyapunovRequest, kaplan_yorke, lyapunov, lyapunov_by, lyapunov_within};
 pub use measure::{enclosed_area, measure_defect};
 pub use momentum_meter::MomentumMeter;
 pub(crate) use parallel::STACK;
 pub use parallel::in_parallel;
 pub use phase::{Rounds, weighted_mean};
 pub use section::{Section, section};
+pub use stretch::{LyapunovFailure, Running};
 pub use tangent::has_tangents;
 pub use verdict::{Evidence, MotionVerdict, PARTS, Undecided};

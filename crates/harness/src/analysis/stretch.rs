@@ -1,11 +1,49 @@
-use super::lyapunov::{LyapunovFailure, Running};
 use super::pace::Pace;
 use super::tangent::{Local, StepTangent, Stepped};
 use super::volume::Volume;
 use crate::Blocks;
-use dla::{Observer, SensitivityError, State, StepReport, TangentRunError, View};
+use dla::{Observer, RunError, SensitivityError, State, StepReport, TangentRunError, View};
 use nalgebra::DMatrix;
 use std::ops::ControlFlow;
+use thiserror::Error;
+
+/// The exponents over a first part of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Running {
+    /// How long it is (s).
+    pub time: f64,
+    /// The exponents (1/s).
+    pub exponents: Vec<f64>,
+}
+
+/// Why a run with a frame ended early.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum LyapunovFailure {
+    /// A step failed.
+    #[error(transparent)]
+    Step(#[from] RunError),
+    /// A step has no derivative.
+    #[error("the derivative of {0}")]
+    Derivative(#[from] TangentRunError),
+    /// The sum of all exponents by the derivatives of the steps is not the mean divergence of the equations, which it is by Liouville's
+    /// theorem. What is told of the run ends where they agreed last.
+    #[error(
+        "until t = {time:.6} s the sum of the exponents is {:+.6e} 1/s by the steps and {:+.6e} 1/s by the \
+            divergence of the equations, and the two may differ by at most {allowed:.1e}: the steps are too long, or \
+            the motion is so quick that round-off takes the digits of its derivatives; the exponents up to that time \
+            are shown; take shorter steps or a shorter run",
+        sums[0],
+        sums[1]
+    )]
+    Volumes {
+        /// When it was seen (s).
+        time: f64,
+        /// The sum of all exponents from the start of the run, by the steps and by the divergence (1/s).
+        sums: [f64; 2],
+        /// By how much the two may differ (1/s).
+        allowed: f64,
+    },
+}
 
 /// So often at most the estimates so far are noted.
 const NOTES: u64 = 256;

@@ -1,4 +1,4 @@
-use super::making::{AssemblyStep, LastNode};
+use super::step::{AssemblyStep, LastNode};
 use assembly::{Assembly, AssemblyMethod, AssemblyState};
 use dla::{Close, Zero, close_crossings, zeros};
 use std::fmt;

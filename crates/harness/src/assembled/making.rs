@@ -1,6 +1,7 @@
 use super::AssemblyNodes;
 use super::meter::AssemblyMeter;
 use super::parts::{Parted, in_parts, resolves, shorter};
+use super::step::{AssemblyStep, LastNode};
 use super::{Assembled, assembly_method};
 use crate::{Method, MethodInfo, Progress, Record};
 use assembly::{Assembly, AssemblyMethod, AssemblyRunError, AssemblyState};
@@ -23,19 +24,6 @@ pub(super) struct Making<'a, 'n> {
     ended: Option<f64>,
     failure: Option<AssemblyRunError>,
 }
-
-/// A step that was made.
-pub(super) struct AssemblyStep<'a> {
-    /// The number of the node it began at, and the time (s).
-    pub(super) k: u64,
-    pub(super) t0: f64,
-    pub(super) h: f64,
-    pub(super) before: &'a AssemblyState,
-    pub(super) after: &'a AssemblyState,
-}
-
-/// The node at which a run ends within a step: the time (s) and the state.
-pub(super) type LastNode = (f64, AssemblyState);
 
 impl<'a, 'n> Making<'a, 'n> {
     pub(super) fn new(

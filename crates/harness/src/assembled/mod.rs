@@ -6,6 +6,7 @@ mod meter;
 mod parts;
 mod recommend;
 mod saved;
+mod step;
 
 pub use events::{AssemblyCrossing, AssemblyEvent};
 pub use recommend::recommend_assembly;

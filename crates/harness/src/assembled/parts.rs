@@ -1,5 +1,5 @@
-use super::making::{AssemblyStep, LastNode};
 use super::meter::AssemblyMeter;
+use super::step::{AssemblyStep, LastNode};
 use assembly::{Assembly, AssemblyError, AssemblyMethod, AssemblyReport, AssemblyState};
 use dla::{Halved, Substeps, Undivided};
 use lagrangian::linear::larger;

@@ -4,12 +4,9 @@ use super::ReportError;
 use super::axis::{self, LegendEntry, SIZE, Tick};
 use super::canvas::{Anchor, Canvas, Drawn, Ink, text_width};
 use super::geometry::{PlotFrame, Span, drawable, visible};
-use super::picture::Picture;
+use super::picture::{FigureFormat, Picture, UNITS_PER_INCH};
 use super::thinning::{peaks, thin};
 use super::xml::label;
-
-/// Units of a picture in an inch, as in CSS: text of 12.5 units has 9.4 points.
-pub(super) const UNITS_PER_INCH: f64 = 96.0;
 const CENTIMETRES_PER_INCH: f64 = 2.54;
 /// So many points of a curve at most, and of one on a logarithmic axis, each the largest of a stretch.
 const POINTS: usize = 2000;
@@ -60,17 +57,6 @@ pub struct Paper {
     pub size: [f64; 2],
     /// Pixels to an inch, of a format that has pixels.
     pub dpi: f64,
-}
-
-/// The format of a picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FigureFormat {
-    /// Scalable Vector Graphics.
-    Svg,
-    /// Portable Network Graphics, with its resolution.
-    Png,
-    /// Portable Document Format, one page.
-    Pdf,
 }
 
 /// A figure as the bytes of a file.

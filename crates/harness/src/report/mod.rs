@@ -35,7 +35,8 @@ mod xml;
 
 pub use cells::Cells;
 pub use chart::{Chart, Layer, chart_svg};
-pub use figure::{Figure, FigureFormat, Panel, Paper, figure};
+pub use figure::{Figure, Panel, Paper, figure};
+pub use picture::FigureFormat;
 pub use precision::{PrecisionReport, PrecisionTable, write_precision};
 
 /// A report: what the page says above its scenes, and the scenes.

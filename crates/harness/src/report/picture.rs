@@ -2,9 +2,22 @@
 
 use super::ReportError;
 use super::canvas::{Canvas, CanvasMark, Drawn, shapes, units};
-use super::figure::{FigureFormat, UNITS_PER_INCH};
 use super::xml::escape;
 use super::{look, pdf, raster};
+
+/// Units of a picture in an inch, as in CSS: text of 12.5 units has 9.4 points.
+pub(super) const UNITS_PER_INCH: f64 = 96.0;
+
+/// The format of a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FigureFormat {
+    /// Scalable Vector Graphics.
+    Svg,
+    /// Portable Network Graphics, with its resolution.
+    Png,
+    /// Portable Document Format, one page.
+    Pdf,
+}
 
 /// Pixels to a unit in the PNG files of pages: sharp on a fine screen.
 const PAGE_SCALE: f64 = 2.0;

@@ -1,7 +1,7 @@
 //! Members of sweeps of systems of text: scenes with other parameters and starts.
 
 use super::{Given, TextScene};
-use crate::sweep::UNKNOWN;
+use crate::variation::UNKNOWN;
 use ::text::{TextError, TextModel};
 use std::sync::Arc;
 

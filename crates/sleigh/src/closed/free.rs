@@ -1,12 +1,11 @@
 use super::least_spin;
+use super::settling::{FoundTurn, out_of_branch, settled};
 use super::spin_equation::SpinEquation;
 use super::spin_memory::{SpinNumbers, remembered};
 use super::{ClosedStart, ClosedStep};
 use crate::Sleigh;
 use dla::ClosedStepError;
 use lagrangian::{mul_add, sin_cos_wrapped};
-
-const MAX_ITERATIONS: u32 = 30;
 /// A part of the spin by which an expected one may differ from that before.
 const FAR: f64 = 0.125;
 
@@ -86,18 +85,6 @@ pub(crate) fn step(
     })
 }
 
-/// What a search has found.
-pub(crate) struct FoundTurn {
-    /// The spin, with sine and cosine of the half turn.
-    pub(crate) w: f64,
-    pub(crate) half_turn: (f64, f64),
-    /// What is left to correct of it.
-    pub(crate) correction: f64,
-    /// The spin at the beginning.
-    pub(crate) omega0: f64,
-    pub(crate) iterations: u32,
-}
-
 /// A search that does not settle at once, from the expected spin where that is near, or one guessed from the velocities.
 // Out of line, and given and giving numbers alone, so that it is no part of a step that settles at once.
 #[cold]
@@ -117,28 +104,6 @@ fn search(
     settled(&equation, if near { expected } else { equation.guess(u0, omega0) }, (u0, omega0))
 }
 
-/// The spin that Newton's method settles at from a first one, and after how many corrections.
-pub(crate) fn settled(
-    equation: &SpinEquation,
-    first: f64,
-    (u0, omega0): (f64, f64),
-) -> Result<FoundTurn, ClosedStepError> {
-    let mut point = equation.at(first)?;
-    let (mut settled, mut iterations) = (false, 0);
-    loop {
-        let correction = equation.correction(&point, u0, omega0);
-        // With one more: near a right angle what the last one leaves of the tangent is more than rounding.
-        if settled {
-            return Ok(FoundTurn { w: point.w, half_turn: (point.sin, point.cos), correction, omega0, iterations });
-        }
-        (settled, iterations) = (equation.settles(correction), iterations + 1);
-        if !settled && (correction.is_nan() || iterations == MAX_ITERATIONS) {
-            return Err(failure(equation.k * u0, iterations, correction / point.w));
-        }
-        point = equation.at(point.w + correction)?;
-    }
-}
-
 /// Quasi-velocities of a velocity. Out of line, so that where they are known the search for `w` is a branch that does not
 /// wait for the trigonometry of the heading, and not a selection that does.
 #[cold]
@@ -146,24 +111,4 @@ pub(crate) fn settled(
 pub(crate) fn recovered(heading: f64, v: &[f64; 3]) -> (f64, f64) {
     let (sin0, cos0) = sin_cos_wrapped(heading);
     (v[0] * cos0 + v[1] * sin0, v[2])
-}
-
-#[cold]
-fn failure(gain: f64, iterations: u32, correction: f64) -> ClosedStepError {
-    if !gain.is_finite() {
-        ClosedStepError::NotFinite { quantity: "h m a u / (2 J)" }
-    } else if gain <= -1.0 {
-        out_of_branch(gain)
-    } else {
-        ClosedStepError::IterationLimit { iterations, correction }
-    }
-}
-
-#[cold]
-pub(crate) fn out_of_branch(gain: f64) -> ClosedStepError {
-    ClosedStepError::NoSolution {
-        quantity: "the growth of the spin in half a step, -h m a u / (2 J),",
-        value: -gain,
-        bound: 1.0,
-    }
 }

@@ -1,4 +1,4 @@
-use super::free::{FoundTurn, settled};
+use super::settling::{FoundTurn, settled};
 use super::spin_equation::SpinEquation;
 use super::spin_memory::{SpinNumbers, with_digits};
 use dla::ClosedStepError;

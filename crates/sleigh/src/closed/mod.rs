@@ -16,6 +16,7 @@ mod mean_memory;
 mod memory;
 mod push;
 mod pushed;
+mod settling;
 mod spin_equation;
 mod spin_memory;
 mod step;

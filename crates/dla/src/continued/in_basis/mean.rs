@@ -1,8 +1,8 @@
 use super::{InBasis, are_met, first, has_settled};
 use crate::continued::{FoundMean, ends, with_reaction};
 use crate::convergence::tolerances::{SHRINKING, SLIGHT};
-use crate::corrections::Departure;
 use crate::dla::{Dla, predicted};
+use crate::increment::Departure;
 use crate::increment::Increment;
 use crate::kept::in_bases;
 use crate::settle::{CORRECTIONS, LEAST, sup};

@@ -1,0 +1,108 @@
+//! The systems of scenes of text, the same text at compile time.
+
+noslip::system! {
+    pub(crate) struct KnifeEdge;
+    coordinates = { x = "m", y = "m", theta = "angle" }
+    parameters = { m = 1.0, I = 0.5, g = 9.81, slope = 0.1 }
+    lagrangian = "m/2*(x'^2 + y'^2) + I/2*theta'^2 + m*g*sin(slope)*x"
+    constraints = ["y'*cos(theta) - x'*sin(theta)"]
+}
+
+noslip::system! {
+    pub(crate) struct RollingDisk;
+    coordinates = { x = "m", y = "m", phi = "angle", theta = "angle" }
+    parameters = { m = 1.0, R = 0.5, I = 0.125, J = 0.0625 }
+    lagrangian = "m/2*(x'^2 + y'^2) + I/2*phi'^2 + J/2*theta'^2"
+    constraints = ["x' - R*phi'*cos(theta)", "y' - R*phi'*sin(theta)"]
+}
+
+noslip::system! {
+    pub(crate) struct RollerRacer;
+    coordinates = { x = "m", y = "m", theta = "angle", phi = "angle" }
+    parameters = { m = 1.0, I1 = 0.4, I2 = 0.1, d1 = 0.5, d2 = 0.3 }
+    lagrangian = "m/2*(x'^2 + y'^2) + I1/2*theta'^2 + I2/2*(theta' + phi')^2"
+    constraints = [
+        "y'*cos(theta) - x'*sin(theta)",
+        "y'*cos(theta + phi) - x'*sin(theta + phi) + (d1*cos(phi) + d2)*theta' + d2*phi'",
+    ]
+}
+
+noslip::system! {
+    pub(crate) struct Snakeboard;
+    coordinates = { x = "m", y = "m", theta = "angle", psi = "angle", phi = "angle" }
+    parameters = { m = 6.0, l = 0.2, J = 0.016, Jr = 0.072, Jw = 0.0013, twist = 0.5, steer = 0.02, rate = 3.0 }
+    let = { c = "cos(theta)", s = "sin(theta)", ahead = "x'*c + y'*s" }
+    lagrangian = "m/2*(x'^2 + y'^2) + J/2*theta'^2 + Jr/2*(theta' + psi')^2
+        + Jw/2*((theta' + phi')^2 + (theta' - phi')^2)"
+    constraints = ["y'*c - x'*s", "sin(phi)*ahead + l*cos(phi)*theta'"]
+    forces = { psi = "twist*cos(rate*t)", phi = "steer*cos(rate*t)" }
+}
+
+noslip::system! {
+    pub(crate) struct ChaplyginBall;
+    coordinates = { x = "m", y = "m", e0 = "", e1 = "", e2 = "", e3 = "" }
+    parameters = { m = 1.0, r = 1.0, I1 = 0.4, I2 = 0.6, I3 = 0.9 }
+    let = {
+        mean = "(I1 + I2 + I3)/3",
+        b1 = "2*(e0*e1' - e1*e0' - e2*e3' + e3*e2')",
+        b2 = "2*(e0*e2' - e2*e0' - e3*e1' + e1*e3')",
+        b3 = "2*(e0*e3' - e3*e0' - e1*e2' + e2*e1')",
+        w1 = "2*(e0*e1' - e1*e0' + e2*e3' - e3*e2')",
+        w2 = "2*(e0*e2' - e2*e0' + e3*e1' - e1*e3')",
+    }
+    lagrangian = "m/2*(x'^2 + y'^2) + 2*mean*(e0'^2 + e1'^2 + e2'^2 + e3'^2)
+        + ((I1 - mean)*b1^2 + (I2 - mean)*b2^2 + (I3 - mean)*b3^2)/2"
+    constraints = ["x' - r*w2", "y' + r*w1"]
+    positions = ["(e0^2 + e1^2 + e2^2 + e3^2 - 1)/2"]
+}
+
+noslip::system! {
+    pub(crate) struct Robot;
+    coordinates = { x = "m", y = "m", theta = "angle", right = "angle", left = "angle" }
+    parameters = { m = 4.0, J = 0.1, Jw = 0.005, a = 0.05, b = 0.15, r = 0.05, friction = 0.02, push_right = 0.12, push_left = 0.1 }
+    let = { c = "cos(theta)", s = "sin(theta)", ahead = "x'*c + y'*s" }
+    lagrangian = "m/2*((x' - a*theta'*s)^2 + (y' + a*theta'*c)^2) + J/2*theta'^2 + Jw/2*(right'^2 + left'^2)"
+    constraints = ["y'*c - x'*s", "ahead + b*theta' - r*right'", "ahead - b*theta' - r*left'"]
+    forces = { right = "push_right - friction*right'", left = "push_left - friction*left'" }
+}
+
+noslip::system! {
+    pub(crate) struct Car;
+    coordinates = { x = "m", y = "m", theta = "angle", delta = "angle", behind = "angle" }
+    parameters = { m = 1200.0, J = 1500.0, a = 1.2, L = 2.5, Js = 2.0, mt = 400.0, Jt = 200.0, b = 2.0, push = 800.0, drag = 60.0, swing = 0.3 }
+    let = {
+        c = "cos(theta)",
+        s = "sin(theta)",
+        cb = "cos(behind)",
+        sb = "sin(behind)",
+        ahead = "x'*c + y'*s",
+    }
+    lagrangian = "m/2*((x' - a*theta'*s)^2 + (y' + a*theta'*c)^2) + J/2*theta'^2 + Js/2*(theta' + delta')^2
+        + mt/2*((x' + b*behind'*sb)^2 + (y' - b*behind'*cb)^2) + Jt/2*behind'^2"
+    constraints = [
+        "y'*c - x'*s",
+        "y'*cos(theta + delta) - x'*sin(theta + delta) + L*cos(delta)*theta'",
+        "y'*cb - x'*sb - b*behind'",
+    ]
+    forces = {
+        x = "(push - drag*ahead)*c",
+        y = "(push - drag*ahead)*s",
+        delta = "200*(swing*sin(0.5*t) - delta) - 60*delta'",
+    }
+}
+
+noslip::system! {
+    pub(crate) struct FallingDisk;
+    coordinates = { x = "m", y = "m", phi = "angle", theta = "angle", psi = "angle" }
+    parameters = { m = 1.0, r = 1.0, g = 9.81 }
+    let = {
+        I = "m*r^2/2",
+        J = "m*r^2/4",
+        ahead = "x'*cos(phi) + y'*sin(phi)",
+        across = "y'*cos(phi) - x'*sin(phi)",
+        turn = "phi'*sin(theta) + psi'",
+    }
+    lagrangian = "m/2*((ahead - r*phi'*sin(theta))^2 + (across + r*theta'*cos(theta))^2 + (r*theta'*sin(theta))^2)
+        + J/2*(theta'^2 + (phi'*cos(theta))^2) + I/2*turn^2 - m*g*r*cos(theta)"
+    constraints = ["x' + r*psi'*cos(phi)", "y' + r*psi'*sin(phi)"]
+}

@@ -1,0 +1,65 @@
+//! What the exponents of one motion and the largest exponent of many have in common.
+
+use crate::args::LyapunovArguments;
+use crate::command_line::CommandLine;
+use crate::error::CliError;
+use crate::provenance::Provenance;
+use crate::starts::{Start, with_energy};
+use dla::Schedule;
+use harness::analysis::LyapunovError;
+use scene::{AnyScene, Built};
+use serde_json::json;
+
+/// The part of it before the run that is not counted, where nobody says.
+const SETTLE: f64 = 0.1;
+
+/// What is said of a scene without a motion of its own.
+pub(crate) fn imposed() -> CliError {
+    CliError::Request(
+        "the scene imposes velocities (servo, tracer): accepted are scenes that only the blade constrains".to_owned(),
+    )
+}
+
+/// The steps that are counted, and those before them.
+pub(crate) fn schedule(arguments: &LyapunovArguments, scene: &AnyScene) -> (Schedule, u64) {
+    let schedule = scene.schedule();
+    let settle = arguments.settle.unwrap_or(SETTLE * scene.run().duration) / schedule.step;
+    (schedule, settle.ceil() as u64)
+}
+
+/// What made exponents, and where a signal ended the work.
+pub(crate) fn provenance(arguments: &LyapunovArguments, scene: &AnyScene, interrupted: Option<&str>) -> Provenance {
+    let LyapunovArguments { scene: shared, exponents, settle, energy, map, out, .. } = arguments;
+    let (run, step) = (scene.run(), scene.schedule().step);
+    let settle = settle.unwrap_or(SETTLE * run.duration);
+    let command = CommandLine::of("lyapunov", &shared.scene, &shared.set).run(run, step).number("--settle", settle);
+    let command = command.maybe("--exponents", *exponents);
+    let command = command.maybe("--energy", energy.map(|energy| format!("{energy:?}")));
+    let command = map.iter().fold(command, |command, range| command.with("--map", range));
+    let command = command.maybe("--out", out.as_ref().map(|out| out.display()));
+    let notes = json!({"method": run.method, "step": step, "duration": run.duration, "settle": settle});
+    Provenance::on((scene.title(), scene.to_toml().ok()), Some(&command), notes).interrupted(interrupted)
+}
+
+/// A start with the energy that is asked for.
+pub(crate) fn asked<const N: usize, const M: usize>(
+    system: &Built<'_, N, M>,
+    start: Start<N>,
+    wanted: Option<f64>,
+) -> Result<Start<N>, CliError> {
+    let Some(wanted) = wanted else { return Ok(start) };
+    with_energy(system, &start, wanted).ok_or_else(|| {
+        let at_rest = system.energy(0.0, &start.0, &[0.0; N]);
+        CliError::Request(format!(
+            "--energy {wanted:?}: no multiple of the velocity of the start has this energy; at rest at the start the \
+                energy is {at_rest:?} J"
+        ))
+    })
+}
+
+pub(crate) fn refused(error: LyapunovError) -> CliError {
+    match error {
+        LyapunovError::Count { .. } => CliError::Request(format!("--exponents: {error}")),
+        error => CliError::Request(error.to_string()),
+    }
+}

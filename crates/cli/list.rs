@@ -1,0 +1,68 @@
+//! `noslip list` and `noslip new`.
+
+use crate::args::{ListArguments, Listed, NewArguments};
+use crate::error::CliError;
+use crate::files::write_whole;
+use crate::inspect::method_names;
+use crate::{effect_keys, stability, table, terminal};
+use harness::METHODS;
+use scene::{AnyScene, Scene};
+use serde_json::json;
+use std::io::Write;
+use std::path::Path;
+
+/// `noslip list`: what there is.
+pub(crate) fn list(arguments: &ListArguments) -> Result<(), CliError> {
+    if arguments.json {
+        let all: Vec<_> = match arguments.what {
+            Listed::Methods => METHODS
+                .iter()
+                .map(|m| {
+                    json!({"name": m.name, "order": m.order, "keeps": m.keeps, "summary": m.summary,
+                           "reference": m.reference, "adaptive": m.kind.is_adaptive(), "assemblies": m.assemblies,
+                           "lanes": m.lanes, "tangent": m.tangent.is_ok()})
+                })
+                .collect(),
+            Listed::Effects => scene::EFFECTS
+                .iter()
+                .map(|effect| {
+                    let scene::EffectInfo { name, keys, summary, .. } = effect;
+                    json!({"name": name, "keys": keys, "summary": summary, "properties": effect_keys::json(name)})
+                })
+                .collect(),
+            Listed::Cases => stability::cases()
+                .map(|case| {
+                    json!({"name": case.name, "hard": case.hard, "shows": case.shows, "bar": case.bar,
+                           "refusable": case.refusable})
+                })
+                .collect(),
+            Listed::Scenes => scenes()?.iter().map(|(name, title)| json!({"name": name, "title": title})).collect(),
+        };
+        return terminal::print_json(&json!(all));
+    }
+    let text = match arguments.what {
+        Listed::Methods => {
+            let line = |m: &harness::MethodInfo| (m.name, format!("order {}, {}", m.order, m.summary));
+            table::aligned(&METHODS.iter().map(line).collect::<Vec<_>>())
+        }
+        Listed::Effects => effect_keys::text(),
+        Listed::Cases => table::aligned(&stability::cases().map(|case| (case.name, case.hard)).collect::<Vec<_>>()),
+        Listed::Scenes => table::aligned(&scenes()?),
+    };
+    terminal::print(&text)
+}
+
+fn scenes() -> Result<Vec<(&'static str, String)>, CliError> {
+    let names = method_names();
+    let title = |bundled: &scene::Bundled| Ok((bundled.name, AnyScene::load(bundled.name, &names)?.title().to_owned()));
+    scene::bundled().iter().chain(scene::bundled_texts()).map(title).collect()
+}
+
+/// `noslip new`: a scene to start from; `-` is standard output.
+pub(crate) fn new(arguments: &NewArguments) -> Result<(), CliError> {
+    if arguments.file == Path::new("-") {
+        return terminal::print(Scene::template());
+    }
+    write_whole(&arguments.file, arguments.force, |file| file.write_all(Scene::template().as_bytes()))?;
+    terminal::print(&format!("written: {}\n", arguments.file.display()))
+}
