@@ -1,4 +1,4 @@
-//! The systems of scenes of text, the same text at compile time.
+//! The systems of scenes of text as text at compile time, with a basis where the constraints alone do not give one.
 
 noslip::system! {
     pub(crate) struct KnifeEdge;
@@ -36,6 +36,11 @@ noslip::system! {
         + Jw/2*((theta' + phi')^2 + (theta' - phi')^2)"
     constraints = ["y'*c - x'*s", "sin(phi)*ahead + l*cos(phi)*theta'"]
     forces = { psi = "twist*cos(rate*t)", phi = "steer*cos(rate*t)" }
+    basis = [
+        ["l*cos(phi)*c", "l*cos(phi)*s", "-sin(phi)", "0", "0"],
+        ["0", "0", "0", "1", "0"],
+        ["0", "0", "0", "0", "1"],
+    ]
 }
 
 noslip::system! {
@@ -54,6 +59,11 @@ noslip::system! {
         + ((I1 - mean)*b1^2 + (I2 - mean)*b2^2 + (I3 - mean)*b3^2)/2"
     constraints = ["x' - r*w2", "y' + r*w1"]
     positions = ["(e0^2 + e1^2 + e2^2 + e3^2 - 1)/2"]
+    basis = [
+        ["2*r*(e1*e2 + e0*e3)", "-r*(e0^2 + e1^2 - e2^2 - e3^2)", "-e1/2", "e0/2", "e3/2", "-e2/2"],
+        ["r*(e0^2 - e1^2 + e2^2 - e3^2)", "-2*r*(e1*e2 - e0*e3)", "-e2/2", "-e3/2", "e0/2", "e1/2"],
+        ["2*r*(e2*e3 - e0*e1)", "-2*r*(e1*e3 + e0*e2)", "-e3/2", "e2/2", "-e1/2", "e0/2"],
+    ]
 }
 
 noslip::system! {
@@ -64,6 +74,10 @@ noslip::system! {
     lagrangian = "m/2*((x' - a*theta'*s)^2 + (y' + a*theta'*c)^2) + J/2*theta'^2 + Jw/2*(right'^2 + left'^2)"
     constraints = ["y'*c - x'*s", "ahead + b*theta' - r*right'", "ahead - b*theta' - r*left'"]
     forces = { right = "push_right - friction*right'", left = "push_left - friction*left'" }
+    basis = [
+        ["r*c/2", "r*s/2", "r/(2*b)", "1", "0"],
+        ["r*c/2", "r*s/2", "-r/(2*b)", "0", "1"],
+    ]
 }
 
 noslip::system! {
@@ -89,6 +103,10 @@ noslip::system! {
         y = "(push - drag*ahead)*s",
         delta = "200*(swing*sin(0.5*t) - delta) - 60*delta'",
     }
+    basis = [
+        ["L*cos(delta)*c", "L*cos(delta)*s", "sin(delta)", "0", "L*cos(delta)*sin(theta - behind)/b"],
+        ["0", "0", "0", "1", "0"],
+    ]
 }
 
 noslip::system! {
