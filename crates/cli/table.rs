@@ -28,7 +28,7 @@ pub(crate) const INTRO: &str = "Every method from the same start with the same s
     |A(q) v + b| at a node, for a blade its sideways slip. Over steps: the largest residual of the discrete constraint between two \
     nodes, which is round-off for the methods that solve that constraint, such as dla. Energy error: the largest |E - E0 - work| at a \
     node; the work is that of what drives or brakes the scene. Amplitude: how much the energy error oscillates: half its range after a \
-    straight line is subtracted, over 1/32 of the run. Energy drift: the slope of that line, with its 95 % confidence interval. DriftVerdict: \
+    straight line is subtracted, over 1/32 of the run. Energy drift: the slope of that line, with its 95 % confidence interval. Verdict: \
     whether the energy error is bounded, grows, or has diverged, by a test. End error: distance at the end from the closed form, or from gauss16 at a \
     quarter of the step where there is none, in metres or radians, whichever is larger. Newton: iterations a step. ns/step: time of the \
     steps alone, median of repeated runs. Cost: that time for each second of the motion. A method \
