@@ -8,7 +8,6 @@
 #[path = "text/systems.rs"]
 mod systems;
 
-use harness::METHODS as ALL;
 use harness::precision::{LEVELS, PrecisionPoint};
 use noslip::prelude::{Piecewise, System};
 use noslip::{PrecisionError, WorkPrecision};
@@ -44,10 +43,9 @@ fn ratio(tape: &[PrecisionPoint], compiled: &[PrecisionPoint]) -> Option<f64> {
 
 /// Measures a system in both forms, and prints its row.
 fn row<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(name: &str, system: &Sys) {
-    let known: Vec<&str> = ALL.iter().map(|info| info.name).collect();
+    let known: Vec<&str> = harness::METHODS.iter().map(|info| info.name).collect();
     let scene = AnyScene::load(name, &known).expect("a bundled scene");
-    let schedule = scene.schedule();
-    let duration = schedule.step * schedule.steps as f64;
+    let duration = scene.run().duration;
     let (tape, q, v) = scene.visit(Tape(duration)).expect("a system");
     // A shape with more coordinates than the system has them first.
     let start = (from_fn(|i| q[i]), from_fn(|i| v[i]));

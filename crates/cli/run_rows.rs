@@ -40,7 +40,7 @@ pub(crate) fn of(scene: &Scene) -> (&str, &RunSettings, Option<String>) {
     (&scene.title, &scene.run, scene.to_toml().ok())
 }
 
-/// The same of a sleigh or a train.
+/// What tells the run of a sleigh or of a train from others.
 pub(crate) fn identity(scene: &Scene, method: &Method, schedule: &Schedule) -> Checkpoint {
     // The steps of a smooth piece are chosen for its length: a longer run has others after the last jump.
     if scene.jumps().is_ok_and(|jumps| !jumps.is_empty()) {

@@ -13,7 +13,7 @@ pub(crate) trait ElementSystem<const N: usize, const M: usize>: Mechanics<N, M> 
     /// `L_q` at rest at eight places, and `L_qq` at rest in their middle.
     fn potential_slopes(&self, t: f64, path: &[Lanes; N], middle: &[f64; N]) -> ([Lanes; N], [[f64; N]; N]);
 
-    /// The derivatives of the constraints on positions at eight places; none where there are none.
+    /// The derivatives of the constraints on positions at eight places; none of a system without such constraints.
     fn position_slopes(&self, t: f64, path: &[Lanes; N]) -> Option<[Option<[Lanes; N]>; M]>;
 
     /// A body with the mean quasi-velocities `xi` over a step from `q0`; nothing where its basis ends.

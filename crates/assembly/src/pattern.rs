@@ -52,7 +52,7 @@ impl Pattern {
         Self::of_parts((assembly.coordinates(), assembly.rows()), &parts)
     }
 
-    /// That of `n` unknowns and `m` constraints.
+    /// The pattern of parts on `n` coordinates with `m` constraints.
     pub(crate) fn of_parts((n, m): (usize, usize), parts: &[PatternPart]) -> Self {
         let unknowns = n + m;
         // Columns first, so that the sorted keys are the compressed columns.

@@ -159,7 +159,7 @@ impl AssemblyWork {
     }
 }
 
-/// That of all forces and of time (W).
+/// The power of all forces and of time (W).
 fn power(assembly: &Assembly, t: f64, q: &[f64], v: &[f64]) -> f64 {
     let each = assembly.placed().iter().map(|placed| at(placed, q, v, |q, v| placed.element.power(t, q, v)));
     each.sum()

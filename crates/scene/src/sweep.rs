@@ -26,6 +26,7 @@ const COMMON: [&str; 8] = [
 
 /// How a member is run.
 const RUN: [&str; 5] = ["run.alpha", "run.duration", "run.method", "run.step", "run.tolerance"];
+
 const NUMBERS: &str = "keys of the scene's start, sleigh and effects that have a number, like start.speed, sleigh.offset, \
                        effects.0.stiffness.1, or run.step, run.duration, run.tolerance, run.alpha, run.method";
 

@@ -47,7 +47,7 @@ pub(super) struct SparseMeanEquations<'a> {
     pub(super) q0: &'a [f64],
     pub(super) kappa: f64,
     pub(super) path: &'a mut MeanPath,
-    /// That of the forces, as last evaluated (J).
+    /// The work of the forces, as last evaluated (J).
     pub(super) work: f64,
 }
 

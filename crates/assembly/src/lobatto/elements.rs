@@ -7,7 +7,7 @@ use crate::system_element::SystemElement;
 use dla::{Mechanics, StagePoint};
 use lagrangian::{Constraint, Scalar, System, position_rows};
 
-/// That of any system.
+/// The terms of a system at one stage.
 fn stage<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
     (t, h): (f64, f64),

@@ -7,6 +7,7 @@ use super::geometry::{PlotFrame, Span, drawable, visible};
 use super::picture::{FigureFormat, Picture, UNITS_PER_INCH};
 use super::thinning::{peaks, thin};
 use super::xml::label;
+
 const CENTIMETRES_PER_INCH: f64 = 2.54;
 /// So many points of a curve at most, and of one on a logarithmic axis, each the largest of a stretch.
 const POINTS: usize = 2000;

@@ -6,6 +6,7 @@ use super::{ClosedStart, ClosedStep};
 use crate::Sleigh;
 use dla::ClosedStepError;
 use lagrangian::{mul_add, sin_cos_wrapped};
+
 /// A part of the spin by which an expected one may differ from that before.
 const FAR: f64 = 0.125;
 
