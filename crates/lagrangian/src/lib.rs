@@ -43,6 +43,7 @@ mod num_dual;
 mod octaves;
 mod parametrised;
 mod piecewise;
+mod pivots;
 mod power;
 pub mod quadrature;
 mod reaction;
@@ -63,6 +64,7 @@ mod system;
 mod twofold;
 mod vector_field;
 mod with;
+mod with_basis;
 
 pub use along::acceleration_along;
 pub use attitude::Attitude;
@@ -96,6 +98,7 @@ pub use noether::{Conservation, CoordinateField, MomentumBalance, conservation, 
 pub use octaves::{octaves, of_octaves};
 pub use parametrised::{Member, Parametrised, Unparametrised};
 pub use piecewise::{Piecewise, whole_steps};
+pub use pivots::Pivots;
 pub use power::{force_power, lagrangian_power};
 pub use reaction::{position_misses, position_residual, position_rows, reaction_rows, rows_along};
 pub use reduced::{
@@ -117,3 +120,4 @@ pub use system::{Constraint, System, constraint_residual};
 pub use twofold::Twofold;
 pub use vector_field::{LieBracket, VectorField};
 pub use with::With;
+pub use with_basis::WithBasis;

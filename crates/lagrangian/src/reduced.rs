@@ -6,7 +6,9 @@ use thiserror::Error;
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum ReducedError {
     /// The system gives no basis of its admissible velocities.
-    #[error("the reduced equations need a basis of the admissible velocities, and the system has no basis")]
+    #[error(
+        "the reduced equations need a basis of the admissible velocities, and the system has no basis; `WithBasis` derives one"
+    )]
     NoBasis,
     /// The equations of motion, the basis or the constraint are degenerate.
     #[error(transparent)]

@@ -7,7 +7,7 @@
 //! | describe a system: its Lagrangian and its constraint | [`System`], [`Scalar`] |
 //! | say what its constraints are, and start on them | [`classify`], [`consistent_start`] |
 //! | give a body an attitude that ends nowhere; refuse steps near where other coordinates end | [`Attitude`], [`InChart`] |
-//! | add what acts on a body | [`Effect`], [`With`] |
+//! | add what acts on a body; derive a basis of the admissible velocities | [`Effect`], [`With`]; [`WithBasis`] |
 //! | ask what its constraints let it reach, and what its symmetries conserve | [`lagrangian::growth`], [`lagrangian::conservation`] |
 //! | choose a method | [`Dla`], [`DiscreteLagrangian`], [`OneStep`] |
 //! | run it and look on | [`drive`], [`Schedule`], [`State`], [`Observer`], [`Trajectory`] |
@@ -41,8 +41,8 @@ pub use dla::{
 pub use lagrangian::{
     self, AdmissibleBasis, Alpha, Attitude, Constraint, Derivatives, DiscreteConstraint, DiscreteLagrangian, Dual,
     Effect, HyperDual, Lanes, Member, Midpoint, Motion, MotionError, Parametrised, Reduced, Rule, Scalar,
-    ScalarFunction, Symmetrised, System, Trapezoid, With, classify, constraint_residual, energy, mass_matrix, momentum,
-    vectorized,
+    ScalarFunction, Symmetrised, System, Trapezoid, With, WithBasis, classify, constraint_residual, energy,
+    mass_matrix, momentum, vectorized,
 };
 pub use sleigh::{self, CentreOfMass, ClosedMap, Exact, Sleigh, SleighError, SleighState};
 
@@ -53,7 +53,8 @@ pub use macros;
 ///
 /// The keys and the texts are those of `[system]` in a scene file (the book, *Scene files*), with a structure before them. Its fields are
 /// the parameters, and their values in the text its [`Default`]. It is a [`System`] whose formulas are simplified, on any [`Scalar`]; where
-/// a basis of the admissible velocities is given, or can be seen, its [reduced equations](Reduced) are derived too. Each of the `outputs`
+/// a basis of the admissible velocities is given, or can be seen, its [reduced equations](Reduced) are derived too; for others
+/// [`WithBasis`] derives a basis as it runs. Each of the `outputs`
 /// is a function of time, coordinates and rates. A wrong text is an error of the compiler at its place.
 ///
 /// ```
@@ -109,14 +110,14 @@ where
 /// What a program with a system of its own uses: `use noslip::prelude::*`.
 pub mod prelude {
     pub use crate::{
-        AdmissibleBasis, Constraint, Dla, OneStep, Reduced, Scalar, Schedule, State, System, Trajectory,
+        AdmissibleBasis, Constraint, Dla, OneStep, Reduced, Scalar, Schedule, State, System, Trajectory, WithBasis,
         consistent_start, drive, method, system,
     };
     pub use lagrangian::Piecewise;
 }
 
 /// A method by its name in the table of methods: `noslip::method!("gauss16")`. Only the methods that a program names are compiled for its
-/// system. A name that is no method is an error of the compiler.
+/// system. Each changes the basis of a [`WithBasis`] at nodes where that becomes bad. A name that is no method is an error of the compiler.
 ///
 /// ```
 /// use noslip::prelude::*;
@@ -142,61 +143,61 @@ pub mod prelude {
 #[macro_export]
 macro_rules! method {
     ("dla") => {
-        $crate::Dla::midpoint()
+        $crate::dla::Rebased::new($crate::Dla::midpoint())
     };
     ("dla-trapezoid") => {
-        $crate::Dla::new($crate::Trapezoid, $crate::Trapezoid)
+        $crate::dla::Rebased::new($crate::Dla::new($crate::Trapezoid, $crate::Trapezoid))
     };
     ("dla4") => {
-        $crate::dla::Composition::suzuki4($crate::Dla::midpoint())
+        $crate::dla::Rebased::new($crate::dla::Composition::suzuki4($crate::Dla::midpoint()))
     };
     ("dla6") => {
-        $crate::dla::Composition::kahan_li6($crate::Dla::midpoint())
+        $crate::dla::Rebased::new($crate::dla::Composition::kahan_li6($crate::Dla::midpoint()))
     };
     ("dla8") => {
-        $crate::dla::Composition::fifteen8($crate::Dla::midpoint())
+        $crate::dla::Rebased::new($crate::dla::Composition::fifteen8($crate::Dla::midpoint()))
     };
     ("lobatto3") => {
-        $crate::dla::Lobatto::<3>::new()
+        $crate::dla::Rebased::new($crate::dla::Lobatto::<3>::new())
     };
     ("lobatto4") => {
-        $crate::dla::Lobatto::<4>::new()
+        $crate::dla::Rebased::new($crate::dla::Lobatto::<4>::new())
     };
     ("lobatto5") => {
-        $crate::dla::Lobatto::<5>::new()
+        $crate::dla::Rebased::new($crate::dla::Lobatto::<5>::new())
     };
     ("gauss4") => {
-        $crate::dla::Gauss::new::<2>()
+        $crate::dla::Rebased::new($crate::dla::Gauss::new::<2>())
     };
     ("gauss6") => {
-        $crate::dla::Gauss::new::<3>()
+        $crate::dla::Rebased::new($crate::dla::Gauss::new::<3>())
     };
     ("gauss8") => {
-        $crate::dla::Gauss::new::<4>()
+        $crate::dla::Rebased::new($crate::dla::Gauss::new::<4>())
     };
     ("gauss10") => {
-        $crate::dla::Gauss::new::<5>()
+        $crate::dla::Rebased::new($crate::dla::Gauss::new::<5>())
     };
     ("gauss12") => {
-        $crate::dla::Gauss::new::<6>()
+        $crate::dla::Rebased::new($crate::dla::Gauss::new::<6>())
     };
     ("gauss14") => {
-        $crate::dla::Gauss::new::<7>()
+        $crate::dla::Rebased::new($crate::dla::Gauss::new::<7>())
     };
     ("gauss16") => {
-        $crate::dla::Gauss::new::<8>()
+        $crate::dla::Rebased::new($crate::dla::Gauss::new::<8>())
     };
     ("energy2") => {
-        $crate::dla::Energy::new::<1>()
+        $crate::dla::Rebased::new($crate::dla::Energy::new::<1>())
     };
     ("energy4") => {
-        $crate::dla::Energy::new::<2>()
+        $crate::dla::Rebased::new($crate::dla::Energy::new::<2>())
     };
     ("energy6") => {
-        $crate::dla::Energy::new::<3>()
+        $crate::dla::Rebased::new($crate::dla::Energy::new::<3>())
     };
     ("energy8") => {
-        $crate::dla::Energy::new::<4>()
+        $crate::dla::Rebased::new($crate::dla::Energy::new::<4>())
     };
     ("gni") => {
         $crate::dla::Gni::default()

@@ -1,9 +1,9 @@
 //! What the constraints of a system are at its start.
 
-use crate::basis::Pivots;
 use crate::{TextModel, TextStart};
 use ::formulas::Formulas;
 use expression::{Expression, Graph, Tape};
+use lagrangian::Pivots;
 use nalgebra::DMatrix;
 
 /// The rank of the constraints at a place, and how the directions that they admit grow by Lie brackets.

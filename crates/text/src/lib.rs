@@ -29,7 +29,6 @@
 //! ```
 
 mod any;
-mod basis;
 mod family;
 mod geometry;
 mod model;

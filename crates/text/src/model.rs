@@ -4,6 +4,7 @@ use crate::{Entry, MOST_CONSTRAINTS, MOST_COORDINATES, Problem, TextError, Unit,
 use ::formulas::{Formulas, Parameters, RowElimination};
 use expression::Expression;
 use lagrangian::Dual;
+use lagrangian::Pivots;
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 
@@ -215,11 +216,10 @@ impl TextModel {
         g
     }
 
-    /// The sizes of rates with the same kinetic energy; one of a rate without.
+    /// The sizes of rates with the same kinetic energy.
     pub(crate) fn sizes(&self, t: f64, q: &[f64]) -> Vec<f64> {
         let mass = self.mass_at(t, q, &vec![0.0; q.len()]);
-        let size = |mass: f64| if mass > 0.0 && mass.is_finite() { mass.sqrt().recip() } else { 1.0 };
-        mass.diagonal().iter().map(|mass| size(*mass)).collect()
+        Pivots::sizes(mass.diagonal().iter().copied()).collect()
     }
 
     /// The mass matrix `L_vv`.

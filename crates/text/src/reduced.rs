@@ -1,9 +1,9 @@
 //! The reduced equations of a system of text, derived when they are first asked for.
 
-use crate::basis::Pivots;
 use crate::tapes::{TapePoint, Tapes};
 use crate::{TextModel, TextSystem};
 use ::formulas::{Formulas, ReducedFormulas};
+use lagrangian::Pivots;
 use lagrangian::{Reduced, Scalar};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};

@@ -1,8 +1,7 @@
 use crate::TextModel;
-use crate::basis::Pivots;
 use crate::reduced::Equations;
 use crate::tapes::TapePoint;
-use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Reduced, Scalar, System};
+use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Pivots, Reduced, Scalar, System};
 use std::sync::Arc;
 
 /// A system of text, of `N` coordinates and `M` constraints.

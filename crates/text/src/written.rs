@@ -1,9 +1,9 @@
 //! The reduced equations of a system of text, as a text again.
 
-use crate::basis::Pivots;
 use crate::tapes::{TapePoint, Tapes};
 use crate::{TextModel, TextStart};
 use expression::Names;
+use lagrangian::Pivots;
 use nalgebra::{DMatrix, DVector};
 
 /// The equations of motion in a basis of the admissible velocities, `q' = W xi + v_b`, `xi' = f(t, q, xi)`, in the words of a scene.

@@ -1,22 +1,36 @@
-//! A basis of the admissible velocities by elimination, where a text gives none.
+//! A basis of the admissible velocities by elimination, where a system gives none.
 
-use crate::MOST_CONSTRAINTS;
-use lagrangian::Scalar;
+use crate::Scalar;
 use nalgebra::DMatrix;
+
+/// Where a rate becomes so many times the others, or an entry so many times a pivot, other pivots are chosen: the best value of both is
+/// about one.
+const MOST: f64 = 3.0;
 
 /// Which rate each constraint is solved for, in the order of the elimination.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Pivots {
+pub struct Pivots {
     /// Rows with their columns.
-    order: [(u8, u8); MOST_CONSTRAINTS],
+    order: [(u8, u8); Self::MOST_ROWS],
     count: u8,
 }
 
 impl Pivots {
+    /// So many constraints have pivots, at most: seven bits tell the row and the column of each, and their [number](Self::number) is exact
+    /// as a number of 53 bits.
+    pub const MOST_ROWS: usize = 7;
+    /// And so many coordinates.
+    pub const MOST_COLUMNS: usize = 16;
+
     /// Those that are best conditioned for these rows: by elimination with complete pivoting, of rows of length one and of columns in the
     /// sizes of their rates, so that neither the scale of a constraint nor the unit of a coordinate counts.
-    pub(crate) fn best(rows: &DMatrix<f64>, sizes: &[f64]) -> Self {
+    ///
+    /// `rows` are the constraints, at most [`MOST_ROWS`](Self::MOST_ROWS), of coordinates, at most [`MOST_COLUMNS`](Self::MOST_COLUMNS);
+    /// further ones have no pivot.
+    #[must_use]
+    pub fn best(rows: &DMatrix<f64>, sizes: &[f64]) -> Self {
         let (m, n) = rows.shape();
+        let (m, n) = (m.min(Self::MOST_ROWS), n.min(Self::MOST_COLUMNS));
         let mut a = rows.clone();
         for (mut column, size) in a.column_iter_mut().zip(sizes) {
             column.scale_mut(*size);
@@ -27,7 +41,7 @@ impl Pivots {
                 row.unscale_mut(length);
             }
         }
-        let mut pivots = Self { order: [(0, 0); MOST_CONSTRAINTS], count: m as u8 };
+        let mut pivots = Self { order: [(0, 0); Self::MOST_ROWS], count: m as u8 };
         let (mut left, mut free): (Vec<usize>, Vec<usize>) = ((0..m).collect(), (0..n).collect());
         for place in &mut pivots.order[..m] {
             let all = left.iter().flat_map(|&r| free.iter().map(move |&c| (r, c)));
@@ -49,14 +63,23 @@ impl Pivots {
         pivots
     }
 
+    /// The sizes of rates with the same kinetic energy, where `masses` is the diagonal of the mass matrix.
+    pub fn sizes(masses: impl IntoIterator<Item = f64>) -> impl Iterator<Item = f64> {
+        // A rate without kinetic energy has the size one.
+        masses.into_iter().map(|mass| if mass > 0.0 && mass.is_finite() { mass.sqrt().recip() } else { 1.0 })
+    }
+
     /// A whole number that says all of it, from one on.
-    pub(crate) fn number(&self) -> u64 {
+    #[must_use]
+    pub fn number(&self) -> u64 {
         1 + self.order().fold(0, |number, (r, c)| number << 7 | (r as u64) << 4 | c as u64)
     }
 
     /// Those with that number, of so many rows.
-    pub(crate) fn numbered(number: u64, rows: usize) -> Self {
-        let mut pivots = Self { order: [(0, 0); MOST_CONSTRAINTS], count: rows as u8 };
+    #[must_use]
+    pub fn numbered(number: u64, rows: usize) -> Self {
+        let rows = rows.min(Self::MOST_ROWS);
+        let mut pivots = Self { order: [(0, 0); Self::MOST_ROWS], count: rows as u8 };
         let mut rest = number.saturating_sub(1);
         for place in pivots.order[..rows].iter_mut().rev() {
             *place = ((rest >> 4 & 7) as u8, (rest & 15) as u8);
@@ -65,33 +88,55 @@ impl Pivots {
         pivots
     }
 
-    /// Whether the rates that are solved for stay within so many times those that are free, each in its size.
-    pub(crate) fn are_good<const N: usize, const M: usize>(
-        &self,
-        n: usize,
-        rows: [[f64; N]; M],
-        sizes: &[f64],
-    ) -> bool {
-        /// Where a rate becomes so many times the others, another one is solved for: its best value is about one.
-        const MOST: f64 = 3.0;
+    /// Whether the rates that are solved for stay within so many times those that are free, each in its size, and no pivot is much smaller
+    /// than another that could stand in its place.
+    #[must_use]
+    pub fn are_good<const N: usize, const M: usize>(&self, n: usize, rows: [[f64; N]; M], sizes: &[f64]) -> bool {
         let vectors = self.basis(n, rows);
         let solved =
             |vector: &[f64; N], i: usize| self.order().all(|(_, c)| (vector[c] * sizes[i]).abs() <= MOST * sizes[c]);
-        vectors.iter().zip(self.free(n)).all(|(vector, i)| solved(vector, i))
+        self.are_large(n, rows, sizes) && vectors.iter().zip(self.free(n)).all(|(vector, i)| solved(vector, i))
+    }
+
+    /// Whether each pivot is one of the larger entries that are left of the rows and columns of all pivots, both in their sizes. (Two rates
+    /// may be the right ones to solve for, and the order the wrong one.)
+    fn are_large<const N: usize, const M: usize>(&self, n: usize, mut a: [[f64; N]; M], sizes: &[f64]) -> bool {
+        for row in &mut a {
+            row.iter_mut().zip(sizes).for_each(|(x, size)| *x *= size);
+            let length = row[..n].iter().map(|x| x * x).sum::<f64>().sqrt();
+            row.iter_mut().for_each(|x| *x /= length);
+        }
+        for (place, (r, c)) in self.order().enumerate() {
+            let pivot = a[r][c];
+            let large = |(i, j): (usize, usize)| a[i][j].abs() <= MOST * pivot.abs();
+            let left = || self.order().skip(place);
+            if !left().all(|(i, _)| left().all(|(_, j)| large((i, j)))) {
+                return false;
+            }
+            let row = a[r];
+            for (i, _) in left().skip(1) {
+                let factor = a[i][c] / pivot;
+                a[i].iter_mut().zip(&row).for_each(|(x, y)| *x -= factor * y);
+            }
+        }
+        true
     }
 
     /// Rows with their columns, in the order of the elimination.
-    pub(crate) fn order(&self) -> impl Iterator<Item = (usize, usize)> {
+    pub fn order(&self) -> impl Iterator<Item = (usize, usize)> {
         self.order[..usize::from(self.count)].iter().map(|&(r, c)| (usize::from(r), usize::from(c)))
     }
 
     /// The coordinates whose rates are free.
-    pub(crate) fn free(&self, n: usize) -> impl Iterator<Item = usize> {
+    pub fn free(&self, n: usize) -> impl Iterator<Item = usize> {
         (0..n).filter(|&i| self.order().all(|(_, c)| c != i))
     }
 
     /// The velocities that these rows admit, one for each free rate: with that rate one, and the other free rates zero.
-    pub(crate) fn basis<S: Scalar, const N: usize, const M: usize>(&self, n: usize, mut a: [[S; N]; M]) -> [[S; N]; N] {
+    ///
+    /// `n` is the number of coordinates, the first of the `N` places.
+    #[must_use]
+    pub fn basis<S: Scalar, const N: usize, const M: usize>(&self, n: usize, mut a: [[S; N]; M]) -> [[S; N]; N] {
         for (r, c) in self.order() {
             let inverse = a[r][c].recip();
             for x in &mut a[r][..n] {
