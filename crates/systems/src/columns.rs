@@ -69,8 +69,8 @@ where
     let lambda = piece.motion(node.t, &node.q, &node.v).map_or([f64::NAN; M], |motion| motion.multiplier);
     // The first constraint is that of the blade.
     let force = lambda.first().copied().unwrap_or(0.0);
-    let mut row = vec![node.t, x, y, heading, speed, turn_rate, node.energy, node.constraint, force];
-    row.extend([center_x, center_y]);
+    let mut row = Vec::with_capacity(SLEIGH.len() + 4);
+    row.extend([node.t, x, y, heading, speed, turn_rate, node.energy, node.constraint, force, center_x, center_y]);
     row.extend(piece.rotor(&node.q, &node.v).into_iter().flatten());
     let powers = piece.powers(node.t, &node.q, &node.v, &lambda);
     if !powers.is_empty() {

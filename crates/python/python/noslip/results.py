@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -12,15 +13,22 @@ from numpy.typing import NDArray
 class Run(Mapping[str, NDArray[np.float64]]):
     """The nodes of a run by column name, `run["x"]` or `run.x`, and what the program says of it.
 
-    `units` has the unit of each column, `object` the object of `noslip run --json`.
+    `units` has the unit of each column.
     """
 
     def __init__(
-        self, columns: dict[str, NDArray[np.float64]], units: dict[str, str], object: dict[str, Any]
+        self, columns: dict[str, NDArray[np.float64]], units: dict[str, str], object: dict[str, Any] | str
     ) -> None:
         self._columns = columns
         self.units = units
-        self.object = object
+        self._object = object
+
+    @property
+    def object(self) -> dict[str, Any]:
+        """The object of `noslip run --json`, read when it is first asked for."""
+        if isinstance(self._object, str):
+            self._object = dict(json.loads(self._object))
+        return self._object
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
         try:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import tempfile
 import warnings
 from collections.abc import Iterable, Mapping
@@ -164,7 +163,7 @@ class Scene:
         with shown(progress) as tell:
             made = checked.run(every, times, tolerance, substep, _list(events), _list(until), backward, tell)
         columns, units, text, failure, ended = made
-        result = Run(columns, dict(units), json.loads(text))
+        result = Run(columns, dict(units), text)
         if isinstance(ended, KeyboardInterrupt):
             raise Interrupted(result) from None
         if ended is not None:
