@@ -32,10 +32,13 @@ impl<Sys: System<N, M>, const BASIS: bool, const N: usize, const M: usize> Syste
     }
 }
 
+/// Makes a method.
+type Make<'a, const N: usize, const M: usize> = &'a dyn Fn() -> Box<dyn OneStep<N, M>>;
+
 /// The least time of a step, of some rounds (ns); none where a step fails.
 fn step<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
-    method: &dyn Fn() -> Box<dyn OneStep<N, M>>,
+    method: Make<'_, N, M>,
     (q, v): ([f64; N], [f64; N]),
 ) -> Option<f64> {
     const STEPS: u64 = 1000;
@@ -59,7 +62,7 @@ where
     let derived = WithBasis::new(bare.clone(), 0.0, &start.0);
     let given = Without::<_, true>(system.clone());
     let forms: [&dyn Mechanics<N, M>; 4] = [&bare, &derived, &given, system];
-    let methods: [(&str, &dyn Fn() -> Box<dyn OneStep<N, M>>); 2] =
+    let methods: [(&str, Make<'_, N, M>); 2] =
         [("dla", &|| Box::new(method!("dla"))), ("gauss16", &|| Box::new(method!("gauss16")))];
     for (method, make) in methods {
         print!("| {name} | `{method}` |");
