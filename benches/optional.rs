@@ -51,7 +51,8 @@ fn step<const N: usize, const M: usize>(
     (0..9).map(round).reduce(|a, b| Some(a?.min(b?)))?
 }
 
-/// The rows of a system, from the admissible velocity nearest to `v`: two functions alone, with a derived basis, with its own, and with its reduced equations.
+/// The rows of a system, from the admissible velocity nearest to `v`: two functions alone, with a derived basis, with its own, and with
+/// its reduced equations.
 fn row<Sys, const N: usize, const M: usize>(name: &str, system: &Sys, (q, v): ([f64; N], [f64; N]))
 where
     Sys: System<N, M> + Clone,

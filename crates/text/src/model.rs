@@ -3,8 +3,7 @@ use crate::tapes::{TapePoint, Tapes};
 use crate::{Entry, MOST_CONSTRAINTS, MOST_COORDINATES, Problem, TextError, Unit, Words};
 use ::formulas::{Formulas, Parameters, RowElimination};
 use expression::Expression;
-use lagrangian::Dual;
-use lagrangian::Pivots;
+use lagrangian::{Dual, Pivots};
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 

@@ -3,8 +3,7 @@
 use crate::tapes::{TapePoint, Tapes};
 use crate::{TextModel, TextSystem};
 use ::formulas::{Formulas, ReducedFormulas};
-use lagrangian::Pivots;
-use lagrangian::{Reduced, Scalar};
+use lagrangian::{Pivots, Reduced, Scalar};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
