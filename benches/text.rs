@@ -3,7 +3,7 @@
 //! Each row is a bundled scene, its start and its duration. First the time of the compiled system to an error at the end, by the cheapest
 //! of the methods; then how many times as long the tape takes for the same steps, or tolerances, by each method: the geometric mean.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
+#![allow(missing_docs, dead_code, clippy::unwrap_used, clippy::expect_used)]
 
 #[path = "text/systems.rs"]
 mod systems;

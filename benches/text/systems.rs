@@ -27,15 +27,25 @@ noslip::system! {
     ]
 }
 
-noslip::system! {
-    pub(crate) struct Snakeboard;
-    coordinates = { x = "m", y = "m", theta = "angle", psi = "angle", phi = "angle" }
-    parameters = { m = 6.0, l = 0.2, J = 0.016, Jr = 0.072, Jw = 0.0013, twist = 0.5, steer = 0.02, rate = 3.0 }
-    let = { c = "cos(theta)", s = "sin(theta)", ahead = "x'*c + y'*s" }
-    lagrangian = "m/2*(x'^2 + y'^2) + J/2*theta'^2 + Jr/2*(theta' + psi')^2
-        + Jw/2*((theta' + phi')^2 + (theta' - phi')^2)"
-    constraints = ["y'*c - x'*s", "sin(phi)*ahead + l*cos(phi)*theta'"]
-    forces = { psi = "twist*cos(rate*t)", phi = "steer*cos(rate*t)" }
+/// The snakeboard, and whatever its text has besides.
+macro_rules! snakeboard {
+    ($name:ident; $($more:tt)*) => {
+        noslip::system! {
+            pub(crate) struct $name;
+            coordinates = { x = "m", y = "m", theta = "angle", psi = "angle", phi = "angle" }
+            parameters = { m = 6.0, l = 0.2, J = 0.016, Jr = 0.072, Jw = 0.0013, twist = 0.5, steer = 0.02, rate = 3.0 }
+            let = { c = "cos(theta)", s = "sin(theta)", ahead = "x'*c + y'*s" }
+            lagrangian = "m/2*(x'^2 + y'^2) + J/2*theta'^2 + Jr/2*(theta' + psi')^2
+                + Jw/2*((theta' + phi')^2 + (theta' - phi')^2)"
+            constraints = ["y'*c - x'*s", "sin(phi)*ahead + l*cos(phi)*theta'"]
+            forces = { psi = "twist*cos(rate*t)", phi = "steer*cos(rate*t)" }
+            $($more)*
+        }
+    };
+}
+snakeboard! { SnakeboardWithoutBasis; }
+snakeboard! {
+    Snakeboard;
     basis = [
         ["l*cos(phi)*c", "l*cos(phi)*s", "-sin(phi)", "0", "0"],
         ["0", "0", "0", "1", "0"],

@@ -1,10 +1,16 @@
 //! Systems that give no basis of their admissible velocities move in one that is derived, and keep what methods promise.
 
-#![allow(missing_docs, clippy::unwrap_used)]
+#![allow(missing_docs, dead_code, clippy::unwrap_used)]
+
+#[path = "../../../benches/text/systems.rs"]
+mod systems;
+#[path = "../../../benches/text/without.rs"]
+mod without;
 
 use noslip::dla::{Gauss, Mechanics, Rebased};
 use noslip::prelude::*;
 use noslip::{Sleigh, SleighState, StepError, constraint_residual};
+use without::Without;
 
 /// The state at the end of a run.
 fn end<const N: usize, const M: usize>(
@@ -25,22 +31,6 @@ fn distance<const N: usize>(a: &State<N>, b: &State<N>) -> f64 {
     pairs.fold(0.0, |most, (a, b)| f64::max(most, (a - b).abs()))
 }
 
-/// A system that says all of another but its basis.
-#[derive(Clone)]
-struct Bare<Sys>(Sys);
-
-impl<Sys: System<N, M>, const N: usize, const M: usize> System<N, M> for Bare<Sys> {
-    fn lagrangian<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> S {
-        self.0.lagrangian(t, q, v)
-    }
-    fn constraint<S: Scalar>(&self, t: S, q: &[S; N]) -> Constraint<S, N, M> {
-        self.0.constraint(t, q)
-    }
-    fn force<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
-        self.0.force(t, q, v)
-    }
-}
-
 /// Bases in use along a run, and what the methods keep in them.
 fn check<Sys, const N: usize, const M: usize>(
     name: &str,
@@ -52,7 +42,7 @@ fn check<Sys, const N: usize, const M: usize>(
     Sys: System<N, M> + Clone,
 {
     let reference = end(&system, &mut method!("gauss16"), start, (duration, steps)).unwrap();
-    let bare = Bare(system);
+    let bare = Without::<_, false>(system);
     let refused = end(&bare, &mut method!("gauss16"), start, (duration, steps)).unwrap_err();
     assert!(refused.to_string().contains("`WithBasis`"), "{name}: {refused}");
     let derived = WithBasis::new(bare, 0.0, &start.0);
@@ -90,7 +80,7 @@ fn the_sleigh_turns_around() {
     let start = SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() }.to_coordinates();
     check("sleigh", sleigh, start, (10.0, 200), false);
     // The basis of the beginning is bad where the blade has turned a quarter.
-    let derived = WithBasis::new(Bare(sleigh), 0.0, &start.0);
+    let derived = WithBasis::new(Without::<_, false>(sleigh), 0.0, &start.0);
     let quarter = [0.0, 0.0, std::f64::consts::FRAC_PI_2];
     let at = |q: &[f64; 3]| System::<3, 1>::near(&derived, 0.0, q, 0).unwrap().1;
     assert_ne!(at(&start.0), at(&quarter));
@@ -101,7 +91,7 @@ fn the_sleigh_turns_around() {
 fn a_basis_that_stays_is_lost() {
     let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
     let start = SleighState { speed: 1.0, turn_rate: 1.0, ..SleighState::default() }.to_coordinates();
-    let derived = WithBasis::new(Bare(sleigh), 0.0, &start.0);
+    let derived = WithBasis::new(Without::<_, false>(sleigh), 0.0, &start.0);
     let reference = end(&sleigh, &mut method!("gauss16"), start, (10.0, 100)).unwrap();
     let good = end(&derived, &mut Rebased::new(Gauss::new::<2>()), start, (10.0, 100)).unwrap();
     assert!(distance(&good, &reference) < 1e-4, "{:e}", distance(&good, &reference));
@@ -123,46 +113,18 @@ fn the_rolling_disk_turns() {
     check("rolling disk", disk, (q, v), (8.0, 200), false);
 }
 
-noslip::system! {
-    /// A snakeboard, driven by its rider, whose constraints can be solved for no rate at every configuration.
-    struct Snakeboard;
-    coordinates = { x = "m", y = "m", theta = "angle", psi = "angle", phi = "angle" }
-    parameters = { m = 6.0, l = 0.2, J = 0.016, Jr = 0.072, Jw = 0.0013, twist = 0.5, steer = 0.02, rate = 3.0 }
-    let = { c = "cos(theta)", s = "sin(theta)", ahead = "x'*c + y'*s" }
-    lagrangian = "m/2*(x'^2 + y'^2) + J/2*theta'^2 + Jr/2*(theta' + psi')^2
-        + Jw/2*((theta' + phi')^2 + (theta' - phi')^2)"
-    constraints = ["y'*c - x'*s", "sin(phi)*ahead + l*cos(phi)*theta'"]
-    forces = { psi = "twist*cos(rate*t)", phi = "steer*cos(rate*t)" }
-}
-
-noslip::system! {
-    /// The same with its basis.
-    struct SnakeboardInItsBasis;
-    coordinates = { x = "m", y = "m", theta = "angle", psi = "angle", phi = "angle" }
-    parameters = { m = 6.0, l = 0.2, J = 0.016, Jr = 0.072, Jw = 0.0013, twist = 0.5, steer = 0.02, rate = 3.0 }
-    let = { c = "cos(theta)", s = "sin(theta)", ahead = "x'*c + y'*s" }
-    lagrangian = "m/2*(x'^2 + y'^2) + J/2*theta'^2 + Jr/2*(theta' + psi')^2
-        + Jw/2*((theta' + phi')^2 + (theta' - phi')^2)"
-    constraints = ["y'*c - x'*s", "sin(phi)*ahead + l*cos(phi)*theta'"]
-    forces = { psi = "twist*cos(rate*t)", phi = "steer*cos(rate*t)" }
-    basis = [
-        ["l*cos(phi)*c", "l*cos(phi)*s", "-sin(phi)", "0", "0"],
-        ["0", "0", "0", "1", "0"],
-        ["0", "0", "0", "0", "1"],
-    ]
-}
-
 /// The text in Rust that gives no basis moves as the text that gives one.
 #[test]
 fn a_text_without_a_basis() {
     let start = ([0.0, 0.0, 0.0, 0.0, -0.5], [0.0; 5]);
-    let given = SnakeboardInItsBasis::default();
+    let given = systems::Snakeboard::default();
     check("snakeboard", given, start, (6.0, 1200), true);
-    let reference = end(&SnakeboardInItsBasis::default(), &mut method!("gauss16"), start, (6.0, 600)).unwrap();
-    let text = WithBasis::new(Snakeboard::default(), 0.0, &start.0);
+    let reference = end(&systems::Snakeboard::default(), &mut method!("gauss16"), start, (6.0, 600)).unwrap();
+    let text = WithBasis::new(systems::SnakeboardWithoutBasis::default(), 0.0, &start.0);
     let found = end(&text, &mut method!("gauss16"), start, (6.0, 600)).unwrap();
     assert!(distance(&found, &reference) < 1e-10, "{:e}", distance(&found, &reference));
-    let refused = end(&Snakeboard::default(), &mut method!("gauss16"), start, (6.0, 600)).unwrap_err();
+    let refused =
+        end(&systems::SnakeboardWithoutBasis::default(), &mut method!("gauss16"), start, (6.0, 600)).unwrap_err();
     assert!(refused.to_string().contains("`WithBasis`"), "{refused}");
 }
 
