@@ -3,7 +3,8 @@ use crate::joint::{Joint, JointElement};
 use crate::local::WIDEST;
 use crate::system_element::SystemElement;
 use crate::{AssemblyError, ConstraintRow};
-use lagrangian::System;
+use lagrangian::{Piecewise, System};
+use std::sync::Arc;
 
 /// A large system as an assembly of small ones: elements on coordinates that they share.
 ///
@@ -33,9 +34,9 @@ pub struct Assembly {
 }
 
 /// An element where it acts.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct PlacedElement {
-    pub(crate) element: Box<dyn Element>,
+    pub(crate) element: Arc<dyn Element>,
     pub(crate) name: &'static str,
     /// The coordinates of the assembly that are those of the element.
     pub(crate) at: Box<[usize]>,
@@ -67,11 +68,11 @@ impl Assembly {
     /// Adds a system with coordinates of its own, and returns which those are.
     pub fn body<Sys, const N: usize, const M: usize>(&mut self, name: &'static str, system: Sys) -> [usize; N]
     where
-        Sys: System<N, M> + Send + Sync + 'static,
+        Sys: System<N, M> + Piecewise + Send + Sync + 'static,
     {
         let at = lagrangian::from_fn(|i| self.angles.len() + i);
         self.angles.extend(system.angles());
-        self.place(name, Box::new(SystemElement { system: Box::new(system) }), &at);
+        self.place(name, Arc::new(SystemElement { system: Box::new(system) }), &at);
         at
     }
 
@@ -86,10 +87,10 @@ impl Assembly {
         at: [usize; N],
     ) -> Result<(), AssemblyError>
     where
-        Sys: System<N, M> + Send + Sync + 'static,
+        Sys: System<N, M> + Piecewise + Send + Sync + 'static,
     {
         self.check(name, &at)?;
-        self.place(name, Box::new(SystemElement { system: Box::new(system) }), &at);
+        self.place(name, Arc::new(SystemElement { system: Box::new(system) }), &at);
         Ok(())
     }
 
@@ -107,7 +108,7 @@ impl Assembly {
         J: Joint<N, M> + 'static,
     {
         self.check(name, &at)?;
-        self.place(name, Box::new(JointElement { joint }), &at);
+        self.place(name, Arc::new(JointElement { joint }), &at);
         Ok(())
     }
 
@@ -120,13 +121,29 @@ impl Assembly {
         }
     }
 
-    fn place(&mut self, name: &'static str, element: Box<dyn Element>, at: &[usize]) {
+    fn place(&mut self, name: &'static str, element: Arc<dyn Element>, at: &[usize]) {
         let (_, rows) = element.size();
         let mut origins = vec![None; at.len()];
         element.origins(&mut origins);
         let origins = origins.iter().any(Option::is_some).then(|| origins.into());
         self.placed.push(PlacedElement { element, name, at: at.into(), row: self.rows, rows, origins });
         self.rows += rows;
+    }
+
+    /// The times at which one of its elements jumps, in the open interval from `from` to `to` (s), in any order.
+    #[must_use]
+    pub fn jump_times(&self, from: f64, to: f64) -> Vec<f64> {
+        self.placed.iter().flat_map(|placed| placed.element.jump_times(from, to)).collect()
+    }
+
+    /// The smooth piece of it that holds at the time `t` (s), continued to all times: an assembly of the same pattern.
+    #[must_use]
+    pub fn smooth_piece(&self, t: f64) -> Self {
+        let piece = |placed: &PlacedElement| {
+            let element = placed.element.smooth_piece(t).map_or_else(|| Arc::clone(&placed.element), Arc::from);
+            PlacedElement { element, ..placed.clone() }
+        };
+        Self { placed: self.placed.iter().map(piece).collect(), angles: self.angles.clone(), rows: self.rows }
     }
 
     /// How many coordinates there are.

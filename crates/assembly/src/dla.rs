@@ -3,6 +3,7 @@ use crate::contributions::{MatrixPart, at_state, gathered};
 use crate::equations::AssemblyEquations;
 use crate::linear::Linear;
 use crate::local::WIDEST;
+use crate::projection::project;
 use crate::terms;
 use crate::{Assembly, AssemblyError, AssemblyMethod, AssemblyReport, AssemblyState, Solver};
 use dla::Stage;
@@ -37,7 +38,7 @@ pub struct SparseDla {
 const NEAR: f64 = 1.0;
 
 /// With fewer elements, threads cost more than they gain.
-const PARALLEL: usize = 2048;
+pub(crate) const PARALLEL: usize = 2048;
 
 impl std::fmt::Debug for SparseDla {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -142,20 +143,7 @@ impl SparseDla {
         // The right side of the equations is what the momenta still lack.
         equations.contributions.add_momenta(assembly, -1.0, p);
         v1.copy_from_slice(v);
-        let evaluate = |equations: &mut AssemblyEquations, v1: &[f64], derivatives: bool| {
-            equations.contributions.ask(assembly, derivatives, &|placed, out| {
-                gathered(
-                    placed,
-                    |i| q1[i],
-                    |q1| {
-                        gathered(placed, |i| v1[i], |v1| placed.element.velocity(t0 + h, q1, v1, out));
-                    },
-                );
-            });
-            equations.write(assembly, derivatives.then_some(MatrixPart::All), p);
-        };
-        let terms = |sizes: &mut [f64]| terms::add(assembly, (t0 + h, h), |i| q1[i], |i| v[i], sizes);
-        equations.newton((assembly, Stage::Projection), v1, terms, evaluate)
+        project(equations, (assembly, t0 + h, h), (q1, v), p, v1)
     }
 
     /// By how much the constraint turns that turns most (rad).
@@ -203,7 +191,7 @@ impl SparseDla {
 
 impl AssemblyEquations {
     /// The right side, minus the momenta and the levels; and a part of the matrix.
-    fn write(&mut self, assembly: &Assembly, part: Option<MatrixPart>, p: &[f64]) {
+    pub(crate) fn write(&mut self, assembly: &Assembly, part: Option<MatrixPart>, p: &[f64]) {
         let Self { contributions, linear: Linear { pattern, values, right, .. }, .. } = self;
         let n = assembly.coordinates();
         let (momenta, levels) = right.split_at_mut(n);

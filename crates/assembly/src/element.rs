@@ -36,6 +36,16 @@ pub trait Element: EnergyElement + StageElement + Debug + Send + Sync {
     /// Which of its coordinates are angles.
     fn angles(&self, angles: &mut [bool]);
 
+    /// The times at which it jumps, as [`Piecewise`](lagrangian::Piecewise) says; none by default.
+    fn jump_times(&self, _from: f64, _to: f64) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// The smooth piece of it that holds at the time `t` (s), continued to all times; `None`, the default, of one that never jumps.
+    fn smooth_piece(&self, _t: f64) -> Option<Box<dyn Element>> {
+        None
+    }
+
     /// Which of its coordinates each may be measured from, at the end of a step and in [`misses`](Self::misses): where only their
     /// difference counts, it keeps the digits that large coordinates have lost. None by default.
     fn origins(&self, _origins: &mut [Option<usize>]) {}

@@ -88,6 +88,11 @@ impl AssemblyState {
         self.coordinates[i].advance_with_acceleration(h, &[increment], [v], [acceleration]);
     }
 
+    /// Gives a coordinate another velocity where it is: what the last steps left to the next holds no more.
+    pub(crate) fn set_velocity(&mut self, i: usize, v: f64) {
+        self.coordinates[i].advance(&[0.0], [v], None);
+    }
+
     /// The same place with the opposite velocity.
     #[must_use]
     pub fn reversed(&self) -> Self {

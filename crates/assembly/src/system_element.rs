@@ -45,6 +45,14 @@ impl<const N: usize, const M: usize> Element for SystemElement<N, M> {
         angles.copy_from_slice(&self.system.angles());
     }
 
+    fn jump_times(&self, from: f64, to: f64) -> Vec<f64> {
+        self.system.jumps_between(from, to)
+    }
+
+    fn smooth_piece(&self, t: f64) -> Option<Box<dyn Element>> {
+        Some(Box::new(Self { system: self.system.piece_at(t) }))
+    }
+
     fn beginning(&self, t: f64, q: &[f64], v: &[f64], out: ElementBlocks<'_>) {
         let (q, v) = (local(q), local(v));
         out.momentum.copy_from_slice(&self.system.momentum(t, &q, &v));

@@ -98,6 +98,11 @@ impl AssemblyWork {
         report: &AssemblyReport,
     ) {
         let work = report.work.unwrap_or_else(|| self.over_step(assembly, before, after));
+        self.add(work);
+    }
+
+    /// Adds the work of an impulse (J).
+    pub fn add(&mut self, work: f64) {
         if work != 0.0 {
             // With compensation.
             (self.total, self.rest) = added(self.total, work + self.rest);

@@ -14,7 +14,7 @@ pub trait Visitor {
 }
 
 /// Hands a system to a visitor.
-fn handed<V: Visitor>(system: AnySystem, visitor: V) -> V::Output {
+pub(crate) fn handed<V: Visitor>(system: AnySystem, visitor: V) -> V::Output {
     match system {
         AnySystem::Sleigh(Started { system, q, v }) => visitor.visit(Built::Sleigh(&*system), q, v),
         AnySystem::One(Started { system, q, v }) => visitor.visit(Built::Sleigh(&*system), q, v),
@@ -94,7 +94,7 @@ impl Scene {
     }
 
     /// The same of the first blade alone, where others follow it.
-    fn first_blade(&self) -> Result<AnySystem, SleighError> {
+    pub(crate) fn first_blade(&self) -> Result<AnySystem, SleighError> {
         systems::system(self.guiding()?, self.rotor()?, self.acting()?, &self.start)
     }
 
@@ -124,7 +124,7 @@ impl Scene {
         Ok(handed(self.first_blade()?, Jumps(self.run.duration)))
     }
 
-    fn rotor(&self) -> Result<Option<Rotor>, SleighError> {
+    pub(crate) fn rotor(&self) -> Result<Option<Rotor>, SleighError> {
         for effect in &self.effects {
             if let SceneEffect::Flywheel { inertia, rotor_rate, torque } = effect {
                 let torque = torque.as_ref().map(crate::TimeSpec::build).transpose()?;
@@ -165,7 +165,7 @@ impl Scene {
     }
 
     /// The sleigh with the velocities that are imposed on it, where any are.
-    fn imposed(&self) -> Result<Option<Guiding>, SleighError> {
+    pub(crate) fn imposed(&self) -> Result<Option<Guiding>, SleighError> {
         let sleigh = self.sleigh;
         let imposed = self.effects.iter().find_map(|effect| match effect {
             SceneEffect::Servo { speed: Some(speed), turn_rate: Some(turn_rate) } => {

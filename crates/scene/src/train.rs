@@ -1,4 +1,5 @@
-use crate::{Scene, SceneEffect, TrailersSpec};
+use crate::system::handed;
+use crate::{Built, Scene, SceneEffect, TrailersSpec, Visitor};
 use assembly::parts::{Trailer, Train};
 use assembly::{AssemblyError, AssemblyState};
 use sleigh::{Guided, SleighError, SleighState};
@@ -46,23 +47,24 @@ impl Scene {
         let trailers = (0..spec.count).map(|k| spec.trailer(k)).collect::<Result<Vec<_>, _>>()?;
         let table_rate = self.table_rate().unwrap_or(0.0);
         let on_plane = Guided::turntable(self.sleigh, table_rate)?;
-        let train = systems::train(self.guiding()?, trailers, self.acting()?, &on_plane)?;
-        let start = train.start_on_turntable(table_rate, &self.driven_start()?, &spec.headings);
+        let train = systems::train(self.guiding()?, trailers, self.rotor()?, self.acting()?, &on_plane)?;
+        let start = train.start_on_turntable(table_rate, &self.admissible_start()?, &spec.headings);
         Ok(Some((train, start)))
     }
 
-    /// The start, with the velocities that a servo imposes in place of those of the scene.
-    fn driven_start(&self) -> Result<SleighState, SleighError> {
-        let mut start = self.start;
-        for effect in &self.effects {
-            if let SceneEffect::Servo { speed, turn_rate } = effect {
-                for (place, function) in [(&mut start.speed, speed), (&mut start.turn_rate, turn_rate)] {
-                    if let Some(function) = function {
-                        *place = function.build()?.value(0.0_f64);
-                    }
-                }
-            }
-        }
-        Ok(start)
+    /// The start of the first blade, with the velocities that the scene imposes in place of those that it gives.
+    fn admissible_start(&self) -> Result<SleighState, SleighError> {
+        Ok(if self.imposed()?.is_some() { handed(self.first_blade()?, Start) } else { self.start })
+    }
+}
+
+/// The state of a sleigh at its start.
+struct Start;
+
+impl Visitor for Start {
+    type Output = SleighState;
+
+    fn visit<const N: usize, const M: usize>(self, _system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> SleighState {
+        SleighState::from_coordinates(&[q[0], q[1], q[2]], &[v[0], v[1], v[2]])
     }
 }

@@ -1,7 +1,7 @@
-use crate::parts::Hinge;
+use crate::parts::{Hinge, Motor, RotorElement};
 use crate::{Assembly, AssemblyError, AssemblyState};
-use lagrangian::System;
-use sleigh::{Sleigh, SleighError, SleighState};
+use lagrangian::{Piecewise, System};
+use sleigh::{Sleigh, SleighError, SleighState, TimeFunction};
 
 /// One blade of a train: a sleigh, hinged by a bar ahead of its blade to the one before it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,15 +42,20 @@ impl Trailer {
     }
 }
 
+/// The heading of the first blade.
+const HEADING: usize = 2;
+
 /// A train of blades: a body with a blade, and trailers each hinged to the one before it.
 ///
-/// The coordinates of the assembly are `(x, y, theta)` of every blade in their order. What leads may have more: of a body with
-/// more coordinates, the first three are those.
+/// The coordinates of the assembly are `(x, y, theta)` of every blade in their order, and then the angle in space of a
+/// [rotor](Self::with_rotor).
 #[derive(Debug)]
 pub struct Train {
     /// The assembly.
     pub assembly: Assembly,
     trailers: Vec<Trailer>,
+    /// The rate of the rotor relative to the first blade at the start (rad/s), where there is one.
+    rotor_rate: Option<f64>,
 }
 
 impl Train {
@@ -65,8 +70,8 @@ impl Train {
         body: impl Fn(&Trailer) -> Body,
     ) -> Result<Self, AssemblyError>
     where
-        Lead: System<3, M> + Send + Sync + 'static,
-        Body: System<3, 1> + Send + Sync + 'static,
+        Lead: System<3, M> + Piecewise + Send + Sync + 'static,
+        Body: System<3, 1> + Piecewise + Send + Sync + 'static,
     {
         let mut assembly = Assembly::new();
         let mut before = assembly.body("blade", lead);
@@ -76,7 +81,25 @@ impl Train {
             trailer.hinge(&mut assembly, before, own)?;
             before = own;
         }
-        Ok(Self { assembly, trailers })
+        Ok(Self { assembly, trailers, rotor_rate: None })
+    }
+
+    /// The same with a rotor on a bearing in the first blade, as a [`Flywheel`](sleigh::Flywheel): its spin inertia (kg m^2), its rate
+    /// relative to the blade at the start (rad/s), and the torque of its motor (N m) unless the bearing is free.
+    ///
+    /// # Errors
+    /// [`AssemblyError::Number`] where the inertia is not positive.
+    pub fn with_rotor(mut self, inertia: f64, rate: f64, torque: Option<TimeFunction>) -> Result<Self, AssemblyError> {
+        if !(inertia.is_finite() && inertia > 0.0) {
+            let what = "the inertia of the rotor";
+            return Err(AssemblyError::Number { what, accepted: "finite and positive", value: inertia });
+        }
+        let [rotor] = self.assembly.body("rotor", RotorElement { inertia });
+        if let Some(torque) = torque {
+            self.assembly.attach("motor", Motor { torque }, [HEADING, rotor])?;
+        }
+        self.rotor_rate = Some(rate);
+        Ok(self)
     }
 
     /// The trailers, from the first.
@@ -119,7 +142,20 @@ impl Train {
             q.extend([x, y, heading]);
             v.extend([vx, vy, rate]);
         }
+        if let Some(relative) = self.rotor_rate {
+            q.push(q[HEADING]);
+            v.push(v[HEADING] + relative);
+        }
         AssemblyState::new(&self.assembly, &q, &v)
+    }
+
+    /// Angle (rad) and rate (rad/s) of the rotor relative to the first blade, where there is one, from coordinates and velocities of the
+    /// assembly.
+    #[must_use]
+    pub fn rotor(&self, q: &[f64], v: &[f64]) -> Option<[f64; 2]> {
+        let rotor = 3 * (1 + self.trailers.len());
+        self.rotor_rate?;
+        Some([q.get(rotor)? - q.get(HEADING)?, v.get(rotor)? - v.get(HEADING)?])
     }
 
     /// Place, heading, speed and turn rate of a blade, counted from 0.

@@ -6,14 +6,14 @@ use assembly::{
     Assembly, AssemblyError, AssemblyMethod, AssemblyState, Joint, Solver, SparseComposition, SparseDla, SparseEnergy,
 };
 use lagrangian::linear::larger;
-use lagrangian::{Constraint, Scalar, System, With};
+use lagrangian::{Constraint, Piecewise, Scalar, System, With};
 use sleigh::effects::Drag;
 use sleigh::{Sleigh, SleighState};
 
 /// Free and on the hills.
 #[test]
 fn one_sleigh_is_the_static_sleigh() {
-    fn compare<Sys: System<3, 1> + Clone + Send + Sync + 'static>(system: &Sys) {
+    fn compare<Sys: System<3, 1> + Piecewise + Clone + Send + Sync + 'static>(system: &Sys) {
         let mut alone = Assembly::new();
         let _: [usize; 3] = alone.body("blade", system.clone());
         let (q, v) = SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() }.to_coordinates();
@@ -106,6 +106,12 @@ impl System<6, 0> for HeavySpring {
 
     fn constraint<S: Scalar>(&self, _t: S, _q: &[S; 6]) -> Constraint<S, 6, 0> {
         ([], [])
+    }
+}
+
+impl Piecewise for HeavySpring {
+    fn piece(&self, _t: f64) -> Self {
+        Self
     }
 }
 

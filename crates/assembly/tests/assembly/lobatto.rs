@@ -3,10 +3,10 @@ use crate::tools::{bent, ground, hilly};
 use approx::assert_abs_diff_eq;
 use assembly::{Assembly, AssemblyError, AssemblyMethod, AssemblyState, Solver, SparseLobatto};
 use lagrangian::linear::larger;
-use lagrangian::{System, With};
+use lagrangian::{Piecewise, System, With};
 use sleigh::{Sleigh, SleighState};
 
-fn compare<Sys: System<3, 1> + Clone + Send + Sync + 'static>(
+fn compare<Sys: System<3, 1> + Piecewise + Clone + Send + Sync + 'static>(
     system: &Sys,
     stages: usize,
     reference: &mut dyn dla::OneStep<3, 1>,

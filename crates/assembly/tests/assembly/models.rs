@@ -2,7 +2,7 @@
 use approx::assert_abs_diff_eq;
 use assembly::parts::{Blade, Body, Hinge, RotorElement, SteeredBlade, Trailer, Train};
 use assembly::{Assembly, AssemblyMethod, AssemblyState, Joint, Solver, SparseComposition, SparseDla};
-use lagrangian::{Constraint, Scalar, System};
+use lagrangian::{Constraint, Piecewise, Scalar, System};
 use models::{Model, RollerRacer, Snakeboard};
 use sleigh::{Sleigh, SleighState};
 
@@ -167,6 +167,12 @@ impl System<6, 0> for Spring {
     fn force<S: Scalar>(&self, _t: S, _q: &[S; 6], v: &[S; 6]) -> Option<[S; 6]> {
         let [x, y] = [v[3] - v[0], v[4] - v[1]].map(|rate| rate * self.damping);
         Some([x, y, S::zero(), -x, -y, S::zero()])
+    }
+}
+
+impl Piecewise for Spring {
+    fn piece(&self, _t: f64) -> Self {
+        Self { ..*self }
     }
 }
 

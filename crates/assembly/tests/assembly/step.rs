@@ -5,7 +5,7 @@ use assembly::{
     SparseLobatto,
 };
 use dla::{Hint, Stage};
-use lagrangian::{Constraint, Scalar, System};
+use lagrangian::{Constraint, Piecewise, Scalar, System};
 use sleigh::Sleigh;
 
 /// After the first steps, in which the factors find their room.
@@ -121,6 +121,12 @@ impl System<3, 0> for Slowed {
     fn force<S: Scalar>(&self, _t: S, _q: &[S; 3], v: &[S; 3]) -> Option<[S; 3]> {
         let speed = if self.smooth { S::length(&[v[0], v[1]]) } else { (v[0] * v[0] + v[1] * v[1]).sqrt() };
         Some([-(v[0] * speed), -(v[1] * speed), S::zero()])
+    }
+}
+
+impl Piecewise for Slowed {
+    fn piece(&self, _t: f64) -> Self {
+        Self { ..*self }
     }
 }
 

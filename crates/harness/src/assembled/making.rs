@@ -1,8 +1,9 @@
 use super::AssemblyNodes;
 use super::meter::AssemblyMeter;
 use super::parts::{Parted, in_parts, resolves, shorter};
+use super::pieces::{AssemblyPieces, PieceStep};
 use super::step::{AssemblyStep, LastNode};
-use super::{Assembled, assembly_method};
+use super::Assembled;
 use crate::{Method, MethodInfo, Progress, Record};
 use assembly::{Assembly, AssemblyMethod, AssemblyRunError, AssemblyState};
 use dla::{Checkpoint, CheckpointError, Schedule, Substeps};
@@ -15,13 +16,15 @@ pub(super) struct Making<'a, 'n> {
     schedule: &'a Schedule,
     info: MethodInfo,
     limits: Option<Substeps>,
-    method: Option<Box<dyn AssemblyMethod>>,
+    pieces: Option<AssemblyPieces<'a>>,
     meter: AssemblyMeter<'n>,
     state: AssemblyState,
     pub(super) made: u64,
     seconds: f64,
-    /// The time of the last node, where an event has ended the run there.
-    ended: Option<f64>,
+    /// The time of the last node (s).
+    t: f64,
+    /// Whether an event has ended the run there.
+    ended: bool,
     failure: Option<AssemblyRunError>,
 }
 
@@ -34,21 +37,23 @@ impl<'a, 'n> Making<'a, 'n> {
         nodes: AssemblyNodes<'n>,
     ) -> Self {
         let meter = AssemblyMeter::new(assembly, method, schedule.t0, start, nodes);
-        Self::of(assembly, method, schedule, (meter, start.clone(), 0, 0.0))
+        let pieces = AssemblyPieces::new(assembly, method, schedule);
+        Self::of((assembly, pieces), method, schedule, (meter, start.clone(), 0, 0.0))
     }
 
     fn of(
-        assembly: &'a Assembly,
+        (assembly, pieces): (&'a Assembly, Result<AssemblyPieces<'a>, AssemblyRunError>),
         method: &Method,
         schedule: &'a Schedule,
         (meter, state, made, seconds): (AssemblyMeter<'n>, AssemblyState, u64, f64),
     ) -> Self {
-        let (method, info, limits) = (assembly_method(assembly, method), method.info(), method.substeps());
-        let (method, failure) = match method {
-            Ok(method) => (Some(method), None),
-            Err(source) => (None, Some(AssemblyRunError { step: 1, time: schedule.t0, source })),
+        let (info, limits) = (method.info(), method.substeps());
+        let (pieces, failure) = match pieces {
+            Ok(pieces) => (Some(pieces), None),
+            Err(failure) => (None, Some(failure)),
         };
-        Self { assembly, schedule, info, limits, method, meter, state, made, seconds, ended: None, failure }
+        let t = pieces.as_ref().map_or(schedule.t0, |pieces: &AssemblyPieces<'_>| pieces.time(made));
+        Self { assembly, schedule, info, limits, pieces, meter, state, made, seconds, t, failure, ended: false }
     }
 
     pub(super) fn failed(&self) -> bool {
@@ -57,7 +62,7 @@ impl<'a, 'n> Making<'a, 'n> {
 
     /// Whether nothing is left to be done.
     pub(super) fn is_over(&self) -> bool {
-        self.failure.is_some() || self.ended.is_some() || self.made == self.schedule.steps
+        self.failure.is_some() || self.ended || self.made == self.schedule.steps
     }
 
     /// Makes steps up to number `to`, as far as the ticker, a failure or what looks on lets it come.
@@ -67,16 +72,28 @@ impl<'a, 'n> Making<'a, 'n> {
         ticker: &mut AssemblyTicker<'_>,
         mut look: impl FnMut(&mut dyn AssemblyMethod, AssemblyStep<'_>) -> ControlFlow<LastNode>,
     ) {
-        let Self { assembly, schedule, limits, method: Some(method), meter, state, made, seconds, .. } = self else {
+        let Self { limits, pieces: Some(pieces), meter, state, made, seconds, t, .. } = self else {
             return;
         };
         let mut before = state.clone();
         while *made < to && !ticker.stopped {
-            let (k, t0, h, clock) = (*made, schedule.time(*made), schedule.step, Instant::now());
+            let (k, clock) = (*made, Instant::now());
             before.copy_from(state);
+            let begins = pieces.begins(k);
+            let PieceStep { assembly, stepper: method, time: (t0, h), end } = match pieces.step(k, state) {
+                Ok(step) => step,
+                Err(failure) => {
+                    self.failure = Some(failure);
+                    return;
+                }
+            };
+            if begins {
+                meter.jumped(assembly, t0, &before, state);
+                before.copy_from(state);
+            }
             let whole = method.step(assembly, t0, h, state).and_then(|report| {
                 // Only a step that may be divided is asked whether it resolves the motion.
-                limits.map_or(Ok(()), |_| resolves(assembly, method.as_mut(), (t0, h), (&before, state)))?;
+                limits.map_or(Ok(()), |_| resolves(assembly, method, (t0, h), (&before, state)))?;
                 Ok(report)
             });
             *seconds += clock.elapsed().as_secs_f64();
@@ -84,13 +101,13 @@ impl<'a, 'n> Making<'a, 'n> {
                 (Ok(report), _) => {
                     let iterations = report.iterations;
                     let step = AssemblyStep { k, t0, h, before: &before, after: state };
-                    let last = match look(method.as_mut(), step) {
+                    let last = match look(method, step) {
                         ControlFlow::Continue(()) => {
-                            meter.over(assembly, (t0, &before), (schedule.time(k + 1), state), &report);
+                            meter.over(assembly, (t0, &before), (end, state), &report);
                             None
                         }
                         ControlFlow::Break((t, last)) => {
-                            let shorter = shorter(assembly, method.as_mut(), (t0, t), &before, report);
+                            let shorter = shorter(assembly, method, (t0, t), &before, report);
                             meter.over(assembly, (t0, &before), (t, &last), &shorter);
                             Some((t, last))
                         }
@@ -106,7 +123,7 @@ impl<'a, 'n> Making<'a, 'n> {
                     state.copy_from(&before);
                     let (work, clock) = (meter.work(), Instant::now());
                     let (step, stops) = ((limits, (k, t0, h), source), || ticker.asked());
-                    let parted = in_parts(assembly, method.as_mut(), step, (state, meter), stops, &mut look);
+                    let parted = in_parts(assembly, method, step, (state, meter), stops, &mut look);
                     *seconds += clock.elapsed().as_secs_f64();
                     let Ok(Some(parted)) = parted else {
                         state.copy_from(&before);
@@ -126,12 +143,12 @@ impl<'a, 'n> Making<'a, 'n> {
             };
             *made += 1;
             if let Some((t, last)) = last {
-                *state = last;
-                self.ended = Some(t);
+                (*state, self.t, self.ended) = (last, t, true);
                 meter.see(assembly, (*made, t), state, iterations, parts);
                 return;
             }
-            meter.see(assembly, (*made, schedule.time(*made)), state, iterations, parts);
+            *t = end;
+            meter.see(assembly, (*made, end), state, iterations, parts);
             ticker.stops(*made);
         }
     }
@@ -139,9 +156,9 @@ impl<'a, 'n> Making<'a, 'n> {
     /// What came of it.
     pub(super) fn assembled(mut self, stopped: bool) -> Assembled {
         let interrupted = stopped && !self.is_over();
-        let t = self.ended.unwrap_or_else(|| self.schedule.time(self.made));
-        self.meter.finish(self.assembly, (self.made, t), &self.state);
-        let cost = (t, self.made, self.seconds);
+        let assembly = self.pieces.as_ref().map_or(self.assembly, AssemblyPieces::assembly);
+        self.meter.finish(assembly, (self.made, self.t), &self.state);
+        let cost = (self.t, self.made, self.seconds);
         let record = self.meter.record(self.info, self.schedule.step, cost, &self.state, self.failure.as_ref());
         let record = Record { interrupted, ..record };
         Assembled { record, nodes: self.meter.nodes, end: self.state, failure: self.failure }
@@ -167,8 +184,10 @@ impl<'a, 'n> Making<'a, 'n> {
     ) -> Result<Self, CheckpointError> {
         let ([made], [seconds]) = (checkpoint.counts("k")?, checkpoint.get("seconds")?);
         let state = AssemblyState::load(checkpoint, assembly)?;
-        let meter = AssemblyMeter::load(checkpoint, method, (made, schedule.time(made)), nodes)?;
-        Ok(Self::of(assembly, method, schedule, (meter, state, made, seconds)))
+        let pieces = AssemblyPieces::new(assembly, method, schedule);
+        let t = pieces.as_ref().map_or(schedule.t0, |pieces| pieces.time(made));
+        let meter = AssemblyMeter::load(checkpoint, method, (made, t), nodes)?;
+        Ok(Self::of((assembly, pieces), method, schedule, (meter, state, made, seconds)))
     }
 }
 

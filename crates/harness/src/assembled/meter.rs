@@ -82,6 +82,11 @@ impl<'a> AssemblyMeter<'a> {
         self.work.step(assembly, before, after, report);
     }
 
+    /// Sees that the velocity has jumped from `v` at the time `t`: the impulse has done the work.
+    pub(super) fn jumped(&mut self, assembly: &Assembly, t: f64, before: &AssemblyState, state: &AssemblyState) {
+        self.work.add(assembly.energy(t, state) - assembly.energy(t, before));
+    }
+
     /// The work so far.
     pub(super) fn work(&self) -> [f64; 2] {
         self.work.sum()

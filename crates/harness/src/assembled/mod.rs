@@ -4,6 +4,7 @@ mod events;
 mod making;
 mod meter;
 mod parts;
+mod pieces;
 mod recommend;
 mod saved;
 mod step;
@@ -20,6 +21,7 @@ use assembly::{
 use dla::Schedule;
 use events::ended;
 use making::{AssemblyTicker, Making};
+use pieces::{AssemblyPieces, PieceStep};
 use std::ops::ControlFlow;
 use std::sync::LazyLock;
 
@@ -110,11 +112,12 @@ pub fn assembly_end(
     progress: &mut dyn Progress,
 ) -> Result<Option<AssemblyState>, AssemblyRunError> {
     let mut state = start.clone();
-    let fail = |k: u64| move |source| AssemblyRunError { step: k + 1, time: schedule.time(k), source };
-    let (mut method, mut ticker) =
-        (assembly_method(assembly, method).map_err(fail(0))?, AssemblyTicker::new(progress, 0));
+    let mut pieces = AssemblyPieces::new(assembly, method, schedule)?;
+    let mut ticker = AssemblyTicker::new(progress, 0);
     for k in 0..schedule.steps {
-        method.step(assembly, schedule.time(k), schedule.step, &mut state).map_err(fail(k))?;
+        let PieceStep { assembly, stepper, time: (t, h), .. } = pieces.step(k, &mut state)?;
+        let fail = |source| AssemblyRunError { step: k + 1, time: t, source };
+        stepper.step(assembly, t, h, &mut state).map_err(fail)?;
         if ticker.stops(k + 1) {
             return Ok(None);
         }

@@ -14,6 +14,7 @@ mod precision;
 mod same_bits;
 mod sensitivity;
 mod substeps;
+mod train_pieces;
 mod trains;
 mod verdicts;
 mod watched;

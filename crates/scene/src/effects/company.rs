@@ -7,16 +7,6 @@ use crate::error::SceneError;
 use crate::table::TomlTable;
 use sleigh::Sleigh;
 
-/// Whether it changes the coordinates, or jumps in time: what a train does not carry.
-fn changes_body(effect: &SceneEffect) -> bool {
-    match effect {
-        SceneEffect::Flywheel { .. } | SceneEffect::Tracer { .. } => true,
-        SceneEffect::Servo { speed, turn_rate } => [speed, turn_rate].into_iter().flatten().any(TimeSpec::has_corners),
-        SceneEffect::Thrust { force: function } | SceneEffect::Torque { torque: function } => function.has_corners(),
-        _ => false,
-    }
-}
-
 /// Refuses imposed velocities whose kinetic energy is too large for a number.
 pub(super) fn check_energy(table: &TomlTable<'_>, effect: &SceneEffect, sleigh: &Sleigh) -> Result<(), SceneError> {
     let SceneEffect::Servo { speed, turn_rate } = effect else { return Ok(()) };
@@ -32,35 +22,6 @@ pub(super) fn check_energy(table: &TomlTable<'_>, effect: &SceneEffect, sleigh: 
         }
     }
     Ok(())
-}
-
-/// Refuses what does not act on a train, at the effect that does not.
-pub(super) fn check_train(tables: &[TomlTable<'_>], effects: &[SceneEffect]) -> Result<(), SceneError> {
-    if !effects.iter().any(|effect| matches!(effect, SceneEffect::Trailers(_))) {
-        return Ok(());
-    }
-    let Some((table, effect)) = tables.iter().zip(effects).find(|(_, effect)| changes_body(effect)) else {
-        return Ok(());
-    };
-    let table_of_times = match effect {
-        SceneEffect::Thrust { .. } => Some("force"),
-        SceneEffect::Torque { .. } => Some("torque"),
-        SceneEffect::Servo { speed: Some(speed), .. } if speed.has_corners() => Some("speed"),
-        SceneEffect::Servo { .. } => Some("turn_rate"),
-        _ => None,
-    };
-    if let Some(key) = table_of_times {
-        let problem = "is a table of times, which does not act on a train: the scene has `trailers`";
-        return Err(table.wrong(
-            key,
-            problem,
-            "a number, `{amplitude, frequency, phase}` or a formula in `t`".to_owned(),
-        ));
-    }
-    let accepted = "what acts on its coordinates: `slope`, `bowl`, `egg_crate`, `hills` and `turntable` for every blade, \
-                    `drag`, `quadratic_drag`, `friction`, `thrust`, `torque`, `moving_mass` and `servo` for the first, \
-                    without tables of times";
-    Err(table.wrong("kind", "cannot act on a train: the scene has `trailers`", accepted.to_owned()))
 }
 
 /// Refuses what does not go together: a second body, two ways to impose a velocity, what the sleigh cannot do.

@@ -20,7 +20,7 @@ use toml::de::DeValue;
 
 /// Reads the entries of `[[effects]]`.
 pub(crate) fn read(root: &TomlTable<'_>, sleigh: &Sleigh) -> Result<Vec<SceneEffect>, SceneError> {
-    let (mut effects, mut tables): (Vec<SceneEffect>, Vec<TomlTable<'_>>) = (Vec::new(), Vec::new());
+    let mut effects: Vec<SceneEffect> = Vec::new();
     for entry in root.entries_of("effects", "a list of tables, each headed `[[effects]]`")? {
         let info = info_of(&entry)?;
         let known: Vec<&str> = ["kind"].into_iter().chain(info.keys.iter().copied()).collect();
@@ -30,8 +30,6 @@ pub(crate) fn read(root: &TomlTable<'_>, sleigh: &Sleigh) -> Result<Vec<SceneEff
         company::check_company(&table, (info, &effect), &effects, sleigh.offset())?;
         company::check_energy(&table, &effect, sleigh)?;
         effects.push(effect);
-        tables.push(table);
-        company::check_train(&tables, &effects)?;
     }
     Ok(effects)
 }

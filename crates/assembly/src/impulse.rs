@@ -1,0 +1,38 @@
+use crate::contributions::at_state;
+use crate::dla::PARALLEL;
+use crate::equations::AssemblyEquations;
+use crate::projection::project;
+use crate::{Assembly, AssemblyError, AssemblyState, Solver, terms};
+
+impl Assembly {
+    /// Where the velocity of a state misses the constraints by more than rounding, as where an imposed velocity jumps, the impulse of the
+    /// constraints brings it there: `sum_e L_v(q, v) = p + A' mu`, `A v + b = 0`, as [`dla::onto_constraint`]. Rounding is that of a step of
+    /// length `h` (s).
+    ///
+    /// # Errors
+    /// [`AssemblyError`] where the constraints do not determine the velocity, or for want of memory.
+    pub fn onto_constraint(&self, (t, h): (f64, f64), state: &mut AssemblyState) -> Result<(), AssemblyError> {
+        let mut equations = AssemblyEquations::of(self, Solver::Best, PARALLEL)?;
+        let mut levels = vec![0.0; self.rows()];
+        let mut p = vec![0.0; self.coordinates()];
+        equations.contributions.ask(self, false, &|placed, out| {
+            at_state(placed, state, |element, q, v| element.velocity(t, q, v, out));
+        });
+        equations.contributions.add_momenta(self, -1.0, &mut p);
+        equations.contributions.write_levels(self, &mut levels);
+
+        let (q, v): (Vec<f64>, Vec<f64>) = (0..state.len()).map(|i| (state.q(i), state.v(i))).unzip();
+        let mut sizes = vec![0.0; self.coordinates() + self.rows()];
+        terms::add(self, (t, h), |i| q[i], |i| v[i], &mut sizes);
+        let met = |(level, size): (&f64, &f64)| level.abs() <= 8.0 * f64::EPSILON * size;
+        if levels.iter().zip(&sizes[self.coordinates()..]).all(met) {
+            return Ok(());
+        }
+        let mut v1 = v.clone();
+        project(&mut equations, (self, t, h), (&q, &v), &p, &mut v1)?;
+        for (i, v) in v1.into_iter().enumerate() {
+            state.set_velocity(i, v);
+        }
+        Ok(())
+    }
+}

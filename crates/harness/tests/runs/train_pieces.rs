@@ -1,0 +1,221 @@
+//! Trains whose forces or imposed velocities jump, and trains with a rotor: against the static systems and against known motions.
+use approx::{assert_abs_diff_eq, assert_relative_eq};
+use assembly::AssemblyState;
+use assembly::parts::{Trailer, Train};
+use dla::{Checkpoint, Schedule};
+use harness::{
+    Assembled, AssemblyNodes, Method, Request, Saving, assembly_end, recommend_assembly, run_assembly, run_assembly_saved,
+};
+use lagrangian::{Piecewise, System, With};
+use sleigh::effects::{Drag, Thrust, Torque};
+use sleigh::{Flywheel, Guide, Guided, Ramp, Sleigh, SleighState, Table, TimeFunction};
+
+const START: SleighState = SleighState { x: 0.3, y: -0.2, heading: 0.4, speed: 1.0, turn_rate: 0.3 };
+/// No jump of the tables below is at a node of equal steps.
+const SCHEDULE: Schedule = Schedule { t0: 0.0, step: 0.05, steps: 80 };
+const METHODS: [&str; 7] = ["dla", "dla4", "dla6", "dla8", "lobatto3", "lobatto4", "lobatto5"];
+
+fn lead() -> Sleigh {
+    Sleigh::new(1.0, 1.0, 0.2).unwrap()
+}
+
+fn steps(times: &[f64], values: &[f64]) -> TimeFunction {
+    TimeFunction::Table(Table::new(times.to_vec(), values.to_vec()).unwrap())
+}
+
+fn ramps(times: &[f64], values: &[f64]) -> TimeFunction {
+    TimeFunction::Ramp(Ramp::new(times.to_vec(), values.to_vec()).unwrap())
+}
+
+fn trailers() -> Vec<Trailer> {
+    vec![Trailer::new(0.5, 0.1, 0.1, 0.2, 0.8).unwrap(); 2]
+}
+
+fn made(train: &Train, name: &str, start: &AssemblyState) -> Assembled {
+    let method = Method::named(name, None).unwrap();
+    let run = run_assembly(&train.assembly, &method, &SCHEDULE, start, 8, &mut ());
+    assert!(run.failure.is_none(), "{name}: {:?}", run.failure);
+    run
+}
+
+/// A train without trailers moves as its lead does as a static system, and has the same work and energy error.
+fn as_the_static_system<Sys, const M: usize>(system: &Sys)
+where
+    Sys: System<3, M> + Piecewise + Clone + Send + Sync + 'static,
+{
+    let alone = Train::new(system.clone(), Vec::new(), |trailer| trailer.sleigh).unwrap();
+    let (q, v) = START.to_coordinates();
+    let start = AssemblyState::new(&alone.assembly, &q, &v);
+    for name in METHODS {
+        let own = made(&alone, name, &start);
+        let method = Method::named(name, None).unwrap();
+        let fixed = harness::run(system, &method, &Request { schedule: SCHEDULE, q, v, samples: 10 }, &mut ());
+        assert!(fixed.failure.is_none(), "{name}: {:?}", fixed.failure);
+        // A few units in the last place in each step.
+        let rounding = 16.0 * 80.0 * f64::EPSILON * (1.0 + fixed.energy.work.abs());
+        for i in 0..3 {
+            assert_abs_diff_eq!(own.end.unwrapped(i), fixed.q[i], epsilon = rounding);
+            assert_abs_diff_eq!(own.end.v(i), fixed.v[i], epsilon = rounding);
+        }
+        assert!(fixed.energy.work.abs() > 0.01, "{name}");
+        assert_abs_diff_eq!(own.record.energy.work, fixed.energy.work, epsilon = rounding);
+        assert_abs_diff_eq!(own.record.energy.max_error, fixed.energy.max_error, epsilon = rounding);
+        assert_abs_diff_eq!(own.record.t, 4.0, epsilon = 1e-12);
+    }
+}
+
+#[test]
+fn tables_of_forces_and_velocities_act_on_a_lead_as_on_a_sleigh() {
+    let thrust = Thrust::new(steps(&[0.0, 1.013, 2.7], &[0.5, -0.4, 0.8])).unwrap();
+    let torque = Torque::new(ramps(&[0.5, 1.5, 3.131], &[0.0, 0.6, -0.2])).unwrap();
+    as_the_static_system(&With { body: lead(), effects: (thrust, (torque, Drag::new(0.1, 0.05).unwrap())) });
+    // From the speed of the start on, so that both begin on the constraint.
+    let speed = Guide::Speed(steps(&[0.0, 1.013, 2.7], &[1.0, 1.7, 0.4]));
+    as_the_static_system(&With { body: Guided::<1>::servo(lead(), speed).unwrap(), effects: () });
+    let both = Guided::<2>::servo(lead(), ramps(&[0.7, 1.9], &[1.0, 0.5]), steps(&[0.0, 2.03], &[0.3, -0.5])).unwrap();
+    as_the_static_system(&With { body: both, effects: () });
+}
+
+/// A servo that jumps jerks the whole train: all blades of a straight one have its speed at once, and the impulse does the work.
+#[test]
+fn an_imposed_speed_that_jumps_pulls_the_train_along() {
+    let speed = Guide::Speed(steps(&[0.0, 1.013], &[1.0, 3.0]));
+    let body = With { body: Guided::<1>::servo(lead(), speed).unwrap(), effects: () };
+    let train = Train::new(body, trailers(), |trailer| trailer.sleigh).unwrap();
+    let start = train.start(&SleighState { turn_rate: 0.0, ..START }, &[]);
+    for name in METHODS {
+        let run = made(&train, name, &start);
+        let way = 1.013 + 3.0 * (4.0 - 1.013);
+        for blade in 0..=2 {
+            let (before, after) = (train.blade(&start, blade), train.blade(&run.end, blade));
+            assert_abs_diff_eq!(f64::hypot(after.x - before.x, after.y - before.y), way, epsilon = 1e-12);
+            assert_abs_diff_eq!(after.speed, 3.0, epsilon = 1e-13);
+        }
+        // 1/2 (1 + 2 * 0.5) (9 - 1).
+        assert_abs_diff_eq!(run.record.energy.work, 8.0, epsilon = 1e-11);
+        assert!(run.record.energy.max_error < 1e-11, "{name}: {:e}", run.record.energy.max_error);
+        assert!(run.record.constraint_max < 1e-13 && run.record.leaf_max.unwrap() < 1e-14, "{name}");
+    }
+}
+
+/// A bent train that is jerked and pushed, behind whose lead nothing is straight.
+fn jerked() -> (Train, AssemblyState) {
+    let speed = Guide::Speed(steps(&[0.0, 1.013, 2.9], &[1.0, 1.7, 0.4]));
+    let effects = (Torque::new(ramps(&[0.5, 1.5, 3.131], &[0.0, 0.6, -0.2])).unwrap(), Drag::new(0.1, 0.05).unwrap());
+    let body = With { body: Guided::<1>::servo(lead(), speed).unwrap(), effects };
+    let train = Train::new(body, trailers(), |trailer| trailer.sleigh).unwrap();
+    let start = train.start(&START, &[0.1, -0.3]);
+    (train, start)
+}
+
+/// Every piece has steps of its own, so that the methods keep their orders across jumps.
+#[test]
+fn methods_keep_their_orders_across_jumps() {
+    let (train, start) = jerked();
+    let end = |name: &str, steps: u64| {
+        let method = Method::named(name, None).unwrap();
+        let schedule = Schedule { t0: 0.0, step: 4.0 / steps as f64, steps };
+        assembly_end(&train.assembly, &method, &schedule, &start, &mut ()).unwrap().unwrap()
+    };
+    let right = end("dla8", 640);
+    for (name, order) in [("dla", 2.0), ("dla4", 4.0), ("lobatto3", 4.0)] {
+        let error = |steps: u64| end(name, steps).distance(&right);
+        let (coarse, fine) = (error(80), error(160));
+        println!("{name}: {coarse:e} {fine:e}");
+        // The shares of the pieces are whole numbers of steps.
+        assert_relative_eq!((coarse / fine).log2(), order, epsilon = 0.35);
+    }
+    // A step for a tolerance is looked for across the jumps too.
+    let seen = |state: &AssemblyState| [state.unwrapped(6), state.unwrapped(7)];
+    let dla4 = Method::named("dla4", None).unwrap();
+    let found = recommend_assembly(&train.assembly, &dla4, &start, 4.0, 1e-5, seen).unwrap();
+    let made = seen(&end("dla4", found.steps));
+    let wanted = seen(&right);
+    assert!((0..2).all(|i| (made[i] - wanted[i]).abs() < 1e-5), "{found:?}");
+}
+
+/// Saved before, at and after a jump, a run goes on with the same bits; so does one that has fewer steps than pieces fail at once.
+#[test]
+fn a_run_across_jumps_goes_on_from_its_files() {
+    let (train, start) = jerked();
+    let bits = |run: &Assembled| {
+        format!("{:?} {:?}", harness::Record { wall_seconds: 0.0, ..run.record.clone() }, run.end)
+    };
+    for name in ["dla", "lobatto3"] {
+        let method = Method::named(name, None).unwrap();
+        let whole = run_assembly(&train.assembly, &method, &SCHEDULE, &start, 8, &mut ());
+        let identity = Checkpoint::default();
+        let mut files = Vec::new();
+        let mut save = |made: &Checkpoint| files.push(made.clone());
+        let run = |saving: &mut Saving<'_>| {
+            let nodes = AssemblyNodes::Kept(8);
+            run_assembly_saved(&train.assembly, &method, &SCHEDULE, (&start, nodes), saving, &mut ()).unwrap()
+        };
+        let mut saving = Saving { identity: &identity, from: None, every: Some(1), save: &mut save };
+        assert_eq!(bits(&run(&mut saving)), bits(&whole), "{name}");
+        assert_eq!(files.len(), 80);
+        for file in &files {
+            let mut saving = Saving { identity: &identity, from: Some(file), every: None, save: &mut |_| () };
+            assert_eq!(bits(&run(&mut saving)), bits(&whole), "{name}");
+        }
+    }
+    let few = Schedule { t0: 0.0, step: 2.0, steps: 2 };
+    let run = run_assembly(&train.assembly, &Method::named("dla", None).unwrap(), &few, &start, 1, &mut ());
+    let said = run.failure.unwrap().to_string();
+    assert!(run.record.steps == 0 && said.contains("fewer steps than pieces"), "{said}");
+}
+
+/// The angle of the rotor is counted in space there, and against the body in the static system: one is a linear function of the other.
+#[test]
+fn a_rotor_in_the_lead_is_a_flywheel() {
+    let torque = || steps(&[0.0, 1.013, 2.7], &[0.5, -0.4, 0.8]);
+    for motor in [None, Some(torque())] {
+        let free = motor.is_none();
+        let rotor = || Train::new(lead(), Vec::new(), |trailer| trailer.sleigh).unwrap();
+        let alone = rotor().with_rotor(0.7, 2.0, motor.clone()).unwrap();
+        let start = alone.start(&START, &[]);
+        let fixed = Flywheel::new(lead(), 0.7, motor).unwrap();
+        let ([x, y, heading], [vx, vy, rate]) = START.to_coordinates();
+        let (q, v) = ([x, y, heading, 0.0], [vx, vy, rate, 2.0]);
+        for name in METHODS {
+            let run = made(&alone, name, &start);
+            let method = Method::named(name, None).unwrap();
+            let fixed = harness::run(&fixed, &method, &Request { schedule: SCHEDULE, q, v, samples: 10 }, &mut ());
+            let rounding = 16.0 * 80.0 * f64::EPSILON * (10.0 + fixed.energy.work.abs());
+            for i in 0..3 {
+                assert_abs_diff_eq!(run.end.unwrapped(i), fixed.q[i], epsilon = rounding);
+            }
+            let all: (Vec<f64>, Vec<f64>) = (0..4).map(|i| (run.end.unwrapped(i), run.end.v(i))).unzip();
+            let [angle, relative] = alone.rotor(&all.0, &all.1).unwrap();
+            assert_abs_diff_eq!(angle, fixed.q[3], epsilon = rounding);
+            assert_abs_diff_eq!(relative, fixed.v[3], epsilon = rounding);
+            assert_abs_diff_eq!(run.record.energy.work, fixed.energy.work, epsilon = rounding);
+            assert_eq!(free, fixed.energy.work == 0.0, "{name}");
+        }
+    }
+    let heavy = Train::new(lead(), Vec::new(), |trailer| trailer.sleigh).unwrap().with_rotor(0.0, 1.0, None);
+    assert!(heavy.unwrap_err().to_string().contains("inertia of the rotor must be finite and positive"));
+}
+
+/// On a free bearing the rotor changes nothing and keeps its rate in space; a motor turns the train the other way, and their angular
+/// impulses cancel in what the rotor has.
+#[test]
+fn a_train_with_a_rotor() {
+    let train = || Train::new(lead(), trailers(), |trailer| trailer.sleigh).unwrap();
+    let (bare, free) = (train(), train().with_rotor(0.7, 2.0, None).unwrap());
+    let motor = train().with_rotor(0.7, 2.0, Some(TimeFunction::Constant(0.5))).unwrap();
+    for name in METHODS.into_iter().chain(["energy2"]) {
+        let [without, with, driven] =
+            [&bare, &free, &motor].map(|train| made(train, name, &train.start(&START, &[0.1, -0.3])));
+        for i in 0..9 {
+            assert_abs_diff_eq!(without.end.unwrapped(i), with.end.unwrapped(i), epsilon = 1e-12);
+        }
+        assert_abs_diff_eq!(with.end.v(9), 2.3, epsilon = 1e-13);
+        // I_r phi'' = tau.
+        assert_abs_diff_eq!(driven.end.v(9), 2.3 + 4.0 * 0.5 / 0.7, epsilon = 1e-11);
+        assert!((driven.end.unwrapped(2) - with.end.unwrapped(2)).abs() > 0.5, "{name}");
+        assert!(driven.record.energy.work.abs() > 1.0, "{name}");
+        let most = if name == "dla" { 1e-2 } else { 1e-4 };
+        assert!(driven.record.energy.max_error < most, "{name}: {:e}", driven.record.energy.max_error);
+    }
+}
