@@ -4,7 +4,7 @@
 #[path = "common/program.rs"]
 mod program;
 
-use program::{FAILING, Folder, names};
+use program::{FAILING, Folder, SCENE, names};
 
 /// The lines of a picture, in order.
 fn lines(picture: &str) -> Vec<&str> {
@@ -86,6 +86,28 @@ fn a_run_that_fails_is_drawn_as_far_as_it_comes() {
     assert_eq!((outcome.code, outcome.stdout.as_str()), (1, "picture: large.svg\n"), "{outcome:?}");
     outcome.assert_told("plot", &["dla failed at step"]);
     assert!(folder.read("large.svg").contains("speed [m/s]"));
+}
+
+/// With its trailers in motion, and whatever acts on the first blade.
+#[test]
+fn a_train_is_drawn_and_has_a_page() {
+    let folder = Folder::new();
+    let more = "[[effects]]\nkind = \"trailers\"\ncount = 2\nmass = 0.5\ninertia = 0.1\nbar = 0.8\n\
+                [[effects]]\nkind = \"flywheel\"\ninertia = 0.5\nrotor_rate = 1.0\n\
+                torque = { times = [0.0, 0.7], values = [0.3, -0.3] }\n";
+    folder.write("train.toml", format!("{SCENE}{more}"));
+    folder.done("plot train.toml --columns path,heading_2,rotor_angle,hinges --out train.svg");
+    let picture = folder.read("train.svg");
+    assert!(picture.contains("heading 2 [rad]") && picture.contains("rotor angle [rad]"), "{picture}");
+    folder.done("run train.toml --report pages");
+    let page = folder.read("pages/index.html");
+    let bare = SCENE.to_owned() + &more.replace("count = 2", "count = 1");
+    folder.write("shorter.toml", bare);
+    folder.done("run shorter.toml --report shorter");
+    let shorter = folder.read("shorter/index.html");
+    let blades = |page: &str| page.matches("class=\"follower").count();
+    assert!(page.contains("class=\"animation\"") && page.contains(">rotor_rate [rad/s]</td>"), "{page}");
+    assert_eq!((blades(&page), blades(&shorter)), (2, 1));
 }
 
 #[test]

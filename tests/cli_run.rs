@@ -340,7 +340,18 @@ fn a_negative_duration_goes_backward_in_time() {
     let back = end("scene.toml --duration -5 --step 0.3 --set start.heading=0");
     assert!((back["x"].as_f64().unwrap() + 2.0 * 3.0 + 3.0 * 1.0).abs() < 1e-12, "{back}");
     folder.refused("compare turnaround --methods dla --duration -5", &["--duration", "greater than 0"]);
-    folder.refused(&format!("run {TRAIN} --duration -5"), &["forward in time only"]);
+    // A train.
+    let back = folder.json(&format!("run {TRAIN} --duration -3 --method dla4 --json --out train.csv"));
+    let (_, rows) = csv(&folder.read("train.csv"));
+    assert!(rows.windows(2).all(|pair| pair[1][0] < pair[0][0]) && rows.last().unwrap()[0] == -3.0, "{back}");
+    // Nothing drives it, so with all velocities reversed it runs there forward in time.
+    let reversed = "--set start.speed=-1.0 --set start.turn_rate=-0.8";
+    let forth = folder.json(&format!("run {TRAIN} --duration 3 {reversed} --method dla4 --json"));
+    for (key, sign) in [("x", 1.0), ("y", 1.0), ("heading", 1.0), ("speed", -1.0), ("turn_rate", -1.0)] {
+        let [back, forth] = [&back, &forth].map(|run| run["last"][key].as_f64().unwrap());
+        assert!((back - sign * forth).abs() < 1e-10, "{key}: {back} and {forth}");
+    }
+    folder.refused(&format!("run {TRAIN} --duration -3 --tolerance 1e-4"), &["--tolerance", "backward"]);
     folder.refused("run turnaround --duration -5 --tolerance 1e-6", &["--tolerance", "backward"]);
     folder.refused("run turnaround --duration 0", &["greater than 0"]);
 }

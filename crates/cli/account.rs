@@ -7,7 +7,7 @@ use crate::trigger::{Events, Happened, Trigger, WatchedTriggers};
 use crate::{json, substeps};
 use dla::{Close, Event, Observer, Schedule, fitted};
 use harness::{Method, Progress, Record, Request, SavedCrossing, recommend, run_observed};
-use scene::{AnyScene, Built, StartPlace};
+use scene::{AnyScene, Built, RunSettings, StartPlace};
 use serde_json::{Map, Value, json};
 
 /// A run to be made.
@@ -45,12 +45,10 @@ impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
         let mut schedule = scene.schedule();
         if backward {
             let run = scene.run();
-            let whole = Schedule { t0: 0.0, step: -run.actual_step(), steps: run.steps() };
-            schedule = fitted(&whole, run.step, system.jump_times(-run.duration, 0.0));
+            schedule = self::backward(run, system.jump_times(-run.duration, 0.0));
         }
         if backward && tolerance.is_some() && !method.is_adaptive() {
-            let problem = "--tolerance chooses no step for a run backward in time: give --step".to_owned();
-            return Err(CliError::Request(problem));
+            return Err(no_step_backward());
         }
         if let Some(tolerance) = tolerance.filter(|_| !method.is_adaptive()) {
             // Of the method itself: parts would make any step look good enough.
@@ -115,6 +113,17 @@ impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
         }
         numbers(&self.system, record.t, &record.q, &record.v)
     }
+}
+
+/// The steps of a run from time zero backward, with these jumps (s).
+pub(crate) fn backward(run: &RunSettings, jumps: Vec<f64>) -> Schedule {
+    let whole = Schedule { t0: 0.0, step: -run.actual_step(), steps: run.steps() };
+    fitted(&whole, run.step, jumps)
+}
+
+/// Steps for a tolerance are chosen forward in time only.
+pub(crate) fn no_step_backward() -> CliError {
+    CliError::Request("--tolerance chooses no step for a run backward in time: give --step".to_owned())
 }
 
 /// Where a run ends, by name.

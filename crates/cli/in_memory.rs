@@ -2,7 +2,7 @@ use crate::account::Account;
 use crate::called::Caller;
 use crate::error::CliError;
 use crate::trigger::Trigger;
-use crate::{inspect, substeps};
+use crate::{inspect, substeps, train};
 use dla::{Node, Samples, State, Substeps, Trajectory, View};
 use harness::{Again, EVENT_SAMPLES, Method, Progress};
 use indicatif::ProgressBar;
@@ -72,9 +72,10 @@ impl From<CliError> for Refusal {
 pub fn run(scene: &AnyScene, request: &RunRequest, caller: &Caller) -> Result<RunResult, Refusal> {
     let method = inspect::method(scene.run())?.aiming_for(request.tolerance).map_err(CliError::from)?;
     let method = if request.substep { method.with_substeps(Substeps::default()) } else { method };
-    if matches!(scene, AnyScene::Sleigh(scene) if scene.has_trailers()) {
-        let problem = "a train cannot be kept in memory: run the train by `noslip run` on the command line";
-        return Err(CliError::Request(problem.to_owned()).into());
+    if let AnyScene::Sleigh(scene) = scene
+        && let Some(train) = scene.train().map_err(CliError::from)?
+    {
+        return Ok(train::in_memory((scene, train), request, &method, caller)?);
     }
     let made = scene.visit(InMemory { scene, request, method: &method, caller }).map_err(CliError::from)?;
     Ok(made?)
@@ -104,7 +105,7 @@ impl Progress for ShownToCaller<'_> {
 }
 
 /// The events that are looked for, as they are written.
-fn triggers(texts: &[String]) -> Result<Vec<Trigger>, CliError> {
+pub(crate) fn triggers(texts: &[String]) -> Result<Vec<Trigger>, CliError> {
     texts.iter().map(|text| text.parse().map_err(CliError::Request)).collect()
 }
 

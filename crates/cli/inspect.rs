@@ -1,6 +1,5 @@
 use crate::args::{SceneArguments, Settings};
 use crate::error::CliError;
-use dla::Schedule;
 use harness::{METHODS, Method};
 use scene::{AnyScene, Overrides, RunSettings, Scene};
 
@@ -43,11 +42,6 @@ pub(crate) fn load_with(
     let names = method_names();
     let overrides = Overrides { method, step, duration, alpha };
     Ok(Scene::load_over(scene, &settings.set, &overrides, &names)?)
-}
-
-/// The steps of a scene's run.
-pub(crate) fn schedule(scene: &Scene) -> Schedule {
-    scene.schedule()
 }
 
 /// The method of a run, with its settings.

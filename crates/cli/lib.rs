@@ -66,7 +66,6 @@ mod table;
 mod terminal;
 mod totals;
 mod train;
-mod train_run;
 mod trigger;
 
 use args::{Arguments, Command};

@@ -7,7 +7,7 @@ use crate::output::{Output, OutputRequest};
 use crate::progress::Interruptible;
 use crate::run_rows::{Read, identity, position, provenance, tell, with_position};
 use crate::trigger::Events;
-use crate::{inspect, notes, progress, resume, substeps, table, terminal, train_run};
+use crate::{inspect, notes, progress, resume, substeps, table, terminal, train};
 use dla::{Checkpoint, Node, Nodes, Schedule, Substeps};
 use harness::{Method, MethodKind, Progress, Saving, run_saved_watched};
 use scene::{AnyScene, Built, Visitor};
@@ -36,13 +36,9 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
         terminal::say("warning", &format!("--alpha is the weight of dla-alpha; {name} ignores --alpha"));
     }
     if let AnyScene::Sleigh(scene) = &scene
-        && scene.has_trailers()
+        && let Some(train) = scene.train()?
     {
-        if is_backward(arguments) {
-            let problem = "--duration: a train runs forward in time only; accepted: a number greater than 0, in s";
-            return Err(CliError::Request(problem.to_owned()));
-        }
-        return train_run::run(arguments, scene, &method, out);
+        return train::run(arguments, (scene, train), &method, is_backward(arguments), out);
     }
     notes::moves(&scene);
     scene.visit(Run { arguments, scene: &scene, method: &method, out })?

@@ -3,7 +3,7 @@
 use crate::args::RunArguments;
 use crate::columns_file::{Columns, NamedColumn};
 use crate::error::CliError;
-use crate::{facts, files, inspect, plot, table, terminal};
+use crate::{facts, files, inspect, plot, table, terminal, train};
 use harness::report::{self, Report, SceneReport, Series};
 use scene::AnyScene;
 
@@ -20,10 +20,6 @@ pub(crate) fn run_and_show(arguments: &RunArguments) -> Result<(), CliError> {
     }
     files::check_folder(folder, shared.force)?;
     let scene = inspect::load_any(shared, arguments.method.as_deref())?;
-    if matches!(&scene, AnyScene::Sleigh(scene) if scene.has_trailers()) {
-        let problem = "--report: noslip run has no page for trains; `noslip compare --report` has";
-        return Err(CliError::Request(problem.to_owned()));
-    }
     let outcome = crate::run::run(arguments);
     // What failed on the way is shown as far as it came.
     if !matches!(outcome, Ok(()) | Err(CliError::Computation(_))) {
@@ -39,7 +35,12 @@ pub(crate) fn run_and_show(arguments: &RunArguments) -> Result<(), CliError> {
         AnyScene::Sleigh(scene) => scene.exact().ok().flatten(),
         AnyScene::Text(_) => None,
     };
-    let series = series(method, columns, !failures.is_empty());
+    let mut series = series(method, columns, !failures.is_empty());
+    if let AnyScene::Sleigh(scene) = &scene
+        && let Some((train, _)) = scene.train()?
+    {
+        series.followers = train::followers(&train, columns);
+    }
     let exact_path = exact.map(|exact| series.time.iter().map(|t| exact.at(*t)).map(|s| [s.x, s.y]).collect());
     let shown = SceneReport {
         name: scene.name().to_owned(),

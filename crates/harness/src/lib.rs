@@ -30,7 +30,7 @@ mod watched;
 pub use again::Again;
 pub use assembled::{
     Assembled, AssemblyCrossing, AssemblyEvent, AssemblyNode, AssemblyNodes, assembly_end, assembly_method,
-    recommend_assembly, run_assembly, run_assembly_saved, run_assembly_watched,
+    recommend_assembly, run_assembly, run_assembly_saved, run_assembly_watched, sample_assembly,
 };
 pub use baseline::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced};
 pub use cost::{step_evaluations, step_time};

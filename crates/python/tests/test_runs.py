@@ -56,6 +56,41 @@ def test_a_run_at_given_times_is_the_motion_there() -> None:
     np.testing.assert_allclose(between["x"], fine["x"], atol=1e-10)
 
 
+def train(*effects: dict[str, object]) -> noslip.Scene:
+    trailers = {"kind": "trailers", "count": 2, "mass": 0.5, "inertia": 0.1, "bar": 0.8, "headings": [0.2]}
+    return noslip.scene(
+        {
+            "sleigh": {"mass": 1.0, "inertia": 1.0, "offset": 0.2},
+            "start": {"speed": 1.0, "turn_rate": 0.3},
+            "run": {"method": "dla4", "step": 0.05, "duration": 2.0},
+            "effects": [trailers, *effects],
+        }
+    )
+
+
+def test_trains_are_runs_like_others(tmp_path: Path) -> None:
+    push = {"kind": "thrust", "force": {"times": [0.0, 0.73], "values": [0.5, -0.2]}}
+    rotor = {"kind": "flywheel", "inertia": 0.5, "rotor_rate": 1.0, "torque": 0.2}
+    scene, file = train(push, rotor), tmp_path / "run.npz"
+    run = scene.run(events="x=0.5")
+    (tmp_path / "train.toml").write_text(scene.text)
+    arguments = ["run", str(tmp_path / "train.toml"), "--out", str(file), "--json"]
+    made = subprocess.run([*program(), *arguments], capture_output=True, text=True, check=True)
+    with np.load(file) as archive:
+        assert list(run) == [name for name in archive.files if name in list(run)]
+        for column in run:
+            np.testing.assert_array_equal(run[column], archive[column], err_msg=column)
+    assert json.loads(made.stdout)["last"] == run.object["last"]
+    assert run.events and abs(run.events[0]["x"] - 0.5) < 1e-12
+    assert run["rotor_rate"].size == run["heading_2"].size
+    # At times between nodes the motion is that of shorter steps; before and after the jump at 0.73 s.
+    times = [0.0, 0.31, 0.73, 1.234, 2.0]
+    sampled, fine = (scene.run(step=step, t_eval=times) for step in (0.05, 0.001))
+    np.testing.assert_allclose(sampled["heading_2"], fine["heading_2"], atol=1e-6)
+    np.testing.assert_array_equal(sampled["t"], times)
+    assert sampled["x"][-1] == run["x"][-1]
+
+
 def test_every_keeps_every_so_many_nodes() -> None:
     scene = noslip.scene("turnaround")
     whole, some = scene.run(), scene.run(every=7)

@@ -149,6 +149,26 @@ impl Train {
         AssemblyState::new(&self.assembly, &q, &v)
     }
 
+    /// Place (m) and heading (rad) of every trailer behind a first blade, hinged as they are, with these headings: with the hinge
+    /// `H = P - b e` of a blade, the next has `P+ = H - d e+`.
+    #[must_use]
+    pub fn places(&self, first: [f64; 3], headings: &[f64]) -> Vec<[f64; 3]> {
+        let mut before = first;
+        let behind = |(trailer, heading): (&Trailer, &f64)| {
+            let ([x, y, turned], (sin, cos)) = (before, heading.sin_cos());
+            let hinge = [x - trailer.hitch * turned.cos(), y - trailer.hitch * turned.sin()];
+            before = [hinge[0] - trailer.bar * cos, hinge[1] - trailer.bar * sin, *heading];
+            before
+        };
+        self.trailers.iter().zip(headings).map(behind).collect()
+    }
+
+    /// Whether it has a rotor.
+    #[must_use]
+    pub fn has_rotor(&self) -> bool {
+        self.rotor_rate.is_some()
+    }
+
     /// Angle (rad) and rate (rad/s) of the rotor relative to the first blade, where there is one, from coordinates and velocities of the
     /// assembly.
     #[must_use]

@@ -136,9 +136,7 @@ impl<'a> AssemblyMeter<'a> {
     }
 
     fn node(&self, assembly: &Assembly, t: f64, state: &AssemblyState) -> AssemblyNode {
-        let (q, v) = (0..state.len()).map(|i| (state.unwrapped(i), state.v(i))).unzip();
-        let [constraint, joint] = assembly.misses(t, state);
-        AssemblyNode { t, q, v, energy: assembly.energy(t, state), work: self.work.total(), constraint, joint }
+        AssemblyNode::of(assembly, (t, state), self.work.total())
     }
 
     fn keep(&mut self, assembly: &Assembly, t: f64, state: &AssemblyState) {

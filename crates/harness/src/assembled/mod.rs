@@ -6,11 +6,13 @@ mod meter;
 mod parts;
 mod pieces;
 mod recommend;
+mod samples;
 mod saved;
 mod step;
 
 pub use events::{AssemblyCrossing, AssemblyEvent};
 pub use recommend::recommend_assembly;
+pub use samples::sample_assembly;
 pub use saved::run_assembly_saved;
 
 use crate::{METHODS, Method, MethodKind, Progress, Record};
@@ -42,6 +44,15 @@ pub struct AssemblyNode {
     pub constraint: f64,
     /// The largest `|g|` of a joint here.
     pub joint: f64,
+}
+
+impl AssemblyNode {
+    /// The node of a state, after so much work (J).
+    pub(crate) fn of(assembly: &Assembly, (t, state): (f64, &AssemblyState), work: f64) -> Self {
+        let (q, v) = (0..state.len()).map(|i| (state.unwrapped(i), state.v(i))).unzip();
+        let [constraint, joint] = assembly.misses(t, state);
+        Self { t, q, v, energy: assembly.energy(t, state), work, constraint, joint }
+    }
 }
 
 /// What becomes of the nodes of a run of an assembly.

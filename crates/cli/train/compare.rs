@@ -1,22 +1,16 @@
-//! Scenes with trailers: assemblies, whose number of coordinates is not known to the compiler. What `compare` and `precision` make
-//! of them; `run` is in `train_run`.
-
 use crate::comparison::{Comparison, REFERRED, better_than};
 use crate::error::CliError;
 use crate::interrupt::Interrupt;
-use crate::measurement::{KnownEnd, Measurement};
 use crate::progress::Interruptible;
 use crate::table::ComparisonRow;
-use crate::{compare_numbers, facts, inspect, json, progress, table};
+use crate::{compare_numbers, facts, json, progress, table};
 use assembly::AssemblyState;
 use assembly::parts::Train;
-use dla::{RunError, Schedule};
-use harness::precision::{Bench, LadderLimits, rounds, work_precision};
+use dla::Schedule;
 use harness::report::{SceneReport, Series};
 use harness::{Assembled, AssemblyNode, Drift, DriftVerdict, Method, assembly_end, run_assembly};
 use scene::Scene;
 use sleigh::SleighState;
-use std::time::{Duration, Instant};
 
 /// So many numbers of the runs of a comparison are kept at most, for its report.
 const MOST_NUMBERS: u64 = 100_000_000;
@@ -30,7 +24,7 @@ pub(crate) fn compare_scene(
     methods: &[Method],
     interrupt: &Interrupt,
 ) -> Result<Comparison, CliError> {
-    let (assembly, schedule) = (&train.assembly, inspect::schedule(scene));
+    let (assembly, schedule) = (&train.assembly, scene.schedule());
     let samples = (MOST_NUMBERS / 32 / start.len() as u64).clamp(2, 1000);
     let every = schedule.steps.div_ceil(samples);
     let mut runs: Vec<Assembled> = Vec::new();
@@ -119,67 +113,6 @@ fn reference(
     end.ok().flatten()
 }
 
-/// What accuracy costs on a train: error of the first blade at the end against the time of a run.
-pub(crate) fn measure(
-    scene: &Scene,
-    (train, start): &(Train, AssemblyState),
-    methods: &[Method],
-    longest: f64,
-    interrupt: &Interrupt,
-) -> Result<Measurement, CliError> {
-    let (assembly, duration) = (&train.assembly, scene.run.duration);
-    let end = |method: &Method, steps: u64| -> Result<SleighState, RunError> {
-        let schedule = Schedule { t0: 0.0, step: duration / steps as f64, steps };
-        match assembly_end(assembly, method, &schedule, start, &mut ()) {
-            Ok(state) => Ok(train.blade(state.as_ref().unwrap_or(start), 0)),
-            Err(error) => Err(RunError { step: error.step, time: error.time, source: error.source.step_error() }),
-        }
-    };
-    let reference = converged(&end)?;
-    let end_error = |method: &Method, steps: u64| end(method, steps).map(|state| distance(&state, &reference.end));
-    let bench = Bench { duration, reference_error: reference.error, end_error: &end_error, aligned: &|steps| steps };
-    let limits = LadderLimits { fewest: 2, longest };
-    let bar = progress::bar(&format!("{} precision", scene.name), methods.len() as u64 + rounds());
-    let mut progress = Interruptible { bar, interrupt };
-    let (curves, clock) = work_precision(&bench, methods, &limits, &mut progress);
-    progress.bar.finish_and_clear();
-    let mut facts = facts::of_sleigh(scene, &scene.start, assembly.energy(0.0, start), "");
-    // The steps are those of the ladders, not the scene's.
-    facts.pop();
-    Ok(Measurement { duration, reference: reference.told(), clock, facts, curves })
-}
-
-/// The end by `dla8`, its steps doubled until two successive ends are no nearer than those before, or it takes too long.
-fn converged(end: &dyn Fn(&Method, u64) -> Result<SleighState, RunError>) -> Result<KnownEnd<SleighState>, CliError> {
-    /// Of one run.
-    const LONG: Duration = Duration::from_secs(10);
-    const FEWEST: u64 = 32;
-    let dla8 = Method::named("dla8", None)?;
-    let mut best: Option<KnownEnd<SleighState>> = None;
-    let (mut before, mut steps, mut failure) = (None, FEWEST, String::new());
-    while steps <= FEWEST << 12 {
-        let clock = Instant::now();
-        match end(&dla8, steps) {
-            Ok(state) => {
-                let error = before.as_ref().map(|before| distance(before, &state));
-                if let Some(error) = error {
-                    if best.as_ref().is_some_and(|best| error >= best.error) {
-                        break;
-                    }
-                    best = Some(KnownEnd { closed: false, by: "dla8", steps, error, end: state });
-                }
-                before = Some(state);
-            }
-            Err(error) => failure = error.to_string(),
-        }
-        if clock.elapsed() > LONG {
-            break;
-        }
-        steps *= 2;
-    }
-    best.ok_or_else(|| CliError::Computation(vec![format!("the reference: too few runs of dla8 succeed: {failure}")]))
-}
-
 /// Places and headings of the trailers at every node, those that a report shows.
 fn followers(train: &Train, nodes: &[AssemblyNode]) -> Vec<Vec<[f64; 3]>> {
     let shown = 1..=train.trailers().len().min(SHOWN);
@@ -188,7 +121,7 @@ fn followers(train: &Train, nodes: &[AssemblyNode]) -> Vec<Vec<[f64; 3]>> {
 }
 
 /// The larger of the distances in position [m] and in heading [rad].
-fn distance(a: &SleighState, b: &SleighState) -> f64 {
+pub(super) fn distance(a: &SleighState, b: &SleighState) -> f64 {
     let (place, turn) = (f64::hypot(a.x - b.x, a.y - b.y), (a.heading - b.heading).abs());
     if place > turn || place.is_nan() { place } else { turn }
 }
