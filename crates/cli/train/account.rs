@@ -5,9 +5,7 @@ use crate::{json, substeps};
 use assembly::AssemblyState;
 use assembly::parts::Train;
 use dla::Schedule;
-use harness::{
-    Assembled, AssemblyCrossing, AssemblyNodes, Method, Progress, recommend_assembly, run_assembly_watched,
-};
+use harness::{Assembled, AssemblyCrossing, AssemblyNodes, Method, Progress, recommend_assembly, run_assembly_watched};
 use scene::{Scene, SleighQuantity};
 use serde_json::{Value, json};
 use sleigh::SleighState;

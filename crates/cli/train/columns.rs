@@ -39,7 +39,8 @@ const SHOWN: usize = 60;
 
 /// Places and headings of the trailers along a run, one after the other: those that a picture shows.
 pub(crate) fn followers(train: &Train, columns: &Columns) -> Vec<Vec<[f64; 3]>> {
-    let column = |name: &str| columns.iter().find(|column| column.name == name).map_or(&[][..], |column| &column.values);
+    let column =
+        |name: &str| columns.iter().find(|column| column.name == name).map_or(&[][..], |column| &column.values);
     let [x, y, heading] = ["x", "y", "heading"].map(column);
     let others: Vec<String> = (1..=train.trailers().len().min(SHOWN)).map(|k| format!("heading_{k}")).collect();
     let others: Vec<&[f64]> = others.iter().map(|name| column(name)).collect();

@@ -1,7 +1,7 @@
 use crate::hermite::Hermite;
 use crate::{Checkpoint, CheckpointError, Observer, State, StepReport, View};
 use lagrangian::quadrature::gauss_legendre;
-use lagrangian::{from_fn, two_sum};
+use lagrangian::{PowerSources, from_fn, two_sum};
 use std::ops::ControlFlow;
 
 /// The work done on a system since the start of a run (J), so that `E(t) - E(0) - work` is the error of the energy.
@@ -9,7 +9,8 @@ use std::ops::ControlFlow;
 /// Its power is `F . v - dL/dt - lambda . b`: that of the generalised forces, of explicit time in the Lagrangian, and of
 /// what moves an affine constraint. Where a method reports the work of its step, that counts. Elsewhere the power is
 /// integrated with four Gauss nodes along the polynomial of degree five that has the positions, velocities and
-/// accelerations of both ends of the step, which is of order 6; a system without any power costs no acceleration.
+/// accelerations of both ends of the step, which is of order 6; a system without any power costs no acceleration, and one that says so of
+/// itself ([`PowerSources`]) no evaluation.
 /// An impulse, where an imposed velocity jumps, does the work by which it changes the energy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Work<const N: usize> {
@@ -19,6 +20,8 @@ pub struct Work<const N: usize> {
     before: Option<(f64, [f64; N], [f64; N])>,
     /// What was known at the last node, while a step is made in parts.
     at_node: Option<KnownWork<N>>,
+    /// What may do work on the piece of the system.
+    sources: PowerSources,
     nodes: [f64; 4],
     weights: [f64; 4],
 }
@@ -29,7 +32,7 @@ type KnownWork<const N: usize> = ([f64; 2], Option<(f64, [f64; N], [f64; N])>);
 impl<const N: usize> Default for Work<N> {
     fn default() -> Self {
         let (nodes, weights) = gauss_legendre();
-        Self { total: 0.0, rest: 0.0, before: None, at_node: None, nodes, weights }
+        Self { total: 0.0, rest: 0.0, before: None, at_node: None, sources: PowerSources::ALL, nodes, weights }
     }
 }
 
@@ -74,16 +77,17 @@ impl<const N: usize> Work<N> {
 
     /// The work over the step that ends at the node; not a number where the accelerations are not determined.
     fn over_step<const M: usize>(&self, node: &View<'_, N, M>) -> f64 {
-        let Some((t0, q0, v0)) = self.before else { return 0.0 };
+        let PowerSources { time: of_time, forces, constraints } = self.sources;
+        let Some((t0, q0, v0)) = self.before.filter(|_| of_time || forces || constraints) else { return 0.0 };
         let (system, q1, v1) = (node.system, node.state.unwrapped(), *node.state.v());
         let h = node.t - t0;
         let time = |c: f64| t0 + c * h;
         let moves = |t: f64, q: &[f64; N]| system.constraint(t, q).1.iter().any(|b| *b != 0.0);
-        let moved = moves(t0, &q0) || moves(node.t, &q1);
+        let moved = constraints && (moves(t0, &q0) || moves(node.t, &q1));
         let mean = |c: f64| from_fn::<f64, N, _>(|i| q0[i] + c * (q1[i] - q0[i]));
         let powered = moved
-            || system.force(t0, &q0, &v0).is_some()
-            || self.nodes.iter().any(|c| system.lagrangian_power(time(*c), &mean(*c), &v1) != 0.0);
+            || forces && system.force(t0, &q0, &v0).is_some()
+            || of_time && self.nodes.iter().any(|c| system.lagrangian_power(time(*c), &mean(*c), &v1) != 0.0);
         if !powered {
             return 0.0;
         }
@@ -93,7 +97,13 @@ impl<const N: usize> Work<N> {
         let hermite = Hermite { t0, h, q0, v0, a0: first.acceleration, q1, v1, a1: last.acceleration };
         let power = |c: f64| {
             let (t, (q, v)) = (time(c), hermite.at_part(c));
-            let mut power = system.lagrangian_power(t, &q, &v) + system.force_power(t, &q, &v).unwrap_or(0.0);
+            let mut power = 0.0;
+            if of_time {
+                power += system.lagrangian_power(t, &q, &v);
+            }
+            if forces {
+                power += system.force_power(t, &q, &v).unwrap_or(0.0);
+            }
             if moved {
                 let Ok(motion) = system.motion(t, &q, &v) else { return f64::NAN };
                 // lambda . (A v) is -lambda . b on the constraint, and keeps its order off it.
@@ -109,6 +119,7 @@ impl<const N: usize> Work<N> {
 
 impl<const N: usize, const M: usize> Observer<N, M> for Work<N> {
     fn start(&mut self, node: &View<'_, N, M>) {
+        self.sources = node.system.power_sources();
         self.remember(node);
     }
 
@@ -120,6 +131,7 @@ impl<const N: usize, const M: usize> Observer<N, M> for Work<N> {
             let jump = node.energy() - node.system.energy(node.t, node.state.q(), &v);
             self.add(jump);
         }
+        self.sources = node.system.power_sources();
         self.remember(node);
     }
 

@@ -61,6 +61,7 @@ mod shown;
 pub mod simd;
 mod sincos;
 mod system;
+mod traced;
 mod twofold;
 mod vector_field;
 mod with;
@@ -99,7 +100,7 @@ pub use octaves::{octaves, of_octaves};
 pub use parametrised::{Member, Parametrised, Unparametrised};
 pub use piecewise::{Piecewise, whole_steps};
 pub use pivots::Pivots;
-pub use power::{force_power, lagrangian_power};
+pub use power::{PowerSources, force_power, lagrangian_power};
 pub use reaction::{position_misses, position_residual, position_rows, reaction_rows, rows_along};
 pub use reduced::{
     ReducedError, ReducedSlope, derived_acceleration, quasi_velocities, reduced_acceleration, reduced_slope,
@@ -117,6 +118,7 @@ pub use seldom::{configuration_slope, velocity_slope};
 pub use shown::Shown;
 pub use sincos::sin_cos_wrapped;
 pub use system::{Constraint, System, constraint_residual};
+pub use traced::Traced;
 pub use twofold::Twofold;
 pub use vector_field::{LieBracket, VectorField};
 pub use with::With;

@@ -1,4 +1,30 @@
-use crate::{Dual, System};
+use crate::{Dual, Scalar, System, Traced};
+
+/// What may do work on a system: each of these where no evaluation can tell that it does none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PowerSources {
+    /// Time in the Lagrangian.
+    pub time: bool,
+    /// Forces.
+    pub forces: bool,
+    /// Constraints with another `b` than zero, which move.
+    pub constraints: bool,
+}
+
+impl PowerSources {
+    /// Whatever there is.
+    pub const ALL: Self = Self { time: true, forces: true, constraints: true };
+
+    /// Those of a system, which its functions tell without a number.
+    pub fn of<Sys: System<N, M>, const N: usize, const M: usize>(system: &Sys) -> Self {
+        let (t, q) = (Traced::TIME, [Traced::STATE; N]);
+        Self {
+            time: system.lagrangian(t, &q, &q).of_time,
+            forces: system.force(t, &q, &q).is_some_and(|force| !force.iter().all(Scalar::is_zero)),
+            constraints: !system.constraint(t, &q).1.iter().all(Scalar::is_zero),
+        }
+    }
+}
 
 /// The power `F . v` of the generalised forces (W); `None` where there are none.
 #[inline]

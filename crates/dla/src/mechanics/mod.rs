@@ -12,7 +12,7 @@ pub use seeded::{FullMechanics, SeededMechanics};
 use crate::gauss::{Collocation, CollocationOutcome};
 use lagrangian::{
     AdmissibleBasis, Bracket, Constraint, ConstraintSlopes, Dual, EnergySlope, HyperDual, Lanes, Motion, MotionError,
-    ReducedError, ReducedSlope,
+    PowerSources, ReducedError, ReducedSlope,
 };
 use std::fmt;
 
@@ -81,6 +81,9 @@ pub trait Mechanics<const N: usize, const M: usize>: RoundedMechanics<N, M> + Di
 
     /// The generalised forces; none where there are none.
     fn force(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<[f64; N]>;
+
+    /// What may do work on it.
+    fn power_sources(&self) -> PowerSources;
 
     /// The power of the forces (W); none where there are none.
     fn force_power(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<f64>;

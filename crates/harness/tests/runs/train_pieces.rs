@@ -4,7 +4,8 @@ use assembly::AssemblyState;
 use assembly::parts::{Trailer, Train};
 use dla::{Checkpoint, Schedule};
 use harness::{
-    Assembled, AssemblyNodes, Method, Request, Saving, assembly_end, recommend_assembly, run_assembly, run_assembly_saved,
+    Assembled, AssemblyNodes, Method, Request, Saving, assembly_end, recommend_assembly, run_assembly,
+    run_assembly_saved,
 };
 use lagrangian::{Piecewise, System, With};
 use sleigh::effects::{Drag, Thrust, Torque};
@@ -138,9 +139,8 @@ fn methods_keep_their_orders_across_jumps() {
 #[test]
 fn a_run_across_jumps_goes_on_from_its_files() {
     let (train, start) = jerked();
-    let bits = |run: &Assembled| {
-        format!("{:?} {:?}", harness::Record { wall_seconds: 0.0, ..run.record.clone() }, run.end)
-    };
+    let bits =
+        |run: &Assembled| format!("{:?} {:?}", harness::Record { wall_seconds: 0.0, ..run.record.clone() }, run.end);
     for name in ["dla", "lobatto3"] {
         let method = Method::named(name, None).unwrap();
         let whole = run_assembly(&train.assembly, &method, &SCHEDULE, &start, 8, &mut ());

@@ -40,7 +40,11 @@ fn every_effect_goes_with_trailers() {
     for (entry, coordinates, speed) in [
         ("kind = \"flywheel\"\ninertia = 1.0\nrotor_rate = 2.0", 40, None),
         ("kind = \"tracer\"\npath = { circle = { radius = 1.0 }, period = 9.0 }", 39, Some(())),
-        ("kind = \"servo\"\nspeed = { times = [0.0, 1.0], values = [0.7, 1.0], interpolation = \"linear\" }", 39, Some(())),
+        (
+            "kind = \"servo\"\nspeed = { times = [0.0, 1.0], values = [0.7, 1.0], interpolation = \"linear\" }",
+            39,
+            Some(()),
+        ),
         ("kind = \"servo\"\nspeed = { times = [0.0, 1.0], values = [0.7, 1.0] }\nturn_rate = 0.1", 39, Some(())),
         ("kind = \"thrust\"\nforce = { times = [0.0, 1.0], values = [0.0, 1.0] }", 39, None),
     ] {
@@ -55,7 +59,8 @@ fn every_effect_goes_with_trailers() {
         }
     }
     // The jumps of the lead are those of the train.
-    let pushed = format!("{TRAIN}\n[[effects]]\nkind = \"thrust\"\nforce = {{ times = [0.0, 1.0], values = [0.0, 1.0] }}\n");
+    let pushed =
+        format!("{TRAIN}\n[[effects]]\nkind = \"thrust\"\nforce = {{ times = [0.0, 1.0], values = [0.0, 1.0] }}\n");
     let scene = Scene::parse(&pushed, "train.toml", METHODS).unwrap();
     let (train, _) = scene.train().unwrap().unwrap();
     assert_eq!(train.assembly.jump_times(0.0, 5.0), [1.0]);
