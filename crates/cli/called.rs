@@ -1,3 +1,4 @@
+use harness::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget};
 use std::cell::RefCell;
 use std::ffi::OsString;
@@ -31,7 +32,7 @@ impl Caller {
     }
 
     /// A bar that the caller sees, and no terminal.
-    pub(crate) fn bar(&self, label: &str, steps: u64) -> ProgressBar {
+    fn bar(&self, label: &str, steps: u64) -> ProgressBar {
         let bar = ProgressBar::hidden().with_message(label.to_owned());
         bar.set_length(steps);
         self.watch(&bar);
@@ -42,6 +43,31 @@ impl Caller {
     fn watch(&self, bar: &ProgressBar) {
         bar.set_draw_target(ProgressDrawTarget::hidden());
         *self.bar.lock().unwrap_or_else(PoisonError::into_inner) = Some(bar.clone());
+    }
+}
+
+/// Shows a run to the caller, who may end it.
+#[derive(Debug)]
+pub struct ShownToCaller<'a> {
+    bar: ProgressBar,
+    caller: &'a Caller,
+}
+
+impl<'a> ShownToCaller<'a> {
+    /// A run under that name, of so many steps.
+    #[must_use]
+    pub fn new(caller: &'a Caller, label: &str, steps: u64) -> Self {
+        Self { bar: caller.bar(label, steps), caller }
+    }
+}
+
+impl Progress for ShownToCaller<'_> {
+    fn advance(&mut self, steps: u64) {
+        self.bar.inc(steps);
+    }
+
+    fn stops(&self) -> bool {
+        self.caller.stops()
     }
 }
 

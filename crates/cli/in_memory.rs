@@ -1,11 +1,10 @@
 use crate::account::Account;
-use crate::called::Caller;
+use crate::called::{Caller, ShownToCaller};
 use crate::error::CliError;
 use crate::trigger::Trigger;
 use crate::{inspect, substeps, train};
 use dla::{Node, Samples, State, Substeps, Trajectory, View};
-use harness::{Again, EVENT_SAMPLES, Method, Progress};
-use indicatif::ProgressBar;
+use harness::{Again, EVENT_SAMPLES, Method};
 use scene::{AnyScene, Built, Column, Visitor};
 use serde_json::Value;
 
@@ -88,22 +87,6 @@ struct InMemory<'a> {
     caller: &'a Caller,
 }
 
-/// Shows a run to the caller, who may end it.
-pub(crate) struct ShownToCaller<'a> {
-    pub(crate) bar: ProgressBar,
-    pub(crate) caller: &'a Caller,
-}
-
-impl Progress for ShownToCaller<'_> {
-    fn advance(&mut self, steps: u64) {
-        self.bar.inc(steps);
-    }
-
-    fn stops(&self) -> bool {
-        self.caller.stops()
-    }
-}
-
 /// The events that are looked for, as they are written.
 pub(crate) fn triggers(texts: &[String]) -> Result<Vec<Trigger>, CliError> {
     texts.iter().map(|text| text.parse().map_err(CliError::Request)).collect()
@@ -121,8 +104,7 @@ impl Visitor for InMemory<'_> {
         } = self;
         let (reported, ending) = (triggers(events)?, triggers(until)?);
         let account = Account::new(system, (scene, method), (q, v), (*tolerance, *backward), (&reported, &ending))?;
-        let bar = caller.bar(method.info().name, account.request.schedule.steps);
-        let mut shown = ShownToCaller { bar, caller };
+        let mut shown = ShownToCaller::new(caller, method.info().name, account.request.schedule.steps);
         let (mut trajectory, sampled): (_, Vec<Node<N, M>>);
         let (made, nodes) = if times.is_empty() {
             trajectory = Trajectory::every(*every);

@@ -56,7 +56,6 @@ mod run_report;
 mod run_rows;
 mod saves;
 mod section;
-mod sensitivities;
 mod stability;
 mod stability_map;
 mod starts;
@@ -73,10 +72,9 @@ use clap::Parser;
 use error::CliError;
 use std::process::ExitCode;
 
-pub use called::{Caller, CommandOutput, call};
+pub use called::{Caller, CommandOutput, ShownToCaller, call};
 pub use ensemble::{SweepPlan, plan};
 pub use in_memory::{Refusal, RunRequest, RunResult, run};
-pub use sensitivities::{Sensitivities, SensitivityRequest, full_key, sensitivities};
 
 /// The program: the command of its arguments, with its exit code.
 #[must_use]

@@ -1,8 +1,8 @@
 use super::account::TrainAccount;
 use super::columns::{columns, row};
-use crate::called::Caller;
+use crate::called::{Caller, ShownToCaller};
 use crate::error::CliError;
-use crate::in_memory::{RunRequest, RunResult, ShownToCaller, triggers};
+use crate::in_memory::{RunRequest, RunResult, triggers};
 use assembly::AssemblyState;
 use assembly::parts::Train;
 use harness::{AssemblyNode, AssemblyNodes, EVENT_SAMPLES, Method, sample_assembly};
@@ -23,8 +23,7 @@ pub(crate) fn in_memory(
     let mut keep = |node: &AssemblyNode| {
         numbers.iter_mut().zip(row(&account.train, node)).for_each(|(column, x)| column.push(x));
     };
-    let bar = caller.bar(method.info().name, account.schedule.steps);
-    let mut shown = ShownToCaller { bar, caller };
+    let mut shown = ShownToCaller::new(caller, method.info().name, account.schedule.steps);
     let made = if times.is_empty() {
         account.watched(EVENT_SAMPLES, AssemblyNodes::Shown(*every, &mut |_, node| keep(node)), &mut shown)
     } else {

@@ -5,6 +5,7 @@
 mod commands;
 mod errors;
 mod scenes;
+mod sensitivities;
 mod supervise;
 
 use pyo3::prelude::*;

@@ -1,6 +1,7 @@
 use crate::errors::{RequestError, raised};
+use crate::sensitivities::{SensitivityRequest, full_key, sensitivities};
 use crate::supervise::{Supervised, supervised};
-use cli::{RunRequest, RunResult, SensitivityRequest, full_key};
+use cli::{RunRequest, RunResult};
 use harness::METHODS;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -145,7 +146,7 @@ impl Scene {
         let count = keys.len();
         let request = SensitivityRequest { keys, columns, times };
         let Supervised { value, ended } =
-            supervised(py, progress, |caller| cli::sensitivities(&self.scene, &request, caller))?;
+            supervised(py, progress, |caller| sensitivities(&self.scene, &request, caller))?;
         if let Some(ended) = ended {
             return Err(ended);
         }

@@ -207,12 +207,14 @@ fn a_train_with_a_rotor() {
     for name in METHODS.into_iter().chain(["energy2"]) {
         let [without, with, driven] =
             [&bare, &free, &motor].map(|train| made(train, name, &train.start(&START, &[0.1, -0.3])));
+        // The method that keeps the energy shares what it corrects among all coordinates, the rotor's too.
+        let most = if name == "energy2" { 1e-6 } else { 1e-12 };
         for i in 0..9 {
-            assert_abs_diff_eq!(without.end.unwrapped(i), with.end.unwrapped(i), epsilon = 1e-12);
+            assert_abs_diff_eq!(without.end.unwrapped(i), with.end.unwrapped(i), epsilon = most);
         }
-        assert_abs_diff_eq!(with.end.v(9), 2.3, epsilon = 1e-13);
+        assert_abs_diff_eq!(with.end.v(9), 2.3, epsilon = most);
         // I_r phi'' = tau.
-        assert_abs_diff_eq!(driven.end.v(9), 2.3 + 4.0 * 0.5 / 0.7, epsilon = 1e-11);
+        assert_abs_diff_eq!(driven.end.v(9), 2.3 + 4.0 * 0.5 / 0.7, epsilon = 10.0 * most);
         assert!((driven.end.unwrapped(2) - with.end.unwrapped(2)).abs() > 0.5, "{name}");
         assert!(driven.record.energy.work.abs() > 1.0, "{name}");
         let most = if name == "dla" { 1e-2 } else { 1e-4 };

@@ -1,6 +1,6 @@
 use super::motion::{Carried, DifferentiatedMotion, of_parameter, of_start};
 use super::{Asked, BLOCK, SensitivityRows, no_key, refused};
-use crate::in_memory::Refusal;
+use cli::Refusal;
 use harness::ParametrisedMechanics;
 use lagrangian::{Gradients, Seeded};
 use scene::{Built, Family, FamilySystem, TextModel, TextScene, Varied, Visitor};

@@ -4,8 +4,7 @@ mod motion;
 mod sleigh;
 mod text;
 
-use crate::called::Caller;
-use crate::in_memory::Refusal;
+use cli::{Caller, Refusal};
 use dla::Schedule;
 use harness::{Method, SensitivitiesError};
 use scene::{AnyScene, FREE};
@@ -56,7 +55,7 @@ struct Asked<'a> {
 
 /// The derivatives of a run, at its end or at some times, in numbers of its start and in parameters.
 ///
-/// They are those of the discrete motion, exact but for round-off, as the numbers are those that [`run`](crate::run) gives, to the last
+/// They are those of the discrete motion, exact but for round-off, as the numbers are those that [`cli::run`] gives, to the last
 /// bit.
 ///
 /// # Errors

@@ -1,5 +1,5 @@
 use super::{Asked, BLOCK, SensitivityRows, chosen, failed};
-use crate::in_memory::{Refusal, ShownToCaller};
+use cli::{Refusal, ShownToCaller};
 use dla::{Node, Tangent, Variation, View};
 use harness::{Moving, ParametrisedMechanics, Request, sensitivities};
 use lagrangian::{Gradients, Scalar, Seeded};
@@ -59,8 +59,7 @@ impl<const N: usize, const M: usize> DifferentiatedMotion<'_, N, M> {
     ) -> Result<SensitivityRows, Refusal> {
         let chosen = chosen(&request.columns, known, usual)?;
         let run = Request { schedule, q: self.q, v: self.v, samples: 1 };
-        let bar = caller.bar(method.info().name, schedule.steps);
-        let mut shown = ShownToCaller { bar, caller };
+        let mut shown = ShownToCaller::new(caller, method.info().name, schedule.steps);
         let (family, system) = ((self.family, self.parameters), (&*self.system, (&self.system).into()));
         let made = sensitivities(system, method, &run, &request.times, family, start, &mut shown);
         let made = made.map_err(|error| failed(&error))?;
