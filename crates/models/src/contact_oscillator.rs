@@ -1,6 +1,6 @@
 use crate::error::not_negative;
 use crate::{Labels, Model, ModelError, State};
-use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, energy};
+use lagrangian::{Scalar, energy};
 
 /// The contact oscillator, `L = |q'|^2/2 - |q|^2/2 - eps/2 x^2 z^2` with `x' + y z' = 0`.
 ///
@@ -41,27 +41,13 @@ impl ContactOscillator {
     }
 }
 
-impl System<3, 1> for ContactOscillator {
-    /// `L = |q'|^2/2 - |q|^2/2 - eps/2 x^2 z^2`.
-    #[inline(always)]
-    fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 3], v: &[S; 3]) -> S {
-        let kinetic = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) * 0.5;
-        let xz = q[0] * q[2];
-        kinetic - (q[0] * q[0] + q[1] * q[1] + q[2] * q[2]) * 0.5 - xz * xz * (0.5 * self.eps)
-    }
-
-    /// `x' + y z' = 0`.
-    #[inline(always)]
-    fn constraint<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
-        ([[S::constant(1.0), S::zero(), q[1]]], [S::zero()])
-    }
-
-    /// `(0, 1, 0)` and `(-y, 0, 1)`.
-    #[inline(always)]
-    fn admissible_basis<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, 1>> {
-        let (zero, one) = (S::zero(), S::constant(1.0));
-        Some(AdmissibleBasis::new([[zero, one, zero], [-q[1], zero, one]]))
-    }
+macros::system! { lagrangian;
+    impl ContactOscillator;
+    coordinates = { x = "m", y = "m", z = "m" }
+    parameters = { eps = self.eps }
+    lagrangian = "(x'^2 + y'^2 + z'^2 - x^2 - y^2 - z^2 - eps*x^2*z^2)/2"
+    constraints = ["x' + y*z'"]
+    basis = [["0", "1", "0"], ["-y", "0", "1"]]
 }
 
 impl Model<3, 1> for ContactOscillator {

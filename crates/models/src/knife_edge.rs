@@ -1,7 +1,7 @@
 use crate::error::{finite, positive};
 use crate::special::{sinc, sine_defect};
 use crate::{Labels, Model, ModelError, State};
-use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, energy};
+use lagrangian::{Scalar, energy};
 
 /// A knife edge on an incline: a body whose centre of mass stands over its blade, on a slope that falls along `x`.
 ///
@@ -57,34 +57,14 @@ impl KnifeEdge {
     }
 }
 
-impl System<3, 1> for KnifeEdge {
-    /// `L = m/2 (x'^2 + y'^2) + I/2 theta'^2 + m g x`.
-    #[inline(always)]
-    fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 3], v: &[S; 3]) -> S {
-        (v[0] * v[0] + v[1] * v[1]) * (0.5 * self.mass)
-            + v[2] * v[2] * (0.5 * self.inertia)
-            + q[0] * (self.mass * self.pull)
-    }
-
-    /// `-sin(theta) x' + cos(theta) y' = 0`.
-    #[inline(always)]
-    fn constraint<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
-        let (sin, cos) = q[2].sin_cos();
-        ([[-sin, cos, S::zero()]], [S::zero()])
-    }
-
-    /// Drive along the blade, and pivot about it.
-    #[inline(always)]
-    fn admissible_basis<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, 1>> {
-        let (sin, cos) = q[2].sin_cos();
-        let (zero, one) = (S::zero(), S::constant(1.0));
-        Some(AdmissibleBasis::new([[cos, sin, zero], [zero, zero, one]]))
-    }
-
-    #[inline(always)]
-    fn angles(&self) -> [bool; 3] {
-        [false, false, true]
-    }
+macros::system! { lagrangian;
+    impl KnifeEdge;
+    coordinates = { x = "m", y = "m", theta = "angle" }
+    parameters = { m = self.mass, I = self.inertia, g = self.pull }
+    lagrangian = "m/2*(x'^2 + y'^2) + I/2*theta'^2 + m*g*x"
+    constraints = ["y'*cos(theta) - x'*sin(theta)"]
+    // Drive along the blade, and pivot about it.
+    basis = [["cos(theta)", "sin(theta)", "0"], ["0", "0", "1"]]
 }
 
 impl Model<3, 1> for KnifeEdge {

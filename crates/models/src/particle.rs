@@ -1,6 +1,6 @@
 use crate::error::{not_negative, positive};
 use crate::{Labels, Model, ModelError, State};
-use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, energy};
+use lagrangian::{Scalar, energy};
 
 /// The nonholonomic particle: a point in space with `z' = y x'`, free or in a well `U = k/2 (x^2 + y^2)`.
 ///
@@ -53,26 +53,13 @@ impl Particle {
     }
 }
 
-impl System<3, 1> for Particle {
-    /// `L = m/2 |q'|^2 - k/2 (x^2 + y^2)`.
-    #[inline(always)]
-    fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 3], v: &[S; 3]) -> S {
-        (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) * (0.5 * self.mass)
-            - (q[0] * q[0] + q[1] * q[1]) * (0.5 * self.stiffness)
-    }
-
-    /// `z' - y x' = 0`.
-    #[inline(always)]
-    fn constraint<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
-        ([[-q[1], S::zero(), S::constant(1.0)]], [S::zero()])
-    }
-
-    /// `(1, 0, y)` and `(0, 1, 0)`.
-    #[inline(always)]
-    fn admissible_basis<S: Scalar>(&self, _t: S, q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, 1>> {
-        let (zero, one) = (S::zero(), S::constant(1.0));
-        Some(AdmissibleBasis::new([[one, zero, q[1]], [zero, one, zero]]))
-    }
+macros::system! { lagrangian;
+    impl Particle;
+    coordinates = { x = "m", y = "m", z = "m" }
+    parameters = { m = self.mass, k = self.stiffness }
+    lagrangian = "m/2*(x'^2 + y'^2 + z'^2) - k/2*(x^2 + y^2)"
+    constraints = ["z' - y*x'"]
+    basis = [["1", "0", "y"], ["0", "1", "0"]]
 }
 
 impl Model<3, 1> for Particle {

@@ -1,6 +1,6 @@
 use crate::error::not_negative;
 use crate::{Labels, Model, ModelError, State};
-use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, from_fn};
+use lagrangian::Scalar;
 
 /// The chaotic quartic oscillator: seven oscillators `q = (x, y1, y2, y3, z1, z2, z3)`, coupled by
 /// `c/2 (sum yi^2 zi^2 + z1^2 z2^2)` and by `x' + sum yi zi' = 0`. Without units.
@@ -35,42 +35,22 @@ impl QuarticOscillator {
     }
 }
 
-/// `|x|^2`. Written out: a loop that stays one decides in a run which numbers carry derivatives.
-#[inline(always)]
-fn square_sum<S: Scalar>([x, y1, y2, y3, z1, z2, z3]: &[S; 7]) -> S {
-    let (y, z) = (y1.squared() + y2.squared() + y3.squared(), z1.squared() + z2.squared() + z3.squared());
-    x.squared() + (y + z)
-}
-
-impl System<7, 1> for QuarticOscillator {
-    /// `L = (|q'|^2 - |q|^2 - c (sum yi^2 zi^2 + z1^2 z2^2))/2`.
-    #[inline(always)]
-    fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 7], v: &[S; 7]) -> S {
-        let [_, y1, y2, y3, z1, z2, z3] = *q;
-        let harmonic = square_sum(v) - square_sum(q);
-        let quartic = (y1 * z1).squared() + (y2 * z2).squared() + (y3 * z3).squared() + (z1 * z2).squared();
-        harmonic * 0.5 - quartic * (0.5 * self.coupling)
-    }
-
-    /// `x' + sum yi zi' = 0`.
-    #[inline(always)]
-    fn constraint<S: Scalar>(&self, _t: S, q: &[S; 7]) -> Constraint<S, 7, 1> {
-        let zero = S::zero();
-        ([[S::constant(1.0), zero, zero, zero, q[1], q[2], q[3]]], [zero])
-    }
-
-    /// Each of the `yi`, and each of the `zi` with `x' = -yi`.
-    #[inline(always)]
-    fn admissible_basis<S: Scalar>(&self, _t: S, q: &[S; 7]) -> Option<AdmissibleBasis<S, 7, 1>> {
-        Some(AdmissibleBasis::new(from_fn::<_, 6, _>(|k| {
-            let mut w = [S::zero(); 7];
-            w[k + 1] = S::constant(1.0);
-            if k >= 3 {
-                w[0] = -q[k - 2];
-            }
-            w
-        })))
-    }
+macros::system! { lagrangian;
+    impl QuarticOscillator;
+    coordinates = { x = "m", y1 = "m", y2 = "m", y3 = "m", z1 = "m", z2 = "m", z3 = "m" }
+    parameters = { c = self.coupling }
+    lagrangian = "(x'^2 + y1'^2 + y2'^2 + y3'^2 + z1'^2 + z2'^2 + z3'^2 - x^2 - y1^2 - y2^2 - y3^2 - z1^2 - z2^2 - z3^2
+                   - c*(y1^2*z1^2 + y2^2*z2^2 + y3^2*z3^2 + z1^2*z2^2))/2"
+    constraints = ["x' + y1*z1' + y2*z2' + y3*z3'"]
+    // Each of the `yi`, and each of the `zi` with `x' = -yi`.
+    basis = [
+        ["0", "1", "0", "0", "0", "0", "0"],
+        ["0", "0", "1", "0", "0", "0", "0"],
+        ["0", "0", "0", "1", "0", "0", "0"],
+        ["-y1", "0", "0", "0", "1", "0", "0"],
+        ["-y2", "0", "0", "0", "0", "1", "0"],
+        ["-y3", "0", "0", "0", "0", "0", "1"],
+    ]
 }
 
 impl Model<7, 1> for QuarticOscillator {

@@ -1,6 +1,5 @@
 use crate::error::positive;
 use crate::{Labels, Model, ModelError, State};
-use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
 
 /// The roller racer: two bodies with an axle each, hinged to each other.
 ///
@@ -51,39 +50,18 @@ impl RollerRacer {
     }
 }
 
-impl System<4, 2> for RollerRacer {
-    /// `L = m/2 (x'^2 + y'^2) + I1/2 theta'^2 + I2/2 (theta' + phi')^2`.
-    #[inline(always)]
-    fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 4], v: &[S; 4]) -> S {
-        (v[0] * v[0] + v[1] * v[1]) * (0.5 * self.mass)
-            + v[2] * v[2] * (0.5 * self.rear)
-            + (v[2] + v[3]).squared() * (0.5 * self.front)
-    }
-
-    /// Neither axle slips sideways: `-sin(theta) x' + cos(theta) y' = 0` and
-    /// `-sin(theta + phi) x' + cos(theta + phi) y' + (d1 cos(phi) + d2) theta' + d2 phi' = 0`.
-    #[inline(always)]
-    fn constraint<S: Scalar>(&self, _t: S, q: &[S; 4]) -> Constraint<S, 4, 2> {
-        let (sin, cos) = q[2].sin_cos();
-        let (front_sin, front_cos) = (q[2] + q[3]).sin_cos();
-        let zero = S::zero();
-        let turn = q[3].cos() * self.d1 + self.d2;
-        ([[-sin, cos, zero, zero], [-front_sin, front_cos, turn, S::constant(self.d2)]], [zero; 2])
-    }
-
-    /// Drive, and turn; the hinge follows, at `d2 phi' = u sin(phi) - (d1 cos(phi) + d2) theta'`.
-    #[inline(always)]
-    fn admissible_basis<S: Scalar>(&self, _t: S, q: &[S; 4]) -> Option<AdmissibleBasis<S, 4, 2>> {
-        let ((sin, cos), (bend, straight)) = (q[2].sin_cos(), q[3].sin_cos());
-        let (zero, one) = (S::zero(), S::constant(1.0));
-        let turn = straight * (-self.d1 / self.d2) - 1.0;
-        Some(AdmissibleBasis::new([[cos, sin, zero, bend / self.d2], [zero, zero, one, turn]]))
-    }
-
-    #[inline(always)]
-    fn angles(&self) -> [bool; 4] {
-        [false, false, true, true]
-    }
+// Neither axle slips sideways.
+macros::system! { lagrangian;
+    impl RollerRacer;
+    coordinates = { x = "m", y = "m", theta = "angle", phi = "angle" }
+    parameters = { m = self.mass, I1 = self.rear, I2 = self.front, d1 = self.d1, d2 = self.d2 }
+    lagrangian = "m/2*(x'^2 + y'^2) + I1/2*theta'^2 + I2/2*(theta' + phi')^2"
+    constraints = [
+        "y'*cos(theta) - x'*sin(theta)",
+        "y'*cos(theta + phi) - x'*sin(theta + phi) + (d1*cos(phi) + d2)*theta' + d2*phi'",
+    ]
+    // Drive, and turn; the hinge follows, at `d2 phi' = u sin(phi) - (d1 cos(phi) + d2) theta'`.
+    basis = [["cos(theta)", "sin(theta)", "0", "sin(phi)/d2"], ["0", "0", "1", "-d1/d2*cos(phi) - 1"]]
 }
 
 impl Model<4, 2> for RollerRacer {

@@ -1,7 +1,7 @@
 use crate::error::positive;
 use crate::special::sinc;
 use crate::{Labels, Model, ModelError, State};
-use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, energy};
+use lagrangian::{Scalar, energy};
 
 /// A disk that stays upright and rolls without slipping on a horizontal plane.
 ///
@@ -72,35 +72,14 @@ impl RollingDisk {
     }
 }
 
-impl System<4, 2> for RollingDisk {
-    /// `L = m/2 (x'^2 + y'^2) + I/2 phi'^2 + J/2 theta'^2`.
-    #[inline(always)]
-    fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 4], v: &[S; 4]) -> S {
-        (v[0] * v[0] + v[1] * v[1]) * (0.5 * self.mass)
-            + v[2] * v[2] * (0.5 * self.spin_inertia)
-            + v[3] * v[3] * (0.5 * self.heading_inertia)
-    }
-
-    /// `x' = R phi' cos(theta)`, `y' = R phi' sin(theta)`.
-    #[inline(always)]
-    fn constraint<S: Scalar>(&self, _t: S, q: &[S; 4]) -> Constraint<S, 4, 2> {
-        let (sin, cos) = q[3].sin_cos();
-        let (zero, one) = (S::zero(), S::constant(1.0));
-        ([[one, zero, -cos * self.radius, zero], [zero, one, -sin * self.radius, zero]], [zero; 2])
-    }
-
-    /// Roll, and turn.
-    #[inline(always)]
-    fn admissible_basis<S: Scalar>(&self, _t: S, q: &[S; 4]) -> Option<AdmissibleBasis<S, 4, 2>> {
-        let (sin, cos) = q[3].sin_cos();
-        let (zero, one) = (S::zero(), S::constant(1.0));
-        Some(AdmissibleBasis::new([[cos * self.radius, sin * self.radius, one, zero], [zero, zero, zero, one]]))
-    }
-
-    #[inline(always)]
-    fn angles(&self) -> [bool; 4] {
-        [false, false, true, true]
-    }
+macros::system! { lagrangian;
+    impl RollingDisk;
+    coordinates = { x = "m", y = "m", phi = "angle", theta = "angle" }
+    parameters = { m = self.mass, R = self.radius, I = self.spin_inertia, J = self.heading_inertia }
+    lagrangian = "m/2*(x'^2 + y'^2) + I/2*phi'^2 + J/2*theta'^2"
+    constraints = ["x' - R*phi'*cos(theta)", "y' - R*phi'*sin(theta)"]
+    // Roll, and turn.
+    basis = [["R*cos(theta)", "R*sin(theta)", "1", "0"], ["0", "0", "0", "1"]]
 }
 
 impl Model<4, 2> for RollingDisk {

@@ -1,6 +1,6 @@
 use crate::error::positive;
 use crate::{Labels, Model, ModelError, State};
-use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, energy};
+use lagrangian::{Scalar, energy};
 
 /// The snakeboard: a board on two wheel axles that steer by opposite angles, with a rotor at its centre.
 ///
@@ -68,49 +68,21 @@ impl Snakeboard {
     }
 }
 
-impl System<5, 2> for Snakeboard {
-    /// `L = m/2 (x'^2 + y'^2) + J/2 theta'^2 + J_r/2 (theta' + psi')^2 +
-    /// J_w/2 ((theta' + phi')^2 + (theta' - phi')^2)`.
-    #[inline(always)]
-    fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 5], v: &[S; 5]) -> S {
-        let [x, y, theta, psi, phi] = *v;
-        (x * x + y * y) * (0.5 * self.mass)
-            + theta * theta * (0.5 * self.board)
-            + (theta + psi).squared() * (0.5 * self.rotor)
-            + ((theta + phi).squared() + (theta - phi).squared()) * (0.5 * self.wheels)
-    }
-
-    /// The sum and the difference of the two axles' constraints: with `u` the speed along the board and `s` that across
-    /// it, `s = 0` and `u sin(phi) + l theta' cos(phi) = 0`.
-    ///
-    /// Back and front, `-sin(phi) u + cos(phi) (s - l theta') = 0` and `sin(phi) u + cos(phi) (s + l theta') = 0`, are
-    /// the same constraint where `cos(phi) = 0`; their sum and difference stay two.
-    #[inline(always)]
-    fn constraint<S: Scalar>(&self, _t: S, q: &[S; 5]) -> Constraint<S, 5, 2> {
-        let ((sin, cos), (steer, straight)) = (q[2].sin_cos(), q[4].sin_cos());
-        let zero = S::zero();
-        let across = [-sin, cos, zero, zero, zero];
-        let along = [steer * cos, steer * sin, straight * self.length, zero, zero];
-        ([across, along], [zero; 2])
-    }
-
-    /// Drive along the arc of the wheels, turn the rotor, and steer.
-    #[inline(always)]
-    fn admissible_basis<S: Scalar>(&self, _t: S, q: &[S; 5]) -> Option<AdmissibleBasis<S, 5, 2>> {
-        let ((sin, cos), (steer, straight)) = (q[2].sin_cos(), q[4].sin_cos());
-        let (zero, one) = (S::zero(), S::constant(1.0));
-        let drive = straight * self.length;
-        Some(AdmissibleBasis::new([
-            [drive * cos, drive * sin, -steer, zero, zero],
-            [zero, zero, zero, one, zero],
-            [zero, zero, zero, zero, one],
-        ]))
-    }
-
-    #[inline(always)]
-    fn angles(&self) -> [bool; 5] {
-        [false, false, true, true, true]
-    }
+// The constraints are the sum and the difference of those of the two axles: with `u` the speed along the board and `s` that across it, `s = 0`
+// and `u sin(phi) + l theta' cos(phi) = 0`. Back and front, `-sin(phi) u + cos(phi) (s - l theta') = 0` and
+// `sin(phi) u + cos(phi) (s + l theta') = 0`, are the same constraint where `cos(phi) = 0`; their sum and difference stay two.
+macros::system! { lagrangian;
+    impl Snakeboard;
+    coordinates = { x = "m", y = "m", theta = "angle", psi = "angle", phi = "angle" }
+    parameters = { m = self.mass, l = self.length, J = self.board, Jr = self.rotor, Jw = self.wheels }
+    lagrangian = "m/2*(x'^2 + y'^2) + J/2*theta'^2 + Jr/2*(theta' + psi')^2 + Jw/2*((theta' + phi')^2 + (theta' - phi')^2)"
+    constraints = ["y'*cos(theta) - x'*sin(theta)", "sin(phi)*(x'*cos(theta) + y'*sin(theta)) + l*cos(phi)*theta'"]
+    // Drive along the arc of the wheels, turn the rotor, and steer.
+    basis = [
+        ["l*cos(phi)*cos(theta)", "l*cos(phi)*sin(theta)", "-sin(phi)", "0", "0"],
+        ["0", "0", "0", "1", "0"],
+        ["0", "0", "0", "0", "1"],
+    ]
 }
 
 impl Model<5, 2> for Snakeboard {
