@@ -12,27 +12,27 @@ use std::fmt::Display;
 
 /// Which derivatives of a run are asked for.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct SensitivityRequest {
+pub(crate) struct SensitivityRequest {
     /// In what: numbers of the start and parameters, by their keys in the scene, as `start.speed`, `sleigh.mass`, `parameters.m`, or by
     /// their names alone.
-    pub keys: Vec<String>,
+    pub(crate) keys: Vec<String>,
     /// Of what: columns of the run; coordinates and velocities where none are named.
-    pub columns: Vec<String>,
+    pub(crate) columns: Vec<String>,
     /// When (s), in order; at the end of the run where none are given.
-    pub times: Vec<f64>,
+    pub(crate) times: Vec<f64>,
 }
 
 /// Numbers of a run, with their derivatives.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Sensitivities {
+pub(crate) struct Sensitivities {
     /// The columns.
-    pub columns: Vec<String>,
+    pub(crate) columns: Vec<String>,
     /// The times (s).
-    pub times: Vec<f64>,
+    pub(crate) times: Vec<f64>,
     /// The numbers of all columns at the first time, then at the next.
-    pub values: Vec<f64>,
+    pub(crate) values: Vec<f64>,
     /// The derivatives of each of these numbers, in all keys.
-    pub jacobian: Vec<f64>,
+    pub(crate) jacobian: Vec<f64>,
 }
 
 /// The directions of a block of keys: numbers carry so many at once.
@@ -61,7 +61,7 @@ struct Asked<'a> {
 /// # Errors
 /// [`Refusal`] where the request makes no sense for the scene, the method has no derivatives, a step fails, or the caller ends the
 /// run.
-pub fn sensitivities(
+pub(crate) fn sensitivities(
     scene: &AnyScene,
     request: &SensitivityRequest,
     caller: &Caller,
@@ -97,7 +97,7 @@ pub fn sensitivities(
 
 /// The key in full of a number that derivatives can be taken in, `start.speed` of `speed`; any other key as it stands.
 #[must_use]
-pub fn full_key(scene: &AnyScene, key: &str) -> String {
+pub(crate) fn full_key(scene: &AnyScene, key: &str) -> String {
     let full = match scene {
         AnyScene::Sleigh(_) => sleigh::full_key(key),
         AnyScene::Text(scene) => text::full_key(scene, key),
