@@ -1,4 +1,4 @@
-use crate::contributions::at_state;
+use crate::contributions::{Contributions, at_state};
 use crate::dla::PARALLEL;
 use crate::equations::AssemblyEquations;
 use crate::projection::project;
@@ -12,14 +12,14 @@ impl Assembly {
     /// # Errors
     /// [`AssemblyError`] where the constraints do not determine the velocity, or for want of memory.
     pub fn onto_constraint(&self, (t, h): (f64, f64), state: &mut AssemblyState) -> Result<(), AssemblyError> {
-        let mut equations = AssemblyEquations::of(self, Solver::Best, PARALLEL)?;
+        let mut contributions = Contributions::of(self, PARALLEL);
         let mut levels = vec![0.0; self.rows()];
         let mut p = vec![0.0; self.coordinates()];
-        equations.contributions.ask(self, false, &|placed, out| {
+        contributions.ask(self, false, &|placed, out| {
             at_state(placed, state, |element, q, v| element.velocity(t, q, v, out));
         });
-        equations.contributions.add_momenta(self, -1.0, &mut p);
-        equations.contributions.write_levels(self, &mut levels);
+        contributions.add_momenta(self, -1.0, &mut p);
+        contributions.write_levels(self, &mut levels);
 
         let (q, v): (Vec<f64>, Vec<f64>) = (0..state.len()).map(|i| (state.q(i), state.v(i))).unzip();
         let mut sizes = vec![0.0; self.coordinates() + self.rows()];
@@ -28,6 +28,7 @@ impl Assembly {
         if levels.iter().zip(&sizes[self.coordinates()..]).all(met) {
             return Ok(());
         }
+        let mut equations = AssemblyEquations::of(self, Solver::Best, PARALLEL)?;
         let mut v1 = v.clone();
         project(&mut equations, (self, t, h), (&q, &v), &p, &mut v1)?;
         for (i, v) in v1.into_iter().enumerate() {

@@ -36,8 +36,9 @@ impl<'a, 'n> Making<'a, 'n> {
         start: &AssemblyState,
         nodes: AssemblyNodes<'n>,
     ) -> Self {
-        let meter = AssemblyMeter::new(assembly, method, schedule.t0, start, nodes);
         let pieces = AssemblyPieces::new(assembly, method, schedule);
+        let first = pieces.as_ref().map_or(assembly, AssemblyPieces::assembly);
+        let meter = AssemblyMeter::new(first, method, schedule.t0, start, nodes);
         Self::of((assembly, pieces), method, schedule, (meter, start.clone(), 0, 0.0))
     }
 

@@ -9,9 +9,10 @@ pub(super) struct AssemblyPieces<'a> {
     whole: &'a Assembly,
     method: Method,
     pieces: Vec<Piece>,
-    /// The piece of the steps now, which an assembly that never jumps need not have.
-    piece: Option<Assembly>,
+    /// The piece of the steps now, by its place in the list, and whether a step of it has been asked for.
+    piece: Assembly,
     now: usize,
+    begun: bool,
     stepper: Box<dyn AssemblyMethod>,
 }
 
@@ -32,21 +33,21 @@ impl<'a> AssemblyPieces<'a> {
     /// [`AssemblyRunError`] at the first step: the method does no assemblies, or there are fewer steps than pieces.
     pub(super) fn new(whole: &'a Assembly, method: &Method, schedule: &Schedule) -> Result<Self, AssemblyRunError> {
         let fail = |source| AssemblyRunError { step: 1, time: schedule.t0, source };
-        let stepper = assembly_method(whole, method).map_err(fail)?;
         let (begin, end) = (schedule.t0, schedule.time(schedule.steps));
         let jumps = whole.jump_times(begin.min(end), begin.max(end));
-        let smooth = jumps.is_empty();
         let pieces = smooth_pieces(schedule, jumps).map_err(|RunError { step, time, source }| {
             let StepError::Jump { time: jump } = source else { return fail(AssemblyError::NotFinite) };
             AssemblyRunError { step, time, source: AssemblyError::Jump { time: jump } }
         })?;
-        let now = if smooth { 0 } else { usize::MAX };
-        Ok(Self { whole, method: *method, pieces, piece: None, now, stepper })
+        let Piece { steps, schedule } = &pieces[0];
+        let piece = whole.smooth_piece(schedule.middle(steps));
+        let stepper = assembly_method(&piece, method).map_err(fail)?;
+        Ok(Self { whole, method: *method, pieces, piece, now: 0, begun: false, stepper })
     }
 
-    /// Whether step `k`, counted from 0, is the first of another piece than the step before: a velocity may jump there.
+    /// Whether step `k`, counted from 0, is the first that is asked for of its piece: a velocity may jump there.
     pub(super) fn begins(&self, k: u64) -> bool {
-        self.place(k) != self.now
+        !self.begun || self.place(k) != self.now
     }
 
     fn place(&self, k: u64) -> usize {
@@ -66,22 +67,21 @@ impl<'a> AssemblyPieces<'a> {
         let at = self.place(k);
         let Piece { steps, schedule } = &self.pieces[at];
         let (t, h) = (schedule.time(k), schedule.step);
+        let (fail, begins) = (|source| AssemblyRunError { step: k + 1, time: t, source }, self.begins(k));
         if at != self.now {
-            let fail = |source| AssemblyRunError { step: k + 1, time: t, source };
-            let piece = self.whole.smooth_piece(schedule.middle(steps));
-            // Inside a piece, where a run is resumed, there is no impulse.
-            if k == steps.start {
-                piece.onto_constraint((t, h), state).map_err(fail)?;
-            }
-            self.stepper = assembly_method(&piece, &self.method).map_err(fail)?;
-            (self.piece, self.now) = (Some(piece), at);
+            self.piece = self.whole.smooth_piece(schedule.middle(steps));
+            self.stepper = assembly_method(&self.piece, &self.method).map_err(fail)?;
         }
-        let assembly = self.piece.as_ref().unwrap_or(self.whole);
-        Ok(PieceStep { assembly, stepper: &mut *self.stepper, time: (t, h), end: schedule.time(k + 1) })
+        // Inside a piece, where a run is resumed, there is no impulse.
+        if begins && k == steps.start {
+            self.piece.onto_constraint((t, h), state).map_err(fail)?;
+        }
+        (self.now, self.begun) = (at, true);
+        Ok(PieceStep { assembly: &self.piece, stepper: &mut *self.stepper, time: (t, h), end: schedule.time(k + 1) })
     }
 
     /// The assembly as it is now.
     pub(super) fn assembly(&self) -> &Assembly {
-        self.piece.as_ref().unwrap_or(self.whole)
+        &self.piece
     }
 }

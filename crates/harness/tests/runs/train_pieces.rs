@@ -99,6 +99,19 @@ fn an_imposed_speed_that_jumps_pulls_the_train_along() {
     }
 }
 
+/// A table that has jumped before the run begins holds its last value, from the start on.
+#[test]
+fn a_table_that_ends_before_the_run_holds_its_last_value() {
+    let speed = Guide::Speed(steps(&[-2.0, -1.0], &[5.0, 1.0]));
+    let body = With { body: Guided::<1>::servo(lead(), speed).unwrap(), effects: () };
+    let train = Train::new(body, trailers(), |trailer| trailer.sleigh).unwrap();
+    let start = train.start(&SleighState { turn_rate: 0.0, ..START }, &[]);
+    let run = made(&train, "dla", &start);
+    let (before, after) = (train.blade(&start, 0), train.blade(&run.end, 0));
+    assert_abs_diff_eq!(f64::hypot(after.x - before.x, after.y - before.y), 4.0, epsilon = 1e-12);
+    assert!(run.record.constraint_max < 1e-13 && run.record.energy.work.abs() < 1e-12, "{:?}", run.record);
+}
+
 /// A bent train that is jerked and pushed, behind whose lead nothing is straight.
 fn jerked() -> (Train, AssemblyState) {
     let speed = Guide::Speed(steps(&[0.0, 1.013, 2.9], &[1.0, 1.7, 0.4]));
