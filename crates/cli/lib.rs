@@ -1,5 +1,5 @@
 //! The command line of noslip, as a library: [`main`] is the program, [`call`] a command whose output its caller keeps, [`run`] a
-//! run whose nodes its caller keeps, [`sensitivities`] what such a run depends on, and [`plan`] the parts of a sweep.
+//! run whose nodes its caller keeps, and [`plan`] the parts of a sweep.
 
 mod account;
 mod args;
