@@ -3,6 +3,7 @@
 import json
 import pickle
 import subprocess
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -56,7 +57,7 @@ def test_a_run_at_given_times_is_the_motion_there() -> None:
     np.testing.assert_allclose(between["x"], fine["x"], atol=1e-10)
 
 
-def train(*effects: dict[str, object]) -> noslip.Scene:
+def train(*effects: Mapping[str, object]) -> noslip.Scene:
     trailers = {"kind": "trailers", "count": 2, "mass": 0.5, "inertia": 0.1, "bar": 0.8, "headings": [0.2]}
     return noslip.scene(
         {
