@@ -35,7 +35,7 @@ pub(super) fn row(train: &Train, node: &AssemblyNode) -> Vec<f64> {
 }
 
 /// A picture shows so many trailers.
-const SHOWN: usize = 60;
+pub(super) const SHOWN: usize = 60;
 
 /// Places and headings of the trailers along a run, one after the other: those that a picture shows.
 pub(crate) fn followers(train: &Train, columns: &Columns) -> Vec<Vec<[f64; 3]>> {

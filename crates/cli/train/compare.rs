@@ -1,3 +1,4 @@
+use super::columns::SHOWN;
 use crate::comparison::{Comparison, REFERRED, better_than};
 use crate::error::CliError;
 use crate::interrupt::Interrupt;
@@ -14,8 +15,6 @@ use sleigh::SleighState;
 
 /// So many numbers of the runs of a comparison are kept at most, for its report.
 const MOST_NUMBERS: u64 = 100_000_000;
-/// A report shows so many blades of a train.
-const SHOWN: usize = 60;
 
 /// Runs every method on a train, until Ctrl-C.
 pub(crate) fn compare_scene(

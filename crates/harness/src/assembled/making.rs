@@ -1,9 +1,8 @@
-use super::Assembled;
-use super::AssemblyNodes;
 use super::meter::AssemblyMeter;
 use super::parts::{Parted, in_parts, resolves, shorter};
 use super::pieces::{AssemblyPieces, PieceStep};
 use super::step::{AssemblyStep, LastNode};
+use super::{Assembled, AssemblyNodes};
 use crate::{Method, MethodInfo, Progress, Record};
 use assembly::{Assembly, AssemblyMethod, AssemblyRunError, AssemblyState};
 use dla::{Checkpoint, CheckpointError, Schedule, Substeps};

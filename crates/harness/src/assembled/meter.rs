@@ -82,7 +82,7 @@ impl<'a> AssemblyMeter<'a> {
         self.work.step(assembly, before, after, report);
     }
 
-    /// Sees that the velocity has jumped from `v` at the time `t`: the impulse has done the work.
+    /// Sees the state where a piece begins at the time `t`: an impulse has done the work by which the energy is another than `before`.
     pub(super) fn jumped(&mut self, assembly: &Assembly, t: f64, before: &AssemblyState, state: &AssemblyState) {
         self.work.add(assembly.energy(t, state) - assembly.energy(t, before));
     }
