@@ -53,7 +53,7 @@ impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
         if let Some(tolerance) = tolerance.filter(|_| !method.is_adaptive()) {
             // Of the method itself: parts would make any step look good enough.
             let whole = method.undivided();
-            let found = recommend(&system, &whole, (q, v), scene.run().duration, tolerance);
+            let found = recommend((&system).into(), &whole, (q, v), scene.run().duration, tolerance);
             let found = found.map_err(|error| CliError::Tolerance(Box::new(error)))?;
             schedule = Schedule { step: found.step, steps: found.steps, ..schedule };
         }
@@ -90,7 +90,7 @@ impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
         progress: &mut dyn Progress,
     ) -> Made<N> {
         let events = self.events();
-        let made = run_observed(&self.system, self.method, &self.request, (&events, samples), observer, progress);
+        let made = run_observed((&self.system).into(), self.method, &self.request, (&events, samples), observer, progress);
         let crossings: Vec<_> = made.crossings.iter().map(SavedCrossing::from).collect();
         Made { record: made.record, events: self.happened(&crossings, made.close) }
     }

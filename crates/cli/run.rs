@@ -97,7 +97,7 @@ impl<'a> Run<'a> {
         let nodes = self.out.map(|_| Nodes::every(self.arguments.every, &mut sink));
         let events = account.events();
         let watched = (&events[..], *event_samples);
-        let outcome = run_saved_watched(system, method, request, watched, &mut saving, nodes, progress);
+        let outcome = run_saved_watched(system.into(), method, request, watched, &mut saving, nodes, progress);
         let made = outcome.map_err(|source| CliError::Checkpoint { path: from.clone().unwrap_or_default(), source })?;
         Ok((Made { record: made.record, events: account.happened(&made.crossings, made.close) }, saver.outcome()))
     }

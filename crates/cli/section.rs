@@ -116,7 +116,7 @@ impl Visitor for Sections<'_> {
             let event = Event::new(plane.text.clone(), function);
             let event =
                 if plane.period().is_some() { event } else { event.in_direction(self.arguments.direction.into()) };
-            let found = harness::analysis::section(&system, &self.method, &schedule, starts[i], &event);
+            let found = harness::analysis::section((&system).into(), &self.method, &schedule, starts[i], &event);
             let point = |crossing: &dla::Crossing<N>| {
                 let (t, q, v) = (crossing.t, crossing.state.unwrapped(), crossing.state.v());
                 surface.holds(&system, t, &q, v).then(|| SectionPoint {

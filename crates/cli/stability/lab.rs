@@ -171,12 +171,12 @@ impl Visitor for LabRecord<'_> {
         let mut recorder = Recorder::new(setup.every, &look);
         let end = setup.from + setup.steps;
         let schedule = Schedule { t0: 0.0, step: setup.step, steps: end };
-        let mut outcome = integrate_from(setup.from, &system, method, &schedule, &mut state, &mut recorder);
+        let mut outcome = integrate_from(setup.from, (&system).into(), method, &schedule, &mut state, &mut recorder);
         if setup.back && outcome.is_ok() {
             state = state.reversed();
             // As a part of the same run: at the beginning of another a slip would be taken from the velocity.
             let back = Schedule { steps: 2 * end, ..schedule };
-            outcome = integrate_from(end, &system, method, &back, &mut state, &mut recorder);
+            outcome = integrate_from(end, (&system).into(), method, &back, &mut state, &mut recorder);
         }
         recorder.recorded(outcome.err())
     }

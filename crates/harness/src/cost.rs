@@ -9,6 +9,7 @@ use std::hint::black_box;
 ///
 /// # Errors
 /// [`RunError`] where the run fails.
+#[inline(never)]
 pub fn step_time<const N: usize, const M: usize>(
     system: &dyn PiecewiseMechanics<N, M>,
     schedule: &Schedule,
@@ -29,6 +30,7 @@ pub fn step_time<const N: usize, const M: usize>(
 ///
 /// # Errors
 /// [`RunError`] where the run fails.
+#[inline(never)]
 pub fn step_evaluations<const N: usize, const M: usize>(
     system: &dyn PiecewiseMechanics<N, M>,
     schedule: &Schedule,

@@ -44,7 +44,7 @@ pub fn integrate_pieces<'a, const N: usize, const M: usize>(
     state: &mut State<N>,
     observer: &mut dyn Observer<N, M>,
 ) -> Result<u64, RunError> {
-    integrate_from(0, subject, method, schedule, state, observer)
+    integrate_from(0, subject.into(), method, schedule, state, observer)
 }
 
 /// The same for a run that has made so many steps already, whose observer then sees the first node by
@@ -52,15 +52,15 @@ pub fn integrate_pieces<'a, const N: usize, const M: usize>(
 ///
 /// # Errors
 /// As [`integrate_pieces`].
-pub fn integrate_from<'a, const N: usize, const M: usize>(
+#[inline(never)]
+pub fn integrate_from<const N: usize, const M: usize>(
     from: u64,
-    subject: impl Into<Subject<'a, N, M>>,
+    Subject { system, own }: Subject<'_, N, M>,
     method: &Method,
     schedule: &Schedule,
     state: &mut State<N>,
     observer: &mut dyn Observer<N, M>,
 ) -> Result<u64, RunError> {
-    let Subject { system, own } = subject.into();
     piece_by_piece_from(from, system, schedule, state, |piece, Piece { steps, schedule }, state| {
         // A method for each piece: nothing that it remembers holds across a jump.
         let mut stepper = method.stepper_of(own, schedule.middle(&steps));
@@ -92,8 +92,17 @@ pub fn run<'a, const N: usize, const M: usize>(
     request: &Request<N>,
     progress: &mut dyn Progress,
 ) -> Record<N> {
+    observed_and_timed(subject.into(), method, request, progress)
+}
+
+#[inline(never)]
+pub(crate) fn observed_and_timed<const N: usize, const M: usize>(
+    subject: Subject<'_, N, M>,
+    method: &Method,
+    request: &Request<N>,
+    progress: &mut dyn Progress,
+) -> Record<N> {
     let Request { schedule, q, v, .. } = *request;
-    let subject = subject.into();
     let start = State::new(q, v, subject.system.angles());
 
     let mut meter = Meter::new(request, method);
@@ -112,15 +121,15 @@ const TIMED: u64 = 1 << 22;
 /// The time of steps that have been made before, nothing looking on (s).
 ///
 /// Of more than 2^22 steps it is that of the first so many, times the ratio: a long run costs hardly more for being timed.
-pub fn timed<'a, const N: usize, const M: usize>(
-    subject: impl Into<Subject<'a, N, M>>,
+#[inline(never)]
+pub fn timed<const N: usize, const M: usize>(
+    subject: Subject<'_, N, M>,
     method: &Method,
     request: &Request<N>,
     steps: u64,
     progress: &dyn Progress,
 ) -> f64 {
     let first = Schedule { steps: steps.min(TIMED), ..request.schedule };
-    let subject = subject.into();
     let start = State::new(request.q, request.v, subject.system.angles());
     let mut made = 0;
     let seconds = median_seconds(|| {

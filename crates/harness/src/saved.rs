@@ -108,7 +108,7 @@ pub fn run_saved<'a, const N: usize, const M: usize>(
     nodes: Option<Nodes<'_, N, M>>,
     progress: &mut dyn Progress,
 ) -> Result<Record<N>, CheckpointError> {
-    run_saved_watched(subject, method, request, (&[], 1), saving, nodes, progress).map(|made| made.record)
+    run_saved_watched(subject.into(), method, request, (&[], 1), saving, nodes, progress).map(|made| made.record)
 }
 
 /// The same with an eye on events, in so many parts of each step, which are told from others by the identity. The event that ends a run is
@@ -116,8 +116,9 @@ pub fn run_saved<'a, const N: usize, const M: usize>(
 ///
 /// # Errors
 /// As [`run_saved`].
-pub fn run_saved_watched<'a, const N: usize, const M: usize>(
-    subject: impl Into<Subject<'a, N, M>>,
+#[inline(never)]
+pub fn run_saved_watched<const N: usize, const M: usize>(
+    Subject { system, own }: Subject<'_, N, M>,
     method: &Method,
     request: &Request<N>,
     (events, samples): (&[Event<'_, N>], u32),
@@ -126,7 +127,6 @@ pub fn run_saved_watched<'a, const N: usize, const M: usize>(
     progress: &mut dyn Progress,
 ) -> Result<SavedRun<N>, CheckpointError> {
     let Request { schedule, q, v, .. } = *request;
-    let Subject { system, own } = subject.into();
     let meter = Meter::new(request, method);
     let loaded = match saving.from {
         Some(checkpoint) => {

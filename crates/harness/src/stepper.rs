@@ -1,16 +1,10 @@
-//! The methods by name, as objects: compiled here for the shapes of the systems of scenes, and nowhere else for these.
+//! The methods by name, as objects.
 
 use crate::{Dop853, ImplicitMidpoint, Method, MethodKind, Rk4, Rk4Projected, Rk4Reduced};
 use dla::{
     Composition, Dla, Energy, Gauss, GaussAdaptive, Gni, Lobatto, Mechanics, OneStep, OwnMethods, Rebased, State,
     StepError, StepReport, Stepper,
 };
-use std::any::Any;
-
-/// Whether the methods for systems of this shape are compiled here.
-const fn is_compiled(coordinates: usize, constraints: usize) -> bool {
-    matches!((coordinates, constraints), (3 | 4, 1..=3) | (6, 3) | (8, 4) | (12 | 18, 6))
-}
 
 impl Method {
     /// The method, to make steps with, for a system that brings integrators of its own: the closed form that it has of `dla` takes the
@@ -31,97 +25,30 @@ impl Method {
         }
     }
 
-    /// The method, to make steps with.
-    ///
-    /// For three or four coordinates and one to three constraints, and for the shapes that systems of text have, it is compiled in this
-    /// crate; a caller with a system of another shape compiles the methods for that shape, once.
+    /// The method, to make steps with: the one place where a name becomes a type.
     #[must_use]
+    #[inline(never)]
     pub fn stepper<const N: usize, const M: usize>(&self) -> Stepper<'static, N, M> {
-        // A constant condition, by which nothing of the other branch is compiled for a shape that is compiled here.
-        if const { is_compiled(N, M) } {
-            let compiled: Box<dyn Any> = match (N, M) {
-                (3, 1) => Box::new(of_3_1(self)),
-                (3, 2) => Box::new(of_3_2(self)),
-                (3, 3) => Box::new(of_3_3(self)),
-                (4, 1) => Box::new(of_4_1(self)),
-                (4, 2) => Box::new(of_4_2(self)),
-                (4, 3) => Box::new(of_4_3(self)),
-                (6, 3) => Box::new(of_6_3(self)),
-                (8, 4) => Box::new(of_8_4(self)),
-                (12, 6) => Box::new(of_12_6(self)),
-                _ => Box::new(of_18_6(self)),
-            };
-            match compiled.downcast::<Stepper<'static, N, M>>() {
-                Ok(stepper) => *stepper,
-                Err(_) => unreachable!("the shape is that of the branch"),
+        match self.info().kind {
+            MethodKind::Dla => Box::new(Rebased::new(Dla::midpoint())),
+            MethodKind::DlaTrapezoid | MethodKind::DlaAlpha => {
+                Box::new(Rebased::new(Dla::new(self.rule(), self.rule())))
             }
-        } else {
-            make(self)
+            MethodKind::Composed(order) => Box::new(Rebased::new(composed(order, Dla::midpoint()))),
+            MethodKind::Lobatto(3) => Box::new(Rebased::new(Lobatto::<3>::new())),
+            MethodKind::Lobatto(4) => Box::new(Rebased::new(Lobatto::<4>::new())),
+            MethodKind::Lobatto(_) => Box::new(Rebased::new(Lobatto::<5>::new())),
+            MethodKind::Gauss(stages) => Box::new(Rebased::new(gauss(stages))),
+            MethodKind::GaussAdaptive => Box::new(Rebased::new(GaussAdaptive::new::<8>(self.tolerance()))),
+            MethodKind::Taylor => Box::new(NoSeries),
+            MethodKind::Energy(stages) => Box::new(Rebased::new(energy(stages))),
+            MethodKind::Gni => Box::new(Rebased::new(Gni::<N>::default())),
+            MethodKind::Rk4 => Box::new(Rk4),
+            MethodKind::Rk4Projected => Box::new(Rk4Projected),
+            MethodKind::Rk4Reduced => Box::new(Rebased::new(Rk4Reduced)),
+            MethodKind::ImplicitMidpoint => Box::new(Rebased::new(ImplicitMidpoint::default())),
+            MethodKind::Dop853 => Box::new(Rebased::new(Dop853::<N, M>::new(self.tolerance()))),
         }
-    }
-}
-
-fn of_3_1(method: &Method) -> Stepper<'static, 3, 1> {
-    make(method)
-}
-
-fn of_3_2(method: &Method) -> Stepper<'static, 3, 2> {
-    make(method)
-}
-
-fn of_3_3(method: &Method) -> Stepper<'static, 3, 3> {
-    make(method)
-}
-
-fn of_4_1(method: &Method) -> Stepper<'static, 4, 1> {
-    make(method)
-}
-
-fn of_4_2(method: &Method) -> Stepper<'static, 4, 2> {
-    make(method)
-}
-
-fn of_4_3(method: &Method) -> Stepper<'static, 4, 3> {
-    make(method)
-}
-
-fn of_6_3(method: &Method) -> Stepper<'static, 6, 3> {
-    make(method)
-}
-
-fn of_8_4(method: &Method) -> Stepper<'static, 8, 4> {
-    make(method)
-}
-
-fn of_12_6(method: &Method) -> Stepper<'static, 12, 6> {
-    make(method)
-}
-
-fn of_18_6(method: &Method) -> Stepper<'static, 18, 6> {
-    make(method)
-}
-
-/// The one place where a name becomes a type.
-fn make<const N: usize, const M: usize>(method: &Method) -> Stepper<'static, N, M> {
-    match method.info().kind {
-        MethodKind::Dla => Box::new(Rebased::new(Dla::midpoint())),
-        MethodKind::DlaTrapezoid | MethodKind::DlaAlpha => {
-            Box::new(Rebased::new(Dla::new(method.rule(), method.rule())))
-        }
-        MethodKind::Composed(order) => Box::new(Rebased::new(composed(order, Dla::midpoint()))),
-        MethodKind::Lobatto(3) => Box::new(Rebased::new(Lobatto::<3>::new())),
-        MethodKind::Lobatto(4) => Box::new(Rebased::new(Lobatto::<4>::new())),
-        MethodKind::Lobatto(_) => Box::new(Rebased::new(Lobatto::<5>::new())),
-        MethodKind::Gauss(stages) => Box::new(Rebased::new(gauss(stages))),
-        MethodKind::GaussAdaptive => Box::new(Rebased::new(GaussAdaptive::new::<8>(method.tolerance()))),
-        MethodKind::Taylor => Box::new(NoSeries),
-        MethodKind::Energy(stages) => Box::new(Rebased::new(energy(stages))),
-        MethodKind::Gni => Box::new(Rebased::new(Gni::<N>::default())),
-        MethodKind::Rk4 => Box::new(Rk4),
-        MethodKind::Rk4Projected => Box::new(Rk4Projected),
-        MethodKind::Rk4Reduced => Box::new(Rebased::new(Rk4Reduced)),
-        MethodKind::ImplicitMidpoint => Box::new(Rebased::new(ImplicitMidpoint::default())),
-        MethodKind::Dop853 => Box::new(Rebased::new(Dop853::<N, M>::new(method.tolerance()))),
     }
 }
 

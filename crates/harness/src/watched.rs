@@ -35,13 +35,14 @@ pub fn run_watched<'a, const N: usize, const M: usize>(
     progress: &mut dyn Progress,
 ) -> Watched<N, M> {
     let mut trajectory = keep.map(Trajectory::every);
-    let made = run_observed(subject, method, request, events, &mut trajectory, progress);
+    let made = run_observed(subject.into(), method, request, events, &mut trajectory, progress);
     Watched { trajectory, ..made }
 }
 
 /// The same with any observer, which sees the nodes as they come; none of them is kept.
-pub fn run_observed<'a, const N: usize, const M: usize>(
-    subject: impl Into<Subject<'a, N, M>>,
+#[inline(never)]
+pub fn run_observed<const N: usize, const M: usize>(
+    subject: Subject<'_, N, M>,
     method: &Method,
     request: &Request<N>,
     (events, samples): (&[Event<'_, N>], u32),
@@ -49,7 +50,6 @@ pub fn run_observed<'a, const N: usize, const M: usize>(
     progress: &mut dyn Progress,
 ) -> Watched<N, M> {
     let Request { schedule, q, v, .. } = *request;
-    let subject = subject.into();
     let start = State::new(q, v, subject.system.angles());
     let mut meter = Meter::new(request, method);
     let mut ticker = Ticker::new(progress, 0);
@@ -70,14 +70,14 @@ pub fn run_observed<'a, const N: usize, const M: usize>(
 ///
 /// # Errors
 /// [`RecommendError`], with the best that is within reach.
-pub fn recommend<'a, const N: usize, const M: usize>(
-    subject: impl Into<Subject<'a, N, M>>,
+#[inline(never)]
+pub fn recommend<const N: usize, const M: usize>(
+    subject: Subject<'_, N, M>,
     method: &Method,
     (q, v): ([f64; N], [f64; N]),
     duration: f64,
     tolerance: f64,
 ) -> Result<Recommendation, RecommendError> {
-    let subject = subject.into();
     recommend_by_trial(duration, tolerance, |schedule, times| {
         let mut samples = Samples::new(Again { method, own: subject.own }, times);
         integrate_pieces(subject, method, schedule, &mut State::new(q, v, subject.system.angles()), &mut samples)?;

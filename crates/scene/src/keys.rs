@@ -8,6 +8,8 @@ pub(crate) const X: KeyQuantity = KeyQuantity::finite("x", "m");
 pub(crate) const Y: KeyQuantity = KeyQuantity::finite("y", "m");
 pub(crate) const HEADING: KeyQuantity = KeyQuantity::finite("heading", "rad");
 pub(crate) const SPEED: KeyQuantity = KeyQuantity::finite("speed", "m/s");
+pub(crate) const X_DOT: KeyQuantity = KeyQuantity::finite("x_dot", "m/s");
+pub(crate) const Y_DOT: KeyQuantity = KeyQuantity::finite("y_dot", "m/s");
 pub(crate) const TURN_RATE: KeyQuantity = KeyQuantity::finite("turn_rate", "rad/s");
 
 pub(crate) const ALPHA: KeyQuantity = KeyQuantity::fraction("alpha");
@@ -17,13 +19,13 @@ pub(crate) const DURATION: KeyQuantity = KeyQuantity::positive("duration", "s");
 
 /// The keys that hold a number: no two tables share one.
 const QUANTITIES: &[KeyQuantity] =
-    &[MASS, INERTIA, OFFSET, X, Y, HEADING, SPEED, TURN_RATE, ALPHA, TOLERANCE, STEP, DURATION];
+    &[MASS, INERTIA, OFFSET, X, Y, HEADING, SPEED, X_DOT, Y_DOT, TURN_RATE, ALPHA, TOLERANCE, STEP, DURATION];
 
 /// The tables of a scene, by path, and the keys of each; the path of the document itself is empty.
 pub(crate) const TABLES: &[(&str, &[&str])] = &[
     ("", &["title", "sleigh", "start", "run", "effects"]),
     ("sleigh", &[MASS.key, INERTIA.key, OFFSET.key]),
-    ("start", &[X.key, Y.key, HEADING.key, SPEED.key, TURN_RATE.key]),
+    ("start", &[X.key, Y.key, HEADING.key, SPEED.key, X_DOT.key, Y_DOT.key, TURN_RATE.key]),
     ("run", &["method", ALPHA.key, TOLERANCE.key, STEP.key, DURATION.key]),
 ];
 

@@ -18,7 +18,7 @@ pub struct Scene {
     pub title: String,
     /// The body: `mass` in kg, `inertia` in kg m^2 and `offset` in m, all required.
     pub sleigh: Sleigh,
-    /// The start: `x` and `y` in m and `heading` in rad, 0 when left out; `speed` in m/s and `turn_rate` in rad/s,
+    /// The start: `x` and `y` in m and `heading` in rad, 0 when left out; `speed` in m/s, or `x_dot` and `y_dot`, and `turn_rate` in rad/s,
     /// required.
     pub start: SleighState,
     /// How to run it.
@@ -67,15 +67,16 @@ impl Scene {
         let name = name_of(document.origin);
         let title = root.text("title", "a string")?.unwrap_or(&name).to_owned();
         let sleigh = sections::sleigh(&root.table("sleigh")?)?;
-        let start = sections::start(&root.table("start")?)?;
+        let begin = root.table("start")?;
+        let start = sections::start(&begin)?;
         let table = root.table("run")?;
         let run = RunSettings::read(&table, overrides, &name, methods)?;
         let effects = effects::read(&root, &sleigh)?;
         let scene = Self { name, title, sleigh, start, run, effects };
         scene.too_many_jumps().map_err(|fault| overrides.error_in(&table, fault, &scene.name))?;
         match scene.not_finite() {
-            None => Ok(scene),
-            Some(fault) => Err(root.table("start")?.fail(fault)),
+            None => sections::check_slip(&begin, &start, scene.table_rate().unwrap_or(0.0)).map(|()| scene),
+            Some(fault) => Err(begin.fail(fault)),
         }
     }
 

@@ -1,6 +1,6 @@
 use crate::error::SceneError;
 use crate::fault::Fault;
-use crate::keys::{HEADING, INERTIA, MASS, OFFSET, SPEED, TURN_RATE, X, Y};
+use crate::keys::{HEADING, INERTIA, MASS, OFFSET, SPEED, TURN_RATE, X, X_DOT, Y, Y_DOT};
 use crate::table::TomlTable;
 use sleigh::{Sleigh, SleighState};
 
@@ -22,13 +22,65 @@ pub(crate) fn sleigh(table: &TomlTable<'_>) -> Result<Sleigh, SceneError> {
     })
 }
 
-/// Reads `[start]`: `speed` and `turn_rate` are required, `x`, `y` and `heading` are 0 when left out.
+/// A start may slip sideways by so much of its velocity: what is written in decimals.
+const ROUNDED: f64 = 1e-9;
+
+/// Reads `[start]`: `turn_rate` is required, and `speed` or both of `x_dot` and `y_dot`; `x`, `y` and `heading` are 0 when left out.
 pub(crate) fn start(table: &TomlTable<'_>) -> Result<SleighState, SceneError> {
+    let heading = table.number(&HEADING)?.unwrap_or(0.0);
+    let speed = match (table.get(SPEED.key), velocity(table)?) {
+        (Some(_), Some(_)) => {
+            let second = [X_DOT.key, Y_DOT.key].into_iter().find(|key| table.get(key).is_some());
+            return Err(table.fail(Fault {
+                variant: SceneError::OutOfRange,
+                key: second.unwrap_or(X_DOT.key),
+                problem: "gives the velocity a second time, beside `speed`".to_owned(),
+                found: None,
+                accepted: "`speed`, or both of `x_dot` and `y_dot`".to_owned(),
+                help: None,
+            }));
+        }
+        (None, Some(velocity)) => along(velocity, heading),
+        (_, None) => table.required(&SPEED)?,
+    };
     Ok(SleighState {
         x: table.number(&X)?.unwrap_or(0.0),
         y: table.number(&Y)?.unwrap_or(0.0),
-        heading: table.number(&HEADING)?.unwrap_or(0.0),
-        speed: table.required(&SPEED)?,
+        heading,
+        speed,
         turn_rate: table.required(&TURN_RATE)?,
     })
+}
+
+/// The velocity of the contact point, where it is given in full (m/s).
+fn velocity(table: &TomlTable<'_>) -> Result<Option<[f64; 2]>, SceneError> {
+    if table.get(X_DOT.key).is_none() && table.get(Y_DOT.key).is_none() {
+        return Ok(None);
+    }
+    Ok(Some([table.required(&X_DOT)?, table.required(&Y_DOT)?]))
+}
+
+/// The part of a velocity along the blade.
+fn along([x, y]: [f64; 2], heading: f64) -> f64 {
+    let (sin, cos) = heading.sin_cos();
+    x * cos + y * sin
+}
+
+/// Refuses a velocity, given in full, at which the blade slips sideways over the plane, which turns at that rate (rad/s).
+pub(crate) fn check_slip(table: &TomlTable<'_>, start: &SleighState, plane: f64) -> Result<(), SceneError> {
+    let Some([x, y]) = velocity(table)? else { return Ok(()) };
+    let (sin, cos) = start.heading.sin_cos();
+    let over_plane = [x + plane * start.y, y - plane * start.x];
+    let slip = over_plane[1] * cos - over_plane[0] * sin;
+    if slip.abs() <= ROUNDED * f64::hypot(x, y).max(f64::hypot(over_plane[0], over_plane[1])) {
+        return Ok(());
+    }
+    Err(table.fail(Fault {
+        variant: SceneError::OutOfRange,
+        key: Y_DOT.key,
+        problem: format!("and `x_dot` slip sideways at {slip:?} m/s, which the blade does not admit"),
+        found: None,
+        accepted: format!("a velocity along the blade, which points at heading {:?} rad", start.heading),
+        help: Some(format!("the part along the blade is `speed = {:?}`", start.speed)),
+    }))
 }

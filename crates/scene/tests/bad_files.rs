@@ -1,6 +1,7 @@
 //! What is wrong with a file is said with its line, its field and what is accepted.
 #![allow(clippy::panic, reason = "what clippy.toml allows in tests, their helpers need too")]
 
+use approx::assert_abs_diff_eq;
 use scene::{Scene, SceneError};
 
 const METHODS: &[&str] = &["dla", "dla-alpha", "rk4"];
@@ -20,6 +21,24 @@ method = "dla"
 step = 0.05
 duration = 40.0
 "#;
+
+/// A velocity in full is that of its part along the blade; on a plane that turns, the sideways part is the plane's.
+#[test]
+fn a_velocity_in_full() {
+    let parse = |text: &str| Scene::parse(text, "good.toml", METHODS).unwrap();
+    let heading = |text: &str| text.replace("x = 0.0", "x = 0.5\ny = -2\nheading = 2.1");
+    let (sin, cos) = 2.1_f64.sin_cos();
+    let full = |x: f64, y: f64| heading(GOOD).replace("speed = -1.0", &format!("x_dot = {x:?}\ny_dot = {y:?}"));
+    let mut given = parse(&full(-cos, -sin));
+    assert_abs_diff_eq!(given.start.speed, -1.0, epsilon = 2.0 * f64::EPSILON);
+    given.start.speed = -1.0;
+    assert_eq!(given, parse(&heading(GOOD)));
+    // The plane moves with 3 (2, 0.5) m/s at the contact point.
+    let table = "[[effects]]\nkind = \"turntable\"\nrate = 3.0\n";
+    let turning = parse(&(full(6.0 - cos, 1.5 - sin) + table));
+    assert_abs_diff_eq!(turning.start.speed, 6.0 * cos + 1.5 * sin - 1.0, epsilon = 16.0 * f64::EPSILON);
+    assert!(Scene::parse(&(full(-cos, -sin) + table), "good.toml", METHODS).is_err());
+}
 
 /// The error of the good file with one part replaced.
 fn error(replaced: &str, by: &str) -> SceneError {
@@ -49,6 +68,10 @@ const CASES: &[Case] = &[
     ("offset = 0.5", "offset = 1e999", (5, 10), &["`sleigh.offset`", "must be finite", "found 1e999"]),
     ("offset = 0.5", "offset = 1e200", (5, 10), &["`sleigh.offset`", "inertia + mass * offset^2"]),
     ("speed = -1.0", "speed = nan", (8, 9), &["`start.speed`", "must be finite", "in m/s"]),
+    ("speed = -1.0", "x_dot = inf\ny_dot = 0", (8, 9), &["`start.x_dot`", "must be finite", "in m/s"]),
+    ("speed = -1.0", "x_dot = -1.0", (6, 1), &["`start.y_dot`", "is missing", "in m/s"]),
+    ("speed = -1.0", "speed = -1.0\ny_dot = 0", (9, 9), &["`start.y_dot`", "a second time, beside `speed`"]),
+    ("speed = -1.0", "y_dot = 0.5\nx_dot = 2", (8, 9), &["`start.y_dot`", "slip sideways at 0.5 m/s", "`speed = 2.0`"]),
     ("turn_rate = 0.1", "turn_rate = inf", (9, 13), &["`start.turn_rate`", "must be finite", "in rad/s"]),
     ("x = 0.0", "y = nan", (7, 5), &["`start.y`", "must be finite"]),
     ("step = 0.05", "step = 0.0", (12, 8), &["`run.step`", "must be positive", POSITIVE, "in s"]),

@@ -11,6 +11,7 @@ use nalgebra::{DMatrix, DVector};
 ///
 /// The family of `dla`, and `rk4` and `rk4-reduced` beside it: every further one would be compiled for every shape of system.
 #[must_use]
+#[inline(never)]
 pub fn differentiable<const N: usize, const M: usize>(method: &Method) -> Option<Box<dyn Differentiable<N, M>>> {
     Some(match method.info().kind {
         MethodKind::Dla => Box::new(Dla::midpoint()),
@@ -93,6 +94,7 @@ impl<'a, const N: usize, const M: usize> DiscreteMap<'a, N, M> {
 
     /// The eigenvalues of the map with the step `h` (s) in shape and quasi-velocities, at its own equilibrium near that of the
     /// flow, the largest first; none where it has none.
+    #[inline(never)]
     pub fn spectrum(&mut self, h: f64, equilibrium: &Equilibrium<N>) -> Option<Vec<[f64; 2]>> {
         self.at_rest(h, equilibrium).map(|spectrum| spectrum.values)
     }
@@ -111,6 +113,7 @@ impl<'a, const N: usize, const M: usize> DiscreteMap<'a, N, M> {
     }
 
     /// The longest step with which a stable equilibrium of the flow is one of the map, looked for about the step `h` (s).
+    #[inline(never)]
     pub fn limit(&mut self, h: f64, equilibrium: &Equilibrium<N>) -> StepLimit {
         let mut good = 0.0;
         let mut tried = h * FIRST;

@@ -79,6 +79,7 @@ const OFFSETS: [f64; 5] = [0.0, 0.37, -0.61, 0.83, 1.9];
 ///
 /// # Errors
 /// [`EquilibriumError`].
+#[inline(never)]
 pub fn relative_equilibria<const N: usize, const M: usize>(
     system: &dyn SeededMechanics<N, M>,
     q: &[f64; N],

@@ -99,6 +99,7 @@ pub fn lyapunov<const N: usize, const M: usize>(
 ///
 /// # Errors
 /// As [`lyapunov`].
+#[inline(never)]
 pub fn lyapunov_within<const N: usize, const M: usize>(
     (system, own): (&dyn FullMechanics<N, M>, &dyn OwnMethods<N, M>),
     its: (usize, usize),

@@ -17,14 +17,14 @@ pub struct Section<const N: usize> {
 const SAMPLES: u32 = 2;
 
 /// Where a motion crosses the surface on which an event's function of time and state is zero (Poincare 1881).
-pub fn section<'a, const N: usize, const M: usize>(
-    subject: impl Into<Subject<'a, N, M>>,
+#[inline(never)]
+pub fn section<const N: usize, const M: usize>(
+    subject: Subject<'_, N, M>,
     method: &Method,
     schedule: &Schedule,
     (q, v): ([f64; N], [f64; N]),
     surface: &Event<'_, N>,
 ) -> Section<N> {
-    let subject = subject.into();
     let mut watch = Watch::new(Again { method, own: subject.own }, std::slice::from_ref(surface), ());
     watch.samples = SAMPLES;
     let outcome =

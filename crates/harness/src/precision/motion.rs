@@ -56,6 +56,7 @@ impl<'a, const N: usize, const M: usize> ReferenceMotion<'a, N, M> {
     ///
     /// # Errors
     /// [`RunError`] with the step that failed.
+    #[inline(never)]
     pub fn end(&self, method: &Method, steps: u64) -> Result<[f64; N], RunError> {
         let mut state = State::new(self.q, self.v, self.subject.system.angles());
         integrate_pieces(self.subject, method, &self.schedule(steps), &mut state, &mut ())?;

@@ -66,6 +66,7 @@ impl<const N: usize> Reference<N> {
     ///
     /// # Errors
     /// [`ReferenceError`] where no run succeeds.
+    #[inline(never)]
     pub fn converged<const M: usize>(
         motion: &ReferenceMotion<'_, N, M>,
         distance: &dyn Fn(&[f64; N], &[f64; N]) -> f64,

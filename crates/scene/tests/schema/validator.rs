@@ -27,6 +27,11 @@ pub(super) fn validate(root: &Value, schema: &Value, value: &Value) -> Result<()
             "required" => value.as_object().is_none_or(|object| {
                 says.as_array().expect("a list").iter().all(|key| object.contains_key(key.as_str().expect("a name")))
             }),
+            "dependentRequired" => value.as_object().is_none_or(|object| {
+                let needs = says.as_object().expect("a table").iter().filter(|(key, _)| object.contains_key(*key));
+                let names = |list: &Value| list.as_array().expect("a list").clone();
+                needs.flat_map(|(_, list)| names(list)).all(|key| object.contains_key(key.as_str().expect("a name")))
+            }),
             "properties" => {
                 for (key, inner) in value.as_object().into_iter().flatten() {
                     says.get(key).map_or(Ok(()), |schema| validate(root, schema, inner))?;
