@@ -90,7 +90,8 @@ impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
         progress: &mut dyn Progress,
     ) -> Made<N> {
         let events = self.events();
-        let made = run_observed((&self.system).into(), self.method, &self.request, (&events, samples), observer, progress);
+        let made =
+            run_observed((&self.system).into(), self.method, &self.request, (&events, samples), observer, progress);
         let crossings: Vec<_> = made.crossings.iter().map(SavedCrossing::from).collect();
         Made { record: made.record, events: self.happened(&crossings, made.close) }
     }

@@ -1,4 +1,4 @@
-use lagrangian::Scalar;
+use scalar::Scalar;
 
 /// Functions by name: how a text writes them, how many arguments they take, and their value.
 macro_rules! functions {

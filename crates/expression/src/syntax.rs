@@ -1,6 +1,6 @@
 use crate::function::power;
 use crate::{Error, Function};
-use lagrangian::Scalar;
+use scalar::Scalar;
 
 /// A text as it was written, its names resolved: numbers, names and operations, operands before what is done with them.
 ///

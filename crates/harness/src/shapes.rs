@@ -6,9 +6,7 @@
 use crate::analysis::{DiscreteMap, differentiable, lyapunov_within, relative_equilibria, section};
 use crate::precision::{Reference, ReferenceMotion};
 use crate::run::observed_and_timed;
-use crate::{
-    Method, integrate_from, recommend, run_observed, run_saved_watched, step_evaluations, step_time, timed,
-};
+use crate::{Method, integrate_from, recommend, run_observed, run_saved_watched, step_evaluations, step_time, timed};
 use std::hint::black_box;
 
 /// What is compiled here, for the shapes of the systems of scenes. It names functions, and nobody needs to call it.

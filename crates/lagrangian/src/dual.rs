@@ -1,7 +1,6 @@
-use crate::inlined::mapped;
-use crate::length::{Derived, derived_functions};
-use crate::scalar::derived_operators;
+use crate::derived::{Derived, derived_functions, derived_operators};
 use crate::{Scalar, ScalarFunction, from_fn};
+use scalar::mapped;
 use std::ops::{Add, Div, Mul, Neg};
 
 /// A first-order dual number with `N` independent infinitesimals: a value and its gradient.

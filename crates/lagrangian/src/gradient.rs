@@ -1,5 +1,4 @@
-use crate::length::{Derived, derived_functions};
-use crate::scalar::derived_operators;
+use crate::derived::{Derived, derived_functions, derived_operators};
 use crate::{Scalar, ScalarFunction, array};
 use std::ops::{Add, Div, Mul, Neg};
 

@@ -1,6 +1,6 @@
-use crate::scalar::derived_operators;
-use crate::sincos;
+use crate::derived::derived_operators;
 use crate::{Scalar, ScalarFunction, from_fn};
+use scalar::sincos;
 use std::ops::{Add, Div, Mul, Neg};
 
 /// Eight numbers that go through the same arithmetic at once: eight stages of one step, or eight trajectories.
@@ -103,7 +103,7 @@ impl Scalar for Lanes {
     }
     #[inline(always)]
     fn exp(self) -> Self {
-        self.map(crate::scalar::exponential)
+        self.map(scalar::exponential)
     }
     #[inline(always)]
     fn ln(self) -> Self {

@@ -1,6 +1,6 @@
 use crate::Scalar;
-use crate::functions::ScalarFunction;
-use crate::scalar::derived_operators;
+use crate::derived::derived_operators;
+use scalar::ScalarFunction;
 use std::ops::{Add, Div, Mul, Neg};
 
 /// A number with a bound on its round-off: a running error analysis.

@@ -1,6 +1,6 @@
 use crate::Scalar;
-use crate::functions::ScalarFunction;
-use crate::scalar::derived_operators;
+use crate::derived::derived_operators;
+use scalar::ScalarFunction;
 use std::ops::{Add, Div, Mul, Neg};
 
 /// No number, but what one is made of: whether zero alone, and whether time has a part in it.

@@ -13,9 +13,9 @@ pub use cost::Cost;
 
 use crate::function::length;
 use crate::{Error, Expression, Graph};
-use lagrangian::Scalar;
 use operation::{Instruction, Operation};
 use program::Program;
+use scalar::Scalar;
 
 /// A list of operations for some expressions, evaluated on any [`Scalar`]: on numbers, dual numbers, and numbers side by side.
 ///

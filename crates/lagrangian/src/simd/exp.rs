@@ -1,5 +1,5 @@
 use super::{Pack, Simd};
-use crate::sincos::ROUNDER;
+use scalar::sincos::ROUNDER;
 
 /// `ln 2` in two parts.
 const LN2: [f64; 2] = [std::f64::consts::LN_2, 2.319_046_813_846_299_6e-17];

@@ -1,5 +1,5 @@
 use super::{Pack, Simd};
-use crate::sincos::{COS, ROUNDER, SIN};
+use scalar::sincos::{COS, ROUNDER, SIN};
 
 /// Above this, `2^50`, the number of the quadrant does not fit into the lowest bits.
 const LIMIT: f64 = 1_125_899_906_842_624.0;

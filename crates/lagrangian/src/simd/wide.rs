@@ -255,7 +255,7 @@ impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
     fn exp(self) -> Self {
         match self {
             Zero => Same(1.0),
-            Same(x) => Same(crate::scalar::exponential(x)),
+            Same(x) => Same(scalar::exponential(x)),
             Each(x) => Each(x.exp()),
         }
     }

@@ -1,42 +1,11 @@
-//! The length of a vector and the angle of one in the plane, with derivatives that are finite where the vector vanishes.
+//! What numbers with derivatives have alike: operators, and the length of a vector and the angle of one in the plane, with derivatives
+//! that are finite where the vector vanishes.
 //!
 //! By the chain rule the derivative of `sqrt(x^2 + y^2)` at zero is infinity times zero. Both functions are written here as what
 //! they are near a vector that is not zero, in the direction `u` of it and across: `|x| = p + |x - u p|^2/(2 p)` and
 //! `angle + c/p`, to second order, with `p` the part along `u` and `c` that across. No square of a small number is divided by one.
 
 use crate::{Scalar, array};
-
-/// The length of a vector of numbers, without overflow or underflow in its squares.
-#[inline(always)]
-pub(crate) fn length<const K: usize>(x: &[f64; K]) -> f64 {
-    /// Squares that add up to less may have lost digits: `2^53` times the smallest normal number.
-    const LEAST: f64 = f64::MIN_POSITIVE / f64::EPSILON * 2.0;
-    let sum = sum_of_squares(x, 1.0);
-    if (LEAST..=f64::MAX).contains(&sum) { sum.sqrt() } else { scaled(x, sum) }
-}
-
-#[inline(always)]
-fn sum_of_squares<const K: usize>(x: &[f64; K], scale: f64) -> f64 {
-    let mut sum = 0.0;
-    for x in x {
-        let part = x / scale;
-        sum += part * part;
-    }
-    sum
-}
-
-/// The same where the sum of the squares is not good: in units of the power of two below the largest component.
-#[cold]
-#[inline(never)]
-fn scaled<const K: usize>(x: &[f64; K], sum: f64) -> f64 {
-    const EXPONENT: u64 = f64::INFINITY.to_bits();
-    let largest = x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    if sum.is_nan() || largest == 0.0 || largest.is_infinite() {
-        return sum;
-    }
-    let scale = f64::from_bits(largest.to_bits() & EXPONENT).max(f64::MIN_POSITIVE);
-    sum_of_squares(x, scale).sqrt() * scale
-}
 
 /// A number with derivatives, over the numbers that it is made of.
 pub(crate) trait Derived: Scalar {
@@ -102,12 +71,50 @@ macro_rules! derived_functions {
     () => {
         #[inline(always)]
         fn length<const K: usize>(components: &[Self; K]) -> Self {
-            crate::length::derived_length(components)
+            crate::derived::derived_length(components)
         }
         #[inline(always)]
         fn atan2(self, x: Self) -> Self {
-            crate::length::derived_angle(self, x)
+            crate::derived::derived_angle(self, x)
         }
     };
 }
-pub(crate) use derived_functions;
+/// Operators that follow from addition, negation and multiplication, for the number types of this crate.
+macro_rules! derived_operators {
+    ([$($generics:tt)*] $number:ty) => {
+        impl<$($generics)*> std::ops::Sub for $number {
+            type Output = Self;
+            #[inline(always)]
+            fn sub(self, other: Self) -> Self {
+                self + (-other)
+            }
+        }
+        impl<$($generics)*> std::ops::Sub<f64> for $number {
+            type Output = Self;
+            #[inline(always)]
+            fn sub(self, other: f64) -> Self {
+                self + (-other)
+            }
+        }
+        impl<$($generics)*> std::ops::AddAssign for $number {
+            #[inline(always)]
+            fn add_assign(&mut self, other: Self) {
+                *self = *self + other;
+            }
+        }
+        impl<$($generics)*> std::ops::SubAssign for $number {
+            #[inline(always)]
+            fn sub_assign(&mut self, other: Self) {
+                *self = *self - other;
+            }
+        }
+        impl<$($generics)*> std::ops::MulAssign<f64> for $number {
+            #[inline(always)]
+            fn mul_assign(&mut self, factor: f64) {
+                *self = *self * factor;
+            }
+        }
+    };
+}
+
+pub(crate) use {derived_functions, derived_operators};

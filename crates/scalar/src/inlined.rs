@@ -42,7 +42,7 @@ pub fn called<T>(f: impl FnOnce() -> T) -> T {
 /// A function applied to each element of an array of numbers that can be copied: the `map` of an array, without the handful of functions
 /// that are compiled for every closure of that.
 #[inline]
-pub(crate) fn mapped<S: Copy, T: Copy, const N: usize>(of: &[S; N], mut f: impl FnMut(S) -> T) -> [T; N] {
+pub fn mapped<S: Copy, T: Copy, const N: usize>(of: &[S; N], mut f: impl FnMut(S) -> T) -> [T; N] {
     from_fn(|i| f(of[i]))
 }
 

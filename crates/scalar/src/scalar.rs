@@ -4,8 +4,8 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// What a number must do to carry a model.
 ///
-/// A model is one function generic in its scalar. On `f64` it gives values; on [`Dual`](crate::Dual) and
-/// [`HyperDual`](crate::HyperDual) exact first and second derivatives; on [`Lanes`](crate::Lanes) eight
+/// A model is one function generic in its scalar. On `f64` it gives values; on dual and hyper-dual
+/// numbers exact first and second derivatives; on lanes eight
 /// evaluations at once. There are no comparisons, for eight lanes have no common branch:
 /// [`where_positive`](Self::where_positive) chooses for each of them, [`min`](Self::min), [`max`](Self::max) and
 /// [`abs`](Self::abs) with it.
@@ -245,7 +245,7 @@ pub trait Scalar:
 /// The exponential. Where it is zero to the last bit the mathematics library would report an underflow, which takes the time of ten
 /// exponentials: of hills, everywhere but near them.
 #[inline(always)]
-pub(crate) fn exponential(x: f64) -> f64 {
+pub fn exponential(x: f64) -> f64 {
     // Half of the least number there is lies at -745.13.
     if x < -746.0 { 0.0 } else { x.exp() }
 }
@@ -301,43 +301,3 @@ impl Scalar for f64 {
         *self == 0.0
     }
 }
-
-/// Operators that follow from addition, negation and multiplication, for the number types of this crate.
-macro_rules! derived_operators {
-    ([$($generics:tt)*] $number:ty) => {
-        impl<$($generics)*> std::ops::Sub for $number {
-            type Output = Self;
-            #[inline(always)]
-            fn sub(self, other: Self) -> Self {
-                self + (-other)
-            }
-        }
-        impl<$($generics)*> std::ops::Sub<f64> for $number {
-            type Output = Self;
-            #[inline(always)]
-            fn sub(self, other: f64) -> Self {
-                self + (-other)
-            }
-        }
-        impl<$($generics)*> std::ops::AddAssign for $number {
-            #[inline(always)]
-            fn add_assign(&mut self, other: Self) {
-                *self = *self + other;
-            }
-        }
-        impl<$($generics)*> std::ops::SubAssign for $number {
-            #[inline(always)]
-            fn sub_assign(&mut self, other: Self) {
-                *self = *self - other;
-            }
-        }
-        impl<$($generics)*> std::ops::MulAssign<f64> for $number {
-            #[inline(always)]
-            fn mul_assign(&mut self, factor: f64) {
-                *self = *self * factor;
-            }
-        }
-    };
-}
-
-pub(crate) use derived_operators;

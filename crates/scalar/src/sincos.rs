@@ -10,12 +10,12 @@ use crate::mul_add;
 const LIMIT: f64 = 1.0e6;
 const TWO_OVER_PI: f64 = std::f64::consts::FRAC_2_PI;
 /// Adding it rounds to an integer, which then stands in the lowest bits of the sum.
-pub(crate) const ROUNDER: f64 = 6_755_399_441_055_744.0; // 1.5 * 2^52
+pub const ROUNDER: f64 = 6_755_399_441_055_744.0; // 1.5 * 2^52
 /// `pi/2`, its first 33 bits, the next 33 bits, and the rest.
 const PIO2: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
 
-/// The polynomials of sine and cosine on `[-pi/4, pi/4]`.
-pub(crate) const SIN: [f64; 6] = [
+/// The polynomial of the sine on `[-pi/4, pi/4]`.
+pub const SIN: [f64; 6] = [
     -1.666_666_666_666_663_2e-1,
     8.333_333_333_322_49e-3,
     -1.984_126_982_985_795e-4,
@@ -23,7 +23,8 @@ pub(crate) const SIN: [f64; 6] = [
     -2.505_076_025_340_686_3e-8,
     1.589_690_995_211_55e-10,
 ];
-pub(crate) const COS: [f64; 6] = [
+/// The polynomial of the cosine there.
+pub const COS: [f64; 6] = [
     4.166_666_666_666_66e-2,
     -1.388_888_888_887_411e-3,
     2.480_158_728_947_673e-5,
@@ -34,7 +35,7 @@ pub(crate) const COS: [f64; 6] = [
 
 /// Sines and cosines of `x` (rad).
 #[inline(always)]
-pub(crate) fn sin_cos<const W: usize>(x: &[f64; W]) -> ([f64; W], [f64; W]) {
+pub fn sin_cos<const W: usize>(x: &[f64; W]) -> ([f64; W], [f64; W]) {
     let mut sin = [0.0; W];
     let mut cos = [0.0; W];
     let mut far = false;
