@@ -57,54 +57,48 @@ impl Tapes {
     /// Tells the formulas that do not vanish, by their number; `n` is the number of coordinates of which the formulas are.
     #[inline]
     pub(crate) fn evaluate<S: Scalar>(&self, n: usize, at: TapePoint<'_, S>, mut result: impl FnMut(usize, S)) {
+        self.tell(n, at, &mut result);
+    }
+
+    /// The same, compiled once for all that have such numbers.
+    #[inline(never)]
+    fn tell<S: Scalar>(&self, n: usize, at: TapePoint<'_, S>, result: &mut dyn FnMut(usize, S)) {
         for &(k, x) in &self.constants {
             result(k, S::constant(x));
         }
-        let (scratch, all) = (self.tape.scratch(), self.tape.scratch() + self.places.len());
         // Most formulas need few places, and small numbers room for more of them.
         const FEW: usize = 24;
         const MANY: usize = 128;
-        if size_of::<S>() <= 2048 && all <= FEW {
-            let mut room = [S::zero(); FEW];
-            self.computed(n, at, room.split_at_mut(scratch), &mut result);
-        } else if size_of::<S>() <= 192 && all <= MANY {
-            let mut room = [S::zero(); MANY];
-            self.computed(n, at, room.split_at_mut(scratch), &mut result);
+        let scratch = self.tape.scratch();
+        if size_of::<S>() <= 2048 && scratch <= FEW {
+            self.interpret(n, at, &mut [S::zero(); FEW], result);
+        } else if size_of::<S>() <= 192 && scratch <= MANY {
+            self.interpret(n, at, &mut [S::zero(); MANY], result);
         } else {
-            let mut room = vec![S::zero(); all];
-            self.computed(n, at, room.split_at_mut(scratch), &mut result);
+            self.interpret(n, at, &mut vec![S::zero(); scratch], result);
         }
     }
 
-    #[inline]
-    fn computed<S: Scalar>(
+    #[inline(never)]
+    fn interpret<S: Scalar>(
         &self,
         n: usize,
         at: TapePoint<'_, S>,
-        (scratch, computed): (&mut [S], &mut [S]),
-        result: &mut impl FnMut(usize, S),
+        scratch: &mut [S],
+        result: &mut dyn FnMut(usize, S),
     ) {
-        interpret(&self.tape, n, at, scratch, computed);
-        for (&k, &x) in self.places.iter().zip(&*computed) {
-            result(k, x);
-        }
+        let input = |k: usize| match k.checked_sub(1) {
+            None => at.t,
+            Some(i) if i < n => at.q[i],
+            Some(i) if i < 2 * n => at.v.get(i - n).copied().unwrap_or(at.t),
+            Some(i) => at.p.get(i - 2 * n).copied().unwrap_or(at.t),
+        };
+        let output = |k: usize, x: S| {
+            if let Some(&place) = self.places.get(k) {
+                result(place, x);
+            }
+        };
+        // There is room: it was made for this tape.
+        let _ = self.tape.evaluate_with(input, scratch, output);
     }
-}
-
-/// The tape on one kind of numbers: compiled once for all that have such numbers.
-#[inline(never)]
-fn interpret<S: Scalar>(tape: &Tape, n: usize, at: TapePoint<'_, S>, scratch: &mut [S], computed: &mut [S]) {
-    let input = |k: usize| match k.checked_sub(1) {
-        None => at.t,
-        Some(i) if i < n => at.q[i],
-        Some(i) if i < 2 * n => at.v.get(i - n).copied().unwrap_or(at.t),
-        Some(i) => at.p.get(i - 2 * n).copied().unwrap_or(at.t),
-    };
-    let output = |k: usize, x: S| {
-        if let Some(place) = computed.get_mut(k) {
-            *place = x;
-        }
-    };
-    // There is room: it was made for this tape.
-    let _ = tape.evaluate_with(input, scratch, output);
 }
