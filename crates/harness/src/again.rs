@@ -20,6 +20,7 @@ impl<const N: usize, const M: usize> std::fmt::Debug for Again<'_, N, M> {
 }
 
 impl<const N: usize, const M: usize> OneStep<N, M> for Again<'_, N, M> {
+    #[inline(never)]
     fn step(
         &mut self,
         system: &dyn Mechanics<N, M>,

@@ -6,7 +6,10 @@
 use crate::analysis::{DiscreteMap, differentiable, lyapunov_within, relative_equilibria, section};
 use crate::precision::{Reference, ReferenceMotion};
 use crate::run::observed_and_timed;
-use crate::{Method, integrate_from, recommend, run_observed, run_saved_watched, step_evaluations, step_time, timed};
+use crate::{
+    Again, Method, integrate_from, recommend, run_observed, run_saved_watched, step_evaluations, step_time, timed,
+};
+use dla::OneStep;
 use std::hint::black_box;
 
 /// What is compiled here, for the shapes of the systems of scenes. It names functions, and nobody needs to call it.
@@ -34,6 +37,7 @@ pub fn shapes() {
 
 fn motions<const N: usize, const M: usize>() {
     black_box(Method::stepper::<N, M> as fn(_) -> _);
+    black_box(<Again<'_, N, M> as OneStep<N, M>>::step as fn(_, _, _, _, _) -> _);
     black_box(integrate_from::<N, M> as fn(_, _, _, _, _, _) -> _);
     black_box(observed_and_timed::<N, M> as fn(_, _, _, _) -> _);
     black_box(timed::<N, M> as fn(_, _, _, _, _) -> _);

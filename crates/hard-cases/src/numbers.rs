@@ -1,14 +1,14 @@
 //! Numbers far from one: places, turns, times, masses, speeds.
 
-use super::free::follows_exactly;
-use super::lab::{HEADING, Lab, PLACE, SPEED, SPIN, Setup};
-use crate::error::CliError;
+use crate::HardCaseError;
+use crate::free::follows_exactly;
+use crate::lab::{HEADING, Lab, PLACE, SPEED, SPIN, Setup};
 use harness::stability::check::{agrees, rounding};
 use harness::stability::{Case, Claim};
 use scene::{SceneEffect, TimeSpec};
 use std::f64::consts::TAU;
 
-pub(super) const FAR_AWAY: Case = Case {
+pub(crate) const FAR_AWAY: Case = Case {
     name: "far-away",
     hard: "A place of 1e8 m has digits down to 1.5e-8 m only, and an equation for the place has none left for the \
            velocity.",
@@ -18,7 +18,7 @@ pub(super) const FAR_AWAY: Case = Case {
     refusable: false,
 };
 
-pub(super) fn far_away(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn far_away(lab: &mut Lab) -> Result<(), HardCaseError> {
     const FAR: f64 = 1e8;
     let here = Setup::new(-1.0, 0.3, 0.05, 50.0);
     let mut there = here.clone();
@@ -52,7 +52,7 @@ pub(super) fn far_away(lab: &mut Lab) -> Result<(), CliError> {
     Ok(())
 }
 
-pub(super) const MANY_TURNS: Case = Case {
+pub(crate) const MANY_TURNS: Case = Case {
     name: "many-turns",
     hard: "A heading of a million turns has digits down to 1e-9 rad only.",
     shows: "The motion from the same heading without the turns.",
@@ -61,7 +61,7 @@ pub(super) const MANY_TURNS: Case = Case {
     refusable: false,
 };
 
-pub(super) fn many_turns(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn many_turns(lab: &mut Lab) -> Result<(), HardCaseError> {
     const TURNS: f64 = 1e6;
     /// `2 pi` minus its nearest number.
     const TAU_REST: f64 = 2.449_293_598_294_706_4e-16;
@@ -80,7 +80,7 @@ pub(super) fn many_turns(lab: &mut Lab) -> Result<(), CliError> {
     Ok(())
 }
 
-pub(super) const LATE: Case = Case {
+pub(crate) const LATE: Case = Case {
     name: "late",
     hard: "A force that depends on time, after 1e9 steps: a time summed step by step is wrong by then.",
     shows: "After whole periods the motion is that from time zero.",
@@ -89,7 +89,7 @@ pub(super) const LATE: Case = Case {
     refusable: false,
 };
 
-pub(super) fn late(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn late(lab: &mut Lab) -> Result<(), HardCaseError> {
     // 64 steps a period, of a length that no sum of them is a multiple of.
     const BEFORE: u64 = 1_000_000_000;
     let (step, frequency) = (0.03, TAU / (64.0 * 0.03));
@@ -104,7 +104,7 @@ pub(super) fn late(lab: &mut Lab) -> Result<(), CliError> {
     Ok(())
 }
 
-pub(super) const MASSES: Case = Case {
+pub(crate) const MASSES: Case = Case {
     name: "masses",
     hard: "Masses and inertias over twenty orders of magnitude, together and against one another: an absolute \
            tolerance loses one of them.",
@@ -114,7 +114,7 @@ pub(super) const MASSES: Case = Case {
     refusable: false,
 };
 
-pub(super) fn masses(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn masses(lab: &mut Lab) -> Result<(), HardCaseError> {
     let bodies = [[1e-10, 1e-10, 0.5], [1e10, 1e10, 0.5], [1e-10, 1e10, 0.5], [1.0, 1.0, 1e-8]];
     for body @ [mass, inertia, offset] in bodies {
         let spin = if inertia / mass > 1e10 { 1e-11 } else { 0.3 };
@@ -124,7 +124,7 @@ pub(super) fn masses(lab: &mut Lab) -> Result<(), CliError> {
     Ok(())
 }
 
-pub(super) const LIGHT_INERTIA: Case = Case {
+pub(crate) const LIGHT_INERTIA: Case = Case {
     name: "light-inertia",
     hard: "The inertia I -> 0, m a^2/I up to 2e19: the mass matrix is singular to rounding, though not on the \
            constraint.",
@@ -134,7 +134,7 @@ pub(super) const LIGHT_INERTIA: Case = Case {
     refusable: true,
 };
 
-pub(super) fn light_inertia(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn light_inertia(lab: &mut Lab) -> Result<(), HardCaseError> {
     for body @ [mass, inertia, offset] in [[1.0, 1e-12, 0.5], [1e10, 1e-10, 0.5], [1.0, 1e-16, 1.0]] {
         // Its rates are U/a: with shorter steps than elsewhere the bar is 1 % for order 2, and tells a wrong motion.
         let setup = Setup { body, ..Setup::new(-1.0, 0.3, 0.005, 5.0) };
@@ -143,7 +143,7 @@ pub(super) fn light_inertia(lab: &mut Lab) -> Result<(), CliError> {
     Ok(())
 }
 
-pub(super) const FAST: Case = Case {
+pub(crate) const FAST: Case = Case {
     name: "fast",
     hard: "Speeds of 1e150 m/s, whose squares just fit into a number, and of 1e160 and 1e300 m/s, whose energy does \
            not.",
@@ -153,7 +153,7 @@ pub(super) const FAST: Case = Case {
     refusable: true,
 };
 
-pub(super) fn fast(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn fast(lab: &mut Lab) -> Result<(), HardCaseError> {
     for unit in [1e150, 1e160, 1e300] {
         let setup = Setup::new(-unit, 0.3 * unit, 0.05 / unit, 10.0 / unit);
         let exact = setup.exact()?;

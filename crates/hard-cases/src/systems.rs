@@ -1,7 +1,7 @@
 //! Cases that need another system than a scene: a few methods make them, the rest of each family shares their code.
 
-use super::lab::Lab;
-use crate::error::CliError;
+use crate::HardCaseError;
+use crate::lab::Lab;
 use dla::{Dependency, Dla, Energy, Gauss, InChart, Lobatto, Schedule, State, StepError, Stepper, drive};
 use harness::stability::check::{constant, follows, measured};
 use harness::stability::{Case, Claim, Recorded, Recorder, Seen, VALUES};
@@ -12,7 +12,7 @@ use sleigh::{Exact, Sleigh, SleighState};
 use std::f64::consts::PI;
 
 /// The methods that make these cases.
-pub(super) const METHODS: [MethodKind; 5] =
+pub(crate) const METHODS: [MethodKind; 5] =
     [MethodKind::Dla, MethodKind::Lobatto(3), MethodKind::Gauss(4), MethodKind::Energy(1), MethodKind::Rk4Reduced];
 
 /// The systems with two constraints, of one type, so that every method is compiled once for all of them.
@@ -65,7 +65,7 @@ type Look<'a, const N: usize> = &'a dyn Fn(&State<N>) -> [f64; VALUES];
 type Regularity<'a, const N: usize> = &'a dyn Fn(&[f64; N]) -> f64;
 
 /// A run of one of [`METHODS`], with place and velocity of each node; nothing of any other.
-pub(super) fn record<Sys, const M: usize>(
+pub(crate) fn record<Sys, const M: usize>(
     lab: &Lab,
     system: &Sys,
     start: ([f64; 3], [f64; 3]),
@@ -78,7 +78,7 @@ where
 }
 
 /// The same in coordinates that end where `regularity` vanishes.
-pub(super) fn record_in_chart<Sys, const M: usize>(
+pub(crate) fn record_in_chart<Sys, const M: usize>(
     lab: &Lab,
     system: &Sys,
     start: ([f64; 3], [f64; 3]),
@@ -96,7 +96,7 @@ where
 }
 
 /// The same with what `look` sees, in coordinates that end where `regularity` vanishes.
-pub(super) fn record_seen<Sys, const N: usize, const M: usize>(
+pub(crate) fn record_seen<Sys, const N: usize, const M: usize>(
     lab: &Lab,
     system: &Sys,
     (q, v): ([f64; N], [f64; N]),
@@ -135,7 +135,7 @@ fn stepper<const N: usize, const M: usize>(method: &Method) -> Option<Stepper<'s
     })
 }
 
-pub(super) const PARALLEL_BLADES: Case = Case {
+pub(crate) const PARALLEL_BLADES: Case = Case {
     name: "parallel-blades",
     hard: "Two parallel blades side by side: A M^-1 A' is singular, and no method can tell the two forces apart.",
     shows: "The motion is that with one blade, in closed form; or an error that names the rows.",
@@ -144,7 +144,7 @@ pub(super) const PARALLEL_BLADES: Case = Case {
     refusable: true,
 };
 
-pub(super) fn parallel_blades(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn parallel_blades(lab: &mut Lab) -> Result<(), HardCaseError> {
     let sleigh = Sleigh::new(1.0, 1.0, 0.5)?;
     let start = SleighState { speed: -1.0, turn_rate: 0.3, ..SleighState::default() };
     let exact = Exact::new(&sleigh, &start)?;
@@ -161,7 +161,7 @@ pub(super) fn parallel_blades(lab: &mut Lab) -> Result<(), CliError> {
     Ok(())
 }
 
-pub(super) const DROPPING_ROW: Case = Case {
+pub(crate) const DROPPING_ROW: Case = Case {
     name: "dropping-row",
     hard: "A guide that lets go: its row of the constraint vanishes at x = 1 m, and exists before and after.",
     shows: "An error that names the row, where the rank drops.",
@@ -170,7 +170,7 @@ pub(super) const DROPPING_ROW: Case = Case {
     refusable: true,
 };
 
-pub(super) fn dropping_row(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn dropping_row(lab: &mut Lab) -> Result<(), HardCaseError> {
     let sleigh = Sleigh::new(1.0, 1.0, 0.5)?;
     // A sixteenth of a metre a step, without rounding.
     let schedule = Schedule { t0: 0.0, step: 0.0625, steps: 32 };
@@ -195,7 +195,7 @@ pub(super) fn dropping_row(lab: &mut Lab) -> Result<(), CliError> {
     Ok(())
 }
 
-pub(super) const PSEUDO_HOLONOMIC: Case = Case {
+pub(crate) const PSEUDO_HOLONOMIC: Case = Case {
     name: "pseudo-holonomic",
     hard: "A pendulum whose hinge is given by its rates alone: nothing pulls it back to where it was.",
     shows: "The hinge moves to and fro by O(h^p) and does not wander.",
@@ -204,8 +204,8 @@ pub(super) const PSEUDO_HOLONOMIC: Case = Case {
     refusable: false,
 };
 
-pub(super) fn pseudo_holonomic(lab: &mut Lab) -> Result<(), CliError> {
-    let fault = |_| CliError::Computation(vec!["the pendulum of the case has impossible parameters".to_owned()]);
+pub(crate) fn pseudo_holonomic(lab: &mut Lab) -> Result<(), HardCaseError> {
+    let fault = |_| HardCaseError::Impossible("the pendulum of the case has impossible parameters");
     let arm = 0.9;
     let pendulum = CompoundPendulum::new(1.3, 0.4, arm, 9.81).map_err(fault)?.pseudo_holonomic();
     let (step, steps) = (0.02, 10_000);

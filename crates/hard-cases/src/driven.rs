@@ -1,13 +1,13 @@
 //! The sleigh driven: rotors, tables of forces, a turning plane, the planimeter.
 
-use super::lab::{HEADING, Lab, PLACE, ROTOR, SPEED, SPIN, Setup};
-use crate::error::CliError;
+use crate::HardCaseError;
+use crate::lab::{HEADING, Lab, PLACE, ROTOR, SPEED, SPIN, Setup};
 use harness::stability::check::{energy, follows, measured, rounding};
 use harness::stability::{Case, Claim};
 use scene::{Interpolation, PathShape, PathSpec, SceneEffect, TimeSpec};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-pub(super) const ROTOR_DRIVE: Case = Case {
+pub(crate) const ROTOR_DRIVE: Case = Case {
     name: "rotor-drive",
     hard: "A rotor that is driven to and fro speeds the sleigh up, u^3 ~ 3 <tau^2> t/(m^2 a): the spin relaxes faster \
            and faster than the drive.",
@@ -18,7 +18,7 @@ pub(super) const ROTOR_DRIVE: Case = Case {
     refusable: false,
 };
 
-pub(super) fn rotor_drive(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn rotor_drive(lab: &mut Lab) -> Result<(), HardCaseError> {
     let frequency = 0.25;
     let torque = Some(TimeSpec::Sine { amplitude: 1.0, frequency, phase: 0.0 });
     let periods = 8.0;
@@ -44,7 +44,7 @@ pub(super) fn rotor_drive(lab: &mut Lab) -> Result<(), CliError> {
     })
 }
 
-pub(super) const FAST_ROTOR: Case = Case {
+pub(crate) const FAST_ROTOR: Case = Case {
     name: "fast-rotor",
     hard: "A rotor at 1e6 rad/s carries nearly all of the momentum and of the energy.",
     shows: "The sleigh moves as without it, and the rotor's momentum is constant.",
@@ -53,7 +53,7 @@ pub(super) const FAST_ROTOR: Case = Case {
     refusable: false,
 };
 
-pub(super) fn fast_rotor(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn fast_rotor(lab: &mut Lab) -> Result<(), HardCaseError> {
     let (inertia, rate) = (0.2, 1e6);
     let setup =
         Setup::new(-1.0, 0.3, 0.05, 10.0).with(SceneEffect::Flywheel { inertia, rotor_rate: rate, torque: None });
@@ -71,7 +71,7 @@ pub(super) fn fast_rotor(lab: &mut Lab) -> Result<(), CliError> {
     })
 }
 
-pub(super) const PLANIMETER: Case = Case {
+pub(crate) const PLANIMETER: Case = Case {
     name: "planimeter",
     hard: "The tracer runs a circle of radius R below, at and above a: the map of the heading is elliptic, parabolic \
            or hyperbolic, and changes its kind within 1e-6.",
@@ -81,7 +81,7 @@ pub(super) const PLANIMETER: Case = Case {
     refusable: false,
 };
 
-pub(super) fn planimeter(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn planimeter(lab: &mut Lab) -> Result<(), HardCaseError> {
     let (offset, period) = (0.5, 10.0);
     for ratio in [0.5, 1.0 - 1e-6, 1.0, 1.0 + 1e-6, 2.0] {
         let radius = ratio * offset;
@@ -108,7 +108,7 @@ pub(super) fn planimeter(lab: &mut Lab) -> Result<(), CliError> {
     Ok(())
 }
 
-pub(super) const CORNERS: Case = Case {
+pub(crate) const CORNERS: Case = Case {
     name: "corners",
     hard: "The tracer runs a square: its velocity jumps in the corners, and with it that of the blade.",
     shows: "On each side the heading follows the tractrix, tan(delta/2) falls by e^(-d/a).",
@@ -117,7 +117,7 @@ pub(super) const CORNERS: Case = Case {
     refusable: false,
 };
 
-pub(super) fn corners(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn corners(lab: &mut Lab) -> Result<(), HardCaseError> {
     let (offset, period, first) = (0.5, 8.0, 1.0f64);
     let vertices = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let path = PathSpec { shape: PathShape::Polygon(vertices), period };
@@ -137,7 +137,7 @@ pub(super) fn corners(lab: &mut Lab) -> Result<(), CliError> {
     })
 }
 
-pub(super) const JUMPS: Case = Case {
+pub(crate) const JUMPS: Case = Case {
     name: "jumps",
     hard: "A thrust from a table jumps, and a step across a jump has no order.",
     shows: "With a node at every jump a straight run is exact. Where equal steps have no node at a jump, each piece between jumps has steps of its own.",
@@ -146,7 +146,7 @@ pub(super) const JUMPS: Case = Case {
     refusable: false,
 };
 
-pub(super) fn jumps(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn jumps(lab: &mut Lab) -> Result<(), HardCaseError> {
     let (times, values) = (vec![0.0, 1.0, 2.5], vec![2.0, -3.0, 1.0]);
     let force = TimeSpec::Table { times, values, interpolation: Interpolation::Steps };
     let setup = Setup::new(0.5, 0.0, 0.0625, 4.0).with(SceneEffect::Thrust { force });
@@ -170,7 +170,7 @@ pub(super) fn jumps(lab: &mut Lab) -> Result<(), CliError> {
     })
 }
 
-pub(super) const TURNTABLE: Case = Case {
+pub(crate) const TURNTABLE: Case = Case {
     name: "turntable",
     hard: "On a plane that turns the constraint is affine: it does work, and has no basis of admissible velocities \
            through zero.",
@@ -180,7 +180,7 @@ pub(super) const TURNTABLE: Case = Case {
     refusable: false,
 };
 
-pub(super) fn turntable(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn turntable(lab: &mut Lab) -> Result<(), HardCaseError> {
     let mut setup = Setup::new(0.5, 0.3, 0.05, 10.0).with(SceneEffect::Turntable { rate: 0.3 });
     (setup.start.x, setup.start.y) = (0.4, 0.2);
     // Far out the plane is fast.

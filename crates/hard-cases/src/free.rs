@@ -1,13 +1,13 @@
 //! The free sleigh, whose motion is known in closed form.
 
-use super::lab::{HEADING, Lab, MOTION, PLACE, SPEED, SPIN, Setup};
-use crate::error::CliError;
+use crate::HardCaseError;
+use crate::lab::{HEADING, Lab, MOTION, PLACE, SPEED, SPIN, Setup};
 use harness::MethodKind;
 use harness::stability::check::{agrees, constraint, ends_at, energy, follows, rounding, sign_kept, stays_below};
 use harness::stability::{Case, Claim, claims};
 use std::f64::consts::PI;
 
-pub(super) const SMALL_SPIN: Case = Case {
+pub(crate) const SMALL_SPIN: Case = Case {
     name: "small-spin",
     hard: "The sleigh starts backward with a spin of 1e-8 or 1e-12 rad/s and turns around much later. An absolute \
            tolerance takes the spin for zero.",
@@ -18,14 +18,14 @@ pub(super) const SMALL_SPIN: Case = Case {
     refusable: false,
 };
 
-pub(super) fn small_spin(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn small_spin(lab: &mut Lab) -> Result<(), HardCaseError> {
     for spin in [1e-8, -1e-12] {
         turns_around(lab, spin, 0.05)?;
     }
     Ok(())
 }
 
-pub(super) const TINY_SPIN: Case = Case {
+pub(crate) const TINY_SPIN: Case = Case {
     name: "tiny-spin",
     hard: "A spin of -1e-300 rad/s, far below the rounding of the speed: only methods that carry the spin by itself \
            keep it.",
@@ -35,12 +35,12 @@ pub(super) const TINY_SPIN: Case = Case {
     refusable: false,
 };
 
-pub(super) fn tiny_spin(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn tiny_spin(lab: &mut Lab) -> Result<(), HardCaseError> {
     turns_around(lab, -1e-300, 0.2)
 }
 
 /// From nearly straight backward to nearly straight forward.
-fn turns_around(lab: &mut Lab, spin: f64, step: f64) -> Result<(), CliError> {
+fn turns_around(lab: &mut Lab, spin: f64, step: f64) -> Result<(), HardCaseError> {
     let [kappa, all] = Setup::new(-1.0, spin, step, step).rates()?;
     let flip = (2.0 * all / spin.abs()).ln() / kappa;
     let setup = Setup::new(-1.0, spin, step, flip + 25.0 / kappa);
@@ -55,7 +55,7 @@ fn turns_around(lab: &mut Lab, spin: f64, step: f64) -> Result<(), CliError> {
     Ok(())
 }
 
-pub(super) const SUBNORMAL_SPIN: Case = Case {
+pub(crate) const SUBNORMAL_SPIN: Case = Case {
     name: "subnormal-spin",
     hard: "Spins of 1e-310 and 5e-324 rad/s, the least number there is: products with them lose digits or vanish.",
     shows: "The spin never changes its sign, on the unstable line and on the stable one. On the stable line it may \
@@ -65,7 +65,7 @@ pub(super) const SUBNORMAL_SPIN: Case = Case {
     refusable: false,
 };
 
-pub(super) fn subnormal_spin(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn subnormal_spin(lab: &mut Lab) -> Result<(), HardCaseError> {
     for spin in [1e-310, -5e-324] {
         let growing = Setup::new(-1.0, spin, 0.05, 100.0);
         lab.run(format!("spin {spin:e}, growing"), &growing, |run| [sign_kept(run, SPIN)])?;
@@ -75,7 +75,7 @@ pub(super) fn subnormal_spin(lab: &mut Lab) -> Result<(), CliError> {
     Ok(())
 }
 
-pub(super) const STABLE_LINE: Case = Case {
+pub(crate) const STABLE_LINE: Case = Case {
     name: "stable-line",
     hard: "Forward with the centre of mass ahead a spin dies out. After 40 time constants only rounding is left, and \
            whatever else a method carries along.",
@@ -85,14 +85,14 @@ pub(super) const STABLE_LINE: Case = Case {
     refusable: false,
 };
 
-pub(super) fn stable_line(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn stable_line(lab: &mut Lab) -> Result<(), HardCaseError> {
     let setup = Setup::new(1.0, 0.3, 0.05, 400.0);
     let [kappa, all] = setup.rates()?;
     let bar = rounding(1, all) / (kappa * setup.step);
     lab.run("", &setup, |run| [stays_below(run, SPIN, 40.0 / kappa, bar)])
 }
 
-pub(super) const THERE_AND_BACK: Case = Case {
+pub(crate) const THERE_AND_BACK: Case = Case {
     name: "there-and-back",
     hard: "Forward until the spin is e^-17 of its start, then with the velocity reversed. The rounding error of the \
            spin grows as e^(kappa t) on the way back.",
@@ -103,7 +103,7 @@ pub(super) const THERE_AND_BACK: Case = Case {
     refusable: false,
 };
 
-pub(super) fn there_and_back(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn there_and_back(lab: &mut Lab) -> Result<(), HardCaseError> {
     let own_digits = keeps_small_digits(lab.method.info().kind);
     let duration = if own_digits { 80.0 } else { 40.0 };
     let mut setup = Setup::new(1.0, 0.3, 0.05, duration);
@@ -131,7 +131,7 @@ fn leads_by_cayley(method: MethodKind) -> bool {
     matches!(method, MethodKind::Dla | MethodKind::DlaTrapezoid | MethodKind::DlaAlpha | MethodKind::Composed(_))
 }
 
-pub(super) const LONG_STEP: Case = Case {
+pub(crate) const LONG_STEP: Case = Case {
     name: "long-step",
     hard: "Steps that turn by half a turn and more, and steps with no solution on the unstable line, h c abs(u) = 2. \
            The equations have several solutions, one, or none.",
@@ -142,7 +142,7 @@ pub(super) const LONG_STEP: Case = Case {
     refusable: true,
 };
 
-pub(super) fn long_step(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn long_step(lab: &mut Lab) -> Result<(), HardCaseError> {
     for turn in [0.6, 1.2, 2.4, 3.1, 3.2, 4.8, 100.0] {
         let setup = Setup::new(0.1, turn, 1.0, 20.0);
         let all = setup.exact()?.energy();
@@ -159,7 +159,7 @@ pub(super) fn long_step(lab: &mut Lab) -> Result<(), CliError> {
     Ok(())
 }
 
-pub(super) const STEP_LENGTHS: Case = Case {
+pub(crate) const STEP_LENGTHS: Case = Case {
     name: "step-lengths",
     hard: "A step of 1e-12 s moves the sleigh by less than the rounding of its place; one of 1e3 or 1e12 s is beyond \
            all stability.",
@@ -170,7 +170,7 @@ pub(super) const STEP_LENGTHS: Case = Case {
     refusable: true,
 };
 
-pub(super) fn step_lengths(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn step_lengths(lab: &mut Lab) -> Result<(), HardCaseError> {
     let mut short = Setup::new(-1.0, 0.3, 1e-12, 1e-9);
     (short.start.x, short.start.heading) = (1.0, 0.3);
     let end = short.exact()?.at(short.duration());
@@ -186,7 +186,7 @@ pub(super) fn step_lengths(lab: &mut Lab) -> Result<(), CliError> {
     Ok(())
 }
 
-pub(super) const OFFSETS: Case = Case {
+pub(crate) const OFFSETS: Case = Case {
     name: "offsets",
     hard: "The offset a -> 0, where the turn diverges and nothing straightens; a = 0 exactly; and a < 0.",
     shows: "The closed form, uniformly. With a = 0 the spin is constant; with -a and -u, the axis reversed, the motion \
@@ -196,7 +196,7 @@ pub(super) const OFFSETS: Case = Case {
     refusable: false,
 };
 
-pub(super) fn offsets(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn offsets(lab: &mut Lab) -> Result<(), HardCaseError> {
     for body in [[1.0, 1.0, 1e-12], [1.0, 1.0, 0.0], [1.0, 1.0, -0.5]] {
         let [_, inertia, offset] = body;
         let setup = Setup { body, ..Setup::new(-1.0, 0.3, 0.05, 20.0) };
@@ -219,7 +219,7 @@ pub(super) fn offsets(lab: &mut Lab) -> Result<(), CliError> {
     Ok(())
 }
 
-pub(super) const CUSP: Case = Case {
+pub(crate) const CUSP: Case = Case {
     name: "cusp",
     hard: "The speed passes through zero, where the path has a cusp: a step by arc length stalls there, and a \
            direction is 0/0.",
@@ -229,11 +229,11 @@ pub(super) const CUSP: Case = Case {
     refusable: false,
 };
 
-pub(super) fn cusp(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn cusp(lab: &mut Lab) -> Result<(), HardCaseError> {
     follows_exactly(lab, "", &Setup::new(-0.5, 0.6, 0.05, 10.0))
 }
 
-pub(super) const NEGATIVE_SUBSTEPS: Case = Case {
+pub(crate) const NEGATIVE_SUBSTEPS: Case = Case {
     name: "negative-substeps",
     hard: "Compositions go back within a step. Beside the unstable line such a sub-step may have no solution though \
            the whole step has one.",
@@ -243,7 +243,7 @@ pub(super) const NEGATIVE_SUBSTEPS: Case = Case {
     refusable: true,
 };
 
-pub(super) fn negative_substeps(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn negative_substeps(lab: &mut Lab) -> Result<(), HardCaseError> {
     turns_around(lab, 1e-8, 0.5)?;
     let setup = Setup::new(-1.0, 1e-8, 4.0, 200.0);
     let all = setup.exact()?.energy();
@@ -254,14 +254,14 @@ pub(super) fn negative_substeps(lab: &mut Lab) -> Result<(), CliError> {
 }
 
 /// What the errors of a motion are multiplied by in its place: the way, and the turn that may lead it astray.
-fn lengths(setup: &Setup) -> Result<f64, CliError> {
+fn lengths(setup: &Setup) -> Result<f64, HardCaseError> {
     let ([kappa, all], exact) = (setup.rates()?, setup.exact()?);
     let reach = exact.energy().sqrt() * (2.0 / setup.body[0]).sqrt() * setup.duration();
     Ok((1.0 + reach) * (1.0 + all * setup.duration()) * (1.0 + kappa * setup.duration()))
 }
 
 /// The whole motion, against the closed form.
-pub(super) fn follows_exactly(lab: &mut Lab, label: &str, setup: &Setup) -> Result<(), CliError> {
+pub(crate) fn follows_exactly(lab: &mut Lab, label: &str, setup: &Setup) -> Result<(), HardCaseError> {
     let ([kappa, all], exact) = (setup.rates()?, setup.exact()?);
     let (time, speed) = (setup.duration(), exact.energy().sqrt() * (2.0 / setup.body[0]).sqrt());
     let rate = kappa + all;
@@ -283,7 +283,7 @@ pub(super) fn follows_exactly(lab: &mut Lab, label: &str, setup: &Setup) -> Resu
     Ok(())
 }
 
-pub(super) const ROUND_OFF: Case = Case {
+pub(crate) const ROUND_OFF: Case = Case {
     name: "round-off",
     hard: "Circles for ever: 1.3e7 steps of dla, more than a million turns, and 2e4 of every other method. Rounding \
            errors of one sign add up.",
@@ -294,7 +294,7 @@ pub(super) const ROUND_OFF: Case = Case {
     refusable: false,
 };
 
-pub(super) fn round_off(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn round_off(lab: &mut Lab) -> Result<(), HardCaseError> {
     // The one that the case is about is fast, and makes them all.
     let steps = if lab.method.info().kind == MethodKind::Dla { 13_000_000 } else { 20_000 };
     let mut setup = Setup { body: [1.0, 1.0, 0.0], steps, every: 100, ..Setup::new(1.0, 1.0, 0.5, 1.0) };

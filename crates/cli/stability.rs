@@ -1,88 +1,20 @@
 //! `noslip stability`: the hard cases, method by method.
 
-mod driven;
-mod fields;
-mod free;
-mod lab;
-mod large;
-mod numbers;
-mod one_row;
-mod rest;
-mod systems;
-
 use crate::args::StabilityArguments;
 use crate::compare::{methods, unless_interrupted};
 use crate::error::CliError;
 use crate::inspect::method_names;
 use crate::interrupt::Interrupt;
 use crate::{progress, table, terminal};
-use harness::stability::{Case, Outcome, Verdict, claims, judge};
-use lab::Lab;
+use hard_cases::{CASES, HardCase};
+use harness::stability::{Case, Outcome, Verdict};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-type Trying = fn(&mut Lab) -> Result<(), CliError>;
-
-/// The cases, and what makes their runs.
-const CASES: &[(Case, Trying)] = &[
-    (free::SMALL_SPIN, free::small_spin),
-    (free::TINY_SPIN, free::tiny_spin),
-    (free::SUBNORMAL_SPIN, free::subnormal_spin),
-    (free::STABLE_LINE, free::stable_line),
-    (free::THERE_AND_BACK, free::there_and_back),
-    (free::LONG_STEP, free::long_step),
-    (free::STEP_LENGTHS, free::step_lengths),
-    (free::NEGATIVE_SUBSTEPS, free::negative_substeps),
-    (free::OFFSETS, free::offsets),
-    (free::CUSP, free::cusp),
-    (free::ROUND_OFF, free::round_off),
-    (numbers::FAR_AWAY, numbers::far_away),
-    (numbers::MANY_TURNS, numbers::many_turns),
-    (numbers::LATE, numbers::late),
-    (numbers::MASSES, numbers::masses),
-    (numbers::LIGHT_INERTIA, numbers::light_inertia),
-    (numbers::FAST, numbers::fast),
-    (fields::STIFF_BOWL, fields::stiff_bowl),
-    (fields::STEEP_HILL, fields::steep_hill),
-    (fields::TURNING_POINTS, fields::turning_points),
-    (fields::LOG_WELL, fields::log_well),
-    (fields::ATTRACTOR, fields::attractor),
-    (fields::ROUND_BOWL, fields::round_bowl),
-    (fields::HEAVY_DRAG, fields::heavy_drag),
-    (rest::SETTLES, rest::settles),
-    (rest::TINY_SWING, rest::tiny_swing),
-    (rest::BALANCE, rest::balance),
-    (rest::CANCELLING_FORCES, rest::cancelling_forces),
-    (driven::ROTOR_DRIVE, driven::rotor_drive),
-    (driven::FAST_ROTOR, driven::fast_rotor),
-    (driven::PLANIMETER, driven::planimeter),
-    (driven::CORNERS, driven::corners),
-    (driven::JUMPS, driven::jumps),
-    (driven::TURNTABLE, driven::turntable),
-    (systems::PARALLEL_BLADES, systems::parallel_blades),
-    (systems::DROPPING_ROW, systems::dropping_row),
-    (systems::PSEUDO_HOLONOMIC, systems::pseudo_holonomic),
-    (one_row::GAUGE, one_row::gauge),
-    (one_row::FORCE_WITH_A_CORNER, one_row::force_with_a_corner),
-    (one_row::CHART_END, one_row::chart_end),
-    (large::MANY_BODIES, large::many_bodies),
-];
-
-/// The cases whose system no scene has.
-const OTHER_SYSTEMS: [Case; 7] = [
-    systems::PARALLEL_BLADES,
-    systems::DROPPING_ROW,
-    systems::PSEUDO_HOLONOMIC,
-    one_row::GAUGE,
-    one_row::FORCE_WITH_A_CORNER,
-    one_row::CHART_END,
-    large::MANY_BODIES,
-];
-
 /// The cases, in words.
 pub(crate) fn cases() -> impl Iterator<Item = &'static Case> {
-    CASES.iter().map(|(case, _)| case)
+    CASES.iter().map(HardCase::case)
 }
 
 /// A case, a method, and what came of them.
@@ -104,20 +36,15 @@ pub(crate) fn stability(arguments: &StabilityArguments) -> Result<(), CliError> 
     let methods = methods(&names, None, None)?;
     let pairs: Vec<_> = chosen
         .iter()
-        .flat_map(|(case, try_it)| methods.iter().map(move |method| (case, *try_it, *method)))
-        .filter(|(case, _, method)| !OTHER_SYSTEMS.contains(case) || systems::METHODS.contains(&method.info().kind))
+        .flat_map(|case| methods.iter().map(move |method| (*case, method)))
+        .filter(|(case, method)| case.takes(method))
         .collect();
     let interrupt = Interrupt::listen_saying("stopping after the cases that have begun; Ctrl-C again ends at once");
     let bar = progress::bar("cases", pairs.len() as u64);
-    let rows = in_parallel(&pairs, &interrupt, |(case, try_it, method)| {
-        let mut lab = Lab::new(*method);
-        let tried = try_it(&mut lab);
+    let rows = in_parallel(&pairs, &interrupt, |(case, method)| {
+        let verdict = case.verdict(method);
         bar.inc(1);
-        tried.map(|()| CaseRow {
-            case: case.name,
-            method: method.info().name,
-            verdict: judge(case, claims(method.info().kind, case.claim), &lab.trials),
-        })
+        Ok(CaseRow { case: case.case().name, method: method.info().name, verdict: verdict? })
     })?;
     bar.finish_and_clear();
     if arguments.json {
@@ -165,9 +92,9 @@ fn in_parallel<T: Sync, R: Send>(
     made.into_iter().map(|(_, row)| row).collect()
 }
 
-fn named(name: &str) -> Result<&'static (Case, Trying), CliError> {
+fn named(name: &str) -> Result<&'static HardCase, CliError> {
     let wanted = name.trim().replace('_', "-");
-    CASES.iter().find(|(case, _)| case.name == wanted).ok_or_else(|| CliError::Case {
+    CASES.iter().find(|case| case.case().name == wanted).ok_or_else(|| CliError::Case {
         name: name.to_owned(),
         nearest: scene::nearest(name, cases().map(|case| case.name)).map(str::to_owned),
         names: cases().map(|case| case.name).collect::<Vec<_>>().join(", "),

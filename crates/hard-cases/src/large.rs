@@ -1,8 +1,8 @@
 //! A system of as many coordinates and constraints as one of fixed size may have.
 
-use super::lab::Lab;
-use super::systems::record_seen;
-use crate::error::CliError;
+use crate::HardCaseError;
+use crate::lab::Lab;
+use crate::systems::record_seen;
 use dla::{Schedule, State};
 use harness::stability::check::{constraint, energy, measured};
 use harness::stability::{Case, Claim, VALUES};
@@ -46,7 +46,7 @@ impl System<N, BODIES> for Chain {
     }
 }
 
-pub(super) const MANY_BODIES: Case = Case {
+pub(crate) const MANY_BODIES: Case = Case {
     name: "many-bodies",
     hard: "A chain of 20 points on rods: 60 coordinates and 20 constraints, in a thread of 2 MB. All that a step holds \
            stands on its stack.",
@@ -57,7 +57,7 @@ pub(super) const MANY_BODIES: Case = Case {
     refusable: true,
 };
 
-pub(super) fn many_bodies(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn many_bodies(lab: &mut Lab) -> Result<(), HardCaseError> {
     let schedule = Schedule { t0: 0.0, step: 0.01, steps: 50 };
     let look = |state: &State<N>| -> [f64; VALUES] {
         let ([q, v], end) = ([state.q(), state.v()], N - 3);
@@ -71,7 +71,7 @@ pub(super) fn many_bodies(lab: &mut Lab) -> Result<(), CliError> {
         let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, make).ok()?;
         thread.join().ok()
     });
-    let fault = || CliError::Computation(vec!["the thread of the chain has ended without a result".to_owned()]);
+    let fault = || HardCaseError::Impossible("the thread of the chain has ended without a result");
     let run = made.ok_or_else(fault)?;
     // The last points fall freely, and the rods turn at the rate of a free fall of their length.
     let (time, rate) = (schedule.step * schedule.steps as f64, GRAVITY.sqrt());

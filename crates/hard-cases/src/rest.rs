@@ -1,13 +1,13 @@
 //! Motions that are small beside the forces on them: what settles, swings by next to nothing, or is balanced.
 
-use super::lab::{HEADING, Lab, PLACE, SPEED, SPIN, Setup};
-use crate::error::CliError;
+use crate::HardCaseError;
+use crate::lab::{HEADING, Lab, PLACE, SPEED, SPIN, Setup};
 use harness::stability::check::{follows, measured, rounding, stays_below};
 use harness::stability::{Case, Claim, claims};
 use scene::SceneEffect;
 use std::f64::consts::FRAC_PI_2;
 
-pub(super) const SETTLES: Case = Case {
+pub(crate) const SETTLES: Case = Case {
     name: "settles",
     hard: "A sleigh with drag, in a well off the origin and on the plane, until it is at rest, with velocities below \
            the rounding of forces that balance.",
@@ -18,7 +18,7 @@ pub(super) const SETTLES: Case = Case {
     refusable: false,
 };
 
-pub(super) fn settles(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn settles(lab: &mut Lab) -> Result<(), HardCaseError> {
     // Half of drag over inertia: 0.25/s along the blade and 0.12/s about it; less, where the two are coupled.
     let drag = SceneEffect::Drag { along: 0.5, turning: 0.3 };
     let (center, offset) = ([0.3, 0.7], 0.5);
@@ -42,7 +42,7 @@ pub(super) fn settles(lab: &mut Lab) -> Result<(), CliError> {
     })
 }
 
-pub(super) const TINY_SWING: Case = Case {
+pub(crate) const TINY_SWING: Case = Case {
     name: "tiny-swing",
     hard: "Through the bottom of a well off the origin at 1e-4, 1e-10 and 1e-13 m/s: the place moves by its last \
            digits, and a force is the difference of two numbers nearly the same.",
@@ -53,7 +53,7 @@ pub(super) const TINY_SWING: Case = Case {
     refusable: false,
 };
 
-pub(super) fn tiny_swing(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn tiny_swing(lab: &mut Lab) -> Result<(), HardCaseError> {
     let (stiffness, center) = (3.0f64, [0.3, 0.7]);
     let rate = stiffness.sqrt();
     for speed in [1e-4, 1e-10, 1e-13] {
@@ -68,7 +68,7 @@ pub(super) fn tiny_swing(lab: &mut Lab) -> Result<(), CliError> {
     Ok(())
 }
 
-pub(super) const BALANCE: Case = Case {
+pub(crate) const BALANCE: Case = Case {
     name: "balance",
     hard: "A skate at rest across a slope of 9.8 m/s^2, its blade level to 0, 1e-9 and 1e-7 rad: the blade bears all \
            of the weight.",
@@ -78,7 +78,7 @@ pub(super) const BALANCE: Case = Case {
     refusable: false,
 };
 
-pub(super) fn balance(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn balance(lab: &mut Lab) -> Result<(), HardCaseError> {
     let gravity = [5.3, -8.2f64];
     let fall = gravity[0].hypot(gravity[1]);
     for angle in [0.0, 1e-9, 1e-7] {
@@ -93,7 +93,7 @@ pub(super) fn balance(lab: &mut Lab) -> Result<(), CliError> {
     Ok(())
 }
 
-pub(super) const CANCELLING_FORCES: Case = Case {
+pub(crate) const CANCELLING_FORCES: Case = Case {
     name: "cancelling-forces",
     hard: "A sleigh between springs of 3 and of 1e6 N/m that balance, at rest there and 1e-9 m beside: forces of up to \
            3e5 N leave 2e-3 N, or nothing.",
@@ -104,7 +104,7 @@ pub(super) const CANCELLING_FORCES: Case = Case {
     refusable: false,
 };
 
-pub(super) fn cancelling_forces(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn cancelling_forces(lab: &mut Lab) -> Result<(), HardCaseError> {
     let (ends, part, length) = ([0.1, 0.7], 0.1, 100.0);
     let middle = 0.5 * (ends[0] + ends[1]);
     for stiffness in [3.0, 1e6] {

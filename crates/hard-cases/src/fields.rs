@@ -1,7 +1,7 @@
 //! The sleigh in fields: wells, landscapes, hills, and thrust that makes one.
 
-use super::lab::{Lab, MOTION, SPEED, SPIN, Setup};
-use crate::error::CliError;
+use crate::HardCaseError;
+use crate::lab::{Lab, MOTION, SPEED, SPIN, Setup};
 use harness::stability::check::{agrees, constant, energy, measured, rounding, sign_kept, truncation};
 use harness::stability::{Case, Claim, Seen, claims};
 use scene::{HillSpec, SceneEffect, TimeSpec};
@@ -15,7 +15,7 @@ impl Lab {
     }
 }
 
-pub(super) const STIFF_BOWL: Case = Case {
+pub(crate) const STIFF_BOWL: Case = Case {
     name: "stiff-bowl",
     hard: "A bowl whose oscillation takes from 600 steps to a sixteenth of a step: sqrt(k/m) h from 0.01 to 100.",
     shows: "Implicit rules that are stable for every step stay in the bowl; all others say that the step is too long.",
@@ -24,7 +24,7 @@ pub(super) const STIFF_BOWL: Case = Case {
     refusable: true,
 };
 
-pub(super) fn stiff_bowl(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn stiff_bowl(lab: &mut Lab) -> Result<(), HardCaseError> {
     let step = 0.05;
     // A balanced sleigh: else its heading is unstable on the way out, and has no solution for long steps.
     let body = [1.0, 1.0, 0.0];
@@ -41,7 +41,7 @@ pub(super) fn stiff_bowl(lab: &mut Lab) -> Result<(), CliError> {
     Ok(())
 }
 
-pub(super) const STEEP_HILL: Case = Case {
+pub(crate) const STEEP_HILL: Case = Case {
     name: "steep-hill",
     hard: "Hills of 1 cm width in the way of a sleigh that goes 5 cm a step: a step may miss a hill, or feel its flank \
            all along.",
@@ -52,7 +52,7 @@ pub(super) const STEEP_HILL: Case = Case {
     refusable: true,
 };
 
-pub(super) fn steep_hill(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn steep_hill(lab: &mut Lab) -> Result<(), HardCaseError> {
     for (y, height) in [(0.0, 0.2), (0.004, 5.0), (0.0, -3.0)] {
         let hills = [0.3, 0.82, 1.01].map(|x| HillSpec { height, x, y, width: 0.01 });
         let mut setup = Setup::new(1.0, 0.2, 0.05, 5.0).with(SceneEffect::Hills { hills: hills.to_vec() });
@@ -63,7 +63,7 @@ pub(super) fn steep_hill(lab: &mut Lab) -> Result<(), CliError> {
     Ok(())
 }
 
-pub(super) const TURNING_POINTS: Case = Case {
+pub(crate) const TURNING_POINTS: Case = Case {
     name: "turning-points",
     hard: "To and fro in a bowl, standing still twice in a period. A discrete gradient divides by the way of a step, \
            and a direction by the speed.",
@@ -73,7 +73,7 @@ pub(super) const TURNING_POINTS: Case = Case {
     refusable: false,
 };
 
-pub(super) fn turning_points(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn turning_points(lab: &mut Lab) -> Result<(), HardCaseError> {
     let bowl = SceneEffect::Bowl { stiffness: [1.0; 2], center: [0.0; 2] };
     let mut setup = Setup::new(0.0, 0.0, 0.05, 50.0).with(bowl.clone());
     setup.start.x = 0.5;
@@ -92,7 +92,7 @@ fn still_at(value: usize) -> f64 {
     if value == 0 { -0.5 } else { 0.0 }
 }
 
-pub(super) const LOG_WELL: Case = Case {
+pub(crate) const LOG_WELL: Case = Case {
     name: "log-well",
     hard: "A constant backward thrust: the spin goes up and down over decades for ever, and K = E + (F/c) \
            ln(abs(omega)) is constant.",
@@ -102,7 +102,7 @@ pub(super) const LOG_WELL: Case = Case {
     refusable: false,
 };
 
-pub(super) fn log_well(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn log_well(lab: &mut Lab) -> Result<(), HardCaseError> {
     let (force, gain, inertia) = (-0.5, 0.4, 1.25);
     let setup = Setup::new(0.0, 0.1, 0.05, 200.0).with(SceneEffect::Thrust { force: TimeSpec::Constant(force) });
     let value =
@@ -118,7 +118,7 @@ pub(super) fn log_well(lab: &mut Lab) -> Result<(), CliError> {
     })
 }
 
-pub(super) const ATTRACTOR: Case = Case {
+pub(crate) const ATTRACTOR: Case = Case {
     name: "attractor",
     hard: "In the egg-crate a sleigh with a > 0 is drawn to an attractor. Its mirror image is a repeller, so every \
            symmetric method gains or loses energy at a rate ~ h^p.",
@@ -128,7 +128,7 @@ pub(super) const ATTRACTOR: Case = Case {
     refusable: false,
 };
 
-pub(super) fn attractor(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn attractor(lab: &mut Lab) -> Result<(), HardCaseError> {
     for offset in [0.5, 0.1] {
         let mut setup = Setup { body: [1.0, 1.0, offset], ..Setup::new(0.4, 0.7, 0.1, 20.0) };
         setup.start.x = 0.5 - offset * f64::cos(0.3);
@@ -136,7 +136,7 @@ pub(super) fn attractor(lab: &mut Lab) -> Result<(), CliError> {
         setup.start.heading = 0.3;
         setup.effects.push(SceneEffect::EggCrate { height: 0.5, wave_number: [1.0; 2] });
         let half = Setup { step: 0.5 * setup.step, steps: 2 * setup.steps, ..setup.clone() };
-        let largest = |setup: &Setup| -> Result<_, CliError> {
+        let largest = |setup: &Setup| -> Result<_, HardCaseError> {
             let run = lab.record(setup)?;
             let error = energy(&run, 0.0).measured;
             Ok((run, error))
@@ -150,7 +150,7 @@ pub(super) fn attractor(lab: &mut Lab) -> Result<(), CliError> {
     Ok(())
 }
 
-pub(super) const ROUND_BOWL: Case = Case {
+pub(crate) const ROUND_BOWL: Case = Case {
     name: "round-bowl",
     hard: "A periodic attractor in a round bowl (8 J, a = 0.5). A scheme that is not symmetric under rotations, or \
            that mistakes the turns of an angle, breaks it.",
@@ -160,7 +160,7 @@ pub(super) const ROUND_BOWL: Case = Case {
     refusable: false,
 };
 
-pub(super) fn round_bowl(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn round_bowl(lab: &mut Lab) -> Result<(), HardCaseError> {
     let bowl = SceneEffect::Bowl { stiffness: [1.0; 2], center: [0.0; 2] };
     let mut plain = Setup::new(3.0, 2.0, 0.02, 10.0).with(bowl);
     let mut rotated = plain.clone();
@@ -189,7 +189,7 @@ pub(super) fn round_bowl(lab: &mut Lab) -> Result<(), CliError> {
     Ok(())
 }
 
-pub(super) const HEAVY_DRAG: Case = Case {
+pub(crate) const HEAVY_DRAG: Case = Case {
     name: "heavy-drag",
     hard: "Drag that stops the sleigh within a step, c h/m up to 1e6. Beyond c h/m = 2 rules for the mean velocity \
            change the sign of the speed in every step.",
@@ -199,7 +199,7 @@ pub(super) const HEAVY_DRAG: Case = Case {
     refusable: true,
 };
 
-pub(super) fn heavy_drag(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn heavy_drag(lab: &mut Lab) -> Result<(), HardCaseError> {
     let least = if lab.is_adaptive() { harness::Method::TOLERANCE } else { 0.0 };
     for part in [0.1, 1.0, 3.0, 1e3, 1e6] {
         let along = part / 0.05;

@@ -1,8 +1,8 @@
 //! Cases of systems with one constraint that no scene has, of one type, so that every method is compiled once for all of them.
 
-use super::lab::Lab;
-use super::systems::{record, record_in_chart};
-use crate::error::CliError;
+use crate::HardCaseError;
+use crate::lab::Lab;
+use crate::systems::{record, record_in_chart};
 use dla::Schedule;
 use harness::stability::check::{energy, follows, measured, rounding, sign_kept};
 use harness::stability::{Case, Claim, Recorded, Seen};
@@ -68,7 +68,7 @@ impl System<3, 1> for OneRow {
 /// root alone would be `0/0` there. Its root, 1e-150 m/s, is nothing beside any speed.
 const LEAST_SQUARE: f64 = 1e-300;
 
-pub(super) const GAUGE: Case = Case {
+pub(crate) const GAUGE: Case = Case {
     name: "gauge",
     hard: "A gauge term in the Lagrangian changes no motion, but shifts the momenta: symmetric methods no longer see \
            the reversal, and lose energy.",
@@ -78,8 +78,8 @@ pub(super) const GAUGE: Case = Case {
     refusable: false,
 };
 
-pub(super) fn gauge(lab: &mut Lab) -> Result<(), CliError> {
-    let fault = |_| CliError::Computation(vec!["the oscillator of the case has impossible parameters".to_owned()]);
+pub(crate) fn gauge(lab: &mut Lab) -> Result<(), HardCaseError> {
+    let fault = |_| HardCaseError::Impossible("the oscillator of the case has impossible parameters");
     let plain = ContactOscillator::new(0.0).map_err(fault)?;
     let system = OneRow::Gauged(GaugedOscillator::new(plain, 1.0).map_err(fault)?);
     let start = plain.start_at(-0.5 * 2f64.sqrt()).map_err(fault)?;
@@ -91,7 +91,7 @@ pub(super) fn gauge(lab: &mut Lab) -> Result<(), CliError> {
     Ok(())
 }
 
-pub(super) const FORCE_WITH_A_CORNER: Case = Case {
+pub(crate) const FORCE_WITH_A_CORNER: Case = Case {
     name: "force-with-a-corner",
     hard: "A skate falls from rest against a drag -c abs(v) v: the length of a velocity has no derivative at rest.",
     shows: "u = sqrt(g/c) tanh(sqrt(g c) t), straight down.",
@@ -100,7 +100,7 @@ pub(super) const FORCE_WITH_A_CORNER: Case = Case {
     refusable: false,
 };
 
-pub(super) fn force_with_a_corner(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn force_with_a_corner(lab: &mut Lab) -> Result<(), HardCaseError> {
     let [slope, drag] = [2.0, 0.5];
     for heading in [0.0, 0.5f64] {
         let along = slope * heading.cos();
@@ -117,7 +117,7 @@ pub(super) fn force_with_a_corner(lab: &mut Lab) -> Result<(), CliError> {
     Ok(())
 }
 
-pub(super) const CHART_END: Case = Case {
+pub(crate) const CHART_END: Case = Case {
     name: "chart-end",
     hard: "A point on a sphere, by its angle from a pole and its longitude, along a great circle that passes the pole \
            at 0.3 and at 1e-3 rad: the longitude makes half a turn in a thousandth of a second.",
@@ -128,7 +128,7 @@ pub(super) const CHART_END: Case = Case {
     refusable: true,
 };
 
-pub(super) fn chart_end(lab: &mut Lab) -> Result<(), CliError> {
+pub(crate) fn chart_end(lab: &mut Lab) -> Result<(), HardCaseError> {
     for nearest in [0.3, 1e-3f64] {
         let schedule = Schedule { t0: 0.0, step: 0.01, steps: 314 };
         // From the equator at 1 rad/s.
