@@ -28,19 +28,19 @@ const ROUNDED: f64 = 1e-9;
 /// Reads `[start]`: `turn_rate` is required, and `speed` or both of `x_dot` and `y_dot`; `x`, `y` and `heading` are 0 when left out.
 pub(crate) fn start(table: &TomlTable<'_>) -> Result<SleighState, SceneError> {
     let heading = table.number(&HEADING)?.unwrap_or(0.0);
-    let speed = match (table.get(SPEED.key), velocity(table)?) {
-        (Some(_), Some(_)) => {
-            let second = [X_DOT.key, Y_DOT.key].into_iter().find(|key| table.get(key).is_some());
+    let in_full = [X_DOT.key, Y_DOT.key].into_iter().find(|key| table.get(key).is_some());
+    let speed = match (table.get(SPEED.key), in_full) {
+        (Some(_), Some(key)) => {
             return Err(table.fail(Fault {
                 variant: SceneError::OutOfRange,
-                key: second.unwrap_or(X_DOT.key),
+                key,
                 problem: "gives the velocity a second time, beside `speed`".to_owned(),
                 found: None,
                 accepted: "`speed`, or both of `x_dot` and `y_dot`".to_owned(),
                 help: None,
             }));
         }
-        (None, Some(velocity)) => along(velocity, heading),
+        (None, Some(_)) => along([table.required(&X_DOT)?, table.required(&Y_DOT)?], heading),
         (_, None) => table.required(&SPEED)?,
     };
     Ok(SleighState {
@@ -52,14 +52,6 @@ pub(crate) fn start(table: &TomlTable<'_>) -> Result<SleighState, SceneError> {
     })
 }
 
-/// The velocity of the contact point, where it is given in full (m/s).
-fn velocity(table: &TomlTable<'_>) -> Result<Option<[f64; 2]>, SceneError> {
-    if table.get(X_DOT.key).is_none() && table.get(Y_DOT.key).is_none() {
-        return Ok(None);
-    }
-    Ok(Some([table.required(&X_DOT)?, table.required(&Y_DOT)?]))
-}
-
 /// The part of a velocity along the blade.
 fn along([x, y]: [f64; 2], heading: f64) -> f64 {
     let (sin, cos) = heading.sin_cos();
@@ -68,7 +60,7 @@ fn along([x, y]: [f64; 2], heading: f64) -> f64 {
 
 /// Refuses a velocity, given in full, at which the blade slips sideways over the plane, which turns at that rate (rad/s).
 pub(crate) fn check_slip(table: &TomlTable<'_>, start: &SleighState, plane: f64) -> Result<(), SceneError> {
-    let Some([x, y]) = velocity(table)? else { return Ok(()) };
+    let (Some(x), Some(y)) = (table.number(&X_DOT)?, table.number(&Y_DOT)?) else { return Ok(()) };
     let (sin, cos) = start.heading.sin_cos();
     let over_plane = [x + plane * start.y, y - plane * start.x];
     let slip = over_plane[1] * cos - over_plane[0] * sin;
