@@ -7,7 +7,7 @@
 //!    would be right there.
 //! 2. A [`Graph`] holds expressions, each of them once, simplified as they are made; it [derives](Graph::derivative) them,
 //!    [replaces](Graph::substitute) variables, and writes them as [text](Graph::text) or as [Rust](Graph::rust).
-//! 3. A [`Tape`] is a list of operations for some of them, evaluated on any [`Scalar`](lagrangian::Scalar), and counted as a [`Cost`].
+//! 3. A [`Tape`] is a list of operations for some of them, evaluated on any [`Scalar`](scalar::Scalar), and counted as a [`Cost`].
 //!
 //! ```
 //! use expression::{Graph, Names, Tape, parse};

@@ -76,8 +76,8 @@ impl Tape {
     /// Computes the expressions from the values of the variables, by their numbers. Nothing is allocated, and the scratch may hold
     /// anything.
     ///
-    /// Of numbers side by side, as [`Lanes`](lagrangian::Lanes), the caller is compiled for vector registers
-    /// ([`vectorized`](lagrangian::vectorized)): so this is inlined.
+    /// Of numbers side by side, as `lagrangian::Lanes`, the caller is compiled for vector registers
+    /// (`lagrangian::vectorized`): so this is inlined.
     ///
     /// # Errors
     /// [`Error::TooFew`] inputs, numbers of scratch, or outputs; more are left alone.
