@@ -66,12 +66,12 @@ fn it_moves_as_the_row_does() {
     assert!(pairs > 400 && 20 * close > 19 * pairs, "{close} of {pairs} pairs within 1e-13");
 }
 
-/// Ten thousand steps: a minute of processor time.
+/// Ten thousand steps: twenty minutes of processor time in a development build.
 #[test]
 #[ignore = "long"]
 fn it_moves_as_the_row_does_for_long() {
     let [pairs, close] = same(10_000);
-    println!("{close} of {pairs} pairs within 1e-13");
+    assert!(pairs > 400 && close == pairs, "{close} of {pairs} pairs within 1e-13");
 }
 
 /// Where a text gives no basis the methods move in a derived one, and keep their orders, the energy and the constraint.
