@@ -10,6 +10,9 @@ mod events;
 #[path = "cli_text/analyses.rs"]
 mod analyses;
 
+#[path = "cli_text/bodies.rs"]
+mod bodies;
+
 #[path = "cli_text/trains.rs"]
 mod trains;
 

@@ -155,15 +155,18 @@ pub fn methods() -> Vec<String> {
 }
 
 /// The names of the bundled scenes of systems of text.
-pub const TEXTS: [&str; 9] = [
+pub const TEXTS: [&str; 12] = [
     "knife-edge",
     "rolling-disk",
     "falling-disk",
     "snakeboard",
     "roller-racer",
     "two-wheeled-robot",
+    "wheelchair",
     "car-and-trailer",
     "chaplygin-ball",
+    "ball-on-turntable",
+    "ball-in-bowl",
     "bicycle",
 ];
 

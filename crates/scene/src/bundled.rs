@@ -51,8 +51,11 @@ pub fn bundled_texts() -> &'static [Bundled] {
         "snakeboard",
         "roller-racer",
         "two-wheeled-robot",
+        "wheelchair",
         "car-and-trailer",
         "chaplygin-ball",
+        "ball-on-turntable",
+        "ball-in-bowl",
         "bicycle",
     ]
 }
