@@ -60,7 +60,7 @@ fn scene_text(name: &str) -> String {
 fn every_scene_has_its_page_and_its_picture() {
     let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
     let index = std::fs::read_to_string(docs.join("gallery/README.md")).unwrap();
-    for scene in SCENES {
+    for scene in SCENES.into_iter().chain(TEXTS) {
         assert!(index.contains(&format!("({scene}.md)")), "{scene}");
         let page = std::fs::read_to_string(docs.join(format!("gallery/{scene}.md"))).unwrap();
         assert!(page.contains(&format!("noslip compare {scene} ")), "{scene}");
