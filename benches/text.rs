@@ -2,6 +2,8 @@
 //!
 //! Each row is a bundled scene, its start and its duration. First the time of the compiled system to an error at the end, by the cheapest
 //! of the methods; then how many times as long the tape takes for the same steps, or tolerances, by each method: the geometric mean.
+//!
+//! `--points SCENE DURATION METHODS` prints the points of the compiled system of one scene instead, for the race with other programs.
 
 #![allow(missing_docs, dead_code, clippy::unwrap_used, clippy::expect_used)]
 
@@ -9,10 +11,13 @@
 mod systems;
 
 use harness::precision::{LEVELS, PrecisionPoint};
+use models::QuarticOscillator;
 use noslip::prelude::{Piecewise, System};
 use noslip::{PrecisionError, WorkPrecision};
 use scene::{AnyScene, Built, Visitor};
 use std::array::from_fn;
+use std::ffi::OsStr;
+use std::path::Path;
 
 const METHODS: [&str; 5] = ["gauss-adaptive", "gauss16", "gauss8", "dla", "rk4-reduced"];
 /// The longest run of a ladder (s).
@@ -43,8 +48,7 @@ fn ratio(tape: &[PrecisionPoint], compiled: &[PrecisionPoint]) -> Option<f64> {
 
 /// Measures a system in both forms, and prints its row.
 fn row<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(name: &str, system: &Sys) {
-    let known: Vec<&str> = harness::METHODS.iter().map(|info| info.name).collect();
-    let scene = AnyScene::load(name, &known).expect("a bundled scene");
+    let scene = load(name);
     let duration = scene.run().duration;
     let (tape, q, v) = scene.visit(Tape(duration)).expect("a system");
     // A shape with more coordinates than the system has them first.
@@ -70,7 +74,76 @@ fn row<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(name: &str
     println!();
 }
 
+/// Tells the start of a scene.
+struct Start;
+
+impl Visitor for Start {
+    type Output = (Vec<f64>, Vec<f64>);
+
+    fn visit<const N: usize, const M: usize>(self, _: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
+        (q.to_vec(), v.to_vec())
+    }
+}
+
+/// Measures the compiled system from the start of a scene, and prints its points as `noslip precision --json` does.
+fn points<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(race: &Race, system: &Sys) {
+    let (q, v) = load(&race.scene).visit(Start).expect("a system");
+    let start = (from_fn(|i| q[i]), from_fn(|i| v[i]));
+    let methods: Vec<&str> = race.methods.iter().map(String::as_str).collect();
+    let measured = noslip::precision(system, &methods, start, race.duration, LONGEST).expect("a reference");
+    let point = |point: &PrecisionPoint| {
+        let [error, seconds] = point.measured()?;
+        Some(format!(r#"{{"method": "{}", "error": {error:e}, "cpu_seconds": {seconds:e}}}"#, point.method))
+    };
+    let points: Vec<String> = measured.curves.iter().flat_map(|curve| curve.points.iter().filter_map(point)).collect();
+    println!("{{\"points\": [{}]}}", points.join(", "));
+}
+
+fn load(scene: &str) -> AnyScene {
+    let known: Vec<&str> = harness::METHODS.iter().map(|info| info.name).collect();
+    AnyScene::load(scene, &known).expect("a scene")
+}
+
+/// What the race with other programs asks for: `--points SCENE DURATION METHODS`.
+struct Race {
+    scene: String,
+    duration: f64,
+    methods: Vec<String>,
+}
+
+impl Race {
+    fn asked() -> Option<Self> {
+        let mut words = std::env::args().skip_while(|word| word != "--points").skip(1);
+        let scene = words.next()?;
+        let duration = words.next()?.parse().expect("a duration (s)");
+        let methods = words.next()?.split(',').map(str::to_owned).collect();
+        Some(Self { scene, duration, methods })
+    }
+
+    /// The name of the scene, without its folder.
+    fn name(&self) -> &str {
+        Path::new(&self.scene).file_stem().and_then(OsStr::to_str).unwrap_or(&self.scene)
+    }
+}
+
 fn main() {
+    if let Some(race) = Race::asked() {
+        match race.name() {
+            "knife-edge" => points(&race, &systems::KnifeEdge::default()),
+            "rolling-disk" => points(&race, &systems::RollingDisk::default()),
+            "roller-racer" => points(&race, &systems::RollerRacer::default()),
+            "snakeboard" => points(&race, &systems::Snakeboard::default()),
+            "chaplygin-ball" => points(&race, &systems::ChaplyginBall::default()),
+            "quartic-oscillator" => points(&race, &QuarticOscillator::new(1.0).expect("a coupling")),
+            "two-wheeled-robot" => points(&race, &systems::Robot::default()),
+            "car-and-trailer" => points(&race, &systems::Car::default()),
+            "falling-disk" => points(&race, &systems::FallingDisk::default()),
+            "two-sleighs" => points(&race, &systems::TwoSleighs::default()),
+            "ball-in-bowl" => points(&race, &systems::BallInBowl::default()),
+            other => unreachable!("no system `{other}` is compiled here"),
+        }
+        return;
+    }
     let of = LEVELS.map(|error| format!(" us to {error:e} |")).concat();
     println!("| scene |{of} {} |", METHODS.map(|method| format!("tape / compiled, {method}")).join(" | "));
     println!("|---{}|", "|---".repeat(LEVELS.len() + METHODS.len()));

@@ -134,3 +134,43 @@ noslip::system! {
         + J/2*(theta'^2 + (phi'*cos(theta))^2) + I/2*turn^2 - m*g*r*cos(theta)"
     constraints = ["x' + r*psi'*cos(phi)", "y' + r*psi'*sin(phi)"]
 }
+
+noslip::system! {
+    pub(crate) struct TwoSleighs;
+    coordinates = { x = "m", y = "m", theta = "angle", x2 = "m", y2 = "m", theta2 = "angle" }
+    parameters = { m = 1.0, I = 0.3, a = 0.2, m2 = 0.7, I2 = 0.2, a2 = 0.1, L = 0.4, L2 = 0.5 }
+    let = { c = "cos(theta)", s = "sin(theta)", c2 = "cos(theta2)", s2 = "sin(theta2)" }
+    lagrangian = "m/2*((x' - a*theta'*s)^2 + (y' + a*theta'*c)^2) + I/2*theta'^2
+        + m2/2*((x2' - a2*theta2'*s2)^2 + (y2' + a2*theta2'*c2)^2) + I2/2*theta2'^2"
+    constraints = ["y'*c - x'*s", "y2'*c2 - x2'*s2"]
+    positions = ["x - L*c - x2 - L2*c2", "y - L*s - y2 - L2*s2"]
+    basis = [
+        ["c", "s", "0", "cos(theta - theta2)*c2", "cos(theta - theta2)*s2", "sin(theta - theta2)/L2"],
+        ["0", "0", "1", "L*sin(theta - theta2)*c2", "L*sin(theta - theta2)*s2", "-L*cos(theta - theta2)/L2"],
+    ]
+}
+
+noslip::system! {
+    pub(crate) struct BallInBowl;
+    coordinates = { x = "m", y = "m", e0 = "", e1 = "", e2 = "", e3 = "" }
+    parameters = { m = 1.0, a = 0.1, I = 0.004, k = 0.8, g = 9.81, Omega = 0.6 }
+    let = {
+        square = "e0^2 + e1^2 + e2^2 + e3^2",
+        n3 = "1/sqrt(1 + k^2*(x^2 + y^2))",
+        n1 = "-k*x*n3",
+        n2 = "-k*y*n3",
+        px = "x - a*n1",
+        py = "y - a*n2",
+        w1 = "2*(e0*e1' - e1*e0' + e2*e3' - e3*e2')",
+        w2 = "2*(e0*e2' - e2*e0' + e3*e1' - e1*e3')",
+        w3 = "2*(e0*e3' - e3*e0' + e1*e2' - e2*e1')",
+    }
+    lagrangian = "m/2*(x'^2 + y'^2 + (k*(x*x' + y*y'))^2) + 2*I*(e0'^2 + e1'^2 + e2'^2 + e3'^2) - m*g*k/2*(x^2 + y^2)"
+    constraints = ["x' - a*(w2*n3 - w3*n2) + Omega*py", "y' - a*(w3*n1 - w1*n3) - Omega*px"]
+    positions = ["(e0^2 + e1^2 + e2^2 + e3^2 - 1)/2"]
+    basis = [
+        ["0", "-a*n3*square", "-e1/2", "e0/2", "-e3/2", "e2/2"],
+        ["a*n3*square", "0", "-e2/2", "e3/2", "e0/2", "-e1/2"],
+        ["-a*n2*square", "a*n1*square", "-e3/2", "-e2/2", "e1/2", "e0/2"],
+    ]
+}

@@ -56,7 +56,7 @@ def read(name, duration):
         return sleigh_text.read(name, duration)
 
 
-def against(name, problem, options):
+def against(name, problem, options, bench):
     """The rows of the race for one scene: the peers that integrate it are made ready once."""
     if isinstance(problem, text.TextProblem):
         exact, lines, size = text.reference(problem).end, text.lines(problem), text.distance
@@ -76,7 +76,7 @@ def against(name, problem, options):
         return ladders
 
     say(f"{name}: {problem.duration:g} s")
-    return race.row(name, problem, theirs, options.ours)
+    return race.row(name, problem, theirs, options.ours, bench)
 
 
 def wanted(method, options):
@@ -162,6 +162,7 @@ def main():
     parser.add_argument("--limit", type=float, default=5.0, help="a ladder ends with the first run longer than this (s)")
     parser.add_argument("--budget", type=float, default=0.2, help="what is spent on repeating a run (s)")
     parser.add_argument("--race", action="store_true", help="noslip beside the best peer on each scene, systems of text too")
+    parser.add_argument("--compiled", action="store_true", help="of noslip the systems that system! compiles into the bench `text` (--race)")
     parser.add_argument("--ours", type=lambda s: s.split(","), help="of noslip only these methods (--race)")
     parser.add_argument("--energy", action="store_true", help="energy and slip of long runs in a bowl, against their time")
     parser.add_argument("--self-test", action="store_true", help="all peers against closed forms, loosely")
@@ -174,10 +175,11 @@ def main():
         if options.duration is not None and not options.duration > 0.0:
             raise scene.Refused("--duration must be positive")
         if options.race:
+            bench = race.build() if options.compiled else None
             print("\n".join(race.HEAD), flush=True)
             for name in options.scenes:
                 try:
-                    rows = against(name, read(name, options.duration), options)
+                    rows = against(name, read(name, options.duration), options, bench)
                 except (scene.Refused, RuntimeError) as refused:
                     rows = [f"| {name} | - | - | - | {refused} |"]
                 print("\n".join(rows), flush=True)

@@ -15,12 +15,29 @@ NOT_OURS = {"dop853", "rk4", "rk4-projected", "rk4-reduced", "implicit-midpoint"
 ROUNDS = 3
 
 
+# What is raced where the system is compiled and nobody names a method; `dop853` is a peer on the same equations.
+COMPILED = ("gauss-adaptive", "gauss16", "dla8", "dla")
+PEER = "dop853"
+
+
 def own(scene, duration, methods):
-    """Seconds to each error, of the best method of noslip, with its name."""
+    """The points of noslip, by method, of a system as the program has it."""
+    command = [text.program(), "precision", scene, "--duration", repr(duration), "--json"]
+    if methods:
+        command += ["--methods", ",".join(methods)]
+    return {name: points for name, points in measured(command).items() if name not in NOT_OURS}
+
+
+def compiled(bench, scene, duration, methods):
+    """The points of noslip, by method, of the system that `system!` compiled into the bench, and those of DOP853 on the same equations."""
+    ladders = measured([bench, "--points", scene, repr(duration), ",".join([*(methods or COMPILED), PEER])])
+    peers = {f"differential-equations {PEER}": ladders.pop(PEER)} if PEER in ladders else {}
+    return ladders, peers
+
+
+def measured(command):
+    """The points that a command prints, by method."""
     with tempfile.TemporaryDirectory() as folder:
-        command = [text.program(), "precision", scene, "--duration", repr(duration), "--json"]
-        if methods:
-            command += ["--methods", ",".join(methods)]
         done = subprocess.run(command, capture_output=True, text=True, cwd=folder, check=False)
     try:
         points = json.loads(done.stdout)["points"]
@@ -29,9 +46,17 @@ def own(scene, duration, methods):
     ladders = {}
     for point in points:
         # A run that failed has no error.
-        if point["method"] not in NOT_OURS and point["error"] is not None:
+        if point["error"] is not None:
             ladders.setdefault(point["method"], []).append(point)
-    return best(ladders)
+    return ladders
+
+
+def build():
+    """The bench whose systems `system!` compiles."""
+    command = ["cargo", "bench", "--quiet", "--package", "noslip", "--bench", "text", "--no-run", "--message-format", "json"]
+    done = subprocess.run(command, stdout=subprocess.PIPE, text=True, cwd=text.ROOT, check=True)
+    told = [json.loads(line) for line in done.stdout.splitlines()]
+    return next(found["executable"] for found in told if found.get("target", {}).get("name") == "text" and found.get("executable"))
 
 
 def best(ladders):
@@ -43,13 +68,19 @@ def best(ladders):
     return found
 
 
-def row(name, problem, theirs, methods):
-    """The lines of the table for a scene. `theirs()` measures the peers once."""
+def row(name, problem, theirs, methods, bench=None):
+    """The lines of the table for a scene. `theirs()` measures the peers once. `bench` has the system compiled by `system!`."""
     pairs = []
-    for turn in range(ROUNDS):
+    for _ in range(ROUNDS):
+        if bench:
+            # In a folder of its own the bench finds a file by its whole path only.
+            scene = str(Path(name).resolve()) if Path(name).is_file() else name
+            ladders, beside = compiled(bench, scene, problem.duration, methods)
+        else:
+            ladders, beside = own(name, problem.duration, methods), {}
+        ours = best(ladders)
+        pairs.append((ours, best({**theirs(), **beside})))
         # The methods that came nearest to the front in the first round are enough for the others.
-        ours = own(name, problem.duration, methods)
-        pairs.append((ours, best(theirs())))
         methods = sorted({pair[1] for pair in ours if pair}) or methods
     lines = []
     for k, target in enumerate(TARGETS):

@@ -2,7 +2,7 @@ use crate::convergence::{most_roundings, parted, without_reaction};
 use crate::dependent::{independent_rows, rows_left_out};
 use crate::{Equations, Mechanics, Newton, NewtonError, Stage, StepError};
 use lagrangian::linear::{Singular, largest, normal_solve};
-use lagrangian::{AdmissibleBasis, FactoredSaddle, Rounded, Rows, Saddle, from_fn};
+use lagrangian::{AdmissibleBasis, FactoredSaddle, Rounded, Rows, Saddle, from_fn, mapped};
 
 /// The equations for the velocity at the end of a step, with the multiplier there:
 /// `L_v(q1, v1) = p1 + A(q1)' mu`, `A(q1) v1 + b(q1) = 0`. Of a constraint `phi = 0` that is not affine, `A` is `phi_v(q1, v1)`.
@@ -132,7 +132,7 @@ impl<const N: usize, const M: usize> Equations<N> for Projection<'_, N, M> {
     #[inline(never)]
     fn roundings(&self, v1: &[f64; N]) -> Option<f64> {
         let Self { system, t1, q1, p1, some, .. } = *self;
-        let (t, q, v) = (Rounded::exact(t1), q1.map(Rounded::exact), v1.map(Rounded::once));
+        let (t, q, v) = (Rounded::exact(t1), mapped(&q1, Rounded::exact), mapped(&v1, Rounded::once));
         let p = system.momentum_rounded(t, &q, &v);
         let left = without_reaction(&system.reaction_rows(t1, &q1, v1), from_fn(|i| p[i] + -p1[i]));
         let slip = system.residual_rounded(t, &q, &v);

@@ -1,6 +1,6 @@
 //! The reduced equations of any system, by derivatives along its basis alone.
 
-use crate::{AdmissibleBasis, Dual, HyperDual, Scalar, System, from_fn, velocity_of};
+use crate::{AdmissibleBasis, Dual, HyperDual, Scalar, System, from_fn, mapped, velocity_of};
 
 /// A pivot below this, relative to its entry, counts as none.
 const DEGENERATE: f64 = 1e-13;
@@ -47,7 +47,7 @@ fn along<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize, const K: 
         #[inline(always)]
         |i| Dual { re: q[i], eps: [v[i]] },
     );
-    let turning = velocity_of(system, Dual { re: t, eps: [one] }, &moving, &xi.map(Dual::fixed)).ok()?;
+    let turning = velocity_of(system, Dual { re: t, eps: [one] }, &moving, &mapped(&xi, Dual::fixed)).ok()?;
     // Along the vectors of the basis, and along these and, behind them, the motion at frozen xi.
     let last = |b: usize, x: S| if b == K { x } else { zero };
     let time = HyperDual { re: t, e1: [zero; K], e2: from_fn(|b| last(b, one)), e12: [[zero; E]; K] };
@@ -67,7 +67,7 @@ fn along<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize, const K: 
         #[inline(always)]
         |i| Dual { re: q[i], eps: from_fn(|a| w[a][i]) },
     );
-    let slopes = system.lagrangian(Dual::fixed(t), &place, &v.map(Dual::fixed)).eps;
+    let slopes = system.lagrangian(Dual::fixed(t), &place, &mapped(&v, Dual::fixed)).eps;
     let force = system.force(t, q, &v);
     let mut right: [S; K] = from_fn(|a| slopes[a] - second[a][K]);
     if let Some(force) = force {

@@ -1,5 +1,5 @@
 use crate::reduced::shortest;
-use crate::{AdmissibleBasis, Constraint, Dual, HyperDual, Parametrised, Scalar, from_fn};
+use crate::{AdmissibleBasis, Constraint, Dual, HyperDual, Parametrised, Scalar, from_fn, mapped};
 
 /// A number with its derivatives in eight directions.
 pub type Seeded = Dual<f64, 8>;
@@ -56,7 +56,7 @@ impl<const N: usize, const M: usize> dyn Gradients<N, M> + '_ {
     /// `A` and `b` of the constraint.
     #[must_use]
     pub fn constraint(&self, t: Seeded, q: &[Seeded; N]) -> Constraint<Seeded, N, M> {
-        let (a, b) = self.constraint_along(Dual::fixed(t), &q.map(Dual::fixed));
+        let (a, b) = self.constraint_along(Dual::fixed(t), &mapped(&q, Dual::fixed));
         (a.map(|row| row.map(|x| x.re)), b.map(|x| x.re))
     }
 
@@ -103,7 +103,7 @@ impl<const N: usize, const M: usize> dyn Gradients<N, M> + '_ {
     /// The basis of admissible velocities.
     #[must_use]
     pub fn basis(&self, t: Seeded, q: &[Seeded; N]) -> Option<AdmissibleBasis<Seeded, N, M>> {
-        let basis = self.basis_along(Dual::fixed(t), &q.map(Dual::fixed))?;
+        let basis = self.basis_along(Dual::fixed(t), &mapped(&q, Dual::fixed))?;
         Some(AdmissibleBasis::from_fn(|a| basis.vectors()[a].map(|w| w.re)))
     }
 
@@ -111,7 +111,7 @@ impl<const N: usize, const M: usize> dyn Gradients<N, M> + '_ {
     /// direction of `t` and `q`.
     #[must_use]
     pub fn velocity_along(&self, t: Along, q: &[Along; N], xi: &[Seeded; N]) -> Option<[Along; N]> {
-        let v = self.basis_along(t, q)?.combine(&xi.map(Dual::fixed));
+        let v = self.basis_along(t, q)?.combine(&mapped(&xi, Dual::fixed));
         let (a, b) = self.constraint_along(t, q);
         Some(match shortest(&a, &b) {
             Some(shift) => from_fn(|i| v[i] + shift[i]),
@@ -139,7 +139,7 @@ impl<const N: usize, const M: usize> dyn Gradients<N, M> + '_ {
     /// The velocity `W xi + v_b` of quasi-velocities.
     #[must_use]
     pub fn velocity(&self, t: Seeded, q: &[Seeded; N], xi: &[Seeded; N]) -> Option<[Seeded; N]> {
-        Some(self.velocity_along(Dual::fixed(t), &q.map(Dual::fixed), xi)?.map(|v| v.re))
+        Some(self.velocity_along(Dual::fixed(t), &mapped(&q, Dual::fixed), xi)?.map(|v| v.re))
     }
 }
 
@@ -154,11 +154,11 @@ pub struct SeededMember<F, const P: usize> {
 
 impl<F: Parametrised<N, M, P>, const N: usize, const M: usize, const P: usize> Gradients<N, M> for SeededMember<F, P> {
     fn lagrangian(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> Seeded {
-        self.first_order(t, &q.map(Dual::fixed), &v.map(Dual::fixed)).re
+        self.first_order(t, &mapped(&q, Dual::fixed), &mapped(&v, Dual::fixed)).re
     }
 
     fn momentum(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> [Seeded; N] {
-        self.first_order(t, &q.map(Dual::fixed), &Dual::variables(v)).eps
+        self.first_order(t, &mapped(&q, Dual::fixed), &Dual::variables(v)).eps
     }
 
     fn momentum_rate(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N], a: &[Seeded; N]) -> [Seeded; N] {
@@ -167,12 +167,12 @@ impl<F: Parametrised<N, M, P>, const N: usize, const M: usize, const P: usize> G
         let along_q: [HyperDual<Seeded, N, 1>; N] = from_fn(|i| HyperDual::linear(q[i], [zero; N], [v[i]]));
         let in_v =
             from_fn(|i| HyperDual::linear(v[i], from_fn(|k| Seeded::constant(f64::from(u8::from(k == i)))), [a[i]]));
-        let p = self.parameters.map(HyperDual::fixed);
+        let p = mapped(&self.parameters, HyperDual::fixed);
         self.family.lagrangian(&p, along_t, &along_q, &in_v).e12.map(|[rate]| rate)
     }
 
     fn slope(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> [Seeded; N] {
-        self.first_order(t, &Dual::variables(q), &v.map(Dual::fixed)).eps
+        self.first_order(t, &Dual::variables(q), &mapped(&v, Dual::fixed)).eps
     }
 
     fn force(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> Option<[Seeded; N]> {
@@ -180,11 +180,11 @@ impl<F: Parametrised<N, M, P>, const N: usize, const M: usize, const P: usize> G
     }
 
     fn constraint_along(&self, t: Along, q: &[Along; N]) -> Constraint<Along, N, M> {
-        self.family.constraint(&self.parameters.map(Dual::fixed), t, q)
+        self.family.constraint(&mapped(&self.parameters, Dual::fixed), t, q)
     }
 
     fn basis_along(&self, t: Along, q: &[Along; N]) -> Option<AdmissibleBasis<Along, N, M>> {
-        self.family.admissible_basis(&self.parameters.map(Dual::fixed), t, q)
+        self.family.admissible_basis(&mapped(&self.parameters, Dual::fixed), t, q)
     }
 
     fn holonomic(&self, t: Seeded, q: &[Seeded; N]) -> Option<[Option<Seeded>; M]> {
@@ -192,8 +192,8 @@ impl<F: Parametrised<N, M, P>, const N: usize, const M: usize, const P: usize> G
     }
 
     fn nonlinear(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> Option<[Option<Dual<Seeded, N>>; M]> {
-        let (t, q) = (Dual::fixed(t), q.map(Dual::fixed));
-        self.family.nonlinear(&self.parameters.map(Dual::fixed), t, &q, &Dual::variables(v))
+        let (t, q) = (Dual::fixed(t), mapped(&q, Dual::fixed));
+        self.family.nonlinear(&mapped(&self.parameters, Dual::fixed), t, &q, &Dual::variables(v))
     }
 }
 
@@ -211,6 +211,6 @@ impl<F, const P: usize> SeededMember<F, P> {
     where
         F: Parametrised<N, M, P>,
     {
-        self.family.lagrangian(&self.parameters.map(Dual::fixed), Dual::fixed(t), q, v)
+        self.family.lagrangian(&mapped(&self.parameters, Dual::fixed), Dual::fixed(t), q, v)
     }
 }

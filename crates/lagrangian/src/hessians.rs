@@ -1,5 +1,5 @@
 use crate::second::{TwiceDifferentiable, second_derivatives, seed};
-use crate::{HyperDual, Scalar, System, from_fn};
+use crate::{HyperDual, Scalar, System, from_fn, mapped};
 
 /// The Lagrangian at a state, as a function of the coordinates or the velocities.
 struct At<'a, Sys, S, const N: usize, const M: usize> {
@@ -87,7 +87,7 @@ impl<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize> TwiceDifferen
         let At { system, t, q, v } = self.0;
         let one = S::constant(1.0);
         let in_v: [_; N] = from_fn(|i| HyperDual::linear(v[i], seed(one, i, first), seed(one, i, second)));
-        system.lagrangian(HyperDual::fixed(t), &q.map(HyperDual::fixed), &in_v)
+        system.lagrangian(HyperDual::fixed(t), &mapped(&q, HyperDual::fixed), &in_v)
     }
 }
 
@@ -101,7 +101,7 @@ impl<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize> TwiceDifferen
         let At { system, t, q, v } = self.0;
         let one = S::constant(1.0);
         let in_q: [_; N] = from_fn(|i| HyperDual::linear(q[i], seed(one, i, first), seed(one, i, second)));
-        system.lagrangian(HyperDual::fixed(t), &in_q, &v.map(HyperDual::fixed))
+        system.lagrangian(HyperDual::fixed(t), &in_q, &mapped(&v, HyperDual::fixed))
     }
 }
 

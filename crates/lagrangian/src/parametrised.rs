@@ -1,4 +1,4 @@
-use crate::{AdmissibleBasis, Constraint, Scalar, System};
+use crate::{AdmissibleBasis, Constraint, Scalar, System, mapped};
 
 /// A family of mechanical systems with `N` coordinates, `M` velocity constraints and `P` parameters.
 ///
@@ -75,27 +75,27 @@ pub struct Member<F, const P: usize> {
 impl<F: Parametrised<N, M, P>, const N: usize, const M: usize, const P: usize> System<N, M> for Member<F, P> {
     #[inline(always)]
     fn lagrangian<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> S {
-        self.family.lagrangian(&self.parameters.map(S::constant), t, q, v)
+        self.family.lagrangian(&mapped(&self.parameters, S::constant), t, q, v)
     }
     #[inline(always)]
     fn constraint<S: Scalar>(&self, t: S, q: &[S; N]) -> Constraint<S, N, M> {
-        self.family.constraint(&self.parameters.map(S::constant), t, q)
+        self.family.constraint(&mapped(&self.parameters, S::constant), t, q)
     }
     #[inline(always)]
     fn force<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[S; N]> {
-        self.family.force(&self.parameters.map(S::constant), t, q, v)
+        self.family.force(&mapped(&self.parameters, S::constant), t, q, v)
     }
     #[inline(always)]
     fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; N]) -> Option<AdmissibleBasis<S, N, M>> {
-        self.family.admissible_basis(&self.parameters.map(S::constant), t, q)
+        self.family.admissible_basis(&mapped(&self.parameters, S::constant), t, q)
     }
     #[inline(always)]
     fn holonomic<S: Scalar>(&self, t: S, q: &[S; N]) -> Option<[Option<S>; M]> {
-        self.family.holonomic(&self.parameters.map(S::constant), t, q)
+        self.family.holonomic(&mapped(&self.parameters, S::constant), t, q)
     }
     #[inline(always)]
     fn nonlinear<S: Scalar>(&self, t: S, q: &[S; N], v: &[S; N]) -> Option<[Option<S>; M]> {
-        self.family.nonlinear(&self.parameters.map(S::constant), t, q, v)
+        self.family.nonlinear(&mapped(&self.parameters, S::constant), t, q, v)
     }
     #[inline(always)]
     fn angles(&self) -> [bool; N] {

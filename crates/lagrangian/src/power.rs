@@ -1,4 +1,4 @@
-use crate::{Dual, Scalar, System, Traced};
+use crate::{Dual, Scalar, System, Traced, mapped};
 
 /// What may do work on a system: each of these where no evaluation can tell that it does none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,5 +42,5 @@ where
     Sys: System<N, M>,
 {
     let time = Dual { re: t, eps: [1.0] };
-    -system.lagrangian(time, &q.map(Dual::fixed), &v.map(Dual::fixed)).eps[0]
+    -system.lagrangian(time, &mapped(&q, Dual::fixed), &mapped(&v, Dual::fixed)).eps[0]
 }

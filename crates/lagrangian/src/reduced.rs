@@ -1,5 +1,7 @@
 use crate::linear::{Lu, Singular};
-use crate::{AdmissibleBasis, Dual, Motion, MotionError, Reduced as _, Scalar, System, acceleration_along, from_fn};
+use crate::{
+    AdmissibleBasis, Dual, Motion, MotionError, Reduced as _, Scalar, System, acceleration_along, from_fn, mapped,
+};
 use thiserror::Error;
 
 /// Why there are no reduced equations.
@@ -129,7 +131,7 @@ pub fn reduced_acceleration<Sys: System<N, M>, const N: usize, const M: usize>(
     let v = velocity_of(system, t, q, xi)?;
     let Motion { acceleration, .. } = Motion::of(system, t, q, &v)?;
     let along: [Dual<f64, 1>; N] = from_fn(|i| Dual { re: q[i], eps: [v[i]] });
-    let turning = velocity_of(system, Dual { re: t, eps: [1.0] }, &along, &xi.map(Dual::fixed))?;
+    let turning = velocity_of(system, Dual { re: t, eps: [1.0] }, &along, &mapped(&xi, Dual::fixed))?;
     let rest = from_fn(|i| acceleration[i] - turning[i].eps[0]);
     split(system, t, q, &rest, &basis)
 }

@@ -1,6 +1,6 @@
 use crate::{
     AdmissibleBasis, Dual, Motion, MotionError, Reduced, Rounded, Saddle, System, configuration_slope, from_fn,
-    inverse_reduced_mass, mass_matrix, reaction_rows, redundant_rows, velocity_of, velocity_slope,
+    inverse_reduced_mass, mapped, mass_matrix, reaction_rows, redundant_rows, velocity_of, velocity_slope,
 };
 
 /// The unit of rounding.
@@ -34,13 +34,13 @@ impl<const N: usize> MotionRounding<N> {
         v: &[f64; N],
     ) -> Result<Self, MotionError> {
         let Motion { multiplier, .. } = Motion::of(system, t, q, v)?;
-        let (place, velocity) = (q.map(Rounded::once), v.map(Rounded::once));
+        let (place, velocity) = (mapped(&q, Rounded::once), mapped(&v, Rounded::once));
         let slope = configuration_slope(system, Rounded::exact(t), &place, &velocity);
         let pushed = system.force(Rounded::exact(t), &place, &velocity);
         // Along the motion at constant velocity.
         let along: [Dual<Rounded, 1>; N] = from_fn(|i| Dual { re: place[i], eps: [velocity[i]] });
         let time = Dual { re: Rounded::exact(t), eps: [Rounded::exact(1.0)] };
-        let carried = velocity_slope(system, time, &along, &velocity.map(Dual::fixed));
+        let carried = velocity_slope(system, time, &along, &mapped(&velocity, Dual::fixed));
         let a = reaction_rows(system, t, q, v);
         let force = from_fn(|i| {
             let reaction: f64 = (0..M).map(|k| (a[k][i] * multiplier[k]).abs()).sum();
@@ -100,7 +100,7 @@ pub fn reduced_rounding<Sys: System<N, M>, const N: usize, const M: usize>(
     xi: &[f64; N],
     h: f64,
 ) -> Option<[[f64; N]; 2]> {
-    let (time, place, quasi) = (Rounded::exact(t), q.map(Rounded::once), xi.map(Rounded::once));
+    let (time, place, quasi) = (Rounded::exact(t), mapped(&q, Rounded::once), mapped(&xi, Rounded::once));
     let basis = system.admissible_basis(t, q)?;
     let acceleration = match system.reduced().reduced_motion(time, &place, &quasi) {
         Some(by_hand) => by_hand.map(|x| UNIT * x.size),

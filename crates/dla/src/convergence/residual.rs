@@ -69,7 +69,7 @@ mod tests {
         let rows = [[1.0, 2.0, 0.5, 0.0], [2.0, 4.0, 1.0, 0.0], [0.0; 4], [0.3, -1.0, 2.0, 1e3]];
         // A' (1, 0, 0, 2), and a hundred times its round-off across it.
         let reaction: [f64; 4] = from_fn(|i| rows[0][i] + 2.0 * rows[3][i]);
-        let left = without_reaction(&rows, reaction.map(Rounded::once));
+        let left = without_reaction(&rows, mapped(&reaction, Rounded::once));
         assert!(most_roundings(left) <= 1.0, "{left:?}");
         let across = [2.0, -1.0, 0.0, 1.6e-3].map(|x: f64| 1e-10 * x);
         let left = without_reaction(&rows, from_fn(|i| Rounded::once(reaction[i] + across[i])));

@@ -1,6 +1,6 @@
 use super::rule::{EnergyRule, Weights};
 use super::start::EnergyStart;
-use lagrangian::{Lanes, Scalar, from_fn};
+use lagrangian::{Lanes, Scalar, from_fn, mapped};
 
 /// The path of a step, a polynomial in the coordinates and the quasi-momenta: its derivatives at the collocation nodes,
 /// one in each of the first lanes.
@@ -40,7 +40,7 @@ impl<const N: usize> PathPoints<N> {
     /// All at the start of the step.
     #[inline(always)]
     pub(super) fn at(start: &EnergyStart<N>) -> Self {
-        let same = |x: [f64; N]| x.map(Lanes::constant);
+        let same = |x: [f64; N]| mapped(&x, Lanes::constant);
         Self { q: same(*start.state.q()), xi: same(start.xi), gain: same(start.rest), pi: same(start.pi) }
     }
 

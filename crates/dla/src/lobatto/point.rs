@@ -1,5 +1,5 @@
 use crate::{Mechanics, SecondSlopes, Slopes};
-use lagrangian::{ConstraintSlopes, Rounded, from_fn};
+use lagrangian::{ConstraintSlopes, Rounded, from_fn, mapped};
 
 /// A configuration and a velocity at one time, with the impulse of the constraint there.
 #[derive(Debug, Clone, Copy)]
@@ -66,7 +66,7 @@ impl<const N: usize, const M: usize> StagePoint<N, M> {
     pub(super) fn terms(&self, system: &dyn Mechanics<N, M>, h: f64, way: &[f64; N]) -> Terms<N, M> {
         let t = Rounded::exact(self.t);
         let q: [Rounded; N] = from_fn(|i| Rounded { value: self.q[i], size: self.q[i].abs() + way[i] });
-        let v = self.v.map(Rounded::once);
+        let v = mapped(&self.v, Rounded::once);
         let l_q = system.slope_rounded(t, &q, &v);
         let force = system.force_rounded(t, &q, &v);
         let (a, b) = system.constraint_rounded(t, &q);

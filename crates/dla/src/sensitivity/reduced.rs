@@ -2,7 +2,7 @@ use super::Variation;
 use super::equations::dimension;
 use super::implicit::{Seeder, blocks, seeded, variable};
 use lagrangian::linear::Lu;
-use lagrangian::{Scalar, Seeded, from_fn};
+use lagrangian::{Scalar, Seeded, from_fn, mapped};
 
 /// A variation of a configuration and of its quasi-velocities.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,7 +87,7 @@ impl<const N: usize, const P: usize> BasisFrame<N, P> {
         let mut derivatives = vec![[0.0; N]; N + 1 + P];
         for block in 0..blocks(N + 1 + P) {
             let (model, time, place) = at(block);
-            let velocity = model.velocity(time, &place, &xi.map(Seeded::constant))?;
+            let velocity = model.velocity(time, &place, &mapped(&xi, Seeded::constant))?;
             for (k, column) in derivatives.iter_mut().skip(variable(block, 0)).take(8).enumerate() {
                 *column = velocity.map(|v| v.eps[k]);
             }
