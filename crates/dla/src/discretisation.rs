@@ -225,7 +225,7 @@ impl<const N: usize, const M: usize> Discretisation<N, M> for Rules {
         q0: &[f64; N],
         v: &[Rounded; N],
     ) -> RoundedStep<N, M> {
-        let (t0, h, q0) = (Rounded::exact(t0), Rounded::exact(h), mapped(&q0, Rounded::exact));
+        let (t0, h, q0) = (Rounded::exact(t0), Rounded::exact(h), mapped(q0, Rounded::exact));
         let zero = Rounded::exact(0.0);
         let (mut d1, mut minus, mut residual) = ([zero; N], Some([zero; N]), [zero; M]);
         for node in self.lagrangian.nodes() {
@@ -309,7 +309,7 @@ where
         let Self { system, lagrangian, .. } = self;
         let Derivatives { d1, d2, d1d2, .. } = lagrangian.derivatives(*system, t0, h, q0, v);
         let mut block = d1d2.map(|row| row.map(|x| h * x));
-        let (t, step, q, along) = (Dual::fixed(t0), Dual::fixed(h), mapped(&q0, Dual::fixed), Dual::variables(v));
+        let (t, step, q, along) = (Dual::fixed(t0), Dual::fixed(h), mapped(q0, Dual::fixed), Dual::variables(v));
         let forces: Option<([Dual<f64, N>; N], _)> = lagrangian.forces(*system, t, step, &q, &along);
         if let Some((minus, _)) = &forces {
             for i in 0..N {
@@ -355,7 +355,7 @@ where
         v: &[Rounded; N],
     ) -> RoundedStep<N, M> {
         let Self { system, lagrangian, constraint } = self;
-        let (t, step, q) = (Rounded::exact(t0), Rounded::exact(h), mapped(&q0, Rounded::exact));
+        let (t, step, q) = (Rounded::exact(t0), Rounded::exact(h), mapped(q0, Rounded::exact));
         let [d1, _] = lagrangian.slopes(*system, t, step, &q, v);
         let minus = lagrangian.forces(*system, t, step, &q, v).map(|(minus, _)| minus);
         RoundedStep { d1, minus, residual: constraint.residual(*system, t, step, &q, v) }

@@ -137,7 +137,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Equations<N> for G
     #[inline(never)]
     fn roundings(&self, v: &[f64; N]) -> Option<f64> {
         let Self { rules, system, t, h, q0, departing } = *self;
-        let RoundedStep { d1, minus, .. } = rules.rounded(system, (t, h), &q0, &mapped(&v, Rounded::once));
+        let RoundedStep { d1, minus, .. } = rules.rounded(system, (t, h), &q0, &mapped(v, Rounded::once));
         Some(most_roundings((0..N).map(|i| {
             let conservative = d1[i] + departing[i];
             minus.map_or(conservative, |minus| conservative + minus[i])

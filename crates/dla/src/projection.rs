@@ -132,7 +132,7 @@ impl<const N: usize, const M: usize> Equations<N> for Projection<'_, N, M> {
     #[inline(never)]
     fn roundings(&self, v1: &[f64; N]) -> Option<f64> {
         let Self { system, t1, q1, p1, some, .. } = *self;
-        let (t, q, v) = (Rounded::exact(t1), mapped(&q1, Rounded::exact), mapped(&v1, Rounded::once));
+        let (t, q, v) = (Rounded::exact(t1), mapped(&q1, Rounded::exact), mapped(v1, Rounded::once));
         let p = system.momentum_rounded(t, &q, &v);
         let left = without_reaction(&system.reaction_rows(t1, &q1, v1), from_fn(|i| p[i] + -p1[i]));
         let slip = system.residual_rounded(t, &q, &v);

@@ -31,7 +31,7 @@ impl Formulas {
         for of_basis in [Written::Expanded, Written::Plainly] {
             for written in [Written::Shorter, Written::Expanded, Written::Plainly] {
                 let Some(reduced) = self.reduced_as(of_basis, written) else { continue };
-                let all = [reduced.basis.concat(), reduced.acceleration.clone()].concat();
+                let all = [reduced.velocity.clone(), reduced.acceleration.clone()].concat();
                 let work = work(&self.graph, &all);
                 if best.as_ref().is_none_or(|(least, _)| work < *least) {
                     best = Some((work, reduced));
@@ -52,23 +52,33 @@ impl Formulas {
         self.reduced_along(basis, Written::Shorter)
     }
 
-    fn reduced_along(&mut self, basis: Vec<Vec<Expression>>, written: Written) -> Option<ReducedFormulas> {
-        let n = self.n;
-        let freedoms = basis.len();
-        let rates = self.rates();
-        let places: Vec<u32> = (0..n).map(|i| self.coordinate(i)).collect();
-        let shift = self.shift();
-        let graph = &mut self.graph;
+    /// The velocity `W xi + v_b` in a basis of the admissible velocities. None where it is too large.
+    pub fn velocity_in(&mut self, basis: &[Vec<Expression>]) -> Option<Vec<Expression>> {
+        let velocity = self.velocity(basis);
+        self.graph.check().ok()?;
+        Some(velocity)
+    }
 
-        // The velocity, of quasi-velocities that have the variables of rates.
-        let xi: Vec<Expression> = rates[..freedoms].iter().map(|&k| graph.variable(k)).collect();
-        let v: Vec<Expression> = (0..n)
+    /// The rates of the coordinates, of quasi-velocities that have the variables of rates.
+    fn velocity(&mut self, basis: &[Vec<Expression>]) -> Vec<Expression> {
+        let (rates, shift) = (self.rates(), self.shift());
+        let graph = &mut self.graph;
+        let xi: Vec<Expression> = rates[..basis.len()].iter().map(|&k| graph.variable(k)).collect();
+        let column = |i: usize| basis.iter().map(|w| w[i]).collect::<Vec<_>>();
+        (0..self.n)
             .map(|i| {
-                let column: Vec<Expression> = basis.iter().map(|w| w[i]).collect();
-                let along = dot(graph, &column, &xi);
+                let along = dot(graph, &column(i), &xi);
                 graph.sum(&[along, shift[i]])
             })
-            .collect();
+            .collect()
+    }
+
+    fn reduced_along(&mut self, basis: Vec<Vec<Expression>>, written: Written) -> Option<ReducedFormulas> {
+        let n = self.n;
+        let rates = self.rates();
+        let places: Vec<u32> = (0..n).map(|i| self.coordinate(i)).collect();
+        let v = self.velocity(&basis);
+        let graph = &mut self.graph;
         let at: Vec<(u32, Expression)> = rates.iter().copied().zip(v.iter().copied()).collect();
         let turning: Vec<Expression> = v.iter().map(|&v_i| rate(graph, v_i, &places, &v)).collect();
 

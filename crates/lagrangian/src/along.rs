@@ -47,7 +47,7 @@ fn along<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize, const K: 
         #[inline(always)]
         |i| Dual { re: q[i], eps: [v[i]] },
     );
-    let turning = velocity_of(system, Dual { re: t, eps: [one] }, &moving, &mapped(&xi, Dual::fixed)).ok()?;
+    let turning = velocity_of(system, Dual { re: t, eps: [one] }, &moving, &mapped(xi, Dual::fixed)).ok()?;
     // Along the vectors of the basis, and along these and, behind them, the motion at frozen xi.
     let last = |b: usize, x: S| if b == K { x } else { zero };
     let time = HyperDual { re: t, e1: [zero; K], e2: from_fn(|b| last(b, one)), e12: [[zero; E]; K] };

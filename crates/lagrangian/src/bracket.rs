@@ -64,7 +64,7 @@ impl<S: Scalar, const N: usize, const M: usize> Bracket<S, N, M> {
             basis.vectors_mut()[a] = w.map(|w| w.re);
         }
         let velocity = basis.combine(xi);
-        let l = system.lagrangian(Dual::fixed(t), &mapped(&q, Dual::fixed), &Dual::variables(&velocity));
+        let l = system.lagrangian(Dual::fixed(t), &mapped(q, Dual::fixed), &Dual::variables(&velocity));
         for (a, w) in frame.vectors().iter().enumerate() {
             for i in 0..N {
                 for j in 0..N {
@@ -86,7 +86,7 @@ impl<S: Scalar, const N: usize, const M: usize> Bracket<S, N, M> {
         let basis = system.admissible_basis(t, q)?;
         let mut along = [[S::zero(); N]; N];
         let velocity = basis.combine(xi);
-        let l = system.lagrangian(Dual::fixed(t), &mapped(&q, Dual::fixed), &Dual::variables(&velocity));
+        let l = system.lagrangian(Dual::fixed(t), &mapped(q, Dual::fixed), &Dual::variables(&velocity));
         for j in 0..N {
             let frame = system.admissible_basis(Dual::fixed(t), &along_one(q, j))?;
             for (a, w) in frame.vectors().iter().enumerate() {
@@ -179,7 +179,7 @@ where
     }
     let place: [Dual<S, N>; N] = Dual::variables(q);
     let frame = system.admissible_basis(Dual::fixed(t), &place)?;
-    let velocity = frame.combine(&mapped(&xi, Dual::fixed));
+    let velocity = frame.combine(&mapped(xi, Dual::fixed));
     let h_q = system.lagrangian(Dual::fixed(t), &place, &velocity).eps.map(|l_q| -l_q);
 
     // The derivatives in xi.
@@ -189,7 +189,7 @@ where
             moving[i].eps[a] = w[i].re;
         }
     }
-    let pi = system.lagrangian(Dual::fixed(t), &mapped(&q, Dual::fixed), &moving).eps;
+    let pi = system.lagrangian(Dual::fixed(t), &mapped(q, Dual::fixed), &moving).eps;
     Some(EnergySlope { h_q, pi })
 }
 
@@ -212,11 +212,11 @@ where
             moving[i].eps[a] = w[i];
         }
     }
-    let pi = system.lagrangian(Dual::fixed(t), &mapped(&q, Dual::fixed), &moving).eps;
+    let pi = system.lagrangian(Dual::fixed(t), &mapped(q, Dual::fixed), &moving).eps;
     let mut h_q = [S::zero(); N];
     for j in 0..N {
         let place = along_one(q, j);
-        let velocity = system.admissible_basis(Dual::fixed(t), &place)?.combine(&mapped(&xi, Dual::fixed));
+        let velocity = system.admissible_basis(Dual::fixed(t), &place)?.combine(&mapped(xi, Dual::fixed));
         h_q[j] = -system.lagrangian(Dual::fixed(t), &place, &velocity).eps[0];
     }
     Some(EnergySlope { h_q, pi })

@@ -115,7 +115,7 @@ pub fn rank_is_constant<Sys: System<N, M>, const N: usize, const M: usize>(
     v: &[f64; N],
     space: &RowSpace<N, M>,
 ) -> bool {
-    let (fixed_q, fixed_v): ([Dual<f64, 1>; N], _) = (mapped(&q, Dual::fixed), mapped(&v, Dual::fixed));
+    let (fixed_q, fixed_v): ([Dual<f64, 1>; N], _) = (mapped(q, Dual::fixed), mapped(v, Dual::fixed));
     let in_t = reaction_rows(system, Dual { re: t, eps: [1.0] }, &fixed_q, &fixed_v);
     stay_within(space, &in_t, 1)
         && match const { N <= AT_ONCE } {
@@ -136,7 +136,7 @@ fn rank_is_constant_along<Sys: System<N, M>, const N: usize, const M: usize, con
     from: usize,
 ) -> bool {
     let in_q: [Dual<f64, P>; N] = from_fn(|i| Dual { re: q[i], eps: seed(1.0, i, from) });
-    let rows = reaction_rows(system, Dual::fixed(t), &in_q, &mapped(&v, Dual::fixed));
+    let rows = reaction_rows(system, Dual::fixed(t), &in_q, &mapped(v, Dual::fixed));
     stay_within(space, &rows, P.min(N - from))
 }
 
@@ -199,7 +199,7 @@ fn kinds<Sys: System<N, M>, const N: usize, const M: usize>(
     let g = system.holonomic(t, q).unwrap_or([None; M]);
     let phi = system.nonlinear(t, q, v).unwrap_or([None; M]);
     let RowsInPlace { b, b_q, .. } = RowsInPlace::at(system, t, q);
-    let (_, later) = system.constraint(Dual { re: t, eps: [1.0] }, &mapped(&q, Dual::fixed));
+    let (_, later) = system.constraint(Dual { re: t, eps: [1.0] }, &mapped(q, Dual::fixed));
     from_fn(|k| match (phi[k], g[k]) {
         (Some(_), _) => RowKind::Nonlinear,
         (None, Some(_)) => RowKind::Position,
@@ -270,7 +270,7 @@ fn brackets<Sys: System<N, M>, const N: usize, const M: usize>(
     space: &RowSpace<N, M>,
 ) -> usize {
     let RowsInPlace { a, b, a_q: in_q, b_q } = RowsInPlace::at(system, t, q);
-    let (in_t, _) = system.constraint(Dual { re: t, eps: [1.0] }, &mapped(&q, Dual::fixed));
+    let (in_t, _) = system.constraint(Dual { re: t, eps: [1.0] }, &mapped(q, Dual::fixed));
     let here: Constraint<f64, N, M> = (a, b);
     let rows: Vec<usize> = space.dependence().independent.iter().filter(|k| kinds[*k] != RowKind::Nonlinear).collect();
     let drift = particular(&here, &rows);

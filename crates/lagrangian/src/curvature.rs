@@ -83,7 +83,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Curved<N, M> for Nonline
     fn at<const P: usize>(&self, first: usize, second: usize) -> Option<[Option<HyperDual<f64, P, P>>; M]> {
         let Self { system, t, q, v } = *self;
         let in_v: [_; N] = from_fn(|i| HyperDual::linear(v[i], seed(1.0, i, first), seed(1.0, i, second)));
-        system.nonlinear(HyperDual::fixed(t), &mapped(&q, HyperDual::fixed), &in_v)
+        system.nonlinear(HyperDual::fixed(t), &mapped(q, HyperDual::fixed), &in_v)
     }
 }
 

@@ -92,7 +92,7 @@ pub trait DiscreteLagrangian<Sys, const N: usize, const M: usize> {
     /// `D2 L_d` by itself, the momentum at the end of a step: automatic unless given by hand.
     #[inline]
     fn d2<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> [S; N] {
-        self.average(system, Dual::fixed(t0), Dual::fixed(h), &mapped(&q0, Dual::fixed), &Dual::variables(v)).eps
+        self.average(system, Dual::fixed(t0), Dual::fixed(h), &mapped(q0, Dual::fixed), &Dual::variables(v)).eps
     }
 }
 
@@ -107,7 +107,7 @@ pub trait DiscreteConstraint<Sys, const N: usize, const M: usize> {
     #[inline]
     fn linearised(&self, system: &Sys, t0: f64, h: f64, q0: &[f64; N], v: &[f64; N]) -> [Dual<f64, N>; M] {
         let (t, step) = (Dual::fixed(t0), Dual::fixed(h));
-        self.residual(system, t, step, &mapped(&q0, Dual::fixed), &Dual::variables(v))
+        self.residual(system, t, step, &mapped(q0, Dual::fixed), &Dual::variables(v))
     }
 
     /// The basis of the mean velocities `v` with `w_d = 0` where it is the system's basis of admissible velocities at one

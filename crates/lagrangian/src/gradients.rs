@@ -56,7 +56,7 @@ impl<const N: usize, const M: usize> dyn Gradients<N, M> + '_ {
     /// `A` and `b` of the constraint.
     #[must_use]
     pub fn constraint(&self, t: Seeded, q: &[Seeded; N]) -> Constraint<Seeded, N, M> {
-        let (a, b) = self.constraint_along(Dual::fixed(t), &mapped(&q, Dual::fixed));
+        let (a, b) = self.constraint_along(Dual::fixed(t), &mapped(q, Dual::fixed));
         (a.map(|row| row.map(|x| x.re)), b.map(|x| x.re))
     }
 
@@ -103,7 +103,7 @@ impl<const N: usize, const M: usize> dyn Gradients<N, M> + '_ {
     /// The basis of admissible velocities.
     #[must_use]
     pub fn basis(&self, t: Seeded, q: &[Seeded; N]) -> Option<AdmissibleBasis<Seeded, N, M>> {
-        let basis = self.basis_along(Dual::fixed(t), &mapped(&q, Dual::fixed))?;
+        let basis = self.basis_along(Dual::fixed(t), &mapped(q, Dual::fixed))?;
         Some(AdmissibleBasis::from_fn(|a| basis.vectors()[a].map(|w| w.re)))
     }
 
@@ -111,7 +111,7 @@ impl<const N: usize, const M: usize> dyn Gradients<N, M> + '_ {
     /// direction of `t` and `q`.
     #[must_use]
     pub fn velocity_along(&self, t: Along, q: &[Along; N], xi: &[Seeded; N]) -> Option<[Along; N]> {
-        let v = self.basis_along(t, q)?.combine(&mapped(&xi, Dual::fixed));
+        let v = self.basis_along(t, q)?.combine(&mapped(xi, Dual::fixed));
         let (a, b) = self.constraint_along(t, q);
         Some(match shortest(&a, &b) {
             Some(shift) => from_fn(|i| v[i] + shift[i]),
@@ -139,7 +139,7 @@ impl<const N: usize, const M: usize> dyn Gradients<N, M> + '_ {
     /// The velocity `W xi + v_b` of quasi-velocities.
     #[must_use]
     pub fn velocity(&self, t: Seeded, q: &[Seeded; N], xi: &[Seeded; N]) -> Option<[Seeded; N]> {
-        Some(self.velocity_along(Dual::fixed(t), &mapped(&q, Dual::fixed), xi)?.map(|v| v.re))
+        Some(self.velocity_along(Dual::fixed(t), &mapped(q, Dual::fixed), xi)?.map(|v| v.re))
     }
 }
 
@@ -154,11 +154,11 @@ pub struct SeededMember<F, const P: usize> {
 
 impl<F: Parametrised<N, M, P>, const N: usize, const M: usize, const P: usize> Gradients<N, M> for SeededMember<F, P> {
     fn lagrangian(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> Seeded {
-        self.first_order(t, &mapped(&q, Dual::fixed), &mapped(&v, Dual::fixed)).re
+        self.first_order(t, &mapped(q, Dual::fixed), &mapped(v, Dual::fixed)).re
     }
 
     fn momentum(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> [Seeded; N] {
-        self.first_order(t, &mapped(&q, Dual::fixed), &Dual::variables(v)).eps
+        self.first_order(t, &mapped(q, Dual::fixed), &Dual::variables(v)).eps
     }
 
     fn momentum_rate(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N], a: &[Seeded; N]) -> [Seeded; N] {
@@ -172,7 +172,7 @@ impl<F: Parametrised<N, M, P>, const N: usize, const M: usize, const P: usize> G
     }
 
     fn slope(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> [Seeded; N] {
-        self.first_order(t, &Dual::variables(q), &mapped(&v, Dual::fixed)).eps
+        self.first_order(t, &Dual::variables(q), &mapped(v, Dual::fixed)).eps
     }
 
     fn force(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> Option<[Seeded; N]> {
@@ -192,7 +192,7 @@ impl<F: Parametrised<N, M, P>, const N: usize, const M: usize, const P: usize> G
     }
 
     fn nonlinear(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> Option<[Option<Dual<Seeded, N>>; M]> {
-        let (t, q) = (Dual::fixed(t), mapped(&q, Dual::fixed));
+        let (t, q) = (Dual::fixed(t), mapped(q, Dual::fixed));
         self.family.nonlinear(&mapped(&self.parameters, Dual::fixed), t, &q, &Dual::variables(v))
     }
 }

@@ -87,7 +87,7 @@ impl<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize> TwiceDifferen
         let At { system, t, q, v } = self.0;
         let one = S::constant(1.0);
         let in_v: [_; N] = from_fn(|i| HyperDual::linear(v[i], seed(one, i, first), seed(one, i, second)));
-        system.lagrangian(HyperDual::fixed(t), &mapped(&q, HyperDual::fixed), &in_v)
+        system.lagrangian(HyperDual::fixed(t), &mapped(q, HyperDual::fixed), &in_v)
     }
 }
 
@@ -101,7 +101,7 @@ impl<Sys: System<N, M>, S: Scalar, const N: usize, const M: usize> TwiceDifferen
         let At { system, t, q, v } = self.0;
         let one = S::constant(1.0);
         let in_q: [_; N] = from_fn(|i| HyperDual::linear(q[i], seed(one, i, first), seed(one, i, second)));
-        system.lagrangian(HyperDual::fixed(t), &in_q, &mapped(&v, HyperDual::fixed))
+        system.lagrangian(HyperDual::fixed(t), &in_q, &mapped(v, HyperDual::fixed))
     }
 }
 

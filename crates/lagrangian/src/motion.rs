@@ -56,13 +56,13 @@ impl<const N: usize, const M: usize> Motion<N, M> {
         let in_v = from_fn(|i| HyperDual::linear(v[i], from_fn(|k| if k == i { 1.0 } else { 0.0 }), [0.0]));
         let transport = system.lagrangian(along_t, &along_q, &in_v).e12;
 
-        let l_q = system.lagrangian(Dual::fixed(t), &Dual::variables(q), &mapped(&v, Dual::fixed)).eps;
+        let l_q = system.lagrangian(Dual::fixed(t), &Dual::variables(q), &mapped(v, Dual::fixed)).eps;
         let force = system.force(t, q, v);
 
         // d/dt (A v + b) at frozen acceleration.
         let along_t = Dual { re: t, eps: [1.0] };
         let along_q: [Dual<f64, 1>; N] = from_fn(|i| Dual { re: q[i], eps: [v[i]] });
-        let rate = constraint_residual(system, along_t, &along_q, &mapped(&v, Dual::fixed));
+        let rate = constraint_residual(system, along_t, &along_q, &mapped(v, Dual::fixed));
 
         let a = reaction_rows(system, t, q, v);
         Saddle {

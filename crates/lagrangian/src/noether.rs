@@ -66,8 +66,8 @@ pub fn momentum_balance<Sys: System<N, M>, X: VectorField<N>, const N: usize, co
 ) -> Result<MomentumBalance<M>, MotionError> {
     let x = field.at(q);
     let turned = rate_along(field, q, v);
-    let p = system.lagrangian(Dual::fixed(t), &mapped(&q, Dual::fixed), &Dual::variables(v)).eps;
-    let slope = system.lagrangian(Dual::fixed(t), &Dual::variables(q), &mapped(&v, Dual::fixed)).eps;
+    let p = system.lagrangian(Dual::fixed(t), &mapped(q, Dual::fixed), &Dual::variables(v)).eps;
+    let slope = system.lagrangian(Dual::fixed(t), &Dual::variables(q), &mapped(v, Dual::fixed)).eps;
     let force = system.force(t, q, v).unwrap_or([0.0; N]);
     let rows = reaction_rows(system, t, q, v);
     let dot = |a: &[f64; N], b: &[f64; N]| (0..N).map(|i| a[i] * b[i]).sum::<f64>();

@@ -42,5 +42,5 @@ where
     Sys: System<N, M>,
 {
     let time = Dual { re: t, eps: [1.0] };
-    -system.lagrangian(time, &mapped(&q, Dual::fixed), &mapped(&v, Dual::fixed)).eps[0]
+    -system.lagrangian(time, &mapped(q, Dual::fixed), &mapped(v, Dual::fixed)).eps[0]
 }

@@ -10,7 +10,7 @@ where
     S: Scalar,
 {
     let (mut a, _) = system.constraint(t, q);
-    if let Some(phi) = system.nonlinear(Dual::fixed(t), &mapped(&q, Dual::fixed), &Dual::variables(v)) {
+    if let Some(phi) = system.nonlinear(Dual::fixed(t), &mapped(q, Dual::fixed), &Dual::variables(v)) {
         for k in 0..M {
             a[k] = phi[k].map_or(a[k], |phi: Dual<S, N>| phi.eps);
         }
@@ -49,7 +49,7 @@ where
             }
         }
     }
-    if let Some(in_t) = system.holonomic(Dual { re: t, eps: [S::constant(1.0)] }, &mapped(&q, Dual::fixed)) {
+    if let Some(in_t) = system.holonomic(Dual { re: t, eps: [S::constant(1.0)] }, &mapped(q, Dual::fixed)) {
         for k in 0..M {
             b[k] = in_t[k].map_or(b[k], |g: Dual<S, 1>| g.eps[0]);
         }

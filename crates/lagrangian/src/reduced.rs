@@ -131,7 +131,7 @@ pub fn reduced_acceleration<Sys: System<N, M>, const N: usize, const M: usize>(
     let v = velocity_of(system, t, q, xi)?;
     let Motion { acceleration, .. } = Motion::of(system, t, q, &v)?;
     let along: [Dual<f64, 1>; N] = from_fn(|i| Dual { re: q[i], eps: [v[i]] });
-    let turning = velocity_of(system, Dual { re: t, eps: [1.0] }, &along, &mapped(&xi, Dual::fixed))?;
+    let turning = velocity_of(system, Dual { re: t, eps: [1.0] }, &along, &mapped(xi, Dual::fixed))?;
     let rest = from_fn(|i| acceleration[i] - turning[i].eps[0]);
     split(system, t, q, &rest, &basis)
 }

@@ -34,7 +34,7 @@ impl<const N: usize> MotionRounding<N> {
         v: &[f64; N],
     ) -> Result<Self, MotionError> {
         let Motion { multiplier, .. } = Motion::of(system, t, q, v)?;
-        let (place, velocity) = (mapped(&q, Rounded::once), mapped(&v, Rounded::once));
+        let (place, velocity) = (mapped(q, Rounded::once), mapped(v, Rounded::once));
         let slope = configuration_slope(system, Rounded::exact(t), &place, &velocity);
         let pushed = system.force(Rounded::exact(t), &place, &velocity);
         // Along the motion at constant velocity.
@@ -100,7 +100,7 @@ pub fn reduced_rounding<Sys: System<N, M>, const N: usize, const M: usize>(
     xi: &[f64; N],
     h: f64,
 ) -> Option<[[f64; N]; 2]> {
-    let (time, place, quasi) = (Rounded::exact(t), mapped(&q, Rounded::once), mapped(&xi, Rounded::once));
+    let (time, place, quasi) = (Rounded::exact(t), mapped(q, Rounded::once), mapped(xi, Rounded::once));
     let basis = system.admissible_basis(t, q)?;
     let acceleration = match system.reduced().reduced_motion(time, &place, &quasi) {
         Some(by_hand) => by_hand.map(|x| UNIT * x.size),

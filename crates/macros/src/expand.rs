@@ -27,7 +27,7 @@ pub(crate) fn system(described: &Described) -> Result<TokenStream> {
         #structure
         #[allow(unused_variables, unused_parens, unused_imports, clippy::all, clippy::pedantic, clippy::nursery)]
         const _: () = {
-            use #lagrangian::{AdmissibleBasis, Constraint, Piecewise, Reduced, Scalar, System};
+            use #lagrangian::{AdmissibleBasis, Constraint, Piecewise, Reduced, ReducedError, Scalar, System};
             impl System<#n, #m> for #name { #functions }
             #by_hand
             #inherent
@@ -143,6 +143,7 @@ fn by_hand(printer: &Printer<'_>, reduced: &ReducedFormulas) -> Result<TokenStre
     let (n, m, name) = (printer.formulas.n, printer.formulas.m, &printer.described.name);
     let rest = (reduced.acceleration.len()..n).map(|_| quote!(S::zero()));
     let motion = printer.all(&reduced.acceleration, "xi", |results| quote!(Some([#(#results,)* #(#rest),*])))?;
+    let velocity = printer.all(&reduced.velocity, "xi", |results| quote!(Ok([#(#results),*])))?;
     let reconstruction = match reduced.reconstruction {
         Some(quadratures) => quote!(Some(#quadratures)),
         None => quote!(None),
@@ -152,6 +153,14 @@ fn by_hand(printer: &Printer<'_>, reduced: &ReducedFormulas) -> Result<TokenStre
         impl Reduced<#n, #m> for #name {
             #[inline(always)]
             fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; #n], xi: &[S; #n]) -> Option<[S; #n]> { #motion }
+            #[inline(always)]
+            fn velocity<S: Scalar>(
+                &self,
+                t: S,
+                q: &[S; #n],
+                xi: &[S; #n],
+                _: impl FnOnce() -> Result<[S; #n], ReducedError>,
+            ) -> Result<[S; #n], ReducedError> { #velocity }
             #[inline(always)]
             fn reconstruction(&self) -> Option<u32> { #reconstruction }
             #[inline(always)]

@@ -3,20 +3,28 @@
 use crate::tapes::{TapePoint, Tapes};
 use crate::{TextModel, TextSystem};
 use ::formulas::{Formulas, ReducedFormulas};
-use lagrangian::{Pivots, Reduced, Scalar};
+use expression::Expression;
+use lagrangian::{Pivots, Reduced, ReducedError, Scalar};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// The accelerations of the quasi-velocities in one basis, as formulas.
 #[derive(Debug)]
-pub(crate) struct ReducedTapes {
+struct ReducedTapes {
     acceleration: Tapes,
     reconstruction: Option<u32>,
     stands_alone: bool,
 }
 
 /// The equations in one basis: nothing before they are asked for, and none where they are too large.
-pub(crate) type Equations = Arc<OnceLock<Option<ReducedTapes>>>;
+#[derive(Debug, Default)]
+pub(crate) struct EquationsOfBasis {
+    velocity: OnceLock<Option<Tapes>>,
+    reduced: OnceLock<Option<ReducedTapes>>,
+}
+
+/// They are shared by all systems of a model with the same basis.
+pub(crate) type Equations = Arc<EquationsOfBasis>;
 
 /// The equations in each basis that has been in use, by its number; zero is that of a basis that holds everywhere.
 #[derive(Debug, Clone, Default)]
@@ -36,6 +44,13 @@ impl TextModel {
         if self.basis.is_some() { 0 } else { pivots.number() }
     }
 
+    /// The velocity `W xi + v_b` in the basis in use; none where it is too large.
+    fn velocity(&self, pivots: &Pivots) -> Option<Tapes> {
+        let (mut formulas, basis) = self.formulas_in_basis(pivots);
+        let velocity = formulas.velocity_in(&basis)?;
+        Tapes::new(&formulas.graph, &velocity).ok()
+    }
+
     fn derived(&self, pivots: &Pivots) -> Option<ReducedTapes> {
         let (formulas, reduced) = self.reduced_formulas(pivots)?;
         let ReducedFormulas { acceleration, reconstruction, stands_alone, .. } = reduced;
@@ -45,20 +60,25 @@ impl TextModel {
 
     /// The reduced equations in the basis in use; none where they are too large.
     pub(crate) fn reduced_formulas(&self, pivots: &Pivots) -> Option<(Formulas, ReducedFormulas)> {
+        let (mut formulas, basis) = self.formulas_in_basis(pivots);
+        let reduced = formulas.reduced_in(basis)?;
+        Some((formulas, reduced))
+    }
+
+    fn formulas_in_basis(&self, pivots: &Pivots) -> (Formulas, Vec<Vec<Expression>>) {
         let mut formulas = Formulas::clone(&self.formulas);
         let basis = match (&formulas.basis, &self.eliminations) {
             (Some(given), _) => given.chunks(formulas.n).map(<[_]>::to_vec).collect(),
             (None, Some(eliminations)) => formulas.basis_by(eliminations),
             (None, None) => formulas.eliminated_basis(&pivots.order().collect::<Vec<_>>()),
         };
-        let reduced = formulas.reduced_in(basis)?;
-        Some((formulas, reduced))
+        (formulas, basis)
     }
 }
 
 impl<const N: usize, const M: usize> TextSystem<N, M> {
     fn equations(&self) -> Option<&ReducedTapes> {
-        self.equations.get_or_init(|| self.model.derived(&self.pivots)).as_ref()
+        self.equations.reduced.get_or_init(|| self.model.derived(&self.pivots)).as_ref()
     }
 }
 
@@ -71,6 +91,26 @@ impl<const N: usize, const M: usize> Reduced<N, M> for TextSystem<N, M> {
         let at = TapePoint::new(t, &q[..n], &xi[..n]);
         self.equations()?.acceleration.evaluate(n, at, |k, x| acceleration[k] = x);
         Some(acceleration)
+    }
+
+    fn velocity<S: Scalar>(
+        &self,
+        t: S,
+        q: &[S; N],
+        xi: &[S; N],
+        derived: impl FnOnce() -> Result<[S; N], ReducedError>,
+    ) -> Result<[S; N], ReducedError> {
+        let Some(formulas) = self.equations.velocity.get_or_init(|| self.model.velocity(&self.pivots)) else {
+            return derived();
+        };
+        let (n, m) = (self.model.coordinates.len(), self.model.constraints());
+        let mut velocity = [S::zero(); N];
+        formulas.evaluate(n, TapePoint::new(t, &q[..n], &xi[..n]), |i, x| velocity[i] = x);
+        // The coordinates that are held by no constraint move by themselves.
+        for (rate, xi) in velocity[n + M - m..].iter_mut().zip(&xi[n - m..]) {
+            *rate = *xi;
+        }
+        Ok(velocity)
     }
 
     fn reconstruction(&self) -> Option<u32> {

@@ -39,7 +39,7 @@ impl<const N: usize> EnergyStart<N> {
         let inverse_mass = system.inverse_reduced_mass(t0, q, &v, &basis).map_err(singular)?;
         // In the arithmetic that ended the step before: between two sines that differ in their last digits the quasi-momenta
         // would lose the same part of an ulp at every step.
-        let here = system.bracket(Lanes::constant(t0), &mapped(&q, Lanes::constant), &mapped(&xi, Lanes::constant));
+        let here = system.bracket(Lanes::constant(t0), &mapped(q, Lanes::constant), &mapped(&xi, Lanes::constant));
         let pi = here.ok_or(NO_BASIS)?.quasi_momenta().map(|pi| pi.0[0]);
         let rest = state.quasi_momenta().map_or([0.0; N], |carried| rounding(&carried, &pi));
         Ok(Self { state: *state, xi, pi, rest, inverse_mass })

@@ -70,7 +70,7 @@ impl<const N: usize, const M: usize, const S: usize> LobattoStages<'_, N, M, S> 
         let (q, v) = (start.q(), start.v());
         let rounding = system.motion_rounding(t0, q, v);
         let mut velocity = rounding.map_or([0.0; N], |rounding| rounding.acceleration.map(|a| (h * a).abs()));
-        if let Some(positions) = system.positions_rounded(Rounded::exact(t0), &mapped(&q, Rounded::once)) {
+        if let Some(positions) = system.positions_rounded(Rounded::exact(t0), &mapped(q, Rounded::once)) {
             let ((_, block), rows) = (system.mass_matrix(t0, q, v), system.reaction_rows(t0, q, v));
             for k in 0..M {
                 let noise = positions[k].map_or(0.0, |g| 0.5 * f64::EPSILON * g.size / h);

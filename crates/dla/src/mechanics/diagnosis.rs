@@ -53,7 +53,7 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Diagnosis<N, M> for Sys 
 
     fn depends_on_time(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> bool {
         let t = Dual { re: t, eps: [1.0] };
-        let (q, v) = (mapped(&q, Dual::fixed), mapped(&v, Dual::fixed));
+        let (q, v) = (mapped(q, Dual::fixed), mapped(v, Dual::fixed));
         let (a, b) = System::constraint(self, t, &q);
         // What is not a number fails later, and is named there.
         let moves = |x: &Dual<f64, 1>| x.eps[0].abs() > 0.0;

@@ -147,8 +147,8 @@ fn derivative<const N: usize, const M: usize, const P: usize>(
     report: StepReport<M>,
 ) -> Result<StepDerivative<N, M, P>, SensitivityError> {
     let (first_t, first_q, first_v) =
-        (Seeded::constant(t), mapped(&start.q(), Seeded::constant), mapped(&start.v(), Seeded::constant));
-    let model = seeder(&mapped(&parameters, Seeded::constant));
+        (Seeded::constant(t), mapped(start.q(), Seeded::constant), mapped(start.v(), Seeded::constant));
+    let model = seeder(&mapped(parameters, Seeded::constant));
     let classes =
         model.holonomic(first_t, &first_q).is_some() || model.nonlinear(first_t, &first_q, &first_v).is_some();
     if classes && !method.carries_every_class() {
