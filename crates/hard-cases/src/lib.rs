@@ -21,12 +21,14 @@ mod numbers;
 mod one_row;
 mod rest;
 mod systems;
+mod two_rows;
 
 use harness::Method;
 use harness::stability::{Case, Verdict, claims, judge};
 use lab::Lab;
 
 pub use error::HardCaseError;
+pub use two_rows::TwoRows;
 
 type Runs = fn(&mut Lab) -> Result<(), HardCaseError>;
 

@@ -2,11 +2,12 @@
 
 use crate::HardCaseError;
 use crate::lab::Lab;
+use crate::two_rows::TwoRows;
 use dla::{Dependency, Dla, Energy, Gauss, InChart, Lobatto, Schedule, State, StepError, Stepper, drive};
 use harness::stability::check::{constant, follows, measured};
 use harness::stability::{Case, Claim, Recorded, Recorder, Seen, VALUES};
 use harness::{Method, MethodKind, Rk4Reduced};
-use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
+use lagrangian::System;
 use models::CompoundPendulum;
 use sleigh::{Exact, Sleigh, SleighState};
 use std::f64::consts::PI;
@@ -14,49 +15,6 @@ use std::f64::consts::PI;
 /// The methods that make these cases.
 pub(crate) const METHODS: [MethodKind; 5] =
     [MethodKind::Dla, MethodKind::Lobatto(3), MethodKind::Gauss(4), MethodKind::Energy(1), MethodKind::Rk4Reduced];
-
-/// The systems with two constraints, of one type, so that every method is compiled once for all of them.
-#[derive(Debug, Clone, Copy)]
-enum TwoRows {
-    /// Two blades side by side, parallel: the second says what the first does.
-    Parallel(Sleigh),
-    /// A blade, and a guide `(x - 1) theta' = 0`, which lets go at `x = 1 m`.
-    Guide(Sleigh),
-    /// A pendulum whose hinge is given by its rates alone.
-    Pendulum(CompoundPendulum),
-}
-
-impl System<3, 2> for TwoRows {
-    fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 3], v: &[S; 3]) -> S {
-        match self {
-            Self::Parallel(sleigh) | Self::Guide(sleigh) => sleigh.lagrangian(t, q, v),
-            Self::Pendulum(pendulum) => pendulum.lagrangian(t, q, v),
-        }
-    }
-    fn constraint<S: Scalar>(&self, t: S, q: &[S; 3]) -> Constraint<S, 3, 2> {
-        let zero = S::zero();
-        match self {
-            Self::Parallel(sleigh) => {
-                let ([blade], _) = sleigh.constraint(t, q);
-                ([blade, blade], [zero; 2])
-            }
-            Self::Guide(sleigh) => {
-                let ([blade], _) = sleigh.constraint(t, q);
-                ([blade, [zero, zero, q[0] - 1.0]], [zero; 2])
-            }
-            Self::Pendulum(pendulum) => pendulum.constraint(t, q),
-        }
-    }
-    fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, 2>> {
-        match self {
-            Self::Parallel(_) | Self::Guide(_) => None,
-            Self::Pendulum(pendulum) => pendulum.admissible_basis(t, q),
-        }
-    }
-    fn angles(&self) -> [bool; 3] {
-        [false, false, true]
-    }
-}
 
 /// What is looked at in a state.
 type Look<'a, const N: usize> = &'a dyn Fn(&State<N>) -> [f64; VALUES];

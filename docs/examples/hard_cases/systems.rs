@@ -4,50 +4,16 @@ use crate::curves::Upright::Linear;
 use crate::curves::{curve, in_time, level, markers, upper_edge};
 use crate::program::Program;
 use dla::{Dla, Energy, Node, OneStep, Schedule, State, Trajectory, drive};
+use hard_cases::TwoRows;
 use harness::Rk4Reduced;
 use harness::report::Chart;
-use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
+use lagrangian::System;
 use models::{CompoundPendulum, ContactOscillator, GaugedOscillator};
 use sleigh::{Exact, Sleigh, SleighState};
 use std::error::Error;
 use std::f64::consts::PI;
 
 type Drawn = Result<Chart, Box<dyn Error>>;
-
-/// The systems with two constraints, of one type, so that a method is compiled once for all of them.
-enum TwoRows {
-    /// Two blades side by side, parallel.
-    Parallel(Sleigh),
-    /// A blade, and a guide `(x - 1) theta' = 0`.
-    Guide(Sleigh),
-    Pendulum(CompoundPendulum),
-}
-
-impl System<3, 2> for TwoRows {
-    fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 3], v: &[S; 3]) -> S {
-        match self {
-            Self::Parallel(sleigh) | Self::Guide(sleigh) => sleigh.lagrangian(t, q, v),
-            Self::Pendulum(pendulum) => pendulum.lagrangian(t, q, v),
-        }
-    }
-    fn constraint<S: Scalar>(&self, t: S, q: &[S; 3]) -> Constraint<S, 3, 2> {
-        let zero = S::zero();
-        match self {
-            Self::Pendulum(pendulum) => pendulum.constraint(t, q),
-            Self::Parallel(sleigh) | Self::Guide(sleigh) => {
-                let ([blade], _) = sleigh.constraint(t, q);
-                let second = if matches!(self, Self::Guide(_)) { [zero, zero, q[0] - 1.0] } else { blade };
-                ([blade, second], [zero; 2])
-            }
-        }
-    }
-    fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, 2>> {
-        if let Self::Pendulum(pendulum) = self { pendulum.admissible_basis(t, q) } else { None }
-    }
-    fn angles(&self) -> [bool; 3] {
-        [false, false, true]
-    }
-}
 
 /// The nodes of a run; of one that is refused on its way, those before.
 fn nodes<Sys: System<3, M>, const M: usize>(
