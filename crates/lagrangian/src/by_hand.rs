@@ -8,6 +8,10 @@ pub trait Reduced<const N: usize, const M: usize> {
     /// Whether anything may be known: not of `()`, nor of a body whose constraints leave nothing known.
     const ANY: bool = true;
 
+    /// Whether a formula is interpreted, operation by operation, and not compiled. A method then asks for stages side by side as arrays of
+    /// numbers ([`Lanes`](crate::Lanes)): vector registers would be stored and loaded around each operation.
+    const INTERPRETED: bool = false;
+
     /// Accelerations and multipliers, for any velocity, admissible or not.
     #[inline(always)]
     fn motion(&self, _t: f64, _q: &[f64; N], _v: &[f64; N]) -> Option<Motion<N, M>> {
@@ -75,6 +79,7 @@ impl<const N: usize, const M: usize> Reduced<N, M> for () {
 
 impl<R: Reduced<N, M>, const N: usize, const M: usize> Reduced<N, M> for &R {
     const ANY: bool = R::ANY;
+    const INTERPRETED: bool = R::INTERPRETED;
 
     #[inline(always)]
     fn motion(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<Motion<N, M>> {

@@ -84,6 +84,8 @@ impl<const N: usize, const M: usize> TextSystem<N, M> {
 
 /// By computer algebra: `xi'` as formulas in the basis in use.
 impl<const N: usize, const M: usize> Reduced<N, M> for TextSystem<N, M> {
+    const INTERPRETED: bool = true;
+
     fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; N], xi: &[S; N]) -> Option<[S; N]> {
         let n = self.model.coordinates.len();
         let mut acceleration = [S::zero(); N];

@@ -1,9 +1,9 @@
 use super::ending::{Ending, EndingVerdict};
-use super::packs::{StageRows, ahead, everywhere, integral, loaded, own};
+use super::packs::{StageRows, ahead, everywhere, in_lanes, integral, loaded, of_lanes, own};
 use super::rule::GaussRule;
 use lagrangian::linear::larger;
 use lagrangian::simd::{Kernel, Pack, Simd, Square, Wide, dispatch, each, packed};
-use lagrangian::{Reduced, System, array, derived_acceleration, from_fn, velocity_of};
+use lagrangian::{Lanes, Reduced, System, array, derived_acceleration, from_fn, velocity_of};
 use std::fmt;
 use std::ops::Deref;
 
@@ -159,9 +159,14 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> StagesAtOnce<'_, Sys, N,
 
     /// The times of the stages.
     #[inline(always)]
-    fn times<S: Simd, const R: usize>(&self, simd: S) -> Wide<S, R> {
-        let times = from_fn(|i| self.t + self.rule.nodes[i] * self.h);
-        Wide::Each(Pack::load(simd, &times))
+    fn times(&self) -> [f64; 8] {
+        from_fn(|i| self.t + self.rule.nodes[i] * self.h)
+    }
+
+    /// The same in registers.
+    #[inline(always)]
+    fn times_at_once<S: Simd, const R: usize>(&self, simd: S) -> Wide<S, R> {
+        Wide::Each(Pack::load(simd, &self.times()))
     }
 
     /// `q' = W xi + v_b` in every stage.
@@ -172,7 +177,23 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> StagesAtOnce<'_, Sys, N,
         q: &[Pack<S, R>; N],
         xi: &[Wide<S, R>; N],
     ) -> Option<[Pack<S, R>; N]> {
-        match velocity_of(self.system, self.times(simd), &each(q), xi) {
+        self.velocity_by(simd, &self.system.reduced(), q, xi)
+    }
+
+    #[inline(always)]
+    fn velocity_by<By: Reduced<N, M>, S: Simd, const R: usize>(
+        &self,
+        simd: S,
+        _by_hand: &By,
+        q: &[Pack<S, R>; N],
+        xi: &[Wide<S, R>; N],
+    ) -> Option<[Pack<S, R>; N]> {
+        if const { By::INTERPRETED } {
+            let t = Lanes(self.times());
+            let v = velocity_of(self.system, t, &in_lanes(q), &in_lanes(&packed(simd, xi))).ok()?;
+            return Some(of_lanes(simd, &v));
+        }
+        match velocity_of(self.system, self.times_at_once(simd), &each(q), xi) {
             Ok(v) => Some(packed(simd, &v)),
             Err(_) => None,
         }
@@ -187,10 +208,26 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> StagesAtOnce<'_, Sys, N,
         xi: &[Wide<S, R>; N],
     ) -> Option<[Pack<S, R>; N]> {
         let by_hand = self.system.reduced();
-        match by_hand.reduced_motion(self.times(simd), &each(q), xi) {
-            Some(a) => Some(packed(simd, &a)),
+        match self.acceleration_by(simd, &by_hand, q, xi) {
+            Some(a) => Some(a),
             None => self.derived(simd, &by_hand, q, xi),
         }
+    }
+
+    #[inline(always)]
+    fn acceleration_by<By: Reduced<N, M>, S: Simd, const R: usize>(
+        &self,
+        simd: S,
+        by_hand: &By,
+        q: &[Pack<S, R>; N],
+        xi: &[Wide<S, R>; N],
+    ) -> Option<[Pack<S, R>; N]> {
+        if const { By::INTERPRETED } {
+            let a = by_hand.reduced_motion(Lanes(self.times()), &in_lanes(q), &in_lanes(&packed(simd, xi)))?;
+            return Some(of_lanes(simd, &a));
+        }
+        let a = by_hand.reduced_motion(self.times_at_once(simd), &each(q), xi)?;
+        Some(packed(simd, &a))
     }
 
     /// `xi'` by derivatives along the basis, of a system that knows nothing by hand: stage by stage, since all numbers that carry

@@ -1,7 +1,7 @@
 //! Arrays of numbers to registers: a pack holds one coordinate of all stages.
-use lagrangian::array;
 use lagrangian::linear::larger;
 use lagrangian::simd::{Pack, Simd};
+use lagrangian::{Lanes, Scalar, array};
 
 /// Eight stages of `N` slopes.
 pub(super) type StageRows<const N: usize> = [[f64; 8]; N];
@@ -13,6 +13,26 @@ pub(super) fn loaded<S: Simd, const R: usize, const N: usize>(simd: S, x: &Stage
         Pack::splat(simd, 0.0),
         #[inline(always)]
         |k| Pack::load(simd, &x[k]),
+    )
+}
+
+/// Registers as arrays of numbers.
+#[inline(always)]
+pub(super) fn in_lanes<S: Simd, const R: usize, const N: usize>(x: &[Pack<S, R>; N]) -> [Lanes; N] {
+    array(
+        Lanes::constant(0.0),
+        #[inline(always)]
+        |k| Lanes(x[k].row()),
+    )
+}
+
+/// Arrays of numbers in registers.
+#[inline(always)]
+pub(super) fn of_lanes<S: Simd, const R: usize, const N: usize>(simd: S, x: &[Lanes; N]) -> [Pack<S, R>; N] {
+    array(
+        Pack::splat(simd, 0.0),
+        #[inline(always)]
+        |k| Pack::load(simd, &x[k].0),
     )
 }
 
