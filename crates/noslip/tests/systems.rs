@@ -8,8 +8,7 @@ use lagrangian::{Piecewise, Reduced, System, quasi_velocities, reduced_accelerat
 use models::{ChaplyginBall, Model, RollerRacer, RollingDisk, Snakeboard};
 use sleigh::{Sleigh, SleighState};
 
-macros::system! {
-    ::lagrangian;
+noslip::system! {
     /// The Chaplygin sleigh.
     pub struct Blade;
     coordinates = { x = "m", y = "m", theta = "angle" }
@@ -20,8 +19,7 @@ macros::system! {
     outputs = { speed = "x'*cos(theta) + y'*sin(theta)" }
 }
 
-macros::system! {
-    ::lagrangian;
+noslip::system! {
     struct Disk;
     coordinates = { x = "m", y = "m", phi = "angle", theta = "angle" }
     parameters = { m = 1.3, R = 0.5, I = 0.2, J = 0.1 }
@@ -29,8 +27,7 @@ macros::system! {
     constraints = ["x' - R*phi'*cos(theta)", "y' - R*phi'*sin(theta)"]
 }
 
-macros::system! {
-    ::lagrangian;
+noslip::system! {
     struct Racer;
     coordinates = { x = "m", y = "m", theta = "angle", phi = "angle" }
     parameters = { m = 1.0, I1 = 0.4, I2 = 0.1, d1 = 0.5, d2 = 0.3 }
@@ -41,8 +38,7 @@ macros::system! {
     ]
 }
 
-macros::system! {
-    ::lagrangian;
+noslip::system! {
     struct Board;
     coordinates = { x = "m", y = "m", theta = "angle", psi = "angle", phi = "angle" }
     parameters = { m = 6.0, l = 0.2, J = 0.016, Jr = 0.072, Jw = 0.0013 }
@@ -56,8 +52,7 @@ macros::system! {
     ]
 }
 
-macros::system! {
-    ::lagrangian;
+noslip::system! {
     struct Ball;
     coordinates = { x = "m", y = "m", e0 = "", e1 = "", e2 = "", e3 = "" }
     parameters = { m = 1.2, r = 0.8, I1 = 0.4, I2 = 0.6, I3 = 0.9 }
@@ -86,8 +81,7 @@ struct Point {
     mass: f64,
 }
 
-macros::system! {
-    ::lagrangian;
+noslip::system! {
     impl Point;
     coordinates = { x = "m", y = "m" }
     parameters = { m = self.mass, k = 2.0 * self.mass }
