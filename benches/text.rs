@@ -11,7 +11,6 @@
 mod systems;
 
 use harness::precision::{LEVELS, PrecisionPoint};
-use models::QuarticOscillator;
 use noslip::prelude::{Piecewise, System};
 use noslip::{PrecisionError, WorkPrecision};
 use scene::{AnyScene, Built, Visitor};
@@ -134,7 +133,7 @@ fn main() {
             "roller-racer" => points(&race, &systems::RollerRacer::default()),
             "snakeboard" => points(&race, &systems::Snakeboard::default()),
             "chaplygin-ball" => points(&race, &systems::ChaplyginBall::default()),
-            "quartic-oscillator" => points(&race, &QuarticOscillator::new(1.0).expect("a coupling")),
+            "quartic-oscillator" => points(&race, &systems::QuarticOscillator::default()),
             "two-wheeled-robot" => points(&race, &systems::Robot::default()),
             "car-and-trailer" => points(&race, &systems::Car::default()),
             "falling-disk" => points(&race, &systems::FallingDisk::default()),

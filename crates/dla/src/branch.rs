@@ -2,7 +2,7 @@
 
 use crate::Mechanics;
 use lagrangian::linear::larger;
-use lagrangian::{Dual, from_fn};
+use lagrangian::{Dual, from_fn, mapped};
 
 /// A solution whose constraint turns by less than this in the step (rad) counts as near its start.
 pub(crate) const NEAR: f64 = 1.0;
@@ -39,9 +39,9 @@ pub fn turn<const N: usize, const M: usize>(
 fn turned<const N: usize, const M: usize>(a: [[Dual<f64, 1>; N]; M]) -> f64 {
     let size = |row: [f64; N]| row.iter().map(|x| x * x).sum::<f64>().sqrt();
     // A row that is not affine has no place in `A`.
-    let turns = a.map(|row| match size(row.map(|x| x.re)) {
+    let turns = a.map(|row| match size(mapped(&row, |x| x.re)) {
         0.0 => 0.0,
-        length => size(row.map(|x| x.eps[0])) / length,
+        length => size(mapped(&row, |x| x.eps[0])) / length,
     });
     turns.iter().fold(0.0, |most, turn| larger(most, *turn))
 }

@@ -3,7 +3,7 @@ use crate::convergence::{parted, rounding_of_place};
 use crate::increment::{Departure, Increment};
 use crate::{Discretisation, Equations, Mechanics, State};
 use lagrangian::linear::{Singular, largest};
-use lagrangian::{FactoredSaddle, Rounded, Rows, Saddle, from_fn};
+use lagrangian::{FactoredSaddle, Rounded, Rows, Saddle, from_fn, mapped};
 
 /// The corrections of the mean velocity of a step: Newton's own, by one second-order evaluation, and then simplified ones, with its
 /// Jacobian and first-order evaluations, as long as they converge as well.
@@ -105,7 +105,7 @@ impl<'e, 'a, D: Discretisation<N, M>, const N: usize, const M: usize> Correction
     fn right(&self, residual: &[f64; N]) -> [f64; N] {
         let parted = if self.refined { parted(&self.of.a0, residual) } else { None };
         let left = parted.map_or(*residual, |(left, _)| left);
-        left.map(|r| -r)
+        mapped(&left, |r| -r)
     }
 
     /// The simplified correction at `v`, where it is as good as Newton's own.

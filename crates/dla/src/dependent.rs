@@ -1,7 +1,7 @@
 use crate::suspect::{suspect_along, suspect_at};
 use crate::{Mechanics, NewtonError, Stage, State, StepError};
 use lagrangian::linear::larger;
-use lagrangian::{RowSpace, Rows, Shown};
+use lagrangian::{RowSpace, Rows, Shown, mapped};
 use std::fmt;
 use thiserror::Error;
 
@@ -118,7 +118,7 @@ pub(crate) fn named_along<const N: usize, const M: usize>(
     error = suspect_along(system, (t0, h), &state, &v, error);
     for part in [0.0, 0.5, 1.0] {
         if error.is_singular() {
-            let q = state.ahead(&v.map(|v| part * h * v));
+            let q = state.ahead(&mapped(&v, |v| part * h * v));
             error = named_at(system, t0 + part * h, &q, &v, Stage::Increment, source);
         }
     }

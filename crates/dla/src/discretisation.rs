@@ -308,7 +308,7 @@ where
     ) -> (EndMomenta<N>, [[f64; N]; N]) {
         let Self { system, lagrangian, .. } = self;
         let Derivatives { d1, d2, d1d2, .. } = lagrangian.derivatives(*system, t0, h, q0, v);
-        let mut block = d1d2.map(|row| row.map(|x| h * x));
+        let mut block = mapped(&d1d2, |row| mapped(&row, |x| h * x));
         let (t, step, q, along) = (Dual::fixed(t0), Dual::fixed(h), mapped(q0, Dual::fixed), Dual::variables(v));
         let forces: Option<([Dual<f64, N>; N], _)> = lagrangian.forces(*system, t, step, &q, &along);
         if let Some((minus, _)) = &forces {
@@ -318,7 +318,7 @@ where
                 }
             }
         }
-        let forces = forces.map(|ends| <[_; 2]>::from(ends).map(|end| end.map(|f| f.re)));
+        let forces = forces.map(|ends| mapped(&<[_; 2]>::from(ends), |end| mapped(&end, |f| f.re)));
         (EndMomenta { slopes: [d1, d2], forces }, block)
     }
 

@@ -6,7 +6,7 @@ use crate::overshoot::brakes_only;
 use crate::projection::{Projected, Projection};
 use crate::settle::sup;
 use crate::{Discretisation, Mechanics, Newton, OneStep, Rules, StackUse, Stage, State, StepError, StepReport};
-use lagrangian::{Alpha, AnyRule, Midpoint, NotAWeight, Trapezoid, from_fn};
+use lagrangian::{Alpha, AnyRule, Midpoint, NotAWeight, Trapezoid, from_fn, mapped};
 
 /// How the equations of a step are solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -164,7 +164,7 @@ impl<D> Dla<D> {
             increment.solve(&self.newton, v0, predicted(state, h, expected(state, h)))?;
 
         // The momentum at the end, projected onto the constraint there.
-        let d = v.map(|v| h * v);
+        let d = mapped(&v, |v| h * v);
         let (t1, q1) = (t0 + h, state.ahead(&d));
         let Projected { v1, mu, mass } = Projection::new(system, t1, q1, p1, basis(t1, &q1))
             .of(some)

@@ -58,7 +58,7 @@ fn across<const N: usize, const M: usize>(
 ) -> Result<([f64; N], [f64; N]), Singular> {
     let (_, mass) = system.mass_matrix(t, state.0, state.1);
     let (a, b) = system.constraint(t, state.0);
-    let saddle = Saddle { block: mass, transposed: a, rows: a, right: *p, level: b.map(|b| -b) };
+    let saddle = Saddle { block: mass, transposed: a, rows: a, right: *p, level: mapped(&b, |b| -b) };
     let (v, mu) = saddle.solve(system.basis(t, state.0).as_ref())?;
     Ok((from_fn(|i| (0..M).map(|k| a[k][i] * mu[k]).sum()), v))
 }
@@ -103,7 +103,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> OneStep<N, M> for 
         if let Some([_, plus]) = momenta.forces {
             arriving = from_fn(|i| arriving[i] + plus[i]);
         }
-        let increment = v.map(|v| h * v);
+        let increment = mapped(&v, |v| h * v);
         let q1 = state.ahead(&increment);
         let (_, v1) = across(system, t + h, (&q1, &v), &arriving).map_err(singular(Stage::Projection))?;
         state.stays_finite(&increment, &v1)?;
@@ -154,6 +154,6 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Equations<N> for G
                 residual[i] += minus[i];
             }
         }
-        Ok(Lu::new(block)?.solve(residual.map(|r| -r)))
+        Ok(Lu::new(block)?.solve(mapped(&residual, |r| -r)))
     }
 }

@@ -1,3 +1,4 @@
+use lagrangian::mapped;
 use std::fmt;
 
 /// The sizes of the last corrections of an iteration: of `F'(x)^-1 F(x)`, which is the residual in the units of
@@ -38,7 +39,7 @@ impl History {
     #[must_use]
     pub fn relative_to(mut self, size: f64) -> Self {
         if size > 0.0 {
-            self.sizes = self.sizes.map(|correction| correction / size);
+            self.sizes = mapped(&self.sizes, |correction| correction / size);
         }
         self
     }
@@ -58,7 +59,7 @@ impl History {
     /// The ratio of the last correction to the one before; none of fewer than two.
     #[must_use]
     pub fn last_ratio(&self) -> Option<f64> {
-        let [before, last] = [2, 1].map(|back| self.made.checked_sub(back));
+        let [before, last] = mapped(&[2, 1], |back| self.made.checked_sub(back));
         let size = |i: u32| self.sizes[i as usize % Self::KEPT];
         before.zip(last).map(|(before, last)| size(last) / size(before))
     }

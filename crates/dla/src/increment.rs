@@ -1,7 +1,7 @@
 use crate::convergence::{most_roundings, without_reaction};
 use crate::{Discretisation, EndMomenta, Mechanics, RoundedStep, State};
 use lagrangian::linear::{Singular, normal_solve};
-use lagrangian::{AdmissibleBasis, Rounded, Rows, from_fn};
+use lagrangian::{AdmissibleBasis, Rounded, Rows, from_fn, mapped};
 
 /// The equations for the mean velocity `v` of a step, with the multiplier at its beginning.
 pub(crate) struct Increment<'a, D, const N: usize, const M: usize> {
@@ -28,7 +28,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N
     /// The multipliers whose reaction balances the rest of the momenta.
     #[inline(always)]
     pub(crate) fn multipliers(&self, rest: &[f64; N]) -> Result<[f64; M], Singular> {
-        normal_solve(&self.a0, &rest.map(|r| -r))
+        normal_solve(&self.a0, &mapped(rest, |r| -r))
     }
 
     /// Both ends of a step with the mean velocity `v`, and by how much it misses the constraint, in first order alone.
@@ -46,8 +46,8 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N
     #[inline(always)]
     pub(crate) fn level(&self, v: &[f64; N]) -> [f64; M] {
         let Self { rules, system, t0, h, state, q0, .. } = *self;
-        let mut level = rules.residual(system, (t0, h), &q0, v).map(|w| -w);
-        if let Some(positions) = system.position_misses(t0 + h, &state.ahead(&v.map(|v| h * v))) {
+        let mut level = mapped(&rules.residual(system, (t0, h), &q0, v), |w| -w);
+        if let Some(positions) = system.position_misses(t0 + h, &state.ahead(&mapped(v, |v| h * v))) {
             for k in 0..M {
                 level[k] = positions[k].map_or(level[k], |g| -g.re / h);
             }
@@ -60,8 +60,8 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N
     pub(crate) fn rows(&self, v: &[f64; N]) -> ([[f64; N]; M], [f64; M]) {
         let Self { rules, system, t0, h, state, q0, .. } = *self;
         let w_d = rules.rows(system, (t0, h), &q0, v);
-        let (mut rows, mut level) = (w_d.map(|w| w.eps), w_d.map(|w| -w.re));
-        if let Some(positions) = system.position_misses(t0 + h, &state.ahead(&v.map(|v| h * v))) {
+        let (mut rows, mut level) = (mapped(&w_d, |w| w.eps), mapped(&w_d, |w| -w.re));
+        if let Some(positions) = system.position_misses(t0 + h, &state.ahead(&mapped(v, |v| h * v))) {
             for k in 0..M {
                 if let Some(g) = positions[k] {
                     (rows[k], level[k]) = (g.eps, -g.re / h);
@@ -117,7 +117,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N
             let conservative = d1[i] + p0[i];
             minus.map_or(conservative, |minus| conservative + minus[i])
         });
-        let q1 = state.ahead(&velocity.map(|v| h * v.value));
+        let q1 = state.ahead(&mapped(velocity, |v| h * v.value));
         let end = from_fn(|i| Rounded { value: q1[i], size: q1[i].abs() + (h * velocity[i].value).abs() });
         if let Some(positions) = system.positions_rounded(Rounded::exact(t0 + h), &end) {
             level = from_fn(|k| positions[k].map_or(level[k], |g| g / h));

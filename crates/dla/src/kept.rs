@@ -3,7 +3,7 @@ use crate::derivatives::{COORDINATES, StepDerivatives, UnknownsRow, counted, swi
 use crate::past::Past;
 use crate::settle::LEAST;
 use crate::unknowns::Unknowns;
-use lagrangian::{AdmissibleBasis, from_fn};
+use lagrangian::{AdmissibleBasis, from_fn, mapped};
 
 /// What a step of the general form takes over from the steps before it: predictors and frozen Jacobians.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -235,7 +235,7 @@ fn row<const N: usize>(x: &[f64; N]) -> UnknownsRow {
 
 /// `K x`.
 fn image<const N: usize>(matrix: &[[f64; N]; N], x: &[f64; N]) -> [f64; N] {
-    matrix.map(|row| (0..N).map(|j| row[j] * x[j]).sum())
+    mapped(matrix, |row| (0..N).map(|j| row[j] * x[j]).sum())
 }
 
 /// `V' K W`, and ones on the diagonal beyond the dimension of the bases.

@@ -1,7 +1,7 @@
 use crate::convergence::{most_roundings, tolerances::OF_CORRECTION};
 use crate::{History, Mechanics, NewtonError, Stage, State, StepError};
 use lagrangian::linear::larger;
-use lagrangian::{Dual, Rounded, RowSpace, Saddle, from_fn};
+use lagrangian::{Dual, Rounded, RowSpace, Saddle, from_fn, mapped};
 
 /// The increment of a step with its end projected onto the constraints on positions, `g(q1) = 0`, in the kinetic metric: Newton's method
 /// with the gradients at the iterate. Without such constraints nothing is done.
@@ -69,9 +69,9 @@ fn correction<const N: usize, const M: usize>(
 ) -> Result<[f64; N], lagrangian::linear::Singular> {
     let (_, mass) = system.mass_matrix(t, q, v);
     // Rows of the velocities are zero here, and so left out.
-    let rows = misses.map(|g| g.map_or([0.0; N], |g| g.eps));
+    let rows = mapped(misses, |g| g.map_or([0.0; N], |g| g.eps));
     let some = RowSpace::new(&rows, &mass, RowSpace::<N, M>::ROUNDING).dependence().independent;
-    let level = misses.map(|g| g.map_or(0.0, |g| -g.re));
+    let level = mapped(misses, |g| g.map_or(0.0, |g| -g.re));
     let saddle = Saddle { block: mass, transposed: rows, rows, right: [0.0; N], level };
     saddle.solve_some(some).map(|(moved, _)| moved)
 }

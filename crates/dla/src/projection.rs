@@ -150,11 +150,11 @@ impl<const N: usize, const M: usize> Equations<N> for Projection<'_, N, M> {
         let a1 = self.system.reaction_rows(self.t1, &self.q1, v1);
         let slip = self.system.residual(self.t1, &self.q1, v1);
         // The reaction of a constraint that is not affine turns with the velocity.
-        self.system.add_reaction_curvature(self.t1, (&self.q1, v1), &self.mu.map(|mu| -mu), &mut mass);
+        self.system.add_reaction_curvature(self.t1, (&self.q1, v1), &mapped(&self.mu, |mu| -mu), &mut mass);
         let missing = from_fn(|i| self.p1[i] - p[i]);
         let parted = if self.refined && self.some.is_none() { parted(&a1, &missing) } else { None };
         let (right, taken) = parted.unwrap_or((missing, [0.0; M]));
-        let saddle = Saddle { block: mass, transposed: a1, rows: a1, right, level: slip.map(|s| -s) };
+        let saddle = Saddle { block: mass, transposed: a1, rows: a1, right, level: mapped(&slip, |s| -s) };
         let (correction, minus_mu) = match self.some {
             Some(rows) => saddle.solve_some(rows)?,
             None => saddle.solve(self.basis.as_ref())?,

@@ -1,6 +1,6 @@
 use crate::{State, StepError};
-use lagrangian::from_fn;
 use lagrangian::linear::larger;
+use lagrangian::{from_fn, mapped};
 
 /// One coordinate of a step that was made whole, and again in two halves.
 ///
@@ -73,7 +73,7 @@ impl Halved {
             moved: [halves[i], once[i]],
         });
         let most = |of: &[f64]| of.iter().fold(0.0, |most, x| larger(most, *x));
-        let fastest = most(&all.map(|one| most(&one.v)));
+        let fastest = most(&mapped(&all, |one| most(&one.v)));
         let nothing = Self::nothing(h, most(&before.unwrapped()), fastest);
         let resolved = all.iter().all(|one| one.is_resolved(h, fastest, nothing));
         if resolved { Ok(()) } else { Err(StepError::Unresolved) }

@@ -1,6 +1,6 @@
 use crate::convergence::tolerances::{SHRINKING, SLIGHT, STALL};
 use crate::convergence::{CorrectionKind, is_settled};
-use lagrangian::from_fn;
+use lagrangian::{from_fn, mapped};
 
 /// The fewest evaluations of the residual in an iteration: one for the first correction, and one that finds the equations met.
 pub(crate) const LEAST: u32 = 2;
@@ -26,7 +26,7 @@ impl<const N: usize> Settle<N> {
         x: &mut [f64; N],
         mut correction: impl FnMut(&[f64; N]) -> Option<[f64; N]>,
     ) -> Option<u32> {
-        let (mut last, mut allowed) = (self.first.map(f64::abs), SHRINKING * sup(&self.first));
+        let (mut last, mut allowed) = (mapped(&self.first, f64::abs), SHRINKING * sup(&self.first));
         for made in LEAST..=CORRECTIONS {
             let Some(d) = correction(x) else { return Some(made) };
             let moved = from_fn(|i| x[i] + d[i]);
@@ -39,7 +39,7 @@ impl<const N: usize> Settle<N> {
             if self.has_settled(x, &d, &last, rounding) {
                 return Some(made);
             }
-            last = d.map(f64::abs);
+            last = mapped(&d, f64::abs);
             allowed = SHRINKING * size;
         }
         None

@@ -2,7 +2,7 @@ use crate::positions::onto_positions;
 use crate::projection::project;
 use crate::{Equations, Mechanics, Newton, StackUse, Stage, State, StepError};
 use lagrangian::linear::Singular;
-use lagrangian::{RowSpace, Saddle, from_fn};
+use lagrangian::{RowSpace, Saddle, from_fn, mapped};
 
 const USE: StackUse = StackUse { squares: 18, rows: 24 };
 
@@ -90,7 +90,7 @@ impl<const N: usize, const M: usize> Equations<N> for Nearest<'_, N, M> {
     fn correction(&mut self, d: &[f64; N]) -> Result<[f64; N], Singular> {
         let q = self.given.ahead(d);
         let misses = self.system.position_misses(self.t, &q).unwrap_or([None; M]);
-        let rows = misses.map(|g| g.map_or([0.0; N], |g| g.eps));
+        let rows = mapped(&misses, |g| g.map_or([0.0; N], |g| g.eps));
         let mut block = self.mass;
         self.system.add_position_curvature(self.t, &q, &self.nu, &mut block);
         let some = RowSpace::new(&rows, &self.mass, RowSpace::<N, M>::ROUNDING).dependence().independent;
@@ -99,7 +99,7 @@ impl<const N: usize, const M: usize> Equations<N> for Nearest<'_, N, M> {
             transposed: rows,
             rows,
             right: from_fn(|i| -(0..N).map(|j| self.mass[i][j] * d[j]).sum::<f64>()),
-            level: misses.map(|g| g.map_or(0.0, |g| -g.re)),
+            level: mapped(&misses, |g| g.map_or(0.0, |g| -g.re)),
         };
         let (correction, nu) = saddle.solve_some(some)?;
         self.nu = nu;

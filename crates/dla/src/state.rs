@@ -1,6 +1,6 @@
 use crate::past::Past;
 use crate::{Checkpoint, CheckpointError, Mechanics, StepError};
-use lagrangian::{ReducedError, Twofold, added, from_fn, two_sum};
+use lagrangian::{ReducedError, Twofold, added, from_fn, mapped, two_sum};
 use std::f64::consts::{PI, TAU};
 
 /// `2 pi` minus its nearest f64.
@@ -217,7 +217,7 @@ impl<const N: usize> State<N> {
     /// The same place with the opposite velocity.
     #[must_use]
     pub fn reversed(&self) -> Self {
-        let flipped = |v: [f64; N]| v.map(|v| -v);
+        let flipped = |v: [f64; N]| mapped(&v, |v| -v);
         let left = match self.left {
             Left::Velocities(xi) | Left::Momenta(xi, _) => Left::Velocities(flipped(xi)),
             left => left,
@@ -234,7 +234,7 @@ impl<const N: usize> State<N> {
         let [xi, acceleration] = [self.xi(), self.acceleration()];
         checkpoint.put("xi", xi.as_ref().map_or(&[], |xi| &xi[..]));
         checkpoint.put("acceleration", acceleration.as_ref().map_or(&[], |a| &a[..]));
-        let halves = self.quasi_momenta().map(|pi| [pi.map(|pi| pi.hi), pi.map(|pi| pi.lo)]);
+        let halves = self.quasi_momenta().map(|pi| [mapped(&pi, |pi| pi.hi), mapped(&pi, |pi| pi.lo)]);
         checkpoint.put("pi", halves.as_ref().map_or(&[], |[hi, _]| &hi[..]));
         checkpoint.put("pi_rest", halves.as_ref().map_or(&[], |[_, lo]| &lo[..]));
         self.past.save(checkpoint);
@@ -299,7 +299,7 @@ fn too_large_together<const N: usize>(q: [f64; N], v: [f64; N]) -> bool {
 }
 
 fn bounds<const N: usize>(angles: [bool; N]) -> [f64; N] {
-    angles.map(|angle| if angle { PI } else { f64::MAX })
+    mapped(&angles, |angle| if angle { PI } else { f64::MAX })
 }
 
 /// An angle with its rest, wrapped, and the turns that were taken out of it.

@@ -1,4 +1,4 @@
-use crate::Scalar;
+use crate::{Scalar, mapped};
 
 /// The attitude of a rigid body by a unit quaternion `e = (e_0, e_1, e_2, e_3)`, `|e| = 1`: four coordinates without a singular
 /// attitude, for a system that has them among its own.
@@ -101,7 +101,7 @@ impl<S: Scalar> Attitude<S> {
     #[must_use]
     #[inline(always)]
     pub fn in_space(&self, x: &[S; 3]) -> [S; 3] {
-        self.rotation().map(|row| row[0] * x[0] + row[1] * x[1] + row[2] * x[2])
+        mapped(&self.rotation(), |row| row[0] * x[0] + row[1] * x[1] + row[2] * x[2])
     }
 
     /// The components in the body, `R' x`, of a vector that has the components `x` in space.
@@ -116,42 +116,42 @@ impl<S: Scalar> Attitude<S> {
     #[must_use]
     #[inline(always)]
     pub fn body_turns(&self) -> [[S; 4]; 3] {
-        body(&self.e).map(|row| row.map(|part| part * 0.5))
+        mapped(&body(&self.e), |row| mapped(&row, |part| part * 0.5))
     }
 
     /// The rates `e'` of turns at 1 rad/s about the axes of space, as [`body_turns`](Self::body_turns).
     #[must_use]
     #[inline(always)]
     pub fn space_turns(&self) -> [[S; 4]; 3] {
-        space(&self.e).map(|row| row.map(|part| part * 0.5))
+        mapped(&space(&self.e), |row| mapped(&row, |part| part * 0.5))
     }
 
     /// The matrix, by rows, that takes rates `e'` to the angular velocity in space (rad/s).
     #[must_use]
     #[inline(always)]
     pub fn space_velocity_matrix(&self) -> [[S; 4]; 3] {
-        space(&self.e).map(|row| row.map(|part| part * 2.0))
+        mapped(&space(&self.e), |row| mapped(&row, |part| part * 2.0))
     }
 
     /// The matrix, by rows, that takes rates `e'` to the angular velocity in the body (rad/s).
     #[must_use]
     #[inline(always)]
     pub fn body_velocity_matrix(&self) -> [[S; 4]; 3] {
-        body(&self.e).map(|row| row.map(|part| part * 2.0))
+        mapped(&body(&self.e), |row| mapped(&row, |part| part * 2.0))
     }
 
     /// The angular velocity `Omega` in the body (rad/s), of the rates `e'`.
     #[must_use]
     #[inline(always)]
     pub fn body_velocity(&self, rates: &[S; 4]) -> [S; 3] {
-        body(&self.e).map(|row| dot(&row, rates) * 2.0)
+        mapped(&body(&self.e), |row| dot(&row, rates) * 2.0)
     }
 
     /// The angular velocity `omega` in space (rad/s), of the rates `e'`.
     #[must_use]
     #[inline(always)]
     pub fn space_velocity(&self, rates: &[S; 4]) -> [S; 3] {
-        space(&self.e).map(|row| dot(&row, rates) * 2.0)
+        mapped(&space(&self.e), |row| dot(&row, rates) * 2.0)
     }
 
     /// The rates `e'` of an angular velocity `Omega` in the body (rad/s).
@@ -225,10 +225,10 @@ impl Attitude<f64> {
     pub fn nearest(numbers: [f64; 4]) -> Self {
         // Divided by the largest first, so that no square leaves the range of numbers.
         let largest = numbers.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-        let scaled = numbers.map(|x| x / largest);
+        let scaled = mapped(&numbers, |x| x / largest);
         let length = sum_of_squares(&scaled).sqrt();
         match length.is_finite() && length > 0.0 {
-            true => Self { e: scaled.map(|x| x / length) },
+            true => Self { e: mapped(&scaled, |x| x / length) },
             false => Self::LEVEL,
         }
     }

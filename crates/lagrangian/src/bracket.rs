@@ -61,7 +61,7 @@ impl<S: Scalar, const N: usize, const M: usize> Bracket<S, N, M> {
         let mut basis = AdmissibleBasis::empty();
         let mut along = [[S::zero(); N]; N];
         for (a, w) in frame.vectors().iter().enumerate() {
-            basis.vectors_mut()[a] = w.map(|w| w.re);
+            basis.vectors_mut()[a] = mapped(w, |w| w.re);
         }
         let velocity = basis.combine(xi);
         let l = system.lagrangian(Dual::fixed(t), &mapped(q, Dual::fixed), &Dual::variables(&velocity));
@@ -136,7 +136,7 @@ impl<S: Scalar, const N: usize, const M: usize> Bracket<S, N, M> {
     #[must_use]
     #[inline(always)]
     pub fn rates(&self, h_q: &[S; N], h_pi: &[S; N]) -> ([S; N], [S; N]) {
-        let mut pi = self.along_basis(h_q).map(|f| -f);
+        let mut pi = mapped(&self.along_basis(h_q), |f| -f);
         for a in 0..Self::DIMENSION {
             for b in 0..Self::DIMENSION {
                 if a != b {
@@ -180,10 +180,10 @@ where
     let place: [Dual<S, N>; N] = Dual::variables(q);
     let frame = system.admissible_basis(Dual::fixed(t), &place)?;
     let velocity = frame.combine(&mapped(xi, Dual::fixed));
-    let h_q = system.lagrangian(Dual::fixed(t), &place, &velocity).eps.map(|l_q| -l_q);
+    let h_q = mapped(&system.lagrangian(Dual::fixed(t), &place, &velocity).eps, |l_q| -l_q);
 
     // The derivatives in xi.
-    let mut moving = velocity.map(|v| Dual::fixed(v.re));
+    let mut moving = mapped(&velocity, |v| Dual::fixed(v.re));
     for (a, w) in frame.vectors().iter().enumerate() {
         for i in 0..N {
             moving[i].eps[a] = w[i].re;
@@ -206,7 +206,7 @@ where
     S: Scalar,
 {
     let basis = system.admissible_basis(t, q)?;
-    let mut moving = basis.combine(xi).map(Dual::fixed);
+    let mut moving = mapped(&basis.combine(xi), Dual::fixed);
     for (a, w) in basis.vectors().iter().enumerate() {
         for i in 0..N {
             moving[i].eps[a] = w[i];

@@ -1,4 +1,4 @@
-use crate::{Scalar, ScalarFunction};
+use crate::{Scalar, ScalarFunction, mapped};
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A number whose operations are calls, never inlined: for evaluations that are made seldom. A model on such numbers compiles to a tenth of
@@ -91,7 +91,7 @@ impl<S: Scalar> Scalar for Called<S> {
     }
     #[inline(never)]
     fn length<const K: usize>(components: &[Self; K]) -> Self {
-        Self(S::length(&components.map(|Self(x)| x)))
+        Self(S::length(&mapped(components, |Self(x)| x)))
     }
     #[inline(never)]
     fn atan2(self, x: Self) -> Self {

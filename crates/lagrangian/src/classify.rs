@@ -153,7 +153,7 @@ fn stay_within<const N: usize, const M: usize, const P: usize>(
             let mut sum = derivative(k, j);
             let (_, mut terms) = space.outside(&sum);
             for l in independent.iter() {
-                let part = derivative(l, j).map(|x| x * combination[k][l]);
+                let part = mapped(&derivative(l, j), |x| x * combination[k][l]);
                 sum = from_fn(|i| sum[i] - part[i]);
                 terms += space.outside(&part).1;
             }

@@ -47,7 +47,7 @@ pub trait DiscreteLagrangian<Sys, const N: usize, const M: usize> {
     #[inline]
     fn derivatives<S: Scalar>(&self, system: &Sys, t0: S, h: S, q0: &[S; N], v: &[S; N]) -> Derivatives<S, N> {
         let l = second_derivatives(&OfPair { of: self, system, t0, h, q0, v });
-        Derivatives { value: h * l.re, d1: l.e1, d2: l.e2, d1d2: l.e12.map(|row| row.map(|x| x / h)) }
+        Derivatives { value: h * l.re, d1: l.e1, d2: l.e2, d1d2: mapped(&l.e12, |row| mapped(&row, |x| x / h)) }
     }
 
     /// `D1 L_d` and `D2 L_d` without the mixed block, in first-order evaluations: automatic unless given by hand.

@@ -57,7 +57,7 @@ impl<const N: usize, const M: usize> dyn Gradients<N, M> + '_ {
     #[must_use]
     pub fn constraint(&self, t: Seeded, q: &[Seeded; N]) -> Constraint<Seeded, N, M> {
         let (a, b) = self.constraint_along(Dual::fixed(t), &mapped(q, Dual::fixed));
-        (a.map(|row| row.map(|x| x.re)), b.map(|x| x.re))
+        (mapped(&a, |row| mapped(&row, |x| x.re)), mapped(&b, |x| x.re))
     }
 
     /// `A v + b`, or `phi` of a constraint that is not affine.
@@ -104,7 +104,7 @@ impl<const N: usize, const M: usize> dyn Gradients<N, M> + '_ {
     #[must_use]
     pub fn basis(&self, t: Seeded, q: &[Seeded; N]) -> Option<AdmissibleBasis<Seeded, N, M>> {
         let basis = self.basis_along(Dual::fixed(t), &mapped(q, Dual::fixed))?;
-        Some(AdmissibleBasis::from_fn(|a| basis.vectors()[a].map(|w| w.re)))
+        Some(AdmissibleBasis::from_fn(|a| mapped(&basis.vectors()[a], |w| w.re)))
     }
 
     /// The velocity `W xi + v_b` of quasi-velocities, as [`velocity_of`](crate::velocity_of), with its derivative along the
@@ -168,7 +168,7 @@ impl<F: Parametrised<N, M, P>, const N: usize, const M: usize, const P: usize> G
         let in_v =
             from_fn(|i| HyperDual::linear(v[i], from_fn(|k| Seeded::constant(f64::from(u8::from(k == i)))), [a[i]]));
         let p = mapped(&self.parameters, HyperDual::fixed);
-        self.family.lagrangian(&p, along_t, &along_q, &in_v).e12.map(|[rate]| rate)
+        mapped(&self.family.lagrangian(&p, along_t, &along_q, &in_v).e12, |[rate]| rate)
     }
 
     fn slope(&self, t: Seeded, q: &[Seeded; N], v: &[Seeded; N]) -> [Seeded; N] {

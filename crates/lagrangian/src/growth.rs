@@ -1,4 +1,4 @@
-use crate::{LieBracket, RowSpace, Scalar, System, VectorField, from_fn};
+use crate::{LieBracket, RowSpace, Scalar, System, VectorField, from_fn, mapped};
 use nalgebra::DMatrix;
 use thiserror::Error;
 
@@ -147,7 +147,7 @@ impl<const M: usize> Elimination<M> {
     fn choose<const N: usize>(a: [[f64; N]; M]) -> Self {
         let mut left = a.map(|row| {
             let size = crate::linear::largest(&row);
-            if size > 0.0 { row.map(|x| x / size) } else { row }
+            if size > 0.0 { mapped(&row, |x| x / size) } else { row }
         });
         let mut chosen = Self { pivots: [(0, 0); M], rank: 0 };
         for step in 0..M {

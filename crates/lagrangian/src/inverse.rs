@@ -1,4 +1,5 @@
 use crate::linear::{Lu, Singular, THRESHOLD};
+use crate::mapped;
 
 /// The inverse of a matrix of up to three rows that is far from singular, or the factorisation of any other: to solve with
 /// it several times, and quickly.
@@ -112,7 +113,7 @@ impl<const U: usize> Inverse<U> {
     #[inline(always)]
     pub fn solve(&self, b: &[f64; U]) -> [f64; U] {
         match self {
-            Self::Cofactors(inverse, _) => inverse.map(|row| (0..U).map(|i| row[i] * b[i]).sum()),
+            Self::Cofactors(inverse, _) => mapped(inverse, |row| (0..U).map(|i| row[i] * b[i]).sum()),
             Self::Factors(lu) => lu.solve(*b),
         }
     }

@@ -2,6 +2,7 @@
 
 pub use crate::inverse::Inverse;
 
+use crate::mapped;
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 use thiserror::Error;
 
@@ -48,7 +49,7 @@ impl<const U: usize> Lu<U> {
         let mut a = matrix;
         let mut order: [usize; U] = crate::from_fn(|i| i);
         // Reciprocals of the largest entry of each row, and of each column of the matrix so scaled.
-        let mut row = a.map(|r| largest(&r).recip());
+        let mut row = mapped(&a, |r| largest(&r).recip());
         let column: [f64; U] = crate::from_fn(|j| largest(&crate::from_fn::<_, U, _>(|i| a[i][j] * row[i])).recip());
         let mut positive = true;
         for k in 0..U {
@@ -90,7 +91,7 @@ impl<const U: usize> Lu<U> {
     #[must_use]
     #[inline]
     pub fn solve(&self, b: [f64; U]) -> [f64; U] {
-        let mut x = self.order.map(|i| b[i]);
+        let mut x = mapped(&self.order, |i| b[i]);
         for i in 0..U {
             for j in 0..i {
                 x[i] -= self.factors[i][j] * x[j];

@@ -70,7 +70,7 @@ impl<const N: usize, const M: usize> Motion<N, M> {
             transposed: a,
             rows: a,
             right: from_fn(|i| l_q[i] + force.map_or(0.0, |f| f[i]) - transport[i][0]),
-            level: rate.map(|r| -r.eps[0]),
+            level: mapped(&rate, |r| -r.eps[0]),
         }
     }
 
@@ -93,7 +93,8 @@ impl<const N: usize, const M: usize> Motion<N, M> {
     pub fn automatic<Sys: System<N, M>>(system: &Sys, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<Self, MotionError> {
         let saddle = Self::equations(system, t, q, v);
         let basis = system.admissible_basis(t, q);
-        let of = |(acceleration, lambda): ([f64; N], [f64; M])| Self { acceleration, multiplier: lambda.map(|l| -l) };
+        let of =
+            |(acceleration, lambda): ([f64; N], [f64; M])| Self { acceleration, multiplier: mapped(&lambda, |l| -l) };
         match saddle.solve(basis.as_ref()) {
             Ok(solution) => Ok(of(solution)),
             Err(source) => redundant_rows(system, t, q, v)

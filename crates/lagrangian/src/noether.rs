@@ -72,7 +72,7 @@ pub fn momentum_balance<Sys: System<N, M>, X: VectorField<N>, const N: usize, co
     let rows = reaction_rows(system, t, q, v);
     let dot = |a: &[f64; N], b: &[f64; N]| (0..N).map(|i| a[i] * b[i]).sum::<f64>();
     let size = |a: &[f64; N], b: &[f64; N]| (0..N).map(|i| (a[i] * b[i]).abs()).sum::<f64>();
-    let crossing = rows.map(|row| dot(&row, &x));
+    let crossing = mapped(&rows, |row| dot(&row, &x));
     let multiplier = Motion::of(system, t, q, v)?.multiplier;
     Ok(MomentumBalance {
         momentum: dot(&p, &x),
@@ -80,7 +80,7 @@ pub fn momentum_balance<Sys: System<N, M>, X: VectorField<N>, const N: usize, co
         force_rate: dot(&force, &x),
         crossing,
         reaction_rate: (0..M).map(|k| multiplier[k] * crossing[k]).sum(),
-        sizes: [size(&slope, &x) + size(&p, &turned), size(&force, &x), largest(&rows.map(|row| size(&row, &x)))],
+        sizes: [size(&slope, &x) + size(&p, &turned), size(&force, &x), largest(&mapped(&rows, |row| size(&row, &x)))],
     })
 }
 

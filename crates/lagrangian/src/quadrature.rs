@@ -1,6 +1,6 @@
 //! Quadrature rules on `[0, 1]`, computed to rounding.
 
-use crate::{Twofold, from_fn};
+use crate::{Twofold, from_fn, mapped};
 use std::ops::{Div, Mul, Sub};
 
 /// The Legendre polynomials `P_0(x) .. P_n(x)` on `[-1, 1]`, by their recurrence; `visit(k, P_k)` receives each.
@@ -36,7 +36,7 @@ pub fn lagrange(nodes: &[f64], j: usize, x: f64) -> f64 {
 #[must_use]
 pub fn gauss_legendre<const S: usize>() -> ([f64; S], [f64; S]) {
     let (nodes, weights) = gauss_legendre_twofold();
-    (nodes.map(|node| node.hi), weights.map(|weight| weight.hi))
+    (mapped(&nodes, |node| node.hi), mapped(&weights, |weight| weight.hi))
 }
 
 /// The rule of [`gauss_legendre`] with twice the digits.

@@ -182,7 +182,7 @@ pub(crate) fn shortest<S: Scalar, const N: usize, const M: usize>(a: &[[S; N]; M
         return None;
     }
     let mut gram: [[S; M]; M] = from_fn(|k| from_fn(|l| (0..N).fold(S::zero(), |sum, i| sum + a[k][i] * a[l][i])));
-    let mut eta = b.map(|b| -b);
+    let mut eta = mapped(b, |b| -b);
     for k in 0..M {
         for l in k + 1..M {
             let factor = gram[l][k] / gram[k][k];

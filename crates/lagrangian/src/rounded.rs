@@ -1,5 +1,5 @@
-use crate::Scalar;
 use crate::derived::derived_operators;
+use crate::{Scalar, mapped};
 use scalar::ScalarFunction;
 use std::ops::{Add, Div, Mul, Neg};
 
@@ -161,8 +161,8 @@ impl Scalar for Rounded {
     /// The slopes of the length are at most one, in sum of squares too.
     #[inline(never)]
     fn length<const K: usize>(components: &[Self; K]) -> Self {
-        let brought = f64::length(&components.map(|x| x.size));
-        Self::result(f64::length(&components.map(|x| x.value)), brought, 2.0)
+        let brought = f64::length(&mapped(components, |x| x.size));
+        Self::result(f64::length(&mapped(components, |x| x.value)), brought, 2.0)
     }
     #[inline(never)]
     fn atan2(self, x: Self) -> Self {

@@ -64,7 +64,7 @@ impl<const N: usize> MotionRounding<N> {
                 acceleration[i] += response[i].abs();
             }
         }
-        Ok(Self { momentum: carried.map(|p| UNIT * p.re.size), force, acceleration })
+        Ok(Self { momentum: mapped(&carried, |p| UNIT * p.re.size), force, acceleration })
     }
 
     /// Of the rates of the quasi-momenta in a basis of admissible velocities.
@@ -103,7 +103,7 @@ pub fn reduced_rounding<Sys: System<N, M>, const N: usize, const M: usize>(
     let (time, place, quasi) = (Rounded::exact(t), mapped(q, Rounded::once), mapped(xi, Rounded::once));
     let basis = system.admissible_basis(t, q)?;
     let acceleration = match system.reduced().reduced_motion(time, &place, &quasi) {
-        Some(by_hand) => by_hand.map(|x| UNIT * x.size),
+        Some(by_hand) => mapped(&by_hand, |x| UNIT * x.size),
         None => {
             let v = velocity_of(system, t, q, xi).ok()?;
             let forces = products(&basis, &MotionRounding::at(system, t, q, &v).ok()?.force);

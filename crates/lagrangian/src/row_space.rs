@@ -1,4 +1,4 @@
-use crate::{Rows, from_fn};
+use crate::{Rows, from_fn, mapped};
 
 /// The span of the rows of a constraint, in a metric that has no units: its dimension is their rank.
 ///
@@ -38,11 +38,11 @@ impl<const N: usize, const M: usize> RowSpace<N, M> {
     #[must_use]
     pub fn new(rows: &[[f64; N]; M], mass: &[[f64; N]; N], tolerance: f64) -> Self {
         let metric = cholesky(mass).unwrap_or_else(|| by_coordinates(rows, mass));
-        let mut rest = rows.map(|row| lowered(&metric, &row));
-        let size = rest.map(|row| norm(&row));
+        let mut rest = mapped(rows, |row| lowered(&metric, &row));
+        let size = mapped(&rest, |row| norm(&row));
         for k in 0..M {
             if size[k] > 0.0 {
-                rest[k] = rest[k].map(|x| x / size[k]);
+                rest[k] = mapped(&rest[k], |x| x / size[k]);
             }
         }
         let mut space = Self {
@@ -67,7 +67,7 @@ impl<const N: usize, const M: usize> RowSpace<N, M> {
             }
             let s = space.rank;
             order[s] = next;
-            space.axes[s] = rest[next].map(|x| x / distance);
+            space.axes[s] = mapped(&rest[next], |x| x / distance);
             parts[s][next] += distance;
             space.rank += 1;
             space.dependence.independent = space.dependence.independent.with(next);
@@ -118,7 +118,7 @@ impl<const N: usize, const M: usize> RowSpace<N, M> {
         for place in 0..N - self.rank {
             let next = (0..N).fold(0, |best, i| if norm(&rest[i]) > norm(&rest[best]) { i } else { best });
             let size = norm(&rest[next]);
-            let axis = rest[next].map(|x| x / size);
+            let axis = mapped(&rest[next], |x| x / size);
             for x in &mut rest {
                 for _ in 0..2 {
                     let along = dot(&axis, x);
@@ -127,7 +127,7 @@ impl<const N: usize, const M: usize> RowSpace<N, M> {
             }
             found[place] = axis;
         }
-        found.map(|z| raised(&self.metric, &z))
+        mapped(&found, |z| raised(&self.metric, &z))
     }
 
     fn take_off(&self, x: &mut [f64; N]) {

@@ -1,5 +1,5 @@
 use crate::linear::{Lu, Singular, has_positive_determinant, normal_solve};
-use crate::{AdmissibleBasis, Rows, from_fn};
+use crate::{AdmissibleBasis, Rows, from_fn, mapped};
 
 /// The linear equations of a constrained system,
 ///
@@ -116,7 +116,7 @@ impl<const N: usize, const M: usize> Saddle<N, M> {
     fn solve_by_schur(&self, some: Option<Rows>) -> Result<([f64; N], [f64; M], bool), Singular> {
         let block = Lu::new(self.block)?;
         let free = block.solve(self.right);
-        let response = self.transposed.map(|g| block.solve(g));
+        let response = mapped(&self.transposed, |g| block.solve(g));
         let mut schur: [[f64; M]; M] = from_fn(|k| from_fn(|l| dot(&self.rows[k], &response[l])));
         let mut right: [f64; M] = from_fn(|k| dot(&self.rows[k], &free) - self.level[k]);
         if let Some(some) = some {

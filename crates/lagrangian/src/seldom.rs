@@ -1,6 +1,6 @@
 //! First derivatives of the Lagrangian for evaluations that are made seldom: compiled small rather than quick.
 
-use crate::{Called, Gradient, Scalar, System, from_fn};
+use crate::{Called, Gradient, Scalar, System, from_fn, mapped};
 
 /// `L_q(t, q, v)`, the derivatives of the Lagrangian in the configuration.
 #[inline(never)]
@@ -9,7 +9,7 @@ where
     Sys: System<N, M>,
     S: Scalar,
 {
-    system.lagrangian(fixed(t), &variables(q), &v.map(fixed)).0.gradient()
+    system.lagrangian(fixed(t), &variables(q), &mapped(v, fixed)).0.gradient()
 }
 
 /// `L_v(t, q, v)`: the same numbers as [`momentum`](crate::momentum).
@@ -19,7 +19,7 @@ where
     Sys: System<N, M>,
     S: Scalar,
 {
-    system.lagrangian(fixed(t), &q.map(fixed), &variables(v)).0.gradient()
+    system.lagrangian(fixed(t), &mapped(q, fixed), &variables(v)).0.gradient()
 }
 
 fn fixed<S: Scalar, const N: usize>(x: S) -> Called<Gradient<S, N>> {

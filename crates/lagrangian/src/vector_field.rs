@@ -1,4 +1,4 @@
-use crate::{Dual, Scalar, from_fn};
+use crate::{Dual, Scalar, from_fn, mapped};
 
 /// A vector field on the configurations, one function generic in its scalar: an infinitesimal motion `q' = X(q)`.
 pub trait VectorField<const N: usize> {
@@ -30,5 +30,5 @@ impl<X: VectorField<N>, Y: VectorField<N>, const N: usize> VectorField<N> for Li
 /// How a field changes along a velocity: `(dX/dq) v`.
 pub(crate) fn rate_along<X: VectorField<N>, S: Scalar, const N: usize>(field: &X, q: &[S; N], v: &[S; N]) -> [S; N] {
     let along: [Dual<S, 1>; N] = from_fn(|i| Dual { re: q[i], eps: [v[i]] });
-    field.at(&along).map(|x| x.eps[0])
+    mapped(&field.at(&along), |x| x.eps[0])
 }

@@ -3,7 +3,7 @@ use crate::Mechanics;
 use crate::derivatives::StepDerivatives;
 use crate::dla::Dla;
 use crate::settle::{LEAST, Settle, sup};
-use lagrangian::{Bordered, from_fn};
+use lagrangian::{Bordered, from_fn, mapped};
 
 impl<D> Dla<D> {
     /// The velocity `v1` at the end: `L_v(q1, v1) = p1 + A(q1)' mu`, `A(q1) v1 + b(q1) = 0`.
@@ -39,12 +39,12 @@ impl<D> Dla<D> {
         }
         if mass.suffice(size, large) {
             self.kept.mass.go_unseen();
-            return Some(FoundMean { v, lambda: minus_mu.map(|m| -m), corrections: 1 });
+            return Some(FoundMean { v, lambda: mapped(&minus_mu, |m| -m), corrections: 1 });
         }
         let p = system.momentum(t1, q1, &v);
         if here.is_met(&p, &minus_mu) {
             self.kept.mass.have_sufficed(size, large, || true);
-            return Some(FoundMean { v, lambda: minus_mu.map(|m| -m), corrections: LEAST });
+            return Some(FoundMean { v, lambda: mapped(&minus_mu, |m| -m), corrections: LEAST });
         }
         // Destructured and rebuilt, so that the results above stay in registers: returned as it is, all would go through the memory in
         // which the call leaves its result.
@@ -105,6 +105,6 @@ impl<const N: usize, const M: usize> Here<'_, N, M> {
                 Some(d)
             },
         )?;
-        Some(FoundMean { v, lambda: minus_mu.map(|m| -m), corrections })
+        Some(FoundMean { v, lambda: mapped(&minus_mu, |m| -m), corrections })
     }
 }

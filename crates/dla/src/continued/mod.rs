@@ -10,7 +10,7 @@ use crate::increment::Departure;
 use crate::overshoot::brakes_only;
 use crate::settle::LEAST;
 use crate::{Discretisation, Mechanics, State, StepReport};
-use lagrangian::from_fn;
+use lagrangian::{from_fn, mapped};
 
 /// The velocity that an iteration has found, the impulse of the constraints, and the number of corrections.
 struct FoundMean<const N: usize, const M: usize> {
@@ -127,7 +127,7 @@ fn going_on<D: Discretisation<N, M>, const N: usize, const M: usize>(
         return None;
     }
 
-    let d = v.map(|v| h * v);
+    let d = mapped(&v, |v| h * v);
     let (t1, q1) = (t0 + h, state.ahead(&d));
     let guess = match method.kept.velocities.next(h) {
         Some(expected) => from_fn(|i| expected[i]),

@@ -1,5 +1,5 @@
 use lagrangian::linear::normal_solve;
-use lagrangian::{Rounded, from_fn};
+use lagrangian::{Rounded, from_fn, mapped};
 
 /// A covector without its part along the rows, the reaction, which the multipliers balance: `r - Q Q' r` with an orthonormal
 /// basis `Q` of the rows, by modified Gram-Schmidt, twice (Bjorck 1967, BIT 7, 1-21). Rows that depend on those before them
@@ -11,7 +11,7 @@ pub(crate) fn without_reaction<const N: usize, const M: usize>(
     let mut basis = [[0.0; N]; M];
     for k in 0..M {
         let before = norm(&rows[k]);
-        let mut row = rows[k].map(|x| x / before);
+        let mut row = mapped(&rows[k], |x| x / before);
         for _ in 0..2 {
             for q in basis.iter().take(k) {
                 let along: f64 = (0..N).map(|i| q[i] * row[i]).sum();
@@ -21,7 +21,7 @@ pub(crate) fn without_reaction<const N: usize, const M: usize>(
         let left = norm(&row);
         // A row of zeros, or one that the others imply, adds nothing.
         if left > DEPENDENT {
-            basis[k] = row.map(|x| x / left);
+            basis[k] = mapped(&row, |x| x / left);
         }
     }
     for q in &basis {
@@ -71,7 +71,7 @@ mod tests {
         let reaction: [f64; 4] = from_fn(|i| rows[0][i] + 2.0 * rows[3][i]);
         let left = without_reaction(&rows, mapped(&reaction, Rounded::once));
         assert!(most_roundings(left) <= 1.0, "{left:?}");
-        let across = [2.0, -1.0, 0.0, 1.6e-3].map(|x: f64| 1e-10 * x);
+        let across = mapped(&[2.0, -1.0, 0.0, 1.6e-3], |x: f64| 1e-10 * x);
         let left = without_reaction(&rows, from_fn(|i| Rounded::once(reaction[i] + across[i])));
         assert!(most_roundings(left) > 100.0, "{left:?}");
     }

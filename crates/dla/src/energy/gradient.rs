@@ -1,7 +1,7 @@
 use super::path::PathPoints;
 use super::rule::EnergyRule;
 use crate::Mechanics;
-use lagrangian::{Lanes, Scalar};
+use lagrangian::{Lanes, Scalar, mapped};
 
 /// Averages of the energy's gradient, one for each collocation node in its lane.
 #[derive(Debug, Clone, Copy)]
@@ -34,6 +34,6 @@ pub(super) fn average<const N: usize, const M: usize>(
             result
         })
     };
-    let steepest = slope.h_q.map(|h| h.0.iter().fold(0.0, |m: f64, x| m.max(x.abs())));
+    let steepest = mapped(&slope.h_q, |h| h.0.iter().fold(0.0, |m: f64, x| m.max(x.abs())));
     Some(Averages { h_q: mean(&slope.h_q), h_pi: mean(&nodes.xi), steepest })
 }

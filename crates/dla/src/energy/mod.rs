@@ -12,7 +12,7 @@ use crate::positions::{affine_only, velocities_only};
 use crate::{Mechanics, OneStep, StackUse, Stage, State, StepError, StepReport};
 use ends::Ends;
 use lagrangian::linear::larger;
-use lagrangian::{AT_ONCE, Lanes, Scalar, Twofold, from_fn, vectorized};
+use lagrangian::{AT_ONCE, Lanes, Scalar, Twofold, from_fn, mapped, vectorized};
 use path::{EnergyPath, PathPoints};
 use rule::EnergyRule;
 use start::EnergyStart;
@@ -178,7 +178,7 @@ impl<const N: usize, const M: usize> StepEnergy<'_, N, M> {
     fn end(&self, path: &EnergyPath<N>, points: &PathPoints<N>, work: f64, iterations: u32) -> PathEnd<N> {
         let (increment, gained) = path.increments(self.rule, self.h);
         let (start, last) = (self.start, self.rule.ends().0);
-        let mut xi = points.xi.map(|xi| xi.0[last]);
+        let mut xi = mapped(&points.xi, |xi| xi.0[last]);
         for b in 0..N {
             let missing = gained[b] + start.rest[b] - (points.pi[b].0[last] - start.pi[b]);
             for a in 0..N {

@@ -1,5 +1,5 @@
 use lagrangian::quadrature::gauss_legendre_twofold;
-use lagrangian::{Lanes, Twofold, from_fn};
+use lagrangian::{Lanes, Twofold, from_fn, mapped};
 
 /// The coefficients of collocation with up to four Gauss nodes `c_i` and of the integrals over the step.
 ///
@@ -45,7 +45,7 @@ impl Weights {
     const NONE: Self = Self { hi: Lanes([0.0; Lanes::COUNT]), lo: Lanes([0.0; Lanes::COUNT]) };
 
     fn new(weights: [Twofold; Lanes::COUNT]) -> Self {
-        Self { hi: Lanes(weights.map(|w| w.hi)), lo: Lanes(weights.map(|w| w.lo)) }
+        Self { hi: Lanes(mapped(&weights, |w| w.hi)), lo: Lanes(mapped(&weights, |w| w.lo)) }
     }
 
     /// The coefficient of a lane, rounded.
@@ -93,11 +93,11 @@ impl EnergyRule {
         Self {
             stages: S,
             b: from_fn(|i| if i < S { b[i] } else { Twofold::from(0.0) }),
-            nodes: Lanes(nodes.map(|node| node.hi)),
-            points: Lanes(points.map(|point| point.hi)),
+            nodes: Lanes(mapped(&nodes, |node| node.hi)),
+            points: Lanes(mapped(&points, |point| point.hi)),
             averages: filled(&|i| Weights::new(from_fn(|k| weights[k] * basis(i, nodes[k]) / b[i]))),
-            to_nodes: filled(&|i| Weights::new(nodes.map(|tau| integral(i, tau)))),
-            to_points: filled(&|i| Weights::new(points.map(|tau| integral(i, tau)))),
+            to_nodes: filled(&|i| Weights::new(mapped(&nodes, |tau| integral(i, tau)))),
+            to_points: filled(&|i| Weights::new(mapped(&points, |tau| integral(i, tau)))),
         }
     }
 

@@ -4,7 +4,7 @@ use crate::sensitivity::{
     Differentiable, NO_BASIS, SensitivityError, StepEquations, StepStart, StepUnknowns, advanced, constrained,
     difference, dimension, product,
 };
-use lagrangian::{Dual, Gradients, Lanes, Scalar, Seeded, from_fn};
+use lagrangian::{Dual, Gradients, Lanes, Scalar, Seeded, from_fn, mapped};
 
 /// In the rates of the path at the collocation nodes and the quasi-velocities at all of its points, which belong to its
 /// quasi-momenta, `W_a . L_v(q, W xi) = pi_a`.
@@ -107,13 +107,13 @@ impl<const N: usize, const M: usize> EnergyPoint<N, M> {
         let q = from_fn(|i| Dual { re: self.q[i], eps: [direction[i]] });
         let basis = model.basis_along(Dual::fixed(self.t), &q).ok_or(NO_BASIS)?;
         Ok(from_fn(|b| {
-            basis.vectors().get(b).map_or(Seeded::zero(), |w| product(&w.map(|w| w.eps[0]), &self.momentum))
+            basis.vectors().get(b).map_or(Seeded::zero(), |w| product(&mapped(w, |w| w.eps[0]), &self.momentum))
         }))
     }
 
     /// `H_q = -L_q - p . DW xi`.
     fn energy_slope(&self, model: &dyn Gradients<N, M>) -> Result<[Seeded; N], SensitivityError> {
-        let mut h_q = model.slope(self.t, &self.q, &self.velocity).map(|l_q| -l_q);
+        let mut h_q = mapped(&model.slope(self.t, &self.q, &self.velocity), |l_q| -l_q);
         for j in 0..N {
             let unit = from_fn(|i| Seeded::constant(f64::from(u8::from(i == j))));
             h_q[j] -= product(&self.turning(model, &unit)?, &self.xi);
@@ -129,7 +129,7 @@ impl<const N: usize, const M: usize> EnergyPoint<N, M> {
         h_pi: &[Seeded; N],
         q_rate: &[Seeded; N],
     ) -> Result<[Seeded; N], SensitivityError> {
-        let mut rates = self.along_basis(h_q).map(|f| -f);
+        let mut rates = mapped(&self.along_basis(h_q), |f| -f);
         if let Some(force) = model.force(self.t, &self.q, q_rate) {
             let along = self.along_basis(&force);
             rates = from_fn(|a| rates[a] + along[a]);

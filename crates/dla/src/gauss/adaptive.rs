@@ -7,6 +7,7 @@ use super::{Gauss, TakenStep};
 use crate::positions::affine_only;
 use crate::{Mechanics, OneStep, OwnStep, State, StepError, StepReport};
 use lagrangian::linear::larger;
+use lagrangian::mapped;
 use std::ops::ControlFlow;
 
 /// Gauss collocation with steps of its own within a step of the schedule, as many as a tolerance asks for.
@@ -67,7 +68,7 @@ impl GaussAdaptive {
     ) -> Option<Tried<N>> {
         let rule = self.gauss.rule;
         let (q0, epsilon) = (state.q(), self.tolerance);
-        let counts = [q0, xi0].map(|y| y.map(|y| h.abs() / (epsilon * (1.0 + y.abs()))));
+        let counts = mapped(&[q0, xi0], |y| mapped(y, |y| h.abs() / (epsilon * (1.0 + y.abs()))));
         let memory = &self.gauss.memory;
         let apart = if memory.is_of_length(h) { 0 } else { quarters.saturating_sub(memory.quarters) };
         let before = memory.rows(state).zip(rule.continued(self.degree, apart));

@@ -11,8 +11,8 @@ use crate::newton::{BlockEquations, NewtonRoot};
 use crate::positions::affine_only;
 use crate::projection::{Projected, Projection};
 use crate::{Mechanics, Newton, NewtonError, OneStep, StackUse, Stage, State, StepError, StepReport};
-use lagrangian::from_fn;
 use lagrangian::linear::largest;
+use lagrangian::{from_fn, mapped};
 use stages::LobattoStages;
 use std::f64::consts::PI;
 
@@ -127,8 +127,8 @@ impl<const N: usize, const M: usize, const S: usize> OneStep<N, M> for Lobatto<S
         // Start from uniform acceleration, where the equations of motion give one.
         let (mut v, mut impulse) = ([v0; S], [0.0; M]);
         if let Ok(motion) = system.motion(t0, &q0, &v0) {
-            v = c.map(|c| from_fn(|i| v0[i] + c * h * motion.acceleration[i]));
-            impulse = motion.multiplier.map(|lambda| h * lambda);
+            v = mapped(c, |c| from_fn(|i| v0[i] + c * h * motion.acceleration[i]));
+            impulse = mapped(&motion.multiplier, |lambda| h * lambda);
         }
         let mut impulses = [impulse; S];
         impulses[S - 1] = [0.0; M];

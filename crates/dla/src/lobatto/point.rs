@@ -76,7 +76,7 @@ impl<const N: usize, const M: usize> StagePoint<N, M> {
         });
         let g = from_fn(|k| (0..N).fold(b[k], |sum, i| sum + a[k][i] * v[i]));
         let positions = system.positions_rounded(t, &q).unwrap_or([None; M]);
-        Terms { p: system.momentum_rounded(t, &q, &v), w, g, a: a.map(|row| row.map(|x| x.value)), positions }
+        Terms { p: system.momentum_rounded(t, &q, &v), w, g, a: mapped(&a, |row| mapped(&row, |x| x.value)), positions }
     }
 
     /// All that the equations need here, with its derivatives.
@@ -86,9 +86,9 @@ impl<const N: usize, const M: usize> StagePoint<N, M> {
         let Self { t, q, v, impulse } = self;
         let SecondSlopes { l_q, l_qq, l_qv: mixed, l_v: p, l_vv: p_v, force } = system.second_slopes(*t, q, v);
 
-        let mut w = l_q.map(|x| h * x);
-        let mut w_q = l_qq.map(|row| row.map(|x| h * x));
-        let mut w_v = mixed.map(|row| row.map(|x| h * x));
+        let mut w = mapped(&l_q, |x| h * x);
+        let mut w_q = mapped(&l_qq, |row| mapped(&row, |x| h * x));
+        let mut w_v = mapped(&mixed, |row| mapped(&row, |x| h * x));
         if let Some([in_place, in_velocity]) = force {
             for i in 0..N {
                 w[i] += h * in_place[i].re;

@@ -3,7 +3,7 @@ use super::tables::LobattoTables;
 use crate::sensitivity::{
     Differentiable, SensitivityError, StepEquations, StepStart, StepUnknowns, advanced, constrained, difference,
 };
-use lagrangian::{Gradients, Scalar, Seeded, from_fn};
+use lagrangian::{Gradients, Scalar, Seeded, from_fn, mapped};
 
 /// In the velocities of the stages, the impulses `l_j = h Lambda_j` of all stages but the last, and `(v1, mu)`.
 impl<const S: usize, const N: usize, const M: usize> Differentiable<N, M> for Lobatto<S> {
@@ -25,10 +25,10 @@ impl<const S: usize, const N: usize, const M: usize> Differentiable<N, M> for Lo
         let (v1, mu): ([Seeded; N], [Seeded; M]) = (unknowns.take(), unknowns.take());
 
         let one = Seeded::constant(1.0);
-        let times = c.map(|c| t + h * c);
+        let times = mapped(c, |c| t + h * c);
         let places: [[Seeded; N]; S] = from_fn(|i| advanced(&q0, h, &a[i], &velocities));
         let gains: [[Seeded; N]; S] = from_fn(|j| {
-            let push = model.push(times[j], &places[j], &velocities[j]).map(|f| h * f);
+            let push = mapped(&model.push(times[j], &places[j], &velocities[j]), |f| h * f);
             constrained(&push, &model.constraint(times[j], &places[j]).0, &impulses[j])
         });
         let p0 = model.momentum(t, &q0, &v0);

@@ -47,7 +47,7 @@ impl<const N: usize, const M: usize, const S: usize> LobattoStages<'_, N, M, S> 
     #[inline]
     pub(super) fn turn(&self, v: &[[f64; N]; S]) -> f64 {
         let increment = self.increment(&self.tables.b, 1.0, v);
-        branch::turn_of(self.system, (self.t0, self.h), self.start.q(), &increment.map(|d| d / self.h))
+        branch::turn_of(self.system, (self.t0, self.h), self.start.q(), &mapped(&increment, |d| d / self.h))
     }
 
     /// The points of the stages.
@@ -69,7 +69,7 @@ impl<const N: usize, const M: usize, const S: usize> LobattoStages<'_, N, M, S> 
         let Self { system, t0, h, start, .. } = *self;
         let (q, v) = (start.q(), start.v());
         let rounding = system.motion_rounding(t0, q, v);
-        let mut velocity = rounding.map_or([0.0; N], |rounding| rounding.acceleration.map(|a| (h * a).abs()));
+        let mut velocity = rounding.map_or([0.0; N], |rounding| mapped(&rounding.acceleration, |a| (h * a).abs()));
         if let Some(positions) = system.positions_rounded(Rounded::exact(t0), &mapped(q, Rounded::once)) {
             let ((_, block), rows) = (system.mass_matrix(t0, q, v), system.reaction_rows(t0, q, v));
             for k in 0..M {
@@ -192,7 +192,7 @@ impl<const N: usize, const M: usize, const S: usize> BlockEquations<N, S> for Lo
     #[inline(never)]
     fn correction(&mut self, v: &[[f64; N]; S]) -> Result<[[f64; N]; S], Singular> {
         let points = self.points(v);
-        let at = points.map(|point| point.linearised(self.system, self.h));
+        let at = mapped(&points, |point| point.linearised(self.system, self.h));
         // Filled in place: a second matrix would be on the stack beside it.
         let mut dense = Dense::zero();
         self.equations(&points, &at, &mut dense);

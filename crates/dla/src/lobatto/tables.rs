@@ -1,5 +1,5 @@
-use lagrangian::from_fn;
 use lagrangian::quadrature::shifted_legendre;
+use lagrangian::{from_fn, mapped};
 
 /// The Lobatto nodes and weights on `[0, 1]` with the coefficients of the pair IIIA and IIIB, for any `S >= 2`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,10 +27,10 @@ impl<const S: usize> LobattoTables<S> {
     pub fn new() -> Self {
         const { assert!(S >= 2, "a Lobatto rule has at least the two ends") }
         let c = nodes();
-        let values: [([f64; S], f64); S] = c.map(shifted_legendre);
-        let last = values.map(|(p, _)| p[S - 1]);
+        let values: [([f64; S], f64); S] = mapped(&c, shifted_legendre);
+        let last = mapped(&values, |(p, _)| p[S - 1]);
         let n = S as f64;
-        let b = last.map(|p| 1.0 / (n * (n - 1.0) * p * p));
+        let b = mapped(&last, |p| 1.0 / (n * (n - 1.0) * p * p));
         let a = from_fn(|i| {
             from_fn(|j| {
                 let mut sum = c[i];
@@ -48,7 +48,7 @@ impl<const S: usize> LobattoTables<S> {
         });
         let a: [[f64; S]; S] = a;
         let a_hat = from_fn(|i| from_fn(|j| b[j] - b[j] * (a[j][i] / b[i])));
-        Self { c, b, a, a_hat, blind: last.map(|p| p / last[0]) }
+        Self { c, b, a, a_hat, blind: mapped(&last, |p| p / last[0]) }
     }
 }
 

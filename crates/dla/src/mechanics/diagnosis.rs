@@ -1,5 +1,5 @@
 use crate::{NotANumber, not_a_number};
-use lagrangian::{Dependence, Dual, RowSpace, Rows, Scalar, System, mapped};
+use lagrangian::{AdmissibleBasis, Dependence, Dual, RowSpace, Rows, Scalar, System, mapped};
 
 /// What is asked of a system where a step fails, or before the first one.
 pub trait Diagnosis<const N: usize, const M: usize> {
@@ -56,10 +56,18 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Diagnosis<N, M> for Sys 
         let (q, v) = (mapped(q, Dual::fixed), mapped(v, Dual::fixed));
         let (a, b) = System::constraint(self, t, &q);
         // What is not a number fails later, and is named there.
-        let moves = |x: &Dual<f64, 1>| x.eps[0].abs() > 0.0;
+        let mut changes = System::lagrangian(self, t, &q, &v).eps[0].abs() > 0.0;
+        let mut see = |x: &Dual<f64, 1>| changes |= x.eps[0].abs() > 0.0;
         let basis = self.admissible_basis(t, &q);
-        moves(&System::lagrangian(self, t, &q, &v))
-            || a.iter().flatten().chain(&b).any(moves)
-            || basis.is_some_and(|basis| basis.vectors().iter().flatten().any(moves))
+        // Loops, where iterators would be a dozen functions more for each system.
+        for row in a.iter().chain(basis.as_ref().map_or(&[][..], AdmissibleBasis::vectors)) {
+            for x in row {
+                see(x);
+            }
+        }
+        for x in &b {
+            see(x);
+        }
+        changes
     }
 }

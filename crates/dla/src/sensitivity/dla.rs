@@ -1,7 +1,7 @@
 use super::equations::{StepUnknowns, constrained, difference};
 use super::{Differentiable, SensitivityError, StepEquations, StepStart};
 use crate::Dla;
-use lagrangian::{Gradients, Rule, Scalar, Seeded, from_fn};
+use lagrangian::{Gradients, Rule, Scalar, Seeded, from_fn, mapped};
 
 /// With multipliers, in the unknowns `(v, lambda, v1, mu)`: [`Dla`] solves the same equations in whichever form.
 ///
@@ -33,7 +33,7 @@ impl<const N: usize, const M: usize> Differentiable<N, M> for Dla {
         let mut unknowns = StepUnknowns(z);
         let (v, lambda): ([Seeded; N], [Seeded; M]) = (unknowns.take(), unknowns.take());
         let (v1, mu): ([Seeded; N], [Seeded; M]) = (unknowns.take(), unknowns.take());
-        let increment = v.map(|v| h * v);
+        let increment = mapped(&v, |v| h * v);
         let along = |alpha: f64| (t + h * alpha, from_fn(|i| q[i] + increment[i] * alpha));
 
         // p0 + D1 L_d + f_d^-, and D2 L_d + f_d^+.

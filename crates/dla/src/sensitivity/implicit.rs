@@ -3,7 +3,7 @@ use super::{Differentiable, SensitivityError, StepEquations, StepStart};
 use crate::convergence::tolerances::{ROUNDINGS, STALL};
 use crate::{History, NewtonError};
 use lagrangian::linear::Singular;
-use lagrangian::{Gradients, Rounded, Scalar, Seeded, from_fn};
+use lagrangian::{Gradients, Rounded, Scalar, Seeded, from_fn, mapped};
 use nalgebra::DMatrix;
 
 /// The system at parameters that may carry derivatives.
@@ -103,7 +103,7 @@ impl<const N: usize, const M: usize> Elementary<'_, '_, N, M> {
                     end[(N + i, column)] = at.velocity[i].eps[k];
                 }
             }
-            (increment, velocity) = (at.increment.map(|x| x.re), at.velocity.map(|x| x.re));
+            (increment, velocity) = (mapped(&at.increment, |x| x.re), mapped(&at.velocity, |x| x.re));
         }
         for i in 0..N {
             end[(i, unknowns + i)] += 1.0;

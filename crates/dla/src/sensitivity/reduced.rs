@@ -75,7 +75,7 @@ impl<const N: usize, const P: usize> BasisFrame<N, P> {
         let (a, _) = model.constraint(time, &place);
         let mut columns = [[0.0; N]; N];
         for (column, w) in columns.iter_mut().zip(vectors.vectors().iter().chain(&a)) {
-            *column = w.map(|w| w.re);
+            *column = mapped(w, |w| w.re);
         }
         let split = Lu::new(from_fn(|i| from_fn(|j| columns[j][i]))).ok()?;
         let mut basis = columns;
@@ -89,7 +89,7 @@ impl<const N: usize, const P: usize> BasisFrame<N, P> {
             let (model, time, place) = at(block);
             let velocity = model.velocity(time, &place, &mapped(&xi, Seeded::constant))?;
             for (k, column) in derivatives.iter_mut().skip(variable(block, 0)).take(8).enumerate() {
-                *column = velocity.map(|v| v.eps[k]);
+                *column = mapped(&velocity, |v| v.eps[k]);
             }
         }
         Some(Self {

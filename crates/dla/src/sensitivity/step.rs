@@ -219,7 +219,7 @@ fn defect<const N: usize>(
 ) -> f64 {
     let (before, after) = (start.unwrapped(), end.unwrapped());
     let off: [f64; N] = from_fn(|i| after[i] - before[i] - moved[i]);
-    let noise: [f64; N] = rounding.map(|size| NEAR_ROUNDINGS * 0.5 * f64::EPSILON * size);
+    let noise: [f64; N] = mapped(rounding, |size| NEAR_ROUNDINGS * 0.5 * f64::EPSILON * size);
     let slower: [f64; N] = from_fn(|i| {
         let off = end.v()[i] - velocity[i];
         if off.abs() <= noise[i] { 0.0 } else { off }

@@ -12,7 +12,7 @@ use crate::dla::Dla;
 use crate::settle::LEAST;
 use crate::{Discretisation, Mechanics, State, StepReport};
 use arrival::arrival;
-use lagrangian::{AdmissibleBasis, from_fn};
+use lagrangian::{AdmissibleBasis, from_fn, mapped};
 use mean::mean;
 
 /// A velocity with its quasi-velocities, and the impulse of the constraints.
@@ -42,7 +42,7 @@ pub(super) fn going_on<D: Discretisation<N, M>, const N: usize, const M: usize>(
         return None;
     }
 
-    let d = v.map(|v| h * v);
+    let d = mapped(&v, |v| h * v);
     let (t1, q1) = (t0 + h, state.ahead(&d));
     let end = arrival(method, system, (t1, h, &q1), p1)?;
     let v1 = end.found.v;
