@@ -7,7 +7,7 @@ use crate::saves::Saves;
 use crate::table::ComparisonRow;
 use crate::{account, compare_numbers, facts, inspect, json, notes, progress, table, terminal, train};
 use dla::{Schedule, State};
-use harness::report::{self, Report, SceneReport, Series};
+use harness::report::{self, HEADINGS, Report, SceneReport, Series};
 use harness::{Drift, DriftVerdict, METHODS, Method, Record, Request};
 use scene::{AnyScene, Built, Visitor};
 use sleigh::Exact;
@@ -264,7 +264,7 @@ fn series_of<const N: usize, const M: usize>(system: &Built<'_, N, M>, record: &
         k.map_or_else(Vec::new, |k| of(k).collect())
     };
     let path = system.named("x").zip(system.named("y"));
-    let heading = path.and_then(|_| ["heading", "theta", "phi", "psi"].into_iter().find_map(|name| system.named(name)));
+    let heading = path.and_then(|_| HEADINGS.into_iter().find_map(|name| system.named(name)));
     let [x, y] = [path.map(|(x, _)| x), path.map(|(_, y)| y)].map(column);
     Series {
         label: record.method.name.to_owned(),

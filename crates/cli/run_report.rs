@@ -4,7 +4,7 @@ use crate::args::RunArguments;
 use crate::columns_file::{Columns, NamedColumn};
 use crate::error::CliError;
 use crate::{facts, files, inspect, plot, table, terminal, train};
-use harness::report::{self, Report, SceneReport, Series};
+use harness::report::{self, HEADINGS, Report, SceneReport, Series};
 use scene::AnyScene;
 
 /// Makes the run, and its page where one is asked for. For the page it is made a second time, with fewer nodes kept.
@@ -79,11 +79,12 @@ fn series(method: &str, columns: &Columns, failed: bool) -> Series {
     let energy = values("energy");
     let work = column("work").unwrap_or_else(|| vec![0.0; energy.len()]);
     let start = energy.first().zip(work.first()).map_or(0.0, |(energy, work)| energy - work);
-    let [x, y, heading, theta] = ["x", "y", "heading", "theta"].map(values);
+    let [x, y] = ["x", "y"].map(values);
+    let heading = if x.is_empty() { None } else { HEADINGS.into_iter().find_map(column) };
     Series {
         label: method.to_owned(),
         path: x.iter().zip(&y).map(|(x, y)| [*x, *y]).collect(),
-        heading: if heading.is_empty() && !x.is_empty() { theta } else { heading },
+        heading: heading.unwrap_or_default(),
         rotor: values("rotor_angle"),
         time: values("t"),
         constraint: values("constraint"),

@@ -1,8 +1,8 @@
 use crate::dependent::named;
 use crate::suspect::suspect_along;
 use crate::{Mechanics, OneStep, State, StepError, StepReport, Undivided};
-use lagrangian::linear::largest;
 use lagrangian::Shown;
+use lagrangian::linear::largest;
 use std::ops::{ControlFlow, Range};
 use thiserror::Error;
 

@@ -85,6 +85,9 @@ pub struct Numbers {
     pub text: String,
 }
 
+/// The columns along which a body may point in pictures of its path, in the order in which they are looked for.
+pub const HEADINGS: [&str; 4] = ["heading", "theta", "phi", "psi"];
+
 /// One run of one method.
 ///
 /// The vectors hold one entry per node. Where lengths differ, the shorter one counts; entries that are not finite are
