@@ -138,7 +138,6 @@ fn main() {
             "car-and-trailer" => points(&race, &systems::Car::default()),
             "falling-disk" => points(&race, &systems::FallingDisk::default()),
             "two-sleighs" => points(&race, &systems::TwoSleighs::default()),
-            "ball-in-bowl" => points(&race, &systems::BallInBowl::default()),
             other => unreachable!("no system `{other}` is compiled here"),
         }
         return;
