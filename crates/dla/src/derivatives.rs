@@ -217,7 +217,7 @@ mod tests {
         for i in 0..N {
             assert_abs_diff_eq!(back[i], x[i], epsilon = 1e-13);
         }
-        let mirrored = renewed(&mapped(&matrix, |row| mapped(&row, |x| -x)));
+        let mirrored = renewed(&matrix.map(|row| row.map(|x| -x)));
         assert_eq!(mirrored.positive, N.is_multiple_of(2));
     }
 

@@ -60,7 +60,7 @@ mod tests {
             assert!(roughest(8, tolerance) > roughest(8, 0.1 * tolerance));
             assert!(degree(8, tolerance) <= degree(8, 0.1 * tolerance));
         }
-        assert_eq!(mapped(&[1e-2, 1e-14, 0.0], |tolerance| degree(8, tolerance)), [2, 7, 7]);
+        assert_eq!([1e-2, 1e-14, 0.0].map(|tolerance| degree(8, tolerance)), [2, 7, 7]);
         assert_eq!(degree(3, 1e-14), 2);
     }
 }
