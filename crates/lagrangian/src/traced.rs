@@ -158,11 +158,11 @@ mod tests {
     #[test]
     fn time_and_zeros_are_traced() {
         let made = terms(Traced::TIME, Traced::STATE);
-        assert_eq!(mapped(&made, |x| x.of_time), [false, false, true, false, false, true, true, false]);
-        assert_eq!(mapped(&made, |x| x.zero), [false, false, false, true, true, false, false, false]);
+        assert_eq!(made.map(|x| x.of_time), [false, false, true, false, false, true, true, false]);
+        assert_eq!(made.map(|x| x.zero), [false, false, false, true, true, false, false, false]);
         // What is said to be zero is, and what is said not to change with time does not; of the others some do.
         for q in [-1.3, 0.4] {
-            let [now, later] = mapped(&[0.7, 1.9], |t| terms(t, q));
+            let [now, later] = [0.7, 1.9].map(|t| terms(t, q));
             for k in 0..8 {
                 assert!(!made[k].zero || now[k] == 0.0, "{k}");
                 assert!(made[k].of_time || now[k].to_bits() == later[k].to_bits(), "{k}");
