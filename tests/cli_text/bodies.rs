@@ -9,8 +9,7 @@ fn columns<const N: usize>(run: &str, names: [&str; N]) -> Vec<[f64; N]> {
     let folder = Folder::new();
     folder.json(&format!("run {run} --json --out run.csv"));
     let (header, rows) = csv(&folder.read("run.csv"));
-    let place =
-        |name: &str| header.iter().position(|known| known == name).unwrap_or_else(|| panic!("{name}: {header:?}"));
+    let place = |name: &str| header.iter().position(|known| known == name).expect(name);
     let places = names.map(place);
     rows.iter().map(|row| places.map(|place| row[place])).collect()
 }
@@ -22,7 +21,7 @@ fn spread<const N: usize>(rows: &[[f64; N]], column: usize) -> f64 {
 }
 
 fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value}"))
+    value.as_f64().unwrap()
 }
 
 /// The centre runs on a circle at `Omega I/(I + m R^2)`, which is 2/7 of the table's rate for a solid ball.
@@ -141,7 +140,7 @@ fn a_wheelchair_on_level_ground_is_stable_forward() {
     let (castor, chair) = (1.0 / 0.06, 90.0 * 0.15 / (6.0 + 90.0 * 0.15 * 0.15));
     for speed in [1.0, -1.0] {
         let ahead = |motion: &&Value| (number(&motion["rates"]["x'"]) - speed).abs() < 1e-9;
-        let motion = found["equilibria"].as_array().unwrap().iter().find(ahead).unwrap_or_else(|| panic!("{found}"));
+        let motion = found["equilibria"].as_array().unwrap().iter().find(ahead).expect("a steady motion ahead");
         let flow = motion["flow"].as_array().unwrap();
         for known in [-castor * speed, -chair * speed] {
             let near = |value: &Value| f64::hypot(number(&value["re"]) - known, number(&value["im"])) < 1e-6;
