@@ -22,15 +22,14 @@ const METHODS: [&str; 5] = ["gauss-adaptive", "gauss16", "gauss8", "dla", "rk4-r
 /// The longest run of a ladder (s).
 const LONGEST: f64 = 0.02;
 
-/// Measures a scene, and tells its start.
+/// Measures a scene.
 struct Tape(f64);
 
 impl Visitor for Tape {
-    type Output = (Result<WorkPrecision, PrecisionError>, Vec<f64>, Vec<f64>);
+    type Output = Result<WorkPrecision, PrecisionError>;
 
     fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
-        let measured = noslip::precision(&system, &METHODS, (q, v), self.0, LONGEST);
-        (measured, q.to_vec(), v.to_vec())
+        noslip::precision(&system, &METHODS, (q, v), self.0, LONGEST)
     }
 }
 
@@ -49,10 +48,8 @@ fn ratio(tape: &[PrecisionPoint], compiled: &[PrecisionPoint]) -> Option<f64> {
 fn row<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(name: &str, system: &Sys) {
     let scene = load(name);
     let duration = scene.run().duration;
-    let (tape, q, v) = scene.visit(Tape(duration)).expect("a system");
-    // A shape with more coordinates than the system has them first.
-    let start = (from_fn(|i| q[i]), from_fn(|i| v[i]));
-    let compiled = noslip::precision(system, &METHODS, start, duration, LONGEST);
+    let tape = scene.visit(Tape(duration)).expect("a system");
+    let compiled = noslip::precision(system, &METHODS, start(&scene), duration, LONGEST);
     let (tape, compiled) = match (tape, compiled) {
         (Ok(tape), Ok(compiled)) => (tape, compiled),
         (Err(error), _) | (_, Err(error)) => return println!("| `{name}` | {error} |"),
@@ -84,10 +81,15 @@ impl Visitor for Start {
     }
 }
 
+/// The start of a scene for the compiled system: a shape with more coordinates than the system has them first.
+fn start<const N: usize>(scene: &AnyScene) -> ([f64; N], [f64; N]) {
+    let (q, v) = scene.visit(Start).expect("a system");
+    (from_fn(|i| q[i]), from_fn(|i| v[i]))
+}
+
 /// Measures the compiled system from the start of a scene, and prints its points as `noslip precision --json` does.
 fn points<Sys: System<N, M> + Piecewise, const N: usize, const M: usize>(race: &Race, system: &Sys) {
-    let (q, v) = load(&race.scene).visit(Start).expect("a system");
-    let start = (from_fn(|i| q[i]), from_fn(|i| v[i]));
+    let start = start(&load(&race.scene));
     let methods: Vec<&str> = race.methods.iter().map(String::as_str).collect();
     let measured = noslip::precision(system, &methods, start, race.duration, LONGEST).expect("a reference");
     let point = |point: &PrecisionPoint| {

@@ -22,11 +22,11 @@ PEER = "dop853"
 
 
 def own(scene, duration, methods):
-    """The points of noslip, by method, of a system as the program has it."""
+    """The points of noslip, by method, of a system as the program has it; no peer is among them."""
     command = [text.program(), "precision", scene, "--duration", repr(duration), "--json"]
     if methods:
         command += ["--methods", ",".join(methods)]
-    return {name: points for name, points in measured(command).items() if name not in NOT_OURS}
+    return {name: points for name, points in measured(command).items() if name not in NOT_OURS}, {}
 
 
 def compiled(bench, scene, duration, methods):
@@ -74,14 +74,11 @@ def best(ladders):
 
 def row(name, problem, theirs, methods, bench=None):
     """The lines of the table for a scene. `theirs()` measures the peers once. `bench` has the system compiled by `system!`."""
+    # A command that runs in a folder of its own finds a file by its whole path only.
+    scene = str(Path(name).resolve()) if Path(name).is_file() else name
     pairs = []
     for _ in range(ROUNDS):
-        if bench:
-            # In a folder of its own the bench finds a file by its whole path only.
-            scene = str(Path(name).resolve()) if Path(name).is_file() else name
-            ladders, beside = compiled(bench, scene, problem.duration, methods)
-        else:
-            ladders, beside = own(name, problem.duration, methods), {}
+        ladders, beside = compiled(bench, scene, problem.duration, methods) if bench else own(scene, problem.duration, methods)
         ours = best(ladders)
         pairs.append((ours, best({**theirs(), **beside})))
         # The methods that came nearest to the front in the first round are enough for the others.

@@ -59,7 +59,7 @@ impl History {
     /// The ratio of the last correction to the one before; none of fewer than two.
     #[must_use]
     pub fn last_ratio(&self) -> Option<f64> {
-        let [before, last] = mapped(&[2, 1], |back| self.made.checked_sub(back));
+        let [before, last] = [2, 1].map(|back| self.made.checked_sub(back));
         let size = |i: u32| self.sizes[i as usize % Self::KEPT];
         before.zip(last).map(|(before, last)| size(last) / size(before))
     }

@@ -1,4 +1,3 @@
-use crate::mapped;
 use thiserror::Error;
 
 /// One node of a quadrature over a step: where, as a fraction of the step, and with what weight.
@@ -85,7 +84,7 @@ impl Symmetrised {
     /// [`NotAWeight`] for any other number.
     pub fn new(alpha: f64) -> Result<Self, NotAWeight> {
         let alpha = checked(alpha)?;
-        Ok(Self(mapped(&[alpha, 1.0 - alpha], |alpha| RuleNode { alpha, weight: 0.5 })))
+        Ok(Self([alpha, 1.0 - alpha].map(|alpha| RuleNode { alpha, weight: 0.5 })))
     }
 }
 

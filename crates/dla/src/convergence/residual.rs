@@ -71,7 +71,7 @@ mod tests {
         let reaction: [f64; 4] = from_fn(|i| rows[0][i] + 2.0 * rows[3][i]);
         let left = without_reaction(&rows, mapped(&reaction, Rounded::once));
         assert!(most_roundings(left) <= 1.0, "{left:?}");
-        let across = mapped(&[2.0, -1.0, 0.0, 1.6e-3], |x: f64| 1e-10 * x);
+        let across = [2.0, -1.0, 0.0, 1.6e-3].map(|x: f64| 1e-10 * x);
         let left = without_reaction(&rows, from_fn(|i| Rounded::once(reaction[i] + across[i])));
         assert!(most_roundings(left) > 100.0, "{left:?}");
     }

@@ -1,5 +1,4 @@
 use super::root::RootPoint;
-use lagrangian::mapped;
 
 /// Intervals, each with a change of sign, of a function on `[0, 1]` of which some values are known.
 ///
@@ -31,7 +30,7 @@ pub(super) fn isolate(points: &[RootPoint], mut f: impl FnMut(f64) -> f64) -> Ve
 /// The part in `[0, 1]` of an interval of one sign, with a point in it of the other, if there is one.
 fn dip([a, b, c]: [RootPoint; 3], f: &mut impl FnMut(f64) -> f64) -> Option<(RootPoint, RootPoint, RootPoint)> {
     let side = b.value.signum();
-    let [left, middle, right] = mapped(&[a, b, c], |point| side * point.value);
+    let [left, middle, right] = [a, b, c].map(|point| side * point.value);
     // The parabola through the points dips below the middle by an eighth of this at most.
     let fall = f64::max(left, right) - middle;
     let may = middle > 0.0 && left >= middle && right > middle && middle <= fall;
