@@ -139,6 +139,7 @@ fn main() {
             "two-wheeled-robot" => points(&race, &systems::Robot::default()),
             "car-and-trailer" => points(&race, &systems::Car::default()),
             "falling-disk" => points(&race, &systems::FallingDisk::default()),
+            "ball-in-bowl" => points(&race, &systems::BallInBowl::default()),
             "two-sleighs" => points(&race, &systems::TwoSleighs::default()),
             other => unreachable!("no system `{other}` is compiled here"),
         }
@@ -152,6 +153,7 @@ fn main() {
     row("roller-racer", &systems::RollerRacer::default());
     row("snakeboard", &systems::Snakeboard::default());
     row("chaplygin-ball", &systems::ChaplyginBall::default());
+    row("ball-in-bowl", &systems::BallInBowl::default());
     row("two-wheeled-robot", &systems::Robot::default());
     row("car-and-trailer", &systems::Car::default());
     row("falling-disk", &systems::FallingDisk::default());

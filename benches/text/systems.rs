@@ -166,3 +166,28 @@ noslip::system! {
         ["-y3", "0", "0", "0", "0", "0", "1"],
     ]
 }
+
+noslip::system! {
+    pub(crate) struct BallInBowl;
+    coordinates = { x = "m", y = "m", e0 = "", e1 = "", e2 = "", e3 = "" }
+    parameters = { m = 1.0, a = 0.1, I = 0.004, k = 0.8, g = 9.81, Omega = 0.6 }
+    let = {
+        square = "e0^2 + e1^2 + e2^2 + e3^2",
+        n3 = "1/sqrt(1 + k^2*(x^2 + y^2))",
+        n1 = "-k*x*n3",
+        n2 = "-k*y*n3",
+        px = "x - a*n1",
+        py = "y - a*n2",
+        w1 = "2*(e0*e1' - e1*e0' + e2*e3' - e3*e2')",
+        w2 = "2*(e0*e2' - e2*e0' + e3*e1' - e1*e3')",
+        w3 = "2*(e0*e3' - e3*e0' + e1*e2' - e2*e1')",
+    }
+    lagrangian = "m/2*(x'^2 + y'^2 + (k*(x*x' + y*y'))^2) + 2*I*(e0'^2 + e1'^2 + e2'^2 + e3'^2) - m*g*k/2*(x^2 + y^2)"
+    constraints = ["x' - a*(w2*n3 - w3*n2) + Omega*py", "y' - a*(w3*n1 - w1*n3) - Omega*px"]
+    positions = ["(e0^2 + e1^2 + e2^2 + e3^2 - 1)/2"]
+    basis = [
+        ["0", "-a*n3*square", "-e1/2", "e0/2", "-e3/2", "e2/2"],
+        ["a*n3*square", "0", "-e2/2", "e3/2", "e0/2", "-e1/2"],
+        ["-a*n2*square", "a*n1*square", "-e3/2", "-e2/2", "e1/2", "e0/2"],
+    ]
+}

@@ -1,5 +1,18 @@
 use crate::{Motion, ReducedError, Scalar};
 
+/// How formulas of several stages are evaluated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stages {
+    /// All stages in vector registers ([`Wide`](crate::simd::Wide)): a term that is zero by the model takes no instruction.
+    InRegisters,
+    /// The same without a search for zeros ([`Pack`](crate::simd::Pack)), for formulas that are simplified: they compile in a fraction of
+    /// the time.
+    Simplified,
+    /// All stages as arrays of numbers ([`Lanes`](crate::Lanes)), for formulas that are interpreted, operation by operation: vector
+    /// registers would be stored and loaded around each operation.
+    InArrays,
+}
+
 /// The equations of motion of a system as they are known by hand, or by computer algebra.
 ///
 /// Every method works without them, on derivatives of the Lagrangian; with them it is quicker. A system that has some implements this
@@ -8,9 +21,8 @@ pub trait Reduced<const N: usize, const M: usize> {
     /// Whether anything may be known: not of `()`, nor of a body whose constraints leave nothing known.
     const ANY: bool = true;
 
-    /// Whether a formula is interpreted, operation by operation, and not compiled. A method then asks for stages side by side as arrays of
-    /// numbers ([`Lanes`](crate::Lanes)): vector registers would be stored and loaded around each operation.
-    const INTERPRETED: bool = false;
+    /// How a method evaluates the formulas of stages that it solves for at once.
+    const STAGES: Stages = Stages::InRegisters;
 
     /// Accelerations and multipliers, for any velocity, admissible or not.
     #[inline(always)]
@@ -79,7 +91,7 @@ impl<const N: usize, const M: usize> Reduced<N, M> for () {
 
 impl<R: Reduced<N, M>, const N: usize, const M: usize> Reduced<N, M> for &R {
     const ANY: bool = R::ANY;
-    const INTERPRETED: bool = R::INTERPRETED;
+    const STAGES: Stages = R::STAGES;
 
     #[inline(always)]
     fn motion(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<Motion<N, M>> {

@@ -158,8 +158,8 @@ fn near_corners() -> impl Strategy<Value = f64> {
     prop_oneof![Just(0.0), Just(1.0), Just(-1.0), -2.0..2.0f64, power]
 }
 
-/// All that has a corner.
-fn cornered<S: Scalar>(x: S, y: S) -> [S; 9] {
+/// All that has a corner or a pole.
+fn cornered<S: Scalar>(x: S, y: S) -> [S; 11] {
     [
         x.abs(),
         x.sign(),
@@ -170,17 +170,20 @@ fn cornered<S: Scalar>(x: S, y: S) -> [S; 9] {
         x.tanh(),
         x.powf(2.0),
         x.where_positive(x, y),
+        x.abs().sqrt(),
+        x.recip() - S::constant(1.5),
     ]
 }
 
+/// Told apart from what all have in common, and not.
 struct InRegisters<'a>([&'a [f64; 8]; 2]);
 
 impl Kernel for InRegisters<'_> {
-    type Output = [[f64; 8]; 9];
+    type Output = [[[f64; 8]; 11]; 2];
     #[inline(always)]
-    fn run<S: Simd, const R: usize>(self, simd: S) -> [[f64; 8]; 9] {
-        let [x, y] = self.0.map(|row| Wide::Each(Pack::<S, R>::load(simd, row)));
-        cornered(x, y).map(|x| x.pack(simd).row())
+    fn run<S: Simd, const R: usize>(self, simd: S) -> [[[f64; 8]; 11]; 2] {
+        let [x, y] = self.0.map(|row| Pack::<S, R>::load(simd, row));
+        [cornered(Wide::Each(x), Wide::Each(y)).map(|x| x.pack(simd).row()), cornered(x, y).map(|x| x.row())]
     }
 }
 
@@ -188,9 +191,9 @@ impl Kernel for InRegisters<'_> {
 struct InCommon<'a>(&'a [f64; 8], f64);
 
 impl Kernel for InCommon<'_> {
-    type Output = [[[f64; 8]; 9]; 3];
+    type Output = [[[f64; 8]; 11]; 3];
     #[inline(always)]
-    fn run<S: Simd, const R: usize>(self, simd: S) -> [[[f64; 8]; 9]; 3] {
+    fn run<S: Simd, const R: usize>(self, simd: S) -> [[[f64; 8]; 11]; 3] {
         let (x, y) = (Wide::Each(Pack::<S, R>::load(simd, self.0)), Wide::Same(self.1));
         [cornered(x, y), cornered(y, Wide::zero()), cornered(Wide::zero(), y)]
             .map(|all| all.map(|x| x.pack(simd).row()))
@@ -209,7 +212,7 @@ proptest! {
             let alone = cornered(x[l], y[l]);
             let common = [cornered(x[l], y[0]), cornered(y[0], 0.0), cornered(0.0, y[0])];
             for (k, right) in alone.iter().enumerate() {
-                let all = [lanes[k].0[l], registers[k][l]];
+                let all = [lanes[k].0[l], registers[0][k][l], registers[1][k][l]];
                 prop_assert!(all.iter().all(|x| x.to_bits() == right.to_bits()), "{k}: {all:?} for {right}");
                 let all = [one[k][l], two[k][l], three[k][l]];
                 prop_assert!((0..3).all(|i| all[i] == common[i][k]), "{k}: {all:?}");

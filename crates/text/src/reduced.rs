@@ -4,7 +4,7 @@ use crate::tapes::{TapePoint, Tapes};
 use crate::{TextModel, TextSystem};
 use ::formulas::{Formulas, ReducedFormulas};
 use expression::Expression;
-use lagrangian::{Pivots, Reduced, ReducedError, Scalar};
+use lagrangian::{Pivots, Reduced, ReducedError, Scalar, Stages};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -84,7 +84,7 @@ impl<const N: usize, const M: usize> TextSystem<N, M> {
 
 /// By computer algebra: `xi'` as formulas in the basis in use.
 impl<const N: usize, const M: usize> Reduced<N, M> for TextSystem<N, M> {
-    const INTERPRETED: bool = true;
+    const STAGES: Stages = Stages::InArrays;
 
     fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; N], xi: &[S; N]) -> Option<[S; N]> {
         let n = self.model.coordinates.len();

@@ -3,7 +3,7 @@ use super::packs::{StageRows, ahead, everywhere, in_lanes, integral, loaded, of_
 use super::rule::GaussRule;
 use lagrangian::linear::larger;
 use lagrangian::simd::{Kernel, Pack, Simd, Square, Wide, dispatch, each, packed};
-use lagrangian::{Lanes, Reduced, System, array, derived_acceleration, from_fn, velocity_of};
+use lagrangian::{Lanes, Reduced, Stages, System, array, derived_acceleration, from_fn, velocity_of};
 use std::fmt;
 use std::ops::Deref;
 
@@ -188,7 +188,10 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> StagesAtOnce<'_, Sys, N,
         q: &[Pack<S, R>; N],
         xi: &[Wide<S, R>; N],
     ) -> Option<[Pack<S, R>; N]> {
-        if const { By::INTERPRETED } {
+        if const { matches!(By::STAGES, Stages::Simplified) } {
+            return velocity_of(self.system, Pack::load(simd, &self.times()), q, &packed(simd, xi)).ok();
+        }
+        if const { matches!(By::STAGES, Stages::InArrays) } {
             let t = Lanes(self.times());
             let v = velocity_of(self.system, t, &in_lanes(q), &in_lanes(&packed(simd, xi))).ok()?;
             return Some(of_lanes(simd, &v));
@@ -222,7 +225,10 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> StagesAtOnce<'_, Sys, N,
         q: &[Pack<S, R>; N],
         xi: &[Wide<S, R>; N],
     ) -> Option<[Pack<S, R>; N]> {
-        if const { By::INTERPRETED } {
+        if const { matches!(By::STAGES, Stages::Simplified) } {
+            return by_hand.reduced_motion(Pack::load(simd, &self.times()), q, &packed(simd, xi));
+        }
+        if const { matches!(By::STAGES, Stages::InArrays) } {
             let a = by_hand.reduced_motion(Lanes(self.times()), &in_lanes(q), &in_lanes(&packed(simd, xi)))?;
             return Some(of_lanes(simd, &a));
         }

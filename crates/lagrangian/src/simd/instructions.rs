@@ -1,5 +1,8 @@
 /// An instruction set, with the permutations of lanes that `pulp` has no name for.
 pub trait Simd: pulp::Simd {
+    /// The instruction set again, where no number says that the machine has it.
+    fn of_this_machine() -> Self;
+
     /// Permutes the lanes of a register: lane `i` to lane `i xor D`, with `D` 2, 4 or 6; bits of `D` beyond the lanes of a register are
     /// ignored.
     fn exchanged<const D: usize>(self, x: Self::f64s) -> Self::f64s;
@@ -10,6 +13,10 @@ pub trait Simd: pulp::Simd {
 
 #[cfg(target_arch = "x86_64")]
 impl Simd for pulp::x86::V3 {
+    #[inline(always)]
+    fn of_this_machine() -> Self {
+        Self::try_new().unwrap_or_else(|| unreachable!("numbers are in registers that the machine has"))
+    }
     #[inline(always)]
     fn exchanged<const D: usize>(self, x: Self::f64s) -> Self::f64s {
         if D & 2 == 2 { pulp::Simd::rotate_right_f64s(self, x, 2) } else { x }
@@ -22,6 +29,10 @@ impl Simd for pulp::x86::V3 {
 
 #[cfg(target_arch = "x86_64")]
 impl Simd for pulp::x86::V4 {
+    #[inline(always)]
+    fn of_this_machine() -> Self {
+        Self::try_new().unwrap_or_else(|| unreachable!("numbers are in registers that the machine has"))
+    }
     #[inline(always)]
     fn exchanged<const D: usize>(self, x: Self::f64s) -> Self::f64s {
         let x = pulp::cast(x);
@@ -39,6 +50,10 @@ impl Simd for pulp::x86::V4 {
 }
 
 impl Simd for pulp::Scalar {
+    #[inline(always)]
+    fn of_this_machine() -> Self {
+        Self::new()
+    }
     #[inline(always)]
     fn exchanged<const D: usize>(self, x: Self::f64s) -> Self::f64s {
         x

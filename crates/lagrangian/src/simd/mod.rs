@@ -8,6 +8,7 @@ mod exp;
 mod four;
 mod instructions;
 mod pack;
+mod packed;
 mod sincos;
 mod square;
 mod wide;

@@ -249,7 +249,7 @@ macro_rules! with_numbers {
         }
     )*};
 }
-with_numbers!(Add add, Mul mul);
+with_numbers!(Add add, Sub sub, Mul mul, Div div);
 
 #[allow(clippy::redundant_closure_for_method_calls, reason = "as above")]
 impl<S: Simd, const R: usize> std::ops::Neg for Pack<S, R> {

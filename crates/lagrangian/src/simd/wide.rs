@@ -83,27 +83,14 @@ fn together<S: Simd, const R: usize, const K: usize>(x: &[Wide<S, R>; K], f: imp
             simd = Some(pack.simd());
         }
     }
-    let Some(simd) = simd else {
-        return Same(f(&array(
+    match simd {
+        None => Same(f(&array(
             0.0,
             #[inline(always)]
             |k| x[k].common(),
-        )));
-    };
-    let packs: [Pack<S, R>; K] = array(
-        Pack::splat(simd, 0.0),
-        #[inline(always)]
-        |k| x[k].pack(simd),
-    );
-    let mut all = Pack::splat(simd, 0.0);
-    for (i, place) in all.lanes_mut().iter_mut().enumerate() {
-        *place = f(&array(
-            0.0,
-            #[inline(always)]
-            |k| packs[k].lanes()[i],
-        ));
+        ))),
+        Some(simd) => Each(super::packed::together(&packed(simd, x), f)),
     }
-    Each(all)
 }
 
 impl<S: Simd, const R: usize> Add for Wide<S, R> {
@@ -265,7 +252,11 @@ impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        self.apart(f64::sqrt)
+        match self {
+            Zero => Zero,
+            Same(x) => Same(x.sqrt()),
+            Each(x) => Each(Scalar::sqrt(x)),
+        }
     }
     #[inline(always)]
     fn powi(self, n: i32) -> Self {
