@@ -23,7 +23,7 @@ pub(crate) fn onto_positions<const N: usize, const M: usize>(
     for iteration in 1..=ITERATIONS {
         let q1 = state.ahead(&increment);
         let Some(misses) = system.position_misses(t1, &q1) else { return Ok(increment) };
-        if misses.iter().flatten().all(|g| g.re == 0.0) {
+        if misses.iter().flatten().all(|g| is_rounding(g, &q1)) {
             return Ok(increment);
         }
         let moved = correction(system, t1, &q1, v, &misses)
@@ -56,6 +56,13 @@ pub(crate) fn onto_positions<const N: usize, const M: usize>(
 }
 
 const ITERATIONS: u32 = 50;
+
+/// Whether a miss is no more than the last digits of the coordinates make.
+#[inline(always)]
+fn is_rounding<const N: usize>(g: &Dual<f64, N>, q: &[f64; N]) -> bool {
+    let size: f64 = g.eps.iter().zip(q).map(|(slope, q)| (slope * q).abs()).sum();
+    g.re.abs() <= f64::EPSILON * size
+}
 
 /// The correction `-M^-1 A' (A M^-1 A')^-1 g` for the rows of the positions.
 #[cold]
