@@ -140,6 +140,9 @@ fn main() {
             "car-and-trailer" => points(&race, &systems::Car::default()),
             "falling-disk" => points(&race, &systems::FallingDisk::default()),
             "ball-in-bowl" => points(&race, &systems::BallInBowl::default()),
+            "driven-robot" => points(&race, &systems::DrivenRobot::default()),
+            "model-car" => points(&race, &systems::ModelCar::default()),
+            "coin" => points(&race, &systems::Coin::default()),
             "two-sleighs" => points(&race, &systems::TwoSleighs::default()),
             other => unreachable!("no system `{other}` is compiled here"),
         }

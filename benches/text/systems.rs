@@ -191,3 +191,59 @@ noslip::system! {
         ["-a*n2*square", "a*n1*square", "-e3/2", "-e2/2", "e1/2", "e0/2"],
     ]
 }
+
+noslip::system! {
+    pub(crate) struct DrivenRobot;
+    coordinates = { x = "m", y = "m", theta = "angle", right = "angle", left = "angle" }
+    parameters = { m = 12.0, I = 0.6, Jw = 0.02, d = 0.08, e = 0.03, r = 0.1, b = 0.2 }
+    let = { c = "cos(theta)", s = "sin(theta)", ahead = "x'*c + y'*s" }
+    lagrangian = "m/2*((x' - theta'*(d*s + e*c))^2 + (y' + theta'*(d*c - e*s))^2)
+        + I/2*theta'^2 + Jw/2*(right'^2 + left'^2)"
+    constraints = ["y'*c - x'*s", "ahead + b*theta' - r*right'", "ahead - b*theta' - r*left'"]
+    forces = { right = "0.5 + 0.3*sin(1.3*t) - 0.05*right'", left = "0.5 + 0.3*cos(1.7*t) - 0.05*left'" }
+    basis = [
+        ["r*c/2", "r*s/2", "r/(2*b)", "1", "0"],
+        ["r*c/2", "r*s/2", "-r/(2*b)", "0", "1"],
+    ]
+}
+
+noslip::system! {
+    pub(crate) struct ModelCar;
+    coordinates = { x = "m", y = "m", theta = "angle", delta = "angle", behind = "angle" }
+    parameters = { m = 20.0, J = 1.5, Js = 0.05, mt = 8.0, Jt = 0.5, a = 0.3, L = 0.6, h = 0.1, lt = 0.7, at = 0.2 }
+    let = {
+        c = "cos(theta)",
+        s = "sin(theta)",
+        cb = "cos(behind)",
+        sb = "sin(behind)",
+        turn = "sin(delta)/(L*cos(delta))",
+        push = "6 + 2*sin(t)",
+    }
+    lagrangian = "m/2*((x' - a*theta'*s)^2 + (y' + a*theta'*c)^2) + J/2*theta'^2 + Js/2*(theta' + delta')^2
+        + mt/2*((x' + h*theta'*s + (lt - at)*behind'*sb)^2 + (y' - h*theta'*c - (lt - at)*behind'*cb)^2) + Jt/2*behind'^2"
+    constraints = [
+        "y'*c - x'*s",
+        "y'*cos(theta + delta) - x'*sin(theta + delta) + L*cos(delta)*theta'",
+        "y'*cb - x'*sb - h*cos(theta - behind)*theta' - lt*behind'",
+    ]
+    forces = { x = "push*c - 3*x'", y = "push*s - 3*y'", delta = "0.05*cos(0.7*t) - 0.1*delta' - 0.2*sin(delta)" }
+    basis = [
+        ["c", "s", "turn", "0", "(sin(theta - behind) - h*cos(theta - behind)*turn)/lt"],
+        ["0", "0", "0", "1", "0"],
+    ]
+}
+
+noslip::system! {
+    pub(crate) struct Coin;
+    coordinates = { x = "m", y = "m", phi = "angle", theta = "angle", psi = "angle" }
+    parameters = { m = 1.0, r = 0.5, I = 0.125, J = 0.0625, g = 9.81 }
+    let = { c = "cos(phi)", s = "sin(phi)", across = "r*cos(theta)*theta'", along = "-r*sin(theta)*phi'" }
+    lagrangian = "m/2*((x' - s*across + c*along)^2 + (y' + c*across + s*along)^2 + (r*sin(theta)*theta')^2)
+        + I/2*(psi' - sin(theta)*phi')^2 + J/2*((cos(theta)*phi')^2 + theta'^2) - m*g*r*cos(theta)"
+    constraints = ["x' - r*c*psi'", "y' - r*s*psi'"]
+    basis = [
+        ["0", "0", "1", "0", "0"],
+        ["0", "0", "0", "1", "0"],
+        ["r*c", "r*s", "0", "0", "1"],
+    ]
+}
