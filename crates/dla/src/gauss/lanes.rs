@@ -2,8 +2,10 @@ use super::ending::{Ending, EndingVerdict};
 use super::packs::{StageRows, ahead, everywhere, in_lanes, integral, loaded, of_lanes, own};
 use super::rule::GaussRule;
 use lagrangian::linear::larger;
-use lagrangian::simd::{Kernel, Pack, Simd, Square, Wide, dispatch, each, packed};
-use lagrangian::{Lanes, Reduced, Stages, System, array, derived_acceleration, from_fn, velocity_of};
+use lagrangian::simd::{KNOWN_WHEN_BUILT, Kernel, Pack, Simd, Square, Wide, dispatch, each, packed};
+use lagrangian::{
+    Lanes, Reduced, Stages, System, acceleration_along, array, derived_acceleration, from_fn, velocity_of,
+};
 use std::fmt;
 use std::ops::Deref;
 
@@ -236,8 +238,9 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> StagesAtOnce<'_, Sys, N,
         Some(packed(simd, &a))
     }
 
-    /// `xi'` by derivatives along the basis, of a system that knows nothing by hand: stage by stage, since all numbers that carry
-    /// derivatives in eight lanes are too many to be held in registers, and are then no quicker than one lane after another.
+    /// `xi'` by derivatives along the basis, of a system that knows nothing by hand. Up to two accelerations are derived of all stages at
+    /// once; the derivatives of more are too many numbers to be held in registers, and the stages then come one after another. So they do
+    /// where the registers are found at run time only: functions of the user that are not inlined would be compiled without them.
     #[inline(always)]
     fn derived<By: Reduced<N, M>, S: Simd, const R: usize>(
         &self,
@@ -250,6 +253,10 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> StagesAtOnce<'_, Sys, N,
         // stages.
         if const { By::ANY || N - M > 5 } {
             return None;
+        }
+        if const { KNOWN_WHEN_BUILT && N - M <= 2 } {
+            let a = acceleration_along(self.system, Pack::load(simd, &self.times()), q, &packed(simd, xi))?;
+            return a.iter().all(|a| a.lanes().iter().all(|x| x.is_finite())).then_some(a);
         }
         let (q, xi) = (q.map(|q| q.row()), xi.map(|xi| xi.pack(simd).row()));
         let mut a = [[0.0; 8]; N];

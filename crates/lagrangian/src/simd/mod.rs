@@ -70,6 +70,13 @@ pub fn dispatch_widest<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<_, 8>(pulp::Scalar::new())
 }
 
+/// Whether every function is compiled for the registers of a kernel, and not only what is inlined in it.
+#[cfg(target_arch = "x86_64")]
+pub const KNOWN_WHEN_BUILT: bool = build::NARROW || build::WIDE;
+/// Whether every function is compiled for the registers of a kernel, and not only what is inlined in it.
+#[cfg(not(target_arch = "x86_64"))]
+pub const KNOWN_WHEN_BUILT: bool = false;
+
 /// Runs a kernel with these registers.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
