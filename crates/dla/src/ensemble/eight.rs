@@ -67,7 +67,7 @@ impl<Si: Simd, const R: usize, const S: usize, const N: usize> EightLanes<Si, R,
             accumulate(&mut self.q[k], &mut self.rest[k], collocation.increment(&self.velocity[k]));
         }
         for k in 0..free {
-            self.xi[k] = self.xi[k] + collocation.increment(&self.acceleration[k]);
+            self.xi[k] += collocation.increment(&self.acceleration[k]);
         }
     }
 
