@@ -1,7 +1,7 @@
 //! The numbers of a comparison for programs: as one JSON object, and as CSV with the same digits.
 
 use crate::precision_csv::quoted;
-use crate::provenance::{Described, Provenance};
+use crate::provenance::{DescribedColumn, Provenance};
 use harness::report::{Numbers, file_stem};
 use serde_json::{Value, json};
 
@@ -59,7 +59,7 @@ pub(crate) fn files(
 ) -> Vec<Numbers> {
     let text = format!("{:#}\n", json(name, rows, interrupted.is_some()));
     let provenance = Provenance::on(scene, None, json!({})).interrupted(interrupted);
-    let described = columns().map(|(heading, _, datatype)| Described::headed(heading, datatype));
+    let described = columns().map(|(heading, _, datatype)| DescribedColumn::headed(heading, datatype));
     let metadata = provenance.document(&format!("{}.csv", file_stem(name)), described);
     vec![
         Numbers { ending: "csv", text: csv(rows) },

@@ -4,10 +4,10 @@ use crate::args::LyapunovArguments;
 use crate::command_line::CommandLine;
 use crate::error::CliError;
 use crate::provenance::Provenance;
-use crate::starts::{Start, with_energy};
+use crate::starts::with_energy;
 use dla::Schedule;
 use harness::analysis::LyapunovError;
-use scene::{AnyScene, Built};
+use scene::{AnyScene, Built, StartPlace};
 use serde_json::json;
 
 /// The part of it before the run that is not counted, where nobody says.
@@ -44,9 +44,9 @@ pub(crate) fn provenance(arguments: &LyapunovArguments, scene: &AnyScene, interr
 /// A start with the energy that is asked for.
 pub(crate) fn asked<const N: usize, const M: usize>(
     system: &Built<'_, N, M>,
-    start: Start<N>,
+    start: StartPlace<N>,
     wanted: Option<f64>,
-) -> Result<Start<N>, CliError> {
+) -> Result<StartPlace<N>, CliError> {
     let Some(wanted) = wanted else { return Ok(start) };
     with_energy(system, &start, wanted).ok_or_else(|| {
         let at_rest = system.energy(0.0, &start.0, &[0.0; N]);

@@ -1,6 +1,6 @@
 //! What `noslip precision` measured, as CSV.
 
-use crate::provenance::Described;
+use crate::provenance::DescribedColumn;
 use harness::precision::{Curve, PrecisionPoint, RungSetting, number};
 use std::fmt::Write;
 
@@ -20,8 +20,8 @@ const COLUMNS: [(&str, &str); 11] = [
 ];
 
 /// The columns, for the file of metadata.
-pub(crate) fn described() -> impl Iterator<Item = Described> {
-    COLUMNS.iter().map(|(heading, datatype)| Described::headed(heading, datatype))
+pub(crate) fn described() -> impl Iterator<Item = DescribedColumn> {
+    COLUMNS.iter().map(|(heading, datatype)| DescribedColumn::headed(heading, datatype))
 }
 
 /// The points, one on a line.

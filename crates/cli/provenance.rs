@@ -40,7 +40,11 @@ impl Provenance {
     }
 
     /// The document of a file of that name, with a newline at its end.
-    pub(crate) fn document<D: Into<Described>>(&self, name: &str, columns: impl IntoIterator<Item = D>) -> String {
+    pub(crate) fn document<D: Into<DescribedColumn>>(
+        &self,
+        name: &str,
+        columns: impl IntoIterator<Item = D>,
+    ) -> String {
         let columns: Vec<Value> = columns.into_iter().map(|column| column.into().object()).collect();
         let document = json!({
             "@context": "http://www.w3.org/ns/csvw",
@@ -53,7 +57,7 @@ impl Provenance {
     }
 
     /// Writes the document of a file of text beside it.
-    pub(crate) fn write_beside<D: Into<Described>>(
+    pub(crate) fn write_beside<D: Into<DescribedColumn>>(
         &self,
         path: &Path,
         columns: impl IntoIterator<Item = D>,
@@ -73,7 +77,7 @@ pub(crate) fn metadata_of(path: &Path) -> PathBuf {
 
 /// A column as a document describes it.
 #[derive(Debug, Clone)]
-pub(crate) struct Described {
+pub(crate) struct DescribedColumn {
     title: String,
     name: String,
     unit: String,
@@ -81,7 +85,7 @@ pub(crate) struct Described {
     datatype: &'static str,
 }
 
-impl Described {
+impl DescribedColumn {
     /// By its heading, `NAME [UNIT]` or `NAME`; a name in the document has no spaces.
     pub(crate) fn headed(heading: &str, datatype: &'static str) -> Self {
         let (name, unit) = heading.split_once(" [").unwrap_or((heading, ""));
@@ -98,7 +102,7 @@ impl Described {
     }
 }
 
-impl From<&Column> for Described {
+impl From<&Column> for DescribedColumn {
     fn from(column: &Column) -> Self {
         let datatype = if column.whole { "integer" } else { "double" };
         Self { title: label(column), name: column.name.clone(), unit: column.unit.clone(), datatype }

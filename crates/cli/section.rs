@@ -7,14 +7,14 @@ use crate::error::CliError;
 use crate::exponents::{asked, imposed};
 use crate::interrupt::Interrupt;
 use crate::provenance::Provenance;
-use crate::starts::{Start, spread};
+use crate::starts::spread;
 use crate::trigger::in_doubt;
 use crate::{inspect, json, notes, progress, table, terminal};
 use dla::{Close, Event, RunError};
 use harness::Method;
 use harness::analysis::in_parallel;
 use harness::report::{Chart, Layer};
-use scene::{AnyScene, Built, Column, Quantity, Visitor};
+use scene::{AnyScene, Built, Column, Quantity, StartPlace, Visitor};
 use serde_json::{Value, json};
 
 /// How long each motion is followed where nobody says (s).
@@ -104,7 +104,7 @@ impl Visitor for Sections<'_> {
         let interrupt = Interrupt::of_starts();
         let first = asked(&system, (q, v), self.arguments.energy)?;
         let sleigh = if let AnyScene::Sleigh(scene) = self.scene { Some(&scene.sleigh) } else { None };
-        let starts: Vec<Start<N>> = spread(&system, &first, sleigh, self.arguments.starts);
+        let starts: Vec<StartPlace<N>> = spread(&system, &first, sleigh, self.arguments.starts);
         let schedule = self.scene.schedule();
         let bar = progress::bar("starts", starts.len() as u64);
         let in_state = system.in_state();

@@ -2,15 +2,12 @@ use scene::{Built, SceneSystem, StartPlace};
 use sleigh::Sleigh;
 use std::f64::consts::TAU;
 
-/// Configuration and velocity of a start.
-pub(crate) type Start<const N: usize> = StartPlace<N>;
-
 /// The start with velocities so many times as large that it has that energy (J); none where it cannot.
 pub(crate) fn with_energy<const N: usize, const M: usize>(
     system: &Built<'_, N, M>,
-    (q, v): &Start<N>,
+    (q, v): &StartPlace<N>,
     wanted: f64,
-) -> Option<Start<N>> {
+) -> Option<StartPlace<N>> {
     // The energy is quadratic in the velocity.
     let at = |factor: f64| system.energy(0.0, q, &v.map(|v| factor * v));
     let (rest, ahead, back) = (at(0.0), at(1.0), at(-1.0));
@@ -33,10 +30,10 @@ fn sequence(dimensions: usize) -> impl Fn(u64, usize) -> f64 {
 /// directions evenly; those of a sleigh differ in heading too. Those that the energy does not allow are left out.
 pub(crate) fn spread<const N: usize, const M: usize>(
     system: &Built<'_, N, M>,
-    first: &Start<N>,
+    first: &StartPlace<N>,
     sleigh: Option<&Sleigh>,
     count: u64,
-) -> Vec<Start<N>> {
+) -> Vec<StartPlace<N>> {
     let wanted = system.energy(0.0, &first.0, &first.1);
     let turned = |i: u64| match system.sleigh().zip(sleigh) {
         Some((blade, sleigh)) => turned(system, blade, sleigh, first, i),
@@ -51,9 +48,9 @@ fn turned<const N: usize, const M: usize>(
     system: &Built<'_, N, M>,
     blade: &dyn SceneSystem<N, M>,
     sleigh: &Sleigh,
-    first: &Start<N>,
+    first: &StartPlace<N>,
     i: u64,
-) -> Option<Start<N>> {
+) -> Option<StartPlace<N>> {
     let [turn, direction] =
         [0.754_877_666_246_692_7, 0.569_840_290_998_053_2].map(|step| TAU * (step * i as f64).fract());
     let (sin, cos) = direction.sin_cos();
@@ -66,7 +63,11 @@ fn turned<const N: usize, const M: usize>(
 }
 
 /// The system at the same place, its quasi-velocities in a direction of which the kinetic energy is a sphere.
-fn directed<const N: usize, const M: usize>(system: &Built<'_, N, M>, first: &Start<N>, i: u64) -> Option<Start<N>> {
+fn directed<const N: usize, const M: usize>(
+    system: &Built<'_, N, M>,
+    first: &StartPlace<N>,
+    i: u64,
+) -> Option<StartPlace<N>> {
     let (n, m) = system.own();
     let count = n - m;
     let next = sequence(count);

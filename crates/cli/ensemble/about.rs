@@ -4,7 +4,7 @@ use crate::args::Settings;
 use crate::command_line::CommandLine;
 use crate::error::CliError;
 use crate::format::Format;
-use crate::provenance::{Described, Provenance};
+use crate::provenance::{DescribedColumn, Provenance};
 use scene::{Column, Sweep};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -73,8 +73,8 @@ impl About {
         let name = out.file_name().unwrap_or_default().to_string_lossy();
         let command = CommandLine::of("ensemble", &self.sweep, &Settings::default()).with("--out", out.display());
         let provenance = Provenance::new(&self.title, Some(&command), self.notes.clone());
-        let last = if format.is_text() { Described::headed("error", "string") } else { (&failed()).into() };
-        provenance.document(&name, self.columns().iter().map(Described::from).chain([last]))
+        let last = if format.is_text() { DescribedColumn::headed("error", "string") } else { (&failed()).into() };
+        provenance.document(&name, self.columns().iter().map(DescribedColumn::from).chain([last]))
     }
 
     /// Reads it from a file beside parts; none where the file is another one.

@@ -3,12 +3,12 @@ use expression::{Expression, Function, Graph, Names, Syntax, parse};
 
 /// Names that texts of one kind may use, and what they mean.
 #[derive(Debug, Default)]
-pub(crate) struct Table {
+pub(crate) struct TextTable {
     names: Names,
     meanings: Vec<Expression>,
 }
 
-impl Table {
+impl TextTable {
     fn add(&mut self, name: &str, meaning: Expression) -> Result<(), expression::Error> {
         self.names.add(name)?;
         self.meanings.push(meaning);
@@ -33,9 +33,9 @@ pub(crate) struct Tables {
     pub(crate) graph: Graph,
     /// The number of coordinates.
     pub(crate) n: usize,
-    place: Table,
-    moving: Table,
-    jumping: Table,
+    place: TextTable,
+    moving: TextTable,
+    jumping: TextTable,
 }
 
 /// All formulas of a system and their derivatives have at most so many terms and factors.
@@ -46,9 +46,9 @@ impl Tables {
         Self {
             graph: Graph::with_limit(LARGEST),
             n,
-            place: Table::default(),
-            moving: Table::default(),
-            jumping: Table::default(),
+            place: TextTable::default(),
+            moving: TextTable::default(),
+            jumping: TextTable::default(),
         }
     }
 

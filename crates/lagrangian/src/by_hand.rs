@@ -2,7 +2,7 @@ use crate::{Motion, ReducedError, Scalar};
 
 /// How formulas of several stages are evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stages {
+pub enum StageEvaluation {
     /// All stages in vector registers ([`Wide`](crate::simd::Wide)): a term that is zero by the model takes no instruction.
     InRegisters,
     /// The same without a search for zeros ([`Pack`](crate::simd::Pack)), for formulas that are simplified: they compile in a fraction of
@@ -22,7 +22,7 @@ pub trait Reduced<const N: usize, const M: usize> {
     const ANY: bool = true;
 
     /// How a method evaluates the formulas of stages that it solves for at once.
-    const STAGES: Stages = Stages::InRegisters;
+    const STAGES: StageEvaluation = StageEvaluation::InRegisters;
 
     /// Accelerations and multipliers, for any velocity, admissible or not.
     #[inline(always)]
@@ -91,7 +91,7 @@ impl<const N: usize, const M: usize> Reduced<N, M> for () {
 
 impl<R: Reduced<N, M>, const N: usize, const M: usize> Reduced<N, M> for &R {
     const ANY: bool = R::ANY;
-    const STAGES: Stages = R::STAGES;
+    const STAGES: StageEvaluation = R::STAGES;
 
     #[inline(always)]
     fn motion(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<Motion<N, M>> {

@@ -65,7 +65,7 @@ pub use attitude::Attitude;
 pub use basis::{AdmissibleBasis, linear_basis};
 pub use bordered::{Bordered, clear_multipliers};
 pub use bracket::{Bracket, EnergySlope, energy_slope, inverse_reduced_mass};
-pub use by_hand::{Reduced, Stages};
+pub use by_hand::{Reduced, StageEvaluation};
 pub use called::Called;
 pub use classify::{
     Classification, RowKind, classify, rank_is_constant, redundant_rows, row_space, rows_are_consistent,

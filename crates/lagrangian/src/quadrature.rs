@@ -4,7 +4,7 @@ use crate::{Twofold, from_fn, mapped};
 use std::ops::{Div, Mul, Sub};
 
 /// The Legendre polynomials `P_0(x) .. P_n(x)` on `[-1, 1]`, by their recurrence; `visit(k, P_k)` receives each.
-fn legendre<T: Number>(n: usize, x: T, mut visit: impl FnMut(usize, T)) {
+fn legendre<T: RootNumber>(n: usize, x: T, mut visit: impl FnMut(usize, T)) {
     let (mut before, mut current) = (T::from(0.0), T::from(1.0));
     for k in 0..=n {
         visit(k, current);
@@ -14,9 +14,9 @@ fn legendre<T: Number>(n: usize, x: T, mut visit: impl FnMut(usize, T)) {
 }
 
 /// What the recurrence needs: `f64` has it, and [`Twofold`].
-trait Number: Copy + From<f64> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {}
-impl Number for f64 {}
-impl Number for Twofold {}
+trait RootNumber: Copy + From<f64> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {}
+impl RootNumber for f64 {}
+impl RootNumber for Twofold {}
 
 /// The values `P_0(2 x - 1) .. P_S(2 x - 1)` of the first `S` Legendre polynomials on `[0, 1]`, and of the next one.
 #[must_use]

@@ -27,7 +27,7 @@ pub(crate) fn system(described: &Described) -> Result<TokenStream> {
         #structure
         #[allow(unused_variables, unused_parens, unused_imports, clippy::all, clippy::pedantic, clippy::nursery)]
         const _: () = {
-            use #lagrangian::{AdmissibleBasis, Constraint, Piecewise, Reduced, ReducedError, Scalar, Stages, System};
+            use #lagrangian::{AdmissibleBasis, Constraint, Piecewise, Reduced, ReducedError, Scalar, StageEvaluation, System};
             impl System<#n, #m> for #name { #functions }
             #by_hand
             #inherent
@@ -151,7 +151,7 @@ fn by_hand(printer: &Printer<'_>, reduced: &ReducedFormulas) -> Result<TokenStre
     let stands_alone = reduced.stands_alone;
     Ok(quote! {
         impl Reduced<#n, #m> for #name {
-            const STAGES: Stages = Stages::Simplified;
+            const STAGES: StageEvaluation = StageEvaluation::Simplified;
             #[inline(always)]
             fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; #n], xi: &[S; #n]) -> Option<[S; #n]> { #motion }
             #[inline(always)]

@@ -1,6 +1,6 @@
 use crate::ball::{attitude, attitude_part};
 use crate::error::positive;
-use crate::{Attitude, Labels, Model, ModelError, State};
+use crate::{Attitude, Labels, Model, ModelError, ModelState};
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, energy, from_fn};
 
 /// The Chaplygin ball: it rolls on a horizontal plane without slipping, its mass centre at its geometric centre and its
@@ -64,7 +64,7 @@ impl ChaplyginBall {
 
     /// The state with the centre at a place (m), an attitude, and an angular velocity in space (rad/s), rolling.
     #[must_use]
-    pub fn rolling(&self, place: [f64; 2], attitude: &Attitude<f64>, omega: [f64; 3]) -> State<6> {
+    pub fn rolling(&self, place: [f64; 2], attitude: &Attitude<f64>, omega: [f64; 3]) -> ModelState<6> {
         let ([s, x, y, z], [s1, x1, y1, z1]) = (attitude.quaternion(), attitude.rates_of_space(&omega));
         let r = self.radius;
         ([place[0], place[1], s, x, y, z], [r * omega[1], -r * omega[0], s1, x1, y1, z1])
@@ -142,12 +142,12 @@ impl Model<6, 3> for ChaplyginBall {
         Labels { reversible: true, integrable: true, invariant_measure: true }
     }
 
-    fn start(&self) -> State<6> {
+    fn start(&self) -> ModelState<6> {
         self.admissible([0.0, 0.0, 0.98, 0.1, -0.15, 0.06], [0.5, 0.8, -0.4, 0.0, 0.0, 0.0])
     }
 
     /// At the attitude nearest to the given numbers, turning at `xi` about the axes of the body.
-    fn admissible(&self, q: [f64; 6], xi: [f64; 6]) -> State<6> {
+    fn admissible(&self, q: [f64; 6], xi: [f64; 6]) -> ModelState<6> {
         let attitude = Attitude::nearest(attitude_part(&q));
         self.rolling([q[0], q[1]], &attitude, attitude.in_space(&[xi[0], xi[1], xi[2]]))
     }

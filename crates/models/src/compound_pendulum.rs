@@ -1,5 +1,5 @@
 use crate::error::{finite, positive};
-use crate::{Labels, Model, ModelError, State};
+use crate::{Labels, Model, ModelError, ModelState};
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, energy};
 
 /// A rigid body in a vertical plane, hinged at the origin: a pendulum in the coordinates of a free body.
@@ -45,7 +45,7 @@ impl CompoundPendulum {
 
     /// The state of the angle (rad) and its rate (rad/s).
     #[must_use]
-    pub fn state_at(&self, angle: f64, rate: f64) -> State<3> {
+    pub fn state_at(&self, angle: f64, rate: f64) -> ModelState<3> {
         let (sin, cos) = angle.sin_cos();
         let (x, y) = (self.arm * sin, -self.arm * cos);
         ([x, y, angle], [-y * rate, x * rate, rate])
@@ -101,11 +101,11 @@ impl Model<3, 2> for CompoundPendulum {
     }
 
     /// At rest but for a swing of 1.2 rad.
-    fn start(&self) -> State<3> {
+    fn start(&self) -> ModelState<3> {
         self.state_at(1.2, 0.3)
     }
 
-    fn admissible(&self, q: [f64; 3], xi: [f64; 3]) -> State<3> {
+    fn admissible(&self, q: [f64; 3], xi: [f64; 3]) -> ModelState<3> {
         let (hung, v) = self.state_at(q[2], xi[0]);
         if self.positions { (hung, v) } else { (q, v) }
     }

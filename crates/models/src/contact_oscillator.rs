@@ -1,5 +1,5 @@
 use crate::error::not_negative;
-use crate::{Labels, Model, ModelError, State};
+use crate::{Labels, Model, ModelError, ModelState};
 use lagrangian::{Scalar, energy};
 
 /// The contact oscillator, `L = |q'|^2/2 - |q|^2/2 - eps/2 x^2 z^2` with `x' + y z' = 0`.
@@ -34,7 +34,7 @@ impl ContactOscillator {
     ///
     /// # Errors
     /// [`ModelError`] where `z0^2 > 2`, which is more than the energy allows.
-    pub fn start_at(&self, z0: f64) -> Result<State<3>, ModelError> {
+    pub fn start_at(&self, z0: f64) -> Result<ModelState<3>, ModelError> {
         let left = not_negative("2 - z0^2", 2.0 - z0 * z0)?;
         let x = (left / (1.0 + self.eps * z0 * z0)).sqrt();
         Ok(([x, 0.0, z0], [0.0, 1.0, 0.0]))
@@ -67,7 +67,7 @@ impl Model<3, 1> for ContactOscillator {
     }
 
     /// [`ContactOscillator::start_at`] with `z0 = 0.3 sqrt(2)`.
-    fn start(&self) -> State<3> {
+    fn start(&self) -> ModelState<3> {
         let z0 = 0.3 * std::f64::consts::SQRT_2;
         let x = ((2.0 - z0 * z0) / (1.0 + self.eps * z0 * z0)).sqrt();
         ([x, 0.0, z0], [0.0, 1.0, 0.0])

@@ -1,5 +1,5 @@
 use crate::error::finite;
-use crate::{ContactOscillator, Labels, Model, ModelError, State};
+use crate::{ContactOscillator, Labels, Model, ModelError, ModelState};
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, energy};
 
 /// A [`ContactOscillator`] with a gauge term, `L - q' . grad S` with `S = s cos(z)`.
@@ -66,7 +66,7 @@ impl Model<3, 1> for GaugedOscillator {
         Labels { reversible: self.gauge == 0.0, ..self.oscillator.labels() }
     }
 
-    fn start(&self) -> State<3> {
+    fn start(&self) -> ModelState<3> {
         self.oscillator.start()
     }
 

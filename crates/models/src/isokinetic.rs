@@ -1,5 +1,5 @@
 use crate::error::{finite, positive};
-use crate::{Labels, Model, ModelError, State};
+use crate::{Labels, Model, ModelError, ModelState};
 use lagrangian::{Constraint, Scalar, System};
 
 /// A particle in the plane under a constant force along `x`, whose speed is held: `|v|^2 = c^2`, a constraint that is not
@@ -24,7 +24,7 @@ impl IsokineticParticle {
 
     /// The state at a place (m) in a direction (rad).
     #[must_use]
-    pub fn state_at(&self, q: [f64; 2], direction: f64) -> State<2> {
+    pub fn state_at(&self, q: [f64; 2], direction: f64) -> ModelState<2> {
         (q, [self.speed * direction.cos(), self.speed * direction.sin()])
     }
 }
@@ -63,12 +63,12 @@ impl Model<2, 1> for IsokineticParticle {
         Labels { reversible: true, integrable: true, invariant_measure: true }
     }
 
-    fn start(&self) -> State<2> {
+    fn start(&self) -> ModelState<2> {
         self.state_at([0.2, -0.1], 2.4)
     }
 
     /// In the direction of `xi`.
-    fn admissible(&self, q: [f64; 2], xi: [f64; 2]) -> State<2> {
+    fn admissible(&self, q: [f64; 2], xi: [f64; 2]) -> ModelState<2> {
         self.state_at(q, xi[1].atan2(xi[0]))
     }
 
@@ -91,7 +91,7 @@ impl Model<2, 1> for IsokineticParticle {
 
     /// With `s = F/(m c)`, `A = cos(phi0/2) exp(s t/2)` and `B = sin(phi0/2) exp(-s t/2)`: `tan(phi/2) = B/A`,
     /// `x = x0 + c/s ln(A^2 + B^2)`, `y = y0 + c/s (phi0 - phi)`.
-    fn exact_from(&self, (q, v): &State<2>, t: f64) -> Option<State<2>> {
+    fn exact_from(&self, (q, v): &ModelState<2>, t: f64) -> Option<ModelState<2>> {
         let c = self.speed;
         let s = self.force / (self.mass * c);
         if s == 0.0 {

@@ -1,6 +1,6 @@
 use crate::error::{finite, positive};
 use crate::special::{sinc, sine_defect};
-use crate::{Labels, Model, ModelError, State};
+use crate::{Labels, Model, ModelError, ModelState};
 use lagrangian::{Scalar, energy};
 
 /// A knife edge on an incline: a body whose centre of mass stands over its blade, on a slope that falls along `x`.
@@ -82,7 +82,7 @@ impl Model<3, 1> for KnifeEdge {
     }
 
     /// At rest but for a turn at 1 rad/s, the blade across the slope's contours: its path is a cycloid.
-    fn start(&self) -> State<3> {
+    fn start(&self) -> ModelState<3> {
         ([0.0; 3], [0.0, 0.0, 1.0])
     }
 
@@ -109,7 +109,7 @@ impl Model<3, 1> for KnifeEdge {
     /// With `w = theta'`, `c = (sin theta - sin theta0)/w` and `s = -(cos theta - cos theta0)/w`: `u = u0 + g c`,
     /// `x = x0 + u0 c + g c^2/2`, `y = y0 + u0 s + g/w int (sin theta - sin theta0) sin theta dt`, in a form that holds
     /// down to `w = 0`.
-    fn exact_from(&self, (q, v): &State<3>, t: f64) -> Option<State<3>> {
+    fn exact_from(&self, (q, v): &ModelState<3>, t: f64) -> Option<ModelState<3>> {
         let (sin0, cos0) = q[2].sin_cos();
         let u0 = cos0 * v[0] + sin0 * v[1];
         let z = v[2] * t;

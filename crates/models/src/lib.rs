@@ -46,7 +46,7 @@ pub use gauged_oscillator::GaugedOscillator;
 pub use isokinetic::IsokineticParticle;
 pub use knife_edge::KnifeEdge;
 pub use lagrangian::Attitude;
-pub use model::{Labels, Model, State};
+pub use model::{Labels, Model, ModelState};
 pub use particle::Particle;
 pub use quartic_oscillator::QuarticOscillator;
 pub use roller_racer::RollerRacer;

@@ -1,7 +1,7 @@
 use lagrangian::{Scalar, System, energy};
 
 /// A configuration `q` and a velocity `v`.
-pub type State<const N: usize> = ([f64; N], [f64; N]);
+pub type ModelState<const N: usize> = ([f64; N], [f64; N]);
 
 /// What is known of a system beyond its equations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,11 +27,11 @@ pub trait Model<const N: usize, const M: usize>: System<N, M> + Sized {
     fn labels(&self) -> Labels;
 
     /// The standard start: a configuration, and an admissible velocity.
-    fn start(&self) -> State<N>;
+    fn start(&self) -> ModelState<N>;
 
     /// An admissible state made of any coordinates and quasi-velocities: as they are, in [`System::admissible_basis`], unless
     /// the constraints bind positions or have no basis.
-    fn admissible(&self, q: [f64; N], xi: [f64; N]) -> State<N> {
+    fn admissible(&self, q: [f64; N], xi: [f64; N]) -> ModelState<N> {
         let v = self.admissible_basis(0.0, &q).map_or([0.0; N], |basis| basis.combine(&xi));
         (q, v)
     }
@@ -63,12 +63,12 @@ pub trait Model<const N: usize, const M: usize>: System<N, M> + Sized {
     }
 
     /// The state a time `t` (s) after the given one, where the motion is known in closed form.
-    fn exact_from(&self, _start: &State<N>, _t: f64) -> Option<State<N>> {
+    fn exact_from(&self, _start: &ModelState<N>, _t: f64) -> Option<ModelState<N>> {
         None
     }
 
     /// The state a time `t` (s) after [`Model::start`], where the motion is known in closed form.
-    fn exact(&self, t: f64) -> Option<State<N>> {
+    fn exact(&self, t: f64) -> Option<ModelState<N>> {
         self.exact_from(&self.start(), t)
     }
 }

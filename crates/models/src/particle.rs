@@ -1,5 +1,5 @@
 use crate::error::{not_negative, positive};
-use crate::{Labels, Model, ModelError, State};
+use crate::{Labels, Model, ModelError, ModelState};
 use lagrangian::{Scalar, energy};
 
 /// The nonholonomic particle: a point in space with `z' = y x'`, free or in a well `U = k/2 (x^2 + y^2)`.
@@ -77,7 +77,7 @@ impl Model<3, 1> for Particle {
         Labels { reversible: true, integrable: true, invariant_measure: true }
     }
 
-    fn start(&self) -> State<3> {
+    fn start(&self) -> ModelState<3> {
         ([0.1, 0.2, 0.3], [0.9, 0.7, 0.2 * 0.9])
     }
 
@@ -102,7 +102,7 @@ impl Model<3, 1> for Particle {
 
     /// Without a well: with `c = x' sqrt(1 + y^2)` and `w = y'` constant,
     /// `x = x0 + c/w (asinh y - asinh y0)`, `z = z0 + c/w (sqrt(1 + y^2) - sqrt(1 + y0^2))`.
-    fn exact_from(&self, (q, v): &State<3>, t: f64) -> Option<State<3>> {
+    fn exact_from(&self, (q, v): &ModelState<3>, t: f64) -> Option<ModelState<3>> {
         if self.stiffness > 0.0 {
             return None;
         }

@@ -1,5 +1,5 @@
 use crate::error::not_negative;
-use crate::{Labels, Model, ModelError, State};
+use crate::{Labels, Model, ModelError, ModelState};
 use lagrangian::Scalar;
 
 /// The chaotic quartic oscillator: seven oscillators `q = (x, y1, y2, y3, z1, z2, z3)`, coupled by
@@ -29,7 +29,7 @@ impl QuarticOscillator {
     /// One of a family of starts of the same energy: `x = cos(angle)`, `y1' = sin(angle)` (rad), `y = (0.6, 0.4, 0.2)`,
     /// `z = (1, 1, 1)`.
     #[must_use]
-    pub fn start_at(&self, angle: f64) -> State<7> {
+    pub fn start_at(&self, angle: f64) -> ModelState<7> {
         let (sin, cos) = angle.sin_cos();
         ([cos, 0.6, 0.4, 0.2, 1.0, 1.0, 1.0], [0.0, sin, 0.0, 0.0, 0.0, 0.0, 0.0])
     }
@@ -69,7 +69,7 @@ impl Model<7, 1> for QuarticOscillator {
     }
 
     /// [`QuarticOscillator::start_at`] a third of a half turn.
-    fn start(&self) -> State<7> {
+    fn start(&self) -> ModelState<7> {
         self.start_at(std::f64::consts::FRAC_PI_3)
     }
 

@@ -1,5 +1,5 @@
 use crate::error::positive;
-use crate::{Labels, Model, ModelError, State};
+use crate::{Labels, Model, ModelError, ModelState};
 
 /// The roller racer: two bodies with an axle each, hinged to each other.
 ///
@@ -81,7 +81,7 @@ impl Model<4, 2> for RollerRacer {
     }
 
     /// Forward at 1 m/s and turning at 0.3 rad/s, the hinge bent by half a radian.
-    fn start(&self) -> State<4> {
+    fn start(&self) -> ModelState<4> {
         let (bend, straight) = 0.5f64.sin_cos();
         let turn_rate = 0.3;
         let hinge = (bend - (self.d1 * straight + self.d2) * turn_rate) / self.d2;

@@ -1,6 +1,6 @@
 use crate::error::positive;
 use crate::special::sinc;
-use crate::{Labels, Model, ModelError, State};
+use crate::{Labels, Model, ModelError, ModelState};
 use lagrangian::{Scalar, energy};
 
 /// A disk that stays upright and rolls without slipping on a horizontal plane.
@@ -96,7 +96,7 @@ impl Model<4, 2> for RollingDisk {
     }
 
     /// Spin at 1 rad/s, turn at 2 rad/s.
-    fn start(&self) -> State<4> {
+    fn start(&self) -> ModelState<4> {
         ([0.0; 4], [self.radius, 0.0, 1.0, 2.0])
     }
 
@@ -123,7 +123,7 @@ impl Model<4, 2> for RollingDisk {
     }
 
     /// An arc of the radius `R phi' / theta'`: its chord lies along the mean heading.
-    fn exact_from(&self, (q, v): &State<4>, t: f64) -> Option<State<4>> {
+    fn exact_from(&self, (q, v): &ModelState<4>, t: f64) -> Option<ModelState<4>> {
         let half = 0.5 * v[3] * t;
         let (sin, cos) = (q[3] + half).sin_cos();
         let chord = self.radius * v[2] * t * sinc(half);

@@ -1,5 +1,5 @@
 use crate::error::{finite, positive};
-use crate::{Labels, Model, ModelError, State};
+use crate::{Labels, Model, ModelError, ModelState};
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
 
 /// A sleigh on a pendulum arm: a massless arm, free to turn about the origin, holds a hitch on the sleigh, ahead of its blade.
@@ -111,12 +111,12 @@ impl Model<3, 2> for SleighOnArm {
     }
 
     /// The blade inside of the arm's circle, at 1 rad/s of the hitch about it.
-    fn start(&self) -> State<3> {
+    fn start(&self) -> ModelState<3> {
         self.admissible([0.3, 0.0, 1.1], [self.arm / self.hitch, 0.0, 0.0])
     }
 
     /// At the angle `q[0]` of the arm and the heading `q[2]`.
-    fn admissible(&self, [angle, _, heading]: [f64; 3], xi: [f64; 3]) -> State<3> {
+    fn admissible(&self, [angle, _, heading]: [f64; 3], xi: [f64; 3]) -> ModelState<3> {
         let ((sin, cos), (s, c)) = (angle.sin_cos(), heading.sin_cos());
         let q = [self.arm * cos - self.hitch * c, self.arm * sin - self.hitch * s, heading];
         let drive = self.hitch * (heading - angle).sin() * xi[0];

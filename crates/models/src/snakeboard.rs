@@ -1,5 +1,5 @@
 use crate::error::positive;
-use crate::{Labels, Model, ModelError, State};
+use crate::{Labels, Model, ModelError, ModelState};
 use lagrangian::{Scalar, energy};
 
 /// The snakeboard: a board on two wheel axles that steer by opposite angles, with a rotor at its centre.
@@ -101,7 +101,7 @@ impl Model<5, 2> for Snakeboard {
     }
 
     /// On an arc, steering and with the rotor turning.
-    fn start(&self) -> State<5> {
+    fn start(&self) -> ModelState<5> {
         let (sin, cos) = 0.3f64.sin_cos();
         ([0.0, 0.0, 0.0, 0.0, 0.3], [self.length * cos, 0.0, -sin, 0.5, 0.2])
     }

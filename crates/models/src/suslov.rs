@@ -1,5 +1,5 @@
 use crate::error::{finite, positive};
-use crate::{Attitude, Labels, Model, ModelError, State};
+use crate::{Attitude, Labels, Model, ModelError, ModelState};
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
 
 /// The Suslov problem: a rigid body about a fixed point that cannot turn about its own third axis, `Omega3 = 0`.
@@ -138,12 +138,12 @@ impl Model<4, 2> for Suslov {
         Labels { reversible: true, integrable: true, invariant_measure: principal }
     }
 
-    fn start(&self) -> State<4> {
+    fn start(&self) -> ModelState<4> {
         self.admissible([0.98, 0.1, -0.15, 0.06], [0.6, 0.2, 0.0, 0.0])
     }
 
     /// At the attitude nearest to the given numbers, turning at `xi`.
-    fn admissible(&self, q: [f64; 4], xi: [f64; 4]) -> State<4> {
+    fn admissible(&self, q: [f64; 4], xi: [f64; 4]) -> ModelState<4> {
         let attitude = Attitude::nearest(q);
         (attitude.quaternion(), attitude.rates_of_body(&[xi[0], xi[1], 0.0]))
     }

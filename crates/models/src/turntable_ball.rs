@@ -1,6 +1,6 @@
 use crate::ball::{attitude, attitude_part};
 use crate::error::{finite, positive};
-use crate::{Attitude, Labels, Model, ModelError, State};
+use crate::{Attitude, Labels, Model, ModelError, ModelState};
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, energy, velocity_of};
 
 /// A homogeneous ball that rolls on a level table, which turns about the origin at a given rate: constraints that are affine
@@ -51,7 +51,7 @@ impl TurntableBall {
 
     /// Place and velocity of the centre a time `t` (s) after the given state, on its circle.
     #[must_use]
-    pub fn centre_from(&self, (q, v): &State<6>, t: f64) -> ([f64; 2], [f64; 2]) {
+    pub fn centre_from(&self, (q, v): &ModelState<6>, t: f64) -> ([f64; 2], [f64; 2]) {
         let w = self.circling();
         let (sin, cos) = (w * t).sin_cos();
         // int_0^t of the cosine and of the sine, down to w = 0.
@@ -123,12 +123,12 @@ impl Model<6, 3> for TurntableBall {
         Labels { reversible: self.rate == 0.0, integrable: true, invariant_measure: true }
     }
 
-    fn start(&self) -> State<6> {
+    fn start(&self) -> ModelState<6> {
         self.admissible([0.4, -0.2, 0.9, 0.1, -0.3, 0.3], [0.7, -0.4, 0.5, 0.0, 0.0, 0.0])
     }
 
     /// At the attitude nearest to the given numbers, turning at `xi` beside what the table adds.
-    fn admissible(&self, q: [f64; 6], xi: [f64; 6]) -> State<6> {
+    fn admissible(&self, q: [f64; 6], xi: [f64; 6]) -> ModelState<6> {
         let [s, x, y, z] = Attitude::nearest(attitude_part(&q)).quaternion();
         let q = [q[0], q[1], s, x, y, z];
         // Three independent rows at every attitude, so there is always one.

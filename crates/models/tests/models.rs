@@ -10,8 +10,8 @@ use lagrangian::{
     reduced_acceleration, velocity_of,
 };
 use models::{
-    ChaplyginBall, CompoundPendulum, ContactOscillator, GaugedOscillator, KnifeEdge, Model, Particle,
-    QuarticOscillator, RollerRacer, RollingDisk, SleighOnArm, Snakeboard, State, Suslov, TurntableBall,
+    ChaplyginBall, CompoundPendulum, ContactOscillator, GaugedOscillator, KnifeEdge, Model, ModelState, Particle,
+    QuarticOscillator, RollerRacer, RollingDisk, SleighOnArm, Snakeboard, Suslov, TurntableBall,
 };
 use proptest::prelude::*;
 use std::array::from_fn;
@@ -242,7 +242,7 @@ fn derivative<const N: usize>(f: impl Fn(f64) -> [f64; N]) -> [f64; N] {
     })
 }
 
-fn exact_is_a_solution<Mo: Model<N, M>, const N: usize, const M: usize>(model: &Mo, start: &State<N>, t: f64) {
+fn exact_is_a_solution<Mo: Model<N, M>, const N: usize, const M: usize>(model: &Mo, start: &ModelState<N>, t: f64) {
     let Some((q, v)) = model.exact_from(start, t) else { return };
     let name = model.name();
     let at = |dt: f64| model.exact_from(start, t + dt).unwrap();

@@ -41,7 +41,7 @@ mod train;
 mod variation;
 mod written;
 
-pub use self::built::{Built, Place as StartPlace, QUANTITIES, Quantity, SleighQuantity, text_quantities};
+pub use self::built::{Built, QUANTITIES, Quantity, SleighQuantity, StartPlace, text_quantities};
 pub use self::scene::Scene;
 pub use self::text::{AnyScene, BuildError, Given, TextScene};
 pub use ::text::{AnyText, Coordinate, FREE, Family, FamilySystem, Moved, TextMechanics, TextModel, Varied};

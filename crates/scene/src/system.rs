@@ -37,9 +37,9 @@ impl Visitor for Jumps {
 }
 
 /// The energy of a system at its start (J).
-struct Energy;
+struct TrainEnergy;
 
-impl Visitor for Energy {
+impl Visitor for TrainEnergy {
     type Output = f64;
 
     fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> f64 {
@@ -113,7 +113,7 @@ impl Scene {
     /// # Errors
     /// As [`system`](Self::system).
     pub(crate) fn energy(&self) -> Result<f64, SleighError> {
-        Ok(handed(self.first_blade()?, Energy))
+        Ok(handed(self.first_blade()?, TrainEnergy))
     }
 
     /// The jumps of the scene in its run (s).

@@ -54,14 +54,14 @@ impl Scene {
 
     /// The start of the first blade, with the velocities that the scene imposes in place of those that it gives.
     fn admissible_start(&self) -> Result<SleighState, SleighError> {
-        Ok(if self.imposed()?.is_some() { handed(self.first_blade()?, Start) } else { self.start })
+        Ok(if self.imposed()?.is_some() { handed(self.first_blade()?, TrainStart) } else { self.start })
     }
 }
 
 /// The state of a sleigh at its start.
-struct Start;
+struct TrainStart;
 
-impl Visitor for Start {
+impl Visitor for TrainStart {
     type Output = SleighState;
 
     fn visit<const N: usize, const M: usize>(self, _system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> SleighState {

@@ -4,7 +4,7 @@ use crate::tapes::{TapePoint, Tapes};
 use crate::{TextModel, TextSystem};
 use ::formulas::{Formulas, ReducedFormulas};
 use expression::Expression;
-use lagrangian::{Pivots, Reduced, ReducedError, Scalar, Stages};
+use lagrangian::{Pivots, Reduced, ReducedError, Scalar, StageEvaluation};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -24,14 +24,14 @@ pub(crate) struct EquationsOfBasis {
 }
 
 /// They are shared by all systems of a model with the same basis.
-pub(crate) type Equations = Arc<EquationsOfBasis>;
+pub(crate) type SharedEquations = Arc<EquationsOfBasis>;
 
 /// The equations in each basis that has been in use, by its number; zero is that of a basis that holds everywhere.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct EquationsOfBases(Arc<Mutex<BTreeMap<u64, Equations>>>);
+pub(crate) struct EquationsOfBases(Arc<Mutex<BTreeMap<u64, SharedEquations>>>);
 
 impl EquationsOfBases {
-    pub(crate) fn of(&self, basis: u64) -> Equations {
+    pub(crate) fn of(&self, basis: u64) -> SharedEquations {
         // What a thread that panicked has put there is whole.
         let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         Arc::clone(all.entry(basis).or_default())
@@ -84,7 +84,7 @@ impl<const N: usize, const M: usize> TextSystem<N, M> {
 
 /// By computer algebra: `xi'` as formulas in the basis in use.
 impl<const N: usize, const M: usize> Reduced<N, M> for TextSystem<N, M> {
-    const STAGES: Stages = Stages::InArrays;
+    const STAGES: StageEvaluation = StageEvaluation::InArrays;
 
     fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; N], xi: &[S; N]) -> Option<[S; N]> {
         let n = self.model.coordinates.len();

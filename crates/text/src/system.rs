@@ -1,5 +1,5 @@
 use crate::TextModel;
-use crate::reduced::Equations;
+use crate::reduced::SharedEquations;
 use crate::tapes::TapePoint;
 use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Pivots, Reduced, Scalar, System};
 use std::sync::Arc;
@@ -14,7 +14,7 @@ pub struct TextSystem<const N: usize, const M: usize> {
     /// The sizes of rates with the same kinetic energy.
     sizes: Arc<[f64]>,
     pub(crate) pivots: Pivots,
-    pub(crate) equations: Equations,
+    pub(crate) equations: SharedEquations,
 }
 
 /// The reduced equations follow from the rest.

@@ -4,7 +4,7 @@ use super::rule::GaussRule;
 use lagrangian::linear::larger;
 use lagrangian::simd::{KNOWN_WHEN_BUILT, Kernel, Pack, Simd, Square, Wide, dispatch, each, packed};
 use lagrangian::{
-    Lanes, Reduced, Stages, System, acceleration_along, array, derived_acceleration, from_fn, velocity_of,
+    Lanes, Reduced, StageEvaluation, System, acceleration_along, array, derived_acceleration, from_fn, velocity_of,
 };
 use std::fmt;
 use std::ops::Deref;
@@ -190,10 +190,10 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> StagesAtOnce<'_, Sys, N,
         q: &[Pack<S, R>; N],
         xi: &[Wide<S, R>; N],
     ) -> Option<[Pack<S, R>; N]> {
-        if const { matches!(By::STAGES, Stages::Simplified) } {
+        if const { matches!(By::STAGES, StageEvaluation::Simplified) } {
             return velocity_of(self.system, Pack::load(simd, &self.times()), q, &packed(simd, xi)).ok();
         }
-        if const { matches!(By::STAGES, Stages::InArrays) } {
+        if const { matches!(By::STAGES, StageEvaluation::InArrays) } {
             let t = Lanes(self.times());
             let v = velocity_of(self.system, t, &in_lanes(q), &in_lanes(&packed(simd, xi))).ok()?;
             return Some(of_lanes(simd, &v));
@@ -227,10 +227,10 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> StagesAtOnce<'_, Sys, N,
         q: &[Pack<S, R>; N],
         xi: &[Wide<S, R>; N],
     ) -> Option<[Pack<S, R>; N]> {
-        if const { matches!(By::STAGES, Stages::Simplified) } {
+        if const { matches!(By::STAGES, StageEvaluation::Simplified) } {
             return by_hand.reduced_motion(Pack::load(simd, &self.times()), q, &packed(simd, xi));
         }
-        if const { matches!(By::STAGES, Stages::InArrays) } {
+        if const { matches!(By::STAGES, StageEvaluation::InArrays) } {
             let a = by_hand.reduced_motion(Lanes(self.times()), &in_lanes(q), &in_lanes(&packed(simd, xi)))?;
             return Some(of_lanes(simd, &a));
         }

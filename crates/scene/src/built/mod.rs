@@ -49,7 +49,7 @@ impl Quantity {
 }
 
 /// Configuration and velocity of a start.
-pub type Place<const N: usize> = ([f64; N], [f64; N]);
+pub type StartPlace<const N: usize> = ([f64; N], [f64; N]);
 
 impl<const N: usize, const M: usize> Built<'_, N, M> {
     /// All quantities, the first of which [tell a state](Self::in_state), in their order.
@@ -140,7 +140,7 @@ impl<const N: usize, const M: usize> Built<'_, N, M> {
     ///
     /// Places change with their quasi-velocities as they are.
     #[must_use]
-    pub fn with(&self, start: &Place<N>, k: usize, value: f64) -> Option<Place<N>> {
+    pub fn with(&self, start: &StartPlace<N>, k: usize, value: f64) -> Option<StartPlace<N>> {
         match self {
             Self::Sleigh(system) => sleigh::with(*system, start, k, value),
             Self::Text(system) => text::with(*system, start, k, value),

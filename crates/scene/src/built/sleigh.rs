@@ -1,6 +1,6 @@
 //! Sleighs in the words of their scenes.
 
-use super::{Place, Quantity};
+use super::{Quantity, StartPlace};
 use ::sleigh::SleighState;
 use systems::SceneSystem;
 
@@ -95,10 +95,10 @@ pub(super) fn distance<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
 
 pub(super) fn with<const N: usize, const M: usize>(
     system: &dyn SceneSystem<N, M>,
-    (q, v): &Place<N>,
+    (q, v): &StartPlace<N>,
     k: usize,
     value: f64,
-) -> Option<Place<N>> {
+) -> Option<StartPlace<N>> {
     let mut state = system.sleigh_state(q, v);
     let SleighState { x, y, heading, speed, turn_rate } = &mut state;
     **[x, y, heading, speed, turn_rate].get_mut(k)? = value;

@@ -1,6 +1,6 @@
 //! Systems of text in the words of their scenes.
 
-use super::{Place, Quantity};
+use super::{Quantity, StartPlace};
 use ::text::{Coordinate, TextMechanics, TextModel, Unit};
 use dla::Node;
 use systems::Column;
@@ -59,10 +59,10 @@ fn between<T>(mut state: Vec<T>, first: usize, time: T, told: impl Fn() -> [T; 3
 /// A place with its quasi-velocities as they are, or a rate with the others as near as the constraints admit.
 pub(super) fn with<const N: usize, const M: usize>(
     system: &dyn TextMechanics<N, M>,
-    (q, v): &Place<N>,
+    (q, v): &StartPlace<N>,
     k: usize,
     value: f64,
-) -> Option<Place<N>> {
+) -> Option<StartPlace<N>> {
     let model = system.model();
     let n = model.coordinates().len();
     let filled = |x: &[f64]| std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0));

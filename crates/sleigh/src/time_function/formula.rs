@@ -71,19 +71,19 @@ impl Formula {
     /// The value at `t`.
     #[inline(always)]
     pub(super) fn value<S: Scalar>(&self, t: S) -> S {
-        t.apply(Derivative { formula: self, order: 0 })
+        t.apply(FormulaDerivative { formula: self, order: 0 })
     }
 
     /// The derivative in time at `t`.
     #[inline(always)]
     pub(super) fn slope<S: Scalar>(&self, t: S) -> S {
-        t.apply(Derivative { formula: self, order: 1 })
+        t.apply(FormulaDerivative { formula: self, order: 1 })
     }
 
     /// The second derivative in time at `t`.
     #[inline(always)]
     pub(super) fn curvature<S: Scalar>(&self, t: S) -> S {
-        t.apply(Derivative { formula: self, order: 2 })
+        t.apply(FormulaDerivative { formula: self, order: 2 })
     }
 }
 
@@ -96,18 +96,18 @@ impl PartialEq for Formula {
 
 /// A derivative of a formula.
 #[derive(Clone, Copy)]
-struct Derivative<'f> {
+struct FormulaDerivative<'f> {
     formula: &'f Formula,
     order: usize,
 }
 
-impl Derivative<'_> {
+impl FormulaDerivative<'_> {
     fn next(self) -> Self {
         Self { order: self.order + 1, ..self }
     }
 }
 
-impl ScalarFunction for Derivative<'_> {
+impl ScalarFunction for FormulaDerivative<'_> {
     fn value(self, t: f64) -> f64 {
         self.formula.at(self.order, t)
     }
