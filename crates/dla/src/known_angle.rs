@@ -1,5 +1,5 @@
 use lagrangian::{Scalar, ScalarFunction, array};
-use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number that may be an angle whose sine and cosine are known already: what is computed from it as from any other then
 /// asks for them again at no cost.
@@ -56,24 +56,7 @@ impl<T: Scalar> Neg for KnownAngle<T> {
         Self::from(-self.re)
     }
 }
-impl<T: Scalar> AddAssign for KnownAngle<T> {
-    #[inline(always)]
-    fn add_assign(&mut self, o: Self) {
-        *self = *self + o;
-    }
-}
-impl<T: Scalar> SubAssign for KnownAngle<T> {
-    #[inline(always)]
-    fn sub_assign(&mut self, o: Self) {
-        *self = *self - o;
-    }
-}
-impl<T: Scalar> MulAssign<f64> for KnownAngle<T> {
-    #[inline(always)]
-    fn mul_assign(&mut self, factor: f64) {
-        *self = *self * factor;
-    }
-}
+lagrangian::assigning_operators!([T: Scalar] KnownAngle<T>);
 
 impl<T: Scalar> Scalar for KnownAngle<T> {
     const IN_REGISTERS: bool = T::IN_REGISTERS;

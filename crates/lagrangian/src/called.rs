@@ -1,5 +1,5 @@
 use crate::{Scalar, ScalarFunction, mapped};
-use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number whose operations are calls, never inlined: for evaluations that are made seldom. A model on such numbers compiles to a tenth of
 /// the code, in a tenth of the time.
@@ -36,21 +36,7 @@ impl<S: Scalar> Neg for Called<S> {
         Self(-self.0)
     }
 }
-impl<S: Scalar> AddAssign for Called<S> {
-    fn add_assign(&mut self, o: Self) {
-        *self = *self + o;
-    }
-}
-impl<S: Scalar> SubAssign for Called<S> {
-    fn sub_assign(&mut self, o: Self) {
-        *self = *self - o;
-    }
-}
-impl<S: Scalar> MulAssign<f64> for Called<S> {
-    fn mul_assign(&mut self, factor: f64) {
-        *self = *self * factor;
-    }
-}
+scalar::assigning_operators!([S: Scalar] Called<S>);
 
 impl<S: Scalar> Scalar for Called<S> {
     fn constant(x: f64) -> Self {

@@ -96,24 +96,7 @@ macro_rules! derived_operators {
                 self + (-other)
             }
         }
-        impl<$($generics)*> std::ops::AddAssign for $number {
-            #[inline(always)]
-            fn add_assign(&mut self, other: Self) {
-                *self = *self + other;
-            }
-        }
-        impl<$($generics)*> std::ops::SubAssign for $number {
-            #[inline(always)]
-            fn sub_assign(&mut self, other: Self) {
-                *self = *self - other;
-            }
-        }
-        impl<$($generics)*> std::ops::MulAssign<f64> for $number {
-            #[inline(always)]
-            fn mul_assign(&mut self, factor: f64) {
-                *self = *self * factor;
-            }
-        }
+        scalar::assigning_operators!([$($generics)*] $number);
     };
 }
 

@@ -102,7 +102,9 @@ pub use row_space::{Dependence, RowSpace};
 pub use rows::Rows;
 pub use rule::{Alpha, AnyRule, Midpoint, NotAWeight, Rule, RuleNode, Symmetrised, Trapezoid};
 pub use saddle::Saddle;
-pub use scalar::{Scalar, ScalarFunction, array, called, from_fn, mapped, mul_add, sin_cos_wrapped};
+pub use scalar::{
+    Scalar, ScalarFunction, array, assigning_operators, called, from_fn, mapped, mul_add, sin_cos_wrapped,
+};
 pub use second::{AT_ONCE, TwiceDifferentiable, second_derivatives, seed};
 pub use seldom::{configuration_slope, velocity_slope};
 pub use shown::Shown;

@@ -3,6 +3,7 @@
 //! Numbers with derivatives, and many at once in vector registers, are in the crate `lagrangian`. A program that works on formulas
 //! only, as the macro `system!` does while it compiles, needs no more than this.
 
+mod assigning;
 mod functions;
 mod fused;
 mod inlined;

@@ -1,6 +1,36 @@
 use super::{Pack, Simd};
 use crate::{Scalar, ScalarFunction, array};
-use std::ops::{AddAssign, MulAssign, SubAssign};
+
+/// The functions of several numbers that are made of `together`, lane by lane, and the loop over parts of a model.
+macro_rules! functions_by_lane {
+    () => {
+        #[inline(always)]
+        #[allow(clippy::redundant_closure, reason = "a function may stay a call, in which the registers are not known")]
+        fn length<const K: usize>(components: &[Self; K]) -> Self {
+            together(
+                components,
+                #[inline(always)]
+                |x| f64::length(x),
+            )
+        }
+        #[inline(always)]
+        fn atan2(self, x: Self) -> Self {
+            together(
+                &[self, x],
+                #[inline(always)]
+                |&[y, x]| f64::atan2(y, x),
+            )
+        }
+        #[inline(always)]
+        fn over<I, T>(items: &[I], mut start: T, f: impl Fn(T, &I) -> T) -> T {
+            for item in items {
+                start = f(start, item);
+            }
+            start
+        }
+    };
+}
+pub(super) use functions_by_lane;
 
 /// Eight numbers in registers, whatever they are: for formulas from which zeros and ones have been removed already.
 impl<S: Simd, const R: usize> Scalar for Pack<S, R> {
@@ -61,26 +91,7 @@ impl<S: Simd, const R: usize> Scalar for Pack<S, R> {
             |&[x, then, otherwise]| if x > 0.0 { then } else { otherwise },
         )
     }
-    #[inline(always)]
-    #[allow(clippy::redundant_closure, reason = "a function may stay a call, in which the registers are not known")]
-    fn length<const K: usize>(components: &[Self; K]) -> Self {
-        if const { K == 0 } {
-            return Self::zero();
-        }
-        together(
-            components,
-            #[inline(always)]
-            |x| f64::length(x),
-        )
-    }
-    #[inline(always)]
-    fn atan2(self, x: Self) -> Self {
-        together(
-            &[self, x],
-            #[inline(always)]
-            |&[y, x]| f64::atan2(y, x),
-        )
-    }
+    functions_by_lane!();
     #[inline(always)]
     fn array<const N: usize>(f: impl Fn(usize) -> Self) -> [Self; N] {
         let simd = S::of_this_machine();
@@ -107,24 +118,20 @@ impl<S: Simd, const R: usize> Scalar for Pack<S, R> {
         )
     }
     #[inline(always)]
-    fn over<I, T>(items: &[I], mut start: T, f: impl Fn(T, &I) -> T) -> T {
-        for item in items {
-            start = f(start, item);
-        }
-        start
-    }
-    #[inline(always)]
     fn is_zero(&self) -> bool {
         self.lanes().iter().all(Scalar::is_zero)
     }
 }
 
-/// A function of at least one number, without vector instructions.
+/// A function of several numbers, without vector instructions.
 #[inline(always)]
 pub(super) fn together<S: Simd, const R: usize, const K: usize>(
     x: &[Pack<S, R>; K],
     f: impl Fn(&[f64; K]) -> f64,
 ) -> Pack<S, R> {
+    if const { K == 0 } {
+        return Scalar::constant(f(&[0.0; K]));
+    }
     let mut all = x[0];
     for (i, place) in all.lanes_mut().iter_mut().enumerate() {
         *place = f(&array(
@@ -136,21 +143,4 @@ pub(super) fn together<S: Simd, const R: usize, const K: usize>(
     all
 }
 
-impl<S: Simd, const R: usize> AddAssign for Pack<S, R> {
-    #[inline(always)]
-    fn add_assign(&mut self, o: Self) {
-        *self = *self + o;
-    }
-}
-impl<S: Simd, const R: usize> SubAssign for Pack<S, R> {
-    #[inline(always)]
-    fn sub_assign(&mut self, o: Self) {
-        *self = *self - o;
-    }
-}
-impl<S: Simd, const R: usize> MulAssign<f64> for Pack<S, R> {
-    #[inline(always)]
-    fn mul_assign(&mut self, factor: f64) {
-        *self = *self * factor;
-    }
-}
+scalar::assigning_operators!([S: Simd, const R: usize] Pack<S, R>);

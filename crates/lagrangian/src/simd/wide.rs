@@ -1,6 +1,7 @@
+use super::packed::functions_by_lane;
 use super::{Pack, Simd};
 use crate::{Scalar, ScalarFunction, array};
-use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Eight numbers on which a model is evaluated: a [`Pack`], or one number that is the same in all lanes.
 ///
@@ -177,24 +178,7 @@ macro_rules! with_numbers {
     )*};
 }
 with_numbers!(Add add, Sub sub, Mul mul, Div div);
-impl<S: Simd, const R: usize> AddAssign for Wide<S, R> {
-    #[inline(always)]
-    fn add_assign(&mut self, o: Self) {
-        *self = *self + o;
-    }
-}
-impl<S: Simd, const R: usize> SubAssign for Wide<S, R> {
-    #[inline(always)]
-    fn sub_assign(&mut self, o: Self) {
-        *self = *self - o;
-    }
-}
-impl<S: Simd, const R: usize> MulAssign<f64> for Wide<S, R> {
-    #[inline(always)]
-    fn mul_assign(&mut self, factor: f64) {
-        *self = *self * factor;
-    }
-}
+scalar::assigning_operators!([S: Simd, const R: usize] Wide<S, R>);
 
 impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
     const IN_REGISTERS: bool = true;
@@ -225,11 +209,7 @@ impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
     fn sin_cos_called(self) -> (Self, Self) {
         match self {
             Each(x) => {
-                let (sin, cos) = super::apart(
-                    x.simd(),
-                    #[inline(always)]
-                    || x.sin_cos(),
-                );
+                let (sin, cos) = x.sin_cos_called();
                 (Each(sin), Each(cos))
             }
             Zero | Same(_) => crate::called(
@@ -284,23 +264,7 @@ impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
             ),
         }
     }
-    #[inline(always)]
-    #[allow(clippy::redundant_closure, reason = "a function may stay a call, in which the registers are not known")]
-    fn length<const K: usize>(components: &[Self; K]) -> Self {
-        together(
-            components,
-            #[inline(always)]
-            |x| f64::length(x),
-        )
-    }
-    #[inline(always)]
-    fn atan2(self, x: Self) -> Self {
-        together(
-            &[self, x],
-            #[inline(always)]
-            |&[y, x]| f64::atan2(y, x),
-        )
-    }
+    functions_by_lane!();
     #[inline(always)]
     fn array<const N: usize>(f: impl Fn(usize) -> Self) -> [Self; N] {
         array(Zero, f)
@@ -312,10 +276,9 @@ impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
     #[inline(always)]
     fn called<T>(self, f: impl FnOnce(Self) -> T) -> T {
         match self {
-            Each(x) => super::apart(
-                x.simd(),
+            Each(x) => x.called(
                 #[inline(always)]
-                || f(Each(x)),
+                |x| f(Each(x)),
             ),
             // Of a number that all eight have in common: in a kernel no such question is there after inlining.
             Zero | Same(_) => crate::called(
@@ -362,13 +325,6 @@ impl<S: Simd, const R: usize> Scalar for Wide<S, R> {
             Some(found) => Some(each(&found)),
             None => None,
         }
-    }
-    #[inline(always)]
-    fn over<I, T>(items: &[I], mut start: T, f: impl Fn(T, &I) -> T) -> T {
-        for item in items {
-            start = f(start, item);
-        }
-        start
     }
     #[inline(always)]
     fn carried_as(self, other: Self) -> Self {
