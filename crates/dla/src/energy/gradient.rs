@@ -23,17 +23,20 @@ pub(super) fn average<const N: usize, const M: usize>(
 ) -> Option<Averages<N>> {
     let slope = system.energy_slope(t, &nodes.q, &nodes.xi)?;
     nodes.pi = slope.pi;
-    let mean = |values: &[Lanes; N]| {
-        values.map(|value| {
-            let mut result = Lanes::zero();
-            for (weights, result) in rule.averages().iter().zip(&mut result.0) {
-                let (mut terms, mut rest) = (Lanes::zero(), Lanes::zero());
-                weights.add(value, &mut terms, &mut rest);
-                *result = terms.0.iter().sum::<f64>() + rest.0.iter().sum::<f64>();
-            }
-            result
-        })
-    };
     let steepest = mapped(&slope.h_q, |h| h.0.iter().fold(0.0, |m: f64, x| m.max(x.abs())));
-    Some(Averages { h_q: mean(&slope.h_q), h_pi: mean(&nodes.xi), steepest })
+    Some(Averages { h_q: means(rule, &slope.h_q), h_pi: means(rule, &nodes.xi), steepest })
+}
+
+/// The averages `int_0^1 (l_i / b_i) x dsigma` of numbers at the nodes of the quadrature.
+#[inline(always)]
+fn means<const N: usize>(rule: &EnergyRule, x: &[Lanes; N]) -> [Lanes; N] {
+    let mut means = [Lanes::zero(); N];
+    for (x, mean) in x.iter().zip(&mut means) {
+        for (weights, mean) in rule.averages().iter().zip(&mut mean.0) {
+            let (mut terms, mut rest) = (Lanes::zero(), Lanes::zero());
+            weights.add(*x, &mut terms, &mut rest);
+            *mean = terms.0.iter().sum::<f64>() + rest.0.iter().sum::<f64>();
+        }
+    }
+    means
 }

@@ -141,9 +141,11 @@ impl<const N: usize, const M: usize> StepEnergy<'_, N, M> {
             let before = points.xi;
             points.follow(&path, rule.integrals_to_points(), start, h);
             let t = time(rule.points);
-            let bracket = system.bracket(t, &points.q, &points.xi).ok_or(NO_BASIS)?;
+            // By reference: to take a bracket out of the option would copy all of it.
+            let bracket = system.bracket(t, &points.q, &points.xi);
+            let Some(bracket) = &bracket else { return Err(NO_BASIS) };
             points.pi = bracket.quasi_momenta();
-            let ends = Ends::of(rule, &bracket, &points, start);
+            let ends = Ends::of(rule, bracket, &points, start);
             nodes.follow(&path, rule.integrals_to_nodes(), start, h);
             let averages = gradient::average(system, rule, time(rule.nodes), &mut nodes).ok_or(NO_BASIS)?;
 

@@ -50,22 +50,19 @@ impl<const N: usize> PathPoints<N> {
     /// that is constant in the basis, else one more fixed-point iteration within the others.
     #[inline(always)]
     pub(super) fn follow(&mut self, path: &EnergyPath<N>, weights: &[Weights], start: &EnergyStart<N>, h: f64) {
-        let moved = |k: &Lanes| {
-            let (mut sum, mut rest) = (Lanes::zero(), Lanes::zero());
-            for (weights, k) in weights.iter().zip(k.0) {
-                weights.add(k, &mut sum, &mut rest);
-            }
-            (sum + rest) * h
-        };
-        let increment: [Lanes; N] = from_fn(|i| moved(&path.q_rate[i]));
+        let mut increment = [Lanes::zero(); N];
+        for i in 0..N {
+            increment[i] = moved(&path.q_rate[i], weights) * h;
+            self.gain[i] = moved(&path.pi_rate[i], weights) * h + start.rest[i];
+        }
         for k in 0..Lanes::COUNT {
-            let q = start.state.ahead(&from_fn(|i| increment[i].0[k]));
+            let q = start.state.ahead(&from_fn(
+                #[inline(always)]
+                |i| increment[i].0[k],
+            ));
             for i in 0..N {
                 self.q[i].0[k] = q[i];
             }
-        }
-        for a in 0..N {
-            self.gain[a] = moved(&path.pi_rate[a]) + start.rest[a];
         }
         let missing = self.missing(start);
         for a in 0..N {
@@ -79,4 +76,14 @@ impl<const N: usize> PathPoints<N> {
     pub(super) fn missing(&self, start: &EnergyStart<N>) -> [Lanes; N] {
         from_fn(|a| self.gain[a] - (self.pi[a] + -start.pi[a]))
     }
+}
+
+/// The integral of a rate from the start to each of the points, by the step.
+#[inline(always)]
+fn moved(rate: &Lanes, weights: &[Weights]) -> Lanes {
+    let (mut sum, mut rest) = (Lanes::zero(), Lanes::zero());
+    for (weights, rate) in weights.iter().zip(rate.0) {
+        weights.add(rate, &mut sum, &mut rest);
+    }
+    sum + rest
 }
