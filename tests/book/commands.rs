@@ -2,11 +2,12 @@
 
 use super::pages::{Block, pages, root};
 use crate::program::Folder;
+use std::collections::BTreeSet;
 use std::fs;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-/// What takes longer than a test may: marked `# long` on its page, parsed here, and run by the ignored test.
+/// What takes minutes: marked `# long` on its page, and run by a test of its own.
 const LONG: [&str; 9] = [
     "noslip compare egg-crate-attractor --duration 5000 --methods dla,dla4,gauss8,rk4-reduced,energy4",
     "noslip lyapunov docs/chaos/valley.toml --duration 20000 --out valley.svg",
@@ -19,15 +20,27 @@ const LONG: [&str; 9] = [
     "noslip section egg-crate-attractor --step 0.1 --plane turn_rate=0 --starts 4 --duration 8000 --out egg-crate.svg",
 ];
 
-/// What another test runs as a whole (`tests/cli_stability.rs`); here it is parsed.
+/// What another test runs as a whole (`tests/cli/stability.rs`); here it is parsed.
 const TOGETHER: &str = "noslip stability --case ";
+
+/// What is run in any case; others are parsed.
+const QUICK: [&str; 8] = [
+    "noslip check docs/guide/train.toml",
+    "noslip check turnaround bowl hills",
+    "noslip equations snakeboard",
+    "noslip list methods",
+    "noslip list scenes",
+    "noslip lyapunov docs/guide/train.toml",
+    "noslip run bowl --set sleigh.mass=-1",
+    "noslip run turnaround",
+];
 
 /// Commands that are for other programs: what is built, installed or measured is not done by a test.
 const OTHERS: [&str; 15] = [
     "cargo build --release",
     "cargo run --release",
     "cargo test --workspace",
-    "cargo test --release -p noslip-assembly",
+    "NOSLIP_MEASURE=1 cargo test",
     "cargo install mdbook --locked --no-default-features",
     "mdbook build docs",
     "benches/peers/run ",
@@ -71,13 +84,17 @@ pub(super) fn words(line: &str) -> Vec<String> {
     line.split_whitespace().skip(1).map(full).collect()
 }
 
-/// Runs the commands of a block, in a folder of their own.
-fn run(page: &str, block: &Block<'_>, long: bool) {
+fn quick(line: &Line) -> bool {
+    QUICK.contains(&line.words.as_str())
+}
+
+/// Runs those commands of a block, in a folder of their own.
+fn run(page: &str, block: &Block<'_>, runs: fn(&Line) -> bool) {
     let folder = Folder::new();
     for line in lines(block) {
         if line.words.starts_with("noslip") {
             // With `--help` the words before it are parsed, and nothing is done.
-            let skipped = (line.long && !long) || line.words.starts_with(TOGETHER);
+            let skipped = !runs(&line) || line.words.starts_with(TOGETHER);
             let help = skipped.then(|| "--help".to_owned());
             let outcome = folder.noslip(words(&line.words).into_iter().chain(help));
             let code = if skipped { 0 } else { line.code };
@@ -112,7 +129,7 @@ fn check(page: &str, block: &Block<'_>) {
     }
 }
 
-fn run_all(long: bool) {
+fn run_all(runs: fn(&Line) -> bool) {
     let pages = pages();
     let blocks: Vec<(&str, Block<'_>)> =
         pages.iter().flat_map(|page| page.blocks().into_iter().map(|block| (page.path.as_str(), block))).collect();
@@ -122,7 +139,7 @@ fn run_all(long: bool) {
         for _ in 0..threads {
             scope.spawn(|| {
                 while let Some((page, block)) = blocks.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    if block.language == "sh" { run(page, block, long) } else { check(page, block) }
+                    if block.language == "sh" { run(page, block, runs) } else { check(page, block) }
                 }
             });
         }
@@ -134,17 +151,25 @@ fn run_all(long: bool) {
     marked.dedup();
     assert_eq!(marked, LONG, "marked `# long` on the left, known as long on the right");
     assert!(others.iter().filter(|line| line.words.starts_with("noslip ")).count() > 30, "{others:?}");
+    let quick: BTreeSet<&str> = others.iter().filter(|line| quick(line)).map(|line| line.words.as_str()).collect();
+    assert_eq!(quick.into_iter().collect::<Vec<_>>(), QUICK, "on the pages on the left, known as quick on the right");
 }
 
 #[test]
 fn every_command_of_the_book_runs() {
-    run_all(false);
+    run_all(quick);
 }
 
 #[test]
-#[ignore = "takes minutes"]
+#[ignore = "slow"]
+fn every_command_of_the_book_runs_in_full() {
+    run_all(|line| !line.long);
+}
+
+#[test]
+#[ignore = "slow"]
 fn every_long_command_of_the_book_runs() {
-    run_all(true);
+    run_all(|line| line.long);
 }
 
 /// The controls: what a page gets wrong is seen.
@@ -158,7 +183,7 @@ fn a_wrong_command_is_seen() {
         "rm -r docs",
     ] {
         let block = Block { language: "sh", lines: vec![wrong] };
-        let seen = thread::spawn(move || run("a page", &block, false)).join();
+        let seen = thread::spawn(move || run("a page", &block, |line| !line.long)).join();
         assert!(seen.is_err(), "{wrong}");
     }
 }

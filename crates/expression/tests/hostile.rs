@@ -1,9 +1,8 @@
 //! Texts that mean harm: an error or a result, within limits, and never a panic.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-mod common;
 
-use common::names;
+use crate::common::names;
 use expression::{Error, Graph, Tape, parse};
 use proptest::prelude::*;
 
@@ -11,7 +10,7 @@ use proptest::prelude::*;
 fn everything(text: &str) -> Result<(), Error> {
     let syntax = parse(text, &names())?;
     let mut graph = Graph::with_limit(1 << 20);
-    let variables = common::variables(&mut graph);
+    let variables = crate::common::variables(&mut graph);
     let e = graph.build(&syntax, &variables)?;
     let mut outputs = vec![e];
     outputs.extend(graph.gradient(e, &[0, 1, 2]));
@@ -116,7 +115,7 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1_000_000))]
     #[test]
-    #[ignore = "minutes"]
+    #[ignore = "slow"]
     fn a_million_texts_end(text in prop_oneof![words(), sentences(), bytes()]) {
         survives(&text);
     }
@@ -124,7 +123,19 @@ proptest! {
 
 #[test]
 fn deep_texts() {
-    for n in [100, 300, 100_000] {
+    deep(&[100, 300, 10_000]);
+    assert!(matches!(everything(&"(".repeat(300)), Err(Error::TooDeep { column: 257, .. })));
+    assert_eq!(everything(&format!("{}x{}", "sin(".repeat(200), ")".repeat(200))), Ok(()));
+}
+
+#[test]
+#[ignore = "slow"]
+fn deep_texts_in_full() {
+    deep(&[100, 300, 100_000]);
+}
+
+fn deep(depths: &[usize]) {
+    for &n in depths {
         let (open, close) = ("(".repeat(n), ")".repeat(n));
         for text in [
             format!("{open}x{close}"),
@@ -144,13 +155,21 @@ fn deep_texts() {
             survives(&text);
         }
     }
-    assert!(matches!(everything(&"(".repeat(300)), Err(Error::TooDeep { column: 257, .. })));
-    assert_eq!(everything(&format!("{}x{}", "sin(".repeat(200), ")".repeat(200))), Ok(()));
 }
 
 #[test]
 fn long_texts() {
-    let n = 100_000;
+    long(500);
+}
+
+#[test]
+#[ignore = "slow"]
+fn long_texts_in_full() {
+    long(100_000);
+}
+
+/// Texts of so many terms, and one that is longer than a text may be.
+fn long(n: usize) {
     let many = |term: &dyn Fn(usize) -> String| (0..n).map(term).collect::<Vec<_>>();
     assert_eq!(everything(&many(&|_| "x".to_owned()).join("+")), Ok(()));
     assert_eq!(everything(&many(&|_| "x".to_owned()).join("*")), Ok(()));
@@ -187,24 +206,34 @@ fn texts_that_have_failed() {
     }
 }
 
-/// Abbreviations of abbreviations: each is small, and together they would be sums of sums without end.
 #[test]
 fn abbreviations_of_abbreviations() {
+    abbreviated(1 << 12, 200);
+}
+
+#[test]
+#[ignore = "slow"]
+fn abbreviations_of_abbreviations_in_full() {
+    abbreviated(1 << 18, 2000);
+}
+
+/// Abbreviations of abbreviations: each is small, and together they would be sums of sums without end.
+fn abbreviated(limit: usize, depth: u32) {
     for source in
         ["mass + y*x", "mass*(y + x)", "mass - sin(mass + x)", "mass^2 + mass", "sqrt(mass*x + 1)", "(mass + x)^2*mass"]
     {
-        let syntax = common::read(source);
-        let mut graph = Graph::with_limit(1 << 18);
-        let mut meanings = common::variables(&mut graph);
+        let syntax = crate::common::read(source);
+        let mut graph = Graph::with_limit(limit);
+        let mut meanings = crate::common::variables(&mut graph);
         let mut built = Ok(meanings[3]);
-        for k in 0..2000 {
+        for k in 0..depth {
             built = graph.build(&syntax, &meanings);
             let Ok(e) = built else { break };
             meanings[3] = e;
             meanings[0] = graph.variable(4 + k);
         }
         if let Ok(e) = built {
-            let outputs = graph.gradient(e, &[1, 4, 1000]);
+            let outputs = graph.gradient(e, &[1, 4, depth / 2]);
             let _ = Tape::new(&graph, &outputs);
             let _ = graph.text(e, &names());
         }

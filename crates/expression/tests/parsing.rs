@@ -1,16 +1,15 @@
 //! What is wrong with a text is said with its place and what would be right there; limits hold.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-mod common;
 
-use common::{built, names};
+use crate::common::{built, names};
 use expression::{Error, Graph, Limits, Names, nearest, parse, parse_within};
 
 /// The message for a text, with the meanings of the names as variables.
 fn message(text: &str) -> (Option<usize>, String) {
     let error = parse(text, &names()).and_then(|syntax| {
         let mut graph = Graph::new();
-        let variables = common::variables(&mut graph);
+        let variables = crate::common::variables(&mut graph);
         graph.build(&syntax, &variables)
     });
     let error = error.map(|_| text.to_owned()).unwrap_err();

@@ -1,9 +1,8 @@
 //! Which expressions are one, and which are not.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-mod common;
 
-use common::{built, text};
+use crate::common::{built, text};
 use expression::{Error, Expression, Graph, Names, parse};
 
 #[test]
@@ -80,7 +79,7 @@ fn coefficients_stay_in_range() {
     {
         let mut graph = Graph::new();
         let e = built(&mut graph, source);
-        let syntax = common::read(source);
+        let syntax = crate::common::read(source);
         for x in [1e-250, 1e-30, 1.0, -1e308] {
             let tape = expression::Tape::new(&graph, &[e]).unwrap();
             let (mut scratch, mut value) = (vec![0.0; tape.scratch()], [0.0]);

@@ -1,9 +1,8 @@
 //! Tapes on every kind of number, what they cost, and that they need nothing but their scratch.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
-mod common;
 
-use common::{built, read};
+use crate::common::{built, read};
 use expression::{Cost, Error, Graph, Tape};
 use lagrangian::simd::{Kernel, Pack, Simd, Wide, dispatch};
 use lagrangian::{Dual, HyperDual, Lanes, Scalar, vectorized};

@@ -1,9 +1,8 @@
 //! What is simplified, derived and put on a tape against the text evaluated as it was written.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp, clippy::panic)]
-mod common;
 
-use common::{NAMES, agree, built, expression, names, off_corners, read, text, values, variables};
+use crate::common::{NAMES, agree, built, expression, names, off_corners, read, text, values, variables};
 use expression::{Error, Function, Graph, Tape, parse};
 use lagrangian::{Dual, Rounded, Scalar};
 use num_dual::HyperDual64;
@@ -127,7 +126,7 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(100_000))]
     #[test]
-    #[ignore = "minutes"]
+    #[ignore = "slow"]
     fn many_texts(source in expression(), x in values(), y in off_corners()) {
         tape_has_the_value(&source, x);
         derivatives_are_those_of_dual_numbers(&source, y);

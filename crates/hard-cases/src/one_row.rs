@@ -72,7 +72,7 @@ pub(crate) const GAUGE: Case = Case {
     name: "gauge",
     hard: "A gauge term in the Lagrangian changes no motion, but shifts the momenta: symmetric methods no longer see \
            the reversal, and lose energy.",
-    shows: "The methods that promise the energy keep it. The drift of dla is tested in tests/table/gauge.rs.",
+    shows: "The methods that promise the energy keep it. The drift of dla is tested in crates/harness/tests/table/gauge.rs.",
     bar: "Rounding of the energy over the run.",
     claim: Claim::Energy,
     refusable: false,

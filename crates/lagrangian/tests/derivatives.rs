@@ -1,10 +1,9 @@
 //! The dual numbers against `num-dual`, on single operations and on a Lagrangian that has everything.
 
 #![allow(missing_docs, clippy::float_cmp, clippy::unwrap_used, clippy::expect_used)]
-mod common;
 
+use crate::common::{Everything, component, vector};
 use approx::assert_relative_eq;
-use common::{Everything, component, vector};
 use lagrangian::{
     Dual, Gradient, HyperDual, Motion, Scalar, System, constraint_residual, energy, mass_matrix, momentum,
 };

@@ -1,10 +1,9 @@
 //! Discrete Lagrangians and their derivatives, for every rule.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-mod common;
 
+use crate::common::{Everything, vector};
 use approx::assert_relative_eq;
-use common::{Everything, vector};
 use lagrangian::{
     Alpha, Constraint, Derivatives, DiscreteConstraint, DiscreteLagrangian, Midpoint, Scalar, Symmetrised, System,
     Trapezoid, constraint_residual,

@@ -1,9 +1,8 @@
 //! The small linear solvers against those of faer and nalgebra.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-mod common;
 
-use common::component;
+use crate::common::component;
 use faer::linalg::solvers::Solve;
 use lagrangian::linear::{Inverse, Lu, has_positive_determinant, normal_solve};
 use lagrangian::{AdmissibleBasis, FactoredSaddle, RowSpace, Rows, Saddle};

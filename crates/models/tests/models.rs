@@ -1,9 +1,8 @@
 //! What every model promises, for parameters that are not one.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
-mod common;
 
-use common::{Draws, draws, parameters, state};
+use crate::common::{Draws, draws, parameters, state};
 use lagrangian::linear::Lu;
 use lagrangian::{
     Dual, Lanes, Motion, acceleration_along, classify, constraint_residual, mass_matrix, quasi_velocities,

@@ -1,4 +1,4 @@
-//! Systems by `system!` move as those written by hand: the same numbers over 10^4 steps, by every method that applies.
+//! Systems by `system!` move as those written by hand: the same numbers, over 10^4 steps where a run is full, by every method that applies.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
@@ -103,13 +103,13 @@ fn apart<A, B, const N: usize, const M: usize>(
     b: &B,
     method: &Method,
     start: ([f64; N], [f64; N]),
-    h: f64,
+    (h, steps): (f64, u64),
 ) -> f64
 where
     A: System<N, M> + Piecewise,
     B: System<N, M>,
 {
-    let schedule = Schedule { t0: 0.0, step: h, steps: 10_000 };
+    let schedule = Schedule { t0: 0.0, step: h, steps };
     let mut states = [start; 2].map(|(q, v)| State::new(q, v, a.angles()));
     drive(a, &mut *method.stepper(), &schedule, &mut states[0], ()).unwrap();
     drive(b, &mut *method.stepper(), &schedule, &mut states[1], ()).unwrap();
@@ -123,14 +123,19 @@ where
 }
 
 /// What is allowed: round-off, in the one method whose multipliers amplify it some more.
-fn close<A, B, const N: usize, const M: usize>(a: &A, b: &B, methods: &[&str], start: ([f64; N], [f64; N]), h: f64)
-where
+fn close<A, B, const N: usize, const M: usize>(
+    a: &A,
+    b: &B,
+    methods: &[&str],
+    start: ([f64; N], [f64; N]),
+    run: (f64, u64),
+) where
     A: System<N, M> + Piecewise,
     B: System<N, M>,
 {
     for name in methods {
         let method = Method::named(name, None).unwrap();
-        let apart = apart(a, b, &method, start, h);
+        let apart = apart(a, b, &method, start, run);
         let allowed = if *name == "gni" { 1e-9 } else { 1e-13 };
         assert!(apart <= allowed, "{name}: {apart:e}");
     }
@@ -158,8 +163,7 @@ where
 
 const MOST: [&str; 7] = ["dla", "dla8", "lobatto4", "gauss4", "gauss16", "energy4", "rk4-reduced"];
 
-#[test]
-fn the_sleigh() {
+fn sleigh(steps: u64) {
     let (blade, sleigh) = (Blade { m: 1.3, I: 0.7, a: 0.4 }, Sleigh::new(1.3, 0.7, 0.4).unwrap());
     let start = SleighState { speed: -1.0, turn_rate: 0.3, heading: 0.4, ..SleighState::default() }.to_coordinates();
     same_equations(&blade, &sleigh, &[start]);
@@ -168,25 +172,55 @@ fn the_sleigh() {
     assert_eq!((Blade::COORDINATES, Blade::default().a), (["x", "y", "theta"], 0.5));
     // The series are those of a sleigh that is known to be one.
     let methods: Vec<&str> = METHODS.iter().map(|info| info.name).filter(|name| *name != "taylor").collect();
-    close(&blade, &sleigh, &methods, start, 0.01);
+    close(&blade, &sleigh, &methods, start, (0.01, steps));
+}
+
+#[test]
+fn the_sleigh() {
+    sleigh(10);
+}
+
+#[test]
+#[ignore = "slow"]
+fn the_sleigh_in_full() {
+    sleigh(10_000);
+}
+
+fn rolling_disk(steps: u64) {
+    let (disk, model) = (Disk { R: 0.6, ..Disk::default() }, RollingDisk::new(1.3, 0.6, 0.2, 0.1).unwrap());
+    same_equations(&disk, &model, &[model.start()]);
+    close(&disk, &model, &MOST, model.start(), (0.01, steps));
 }
 
 #[test]
 fn the_rolling_disk() {
-    let (disk, model) = (Disk { R: 0.6, ..Disk::default() }, RollingDisk::new(1.3, 0.6, 0.2, 0.1).unwrap());
-    same_equations(&disk, &model, &[model.start()]);
-    close(&disk, &model, &MOST, model.start(), 0.01);
+    rolling_disk(20);
+}
+
+#[test]
+#[ignore = "slow"]
+fn the_rolling_disk_in_full() {
+    rolling_disk(10_000);
+}
+
+fn roller_racer(steps: u64) {
+    let (racer, model) = (Racer::default(), RollerRacer::new(1.0, 0.4, 0.1, 0.5, 0.3).unwrap());
+    same_equations(&racer, &model, &[model.start(), model.admissible([0.1, 0.2, 0.7, -1.0], [0.5, -0.4, 0.0, 0.0])]);
+    close(&racer, &model, &MOST, model.start(), (0.002, steps));
 }
 
 #[test]
 fn the_roller_racer() {
-    let (racer, model) = (Racer::default(), RollerRacer::new(1.0, 0.4, 0.1, 0.5, 0.3).unwrap());
-    same_equations(&racer, &model, &[model.start(), model.admissible([0.1, 0.2, 0.7, -1.0], [0.5, -0.4, 0.0, 0.0])]);
-    close(&racer, &model, &MOST, model.start(), 0.002);
+    roller_racer(20);
 }
 
 #[test]
-fn the_snakeboard() {
+#[ignore = "slow"]
+fn the_roller_racer_in_full() {
+    roller_racer(10_000);
+}
+
+fn snakeboard(steps: u64) {
     let (board, model) = (Board::default(), Snakeboard::new(6.0, 0.2, 0.016, 0.072, 0.0013).unwrap());
     same_equations(
         &board,
@@ -194,12 +228,33 @@ fn the_snakeboard() {
         &[model.start(), model.admissible([0.1, 0.2, 0.7, -1.0, 1.2], [0.5, -0.4, 0.3, 0.0, 0.0])],
     );
     assert_eq!(board.reduced().reconstruction(), Some(2));
-    close(&board, &model, &MOST, model.start(), 0.01);
+    close(&board, &model, &MOST, model.start(), (0.01, steps));
+}
+
+#[test]
+fn the_snakeboard() {
+    snakeboard(10);
+}
+
+#[test]
+#[ignore = "slow"]
+fn the_snakeboard_in_full() {
+    snakeboard(10_000);
+}
+
+fn ball(steps: u64) {
+    let (ball, model) = (Ball::default(), ChaplyginBall::new(1.2, 0.8, [0.4, 0.6, 0.9]).unwrap());
+    same_equations(&ball, &model, &[model.start()]);
+    close(&ball, &model, &["dla", "gauss4", "gauss16", "rk4-reduced"], model.start(), (0.002, steps));
 }
 
 #[test]
 fn chaplygins_ball() {
-    let (ball, model) = (Ball::default(), ChaplyginBall::new(1.2, 0.8, [0.4, 0.6, 0.9]).unwrap());
-    same_equations(&ball, &model, &[model.start()]);
-    close(&ball, &model, &["dla", "gauss4", "gauss16", "rk4-reduced"], model.start(), 0.002);
+    ball(10);
+}
+
+#[test]
+#[ignore = "slow"]
+fn chaplygins_ball_in_full() {
+    ball(10_000);
 }

@@ -74,16 +74,26 @@ fn check<Sys, const N: usize, const M: usize>(
     }
 }
 
-#[test]
-fn the_sleigh_turns_around() {
+fn sleigh(run: (f64, u64)) {
     let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
     let start = SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() }.to_coordinates();
-    check("sleigh", sleigh, start, (10.0, 200), false);
+    check("sleigh", sleigh, start, run, false);
     // The basis of the beginning is bad where the blade has turned a quarter.
     let derived = WithBasis::new(Without::<_, false>(sleigh), 0.0, &start.0);
     let quarter = [0.0, 0.0, std::f64::consts::FRAC_PI_2];
     let at = |q: &[f64; 3]| System::<3, 1>::near(&derived, 0.0, q, 0).unwrap().1;
     assert_ne!(at(&start.0), at(&quarter));
+}
+
+#[test]
+fn the_sleigh_turns_around() {
+    sleigh((2.0, 20));
+}
+
+#[test]
+#[ignore = "slow"]
+fn the_sleigh_turns_around_in_full() {
+    sleigh((10.0, 200));
 }
 
 /// The control: where the method keeps the basis of the beginning, a blade that turns by more than a quarter is lost.
@@ -99,33 +109,63 @@ fn a_basis_that_stays_is_lost() {
     assert!(lost.as_ref().map_or(true, |lost| distance(lost, &reference) > 1e-2), "{lost:?}");
 }
 
-#[test]
-fn the_roller_racer_turns() {
+fn roller_racer(run: (f64, u64)) {
     let racer = models::RollerRacer::new(1.0, 0.4, 0.1, 0.5, 0.3).unwrap();
     let (q, v) = models::Model::start(&racer);
-    check("roller racer", racer, (q, v), (8.0, 200), false);
+    check("roller racer", racer, (q, v), run, false);
+}
+
+#[test]
+fn the_roller_racer_turns() {
+    roller_racer((0.4, 10));
+}
+
+#[test]
+#[ignore = "slow"]
+fn the_roller_racer_turns_in_full() {
+    roller_racer((8.0, 200));
+}
+
+fn rolling_disk(run: (f64, u64)) {
+    let disk = models::RollingDisk::new(1.0, 0.5, 0.125, 0.0625).unwrap();
+    let (q, v) = models::Model::start(&disk);
+    check("rolling disk", disk, (q, v), run, false);
 }
 
 #[test]
 fn the_rolling_disk_turns() {
-    let disk = models::RollingDisk::new(1.0, 0.5, 0.125, 0.0625).unwrap();
-    let (q, v) = models::Model::start(&disk);
-    check("rolling disk", disk, (q, v), (8.0, 200), false);
+    rolling_disk((1.0, 10));
+}
+
+#[test]
+#[ignore = "slow"]
+fn the_rolling_disk_turns_in_full() {
+    rolling_disk((8.0, 200));
 }
 
 /// The text in Rust that gives no basis moves as the text that gives one.
-#[test]
-fn a_text_without_a_basis() {
+fn snakeboard((duration, steps): (f64, u64)) {
     let start = ([0.0, 0.0, 0.0, 0.0, -0.5], [0.0; 5]);
     let given = systems::Snakeboard::default();
-    check("snakeboard", given, start, (6.0, 1200), true);
-    let reference = end(&systems::Snakeboard::default(), &mut method!("gauss16"), start, (6.0, 600)).unwrap();
+    check("snakeboard", given, start, (duration, steps), true);
+    let half = (duration, steps / 2);
+    let reference = end(&systems::Snakeboard::default(), &mut method!("gauss16"), start, half).unwrap();
     let text = WithBasis::new(systems::SnakeboardWithoutBasis::default(), 0.0, &start.0);
-    let found = end(&text, &mut method!("gauss16"), start, (6.0, 600)).unwrap();
+    let found = end(&text, &mut method!("gauss16"), start, half).unwrap();
     assert!(distance(&found, &reference) < 1e-10, "{:e}", distance(&found, &reference));
-    let refused =
-        end(&systems::SnakeboardWithoutBasis::default(), &mut method!("gauss16"), start, (6.0, 600)).unwrap_err();
+    let refused = end(&systems::SnakeboardWithoutBasis::default(), &mut method!("gauss16"), start, half).unwrap_err();
     assert!(refused.to_string().contains("`WithBasis`"), "{refused}");
+}
+
+#[test]
+fn a_text_without_a_basis() {
+    snakeboard((0.3, 10));
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_text_without_a_basis_in_full() {
+    snakeboard((6.0, 1200));
 }
 
 /// Rows that say the same are an error, and so are constraints that are not affine.

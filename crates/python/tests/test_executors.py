@@ -203,6 +203,7 @@ def wait_for(folder: Path, parts: int) -> None:
         time.sleep(0.005)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="SIGKILL")
 def test_a_pool_that_lost_a_process_is_broken_and_its_parts_stay(tmp_path: Path, long_serial: noslip.Ensemble) -> None:
     with ProcessPoolExecutor(2, multiprocessing.get_context("spawn")) as pool:
@@ -232,12 +233,14 @@ def client() -> Iterator[Any]:
         yield client
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore")
 def test_dask_gives_the_numbers_of_one_process(client: Any, serial: noslip.Ensemble, tmp_path: Path) -> None:
     equal(noslip.ensemble(SWEEP, executor=client, tasks=7), serial)
     equal(noslip.ensemble(SWEEP, executor=client.get_executor(), parts=tmp_path, tasks=7), serial)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("number", range(TRIES))
 def test_dask_finishes_after_a_killed_worker(number: int, client: Any, long_serial: noslip.Ensemble, tmp_path: Path) -> None:
@@ -272,6 +275,7 @@ DRIVER = """
 """
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("number", range(TRIES))
 def test_a_killed_driver_is_resumed(number: int, client: Any, long_serial: noslip.Ensemble, tmp_path: Path) -> None:

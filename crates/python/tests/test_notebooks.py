@@ -11,6 +11,7 @@ pytest.importorskip("ipykernel")
 FOLDER = Path(__file__).parents[3] / "docs" / "notebooks"
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("path", sorted(FOLDER.glob("*.ipynb")), ids=lambda path: str(path.stem))
 def test_a_notebook_runs(path: Path) -> None:

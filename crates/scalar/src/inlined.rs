@@ -45,28 +45,3 @@ pub fn called<T>(f: impl FnOnce() -> T) -> T {
 pub fn mapped<S: Copy, T: Copy, const N: usize>(of: &[S; N], mut f: impl FnMut(S) -> T) -> [T; N] {
     from_fn(|i| f(of[i]))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// With a closure that has a state: it is called once for each index, in order.
-    #[test]
-    fn places_are_those_of_the_standard_library() {
-        fn same<const N: usize>() {
-            let remembering = || {
-                let mut sum = 1;
-                move |i: usize| {
-                    sum = 3 * sum + i;
-                    sum
-                }
-            };
-            let expected: [usize; N] = std::array::from_fn(remembering());
-            assert_eq!(from_fn::<_, N, _>(remembering()), expected);
-        }
-        same::<0>();
-        same::<1>();
-        same::<2>();
-        same::<7>();
-    }
-}

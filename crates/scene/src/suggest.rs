@@ -29,27 +29,3 @@ pub(crate) fn list(names: &[&str]) -> String {
 pub(crate) fn did_you_mean(name: &str) -> String {
     format!("did you mean `{name}`?")
 }
-
-#[cfg(test)]
-mod tests {
-    use super::nearest;
-
-    #[test]
-    fn finds_misspellings_only() {
-        let keys = ["mass", "inertia", "offset", "x", "y", "turn_rate"];
-        for (word, expected) in [
-            ("masss", Some("mass")),
-            ("Mass", Some("mass")),
-            ("amss", Some("mass")),
-            ("inertai", Some("inertia")),
-            ("turnrate", Some("turn_rate")),
-            ("turn-rate", Some("turn_rate")),
-            ("z", None),
-            ("weight", None),
-            ("", None),
-        ] {
-            assert_eq!(nearest(word, keys), expected, "{word}");
-        }
-        assert_eq!(nearest(&"m".repeat(1_000_000), keys), None);
-    }
-}

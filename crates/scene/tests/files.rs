@@ -1,10 +1,7 @@
 //! Bundled scenes, the template, their schema, and files that are not scenes.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod schema;
-mod trailers;
-
-use scene::{RunSettings, Scene, SceneError, bundled};
+use scene::{RunSettings, Scene, SceneError, bundled, nearest};
 use std::fs;
 
 const METHODS: &[&str] = &["dla", "dla-alpha"];
@@ -107,4 +104,23 @@ fn files_that_hold_no_text_are_refused() {
     assert!(error.to_string().contains("huge.toml"), "{error}");
     let error = Scene::load("nul\0byte", METHODS).unwrap_err();
     assert!(matches!(&error, SceneError::Unreadable { message, .. } if !message.is_empty()), "{error}");
+}
+
+#[test]
+fn finds_misspellings_only() {
+    let keys = ["mass", "inertia", "offset", "x", "y", "turn_rate"];
+    for (word, expected) in [
+        ("masss", Some("mass")),
+        ("Mass", Some("mass")),
+        ("amss", Some("mass")),
+        ("inertai", Some("inertia")),
+        ("turnrate", Some("turn_rate")),
+        ("turn-rate", Some("turn_rate")),
+        ("z", None),
+        ("weight", None),
+        ("", None),
+    ] {
+        assert_eq!(nearest(word, keys), expected, "{word}");
+    }
+    assert_eq!(nearest(&"m".repeat(1_000_000), keys), None);
 }

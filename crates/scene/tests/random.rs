@@ -185,7 +185,8 @@ proptest! {
     }
 
     #[test]
-    fn scenes_run_or_say_why_not(scene in scenes()) {
+    #[ignore = "slow"]
+    fn scenes_run_or_say_why_not_in_full(scene in scenes()) {
         scene.visit(AFewSteps(scene.schedule())).unwrap()?;
     }
 
@@ -238,12 +239,36 @@ proptest! {
     }
 
     #[test]
-    fn long_lines_and_deep_nests_parse_or_explain(length in 0_usize..20_000, before in "[a-z.]{1,10}") {
-        for part in ["a.", "[", "{a=", "x", "é", "\"", "1", "-"] {
-            let long = part.repeat(length);
-            parses_or_explains(&format!("{before}{long} = 1"))?;
-            parses_or_explains(&format!("{before} = {long}"))?;
-            parses_or_explains(&Scene::template().replace("mass = 1.0", &format!("mass = {long}")))?;
-        }
+    #[ignore = "slow"]
+    fn long_lines_and_deep_nests_parse_or_explain_in_full(length in 0_usize..20_000, before in "[a-z.]{1,10}") {
+        long_and_deep(length, &before)?;
     }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn scenes_run_or_say_why_not(scene in scenes()) {
+        scene.visit(AFewSteps(scene.schedule())).unwrap()?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(16))]
+
+    #[test]
+    fn long_lines_and_deep_nests_parse_or_explain(length in 0_usize..20_000, before in "[a-z.]{1,10}") {
+        long_and_deep(length, &before)?;
+    }
+}
+
+fn long_and_deep(length: usize, before: &str) -> Result<(), TestCaseError> {
+    for part in ["a.", "[", "{a=", "x", "é", "\"", "1", "-"] {
+        let long = part.repeat(length);
+        parses_or_explains(&format!("{before}{long} = 1"))?;
+        parses_or_explains(&format!("{before} = {long}"))?;
+        parses_or_explains(&Scene::template().replace("mass = 1.0", &format!("mass = {long}")))?;
+    }
+    Ok(())
 }

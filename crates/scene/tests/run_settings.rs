@@ -1,8 +1,6 @@
 //! The number of steps, and settings from the command line.
 #![allow(clippy::unwrap_used, reason = "what clippy.toml allows in tests, their helpers need too")]
 
-mod sweeps;
-
 use scene::{MAX_STEPS, RunSettings, Scene, SceneError};
 
 const METHODS: &[&str] = &["dla", "dla-alpha", "rk4"];

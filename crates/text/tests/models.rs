@@ -84,13 +84,13 @@ fn same<Sys: System<N, M>, const N: usize, const M: usize, const P: usize, const
     words: &Words,
     model: &Sys,
     start: ([f64; N], [f64; N]),
-    methods: &[&str],
+    (methods, steps): (&[&str], u64),
     tolerance: f64,
 ) {
     let text = Arc::new(text::TextModel::new(words).unwrap());
     let system = TextSystem::<P, R>::new(text, 0.0, &start.0).unwrap();
     for method in methods {
-        let steps = (0.02, 300);
+        let steps = (0.02, steps);
         let (q, v) = end(model, method, start, steps);
         let (p, u) = end(&system, method, (filled(start.0), filled(start.1)), steps);
         for (own, there) in [(q, p), (v, u)] {
@@ -112,29 +112,49 @@ const BASED: [&str; 8] = ["dla", "dla4", "lobatto3", "rk4", "dop853", "gauss8", 
 #[test]
 fn small_systems_move_as_those_of_the_library() {
     let disk_there = RollingDisk::new(1.3, 0.5, 0.2, 0.1).unwrap();
-    same::<_, 4, 2, 4, 2>(&disk(), &disk_there, disk_there.start(), &FAMILY, 1e-13);
+    same::<_, 4, 2, 4, 2>(&disk(), &disk_there, disk_there.start(), (&FAMILY, 300), 1e-13);
     let racer_there = RollerRacer::new(1.0, 0.4, 0.1, 0.5, 0.3).unwrap();
-    same::<_, 4, 2, 4, 2>(&racer(), &racer_there, racer_there.start(), &FAMILY, 1e-12);
+    same::<_, 4, 2, 4, 2>(&racer(), &racer_there, racer_there.start(), (&FAMILY, 300), 1e-12);
     let edge_there = KnifeEdge::new(1.5, 0.7, 2.0).unwrap();
-    same::<_, 3, 1, 3, 1>(&edge(), &edge_there, edge_there.start(), &FAMILY, 1e-12);
+    same::<_, 3, 1, 3, 1>(&edge(), &edge_there, edge_there.start(), (&FAMILY, 300), 1e-12);
+}
+
+#[test]
+fn a_basis_that_is_given_is_that_of_the_library() {
+    in_the_basis_of_the_library(40);
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_basis_that_is_given_is_that_of_the_library_in_full() {
+    in_the_basis_of_the_library(300);
 }
 
 /// The same with the basis of the library given as text: then the methods that move in it agree too.
-#[test]
-fn a_basis_that_is_given_is_that_of_the_library() {
+fn in_the_basis_of_the_library(steps: u64) {
     let mut words = racer();
     let vectors = [["cos(theta)", "sin(theta)", "0", "sin(phi)/d2"], ["0", "0", "1", "-d1/d2*cos(phi) - 1"]];
     words.basis = vectors.map(|vector| vector.map(str::to_owned).to_vec()).to_vec();
     let there = RollerRacer::new(1.0, 0.4, 0.1, 0.5, 0.3).unwrap();
-    same::<_, 4, 2, 4, 2>(&words, &there, there.start(), &BASED, 1e-12);
+    same::<_, 4, 2, 4, 2>(&words, &there, there.start(), (&BASED, steps), 1e-12);
+}
+
+#[test]
+fn a_shape_that_is_filled_up_shows_nothing_of_it() {
+    filled_up(60);
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_shape_that_is_filled_up_shows_nothing_of_it_in_full() {
+    filled_up(300);
 }
 
 /// Five coordinates and two constraints in the shape of six and three, and of twelve and six.
-#[test]
-fn a_shape_that_is_filled_up_shows_nothing_of_it() {
+fn filled_up(steps: u64) {
     let there = Snakeboard::new(6.0, 0.2, 0.016, 0.072, 0.0013).unwrap();
-    same::<_, 5, 2, 6, 3>(&board(), &there, there.start(), &["dla", "rk4", "lobatto3"], 1e-12);
-    same::<_, 5, 2, 12, 6>(&board(), &there, there.start(), &["dla"], 1e-12);
+    same::<_, 5, 2, 6, 3>(&board(), &there, there.start(), (&["dla", "rk4", "lobatto3"], steps), 1e-12);
+    same::<_, 5, 2, 12, 6>(&board(), &there, there.start(), (&["dla"], steps), 1e-12);
 }
 
 /// The ball's quaternion is held by a constraint on positions.
@@ -156,13 +176,25 @@ fn constraints_on_positions_are_kept() {
     .to_vec();
     words.positions = vec!["(e0^2 + e1^2 + e2^2 + e3^2 - 1)/2".to_owned()];
     let there = ChaplyginBall::new(1.0, 0.7, [0.4, 0.6, 0.9]).unwrap();
-    same::<_, 6, 3, 6, 3>(&words, &there, there.start(), &["dla", "lobatto3"], 1e-11);
+    same::<_, 6, 3, 6, 3>(&words, &there, there.start(), (&["dla", "lobatto3"], 300), 1e-11);
+}
+
+#[test]
+fn a_derived_basis_changes_and_the_method_keeps_its_claims() {
+    keeps_its_claims(4.0, 0.04, &[("gauss4", 4.0)]);
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_derived_basis_changes_and_the_method_keeps_its_claims_in_full() {
+    let methods = [("gauss4", 4.0), ("gauss6", 6.0), ("energy4", 4.0), ("rk4-reduced", 4.0), ("dla", 2.0)];
+    keeps_its_claims(8.0, 0.02, &methods);
 }
 
 /// A method that moves in the basis keeps its order, the energy and the constraint, wherever a derived basis has to be changed: the racer turns
-/// by several rounds, and each elimination is bad at two headings of every round.
-#[test]
-fn a_derived_basis_changes_and_the_method_keeps_its_claims() {
+/// by several rounds, and each elimination is bad at two headings of every round. In steps of the length `h` and half of it.
+fn keeps_its_claims(duration: f64, h: f64, methods: &[(&str, f64)]) {
+    let steps = (duration / h).round() as u64;
     let there = RollerRacer::new(1.0, 0.4, 0.1, 0.5, 0.3).unwrap();
     let (q, v) = there.admissible([0.0, 0.0, 0.0, 2.0], [0.3, 2.0, 0.0, 0.0]);
     // Of a row that is scaled by a function no basis is seen that holds everywhere.
@@ -172,7 +204,7 @@ fn a_derived_basis_changes_and_the_method_keeps_its_claims() {
     assert!(System::near(&system, 0.0, &q, 0).is_some());
     let whole = TextSystem::<4, 2>::new(Arc::new(text::TextModel::new(&racer()).unwrap()), 0.0, &q).unwrap();
     assert!(System::near(&whole, 0.0, &q, 0).is_none());
-    let reference = end(&there, "gauss16", (q, v), (0.01, 800)).0;
+    let reference = end(&there, "gauss16", (q, v), (0.5 * h, 2 * steps)).0;
     assert!(reference[2].abs() > 6.0, "it turns: {reference:?}");
     let error = |method: &str, step: f64, steps: u64| {
         let (p, u) = end(&system, method, (q, v), (step, steps));
@@ -182,15 +214,15 @@ fn a_derived_basis_changes_and_the_method_keeps_its_claims() {
         let drift = (energy(&u) - lagrangian::energy(&there, 0.0, &q, &v)).abs();
         (lagrangian::linear::largest(&std::array::from_fn::<f64, 4, _>(|i| p[i] - reference[i])), drift)
     };
-    for (method, order) in [("gauss4", 4.0), ("gauss6", 6.0), ("energy4", 4.0), ("rk4-reduced", 4.0), ("dla", 2.0)] {
-        let ((coarse, _), (fine, drift)) = (error(method, 0.02, 400), error(method, 0.01, 800));
+    for &(method, order) in methods {
+        let ((coarse, _), (fine, drift)) = (error(method, h, steps), error(method, 0.5 * h, 2 * steps));
         let found = (coarse / fine).log2();
         assert!((found - order).abs() < 0.35, "{method}: order {found}, errors {coarse:e} {fine:e}");
         if method == "energy4" {
             assert!(drift < 1e-13, "{method}: {drift:e}");
         }
     }
-    assert!(error("gauss16", 0.02, 400).0 < 1e-11);
+    assert!(error("gauss16", h, steps).0 < 1e-11);
 }
 
 /// The accelerations that are derived as formulas are those by derivatives of the Lagrangian, with forces, in time, and with moving

@@ -1,6 +1,6 @@
 //! Attitude by spinning the rotor.
 
-use crate::{dla, run};
+use crate::geometry::{dla, run};
 use approx::assert_relative_eq;
 use dla::State;
 use lagrangian::System;

@@ -1,6 +1,6 @@
 //! The turn-around: speed becomes spin and spin becomes speed, and no force does any work.
 
-use crate::run;
+use crate::geometry::run;
 use approx::assert_relative_eq;
 use dla::{Dla, State, Trajectory};
 use lagrangian::{Motion, System, constraint_residual};

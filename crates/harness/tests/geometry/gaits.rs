@@ -1,4 +1,4 @@
-use crate::{gauss, run};
+use crate::geometry::{gauss, run};
 use approx::assert_relative_eq;
 use dla::State;
 use lagrangian::System;

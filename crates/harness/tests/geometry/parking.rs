@@ -1,4 +1,4 @@
-use crate::{dla, run};
+use crate::geometry::{dla, run};
 use dla::{State, Trajectory};
 use lagrangian::System;
 use sleigh::parking::{Gap, Move, ParkingPlan};
@@ -27,13 +27,23 @@ fn distance(a: &SleighState, b: &SleighState) -> f64 {
     (a.x - b.x).hypot(a.y - b.y).max(turn.abs())
 }
 
-/// Smooth controls, sampled at equal steps over whole pulses: the midpoint rule integrates them to rounding.
 #[test]
+fn random_pairs_are_reached() {
+    check_pairs(3);
+}
+
+#[test]
+#[ignore = "slow"]
 fn a_hundred_random_pairs_are_reached() {
+    check_pairs(100);
+}
+
+/// Smooth controls, sampled at equal steps over whole pulses: the midpoint rule integrates them to rounding.
+fn check_pairs(pairs: u32) {
     let mut numbers = Numbers(7);
     let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
     let (mut worst, mut slip) = (0.0_f64, 0.0_f64);
-    for _ in 0..100 {
+    for _ in 0..pairs {
         let (start, goal) = (numbers.pose(), numbers.pose());
         let (depth, play) = (numbers.between(-1.5, 1.5), numbers.between(0.2, 0.5));
         let gap = Gap { depth, play, swing: numbers.between(0.3, 0.8) };

@@ -1,4 +1,4 @@
-use crate::{dla, run};
+use crate::geometry::{dla, run};
 use approx::assert_relative_eq;
 use dla::State;
 use harness::analysis::MomentumMeter;

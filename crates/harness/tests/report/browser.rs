@@ -1,6 +1,6 @@
 //! The page in a headless Chromium, where one is installed; `NOSLIP_CHROMIUM` names another than that of the path.
 
-use crate::common::{circle, report, scene};
+use crate::report::common::{circle, report, scene};
 use harness::report::{SceneReport, write};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -75,6 +75,7 @@ fn skipped() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_page_works_in_a_browser() {
     let Some(browser) = browser() else { return skipped() };
     let folder = tempfile::tempdir().unwrap();
@@ -114,6 +115,7 @@ fn the_page_works_in_a_browser() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn play_pause_and_scrub_do_what_they_say() {
     let Some(browser) = browser() else { return skipped() };
     let folder = tempfile::tempdir().unwrap();
@@ -169,6 +171,7 @@ const CHOOSER: &str = "<script>(() => {
 })();</script>";
 
 #[test]
+#[ignore = "slow"]
 fn methods_are_switched_on_and_off_in_the_legend() {
     let Some(browser) = browser() else { return skipped() };
     let folder = tempfile::tempdir().unwrap();
@@ -192,6 +195,7 @@ fn methods_are_switched_on_and_off_in_the_legend() {
 
 /// At a width of 390 units, of a telephone, and of 1400, neither the page nor anything in it scrolls sideways.
 #[test]
+#[ignore = "slow"]
 fn nothing_scrolls_sideways() {
     let Some(browser) = browser() else { return skipped() };
     let folder = tempfile::tempdir().unwrap();

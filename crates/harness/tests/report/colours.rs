@@ -1,6 +1,6 @@
 //! The colours of lines: whether they stand out, and can be told apart by a colour-blind eye.
 
-use crate::common::{circle, report, scene, written};
+use crate::report::common::{circle, report, scene, written};
 use std::collections::BTreeSet;
 
 /// Red, green and blue as light, from 0 to 1 (IEC 61966-2-1).

@@ -1,14 +1,20 @@
 //! Runs that failed end in a cross, and runs that blew up do not scale the pictures.
 
-use crate::common::{circle, report, scene, texts, written};
-use harness::report::Series;
+use crate::report::common::{circle, report, scene, texts, written};
+use harness::report::{SceneReport, Series, path_picture};
 
-/// The picture of these runs whose file has that ending.
-fn picture(series: Vec<Series>, ending: &str) -> String {
-    let mut scene = scene("ends", series);
-    scene.exact_path = None;
-    let (_, pictures) = written(&report(vec![scene]));
-    pictures.into_iter().find(|(file, _)| file.to_string_lossy().ends_with(ending)).unwrap().1
+fn ends(series: Vec<Series>) -> SceneReport {
+    SceneReport { exact_path: None, ..scene("ends", series) }
+}
+
+/// The picture of the paths of these runs.
+fn path(series: Vec<Series>) -> Vec<String> {
+    vec![path_picture(&ends(series)).unwrap()]
+}
+
+/// All pictures of these runs, as the report has them.
+fn all(series: Vec<Series>) -> Vec<String> {
+    written(&report(vec![ends(series)])).1.into_iter().map(|(_, picture)| picture).collect()
 }
 
 fn blown_up() -> Series {
@@ -20,35 +26,58 @@ fn blown_up() -> Series {
 
 #[test]
 fn a_run_that_blew_up_does_not_scale_the_pictures() {
+    check_scales(path, &[0]);
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_run_that_blew_up_does_not_scale_the_pictures_in_full() {
+    // The paths and the energy.
+    check_scales(all, &[0, 2]);
+}
+
+fn check_scales(drawn: impl Fn(Vec<Series>) -> Vec<String>, places: &[usize]) {
     let diverged = Series { diverged: true, ..blown_up() };
-    for ending in ["path.svg", "energy.svg"] {
-        let alone = texts(&picture(vec![circle("calm", 300)], ending));
-        let beside = texts(&picture(vec![circle("calm", 300), diverged.clone()], ending));
-        let figures = |texts: &[String]| -> Vec<String> {
-            texts.iter().filter(|text| text.starts_with(|c: char| c.is_ascii_digit() || c == '−')).cloned().collect()
-        };
-        assert_eq!(figures(&alone), figures(&beside), "{ending}");
-        // The control: a run that is only large scales them.
-        let large = texts(&picture(vec![circle("calm", 300), blown_up()], ending));
-        assert_ne!(figures(&alone), figures(&large), "{ending}");
+    let figures = |series: Vec<Series>| -> Vec<Vec<String>> {
+        let number = |text: &String| text.starts_with(|c: char| c.is_ascii_digit() || c == '−');
+        drawn(series).iter().map(|picture| texts(picture).into_iter().filter(number).collect()).collect()
+    };
+    let alone = figures(vec![circle("calm", 300)]);
+    let beside = figures(vec![circle("calm", 300), diverged]);
+    // The control: a run that is only large scales them.
+    let large = figures(vec![circle("calm", 300), blown_up()]);
+    for &k in places {
+        assert_eq!(alone[k], beside[k], "{k}");
+        assert_ne!(alone[k], large[k], "{k}");
     }
 }
 
 #[test]
 fn where_all_blew_up_they_are_shown() {
-    let drawn = picture(vec![Series { diverged: true, ..blown_up() }], "path.svg");
+    let drawn = path(vec![Series { diverged: true, ..blown_up() }]).concat();
     assert!(texts(&drawn).iter().any(|text| text.contains("×10")), "{drawn}");
 }
 
 #[test]
 fn a_run_that_failed_ends_in_a_cross() {
-    let shapes = |failed: bool, ending: &str| {
+    check_crosses(path, 1);
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_run_that_failed_ends_in_a_cross_in_full() {
+    check_crosses(all, 3);
+}
+
+fn check_crosses(drawn: impl Fn(Vec<Series>) -> Vec<String>, pictures: usize) {
+    let shapes = |failed: bool| -> Vec<usize> {
         let mut short = circle("short", 300);
         short.path.truncate(200);
         short.time.truncate(200);
-        picture(vec![circle("whole", 300), Series { failed, ..short }], ending).matches("<polygon").count()
+        let drawn = drawn(vec![circle("whole", 300), Series { failed, ..short }]);
+        drawn.iter().map(|picture| picture.matches("<polygon").count()).collect()
     };
-    for ending in ["path.svg", "energy.svg", "constraint.svg"] {
-        assert_eq!(shapes(true, ending), shapes(false, ending) + 1, "{ending}");
-    }
+    let (failed, whole) = (shapes(true), shapes(false));
+    assert_eq!(failed.len(), pictures);
+    assert_eq!(failed, whole.iter().map(|count| count + 1).collect::<Vec<_>>());
 }

@@ -1,6 +1,6 @@
 //! Figures for papers: what stands where, in each format.
 
-use crate::common::{check_numbers, size, texts};
+use crate::report::common::{check_numbers, size, texts};
 use harness::report::{Figure, FigureFormat, Panel, Paper, figure};
 use proptest::prelude::*;
 use roxmltree::Document;
@@ -120,24 +120,41 @@ fn any_number() -> impl Strategy<Value = f64> {
     prop_oneof![4 => -1e3..1e3, 1 => any::<f64>(), 1 => Just(0.0), 1 => Just(f64::NAN)]
 }
 
+/// A sheet of equal panels, and its width and height.
+fn any_sheet() -> impl Strategy<Value = (Figure, [f64; 2])> {
+    let points = proptest::collection::vec((any_number(), any_number()), 0..40);
+    let kind = (any::<bool>(), any::<bool>());
+    (points, 0_usize..9, kind, (3.0..40.0, 3.0..40.0)).prop_map(|(points, panels, (decades, path), (width, height))| {
+        let curve: Vec<[f64; 2]> = points.iter().map(|(t, x)| [*t, *x]).collect();
+        let one = Panel { decades: decades && !path, path, ..panel(["t [s]", "x [m]"], vec![curve]) };
+        (sheet(vec![one; panels]), [width, height])
+    })
+}
+
+/// Whatever the numbers, the picture is well-formed and nothing lies outside.
+fn check_sheet(sheet: &Figure, size: [f64; 2]) -> Result<(), TestCaseError> {
+    let paper = Paper { size, dpi: 40.0 };
+    let text = String::from_utf8(figure(sheet, &paper, FigureFormat::Svg).unwrap()).unwrap();
+    check_numbers(&Document::parse(&text).unwrap());
+    prop_assert!(figure(sheet, &paper, FigureFormat::Png).is_ok() && figure(sheet, &paper, FigureFormat::Pdf).is_ok());
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(6))]
+
+    #[test]
+    fn any_numbers_make_a_picture((sheet, size) in any_sheet()) {
+        check_sheet(&sheet, size)?;
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
-    /// Whatever the numbers, the picture is well-formed and nothing lies outside.
     #[test]
-    fn any_numbers_make_a_picture(
-        points in proptest::collection::vec((any_number(), any_number()), 0..40),
-        panels in 0_usize..9,
-        decades in any::<bool>(),
-        path in any::<bool>(),
-        size in (3.0..40.0, 3.0..40.0),
-    ) {
-        let curve: Vec<[f64; 2]> = points.iter().map(|(t, x)| [*t, *x]).collect();
-        let one = Panel { decades: decades && !path, path, ..panel(["t [s]", "x [m]"], vec![curve]) };
-        let sheet = sheet(vec![one; panels]);
-        let paper = Paper { size: [size.0, size.1], dpi: 40.0 };
-        let text = String::from_utf8(figure(&sheet, &paper, FigureFormat::Svg).unwrap()).unwrap();
-        check_numbers(&Document::parse(&text).unwrap());
-        prop_assert!(figure(&sheet, &paper, FigureFormat::Png).is_ok() && figure(&sheet, &paper, FigureFormat::Pdf).is_ok());
+    #[ignore = "slow"]
+    fn any_numbers_make_a_picture_in_full((sheet, size) in any_sheet()) {
+        check_sheet(&sheet, size)?;
     }
 }

@@ -1,6 +1,6 @@
 //! The page as a reader sees it.
 
-use crate::common::{circle, report, scene, texts, written};
+use crate::report::common::{circle, report, scene, texts, written};
 
 #[test]
 fn the_page_holds_every_row_every_fact_and_every_picture() {

@@ -1,6 +1,6 @@
 //! The PNG files, read back pixel by pixel.
 
-use crate::common::{circle, report, scene, size};
+use crate::report::common::{circle, report, scene, size};
 use harness::report::write;
 use miniz_oxide::inflate::decompress_to_vec_zlib;
 use std::fs;

@@ -242,7 +242,7 @@ fn the_adaptive_method_refuses() {
     let mut state = at(f64::NAN, 1.0);
     assert!(drive(&Line(Runaway), &mut Dop853::new(1e-12), &schedule(0.1, 1), &mut state, ()).is_err());
     let mut state = State::new([0.1, 0.2, 0.3], [0.9, 0.7, 0.18], [false; 3]);
-    let system = crate::Particle::of(1.0);
+    let system = crate::runs::Particle::of(1.0);
     let error = drive(&system, &mut Dop853::new(1e-12), &schedule(0.1, 1), &mut state, ()).unwrap_err();
     assert!(error.to_string().contains("basis"), "{error}");
     // The control: a method without a basis runs.

@@ -6,13 +6,16 @@ use harness::Method;
 use harness::analysis::{
     Lyapunov, LyapunovError, LyapunovRequest, MotionVerdict, has_tangents, in_parallel, kaplan_yorke, lyapunov_by,
 };
-use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, With};
+use lagrangian::{AdmissibleBasis, Constraint, Reduced, Scalar, System, With};
 use nalgebra::DMatrix;
 use sleigh::effects::{Bowl, EggCrate};
 use sleigh::{Sleigh, SleighState};
 
 /// A point above a saddle, on a plane, with friction along `y`: `x'' = k^2 x`, `y'' = -g y'`, `z' = 0`.
-struct Saddle;
+struct Saddle {
+    /// Whether it knows these equations, or has them derived.
+    by_hand: bool,
+}
 
 const GROWTH: f64 = 0.7;
 const FRICTION: f64 = 0.3;
@@ -30,6 +33,15 @@ impl System<3, 1> for Saddle {
     fn admissible_basis<S: Scalar>(&self, _t: S, _q: &[S; 3]) -> Option<AdmissibleBasis<S, 3, 1>> {
         let (zero, one) = (S::zero(), S::constant(1.0));
         Some(AdmissibleBasis::new([[one, zero, zero], [zero, one, zero]]))
+    }
+    fn reduced(&self) -> impl Reduced<3, 1> {
+        self
+    }
+}
+
+impl Reduced<3, 1> for Saddle {
+    fn reduced_motion<S: Scalar>(&self, _t: S, q: &[S; 3], xi: &[S; 3]) -> Option<[S; 3]> {
+        self.by_hand.then(|| [q[0] * (GROWTH * GROWTH), xi[1] * -FRICTION, S::zero()])
     }
 }
 
@@ -78,10 +90,21 @@ fn valley() -> (With<Sleigh, Bowl>, ([f64; 3], [f64; 3])) {
     (system, SleighState { turn_rate: (2.0 * rest / 1.25).sqrt(), ..start }.to_coordinates())
 }
 
-/// The exponents of a linear system are the real parts of its eigenvalues.
 #[test]
 fn a_saddle_with_friction() {
-    let found = exponents(&Saddle, ([0.0, 0.3, 0.1], [0.0, 0.8, 0.0]), (0.1, 1000, 1000));
+    // Steps of 0.25 s leave `4e-8 (0.25 GROWTH)^9 / 0.25`, 3e-14 1/s.
+    check_saddle(true, (0.25, 400, 200));
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_saddle_with_friction_in_full() {
+    check_saddle(false, (0.1, 1000, 1000));
+}
+
+/// The exponents of a linear system are the real parts of its eigenvalues.
+fn check_saddle(by_hand: bool, steps: (f64, u64, u64)) {
+    let found = exponents(&Saddle { by_hand }, ([0.0, 0.3, 0.1], [0.0, 0.8, 0.0]), steps);
     // A frame that has had 100 s to turn into place is off by exp(-100 FRICTION).
     for (exponent, known) in found.exponents.iter().zip([GROWTH, 0.0, 0.0, -FRICTION, -GROWTH]) {
         assert_abs_diff_eq!(*exponent, known, epsilon = 1e-12);
@@ -93,19 +116,32 @@ fn a_saddle_with_friction() {
     assert_relative_eq!(kaplan_yorke(&[1.0, -1.0]), 2.0);
 }
 
-/// About straight motion at the speed `u` the spin has the eigenvalue `-c u`, and all else is neutral. Differences in heading and
-/// speed grow linearly, so the neutral exponents are `ln t / t`.
 #[test]
 fn the_straight_motion_of_the_free_sleigh() {
+    check_straight_motion(0.5, 120, [40, 40]);
+}
+
+#[test]
+#[ignore = "slow"]
+fn the_straight_motion_of_the_free_sleigh_in_full() {
+    check_straight_motion(0.1, 800, [2000, 400]);
+}
+
+/// About straight motion at the speed `u` the spin has the eigenvalue `-c u`, and all else is neutral. Differences in heading and
+/// speed grow linearly, so the neutral exponents are `ln t / t`.
+fn check_straight_motion(step: f64, settle: u64, [by_gauss, by_dla]: [u64; 2]) {
     let sleigh = Sleigh::new(1.3, 0.8, 0.4).unwrap();
     let rate = -sleigh.spin_gain() * 0.9;
     for (name, found) in [
-        ("gauss8", exponents(&sleigh, ([0.0; 3], [0.9, 0.0, 0.0]), (0.1, 800, 2000))),
-        ("dla", exponents_by(("dla", dla::Dla::midpoint()), &sleigh, ([0.0; 3], [0.9, 0.0, 0.0]), (0.1, 800, 400))),
+        ("gauss8", exponents(&sleigh, ([0.0; 3], [0.9, 0.0, 0.0]), (step, settle, by_gauss))),
+        (
+            "dla",
+            exponents_by(("dla", dla::Dla::midpoint()), &sleigh, ([0.0; 3], [0.9, 0.0, 0.0]), (step, settle, by_dla)),
+        ),
     ] {
         let neutral = 2.0 * found.time.ln() / found.time;
         // The discrete map has (1 - h c u/2) / (1 + h c u/2) in the place of exp(-h c u).
-        let discrete = if name == "dla" { 2.0 * (0.05 * rate).atanh() / 0.1 } else { rate };
+        let discrete = if name == "dla" { 2.0 * (0.5 * step * rate).atanh() / step } else { rate };
         assert_abs_diff_eq!(found.exponents[4], discrete, epsilon = 1e-10);
         assert_abs_diff_eq!(found.sum(), discrete, epsilon = 1e-10);
         assert_abs_diff_eq!(found.divergence_mean, rate, epsilon = 1e-14);
@@ -113,13 +149,23 @@ fn the_straight_motion_of_the_free_sleigh() {
     }
 }
 
-/// With the centre of mass at the blade the motion in a round bowl is integrable: the spin stays, and in axes that turn with it the
-/// equations are linear, with the frequencies `(k/m + omega^2)^(1/2)` and zero.
 #[test]
 fn a_balanced_sleigh_in_a_bowl_is_regular() {
+    check_balanced((0.2, 100, 300));
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_balanced_sleigh_in_a_bowl_is_regular_in_full() {
+    check_balanced((0.1, 2000, 20_000));
+}
+
+/// With the centre of mass at the blade the motion in a round bowl is integrable: the spin stays, and in axes that turn with it the
+/// equations are linear, with the frequencies `(k/m + omega^2)^(1/2)` and zero.
+fn check_balanced(steps: (f64, u64, u64)) {
     let system = With { body: Sleigh::new(1.0, 1.0, 0.0).unwrap(), effects: Bowl::new([1.0; 2], [0.0; 2]).unwrap() };
     let start = SleighState { x: 0.5, heading: 0.3, speed: 0.4, turn_rate: 0.7, ..SleighState::default() };
-    let found = exponents(&system, start.to_coordinates(), (0.1, 2000, 20_000));
+    let found = exponents(&system, start.to_coordinates(), steps);
     println!("{:?} ± {:?}", found.exponents, found.ci);
     let neutral = 2.0 * found.time.ln() / found.time;
     assert!(found.exponents.iter().all(|exponent| exponent.abs() < neutral), "{:?}", found.exponents);
@@ -160,22 +206,33 @@ fn check_attractors(egg: u64, deep: u64) {
 }
 
 #[test]
+#[ignore = "slow"]
 fn strange_attractors() {
     check_attractors(100_000, 200_000);
 }
 
 #[test]
-#[ignore = "half a minute: cargo test -p noslip-harness --test runs long_strange -- --ignored --nocapture"]
+#[ignore = "slow"]
 fn long_strange_attractors() {
     check_attractors(200_000, 200_000);
 }
 
-/// Twenty kilometres away the places within a step are rounded to more than the slopes of its stages are, and yet each step ends.
 #[test]
 fn far_from_the_origin() {
+    check_far(400);
+}
+
+#[test]
+#[ignore = "slow"]
+fn far_from_the_origin_in_full() {
+    check_far(3000);
+}
+
+/// Twenty kilometres away the places within a step are rounded to more than the slopes of its stages are, and yet each step ends.
+fn check_far(steps: u64) {
     let (system, (mut q, v)) = egg_crate();
     q[0] += 2e4;
-    let found = exponents(&system, (q, v), (0.1, 0, 3000));
+    let found = exponents(&system, (q, v), (0.1, 0, steps));
     assert_abs_diff_eq!(found.sum(), found.divergence_mean, epsilon = 1e-4);
 }
 
@@ -194,13 +251,23 @@ impl<Sys: System<3, 1>> System<3, 1> for Plain<Sys> {
     }
 }
 
-/// Stages on dual numbers, with reduced equations by hand and without, and the implicit function theorem: the same exponents.
 #[test]
 fn three_ways_to_differentiate_a_step() {
+    check_three_ways(16);
+}
+
+#[test]
+#[ignore = "slow"]
+fn three_ways_to_differentiate_a_step_in_full() {
+    check_three_ways(100);
+}
+
+/// Stages on dual numbers, with reduced equations by hand and without, and the implicit function theorem: the same exponents.
+fn check_three_ways(steps: u32) {
     let (system, (q, v)) = valley();
-    let by_hand = exponents_by(("gauss4", Gauss::new::<2>()), &system, (q, v), (0.1, 0, 100));
+    let by_hand = exponents_by(("gauss4", Gauss::new::<2>()), &system, (q, v), (0.1, 0, steps.into()));
     let plain = Plain(valley().0);
-    let hidden = exponents_by(("gauss4", Gauss::new::<2>()), &plain, (q, v), (0.1, 0, 100));
+    let hidden = exponents_by(("gauss4", Gauss::new::<2>()), &plain, (q, v), (0.1, 0, steps.into()));
     assert_abs_diff_eq!(by_hand.divergence_mean, hidden.divergence_mean, epsilon = 1e-12);
     for (one, other) in by_hand.exponents.iter().zip(&hidden.exponents) {
         assert_abs_diff_eq!(one, other, epsilon = 1e-9);
@@ -208,7 +275,7 @@ fn three_ways_to_differentiate_a_step() {
 
     let (sensitivity, mut state) = (Sensitivity::of(&plain), State::new(q, v, plain.angles()));
     let mut log_volume = 0.0;
-    for k in 0..100 {
+    for k in 0..steps {
         let derivative = sensitivity.step(&mut Gauss::new::<2>(), 0.1 * f64::from(k), 0.1, &mut state).unwrap();
         let rows = derivative.reduced.unwrap().matrix();
         log_volume += DMatrix::from_row_iterator(5, 5, rows.into_iter().flatten()).determinant().ln();

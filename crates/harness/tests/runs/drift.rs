@@ -82,8 +82,20 @@ fn a_slope_is_seen_above_the_noise_and_not_below() {
 
 #[test]
 fn a_random_walk_is_one_and_its_slope_is_none() {
+    check_walks(20, 14, 2);
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_random_walk_is_one_and_its_slope_is_none_in_full() {
+    check_walks(100, 80, 6);
+}
+
+/// Of `all` walks so many at least are seen as such, and so many at most as lines: at the 5 % and 1 % of the tests and three standard
+/// deviations of their counts.
+fn check_walks(all: u64, least: u32, most: u32) {
     let (mut walks, mut lines) = (0, 0);
-    for seed in 0..100 {
+    for seed in 0..all {
         let (mut noise, mut sum) = (Noise(seed), 0.0);
         let drift = drift(1e-16, |_| {
             sum += noise.next();
@@ -93,8 +105,7 @@ fn a_random_walk_is_one_and_its_slope_is_none() {
         lines += u32::from(drift.verdict == DriftVerdict::LinearDrift);
         assert!(drift.exponent.unwrap() > 0.2, "{drift:?}");
     }
-    // Of a hundred, at the 5 % and 1 % of the tests and three standard deviations of their counts.
-    assert!(walks >= 80 && lines <= 6, "{walks} walks, {lines} lines");
+    assert!(walks >= least && lines <= most, "{walks} walks, {lines} lines");
     let walk = || {
         let (mut noise, mut sum) = (Noise(7), 0.0);
         Box::new(move |_| {
@@ -107,6 +118,17 @@ fn a_random_walk_is_one_and_its_slope_is_none() {
 
 #[test]
 fn a_chaotic_wander_is_bounded() {
+    check_wander(10, [8, 9]);
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_chaotic_wander_is_bounded_in_full() {
+    check_wander(100, [90, 95]);
+}
+
+/// Of `all` wanders so many at least are seen to be bounded, and so many to drift where they do.
+fn check_wander(all: u64, least: [usize; 2]) {
     let wander = |seed: u64, slope: f64| {
         // Correlated over 300 values, a 700th of the series.
         let (mut noise, mut x) = (Noise(seed), 0.0);
@@ -116,13 +138,13 @@ fn a_chaotic_wander_is_bounded() {
         }) as Box<dyn FnMut(f64) -> f64>
     };
     let count = |slope: f64, verdict: DriftVerdict| {
-        (0..100).filter(|seed| drift(1.0, wander(*seed, slope)).verdict == verdict).count()
+        (0..all).filter(|seed| drift(1.0, wander(*seed, slope)).verdict == verdict).count()
     };
     let bounded = count(0.0, DriftVerdict::Bounded);
-    assert!(bounded >= 90, "{bounded}");
+    assert!(bounded >= least[0], "{bounded}");
     // Positive control: a drift of two amplitudes over the run.
     let lines = count(0.1, DriftVerdict::LinearDrift);
-    assert!(lines >= 95, "{lines}");
+    assert!(lines >= least[1], "{lines}");
     assert_eq!(verdicts(|| wander(1, 0.0)), DriftVerdict::Bounded);
 }
 
@@ -186,11 +208,21 @@ fn part(method: &str, steps: u64, from: Option<&Checkpoint>, stop: Option<u64>) 
 
 #[test]
 fn an_interrupted_run_goes_on_to_the_same_bit() {
-    let steps = 100_000;
+    check_interrupted(5000, 2000);
+}
+
+#[test]
+#[ignore = "slow"]
+fn an_interrupted_run_goes_on_to_the_same_bit_in_full() {
+    check_interrupted(100_000, 30_000);
+}
+
+fn check_interrupted(steps: u64, stop: u64) {
     let (whole, end) = part("dla", steps, None, None);
-    let (half, middle) = part("dla", steps, None, Some(30_000));
+    let (half, middle) = part("dla", steps, None, Some(stop));
     // Asked every 2^10 steps.
-    assert_eq!((half.interrupted, half.steps, whole.interrupted, whole.steps), (true, 30720, false, steps));
+    let made = stop.next_multiple_of(1 << 10);
+    assert_eq!((half.interrupted, half.steps, whole.interrupted, whole.steps), (true, made, false, steps));
     let (rest, _) = part("dla", steps, Some(&middle), None);
     let timeless = |record: Record<3>| Record { wall_seconds: 0.0, ..record };
     assert_eq!(timeless(rest), timeless(whole.clone()));

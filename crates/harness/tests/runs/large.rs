@@ -1,7 +1,7 @@
 //! Baselines on sixty coordinates, on threads with the stack that methods count on.
 
 #[allow(unreachable_pub, reason = "shared with the tests of another crate")]
-#[path = "../../../dla/tests/all/large/fleet.rs"]
+#[path = "../../../dla/tests/large/fleet.rs"]
 mod fleet;
 
 use dla::{OneStep, StackUse};
@@ -14,6 +14,7 @@ fn ends<Method: OneStep<60, 20>>(method: impl FnOnce() -> Method + Send + 'stati
 
 /// To the errors of their orders; only those in a basis, or projected, stay on the constraint.
 #[test]
+#[ignore = "slow"]
 fn sixty_by_baselines() {
     for (end, error, slip) in [
         (ends(|| Rk4), 1e-8, 1e-8),

@@ -1,12 +1,13 @@
 //! Every method gives the same bits each time: again, on several threads at once, and from any checkpoint.
 
-use super::{Particle, general, request};
+use super::{Particle, families, general, request};
 use dla::Checkpoint;
 use harness::{Method, MethodInfo, Record, Request, Saving, run, run_saved};
 
-/// The end of the run is no checkpoint of its own, nor the end of a piece.
-const STEPS: u64 = 1100;
-const EVERY: u64 = 300;
+/// The steps of a run, and after how many a checkpoint is made. The end of the run is no checkpoint of its own, nor the end of a piece.
+type Length = (u64, u64);
+const SHORT: Length = (22, 6);
+const LONG: Length = (1100, 300);
 
 /// A system that every method can do.
 fn system() -> Particle {
@@ -19,26 +20,43 @@ fn told(record: Record<3>) -> String {
     format!("{:?}", Record { wall_seconds: 0.0, ..record })
 }
 
-fn once(info: &MethodInfo) -> String {
-    told(run(&system(), &Method::named(info.name, Some(0.3)).unwrap(), &request(STEPS, 0.05), &mut ()))
+fn once(info: &MethodInfo, (steps, _): Length) -> String {
+    told(run(&system(), &Method::named(info.name, Some(0.3)).unwrap(), &request(steps, 0.05), &mut ()))
 }
 
 /// A run with all of its checkpoints, as their text gives them back.
-fn saved(info: &MethodInfo, from: Option<&Checkpoint>) -> (String, Vec<Checkpoint>) {
+fn saved(info: &MethodInfo, (steps, every): Length, from: Option<&Checkpoint>) -> (String, Vec<Checkpoint>) {
     let mut all = Vec::new();
     let mut save = |made: &Checkpoint| all.push(Checkpoint::from_text(&made.to_text()).unwrap());
-    let mut saving = Saving { identity: &Checkpoint::default(), from, every: Some(EVERY), save: &mut save };
+    let mut saving = Saving { identity: &Checkpoint::default(), from, every: Some(every), save: &mut save };
     let method = Method::named(info.name, Some(0.3)).unwrap();
-    let made = run_saved::<3, 1>(&system(), &method, &request(STEPS, 0.05), &mut saving, None, &mut ());
+    let made = run_saved::<3, 1>(&system(), &method, &request(steps, 0.05), &mut saving, None, &mut ());
     (told(made.unwrap()), all)
 }
 
 #[test]
 fn threads_give_the_same_bits() {
-    let alone: Vec<String> = general().map(once).collect();
+    check_threads(&families(), 2, SHORT);
+}
+
+#[test]
+#[ignore = "slow"]
+fn threads_give_the_same_bits_in_full() {
+    check_threads(&general(), 4, LONG);
+}
+
+fn check_threads<Infos>(methods: &Infos, threads: usize, length: Length)
+where
+    Infos: Iterator<Item = &'static MethodInfo> + Clone + Send,
+{
+    let alone: Vec<String> = methods.clone().map(|info| once(info, length)).collect();
     std::thread::scope(|scope| {
         // Each begins with another method, so that different ones run side by side.
-        let threads: Vec<_> = (0..4).map(|first| scope.spawn(move || from(first))).collect();
+        let from = |first: usize| {
+            let (methods, count) = (methods.clone(), alone.len());
+            move || methods.cycle().skip(first).take(count).map(|info| once(info, length)).collect::<Vec<String>>()
+        };
+        let threads: Vec<_> = (0..threads).map(|first| scope.spawn(from(first))).collect();
         for (first, thread) in threads.into_iter().enumerate() {
             let mut expected = alone.clone();
             expected.rotate_left(first);
@@ -47,29 +65,45 @@ fn threads_give_the_same_bits() {
     });
 }
 
-fn from(first: usize) -> Vec<String> {
-    general().cycle().skip(first).take(general().count()).map(once).collect()
+#[test]
+fn every_checkpoint_leads_to_the_same_bits() {
+    check_checkpoints(families(), SHORT);
 }
 
 #[test]
-fn every_checkpoint_leads_to_the_same_bits() {
-    for info in general() {
-        let (whole, checkpoints) = saved(info, None);
-        assert_eq!(whole, once(info), "{}: watched in parts, and at once", info.name);
-        assert_eq!(checkpoints.len() as u64, STEPS.div_ceil(EVERY), "{}", info.name);
+#[ignore = "slow"]
+fn every_checkpoint_leads_to_the_same_bits_in_full() {
+    check_checkpoints(general(), LONG);
+}
+
+fn check_checkpoints(methods: impl Iterator<Item = &'static MethodInfo>, length: Length) {
+    for info in methods {
+        let (whole, checkpoints) = saved(info, length, None);
+        assert_eq!(whole, once(info, length), "{}: watched in parts, and at once", info.name);
+        assert_eq!(checkpoints.len() as u64, length.0.div_ceil(length.1), "{}", info.name);
         for checkpoint in &checkpoints {
-            assert_eq!(saved(info, Some(checkpoint)).0, whole, "{}", info.name);
+            assert_eq!(saved(info, length, Some(checkpoint)).0, whole, "{}", info.name);
         }
     }
 }
 
-/// The control: what is compared tells the smallest change of a start.
 #[test]
 fn a_bit_of_the_start_shows() {
-    for info in general() {
+    check_bit(families(), SHORT);
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_bit_of_the_start_shows_in_full() {
+    check_bit(general(), LONG);
+}
+
+/// The control: what is compared tells the smallest change of a start.
+fn check_bit(methods: impl Iterator<Item = &'static MethodInfo>, length: Length) {
+    for info in methods {
         let method = Method::named(info.name, Some(0.3)).unwrap();
-        let Request { q, .. } = request(STEPS, 0.05);
-        let request = Request { q: [q[0].next_up(), q[1], q[2]], ..request(STEPS, 0.05) };
-        assert_ne!(told(run(&system(), &method, &request, &mut ())), once(info), "{}", info.name);
+        let plain = request(length.0, 0.05);
+        let request = Request { q: [plain.q[0].next_up(), plain.q[1], plain.q[2]], ..plain };
+        assert_ne!(told(run(&system(), &method, &request, &mut ())), once(info, length), "{}", info.name);
     }
 }

@@ -1,8 +1,8 @@
 //! Runs whose steps may be made in parts: measured, watched, saved, stopped, and those of trains.
 
-use super::{Particle, general, request};
+use super::{Particle, families, general, request};
 use dla::{Checkpoint, Event, Substeps, Trajectory};
-use harness::{Method, Progress, Record, Request, Saving, run, run_saved, run_watched};
+use harness::{Method, MethodInfo, Progress, Record, Request, Saving, run, run_saved, run_watched};
 
 fn in_parts(name: &str) -> Method {
     Method::named(name, Some(0.3)).unwrap().with_substeps(Substeps::default())
@@ -17,30 +17,52 @@ fn told(record: &Record<3>) -> String {
     format!("{:?}", Record { wall_seconds: 0.0, substeps: None, ..record.clone() })
 }
 
-/// Steps of nearly a swing of the well, which every method makes in parts; the energy is that of the motion.
 #[test]
 fn steps_that_are_too_long_are_made_in_parts() {
-    let right = run(&system(), &Method::named("gauss8", None).unwrap(), &request(4000, 0.0025), &mut ());
-    for name in ["dla", "dla4", "lobatto3", "gauss8", "energy4", "rk4-reduced", "implicit-midpoint"] {
-        let record = run(&system(), &in_parts(name), &request(20, 0.5), &mut ());
+    check_long_steps(&["dla", "lobatto3", "gauss8", "implicit-midpoint"], 2, 20);
+}
+
+#[test]
+#[ignore = "slow"]
+fn steps_that_are_too_long_are_made_in_parts_in_full() {
+    check_long_steps(&["dla", "dla4", "lobatto3", "gauss8", "energy4", "rk4-reduced", "implicit-midpoint"], 20, 200);
+}
+
+/// Steps of nearly a swing of the well, which every method makes in parts; the energy is that of the motion, of which each step is made in
+/// `fine` short ones.
+fn check_long_steps(names: &[&str], steps: u64, fine: u64) {
+    let short = request(steps * fine, 0.5 / fine as f64);
+    let right = run(&system(), &Method::named("gauss8", None).unwrap(), &short, &mut ());
+    for name in names {
+        let record = run(&system(), &in_parts(name), &request(steps, 0.5), &mut ());
         assert!(record.failure.is_none(), "{name}: {:?}", record.failure);
         let substeps = record.substeps.unwrap();
-        assert_eq!((record.steps, substeps.divided, substeps.undivided), (20, 20, None), "{name}");
-        assert!(substeps.parts >= 40 && (2..=substeps.parts).contains(&substeps.most), "{name}: {substeps:?}");
+        assert_eq!((record.steps, substeps.divided, substeps.undivided), (steps, steps, None), "{name}");
+        assert!(substeps.parts >= 2 * steps && (2..=substeps.parts).contains(&substeps.most), "{name}: {substeps:?}");
         // Each part is wrong by a ten-thousandth of the velocity at most.
         let bar = 1e-4 * substeps.parts as f64;
         assert!((record.q[1] - right.q[1]).abs() < bar && (record.q[0] - right.q[0]).abs() < 10.0 * bar, "{name}");
         assert!(record.energy.max_error < 0.05 * right.energy.initial, "{name}: {:e}", record.energy.max_error);
-        let held = name != "implicit-midpoint";
+        let held = *name != "implicit-midpoint";
         assert!(record.constraint_max < if held { 1e-14 } else { 1e-2 }, "{name}: {:e}", record.constraint_max);
     }
 }
 
-/// Steps that resolve the motion are those of a run that may divide none, to the last bit.
 #[test]
 fn where_nothing_is_divided_no_bit_is_changed() {
-    let (system, request) = (Particle { basis: true, ..Particle::of(1.0) }, request(200, 0.01));
-    for info in general() {
+    check_undivided(families(), 10);
+}
+
+#[test]
+#[ignore = "slow"]
+fn where_nothing_is_divided_no_bit_is_changed_in_full() {
+    check_undivided(general(), 200);
+}
+
+/// Steps that resolve the motion are those of a run that may divide none, to the last bit.
+fn check_undivided(methods: impl Iterator<Item = &'static MethodInfo>, steps: u64) {
+    let (system, request) = (Particle { basis: true, ..Particle::of(1.0) }, request(steps, 0.01));
+    for info in methods {
         let plain = run(&system, &Method::named(info.name, Some(0.3)).unwrap(), &request, &mut ());
         let record = run(&system, &in_parts(info.name), &request, &mut ());
         if record.substeps.unwrap().divided == 0 {
@@ -53,17 +75,22 @@ fn where_nothing_is_divided_no_bit_is_changed() {
     }
 }
 
-/// Forty steps.
+/// The steps of a run, and after how many a checkpoint is made.
+type Length = (u64, u64);
+const SHORT: Length = (6, 4);
+const LONG: Length = (40, 7);
+
 fn saved(
     method: &Method,
+    (steps, every): Length,
     step: f64,
     from: Option<&Checkpoint>,
     progress: &mut dyn Progress,
 ) -> (Record<3>, Vec<Checkpoint>) {
     let mut all = Vec::new();
     let mut save = |made: &Checkpoint| all.push(Checkpoint::from_text(&made.to_text()).unwrap());
-    let mut saving = Saving { identity: &Checkpoint::default(), from, every: Some(7), save: &mut save };
-    let made = run_saved::<3, 1>(&system(), method, &request(40, step), &mut saving, None, progress);
+    let mut saving = Saving { identity: &Checkpoint::default(), from, every: Some(every), save: &mut save };
+    let made = run_saved::<3, 1>(&system(), method, &request(steps, step), &mut saving, None, progress);
     (made.unwrap(), all)
 }
 
@@ -74,16 +101,26 @@ fn bits(record: &Record<3>) -> String {
 
 #[test]
 fn every_checkpoint_leads_to_the_same_bits() {
-    for name in ["dla", "dla-trapezoid", "dla4", "lobatto3", "gauss8", "energy4", "dop853"] {
+    check_checkpoints(&["dla", "lobatto3", "gauss8", "dop853"], SHORT);
+}
+
+#[test]
+#[ignore = "slow"]
+fn every_checkpoint_leads_to_the_same_bits_in_full() {
+    check_checkpoints(&["dla", "dla-trapezoid", "dla4", "lobatto3", "gauss8", "energy4", "dop853"], LONG);
+}
+
+fn check_checkpoints(names: &[&str], length: Length) {
+    for &name in names {
         let method = in_parts(name);
         // Some of whose steps are divided: those of order 8 may be longer.
         let step = if name == "gauss8" { 0.6 } else { 0.15 };
-        let (whole, checkpoints) = saved(&method, step, None, &mut ());
-        assert_eq!(bits(&whole), bits(&run(&system(), &method, &request(40, step), &mut ())), "{name}");
+        let (whole, checkpoints) = saved(&method, length, step, None, &mut ());
+        assert_eq!(bits(&whole), bits(&run(&system(), &method, &request(length.0, step), &mut ())), "{name}");
         assert!(name == "dop853" || whole.substeps.unwrap().divided > 0, "{name}");
-        assert_eq!(checkpoints.len(), 6, "{name}");
+        assert_eq!(checkpoints.len() as u64, length.0.div_ceil(length.1), "{name}");
         for checkpoint in &checkpoints {
-            assert_eq!(bits(&saved(&method, step, Some(checkpoint), &mut ()).0), bits(&whole), "{name}");
+            assert_eq!(bits(&saved(&method, length, step, Some(checkpoint), &mut ()).0), bits(&whole), "{name}");
         }
     }
 }
@@ -102,35 +139,46 @@ impl Progress for StopsAfter {
 #[test]
 fn a_run_that_is_stopped_within_a_step_goes_on_from_the_node_before() {
     let method = in_parts("dla");
-    let whole = saved(&method, 0.15, None, &mut ()).0;
+    let whole = saved(&method, LONG, 0.15, None, &mut ()).0;
     for asked in [1, 50, 333] {
-        let (part, checkpoints) = saved(&method, 0.15, None, &mut StopsAfter(std::cell::Cell::new(asked)));
+        let (part, checkpoints) = saved(&method, LONG, 0.15, None, &mut StopsAfter(std::cell::Cell::new(asked)));
         assert!(part.interrupted && part.steps < 40 && part.failure.is_none(), "{asked}: {}", part.steps);
-        assert_eq!(bits(&saved(&method, 0.15, checkpoints.last(), &mut ()).0), bits(&whole), "{asked}");
+        assert_eq!(bits(&saved(&method, LONG, 0.15, checkpoints.last(), &mut ()).0), bits(&whole), "{asked}");
     }
 }
 
-/// A step in which the well is crossed many times: every crossing is found, as in short steps; and where the first ends the run, it
-/// ends there.
 #[test]
 fn events_are_looked_for_in_every_part() {
+    check_events((2, 0.8), 40, 0.5);
+}
+
+#[test]
+#[ignore = "slow"]
+fn events_are_looked_for_in_every_part_in_full() {
+    check_events((4, 2.5), 500, 2.0);
+}
+
+/// A step in which the well is crossed many times: every crossing is found, as in short steps, `fine` for each; and where the first ends the
+/// run, at `end`, it ends there.
+fn check_events((steps, step): (u64, f64), fine: u64, end: f64) {
     let crossing = [Event::new("y", |_, state: &dla::State<3>| state.q()[1])];
     let watched = |method: &Method, request: &Request<3>, events: &[Event<'_, 3>]| {
         run_watched::<3, 1>(&system(), method, request, (events, 4), Some(1), &mut ())
     };
-    let right = watched(&Method::named("gauss8", None).unwrap(), &request(2000, 0.005), &crossing);
-    assert!(right.crossings.len() > 20, "{}", right.crossings.len());
-    let found = watched(&in_parts("gauss8"), &request(4, 2.5), &crossing);
-    assert_eq!((found.crossings.len(), found.record.substeps.unwrap().divided), (right.crossings.len(), 4));
+    let right = watched(&Method::named("gauss8", None).unwrap(), &request(steps * fine, step / fine as f64), &crossing);
+    // A crossing takes less than half a second.
+    assert!(right.crossings.len() as f64 > 2.0 * steps as f64 * step, "{}", right.crossings.len());
+    let found = watched(&in_parts("gauss8"), &request(steps, step), &crossing);
+    assert_eq!((found.crossings.len(), found.record.substeps.unwrap().divided), (right.crossings.len(), steps));
     for (one, other) in found.crossings.iter().zip(&right.crossings) {
         assert!((one.t - other.t).abs() < 1e-2 && one.rising == other.rising, "{} {}", one.t, other.t);
         // The crossing has the number of the step that it is in.
-        assert_eq!(one.k, (one.t / 2.5).floor() as u64);
+        assert_eq!(one.k, (one.t / step).floor() as u64);
     }
 
-    let last = [Event::new("x", |_, state: &dla::State<3>| state.q()[0] - 2.0).terminal()];
-    let ended = watched(&in_parts("dla4"), &request(4, 2.5), &last);
-    assert!(ended.record.failure.is_none() && (ended.record.q[0] - 2.0).abs() < 1e-12, "{:?}", ended.record);
+    let last = [Event::new("x", |_, state: &dla::State<3>| state.q()[0] - end).terminal()];
+    let ended = watched(&in_parts("dla4"), &request(steps, step), &last);
+    assert!(ended.record.failure.is_none() && (ended.record.q[0] - end).abs() < 1e-12, "{:?}", ended.record);
     assert_eq!(ended.record.t.to_bits(), ended.crossings[0].t.to_bits());
     let nodes = Trajectory::nodes(ended.trajectory.as_ref().unwrap());
     assert_eq!(nodes.last().unwrap().t.to_bits(), ended.record.t.to_bits());

@@ -14,6 +14,8 @@ use sleigh::{Flywheel, Guide, Guided, Ramp, Sleigh, SleighState, Table, TimeFunc
 const START: SleighState = SleighState { x: 0.3, y: -0.2, heading: 0.4, speed: 1.0, turn_rate: 0.3 };
 /// No jump of the tables below is at a node of equal steps.
 const SCHEDULE: Schedule = Schedule { t0: 0.0, step: 0.05, steps: 80 };
+/// Two of them, of the two families.
+const FEW: [&str; 2] = ["dla", "lobatto3"];
 const METHODS: [&str; 7] = ["dla", "dla4", "dla6", "dla8", "lobatto3", "lobatto4", "lobatto5"];
 
 fn lead() -> Sleigh {
@@ -40,14 +42,14 @@ fn made(train: &Train, name: &str, start: &AssemblyState) -> Assembled {
 }
 
 /// A train without trailers moves as its lead does as a static system, and has the same work and energy error.
-fn as_the_static_system<Sys, const M: usize>(system: &Sys)
+fn as_the_static_system<Sys, const M: usize>(system: &Sys, names: &[&str])
 where
     Sys: System<3, M> + Piecewise + Clone + Send + Sync + 'static,
 {
     let alone = Train::new(system.clone(), Vec::new(), |trailer| trailer.sleigh).unwrap();
     let (q, v) = START.to_coordinates();
     let start = AssemblyState::new(&alone.assembly, &q, &v);
-    for name in METHODS {
+    for &name in names {
         let own = made(&alone, name, &start);
         let method = Method::named(name, None).unwrap();
         let fixed = harness::run(system, &method, &Request { schedule: SCHEDULE, q, v, samples: 10 }, &mut ());
@@ -67,24 +69,44 @@ where
 
 #[test]
 fn tables_of_forces_and_velocities_act_on_a_lead_as_on_a_sleigh() {
+    check_tables(&FEW);
+}
+
+#[test]
+#[ignore = "slow"]
+fn tables_of_forces_and_velocities_act_on_a_lead_as_on_a_sleigh_in_full() {
+    check_tables(&METHODS);
+}
+
+fn check_tables(names: &[&str]) {
     let thrust = Thrust::new(steps(&[0.0, 1.013, 2.7], &[0.5, -0.4, 0.8])).unwrap();
     let torque = Torque::new(ramps(&[0.5, 1.5, 3.131], &[0.0, 0.6, -0.2])).unwrap();
-    as_the_static_system(&With { body: lead(), effects: (thrust, (torque, Drag::new(0.1, 0.05).unwrap())) });
+    as_the_static_system(&With { body: lead(), effects: (thrust, (torque, Drag::new(0.1, 0.05).unwrap())) }, names);
     // From the speed of the start on, so that both begin on the constraint.
     let speed = Guide::Speed(steps(&[0.0, 1.013, 2.7], &[1.0, 1.7, 0.4]));
-    as_the_static_system(&With { body: Guided::<1>::servo(lead(), speed).unwrap(), effects: () });
+    as_the_static_system(&With { body: Guided::<1>::servo(lead(), speed).unwrap(), effects: () }, names);
     let both = Guided::<2>::servo(lead(), ramps(&[0.7, 1.9], &[1.0, 0.5]), steps(&[0.0, 2.03], &[0.3, -0.5])).unwrap();
-    as_the_static_system(&With { body: both, effects: () });
+    as_the_static_system(&With { body: both, effects: () }, names);
+}
+
+#[test]
+fn an_imposed_speed_that_jumps_pulls_the_train_along() {
+    check_imposed_speed(&FEW);
+}
+
+#[test]
+#[ignore = "slow"]
+fn an_imposed_speed_that_jumps_pulls_the_train_along_in_full() {
+    check_imposed_speed(&METHODS);
 }
 
 /// A servo that jumps jerks the whole train: all blades of a straight one have its speed at once, and the impulse does the work.
-#[test]
-fn an_imposed_speed_that_jumps_pulls_the_train_along() {
+fn check_imposed_speed(names: &[&str]) {
     let speed = Guide::Speed(steps(&[0.0, 1.013], &[1.0, 3.0]));
     let body = With { body: Guided::<1>::servo(lead(), speed).unwrap(), effects: () };
     let train = Train::new(body, trailers(), |trailer| trailer.sleigh).unwrap();
     let start = train.start(&SleighState { turn_rate: 0.0, ..START }, &[]);
-    for name in METHODS {
+    for &name in names {
         let run = made(&train, name, &start);
         let way = 1.013 + 3.0 * (4.0 - 1.013);
         for blade in 0..=2 {
@@ -122,39 +144,62 @@ fn jerked() -> (Train, AssemblyState) {
     (train, start)
 }
 
+/// The end of the bent train after so many steps of a method.
+fn jerked_end(name: &str, steps: u64) -> AssemblyState {
+    let (train, start) = jerked();
+    let method = Method::named(name, None).unwrap();
+    let schedule = Schedule { t0: 0.0, step: 4.0 / steps as f64, steps };
+    assembly_end(&train.assembly, &method, &schedule, &start, &mut ()).unwrap().unwrap()
+}
+
+/// The error of so many steps and of twice as many.
+fn check_order(name: &str, order: f64, steps: u64, right: &AssemblyState) {
+    let [coarse, fine] = [steps, 2 * steps].map(|steps| jerked_end(name, steps).distance(right));
+    println!("{name}: {coarse:e} {fine:e}");
+    // The shares of the pieces are whole numbers of steps.
+    assert_relative_eq!((coarse / fine).log2(), order, epsilon = 0.35);
+}
+
 /// Every piece has steps of its own, so that the methods keep their orders across jumps.
 #[test]
 fn methods_keep_their_orders_across_jumps() {
+    check_order("dla", 2.0, 40, &jerked_end("dla4", 40));
+}
+
+#[test]
+#[ignore = "slow"]
+fn methods_keep_their_orders_across_jumps_in_full() {
     let (train, start) = jerked();
-    let end = |name: &str, steps: u64| {
-        let method = Method::named(name, None).unwrap();
-        let schedule = Schedule { t0: 0.0, step: 4.0 / steps as f64, steps };
-        assembly_end(&train.assembly, &method, &schedule, &start, &mut ()).unwrap().unwrap()
-    };
-    let right = end("dla8", 640);
+    let right = jerked_end("dla8", 640);
     for (name, order) in [("dla", 2.0), ("dla4", 4.0), ("lobatto3", 4.0)] {
-        let error = |steps: u64| end(name, steps).distance(&right);
-        let (coarse, fine) = (error(80), error(160));
-        println!("{name}: {coarse:e} {fine:e}");
-        // The shares of the pieces are whole numbers of steps.
-        assert_relative_eq!((coarse / fine).log2(), order, epsilon = 0.35);
+        check_order(name, order, 80, &right);
     }
     // A step for a tolerance is looked for across the jumps too.
     let seen = |state: &AssemblyState| [state.unwrapped(6), state.unwrapped(7)];
     let dla4 = Method::named("dla4", None).unwrap();
     let found = recommend_assembly(&train.assembly, &dla4, &start, 4.0, 1e-5, seen).unwrap();
-    let made = seen(&end("dla4", found.steps));
+    let made = seen(&jerked_end("dla4", found.steps));
     let wanted = seen(&right);
     assert!((0..2).all(|i| (made[i] - wanted[i]).abs() < 1e-5), "{found:?}");
 }
 
-/// Saved before, at and after a jump, a run goes on with the same bits; so does one that has fewer steps than pieces fail at once.
 #[test]
 fn a_run_across_jumps_goes_on_from_its_files() {
+    check_files(&["dla"], 20);
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_run_across_jumps_goes_on_from_its_files_in_full() {
+    check_files(&["dla", "lobatto3"], 1);
+}
+
+/// Saved before, at and after a jump, a run goes on with the same bits; so does one that has fewer steps than pieces fail at once.
+fn check_files(names: &[&str], every: u64) {
     let (train, start) = jerked();
     let bits =
         |run: &Assembled| format!("{:?} {:?}", harness::Record { wall_seconds: 0.0, ..run.record.clone() }, run.end);
-    for name in ["dla", "lobatto3"] {
+    for &name in names {
         let method = Method::named(name, None).unwrap();
         let whole = run_assembly(&train.assembly, &method, &SCHEDULE, &start, 8, &mut ());
         let identity = Checkpoint::default();
@@ -164,9 +209,9 @@ fn a_run_across_jumps_goes_on_from_its_files() {
             let nodes = AssemblyNodes::Kept(8);
             run_assembly_saved(&train.assembly, &method, &SCHEDULE, (&start, nodes), saving, &mut ()).unwrap()
         };
-        let mut saving = Saving { identity: &identity, from: None, every: Some(1), save: &mut save };
+        let mut saving = Saving { identity: &identity, from: None, every: Some(every), save: &mut save };
         assert_eq!(bits(&run(&mut saving)), bits(&whole), "{name}");
-        assert_eq!(files.len(), 80);
+        assert_eq!(files.len() as u64, SCHEDULE.steps.div_ceil(every));
         for file in &files {
             let mut saving = Saving { identity: &identity, from: Some(file), every: None, save: &mut |_| () };
             assert_eq!(bits(&run(&mut saving)), bits(&whole), "{name}");
@@ -178,9 +223,19 @@ fn a_run_across_jumps_goes_on_from_its_files() {
     assert!(run.record.steps == 0 && said.contains("fewer steps than pieces"), "{said}");
 }
 
-/// The angle of the rotor is counted in space there, and against the body in the static system: one is a linear function of the other.
 #[test]
 fn a_rotor_in_the_lead_is_a_flywheel() {
+    check_flywheel(&FEW);
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_rotor_in_the_lead_is_a_flywheel_in_full() {
+    check_flywheel(&METHODS);
+}
+
+/// The angle of the rotor is counted in space there, and against the body in the static system: one is a linear function of the other.
+fn check_flywheel(names: &[&str]) {
     let torque = || steps(&[0.0, 1.013, 2.7], &[0.5, -0.4, 0.8]);
     for motor in [None, Some(torque())] {
         let free = motor.is_none();
@@ -190,7 +245,7 @@ fn a_rotor_in_the_lead_is_a_flywheel() {
         let fixed = Flywheel::new(lead(), 0.7, motor).unwrap();
         let ([x, y, heading], [vx, vy, rate]) = START.to_coordinates();
         let (q, v) = ([x, y, heading, 0.0], [vx, vy, rate, 2.0]);
-        for name in METHODS {
+        for &name in names {
             let run = made(&alone, name, &start);
             let method = Method::named(name, None).unwrap();
             let fixed = harness::run(&fixed, &method, &Request { schedule: SCHEDULE, q, v, samples: 10 }, &mut ());
@@ -210,14 +265,24 @@ fn a_rotor_in_the_lead_is_a_flywheel() {
     assert!(heavy.unwrap_err().to_string().contains("inertia of the rotor must be finite and positive"));
 }
 
-/// On a free bearing the rotor changes nothing and keeps its rate in space; a motor turns the train the other way, and their angular
-/// impulses cancel in what the rotor has.
 #[test]
 fn a_train_with_a_rotor() {
+    check_rotor(["dla"]);
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_train_with_a_rotor_in_full() {
+    check_rotor(METHODS.into_iter().chain(["energy2"]));
+}
+
+/// On a free bearing the rotor changes nothing and keeps its rate in space; a motor turns the train the other way, and their angular
+/// impulses cancel in what the rotor has.
+fn check_rotor(names: impl IntoIterator<Item = &'static str>) {
     let train = || Train::new(lead(), trailers(), |trailer| trailer.sleigh).unwrap();
     let (bare, free) = (train(), train().with_rotor(0.7, 2.0, None).unwrap());
     let motor = train().with_rotor(0.7, 2.0, Some(TimeFunction::Constant(0.5))).unwrap();
-    for name in METHODS.into_iter().chain(["energy2"]) {
+    for name in names {
         let [without, with, driven] =
             [&bare, &free, &motor].map(|train| made(train, name, &train.start(&START, &[0.1, -0.3])));
         // The method that keeps the energy shares what it corrects among all coordinates, the rotor's too.

@@ -1,7 +1,7 @@
 //! Runs of assemblies.
 use approx::assert_abs_diff_eq;
-use assembly::AssemblyError;
 use assembly::parts::{Trailer, Train};
+use assembly::{AssemblyError, AssemblyState};
 use dla::{Checkpoint, CheckpointError, RecommendError, Schedule, Substeps};
 use harness::analysis::has_tangents;
 use harness::{
@@ -21,22 +21,37 @@ fn train() -> Train {
     Train::new(lead, trailers, |trailer| trailer.sleigh).unwrap()
 }
 
-/// The work of drag and thrust is taken off the energy; what is left is of the order of the method.
+fn steps(steps: u64) -> Schedule {
+    Schedule { steps, ..SCHEDULE }
+}
+
 #[test]
 fn a_run_of_a_train_is_measured() {
-    let train = train();
+    check_measured(20);
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_run_of_a_train_is_measured_in_full() {
+    check_measured(200);
+}
+
+/// The work of drag and thrust is taken off the energy; what is left is of the order of the method.
+fn check_measured(count: u64) {
+    let (train, schedule) = (train(), steps(count));
     let start = train.start(&SleighState { speed: 1.0, turn_rate: 0.5, ..SleighState::default() }, &[0.1, 0.2]);
     let run = |name: &str| {
         let method = Method::named(name, None).unwrap();
-        run_assembly(&train.assembly, &method, &SCHEDULE, &start, 10, &mut ())
+        run_assembly(&train.assembly, &method, &schedule, &start, 10, &mut ())
     };
     let [second, fourth, staged, kept] = ["dla", "dla4", "lobatto3", "energy2"].map(run);
     for run in [&second, &fourth, &staged, &kept] {
         let record = &run.record;
-        assert_eq!((record.steps, run.nodes.len(), record.samples.len()), (200, 21, 21));
-        assert_abs_diff_eq!(record.t, 4.0, epsilon = 1e-12);
+        let nodes = count as usize / 10 + 1;
+        assert_eq!((record.steps, run.nodes.len(), record.samples.len()), (count, nodes, nodes));
+        assert_abs_diff_eq!(record.t, 0.02 * count as f64, epsilon = 1e-12);
         assert!(record.constraint_max < 1e-14 && record.leaf_max.unwrap() < 1e-14);
-        assert!(record.energy.work.abs() > 0.1);
+        assert!(record.energy.work.abs() > 0.1 * count as f64 / 200.0);
         assert!(record.newton.mean >= 1.0 && record.wall_seconds > 0.0);
     }
     // Simpson's rule leaves 1e-8 of the work; order 2 leaves 1e-4.
@@ -96,15 +111,25 @@ fn an_interrupted_run_keeps_what_is_made() {
     assert_abs_diff_eq!(run.nodes.last().unwrap().t, run.record.t);
 }
 
-/// The state at a crossing is that of a shorter step of the method, and a terminal event ends the run there.
 #[test]
 fn events_along_a_train() {
+    check_events([0.0513, 0.0911]);
+}
+
+#[test]
+#[ignore = "slow"]
+fn events_along_a_train_in_full() {
+    check_events([0.513, 0.911]);
+}
+
+/// The state at a crossing is that of a shorter step of the method, and a terminal event ends the run there.
+fn check_events(places: [f64; 2]) {
     let train = train();
     let start = train.start(&SleighState { speed: 1.0, turn_rate: 0.5, ..SleighState::default() }, &[0.1, 0.2]);
     for name in ["dla4", "energy2"] {
         let method = Method::named(name, None).unwrap();
-        let x = |value: f64| move |_: f64, state: &assembly::AssemblyState| state.unwrapped(0) - value;
-        let events = [AssemblyEvent::new("x=0.513", false, x(0.513)), AssemblyEvent::new("x=0.911", true, x(0.911))];
+        let x = |value: f64| move |_: f64, state: &AssemblyState| state.unwrapped(0) - value;
+        let events = [AssemblyEvent::new("first", false, x(places[0])), AssemblyEvent::new("last", true, x(places[1]))];
         let (run, crossings) = run_assembly_watched(
             &train.assembly,
             &method,
@@ -114,7 +139,7 @@ fn events_along_a_train() {
             &mut (),
         );
         assert_eq!(crossings.iter().map(|crossing| crossing.event).collect::<Vec<_>>(), [0, 1]);
-        for (crossing, value) in crossings.iter().zip([0.513, 0.911]) {
+        for (crossing, value) in crossings.iter().zip(places) {
             assert!(crossing.rising && crossing.within < 1e-15);
             assert_abs_diff_eq!(crossing.state.unwrapped(0), value, epsilon = 1e-15);
             assert!(train.assembly.misses(crossing.t, &crossing.state).iter().all(|miss| *miss < 1e-14));
@@ -133,24 +158,34 @@ fn bits(run: &harness::Assembled) -> String {
     format!("{record:?} {:?}", run.end)
 }
 
-/// In parts, and from the file of any of them, the numbers are the same to the last bit.
 #[test]
 fn a_saved_run_goes_on_as_if_it_had_not_stopped() {
-    let train = train();
+    check_saved(14, 5);
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_saved_run_goes_on_as_if_it_had_not_stopped_in_full() {
+    check_saved(200, 64);
+}
+
+/// In parts, and from the file of any of them, the numbers are the same to the last bit.
+fn check_saved(count: u64, every: u64) {
+    let (train, schedule) = (train(), steps(count));
     let start = train.start(&SleighState { speed: 1.0, turn_rate: 0.5, ..SleighState::default() }, &[0.1, 0.2]);
     for name in ["dla", "lobatto3", "energy2"] {
         let method = Method::named(name, None).unwrap();
-        let whole = run_assembly(&train.assembly, &method, &SCHEDULE, &start, 10, &mut ());
+        let whole = run_assembly(&train.assembly, &method, &schedule, &start, 10, &mut ());
         let identity = Checkpoint::of([("method", name.to_owned())]);
         let mut files = Vec::new();
         let mut save = |made: &Checkpoint| files.push(made.to_text());
-        let mut saving = Saving { identity: &identity, from: None, every: Some(64), save: &mut save };
+        let mut saving = Saving { identity: &identity, from: None, every: Some(every), save: &mut save };
         let run = |saving: &mut Saving<'_>| {
-            run_assembly_saved(&train.assembly, &method, &SCHEDULE, (&start, AssemblyNodes::Kept(10)), saving, &mut ())
+            run_assembly_saved(&train.assembly, &method, &schedule, (&start, AssemblyNodes::Kept(10)), saving, &mut ())
         };
         let parts = run(&mut saving).unwrap();
         assert_eq!(bits(&parts), bits(&whole));
-        assert_eq!(files.len(), 4);
+        assert_eq!(files.len() as u64, count.div_ceil(every));
         for file in &files {
             let read = Checkpoint::from_text(file).unwrap();
             let mut saving = Saving { identity: &identity, from: Some(&read), every: None, save: &mut |_| {} };
@@ -164,88 +199,115 @@ fn a_saved_run_goes_on_as_if_it_had_not_stopped() {
     }
 }
 
-/// The recommended step meets its tolerance against a run of high order, and one twice as long does not.
 #[test]
 fn a_step_for_a_tolerance() {
+    check_recommended(0.4, 1e-5);
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_step_for_a_tolerance_in_full() {
+    check_recommended(4.0, 1e-4);
+}
+
+/// The recommended step meets its tolerance against a run of high order, and one of a quarter of the steps does not.
+fn check_recommended(duration: f64, tolerance: f64) {
     let train = train();
     let start = train.start(&SleighState { speed: 1.0, turn_rate: 0.5, ..SleighState::default() }, &[0.1, 0.2]);
-    let last = |state: &assembly::AssemblyState| [state.unwrapped(9), state.unwrapped(10), state.unwrapped(11)];
-    let (dla, tolerance) = (Method::named("dla", None).unwrap(), 1e-4);
-    let found = recommend_assembly(&train.assembly, &dla, &start, 4.0, tolerance, last).unwrap();
+    let last = |state: &AssemblyState| [state.unwrapped(9), state.unwrapped(10), state.unwrapped(11)];
+    let dla = Method::named("dla", None).unwrap();
+    let found = recommend_assembly(&train.assembly, &dla, &start, duration, tolerance, last).unwrap();
     let end = |method: &Method, steps: u64| {
-        let schedule = Schedule { t0: 0.0, step: 4.0 / steps as f64, steps };
+        let schedule = Schedule { t0: 0.0, step: duration / steps as f64, steps };
         last(&assembly_end(&train.assembly, method, &schedule, &start, &mut ()).unwrap().unwrap())
     };
-    let exact = end(&Method::named("dla8", None).unwrap(), 200);
+    let exact = end(&Method::named("dla8", None).unwrap(), (duration / 0.02).round() as u64);
     let error = |steps: u64| {
         let pairs = end(&dla, steps).into_iter().zip(exact);
         pairs.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()))
     };
     println!("{found:?}, {:e}", error(found.steps));
     assert!(error(found.steps) < tolerance && error(found.steps / 4) > tolerance);
-    let refused = recommend_assembly(&train.assembly, &Method::named("rk4", None).unwrap(), &start, 4.0, 1e-4, last);
+    let refused =
+        recommend_assembly(&train.assembly, &Method::named("rk4", None).unwrap(), &start, duration, tolerance, last);
     assert!(matches!(refused, Err(RecommendError::Fails { .. })));
 }
 
-/// A train that is to turn by a radian and more in a step is driven in parts, also from a checkpoint and up to an event.
-#[test]
-fn long_steps_of_trains_are_made_in_parts() {
+/// A train that is to turn by a radian and more in a step of a second.
+fn turning() -> (Train, AssemblyState) {
     let train = train();
     let start = train.start(&SleighState { speed: 3.0, turn_rate: 2.0, ..SleighState::default() }, &[0.4, -0.4]);
-    let long = Schedule { t0: 0.0, step: 1.0, steps: 6 };
-    let plain = Method::named("dla4", None).unwrap();
-    assert!(run_assembly(&train.assembly, &plain, &long, &start, 1, &mut ()).failure.is_some());
-    let fine = Schedule { step: 0.005, steps: 1200, ..long };
-    let right = run_assembly(&train.assembly, &plain, &fine, &start, 100, &mut ()).end;
-    for name in ["dla", "dla4", "lobatto3", "energy2"] {
-        let method = Method::named(name, None).unwrap().with_substeps(Substeps::default());
-        let run = run_assembly(&train.assembly, &method, &long, &start, 1, &mut ());
-        assert!(run.failure.is_none(), "{name}: {:?}", run.failure);
-        let substeps = run.record.substeps.unwrap();
-        assert!(substeps.divided > 0 && run.record.steps == 6, "{name}: {substeps:?}");
-        assert!(run.record.constraint_max < 1e-13 && run.record.leaf_max.unwrap() < 1e-13, "{name}: {:?}", run.record);
-        // On a way of fifteen metres.
-        for i in 0..right.len() {
-            assert_abs_diff_eq!(run.end.unwrapped(i), right.unwrapped(i), epsilon = 3e-2);
-        }
-        assert!(run.record.energy.max_error < 1e-2 * run.record.energy.initial, "{name}: {:?}", run.record.energy);
+    (train, start)
+}
 
+fn seconds(steps: u64) -> Schedule {
+    Schedule { t0: 0.0, step: 1.0, steps }
+}
+
+/// Driven in parts; on a way of some metres its end is that of short steps.
+fn in_parts(name: &str, long: &Schedule, right: &AssemblyState) -> (Method, harness::Assembled) {
+    let (train, start) = turning();
+    let method = Method::named(name, None).unwrap().with_substeps(Substeps::default());
+    let run = run_assembly(&train.assembly, &method, long, &start, 1, &mut ());
+    assert!(run.failure.is_none(), "{name}: {:?}", run.failure);
+    let substeps = run.record.substeps.unwrap();
+    assert!(substeps.divided > 0 && run.record.steps == long.steps, "{name}: {substeps:?}");
+    assert!(run.record.constraint_max < 1e-13 && run.record.leaf_max.unwrap() < 1e-13, "{name}: {:?}", run.record);
+    for i in 0..right.len() {
+        assert_abs_diff_eq!(run.end.unwrapped(i), right.unwrapped(i), epsilon = 3e-2);
+    }
+    assert!(run.record.energy.max_error < 1e-2 * run.record.energy.initial, "{name}: {:?}", run.record.energy);
+    (method, run)
+}
+
+fn short_steps(step: f64, steps: u64) -> AssemblyState {
+    let (train, start) = turning();
+    let plain = Method::named("dla4", None).unwrap();
+    let schedule = Schedule { t0: 0.0, step, steps };
+    assembly_end(&train.assembly, &plain, &schedule, &start, &mut ()).unwrap().unwrap()
+}
+
+#[test]
+fn long_steps_of_trains_are_made_in_parts() {
+    in_parts("dla4", &seconds(1), &short_steps(0.05, 20));
+}
+
+/// The bound, and what was tried.
+#[test]
+fn a_long_step_of_a_train_is_divided_so_far() {
+    let (train, start) = turning();
+    let plain = Method::named("dla4", None).unwrap();
+    assert!(run_assembly(&train.assembly, &plain, &seconds(6), &start, 1, &mut ()).failure.is_some());
+    let few = plain.with_substeps(Substeps::new(1, 10));
+    let run = run_assembly(&train.assembly, &few, &seconds(6), &start, 1, &mut ());
+    assert!(run.failure.is_some() && run.record.substeps.unwrap().undivided.is_some(), "{:?}", run.record);
+    assert_eq!(run.record.energy.work.abs().to_bits(), 0);
+}
+
+/// Also from a checkpoint and up to an event.
+#[test]
+#[ignore = "slow"]
+fn long_steps_of_trains_are_made_in_parts_in_full() {
+    let ((train, start), long) = (turning(), seconds(6));
+    let right = short_steps(0.005, 1200);
+    for name in ["dla", "dla4", "lobatto3", "energy2"] {
+        let (method, run) = in_parts(name, &long, &right);
         let mut files = Vec::new();
         let mut save = |made: &Checkpoint| files.push(made.clone());
         let identity = Checkpoint::default();
         let mut saving = Saving { identity: &identity, from: None, every: Some(2), save: &mut save };
-        let whole =
-            run_assembly_saved(&train.assembly, &method, &long, (&start, AssemblyNodes::Kept(1)), &mut saving, &mut ())
-                .unwrap();
+        let kept = || (&start, AssemblyNodes::Kept(1));
+        let whole = run_assembly_saved(&train.assembly, &method, &long, kept(), &mut saving, &mut ()).unwrap();
         assert_eq!(bits(&whole), bits(&run), "{name}");
         for file in &files {
             let mut saving = Saving { identity: &identity, from: Some(file), every: None, save: &mut |_| () };
-            let again = run_assembly_saved(
-                &train.assembly,
-                &method,
-                &long,
-                (&start, AssemblyNodes::Kept(1)),
-                &mut saving,
-                &mut (),
-            );
+            let again = run_assembly_saved(&train.assembly, &method, &long, kept(), &mut saving, &mut ());
             assert_eq!(bits(&again.unwrap()), bits(&run), "{name}");
         }
 
         let events = [AssemblyEvent::new("x", true, |_, state| state.q(0) - 1.0)];
-        let (ended, crossings) = run_assembly_watched(
-            &train.assembly,
-            &method,
-            &long,
-            (&start, AssemblyNodes::Kept(1)),
-            (&events, 4),
-            &mut (),
-        );
+        let (ended, crossings) = run_assembly_watched(&train.assembly, &method, &long, kept(), (&events, 4), &mut ());
         assert_eq!((crossings.len(), ended.record.t), (1, crossings[0].t), "{name}");
         assert_abs_diff_eq!(ended.end.q(0), 1.0, epsilon = 1e-9);
     }
-    // The bound, and what was tried.
-    let few = plain.with_substeps(Substeps::new(1, 10));
-    let run = run_assembly(&train.assembly, &few, &long, &start, 1, &mut ());
-    assert!(run.failure.is_some() && run.record.substeps.unwrap().undivided.is_some(), "{:?}", run.record);
-    assert_eq!(run.record.energy.work.abs().to_bits(), 0);
 }

@@ -1,6 +1,6 @@
 //! What motions are: steady, periodic, running away, regular or chaotic; their known exponents, and the two sums of all.
 
-use crate::chaos::{exponents, exponents_by};
+use crate::runs::chaos::{exponents, exponents_by};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use dla::{Dla, Gauss, Schedule, drive};
 use harness::Method;
@@ -30,11 +30,24 @@ fn check_intervals(found: &Lyapunov, known: [f64; 5]) {
     }
 }
 
-/// About straight motion at 1 m/s the spin has the eigenvalue `-c u`; neighbours with another heading or speed part company
-/// linearly.
+/// Steps of a run: their length, those that are not counted, and those that are.
+type Steps = (f64, u64, u64);
+
 #[test]
 fn stable_straight_motion_is_steady() {
-    for steps in [(0.1, 100, 1000), (0.1, 1000, 10_000), (0.1, 0, 1000)] {
+    check_stable(&[(0.2, 30, 300), (0.2, 0, 500)]);
+}
+
+#[test]
+#[ignore = "slow"]
+fn stable_straight_motion_is_steady_in_full() {
+    check_stable(&[(0.1, 100, 1000), (0.1, 1000, 10_000), (0.1, 0, 1000)]);
+}
+
+/// About straight motion at 1 m/s the spin has the eigenvalue `-c u`; neighbours with another heading or speed part company
+/// linearly.
+fn check_stable(runs: &[Steps]) {
+    for &steps in runs {
         let found = exponents(&sleigh(), straight(1.0), steps);
         check_intervals(&found, [0.0, 0.0, 0.0, 0.0, -0.4]);
         assert_eq!(found.verdict, MotionVerdict::Steady { unstable: false });
@@ -45,6 +58,7 @@ fn stable_straight_motion_is_steady() {
 /// In 1e5 s nothing goes to zero that is not (DynamicalSystems.jl, ChaosTools issue 111). Padé's approximation of `exp(-0.2)`, that steps of
 /// 0.5 s make, is right to 1e-14.
 #[test]
+#[ignore = "slow"]
 fn a_long_run_keeps_the_exponent_of_a_stable_motion() {
     let found = exponents(&sleigh(), straight(1.0), (0.5, 20_000, 200_000));
     assert_abs_diff_eq!(found.exponents[4], -0.4, epsilon = 1e-11);
@@ -53,13 +67,23 @@ fn a_long_run_keeps_the_exponent_of_a_stable_motion() {
     assert_eq!(found.verdict, MotionVerdict::Steady { unstable: false });
 }
 
-/// A thrust of 0.08 N against drag of 0.08 kg/s is 1 m/s: the speed has `-0.08`, the spin `-c u - c_omega/J = -0.4 - 0.1`.
 #[test]
 fn driven_straight_motion_is_steady() {
+    check_driven((1.0, 200, 100));
+}
+
+#[test]
+#[ignore = "slow"]
+fn driven_straight_motion_is_steady_in_full() {
+    check_driven((0.1, 4000, 10_000));
+}
+
+/// A thrust of 0.08 N against drag of 0.08 kg/s is 1 m/s: the speed has `-0.08`, the spin `-c u - c_omega/J = -0.4 - 0.1`.
+fn check_driven(steps: Steps) {
     let effects = (Thrust::new(0.08).unwrap(), Drag::new(0.08, 0.125).unwrap());
     let system = With { body: sleigh(), effects };
     for start in [1.0, 0.0] {
-        let found = exponents(&system, straight(start), (0.1, 4000, 10_000));
+        let found = exponents(&system, straight(start), steps);
         check_intervals(&found, [0.0, 0.0, 0.0, -0.08, -0.5]);
         assert_abs_diff_eq!(found.exponents[3], -0.08, epsilon = 1e-3);
         assert_abs_diff_eq!(found.exponents[4], -0.5, epsilon = 1e-3);
@@ -67,10 +91,20 @@ fn driven_straight_motion_is_steady() {
     }
 }
 
-/// Backward it is unstable: an exponent is positive, and the motion as regular as can be.
 #[test]
 fn unstable_straight_motion_is_steady_too() {
-    for steps in [(0.05, 80, 800), (0.05, 200, 2000), (0.1, 1000, 10_000)] {
+    check_unstable(&[(0.1, 40, 400)]);
+}
+
+#[test]
+#[ignore = "slow"]
+fn unstable_straight_motion_is_steady_too_in_full() {
+    check_unstable(&[(0.05, 80, 800), (0.05, 200, 2000), (0.1, 1000, 10_000)]);
+}
+
+/// Backward it is unstable: an exponent is positive, and the motion as regular as can be.
+fn check_unstable(runs: &[Steps]) {
+    for &steps in runs {
         let found = exponents(&sleigh(), straight(-1.0), steps);
         check_intervals(&found, [0.4, 0.0, 0.0, 0.0, 0.0]);
         assert_eq!(found.verdict, MotionVerdict::Steady { unstable: true });
@@ -85,17 +119,26 @@ fn a_motion_that_leaves_a_steady_one_is_not_steady() {
     assert!(!matches!(found.verdict, MotionVerdict::Steady { .. }), "{}", found.verdict);
 }
 
+fn ridge() -> (With<Sleigh, Bowl>, ([f64; 3], [f64; 3])) {
+    let ridge = With { body: Sleigh::new(1.0, 1.0, 0.0).unwrap(), effects: Bowl::new([-1.0; 2], [0.0; 2]).unwrap() };
+    (ridge, SleighState { x: 0.01, ..SleighState::default() }.to_coordinates())
+}
+
 /// On a ridge `u'' = u`. Neighbours in heading part company like `u` too, and volumes stay: 1, 1, 0, -1, -1 in these coordinates.
 #[test]
 fn on_a_ridge_a_sleigh_runs_away() {
-    let ridge = With { body: Sleigh::new(1.0, 1.0, 0.0).unwrap(), effects: Bowl::new([-1.0; 2], [0.0; 2]).unwrap() };
-    let start = SleighState { x: 0.01, ..SleighState::default() }.to_coordinates();
+    let (ridge, start) = ridge();
     let found = exponents(&ridge, start, (0.05, 40, 360));
     assert_eq!(found.verdict, MotionVerdict::RunsAway);
     check_intervals(&found, [1.0, 1.0, 0.0, -1.0, -1.0]);
     assert_abs_diff_eq!(found.exponents[0], 1.0, epsilon = 0.05);
     assert_abs_diff_eq!(found.sum(), found.divergence_mean, epsilon = 1e-3);
+}
 
+#[test]
+#[ignore = "slow"]
+fn on_a_ridge_a_sleigh_runs_away_in_full() {
+    let (ridge, start) = ridge();
     let by_gauss8 = |settle: u64, steps: u64, count: usize| {
         let schedule = Schedule { t0: 0.0, step: 0.05, steps };
         let request = LyapunovRequest { schedule, settle, exponents: Some(count), q: start.0, v: start.1 };
@@ -140,6 +183,7 @@ fn a_sleigh_that_is_pushed_for_ever_runs_away() {
 /// The round well at 8 J: an attractor that is periodic but for a turn about the middle. Its period is that of the section
 /// through the middle; two exponents are negative, and three zero.
 #[test]
+#[ignore = "slow"]
 fn a_limit_cycle_is_periodic() {
     let system = With { body: sleigh(), effects: Bowl::new([1.0; 2], [0.0; 2]).unwrap() };
     let start = SleighState { x: -0.5, speed: 0.6, turn_rate: 0.715_541_752_799_933, ..SleighState::default() };
@@ -155,24 +199,37 @@ fn a_limit_cycle_is_periodic() {
     assert!(!matches!(early.verdict, MotionVerdict::Periodic { .. }), "{}", early.verdict);
 }
 
-/// Straight to and fro through the middle of a well, with the blade along it: unstable for some energies, and never chaotic.
 #[test]
+fn a_periodic_motion_is_periodic() {
+    to_and_fro(&[1.0], (0.15, 20, 400));
+}
+
+#[test]
+#[ignore = "slow"]
 fn an_unstable_periodic_motion_is_periodic() {
+    assert!(to_and_fro(&[0.5, 1.0, 2.0, 3.0], (0.05, 400, 4000)) > 0);
+}
+
+/// Straight to and fro through the middle of a well, with the blade along it: unstable for some energies, and never chaotic. How many are
+/// unstable.
+fn to_and_fro(speeds: &[f64], steps: Steps) -> usize {
     let system = With { body: sleigh(), effects: Bowl::new([1.0; 2], [0.0; 2]).unwrap() };
     let mut unstable = 0;
-    for speed in [0.5, 1.0, 2.0, 3.0] {
+    for &speed in speeds {
         let start = SleighState { x: -0.5, speed, ..SleighState::default() }.to_coordinates();
-        let found = exponents(&system, start, (0.05, 400, 4000));
+        let found = exponents(&system, start, steps);
         println!("{speed}: {} {:?} ± {:?}", found.verdict, found.exponents, found.ci);
         let MotionVerdict::Periodic { period, unstable: leaves } = found.verdict else { panic!("{}", found.verdict) };
         assert_relative_eq!(period, std::f64::consts::TAU, max_relative = 1e-4);
         unstable += usize::from(leaves);
     }
-    assert!(unstable > 0);
+    unstable
 }
 
 /// Two springs and a friction, on a plane: `x'' = -x - g x'`, `y'' = -k^2 y`, `z' = 0`.
 struct Springs {
+    /// Whether it knows these equations, or has them derived.
+    by_hand: bool,
     friction: f64,
     frequency: f64,
 }
@@ -192,40 +249,72 @@ impl System<3, 1> for Springs {
         let (zero, one) = (S::zero(), S::constant(1.0));
         Some(AdmissibleBasis::new([[one, zero, zero], [zero, one, zero]]))
     }
+    fn reduced(&self) -> impl Reduced<3, 1> {
+        self
+    }
 }
 
-/// Commensurable springs repeat, others do not; friction lets them repeat only when it has done its work.
-#[test]
-fn springs_repeat_or_not() {
-    let verdict = |friction: f64, frequency: f64, start: [f64; 2]| {
-        let found =
-            exponents(&Springs { friction, frequency }, ([start[0], start[1], 0.0], [0.0; 3]), (0.1, 300, 3000));
+impl Reduced<3, 1> for Springs {
+    fn reduced_motion<S: Scalar>(&self, _t: S, q: &[S; 3], xi: &[S; 3]) -> Option<[S; 3]> {
+        let square = self.frequency * self.frequency;
+        self.by_hand.then(|| [-q[0] - xi[0] * self.friction, q[1] * -square, S::zero()])
+    }
+}
+
+impl Springs {
+    /// What they do from rest at a place.
+    fn verdict(&self, start: [f64; 2], steps: Steps) -> MotionVerdict {
+        let found = exponents(self, ([start[0], start[1], 0.0], [0.0; 3]), steps);
         // Friction works on the speed, and the exponents of its oscillation are half of it.
-        let known = if friction > 0.0 { [0.0, 0.0, 0.0, -0.5 * friction, -0.5 * friction] } else { [0.0; 5] };
-        check_intervals(&found, known);
+        let half = -0.5 * self.friction;
+        check_intervals(&found, if half < 0.0 { [0.0, 0.0, 0.0, half, half] } else { [0.0; 5] });
         found.verdict
-    };
-    let turn = std::f64::consts::TAU;
-    for (friction, frequency, start, period) in [
-        (0.0, 2.0, [1.0, 0.3], Some(turn)),
-        (0.0, 1.5, [1.0, 0.3], Some(2.0 * turn)),
-        (0.0, 1.5, [1.0, 0.0], Some(turn)),
-        (0.0, 0.5 * (1.0 + 5.0_f64.sqrt()), [1.0, 0.3], None),
-        (0.0, 1.003, [1.0, 0.3], None),
-        (0.2, 1.5, [1.0, 0.3], Some(turn / 1.5)),
-        (0.06, 1.5, [1.0, 0.3], None),
-    ] {
-        match (verdict(friction, frequency, start), period) {
+    }
+
+    /// Whether they repeat after that time, or never.
+    fn check(&self, start: [f64; 2], period: Option<f64>, steps: Steps) {
+        match (self.verdict(start, steps), period) {
             (MotionVerdict::Periodic { period: found, unstable: false }, Some(period)) => {
                 assert_relative_eq!(found, period, max_relative = 1e-4);
             }
             (MotionVerdict::Regular, None) => {}
-            (found, _) => panic!("{frequency}: {found}"),
+            (found, _) => panic!("{}: {found}", self.frequency),
         }
     }
+}
+
+const GOLDEN: f64 = 1.618_033_988_749_895;
+
+#[test]
+fn springs_repeat_or_not() {
+    let free = |frequency| Springs { by_hand: true, friction: 0.0, frequency };
+    let steps = (0.2, 15, 300);
+    free(2.0).check([1.0, 0.3], Some(std::f64::consts::TAU), steps);
+    free(GOLDEN).check([1.0, 0.3], None, steps);
+}
+
+/// Commensurable springs repeat, others do not; friction lets them repeat only when it has done its work.
+#[test]
+#[ignore = "slow"]
+fn springs_repeat_or_not_in_full() {
+    let turn = std::f64::consts::TAU;
+    let springs = |friction, frequency| Springs { by_hand: false, friction, frequency };
+    let steps = (0.1, 300, 3000);
+    for (friction, frequency, start, period) in [
+        (0.0, 2.0, [1.0, 0.3], Some(turn)),
+        (0.0, 1.5, [1.0, 0.3], Some(2.0 * turn)),
+        (0.0, 1.5, [1.0, 0.0], Some(turn)),
+        (0.0, GOLDEN, [1.0, 0.3], None),
+        (0.0, 1.003, [1.0, 0.3], None),
+        (0.2, 1.5, [1.0, 0.3], Some(turn / 1.5)),
+        (0.06, 1.5, [1.0, 0.3], None),
+    ] {
+        springs(friction, frequency).check(start, period, steps);
+    }
     // All at rest, or come to rest.
-    assert_eq!(verdict(0.0, 2.0, [0.0; 2]), MotionVerdict::Steady { unstable: false });
-    assert_eq!(verdict(1.0, 2.0, [1.0, 0.0]), MotionVerdict::Steady { unstable: false });
+    for (friction, start) in [(0.0, [0.0; 2]), (1.0, [1.0, 0.0])] {
+        assert_eq!(springs(friction, 2.0).verdict(start, steps), MotionVerdict::Steady { unstable: false });
+    }
 }
 
 /// A system that knows reduced equations by hand, and wrong ones.
@@ -253,11 +342,21 @@ impl Reduced<3, 1> for Wrong {
     }
 }
 
-/// The steps of `dla` know nothing of the equations by hand, so that the two sums find out what is wrong with these.
 #[test]
 fn sums_that_differ_are_a_failure() {
+    check_sums(200);
+}
+
+#[test]
+#[ignore = "slow"]
+fn sums_that_differ_are_a_failure_in_full() {
+    check_sums(1000);
+}
+
+/// The steps of `dla` know nothing of the equations by hand, so that the two sums find out what is wrong with these.
+fn check_sums(steps: u64) {
     let (q, v) = straight(1.0);
-    let schedule = Schedule { t0: 0.0, step: 0.05, steps: 1000 };
+    let schedule = Schedule { t0: 0.0, step: 0.05, steps };
     let request = LyapunovRequest { schedule, settle: 0, exponents: None, q, v };
     let method = Method::named("dla", None).unwrap();
     let system = Wrong(sleigh());
@@ -270,7 +369,7 @@ fn sums_that_differ_are_a_failure() {
     assert_abs_diff_eq!(by_flow, -0.44, epsilon = 1e-12);
     // The right ones agree, with steps that are not short for a method of second order too.
     for step in [0.05, 0.5] {
-        exponents_by(("dla", Dla::midpoint()), &sleigh(), (q, v), (step, 0, 1000));
+        exponents_by(("dla", Dla::midpoint()), &sleigh(), (q, v), (step, 0, steps));
     }
 }
 

@@ -61,13 +61,23 @@ fn rounding(record: &Record<3>) -> f64 {
     4.0 * f64::EPSILON * size * (record.steps as f64).sqrt()
 }
 
-/// By theory the energy changes by the work of the discrete forces, whatever the step; the control is the midpoint rule, whose
-/// energy does not.
 #[test]
 fn the_energy_changes_by_the_work_of_the_discrete_forces() {
+    check_work(&[0.04], 2.0);
+}
+
+#[test]
+#[ignore = "slow"]
+fn the_energy_changes_by_the_work_of_the_discrete_forces_in_full() {
+    check_work(&[0.04, 0.02, 0.01], 20.0);
+}
+
+/// By theory the energy changes by the work of the discrete forces, whatever the step; the control is the midpoint rule, whose
+/// energy does not.
+fn check_work(steps: &[f64], duration: f64) {
     for scene in [thrust(), driven()] {
-        for step in [0.04, 0.02, 0.01] {
-            let schedule = schedule(step, 20.0);
+        for &step in steps {
+            let schedule = schedule(step, duration);
             let kept = measured(&scene, "energy2", &schedule);
             println!("{step}: {:e} of {:e} J", kept.energy.max_error, rounding(&kept));
             assert!(kept.energy.work.abs() > 0.1);
@@ -78,34 +88,62 @@ fn the_energy_changes_by_the_work_of_the_discrete_forces() {
     }
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+/// A train of up to four trailers that something pushes, brakes and turns.
+fn any_train() -> impl Strategy<Value = (Train, AssemblyState)> {
+    let forces = (-1.0..1.0f64, -0.5..0.5f64, 0.0..0.5f64, 0.0..0.3f64);
+    (forces, proptest::collection::vec(0.5..1.5f64, 1..5), -0.5..0.5f64).prop_map(
+        |((push, torque, along, turning), bars, bend)| {
+            let drag = || Drag::new(along, turning).unwrap();
+            let effects = (Thrust::new(push).unwrap(), (Torque::new(torque).unwrap(), drag()));
+            let body = |trailer: &Trailer| With { body: trailer.sleigh, effects: drag() };
+            let trailers = bars.into_iter().map(trailer).collect();
+            let train = Train::new(With { body: lead(), effects }, trailers, body).unwrap();
+            let start = train.start(&START, &[bend, 0.0, -bend]);
+            (train, start)
+        },
+    )
+}
 
-    /// Whatever pushes, brakes and turns the train, and however long the step.
+/// Whatever acts on the train, and however long the step.
+fn check_balance(scene: &(Train, AssemblyState), step: f64, steps: u64) -> Result<(), TestCaseError> {
+    let kept = measured(scene, "energy2", &Schedule { t0: 0.0, step, steps });
+    prop_assert!(kept.energy.max_error < rounding(&kept), "{:e} J", kept.energy.max_error);
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(4))]
+
     #[test]
-    fn the_balance_of_any_train(
-        push in -1.0..1.0f64,
-        torque in -0.5..0.5f64,
-        along in 0.0..0.5f64,
-        turning in 0.0..0.3f64,
-        bars in proptest::collection::vec(0.5..1.5f64, 1..5),
-        bend in -0.5..0.5f64,
-        step in 0.005..0.05f64,
-    ) {
-        let drag = || Drag::new(along, turning).unwrap();
-        let effects = (Thrust::new(push).unwrap(), (Torque::new(torque).unwrap(), drag()));
-        let body = |trailer: &Trailer| With { body: trailer.sleigh, effects: drag() };
-        let train = Train::new(With { body: lead(), effects }, bars.into_iter().map(trailer).collect(), body).unwrap();
-        let start = train.start(&START, &[bend, 0.0, -bend]);
-        let kept = measured(&(train, start), "energy2", &Schedule { t0: 0.0, step, steps: 200 });
-        prop_assert!(kept.energy.max_error < rounding(&kept), "{:e} J", kept.energy.max_error);
+    fn the_balance_of_any_train(scene in any_train(), step in 0.005..0.05f64) {
+        check_balance(&scene, step, 20)?;
     }
 }
 
-/// Without forces nothing is taken off.
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    #[ignore = "slow"]
+    fn the_balance_of_any_train_in_full(scene in any_train(), step in 0.005..0.05f64) {
+        check_balance(&scene, step, 200)?;
+    }
+}
+
 #[test]
 fn a_free_train_has_no_work() {
-    let (scene, schedule) = (free(), schedule(0.02, 20.0));
+    check_free(0.3);
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_free_train_has_no_work_in_full() {
+    check_free(20.0);
+}
+
+/// Without forces nothing is taken off.
+fn check_free(duration: f64) {
+    let (scene, schedule) = (free(), schedule(0.02, duration));
     for name in ["energy2", "dla", "dla4", "lobatto3"] {
         assert_eq!(measured(&scene, name, &schedule).energy.work.to_bits(), 0.0f64.to_bits(), "{name}");
     }
@@ -113,40 +151,54 @@ fn a_free_train_has_no_work() {
     assert!(kept.energy.max_error < rounding(&kept), "{:e}", kept.energy.max_error);
 }
 
-/// What the error of the energy would be by the work that the forces do along the polynomial through the nodes, and after a step
+/// By so much, relatively, every velocity is off in a wrong step.
+const WRONG: f64 = 1e-10;
+
+/// What the error of the energy would be by the work that the forces do along the polynomial through the nodes, or after a step
 /// that is not the method's.
-#[test]
-fn another_work_and_another_step_are_seen() {
-    /// By so much, relatively, every velocity is off in a wrong step.
-    const WRONG: f64 = 1e-10;
+fn energy_error(schedule: &Schedule, along: bool, wrong: bool) -> f64 {
     let (train, start) = thrust();
     let assembly = &train.assembly;
-    let errors = |step: f64, along: bool, wrong: bool| {
-        let (mut method, mut work) = (SparseEnergy::new(assembly, Solver::Best).unwrap(), AssemblyWork::default());
-        let (mut state, initial, mut most) = (start.clone(), assembly.energy(0.0, &start), 0.0);
-        let schedule = schedule(step, 20.0);
-        for k in 0..schedule.steps {
-            let (t0, t1, before) = (schedule.time(k), schedule.time(k + 1), state.clone());
-            let report = method.step(assembly, t0, step, &mut state).unwrap();
-            assert!(report.work.unwrap() > 0.0);
-            if wrong && k == schedule.steps / 2 {
-                state = faster(assembly, &state, 1.0 + WRONG);
-            }
-            let report = if along { AssemblyReport { work: None, ..report } } else { report };
-            work.step(assembly, (t0, &before), (t1, &state), &report);
-            most = larger(most, assembly.energy(t1, &state) - initial - work.total());
+    let (mut method, mut work) = (SparseEnergy::new(assembly, Solver::Best).unwrap(), AssemblyWork::default());
+    let (mut state, initial, mut most) = (start.clone(), assembly.energy(0.0, &start), 0.0);
+    for k in 0..schedule.steps {
+        let (t0, t1, before) = (schedule.time(k), schedule.time(k + 1), state.clone());
+        let report = method.step(assembly, t0, schedule.step, &mut state).unwrap();
+        assert!(report.work.unwrap() > 0.0);
+        if wrong && k == schedule.steps / 2 {
+            state = faster(assembly, &state, 1.0 + WRONG);
         }
-        most
-    };
+        let report = if along { AssemblyReport { work: None, ..report } } else { report };
+        work.step(assembly, (t0, &before), (t1, &state), &report);
+        most = larger(most, assembly.energy(t1, &state) - initial - work.total());
+    }
+    most
+}
+
+/// A wrong step at an energy (J) of `least` and more.
+fn check_wrong_step(schedule: &Schedule, least: f64) {
+    let (right, wrong) = (energy_error(schedule, false, false), energy_error(schedule, false, true));
+    println!("{right:e} {wrong:e}");
+    assert!(wrong > 2.0 * WRONG * least && right < 1e-3 * wrong);
+}
+
+#[test]
+fn another_work_and_another_step_are_seen() {
+    // Along the polynomial it is of second order.
+    let [coarse, fine] = [0.04, 0.02].map(|step| energy_error(&schedule(step, 1.2), true, false));
+    assert!((coarse / fine / 4.0 - 1.0).abs() < 0.1 && fine > 1e-12, "{coarse:e} {fine:e}");
+    check_wrong_step(&schedule(0.04, 1.2), 0.5);
+}
+
+#[test]
+#[ignore = "slow"]
+fn another_work_and_another_step_are_seen_in_full() {
     for (step, known) in [(0.04, 3.1e-6), (0.02, 7.8e-7), (0.01, 1.9e-7)] {
-        let error = errors(step, true, false);
+        let error = energy_error(&schedule(step, 20.0), true, false);
         println!("{step}: {error:e}");
         assert!((error / known - 1.0).abs() < 0.05, "{step}: {error:e}");
     }
-    // The energy is then more than 1 J.
-    let (right, wrong) = (errors(0.02, false, false), errors(0.02, false, true));
-    println!("{right:e} {wrong:e}");
-    assert!(wrong > 2.0 * WRONG && right < 1e-3 * wrong);
+    check_wrong_step(&schedule(0.02, 20.0), 1.0);
 }
 
 /// The same place with all velocities multiplied.
@@ -155,14 +207,24 @@ fn faster(assembly: &Assembly, state: &AssemblyState, by: f64) -> AssemblyState 
     AssemblyState::new(assembly, &of(&|i| state.unwrapped(i)), &of(&|i| by * state.v(i)))
 }
 
-/// Of the step that an event ends only the part before it counts.
 #[test]
 fn the_work_of_a_step_that_an_event_ends() {
+    check_ended_step(0.156_789);
+}
+
+#[test]
+#[ignore = "slow"]
+fn the_work_of_a_step_that_an_event_ends_in_full() {
+    check_ended_step(4.567_89);
+}
+
+/// Of the step that an event at a time (s) ends only the part before it counts.
+fn check_ended_step(time: f64) {
     let (train, start) = driven();
     let schedule = schedule(0.1, 20.0);
     for (name, most) in [("energy2", 1e-14), ("dla8", 1e-10)] {
         let method = Method::named(name, None).unwrap();
-        let at = |t: f64, _: &AssemblyState| t - 4.567_89;
+        let at = |t: f64, _: &AssemblyState| t - time;
         let events = [AssemblyEvent::new("t", true, at)];
         let (run, _) = run_assembly_watched(
             &train.assembly,
@@ -172,44 +234,59 @@ fn the_work_of_a_step_that_an_event_ends() {
             (&events, 4),
             &mut (),
         );
-        assert!((run.record.t - 4.567_89).abs() < 1e-12);
+        assert!((run.record.t - time).abs() < 1e-12);
         println!("{name} {:e}", run.record.energy.max_error);
         assert!(run.record.energy.max_error < most, "{name}: {:e}", run.record.energy.max_error);
     }
 }
 
-/// An assembly of one sleigh is measured as the sleigh is.
 #[test]
 fn one_sleigh_is_measured_as_the_static_sleigh() {
-    fn compare<Sys: System<3, 1> + Piecewise + Clone + Send + Sync + 'static>(system: &Sys, powered: bool) {
+    check_one_sleigh(&["dla", "energy2"], 2.0);
+}
+
+#[test]
+#[ignore = "slow"]
+fn one_sleigh_is_measured_as_the_static_sleigh_in_full() {
+    check_one_sleigh(&["dla", "dla4", "dla6", "dla8", "lobatto3", "lobatto4", "lobatto5", "energy2"], 20.0);
+}
+
+/// An assembly of one sleigh is measured as the sleigh is, for so long (s).
+fn check_one_sleigh(names: &[&str], duration: f64) {
+    fn compare<Sys>((names, duration): (&[&str], f64), system: &Sys, powered: bool)
+    where
+        Sys: System<3, 1> + Piecewise + Clone + Send + Sync + 'static,
+    {
         let mut alone = Assembly::new();
         let _: [usize; 3] = alone.body("blade", system.clone());
         let (q, v) = START.to_coordinates();
         let start = AssemblyState::new(&alone, &q, &v);
-        let schedule = schedule(0.05, 20.0);
-        for name in ["dla", "dla4", "dla6", "dla8", "lobatto3", "lobatto4", "lobatto5", "energy2"] {
+        let schedule = schedule(0.05, duration);
+        for name in names {
             let method = Method::named(name, None).unwrap();
             let own = run_assembly(&alone, &method, &schedule, &start, 400, &mut ()).record;
             let fixed = harness::run(system, &method, &Request { schedule, q, v, samples: 2 }, &mut ());
             let (own, fixed) = (own.energy, fixed.energy);
             println!("{name} {:e} {:e} {:e} {:e}", own.work, fixed.work, own.max_error, fixed.max_error);
             assert_eq!(powered, fixed.work != 0.0);
-            // The path differs by the rounding of its velocities, a few ulps in each of 400 steps.
-            let rounding = 400.0 * 4.0 * f64::EPSILON * (fixed.initial + fixed.work.abs());
+            // The path differs by the rounding of its velocities, a few ulps in each of the steps.
+            let rounding = schedule.steps as f64 * 4.0 * f64::EPSILON * (fixed.initial + fixed.work.abs());
             assert!((own.work - fixed.work).abs() < rounding, "{name}");
             assert!((own.max_error - fixed.max_error).abs() < rounding, "{name}");
         }
     }
     let thrust = Thrust::new(TimeFunction::Constant(0.2)).unwrap();
-    compare(&With { body: lead(), effects: thrust.clone() }, true);
+    let runs = (names, duration);
+    compare(runs, &With { body: lead(), effects: thrust.clone() }, true);
     let wave = TimeFunction::Sine { amplitude: 0.5, frequency: 2.1, phase: 0.3 };
     let effects = (thrust, (Torque::new(wave).unwrap(), Drag::new(0.1, 0.05).unwrap()));
-    compare(&With { body: lead(), effects }, true);
-    compare(&lead(), false);
+    compare(runs, &With { body: lead(), effects }, true);
+    compare(runs, &lead(), false);
 }
 
 /// Pushed from behind, three blades fold and go on.
 #[test]
+#[ignore = "slow"]
 fn pushed_trains_fold_and_go_on() {
     let train = Train::new(lead(), vec![trailer(1.0); 2], |trailer| trailer.sleigh).unwrap();
     let start = train.start(&SleighState { speed: -1.0, turn_rate: 0.05, ..START }, &[0.01, -0.02]);

@@ -1,6 +1,6 @@
 //! Fields, forces, constraints: what is broken is a rule for one oscillator, one force or one row.
 
-use crate::{control, energetic, recorded, schedule};
+use crate::stability::{control, energetic, recorded, schedule};
 use harness::stability::check::{
     agrees, constant, constraint, ends_at, energy, follows, measured, rounding, truncation,
 };

@@ -1,7 +1,7 @@
 //! Places, turns and masses.
 
-use crate::sleigh::{BODY, Body, Broken, run};
-use crate::{control, schedule};
+use crate::stability::sleigh::{BODY, Body, Broken, run};
+use crate::stability::{control, schedule};
 use harness::stability::Finding;
 use harness::stability::check::{agrees, follows, rounding, truncation};
 use std::f64::consts::TAU;

@@ -1,7 +1,7 @@
 //! Spins, long steps and long runs.
 
-use crate::sleigh::{BODY, Broken, run, straight, value};
-use crate::{control, energetic, recorded, schedule};
+use crate::stability::sleigh::{BODY, Broken, run, straight, value};
+use crate::stability::{control, energetic, recorded, schedule};
 use dla::Schedule;
 use harness::stability::check::{constraint, ends_at, energy, follows, rounding, sign_kept, stays_below, truncation};
 use harness::stability::{Recorded, Trial};
@@ -135,10 +135,20 @@ fn a_silent_overflow() {
     assert!(broken(Broken::Squares).broken.unwrap().contains("not a finite number"));
 }
 
-/// A force in time, after a time that was summed.
 #[test]
 fn a_summed_time() {
-    let (h, before) = (0.03, 64 * 2_000_000u64);
+    check_summed_time(100_000);
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_summed_time_in_full() {
+    check_summed_time(2_000_000);
+}
+
+/// A force in time, after a time that was summed over so many of its periods.
+fn check_summed_time(periods: u64) {
+    let (h, before) = (0.03, 64 * periods);
     let frequency = TAU / (64.0 * h);
     let summed = (0..before).fold(0.0, |t, _| t + h);
     let speed = |t0: f64| {

@@ -1,7 +1,7 @@
 //! Constraints on positions, affine ones, and one that is not affine.
 
-use crate::ROUNDING;
 use crate::common::{draws, parameters, state};
+use crate::particular::ROUNDING;
 use approx::assert_abs_diff_eq;
 use lagrangian::{Dual, Motion, System, energy, reaction_rows};
 use models::{CompoundPendulum, IsokineticParticle, Model, SleighOnArm, TurntableBall};

@@ -1,7 +1,7 @@
 //! The geometry behind the constraints.
 
-use crate::ROUNDING;
 use crate::common::{draws, parameters, state};
+use crate::particular::ROUNDING;
 use approx::assert_abs_diff_eq;
 use lagrangian::{Dual, Scalar};
 use models::{Attitude, ChaplyginBall, RollerRacer, Snakeboard};

@@ -1,8 +1,8 @@
 //! The size of what is conserved.
 
-use crate::ROUNDING;
 use crate::common::{draws, parameters, state};
-use crate::geometry::{moving, spin};
+use crate::particular::ROUNDING;
+use crate::particular::geometry::{moving, spin};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use lagrangian::{System, energy, momentum};
 use models::{

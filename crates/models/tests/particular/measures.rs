@@ -1,7 +1,7 @@
 //! Motions that forbid an invariant measure.
 
-use crate::ROUNDING;
 use crate::common::parameters;
+use crate::particular::ROUNDING;
 use approx::assert_abs_diff_eq;
 use lagrangian::{Dual, System, reduced_acceleration};
 use models::{Model, RollerRacer};

@@ -1,7 +1,7 @@
 //! The reduced Suslov problem.
 
-use crate::ROUNDING;
 use crate::common::{draws, parameters};
+use crate::particular::ROUNDING;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use models::{Model, Suslov};
 use proptest::prelude::*;

@@ -1,6 +1,6 @@
 //! Moebius maps of the circle of headings, against series and the equation that they solve.
 
-use crate::headings::led;
+use crate::maps::headings::led;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use proptest::prelude::*;
 use sleigh::planimeter::{Class, Moebius};

@@ -1,0 +1,380 @@
+use crate::runs::{Motion, backward, sleigh, sleigh_state, state_of};
+use dla::{
+    Close, Composition, Direction, Dla, Event, Gauss, OneStep, Piece, Schedule, State, Trajectory, Watch,
+    close_crossings, drive, drive_part, piece_by_piece,
+};
+use lagrangian::{Constraint, Piecewise, Scalar, System};
+use proptest::prelude::*;
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use sleigh::{Sleigh, SleighState};
+use std::cell::Cell;
+
+fn speed(state: &State<3>) -> f64 {
+    sleigh_state(state).speed
+}
+
+/// Times at which the events of a run from time zero happen, by their place in the list.
+fn times<Method>(
+    sleigh: &Sleigh,
+    method: Method,
+    start: &SleighState,
+    (step, steps): (f64, u64),
+    events: &[Event<'_, 3>],
+) -> Vec<(usize, f64)>
+where
+    Method: OneStep<3, 1> + Copy,
+{
+    let mut watch = Watch::new(method, events, ());
+    let schedule = Schedule { t0: 0.0, step, steps };
+    drive(sleigh, &mut { method }, &schedule, &mut state_of(start), &mut watch).unwrap();
+    watch.crossings().iter().map(|crossing| (crossing.event, crossing.t)).collect()
+}
+
+/// The heading reaches a right angle, the speed crosses zero, on the scene `turnaround`.
+fn errors<Method: OneStep<3, 1> + Copy>(method: Method, steps: u64) -> [f64; 2] {
+    let (sleigh, start) = (sleigh(), backward());
+    let motion = Motion::new(&sleigh, &start);
+    let right_angle = std::f64::consts::FRAC_PI_2;
+    let events = [
+        Event::new("heading", |_, state: &State<3>| state.unwrapped()[2] - right_angle),
+        Event::new("speed", |_, state| speed(state)),
+    ];
+    let found = times(&sleigh, method, &start, (40.0 / steps as f64, steps), &events);
+    // It has turned by a right angle before it stands: half of the whole turn, pi sqrt(5)/2, is more.
+    assert_eq!(found.iter().map(|(event, _)| *event).collect::<Vec<_>>(), [0, 1], "{found:?}");
+    let exact = [motion.at_turn(sleigh.offset(), right_angle), motion.turnaround];
+    [0, 1].map(|event| (found[event].1 - exact[event]).abs())
+}
+
+#[test]
+fn the_turnaround_is_located_to_the_order_of_the_method() {
+    located_to_rounding();
+    located_to_order(2.0, [100, 200, 400].map(|steps| errors(Dla::midpoint(), steps)));
+}
+
+#[test]
+#[ignore = "slow"]
+fn the_turnaround_is_located_to_the_order_of_the_method_in_full() {
+    located_to_rounding();
+    located_to_order(2.0, [400, 800, 1600].map(|steps| errors(Dla::midpoint(), steps)));
+    located_to_order(4.0, [200, 400, 800].map(|steps| errors(Composition::suzuki4(Dla::midpoint()), steps)));
+}
+
+fn located_to_rounding() {
+    let sixteen = errors(Gauss::new::<8>(), 100);
+    println!("gauss16: {sixteen:?}");
+    assert!(sixteen.iter().all(|error| *error <= 1e-12), "{sixteen:?}");
+}
+
+fn located_to_order(order: f64, found: [[f64; 2]; 3]) {
+    println!("order {order}: {found:?}");
+    for event in 0..2 {
+        let slope = (found[1][event] / found[2][event]).log2();
+        // The next power of the step is two higher; its share halves twice from pair to pair.
+        let before = (found[0][event] / found[1][event]).log2();
+        assert!((slope - order).abs() < 0.1 && (slope - order).abs() <= (before - order).abs() + 0.02, "{found:?}");
+    }
+}
+
+#[test]
+fn no_crossing_of_ten_thousand_runs_is_missed() {
+    // Always the same.
+    let config = Config { cases: 12, failure_persistence: None, ..Config::default() };
+    let random = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
+    let [crossed, ..] = no_crossing_is_missed(TestRunner::new_with_rng(config, random));
+    assert!(crossed > 0);
+}
+
+#[test]
+#[ignore = "slow"]
+fn no_crossing_of_ten_thousand_runs_is_missed_in_full() {
+    let config = Config { cases: 10_000, failure_persistence: None, ..Config::default() };
+    let [crossed, twice, near] = no_crossing_is_missed(TestRunner::new(config));
+    assert!(crossed > 5000 && twice > 2000 && near < 1000);
+}
+
+/// Random free sleighs: their speed crosses zero once, or not within the run, and its square crosses a value twice, often
+/// within a step. Counts runs with a crossing, those with two in a tenth of a step, and those with one at an end.
+fn no_crossing_is_missed(mut runner: TestRunner) -> [i32; 3] {
+    let strategy = (
+        (0.5..2.0f64, 0.3..2.0f64, 0.2..0.8f64, any::<bool>()),
+        (0.4..2.0f64, -1.5..1.5f64, any::<bool>(), -6.0..-0.5f64),
+        (0.05..0.25f64, 10..30u64),
+    );
+    let counts = &[const { Cell::new(0) }; 3];
+    let [crossed, twice, near] = counts;
+    let worst = &[const { Cell::new(0.0f64) }; 2];
+    let outcome =
+        runner.run(&strategy, |((mass, inertia, offset, behind), (size, phase, left, exponent), (part, steps))| {
+            let sleigh = Sleigh::new(mass, inertia, if behind { -offset } else { offset }).unwrap();
+            let gyration = (sleigh.pivot_inertia() / mass).sqrt();
+            // Of all the energy, in any part of the motion.
+            let (speed0, spin) = (size * phase.tanh(), size / phase.cosh() / gyration);
+            let start =
+                SleighState { speed: speed0, turn_rate: if left { spin } else { -spin }, ..SleighState::default() };
+            let motion = Motion::new(&sleigh, &start);
+            let low = 10f64.powf(exponent) * motion.speed;
+            let events = [
+                Event::new("speed", |_, state| speed(state)),
+                Event::new("size of the speed", |_, state| speed(state).abs() - low),
+            ];
+            // Steps from a small part of the shortest time of the motion to a large one.
+            let step = part / motion.kappa.abs().max(size / gyration);
+            let end = steps as f64 * step;
+            // The midpoint map has the motion of a rate kappa that is wrong by its (kappa h)^2/12 (the artanh of its factor),
+            // and by as much of the turn of a step. Order 16 leaves rounding, of which slow motions make more time.
+            let phase = end * part * part / 6.0;
+            let rounding = 1e-12 * f64::max(1.0, motion.kappa.abs().recip());
+            for (method, found, tolerance) in [
+                (0, times(&sleigh, Dla::midpoint(), &start, (step, steps), &events), phase),
+                (1, times(&sleigh, Gauss::new::<8>(), &start, (step, steps), &events), rounding),
+            ] {
+                let (one, other) = (motion.at_speed(-low / motion.speed), motion.at_speed(low / motion.speed));
+                let mut expected = vec![(0, motion.turnaround), (1, one), (1, other)];
+                // A crossing within the error of the ends of the run may or may not be in it.
+                if expected.iter().any(|(_, t)| t.abs() <= tolerance || (t - end).abs() <= tolerance) {
+                    near.set(near.get() + 1);
+                    continue;
+                }
+                expected.retain(|(_, t)| 0.0 < *t && *t < end);
+                crossed.set(crossed.get() + i32::from(!expected.is_empty()));
+                twice.set(twice.get() + i32::from(expected.len() == 3 && (other - one).abs() < 0.1 * step));
+                for event in 0..2 {
+                    let sorted = |list: &[(usize, f64)]| {
+                        let mut times: Vec<f64> = list.iter().filter(|(e, _)| *e == event).map(|(_, t)| *t).collect();
+                        times.sort_by(f64::total_cmp);
+                        times
+                    };
+                    let (found, expected) = (sorted(&found), sorted(&expected));
+                    prop_assert_eq!(found.len(), expected.len(), "{}: {:?}, expected {:?}", method, found, expected);
+                    for (found, expected) in found.iter().zip(&expected) {
+                        let error = (found - expected).abs();
+                        prop_assert!(error <= tolerance, "{method}: {found} for {expected}, step {step}: {error:e}");
+                        worst[method].set(worst[method].get().max(error / tolerance));
+                    }
+                }
+            }
+            Ok(())
+        });
+    println!("with a crossing {crossed:?}, twice in a tenth of a step {twice:?}, at an end {near:?}, worst {worst:?}");
+    outcome.unwrap();
+    counts.each_ref().map(Cell::get)
+}
+
+#[test]
+fn directions_and_the_end_of_a_run() {
+    let (sleigh, start) = (sleigh(), backward());
+    let turnaround = Motion::new(&sleigh, &start).turnaround;
+    let event = |direction| Event::new("speed", |_, state| speed(state)).in_direction(direction);
+    let run = (0.05, 800);
+    let found = |direction| times(&sleigh, Dla::midpoint(), &start, run, &[event(direction)]).len();
+    assert_eq!([Direction::Rising, Direction::Falling, Direction::Both].map(found), [1, 0, 1]);
+
+    // The first that is terminal ends the run; the one that comes after it in the same step does not happen.
+    let events = [
+        Event::new("later", |t, _| t - turnaround - 1e-3),
+        event(Direction::Both).terminal(),
+        Event::new("before", |t, _| t - turnaround + 1e-3),
+    ];
+    let mut watch = Watch::new(Dla::midpoint(), &events, Trajectory::<3, 1>::every(1));
+    let mut state = state_of(&start);
+    let schedule = Schedule { t0: 0.0, step: 0.05, steps: 800 };
+    let made = drive(&sleigh, &mut Dla::midpoint(), &schedule, &mut state, &mut watch).unwrap();
+    let happened: Vec<_> = watch.crossings().iter().map(|crossing| crossing.event).collect();
+    let ended = *watch.ended().unwrap();
+    assert_eq!((happened, ended.k), (vec![2, 1], made - 1));
+    // Located to the rounding of the speed, some eps of its parts over the acceleration a w^2 = 0.4.
+    assert!(speed(&ended.state).abs() <= 8.0 * f64::EPSILON, "{:e}", speed(&ended.state));
+    assert!(ended.within <= 8.0 * f64::EPSILON * schedule.step, "{:e}", ended.within);
+    // The trajectory ends there, on the constraint; the nodes before are those of the run.
+    let trajectory = watch.into_inner();
+    let last = trajectory.nodes().last().unwrap();
+    assert_eq!((last.k, last.t, last.q), (made, ended.t, ended.state.unwrapped()));
+    assert!(last.constraint <= 2e-16 && last.multipliers.is_some());
+    let mut plain = Trajectory::<3, 1>::every(1);
+    drive(&sleigh, &mut Dla::midpoint(), &schedule, &mut state_of(&start), &mut plain).unwrap();
+    assert_eq!(trajectory.nodes()[..made as usize], plain.nodes()[..made as usize]);
+}
+
+/// A point on a line that is pushed to and fro: the force, and the imposed velocity, jump at `t = 1`.
+#[derive(Clone, Copy)]
+struct Pushed {
+    after: Option<bool>,
+    imposed: bool,
+}
+
+impl System<2, 1> for Pushed {
+    fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 2], v: &[S; 2]) -> S {
+        (v[0] * v[0] + v[1] * v[1]) * 0.5
+    }
+    fn constraint<S: Scalar>(&self, _t: S, _q: &[S; 2]) -> Constraint<S, 2, 1> {
+        let imposed = match self.after {
+            Some(true) if self.imposed => 2.0,
+            _ => -1.0,
+        };
+        ([[S::zero(), S::constant(1.0)]], [S::constant(-imposed)])
+    }
+    fn force<S: Scalar>(&self, _t: S, _q: &[S; 2], _v: &[S; 2]) -> Option<[S; 2]> {
+        let push = if self.after == Some(true) { 5.0 } else { -1.0 };
+        Some([S::constant(push), S::zero()])
+    }
+}
+
+impl Piecewise for Pushed {
+    fn jumps(&self, from: f64, to: f64) -> Vec<f64> {
+        if from < 1.0 && 1.0 < to { vec![1.0] } else { Vec::new() }
+    }
+    fn piece(&self, t: f64) -> Self {
+        Self { after: Some(t > 1.0), ..*self }
+    }
+}
+
+/// `x = 0.58 - t^2/2` to `t = 1`, then `0.08 - s + 5 s^2/2`, which is zero at `s = 0.2 -+ sqrt(0.04 - 0.032)`.
+#[test]
+fn events_within_each_piece_and_in_a_jump() {
+    let system = Pushed { after: None, imposed: true };
+    let mut state = State::new([0.58, 0.0], [0.0, -1.0], [false; 2]);
+    let events = [
+        Event::new("x", |_, state: &State<2>| state.q()[0]),
+        Event::new("y'", |_, state: &State<2>| state.v()[1]),
+        Event::new("x'", |_, state: &State<2>| state.v()[0]),
+    ];
+    // Steps so long that both zeros of x fall into one; the midpoint rule is exact for a constant force.
+    let schedule = Schedule { t0: 0.0, step: 0.5, steps: 4 };
+    let mut watch = Watch::new(Dla::midpoint(), &events, ());
+    piece_by_piece(&system, &schedule, &mut state, |piece, Piece { steps, schedule }, state| {
+        drive_part(piece, &mut Dla::midpoint(), &schedule, steps, state, &mut watch)
+    })
+    .unwrap();
+    let found: Vec<_> =
+        watch.crossings().iter().map(|crossing| (crossing.event, crossing.rising, crossing.t)).collect();
+    let root = 0.008f64.sqrt();
+    let expected = [(1, true, 1.0), (0, false, 1.2 - root), (2, true, 1.2), (0, true, 1.2 + root)];
+    assert_eq!(found.len(), expected.len(), "{found:?}");
+    for (found, expected) in found.iter().zip(&expected) {
+        assert_eq!((found.0, found.1), (expected.0, expected.1));
+        // Rounding of x over its slope 0.45 there.
+        assert!((found.2 - expected.2).abs() <= 1e-14, "{found:?} {expected:?}");
+    }
+}
+
+/// What only touches zero, or stays there, is no crossing.
+#[test]
+fn a_touch_is_no_crossing() {
+    let (sleigh, start) = (sleigh(), backward());
+    let turnaround = Motion::new(&sleigh, &start).turnaround;
+    let events = [
+        Event::new("square", |t, _| (t - turnaround) * (t - turnaround)),
+        Event::new("nothing", |_, _| 0.0),
+        Event::new("start", |t, _| t),
+        Event::new("no number", |_, _| f64::NAN),
+        // The control: a little less, and it crosses twice.
+        Event::new("dip", |t, _| (t - turnaround) * (t - turnaround) - 1e-8),
+        // A zero on a node, crossed and touched.
+        Event::new("node", |t, _| t - 0.5),
+        Event::new("node, touched", |t, _| -(t - 0.5).abs()),
+    ];
+    let found = times(&sleigh, Dla::midpoint(), &start, (0.125, 320), &events);
+    assert_eq!(found.iter().map(|(event, _)| *event).collect::<Vec<_>>(), [5, 4, 4], "{found:?}");
+    assert_eq!(found[0].1, 0.5);
+    assert!((found[2].1 - found[1].1 - 2e-4).abs() <= 1e-12, "{found:?}");
+}
+
+/// A sleigh on the line `x = x0 + t`.
+fn straight(x0: f64) -> State<3> {
+    state_of(&SleighState { x: x0, speed: 1.0, ..SleighState::default() })
+}
+
+/// Julia's DiffEqBase issue 1231 and OrdinaryDiffEq issue 2691: of several events within one step, backward, the last was taken.
+#[test]
+fn several_events_within_one_step_have_its_direction() {
+    let x = |value: f64| move |_: f64, state: &State<3>| state.q()[0] - value;
+    let events = [
+        Event::new("0", |t, _: &State<3>| t),
+        Event::new("1", |t, _: &State<3>| t - 1e-8),
+        Event::new("2", x(2e-8)),
+        Event::new("3", x(0.3)).in_direction(Direction::Rising),
+    ];
+    for (t0, step, order, times) in [
+        (-1.0, 2.0, vec![0, 1, 2, 3], vec![0.0, 1e-8, 2e-8, 0.3]),
+        // Going back nothing rises.
+        (1.0, -2.0, vec![2, 1, 0], vec![2e-8, 1e-8, 0.0]),
+    ] {
+        let mut watch = Watch::new(Dla::midpoint(), &events, ());
+        let schedule = Schedule { t0, step, steps: 1 };
+        drive(&sleigh(), &mut Dla::midpoint(), &schedule, &mut straight(t0), &mut watch).unwrap();
+        let found: Vec<_> = watch.crossings().iter().map(|crossing| crossing.event).collect();
+        assert_eq!(found, order);
+        for (crossing, t) in watch.crossings().iter().zip(times) {
+            // The rounding of times near one.
+            assert!((crossing.t - t).abs() <= 2.0 * f64::EPSILON, "{crossing:?}");
+            assert_eq!(crossing.rising, step > 0.0);
+        }
+    }
+
+    // The first that is met ends the run: backward from x = 0 at t = 2 to x = -2.5 at t = -0.5, and not the one just before it.
+    let events = [
+        Event::new("x", |_, state: &State<3>| state.q()[0] + 2.5).terminal(),
+        Event::new("later", |_, state: &State<3>| state.q()[0] + 2.5001),
+        Event::new("before", |_, state: &State<3>| state.q()[0] + 2.4999),
+    ];
+    let mut watch = Watch::new(Dla::midpoint(), &events, Trajectory::<3, 1>::every(1));
+    let schedule = Schedule { t0: 2.0, step: -0.75, steps: 100 };
+    drive(&sleigh(), &mut Dla::midpoint(), &schedule, &mut straight(0.0), &mut watch).unwrap();
+    assert_eq!(watch.crossings().iter().map(|crossing| crossing.event).collect::<Vec<_>>(), [2, 0]);
+    let trajectory = watch.into_inner();
+    let last = trajectory.nodes().last().unwrap();
+    assert!((last.t + 0.5).abs() <= 4.0 * f64::EPSILON && (last.q[0] + 2.5).abs() <= 4.0 * f64::EPSILON, "{last:?}");
+}
+
+/// Two spacings are apart, less is close; four of crossings in one direction, between which there is one in the other.
+#[test]
+fn crossings_are_close_by_the_samples_between_them() {
+    let at = |times: &'static [f64]| times.iter().map(|t| (1, *t, 0.25));
+    assert_eq!(close_crossings(at(&[0.0, 0.5, 1.0]), |_| false), None);
+    assert_eq!(close_crossings(at(&[0.0, 0.4, 1.0, 1.1]), |_| false), Some(Close { count: 2, spacing: 0.25 }));
+    // Backward in time.
+    assert_eq!(close_crossings(at(&[1.1, 1.0, 0.0]), |_| false), Some(Close { count: 1, spacing: 0.25 }));
+    assert_eq!(close_crossings(at(&[0.0, 1.0]), |event| event == 1), None);
+    assert_eq!(close_crossings(at(&[0.0, 0.9]), |event| event == 1), Some(Close { count: 1, spacing: 0.25 }));
+    // The wider of two spacings; other events between them are others; a jump is no sample.
+    let list = [(0, 0.0, 0.1), (2, 0.1, 0.1), (0, 0.3, 0.2), (2, 0.31, 0.0), (2, 0.32, 0.1)];
+    assert_eq!(close_crossings(list, |_| false), Some(Close { count: 1, spacing: 0.2 }));
+    assert_eq!(close_crossings([], |_| false), None);
+}
+
+#[test]
+fn what_is_missed_is_told() {
+    told(&[(1.0, 4), (5.0, 4), (12.0, 4), (12.0, 40), (100.0, 40)]);
+}
+
+#[test]
+#[ignore = "slow"]
+fn what_is_missed_is_told_in_full() {
+    told(&[(1.0, 4), (5.0, 4), (12.0, 4), (12.0, 40), (100.0, 40), (100.0, 400)]);
+}
+
+/// A sine in the time, with steps from a small part of its turn to many turns. Where one is missed that is said, up to steps of
+/// which each sees as little as if the sine were slow. Of these frequencies, with so many samples, none is missed.
+fn told(all_found: &[(f64, u32)]) {
+    let found = |frequency: f64, samples| {
+        let events = [Event::new("a sine", |t, _| (frequency * t + 0.1).sin())];
+        let mut watch = Watch::new(Dla::midpoint(), &events, ());
+        watch.samples = samples;
+        let schedule = Schedule { t0: 0.0, step: 0.5, steps: 40 };
+        drive(&sleigh(), &mut Dla::midpoint(), &schedule, &mut straight(0.0), &mut watch).unwrap();
+        (watch.crossings().len(), watch.close())
+    };
+    for &(frequency, samples) in all_found {
+        let right = ((20.0 * frequency + 0.1) / std::f64::consts::PI) as usize;
+        let (count, close) = found(frequency, samples);
+        // Four samples in half a turn are enough for no doubt.
+        let enough = frequency * 0.5 / f64::from(samples) < std::f64::consts::FRAC_PI_2;
+        assert_eq!((count == right, close.is_none()), (true, enough), "{frequency} {samples}: {count} of {right}");
+    }
+    for frequency in [30.0, 35.0, 40.0, 80.0] {
+        let right = ((20.0 * frequency + 0.1) / std::f64::consts::PI) as usize;
+        let (count, close) = found(frequency, 4);
+        assert!(count < right && close.is_some_and(|close| close.spacing == 0.125), "{frequency}: {count} of {right}");
+    }
+}

@@ -1,0 +1,134 @@
+//! The systems of one shape as the arms of one type.
+//!
+//! A method is compiled once for every type of system. Twenty systems of five shapes are five types here, and what an
+//! arm adds is compiled once for every kind of number, since the calls are not inlined.
+
+use crate::table::systems::{Forces, InField, Magnetic, Moving, Thrust, Turntable};
+use lagrangian::{AdmissibleBasis, Constraint, Motion, Reduced, Scalar, System, With};
+use models::{
+    ChaplyginBall, ContactOscillator, GaugedOscillator, KnifeEdge, Model, Particle, QuarticOscillator, RollerRacer,
+    RollingDisk, Snakeboard, Suslov,
+};
+use sleigh::Sleigh;
+
+/// A configuration and a velocity.
+pub type Place<const N: usize> = ([f64; N], [f64; N]);
+
+/// What is known of a system that is no [`Model`].
+pub trait Known<const N: usize> {
+    /// The state a time `t` (s) after the given one, in closed form.
+    fn exact_from(&self, _start: &Place<N>, _t: f64) -> Option<Place<N>> {
+        None
+    }
+
+    /// Integrals of the motion, by name.
+    fn invariants(&self, _q: &[f64; N], _v: &[f64; N]) -> Vec<(&'static str, f64)> {
+        Vec::new()
+    }
+}
+
+macro_rules! shape {
+    ($(#[$text:meta])* $name:ident<$n:literal, $m:literal>: $($model:ident)*; $($plain:ident: $type:ty),*) => {
+        $(#[$text])*
+        #[derive(Debug, Clone, Copy)]
+        pub enum $name { $($model($model),)* $($plain($type),)* }
+
+        $(impl From<$model> for $name {
+            fn from(system: $model) -> Self { Self::$model(system) }
+        })*
+        $(impl From<$type> for $name {
+            fn from(system: $type) -> Self { Self::$plain(system) }
+        })*
+
+        impl System<$n, $m> for $name {
+            #[inline(never)]
+            fn lagrangian<S: Scalar>(&self, t: S, q: &[S; $n], v: &[S; $n]) -> S {
+                match self { $(Self::$model(x) => x.lagrangian(t, q, v),)* $(Self::$plain(x) => x.lagrangian(t, q, v),)* }
+            }
+            #[inline(never)]
+            fn constraint<S: Scalar>(&self, t: S, q: &[S; $n]) -> Constraint<S, $n, $m> {
+                match self { $(Self::$model(x) => x.constraint(t, q),)* $(Self::$plain(x) => x.constraint(t, q),)* }
+            }
+            #[inline(never)]
+            fn force<S: Scalar>(&self, t: S, q: &[S; $n], v: &[S; $n]) -> Option<[S; $n]> {
+                match self { $(Self::$model(x) => x.force(t, q, v),)* $(Self::$plain(x) => x.force(t, q, v),)* }
+            }
+            #[inline(never)]
+            fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; $n]) -> Option<AdmissibleBasis<S, $n, $m>> {
+                match self {
+                    $(Self::$model(x) => x.admissible_basis(t, q),)*
+                    $(Self::$plain(x) => x.admissible_basis(t, q),)*
+                }
+            }
+            #[inline(never)]
+            fn holonomic<S: Scalar>(&self, t: S, q: &[S; $n]) -> Option<[Option<S>; $m]> {
+                match self { $(Self::$model(x) => x.holonomic(t, q),)* $(Self::$plain(x) => x.holonomic(t, q),)* }
+            }
+            fn angles(&self) -> [bool; $n] {
+                match self { $(Self::$model(x) => x.angles(),)* $(Self::$plain(x) => x.angles(),)* }
+            }
+            fn reduced(&self) -> impl Reduced<$n, $m> {
+                self
+            }
+        }
+
+        impl Reduced<$n, $m> for $name {
+            #[inline(never)]
+            fn motion(&self, t: f64, q: &[f64; $n], v: &[f64; $n]) -> Option<Motion<$n, $m>> {
+                match self {
+                    $(Self::$model(x) => x.reduced().motion(t, q, v),)*
+                    $(Self::$plain(x) => x.reduced().motion(t, q, v),)*
+                }
+            }
+            #[inline(never)]
+            fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; $n], xi: &[S; $n]) -> Option<[S; $n]> {
+                match self {
+                    $(Self::$model(x) => x.reduced().reduced_motion(t, q, xi),)*
+                    $(Self::$plain(x) => x.reduced().reduced_motion(t, q, xi),)*
+                }
+            }
+        }
+
+        impl Known<$n> for $name {
+            fn exact_from(&self, start: &Place<$n>, t: f64) -> Option<Place<$n>> {
+                match self {
+                    $(Self::$model(x) => Model::exact_from(x, start, t),)*
+                    $(Self::$plain(x) => Known::exact_from(x, start, t),)*
+                }
+            }
+            fn invariants(&self, q: &[f64; $n], v: &[f64; $n]) -> Vec<(&'static str, f64)> {
+                match self {
+                    $(Self::$model(x) => Model::invariants(x, q, v),)*
+                    $(Self::$plain(x) => Known::invariants(x, q, v),)*
+                }
+            }
+        }
+    };
+}
+
+shape! {
+    /// Three coordinates, one constraint.
+    Three<3, 1>: Particle KnifeEdge ContactOscillator GaugedOscillator;
+    Sleigh: Sleigh, InField: InField, Thrust: With<Sleigh, Thrust>, Pushed: With<InField, Thrust>, Forces: With<Sleigh, Forces>, Moving: Moving,
+    Turntable: Turntable, Magnetic: Magnetic
+}
+
+shape! {
+    /// Four coordinates, two constraints.
+    Four<4, 2>: RollingDisk RollerRacer Suslov;
+}
+
+shape! {
+    /// Five coordinates, two constraints.
+    Five<5, 2>: Snakeboard;
+}
+
+shape! {
+    /// Six coordinates, three constraints.
+    Six<6, 3>: ChaplyginBall;
+}
+
+shape! {
+    /// Seven coordinates, one constraint.
+    Seven<7, 1>: QuarticOscillator;
+}
