@@ -101,8 +101,7 @@ fn verdicts(lines: [&str; 2], orbit: &str, period: f64, ridge: &str) {
 #[test]
 fn steady_periodic_and_runaway_motions_are_named() {
     let swing = "swing.toml --settle 0 --duration 60 --step 0.3";
-    let lines = ["--duration 100 --step 0.5", "--duration 20 --step 0.5"];
-    verdicts(lines, swing, std::f64::consts::TAU, "--duration 20 --step 0.2");
+    verdicts(["--duration 100 --step 0.5"; 2], swing, std::f64::consts::TAU, "--duration 20 --step 0.2");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::float_cmp)]
 
+use crate::support::Three;
 use approx::assert_abs_diff_eq;
 use dla::{
     Composition, Derivative, Dla, Energy, Form, Gauss, GaussAdaptive, Gni, Hint, Lobatto, NotANumber, OneStep, Rules,
@@ -47,7 +48,7 @@ enum Wrong {
 
 /// A skate on a slope, with the basis of its admissible velocities or without.
 #[derive(Debug, Clone, Copy)]
-struct Skate {
+pub(crate) struct Skate {
     slowed: Slowed,
     wrong: Wrong,
     basis: bool,
@@ -115,7 +116,8 @@ fn run(skate: Skate, mut method: impl OneStep<3, 1>, start: Start) -> (State<3>,
     let Start { heading, speed, step } = start;
     let v = [speed * heading.cos(), speed * heading.sin(), 0.0];
     let mut state = State::new([0.0, 0.0, heading], v, skate.angles());
-    let outcome = drive(&skate, &mut method, &Schedule { t0: 0.0, step, steps: start.steps() }, &mut state, ());
+    let outcome =
+        drive(&Three::from(skate), &mut method, &Schedule { t0: 0.0, step, steps: start.steps() }, &mut state, ());
     (state, outcome)
 }
 
@@ -277,7 +279,7 @@ fn what_the_step_comes_to_is_named() {
 #[test]
 fn numbers_of_a_system() {
     let of = |wrong| Skate { slowed: Slowed::Not, wrong, basis: true };
-    let at = |skate: Skate, q: [f64; 3], v: [f64; 3]| not_a_number(&skate, 2.0, &q, &v);
+    let at = |skate: Skate, q: [f64; 3], v: [f64; 3]| not_a_number(&Three::from(skate), 2.0, &q, &v);
     assert_eq!(at(of(Wrong::Nothing), [0.0; 3], [0.0; 3]), None);
     // Nothing is said of a place that is none.
     assert_eq!(at(of(Wrong::Potential), [f64::NAN, 0.0, 0.0], [0.0; 3]), None);

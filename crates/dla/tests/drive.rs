@@ -2,6 +2,7 @@
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
+use crate::support::One;
 use dla::{
     Dla, History, Mechanics, NewtonError, Node, Observer, OneStep, RunError, Schedule, Stage, State, StepError,
     StepReport, Trajectory, View, drive,
@@ -10,7 +11,8 @@ use lagrangian::{Constraint, Scalar, System};
 use std::ops::ControlFlow;
 
 /// A point on a line that moves with time: `x' = 1 / (1 + t)`, of energy `x'^2 / 2`.
-struct Line;
+#[derive(Clone, Copy)]
+pub(crate) struct Line;
 
 impl System<1, 1> for Line {
     fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 1], v: &[S; 1]) -> S {
@@ -90,7 +92,7 @@ fn times_are_multiples_of_the_step() {
     for (t0, step) in [(0.0, 0.1), (-3.3, 0.01), (1e6, 1e-3), (2.0, -0.1)] {
         let (mut method, mut trajectory) = (Counting::default(), Trajectory::every(1));
         let schedule = Schedule { t0, step, steps: 1000 };
-        assert_eq!(drive(&Line, &mut method, &schedule, &mut start(), &mut trajectory), Ok(1000));
+        assert_eq!(drive(&One::from(Line), &mut method, &schedule, &mut start(), &mut trajectory), Ok(1000));
         let expected: Vec<f64> = (0..=1000).map(|k| t0 + f64::from(k) * step).collect();
         assert_eq!(method.times, expected[..1000]);
         assert_eq!(trajectory.nodes().iter().map(|node| node.t).collect::<Vec<_>>(), expected);
@@ -100,13 +102,13 @@ fn times_are_multiples_of_the_step() {
 #[test]
 fn an_observer_sees_every_node_once() {
     let (mut state, mut log) = (start(), Log::default());
-    assert_eq!(drive(&Line, &mut Counting::default(), &SCHEDULE, &mut state, &mut log), Ok(3));
+    assert_eq!(drive(&One::from(Line), &mut Counting::default(), &SCHEDULE, &mut state, &mut log), Ok(3));
     let steps = [Step(1, 0.5, 1.0, 1), Step(2, 1.0, 2.0, 2), Step(3, 1.5, 3.0, 3)];
     assert_eq!(log.events, [Start(0, 0.0, 0.0), steps[0], steps[1], steps[2], End(3, 1.5, 3.0)]);
 
     let mut log = Log::default();
     let none = Schedule { steps: 0, ..SCHEDULE };
-    assert_eq!(drive(&Line, &mut Counting::default(), &none, &mut start(), &mut log), Ok(0));
+    assert_eq!(drive(&One::from(Line), &mut Counting::default(), &none, &mut start(), &mut log), Ok(0));
     assert_eq!(log.events, [Start(0, 0.0, 0.0), End(0, 0.0, 0.0)]);
 }
 
@@ -116,7 +118,7 @@ fn a_break_ends_the_run_at_its_node() {
     for (first, second) in [(Some(2), None), (None, Some(2)), (Some(2), Some(2)), (Some(2), Some(3))] {
         let (mut a, mut b) = (Log { stop_at: first, ..Log::default() }, Log { stop_at: second, ..Log::default() });
         let mut state = start();
-        let made = drive(&Line, &mut Counting::default(), &SCHEDULE, &mut state, ((), (&mut a, &mut b)));
+        let made = drive(&One::from(Line), &mut Counting::default(), &SCHEDULE, &mut state, ((), (&mut a, &mut b)));
         assert_eq!((made, state.q()[0]), (Ok(2), 2.0));
         assert_eq!(a.events, [Start(0, 0.0, 0.0), Step(1, 0.5, 1.0, 1), Step(2, 1.0, 2.0, 2), End(2, 1.0, 2.0)]);
         assert_eq!(a.events, b.events);
@@ -128,7 +130,8 @@ fn a_failure_keeps_state_and_trajectory() {
     for fails_at in 1..=3u64 {
         let mut method = Counting { fails_at: Some(fails_at as usize), ..Counting::default() };
         let (mut state, mut log, mut trajectory) = (start(), Log::default(), Trajectory::every(10));
-        let error = drive(&Line, &mut method, &SCHEDULE, &mut state, (&mut log, &mut trajectory)).unwrap_err();
+        let error =
+            drive(&One::from(Line), &mut method, &SCHEDULE, &mut state, (&mut log, &mut trajectory)).unwrap_err();
         let (good, time) = (fails_at - 1, 0.5 * (fails_at - 1) as f64);
         assert_eq!(error, RunError { step: fails_at, time, source: FAILURE });
         assert_eq!(state.q()[0], good as f64, "the last good node");
@@ -146,7 +149,7 @@ fn a_trajectory_keeps_every_nth_node_and_the_last() {
     let kept = |every: u64, steps: u64| {
         let mut trajectory = Trajectory::<1, 1>::every(every);
         let schedule = Schedule { steps, ..SCHEDULE };
-        drive(&Line, &mut Counting::default(), &schedule, &mut start(), &mut trajectory).unwrap();
+        drive(&One::from(Line), &mut Counting::default(), &schedule, &mut start(), &mut trajectory).unwrap();
         trajectory.nodes().iter().map(|node| node.k).collect::<Vec<_>>()
     };
     assert_eq!(kept(1, 4), [0, 1, 2, 3, 4]);
@@ -160,7 +163,7 @@ fn a_trajectory_keeps_every_nth_node_and_the_last() {
 #[test]
 fn a_node_has_what_its_step_reported() {
     let mut trajectory = Trajectory::every(2);
-    drive(&Line, &mut Counting::default(), &SCHEDULE, &mut start(), &mut trajectory).unwrap();
+    drive(&One::from(Line), &mut Counting::default(), &SCHEDULE, &mut start(), &mut trajectory).unwrap();
     // The work is integrated along the nodes, and these are not those of a motion.
     let works: Vec<f64> = trajectory.nodes().iter().map(|node| node.work).collect();
     let node = |k: u64, multipliers: Option<[f64; 1]>| {
@@ -177,7 +180,7 @@ fn a_node_has_what_its_step_reported() {
 fn a_residual_that_is_no_number_is_seen() {
     let view = |v: f64| {
         let state = State::new([0.0], [v], [false]);
-        View { system: &Line, k: 0, t: 0.0, state: &state }.constraint()
+        View { system: &One::from(Line), k: 0, t: 0.0, state: &state }.constraint()
     };
     assert_eq!((view(1.0), view(0.5), view(2.0)), (0.0, 0.5, 1.0));
     assert!(view(f64::NAN).is_nan());
@@ -188,7 +191,7 @@ fn a_residual_that_is_no_number_is_seen() {
 fn a_moving_constraint_is_met_at_every_node() {
     let (mut state, mut trajectory) = (start(), Trajectory::every(1));
     let schedule = Schedule { t0: 0.0, step: 0.01, steps: 500 };
-    drive(&Line, &mut Dla::midpoint(), &schedule, &mut state, &mut trajectory).unwrap();
+    drive(&One::from(Line), &mut Dla::midpoint(), &schedule, &mut state, &mut trajectory).unwrap();
     assert!(trajectory.nodes().iter().all(|node| node.constraint <= f64::EPSILON));
     // The midpoint rule's error in the logarithm is h^2 / 24 times the change of the first derivative.
     let error = state.q()[0] - 6f64.ln();

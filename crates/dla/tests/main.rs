@@ -17,4 +17,5 @@ mod rest;
 mod runs;
 mod sensitivity;
 mod state;
+mod support;
 mod systems;

@@ -2,6 +2,7 @@
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
+use crate::support::ByHand;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use dla::{Checkpoint, Dla, OneStep, State, StepError};
 use lagrangian::{System, Twofold, With};
@@ -293,7 +294,7 @@ fn states_after_other_steps_differ() {
     }
     let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
     // At rest with its centre of mass at the lowest place.
-    let well = With { body, effects: (Bowl::new([0.7, 0.4], [0.5, 0.0]).unwrap(),) };
+    let well = ByHand::from(With { body, effects: (Bowl::new([0.7, 0.4], [0.5, 0.0]).unwrap(),) });
     assert_eq!(after(&well, &[0.5]), after(&well, &[0.5]));
     assert_ne!(after(&well, &[0.5]), after(&well, &[0.25]));
     // A step of another length begins anew.
@@ -321,11 +322,11 @@ fn a_closed_step_that_fails_leaves_the_state() {
     }
     let before = state;
     assert!(before.expected(0.5).is_some());
-    let failed = ClosedMap::of(body).step(&body, 0.0, 1.0, &mut state).unwrap_err();
+    let failed = ClosedMap::of(body).step(&ByHand::from(body), 0.0, 1.0, &mut state).unwrap_err();
     assert_eq!(failed, StepError::NotFinite);
     assert_eq!(state, before);
     // The control: to the other side it is a step.
-    ClosedMap::of(body).step(&body, 0.0, -1.0, &mut state).unwrap();
+    ClosedMap::of(body).step(&ByHand::from(body), 0.0, -1.0, &mut state).unwrap();
     assert!(state.expected(0.5).is_none() && state != before);
 }
 
@@ -337,7 +338,7 @@ fn what_a_state_remembers_shortens_the_next_search() {
     const STEPS: u32 = 200;
     let body = Sleigh::new(1.3, 0.8, 0.4).unwrap();
     let crowd = (Bowl::new([0.7, 0.4], [0.2, -0.1]).unwrap(), EggCrate::new(0.3, [1.0, 1.2]).unwrap());
-    let system = With { body, effects: (crowd, Drag::new(0.1, 0.1).unwrap()) };
+    let system = ByHand::from(With { body, effects: (crowd, Drag::new(0.1, 0.1).unwrap()) });
     let corrections = |h: &dyn Fn(u32) -> f64, forget: bool| {
         let start = SleighState { x: 0.3, y: -0.2, heading: 0.4, speed: -1.0, turn_rate: 0.7 };
         let (q, v) = start.to_coordinates();

@@ -286,8 +286,6 @@ check!(Start(draws, model, N, M) {
 });
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(512))]
-
     #[test]
     fn two_formulations_agree(p in parameters(), draws in draws()) {
         every_model(&p, &mut TwoFormulations(draws));

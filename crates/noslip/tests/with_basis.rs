@@ -134,7 +134,7 @@ fn rolling_disk(run: (f64, u64)) {
 
 #[test]
 fn the_rolling_disk_turns() {
-    rolling_disk((1.0, 10));
+    rolling_disk((2.0, 50));
 }
 
 #[test]

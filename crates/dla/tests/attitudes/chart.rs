@@ -2,7 +2,9 @@
 
 use crate::attitudes::angles::{AngleBall, CHART};
 use crate::attitudes::tools::largest;
+use crate::support::{Five, Four, Six};
 use dla::{Composition, Dla, Gauss, Hint, InChart, Lobatto, OneStep, State, StepError, Substepping, View};
+use lagrangian::System;
 use models::{ChaplyginBall, Model, Suslov, TurntableBall};
 
 type Guarded<Method> = InChart<Method, fn(&[f64; 5]) -> f64>;
@@ -14,12 +16,13 @@ fn guarded<Method>(method: Method) -> Guarded<Method> {
 const LEAST: f64 = InChart::<(), ()>::LEAST;
 
 const BALL: AngleBall = AngleBall { mass: 1.0, radius: 1.0, inertia: [0.4; 3] };
+const SYSTEM: Five = Five::AngleBall(BALL);
 
 /// The largest error of the place of a run that is to be refused, the time of that, and the error.
 fn refused<Method: OneStep<5, 2>>(method: Method, omega: [f64; 3], step: f64) -> (f64, f64, StepError) {
     let steps = (10.0 / step).round() as u64;
     let ([off], end) =
-        largest(&BALL, &mut guarded(method), BALL.level(omega), (step, steps), |node: &View<'_, 5, 2>| {
+        largest(&SYSTEM, &mut guarded(method), BALL.level(omega), (step, steps), |node: &View<'_, 5, 2>| {
             let q = node.state.q();
             assert!(BALL.regularity(q) >= LEAST);
             [(q[0] - omega[1] * node.t).abs().max((q[1] + omega[0] * node.t).abs())]
@@ -69,8 +72,8 @@ fn other_steps_are_the_method_s_own() {
     let (mut method, mut inside) = (Dla::midpoint(), guarded(Dla::midpoint()));
     for k in 0..50 {
         let t = 0.02 * f64::from(k);
-        method.step(&BALL, t, 0.02, &mut alone).unwrap();
-        inside.step(&BALL, t, 0.02, &mut watched).unwrap();
+        method.step(&SYSTEM, t, 0.02, &mut alone).unwrap();
+        inside.step(&SYSTEM, t, 0.02, &mut watched).unwrap();
     }
     assert_eq!(alone, watched);
     assert_eq!(OneStep::<5, 2>::memory(&inside), OneStep::<5, 2>::memory(&method));
@@ -80,7 +83,7 @@ fn other_steps_are_the_method_s_own() {
         let (q, v) = ([0.0, 0.0, 0.0, beta, 0.0], [1.0, 0.0, 0.0, 1.0, 0.0]);
         let start = State::new(q, v, [false; 5]);
         let mut state = start;
-        let error = guarded(Dla::midpoint()).step(&BALL, 0.0, step, &mut state).unwrap_err();
+        let error = guarded(Dla::midpoint()).step(&SYSTEM, 0.0, step, &mut state).unwrap_err();
         assert!(matches!(error, StepError::Chart { .. }), "{error}");
         assert_eq!(state.q().map(f64::to_bits), start.q().map(f64::to_bits));
         assert_eq!(error.hint(), Some(Hint::OtherCoordinates), "{error}");
@@ -93,7 +96,7 @@ fn no_regularity_is_none() {
     let (q, v) = BALL.level([0.0, 0.0, 1.0]);
     let half_way = |q: &[f64; 5]| if (0.04..0.06).contains(&q[4]) { f64::NAN } else { 1.0 };
     let mut state = State::new(q, v, [false; 5]);
-    let error = InChart::new(Dla::midpoint(), CHART, half_way).step(&BALL, 0.0, 0.1, &mut state).unwrap_err();
+    let error = InChart::new(Dla::midpoint(), CHART, half_way).step(&SYSTEM, 0.0, 0.1, &mut state).unwrap_err();
     assert!(matches!(error, StepError::Chart { regularity, .. } if regularity.is_nan()), "{error}");
     assert_eq!(state, State::new(q, v, [false; 5]));
 }
@@ -107,7 +110,7 @@ fn none_passes_the_end(stride: usize) {
         let mut method = guarded(Gauss::new::<8>());
         let mut t = 0.0;
         let error = loop {
-            match method.step(&BALL, t, step, &mut state) {
+            match method.step(&SYSTEM, t, step, &mut state) {
                 Ok(_) => t += step,
                 Err(error) => break error,
             }
@@ -136,7 +139,7 @@ fn parts_of_a_step() {
     let (q, v) = BALL.level([0.0, 1.0, 0.0]);
     let run = |halvings: u32| {
         let mut method = Substepping::new(guarded(Dla::midpoint()), halvings);
-        largest(&BALL, &mut method, (q, v), (0.7, 10), |_| [0.0]).1.unwrap_err()
+        largest(&SYSTEM, &mut method, (q, v), (0.7, 10), |_| [0.0]).1.unwrap_err()
     };
     let (whole, parts) = (run(0), run(8));
     println!("{whole}; {parts}");
@@ -148,17 +151,21 @@ fn parts_of_a_step() {
 /// The models have coordinates without an end.
 #[test]
 fn no_model_has_an_end() {
-    fn everywhere<Mo: Model<N, M>, const N: usize, const M: usize>(model: &Mo) {
+    fn everywhere<Mo, Sys, const N: usize, const M: usize>(model: Mo, system: impl Fn(Mo) -> Sys)
+    where
+        Mo: Model<N, M> + Copy,
+        Sys: System<N, M>,
+    {
         let (q, v) = model.start();
         let mut method = InChart::new(Dla::midpoint(), "a quaternion", |q: &[f64; N]| model.regularity(q));
-        largest(model, &mut method, (q, v), (0.05, 2000), |node: &View<'_, N, M>| {
+        largest(&system(model), &mut method, (q, v), (0.05, 2000), |node: &View<'_, N, M>| {
             assert!(model.regularity(node.state.q()) == 1.0);
             [0.0]
         })
         .1
         .unwrap();
     }
-    everywhere(&Suslov::new([1.0, 2.0, 1.5], 0.3, 0.5).unwrap());
-    everywhere(&ChaplyginBall::new(1.2, 0.6, [0.5, 0.8, 1.1]).unwrap());
-    everywhere(&TurntableBall::new(1.0, 0.5, 0.1, 0.3).unwrap());
+    everywhere(Suslov::new([1.0, 2.0, 1.5], 0.3, 0.5).unwrap(), Four::from);
+    everywhere(ChaplyginBall::new(1.2, 0.6, [0.5, 0.8, 1.1]).unwrap(), Six::from);
+    everywhere(TurntableBall::new(1.0, 0.5, 0.1, 0.3).unwrap(), Six::from);
 }

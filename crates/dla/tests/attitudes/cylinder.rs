@@ -5,6 +5,7 @@
 //! not fall out. (Neimark and Fufaev 1972, Dynamics of Nonholonomic Systems, section III.2.)
 
 use crate::attitudes::tools::{Place, assert_halving, assert_order, largest};
+use crate::support::Six;
 use dla::{Composition, Dla, Lobatto, OneStep, View};
 use lagrangian::{AdmissibleBasis, Attitude, Constraint, Scalar, System};
 
@@ -14,7 +15,8 @@ const RATIO: f64 = 0.4;
 const GRAVITY: f64 = 9.81;
 
 /// `q = (theta, z, e_0, e_1, e_2, e_3)`, of mass one.
-struct Ball;
+#[derive(Clone, Copy)]
+pub(crate) struct Ball;
 
 fn attitude<S: Scalar>(q: &[S; 6]) -> Attitude<S> {
     Attitude::new([q[2], q[3], q[4], q[5]])
@@ -75,7 +77,7 @@ fn errors<Method: OneStep<6, 3>>(mut method: Method, from: &Attitude<f64>, (a_ro
     let step = std::f64::consts::TAU / RATE / a_round as f64;
     let frequency = RATE * (RATIO / (1.0 + RATIO)).sqrt();
     let middle = -(GRAVITY + RATIO * RADIUS * RATE * SPIN) / (1.0 + RATIO) / frequency.powi(2);
-    let (found, end) = largest(&Ball, &mut method, start(from), (step, steps), |node: &View<'_, 6, 3>| {
+    let (found, end) = largest(&Six::from(Ball), &mut method, start(from), (step, steps), |node: &View<'_, 6, 3>| {
         let height = middle * (1.0 - (frequency * node.t).cos());
         let (q, miss) = (node.state.q(), attitude(node.state.q()).norm_miss());
         [(q[1] - height).abs(), miss.abs(), node.constraint()]

@@ -1,7 +1,8 @@
 //! The length of a quaternion, over long runs of a body that tumbles.
 
-use crate::attitudes::tools::largest;
+use crate::attitudes::tools::{Place, largest};
 use crate::large::with_stack;
+use crate::support::{Four, Six};
 use dla::{Composition, Dla, Energy, Form, Gauss, Gni, Lobatto, OneStep, State, StepError, View};
 use lagrangian::{System, Trapezoid};
 use models::{Attitude, ChaplyginBall, Model, Suslov};
@@ -11,12 +12,12 @@ fn ball() -> ChaplyginBall {
 }
 
 /// The largest `||e|^2 - 1|/2` over so many steps of 0.05 s.
-fn off<Mo: Model<N, M>, Method: OneStep<N, M>, const N: usize, const M: usize>(
-    model: &Mo,
+fn off<Sys: System<N, M>, Method: OneStep<N, M>, const N: usize, const M: usize>(
+    (system, start): &(Sys, Place<N>),
     mut method: Method,
     steps: u64,
 ) -> f64 {
-    let ([off], end) = largest(model, &mut method, model.start(), (0.05, steps), |node: &View<'_, N, M>| {
+    let ([off], end) = largest(system, &mut method, *start, (0.05, steps), |node: &View<'_, N, M>| {
         let q = node.state.q();
         [Attitude::new([q[N - 4], q[N - 3], q[N - 2], q[N - 1]]).norm_miss().abs()]
     });
@@ -32,7 +33,7 @@ fn held(name: &str, off: f64) {
 
 /// As a constraint on positions, by every method that carries those.
 fn on_positions(steps: u64) {
-    let ball = ball();
+    let ball = (Six::from(ball()), ball().start());
     held("dla", off(&ball, Dla::midpoint(), steps));
     held("dla, with multipliers", off(&ball, Dla::midpoint().solved(Form::Multipliers), steps / 10));
     held("dla-trapezoid", off(&ball, Dla::new(Trapezoid, Trapezoid), steps));
@@ -41,6 +42,7 @@ fn on_positions(steps: u64) {
     held("gauss4", off(&ball, Gauss::new::<2>(), steps / 10));
     held("gauss8", off(&ball, Gauss::new::<4>(), steps / 10));
     let suslov = Suslov::new([1.0, 2.0, 1.5], 0.3, 0.5).unwrap();
+    let suslov = (Four::from(suslov), suslov.start());
     held("Suslov, dla", off(&suslov, Dla::midpoint(), steps));
     held("Suslov, gauss8", off(&suslov, Gauss::new::<4>(), steps / 10));
 }
@@ -60,6 +62,7 @@ fn on_positions_it_holds_for_ever_in_full() {
 /// those of a twentieth, as a random walk does. Lobatto's methods keep it by their order only, and are the control.
 fn by_its_rate(steps: u64, control: u64) {
     let ball = ball().norm_by_rate();
+    let ball = (Six::from(ball), ball.start());
     let walk = |steps: u64| f64::EPSILON * (4.0 + 0.05 * (steps as f64).sqrt());
     for (name, off, steps) in [
         ("dla", off(&ball, Dla::midpoint(), steps), steps),
@@ -95,8 +98,8 @@ fn what_cannot_hold_it_refuses() {
     let (q, v) = ball.start();
     for method in [&mut Energy::new::<2>() as &mut dyn OneStep<6, 3>, &mut Gni::default()] {
         let mut state = State::new(q, v, ball.angles());
-        let error = method.step(&ball, 0.0, 0.01, &mut state).unwrap_err();
+        let error = method.step(&Six::from(ball), 0.0, 0.01, &mut state).unwrap_err();
         assert!(matches!(error, StepError::Unsupported { reason } if reason.contains("positions")), "{error}");
-        method.step(&ball.norm_by_rate(), 0.0, 0.01, &mut state).unwrap();
+        method.step(&Six::from(ball.norm_by_rate()), 0.0, 0.01, &mut state).unwrap();
     }
 }

@@ -2,9 +2,9 @@
 
 #![allow(missing_docs, unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
-mod angles;
+pub(crate) mod angles;
 mod chart;
-mod cylinder;
+pub(crate) mod cylinder;
 mod length;
 mod rolling;
 mod tools;

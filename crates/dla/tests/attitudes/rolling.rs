@@ -3,6 +3,7 @@
 
 use crate::attitudes::angles::AngleBall;
 use crate::attitudes::tools::{Place, assert_halving, assert_order, largest};
+use crate::support::{Five, Six};
 use dla::{Composition, Dla, Energy, Gauss, Lobatto, OneStep, RunError, View};
 use lagrangian::System;
 use models::{Attitude, ChaplyginBall};
@@ -47,7 +48,7 @@ fn by_quaternions<Method: OneStep<6, 3>>(
     from: &Attitude<f64>,
     roll: Roll,
 ) -> Errors {
-    let (found, error) = errors(&ball, &mut method, ball.rolling([0.0; 2], from, roll.omega), roll);
+    let (found, error) = errors(&Six::from(ball), &mut method, ball.rolling([0.0; 2], from, roll.omega), roll);
     assert_eq!(error, None);
     found
 }
@@ -120,7 +121,7 @@ fn a_homogeneous_ball_rolls_straight_in_full() {
 fn by_angles_it_does_not() {
     let ball = AngleBall { mass: 1.0, radius: 1.0, inertia: [MOMENT; 3] };
     let by_angles = |method: &mut dyn OneStep<5, 2>, omega: [f64; 3], step: f64| {
-        errors(&ball, method, ball.level(omega), Roll { omega, step, time: 10.0 })
+        errors(&Five::from(ball), method, ball.level(omega), Roll { omega, step, time: 10.0 })
     };
     let ([place, energy, _], error) = by_angles(&mut Dla::midpoint(), [1e-3, 1.0, 0.0], 0.01);
     println!("1e-3, dla: {place:e} m, energy {energy:e}, {error:?}");
@@ -140,9 +141,14 @@ fn both_charts_are_one_motion() {
     let (ours, theirs) =
         (ChaplyginBall::new(1.2, 0.7, inertia).unwrap(), AngleBall { mass: 1.2, radius: 0.7, inertia });
     let steps = (0.01, 300);
-    let (_, by_quaternions) =
-        largest(&ours, &mut Gauss::new::<4>(), ours.rolling([0.0; 2], &Attitude::LEVEL, omega), steps, |_| [0.0]);
-    let (_, by_angles) = largest(&theirs, &mut Gauss::new::<4>(), theirs.level(omega), steps, |_| [0.0]);
+    let (_, by_quaternions) = largest(
+        &Six::from(ours),
+        &mut Gauss::new::<4>(),
+        ours.rolling([0.0; 2], &Attitude::LEVEL, omega),
+        steps,
+        |_| [0.0],
+    );
+    let (_, by_angles) = largest(&Five::from(theirs), &mut Gauss::new::<4>(), theirs.level(omega), steps, |_| [0.0]);
     let (ours, theirs) = (by_quaternions.unwrap(), by_angles.unwrap());
     let [alpha, beta, gamma] = [2, 3, 4].map(|i| theirs.unwrapped()[i]);
     let about = |axis: [f64; 3], angle: f64| Attitude::about(axis, angle);
@@ -166,7 +172,8 @@ fn rolls_from(e: [f64; 4], omega: [f64; 3], time: f64) {
     // Space turned about the vertical turns the path of any ball: no direction of it is singled out.
     let ball = ChaplyginBall::new(1.2, 0.7, [0.3, 0.4, 0.55]).unwrap();
     let steps = (10.0 * time).round() as u64;
-    let run = |start: Place<6>| largest(&ball, &mut Dla::midpoint(), start, (0.05, steps), |_| [0.0]).1.unwrap();
+    let run =
+        |start: Place<6>| largest(&Six::from(ball), &mut Dla::midpoint(), start, (0.05, steps), |_| [0.0]).1.unwrap();
     let quarter = Attitude::about([0.0, 0.0, 1.0], std::f64::consts::FRAC_PI_2);
     let here = run(ball.rolling([0.0; 2], &from, omega));
     let there = run(ball.rolling([0.0; 2], &quarter.after(&from), quarter.in_space(&omega)));

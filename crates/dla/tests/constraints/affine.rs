@@ -1,6 +1,7 @@
 //! The ball on a turntable: constraints affine in the velocities, one on positions, and a moving energy.
 
 use crate::constraints::tools::{Largest, assert_order, end, misses};
+use crate::support::Six;
 use dla::{Composition, Dla, Gauss, Lobatto, OneStep, Schedule, State, View, drive};
 use models::{Model, TurntableBall};
 
@@ -13,7 +14,7 @@ fn errors<Method: OneStep<6, 3> + Clone>(method: &Method) -> [f64; 4] {
     let ball = ball();
     let (place, velocity) = ball.centre_from(&ball.start(), 2.0);
     [20, 40, 80, 160].map(|steps| {
-        let end = end(&ball, &mut method.clone(), ball.start(), 2.0 / steps as f64, steps);
+        let end = end(&Six::from(ball), &mut method.clone(), ball.start(), 2.0 / steps as f64, steps);
         (0..2).fold(0.0, |m, i| f64::max(m, (end.q()[i] - place[i]).abs()).max((end.v()[i] - velocity[i]).abs()))
     })
 }
@@ -27,7 +28,7 @@ fn energies<Method: OneStep<6, 3>>(method: &mut Method, steps: u64) -> [f64; 2] 
         Largest::of(|node: &View<'_, 6, 3>| (ball.moving_energy(node.state.q(), node.state.v()) - moving).abs());
     let mut lost = Largest::of(|node: &View<'_, 6, 3>| (node.energy() - still).abs());
     let schedule = Schedule { t0: 0.0, step: 0.05, steps };
-    drive(&ball, method, &schedule, &mut State::new(q, v, [false; 6]), (&mut kept, &mut lost)).unwrap();
+    drive(&Six::from(ball), method, &schedule, &mut State::new(q, v, [false; 6]), (&mut kept, &mut lost)).unwrap();
     [kept.value, lost.value]
 }
 
@@ -77,8 +78,8 @@ fn moving_energy_in_full() {
 fn contact_and_quaternion(dla: u64, gauss: u64) {
     let ball = ball();
     for [g, slip] in [
-        misses(&ball, &mut Dla::midpoint(), ball.start(), 0.05, dla),
-        misses(&ball, &mut Gauss::new::<2>(), ball.start(), 0.05, gauss),
+        misses(&Six::from(ball), &mut Dla::midpoint(), ball.start(), 0.05, dla),
+        misses(&Six::from(ball), &mut Gauss::new::<2>(), ball.start(), 0.05, gauss),
     ] {
         println!("g {g:e}, slip {slip:e}");
         assert!(g <= 1e-14 && slip <= 1e-14);

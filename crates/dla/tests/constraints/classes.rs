@@ -1,5 +1,6 @@
 //! What the constraints of a system are at a point.
 
+use crate::support::Two;
 use lagrangian::{Classification, Constraint, RowKind, Rows, Scalar, System, classify};
 use models::{CompoundPendulum, IsokineticParticle, KnifeEdge, Model, RollingDisk, SleighOnArm, TurntableBall};
 
@@ -38,7 +39,8 @@ fn classes_of_the_models() {
 }
 
 /// A point in the plane with the row `(c, s)`, `c x' + s y' + b = 0`.
-struct Row<F>(F);
+#[derive(Clone, Copy)]
+pub(crate) struct Row<F>(F);
 
 trait Rule {
     fn row<S: Scalar>(&self, t: S, q: &[S; 2]) -> ([S; 2], S);
@@ -59,12 +61,16 @@ impl<F: Rule> System<2, 1> for Row<F> {
 }
 
 /// `x' = t`, a motion along leaves in space and time; and `x' = y`, which is not.
-struct Along;
-struct Across;
+#[derive(Clone, Copy)]
+pub(crate) struct Along;
+#[derive(Clone, Copy)]
+pub(crate) struct Across;
 /// `sin(t) x' + cos(t) y' = 0`, integrable at every time, and not in time.
-struct Turning;
+#[derive(Clone, Copy)]
+pub(crate) struct Turning;
 /// `x x' = 0`.
-struct Vanishing;
+#[derive(Clone, Copy)]
+pub(crate) struct Vanishing;
 
 impl Rule for Along {
     fn row<S: Scalar>(&self, t: S, _q: &[S; 2]) -> ([S; 2], S) {
@@ -91,7 +97,11 @@ impl Rule for Vanishing {
 #[test]
 fn time_counts_as_a_coordinate() {
     let at = |q, v| {
-        (classify(&Row(Along), 0.3, q, v), classify(&Row(Across), 0.3, q, v), classify(&Row(Turning), 0.3, q, v))
+        (
+            classify(&Two::from(Row(Along)), 0.3, q, v),
+            classify(&Two::from(Row(Across)), 0.3, q, v),
+            classify(&Two::from(Row(Turning)), 0.3, q, v),
+        )
     };
     let (along, across, turning) = at(&[0.2, 0.5], &[0.3, 0.0]);
     assert_eq!([along.brackets, across.brackets, turning.brackets], [0, 1, 1]);
@@ -99,10 +109,10 @@ fn time_counts_as_a_coordinate() {
 
 #[test]
 fn rows_that_vanish_or_do_not_belong() {
-    let here = classify(&Row(Vanishing), 0.0, &[0.0, 1.0], &[0.0; 2]);
+    let here = classify(&Two::from(Row(Vanishing)), 0.0, &[0.0, 1.0], &[0.0; 2]);
     assert_eq!((here.rank, here.regular, here.dependence.involved), (0, false, Rows::none().with(0)));
-    let beside = classify(&Row(Vanishing), 0.0, &[1e-200, 1.0], &[0.0; 2]);
+    let beside = classify(&Two::from(Row(Vanishing)), 0.0, &[1e-200, 1.0], &[0.0; 2]);
     assert_eq!((beside.rank, beside.regular), (1, true));
-    assert_eq!(classify(&Row(Across), 0.0, &[0.2, 0.5], &[0.5, 0.0]).mismatched, Rows::none().with(0));
-    assert_eq!(classify(&Row(Along), 0.0, &[0.2, 0.5], &[0.0, 0.0]).mismatched, Rows::none());
+    assert_eq!(classify(&Two::from(Row(Across)), 0.0, &[0.2, 0.5], &[0.5, 0.0]).mismatched, Rows::none().with(0));
+    assert_eq!(classify(&Two::from(Row(Along)), 0.0, &[0.2, 0.5], &[0.0, 0.0]).mismatched, Rows::none());
 }

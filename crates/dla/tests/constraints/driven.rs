@@ -1,12 +1,14 @@
 //! Coordinates that are given as functions of time, through places where they vanish.
 
 use crate::constraints::tools::misses;
+use crate::support::Two;
 use dla::{Composition, Dla, Gauss, Lobatto, OneStep};
 use lagrangian::{Constraint, Scalar, System};
 use std::f64::consts::PI;
 
 /// A mass on a spring of length zero, whose other end is led: `s = 0.7 sin t`.
-struct Led;
+#[derive(Clone, Copy)]
+pub(crate) struct Led;
 
 impl System<2, 1> for Led {
     fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 2], v: &[S; 2]) -> S {
@@ -28,7 +30,7 @@ fn passes_through_zero(nodes: &[u32], steps: u64) {
     let passes = |name: &str, method: &mut dyn OneStep<2, 1>| {
         for &nodes in nodes {
             let step = PI / f64::from(nodes);
-            let [g, slip] = misses(&Led, method, ([0.2, 0.0], [0.1, 0.7]), step, steps);
+            let [g, slip] = misses(&Two::from(Led), method, ([0.2, 0.0], [0.1, 0.7]), step, steps);
             // The time of a node is known to its rounding, and the coordinate is led by at most 0.7 units in a second.
             let bound = f64::EPSILON * (1.0 + step * steps as f64);
             assert!(g <= bound && slip <= bound, "{name}, {nodes} nodes: g {g:e}, slip {slip:e}");

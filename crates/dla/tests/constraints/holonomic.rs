@@ -2,6 +2,7 @@
 
 use crate::constraints::tools::{Place, assert_order, distance, end, misses};
 use crate::large::with_stack;
+use crate::support::{ThreeTwo, Two};
 use dla::{Composition, Dla, Energy, Form, Gauss, Gni, Lobatto, OneStep, State, StepError};
 use lagrangian::{Constraint, Scalar, System};
 use models::{CompoundPendulum, Model, SleighOnArm};
@@ -17,17 +18,17 @@ fn pendulum() -> CompoundPendulum {
 /// Both to 1e-13 over any number of steps; the pendulum whose hinge is given by its velocity alone shows that the positions are held.
 fn positions_and_velocities_hold(steps: u64) {
     let sleigh = sleigh();
-    let [g, slip] = misses(&sleigh, &mut Dla::midpoint(), sleigh.start(), 0.02, steps);
+    let [g, slip] = misses(&ThreeTwo::from(sleigh), &mut Dla::midpoint(), sleigh.start(), 0.02, steps);
     println!("sleigh on an arm: g {g:e}, slip {slip:e}");
     assert!(g <= 1e-13 && slip <= 1e-13);
 
     let pendulum = pendulum();
-    let [g, slip] = misses(&pendulum, &mut Dla::midpoint(), pendulum.start(), 0.02, steps);
+    let [g, slip] = misses(&ThreeTwo::from(pendulum), &mut Dla::midpoint(), pendulum.start(), 0.02, steps);
     println!("pendulum: g {g:e}, slip {slip:e}");
     assert!(g <= 1e-13 && slip <= 1e-13);
 
     let pseudo = pendulum.pseudo_holonomic();
-    let drifted = end(&pseudo, &mut Dla::midpoint(), pseudo.start(), 0.02, 1000);
+    let drifted = end(&ThreeTwo::from(pseudo), &mut Dla::midpoint(), pseudo.start(), 0.02, 1000);
     let [x, y] = pseudo.hinge(drifted.q());
     assert!(x.hypot(y) > 1e-5, "{x:e}, {y:e}");
 }
@@ -48,7 +49,7 @@ fn positions_and_velocities_hold_for_a_million_steps_in_full() {
 fn positions_hold_at_any_step() {
     let pendulum = pendulum();
     for step in [0.1, 1e-3, 1e-6, 1e-9] {
-        let [g, slip] = misses(&pendulum, &mut Dla::midpoint(), pendulum.start(), step, 1000);
+        let [g, slip] = misses(&ThreeTwo::from(pendulum), &mut Dla::midpoint(), pendulum.start(), step, 1000);
         println!("h = {step:e}: g {g:e}, slip {slip:e}");
         assert!(g <= 1e-14 && slip <= 1e-14, "h = {step:e}: g {g:e}, slip {slip:e}");
     }
@@ -61,16 +62,19 @@ where
 {
     let sleigh = sleigh();
     counts.map(|steps| {
-        let [g, slip] = misses(&sleigh, &mut method.clone(), sleigh.start(), 1.0 / steps as f64, steps);
+        let [g, slip] = misses(&ThreeTwo::from(sleigh), &mut method.clone(), sleigh.start(), 1.0 / steps as f64, steps);
         assert!(g <= 1e-14 && slip <= 1e-14, "g {g:e}, slip {slip:e}");
-        distance(&end(&sleigh, &mut method.clone(), sleigh.start(), 1.0 / steps as f64, steps), reference)
+        distance(
+            &end(&ThreeTwo::from(sleigh), &mut method.clone(), sleigh.start(), 1.0 / steps as f64, steps),
+            reference,
+        )
     })
 }
 
 /// Against Lobatto's method of order 4, whose error with so many steps is little.
 fn orders(counts: [u64; 4], steps: u64) {
     let sleigh = sleigh();
-    let reference = end(&sleigh, &mut Lobatto::<3>::new(), sleigh.start(), 1.0 / steps as f64, steps);
+    let reference = end(&ThreeTwo::from(sleigh), &mut Lobatto::<3>::new(), sleigh.start(), 1.0 / steps as f64, steps);
     let reference = (reference.unwrapped(), *reference.v());
     assert_order("dla", errors(&Dla::midpoint(), counts, &reference), 2.0);
     let multipliers = Dla::midpoint().solved(Form::Multipliers);
@@ -97,8 +101,8 @@ fn orders_beside_constrained_positions_in_full() {
 /// How far from its start a run there and back ends.
 fn back<Method: OneStep<3, 2>>(mut method: Method) -> f64 {
     let sleigh = sleigh();
-    let there = end(&sleigh, &mut method, sleigh.start(), 0.05, 100);
-    let here = end(&sleigh, &mut method, (*there.q(), *there.reversed().v()), 0.05, 100);
+    let there = end(&ThreeTwo::from(sleigh), &mut method, sleigh.start(), 0.05, 100);
+    let here = end(&ThreeTwo::from(sleigh), &mut method, (*there.q(), *there.reversed().v()), 0.05, 100);
     let (q, v) = sleigh.start();
     let turned = State::new(*here.q(), here.v().map(|v| -v), [false; 3]);
     distance(&turned, &(State::new(q, v, [false, false, true]).unwrapped(), v))
@@ -117,8 +121,8 @@ fn the_step_is_symmetric() {
 /// What cannot keep positions says so before its first step, and does the pseudo-holonomic pendulum.
 #[test]
 fn methods_that_would_drift_refuse() {
-    let (pendulum, pseudo) = (pendulum(), pendulum().pseudo_holonomic());
-    let (q, v) = pendulum.start();
+    let (q, v) = pendulum().start();
+    let [pendulum, pseudo] = [pendulum(), pendulum().pseudo_holonomic()].map(ThreeTwo::from);
     let start = State::new(q, v, [false, false, true]);
     let check = |method: &mut dyn OneStep<3, 2>| {
         let mut state = start;
@@ -132,7 +136,8 @@ fn methods_that_would_drift_refuse() {
 }
 
 /// A particle on the line `y = sin t`, which moves.
-struct Lift;
+#[derive(Clone, Copy)]
+pub(crate) struct Lift;
 
 impl System<2, 1> for Lift {
     fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 2], v: &[S; 2]) -> S {
@@ -152,7 +157,7 @@ fn positions_that_move() {
     let mut state = State::new([0.0, 0.7f64.sin()], [0.4, 0.7f64.cos()], [false; 2]);
     for k in 0..20 {
         let t = 0.7 + 0.1 * f64::from(k);
-        OneStep::<2, 1>::step(&mut Dla::midpoint(), &Lift, t, 0.1, &mut state).unwrap();
+        OneStep::<2, 1>::step(&mut Dla::midpoint(), &Two::from(Lift), t, 0.1, &mut state).unwrap();
         let t = t + 0.1;
         approx::assert_abs_diff_eq!(&state.q()[..], &[0.4 * (t - 0.7), t.sin()][..], epsilon = 8.0 * f64::EPSILON);
         approx::assert_abs_diff_eq!(&state.v()[..], &[0.4, t.cos()][..], epsilon = 8.0 * f64::EPSILON);

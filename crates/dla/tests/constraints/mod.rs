@@ -3,11 +3,11 @@
 #![allow(missing_docs, unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
 mod affine;
-mod classes;
-mod driven;
-mod holonomic;
+pub(crate) mod classes;
+pub(crate) mod driven;
+pub(crate) mod holonomic;
 mod nonlinear;
 mod pseudo;
-mod redundant;
-mod starts;
+pub(crate) mod redundant;
+pub(crate) mod starts;
 mod tools;

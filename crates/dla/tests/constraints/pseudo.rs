@@ -2,6 +2,7 @@
 //! (McLachlan and Perlmutter 2006, J. Nonlinear Sci. 16, 283-328, section 5).
 
 use crate::constraints::tools::{Largest, assert_order};
+use crate::support::ThreeTwo;
 use dla::{Dla, Schedule, State, View, drive};
 use models::{CompoundPendulum, Model};
 
@@ -14,7 +15,8 @@ fn drift(step: f64, steps: u64) -> f64 {
         x.hypot(y)
     });
     let mut state = State::new(q, v, [false, false, true]);
-    drive(&pendulum, &mut Dla::midpoint(), &Schedule { t0: 0.0, step, steps }, &mut state, &mut off).unwrap();
+    drive(&ThreeTwo::from(pendulum), &mut Dla::midpoint(), &Schedule { t0: 0.0, step, steps }, &mut state, &mut off)
+        .unwrap();
     off.value
 }
 

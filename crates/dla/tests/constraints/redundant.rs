@@ -1,6 +1,7 @@
 //! Rows that depend on one another: everywhere, at a place, or in what they ask for.
 
 use crate::constraints::tools::{distance, end, misses};
+use crate::support::{Four, ThreeTwo};
 use allocation_counter::measure;
 use dla::{
     Dependency, Dependent, Dla, Gauss, Lobatto, OneStep, RunError, Schedule, State, StepError, consistent_start, drive,
@@ -67,7 +68,7 @@ fn rows_that_agree(steps: u64) {
     let [g, slip] = misses(&redundant, &mut Dla::midpoint(), pendulum.start(), 0.02, steps);
     // The third is the sum of three terms, each held to rounding.
     assert!(g <= 1e-14 && slip <= 1e-14, "g {g:e}, slip {slip:e}");
-    let alone = end(&pendulum, &mut Dla::midpoint(), pendulum.start(), 0.02, 100);
+    let alone = end(&ThreeTwo::from(pendulum), &mut Dla::midpoint(), pendulum.start(), 0.02, 100);
     let with = end(&redundant, &mut Dla::midpoint(), pendulum.start(), 0.02, 100);
     let error = distance(&with, &(alone.unwrapped(), *alone.v()));
     assert!(error <= 1e-12, "{error:e}");
@@ -96,7 +97,7 @@ fn redundant_rows_outside_of_steps() {
         epsilon = 1e-13
     );
     let off = (q.map(|q| q + 0.1), v.map(|v| v + 0.1));
-    let expected = consistent_start(&pendulum, 0.0, &off.0, &off.1).unwrap();
+    let expected = consistent_start(&ThreeTwo::from(pendulum), 0.0, &off.0, &off.1).unwrap();
     let start = consistent_start(&redundant, 0.0, &off.0, &off.1).unwrap();
     approx::assert_abs_diff_eq!(&start.q[..], &expected.q[..], epsilon = 1e-14);
     approx::assert_abs_diff_eq!(&start.v[..], &expected.v[..], epsilon = 1e-14);
@@ -148,7 +149,8 @@ fn contradictory_rows() {
 }
 
 /// A point with two blades, each with a heading of its own: only where these line up can it move.
-struct TwoBlades;
+#[derive(Clone, Copy)]
+pub(crate) struct TwoBlades;
 
 impl System<4, 2> for TwoBlades {
     fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 4], v: &[S; 4]) -> S {
@@ -167,26 +169,26 @@ impl System<4, 2> for TwoBlades {
 #[test]
 fn parallel_blades() {
     let mut state = State::new([0.0, 0.0, -0.5, 0.0], [0.0, 0.0, 1.0, 0.0], [false; 4]);
-    let (step, found) = dependent(run(&TwoBlades, Dla::midpoint(), &mut state).unwrap_err());
+    let (step, found) = dependent(run(&Four::from(TwoBlades), Dla::midpoint(), &mut state).unwrap_err());
     assert_eq!((step, found.dependency, found.rows), (8, Dependency::RankDrops, Rows::from_iter([0, 1])));
     assert_eq!((state.q()[2], found.time), (-0.0625, 0.5));
 
     // In the middle of a step, where the midpoint rule asks.
     let mut state = State::new([0.0, 0.0, -0.46875, 0.0], [0.0, 0.0, 1.0, 0.0], [false; 4]);
-    let (step, found) = dependent(run(&TwoBlades, Dla::midpoint(), &mut state).unwrap_err());
+    let (step, found) = dependent(run(&Four::from(TwoBlades), Dla::midpoint(), &mut state).unwrap_err());
     assert_eq!((step, found.rows, found.time), (8, Rows::from_iter([0, 1]), 0.46875));
 
     let (sin, cos) = 0.7f64.sin_cos();
     for (angle, rates) in [(0.0, [0.3, 0.1]), (1e-15, [0.3, 0.1]), (0.0, [0.0; 2]), (1e-9, [0.0; 2])] {
         let v = [0.5 * cos, 0.5 * sin, rates[0], rates[1]];
         let mut state = State::new([0.0, 0.0, 0.7 + angle, 0.7], v, [false; 4]);
-        let (_, found) = dependent(run(&TwoBlades, Dla::midpoint(), &mut state).unwrap_err());
+        let (_, found) = dependent(run(&Four::from(TwoBlades), Dla::midpoint(), &mut state).unwrap_err());
         assert_eq!((found.dependency, found.rows), (Dependency::RankDrops, Rows::from_iter([0, 1])), "{angle}");
         assert!((found.distance - angle).abs() <= 1e-15, "{angle}: {}", found.distance);
     }
     // Farther apart they hold the point.
     let mut state = State::new([0.0, 0.0, 0.7 + 1e-6, 0.7], [0.0; 4], [false; 4]);
-    run(&TwoBlades, Dla::midpoint(), &mut state).unwrap();
+    run(&Four::from(TwoBlades), Dla::midpoint(), &mut state).unwrap();
     assert_eq!(state.q()[..2], [0.0; 2]);
 }
 

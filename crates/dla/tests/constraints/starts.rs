@@ -1,5 +1,6 @@
 //! Starts moved onto the constraints.
 
+use crate::support::{One, Six, ThreeTwo, Two};
 use dla::{StepError, consistent_start};
 use lagrangian::{Constraint, Scalar, System, constraint_residual, position_residual, row_space};
 use models::{IsokineticParticle, Model, SleighOnArm, TurntableBall};
@@ -10,7 +11,7 @@ use models::{IsokineticParticle, Model, SleighOnArm, TurntableBall};
 fn the_nearest_start() {
     let sleigh = SleighOnArm::new(1.3, 0.8, 0.4, 0.7, 1.5, 2.0).unwrap();
     let (mut q, mut v) = sleigh.start();
-    let here = consistent_start(&sleigh, 0.0, &q, &v).unwrap();
+    let here = consistent_start(&ThreeTwo::from(sleigh), 0.0, &q, &v).unwrap();
     assert!(here.moved <= 1e-15 && here.changed <= 1e-14, "{here:?}");
 
     let mut before = f64::INFINITY;
@@ -18,7 +19,7 @@ fn the_nearest_start() {
         (q, v) = sleigh.start();
         q = [q[0] + off, q[1] - 0.5 * off, q[2] + 0.7 * off];
         v = [v[0] - off, v[1] + off, v[2] + off];
-        let start = consistent_start(&sleigh, 0.0, &q, &v).unwrap();
+        let start = consistent_start(&ThreeTwo::from(sleigh), 0.0, &q, &v).unwrap();
         assert!(position_residual(&sleigh, 0.0, &start.q) <= 1e-15);
         assert!(constraint_residual(&sleigh, 0.0, &start.q, &start.v).iter().all(|slip| slip.abs() <= 1e-15));
         assert!(start.moved > 0.0 && start.moved < before && start.moved < 3.0 * off);
@@ -39,7 +40,8 @@ fn the_nearest_start() {
 }
 
 /// On the circle of radius 1, with the mass 1 along `x` and 4 along `y`.
-struct Ring;
+#[derive(Clone, Copy)]
+pub(crate) struct Ring;
 
 impl System<2, 1> for Ring {
     fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 2], v: &[S; 2]) -> S {
@@ -57,7 +59,7 @@ impl System<2, 1> for Ring {
 #[test]
 fn the_nearest_place_of_a_circle() {
     for q in [[0.6, 0.5], [1.2, 0.9], [-1.0, 2.0]] {
-        let start = consistent_start(&Ring, 0.0, &q, &[0.3, -0.4]).unwrap();
+        let start = consistent_start(&Two::from(Ring), 0.0, &q, &[0.3, -0.4]).unwrap();
         let [x, y] = start.q;
         approx::assert_abs_diff_eq!(x.hypot(y), 1.0, epsilon = 1e-15);
         let length = |x: f64, y: f64| (x - q[0]).hypot(2.0 * (y - q[1]));
@@ -75,18 +77,19 @@ fn the_nearest_place_of_a_circle() {
 #[test]
 fn starts_of_other_classes() {
     let ball = TurntableBall::new(1.3, 0.6, 0.2, 1.7).unwrap();
-    let start = consistent_start(&ball, 0.0, &[0.4, 0.1, 1.0, 0.5, 0.0, 0.2], &[0.3; 6]).unwrap();
+    let start = consistent_start(&Six::from(ball), 0.0, &[0.4, 0.1, 1.0, 0.5, 0.0, 0.2], &[0.3; 6]).unwrap();
     assert!(position_residual(&ball, 0.0, &start.q) <= 1e-15);
     assert!(constraint_residual(&ball, 0.0, &start.q, &start.v).iter().all(|slip| slip.abs() <= 1e-15));
 
     let particle = IsokineticParticle::new(1.3, 0.8, 1.0).unwrap();
-    let start = consistent_start(&particle, 0.0, &[0.0; 2], &[0.9, 1.2]).unwrap();
+    let start = consistent_start(&Two::from(particle), 0.0, &[0.0; 2], &[0.9, 1.2]).unwrap();
     approx::assert_abs_diff_eq!(&start.v[..], &[0.48, 0.64][..], epsilon = 1e-15);
     assert_eq!(start.moved, 0.0);
 }
 
 /// `x^2 + 1 = 0`.
-struct Nowhere;
+#[derive(Clone, Copy)]
+pub(crate) struct Nowhere;
 
 impl System<1, 1> for Nowhere {
     fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 1], v: &[S; 1]) -> S {
@@ -102,6 +105,6 @@ impl System<1, 1> for Nowhere {
 
 #[test]
 fn no_start() {
-    let outcome = consistent_start(&Nowhere, 0.0, &[0.4], &[0.0]);
+    let outcome = consistent_start(&One::from(Nowhere), 0.0, &[0.4], &[0.0]);
     assert!(matches!(outcome, Err(StepError::Newton { .. } | StepError::Dependent(_))), "{outcome:?}");
 }

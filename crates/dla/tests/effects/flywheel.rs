@@ -2,6 +2,7 @@
 
 use crate::effects::balance::sine;
 use crate::effects::tools::{Laden, laden, moving, run, sleigh, steps};
+use crate::support::ByHand;
 use dla::{Dla, Observer, StepReport, View};
 use lagrangian::With;
 use scene::AnyEffect;
@@ -36,9 +37,9 @@ fn keeps_its_momentum(closed: u64, general: u64) {
 
     let mut spin = Spin::default();
     let body = With { body: Flywheel::new(sleigh(), 0.2, None).unwrap(), effects: () };
-    let end = run(&body, &mut ClosedMap::of(body.clone()), &steps(0.05, closed), with_rotor, &mut spin);
+    let end = run(&body.body, &mut ClosedMap::of(body.clone()), &steps(0.05, closed), with_rotor, &mut spin);
     let free = With { body: sleigh(), effects: () };
-    let bare = run(&free, &mut ClosedMap::of(free), &steps(0.05, closed), (q, v), ());
+    let bare = run(&ByHand::from(free.body), &mut ClosedMap::of(free), &steps(0.05, closed), (q, v), ());
     println!("free, closed form: momentum to {:.1e}", spin.worst);
     assert!(spin.worst <= 1e-14);
     for i in 0..3 {

@@ -1,4 +1,5 @@
-use crate::energy::systems::{Friction, Particle, Potential, Wrapped, at_centre, com};
+use crate::energy::systems::{Friction, Particle, Potential, at_centre, com, wrapped};
+use crate::support::Three;
 use dla::{Dla, Energy, Observer, OneStep, Schedule, State, StepReport, View, drive};
 use lagrangian::{System, energy};
 use std::ops::ControlFlow;
@@ -132,14 +133,14 @@ const LONG: u64 = 1_000_000;
 const SHORT: u64 = 100_000;
 
 /// The control: its error is far from rounding.
-fn is_seen_to_err(system: &Wrapped, start: &([f64; 3], [f64; 3])) {
+fn is_seen_to_err(system: &Three, start: &([f64; 3], [f64; 3])) {
     let seen = balance("dla", system, &mut Dla::midpoint(), start, 100);
     assert!(seen.worst > 1e-8, "{seen:?}");
 }
 
 #[test]
 fn egg_crate_keeps_its_energy() {
-    let system = Wrapped(com(0.1, Potential::EggCrate));
+    let system = wrapped(0.1, Potential::EggCrate);
     held("egg-crate", &system, &egg_crate(), [40; 4]);
     is_seen_to_err(&system, &egg_crate());
 }
@@ -147,7 +148,7 @@ fn egg_crate_keeps_its_energy() {
 #[test]
 #[ignore = "slow"]
 fn egg_crate_keeps_its_energy_in_full() {
-    let system = Wrapped(com(0.1, Potential::EggCrate));
+    let system = wrapped(0.1, Potential::EggCrate);
     held("egg-crate", &system, &egg_crate(), [SHORT, SHORT / 5, SHORT / 5, SHORT]);
     let drift = balance("egg-crate, dla", &system, &mut Dla::midpoint(), &egg_crate(), SHORT);
     assert!(drift.worst > 1e-4 && drift.trend() < -4.0, "the control, which drifts: {drift:?}");
@@ -155,7 +156,7 @@ fn egg_crate_keeps_its_energy_in_full() {
 
 #[test]
 fn valley_keeps_its_energy() {
-    let system = Wrapped(com(0.5, Potential::Valley));
+    let system = wrapped(0.5, Potential::Valley);
     held("valley", &system, &valley(), [40; 4]);
     is_seen_to_err(&system, &valley());
 }
@@ -163,7 +164,7 @@ fn valley_keeps_its_energy() {
 #[test]
 #[ignore = "slow"]
 fn valley_keeps_its_energy_in_full() {
-    let system = Wrapped(com(0.5, Potential::Valley));
+    let system = wrapped(0.5, Potential::Valley);
     held("valley", &system, &valley(), [SHORT, SHORT / 5, SHORT / 5, SHORT]);
     let drift = balance("valley, dla", &system, &mut Dla::midpoint(), &valley(), SHORT);
     assert!(drift.worst > 1e-4, "the control, which drifts: {drift:?}");
@@ -172,13 +173,18 @@ fn valley_keeps_its_energy_in_full() {
 #[test]
 #[ignore = "slow"]
 fn a_million_steps() {
-    held("egg-crate", &Wrapped(com(0.1, Potential::EggCrate)), &egg_crate(), [LONG; 4]);
-    held("valley", &Wrapped(com(0.5, Potential::Valley)), &valley(), [LONG; 4]);
+    held("egg-crate", &wrapped(0.1, Potential::EggCrate), &egg_crate(), [LONG; 4]);
+    held("valley", &wrapped(0.5, Potential::Valley), &valley(), [LONG; 4]);
 }
 
 fn particle(steps: u64) {
     for quartic in [0.0, 0.2] {
-        held("particle", &Particle { mass: 1.3, quartic }, &([0.3, 0.5, -0.2], [0.6, -0.4, 0.3]), [steps; 4]);
+        held(
+            "particle",
+            &Three::from(Particle { mass: 1.3, quartic }),
+            &([0.3, 0.5, -0.2], [0.6, -0.4, 0.3]),
+            [steps; 4],
+        );
     }
 }
 

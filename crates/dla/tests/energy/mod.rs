@@ -3,7 +3,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod balance;
-mod order;
-mod refusals;
+pub(crate) mod order;
+pub(crate) mod refusals;
 mod structure;
-mod systems;
+pub(crate) mod systems;

@@ -1,4 +1,5 @@
 use crate::energy::systems::{Particle, Potential, at_centre, com, distance, run};
+use crate::support::{ByHand, Three, Two};
 use dla::{Energy, OneStep, State};
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
 use sleigh::{Exact, Sleigh, SleighState};
@@ -45,7 +46,7 @@ fn free_sleigh() {
     let start = SleighState { x: 0.3, y: -0.2, heading: 0.5, speed: -0.9, turn_rate: 0.8 };
     let (q, v) = Exact::new(&sleigh, &start).unwrap().at(4.0).to_coordinates();
     let exact = State::new(q, v, sleigh.angles());
-    second_order("free sleigh", &sleigh, &start.to_coordinates(), 4.0, 64, &exact);
+    second_order("free sleigh", &ByHand::from(sleigh), &start.to_coordinates(), 4.0, 64, &exact);
 }
 
 /// The first eighth of the other.
@@ -70,7 +71,7 @@ fn egg_crate_in_full() {
 
 /// Masses that depend on the place, a magnetic field, an energy that is not quadratic: against itself at small steps.
 fn particle_over(duration: f64, first: u64, steps: u64) {
-    let system = Particle { mass: 1.3, quartic: 0.2 };
+    let system = Three::from(Particle { mass: 1.3, quartic: 0.2 });
     let start = ([0.3, 0.5, -0.2], [0.6, -0.4, 0.3]);
     let exact = run(&system, &mut Energy::new::<4>(), &start, (duration, steps));
     second_order("particle", &system, &start, duration, first, &exact);
@@ -88,7 +89,8 @@ fn particle_in_full() {
 }
 
 /// A mass on a spring along a rail, pushed by `cos(2 t)`.
-struct Swung;
+#[derive(Clone, Copy)]
+pub(crate) struct Swung;
 
 impl System<2, 1> for Swung {
     fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 2], v: &[S; 2]) -> S {
@@ -111,7 +113,7 @@ fn a_force_that_swings() {
     let place = |t: f64| ([(t.cos() - (2.0 * t).cos()) / 3.0, 0.0], [(2.0 * (2.0 * t).sin() - t.sin()) / 3.0, 0.0]);
     let (q, v) = place(2.0);
     let exact = State::new(q, v, [false; 2]);
-    let start = ([0.0; 2], [0.0; 2]);
-    check("swung", ladder(&Swung, &mut Energy::new::<2>(), &start, 2.0, &[10, 20, 40], &exact), 4.0);
-    second_order("swung", &Swung, &start, 2.0, 20, &exact);
+    let (swung, start) = (Two::from(Swung), ([0.0; 2], [0.0; 2]));
+    check("swung", ladder(&swung, &mut Energy::new::<2>(), &start, 2.0, &[10, 20, 40], &exact), 4.0);
+    second_order("swung", &swung, &start, 2.0, 20, &exact);
 }

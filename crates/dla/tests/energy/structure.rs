@@ -1,4 +1,5 @@
 use crate::energy::systems::{Particle, Potential, at_centre, com, distance, run};
+use crate::support::{ByHand, Three};
 use dla::{Energy, OneStep, Schedule, State, drive};
 use lagrangian::quadrature::gauss_legendre;
 use lagrangian::{Bracket, Dual, Scalar, System, energy, energy_slope, reduced_acceleration};
@@ -30,11 +31,11 @@ fn same_motion<Sys: System<N, M>, const N: usize, const M: usize>(system: &Sys, 
 fn bracket_and_full_coordinates_agree() {
     let sleigh = Sleigh::new(1.7, 0.6, 0.35).unwrap();
     let (q, xi) = ([0.3, -0.8, 1.1], [0.9, -1.3, 0.0]);
-    same_motion(&sleigh, q, xi);
-    same_motion(&lagrangian::With { body: sleigh, effects: Potential::EggCrate }, q, xi);
+    same_motion(&ByHand::from(sleigh), q, xi);
+    same_motion(&ByHand::from(lagrangian::With { body: sleigh, effects: Potential::EggCrate }), q, xi);
     same_motion(&com(0.35, Potential::EggCrate), q, xi);
-    same_motion(&Particle { mass: 1.3, quartic: 0.0 }, q, xi);
-    same_motion(&Particle { mass: 1.3, quartic: 0.2 }, q, xi);
+    same_motion(&Three::from(Particle { mass: 1.3, quartic: 0.0 }), q, xi);
+    same_motion(&Three::from(Particle { mass: 1.3, quartic: 0.2 }), q, xi);
 
     // u' = a omega^2, J omega' = -m a u omega.
     let (m, a, j) = (1.7, 0.35, sleigh.pivot_inertia());

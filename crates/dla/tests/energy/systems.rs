@@ -1,3 +1,4 @@
+use crate::support::{ByHand, Three};
 use dla::{OneStep, Schedule, State, drive};
 use lagrangian::{AdmissibleBasis, Constraint, Effect, Scalar, System, With};
 use sleigh::{CentreOfMass, Sleigh};
@@ -74,7 +75,7 @@ impl System<3, 1> for Particle {
 /// The sleigh where the potential has the period `2 pi` in the place, or none of it: the place then is an angle to the
 /// integrators, whose rounding would else be all that the energy shows far from the origin.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Wrapped(pub(crate) With<CentreOfMass, Potential>);
+pub(crate) struct Wrapped(With<CentreOfMass, Potential>);
 
 impl System<3, 1> for Wrapped {
     fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 3], v: &[S; 3]) -> S {
@@ -91,8 +92,15 @@ impl System<3, 1> for Wrapped {
     }
 }
 
-pub(crate) fn com<E>(offset: f64, effects: E) -> With<CentreOfMass, E> {
-    With { body: CentreOfMass(Sleigh::new(1.0, 1.0, offset).unwrap()), effects }
+pub(crate) fn com<E>(offset: f64, effects: E) -> ByHand
+where
+    With<CentreOfMass, E>: Into<ByHand>,
+{
+    With { body: CentreOfMass(Sleigh::new(1.0, 1.0, offset).unwrap()), effects }.into()
+}
+
+pub(crate) fn wrapped(offset: f64, effects: Potential) -> Three {
+    Wrapped(With { body: CentreOfMass(Sleigh::new(1.0, 1.0, offset).unwrap()), effects }).into()
 }
 
 /// Place, heading, blade speed `u`, turn rate: coordinates at the centre of mass, the offset `a` ahead of the blade.

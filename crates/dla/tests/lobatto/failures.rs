@@ -1,10 +1,12 @@
 use crate::lobatto::systems::{Potential, at_centre, com};
+use crate::support::{ByHand, ThreeTwo};
 use dla::{Derivative, Lobatto, NewtonError, OneStep, Stage, State, StepError, SystemFunction};
 use lagrangian::{Constraint, Scalar, System};
 use sleigh::{Sleigh, SleighState};
 
 /// A point whose two constraints become one where `x = 0`.
-struct Dropping;
+#[derive(Clone, Copy)]
+pub(crate) struct Dropping;
 impl System<3, 2> for Dropping {
     fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 3], v: &[S; 3]) -> S {
         (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) * 0.5
@@ -47,7 +49,7 @@ fn an_unconverged_step_is_never_accepted() {
 /// Of longer and longer steps from one start those that succeed lie on one curve, whose points are as near as its slope
 /// allows; a solution of another branch would lie elsewhere.
 fn steps_on_one_curve(starts: &[u32], parts: u32) -> [u32; 2] {
-    let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    let sleigh = ByHand::from(Sleigh::new(1.0, 1.0, 0.5).unwrap());
     let (mut accepted, mut refusals) = (0, 0);
     for &k in starts {
         let start = SleighState { speed: -3.0 + 0.5 * f64::from(k), turn_rate: 1.3, ..SleighState::default() };
@@ -117,12 +119,13 @@ fn what_is_not_a_number() {
 
 #[test]
 fn constraints_that_depend_on_one_another() {
+    let system = ThreeTwo::from(Dropping);
     let state = State::new([0.0; 3], [0.0, 0.0, 1.0], [false; 3]);
-    let error = refused(&Dropping, &mut Lobatto::<3>::new(), 0.1, &state);
+    let error = refused(&system, &mut Lobatto::<3>::new(), 0.1, &state);
     assert!(error.to_string().starts_with("rows 1 and 2 of the constraint are linearly dependent"), "{error}");
     assert!(matches!(error, StepError::Dependent(_)));
     // The control: elsewhere they do not.
     let mut state = State::new([1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [false; 3]);
-    Lobatto::<3>::new().step(&Dropping, 0.0, 0.1, &mut state).unwrap();
+    Lobatto::<3>::new().step(&system, 0.0, 0.1, &mut state).unwrap();
     assert!((state.q()[0] - 1.1).abs() < 1e-14);
 }

@@ -1,4 +1,5 @@
 use crate::lobatto::systems::{Forces, Moving, Particle, Potential, at_centre, com, distance, reference, run, sleigh};
+use crate::support::{ByHand, Three};
 use dla::Lobatto;
 use lagrangian::{System, With};
 
@@ -39,7 +40,7 @@ fn orders<Sys: System<3, 1>>(case: &Case<Sys>) {
 fn particle() {
     let duration = 4.0;
     let (start, end) = (Particle::START, Particle::exact(duration));
-    orders(&Case { name: "particle", system: Particle, start, end, duration });
+    orders(&Case { name: "particle", system: Three::from(Particle), start, end, duration });
 }
 
 #[test]
@@ -52,7 +53,7 @@ fn egg_crate() {
 /// Masses that depend on the heading, for the blade is the point of reference.
 #[test]
 fn forced() {
-    let system = With { body: sleigh(0.5), effects: Forces };
+    let system = ByHand::from(With { body: sleigh(0.5), effects: Forces });
     let (sin, cos) = f64::sin_cos(0.3);
     let start = ([0.1, -0.2, 0.3], [0.8 * cos, 0.8 * sin, 0.9]);
     let end = reference(&system, &start, 4.0);
@@ -63,8 +64,9 @@ fn affine_and_time_dependent_over(duration: f64) {
     // z' = y x' - sin(t + z) y'/2 - .3 cos t - .2 x
     let (q, [vx, vy]): ([f64; 3], [f64; 2]) = ([0.3, -0.2, 0.1], [0.6, 0.5]);
     let start = (q, [vx, vy, q[1] * vx - 0.5 * q[2].sin() * vy - 0.3 - 0.2 * q[0]]);
-    let end = reference(&Moving, &start, duration);
-    orders(&Case { name: "affine, time-dependent", system: Moving, start, end, duration });
+    let system = Three::from(Moving);
+    let end = reference(&system, &start, duration);
+    orders(&Case { name: "affine, time-dependent", system, start, end, duration });
 }
 
 #[test]

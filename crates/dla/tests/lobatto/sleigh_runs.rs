@@ -1,10 +1,11 @@
 use crate::lobatto::systems::{distance, run, sleigh};
+use crate::support::ByHand;
 use dla::{Lobatto, OneStep, State};
 use lagrangian::System;
 
 /// The stable straight motion, a little disturbed: the spin dies out and stays out.
 fn straightens<const S: usize>(h: f64, end: f64) {
-    let (system, (q, v)) = (sleigh(0.5), ([0.0; 3], [1.0, 0.0, 1e-3]));
+    let (system, (q, v)) = (ByHand::from(sleigh(0.5)), ([0.0; 3], [1.0, 0.0, 1e-3]));
     let mut state = State::new(q, v, system.angles());
     let mut method = Lobatto::<S>::new();
     let (spin, steps) = (v[2].abs(), (end / h).round() as u32);
@@ -39,7 +40,7 @@ fn no_parasitic_mode_in_full() {
 
 /// Without spin the straight motion is exact.
 fn stays_straight(length: f64, steps: u64) {
-    let end = run(&sleigh(0.5), &mut Lobatto::<4>::new(), &([0.0; 3], [1.0, 0.0, 0.0]), (length, steps));
+    let end = run(&ByHand::from(sleigh(0.5)), &mut Lobatto::<4>::new(), &([0.0; 3], [1.0, 0.0, 0.0]), (length, steps));
     assert!(distance(&end, &([length, 0.0, 0.0], [1.0, 0.0, 0.0])) < 1e-12 / 1024.0 * length, "{end:?}");
 }
 

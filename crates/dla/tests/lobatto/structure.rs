@@ -1,4 +1,5 @@
 use crate::lobatto::systems::{Forces, Moving, Potential, at_centre, com, distance, run, sleigh};
+use crate::support::{ByHand, Three};
 use allocation_counter::measure;
 use dla::{Dla, Lobatto, OneStep, State};
 use lagrangian::{Motion, System, constraint_residual};
@@ -24,7 +25,7 @@ fn two_stages_are_the_trapezoid() {
         }
     }
     // The control: with a mass matrix that depends on the heading they differ.
-    let blade = sleigh(0.5);
+    let blade = ByHand::from(sleigh(0.5));
     let start = ([0.0; 3], [0.4, 0.0, 0.7]);
     let end = run(&blade, &mut trapezoid, &start, (1.0, 10));
     assert!(distance(&run(&blade, &mut lobatto, &start, (1.0, 10)), &(end.unwrapped(), *end.v())) > 1e-5);
@@ -52,7 +53,7 @@ fn symmetric<const S: usize>() {
     let errors = [
         return_error(&com(0.5, Potential::EggCrate), &mut Lobatto::<S>::new(), centre),
         return_error(&com(0.5, Forces), &mut Lobatto::<S>::new(), centre),
-        return_error(&Moving, &mut Lobatto::<S>::new(), MOVING),
+        return_error(&Three::from(Moving), &mut Lobatto::<S>::new(), MOVING),
     ];
     println!("S = {S}: there and back {errors:?}");
     assert!(errors.iter().all(|error| *error < 1e-12), "S = {S}: {errors:?}");

@@ -1,9 +1,11 @@
+use crate::support::ByHand;
 use dla::{OneStep, Schedule, State, drive};
 use lagrangian::{Constraint, Effect, Motion, Scalar, System, With};
 use sleigh::{CentreOfMass, Sleigh};
 use std::array::from_fn;
 
 /// `z' = y x'` (Rosenberg 1977).
+#[derive(Clone, Copy)]
 pub(crate) struct Particle;
 impl System<3, 1> for Particle {
     fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 3], v: &[S; 3]) -> S {
@@ -42,6 +44,7 @@ impl Effect<CentreOfMass, 3> for Potential {
 }
 
 /// A sideways force that grows with the turn rate, and friction.
+#[derive(Clone, Copy)]
 pub(crate) struct Forces;
 impl<B> Effect<B, 3> for Forces {
     fn force<S: Scalar>(&self, _body: &B, _t: S, q: &[S; 3], v: &[S; 3]) -> Option<[S; 3]> {
@@ -51,6 +54,7 @@ impl<B> Effect<B, 3> for Forces {
 }
 
 /// Time everywhere: masses that depend on time and place, a magnetic term, an affine constraint that moves, a force.
+#[derive(Clone, Copy)]
 pub(crate) struct Moving;
 impl System<3, 1> for Moving {
     fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 3], v: &[S; 3]) -> S {
@@ -70,8 +74,11 @@ pub(crate) fn sleigh(offset: f64) -> Sleigh {
     Sleigh::new(1.0, 1.0, offset).unwrap()
 }
 
-pub(crate) fn com<E>(offset: f64, effects: E) -> With<CentreOfMass, E> {
-    With { body: CentreOfMass(sleigh(offset)), effects }
+pub(crate) fn com<E>(offset: f64, effects: E) -> ByHand
+where
+    With<CentreOfMass, E>: Into<ByHand>,
+{
+    With { body: CentreOfMass(sleigh(offset)), effects }.into()
 }
 
 /// Place, heading, blade speed `u`, turn rate: coordinates at the centre of mass, the offset `a` ahead of the blade.

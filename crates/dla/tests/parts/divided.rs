@@ -1,6 +1,6 @@
 //! How a step is divided, and that its parts are steps of the method: with its order, and the same bits where none is divided.
 
-use crate::parts::{made, sleigh};
+use crate::parts::{free, made, sleigh};
 use dla::{
     Composition, Dla, Gauss, Mechanics, OneStep, Schedule, State, StepError, StepReport, Substepping, Substeps,
     Undivided, drive,
@@ -44,7 +44,7 @@ fn divided_steps_keep_the_order() {
         let mut state = State::new(q, v, [false, false, true]);
         let mut method = Substepping::new(Refusing { method, longest: 0.6 * step }, 8);
         let schedule = Schedule { t0: 0.0, step, steps };
-        drive(&sleigh(0.5), &mut method, &schedule, &mut state, ()).unwrap();
+        drive(&free(0.5), &mut method, &schedule, &mut state, ()).unwrap();
         assert_eq!(method.divided(), steps);
         assert!(method.parts() > 2 * steps && method.most() > 2, "{}", method.parts());
         let right = Exact::new(&sleigh(0.5), &start()).unwrap().at(4.0);
@@ -69,15 +69,15 @@ fn divided_steps_keep_the_order() {
 /// Where every step resolves the motion, looking at its halves changes no bit.
 #[test]
 fn what_is_resolved_is_left_alone() {
-    let run = made(&sleigh(0.5), Gauss::new::<3>(), &start(), (0.05, 200));
+    let run = made(&free(0.5), Gauss::new::<3>(), &start(), (0.05, 200));
     let (q, v) = start().to_coordinates();
     let mut state = State::new(q, v, [false, false, true]);
     let schedule = Schedule { t0: 0.0, step: 0.05, steps: 200 };
-    drive::<_, _, 3, 1>(&sleigh(0.5), &mut Gauss::new::<3>(), &schedule, &mut state, ()).unwrap();
+    drive::<_, _, 3, 1>(&free(0.5), &mut Gauss::new::<3>(), &schedule, &mut state, ()).unwrap();
     let last = run.nodes.last().unwrap();
     assert_eq!((run.divided, run.parts, last.q, last.v), (0, 0, state.unwrapped(), *state.v()));
     // The control: eight times the step.
-    assert!(made(&sleigh(0.5), Dla::midpoint(), &start(), (0.4, 25)).divided > 0);
+    assert!(made(&free(0.5), Dla::midpoint(), &start(), (0.4, 25)).divided > 0);
 }
 
 /// Makes what is long enough, and says how often it was asked.

@@ -1,6 +1,7 @@
 //! The sleigh under drag, in a bowl and over hills, in steps that are far too long for them.
 
 use crate::parts::{BAR, by_each, made, sleigh};
+use crate::support::ByHand;
 use dla::{Dla, Gauss};
 use lagrangian::With;
 use sleigh::SleighState;
@@ -24,7 +25,7 @@ fn dragged(cases: &[(f64, u64)], of_a_million: u64) {
     let step = 0.05;
     for &(part, steps) in cases {
         let along = part / step;
-        let system = With { body: sleigh(0.5), effects: Drag::new(along, 0.0).unwrap() };
+        let system = ByHand::from(With { body: sleigh(0.5), effects: Drag::new(along, 0.0).unwrap() });
         for (name, run) in by_each(&system, &start, (step, steps)) {
             let (end, left) = (run.end(), (-along * step * steps as f64).exp());
             assert!((end.x * along - (1.0 - left)).abs() <= BAR, "{name}, c h/m = {part}: x = {}", end.x);
@@ -38,7 +39,7 @@ fn dragged(cases: &[(f64, u64)], of_a_million: u64) {
         }
     }
     // A million time constants a step; the other methods do it too, in as many parts as there are time constants.
-    let system = With { body: sleigh(0.5), effects: Drag::new(1e6 / step, 0.0).unwrap() };
+    let system = ByHand::from(With { body: sleigh(0.5), effects: Drag::new(1e6 / step, 0.0).unwrap() });
     let run = made(&system, Dla::midpoint(), &start, (step, of_a_million));
     assert!((run.end().x * 1e6 / step - 1.0).abs() <= BAR && run.end().speed.abs() < 1e-14);
     assert!(run.divided > 0 && run.parts < 10_000, "{}", run.parts);
@@ -62,7 +63,7 @@ fn swings(cases: &[(f64, u64)]) {
     let step = 0.05;
     for &(part, steps) in cases {
         let rate: f64 = part / step;
-        let system = With { body: sleigh(0.0), effects: Bowl::new([rate * rate; 2], [0.0; 2]).unwrap() };
+        let system = ByHand::from(With { body: sleigh(0.0), effects: Bowl::new([rate * rate; 2], [0.0; 2]).unwrap() });
         for (name, run) in by_each(&system, &start, (step, steps)) {
             let all = 0.5 * rate * rate;
             let phase = rate * step * steps as f64;
@@ -94,7 +95,7 @@ fn steep_hill_in_full() {
 fn over_hills(cases: &[(f64, f64)], steps: u64, finer: u32) {
     for &(y, height) in cases {
         let hills = [0.3, 0.82, 1.01].map(|x| Hill { height, x, y, width: 0.01 });
-        let system = With { body: sleigh(0.5), effects: Hills::new(hills.to_vec()).unwrap() };
+        let system = ByHand::from(With { body: sleigh(0.5), effects: Hills::new(hills.to_vec()).unwrap() });
         let start = SleighState { x: -0.5, speed: 1.0, turn_rate: 0.2, ..SleighState::default() };
         let right = made(&system, Gauss::new::<6>(), &start, (0.05 / f64::from(finer), steps * u64::from(finer)));
         let (right, divided) = (right.end(), right.divided);

@@ -1,6 +1,6 @@
 //! The free sleigh, in steps that nearly every method refuses, against the motion in closed form.
 
-use crate::parts::{BAR, EACH, Run, by, by_each, made, sleigh};
+use crate::parts::{BAR, EACH, Run, by, by_each, free, made, sleigh};
 use dla::{Composition, Schedule, State, StepError, Substepping, Substeps, drive};
 use sleigh::{ClosedMap, Exact, SleighState};
 
@@ -38,7 +38,7 @@ fn turning(methods: &[&str], turn_rates: &[f64], steps: u64) {
         let start = SleighState { speed: 0.1, turn_rate, ..SleighState::default() };
         let exact = Exact::new(&sleigh(0.5), &start).unwrap();
         for name in methods {
-            let run = by(name, &sleigh(0.5), &start, (1.0, steps));
+            let run = by(name, &free(0.5), &start, (1.0, steps));
             ends_right(&format!("{name}, h omega = {turn_rate}"), &run, &exact, (1.0, steps));
             // Only the first of them can be made whole by any method.
             assert!(turn_rate < 3.0 || run.divided > 0, "{name} {turn_rate}");
@@ -52,7 +52,7 @@ fn against_the_line(methods: &[&str], growths: &[f64]) {
         let (start, step) = (SleighState { speed: -1.0, turn_rate: 1e-3, ..SleighState::default() }, growth / 0.4);
         let exact = Exact::new(&sleigh(0.5), &start).unwrap();
         for name in methods {
-            let run = by(name, &sleigh(0.5), &start, (step, 20));
+            let run = by(name, &free(0.5), &start, (step, 20));
             ends_right(&format!("{name}, h c u = -{growth}"), &run, &exact, (step, 20));
             // Where the spin is not nothing beside the speed, it has its sign.
             let spins = run.seen(|state| state.turn_rate);
@@ -75,7 +75,7 @@ fn quarters_of_hours(runs: impl Iterator<Item = (&'static str, Run)>) {
 #[test]
 #[ignore = "slow"]
 fn step_lengths_in_full() {
-    quarters_of_hours(by_each(&sleigh(0.5), &AHEAD, (1e3, 10)));
+    quarters_of_hours(by_each(&free(0.5), &AHEAD, (1e3, 10)));
 }
 
 /// Steps of a quarter of an hour and of thirty thousand years. The parts grow as the motion becomes straight, so that there are
@@ -83,15 +83,15 @@ fn step_lengths_in_full() {
 #[test]
 fn step_lengths() {
     let (start, exact) = (AHEAD, Exact::new(&sleigh(0.5), &AHEAD).unwrap());
-    quarters_of_hours([("dla", made(&sleigh(0.5), ClosedMap::of(sleigh(0.5)), &start, (1e3, 10)))].into_iter());
-    let run = made(&sleigh(0.5), ClosedMap::of(sleigh(0.5)), &start, (1e12, 10));
+    quarters_of_hours([("dla", made(&free(0.5), ClosedMap::of(sleigh(0.5)), &start, (1e3, 10)))].into_iter());
+    let run = made(&free(0.5), ClosedMap::of(sleigh(0.5)), &start, (1e12, 10));
     ends_right("dla, h = 1e12 s", &run, &exact, (1e12, 10));
     assert!(run.divided > 0 && run.parts < 1000, "{}", run.parts);
     // What would be taken for the motion: the mean spin is nothing, and no node says so but by its own.
     let (q, v) = start.to_coordinates();
     let mut state = State::new(q, v, [false, false, true]);
     let schedule = Schedule { t0: 0.0, step: 1e12, steps: 10 };
-    drive::<_, _, 3, 1>(&sleigh(0.5), &mut ClosedMap::of(sleigh(0.5)), &schedule, &mut state, ()).unwrap();
+    drive::<_, _, 3, 1>(&free(0.5), &mut ClosedMap::of(sleigh(0.5)), &schedule, &mut state, ()).unwrap();
     assert!((state.unwrapped()[2] - exact.at(1e13).heading).abs() > 0.5);
 }
 
@@ -106,7 +106,7 @@ fn what_needs_too_many_parts_says_so() {
     let method = Composition::suzuki4(ClosedMap::of(sleigh(0.5)));
     let mut method = Substepping::within(method, Substeps::new(53, 10_000)).resolving();
     let schedule = Schedule { t0: 0.0, step: 1e12, steps: 1 };
-    let error = drive::<_, _, 3, 1>(&sleigh(0.5), &mut method, &schedule, &mut state, ()).unwrap_err();
+    let error = drive::<_, _, 3, 1>(&free(0.5), &mut method, &schedule, &mut state, ()).unwrap_err();
     let why = method.undivided().unwrap();
     assert_eq!((why.tried, state, error.source), (10_000, before, why.source));
     assert!(matches!(why.source, StepError::Closed(_)), "{why}");

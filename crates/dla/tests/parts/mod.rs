@@ -7,6 +7,7 @@ mod fields;
 mod free;
 mod halved;
 
+use crate::support::ByHand;
 use dla::{Composition, Dla, Energy, Gauss, Node, OneStep, Schedule, State, Substepping, Substeps, Trajectory, drive};
 use lagrangian::System;
 use sleigh::{Sleigh, SleighState};
@@ -76,4 +77,9 @@ fn by_each<Sys: System<3, 1>>(
 
 fn sleigh(offset: f64) -> Sleigh {
     Sleigh::new(1.0, 1.0, offset).unwrap()
+}
+
+/// The same, free.
+fn free(offset: f64) -> ByHand {
+    sleigh(offset).into()
 }

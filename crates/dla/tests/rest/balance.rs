@@ -1,6 +1,7 @@
 //! At rest where forces cancel.
 
-use super::systems::{Cart, SLOPE, Skate, in_basis, methods};
+use super::systems::{Cart, Run, SLOPE, Skate, in_basis, methods};
+use crate::support::{Three, Two};
 use dla::{Schedule, State};
 use lagrangian::System;
 
@@ -28,8 +29,9 @@ fn a_cart_stays_where_its_springs_balance_in_full() {
 /// Started at the balance of two springs a cart moves by the rounding of their forces only; off it, as an oscillator does.
 fn balances(springs: &[Springs], steps: u64) {
     for &(ends, stiffness) in springs {
-        let (plain, based) =
-            (Cart::<false> { ends, stiffness, drag: 0.0 }, Cart::<true> { ends, stiffness, drag: 0.0 });
+        let plain = Cart::<false> { ends, stiffness, drag: 0.0 };
+        let based = Cart::<true> { ends, stiffness, drag: 0.0 };
+        let [without, within] = [Two::from(plain), Two::from(based)];
         // The explicit limit of the leapfrog is two; fixed points contract up to one.
         let step = 0.4 / plain.frequency();
         let schedule = Schedule { t0: 0.0, step, steps };
@@ -45,10 +47,10 @@ fn balances(springs: &[Springs], steps: u64) {
             };
             let start = State::new([x + off, 0.0], [0.0; 2], [false; 2]);
             for (name, run) in methods() {
-                end(run(&plain, &schedule, start), name);
+                end(run(&without, &schedule, start), name);
             }
             for (name, run) in methods().into_iter().chain(in_basis()) {
-                end(run(&based, &schedule, start), name);
+                end(run(&within, &schedule, start), name);
             }
         }
     }
@@ -69,19 +71,15 @@ fn a_skate_across_its_slope_hardly_moves_in_full() {
 /// A skate at rest, nearly across its slope: `u = -g sin(e) t` off the level by `e`; and with a slow spin `w`,
 /// `u = g/w (cos(e + w t) - cos e)`. For each `e` and `w`.
 fn across_its_slope(starts: &[(f64, f64)], steps: u64) {
-    fn all<const BASIS: bool>(
-        runs: &[(&'static str, super::systems::Run<Skate<BASIS>, 3>)],
-        starts: &[(f64, f64)],
-        steps: u64,
-    ) {
+    let all = |skate: Three, basis: bool, runs: &[(&'static str, Run<Three, 3>)]| {
         let g = SLOPE[0].hypot(SLOPE[1]);
         let level = SLOPE[1].atan2(SLOPE[0]) + std::f64::consts::FRAC_PI_2;
         for &(off, spin) in starts {
             let heading = level + off;
-            let start = State::new([0.3, 0.7, heading], [0.0, 0.0, spin], Skate::<BASIS>.angles());
+            let start = State::new([0.3, 0.7, heading], [0.0, 0.0, spin], skate.angles());
             for (name, run) in runs {
-                let state = run(&Skate, &Schedule { t0: 0.0, step: 0.01, steps }, start)
-                    .unwrap_or_else(|error| panic!("{name}, basis {BASIS}, {off:e}, {spin:e}: {error}"));
+                let state = run(&skate, &Schedule { t0: 0.0, step: 0.01, steps }, start)
+                    .unwrap_or_else(|error| panic!("{name}, basis {basis}, {off:e}, {spin:e}: {error}"));
                 let (q, v, t) = (state.unwrapped(), state.v(), 0.01 * steps as f64);
                 let u = v[0] * q[2].cos() + v[1] * q[2].sin();
                 // By a product, since the difference of the cosines cancels.
@@ -92,11 +90,11 @@ fn across_its_slope(starts: &[(f64, f64)], steps: u64) {
                 };
                 // The method's error, the rounding of the heading, and that of the weight in every step.
                 let bound = 1e-6 * exact.abs() + 2.0 * f64::EPSILON * g * t * heading.abs().max(1.0);
-                assert!((u - exact).abs() <= bound, "{name}, basis {BASIS}, {off:e}, {spin:e}: {u:e} for {exact:e}");
+                assert!((u - exact).abs() <= bound, "{name}, basis {basis}, {off:e}, {spin:e}: {u:e} for {exact:e}");
             }
         }
-    }
-    all::<false>(&methods(), starts, steps);
+    };
+    all(Skate::<false>.into(), false, &methods());
     let based: Vec<_> = methods().into_iter().chain(in_basis()).collect();
-    all::<true>(&based, starts, steps);
+    all(Skate::<true>.into(), true, &based);
 }

@@ -4,8 +4,8 @@
 
 mod balance;
 mod bicycle;
-mod disk;
+pub(crate) mod disk;
 mod settling;
 mod small;
-mod systems;
+pub(crate) mod systems;
 mod vectors;

@@ -1,6 +1,7 @@
 //! Damped motions, to their end and beyond.
 
 use super::systems::{Cart, Pendulum, in_basis, methods};
+use crate::support::Two;
 use dla::{Schedule, State};
 use proptest::prelude::*;
 
@@ -24,7 +25,7 @@ fn dies_out(drag: f64, duration: f64, lengths: &[f64]) {
         for &step in lengths {
             let start = State::new([sin, -cos], [0.0; 2], [false; 2]);
             let schedule = Schedule { t0: 0.0, step, steps: (duration / step) as u64 };
-            let state = run(&Pendulum { drag }, &schedule, start)
+            let state = run(&Two::from(Pendulum { drag }), &schedule, start)
                 .unwrap_or_else(|error| panic!("{name}, step {step}: {error}"));
             // The position is on the circle to the rounding of its coordinates.
             let [x, y] = *state.q();
@@ -62,10 +63,10 @@ fn ends_at_rest((decades, ratio, damping, off, middle): Damped, most: f64) -> Re
         Ok(())
     };
     for (name, run) in methods() {
-        end(run(&plain, &schedule, start), name)?;
+        end(run(&Two::from(plain), &schedule, start), name)?;
     }
     for (name, run) in in_basis() {
-        end(run(&based, &schedule, start), name)?;
+        end(run(&Two::from(based), &schedule, start), name)?;
     }
     Ok(settled)
 }

@@ -1,6 +1,7 @@
 //! Small motions keep their digits.
 
 use super::systems::{Cart, GRAVITY, Pendulum, Run, in_basis, methods};
+use crate::support::Two;
 use approx::assert_relative_eq;
 use dla::{Schedule, State};
 
@@ -22,7 +23,7 @@ fn swings_are_alike(runs: &[(f64, u64)]) {
             let swing = |amplitude: f64| {
                 let (sin, cos) = amplitude.sin_cos();
                 let start = State::new([sin, -cos], [0.0; 2], [false; 2]);
-                let state = run(&Pendulum { drag: 0.0 }, &Schedule { t0: 0.0, step, steps }, start)
+                let state = run(&Two::from(Pendulum { drag: 0.0 }), &Schedule { t0: 0.0, step, steps }, start)
                     .unwrap_or_else(|error| panic!("{name}, {amplitude:e} rad, step {step}: {error}"));
                 [state.q()[0] / amplitude, state.v()[0] / (amplitude * GRAVITY.sqrt())]
             };
@@ -47,11 +48,11 @@ fn an_oscillator_is_as_exact_when_it_is_small() {
     let cart = Cart::<true> { ends: [0.0, 0.0], stiffness: [1.0, 2.0], drag: 0.0 };
     let omega = cart.frequency();
     let (step, steps) = (0.25, 400);
-    let run: Run<Cart<true>, 2> = in_basis().into_iter().find(|(name, _)| *name == "gauss16").unwrap().1;
+    let run: Run<Two, 2> = in_basis().into_iter().find(|(name, _)| *name == "gauss16").unwrap().1;
     for decade in 3..=14 {
         let amplitude = 10f64.powi(-decade);
         let start = State::new([0.0, 0.0], [amplitude * omega, 0.0], [false; 2]);
-        let state = run(&cart, &Schedule { t0: 0.0, step, steps }, start).unwrap();
+        let state = run(&Two::from(cart), &Schedule { t0: 0.0, step, steps }, start).unwrap();
         let (sin, cos) = (omega * step * steps as f64).sin_cos();
         assert_relative_eq!(state.q()[0] / amplitude, sin, epsilon = 1e-9);
         assert_relative_eq!(state.v()[0] / (amplitude * omega), cos, epsilon = 1e-9);

@@ -1,4 +1,4 @@
-use crate::runs::{backward, sleigh, state_of};
+use crate::runs::{backward, sleigh, state_of, system};
 use dla::{
     Checkpoint, CheckpointError, Composition, Dla, Gauss, Gni, OneStep, Schedule, State, Trajectory, Work, drive_part,
 };
@@ -11,7 +11,7 @@ fn whole_and_resumed<Method>(make: impl Fn() -> Method, (stop, steps): (u64, u64
 where
     Method: OneStep<3, 1>,
 {
-    let sleigh = sleigh();
+    let sleigh = system();
     let (schedule, every) = (Schedule { steps, ..SCHEDULE }, steps / 10);
     let part = |method: &mut Method, steps, state: &mut State<3>, trajectory: &mut Trajectory<3, 1>| {
         drive_part(&sleigh, method, &schedule, steps, state, trajectory).unwrap();
@@ -73,7 +73,7 @@ fn resumed_runs(stops: &[u64], steps: u64) {
 /// The control: what is not saved is missed.
 #[test]
 fn every_part_of_a_state_counts() {
-    let sleigh = sleigh();
+    let sleigh = system();
     let run = |method: &mut Gni<3>, steps, state: &mut State<3>| {
         drive_part(&sleigh, method, &SCHEDULE, steps, state, ()).unwrap();
     };

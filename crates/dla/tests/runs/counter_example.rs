@@ -1,11 +1,13 @@
 //! The geometric nonholonomic integrator under forces.
 
+use crate::support::Two;
 use approx::assert_abs_diff_eq;
 use dla::{Gni, OneStep, State};
 use lagrangian::{Constraint, Scalar, System};
 
 /// A particle that is pushed by a constant force and braked in proportion to its velocity, held in its second coordinate.
-struct Pushed {
+#[derive(Clone, Copy)]
+pub(crate) struct Pushed {
     force: f64,
     drag: f64,
 }
@@ -29,7 +31,9 @@ fn the_counter_example_feels_forces() {
     let (mut state, mut method) = (State::new([0.0; 2], [0.5, 0.0], [false; 2]), Gni::<2>::default());
     for k in 0..20 {
         let t = 0.1 * f64::from(k);
-        let report = OneStep::<2, 1>::step(&mut method, &Pushed { force: 3.0, drag: 0.0 }, t, 0.1, &mut state).unwrap();
+        let report =
+            OneStep::<2, 1>::step(&mut method, &Two::from(Pushed { force: 3.0, drag: 0.0 }), t, 0.1, &mut state)
+                .unwrap();
         assert!(report.iterations <= 2);
         let t = t + 0.1;
         assert_abs_diff_eq!(state.q()[0], 0.5 * t + 0.75 * t * t, epsilon = 1e-13);
@@ -40,7 +44,7 @@ fn the_counter_example_feels_forces() {
     let mut state = State::new([0.0; 2], [1.0, 0.0], [false; 2]);
     let mut method = Gni::<2>::default();
     for k in 0..20 {
-        let system = Pushed { force: 0.0, drag: 0.8 };
+        let system = Two::from(Pushed { force: 0.0, drag: 0.8 });
         let report = OneStep::<2, 1>::step(&mut method, &system, 0.1 * f64::from(k), 0.1, &mut state).unwrap();
         assert!(report.iterations <= 2);
     }
@@ -48,7 +52,8 @@ fn the_counter_example_feels_forces() {
 }
 
 /// Lifted at the speed `t`.
-struct Lifted;
+#[derive(Clone, Copy)]
+pub(crate) struct Lifted;
 
 impl System<2, 1> for Lifted {
     fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 2], v: &[S; 2]) -> S {
@@ -65,7 +70,7 @@ fn the_counter_example_follows_a_moving_constraint() {
     let (mut state, mut method) = (State::new([0.0; 2], [0.5, 1.0], [false; 2]), Gni::<2>::default());
     for k in 0..5 {
         let t = 1.0 + 0.1 * f64::from(k);
-        OneStep::<2, 1>::step(&mut method, &Lifted, t, 0.1, &mut state).unwrap();
+        OneStep::<2, 1>::step(&mut method, &Two::from(Lifted), t, 0.1, &mut state).unwrap();
         assert_abs_diff_eq!(state.v()[1], t + 0.1, epsilon = 1e-15);
         assert_abs_diff_eq!(state.v()[0], 0.5, epsilon = 1e-15);
     }
@@ -75,7 +80,7 @@ fn the_counter_example_follows_a_moving_constraint() {
 #[test]
 fn the_counter_example_begins_anew_from_another_start() {
     let step = |method: &mut Gni<2>, mut state: State<2>| {
-        OneStep::<2, 1>::step(method, &Lifted, 1.0, 0.1, &mut state).unwrap();
+        OneStep::<2, 1>::step(method, &Two::from(Lifted), 1.0, 0.1, &mut state).unwrap();
         state
     };
     let (here, there) = (State::new([0.0; 2], [0.5, 1.0], [false; 2]), State::new([0.0, 0.3], [0.7, 1.0], [false; 2]));

@@ -1,4 +1,4 @@
-use crate::runs::{backward, sleigh, sleigh_state, state_of};
+use crate::runs::{backward, sleigh, sleigh_state, state_of, system};
 use dla::{Composition, Dla, Gauss, Hermite, Observer, OneStep, Samples, Schedule, State, StepReport, View, drive};
 use lagrangian::constraint_residual;
 use sleigh::{Exact, SleighState};
@@ -27,7 +27,7 @@ fn schedule(steps: u64) -> Schedule {
 
 /// The largest error of samples, and of the constraint at them.
 fn sampled<Method: OneStep<3, 1> + Copy>(method: Method, steps: u64) -> (f64, f64) {
-    let (sleigh, mut state) = (sleigh(), state_of(&backward()));
+    let (sleigh, mut state) = (system(), state_of(&backward()));
     let mut samples = Samples::new(method, &TIMES);
     drive(&sleigh, &mut { method }, &schedule(steps), &mut state, &mut samples).unwrap();
     assert_eq!((samples.taken().len(), samples.failure()), (TIMES.len(), None));
@@ -64,7 +64,7 @@ fn samples_have_the_order_of_the_method_and_hold_the_constraint() {
 /// Samples at nodes are the nodes, and looking changes nothing.
 #[test]
 fn samples_at_nodes_are_the_nodes() {
-    let (sleigh, times) = (sleigh(), [0.0, 2.5, 2.6, 5.0, 10.0, 11.0]);
+    let (sleigh, times) = (system(), [0.0, 2.5, 2.6, 5.0, 10.0, 11.0]);
     let (mut plain, mut watched) = (state_of(&backward()), state_of(&backward()));
     let mut samples = Samples::new(Dla::midpoint(), &times);
     drive(&sleigh, &mut Dla::midpoint(), &schedule(80), &mut watched, &mut samples).unwrap();
@@ -113,7 +113,7 @@ impl Observer<3, 1> for Quintics {
 /// The largest errors of position and velocity, and the largest slip, of the quintics of a run.
 fn interpolated<Method: OneStep<3, 1>>(mut method: Method, steps: u64) -> [f64; 3] {
     let (sleigh, mut quintics) = (sleigh(), Quintics::default());
-    drive(&sleigh, &mut method, &schedule(steps), &mut state_of(&backward()), &mut quintics).unwrap();
+    drive(&system(), &mut method, &schedule(steps), &mut state_of(&backward()), &mut quintics).unwrap();
     let exact = Exact::new(&sleigh, &backward()).unwrap();
     let mut worst = [0.0f64; 3];
     for t in (0..997).map(|i| DURATION * (f64::from(i) + 0.5) / 997.0) {
@@ -147,7 +147,7 @@ fn quintics_have_their_orders() {
 /// The velocity is the derivative of the position: Simpson's rule is exact to degree three, Boole's to five.
 #[test]
 fn the_velocity_of_a_quintic_is_the_derivative_of_its_position() {
-    let (sleigh, mut quintics) = (sleigh(), Quintics::default());
+    let (sleigh, mut quintics) = (system(), Quintics::default());
     drive(&sleigh, &mut Dla::midpoint(), &schedule(20), &mut state_of(&backward()), &mut quintics).unwrap();
     for (end, quintic) in &quintics.found {
         let (from, width) = (end - 0.4, 0.3);

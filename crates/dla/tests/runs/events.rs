@@ -1,4 +1,5 @@
-use crate::runs::{Motion, backward, sleigh, sleigh_state, state_of};
+use crate::runs::{Motion, backward, sleigh, sleigh_state, state_of, system};
+use crate::support::{ByHand, Two};
 use dla::{
     Close, Composition, Direction, Dla, Event, Gauss, OneStep, Piece, Schedule, State, Trajectory, Watch,
     close_crossings, drive, drive_part, piece_by_piece,
@@ -26,7 +27,7 @@ where
 {
     let mut watch = Watch::new(method, events, ());
     let schedule = Schedule { t0: 0.0, step, steps };
-    drive(sleigh, &mut { method }, &schedule, &mut state_of(start), &mut watch).unwrap();
+    drive(&ByHand::from(*sleigh), &mut { method }, &schedule, &mut state_of(start), &mut watch).unwrap();
     watch.crossings().iter().map(|crossing| (crossing.event, crossing.t)).collect()
 }
 
@@ -179,7 +180,7 @@ fn directions_and_the_end_of_a_run() {
     let mut watch = Watch::new(Dla::midpoint(), &events, Trajectory::<3, 1>::every(1));
     let mut state = state_of(&start);
     let schedule = Schedule { t0: 0.0, step: 0.05, steps: 800 };
-    let made = drive(&sleigh, &mut Dla::midpoint(), &schedule, &mut state, &mut watch).unwrap();
+    let made = drive(&ByHand::from(sleigh), &mut Dla::midpoint(), &schedule, &mut state, &mut watch).unwrap();
     let happened: Vec<_> = watch.crossings().iter().map(|crossing| crossing.event).collect();
     let ended = *watch.ended().unwrap();
     assert_eq!((happened, ended.k), (vec![2, 1], made - 1));
@@ -192,13 +193,13 @@ fn directions_and_the_end_of_a_run() {
     assert_eq!((last.k, last.t, last.q), (made, ended.t, ended.state.unwrapped()));
     assert!(last.constraint <= 2e-16 && last.multipliers.is_some());
     let mut plain = Trajectory::<3, 1>::every(1);
-    drive(&sleigh, &mut Dla::midpoint(), &schedule, &mut state_of(&start), &mut plain).unwrap();
+    drive(&ByHand::from(sleigh), &mut Dla::midpoint(), &schedule, &mut state_of(&start), &mut plain).unwrap();
     assert_eq!(trajectory.nodes()[..made as usize], plain.nodes()[..made as usize]);
 }
 
 /// A point on a line that is pushed to and fro: the force, and the imposed velocity, jump at `t = 1`.
 #[derive(Clone, Copy)]
-struct Pushed {
+pub(crate) struct Pushed {
     after: Option<bool>,
     imposed: bool,
 }
@@ -232,7 +233,7 @@ impl Piecewise for Pushed {
 /// `x = 0.58 - t^2/2` to `t = 1`, then `0.08 - s + 5 s^2/2`, which is zero at `s = 0.2 -+ sqrt(0.04 - 0.032)`.
 #[test]
 fn events_within_each_piece_and_in_a_jump() {
-    let system = Pushed { after: None, imposed: true };
+    let system = Two::from(Pushed { after: None, imposed: true });
     let mut state = State::new([0.58, 0.0], [0.0, -1.0], [false; 2]);
     let events = [
         Event::new("x", |_, state: &State<2>| state.q()[0]),
@@ -302,7 +303,7 @@ fn several_events_within_one_step_have_its_direction() {
     ] {
         let mut watch = Watch::new(Dla::midpoint(), &events, ());
         let schedule = Schedule { t0, step, steps: 1 };
-        drive(&sleigh(), &mut Dla::midpoint(), &schedule, &mut straight(t0), &mut watch).unwrap();
+        drive(&system(), &mut Dla::midpoint(), &schedule, &mut straight(t0), &mut watch).unwrap();
         let found: Vec<_> = watch.crossings().iter().map(|crossing| crossing.event).collect();
         assert_eq!(found, order);
         for (crossing, t) in watch.crossings().iter().zip(times) {
@@ -320,7 +321,7 @@ fn several_events_within_one_step_have_its_direction() {
     ];
     let mut watch = Watch::new(Dla::midpoint(), &events, Trajectory::<3, 1>::every(1));
     let schedule = Schedule { t0: 2.0, step: -0.75, steps: 100 };
-    drive(&sleigh(), &mut Dla::midpoint(), &schedule, &mut straight(0.0), &mut watch).unwrap();
+    drive(&system(), &mut Dla::midpoint(), &schedule, &mut straight(0.0), &mut watch).unwrap();
     assert_eq!(watch.crossings().iter().map(|crossing| crossing.event).collect::<Vec<_>>(), [2, 0]);
     let trajectory = watch.into_inner();
     let last = trajectory.nodes().last().unwrap();
@@ -362,7 +363,7 @@ fn told(all_found: &[(f64, u32)]) {
         let mut watch = Watch::new(Dla::midpoint(), &events, ());
         watch.samples = samples;
         let schedule = Schedule { t0: 0.0, step: 0.5, steps: 40 };
-        drive(&sleigh(), &mut Dla::midpoint(), &schedule, &mut straight(0.0), &mut watch).unwrap();
+        drive(&system(), &mut Dla::midpoint(), &schedule, &mut straight(0.0), &mut watch).unwrap();
         (watch.crossings().len(), watch.close())
     };
     for &(frequency, samples) in all_found {

@@ -1,4 +1,5 @@
-use crate::runs::{sleigh, state_of};
+use crate::runs::{sleigh, state_of, system};
+use crate::support::Two;
 use dla::{
     Dla, Form, Gauss, Hint, History, Newton, OneStep, Schedule, Stage, State, StepError, Stepper, Trajectory, drive,
 };
@@ -66,6 +67,7 @@ fn no_wrong_root_is_accepted_in_full() {
 /// solution at the end of the branch, by the closed map, in the basis and with multipliers. Some that exist are refused.
 fn roots(points: impl Iterator<Item = u8>) -> [i32; 3] {
     let (sleigh, points) = (sleigh(), Vec::from_iter(points));
+    let system = system();
     let [mut right, mut refused, mut none] = [0; 3];
     for &i in &points {
         for &j in &points {
@@ -74,7 +76,7 @@ fn roots(points: impl Iterator<Item = u8>) -> [i32; 3] {
                 let expected = followed(&sleigh, u, omega, h);
                 for (form, mut method) in forms() {
                     let mut state = state_of(&start(u, omega));
-                    let outcome = method.step(&sleigh, 0.0, h, &mut state);
+                    let outcome = method.step(&system, 0.0, h, &mut state);
                     match (expected, outcome) {
                         // Near the end of a branch a rounding moves the solution by its root.
                         (Some(expected), Ok(_)) => {
@@ -100,11 +102,11 @@ fn roots(points: impl Iterator<Item = u8>) -> [i32; 3] {
 /// Step, time, corrections, iterations and a hint, and the part of the trajectory that is valid.
 #[test]
 fn a_failure_tells_what_to_do() {
-    let sleigh = sleigh();
+    let (sleigh, system) = (sleigh(), system());
     let run = |method: &mut dyn OneStep<3, 1>, h: f64, from: SleighState| {
         let (mut state, mut trajectory) = (state_of(&from), Trajectory::<3, 1>::every(1));
         let schedule = Schedule { t0: 2.0, step: h, steps: 1000 };
-        let error = drive(&sleigh, method, &schedule, &mut state, &mut trajectory).unwrap_err();
+        let error = drive(&system, method, &schedule, &mut state, &mut trajectory).unwrap_err();
         // The valid part is there, and ends where the error says.
         let last = trajectory.nodes().last().unwrap();
         assert_eq!((last.k, last.t, last.q), (error.valid_steps(), error.time, state.unwrapped()));
@@ -142,7 +144,7 @@ fn a_failure_tells_what_to_do() {
             let Some(Hint::ShorterStep { part }) = error.hint() else { panic!("{error}") };
             let mut state = state_of(&from);
             let shorter = Schedule { t0: 2.0, step: part * h, steps: 1 };
-            drive(&sleigh, &mut method, &shorter, &mut state, ()).unwrap();
+            drive(&system, &mut method, &shorter, &mut state, ()).unwrap();
         }
     }
 }
@@ -150,7 +152,7 @@ fn a_failure_tells_what_to_do() {
 /// The history is that of the corrections: quadratic convergence cut off, a limit of rounding, and divergence.
 #[test]
 fn the_history_tells_how_a_search_went() {
-    let sleigh = sleigh();
+    let sleigh = system();
     let fail = |newton: Newton, h: f64| {
         let mut method = Dla::midpoint();
         method.newton = newton;
@@ -187,7 +189,7 @@ fn the_history_tells_how_a_search_went() {
 /// A step that turns by a thousand million turns is refused soon, not followed that often.
 #[test]
 fn a_step_beyond_all_measure() {
-    let sleigh = sleigh();
+    let sleigh = system();
     for form in [Form::Best, Form::Multipliers] {
         let mut state = state_of(&start(-1.0, 1e10));
         let error = Dla::midpoint().solved(form).step(&sleigh, 0.0, 1.0, &mut state).unwrap_err();
@@ -196,7 +198,8 @@ fn a_step_beyond_all_measure() {
 }
 
 /// A particle of mass 1 along `x`, in a brake that acts for a while, about the time 0.75 s, or in a gap, from 0.304 m to 0.36 m.
-struct Brake {
+#[derive(Clone, Copy)]
+pub(crate) struct Brake {
     strength: f64,
     gap: bool,
 }
@@ -225,7 +228,7 @@ fn a_brake_in_the_middle_of_a_step() {
     for gap in [false, true] {
         let step = |strength: f64| {
             let mut state = State::new([0.3, 0.0], [1.0, 0.0], [false; 2]);
-            OneStep::<2, 1>::step(&mut Dla::midpoint(), &Brake { strength, gap }, 0.7, 0.1, &mut state)
+            OneStep::<2, 1>::step(&mut Dla::midpoint(), &Two::from(Brake { strength, gap }), 0.7, 0.1, &mut state)
                 .map(|_| state.v()[0])
         };
         assert!(matches!(step(100.0), Err(StepError::Overshoot { .. })), "{:?}", step(100.0));

@@ -1,4 +1,5 @@
 use crate::runs::{backward, sleigh};
+use crate::support::ByHand;
 use approx::assert_abs_diff_eq;
 use dla::{Each, Ensemble, Gauss, GaussAdaptive, GaussEnsemble, LaneState, OneStep, Same, Schedule, State, drive};
 use lagrangian::{AdmissibleBasis, Constraint, Reduced, Scalar, System, With, velocity_of};
@@ -78,7 +79,7 @@ proptest! {
         let mut ensemble = Closed::new(systems, h, LaneState::new(&states, [false, false, true]));
         ensemble.advance(run.1);
         for (lane, (sleigh, start)) in members.iter().enumerate() {
-            match alone(sleigh, ClosedMap::of(*sleigh), run, start) {
+            match alone(&ByHand::from(*sleigh), ClosedMap::of(*sleigh), run, start) {
                 Some(state) => assert_same(&ensemble, lane, &state, rounding(sleigh, start, (h.abs(), run.1))),
                 None => prop_assert!(!ensemble.state().is_finite(lane)),
             }
@@ -125,25 +126,28 @@ fn collocation_is_that_of_one(members: &[(Sleigh, Start, f64)], h: f64) {
     let run = (h, 20);
     let states: Vec<_> = members.iter().map(|(_, start, _)| *start).collect();
     let state = LaneState::new(&states, [false, false, true]);
-    let free: [Sleigh; W] = std::array::from_fn(|i| members[i].0);
+    let free: [_; W] = std::array::from_fn(|i| ByHand::from(members[i].0));
     let mut alike = GaussEnsemble::<_, _, 4, W, 3, 1>::new(Each(&free), (0.0, h), state).unwrap();
     alike.advance(run.1);
-    let bowls: [_; W] =
-        std::array::from_fn(|i| With { body: free[i], effects: Bowl::new([members[i].2, 0.1], [0.5, 0.0]).unwrap() });
+    let bowls: [_; W] = std::array::from_fn(|i| With {
+        body: members[i].0,
+        effects: Bowl::new([members[i].2, 0.1], [0.5, 0.0]).unwrap(),
+    });
+    let bowls = bowls.map(ByHand::from);
     let mut bowl = GaussEnsemble::<_, _, 8, W, 3, 1>::new(Each(&bowls), (0.0, h), state).unwrap();
     bowl.advance(run.1);
     // In the axes of the sleigh, where the places depend on each other.
-    let wells: [_; W] = std::array::from_fn(|i| RoundWell::new(free[i], members[i].2, [0.5, 0.0]).unwrap());
+    let wells: [_; W] = std::array::from_fn(|i| RoundWell::new(members[i].0, members[i].2, [0.5, 0.0]).unwrap());
     let own: Vec<_> =
         wells.iter().zip(&states).map(|(well, start)| (well.coordinates(&state_of(start)).0, start.1)).collect();
-    let state = LaneState::new(&own, [false, false, true]);
+    let (wells, state) = (wells.map(ByHand::from), LaneState::new(&own, [false, false, true]));
     let mut well = GaussEnsemble::<_, _, 8, W, 3, 1>::new(Each(&wells), (0.0, h), state).unwrap();
     well.advance(run.1);
     for (lane, (sleigh, start, _)) in members.iter().enumerate() {
         let t = h * run.1 as f64;
         // The stages are found to rounding by both, and the well adds forces of some newtons to what the spin lets grow.
         let tolerance = 4.0 * rounding(sleigh, start, run) * (t * 3.0).exp();
-        let expected = alone(sleigh, Gauss::new::<4>(), run, start).unwrap();
+        let expected = alone(&free[lane], Gauss::new::<4>(), run, start).unwrap();
         assert_same(&alike, lane, &expected, tolerance);
         let expected = alone(&bowls[lane], Gauss::new::<8>(), run, start).unwrap();
         assert_same(&bowl, lane, &expected, tolerance);
@@ -162,7 +166,7 @@ fn a_lane_that_fails_leaves_the_others_alone() {
     let states: Vec<_> = (0..W).map(|i| reduced(if i == 3 { &swinging } else { &usual })).collect();
     let mut ensemble = Closed::new([sleigh; W], h, LaneState::new(&states, [false, false, true]));
     ensemble.advance(10);
-    assert!(alone(&sleigh, ClosedMap::of(sleigh), (h, 10), &states[3]).is_none());
+    assert!(alone(&ByHand::from(sleigh), ClosedMap::of(sleigh), (h, 10), &states[3]).is_none());
     let whole: Vec<bool> = (0..W).map(|lane| ensemble.state().is_finite(lane)).collect();
     assert_eq!(whole, (0..W).map(|lane| lane != 3).collect::<Vec<_>>());
 
@@ -170,7 +174,8 @@ fn a_lane_that_fails_leaves_the_others_alone() {
     let rest = reduced(&SleighState { speed: 0.0, turn_rate: 0.0, ..backward() });
     let states: Vec<_> = (0..W).map(|i| if i == 3 { reduced(&quick) } else { rest }).collect();
     let state = LaneState::new(&states, [false, false, true]);
-    let mut ensemble = GaussEnsemble::<_, _, 4, W, 3, 1>::new(Same(&sleigh), (0.0, 40.0), state).unwrap();
+    let system = ByHand::from(sleigh);
+    let mut ensemble = GaussEnsemble::<_, _, 4, W, 3, 1>::new(Same(&system), (0.0, 40.0), state).unwrap();
     ensemble.advance(2);
     assert!((0..W).all(|lane| ensemble.state().is_finite(lane) == (lane != 3)));
 }
@@ -179,7 +184,7 @@ fn a_lane_that_fails_leaves_the_others_alone() {
 fn one_system_for_all_is_as_each_its_own() {
     let states: Vec<_> = (0..W).map(|i| reduced(&SleighState { turn_rate: 0.02 * i as f64, ..backward() })).collect();
     let state = LaneState::new(&states, [false, false, true]);
-    let bowl = With { body: sleigh(), effects: Bowl::new([0.1, 0.2], [0.0, 0.0]).unwrap() };
+    let bowl = ByHand::from(With { body: sleigh(), effects: Bowl::new([0.1, 0.2], [0.0, 0.0]).unwrap() });
     let bowls: [_; W] = std::array::from_fn(|_| bowl.clone());
     let mut same = GaussEnsemble::<_, _, 8, W, 3, 1>::new(Same(&bowl), (0.0, 0.5), state).unwrap();
     let mut each = GaussEnsemble::<_, _, 8, W, 3, 1>::new(Each(&bowls), (0.0, 0.5), state).unwrap();
@@ -193,7 +198,7 @@ fn one_system_for_all_is_as_each_its_own() {
 #[test]
 fn time_goes_on_in_lanes() {
     let torque = TimeFunction::Sine { amplitude: 0.8, frequency: 2.0, phase: 0.3 };
-    let system = With { body: sleigh(), effects: Torque::new(torque).unwrap() };
+    let system = ByHand::from(With { body: sleigh(), effects: Torque::new(torque).unwrap() });
     let starts: Vec<_> = (0..W).map(|i| reduced(&SleighState { speed: 0.05 * i as f64, ..backward() })).collect();
     let state = LaneState::new(&starts, [false, false, true]);
     let (t0, h) = (0.7, 0.1);
@@ -224,7 +229,7 @@ fn the_largest_reaction_of_every_lane() {
         let mut state = State::new(start.0, velocity_of(&sleigh, 0.0, &start.0, &start.1).unwrap(), sleigh.angles());
         let (mut map, mut largest) = (ClosedMap::of(sleigh), 0.0f64);
         for k in 0..steps {
-            let report = map.step(&sleigh, k as f64 * h, h, &mut state).unwrap();
+            let report = map.step(&ByHand::from(sleigh), k as f64 * h, h, &mut state).unwrap();
             largest = largest.max((report.impulses[0][0] + report.impulses[1][0]).abs() / h);
         }
         // A momentum has the rounding of the velocities, the masses being near one.
@@ -239,7 +244,7 @@ fn the_largest_reaction_of_every_lane() {
 /// Eight lanes iterate until the slowest of them has settled, from the polynomial of the step before; less when less is asked for.
 #[test]
 fn stages_in_lanes_settle_with_the_slowest() {
-    let (sleigh, h, steps) = (sleigh(), 0.2, 40);
+    let (sleigh, h, steps) = (ByHand::from(sleigh()), 0.2, 40);
     let starts: Vec<_> =
         (0..W).map(|lane| reduced(&SleighState { turn_rate: 0.1 * lane as f64, ..backward() })).collect();
     let begin = LaneState::new(&starts, [false, false, true]);
@@ -370,7 +375,7 @@ fn many_steps_lose_no_energy_but_by_rounding_in_full() {
 /// What the steps of an ensemble leave out does not add up: the energy of each wanders by rounding, as that of one alone. The control
 /// leaves out more.
 fn lose_no_energy(steps: u32, control: f64) {
-    let bowl = With { body: sleigh(), effects: Bowl::new([0.1, 0.1], [0.0, 0.0]).unwrap() };
+    let bowl = ByHand::from(With { body: sleigh(), effects: Bowl::new([0.1, 0.1], [0.0, 0.0]).unwrap() });
     let states: Vec<_> = (0..W).map(|i| reduced(&SleighState { turn_rate: 0.05 * i as f64, ..backward() })).collect();
     let wander = |settled: Option<f64>| {
         let state = LaneState::new(&states, [false, false, true]);
@@ -398,7 +403,7 @@ fn lose_no_energy(steps: u32, control: f64) {
 /// However many iterations a checkpoint claims for the last step, the limit of the method holds.
 #[test]
 fn remembered_iterations_stay_within_the_limit() {
-    let system = sleigh();
+    let system = ByHand::from(sleigh());
     let (q, v) = backward().to_coordinates();
     let mut state = State::new(q, v, system.angles());
     let mut method = Gauss::new::<8>();

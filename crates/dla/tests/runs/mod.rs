@@ -3,27 +3,33 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
 mod checkpoint;
-mod counter_example;
+pub(crate) mod counter_example;
 mod dense;
-mod events;
-mod failures;
+pub(crate) mod events;
+pub(crate) mod failures;
 mod hints;
 mod lanes;
-mod observers;
+pub(crate) mod observers;
 mod own_steps;
 mod recommend;
 mod round_well;
-mod scripted;
-mod substeps;
+pub(crate) mod scripted;
+pub(crate) mod substeps;
 mod trials;
 mod units;
 
+use crate::support::ByHand;
 use dla::State;
 use sleigh::{Sleigh, SleighState};
 
 /// The sleigh of the scene `turnaround`.
 fn sleigh() -> Sleigh {
     Sleigh::new(1.0, 1.0, 0.5).unwrap()
+}
+
+/// The same, to be passed to a method.
+fn system() -> ByHand {
+    sleigh().into()
 }
 
 /// Its start.

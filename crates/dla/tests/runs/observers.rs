@@ -1,6 +1,7 @@
 //! What observers are shown, and runs cut into pieces, by methods that do what they are told.
 
 use crate::runs::scripted::{Point, Short, start};
+use crate::support::{Free, One};
 use approx::assert_relative_eq;
 use dla::{
     Checkpoint, Event, Observer, Part, Piece, RunError, Samples, Schedule, State, StepError, StepReport, Trajectory,
@@ -32,7 +33,7 @@ impl Observer<1, 1> for Log {
 
 fn shown(observer: &mut impl Observer<1, 1>) -> ControlFlow<()> {
     let state = start();
-    let node = |k| View { system: &Point, k, t: k as f64, state: &state };
+    let node = |k| View { system: &One::Point(Point), k, t: k as f64, state: &state };
     observer.start(&node(0));
     observer.resume(&node(0));
     let flow = observer.step(&node(1), &StepReport::of(1));
@@ -70,8 +71,8 @@ fn a_jump_over_zero_is_a_crossing() {
         let events = [Event::new("the velocity", |_, state: &State<1>| state.v()[0])];
         let mut watch = Watch::new(Short::default(), &events, ());
         let node = |v: f64| State::new([0.0], [v], [false]);
-        Observer::<1, 1>::start(&mut watch, &View { system: &Point, k: 3, t: 0.5, state: &node(before) });
-        Observer::<1, 1>::resume(&mut watch, &View { system: &Point, k: 3, t: 0.5, state: &node(after) });
+        Observer::<1, 1>::start(&mut watch, &View { system: &One::Point(Point), k: 3, t: 0.5, state: &node(before) });
+        Observer::<1, 1>::resume(&mut watch, &View { system: &One::Point(Point), k: 3, t: 0.5, state: &node(after) });
         let found: Vec<_> = watch.crossings().iter().map(|found| (found.rising, found.k, found.t)).collect();
         assert_eq!(found, crossing.map(|rising| (rising, 3, 0.5)).into_iter().collect::<Vec<_>>(), "{before} {after}");
     }
@@ -83,17 +84,20 @@ fn samples_begin_again_after_a_jump() {
     let times = [0.5];
     let mut samples = Samples::new(Short::default(), &times);
     let state = |q: f64, v: f64| State::new([q], [v], [false]);
-    Observer::<1, 1>::start(&mut samples, &View { system: &Point, k: 2, t: 0.25, state: &state(0.0, 1.0) });
-    Observer::<1, 1>::resume(&mut samples, &View { system: &Point, k: 2, t: 0.25, state: &state(0.0, 2.0) });
+    Observer::<1, 1>::start(&mut samples, &View { system: &One::Point(Point), k: 2, t: 0.25, state: &state(0.0, 1.0) });
+    Observer::<1, 1>::resume(
+        &mut samples,
+        &View { system: &One::Point(Point), k: 2, t: 0.25, state: &state(0.0, 2.0) },
+    );
     let end = state(1.0, 2.0);
-    let flow = samples.step(&View { system: &Point, k: 3, t: 0.75, state: &end }, &StepReport::<1>::of(1));
+    let flow = samples.step(&View { system: &One::Point(Point), k: 3, t: 0.75, state: &end }, &StepReport::<1>::of(1));
     assert!(flow.is_continue());
     assert_relative_eq!(samples.taken()[0].q()[0], 0.5);
 }
 
 /// A point that is led with the speed 1, 2, 3, .. from one second to the next, and from the fourth on by nothing possible.
-#[derive(Debug, Clone)]
-struct Led(f64);
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Led(f64);
 
 impl System<1, 1> for Led {
     fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 1], v: &[S; 1]) -> S {
@@ -119,10 +123,11 @@ fn pieces_from_a_node_on() {
     let run = |from: u64, steps: u64, stop: u64| {
         let schedule = Schedule { t0: 0.0, step: 0.5, steps };
         let (mut state, mut made) = (State::new([0.0], [0.0], [false]), Vec::new());
-        let outcome = piece_by_piece_from(from, &Led(1.0), &schedule, &mut state, |_, Piece { steps, .. }, state| {
-            made.push((steps.start, steps.end, state.v()[0]));
-            Ok(Part { made: steps.end, stopped: steps.end >= stop })
-        });
+        let outcome =
+            piece_by_piece_from(from, &One::from(Led(1.0)), &schedule, &mut state, |_, Piece { steps, .. }, state| {
+                made.push((steps.start, steps.end, state.v()[0]));
+                Ok(Part { made: steps.end, stopped: steps.end >= stop })
+            });
         (outcome, made)
     };
     assert_eq!(run(0, 6, 9), (Ok(6), vec![(0, 2, 1.0), (2, 4, 2.0), (4, 6, 3.0)]));
@@ -137,7 +142,8 @@ fn pieces_from_a_node_on() {
 }
 
 /// A particle of mass one in a field of 3 N.
-struct Falling;
+#[derive(Clone, Copy)]
+pub(crate) struct Falling;
 
 impl System<1, 0> for Falling {
     fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 1], v: &[S; 1]) -> S {
@@ -157,22 +163,22 @@ fn work_is_resumed() {
     let node = |t: f64| State::new([t + 1.5 * t * t], [1.0 + 3.0 * t], [false]);
     let (at, after) = (node(0.2), node(0.5));
     let mut work = Work::<1>::default();
-    Observer::<1, 0>::start(&mut work, &View { system: &Falling, k: 0, t: 0.0, state: &node(0.0) });
-    let _ = work.step(&View { system: &Falling, k: 2, t: 0.2, state: &at }, &StepReport::<0>::of(1));
+    Observer::<1, 0>::start(&mut work, &View { system: &Free::Falling(Falling), k: 0, t: 0.0, state: &node(0.0) });
+    let _ = work.step(&View { system: &Free::Falling(Falling), k: 2, t: 0.2, state: &at }, &StepReport::<0>::of(1));
     // Gauss nodes along a parabola are exact: a dozen roundings of numbers below ten.
     assert_relative_eq!(work.total(), 3.0 * at.q()[0], max_relative = 1e-14);
     let mut checkpoint = Checkpoint::of([("method", "any".to_owned())]);
     work.save(&mut checkpoint);
     let resumed = Work::load(&checkpoint, 0.2, &at).unwrap();
     let mut trajectory = Trajectory::<1, 0>::resumed(1, 0.2, resumed);
-    let last = View { system: &Falling, k: 5, t: 0.5, state: &after };
+    let last = View { system: &Free::Falling(Falling), k: 5, t: 0.5, state: &after };
     let _ = trajectory.step(&last, &StepReport::of(1));
     assert_relative_eq!(trajectory.nodes()[0].work, 3.0 * after.q()[0], max_relative = 1e-14);
     // A velocity that jumps to twice its size has been given the energy for it.
     let faster = State::new(*after.q(), [2.0 * after.v()[0]], [false]);
-    trajectory.resume(&View { system: &Falling, k: 5, t: 0.5, state: &faster });
+    trajectory.resume(&View { system: &Free::Falling(Falling), k: 5, t: 0.5, state: &faster });
     let report = StepReport { work: Some(0.25), ..StepReport::of(1) };
-    let _ = trajectory.step(&View { system: &Falling, k: 6, t: 0.6, state: &faster }, &report);
+    let _ = trajectory.step(&View { system: &Free::Falling(Falling), k: 6, t: 0.6, state: &faster }, &report);
     let given = 0.5 * 3.0 * after.v()[0] * after.v()[0];
     assert_relative_eq!(trajectory.nodes()[1].work, 3.0 * after.q()[0] + given + 0.25, max_relative = 1e-14);
 }
@@ -183,8 +189,8 @@ fn a_sample_may_fail() {
     let times = [0.05, 0.2, 0.21];
     let mut samples = Samples::new(Short::default(), &times);
     let (from, to) = (start(), State::new([0.5], [1.0], [false]));
-    Observer::<1, 1>::start(&mut samples, &View { system: &Point, k: 0, t: 0.0, state: &from });
-    let _ = samples.step(&View { system: &Point, k: 1, t: 0.5, state: &to }, &StepReport::<1>::of(1));
+    Observer::<1, 1>::start(&mut samples, &View { system: &One::Point(Point), k: 0, t: 0.0, state: &from });
+    let _ = samples.step(&View { system: &One::Point(Point), k: 1, t: 0.5, state: &to }, &StepReport::<1>::of(1));
     assert_eq!((samples.taken().len(), samples.failure()), (1, Some(StepError::Branch)));
     assert_eq!(samples.into_taken(), Err(StepError::Branch));
 }
@@ -205,8 +211,8 @@ fn a_crossing_is_interpolated() {
         })];
         let mut watch = Watch::new(Short::default(), &events, ());
         let (from, to) = (start(), State::new([1.0], [1.0], [false]));
-        Observer::<1, 1>::start(&mut watch, &View { system: &Point, k: 0, t: 1.0, state: &from });
-        let _ = watch.step(&View { system: &Point, k: 1, t: 2.0, state: &to }, &StepReport::<1>::of(1));
+        Observer::<1, 1>::start(&mut watch, &View { system: &One::Point(Point), k: 0, t: 1.0, state: &from });
+        let _ = watch.step(&View { system: &One::Point(Point), k: 1, t: 2.0, state: &to }, &StepReport::<1>::of(1));
         let [found] = watch.crossings() else { panic!("{name}: {:?}", watch.crossings()) };
         // Rounding of the time, and of the function over its slope.
         assert_relative_eq!(found.t, 1.0 + at, max_relative = 4.0 * f64::EPSILON);
@@ -235,8 +241,8 @@ fn an_event_ends_a_step_early() {
     let mut watch = Watch::new(Short::default(), &events, Last::default());
     watch.tolerance = 0.01;
     let (from, to) = (start(), State::new([2.0], [1.0], [false]));
-    Observer::<1, 1>::start(&mut watch, &View { system: &Point, k: 0, t: 1.0, state: &from });
-    let flow = watch.step(&View { system: &Point, k: 1, t: 3.0, state: &to }, &StepReport::<1>::of(1));
+    Observer::<1, 1>::start(&mut watch, &View { system: &One::Point(Point), k: 0, t: 1.0, state: &from });
+    let flow = watch.step(&View { system: &One::Point(Point), k: 1, t: 3.0, state: &to }, &StepReport::<1>::of(1));
     assert!(flow.is_break());
     let found = *watch.ended().unwrap();
     // The ends of the interval are times near two, and rounded as such.

@@ -1,5 +1,6 @@
 //! Methods with steps of their own within a step are looked at in each of them.
 
+use crate::support::ByHand;
 use approx::assert_abs_diff_eq;
 use dla::{
     Close, Crossing, Event, Gauss, GaussAdaptive, OneStep, Schedule, State, StepError, StepReport, Watch, drive,
@@ -10,8 +11,13 @@ use sleigh::{RoundWell, Sleigh, Taylor};
 use std::ops::ControlFlow;
 
 /// `x'' = -100 x` along a line: with `x = 0` and `x' = 1` it is `sin(10 t)/10`.
-fn spring() -> RoundWell {
+fn well() -> RoundWell {
     RoundWell::drawing(Sleigh::new(1.0, 1.0, 0.3).unwrap(), 100.0, [0.0; 2], 0.0).unwrap()
+}
+
+/// The same, to be passed to a method.
+fn spring() -> ByHand {
+    well().into()
 }
 
 /// The first `n` times at which `sin(10 t)/10` is 0.05: twice in each of its turns.
@@ -70,8 +76,8 @@ impl<Method: OneStep<3, 1>> OneStep<3, 1> for Closed<Method> {
 fn crossings_within_a_long_step_are_all_found() {
     all_twenty(&GaussAdaptive::new::<8>(1e-13));
     all_twenty(&GaussAdaptive::new::<4>(1e-12));
-    all_twenty(&Taylor::of(&spring(), 1e-15).unwrap());
-    let (few, close) = found(&Closed(Taylor::of(&spring(), 1e-15).unwrap()), (2.0, 3));
+    all_twenty(&Taylor::of(&well(), 1e-15).unwrap());
+    let (few, close) = found(&Closed(Taylor::of(&well(), 1e-15).unwrap()), (2.0, 3));
     let close = close.unwrap();
     assert!(few.len() == 4 && close.count > 0, "{few:?}");
     assert_abs_diff_eq!(close.spacing, 0.5, epsilon = 1e-15);
@@ -148,7 +154,7 @@ fn steps() -> impl Strategy<Value = (State<3>, f64)> {
 fn by_both((start, h): (State<3>, f64)) -> Result<(), TestCaseError> {
     // Frequencies of ten, over two steps, which errors are enlarged by.
     are_those_of_the_run(&GaussAdaptive::new::<8>(1e-12), h, &start, 1e-8)?;
-    are_those_of_the_run(&Taylor::of(&spring(), 1e-14).unwrap(), h, &start, 1e-8)
+    are_those_of_the_run(&Taylor::of(&well(), 1e-14).unwrap(), h, &start, 1e-8)
 }
 
 proptest! {

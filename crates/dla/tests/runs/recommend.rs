@@ -1,4 +1,4 @@
-use crate::runs::{backward, sleigh, sleigh_state, state_of};
+use crate::runs::{backward, sleigh, sleigh_state, state_of, system};
 use dla::{
     Composition, Dla, Gauss, OneStep, RecommendError, Recommendation, Schedule, Trajectory, drive, recommend_step,
 };
@@ -11,14 +11,14 @@ fn recommended<Method>(make: impl Fn() -> Method, tolerance: f64) -> Result<Reco
 where
     Method: OneStep<3, 1> + Copy,
 {
-    recommend_step(&sleigh(), make, &state_of(&backward()), DURATION, tolerance)
+    recommend_step(&system(), make, &state_of(&backward()), DURATION, tolerance)
 }
 
 /// The largest error of a coordinate at any node.
 fn reached<Method: OneStep<3, 1>>(mut method: Method, found: &Recommendation) -> f64 {
     let mut trajectory = Trajectory::<3, 1>::every((found.steps / 500).max(1));
     let schedule = Schedule { t0: 0.0, step: found.step, steps: found.steps };
-    drive(&sleigh(), &mut method, &schedule, &mut state_of(&backward()), &mut trajectory).unwrap();
+    drive(&system(), &mut method, &schedule, &mut state_of(&backward()), &mut trajectory).unwrap();
     let exact = Exact::new(&sleigh(), &backward()).unwrap();
     trajectory.nodes().iter().fold(0.0, |largest: f64, node| {
         let (q, _) = exact.at(node.t).to_coordinates();
@@ -60,14 +60,14 @@ fn a_tolerance_below_rounding_is_refused_with_the_best() {
     // Positions of forty metres have an ulp of 7e-15.
     assert!(best < 1e-11 && steps > 8, "{error}");
     for (tolerance, duration) in [(0.0, 1.0), (f64::NAN, 1.0), (1e-3, -1.0), (1e-3, f64::INFINITY)] {
-        let error = recommend_step(&sleigh(), Dla::midpoint, &state_of(&backward()), duration, tolerance).unwrap_err();
+        let error = recommend_step(&system(), Dla::midpoint, &state_of(&backward()), duration, tolerance).unwrap_err();
         assert!(matches!(error, RecommendError::Request { .. }), "{error}");
     }
 }
 
 /// Forward, flip, back: how far from the start the recommended steps end, and how far rounding may bring them.
 fn returned<Method: OneStep<3, 1> + Copy>(method: Method, duration: f64, tolerance: f64) -> (f64, f64) {
-    let (sleigh, start) = (sleigh(), state_of(&backward()));
+    let (sleigh, start) = (system(), state_of(&backward()));
     let found = recommend_step(&sleigh, || method, &start, duration, tolerance).unwrap();
     let schedule = Schedule { t0: 0.0, step: found.step, steps: found.steps };
     let mut state = start;

@@ -1,5 +1,6 @@
 //! Gauss collocation of a sleigh in a round well: in its own axes the energy is of second degree, and kept whatever the step.
 
+use crate::support::ByHand;
 use dla::{Gauss, Schedule, State, drive};
 use lagrangian::{System, With, energy};
 use sleigh::effects::Bowl;
@@ -30,8 +31,8 @@ fn run<Sys: System<3, 1>>(system: &Sys, (q, v): ([f64; 3], [f64; 3]), duration: 
 fn the_motion_is_that_on_the_plane() {
     let well = RoundWell::new(sleigh(), 0.1, [0.3, -0.2]).unwrap();
     let bowl = With { body: sleigh(), effects: Bowl::new([0.1, 0.1], [0.3, -0.2]).unwrap() };
-    let (own, _) = run(&well, well.coordinates(&START), 20.0, 200);
-    let (plane, _) = run(&bowl, START.to_coordinates(), 20.0, 200);
+    let (own, _) = run(&ByHand::from(well), well.coordinates(&START), 20.0, 200);
+    let (plane, _) = run(&ByHand::from(bowl), START.to_coordinates(), 20.0, 200);
     let (a, b) = (well.state(&own.unwrapped(), own.v()), SleighState::from_coordinates(&plane.unwrapped(), plane.v()));
     // Both are of order 16 with a tenth of a second a step: what differs is rounding, grown some tenfold by the motion.
     for (a, b) in [(a.x, b.x), (a.y, b.y), (a.heading, b.heading), (a.speed, b.speed), (a.turn_rate, b.turn_rate)] {
@@ -54,8 +55,8 @@ fn steps_of_three_seconds(steps: u64) {
     let duration = 3.0 * steps as f64;
     let well = RoundWell::new(sleigh(), 0.1, [0.0; 2]).unwrap();
     let bowl = With { body: sleigh(), effects: Bowl::new([0.1, 0.1], [0.0; 2]).unwrap() };
-    let (_, own) = run(&well, well.coordinates(&START), duration, steps);
-    let (_, plane) = run(&bowl, START.to_coordinates(), duration, steps);
+    let (_, own) = run(&ByHand::from(well), well.coordinates(&START), duration, steps);
+    let (_, plane) = run(&ByHand::from(bowl), START.to_coordinates(), duration, steps);
     // The rounding of all steps, if it all went one way.
     assert!(own < steps as f64 * f64::EPSILON, "{own:e}");
     assert!(plane > 1e-9 * steps as f64 / 2000.0, "{plane:e}");

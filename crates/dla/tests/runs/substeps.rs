@@ -1,4 +1,5 @@
-use crate::runs::{backward, sleigh, state_of};
+use crate::runs::{backward, state_of, system};
+use crate::support::One;
 use approx::assert_relative_eq;
 use dla::{Dla, OneStep, State, StepError, Substepping};
 use lagrangian::{Constraint, Scalar, System, constraint_residual};
@@ -11,7 +12,7 @@ fn spinning() -> State<3> {
 
 #[test]
 fn a_step_that_is_too_long_is_made_of_shorter_ones() {
-    let (sleigh, start) = (sleigh(), spinning());
+    let (sleigh, start) = (system(), spinning());
     let mut alone = start;
     let error = OneStep::<3, 1>::step(&mut Dla::midpoint(), &sleigh, 0.0, 2.0, &mut alone).unwrap_err();
     assert_eq!(alone, start, "{error}");
@@ -42,7 +43,7 @@ fn a_step_that_is_too_long_is_made_of_shorter_ones() {
 
 #[test]
 fn a_step_that_does_is_left_alone() {
-    let (sleigh, mut method, mut whole) = (sleigh(), Substepping::new(Dla::midpoint(), 8), Dla::midpoint());
+    let (sleigh, mut method, mut whole) = (system(), Substepping::new(Dla::midpoint(), 8), Dla::midpoint());
     let (mut divided, mut plain) = (state_of(&backward()), state_of(&backward()));
     for k in 0..100 {
         let t = 0.05 * f64::from(k);
@@ -53,7 +54,8 @@ fn a_step_that_does_is_left_alone() {
 }
 
 /// A free particle on a line that no velocity is allowed to leave or to keep.
-struct Contradiction;
+#[derive(Clone, Copy)]
+pub(crate) struct Contradiction;
 
 impl System<1, 1> for Contradiction {
     fn lagrangian<S: Scalar>(&self, _t: S, _q: &[S; 1], v: &[S; 1]) -> S {
@@ -66,23 +68,25 @@ impl System<1, 1> for Contradiction {
 
 #[test]
 fn what_no_shorter_step_mends_and_what_is_not_asked_for_stays_an_error() {
-    let (sleigh, mut state) = (sleigh(), spinning());
+    let (sleigh, mut state) = (system(), spinning());
     for halvings in [0, 1] {
         let mut method = Substepping::new(Dla::midpoint(), halvings);
         let outcome = OneStep::<3, 1>::step(&mut method, &sleigh, 0.0, 8.0, &mut state);
         assert!(outcome.is_err() && method.divided() == 0 && state == spinning());
     }
     let mut still = State::new([0.0], [1.0], [false]);
-    let plain = OneStep::<1, 1>::step(&mut Dla::midpoint(), &Contradiction, 0.0, 0.1, &mut still).unwrap_err();
+    let plain =
+        OneStep::<1, 1>::step(&mut Dla::midpoint(), &One::from(Contradiction), 0.0, 0.1, &mut still).unwrap_err();
     let mut method = Substepping::new(Dla::midpoint(), 20);
-    let error: StepError = OneStep::<1, 1>::step(&mut method, &Contradiction, 0.0, 0.1, &mut still).unwrap_err();
+    let error: StepError =
+        OneStep::<1, 1>::step(&mut method, &One::from(Contradiction), 0.0, 0.1, &mut still).unwrap_err();
     assert_eq!(error, plain);
 }
 
 /// The search begins nearer to its solution where the last step left the acceleration.
 #[test]
 fn a_step_is_predicted_from_the_last() {
-    let (sleigh, mut method) = (sleigh(), Dla::midpoint());
+    let (sleigh, mut method) = (system(), Dla::midpoint());
     let (mut carried, mut iterations) = (state_of(&backward()), [0, 0]);
     for k in 0..200 {
         let t = 0.05 * f64::from(k);

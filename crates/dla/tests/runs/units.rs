@@ -1,6 +1,6 @@
 //! The same motion in another unit of time, in which forces are too large for a number and their impulses are not.
 
-use crate::runs::sleigh;
+use crate::runs::{sleigh, system};
 use approx::assert_relative_eq;
 use dla::{Dla, Form, Gni, OneStep, Schedule, State, drive};
 use lagrangian::System;
@@ -8,7 +8,7 @@ use sleigh::{ClosedMap, SleighState};
 
 /// Blade velocity and spin at the end of ten seconds of the turn-around, in units of `unit` m/s.
 fn end(mut method: impl OneStep<3, 1>, unit: f64) -> [f64; 3] {
-    let sleigh = sleigh();
+    let sleigh = system();
     let start = SleighState { speed: -unit, turn_rate: 0.3 * unit, ..SleighState::default() };
     let (q, v) = start.to_coordinates();
     let mut state = State::new(q, v, sleigh.angles());

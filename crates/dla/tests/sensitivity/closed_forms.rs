@@ -1,6 +1,7 @@
 //! Derivatives that are known in closed form.
 
 use crate::sensitivity::systems::Controlled;
+use crate::support::ByHand;
 use dla::{Dla, Form, Sensitivity, State};
 use sleigh::{Sleigh, SleighState};
 
@@ -8,13 +9,14 @@ use sleigh::{Sleigh, SleighState};
 #[test]
 fn the_multiplier_of_the_spin_at_straight_motion() {
     let sleigh = Sleigh::new(1.3, 0.8, 0.4).unwrap();
+    let system = ByHand::from(sleigh);
     for (speed, h) in [(1.0, 0.1), (-1.5, 0.05), (2.0, 0.4)] {
         let start = SleighState { speed, heading: 0.7, ..SleighState::default() };
         for form in [Form::Best, Form::Multipliers] {
             let (q, v) = start.to_coordinates();
             let mut state = State::new(q, v, [false, false, true]);
             let mut method = Dla::midpoint().solved(form);
-            let derivative = Sensitivity::of(&sleigh).step(&mut method, 0.0, h, &mut state).unwrap();
+            let derivative = Sensitivity::of(&system).step(&mut method, 0.0, h, &mut state).unwrap();
             let matrix = derivative.reduced.unwrap().matrix();
             let half = 0.5 * h * sleigh.spin_gain() * speed;
             // Rows and columns are (x, y, theta, u, omega); u and omega do not depend on the place.

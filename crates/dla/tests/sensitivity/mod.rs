@@ -8,4 +8,4 @@ mod reduced;
 mod refusals;
 mod runs;
 mod steps;
-mod systems;
+pub(crate) mod systems;

@@ -2,6 +2,7 @@
 
 use crate::sensitivity::differences::{BAR, Input, extrapolated};
 use crate::sensitivity::systems::{Controlled, Swivelling};
+use crate::support::ByHand;
 use dla::{Differentiable, Dla, Gauss, OneStep, ReducedVariation, Sensitivity, State};
 use lagrangian::{System, quasi_velocities, velocity_of};
 use sleigh::{Guided, Sleigh};
@@ -71,7 +72,7 @@ fn columns_in_quasi_velocities() {
     assert!(worst < BAR, "{worst:e}");
 
     // What is imposed on the velocity depends on the place.
-    let table = || Guided::turntable(Sleigh::new(1.3, 0.8, 0.4).unwrap(), 0.6).unwrap();
+    let table = || ByHand::from(Guided::turntable(Sleigh::new(1.3, 0.8, 0.4).unwrap(), 0.6).unwrap());
     let (system, at) = (table(), Input { q: at.q, v: at.v, t: at.t, h: at.h, p: [] });
     let worst = disagreement(&Sensitivity::of(&system), |_| table(), &Gauss::new::<4>(), &at);
     println!("turntable: {worst:.1e}");

@@ -1,6 +1,7 @@
 //! What has no derivative says so, and changes nothing.
 
 use crate::sensitivity::systems::{Controlled, Moving};
+use crate::support::{ByHand, Three, ThreeTwo};
 use dla::{
     Composition, Differentiable, Dla, Gauss, Gni, OneStep, Schedule, Sensitivity, SensitivityError, State,
     StepEquations, StepError, StepReport, StepStart,
@@ -12,7 +13,7 @@ use std::ops::ControlFlow;
 
 #[test]
 fn a_refusal_has_a_reason_and_changes_nothing() {
-    let sleigh = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    let sleigh = ByHand::from(Sleigh::new(1.0, 1.0, 0.5).unwrap());
     let mut state = State::new([0.1, 0.2, 0.0], [1.0, 0.0, 0.3], sleigh.angles());
     let before = state;
     let refused = Sensitivity::of(&sleigh).step(&mut Gni::default(), 0.0, 0.1, &mut state);
@@ -24,7 +25,7 @@ fn a_refusal_has_a_reason_and_changes_nothing() {
 
     // No basis: the method's own refusal comes through.
     let mut state = State::new([0.1, 0.2, 0.3], [1.0, 0.4, 0.2], [false; 3]);
-    let refused = Sensitivity::of(&Moving).step(&mut Gauss::new::<4>(), 0.0, 0.1, &mut state);
+    let refused = Sensitivity::of(&Three::from(Moving)).step(&mut Gauss::new::<4>(), 0.0, 0.1, &mut state);
     assert!(matches!(refused, Err(SensitivityError::Step(_))), "{refused:?}");
 }
 
@@ -50,7 +51,7 @@ fn a_failed_step_and_numbers_that_are_none() {
 #[test]
 fn a_composition_is_differentiated_as_its_base() {
     let sleigh = SleighOnArm::new(1.3, 0.8, 0.4, 0.7, 1.5, 2.0).unwrap();
-    let (q, v) = sleigh.start();
+    let ((q, v), sleigh) = (sleigh.start(), ThreeTwo::from(sleigh));
     let (start, sensitivity) = (State::new(q, v, sleigh.angles()), Sensitivity::of(&sleigh));
     let mut end = start;
     let carries = Composition::suzuki4(Dla::midpoint());
@@ -99,6 +100,6 @@ impl Differentiable<3, 1> for Impostor {
 #[test]
 fn a_step_that_does_not_solve_its_equations_is_found_out() {
     let mut state = State::new([0.1, 0.2, 0.3], [1.0, 0.4, 0.2], [false; 3]);
-    let refused = Sensitivity::of(&Moving).step(&mut Impostor, 0.0, 0.1, &mut state);
+    let refused = Sensitivity::of(&Three::from(Moving)).step(&mut Impostor, 0.0, 0.1, &mut state);
     assert!(matches!(refused, Err(SensitivityError::OtherSolution { defect }) if defect > 1e-6), "{refused:?}");
 }

@@ -2,6 +2,7 @@
 
 use crate::sensitivity::differences::{BAR, admissible, extrapolated};
 use crate::sensitivity::systems::Controlled;
+use crate::support::ThreeTwo;
 use dla::{Dla, Schedule, Sensitivity, State, Tangent, Variation, drive};
 use models::{Model, SleighOnArm};
 use std::array::from_fn;
@@ -110,6 +111,7 @@ fn tangents_follow_the_impulse_of_the_constraint() {
 fn tangents_follow_the_impulse_of_an_arm() {
     let sleigh = SleighOnArm::new(1.3, 0.8, 0.4, 0.7, 1.5, 2.0).unwrap();
     let (q, v) = (sleigh.start().0, [0.6, 0.7, 0.4]);
+    let sleigh = ThreeTwo::from(sleigh);
     let direction: [f64; 6] = [0.2, -0.4, 1.0, 0.5, 0.3, -0.7];
     let at = |epsilon: f64| {
         let moved = |x: &[f64; 3], k: usize| from_fn(|i| x[i] + epsilon * direction[k + i]);

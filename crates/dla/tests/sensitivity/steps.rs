@@ -2,6 +2,7 @@
 
 use crate::sensitivity::differences::{BAR, Input, Start, disagreement};
 use crate::sensitivity::systems::{Controlled, Moving, Swivelling};
+use crate::support::{ByHand, Three, ThreeTwo, Two};
 use dla::{
     Composition, Differentiable, Dla, Energy, Form, Gauss, Lobatto, OneStep, Sensitivity, SensitivityError, State,
 };
@@ -57,24 +58,25 @@ fn a_sleigh_with_parameters_and_controls_in_full() {
 /// Its closed step and its accelerations by hand are differentiated through the general equations.
 #[test]
 fn the_free_sleigh() {
-    let sleigh = Sleigh::new(1.3, 0.8, 0.4).unwrap();
+    let sleigh = ByHand::from(Sleigh::new(1.3, 0.8, 0.4).unwrap());
     let sensitivity = Sensitivity::of(&sleigh);
-    assert_close("dla", disagreement(&sensitivity, |_| sleigh, &Dla::midpoint(), on(&bare())));
-    assert_close("gauss8", disagreement(&sensitivity, |_| sleigh, &Gauss::new::<4>(), on(&bare())));
+    assert_close("dla", disagreement(&sensitivity, |_| sleigh.clone(), &Dla::midpoint(), on(&bare())));
+    assert_close("gauss8", disagreement(&sensitivity, |_| sleigh.clone(), &Gauss::new::<4>(), on(&bare())));
 }
 
 #[test]
 fn multipliers_with_time_everywhere() {
-    let sensitivity = Sensitivity::of(&Moving);
+    let system = Three::from(Moving);
+    let sensitivity = Sensitivity::of(&system);
     let symmetrised = Symmetrised::new(0.2).unwrap();
-    assert_close("trapezoid", disagreement(&sensitivity, |_| Moving, &Dla::trapezoid(), on(&bare())));
-    assert_close("mixed", disagreement(&sensitivity, |_| Moving, &Dla::new(symmetrised, Trapezoid), on(&bare())));
-    assert_close("lobatto3", disagreement(&sensitivity, |_| Moving, &Lobatto::<3>::new(), on(&bare())));
+    assert_close("trapezoid", disagreement(&sensitivity, |_| system, &Dla::trapezoid(), on(&bare())));
+    assert_close("mixed", disagreement(&sensitivity, |_| system, &Dla::new(symmetrised, Trapezoid), on(&bare())));
+    assert_close("lobatto3", disagreement(&sensitivity, |_| system, &Lobatto::<3>::new(), on(&bare())));
 }
 
 #[test]
 fn an_affine_constraint() {
-    let table = || Guided::turntable(Sleigh::new(1.3, 0.8, 0.4).unwrap(), 0.6).unwrap();
+    let table = || ByHand::from(Guided::turntable(Sleigh::new(1.3, 0.8, 0.4).unwrap(), 0.6).unwrap());
     let system = table();
     let sensitivity = Sensitivity::of(&system);
     let mixed = Dla::new(Midpoint, Midpoint).solved(Form::Multipliers);
@@ -109,6 +111,7 @@ fn a_sleigh_on_an_arm() {
     let sleigh = SleighOnArm::new(1.3, 0.8, 0.4, 0.7, 1.5, 2.0).unwrap();
     let (q, v) = sleigh.start();
     let at = Input { q, v, t: 0.0, h: 0.1, p: [] };
+    let sleigh = ThreeTwo::from(sleigh);
     let sensitivity = Sensitivity::of(&sleigh);
     assert_close("dla", disagreement(&sensitivity, |_| sleigh, &Dla::midpoint(), on(&at)));
     assert_close(
@@ -134,6 +137,7 @@ fn an_isokinetic_particle() {
     let particle = IsokineticParticle::new(1.3, 0.8, 0.6).unwrap();
     let (q, v) = particle.state_at([0.2, -0.1], 1.1);
     let at = Input { q, v, t: 0.0, h: 0.1, p: [] };
+    let particle = Two::from(particle);
     let sensitivity = Sensitivity::of(&particle);
     assert_close("dla", disagreement(&sensitivity, |_| particle, &Dla::midpoint(), on(&at)));
     assert_close("dla4", disagreement(&sensitivity, |_| particle, &Composition::suzuki4(Dla::midpoint()), on(&at)));

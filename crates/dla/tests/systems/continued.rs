@@ -1,5 +1,6 @@
 //! Steps that go on from the last one, against the same steps made without memory.
 
+use crate::support::{ByHand, Four, Free, Three, ThreeTwo};
 use crate::systems::models::{Disk, Hyperbolic, Kinetic, Oscillator, Particle, Pushed};
 use dla::{Dla, Form, OneStep, State};
 use lagrangian::{Constraint, Scalar, Symmetrised, System};
@@ -68,16 +69,16 @@ fn all_go_on((q, v, at, damping): Numbers) -> Result<(), TestCaseError> {
     let place = [q[0], q[1], q[2]];
     for kinetic in [Kinetic::Quadratic, Kinetic::Quartic] {
         let along = [v[0], v[1], q[1] * v[0]];
-        check_all(&Particle { kinetic, damping: 0.0 }, (place, along), at)?;
-        check_all(&Particle { kinetic, damping }, (place, along), at)?;
+        check_all(&Three::from(Particle { kinetic, damping: 0.0 }), (place, along), at)?;
+        check_all(&Three::from(Particle { kinetic, damping }), (place, along), at)?;
     }
     let relativistic = Particle { kinetic: Kinetic::Relativistic, damping: 0.0 };
-    check_all(&relativistic, (place, [0.5 * v[0], 0.5 * v[1], 0.5 * q[1] * v[0]]), at)?;
-    check_all(&Hyperbolic, (place, [v[0], v[1], q[1].sinh() * v[0]]), at)?;
-    check_all(&Pushed, (place, [v[0], v[1], q[1] * v[0] + at.0.cos()]), at)?;
+    check_all(&Three::from(relativistic), (place, [0.5 * v[0], 0.5 * v[1], 0.5 * q[1] * v[0]]), at)?;
+    check_all(&Three::from(Hyperbolic), (place, [v[0], v[1], q[1].sinh() * v[0]]), at)?;
+    check_all(&Three::from(Pushed), (place, [v[0], v[1], q[1] * v[0] + at.0.cos()]), at)?;
     let (sin, cos) = q[3].sin_cos();
-    check_all(&Disk, (q, [0.7 * v[0] * cos, 0.7 * v[0] * sin, v[0], v[1]]), at)?;
-    check_all(&Oscillator { damping, drive: 0.3 }, ([q[0]], [v[0]]), at)
+    check_all(&Four::from(Disk), (q, [0.7 * v[0] * cos, 0.7 * v[0] * sin, v[0], v[1]]), at)?;
+    check_all(&Free::from(Oscillator { damping, drive: 0.3 }), ([q[0]], [v[0]]), at)
 }
 
 proptest! {
@@ -99,7 +100,7 @@ proptest! {
 
 /// A wheel whose mass, moment of inertia and radius a user may change between steps.
 #[derive(Clone, Copy)]
-struct Wheel {
+pub(crate) struct Wheel {
     mass: f64,
     inertia: f64,
     lead: f64,
@@ -123,18 +124,18 @@ proptest! {
     ) {
         // The lead alone asks for another velocity, which none but a projection could give.
         let wheel = Wheel { mass: 1.3, inertia: 0.8, lead: 0.0 };
-        let wheels: Vec<Wheel> = (0..STEPS).map(|k| {
+        let wheels: Vec<Three> = (0..STEPS).map(|k| {
             let times = if every { f64::from(k) / 10.0 } else { f64::from(u8::from(k >= at)) };
             let by = 1.0 + change * times;
-            match which {
+            Three::from(match which {
                 0 => Wheel { mass: wheel.mass * by, ..wheel },
                 1 => Wheel { inertia: wheel.inertia * by, ..wheel },
                 _ => Wheel { mass: wheel.mass * by, inertia: wheel.inertia * by, ..wheel },
-            }
+            })
         }).collect();
         let start = ([0.4, -0.1, 0.3], [0.3f64.cos(), 0.3f64.sin(), 0.7]);
         check_each(|k| &wheels[k as usize], Dla::midpoint(), start, (0.0, 0.01))?;
-        let skewed = Wheel { lead: change, ..wheel };
+        let [skewed, wheel] = [Wheel { lead: change, ..wheel }, wheel].map(Three::from);
         let mixed = |k: u32| if k >= at { &skewed } else { &wheel };
         check_each(mixed, Dla::midpoint().solved(Form::Multipliers), start, (0.0, 0.01))?;
     }
@@ -146,7 +147,7 @@ proptest! {
 fn a_light_inertia_is_left_to_the_basis() {
     let start = SleighState { speed: -1.0, turn_rate: 0.3, ..SleighState::default() };
     for inertia in [1e-2, 1e-5, 1e-8, 1e-12] {
-        let light = Sleigh::new(1.0, inertia, 0.5).unwrap();
+        let light = ByHand::from(Sleigh::new(1.0, inertia, 0.5).unwrap());
         let ((q, v), mut method) = (start.to_coordinates(), Dla::trapezoid());
         let mut state = State::new(q, v, light.angles());
         for k in 0..1000 {
@@ -159,7 +160,7 @@ fn a_light_inertia_is_left_to_the_basis() {
 
 /// A blade that is towed along itself with the speed `3 sin^2(pi t)`, or held; it turns freely.
 #[derive(Clone, Copy)]
-struct Towed {
+pub(crate) struct Towed {
     held: bool,
 }
 
@@ -186,7 +187,7 @@ fn what_comes_to_rest_beside_what_moves() {
                 let mut reached = 0.0f64;
                 for k in 0..steps {
                     let t = -0.5 + f64::from(k) * h;
-                    let system = Towed { held: !(0.0..1.0).contains(&(t + 0.5 * h)) };
+                    let system = ThreeTwo::from(Towed { held: !(0.0..1.0).contains(&(t + 0.5 * h)) });
                     method.step(&system, t, h, &mut state).unwrap();
                     reached = reached.max(state.v()[0].hypot(state.v()[1]));
                 }

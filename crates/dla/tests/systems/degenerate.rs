@@ -1,13 +1,15 @@
 //! Constraints that do not determine their multipliers: the motion goes on where it is determined, and elsewhere there is an
 //! error that names the rows.
 
+use crate::support::{Three, ThreeTwo, Two};
 use approx::assert_abs_diff_eq;
 use dla::{Dependency, Dla, Form, OneStep, State, StepError};
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
 use proptest::prelude::*;
 
 /// A particle with one constraint given twice, the second time times a factor.
-struct Twice {
+#[derive(Clone, Copy)]
+pub(crate) struct Twice {
     row: [f64; 3],
     factor: f64,
 }
@@ -28,7 +30,8 @@ impl System<3, 2> for Twice {
 }
 
 /// `x x' = 0`: no constraint at all where `x = 0`.
-struct Dropping {
+#[derive(Clone, Copy)]
+pub(crate) struct Dropping {
     basis: bool,
 }
 
@@ -45,7 +48,8 @@ impl System<2, 1> for Dropping {
 }
 
 /// The same constraint, given once.
-struct Once(Twice);
+#[derive(Clone, Copy)]
+pub(crate) struct Once(Twice);
 
 impl System<3, 1> for Once {
     fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 3], v: &[S; 3]) -> S {
@@ -61,9 +65,9 @@ const FORMS: [Form; 2] = [Form::Best, Form::Multipliers];
 
 /// With one row or with two that agree the motion is the same, whatever the form.
 fn goes_on(row: [f64; 3], factor: f64, q: [f64; 3], v: [f64; 3]) {
-    let twice = Twice { row, factor };
+    let twice = ThreeTwo::from(Twice { row, factor });
     let mut expected = State::new(q, v, [false; 3]);
-    Dla::midpoint().step(&Once(Twice { row, factor }), 0.0, 0.1, &mut expected).unwrap();
+    Dla::midpoint().step(&Three::from(Once(Twice { row, factor })), 0.0, 0.1, &mut expected).unwrap();
     for form in FORMS {
         let mut state = State::new(q, v, [false; 3]);
         Dla::midpoint().solved(form).step(&twice, 0.0, 0.1, &mut state).unwrap();
@@ -86,7 +90,7 @@ fn a_constraint_that_vanishes() {
             for form in FORMS {
                 let start = State::new([0.0, 1.0], v, [false; 2]);
                 let mut state = start;
-                let outcome = Dla::midpoint().solved(form).step(&Dropping { basis }, 0.0, 0.1, &mut state);
+                let outcome = Dla::midpoint().solved(form).step(&Two::from(Dropping { basis }), 0.0, 0.1, &mut state);
                 let Err(StepError::Dependent(error)) = outcome else { panic!("{form:?}: {outcome:?}, {state:?}") };
                 assert_eq!(error.dependency, Dependency::RankDrops);
                 assert!(error.rows.contains(0) && error.to_string().starts_with("row 1 of the constraint vanishes"));
@@ -95,7 +99,7 @@ fn a_constraint_that_vanishes() {
         }
         // Beside the point it holds, and the step keeps it.
         let mut state = State::new([1e-3, 1.0], [0.0, 1.0], [false; 2]);
-        Dla::midpoint().step(&Dropping { basis }, 0.0, 0.1, &mut state).unwrap();
+        Dla::midpoint().step(&Two::from(Dropping { basis }), 0.0, 0.1, &mut state).unwrap();
         assert_abs_diff_eq!(&state.q()[..], &[1e-3, 1.1][..], epsilon = 1e-15);
     }
 }

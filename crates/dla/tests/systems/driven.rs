@@ -1,5 +1,6 @@
 //! Forces, explicit time, affine constraints, and discrete Lagrangians that a user writes.
 
+use crate::support::{Free, Three};
 use crate::systems::models::{Oscillator, Particle, Pushed};
 use crate::systems::tools::{assert_order, errors, forms, run};
 use dla::{Dla, Form, HandMade};
@@ -13,33 +14,36 @@ fn drag_and_drive() {
     let symmetrised = Symmetrised::new(0.2).unwrap();
     for (damping, drive) in [(0.1, 0.0), (0.0, 0.5), (0.2, 0.7)] {
         let system = Oscillator { damping, drive };
-        let exact = |t| system.exact(t);
-        assert_order("midpoint", errors(&system, Dla::midpoint(), 5.0, exact), 2.0);
-        assert_order("trapezoid", errors(&system, Dla::trapezoid(), 5.0, exact), 2.0);
-        assert_order("symmetrised", errors(&system, Dla::new(symmetrised, symmetrised), 5.0, exact), 2.0);
+        let (oscillator, exact) = (Free::from(system), |t| system.exact(t));
+        assert_order("midpoint", errors(&oscillator, Dla::midpoint(), 5.0, exact), 2.0);
+        assert_order("trapezoid", errors(&oscillator, Dla::trapezoid(), 5.0, exact), 2.0);
+        assert_order("symmetrised", errors(&oscillator, Dla::new(symmetrised, symmetrised), 5.0, exact), 2.0);
     }
     let system = Particle { damping: 0.4, ..Particle::FREE };
+    let particle = Three::from(system);
     for (form, method) in forms(Dla::midpoint()) {
-        assert_order(form, errors(&system, method, 3.0, |t| system.exact(t)), 2.0);
+        assert_order(form, errors(&particle, method, 3.0, |t| system.exact(t)), 2.0);
     }
     let mixed = Dla::new(Midpoint, Trapezoid);
-    assert_order("mixed", errors(&system, mixed, 3.0, |t| system.exact(t)), 2.0);
+    assert_order("mixed", errors(&particle, mixed, 3.0, |t| system.exact(t)), 2.0);
 }
 
 #[test]
 fn an_affine_constraint_with_time() {
+    let pushed = Three::from(Pushed);
     for (form, method) in forms(Dla::midpoint()) {
-        assert_order(form, errors(&Pushed, method, 3.0, Pushed::exact), 2.0);
+        assert_order(form, errors(&pushed, method, 3.0, Pushed::exact), 2.0);
     }
-    assert_order("trapezoid", errors(&Pushed, Dla::trapezoid(), 3.0, Pushed::exact), 2.0);
-    assert_order("mixed", errors(&Pushed, Dla::new(Midpoint, Trapezoid), 3.0, Pushed::exact), 2.0);
+    assert_order("trapezoid", errors(&pushed, Dla::trapezoid(), 3.0, Pushed::exact), 2.0);
+    assert_order("mixed", errors(&pushed, Dla::new(Midpoint, Trapezoid), 3.0, Pushed::exact), 2.0);
 }
 
 /// The multipliers are those of the motion: `(y x')' - sin t` for the unit mass in `z`, at the middle of the step.
 #[test]
 fn multipliers_are_the_forces_of_the_constraint() {
     let (h, steps) = (0.01, 300);
-    let trajectory = run::<_, _, 3, 1>(&Pushed, Dla::midpoint(), Pushed::exact(0.0), h * steps as f64, steps);
+    let trajectory =
+        run::<_, _, 3, 1>(&Three::from(Pushed), Dla::midpoint(), Pushed::exact(0.0), h * steps as f64, steps);
     for node in &trajectory.nodes()[1..] {
         let (before, after) = (Pushed::exact(node.t - h).1[2], Pushed::exact(node.t).1[2]);
         // Third derivatives below 5.
@@ -49,7 +53,7 @@ fn multipliers_are_the_forces_of_the_constraint() {
 
 /// The particle with `z' = y x'` in a well without closed form.
 #[derive(Debug, Clone, Copy)]
-struct Well;
+pub(crate) struct Well;
 
 impl Well {
     fn potential<S: Scalar>(q: &[S; 3]) -> S {
@@ -73,12 +77,12 @@ impl System<3, 1> for Well {
 #[derive(Debug, Clone, Copy)]
 struct Leapfrog;
 
-impl DiscreteLagrangian<Well, 3, 1> for Leapfrog {
-    fn average<S: Scalar>(&self, system: &Well, t0: S, h: S, q0: &[S; 3], v: &[S; 3]) -> S {
+impl DiscreteLagrangian<Three, 3, 1> for Leapfrog {
+    fn average<S: Scalar>(&self, system: &Three, t0: S, h: S, q0: &[S; 3], v: &[S; 3]) -> S {
         let q1: [S; 3] = from_fn(|i| q0[i] + h * v[i]);
         system.lagrangian(t0, q0, v) + (Well::potential(q0) - Well::potential(&q1)) * 0.5
     }
-    fn derivatives<S: Scalar>(&self, system: &Well, t0: S, h: S, q0: &[S; 3], v: &[S; 3]) -> Derivatives<S, 3> {
+    fn derivatives<S: Scalar>(&self, system: &Three, t0: S, h: S, q0: &[S; 3], v: &[S; 3]) -> Derivatives<S, 3> {
         let (start, end) = (Well::gradient(q0), Well::gradient(&from_fn(|i| q0[i] + h * v[i])));
         let diagonal = |i, j| if i == j { -h.recip() } else { S::zero() };
         Derivatives {
@@ -94,31 +98,31 @@ impl DiscreteLagrangian<Well, 3, 1> for Leapfrog {
 #[derive(Debug, Clone, Copy)]
 struct Simpson;
 
-impl DiscreteLagrangian<Well, 3, 1> for Simpson {
-    fn average<S: Scalar>(&self, system: &Well, t0: S, h: S, q0: &[S; 3], v: &[S; 3]) -> S {
+impl DiscreteLagrangian<Three, 3, 1> for Simpson {
+    fn average<S: Scalar>(&self, system: &Three, t0: S, h: S, q0: &[S; 3], v: &[S; 3]) -> S {
         let (middle, ends) = (Midpoint.average(system, t0, h, q0, v), Trapezoid.average(system, t0, h, q0, v));
         (middle * 2.0 + ends) / 3.0
     }
 }
 
 /// The method of a discrete Lagrangian that is written by hand.
-fn by_hand<L>(lagrangian: L) -> Dla<HandMade<'static, Well, L, Midpoint>> {
-    Dla::of(HandMade { system: &Well, lagrangian, constraint: Midpoint })
+fn by_hand<L>(lagrangian: L) -> Dla<HandMade<'static, Three, L, Midpoint>> {
+    Dla::of(HandMade { system: &Three::Well(Well), lagrangian, constraint: Midpoint })
 }
 
 #[test]
 fn discrete_lagrangians_by_hand() {
-    let start = ([0.4, 0.3, 0.2], [0.6, -0.5, 0.18]);
-    assert!(constraint_residual(&Well, 0.0, &start.0, &start.1)[0].abs() < 1e-16);
+    let (well, start) = (Three::from(Well), ([0.4, 0.3, 0.2], [0.6, -0.5, 0.18]));
+    assert!(constraint_residual(&well, 0.0, &start.0, &start.1)[0].abs() < 1e-16);
     let end = |steps| {
-        let leapfrog = run::<_, _, 3, 1>(&Well, by_hand(Leapfrog), start, 4.0, steps);
-        let by_rule = run::<_, _, 3, 1>(&Well, Dla::new(Trapezoid, Midpoint), start, 4.0, steps);
+        let leapfrog = run::<_, _, 3, 1>(&well, by_hand(Leapfrog), start, 4.0, steps);
+        let by_rule = run::<_, _, 3, 1>(&well, Dla::new(Trapezoid, Midpoint), start, 4.0, steps);
         for (a, b) in leapfrog.nodes().iter().zip(by_rule.nodes()) {
             // The same equations; 160 steps with some roundings each.
             approx::assert_abs_diff_eq!(&a.q[..], &b.q[..], epsilon = 1e-12);
             approx::assert_abs_diff_eq!(&a.v[..], &b.v[..], epsilon = 1e-12);
         }
-        let simpson = run::<_, _, 3, 1>(&Well, by_hand(Simpson), start, 4.0, steps);
+        let simpson = run::<_, _, 3, 1>(&well, by_hand(Simpson), start, 4.0, steps);
         [leapfrog, simpson].map(|run| run.nodes()[steps as usize].q)
     };
     // Differences of successive halvings: second order without knowing the limit.
@@ -132,6 +136,6 @@ fn discrete_lagrangians_by_hand() {
         assert!((slope - 2.0).abs() <= 0.05, "{slope}, {differences:?}");
     }
     // Neither has a closed form or a basis: every way of solving is the one with multipliers.
-    let solved = |form| run::<_, _, 3, 1>(&Well, by_hand(Simpson).solved(form), start, 4.0, 80);
+    let solved = |form| run::<_, _, 3, 1>(&well, by_hand(Simpson).solved(form), start, 4.0, 80);
     assert_eq!(solved(Form::Best), solved(Form::Multipliers));
 }

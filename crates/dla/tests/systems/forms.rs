@@ -1,5 +1,6 @@
 //! One step from anywhere: the node's constraint, and the same result in the basis and with multipliers.
 
+use crate::support::{Four, Free, Three};
 use crate::systems::models::{Disk, Hyperbolic, Kinetic, Oscillator, Particle, Pushed};
 use dla::{Dla, Form, OneStep, State};
 use lagrangian::{
@@ -85,23 +86,23 @@ proptest! {
         let (at, place) = ((t, h), [q[0], q[1], q[2]]);
         for kinetic in [Kinetic::Quadratic, Kinetic::Quartic] {
             let along = [v[0], v[1], q[1] * v[0]];
-            check_all(&Particle { kinetic, damping: 0.0 }, place, along, at)?;
-            check_all(&Particle { kinetic, damping }, place, along, at)?;
+            check_all(&Three::from(Particle { kinetic, damping: 0.0 }), place, along, at)?;
+            check_all(&Three::from(Particle { kinetic, damping }), place, along, at)?;
         }
         // Below the speed of light.
         let relativistic = Particle { kinetic: Kinetic::Relativistic, damping: 0.0 };
-        check_all(&relativistic, place, [0.5 * v[0], 0.5 * v[1], 0.5 * q[1] * v[0]], at)?;
-        check_all(&Hyperbolic, place, [v[0], v[1], q[1].sinh() * v[0]], at)?;
-        check_all(&Pushed, place, [v[0], v[1], q[1] * v[0] + t.cos()], at)?;
+        check_all(&Three::from(relativistic), place, [0.5 * v[0], 0.5 * v[1], 0.5 * q[1] * v[0]], at)?;
+        check_all(&Three::from(Hyperbolic), place, [v[0], v[1], q[1].sinh() * v[0]], at)?;
+        check_all(&Three::from(Pushed), place, [v[0], v[1], q[1] * v[0] + t.cos()], at)?;
         let (sin, cos) = q[3].sin_cos();
-        check_all(&Disk, q, [0.7 * v[0] * cos, 0.7 * v[0] * sin, v[0], v[1]], at)?;
-        check_all(&Oscillator { damping, drive: 0.3 }, [q[0]], [v[0]], at)?;
+        check_all(&Four::from(Disk), q, [0.7 * v[0] * cos, 0.7 * v[0] * sin, v[0], v[1]], at)?;
+        check_all(&Free::from(Oscillator { damping, drive: 0.3 }), [q[0]], [v[0]], at)?;
     }
 
     /// Through a turning point the mean velocity of a step is zero, and its equations end in rounding.
     #[test]
     fn turning_points_are_passed(q in -1.0..1.0f64, h in 0.01..0.5f64, off in prop_oneof![Just(0.0), -1e-15..1e-15f64]) {
-        let free = Oscillator { damping: 0.0, drive: 0.0 };
+        let free = Free::from(Oscillator { damping: 0.0, drive: 0.0 });
         let v = 0.5 * h * q + off;
         for method in [Dla::midpoint(), Dla::midpoint().solved(Form::Multipliers)] {
             let mut state = State::new([q], [v], [false]);
@@ -115,9 +116,10 @@ proptest! {
 #[test]
 fn rest_stays_rest() {
     let mut state = State::new([0.0], [0.0], [false]);
-    let report = Dla::midpoint().step(&Oscillator { damping: 0.1, drive: 0.0 }, 0.0, 0.1, &mut state).unwrap();
+    let report =
+        Dla::midpoint().step(&Free::from(Oscillator { damping: 0.1, drive: 0.0 }), 0.0, 0.1, &mut state).unwrap();
     assert_eq!((state.q(), state.v(), report.iterations), (&[0.0], &[0.0], 1));
     let mut state = State::new([1.0, 2.0, 3.0], [0.0; 3], [false; 3]);
-    Dla::midpoint().step(&Particle::FREE, 0.0, 0.1, &mut state).unwrap();
+    Dla::midpoint().step(&Three::from(Particle::FREE), 0.0, 0.1, &mut state).unwrap();
     assert_eq!((state.q(), state.v()), (&[1.0, 2.0, 3.0], &[0.0; 3]));
 }

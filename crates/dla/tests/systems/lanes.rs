@@ -1,5 +1,6 @@
 //! Stages in vector registers against stages one by one, and steps of their own length.
 
+use crate::support::{ByHand, Three};
 use approx::assert_abs_diff_eq;
 use dla::{Gauss, GaussAdaptive, OneStep, Schedule, State, StepError, drive};
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System, With, constraint_residual, energy};
@@ -60,14 +61,14 @@ fn sleighs() -> impl Strategy<Value = (Sleigh, SleighState, f64, f64)> {
 
 fn at_once_as_in_turn((body, begin, stiffness, h): (Sleigh, SleighState, f64, f64)) {
     let state = start(&begin);
-    every_order(&body, h, &state);
+    every_order(&ByHand::from(body), h, &state);
     let bowl = Bowl::new([stiffness, 0.3], [0.2, 0.1]).unwrap();
     let amplitude = 0.5 * body.inertia();
     let swing = Torque::new(TimeFunction::Sine { amplitude, frequency: 2.0, phase: 0.3 }).unwrap();
-    every_order(&With { body, effects: (bowl.clone(),) }, h, &state);
+    every_order(&ByHand::from(With { body, effects: (bowl.clone(),) }), h, &state);
     let (drag, slope) = (Drag::new(0.1, 0.2).unwrap(), Slope::new([0.3, -0.2]).unwrap());
     let crowd = (bowl, drag, slope, EggCrate::new(0.2, [1.0, 2.0]).unwrap(), swing);
-    every_order(&With { body, effects: crowd }, h, &state);
+    every_order(&ByHand::from(With { body, effects: crowd }), h, &state);
     let flywheel = Flywheel::new(body, 0.3, None).unwrap();
     let (q, v) = (state.q(), state.v());
     let turning = State::new([q[0], q[1], q[2], 0.4], [v[0], v[1], v[2], -0.7], [false, false, true, true]);
@@ -97,7 +98,8 @@ proptest! {
     fn a_spin_that_dies_out_keeps_its_digits(exponent in -200i32..-3) {
         let (body, h) = (Sleigh::new(1.0, 1.0, 0.5).unwrap(), 0.1);
         let turn_rate = 10f64.powi(exponent);
-        let (state, _) = after(&body, Gauss::new::<8>(), h, &start(&SleighState { speed: 1.0, turn_rate, ..SleighState::default() }));
+        let begin = start(&SleighState { speed: 1.0, turn_rate, ..SleighState::default() });
+        let (state, _) = after(&ByHand::from(body), Gauss::new::<8>(), h, &begin);
         // omega' = -c u omega with a speed that the spin changes by its square.
         let exact = turn_rate * (-body.spin_gain() * f64::from(STEPS) * h).exp();
         let square = if exponent < -8 { 0.0 } else { turn_rate * turn_rate };
@@ -109,7 +111,7 @@ proptest! {
 #[test]
 fn the_last_step_helps_the_next() {
     let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
-    let system = With { body, effects: (Bowl::new([0.1, 0.1], [0.0, 0.0]).unwrap(),) };
+    let system = ByHand::from(With { body, effects: (Bowl::new([0.1, 0.1], [0.0, 0.0]).unwrap(),) });
     let state = start(&SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() });
     let (_, remembered) = after(&system, Gauss::new::<8>(), 0.3, &state);
     let mut forgetful = 0;
@@ -134,7 +136,7 @@ fn the_last_step_helps_the_next() {
 #[test]
 fn the_way_back_ends_at_the_start() {
     let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
-    let system = With { body, effects: (Bowl::new([0.1, 0.1], [0.0, 0.0]).unwrap(),) };
+    let system = ByHand::from(With { body, effects: (Bowl::new([0.1, 0.1], [0.0, 0.0]).unwrap(),) });
     let begin = start(&SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() });
     let mut method = Gauss::new::<8>();
     let mut state = begin;
@@ -155,7 +157,7 @@ fn the_way_back_ends_at_the_start() {
 #[test]
 fn steps_of_their_own_length_meet_a_tolerance() {
     let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
-    let bowl = With { body, effects: (Bowl::new([0.1, 0.1], [0.0, 0.0]).unwrap(),) };
+    let bowl = ByHand::from(With { body, effects: (Bowl::new([0.1, 0.1], [0.0, 0.0]).unwrap(),) });
     let begin = start(&SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() });
     let run = |method: &mut dyn FnMut(&mut State<3>)| {
         let mut state = begin;
@@ -198,7 +200,8 @@ fn steps_of_their_own_length_meet_a_tolerance() {
 
 /// A sleigh whose blade turns in its body at 0.9 rad/s, pushed by a torque that swings: a basis that moves, and no reduced
 /// equations by hand.
-struct Swivelling;
+#[derive(Clone, Copy)]
+pub(crate) struct Swivelling;
 
 impl System<3, 1> for Swivelling {
     fn lagrangian<S: Scalar>(&self, _t: S, q: &[S; 3], v: &[S; 3]) -> S {
@@ -242,16 +245,16 @@ fn steps_of_their_own_length_know_the_time() {
     }
     let start_at =
         |angle: f64| State::new([0.3, -0.2, 0.5], [0.6 * angle.cos(), 0.6 * angle.sin(), 0.4], [false, false, true]);
-    check(&Swivelling, 0.4, &start_at(0.5 + 0.9 * 0.4));
+    check(&Three::from(Swivelling), 0.4, &start_at(0.5 + 0.9 * 0.4));
     let body = Sleigh::new(1.3, 0.8, 0.4).unwrap();
     let swing = Torque::new(TimeFunction::Sine { amplitude: 0.5, frequency: 2.0, phase: 0.3 }).unwrap();
-    check(&With { body, effects: (swing,) }, 0.4, &start_at(0.5));
+    check(&ByHand::from(With { body, effects: (swing,) }), 0.4, &start_at(0.5));
 }
 
 /// What it remembers is all that the next interval depends on.
 #[test]
 fn an_adaptive_run_continues_from_a_checkpoint() {
-    let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    let body = ByHand::from(Sleigh::new(1.0, 1.0, 0.5).unwrap());
     let mut state = start(&SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() });
     let mut method = GaussAdaptive::new::<8>(1e-9);
     OneStep::<3, 1>::step(&mut method, &body, 0.0, 7.0, &mut state).unwrap();
@@ -267,7 +270,7 @@ fn an_adaptive_run_continues_from_a_checkpoint() {
 /// What a file says of the last step may be any numbers: the next interval is crossed all the same, or refused.
 #[test]
 fn numbers_that_no_step_leaves_do_no_harm() {
-    let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    let body = ByHand::from(Sleigh::new(1.0, 1.0, 0.5).unwrap());
     let mut begin = start(&SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() });
     let mut method = GaussAdaptive::new::<8>(1e-9);
     OneStep::<3, 1>::step(&mut method, &body, 0.0, 7.0, &mut begin).unwrap();
@@ -294,7 +297,7 @@ fn numbers_that_no_step_leaves_do_no_harm() {
 /// A place where nothing is finite ends the interval with an error, and nothing has moved.
 #[test]
 fn what_cannot_be_crossed_is_an_error() {
-    let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
+    let body = ByHand::from(Sleigh::new(1.0, 1.0, 0.5).unwrap());
     let begin = start(&SleighState { speed: 1e200, turn_rate: 1e200, ..SleighState::default() });
     let mut state = begin;
     let found = GaussAdaptive::new::<8>(1e-9).step(&body, 0.0, 1.0, &mut state);
@@ -317,7 +320,7 @@ fn a_million_steps_lose_no_energy_but_by_rounding_in_full() {
 /// rounded by less than `eps E` are off by `sqrt(n) eps E`, and by five times that once in a million.
 fn lose_no_energy(steps: u32, (control, tolerance): (u32, f64)) {
     let body = Sleigh::new(1.0, 1.0, 0.5).unwrap();
-    let system = With { body, effects: (Bowl::new([0.1, 0.1], [0.0, 0.0]).unwrap(),) };
+    let system = ByHand::from(With { body, effects: (Bowl::new([0.1, 0.1], [0.0, 0.0]).unwrap(),) });
     let begin = start(&SleighState { speed: -1.0, turn_rate: 0.1, ..SleighState::default() });
     let at = |state: &State<3>| energy(&system, 0.0, state.q(), state.v());
     let walk = |steps: u32| 5.0 * f64::EPSILON * f64::from(steps).sqrt() * at(&begin);
@@ -338,7 +341,7 @@ fn lose_no_energy(steps: u32, (control, tolerance): (u32, f64)) {
 /// Where the slopes are constant there is nothing to contract: an interval is crossed in one step, however often.
 #[test]
 fn a_steady_motion_takes_no_more_steps() {
-    let circle = Sleigh::new(1.0, 1.0, 0.0).unwrap();
+    let circle = ByHand::from(Sleigh::new(1.0, 1.0, 0.0).unwrap());
     let mut method = GaussAdaptive::new::<8>(1e-12);
     for start in [[0.0; 3], [1.0, 0.0, 0.0], [0.5, 0.0, 0.7]] {
         let mut state = State::new([0.3, -0.2, 0.0], start, [false, false, true]);

@@ -2,12 +2,12 @@
 
 #![allow(missing_docs, unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
-mod alternating;
-mod continued;
-mod degenerate;
-mod driven;
+pub(crate) mod alternating;
+pub(crate) mod continued;
+pub(crate) mod degenerate;
+pub(crate) mod driven;
 mod forms;
 mod free;
-mod lanes;
-mod models;
+pub(crate) mod lanes;
+pub(crate) mod models;
 mod tools;

@@ -1,0 +1,269 @@
+//! The systems of one shape as the arms of one type.
+//!
+//! A method is compiled once for every type of system. Seventy systems are nine types here, and what an arm adds is its
+//! own functions, once for every kind of number, since the calls are not inlined. So no test passes a system itself to a
+//! method, a run or a derivative: it passes the arm.
+
+use crate::attitudes::{angles, cylinder};
+use crate::constraints::{classes, driven as led, holonomic, redundant, starts};
+use crate::energy::{order, refusals, systems as energy};
+use crate::lobatto::{failures as dropping, systems as lobatto};
+use crate::rest::{disk, systems as rest};
+use crate::runs::{counter_example, events, failures, observers, scripted, substeps};
+use crate::sensitivity::systems as sensitivity;
+use crate::systems::{alternating, continued, degenerate, driven, lanes, models as small};
+use crate::{corners, drive};
+use lagrangian::{AdmissibleBasis, Constraint, Motion, Piecewise, Reduced, ReducedError, Scalar, System, With};
+use models::{ChaplyginBall, CompoundPendulum, IsokineticParticle, SleighOnArm, Suslov, TurntableBall};
+use sleigh::effects::{Bowl, Drag, EggCrate, Hills, Slope, Torque};
+use sleigh::{CentreOfMass, Guided, RoundWell, Sleigh};
+
+macro_rules! shape {
+    ($(#[$text:meta])* $name:ident<$n:literal, $m:literal> { $($arm:ident: $type:ty,)* } $($more:tt)*) => {
+        $(#[$text])*
+        #[derive(Clone)]
+        pub(crate) enum $name { $($arm($type),)* }
+
+        $(impl From<$type> for $name {
+            fn from(system: $type) -> Self { Self::$arm(system) }
+        })*
+
+        impl System<$n, $m> for $name {
+            #[inline(never)]
+            fn lagrangian<S: Scalar>(&self, t: S, q: &[S; $n], v: &[S; $n]) -> S {
+                match self { $(Self::$arm(x) => System::lagrangian(x, t, q, v),)* }
+            }
+            #[inline(never)]
+            fn constraint<S: Scalar>(&self, t: S, q: &[S; $n]) -> Constraint<S, $n, $m> {
+                match self { $(Self::$arm(x) => System::constraint(x, t, q),)* }
+            }
+            #[inline(never)]
+            fn force<S: Scalar>(&self, t: S, q: &[S; $n], v: &[S; $n]) -> Option<[S; $n]> {
+                match self { $(Self::$arm(x) => System::force(x, t, q, v),)* }
+            }
+            #[inline(never)]
+            fn admissible_basis<S: Scalar>(&self, t: S, q: &[S; $n]) -> Option<AdmissibleBasis<S, $n, $m>> {
+                match self { $(Self::$arm(x) => System::admissible_basis(x, t, q),)* }
+            }
+            #[inline(never)]
+            fn holonomic<S: Scalar>(&self, t: S, q: &[S; $n]) -> Option<[Option<S>; $m]> {
+                match self { $(Self::$arm(x) => System::holonomic(x, t, q),)* }
+            }
+            #[inline(never)]
+            fn nonlinear<S: Scalar>(&self, t: S, q: &[S; $n], v: &[S; $n]) -> Option<[Option<S>; $m]> {
+                match self { $(Self::$arm(x) => System::nonlinear(x, t, q, v),)* }
+            }
+            fn angles(&self) -> [bool; $n] {
+                match self { $(Self::$arm(x) => System::angles(x),)* }
+            }
+            $($more)*
+        }
+    };
+}
+
+shape! {
+    /// One coordinate, no constraint.
+    #[derive(Copy)]
+    Free<1, 0> {
+        Oscillator: small::Oscillator,
+        Falling: observers::Falling,
+    }
+}
+
+shape! {
+    /// One coordinate, one constraint.
+    #[derive(Copy)]
+    One<1, 1> {
+        Line: drive::Line,
+        Nowhere: starts::Nowhere,
+        Point: scripted::Point,
+        Contradiction: substeps::Contradiction,
+        Led: observers::Led,
+    }
+}
+
+shape! {
+    /// Two coordinates, one constraint.
+    #[derive(Copy)]
+    Two<2, 1> {
+        Cart: rest::Cart<false>,
+        CartInBasis: rest::Cart<true>,
+        Pendulum: rest::Pendulum,
+        Swung: order::Swung,
+        Rail: refusals::Rail,
+        Lift: holonomic::Lift,
+        Led: led::Led,
+        Ring: starts::Ring,
+        Along: classes::Row<classes::Along>,
+        Across: classes::Row<classes::Across>,
+        Turning: classes::Row<classes::Turning>,
+        Vanishing: classes::Row<classes::Vanishing>,
+        Dropping: degenerate::Dropping,
+        Pushed: events::Pushed,
+        Brake: failures::Brake,
+        Braked: counter_example::Pushed,
+        Lifted: counter_example::Lifted,
+        Isokinetic: IsokineticParticle,
+    }
+}
+
+shape! {
+    /// Three coordinates, one constraint.
+    #[derive(Copy)]
+    Three<3, 1> {
+        Corners: corners::Skate,
+        Skate: rest::Skate<false>,
+        SkateInBasis: rest::Skate<true>,
+        Rosenberg: lobatto::Particle,
+        Affine: lobatto::Moving,
+        InField: energy::Particle,
+        Wrapped: energy::Wrapped,
+        Moving: sensitivity::Moving,
+        Well: driven::Well,
+        Particle: small::Particle,
+        Hyperbolic: small::Hyperbolic,
+        Pushed: small::Pushed,
+        Wheel: continued::Wheel,
+        Swivelling: lanes::Swivelling,
+        Once: degenerate::Once,
+    }
+}
+
+shape! {
+    /// Three coordinates, two constraints.
+    #[derive(Copy)]
+    ThreeTwo<3, 2> {
+        Dropping: dropping::Dropping,
+        Towed: continued::Towed,
+        Twice: degenerate::Twice,
+        Pendulum: CompoundPendulum,
+        OnArm: SleighOnArm,
+    }
+}
+
+shape! {
+    /// Four coordinates, two constraints.
+    #[derive(Copy)]
+    Four<4, 2> {
+        TwoBlades: redundant::TwoBlades,
+        Disk: small::Disk,
+        Suslov: Suslov,
+    }
+}
+
+shape! {
+    /// Five coordinates, two constraints.
+    #[derive(Copy)]
+    Five<5, 2> {
+        AngleBall: angles::AngleBall,
+        Disk: disk::Disk,
+    }
+}
+
+shape! {
+    /// Six coordinates, three constraints.
+    #[derive(Copy)]
+    Six<6, 3> {
+        InCylinder: cylinder::Ball,
+        Chaplygin: ChaplyginBall,
+        OnTurntable: TurntableBall,
+    }
+}
+
+impl Piecewise for One {
+    fn jumps(&self, from: f64, to: f64) -> Vec<f64> {
+        if let Self::Led(led) = self { led.jumps(from, to) } else { Vec::new() }
+    }
+    fn piece(&self, t: f64) -> Self {
+        if let Self::Led(led) = self { led.piece(t).into() } else { *self }
+    }
+}
+
+impl Piecewise for Two {
+    fn jumps(&self, from: f64, to: f64) -> Vec<f64> {
+        if let Self::Pushed(pushed) = self { pushed.jumps(from, to) } else { Vec::new() }
+    }
+    fn piece(&self, t: f64) -> Self {
+        if let Self::Pushed(pushed) = self { pushed.piece(t).into() } else { *self }
+    }
+}
+
+/// The same with what is known of a motion by hand: a type of its own, since methods go another way where nothing is.
+macro_rules! by_hand {
+    ($(#[$text:meta])* $name:ident<$n:literal, $m:literal> { $($arm:ident: $type:ty,)* }) => {
+        shape! {
+            $(#[$text])*
+            $name<$n, $m> { $($arm: $type,)* }
+            fn reduced(&self) -> impl Reduced<$n, $m> {
+                self
+            }
+        }
+
+        impl Reduced<$n, $m> for $name {
+            #[inline(never)]
+            fn motion(&self, t: f64, q: &[f64; $n], v: &[f64; $n]) -> Option<Motion<$n, $m>> {
+                match self { $(Self::$arm(x) => System::reduced(x).motion(t, q, v),)* }
+            }
+            #[inline(never)]
+            fn reduced_motion<S: Scalar>(&self, t: S, q: &[S; $n], xi: &[S; $n]) -> Option<[S; $n]> {
+                match self { $(Self::$arm(x) => System::reduced(x).reduced_motion(t, q, xi),)* }
+            }
+            #[inline(never)]
+            fn velocity<S: Scalar>(
+                &self,
+                t: S,
+                q: &[S; $n],
+                xi: &[S; $n],
+                derived: impl FnOnce() -> Result<[S; $n], ReducedError>,
+            ) -> Result<[S; $n], ReducedError> {
+                match self { $(Self::$arm(x) => System::reduced(x).velocity(t, q, xi, derived),)* }
+            }
+            fn reconstruction(&self) -> Option<u32> {
+                match self { $(Self::$arm(x) => System::reduced(x).reconstruction(),)* }
+            }
+            fn stands_alone(&self) -> bool {
+                match self { $(Self::$arm(x) => System::reduced(x).stands_alone(),)* }
+            }
+            #[inline(never)]
+            fn response(&self, t: f64, q: &[f64; $n], force: &[f64; $n]) -> Option<Motion<$n, $m>> {
+                match self { $(Self::$arm(x) => System::reduced(x).response(t, q, force),)* }
+            }
+            #[inline(never)]
+            fn pushed_motion<S: Scalar>(&self, t: S, q: &[S; $n], xi: &[S; $n], force: &[S; $n]) -> Option<[S; $n]> {
+                match self { $(Self::$arm(x) => System::reduced(x).pushed_motion(t, q, xi, force),)* }
+            }
+        }
+    };
+}
+
+by_hand! {
+    /// Three coordinates, one constraint: sleighs, whose motion is known by hand, and what acts on them.
+    ByHand<3, 1> {
+        Sleigh: Sleigh,
+        OnTurntable: Guided<0>,
+        RoundWell: RoundWell,
+        InBowl: With<Sleigh, Bowl>,
+        InOneBowl: With<Sleigh, (Bowl,)>,
+        OverHills: With<Sleigh, Hills>,
+        Dragged: With<Sleigh, Drag>,
+        Twisted: With<Sleigh, Torque>,
+        TwistedOnce: With<Sleigh, (Torque,)>,
+        Nested: With<Sleigh, ((Bowl, EggCrate), Drag)>,
+        Crowd: With<Sleigh, (Bowl, Drag, Slope, EggCrate, Torque)>,
+        Forced: With<Sleigh, lobatto::Forces>,
+        InPotential: With<Sleigh, energy::Potential>,
+        ComForced: With<CentreOfMass, lobatto::Forces>,
+        ComInCrate: With<CentreOfMass, lobatto::Potential>,
+        ComInCrateForced: With<CentreOfMass, (lobatto::Potential, lobatto::Forces)>,
+        ComInPotential: With<CentreOfMass, energy::Potential>,
+        ComBraked: With<CentreOfMass, (energy::Potential, energy::Friction)>,
+        ComInBowl: With<CentreOfMass, alternating::Bowl>,
+    }
+}
+
+/// None of them jumps.
+impl Piecewise for ByHand {
+    fn piece(&self, _t: f64) -> Self {
+        self.clone()
+    }
+}
