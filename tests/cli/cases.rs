@@ -1,5 +1,4 @@
 //! Files that people who try such programs write, and files that were damaged: `tests/cases/`. What the program says of each.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use crate::program::{Folder, csv};
 use serde_json::Value;

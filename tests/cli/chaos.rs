@@ -1,5 +1,4 @@
 //! `noslip lyapunov`, `noslip section` and `noslip ensemble`.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 mod ensembles;
 use crate::program::{Folder, SCENE, csv, keys};

@@ -1,5 +1,4 @@
 //! `noslip compare`, and `noslip --all`.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use crate::program::{FAILING, Folder, SCENE, SCENES, keys, methods, names};
 use approx::assert_relative_eq;

@@ -3,7 +3,6 @@
 //!
 //! `NOSLIP_TRIES=200 cargo test --test tests cli::ensemble` makes each fault so many times.
 #![cfg(unix)]
-#![allow(clippy::unwrap_used, reason = "what the tests share is no test")]
 
 use crate::processes::{Dice, damaged, ended, send, signals, started, tries, wait_for};
 use crate::program::Folder;

@@ -1,5 +1,4 @@
 //! What tables, pages, pictures and files say of a method that failed or blew up.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use crate::program::{Folder, SCENE, keys};
 use proptest::prelude::*;

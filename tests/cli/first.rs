@@ -1,5 +1,4 @@
 //! Plain `noslip`: the first screen.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 #[cfg(target_os = "linux")]
 use crate::processes::{output, send, started};

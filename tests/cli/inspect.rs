@@ -1,5 +1,4 @@
 //! `noslip check`, `list`, `new`, `cost`, `equilibria` and `phase`.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use crate::program::{Folder, SCENE, SCENES, TEXTS, keys, methods};
 use serde_json::Value;

@@ -1,5 +1,4 @@
 //! What made a file of numbers, and the units of its columns, stand beside every `.csv`.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use crate::program::{Folder, SCENE};
 use serde_json::Value;

@@ -1,5 +1,4 @@
 //! `noslip run --out`: the files of a trajectory.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use crate::program::{Folder, SCENE, csv};
 use std::fs::File;

@@ -1,5 +1,4 @@
 //! A sweep in parts: each computed by a process of its own, merged to the bytes that one process would have written.
-#![allow(clippy::unwrap_used, reason = "what the tests share is no test")]
 
 use crate::processes::{Dice, damaged, ended, started, tries};
 use crate::program::{Folder, names};

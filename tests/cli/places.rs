@@ -1,5 +1,4 @@
 //! Where `noslip run --out` writes: what is there is safe, and what cannot be written is said before the run.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use crate::program::{Folder, SCENE};
 

@@ -1,5 +1,4 @@
 //! `noslip plot`.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use crate::program::{FAILING, Folder, SCENE, names};
 

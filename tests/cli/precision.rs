@@ -1,5 +1,4 @@
 //! `noslip precision`.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use crate::program::{Folder, SCENE, keys, names};
 use approx::assert_abs_diff_eq;

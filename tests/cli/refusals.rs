@@ -1,5 +1,4 @@
 //! Requests that are wrong: exit 2, what is accepted on standard error, and nothing done.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use crate::program::{Folder, SCENE, methods};
 

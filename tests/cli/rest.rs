@@ -1,5 +1,4 @@
 //! `noslip run` and `noslip compare` of motions that are small or come to rest: every method, from a file.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::program::Folder;
 use std::fmt::Write as _;

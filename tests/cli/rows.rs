@@ -1,7 +1,6 @@
 //! The rows of `noslip run --out`: streamed, continued by `--resume` to the same bytes, in every format, with what made them.
 //!
 //! `NOSLIP_TRIES=200 cargo test --test tests cli::rows` makes each fault so many times.
-#![allow(clippy::unwrap_used, reason = "what the tests share is no test")]
 
 use crate::processes::{Dice, damaged, tries};
 use crate::program::{Folder, SCENE};

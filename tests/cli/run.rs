@@ -1,5 +1,4 @@
 //! `noslip run`: what it computes and prints.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
 mod events;
 

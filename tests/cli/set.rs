@@ -1,5 +1,4 @@
 //! `--set`, `-` for the standard input, `check` of several scenes, `diff`, `completions`, `man`, colours.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use crate::program::{Folder, Outcome, SCENE, keys};
 use serde_json::Value;

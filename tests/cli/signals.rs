@@ -1,6 +1,5 @@
 //! SIGINT, SIGTERM and SIGHUP end every long command, and what is done is written. A checkpoint that cannot be saved is tried again.
 #![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::panic, reason = "what the tests share is no test")]
 
 use crate::processes::{ended, output, send, signals, started, wait_for};
 use crate::program::{Folder, SCENE};

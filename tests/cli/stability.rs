@@ -6,7 +6,6 @@
 //! ```text
 //! NOSLIP_WRITE=1 cargo test --release --test tests cli::stability::refresh -- --ignored
 //! ```
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 mod page;
 mod table;

@@ -1,6 +1,5 @@
 //! Outputs that are full, closed, or watched: no panic, no half file, no noise.
 #![cfg(target_os = "linux")]
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use crate::program::{Folder, Outcome};
 use std::fs::File;

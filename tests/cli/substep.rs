@@ -1,5 +1,4 @@
 //! `noslip run --substep`: steps that are made in parts, and the offer of it.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
 use crate::program::{FAILING, Folder, SCENE, keys};
 use serde_json::Value;

@@ -1,5 +1,4 @@
 //! Scenes of systems of text: what the program makes of them, and what it says of wrong ones.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
 mod events;
 

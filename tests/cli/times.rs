@@ -1,5 +1,4 @@
 //! Times, and numbers that are not finite: no scene without a valid step, no run without an end, no NaN with exit code 0.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use crate::program::{Folder, SCENE, csv};
 use std::f64::consts::TAU;

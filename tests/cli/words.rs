@@ -1,5 +1,4 @@
 //! Messages name the right thing, with numbers that can be read.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use crate::program::{FAILING, Folder, SCENE, names};
 use std::fs;

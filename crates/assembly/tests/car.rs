@@ -1,4 +1,5 @@
 //! A car with one to eight trailers, against its kinematics with one equation of motion, integrated by themselves.
+
 use approx::assert_abs_diff_eq;
 use assembly::parts::{RotorElement, SteeredBlade, Trailer, Train};
 use assembly::{Assembly, AssemblyMethod, AssemblyState, AssemblyWork, Joint, Solver, SparseLobatto};

@@ -1,4 +1,5 @@
 //! A chain of unlike blades that rolls over hills, its own weight on each.
+
 use crate::tools::{bent, slope, weighted};
 use assembly::parts::Train;
 use assembly::{AssemblyMethod, Solver, SparseDla, SparseEnergy};

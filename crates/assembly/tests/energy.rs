@@ -1,4 +1,5 @@
 //! The method that keeps the energy: of one sleigh the static one, of trains with joints and blades held.
+
 use crate::tools::{bent, ground, hilly};
 use approx::assert_abs_diff_eq;
 use assembly::parts::{Blade, Body, Hinge, RotorElement, Trailer, Train};

@@ -1,4 +1,5 @@
 //! The Lobatto methods: of one sleigh the static ones, of trains with joints and blades held.
+
 use crate::tools::{bent, ground, hilly};
 use approx::assert_abs_diff_eq;
 use assembly::parts::Train;

@@ -1,5 +1,14 @@
 //! Assemblies against the static integrators and against what is known of trains.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#![allow(
+    missing_docs,
+    unreachable_pub,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::float_cmp,
+    reason = "what clippy.toml allows in tests, their helpers need too"
+)]
 
 mod car;
 mod chain;

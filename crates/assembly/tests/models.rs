@@ -1,4 +1,5 @@
 //! Snakeboard and roller racer as assemblies, against their forms in few coordinates; a car with trailers; springs.
+
 use approx::assert_abs_diff_eq;
 use assembly::parts::{Blade, Body, Hinge, RotorElement, SteeredBlade, Trailer, Train};
 use assembly::{Assembly, AssemblyMethod, AssemblyState, Joint, Solver, SparseComposition, SparseDla};

@@ -1,7 +1,5 @@
 //! Functions with corners where the motion begins: those that have a derivative there are done, the others named.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::float_cmp)]
-
 use crate::support::Three;
 use approx::assert_abs_diff_eq;
 use dla::{

@@ -1,7 +1,5 @@
 //! Runs: times, observers, and how they end.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
-
 use crate::support::One;
 use dla::{
     Dla, History, Mechanics, NewtonError, Node, Observer, OneStep, RunError, Schedule, Stage, State, StepError,

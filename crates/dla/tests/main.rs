@@ -1,7 +1,15 @@
 //! The tests of the crate, in one program: a method is compiled once for a shape, and not once in
 //! each of a dozen.
 
-#![allow(missing_docs)]
+#![allow(
+    missing_docs,
+    unreachable_pub,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::float_cmp,
+    reason = "what clippy.toml allows in tests, their helpers need too"
+)]
 
 mod attitudes;
 mod constraints;

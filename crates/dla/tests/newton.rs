@@ -1,7 +1,5 @@
 //! Newton's method on equations whose solutions are known.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
-
 use approx::assert_relative_eq;
 use dla::{Equations, History, Newton, NewtonError};
 use lagrangian::linear::{Lu, Singular};

@@ -1,7 +1,5 @@
 //! The coordinates of long runs: compensated sums, and angles with their turns.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
-
 use crate::support::ByHand;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use dla::{Checkpoint, Dla, OneStep, State, StepError};

@@ -1,7 +1,5 @@
 //! Texts that mean harm: an error or a result, within limits, and never a panic.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-
 use crate::common::names;
 use expression::{Error, Graph, Tape, parse};
 use proptest::prelude::*;

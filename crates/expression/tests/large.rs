@@ -4,8 +4,6 @@
 //! NOSLIP_MEASURE=1 cargo test --release -p noslip-expression -- --ignored --nocapture how_long_it_takes
 //! ```
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-
 use expression::{Expression, Graph, Names, Tape, parse};
 use lagrangian::{HyperDual, Scalar};
 use std::time::Instant;

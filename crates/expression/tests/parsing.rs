@@ -1,7 +1,5 @@
 //! What is wrong with a text is said with its place and what would be right there; limits hold.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-
 use crate::common::{built, names};
 use expression::{Error, Graph, Limits, Names, nearest, parse, parse_within};
 

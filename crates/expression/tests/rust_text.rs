@@ -1,7 +1,5 @@
 //! The Rust text of an expression is compiled here, and computes what its tape computes.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-
 use crate::common::built;
 use expression::{Error, Expression, Graph, Tape};
 use lagrangian::{Dual, Scalar};

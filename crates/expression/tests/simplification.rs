@@ -1,7 +1,5 @@
 //! Which expressions are one, and which are not.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-
 use crate::common::{built, text};
 use expression::{Error, Expression, Graph, Names, parse};
 

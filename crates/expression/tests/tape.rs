@@ -1,7 +1,5 @@
 //! Tapes on every kind of number, what they cost, and that they need nothing but their scratch.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
-
 use crate::common::{built, read};
 use expression::{Cost, Error, Graph, Tape};
 use lagrangian::simd::{Kernel, Pack, Simd, Wide, dispatch};

@@ -1,7 +1,5 @@
 //! What is simplified, derived and put on a tape against the text evaluated as it was written.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp, clippy::panic)]
-
 use crate::common::{NAMES, agree, built, expression, names, off_corners, read, text, values, variables};
 use expression::{Error, Function, Graph, Tape, parse};
 use lagrangian::{Dual, Rounded, Scalar};

@@ -1,6 +1,14 @@
 //! Reduced equations derived from texts.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
+#![allow(
+    missing_docs,
+    unreachable_pub,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::float_cmp,
+    reason = "what clippy.toml allows in tests, their helpers need too"
+)]
 
 use expression::{Names, Tape};
 use formulas::{Formulas, Parameters, ReducedFormulas, Unit, Words};

@@ -1,7 +1,5 @@
 //! A step allocates nothing, whatever the method.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-
 use crate::common::{backward, midpoint_forms, sleigh, state_of};
 use allocation_counter::measure;
 use dla::{Schedule, Stepper};

@@ -1,7 +1,5 @@
 //! Systems of more coordinates than one number carries derivatives in: blocks give what one evaluation would.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
-
 use crate::common::component;
 use approx::assert_relative_eq;
 use lagrangian::{

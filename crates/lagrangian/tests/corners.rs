@@ -1,7 +1,5 @@
 //! Functions at and near their corners: values, derivatives as documented, and the same on every kind of number.
 
-#![allow(missing_docs, clippy::float_cmp)]
-
 use approx::assert_relative_eq;
 use lagrangian::simd::{Kernel, Pack, Simd, Wide, dispatch_widest};
 use lagrangian::{Dual, Gradient, HyperDual, Lanes, Scalar};

@@ -1,7 +1,5 @@
 //! The dual numbers against `num-dual`, on single operations and on a Lagrangian that has everything.
 
-#![allow(missing_docs, clippy::float_cmp, clippy::unwrap_used, clippy::expect_used)]
-
 use crate::common::{Everything, component, vector};
 use approx::assert_relative_eq;
 use lagrangian::{

@@ -1,7 +1,5 @@
 //! Discrete Lagrangians and their derivatives, for every rule.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-
 use crate::common::{Everything, vector};
 use approx::assert_relative_eq;
 use lagrangian::{

@@ -1,7 +1,5 @@
 //! Effects compose by types and by lists, and none of them is the bare body.
 
-#![allow(missing_docs, clippy::float_cmp, clippy::unwrap_used, clippy::expect_used)]
-
 use crate::common::{Everything, vector};
 use lagrangian::{Effect, Scalar, System, With};
 use proptest::prelude::*;

@@ -1,7 +1,5 @@
 //! Eight lanes against eight scalars, and their sine and cosine against the platform's.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-
 use crate::common::{Everything, vector};
 use lagrangian::simd::{Kernel, Pack, Simd, Square, Wide, dispatch};
 use lagrangian::{Dual, HyperDual, Lanes, Scalar, System, momentum, vectorized};

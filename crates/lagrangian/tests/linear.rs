@@ -1,7 +1,5 @@
 //! The small linear solvers against those of faer and nalgebra.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-
 use crate::common::component;
 use faer::linalg::solvers::Solve;
 use lagrangian::linear::{Inverse, Lu, has_positive_determinant, normal_solve};

@@ -1,7 +1,5 @@
 //! The generated rules are exact where they should be.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-
 use approx::assert_relative_eq;
 use lagrangian::Twofold;
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre, gauss_legendre_twofold};

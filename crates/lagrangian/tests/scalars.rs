@@ -1,7 +1,5 @@
 //! Arrays that are filled place by place, and sines of wrapped angles.
 
-#![allow(missing_docs)]
-
 use approx::assert_abs_diff_eq;
 use scalar::{from_fn, sin_cos_wrapped};
 use std::f64::consts::{FRAC_PI_2, PI};

@@ -1,7 +1,5 @@
 //! What every model promises, for parameters that are not one.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
-
 use crate::common::{Draws, draws, parameters, state};
 use lagrangian::linear::Lu;
 use lagrangian::{

@@ -1,7 +1,5 @@
 //! `method!` makes the methods of the table.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::float_cmp)]
-
 use harness::{METHODS, Method};
 use noslip::prelude::*;
 use noslip::{Sleigh, SleighState, StepError};

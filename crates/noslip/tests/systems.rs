@@ -1,7 +1,5 @@
 //! Systems by `system!` move as those written by hand: the same numbers, over 10^4 steps where a run is full, by every method that applies.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
-
 use dla::{Schedule, State, drive};
 use harness::{METHODS, Method};
 use lagrangian::{Piecewise, Reduced, System, quasi_velocities, reduced_acceleration};

@@ -1,5 +1,4 @@
 //! What is wrong with a file is said with its line, its field and what is accepted.
-#![allow(clippy::panic, reason = "what clippy.toml allows in tests, their helpers need too")]
 
 use approx::assert_abs_diff_eq;
 use scene::{Scene, SceneError};

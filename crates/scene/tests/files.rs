@@ -1,5 +1,4 @@
 //! Bundled scenes, the template, their schema, and files that are not scenes.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use scene::{RunSettings, Scene, SceneError, bundled, nearest};
 use std::fs;

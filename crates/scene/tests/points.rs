@@ -1,5 +1,4 @@
 //! Functions of time whose points lie in a file beside the scene.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use scene::{Interpolation, Scene, SceneEffect, SceneError, TimeSpec};
 use std::fs;

@@ -1,5 +1,4 @@
 //! Scenes and texts at random.
-#![allow(clippy::unwrap_used, reason = "what clippy.toml allows in tests, their helpers need too")]
 
 use dla::{Dla, Piece, Schedule, State, drive_part, piece_by_piece};
 use proptest::prelude::*;

@@ -1,5 +1,4 @@
 //! The number of steps, and settings from the command line.
-#![allow(clippy::unwrap_used, reason = "what clippy.toml allows in tests, their helpers need too")]
 
 use scene::{MAX_STEPS, RunSettings, Scene, SceneError};
 

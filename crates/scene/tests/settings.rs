@@ -1,5 +1,4 @@
 //! Settings of the command line in the text of a scene.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use proptest::prelude::*;
 use scene::{Scene, SceneError, Setting};

@@ -1,5 +1,4 @@
 //! Scenes of systems of text: whatever stands in a file, it is a scene or an error at a place in it.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use proptest::prelude::*;
 use scene::{AnyScene, SceneError, bundled_texts};

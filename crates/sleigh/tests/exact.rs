@@ -1,7 +1,5 @@
 //! The closed form against reference values of many digits.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use sleigh::{Exact, Sleigh, SleighError, SleighState};
 

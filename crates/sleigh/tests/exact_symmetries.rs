@@ -1,7 +1,5 @@
 //! What holds for every free motion, of the closed form.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-
 use approx::assert_relative_eq;
 use proptest::prelude::*;
 use sleigh::{Exact, Sleigh, SleighState};

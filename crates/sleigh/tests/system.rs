@@ -1,7 +1,5 @@
 //! The sleigh's hand-made equations against the automatic ones, and its two sets of coordinates against each other.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-
 use approx::assert_relative_eq;
 use lagrangian::{
     Motion, Reduced, System, constraint_residual, energy, quasi_velocities, reduced_acceleration, velocity_of,

@@ -1,5 +1,4 @@
 //! Systems as functions of their parameters: starts and steps against extrapolated differences.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
 use dla::{Dla, OneStep, Sensitivity, State, Tangent, Variation};
 use std::sync::Arc;

@@ -1,5 +1,4 @@
 //! A system of text is the system of the library: the same numbers over a run, by several methods.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use dla::{Mechanics, Schedule, State, drive};
 use harness::Method;

@@ -1,5 +1,4 @@
 //! What texts mean, and what is wrong with them.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 
 use proptest::prelude::*;
 use text::{Entry, Problem, StartError, TextModel, Unit, Words};

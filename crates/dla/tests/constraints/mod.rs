@@ -1,7 +1,5 @@
 //! Constraints beyond independent linear ones: on positions, affine, not affine, dependent on one another.
 
-#![allow(missing_docs, unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
-
 mod affine;
 pub(crate) mod classes;
 pub(crate) mod driven;

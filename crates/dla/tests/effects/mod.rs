@@ -1,7 +1,5 @@
 //! The effects on the sleigh: three computations of the same motions, closed forms, what is kept, and runs in pieces.
 
-#![allow(missing_docs, unreachable_pub, clippy::unwrap_used, clippy::expect_used)]
-
 mod balance;
 mod braking;
 mod closed_forms;

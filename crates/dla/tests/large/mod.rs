@@ -1,7 +1,5 @@
 //! Systems of up to sixty coordinates on threads with the stack that the methods count on, and no more.
 
-#![allow(missing_docs, unreachable_pub, clippy::panic, clippy::unwrap_used, clippy::expect_used)]
-
 mod fleet;
 #[cfg(not(debug_assertions))]
 mod shapes;

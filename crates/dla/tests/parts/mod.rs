@@ -1,7 +1,5 @@
 //! Steps that are made in parts: how a step is divided, when it resolves the motion, and what comes of steps that are far too long.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
-
 mod divided;
 mod fields;
 mod free;

@@ -1,7 +1,5 @@
 //! Motions that are small or come to rest beside forces that are large: no method gives one up because of that.
 
-#![allow(missing_docs, unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 mod balance;
 mod bicycle;
 pub(crate) mod disk;

@@ -1,7 +1,5 @@
 //! Runs that are sampled, triggered, stopped and resumed, given a step, and told why they failed.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
-
 mod checkpoint;
 pub(crate) mod counter_example;
 mod dense;

@@ -1,14 +1,4 @@
 //! Random expressions as text, and values for them.
-#![allow(
-    dead_code,
-    unreachable_pub,
-    missing_docs,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::float_cmp,
-    clippy::panic,
-    reason = "every test file uses its own part"
-)]
 
 use expression::{Expression, Graph, Names, Syntax, parse};
 use lagrangian::Rounded;

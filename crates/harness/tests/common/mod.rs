@@ -1,12 +1,4 @@
 //! What the whole-program tests share.
-#![allow(
-    dead_code,
-    unreachable_pub,
-    missing_docs,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    reason = "every test file uses its own part"
-)]
 
 use dla::{Dla, Form, OneStep, Schedule, State, Stepper, drive};
 use lagrangian::System;
@@ -68,9 +60,4 @@ pub fn midpoint_forms(sleigh: Sleigh) -> [(&'static str, Stepper<'static, 3, 1>)
         ("basis", Box::new(Dla::midpoint())),
         ("multipliers", Box::new(Dla::midpoint().solved(Form::Multipliers))),
     ]
-}
-
-/// The larger of the distances in place and in heading.
-pub fn distance(a: &SleighState, b: &SleighState) -> f64 {
-    f64::hypot(a.x - b.x, a.y - b.y).max((a.heading - b.heading).abs())
 }

@@ -1,7 +1,5 @@
 //! The geometry of the sleigh and of other systems: brackets, symmetries, phases, steady motions, parking.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-
 mod attitude;
 mod brackets;
 mod equilibria;

@@ -1,7 +1,5 @@
 //! The report as a reader, a file system and a browser see it.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 mod animation;
 mod browser;
 mod colours;

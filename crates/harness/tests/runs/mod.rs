@@ -1,7 +1,5 @@
 //! Runs are measured as they are: means, extremes and slopes of known series, and the part of a run that fails.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-
 mod baselines;
 mod chaos;
 mod charts;

@@ -1,4 +1,5 @@
 //! Trains whose forces or imposed velocities jump, and trains with a rotor: against the static systems and against known motions.
+
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use assembly::AssemblyState;
 use assembly::parts::{Trailer, Train};

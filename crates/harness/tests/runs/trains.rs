@@ -1,4 +1,5 @@
 //! Runs of assemblies.
+
 use approx::assert_abs_diff_eq;
 use assembly::parts::{Trailer, Train};
 use assembly::{AssemblyError, AssemblyState};

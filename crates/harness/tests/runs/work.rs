@@ -1,4 +1,5 @@
 //! The work that is taken off the energy of an assembly is that of the method's own forces.
+
 use assembly::parts::{Trailer, Train};
 use assembly::{Assembly, AssemblyMethod, AssemblyReport, AssemblyState, AssemblyWork, Solver, SparseEnergy};
 use dla::Schedule;

@@ -1,8 +1,6 @@
 //! Every check of the hard cases sees a stepper that is broken in the way that the case is about, and passes the same
 //! stepper unbroken.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
-
 mod claims;
 mod fields;
 mod places;

@@ -1,7 +1,5 @@
 //! One table of systems, every method on each: a row buys every check.
 
-#![allow(missing_docs, unreachable_pub, clippy::unwrap_used, clippy::expect_used)]
-
 mod adaptive;
 mod case;
 mod constraint;

@@ -1,13 +1,5 @@
 //! A system that has everything: a mass matrix that depends on the configuration, terms linear in the velocity,
 //! explicit time, a force, and an affine constraint that moves.
-#![allow(
-    dead_code,
-    unreachable_pub,
-    missing_docs,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    reason = "every test file uses its own part"
-)]
 
 use lagrangian::{AdmissibleBasis, Constraint, Scalar, System};
 use proptest::prelude::*;

@@ -1,7 +1,5 @@
 //! What holds for single models: the geometry behind their constraints, known motions, what is refused.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
-
 mod constrained;
 mod geometry;
 mod invariants;

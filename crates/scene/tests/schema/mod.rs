@@ -1,4 +1,5 @@
 //! docs/scene.schema.json and the program say the same of a scene.
+
 mod dictionary;
 mod validator;
 

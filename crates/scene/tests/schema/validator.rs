@@ -1,4 +1,5 @@
 //! As much of JSON Schema (draft 2020-12) as the schema of scenes uses; a keyword beyond that is an error of the test.
+
 use serde_json::Value;
 
 /// Whether the value is valid, or else what is wrong with it.

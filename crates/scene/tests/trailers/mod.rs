@@ -1,4 +1,5 @@
 //! Scenes with trailers: assemblies.
+
 use scene::{Built, Scene, Visitor};
 use sleigh::SleighError;
 

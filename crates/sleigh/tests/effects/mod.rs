@@ -1,7 +1,5 @@
 //! The effects by themselves: derivatives, what they refuse, functions of time and paths, what bodies pass on.
 
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
-
 mod bodies;
 mod closed;
 mod derivatives;

@@ -1,5 +1,4 @@
 //! Functions of time.
-#![allow(clippy::float_cmp, reason = "one text evaluated twice has one value, and a table those it was given")]
 
 use approx::assert_relative_eq;
 use lagrangian::{Dual, Piecewise};

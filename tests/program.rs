@@ -1,12 +1,4 @@
 //! Runs the program in a folder of its own.
-#![allow(
-    dead_code,
-    unreachable_pub,
-    missing_docs,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    reason = "every test file uses its own part"
-)]
 
 use serde_json::Value;
 use std::ffi::OsStr;

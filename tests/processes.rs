@@ -1,5 +1,4 @@
 //! Processes of the program that are ended by signals.
-#![allow(dead_code, unreachable_pub, missing_docs, clippy::unwrap_used, reason = "every test file uses its own part")]
 
 use crate::program::Folder;
 use std::fs;
