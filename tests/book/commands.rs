@@ -162,7 +162,7 @@ fn every_command_of_the_book_runs() {
 
 #[test]
 #[ignore = "slow"]
-fn every_command_of_the_book_runs_in_full() {
+fn every_command_of_the_book_runs_at_length() {
     run_all(|line| !line.long);
 }
 

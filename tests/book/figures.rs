@@ -90,7 +90,7 @@ fn figures_are_those_of_the_program() {
 
 #[test]
 #[ignore = "slow"]
-fn figures_are_those_of_the_program_in_full() {
+fn figures_are_those_of_the_program_at_length() {
     all(|_| true);
 }
 

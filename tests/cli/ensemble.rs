@@ -146,7 +146,7 @@ fn a_signal_stops_it_between_members() {
 
 #[test]
 #[ignore = "slow"]
-fn a_signal_stops_it_between_members_in_full() {
+fn a_signal_stops_it_between_members_at_length() {
     stopped(5000.0);
 }
 
@@ -230,7 +230,7 @@ fn a_damaged_spool_is_refused_or_healed() {
 
 #[test]
 #[ignore = "slow"]
-fn a_damaged_spool_is_refused_or_healed_in_full() {
+fn a_damaged_spool_is_refused_or_healed_at_length() {
     damaged_spools(200.0, tries(40));
 }
 

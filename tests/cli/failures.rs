@@ -207,7 +207,7 @@ proptest! {
 
     #[test]
     #[ignore = "slow"]
-    fn a_failure_is_never_bounded_in_full(case in cases(300)) {
+    fn a_failure_is_never_bounded_at_length(case in cases(300)) {
         a_failure_is_not_bounded(&case, true)?;
     }
 }

@@ -183,6 +183,6 @@ fn a_part_that_was_killed_goes_on_and_two_processes_do_not_share_one() {
 #[cfg(unix)]
 #[test]
 #[ignore = "slow"]
-fn a_part_that_was_killed_goes_on_and_two_processes_do_not_share_one_in_full() {
+fn a_part_that_was_killed_goes_on_and_two_processes_do_not_share_one_at_length() {
     killed_and_shared(501, 200.0, tries(6));
 }

@@ -162,7 +162,7 @@ fn table_csv_json_page_and_plot_say_the_same() {
 
 #[test]
 #[ignore = "slow"]
-fn table_csv_json_page_and_plot_say_the_same_in_full() {
+fn table_csv_json_page_and_plot_say_the_same_at_length() {
     the_same_everywhere(SHORT, 21, &["a", "b"]);
 }
 
@@ -238,7 +238,7 @@ fn json_has_the_reference_the_points_and_the_cheapest() {
 
 #[test]
 #[ignore = "slow"]
-fn json_has_the_reference_the_points_and_the_cheapest_in_full() {
+fn json_has_the_reference_the_points_and_the_cheapest_at_length() {
     json_result(&Measured {
         methods: "dla,rk4,gauss8,gauss-adaptive,taylor,dop853",
         longest: "0.0005",

@@ -63,7 +63,7 @@ fn every_method_comes_to_rest_in_a_well() {
 
 #[test]
 #[ignore = "slow"]
-fn every_method_comes_to_rest_in_a_well_in_full() {
+fn every_method_comes_to_rest_in_a_well_at_length() {
     let methods = crate::program::methods();
     // Series are for wells without drag.
     let methods: Vec<&str> = methods.iter().map(String::as_str).filter(|method| *method != "taylor").collect();

@@ -50,7 +50,7 @@ fn a_longer_run_begins_with_the_shorter_one() {
 
 #[test]
 #[ignore = "slow"]
-fn a_longer_run_begins_with_the_shorter_one_in_full() {
+fn a_longer_run_begins_with_the_shorter_one_at_length() {
     let formats = ["k.csv", "k.jsonl", "k.npz"].into_iter().chain(parquet());
     let runs = formats.flat_map(|file| ["scene.toml", "train.toml"].map(|scene| (scene, file)));
     longer_begins_with_shorter(200, runs, &["17.35", "50", "100"]);
@@ -92,7 +92,7 @@ fn ended_by_a_signal_and_resumed_the_bytes_are_the_same() {
 #[cfg(unix)]
 #[test]
 #[ignore = "slow"]
-fn ended_by_a_signal_and_resumed_the_bytes_are_the_same_in_full() {
+fn ended_by_a_signal_and_resumed_the_bytes_are_the_same_at_length() {
     cut_and_resumed(2000, 1000, tries(9));
 }
 

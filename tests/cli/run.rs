@@ -299,7 +299,7 @@ fn a_resumed_train_has_the_bits_of_the_whole() {
 
 #[test]
 #[ignore = "slow"]
-fn a_resumed_run_has_the_bits_of_the_whole_in_full() {
+fn a_resumed_run_has_the_bits_of_the_whole_at_length() {
     resumed_as_whole(&[
         ("turnaround", "gni", 333),
         ("turnaround", "dop853", 77),

@@ -52,7 +52,7 @@ fn exponents_are_those_of_the_time_that_was_measured() {
 
 #[test]
 #[ignore = "slow"]
-fn exponents_are_those_of_the_time_that_was_measured_in_full() {
+fn exponents_are_those_of_the_time_that_was_measured_at_length() {
     exponents(all());
 }
 
@@ -77,7 +77,7 @@ fn maps_have_the_starts_that_are_done() {
 
 #[test]
 #[ignore = "slow"]
-fn maps_have_the_starts_that_are_done_in_full() {
+fn maps_have_the_starts_that_are_done_at_length() {
     map(all(), 300, 20);
 }
 
@@ -104,7 +104,7 @@ fn sections_have_the_starts_that_are_done() {
 
 #[test]
 #[ignore = "slow"]
-fn sections_have_the_starts_that_are_done_in_full() {
+fn sections_have_the_starts_that_are_done_at_length() {
     section(all(), 50_000, 1);
 }
 
@@ -144,7 +144,7 @@ fn hard_cases_have_the_rows_that_are_done() {
 
 #[test]
 #[ignore = "slow"]
-fn hard_cases_have_the_rows_that_are_done_in_full() {
+fn hard_cases_have_the_rows_that_are_done_at_length() {
     hard_cases(all());
 }
 

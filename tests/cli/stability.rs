@@ -66,7 +66,7 @@ fn every_outcome_is_expected() {
 
 #[test]
 #[ignore = "slow"]
-fn every_outcome_is_expected_in_full() {
+fn every_outcome_is_expected_at_length() {
     let folder = Folder::new();
     let (found, expected) = (found(&folder, ""), expected());
     assert_expected(&found, &expected);

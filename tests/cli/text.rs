@@ -185,7 +185,7 @@ fn equations_are_those_of_the_book() {
 
 #[test]
 #[ignore = "slow"]
-fn equations_are_those_of_the_book_in_full() {
+fn equations_are_those_of_the_book_at_length() {
     equations(TEXTS.into_iter());
 }
 
@@ -249,7 +249,7 @@ fn precision_measures_a_system_of_text() {
 
 #[test]
 #[ignore = "slow"]
-fn precision_measures_a_system_of_text_in_full() {
+fn precision_measures_a_system_of_text_at_length() {
     precision("2.0", "0.02");
 }
 

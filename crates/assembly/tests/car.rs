@@ -129,7 +129,7 @@ fn one_to_eight_trailers_follow_their_kinematics() {
 
 #[test]
 #[ignore = "slow"]
-fn one_to_eight_trailers_follow_their_kinematics_in_full() {
+fn one_to_eight_trailers_follow_their_kinematics_at_length() {
     follow(1..=8, [120, 90]);
 }
 

@@ -30,7 +30,7 @@ fn its_energy_error_is_of_second_order() {
 
 #[test]
 #[ignore = "slow"]
-fn its_energy_error_is_of_second_order_in_full() {
+fn its_energy_error_is_of_second_order_at_length() {
     of_second_order((10, 1e-4), 40.0, &[0.04, 0.02, 0.01]);
 }
 

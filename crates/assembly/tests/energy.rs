@@ -74,7 +74,7 @@ fn a_train_on_hills_keeps_its_energy() {
 
 #[test]
 #[ignore = "slow"]
-fn a_train_on_hills_keeps_its_energy_in_full() {
+fn a_train_on_hills_keeps_its_energy_at_length() {
     keeps_its_energy(&hilly(6), 10_000, 1000);
 }
 

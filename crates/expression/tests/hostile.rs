@@ -211,7 +211,7 @@ fn abbreviations_of_abbreviations() {
 
 #[test]
 #[ignore = "slow"]
-fn abbreviations_of_abbreviations_in_full() {
+fn abbreviations_of_abbreviations_at_length() {
     abbreviated(1 << 18, 2000);
 }
 

@@ -180,7 +180,7 @@ fn the_sleigh() {
 
 #[test]
 #[ignore = "slow"]
-fn the_sleigh_in_full() {
+fn the_sleigh_at_length() {
     sleigh(10_000);
 }
 
@@ -236,7 +236,7 @@ fn the_snakeboard() {
 
 #[test]
 #[ignore = "slow"]
-fn the_snakeboard_in_full() {
+fn the_snakeboard_at_length() {
     snakeboard(10_000);
 }
 

@@ -239,7 +239,7 @@ proptest! {
 
     #[test]
     #[ignore = "slow"]
-    fn long_lines_and_deep_nests_parse_or_explain_in_full(length in 0_usize..20_000, before in "[a-z.]{1,10}") {
+    fn long_lines_and_deep_nests_parse_or_explain_at_length(length in 0_usize..20_000, before in "[a-z.]{1,10}") {
         long_and_deep(length, &before)?;
     }
 }

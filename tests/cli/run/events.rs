@@ -109,7 +109,7 @@ fn events_of_a_train_have_a_direction() {
 
 #[test]
 #[ignore = "slow"]
-fn events_of_a_train_have_a_direction_in_full() {
+fn events_of_a_train_have_a_direction_at_length() {
     let [any, rising, falling] = counts(&Folder::new(), &format!("{TRAIN} --event x=0.5WAY"));
     assert_eq!(rising + falling, any);
 }

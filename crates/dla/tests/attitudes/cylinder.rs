@@ -110,7 +110,7 @@ fn it_does_not_fall_out() {
 /// Five rounds.
 #[test]
 #[ignore = "slow"]
-fn it_does_not_fall_out_in_full() {
+fn it_does_not_fall_out_at_length() {
     for from in [Attitude::LEVEL, Attitude::nearest([0.5, 0.5, -0.5, 0.5])] {
         let order = |name: &str, order: f64, run: &dyn Fn(u64) -> [f64; 3]| {
             assert_order(name, heights(name, [100, 200, 400, 800], run), order);

@@ -54,7 +54,7 @@ fn on_positions_it_holds_for_ever() {
 
 #[test]
 #[ignore = "slow"]
-fn on_positions_it_holds_for_ever_in_full() {
+fn on_positions_it_holds_for_ever_at_length() {
     on_positions(100_000);
 }
 
@@ -87,7 +87,7 @@ fn by_its_rate_it_walks() {
 
 #[test]
 #[ignore = "slow"]
-fn by_its_rate_it_walks_in_full() {
+fn by_its_rate_it_walks_at_length() {
     by_its_rate(100_000, 1000);
 }
 

@@ -107,7 +107,7 @@ fn a_homogeneous_ball_rolls_straight() {
 
 #[test]
 #[ignore = "slow"]
-fn a_homogeneous_ball_rolls_straight_in_full() {
+fn a_homogeneous_ball_rolls_straight_at_length() {
     for omega in TURNS {
         for step in [0.1, 0.01] {
             rolls_straight(Roll { omega, step, time: 10.0 });
@@ -195,7 +195,7 @@ proptest! {
 
     #[test]
     #[ignore = "slow"]
-    fn from_any_attitude_in_full(
+    fn from_any_attitude_at_length(
         e in proptest::array::uniform4(-1.0..1.0f64),
         omega in proptest::array::uniform3(-1.5..1.5f64),
     ) {

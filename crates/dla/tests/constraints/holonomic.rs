@@ -40,7 +40,7 @@ fn positions_and_velocities_hold_for_a_million_steps() {
 
 #[test]
 #[ignore = "slow"]
-fn positions_and_velocities_hold_for_a_million_steps_in_full() {
+fn positions_and_velocities_hold_for_a_million_steps_at_length() {
     positions_and_velocities_hold(1_000_000);
 }
 

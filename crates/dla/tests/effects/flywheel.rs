@@ -77,7 +77,7 @@ fn a_free_rotor_keeps_its_momentum() {
 
 #[test]
 #[ignore = "slow"]
-fn a_free_rotor_keeps_its_momentum_in_full() {
+fn a_free_rotor_keeps_its_momentum_at_length() {
     keeps_its_momentum(1_000_000, 100_000);
 }
 

@@ -85,7 +85,7 @@ fn a_stored_end_is_met() {
 
 #[test]
 #[ignore = "slow"]
-fn three_computations_agree_in_full() {
+fn three_computations_agree_at_length() {
     let mut count = 0;
     for (scene, stored) in scenes() {
         let end = scene.run.duration;

@@ -147,7 +147,7 @@ fn egg_crate_keeps_its_energy() {
 
 #[test]
 #[ignore = "slow"]
-fn egg_crate_keeps_its_energy_in_full() {
+fn egg_crate_keeps_its_energy_at_length() {
     let system = wrapped(0.1, Potential::EggCrate);
     held("egg-crate", &system, &egg_crate(), [SHORT, SHORT / 5, SHORT / 5, SHORT]);
     let drift = balance("egg-crate, dla", &system, &mut Dla::midpoint(), &egg_crate(), SHORT);
@@ -163,7 +163,7 @@ fn valley_keeps_its_energy() {
 
 #[test]
 #[ignore = "slow"]
-fn valley_keeps_its_energy_in_full() {
+fn valley_keeps_its_energy_at_length() {
     let system = wrapped(0.5, Potential::Valley);
     held("valley", &system, &valley(), [SHORT, SHORT / 5, SHORT / 5, SHORT]);
     let drift = balance("valley, dla", &system, &mut Dla::midpoint(), &valley(), SHORT);
@@ -195,7 +195,7 @@ fn particle_keeps_its_energy() {
 
 #[test]
 #[ignore = "slow"]
-fn particle_keeps_its_energy_in_full() {
+fn particle_keeps_its_energy_at_length() {
     particle(SHORT / 5);
 }
 

@@ -86,7 +86,7 @@ fn no_wrong_root_is_accepted() {
 
 #[test]
 #[ignore = "slow"]
-fn no_wrong_root_is_accepted_in_full() {
+fn no_wrong_root_is_accepted_at_length() {
     let [accepted, refusals] = steps_on_one_curve(&[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11], 800);
     assert!(accepted > 2000 && refusals > 100, "{accepted} {refusals}");
 }

@@ -15,7 +15,7 @@ fn a_cart_stays_where_its_springs_balance() {
 
 #[test]
 #[ignore = "slow"]
-fn a_cart_stays_where_its_springs_balance_in_full() {
+fn a_cart_stays_where_its_springs_balance_at_length() {
     let springs = [
         ([0.1, 0.7], [3.0, 7.0]),
         ([0.1, 0.7], [1.0, 1.0]),

@@ -204,7 +204,7 @@ fn upright_and_at_rest_it_stays_so() {
 
 #[test]
 #[ignore = "slow"]
-fn upright_and_at_rest_it_stays_so_in_full() {
+fn upright_and_at_rest_it_stays_so_at_length() {
     stays_upright(&[(0.1, 50), (1e-2, 500), (1e-4, 500), (1e-6, 500)]);
 }
 

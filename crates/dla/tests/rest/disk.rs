@@ -68,7 +68,7 @@ fn its_centre_rests_however_flat_it_rolls() {
 /// Twenty turns.
 #[test]
 #[ignore = "slow"]
-fn its_centre_rests_however_flat_it_rolls_in_full() {
+fn its_centre_rests_however_flat_it_rolls_at_length() {
     rolls_flat(&[0.5, 0.1, 1e-2, 1e-3, 1e-5], 20 * 200);
 }
 

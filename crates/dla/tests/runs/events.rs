@@ -88,7 +88,7 @@ fn no_crossing_of_ten_thousand_runs_is_missed() {
 
 #[test]
 #[ignore = "slow"]
-fn no_crossing_of_ten_thousand_runs_is_missed_in_full() {
+fn no_crossing_of_ten_thousand_runs_is_missed_at_length() {
     let config = Config { cases: 10_000, failure_persistence: None, ..Config::default() };
     let [crossed, twice, near] = no_crossing_is_missed(TestRunner::new(config));
     assert!(crossed > 5000 && twice > 2000 && near < 1000);

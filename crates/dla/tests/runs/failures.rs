@@ -58,7 +58,7 @@ fn no_wrong_root_is_accepted() {
 
 #[test]
 #[ignore = "slow"]
-fn no_wrong_root_is_accepted_in_full() {
+fn no_wrong_root_is_accepted_at_length() {
     let [right, refused, none] = roots(0..30);
     assert!(right > 6000 && refused < 1200 && none > 2000, "{right} {refused} {none}");
 }

@@ -43,7 +43,7 @@ fn the_error_is_that_of_the_tolerance() {
 
 #[test]
 #[ignore = "slow"]
-fn the_error_is_that_of_the_tolerance_in_full() {
+fn the_error_is_that_of_the_tolerance_at_length() {
     for tolerance in [1e-3, 1e-6, 1e-9] {
         has_the_error("dla", Dla::midpoint(), tolerance);
         has_the_error("dla4", Composition::suzuki4(Dla::midpoint()), tolerance);

@@ -154,7 +154,7 @@ proptest! {
 
     #[test]
     #[ignore = "slow"]
-    fn any_numbers_make_a_picture_in_full((sheet, size) in any_sheet()) {
+    fn any_numbers_make_a_picture_at_length((sheet, size) in any_sheet()) {
         check_sheet(&sheet, size)?;
     }
 }

@@ -70,7 +70,7 @@ fn degenerate_series_are_drawn_without_a_panic() {
 
 #[test]
 #[ignore = "slow"]
-fn degenerate_series_are_drawn_without_a_panic_in_full() {
+fn degenerate_series_are_drawn_without_a_panic_at_length() {
     let all = degenerate();
     for scene in all.iter().flat_map(scenes_of) {
         written(&report(vec![scene]));

@@ -41,7 +41,7 @@ fn threads_give_the_same_bits() {
 
 #[test]
 #[ignore = "slow"]
-fn threads_give_the_same_bits_in_full() {
+fn threads_give_the_same_bits_at_length() {
     check_threads(&general(), 4, LONG);
 }
 
@@ -72,7 +72,7 @@ fn every_checkpoint_leads_to_the_same_bits() {
 
 #[test]
 #[ignore = "slow"]
-fn every_checkpoint_leads_to_the_same_bits_in_full() {
+fn every_checkpoint_leads_to_the_same_bits_at_length() {
     check_checkpoints(general(), LONG);
 }
 
@@ -94,7 +94,7 @@ fn a_bit_of_the_start_shows() {
 
 #[test]
 #[ignore = "slow"]
-fn a_bit_of_the_start_shows_in_full() {
+fn a_bit_of_the_start_shows_at_length() {
     check_bit(general(), LONG);
 }
 

@@ -296,7 +296,7 @@ fn springs_repeat_or_not() {
 /// Commensurable springs repeat, others do not; friction lets them repeat only when it has done its work.
 #[test]
 #[ignore = "slow"]
-fn springs_repeat_or_not_in_full() {
+fn springs_repeat_or_not_at_length() {
     let turn = std::f64::consts::TAU;
     let springs = |friction, frequency| Springs { by_hand: false, friction, frequency };
     let steps = (0.1, 300, 3000);

@@ -126,7 +126,7 @@ proptest! {
 
     #[test]
     #[ignore = "slow"]
-    fn the_balance_of_any_train_in_full(scene in any_train(), step in 0.005..0.05f64) {
+    fn the_balance_of_any_train_at_length(scene in any_train(), step in 0.005..0.05f64) {
         check_balance(&scene, step, 200)?;
     }
 }

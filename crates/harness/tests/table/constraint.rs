@@ -45,7 +45,7 @@ fn it_holds_for_long() {
 
 #[test]
 #[ignore = "slow"]
-fn it_holds_for_long_in_full() {
+fn it_holds_for_long_at_length() {
     on_circles(&all_methods(), 100_000);
 }
 
@@ -78,7 +78,7 @@ fn it_holds_on_every_row() {
 /// Through the time of the row and once more, on those that come back a thousand steps.
 #[test]
 #[ignore = "slow"]
-fn it_holds_on_every_row_in_full() {
+fn it_holds_on_every_row_at_length() {
     let steps = |case: &dyn Case| if case.facts().recurrent { 1000 } else { (2.0 * case.duration() / 0.05) as u64 };
     let controls = on_rows(&table(), &all_methods(), 0.05, steps);
     assert!(controls >= 15, "the same measure sees the slip of rk4 on {controls} rows only");
@@ -110,6 +110,6 @@ fn it_holds_for_a_million_steps() {
 
 #[test]
 #[ignore = "slow"]
-fn it_holds_for_a_million_steps_in_full() {
+fn it_holds_for_a_million_steps_at_length() {
     without_growth(&["dla", "dla-trapezoid", "rk4-projected", "rk4-reduced"], 1_000_000);
 }

@@ -53,7 +53,7 @@ fn energy_methods_keep_it() {
 /// Through the time of the row and once more, where it comes back over two thousand steps.
 #[test]
 #[ignore = "slow"]
-fn energy_methods_keep_it_in_full() {
+fn energy_methods_keep_it_at_length() {
     let steps = |case: &dyn Case| if case.facts().recurrent { 2000 } else { (2.0 * case.duration() / 0.05) as u64 };
     // A rounding or two a step, of energies that are differences of terms up to ten times as large.
     let [_, controls] = kept(&table(), &all_methods(), steps, 1e-12);

@@ -79,7 +79,7 @@ fn an_adaptive_method_that_makes_each_step_in_one() {
 
 #[test]
 #[ignore = "slow"]
-fn on_motions_without_singularities_in_full() {
+fn on_motions_without_singularities_at_length() {
     let by_steps = |info: &&MethodInfo| info.order > 8 && !info.kind.is_adaptive() || info.name == "dop853";
     let methods: Vec<(&MethodInfo, usize)> = METHODS.iter().filter(by_steps).map(|info| (info, 1)).collect();
     orders(&without_singularities(), &methods, [400, 500]);

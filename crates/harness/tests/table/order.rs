@@ -145,7 +145,7 @@ fn ever_more(duration: f64, info: &MethodInfo) -> Vec<u64> {
 
 #[test]
 #[ignore = "slow"]
-fn every_method_has_its_order_in_full() {
+fn every_method_has_its_order_at_length() {
     let look = Look { duration: None, steps: ever_more, last: 4, fine: [100.0, 71.0], within: |_| 0.1 };
     for (info, [rows, forced, timed]) in METHODS.iter().zip(orders(&table(), &all_methods(), &look)) {
         let few = info.order > 8 || info.kind.is_adaptive();

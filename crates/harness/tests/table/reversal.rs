@@ -62,7 +62,7 @@ fn symmetric_methods_return() {
 
 #[test]
 #[ignore = "slow"]
-fn symmetric_methods_return_in_full() {
+fn symmetric_methods_return_at_length() {
     // Some roundings a step, which in three seconds none of the motions makes a thousand times larger.
     check(&table(), &all_methods(), &THERE, 1e-12);
 }

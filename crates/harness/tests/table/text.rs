@@ -71,7 +71,7 @@ fn it_moves_as_the_row_does() {
 
 #[test]
 #[ignore = "slow"]
-fn it_moves_as_the_row_does_in_full() {
+fn it_moves_as_the_row_does_at_length() {
     let [pairs, close] = same(&table(), &all_methods(), 200, 200);
     println!("{close} of {pairs} pairs within 1e-13");
     assert!(pairs > 400 && 20 * close > 19 * pairs, "{close} of {pairs} pairs within 1e-13");

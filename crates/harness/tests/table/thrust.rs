@@ -58,6 +58,6 @@ fn the_integral_does_not_drift() {
 /// For `1e5 s`.
 #[test]
 #[ignore = "slow"]
-fn the_integral_does_not_drift_in_full() {
+fn the_integral_does_not_drift_at_length() {
     no_drift(2_000_000, 1e-11);
 }
