@@ -227,11 +227,11 @@ fn json_result(measured: &Measured<'_>) {
 fn json_has_the_reference_the_points_and_the_cheapest() {
     json_result(&Measured {
         methods: "dla,gauss8,dop853",
-        longest: "0.0001",
+        longest: "0.001",
         ladders: &["dla", "gauss8"],
-        // Three halvings of the step at least, by each of which the errors of the second order are a quarter.
-        least: 4,
-        part: 0.02,
+        // Two halvings of the step at least, however slow the machine, by each of which the errors of the second order are a quarter.
+        least: 3,
+        part: 0.07,
         priced: 1,
     });
 }
