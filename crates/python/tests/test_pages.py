@@ -1,6 +1,7 @@
 """The blocks of Python in README and book: those of a page run one after the other."""
 
 import re
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ PAGES = ["README.md", "crates/python/README.md", *(str(page.relative_to(ROOT)) f
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 
 # What is not installed for tests: such a block is compiled only.
-ELSEWHERE = ["import ray", "dask_jobqueue"]
+ELSEWHERE = ["import ray", "dask_jobqueue", *([] if find_spec("distributed") else ["dask.distributed"])]
 
 
 def blocks(page: str) -> list[str]:
