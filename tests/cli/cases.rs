@@ -160,7 +160,7 @@ fn trains_end_where_they_should() {
 
 #[test]
 #[ignore = "slow"]
-fn trains_end_where_they_should_in_full() {
+fn trains_end_where_they_should_at_length() {
     trains(&[("lobatto5", 1e-9), ("dla4", 1e-6), ("dla", 1e-3)], &["dla", "dla4", "lobatto3"], 20.0);
 }
 
@@ -182,7 +182,7 @@ fn what_comes_to_rest_goes_on() {
 
 #[test]
 #[ignore = "slow"]
-fn what_comes_to_rest_goes_on_in_full() {
+fn what_comes_to_rest_goes_on_at_length() {
     rests("--duration 400", "--duration 150", 100.0);
 }
 

@@ -247,7 +247,7 @@ fn a_refusal_is_a_row_and_no_picture() {
 
 #[test]
 #[ignore = "slow"]
-fn a_refusal_is_shown_and_fails_only_who_asked_for_it_in_full() {
+fn a_refusal_is_shown_and_fails_only_who_asked_for_it_at_length() {
     let folder = shaken("2.0");
     refusals(&folder, "--report pages");
     row_of_a_refusal(&folder.done("compare shaken.toml"));

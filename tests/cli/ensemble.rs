@@ -118,7 +118,7 @@ fn killed_at_any_time_and_resumed_the_bytes_are_the_same() {
 
 #[test]
 #[ignore = "slow"]
-fn killed_at_any_time_and_resumed_the_bytes_are_the_same_in_full() {
+fn killed_at_any_time_and_resumed_the_bytes_are_the_same_at_length() {
     killed_and_resumed(500, tries(9));
 }
 
@@ -189,7 +189,7 @@ fn two_processes_do_not_share_an_output() {
 
 #[test]
 #[ignore = "slow"]
-fn two_processes_do_not_share_an_output_in_full() {
+fn two_processes_do_not_share_an_output_at_length() {
     two_processes(500, Dice(2), tries(6));
 }
 
@@ -277,6 +277,6 @@ fn what_is_no_spool_of_the_sweep_is_refused_and_an_empty_one_begins() {
 
 #[test]
 #[ignore = "slow"]
-fn what_is_no_spool_of_the_sweep_is_refused_and_an_empty_one_begins_in_full() {
+fn what_is_no_spool_of_the_sweep_is_refused_and_an_empty_one_begins_at_length() {
     no_spools(500, &OLD, |first| vec![0, 1, first - 1, first], &NONE);
 }

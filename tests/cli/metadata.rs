@@ -77,6 +77,6 @@ fn work_precision_diagrams_comparisons_and_ensembles_have_one() {
 
 #[test]
 #[ignore = "slow"]
-fn work_precision_diagrams_comparisons_and_ensembles_have_one_in_full() {
+fn work_precision_diagrams_comparisons_and_ensembles_have_one_at_length() {
     others("0.001", "--report pages", &["k.csv", "pages/scene.csv"]);
 }

@@ -61,7 +61,7 @@ fn merged_parts_have_the_bytes_of_one_process() {
 
 #[test]
 #[ignore = "slow"]
-fn merged_parts_have_the_bytes_of_one_process_in_full() {
+fn merged_parts_have_the_bytes_of_one_process_at_length() {
     merged(501, &[1, 3, 40]);
 }
 
@@ -142,7 +142,7 @@ fn a_damaged_part_is_made_again_and_never_merged() {
 
 #[test]
 #[ignore = "slow"]
-fn a_damaged_part_is_made_again_and_never_merged_in_full() {
+fn a_damaged_part_is_made_again_and_never_merged_at_length() {
     damaged_parts(501, tries(20));
 }
 

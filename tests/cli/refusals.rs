@@ -116,7 +116,7 @@ fn the_smallest_and_largest_numbers_do_no_harm() {
 
 #[test]
 #[ignore = "slow"]
-fn the_smallest_and_largest_numbers_do_no_harm_in_full() {
+fn the_smallest_and_largest_numbers_do_no_harm_at_length() {
     extremes_do_no_harm(&methods());
 }
 

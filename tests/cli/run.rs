@@ -246,7 +246,7 @@ fn a_killed_run_is_resumed_to_the_same_bits() {
 
 #[test]
 #[ignore = "slow"]
-fn a_killed_run_is_resumed_to_the_same_bits_in_full() {
+fn a_killed_run_is_resumed_to_the_same_bits_at_length() {
     killed_and_resumed("--step 0.002", 20_000, |_| "--duration 800".to_owned());
 }
 
@@ -367,7 +367,7 @@ fn a_negative_duration_goes_backward_in_time() {
 
 #[test]
 #[ignore = "slow"]
-fn a_negative_duration_goes_backward_in_time_in_full() {
+fn a_negative_duration_goes_backward_in_time_at_length() {
     let methods = ["dla", "dla8", "lobatto3", "gauss16", "gauss-adaptive", "energy4", "rk4", "rk4-reduced", "dop853"];
     back_and_mirrored(&["turnaround", "bowl"], &methods, 10.0);
 }

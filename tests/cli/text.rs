@@ -226,7 +226,7 @@ fn bundled_texts_run() {
 
 #[test]
 #[ignore = "slow"]
-fn bundled_texts_run_in_full() {
+fn bundled_texts_run_at_length() {
     texts_run("1", TEXTS.into_iter());
 }
 

@@ -32,7 +32,7 @@ fn a_train_keeps_what_it_must() {
 
 #[test]
 #[ignore = "slow"]
-fn a_train_keeps_what_it_must_in_full() {
+fn a_train_keeps_what_it_must_at_length() {
     keeps_what_it_must(30, 1000);
 }
 

@@ -89,7 +89,7 @@ fn sparse_and_dense_agree() {
 
 #[test]
 #[ignore = "slow"]
-fn sparse_and_dense_agree_in_full() {
+fn sparse_and_dense_agree_at_length() {
     solvers_agree(100, 20);
 }
 

@@ -136,7 +136,7 @@ proptest! {
 
     #[test]
     #[ignore = "slow"]
-    fn of_discrete_lagrangians_in_full(step in step()) {
+    fn of_discrete_lagrangians_at_length(step in step()) {
         of_all_rules(step);
     }
 

@@ -197,7 +197,7 @@ fn the_rolling_disk() {
 
 #[test]
 #[ignore = "slow"]
-fn the_rolling_disk_in_full() {
+fn the_rolling_disk_at_length() {
     rolling_disk(10_000);
 }
 
@@ -214,7 +214,7 @@ fn the_roller_racer() {
 
 #[test]
 #[ignore = "slow"]
-fn the_roller_racer_in_full() {
+fn the_roller_racer_at_length() {
     roller_racer(10_000);
 }
 
@@ -253,6 +253,6 @@ fn chaplygins_ball() {
 
 #[test]
 #[ignore = "slow"]
-fn chaplygins_ball_in_full() {
+fn chaplygins_ball_at_length() {
     ball(10_000);
 }

@@ -164,7 +164,7 @@ fn a_text_without_a_basis() {
 
 #[test]
 #[ignore = "slow"]
-fn a_text_without_a_basis_in_full() {
+fn a_text_without_a_basis_at_length() {
     snakeboard((6.0, 1200));
 }
 

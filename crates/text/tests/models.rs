@@ -185,7 +185,7 @@ fn a_derived_basis_changes_and_the_method_keeps_its_claims() {
 
 #[test]
 #[ignore = "slow"]
-fn a_derived_basis_changes_and_the_method_keeps_its_claims_in_full() {
+fn a_derived_basis_changes_and_the_method_keeps_its_claims_at_length() {
     let methods = [("gauss4", 4.0), ("gauss6", 6.0), ("energy4", 4.0), ("rk4-reduced", 4.0), ("dla", 2.0)];
     keeps_its_claims(8.0, 0.02, &methods);
 }

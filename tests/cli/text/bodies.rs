@@ -31,7 +31,7 @@ fn a_ball_on_a_turntable_runs_on_a_circle() {
 
 #[test]
 #[ignore = "slow"]
-fn a_ball_on_a_turntable_runs_on_a_circle_in_full() {
+fn a_ball_on_a_turntable_runs_on_a_circle_at_length() {
     circles(20.0);
 }
 
@@ -94,7 +94,7 @@ fn a_ball_in_a_turning_bowl_keeps_its_moving_energy() {
 
 #[test]
 #[ignore = "slow"]
-fn a_ball_in_a_turning_bowl_keeps_its_moving_energy_in_full() {
+fn a_ball_in_a_turning_bowl_keeps_its_moving_energy_at_length() {
     moving_energy("gauss16", 20.0, 0.01);
 }
 

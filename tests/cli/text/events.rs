@@ -113,7 +113,7 @@ fn a_run_of_text_makes_a_page() {
 
 #[test]
 #[ignore = "slow"]
-fn a_run_of_text_makes_a_page_in_full() {
+fn a_run_of_text_makes_a_page_at_length() {
     let folder = Folder::new();
     for scene in ["rolling-disk", "bicycle"] {
         assert_page(&folder, &format!("{scene} --duration 1"), "theta");

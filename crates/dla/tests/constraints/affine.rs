@@ -65,7 +65,7 @@ fn moving_energy() {
 
 #[test]
 #[ignore = "slow"]
-fn moving_energy_in_full() {
+fn moving_energy_at_length() {
     let steps = 10_000;
     kept_by_variational_methods(steps);
     let [short, _] = energies(&mut Gauss::new::<2>(), steps / 10);

@@ -107,7 +107,7 @@ fn a_driven_rotor_accelerates_without_bound() {
 /// With the spin slaved to the drive, `m a u omega = -K'`; its delay takes `3 (w/(c u))^2`, here 0.3 %, from `u^3`.
 #[test]
 #[ignore = "slow"]
-fn a_driven_rotor_accelerates_without_bound_in_full() {
+fn a_driven_rotor_accelerates_without_bound_at_length() {
     let [speed, law] = driven(400_000);
     let ratio = speed.powi(3) / law;
     assert!((ratio - 1.0).abs() < 0.05, "{ratio}");

@@ -14,7 +14,7 @@ fn heavy_drag() {
 
 #[test]
 #[ignore = "slow"]
-fn heavy_drag_in_full() {
+fn heavy_drag_at_length() {
     dragged(&[(0.1, 20), (1.0, 20), (3.0, 20), (1e3, 4)], 20);
 }
 

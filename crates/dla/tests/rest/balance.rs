@@ -63,7 +63,7 @@ fn a_skate_across_its_slope_hardly_moves() {
 
 #[test]
 #[ignore = "slow"]
-fn a_skate_across_its_slope_hardly_moves_in_full() {
+fn a_skate_across_its_slope_hardly_moves_at_length() {
     let starts = [(1e-3, 0.0), (1e-5, 0.0), (1e-7, 0.0), (1e-9, 0.0), (0.0, 1e-6), (0.0, 1e-9), (0.0, 0.0)];
     across_its_slope(&starts, 1000);
 }

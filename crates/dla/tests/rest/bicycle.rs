@@ -181,7 +181,7 @@ fn leaning_a_little_it_follows_the_linear_equations() {
 
 #[test]
 #[ignore = "slow"]
-fn leaning_a_little_it_follows_the_linear_equations_in_full() {
+fn leaning_a_little_it_follows_the_linear_equations_at_length() {
     let by_dla = [100, 200, 400].map(|steps| error(Dla::midpoint(), 2.0, steps));
     let by_dla4 = [50, 100, 200].map(|steps| error(Composition::suzuki4(Dla::midpoint()), 2.0, steps));
     let by_lobatto = [50, 100, 200].map(|steps| error(Lobatto::<3>::new(), 2.0, steps));

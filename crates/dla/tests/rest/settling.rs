@@ -14,7 +14,7 @@ fn a_damped_pendulum_comes_to_rest() {
 /// And 100.
 #[test]
 #[ignore = "slow"]
-fn a_damped_pendulum_comes_to_rest_in_full() {
+fn a_damped_pendulum_comes_to_rest_at_length() {
     dies_out(0.5, 1000.0, &[0.01, 0.1]);
 }
 

@@ -93,7 +93,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
     #[test]
     #[ignore = "slow"]
-    fn steps_that_go_on_are_those_without_memory_in_full(numbers in numbers()) {
+    fn steps_that_go_on_are_those_without_memory_at_length(numbers in numbers()) {
         all_go_on(numbers)?;
     }
 }

@@ -312,7 +312,7 @@ fn a_million_steps_lose_no_energy_but_by_rounding() {
 
 #[test]
 #[ignore = "slow"]
-fn a_million_steps_lose_no_energy_but_by_rounding_in_full() {
+fn a_million_steps_lose_no_energy_but_by_rounding_at_length() {
     lose_no_energy(1_000_000, (100_000, 1e-12));
 }
 

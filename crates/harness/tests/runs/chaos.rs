@@ -98,7 +98,7 @@ fn a_saddle_with_friction() {
 
 #[test]
 #[ignore = "slow"]
-fn a_saddle_with_friction_in_full() {
+fn a_saddle_with_friction_at_length() {
     check_saddle(false, (0.1, 1000, 1000));
 }
 

@@ -123,7 +123,7 @@ fn a_chaotic_wander_is_bounded() {
 
 #[test]
 #[ignore = "slow"]
-fn a_chaotic_wander_is_bounded_in_full() {
+fn a_chaotic_wander_is_bounded_at_length() {
     check_wander(100, [90, 95]);
 }
 

@@ -68,7 +68,7 @@ fn the_canonical_scheme() {
 
 #[test]
 #[ignore = "slow"]
-fn the_canonical_scheme_in_full() {
+fn the_canonical_scheme_at_length() {
     check_canonical(1000, 1e-3);
 }
 

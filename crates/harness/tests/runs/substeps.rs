@@ -55,7 +55,7 @@ fn where_nothing_is_divided_no_bit_is_changed() {
 
 #[test]
 #[ignore = "slow"]
-fn where_nothing_is_divided_no_bit_is_changed_in_full() {
+fn where_nothing_is_divided_no_bit_is_changed_at_length() {
     check_undivided(general(), 200);
 }
 
@@ -106,7 +106,7 @@ fn every_checkpoint_leads_to_the_same_bits() {
 
 #[test]
 #[ignore = "slow"]
-fn every_checkpoint_leads_to_the_same_bits_in_full() {
+fn every_checkpoint_leads_to_the_same_bits_at_length() {
     check_checkpoints(&["dla", "dla-trapezoid", "dla4", "lobatto3", "gauss8", "energy4", "dop853"], LONG);
 }
 

@@ -191,7 +191,7 @@ fn a_run_across_jumps_goes_on_from_its_files() {
 
 #[test]
 #[ignore = "slow"]
-fn a_run_across_jumps_goes_on_from_its_files_in_full() {
+fn a_run_across_jumps_goes_on_from_its_files_at_length() {
     check_files(&["dla", "lobatto3"], 1);
 }
 

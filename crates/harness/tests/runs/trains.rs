@@ -288,7 +288,7 @@ fn a_long_step_of_a_train_is_divided_so_far() {
 /// Also from a checkpoint and up to an event.
 #[test]
 #[ignore = "slow"]
-fn long_steps_of_trains_are_made_in_parts_in_full() {
+fn long_steps_of_trains_are_made_in_parts_at_length() {
     let ((train, start), long) = (turning(), seconds(6));
     let right = short_steps(0.005, 1200);
     for name in ["dla", "dla4", "lobatto3", "energy2"] {

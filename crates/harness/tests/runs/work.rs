@@ -69,7 +69,7 @@ fn the_energy_changes_by_the_work_of_the_discrete_forces() {
 
 #[test]
 #[ignore = "slow"]
-fn the_energy_changes_by_the_work_of_the_discrete_forces_in_full() {
+fn the_energy_changes_by_the_work_of_the_discrete_forces_at_length() {
     check_work(&[0.04, 0.02, 0.01], 20.0);
 }
 
@@ -248,7 +248,7 @@ fn one_sleigh_is_measured_as_the_static_sleigh() {
 
 #[test]
 #[ignore = "slow"]
-fn one_sleigh_is_measured_as_the_static_sleigh_in_full() {
+fn one_sleigh_is_measured_as_the_static_sleigh_at_length() {
     check_one_sleigh(&["dla", "dla4", "dla6", "dla8", "lobatto3", "lobatto4", "lobatto5", "energy2"], 20.0);
 }
 

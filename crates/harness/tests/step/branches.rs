@@ -197,7 +197,7 @@ fn fixed_points_are_on_the_branch() {
 
 #[test]
 #[ignore = "slow"]
-fn fixed_points_are_on_the_branch_in_full() {
+fn fixed_points_are_on_the_branch_at_length() {
     for (name, count) in
         [("gauss4", gauss4(1)), ("gauss8", gauss8(1)), ("energy2", energy2(1)), ("implicit-midpoint", midpoint(1))]
     {

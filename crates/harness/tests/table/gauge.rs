@@ -151,6 +151,6 @@ fn a_plain_symmetric_scheme_loses_energy() {
 
 #[test]
 #[ignore = "slow"]
-fn a_plain_symmetric_scheme_loses_energy_in_full() {
+fn a_plain_symmetric_scheme_loses_energy_at_length() {
     loses(10_000, 0.585, -8.4e-6);
 }

@@ -139,7 +139,7 @@ fn a_derived_basis_keeps_what_methods_promise() {
 
 #[test]
 #[ignore = "slow"]
-fn a_derived_basis_keeps_what_methods_promise_in_full() {
+fn a_derived_basis_keeps_what_methods_promise_at_length() {
     let [systems, seen] = derived(&table(), None, |duration| (duration / 0.04) as u64, 200);
     assert!(systems >= 20 && seen > 60, "{systems} systems, {seen} orders");
 }
