@@ -26,17 +26,22 @@ def program() -> list[str]:
     pytest.skip("the program is not built: cargo build")
 
 
-@pytest.mark.parametrize("name", noslip.scenes())
+# One of each kind of system, for longer than the others.
+KINDS = ["turnaround", "bowl", "flywheel", "turntable", "knife-edge"]
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[] if name in KINDS else [pytest.mark.slow]) for name in noslip.scenes()])
 def test_columns_are_those_of_the_files_of_the_program(name: str, tmp_path: Path) -> None:
+    duration = 2.0 if name in KINDS else 0.2
     for method in METHODS:
         file = tmp_path / f"{method}.npz"
-        arguments = ["run", name, "--method", method, "--duration", "2", "--out", str(file), "--json"]
+        arguments = ["run", name, "--method", method, "--duration", str(duration), "--out", str(file), "--json"]
         made = subprocess.run([*program(), *arguments], capture_output=True, text=True)
         if made.returncode != 0:
             with pytest.raises(noslip.NoslipError):
-                noslip.scene(name).run(method=method, duration=2.0)
+                noslip.scene(name).run(method=method, duration=duration)
             continue
-        run = noslip.scene(name).run(method=method, duration=2.0)
+        run = noslip.scene(name).run(method=method, duration=duration)
         with np.load(file) as archive:
             for column in run:
                 np.testing.assert_array_equal(run[column], archive[column], err_msg=f"{name} {method} {column}")
