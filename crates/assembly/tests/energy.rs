@@ -1,6 +1,6 @@
 //! The method that keeps the energy: of one sleigh the static one, of trains with joints and blades held.
 
-use crate::tools::{bent, ground, hilly};
+use crate::tools::{bent, end, ground, hilly};
 use approx::assert_abs_diff_eq;
 use assembly::parts::{Blade, Body, Hinge, RotorElement, Trailer, Train};
 use assembly::{
@@ -208,16 +208,9 @@ fn order_two_in_full() {
 /// Against the eighth order.
 fn of_order_two(train: &Train, duration: f64, counts: [u32; 3], (exact, fine): (&mut dyn AssemblyMethod, u32)) {
     let assembly = &train.assembly;
-    let end = |method: &mut dyn AssemblyMethod, steps: u32| {
-        let (mut state, h) = (bent(train), duration / f64::from(steps));
-        for k in 0..steps {
-            method.step(assembly, f64::from(k) * h, h, &mut state).unwrap();
-        }
-        state
-    };
-    let exact = end(exact, fine);
-    let errors =
-        counts.map(|steps| end(&mut SparseEnergy::new(assembly, Solver::Best).unwrap(), steps).distance(&exact));
+    let energy = || SparseEnergy::new(assembly, Solver::Best).unwrap();
+    let exact = end(train, duration, exact, fine);
+    let errors = counts.map(|steps| end(train, duration, &mut energy(), steps).distance(&exact));
     let orders = [(errors[0] / errors[1]).log2(), (errors[1] / errors[2]).log2()];
     println!("{errors:?} {orders:?}");
     assert!(orders.iter().all(|order| (order - 2.0).abs() < 0.1), "{orders:?}");

@@ -1,4 +1,4 @@
-use crate::tools::{bent, train};
+use crate::tools::{bent, end, train};
 use assembly::parts::{Hinge, Train};
 use assembly::{
     Assembly, AssemblyError, AssemblyMethod, AssemblyState, Solver, SparseComposition, SparseDla, SparseEnergy,
@@ -71,16 +71,7 @@ fn dependent_constraints_are_named() {
     }
 }
 
-/// The end of a run.
-fn end(train: &Train, duration: f64, method: &mut dyn AssemblyMethod, steps: u32) -> AssemblyState {
-    let (mut state, h) = (bent(train), duration / f64::from(steps));
-    for k in 0..steps {
-        method.step(&train.assembly, f64::from(k) * h, h, &mut state).unwrap();
-    }
-    state
-}
-
-/// From so many steps to twice as many.
+/// The order by the errors of a number of steps and of twice as many.
 fn has_order(
     (train, duration, exact): (&Train, f64, &AssemblyState),
     method: &mut dyn AssemblyMethod,

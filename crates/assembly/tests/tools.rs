@@ -23,6 +23,15 @@ pub(crate) fn run(train: &Train, solver: Solver, h: f64, steps: u32, state: &mut
     }
 }
 
+/// The end of a run of the bent train.
+pub(crate) fn end(train: &Train, duration: f64, method: &mut dyn AssemblyMethod, steps: u32) -> AssemblyState {
+    let (mut state, h) = (bent(train), duration / f64::from(steps));
+    for k in 0..steps {
+        method.step(&train.assembly, f64::from(k) * h, h, &mut state).unwrap();
+    }
+    state
+}
+
 /// Hills in a wide bowl, so that what runs there comes back.
 pub(crate) fn ground() -> (Bowl, Hills) {
     let hill = |height, x, y, width| Hill { height, x, y, width };

@@ -1,6 +1,6 @@
 //! Systems that give no basis of their admissible velocities move in one that is derived, and keep what methods promise.
 
-#![allow(missing_docs, dead_code, clippy::unwrap_used)]
+#![allow(dead_code, reason = "not every system of the benches is used")]
 
 #[path = "../../../benches/text/systems.rs"]
 mod systems;

@@ -1,4 +1,4 @@
-use crate::lobatto::systems::{Potential, at_centre, com};
+use crate::energy::systems::{Potential, at_centre, com};
 use crate::support::{ByHand, ThreeTwo};
 use dla::{Derivative, Lobatto, NewtonError, OneStep, Stage, State, StepError, SystemFunction};
 use lagrangian::{Constraint, Scalar, System};

@@ -1,4 +1,5 @@
-use crate::lobatto::systems::{Forces, Moving, Particle, Potential, at_centre, com, distance, reference, run, sleigh};
+use crate::energy::systems::{Potential, at_centre, com, run};
+use crate::lobatto::systems::{Forces, Moving, Particle, distance, reference, sleigh};
 use crate::support::{ByHand, Three};
 use dla::Lobatto;
 use lagrangian::{System, With};

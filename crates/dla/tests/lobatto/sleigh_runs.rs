@@ -1,4 +1,5 @@
-use crate::lobatto::systems::{distance, run, sleigh};
+use crate::energy::systems::run;
+use crate::lobatto::systems::{distance, sleigh};
 use crate::support::ByHand;
 use dla::{Lobatto, OneStep, State};
 use lagrangian::System;

@@ -1,4 +1,5 @@
-use crate::lobatto::systems::{Forces, Moving, Potential, at_centre, com, distance, run, sleigh};
+use crate::energy::systems::{Potential, at_centre, com, run};
+use crate::lobatto::systems::{Forces, Moving, distance, sleigh};
 use crate::support::{ByHand, Three};
 use allocation_counter::measure;
 use dla::{Dla, Lobatto, OneStep, State};

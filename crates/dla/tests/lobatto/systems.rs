@@ -1,7 +1,6 @@
-use crate::support::ByHand;
-use dla::{OneStep, Schedule, State, drive};
-use lagrangian::{Constraint, Effect, Motion, Scalar, System, With};
-use sleigh::{CentreOfMass, Sleigh};
+use dla::State;
+use lagrangian::{Constraint, Effect, Motion, Scalar, System};
+use sleigh::Sleigh;
 use std::array::from_fn;
 
 /// `z' = y x'` (Rosenberg 1977).
@@ -29,20 +28,6 @@ impl Particle {
     }
 }
 
-/// A potential at the first two coordinates.
-#[derive(Clone, Copy)]
-pub(crate) enum Potential {
-    /// `(cos X + cos Y)/2`
-    EggCrate,
-}
-impl Effect<CentreOfMass, 3> for Potential {
-    fn lagrangian<S: Scalar>(&self, _body: &CentreOfMass, _t: S, q: &[S; 3], _v: &[S; 3]) -> Option<S> {
-        Some(match self {
-            Self::EggCrate => -(q[0].cos() + q[1].cos()) * 0.5,
-        })
-    }
-}
-
 /// A sideways force that grows with the turn rate, and friction.
 #[derive(Clone, Copy)]
 pub(crate) struct Forces;
@@ -54,7 +39,7 @@ impl<B> Effect<B, 3> for Forces {
 }
 
 /// Time everywhere: masses that depend on time and place, a magnetic term, an affine constraint that moves, a force.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Moving;
 impl System<3, 1> for Moving {
     fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 3], v: &[S; 3]) -> S {
@@ -72,35 +57,6 @@ impl System<3, 1> for Moving {
 
 pub(crate) fn sleigh(offset: f64) -> Sleigh {
     Sleigh::new(1.0, 1.0, offset).unwrap()
-}
-
-pub(crate) fn com<E>(offset: f64, effects: E) -> ByHand
-where
-    With<CentreOfMass, E>: Into<ByHand>,
-{
-    With { body: CentreOfMass(sleigh(offset)), effects }.into()
-}
-
-/// Place, heading, blade speed `u`, turn rate: coordinates at the centre of mass, the offset `a` ahead of the blade.
-pub(crate) fn at_centre([x, y, heading, u, omega]: [f64; 5], a: f64) -> ([f64; 3], [f64; 3]) {
-    let (sin, cos) = f64::sin_cos(heading);
-    ([x, y, heading], [u * cos - a * omega * sin, u * sin + a * omega * cos, omega])
-}
-
-pub(crate) fn run<Sys, Method, const N: usize, const M: usize>(
-    system: &Sys,
-    method: &mut Method,
-    (q, v): &([f64; N], [f64; N]),
-    (duration, steps): (f64, u64),
-) -> State<N>
-where
-    Sys: System<N, M>,
-    Method: OneStep<N, M>,
-{
-    let mut state = State::new(*q, *v, system.angles());
-    let schedule = Schedule { t0: 0.0, step: duration / steps as f64, steps };
-    drive(system, method, &schedule, &mut state, ()).expect("the steps succeed");
-    state
 }
 
 /// The largest difference in place and velocity.

@@ -1,6 +1,7 @@
 //! What has no derivative says so, and changes nothing.
 
-use crate::sensitivity::systems::{Controlled, Moving};
+use crate::lobatto::systems::Moving;
+use crate::sensitivity::systems::Controlled;
 use crate::support::{ByHand, Three, ThreeTwo};
 use dla::{
     Composition, Differentiable, Dla, Gauss, Gni, OneStep, Schedule, Sensitivity, SensitivityError, State,

@@ -1,7 +1,8 @@
 //! One step of every family of methods.
 
+use crate::lobatto::systems::Moving;
 use crate::sensitivity::differences::{BAR, Input, Start, disagreement};
-use crate::sensitivity::systems::{Controlled, Moving, Swivelling};
+use crate::sensitivity::systems::{Controlled, Swivelling};
 use crate::support::{ByHand, Three, ThreeTwo, Two};
 use dla::{
     Composition, Differentiable, Dla, Energy, Form, Gauss, Lobatto, OneStep, Sensitivity, SensitivityError, State,

@@ -1,4 +1,4 @@
-use lagrangian::{AdmissibleBasis, Constraint, Member, Parametrised, Scalar, System};
+use lagrangian::{AdmissibleBasis, Constraint, Member, Parametrised, Scalar};
 
 /// The Chaplygin sleigh of mass `m` (kg), inertia `I` about the centre of mass (kg m^2) and offset `a` (m), in an egg-crate
 /// potential of height `V` (J), with a thrust `F` along the blade (N) and a torque (N m) as controls, which swing with time.
@@ -76,24 +76,5 @@ impl Parametrised<3, 1, 2> for Swivelling {
     }
     fn angles(&self) -> [bool; 3] {
         [false, false, true]
-    }
-}
-
-/// Time everywhere and no basis: masses that depend on time and place, a magnetic term, an affine constraint that moves, a
-/// force.
-#[derive(Debug, Clone, Copy)]
-pub struct Moving;
-
-impl System<3, 1> for Moving {
-    fn lagrangian<S: Scalar>(&self, t: S, q: &[S; 3], v: &[S; 3]) -> S {
-        let mass = (t * 1.5).sin() * 0.3 + q[0] * q[0] * 0.2 + 1.0;
-        let kinetic = (mass * v[0] * v[0] + v[1] * v[1] + v[2] * v[2] * (q[1].cos() * 0.3 + 1.5)) * 0.5;
-        kinetic + q[1] * v[0] * 0.4 + (t * t) * v[2] * q[0] * 0.1 - (q[0] + t * 0.5).cos() * 0.6 - q[2] * q[2] * 0.5
-    }
-    fn constraint<S: Scalar>(&self, t: S, q: &[S; 3]) -> Constraint<S, 3, 1> {
-        ([[-q[1], (t + q[2]).sin() * 0.5, S::constant(1.0)]], [t.cos() * 0.3 + q[0] * 0.2])
-    }
-    fn force<S: Scalar>(&self, t: S, q: &[S; 3], v: &[S; 3]) -> Option<[S; 3]> {
-        Some([(t * 2.0).cos() * 0.4 - v[0] * 0.1, -(v[0] * v[1]) * 0.2, q[1] * v[2] * -0.3])
     }
 }

@@ -1,6 +1,6 @@
 //! The systems of one shape as the arms of one type.
 //!
-//! A method is compiled once for every type of system. Seventy systems are nine types here, and what an arm adds is its
+//! A method is compiled once for every type of system. Some seventy systems are nine types here, and what an arm adds is its
 //! own functions, once for every kind of number, since the calls are not inlined. So no test passes a system itself to a
 //! method, a run or a derivative: it passes the arm.
 
@@ -10,7 +10,6 @@ use crate::energy::{order, refusals, systems as energy};
 use crate::lobatto::{failures as dropping, systems as lobatto};
 use crate::rest::{disk, systems as rest};
 use crate::runs::{counter_example, events, failures, observers, scripted, substeps};
-use crate::sensitivity::systems as sensitivity;
 use crate::systems::{alternating, continued, degenerate, driven, lanes, models as small};
 use crate::{corners, drive};
 use lagrangian::{AdmissibleBasis, Constraint, Motion, Piecewise, Reduced, ReducedError, Scalar, System, With};
@@ -115,10 +114,9 @@ shape! {
         Skate: rest::Skate<false>,
         SkateInBasis: rest::Skate<true>,
         Rosenberg: lobatto::Particle,
-        Affine: lobatto::Moving,
         InField: energy::Particle,
         Wrapped: energy::Wrapped,
-        Moving: sensitivity::Moving,
+        Moving: lobatto::Moving,
         Well: driven::Well,
         Particle: small::Particle,
         Hyperbolic: small::Hyperbolic,
@@ -253,8 +251,7 @@ by_hand! {
         Forced: With<Sleigh, lobatto::Forces>,
         InPotential: With<Sleigh, energy::Potential>,
         ComForced: With<CentreOfMass, lobatto::Forces>,
-        ComInCrate: With<CentreOfMass, lobatto::Potential>,
-        ComInCrateForced: With<CentreOfMass, (lobatto::Potential, lobatto::Forces)>,
+        ComInPotentialForced: With<CentreOfMass, (energy::Potential, lobatto::Forces)>,
         ComInPotential: With<CentreOfMass, energy::Potential>,
         ComBraked: With<CentreOfMass, (energy::Potential, energy::Friction)>,
         ComInBowl: With<CentreOfMass, alternating::Bowl>,
