@@ -240,6 +240,14 @@ fn points(starts: u32, duration: f64, least: usize, short: f64) {
     folder.done(&format!("{section} --axes along,speed --starts 1 --out axes.csv"));
     let (names, _) = csv(&folder.read("axes.csv"));
     assert_eq!(names[2..], ["x", "y", "heading", "speed", "turn_rate", "along", "shown_speed"]);
+    // On the blade's line through the contact point lies the centre of mass, so both have one place across.
+    folder.done("section bowl --step 0.1 --plane speed=0 --duration 6 --axes across,y --starts 1 --out across.csv");
+    let (_, rows) = csv(&folder.read("across.csv"));
+    assert!(!rows.is_empty(), "no point");
+    for row in &rows {
+        let (sin, cos) = row[4].sin_cos();
+        assert_abs_diff_eq!(row[7], row[3] * cos - row[2] * sin, epsilon = 1e-12);
+    }
 }
 
 #[test]

@@ -125,6 +125,19 @@ const CASES: &[Case] = &[
     ("title = \"Good\"", "titel = \"Good\"", (1, 1), &["`titel`", "did you mean `title`?"]),
     ("[start]", "[strat]", (6, 2), &["`strat`", "did you mean `start`?"]),
     ("[start]", "[sleigh.start]", (6, 9), &["`sleigh.start`", "`mass`, `inertia`, `offset`", "headed `[start]`"]),
+    // Functions of time.
+    (
+        "duration = 40.0\n",
+        "duration = 40.0\n[[effects]]\nkind = \"thrust\"\nforce = true",
+        (16, 9),
+        &["`effects.force`", "a function of time in N", "a formula in `t` in quotes", "`{times, values, interpolation}`"],
+    ),
+    (
+        "duration = 40.0\n",
+        "duration = 40.0\n[[effects]]\nkind = \"servo\"\nspeed = {amplitude = 1e200, frequency = 1.0}",
+        (16, 9),
+        &["`effects.speed`", "makes the kinetic energy too large", "in m/s"],
+    ),
     // Keys and tables that are not there.
     ("mass = 1.0\n", "", (2, 1), &["`sleigh.mass`", "is missing", POSITIVE, "[sleigh]"]),
     ("inertia = 1.0\n", "", (2, 1), &["`sleigh.inertia`", "is missing"]),
@@ -164,6 +177,14 @@ fn errors_name_line_field_and_what_is_accepted() {
             assert!(text.contains(fragment), "no {fragment:?} for {by:?} in:\n{text}");
         }
     }
+}
+
+/// A key of another table is known as such in the tables of a scene, and an effect has keys of its own.
+#[test]
+fn a_key_of_an_effect_is_not_sent_to_another_table() {
+    let sent = |error: SceneError| error.to_string().contains("belongs in the table");
+    assert!(sent(error("x = 0.0", "mass = 0.0")));
+    assert!(!sent(with_effect(0.05, 40.0, "kind = \"bowl\"\nstiffness = 1.0\nduration = 1.0").unwrap_err()));
 }
 
 #[test]
@@ -257,6 +278,9 @@ fn a_path_of_too_many_corners_is_refused() {
         let path = format!("kind = \"tracer\"\npath = {{polygon = [[0, 0], [1, 0], [1, 1]], period = {period}}}");
         let error = with_effect(0.05, 40.0, &path).unwrap_err().to_string();
         assert!(error.contains("`run.duration` has more than 1e6 corners") && error.contains(period), "{error}");
+        // A million corners, three in each period.
+        let most = 1e6 / 3.0 * period.parse::<f64>().unwrap();
+        assert!(error.contains(&format!("at most {most:e} s")), "{error}");
     }
     let quick = "kind = \"tracer\"\npath = {polygon = [[0, 0], [1, 0], [1, 1]], period = 0.04}";
     assert!(with_effect(0.05, 40.0, quick).unwrap().schedule().steps >= 3000);
