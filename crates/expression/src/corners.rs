@@ -32,7 +32,7 @@ pub struct Corners {
 
 /// More corners than this in a run, or so many looks at parts of the run, are too many.
 const MOST: usize = 100_000;
-const LOOKS: usize = 4_000_000;
+const LOOKS: usize = 10_000_000;
 
 impl Corners {
     /// The corners of some expressions in that variable, the time, and the expressions with a side in place of each corner: the variables
@@ -149,7 +149,7 @@ impl Search<'_> {
     /// The values of an argument and of its slope between two times.
     fn look(&mut self, k: usize, from: f64, to: f64) -> [Interval; 2] {
         for (place, kind) in self.corners.kinds.iter().enumerate() {
-            self.values[place] = Interval::of(kind, Interval::new(from, to), |e| self.values[e.index()]);
+            self.values[place] = Interval::of(kind, |_| Interval::new(from, to), |e| self.values[e.index()]);
         }
         self.corners.arguments[k].map(|place| self.values[place])
     }
@@ -168,27 +168,58 @@ impl Search<'_> {
     /// Adds the times between two at which a side turns; none where they are too many.
     fn turns(&mut self, k: usize, from: f64, to: f64, times: &mut Vec<f64>) -> Option<()> {
         let mut waiting = vec![(from, to)];
+        // A part in which the argument is zero, or rounding, at least at its ends.
+        let mut open: Option<(f64, f64)> = None;
         while let Some((from, to)) = waiting.pop() {
             self.looks = self.looks.checked_sub(1)?;
             let [value, slope] = self.look(k, from, to);
             if !value.has_zero() || value == Interval::at(0.0) {
                 continue;
             }
-            if slope.has_zero() && to - from > self.least {
+            let short = to - from <= self.least;
+            if slope.has_zero() && !short {
                 let middle = 0.5 * (from + to);
                 waiting.extend([(middle, to), (from, middle)]);
                 continue;
             }
-            // There is one turn at most: the argument rises, or falls, or the part is as short as a point.
+            // The argument rises, or falls, or the part is as short as a point.
             let [before, after] = [from, to].map(|t| self.side(k, t));
-            if before != after && !before.is_nan() && !after.is_nan() {
-                times.push(self.turn(k, from, to, before));
-                if times.len() > MOST {
-                    return None;
+            let (from, to) = match (before == 0.0, after == 0.0) {
+                _ if short || before.is_nan() || after.is_nan() => (from, to),
+                (true, true) => (from, to),
+                (true, false) => (from, self.turn(k, from, to, before)),
+                (false, true) => (self.turn(k, from, to, before), to),
+                (false, false) => {
+                    if before != after {
+                        times.push(self.turn(k, from, to, before));
+                    }
+                    continue;
                 }
+            };
+            open = match open {
+                Some((begin, end)) if from - end <= self.least => Some((begin, to)),
+                other => {
+                    self.close(k, other, times);
+                    Some((from, to))
+                }
+            };
+            if times.len() > MOST {
+                return None;
             }
         }
+        self.close(k, open, times);
         Some(())
+    }
+
+    /// Adds the time at which a side turns in a part in which the argument is zero or rounding, if it is another behind that part than
+    /// before: an argument that touches zero does not turn.
+    fn close(&mut self, k: usize, part: Option<(f64, f64)>, times: &mut Vec<f64>) {
+        let Some((from, to)) = part else { return };
+        let (from, to) = (from - self.least, to + self.least);
+        let [before, after] = [from, to].map(|t| self.side(k, t));
+        if before != after && !before.is_nan() && !after.is_nan() {
+            times.push(self.turn(k, from, to, before));
+        }
     }
 
     /// The first time at which the side is no longer that before.

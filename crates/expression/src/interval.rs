@@ -21,6 +21,11 @@ impl Interval {
         Self::new(x, x)
     }
 
+    /// A number that has been rounded.
+    pub(crate) fn near(x: f64) -> Self {
+        Self::at(x).rounded()
+    }
+
     /// Whether zero is among them, as far as is known.
     pub(crate) fn has_zero(self) -> bool {
         // What is no number may be any.
@@ -49,11 +54,11 @@ impl Interval {
         Self::new(-self.most, -self.least)
     }
 
-    fn plus(self, o: Self) -> Self {
+    pub(crate) fn plus(self, o: Self) -> Self {
         Self::new(self.least + o.least, self.most + o.most).rounded()
     }
 
-    fn scaled(self, c: f64) -> Self {
+    pub(crate) fn scaled(self, c: f64) -> Self {
         if c < 0.0 { Self::new(self.most * c, self.least * c) } else { Self::new(self.least * c, self.most * c) }
             .rounded()
     }
@@ -107,10 +112,10 @@ impl Interval {
     }
 
     /// The values of an expression, of those of its parts.
-    pub(crate) fn of(kind: &NodeKind, variable: Self, part: impl Fn(Expression) -> Self) -> Self {
+    pub(crate) fn of(kind: &NodeKind, variable: impl Fn(u32) -> Self, part: impl Fn(Expression) -> Self) -> Self {
         match kind {
             NodeKind::Constant(x) => Self::at(x.value()),
-            NodeKind::Variable(_) => variable,
+            NodeKind::Variable(k) => variable(*k),
             NodeKind::Sum { constant, terms } => {
                 terms.iter().fold(Self::at(constant.value()), |sum, &(term, c)| sum.plus(part(term).scaled(c.value())))
             }
@@ -146,6 +151,12 @@ impl Interval {
             Function::Abs => a.abs(),
             Function::Sign => Self::new(sign(a.least), sign(a.most)),
             Function::Inverse => a.power(-1.0),
+            // Where the angle does not jump, it is extreme at a corner.
+            Function::Atan2 if !(a.has_zero() && b.least <= 0.0) => {
+                let all = [a.least, a.most].map(|y| [b.least, b.most].map(|x| y.atan2(x)));
+                let [least, most] = [f64::min, f64::max].map(|of| all.into_iter().flatten().fold(all[0][0], of));
+                Self::new(least, most).rounded()
+            }
             Function::Atan2 => Self::new(-PI, PI),
             Function::Min => Self::new(a.least.min(b.least), a.most.min(b.most)),
             Function::Max => Self::new(a.least.max(b.least), a.most.max(b.most)),

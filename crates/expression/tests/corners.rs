@@ -90,7 +90,10 @@ fn a_series_has_the_derivatives_of_the_formula() {
             for order in 0..=6 {
                 let (found, expected) = (series.derivative(order), value(&graph, derivative, &[t]));
                 // Formulas of the sixth derivative lose digits where their terms cancel.
-                assert!((found - expected).abs() <= 1e-9 * expected.abs().max(1.0), "{text} {order}: {found} {expected}");
+                assert!(
+                    (found - expected).abs() <= 1e-9 * expected.abs().max(1.0),
+                    "{text} {order}: {found} {expected}"
+                );
                 derivative = graph.derivative(derivative, 0);
             }
         }
@@ -100,7 +103,14 @@ fn a_series_has_the_derivatives_of_the_formula() {
 /// Where `max(0, x)` and the like vanish, so do all derivatives of their powers, in formulas and on numbers that carry derivatives.
 #[test]
 fn powers_of_what_is_flat_are_flat() {
-    for text in ["max(0, t)^1.5", "sqrt(max(0, t))", "max(0, t)^1.3", "(-min(0, -t))^0.7", "sqrt(max(0, t)*(2 + t))^3", "abs(max(t, 0))^2.2"] {
+    for text in [
+        "max(0, t)^1.5",
+        "sqrt(max(0, t))",
+        "max(0, t)^1.3",
+        "(-min(0, -t))^0.7",
+        "sqrt(max(0, t)*(2 + t))^3",
+        "abs(max(t, 0))^2.2",
+    ] {
         let (mut graph, e) = of_time(text);
         let slope = graph.derivative(e, 0);
         let second = graph.derivative(slope, 0);

@@ -4,7 +4,7 @@
 //! 2. [`Formulas`] are what they mean. A [`TextError`] says which text is wrong, in which column, and what is known there.
 //! 3. [`ReducedFormulas`] are the equations of motion in a basis of the admissible velocities, derived of these.
 //!
-//! No motion is computed here: that is for tapes (the crate `text`), or for a compiler (the crate `macros`).
+//! No number is computed here: that is for tapes (the crate `text`), or for a compiler (the crate `macros`).
 
 mod basis;
 mod build;

@@ -111,8 +111,10 @@ fn formulas_have_the_period_of_their_angles() {
         (|w| w.forces[0].1 = "-way*sign(theta)".to_owned(), Some(Entry::Force(0))),
         (|w| w.forces[0].1 = "sin(theta)*theta".to_owned(), Some(Entry::Force(0))),
         (|w| w.forces[0].1 = "exp(-x^2 - theta^2)".to_owned(), Some(Entry::Force(0))),
-        (|w| w.basis = [["c", "s", "0"], ["0", "0", "1 + theta^2"]].map(|v| v.map(str::to_owned).to_vec()).to_vec(),
-            Some(Entry::Component(1, 2))),
+        (
+            |w| w.basis = [["c", "s", "0"], ["0", "0", "1 + theta^2"]].map(|v| v.map(str::to_owned).to_vec()).to_vec(),
+            Some(Entry::Component(1, 2)),
+        ),
         // The same after a turn.
         (|w| w.lagrangian += " - sin(theta/2)^2 + abs(sin(theta/2)) + sqrt(1 - cos(theta))", None),
         (|w| w.lagrangian += " - sin(theta/2)*cos(theta/2) - m*cos(2*theta - x)", None),

@@ -1,6 +1,8 @@
 use super::{Expression, Graph, NodeKind, bit};
 use crate::Function;
+use crate::interval::Interval;
 use std::collections::HashMap;
+use std::f64::consts::TAU;
 
 /// What an expression does where a variable grows by a whole turn, `2 pi`.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,6 +69,49 @@ impl Graph {
             PartTurned::Open => Turned::Open(self.open_parts(e, &|e| of(e) != PartTurned::SAME)),
             PartTurned::By(_) | PartTurned::Changed => Turned::Changed,
         }
+    }
+
+    /// Whether a sum of parts may be the same after a turn of a variable at all these places, which say the values of the variables by their
+    /// numbers: its values before and after have a number in common, but for rounding.
+    ///
+    /// ```
+    /// use expression::{Graph, Names, parse};
+    /// let names = Names::of(["a"])?;
+    /// let mut graph = Graph::new();
+    /// let a = graph.variable(0);
+    /// let mut same = |text| Ok::<_, expression::Error>({
+    ///     let e = graph.build(&parse(text, &names)?, &[a])?;
+    ///     graph.may_be_same(&[(e, 1.0)], 0, &[vec![0.3], vec![20.0]])
+    /// });
+    /// assert!(same("sin(a/2)^2")? && !same("sin(a/2)")?);
+    /// # Ok::<(), expression::Error>(())
+    /// ```
+    #[must_use]
+    pub fn may_be_same(&self, parts: &[(Expression, f64)], variable: u32, places: &[Vec<f64>]) -> bool {
+        let roots: Vec<Expression> = parts.iter().map(|part| part.0).collect();
+        let reached = self.reached(&roots, |_| true);
+        let mut values: HashMap<Expression, Interval> = HashMap::new();
+        places.iter().all(|place| {
+            let mut change = Interval::at(0.0);
+            for (turns, sign) in [(0.0, -1.0), (1.0, 1.0)] {
+                let input = |k: u32| {
+                    let x = place.get(k as usize).copied().unwrap_or(0.0);
+                    if k == variable {
+                        Interval::near(TAU).scaled(turns).plus(Interval::at(x))
+                    } else {
+                        Interval::at(x)
+                    }
+                };
+                for &e in &reached {
+                    let value = Interval::of(self.kind(e), input, |e| values[&e]);
+                    values.insert(e, value);
+                }
+                for &(part, c) in parts {
+                    change = change.plus(values[&part].scaled(sign * c));
+                }
+            }
+            change.has_zero()
+        })
     }
 
     fn part_turned(&self, e: Expression, variable: u32, of: &dyn Fn(Expression) -> PartTurned) -> PartTurned {
