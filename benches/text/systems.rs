@@ -92,7 +92,7 @@ noslip::system! {
 
 noslip::system! {
     pub(crate) struct Car;
-    coordinates = { x = "m", y = "m", theta = "angle", delta = "angle", behind = "angle" }
+    coordinates = { x = "m", y = "m", theta = "angle", delta = "rad", behind = "angle" }
     parameters = { m = 1200.0, J = 1500.0, a = 1.2, L = 2.5, Js = 2.0, mt = 400.0, Jt = 200.0, b = 2.0, push = 800.0, drag = 60.0, swing = 0.3 }
     let = {
         c = "cos(theta)",

@@ -104,7 +104,8 @@ fn cells(rows: &[CostRow]) -> Vec<Vec<String>> {
         vec![
             if row.effects.is_empty() { "none".to_owned() } else { row.effects.join(", ") },
             format!("{:.1}", row.ns_per_step),
-            if row.effects.is_empty() { "-".to_owned() } else { format!("{:+.1}", row.ns_per_step - bare) },
+            // Less than nothing is the noise of the clock.
+            if row.effects.is_empty() { "-".to_owned() } else { format!("{:+.1}", (row.ns_per_step - bare).max(0.0)) },
             format!("{:.2}", row.evaluations_per_step),
         ]
     };

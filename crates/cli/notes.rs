@@ -5,12 +5,13 @@ use scene::AnyScene;
 /// Says which numbers of the start the constraints of a scene do not admit.
 pub(crate) fn moves(scene: &AnyScene) {
     let AnyScene::Text(scene) = scene else { return };
-    for moved in &scene.start.moved {
+    for (first, moved) in scene.start.moved.iter().enumerate().map(|(k, moved)| (k == 0, moved)) {
         let (from, to) = (number(moved.from), number(moved.to));
         let note = format!(
-            "the constraints do not admit {} = {from} at the start; the run starts with \
-            {to}",
-            moved.name
+            "the constraints do not admit {} = {from} at the start; the run starts with {to}{}",
+            moved.name,
+            // What is left out moves before what is given.
+            if first { ": leave out of `start` what is to follow from the rest" } else { "" }
         );
         terminal::say("note", &note);
     }

@@ -64,6 +64,11 @@ fn asked(arguments: &RunArguments) -> Result<Option<OutputRequest<'_>>, CliError
 fn identity_of(scene: &AnyScene, method: &Method, schedule: &Schedule) -> Checkpoint {
     match scene {
         AnyScene::Sleigh(scene) => identity(scene, method, schedule),
+        // As of a sleigh whose forces jump.
+        AnyScene::Text(text) if !text.jumps().is_empty() => {
+            let contents = (&text.words, &text.start, &text.run);
+            resume::identity_of_whole((&text.name, &contents), method, schedule)
+        }
         AnyScene::Text(scene) => {
             let contents = (&scene.words, &scene.start, resume::endless(&scene.run));
             resume::identity((&scene.name, &contents), method, schedule)

@@ -6,6 +6,8 @@ mod analyses;
 
 mod bodies;
 
+mod corners;
+
 mod trains;
 
 use crate::program::{Folder, TEXTS, csv, keys};

@@ -3,7 +3,7 @@ use scene::{Quantity, TextModel, TextScene};
 
 /// What a scene says, for a person: names and values.
 pub(crate) fn listed(scene: &TextScene) -> Vec<(String, String)> {
-    let (model, start, run) = (&scene.model, &scene.start, &scene.run);
+    let (model, start, run, schedule) = (&scene.model, &scene.start, &scene.run, scene.schedule());
     let geometry = model.geometry(start);
     let mut facts: Vec<(&str, String)> = Vec::new();
     let units = model.coordinates().iter().map(|of| match of.unit.name() {
@@ -51,7 +51,7 @@ pub(crate) fn listed(scene: &TextScene) -> Vec<(String, String)> {
     facts.push(("energy", format!("{} J", number(model.energy(0.0, &start.q, &start.v)))));
     facts.push((
         "run",
-        format!("{} s in {} of {} s", number(run.duration), counted(run.steps(), "step"), number(run.actual_step())),
+        format!("{} s in {} of {} s", number(run.duration), counted(schedule.steps, "step"), number(schedule.step)),
     ));
     facts.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
 }

@@ -51,7 +51,7 @@ impl fmt::Display for Hint {
             ),
             Self::NodeAt { time } => write!(f, "choose a shorter step, so that the jump at t = {} s can be a node", Shown(*time)),
             Self::Corner => f.write_str(
-                "write the function so that it has a derivative there: `Scalar::length` for the root of a sum of squares, `abs`, \
+                "write the function so that it has a derivative there: the root of a sum of squares (in Rust `Scalar::length`), `abs`, \
                  `min`, `max`, a power of at least 1 (of at least 2 in the Lagrangian)",
             ),
             Self::OtherCoordinates => f.write_str(
@@ -185,7 +185,7 @@ impl StepError {
             }
             Self::Motion(_) | Self::Dependent(_) | Self::Reduced(ReducedError::Motion(_)) => Hint::Constraints,
             // It says itself what to do.
-            Self::Slips { .. } => return None,
+            Self::Slips { .. } | Self::JumpsAtRest { .. } => return None,
         })
     }
 }

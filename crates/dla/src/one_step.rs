@@ -205,6 +205,16 @@ pub enum StepError {
     /// A function of the system, or a derivative of one, is not a number or not finite.
     #[error(transparent)]
     NotANumber(#[from] NotANumber),
+    /// The force on a coordinate jumps where the system comes to rest: beyond there is no motion, however short the step.
+    #[error(
+        "the force on coordinate {coordinate} jumps where the velocity changes its direction, as `sign(v)` does, and the motion comes to \
+        rest there: no step is short enough; write a smooth function of the velocity, as `tanh(v/eps)` with a small speed `eps`, or end the \
+        run before"
+    )]
+    JumpsAtRest {
+        /// The coordinate.
+        coordinate: usize,
+    },
     /// The method cannot do this system.
     #[error("{reason}")]
     Unsupported {

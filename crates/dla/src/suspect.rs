@@ -1,4 +1,4 @@
-use crate::{Mechanics, NewtonError, NotANumber, State, StepError};
+use crate::{Hint, Mechanics, NewtonError, NotANumber, State, StepError};
 use lagrangian::linear::Singular;
 use lagrangian::{MotionError, ReducedError, from_fn};
 
@@ -51,6 +51,9 @@ pub(crate) fn suspect_along<const N: usize, const M: usize>(
     v: &[f64; N],
     error: StepError,
 ) -> StepError {
+    if let (Some(Hint::ShorterStep { .. }), Some(coordinate)) = (error.hint(), jumps_at_rest(system, t0, state)) {
+        return StepError::JumpsAtRest { coordinate };
+    }
     if !error.has_lost_numbers() {
         return error;
     }
@@ -65,4 +68,17 @@ pub(crate) fn suspect_along<const N: usize, const M: usize>(
         }
     }
     error
+}
+
+/// The coordinate whose force is another at rest from one side than from the other: Coulomb's friction, written with `sign`.
+fn jumps_at_rest<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    t: f64,
+    state: &State<N>,
+) -> Option<usize> {
+    // So near to rest smooth forces are the same from both sides, but for this part of what they are at the state.
+    const NEAR: f64 = 1e-12;
+    let force = |part: f64| system.force(t, state.q(), &state.v().map(|v| part * v));
+    let (before, after, there) = (force(NEAR)?, force(-NEAR)?, force(1.0)?);
+    (0..N).find(|&i| (before[i] - after[i]).abs() > 0.1 * there[i].abs().max(before[i].abs()))
 }

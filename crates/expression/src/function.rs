@@ -109,6 +109,13 @@ pub(crate) fn power<S: Scalar>(a: S, b: f64) -> S {
     }
 }
 
+/// A positive power of a number that may be zero in a whole region, as `max(0, x)`: without derivatives where it vanishes.
+#[must_use]
+#[inline(always)]
+pub(crate) fn flat_power<S: Scalar>(a: S, p: f64) -> S {
+    a.abs().where_positive(power(a, p), a * 0.0)
+}
+
 /// The whole number that this is, where it is small enough for an exponent.
 pub(crate) fn whole(x: f64) -> Option<i32> {
     let n = x as i32;

@@ -7,7 +7,9 @@
 //!    would be right there.
 //! 2. A [`Graph`] holds expressions, each of them once, simplified as they are made; it [derives](Graph::derivative) them,
 //!    [replaces](Graph::substitute) variables, and writes them as [text](Graph::text) or as [Rust](Graph::rust).
-//! 3. A [`Tape`] is a list of operations for some of them, evaluated on any [`Scalar`](scalar::Scalar), and counted as a [`Cost`].
+//! 3. A [`Tape`] is a list of operations for some of them, evaluated on any [`Scalar`](scalar::Scalar), and counted as a [`Cost`]; on a
+//!    [`Series`] for derivatives of high order.
+//! 4. [`Corners`] are the times at which they are not smooth.
 //!
 //! ```
 //! use expression::{Graph, Names, Tape, parse};
@@ -44,21 +46,26 @@
 //! with `^` or `**`, parentheses, `pi`, and the [functions](Function): `sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt abs sign
 //! inverse min max`. A power with an exponent that is no constant is `exp(b log(a))`, and so no number where the base is negative.
 
+mod corners;
 mod error;
 mod function;
 mod graph;
+mod interval;
 mod limits;
 mod names;
 mod parser;
+mod series;
 mod syntax;
 mod tape;
 mod tokens;
 
+pub use corners::Corners;
 pub use error::Error;
 pub use function::Function;
-pub use graph::{Expression, Graph, Statements};
+pub use graph::{Expression, Graph, Statements, Turned};
 pub use limits::Limits;
 pub use names::{Names, nearest};
 pub use parser::{parse, parse_within};
+pub use series::Series;
 pub use syntax::Syntax;
 pub use tape::{Cost, Tape};

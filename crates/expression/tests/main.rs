@@ -11,6 +11,7 @@
 )]
 
 mod common;
+mod corners;
 mod hostile;
 mod large;
 mod parsing;

@@ -1,6 +1,7 @@
 use crate::tables::{May, Tables};
 use crate::{Entry, Formulas, Parameters, Problem, TextError, Words};
 use expression::Expression;
+use std::collections::HashSet;
 
 /// The names of columns that every trajectory has.
 const COLUMNS: [&str; 4] = ["t", "energy", "constraint", "work"];
@@ -20,13 +21,17 @@ impl Formulas {
             return whole(Problem::TooManyConstraints { coordinates: n, constraints: m });
         }
         let mut tables = names(words, parameters)?;
-        let lagrangian = lagrangian(&mut tables, words)?;
+        let (lagrangian, massless) = lagrangian(&mut tables, words)?;
         let (velocities, rest) = constraints(&mut tables, words)?;
         let (positions, rates) = positions(&mut tables, words)?;
         let force = forces(&mut tables, words)?;
         let basis = basis(&mut tables, words, n - m)?;
         let outputs = outputs(&mut tables, words)?;
-        let rows = velocities.into_iter().chain(rates.iter().flat_map(|(a, _)| a.clone())).collect();
+        let rows: Vec<Expression> = velocities.into_iter().chain(rates.iter().flat_map(|(a, _)| a.clone())).collect();
+        if let Some(i) = undetermined(&tables, &rows, &massless) {
+            let rate = format!("{}'", words.coordinates[i].0);
+            return Err(of(Entry::Lagrangian, Problem::NoInertia { rate }));
+        }
         let level = rest.into_iter().chain(rates.iter().map(|(_, b)| *b)).collect();
         Ok(Self { n, m, graph: tables.graph, lagrangian, rows, level, positions, force, basis, outputs })
     }
@@ -36,14 +41,24 @@ fn of(entry: Entry, problem: Problem) -> TextError {
     TextError { entry, problem }
 }
 
+/// Whether a text is one line that is written as it is read: without control characters, and without those that turn the direction of
+/// writing.
+fn fits_a_line(text: &str) -> bool {
+    let turns = |c: char| matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    !text.chars().any(|c| c.is_control() || turns(c))
+}
+
 /// Time, coordinates, rates, parameters and abbreviations.
 fn names(words: &Words, parameters: Parameters) -> Result<Tables, TextError> {
     let n = words.coordinates.len();
     let mut tables = Tables::new(n);
     let time = tables.graph.variable(0);
     tables.add("t", time, May::Place, Entry::System)?;
-    for (i, (name, _)) in words.coordinates.iter().enumerate() {
+    for (i, (name, unit)) in words.coordinates.iter().enumerate() {
         let entry = Entry::Coordinate(i);
+        if !fits_a_line(unit.name()) {
+            return Err(of(entry, Problem::NotAColumn { name: unit.name().to_owned() }));
+        }
         if name == "t" || name.ends_with('\'') || name.ends_with("_dot") {
             return Err(of(entry, Problem::NotACoordinate { name: name.clone() }));
         }
@@ -73,15 +88,44 @@ fn names(words: &Words, parameters: Parameters) -> Result<Tables, TextError> {
     Ok(tables)
 }
 
-fn lagrangian(tables: &mut Tables, words: &Words) -> Result<Expression, TextError> {
+/// The Lagrangian, and the coordinates whose rates are not in it.
+fn lagrangian(tables: &mut Tables, words: &Words) -> Result<(Expression, Vec<usize>), TextError> {
     let lagrangian = tables.build(&words.lagrangian, May::Move, Entry::Lagrangian)?;
+    tables.periodic(words, lagrangian, Entry::Lagrangian)?;
     let there = tables.graph.variables(lagrangian);
-    for (i, (name, _)) in words.coordinates.iter().enumerate() {
-        if !there.contains(&tables.rate(i)) {
-            return Err(of(Entry::Lagrangian, Problem::NoInertia { rate: format!("{name}'") }));
+    let massless = (0..tables.n).filter(|&i| !there.contains(&tables.rate(i))).collect();
+    Ok((lagrangian, massless))
+}
+
+/// A coordinate without inertia for whose rate no row of the constraints is left, if there is one.
+fn undetermined(tables: &Tables, rows: &[Expression], massless: &[usize]) -> Option<usize> {
+    let mut of_row: Vec<Option<usize>> = vec![None; rows.len() / tables.n];
+    massless.iter().copied().find(|&i| !given_a_row(tables, rows, i, &mut of_row, &mut vec![false; rows.len()]))
+}
+
+/// Gives a coordinate a row in which its rate stands, and others another row where that is needed (Kuhn's matching).
+fn given_a_row(
+    tables: &Tables,
+    rows: &[Expression],
+    i: usize,
+    of_row: &mut [Option<usize>],
+    tried: &mut [bool],
+) -> bool {
+    for k in 0..of_row.len() {
+        if tried[k] || tables.graph.value(rows[k * tables.n + i]) == Some(0.0) {
+            continue;
+        }
+        tried[k] = true;
+        let free = match of_row[k] {
+            None => true,
+            Some(other) => given_a_row(tables, rows, other, of_row, tried),
+        };
+        if free {
+            of_row[k] = Some(i);
+            return true;
         }
     }
-    Ok(lagrangian)
+    false
 }
 
 /// The rows of `A`, one after the other, and `b`.
@@ -92,6 +136,7 @@ fn constraints(tables: &mut Tables, words: &Words) -> Result<(Vec<Expression>, V
     for (k, text) in words.constraints.iter().enumerate() {
         let entry = Entry::Constraint(k);
         let row = tables.build(text, May::Move, entry)?;
+        tables.periodic(words, row, entry)?;
         let graph = &mut tables.graph;
         let slopes = graph.gradient(row, &rates);
         let rate = |i: usize| format!("{}'", words.coordinates[i].0);
@@ -118,6 +163,7 @@ fn positions(tables: &mut Tables, words: &Words) -> Result<Positions, TextError>
     for (k, text) in words.positions.iter().enumerate() {
         let entry = Entry::Position(k);
         let function = tables.build(text, May::Place, entry)?;
+        tables.periodic(words, function, entry)?;
         let graph = &mut tables.graph;
         let slopes = graph.gradient(function, &places);
         if slopes.iter().all(|&slope| graph.value(slope) == Some(0.0)) {
@@ -143,6 +189,7 @@ fn forces(tables: &mut Tables, words: &Words) -> Result<Option<Vec<Expression>>,
             return Err(of(entry, Problem::NoSuchCoordinate { name: name.clone(), known: known.join(", ") }));
         };
         forces[i] = tables.build(text, May::Jump, entry)?;
+        tables.periodic(words, forces[i], entry)?;
     }
     Ok(Some(forces))
 }
@@ -163,22 +210,27 @@ fn basis(tables: &mut Tables, words: &Words, dimension: usize) -> Result<Option<
             return Err(of(Entry::Vector(k), Problem::Components { expected, found }));
         }
         for (i, text) in vector.iter().enumerate() {
-            components.push(tables.build(text, May::Place, Entry::Component(k, i))?);
+            let component = tables.build(text, May::Place, Entry::Component(k, i))?;
+            tables.periodic(words, component, Entry::Component(k, i))?;
+            components.push(component);
         }
     }
     Ok(Some(components))
 }
 
 fn outputs(tables: &mut Tables, words: &Words) -> Result<Vec<Expression>, TextError> {
-    let mut taken: Vec<String> = COLUMNS.map(str::to_owned).to_vec();
+    let mut taken: HashSet<String> = COLUMNS.map(str::to_owned).into();
     taken.extend(words.coordinates.iter().flat_map(|(name, _)| [name.clone(), format!("{name}'")]));
     let mut outputs = Vec::new();
     for (k, (name, text)) in words.outputs.iter().enumerate() {
         let entry = Entry::Output(k);
-        if taken.contains(name) {
+        if !taken.insert(name.clone()) {
             return Err(of(entry, Problem::Column { name: name.clone() }));
         }
-        taken.push(name.clone());
+        if name.is_empty() || name.starts_with(['=', '+', '-', '@']) || name.contains([',', '"']) || !fits_a_line(name)
+        {
+            return Err(of(entry, Problem::NotAColumn { name: name.clone() }));
+        }
         outputs.push(tables.build(text, May::Jump, entry)?);
     }
     Ok(outputs)

@@ -97,13 +97,23 @@ pub enum Problem {
     /// A constraint on positions without any.
     #[error("the constraint on positions contains no coordinate")]
     NoCoordinate,
-    /// A Lagrangian in which a coordinate has no inertia: the acceleration is not determined.
+    /// A Lagrangian in which a coordinate has no inertia, and too few constraints that could say how it moves.
     #[error(
-        "the Lagrangian does not contain the rate `{rate}`, so the acceleration of its coordinate is not determined"
+        "the Lagrangian does not contain the rate `{rate}`, and the constraints do not determine it, so the acceleration of its \
+        coordinate is not determined"
     )]
     NoInertia {
         /// The rate.
         rate: String,
+    },
+    /// A formula that is another after a turn of an angle.
+    #[error(
+        "the formula is not the same when the angle `{angle}` grows by a whole turn, 2 pi, as a coordinate of the unit \
+        `angle` asks for: use `{angle}` in sines and cosines only, or give it the unit `rad`, which counts turns"
+    )]
+    NoPeriod {
+        /// The angle.
+        angle: String,
     },
     /// No coordinates.
     #[error("a system has at least one coordinate")]
@@ -147,6 +157,15 @@ pub enum Problem {
     /// A name that a column has already.
     #[error("`{name}` names another column already")]
     Column {
+        /// The name.
+        name: String,
+    },
+    /// A name or a unit that a line of a file cannot hold.
+    #[error(
+        "{name:?} cannot stand in the head of a file: it is empty, has a comma, a quotation mark or a control character, or begins as a \
+        formula of a spreadsheet does, with `=`, `+`, `-` or `@`"
+    )]
+    NotAColumn {
         /// The name.
         name: String,
     },

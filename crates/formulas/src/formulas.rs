@@ -1,4 +1,4 @@
-use expression::{Expression, Graph};
+use expression::{Corners, Error, Expression, Graph};
 
 /// What the parameters of a system are in its formulas.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,5 +59,26 @@ impl Formulas {
     #[must_use]
     pub fn rates(&self) -> Vec<u32> {
         (0..self.n).map(|i| self.rate(i)).collect()
+    }
+
+    /// The corners in time, and the formulas with variables for their sides behind all others; none where there are no such corners. What
+    /// is told besides stays as it is.
+    ///
+    /// # Errors
+    /// [`Error::GraphFull`].
+    pub fn pieces(&self) -> Result<Option<(Corners, Self)>, Error> {
+        let mut pieces = self.clone();
+        let lists = [&self.rows[..], &self.level, &self.positions, self.force.as_deref().unwrap_or_default()];
+        let all = [&[self.lagrangian][..], &lists.concat(), self.basis.as_deref().unwrap_or_default()].concat();
+        let Some((corners, smooth)) = Corners::of(&mut pieces.graph, &all, 0, self.parameter(0))? else {
+            return Ok(None);
+        };
+        let mut smooth = smooth.into_iter();
+        pieces.lagrangian = smooth.next().unwrap_or(self.lagrangian);
+        let lists = [Some(&mut pieces.rows), Some(&mut pieces.level), Some(&mut pieces.positions)];
+        for list in lists.into_iter().chain([pieces.force.as_mut(), pieces.basis.as_mut()]).flatten() {
+            list.iter_mut().zip(&mut smooth).for_each(|(formula, piece)| *formula = piece);
+        }
+        Ok(Some((corners, pieces)))
     }
 }

@@ -10,6 +10,7 @@ mod basis;
 mod build;
 mod error;
 mod formulas;
+mod period;
 mod reduced;
 mod tables;
 mod words;

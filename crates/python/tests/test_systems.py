@@ -131,6 +131,17 @@ def test_sympy_against_scipy(make: Any) -> None:
     agrees(system, slope, 2.0)
 
 
+def test_an_angle_has_the_period_of_a_turn_or_is_refused() -> None:
+    def spring(unit: str) -> noslip.System:
+        return noslip.System({"d": unit}, "d'^2/2 - 4*d^2/2", v=[30.0])
+
+    with pytest.raises(noslip.RequestError, match=r"angle `d`.*unit `rad`"):
+        spring("angle").run(duration=1.0)
+    # Quarter of a period: the amplitude is v/2.
+    run = spring("rad").run(method="gauss16", step=0.1, duration=np.pi / 4)
+    assert abs(run["d"][-1] - 15.0) < 1e-12
+
+
 def test_text_and_sympy_are_one_system() -> None:
     text = noslip.System(
         {"x": "m", "y": "m", "theta": "angle"},

@@ -20,10 +20,10 @@ impl Document<'_> {
 
     /// An error of the TOML parser.
     pub(crate) fn syntax(&self, error: &toml::de::Error) -> SceneError {
-        let span = match error.span() {
-            None if error.message().contains("recurs") => return self.too_deep(error),
-            span => span.unwrap_or(0..0),
-        };
+        if error.message().contains("recurs") {
+            return self.too_deep(error);
+        }
+        let span = error.span().unwrap_or(0..0);
         // The parser says "problem, expected this, that".
         let (problem, expected) = match error.message().split_once(", expected ") {
             None if error.message() == "duplicate key" => ("duplicate key", "every key and table once"),

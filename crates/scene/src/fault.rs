@@ -16,6 +16,19 @@ pub(crate) struct Fault {
 }
 
 impl Fault {
+    /// Of a run in which formulas of time turn more often than can be told.
+    pub(crate) fn too_many_corners(duration: f64) -> Self {
+        Self {
+            variant: SceneError::OutOfRange,
+            key: "duration",
+            problem: "has more than 1e5 corners or jumps of `abs`, `sign`, `min` and `max` in the formulas of time"
+                .to_owned(),
+            found: Some(format!("{duration:?}")),
+            accepted: "a run with fewer of them, each of which ends a step".to_owned(),
+            help: Some("shorten the run, or use smooth functions, as `tanh(x/eps)` for `sign(x)`".to_owned()),
+        }
+    }
+
     /// The error at a place of a text; what the text says there is shown and need not be found again.
     pub(crate) fn at(self, origin: &str, place: Option<Place>, field: Option<String>, excerpt: Excerpt) -> SceneError {
         (self.variant)(Box::new(SceneFinding {

@@ -118,6 +118,9 @@ impl Scene {
     /// The fault of a run with more jumps than memory holds.
     fn too_many_jumps(&self) -> Result<(), Fault> {
         for effect in &self.effects {
+            if effect.functions().into_iter().any(|function| function.jumps(self.run.duration).is_none()) {
+                return Err(Fault::too_many_corners(self.run.duration));
+            }
             let SceneEffect::Tracer { path: PathSpec { shape: PathShape::Polygon(corners), period } } = effect else {
                 continue;
             };

@@ -191,6 +191,10 @@ impl SceneError {
         if let Some(finding) = self.finding_mut() {
             let all = settings.iter().map(|setting| format!(" --set {setting}"));
             finding.origin = format!("{origin}{}", all.collect::<String>());
+            // A setting numbers effects, where there is one too.
+            if let Some(rest) = finding.field.as_ref().and_then(|field| field.strip_prefix("effects.")) {
+                finding.field = Some(format!("effects[0].{rest}"));
+            }
             finding.place = None;
             finding.excerpt = Excerpt::default();
         }

@@ -56,6 +56,8 @@ fn what_has_no_place_or_is_not_valid_is_told_by_its_setting() {
         ("sleigh.weight=1", ["`sleigh.weight` is not a key of a scene", "`mass`"]),
         ("effects.3.stiffness=1", ["--set: `effects.3.stiffness` leads to item 3", "items 0 to 0"]),
         ("effects.0.stiffness.x=1", ["`effects.0.stiffness.x` leads to item x", "items 0 to 1"]),
+        // The effect has the number that a setting has to give.
+        ("effects.0.stiffness=true", ["bowl --set effects.0.stiffness=true: `effects[0].bowl.stiffness`", "accepted"]),
         ("sleigh.mass.value=1", ["`sleigh.mass.value` leads into a value that has no parts", "start.speed"]),
         ("start=1", ["`start` is a table", "start.speed"]),
         ("effects=1", ["`effects` is a table", "start.speed"]),

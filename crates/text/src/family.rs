@@ -61,7 +61,7 @@ impl Family {
     #[must_use]
     pub fn told(&self, t: f64, q: &[Seeded], v: &[Seeded], p: &[Seeded; FREE]) -> Vec<Seeded> {
         let mut told = vec![Seeded::zero(); self.free.outputs.len()];
-        let at = TapePoint { t: Seeded::constant(t), q, v, p };
+        let at = TapePoint { t: Seeded::constant(t), q, v, p, sides: &[] };
         self.free.told.evaluate(self.free.coordinates.len(), at, |k, x| told[k] = x);
         told
     }

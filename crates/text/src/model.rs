@@ -2,7 +2,7 @@ use crate::reduced::EquationsOfBases;
 use crate::tapes::{TapePoint, Tapes};
 use crate::{Entry, MOST_CONSTRAINTS, MOST_COORDINATES, Problem, TextError, Unit, Words};
 use ::formulas::{Formulas, Parameters, RowElimination};
-use expression::Expression;
+use expression::{Corners, Expression};
 use lagrangian::{Dual, Pivots};
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
@@ -42,6 +42,16 @@ pub struct TextModel {
     /// How a basis that holds everywhere is derived; none where the text gives one, or none is seen.
     pub(crate) eliminations: Option<Vec<RowElimination>>,
     pub(crate) equations: EquationsOfBases,
+    /// The same between corners in time; none where there are no such corners.
+    pub(crate) pieces: Option<TextPieces>,
+}
+
+/// A system whose formulas have corners or jumps at certain times.
+#[derive(Debug, Clone)]
+pub(crate) struct TextPieces {
+    pub(crate) corners: Corners,
+    /// The system with variables for the sides of its corners.
+    pub(crate) model: Arc<TextModel>,
 }
 
 /// The same formulas make the same model.
@@ -66,9 +76,17 @@ impl TextModel {
             let problem = Problem::TooLarge { coordinates: n, constraints: m, most };
             return Err(TextError { entry: Entry::System, problem });
         }
-        let mut formulas = Formulas::of(words, Parameters::Numbers)?;
-        let eliminations = if formulas.basis.is_some() { None } else { formulas.eliminations() };
-        Self::of(words, formulas, eliminations)
+        let formulas = Formulas::of(words, Parameters::Numbers)?;
+        let pieces = formulas.pieces().map_err(|error| TextError { entry: Entry::System, problem: error.into() })?;
+        let whole = |mut formulas: Formulas| {
+            let eliminations = if formulas.basis.is_some() { None } else { formulas.eliminations() };
+            Self::of(words, formulas, eliminations)
+        };
+        let pieces = match pieces {
+            Some((corners, formulas)) => Some(TextPieces { corners, model: Arc::new(whole(formulas)?) }),
+            None => None,
+        };
+        Ok(Self { pieces, ..whole(formulas)? })
     }
 
     pub(crate) fn of(
@@ -107,7 +125,14 @@ impl TextModel {
             formulas: Arc::new(given),
             eliminations,
             equations: EquationsOfBases::default(),
+            pieces: None,
         })
+    }
+
+    /// The times between two (s) at which a formula has a corner in time, or jumps; none where they are more than can be told.
+    #[must_use]
+    pub fn jumps(&self, from: f64, to: f64) -> Option<Vec<f64>> {
+        self.pieces.as_ref().map_or(Some(Vec::new()), |pieces| pieces.corners.between(from, to))
     }
 
     /// The coordinates.

@@ -90,7 +90,7 @@ impl<const N: usize, const M: usize> Reduced<N, M> for TextSystem<N, M> {
         let n = self.model.coordinates.len();
         let mut acceleration = [S::zero(); N];
         // The variable of the quasi-velocity `k` is that of the rate of the coordinate `k`.
-        let at = TapePoint::new(t, &q[..n], &xi[..n]);
+        let at = TapePoint { sides: &self.sides, ..TapePoint::new(t, &q[..n], &xi[..n]) };
         self.equations()?.acceleration.evaluate(n, at, |k, x| acceleration[k] = x);
         Some(acceleration)
     }
@@ -107,7 +107,8 @@ impl<const N: usize, const M: usize> Reduced<N, M> for TextSystem<N, M> {
         };
         let (n, m) = (self.model.coordinates.len(), self.model.constraints());
         let mut velocity = [S::zero(); N];
-        formulas.evaluate(n, TapePoint::new(t, &q[..n], &xi[..n]), |i, x| velocity[i] = x);
+        let at = TapePoint { sides: &self.sides, ..TapePoint::new(t, &q[..n], &xi[..n]) };
+        formulas.evaluate(n, at, |i, x| velocity[i] = x);
         // The coordinates that are held by no constraint move by themselves.
         for (rate, xi) in velocity[n + M - m..].iter_mut().zip(&xi[n - m..]) {
             *rate = *xi;

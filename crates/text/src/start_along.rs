@@ -151,6 +151,6 @@ fn derivatives(
     count: usize,
 ) -> DVector<f64> {
     let mut rates = DVector::zeros(count);
-    formulas.evaluate(n, TapePoint { t: along(0.0, 0.0), q, v, p }, |k, x| rates[k] = x.eps[0]);
+    formulas.evaluate(n, TapePoint { t: along(0.0, 0.0), q, v, p, sides: &[] }, |k, x| rates[k] = x.eps[0]);
     rates
 }

@@ -2,6 +2,7 @@ use crate::TextModel;
 use crate::reduced::SharedEquations;
 use crate::tapes::TapePoint;
 use lagrangian::{AdmissibleBasis, Constraint, Piecewise, Pivots, Reduced, Scalar, System};
+use nalgebra::DMatrix;
 use std::sync::Arc;
 
 /// A system of text, of `N` coordinates and `M` constraints.
@@ -15,12 +16,14 @@ pub struct TextSystem<const N: usize, const M: usize> {
     sizes: Arc<[f64]>,
     pub(crate) pivots: Pivots,
     pub(crate) equations: SharedEquations,
+    /// The sides of the corners in time, of a piece.
+    pub(crate) sides: Arc<[f64]>,
 }
 
 /// The reduced equations follow from the rest.
 impl<const N: usize, const M: usize> PartialEq for TextSystem<N, M> {
     fn eq(&self, other: &Self) -> bool {
-        (&self.model, &self.sizes, self.pivots) == (&other.model, &other.sizes, other.pivots)
+        (&self.model, &self.sizes, self.pivots, &self.sides) == (&other.model, &other.sizes, other.pivots, &other.sides)
     }
 }
 
@@ -42,12 +45,14 @@ impl<const N: usize, const M: usize> TextSystem<N, M> {
         let (rows, _) = model.rows_at(t, &q[..n]);
         let sizes: Arc<[f64]> = model.sizes(t, &q[..n]).into();
         let pivots = Pivots::best(&rows, &sizes);
-        Some(Self::with(model, sizes, pivots))
+        let equations = model.equations.of(model.basis_number(&pivots));
+        Some(Self { model, sizes, pivots, equations, sides: Arc::new([]) })
     }
 
-    fn with(model: Arc<TextModel>, sizes: Arc<[f64]>, pivots: Pivots) -> Self {
-        let equations = model.equations.of(model.basis_number(&pivots));
-        Self { model, sizes, pivots, equations }
+    fn with(&self, model: &Arc<TextModel>, pivots: Pivots) -> Self {
+        let (model, equations) = (Arc::clone(model), model.equations.of(model.basis_number(&pivots)));
+        let (sizes, sides) = (Arc::clone(&self.sizes), Arc::clone(&self.sides));
+        Self { model, sizes, pivots, equations, sides }
     }
 
     /// What the texts mean.
@@ -67,17 +72,17 @@ impl<const N: usize, const M: usize> TextSystem<N, M> {
     /// The same with another basis, of that number, for the neighbourhood of a configuration; zero is the one it has.
     pub(crate) fn rebased(&self, basis: u64) -> Self {
         let pivots = if basis == 0 { self.pivots } else { Pivots::numbered(basis, self.m()) };
-        Self::with(Arc::clone(&self.model), Arc::clone(&self.sizes), pivots)
+        self.with(&self.model, pivots)
     }
 
     /// The same with another model, of the same coordinates and constraints.
-    pub(crate) fn of_model(self, model: &Arc<TextModel>) -> Self {
-        Self::with(Arc::clone(model), self.sizes, self.pivots)
+    pub(crate) fn of_model(&self, model: &Arc<TextModel>) -> Self {
+        self.with(model, self.pivots)
     }
 
-    fn point<'a, S>(&self, p: &'a [S], t: S, q: &'a [S; N], v: &'a [S]) -> TapePoint<'a, S> {
+    fn point<'a, S>(&'a self, p: &'a [S], t: S, q: &'a [S; N], v: &'a [S]) -> TapePoint<'a, S> {
         let n = self.n();
-        TapePoint { t, q: &q[..n], v: if v.is_empty() { v } else { &v[..n] }, p }
+        TapePoint { t, q: &q[..n], v: if v.is_empty() { v } else { &v[..n] }, p, sides: &self.sides }
     }
 }
 
@@ -166,8 +171,11 @@ impl<const N: usize, const M: usize> System<N, M> for TextSystem<N, M> {
         let (n, m) = (self.n(), self.m());
         let there = (basis != 0).then(|| Pivots::numbered(basis, m));
         let there = there.filter(|pivots| pivots.are_good(n, self.constraint(t, q).0, &self.sizes));
-        let pivots = there.unwrap_or_else(|| Pivots::best(&self.model.rows_at(t, &q[..n]).0, &self.sizes));
-        Some((Self::with(Arc::clone(&self.model), Arc::clone(&self.sizes), pivots), pivots.number()))
+        let pivots = there.unwrap_or_else(|| {
+            let rows = self.constraint(t, q).0;
+            Pivots::best(&DMatrix::from_fn(m, n, |k, i| rows[k][i]), &self.sizes)
+        });
+        Some((self.with(&self.model, pivots), pivots.number()))
     }
 
     fn holonomic<S: Scalar>(&self, t: S, q: &[S; N]) -> Option<[Option<S>; M]> {
@@ -184,9 +192,16 @@ impl<const N: usize, const M: usize> System<N, M> for TextSystem<N, M> {
     }
 }
 
-/// Tapes have no jumps.
 impl<const N: usize, const M: usize> Piecewise for TextSystem<N, M> {
-    fn piece(&self, _t: f64) -> Self {
-        self.clone()
+    fn jumps(&self, from: f64, to: f64) -> Vec<f64> {
+        // More than can be told are refused where the scene is read.
+        self.model.jumps(from, to).unwrap_or_default()
+    }
+
+    fn piece(&self, t: f64) -> Self {
+        match &self.model.pieces {
+            Some(pieces) => Self { sides: pieces.corners.sides(t).into(), ..self.of_model(&pieces.model) },
+            None => self.clone(),
+        }
     }
 }

@@ -4,7 +4,7 @@ use lagrangian::Scalar;
 /// Some formulas of time, coordinates and rates, the constants among them told apart from those that are computed.
 ///
 /// Of `n` coordinates the variable 0 is time, `1 + i` the coordinate `i`, `1 + n + i` its rate, and `1 + 2 n + k` the parameter `k` of
-/// those that are left free.
+/// those that are left free, or the side `k` of a piece.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Tapes {
     tape: Tape,
@@ -23,12 +23,14 @@ pub(crate) struct TapePoint<'a, S> {
     pub(crate) v: &'a [S],
     /// The parameters that are left free: none of a system that has a value for each.
     pub(crate) p: &'a [S],
+    /// The sides of the corners in time: none of a system that is no piece.
+    pub(crate) sides: &'a [f64],
 }
 
 impl<'a, S> TapePoint<'a, S> {
     /// Where no parameter is left free.
     pub(crate) fn new(t: S, q: &'a [S], v: &'a [S]) -> Self {
-        Self { t, q, v, p: &[] }
+        Self { t, q, v, p: &[], sides: &[] }
     }
 }
 
@@ -91,7 +93,11 @@ impl Tapes {
             None => at.t,
             Some(i) if i < n => at.q[i],
             Some(i) if i < 2 * n => at.v.get(i - n).copied().unwrap_or(at.t),
-            Some(i) => at.p.get(i - 2 * n).copied().unwrap_or(at.t),
+            // No system has both.
+            Some(i) => {
+                let side = at.sides.get(i - 2 * n).map_or(at.t, |&side| S::constant(side));
+                at.p.get(i - 2 * n).copied().unwrap_or(side)
+            }
         };
         let output = |k: usize, x: S| {
             if let Some(&place) = self.places.get(k) {

@@ -232,7 +232,7 @@ fn accelerations_as_formulas_are_those_by_derivatives() {
     scaled.constraints[0] = format!("(2 + cos(phi))*({})", scaled.constraints[0]);
     let mut driven = edge();
     driven.constraints[0].push_str(" - sin(t)/3");
-    driven.lagrangian.push_str(" + x*theta*cos(t)");
+    driven.lagrangian.push_str(" + x*sin(theta)*cos(t)");
     driven.forces = vec![("theta".to_owned(), "-theta'^3 + sin(x)".to_owned())];
     derived_alike::<4, 2>(&racer());
     derived_alike::<4, 2>(&scaled);

@@ -94,6 +94,91 @@ fn bases_have_their_shape() {
     assert!(matches!(error, StartError::Basis { vector: 0, constraint: 0, .. }), "{error}");
 }
 
+/// An angle is the same after a turn, and so is whatever is made of it but what is told.
+#[test]
+fn formulas_have_the_period_of_their_angles() {
+    type Case = (fn(&mut Words), Option<Entry>);
+    let cases: [Case; 22] = [
+        (|w| w.lagrangian += " - theta^2/2", Some(Entry::Lagrangian)),
+        (|w| w.lagrangian += " - max(0, abs(theta) - 40)^2", Some(Entry::Lagrangian)),
+        (|w| w.lagrangian += " - sin(theta/2)", Some(Entry::Lagrangian)),
+        (|w| w.lagrangian += " - 1e-9*cos(0.9999*theta)^2", Some(Entry::Lagrangian)),
+        (|w| w.abbreviations[0].1 = "cos(1.5*theta)".to_owned(), Some(Entry::Constraint(0))),
+        (|w| w.constraints[0] = "y'*c - x'*s + 1e-6*theta*x'".to_owned(), Some(Entry::Constraint(0))),
+        (|w| w.positions.push("theta - 2*t".to_owned()), Some(Entry::Position(0))),
+        (|w| w.positions.push("x - 0.3*theta".to_owned()), Some(Entry::Position(0))),
+        (|w| w.forces[0].1 = "-200*theta".to_owned(), Some(Entry::Force(0))),
+        (|w| w.forces[0].1 = "-way*sign(theta)".to_owned(), Some(Entry::Force(0))),
+        (|w| w.forces[0].1 = "sin(theta)*theta".to_owned(), Some(Entry::Force(0))),
+        (|w| w.forces[0].1 = "exp(-x^2 - theta^2)".to_owned(), Some(Entry::Force(0))),
+        (
+            |w| w.basis = [["c", "s", "0"], ["0", "0", "1 + theta^2"]].map(|v| v.map(str::to_owned).to_vec()).to_vec(),
+            Some(Entry::Component(1, 2)),
+        ),
+        // The same after a turn.
+        (|w| w.lagrangian += " - sin(theta/2)^2 + abs(sin(theta/2)) + sqrt(1 - cos(theta))", None),
+        (|w| w.lagrangian += " - sin(theta/2)*cos(theta/2) - m*cos(2*theta - x)", None),
+        (|w| w.lagrangian += " + (theta - x - theta)^2 + cos(3*(m/3)*theta)", None),
+        (|w| w.lagrangian += " + atan2(s, c)^2 + 0.1*theta'^4", None),
+        (|w| w.lagrangian += " + x*cos(theta + 100*x)*tan(theta/2)^2/(1 + tan(theta/2)^2)", None),
+        (|w| w.constraints[0] = "x' - 0.3*theta'".to_owned(), None),
+        (|w| w.forces[0].1 = "-sin(theta - 0.3*sin(theta)) + log(x + theta - theta)".to_owned(), None),
+        // What is told counts turns, as the column of the angle.
+        (|w| w.outputs[0].1 = "theta/(2*pi)".to_owned(), None),
+        (|w| (w.coordinates[2].1, w.lagrangian) = (Unit::other("rad"), format!("{} - theta^2/2", w.lagrangian)), None),
+    ];
+    for (k, (change, entry)) in cases.into_iter().enumerate() {
+        let mut words = skate();
+        change(&mut words);
+        let found = TextModel::new(&words).map(|_| ());
+        let named = found.as_ref().err().map(|error| error.entry);
+        assert_eq!(named, entry, "{k}: {found:?}");
+        if let Err(error) = found {
+            assert_eq!(error.problem, Problem::NoPeriod { angle: "theta".to_owned() });
+        }
+    }
+    let mut words = skate();
+    words.forces[0].1 = "-theta".to_owned();
+    let error = TextModel::new(&words).unwrap_err().to_string();
+    assert!(error.contains("`theta`") && error.contains("`rad`") && error.contains("force 1"), "{error}");
+}
+
+/// Names and units stand in the first line of files.
+#[test]
+fn names_and_units_fit_the_head_of_a_file() {
+    for name in ["=1+1", "+x", "-x", "@x", "a,b", "a\"b", "a\nb", "\u{1b}[31m", "\u{202e}x", ""] {
+        let (entry, _, told) = wrong(|w| w.outputs[1].0 = name.to_owned());
+        assert_eq!(entry, Entry::Output(1), "{told}");
+    }
+    for unit in ["m\ns", "m\u{7}", "\u{2028}"] {
+        let (entry, _, told) = wrong(|w| w.coordinates[1].1 = Unit::other(unit));
+        assert_eq!(entry, Entry::Coordinate(1), "{told}");
+    }
+    let mut words = skate();
+    words.outputs[0].0 = "speed of the blade (m/s)".to_owned();
+    words.coordinates[0].1 = Unit::other("m, to the east");
+    assert!(TextModel::new(&words).is_ok());
+}
+
+/// A coordinate without inertia needs a row of its own that says how it moves.
+#[test]
+fn constraints_may_determine_what_has_no_inertia() {
+    let cases: [(&str, &[&str], bool); 5] = [
+        ("(x'^2 + y'^2)/2", &["theta' - x"], true),
+        ("(x'^2 + y'^2)/2", &["y' - x'"], false),
+        ("x'^2/2", &["theta' - y'", "y' - 2*x'"], true),
+        ("x'^2/2", &["theta' - y'"], false),
+        ("x'^2/2", &["theta' - y'", "y' - theta'", "x' - 1"], true),
+    ];
+    for (lagrangian, constraints, accepted) in cases {
+        let mut words = skate();
+        words.lagrangian = lagrangian.to_owned();
+        words.constraints = constraints.iter().map(|&text| text.to_owned()).collect();
+        let found = TextModel::new(&words).map(|_| ());
+        assert_eq!(found.is_ok(), accepted, "{constraints:?}: {found:?}");
+    }
+}
+
 #[test]
 fn sizes_have_limits() {
     let mut words = Words::default();

@@ -8,8 +8,8 @@ impl Graph {
     ///
     /// Those of `abs`, `min` and `max` are written with `sign`, at a corner the mean of those on its two sides; that of `sign` is zero.
     /// A length, the root of a sum of squares, has the derivative zero where it vanishes, and so have the angles of `atan2` where their
-    /// vector does: written with `inverse`. Elsewhere it is what the rules of differentiation make of the text: where another root
-    /// vanishes it is infinite or no number.
+    /// vector does: written with `inverse`. So have powers with a positive exponent of what has corners, as `max(0, x)^1.5`. Elsewhere it
+    /// is what the rules of differentiation make of the text: where another root vanishes it is infinite or no number.
     ///
     /// What was derived once is kept.
     pub fn derivative(&mut self, e: Expression, variable: u32) -> Expression {
@@ -71,7 +71,7 @@ impl Graph {
                         for &(other, h) in &factors {
                             if other != base {
                                 self.multiply(&mut product, other, h);
-                            } else if h == 1 && self.is_square(base) {
+                            } else if h == 1 && (self.is_square(base) || self.is_flat(base)) {
                                 let length = self.power(base, 0.5);
                                 let inverse = self.call(Function::Inverse, &[length]);
                                 self.multiply(&mut product, inverse, 2);
@@ -87,9 +87,15 @@ impl Graph {
                 self.finish_sum(sum)
             }
             NodeKind::Power(base, p) => {
-                let (slope, inner) = (self.power(base, p.value() - 1.0), self.known(base, variable));
+                let (p, inner) = (p.value(), self.known(base, variable));
+                let slope = if 0.0 < p && p < 1.0 && self.is_flat(base) {
+                    let inverse = self.call(Function::Inverse, &[base]);
+                    self.product(&[e, inverse])
+                } else {
+                    self.power(base, p - 1.0)
+                };
                 let product = self.product(&[slope, inner]);
-                self.scaled(product, p.value())
+                self.scaled(product, p)
             }
             NodeKind::Call(Function::Atan2, [y, x]) => {
                 let [dy, dx] = [y, x].map(|part| self.known(part, variable));

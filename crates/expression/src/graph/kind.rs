@@ -61,6 +61,19 @@ impl NodeKind {
         }
     }
 
+    /// The same of parts that have other numbers.
+    pub(crate) fn moved(&self, to: impl Fn(Expression) -> Expression) -> Self {
+        match self {
+            Self::Constant(_) | Self::Variable(_) => self.clone(),
+            Self::Sum { constant, terms } => {
+                Self::Sum { constant: *constant, terms: terms.iter().map(|&(e, c)| (to(e), c)).collect() }
+            }
+            Self::Product(factors) => Self::Product(factors.iter().map(|&(e, halves)| (to(e), halves)).collect()),
+            Self::Power(base, p) => Self::Power(to(*base), *p),
+            Self::Call(function, arguments) => Self::Call(*function, arguments.map(to)),
+        }
+    }
+
     /// How much of the limit it takes.
     pub(crate) fn size(&self) -> usize {
         1 + match self {

@@ -9,13 +9,15 @@ mod power;
 mod product;
 mod sum;
 mod text;
+mod turns;
 mod walk;
 
 pub use kind::Expression;
 pub(crate) use kind::{NodeKind, Number};
 pub use text::Statements;
+pub use turns::Turned;
 
-use crate::{Error, Limits};
+use crate::{Error, Function, Limits};
 use indexmap::IndexSet;
 use std::collections::HashMap;
 
@@ -45,7 +47,7 @@ pub(crate) const LONG: usize = 32;
 #[derive(Debug, Clone)]
 pub struct Graph {
     kinds: IndexSet<NodeKind>,
-    /// The variables of each, folded into as many bits as there are: none where the bit is not set.
+    /// The variables of each, folded into the bits that there are, and whether it has [corners](CORNER): none where the bit is not set.
     variables: Vec<u64>,
     derivatives: HashMap<(Expression, u32), Expression>,
     size: usize,
@@ -152,7 +154,10 @@ impl Graph {
         let size = kind.size();
         let bits = match kind {
             NodeKind::Variable(k) => bit(k),
-            _ => kind.parts().fold(0, |bits, part| bits | self.bits(part)),
+            _ => {
+                let corner = matches!(kind, NodeKind::Call(Function::Abs | Function::Min | Function::Max, _));
+                kind.parts().fold(if corner { CORNER } else { 0 }, |bits, part| bits | self.bits(part))
+            }
         };
         let (index, new) = self.kinds.insert_full(kind);
         if new {
@@ -163,7 +168,10 @@ impl Graph {
     }
 }
 
+/// The bit of an expression in which `abs`, `min` or `max` stands.
+const CORNER: u64 = 1 << 63;
+
 /// The bit of a variable in those of an expression.
 pub(crate) fn bit(variable: u32) -> u64 {
-    1 << (variable % 64)
+    1 << (variable % 63)
 }

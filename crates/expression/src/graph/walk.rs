@@ -41,14 +41,24 @@ impl Graph {
         }
     }
 
+    /// Whether the expression may be zero in a whole region, or at a corner, as `max(0, x)` and `abs(x)`: with it its slope is zero there.
+    pub(crate) fn is_flat(&self, e: Expression) -> bool {
+        self.bits(e) & super::CORNER != 0
+    }
+
     /// The expression with others in place of variables.
     pub fn substitute(&mut self, e: Expression, meanings: &[(u32, Expression)]) -> Expression {
-        let mut by: HashMap<Expression, Expression> = HashMap::new();
-        for part in self.reached(&[e], |_| true) {
+        let there = |&(k, meaning): &(u32, Expression)| Some((self.find(&NodeKind::Variable(k))?, meaning));
+        let mut by = meanings.iter().rev().filter_map(there).collect();
+        self.rebuilt(e, &mut by)
+    }
+
+    /// The expression with others in place of some of its parts; what is made in place of the rest is noted there.
+    pub(crate) fn rebuilt(&mut self, e: Expression, by: &mut HashMap<Expression, Expression>) -> Expression {
+        for part in self.reached(&[e], |e| !by.contains_key(&e)) {
             let new = |e: Expression| by.get(&e).copied().unwrap_or(e);
             let replaced = match self.kind(part).clone() {
-                NodeKind::Constant(_) => part,
-                NodeKind::Variable(k) => meanings.iter().find(|(variable, _)| *variable == k).map_or(part, |m| m.1),
+                NodeKind::Constant(_) | NodeKind::Variable(_) => part,
                 NodeKind::Sum { constant, terms } => {
                     let terms: Vec<_> = terms.iter().map(|&(term, c)| (new(term), c.value())).collect();
                     let mut sum = super::sum::Sum::default();

@@ -52,7 +52,7 @@ impl Tape {
                 Operation::Multiply { .. } | Operation::Times { .. } | Operation::Square { .. } => &mut cost.products,
                 Operation::Divide { .. } | Operation::Invert { .. } => &mut cost.quotients,
                 Operation::Length { .. } => &mut cost.roots,
-                Operation::Whole { .. } | Operation::Real { .. } => &mut cost.powers,
+                Operation::Whole { .. } | Operation::Real { .. } | Operation::Flat { .. } => &mut cost.powers,
                 Operation::SinCos { .. } => &mut cost.angles,
                 Operation::Call { function, .. } => match function {
                     Function::Sqrt => &mut cost.roots,

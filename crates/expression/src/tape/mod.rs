@@ -11,7 +11,7 @@ mod rust;
 
 pub use cost::Cost;
 
-use crate::function::length;
+use crate::function::{flat_power, length};
 use crate::{Error, Expression, Graph};
 use operation::{Instruction, Operation};
 use program::Program;
@@ -129,6 +129,7 @@ impl Tape {
                 Operation::Length { a } => length(x[a as usize]),
                 Operation::Whole { a, n } => x[a as usize].powi(n),
                 Operation::Real { a, k } => x[a as usize].powf(constants[k as usize]),
+                Operation::Flat { a, k } => flat_power(x[a as usize], constants[k as usize]),
                 Operation::SinCos { a, cos } => {
                     let both = x[a as usize].sin_cos();
                     x[cos as usize] = both.1;

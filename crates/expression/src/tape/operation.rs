@@ -37,6 +37,8 @@ pub(crate) enum Operation {
     Whole { a: u32, n: i32 },
     /// `a^k`
     Real { a: u32, k: u32 },
+    /// `a^k` of what may be flat where it is zero.
+    Flat { a: u32, k: u32 },
     /// Sine and cosine of `a`, the cosine to the place `cos`.
     SinCos { a: u32, cos: u32 },
     /// A function.
@@ -66,6 +68,7 @@ impl Operation {
             Self::Length { a } => Self::Length { a: f(a) },
             Self::Whole { a, n } => Self::Whole { a: f(a), n },
             Self::Real { a, k } => Self::Real { a: f(a), k },
+            Self::Flat { a, k } => Self::Flat { a: f(a), k },
             Self::SinCos { a, cos } => Self::SinCos { a: f(a), cos },
             Self::Call { function, a, b } => Self::Call { function, a: f(a), b: f(b) },
             Self::Output { a } => Self::Output { a: f(a) },
@@ -92,6 +95,7 @@ impl Operation {
             | Self::Length { a }
             | Self::Whole { a, .. }
             | Self::Real { a, .. }
+            | Self::Flat { a, .. }
             | Self::SinCos { a, .. }
             | Self::Output { a } => [a; 3],
         }

@@ -31,6 +31,8 @@ pub(crate) enum Step {
     Length(u32),
     Whole(u32, i32),
     Real(u32, f64),
+    /// A positive power of what may be flat where it is zero.
+    Flat(u32, f64),
     Call(Function, u32, u32),
 }
 
@@ -47,6 +49,7 @@ impl Step {
             | Self::Length(a)
             | Self::Whole(a, _)
             | Self::Real(a, _)
+            | Self::Flat(a, _)
             | Self::Call(_, a, _) => vec![*a],
         }
     }
@@ -103,7 +106,14 @@ impl Plan {
                     let (mut above, mut below) = (Vec::new(), Vec::new());
                     for &(base, halves) in factors {
                         let part = of(&base);
-                        let root = (halves % 2 != 0).then(|| plan.root(part, graph.is_square(base)));
+                        let root = (halves % 2 != 0).then(|| {
+                            let step = match (graph.is_square(base), graph.is_flat(base)) {
+                                (true, _) => Step::Length(part),
+                                (_, true) => Step::Flat(part, 0.5),
+                                _ => Step::Call(Function::Sqrt, part, part),
+                            };
+                            plan.once(Shared::Root(part), step)
+                        });
                         for (part, n, is_root) in [(Some(part), halves / 2, false), (root, halves % 2, true)] {
                             let Some(part) = part.filter(|_| n != 0) else { continue };
                             if n > 0 {
@@ -117,6 +127,9 @@ impl Plan {
                         }
                     }
                     plan.quotient(above, below)
+                }
+                NodeKind::Power(base, p) if p.value() > 0.0 && graph.is_flat(*base) => {
+                    plan.push(Step::Flat(of(base), p.value()))
                 }
                 NodeKind::Power(base, p) => plan.push(Step::Real(of(base), p.value())),
                 NodeKind::Call(function, [a, b]) => plan.push(Step::Call(*function, of(a), of(b))),
@@ -214,11 +227,6 @@ impl Plan {
         };
         self.shared.insert(Shared::Power(part, n), step);
         step
-    }
-
-    fn root(&mut self, part: u32, square: bool) -> u32 {
-        let step = if square { Step::Length(part) } else { Step::Call(Function::Sqrt, part, part) };
-        self.once(Shared::Root(part), step)
     }
 
     fn inverse(&mut self, part: u32) -> u32 {

@@ -117,6 +117,10 @@ impl Program {
                 let k = self.number(p);
                 self.emit(Operation::Real { a: self.result(a), k })
             }
+            Step::Flat(a, p) => {
+                let k = self.number(p);
+                self.emit(Operation::Flat { a: self.result(a), k })
+            }
             Step::Call(function, u, v) => {
                 let (a, b) = (self.result(u), self.result(v));
                 if let (Function::Sin | Function::Cos, Some(&[Some(sin), Some(cos)])) = (function, self.circles.get(&u))

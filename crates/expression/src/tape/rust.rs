@@ -77,8 +77,9 @@ impl Graph {
         // What stands there twice has a name.
         let mut twice = vec![false; program.places as usize];
         for instruction in &program.instructions {
-            if let Operation::Length { a } | Operation::Call { function: Function::Inverse, a, .. } =
-                instruction.operation
+            if let Operation::Length { a }
+            | Operation::Flat { a, .. }
+            | Operation::Call { function: Function::Inverse, a, .. } = instruction.operation
             {
                 twice[a as usize] = true;
             }
@@ -200,6 +201,11 @@ fn written(operation: Operation, places: &[RustPiece], constants: &[f64]) -> Rus
         }
         Operation::Whole { a, n } => method(of(a), &format!("powi({n})")),
         Operation::Real { a, k: c } => method(of(a), &format!("powf({})", k(c))),
+        Operation::Flat { a, k: c } => {
+            let (text, a) = (of(a).at(RustLevel::Word), of(a));
+            let power = if k(c) == "0.5" { "sqrt()".to_owned() } else { format!("powf({})", k(c)) };
+            method(&method(a, "abs()"), &format!("where_positive({text}.{power}, {text} * 0.0)"))
+        }
         Operation::SinCos { a, .. } => method(of(a), "sin_cos()"),
         Operation::Call { function, a, b } => {
             let name = if function == Function::Log { "ln" } else { function.name() };

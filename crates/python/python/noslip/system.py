@@ -19,7 +19,8 @@ Values = Mapping[Any, float] | Sequence[float] | None
 class System(Scene):
     """A mechanical system with velocity constraints.
 
-    `coordinates` are names with their units (`"angle"` is in rad), or a list of names or of SymPy's `dynamicsymbols`.
+    `coordinates` are names with their units (`"angle"` is in rad, and every formula is the same a turn further; `"rad"` counts
+    turns), or a list of names or of SymPy's `dynamicsymbols`.
     `lagrangian`, `constraints` (each is zero, and affine in the rates), `forces` (by coordinate), `positions` (functions that
     are zero), `basis` (admissible velocities, lists of a text for each coordinate) and `outputs` (further columns, by name) are
     texts as in scene files, where `x'` is the rate of `x`, or SymPy expressions. `parameters` are numbers by name.

@@ -94,8 +94,12 @@ impl<const N: usize, const M: usize> Built<'_, N, M> {
     /// What tells a state, with its values.
     #[must_use]
     pub fn state(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Vec<(Quantity, f64)> {
-        let quantities = self.quantities().into_iter().take(self.in_state()).enumerate();
-        quantities.map(|(k, quantity)| (quantity, self.value(k, t, q, v))).collect()
+        let quantities = self.quantities().into_iter().take(self.in_state());
+        let values: Vec<f64> = match self {
+            Self::Sleigh(_) => (0..self.in_state()).map(|k| self.value(k, t, q, v)).collect(),
+            Self::Text(system) => text::values(system.model(), t, q, v),
+        };
+        quantities.zip(values).collect()
     }
 
     /// The columns of a trajectory that begins at this node.

@@ -34,6 +34,13 @@ pub(super) fn value(model: &TextModel, k: usize, t: f64, q: &[f64], v: &[f64]) -
     }
 }
 
+/// The values of all of them, in their order.
+pub(super) fn values(model: &TextModel, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
+    let n = model.coordinates().len();
+    let (q, v) = (&q[..n], &v[..n]);
+    q.iter().chain(v).copied().chain(model.told(t, q, v)).collect()
+}
+
 /// Time, coordinates, rates, energy, work, constraint, outputs.
 pub(super) fn columns(model: &TextModel) -> Vec<Column> {
     let names = quantities(model).into_iter().map(|quantity| Column::new(quantity.name, quantity.unit));
@@ -44,10 +51,9 @@ pub(super) fn columns(model: &TextModel) -> Vec<Column> {
 
 /// The numbers of a node in these columns.
 pub(super) fn row<const N: usize, const M: usize>(model: &TextModel, node: &Node<N, M>) -> Vec<f64> {
-    let n = model.coordinates().len();
-    let (q, v) = (&node.q[..n], &node.v[..n]);
-    let numbers = q.iter().chain(v).copied().chain(model.told(node.t, q, v));
-    between(numbers.collect(), 2 * n, node.t, || [node.energy, node.work, node.constraint])
+    let numbers = values(model, node.t, &node.q, &node.v);
+    let first = 2 * model.coordinates().len();
+    between(numbers, first, node.t, || [node.energy, node.work, node.constraint])
 }
 
 /// The time, what is first of a state, what is told of the motion, and the rest of the state.

@@ -46,7 +46,7 @@ pub(super) fn check_company(
     if let SceneEffect::MovingMass { x, y, .. } = new {
         for (key, function) in [("x", x), ("y", y)] {
             if function.has_corners() {
-                let accepted = "a number, `{amplitude, frequency, phase}` or a formula in `t`, in m".to_owned();
+                let accepted = "a number, `{amplitude, frequency, phase}` or a smooth formula in `t`, in m".to_owned();
                 return Err(table.wrong(key, "would make the mass or its velocity jump", accepted));
             }
         }

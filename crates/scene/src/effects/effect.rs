@@ -52,16 +52,17 @@ pub enum SceneEffect {
 impl SceneEffect {
     /// Whether it is a function of time, and not of the state alone.
     pub(crate) fn depends_on_time(&self) -> bool {
-        let varies = |function: &Option<TimeSpec>| function.as_ref().is_some_and(TimeSpec::varies);
+        matches!(self, Self::Tracer { .. }) || self.functions().into_iter().any(TimeSpec::varies)
+    }
+
+    /// The functions of time in it.
+    pub(crate) fn functions(&self) -> Vec<&TimeSpec> {
         match self {
-            Self::Slope { .. } | Self::Bowl { .. } | Self::EggCrate { .. } | Self::Hills { .. } => false,
-            Self::Drag { .. } | Self::QuadraticDrag { .. } | Self::Friction { .. } => false,
-            Self::Turntable { .. } | Self::Trailers(_) => false,
-            Self::Flywheel { torque, .. } => varies(torque),
-            Self::Thrust { force: function } | Self::Torque { torque: function } => function.varies(),
-            Self::MovingMass { x, y, .. } => x.varies() || y.varies(),
-            Self::Servo { speed, turn_rate } => varies(speed) || varies(turn_rate),
-            Self::Tracer { .. } => true,
+            Self::Flywheel { torque, .. } => torque.iter().collect(),
+            Self::Thrust { force: function } | Self::Torque { torque: function } => vec![function],
+            Self::MovingMass { x, y, .. } => vec![x, y],
+            Self::Servo { speed, turn_rate } => speed.iter().chain(turn_rate).collect(),
+            _ => Vec::new(),
         }
     }
 

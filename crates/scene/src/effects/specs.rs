@@ -63,7 +63,21 @@ impl TimeSpec {
 
     /// Whether the function, or its slope, jumps.
     pub(super) fn has_corners(&self) -> bool {
-        matches!(self, Self::Table { times, .. } if times.len() > 1)
+        match self {
+            Self::Table { times, .. } => times.len() > 1,
+            Self::Formula(text) => Formula::new(text).is_ok_and(|formula| formula.has_corners()),
+            Self::Constant(_) | Self::Sine { .. } => false,
+        }
+    }
+
+    /// The jumps of a formula up to that time (s); none where they are more than can be told.
+    pub(crate) fn jumps(&self, duration: f64) -> Option<Vec<f64>> {
+        match self {
+            Self::Formula(text) => {
+                Formula::new(text).map_or(Some(Vec::new()), |formula| formula.corners(0.0, duration))
+            }
+            _ => Some(Vec::new()),
+        }
     }
 
     /// No value of the function is larger; of a formula the one at the start.

@@ -9,12 +9,13 @@ mod written;
 pub use self::start::Given;
 use crate::document::Document;
 use crate::error::SceneError;
+use crate::fault::Fault;
 use crate::scene::{name_of, opened};
 use crate::table::TomlTable;
 use crate::{Built, Overrides, RunSettings, Scene, Visitor};
 use ::sleigh::SleighError;
 use ::text::{AnyText, TextModel, TextStart, Words, with_text};
-use dla::Schedule;
+use dla::{Schedule, fitted};
 use std::fmt;
 use std::sync::Arc;
 use thiserror::Error;
@@ -124,7 +125,7 @@ impl AnyScene {
             }
             Self::Text(mut scene) => {
                 let overrides = Overrides { method, step, duration, alpha };
-                let outcome = scene.run.replace(&overrides, methods);
+                let outcome = scene.run.replace(&overrides, methods).and_then(|()| scene.too_many_jumps());
                 outcome.map_err(|fault| overrides.error(fault, &scene.name))?;
                 Self::Text(scene)
             }
@@ -176,7 +177,7 @@ impl AnyScene {
     pub fn schedule(&self) -> Schedule {
         match self {
             Self::Sleigh(scene) => scene.schedule(),
-            Self::Text(scene) => Schedule { t0: 0.0, step: scene.run.actual_step(), steps: scene.run.steps() },
+            Self::Text(scene) => scene.schedule(),
         }
     }
 
@@ -241,8 +242,30 @@ impl TextScene {
         let (words, places) = words::read(&root)?;
         let model = TextModel::new(&words).map_err(|error| places.fail(&document, &words, &error))?;
         let (start, given) = start::read(&root, &model)?;
-        let run = RunSettings::read(&root.table("run")?, overrides, &name, methods)?;
-        Ok(Self { name, title, words, model: Arc::new(model), given, start, run })
+        let table = root.table("run")?;
+        let run = RunSettings::read(&table, overrides, &name, methods)?;
+        let scene = Self { name, title, words, model: Arc::new(model), given, start, run };
+        scene.too_many_jumps().map_err(|fault| overrides.error_in(&table, fault, &scene.name))?;
+        Ok(scene)
+    }
+
+    /// The steps of the run, as [`Scene::schedule`].
+    #[must_use]
+    pub fn schedule(&self) -> Schedule {
+        let whole = Schedule { t0: 0.0, step: self.run.actual_step(), steps: self.run.steps() };
+        fitted(&whole, self.run.step, self.jumps())
+    }
+
+    /// The times in the run (s) at which a formula has a corner in time, or jumps.
+    #[must_use]
+    pub fn jumps(&self) -> Vec<f64> {
+        self.model.jumps(0.0, self.run.duration).unwrap_or_default()
+    }
+
+    /// The fault of a run with more corners than can be told.
+    fn too_many_jumps(&self) -> Result<(), Fault> {
+        let jumps = self.model.jumps(0.0, self.run.duration);
+        jumps.map(|_| ()).ok_or_else(|| Fault::too_many_corners(self.run.duration))
     }
 
     /// Builds the system and hands it to the visitor.

@@ -1,7 +1,8 @@
 use crate::error::SceneError;
 use crate::fault::Fault;
 use crate::table::{TomlTable, as_f64};
-use ::text::{TextModel, TextStart};
+use ::text::{StartError, TextModel, TextStart};
+use toml::Spanned;
 use toml::de::DeValue;
 
 /// What a start gives: coordinates and rates, `None` for those that are left out.
@@ -56,16 +57,27 @@ pub(crate) fn read(root: &TomlTable<'_>, model: &TextModel) -> Result<(TextStart
         }
     }
     let start = model.start(&q, &v).map_err(|error| {
+        // A wrong basis is not the fault of the start.
+        let basis = match (&error, root.get("system").map(Spanned::get_ref)) {
+            (StartError::Basis { .. }, Some(DeValue::Table(system))) => system.get("basis").map(Spanned::span),
+            _ => None,
+        };
+        let (field, accepted) = match basis {
+            Some(_) => ("system.basis", "vectors whose product with each row of the constraints vanishes"),
+            None => (
+                "start",
+                "coordinates and rates at which all formulas are finite, near those that meet the constraints",
+            ),
+        };
         let fault = Fault {
             variant: SceneError::Formula,
             key: "",
-            problem: format!("is not a coordinate or a rate of the system: {error}"),
+            problem: if basis.is_some() { format!("is wrong: {error}") } else { format!("gives no state: {error}") },
             found: None,
-            accepted: "coordinates and rates at which all formulas are finite, near those that meet the constraints"
-                .to_owned(),
+            accepted: accepted.to_owned(),
             help: None,
         };
-        root.document.fail(&header, Some("start".to_owned()), fault)
+        root.document.fail(&basis.unwrap_or(header), Some(field.to_owned()), fault)
     })?;
     Ok((start, Given { q, v }))
 }

@@ -16,14 +16,22 @@ impl MovingMass {
     /// The point of mass `m_p` (kg) at the body position `(r_x(t), r_y(t))` (m).
     ///
     /// # Errors
-    /// [`SleighError`] names a mass that is not positive, a number that is not finite, or a position from a table with
-    /// more than one entry: a mass cannot jump.
+    /// [`SleighError`] names a mass that is not positive, a number that is not finite, or a position that jumps or
+    /// has corners, from a table with more than one entry or from a formula: a mass and its velocity cannot jump.
     pub fn new(mass: f64, x: impl Into<TimeFunction>, y: impl Into<TimeFunction>) -> Result<Self, SleighError> {
         let mass = positive("mass", mass)?;
         let position = [x.into().finite("x")?, y.into().finite("y")?];
         for function in &position {
-            if matches!(function, TimeFunction::Table(table) if table.times().len() > 1) {
-                return Err(SleighError::Table { problem: "a mass cannot jump from one place to another".to_owned() });
+            match function {
+                TimeFunction::Table(table) if table.times().len() > 1 => {
+                    let problem = "a mass cannot jump from one place to another".to_owned();
+                    return Err(SleighError::Table { problem });
+                }
+                TimeFunction::Formula(formula) if formula.has_corners() => {
+                    let problem = "it jumps or has corners, and the velocity of a mass cannot jump".to_owned();
+                    return Err(SleighError::Formula { problem });
+                }
+                _ => {}
             }
         }
         Ok(Self { mass, position })

@@ -1,24 +1,41 @@
 use crate::SleighError;
-use expression::{Graph, Names, Tape, parse};
-use lagrangian::{Scalar, ScalarFunction};
+use expression::{Corners, Expression, Graph, Names, Series, Tape, parse};
+use lagrangian::{Piecewise, Scalar, ScalarFunction};
 use std::sync::Arc;
 
 /// A function of time as a formula in `t` (s), as `0.2*t*exp(-t/5)`, with what [`expression`] knows.
 ///
-/// Its derivatives are formulas too: exact on every number that carries derivatives.
+/// Its derivatives are exact on every number that carries derivatives. Where `abs`, `sign`, `min` or `max` turns, it has a corner or jumps:
+/// like a [`Table`](crate::Table) it is then evaluated as one of its pieces, as soon as [`Piecewise::piece`] has chosen one.
 #[derive(Debug, Clone)]
 pub struct Formula {
     text: Arc<str>,
-    /// The function and its derivatives in time, by their order.
-    derivatives: Arc<[Tape]>,
+    whole: Arc<FormulaTapes>,
+    pieces: Option<Arc<FormulaPieces>>,
+    /// The sides of the corners in the piece that is evaluated.
+    sides: Option<Arc<[f64]>>,
     constant: bool,
 }
 
-/// The highest derivative of a formula. Equations of motion take two, their linearisation one more.
-const HIGHEST: usize = 6;
+/// A formula with variables for the sides of its corners.
+#[derive(Debug)]
+struct FormulaPieces {
+    corners: Corners,
+    tapes: FormulaTapes,
+}
+
+/// The function and its first derivatives in time, by their order.
+#[derive(Debug)]
+struct FormulaTapes(Vec<Tape>);
+
+/// Derivatives of a higher order are not formulas, but [`Series`]: those for the equations of motion are.
+const FORMULAS: usize = 2;
 
 /// The most numbers that a formula may need at a time: they lie on the stack.
 const ROOM: usize = 128;
+
+/// A formula with its derivatives has at most so many terms and factors.
+const LARGEST: usize = 1 << 17;
 
 impl Formula {
     /// The function with this text.
@@ -30,18 +47,18 @@ impl Formula {
         let fail = |problem: String| SleighError::Formula { problem };
         let wrong = |error: expression::Error| fail(error.to_string());
         let names = Names::of(["t"]).map_err(wrong)?;
-        let mut graph = Graph::new();
+        let mut graph = Graph::with_limit(LARGEST);
         let t = graph.variable(0);
-        let mut derivative = graph.build(&parse(text, &names).map_err(wrong)?, &[t]).map_err(wrong)?;
-        let mut tapes = Vec::with_capacity(HIGHEST + 1);
-        for _ in 0..=HIGHEST {
-            tapes.push(Tape::new(&graph, &[derivative]).map_err(wrong)?);
-            derivative = graph.derivative(derivative, 0);
-        }
-        if tapes.iter().any(|tape| tape.scratch() > ROOM) {
-            return Err(fail(format!("the formula or a derivative of it needs more than {ROOM} numbers at a time")));
-        }
-        let formula = Self { text: text.into(), constant: tapes[0].inputs() == 0, derivatives: tapes.into() };
+        let whole = graph.build(&parse(text, &names).map_err(wrong)?, &[t]).map_err(wrong)?;
+        let pieces = match Corners::of(&mut graph, &[whole], 0, 1).map_err(wrong)? {
+            Some((corners, pieces)) => {
+                let tapes = FormulaTapes::of(&mut graph.clone(), pieces[0]).map_err(fail)?;
+                Some(Arc::new(FormulaPieces { corners, tapes }))
+            }
+            None => None,
+        };
+        let whole = Arc::new(FormulaTapes::of(&mut graph, whole).map_err(fail)?);
+        let formula = Self { text: text.into(), constant: whole.0[0].inputs() == 0, whole, pieces, sides: None };
         let start = formula.at(0, 0.0);
         if start.is_finite() { Ok(formula) } else { Err(fail(format!("its value at t = 0 is {start}"))) }
     }
@@ -58,14 +75,25 @@ impl Formula {
         self.constant
     }
 
-    /// A derivative, by its order, at `t`; not a number above the highest.
+    /// The times between two (s) at which it has a corner or jumps; none where they are more than can be told.
+    #[must_use]
+    pub fn corners(&self, from: f64, to: f64) -> Option<Vec<f64>> {
+        self.pieces.as_ref().map_or(Some(Vec::new()), |pieces| pieces.corners.between(from, to))
+    }
+
+    /// Whether it has a corner or jumps, at a time that anybody may reach.
+    #[must_use]
+    pub fn has_corners(&self) -> bool {
+        const FAR: f64 = 1e4;
+        self.corners(-FAR, FAR).is_none_or(|corners| !corners.is_empty())
+    }
+
+    /// A derivative, by its order, at `t`.
     fn at(&self, order: usize, t: f64) -> f64 {
-        let (mut scratch, mut value) = ([0.0; ROOM], [f64::NAN]);
-        if let Some(tape) = self.derivatives.get(order) {
-            // Inputs and scratch are as many as the tape was asked for.
-            let _ = tape.evaluate(&[t], &mut scratch, &mut value);
+        match (&self.pieces, &self.sides) {
+            (Some(pieces), Some(sides)) => pieces.tapes.at(order, t, sides),
+            _ => self.whole.at(order, t, &[]),
         }
-        value[0]
     }
 
     /// The value at `t`.
@@ -87,10 +115,60 @@ impl Formula {
     }
 }
 
+impl FormulaTapes {
+    /// The formula with as many of its derivatives as have room.
+    fn of(graph: &mut Graph, formula: Expression) -> Result<Self, String> {
+        let first = Tape::new(graph, &[formula]).map_err(|error| error.to_string())?;
+        if first.scratch() > ROOM {
+            return Err(format!("the formula needs more than {ROOM} numbers at a time"));
+        }
+        let (mut tapes, mut derivative) = (vec![first], formula);
+        for _ in 0..FORMULAS {
+            derivative = graph.derivative(derivative, 0);
+            match Tape::new(graph, &[derivative]) {
+                Ok(tape) if tape.scratch() <= ROOM => tapes.push(tape),
+                _ => break,
+            }
+        }
+        Ok(Self(tapes))
+    }
+
+    /// A derivative, by its order, at `t` and on these sides.
+    fn at(&self, order: usize, t: f64, sides: &[f64]) -> f64 {
+        let side = |k: usize| sides.get(k - 1).copied().unwrap_or(0.0);
+        let mut value = f64::NAN;
+        // There is as much scratch as the tapes were asked for.
+        match self.0.get(order) {
+            Some(tape) => {
+                let input = |k: usize| if k == 0 { t } else { side(k) };
+                let _ = tape.evaluate_with(input, &mut [0.0; ROOM], |_, x| value = x);
+            }
+            None => {
+                let input = |k: usize| if k == 0 { Series::variable(t) } else { Series::constant(side(k)) };
+                let told = |_, x: Series| value = x.derivative(order);
+                let _ = self.0[0].evaluate_with(input, &mut [Series::constant(0.0); ROOM], told);
+            }
+        }
+        value
+    }
+}
+
+impl Piecewise for Formula {
+    fn jumps(&self, from: f64, to: f64) -> Vec<f64> {
+        // More than can be told are refused where the scene is read.
+        self.corners(from, to).unwrap_or_default()
+    }
+
+    fn piece(&self, t: f64) -> Self {
+        let sides = self.pieces.as_ref().map(|pieces| pieces.corners.sides(t).into());
+        Self { sides, ..self.clone() }
+    }
+}
+
 /// Of the same text are the same derivatives.
 impl PartialEq for Formula {
     fn eq(&self, other: &Self) -> bool {
-        self.text == other.text
+        self.text == other.text && self.sides == other.sides
     }
 }
 

@@ -152,7 +152,8 @@ impl Piecewise for TimeFunction {
             Self::Table(table) => table.jumps(from, to),
             Self::Ramp(ramp) => ramp.jumps(from, to),
             Self::Pulses(pulses) => pulses.jumps(from, to),
-            Self::Constant(_) | Self::Sine { .. } | Self::Formula(_) => Vec::new(),
+            Self::Formula(formula) => formula.jumps(from, to),
+            Self::Constant(_) | Self::Sine { .. } => Vec::new(),
         }
     }
 
@@ -161,6 +162,7 @@ impl Piecewise for TimeFunction {
             Self::Table(table) => Self::Table(table.piece(t)),
             Self::Ramp(ramp) => Self::Ramp(ramp.piece(t)),
             Self::Pulses(pulses) => Self::Pulses(pulses.piece(t)),
+            Self::Formula(formula) => Self::Formula(formula.piece(t)),
             other => other.clone(),
         }
     }

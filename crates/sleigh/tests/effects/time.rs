@@ -3,9 +3,9 @@
 use approx::assert_relative_eq;
 use lagrangian::{Dual, Piecewise};
 use proptest::prelude::*;
-use sleigh::effects::{Thrust, Torque};
+use sleigh::effects::{MovingMass, Thrust, Torque};
 use sleigh::{Flywheel, Formula, Guide, Guided, Pulses, Ramp, Sleigh, SleighError, Table, TimeFunction};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 fn steps() -> TimeFunction {
     TimeFunction::Table(Table::new(vec![1.0, 2.5, 4.0], vec![0.5, -0.7, 0.2]).unwrap())
@@ -96,6 +96,55 @@ fn formulas() {
     let long: Vec<String> = (1..400).map(|k| format!("sin({k}*t)*cos({k}.5*t^{k})")).collect();
     let nested = long.iter().fold("t".to_owned(), |inner, term| format!("sin({inner} + {term})"));
     assert!(Formula::new(&nested).is_err());
+}
+
+/// Between their corners formulas are smooth, and go on as they are.
+#[test]
+fn formulas_in_pieces() {
+    let waves = TimeFunction::Formula(Formula::new("max(0, sin(t)) - 2*sign(t - 4)").unwrap());
+    let jumps = waves.jumps(0.0, 7.0);
+    assert_eq!((jumps.len(), jumps[1]), (3, 4.0));
+    assert!((jumps[0] - PI).abs() < 1e-15 && (jumps[2] - TAU).abs() < 2e-15);
+    for (from, value) in [(1.0, 3.0), (3.5, 2.0), (4.5, -2.0), (6.5, f64::sin(2.0) - 2.0)] {
+        let piece = waves.piece(from);
+        // Half the sum and half the difference of two.
+        assert_relative_eq!(piece.value(if from == 1.0 { 0.5 * PI } else { 2.0 }), value, max_relative = f64::EPSILON);
+    }
+    let piece = waves.piece(1.0);
+    assert_eq!([piece.value(0.0), piece.slope(0.0), piece.curvature(PI + 0.5)], [2.0, 1.0, f64::sin(0.5)]);
+    // As a whole it is what it says.
+    assert_eq!([1.0, 4.0, 5.0].map(|t| waves.value(t)), [f64::sin(1.0) + 2.0, 0.0, -2.0]);
+    for corner in ["abs(sin(t))", "sign(t - 3)", "min(t, 5)"] {
+        let refused = MovingMass::new(1.0, TimeFunction::Formula(Formula::new(corner).unwrap()), 0.0);
+        assert!(matches!(refused, Err(SleighError::Formula { .. })), "{corner}");
+    }
+    assert!(MovingMass::new(1.0, TimeFunction::Formula(Formula::new("max(0, 2 + sin(t))").unwrap()), 0.0).is_ok());
+}
+
+/// Formulas are checked in a time that grows with their length, and derivatives of any order are there for who asks.
+#[test]
+fn long_formulas_are_as_good_as_short_ones() {
+    let nested = format!("{}t{}", "sin(".repeat(100), ")".repeat(100));
+    let texts = [
+        "tanh(10*sin(3*t))*exp(-t/10)/(1+t^2)",
+        "tanh(sin(sqrt(1+t^2)))/(1+exp(-cos(t)))",
+        "tanh(tanh(tanh(tanh(t))))",
+        "1/(1+1/(1+1/(1+1/(1+t^2))))",
+        &nested,
+    ];
+    type Third = Dual<Dual<Dual<f64, 1>, 1>, 1>;
+    for text in texts {
+        let formula = TimeFunction::Formula(Formula::new(text).unwrap());
+        let third = |t: f64| {
+            let first = Dual::variable(t, 0);
+            let second = Dual { re: first, eps: [Dual::fixed(1.0)] };
+            formula.value(Third { re: second, eps: [Dual::fixed(Dual::fixed(1.0))] }).eps[0].eps[0].eps[0]
+        };
+        // Against a central difference of the second derivative, whose error is some h^2 and 1e-16/h.
+        let (h, t) = (1e-5, 0.7);
+        let difference = (formula.curvature(t + h) - formula.curvature(t - h)) / (2.0 * h);
+        assert_relative_eq!(third(t), difference, max_relative = 1e-4, epsilon = 1e-6);
+    }
 }
 
 /// What has a table jumps with it.
