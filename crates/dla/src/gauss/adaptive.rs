@@ -235,14 +235,13 @@ impl GaussAdaptive {
     }
 }
 
-/// A first step: a fifth of the shortest time in which a velocity changes by itself, and no more than a small part of the interval, since what
-/// is at rest now may be pushed later.
+/// A first step: a fifth of the shortest time in which a velocity changes by itself; where nothing changes a small part of the interval, since
+/// what is at rest now may be pushed later.
 fn first<const N: usize, const M: usize>(system: &dyn Mechanics<N, M>, t: f64, whole: f64, state: &State<N>) -> i32 {
     let slope = state.quasi_velocities(system, t).and_then(|xi| system.reduced_slope(t, state.q(), &xi));
     let size = |x: &[f64; N]| x.iter().fold(0.0f64, |m, x| larger(m, x.abs()));
     let rate = slope.map_or(0.0, |slope| size(&slope.acceleration) / larger(size(&slope.velocity), 1e-3));
     let turning = (0..N).filter(|&i| system.angles()[i]).fold(rate, |m, i| larger(m, state.v()[i].abs()));
-    let most = whole.abs() / 32.0;
-    let step = if turning > 0.0 { (0.2 / turning).min(most) } else { most };
+    let step = if turning > 0.0 { (0.2 / turning).min(whole.abs()) } else { whole.abs() / 32.0 };
     quarters_of(step).clamp(-4000, 4000)
 }
