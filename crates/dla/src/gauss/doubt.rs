@@ -135,9 +135,12 @@ impl Doubt {
         }
         for which in 0..2 {
             for k in 0..N {
-                let [last, before] = tail[which][k];
-                let even = (last / before).min(1.0);
-                error = larger(error, larger(signed[which][k].abs(), plain[which][k] * even * even * even));
+                error = larger(error, signed[which][k].abs());
+                if self.above.is_some() {
+                    let [last, before] = tail[which][k];
+                    let even = (last / before).min(1.0);
+                    error = larger(error, plain[which][k] * even * even * even);
+                }
             }
         }
         error
