@@ -23,6 +23,7 @@ impl Energy {
         }
         let slope = number("slope").unwrap_or(f64::NAN);
         match row["energy"]["verdict"].as_str() {
+            Some("round-off") => Self::Rounding,
             Some("bounded") => Self::Swings(number("amplitude").unwrap_or(most)),
             Some("linear drift") => Self::Drifts(slope),
             Some("random walk") => Self::Wanders(most),

@@ -186,6 +186,74 @@ fn what_comes_to_rest_goes_on_at_length() {
     rests("--duration 400", "--duration 150", 100.0);
 }
 
+/// Runs, the work that is done in them (J), how far it may be off, and the error of the energy. The works are those of steps a twentieth as
+/// long, and of other methods; the error of the energy is that of the motion.
+const WORKS: [(&str, f64, f64, f64); 8] = [
+    ("braking --method dop853 --step 5", -2.056_231_320_936_5, 1e-12, 1e-12),
+    ("braking --method gauss-adaptive --step 5", -2.056_231_320_936_5, 1e-12, 1e-12),
+    ("braking --method taylor --step 5", -2.056_231_320_936_5, 1e-11, 1e-11),
+    // Of order 8, at a step where polynomials of degree five through the nodes are off by 4.6e-8 J.
+    ("braking --method dla8 --step 0.25", -2.056_231_320_936_5, 2e-9, 2e-9),
+    ("braking --method lobatto5 --step 0.25", -2.056_231_320_936_5, 2e-9, 2e-9),
+    ("damped_spring.toml --method gauss16", -0.496_173_142_496_883, 1e-14, 1e-15),
+    ("moving_row.toml --method gauss-adaptive --step 0.2", 4.254_260_520_223, 1e-6, 1e-9),
+    // Friction stops it within a fiftieth of the step, of its energy of 0.5 J.
+    ("brake.toml --method dop853", -0.5, 1e-13, 1e-13),
+];
+
+/// The work is integrated as the motion is: at the stages of a method, or over the steps of its own.
+#[test]
+fn work_is_as_right_as_the_motion() {
+    let number = |run: &Value, key: &str| run["energy"][key].as_f64().unwrap();
+    for (line, work, off, error) in WORKS {
+        let run = if line.contains(".toml") { end(line) } else { Folder::new().json(&format!("run {line} --json")) };
+        assert!((number(&run, "work") - work).abs() < off, "{line}: {run}");
+        assert!(number(&run, "max_error") < error, "{line}: {run}");
+    }
+    // A constraint that moves does work too.
+    let run = end("moving_pivot.toml --method dop853 --step 0.5 --duration 5");
+    assert!(number(&run, "max_error") < 1e-9 && number(&run, "work").abs() > 1.0, "{run}");
+    // The control: a method of order 2 is off by its own error.
+    let run = Folder::new().json("run braking --method dla --step 0.25 --json");
+    assert!(number(&run, "max_error") > 1e-3, "{run}");
+}
+
+/// A mass pushed by half waves, one pushed once and braked, and one that swings through free play: corners, jumps and powers of 3/2.
+fn corners(tolerances: &[(f64, &str)]) {
+    for (tolerance, step) in tolerances {
+        for (file, of, right) in [
+            ("r47_half_waves.toml", "x'", 20.0 / 3.0),
+            ("r35_pulse_text.toml", "x'", 0.512_566_928_897_79),
+            ("r36_max_power.toml", "x", -0.724_739_706_153_2),
+        ] {
+            let run = end(&format!("{file} --method gauss-adaptive --step {step} --tolerance {tolerance:e}"));
+            let off = (at(&run, of) - right).abs();
+            assert!(off < 30.0 * tolerance * (1.0 + right.abs()), "{file}, {tolerance:e}: {off:e}");
+        }
+    }
+}
+
+#[test]
+fn corners_and_jumps_are_seen() {
+    corners(&[(1e-6, "1"), (1e-9, "0.1")]);
+}
+
+#[test]
+#[ignore = "slow"]
+fn corners_and_jumps_are_seen_at_length() {
+    corners(&[(1e-6, "0.1"), (1e-9, "1"), (1e-9, "5"), (1e-12, "1"), (1e-12, "20"), (1e-13, "1")]);
+}
+
+/// A constraint with speeds of 1e10: a step that would need more steps of its own than anybody waits for ends with an error.
+#[test]
+fn steps_that_would_not_end_are_given_up() {
+    for method in ["gauss-adaptive", "dop853"] {
+        let outcome = folder("fast_basis.toml").line(&format!("run fast_basis.toml --method {method}"));
+        outcome.assert_told(method, &["step 1"]);
+        assert_eq!(outcome.code, 1, "{method}: {outcome:?}");
+    }
+}
+
 /// A straight motion, a ridge, and a circle that crosses a plane: what more the commands say.
 fn analyses(line: &str, ridge: &str, circle: &str) {
     let found = folder("r09_unstable_line.toml").json(&format!("lyapunov r09_unstable_line.toml {line} --json"));

@@ -79,6 +79,11 @@ pub trait Observer<const N: usize, const M: usize> {
         ControlFlow::Continue(())
     }
 
+    /// Whether it wants the [work](StepReport::work) of steps, which methods measure only for who does.
+    fn measures_work(&self) -> bool {
+        false
+    }
+
     /// Sees why a step cannot be made in parts either, before the run ends with that failure.
     fn undivided(&mut self, _why: &Undivided<StepError>) {}
 
@@ -122,6 +127,9 @@ where
         let second = self.1.part(end, report);
         if first.is_break() { first } else { second }
     }
+    fn measures_work(&self) -> bool {
+        self.0.measures_work() || self.1.measures_work()
+    }
     fn undivided(&mut self, why: &Undivided<StepError>) {
         self.0.undivided(why);
         self.1.undivided(why);
@@ -147,6 +155,9 @@ impl<O: Observer<N, M>, const N: usize, const M: usize> Observer<N, M> for Optio
     fn part(&mut self, end: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         self.as_mut().map_or(ControlFlow::Continue(()), |observer| observer.part(end, report))
     }
+    fn measures_work(&self) -> bool {
+        self.as_ref().is_some_and(Observer::measures_work)
+    }
     fn undivided(&mut self, why: &Undivided<StepError>) {
         self.iter_mut().for_each(|observer| observer.undivided(why));
     }
@@ -170,6 +181,9 @@ impl<O: Observer<N, M> + ?Sized, const N: usize, const M: usize> Observer<N, M> 
     }
     fn part(&mut self, end: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         (**self).part(end, report)
+    }
+    fn measures_work(&self) -> bool {
+        (**self).measures_work()
     }
     fn undivided(&mut self, why: &Undivided<StepError>) {
         (**self).undivided(why);
@@ -243,6 +257,9 @@ where
     Obs: Observer<N, M>,
 {
     let mut made = steps.start;
+    if observer.measures_work() {
+        method.measure_work(system.power_sources());
+    }
     let first = View { system, k: made, t: schedule.time(made), state };
     if made == 0 {
         observer.start(&first);

@@ -1,6 +1,6 @@
 use crate::{Mechanics, OneStep, State, StepError, StepReport};
-use lagrangian::from_fn;
 use lagrangian::linear::larger;
+use lagrangian::{PowerSources, from_fn};
 
 /// A method for a system whose coordinates end somewhere, as angles of an attitude do that are singular at some of them: its steps
 /// are refused near there, where the method alone would go on with any error.
@@ -100,5 +100,9 @@ where
 
     fn recall(&mut self, memory: &[f64], state: &State<N>) {
         self.method.recall(memory, state);
+    }
+
+    fn measure_work(&mut self, sources: PowerSources) {
+        self.method.measure_work(sources);
     }
 }

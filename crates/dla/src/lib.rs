@@ -43,6 +43,7 @@ mod overshoot;
 mod past;
 mod pieces;
 mod positions;
+mod power;
 mod projection;
 mod rebased;
 mod recommend;
@@ -88,6 +89,7 @@ pub use one_step::{OneStep, OwnStep, Stage, StepError, StepReport};
 pub use pieces::{
     Piece, PiecewiseMechanics, fitted, onto_constraint, piece_by_piece, piece_by_piece_from, pieces, smooth_pieces,
 };
+pub use power::{MeanPower, power};
 pub use rebased::Rebased;
 pub use recommend::{RecommendError, Recommendation, recommend_by_trial, recommend_step};
 pub use resolved::Halved;

@@ -1,6 +1,6 @@
 use crate::{ClosedStepError, Dependent, Mechanics, NewtonError, NotANumber, State};
 use lagrangian::Shown;
-use lagrangian::{MotionError, ReducedError};
+use lagrangian::{MotionError, PowerSources, ReducedError};
 use std::ops::ControlFlow;
 use thiserror::Error;
 
@@ -40,6 +40,11 @@ pub trait OneStep<const N: usize, const M: usize> {
 
     /// Remembers again what [`memory`](Self::memory) gave when the run was at `state`.
     fn recall(&mut self, _memory: &[f64], _state: &State<N>) {}
+
+    /// Asks for the work of the steps to come, in [`StepReport::work`], of what may do some. A method of high order, or with steps of its
+    /// own, integrates the power as it does the motion; nobody else can with its accuracy. The others have none to report: their order is
+    /// not above that of [`Work`](crate::Work).
+    fn measure_work(&mut self, _sources: PowerSources) {}
 
     /// Shows the time (s) and the state where steps end that the method makes of its own within a step from `t` to `t + h`: all but
     /// the last, which ends with the step; `Break` asks for no more of them. Nothing for a method whose steps are those of the run.
@@ -91,6 +96,10 @@ impl<Method: OneStep<N, M> + ?Sized, const N: usize, const M: usize> OneStep<N, 
         (**self).recall(memory, state);
     }
 
+    fn measure_work(&mut self, sources: PowerSources) {
+        (**self).measure_work(sources);
+    }
+
     fn own_steps(
         &self,
         system: &dyn Mechanics<N, M>,
@@ -114,7 +123,8 @@ pub struct StepReport<const M: usize> {
     pub impulses: [[f64; M]; 2],
     /// Newton iterations of the step's equations; 0 for an explicit method.
     pub iterations: u32,
-    /// The work that the forces did over the step (J), for a method whose energy balance knows it.
+    /// The work that was done over the step (J), for a method whose energy balance knows it, or that was [asked](OneStep::measure_work) to
+    /// integrate it.
     pub work: Option<f64>,
 }
 

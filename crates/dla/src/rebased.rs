@@ -1,4 +1,5 @@
 use crate::{Mechanics, OneStep, OwnStep, State, StepError, StepReport};
+use lagrangian::PowerSources;
 use std::ops::ControlFlow;
 
 /// A method on systems whose basis of admissible velocities holds near a configuration only: the basis is changed at nodes, where it
@@ -21,6 +22,9 @@ impl<Method> Rebased<Method> {
         Self { method, basis: 0, local: None }
     }
 }
+
+/// A step in so many bases and more is given up: it turns faster than any tolerance asks for.
+const MOST_PARTS: u32 = 10_000;
 
 /// Whether the basis of this number is well conditioned at a node.
 fn holds<const N: usize, const M: usize>(system: &dyn Mechanics<N, M>, number: u64, t: f64, node: &State<N>) -> bool {
@@ -79,8 +83,14 @@ where
         let (before, basis) = (*state, self.basis);
         // Of a step in one part the length is that of the step, to the last bit.
         let (mut total, mut rest) = (None::<StepReport<M>>, (t, h));
+        let mut parts = 0;
         loop {
-            match self.part(system, rest, state) {
+            parts += 1;
+            let found = match parts {
+                ..=MOST_PARTS => self.part(system, rest, state),
+                tries => Err(StepError::Tolerance { tries, step: rest.1 / f64::from(tries) }),
+            };
+            match found {
                 Ok((report, end)) => {
                     let made = total.map_or(report, |total| total.then(&report));
                     let Some(end) = end else { return Ok(made) };
@@ -108,6 +118,10 @@ where
         let (basis, own) = memory.split_last().unwrap_or((&0.0, &[]));
         self.basis = *basis as u64;
         self.method.recall(own, state);
+    }
+
+    fn measure_work(&mut self, sources: PowerSources) {
+        self.method.measure_work(sources);
     }
 
     fn own_steps(

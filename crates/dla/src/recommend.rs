@@ -142,7 +142,7 @@ fn reference<const N: usize>(
     let mut trials: Trials<N> = Vec::new();
     let mut extrapolated: Option<Sampled<N>> = None;
     let (mut change, mut best) = (f64::INFINITY, (f64::INFINITY, 1));
-    let (mut failure, mut runaway) = (None, Runaway::default());
+    let (mut failure, mut runaway, mut slowly) = (None, Runaway::default(), false);
     let (mut steps, mut stalls, mut size, mut largest) = (4, 0, 0.0, 0.0);
     while steps <= MOST {
         match trial(steps) {
@@ -175,8 +175,13 @@ fn reference<const N: usize>(
                     }
                     extrapolated = better;
                     // Numbers of that size do not have the digits, or nothing is gained by all these steps.
+                    // At this rate, and one order better, all steps that there may be would not do: twice in a row.
+                    let left = (MOST / steps) as f64;
+                    let slow = steps >= FINE && change * left.powf(-2.0 * larger(ratio.log2(), 0.5)) > tolerance;
+                    let hopeless = slow && slowly;
+                    slowly = slow;
                     let coarse = f64::EPSILON * size > tolerance && change < 0.5 * size;
-                    if (coarse && steps >= FINE) || (steps >= UNSEEN && change > 0.5 * largest) {
+                    if hopeless || (coarse && steps >= FINE) || (steps >= UNSEEN && change > 0.5 * largest) {
                         break;
                     }
                 } else {

@@ -1,4 +1,5 @@
 use crate::{Halved, Mechanics, OneStep, State, StepError, StepReport, Substeps, Undivided};
+use lagrangian::PowerSources;
 use std::ops::ControlFlow;
 
 /// A method that makes a step of shorter ones where it finds none of the whole length.
@@ -7,8 +8,8 @@ use std::ops::ControlFlow;
 /// is said of the method in the long run holds only as far as no step is divided; [`divided`](Self::divided) tells how
 /// many were. The constraint holds all the same, and so does the order: the parts are steps of the method.
 ///
-/// What looks on sees a divided step as one; so where forces do work, a step should be short for them all the same
-/// ([`Work`](crate::Work)).
+/// What looks on sees a divided step as one; so where forces do work that the method does not measure, a step should be short for them all
+/// the same ([`Work`](crate::Work)).
 ///
 /// A step fails that has no solution in parts of `2^-halvings` either, or for a reason that no shorter step mends;
 /// [`undivided`](Self::undivided) then tells what was tried.
@@ -156,5 +157,9 @@ where
 
     fn recall(&mut self, memory: &[f64], state: &State<N>) {
         self.method.recall(memory, state);
+    }
+
+    fn measure_work(&mut self, sources: PowerSources) {
+        self.method.measure_work(sources);
     }
 }

@@ -156,6 +156,10 @@ impl<const N: usize, const M: usize> Observer<N, M> for Trajectory<N, M> {
         ControlFlow::Continue(())
     }
 
+    fn measures_work(&self) -> bool {
+        true
+    }
+
     fn part(&mut self, end: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         self.choice.work.part(end, report)
     }
@@ -207,6 +211,10 @@ impl<const N: usize, const M: usize> Observer<N, M> for Nodes<'_, N, M> {
             (self.sink)(&node);
         }
         ControlFlow::Continue(())
+    }
+
+    fn measures_work(&self) -> bool {
+        true
     }
 
     fn part(&mut self, end: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {

@@ -1,16 +1,16 @@
 use crate::hermite::Hermite;
-use crate::{Checkpoint, CheckpointError, Observer, State, StepReport, View};
+use crate::{Checkpoint, CheckpointError, MeanPower, Observer, State, StepReport, View, power};
 use lagrangian::quadrature::gauss_legendre;
 use lagrangian::{PowerSources, from_fn, two_sum};
 use std::ops::ControlFlow;
 
 /// The work done on a system since the start of a run (J), so that `E(t) - E(0) - work` is the error of the energy.
 ///
-/// Its power is `F . v - dL/dt - lambda . b`: that of the generalised forces, of explicit time in the Lagrangian, and of
-/// what moves an affine constraint. Where a method reports the work of its step, that counts. Elsewhere the power is
-/// integrated with four Gauss nodes along the polynomial of degree five that has the positions, velocities and
-/// accelerations of both ends of the step, which is of order 6; a system without any power costs no acceleration, and one that says so of
-/// itself ([`PowerSources`]) no evaluation.
+/// Where a method reports the work of its step, that counts: a method of high order, or with steps of its own, integrates the
+/// [power](crate::power()) at its own stages ([`OneStep::measure_work`](crate::OneStep::measure_work)). Elsewhere, of methods up to order 6, the
+/// power is integrated with four Gauss nodes along the polynomial of degree five that has the positions, velocities and
+/// accelerations of both ends of the step, which is of order 6; where an end has no accelerations, along that of degree three. A system
+/// without any power costs no acceleration, and one that says so of itself ([`PowerSources`]) no evaluation.
 /// An impulse, where an imposed velocity jumps, does the work by which it changes the energy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Work<const N: usize> {
@@ -75,45 +75,35 @@ impl<const N: usize> Work<N> {
         self.remember(node);
     }
 
-    /// The work over the step that ends at the node; not a number where the accelerations are not determined.
+    /// The work over the step that ends at the node.
     fn over_step<const M: usize>(&self, node: &View<'_, N, M>) -> f64 {
-        let PowerSources { time: of_time, forces, constraints } = self.sources;
-        let Some((t0, q0, v0)) = self.before.filter(|_| of_time || forces || constraints) else { return 0.0 };
+        let sources = self.sources;
+        let Some((t0, q0, v0)) = self.before.filter(|_| sources.any()) else { return 0.0 };
         let (system, q1, v1) = (node.system, node.state.unwrapped(), *node.state.v());
         let h = node.t - t0;
         let time = |c: f64| t0 + c * h;
         let moves = |t: f64, q: &[f64; N]| system.constraint(t, q).1.iter().any(|b| *b != 0.0);
-        let moved = constraints && (moves(t0, &q0) || moves(node.t, &q1));
         let mean = |c: f64| from_fn::<f64, N, _>(|i| q0[i] + c * (q1[i] - q0[i]));
-        let powered = moved
-            || forces && system.force(t0, &q0, &v0).is_some()
-            || of_time && self.nodes.iter().any(|c| system.lagrangian_power(time(*c), &mean(*c), &v1) != 0.0);
+        let powered = sources.constraints && (moves(t0, &q0) || moves(node.t, &q1))
+            || sources.forces && system.force(t0, &q0, &v0).is_some()
+            || sources.time && self.nodes.iter().any(|c| system.lagrangian_power(time(*c), &mean(*c), &v1) != 0.0);
         if !powered {
             return 0.0;
         }
-        let (Ok(first), Ok(last)) = (system.motion(t0, &q0, &v0), system.motion(node.t, &q1, &v1)) else {
-            return f64::NAN;
-        };
-        let hermite = Hermite { t0, h, q0, v0, a0: first.acceleration, q1, v1, a1: last.acceleration };
-        let power = |c: f64| {
-            let (t, (q, v)) = (time(c), hermite.at_part(c));
-            let mut power = 0.0;
-            if of_time {
-                power += system.lagrangian_power(t, &q, &v);
-            }
-            if forces {
-                power += system.force_power(t, &q, &v).unwrap_or(0.0);
-            }
-            if moved {
-                let Ok(motion) = system.motion(t, &q, &v) else { return f64::NAN };
-                // lambda . (A v) is -lambda . b on the constraint, and keeps its order off it.
-                let residual = system.residual(t, &q, &v);
-                let (_, b) = system.constraint(t, &q);
-                power += (0..M).map(|k| motion.multiplier[k] * (residual[k] - b[k])).sum::<f64>();
-            }
-            power
-        };
-        h * (0..4).map(|i| self.weights[i] * power(self.nodes[i])).sum::<f64>()
+        // Those of the cubic where an end has none.
+        let acceleration =
+            |t: f64, q: &[f64; N], v: &[f64; N], other: &[f64; N], side: f64| match system.motion(t, q, v) {
+                Ok(motion) => motion.acceleration,
+                Err(_) => from_fn(|i| side * (6.0 * (q1[i] - q0[i]) / h - 4.0 * v[i] - 2.0 * other[i]) / h),
+            };
+        let (a0, a1) = (acceleration(t0, &q0, &v0, &v1, 1.0), acceleration(node.t, &q1, &v1, &v0, -1.0));
+        let hermite = Hermite { t0, h, q0, v0, a0, q1, v1, a1 };
+        let mut mean = MeanPower::default();
+        for (&c, &weight) in self.nodes.iter().zip(&self.weights) {
+            let (q, v) = hermite.at_part(c);
+            mean.add(weight, power(system, sources, time(c), (&q, &v)));
+        }
+        h * mean.mean()
     }
 }
 
@@ -142,6 +132,10 @@ impl<const N: usize, const M: usize> Observer<N, M> for Work<N> {
             self.over(node, report);
         }
         ControlFlow::Continue(())
+    }
+
+    fn measures_work(&self) -> bool {
+        true
     }
 
     fn part(&mut self, end: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {

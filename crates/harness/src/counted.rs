@@ -4,7 +4,7 @@ use dla::{Collocation, CollocationOutcome, Diagnosis, Mechanics, NotANumber, Rou
 use lagrangian::linear::Singular;
 use lagrangian::{
     AdmissibleBasis, Bracket, Constraint, ConstraintSlopes, Dependence, Dual, EnergySlope, HyperDual, Lanes, Motion,
-    MotionError, MotionRounding, PowerSources, ReducedError, ReducedSlope, Rounded, RowSpace, Rows,
+    MotionError, MotionRounding, PowerSources, ReducedError, ReducedSlope, Rounded, RowSpace, Rows, Smoothness,
 };
 use std::cell::Cell;
 
@@ -67,6 +67,7 @@ impl<const N: usize, const M: usize> Mechanics<N, M> for Counted<'_, N, M> {
         1 mass_matrix(t: f64, q: &[f64; N], v: &[f64; N]) -> ([f64; N], [[f64; N]; N]);
         1 at_node(t: f64, q: &[f64; N], v: &[f64; N], back: f64, ahead: f64) -> HyperDual<f64, N, N>;
         some force(t: f64, q: &[f64; N], v: &[f64; N]) -> Option<[f64; N]>;
+        0 smoothness() -> Smoothness;
         0 power_sources() -> PowerSources;
         some force_power(t: f64, q: &[f64; N], v: &[f64; N]) -> Option<f64>;
         1 lagrangian_power(t: f64, q: &[f64; N], v: &[f64; N]) -> f64;

@@ -318,6 +318,10 @@ impl<const N: usize, const M: usize> Observer<N, M> for Meter<N> {
         ControlFlow::Continue(())
     }
 
+    fn measures_work(&self) -> bool {
+        true
+    }
+
     fn part(&mut self, end: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         self.slip.part(end);
         self.parts += 1;

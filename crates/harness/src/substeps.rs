@@ -52,6 +52,9 @@ pub(crate) fn substepped_part<const N: usize, const M: usize>(
         return drive_part(system, method, schedule, steps, state, observer);
     };
     let mut made = steps.start;
+    if observer.measures_work() {
+        method.measure_work(system.power_sources());
+    }
     let first = View { system, k: made, t: schedule.time(made), state };
     if made == 0 {
         observer.start(&first);
@@ -171,5 +174,9 @@ impl<const N: usize, const M: usize> Observer<N, M> for LastReport<M> {
     fn step(&mut self, _node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
         self.0 = *report;
         ControlFlow::Continue(())
+    }
+
+    fn measures_work(&self) -> bool {
+        true
     }
 }

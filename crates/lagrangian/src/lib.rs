@@ -53,6 +53,7 @@ mod second;
 mod seldom;
 mod shown;
 pub mod simd;
+mod smoothness;
 mod system;
 mod traced;
 mod twofold;
@@ -108,6 +109,7 @@ pub use scalar::{
 pub use second::{AT_ONCE, TwiceDifferentiable, second_derivatives, seed};
 pub use seldom::{configuration_slope, velocity_slope};
 pub use shown::Shown;
+pub use smoothness::Smoothness;
 pub use system::{Constraint, System, constraint_residual};
 pub use traced::Traced;
 pub use twofold::Twofold;

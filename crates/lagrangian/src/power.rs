@@ -15,6 +15,16 @@ impl PowerSources {
     /// Whatever there is.
     pub const ALL: Self = Self { time: true, forces: true, constraints: true };
 
+    /// Nothing.
+    pub const NONE: Self = Self { time: false, forces: false, constraints: false };
+
+    /// Whether there is any.
+    #[must_use]
+    #[inline(always)]
+    pub fn any(self) -> bool {
+        self.time || self.forces || self.constraints
+    }
+
     /// Those of a system, which its functions tell without a number.
     pub fn of<Sys: System<N, M>, const N: usize, const M: usize>(system: &Sys) -> Self {
         let (t, q) = (Traced::TIME, [Traced::STATE; N]);

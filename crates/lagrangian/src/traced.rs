@@ -3,7 +3,7 @@ use crate::derived::derived_operators;
 use scalar::ScalarFunction;
 use std::ops::{Add, Div, Mul, Neg};
 
-/// No number, but what one is made of: whether zero alone, and whether time has a part in it.
+/// No number, but what one is made of: whether zero alone, and whether time or a corner has a part in it.
 ///
 /// A model has no comparisons of its scalars, so the operations that it makes are the same for all numbers: evaluated once on these, it says
 /// of itself what holds everywhere. An infinite number times zero counts as zero.
@@ -15,17 +15,19 @@ pub struct Traced {
     pub zero: bool,
     /// Whether it is made of the time, and may change with it.
     pub of_time: bool,
+    /// Whether a function with a corner or a jump has a part in it.
+    pub corner: bool,
 }
 
 impl Traced {
     /// The time itself.
-    pub const TIME: Self = Self { zero: false, of_time: true };
+    pub const TIME: Self = Self { zero: false, of_time: true, corner: false };
     /// A coordinate or a velocity.
-    pub const STATE: Self = Self { zero: false, of_time: false };
+    pub const STATE: Self = Self { zero: false, of_time: false, corner: false };
 
     /// What is made of both, and not zero.
     fn with(self, other: Self) -> Self {
-        Self { zero: false, of_time: self.of_time || other.of_time }
+        Self { zero: false, of_time: self.of_time || other.of_time, corner: self.corner || other.corner }
     }
 
     /// A function of it that is not zero where it is.
@@ -92,7 +94,7 @@ derived_operators!([] Traced);
 impl Scalar for Traced {
     #[inline]
     fn constant(x: f64) -> Self {
-        Self { zero: x == 0.0, of_time: false }
+        Self { zero: x == 0.0, of_time: false, corner: false }
     }
     #[inline(never)]
     fn sin_cos(self) -> (Self, Self) {
@@ -114,12 +116,12 @@ impl Scalar for Traced {
         self.changed()
     }
     fn apply<F: ScalarFunction>(self, _f: F) -> Self {
-        self.changed()
+        Self { corner: self.corner || !F::SMOOTH, ..self.changed() }
     }
     #[inline(never)]
     fn where_positive(self, then: Self, otherwise: Self) -> Self {
         let either = then.with(otherwise).with(self);
-        Self { zero: then.zero && otherwise.zero, ..either }
+        Self { zero: then.zero && otherwise.zero, corner: true, ..either }
     }
     #[inline(never)]
     fn length<const K: usize>(components: &[Self; K]) -> Self {
@@ -159,6 +161,7 @@ mod tests {
     fn time_and_zeros_are_traced() {
         let made = terms(Traced::TIME, Traced::STATE);
         assert_eq!(made.map(|x| x.of_time), [false, false, true, false, false, true, true, false]);
+        assert_eq!(made.map(|x| x.corner), [false, false, true, false, false, false, false, true]);
         assert_eq!(made.map(|x| x.zero), [false, false, false, true, true, false, false, false]);
         // What is said to be zero is, and what is said not to change with time does not; of the others some do.
         for q in [-1.3, 0.4] {

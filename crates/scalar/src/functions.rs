@@ -27,6 +27,9 @@ use crate::Scalar;
 /// assert_eq!((ramp.re, ramp.eps), (2.0_f64.ln(), [0.5]));
 /// ```
 pub trait ScalarFunction: Copy {
+    /// Whether it has all derivatives wherever it has a value.
+    const SMOOTH: bool = true;
+
     /// The value at `x`.
     fn value(self, x: f64) -> f64;
     /// The derivative at `x`, where the function is `f`.
@@ -37,10 +40,12 @@ pub trait ScalarFunction: Copy {
 
 /// Functions by name: value, slope and curvature.
 macro_rules! functions {
-    ($($name:ident: $value:path; |$x:ident, $f:ident| $slope:expr; |$y:ident, $g:ident, $s:ident| $curvature:expr)*) => {$(
+    ($($name:ident: $value:path $(, $smooth:literal)?; |$x:ident, $f:ident| $slope:expr; |$y:ident, $g:ident, $s:ident| $curvature:expr)*) => {$(
         #[derive(Clone, Copy)]
         pub(crate) struct $name;
         impl ScalarFunction for $name {
+            $(const SMOOTH: bool = $smooth;)?
+
             #[inline(always)]
             fn value(self, x: f64) -> f64 {
                 $value(x)
@@ -65,8 +70,8 @@ functions! {
     Sinh: f64::sinh; |x, _f| x.cosh(); |_x, f, _slope| f
     Cosh: f64::cosh; |x, _f| x.sinh(); |_x, f, _slope| f
     Tanh: f64::tanh; |x, _f| inverse_square_of_cosh(x); |_x, f, slope| f * slope * -2.0
-    Abs: f64::abs; |x, _f| x.sign(); |_x, _f, _slope| S::zero()
-    Sign: sign; |_x, _f| S::zero(); |_x, _f, _slope| S::zero()
+    Abs: f64::abs, false; |x, _f| x.sign(); |_x, _f, _slope| S::zero()
+    Sign: sign, false; |_x, _f| S::zero(); |_x, _f, _slope| S::zero()
 }
 
 /// `1/cosh^2 = 4 e/(1 + e)^2` with `e = e^(-2 |x|)`, which neither overflows nor loses digits as `1 - tanh^2` does. It is even, so that
@@ -102,6 +107,8 @@ impl Power {
 }
 
 impl ScalarFunction for Power {
+    const SMOOTH: bool = false;
+
     #[inline(always)]
     fn value(self, x: f64) -> f64 {
         x.powf(self.0)

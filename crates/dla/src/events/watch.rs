@@ -74,6 +74,17 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
         close_crossings(looked, |event| self.events[event].leaves_some_out())
     }
 
+    /// Lets its copies of the method measure the work where the inner observer wants it: of the step that an event ends too.
+    fn measure<const M: usize>(&mut self, node: &View<'_, N, M>)
+    where
+        Method: OneStep<N, M>,
+        Inner: Observer<N, M>,
+    {
+        if self.inner.measures_work() {
+            self.method.measure_work(node.system.power_sources());
+        }
+    }
+
     /// Looks for events on the way to a node, and shows the inner observer the last one where an event ends the run: `Break`.
     fn look<const M: usize>(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()>
     where
@@ -155,6 +166,7 @@ where
     fn start(&mut self, node: &View<'_, N, M>) {
         self.before = Some((node.t, *node.state));
         self.memory.clear();
+        self.measure(node);
         self.inner.start(node);
     }
 
@@ -172,6 +184,7 @@ where
         }
         self.before = Some((node.t, *node.state));
         self.memory.clear();
+        self.measure(node);
         self.inner.resume(node);
     }
 
@@ -191,6 +204,10 @@ where
         self.look(end, report)?;
         self.in_parts = true;
         self.inner.part(end, report)
+    }
+
+    fn measures_work(&self) -> bool {
+        self.inner.measures_work()
     }
 
     fn undivided(&mut self, why: &Undivided<StepError>) {

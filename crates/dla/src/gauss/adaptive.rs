@@ -1,19 +1,22 @@
+use super::doubt::{Attempt, Doubt};
 use super::ending::Ending;
 use super::lanes::{Collocation, CollocationOutcome, StageSlopes};
 use super::memory::GaussMemory;
-use super::pace::{degree, longer, quarters_of, roughest};
-use super::rule::quarter_octaves;
+use super::pace::{degree, longer, quarters_of, roughest, shorter};
+use super::rule::{LONGER, quarter_octaves};
 use super::{Gauss, TakenStep};
 use crate::positions::affine_only;
 use crate::{Mechanics, OneStep, OwnStep, State, StepError, StepReport};
 use lagrangian::linear::larger;
-use lagrangian::mapped;
+use lagrangian::{PowerSources, from_fn, mapped};
 use std::ops::ControlFlow;
 
 /// Gauss collocation with steps of its own within a step of the schedule, as many as a tolerance asks for.
 ///
 /// The highest Legendre coefficient of the slopes of a step tells how smooth the motion is along it: where coefficients fall
-/// off evenly, its power `2 s / (s - 1)` is about the error of the step. It is the same forward and backward in time. Steps
+/// off evenly, its power `2 s / (s - 1)` is about the error of the step. It is the same forward and backward in time. Where functions of the
+/// system have corners or change with time, and over the first steps, each longer than the last, the defect of the equations at other points
+/// is a second estimate, which sees corners, jumps and pulses. Steps
 /// are powers of the fourth root of two (s), so that the polynomial of one is continued into the next by a few fixed matrices.
 /// Stages are iterated to a fraction of the tolerance, not to rounding: on the constraint the method is by construction, but
 /// it is symmetric to the tolerance only, and what [`Gauss`] keeps over long runs it does not.
@@ -30,6 +33,8 @@ pub struct GaussAdaptive {
     degree: usize,
     /// The next step, in quarter octaves of a second.
     quarters: Option<i32>,
+    /// What is to be thought of a step that looks smooth; not known before the first.
+    doubt: Option<Doubt>,
 }
 
 impl GaussAdaptive {
@@ -40,7 +45,7 @@ impl GaussAdaptive {
     #[must_use]
     pub fn new<const S: usize>(epsilon: f64) -> Self {
         let (aim, degree) = (roughest(S, epsilon), degree(S, epsilon));
-        Self { gauss: Gauss::new::<S>(), tolerance: epsilon, aim, degree, quarters: None }
+        Self { gauss: Gauss::new::<S>(), tolerance: epsilon, aim, degree, quarters: None, doubt: None }
     }
 }
 
@@ -56,16 +61,17 @@ const CUT_BACK: i32 = 3;
 /// A step that should have been so much shorter, or more, is taken again.
 const REFUSED: i32 = -3;
 impl GaussAdaptive {
-    /// One step of length `h`; none where its stages do not converge.
+    /// One step of length `h`; by how many quarter octaves another is to be shorter, where its stages do not converge, or it is too rough. One
+    /// that has `grown` is much longer than the last.
     #[inline(always)]
     fn attempt<const N: usize, const M: usize>(
         &self,
         system: &dyn Mechanics<N, M>,
-        (t, h, quarters): (f64, f64, i32),
+        ((t, h), quarters, grown): ((f64, f64), i32, bool),
         state: &State<N>,
         xi0: &[f64; N],
         slopes: &mut StageSlopes<N>,
-    ) -> Option<Tried<N>> {
+    ) -> Result<Tried<N>, i32> {
         let rule = self.gauss.rule;
         let (q0, epsilon) = (state.q(), self.tolerance);
         let counts = mapped(&[q0, xi0], |y| mapped(y, |y| h.abs() / (epsilon * (1.0 + y.abs()))));
@@ -78,18 +84,30 @@ impl GaussAdaptive {
         let ending = Ending { left: 0.5, rounding, noise: rounding, limit, hopeless, unseen };
         let stages = Collocation { rule, t, h, q0, xi0, before, ending, counts: Some(counts), slopes };
         let (taken, rate, roughness) = match system.collocate(stages) {
-            Some(CollocationOutcome::Found(found)) => (TakenStep::at_once(&found)?, found.rate, found.roughness),
-            Some(CollocationOutcome::Failed) => return None,
+            Some(CollocationOutcome::Found(found)) => {
+                (TakenStep::at_once(&found).ok_or(CUT_BACK)?, found.rate, found.roughness)
+            }
+            Some(CollocationOutcome::Failed) => return Err(CUT_BACK),
             Some(CollocationOutcome::Unknown) | None => {
-                let taken = self.gauss.in_turn(system, (t, h), (q0, xi0), slopes).ok()?;
+                let taken = self.gauss.in_turn(system, (t, h), (q0, xi0), slopes).map_err(|_| CUT_BACK)?;
                 (taken, 0.0, slopes.weighed(&rule.highest, &counts))
             }
         };
         if !roughness.is_finite() {
-            return None;
+            return Err(CUT_BACK);
         }
         let longer = longer(rule.stages, roughness * epsilon / self.aim, rate, taken.iterations);
-        Some(Tried { taken, longer })
+        if longer <= REFUSED {
+            return Err(CUT_BACK);
+        }
+        let (q1, xi1) = (from_fn(|k| q0[k] + taken.increment[k]), from_fn(|k| xi0[k] + taken.gain[k]));
+        let ends = [[q0, xi0], [&q1, &xi1]];
+        let attempt = Attempt { rule, step: (t, h), ends, slopes, counts: &counts };
+        let doubt = self.doubt.unwrap_or_else(|| Doubt::of(system.smoothness()));
+        match doubt.excess(system, &attempt, grown) {
+            Some(excess) => Err(shorter(excess)),
+            None => Ok(Tried { taken, longer }),
+        }
     }
 }
 
@@ -139,6 +157,10 @@ impl<const N: usize, const M: usize> OneStep<N, M> for GaussAdaptive {
         self.gauss.memory = GaussMemory::load(memory.get(1..).unwrap_or_default());
     }
 
+    fn measure_work(&mut self, sources: PowerSources) {
+        self.gauss.sources = sources;
+    }
+
     fn own_steps(
         &self,
         system: &dyn Mechanics<N, M>,
@@ -166,9 +188,10 @@ impl GaussAdaptive {
         state: &mut State<N>,
         see: &mut OwnStep<'_, N>,
     ) -> Result<(StepReport<M>, Option<f64>), StepError> {
-        let (mut made, mut iterations, mut refused) = (0.0, 0, false);
+        let (mut made, mut iterations, mut work, mut refused) = (0.0, 0, None, false);
         let mut quarters = self.quarters.unwrap_or_else(|| first(system, t0, whole, state));
-        let mut slopes = StageSlopes::ZERO;
+        self.doubt = self.doubt.or_else(|| Some(Doubt::of(system.smoothness())));
+        let (mut before, mut slopes) = (self.quarters, StageSlopes::ZERO);
         for tries in 1..=Self::MAX_TRIES {
             let full = quarter_octaves(quarters);
             let rest = whole - made;
@@ -178,23 +201,26 @@ impl GaussAdaptive {
                 return Err(StepError::Tolerance { tries, step: full });
             }
             let (t, xi0) = (t0 + made, state.quasi_velocities(system, t0 + made)?);
-            let tried = self.attempt(system, (t, h, quarters), state, &xi0, &mut slopes);
-            let Some(Tried { taken, longer }) = tried.filter(|tried| tried.longer > REFUSED) else {
-                // Stages that do not converge, or a step that is too rough.
-                quarters -= CUT_BACK;
-                refused = true;
-                if last {
-                    quarters = quarters.min(quarters_of(rest.abs()) - CUT_BACK);
-                }
-                continue;
-            };
+            let grown = before.is_none_or(|before| quarters >= before.saturating_add(LONGER));
+            let Tried { taken, longer } =
+                match self.attempt(system, ((t, h), quarters, grown), state, &xi0, &mut slopes) {
+                    Ok(tried) => tried,
+                    Err(back) => {
+                        quarters = if last { quarters.min(quarters_of(rest.abs())) } else { quarters } - back;
+                        refused = true;
+                        continue;
+                    }
+                };
+            before = Some(quarters);
+            let done = self.gauss.work(system, (t, h), state.q(), &slopes);
             taken.apply(system, t + h, &xi0, state)?;
+            work = done.map(|done| done + work.unwrap_or(0.0));
             iterations += taken.iterations;
             self.gauss.memory.keep(&slopes, taken.iterations, (h, if last { CUT } else { quarters }), state);
             if last {
                 // A step cut at the end of the interval says little of the next.
                 self.quarters = Some(quarters + longer.min(0));
-                return Ok((StepReport::of(iterations), None));
+                return Ok((StepReport { work, ..StepReport::of(iterations) }, None));
             }
             made += h;
             // After a step that was too long the next one is not longer.
@@ -202,19 +228,20 @@ impl GaussAdaptive {
             refused = false;
             if see(t0 + made, state).is_break() {
                 self.quarters = Some(quarters);
-                return Ok((StepReport::of(iterations), Some(t0 + made)));
+                return Ok((StepReport { work, ..StepReport::of(iterations) }, Some(t0 + made)));
             }
         }
         Err(StepError::Tolerance { tries: Self::MAX_TRIES, step: quarter_octaves(quarters) })
     }
 }
 
-/// A first step: a tenth of the shortest time in which a velocity changes by itself, the interval where nothing changes.
+/// A first step: a fifth of the shortest time in which a velocity changes by itself; where nothing changes a small part of the interval, since
+/// what is at rest now may be pushed later.
 fn first<const N: usize, const M: usize>(system: &dyn Mechanics<N, M>, t: f64, whole: f64, state: &State<N>) -> i32 {
     let slope = state.quasi_velocities(system, t).and_then(|xi| system.reduced_slope(t, state.q(), &xi));
     let size = |x: &[f64; N]| x.iter().fold(0.0f64, |m, x| larger(m, x.abs()));
     let rate = slope.map_or(0.0, |slope| size(&slope.acceleration) / larger(size(&slope.velocity), 1e-3));
     let turning = (0..N).filter(|&i| system.angles()[i]).fold(rate, |m, i| larger(m, state.v()[i].abs()));
-    let step = if turning > 0.0 { (0.5 / turning).min(whole.abs()) } else { whole.abs() };
+    let step = if turning > 0.0 { (0.2 / turning).min(whole.abs()) } else { whole.abs() / 32.0 };
     quarters_of(step).clamp(-4000, 4000)
 }

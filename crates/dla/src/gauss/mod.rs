@@ -1,4 +1,5 @@
 mod adaptive;
+mod doubt;
 mod ending;
 mod lanes;
 mod memory;
@@ -13,10 +14,10 @@ pub use lanes::{Collocation, CollocationOutcome};
 use crate::convergence::FixedPoint;
 use crate::convergence::tolerances::{LEFT, NOISE, OF_ROW};
 use crate::positions::{affine_only, onto_positions};
-use crate::{Mechanics, OneStep, StackUse, Stage, State, StepError, StepReport};
+use crate::{MeanPower, Mechanics, OneStep, StackUse, Stage, State, StepError, StepReport, power};
 use ending::Ending;
-use lagrangian::from_fn;
 use lagrangian::linear::larger;
+use lagrangian::{PowerSources, from_fn};
 use lanes::StageSlopes;
 use memory::GaussMemory;
 use rule::GaussRule;
@@ -42,6 +43,8 @@ pub struct Gauss {
     /// Whether all stages may be computed at once.
     together: bool,
     memory: GaussMemory,
+    /// What does work that is to be reported.
+    sources: PowerSources,
     /// Iterations after which the step fails.
     pub max_iterations: u32,
 }
@@ -57,7 +60,13 @@ impl Gauss {
     /// once for all of them.
     #[must_use]
     pub fn new<const S: usize>() -> Self {
-        Self { rule: GaussRule::gauss::<S>(), together: true, memory: GaussMemory::NONE, max_iterations: 100 }
+        Self {
+            rule: GaussRule::gauss::<S>(),
+            together: true,
+            memory: GaussMemory::NONE,
+            sources: PowerSources::NONE,
+            max_iterations: 100,
+        }
     }
 
     /// The number of stages.
@@ -120,6 +129,37 @@ impl Gauss {
         let by_rows = |slopes: &[[f64; N]; 8]| from_fn(|k| from_fn(|i| if i < count { slopes[i][k] } else { 0.0 }));
         *slopes = StageSlopes { velocity: by_rows(&stages.velocity), acceleration: by_rows(&stages.acceleration) };
         Ok(TakenStep { increment, gain, iterations })
+    }
+
+    /// The work over a step from `q0` by these slopes of its stages (J), where somebody asked and something may do work. It is one more
+    /// unknown `w' = P(t, q, v)` of the collocation, which has its order.
+    #[inline(always)]
+    fn work<const N: usize, const M: usize>(
+        &self,
+        system: &dyn Mechanics<N, M>,
+        step: (f64, f64),
+        q0: &[f64; N],
+        slopes: &StageSlopes<N>,
+    ) -> Option<f64> {
+        self.sources.any().then(|| self.integrated(system, step, q0, slopes))
+    }
+
+    #[inline(never)]
+    fn integrated<const N: usize, const M: usize>(
+        &self,
+        system: &dyn Mechanics<N, M>,
+        (t, h): (f64, f64),
+        q0: &[f64; N],
+        slopes: &StageSlopes<N>,
+    ) -> f64 {
+        let GaussRule { nodes, weights, columns, stages, .. } = self.rule;
+        let mut mean = MeanPower::default();
+        for i in 0..*stages {
+            let way = |k: usize| (0..*stages).map(|j| columns[j][i] * slopes.velocity[k][j]).sum::<f64>();
+            let (q, v) = (from_fn(|k| q0[k] + h * way(k)), from_fn(|k| slopes.velocity[k][i]));
+            mean.add(weights[i], power(system, self.sources, t + nodes[i] * h, (&q, &v)));
+        }
+        h * mean.mean()
     }
 
     /// The sum `h sum_j factors(j) slopes[j]` over the stages.
@@ -224,11 +264,12 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Gauss {
             Some(taken) => taken,
             None => self.in_turn(system, (t, h), (state.q(), &xi0), &mut slopes)?,
         };
+        let work = self.work(system, (t, h), state.q(), &slopes);
         taken.apply(system, t + h, &xi0, state)?;
         if self.together {
             self.memory.keep(&slopes, taken.iterations, (h, 0), state);
         }
-        Ok(StepReport::of(taken.iterations))
+        Ok(StepReport { work, ..StepReport::of(taken.iterations) })
     }
 
     fn memory(&self) -> Vec<f64> {
@@ -237,5 +278,9 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Gauss {
 
     fn recall(&mut self, memory: &[f64], _state: &State<N>) {
         self.memory = GaussMemory::load(memory);
+    }
+
+    fn measure_work(&mut self, sources: PowerSources) {
+        self.sources = sources;
     }
 }

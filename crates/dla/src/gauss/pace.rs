@@ -37,6 +37,11 @@ pub(super) fn longer(stages: usize, rough: f64, rate: f64, iterations: u32) -> i
     if smooth >= 0.0 { longer.max(if converging < 0.0 { -1 } else { 0 }) } else { longer }
 }
 
+/// By how many quarter octaves a step is to be shorter whose error is so many times too large: a jump goes with the first power of it.
+pub(super) fn shorter(excess: f64) -> i32 {
+    (4.0 * octaves(excess)).ceil().clamp(3.0, f64::from(SHORTER)) as i32
+}
+
 /// The quarter octaves of a length (s), rounded down.
 #[inline(always)]
 pub(super) fn quarters_of(length: f64) -> i32 {

@@ -1,3 +1,4 @@
+use super::doubt::Between;
 use lagrangian::from_fn;
 use lagrangian::quadrature::{gauss_collocation, gauss_legendre, lagrange, shifted_legendre};
 use lagrangian::simd::Square;
@@ -14,8 +15,11 @@ pub(crate) struct GaussRule {
     pub(super) square: Square,
     /// The weights of the coefficient of the highest Legendre polynomial in the slopes.
     pub(crate) highest: [f64; 8],
+    /// The same of the five highest, the highest first; zeros where there are none.
+    pub(super) tail: [[f64; 8]; 5],
     /// How many nodes there are.
     pub(crate) stages: usize,
+    between: OnceLock<Between>,
     /// The matrices that continue the slopes of one step to the nodes of the next, by the degree of the polynomial and the ratio of the
     /// lengths.
     continued: [OnceLock<[Square; (SHORTER + LONGER + 1) as usize]>; 8],
@@ -40,20 +44,28 @@ impl GaussRule {
         let coefficients = gauss_collocation(&nodes, &weights);
         let row = |f: &dyn Fn(usize) -> f64| from_fn(|i| if i < S { f(i) } else { 0.0 });
         let column = |f: &dyn Fn(usize, usize) -> f64| from_fn(|j| row(&|i| if j < S { f(i, j) } else { 0.0 }));
-        let highest = |j: usize| {
+        let coefficient = |m: usize, j: usize| {
             let (p, _) = shifted_legendre::<S>(nodes[j]);
-            (2.0 * S as f64 - 1.0) * weights[j] * p[S - 1]
+            (S - 1).checked_sub(m).map_or(0.0, |k| (2.0 * k as f64 + 1.0) * weights[j] * p[k])
         };
+        let tail: [[f64; 8]; 5] = from_fn(|m| row(&|j| coefficient(m, j)));
         let columns = column(&|i, j| coefficients[i][j]);
         Self {
             nodes: row(&|i| nodes[i]),
             weights: row(&|i| weights[i]),
             square: Square::of_columns(&columns),
             columns,
-            highest: row(&highest),
+            highest: tail[0],
+            tail,
+            between: OnceLock::new(),
             stages: S,
             continued: [const { OnceLock::new() }; 8],
         }
+    }
+
+    /// What tells the error of a step at other points than its stages.
+    pub(super) fn between(&self) -> &Between {
+        self.between.get_or_init(|| Between::of(&self.nodes[..self.stages]))
     }
 
     /// The matrix that continues the slopes of a step to the nodes of one that is `2^(quarters/4)` times as long, by the polynomial through

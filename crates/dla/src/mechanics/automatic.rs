@@ -5,7 +5,7 @@ use crate::gauss::{Collocation, CollocationOutcome, collocate};
 use lagrangian::linear::Singular;
 use lagrangian::{
     AdmissibleBasis, Bracket, Constraint, ConstraintSlopes, Dual, EnergySlope, HyperDual, Lanes, Motion, MotionError,
-    PowerSources, ReducedError, ReducedSlope, System, add_position_curvature, add_reaction_curvature,
+    PowerSources, ReducedError, ReducedSlope, Smoothness, System, add_position_curvature, add_reaction_curvature,
     constraint_residual, energy, energy_slope, force_power, from_fn, gradients, inverse_reduced_mass, lagrangian_power,
     linear_basis, mass_matrix, momentum, position_misses, quasi_velocities, reaction_rows, reduced_slope,
     residual_along, rows_along, second_at_node, second_in_both, second_in_place, vectorized, velocity_of,
@@ -56,6 +56,10 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> Mechanics<N, M> for Sys 
 
     fn force(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<[f64; N]> {
         System::force(self, t, q, v)
+    }
+
+    fn smoothness(&self) -> Smoothness {
+        Smoothness::of(self)
     }
 
     fn power_sources(&self) -> PowerSources {

@@ -12,7 +12,7 @@ pub use seeded::{FullMechanics, SeededMechanics};
 use crate::gauss::{Collocation, CollocationOutcome};
 use lagrangian::{
     AdmissibleBasis, Bracket, Constraint, ConstraintSlopes, Dual, EnergySlope, HyperDual, Lanes, Motion, MotionError,
-    PowerSources, ReducedError, ReducedSlope,
+    PowerSources, ReducedError, ReducedSlope, Smoothness,
 };
 use std::fmt;
 
@@ -81,6 +81,9 @@ pub trait Mechanics<const N: usize, const M: usize>: RoundedMechanics<N, M> + Di
 
     /// The generalised forces; none where there are none.
     fn force(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Option<[f64; N]>;
+
+    /// How smooth its functions are.
+    fn smoothness(&self) -> Smoothness;
 
     /// What may do work on it.
     fn power_sources(&self) -> PowerSources;

@@ -1,7 +1,8 @@
 use super::reduced_point::ReducedPoint;
 use differential_equations::methods::{DormandPrince, ExplicitRungeKutta, Ordinary};
 use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
-use dla::{Mechanics, OneStep, OwnStep, StackUse, State, StepError, StepReport};
+use dla::{MeanPower, Mechanics, OneStep, OwnStep, StackUse, State, StepError, StepReport, power};
+use lagrangian::PowerSources;
 use std::cell::Cell;
 use std::ops::ControlFlow;
 
@@ -15,7 +16,25 @@ pub struct Dop853<const N: usize, const M: usize> {
     solver: Dop853Solver<N, M>,
     /// The step to begin with (s); none before the first interval.
     proposed: Option<f64>,
+    /// What does work that is to be reported.
+    sources: PowerSources,
 }
+
+/// The weights of the stages in the end of a step (Hairer, Norsett and Wanner 1993, section II.5; their program `DOP853`).
+const WEIGHTS: [f64; 12] = [
+    5.429_373_411_656_876e-2,
+    0.0,
+    0.0,
+    0.0,
+    0.0,
+    4.450_312_892_752_409,
+    1.891_517_899_314_500_3,
+    -5.801_203_960_010_585,
+    3.111_643_669_578_199e-1,
+    -1.521_609_496_625_161e-1,
+    2.013_654_008_040_303_5e-1,
+    4.471_061_572_777_259e-2,
+];
 
 type Dop853Solver<const N: usize, const M: usize> =
     ExplicitRungeKutta<Ordinary, DormandPrince, f64, ReducedPoint<N, M>, 8, 12, 16>;
@@ -32,7 +51,7 @@ impl<const N: usize, const M: usize> Dop853<N, M> {
     pub fn new(epsilon: f64) -> Self {
         // The limit of the library would count over all intervals.
         let solver = Dop853Solver::dop853().rtol(epsilon).atol(epsilon).max_steps(usize::MAX);
-        Self { solver, proposed: None }
+        Self { solver, proposed: None, sources: PowerSources::NONE }
     }
 
     /// Crosses an interval of length `h`, shows where its steps end within it, and returns the steps tried.
@@ -49,6 +68,7 @@ impl<const N: usize, const M: usize> Dop853<N, M> {
         solver.h0 = self.proposed.filter(|step| step.abs() < h.abs()).map_or(h, |step| step.abs().copysign(h));
         slopes.left.set(1);
         solver.init(slopes, 0.0, h, &ReducedPoint { d: [0.0; N], xi }).map_err(|_| failed(0, h))?;
+        slopes.begin_step();
         for tries in 1..=Self::MAX_TRIES {
             let (begin, full) = (solver.t(), solver.h());
             if full.abs() <= f64::EPSILON * h.abs() {
@@ -65,6 +85,8 @@ impl<const N: usize, const M: usize> Dop853<N, M> {
             let accepted = solver.t().to_bits() != begin.to_bits();
             if accepted {
                 slopes.failure.set(None);
+                slopes.add_work(if last { rest } else { full });
+                slopes.begin_step();
                 if last {
                     // A step cut at the end of the interval says little of the next.
                     self.proposed = Some(full.abs().max(solver.h().abs()));
@@ -94,13 +116,42 @@ struct ReducedSlopes<'a, const N: usize, const M: usize> {
     left: Cell<u32>,
     /// Why the last slope could not be evaluated. The library makes such a step again, shorter.
     failure: Cell<Option<StepError>>,
+    /// What does work.
+    sources: PowerSources,
+    /// The power at the stages of the step under way, and at its end (W).
+    powers: Cell<[f64; 13]>,
+    /// The work over the steps accepted (J).
+    work: Cell<f64>,
 }
 
 impl<'a, const N: usize, const M: usize> ReducedSlopes<'a, N, M> {
     /// Of an interval from `state` at the time `t0` (s).
     #[inline]
-    fn new(system: &'a dyn Mechanics<N, M>, t0: f64, state: &State<N>) -> Self {
-        Self { system, t0, q0: *state.q(), left: Cell::new(0), failure: Cell::new(None) }
+    fn new(system: &'a dyn Mechanics<N, M>, sources: PowerSources, t0: f64, state: &State<N>) -> Self {
+        let (left, failure, powers, work) = (Cell::new(0), Cell::new(None), Cell::new([0.0; 13]), Cell::new(0.0));
+        Self { system, t0, q0: *state.q(), left, failure, sources, powers, work }
+    }
+
+    /// Where the next step begins, the last has ended.
+    fn begin_step(&self) {
+        if self.sources.any() {
+            let [.., end] = self.powers.get();
+            self.powers.set([end; 13]);
+        }
+    }
+
+    /// Adds the work over a step of length `h`, accepted: that of one more unknown of the method, which no step depends on.
+    fn add_work(&self, h: f64) {
+        if self.sources.any() {
+            let mut mean = MeanPower::default();
+            WEIGHTS.iter().zip(self.powers.get()).for_each(|(weight, power)| mean.add(*weight, power));
+            self.work.set(self.work.get() + h * mean.mean());
+        }
+    }
+
+    /// The report of the steps accepted.
+    fn report(&self) -> StepReport<M> {
+        StepReport { work: self.sources.any().then(|| self.work.get()), ..StepReport::of(0) }
     }
 }
 
@@ -111,7 +162,15 @@ impl<const N: usize, const M: usize> ODE<f64, ReducedPoint<N, M>> for ReducedSlo
         self.left.set(left);
         let q = lagrangian::from_fn(|i| self.q0[i] + y.d[i]);
         (slope.d, slope.xi) = match self.system.reduced_slope(self.t0 + t, &q, &y.xi) {
-            Ok(found) => (found.velocity, found.acceleration),
+            Ok(found) => {
+                if self.sources.any() {
+                    let mut powers = self.powers.get();
+                    powers[(12 - left.min(12)) as usize] =
+                        power(self.system, self.sources, self.t0 + t, (&q, &found.velocity));
+                    self.powers.set(powers);
+                }
+                (found.velocity, found.acceleration)
+            }
             Err(error) => {
                 self.failure.set(Some(error.into()));
                 // Not a number fails the library's test of the error.
@@ -136,10 +195,11 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Dop853<N, M> {
             return Err(USE.refusal::<N, M>());
         }
         let xi0 = state.quasi_velocities(system, t)?;
-        match self.cross(&ReducedSlopes::new(system, t, state), h, xi0, |_, _| ControlFlow::Continue(())) {
-            Ok(_) => moved(system, t + h, self.solver.y(), state),
+        let slopes = ReducedSlopes::new(system, self.sources, t, state);
+        match self.cross(&slopes, h, xi0, |_, _| ControlFlow::Continue(())) {
+            Ok(_) => moved(system, t + h, self.solver.y(), state).map(|()| slopes.report()),
             Err(error) => match at_rest(system, (t, h), state, &xi0) {
-                Some(point) => moved(system, t + h, &point, state),
+                Some(point) => moved(system, t + h, &point, state).map(|()| StepReport::of(0)),
                 None => Err(error),
             },
         }
@@ -153,6 +213,10 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Dop853<N, M> {
         self.proposed = memory.first().copied();
     }
 
+    fn measure_work(&mut self, sources: PowerSources) {
+        self.sources = sources;
+    }
+
     fn step_until(
         &mut self,
         system: &dyn Mechanics<N, M>,
@@ -164,11 +228,12 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Dop853<N, M> {
             return Err(USE.refusal::<N, M>());
         }
         let (xi0, mut end, mut failure) = (state.quasi_velocities(system, t)?, None, None);
-        let crossed = self.cross(&ReducedSlopes::new(system, t, state), h, xi0, |made, point| {
+        let slopes = ReducedSlopes::new(system, self.sources, t, state);
+        let crossed = self.cross(&slopes, h, xi0, |made, point| {
             let mut inner = *state;
             match moved::<N, M>(system, t + made, point, &mut inner) {
-                Ok(_) if see(t + made, &inner).is_continue() => return ControlFlow::Continue(()),
-                Ok(_) => end = Some(t + made),
+                Ok(()) if see(t + made, &inner).is_continue() => return ControlFlow::Continue(()),
+                Ok(()) => end = Some(t + made),
                 Err(error) => failure = Some(error),
             }
             ControlFlow::Break(())
@@ -177,9 +242,9 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Dop853<N, M> {
             return Err(error);
         }
         match crossed {
-            Ok(_) => Ok((moved(system, end.unwrap_or(t + h), self.solver.y(), state)?, end)),
+            Ok(_) => moved(system, end.unwrap_or(t + h), self.solver.y(), state).map(|()| (slopes.report(), end)),
             Err(error) => match at_rest(system, (t, h), state, &xi0) {
-                Some(point) => Ok((moved(system, t + h, &point, state)?, None)),
+                Some(point) => moved(system, t + h, &point, state).map(|()| (StepReport::of(0), None)),
                 None => Err(error),
             },
         }
@@ -193,7 +258,8 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Dop853<N, M> {
         memory: &mut Vec<f64>,
         see: &mut OwnStep<'_, N>,
     ) -> Result<(), StepError> {
-        let mut method = Self { solver: self.solver.clone(), proposed: memory.first().copied() };
+        let (solver, proposed) = (self.solver.clone(), memory.first().copied());
+        let mut method = Self { solver, proposed, sources: PowerSources::NONE };
         method.step_until(system, step, &mut { *state }, see)?;
         memory.clear();
         memory.extend(method.proposed);
@@ -226,8 +292,10 @@ fn moved<const N: usize, const M: usize>(
     t: f64,
     point: &ReducedPoint<N, M>,
     state: &mut State<N>,
-) -> Result<StepReport<M>, StepError> {
+) -> Result<(), StepError> {
     let ReducedPoint { d, xi } = *point;
     let v = system.velocity_of(t, &state.ahead(&d), &xi)?;
-    super::rk4::explicit(state, &d, v, Some(xi))
+    state.stays_finite(&d, &v)?;
+    state.advance(&d, v, Some(xi));
+    Ok(())
 }

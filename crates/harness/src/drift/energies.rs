@@ -56,6 +56,11 @@ impl Energies {
         self.start
     }
 
+    /// The largest of them all (J).
+    pub(super) fn largest(&self) -> f64 {
+        larger(self.start, self.reached)
+    }
+
     /// Writes them to a checkpoint.
     pub fn save(&self, checkpoint: &mut Checkpoint) {
         checkpoint.put("energies", &[self.start, self.reached]);

@@ -21,6 +21,8 @@ pub enum DriftVerdict {
     LinearDrift,
     /// It grows with the square root of the time.
     RandomWalk,
+    /// It never leaves the rounding of the energy itself, whatever it does there.
+    RoundOff,
     /// It grows beyond the energies of the motion, or faster and faster to the end: the run has blown up.
     Diverged,
     /// The series is too short, or does none of these: it settles, jumps, wanders as slowly as the run is long.
@@ -35,6 +37,7 @@ impl DriftVerdict {
             Self::Bounded => "bounded",
             Self::LinearDrift => "linear drift",
             Self::RandomWalk => "random walk",
+            Self::RoundOff => "round-off",
             Self::Diverged => "diverged",
             Self::Undecided => "undecided",
         }
@@ -69,6 +72,8 @@ const T95: f64 = 2.042;
 const T99: f64 = 2.750;
 /// The 5 % point of the statistic of stationarity about a line (Kwiatkowski et al. 1992, table 1).
 const STATIONARY: f64 = 0.146;
+/// The energy is a sum of a few terms, each with its rounding: so many units in the last place of the largest energy are no error of a method.
+const OF_ROUNDING: f64 = 8.0;
 /// Between the growth exponents of a bounded series and of a random walk.
 const BETWEEN: f64 = 0.25;
 /// A change over the run below this part of the amplitude counts as none: a sine of period `P` that is cut at the ends of the run and of
@@ -116,13 +121,22 @@ impl Drift {
 
     /// What the error of the energy of a run does, beside the energies of its motion.
     ///
-    /// It has diverged where it was larger than all of them; or where it ends above those of the start, nearly all of its sum of
+    /// It is round-off where it stays within a few units in the last place of the largest of them, of which no drift can be told. It has
+    /// diverged where it was larger than all of them; or where it ends above those of the start, nearly all of its sum of
     /// squares is in the last batches, most of which are larger than all before.
     #[must_use]
     pub fn of_energy(blocks: &Blocks, energies: &Energies) -> Self {
         let drift = Self::of(blocks);
         let runs_away = || batches::runs_away(blocks.full()).is_some_and(|largest| largest > energies.start());
-        if energies.exceeded() || runs_away() { Self { verdict: DriftVerdict::Diverged, ..drift } } else { drift }
+        if energies.exceeded() || runs_away() {
+            return Self { verdict: DriftVerdict::Diverged, ..drift };
+        }
+        let largest = blocks.full().iter().map(|block| block.min.abs().max(block.max.abs())).fold(0.0, f64::max);
+        let unseen = matches!(drift.verdict, DriftVerdict::LinearDrift | DriftVerdict::RandomWalk);
+        if unseen && largest <= OF_ROUNDING * f64::EPSILON * energies.largest() {
+            return Self { verdict: DriftVerdict::RoundOff, ..drift };
+        }
+        drift
     }
 
     /// The largest error to be expected at a time (s) after the start: the fast part and the secular one.

@@ -106,6 +106,10 @@ impl<const N: usize, const M: usize> Observer<N, M> for Recorder<'_, N> {
         let _ = self.work.step(node, report);
         self.see(node)
     }
+
+    fn measures_work(&self) -> bool {
+        true
+    }
 }
 
 impl<const N: usize> fmt::Debug for Recorder<'_, N> {

@@ -7,7 +7,7 @@ use lagrangian::two_sum;
 use std::ops::ControlFlow;
 
 /// An interval to be crossed.
-pub(crate) struct SeriesCrossing<See> {
+pub(crate) struct SeriesCrossing<'a, See> {
     pub(crate) axes: OwnAxes,
     /// `(omega, u, Y, X)` at its beginning.
     pub(crate) start: [f64; 4],
@@ -15,7 +15,10 @@ pub(crate) struct SeriesCrossing<See> {
     pub(crate) whole: f64,
     /// The error of a step, in units of `1 + |(omega, u)|`.
     pub(crate) tolerance: f64,
-    /// Looks at where a step ends within it, so long after its beginning (s); `Break` ends the crossing there.
+    /// Parts of every step at which it is looked at besides.
+    pub(crate) within: &'a [f64],
+    /// Looks at these parts of each step, and at where it ends within the interval, so long after its beginning (s); a `Break` at an end ends
+    /// the crossing there.
     pub(crate) see: See,
 }
 
@@ -31,7 +34,7 @@ pub(crate) struct SeriesEnd {
 /// Steps within an interval before it is given up.
 pub(crate) const MAX_STEPS: u32 = 10_000_000;
 
-impl<See: FnMut(f64, SeriesEnd) -> ControlFlow<()>> FourKernel for SeriesCrossing<See> {
+impl<See: FnMut(f64, SeriesEnd) -> ControlFlow<()>> FourKernel for SeriesCrossing<'_, See> {
     type Output = Result<SeriesEnd, StepError>;
 
     #[inline(always)]
@@ -40,7 +43,7 @@ impl<See: FnMut(f64, SeriesEnd) -> ControlFlow<()>> FourKernel for SeriesCrossin
     }
 }
 
-impl<See: FnMut(f64, SeriesEnd) -> ControlFlow<()>> SeriesCrossing<See> {
+impl<See: FnMut(f64, SeriesEnd) -> ControlFlow<()>> SeriesCrossing<'_, See> {
     #[inline(always)]
     fn crossed<F: Four, const DAMPED: bool>(mut self, zero: F) -> Result<SeriesEnd, StepError> {
         let equations = SeriesEquations::new(zero, &self.axes);
@@ -53,7 +56,12 @@ impl<See: FnMut(f64, SeriesEnd) -> ControlFlow<()>> SeriesCrossing<See> {
             let [omega, u, ..] = series.z[0].row();
             let terms = [LOOKED_AT, LOOKED_AT - 1, ORDER].map(|k| series.z[k].largest());
             full = pace.longest(size(omega, u), terms);
+            let begun = interval.made();
             let Some((h, ends)) = interval.go_on(full) else { return Err(StepError::Tolerance { tries, step: full }) };
+            for part in self.within {
+                let (inside, by) = series.after(part * h);
+                let _ = (self.see)(begun + part * h, SeriesEnd { end: inside.row(), turn: turn.0 + by });
+            }
             let (next, by) = series.after(h);
             z = next;
             turn = two_sum(turn.0, turn.1 + by);
@@ -95,7 +103,7 @@ mod tests {
             let bits = |crossed: SeriesEnd| (crossed.end.map(f64::to_bits), crossed.turn.to_bits());
             let mut seen = [Vec::new(), Vec::new()];
             let [one, other] = &mut seen;
-            let crossing = |seen| SeriesCrossing { axes, start, whole, tolerance: 10f64.powi(exponent), see: keep(seen) };
+            let crossing = |seen| SeriesCrossing { axes, start, whole, tolerance: 10f64.powi(exponent), within: &[0.3], see: keep(seen) };
             let (one, other) = (in_fours(crossing(one)).unwrap(), in_plain_fours(crossing(other)).unwrap());
             prop_assert_eq!(bits(one), bits(other));
             let [one, other] = seen.map(|seen| seen.iter().map(|(t, at)| (t.to_bits(), bits(*at))).collect::<Vec<_>>());

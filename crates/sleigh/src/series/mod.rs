@@ -12,7 +12,9 @@ pub use ensemble::TaylorEnsemble;
 pub use own_axes::{InOwnAxes, Origin, OwnAxes, OwnPush, PushInOwnAxes};
 
 use crossing::{MAX_STEPS, SeriesCrossing, SeriesEnd};
-use dla::{Mechanics, OneStep, OwnStep, State, StepError, StepReport};
+use dla::{MeanPower, Mechanics, OneStep, OwnStep, State, StepError, StepReport, power};
+use lagrangian::PowerSources;
+use lagrangian::quadrature::gauss_legendre;
 use lagrangian::simd::in_fours;
 use place::{increment, place};
 use std::ops::ControlFlow;
@@ -32,6 +34,8 @@ use std::ops::ControlFlow;
 pub struct Taylor {
     axes: OwnAxes,
     tolerance: f64,
+    /// What does work that is to be reported.
+    sources: PowerSources,
 }
 
 impl Taylor {
@@ -51,9 +55,12 @@ impl Taylor {
     /// The same of these equations.
     #[must_use]
     pub fn in_axes(axes: OwnAxes, epsilon: f64) -> Self {
-        Self { axes, tolerance: epsilon }
+        Self { axes, tolerance: epsilon, sources: PowerSources::NONE }
     }
 }
+
+/// So many nodes of a step have the order of the series, and more.
+const WITHIN: usize = 10;
 
 /// Where a step begins.
 struct SeriesDeparture<'a> {
@@ -100,10 +107,34 @@ impl OneStep<3, 1> for Taylor {
     ) -> Result<StepReport<1>, StepError> {
         let from = SeriesDeparture::new(self.axes, system, t, state)?;
         let (axes, start, tolerance) = (from.axes, from.start, self.tolerance);
-        let see = |_, _| ControlFlow::Continue(());
-        let crossed = in_fours(SeriesCrossing { axes, start, whole: h, tolerance, see })?;
+        if !self.sources.any() {
+            let see = |_, _| ControlFlow::Continue(());
+            let crossed = in_fours(SeriesCrossing { axes, start, whole: h, tolerance, within: &[], see })?;
+            *state = from.moved(system, t + h, &crossed)?;
+            return Ok(StepReport::of(0));
+        }
+        // The power on the series of each step, which are the same with it and without.
+        let (nodes, weights) = gauss_legendre::<WITHIN>();
+        let (mut work, mut mean, mut begun, mut seen) = (0.0, MeanPower::default(), 0.0, 0);
+        let see = |made: f64, crossed: SeriesEnd| {
+            if let Some(&weight) = weights.get(seen) {
+                let at = from.moved(system, t + made, &crossed);
+                mean.add(weight, at.map_or(f64::NAN, |at| power(system, self.sources, t + made, (at.q(), at.v()))));
+                seen += 1;
+            } else {
+                work += (made - begun) * mean.mean();
+                (mean, begun, seen) = (MeanPower::default(), made, 0);
+            }
+            ControlFlow::Continue(())
+        };
+        let crossed = in_fours(SeriesCrossing { axes, start, whole: h, tolerance, within: &nodes, see })?;
+        work += (h - begun) * mean.mean();
         *state = from.moved(system, t + h, &crossed)?;
-        Ok(StepReport::of(0))
+        Ok(StepReport { work: Some(work), ..StepReport::of(0) })
+    }
+
+    fn measure_work(&mut self, sources: PowerSources) {
+        self.sources = sources;
     }
 
     fn own_steps(
@@ -123,7 +154,7 @@ impl OneStep<3, 1> for Taylor {
                 ControlFlow::Break(())
             }
         };
-        in_fours(SeriesCrossing { axes, start, whole: h, tolerance, see })?;
+        in_fours(SeriesCrossing { axes, start, whole: h, tolerance, within: &[], see })?;
         failure.map_or(Ok(()), Err)
     }
 }

@@ -186,6 +186,9 @@ impl FormulaDerivative<'_> {
 }
 
 impl ScalarFunction for FormulaDerivative<'_> {
+    /// It may be of any kind.
+    const SMOOTH: bool = false;
+
     fn value(self, t: f64) -> f64 {
         self.formula.at(self.order, t)
     }

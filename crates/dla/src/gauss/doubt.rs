@@ -1,0 +1,200 @@
+use super::lanes::StageSlopes;
+use super::rule::GaussRule;
+use crate::Mechanics;
+use lagrangian::linear::larger;
+use lagrangian::quadrature::{gauss_legendre, lagrange};
+use lagrangian::{Smoothness, from_fn};
+
+/// How far the evenness of a step's Legendre coefficients is to be trusted, which alone cannot tell a corner, a jump or a pulse from a smooth
+/// motion: by the kind of functions that the system has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Doubt {
+    /// A step is looked at again where its coefficients tell of a larger error than this, in tolerances; none of a system whose functions are
+    /// smooth, and do not change with time.
+    above: Option<f64>,
+}
+
+/// The error of a step, in tolerances, that is taken; a run has many corners.
+const MOST: f64 = 0.5;
+/// Coefficients below so many tolerances are those of the iteration's own error.
+const SMALL: f64 = 2.0;
+/// The part of a step beyond its first or last node.
+const OUTSIDE: f64 = 0.02;
+/// So many points between the nodes.
+const POINTS: usize = 9;
+
+/// The Gauss rule with nine nodes in a step of fewer, which it finds wherever these missed something: integrals and values of the Lagrange
+/// polynomials of the stages there, and the values at both ends.
+#[derive(Debug, PartialEq)]
+pub(super) struct Between {
+    nodes: [f64; POINTS],
+    weights: [f64; POINTS],
+    integrals: [[f64; 8]; POINTS],
+    values: [[f64; 8]; POINTS],
+    ends: [[f64; 8]; 2],
+}
+
+impl Between {
+    /// Those of a rule with these nodes.
+    pub(super) fn of(nodes: &[f64]) -> Self {
+        let (points, weights) = gauss_legendre::<POINTS>();
+        let (inner, shares) = gauss_legendre::<8>();
+        let value = |j: usize, x: f64| if j < nodes.len() { lagrange(nodes, j, x) } else { 0.0 };
+        let integral = |j: usize, x: f64| (0..8).map(|m| x * shares[m] * value(j, x * inner[m])).sum::<f64>();
+        Self {
+            nodes: points,
+            weights,
+            integrals: points.map(|x| from_fn(|j| integral(j, x))),
+            values: points.map(|x| from_fn(|j| value(j, x))),
+            ends: [0.0, 1.0].map(|x| from_fn(|j| value(j, x))),
+        }
+    }
+}
+
+/// A step that has been made, not yet accepted.
+pub(super) struct Attempt<'a, const N: usize> {
+    pub(super) rule: &'static GaussRule,
+    pub(super) step: (f64, f64),
+    /// Coordinates and quasi-velocities at its beginning and at its end.
+    pub(super) ends: [[&'a [f64; N]; 2]; 2],
+    pub(super) slopes: &'a StageSlopes<N>,
+    /// What a slope counts, in tolerances.
+    pub(super) counts: &'a [[f64; N]; 2],
+}
+
+/// Velocities and accelerations.
+type Pair<const N: usize> = [[f64; N]; 2];
+
+impl Doubt {
+    /// That of a system.
+    pub(super) fn of(Smoothness { corners, driven }: Smoothness) -> Self {
+        Self { above: if corners { Some(MOST) } else { driven.then_some(60.0 * MOST) } }
+    }
+
+    /// By how many times too large the error of a step is, where it is; `grown` is one that is much longer than the last, over which nothing
+    /// is known yet.
+    ///
+    /// Two estimates, which differ in kind. The defect of the equations, summed by a quadrature at other points than the stages, is the error of
+    /// the step where the motion is smooth, and of its order where it is not, but for an accident. The defect without its signs is weighed
+    /// by how slowly the coefficients fall off. And what happens beyond the last node, or before the first, shows at the ends.
+    #[inline]
+    pub(super) fn excess<const N: usize, const M: usize>(
+        self,
+        system: &dyn Mechanics<N, M>,
+        attempt: &Attempt<'_, N>,
+        grown: bool,
+    ) -> Option<f64> {
+        if self.above.is_none() && !grown {
+            return None;
+        }
+        let error = self.error(system, attempt, grown);
+        (error > MOST).then(|| error / MOST)
+    }
+
+    #[inline(never)]
+    fn error<const N: usize, const M: usize>(
+        self,
+        system: &dyn Mechanics<N, M>,
+        of: &Attempt<'_, N>,
+        grown: bool,
+    ) -> f64 {
+        let (t, h) = of.step;
+        let tail = of.tail();
+        let (mut error, mut doubtful) = (0.0, grown);
+        for &[last, before] in tail.iter().flatten() {
+            let even = (last / before).min(1.0);
+            doubtful |= last > SMALL && self.above.is_some_and(|above| last * even * even * even > above);
+        }
+        let between = of.rule.between();
+        if self.above.is_some() {
+            for (at, (end, values)) in [t, t + h].into_iter().zip(of.ends.iter().zip(&between.ends)) {
+                let [q, xi] = *end;
+                let Some(defect) = of.defect(system, at, (q, xi), values) else { continue };
+                for (defect, [last, _]) in defect.iter().flatten().zip(tail.iter().flatten()) {
+                    if *defect > 2.0 * last + SMALL {
+                        error = larger(error, OUTSIDE * defect);
+                    }
+                }
+            }
+        }
+        if !doubtful {
+            return error;
+        }
+        let (mut signed, mut plain) = ([[0.0; N]; 2], [[0.0; N]; 2]);
+        for i in 0..POINTS {
+            let [q, xi] = of.along(&between.integrals[i]);
+            let at = t + between.nodes[i] * h;
+            let Some(defect) = of.signed_defect(system, at, (&q, &xi), &between.values[i]) else { continue };
+            for which in 0..2 {
+                for k in 0..N {
+                    let share = between.weights[i] * defect[which][k];
+                    signed[which][k] += share;
+                    plain[which][k] += share.abs();
+                }
+            }
+        }
+        for which in 0..2 {
+            for k in 0..N {
+                error = larger(error, signed[which][k].abs());
+                if self.above.is_some() {
+                    let [last, before] = tail[which][k];
+                    let even = (last / before).min(1.0);
+                    error = larger(error, plain[which][k] * even * even * even);
+                }
+            }
+        }
+        error
+    }
+}
+
+impl<const N: usize> Attempt<'_, N> {
+    /// Sums over the stages by these factors, velocities and accelerations.
+    #[inline(always)]
+    fn weighed(&self, factors: &[f64; 8]) -> Pair<N> {
+        [&self.slopes.velocity, &self.slopes.acceleration]
+            .map(|rows| from_fn(|k| (0..8).map(|j| factors[j] * rows[k][j]).sum()))
+    }
+
+    /// The larger of the two highest Legendre coefficients of each slope, in tolerances, and the largest of the three below.
+    fn tail(&self) -> [[[f64; 2]; N]; 2] {
+        let sums: [Pair<N>; 5] = from_fn(|m| self.weighed(&self.rule.tail[m]));
+        from_fn(|which| {
+            from_fn(|k| {
+                let size = |m: usize| (sums[m][which][k] * self.counts[which][k]).abs();
+                [larger(size(0), size(1)), larger(larger(size(2), size(3)), larger(size(4), f64::MIN_POSITIVE))]
+            })
+        })
+    }
+
+    /// The place and the quasi-velocities on the polynomial of the step.
+    fn along(&self, integrals: &[f64; 8]) -> Pair<N> {
+        let ([start, _], h) = (self.ends, self.step.1);
+        let moved = self.weighed(integrals);
+        from_fn(|which| from_fn(|k| start[which][k] + h * moved[which][k]))
+    }
+
+    /// What the slopes of the equations at a point are more than those of the polynomial, in tolerances; none where there are none.
+    fn signed_defect<const M: usize>(
+        &self,
+        system: &dyn Mechanics<N, M>,
+        t: f64,
+        (q, xi): (&[f64; N], &[f64; N]),
+        values: &[f64; 8],
+    ) -> Option<Pair<N>> {
+        let slope = system.reduced_slope(t, q, xi).ok()?;
+        let (slopes, there) = ([slope.velocity, slope.acceleration], self.weighed(values));
+        let moving = |which: usize, k: usize| which == 0 || k < N - M;
+        let defect = |which: usize, k: usize| (slopes[which][k] - there[which][k]) * self.counts[which][k];
+        Some(from_fn(|which| from_fn(|k| if moving(which, k) { defect(which, k) } else { 0.0 })))
+    }
+
+    fn defect<const M: usize>(
+        &self,
+        system: &dyn Mechanics<N, M>,
+        t: f64,
+        at: (&[f64; N], &[f64; N]),
+        values: &[f64; 8],
+    ) -> Option<Pair<N>> {
+        Some(self.signed_defect(system, t, at, values)?.map(|defect| defect.map(f64::abs)))
+    }
+}

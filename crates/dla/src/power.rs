@@ -1,0 +1,80 @@
+use crate::Mechanics;
+use lagrangian::PowerSources;
+
+/// The power of all that may do work on a system (W): `F . v - dL/dt - lambda . b`, that of the generalised forces, of explicit time in the
+/// Lagrangian, and of what moves an affine constraint. It is not a number where the equations of motion do not determine the multipliers.
+pub fn power<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    sources: PowerSources,
+    t: f64,
+    (q, v): (&[f64; N], &[f64; N]),
+) -> f64 {
+    let mut power = 0.0;
+    if sources.time {
+        power += system.lagrangian_power(t, q, v);
+    }
+    if sources.forces {
+        power += system.force_power(t, q, v).unwrap_or(0.0);
+    }
+    if sources.constraints {
+        let (_, b) = system.constraint(t, q);
+        if b.iter().any(|b| *b != 0.0) {
+            let Ok(motion) = system.motion(t, q, v) else { return f64::NAN };
+            // lambda . (A v) is -lambda . b on the constraint, and keeps its order off it.
+            let residual = system.residual(t, q, v);
+            power += (0..M).map(|k| motion.multiplier[k] * (residual[k] - b[k])).sum::<f64>();
+        }
+    }
+    power
+}
+
+/// The mean of a power over a step, by the weights of a quadrature rule, whose sum is one.
+///
+/// A node where the power is not a number, because forces or multipliers are not determined at that one place, takes the mean of the
+/// others: so the work of all later steps stays known.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct MeanPower {
+    weighted: f64,
+    sum: f64,
+    known: u32,
+    unknown: bool,
+}
+
+impl MeanPower {
+    /// Adds the power (W) at a node of the rule.
+    #[inline]
+    pub fn add(&mut self, weight: f64, power: f64) {
+        if power.is_finite() {
+            self.weighted += weight * power;
+            self.sum += power;
+            self.known += 1;
+        } else {
+            self.unknown = true;
+        }
+    }
+
+    /// The mean (W).
+    #[must_use]
+    pub fn mean(&self) -> f64 {
+        if self.unknown { self.sum / f64::from(self.known.max(1)) } else { self.weighted }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_place_without_a_power_counts_as_the_others() {
+        let mean = |powers: [f64; 3]| {
+            let mut mean = MeanPower::default();
+            [0.25, 0.5, 0.25].into_iter().zip(powers).for_each(|(weight, power)| mean.add(weight, power));
+            mean.mean()
+        };
+        for (powers, known) in
+            [([1.0, 2.0, 4.0], 2.25), ([1.0, f64::NAN, 4.0], 2.5), ([f64::INFINITY; 3], 0.0), ([0.0; 3], 0.0)]
+        {
+            assert!((mean(powers) - known).abs() < 1e-15, "{powers:?}: {}", mean(powers));
+        }
+    }
+}
