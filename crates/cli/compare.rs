@@ -1,5 +1,5 @@
 use crate::args::CompareArguments;
-use crate::comparison::{Comparison, REFERRED, better_than};
+use crate::comparison::{Comparison, REFERRED, WITHOUT_REFERENCE, better_than};
 use crate::error::CliError;
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
@@ -133,13 +133,16 @@ impl Compare<'_> {
         Ok(records)
     }
 
-    /// How far the runs have come, where Ctrl-C ended them.
-    fn interrupted<const N: usize>(&self, records: &[Record<N>]) -> Option<String> {
+    /// How far the runs have come, where Ctrl-C ended them or the reference of their ends.
+    fn interrupted<const N: usize>(&self, records: &[Record<N>], referred: bool) -> Option<String> {
         let whole = records.iter().filter(|record| !record.interrupted).count();
         let part = records.iter().find(|record| record.interrupted);
         let part = part.map(|record| format!(", {} up to t = {} s", record.method.name, table::number(record.t)));
-        (whole < self.methods.len())
-            .then(|| format!("{whole} of {} methods finished{}", self.methods.len(), part.unwrap_or_default()))
+        let all = self.methods.len();
+        match whole < all {
+            true => Some(format!("{whole} of {all} methods finished{}", part.unwrap_or_default())),
+            false => (!referred).then(|| WITHOUT_REFERENCE.to_owned()),
+        }
     }
 }
 
@@ -160,6 +163,7 @@ impl Visitor for Compare<'_> {
         let mut progress = progress_of(name, "reference", 4 * request.schedule.steps, self.interrupt);
         let reference = ComparisonReference::of(&system, exact.as_ref(), &request.schedule, start, &mut progress);
         progress.bar.finish_and_clear();
+        let referred = !matches!(reference, ComparisonReference::Interrupted);
         let drifts: Vec<(&str, Drift)> =
             records.iter().filter(|r| r.is_whole()).map(|r| (r.method.name, r.energy.drift)).collect();
         let (mut rows, mut series) = (Vec::new(), Vec::new());
@@ -180,7 +184,7 @@ impl Visitor for Compare<'_> {
         // The longest run: one that failed ends before the others.
         let times = series.iter().map(|series| &series.time).max_by_key(|time| time.len()).cloned().unwrap_or_default();
         let exact_path = exact.map(|exact| times.iter().map(|t| exact.at(*t)).map(|s| [s.x, s.y]).collect());
-        let interrupted = self.interrupted(&records);
+        let interrupted = self.interrupted(&records, referred);
         let objects: Vec<_> = rows.iter().map(|row| &row.json).collect();
         let report = SceneReport {
             name: name.to_owned(),
@@ -219,8 +223,13 @@ pub(crate) fn place_at<const N: usize>(exact: &Exact, t: f64) -> [f64; N] {
 /// Where the motion truly ends: in closed form, or by the method of the highest order with a quarter of the step.
 enum ComparisonReference<'a, const N: usize> {
     Exact(&'a Exact),
-    Computed { t: f64, end: [f64; N] },
+    Computed {
+        t: f64,
+        end: [f64; N],
+    },
     None,
+    /// A signal ended the work on it.
+    Interrupted,
 }
 
 impl<'a, const N: usize> ComparisonReference<'a, N> {
@@ -234,12 +243,16 @@ impl<'a, const N: usize> ComparisonReference<'a, N> {
         if let Some(exact) = exact {
             return Self::Exact(exact);
         }
-        if schedule.steps > REFERRED || progress.interrupt.asked() {
+        if schedule.steps > REFERRED {
             return Self::None;
+        }
+        if progress.interrupt.asked() {
+            return Self::Interrupted;
         }
         let Ok(method) = Method::named("gauss16", None) else { return Self::None };
         let fine = Schedule { step: 0.25 * schedule.step, steps: 4 * schedule.steps, ..*schedule };
         match harness::integrate_on(system, &method, &fine, &mut state, &mut (), progress) {
+            Ok(made) if made < fine.steps => Self::Interrupted,
             Ok(made) => Self::Computed { t: fine.time(made), end: state.unwrapped() },
             Err(_) => Self::None,
         }
@@ -250,7 +263,7 @@ impl<'a, const N: usize> ComparisonReference<'a, N> {
         match self {
             Self::Exact(exact) => Some(place_at(exact, time)),
             Self::Computed { t, end } if (t - time).abs() <= 1e-9 * t.abs() => Some(*end),
-            Self::Computed { .. } | Self::None => None,
+            Self::Computed { .. } | Self::None | Self::Interrupted => None,
         }
     }
 }

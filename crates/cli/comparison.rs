@@ -31,3 +31,7 @@ impl Comparison {
 pub(crate) fn better_than<'a>(drift: &Drift, others: &[(&'a str, Drift)]) -> Vec<(&'a str, f64)> {
     others.iter().filter_map(|(name, other)| Some((*name, drift.better_from(other)?))).collect()
 }
+
+/// What is told where a signal came after all methods.
+pub(crate) const WITHOUT_REFERENCE: &str =
+    "all methods finished, the reference of their ends did not: there are no end errors";

@@ -1,10 +1,10 @@
 use crate::args::EquilibriaArguments;
 use crate::error::CliError;
 use crate::files::{check_file, write_whole};
-use crate::steady::{self, Stability, SteadyMotion};
+use crate::steady::{self, Searched, Stability, SteadyMotion};
 use crate::{inspect, notes, terminal};
 use dla::{Schedule, State, Trajectory};
-use harness::analysis::{DiscreteMap, Equilibrium, EquilibriumError, differentiable, relative_equilibria};
+use harness::analysis::{DiscreteMap, Equilibrium, EquilibriumError, differentiable, relative_equilibria_within};
 use harness::report::{Chart, Layer, chart_svg};
 use harness::{Method, integrate_pieces};
 use scene::{AnyScene, Built, SceneSystem, Visitor};
@@ -17,6 +17,7 @@ const PORTRAIT: ([f64; 3], f64) = ([0.4, 0.7, 1.0], 0.03);
 /// What was found, and the orbits of a picture of it.
 struct FoundMotions {
     rows: Vec<MotionRow>,
+    searched: Searched,
     orbits: Vec<Vec<[f64; 2]>>,
 }
 
@@ -48,14 +49,14 @@ pub(crate) fn equilibria(arguments: &EquilibriaArguments) -> Result<(), CliError
         let picture = chart_svg(&portrait(&scene, &found)).map_err(CliError::Report)?;
         write_whole(path, arguments.scene.force, |file| std::io::Write::write_all(file, picture.as_bytes()))?;
     }
-    let (step, rows) = (scene.run().actual_step(), found.rows);
+    let (step, rows, searched) = (scene.run().actual_step(), found.rows, found.searched);
     if arguments.scene.json {
         let motions = rows.into_iter().map(|row| row.stability.object(row.motion.fields));
-        terminal::print_json(&steady::object(scene.name(), &method, step, motions))
+        terminal::print_json(&steady::object(scene.name(), &method, step, (motions, &searched)))
     } else {
         let heading = steady::heading((scene.title(), scene.name()), &method, step);
         let motions = rows.into_iter().map(|row| row.stability.lines(row.motion.lines));
-        terminal::print(&std::iter::once(heading).chain(motions).collect::<String>())
+        terminal::print(&std::iter::once(heading).chain(motions).chain([searched.told()]).collect::<String>())
     }
 }
 
@@ -76,31 +77,27 @@ impl Visitor for Find<'_> {
         let Some(steps) = differentiable::<N, M>(method) else {
             return Err(CliError::NotDifferentiated { method: method.info().name });
         };
-        let (n, m) = system.own();
-        if n == m {
-            return Err(EquilibriumError::NothingFree.into());
-        }
-        let found = relative_equilibria(&*system, &q, &v)?;
+        let own = system.own();
+        let all = relative_equilibria_within(&*system, own, &q, &v)?;
         let h = scene.run().actual_step();
         let mut step = |step: f64, start: &State<N>| {
             let (mut end, schedule) = (*start, Schedule { t0: 0.0, step, steps: 1 });
             integrate_pieces(&system, method, &schedule, &mut end, &mut ()).ok().map(|_| end)
         };
-        let mut map = DiscreteMap::new(&*system, &*steps, &mut step);
-        // Coordinates that fill up the shape, and that no constraint holds, go on at any rate: eigenvalues of theirs are no news.
-        let filling = (N - M) - (n - m);
+        let mut map = DiscreteMap::new((&*system, own), &*steps, &mut step);
         let mut row = |e: &Equilibrium<N>| MotionRow {
             motion: steady::motion(&system, e),
             rates: system.sleigh().map(|sleigh| sleigh.sleigh_state(&e.q, &e.v)).map(|at| [at.speed, at.turn_rate]),
             stability: Stability {
-                family: e.family.saturating_sub(filling),
+                family: e.family,
                 stable: e.stable,
-                map: map.spectrum(h, e).map(|values| without(values, [1.0, 0.0], filling)),
+                map: map.spectrum(h, e),
                 limit: e.stable.then(|| map.limit(h, e)),
-                flow: without(e.flow.clone(), [0.0, 0.0], filling),
+                flow: e.flow.clone(),
             },
         };
-        let rows = different(&found, if filling == 0 { N } else { n }).into_iter().map(&mut row).collect();
+        let rows = all.found.iter().map(&mut row).collect();
+        let searched = Searched { places: all.places, reach: all.reach, motions: all.motions };
         let orbits = match (scene, system.sleigh()) {
             (AnyScene::Sleigh(scene), Some(blade)) if portrait => {
                 let start = blade.sleigh_state(&q, &v);
@@ -108,37 +105,8 @@ impl Visitor for Find<'_> {
             }
             _ => Vec::new(),
         };
-        Ok(FoundMotions { rows, orbits })
+        Ok(FoundMotions { rows, searched, orbits })
     }
-}
-
-/// Those that differ in more than what fills up the shape, which has `n` coordinates of its own.
-fn different<const N: usize>(found: &[Equilibrium<N>], n: usize) -> Vec<&Equilibrium<N>> {
-    if n == N {
-        return found.iter().collect();
-    }
-    let own = |e: &Equilibrium<N>| e.v[..n].iter().chain(&e.q[..n]).copied().collect::<Vec<_>>();
-    let same =
-        |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-8 * (1.0 + a.abs().max(b.abs())));
-    let mut kept: Vec<&Equilibrium<N>> = Vec::new();
-    for e in found {
-        if !kept.iter().any(|other| same(&own(other), &own(e))) {
-            kept.push(e);
-        }
-    }
-    kept
-}
-
-/// The eigenvalues without so many that are nearest to a known one.
-fn without(mut values: Vec<[f64; 2]>, known: [f64; 2], count: usize) -> Vec<[f64; 2]> {
-    for _ in 0..count.min(values.len()) {
-        let far = |[re, im]: &[f64; 2]| f64::hypot(re - known[0], im - known[1]);
-        let nearest = values.iter().enumerate().min_by(|(_, a), (_, b)| far(a).total_cmp(&far(b)));
-        if let Some((k, _)) = nearest {
-            values.remove(k);
-        }
-    }
-    values
 }
 
 /// Orbits from both sides of slow turns, at some speeds forward and back, of the energy of that speed and turn rate.

@@ -108,7 +108,9 @@ impl CliError {
             Self::Tolerance(error) if matches!(**error, RecommendError::Request { .. }) => 2,
             Self::Points { .. } | Self::Report(ReportError::Exists { .. }) => 2,
             // That a search ends without any is no fault of the request.
-            Self::Equilibria(EquilibriumError::NoneFound { .. } | EquilibriumError::Singular(_)) => 1,
+            Self::Equilibria(
+                EquilibriumError::NoneFound { .. } | EquilibriumError::Singular(_) | EquilibriumError::NotFinite,
+            ) => 1,
             Self::Equilibria(_) | Self::NotDifferentiated { .. } | Self::WithoutTracer { .. } => 2,
             Self::Interrupted { .. } => INTERRUPTED,
             Self::Write { .. } | Self::Folder { .. } | Self::Output(_) => 1,

@@ -37,11 +37,6 @@ impl Interrupt {
         Self::Signal(asked)
     }
 
-    /// The same for work on many starts.
-    pub(crate) fn of_starts() -> Self {
-        Self::listen_saying("stopping after the starts that have begun; Ctrl-C again ends at once")
-    }
-
     /// Whether the work is to end.
     pub(crate) fn asked(&self) -> bool {
         match self {

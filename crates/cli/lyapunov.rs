@@ -77,13 +77,13 @@ impl Visitor for Exponents<'_> {
         progress.bar.finish_and_clear();
         let found = found.map_err(refused)?;
         let made = interrupt.asked().then(|| format!("the exponents cover {} s", table::number(found.time)));
-        let told = self.tell(&found, system.energy(0.0, &q, &v), 2 * its.0 - its.1, made.as_deref());
+        let told = self.tell(&found, system.energy(0.0, &q, &v), made.as_deref());
         unless_interrupted(made, None, told)
     }
 }
 
 impl Exponents<'_> {
-    fn tell(&self, found: &Lyapunov, energy: f64, most: usize, interrupted: Option<&str>) -> Result<(), CliError> {
+    fn tell(&self, found: &Lyapunov, energy: f64, interrupted: Option<&str>) -> Result<(), CliError> {
         let shared = &self.arguments.scene;
         let written = self.file.map_or(Ok(()), |file| {
             let rows: Vec<Vec<f64>> = found.running.iter().map(|at| [&[at.time][..], &at.exponents].concat()).collect();
@@ -92,7 +92,7 @@ impl Exponents<'_> {
             let provenance = provenance(self.arguments, self.scene, interrupted);
             file.write(shared.force, &provenance, (&columns, &rows), || self.chart(found))
         });
-        let whole = found.exponents.len() == most;
+        let whole = found.exponents.len() == found.most;
         if shared.json {
             terminal::print_json(&self.json(found, energy, whole))?;
         } else {

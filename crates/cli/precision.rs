@@ -58,7 +58,7 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
     measured.curves.extend(others);
     mark_pareto(&mut measured.curves, CLEAR * measured.reference.error);
 
-    let made = interrupt.asked().then(|| format!("{} of {} methods finished", climbed, methods.len()));
+    let made = unfinished(&measured, climbed, methods.len()).filter(|_| interrupt.asked());
     let provenance = provenance(arguments, &scene, &measured).interrupted(made.as_deref());
     if let Some(path) = &arguments.csv {
         let text = precision_csv::text(&measured.curves);
@@ -81,6 +81,16 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
     let named = arguments.methods.is_some();
     let failed = CliError::of_failures(measured.curves.iter().filter_map(|curve| failure(curve, named)));
     unless_interrupted(made, None, failed)
+}
+
+/// What was left out where a signal ended the work; nothing where all was done.
+fn unfinished(measured: &Measurement, climbed: usize, methods: usize) -> Option<String> {
+    let (made, all) = (measured.clock.rounds, rounds());
+    if climbed < methods {
+        return Some(format!("{climbed} of {methods} methods finished"));
+    }
+    (made < all)
+        .then(|| format!("all {methods} methods have their errors, and their times are of {made} of {all} rounds"))
 }
 
 /// What made the points.

@@ -6,9 +6,10 @@ use crate::coordinate::Coordinate;
 use crate::error::CliError;
 use crate::exponents::{asked, imposed};
 use crate::interrupt::Interrupt;
+use crate::progress::Until;
 use crate::provenance::Provenance;
 use crate::starts::spread;
-use crate::trigger::in_doubt;
+use crate::trigger::{doubts, in_doubt};
 use crate::{inspect, json, notes, progress, table, terminal};
 use dla::{Close, Event, RunError};
 use harness::Method;
@@ -61,6 +62,8 @@ struct PlaneCrossing {
     failure: Option<RunError>,
     /// Which may not be all.
     close: Option<Close>,
+    /// Whether a signal ended it early.
+    interrupted: bool,
 }
 
 /// A crossing.
@@ -101,7 +104,7 @@ impl Visitor for Sections<'_> {
                     --plane t=PERIOD takes all points at the same phase",
             );
         }
-        let interrupt = Interrupt::of_starts();
+        let interrupt = Interrupt::listen();
         let first = asked(&system, (q, v), self.arguments.energy)?;
         let sleigh = if let AnyScene::Sleigh(scene) = self.scene { Some(&scene.sleigh) } else { None };
         let starts: Vec<StartPlace<N>> = spread(&system, &first, sleigh, self.arguments.starts);
@@ -116,7 +119,14 @@ impl Visitor for Sections<'_> {
             let event = Event::new(plane.text.clone(), function);
             let event =
                 if plane.period().is_some() { event } else { event.in_direction(self.arguments.direction.into()) };
-            let found = harness::analysis::section((&system).into(), &self.method, &schedule, starts[i], &event);
+            let found = harness::analysis::section(
+                (&system).into(),
+                &self.method,
+                &schedule,
+                starts[i],
+                &event,
+                &mut Until(&interrupt),
+            );
             let point = |crossing: &dla::Crossing<N>| {
                 let (t, q, v) = (crossing.t, crossing.state.unwrapped(), crossing.state.v());
                 surface.holds(&system, t, &q, v).then(|| SectionPoint {
@@ -131,11 +141,16 @@ impl Visitor for Sections<'_> {
                 points: found.crossings.iter().filter_map(point).collect(),
                 failure: found.failure,
                 close: found.close,
+                interrupted: found.interrupted,
             })
         });
         bar.finish_and_clear();
         let done: Vec<PlaneCrossing> = crossed.into_iter().flatten().collect();
-        let made = (done.len() < starts.len()).then(|| format!("{} of {} starts finished", done.len(), starts.len()));
+        let whole = done.iter().filter(|one| !one.interrupted).count();
+        let made = (whole < starts.len()).then(|| {
+            let begun = if whole < done.len() { ", those that had begun as far as they came" } else { "" };
+            format!("{whole} of {} starts finished{begun}", starts.len())
+        });
         let state = system.quantities().iter().take(in_state).map(Quantity::column).collect();
         let told = Told { state, axes: axes.map(|axis| axis.quantity) };
         let written = self.tell(&told, &done, made.as_deref());
@@ -205,9 +220,7 @@ impl Sections<'_> {
                 terminal::print(&format!("written    {}\n", path.display()))?;
             }
         }
-        let all =
-            |all: Close, one: Close| Close { count: all.count + one.count, spacing: all.spacing.max(one.spacing) };
-        if let Some(close) = crossed.iter().filter_map(|start| start.close).reduce(all) {
+        if let Some(close) = crossed.iter().filter_map(|start| start.close).reduce(Close::and) {
             terminal::say("warning", &format!("{}; a shorter --step samples more times", in_doubt(&close)));
         }
         let failed = crossed
@@ -219,7 +232,10 @@ impl Sections<'_> {
     fn json(&self, told: &Told, crossed: &[PlaneCrossing]) -> Value {
         let one = |start: &PlaneCrossing| {
             let points: Vec<Value> = start.points.iter().map(|p| json!([p.t, p.shown[0], p.shown[1]])).collect();
-            let mut object = json!({"points": points, "in_doubt": start.close.map_or(0, |close| close.count)});
+            let mut object = json!({"points": points, "in_doubt": start.close.map_or(0, doubts)});
+            if start.interrupted {
+                object["interrupted"] = json!(true);
+            }
             if let Some(failure) = &start.failure {
                 object["failure"] = json!(failure.to_string());
                 object["failed_at"] = json::failure(failure);

@@ -5,6 +5,7 @@ use crate::coordinate::Range;
 use crate::error::CliError;
 use crate::exponents::{provenance, refused, schedule};
 use crate::interrupt::Interrupt;
+use crate::progress::Until;
 use crate::provenance::label;
 use crate::starts::with_energy;
 use crate::{progress, table, terminal};
@@ -73,7 +74,7 @@ impl Visitor for Map<'_> {
             return Err(CliError::Request(format!("--map: {count} starts; accepted are at most {MOST}")));
         }
         let (schedule, settle) = schedule(self.arguments, self.scene);
-        let interrupt = Interrupt::of_starts();
+        let interrupt = Interrupt::listen();
         let bar = progress::bar("starts", count as u64);
         let cells = in_parallel(count, |i| {
             if interrupt.asked() {
@@ -88,7 +89,10 @@ impl Visitor for Map<'_> {
             let cell = match start {
                 Some((q, v)) => {
                     let request = LyapunovRequest { schedule, settle, exponents: Some(1), q, v };
-                    match lyapunov_within((&*system, &system), system.own(), &self.method, &request, &mut ()) {
+                    let mut until = Until(&interrupt);
+                    match lyapunov_within((&*system, &system), system.own(), &self.method, &request, &mut until) {
+                        // One that a signal may have ended is left out.
+                        Ok(_) if interrupt.asked() => return Cell::Left,
                         Ok(found) => match found.failure {
                             Some(failure) => Cell::Failed(failure.to_string()),
                             None => Cell::Exponent(found.exponents[0], found.ci[0], found.verdict),

@@ -2,7 +2,7 @@
 
 use crate::table;
 use harness::Method;
-use harness::analysis::{Equilibrium, StepLimit};
+use harness::analysis::{Equilibrium, MapError, StepLimit};
 use scene::{Built, Coordinate, SceneSystem};
 use serde_json::{Map, Value, json};
 use sleigh::SleighState;
@@ -74,8 +74,8 @@ pub(crate) struct Stability {
     pub(crate) stable: bool,
     /// The eigenvalues of the flow (1/s), real and imaginary part.
     pub(crate) flow: Vec<[f64; 2]>,
-    /// Those of a step of the method; none where no step stays near.
-    pub(crate) map: Option<Vec<[f64; 2]>>,
+    /// Those of a step of the method.
+    pub(crate) map: Result<Vec<[f64; 2]>, MapError>,
     /// The longest step, where the flow is stable.
     pub(crate) limit: Option<StepLimit>,
 }
@@ -87,9 +87,11 @@ impl Stability {
             ("family", json!(self.family)),
             ("stable", json!(self.stable)),
             ("flow", json!(complex_json(&self.flow))),
-            ("map", json!(self.map.as_deref().map(complex_json))),
+            ("map", json!(self.map.as_deref().ok().map(complex_json))),
+            ("map_failure", json!(self.map.as_ref().err().map(MapError::to_string))),
             ("step_limit", json!(self.limit.and_then(StepLimit::step))),
             ("step_limit_reason", json!(self.limit.map(StepLimit::reason))),
+            ("stable_up_to", json!(self.limit.and_then(StepLimit::stable_up_to))),
         ];
         motion.extend(fields.map(|(key, value)| (key.to_owned(), value)));
         Value::Object(motion)
@@ -101,16 +103,49 @@ impl Stability {
             ("", if self.stable { "stable".to_owned() } else { "unstable".to_owned() }),
             ("parameters", self.family.to_string()),
             ("flow [1/s]", complex_numbers(&self.flow)),
-            ("map", self.map.as_deref().map_or_else(|| "no step stays near".to_owned(), complex_numbers)),
+            ("map", self.map.as_deref().map_or_else(MapError::to_string, complex_numbers)),
             ("longest step", limit_told(self.limit)),
         ]);
         format!("\n{}", table::aligned(&motion))
     }
 }
 
+/// Where steady motions were looked for.
+pub(crate) struct Searched {
+    pub(crate) places: usize,
+    /// How far from the start in a coordinate (m, rad).
+    pub(crate) reach: f64,
+    pub(crate) motions: usize,
+}
+
+impl Searched {
+    /// For a person.
+    pub(crate) fn told(&self) -> String {
+        let Self { places, reach, motions } = self;
+        let places = match places {
+            1 => "from the start".to_owned(),
+            _ => format!("from {places} places up to {} from the start in each coordinate", table::number(*reach)),
+        };
+        let velocities = if *motions == 1 { "velocity" } else { "velocities" };
+        format!(
+            "\nsearched: rest {places}, steady motions from {motions} {velocities}; of a family one is shown, and there may \
+                be others further away\n"
+        )
+    }
+}
+
 /// What `noslip equilibria --json` prints of a scene, with the step (s).
-pub(crate) fn object(scene: &str, method: &Method, step: f64, motions: impl Iterator<Item = Value>) -> Value {
-    json!({"scene": scene, "method": method.info().name, "step": step, "equilibria": motions.collect::<Vec<_>>()})
+pub(crate) fn object(
+    scene: &str,
+    method: &Method,
+    step: f64,
+    (motions, searched): (impl Iterator<Item = Value>, &Searched),
+) -> Value {
+    let Searched { places, reach, motions: velocities } = searched;
+    json!({
+        "scene": scene, "method": method.info().name, "step": step, "equilibria": motions.collect::<Vec<_>>(),
+        "searched": {"places": places, "reach": reach, "velocities": velocities},
+    })
 }
 
 /// What the motions of a scene are headed with.
@@ -124,7 +159,10 @@ fn limit_told(limit: Option<StepLimit>) -> String {
         None => "none: the motion itself is unstable".to_owned(),
         Some(StepLimit::Beyond(step)) => format!("none found up to {} s", table::number(step)),
         Some(StepLimit::Unstable(step)) => format!("{} s: beyond, the map is unstable", table::number(step)),
-        Some(StepLimit::Ends(step)) => format!("{} s: beyond, no step stays near", table::number(step)),
+        Some(StepLimit::Ends(step, why)) => {
+            format!("not known: stable up to {} s, and for longer steps: {why}", table::number(step))
+        }
+        Some(StepLimit::Unknown(why)) => format!("not known: {why}"),
     }
 }
 

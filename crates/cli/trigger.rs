@@ -227,7 +227,7 @@ impl Events {
     /// Adds them to what `run --json` prints.
     pub(crate) fn add_to(&self, object: &mut Value) {
         object["events"] = json!(self.values);
-        object["events_in_doubt"] = json!(self.close.map_or(0, |close| close.count));
+        object["events_in_doubt"] = json!(self.close.map_or(0, doubts));
     }
 
     /// Says where events may have been missed.
@@ -239,11 +239,26 @@ impl Events {
     }
 }
 
+/// How many reasons there are to doubt that all crossings were found.
+pub(crate) fn doubts(Close { count, unseen, .. }: Close) -> u64 {
+    count + unseen
+}
+
 /// That crossings may have been missed, and why.
-pub(crate) fn in_doubt(Close { count, spacing }: &Close) -> String {
-    let follow = if *count == 1 { "crossing follows" } else { "crossings follow" };
-    format!(
-        "{count} {follow} another by little more than {spacing:.2e} s, the time between two samples, so other \
-            crossings may have been missed"
-    )
+pub(crate) fn in_doubt(Close { count, spacing, nearest, unseen }: &Close) -> String {
+    let mut reasons = Vec::new();
+    if *count > 0 {
+        let (follow, as_little) =
+            if *count == 1 { ("crossing follows", "only") } else { ("crossings follow", "as little as") };
+        reasons.push(format!(
+            "{count} {follow} another by {as_little} {nearest:.2e} s, and samples are up to {spacing:.2e} s apart"
+        ));
+    }
+    if *unseen > 0 {
+        let steps = if *unseen == 1 { "step" } else { "steps" };
+        reasons.push(format!(
+            "in {unseen} {steps} a quantity has no value at a sample, or changes more quickly than any samples show"
+        ));
+    }
+    format!("{}, so other crossings may have been missed", reasons.join("; "))
 }

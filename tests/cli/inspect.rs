@@ -182,7 +182,7 @@ fn cost_has_a_row_for_none_each_and_all() {
 fn equilibria_tells_steady_motions_and_their_eigenvalues() {
     let folder = Folder::new();
     let found = folder.json("equilibria turnaround --json");
-    assert_eq!(keys(&found), ["scene", "method", "step", "equilibria"]);
+    assert_eq!(keys(&found), ["scene", "method", "step", "equilibria", "searched"]);
     let straight = |sign: f64| {
         let all = found["equilibria"].as_array().unwrap().iter();
         all.clone().find(|e| e["speed"].as_f64().unwrap() * sign > 0.5).unwrap().clone()

@@ -123,6 +123,33 @@ fn section((signals, waits): (Vec<&str>, [Duration; 3]), count: usize, duration:
     }
 }
 
+/// A start that has begun ends too, with the points that it has: it alone would take hours.
+#[test]
+fn a_long_start_of_a_section_ends_at_a_signal() {
+    let folder = Folder::new();
+    let (signals, waits) = one(0);
+    let line = "section bowl --plane x=0 --starts 2 --duration 1000000";
+    let starts = |found: &Value| found["starts"].as_array().unwrap().clone();
+    for signal in signals {
+        let found =
+            with_some(&folder, (line, "0 of 2 starts finished"), signal, waits, |found| !starts(found).is_empty());
+        assert!(starts(&found).iter().all(|start| start["interrupted"] == true), "{found}");
+    }
+}
+
+/// A signal after the methods, while the reference of their ends is computed, is one all the same: there are rows, and no end errors.
+#[test]
+fn a_comparison_that_is_ended_in_its_reference_says_so() {
+    let folder = Folder::new();
+    let (signals, waits) = one(1);
+    let line = "compare bowl --methods dla --duration 1000";
+    let whole = |found: &Value| found["rows"][0].is_object() && found["rows"][0]["interrupted"].is_null();
+    for signal in signals {
+        let found = with_some(&folder, (line, "methods finished"), signal, waits, whole);
+        assert!(found["interrupted"] == true && found["rows"][0]["error"].is_null(), "{found}");
+    }
+}
+
 /// What accuracy costs is compared with a reference, which is made as a whole: it alone takes too long for a short test.
 #[test]
 #[ignore = "slow"]
@@ -131,7 +158,7 @@ fn work_precision_diagrams_have_the_methods_that_are_measured() {
     let (signals, [wait, ..]) = all();
     for signal in signals {
         let line = "precision turnaround --longest 3 --csv points.csv --force";
-        let found = interrupted(&folder, line, signal, wait, " methods finished");
+        let found = interrupted(&folder, line, signal, wait, " methods ");
         let points = found["points"].as_array().unwrap();
         assert_eq!(folder.read("points.csv").lines().count(), 1 + points.len(), "{signal}");
     }

@@ -1,6 +1,7 @@
 //! Scenes of systems of text: what the program makes of them, and what it says of wrong ones.
 
 mod events;
+mod steady;
 
 mod analyses;
 

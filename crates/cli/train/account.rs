@@ -5,7 +5,7 @@ use crate::{json, substeps};
 use assembly::AssemblyState;
 use assembly::parts::Train;
 use dla::Schedule;
-use harness::{Assembled, AssemblyCrossing, AssemblyNodes, Method, Progress, recommend_assembly, run_assembly_watched};
+use harness::{Assembled, AssemblyNodes, Method, Progress, recommend_assembly, run_assembly_watched};
 use scene::{Scene, SleighQuantity};
 use serde_json::{Value, json};
 use sleigh::SleighState;
@@ -65,10 +65,10 @@ impl<'a> TrainAccount<'a> {
         let Self { train, start, method, schedule, watched, ending, .. } = self;
         let events: Vec<_> = watched.iter().enumerate().map(|(k, one)| one.event(train, k >= *ending)).collect();
         let looked_for = (&events[..], samples);
-        let (run, crossings) =
+        let (run, crossings, close) =
             run_assembly_watched(&train.assembly, method, schedule, (start, nodes), looked_for, progress);
         let happened = crossings.iter().filter_map(|crossing| Happened::of_train(train, watched, crossing));
-        let events = (!watched.is_empty()).then(|| Events::new(happened, AssemblyCrossing::close(&crossings)));
+        let events = (!watched.is_empty()).then(|| Events::new(happened, close));
         MadeTrain { run, events }
     }
 

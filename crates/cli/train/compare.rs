@@ -1,5 +1,5 @@
 use super::columns::SHOWN;
-use crate::comparison::{Comparison, REFERRED, better_than};
+use crate::comparison::{Comparison, REFERRED, WITHOUT_REFERENCE, better_than};
 use crate::error::CliError;
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
@@ -37,6 +37,8 @@ pub(crate) fn compare_scene(
         progress.bar.finish_and_clear();
     }
     let reference = reference(scene, train, start, &schedule, interrupt);
+    // Without a reference there was no time for it, or a signal has ended the work on it.
+    let lost = interrupt.asked() && is_referred(&schedule, start);
     let drifts: Vec<(&str, Drift)> = runs
         .iter()
         .filter(|run| run.record.is_whole())
@@ -71,7 +73,10 @@ pub(crate) fn compare_scene(
         });
     }
     let whole = runs.iter().filter(|run| !run.record.interrupted).count();
-    let interrupted = (whole < methods.len()).then(|| format!("{whole} of {} methods finished", methods.len()));
+    let interrupted = match whole < methods.len() {
+        true => Some(format!("{whole} of {} methods finished", methods.len())),
+        false => reference.is_none().then(|| WITHOUT_REFERENCE.to_owned()).filter(|_| lost),
+    };
     let objects: Vec<_> = rows.iter().map(|row| &row.json).collect();
     let report = SceneReport {
         name: scene.name.clone(),
@@ -92,6 +97,11 @@ pub(crate) fn compare_scene(
     Ok(Comparison { rows, report, interrupted })
 }
 
+/// Whether there is time for a reference.
+fn is_referred(schedule: &Schedule, start: &AssemblyState) -> bool {
+    schedule.steps.saturating_mul(start.len() as u64) <= REFERRED
+}
+
 /// Where the motion ends by dla8 with a quarter of the step; none of a run that would take longer than all others.
 fn reference(
     scene: &Scene,
@@ -100,7 +110,7 @@ fn reference(
     schedule: &Schedule,
     interrupt: &Interrupt,
 ) -> Option<AssemblyState> {
-    if schedule.steps.saturating_mul(start.len() as u64) > REFERRED || interrupt.asked() {
+    if !is_referred(schedule, start) || interrupt.asked() {
         return None;
     }
     let method = Method::named("dla8", None).ok()?;

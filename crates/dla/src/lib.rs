@@ -73,7 +73,7 @@ pub use divide::{Substeps, Undivided};
 pub use drive::{Observer, Part, RunError, Schedule, View, drive, drive_part};
 pub use energy::Energy;
 pub use ensemble::{Each, Ensemble, GaussEnsemble, LaneState, Same, Systems};
-pub use events::{Close, Crossing, Direction, Event, Watch, Zero, close_crossings, zeros};
+pub use events::{Close, Crossing, Direction, Event, Watch, Zero, Zeros, close_crossings, zeros};
 pub use gauss::{Collocation, CollocationOutcome, Gauss, GaussAdaptive};
 pub use gni::Gni;
 pub use hermite::Hermite;

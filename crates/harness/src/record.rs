@@ -52,7 +52,8 @@ pub struct Record<const N: usize> {
     pub step: f64,
     /// Steps made.
     pub steps: u64,
-    /// Time of the steps alone, nothing observed (s): the median of repeated runs where they are short.
+    /// Time of the steps (s). Of a comparison that of the steps alone, nothing observed, the median of repeated runs where they are short, and
+    /// the processor's time of the thread where the system tells that; of a single run that on the wall, with what looks on.
     pub wall_seconds: f64,
     /// Newton iterations.
     pub newton: NewtonSummary,

@@ -118,7 +118,7 @@ pub(crate) fn observed_and_timed<const N: usize, const M: usize>(
 /// Of a longer run than this the first so many steps are timed.
 const TIMED: u64 = 1 << 22;
 
-/// The time of steps that have been made before, nothing looking on (s).
+/// The time of steps that have been made before, nothing looking on (s): the processor's, for this thread.
 ///
 /// Of more than 2^22 steps it is that of the first so many, times the ratio: a long run costs hardly more for being timed.
 #[inline(never)]

@@ -89,6 +89,8 @@ struct Progressing<const N: usize> {
     meter: Meter<N>,
     seconds: f64,
     crossings: Vec<SavedCrossing<N>>,
+    /// See [`Close::unseen`].
+    unseen: u64,
 }
 
 /// Makes a run once, measures it, and shows its nodes to `nodes` where that is asked for.
@@ -152,6 +154,7 @@ pub fn run_saved_watched<const N: usize, const M: usize>(
             meter,
             seconds: 0.0,
             crossings: Vec::new(),
+            unseen: 0,
         },
     };
     progress.advance(run.made);
@@ -181,6 +184,7 @@ pub fn run_saved_watched<const N: usize, const M: usize>(
                 };
                 let outcome = substepped_part(piece, &mut *stepper, limits, &times, chunk.clone(), state, &mut watch);
                 run.crossings.extend(watch.crossings().iter().map(SavedCrossing::from));
+                run.unseen += watch.unseen();
                 let ended = watch.ended().is_some();
                 done = outcome?;
                 if ended {
@@ -208,6 +212,7 @@ pub fn run_saved_watched<const N: usize, const M: usize>(
     let record = Record { interrupted, ..run.meter.record(method.info(), seconds, outcome.err()) };
     let looked = run.crossings.iter().map(|crossing| (crossing.event, crossing.t, crossing.spacing));
     let close = close_crossings(looked, |event| events.get(event).is_some_and(Event::leaves_some_out));
+    let close = Close::with_unseen(close, run.unseen);
     Ok(SavedRun { record, crossings: run.crossings, close })
 }
 
@@ -245,6 +250,7 @@ impl<const N: usize> Progressing<N> {
         self.meter.save(&mut checkpoint);
         let crossings: Vec<f64> = self.crossings.iter().flat_map(SavedCrossing::numbers).collect();
         checkpoint.put("crossings", &crossings);
+        checkpoint.put_counts("unseen", &[self.unseen]);
         checkpoint
     }
 
@@ -255,7 +261,9 @@ impl<const N: usize> Progressing<N> {
         let work = Work::load(checkpoint, t, &state)?;
         let meter = Meter::load(checkpoint, meter, made, t, &state, work)?;
         let crossings = SavedCrossing::all(&checkpoint.list("crossings")?);
-        Ok((Self { made, t, state, memory: checkpoint.list("memory")?, meter, seconds, crossings }, work))
+        // A checkpoint may be of a program that did not count them.
+        let [unseen] = checkpoint.counts("unseen").unwrap_or([0]);
+        Ok((Self { made, t, state, memory: checkpoint.list("memory")?, meter, seconds, crossings, unseen }, work))
     }
 }
 

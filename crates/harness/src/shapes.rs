@@ -3,7 +3,7 @@
 //! What is generic in the shape of a system, and never inlined, is compiled in the first crate that names it with a shape, and the crates above
 //! call that. The program, its tests and the Python package would each compile all methods for ten shapes otherwise.
 
-use crate::analysis::{DiscreteMap, differentiable, lyapunov_within, relative_equilibria, section};
+use crate::analysis::{DiscreteMap, differentiable, lyapunov_within, relative_equilibria_within, section};
 use crate::precision::{Reference, ReferenceMotion};
 use crate::run::observed_and_timed;
 use crate::{
@@ -48,13 +48,13 @@ fn motions<const N: usize, const M: usize>() {
     black_box(Reference::<N>::converged::<M> as fn(_, _) -> _);
     black_box(step_time::<N, M> as fn(_, _, _, _) -> _);
     black_box(step_evaluations::<N, M> as fn(_, _, _, _) -> _);
-    black_box(relative_equilibria::<N, M> as fn(_, _, _) -> _);
+    black_box(relative_equilibria_within::<N, M> as fn(_, _, _, _) -> _);
     black_box(differentiable::<N, M> as fn(_) -> _);
     black_box(DiscreteMap::<N, M>::spectrum as fn(_, _, _) -> _);
     black_box(DiscreteMap::<N, M>::limit as fn(_, _, _) -> _);
 }
 
 fn free_motions<const N: usize, const M: usize>() {
-    black_box(section::<N, M> as fn(_, _, _, _, _) -> _);
+    black_box(section::<N, M> as fn(_, _, _, _, _, _) -> _);
     black_box(lyapunov_within::<N, M> as fn(_, _, _, _, _) -> _);
 }

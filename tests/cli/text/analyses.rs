@@ -48,6 +48,55 @@ fn integrable(settle: f64, duration: f64) {
 }
 
 #[test]
+fn exponents_do_not_depend_on_the_coordinates_of_a_pendulum() {
+    pendulum("10", &["gauss8", "dla"], 0.15);
+}
+
+#[test]
+#[ignore = "slow"]
+fn exponents_do_not_depend_on_the_coordinates_of_a_pendulum_at_length() {
+    pendulum("3000", &["gauss8", "dla", "dla4", "gauss4"], 0.02);
+}
+
+/// A driven pendulum by its angle, and by two coordinates on a circle: directions off the circle have no exponent. One motion, and where
+/// it is chaotic and long the same two exponents to their scatter; the sum is minus the friction.
+fn pendulum(duration: &str, methods: &[&str], within: f64) {
+    let folder = Folder::new();
+    let run = "[run]\nstep = 0.05\nduration = 100.0\n";
+    folder.write(
+        "angle.toml",
+        format!(
+            "[system]\ncoordinates = {{ th = \"angle\" }}\nlagrangian = \"th'^2/2 + cos(th)\"\n\
+             forces = {{ th = \"-0.5*th' + 1.15*cos(2*t/3)\" }}\n[start]\nth = 0.5\n{run}"
+        ),
+    );
+    folder.write(
+        "circle.toml",
+        format!(
+            "[system]\ncoordinates = {{ x = \"m\", y = \"m\" }}\nlagrangian = \"(x'^2 + y'^2)/2 - y\"\n\
+             positions = [\"x^2 + y^2 - 1\"]\nforces = {{ x = \"-0.5*x' - y*1.15*cos(2*t/3)\", \
+             y = \"-0.5*y' + x*1.15*cos(2*t/3)\" }}\n[start]\nx = 0.479425538604203\ny = -0.8775825618903728\n{run}"
+        ),
+    );
+    for method in methods {
+        let [angle, circle] = ["angle", "circle"].map(|scene| {
+            folder.json(&format!("lyapunov {scene}.toml --method {method} --duration {duration} --settle 1 --json"))
+        });
+        let [angle, circle] = [angle, circle].map(|found| {
+            let exponents = numbers(&found["exponents"]);
+            assert!(found.get("dimension").is_some() && found.get("failure").is_none(), "{method}: {found}");
+            assert!((exponents.iter().sum::<f64>() + 0.5).abs() < within, "{method}: {found}");
+            exponents
+        });
+        assert_eq!((angle.len(), circle.len()), (2, 2), "{method}");
+        for (a, b) in angle.iter().zip(&circle) {
+            assert!((a - b).abs() < within, "{method}: {angle:?} {circle:?}");
+        }
+    }
+    folder.refused("lyapunov circle.toml --exponents 3", &["from 1 to 2"]);
+}
+
+#[test]
 fn a_disk_that_falls_has_the_exponent_of_its_fall() {
     falling("4", "10");
 }

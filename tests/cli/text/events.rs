@@ -35,6 +35,36 @@ fn events_are_coordinates_rates_and_outputs() {
     assert_eq!(event["rising"].as_bool(), Some(true));
 }
 
+/// `sin(W t + 0.3)`, whose turns are shorter than the steps, has a zero in every half turn; where it is quicker than any samples show that
+/// is said.
+#[test]
+fn fast_outputs_are_found_or_in_doubt() {
+    let folder = Folder::new();
+    folder.write(
+        "fast.toml",
+        "[system]\ncoordinates = { x = \"m\" }\nlagrangian = \"x'^2/2\"\noutputs = { o = \"sin(W*t + 0.3)\" }\n\
+         parameters = { W = 1000.0 }\n[start]\n\"x'\" = 1.0\n[run]\nstep = 0.1\nduration = 2.0\n",
+    );
+    for (rate, count) in [(220.0, 140), (250.0, 159), (1000.0, 636)] {
+        let run = folder.json(&format!("run fast.toml --set system.parameters.W={rate} --event o=0 --json"));
+        let found = times(&run);
+        assert_eq!((found.len(), run["events_in_doubt"].as_u64()), (count, Some(0)), "{rate}");
+        for (k, t) in found.iter().enumerate() {
+            assert!((t - ((k + 1) as f64 * PI - 0.3) / rate).abs() < 1e-12, "{rate}: {k} {t}");
+        }
+    }
+    let outcome = folder.line("run fast.toml --set system.parameters.W=1e7 --duration 0.3 --event o=0");
+    assert!(outcome.code == 0 && outcome.stderr.contains("in 3 steps"), "{outcome:?}");
+    // Near crossings are told with how near they are, and how far the samples are apart.
+    let swing = folder.read("fast.toml").replace("x'^2/2", "(x'^2 - x^2)/2").replace("= 2.0", "= 3.0");
+    folder.write("swing.toml", swing);
+    let outcome = folder.line("run swing.toml --method gauss8 --event x=0.99999999 --json");
+    let run: Value = serde_json::from_str(&outcome.stdout).unwrap();
+    let found = times(&run);
+    let apart = format!("only {:.2e} s, and samples are up to 2.50e-2 s apart", found[1] - found[0]);
+    assert!(found.len() == 2 && outcome.stderr.contains(&apart), "{outcome:?}");
+}
+
 /// The contact point of the disk runs on a circle of radius `R phi' / theta'`.
 #[test]
 fn the_disk_meets_lines_where_its_circle_does() {

@@ -1,10 +1,41 @@
-/// Crossings so close to one another that others may have been missed.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Why crossings may have been missed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Close {
-    /// How many follow another of the same event so closely.
+    /// How many crossings follow another of the same event so closely that there may be more between them.
     pub count: u64,
-    /// The largest spacing of the samples by which they were found (s).
+    /// The largest spacing of the samples by which these were found (s).
     pub spacing: f64,
+    /// How near the nearest two of them are (s).
+    pub nearest: f64,
+    /// How often a step, or one of those that a method makes of its own, was not seen as a whole: an event had no value at a sample, a
+    /// shorter step had no solution, or the event changes more quickly than the samples show.
+    pub unseen: u64,
+}
+
+impl Close {
+    /// The same with so many steps that were not seen as a whole; none where there is no doubt.
+    #[must_use]
+    pub fn with_unseen(close: Option<Self>, unseen: u64) -> Option<Self> {
+        match (close, unseen) {
+            (close, 0) => close,
+            (close, more) => {
+                let close = close.unwrap_or_default();
+                Some(Self { unseen: close.unseen + more, ..close })
+            }
+        }
+    }
+
+    /// That of two motions.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        let nearest = match (self.count, other.count) {
+            (0, _) => other.nearest,
+            (_, 0) => self.nearest,
+            _ => self.nearest.min(other.nearest),
+        };
+        let spacing = self.spacing.max(other.spacing);
+        Self { count: self.count + other.count, spacing, nearest, unseen: self.unseen + other.unseen }
+    }
 }
 
 /// Which crossings follow another of the same event by less than two spacings of the samples; none where all are further apart.
@@ -28,10 +59,11 @@ pub fn close_crossings(
             last.resize(event + 1, None);
         }
         if let Some((before, other)) = last[event].replace((t, spacing)) {
-            let (apart, widest) = (if one_way(event) { 4.0 } else { 2.0 }, f64::max(spacing, other));
-            if f64::min(spacing, other) > 0.0 && (t - before).abs() < apart * widest {
-                let Close { count, spacing } = found.unwrap_or(Close { count: 0, spacing: 0.0 });
-                found = Some(Close { count: count + 1, spacing: spacing.max(widest) });
+            let (factor, widest, apart) =
+                (if one_way(event) { 4.0 } else { 2.0 }, f64::max(spacing, other), (t - before).abs());
+            if f64::min(spacing, other) > 0.0 && apart < factor * widest {
+                let one = Close { count: 1, spacing: widest, nearest: apart, unseen: 0 };
+                found = Some(found.map_or(one, |found| found.and(one)));
             }
         }
     }

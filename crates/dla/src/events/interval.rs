@@ -1,5 +1,6 @@
-use super::zeros::in_order;
-use super::{Crossing, Event, Zero, zeros};
+use super::finer::Between;
+use super::zeros::{Zeros, in_order, zeros_by};
+use super::{Crossing, Event, Zero};
 use crate::{Mechanics, OneStep, State, StepReport};
 
 /// A step, or one of those that a method makes of its own within it, to be made again in parts.
@@ -16,7 +17,7 @@ impl<Method, const N: usize, const M: usize> EventInterval<'_, Method, N, M>
 where
     Method: OneStep<N, M> + Clone,
 {
-    fn time(&self, part: f64) -> f64 {
+    pub(super) fn time(&self, part: f64) -> f64 {
         self.t0 + part * self.h
     }
 
@@ -27,7 +28,7 @@ where
         Some((state, report))
     }
 
-    fn state(&self, part: f64) -> Option<State<N>> {
+    pub(super) fn state(&self, part: f64) -> Option<State<N>> {
         match part {
             0.0 => Some(*self.start),
             1.0 => Some(*self.end),
@@ -35,31 +36,39 @@ where
         }
     }
 
-    /// The crossings within it, in the order of time, looked for in so many parts and located to an interval of time (s). `k` is
-    /// the node before.
+    /// The crossings within it, in the order of time, looked for in so many parts, or in more where an event bends between these, and located to
+    /// an interval of time (s); and how many events were not seen as a whole. `k` is the node before.
     pub(super) fn crossings(
         &self,
         events: &[Event<'_, N>],
         (samples, tolerance): (u32, f64),
         k: u64,
-    ) -> Vec<Crossing<N>> {
-        let parts = i64::from(samples.max(1));
-        let states: Vec<_> = (-1..=parts + 1)
-            .filter_map(|j| {
-                let at = j as f64 / parts as f64;
-                self.state(at).map(|state| (at, state))
-            })
-            .collect();
-        let (length, mut found) = (self.h.abs(), Vec::new());
+    ) -> (Vec<Crossing<N>>, u64) {
+        let parts = samples.max(1);
+        let at = |j: i64| j as f64 / f64::from(parts);
+        let states: Vec<_> = (-1..=i64::from(parts) + 1).map(|j| (at(j), self.state(at(j)))).collect();
+        let (length, mut found, mut unseen) = (self.h.abs(), Vec::new(), 0);
         for (index, event) in events.iter().enumerate() {
             let value = |at: f64| self.state(at).map_or(f64::NAN, |state| event.value(self.time(at), &state));
-            let known: Vec<_> = states.iter().map(|(at, state)| (*at, event.value(self.time(*at), state))).collect();
-            for Zero { at, within, rising } in zeros(&known, tolerance / length, |rising| event.counts(rising), value) {
+            let at_sample = |(at, state): &(f64, Option<State<N>>)| {
+                (*at, state.as_ref().map_or(f64::NAN, |state| event.value(self.time(*at), state)))
+            };
+            let known: Vec<_> = states.iter().map(at_sample).collect();
+            let between = self.between(event, &states, &known, parts);
+            let untold = matches!(between, Between::Untold);
+            let (exact, parts, known) = match between {
+                Between::Finer(finer, values) => (false, finer, values),
+                Between::Told | Between::Untold => (true, parts, known),
+            };
+            let counts = |rising| event.counts(rising);
+            let Zeros { zeros, unseen: missing } = zeros_by(&known, exact, tolerance / length, counts, value);
+            unseen += u64::from(missing || untold);
+            for Zero { at, within, rising } in zeros {
                 let Some(state) = self.state(at) else { continue };
-                let (t, within, spacing) = (self.time(at), within * length, length / parts as f64);
+                let (t, within, spacing) = (self.time(at), within * length, length / f64::from(parts));
                 found.push((at, Crossing { event: index, k, t, within, spacing, rising, state }));
             }
         }
-        in_order(found).collect()
+        (in_order(found).collect(), unseen)
     }
 }

@@ -2,6 +2,7 @@
 
 mod close_crossings;
 mod crossing;
+mod finer;
 mod interval;
 mod isolate;
 mod root;
@@ -11,4 +12,4 @@ mod zeros;
 pub use close_crossings::{Close, close_crossings};
 pub use crossing::{Crossing, Direction, Event};
 pub use watch::Watch;
-pub use zeros::{Zero, zeros};
+pub use zeros::{Zero, Zeros, zeros};

@@ -3,6 +3,9 @@ use super::{Close, Crossing, Event, close_crossings};
 use crate::{Observer, OneStep, State, StepError, StepReport, Undivided, View};
 use std::ops::ControlFlow;
 
+/// A crossing that is so many roundings after the start of a run is one of its start.
+const AT_START: f64 = 64.0;
+
 /// The observer that looks for events, and shows another observer the run up to the first that ends it.
 ///
 /// Inside a step the state is that of a shorter step of the same method from the same node, made with copies: the nodes of
@@ -13,8 +16,13 @@ use std::ops::ControlFlow;
 /// more, and one. A method with steps of its own within a step ([`OneStep::own_steps`]) is looked at so in each of them, which
 /// costs one step more. No crossing is missed while between neighbouring samples each function is monotone, or has one
 /// extremum and falls there to zero by no more than eight times what the parabola through the samples does; in
-/// particular not two crossings within a step. Three crossings between two samples count as one; where crossings are so close
-/// that there may be such, [`close`](Self::close) says so.
+/// particular not two crossings within a step. Where a function bends more than that between samples, as a fast one of the time does, it
+/// is looked at in more parts, up to 2^14, on a cubic through the states at the samples; crossings are then located by steps as all others
+/// are. What bends at no place where one value in each part is compared, as a short pulse, is not seen. Where crossings are so close that
+/// there may be others between them, where a function has no value at a sample, and where no number of parts tells enough,
+/// [`close`](Self::close) says so.
+///
+/// What is zero at the start of a run, but for rounding, is not crossed there.
 ///
 /// An event that ends the run shows the inner observer a last node, by a step that is shortened to end there. The state
 /// of the run itself is then one node further; [`ended`](Self::ended) has the one at the event.
@@ -28,6 +36,10 @@ pub struct Watch<'a, Method, Inner, const N: usize> {
     events: &'a [Event<'a, N>],
     inner: Inner,
     before: Option<(f64, State<N>)>,
+    /// Whether nothing has been looked at since the start of the run.
+    at_start: bool,
+    /// How many events were not seen as a whole in a step.
+    unseen: u64,
     /// What the method remembers of its own steps, where it has any.
     memory: Vec<f64>,
     /// Whether the parts of the step have been looked at already.
@@ -40,8 +52,20 @@ pub struct Watch<'a, Method, Inner, const N: usize> {
 impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
     /// Watches a run made with `method`, and shows it to `inner`.
     pub fn new(method: Method, events: &'a [Event<'a, N>], inner: Inner) -> Self {
-        let (crossings, before, memory, ended) = (Vec::new(), None, Vec::new(), None);
-        Self { samples: 4, tolerance: 0.0, method, events, inner, before, memory, in_parts: false, crossings, ended }
+        Self {
+            samples: 4,
+            tolerance: 0.0,
+            method,
+            events,
+            inner,
+            before: None,
+            at_start: false,
+            unseen: 0,
+            memory: Vec::new(),
+            in_parts: false,
+            crossings: Vec::new(),
+            ended: None,
+        }
     }
 
     /// The same, of a run that has come to this time (s) and state: what it saw last.
@@ -67,11 +91,18 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
         self.inner
     }
 
-    /// Which crossings are so close to one another that others may have been missed (see [`close_crossings`]).
+    /// Why crossings may have been missed: those so close to one another that others may be between them (see [`close_crossings`]), and steps
+    /// that were not [seen](Self::unseen) as a whole.
     #[must_use]
     pub fn close(&self) -> Option<Close> {
         let looked = self.crossings.iter().map(|crossing| (crossing.event, crossing.t, crossing.spacing));
-        close_crossings(looked, |event| self.events[event].leaves_some_out())
+        Close::with_unseen(close_crossings(looked, |event| self.events[event].leaves_some_out()), self.unseen)
+    }
+
+    /// How often an event was not seen as a whole in a step (see [`Close::unseen`]).
+    #[must_use]
+    pub fn unseen(&self) -> u64 {
+        self.unseen
     }
 
     /// Lets its copies of the method measure the work where the inner observer wants it: of the step that an event ends too.
@@ -117,11 +148,12 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
     {
         let (mut from, method, mut memory) = (start, self.method.clone(), std::mem::take(&mut self.memory));
         let step = (start.0, node.t - start.0);
-        // Where they cannot be made again, the rest is looked at as one.
-        let _ = method.own_steps(node.system, step, &start.1, &mut memory, &mut |t, state| {
+        let made = method.own_steps(node.system, step, &start.1, &mut memory, &mut |t, state| {
             let (t0, before) = std::mem::replace(&mut from, (t, *state));
             self.look_between(node, (t0, &before), (t, state))
         });
+        // Where they cannot be made again, the rest is looked at as one.
+        self.unseen += u64::from(made.is_err());
         self.memory = memory;
         if self.ended.is_none() {
             let _ = self.look_between(node, (from.0, &from.1), (node.t, node.state));
@@ -139,7 +171,13 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
         Method: OneStep<N, M> + Clone,
     {
         let interval = EventInterval { system: node.system, method: &self.method, t0, h: t - t0, start, end };
-        let found = interval.crossings(self.events, (self.samples, self.tolerance), node.k.saturating_sub(1));
+        let (mut found, unseen) =
+            interval.crossings(self.events, (self.samples, self.tolerance), node.k.saturating_sub(1));
+        self.unseen += unseen;
+        if std::mem::take(&mut self.at_start) {
+            let rounding = AT_START * f64::EPSILON * f64::max(t0.abs(), (t - t0).abs());
+            found.retain(|crossing| (crossing.t - t0).abs() > rounding);
+        }
         let ends = found.into_iter().any(|crossing| self.note(crossing, node.k));
         if ends { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
@@ -165,6 +203,7 @@ where
 {
     fn start(&mut self, node: &View<'_, N, M>) {
         self.before = Some((node.t, *node.state));
+        self.at_start = true;
         self.memory.clear();
         self.measure(node);
         self.inner.start(node);

@@ -12,38 +12,70 @@ pub struct Zero {
     pub rising: bool,
 }
 
+/// The crossings within a step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Zeros {
+    /// In no order.
+    pub zeros: Vec<Zero>,
+    /// Whether the function has no value at a known point of the step, so that others may have been missed.
+    pub unseen: bool,
+}
+
 /// The crossings within a step, parts of it from 0 to 1, of a function of which some values are known: pairs of a part and a
-/// value in order, a little beyond both ends. Those in a direction that does not count are left out.
+/// value in order, a little beyond both ends; what has no value is not a number. Those in a direction that does not count are left out.
 ///
 /// What [`Watch`](crate::Watch) says of what is missed and what is not holds here.
-pub fn zeros(
+pub fn zeros(known: &[(f64, f64)], tolerance: f64, counts: impl Fn(bool) -> bool, f: impl FnMut(f64) -> f64) -> Zeros {
+    zeros_by(known, true, tolerance, counts, f)
+}
+
+/// The same of values that need not be exact: where they change their sign the function is asked.
+pub(super) fn zeros_by(
     known: &[(f64, f64)],
+    exact: bool,
     tolerance: f64,
     counts: impl Fn(bool) -> bool,
     mut f: impl FnMut(f64) -> f64,
-) -> Vec<Zero> {
-    searched(known, tolerance, &counts, &mut f)
+) -> Zeros {
+    searched((known, exact), tolerance, &counts, &mut f)
 }
 
 /// The same, compiled once for every function.
 fn searched(
-    known: &[(f64, f64)],
+    (known, exact): (&[(f64, f64)], bool),
     tolerance: f64,
     counts: &dyn Fn(bool) -> bool,
     mut f: &mut dyn FnMut(f64) -> f64,
-) -> Vec<Zero> {
-    let points: Vec<RootPoint> = known
-        .iter()
-        .map(|(at, value)| RootPoint { at: *at, value: *value })
-        .filter(|point| !point.value.is_nan())
-        .collect();
-    let found = isolate(&points, &mut f).into_iter().filter(|(from, _)| counts(from.value < 0.0));
-    let found: Vec<(RootPoint, RootPoint)> = found.collect();
-    let zero = |(from, to): (RootPoint, RootPoint)| {
-        let (at, within) = root(from, to, tolerance, &mut f);
-        Zero { at, within, rising: from.value < 0.0 }
-    };
-    found.into_iter().map(zero).collect()
+) -> Zeros {
+    let points = known.iter().map(|(at, value)| RootPoint { at: *at, value: *value });
+    let (points, missing): (Vec<RootPoint>, Vec<RootPoint>) = points.partition(|point| !point.value.is_nan());
+    let mut unseen = missing.iter().any(|point| (0.0..=1.0).contains(&point.at));
+    let mut zeros = Vec::new();
+    for (mut from, mut to) in isolate(&points, &mut *f) {
+        if !exact {
+            let Some(bracket) = truly([from.at, to.at], f) else {
+                unseen = true;
+                continue;
+            };
+            (from, to) = bracket;
+        }
+        if counts(from.value < 0.0) {
+            let (at, within) = root(from, to, tolerance, &mut f);
+            zeros.push(Zero { at, within, rising: from.value < 0.0 });
+        }
+    }
+    Zeros { zeros, unseen }
+}
+
+/// The points of a change of sign of the function itself, at two places or half their distance beyond them; none where there is no such.
+fn truly([from, to]: [f64; 2], f: &mut dyn FnMut(f64) -> f64) -> Option<(RootPoint, RootPoint)> {
+    let beyond = 0.5 * (to - from);
+    let ends = [(from, to), ((from - beyond).max(0.0), to), (from, (to + beyond).min(1.0))];
+    ends.into_iter().find_map(|(from, to)| {
+        let [from, to] = [from, to].map(|at| RootPoint { at, value: f(at) });
+        let crosses = if from.value < 0.0 { to.value >= 0.0 } else { from.value > 0.0 && to.value <= 0.0 };
+        crosses.then_some((from, to))
+    })
 }
 
 /// What is found at parts of a step, in the order of these.

@@ -181,7 +181,11 @@ fn derivative<const N: usize, const M: usize, const P: usize>(
     }
 
     let inputs = start.q().iter().chain(start.v()).chain([&t, &h]).chain(parameters);
-    let rounding = from_fn(|i| inputs.clone().enumerate().map(|(j, x)| (chain[(N + i, j)] * x).abs()).sum());
+    // A place is rounded besides, and a velocity is what places are apart over a step: at rest there is nothing else.
+    let place = larger(largest(&start.unwrapped()), largest(&moved));
+    let of_places = if h == 0.0 { 0.0 } else { place / h.abs() };
+    let rounding =
+        from_fn(|i| inputs.clone().enumerate().map(|(j, x)| (chain[(N + i, j)] * x).abs()).sum::<f64>() + of_places);
     let defect = defect(start, end, (&moved, &v), &rounding);
     if defect > AGREEMENT || defect.is_nan() {
         return Err(SensitivityError::OtherSolution { defect });

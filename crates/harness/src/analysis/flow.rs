@@ -1,5 +1,6 @@
 use dla::SeededMechanics;
 use lagrangian::{Gradients, Scalar, Seeded, from_fn};
+use nalgebra::DMatrix;
 
 /// `q' = W xi + v_b` and `xi'`.
 pub(super) type Slope<const N: usize> = [[Seeded; N]; 2];
@@ -69,11 +70,11 @@ fn implicit<const N: usize, const M: usize>(
     Some(rate)
 }
 
-/// The divergence of the reduced equations in the coordinates `(q, xi)` (1/s): the rate at which the flow makes volumes grow;
-/// and the rates `xi'`.
+/// The divergence of the reduced equations in the coordinates `(q, xi)` (1/s): the rate at which the flow makes volumes grow, without what
+/// it does across the constraints on positions, along their orthonormal normals in the coordinates; and the rates `xi'`.
 pub(super) fn divergence<const N: usize, const M: usize>(
     flow: &dyn ReducedFlow<N, M>,
-    variables: &Variables,
+    (variables, normals): (&Variables, Option<&DMatrix<f64>>),
     t: f64,
     q: &[f64; N],
     xi: &[f64; N],
@@ -82,9 +83,14 @@ pub(super) fn divergence<const N: usize, const M: usize>(
     let (mut sum, mut rates) = (0.0, [0.0; N]);
     for block in variables.blocks() {
         let slope = flow.slope(t, &block.seeded(q, 0), &block.seeded(&xi, N))?;
+        rates = from_fn(|a| if a < N - M { slope[1][a].re } else { 0.0 });
         // Of each variable the derivative of its own rate.
         sum += block.all().map(|(direction, variable)| entry(&slope, variable).eps[direction]).sum::<f64>();
-        rates = from_fn(|a| if a < N - M { slope[1][a].re } else { 0.0 });
+        let Some(normals) = normals else { continue };
+        for (direction, j) in block.all().filter(|(_, variable)| *variable < normals.nrows()) {
+            let across = |i: usize| normals.row(i).dot(&normals.row(j));
+            sum -= (0..normals.nrows()).map(|i| across(i) * slope[0][i].eps[direction]).sum::<f64>();
+        }
     }
     Some((sum, rates))
 }
@@ -115,6 +121,11 @@ impl Variables {
 
     pub(super) fn count(&self) -> usize {
         self.0.len()
+    }
+
+    /// How many of them are coordinates.
+    pub(super) fn coordinates<const N: usize>(&self) -> usize {
+        self.0.iter().filter(|variable| **variable < N).count()
     }
 
     /// The variable in that place.

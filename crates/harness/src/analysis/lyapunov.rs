@@ -35,6 +35,8 @@ pub struct Lyapunov {
     /// by because the time `T` is finite, with the time `t` before it that is not counted: neighbours of regular motions part company by
     /// powers of the time. An exponent that is zero has an interval that holds zero. The error of the steps is not in it.
     pub ci: Vec<Option<f64>>,
+    /// How many exponents there are.
+    pub most: usize,
     /// The mean over the nodes of the divergence of the continuous equations (1/s), by the trapezoidal rule.
     ///
     /// The sum of all exponents is the mean of `ln |det D Phi| / h`. By Liouville's theorem the two agree, to the order of the
@@ -57,7 +59,8 @@ pub struct Lyapunov {
 pub enum LyapunovError {
     /// There are no so many.
     #[error(
-        "{asked} exponents are asked for; accepted is a number from 1 to {most}, the dimension of the distribution"
+        "{asked} exponents are asked for; accepted is a number from 1 to {most}: of each free coordinate one, and of \
+            each free velocity"
     )]
     Count {
         /// How many were asked for.
@@ -79,7 +82,8 @@ pub enum LyapunovError {
 /// The Lyapunov exponents of a motion of a system, which may bring integrators of its own, by the derivatives of the steps that a method
 /// makes along it.
 ///
-/// `2 N - M` exponents belong to the distribution, in the coordinates `(q, xi)`; they do not depend on the coordinates where
+/// `2 N - M` exponents belong to the distribution, in the coordinates `(q, xi)`, less one for each constraint on positions: neighbours that do
+/// not keep these are none. The exponents do not depend on the coordinates where
 /// the motion stays in a bounded region of them or is invariant under the translations that leave it. A run that fails gives what it has,
 /// with [`Lyapunov::failure`] set.
 ///
@@ -143,7 +147,7 @@ fn lyapunov_of<const N: usize, const M: usize>(
     drive: impl FnOnce(&Schedule, &mut State<N>, &mut dyn Observer<N, M>) -> Result<u64, RunError>,
 ) -> Result<Lyapunov, LyapunovError> {
     let LyapunovRequest { schedule, settle, q, v, .. } = *request;
-    let tangent = Steps::of(system, own, method)?;
+    let tangent = Steps::of(system, own, method, (schedule.t0, &q))?;
     let most = tangent.count();
     let count = request.exponents.unwrap_or(most);
     if count == 0 || count > most {
@@ -155,12 +159,13 @@ fn lyapunov_of<const N: usize, const M: usize>(
     let failure = stretch.failure.or(outcome.err().map(Into::into));
     // Also where all steps are counted, the tangent vectors have had one step to align.
     let before = settle.max(1) as f64 * schedule.step.abs();
-    Ok(result(&stretch, before, failure))
+    Ok(result(&stretch, most, before, failure))
 }
 
 /// What the sums come to; the exponents in order.
 fn result<const N: usize, const M: usize>(
     stretch: &Stretch<'_, N, M>,
+    most: usize,
     before: f64,
     failure: Option<LyapunovFailure>,
 ) -> Lyapunov {
@@ -184,6 +189,7 @@ fn result<const N: usize, const M: usize>(
     Lyapunov {
         exponents,
         ci,
+        most,
         divergence_mean: sums.divergence / time,
         time,
         running: running.map(|at| Running { time: at.time, exponents: sorted(&at.exponents) }).collect(),

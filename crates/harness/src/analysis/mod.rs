@@ -8,8 +8,10 @@
 mod discrete;
 mod equilibria;
 mod flow;
+mod linear_map;
 mod linearised;
 mod lyapunov;
+mod manifold;
 mod measure;
 mod momentum_meter;
 mod neutral;
@@ -18,7 +20,9 @@ mod parallel;
 mod phase;
 mod returns;
 mod root;
+mod search;
 mod section;
+mod shape;
 mod spectrum;
 mod stages;
 mod stretch;
@@ -26,8 +30,10 @@ mod tangent;
 mod verdict;
 mod volume;
 
-pub use discrete::{DiscreteMap, Step, StepLimit, differentiable};
-pub use equilibria::{Equilibrium, EquilibriumError, relative_equilibria};
+pub use discrete::{DiscreteMap, MapError, Step, StepLimit, differentiable};
+pub use equilibria::{
+    Equilibrium, EquilibriumError, RelativeEquilibria, relative_equilibria, relative_equilibria_within,
+};
 pub use linearised::{ReducedField, reduced_field};
 pub use lyapunov::{Lyapunov, LyapunovError, LyapunovRequest, kaplan_yorke, lyapunov, lyapunov_by, lyapunov_within};
 pub use measure::{enclosed_area, measure_defect};

@@ -1,36 +1,82 @@
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, SVD};
 
-/// A function with its derivative, at a point where it exists.
+/// A function with its derivative, at a point where it exists; there may be fewer values than variables, or more.
 pub(super) type Differentiated<'a> = dyn FnMut(&DVector<f64>) -> Option<(DVector<f64>, DMatrix<f64>)> + 'a;
 
 /// Corrections below this, relative to the point, are rounding.
 const ROUNDING: f64 = 1e-15;
-const MAX_ITERATIONS: u32 = 200;
+/// A correction below this, relative to the point, is that of a point which is a root but for rounding.
+const SETTLED: f64 = 1e-13;
+/// A singular value below this, relative to the largest, is that of a direction along which the function does not change.
+const NONE: f64 = 1e-12;
+const MAX_ITERATIONS: u32 = 100;
+/// After so many corrections in a row that do not help, none will.
+const MAX_FAILURES: u32 = 16;
+/// Of the largest square of a singular value, at the first value; and the factor by which the damping shrinks or grows.
+const DAMPING: f64 = 1e-3;
+const PACE: f64 = 8.0;
 
 /// The root of `F` near `z`, which need not be isolated: of a family of roots one close by.
 ///
-/// Levenberg and Marquardt's method with the damping `|F|`, which converges quadratically also to families. (Fan and Yuan
-/// 2005, Computing 74, 23-39.) `F` is small where it is below `tolerance`, in its own units.
+/// Levenberg and Marquardt's method with a damping that goes to zero with `|F|`, which converges quadratically also to families (Fan and
+/// Yuan 2005, Computing 74, 23-39). Each correction is the shortest of all that do as well: it comes from the singular values of the
+/// derivative, and along the directions of a family it is zero. `F` is small where it is below `tolerance`, in its own units, or where
+/// what is left of it is rounding.
 pub(super) fn nearest_root(f: &mut Differentiated<'_>, start: DVector<f64>, tolerance: f64) -> Option<DVector<f64>> {
     let mut z = start;
-    let (mut value, mut slope) = f(&z)?;
-    let mut damping = 1.0;
+    let (mut value, slope) = f(&z)?;
+    let mut slope = Decomposed::of(slope)?;
+    let (first, mut damping, mut failures) = (value.norm(), DAMPING, 0);
     for _ in 0..MAX_ITERATIONS {
         let size = value.norm();
         if size == 0.0 {
             break;
         }
-        let normal = slope.tr_mul(&slope) + DMatrix::identity(z.len(), z.len()) * (damping * size);
-        let step = normal.cholesky()?.solve(&-slope.tr_mul(&value));
+        let step = slope.correction(&value, damping * size / first);
         let next = &z + &step;
         match f(&next) {
             Some((there, its_slope)) if there.norm() < size => {
-                (z, value, slope) = (next, there, its_slope);
-                damping = f64::max(damping / 4.0, 1e-6);
+                (z, value, slope) = (next, there, Decomposed::of(its_slope)?);
+                (damping, failures) = (damping / PACE, 0);
             }
+            _ if size <= tolerance || failures == MAX_FAILURES => break,
             _ if step.norm() <= ROUNDING * (1.0 + z.norm()) => break,
-            _ => damping *= 4.0,
+            _ => (damping, failures) = (damping * PACE, failures + 1),
         }
     }
-    (value.norm() <= tolerance).then_some(z)
+    let rounding = SETTLED * (1.0 + z.norm());
+    let is_rounding = || slope.correction(&value, 0.0).norm() <= rounding && value.norm() <= rounding * slope.largest();
+    (value.norm() <= tolerance || is_rounding()).then_some(z)
+}
+
+/// A derivative by its singular values.
+struct Decomposed {
+    left: DMatrix<f64>,
+    sizes: DVector<f64>,
+    right: DMatrix<f64>,
+}
+
+impl Decomposed {
+    fn of(slope: DMatrix<f64>) -> Option<Self> {
+        if slope.iter().any(|x| !x.is_finite()) {
+            return None;
+        }
+        let svd = SVD::try_new(slope, true, true, f64::EPSILON, 10_000)?;
+        Some(Self { left: svd.u?, sizes: svd.singular_values, right: svd.v_t? })
+    }
+
+    fn largest(&self) -> f64 {
+        self.sizes.max()
+    }
+
+    /// The shortest correction that takes the value to zero, as nearly as the damping leaves; that is a part of the largest square.
+    fn correction(&self, value: &DVector<f64>, damping: f64) -> DVector<f64> {
+        let largest = self.largest();
+        let mut parts = self.left.tr_mul(value);
+        for (part, size) in parts.iter_mut().zip(&self.sizes) {
+            let factor = size / (size * size + damping * largest * largest);
+            *part *= if *size > NONE * largest { -factor } else { 0.0 };
+        }
+        self.right.tr_mul(&parts)
+    }
 }

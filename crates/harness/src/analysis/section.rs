@@ -1,5 +1,6 @@
 use crate::run::integrate_pieces;
-use crate::{Again, Method};
+use crate::timing::Ticker;
+use crate::{Again, Method, Progress};
 use dla::{Close, Crossing, Event, RunError, Schedule, State, Subject, Watch};
 
 /// The crossings of a surface by one motion.
@@ -11,6 +12,8 @@ pub struct Section<const N: usize> {
     pub close: Option<Close>,
     /// The step that failed, if one did.
     pub failure: Option<RunError>,
+    /// Whether the [`Progress`] ended the motion early.
+    pub interrupted: bool,
 }
 
 /// A step is looked at in so many parts: two crossings within one are not missed.
@@ -24,10 +27,13 @@ pub fn section<const N: usize, const M: usize>(
     schedule: &Schedule,
     (q, v): ([f64; N], [f64; N]),
     surface: &Event<'_, N>,
+    progress: &mut dyn Progress,
 ) -> Section<N> {
-    let mut watch = Watch::new(Again { method, own: subject.own }, std::slice::from_ref(surface), ());
+    let mut ticker = Ticker::new(progress, 0);
+    let mut watch = Watch::new(Again { method, own: subject.own }, std::slice::from_ref(surface), &mut ticker);
     watch.samples = SAMPLES;
     let outcome =
         integrate_pieces(subject, method, schedule, &mut State::new(q, v, subject.system.angles()), &mut watch);
-    Section { crossings: watch.crossings().to_vec(), close: watch.close(), failure: outcome.err() }
+    let (crossings, close) = (watch.crossings().to_vec(), watch.close());
+    Section { crossings, close, failure: outcome.err(), interrupted: ticker.stopped }
 }

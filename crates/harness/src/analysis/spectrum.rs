@@ -17,13 +17,28 @@ pub(super) fn spectrum(matrix: &DMatrix<f64>, order: fn([f64; 2]) -> f64) -> Opt
     if matrix.iter().any(|x| !x.is_finite()) {
         return None;
     }
+    if matrix.is_empty() {
+        return Some(Spectrum { values: Vec::new(), norm: 0.0 });
+    }
     let schur = Schur::try_new(matrix.clone(), f64::EPSILON, MAX_ITERATIONS)?;
-    let mut values: Vec<[f64; 2]> = schur.complex_eigenvalues().iter().map(|z| [z.re, z.im]).collect();
-    values.sort_by(|a, b| order(*b).total_cmp(&order(*a)).then(b[1].total_cmp(&a[1])));
-    Some(Spectrum { values, norm: matrix.norm() })
+    let values = schur.complex_eigenvalues().iter().map(|z| [z.re, z.im]).collect();
+    let mut spectrum = Spectrum { values, norm: matrix.norm() };
+    spectrum.sort(order);
+    Some(spectrum)
 }
 
 impl Spectrum {
+    /// The same with further eigenvalues, in their order.
+    pub(super) fn with(mut self, more: &[[f64; 2]], order: fn([f64; 2]) -> f64) -> Self {
+        self.values.extend(more);
+        self.sort(order);
+        self
+    }
+
+    fn sort(&mut self, order: fn([f64; 2]) -> f64) {
+        self.values.sort_by(|a, b| order(*b).total_cmp(&order(*a)).then(b[1].total_cmp(&a[1])));
+    }
+
     /// Whether no eigenvalue of a flow has a positive real part, but for rounding.
     pub(super) fn is_stable_flow(&self) -> bool {
         self.values.iter().all(|[re, _]| *re <= ROUNDING.sqrt() * self.norm)

@@ -1,17 +1,18 @@
 use super::discrete::differentiable;
 use super::flow::{Flow, ReducedFlow, Variables, admissible, divergence, entry};
+use super::manifold::{DEPENDENT, Split, positions};
 use super::stages::Stages;
 use crate::stepper::energy;
 use crate::{Method, MethodKind};
 use dla::{Differentiable, Lobatto, SeededMechanics, Sensitivity, SensitivityError, State, StepReport};
 use lagrangian::{Scalar, Seeded, from_fn};
 use nalgebra::DMatrix;
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 
-/// The derivatives of single steps of a run, in the coordinates `(q, xi)` of the distribution; an object, so that what uses it
-/// is compiled once.
+/// The derivatives of single steps of a run, in the coordinates `(q, xi)` of the distribution, along the directions that keep the constraints
+/// on positions, in an orthonormal basis of these at each node; an object, so that what uses it is compiled once.
 pub(super) trait StepTangent<const N: usize, const M: usize> {
-    /// How many coordinates `(q, xi)` there are.
+    /// How many such directions there are.
     fn count(&self) -> usize;
 
     /// What the continuous equations are at the first node of a run.
@@ -34,7 +35,7 @@ pub(super) trait StepTangent<const N: usize, const M: usize> {
 /// The derivative of a step.
 #[derive(Debug)]
 pub(super) struct Stepped<const N: usize> {
-    /// `d(q1, xi1)/d(q0, xi0)`, where `xi1` are quasi-velocities for the next step.
+    /// `d(q1, xi1)/d(q0, xi0)` along the directions, where `xi1` are quasi-velocities for the next step.
     pub(super) matrix: DMatrix<f64>,
     /// The logarithm of the volume that a change of the basis at the end of the step makes of one.
     pub(super) change: f64,
@@ -66,6 +67,9 @@ pub(super) struct Steps<'a, const N: usize, const M: usize> {
     system: &'a dyn SeededMechanics<N, M>,
     rule: TangentRule<N, M>,
     variables: Variables,
+    /// The number of directions, and those of the last node as columns, where positions are constrained.
+    count: usize,
+    directions: RefCell<Option<DMatrix<f64>>>,
     /// The number of the basis that holds now, of a system whose bases are local.
     basis: Cell<u64>,
 }
@@ -106,13 +110,40 @@ fn of_four<const N: usize, const M: usize>(kind: MethodKind) -> Option<Box<dyn D
 }
 
 impl<'a, const N: usize, const M: usize> Steps<'a, N, M> {
-    /// Of a system of which so many coordinates and constraints are its own.
+    /// Of a system of which so many coordinates and constraints are its own, whose motion begins at that time (s) and configuration.
     pub(super) fn of(
         system: &'a dyn SeededMechanics<N, M>,
         own: (usize, usize),
         method: &Method,
+        (t, q): (f64, &[f64; N]),
     ) -> Result<Self, SensitivityError> {
-        Ok(Self { system, rule: rule(method)?, variables: Variables::new::<N>(own), basis: Cell::new(0) })
+        let variables = Variables::new::<N>(own);
+        let (basis, directions) = (Cell::new(0), RefCell::new(None));
+        let mut steps = Self { system, rule: rule(method)?, count: variables.count(), variables, directions, basis };
+        if let Some(normals) = steps.normals(t, q) {
+            steps.count -= normals.ncols();
+        }
+        Ok(steps)
+    }
+
+    /// Orthonormal directions across the constraints on positions, in the coordinates; none where there are no such.
+    fn normals(&self, t: f64, q: &[f64; N]) -> Option<DMatrix<f64>> {
+        let (_, rows) = positions(self.system, self.variables.coordinates::<N>(), t, q);
+        if rows.nrows() == 0 { None } else { Some(Split::by(&rows, DEPENDENT)?.seen) }
+    }
+
+    /// Orthonormal directions along the constraints on positions, in the variables; none where there are no such.
+    fn along(&self, t: f64, q: &[f64; N]) -> Option<DMatrix<f64>> {
+        let normals = self.normals(t, q)?;
+        let rows = normals.transpose().resize_horizontally(self.variables.count(), 0.0);
+        Some(Split::by(&rows, DEPENDENT)?.unseen)
+    }
+
+    /// A matrix from the directions of the last node to those of a place, which are the last from then on.
+    fn restrict(&self, matrix: DMatrix<f64>, t: f64, q: &[f64; N]) -> DMatrix<f64> {
+        let Some(after) = self.along(t, q) else { return matrix };
+        let before = self.directions.replace(Some(after.clone())).unwrap_or_else(|| after.clone());
+        after.tr_mul(&matrix) * before
     }
 
     /// Does something with the system in the basis that holds at a place: of a system whose bases are local in that of this number, unless
@@ -150,7 +181,8 @@ impl<'a, const N: usize, const M: usize> Steps<'a, N, M> {
 
     fn local(&self, based: Based<'_, N, M>, t: f64, state: &State<N>) -> Result<Local<N>, SensitivityError> {
         let xi = admissible::<N, M>(&based.quasi_velocities(t, state)?);
-        let found = divergence(&Flow(based.system), &self.variables, t, state.q(), &xi);
+        let normals = self.normals(t, state.q());
+        let found = divergence(&Flow(based.system), (&self.variables, normals.as_ref()), t, state.q(), &xi);
         let (divergence, rate) = found.ok_or(NO_BASIS)?;
         Ok(Local { divergence, xi, rate })
     }
@@ -211,10 +243,11 @@ const AGREEMENT: f64 = 1e-9;
 
 impl<const N: usize, const M: usize> StepTangent<N, M> for Steps<'_, N, M> {
     fn count(&self) -> usize {
-        self.variables.count()
+        self.count
     }
 
     fn begin(&self, t: f64, state: &State<N>) -> Result<Local<N>, SensitivityError> {
+        self.directions.replace(self.along(t, state.q()));
         self.near(t, state.q(), |based| {
             self.basis.set(based.number);
             self.local(based, t, state)
@@ -230,6 +263,7 @@ impl<const N: usize, const M: usize> StepTangent<N, M> for Steps<'_, N, M> {
     ) -> Result<Stepped<N>, SensitivityError> {
         self.near(t, start.q(), |based| {
             let matrix = self.matrix(based, (t, h), (start, end), report)?;
+            let matrix = self.restrict(matrix, t + h, end.q());
             let local = self.local(based, t + h, end)?;
             let same = Stepped { matrix, change: 0.0, end: local, next: local };
             let mut changed = None;
@@ -242,6 +276,8 @@ impl<const N: usize, const M: usize> StepTangent<N, M> for Steps<'_, N, M> {
             });
             let Some((next, made)) = changed else { return Ok(same) };
             let (change, local) = made?;
+            // Configurations stay, and with them the directions.
+            let change = self.restrict(change, t + h, end.q());
             self.basis.set(next);
             let volume = change.determinant().abs().ln();
             Ok(Stepped { matrix: change * same.matrix, change: volume, next: local, ..same })

@@ -1,6 +1,6 @@
 use super::step::{AssemblyStep, LastNode};
 use assembly::{Assembly, AssemblyMethod, AssemblyState};
-use dla::{Close, Zero, close_crossings, zeros};
+use dla::{Close, Zero, Zeros, close_crossings, zeros};
 use std::fmt;
 
 /// Of the time (s) and the state.
@@ -60,19 +60,19 @@ pub struct AssemblyCrossing {
 
 impl AssemblyCrossing {
     /// Which of those of a run are so close to one another that others may have been missed (see [`dla::close_crossings`]).
-    #[must_use]
-    pub fn close(crossings: &[Self]) -> Option<Close> {
+    pub(super) fn close(crossings: &[Self]) -> Option<Close> {
         close_crossings(crossings.iter().map(|crossing| (crossing.event, crossing.t, crossing.spacing)), |_| false)
     }
 }
 
-/// Notes the crossings within a step, up to the first that ends the run: there it ends. The step is divided into so many parts.
+/// Notes the crossings within a step, up to the first that ends the run: there it ends. The step is divided into so many parts; where an event
+/// has no value at one of them, that is counted.
 pub(super) fn ended(
     assembly: &Assembly,
     method: &mut dyn AssemblyMethod,
     step: &AssemblyStep<'_>,
     (events, samples): (&[AssemblyEvent<'_>], u32),
-    crossings: &mut Vec<AssemblyCrossing>,
+    (crossings, unseen): (&mut Vec<AssemblyCrossing>, &mut u64),
 ) -> Option<LastNode> {
     if events.is_empty() {
         return None;
@@ -88,12 +88,14 @@ pub(super) fn ended(
     };
     let samples = i64::from(samples.max(1));
     let parts = (-1..=samples + 1).map(|j| j as f64 / samples as f64);
-    let states: Vec<(f64, AssemblyState)> = parts.filter_map(|part| Some((part, after(part)?))).collect();
+    let states: Vec<(f64, Option<AssemblyState>)> = parts.map(|part| (part, after(part))).collect();
     let mut found = Vec::new();
     for (event, AssemblyEvent { function, filter, .. }) in events.iter().enumerate() {
-        let known: Vec<(f64, f64)> = states.iter().map(|(part, state)| (*part, function(time(*part), state))).collect();
-        let value = |part: f64| after(part).map_or(f64::NAN, |state| function(time(part), &state));
-        for Zero { at, within, rising } in zeros(&known, 0.0, |_| true, value) {
+        let at = |part: f64, state: Option<&AssemblyState>| state.map_or(f64::NAN, |state| function(time(part), state));
+        let known: Vec<(f64, f64)> = states.iter().map(|(part, state)| (*part, at(*part, state.as_ref()))).collect();
+        let Zeros { zeros, unseen: missing } = zeros(&known, 0.0, |_| true, |part| at(part, after(part).as_ref()));
+        *unseen += u64::from(missing);
+        for Zero { at, within, rising } in zeros {
             if let Some(state) = after(at).filter(|state| filter(time(at), state, rising)) {
                 let (t, within, spacing) = (time(at), within * step.h.abs(), step.h.abs() / samples as f64);
                 found.push((at, AssemblyCrossing { event, k: step.k, t, within, spacing, rising, state }));

@@ -20,7 +20,7 @@ use assembly::{
     Assembly, AssemblyError, AssemblyMethod, AssemblyRunError, AssemblyState, Solver, SparseComposition, SparseDla,
     SparseEnergy, SparseLobatto,
 };
-use dla::Schedule;
+use dla::{Close, Schedule};
 use events::ended;
 use making::{AssemblyTicker, Making};
 use pieces::{AssemblyPieces, PieceStep};
@@ -153,7 +153,7 @@ pub fn run_assembly(
 }
 
 /// The same, with an eye on events in so many parts of each step; one that is terminal ends the run at its first crossing. Returns
-/// the crossings in the order in which they happened.
+/// the crossings in the order in which they happened, and why some may have been missed.
 ///
 /// Inside a step the state is that of a shorter step of the same method from the same node, as in [`dla::Watch`].
 pub fn run_assembly_watched(
@@ -163,13 +163,14 @@ pub fn run_assembly_watched(
     (start, nodes): (&AssemblyState, AssemblyNodes<'_>),
     events: (&[AssemblyEvent<'_>], u32),
     progress: &mut dyn Progress,
-) -> (Assembled, Vec<AssemblyCrossing>) {
+) -> (Assembled, Vec<AssemblyCrossing>, Option<Close>) {
     let mut making = Making::new(assembly, method, schedule, start, nodes);
-    let (mut ticker, mut crossings) = (AssemblyTicker::new(progress, 0), Vec::new());
+    let (mut ticker, mut crossings, mut unseen) = (AssemblyTicker::new(progress, 0), Vec::new(), 0);
     making.go(schedule.steps, &mut ticker, |method, step| {
-        let last = ended(assembly, method, &step, events, &mut crossings);
+        let last = ended(assembly, method, &step, events, (&mut crossings, &mut unseen));
         last.map_or(ControlFlow::Continue(()), ControlFlow::Break)
     });
     ticker.finish(making.made);
-    (making.assembled(ticker.stopped), crossings)
+    let close = Close::with_unseen(AssemblyCrossing::close(&crossings), unseen);
+    (making.assembled(ticker.stopped), crossings, close)
 }

@@ -58,7 +58,8 @@ pub struct Clock {
     pub thread: bool,
     /// The thread stayed on one core.
     pub pinned: bool,
-    /// Batches of runs that a median is of; fewer, five at least, for runs longer than half a millisecond.
+    /// Batches of runs that a median is of, all [rounds] unless the work was ended before; fewer, five at least of all rounds, for runs longer
+    /// than half a millisecond.
     pub rounds: u64,
 }
 
@@ -82,7 +83,8 @@ pub fn work_precision(
         progress.advance(1);
     }
     let all: Vec<&ladder::Rung> = ladders.iter().flatten().flatten().collect();
-    let mut times = race::race(bench, &all, limits.longest, progress).into_iter();
+    let (times, rounds) = race::race(bench, &all, limits.longest, progress);
+    let mut times = times.into_iter();
     let mut curves = Vec::with_capacity(methods.len());
     for (method, ladder) in methods.iter().zip(&ladders) {
         let info = method.info();
@@ -91,7 +93,7 @@ pub fn work_precision(
         let curve = Curve::new(info.name.to_owned(), None, Some(info.order), points);
         curves.push(Curve { refusal: ladder.as_ref().err().copied(), ..curve });
     }
-    (curves, Clock { thread: has_thread_time(), pinned: pinned.holds(), rounds: race::ROUNDS })
+    (curves, Clock { thread: has_thread_time(), pinned: pinned.holds(), rounds })
 }
 
 /// The rounds of the timing.

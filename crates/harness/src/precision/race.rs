@@ -20,7 +20,7 @@ pub(super) struct Measured {
     pub(super) spread: f64,
 }
 
-/// Times all runs, each round one batch of every run: a drift of the processor's clock is the same for all of them.
+/// Times all runs, and says how many rounds were made; each round is one batch of every run: a drift of the processor's clock is the same for all of them.
 ///
 /// A batch is warm: where its runs are short, one goes before it that does not count. What failed has no time.
 pub(super) fn race(
@@ -28,8 +28,9 @@ pub(super) fn race(
     rungs: &[&Rung],
     longest: f64,
     progress: &mut dyn Progress,
-) -> Vec<Option<Measured>> {
+) -> (Vec<Option<Measured>>, u64) {
     let mut batches: Vec<Vec<Taken>> = vec![Vec::new(); rungs.len()];
+    let mut made = 0;
     for round in 0..ROUNDS {
         if progress.stops() {
             break;
@@ -49,9 +50,10 @@ pub(super) fn race(
             }
             batches.push(take(runs, run));
         }
+        made += 1;
         progress.advance(1);
     }
-    batches.iter().map(|batches| measured(batches)).collect()
+    (batches.iter().map(|batches| measured(batches)).collect(), made)
 }
 
 /// Whether a run that long (s) has a batch in a round: as many as there is time for, spread over all rounds.

@@ -1,10 +1,18 @@
 use approx::assert_relative_eq;
 use dla::{Differentiable, Dla, OneStep, SeededMechanics, State};
-use harness::analysis::{DiscreteMap, Equilibrium, EquilibriumError, StepLimit, differentiable, relative_equilibria};
+use harness::analysis::{DiscreteMap, Equilibrium, EquilibriumError, StepLimit, differentiable};
 use harness::{Method, Rk4};
 use lagrangian::{System, With};
 use sleigh::effects::{Bowl, Drag, EggCrate, Slope, Thrust, Torque};
 use sleigh::{Flywheel, Guide, Guided, Sleigh, SleighState, TimeFunction};
+
+fn relative_equilibria<const N: usize, const M: usize>(
+    system: &dyn SeededMechanics<N, M>,
+    q: &[f64; N],
+    v: &[f64; N],
+) -> Result<Vec<Equilibrium<N>>, EquilibriumError> {
+    harness::analysis::relative_equilibria(system, q, v).map(|all| all.found)
+}
 
 fn sleigh() -> Sleigh {
     Sleigh::new(1.3, 0.7, 0.4).unwrap()
@@ -53,7 +61,7 @@ fn straight_motion_has_the_eigenvalues_of_the_book() {
 
         let method = Dla::midpoint();
         let mut step = steps(&sleigh, Dla::midpoint());
-        let mut map = DiscreteMap::new(&sleigh, &method, &mut step);
+        let mut map = DiscreteMap::new((&sleigh, (3, 1)), &method, &mut step);
         for h in [0.01, 0.3, 1.5] {
             let half = 0.5 * h * -rate;
             let mut expected = [(1.0 - half) / (1.0 + half), 1.0];
@@ -77,10 +85,10 @@ fn the_step_has_the_limit_of_its_method() {
     let straight = with_speed(&found, 1.0);
     let method = Dla::midpoint();
     let mut step = steps(&sleigh, Dla::midpoint());
-    let limit = DiscreteMap::new(&sleigh, &method, &mut step).limit(0.05, straight);
+    let limit = DiscreteMap::new((&sleigh, (3, 1)), &method, &mut step).limit(0.05, straight);
     assert!(matches!(limit, StepLimit::Beyond(h) if h > 100.0), "{limit:?}");
     let mut step = steps(&sleigh, Rk4);
-    let limit = DiscreteMap::new(&sleigh, &Rk4, &mut step).limit(0.05, straight);
+    let limit = DiscreteMap::new((&sleigh, (3, 1)), &Rk4, &mut step).limit(0.05, straight);
     let rate = sleigh.spin_gain() * 1.2;
     // |1 - z + z^2/2 - z^3/6 + z^4/24| = 1, where the slope is 1.8; a size of one has the rounding of a double eigenvalue, 1.2e-7.
     assert_relative_eq!(limit.step().unwrap() * rate, 2.785_293_563_405_28, max_relative = 1e-7);
@@ -126,7 +134,7 @@ fn at_the_bottom_of_a_bowl_it_swings() {
     assert!(rest.stable);
     let method = Dla::midpoint();
     let mut step = steps(&system, Dla::midpoint());
-    let map = DiscreteMap::new(&system, &method, &mut step).spectrum(0.2, rest).unwrap();
+    let map = DiscreteMap::new((&system, (3, 1)), &method, &mut step).spectrum(0.2, rest).unwrap();
     assert!(map.iter().all(|[re, im]| (re.hypot(*im) - 1.0).abs() < 1e-7), "{map:?}");
 }
 

@@ -131,7 +131,7 @@ fn check_events(places: [f64; 2]) {
         let method = Method::named(name, None).unwrap();
         let x = |value: f64| move |_: f64, state: &AssemblyState| state.unwrapped(0) - value;
         let events = [AssemblyEvent::new("first", false, x(places[0])), AssemblyEvent::new("last", true, x(places[1]))];
-        let (run, crossings) = run_assembly_watched(
+        let (run, crossings, _) = run_assembly_watched(
             &train.assembly,
             &method,
             &SCHEDULE,
@@ -307,7 +307,8 @@ fn long_steps_of_trains_are_made_in_parts_at_length() {
         }
 
         let events = [AssemblyEvent::new("x", true, |_, state| state.q(0) - 1.0)];
-        let (ended, crossings) = run_assembly_watched(&train.assembly, &method, &long, kept(), (&events, 4), &mut ());
+        let (ended, crossings, _) =
+            run_assembly_watched(&train.assembly, &method, &long, kept(), (&events, 4), &mut ());
         assert_eq!((crossings.len(), ended.record.t), (1, crossings[0].t), "{name}");
         assert_abs_diff_eq!(ended.end.q(0), 1.0, epsilon = 1e-9);
     }

@@ -227,7 +227,7 @@ fn check_ended_step(time: f64) {
         let method = Method::named(name, None).unwrap();
         let at = |t: f64, _: &AssemblyState| t - time;
         let events = [AssemblyEvent::new("t", true, at)];
-        let (run, _) = run_assembly_watched(
+        let (run, ..) = run_assembly_watched(
             &train.assembly,
             &method,
             &schedule,

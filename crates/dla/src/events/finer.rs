@@ -1,0 +1,108 @@
+use super::Event;
+use super::interval::EventInterval;
+use crate::{OneStep, State};
+use lagrangian::from_fn;
+
+/// What the samples of a step tell of an event between them.
+pub(super) enum Between {
+    /// Enough.
+    Told,
+    /// It changes more quickly than they show: its values at so many parts of the step, on the way that the state takes between samples.
+    Finer(u32, Vec<(f64, f64)>),
+    /// It changes more quickly than anything here shows.
+    Untold,
+}
+
+/// What a value may be off the cubic through its neighbours, relative to half their range: a sine with four samples in a turn is off by
+/// 0.14, and its crossings are found; of one with fewer they need not be.
+const BENDS: f64 = 0.1;
+/// What is between samples of a state is known by a cubic; where an event on it is off by more than this part of what it bends by, the cubic
+/// says nothing of the event.
+const KNOWN: f64 = 0.25;
+/// Where it is off by so many times what the event bends by, the event hardly changes, and what bends is rounding.
+const FLAT: f64 = 100.0;
+/// The most parts of a step.
+const MOST: u32 = 1 << 14;
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+impl<Method, const N: usize, const M: usize> EventInterval<'_, Method, N, M>
+where
+    Method: OneStep<N, M> + Clone,
+{
+    /// Whether an event bends between the samples of a step, of which there is one beyond both ends: one value in each part is compared with
+    /// the cubic through the four samples about it, at a place that differs from part to part. A sine that is looked at too seldom is not
+    /// where the slower one is that it looks like.
+    pub(super) fn between(
+        &self,
+        event: &Event<'_, N>,
+        states: &[(f64, Option<State<N>>)],
+        known: &[(f64, f64)],
+        parts: u32,
+    ) -> Between {
+        let on_the_way = |at: f64| {
+            let place = at * f64::from(parts) + 1.0;
+            let j = (place as usize).min(states.len().saturating_sub(2));
+            match (&states[j].1, &states[j + 1].1) {
+                (Some(from), Some(to)) => {
+                    let state = self.cubic((from, to), self.h / f64::from(parts), place - j as f64);
+                    event.value(self.time(at), &state)
+                }
+                _ => f64::NAN,
+            }
+        };
+        let truly = |at: f64| self.state(at).map_or(f64::NAN, |state| event.value(self.time(at), &state));
+        let (mut bends, mut untold) = (false, false);
+        for (at, foretold, range) in places(known, parts) {
+            let there = on_the_way(at);
+            if (there - foretold).abs() > BENDS * range {
+                let truth = truly(at);
+                let (bend, off) = ((truth - foretold).abs(), (truth - there).abs());
+                bends |= bend > BENDS * range && off < KNOWN * bend;
+                untold |= bend > BENDS * range && off >= KNOWN * bend && off < FLAT * bend;
+            }
+        }
+        if !bends {
+            return if untold { Between::Untold } else { Between::Told };
+        }
+        let mut finer = parts;
+        while finer <= MOST / 2 {
+            finer *= 2;
+            let part = |j: i64| j as f64 / f64::from(finer);
+            let values: Vec<_> = (-1..=i64::from(finer) + 1).map(|j| (part(j), on_the_way(part(j)))).collect();
+            if places(&values, finer).all(|(at, foretold, range)| (on_the_way(at) - foretold).abs() <= BENDS * range) {
+                return Between::Finer(finer, values);
+            }
+        }
+        Between::Untold
+    }
+
+    /// The state between two that are `s` seconds apart: a cubic in the coordinates.
+    fn cubic(&self, (from, to): (&State<N>, &State<N>), s: f64, c: f64) -> State<N> {
+        let (q0, q1) = (from.unwrapped(), to.unwrapped());
+        let parts = from_fn::<_, N, _>(|i| {
+            let (d0, d1, change) = (s * from.v()[i], s * to.v()[i], q1[i] - q0[i]);
+            [d0, 3.0 * change - 2.0 * d0 - d1, d0 + d1 - 2.0 * change]
+        });
+        let q = from_fn(|i| q0[i] + c * (parts[i][0] + c * (parts[i][1] + c * parts[i][2])));
+        let v = from_fn(|i| (parts[i][0] + c * (2.0 * parts[i][1] + c * 3.0 * parts[i][2])) / s);
+        State::new(q, v, self.system.angles())
+    }
+}
+
+/// A place in each part, what the cubic through the samples about it is there, and half the range of these; nothing where one has no value.
+fn places(known: &[(f64, f64)], parts: u32) -> impl Iterator<Item = (f64, f64, f64)> {
+    known.windows(4).enumerate().filter_map(move |(j, four)| {
+        let values = [0, 1, 2, 3].map(|k| four[k].1);
+        let c = 0.25 + 0.5 * (0.5 + (j + 1) as f64 * GOLDEN).fract();
+        let weights = [
+            -c * (c - 1.0) * (c - 2.0) / 6.0,
+            (c + 1.0) * (c - 1.0) * (c - 2.0) / 2.0,
+            -(c + 1.0) * c * (c - 2.0) / 2.0,
+            (c + 1.0) * c * (c - 1.0) / 6.0,
+        ];
+        let cubic = (0..4).map(|k| weights[k] * values[k]).sum::<f64>();
+        let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+        cubic.is_finite().then(|| ((j as f64 + c) / f64::from(parts), cubic, 0.5 * (most - least)))
+    })
+}

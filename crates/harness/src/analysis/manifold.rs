@@ -1,0 +1,48 @@
+use dla::Mechanics;
+use nalgebra::{DMatrix, DVector, SVD};
+
+/// A singular value of rows of the length one that is below this is none: rows that depend on one another.
+pub(super) const DEPENDENT: f64 = 1e-10;
+
+/// What rows see of a space and what they do not, each as orthonormal columns.
+#[derive(Debug, Clone)]
+pub(super) struct Split {
+    pub(super) seen: DMatrix<f64>,
+    pub(super) unseen: DMatrix<f64>,
+}
+
+impl Split {
+    /// Of the space that the columns of `rows` number; a singular value up to `floor` is none.
+    pub(super) fn by(rows: &DMatrix<f64>, floor: f64) -> Option<Self> {
+        let n = rows.ncols();
+        if n == 0 {
+            return Some(Self { seen: DMatrix::zeros(0, 0), unseen: DMatrix::zeros(0, 0) });
+        }
+        // A square matrix has all right vectors.
+        let square = rows.clone().resize(rows.nrows().max(n), n, 0.0);
+        let svd = SVD::try_new(square, false, true, f64::EPSILON, 10_000)?;
+        let (vectors, sizes) = (svd.v_t?, svd.singular_values);
+        let of = |seen: bool| -> Vec<DVector<f64>> {
+            let chosen = (0..n).filter(|&k| (sizes[k] > floor) == seen);
+            chosen.map(|k| vectors.row(k).transpose()).collect()
+        };
+        let columns = |of: &[DVector<f64>]| DMatrix::from_fn(n, of.len(), |i, j| of[j][i]);
+        Some(Self { seen: columns(&of(true)), unseen: columns(&of(false)) })
+    }
+}
+
+/// The functions of the constraints on positions, and the rows of their gradients, in the first `n` coordinates; no rows without such
+/// constraints. The rows have the length one: in whichever unit a function is, it says the same.
+pub(super) fn positions<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    n: usize,
+    t: f64,
+    q: &[f64; N],
+) -> (DVector<f64>, DMatrix<f64>) {
+    let misses: Vec<_> = system.position_misses(t, q).into_iter().flatten().flatten().collect();
+    let length = |eps: &[f64; N]| eps[..n].iter().fold(0.0, |sum: f64, x| sum.hypot(*x));
+    let lengths: Vec<f64> = misses.iter().map(|g| Some(length(&g.eps)).filter(|l| *l > 0.0).unwrap_or(1.0)).collect();
+    let values = DVector::from_fn(misses.len(), |k, _| misses[k].re / lengths[k]);
+    let rows = DMatrix::from_fn(misses.len(), n, |k, i| misses[k].eps[i] / lengths[k]);
+    (values, rows)
+}
