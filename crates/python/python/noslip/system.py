@@ -8,8 +8,7 @@ from typing import Any
 import tomli_w
 
 from ._noslip import RequestError
-from .expressions import name, text
-from .mechanics import of_kanes, of_lagranges
+from .expressions import name, refuse_twins, text
 from .results import Run
 from .scenes import Scene
 
@@ -47,18 +46,23 @@ class System(Scene):
         title: str | None = None,
     ) -> None:
         units = coordinates if isinstance(coordinates, Mapping) else dict.fromkeys(coordinates, "1")
+        constraints, positions, basis = list(constraints), list(positions), [list(vector) for vector in basis]
+        forces, outputs, parameters = forces or {}, outputs or {}, parameters or {}
+        rows = (entry for vector in basis for entry in vector)
+        texts = [lagrangian, *constraints, *positions, *rows, *forces.values(), *outputs.values()]
+        refuse_twins([*units, *parameters, *forces, *texts])
         self.coordinates = [name(coordinate) for coordinate in units]
         system: dict[str, Any] = {
             "coordinates": dict(zip(self.coordinates, units.values(), strict=True)),
-            "parameters": {name(key): float(value) for key, value in (parameters or {}).items()},
+            "parameters": {name(key): float(value) for key, value in parameters.items()},
             "lagrangian": text(lagrangian),
             "constraints": [text(row) for row in constraints],
         }
         optional = {
-            "forces": {name(key): text(force) for key, force in (forces or {}).items()},
+            "forces": {name(key): text(force) for key, force in forces.items()},
             "positions": [text(position) for position in positions],
             "basis": [[text(entry) for entry in vector] for vector in basis],
-            "outputs": {key: text(output) for key, output in (outputs or {}).items()},
+            "outputs": {key: text(output) for key, output in outputs.items()},
         }
         system.update({key: value for key, value in optional.items() if value})
         self._tables: dict[str, Any] = {
@@ -73,6 +77,8 @@ class System(Scene):
     @classmethod
     def from_lagranges(cls, method: Any, parameters: Mapping[Any, float] | None = None, **settings: Any) -> System:
         """The system of a `sympy.physics.mechanics.LagrangesMethod`, its forces and constraints included."""
+        from .mechanics import of_lagranges
+
         return cls(**{**of_lagranges(method), "parameters": parameters, **settings})
 
     @classmethod
@@ -82,6 +88,8 @@ class System(Scene):
         The start is given by rates of coordinates, as for any system, not by generalised speeds. Bodies whose velocities have
         constraints put into them already are refused.
         """
+        from .mechanics import of_kanes
+
         return cls(**{**of_kanes(method), "parameters": parameters, **settings})
 
     def __reduce__(self) -> tuple[Any, ...]:
