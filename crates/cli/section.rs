@@ -117,6 +117,9 @@ impl Visitor for Sections<'_> {
             let event =
                 if plane.period().is_some() { event } else { event.in_direction(self.arguments.direction.into()) };
             let found = harness::analysis::section((&system).into(), &self.method, &schedule, starts[i], &event);
+            if dla::stops() {
+                return None;
+            }
             let point = |crossing: &dla::Crossing<N>| {
                 let (t, q, v) = (crossing.t, crossing.state.unwrapped(), crossing.state.v());
                 surface.holds(&system, t, &q, v).then(|| SectionPoint {

@@ -5,7 +5,7 @@ use super::pace::{degree, longer, quarters_of, roughest};
 use super::rule::quarter_octaves;
 use super::{Gauss, TakenStep};
 use crate::positions::affine_only;
-use crate::{Mechanics, OneStep, OwnStep, State, StepError, StepReport};
+use crate::{Mechanics, OneStep, OwnStep, State, StepError, StepReport, stops};
 use lagrangian::linear::larger;
 use lagrangian::mapped;
 use std::ops::ControlFlow;
@@ -170,6 +170,9 @@ impl GaussAdaptive {
         let mut quarters = self.quarters.unwrap_or_else(|| first(system, t0, whole, state));
         let mut slopes = StageSlopes::ZERO;
         for tries in 1..=Self::MAX_TRIES {
+            if stops() {
+                return Err(StepError::Stopped);
+            }
             let full = quarter_octaves(quarters);
             let rest = whole - made;
             let last = 1.01 * full >= rest.abs();

@@ -1,7 +1,7 @@
 use super::reduced_point::ReducedPoint;
 use differential_equations::methods::{DormandPrince, ExplicitRungeKutta, Ordinary};
 use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
-use dla::{Mechanics, OneStep, OwnStep, StackUse, State, StepError, StepReport};
+use dla::{Mechanics, OneStep, OwnStep, StackUse, State, StepError, StepReport, stops};
 use std::cell::Cell;
 use std::ops::ControlFlow;
 
@@ -50,6 +50,9 @@ impl<const N: usize, const M: usize> Dop853<N, M> {
         slopes.left.set(1);
         solver.init(slopes, 0.0, h, &ReducedPoint { d: [0.0; N], xi }).map_err(|_| failed(0, h))?;
         for tries in 1..=Self::MAX_TRIES {
+            if stops() {
+                return Err(StepError::Stopped);
+            }
             let (begin, full) = (solver.t(), solver.h());
             if full.abs() <= f64::EPSILON * h.abs() {
                 return Err(failed(tries - 1, full));
@@ -138,6 +141,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Dop853<N, M> {
         let xi0 = state.quasi_velocities(system, t)?;
         match self.cross(&ReducedSlopes::new(system, t, state), h, xi0, |_, _| ControlFlow::Continue(())) {
             Ok(_) => moved(system, t + h, self.solver.y(), state),
+            Err(StepError::Stopped) => Err(StepError::Stopped),
             Err(error) => match at_rest(system, (t, h), state, &xi0) {
                 Some(point) => moved(system, t + h, &point, state),
                 None => Err(error),
@@ -178,6 +182,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Dop853<N, M> {
         }
         match crossed {
             Ok(_) => Ok((moved(system, end.unwrap_or(t + h), self.solver.y(), state)?, end)),
+            Err(StepError::Stopped) => Err(StepError::Stopped),
             Err(error) => match at_rest(system, (t, h), state, &xi0) {
                 Some(point) => Ok((moved(system, t + h, &point, state)?, None)),
                 None => Err(error),

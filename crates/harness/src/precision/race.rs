@@ -2,6 +2,7 @@ use super::ladder::Rung;
 use super::{Bench, digits};
 use crate::Progress;
 use crate::stopwatch::{Taken, take};
+use dla::stops;
 use std::hint::black_box;
 
 /// A batch of runs takes so long (s), so that reading the clock does not count; less where the longest run is shorter.
@@ -30,7 +31,7 @@ pub(super) fn race(
     progress: &mut dyn Progress,
 ) -> Vec<Option<Measured>> {
     let mut batches: Vec<Vec<Taken>> = vec![Vec::new(); rungs.len()];
-    for round in 0..ROUNDS {
+    'rounds: for round in 0..ROUNDS {
         if progress.stops() {
             break;
         }
@@ -47,7 +48,11 @@ pub(super) fn race(
             if runs > 1 {
                 run();
             }
-            batches.push(take(runs, run));
+            let taken = take(runs, run);
+            if stops() {
+                break 'rounds;
+            }
+            batches.push(taken);
         }
         progress.advance(1);
     }

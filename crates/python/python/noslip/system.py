@@ -75,6 +75,14 @@ class System(Scene):
         super().__init__(tomli_w.dumps(self._tables), "system")
 
     @classmethod
+    def _of(cls, tables: dict[str, Any]) -> System:
+        """The system of these tables."""
+        made = cls.__new__(cls)
+        made._tables, made.coordinates = tables, list(tables["system"]["coordinates"])
+        Scene.__init__(made, tomli_w.dumps(tables), "system")
+        return made
+
+    @classmethod
     def from_lagranges(cls, method: Any, parameters: Mapping[Any, float] | None = None, **settings: Any) -> System:
         """The system of a `sympy.physics.mechanics.LagrangesMethod`, its forces and constraints included."""
         from .mechanics import of_lagranges
@@ -93,20 +101,20 @@ class System(Scene):
         return cls(**{**of_kanes(method), "parameters": parameters, **settings})
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Scene, (self.text, self.origin)
+        return System._of, (self._tables,)
 
-    def started(self, q: Values = None, v: Values = None) -> Scene:
+    def started(self, q: Values = None, v: Values = None) -> System:
         """The same system with another start."""
         start = dict(self._tables["start"])
         start.update(_named(self.coordinates, q, ""))
         start.update(_named(self.coordinates, v, "'"))
-        return Scene(tomli_w.dumps({**self._tables, "start": start}), self.origin)
+        return self._of({**self._tables, "start": start})
 
     def run(self, *, q: Values = None, v: Values = None, **settings: Any) -> Run:
         """Makes a run as `Scene.run`, from the start `q`, `v` where these are given."""
         if q is None and v is None:
             return super().run(**settings)
-        return self.started(q, v).run(**settings)
+        return Scene.run(self.started(q, v), **settings)
 
 
 def _named(coordinates: list[str], values: Values, suffix: str) -> dict[str, float]:
