@@ -30,7 +30,7 @@ pub(crate) struct Made<const N: usize> {
 
 impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
     /// The run of a scene from its start, forward or backward in time, with the steps of the scene or the longest that meet a tolerance
-    /// (m or rad); a method that chooses steps of its own is to aim for the tolerance already.
+    /// (m or rad), whose `search` shows its steps; a method that chooses steps of its own is to aim for the tolerance already.
     ///
     /// # Errors
     /// [`CliError`] where the system has no such quantity, or no step meets the tolerance.
@@ -40,6 +40,7 @@ impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
         (q, v): StartPlace<N>,
         (tolerance, backward): (Option<f64>, bool),
         (reported, ending): (&'a [Trigger], &'a [Trigger]),
+        search: &mut dyn Progress,
     ) -> Result<Self, CliError> {
         let watched = reported.iter().chain(ending).map(|trigger| trigger.on(&system)).collect::<Result<_, _>>()?;
         let mut schedule = scene.schedule();
@@ -53,7 +54,7 @@ impl<'a, const N: usize, const M: usize> Account<'a, N, M> {
         if let Some(tolerance) = tolerance.filter(|_| !method.is_adaptive()) {
             // Of the method itself: parts would make any step look good enough.
             let whole = method.undivided();
-            let found = recommend((&system).into(), &whole, (q, v), scene.run().duration, tolerance);
+            let found = recommend((&system).into(), &whole, (q, v), (scene.run().duration, tolerance), search);
             let found = found.map_err(|error| CliError::Tolerance(Box::new(error)))?;
             schedule = Schedule { step: found.step, steps: found.steps, ..schedule };
         }

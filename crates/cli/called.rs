@@ -1,27 +1,32 @@
+use dla::Stop;
 use harness::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget};
 use std::cell::RefCell;
 use std::ffi::OsString;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// What a program that calls a command has to do with it while it goes on: it may end the command, and see how far it has come.
 #[derive(Debug, Clone, Default)]
 pub struct Caller {
-    stop: Arc<AtomicBool>,
+    stop: Stop,
     bar: Arc<Mutex<Option<ProgressBar>>>,
 }
 
 impl Caller {
     /// Ends the command soon, as Ctrl-C does; what is done is kept.
     pub fn stop(&self) {
-        self.stop.store(true, Ordering::Relaxed);
+        self.stop.ask();
     }
 
     /// Whether the command is to end.
     #[must_use]
     pub fn stops(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
+        self.stop.asked()
+    }
+
+    /// Does some work of this thread, which the caller ends between two steps wherever it is.
+    pub fn attend<T>(&self, work: impl FnOnce() -> T) -> T {
+        self.stop.within(work)
     }
 
     /// What is being done, how much of it is done, and how much there is in all.
@@ -64,6 +69,10 @@ impl<'a> ShownToCaller<'a> {
 impl Progress for ShownToCaller<'_> {
     fn advance(&mut self, steps: u64) {
         self.bar.inc(steps);
+    }
+
+    fn expect(&mut self, steps: u64) {
+        self.bar.inc_length(steps);
     }
 
     fn stops(&self) -> bool {

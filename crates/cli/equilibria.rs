@@ -82,7 +82,7 @@ impl Visitor for Find<'_> {
         let h = scene.run().actual_step();
         let mut step = |step: f64, start: &State<N>| {
             let (mut end, schedule) = (*start, Schedule { t0: 0.0, step, steps: 1 });
-            integrate_pieces(&system, method, &schedule, &mut end, &mut ()).ok().map(|_| end)
+            (integrate_pieces(&system, method, &schedule, &mut end, &mut ()) == Ok(1)).then_some(end)
         };
         let mut map = DiscreteMap::new((&*system, own), &*steps, &mut step);
         let mut row = |e: &Equilibrium<N>| MotionRow {

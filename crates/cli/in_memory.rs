@@ -64,11 +64,24 @@ impl From<CliError> for Refusal {
     }
 }
 
+/// Refuses times of samples that no run of that duration (s) passes in their order.
+///
+/// # Errors
+/// [`Refusal`].
+pub fn check_times(times: &[f64], duration: f64) -> Result<(), Refusal> {
+    if times.is_sorted() && times.iter().all(|t| (0.0..=duration).contains(t)) {
+        return Ok(());
+    }
+    let message = format!("the times must increase, and lie within the run, from 0 to {duration:?} s");
+    Err(Refusal { message, request: true })
+}
+
 /// Makes the run of a scene, with its method, step and duration.
 ///
 /// # Errors
 /// [`Refusal`] where the request makes no sense for the scene, or no step meets the tolerance. A run that fails is a result.
 pub fn run(scene: &AnyScene, request: &RunRequest, caller: &Caller) -> Result<RunResult, Refusal> {
+    check_times(&request.times, scene.run().duration)?;
     let method = inspect::method(scene.run())?.aiming_for(request.tolerance).map_err(CliError::from)?;
     let method = if request.substep { method.with_substeps(Substeps::default()) } else { method };
     if let AnyScene::Sleigh(scene) = scene
@@ -103,7 +116,9 @@ impl Visitor for InMemory<'_> {
             caller,
         } = self;
         let (reported, ending) = (triggers(events)?, triggers(until)?);
-        let account = Account::new(system, (scene, method), (q, v), (*tolerance, *backward), (&reported, &ending))?;
+        let mut search = ShownToCaller::new(caller, "choosing a step", 0);
+        let (run, steps) = ((scene, method), (*tolerance, *backward));
+        let account = Account::new(system, run, (q, v), steps, (&reported, &ending), &mut search)?;
         let mut shown = ShownToCaller::new(caller, method.info().name, account.request.schedule.steps);
         let (mut trajectory, sampled): (_, Vec<Node<N, M>>);
         let (made, nodes) = if times.is_empty() {

@@ -68,18 +68,26 @@ mod train;
 mod trigger;
 
 use args::{Arguments, Command};
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 use error::CliError;
 use std::process::ExitCode;
 
 pub use called::{Caller, CommandOutput, ShownToCaller, call};
 pub use ensemble::{SweepPlan, plan};
-pub use in_memory::{Refusal, RunRequest, RunResult, run};
+pub use in_memory::{Refusal, RunRequest, RunResult, check_times, run};
 
 /// The program: the command of its arguments, with its exit code.
 #[must_use]
 pub fn main() -> ExitCode {
     ExitCode::from(obey(std::env::args_os()))
+}
+
+/// The long flags of a command; none of one that there is not.
+#[must_use]
+pub fn flags(command: &str) -> Vec<String> {
+    let program = Arguments::command();
+    let flags = program.find_subcommand(command).into_iter().flat_map(clap::Command::get_arguments);
+    flags.filter_map(|argument| argument.get_long().map(str::to_owned)).collect()
 }
 
 /// Does what the arguments say, the first of which is the name of the program, and gives the exit code.

@@ -142,7 +142,8 @@ impl Visitor for Run<'_> {
     fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
         let RunArguments { checkpoint, resume, tolerance, event, until, event_samples, .. } = self.arguments;
         let run = (self.scene, self.method);
-        let account = Account::new(system, run, (q, v), (*tolerance, is_backward(self.arguments)), (event, until))?;
+        let steps = (*tolerance, is_backward(self.arguments));
+        let account = Account::new(system, run, (q, v), steps, (event, until), &mut ())?;
         let schedule = &account.request.schedule;
         let mut identity = identity_of(self.scene, self.method, schedule);
         if let Some(events) = account.events_identity(*event_samples) {

@@ -127,6 +127,9 @@ impl Visitor for Sections<'_> {
                 &event,
                 &mut Until(&interrupt),
             );
+            if dla::stops() {
+                return None;
+            }
             let point = |crossing: &dla::Crossing<N>| {
                 let (t, q, v) = (crossing.t, crossing.state.unwrapped(), crossing.state.v());
                 surface.holds(&system, t, &q, v).then(|| SectionPoint {

@@ -103,7 +103,7 @@ impl Visitor for Map<'_> {
                 None => Cell::None,
             };
             bar.inc(1);
-            cell
+            if dla::stops() { Cell::Left } else { cell }
         });
         bar.finish_and_clear();
         let columns = quantities.map(|k| system.quantities()[k].column());

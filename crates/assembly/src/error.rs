@@ -122,6 +122,9 @@ pub enum AssemblyError {
     /// The method makes the step, but its halves lead elsewhere (see [`dla::Halved`]); asked only of steps that may be made in parts.
     #[error("the step does not resolve the motion: two steps of half the length end elsewhere")]
     Unresolved,
+    /// Whoever waits has asked for the end ([`dla::Stop`]).
+    #[error("ended before it was done")]
+    Stopped,
     /// Forces or constraints jump inside the step, across which no method has an order.
     #[error("forces or constraints jump at t = {} s, inside the step: the run has fewer steps than pieces between jumps", Shown(*time))]
     Jump {
@@ -164,6 +167,7 @@ impl AssemblyError {
             Self::NotFinite => StepError::NotFinite,
             Self::NotANumber { source, .. } => StepError::NotANumber(*source),
             Self::Unresolved => StepError::Unresolved,
+            Self::Stopped => StepError::Stopped,
             Self::Jump { time } => StepError::Jump { time: *time },
             Self::Unsupported { reason } => StepError::Unsupported { reason },
             Self::Coordinates { .. } | Self::Wide { .. } | Self::Number { .. } | Self::Factorisation { .. } => {

@@ -1,6 +1,6 @@
 use crate::dependent::named;
 use crate::suspect::suspect_along;
-use crate::{Mechanics, OneStep, State, StepError, StepReport, Undivided};
+use crate::{Mechanics, OneStep, State, StepError, StepReport, Stop, Undivided};
 use lagrangian::Shown;
 use lagrangian::linear::largest;
 use std::ops::{ControlFlow, Range};
@@ -231,7 +231,7 @@ where
 pub struct Part {
     /// The number of steps made since the start of the run.
     pub made: u64,
-    /// Whether the observer ended the run.
+    /// Whether the observer ended the run, or whoever waits for it ([`Stop`]).
     pub stopped: bool,
 }
 
@@ -267,7 +267,12 @@ where
         observer.resume(&first);
     }
     let (mut outcome, mut stopped) = (Ok(()), false);
+    let stop = Stop::of_thread_if_any();
     while made < steps.end {
+        if stop.as_ref().is_some_and(Stop::asked) {
+            stopped = true;
+            break;
+        }
         // The time is computed again where a step fails, so that it need not be kept during the step.
         match method.step(system, schedule.time(made), schedule.step, state) {
             Ok(report) => {
@@ -277,6 +282,10 @@ where
                     stopped = true;
                     break;
                 }
+            }
+            Err(StepError::Stopped) => {
+                stopped = true;
+                break;
             }
             Err(source) => {
                 let time = schedule.time(made);

@@ -184,8 +184,8 @@ impl StepError {
                 Hint::Numbers
             }
             Self::Motion(_) | Self::Dependent(_) | Self::Reduced(ReducedError::Motion(_)) => Hint::Constraints,
-            // It says itself what to do.
-            Self::Slips { .. } | Self::JumpsAtRest { .. } => return None,
+            // It says itself what to do, or nothing is to be done.
+            Self::Slips { .. } | Self::JumpsAtRest { .. } | Self::Stopped => return None,
         })
     }
 }

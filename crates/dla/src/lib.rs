@@ -55,6 +55,7 @@ mod settle;
 mod stack;
 mod start;
 mod state;
+mod stop;
 mod subject;
 mod substepping;
 mod suspect;
@@ -102,6 +103,7 @@ pub use sensitivity::{
 pub use stack::StackUse;
 pub use start::{Start, consistent_start, slip};
 pub use state::State;
+pub use stop::{Stop, stops};
 pub use subject::{OwnMethods, Stepper, Subject};
 pub use substepping::Substepping;
 pub use trajectory::{Node, Nodes, Trajectory};

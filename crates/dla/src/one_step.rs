@@ -305,6 +305,9 @@ pub enum StepError {
     /// [`Halved`](crate::Halved)); asked only of steps that may be made in parts.
     #[error("the step does not resolve the motion: two steps of half the length end elsewhere")]
     Unresolved,
+    /// Whoever waits has asked for the end ([`Stop`](crate::Stop)); no run fails by that, it ends before the step.
+    #[error("ended before it was done")]
+    Stopped,
 }
 
 impl StepError {

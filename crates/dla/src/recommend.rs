@@ -1,4 +1,4 @@
-use crate::{Mechanics, OneStep, RunError, Runaway, Samples, Schedule, State, StepError, drive};
+use crate::{Mechanics, OneStep, RunError, Runaway, Samples, Schedule, State, StepError, drive, stops};
 use lagrangian::linear::larger;
 use thiserror::Error;
 
@@ -39,6 +39,9 @@ pub enum RecommendError {
         /// And so many of them.
         steps: u64,
     },
+    /// Whoever waits has ended the search ([`Stop`](crate::Stop)).
+    #[error("ended before a step was found")]
+    Stopped,
     /// The run fails with the shortest step tried.
     #[error("the run fails even with steps of {step:.3e} s: {source}")]
     Fails {
@@ -115,6 +118,9 @@ pub fn recommend_by_trial<const N: usize>(
         let end = schedule.time(steps);
         let times: [f64; TIMES] = lagrangian::from_fn(|i| end * (i + 1) as f64 / TIMES as f64);
         let found = make(&schedule, &times)?;
+        if stops() {
+            return Err(RunError { step: steps, time: end, source: StepError::Stopped });
+        }
         let sampled: Sampled<N> = lagrangian::from_fn(|i| found.get(i).map_or([f64::NAN; N], State::unwrapped));
         let finite = sampled.iter().flatten().all(|q| q.is_finite());
         if finite { Ok(sampled) } else { Err(RunError { step: steps, time: end, source: StepError::NotFinite }) }
@@ -188,6 +194,7 @@ fn reference<const N: usize>(
                     trials.push((steps, now));
                 }
             }
+            Err(RunError { source: StepError::Stopped, .. }) => return Err(RecommendError::Stopped),
             // What was found with longer steps, if anything was, cannot be compared.
             Err(error) => {
                 failure = Some(error);
@@ -240,7 +247,10 @@ fn refined<const N: usize>(
         Some(many) => many,
         None => loop {
             let steps = 2 * few.0;
-            let fails = |source| RecommendError::Fails { step: duration / steps as f64, source };
+            let fails = |source: RunError| match source.source {
+                StepError::Stopped => RecommendError::Stopped,
+                _ => RecommendError::Fails { step: duration / steps as f64, source },
+            };
             let error = distance(&trial(steps).map_err(fails)?, reference);
             if error <= aim {
                 break (steps, error);
@@ -258,7 +268,10 @@ fn refined<const N: usize>(
             break;
         }
         let steps = between(few, many, f64::sqrt(aim * enough));
-        let error = trial(steps).map_or(f64::INFINITY, |found| distance(&found, reference));
+        let error = match trial(steps) {
+            Err(RunError { source: StepError::Stopped, .. }) => return Err(RecommendError::Stopped),
+            found => found.map_or(f64::INFINITY, |found| distance(&found, reference)),
+        };
         if error <= aim {
             many = (steps, error);
         } else {

@@ -109,7 +109,7 @@ pub(crate) fn observed_and_timed<const N: usize, const M: usize>(
     let mut ticker = Ticker::new(progress, 0);
     let outcome = integrate_pieces(subject, method, &schedule, &mut start.clone(), &mut (&mut meter, &mut ticker));
 
-    let interrupted = ticker.stopped;
+    let interrupted = ticker.stopped || outcome.is_ok_and(|made| made < schedule.steps);
     let steps = outcome.unwrap_or_else(|failure| failure.valid_steps());
     let wall_seconds = timed(subject, method, request, steps, progress);
     Record { interrupted, ..meter.record(method.info(), wall_seconds, outcome.err()) }

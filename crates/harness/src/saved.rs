@@ -162,6 +162,7 @@ pub fn run_saved_watched<const N: usize, const M: usize>(
     let (begin, before) = (Instant::now(), run.seconds);
     let (first, mut state) = (run.made, run.state);
     let mut seen = (first > 0).then_some((run.t, state));
+    let mut stopped = false;
     let ends = |done: &Part| saving.every.is_some() && (done.stopped || done.made == schedule.steps);
     let outcome =
         piece_by_piece_from(first, system, &schedule, &mut state, |piece, Piece { steps, schedule: times }, state| {
@@ -202,13 +203,14 @@ pub fn run_saved_watched<const N: usize, const M: usize>(
                     (saving.save)(&run.checkpoint(saving.identity));
                 }
                 if done.stopped {
+                    stopped = true;
                     break;
                 }
             }
             Ok(done)
         });
     let seconds = before + begin.elapsed().as_secs_f64();
-    let interrupted = ticker.stopped;
+    let interrupted = ticker.stopped || stopped;
     let record = Record { interrupted, ..run.meter.record(method.info(), seconds, outcome.err()) };
     let looked = run.crossings.iter().map(|crossing| (crossing.event, crossing.t, crossing.spacing));
     let close = close_crossings(looked, |event| events.get(event).is_some_and(Event::leaves_some_out));

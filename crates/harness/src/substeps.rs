@@ -70,6 +70,7 @@ pub(crate) fn substepped_part<const N: usize, const M: usize>(
                 stopped = observer.step(&node, &report).is_break();
             }
             Ok(ControlFlow::Break(())) => stopped = true,
+            Err(RunError { source: StepError::Stopped, .. }) => stopped = true,
             Err(error) => {
                 outcome = Err(error);
                 break;
@@ -98,7 +99,8 @@ fn step<const N: usize, const M: usize>(
     let mut memory = Vec::new();
     let whole = drive_part(system, method, schedule, k..k + 1, state, &mut report)
         .map_err(|error| error.source)
-        .and_then(|_| {
+        .and_then(|part| if part.made > k { Ok(()) } else { Err(StepError::Stopped) })
+        .and_then(|()| {
             memory = method.memory();
             resolves(system, method, (t, h), &before, state)
         });
@@ -161,8 +163,8 @@ pub(crate) fn one<const N: usize, const M: usize>(
     method.recall(&[], state);
     let mut report = LastReport(StepReport::of(0));
     let alone = Schedule { t0: t, step: h, steps: 1 };
-    drive_part(system, method, &alone, 0..1, state, &mut report).map_err(|error| error.source)?;
-    Ok(report.0)
+    let part = drive_part(system, method, &alone, 0..1, state, &mut report).map_err(|error| error.source)?;
+    if part.made == 1 { Ok(report.0) } else { Err(StepError::Stopped) }
 }
 
 /// What the last step reported.

@@ -13,6 +13,9 @@ pub trait Progress {
     /// So many more steps are done.
     fn advance(&mut self, steps: u64);
 
+    /// So many more steps are going to be made than were known of.
+    fn expect(&mut self, _steps: u64) {}
+
     /// Whether the run is to end here, with what it has; asked every 2^10 steps, and after every part of a divided one.
     fn stops(&self) -> bool {
         false

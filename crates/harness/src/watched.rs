@@ -60,13 +60,14 @@ pub fn run_observed<const N: usize, const M: usize>(
     let mut state = start;
     // The run is made once: its time has what looks on in it.
     let taken = take(1, || outcome = integrate_pieces(subject, method, &schedule, &mut state, &mut watch));
-    let (crossings, close) = (watch.crossings().to_vec(), watch.close());
-    let interrupted = ticker.stopped;
+    let (crossings, close, ended) = (watch.crossings().to_vec(), watch.close(), watch.ended().is_some());
+    let interrupted = ticker.stopped || (outcome.is_ok_and(|made| made < schedule.steps) && !ended);
     let record = Record { interrupted, ..meter.record(method.info(), taken.wall, outcome.err()) };
     Watched { record, trajectory: None, crossings, close }
 }
 
-/// The longest step of a whole run from time zero that meets a tolerance (see [`dla::recommend_step`]).
+/// The longest step of a whole run from time zero that meets a tolerance (see [`dla::recommend_step`]). `progress` is told of the steps of
+/// each trial.
 ///
 /// # Errors
 /// [`RecommendError`], with the best that is within reach.
@@ -75,12 +76,15 @@ pub fn recommend<const N: usize, const M: usize>(
     subject: Subject<'_, N, M>,
     method: &Method,
     (q, v): ([f64; N], [f64; N]),
-    duration: f64,
-    tolerance: f64,
+    (duration, tolerance): (f64, f64),
+    progress: &mut dyn Progress,
 ) -> Result<Recommendation, RecommendError> {
     recommend_by_trial(duration, tolerance, |schedule, times| {
         let mut samples = Samples::new(Again { method, own: subject.own }, times);
-        integrate_pieces(subject, method, schedule, &mut State::new(q, v, subject.system.angles()), &mut samples)?;
+        let mut state = State::new(q, v, subject.system.angles());
+        progress.expect(schedule.steps);
+        let mut ticker = Ticker::new(progress, 0);
+        integrate_pieces(subject, method, schedule, &mut state, &mut (&mut samples, &mut ticker))?;
         samples.into_taken().map_err(|source| dla::RunError { step: schedule.steps, time: schedule.t0, source })
     })
 }

@@ -1,4 +1,4 @@
-use crate::errors::{BusyError, raised};
+use crate::errors::{BusyError, in_python, raised};
 use crate::supervise::{Supervised, supervised};
 use cli::{CommandOutput, SweepPlan};
 use pyo3::prelude::*;
@@ -21,7 +21,14 @@ pub(crate) fn command(
     let Supervised { value, ended } = supervised(py, progress, |caller| cli::call(arguments, caller))?;
     let CommandOutput { code, out, err, busy } = value;
     let ended = if busy { Some(BusyError::new_err(err.trim().to_owned())) } else { ended };
+    let err = if code == 0 { err } else { in_python(&err) };
     Ok((code, out, err, ended.map(|error| error.into_value(py).into_any())))
+}
+
+/// The flags of a command, as arguments.
+#[pyfunction]
+pub(crate) fn arguments(command: &str) -> Vec<String> {
+    cli::flags(command).into_iter().map(|flag| flag.replace('-', "_")).collect()
 }
 
 /// The parts that the sweep in a file is computed in.

@@ -15,5 +15,22 @@ create_exception!(noslip, BusyError, RequestError, "Another process writes the s
 
 /// The exception of what was not computed.
 pub(crate) fn raised(Refusal { message, request }: Refusal) -> PyErr {
+    let message = in_python(&message);
     if request { RequestError::new_err(message) } else { ComputationError::new_err(message) }
+}
+
+/// A message whose flags are arguments: `--event-samples` is `event_samples`. What stands between backticks is a command, and stays.
+pub(crate) fn in_python(message: &str) -> String {
+    let part = |(k, part): (usize, &str)| if k % 2 == 0 { without_dashes(part) } else { part.to_owned() };
+    message.split('`').enumerate().map(part).collect::<Vec<_>>().join("`")
+}
+
+fn without_dashes(text: &str) -> String {
+    let word = |word: &str| match word.trim_start_matches(['(', '"', '\'']).strip_prefix("--") {
+        Some(flag) if flag.starts_with(|first: char| first.is_ascii_lowercase()) => {
+            word.replacen("--", "", 1).replace('-', "_")
+        }
+        _ => word.to_owned(),
+    };
+    text.split(' ').map(word).collect::<Vec<_>>().join(" ")
 }

@@ -14,9 +14,12 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _noslip {
     #[pymodule_export]
-    use crate::commands::{command, plan};
+    use crate::commands::{arguments, command, plan};
     #[pymodule_export]
     use crate::errors::{BusyError, ComputationError, NoslipError, RequestError};
     #[pymodule_export]
     use crate::scenes::{Scene, bundled, methods};
+    #[pymodule_export]
+    #[allow(non_upper_case_globals, reason = "the name that Python has for it")]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
 }

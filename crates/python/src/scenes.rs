@@ -116,7 +116,11 @@ impl Scene {
     ) -> PyResult<Made<'py>> {
         let request = RunRequest { every, times, tolerance, substep, events, until, backward };
         let Supervised { value, ended } = supervised(py, progress, |caller| cli::run(&self.scene, &request, caller))?;
-        let RunResult { columns, numbers, object, failure, .. } = value.map_err(raised)?;
+        let RunResult { columns, numbers, object, failure, .. } = match (value, ended.as_ref()) {
+            // What was ended before there was anything has no reason of its own.
+            (Err(_), Some(ended)) => return Err(ended.clone_ref(py)),
+            (value, _) => value.map_err(raised)?,
+        };
         let arrays = PyDict::new(py);
         for (column, numbers) in columns.iter().zip(numbers) {
             arrays.set_item(&column.name, PyArray1::from_vec(py, numbers))?;

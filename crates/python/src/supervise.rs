@@ -1,5 +1,7 @@
+use crate::errors::NoslipError;
 use cli::Caller;
 use pyo3::prelude::*;
+use std::any::Any;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
@@ -32,7 +34,7 @@ pub(crate) fn supervised<T: Send>(
             let its = caller.clone();
             let thread = std::thread::Builder::new().stack_size(STACK);
             let worker = thread.spawn_scoped(scope, move || {
-                let value = work(&its);
+                let value = its.attend(|| work(&its));
                 // The other end waits as long as this thread is there.
                 let _ = sender.send(());
                 value
@@ -48,10 +50,18 @@ pub(crate) fn supervised<T: Send>(
             }
             match worker.join() {
                 Ok(value) => Ok(Supervised { value, ended }),
-                Err(_) => Err(crate::errors::NoslipError::new_err("a panic in the library: please report it")),
+                Err(panic) => {
+                    Err(NoslipError::new_err(format!("a fault of the library, please report it: {}", said(&*panic))))
+                }
             }
         })
     })
+}
+
+/// What a panic said.
+fn said(panic: &(dyn Any + Send)) -> &str {
+    let literal = panic.downcast_ref::<&str>().copied();
+    literal.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("no message")
 }
 
 /// Whether Python has something against going on.

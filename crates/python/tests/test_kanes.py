@@ -112,7 +112,75 @@ def placed_disc() -> Kane:
     return disc(placed=True)
 
 
-@pytest.mark.parametrize("make", [pendulum_cart, nonminimal_pendulum, placed_disc], ids=lambda make: str(make.__name__))
+def bead() -> Kane:
+    """A bead in a bowl, by its place, that also obeys a row which is no rate of a position; the time comes before its coordinates."""
+    x, y, z, u1, u2, u3 = dynamicsymbols("x y z u1 u2 u3")
+    m, g = sp.symbols("m g", positive=True)
+    frame, place = ReferenceFrame("N"), Point("P")
+    place.set_vel(frame, u1 * frame.x + u2 * frame.y + u3 * frame.z)
+    method = KanesMethod(
+        frame,
+        q_ind=[x, y],
+        q_dependent=[z],
+        u_ind=[u1],
+        u_dependent=[u2, u3],
+        kd_eqs=[x.diff(t) - u1, y.diff(t) - u2, z.diff(t) - u3],
+        configuration_constraints=[z - x**4 / 4 - y**2 / 2],
+        velocity_constraints=[u3 - x**3 * u1 - y * u2, u2 - sp.sin(x) * u1 / 2],
+        bodies=[Particle("bead", place, m)],
+        forcelist=[(place, -m * g * frame.z)],
+    )
+    return Kane(method, {m: 1.0, g: 10.0}, [1.0, 0.3, 0.295], [0.2, 0.1 * np.sin(1.0), 0.2 + 0.03 * np.sin(1.0)])
+
+
+def sleigh(names: str, **settings: Any) -> Kane:
+    """A sleigh, whose blade is the dependent speed."""
+    x, y, theta, u, v, w = dynamicsymbols(f"{names} u v w")
+    m, inertia_, offset = sp.symbols("m J a", positive=True)
+    frame = ReferenceFrame("N")
+    body = frame.orientnew("A", "Axis", [theta, frame.z])
+    body.set_ang_vel(frame, w * frame.z)
+    origin, blade = Point("O"), Point("P")
+    origin.set_vel(frame, 0)
+    blade.set_vel(frame, u * body.x + v * body.y)
+    centre = blade.locatenew("C", offset * body.x)
+    centre.v2pt_theory(blade, frame, body)
+    rates = [x.diff(t) - u * sp.cos(theta) + v * sp.sin(theta), y.diff(t) - u * sp.sin(theta) - v * sp.cos(theta)]
+    method = KanesMethod(
+        frame,
+        [x, y, theta],
+        [u, w],
+        u_dependent=[v],
+        kd_eqs=[*rates, theta.diff(t) - w],
+        velocity_constraints=[v],
+        bodies=[RigidBody("sleigh", centre, body, m, (inertia(body, 0, 0, inertia_), centre))],
+        **settings,
+    )
+    return Kane(method, {m: 1.0, inertia_: 1.0, offset: 0.5}, [0.0, 0.0, 0.3], [-1.0, 0.1, 0.0])
+
+
+def late_sleigh() -> Kane:
+    """A sleigh whose coordinates have names after that of the time."""
+    return sleigh("x y theta")
+
+
+def ball(rolling: bool) -> Any:
+    """A ball on a turntable: its angular velocity that of rolling, or about the vertical, of an angle."""
+    x, y, phi, u1, u2, u3 = dynamicsymbols("p q phi u1 u2 u3")
+    m, r, turning = sp.symbols("m r W")
+    frame, turned, centre = ReferenceFrame("N"), ReferenceFrame("B"), Point("C")
+    centre.set_vel(frame, u1 * frame.x + u2 * frame.y)
+    rolled = (turning * x - u2) / r * frame.x + (u1 + turning * y) / r * frame.y
+    turned.set_ang_vel(frame, rolled if rolling else u3 * frame.z)
+    moment = m * r**2 * 2 / 5
+    body = RigidBody("ball", centre, turned, m, (inertia(frame, moment, moment, moment), centre))
+    rates = [x.diff(t) - u1, y.diff(t) - u2, phi.diff(t) - u3]
+    return KanesMethod(frame, [x, y, phi], [u1, u2, u3], rates, bodies=[body])
+
+
+@pytest.mark.parametrize(
+    "make", [pendulum_cart, nonminimal_pendulum, placed_disc, bead, late_sleigh], ids=lambda make: str(make.__name__)
+)
 def test_kanes_method_agrees_with_scipy(make: Callable[[], Kane]) -> None:
     method, values, q, u = make()
     method.kanes_equations()
@@ -136,3 +204,33 @@ def test_kanes_method_agrees_with_scipy(make: Callable[[], Kane]) -> None:
 def test_velocities_with_constraints_put_into_them_are_refused() -> None:
     with pytest.raises(noslip.RequestError, match="velocity of Dmc is not that of a place.*velocity_constraints"):
         noslip.System.from_kanes(disc(placed=False).method, {})
+
+
+def test_angular_velocities_with_constraints_put_into_them_are_refused() -> None:
+    with pytest.raises(noslip.RequestError, match="angular velocity of B is not that of an attitude in the coordinates"):
+        noslip.System.from_kanes(ball(rolling=True))
+    # About an axis that stays, any rate is that of an angle.
+    assert noslip.System.from_kanes(ball(rolling=False), {"m": 1.0, "r": 0.2}).coordinates == ["p", "q", "phi"]
+
+
+def test_positions_are_kept_beside_further_rows() -> None:
+    method, values, q, _ = bead()
+    system = noslip.System.from_kanes(method, values, q=q, outputs={"miss": "z - x^4/4 - y^2/2"})
+    assert system.text.count("positions") == 1
+    # Rates alone would leave the bowl by 4e-5 m.
+    assert np.abs(system.run(step=0.01, duration=2.0)["miss"]).max() < 1e-13
+
+
+def test_constraints_on_accelerations_are_refused_unless_they_are_those_on_velocities() -> None:
+    v = dynamicsymbols("v")
+    assert noslip.System.from_kanes(sleigh("x y b", acceleration_constraints=[v.diff(t)]).method, late_sleigh().values)
+    with pytest.raises(noslip.RequestError, match="constraint on accelerations"):
+        noslip.System.from_kanes(sleigh("x y b", acceleration_constraints=[v.diff(t) - 1]).method)
+
+
+@pytest.mark.parametrize("make", [noslip.System.from_kanes, noslip.System.from_lagranges])
+@pytest.mark.parametrize("wrong", [5, None, "x'^2"])
+def test_what_is_no_method_of_sympy_is_refused(make: Callable[[Any], Any], wrong: object) -> None:
+    with pytest.raises(noslip.RequestError, match="accepted is a sympy.physics.mechanics") as caught:
+        make(wrong)
+    assert isinstance(caught.value, TypeError)

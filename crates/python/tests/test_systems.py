@@ -1,5 +1,7 @@
 """Systems of one's own, as text and as SymPy expressions, against SciPy on SymPy's own equations."""
 
+import copy
+import pickle
 from typing import Any
 
 import numpy as np
@@ -217,3 +219,34 @@ def test_forces_and_constraints_of_a_lagranges_method_count() -> None:
     held = LagrangesMethod(lagrangian - 9.81 * y, [x, y], hol_coneqs=[x**2 + y**2 - 1])
     swing = noslip.System.from_lagranges(held, q=[1.0, 0.0]).run(duration=1.0)
     np.testing.assert_allclose(swing["x"] ** 2 + swing["y"] ** 2, 1.0, atol=1e-10)
+
+
+def test_names_of_latex_are_names() -> None:
+    x, k, m = dynamicsymbols("x_{1}"), sp.Symbol("k_{1}"), sp.Symbol(r"\mu")
+    lagrangian = m * x.diff(t) ** 2 / 2 - k * x**2 / 2
+    written = noslip.System([x], lagrangian, parameters={k: 4.0, m: 1.0}, q=[1.0])
+    assert written.coordinates == ["x_1"]
+    np.testing.assert_allclose(written.run(method="gauss16", duration=1.0)["x_1"][-1], np.cos(2.0), rtol=1e-13)
+    assert noslip.System(["x"], "x'^2/2 - k_1*x^2/2", parameters={"k_{1}": 4.0}).run(duration=0.1)
+
+
+@pytest.mark.parametrize("other", [sp.Symbol("k_1"), dynamicsymbols("k_{1}")])
+def test_two_symbols_are_not_one_name(other: Any) -> None:
+    x = dynamicsymbols("x")
+    with pytest.raises(noslip.RequestError, match=r"would have one name, k_1: rename one of them"):
+        noslip.System([x], x.diff(t) ** 2 / 2 - sp.Symbol("k_{1}") * x**2 + other)
+
+
+def test_numbers_of_numpy_are_numbers() -> None:
+    plain = noslip.System(["x"], "x'^2/2", forces={"x": 2.5})
+    for number in (np.float64(2.5), np.float32(2.5), sp.Rational(5, 2)):
+        made = noslip.System(["x"], "x'^2/2", forces={"x": number}, q=np.array([0.0]))
+        assert made.run(duration=1.0)["x"][-1] == plain.run(duration=1.0)["x"][-1]
+    bowl = [{"kind": "bowl", "stiffness": np.array([0.1, 0.2])}]
+    assert noslip.Sleigh(effects=bowl) == noslip.Sleigh(effects=[{"kind": "bowl", "stiffness": [0.1, 0.2]}])
+
+
+def test_systems_stay_systems() -> None:
+    system = noslip.System(["x"], "x'^2/2 - 2*x^2", q=[1.0])
+    for other in (pickle.loads(pickle.dumps(system)), copy.deepcopy(system), system.started(q=[1.0])):
+        assert other == system and other.run(q=[0.5], duration=1.0)["x"][0] == 0.5

@@ -6,7 +6,7 @@ use super::pace::{degree, longer, quarters_of, roughest, shorter};
 use super::rule::{LONGER, quarter_octaves};
 use super::{Gauss, TakenStep};
 use crate::positions::affine_only;
-use crate::{Mechanics, OneStep, OwnStep, State, StepError, StepReport};
+use crate::{Mechanics, OneStep, OwnStep, State, StepError, StepReport, stops};
 use lagrangian::linear::larger;
 use lagrangian::{PowerSources, from_fn, mapped};
 use std::ops::ControlFlow;
@@ -193,6 +193,9 @@ impl GaussAdaptive {
         self.doubt = self.doubt.or_else(|| Some(Doubt::of(system.smoothness())));
         let (mut before, mut slopes) = (self.quarters, StageSlopes::ZERO);
         for tries in 1..=Self::MAX_TRIES {
+            if stops() {
+                return Err(StepError::Stopped);
+            }
             let full = quarter_octaves(quarters);
             let rest = whole - made;
             let last = 1.01 * full >= rest.abs();

@@ -1,8 +1,8 @@
 use super::AssemblyNode;
 use super::pieces::{AssemblyPieces, PieceStep};
 use crate::Method;
-use assembly::{Assembly, AssemblyRunError, AssemblyState};
-use dla::Schedule;
+use assembly::{Assembly, AssemblyError, AssemblyRunError, AssemblyState};
+use dla::{Schedule, stops};
 
 /// Makes a run of an assembly, and shows its states at given times (s), in the order of the run: between nodes that of a shorter step from
 /// the node before. Nothing is known of the work there.
@@ -38,6 +38,9 @@ pub(super) fn states_at(
             return Ok(());
         }
         let PieceStep { assembly, stepper, time: (t0, h), end } = pieces.step(k, &mut state)?;
+        if stops() {
+            return Err(AssemblyRunError { step: k + 1, time: t0, source: AssemblyError::Stopped });
+        }
         let failed = |source| AssemblyRunError { step: k + 1, time: t0, source };
         while let Some(t) = times.next_if(|t| (end - t) * h > 0.0) {
             let mut between = state.clone();

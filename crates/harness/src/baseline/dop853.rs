@@ -1,7 +1,7 @@
 use super::reduced_point::ReducedPoint;
 use differential_equations::methods::{DormandPrince, ExplicitRungeKutta, Ordinary};
 use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
-use dla::{MeanPower, Mechanics, OneStep, OwnStep, StackUse, State, StepError, StepReport, power};
+use dla::{MeanPower, Mechanics, OneStep, OwnStep, StackUse, State, StepError, StepReport, power, stops};
 use lagrangian::PowerSources;
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -70,6 +70,9 @@ impl<const N: usize, const M: usize> Dop853<N, M> {
         solver.init(slopes, 0.0, h, &ReducedPoint { d: [0.0; N], xi }).map_err(|_| failed(0, h))?;
         slopes.begin_step();
         for tries in 1..=Self::MAX_TRIES {
+            if stops() {
+                return Err(StepError::Stopped);
+            }
             let (begin, full) = (solver.t(), solver.h());
             if full.abs() <= f64::EPSILON * h.abs() {
                 return Err(failed(tries - 1, full));
@@ -198,6 +201,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Dop853<N, M> {
         let slopes = ReducedSlopes::new(system, self.sources, t, state);
         match self.cross(&slopes, h, xi0, |_, _| ControlFlow::Continue(())) {
             Ok(_) => moved(system, t + h, self.solver.y(), state).map(|()| slopes.report()),
+            Err(StepError::Stopped) => Err(StepError::Stopped),
             Err(error) => match at_rest(system, (t, h), state, &xi0) {
                 Some(point) => moved(system, t + h, &point, state).map(|()| StepReport::of(0)),
                 None => Err(error),
@@ -243,6 +247,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Dop853<N, M> {
         }
         match crossed {
             Ok(_) => moved(system, end.unwrap_or(t + h), self.solver.y(), state).map(|()| (slopes.report(), end)),
+            Err(StepError::Stopped) => Err(StepError::Stopped),
             Err(error) => match at_rest(system, (t, h), state, &xi0) {
                 Some(point) => moved(system, t + h, &point, state).map(|()| (StepReport::of(0), None)),
                 None => Err(error),

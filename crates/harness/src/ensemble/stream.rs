@@ -1,4 +1,5 @@
 use crate::analysis::STACK;
+use dla::Stop;
 use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
@@ -9,7 +10,7 @@ const GROUPS_A_THREAD: u64 = 4;
 
 /// Computes members in groups of `size`, on all threads, and hands what the groups give to `sink`, in order and as soon as it is done:
 /// all results that follow on the last one, at least one. `Break` ends it. Once `stops` says so no further group begins; those that have
-/// begun are finished and handed on.
+/// begun are finished and handed on. Where whoever waits for this thread ends it ([`Stop`]), they are not.
 ///
 /// A group is the same members always, counted from zero, and knows nothing of the others, so that the number of threads
 /// (`RAYON_NUM_THREADS`), and where a sequence is taken up again, change no bit. Where one group takes long the others
@@ -26,9 +27,15 @@ pub fn in_order<T: Send, E>(
     let groups = members.start / size..members.end.div_ceil(size);
     let ahead = (AHEAD / size).max(GROUPS_A_THREAD * threads as u64);
     let line = Line::new(groups, ahead, threads);
+    let stop = Stop::of_thread();
+    let stops = || stops() || stop.asked();
     let compute = |group: u64| {
         let begin = group * size;
-        line.put(group, each(begin..members.end.min(begin + size)));
+        let made = stop.within(|| each(begin..members.end.min(begin + size)));
+        // Members that were ended on the way are no results.
+        if !stop.asked() {
+            line.put(group, made);
+        }
     };
     let work = || {
         let _leaving = Leaving(&line);

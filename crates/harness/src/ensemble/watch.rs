@@ -2,7 +2,7 @@ use super::summary::Of;
 use super::{Quantities, Summary};
 use crate::Method;
 use crate::run::integrate_pieces;
-use dla::{Ensemble, Mechanics, Observer, RunError, Schedule, State, StepReport, Subject, View};
+use dla::{Ensemble, Mechanics, Observer, RunError, Schedule, State, StepReport, Subject, View, stops};
 use std::fmt::{Debug, Formatter};
 use std::ops::ControlFlow;
 
@@ -45,7 +45,7 @@ pub fn watch<Q: Quantities, const N: usize, const M: usize, const W: usize>(
                 (None, _) => *place = None,
             }
         }
-        if made >= schedule.steps {
+        if made >= schedule.steps || stops() {
             return summaries;
         }
         let steps = (*every).max(1).min(schedule.steps - made);

@@ -19,7 +19,7 @@ pub use verdict::{Cheapest, LEVELS, cheapest, mark_pareto, seconds_to};
 
 use crate::stopwatch::{Pinned, has_thread_time};
 use crate::{Method, Progress};
-use dla::RunError;
+use dla::{RunError, stops};
 use std::fmt;
 
 /// What can be asked of a motion whose end is known, its system forgotten.
@@ -79,7 +79,11 @@ pub fn work_precision(
         if progress.stops() {
             break;
         }
-        ladders.push(ladder::climb(bench, method, limits));
+        let ladder = ladder::climb(bench, method, limits);
+        if stops() {
+            break;
+        }
+        ladders.push(ladder);
         progress.advance(1);
     }
     let all: Vec<&ladder::Rung> = ladders.iter().flatten().flatten().collect();

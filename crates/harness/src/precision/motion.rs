@@ -1,5 +1,5 @@
 use crate::{Method, integrate_pieces};
-use dla::{RunError, Schedule, State, Subject, pieces};
+use dla::{RunError, Schedule, State, StepError, Subject, pieces};
 
 /// A motion to be computed again and again, with other methods and other steps.
 #[derive(Debug, Clone, Copy)]
@@ -59,7 +59,11 @@ impl<'a, const N: usize, const M: usize> ReferenceMotion<'a, N, M> {
     #[inline(never)]
     pub fn end(&self, method: &Method, steps: u64) -> Result<[f64; N], RunError> {
         let mut state = State::new(self.q, self.v, self.subject.system.angles());
-        integrate_pieces(self.subject, method, &self.schedule(steps), &mut state, &mut ())?;
+        let made = integrate_pieces(self.subject, method, &self.schedule(steps), &mut state, &mut ())?;
+        if made < steps {
+            let time = self.schedule(steps).time(made);
+            return Err(RunError { step: made + 1, time, source: StepError::Stopped });
+        }
         Ok(state.unwrapped())
     }
 }

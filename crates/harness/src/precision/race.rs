@@ -2,6 +2,7 @@ use super::ladder::Rung;
 use super::{Bench, digits};
 use crate::Progress;
 use crate::stopwatch::{Taken, take};
+use dla::stops;
 use std::hint::black_box;
 
 /// A batch of runs takes so long (s), so that reading the clock does not count; less where the longest run is shorter.
@@ -31,7 +32,7 @@ pub(super) fn race(
 ) -> (Vec<Option<Measured>>, u64) {
     let mut batches: Vec<Vec<Taken>> = vec![Vec::new(); rungs.len()];
     let mut made = 0;
-    for round in 0..ROUNDS {
+    'rounds: for round in 0..ROUNDS {
         if progress.stops() {
             break;
         }
@@ -48,7 +49,11 @@ pub(super) fn race(
             if runs > 1 {
                 run();
             }
-            batches.push(take(runs, run));
+            let taken = take(runs, run);
+            if stops() {
+                break 'rounds;
+            }
+            batches.push(taken);
         }
         made += 1;
         progress.advance(1);

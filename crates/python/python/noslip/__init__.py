@@ -8,9 +8,9 @@
 `scene` reads a scene, `Sleigh` and `System` make one; a `Scene` has the commands of the program as methods.
 """
 
-from ._noslip import BusyError, ComputationError, NoslipError, RequestError
+from ._noslip import BusyError, ComputationError, NoslipError, RequestError, __version__
 from .ensembles import Ensemble, ensemble
-from .errors import Interrupted, RunError
+from .errors import ArgumentError, Interrupted, RunError
 from .results import Run
 from .scenes import Scene, methods, scene, scenes
 from .sensitivities import Prediction, Sensitivities
@@ -18,6 +18,7 @@ from .sleigh import Sleigh
 from .system import System
 
 __all__ = [
+    "ArgumentError",
     "BusyError",
     "ComputationError",
     "Ensemble",
@@ -31,6 +32,7 @@ __all__ = [
     "Sensitivities",
     "Sleigh",
     "System",
+    "__version__",
     "ensemble",
     "methods",
     "scene",

@@ -34,8 +34,10 @@ def call(arguments: list[str], progress: bool | Progress | None = None) -> dict[
         raise Interrupted(object) from None
     if ended is not None:
         raise ended
+    # What the program says of a command line is not for who writes Python.
+    message = err.partition("\n\nUsage:")[0].partition("\n\nFor more")[0].partition("\n\n  tip:")[0].strip().removeprefix("error: ")
     if code == 2:
-        raise _noslip.RequestError(err.strip())
+        raise _noslip.RequestError(message)
     if code != 0 and not object:
-        raise _noslip.ComputationError(err.strip())
+        raise _noslip.ComputationError(message)
     return object

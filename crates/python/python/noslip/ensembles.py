@@ -17,7 +17,7 @@ from . import _noslip
 from .commands import call
 from .parts import Submits, gather
 from .progress import Progress, shown
-from .scenes import Scene
+from .scenes import Scene, tables
 
 Sweep = str | PathLike[str] | Mapping[str, Any]
 
@@ -84,10 +84,10 @@ def written(sweep: Sweep, folder: Path) -> Path:
     """The file of a sweep; of a dictionary, written into the folder."""
     if not isinstance(sweep, Mapping):
         return Path(sweep).absolute()
-    tables = dict(sweep)
-    if isinstance(tables.get("scene"), Scene):
-        tables["scene"] = str(_keep(folder / "scene.toml", tables["scene"].text))
-    return _keep(folder / "sweep.toml", tomli_w.dumps(tables))
+    content = tables(sweep)
+    if isinstance(content.get("scene"), Scene):
+        content["scene"] = str(_keep(folder / "scene.toml", content["scene"].text))
+    return _keep(folder / "sweep.toml", tomli_w.dumps(content))
 
 
 def _keep(file: Path, text: str) -> Path:

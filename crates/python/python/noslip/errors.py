@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ._noslip import ComputationError
+from ._noslip import ComputationError, RequestError
 
 if TYPE_CHECKING:
     from .results import Run
+
+
+class ArgumentError(RequestError, TypeError):
+    """An argument that there is not, or of another kind than those that are accepted."""
 
 
 class RunError(ComputationError):

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable
+from numbers import Integral, Real
 from typing import Any
 
 from ._noslip import RequestError
@@ -15,11 +18,14 @@ def text(expression: Any) -> str:
     """
     if isinstance(expression, str):
         return expression
-    if isinstance(expression, (int, float)):
-        return repr(expression)
+    if isinstance(expression, Real):
+        return repr(int(expression) if isinstance(expression, Integral) else float(expression))
     import sympy as sp
 
-    checked = sp.sympify(expression)
+    try:
+        checked = sp.sympify(expression)
+    except sp.SympifyError:
+        raise RequestError(f"{expression!r}: accepted are texts, numbers and SymPy expressions") from None
     if isinstance(checked, sp.MatrixBase) and checked.shape == (1, 1):
         checked = checked[0]
     _check(checked)
@@ -29,12 +35,45 @@ def text(expression: Any) -> str:
 def name(symbol: Any) -> str:
     """The name of a coordinate: a string, a symbol, a function of the time, or the rate of one."""
     if isinstance(symbol, str):
-        return symbol
+        return spelled(symbol) if LATEX.search(symbol) else symbol
     import sympy as sp
 
     if isinstance(symbol, sp.Derivative):
         symbol = symbol.args[0]
+    return spelled(_own_name(symbol))
+
+
+LATEX = re.compile(r"[{}\\]")
+
+
+def _own_name(symbol: Any) -> str:
+    """The name that SymPy has for a symbol or a function."""
     return str(symbol.func.__name__ if symbol.args else symbol)
+
+
+def spelled(own: str) -> str:
+    """A name as scenes have them: of `k_{1}` it is `k_1`, of `\\theta` it is `theta`."""
+    if re.fullmatch(r"\w+'*", own):
+        return own
+    return re.sub(r"\W+", "_", LATEX.sub("", own)).strip("_") or own
+
+
+def refuse_twins(expressions: Iterable[Any]) -> None:
+    """Refuses symbols that a scene would have under one name."""
+    found: dict[str, tuple[str, bool]] = {}
+    for expression in expressions:
+        if not hasattr(expression, "atoms"):
+            continue
+        import sympy as sp
+        from sympy.core.function import AppliedUndef
+
+        for symbol in expression.atoms(sp.Symbol, AppliedUndef):
+            own = (_own_name(symbol), bool(symbol.args))
+            other = found.setdefault(spelled(own[0]), own)
+            if other != own:
+                function = {True: "a function of the time", False: "a symbol"}
+                told = " and ".join(f"{one} ({function[moves]})" for one, moves in (other, own))
+                raise RequestError(f"{told} would have one name, {spelled(own[0])}: rename one of them")
 
 
 KNOWN = {"sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "sign"}
@@ -53,10 +92,13 @@ def _check(expression: Any) -> None:
         if isinstance(function, AppliedUndef) and len(variables) == 1 and variables[0][1] == 1:
             return
         raise RequestError(f"{expression}: accepted are first derivatives of coordinates by the time")
+    if isinstance(expression, sp.Equality):
+        raise RequestError(f"{expression}: write an equation as its left side minus its right side")
     if isinstance(expression, (sp.Function, sp.Max, sp.Min, sp.Abs)):
         called = expression.func.__name__
         if called not in KNOWN | set(RENAMED):
-            raise RequestError(f"{expression}: no function `{called}` is known in a scene")
+            known = ", ".join(sorted(KNOWN | set(RENAMED.values())))
+            raise RequestError(f"{expression}: no function `{called}` is known in a scene; the functions are {known}")
     elif not isinstance(expression, (sp.Symbol, sp.Number, sp.Add, sp.Mul, sp.Pow, type(sp.pi), type(sp.E))):
         raise RequestError(f"{expression}: a scene has no text for {type(expression).__name__}")
     elif isinstance(expression, sp.Number) and not expression.is_finite:
@@ -83,6 +125,9 @@ def _printer() -> Any:
             return f"{RENAMED.get(called, called)}({arguments})"
 
         _print_Abs = _print_Max = _print_Min = _print_Function
+
+        def _print_Symbol(self, expression: Any) -> str:
+            return name(expression)
 
         def _print_Float(self, expression: Any) -> str:
             return repr(float(expression))

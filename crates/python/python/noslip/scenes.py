@@ -9,11 +9,12 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import tomli_w
 
 from . import _noslip
 from .commands import call, flags
-from .errors import Interrupted, RunError
+from .errors import ArgumentError, Interrupted, RunError
 from .progress import Progress, shown
 from .results import Run
 from .saved import saved_run
@@ -24,6 +25,25 @@ Texts = str | Iterable[str] | None
 
 def _list(texts: Texts) -> list[str]:
     return [texts] if isinstance(texts, str) else list(texts or ())
+
+
+def _times(t_eval: Iterable[float] | None) -> list[float]:
+    """The times of samples; none where nothing is said of them."""
+    times = [] if t_eval is None else [float(t) for t in t_eval]
+    if t_eval is not None and not times:
+        raise _noslip.RequestError("t_eval has no times; leave t_eval out for all nodes of a run, or for its end")
+    return times
+
+
+def tables(value: Any) -> Any:
+    """The tables of a scene with arrays and numbers of NumPy as TOML has them."""
+    if isinstance(value, Mapping):
+        return {key: tables(one) for key, one in value.items()}
+    if isinstance(value, (np.ndarray, np.generic)):
+        return value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [tables(one) for one in value]
+    return value
 
 
 def methods() -> dict[str, dict[str, Any]]:
@@ -44,7 +64,7 @@ def scene(source: str | PathLike[str] | Mapping[str, Any]) -> Scene:
     Raises `noslip.RequestError` with the line and the field that is wrong.
     """
     if isinstance(source, Mapping):
-        return Scene(tomli_w.dumps(dict(source)), str(source.get("title") or "scene"))
+        return Scene(tomli_w.dumps(tables(source)), str(source.get("title") or "scene"))
     named = dict(_noslip.bundled())
     name = str(source).replace("_", "-")
     if name in named:
@@ -96,7 +116,7 @@ class Scene:
         """The duration of its run (s)."""
         return self._checked.duration
 
-    def __reduce__(self) -> tuple[type[Scene], tuple[str, str]]:
+    def __reduce__(self) -> tuple[Any, ...]:
         return Scene, (self.text, self.origin)
 
     def __eq__(self, other: object) -> bool:
@@ -159,9 +179,12 @@ class Scene:
                 "until": _list(until),
             }
             return saved_run(self.text, self.name, Path(checkpoint), settings, progress)
-        times = [] if t_eval is None else [float(t) for t in t_eval]
+        times = _times(t_eval)
         with shown(progress) as tell:
-            made = checked.run(every, times, tolerance, substep, _list(events), _list(until), backward, tell)
+            try:
+                made = checked.run(every, times, tolerance, substep, _list(events), _list(until), backward, tell)
+            except KeyboardInterrupt:
+                raise Interrupted(None) from None
         columns, units, text, failure, ended = made
         result = Run(columns, dict(units), text)
         if isinstance(ended, KeyboardInterrupt):
@@ -215,7 +238,7 @@ class Scene:
                 progress=progress,
             )
         checked = self._checked.with_settings(method, step, duration, alpha)
-        times = [] if t_eval is None else [float(t) for t in t_eval]
+        times = _times(t_eval)
         asked = _list(keys)
         with shown(progress) as tell:
             told, t, values, jacobian = checked.sensitivities(asked, _list(columns), times, tell)
@@ -264,6 +287,10 @@ class Scene:
         settings: Mapping[str, Any],
         methods: Texts = None,
     ) -> dict[str, Any]:
+        known = sorted({"progress", *_noslip.arguments(command)} - {"json"})
+        for key in settings:
+            if key not in known:
+                raise ArgumentError(f"Scene.{command} has no argument {key!r}; its arguments are {', '.join(known)}")
         listed = _list(methods)
         chosen = [f"--methods={','.join(listed)}"] if listed else []
         with tempfile.TemporaryDirectory() as folder:

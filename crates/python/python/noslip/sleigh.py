@@ -7,7 +7,7 @@ from typing import Any
 
 import tomli_w
 
-from .scenes import Scene
+from .scenes import Scene, tables
 
 
 class Sleigh(Scene):
@@ -34,11 +34,11 @@ class Sleigh(Scene):
         duration: float = 20.0,
     ) -> None:
         start = {"x": x, "y": y, "heading": heading, "speed": speed, "turn_rate": turn_rate}
-        tables: dict[str, Any] = {
+        content: dict[str, Any] = {
             "sleigh": {"mass": float(mass), "inertia": float(inertia), "offset": float(offset)},
             "start": {key: float(value) for key, value in start.items()},
             "run": {"method": method, "step": float(step), "duration": float(duration)},
         }
         if effects:
-            tables["effects"] = [dict(effect) for effect in effects]
-        super().__init__(tomli_w.dumps(tables), "sleigh")
+            content["effects"] = [dict(effect) for effect in effects]
+        super().__init__(tomli_w.dumps(tables(content)), "sleigh")

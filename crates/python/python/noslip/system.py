@@ -8,8 +8,7 @@ from typing import Any
 import tomli_w
 
 from ._noslip import RequestError
-from .expressions import name, text
-from .mechanics import of_kanes, of_lagranges
+from .expressions import name, refuse_twins, text
 from .results import Run
 from .scenes import Scene
 
@@ -48,18 +47,23 @@ class System(Scene):
         title: str | None = None,
     ) -> None:
         units = coordinates if isinstance(coordinates, Mapping) else dict.fromkeys(coordinates, "1")
+        constraints, positions, basis = list(constraints), list(positions), [list(vector) for vector in basis]
+        forces, outputs, parameters = forces or {}, outputs or {}, parameters or {}
+        rows = (entry for vector in basis for entry in vector)
+        texts = [lagrangian, *constraints, *positions, *rows, *forces.values(), *outputs.values()]
+        refuse_twins([*units, *parameters, *forces, *texts])
         self.coordinates = [name(coordinate) for coordinate in units]
         system: dict[str, Any] = {
             "coordinates": dict(zip(self.coordinates, units.values(), strict=True)),
-            "parameters": {name(key): float(value) for key, value in (parameters or {}).items()},
+            "parameters": {name(key): float(value) for key, value in parameters.items()},
             "lagrangian": text(lagrangian),
             "constraints": [text(row) for row in constraints],
         }
         optional = {
-            "forces": {name(key): text(force) for key, force in (forces or {}).items()},
+            "forces": {name(key): text(force) for key, force in forces.items()},
             "positions": [text(position) for position in positions],
             "basis": [[text(entry) for entry in vector] for vector in basis],
-            "outputs": {key: text(output) for key, output in (outputs or {}).items()},
+            "outputs": {key: text(output) for key, output in outputs.items()},
         }
         system.update({key: value for key, value in optional.items() if value})
         self._tables: dict[str, Any] = {
@@ -72,8 +76,18 @@ class System(Scene):
         super().__init__(tomli_w.dumps(self._tables), "system")
 
     @classmethod
+    def _of(cls, tables: dict[str, Any]) -> System:
+        """The system of these tables."""
+        made = cls.__new__(cls)
+        made._tables, made.coordinates = tables, list(tables["system"]["coordinates"])
+        Scene.__init__(made, tomli_w.dumps(tables), "system")
+        return made
+
+    @classmethod
     def from_lagranges(cls, method: Any, parameters: Mapping[Any, float] | None = None, **settings: Any) -> System:
         """The system of a `sympy.physics.mechanics.LagrangesMethod`, its forces and constraints included."""
+        from .mechanics import of_lagranges
+
         return cls(**{**of_lagranges(method), "parameters": parameters, **settings})
 
     @classmethod
@@ -83,23 +97,25 @@ class System(Scene):
         The start is given by rates of coordinates, as for any system, not by generalised speeds. Bodies whose velocities have
         constraints put into them already are refused.
         """
+        from .mechanics import of_kanes
+
         return cls(**{**of_kanes(method), "parameters": parameters, **settings})
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Scene, (self.text, self.origin)
+        return System._of, (self._tables,)
 
-    def started(self, q: Values = None, v: Values = None) -> Scene:
+    def started(self, q: Values = None, v: Values = None) -> System:
         """The same system with another start."""
         start = dict(self._tables["start"])
         start.update(_named(self.coordinates, q, ""))
         start.update(_named(self.coordinates, v, "'"))
-        return Scene(tomli_w.dumps({**self._tables, "start": start}), self.origin)
+        return self._of({**self._tables, "start": start})
 
     def run(self, *, q: Values = None, v: Values = None, **settings: Any) -> Run:
         """Makes a run as `Scene.run`, from the start `q`, `v` where these are given."""
         if q is None and v is None:
             return super().run(**settings)
-        return self.started(q, v).run(**settings)
+        return Scene.run(self.started(q, v), **settings)
 
 
 def _named(coordinates: list[str], values: Values, suffix: str) -> dict[str, float]:

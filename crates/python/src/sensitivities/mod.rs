@@ -4,7 +4,7 @@ mod motion;
 mod sleigh;
 mod text;
 
-use cli::{Caller, Refusal};
+use cli::{Caller, Refusal, check_times};
 use dla::Schedule;
 use harness::{Method, SensitivitiesError};
 use scene::{AnyScene, FREE};
@@ -71,11 +71,7 @@ pub(crate) fn sensitivities(
     if request.keys.is_empty() {
         return Err(refused(&"no keys are given with respect to which derivatives are to be taken"));
     }
-    let (within, order) = (0.0..=settings.duration, request.times.is_sorted());
-    if !order || request.times.iter().any(|t| !within.contains(t)) {
-        let problem = format!("the times must increase, and lie within the run, from 0 to {:?} s", settings.duration);
-        return Err(refused(&problem));
-    }
+    check_times(&request.times, settings.duration)?;
     let asked = Asked { method: &method, schedule: scene.schedule(), request, caller };
     let blocks = request.keys.chunks(BLOCK).map(|keys| match scene {
         AnyScene::Sleigh(sleigh) => sleigh::rows(sleigh, &asked, keys),
