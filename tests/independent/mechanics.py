@@ -35,12 +35,6 @@ class System:
         self.q, self.v = (sp.Matrix(symbols) for symbols in zip(*map(coordinate, self.units)))
         self.size = len(self.units)
 
-    def depends_on(self):
-        """The coordinates that stand in any formula."""
-        formulas = [self.lagrangian, *self.rows, *self.positions, *self.forces.values()]
-        met = set().union(*(sp.sympify(formula).free_symbols for formula in formulas))
-        return [name for name, q in zip(self.units, self.q) if q in met]
-
     def equations(self):
         """`[M, A'; A, 0] (a, lambda) = (f, gamma)`: M, f, A, gamma, and the constraints of positions and velocities."""
         q, v = self.q, self.v
