@@ -65,7 +65,7 @@ def judge(program, findings, draw, file, method, truth, floor, measure):
         if answer.code == 2 or answer.refusal.startswith(f"error: {method} refused"):
             return findings.count("refused by kind")
         if answer.code != 0:
-            return findings.fail("refused", **where, message=answer.refusal)
+            return findings.fail("refused", **where, code=answer.code, message=answer.refusal)
         names = [*draw.system.units, *(f"{name}'" for name in draw.system.units)]
         errors.append(np.abs(np.array([answer.shown["final"][name] for name in names], dtype=float) - truth).max())
         if not np.isfinite(errors[-1]):

@@ -36,6 +36,8 @@ def main():
 def judge(program, findings, draw, file, method, near):
     where = {"seed": draw.seed, "method": method}
     answer = program.ask("equilibria", file, "--method", method)
+    if answer.code not in (0, 1, 2):
+        return findings.fail("panic or no end", **where, code=answer.code, message=answer.messages[:300])
     if answer.code != 0:
         # None found is right where none is.
         if near is not None:
