@@ -36,7 +36,7 @@ const QUICK: [&str; 8] = [
 ];
 
 /// Commands that are for other programs: what is built, installed or measured is not done by a test.
-const OTHERS: [&str; 15] = [
+const OTHERS: [&str; 17] = [
     "cargo build --release",
     "cargo run --release",
     "cargo test --workspace",
@@ -46,6 +46,8 @@ const OTHERS: [&str; 15] = [
     "benches/peers/run ",
     "docs/pictures/make.sh",
     "cd tests/long && cargo run",
+    "pip install -r tests/independent/requirements.txt",
+    "python tests/independent/",
     "cargo install cargo-fuzz",
     "cargo +nightly fuzz run --fuzz-dir tests/fuzz",
     "cargo install cargo-mutants",
