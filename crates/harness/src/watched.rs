@@ -81,6 +81,6 @@ pub fn recommend<const N: usize, const M: usize>(
     recommend_by_trial(duration, tolerance, |schedule, times| {
         let mut samples = Samples::new(Again { method, own: subject.own }, times);
         integrate_pieces(subject, method, schedule, &mut State::new(q, v, subject.system.angles()), &mut samples)?;
-        samples.into_taken().map_err(|source| dla::RunError { step: schedule.steps, time: schedule.t0, source })
+        samples.into_taken().map_err(|source| dla::RunError::new(schedule.steps, schedule.t0, source))
     })
 }

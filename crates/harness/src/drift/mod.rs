@@ -7,7 +7,7 @@ mod growth;
 mod mean;
 
 pub use blocks::Blocks;
-pub use energies::Energies;
+pub use energies::{Energies, EnergyJump};
 
 use batches::Batches;
 use std::fmt;
@@ -117,12 +117,18 @@ impl Drift {
     /// What the error of the energy of a run does, beside the energies of its motion.
     ///
     /// It has diverged where it was larger than all of them; or where it ends above those of the start, nearly all of its sum of
-    /// squares is in the last batches, most of which are larger than all before.
+    /// squares is in the last batches, most of which are larger than all before; or where step after step changes the energy by a tenth of
+    /// it. An error is not bounded where one step does so.
     #[must_use]
     pub fn of_energy(blocks: &Blocks, energies: &Energies) -> Self {
         let drift = Self::of(blocks);
         let runs_away = || batches::runs_away(blocks.full()).is_some_and(|largest| largest > energies.start());
-        if energies.exceeded() || runs_away() { Self { verdict: DriftVerdict::Diverged, ..drift } } else { drift }
+        let verdict = match drift.verdict {
+            _ if energies.exceeded() || energies.runs_off() || runs_away() => DriftVerdict::Diverged,
+            DriftVerdict::Bounded if energies.jump().is_some() => DriftVerdict::Undecided,
+            verdict => verdict,
+        };
+        Self { verdict, ..drift }
     }
 
     /// The largest error to be expected at a time (s) after the start: the fast part and the secular one.

@@ -15,7 +15,7 @@ from . import _noslip
 from .commands import call, flags
 from .errors import Interrupted, RunError
 from .progress import Progress, shown
-from .results import Run
+from .results import Run, warn
 from .saved import saved_run
 from .sensitivities import Prediction, Sensitivities
 
@@ -164,6 +164,8 @@ class Scene:
             made = checked.run(every, times, tolerance, substep, _list(events), _list(until), backward, tell)
         columns, units, text, failure, ended = made
         result = Run(columns, dict(units), text)
+        if '"warnings"' in text:
+            warn(result.object)
         if isinstance(ended, KeyboardInterrupt):
             raise Interrupted(result) from None
         if ended is not None:
