@@ -168,6 +168,7 @@ impl Visitor for Compare<'_> {
             records.iter().filter(|r| r.is_whole()).map(|r| (r.method.name, r.energy.drift)).collect();
         let (mut rows, mut series) = (Vec::new(), Vec::new());
         for record in &records {
+            notes::warn_of_jumps(record);
             let whole = Some(record).filter(|record| record.is_whole());
             let there = whole.and_then(|record| reference.at(record.t));
             let error = there.map(|end| system.distance(&record.q, &end));

@@ -1,5 +1,5 @@
 use dla::RunError;
-use harness::Record;
+use harness::{EnergyJump, Record};
 use serde_json::{Value, json};
 use sleigh::SleighState;
 
@@ -34,6 +34,11 @@ pub(crate) fn record_of<const N: usize>(scene: &str, record: &Record<N>, end: &V
         "constraint": {"max": record.constraint_max},
         "final": end,
     });
+    if let Some(jump) = record.energy.jump {
+        let EnergyJump { time, change, energy, count } = jump;
+        object["energy"]["jump"] = json!({"t": time, "change": change, "energy": energy, "steps": count});
+        object["warnings"] = json!([jump.to_string()]);
+    }
     if let Some(failure) = &record.failure {
         object["failure"] = self::failure(failure);
     }

@@ -1,6 +1,14 @@
 use crate::table::number;
 use crate::terminal;
+use harness::Record;
 use scene::AnyScene;
+
+/// Warns of steps of a run that change the energy though no force does that work.
+pub(crate) fn warn_of_jumps<const N: usize>(record: &Record<N>) {
+    if let Some(jump) = record.energy.jump {
+        terminal::say("warning", &format!("{}: {jump}", record.method.name));
+    }
+}
 
 /// Says which numbers of the start the constraints of a scene do not admit.
 pub(crate) fn moves(scene: &AnyScene) {

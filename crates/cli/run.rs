@@ -185,6 +185,7 @@ impl Visitor for Run<'_> {
             tell(self.out, &table::realigned(&text))?;
         }
         events.iter().for_each(Events::warn);
+        notes::warn_of_jumps(record);
         let computed = CliError::of_failures(substeps::failure(record).or_else(|| table::not_finite(record)));
         if let (Err(_), Err(error)) = (&computed, &written) {
             terminal::say("error", error);

@@ -10,7 +10,7 @@ fn cases() -> PathBuf {
 }
 
 /// A folder with that file in it.
-fn folder(file: &str) -> Folder {
+pub(super) fn folder(file: &str) -> Folder {
     let folder = Folder::new();
     folder.write(file, fs::read(cases().join(file)).unwrap());
     folder

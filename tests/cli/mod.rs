@@ -1,5 +1,6 @@
 //! What each command computes, prints, writes and refuses.
 
+mod accepted;
 mod cases;
 mod chaos;
 mod compare;

@@ -4,7 +4,7 @@ use crate::error::CliError;
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
 use crate::table::ComparisonRow;
-use crate::{compare_numbers, facts, json, progress, table};
+use crate::{compare_numbers, facts, json, notes, progress, table};
 use assembly::AssemblyState;
 use assembly::parts::Train;
 use dla::Schedule;
@@ -49,6 +49,7 @@ pub(crate) fn compare_scene(
         let end = train.blade(end, 0);
         let error =
             reference.as_ref().filter(|_| record.is_whole()).map(|state| distance(&end, &train.blade(state, 0)));
+        notes::warn_of_jumps(record);
         let better = if record.is_whole() { better_than(&record.energy.drift, &drifts) } else { Vec::new() };
         rows.push(ComparisonRow {
             cells: table::cells(record, error),

@@ -26,7 +26,7 @@ pub(crate) fn measure(
         let schedule = Schedule { t0: 0.0, step: duration / steps as f64, steps };
         match assembly_end(assembly, method, &schedule, start, &mut ()) {
             Ok(state) => Ok(train.blade(state.as_ref().unwrap_or(start), 0)),
-            Err(error) => Err(RunError { step: error.step, time: error.time, source: error.source.step_error() }),
+            Err(error) => Err(RunError::new(error.step, error.time, error.source.step_error())),
         }
     };
     let reference = converged(&end)?;

@@ -8,7 +8,7 @@ use crate::output::{Output, OutputRequest};
 use crate::progress::Interruptible;
 use crate::run_rows::{Read, identity, of, position, provenance, tell, with_position};
 use crate::trigger::Events;
-use crate::{progress, resume, substeps, table, terminal};
+use crate::{notes, progress, resume, substeps, table, terminal};
 use assembly::AssemblyState;
 use assembly::parts::Train;
 use dla::Checkpoint;
@@ -70,6 +70,7 @@ pub(crate) fn run(
         tell(out, &told(&account, &made, file))?;
     }
     made.events.iter().for_each(Events::warn);
+    notes::warn_of_jumps(&made.run.record);
     let computed = CliError::of_failures(account.failure(&made.run));
     if let (Err(_), Err(error)) = (&computed, &written) {
         terminal::say("error", error);

@@ -1,11 +1,23 @@
 //! Which of several solutions of a step continues the motion.
 
-use crate::Mechanics;
-use lagrangian::linear::larger;
+use crate::{Mechanics, StepError};
+use lagrangian::linear::{larger, largest};
 use lagrangian::{Dual, from_fn, mapped};
+use std::f64::consts::PI;
 
 /// A solution whose constraint turns by less than this in the step (rad) counts as near its start.
 pub(crate) const NEAR: f64 = 1.0;
+
+/// What to say of a solution that is not shown to continue the motion: equations whose derivatives are the same there and at the start are
+/// linear, and have no other solution.
+#[cold]
+pub(crate) fn unfollowed(derivatives: [&[f64]; 2]) -> StepError {
+    /// Relative to the largest of them.
+    const SAME: f64 = 1e-9;
+    let [there, start] = derivatives;
+    let same = there.iter().zip(start).all(|(x, y)| (x - y).abs() <= SAME * largest(start));
+    if same { StepError::Stiff } else { StepError::Branch }
+}
 
 /// By how much a step with this mean velocity turns the constraint that turns most (rad): the rate times the step, since the two ends do
 /// not show whole turns. Zero where no angle turns by more than 1 rad.
@@ -17,6 +29,40 @@ pub(crate) fn turn_of<const N: usize, const M: usize>(
     v: &[f64; N],
 ) -> f64 {
     turn(&system.angles(), &from_fn(|i| h * v[i]), |increment| system.rows_along(t0, q0, h, increment))
+}
+
+/// Refuses a step in which the velocity `v0` at its beginning would turn the constraint by half a turn or more: a rule that looks at the
+/// rows at a few nodes cannot tell such a turn from a smaller one the other way round, and has a solution that loses it.
+///
+/// # Errors
+/// [`StepError::Turn`] with the angle that turns most.
+#[inline(always)]
+pub(crate) fn tells_turn<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    (t0, h): (f64, f64),
+    q0: &[f64; N],
+    v0: &[f64; N],
+) -> Result<(), StepError> {
+    let turn = turn_of(system, (t0, h), q0, v0);
+    if turn < PI { Ok(()) } else { Err(turned_by(system, (t0, h), q0, v0, turn)) }
+}
+
+/// The error of such a step, with the coordinate that alone turns the constraint most.
+#[cold]
+#[inline(never)]
+fn turned_by<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    (t0, h): (f64, f64),
+    q0: &[f64; N],
+    v0: &[f64; N],
+    turn: f64,
+) -> StepError {
+    let alone = |i: usize| {
+        let increment = from_fn(|j| if j == i { h * v0[i] } else { 0.0 });
+        turned(system.rows_along(t0, q0, h, &increment))
+    };
+    let coordinate = (0..N).fold(0, |most, i| if alone(i) > alone(most) { i } else { most });
+    StepError::Turn { coordinate, turn, step: h.abs() }
 }
 
 /// By how much an increment of the coordinates turns the constraint that turns most (rad): `rows` gives the matrix `A` and its derivative

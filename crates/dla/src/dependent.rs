@@ -1,3 +1,4 @@
+use crate::dropping::rank_drop;
 use crate::suspect::{suspect_along, suspect_at};
 use crate::{Mechanics, NewtonError, Stage, State, StepError};
 use lagrangian::linear::larger;
@@ -125,15 +126,24 @@ pub(crate) fn named_along<const N: usize, const M: usize>(
     error
 }
 
-/// The error of a step, with the rows of the constraint named where they depend on one another at its beginning.
+/// The error of a step, with the rows of the constraint named where they depend on one another at its beginning, or come to where their
+/// rank drops.
 #[cold]
 #[inline(never)]
 pub(crate) fn named<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
-    t: f64,
+    (t, h): (f64, f64),
     state: &State<N>,
     error: StepError,
 ) -> StepError {
+    let unfound =
+        matches!(error, StepError::Newton { .. } | StepError::Branch | StepError::Stiff | StepError::Tolerance { .. });
+    if (unfound || error.is_singular())
+        // Equations become degenerate before the drop is met.
+        && let Some(dropped) = rank_drop(system, (t, h), state, 2.0)
+    {
+        return dropped.into();
+    }
     if !error.is_singular() {
         return error;
     }

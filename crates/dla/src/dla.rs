@@ -1,3 +1,4 @@
+use crate::branch::tells_turn;
 use crate::dependent::{named_at, rows_left_out};
 use crate::increment::Increment;
 use crate::kept::Kept;
@@ -145,6 +146,7 @@ impl<D> Dla<D> {
         D: Discretisation<N, M>,
     {
         let (q0, v0) = (*state.q(), *state.v());
+        tells_turn(system, (t0, h), &q0, &v0)?;
         let in_basis = self.form != Form::Multipliers;
         let basis = |t, q: &[f64; N]| if in_basis { system.basis(t, q) } else { None };
 

@@ -1,6 +1,6 @@
 use crate::dependent::named;
 use crate::suspect::suspect_along;
-use crate::{Mechanics, OneStep, State, StepError, StepReport, Stop, Undivided};
+use crate::{Hint, Mechanics, OneStep, State, StepError, StepReport, Stop, Undivided};
 use lagrangian::Shown;
 use lagrangian::linear::largest;
 use std::ops::{ControlFlow, Range};
@@ -205,6 +205,58 @@ pub struct RunError {
     /// What happened.
     #[source]
     pub source: StepError,
+    /// What is known of shorter steps from there.
+    pub shorter: Shorter,
+}
+
+/// What is known of steps that are shorter than one that failed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Shorter {
+    /// None was tried.
+    #[default]
+    Untried,
+    /// One of this part of the length succeeds.
+    Succeeds(f64),
+    /// They fail as well, down to this part of the length.
+    Fails(f64),
+}
+
+impl RunError {
+    /// A run that failed with its step of that number, from one, which began at that time (s).
+    #[must_use]
+    pub fn new(step: u64, time: f64, source: StepError) -> Self {
+        Self { step, time, source, shorter: Shorter::Untried }
+    }
+
+    /// The same with what shorter steps do, where the failure asks for one: those from the last good node are tried. The method is then as
+    /// before.
+    #[cold]
+    #[must_use]
+    pub fn with_shorter<const N: usize, const M: usize>(
+        self,
+        system: &dyn Mechanics<N, M>,
+        method: &mut dyn OneStep<N, M>,
+        (h, state): (f64, &State<N>),
+    ) -> Self {
+        /// So much shorter than the failure asks for.
+        const PARTS: [f64; 4] = [1.0, 0.25, 1.0 / 32.0, 1.0 / 512.0];
+        let asked = match self.source {
+            // The first two know it; steps of a method's own are short already.
+            StepError::Overshoot { .. } | StepError::Turn { .. } | StepError::Tolerance { .. } => None,
+            source => source.hint(),
+        };
+        let Some(Hint::ShorterStep { part }) = asked else { return self };
+        let remembered = method.memory();
+        let succeeds = |x: &f64| {
+            let mut copy = *state;
+            method.recall(&[], &copy);
+            method.step(system, self.time, x * part * h, &mut copy).is_ok()
+        };
+        let found = PARTS.into_iter().find(succeeds);
+        method.recall(&remembered, state);
+        let shorter = found.map_or(Shorter::Fails(PARTS[3] * part), |x| Shorter::Succeeds(x * part));
+        Self { shorter, ..self }
+    }
 }
 
 /// Makes the steps of a schedule and shows every node to the observer; returns how many steps were made.
@@ -290,8 +342,8 @@ where
             Err(source) => {
                 let time = schedule.time(made);
                 let source = suspect_along(system, (time, schedule.step), state, state.v(), source);
-                let source = named(system, time, state, source);
-                outcome = Err(RunError { step: made + 1, time, source });
+                let source = named(system, (time, schedule.step), state, source);
+                outcome = Err(RunError::new(made + 1, time, source));
                 break;
             }
         }

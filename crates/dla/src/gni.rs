@@ -1,3 +1,4 @@
+use crate::branch::tells_turn;
 use crate::convergence::most_roundings;
 use crate::overshoot::brakes_only;
 use crate::positions::{affine_only, velocities_only};
@@ -81,6 +82,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> OneStep<N, M> for 
         velocities_only(system, t, state, reason)?;
         let singular = |stage| move |source| StepError::Newton { stage, source: NewtonError::singular(source) };
         let (q0, v0) = (*state.q(), *state.v());
+        tells_turn(system, (t, h), &q0, &v0)?;
         // Only a node that it led to itself has a momentum to reflect; another start begins without one across.
         let departing = match self.memory {
             Some(memory) if memory.node == *state => {

@@ -1,4 +1,4 @@
-use crate::{ClosedStepError, Derivative, History, NewtonError, NotANumber, RunError, Stage, StepError};
+use crate::{ClosedStepError, Derivative, History, NewtonError, NotANumber, RunError, Shorter, Stage, StepError};
 use lagrangian::ReducedError;
 use lagrangian::Shown;
 use lagrangian::linear::Singular;
@@ -9,6 +9,11 @@ use std::fmt;
 pub enum Hint {
     /// Make the step shorter, to this part of it or less.
     ShorterStep {
+        /// The part.
+        part: f64,
+    },
+    /// Shorter steps fail as well, down to this part of the step.
+    NoShorterStep {
         /// The part.
         part: f64,
     },
@@ -40,6 +45,11 @@ impl fmt::Display for Hint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::ShorterStep { part } => write!(f, "shorten the step to {} of its length or less", Shown(*part)),
+            Self::NoShorterStep { part } => write!(
+                f,
+                "steps of {} of its length fail as well: the motion may end there, or a formula may have a corner or a pole",
+                Shown(*part)
+            ),
             Self::MoreIterations => f.write_str("the iteration was still converging: allow more iterations"),
             Self::LooserTolerance => f.write_str("the iteration moves by round-off only: ask for fewer digits"),
             Self::Constraints => f.write_str(
@@ -172,8 +182,14 @@ impl StepError {
             Self::NotANumber(NotANumber { at_node: false, .. }) => HALF,
             Self::NotANumber(NotANumber { derivative: Derivative::Value, .. }) => Hint::Numbers,
             Self::NotANumber(_) => Hint::Corner,
+            Self::Turn { turn, .. } => Hint::ShorterStep { part: 0.99 * std::f64::consts::PI / turn },
             Self::Overshoot { part } => Hint::ShorterStep { part: *part },
-            Self::Closed(_) | Self::Branch | Self::Energy { .. } | Self::Tolerance { .. } | Self::Unresolved => HALF,
+            Self::Closed(_)
+            | Self::Branch
+            | Self::Stiff
+            | Self::Energy { .. }
+            | Self::Tolerance { .. }
+            | Self::Unresolved => HALF,
             Self::Unsupported { .. } | Self::Reduced(ReducedError::NoBasis) => Hint::OtherMethod,
             // Far from the end a shorter step changes less.
             Self::Chart { regularity, least, .. } if *regularity >= 2.0 * least => HALF,
@@ -200,6 +216,11 @@ impl RunError {
     /// What to change; none where the error says no more than that it failed.
     #[must_use]
     pub fn hint(&self) -> Option<Hint> {
-        self.source.hint()
+        let hint = self.source.hint();
+        match (hint, self.shorter) {
+            (Some(Hint::ShorterStep { .. }), Shorter::Succeeds(part)) => Some(Hint::ShorterStep { part }),
+            (Some(Hint::ShorterStep { .. }), Shorter::Fails(part)) => Some(Hint::NoShorterStep { part }),
+            _ => hint,
+        }
     }
 }

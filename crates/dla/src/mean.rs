@@ -26,7 +26,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N
     /// where there is one, and where it fails from there at `v0`.
     ///
     /// # Errors
-    /// [`StepError::Newton`] where none is found, [`StepError::Branch`] where what is found belongs to another motion.
+    /// [`StepError::Newton`] where none is found, [`StepError::Branch`] where what is found belongs to another motion, [`StepError::Stiff`] where that has no other branch.
     #[inline]
     pub(crate) fn solve(
         &self,
@@ -47,7 +47,7 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N
             found.map_err(|source| named_along(self.system, time, *self.state, v, source))?;
         let turn = self.turn(&v);
         if !(certain && search.continues(positive) && turn <= branch::NEAR) {
-            v = self.followed(newton, positive, turn, &v0).ok_or(StepError::Branch)?;
+            v = self.followed(newton, positive, turn, &v0).ok_or_else(|| self.unfollowed(&v, &v0))?;
             search = Corrections::new(self);
             iterations += newton
                 .solve(&mut search, &mut v)
@@ -59,6 +59,17 @@ impl<D: Discretisation<N, M>, const N: usize, const M: usize> Increment<'_, D, N
             named_along(self.system, time, *self.state, v, source)
         })?;
         Ok(Mean { v, p1, lambda, iterations, some, block: search.block() })
+    }
+
+    /// Why the solution `v`, which is not found from the velocity `v0`, is refused.
+    #[cold]
+    #[inline(never)]
+    fn unfollowed(&self, v: &[f64; N], v0: &[f64; N]) -> StepError {
+        let derivatives = |v: &[f64; N]| {
+            let (block, rows) = (self.linearised(v).1, self.rows(v).0);
+            [block.as_flattened(), rows.as_flattened()].concat()
+        };
+        branch::unfollowed([&derivatives(v), &derivatives(v0)])
     }
 
     /// The solution at the end of the branch that begins with a step of length zero.

@@ -264,8 +264,28 @@ pub enum StepError {
         time: f64,
     },
     /// The equations of the step have a solution, but it belongs to another motion, or cannot be shown to continue this one.
-    #[error("the step is too long: Newton's method converged to a solution on another branch")]
+    #[error("Newton's method converged to a solution on another branch than that of the motion")]
     Branch,
+    /// The equations of the step are linear, and their only solution is not near the velocity at its beginning: forces that change with the
+    /// place are too stiff for the step.
+    #[error(
+        "the step is too long: forces that change with the place change the velocity by more than the method follows in it"
+    )]
+    Stiff,
+    /// The velocity at the beginning would turn the constraint by half a turn or more in the step, which its rule cannot tell from a
+    /// smaller turn the other way round.
+    #[error(
+        "the step is too long: coordinate {} would turn by {} rad in it, and the method tells turns below pi rad, those of {} s", coordinate + 1,
+        Shown(*turn), Shown(*step * std::f64::consts::PI / *turn)
+    )]
+    Turn {
+        /// The coordinate that turns most, from zero.
+        coordinate: usize,
+        /// By how much the constraint would turn (rad).
+        turn: f64,
+        /// The length of the step, or of the part of one that a composition makes (s).
+        step: f64,
+    },
     /// Forces that depend on the velocity are too stiff for the step: it would drive the velocity past where they vanish.
     #[error("the step is too long: the braking forces would reverse the velocity; a step {} times shorter resolves them", Shown(part.recip()))]
     Overshoot {

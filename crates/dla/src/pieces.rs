@@ -18,7 +18,7 @@ pub fn pieces(schedule: &Schedule, mut jumps: Vec<f64>) -> Result<Vec<Range<u64>
         let steps = (time - schedule.t0) / schedule.step;
         let Some(nearest) = whole_steps(steps) else {
             let step = steps.floor() as u64;
-            return Err(RunError { step: step + 1, time: schedule.time(step), source: StepError::Jump { time } });
+            return Err(RunError::new(step + 1, schedule.time(step), StepError::Jump { time }));
         };
         let end = (nearest as u64).min(schedule.steps);
         if end > begin {
@@ -198,11 +198,7 @@ pub fn piece_by_piece_from<const N: usize, const M: usize>(
         let piece = system.smooth_piece(0.5 * (first + last));
         // Inside a piece there is no impulse.
         if steps.start >= from {
-            onto_constraint(&*piece, first, state).map_err(|source| RunError {
-                step: made + 1,
-                time: first,
-                source,
-            })?;
+            onto_constraint(&*piece, first, state).map_err(|source| RunError::new(made + 1, first, source))?;
         }
         let done = make(&*piece, Piece { steps: steps.start.max(from)..steps.end, schedule }, state)?;
         made = done.made;

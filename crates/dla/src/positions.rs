@@ -37,23 +37,32 @@ pub(crate) fn onto_positions<const N: usize, const M: usize>(
             return Err(fail(NewtonError::NotFinite { iteration, history }));
         }
         // Where corrections stall at round-off, the iteration has converged.
-        if step <= 16.0 * N as f64 * f64::EPSILON * size && step >= 0.25 * before {
+        let slight = step <= 16.0 * N as f64 * f64::EPSILON * size;
+        if step <= NEARLY * size && step >= 0.25 * before {
             // A place near zero is known to the rounding of the increment that leads there.
             let rounded = from_fn(|i| Rounded { value: q1[i], size: q1[i].abs() + increment[i].abs() });
             let left = system.positions_rounded(Rounded::exact(t1), &rounded);
             let off = most_roundings(left.into_iter().flatten().flatten()) > OF_CORRECTION;
             // Dependent rows that contradict one another leave a residual that no move removes.
-            return match off {
-                true => {
-                    Err(fail(NewtonError::IterationLimit { iterations: iteration, correction: step / size, history }))
-                }
-                false => Ok(increment),
-            };
+            if !off {
+                return Ok(increment);
+            }
+            if slight {
+                return Err(fail(NewtonError::IterationLimit {
+                    iterations: iteration,
+                    correction: step / size,
+                    history,
+                }));
+            }
         }
         before = step;
     }
-    Err(fail(NewtonError::IterationLimit { iterations: ITERATIONS, correction: before, history }))
+    let correction = history.last().unwrap_or(before);
+    Err(fail(NewtonError::IterationLimit { iterations: ITERATIONS, correction, history }))
 }
+
+/// Relative corrections that stall below this may be rounding, which rows that nearly depend on one another make larger.
+const NEARLY: f64 = 1e-9;
 
 const ITERATIONS: u32 = 50;
 

@@ -1,4 +1,5 @@
-use crate::{Mechanics, OneStep, OwnStep, State, StepError, StepReport};
+use crate::dropping::{left_branch, turned_off};
+use crate::{Dependent, Mechanics, OneStep, OwnStep, State, StepError, StepReport};
 use lagrangian::PowerSources;
 use std::ops::ControlFlow;
 
@@ -45,6 +46,8 @@ impl<Method> Rebased<Method> {
         Method: OneStep<N, M>,
     {
         let (mut outcome, q, (t, h)) = (None, *state.q(), step);
+        let first = (t, *state);
+        let (mut last, mut dropped) = (first, None::<Dependent>);
         let Self { method, basis, local } = self;
         let known = *basis;
         system.near(t, &q, known, &mut |number, near| {
@@ -54,14 +57,26 @@ impl<Method> Rebased<Method> {
                 state.advance(&[0.0; N], *state.v(), None);
             }
             *basis = number;
-            let mut look = |time: f64, node: &State<N>| match holds(system, number, time, node) {
-                true => ControlFlow::Continue(()),
-                false => ControlFlow::Break(()),
+            let mut look = |time: f64, node: &State<N>| {
+                dropped = left_branch(system, (last.0, time - last.0), &last.1, node)
+                    .or_else(|| turned_off(system, &first, &last.1, (time, node)));
+                last = (time, *node);
+                match dropped.is_none() && holds(system, number, time, node) {
+                    true => ControlFlow::Continue(()),
+                    false => ControlFlow::Break(()),
+                }
             };
             outcome = Some(method.step_until(near, step, state, &mut look));
         });
         *local = Some(outcome.is_some());
-        outcome.unwrap_or_else(|| Ok((method.step(system, t, h, state)?, None)))
+        let Some(outcome) = outcome else { return Ok((method.step(system, t, h, state)?, None)) };
+        let made = outcome?;
+        if made.1.is_none() {
+            // Seen over the whole step too: steps of the method's own may turn little by little.
+            dropped = left_branch(system, (last.0, t + h - last.0), &last.1, state)
+                .or_else(|| if last.0 == t { None } else { left_branch(system, step, &first.1, state) });
+        }
+        dropped.map_or(Ok(made), |dropped| Err(dropped.into()))
     }
 }
 

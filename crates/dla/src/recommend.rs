@@ -95,7 +95,7 @@ where
     recommend_by_trial(duration, tolerance, |schedule, times| {
         let mut samples = Samples::new(make_method(), times);
         drive(system, &mut make_method(), schedule, &mut state.clone(), &mut samples)?;
-        samples.into_taken().map_err(|source| RunError { step: schedule.steps, time: schedule.t0, source })
+        samples.into_taken().map_err(|source| RunError::new(schedule.steps, schedule.t0, source))
     })
 }
 
@@ -123,7 +123,7 @@ pub fn recommend_by_trial<const N: usize>(
         }
         let sampled: Sampled<N> = lagrangian::from_fn(|i| found.get(i).map_or([f64::NAN; N], State::unwrapped));
         let finite = sampled.iter().flatten().all(|q| q.is_finite());
-        if finite { Ok(sampled) } else { Err(RunError { step: steps, time: end, source: StepError::NotFinite }) }
+        if finite { Ok(sampled) } else { Err(RunError::new(steps, end, StepError::NotFinite)) }
     };
     let (found, trials) = reference(&mut trial, duration, tolerance)?;
     refined(&mut trial, &found, &trials, duration, tolerance)

@@ -131,7 +131,7 @@ fn a_failure_keeps_state_and_trajectory() {
         let error =
             drive(&One::from(Line), &mut method, &SCHEDULE, &mut state, (&mut log, &mut trajectory)).unwrap_err();
         let (good, time) = (fails_at - 1, 0.5 * (fails_at - 1) as f64);
-        assert_eq!(error, RunError { step: fails_at, time, source: FAILURE });
+        assert_eq!(error, RunError::new(fails_at, time, FAILURE));
         assert_eq!(state.q()[0], good as f64, "the last good node");
         assert_eq!(log.events.last(), Some(&End(good, time, good as f64)));
         assert_eq!(log.events.len() as u64, 2 + good, "nothing is shown twice");

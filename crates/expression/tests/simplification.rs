@@ -90,6 +90,28 @@ fn coefficients_stay_in_range() {
     }
 }
 
+/// Multiplied out, a small coefficient beside a large one would be lost: such products stay.
+#[test]
+fn no_coefficient_is_swallowed() {
+    let names = Names::of(["x", "y"]).unwrap();
+    let expanded = |source: &str| {
+        let mut graph = Graph::new();
+        let variables = [0, 1].map(|k| graph.variable(k));
+        let e = parse(source, &names).unwrap();
+        let e = graph.build(&e, &variables).unwrap();
+        let expanded = graph.expanded(e, 100);
+        (expanded == e, graph.text(expanded, &names).unwrap())
+    };
+    for source in ["1e20*(y - x - 1) - 750*x", "1e20*(y - x - 1) - 5", "(1e20*(y - x) - x)*y", "(x + 1e20)*y - 3*y"] {
+        let (kept, text) = expanded(source);
+        assert!(kept, "{source}: {text}");
+    }
+    // The control: what fits is multiplied out, and what cancels does.
+    for (source, right) in [("1e3*(y - x - 1) + 1e3*x", "1000*y - 1000"), ("1e20*(y - x) + 1e20*x", "1e20*y")] {
+        assert_eq!(expanded(source).1, right);
+    }
+}
+
 #[test]
 fn texts_are_readable() {
     for (source, expected) in [

@@ -35,7 +35,7 @@ pub use assembled::{
 };
 pub use baseline::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced};
 pub use cost::{step_evaluations, step_time};
-pub use drift::{Blocks, Drift, DriftVerdict, Energies};
+pub use drift::{Blocks, Drift, DriftVerdict, Energies, EnergyJump};
 pub use method::{METHODS, Method, MethodError, MethodInfo, MethodKind};
 pub use record::{EnergySummary, NewtonSummary, Record, Sample};
 pub use run::{Request, integrate, integrate_from, integrate_on, integrate_pieces, run, timed};

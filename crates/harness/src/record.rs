@@ -1,5 +1,5 @@
 use crate::slip::Slip;
-use crate::{Blocks, Drift, DriftVerdict, Energies, Method, MethodInfo, Request, SubstepSummary, Trend};
+use crate::{Blocks, Drift, DriftVerdict, Energies, EnergyJump, Method, MethodInfo, Request, SubstepSummary, Trend};
 use dla::{Checkpoint, CheckpointError, Observer, RunError, State, StepError, StepReport, Undivided, View, Work};
 use lagrangian::linear::larger;
 use std::ops::ControlFlow;
@@ -28,6 +28,8 @@ pub struct EnergySummary {
     pub drift_per_time: f64,
     /// What `E - E0 - work` does over the run, its fast and its slow part.
     pub drift: Drift,
+    /// Steps that change the energy though no force does that work; none where the run has none.
+    pub jump: Option<EnergyJump>,
 }
 
 /// A node kept for plots.
@@ -239,7 +241,7 @@ impl<const N: usize> Meter<N> {
         self.constraint_max = larger(self.constraint_max, constraint);
         self.trend.add(node.t, error);
         self.blocks.add(node.t, error);
-        self.energies.see(error, self.work.total(), || kinetic(node));
+        self.energies.see(node.t, error, self.work.total(), || kinetic(node));
         self.bucket = (larger(self.bucket.0, error.abs()), larger(self.bucket.1, constraint));
     }
 
@@ -270,6 +272,7 @@ impl<const N: usize> Meter<N> {
                 max_error: self.max_error,
                 drift_per_time: self.trend.slope().unwrap_or(0.0),
                 drift: Drift::of_energy(&self.blocks, &self.energies),
+                jump: self.energies.jump(),
             },
             constraint_max: self.constraint_max,
             step_constraint_max: self.slip.step_max(),

@@ -49,7 +49,8 @@ pub(crate) fn substepped_part<const N: usize, const M: usize>(
     observer: &mut dyn Observer<N, M>,
 ) -> Result<Part, RunError> {
     let Some(limits) = limits else {
-        return drive_part(system, method, schedule, steps, state, observer);
+        return drive_part(system, method, schedule, steps, state, observer)
+            .map_err(|error| error.with_shorter(system, method, (schedule.step, state)));
     };
     let mut made = steps.start;
     if observer.measures_work() {
@@ -137,7 +138,7 @@ fn step<const N: usize, const M: usize>(
             if undivided.tried > 0 {
                 observer.undivided(&undivided);
             }
-            Err(RunError { step: k + 1, time: t, source: undivided.source })
+            Err(RunError::new(k + 1, t, undivided.source))
         }
     }
 }

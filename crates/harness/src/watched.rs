@@ -85,6 +85,6 @@ pub fn recommend<const N: usize, const M: usize>(
         progress.expect(schedule.steps);
         let mut ticker = Ticker::new(progress, 0);
         integrate_pieces(subject, method, schedule, &mut state, &mut (&mut samples, &mut ticker))?;
-        samples.into_taken().map_err(|source| dla::RunError { step: schedule.steps, time: schedule.t0, source })
+        samples.into_taken().map_err(|source| dla::RunError::new(schedule.steps, schedule.t0, source))
     })
 }

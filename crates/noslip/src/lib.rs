@@ -102,7 +102,7 @@ where
     Obs: Observer<N, M>,
 {
     match slip(system, schedule.t0, state) {
-        Some(source) => Err(RunError { step: 1, time: schedule.t0, source }),
+        Some(source) => Err(RunError::new(1, schedule.t0, source)),
         None => dla::drive(system, method, schedule, state, observer),
     }
 }

@@ -124,6 +124,7 @@ impl<const N: usize, const M: usize, const S: usize> OneStep<N, M> for Lobatto<S
         affine_only(system, t0, state)?;
         let LobattoTables { c, b, .. } = &self.tables;
         let (q0, v0) = (*state.q(), *state.v());
+        branch::tells_turn(system, (t0, h), &q0, &v0)?;
         let p0 = system.momentum(t0, &q0, &v0);
 
         // Start from uniform acceleration, where the equations of motion give one.
@@ -141,7 +142,7 @@ impl<const N: usize, const M: usize, const S: usize> OneStep<N, M> for Lobatto<S
             .map_err(|source| named_along(system, (t0, h), *state, v0, source))?;
         let turn = stages.turn(&v);
         if !(near && turn <= branch::NEAR) {
-            v = self.followed(&first, turn, v0).ok_or(StepError::Branch)?;
+            v = self.followed(&first, turn, v0).ok_or_else(|| first.unfollowed(&v, v0))?;
             stages = first;
             iterations += self
                 .newton

@@ -4,7 +4,7 @@ use super::tables::LobattoTables;
 use crate::branch;
 use crate::convergence::{most_roundings, rounding_of_place};
 use crate::newton::BlockEquations;
-use crate::{Mechanics, State};
+use crate::{Mechanics, State, StepError};
 use lagrangian::linear::Singular;
 use lagrangian::{Rounded, Saddle, from_fn, mapped};
 
@@ -115,6 +115,23 @@ impl<const N: usize, const M: usize, const S: usize> LobattoStages<'_, N, M, S> 
             })
         });
         most_roundings(momenta.chain(rows))
+    }
+
+    /// Why the velocities `v` of the stages, which are not found from the velocity `v0`, are refused.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn unfollowed(&self, v: &[[f64; N]; S], v0: [f64; N]) -> StepError {
+        let derivatives = |v: &[[f64; N]; S]| {
+            let mut all = Vec::new();
+            for at in self.points(v).iter().map(|point| point.linearised(self.system, self.h)) {
+                for square in [&at.p_q, &at.p_v, &at.w_q, &at.w_v] {
+                    all.extend_from_slice(square.as_flattened());
+                }
+                all.extend_from_slice(at.a.as_flattened());
+            }
+            all
+        };
+        branch::unfollowed([&derivatives(v), &derivatives(&[v0; S])])
     }
 
     /// The linear equations of Newton's method.

@@ -34,7 +34,7 @@ fn a_run_backward_meets_the_jumps_in_its_order() {
 
 #[test]
 fn a_jump_inside_a_step_is_refused() {
-    let RunError { step, time, source } = pieces(&steps(0.1, 100), vec![8.0, 0.55, 0.26]).unwrap_err();
+    let RunError { step, time, source, .. } = pieces(&steps(0.1, 100), vec![8.0, 0.55, 0.26]).unwrap_err();
     // The third step begins at 0.2.
     assert_eq!((step, source), (3, StepError::Jump { time: 0.26 }));
     approx::assert_relative_eq!(time, 0.2, max_relative = f64::EPSILON);

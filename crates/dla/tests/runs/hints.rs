@@ -1,9 +1,10 @@
 //! What each failure says is to be changed.
 
 use approx::assert_relative_eq;
-use dla::{ClosedStepError, Hint, History, NewtonError, RunError, Stage, StepError};
+use dla::{ClosedStepError, Hint, History, NewtonError, RunError, Shorter, Stage, StepError};
 use lagrangian::linear::Singular;
 use lagrangian::{MotionError, ReducedError};
+use std::f64::consts::PI;
 
 const HALF: Option<Hint> = Some(Hint::ShorterStep { part: 0.5 });
 
@@ -86,6 +87,8 @@ fn of_everything_else() {
         (StepError::NotFinite, Some(Hint::Numbers)),
         (StepError::Overshoot { part: 0.3 }, Some(Hint::ShorterStep { part: 0.3 })),
         (StepError::Branch, HALF),
+        (StepError::Stiff, HALF),
+        (StepError::Turn { coordinate: 2, turn: 5.0, step: 0.1 }, Some(Hint::ShorterStep { part: 0.99 * PI / 5.0 })),
         (StepError::Energy { defect: 1.0, bound: 0.1 }, HALF),
         (StepError::Tolerance { tries: 5, step: 1e-9 }, HALF),
         (StepError::Unsupported { reason: "it cannot" }, Some(Hint::OtherMethod)),
@@ -110,16 +113,29 @@ fn of_everything_else() {
         (StepError::Reduced(ReducedError::Motion(motion(f64::INFINITY))), Some(Hint::Numbers)),
     ] {
         assert_eq!(error.hint(), hint, "{error}");
-        assert_eq!(RunError { step: 8, time: 0.7, source: error }.hint(), hint);
-        assert_eq!(RunError { step: 8, time: 0.7, source: error }.valid_steps(), 7);
+        assert_eq!(RunError::new(8, 0.7, error).hint(), hint);
+        assert_eq!(RunError::new(8, 0.7, error).valid_steps(), 7);
         assert_eq!((error.history(), error.iterations()), (None, None));
     }
+}
+
+/// What was tried with shorter steps takes the place of what the failure alone suggests; what it knows to be right stays.
+#[test]
+fn of_steps_that_were_tried() {
+    let hint = |source, shorter| RunError { shorter, ..RunError::new(1, 0.0, source) }.hint();
+    for source in [StepError::Branch, StepError::Stiff] {
+        assert_eq!(hint(source, Shorter::Succeeds(0.125)), Some(Hint::ShorterStep { part: 0.125 }));
+        assert_eq!(hint(source, Shorter::Fails(1e-3)), Some(Hint::NoShorterStep { part: 1e-3 }));
+        assert_eq!(hint(source, Shorter::Untried), HALF);
+    }
+    assert_eq!(hint(StepError::NotFinite, Shorter::Fails(1e-3)), Some(Hint::Numbers));
 }
 
 #[test]
 fn a_hint_says_it() {
     for (hint, words) in [
         (Hint::ShorterStep { part: 0.25 }, "0.25"),
+        (Hint::NoShorterStep { part: 0.25 }, "0.25"),
         (Hint::MoreIterations, "more iterations"),
         (Hint::LooserTolerance, "fewer digits"),
         (Hint::Constraints, "constraint rows"),

@@ -137,7 +137,7 @@ fn pieces_from_a_node_on() {
     assert_eq!(run(0, 6, 3), (Ok(4), vec![(0, 2, 1.0), (2, 4, 2.0)]));
     assert_eq!(run(0, 0, 9), (Ok(0), vec![(0, 0, 1.0)]));
     let (outcome, made) = run(0, 8, 9);
-    let RunError { step, time, source } = outcome.unwrap_err();
+    let RunError { step, time, source, .. } = outcome.unwrap_err();
     assert!((step, time, made.len()) == (7, 3.0, 3) && matches!(source, StepError::Dependent(_)), "{source}");
 }
 

@@ -7,7 +7,7 @@ use dla::{RecommendError, Recommendation, RunError, State, StepError, recommend_
 fn by_law(order: i32, tolerance: f64, longest: f64) -> Result<Recommendation, RecommendError> {
     recommend_by_trial::<1>(10.0, tolerance, |schedule, times| {
         if schedule.step > longest {
-            return Err(RunError { step: 1, time: 0.0, source: StepError::Branch });
+            return Err(RunError::new(1, 0.0, StepError::Branch));
         }
         Ok(times.iter().map(|t| State::new([t + 3.0 * schedule.step.powi(order)], [1.0], [false])).collect())
     })
@@ -44,7 +44,7 @@ fn what_cannot_be_recommended() {
     let mut asked = 0;
     let refused = recommend_by_trial::<1>(10.0, 1e-3, |_, _| {
         asked += 1;
-        Err(RunError { step: 1, time: 0.0, source: StepError::Unsupported { reason: "it cannot" } })
+        Err(RunError::new(1, 0.0, StepError::Unsupported { reason: "it cannot" }))
     });
     assert!(matches!(refused, Err(RecommendError::Fails { step, .. }) if step == 2.5) && asked == 1, "{refused:?}");
     // Errors that stay are out of reach, whatever the step.

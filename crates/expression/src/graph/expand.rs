@@ -7,7 +7,8 @@ use std::collections::HashMap;
 
 impl Graph {
     /// The expression with products of sums multiplied out, and with sines and cosines of sums written by those of their terms, so that what
-    /// cancels does. A product that would have more than `most` terms stays as it is.
+    /// cancels does. A product that would have more than `most` terms stays as it is, and so does what would lose a coefficient beside a
+    /// much larger one: `k (x - y) + x` with a `k` of `1e20`.
     ///
     /// ```
     /// use expression::{Graph, Names, parse};
@@ -36,10 +37,9 @@ impl Graph {
                     let constant = self.constant(constant.value());
                     self.add_to(&mut sum, constant, 1.0);
                     for &(term, c) in &terms {
-                        let term = new(term);
-                        self.add_opened(&mut sum, term, c.value());
+                        self.add_opened(&mut sum, new(term), c.value());
                     }
-                    self.finish_sum(sum)
+                    if sum.swallows() { part } else { self.finish_sum(sum) }
                 }
                 NodeKind::Product(factors) => {
                     let factors: Vec<_> = factors.iter().map(|&(base, halves)| (new(base), halves)).collect();
@@ -93,6 +93,9 @@ impl Graph {
                         let term = self.product(&[x, y]);
                         self.add_to(&mut sum, term, c * d);
                     }
+                }
+                if sum.swallows() {
+                    return whole;
                 }
                 product = self.finish_sum(sum);
             }

@@ -8,6 +8,24 @@ use crate::Function;
 pub(crate) struct Sum {
     constant: f64,
     terms: Vec<(Expression, f64)>,
+    /// Whether a constant was swallowed by another.
+    swallows: bool,
+}
+
+impl Sum {
+    /// Whether gathering its terms would swallow one of them: of `1e20 x + 750 x` nothing of the 750 would be left.
+    pub(crate) fn swallows(&mut self) -> bool {
+        self.terms.sort_by_key(|&(term, _)| term);
+        let pair = |pair: &[(Expression, f64)]| pair[0].0 == pair[1].0 && swallowed(pair[0].1, pair[1].1);
+        self.swallows || self.terms.windows(2).any(pair)
+    }
+}
+
+/// Whether the sum of two numbers has lost more than half of the digits of the smaller one.
+fn swallowed(a: f64, b: f64) -> bool {
+    let (large, small) = if a.abs() < b.abs() { (b, a) } else { (a, b) };
+    let left = (large + small) - large;
+    (left - small).abs() > f64::EPSILON.sqrt() * small.abs()
 }
 
 impl Graph {
@@ -56,6 +74,7 @@ impl Graph {
             NodeKind::Constant(x) => {
                 let x = c * x.value();
                 if (sum.constant + x).is_finite() || !sum.constant.is_finite() || !x.is_finite() {
+                    sum.swallows |= swallowed(sum.constant, x);
                     sum.constant += x;
                 } else {
                     let apart = self.constant(x);
@@ -65,6 +84,7 @@ impl Graph {
             NodeKind::Sum { constant, terms } if c.abs() == 1.0 && terms.len() <= LONG => {
                 let total = sum.constant + c * constant.value();
                 if total.is_finite() {
+                    sum.swallows |= swallowed(sum.constant, c * constant.value());
                     sum.constant = total;
                     sum.terms.extend(terms.iter().map(|&(term, x)| (term, c * x.value())));
                 } else {
@@ -103,7 +123,7 @@ impl Graph {
 
     /// The expression of a sum: terms in order, equal ones gathered.
     pub(crate) fn finish_sum(&mut self, sum: Sum) -> Expression {
-        let Sum { mut constant, mut terms } = sum;
+        let Sum { mut constant, mut terms, .. } = sum;
         gather(&mut terms);
         if terms.len() <= LONG {
             self.circles(&mut constant, &mut terms);
@@ -133,7 +153,7 @@ impl Graph {
         for _ in 0..LONG {
             let Some(at) = terms.iter().position(|&(e, c)| c.abs() == 1.0 && sum(self, e)) else { break };
             let (e, c) = terms.remove(at);
-            let mut opened = Sum { constant: *constant, terms: std::mem::take(terms) };
+            let mut opened = Sum { constant: *constant, terms: std::mem::take(terms), swallows: false };
             self.add_to(&mut opened, e, c);
             *constant = opened.constant;
             *terms = opened.terms;
@@ -146,7 +166,7 @@ impl Graph {
         while let Some((i, j, rest)) = self.circle(terms) {
             let (_, c) = terms.remove(i.max(j));
             terms.remove(i.min(j));
-            let mut sum = Sum { constant: *constant, terms: std::mem::take(terms) };
+            let mut sum = Sum { constant: *constant, terms: std::mem::take(terms), swallows: false };
             self.add_to(&mut sum, rest, c);
             *constant = sum.constant;
             *terms = sum.terms;

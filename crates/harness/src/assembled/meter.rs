@@ -123,7 +123,7 @@ impl<'a> AssemblyMeter<'a> {
         self.most = [larger(self.most[0], miss[0]), larger(self.most[1], miss[1])];
         self.trend.add(t, error);
         self.blocks.add(t, error);
-        self.energies.see(error, self.work.total(), || kinetic(assembly, t, state));
+        self.energies.see(t, error, self.work.total(), || kinetic(assembly, t, state));
         self.bucket = (larger(self.bucket.0, error), larger(self.bucket.1, miss[0]));
         self.iterations += u64::from(iterations);
         self.most_iterations = self.most_iterations.max(iterations);
@@ -193,6 +193,7 @@ impl<'a> AssemblyMeter<'a> {
                 max_error: self.max_error,
                 drift_per_time: self.trend.slope().unwrap_or(0.0),
                 drift: Drift::of_energy(&self.blocks, &self.energies),
+                jump: self.energies.jump(),
             },
             constraint_max: self.most[0],
             // The mean velocities of the steps are not kept; the equations of a step meet it as they do the joints.
@@ -202,11 +203,7 @@ impl<'a> AssemblyMeter<'a> {
             q: of(0),
             v: of(1),
             samples: self.samples.clone(),
-            failure: failure.map(|error| dla::RunError {
-                step: error.step,
-                time: error.time,
-                source: error.source.step_error(),
-            }),
+            failure: failure.map(|error| dla::RunError::new(error.step, error.time, error.source.step_error())),
             substeps: self.substeps,
             interrupted: false,
         }

@@ -35,7 +35,7 @@ impl<'a> AssemblyPieces<'a> {
         let fail = |source| AssemblyRunError { step: 1, time: schedule.t0, source };
         let (begin, end) = (schedule.t0, schedule.time(schedule.steps));
         let jumps = whole.jump_times(begin.min(end), begin.max(end));
-        let pieces = smooth_pieces(schedule, jumps).map_err(|RunError { step, time, source }| {
+        let pieces = smooth_pieces(schedule, jumps).map_err(|RunError { step, time, source, .. }| {
             let StepError::Jump { time: jump } = source else { return fail(AssemblyError::NotFinite) };
             AssemblyRunError { step, time, source: AssemblyError::Jump { time: jump } }
         })?;

@@ -19,7 +19,7 @@ pub fn recommend_assembly<const N: usize>(
     let seen = |state: &AssemblyState| dla::State::new(seen(state), [0.0; N], [false; N]);
     recommend_by_trial(duration, tolerance, |schedule, times| {
         let mut taken = Vec::new();
-        let of_run = |AssemblyRunError { step, time, source }| RunError { step, time, source: source.step_error() };
+        let of_run = |AssemblyRunError { step, time, source }| RunError::new(step, time, source.step_error());
         states_at(assembly, method, schedule, start, times, |_, _, state| taken.push(seen(state))).map_err(of_run)?;
         Ok(taken)
     })

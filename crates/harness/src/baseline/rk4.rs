@@ -1,5 +1,5 @@
 use super::{STAGES, shifted, weighted};
-use dla::{Mechanics, OneStep, StackUse, State, StepError, StepReport};
+use dla::{Mechanics, OneStep, StackUse, State, StepError, StepReport, on_branch};
 use lagrangian::{Saddle, from_fn};
 
 /// The classical Runge-Kutta method in full coordinates.
@@ -64,7 +64,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Rk4 {
         }
         let (dq, dv) = increments(system, t, h, state)?;
         let v = from_fn(|i| state.v()[i] + dv[i]);
-        explicit(state, &dq, v, None)
+        on_branch(system, (t, h), state, &v, |state| explicit(state, &dq, v, None))
     }
 }
 
@@ -83,7 +83,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Rk4Projected {
         let (dq, dv) = increments(system, t, h, state)?;
         let v = from_fn(|i| state.v()[i] + dv[i]);
         let v = projected(system, t + h, &state.ahead(&dq), &v)?;
-        explicit(state, &dq, v, None)
+        on_branch(system, (t, h), state, &v, |state| explicit(state, &dq, v, None))
     }
 }
 

@@ -7,7 +7,7 @@ mod growth;
 mod mean;
 
 pub use blocks::Blocks;
-pub use energies::Energies;
+pub use energies::{Energies, EnergyJump};
 
 use batches::Batches;
 use std::fmt;
@@ -123,20 +123,21 @@ impl Drift {
     ///
     /// It is round-off where it stays within a few units in the last place of the largest of them, of which no drift can be told. It has
     /// diverged where it was larger than all of them; or where it ends above those of the start, nearly all of its sum of
-    /// squares is in the last batches, most of which are larger than all before.
+    /// squares is in the last batches, most of which are larger than all before; or where step after step changes the energy by a tenth of
+    /// it. An error is not bounded where one step does so.
     #[must_use]
     pub fn of_energy(blocks: &Blocks, energies: &Energies) -> Self {
         let drift = Self::of(blocks);
         let runs_away = || batches::runs_away(blocks.full()).is_some_and(|largest| largest > energies.start());
-        if energies.exceeded() || runs_away() {
-            return Self { verdict: DriftVerdict::Diverged, ..drift };
-        }
         let largest = blocks.full().iter().map(|block| block.min.abs().max(block.max.abs())).fold(0.0, f64::max);
-        let unseen = matches!(drift.verdict, DriftVerdict::LinearDrift | DriftVerdict::RandomWalk);
-        if unseen && largest <= OF_ROUNDING * f64::EPSILON * energies.largest() {
-            return Self { verdict: DriftVerdict::RoundOff, ..drift };
-        }
-        drift
+        let unseen = largest <= OF_ROUNDING * f64::EPSILON * energies.largest();
+        let verdict = match drift.verdict {
+            _ if energies.exceeded() || energies.runs_off() || runs_away() => DriftVerdict::Diverged,
+            DriftVerdict::Bounded if energies.jump().is_some() => DriftVerdict::Undecided,
+            DriftVerdict::LinearDrift | DriftVerdict::RandomWalk if unseen => DriftVerdict::RoundOff,
+            verdict => verdict,
+        };
+        Self { verdict, ..drift }
     }
 
     /// The largest error to be expected at a time (s) after the start: the fast part and the secular one.

@@ -10,7 +10,7 @@ fn verdict(start: f64, nodes: u32, of: impl Fn(f64) -> [f64; 2]) -> DriftVerdict
         let share = f64::from(k) / f64::from(nodes - 1);
         let [error, kinetic] = of(share);
         blocks.add(share, error);
-        energies.see(error, 0.0, || kinetic);
+        energies.see(share, error, 0.0, || kinetic);
     }
     Drift::of_energy(&blocks, &energies).verdict
 }
@@ -58,6 +58,16 @@ fn what_does_not_blow_up_has_not_diverged() {
     assert_ne!(verdict(1.0, 5000, |share| [1e-16 * (25.0 * share).exp(), 1.0]), DriftVerdict::Diverged);
     // At rest on a saddle of zero energy: rounding of the potential beside no kinetic energy at all.
     assert_eq!(verdict(0.0, 5000, |share| [1e-17 * phase(share), 1e-30]), DriftVerdict::Bounded);
+}
+
+/// An error that jumps to and fro by a tenth of the energy and more is not bounded.
+#[test]
+fn an_error_that_jumps_is_not_bounded() {
+    let jumping = |size: f64| move |share: f64| [if (4999.0 * share).round() % 2.0 > 0.5 { size } else { -size }, 1.0];
+    assert_eq!(verdict(1.0, 5000, jumping(0.1)), DriftVerdict::Undecided);
+    assert_eq!(verdict(1.0, 5000, jumping(0.04)), DriftVerdict::Bounded);
+    // The energy of a motion that is rounding beside its potential does not jump.
+    assert_eq!(verdict(0.0, 5000, |share| [jumping(1e-10)(share)[0], 1e-30]), DriftVerdict::Bounded);
 }
 
 proptest! {

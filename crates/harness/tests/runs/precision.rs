@@ -24,7 +24,7 @@ fn made_up(method: &Method, steps: u64) -> Result<f64, RunError> {
 }
 
 fn failed(source: StepError) -> RunError {
-    RunError { step: 1, time: 0.0, source }
+    RunError::new(1, 0.0, source)
 }
 
 fn curves(names: &[&str]) -> Vec<Curve> {

@@ -55,7 +55,7 @@ const CASE: Case = Case { name: "case", hard: "", shows: "", bar: "", claim: Cla
 
 fn failing(source: StepError) -> Recorded {
     let node = Seen { t: 0.0, values: [0.0; VALUES], energy_error: 0.0, constraint: 0.0 };
-    Recorded { nodes: vec![node], failure: Some(RunError { step: 1, time: 0.0, source }), late: false }
+    Recorded { nodes: vec![node], failure: Some(RunError::new(1, 0.0, source)), late: false }
 }
 
 /// What is made of runs: a number that is none, a run without end and a silent error fail even where nothing is claimed.

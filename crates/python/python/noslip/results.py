@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+
+def warn(object: Mapping[str, Any]) -> None:
+    """Warns whoever has made a run of what its object warns of."""
+    for told in object.get("warnings", ()):
+        warnings.warn(told, stacklevel=3)
 
 
 class Run(Mapping[str, NDArray[np.float64]]):

@@ -13,7 +13,7 @@ import numpy as np
 from .commands import call, flags
 from .errors import Interrupted, RunError
 from .progress import Progress
-from .results import Run
+from .results import Run, warn
 
 
 def saved_run(
@@ -33,6 +33,7 @@ def saved_run(
         except Interrupted as interrupted:
             raise Interrupted(_read(rows, interrupted.result)) from None
     run = _read(rows, object)
+    warn(object)
     if "failure" in object:
         raise RunError(str(object["failure"].get("reason")), run)
     return run

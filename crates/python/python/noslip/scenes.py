@@ -16,7 +16,7 @@ from . import _noslip
 from .commands import call, flags
 from .errors import ArgumentError, Interrupted, RunError
 from .progress import Progress, shown
-from .results import Run
+from .results import Run, warn
 from .saved import saved_run
 from .sensitivities import Prediction, Sensitivities
 
@@ -187,6 +187,8 @@ class Scene:
                 raise Interrupted(None) from None
         columns, units, text, failure, ended = made
         result = Run(columns, dict(units), text)
+        if '"warnings"' in text:
+            warn(result.object)
         if isinstance(ended, KeyboardInterrupt):
             raise Interrupted(result) from None
         if ended is not None:
