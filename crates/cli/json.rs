@@ -34,6 +34,9 @@ pub(crate) fn record_of<const N: usize>(scene: &str, record: &Record<N>, end: &V
         "constraint": {"max": record.constraint_max},
         "final": end,
     });
+    if record.derivation_seconds > 0.0 {
+        object["derivation_seconds"] = json!(record.derivation_seconds);
+    }
     if let Some(failure) = &record.failure {
         object["failure"] = self::failure(failure);
     }

@@ -173,8 +173,15 @@ impl StepError {
             Self::NotANumber(NotANumber { derivative: Derivative::Value, .. }) => Hint::Numbers,
             Self::NotANumber(_) => Hint::Corner,
             Self::Overshoot { part } => Hint::ShorterStep { part: *part },
-            Self::Closed(_) | Self::Branch | Self::Energy { .. } | Self::Tolerance { .. } | Self::Unresolved => HALF,
-            Self::Unsupported { .. } | Self::Reduced(ReducedError::NoBasis) => Hint::OtherMethod,
+            Self::Closed(_)
+            | Self::Branch
+            | Self::LeavesBasis
+            | Self::Energy { .. }
+            | Self::Tolerance { .. }
+            | Self::Unresolved => HALF,
+            Self::Unsupported { .. } | Self::LightMass { .. } | Self::Reduced(ReducedError::NoBasis) => {
+                Hint::OtherMethod
+            }
             // Far from the end a shorter step changes less.
             Self::Chart { regularity, least, .. } if *regularity >= 2.0 * least => HALF,
             Self::Chart { .. } => Hint::OtherCoordinates,

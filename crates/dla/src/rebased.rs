@@ -1,11 +1,13 @@
 use crate::{Mechanics, OneStep, OwnStep, State, StepError, StepReport};
+use lagrangian::{from_fn, mapped};
 use std::ops::ControlFlow;
 
 /// A method on systems whose basis of admissible velocities holds near a configuration only: the basis is changed at nodes, where it
 /// becomes badly conditioned.
 ///
 /// Within a step the basis is one and the same, so that a method has the order that it has in any basis; a method that makes steps of its
-/// own changes it between these too. Of a system whose basis holds everywhere the method makes its steps by itself.
+/// own changes it between these too. Where the step fails, bodies may have turned out of the neighbourhood in which the basis holds: the step is
+/// made again in the basis that is best in its middle, and then in that of its end. Of a system whose basis holds everywhere the method makes its steps by itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rebased<Method> {
     method: Method,
@@ -13,19 +15,27 @@ pub struct Rebased<Method> {
     basis: u64,
     /// Whether bases of the system are local; not known before the first step.
     local: Option<bool>,
+    /// Whether steps ask for the basis between their ends too.
+    along: bool,
 }
 
 impl<Method> Rebased<Method> {
     /// The method, with its basis changed where the system asks for that.
     pub fn new(method: Method) -> Self {
-        Self { method, basis: 0, local: None }
+        Self { method, basis: 0, local: None, along: false }
+    }
+
+    /// The same of a method whose steps ask for the basis between their ends too: it is to be well conditioned there.
+    #[must_use]
+    pub fn along(self) -> Self {
+        Self { along: true, ..self }
     }
 }
 
 /// Whether the basis of this number is well conditioned at a node.
-fn holds<const N: usize, const M: usize>(system: &dyn Mechanics<N, M>, number: u64, t: f64, node: &State<N>) -> bool {
+fn holds<const N: usize, const M: usize>(system: &dyn Mechanics<N, M>, number: u64, t: f64, q: &[f64; N]) -> bool {
     let mut best = number;
-    system.near(t, node.q(), number, &mut |number, _| best = number);
+    system.near(t, q, number, &mut |number, _| best = number);
     best == number
 }
 
@@ -40,24 +50,78 @@ impl<Method> Rebased<Method> {
     where
         Method: OneStep<N, M>,
     {
-        let (mut outcome, q, (t, h)) = (None, *state.q(), step);
-        let Self { method, basis, local } = self;
+        let (t, h) = step;
+        let before = *state;
+        let outcome = self.part_near(system, (t, before.q(), self.basis), step, state);
+        self.local = Some(outcome.is_some());
+        let made = match outcome {
+            None => return Ok((self.method.step(system, t, h, state)?, None)),
+            Some(Err(error)) if error.may_hold_in_parts() => Err(error),
+            Some(Ok(made)) if self.along && made.1.is_none() && !self.held(system, step, &before, state) => {
+                Err(StepError::LeavesBasis)
+            }
+            Some(made) => return made,
+        };
+        let mut tried = [self.basis; 2];
+        for ahead in [0.5, 1.0] {
+            let (t, q) = (t + ahead * h, before.ahead(&mapped(before.v(), |v| ahead * h * v)));
+            let mut number = self.basis;
+            system.near(t, &q, 0, &mut |best, _| number = best);
+            if tried.contains(&number) {
+                continue;
+            }
+            *state = before;
+            if let Some(Ok(made)) = self.part_near(system, (t, &q, number), step, state)
+                && (made.1.is_some() || self.held(system, step, &before, state))
+            {
+                return Ok(made);
+            }
+            tried[1] = number;
+        }
+        made
+    }
+
+    /// Whether the basis is well conditioned in the middle and at the end of a step.
+    fn held<const N: usize, const M: usize>(
+        &self,
+        system: &dyn Mechanics<N, M>,
+        (t, h): (f64, f64),
+        start: &State<N>,
+        end: &State<N>,
+    ) -> bool {
+        let (from, to) = (start.unwrapped(), end.unwrapped());
+        let middle = start.ahead(&from_fn(|i| 0.5 * (to[i] - from[i])));
+        holds(system, self.basis, t + 0.5 * h, &middle) && holds(system, self.basis, t + h, end.q())
+    }
+
+    /// The same in the basis of that number where it is good at a time and a place, else in the one that is best there.
+    fn part_near<const N: usize, const M: usize>(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        (time, place, number): (f64, &[f64; N], u64),
+        step: (f64, f64),
+        state: &mut State<N>,
+    ) -> Option<Result<(StepReport<M>, Option<f64>), StepError>>
+    where
+        Method: OneStep<N, M>,
+    {
+        let mut outcome = None;
+        let Self { method, basis, .. } = self;
         let known = *basis;
-        system.near(t, &q, known, &mut |number, near| {
+        system.near(time, place, number, &mut |number, near| {
             if number != known {
                 // What is remembered is in the other basis.
                 method.recall(&[], state);
                 state.advance(&[0.0; N], *state.v(), None);
             }
             *basis = number;
-            let mut look = |time: f64, node: &State<N>| match holds(system, number, time, node) {
+            let mut look = |time: f64, node: &State<N>| match holds(system, number, time, node.q()) {
                 true => ControlFlow::Continue(()),
                 false => ControlFlow::Break(()),
             };
             outcome = Some(method.step_until(near, step, state, &mut look));
         });
-        *local = Some(outcome.is_some());
-        outcome.unwrap_or_else(|| Ok((method.step(system, t, h, state)?, None)))
+        outcome
     }
 }
 
@@ -130,7 +194,7 @@ where
                 }
                 let mut look = |time: f64, node: &State<N>| {
                     stopped = see(time, node).is_break();
-                    if !stopped && holds(system, number, time, node) {
+                    if !stopped && holds(system, number, time, node.q()) {
                         return ControlFlow::Continue(());
                     }
                     turned = Some((time, *node));

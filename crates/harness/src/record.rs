@@ -54,6 +54,9 @@ pub struct Record<const N: usize> {
     pub steps: u64,
     /// Time of the steps alone, nothing observed (s): the median of repeated runs where they are short.
     pub wall_seconds: f64,
+    /// Time in which formulas of the system were derived, which is no part of that of the steps (s): of a system of text, whose equations are
+    /// derived when they are first asked for.
+    pub derivation_seconds: f64,
     /// Newton iterations.
     pub newton: NewtonSummary,
     /// Energy.
@@ -261,6 +264,7 @@ impl<const N: usize> Meter<N> {
             step: self.step,
             steps,
             wall_seconds,
+            derivation_seconds: 0.0,
             newton: NewtonSummary { mean, max: self.most },
             energy: EnergySummary {
                 initial: self.initial,

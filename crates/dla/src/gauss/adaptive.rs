@@ -81,7 +81,7 @@ impl GaussAdaptive {
             Some(CollocationOutcome::Found(found)) => (TakenStep::at_once(&found)?, found.rate, found.roughness),
             Some(CollocationOutcome::Failed) => return None,
             Some(CollocationOutcome::Unknown) | None => {
-                let taken = self.gauss.in_turn(system, (t, h), (q0, xi0), slopes).ok()?;
+                let taken = self.gauss.in_turn(system, (t, h), (q0, xi0), (slopes, false)).ok()?;
                 (taken, 0.0, slopes.weighed(&rule.highest, &counts))
             }
         };
