@@ -39,6 +39,9 @@ pub(crate) fn record_of<const N: usize>(scene: &str, record: &Record<N>, end: &V
         object["energy"]["jump"] = json!({"t": time, "change": change, "energy": energy, "steps": count});
         object["warnings"] = json!([jump.to_string()]);
     }
+    if record.derivation_seconds > 0.0 {
+        object["derivation_seconds"] = json!(record.derivation_seconds);
+    }
     if let Some(failure) = &record.failure {
         object["failure"] = self::failure(failure);
     }

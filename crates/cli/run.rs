@@ -155,6 +155,7 @@ impl Visitor for Run<'_> {
         }
         let interrupt = Interrupt::listen();
         let output = RefCell::new(self.output(&account, read.as_ref())?);
+        let derived = account.system.derivation_seconds();
         let bar = progress::bar(self.method.info().name, schedule.steps);
         let mut shown = Interruptible { bar, interrupt: &interrupt };
         let mut progress = Read { progress: &mut shown, output: &output };
@@ -167,6 +168,10 @@ impl Visitor for Run<'_> {
         };
         shown.bar.finish_and_clear();
         let (mut made, warning) = made?;
+        // What a command before the run has derived is not the run's.
+        let derived = account.system.derivation_seconds() - derived;
+        made.record.derivation_seconds = derived;
+        made.record.wall_seconds = f64::max(made.record.wall_seconds - derived, 0.0);
 
         let closed = output.borrow().as_ref().is_some_and(Output::is_closed);
         let interrupted = made.record.interrupted;
@@ -181,7 +186,10 @@ impl Visitor for Run<'_> {
             let file = self.out.and_then(|asked| asked.path).filter(|_| written.is_ok());
             let told = events.as_ref().map_or("", |events| &events.told);
             let name = (self.scene.title(), self.scene.name());
-            let text = table::one_run_of(name, record, &account.end(record), file) + &substeps::told(record) + told;
+            let text = table::one_run_of(name, record, &account.end(record), file)
+                + &table::derivation(record)
+                + &substeps::told(record)
+                + told;
             tell(self.out, &table::realigned(&text))?;
         }
         events.iter().for_each(Events::warn);

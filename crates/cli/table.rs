@@ -228,6 +228,16 @@ pub(crate) fn one_run_of<const N: usize>(
     aligned(&lines)
 }
 
+/// How long the equations took to derive, where a person notices; none of others.
+pub(crate) fn derivation<const N: usize>(record: &Record<N>) -> String {
+    const NOTICED: f64 = 0.1;
+    let seconds = record.derivation_seconds;
+    if seconds < NOTICED {
+        return String::new();
+    }
+    aligned(&[("derivation", format!("{seconds:.2} s besides, of the equations of motion in a basis"))])
+}
+
 /// A number of things: `1 step`, `2 steps`.
 pub(crate) fn counted(count: u64, thing: &str) -> String {
     let plural = if count == 1 { "" } else { "s" };

@@ -9,6 +9,7 @@ use crate::{Assembly, AssemblyError, AssemblyMethod, AssemblyReport, AssemblySta
 use dla::Stage;
 use dla::convergence::rounding_of_place;
 use lagrangian::linear::{larger, largest};
+use std::f64::consts::PI;
 
 /// The discrete Lagrange-d'Alembert map of an assembly, with midpoint rules: order 2, self-adjoint.
 ///
@@ -22,8 +23,8 @@ use lagrangian::linear::{larger, largest};
 /// then the velocity at the end by projection, `sum_e L_v(q1, v1) = sum_e (D2 L_d + f_d^+) + A(q1)' mu`, `A(q1) v1 = 0`. Each
 /// Newton iteration is a sparse saddle-point system of `N + M` unknowns; both stages have the same pattern.
 ///
-/// A step that turns a constraint by more than a radian, or whose iteration does not contract from its start, is refused: the
-/// static method continues the solution from a step of length zero there. (The book, (3.1) and (3.2).)
+/// Where a step turns a constraint by more than a radian, or where its iteration does not contract from its start, the solution is
+/// continued from a step of length zero, as by the static method. (The book, (3.1) and (3.2).)
 pub struct SparseDla {
     equations: AssemblyEquations,
     q0: Vec<f64>,
@@ -71,14 +72,40 @@ impl SparseDla {
         self
     }
 
-    /// The mean velocity of the step, in `v`.
+    /// The mean velocity of the step, in `v`: from the predictor, or where that may lead to another solution, along the branch that begins with
+    /// a step of length zero.
     fn increment(
         &mut self,
         assembly: &Assembly,
         (t0, h): (f64, f64),
         state: &AssemblyState,
     ) -> Result<u32, AssemblyError> {
-        let Self { equations, q0, q1, v0, v, p, .. } = self;
+        predict(state, h, &self.v0, &mut self.v);
+        let iterations = self.solve(assembly, (t0, h), state)?;
+        let turn = self.turn(assembly, (t0, h));
+        if turn <= NEAR && self.equations.settling.certain {
+            return Ok(iterations);
+        }
+        self.followed(assembly, (t0, h), state, turn).ok_or(AssemblyError::Branch { turn })
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn followed(&mut self, assembly: &Assembly, (t0, h): (f64, f64), state: &AssemblyState, turn: f64) -> Option<u32> {
+        let (start, mut iterations) = (self.v0.clone(), 0);
+        dla::followed(&start, 0.5 * NEAR / turn, |part, v: &mut Vec<f64>| {
+            self.v.copy_from_slice(v);
+            let within = (t0, part * h);
+            iterations += self.solve(assembly, within, state).ok()?;
+            v.copy_from_slice(&self.v);
+            (self.equations.settling.certain && self.turn(assembly, within) < PI).then_some(())
+        })?;
+        Some(iterations)
+    }
+
+    /// The mean velocity of the step that Newton's method finds from `v`, there.
+    fn solve(&mut self, assembly: &Assembly, (t0, h): (f64, f64), state: &AssemblyState) -> Result<u32, AssemblyError> {
+        let Self { equations, q0, q1, v, p, .. } = self;
         equations.contributions.ask(assembly, true, &|placed, out| {
             at_state(placed, state, |element, q, v| element.beginning(t0, q, v, out));
         });
@@ -87,7 +114,6 @@ impl SparseDla {
         let AssemblyEquations { contributions, linear: Linear { pattern, values, .. }, .. } = equations;
         contributions.write_matrix(assembly, pattern, MatrixPart::Transposed, values);
 
-        predict(state, h, v0, v);
         let evaluate = |equations: &mut AssemblyEquations, v: &[f64], derivatives: bool| {
             for (i, q1) in q1.iter_mut().enumerate() {
                 *q1 = state.ahead(i, h * v[i]);
@@ -262,10 +288,6 @@ impl AssemblyMethod for SparseDla {
         }
         self.equations.settling.near = rounding_of_place(&self.q0, h);
         let iterations = self.increment(assembly, (t0, h), state)?;
-        let turn = self.turn(assembly, (t0, h));
-        if turn > NEAR || !self.equations.settling.certain {
-            return Err(AssemblyError::Branch { turn });
-        }
         for (i, q1) in self.q1.iter_mut().enumerate() {
             *q1 = state.ahead(i, h * self.v[i]);
         }

@@ -60,7 +60,7 @@ impl Linear {
 
     /// The largest change of the equations by the last correction, in units of the round-off of their terms: `K d + G' dlambda` and `C d`
     /// against the sums of the `sizes` of the terms, to which those of the unknowns, `|K| |x|`, and of the reactions `G' lambda` are added
-    /// here.
+    /// here. Unknowns that a correction was added to have the round-off of that correction too, as in the static methods.
     ///
     /// The correction `dlambda` of the multipliers belongs to it: where the round-off of a constraint moves the unknowns, by `g/h` of a
     /// joint in a short step, the reactions balance that.
@@ -75,7 +75,7 @@ impl Linear {
         for (j, (d, x)) in self.solution.iter().zip(x).enumerate() {
             for (i, value) in self.pattern.column(&self.values, j) {
                 changes[i] += value * d;
-                sizes[i] += (value * x).abs();
+                sizes[i] += (value * x).abs() + (value * d).abs();
             }
         }
         for (j, (d, lambda)) in (x.len()..).zip(corrections.iter().zip(multipliers)) {

@@ -94,18 +94,15 @@ fn turned<const N: usize, const M: usize>(a: [[Dual<f64, 1>; N]; M]) -> f64 {
 
 /// Numerical continuation in the step length: the solution at the end of the branch that begins with `start` at length zero. `solve` finds
 /// the solution near a guess for a part of the length, and gives none where it may be another one; parts are at most `longest`.
-pub(crate) fn followed<X: Copy>(
-    start: &X,
-    longest: f64,
-    mut solve: impl FnMut(f64, &mut X) -> Option<()>,
-) -> Option<X> {
+#[must_use]
+pub fn followed<X: Clone>(start: &X, longest: f64, mut solve: impl FnMut(f64, &mut X) -> Option<()>) -> Option<X> {
     /// Where shorter parts are needed, the branch counts as ended.
     const SHORTEST: f64 = 1.0 / 1024.0;
     // A lower bound on the parts, also where the turn of the whole step is huge or NaN.
     let longest = longest.max(SHORTEST);
-    let (mut x, mut reached, mut part) = (*start, 0.0, f64::min(longest, 0.25));
+    let (mut x, mut reached, mut part) = (start.clone(), 0.0, f64::min(longest, 0.25));
     while reached < 1.0 {
-        let (mut guess, next) = (x, f64::min(1.0, reached + part));
+        let (mut guess, next) = (x.clone(), f64::min(1.0, reached + part));
         if solve(next, &mut guess).is_some() {
             (x, reached, part) = (guess, next, f64::min(longest, 2.0 * part));
         } else if part > SHORTEST {

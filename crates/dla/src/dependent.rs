@@ -144,10 +144,19 @@ pub(crate) fn named<const N: usize, const M: usize>(
     {
         return dropped.into();
     }
-    if !error.is_singular() {
-        return error;
-    }
-    let (q, v) = (state.q(), state.v());
+    if error.is_singular() { named_rows(system, t, state.q(), state.v(), error) } else { error }
+}
+
+/// The error that names the rows of the constraint that depend on one another at a place; `error` where none do.
+#[cold]
+#[inline(never)]
+pub(crate) fn named_rows<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+    error: StepError,
+) -> StepError {
     match independent_rows(system, t, q, v, error) {
         Err(error) => error,
         Ok(_) => dependent_at(system, t, q, v, Dependency::Redundant),

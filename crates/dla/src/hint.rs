@@ -187,10 +187,13 @@ impl StepError {
             Self::Closed(_)
             | Self::Branch
             | Self::Stiff
+            | Self::LeavesBasis
             | Self::Energy { .. }
             | Self::Tolerance { .. }
             | Self::Unresolved => HALF,
-            Self::Unsupported { .. } | Self::Reduced(ReducedError::NoBasis) => Hint::OtherMethod,
+            Self::Unsupported { .. } | Self::LightMass { .. } | Self::Reduced(ReducedError::NoBasis) => {
+                Hint::OtherMethod
+            }
             // Far from the end a shorter step changes less.
             Self::Chart { regularity, least, .. } if *regularity >= 2.0 * least => HALF,
             Self::Chart { .. } => Hint::OtherCoordinates,

@@ -65,7 +65,7 @@ mod unknowns;
 mod work;
 
 pub use crate::dla::{Dla, Form};
-pub use branch::turn;
+pub use branch::{followed, turn};
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use closed_step_error::ClosedStepError;
 pub use composition::Composition;

@@ -286,6 +286,21 @@ pub enum StepError {
         /// The length of the step, or of the part of one that a composition makes (s).
         step: f64,
     },
+    /// The mass matrix is singular or nearly so, and the method needs it.
+    #[error(
+        "the mass matrix is singular or nearly so (a pivot is {pivot:.0e} of its row and column), and the stages of this method then leave a \
+         velocity open; where the constraints determine the motion, `dla`, `gauss` and `energy` do not need it"
+    )]
+    LightMass {
+        /// The smallest pivot, relative to its row and column.
+        pivot: f64,
+    },
+    /// The basis of admissible velocities that was derived for the neighbourhood of a configuration does not hold along the step.
+    #[error(
+        "the step is too long: bodies turn so far in it that no derived basis of the admissible velocities holds along it; a basis given by hand \
+         may hold everywhere"
+    )]
+    LeavesBasis,
     /// Forces that depend on the velocity are too stiff for the step: it would drive the velocity past where they vanish.
     #[error("the step is too long: the braking forces would reverse the velocity; a step {} times shorter resolves them", Shown(part.recip()))]
     Overshoot {

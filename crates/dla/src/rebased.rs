@@ -1,13 +1,14 @@
 use crate::dropping::{left_branch, turned_off};
 use crate::{Dependent, Mechanics, OneStep, OwnStep, State, StepError, StepReport};
-use lagrangian::PowerSources;
+use lagrangian::{PowerSources, from_fn, mapped};
 use std::ops::ControlFlow;
 
 /// A method on systems whose basis of admissible velocities holds near a configuration only: the basis is changed at nodes, where it
 /// becomes badly conditioned.
 ///
 /// Within a step the basis is one and the same, so that a method has the order that it has in any basis; a method that makes steps of its
-/// own changes it between these too. Of a system whose basis holds everywhere the method makes its steps by itself.
+/// own changes it between these too. Where the step fails, bodies may have turned out of the neighbourhood in which the basis holds: the step is
+/// made again in the basis that is best in its middle, and then in that of its end. Of a system whose basis holds everywhere the method makes its steps by itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rebased<Method> {
     method: Method,
@@ -15,12 +16,20 @@ pub struct Rebased<Method> {
     basis: u64,
     /// Whether bases of the system are local; not known before the first step.
     local: Option<bool>,
+    /// Whether steps ask for the basis between their ends too.
+    along: bool,
 }
 
 impl<Method> Rebased<Method> {
     /// The method, with its basis changed where the system asks for that.
     pub fn new(method: Method) -> Self {
-        Self { method, basis: 0, local: None }
+        Self { method, basis: 0, local: None, along: false }
+    }
+
+    /// The same of a method whose steps ask for the basis between their ends too: it is to be well conditioned there.
+    #[must_use]
+    pub fn along(self) -> Self {
+        Self { along: true, ..self }
     }
 }
 
@@ -28,9 +37,9 @@ impl<Method> Rebased<Method> {
 const MOST_PARTS: u32 = 10_000;
 
 /// Whether the basis of this number is well conditioned at a node.
-fn holds<const N: usize, const M: usize>(system: &dyn Mechanics<N, M>, number: u64, t: f64, node: &State<N>) -> bool {
+fn holds<const N: usize, const M: usize>(system: &dyn Mechanics<N, M>, number: u64, t: f64, q: &[f64; N]) -> bool {
     let mut best = number;
-    system.near(t, node.q(), number, &mut |number, _| best = number);
+    system.near(t, q, number, &mut |number, _| best = number);
     best == number
 }
 
@@ -45,12 +54,67 @@ impl<Method> Rebased<Method> {
     where
         Method: OneStep<N, M>,
     {
-        let (mut outcome, q, (t, h)) = (None, *state.q(), step);
-        let first = (t, *state);
+        let (t, h) = step;
+        let before = *state;
+        let outcome = self.part_near(system, (t, before.q(), self.basis), step, state);
+        self.local = Some(outcome.is_some());
+        let made = match outcome {
+            None => return Ok((self.method.step(system, t, h, state)?, None)),
+            Some(Err(error)) if error.may_hold_in_parts() => Err(error),
+            Some(Ok(made)) if self.along && made.1.is_none() && !self.held(system, step, &before, state) => {
+                Err(StepError::LeavesBasis)
+            }
+            Some(made) => return made,
+        };
+        let mut tried = [self.basis; 2];
+        for ahead in [0.5, 1.0] {
+            let (t, q) = (t + ahead * h, before.ahead(&mapped(before.v(), |v| ahead * h * v)));
+            let mut number = self.basis;
+            system.near(t, &q, 0, &mut |best, _| number = best);
+            if tried.contains(&number) {
+                continue;
+            }
+            *state = before;
+            if let Some(Ok(made)) = self.part_near(system, (t, &q, number), step, state)
+                && (made.1.is_some() || self.held(system, step, &before, state))
+            {
+                return Ok(made);
+            }
+            tried[1] = number;
+        }
+        made
+    }
+
+    /// Whether the basis is well conditioned in the middle and at the end of a step.
+    fn held<const N: usize, const M: usize>(
+        &self,
+        system: &dyn Mechanics<N, M>,
+        (t, h): (f64, f64),
+        start: &State<N>,
+        end: &State<N>,
+    ) -> bool {
+        let (from, to) = (start.unwrapped(), end.unwrapped());
+        let middle = start.ahead(&from_fn(|i| 0.5 * (to[i] - from[i])));
+        holds(system, self.basis, t + 0.5 * h, &middle) && holds(system, self.basis, t + h, end.q())
+    }
+
+    /// The same in the basis of that number where it is good at a time and a place, else in the one that is best there.
+    fn part_near<const N: usize, const M: usize>(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        (time, place, number): (f64, &[f64; N], u64),
+        step: (f64, f64),
+        state: &mut State<N>,
+    ) -> Option<Result<(StepReport<M>, Option<f64>), StepError>>
+    where
+        Method: OneStep<N, M>,
+    {
+        let mut outcome = None;
+        let (first, (t, h)) = ((step.0, *state), step);
         let (mut last, mut dropped) = (first, None::<Dependent>);
-        let Self { method, basis, local } = self;
+        let Self { method, basis, .. } = self;
         let known = *basis;
-        system.near(t, &q, known, &mut |number, near| {
+        system.near(time, place, number, &mut |number, near| {
             if number != known {
                 // What is remembered is in the other basis.
                 method.recall(&[], state);
@@ -61,22 +125,22 @@ impl<Method> Rebased<Method> {
                 dropped = left_branch(system, (last.0, time - last.0), &last.1, node)
                     .or_else(|| turned_off(system, &first, &last.1, (time, node)));
                 last = (time, *node);
-                match dropped.is_none() && holds(system, number, time, node) {
+                match dropped.is_none() && holds(system, number, time, node.q()) {
                     true => ControlFlow::Continue(()),
                     false => ControlFlow::Break(()),
                 }
             };
             outcome = Some(method.step_until(near, step, state, &mut look));
         });
-        *local = Some(outcome.is_some());
-        let Some(outcome) = outcome else { return Ok((method.step(system, t, h, state)?, None)) };
-        let made = outcome?;
-        if made.1.is_none() {
+        if let Some(Ok((_, None))) = &outcome {
             // Seen over the whole step too: steps of the method's own may turn little by little.
             dropped = left_branch(system, (last.0, t + h - last.0), &last.1, state)
                 .or_else(|| if last.0 == t { None } else { left_branch(system, step, &first.1, state) });
         }
-        dropped.map_or(Ok(made), |dropped| Err(dropped.into()))
+        match (outcome, dropped) {
+            (Some(Ok(_)), Some(dropped)) => Some(Err(dropped.into())),
+            (outcome, _) => outcome,
+        }
     }
 }
 
@@ -159,7 +223,7 @@ where
                 }
                 let mut look = |time: f64, node: &State<N>| {
                     stopped = see(time, node).is_break();
-                    if !stopped && holds(system, number, time, node) {
+                    if !stopped && holds(system, number, time, node.q()) {
                         return ControlFlow::Continue(());
                     }
                     turned = Some((time, *node));

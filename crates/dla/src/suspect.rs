@@ -1,4 +1,5 @@
-use crate::{Hint, Mechanics, NewtonError, NotANumber, State, StepError};
+use crate::dependent::named_rows;
+use crate::{Hint, Mechanics, NewtonError, NotANumber, State, StepError, SystemFunction};
 use lagrangian::linear::Singular;
 use lagrangian::{MotionError, ReducedError, from_fn};
 
@@ -37,7 +38,22 @@ pub(crate) fn suspect_at<const N: usize, const M: usize>(
     if !error.has_lost_numbers() {
         return error;
     }
-    system.not_a_number(t, q, v).map_or(error, |found| StepError::NotANumber(NotANumber { at_node: false, ..found }))
+    let found = |found| told(system, (t, q, v), NotANumber { at_node: false, ..found });
+    system.not_a_number(t, q, v).map_or(error, found)
+}
+
+/// The error of a function that is not finite. A basis that is derived by elimination is none where rows depend on one another: these are named.
+#[cold]
+fn told<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    (t, q, v): (f64, &[f64; N], &[f64; N]),
+    found: NotANumber,
+) -> StepError {
+    let error = StepError::NotANumber(found);
+    match found.function {
+        SystemFunction::Basis { .. } => named_rows(system, t, q, v, error),
+        _ => error,
+    }
 }
 
 /// The error of a step from `state`, with the function named that is not finite at its beginning, in its middle or at its end, with the
@@ -58,7 +74,7 @@ pub(crate) fn suspect_along<const N: usize, const M: usize>(
         return error;
     }
     if let Some(found) = system.not_a_number(t0, state.q(), state.v()) {
-        return StepError::NotANumber(found);
+        return told(system, (t0, state.q(), state.v()), found);
     }
     let mut error = error;
     for v in [state.v(), v] {

@@ -47,8 +47,12 @@ impl Formulas {
     }
 
     /// The reduced equations in a basis of the admissible velocities, written in the way that is shorter entry by entry: quicker to derive
-    /// than the shortest of [`reduced`](Self::reduced). None where they are too large.
+    /// than the shortest of [`reduced`](Self::reduced). None where they are too large: they are derived while a run waits, and by numbers a step
+    /// takes a few times as long.
     pub fn reduced_in(&mut self, basis: Vec<Vec<Expression>>) -> Option<ReducedFormulas> {
+        /// The terms and factors of a derivation of about a second.
+        const MOST: usize = 320_000;
+        self.graph.narrow(MOST);
         self.reduced_along(basis, Written::Shorter)
     }
 

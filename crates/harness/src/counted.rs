@@ -107,6 +107,7 @@ impl<const N: usize, const M: usize> RoundedMechanics<N, M> for Counted<'_, N, M
         1 residual_rounded(t: Rounded, q: &[Rounded; N], v: &[Rounded; N]) -> [Rounded; M];
         0 positions_rounded(t: Rounded, q: &[Rounded; N]) -> Option<[Option<Rounded>; M]>;
         3 motion_rounding(t: f64, q: &[f64; N], v: &[f64; N]) -> Result<MotionRounding<N>, MotionError>;
+        2 bracket_rounding(t: f64, q: &[f64; N], xi: &[f64; N]) -> Option<[[f64; N]; 2]>;
         2 reduced_rounding(t: f64, q: &[f64; N], xi: &[f64; N], h: f64) -> Option<[[f64; N]; 2]>;
     }
 }

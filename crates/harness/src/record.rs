@@ -57,6 +57,9 @@ pub struct Record<const N: usize> {
     /// Time of the steps (s). Of a comparison that of the steps alone, nothing observed, the median of repeated runs where they are short, and
     /// the processor's time of the thread where the system tells that; of a single run that on the wall, with what looks on.
     pub wall_seconds: f64,
+    /// Time in which formulas of the system were derived, which is no part of that of the steps (s): of a system of text, whose equations are
+    /// derived when they are first asked for.
+    pub derivation_seconds: f64,
     /// Newton iterations.
     pub newton: NewtonSummary,
     /// Energy.
@@ -264,6 +267,7 @@ impl<const N: usize> Meter<N> {
             step: self.step,
             steps,
             wall_seconds,
+            derivation_seconds: 0.0,
             newton: NewtonSummary { mean, max: self.most },
             energy: EnergySummary {
                 initial: self.initial,

@@ -98,7 +98,7 @@ pub use reduced::{
     velocity_of,
 };
 pub use rounded::Rounded;
-pub use rounding::{MotionRounding, reduced_rounding};
+pub use rounding::{MotionRounding, bracket_rounding, reduced_rounding};
 pub use row_space::{Dependence, RowSpace};
 pub use rows::Rows;
 pub use rule::{Alpha, AnyRule, Midpoint, NotAWeight, Rule, RuleNode, Symmetrised, Trapezoid};

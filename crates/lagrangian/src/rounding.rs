@@ -1,6 +1,7 @@
 use crate::{
-    AdmissibleBasis, Dual, Motion, MotionError, Reduced, Rounded, Saddle, System, configuration_slope, from_fn,
-    inverse_reduced_mass, mapped, mass_matrix, reaction_rows, redundant_rows, velocity_of, velocity_slope,
+    AdmissibleBasis, Bracket, Dual, Motion, MotionError, Reduced, Rounded, Saddle, System, configuration_slope,
+    energy_slope, from_fn, inverse_reduced_mass, mapped, mass_matrix, reaction_rows, redundant_rows, velocity_of,
+    velocity_slope,
 };
 
 /// The unit of rounding.
@@ -66,18 +67,26 @@ impl<const N: usize> MotionRounding<N> {
         }
         Ok(Self { momentum: mapped(&carried, |p| UNIT * p.re.size), force, acceleration })
     }
+}
 
-    /// Of the rates of the quasi-momenta in a basis of admissible velocities.
-    #[must_use]
-    pub fn along<const M: usize>(&self, basis: &AdmissibleBasis<f64, N, M>) -> [f64; N] {
-        products(basis, &self.force)
+/// The rounding of the quasi-momenta and of their rates, as a [`Bracket`] gives them; none without a basis. Their terms are others than those
+/// of the forces: of a blade in a turn they are the momenta times the turning of the basis, which cancel.
+#[cold]
+#[inline(never)]
+pub fn bracket_rounding<Sys: System<N, M>, const N: usize, const M: usize>(
+    system: &Sys,
+    t: f64,
+    q: &[f64; N],
+    xi: &[f64; N],
+) -> Option<[[f64; N]; 2]> {
+    let (t, q, xi) = (Rounded::exact(t), mapped(q, Rounded::once), mapped(xi, Rounded::once));
+    let bracket = Bracket::at(system, t, &q, &xi)?;
+    let (_, mut rate) = bracket.rates(&energy_slope(system, t, &q, &xi)?.h_q, &xi);
+    if let Some(force) = system.force(t, &q, &bracket.velocity) {
+        let along = bracket.along_basis(&force);
+        rate = from_fn(|a| rate[a] + along[a]);
     }
-
-    /// Of the quasi-momenta themselves.
-    #[must_use]
-    pub fn quasi_momentum<const M: usize>(&self, basis: &AdmissibleBasis<f64, N, M>) -> [f64; N] {
-        products(basis, &self.momentum)
-    }
+    Some([bracket.quasi_momenta(), rate].map(|x| mapped(&x, |x| UNIT * x.size)))
 }
 
 /// `|W|' x`.

@@ -6,7 +6,9 @@ use ::formulas::{Formulas, ReducedFormulas};
 use expression::Expression;
 use lagrangian::{Pivots, Reduced, ReducedError, Scalar, StageEvaluation};
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::time::Instant;
 
 /// The accelerations of the quasi-velocities in one basis, as formulas.
 #[derive(Debug)]
@@ -28,17 +30,36 @@ pub(crate) type SharedEquations = Arc<EquationsOfBasis>;
 
 /// The equations in each basis that has been in use, by its number; zero is that of a basis that holds everywhere.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct EquationsOfBases(Arc<Mutex<BTreeMap<u64, SharedEquations>>>);
+pub(crate) struct EquationsOfBases {
+    all: Arc<Mutex<BTreeMap<u64, SharedEquations>>>,
+    /// How long their derivation has taken so far (ns).
+    taken: Arc<AtomicU64>,
+}
 
 impl EquationsOfBases {
     pub(crate) fn of(&self, basis: u64) -> SharedEquations {
         // What a thread that panicked has put there is whole.
-        let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut all = self.all.lock().unwrap_or_else(PoisonError::into_inner);
         Arc::clone(all.entry(basis).or_default())
     }
 }
 
 impl TextModel {
+    /// How long the equations in the bases that were in use have taken to derive so far (s): they are derived when they are first asked for,
+    /// which is within the first step.
+    #[must_use]
+    pub fn derivation_seconds(&self) -> f64 {
+        self.equations.taken.load(Ordering::Relaxed) as f64 * 1e-9
+    }
+
+    /// What `derive` gives, its time counted.
+    fn clocked<T>(&self, derive: impl FnOnce() -> T) -> T {
+        let begin = Instant::now();
+        let derived = derive();
+        self.equations.taken.fetch_add(begin.elapsed().as_nanos() as u64, Ordering::Relaxed);
+        derived
+    }
+
     /// The number of the basis in use: zero where one holds everywhere.
     pub(crate) fn basis_number(&self, pivots: &Pivots) -> u64 {
         if self.basis.is_some() { 0 } else { pivots.number() }
@@ -78,7 +99,7 @@ impl TextModel {
 
 impl<const N: usize, const M: usize> TextSystem<N, M> {
     fn equations(&self) -> Option<&ReducedTapes> {
-        self.equations.reduced.get_or_init(|| self.model.derived(&self.pivots)).as_ref()
+        self.equations.reduced.get_or_init(|| self.model.clocked(|| self.model.derived(&self.pivots))).as_ref()
     }
 }
 
@@ -102,7 +123,9 @@ impl<const N: usize, const M: usize> Reduced<N, M> for TextSystem<N, M> {
         xi: &[S; N],
         derived: impl FnOnce() -> Result<[S; N], ReducedError>,
     ) -> Result<[S; N], ReducedError> {
-        let Some(formulas) = self.equations.velocity.get_or_init(|| self.model.velocity(&self.pivots)) else {
+        let Some(formulas) =
+            self.equations.velocity.get_or_init(|| self.model.clocked(|| self.model.velocity(&self.pivots)))
+        else {
             return derived();
         };
         let (n, m) = (self.model.coordinates.len(), self.model.constraints());

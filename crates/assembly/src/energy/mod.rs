@@ -14,9 +14,8 @@ use crate::settling::AssemblySettling;
 use crate::sparse::Sparse;
 use crate::terms;
 use crate::{Assembly, AssemblyError, AssemblyMethod, AssemblyReport, AssemblyState, Solver};
-use dla::convergence::rounding_of_place;
-use dla::convergence::tolerances::STALL;
-use dla::{History, NewtonError, Stage};
+use dla::Stage;
+use dla::convergence::{FixedPoint, rounding_of_place};
 use elements::NO_BASIS;
 use frames::Frames;
 use lagrangian::linear::larger;
@@ -82,8 +81,8 @@ impl std::fmt::Debug for SparseEnergy {
 const NEAR: f64 = 1.0;
 
 impl SparseEnergy {
-    /// So many times `kappa` is computed at most: it is of the third order in the step, and so is each change of it.
-    const PASSES: u32 = 12;
+    /// So many times `kappa` is computed at most: it is of the third order in the step, and so is the factor of its convergence.
+    const PASSES: u32 = 60;
     /// A change of `kappa` by so little changes the energy by less than its rounding.
     const SETTLED: f64 = f64::EPSILON / 8.0;
     /// The energy may miss the work by so many roundings; more is an error.
@@ -159,9 +158,8 @@ impl SparseEnergy {
         Ok(())
     }
 
-    /// The quasi-velocities at the end, `xi1 = 2 x - xi0 - 2 e`; returns the `kappa` that `x` and they ask for, and
-    /// twice the kinetic energy (J).
-    fn finish(&mut self, assembly: &Assembly, t1: f64, near: bool) -> Result<[f64; 2], AssemblyError> {
+    /// The quasi-velocities at the end, `xi1 = 2 x - xi0 - 2 e`; returns the `kappa` that `x` and they ask for.
+    fn finish(&mut self, assembly: &Assembly, t1: f64, near: bool) -> Result<f64, AssemblyError> {
         let Self { frames, projection, mass, xi0, x, xi1, momenta, path, end, v1, .. } = self;
         for body in &frames.bodies {
             let element = &assembly.placed()[body.element].element;
@@ -173,7 +171,7 @@ impl SparseEnergy {
         }
         frames.combine(end, xi1, v1);
         if !projection.has_rows() {
-            return Ok([0.0; 2]);
+            return Ok(0.0);
         }
         path.project(assembly, frames, (projection, near), (t1, mass), (end, v1))?;
         let correction = &projection.linear.solution[..xi1.len()];
@@ -186,21 +184,13 @@ impl SparseEnergy {
         frames.momenta(mass, &|i| x[i], momenta);
         let twice_kinetic: f64 = momenta.iter().zip(&*x).map(|(p, x)| p * x).sum();
         frames.combine(end, xi1, v1);
-        Ok([if twice_kinetic > 0.0 { against / twice_kinetic } else { 0.0 }, twice_kinetic])
+        Ok(if twice_kinetic > 0.0 { against / twice_kinetic } else { 0.0 })
     }
 
     /// By how much the constraint turns that turns most (rad).
     fn turn(&self, assembly: &Assembly, step: (f64, f64)) -> f64 {
         let turn = |placed: &PlacedElement| at(placed, &self.q0, &self.path.v, |q, v| placed.element.turn(step, q, v));
         assembly.placed().iter().map(turn).fold(0.0, larger)
-    }
-
-    /// Whether a change of the energy is below the rounding of that at the start.
-    #[cold]
-    fn is_rounding(&self, assembly: &Assembly, t0: f64, change: f64) -> bool {
-        let energies =
-            |placed: &PlacedElement| at(placed, &self.q0, &self.v0, |q, v| placed.element.energies(t0, q, v)[1]);
-        change.abs() <= f64::EPSILON * assembly.placed().iter().map(energies).sum::<f64>()
     }
 
     /// Checks that the energy has changed by the work of the forces.
@@ -260,8 +250,8 @@ impl AssemblyMethod for SparseEnergy {
         let (mut kappa, mut iterations, mut near) = (0.0, 0, false);
         self.guess(assembly, (t0, h), state)?;
         self.impulses.fill(0.0);
-        let mut history = History::new();
-        let mut pass = 0;
+        let mut convergence = FixedPoint::<1, 1>::new(Self::PASSES).to(Self::SETTLED);
+        let mut first = true;
         let work = loop {
             let Self { frames, system, settling, rule, mass, xi0, x, impulses, path, start, q0, v0, .. } = self;
             system.factors_serve = near;
@@ -284,25 +274,19 @@ impl AssemblyMethod for SparseEnergy {
             let terms = |sizes: &mut [f64]| frames.add_terms(assembly, (t0, h), (q0, v0), start, sizes);
             iterations += system.newton((settling, Stage::Collocation), x, impulses, terms, evaluate)?;
             let work = mean.work;
-            if pass == 0 && !settling.certain {
+            if first && !settling.certain {
                 return Err(AssemblyError::Branch { turn: self.turn(assembly, (t0, h)) });
             }
             self.path.end(&self.frames, (assembly, t0, h), (&self.q0, state), &self.x)?;
-            let [asked, twice_kinetic] = self.finish(assembly, t0 + h, near)?;
-            let (change, before) = (asked - kappa, history.last().unwrap_or(f64::INFINITY));
-            // A change that stalls is round-off where it is not above that of the energy.
-            let stalls = change.abs() >= STALL * before;
-            if change.abs() <= Self::SETTLED || (stalls && self.is_rounding(assembly, t0, change * twice_kinetic)) {
+            let change = self.finish(assembly, t0 + h, near)? - kappa;
+            // The factor of `M x` is `2 - kappa`.
+            let settled = convergence.see([[(change.abs(), 1.0)]], 0.0, || [[0.0]]);
+            if settled.map_err(|source| AssemblyError::Newton { stage: Stage::Collocation, source })?.is_some() {
                 break work;
             }
-            history.push(change.abs());
             kappa += change;
             near = change.abs() <= NEAR_ENDS;
-            pass += 1;
-            if pass == Self::PASSES || !change.is_finite() {
-                let source = NewtonError::IterationLimit { iterations, correction: change, history };
-                return Err(AssemblyError::Newton { stage: Stage::Collocation, source });
-            }
+            first = false;
         };
         let turn = self.turn(assembly, (t0, h));
         if turn > NEAR {

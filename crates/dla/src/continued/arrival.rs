@@ -1,4 +1,4 @@
-use super::{FoundMean, are_met};
+use super::{FoundMean, are_met, constraint_holds};
 use crate::Mechanics;
 use crate::derivatives::StepDerivatives;
 use crate::dla::Dla;
@@ -35,6 +35,10 @@ impl<D> Dla<D> {
         let v = from_fn(|i| guess[i] + d[i]);
         let (size, large) = (sup(&d), sup(&guess));
         if size > large {
+            return None;
+        }
+        // A light coordinate answers to impulses as large as its mass is small, and what their rounding leaves of the constraint is as large.
+        if !constraint_holds(&here.a1, &here.b1, &v) {
             return None;
         }
         if mass.suffice(size, large) {
@@ -105,6 +109,9 @@ impl<const N: usize, const M: usize> Here<'_, N, M> {
                 Some(d)
             },
         )?;
+        if !constraint_holds(&self.a1, &self.b1, &v) {
+            return None;
+        }
         Some(FoundMean { v, lambda: mapped(&minus_mu, |m| -m), corrections })
     }
 }

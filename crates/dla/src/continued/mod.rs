@@ -5,6 +5,7 @@ mod in_basis;
 mod mean;
 
 use crate::branch;
+use crate::convergence::tolerances::SLIGHT;
 use crate::dla::Dla;
 use crate::increment::Departure;
 use crate::overshoot::brakes_only;
@@ -17,6 +18,22 @@ struct FoundMean<const N: usize, const M: usize> {
     v: [f64; N],
     lambda: [f64; M],
     corrections: u32,
+}
+
+/// Whether a velocity meets `A v + b = 0` to the round-off of its terms, with that of the corrections that led to it.
+#[inline(always)]
+fn constraint_holds<const N: usize, const M: usize>(a: &[[f64; N]; M], b: &[f64; M], v: &[f64; N]) -> bool {
+    let mut all = true;
+    for k in 0..M {
+        let (mut slip, mut size) = (b[k], b[k].abs());
+        for i in 0..N {
+            let term = a[k][i] * v[i];
+            slip += term;
+            size += term.abs();
+        }
+        all &= slip.abs() <= SLIGHT * size;
+    }
+    all
 }
 
 /// Whether `r + A' lambda = 0` to the round-off of momenta `p` that are among the terms of `r`.

@@ -73,8 +73,14 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Energy {
         }
         affine_only(system, t0, state)?;
         velocities_only(system, t0, state, POSITIONS)?;
-        let start = EnergyStart::new(system, t0, h, state)?;
-        let end = StepEnergy { system, rule: &self.rule, t0, h, start: &start }.solved()?;
+        let mut start = EnergyStart::new(system, t0, h, state)?;
+        let mut end = StepEnergy { system, rule: &self.rule, t0, h, start: &start }.solved();
+        if let Err(StepError::Newton { .. }) = end
+            && start.take_mass_ahead(system, t0, h).is_some()
+        {
+            end = StepEnergy { system, rule: &self.rule, t0, h, start: &start }.solved();
+        }
+        let end = end?;
         let q1 = state.ahead(&end.increment);
         let v1 = system.basis(t0 + h, &q1).ok_or(NO_BASIS)?.combine(&end.xi);
         state.stays_finite(&end.increment, &v1)?;

@@ -1,7 +1,7 @@
 use super::NO_BASIS;
 use crate::convergence::tolerances::BLIND;
 use crate::{Mechanics, State, StepError};
-use lagrangian::linear::largest;
+use lagrangian::linear::{larger, largest};
 use lagrangian::{Lanes, MotionError, MotionRounding, Scalar, Twofold, from_fn, mapped};
 
 /// The beginning of a step on `D*`.
@@ -47,16 +47,42 @@ impl<const N: usize> EnergyStart<N> {
 }
 
 impl<const N: usize> EnergyStart<N> {
-    /// The rounding of the rates of the coordinates and of the quasi-momenta, and of the quasi-velocities, over a step from here;
-    /// none where the motion is degenerate.
+    /// Takes the inverse mass matrix of where the velocity leads within half the step: where masses grow twofold in the step, that of the
+    /// beginning gives corrections that grow. None where it is singular.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn take_mass_ahead<const M: usize>(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        t0: f64,
+        h: f64,
+    ) -> Option<()> {
+        let (t, q) = (t0 + 0.5 * h, self.state.ahead(&mapped(self.state.v(), |v| 0.5 * h * v)));
+        let basis = system.basis(t, &q)?;
+        self.inverse_mass = system.inverse_reduced_mass(t, &q, &basis.combine(&self.xi), &basis).ok()?;
+        Some(())
+    }
+
+    /// The rounding of the rates of the coordinates and of the quasi-momenta, and of the quasi-velocities, over a step from here: the larger of
+    /// those at its beginning and where its velocity leads. Not where an iteration has led, which may be where numbers are large because there
+    /// is no solution. None where the motion is degenerate.
     #[cold]
     #[inline(never)]
     pub(super) fn rounding<const M: usize>(&self, system: &dyn Mechanics<N, M>, t0: f64, h: f64) -> [[f64; N]; 3] {
-        let q = self.state.q();
-        let Some(basis) = system.basis(t0, q) else { return [[0.0; N]; 3] };
-        let v = basis.combine(&self.xi);
-        let Ok(motion) = system.motion_rounding(t0, q, &v) else { return [[0.0; N]; 3] };
-        let (pi, pi_rate) = (motion.quasi_momentum(&basis), motion.along(&basis));
+        let ahead = self.state.ahead(&mapped(self.state.v(), |v| h * v));
+        let start = self.rounding_at(system, (t0, h), self.state.q());
+        let end = self.rounding_at(system, (t0 + h, h), &ahead);
+        from_fn(|g| from_fn(|i| larger(start[g][i], end[g][i])))
+    }
+
+    fn rounding_at<const M: usize>(
+        &self,
+        system: &dyn Mechanics<N, M>,
+        (t, h): (f64, f64),
+        q: &[f64; N],
+    ) -> [[f64; N]; 3] {
+        let Some(basis) = system.basis(t, q) else { return [[0.0; N]; 3] };
+        let Some([pi, pi_rate]) = system.bracket_rounding(t, q, &self.xi) else { return [[0.0; N]; 3] };
         let moved: [f64; N] = from_fn(|b| pi[b] + h.abs() * pi_rate[b]);
         let xi: [f64; N] = from_fn(|a| (0..N).map(|b| self.inverse_mass[a][b].abs() * moved[b]).sum());
         let q_rate = from_fn(|i| basis.vectors().iter().zip(&xi).map(|(w, xi)| w[i].abs() * xi).sum());

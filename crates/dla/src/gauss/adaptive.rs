@@ -89,7 +89,7 @@ impl GaussAdaptive {
             }
             Some(CollocationOutcome::Failed) => return Err(CUT_BACK),
             Some(CollocationOutcome::Unknown) | None => {
-                let taken = self.gauss.in_turn(system, (t, h), (q0, xi0), slopes).map_err(|_| CUT_BACK)?;
+                let taken = self.gauss.in_turn(system, (t, h), (q0, xi0), (slopes, false)).map_err(|_| CUT_BACK)?;
                 (taken, 0.0, slopes.weighed(&rule.highest, &counts))
             }
         };

@@ -6,11 +6,13 @@ mod memory;
 mod pace;
 mod packs;
 mod rule;
+mod secants;
 
 pub use adaptive::GaussAdaptive;
 pub(crate) use lanes::collocate;
 pub use lanes::{Collocation, CollocationOutcome};
 
+use crate::branch;
 use crate::convergence::FixedPoint;
 use crate::convergence::tolerances::{LEFT, NOISE, OF_ROW};
 use crate::positions::{affine_only, onto_positions};
@@ -21,12 +23,14 @@ use lagrangian::{PowerSources, from_fn};
 use lanes::StageSlopes;
 use memory::GaussMemory;
 use rule::GaussRule;
+use secants::Secants;
 
 /// Gauss collocation on the constraint: the reduced equations `q' = W xi + v_b`, `xi' = ..` in the basis of admissible
 /// velocities, with `s` stages, of order `2 s`.
 ///
 /// Symmetric, and on the constraint by construction. Stages are found by fixed-point iteration, which converges for steps
-/// below the time constants of the motion, until their changes are round-off; where it does not converge the step fails.
+/// below the time constants of the motion, until their changes are round-off. Where it does not converge the solution is followed from a step of
+/// length zero, by an iteration that is accelerated by its own secants; the step fails where that one does not converge.
 ///
 /// Where a system knows its reduced equations by hand ([`System::reduced`](lagrangian::System::reduced)), up to eight stages are computed at once,
 /// in the vector registers of the machine, beginning with the polynomial of the step before; elsewhere one after another. The
@@ -50,9 +54,29 @@ pub struct Gauss {
 }
 
 /// The slopes of the stages, in the first places.
+#[derive(Clone, Copy)]
 struct StagesInTurn<const N: usize> {
     velocity: [[f64; N]; 8],
     acceleration: [[f64; N]; 8],
+}
+
+impl<const N: usize> StagesInTurn<N> {
+    /// The slopes of so many stages, one stage after the other.
+    fn numbers(&self, stages: usize) -> Vec<f64> {
+        let both = self.velocity.iter().zip(&self.acceleration).take(stages);
+        both.flat_map(|(velocity, acceleration)| velocity.iter().chain(acceleration)).copied().collect()
+    }
+
+    /// Those of which these are the [`numbers`](Self::numbers).
+    fn of(numbers: &[f64]) -> Self {
+        let mut stages = Self { velocity: [[0.0; N]; 8], acceleration: [[0.0; N]; 8] };
+        let places = stages.velocity.iter_mut().zip(&mut stages.acceleration);
+        for ((velocity, acceleration), numbers) in places.zip(numbers.chunks_exact(2 * N)) {
+            velocity.copy_from_slice(&numbers[..N]);
+            acceleration.copy_from_slice(&numbers[N..]);
+        }
+        stages
+    }
 }
 
 impl Gauss {
@@ -112,17 +136,24 @@ impl Gauss {
         }
     }
 
-    /// The stages one after another.
+    /// The stages one after another; where the iteration does not converge, `followed` from a step of length zero if that is asked for.
     fn in_turn<const N: usize, const M: usize>(
         &self,
         system: &dyn Mechanics<N, M>,
         (t, h): (f64, f64),
         (q0, xi0): (&[f64; N], &[f64; N]),
-        slopes: &mut StageSlopes<N>,
+        (slopes, followed): (&mut StageSlopes<N>, bool),
     ) -> Result<TakenStep<N>, StepError> {
         let start = system.reduced_slope(t, q0, xi0)?;
         let mut stages = StagesInTurn { velocity: [start.velocity; 8], acceleration: [start.acceleration; 8] };
-        let iterations = self.solve(system, (t, h), (q0, xi0), &mut stages)?;
+        let iterations = match self.solve(system, (t, h), (q0, xi0), &mut stages, None) {
+            Ok(iterations) => iterations,
+            Err(error) if !followed => return Err(error),
+            Err(error) => {
+                stages = StagesInTurn { velocity: [start.velocity; 8], acceleration: [start.acceleration; 8] };
+                self.follow(system, (t, h), (q0, xi0), &mut stages).ok_or(error)?
+            }
+        };
         let increment = self.sum(h, |j| self.rule.weights[j], &stages.velocity);
         let gain = self.sum(h, |j| self.rule.weights[j], &stages.acceleration);
         let count = self.stages();
@@ -168,7 +199,28 @@ impl Gauss {
         from_fn(|i| h * (0..self.stages()).map(|j| factor(j) * slopes[j][i]).sum::<f64>())
     }
 
-    /// Iterates the slopes of the stages until they change by round-off only; returns the number of iterations.
+    /// The stages at the end of the branch of solutions that begins with a step of length zero, where they are those of `stages`; the number
+    /// of iterations.
+    #[cold]
+    #[inline(never)]
+    fn follow<const N: usize, const M: usize>(
+        &self,
+        system: &dyn Mechanics<N, M>,
+        (t, h): (f64, f64),
+        start: (&[f64; N], &[f64; N]),
+        stages: &mut StagesInTurn<N>,
+    ) -> Option<u32> {
+        let mut iterations = 0;
+        *stages = branch::followed(stages, 0.5, |part, stages| {
+            let h = part * h;
+            iterations += self.solve(system, (t, h), start, stages, Some(Secants::default())).ok()?;
+            let mean = self.sum(1.0, |j| self.rule.weights[j], &stages.velocity);
+            (branch::turn_of(system, (t, h), start.0, &mean) <= branch::NEAR).then_some(())
+        })?;
+        Some(iterations)
+    }
+
+    /// Iterates the slopes of the stages, with secants or without, until they change by round-off only; returns the number of iterations.
     #[inline]
     fn solve<const N: usize, const M: usize>(
         &self,
@@ -176,9 +228,11 @@ impl Gauss {
         (t, h): (f64, f64),
         (q0, xi0): (&[f64; N], &[f64; N]),
         stages: &mut StagesInTurn<N>,
+        mut secants: Option<Secants>,
     ) -> Result<u32, StepError> {
         let mut convergence = FixedPoint::<2, N>::new(self.max_iterations);
         loop {
+            let before = secants.as_ref().map(|_| stages.numbers(self.stages()));
             let mut seen = [[(0.0f64, 0.0f64); N]; 2];
             for i in 0..self.stages() {
                 let a = |j: usize| self.rule.columns[j][i];
@@ -203,6 +257,11 @@ impl Gauss {
             let settled = settled.map_err(|source| StepError::Newton { stage: Stage::Collocation, source })?;
             if let Some(iterations) = settled {
                 return Ok(iterations);
+            }
+            if let Some((secants, before)) = secants.as_mut().zip(before) {
+                let mut next = stages.numbers(self.stages());
+                secants.next(&before, &mut next, 2 * N);
+                *stages = StagesInTurn::of(&next);
             }
         }
     }
@@ -262,7 +321,7 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Gauss {
         let mut slopes = StageSlopes::ZERO;
         let taken = match self.at_once(system, (t, h), state, &xi0, &mut slopes) {
             Some(taken) => taken,
-            None => self.in_turn(system, (t, h), (state.q(), &xi0), &mut slopes)?,
+            None => self.in_turn(system, (t, h), (state.q(), &xi0), (&mut slopes, true))?,
         };
         let work = self.work(system, (t, h), state.q(), &slopes);
         taken.apply(system, t + h, &xi0, state)?;

@@ -11,7 +11,7 @@ use crate::newton::{BlockEquations, NewtonRoot};
 use crate::positions::affine_only;
 use crate::projection::{Projected, Projection};
 use crate::{MeanPower, Mechanics, Newton, NewtonError, OneStep, StackUse, Stage, State, StepError, StepReport, power};
-use lagrangian::linear::largest;
+use lagrangian::linear::{Lu, Singular, largest};
 use lagrangian::{PowerSources, from_fn, mapped};
 use stages::LobattoStages;
 use std::f64::consts::PI;
@@ -122,6 +122,39 @@ impl<const N: usize, const M: usize, const S: usize> OneStep<N, M> for Lobatto<S
             return Err(Self::USE.refusal::<N, M>());
         }
         affine_only(system, t0, state)?;
+        let start = *state;
+        self.made(system, (t0, h), state).map_err(|error| light(system, t0, &start, error))
+    }
+}
+
+/// The error of a step, with the mass matrix named where it is singular or nearly so: the momenta of the stages, one fewer than their
+/// velocities, then leave a velocity open.
+#[cold]
+#[inline(never)]
+fn light<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    t0: f64,
+    start: &State<N>,
+    error: StepError,
+) -> StepError {
+    /// The stages lose as many digits as a pivot has zeros; with fewer left Newton's method is not seen to converge.
+    const LIGHT: f64 = 1e-8;
+    let of_solution = matches!(error, StepError::Newton { .. } | StepError::Branch);
+    let (_, mass) = system.mass_matrix(t0, start.q(), start.v());
+    match Lu::above(mass, LIGHT) {
+        Err(Singular { pivot, .. }) if of_solution && pivot.is_finite() => StepError::LightMass { pivot },
+        _ => error,
+    }
+}
+
+impl<const S: usize> Lobatto<S> {
+    #[inline]
+    fn made<const N: usize, const M: usize>(
+        &self,
+        system: &dyn Mechanics<N, M>,
+        (t0, h): (f64, f64),
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
         let LobattoTables { c, b, .. } = &self.tables;
         let (q0, v0) = (*state.q(), *state.v());
         branch::tells_turn(system, (t0, h), &q0, &v0)?;

@@ -1,6 +1,6 @@
 use lagrangian::{
-    Constraint, MotionError, MotionRounding, Rounded, System, configuration_slope, constraint_residual,
-    reduced_rounding, velocity_slope,
+    Constraint, MotionError, MotionRounding, Rounded, System, bracket_rounding, configuration_slope,
+    constraint_residual, reduced_rounding, velocity_slope,
 };
 
 /// The functions of a system with bounds on the rounding of their terms, as a convergence test asks for them where corrections stall.
@@ -28,6 +28,9 @@ pub trait RoundedMechanics<const N: usize, const M: usize> {
     /// # Errors
     /// [`MotionError`] where they are degenerate.
     fn motion_rounding(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<MotionRounding<N>, MotionError>;
+
+    /// What rounding does to the quasi-momenta and to their rates; none without a basis.
+    fn bracket_rounding(&self, t: f64, q: &[f64; N], xi: &[f64; N]) -> Option<[[f64; N]; 2]>;
 
     /// What rounding does to the reduced equations along a step; none where there are none.
     fn reduced_rounding(&self, t: f64, q: &[f64; N], xi: &[f64; N], h: f64) -> Option<[[f64; N]; 2]>;
@@ -67,6 +70,11 @@ impl<Sys: System<N, M>, const N: usize, const M: usize> RoundedMechanics<N, M> f
     #[cold]
     fn motion_rounding(&self, t: f64, q: &[f64; N], v: &[f64; N]) -> Result<MotionRounding<N>, MotionError> {
         MotionRounding::at(self, t, q, v)
+    }
+
+    #[cold]
+    fn bracket_rounding(&self, t: f64, q: &[f64; N], xi: &[f64; N]) -> Option<[[f64; N]; 2]> {
+        bracket_rounding(self, t, q, xi)
     }
 
     #[cold]

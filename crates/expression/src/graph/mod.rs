@@ -95,6 +95,11 @@ impl Graph {
         if self.full { Err(Error::GraphFull { limit: self.limit }) } else { Ok(()) }
     }
 
+    /// Leaves room for no more than so many terms and factors in all.
+    pub fn narrow(&mut self, limit: usize) {
+        self.limit = self.limit.min(limit);
+    }
+
     /// How many expressions there are, with all their parts.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -22,6 +22,8 @@ impl Pair {
 struct Places {
     count: u32,
     lists: Vec<usize>,
+    /// The count with which the pair stands in the order; any other entry of the pair there is one that has been followed by another.
+    ordered: u32,
 }
 
 #[derive(Debug, Default)]
@@ -77,7 +79,8 @@ impl Search {
         let places = self.places.entry(pair).or_default();
         places.count += 1;
         places.lists.push(list);
-        if places.count > 1 {
+        if places.count > places.ordered.max(1) {
+            places.ordered = places.count;
             self.order.push((places.count, Reverse(pair)));
         }
     }
@@ -92,11 +95,15 @@ impl Search {
     fn next(&mut self) -> Option<(Pair, Vec<usize>)> {
         while let Some((count, Reverse(pair))) = self.order.pop() {
             let places = self.places.get_mut(&pair)?;
+            if places.ordered != count {
+                continue;
+            }
+            places.ordered = 0;
             if places.count == count {
                 return Some((pair, std::mem::take(&mut places.lists)));
             }
-            // It may stand there with its own count, or not.
-            if places.count > 1 && places.count < count {
+            if places.count > 1 {
+                places.ordered = places.count;
                 self.order.push((places.count, Reverse(pair)));
             }
         }

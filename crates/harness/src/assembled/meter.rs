@@ -185,6 +185,7 @@ impl<'a> AssemblyMeter<'a> {
             step,
             steps,
             wall_seconds,
+            derivation_seconds: 0.0,
             newton: NewtonSummary { mean, max: self.most_iterations },
             energy: EnergySummary {
                 initial: self.initial,

@@ -151,6 +151,15 @@ impl<const N: usize, const M: usize> Built<'_, N, M> {
         }
     }
 
+    /// The time in which formulas have been derived so far (s); zero where none are.
+    #[must_use]
+    pub fn derivation_seconds(&self) -> f64 {
+        match self {
+            Self::Sleigh(_) => 0.0,
+            Self::Text(system) => system.model().derivation_seconds(),
+        }
+    }
+
     /// Whether a start is given by that quantity.
     #[must_use]
     pub fn gives_start(&self, k: usize) -> bool {
