@@ -119,7 +119,7 @@ pub fn recommend_by_trial<const N: usize>(
         let times: [f64; TIMES] = lagrangian::from_fn(|i| end * (i + 1) as f64 / TIMES as f64);
         let found = make(&schedule, &times)?;
         if stops() {
-            return Err(RunError { step: steps, time: end, source: StepError::Stopped });
+            return Err(RunError::new(steps, end, StepError::Stopped));
         }
         let sampled: Sampled<N> = lagrangian::from_fn(|i| found.get(i).map_or([f64::NAN; N], State::unwrapped));
         let finite = sampled.iter().flatten().all(|q| q.is_finite());

@@ -62,7 +62,7 @@ impl<'a, const N: usize, const M: usize> ReferenceMotion<'a, N, M> {
         let made = integrate_pieces(self.subject, method, &self.schedule(steps), &mut state, &mut ())?;
         if made < steps {
             let time = self.schedule(steps).time(made);
-            return Err(RunError { step: made + 1, time, source: StepError::Stopped });
+            return Err(RunError::new(made + 1, time, StepError::Stopped));
         }
         Ok(state.unwrapped())
     }
