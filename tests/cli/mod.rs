@@ -19,6 +19,7 @@ mod rows;
 mod run;
 mod set;
 mod signals;
+mod smooth;
 mod stability;
 mod streams;
 mod substep;
