@@ -86,6 +86,8 @@ fn of_everything_else() {
         (StepError::NotFinite, Some(Hint::Numbers)),
         (StepError::Overshoot { part: 0.3 }, Some(Hint::ShorterStep { part: 0.3 })),
         (StepError::Branch, HALF),
+        (StepError::LeavesBasis, HALF),
+        (StepError::LightMass { pivot: 1e-17 }, Some(Hint::OtherMethod)),
         (StepError::Energy { defect: 1.0, bound: 0.1 }, HALF),
         (StepError::Tolerance { tries: 5, step: 1e-9 }, HALF),
         (StepError::Unsupported { reason: "it cannot" }, Some(Hint::OtherMethod)),
