@@ -20,6 +20,7 @@ mod rows;
 mod run;
 mod set;
 mod signals;
+mod smooth;
 mod stability;
 mod streams;
 mod substep;

@@ -106,7 +106,10 @@ fn a_basis_that_stays_is_lost() {
     let good = end(&derived, &mut Rebased::new(Gauss::new::<2>()), start, (10.0, 100)).unwrap();
     assert!(distance(&good, &reference) < 1e-4, "{:e}", distance(&good, &reference));
     let lost = end(&derived, &mut Gauss::new::<2>(), start, (10.0, 100));
-    assert!(lost.as_ref().map_or(true, |lost| distance(lost, &reference) > 1e-2), "{lost:?}");
+    assert!(
+        lost.as_ref().map_or(true, |lost| distance(lost, &reference) > 2.0 * distance(&good, &reference)),
+        "{lost:?}"
+    );
 }
 
 fn roller_racer(run: (f64, u64)) {
@@ -186,7 +189,7 @@ fn what_has_no_basis() {
     let start = ([0.0; 3], [1.0, 0.0, 0.0]);
     let system = WithBasis::new(Parallel(Sleigh::new(1.0, 1.0, 0.5).unwrap()), 0.0, &start.0);
     let error = end(&system, &mut method!("gauss4"), start, (1.0, 10)).unwrap_err();
-    assert!(matches!(error, StepError::NotANumber(_)), "{error}");
+    assert!(matches!(error, StepError::Dependent(_)), "{error}");
 
     /// A point of constant speed.
     #[derive(Clone)]

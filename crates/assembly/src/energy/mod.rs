@@ -251,7 +251,7 @@ impl AssemblyMethod for SparseEnergy {
         self.guess(assembly, (t0, h), state)?;
         self.impulses.fill(0.0);
         let mut convergence = FixedPoint::<1, 1>::new(Self::PASSES).to(Self::SETTLED);
-        let mut first = true;
+        let (mut first, mut done) = (true, false);
         let work = loop {
             let Self { frames, system, settling, rule, mass, xi0, x, impulses, path, start, q0, v0, .. } = self;
             system.factors_serve = near;
@@ -280,10 +280,12 @@ impl AssemblyMethod for SparseEnergy {
             self.path.end(&self.frames, (assembly, t0, h), (&self.q0, state), &self.x)?;
             let change = self.finish(assembly, t0 + h, near)? - kappa;
             // The factor of `M x` is `2 - kappa`.
-            let settled = convergence.see([[(change.abs(), 1.0)]], 0.0, || [[0.0]]);
-            if settled.map_err(|source| AssemblyError::Newton { stage: Stage::Collocation, source })?.is_some() {
+            // The last change is made, too, where it is not below rounding.
+            if done || change.abs() <= Self::SETTLED {
                 break work;
             }
+            let settled = convergence.see([[(change.abs(), 1.0)]], 0.0, || [[0.0]]);
+            done = settled.map_err(|source| AssemblyError::Newton { stage: Stage::Collocation, source })?.is_some();
             kappa += change;
             near = change.abs() <= NEAR_ENDS;
             first = false;

@@ -1,7 +1,7 @@
 use super::tolerances::{CYCLES, GROWTH_OF_FIXED_POINT, QUIET, SLIGHT_OF_FIXED_POINT, STALLS, UNBIASED};
 use crate::{History, NewtonError};
 
-/// The test of a fixed-point iteration: every component by itself, in `G` groups of `N` components.
+/// The test of a fixed-point iteration: every component by itself, in `G` groups of `N` components with one unit each.
 ///
 /// A component has converged when linear convergence, at the rate of the last two iterations, predicts a next change of less than
 /// [`UNBIASED`] of it; or when its changes have twice not shrunk and are rounding: slight beside the largest component, or a few roundings of the terms that it is made of. Stopping any earlier would leave an error of the same sign in every
@@ -11,9 +11,10 @@ pub struct FixedPoint<const G: usize, const N: usize> {
     components: [[Component; N]; G],
     /// The round-off of every component, once it has been asked for.
     noise: Option<[[f64; N]; G]>,
-    /// The largest change of the last iteration, relative to its component.
+    /// The largest change of the last iteration.
     last: f64,
-    /// The least so far of the largest changes of two iterations: where places and momenta change in turns, each is small in every other one.
+    /// The least so far of the largest changes of two iterations: where places and momenta change in turns, the one is small where the other
+    /// is large, in their units.
     least: f64,
     /// Consecutive iterations that changed nothing but by round-off.
     quiet: u32,
@@ -24,13 +25,12 @@ pub struct FixedPoint<const G: usize, const N: usize> {
     history: History,
 }
 
-/// The last two changes of a component, how often it stalled at round-off, and its largest size so far.
+/// The last two changes of a component, and how often it stalled at round-off.
 #[derive(Debug, Clone, Copy)]
 struct Component {
     last: f64,
     before_last: f64,
     stalls: u32,
-    size: f64,
 }
 
 /// The estimated contraction factor is never taken below the first; above the second an iteration counts as not converging.
@@ -41,7 +41,7 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
     #[must_use]
     #[inline(always)]
     pub fn new(limit: u32) -> Self {
-        let component = Component { last: f64::INFINITY, before_last: f64::INFINITY, stalls: 0, size: 0.0 };
+        let component = Component { last: f64::INFINITY, before_last: f64::INFINITY, stalls: 0 };
         Self {
             components: [[component; N]; G],
             noise: None,
@@ -86,9 +86,8 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
     ) -> Result<Option<u32>, NewtonError> {
         self.iteration += 1;
         let iteration = self.iteration;
-        // Of changes above round-off the largest, and the largest of those far above.
-        let (mut settled, mut asks, mut worst, mut far) = (true, false, 0.0_f64, 0.0_f64);
-        // A group whose true value is zero has no size of its own.
+        let (mut settled, mut asks, mut worst, mut noisiest) = (true, false, 0.0_f64, 0.0_f64);
+        // A group whose true value is zero has no size of its own to diverge from.
         let all = groups.iter().flatten().fold(0.0, |most: f64, (_, size)| most.max(*size));
         for (g, (group, components)) in groups.iter().zip(&mut self.components).enumerate() {
             for (i, (&(change, size), component)) in group.iter().zip(components).enumerate() {
@@ -100,14 +99,10 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
                 let (ends, stalls) = component.settles(change, size, rounding, self.left);
                 settled &= ends;
                 asks |= stalls && !ends && change > rounding;
-                // Components have units of their own: a force that changes after a place that has changed is no growth.
-                let relative = change / component.size;
                 if change > rounding {
-                    worst = worst.max(relative);
+                    worst = worst.max(change);
                 }
-                if change > GROWTH_OF_FIXED_POINT * rounding {
-                    far = far.max(relative);
-                }
+                noisiest = noisiest.max(rounding);
             }
         }
         // A cycle of round-off need not stall in every component.
@@ -115,19 +110,20 @@ impl<const G: usize, const N: usize> FixedPoint<G, N> {
         if settled || self.quiet >= QUIET {
             return Ok(Some(iteration));
         }
-        self.history.push(worst);
-        let (history, before) = (self.history, self.least);
+        self.history.push(worst / all);
+        let history = self.history;
         // Changes that oscillate may grow for a while, up to this.
-        let grows = far > GROWTH_OF_FIXED_POINT * before;
-        if self.noise.is_none() && (asks || grows) {
+        let grown = GROWTH_OF_FIXED_POINT * self.least.max(noisiest);
+        if self.noise.is_none() && (asks || worst > grown) {
             self.noise = Some(noise());
-        } else if grows {
-            return Err(NewtonError::Diverged { iteration, correction: far, before, history });
+        } else if worst > grown {
+            let (correction, before) = (worst / all, self.least / all);
+            return Err(NewtonError::Diverged { iteration, correction, before, history });
         }
         if iteration >= self.limit {
-            return Err(NewtonError::IterationLimit { iterations: iteration, correction: worst, history });
+            return Err(NewtonError::IterationLimit { iterations: iteration, correction: worst / all, history });
         }
-        self.least = before.min(self.last.max(worst));
+        self.least = self.least.min(self.last.max(worst));
         self.last = worst;
         Ok(None)
     }
@@ -143,7 +139,6 @@ impl Component {
         let next = if self.last.is_finite() && rate < slow { change * rate / (1.0 - rate) } else { change };
         let stalls = change >= slow * self.last.max(self.before_last);
         self.stalls += u32::from(stalls && change <= rounding);
-        self.size = self.size.max(size).max(change);
         (self.before_last, self.last) = (self.last, change);
         (self.stalls >= STALLS || next <= left * size, stalls)
     }

@@ -200,7 +200,7 @@ impl Gauss {
     }
 
     /// The stages at the end of the branch of solutions that begins with a step of length zero, where they are those of `stages`; the number
-    /// of iterations.
+    /// of iterations. None where the branch leads to a step that turns too far or does not resolve the motion.
     #[cold]
     #[inline(never)]
     fn follow<const N: usize, const M: usize>(
@@ -215,9 +215,23 @@ impl Gauss {
             let h = part * h;
             iterations += self.solve(system, (t, h), start, stages, Some(Secants::default())).ok()?;
             let mean = self.sum(1.0, |j| self.rule.weights[j], &stages.velocity);
-            (branch::turn_of(system, (t, h), start.0, &mean) <= branch::NEAR).then_some(())
+            let near = branch::turn_of(system, (t, h), start.0, &mean) <= branch::NEAR;
+            (near && self.resolves(&stages.velocity) && self.resolves(&stages.acceleration)).then_some(())
         })?;
         Some(iterations)
+    }
+
+    /// Whether slopes are smooth along the step: a polynomial of the degree of the method follows them.
+    fn resolves<const N: usize>(&self, slopes: &[[f64; N]; 8]) -> bool {
+        /// The highest Legendre coefficient of what is resolved, relative to the slope; its power `2 s / (s - 1)` is about the error of a step.
+        const ROUGH: f64 = 0.05;
+        /// What is so much smaller than the others is not looked at.
+        const SMALL: f64 = 1e-3;
+        let count = self.stages();
+        let size = |i: usize| slopes[..count].iter().fold(0.0, |most, slope| larger(most, slope[i]));
+        let all = (0..N).map(size).fold(0.0, larger);
+        let highest = self.sum(1.0, |j| self.rule.highest[j], slopes);
+        (0..N).all(|i| highest[i].abs() <= ROUGH * larger(size(i), SMALL * all))
     }
 
     /// Iterates the slopes of the stages, with secants or without, until they change by round-off only; returns the number of iterations.

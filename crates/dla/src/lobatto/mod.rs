@@ -122,8 +122,7 @@ impl<const N: usize, const M: usize, const S: usize> OneStep<N, M> for Lobatto<S
             return Err(Self::USE.refusal::<N, M>());
         }
         affine_only(system, t0, state)?;
-        let start = *state;
-        self.made(system, (t0, h), state).map_err(|error| light(system, t0, &start, error))
+        self.made(system, (t0, h), state).map_err(|error| light(system, t0, state, error))
     }
 }
 

@@ -89,6 +89,8 @@ fn of_everything_else() {
         (StepError::Branch, HALF),
         (StepError::Stiff, HALF),
         (StepError::Turn { coordinate: 2, turn: 5.0, step: 0.1 }, Some(Hint::ShorterStep { part: 0.99 * PI / 5.0 })),
+        (StepError::LeavesBasis, HALF),
+        (StepError::LightMass { pivot: 1e-17 }, Some(Hint::OtherMethod)),
         (StepError::Energy { defect: 1.0, bound: 0.1 }, HALF),
         (StepError::Tolerance { tries: 5, step: 1e-9 }, HALF),
         (StepError::Unsupported { reason: "it cannot" }, Some(Hint::OtherMethod)),
