@@ -111,7 +111,8 @@ fn formulas_in_pieces() {
         assert_relative_eq!(piece.value(if from == 1.0 { 0.5 * PI } else { 2.0 }), value, max_relative = f64::EPSILON);
     }
     let piece = waves.piece(1.0);
-    assert_eq!([piece.value(0.0), piece.slope(0.0), piece.curvature(PI + 0.5)], [2.0, 1.0, f64::sin(0.5)]);
+    assert_eq!([piece.value(0.0), piece.slope(0.0)], [2.0, 1.0]);
+    assert_relative_eq!(piece.curvature(PI + 0.5), f64::sin(0.5), max_relative = 4.0 * f64::EPSILON);
     // As a whole it is what it says.
     assert_eq!([1.0, 4.0, 5.0].map(|t| waves.value(t)), [f64::sin(1.0) + 2.0, 0.0, -2.0]);
     for corner in ["abs(sin(t))", "sign(t - 3)", "min(t, 5)"] {
