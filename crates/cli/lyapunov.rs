@@ -22,7 +22,7 @@ pub(crate) fn lyapunov(arguments: &LyapunovArguments) -> Result<(), CliError> {
     let shared = &arguments.scene;
     let duration = shared.duration.or(Some(usual));
     let from = (shared.scene.as_str(), &shared.set);
-    let scene = inspect::load_any_with(from, Some(&arguments.method), shared.step, duration, shared.alpha)?;
+    let scene = inspect::load_any_with(from, Some(&arguments.method), shared.step, duration, shared.alpha)?.uncut();
     let method = inspect::method(scene.run())?;
     has_tangents(&method).map_err(|reason| CliError::Request(format!("--method {}: {reason}", arguments.method)))?;
     check_settle(arguments, &scene)?;

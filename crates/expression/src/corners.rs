@@ -1,3 +1,5 @@
+#![allow(clippy::float_cmp, reason = "a side is -1, 0 or 1")]
+
 use crate::graph::NodeKind;
 use crate::interval::{Interval, sign};
 use crate::{Error, Expression, Function, Graph, Tape};
@@ -216,7 +218,12 @@ impl Search<'_> {
     fn close(&mut self, k: usize, part: Option<(f64, f64)>, times: &mut Vec<f64>) {
         let Some((from, to)) = part else { return };
         let (from, to) = (from - self.least, to + self.least);
-        let [before, after] = [from, to].map(|t| self.side(k, t));
+        let sides = [from, to].map(|t| match self.side(k, t) {
+            // Of a zero that is rounding nothing is known.
+            0.0 if self.look(k, t, t)[0] != Interval::at(0.0) => f64::NAN,
+            side => side,
+        });
+        let [before, after] = sides;
         if before != after && !before.is_nan() && !after.is_nan() {
             times.push(self.turn(k, from, to, before));
         }

@@ -101,7 +101,8 @@ impl Interval {
     /// The cosine.
     fn cos(self) -> Self {
         let Self { least, most } = self;
-        if !(most - least < TAU) || least.abs().max(most.abs()) > 1e9 {
+        let narrow = most - least < TAU;
+        if !narrow || least.abs().max(most.abs()) > 1e9 {
             return Self::new(-1.0, 1.0);
         }
         // Whether a multiple of a turn, after a shift, lies between.

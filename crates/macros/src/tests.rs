@@ -33,6 +33,7 @@ fn errors_stand_at_their_places() {
     let cases = [
         ("J/2*theta'^2", "J/2*thetta'^2", "did you mean `theta'`", "\"m/2*(x'^2 + y'^2) + J/2*thetta'^2\""),
         ("y'*c - x'*s", "y'*x' - x'*s", "not affine", "\"y'*x' - x'*s\""),
+        ("-0.1*theta'", "-0.1*theta", "the angle `theta` grows by a whole turn", "\"-0.1*theta\""),
         ("-0.1*theta'", "-0.1*theta' +", "column 14", "\"-0.1*theta' +\""),
         ("theta = \"-0.1", "phi = \"-0.1", "the coordinates are", "\"-0.1*theta'\""),
         ("cos(theta)", "cos(thet)", "no name `thet`", "\"cos(thet)\""),

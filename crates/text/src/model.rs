@@ -129,6 +129,12 @@ impl TextModel {
         })
     }
 
+    /// The same with steps that go across its corners in time, for what takes derivatives of steps of one length.
+    #[must_use]
+    pub fn uncut(&self) -> Self {
+        Self { pieces: None, ..self.clone() }
+    }
+
     /// The times between two (s) at which a formula has a corner in time, or jumps; none where they are more than can be told.
     #[must_use]
     pub fn jumps(&self, from: f64, to: f64) -> Option<Vec<f64>> {

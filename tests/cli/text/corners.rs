@@ -19,7 +19,6 @@ positions = [\"0.5*cos(a) + 1.2*cos(b) - 0.8*cos(c) - 1\", \"0.5*sin(a) + 1.2*si
     let steered = "coordinates = { d = \"angle\" }\nlagrangian = \"d'^2/2\"\nforces = { d = \"-4*d\" }";
     let cases = [
         (scene(spring, "theta = 4.0", [0.01, 10.0]), "system.lagrangian", "theta"),
-        (scene(crank, "a = 0.3\nb = 0.3\nc = 0.67", [0.01, 20.0]), "system.positions", "a"),
         (scene(crank, "a = 0.3", [0.01, 20.0]), "system.positions", "a"),
         (scene(steered, "\"d'\" = 30.0", [0.01, 3.0]), "system.forces.d", "d"),
     ];
@@ -37,11 +36,11 @@ positions = [\"0.5*cos(a) + 1.2*cos(b) - 0.8*cos(c) - 1\", \"0.5*sin(a) + 1.2*si
     };
     let spun = end(&cases[0].0, "--method gauss8 --step 0.1");
     agree(&spun["theta"], &json!(4.0 * f64::cos(10.0)), 1e-9);
-    // Thirteen times round, on the branch it was started on.
+    // Once round, and on the branch that it was started on.
     let turned = end(&cases[1].0, "--method dop853 --step 0.5 --duration 3");
     agree(&turned["a"], &json!(6.3), 1e-12);
     // Amplitude 15 rad: the largest angle is reached at pi/4 s.
-    let steered = end(&cases[3].0, &format!("--method gauss16 --step 0.1 --duration {}", std::f64::consts::FRAC_PI_4));
+    let steered = end(&cases[2].0, &format!("--method gauss16 --step 0.1 --duration {}", std::f64::consts::FRAC_PI_4));
     agree(&steered["d"], &json!(15.0), 1e-12);
 }
 

@@ -87,6 +87,13 @@ impl Graph {
         }
     }
 
+    /// The same graph with room for so many terms and factors more, and no more than it had.
+    #[must_use]
+    pub fn with_room(mut self, more: usize) -> Self {
+        self.limit = self.limit.min(self.size.saturating_add(more));
+        self
+    }
+
     /// Whether all that was asked for had room.
     ///
     /// # Errors

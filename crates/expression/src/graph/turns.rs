@@ -1,3 +1,5 @@
+#![allow(clippy::float_cmp, reason = "turns are the same where their bits are")]
+
 use super::{Expression, Graph, NodeKind, bit};
 use crate::Function;
 use crate::interval::Interval;

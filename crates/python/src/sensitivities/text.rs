@@ -15,6 +15,7 @@ impl<const N: usize, const M: usize> ParametrisedMechanics<N, M, BLOCK> for Shap
 
 /// The numbers of a run of a system of text, with their derivatives in a block of keys.
 pub(super) fn rows(scene: &TextScene, asked: &Asked<'_>, keys: &[String]) -> Result<SensitivityRows, Refusal> {
+    let scene = &scene.uncut();
     let found = keys.iter().map(|key| found(scene, key)).collect::<Result<Vec<_>, _>>()?;
     let parameters: Vec<String> = found.iter().filter_map(|key| key.as_ref().err()).cloned().collect();
     let family = Family::new(&scene.words, &scene.model, &parameters).map_err(|error| refused(&error))?;

@@ -172,6 +172,15 @@ impl AnyScene {
         }
     }
 
+    /// The same with steps that go across the corners in time of a system of text, as [`TextScene::uncut`]; jumps of a sleigh stay.
+    #[must_use]
+    pub fn uncut(self) -> Self {
+        match self {
+            Self::Text(scene) => Self::Text(Box::new(scene.uncut())),
+            sleigh @ Self::Sleigh(_) => sleigh,
+        }
+    }
+
     /// The steps of the run, as [`Scene::schedule`].
     #[must_use]
     pub fn schedule(&self) -> Schedule {
@@ -254,6 +263,12 @@ impl TextScene {
     pub fn schedule(&self) -> Schedule {
         let whole = Schedule { t0: 0.0, step: self.run.actual_step(), steps: self.run.steps() };
         fitted(&whole, self.run.step, self.jumps())
+    }
+
+    /// The same with steps that go across corners in time, for what takes derivatives of steps of one length.
+    #[must_use]
+    pub fn uncut(&self) -> Self {
+        Self { model: Arc::new(self.model.uncut()), ..self.clone() }
     }
 
     /// The times in the run (s) at which a formula has a corner in time, or jumps.

@@ -34,8 +34,9 @@ const FORMULAS: usize = 2;
 /// The most numbers that a formula may need at a time: they lie on the stack.
 const ROOM: usize = 128;
 
-/// A formula with its derivatives has at most so many terms and factors.
+/// A formula has at most so many terms and factors, and its derivatives so many more.
 const LARGEST: usize = 1 << 17;
+const DERIVED: usize = 1 << 13;
 
 impl Formula {
     /// The function with this text.
@@ -52,12 +53,12 @@ impl Formula {
         let whole = graph.build(&parse(text, &names).map_err(wrong)?, &[t]).map_err(wrong)?;
         let pieces = match Corners::of(&mut graph, &[whole], 0, 1).map_err(wrong)? {
             Some((corners, pieces)) => {
-                let tapes = FormulaTapes::of(&mut graph.clone(), pieces[0]).map_err(fail)?;
+                let tapes = FormulaTapes::of(graph.clone(), pieces[0]).map_err(fail)?;
                 Some(Arc::new(FormulaPieces { corners, tapes }))
             }
             None => None,
         };
-        let whole = Arc::new(FormulaTapes::of(&mut graph, whole).map_err(fail)?);
+        let whole = Arc::new(FormulaTapes::of(graph, whole).map_err(fail)?);
         let formula = Self { text: text.into(), constant: whole.0[0].inputs() == 0, whole, pieces, sides: None };
         let start = formula.at(0, 0.0);
         if start.is_finite() { Ok(formula) } else { Err(fail(format!("its value at t = 0 is {start}"))) }
@@ -117,15 +118,16 @@ impl Formula {
 
 impl FormulaTapes {
     /// The formula with as many of its derivatives as have room.
-    fn of(graph: &mut Graph, formula: Expression) -> Result<Self, String> {
-        let first = Tape::new(graph, &[formula]).map_err(|error| error.to_string())?;
+    fn of(graph: Graph, formula: Expression) -> Result<Self, String> {
+        let mut graph = graph.with_room(DERIVED);
+        let first = Tape::new(&graph, &[formula]).map_err(|error| error.to_string())?;
         if first.scratch() > ROOM {
             return Err(format!("the formula needs more than {ROOM} numbers at a time"));
         }
         let (mut tapes, mut derivative) = (vec![first], formula);
         for _ in 0..FORMULAS {
             derivative = graph.derivative(derivative, 0);
-            match Tape::new(graph, &[derivative]) {
+            match Tape::new(&graph, &[derivative]) {
                 Ok(tape) if tape.scratch() <= ROOM => tapes.push(tape),
                 _ => break,
             }

@@ -111,7 +111,8 @@ fn formulas_in_pieces() {
         assert_relative_eq!(piece.value(if from == 1.0 { 0.5 * PI } else { 2.0 }), value, max_relative = f64::EPSILON);
     }
     let piece = waves.piece(1.0);
-    assert_eq!([piece.value(0.0), piece.slope(0.0), piece.curvature(PI + 0.5)], [2.0, 1.0, f64::sin(0.5)]);
+    assert_eq!([piece.value(0.0), piece.slope(0.0)], [2.0, 1.0]);
+    assert_relative_eq!(piece.curvature(PI + 0.5), f64::sin(0.5), max_relative = 4.0 * f64::EPSILON);
     // As a whole it is what it says.
     assert_eq!([1.0, 4.0, 5.0].map(|t| waves.value(t)), [f64::sin(1.0) + 2.0, 0.0, -2.0]);
     for corner in ["abs(sin(t))", "sign(t - 3)", "min(t, 5)"] {
@@ -124,7 +125,7 @@ fn formulas_in_pieces() {
 /// Formulas are checked in a time that grows with their length, and derivatives of any order are there for who asks.
 #[test]
 fn long_formulas_are_as_good_as_short_ones() {
-    let nested = format!("{}t{}", "sin(".repeat(100), ")".repeat(100));
+    let nested = format!("{}t{}", "sin(".repeat(250), ")".repeat(250));
     let texts = [
         "tanh(10*sin(3*t))*exp(-t/10)/(1+t^2)",
         "tanh(sin(sqrt(1+t^2)))/(1+exp(-cos(t)))",
