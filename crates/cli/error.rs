@@ -44,6 +44,9 @@ pub(crate) enum CliError {
     /// What is asked for makes no sense, or cannot be had of this scene or method.
     #[error("{0}")]
     Request(String),
+    /// More than fits into memory.
+    #[error("{0}")]
+    Memory(String),
     #[error("cannot write {}: {source}", path.display())]
     Write { path: PathBuf, source: std::io::Error },
     #[error("cannot write {}: in the folder {}: {source}", path.display(), folder.display())]
@@ -103,7 +106,7 @@ impl CliError {
             | Self::Ending { .. } => 2,
             #[cfg(not(feature = "parquet"))]
             Self::WithoutParquet { .. } => 2,
-            Self::ChartEnding { .. } | Self::Request(_) => 2,
+            Self::ChartEnding { .. } | Self::Request(_) | Self::Memory(_) => 2,
             Self::Busy { .. } | Self::Read { .. } | Self::Checkpoint { .. } => 2,
             Self::Tolerance(error) if matches!(**error, RecommendError::Request { .. }) => 2,
             Self::Points { .. } | Self::Report(ReportError::Exists { .. }) => 2,

@@ -56,11 +56,14 @@ pub struct Refusal {
     pub message: String,
     /// Whether the request is: else the computation failed.
     pub request: bool,
+    /// Whether it asks for more than fits into memory.
+    pub memory: bool,
 }
 
 impl From<CliError> for Refusal {
     fn from(error: CliError) -> Self {
-        Self { message: error.to_string(), request: error.exit_code() == 2 }
+        let memory = matches!(error, CliError::Memory(_));
+        Self { message: error.to_string(), request: error.exit_code() == 2, memory }
     }
 }
 
@@ -73,7 +76,7 @@ pub fn check_times(times: &[f64], duration: f64) -> Result<(), Refusal> {
         return Ok(());
     }
     let message = format!("the times must increase, and lie within the run, from 0 to {duration:?} s");
-    Err(Refusal { message, request: true })
+    Err(CliError::Request(message).into())
 }
 
 /// Makes the run of a scene, with its method, step and duration.
@@ -139,7 +142,13 @@ impl Visitor for InMemory<'_> {
             (made, &sampled[..])
         };
         let columns = nodes.first().map_or_else(Vec::new, |first| system.columns(first));
-        let mut numbers = vec![Vec::with_capacity(nodes.len()); columns.len()];
+        let mut numbers = vec![Vec::new(); columns.len()];
+        if numbers.iter_mut().any(|column: &mut Vec<f64>| column.try_reserve_exact(nodes.len()).is_err()) {
+            let problem = format!("{} nodes of {} numbers do not fit into memory", nodes.len(), columns.len());
+            return Err(CliError::Memory(format!(
+                "{problem}: every= keeps fewer nodes, t_eval= the motion at some times"
+            )));
+        }
         for node in nodes {
             numbers.iter_mut().zip(system.row(node)).for_each(|(column, x)| column.push(x));
         }

@@ -46,6 +46,7 @@ mod points_file;
 mod precision;
 mod precision_csv;
 mod precision_text;
+mod processor;
 mod progress;
 mod provenance;
 mod resume;
@@ -75,10 +76,15 @@ use std::process::ExitCode;
 pub use called::{Caller, CommandOutput, ShownToCaller, call};
 pub use ensemble::{SweepPlan, plan};
 pub use in_memory::{Refusal, RunRequest, RunResult, check_times, run};
+pub use processor::{missing_instructions, wrong_processor};
 
 /// The program: the command of its arguments, with its exit code.
 #[must_use]
 pub fn main() -> ExitCode {
+    if let Some(problem) = wrong_processor() {
+        terminal::say("error", &problem);
+        return ExitCode::from(1);
+    }
     ExitCode::from(obey(std::env::args_os()))
 }
 

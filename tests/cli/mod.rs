@@ -14,6 +14,7 @@ mod parts;
 mod places;
 mod plot;
 mod precision;
+mod processor;
 mod refusals;
 mod rest;
 mod rows;

@@ -1,7 +1,7 @@
 use cli::Refusal;
 use pyo3::PyErr;
 use pyo3::create_exception;
-use pyo3::exceptions::PyException;
+use pyo3::exceptions::{PyException, PyMemoryError};
 
 create_exception!(noslip, NoslipError, PyException, "Why noslip did not do what it was asked.");
 create_exception!(
@@ -14,9 +14,13 @@ create_exception!(noslip, ComputationError, NoslipError, "The computation failed
 create_exception!(noslip, BusyError, RequestError, "Another process writes the same output.");
 
 /// The exception of what was not computed.
-pub(crate) fn raised(Refusal { message, request }: Refusal) -> PyErr {
+pub(crate) fn raised(Refusal { message, request, memory }: Refusal) -> PyErr {
     let message = in_python(&message);
-    if request { RequestError::new_err(message) } else { ComputationError::new_err(message) }
+    match (memory, request) {
+        (true, _) => PyMemoryError::new_err(message),
+        (false, true) => RequestError::new_err(message),
+        (false, false) => ComputationError::new_err(message),
+    }
 }
 
 /// A message whose flags are arguments: `--event-samples` is `event_samples`. What stands between backticks is a command, and stays.

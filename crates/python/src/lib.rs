@@ -13,6 +13,15 @@ use pyo3::prelude::*;
 /// The native part of the package `noslip`.
 #[pymodule]
 mod _noslip {
+    use pyo3::exceptions::PyImportError;
+    use pyo3::prelude::*;
+
+    /// A library for another machine would end the interpreter at the first instruction that is not there.
+    #[pymodule_init]
+    fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {
+        cli::wrong_processor().map_or(Ok(()), |problem| Err(PyImportError::new_err(problem)))
+    }
+
     #[pymodule_export]
     use crate::commands::{arguments, command, plan};
     #[pymodule_export]

@@ -10,7 +10,7 @@
 
 from ._noslip import BusyError, ComputationError, NoslipError, RequestError, __version__
 from .ensembles import Ensemble, ensemble
-from .errors import ArgumentError, Interrupted, RunError
+from .errors import ArgumentError, Interrupted, RunError, TooLargeError
 from .results import Run
 from .scenes import Scene, methods, scene, scenes
 from .sensitivities import Prediction, Sensitivities
@@ -32,6 +32,7 @@ __all__ = [
     "Sensitivities",
     "Sleigh",
     "System",
+    "TooLargeError",
     "__version__",
     "ensemble",
     "methods",

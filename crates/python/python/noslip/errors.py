@@ -14,6 +14,10 @@ class ArgumentError(RequestError, TypeError):
     """An argument that there is not, or of another kind than those that are accepted."""
 
 
+class TooLargeError(RequestError, MemoryError):
+    """More than fits into memory; nothing of the memory has been taken."""
+
+
 class RunError(ComputationError):
     """A run that failed, with all that was made before.
 

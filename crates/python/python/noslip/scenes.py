@@ -14,7 +14,7 @@ import tomli_w
 
 from . import _noslip
 from .commands import call, flags
-from .errors import ArgumentError, Interrupted, RunError
+from .errors import ArgumentError, Interrupted, RunError, TooLargeError
 from .progress import Progress, shown
 from .results import Run, warn
 from .saved import saved_run
@@ -185,6 +185,8 @@ class Scene:
                 made = checked.run(every, times, tolerance, substep, _list(events), _list(until), backward, tell)
             except KeyboardInterrupt:
                 raise Interrupted(None) from None
+            except MemoryError as error:
+                raise TooLargeError(*error.args) from None
         columns, units, text, failure, ended = made
         result = Run(columns, dict(units), text)
         if '"warnings"' in text:

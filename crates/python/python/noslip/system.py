@@ -6,13 +6,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import tomli_w
+from numpy.typing import NDArray
 
 from ._noslip import RequestError
 from .expressions import name, refuse_twins, text
 from .results import Run
 from .scenes import Scene
 
-Values = Mapping[Any, float] | Sequence[float] | None
+Values = Mapping[Any, float] | Sequence[float] | NDArray[Any] | None
 
 
 class System(Scene):

@@ -103,13 +103,13 @@ pub(crate) fn full_key(scene: &AnyScene, key: &str) -> String {
 
 /// An error of the request.
 fn refused(problem: &impl Display) -> Refusal {
-    Refusal { message: problem.to_string(), request: true }
+    Refusal { message: problem.to_string(), request: true, memory: false }
 }
 
 /// Whether an error is one of the request, or of the computation.
 fn failed(error: &SensitivitiesError) -> Refusal {
     let request = matches!(error, SensitivitiesError::Method { .. } | SensitivitiesError::Jump { .. });
-    Refusal { message: error.to_string(), request }
+    Refusal { message: error.to_string(), request, memory: false }
 }
 
 /// What is said of a key that derivatives cannot be taken in.
