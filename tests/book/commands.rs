@@ -77,11 +77,11 @@ fn lines(block: &Block<'_>) -> Vec<Line> {
     text.lines().map(Line::of).filter(|line| !line.words.is_empty()).collect()
 }
 
-/// The words of a line, files of the repository by their full names.
+/// The words of a line, files of the repository by their full names; no quoted word has a space in it.
 pub(super) fn words(line: &str) -> Vec<String> {
     let docs = format!("{}/docs/", root().display());
     let full = |word: &str| word.strip_prefix("docs/").map_or_else(|| word.to_owned(), |rest| docs.clone() + rest);
-    line.split_whitespace().skip(1).map(full).collect()
+    line.split_whitespace().skip(1).map(|word| full(&word.replace('"', ""))).collect()
 }
 
 fn quick(line: &Line) -> bool {

@@ -103,3 +103,20 @@ fn a_wrong_figure_is_seen() {
         assert!(seen(wrong), "{wrong}");
     }
 }
+
+/// A cell with two times has the second over the first, of the digits that it shows.
+#[test]
+fn ratios_of_times_are_those_of_the_times_beside_them() {
+    let page = Page::read("docs/benchmarks.md");
+    let time = |of: &str| of.rsplit(' ').next().and_then(|time| time.parse::<f64>().ok());
+    let mut seen = 0;
+    for cell in page.text.lines().filter(|line| line.starts_with("| `")).flat_map(|line| line.split(" | ")) {
+        let Some((times, ratio)) = cell.split_once(": **") else { continue };
+        let (ours, theirs) = times.split_once(", ").unwrap();
+        let told: f64 = ratio.split("**").next().unwrap().parse().unwrap();
+        let made = time(theirs).unwrap() / time(ours).unwrap();
+        assert!((made - told).abs() <= 0.005 + 1e-9, "{cell}: {made}");
+        seen += 1;
+    }
+    assert!(seen > 100, "{seen}");
+}

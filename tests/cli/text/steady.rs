@@ -61,7 +61,7 @@ fn a_pendulum_in_the_plane_rests_on_its_circle() {
             let place = ["x", "y"].map(|name| number(&motion["depends_on"][name]));
             assert!(place[0].abs() < 1e-12 && (place[1] - y).abs() < 1e-12, "{motion}");
             let (half, stable) = (0.5 * friction, y < 0.0);
-            let root = (9.0 + if stable { -half * half } else { half * half }).sqrt();
+            let root = (9.0_f64 + if stable { -half * half } else { half * half }).sqrt();
             match stable {
                 true => assert_flow(motion, &[[-half, root], [-half, -root]]),
                 false => assert_flow(motion, &[[-half + root, 0.0], [-half - root, 0.0]]),
@@ -123,7 +123,7 @@ fn families_of_rest_places_are_found() {
         // The map of `dla` at rest is Cayley's, stable at all steps, and no limit is told.
         assert!(rest["step_limit"].is_null() && number(&rest["stable_up_to"]) > 1.0, "{rest}");
         if rows == "y' - 0.39*x'" {
-            let (mass, stiffness) = (0.8 + 0.9 * 0.39 * 0.39, 4.0 + 4.0 * 0.39 * 0.39);
+            let (mass, stiffness) = (0.8 + 0.9 * 0.39 * 0.39, 4.0_f64 + 4.0 * 0.39 * 0.39);
             let half = 0.5 * 0.117 / mass;
             let swing = (stiffness / mass - half * half).sqrt();
             assert_flow(rest, &[[-half, swing], [-half, -swing], [0.0, 0.0]]);
