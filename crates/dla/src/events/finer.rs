@@ -19,8 +19,13 @@ const BENDS: f64 = 0.1;
 /// What is between samples of a state is known by a cubic; where an event on it is off by more than this part of what it bends by, the cubic
 /// says nothing of the event.
 const KNOWN: f64 = 0.25;
-/// Where it is off by so many times what the event bends by, the event hardly changes, and what bends is rounding.
+/// Where it is off by so many times what the event bends by, the event hardly changes.
 const FLAT: f64 = 100.0;
+/// What so many roundings of the state and of the time make of an event is no bend.
+const ROUNDINGS: f64 = 64.0;
+/// A corner or a jump bends in three neighbouring parts, however many parts there are: so many may, once there are so many times the samples.
+const CORNERS: usize = 6;
+const ENOUGH: u32 = 8;
 /// The most parts of a step.
 const MOST: u32 = 1 << 14;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
@@ -50,18 +55,22 @@ where
                 _ => f64::NAN,
             }
         };
-        let truly = |at: f64| self.state(at).map_or(f64::NAN, |state| event.value(self.time(at), &state));
         let (mut bends, mut untold) = (false, false);
         for (at, foretold, range) in places(known, parts) {
             let there = on_the_way(at);
-            if (there - foretold).abs() > BENDS * range {
-                let truth = truly(at);
+            if (there - foretold).abs() > BENDS * range
+                && let Some(state) = self.state(at)
+            {
+                let truth = event.value(self.time(at), &state);
                 let (bend, off) = ((truth - foretold).abs(), (truth - there).abs());
-                bends |= bend > BENDS * range && off < KNOWN * bend;
-                untold |= bend > BENDS * range && off >= KNOWN * bend && off < FLAT * bend;
+                if bend > BENDS * range && bend > self.rounding(event, at, &state) {
+                    bends |= off < KNOWN * bend;
+                    untold |= (KNOWN * bend..FLAT * bend).contains(&off);
+                }
             }
         }
-        if !bends {
+        // Where the way of the state is known too little at one place, it is so at others.
+        if untold || !bends {
             return if untold { Between::Untold } else { Between::Told };
         }
         let mut finer = parts;
@@ -69,11 +78,25 @@ where
             finer *= 2;
             let part = |j: i64| j as f64 / f64::from(finer);
             let values: Vec<_> = (-1..=i64::from(finer) + 1).map(|j| (part(j), on_the_way(part(j)))).collect();
-            if places(&values, finer).all(|(at, foretold, range)| (on_the_way(at) - foretold).abs() <= BENDS * range) {
+            let most = if finer >= ENOUGH * parts { CORNERS } else { 0 };
+            let bent = |(at, foretold, range): &(f64, f64, f64)| (on_the_way(*at) - foretold).abs() > BENDS * range;
+            if places(&values, finer).filter(bent).take(most + 1).count() <= most {
                 return Between::Finer(finer, values);
             }
         }
         Between::Untold
+    }
+
+    /// What some roundings of the time and the state make of an event.
+    fn rounding(&self, event: &Event<'_, N>, at: f64, state: &State<N>) -> f64 {
+        let (t, off) = (self.time(at), ROUNDINGS * f64::EPSILON);
+        let moved = |sign: f64| {
+            let place = |x: [f64; N]| from_fn(|i| x[i] * (1.0 + off * if i % 2 == 0 { 1.0 } else { sign }));
+            let state = State::new(place(state.unwrapped()), place(*state.v()), self.system.angles());
+            event.value(t * (1.0 + off), &state)
+        };
+        let value = event.value(t, state);
+        (moved(1.0) - value).abs().max((moved(-1.0) - value).abs())
     }
 
     /// The state between two that are `s` seconds apart: a cubic in the coordinates.

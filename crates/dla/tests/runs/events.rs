@@ -375,16 +375,23 @@ fn a_fast_sine_is_found_or_in_doubt() {
     assert_eq!(close.map(|close| close.unseen), Some(4));
 }
 
-/// What is a function of the state only, and hardly changes, is no reason for doubt, whatever its rounding does.
+/// What hardly changes is no reason for doubt, whatever its rounding does, nor is a corner or a jump.
 #[test]
 fn what_hardly_changes_is_not_in_doubt() {
     let energy = |state: &State<3>| state.v().iter().map(|v| v * v).sum::<f64>() - 1.0;
-    let events = [Event::new("energy", |_, state| energy(state)), Event::new("x", |_, state| state.q()[0] - 0.7)];
+    let events = [
+        Event::new("energy", |_, state| energy(state)),
+        Event::new("x", |_, state: &State<3>| state.q()[0] - 0.7),
+        // A corner and a jump bend in a few parts, however many there are.
+        Event::new("corner", |t: f64, _| (t - 1.3).abs() - 0.4),
+        Event::new("jump", |t: f64, _| (t - 2.1).signum()),
+    ];
     let mut watch = Watch::new(Dla::midpoint(), &events, ());
     let schedule = Schedule { t0: 0.0, step: 0.25, steps: 16 };
     drive(&system(), &mut Dla::midpoint(), &schedule, &mut straight(0.0), &mut watch).unwrap();
     assert_eq!(watch.close().map_or(0, |close| close.unseen), 0);
-    assert_eq!(watch.crossings().iter().filter(|crossing| crossing.event == 1).count(), 1);
+    let counts = [1, 2, 3].map(|event| watch.crossings().iter().filter(|crossing| crossing.event == event).count());
+    assert_eq!(counts, [1, 2, 1]);
 }
 
 /// An event without a value at a sample is in doubt, and so is a method that cannot be asked between nodes; one with values at all is not.
