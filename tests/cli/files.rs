@@ -277,7 +277,7 @@ fn pictures_and_inputs_that_would_fill_the_memory_are_refused() {
     let folder = folder();
     let line = "plot scene.toml --out p.png --size";
     folder.refused(&format!("{line} 100x100cm --dpi 1200"), &["47244 x 47244 pixels", "1.5e8", "--dpi", ".svg"]);
-    folder.done(&format!("{line} 3x3cm --dpi 1200"));
+    folder.done(&format!("{line} 3x3cm --dpi 300"));
     folder.done("plot scene.toml --out p.svg --size 100x100cm --dpi 1200");
     #[cfg(target_os = "linux")]
     {
@@ -304,17 +304,17 @@ fn nodes_that_do_not_fit_in_memory_are_refused() {
     }
 }
 
-/// A train of a hundred blades has more columns than this process may have files open.
+/// A train of many blades has more columns than this process may have files open.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_archive_of_many_columns_is_continued_with_few_open_files() {
     let folder = Folder::new();
-    let trailers = "[[effects]]\nkind = \"trailers\"\ncount = 100\nmass = 0.5\ninertia = 0.1\nbar = 1.0\n";
+    let trailers = "[[effects]]\nkind = \"trailers\"\ncount = 30\nmass = 0.5\ninertia = 0.1\nbar = 1.0\n";
     folder.write("train.toml", format!("{SCENE}{trailers}").replace("duration = 2.0", "duration = 0.3"));
     folder.done("run train.toml --out k.npz");
     let whole = bytes(&folder, "k.npz");
     fs::remove_file(folder.join("k.npz")).unwrap();
-    let script = "ulimit -n 40; \"$0\" run train.toml --duration 0.15 --out k.npz --checkpoint k.save && \
+    let script = "ulimit -n 24; \"$0\" run train.toml --duration 0.15 --out k.npz --checkpoint k.save && \
                   exec \"$0\" run train.toml --out k.npz --resume k.save";
     let mut shell = std::process::Command::new("sh");
     shell.args(["-c", script, env!("CARGO_BIN_EXE_noslip")]).current_dir(folder.path());
@@ -327,7 +327,7 @@ fn an_archive_of_many_columns_is_continued_with_few_open_files() {
 fn names_that_become_too_long_are_refused_before_the_work() {
     let folder = folder();
     folder.write("sweep.toml", "scene = \"scene.toml\"\n[grid]\n\"start.speed\" = [0.1, 0.2]\n");
-    for letters in [231, 237, 241, 245, 250, 251] {
+    for letters in [231, 241, 250] {
         let name = "x".repeat(letters - 4);
         for line in [
             format!("run scene.toml --duration 1e9 --step 1e-3 --out {name}.csv"),
