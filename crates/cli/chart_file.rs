@@ -1,4 +1,6 @@
+use crate::csv_text;
 use crate::error::CliError;
+use crate::file_roles::FileRoles;
 use crate::files::{check_file, write_whole};
 use crate::provenance::{Provenance, label, metadata_of};
 use harness::report::{Chart, chart_svg};
@@ -15,7 +17,8 @@ pub(crate) enum ChartFile<'a> {
 
 impl<'a> ChartFile<'a> {
     /// Refused, before the work begins, where it could not be written at its end.
-    pub(crate) fn of(path: &'a Path, overwrite: bool) -> Result<Self, CliError> {
+    pub(crate) fn of(path: &'a Path, scene: &str, overwrite: bool) -> Result<Self, CliError> {
+        FileRoles::of(scene).rows("--out", Some(path)).check()?;
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
         let file = match ending.as_deref() {
             Some("csv") => Self::Csv(path),
@@ -40,7 +43,7 @@ impl<'a> ChartFile<'a> {
         match self {
             Self::Csv(path) => {
                 write_whole(path, overwrite, |file| {
-                    writeln!(file, "{}", columns.iter().map(label).collect::<Vec<_>>().join(","))?;
+                    writeln!(file, "{}", csv_text::header(columns.iter().map(label)))?;
                     for row in rows {
                         let cells: Vec<String> = columns.iter().zip(row).map(|(column, x)| cell(column, *x)).collect();
                         writeln!(file, "{}", cells.join(","))?;

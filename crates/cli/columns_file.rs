@@ -1,7 +1,8 @@
 //! Reads a file of columns of numbers back: .csv or .npz.
 
 use crate::error::CliError;
-use std::fs::{self, File};
+use crate::provenance::named;
+use std::fs::File;
 use std::io::{Error, ErrorKind};
 use std::path::Path;
 
@@ -17,12 +18,8 @@ pub(crate) struct NamedColumn {
 impl NamedColumn {
     /// From a heading `name [unit]`, or `name`.
     pub(crate) fn headed(heading: &str, values: Vec<f64>) -> Self {
-        match heading.split_once(" [") {
-            Some((name, unit)) => {
-                Self { name: name.to_owned(), unit: Some(unit.trim_end_matches(']').to_owned()), values }
-            }
-            None => Self { name: heading.to_owned(), unit: None, values },
-        }
+        let (name, unit) = named(heading);
+        Self { name: name.to_owned(), unit: unit.map(str::to_owned), values }
     }
 }
 
@@ -32,24 +29,28 @@ pub(crate) type Columns = Vec<NamedColumn>;
 /// Reads a file, by the ending of its name.
 pub(crate) fn read(path: &Path) -> Result<Columns, CliError> {
     let ending = path.extension().map(std::ffi::OsStr::to_ascii_lowercase);
-    let failed = |source| CliError::Read { path: path.to_owned(), source };
-    match ending.as_ref().and_then(|ending| ending.to_str()) {
-        Some("csv") => Ok(csv(&fs::read_to_string(path).map_err(failed)?)),
-        Some("npz") => npz(path).map_err(failed),
-        _ => Err(CliError::Request(format!(
-            "{}: accepted is a file .csv or .npz, by the ending of its name",
-            path.display()
-        ))),
+    // A device might never end.
+    if path.metadata().is_ok_and(|found| !found.is_file()) {
+        let source = Error::new(ErrorKind::InvalidInput, "the path is not a regular file");
+        return Err(CliError::Read { path: path.to_owned(), source });
     }
+    let columns = match ending.as_ref().and_then(|ending| ending.to_str()) {
+        Some("csv") => csv(path),
+        Some("npz") => npz(path),
+        _ => {
+            let problem = "accepted is a file .csv or .npz, by the ending of its name";
+            return Err(CliError::Request(format!("{}: {problem}", path.display())));
+        }
+    };
+    columns.map_err(|source| CliError::Read { path: path.to_owned(), source })
 }
 
 /// The columns all of whose fields are numbers. Names lose their units, so that the formats have the same.
-fn csv(text: &str) -> Columns {
-    let mut lines = text.lines().filter(|line| !line.starts_with('#') && !line.is_empty());
-    let names = lines.next().map_or_else(Vec::new, fields);
+fn csv(path: &Path) -> Result<Columns, Error> {
+    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_path(path)?;
     let mut columns: Vec<(NamedColumn, bool)> = Vec::new();
-    for heading in names {
-        let mut column = NamedColumn::headed(&heading, Vec::new());
+    for heading in reader.headers()? {
+        let mut column = NamedColumn::headed(heading, Vec::new());
         let copies = columns.iter().filter(|(other, _)| other.name.split('.').next() == Some(&column.name)).count();
         // Two columns of one name are told apart, as pandas does it.
         if copies > 0 {
@@ -57,30 +58,15 @@ fn csv(text: &str) -> Columns {
         }
         columns.push((column, true));
     }
-    for line in lines {
-        let cells = fields(line);
-        for (number, (column, numbers)) in columns.iter_mut().enumerate() {
+    for record in reader.records() {
+        for (cell, (column, numbers)) in record?.iter().zip(&mut columns) {
             // What is empty is not there.
-            let cell = cells.get(number).map_or("", |cell| cell.trim());
             let number = if cell.is_empty() { Ok(f64::NAN) } else { cell.parse() };
             *numbers &= number.is_ok();
             column.values.push(number.unwrap_or(f64::NAN));
         }
     }
-    columns.into_iter().filter(|(_, numbers)| *numbers).map(|(column, _)| column).collect()
-}
-
-/// The fields of a line; those in quotes may have commas.
-fn fields(line: &str) -> Vec<String> {
-    let (mut fields, mut quoted) = (vec![String::new()], false);
-    for letter in line.chars() {
-        match letter {
-            '"' => quoted = !quoted,
-            ',' if !quoted => fields.push(String::new()),
-            letter => fields.last_mut().map_or((), |field| field.push(letter)),
-        }
-    }
-    fields
+    Ok(columns.into_iter().filter(|(_, numbers)| *numbers).map(|(column, _)| column).collect())
 }
 
 fn npz(path: &Path) -> Result<Columns, Error> {

@@ -1,6 +1,7 @@
 use crate::args::CompareArguments;
 use crate::comparison::{Comparison, REFERRED, WITHOUT_REFERENCE, better_than};
 use crate::error::CliError;
+use crate::files::ClaimedFolder;
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
 use crate::saves::Saves;
@@ -25,20 +26,19 @@ pub(crate) fn compare(arguments: &CompareArguments) -> Result<(), CliError> {
         let problem = format!("--methods: `{name}` is named twice; a comparison has one row for each method");
         return Err(CliError::Request(problem));
     }
-    if let Some(folder) = &arguments.report {
-        crate::files::check_folder(folder, arguments.scene.force)?;
-    }
+    let claimed = |folder: &PathBuf| ClaimedFolder::new(folder, arguments.scene.force);
+    let folder = arguments.report.as_ref().map(claimed).transpose()?;
 
     let mut saves = Saves::of(arguments)?;
     let mut comparison = compare_scene(&scene, &methods, &mut saves, &Interrupt::listen())?;
-    if let Some(folder) = &arguments.report {
+    if let Some(folder) = &folder {
         let report = Report {
             title: format!("noslip compare {}", scene.name()),
             intro: table::INTRO.to_owned(),
             scenes: vec![std::mem::take(&mut comparison.report)],
             ..Report::default()
         };
-        report::write(&report, folder, arguments.scene.force).map_err(CliError::Report)?;
+        report::write(&report, folder.path(), true).map_err(CliError::Report)?;
     }
     if arguments.scene.json {
         let rows: Vec<_> = comparison.rows.iter().map(|row| &row.json).collect();

@@ -1,5 +1,6 @@
 use crate::args::EquilibriaArguments;
 use crate::error::CliError;
+use crate::file_roles::FileRoles;
 use crate::files::{check_file, write_whole};
 use crate::steady::{self, Searched, Stability, SteadyMotion};
 use crate::{inspect, notes, terminal};
@@ -41,6 +42,7 @@ pub(crate) fn equilibria(arguments: &EquilibriaArguments) -> Result<(), CliError
             let problem = "--picture draws the speed and the turn rate of a sleigh; the scene is a system of text";
             return Err(CliError::Request(problem.to_owned()));
         }
+        FileRoles::of(&arguments.scene.scene).writes("--picture", Some(path)).check()?;
         check_file(path, arguments.scene.force)?;
     }
     notes::moves(&scene);

@@ -1,7 +1,7 @@
 use crate::error::CliError;
-use crate::lock::{Lock, locked};
+use crate::lock::{Lock, replaced};
 use std::fs::File;
-use std::io::{BufWriter, Error, ErrorKind, Write};
+use std::io::{BufRead, BufReader, BufWriter, Error, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use tempfile::{NamedTempFile, TempPath};
 
@@ -29,6 +29,51 @@ pub(crate) fn check_folder(path: &Path, overwrite: bool) -> Result<(), CliError>
     temporary(path).map(drop)
 }
 
+/// A folder that a command will write into, made before the work: of two that begin at once only one has it. It is removed where nothing
+/// comes into it.
+#[derive(Debug)]
+pub(crate) struct ClaimedFolder(PathBuf);
+
+impl ClaimedFolder {
+    /// That folder.
+    pub(crate) fn new(path: &Path, overwrite: bool) -> Result<Self, CliError> {
+        check_folder(path, overwrite)?;
+        match std::fs::create_dir(path) {
+            Err(error) if error.kind() == ErrorKind::AlreadyExists && !overwrite => {
+                Err(CliError::Exists { path: path.to_owned() })
+            }
+            Err(source) if source.kind() != ErrorKind::AlreadyExists => {
+                Err(CliError::Write { path: path.to_owned(), source })
+            }
+            _ => Ok(Self(path.to_owned())),
+        }
+    }
+
+    /// The first of `NAME`, `NAME-2`, .. that is not there.
+    pub(crate) fn first_free(name: &str) -> Result<Self, CliError> {
+        let numbered = |k: u32| if k == 1 { name.to_owned() } else { format!("{name}-{k}") };
+        for path in (1..).map(numbered).map(PathBuf::from) {
+            match Self::new(&path, false) {
+                Err(CliError::Exists { .. } | CliError::Busy { .. }) => {}
+                other => return other,
+            }
+        }
+        Err(CliError::Exists { path: PathBuf::from(name) })
+    }
+
+    /// Where it is.
+    pub(crate) fn path(&self) -> &Path {
+        &self.0
+    }
+}
+
+impl Drop for ClaimedFolder {
+    fn drop(&mut self) {
+        // One with a file in it stays.
+        let _ = std::fs::remove_dir(&self.0);
+    }
+}
+
 fn refuse_existing(path: &Path, overwrite: bool) -> Result<(), CliError> {
     match path.symlink_metadata() {
         Ok(_) if !overwrite => Err(CliError::Exists { path: path.to_owned() }),
@@ -47,32 +92,83 @@ pub(crate) fn write_whole(
     content: impl FnOnce(&mut BufWriter<&mut File>) -> Result<(), Error>,
 ) -> Result<(), CliError> {
     check_file(path, overwrite)?;
+    let target = target(path, overwrite);
+    let file = filled(path, &target, content)?;
+    if overwrite {
+        keep_mode(&target, file.as_file());
+    }
+    let kept = if overwrite { file.persist(target) } else { file.persist_noclobber(target) };
+    kept.map(|_| ()).map_err(|error| CliError::Write { path: path.to_owned(), source: error.error })
+}
+
+/// Whether the file that is there has these very bytes: whoever wrote it was ended before the rest was done. Another one is refused.
+pub(crate) fn as_written(
+    path: &Path,
+    content: impl FnOnce(&mut BufWriter<&mut File>) -> Result<(), Error>,
+) -> Result<(), CliError> {
+    let new = filled(path, path, content)?;
+    let failed = |source| CliError::Read { path: path.to_owned(), source };
+    match same(new.path(), path).map_err(failed)? {
+        true => Ok(()),
+        false => Err(CliError::Exists { path: path.to_owned() }),
+    }
+}
+
+/// The temporary file of a target, with its content on the disk; errors name the path.
+fn filled(
+    path: &Path,
+    target: &Path,
+    content: impl FnOnce(&mut BufWriter<&mut File>) -> Result<(), Error>,
+) -> Result<NamedTempFile, CliError> {
     let failed = |source| CliError::Write { path: path.to_owned(), source };
-    // What is overwritten through a link is the file that the link leads to.
-    let target = if overwrite { path.canonicalize().unwrap_or_else(|_| path.to_owned()) } else { path.to_owned() };
-    let mut file = temporary(&target)?;
+    let mut file = temporary(target)?;
     {
         let mut buffer = BufWriter::new(file.as_file_mut());
         content(&mut buffer).and_then(|()| buffer.flush()).map_err(failed)?;
     }
     file.as_file().sync_all().map_err(failed)?;
-    let kept = if overwrite { file.persist(target) } else { file.persist_noclobber(target) };
-    kept.map(|_| ()).map_err(|error| failed(error.error))
+    Ok(file)
+}
+
+/// What is overwritten through a link is the file that the link leads to.
+pub(crate) fn target(path: &Path, overwrite: bool) -> PathBuf {
+    if overwrite { path.canonicalize().unwrap_or_else(|_| path.to_owned()) } else { path.to_owned() }
+}
+
+/// Gives a new file the rights of the one that it replaces, where that may be done.
+pub(crate) fn keep_mode(old: &Path, new: &File) {
+    if let Ok(old) = old.metadata() {
+        let _ = new.set_permissions(old.permissions());
+    }
+}
+
+/// Whether two files have the same bytes.
+fn same(one: &Path, other: &Path) -> Result<bool, Error> {
+    let [one, other] = [File::open(one)?, File::open(other)?];
+    if one.metadata()?.len() != other.metadata()?.len() {
+        return Ok(false);
+    }
+    let [mut one, mut other] = [one, other].map(|file| BufReader::with_capacity(1 << 16, file));
+    loop {
+        let (a, b) = (one.fill_buf()?, other.fill_buf()?);
+        let both = a.len().min(b.len());
+        if both == 0 || a[..both] != b[..both] {
+            return Ok(a.len() == b.len());
+        }
+        one.consume(both);
+        other.consume(both);
+    }
 }
 
 /// The file `NAME.noslip-new` beside `path`, that is removed unless it is renamed; with the usual rights of a new file. The name is
-/// always the same, so that a process that is killed leaves one file at most, which the next one takes.
+/// always the same, so that a process that is killed leaves one file at most, which the next one replaces.
 fn temporary(path: &Path) -> Result<NamedTempFile, CliError> {
-    let folder = parent(path);
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".noslip-new");
-    let new = folder.join(name);
+    let (folder, new) = (parent(path), new_of(path));
     let failed = |source| CliError::Folder { path: path.to_owned(), folder: folder.clone(), source };
-    let file = match locked(&new).map_err(failed)? {
-        Lock::Held(file) | Lock::Unlocked(file) => file,
+    let file = match replaced(&new).map_err(failed)? {
+        Lock::Held(file, _) | Lock::Unlocked(file, _) => file,
         Lock::Busy => return Err(CliError::Busy { path: new, out: path.to_owned() }),
     };
-    file.set_len(0).map_err(failed)?;
     Ok(NamedTempFile::from_parts(file, TempPath::try_from_path(new).map_err(failed)?))
 }
 
@@ -81,4 +177,28 @@ fn parent(path: &Path) -> PathBuf {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
         _ => PathBuf::from("."),
     }
+}
+
+/// The name that a file has while it is written.
+pub(crate) fn new_of(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".noslip-new");
+    parent(path).join(name)
+}
+
+/// Where a path leads, so that two paths of one file are the same; of a file that is not there, where it would be.
+pub(crate) fn place(path: &Path) -> PathBuf {
+    let beside = || Some(parent(path).canonicalize().ok()?.join(path.file_name()?));
+    path.canonicalize().ok().or_else(beside).unwrap_or_else(|| path.to_owned())
+}
+
+/// The text of a file of so many bytes at most: a device might never end.
+pub(crate) fn read_text(path: &Path, most: u64) -> Result<String, Error> {
+    let mut text = Vec::new();
+    File::open(path)?.take(most + 1).read_to_end(&mut text)?;
+    let refused = |problem: String| Error::new(ErrorKind::InvalidData, problem);
+    if text.len() as u64 > most {
+        return Err(refused(format!("larger than {most} bytes")));
+    }
+    String::from_utf8(text).map_err(|error| refused(error.to_string()))
 }

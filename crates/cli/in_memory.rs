@@ -96,6 +96,25 @@ pub fn run(scene: &AnyScene, request: &RunRequest, caller: &Caller) -> Result<Ru
     Ok(made?)
 }
 
+/// So many numbers of runs are kept in memory at most.
+pub(crate) const MOST_NUMBERS: u64 = 100_000_000;
+
+impl RunRequest {
+    /// Refuses, before the run, more numbers than fit: those of so many steps, with so many columns each.
+    pub(crate) fn fits(&self, steps: u64, columns: usize) -> Result<(), CliError> {
+        let kept = if self.times.is_empty() { steps / self.every.max(1) + 2 } else { self.times.len() as u64 };
+        let columns = (columns as u64).max(1);
+        if kept.saturating_mul(columns) <= MOST_NUMBERS {
+            return Ok(());
+        }
+        let least = steps.div_ceil((MOST_NUMBERS / columns).saturating_sub(2).max(1));
+        Err(CliError::Request(format!(
+            "the run keeps {kept} nodes of {columns} numbers in memory, and {MOST_NUMBERS} numbers are the most: every={least} keeps fewer \
+             nodes, t_eval= the motion at some times, and `noslip run --out FILE` writes them all"
+        )))
+    }
+}
+
 struct InMemory<'a> {
     scene: &'a AnyScene,
     request: &'a RunRequest,
@@ -122,7 +141,10 @@ impl Visitor for InMemory<'_> {
         let mut search = ShownToCaller::new(caller, "choosing a step", 0);
         let (run, steps) = ((scene, method), (*tolerance, *backward));
         let account = Account::new(system, run, (q, v), steps, (&reported, &ending), &mut search)?;
-        let mut shown = ShownToCaller::new(caller, method.info().name, account.request.schedule.steps);
+        let schedule = account.request.schedule;
+        let start = Node { k: 0, t: schedule.t0, q, v, energy: 0.0, work: 0.0, constraint: 0.0, multipliers: None };
+        self.request.fits(schedule.steps, system.columns(&start).len())?;
+        let mut shown = ShownToCaller::new(caller, method.info().name, schedule.steps);
         let (mut trajectory, sampled): (_, Vec<Node<N, M>>);
         let (made, nodes) = if times.is_empty() {
             trajectory = Trajectory::every(*every);

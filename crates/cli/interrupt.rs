@@ -1,8 +1,12 @@
 use crate::called::{self, Caller};
 use crate::error::INTERRUPTED;
 use crate::terminal;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
+use std::time::{Duration, Instant};
+
+/// Signals no further apart are one.
+const TOGETHER: Duration = Duration::from_secs(1);
 
 /// Whether the work is to end soon and to keep what is done: after Ctrl-C (SIGINT), SIGTERM or SIGHUP.
 #[derive(Debug, Clone)]
@@ -14,7 +18,8 @@ pub(crate) enum Interrupt {
 }
 
 impl Interrupt {
-    /// Looks out for signals from now on. Who sends two does not want to wait: the second ends the process.
+    /// Looks out for signals from now on. Who sends a second one after a while does not want to wait: it ends the process. Signals that come
+    /// together are one: a terminal, a shell and a wrapper may each send the same.
     pub(crate) fn listen() -> Self {
         Self::listen_saying("")
     }
@@ -26,10 +31,15 @@ impl Interrupt {
         }
         let asked = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&asked);
+        let first = OnceLock::new();
         handle(move || {
             if flag.swap(true, Ordering::Relaxed) {
-                std::process::exit(i32::from(INTERRUPTED));
+                if first.get().is_some_and(|first: &Instant| first.elapsed() >= TOGETHER) {
+                    std::process::exit(i32::from(INTERRUPTED));
+                }
+                return;
             }
+            first.get_or_init(Instant::now);
             if !note.is_empty() {
                 terminal::say("note", &note);
             }

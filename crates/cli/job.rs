@@ -11,7 +11,7 @@ use scene::AnyScene;
 use std::path::Path;
 
 /// `noslip --all`: the comparison of all methods on the bundled scenes, as tables and as a report.
-pub(crate) fn everything(folder: &Path, overwrite: bool) -> Result<(), CliError> {
+pub(crate) fn everything(folder: &Path) -> Result<(), CliError> {
     let mut scenes = Vec::new();
     let mut failures = Vec::new();
     let mut totals = Totals::default();
@@ -34,7 +34,7 @@ pub(crate) fn everything(folder: &Path, overwrite: bool) -> Result<(), CliError>
     terminal::print(&totals.table(scenes.len()))?;
     let title = "What accuracy costs, and what structure keeps".to_owned();
     let report = Report { title, intro: table::INTRO.to_owned(), scenes, ..Report::default() };
-    report::write(&report, folder, overwrite).map_err(CliError::Report)?;
+    report::write(&report, folder, true).map_err(CliError::Report)?;
     terminal::print(&format!("\nreport: {}\n", folder.join("index.html").display()))?;
     unless_interrupted(interrupted, None, CliError::of_failures(failures))
 }

@@ -14,6 +14,7 @@ mod comparison;
 mod completions;
 mod coordinate;
 mod cost;
+mod csv_text;
 mod diff;
 mod effect_keys;
 mod ensemble;
@@ -22,6 +23,7 @@ mod equilibria;
 mod error;
 mod exponents;
 mod facts;
+mod file_roles;
 mod files;
 mod first;
 mod format;
@@ -47,6 +49,7 @@ mod precision;
 mod precision_csv;
 mod precision_text;
 mod processor;
+mod program;
 mod progress;
 mod provenance;
 mod resume;
@@ -98,6 +101,10 @@ pub fn flags(command: &str) -> Vec<String> {
 
 /// Does what the arguments say, the first of which is the name of the program, and gives the exit code.
 fn obey(arguments: impl Iterator<Item = std::ffi::OsString>) -> u8 {
+    if std::env::var_os("RAYON_NUM_THREADS").is_some() {
+        // What a library would make of it may be thousands.
+        harness::analysis::prepare_threads();
+    }
     let (outcome, done) = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => (command(arguments), 0),
         // The help and the version are no errors to anybody but clap.

@@ -5,31 +5,73 @@ use std::path::Path;
 /// A file that no other process has, as long as it is open.
 #[derive(Debug)]
 pub(crate) enum Lock {
-    /// The file, with what was in it, or empty.
-    Held(File),
+    /// The file, with what was in it, or empty; and whether it is new.
+    Held(File, bool),
     /// The same on a file system that has no locks.
-    Unlocked(File),
+    Unlocked(File, bool),
     /// Another process has it.
     Busy,
 }
 
-/// Opens a file for reading and writing, or makes it, and locks it.
+/// Opens a file for reading and writing, or makes it, and locks it. A link is not followed: in a folder of many people it may lead anywhere.
 ///
 /// # Errors
-/// Those of the operating system.
+/// Those of the operating system, and one where the path leads to a link or to what is no regular file.
 pub(crate) fn locked(path: &Path) -> Result<Lock, Error> {
     loop {
-        let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
+        let (file, new) = match OpenOptions::new().read(true).write(true).create_new(true).open(path) {
+            Ok(file) => (file, true),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => match existing(path) {
+                Ok(file) => (file, false),
+                Err(error) if error.kind() == ErrorKind::NotFound => continue,
+                Err(error) => return Err(error),
+            },
+            Err(error) => return Err(error),
+        };
         match file.try_lock() {
             // A process that was done may have removed the file between the two calls: the lock is then that of a file without a name.
             Ok(()) if !is_at(&file, path) => {}
-            Ok(()) => return Ok(Lock::Held(file)),
+            Ok(()) => return Ok(Lock::Held(file, new)),
             Err(TryLockError::WouldBlock) => return Ok(Lock::Busy),
             Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {
-                return Ok(Lock::Unlocked(file));
+                return Ok(Lock::Unlocked(file, new));
             }
             Err(TryLockError::Error(error)) => return Err(error),
         }
+    }
+}
+
+/// A new file, locked, in place of what was there, unless another process has that. What was there is removed and not emptied: a link may
+/// have led to it.
+///
+/// # Errors
+/// Those of the operating system.
+pub(crate) fn replaced(path: &Path) -> Result<Lock, Error> {
+    loop {
+        match locked(path) {
+            Ok(Lock::Held(_, false) | Lock::Unlocked(_, false)) => std::fs::remove_file(path)?,
+            Err(_) if path.is_symlink() => std::fs::remove_file(path)?,
+            other => return other,
+        }
+    }
+}
+
+fn existing(path: &Path) -> Result<File, Error> {
+    let mut options = OpenOptions::new();
+    #[cfg(unix)]
+    {
+        use rustix::fs::OFlags;
+        use std::os::unix::fs::OpenOptionsExt;
+        options.custom_flags((OFlags::NOFOLLOW | OFlags::NONBLOCK).bits().cast_signed());
+    }
+    let refused = |problem| Error::new(ErrorKind::InvalidInput, problem);
+    match options.read(true).write(true).open(path) {
+        Ok(file) if file.metadata()?.is_file() => Ok(file),
+        Ok(_) => Err(refused("the path is not a regular file")),
+        Err(_) if path.is_symlink() => {
+            Err(refused("the path is a symbolic link, which is not followed; remove the link"))
+        }
+        Err(error) => Err(error),
     }
 }
 
@@ -37,8 +79,8 @@ pub(crate) fn locked(path: &Path) -> Result<Lock, Error> {
 #[cfg(unix)]
 fn is_at(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
-    let [open, found] = [file.metadata(), path.metadata()].map(|metadata| metadata.map(|m| (m.dev(), m.ino())).ok());
-    open.is_some() && open == found
+    let found = [file.metadata(), path.symlink_metadata()].map(|found| found.map(|m| (m.dev(), m.ino())).ok());
+    found[0].is_some() && found[0] == found[1]
 }
 
 /// An open file cannot be removed here.

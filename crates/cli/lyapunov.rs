@@ -26,7 +26,7 @@ pub(crate) fn lyapunov(arguments: &LyapunovArguments) -> Result<(), CliError> {
     let method = inspect::method(scene.run())?;
     has_tangents(&method).map_err(|reason| CliError::Request(format!("--method {}: {reason}", arguments.method)))?;
     check_settle(arguments, &scene)?;
-    let file = arguments.out.as_deref().map(|path| ChartFile::of(path, shared.force)).transpose()?;
+    let file = arguments.out.as_deref().map(|path| ChartFile::of(path, &shared.scene, shared.force)).transpose()?;
     notes::moves(&scene);
     let outcome = match &arguments.map[..] {
         [] => scene.visit_free(Exponents { arguments, scene: &scene, method, file })?,

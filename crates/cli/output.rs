@@ -1,3 +1,4 @@
+use crate::csv_text;
 use crate::error::CliError;
 use crate::files::{check_file, write_whole};
 use crate::format::Format;
@@ -64,14 +65,29 @@ pub(crate) struct Output<'a> {
 }
 
 impl<'a> Output<'a> {
-    /// Begins, or goes on from where a checkpoint says.
+    /// Begins, or goes on from where a checkpoint says, which tells a run that has begun, or the start of one.
     pub(crate) fn open(
         asked: OutputRequest<'a>,
         provenance: Provenance,
-        (columns, every): (Vec<Column>, u64),
-        from: Option<Position>,
+        columns: (Vec<Column>, u64),
+        from: Option<(Position, bool)>,
     ) -> Result<Self, CliError> {
         let part = asked.path.map(PartFile::lock).transpose()?;
+        let new = part.as_ref().filter(|part| part.is_new()).map(|part| part.path().to_owned());
+        let opened = Self::open_with(part, asked, provenance, columns, from);
+        if let (Err(_), Some(new)) = (&opened, new) {
+            let _ = std::fs::remove_file(new);
+        }
+        opened
+    }
+
+    fn open_with(
+        part: Option<PartFile>,
+        asked: OutputRequest<'a>,
+        provenance: Provenance,
+        (columns, every): (Vec<Column>, u64),
+        from: Option<(Position, bool)>,
+    ) -> Result<Self, CliError> {
         let writer: Box<dyn Write> = match &part {
             Some(part) => Box::new(part.file().try_clone().map_err(|source| part.failed(source))?),
             None => Box::new(terminal::Out),
@@ -92,40 +108,59 @@ impl<'a> Output<'a> {
             failed: None,
             own: false,
         };
-        if let (Some(position), Some(path)) = (from, asked.path)
-            && output.goes_on(path, position)?
+        if let (Some((position, begun)), Some(path)) = (from, asked.path)
+            && output.goes_on(path, position, begun)?
         {
             return Ok(output);
         }
-        if let (None, Some(path)) = (from, asked.path) {
-            check_file(path, asked.force)?;
-        }
-        if let Some(part) = &output.part {
+        if let (Some(part), Some(path)) = (&output.part, asked.path) {
+            if !(asked.force || output.own) {
+                check_file(path, false)?;
+                if part.len()? > 0 {
+                    return Err(CliError::Request(format!(
+                        "{} has rows of a run that was ended; --resume CHECKPOINT continues that run, --force begins anew",
+                        part.path().display()
+                    )));
+                }
+            }
             let mut file = part.file();
             file.set_len(0).and_then(|()| file.seek(SeekFrom::Start(0))).map_err(|source| part.failed(source))?;
         }
         if asked.format == Format::Csv {
-            let labels: Vec<String> = output.columns.iter().map(label).collect();
-            output.line = format!("{}\n", labels.join(",")).into_bytes();
+            output.line = format!("{}\n", csv_text::header(output.columns.iter().map(label))).into_bytes();
             output.write();
         }
         Ok(output)
     }
 
-    /// Takes over the rows up to a position, from `OUT.part` or from the output of a run that was ended; false where there is neither.
-    fn goes_on(&mut self, path: &Path, [bytes, checksum, every]: Position) -> Result<bool, CliError> {
+    /// Takes over the rows up to a position, from `OUT.part` or from the output of a run that was ended; false where there is neither. Of a
+    /// run that has not begun, they only show whose the output is.
+    fn goes_on(&mut self, path: &Path, [bytes, checksum, every]: Position, begun: bool) -> Result<bool, CliError> {
         let Some(part) = &self.part else { return Ok(false) };
         let unreadable = |source| CliError::Read { path: part.path().to_owned(), source };
         let mut file = part.file();
-        let there = file.metadata().map_err(unreadable)?.len();
+        let there = part.len()?;
+        let same = |sum: &Option<Hasher>| sum.clone().is_some_and(|sum| u64::from(sum.finalize()) == checksum);
         let mut found = summed(file, bytes, &mut std::io::sink()).map_err(unreadable)?;
         let old = File::open(path).ok();
-        let same = |sum: &Option<Hasher>| sum.clone().is_some_and(|sum| u64::from(sum.finalize()) == checksum);
-        if let (false, Some(old)) = (same(&found), &old) {
-            let from_old = self.is_from(path, old, bytes, same)?;
-            if from_old {
-                found = summed(file, bytes, &mut std::io::sink()).map_err(unreadable)?;
+        let in_old = match &old {
+            Some(old) if !same(&found) => self.has_rows(path, old, bytes, same)?,
+            _ => false,
+        };
+        if !begun {
+            self.own = bytes > 0 && (in_old || same(&found));
+            return Ok(false);
+        }
+        if in_old {
+            if there > 0 && !self.asked.force {
+                return Err(CliError::Request(format!(
+                    "{} has other rows than {}, which has those from before the checkpoint; --force continues the latter",
+                    part.path().display(),
+                    path.display()
+                )));
             }
+            self.take_rows(path, bytes)?;
+            found = summed(file, bytes, &mut std::io::sink()).map_err(unreadable)?;
         }
         match found.filter(|sum| same(&Some(sum.clone()))) {
             Some(_) if every != self.every => {
@@ -141,12 +176,11 @@ impl<'a> Output<'a> {
                 (self.bytes, self.checksum, self.own) = (bytes, sum, true);
                 Ok(true)
             }
-            None if there == 0 && old.is_none() => {
+            None if self.asked.force || part.is_new() && old.is_none() => {
                 let told = "no rows from before the checkpoint are left; the file begins after the checkpoint";
                 terminal::say("warning", &format!("{}: {told}", path.display()));
                 Ok(false)
             }
-            None if self.asked.force => Ok(false),
             None => Err(CliError::Request(format!(
                 "{}: neither this file nor {} begins with the rows from before the checkpoint; --force begins a new \
                     file after the checkpoint",
@@ -156,40 +190,47 @@ impl<'a> Output<'a> {
         }
     }
 
-    /// Whether the finished output of before begins with these rows; they are then in `OUT.part`.
-    fn is_from(
+    /// Whether the finished output of before begins with these rows.
+    fn has_rows(
         &self,
         path: &Path,
         old: &File,
         bytes: u64,
         same: impl Fn(&Option<Hasher>) -> bool,
     ) -> Result<bool, CliError> {
-        let Some(part) = &self.part else { return Ok(false) };
         let unreadable = |source| CliError::Read { path: path.to_owned(), source };
-        let mut file = part.file();
-        let begin = |mut file: &File| file.set_len(0).and_then(|()| file.seek(SeekFrom::Start(0)).map(drop));
         if self.asked.format.is_text() {
-            if !same(&summed(old, bytes, &mut std::io::sink()).map_err(unreadable)?) {
-                return Ok(false);
-            }
-            begin(file).map_err(|source| part.failed(source))?;
-            summed(old, bytes, &mut file).map_err(unreadable)?;
-            return Ok(true);
+            return Ok(same(&summed(old, bytes, &mut std::io::sink()).map_err(unreadable)?));
         }
-        let Some(rows) = bytes.checked_div(8 * self.columns.len() as u64) else { return Ok(false) };
-        // Looked at before the rows that may be in `OUT.part` are given up.
+        let Some(rows) = self.rows_in(bytes) else { return Ok(false) };
         let mut sum = SummedColumn(Hasher::new());
         match rows_back::copy(path, self.asked.format, &self.columns, rows, &mut sum) {
-            Ok(()) if same(&Some(sum.0)) => {}
-            Ok(()) => return Ok(false),
-            Err(error) if error.kind() == ErrorKind::InvalidData => return Ok(false),
-            Err(error) => return Err(unreadable(error)),
+            Ok(()) => Ok(same(&Some(sum.0))),
+            Err(error) if error.kind() == ErrorKind::InvalidData => Ok(false),
+            Err(error) => Err(unreadable(error)),
         }
-        begin(file).map_err(|source| part.failed(source))?;
-        let mut writer = BufWriter::with_capacity(1 << 16, file);
-        let copied = rows_back::copy(path, self.asked.format, &self.columns, rows, &mut writer);
-        copied.and_then(|()| writer.flush()).map_err(|source| part.failed(source))?;
-        Ok(true)
+    }
+
+    /// Copies these rows of the finished output to `OUT.part`.
+    fn take_rows(&self, path: &Path, bytes: u64) -> Result<(), CliError> {
+        let Some(part) = &self.part else { return Ok(()) };
+        let mut file = part.file();
+        let mut copied = || {
+            file.set_len(0)?;
+            file.seek(SeekFrom::Start(0))?;
+            if self.asked.format.is_text() {
+                return summed(&File::open(path)?, bytes, &mut file).map(drop);
+            }
+            let mut writer = BufWriter::with_capacity(1 << 16, file);
+            rows_back::copy(path, self.asked.format, &self.columns, self.rows_in(bytes).unwrap_or(0), &mut writer)?;
+            writer.flush()
+        };
+        copied().map_err(|source| part.failed(source))
+    }
+
+    /// How many rows so many bytes of numbers are.
+    fn rows_in(&self, bytes: u64) -> Option<u64> {
+        bytes.checked_div(8 * self.columns.len() as u64)
     }
 
     /// Adds the row of node `k`. An error is kept until the end: the run goes on.
@@ -276,20 +317,20 @@ impl<'a> Output<'a> {
         let overwrite = self.asked.force || self.own;
         let provenance = self.provenance.interrupted(interrupted.then_some("a signal ended the run"));
         if self.asked.format.is_text() {
-            let whole = part.file().sync_all();
-            whole.map_err(|source| part.failed(source))?;
-            part.becomes(path, overwrite)?;
-            return provenance.write_beside(path, &self.columns);
+            part.file().sync_all().map_err(|source| part.failed(source))?;
+            // What says whose rows they are comes first: then no rows are without it.
+            check_file(path, overwrite)?;
+            provenance.write_beside(path, &self.columns)?;
+            return part.becomes(path, overwrite).inspect_err(|_| {
+                let _ = std::fs::remove_file(metadata_of(path));
+            });
         }
         let document = provenance.document(&path.file_name().unwrap_or_default().to_string_lossy(), &self.columns);
         let width = 8 * self.columns.len();
-        let rows = if width == 0 { 0 } else { self.bytes / width as u64 };
+        let rows = self.bytes.checked_div(width as u64).unwrap_or(0);
         write_whole(path, overwrite, |file| match self.asked.format {
-            Format::Npz => arrays::write(file, &in_arrays(&self.columns), rows, &document, |column, push| {
-                for row in numbers(part.file(), width)? {
-                    push(row?[column])?;
-                }
-                Ok(())
+            Format::Npz => arrays::write(file, &in_arrays(&self.columns), rows, &document, |push| {
+                numbers(part.file(), width)?.try_for_each(|row| push(&row?))
             }),
             #[cfg(feature = "parquet")]
             Format::Parquet => crate::parquet_file::write(file, &self.columns, &document, numbers(part.file(), width)?),

@@ -14,8 +14,9 @@ use std::io::{Error, ErrorKind, Write};
 use std::path::Path;
 use std::sync::Arc;
 
-/// The rows of a group.
+/// The rows of a group, fewer where these would be more than so many numbers.
 const GROUP: usize = 1 << 16;
+const HELD: usize = 1 << 22;
 
 /// Writes a table of numbers with these columns, whose rows need not be in memory all at once; `metadata` is the value of the key `noslip`.
 pub(crate) fn write(
@@ -46,7 +47,8 @@ fn write_table(
         WriterProperties::builder().set_dictionary_enabled(false).set_key_value_metadata(Some(pairs)).build();
     let mut file = SerializedFileWriter::new(file, Arc::new(schema), Arc::new(properties))?;
     loop {
-        let some = rows.by_ref().take(GROUP).collect::<Result<Vec<_>, Error>>()?;
+        let some =
+            rows.by_ref().take(GROUP.min(HELD / columns.len().max(1)).max(1)).collect::<Result<Vec<_>, Error>>()?;
         if some.is_empty() {
             break;
         }

@@ -1,4 +1,5 @@
 use crate::error::CliError;
+use crate::files::{keep_mode, target};
 use crate::lock::{Lock, locked};
 use crate::terminal;
 use std::fs::File;
@@ -12,6 +13,7 @@ use tempfile::TempPath;
 pub(crate) struct PartFile {
     path: PathBuf,
     file: File,
+    new: bool,
 }
 
 impl PartFile {
@@ -29,14 +31,24 @@ impl PartFile {
     pub(crate) fn lock(out: &Path) -> Result<Self, CliError> {
         let path = Self::path_of(out);
         match locked(&path).map_err(|source| CliError::Write { path: path.clone(), source })? {
-            Lock::Held(file) => Ok(Self { path, file }),
+            Lock::Held(file, new) => Ok(Self { path, file, new }),
             Lock::Busy => Err(CliError::Busy { path, out: out.to_owned() }),
-            Lock::Unlocked(file) => {
+            Lock::Unlocked(file, new) => {
                 let told = "the file system has no locks; no other process may write";
                 terminal::say("warning", &format!("{}: {told} {}", path.display(), out.display()));
-                Ok(Self { path, file })
+                Ok(Self { path, file, new })
             }
         }
+    }
+
+    /// Whether it was not there before.
+    pub(crate) fn is_new(&self) -> bool {
+        self.new
+    }
+
+    /// How many bytes it has.
+    pub(crate) fn len(&self) -> Result<u64, CliError> {
+        Ok(self.file.metadata().map_err(|source| self.failed(source))?.len())
     }
 
     /// Where the file is.
@@ -57,8 +69,10 @@ impl PartFile {
     /// Gives the file the name of the output.
     pub(crate) fn becomes(self, out: &Path, overwrite: bool) -> Result<(), CliError> {
         let failed = |source| CliError::Write { path: out.to_owned(), source };
-        // What is overwritten through a link is the file that the link leads to.
-        let target = if overwrite { out.canonicalize().unwrap_or_else(|_| out.to_owned()) } else { out.to_owned() };
+        let target = target(out, overwrite);
+        if overwrite {
+            keep_mode(&target, &self.file);
+        }
         let path = TempPath::try_from_path(&self.path).map_err(failed)?;
         let renamed = if overwrite { path.persist(target) } else { path.persist_noclobber(target) };
         renamed.map_err(|error| {

@@ -1,5 +1,6 @@
 use crate::args::PhaseArguments;
 use crate::error::CliError;
+use crate::file_roles::FileRoles;
 use crate::files::{check_file, write_whole};
 use crate::{inspect, progress, table, terminal};
 use dla::{RunError, Schedule, State};
@@ -38,6 +39,7 @@ pub(crate) fn phase(arguments: &PhaseArguments) -> Result<(), CliError> {
     });
     let Some(path) = path else { return Err(CliError::WithoutTracer { scene: scene.name.clone() }) };
     if let Some(file) = &arguments.picture {
+        FileRoles::of(&arguments.scene.scene).writes("--picture", Some(file)).check()?;
         check_file(file, arguments.scene.force)?;
     }
     let loops = arguments.loops.unwrap_or((scene.run.duration / path.period).floor().max(1.0) as u64);

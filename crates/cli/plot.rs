@@ -5,9 +5,10 @@ use crate::called::Caller;
 use crate::columns_file::{self, Columns, NamedColumn};
 use crate::compare::methods;
 use crate::error::CliError;
+use crate::file_roles::FileRoles;
 use crate::in_memory::{self, RunRequest};
 use crate::{files, inspect, table, terminal};
-use harness::report::{Figure, FigureFormat, Panel, Paper, figure};
+use harness::report::{Figure, FigureFormat, MOST_PIXELS, Panel, Paper, figure};
 use scene::AnyScene;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -22,8 +23,9 @@ const PATH: &str = "path";
 /// Draws the run of a scene or of a file.
 pub(crate) fn plot(arguments: &PlotArguments) -> Result<(), CliError> {
     let PlotArguments { input, columns, size: Size(size), dpi, force, .. } = arguments;
-    let ending = Path::new(input).extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    let file = matches!(ending.as_deref(), Some("csv" | "npz")).then(|| Path::new(input));
+    let path = scene::path_of(input);
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    let file = matches!(ending.as_deref(), Some("csv" | "npz")).then_some(path.as_path());
     let scene = match file {
         Some(_) => None,
         None => Some(load(arguments)?),
@@ -31,6 +33,9 @@ pub(crate) fn plot(arguments: &PlotArguments) -> Result<(), CliError> {
     let name = scene.as_ref().map_or_else(|| stem(input), |scene| scene.name().to_owned());
     let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.svg")));
     let format = format_of(&out)?;
+    let paper = Paper { size: *size, dpi: f64::from(*dpi) };
+    check_pixels(&paper, format)?;
+    FileRoles::of(input).writes("--out", Some(&out)).check()?;
     files::check_file(&out, *force)?;
     let mut failures = Vec::new();
     let runs = match (&scene, file) {
@@ -43,11 +48,22 @@ pub(crate) fn plot(arguments: &PlotArguments) -> Result<(), CliError> {
         None => input.clone(),
     };
     let drawn = drawing(title, &runs, columns.as_deref())?;
-    let paper = Paper { size: *size, dpi: f64::from(*dpi) };
     let bytes = figure(&drawn, &paper, format).map_err(CliError::Report)?;
     files::write_whole(&out, *force, |file| file.write_all(&bytes))?;
     terminal::print(&format!("picture: {}\n", out.display()))?;
     CliError::of_failures(failures)
+}
+
+/// Refuses, before the run, a picture whose pixels would fill the memory.
+fn check_pixels(paper: &Paper, format: FigureFormat) -> Result<(), CliError> {
+    let [width, height] = paper.pixels();
+    if format != FigureFormat::Png || width * height <= MOST_PIXELS {
+        return Ok(());
+    }
+    let problem = "choose a smaller --size, a lower --dpi, or a picture .svg or .pdf, which has no pixels";
+    Err(CliError::Request(format!(
+        "--size and --dpi make {width:.0} x {height:.0} pixels, and a .png has at most {MOST_PIXELS:.1e}: {problem}"
+    )))
 }
 
 fn load(arguments: &PlotArguments) -> Result<AnyScene, CliError> {

@@ -1,12 +1,16 @@
 use crate::error::CliError;
+use crate::files::read_text;
 use harness::precision::{Curve, Mark, PrecisionPoint, RungSetting};
 use serde_json::Value;
 use std::path::Path;
 
+/// The largest file of points that is read (bytes).
+const LARGEST: u64 = 1 << 26;
+
 /// The points of another program, in the shape that `precision --json` prints, as curves: one for each method.
 pub(crate) fn read(path: &Path, scene: &str) -> Result<(Vec<Curve>, Vec<String>), CliError> {
     let refused = |problem: String| CliError::Points { path: path.to_owned(), problem };
-    let text = std::fs::read_to_string(path).map_err(|error| refused(error.to_string()))?;
+    let text = read_text(path, LARGEST).map_err(|error| refused(error.to_string()))?;
     let file: Value = serde_json::from_str(&text).map_err(|error| refused(error.to_string()))?;
     let points =
         file.get("points").and_then(Value::as_array).ok_or_else(|| refused("the file has no points".into()))?;

@@ -2,6 +2,8 @@ use crate::args::PrecisionArguments;
 use crate::command_line::CommandLine;
 use crate::compare::{exact, methods, place_at, unless_interrupted};
 use crate::error::CliError;
+use crate::file_roles::FileRoles;
+use crate::files::ClaimedFolder;
 use crate::inspect::method_names;
 use crate::interrupt::Interrupt;
 use crate::measurement::{KnownEnd, Measurement};
@@ -15,6 +17,7 @@ use harness::precision::{
 use harness::report::write_precision;
 use scene::{AnyScene, Built, Visitor};
 use serde_json::json;
+use std::path::PathBuf;
 
 /// The longest duration (s) that is chosen without being asked for.
 const DURATION: f64 = 20.0;
@@ -41,9 +44,10 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
         warnings.iter().for_each(|warning| terminal::say("warning", warning));
         others.extend(curves);
     }
-    if let Some(folder) = &arguments.report {
-        files::check_folder(folder, arguments.force)?;
-    }
+    let roles = arguments.with.iter().fold(FileRoles::of(&arguments.scene), |roles, path| roles.reads(path));
+    roles.rows("--csv", arguments.csv.as_deref()).writes("--report", arguments.report.as_deref()).check()?;
+    let claimed = |folder: &PathBuf| ClaimedFolder::new(folder, arguments.force);
+    let folder = arguments.report.as_ref().map(claimed).transpose()?;
     if let Some(path) = &arguments.csv {
         files::check_file(path, arguments.force)?;
         files::check_file(&metadata_of(path), arguments.force)?;
@@ -65,9 +69,9 @@ pub(crate) fn precision(arguments: &PrecisionArguments) -> Result<(), CliError> 
         files::write_whole(path, arguments.force, |file| std::io::Write::write_all(file, text.as_bytes()))?;
         provenance.write_beside(path, precision_csv::described())?;
     }
-    if let Some(folder) = &arguments.report {
+    if let Some(folder) = &folder {
         let report = precision_text::report(&scene, &measured, &provenance);
-        write_precision(&report, folder, arguments.force).map_err(CliError::Report)?;
+        write_precision(&report, folder.path(), true).map_err(CliError::Report)?;
     }
     if arguments.json {
         terminal::print_json(&precision_text::json(&scene, &measured))?;

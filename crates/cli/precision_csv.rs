@@ -1,5 +1,6 @@
 //! What `noslip precision` measured, as CSV.
 
+use crate::csv_text::quoted;
 use crate::provenance::DescribedColumn;
 use harness::precision::{Curve, PrecisionPoint, RungSetting, number};
 use std::fmt::Write;
@@ -45,11 +46,6 @@ pub(crate) fn text(curves: &[Curve]) -> String {
         );
     }
     text
-}
-
-/// A field of text (RFC 4180).
-pub(crate) fn quoted(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }
 
 /// Step and tolerance, one of which a point has.

@@ -1,6 +1,7 @@
 use crate::command_line::CommandLine;
 use crate::error::CliError;
 use crate::files::write_whole;
+use crate::program;
 use scene::Column;
 use serde_json::{Value, json};
 use std::io::Write;
@@ -17,7 +18,8 @@ pub(crate) struct Provenance {
 impl Provenance {
     /// Of rows that a command computes; `notes` are an object with whatever else is to be told.
     pub(crate) fn new(title: &str, command: Option<&CommandLine>, mut notes: Value) -> Self {
-        notes["program"] = json!(format!("noslip {}", env!("CARGO_PKG_VERSION")));
+        notes["program"] = json!(format!("noslip {}", program::version()));
+        notes["instructions"] = json!(program::instructions());
         if let Some(command) = command {
             notes["command"] = json!(command.to_string());
         }
@@ -88,8 +90,8 @@ pub(crate) struct DescribedColumn {
 impl DescribedColumn {
     /// By its heading, `NAME [UNIT]` or `NAME`; a name in the document has no spaces.
     pub(crate) fn headed(heading: &str, datatype: &'static str) -> Self {
-        let (name, unit) = heading.split_once(" [").unwrap_or((heading, ""));
-        let unit = unit.trim_end_matches(']').to_owned();
+        let (name, unit) = named(heading);
+        let unit = unit.unwrap_or_default().to_owned();
         Self { title: heading.to_owned(), name: name.replace(' ', "_"), unit, datatype }
     }
 
@@ -112,4 +114,18 @@ impl From<&Column> for DescribedColumn {
 /// A column as a header shows it.
 pub(crate) fn label(Column { name, unit, .. }: &Column) -> String {
     if unit.is_empty() { name.clone() } else { format!("{name} [{unit}]") }
+}
+
+/// The name and the unit in such a heading; a unit may have brackets of its own.
+pub(crate) fn named(heading: &str) -> (&str, Option<&str>) {
+    let mut depth = 0;
+    let begin = heading.char_indices().rev().find(|(_, letter)| {
+        depth += i32::from(*letter == ']') - i32::from(*letter == '[');
+        depth <= 0
+    });
+    let split = begin.and_then(|(at, _)| Some((heading[..at].strip_suffix(' ')?, heading[at..].strip_suffix(']')?)));
+    match split {
+        Some((name, unit)) => (name, Some(&unit[1..])),
+        None => (heading, None),
+    }
 }

@@ -1,11 +1,14 @@
 use crate::error::CliError;
-use crate::files::{check_file, write_whole};
-use crate::terminal;
+use crate::files::{check_file, place, read_text, write_whole};
+use crate::{program, terminal};
 use dla::{Checkpoint, CheckpointError, Schedule};
 use harness::Method;
 use scene::RunSettings;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::Path;
+
+/// The largest checkpoint that is read (bytes): ten times that of a train of a hundred thousand trailers.
+const LARGEST: u64 = 1 << 28;
 
 /// What tells the run of a scene, of that name and with these contents, with a method from all others. The contents have no duration: a
 /// longer run begins with the shorter one.
@@ -37,7 +40,8 @@ fn pairs(
         ("scene", name.to_owned()),
         ("method", method.info().name.to_owned()),
         ("step", schedule.step.to_string()),
-        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("version", program::version()),
+        ("instructions", program::instructions()),
         // All the rest: every number of the scene, with every digit.
         ("contents", Checkpoint::fingerprint(&format!("{contents:?}"))),
     ];
@@ -47,14 +51,16 @@ fn pairs(
 
 /// Refuses, before the work begins, a checkpoint that could not be written; one that is resumed may be overwritten.
 pub(crate) fn check(path: &Path, resumed: Option<&Path>, force: bool) -> Result<(), CliError> {
-    check_file(path, force || resumed == Some(path))
+    check_file(path, force || resumed.is_some_and(|resumed| place(resumed) == place(path)))
 }
 
 /// Reads a checkpoint that must belong to a run.
 pub(crate) fn read(path: &Path, identity: &Checkpoint) -> Result<Checkpoint, CliError> {
     let failed = |source: CheckpointError| CliError::Checkpoint { path: path.to_owned(), source };
-    let text = std::fs::read(path).map_err(|source| CliError::Read { path: path.to_owned(), source })?;
-    let text = String::from_utf8(text).map_err(|_| failed(CheckpointError::NotOne))?;
+    let text = match read_text(path, LARGEST) {
+        Err(error) if error.kind() == ErrorKind::InvalidData => return Err(failed(CheckpointError::NotOne)),
+        text => text.map_err(|source| CliError::Read { path: path.to_owned(), source })?,
+    };
     let checkpoint = Checkpoint::from_text(&text).map_err(failed)?;
     checkpoint.belongs_to(identity).map_err(failed)?;
     Ok(checkpoint)

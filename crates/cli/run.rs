@@ -2,6 +2,8 @@ use crate::account::{Account, Made};
 use crate::args::{RunArguments, SceneArguments};
 use crate::compare::unless_interrupted;
 use crate::error::CliError;
+use crate::file_roles::FileRoles;
+use crate::files::place;
 use crate::interrupt::Interrupt;
 use crate::output::{Output, OutputRequest};
 use crate::progress::Interruptible;
@@ -12,6 +14,7 @@ use dla::{Checkpoint, Node, Nodes, Schedule, Substeps};
 use harness::{Method, MethodKind, Progress, Saving, run_saved_watched};
 use scene::{AnyScene, Built, Visitor};
 use std::cell::RefCell;
+use std::path::Path;
 
 /// `noslip run`: one trajectory, as far as Ctrl-C lets it come.
 pub(crate) fn run(arguments: &RunArguments) -> Result<(), CliError> {
@@ -51,7 +54,12 @@ fn is_backward(arguments: &RunArguments) -> bool {
 
 /// Where the rows are to be written, if anywhere.
 fn asked(arguments: &RunArguments) -> Result<Option<OutputRequest<'_>>, CliError> {
-    let RunArguments { out, format, resume, scene, .. } = arguments;
+    let RunArguments { out, format, resume, scene, report, .. } = arguments;
+    let (saved, roles) = (arguments.saves().map(|(path, _)| path), FileRoles::of(&scene.scene));
+    let roles = roles.rows("--out", out.as_deref()).writes("--checkpoint", saved).writes("--report", report.as_deref());
+    // A checkpoint that is resumed may be overwritten by a later one.
+    let read = resume.as_deref().filter(|path| saved.is_none_or(|saved| place(saved) != place(path)));
+    read.into_iter().fold(roles, FileRoles::reads).check()?;
     let Some(path) = out.as_deref() else { return Ok(None) };
     let asked = OutputRequest::new(path, *format, scene.force, resume.is_some())?;
     if asked.path.is_none() && scene.json {
@@ -92,11 +100,11 @@ impl<'a> Run<'a> {
         output: &RefCell<Option<Output<'a>>>,
         progress: &mut dyn Progress,
     ) -> Result<(Made<N>, Result<(), CliError>), CliError> {
-        let RunArguments { checkpoint, checkpoint_every, resume: from, event_samples, .. } = self.arguments;
+        let RunArguments { resume: from, event_samples, .. } = self.arguments;
         let Account { system, method, request, .. } = account;
-        let mut saver = resume::Saver::new(checkpoint.as_deref());
+        let (to, every) = self.arguments.saves().unzip();
+        let mut saver = resume::Saver::new(to);
         let mut save = |made: &Checkpoint| saver.save(&with_position(made, output));
-        let every = checkpoint.as_ref().map(|_| *checkpoint_every);
         let mut saving = Saving { identity, from: read, every, save: &mut save };
         let mut sink = |node: &Node<N, M>| write(system, node, output);
         let nodes = self.out.map(|_| Nodes::every(self.arguments.every, &mut sink));
@@ -119,8 +127,6 @@ impl<'a> Run<'a> {
         let scene = (self.scene.title(), self.scene.run(), self.scene.to_toml().ok());
         let provenance = provenance(self.arguments, scene, &account.request.schedule);
         let columns = (account.system.columns(&start), self.arguments.every);
-        // A run that had made no step begins.
-        let read = read.filter(|read| read.counts("k").is_ok_and(|[made]| made > 0));
         Output::open(asked, provenance, columns, position(read)).map(Some)
     }
 }
@@ -140,7 +146,8 @@ impl Visitor for Run<'_> {
     type Output = Result<(), CliError>;
 
     fn visit<const N: usize, const M: usize>(self, system: Built<'_, N, M>, q: [f64; N], v: [f64; N]) -> Self::Output {
-        let RunArguments { checkpoint, resume, tolerance, event, until, event_samples, .. } = self.arguments;
+        let RunArguments { resume, tolerance, event, until, event_samples, .. } = self.arguments;
+        let checkpoint = self.arguments.saves().map(|(path, _)| path);
         let run = (self.scene, self.method);
         let steps = (*tolerance, is_backward(self.arguments));
         let account = Account::new(system, run, (q, v), steps, (event, until), &mut ())?;
@@ -199,6 +206,6 @@ impl Visitor for Run<'_> {
             terminal::say("error", error);
         }
         let made = record.interrupted.then(|| format!("the run reached t = {} s", table::number(record.t)));
-        unless_interrupted(made, checkpoint.clone(), computed.and(written).and(warning))
+        unless_interrupted(made, checkpoint.map(Path::to_owned), computed.and(written).and(warning))
     }
 }

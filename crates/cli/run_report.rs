@@ -3,7 +3,8 @@
 use crate::args::RunArguments;
 use crate::columns_file::{Columns, NamedColumn};
 use crate::error::CliError;
-use crate::{facts, files, inspect, plot, table, terminal, train};
+use crate::files::ClaimedFolder;
+use crate::{facts, inspect, plot, table, terminal, train};
 use harness::report::{self, HEADINGS, Report, SceneReport, Series};
 use scene::AnyScene;
 
@@ -18,7 +19,7 @@ pub(crate) fn run_and_show(arguments: &RunArguments) -> Result<(), CliError> {
                 .to_owned(),
         ));
     }
-    files::check_folder(folder, shared.force)?;
+    let folder = ClaimedFolder::new(folder, shared.force)?;
     let scene = inspect::load_any(shared, arguments.method.as_deref())?;
     let outcome = crate::run::run(arguments);
     // What failed on the way is shown as far as it came.
@@ -55,9 +56,9 @@ pub(crate) fn run_and_show(arguments: &RunArguments) -> Result<(), CliError> {
     };
     let title = format!("noslip run {} with {method}", scene.name());
     let report = Report { title, scenes: vec![shown], ..Report::default() };
-    report::write(&report, folder, shared.force).map_err(CliError::Report)?;
+    report::write(&report, folder.path(), true).map_err(CliError::Report)?;
     if !shared.json {
-        terminal::print(&format!("report: {}\n", folder.join("index.html").display()))?;
+        terminal::print(&format!("report: {}\n", folder.path().join("index.html").display()))?;
     }
     outcome
 }

@@ -50,9 +50,11 @@ pub(crate) fn identity(scene: &Scene, method: &Method, schedule: &Schedule) -> C
     resume::identity((&scene.name, &contents), method, schedule)
 }
 
-/// How far the output of a checkpoint had come.
-pub(crate) fn position(checkpoint: Option<&Checkpoint>) -> Option<Position> {
-    checkpoint?.counts("out").ok()
+/// How far the output of a checkpoint had come, and whether its run had made a step.
+pub(crate) fn position(checkpoint: Option<&Checkpoint>) -> Option<(Position, bool)> {
+    let checkpoint = checkpoint?;
+    let begun = checkpoint.counts("k").is_ok_and(|[made]| made > 0);
+    Some((checkpoint.counts("out").ok()?, begun))
 }
 
 /// A checkpoint that knows how far the output has come.

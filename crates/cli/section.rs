@@ -42,7 +42,7 @@ pub(crate) fn section(arguments: &SectionArguments) -> Result<(), CliError> {
             "--plane: the period is shorter than a step; choose a shorter --step".to_owned(),
         ));
     }
-    let file = arguments.out.as_deref().map(|path| ChartFile::of(path, shared.force)).transpose()?;
+    let file = arguments.out.as_deref().map(|path| ChartFile::of(path, &shared.scene, shared.force)).transpose()?;
     notes::moves(&scene);
     scene.visit_free(Sections { arguments, scene: &scene, method, file })?.ok_or_else(imposed)?
 }

@@ -15,13 +15,17 @@ pub(crate) fn print(text: &str) -> Result<(), CliError> {
     accept_closed(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
 }
 
-/// The text with its control signs written out: a title may not set the colours of a terminal, or move its cursor.
+/// The text with its control signs written out: a title may not set the colours of a terminal, move its cursor, or turn the direction of
+/// reading.
 fn harmless(text: &str) -> Cow<'_, str> {
-    let harmful = |c: char| c.is_control() && !matches!(c, '\n' | '\t');
+    let turns =
+        |c: char| matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let breaks = |c: char| matches!(c, '\u{2028}' | '\u{2029}');
+    let harmful = |c: char| c.is_control() && !matches!(c, '\n' | '\t') || turns(c) || breaks(c);
     if !text.contains(harmful) {
         return Cow::Borrowed(text);
     }
-    let shown = |c: char| if harmful(c) { c.escape_default().to_string() } else { c.to_string() };
+    let shown = |c: char| if harmful(c) { c.escape_unicode().to_string() } else { c.to_string() };
     Cow::Owned(text.chars().map(shown).collect())
 }
 
@@ -81,7 +85,7 @@ pub(crate) fn fail(error: &CliError) {
         CliError::Scene(scene) if coloured => scene.finding().map(scene::SceneFinding::coloured),
         _ => None,
     };
-    let line = format!("{level} {}\n", message.unwrap_or_else(|| error.to_string()));
+    let line = format!("{level} {}\n", message.unwrap_or_else(|| harmless(&error.to_string()).into_owned()));
     // Where that cannot be written to, there is nobody left to tell.
     let _ = std::io::stderr().write_all(line.as_bytes());
 }

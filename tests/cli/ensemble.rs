@@ -280,3 +280,81 @@ fn what_is_no_spool_of_the_sweep_is_refused_and_an_empty_one_begins() {
 fn what_is_no_spool_of_the_sweep_is_refused_and_an_empty_one_begins_at_length() {
     no_spools(500, &OLD, |first| vec![0, 1, first - 1, first], &NONE);
 }
+
+/// A process that is ended between two of its last renames leaves what the same command ends with.
+#[test]
+fn what_was_ended_between_its_last_files_is_resumed() {
+    let folder = Folder::new();
+    folder.write("sweep.toml", sweep(64));
+    let (whole, _) = undisturbed(&folder, "sweep.toml");
+    let part = spool(&folder, "sweep.toml", "r.csv");
+    fs::write(folder.join("r.csv.part"), &part).unwrap();
+    folder.done("ensemble sweep.toml --out r.csv --resume");
+    let told = folder.read("r.csv-metadata.json");
+    let names = folder.names();
+    // With what made it, before the rows; with the rows too, before the spool is removed; and by a program that wrote the rows first.
+    for (rows, metadata) in [(false, true), (true, true), (true, false)] {
+        fs::write(folder.join("r.csv.part"), &part).unwrap();
+        if !rows {
+            fs::remove_file(folder.join("r.csv")).unwrap();
+        }
+        if !metadata {
+            fs::remove_file(folder.join("r.csv-metadata.json")).unwrap();
+        }
+        folder.done("ensemble sweep.toml --out r.csv --resume");
+        assert!(fs::read(folder.join("r.csv")).unwrap() == whole, "{rows} {metadata}");
+        assert_eq!((folder.read("r.csv-metadata.json"), folder.names()), (told.clone(), names.clone()));
+    }
+    // The result of anybody else is not overwritten, before and after the members are computed.
+    for spool in [&part[..], &part[..part.len() / 2]] {
+        fs::write(folder.join("r.csv"), "mine").unwrap();
+        fs::write(folder.join("r.csv.part"), spool).unwrap();
+        folder
+            .line("ensemble sweep.toml --out r.csv --resume")
+            .assert_told("another result", &["r.csv exists already"]);
+        assert_eq!((folder.read("r.csv"), folder.read("r.csv-metadata.json")), ("mine".to_owned(), told.clone()));
+    }
+}
+
+#[test]
+fn the_scene_of_a_sweep_lies_beside_it_or_in_the_working_folder() {
+    let folder = Folder::new();
+    let text = crate::program::SCENE;
+    fs::create_dir(folder.join("sub")).unwrap();
+    folder.write("sub/near.toml", text);
+    folder.write("far.toml", text);
+    for scene in ["near.toml", "far.toml", "turnaround"] {
+        folder.write(
+            "sub/sweep.toml",
+            format!("scene = \"{scene}\"\nduration = 1.0\n[grid]\n\"start.speed\" = [0.1, 0.2]\n"),
+        );
+        folder.done("ensemble sub/sweep.toml --out r.csv --force");
+        // The same sweep, seen from elsewhere, has the same parts.
+        folder.done("ensemble sub/sweep.toml --out parts --part 1/2");
+        if scene != "far.toml" {
+            let mut command = folder.command(["ensemble", "sweep.toml", "--out", "../parts", "--part", "2/2"]);
+            assert!(command.current_dir(folder.join("sub")).status().unwrap().success());
+            folder.done("merge parts --out m.csv --force");
+            assert_eq!(folder.read("m.csv"), folder.read("r.csv"));
+        }
+        fs::remove_dir_all(folder.join("parts")).unwrap();
+    }
+}
+
+/// Threads beyond the cores of the machine help nobody.
+#[cfg(target_os = "linux")]
+#[test]
+fn there_are_no_more_threads_than_cores() {
+    let folder = Folder::new();
+    folder.write("slow.toml", sweep(64).replace("5.0", "2000.0\nmethod = \"rk4\""));
+    let mut command = folder.command(["ensemble", "slow.toml", "--out", "slow.csv"]);
+    let mut child = command.env("RAYON_NUM_THREADS", "3000").stderr(std::process::Stdio::null()).spawn().unwrap();
+    wait_for(&folder, "slow.csv.part", 100);
+    let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap();
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let threads = status.lines().find_map(|line| line.strip_prefix("Threads:")).unwrap();
+    let cores = std::thread::available_parallelism().unwrap().get();
+    // Those of the pool, of the sweep, and a few beside them.
+    assert!(threads.trim().parse::<usize>().unwrap() <= 2 * cores + 8, "{threads}");
+}

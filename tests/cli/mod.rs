@@ -6,6 +6,7 @@ mod chaos;
 mod compare;
 mod ensemble;
 mod failures;
+mod files;
 mod first;
 mod inspect;
 mod metadata;

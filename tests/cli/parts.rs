@@ -186,3 +186,125 @@ fn a_part_that_was_killed_goes_on_and_two_processes_do_not_share_one() {
 fn a_part_that_was_killed_goes_on_and_two_processes_do_not_share_one_at_length() {
     killed_and_shared(501, 200.0, tries(6));
 }
+
+/// The file that says what the sweep is has a checksum: of any damage it is written again, and nothing is merged before.
+fn damaged_descriptions(tries: u64) {
+    let (folder, mut dice) = (folder(53), Dice(11));
+    folder.done("ensemble sweep.toml --out whole.csv");
+    let whole = fs::read(folder.join("whole.csv")).unwrap();
+    for part in 1..=2 {
+        folder.done(&format!("ensemble sweep.toml --out parts --part {part}/2"));
+    }
+    let name = names(&folder.join("parts")).into_iter().find(|name| name.ends_with(".json")).unwrap();
+    let path = folder.join("parts").join(&name);
+    let right = fs::read_to_string(&path).unwrap();
+    let changed = [
+        ("\"members\": 53", "\"members\": 32"),
+        ("\"m/s\"", "\"m/h\""),
+        ("rk4", "dla"),
+        ("\"x\"", "\"y\""),
+        ("title", "titel"),
+    ];
+    let changed = changed.iter().filter(|(old, _)| right.contains(old)).map(|(old, new)| right.replacen(old, new, 1));
+    let texts: Vec<Vec<u8>> = changed
+        .map(String::into_bytes)
+        .chain([Vec::new(), b"{}".to_vec()])
+        .chain((0..tries).map(|_| damaged(right.as_bytes(), &mut dice)))
+        .filter(|text| text != right.as_bytes())
+        .collect();
+    assert!(texts.len() >= 6);
+    for text in &texts {
+        fs::write(&path, text).unwrap();
+        let shown = String::from_utf8_lossy(text).into_owned();
+        let outcome = folder.line("merge parts --out merged.csv");
+        outcome.assert_refused(&shown, &[name.as_str(), "damaged", "writes the file again"]);
+        let again = folder.line("ensemble sweep.toml --out parts --part 1/2");
+        assert!(again.code == 0 && again.stderr.contains("is kept"), "{again:?}");
+        folder.done("merge parts --out merged.csv");
+        assert!(fs::read(folder.join("merged.csv")).unwrap() == whole, "{shown}");
+        for file in ["merged.csv", "merged.csv-metadata.json"] {
+            fs::remove_file(folder.join(file)).unwrap();
+        }
+    }
+    // So is one of two sweeps: the other is not taken for it.
+    folder.write("other.toml", SWEEP.replace("seed = 3", "seed = 4"));
+    folder.done("ensemble other.toml --out parts --part 1/2");
+    fs::write(&path, "{").unwrap();
+    folder.refused("merge parts", &[name.as_str(), "damaged"]);
+    fs::remove_file(&path).unwrap();
+    folder.refused("merge parts", &[name.as_str(), "missing"]);
+    println!("all found");
+}
+
+#[test]
+fn a_damaged_description_of_a_sweep_is_never_believed() {
+    damaged_descriptions(tries(1));
+}
+
+#[test]
+#[ignore = "slow"]
+fn a_damaged_description_of_a_sweep_is_never_believed_at_length() {
+    damaged_descriptions(tries(80));
+}
+
+#[test]
+fn parts_of_another_program_or_machine_are_told_apart() {
+    let folder = folder(53);
+    folder.done("ensemble sweep.toml --out parts --part 1/1");
+    let place = folder.join("parts");
+    let name = names(&place).into_iter().find(|name| name.ends_with(".json")).unwrap();
+    let text = fs::read_to_string(place.join(&name)).unwrap();
+    let about: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let [version, instructions, identity] =
+        ["version", "instructions", "identity"].map(|key| about[key].as_str().unwrap().to_owned());
+    assert!(version.starts_with("0.1.0+") && version.len() == 6 + 16, "{version}");
+    assert!(identity.contains(&version) && identity.contains(&instructions), "{identity}");
+    // As another machine would have written it.
+    for (old, new, told) in
+        [(&instructions, "vax", "machines with"), (&version, "0.1.0+0123456789abcdef", "the versions")]
+    {
+        let mut other = about.clone();
+        for key in ["version", "instructions", "identity"] {
+            other[key] = about[key].as_str().unwrap().replace(old.as_str(), new).into();
+        }
+        other.as_object_mut().unwrap().remove("checksum");
+        other["checksum"] = format!("{:08x}", crc32(other.to_string().as_bytes())).into();
+        let identity = other["identity"].as_str().unwrap();
+        let hash = identity
+            .bytes()
+            .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
+        let file = place.join(format!("{hash:016x}-0.1.0.json"));
+        fs::write(&file, format!("{other:#}\n")).unwrap();
+        folder.refused("merge parts", &["parts of 2 sweeps", told, new, "differ in the last bits"]);
+        fs::remove_file(file).unwrap();
+    }
+    folder.done("merge parts");
+}
+
+/// CRC-32, bit by bit (ISO 3309).
+fn crc32(bytes: &[u8]) -> u32 {
+    let bit = |sum: u32, _| if sum & 1 == 1 { (sum >> 1) ^ 0xedb8_8320 } else { sum >> 1 };
+    !bytes.iter().fold(u32::MAX, |sum, byte| (0..8).fold(sum ^ u32::from(*byte), bit))
+}
+
+#[cfg(unix)]
+#[test]
+fn files_of_parts_have_the_rights_that_the_user_gives_to_new_files() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = folder(53);
+    let script = "umask 027; exec \"$0\" ensemble sweep.toml --out parts --part 1/1";
+    let mut shell = std::process::Command::new("sh");
+    assert!(
+        shell
+            .args(["-c", script, env!("CARGO_BIN_EXE_noslip")])
+            .current_dir(folder.path())
+            .output()
+            .unwrap()
+            .status
+            .success()
+    );
+    let place = folder.join("parts");
+    for name in names(&place) {
+        assert_eq!(fs::metadata(place.join(&name)).unwrap().permissions().mode() & 0o777, 0o640, "{name}");
+    }
+}

@@ -1,7 +1,7 @@
 //! SIGINT, SIGTERM and SIGHUP end every long command, and what is done is written. A checkpoint that cannot be saved is tried again.
 #![cfg(unix)]
 
-use crate::processes::{ended, output, send, signals, started, wait_for};
+use crate::processes::{ended, output, send, signals, started, tries, wait_for};
 use crate::program::{Folder, SCENE};
 use serde_json::Value;
 use std::fs;
@@ -229,4 +229,61 @@ fn a_run_that_cannot_be_saved_is_an_error() {
     let (code, told) = ended(child);
     assert_eq!(code, Some(1), "{told}");
     assert!(told.contains("error: cannot write saves/t.save"), "{told}");
+}
+
+/// A wrapper and a terminal may each send the signal, one shortly after the other: so many times each of some gaps (ms).
+fn two_signals(gaps: &[f64], tries: u64) {
+    let folder = Folder::new();
+    folder.write("long.toml", SCENE.replace("duration = 2.0", "duration = 2000000.0"));
+    let line = "run long.toml --out k.csv --checkpoint k.save --checkpoint-every 1000000000";
+    let mut saved = 0;
+    for number in 0..tries {
+        for gap in gaps {
+            let child = started(&folder, line);
+            wait_for(&folder, "k.csv.part", 1 << 12);
+            send("-TERM", &child);
+            std::thread::sleep(Duration::from_secs_f64(1e-3 * gap));
+            // It may have ended by then.
+            let _ = std::process::Command::new("kill").args(["-TERM", &child.id().to_string()]).output();
+            let (code, told) = ended(child);
+            assert_eq!(code, Some(130), "{told}");
+            assert!(folder.join("k.save").exists(), "try {number}, {gap} ms: {told}");
+            assert_eq!(folder.names(), ["k.csv", "k.csv-metadata.json", "k.save", "long.toml"]);
+            folder.names().iter().filter(|name| name.starts_with("k.")).for_each(|name| {
+                fs::remove_file(folder.join(name)).unwrap();
+            });
+            saved += 1;
+        }
+    }
+    println!("{saved} of {saved} saved");
+}
+
+#[test]
+fn two_signals_that_come_together_are_one() {
+    two_signals(&[0.5, 10.0], tries(1));
+}
+
+#[test]
+#[ignore = "slow"]
+fn two_signals_that_come_together_are_one_at_length() {
+    two_signals(&[0.0, 0.5, 2.0, 10.0, 50.0], tries(40));
+}
+
+/// The control: who waits and sends another means it.
+#[test]
+fn a_second_signal_after_a_while_ends_at_once() {
+    let folder = Folder::new();
+    // One member takes very long.
+    let sweep =
+        "scene = \"turnaround\"\nduration = 1e7\nstep = 0.001\nmethod = \"rk4\"\n[grid]\n\"start.speed\" = [0.1]\n";
+    folder.write("slow.toml", sweep);
+    let child = started(&folder, "ensemble slow.toml --out slow.csv");
+    wait_for(&folder, "slow.csv.part", 1);
+    send("-TERM", &child);
+    std::thread::sleep(Duration::from_millis(1500));
+    send("-TERM", &child);
+    let begin = Instant::now();
+    let (code, told) = ended(child);
+    assert_eq!(code, Some(130), "{told}");
+    assert!(begin.elapsed() < Duration::from_secs(5), "{:?}", begin.elapsed());
 }

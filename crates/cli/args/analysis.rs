@@ -27,7 +27,7 @@ pub(crate) struct PhaseArguments {
     #[arg(long, value_name = "M")]
     pub(crate) method: Option<String>,
     /// Number of loops [default: the whole loops within the scene's duration]
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count)]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = count)]
     pub(crate) loops: Option<u64>,
     /// Draw the turn of each loop against the heading before the loop: .svg
     #[arg(long, value_name = "FILE")]
@@ -42,14 +42,14 @@ pub(crate) struct LyapunovArguments {
     #[arg(long, value_name = "M", default_value = "gauss8")]
     pub(crate) method: String,
     /// Number of exponents, the largest first [default: all]
-    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = count, conflicts_with = "map")]
+    #[arg(long, value_name = "K", allow_hyphen_values = true, value_parser = count, conflicts_with = "map")]
     pub(crate) exponents: Option<u64>,
     /// Time to integrate before the exponents are measured, so that the motion settles [s] [default: a tenth of the
     /// duration]
-    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = not_negative)]
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = not_negative)]
     pub(crate) settle: Option<f64>,
     /// Energy of the start [J]: the velocities of the start are scaled to have this energy
-    #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = number)]
+    #[arg(long, value_name = "E", allow_hyphen_values = true, value_parser = number)]
     pub(crate) energy: Option<f64>,
     /// Map the largest exponent over a grid of starts; give --map twice: the horizontal axis, then the vertical axis
     #[arg(long, value_name = "NAME=FROM:TO:CELLS", allow_hyphen_values = true)]
@@ -78,10 +78,10 @@ pub(crate) struct SectionArguments {
     #[arg(long, value_name = "A,B", value_delimiter = ',')]
     pub(crate) axes: Option<Vec<String>>,
     /// Number of starts: the scene's start, and others with the same position and energy
-    #[arg(long, value_name = "N", default_value_t = 12, allow_negative_numbers = true, value_parser = count)]
+    #[arg(long, value_name = "N", default_value_t = 12, allow_hyphen_values = true, value_parser = count)]
     pub(crate) starts: u64,
     /// Energy of all starts [J], instead of the scene's
-    #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = number)]
+    #[arg(long, value_name = "E", allow_hyphen_values = true, value_parser = number)]
     pub(crate) energy: Option<f64>,
     /// Write the crossings as numbers (.csv) or a picture (.svg), by the ending of the name
     #[arg(long, value_name = "FILE")]

@@ -1,14 +1,14 @@
 //! Files of runs: `noslip plot` and `diff`.
 
 use super::scene::Settings;
-use super::values::{Size, dpi, not_negative, number};
+use super::values::{Size, dpi, not_negative, number, scene_path};
 use clap::Args;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(crate) struct PlotArguments {
     /// A file of a run, .csv or .npz; a scene file, the name of a bundled scene, or - for a scene on the standard input
-    #[arg(value_name = "FILE_OR_SCENE")]
+    #[arg(value_name = "FILE_OR_SCENE", value_parser = scene_path())]
     pub(crate) input: String,
     #[command(flatten)]
     pub(crate) set: Settings,
@@ -16,13 +16,13 @@ pub(crate) struct PlotArguments {
     #[arg(long, value_name = "M,..", value_delimiter = ',')]
     pub(crate) methods: Option<Vec<String>>,
     /// Largest step [s], instead of the scene's
-    #[arg(long, value_name = "H", allow_negative_numbers = true, value_parser = number)]
+    #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = number)]
     pub(crate) step: Option<f64>,
     /// Duration [s], instead of the scene's
-    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = number)]
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = number)]
     pub(crate) duration: Option<f64>,
     /// Weight of `dla-alpha`, from 0 to 1
-    #[arg(long, value_name = "A", allow_negative_numbers = true, value_parser = number)]
+    #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = number)]
     pub(crate) alpha: Option<f64>,
     /// Columns to draw, separated by commas; `path` is the path [default: the path, velocities, heading, energy,
     /// constraint and reaction]
@@ -32,7 +32,7 @@ pub(crate) struct PlotArguments {
     #[arg(long, value_name = "WxH", default_value = "17x20cm")]
     pub(crate) size: Size,
     /// Resolution of a .png, in pixels per inch
-    #[arg(long, value_name = "N", default_value_t = 300, allow_negative_numbers = true, value_parser = dpi)]
+    #[arg(long, value_name = "N", default_value_t = 300, allow_hyphen_values = true, value_parser = dpi)]
     pub(crate) dpi: u32,
     /// The picture: .svg, .png or .pdf, by the ending [default: the name of the scene or file, .svg]
     #[arg(long, value_name = "PICTURE")]
@@ -51,7 +51,7 @@ pub(crate) struct DiffArguments {
     #[arg(value_name = "B")]
     pub(crate) second: PathBuf,
     /// Exit with code 1 if a difference is larger than SIZE
-    #[arg(long, value_name = "SIZE", allow_negative_numbers = true, value_parser = not_negative)]
+    #[arg(long, value_name = "SIZE", allow_hyphen_values = true, value_parser = not_negative)]
     pub(crate) within: Option<f64>,
     /// Print one JSON object
     #[arg(long)]

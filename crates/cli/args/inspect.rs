@@ -1,13 +1,14 @@
 //! What a scene says, and what there is: `noslip check`, `equations`, `list` and `new`.
 
 use super::scene::Settings;
+use super::values::scene_path;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(crate) struct CheckArguments {
     /// Scene files, names of bundled scenes, or - for the standard input
-    #[arg(value_name = "SCENE", required = true)]
+    #[arg(value_name = "SCENE", value_parser = scene_path(), required = true)]
     pub(crate) scenes: Vec<String>,
     #[command(flatten)]
     pub(crate) set: Settings,
@@ -19,7 +20,7 @@ pub(crate) struct CheckArguments {
 #[derive(Debug, Args)]
 pub(crate) struct EquationsArguments {
     /// A scene file, the name of a bundled scene, or - for the standard input
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", value_parser = scene_path())]
     pub(crate) scene: String,
     #[command(flatten)]
     pub(crate) set: Settings,

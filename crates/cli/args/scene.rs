@@ -1,6 +1,6 @@
 //! The scene of a command, and what is set in its place.
 
-use super::values::number;
+use super::values::{number, scene_path};
 use clap::Args;
 use scene::Setting;
 
@@ -15,18 +15,18 @@ pub(crate) struct Settings {
 #[derive(Debug, Args)]
 pub(crate) struct SceneArguments {
     /// A scene file, the name of a bundled scene (see `noslip list scenes`), or - for the standard input
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", value_parser = scene_path())]
     pub(crate) scene: String,
     #[command(flatten)]
     pub(crate) set: Settings,
     /// Largest step [s], instead of the scene's
-    #[arg(long, value_name = "H", allow_negative_numbers = true, value_parser = number)]
+    #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = number)]
     pub(crate) step: Option<f64>,
     /// Duration [s], instead of the scene's; with a negative one `noslip run` goes backward in time
-    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = number)]
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = number)]
     pub(crate) duration: Option<f64>,
     /// Weight of `dla-alpha`, from 0 to 1
-    #[arg(long, value_name = "A", allow_negative_numbers = true, value_parser = number)]
+    #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = number)]
     pub(crate) alpha: Option<f64>,
     /// Print one JSON object
     #[arg(long)]

@@ -1,5 +1,6 @@
 //! `noslip ensemble` and `merge`.
 
+use super::values::scene_path;
 use crate::ensemble::share::Share;
 use clap::Args;
 use std::path::PathBuf;
@@ -7,7 +8,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub(crate) struct EnsembleArguments {
     /// A sweep file, which names a scene and the keys that vary
-    #[arg(value_name = "SWEEP")]
+    #[arg(value_name = "SWEEP", value_parser = scene_path())]
     pub(crate) sweep: String,
     /// Write a row for each member to a file .csv, .jsonl, .npz or .parquet (a cargo feature), by the ending of the
     /// name; with --part, FILE is the folder of the parts

@@ -1,5 +1,6 @@
 //! Values of arguments, and what is said of a wrong one.
 
+use clap::builder::{OsStringValueParser, TypedValueParser};
 use std::str::FromStr;
 
 /// Width and height (cm).
@@ -57,4 +58,9 @@ const DAY: f64 = 86400.0;
 pub(super) fn at_most_a_day(text: &str) -> Result<f64, &'static str> {
     let seconds = number(text).ok().filter(|number| *number > 0.0 && *number <= DAY);
     seconds.ok_or("accepted is a number greater than 0 and at most 86400")
+}
+
+/// The path of a scene, in whatever bytes.
+pub(super) fn scene_path() -> impl TypedValueParser<Value = String> {
+    OsStringValueParser::new().map(|path| scene::name_of_path(&path))
 }

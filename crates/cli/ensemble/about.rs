@@ -1,21 +1,35 @@
+use super::contents;
 use super::members::Summed;
 use super::result::failed;
 use crate::args::Settings;
 use crate::command_line::CommandLine;
 use crate::error::CliError;
+use crate::files::{read_text, write_whole};
 use crate::format::Format;
+use crate::program;
 use crate::provenance::{DescribedColumn, Provenance};
 use scene::{Column, Sweep};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::Path;
+use std::time::Duration;
+
+/// The largest file on a sweep that is read (bytes).
+const LARGEST: u64 = 1 << 26;
+/// How often, and how many times, it is tried to write one that another process writes.
+const OFTEN: Duration = Duration::from_millis(10);
+const PATIENCE: u32 = 500;
 
 /// What is told of a sweep, with its members or with their summary: all that a result needs beside its rows.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct About {
     /// The first line of its files of rows: what tells it from other sweeps and other versions of the program.
     pub(super) identity: String,
+    /// Its parts that tell one from another sweep, from another version of the program, and from other machines.
+    pub(super) contents: String,
+    pub(super) version: String,
+    pub(super) instructions: String,
     /// The file of the sweep, as it was named.
     pub(super) sweep: String,
     /// Its scene.
@@ -46,6 +60,9 @@ impl About {
         }
         Self {
             identity: identity.to_owned(),
+            contents: contents(sweep),
+            version: program::version(),
+            instructions: program::instructions(),
             sweep: file.to_owned(),
             scene: scene.name().to_owned(),
             title: scene.title().to_owned(),
@@ -77,23 +94,33 @@ impl About {
         provenance.document(&name, self.columns().iter().map(DescribedColumn::from).chain([last]))
     }
 
-    /// Reads it from a file beside parts; none where the file is another one.
+    /// Reads it from a file beside parts; none where the file is another one, or damaged.
     pub(super) fn read(path: &Path) -> Option<Self> {
-        serde_json::from_str(&std::fs::read_to_string(path).ok()?).ok()
+        let text = read_text(path, LARGEST).ok()?;
+        let about: Self = serde_json::from_str(&text).ok()?;
+        (about.text()? == text).then_some(about)
+    }
+
+    /// The text of the file, which has a checksum of all that it says.
+    fn text(&self) -> Option<String> {
+        let mut about = serde_json::to_value(self).ok()?;
+        about["checksum"] = json!(format!("{:08x}", crc32fast::hash(about.to_string().as_bytes())));
+        Some(format!("{about:#}\n"))
     }
 
     /// Writes it beside parts, whole or not at all; processes that do so at the same time write the same.
     pub(super) fn write(&self, path: &Path) -> Result<(), CliError> {
-        if Self::read(path).as_ref() == Some(self) {
-            return Ok(());
+        let text = self.text().unwrap_or_default();
+        for _ in 0..PATIENCE {
+            if Self::read(path).as_ref() == Some(self) {
+                return Ok(());
+            }
+            match write_whole(path, true, |file| file.write_all(text.as_bytes())) {
+                Err(CliError::Busy { .. }) => std::thread::sleep(OFTEN),
+                outcome => return outcome,
+            }
         }
-        let failed = |source| CliError::Write { path: path.to_owned(), source };
-        let text = serde_json::to_string_pretty(self).map_err(|error| failed(error.into()))?;
-        let folder = path.parent().unwrap_or(Path::new("."));
-        // Of a name of its own: the other processes write too.
-        let mut file = tempfile::Builder::new().prefix(".sweep").tempfile_in(folder).map_err(failed)?;
-        writeln!(file, "{text}").and_then(|()| file.as_file().sync_all()).map_err(failed)?;
-        file.persist(path).map(drop).map_err(|error| failed(error.error))
+        write_whole(path, true, |file| file.write_all(text.as_bytes()))
     }
 }
 

@@ -98,9 +98,9 @@ pub(super) fn parsed(text: &str) -> (Vec<f64>, Option<String>) {
     (values, error.map(|error| error.strip_suffix('"').unwrap_or(error).replace("\"\"", "\"")))
 }
 
-/// One number of a row; beyond the last one whether it has an error.
-pub(super) fn value(text: &str, column: usize) -> f64 {
+/// All numbers of a row, that of the member first, and last whether it has an error.
+pub(super) fn numbers_of(text: &str) -> Vec<f64> {
     let (numbers, error) = numbers(text);
-    let number = numbers.split(',').nth(column).map(|number| number.parse().unwrap_or(f64::NAN));
-    number.unwrap_or(f64::from(u8::from(error.is_some())))
+    let failed = f64::from(u8::from(error.is_some()));
+    numbers.split(',').map(|number| number.parse().unwrap_or(f64::NAN)).chain([failed]).collect()
 }

@@ -1,14 +1,14 @@
 use super::lines::Lines;
 use super::parts::{self, chain, found};
-use super::result::{self, Shape};
+use super::result::Shape;
 use super::totals::EnsembleTotals;
 use crate::args::MergeArguments;
 use crate::error::CliError;
-use crate::files::{check_file, write_whole};
+use crate::files::check_file;
 use crate::format::Format;
 use crate::provenance::metadata_of;
 use crate::terminal;
-use std::io::{Error, Write};
+use std::io::Error;
 use std::path::PathBuf;
 
 /// `noslip merge`: the result of a sweep of its parts, with the bytes that one process would have written.
@@ -42,10 +42,7 @@ pub(crate) fn merge(arguments: &MergeArguments) -> Result<(), CliError> {
     }
     let metadata = about.metadata(&out, format);
     let shape = Shape { format, columns: &columns, count: about.members, metadata: &metadata };
-    write_whole(&out, *force, |file| result::write(file, &shape, &rows))?;
-    if format.is_text() {
-        write_whole(&metadata_of(&out), true, |file| file.write_all(metadata.as_bytes()))?;
-    }
+    shape.write(&out, *force, &rows)?;
     match json {
         true => terminal::print_json(&totals.json(&about, 0.0, 0))?,
         false => terminal::print(&totals.text(&about, 0.0, 0, Some(&out)))?,

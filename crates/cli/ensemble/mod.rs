@@ -17,11 +17,13 @@ pub use plan::{SweepPlan, plan};
 
 use crate::args::EnsembleArguments;
 use crate::error::CliError;
+use crate::file_roles::FileRoles;
 use crate::files::check_file;
 use crate::format::Format;
 use crate::interrupt::Interrupt;
+use crate::part::PartFile;
 use crate::provenance::metadata_of;
-use crate::{compare, inspect, progress, terminal};
+use crate::{compare, inspect, program, progress, terminal};
 use about::About;
 use dla::Checkpoint;
 use harness::ensemble::in_order;
@@ -48,7 +50,8 @@ pub(crate) fn ensemble(arguments: &EnsembleArguments) -> Result<(), CliError> {
     let out = match &arguments.out {
         Some(path) => {
             let format = Format::of(path, None)?;
-            check_file(path, arguments.force)?;
+            FileRoles::of(&arguments.sweep).rows("--out", Some(path)).check()?;
+            check_file(path, arguments.force || arguments.resume && PartFile::path_of(path).exists())?;
             if format.is_text() {
                 check_file(&metadata_of(path), arguments.force || arguments.resume)?;
             }
@@ -140,10 +143,12 @@ fn compute(
 }
 
 /// What tells a sweep from others: all that its rows depend on.
+fn contents(sweep: &Sweep) -> String {
+    Checkpoint::fingerprint(&sweep.contents())
+}
+
+/// What tells its rows from others, to the last bit.
 fn identity(sweep: &Sweep) -> String {
-    // Not the text of its file: comments change no row.
-    let mut bare = sweep.clone();
-    bare.file.clear();
-    let contents = Checkpoint::fingerprint(&format!("{bare:?}"));
-    format!("noslip ensemble {} rows with checksums {contents}", env!("CARGO_PKG_VERSION"))
+    let (version, instructions) = (program::version(), program::instructions());
+    format!("noslip ensemble {version} on {instructions}, rows with checksums {}", contents(sweep))
 }

@@ -13,6 +13,7 @@ use crate::error::CliError;
 use crate::interrupt::Interrupt;
 use crate::{compare, progress, terminal};
 use dla::Checkpoint;
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -162,6 +163,19 @@ fn missing(parts: &[SweepPart], members: u64) -> Range<u64> {
     if at < members { at..next.unwrap_or(members).min(members) } else { 0..members }
 }
 
+/// The beginning of the name of a file of a sweep, whichever.
+fn stem_of(name: &str) -> Option<&str> {
+    let stem = match name.strip_suffix(".json") {
+        Some(stem) => stem,
+        None => {
+            let (rest, _end) = name.strip_suffix(".part").unwrap_or(name).strip_suffix(".rows")?.rsplit_once('-')?;
+            rest.rsplit_once('-')?.0
+        }
+    };
+    let (hash, _) = stem.split_once('-')?;
+    (hash.len() == 16 && hash.bytes().all(|digit| digit.is_ascii_hexdigit())).then_some(stem)
+}
+
 /// The sweep of the parts in a folder, and the parts.
 pub(super) fn found(folder: &Path) -> Result<(About, Vec<SweepPart>), CliError> {
     let unreadable = |source| CliError::Read { path: folder.to_owned(), source };
@@ -170,16 +184,47 @@ pub(super) fn found(folder: &Path) -> Result<(About, Vec<SweepPart>), CliError> 
         names.extend(entry.map_err(unreadable)?.file_name().into_string());
     }
     names.sort();
-    let of = |name: &String| Some((name.strip_suffix(".json")?.to_owned(), About::read(&folder.join(name))?));
-    let sweeps: Vec<(String, About)> =
-        names.iter().filter_map(of).filter(|(s, about)| *s == stem(&about.identity)).collect();
-    let [(stem, about)] = &sweeps[..] else {
-        let problem = match sweeps.len() {
-            0 => "the folder has no parts of a sweep, or parts of another version of the program".to_owned(),
-            many => format!("the folder has parts of {many} sweeps: keep the parts of one sweep"),
-        };
-        return Err(CliError::Request(format!("{}: {problem}", folder.display())));
+    let stems: BTreeSet<&str> = names.iter().filter_map(|name| stem_of(name)).collect();
+    // Every sweep is told of before one of them is taken: the damaged one may be the one that is meant.
+    let sweeps: Vec<About> = stems.iter().map(|stem| about(folder, stem)).collect::<Result<_, _>>()?;
+    let [sweep] = &sweeps[..] else {
+        return Err(CliError::Request(format!("{}: {}", folder.display(), told_apart(&sweeps))));
     };
-    let part = |name: &String| Some(SweepPart { path: folder.join(name), members: members_of(stem, name)? });
-    Ok((about.clone(), names.iter().filter_map(part).collect()))
+    let stem = stem(&sweep.identity);
+    let part = |name: &String| Some(SweepPart { path: folder.join(name), members: members_of(&stem, name)? });
+    Ok((sweep.clone(), names.iter().filter_map(part).collect()))
+}
+
+/// What a folder says of the sweep whose files begin so.
+fn about(folder: &Path, name: &str) -> Result<About, CliError> {
+    let path = folder.join(format!("{name}.json"));
+    let known = About::read(&path).filter(|about| stem(&about.identity) == name);
+    known.ok_or_else(|| {
+        CliError::Request(format!(
+            "{}: what this file says of its sweep is missing, damaged, or of another version of the program; `noslip ensemble \
+             SWEEP --out DIR --part I/N` writes the file again",
+            path.display()
+        ))
+    })
+}
+
+/// How sweeps that are not one differ.
+fn told_apart(sweeps: &[About]) -> String {
+    let Some(first) = sweeps.first() else { return "the folder has no parts of a sweep".to_owned() };
+    let all = |of: fn(&About) -> &String| {
+        let values: BTreeSet<&String> = sweeps.iter().map(of).collect();
+        (values.len() > 1).then(|| values.into_iter().map(String::as_str).collect::<Vec<_>>().join(" and "))
+    };
+    let count = sweeps.len();
+    if sweeps.iter().any(|other| other.contents != first.contents) {
+        return format!("the folder has parts of {count} sweeps: keep the parts of one sweep");
+    }
+    let versions = all(|about| &about.version).map(|both| format!("the versions {both} of the program"));
+    let machines = all(|about| &about.instructions).map(|both| format!("machines with {both}"));
+    let differ: Vec<String> = versions.into_iter().chain(machines).collect();
+    format!(
+        "the folder has parts of {count} sweeps: they are one, computed by {}, whose numbers differ in the last bits; keep the parts of one \
+         of them",
+        differ.join(" and ")
+    )
 }

@@ -1,10 +1,14 @@
 use super::lines;
 use super::rows::SpoolRows;
+use crate::csv_text;
+use crate::error::CliError;
+use crate::files::{as_written, write_whole};
 use crate::format::Format;
 use crate::output::in_arrays;
-use crate::provenance::label;
+use crate::provenance::{label, metadata_of};
 use scene::Column;
 use std::io::{Error, Seek, Write};
+use std::path::Path;
 
 /// The columns of a result, and what it says of itself.
 pub(super) struct Shape<'a> {
@@ -14,8 +18,33 @@ pub(super) struct Shape<'a> {
     pub(super) metadata: &'a str,
 }
 
-/// Writes a result in a format; `rows` begins to read them again.
-pub(super) fn write<'a>(
+impl Shape<'_> {
+    /// Writes a result, whole or not at all, with what made it beside a text, which comes first: then no rows are without it. `rows` begins to
+    /// read them again. The result that the same command left when it was ended is as good.
+    pub(super) fn write<'a>(
+        &self,
+        out: &Path,
+        overwrite: bool,
+        rows: &impl Fn() -> Result<SpoolRows<'a>, Error>,
+    ) -> Result<(), CliError> {
+        let again = !overwrite && out.symlink_metadata().is_ok();
+        if again {
+            as_written(out, |file| content(file, self, rows))?;
+        }
+        if self.format.is_text() {
+            write_whole(&metadata_of(out), true, |file| file.write_all(self.metadata.as_bytes()))?;
+        }
+        if again {
+            return Ok(());
+        }
+        write_whole(out, overwrite, |file| content(file, self, rows)).inspect_err(|_| {
+            let _ = std::fs::remove_file(metadata_of(out));
+        })
+    }
+}
+
+/// Writes the rows in the format.
+fn content<'a>(
     file: &mut (impl Write + Seek + Send),
     shape: &Shape<'_>,
     rows: &impl Fn() -> Result<SpoolRows<'a>, Error>,
@@ -23,8 +52,7 @@ pub(super) fn write<'a>(
     let Shape { format, columns, count, metadata } = *shape;
     match format {
         Format::Csv => {
-            let labels: Vec<String> = columns.iter().map(label).collect();
-            writeln!(file, "{},error", labels.join(","))?;
+            writeln!(file, "{},error", csv_text::header(columns.iter().map(label)))?;
             let mut rows = rows()?;
             while let Some(row) = rows.next()? {
                 writeln!(file, "{row}")?;
@@ -40,10 +68,10 @@ pub(super) fn write<'a>(
         }
         Format::Npz => {
             let columns = with_failed(columns);
-            arrays::write(file, &in_arrays(&columns), count, metadata, |column, push| {
+            arrays::write(file, &in_arrays(&columns), count, metadata, |push| {
                 let mut rows = rows()?;
                 while let Some(row) = rows.next()? {
-                    push(lines::value(row, column))?;
+                    push(&lines::numbers_of(row))?;
                 }
                 Ok(())
             })
@@ -51,9 +79,7 @@ pub(super) fn write<'a>(
         #[cfg(feature = "parquet")]
         Format::Parquet => {
             let (mut rows, columns) = (rows()?, with_failed(columns));
-            let all = 0..columns.len();
-            let row = |text: &str| all.clone().map(|column| lines::value(text, column)).collect();
-            let next = || rows.next().map(|text| text.map(row)).transpose();
+            let next = || rows.next().map(|text| text.map(lines::numbers_of)).transpose();
             crate::parquet_file::write(file, &columns, metadata, std::iter::from_fn(next))
         }
     }

@@ -1,10 +1,9 @@
 use super::lines::{Damage, Lines, parsed};
-use super::result::{self, Shape};
+use super::result::Shape;
 use super::rows::{Source, SpoolRows};
 use crate::error::CliError;
-use crate::files::{check_file, write_whole};
+use crate::files::check_file;
 use crate::part::PartFile;
-use crate::provenance::metadata_of;
 use crate::terminal;
 use std::io::{BufRead, BufReader, Error, Seek, SeekFrom, Write};
 use std::ops::Range;
@@ -42,9 +41,9 @@ impl Spool {
         seen: impl FnMut(&[f64], Option<&str>),
     ) -> Result<Self, CliError> {
         let part = PartFile::lock(out)?;
-        let found = part.file().metadata().map_err(|source| part.failed(source))?.len();
-        // Whoever had the lock may have written the result meanwhile.
-        if let Err(error) = check_file(out, asked.force) {
+        let found = part.len()?;
+        // Whoever had the lock may have written the result meanwhile. Of one who was ended before the spool was removed, both are there.
+        if let Err(error) = check_file(out, asked.force || asked.resume && found > 0) {
             if found == 0 {
                 part.remove();
             }
@@ -55,6 +54,9 @@ impl Spool {
         let begun = found >= spool.header.len() as u64 || !spool.has_begun_only(found)?;
         if begun && asked.resume {
             spool.take_over(members.end, seen)?;
+            if spool.next < members.end {
+                check_file(out, asked.force)?;
+            }
         } else if begun && !asked.force {
             return Err(CliError::Request(format!(
                 "{} has the rows of an interrupted run; --resume continues the run, --force begins anew",
@@ -103,10 +105,12 @@ impl Spool {
         let (mut reader, mut line) = (self.reader().map_err(unreadable)?, Vec::new());
         reader.read_until(b'\n', &mut line).map_err(unreadable)?;
         if line != self.header.as_bytes() {
+            let (found, own) = (String::from_utf8_lossy(&line[..line.len().min(200)]), self.header.trim_end());
             return Err(CliError::Request(format!(
-                "{}:1: the file belongs to another sweep or to another version of the program, or is damaged; \
-                    without --resume, --force begins anew",
-                self.part.path().display()
+                "{}:1: the file belongs to another sweep or to another version of the program, or is damaged: it begins with `{}`, and the rows \
+                    of this sweep begin with `{own}`; without --resume, --force begins anew",
+                self.part.path().display(),
+                found.trim_end()
             )));
         }
         let (mut whole, mut rows) = (line.len() as u64, self.first);
@@ -147,11 +151,7 @@ impl Spool {
     /// Makes the result of the rows 0 to `members - 1`, each of which must be there once; it appears whole or not at all. Then the
     /// file is removed.
     pub(super) fn finish(self, out: &Path, shape: &Shape<'_>, overwrite: bool) -> Result<(), CliError> {
-        let rows = || self.whole_rows(shape.count);
-        write_whole(out, overwrite, |file| result::write(file, shape, &rows))?;
-        if shape.format.is_text() {
-            write_whole(&metadata_of(out), true, |file| file.write_all(shape.metadata.as_bytes()))?;
-        }
+        shape.write(out, overwrite, &|| self.whole_rows(shape.count))?;
         self.part.remove();
         Ok(())
     }

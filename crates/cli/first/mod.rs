@@ -6,15 +6,15 @@ use crate::args::JobArguments;
 use crate::compare::{compare_scene, methods, unless_interrupted};
 use crate::comparison::Comparison;
 use crate::error::CliError;
+use crate::files::ClaimedFolder;
 use crate::inspect::method_names;
 use crate::interrupt::Interrupt;
 use crate::saves::Saves;
 use crate::table::ComparisonRow;
-use crate::{files, job, precision, table, terminal};
+use crate::{job, precision, table, terminal};
 use harness::precision::{Cheapest, cheapest};
 use harness::report::{self, Report};
 use scene::AnyScene;
-use std::path::PathBuf;
 use words::Answers;
 
 /// The scene: its motion is regular, so that errors grow slowly, and its energy goes to and fro between its parts, so that a method
@@ -36,10 +36,12 @@ pub(crate) fn first(arguments: &JobArguments) -> Result<(), CliError> {
     if arguments.explain {
         return terminal::print(&words::explanation());
     }
-    let folder = arguments.report.clone().unwrap_or_else(free_folder);
-    files::check_folder(&folder, arguments.force)?;
+    let folder = match &arguments.report {
+        Some(folder) => ClaimedFolder::new(folder, arguments.force)?,
+        None => ClaimedFolder::first_free("noslip-report")?,
+    };
     if arguments.all {
-        return job::everything(&folder, arguments.force);
+        return job::everything(folder.path());
     }
     let names = method_names();
     let scene = AnyScene::load(SCENE, &names)?.with_overrides(None, Some(STEP), Some(DURATION), None, &names)?;
@@ -69,18 +71,8 @@ pub(crate) fn first(arguments: &JobArguments) -> Result<(), CliError> {
     let intro = [vec![heading], sentences].concat().join("\n\n");
     let title = "Five methods on one motion".to_owned();
     let report = Report { title, intro, notes: words::notes(), scenes: vec![report] };
-    report::write(&report, &folder, arguments.force).map_err(CliError::Report)?;
-    terminal::print(&format!("\npage: {}\n\n{}", folder.join("index.html").display(), words::FURTHER))?;
+    report::write(&report, folder.path(), true).map_err(CliError::Report)?;
+    terminal::print(&format!("\npage: {}\n\n{}", folder.path().join("index.html").display(), words::FURTHER))?;
     let failed = CliError::of_failures(rows.into_iter().filter_map(ComparisonRow::unexpected));
     unless_interrupted(interrupted, None, failed)
-}
-
-/// The first of `noslip-report`, `noslip-report-2`, .. that is not there.
-fn free_folder() -> PathBuf {
-    let first = PathBuf::from("noslip-report");
-    if first.symlink_metadata().is_err() {
-        return first;
-    }
-    let numbered = |k: u32| PathBuf::from(format!("noslip-report-{k}"));
-    (2..).map(numbered).find(|folder| folder.symlink_metadata().is_err()).unwrap_or(first)
 }

@@ -1,6 +1,7 @@
 use super::columns::SHOWN;
 use crate::comparison::{Comparison, REFERRED, WITHOUT_REFERENCE, better_than};
 use crate::error::CliError;
+use crate::in_memory::MOST_NUMBERS;
 use crate::interrupt::Interrupt;
 use crate::progress::Interruptible;
 use crate::table::ComparisonRow;
@@ -12,9 +13,6 @@ use harness::report::{SceneReport, Series};
 use harness::{Assembled, AssemblyNode, Drift, DriftVerdict, Method, assembly_end, run_assembly};
 use scene::Scene;
 use sleigh::SleighState;
-
-/// So many numbers of the runs of a comparison are kept at most, for its report.
-const MOST_NUMBERS: u64 = 100_000_000;
 
 /// Runs every method on a train, until Ctrl-C.
 pub(crate) fn compare_scene(

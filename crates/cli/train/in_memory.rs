@@ -19,6 +19,7 @@ pub(crate) fn in_memory(
     let (reported, ending) = (triggers(events)?, triggers(until)?);
     let account = TrainAccount::new(scene, train, method, (*tolerance, *backward), (&reported, &ending))?;
     let columns = columns(&account.train);
+    request.fits(account.schedule.steps, columns.len())?;
     let mut numbers = vec![Vec::new(); columns.len()];
     let mut keep = |node: &AssemblyNode| {
         numbers.iter_mut().zip(row(&account.train, node)).for_each(|(column, x)| column.push(x));

@@ -15,6 +15,7 @@ use dla::Checkpoint;
 use harness::{AssemblyNode, AssemblyNodes, Method, Progress, Saving, run_assembly_saved};
 use scene::Scene;
 use std::cell::RefCell;
+use std::path::Path;
 
 /// `noslip run` of a train.
 pub(crate) fn run(
@@ -24,7 +25,8 @@ pub(crate) fn run(
     backward: bool,
     out: Option<OutputRequest<'_>>,
 ) -> Result<(), CliError> {
-    let RunArguments { checkpoint, resume, tolerance, event, until, event_samples, .. } = arguments;
+    let RunArguments { resume, tolerance, event, until, event_samples, .. } = arguments;
+    let checkpoint = arguments.saves().map(|(path, _)| path);
     let account = TrainAccount::new(scene, train, method, (*tolerance, backward), (event, until))?;
     if let (Some(trigger), true) = (event.iter().chain(until).next(), checkpoint.is_some() || resume.is_some()) {
         let problem = format!("--checkpoint and --resume of a train keep no events: leave out {}", trigger.text);
@@ -37,9 +39,8 @@ pub(crate) fn run(
     }
     let interrupt = Interrupt::listen();
     let made_by = || provenance(arguments, of(scene), &account.schedule);
-    // A run that had made no step begins.
-    let begun = read.as_ref().filter(|read| read.counts("k").is_ok_and(|[made]| made > 0));
-    let open = |asked| Output::open(asked, made_by(), (columns(&account.train), arguments.every), position(begun));
+    let from = || position(read.as_ref());
+    let open = |asked| Output::open(asked, made_by(), (columns(&account.train), arguments.every), from());
     let output = RefCell::new(out.map(open).transpose()?);
     let bar = progress::bar(method.info().name, account.schedule.steps);
     let mut shown = Interruptible { bar, interrupt: &interrupt };
@@ -77,7 +78,7 @@ pub(crate) fn run(
     }
     let record = &made.run.record;
     let made = record.interrupted.then(|| format!("the run reached t = {} s", table::number(record.t)));
-    unless_interrupted(made, checkpoint.clone(), computed.and(written).and(warning))
+    unless_interrupted(made, checkpoint.map(Path::to_owned), computed.and(written).and(warning))
 }
 
 /// In parts that are saved, or from a part that was, with the output as far as it had come; and what else went wrong.
@@ -89,19 +90,19 @@ fn saved(
     nodes: AssemblyNodes<'_>,
     progress: &mut dyn Progress,
 ) -> Result<(MadeTrain, Result<(), CliError>), CliError> {
-    let RunArguments { checkpoint, checkpoint_every, resume: from, .. } = arguments;
-    let mut saver = resume::Saver::new(checkpoint.as_deref());
+    let (to, every) = arguments.saves().unzip();
+    let mut saver = resume::Saver::new(to);
     let mut save = |made: &Checkpoint| saver.save(&with_position(made, output));
-    let every = checkpoint.as_ref().map(|_| *checkpoint_every);
     let mut saving = Saving { identity, from: read, every, save: &mut save };
     let TrainAccount { train, start, method, schedule, .. } = account;
     let run = run_assembly_saved(&train.assembly, method, schedule, (start, nodes), &mut saving, progress);
-    let run = run.map_err(|source| CliError::Checkpoint { path: from.clone().unwrap_or_default(), source })?;
+    let run =
+        run.map_err(|source| CliError::Checkpoint { path: arguments.resume.clone().unwrap_or_default(), source })?;
     Ok((MadeTrain { run, events: None }, saver.outcome()))
 }
 
 /// What the run came to, for a person.
-fn told(account: &TrainAccount<'_>, made: &MadeTrain, file: Option<&std::path::Path>) -> String {
+fn told(account: &TrainAccount<'_>, made: &MadeTrain, file: Option<&Path>) -> String {
     let (record, [first, last]) = (&made.run.record, account.ends(&made.run));
     let [x, y, heading] = [last.x, last.y, last.heading].map(table::number);
     let more = [

@@ -191,7 +191,8 @@ pub fn piece_by_piece_from<const N: usize, const M: usize>(
     let (begin, end) = (schedule.t0, schedule.time(schedule.steps));
     let mut made = from;
     for Piece { steps, schedule } in smooth_pieces(schedule, system.jump_times(begin.min(end), begin.max(end)))? {
-        if steps.end <= from && from > 0 {
+        // Of a run that is over, its last piece is shown without a step: whoever looks on sees the end.
+        if from > 0 && steps.end <= from.min(schedule.steps.saturating_sub(1)) {
             continue;
         }
         let (first, last) = (schedule.time(steps.start), schedule.time(steps.end));

@@ -1,4 +1,4 @@
-use crate::{Observer, StepReport, View, Work};
+use crate::{Checkpoint, Observer, StepReport, View, Work};
 use std::io;
 use std::ops::ControlFlow;
 
@@ -182,12 +182,21 @@ impl<'a, const N: usize, const M: usize> Nodes<'a, N, M> {
         Self { choice: Choice::every(every), sink }
     }
 
-    /// The same for a run that goes on from a checkpoint after `k` steps, at time `t` (s), whose work [`Work::load`] gave: the nodes are
-    /// those that a run without the checkpoint would have handed on after it.
+    /// The same for a run that goes on from a checkpoint after `k` steps, at time `t` (s), whose work [`Work::load`] gave, and which
+    /// [`save`](Self::save) wrote to: the nodes are those that a run without the checkpoint would have handed on after it.
     #[must_use]
-    pub fn resumed(self, (k, t): (u64, f64), work: Work<N>) -> Self {
+    pub fn resumed(self, (k, t): (u64, f64), work: Work<N>, checkpoint: &Checkpoint) -> Self {
         let last = k.is_multiple_of(self.choice.every).then_some(k);
-        Self { choice: Choice { time: t, work, last, ..self.choice }, ..self }
+        // Of a run whose nodes nobody saw they are not known.
+        let multipliers = checkpoint.get("multipliers").ok();
+        Self { choice: Choice { time: t, work, last, multipliers, ..self.choice }, ..self }
+    }
+
+    /// Adds to a checkpoint what the last node has from the step that led there.
+    pub fn save(&self, checkpoint: &mut Checkpoint) {
+        if let Some(multipliers) = &self.choice.multipliers {
+            checkpoint.put("multipliers", multipliers);
+        }
     }
 }
 

@@ -98,7 +98,7 @@ struct Progressing<const N: usize> {
 /// The record is the same to the last bit whether the run was made at once or in parts, but for its time, which is that of
 /// all parts, with what looks on; so are the nodes, of which a resumed run shows those after the checkpoint. A run may be resumed with
 /// more steps than it had. Where the progress ends the run a last checkpoint is made; so is one at its end, from which the same record
-/// comes again at once.
+/// comes again at once, and one at its start where an event ends it before any other.
 ///
 /// # Errors
 /// [`CheckpointError`] where the checkpoint does not belong to this run; nothing is then done.
@@ -143,7 +143,10 @@ pub fn run_saved_watched<const N: usize, const M: usize>(
     let mut nodes = nodes;
     let mut run = match loaded.filter(|(run, _)| run.made > 0) {
         Some((run, work)) => {
-            nodes = nodes.map(|nodes| nodes.resumed((run.made, run.t), work));
+            nodes = nodes.zip(saving.from).map(|(nodes, from)| nodes.resumed((run.made, run.t), work, from));
+            if saving.every.is_some() {
+                (saving.save)(&run.checkpoint(saving.identity, nodes.as_ref()));
+            }
             run
         }
         None => Progressing {
@@ -157,6 +160,8 @@ pub fn run_saved_watched<const N: usize, const M: usize>(
             unseen: 0,
         },
     };
+    // An event may end a run before it is saved.
+    let mut start = saving.every.filter(|_| run.made == 0).map(|_| run.checkpoint(saving.identity, nodes.as_ref()));
     progress.advance(run.made);
     let mut ticker = Ticker::new(progress, run.made);
     let (begin, before) = (Instant::now(), run.seconds);
@@ -189,18 +194,22 @@ pub fn run_saved_watched<const N: usize, const M: usize>(
                 let ended = watch.ended().is_some();
                 done = outcome?;
                 if ended {
+                    start.iter().for_each(|made| (saving.save)(made));
                     break;
                 }
                 seen = Some((times.time(done.made), *state));
                 run.memory = stepper.memory();
+                // Of a run that is over there is none, and its checkpoint stays as it is.
+                let news = done.made > first || first == 0;
                 let due = saving.every.is_some_and(|every| done.made.is_multiple_of(every));
-                if due && done.made < schedule.steps || ends(&done) {
+                if news && (due && done.made < schedule.steps || ends(&done)) {
                     if done.made == steps.end && done.made < schedule.steps {
                         run.memory.clear();
                     }
                     (run.made, run.t, run.state) = (done.made, times.time(done.made), *state);
                     run.seconds = before + begin.elapsed().as_secs_f64();
-                    (saving.save)(&run.checkpoint(saving.identity));
+                    start = None;
+                    (saving.save)(&run.checkpoint(saving.identity, nodes.as_ref()));
                 }
                 if done.stopped {
                     stopped = true;
@@ -242,8 +251,11 @@ fn chunks(steps: &Range<u64>, every: Option<u64>) -> Vec<Range<u64>> {
 }
 
 impl<const N: usize> Progressing<N> {
-    fn checkpoint(&self, identity: &Checkpoint) -> Checkpoint {
+    fn checkpoint<const M: usize>(&self, identity: &Checkpoint, nodes: Option<&Nodes<'_, N, M>>) -> Checkpoint {
         let mut checkpoint = identity.clone();
+        if let Some(nodes) = nodes {
+            nodes.save(&mut checkpoint);
+        }
         checkpoint.put_counts("k", &[self.made]);
         checkpoint.put("seconds", &[self.seconds]);
         checkpoint.put("time", &[self.t]);

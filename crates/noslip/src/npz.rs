@@ -25,7 +25,7 @@ pub fn write_npz<const N: usize, const M: usize>(
     let names = Trajectory::<N, M>::columns(names);
     let columns: Vec<_> = names.iter().map(|name| ArrayColumn { name, whole: false }).collect();
     let nodes = trajectory.nodes();
-    arrays::write(file, &columns, nodes.len() as u64, metadata, |column, push| {
-        nodes.iter().filter_map(|node| node.numbers().nth(column)).try_for_each(push)
+    arrays::write(file, &columns, nodes.len() as u64, metadata, |push| {
+        nodes.iter().try_for_each(|node| push(&node.numbers().collect::<Vec<f64>>()))
     })
 }

@@ -50,6 +50,7 @@ pub use effects::{
     EFFECTS, EffectInfo, HillSpec, Interpolation, PathShape, PathSpec, SceneEffect, TimeSpec, TrailersSpec,
 };
 pub use error::SceneError;
+pub use file::{files_of, name_of_path, path_of};
 pub use finding::{Place, SceneFinding};
 pub use run::{DEFAULT_METHOD, MAX_STEPS, Overrides, RunSettings};
 pub use settings::{Setting, with_settings};

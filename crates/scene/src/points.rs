@@ -1,7 +1,6 @@
 //! Files of points: comma-separated values with a header, of which a function of time takes two columns.
 
 use crate::file;
-use std::path::{Path, PathBuf};
 
 /// Why there are no points.
 pub(crate) enum Fault {
@@ -19,8 +18,8 @@ pub(crate) enum Fault {
 /// The times and the values of the columns of these names in the file at `path`, seen from the folder of the scene at `origin`. A name
 /// may leave the unit out that stands after the column's, as in `speed [m/s]`.
 pub(crate) fn read(origin: &str, path: &str, names: [&str; 2]) -> Result<(Vec<f64>, Vec<f64>), Fault> {
-    let place: PathBuf = Path::new(origin).parent().map_or_else(|| path.into(), |folder| folder.join(path));
-    let text = file::text(&place).map_err(|problem| Fault::File(format!("cannot be read: {problem}")))?;
+    let text =
+        file::text(&file::beside(origin, path)).map_err(|problem| Fault::File(format!("cannot be read: {problem}")))?;
     let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
     let broken = |error: csv::Error| Fault::File(format!("is not a table: {error}"));
     let header = reader.headers().map_err(broken)?.clone();

@@ -65,7 +65,7 @@ impl Scene {
     ) -> Result<Self, SceneError> {
         let root = TomlTable::root(document, entries)?;
         let name = name_of(document.origin);
-        let title = root.text("title", "a string")?.unwrap_or(&name).to_owned();
+        let title = one_line(root.text("title", "a string")?.unwrap_or(&name));
         let sleigh = sections::sleigh(&root.table("sleigh")?)?;
         let begin = root.table("start")?;
         let start = sections::start(&begin)?;
@@ -216,6 +216,11 @@ fn empty(document: &Document<'_>) -> SceneError {
         help: Some("`noslip new FILE` writes a scene to start from".to_owned()),
     };
     document.fail(&(0..0), None, fault)
+}
+
+/// A title stands on one line.
+pub(crate) fn one_line(title: &str) -> String {
+    title.replace(|c: char| c.is_whitespace() && (c.is_control() || matches!(c, '\u{2028}' | '\u{2029}')), " ")
 }
 
 pub(crate) fn name_of(origin: &str) -> String {

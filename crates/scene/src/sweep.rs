@@ -103,6 +103,7 @@ impl Sweep {
         let name = root.text("scene", accepted)?.ok_or_else(|| root.missing("scene", accepted.to_owned()))?;
         let method = root.text("method", &format!("a string, one of {}", suggest::list(methods)))?;
         let (step, duration) = (root.number(&STEP)?, root.number(&DURATION)?);
+        let name = &file::scene_of_sweep(origin, name);
         let bundled_text = bundled::named(name).map(|scene| scene.text.to_owned());
         let scene_text = bundled_text.map_or_else(|| file::read(name), Ok)?;
         let scene = AnyScene::parse(&scene_text, name, methods)?;
@@ -298,6 +299,12 @@ impl Sweep {
         scene.sleigh = Sleigh::new(mass, inertia, offset)
             .map_err(|error| self.fail("sleigh", format!("does not give a sleigh: {error}")))?;
         Ok(scene)
+    }
+
+    /// All that its rows depend on: not the text of its file, since comments change no row, and not where its scene lies.
+    #[must_use]
+    pub fn contents(&self) -> String {
+        format!("{:?}", Self { file: String::new(), origin: String::new(), ..self.clone() })
     }
 
     fn fail(&self, key: &str, problem: String) -> SweepError {

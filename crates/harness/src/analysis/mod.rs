@@ -39,7 +39,7 @@ pub use lyapunov::{Lyapunov, LyapunovError, LyapunovRequest, kaplan_yorke, lyapu
 pub use measure::{enclosed_area, measure_defect};
 pub use momentum_meter::MomentumMeter;
 pub(crate) use parallel::STACK;
-pub use parallel::in_parallel;
+pub use parallel::{in_parallel, prepare_threads};
 pub use phase::{Rounds, weighted_mean};
 pub use section::{Section, section};
 pub use stretch::{LyapunovFailure, Running};

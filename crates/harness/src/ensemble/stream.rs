@@ -1,4 +1,4 @@
-use crate::analysis::STACK;
+use crate::analysis::{STACK, prepare_threads};
 use dla::Stop;
 use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
@@ -23,6 +23,7 @@ pub fn in_order<T: Send, E>(
     mut sink: impl FnMut(Vec<T>) -> ControlFlow<E>,
 ) -> ControlFlow<E> {
     let size = size.max(1);
+    prepare_threads();
     let threads = rayon::current_num_threads();
     let groups = members.start / size..members.end.div_ceil(size);
     let ahead = (AHEAD / size).max(GROUPS_A_THREAD * threads as u64);

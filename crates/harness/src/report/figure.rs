@@ -60,6 +60,14 @@ pub struct Paper {
     pub dpi: f64,
 }
 
+impl Paper {
+    /// Width and height in pixels, of a format that has them.
+    #[must_use]
+    pub fn pixels(&self) -> [f64; 2] {
+        self.size.map(|length| (length / CENTIMETRES_PER_INCH * self.dpi).round())
+    }
+}
+
 /// A figure as the bytes of a file.
 ///
 /// # Errors

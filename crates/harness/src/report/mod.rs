@@ -38,6 +38,7 @@ pub use chart::{Chart, Layer, chart_svg};
 pub use figure::{Figure, Panel, Paper, figure};
 pub use picture::FigureFormat;
 pub use precision::{PrecisionReport, PrecisionTable, write_precision};
+pub use raster::MOST_PIXELS;
 
 /// A report: what the page says above its scenes, and the scenes.
 #[derive(Debug, Clone, Default)]

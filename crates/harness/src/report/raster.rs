@@ -6,9 +6,16 @@ use super::look;
 use super::png;
 use zeno::{Cap, Command, Join, PathBuilder, Scratch, Stroke, Style};
 
+/// A picture has so many pixels at most, each of which takes six bytes and more while it is drawn.
+pub const MOST_PIXELS: f64 = 1.5e8;
+
 /// The picture as the bytes of a PNG file, with so many pixels to a unit of the picture; the file says how many to an inch.
 pub(super) fn png(size: [f64; 2], marks: &[CanvasMark], scale: f64, dpi: f64) -> Result<Vec<u8>, String> {
-    let [width, height] = size.map(|length| (length * scale).round() as u32);
+    let [width, height] = size.map(|length| (length * scale).round());
+    if width * height > MOST_PIXELS {
+        return Err(format!("{width} x {height} pixels are more than {MOST_PIXELS:.1e}"));
+    }
+    let [width, height] = [width, height].map(|length| length as u32);
     let mut pixels = Pixels::new(width as usize, height as usize);
     let letters = Letters::new().ok_or("the embedded font cannot be read")?;
     for mark in marks {

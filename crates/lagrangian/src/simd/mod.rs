@@ -70,6 +70,27 @@ pub fn dispatch_widest<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<_, 8>(pulp::Scalar::new())
 }
 
+/// The name of what kernels run on here, on which the last bit of results depends.
+#[must_use]
+pub fn instructions() -> &'static str {
+    struct Registers;
+    impl Kernel for Registers {
+        type Output = usize;
+        fn run<S: Simd, const R: usize>(self, _simd: S) -> usize {
+            R
+        }
+    }
+    match (dispatch(Registers), dispatch_widest(Registers), cfg!(target_feature = "fma")) {
+        (Some(1), _, true) => "avx512, fused everywhere",
+        (Some(1), _, false) => "avx512",
+        (Some(_), 1, true) => "avx512 in halves, fused everywhere",
+        (Some(_), 1, false) => "avx512 in halves",
+        (Some(_), _, true) => "avx2, fused everywhere",
+        (Some(_), _, false) => "avx2",
+        (None, ..) => "without vectors",
+    }
+}
+
 /// Whether every function is compiled for the registers of a kernel, and not only what is inlined in it.
 #[cfg(target_arch = "x86_64")]
 pub const KNOWN_WHEN_BUILT: bool = build::NARROW || build::WIDE;

@@ -87,7 +87,13 @@ def make(task: Task) -> Made:
     while True:
         try:
             told = call(arguments)
-            return Made(digest(Path(task.folder) / task.name), int(told["computed"]))
+            part = Path(task.folder) / task.name
+            if not part.exists():
+                raise OSError(
+                    f"the worker did not make {task.name}: it has another version of noslip or another set of instructions than the "
+                    "driver, and its numbers would differ in the last bits"
+                )
+            return Made(digest(part), int(told["computed"]))
         except _noslip.BusyError:
             # A worker that was given up may still be at work.
             if time.monotonic() > until:

@@ -10,7 +10,7 @@ pub use self::start::Given;
 use crate::document::Document;
 use crate::error::SceneError;
 use crate::fault::Fault;
-use crate::scene::{name_of, opened};
+use crate::scene::{name_of, one_line, opened};
 use crate::table::TomlTable;
 use crate::{Built, Overrides, RunSettings, Scene, Visitor};
 use ::sleigh::SleighError;
@@ -247,7 +247,7 @@ impl TextScene {
     ) -> Result<Self, SceneError> {
         let root = TomlTable::of_system(document, entries)?;
         let name = name_of(document.origin);
-        let title = root.text("title", "a string")?.unwrap_or(&name).to_owned();
+        let title = one_line(root.text("title", "a string")?.unwrap_or(&name));
         let (words, places) = words::read(&root)?;
         let model = TextModel::new(&words).map_err(|error| places.fail(&document, &words, &error))?;
         let (start, given) = start::read(&root, &model)?;

@@ -1,0 +1,16 @@
+//! Fields of comma-separated values (RFC 4180).
+
+/// The header of a file with columns of these headings.
+pub(crate) fn header(headings: impl IntoIterator<Item = String>) -> String {
+    headings.into_iter().map(|heading| quoted(&heading)).collect::<Vec<_>>().join(",")
+}
+
+/// A field of text, in quotes where it would be taken for more than one field, or for a formula by a program of tables.
+pub(crate) fn quoted(text: &str) -> String {
+    let formula = text.starts_with(['=', '+', '-', '@']) && text.parse::<f64>().is_err();
+    if formula || text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
