@@ -108,7 +108,7 @@ impl RunRequest {
             return Ok(());
         }
         let least = steps.div_ceil((MOST_NUMBERS / columns).saturating_sub(2).max(1));
-        Err(CliError::Request(format!(
+        Err(CliError::Memory(format!(
             "the run keeps {kept} nodes of {columns} numbers in memory, and {MOST_NUMBERS} numbers are the most: every={least} keeps fewer \
              nodes, t_eval= the motion at some times, and `noslip run --out FILE` writes them all"
         )))

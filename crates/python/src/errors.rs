@@ -25,7 +25,7 @@ pub(crate) fn raised(Refusal { message, request, memory }: Refusal) -> PyErr {
 
 /// A message whose flags are arguments: `--event-samples` is `event_samples`. What stands between backticks is a command, and stays.
 pub(crate) fn in_python(message: &str) -> String {
-    let part = |(k, part): (usize, &str)| if k % 2 == 0 { without_dashes(part) } else { part.to_owned() };
+    let part = |(k, part): (usize, &str)| if k.is_multiple_of(2) { without_dashes(part) } else { part.to_owned() };
     message.split('`').enumerate().map(part).collect::<Vec<_>>().join("`")
 }
 

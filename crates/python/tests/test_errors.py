@@ -100,6 +100,14 @@ def test_what_progress_raises_ends_the_run() -> None:
     assert time.perf_counter() - begin < 30.0
 
 
+@pytest.mark.parametrize("scene", [noslip.scene("turnaround"), noslip.System(["x"], "x'^2/2")])
+def test_a_run_that_does_not_fit_into_memory_is_refused_before_it_begins(scene: noslip.Scene) -> None:
+    begin = time.perf_counter()
+    with pytest.raises(noslip.RequestError, match=r"every=\d+ keeps fewer nodes, t_eval= the motion") as caught:
+        scene.run(step=1e-8, duration=100.0)
+    assert isinstance(caught.value, MemoryError) and time.perf_counter() - begin < 1.0
+
+
 # A step of an adaptive method that gets nowhere: at t = 0 no coordinate of it may move.
 STUCK = """
 [system]
