@@ -18,6 +18,8 @@ OWN_STEPS = ("gauss-adaptive", "dop853")
 TRAINS = ("dla", "dla4", "dla6", "dla8", "lobatto3", "lobatto4", "lobatto5", "energy2")
 # A step resolves a motion where it is at most so much of the time of its fastest rate.
 RESOLVED = 0.5
+# An end is promised where the bound of its error is at most so much of the way.
+PROMISED = 0.1
 # A refusal that says what a method never does.
 BY_KIND = re.compile(r"refused|does not do|do not do|cannot")
 
@@ -113,8 +115,8 @@ def judge(program, findings, refusals, hard, truth, run):
     bound = 1e-7 * truth.amplified if method in OWN_STEPS else expected(order, step, truth.rate, duration, truth.amplified) / 4
     bound = max(bound, truth.floor)
     if error <= bound:
-        return findings.count("right" if bound < 0.5 else "right, though nothing is promised")
-    if bound < 0.5:
+        return findings.count("right" if bound < PROMISED else "right, though nothing is promised")
+    if bound < PROMISED:
         if warned:
             return findings.count("wrong with a warning")
         return findings.fail("wrong", **where, error=error, bound=bound, turns=step * truth.rate, amplified=truth.amplified)
