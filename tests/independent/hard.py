@@ -112,7 +112,10 @@ def judge(program, findings, refusals, hard, truth, run):
     error = float((np.abs(shown - truth.end[truth.chosen]) / truth.size).max())
     # With the weight of one half, which is that of a scene without one, `dla-alpha` is of order two; constants of errors are below 1/4.
     order = 2 if hard.corners else max(2, answer.shown["order"])
-    bound = 1e-7 * truth.amplified if method in OWN_STEPS else expected(order, step, truth.rate, duration, truth.amplified) / 4
+    bound = expected(order, step, truth.rate, duration, truth.amplified) / 4
+    if method in OWN_STEPS:
+        # The tolerance of 1e-12 (m, rad) is one of every step, kept to a factor of 30.
+        bound = max(1e-7, 3e-11 * answer.shown["steps"] / min(1.0, truth.size.min())) * truth.amplified
     bound = max(bound, truth.floor)
     if error <= bound:
         return findings.count("right" if bound < PROMISED else "right, though nothing is promised")
