@@ -18,6 +18,8 @@ OWN_STEPS = ("gauss-adaptive", "dop853")
 TRAINS = ("dla", "dla4", "dla6", "dla8", "lobatto3", "lobatto4", "lobatto5", "energy2")
 # A step resolves a motion where it is at most so much of the time of its fastest rate.
 RESOLVED = 0.5
+# An end is promised where the bound of its error is at most so much of the way.
+PROMISED = 0.1
 # A refusal that says what a method never does.
 BY_KIND = re.compile(r"refused|does not do|do not do|cannot")
 
@@ -110,11 +112,14 @@ def judge(program, findings, refusals, hard, truth, run):
     error = float((np.abs(shown - truth.end[truth.chosen]) / truth.size).max())
     # With the weight of one half, which is that of a scene without one, `dla-alpha` is of order two; constants of errors are below 1/4.
     order = 2 if hard.corners else max(2, answer.shown["order"])
-    bound = 1e-7 * truth.amplified if method in OWN_STEPS else expected(order, step, truth.rate, duration, truth.amplified) / 4
+    bound = expected(order, step, truth.rate, duration, truth.amplified) / 4
+    if method in OWN_STEPS:
+        # The tolerance of 1e-12 (m, rad) is one of every step, kept to a factor of 30.
+        bound = max(1e-7, 3e-11 * answer.shown["steps"] / min(1.0, truth.size.min())) * truth.amplified
     bound = max(bound, truth.floor)
     if error <= bound:
-        return findings.count("right" if bound < 0.5 else "right, though nothing is promised")
-    if bound < 0.5:
+        return findings.count("right" if bound < PROMISED else "right, though nothing is promised")
+    if bound < PROMISED:
         if warned:
             return findings.count("wrong with a warning")
         return findings.fail("wrong", **where, error=error, bound=bound, turns=step * truth.rate, amplified=truth.amplified)

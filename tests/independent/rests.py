@@ -99,6 +99,8 @@ def limits(program, findings, file, where, found, right, scale):
     told = {"limit": limit, "fastest": scale, "reason": found["step_limit_reason"]}
     if limit is not None and limit * scale < 0.3:
         findings.fail("false limit", **where, **told)
+    elif limit is None and found["step_limit_reason"] == "no step":
+        findings.count("limits not told")
     elif right_limit is not None and right_limit < 1000 * STEP and (limit is None or abs(limit / right_limit - 1) > 0.02):
         findings.fail("limit", **where, **told, right=right_limit)
     return findings.count("maps and limits looked at")
