@@ -23,8 +23,8 @@ impl<Method> Rebased<Method> {
     }
 }
 
-/// A step in so many bases and more is given up: it turns faster than any tolerance asks for.
-const MOST_PARTS: u32 = 10_000;
+/// Within a step a method makes no more steps of its own, in all bases together.
+const MOST_STEPS: u32 = 100_000;
 
 /// Whether the basis of this number is well conditioned at a node.
 fn holds<const N: usize, const M: usize>(system: &dyn Mechanics<N, M>, number: u64, t: f64, node: &State<N>) -> bool {
@@ -34,12 +34,14 @@ fn holds<const N: usize, const M: usize>(system: &dyn Mechanics<N, M>, number: u
 }
 
 impl<Method> Rebased<Method> {
-    /// The step, or as much of it as the basis holds in which it begins, and then the time at which that ends.
+    /// The step, or as much of it as the basis holds in which it begins, and then the time at which that ends; counts the steps that the method
+    /// makes of its own.
     fn part<const N: usize, const M: usize>(
         &mut self,
         system: &dyn Mechanics<N, M>,
         step: (f64, f64),
         state: &mut State<N>,
+        inner: &mut u32,
     ) -> Result<(StepReport<M>, Option<f64>), StepError>
     where
         Method: OneStep<N, M>,
@@ -54,9 +56,12 @@ impl<Method> Rebased<Method> {
                 state.advance(&[0.0; N], *state.v(), None);
             }
             *basis = number;
-            let mut look = |time: f64, node: &State<N>| match holds(system, number, time, node) {
-                true => ControlFlow::Continue(()),
-                false => ControlFlow::Break(()),
+            let mut look = |time: f64, node: &State<N>| {
+                *inner += 1;
+                match *inner < MOST_STEPS && holds(system, number, time, node) {
+                    true => ControlFlow::Continue(()),
+                    false => ControlFlow::Break(()),
+                }
             };
             outcome = Some(method.step_until(near, step, state, &mut look));
         });
@@ -83,12 +88,11 @@ where
         let (before, basis) = (*state, self.basis);
         // Of a step in one part the length is that of the step, to the last bit.
         let (mut total, mut rest) = (None::<StepReport<M>>, (t, h));
-        let mut parts = 0;
+        let mut inner = 0;
         loop {
-            parts += 1;
-            let found = match parts {
-                ..=MOST_PARTS => self.part(system, rest, state),
-                tries => Err(StepError::Tolerance { tries, step: rest.1 / f64::from(tries) }),
+            let found = match inner {
+                ..MOST_STEPS => self.part(system, rest, state, &mut inner),
+                tries => Err(StepError::Tolerance { tries, step: (rest.0 - t).abs() / f64::from(tries) }),
             };
             match found {
                 Ok((report, end)) => {
