@@ -33,8 +33,8 @@ impl<Method> Rebased<Method> {
     }
 }
 
-/// A step in so many bases and more is given up: it turns faster than any tolerance asks for.
-const MOST_PARTS: u32 = 10_000;
+/// Within a step a method makes no more steps of its own, in all bases together.
+const MOST_STEPS: u32 = 100_000;
 
 /// Whether the basis of this number is well conditioned at a node.
 fn holds<const N: usize, const M: usize>(system: &dyn Mechanics<N, M>, number: u64, t: f64, q: &[f64; N]) -> bool {
@@ -44,19 +44,21 @@ fn holds<const N: usize, const M: usize>(system: &dyn Mechanics<N, M>, number: u
 }
 
 impl<Method> Rebased<Method> {
-    /// The step, or as much of it as the basis holds in which it begins, and then the time at which that ends.
+    /// The step, or as much of it as the basis holds in which it begins, and then the time at which that ends; counts the steps that the method
+    /// makes of its own.
     fn part<const N: usize, const M: usize>(
         &mut self,
         system: &dyn Mechanics<N, M>,
         step: (f64, f64),
         state: &mut State<N>,
+        inner: &mut u32,
     ) -> Result<(StepReport<M>, Option<f64>), StepError>
     where
         Method: OneStep<N, M>,
     {
         let (t, h) = step;
         let before = *state;
-        let outcome = self.part_near(system, (t, before.q(), self.basis), step, state);
+        let outcome = self.part_near(system, (t, before.q(), self.basis), step, state, inner);
         self.local = Some(outcome.is_some());
         let made = match outcome {
             None => return Ok((self.method.step(system, t, h, state)?, None)),
@@ -75,7 +77,7 @@ impl<Method> Rebased<Method> {
                 continue;
             }
             *state = before;
-            if let Some(Ok(made)) = self.part_near(system, (t, &q, number), step, state)
+            if let Some(Ok(made)) = self.part_near(system, (t, &q, number), step, state, inner)
                 && (made.1.is_some() || self.held(system, step, &before, state))
             {
                 return Ok(made);
@@ -105,6 +107,7 @@ impl<Method> Rebased<Method> {
         (time, place, number): (f64, &[f64; N], u64),
         step: (f64, f64),
         state: &mut State<N>,
+        inner: &mut u32,
     ) -> Option<Result<(StepReport<M>, Option<f64>), StepError>>
     where
         Method: OneStep<N, M>,
@@ -122,10 +125,11 @@ impl<Method> Rebased<Method> {
             }
             *basis = number;
             let mut look = |time: f64, node: &State<N>| {
+                *inner += 1;
                 dropped = left_branch(system, (last.0, time - last.0), &last.1, node)
                     .or_else(|| turned_off(system, &first, &last.1, (time, node)));
                 last = (time, *node);
-                match dropped.is_none() && holds(system, number, time, node.q()) {
+                match dropped.is_none() && *inner < MOST_STEPS && holds(system, number, time, node.q()) {
                     true => ControlFlow::Continue(()),
                     false => ControlFlow::Break(()),
                 }
@@ -162,12 +166,11 @@ where
         let (before, basis) = (*state, self.basis);
         // Of a step in one part the length is that of the step, to the last bit.
         let (mut total, mut rest) = (None::<StepReport<M>>, (t, h));
-        let mut parts = 0;
+        let mut inner = 0;
         loop {
-            parts += 1;
-            let found = match parts {
-                ..=MOST_PARTS => self.part(system, rest, state),
-                tries => Err(StepError::Tolerance { tries, step: rest.1 / f64::from(tries) }),
+            let found = match inner {
+                ..MOST_STEPS => self.part(system, rest, state, &mut inner),
+                tries => Err(StepError::Tolerance { tries, step: (rest.0 - t).abs() / f64::from(tries) }),
             };
             match found {
                 Ok((report, end)) => {

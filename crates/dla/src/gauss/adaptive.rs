@@ -8,15 +8,15 @@ use super::{Gauss, TakenStep};
 use crate::positions::affine_only;
 use crate::{Mechanics, OneStep, OwnStep, State, StepError, StepReport, stops};
 use lagrangian::linear::larger;
-use lagrangian::{PowerSources, from_fn, mapped};
+use lagrangian::{PowerSources, Smoothness, from_fn, mapped};
 use std::ops::ControlFlow;
 
 /// Gauss collocation with steps of its own within a step of the schedule, as many as a tolerance asks for.
 ///
 /// The highest Legendre coefficient of the slopes of a step tells how smooth the motion is along it: where coefficients fall
 /// off evenly, its power `2 s / (s - 1)` is about the error of the step. It is the same forward and backward in time. Where functions of the
-/// system have corners or change with time, and over the first steps, each longer than the last, the defect of the equations at other points
-/// is a second estimate, which sees corners, jumps and pulses. Steps
+/// system have corners or change with time, the defect of the equations at other points is a second estimate, which sees corners, jumps and
+/// pulses. Steps
 /// are powers of the fourth root of two (s), so that the polynomial of one is continued into the next by a few fixed matrices.
 /// Stages are iterated to a fraction of the tolerance, not to rounding: on the constraint the method is by construction, but
 /// it is symmetric to the tolerance only, and what [`Gauss`] keeps over long runs it does not.
@@ -238,13 +238,15 @@ impl GaussAdaptive {
     }
 }
 
-/// A first step: a fifth of the shortest time in which a velocity changes by itself; where nothing changes a small part of the interval, since
-/// what is at rest now may be pushed later.
+/// A first step: half of the shortest time in which a velocity changes by itself, the interval where nothing changes. Where functions have
+/// corners or change with time less than that, and a small part of the interval: what is at rest now may be pushed later.
 fn first<const N: usize, const M: usize>(system: &dyn Mechanics<N, M>, t: f64, whole: f64, state: &State<N>) -> i32 {
     let slope = state.quasi_velocities(system, t).and_then(|xi| system.reduced_slope(t, state.q(), &xi));
     let size = |x: &[f64; N]| x.iter().fold(0.0f64, |m, x| larger(m, x.abs()));
     let rate = slope.map_or(0.0, |slope| size(&slope.acceleration) / larger(size(&slope.velocity), 1e-3));
     let turning = (0..N).filter(|&i| system.angles()[i]).fold(rate, |m, i| larger(m, state.v()[i].abs()));
-    let step = if turning > 0.0 { (0.2 / turning).min(whole.abs()) } else { whole.abs() / 32.0 };
+    let Smoothness { corners, driven } = system.smoothness();
+    let (part, still) = if corners || driven { (0.2, whole.abs() / 32.0) } else { (0.5, whole.abs()) };
+    let step = if turning > 0.0 { (part / turning).min(whole.abs()) } else { still };
     quarters_of(step).clamp(-4000, 4000)
 }

@@ -10,7 +10,7 @@ use lagrangian::{Smoothness, from_fn};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Doubt {
     /// A step is looked at again where its coefficients tell of a larger error than this, in tolerances; none of a system whose functions are
-    /// smooth, and do not change with time.
+    /// smooth, and do not change with time: its steps are those of the coefficients alone.
     above: Option<f64>,
 }
 
@@ -84,10 +84,7 @@ impl Doubt {
         attempt: &Attempt<'_, N>,
         grown: bool,
     ) -> Option<f64> {
-        if self.above.is_none() && !grown {
-            return None;
-        }
-        let error = self.error(system, attempt, grown);
+        let error = self.error(system, self.above?, attempt, grown);
         (error > MOST).then(|| error / MOST)
     }
 
@@ -95,6 +92,7 @@ impl Doubt {
     fn error<const N: usize, const M: usize>(
         self,
         system: &dyn Mechanics<N, M>,
+        above: f64,
         of: &Attempt<'_, N>,
         grown: bool,
     ) -> f64 {
@@ -103,17 +101,15 @@ impl Doubt {
         let (mut error, mut doubtful) = (0.0, grown);
         for &[last, before] in tail.iter().flatten() {
             let even = (last / before).min(1.0);
-            doubtful |= last > SMALL && self.above.is_some_and(|above| last * even * even * even > above);
+            doubtful |= last > SMALL && last * even * even * even > above;
         }
         let between = of.rule.between();
-        if self.above.is_some() {
-            for (at, (end, values)) in [t, t + h].into_iter().zip(of.ends.iter().zip(&between.ends)) {
-                let [q, xi] = *end;
-                let Some(defect) = of.defect(system, at, (q, xi), values) else { continue };
-                for (defect, [last, _]) in defect.iter().flatten().zip(tail.iter().flatten()) {
-                    if *defect > 2.0 * last + SMALL {
-                        error = larger(error, OUTSIDE * defect);
-                    }
+        for (at, (end, values)) in [t, t + h].into_iter().zip(of.ends.iter().zip(&between.ends)) {
+            let [q, xi] = *end;
+            let Some(defect) = of.defect(system, at, (q, xi), values) else { continue };
+            for (defect, [last, _]) in defect.iter().flatten().zip(tail.iter().flatten()) {
+                if defect.abs() > 2.0 * last + SMALL {
+                    error = larger(error, OUTSIDE * defect.abs());
                 }
             }
         }
@@ -124,7 +120,7 @@ impl Doubt {
         for i in 0..POINTS {
             let [q, xi] = of.along(&between.integrals[i]);
             let at = t + between.nodes[i] * h;
-            let Some(defect) = of.signed_defect(system, at, (&q, &xi), &between.values[i]) else { continue };
+            let Some(defect) = of.defect(system, at, (&q, &xi), &between.values[i]) else { continue };
             for which in 0..2 {
                 for k in 0..N {
                     let share = between.weights[i] * defect[which][k];
@@ -135,12 +131,9 @@ impl Doubt {
         }
         for which in 0..2 {
             for k in 0..N {
-                error = larger(error, signed[which][k].abs());
-                if self.above.is_some() {
-                    let [last, before] = tail[which][k];
-                    let even = (last / before).min(1.0);
-                    error = larger(error, plain[which][k] * even * even * even);
-                }
+                let [last, before] = tail[which][k];
+                let even = (last / before).min(1.0);
+                error = larger(error, larger(signed[which][k].abs(), plain[which][k] * even * even * even));
             }
         }
         error
@@ -174,7 +167,7 @@ impl<const N: usize> Attempt<'_, N> {
     }
 
     /// What the slopes of the equations at a point are more than those of the polynomial, in tolerances; none where there are none.
-    fn signed_defect<const M: usize>(
+    fn defect<const M: usize>(
         &self,
         system: &dyn Mechanics<N, M>,
         t: f64,
@@ -186,15 +179,5 @@ impl<const N: usize> Attempt<'_, N> {
         let moving = |which: usize, k: usize| which == 0 || k < N - M;
         let defect = |which: usize, k: usize| (slopes[which][k] - there[which][k]) * self.counts[which][k];
         Some(from_fn(|which| from_fn(|k| if moving(which, k) { defect(which, k) } else { 0.0 })))
-    }
-
-    fn defect<const M: usize>(
-        &self,
-        system: &dyn Mechanics<N, M>,
-        t: f64,
-        at: (&[f64; N], &[f64; N]),
-        values: &[f64; 8],
-    ) -> Option<Pair<N>> {
-        Some(self.signed_defect(system, t, at, values)?.map(|defect| defect.map(f64::abs)))
     }
 }

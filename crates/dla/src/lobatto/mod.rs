@@ -124,6 +124,11 @@ impl<const N: usize, const M: usize, const S: usize> OneStep<N, M> for Lobatto<S
         affine_only(system, t0, state)?;
         self.made(system, (t0, h), state).map_err(|error| light(system, t0, state, error))
     }
+
+    fn measure_work(&mut self, sources: PowerSources) {
+        // Up to order 6 the work is measured well enough from node to node.
+        self.sources = if S > 4 { sources } else { PowerSources::NONE };
+    }
 }
 
 /// The error of a step, with the mass matrix named where it is singular or nearly so: the momenta of the stages, one fewer than their
@@ -209,10 +214,5 @@ impl<const S: usize> Lobatto<S> {
         state.advance(&increment, v1, None);
         let work = self.sources.any().then(|| h * mean.mean());
         Ok(StepReport { impulses: ends, iterations, work })
-    }
-
-    fn measure_work(&mut self, sources: PowerSources) {
-        // Up to order 6 the work is measured well enough from node to node.
-        self.sources = if S > 4 { sources } else { PowerSources::NONE };
     }
 }
