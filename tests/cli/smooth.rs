@@ -61,16 +61,6 @@ fn smooth_motions_are_not_refused_at_length() {
     ends(&LONG);
 }
 
-/// In a well with drag a train comes to rest, until its speeds are round-off of its place.
-#[test]
-#[ignore = "slow"]
-fn trains_stay_at_rest_at_length() {
-    for method in ["dla", "dla4"] {
-        let run = run(&format!("train-at-rest.toml --method {method}"));
-        assert!((run["final"]["y"].as_f64().unwrap() + 0.3511).abs() < 1e-3, "{method}: {run}");
-    }
-}
-
 /// A coordinate of 1e-14 kg holds its constraint as any other does.
 #[test]
 fn light_coordinates_hold_their_constraint() {
