@@ -242,9 +242,8 @@ impl<const N: usize, const M: usize> StepMap<'_, '_, N, M> {
         let shape = &self.near.shape;
         let rows = shape.len() + free;
         let gradients = slope.view((rows, 0), (slope.nrows() - rows, n)).into_owned();
-        let variables: Vec<usize> = shape.iter().copied().chain(n..n + free).collect();
         let along = AllowedDirections::new(&gradients, shape, free)?;
-        let slope = along.restrict(&slope.rows(0, rows).select_columns(&variables));
+        let slope = along.restrict(&slope.rows(0, rows).into_owned());
         Some(with_family(slope, 1.0, ROUNDING, size)?.1)
     }
 }

@@ -2,27 +2,43 @@ use super::manifold::{DEPENDENT, Split};
 use super::spectrum::{Spectrum, spectrum};
 use nalgebra::DMatrix;
 
-/// A linear map on the directions along which a motion may be displaced: those of some coordinates that keep the constraints on positions,
-/// and those of its quasi-velocities.
-pub(super) struct AllowedDirections(DMatrix<f64>);
+/// The directions along which a motion may be displaced: those of some coordinates that keep the constraints on positions, which the others
+/// follow, and those of its quasi-velocities.
+pub(super) struct AllowedDirections {
+    /// In the coordinates of the shape and the quasi-velocities, orthonormal.
+    along: DMatrix<f64>,
+    /// The same in all coordinates and the quasi-velocities.
+    whole: DMatrix<f64>,
+}
 
 impl AllowedDirections {
     /// Of the coordinates `shape`, the others being free to follow, and so many quasi-velocities; `rows` are the gradients of the constraints
     /// on positions in all coordinates.
     pub(super) fn new(rows: &DMatrix<f64>, shape: &[usize], free: usize) -> Option<Self> {
-        let others: Vec<usize> = (0..rows.ncols()).filter(|i| !shape.contains(i)).collect();
+        let (n, count) = (rows.ncols(), shape.len());
+        let others: Vec<usize> = (0..n).filter(|i| !shape.contains(i)).collect();
+        let (of_others, of_shape) = (rows.select_columns(&others), rows.select_columns(shape));
         // What the other coordinates cannot make up for.
-        let left = Split::by(&rows.select_columns(&others).transpose(), DEPENDENT)?.unseen;
-        let along = Split::by(&(left.transpose() * rows.select_columns(shape)), DEPENDENT)?.unseen;
-        let mut directions = DMatrix::zeros(shape.len() + free, along.ncols() + free);
-        directions.view_mut((0, 0), along.shape()).copy_from(&along);
-        directions.view_mut((shape.len(), along.ncols()), (free, free)).fill_with_identity();
-        Some(Self(directions))
+        let left = Split::by(&of_others.transpose(), DEPENDENT)?.unseen;
+        let kept = Split::by(&(left.transpose() * &of_shape), DEPENDENT)?.unseen;
+        let k = kept.ncols();
+        let mut along = DMatrix::zeros(count + free, k + free);
+        along.view_mut((0, 0), (count, k)).copy_from(&kept);
+        along.view_mut((count, k), (free, free)).fill_with_identity();
+        let mut whole = DMatrix::zeros(n + free, k + free);
+        whole.view_mut((n, k), (free, free)).fill_with_identity();
+        shape.iter().enumerate().for_each(|(i, &q)| whole.view_mut((q, 0), (1, k)).copy_from(&kept.row(i)));
+        if !others.is_empty() && rows.nrows() > 0 {
+            let follow = -(of_others.pseudo_inverse(DEPENDENT).ok()? * of_shape * &kept);
+            others.iter().enumerate().for_each(|(i, &q)| whole.view_mut((q, 0), (1, k)).copy_from(&follow.row(i)));
+        }
+        Some(Self { along, whole })
     }
 
-    /// What a matrix in shape and quasi-velocities does along them.
+    /// What a matrix does along them, whose rows are those of shape and quasi-velocities and whose columns those of all coordinates and the
+    /// quasi-velocities.
     pub(super) fn restrict(&self, matrix: &DMatrix<f64>) -> DMatrix<f64> {
-        self.0.tr_mul(matrix) * &self.0
+        self.along.tr_mul(matrix) * &self.whole
     }
 }
 

@@ -17,7 +17,7 @@ const REST: f64 = 1e-9;
 /// what the equations depend on: in general position.
 const OFFSETS: [f64; 5] = [0.0, 0.37, -0.61, 0.83, 1.9];
 /// Rest is looked for from so many further places, up to these parts of one plus the start in each coordinate, and all around in an angle.
-const PLACES: usize = 12;
+const PLACES: usize = 20;
 const REACHES: [f64; 3] = [0.3, 1.0, 3.0];
 
 /// The search for the relative equilibria of a system.
@@ -186,8 +186,9 @@ impl<'a, const N: usize, const M: usize> Searching<'a, N, M> {
         let field = reduced_field(&*system.gradients(), 0.0, q, xi)?.ok()?;
         let (_, gradients) = positions(system, n, 0.0, q);
         let along = AllowedDirections::new(&gradients, &self.shape, free)?;
-        let variables: Vec<usize> = self.shape.iter().copied().chain(N..N + free).collect();
-        let slope = along.restrict(&field.derivative.select_rows(&variables).select_columns(&variables));
+        let rows: Vec<usize> = self.shape.iter().copied().chain(N..N + free).collect();
+        let columns: Vec<usize> = (0..n).chain(N..N + free).collect();
+        let slope = along.restrict(&field.derivative.select_rows(&rows).select_columns(&columns));
         let (family, flow) = with_family(slope, 0.0, 0.0, |[re, _]| re)?;
         let stable = flow.is_stable_flow();
         let shape = self.shape.clone();
