@@ -333,7 +333,7 @@ fn the_scene_of_a_sweep_lies_beside_it_or_in_the_working_folder() {
         folder.done("ensemble sub/sweep.toml --out parts --part 1/2");
         if scene != "far.toml" {
             let mut command = folder.command(["ensemble", "sweep.toml", "--out", "../parts", "--part", "2/2"]);
-            assert!(command.current_dir(folder.join("sub")).status().unwrap().success());
+            assert!(command.current_dir(folder.join("sub")).output().unwrap().status.success());
             folder.done("merge parts --out m.csv --force");
             assert_eq!(folder.read("m.csv"), folder.read("r.csv"));
         }
