@@ -137,9 +137,7 @@ impl<Method> Rebased<Method> {
             outcome = Some(method.step_until(near, step, state, &mut look));
         });
         if let Some(Ok((_, None))) = &outcome {
-            // Seen over the whole step too: steps of the method's own may turn little by little.
-            dropped = left_branch(system, (last.0, t + h - last.0), &last.1, state)
-                .or_else(|| if last.0 == t { None } else { left_branch(system, step, &first.1, state) });
+            dropped = left_branch(system, (last.0, t + h - last.0), &last.1, state);
         }
         match (outcome, dropped) {
             (Some(Ok(_)), Some(dropped)) => Some(Err(dropped.into())),
@@ -172,6 +170,10 @@ where
                 ..MOST_STEPS => self.part(system, rest, state, &mut inner),
                 tries => Err(StepError::Tolerance { tries, step: (rest.0 - t).abs() / f64::from(tries) }),
             };
+            let ended = self.local == Some(true) && matches!(found, Ok((_, None)));
+            let whole = ended.then(|| left_branch(system, (t, h), &before, state)).flatten();
+            // Seen over the whole step too: in steps of the method's own, and where bases change, the motion may turn little by little.
+            let found = whole.map_or(found, |dropped| Err(dropped.into()));
             match found {
                 Ok((report, end)) => {
                     let made = total.map_or(report, |total| total.then(&report));
