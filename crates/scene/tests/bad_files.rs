@@ -130,7 +130,12 @@ const CASES: &[Case] = &[
         "duration = 40.0\n",
         "duration = 40.0\n[[effects]]\nkind = \"thrust\"\nforce = true",
         (16, 9),
-        &["`effects.force`", "a function of time in N", "a formula in `t` in quotes", "`{times, values, interpolation}`"],
+        &[
+            "`effects.force`",
+            "a function of time in N",
+            "a formula in `t` in quotes",
+            "`{times, values, interpolation}`",
+        ],
     ),
     (
         "duration = 40.0\n",
