@@ -16,6 +16,8 @@ pub(super) enum Between {
 /// What a value may be off the cubic through its neighbours, relative to half their range: a sine with four samples in a turn is off by
 /// 0.14, and its crossings are found; of one with fewer they need not be.
 const BENDS: f64 = 0.1;
+/// The same in parts that are made finer for it: a sine has six of them in a turn then, and no two crossings are close.
+const FINE: f64 = 0.03;
 /// What is between samples of a state is known by a cubic; where an event on it is off by more than this part of what it bends by, the cubic
 /// says nothing of the event.
 const KNOWN: f64 = 0.25;
@@ -79,7 +81,7 @@ where
             let part = |j: i64| j as f64 / f64::from(finer);
             let values: Vec<_> = (-1..=i64::from(finer) + 1).map(|j| (part(j), on_the_way(part(j)))).collect();
             let most = if finer >= ENOUGH * parts { CORNERS } else { 0 };
-            let bent = |(at, foretold, range): &(f64, f64, f64)| (on_the_way(*at) - foretold).abs() > BENDS * range;
+            let bent = |(at, foretold, range): &(f64, f64, f64)| (on_the_way(*at) - foretold).abs() > FINE * range;
             if places(&values, finer).filter(bent).take(most + 1).count() <= most {
                 return Between::Finer(finer, values);
             }
@@ -112,7 +114,8 @@ where
     }
 }
 
-/// A place in each part, what the cubic through the samples about it is there, and half the range of these; nothing where one has no value.
+/// A place in each part, what the cubic through the samples about it is there, and half the range of these, with what rounding makes of a
+/// constant; nothing where one has no value.
 fn places(known: &[(f64, f64)], parts: u32) -> impl Iterator<Item = (f64, f64, f64)> {
     known.windows(4).enumerate().filter_map(move |(j, four)| {
         let values = [0, 1, 2, 3].map(|k| four[k].1);
@@ -126,6 +129,7 @@ fn places(known: &[(f64, f64)], parts: u32) -> impl Iterator<Item = (f64, f64, f
         let cubic = (0..4).map(|k| weights[k] * values[k]).sum::<f64>();
         let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-        cubic.is_finite().then(|| ((j as f64 + c) / f64::from(parts), cubic, 0.5 * (most - least)))
+        let rounding = ROUNDINGS * f64::EPSILON * f64::max(most.abs(), least.abs()) / FINE;
+        cubic.is_finite().then(|| ((j as f64 + c) / f64::from(parts), cubic, 0.5 * (most - least) + rounding))
     })
 }
