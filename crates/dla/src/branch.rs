@@ -44,7 +44,8 @@ pub(crate) fn tells_turn<const N: usize, const M: usize>(
     v0: &[f64; N],
 ) -> Result<(), StepError> {
     let turn = turn_of(system, (t0, h), q0, v0);
-    if turn < PI { Ok(()) } else { Err(turned_by(system, (t0, h), q0, v0, turn)) }
+    // What is no number is told by the equations of the step.
+    if turn < PI || !turn.is_finite() { Ok(()) } else { Err(turned_by(system, (t0, h), q0, v0, turn)) }
 }
 
 /// The error of such a step, with the coordinate that alone turns the constraint most.

@@ -138,13 +138,17 @@ pub(crate) fn named<const N: usize, const M: usize>(
 ) -> StepError {
     let unfound =
         matches!(error, StepError::Newton { .. } | StepError::Branch | StepError::Stiff | StepError::Tolerance { .. });
+    let at_start = if error.is_singular() { named_rows(system, t, state.q(), state.v(), error) } else { error };
+    if matches!(at_start, StepError::Dependent(Dependent { dependency: Dependency::Redundant | Dependency::Contradictory, .. })) {
+        return at_start;
+    }
     if (unfound || error.is_singular())
         // Equations become degenerate before the drop is met.
         && let Some(dropped) = rank_drop(system, (t, h), state, 2.0)
     {
         return dropped.into();
     }
-    if error.is_singular() { named_rows(system, t, state.q(), state.v(), error) } else { error }
+    at_start
 }
 
 /// The error that names the rows of the constraint that depend on one another at a place; `error` where none do.

@@ -14,7 +14,7 @@ pub struct Recommendation {
 }
 
 /// Why there is no step for a tolerance.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[derive(Debug, Clone, PartialEq, Error)]
 pub enum RecommendError {
     /// The tolerance or the duration is not a positive number.
     #[error("the tolerance and the duration must be positive and finite, and are {tolerance} and {duration} s")]
@@ -49,7 +49,7 @@ pub enum RecommendError {
         step: f64,
         /// How it fails.
         #[source]
-        source: RunError,
+        source: Box<RunError>,
     },
 }
 
@@ -217,7 +217,7 @@ fn reference<const N: usize>(
     let out_of_reach =
         RecommendError::OutOfReach { tolerance, best: best.0, step: duration / best.1 as f64, steps: best.1 };
     match failure {
-        Some(source) if trials.is_empty() => Err(RecommendError::Fails { step: duration / steps as f64, source }),
+        Some(source) if trials.is_empty() => Err(RecommendError::Fails { step: duration / steps as f64, source: Box::new(source) }),
         _ => Err(out_of_reach),
     }
 }
@@ -249,7 +249,7 @@ fn refined<const N: usize>(
             let steps = 2 * few.0;
             let fails = |source: RunError| match source.source {
                 StepError::Stopped => RecommendError::Stopped,
-                _ => RecommendError::Fails { step: duration / steps as f64, source },
+                _ => RecommendError::Fails { step: duration / steps as f64, source: Box::new(source) },
             };
             let error = distance(&trial(steps).map_err(fails)?, reference);
             if error <= aim {

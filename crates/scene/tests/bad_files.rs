@@ -131,7 +131,7 @@ const CASES: &[Case] = &[
         "duration = 40.0\n[[effects]]\nkind = \"thrust\"\nforce = true",
         (16, 9),
         &[
-            "`effects.force`",
+            "`effects.thrust.force`",
             "a function of time in N",
             "a formula in `t` in quotes",
             "`{times, values, interpolation}`",
@@ -141,7 +141,7 @@ const CASES: &[Case] = &[
         "duration = 40.0\n",
         "duration = 40.0\n[[effects]]\nkind = \"servo\"\nspeed = {amplitude = 1e200, frequency = 1.0}",
         (16, 9),
-        &["`effects.speed`", "makes the kinetic energy too large", "in m/s"],
+        &["`effects.servo.speed`", "makes the kinetic energy too large", "in m/s"],
     ),
     // Keys and tables that are not there.
     ("mass = 1.0\n", "", (2, 1), &["`sleigh.mass`", "is missing", POSITIVE, "[sleigh]"]),

@@ -198,7 +198,7 @@ fn events_within_long_steps() {
         ("dop853 --step 6", " --event-samples 2", 1e-9),
         ("gauss16 --step 0.1", "", 1e-12),
         // Long steps know the motion to some digits, but can be looked at more closely.
-        ("gauss16 --step 2", " --event-samples 40", 0.01),
+        ("gauss16 --step 1", " --event-samples 40", 0.01),
     ] {
         let line = format!("run scene.toml --method {method} --event x=0.05{more} --json");
         let run = folder.json(&line);

@@ -23,7 +23,8 @@ impl Secants {
         if let Some([before, from]) = self.last.take() {
             let less = |a: &[f64], b: Vec<f64>| a.iter().zip(b).map(|(a, b)| a - b).collect();
             if self.changes.len() == MOST {
-                (self.changes.remove(0), self.images.remove(0));
+                self.changes.remove(0);
+                self.images.remove(0);
             }
             self.changes.push(less(&change, before));
             self.images.push(less(image, from));
@@ -66,6 +67,6 @@ mod tests {
         assert!(largest(&missed) < 1e-9, "{x:?} misses {missed:?}");
         // The positive control: without memory they grow.
         let plain = (0..8).fold(vec![0.0; 4], |x, _| g(&x));
-        assert!(largest(&plain[..2]) > 1e3);
+        assert!(largest(&plain[..2]) > 100.0, "{plain:?}");
     }
 }

@@ -97,7 +97,7 @@ fn a_step_far_too_long() {
     let (q, v) = at_centre([0.5, 1.0, 0.3, 4.0, 7.0], 0.5);
     let state = State::new(q, v, system.angles());
     let error = refused(&system, &mut Lobatto::<3>::new(), 300.0, &state);
-    assert!(matches!(error, StepError::Branch | StepError::Newton { stage: Stage::Increment, .. }), "{error}");
+    assert!(matches!(error, StepError::Turn { coordinate: 2, .. }), "{error}");
 }
 
 #[test]
@@ -112,7 +112,7 @@ fn what_is_not_a_number() {
         assert!(matches!(error, StepError::Newton { .. }), "{error}");
     }
     // Of velocities that are numbers it is the system whose kinetic energy is none.
-    let error = error([1e308, -1e308, 1e300]);
+    let error = error([1e308, -1e308, 1.0]);
     let StepError::NotANumber(found) = error else { panic!("{error}") };
     assert_eq!((found.function, found.derivative), (SystemFunction::Lagrangian, Derivative::Value));
 }

@@ -52,15 +52,16 @@ fn followed(sleigh: &sleigh::Sleigh, u: f64, omega: f64, h: f64) -> Option<f64> 
 #[test]
 fn no_wrong_root_is_accepted() {
     let [right, refused, none] = roots((1..30).step_by(6));
-    // As of all; so few points leave a few in a hundred to chance.
-    assert!(right > 150 && refused < 45 && none > 45, "{right} {refused} {none}");
+    // As of all; so few points leave a few in a hundred to chance. Where the velocity at the beginning would turn by half a turn, a step is
+    // refused also if the motion turns less.
+    assert!(right > 150 && refused < 70 && none > 45, "{right} {refused} {none}");
 }
 
 #[test]
 #[ignore = "slow"]
 fn no_wrong_root_is_accepted_at_length() {
     let [right, refused, none] = roots(0..30);
-    assert!(right > 6000 && refused < 1200 && none > 2000, "{right} {refused} {none}");
+    assert!(right > 6000 && refused < 2400 && none > 2000, "{right} {refused} {none}");
 }
 
 /// Steps of every length, many of which have several solutions or none that continues the motion: what is accepted is the
