@@ -210,8 +210,14 @@ impl Gauss {
         start: (&[f64; N], &[f64; N]),
         stages: &mut StagesInTurn<N>,
     ) -> Option<u32> {
-        let mut iterations = 0;
+        /// A branch that is not followed in so many parts is given up: a motion that blows up has none.
+        const MOST: u32 = 24;
+        let (mut iterations, mut parts) = (0, 0);
         *stages = branch::followed(stages, 0.5, |part, stages| {
+            parts += 1;
+            if parts > MOST {
+                return None;
+            }
             let h = part * h;
             iterations += self.solve(system, (t, h), start, stages, Some(Secants::default())).ok()?;
             let mean = self.sum(1.0, |j| self.rule.weights[j], &stages.velocity);
@@ -244,7 +250,9 @@ impl Gauss {
         stages: &mut StagesInTurn<N>,
         mut secants: Option<Secants>,
     ) -> Result<u32, StepError> {
-        let mut convergence = FixedPoint::<2, N>::new(self.max_iterations);
+        // With secants an iteration converges soon or not at all.
+        let limit = if secants.is_some() { self.max_iterations.min(40) } else { self.max_iterations };
+        let mut convergence = FixedPoint::<2, N>::new(limit);
         loop {
             let before = secants.as_ref().map(|_| stages.numbers(self.stages()));
             let mut seen = [[(0.0f64, 0.0f64); N]; 2];
