@@ -211,7 +211,7 @@ impl Gauss {
         stages: &mut StagesInTurn<N>,
     ) -> Option<u32> {
         /// A branch that is not followed in so many parts is given up: a motion that blows up has none.
-        const MOST: u32 = 24;
+        const MOST: u32 = 6;
         let (mut iterations, mut parts) = (0, 0);
         *stages = branch::followed(stages, 0.5, |part, stages| {
             parts += 1;
@@ -251,7 +251,7 @@ impl Gauss {
         mut secants: Option<Secants>,
     ) -> Result<u32, StepError> {
         // With secants an iteration converges soon or not at all.
-        let limit = if secants.is_some() { self.max_iterations.min(40) } else { self.max_iterations };
+        let limit = if secants.is_some() { self.max_iterations.min(24) } else { self.max_iterations };
         let mut convergence = FixedPoint::<2, N>::new(limit);
         loop {
             let before = secants.as_ref().map(|_| stages.numbers(self.stages()));
