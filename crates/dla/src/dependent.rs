@@ -139,7 +139,10 @@ pub(crate) fn named<const N: usize, const M: usize>(
     let unfound =
         matches!(error, StepError::Newton { .. } | StepError::Branch | StepError::Stiff | StepError::Tolerance { .. });
     let at_start = if error.is_singular() { named_rows(system, t, state.q(), state.v(), error) } else { error };
-    if matches!(at_start, StepError::Dependent(Dependent { dependency: Dependency::Redundant | Dependency::Contradictory, .. })) {
+    if matches!(
+        at_start,
+        StepError::Dependent(Dependent { dependency: Dependency::Redundant | Dependency::Contradictory, .. })
+    ) {
         return at_start;
     }
     if (unfound || error.is_singular())

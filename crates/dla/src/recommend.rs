@@ -217,7 +217,9 @@ fn reference<const N: usize>(
     let out_of_reach =
         RecommendError::OutOfReach { tolerance, best: best.0, step: duration / best.1 as f64, steps: best.1 };
     match failure {
-        Some(source) if trials.is_empty() => Err(RecommendError::Fails { step: duration / steps as f64, source: Box::new(source) }),
+        Some(source) if trials.is_empty() => {
+            Err(RecommendError::Fails { step: duration / steps as f64, source: Box::new(source) })
+        }
         _ => Err(out_of_reach),
     }
 }
