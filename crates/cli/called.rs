@@ -24,6 +24,11 @@ impl Caller {
         self.stop.asked()
     }
 
+    /// What is asked when the command is to end.
+    pub(crate) fn wish(&self) -> &Stop {
+        &self.stop
+    }
+
     /// Does some work of this thread, which the caller ends between two steps wherever it is.
     pub fn attend<T>(&self, work: impl FnOnce() -> T) -> T {
         self.stop.within(work)

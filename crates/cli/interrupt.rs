@@ -1,21 +1,17 @@
-use crate::called::{self, Caller};
+use crate::called;
 use crate::error::INTERRUPTED;
 use crate::terminal;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, OnceLock};
+use dla::Stop;
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 /// Signals no further apart are one.
 const TOGETHER: Duration = Duration::from_secs(1);
 
-/// Whether the work is to end soon and to keep what is done: after Ctrl-C (SIGINT), SIGTERM or SIGHUP.
+/// Whether the work is to end soon and to keep what is done: after Ctrl-C (SIGINT), SIGTERM or SIGHUP. A program that has called the command has
+/// the signals of its process to itself, and asks in their place.
 #[derive(Debug, Clone)]
-pub(crate) enum Interrupt {
-    /// Set by a signal.
-    Signal(Arc<AtomicBool>),
-    /// A program has called the command, and has the signals of its process to itself.
-    Caller(Caller),
-}
+pub(crate) struct Interrupt(Stop);
 
 impl Interrupt {
     /// Looks out for signals from now on. Who sends a second one after a while does not want to wait: it ends the process. Signals that come
@@ -27,32 +23,35 @@ impl Interrupt {
     /// The same; the first signal is answered with that note.
     pub(crate) fn listen_saying(note: &'static str) -> Self {
         if let Some(caller) = called::caller() {
-            return Self::Caller(caller);
+            return Self(caller.wish().clone());
         }
-        let asked = Arc::new(AtomicBool::new(false));
-        let flag = Arc::clone(&asked);
+        let asked = Stop::default();
+        let wish = asked.clone();
         let first = OnceLock::new();
         handle(move || {
-            if flag.swap(true, Ordering::Relaxed) {
+            if wish.asked() {
                 if first.get().is_some_and(|first: &Instant| first.elapsed() >= TOGETHER) {
                     std::process::exit(i32::from(INTERRUPTED));
                 }
                 return;
             }
+            wish.ask();
             first.get_or_init(Instant::now);
             if !note.is_empty() {
                 terminal::say("note", &note);
             }
         });
-        Self::Signal(asked)
+        Self(asked)
     }
 
     /// Whether the work is to end.
     pub(crate) fn asked(&self) -> bool {
-        match self {
-            Self::Signal(asked) => asked.load(Ordering::Relaxed),
-            Self::Caller(caller) => caller.stops(),
-        }
+        self.0.asked()
+    }
+
+    /// Does some work of this thread, which ends between two steps wherever it is.
+    pub(crate) fn attend<T>(&self, work: impl FnOnce() -> T) -> T {
+        self.0.within(work)
     }
 }
 

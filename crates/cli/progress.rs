@@ -30,14 +30,3 @@ impl Progress for Interruptible<'_> {
         self.interrupt.asked()
     }
 }
-
-/// Work that Ctrl-C ends, and that others show.
-pub(crate) struct Until<'a>(pub(crate) &'a Interrupt);
-
-impl Progress for Until<'_> {
-    fn advance(&mut self, _steps: u64) {}
-
-    fn stops(&self) -> bool {
-        self.0.asked()
-    }
-}

@@ -6,7 +6,6 @@ use crate::coordinate::Coordinate;
 use crate::error::CliError;
 use crate::exponents::{asked, imposed};
 use crate::interrupt::Interrupt;
-use crate::progress::Until;
 use crate::provenance::Provenance;
 use crate::starts::spread;
 use crate::trigger::{doubts, in_doubt};
@@ -111,7 +110,7 @@ impl Visitor for Sections<'_> {
         let schedule = self.scene.schedule();
         let bar = progress::bar("starts", starts.len() as u64);
         let in_state = system.in_state();
-        let crossed = in_parallel(starts.len(), |i| {
+        let cross = |i: usize| {
             if interrupt.asked() {
                 return None;
             }
@@ -119,17 +118,7 @@ impl Visitor for Sections<'_> {
             let event = Event::new(plane.text.clone(), function);
             let event =
                 if plane.period().is_some() { event } else { event.in_direction(self.arguments.direction.into()) };
-            let found = harness::analysis::section(
-                (&system).into(),
-                &self.method,
-                &schedule,
-                starts[i],
-                &event,
-                &mut Until(&interrupt),
-            );
-            if dla::stops() {
-                return None;
-            }
+            let found = harness::analysis::section((&system).into(), &self.method, &schedule, starts[i], &event);
             let point = |crossing: &dla::Crossing<N>| {
                 let (t, q, v) = (crossing.t, crossing.state.unwrapped(), crossing.state.v());
                 surface.holds(&system, t, &q, v).then(|| SectionPoint {
@@ -146,7 +135,8 @@ impl Visitor for Sections<'_> {
                 close: found.close,
                 interrupted: found.interrupted,
             })
-        });
+        };
+        let crossed = interrupt.attend(|| in_parallel(starts.len(), cross));
         bar.finish_and_clear();
         let done: Vec<PlaneCrossing> = crossed.into_iter().flatten().collect();
         let whole = done.iter().filter(|one| !one.interrupted).count();

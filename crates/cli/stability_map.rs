@@ -5,7 +5,6 @@ use crate::coordinate::Range;
 use crate::error::CliError;
 use crate::exponents::{provenance, refused, schedule};
 use crate::interrupt::Interrupt;
-use crate::progress::Until;
 use crate::provenance::label;
 use crate::starts::with_energy;
 use crate::{progress, table, terminal};
@@ -76,7 +75,7 @@ impl Visitor for Map<'_> {
         let (schedule, settle) = schedule(self.arguments, self.scene);
         let interrupt = Interrupt::listen();
         let bar = progress::bar("starts", count as u64);
-        let cells = in_parallel(count, |i| {
+        let cell = |i: usize| {
             if interrupt.asked() {
                 return Cell::Left;
             }
@@ -89,8 +88,7 @@ impl Visitor for Map<'_> {
             let cell = match start {
                 Some((q, v)) => {
                     let request = LyapunovRequest { schedule, settle, exponents: Some(1), q, v };
-                    let mut until = Until(&interrupt);
-                    match lyapunov_within((&*system, &system), system.own(), &self.method, &request, &mut until) {
+                    match lyapunov_within((&*system, &system), system.own(), &self.method, &request, &mut ()) {
                         // One that a signal may have ended is left out.
                         Ok(_) if interrupt.asked() => return Cell::Left,
                         Ok(found) => match found.failure {
@@ -103,8 +101,9 @@ impl Visitor for Map<'_> {
                 None => Cell::None,
             };
             bar.inc(1);
-            if dla::stops() { Cell::Left } else { cell }
-        });
+            cell
+        };
+        let cells = interrupt.attend(|| in_parallel(count, cell));
         bar.finish_and_clear();
         let columns = quantities.map(|k| system.quantities()[k].column());
         self.tell(&columns, &cells)

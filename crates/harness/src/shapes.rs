@@ -55,6 +55,6 @@ fn motions<const N: usize, const M: usize>() {
 }
 
 fn free_motions<const N: usize, const M: usize>() {
-    black_box(section::<N, M> as fn(_, _, _, _, _, _) -> _);
+    black_box(section::<N, M> as fn(_, _, _, _, _) -> _);
     black_box(lyapunov_within::<N, M> as fn(_, _, _, _, _) -> _);
 }

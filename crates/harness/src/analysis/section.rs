@@ -1,6 +1,5 @@
 use crate::run::integrate_pieces;
-use crate::timing::Ticker;
-use crate::{Again, Method, Progress};
+use crate::{Again, Method};
 use dla::{Close, Crossing, Event, RunError, Schedule, State, Subject, Watch};
 
 /// The crossings of a surface by one motion.
@@ -12,7 +11,7 @@ pub struct Section<const N: usize> {
     pub close: Option<Close>,
     /// The step that failed, if one did.
     pub failure: Option<RunError>,
-    /// Whether the [`Progress`] ended the motion early.
+    /// Whether the motion was ended early ([`Stop`](dla::Stop)).
     pub interrupted: bool,
 }
 
@@ -27,13 +26,12 @@ pub fn section<const N: usize, const M: usize>(
     schedule: &Schedule,
     (q, v): ([f64; N], [f64; N]),
     surface: &Event<'_, N>,
-    progress: &mut dyn Progress,
 ) -> Section<N> {
-    let mut ticker = Ticker::new(progress, 0);
-    let mut watch = Watch::new(Again { method, own: subject.own }, std::slice::from_ref(surface), &mut ticker);
+    let mut watch = Watch::new(Again { method, own: subject.own }, std::slice::from_ref(surface), ());
     watch.samples = SAMPLES;
     let outcome =
         integrate_pieces(subject, method, schedule, &mut State::new(q, v, subject.system.angles()), &mut watch);
     let (crossings, close) = (watch.crossings().to_vec(), watch.close());
-    Section { crossings, close, failure: outcome.err(), interrupted: ticker.stopped }
+    let interrupted = matches!(outcome, Ok(made) if made < schedule.steps);
+    Section { crossings, close, failure: outcome.err(), interrupted }
 }
