@@ -71,6 +71,7 @@ impl GaussAdaptive {
         state: &State<N>,
         xi0: &[f64; N],
         slopes: &mut StageSlopes<N>,
+        doubt: Doubt,
     ) -> Result<Tried<N>, i32> {
         let rule = self.gauss.rule;
         let (q0, epsilon) = (state.q(), self.tolerance);
@@ -103,7 +104,6 @@ impl GaussAdaptive {
         let (q1, xi1) = (from_fn(|k| q0[k] + taken.increment[k]), from_fn(|k| xi0[k] + taken.gain[k]));
         let ends = [[q0, xi0], [&q1, &xi1]];
         let attempt = Attempt { rule, step: (t, h), ends, slopes, counts: &counts };
-        let doubt = self.doubt.unwrap_or_else(|| Doubt::of(system.smoothness()));
         match doubt.excess(system, &attempt, grown) {
             Some(excess) => Err(shorter(excess)),
             None => Ok(Tried { taken, longer }),
@@ -170,6 +170,8 @@ impl<const N: usize, const M: usize> OneStep<N, M> for GaussAdaptive {
         see: &mut OwnStep<'_, N>,
     ) -> Result<(), StepError> {
         let (mut method, mut state) = (*self, *state);
+        // Who asks where steps end wants no work.
+        method.gauss.sources = PowerSources::NONE;
         if !memory.is_empty() {
             OneStep::<N, M>::recall(&mut method, memory, &state);
         }
@@ -190,7 +192,7 @@ impl GaussAdaptive {
     ) -> Result<(StepReport<M>, Option<f64>), StepError> {
         let (mut made, mut iterations, mut work, mut refused) = (0.0, 0, None, false);
         let mut quarters = self.quarters.unwrap_or_else(|| first(system, t0, whole, state));
-        self.doubt = self.doubt.or_else(|| Some(Doubt::of(system.smoothness())));
+        let doubt = *self.doubt.get_or_insert_with(|| Doubt::of(system.smoothness()));
         let (mut before, mut slopes) = (self.quarters, StageSlopes::ZERO);
         for tries in 1..=Self::MAX_TRIES {
             if stops() {
@@ -206,7 +208,7 @@ impl GaussAdaptive {
             let (t, xi0) = (t0 + made, state.quasi_velocities(system, t0 + made)?);
             let grown = before.is_none_or(|before| quarters >= before.saturating_add(LONGER));
             let Tried { taken, longer } =
-                match self.attempt(system, ((t, h), quarters, grown), state, &xi0, &mut slopes) {
+                match self.attempt(system, ((t, h), quarters, grown), state, &xi0, &mut slopes, doubt) {
                     Ok(tried) => tried,
                     Err(back) => {
                         quarters = if last { quarters.min(quarters_of(rest.abs())) } else { quarters } - back;

@@ -145,12 +145,13 @@ impl Gauss {
         (slopes, followed): (&mut StageSlopes<N>, bool),
     ) -> Result<TakenStep<N>, StepError> {
         let start = system.reduced_slope(t, q0, xi0)?;
-        let mut stages = StagesInTurn { velocity: [start.velocity; 8], acceleration: [start.acceleration; 8] };
+        let begin = StagesInTurn { velocity: [start.velocity; 8], acceleration: [start.acceleration; 8] };
+        let mut stages = begin;
         let iterations = match self.solve(system, (t, h), (q0, xi0), &mut stages, None) {
             Ok(iterations) => iterations,
             Err(error) if !followed => return Err(error),
             Err(error) => {
-                stages = StagesInTurn { velocity: [start.velocity; 8], acceleration: [start.acceleration; 8] };
+                stages = begin;
                 self.follow(system, (t, h), (q0, xi0), &mut stages).ok_or(error)?
             }
         };

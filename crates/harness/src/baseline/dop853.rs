@@ -200,10 +200,10 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Dop853<N, M> {
         let xi0 = state.quasi_velocities(system, t)?;
         let slopes = ReducedSlopes::new(system, self.sources, t, state);
         match self.cross(&slopes, h, xi0, |_, _| ControlFlow::Continue(())) {
-            Ok(_) => moved(system, t + h, self.solver.y(), state).map(|()| slopes.report()),
+            Ok(_) => moved::<N, M>(system, t + h, self.solver.y(), state).map(|_| slopes.report()),
             Err(StepError::Stopped) => Err(StepError::Stopped),
             Err(error) => match at_rest(system, (t, h), state, &xi0) {
-                Some(point) => moved(system, t + h, &point, state).map(|()| StepReport::of(0)),
+                Some(point) => moved(system, t + h, &point, state),
                 None => Err(error),
             },
         }
@@ -236,8 +236,8 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Dop853<N, M> {
         let crossed = self.cross(&slopes, h, xi0, |made, point| {
             let mut inner = *state;
             match moved::<N, M>(system, t + made, point, &mut inner) {
-                Ok(()) if see(t + made, &inner).is_continue() => return ControlFlow::Continue(()),
-                Ok(()) => end = Some(t + made),
+                Ok(_) if see(t + made, &inner).is_continue() => return ControlFlow::Continue(()),
+                Ok(_) => end = Some(t + made),
                 Err(error) => failure = Some(error),
             }
             ControlFlow::Break(())
@@ -246,10 +246,12 @@ impl<const N: usize, const M: usize> OneStep<N, M> for Dop853<N, M> {
             return Err(error);
         }
         match crossed {
-            Ok(_) => moved(system, end.unwrap_or(t + h), self.solver.y(), state).map(|()| (slopes.report(), end)),
+            Ok(_) => {
+                moved::<N, M>(system, end.unwrap_or(t + h), self.solver.y(), state).map(|_| (slopes.report(), end))
+            }
             Err(StepError::Stopped) => Err(StepError::Stopped),
             Err(error) => match at_rest(system, (t, h), state, &xi0) {
-                Some(point) => moved(system, t + h, &point, state).map(|()| (StepReport::of(0), None)),
+                Some(point) => Ok((moved(system, t + h, &point, state)?, None)),
                 None => Err(error),
             },
         }
@@ -297,10 +299,8 @@ fn moved<const N: usize, const M: usize>(
     t: f64,
     point: &ReducedPoint<N, M>,
     state: &mut State<N>,
-) -> Result<(), StepError> {
+) -> Result<StepReport<M>, StepError> {
     let ReducedPoint { d, xi } = *point;
     let v = system.velocity_of(t, &state.ahead(&d), &xi)?;
-    state.stays_finite(&d, &v)?;
-    state.advance(&d, v, Some(xi));
-    Ok(())
+    super::rk4::explicit(state, &d, v, Some(xi))
 }
