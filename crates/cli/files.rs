@@ -3,7 +3,7 @@ use crate::lock::{Lock, replaced};
 use std::fs::File;
 use std::io::{BufRead, BufReader, BufWriter, Error, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
-use tempfile::{NamedTempFile, TempPath};
+use tempfile::{NamedTempFile, PathPersistError, TempPath};
 
 /// Refuses, before the work begins, a file that could not be written at its end.
 pub(crate) fn check_file(path: &Path, overwrite: bool) -> Result<(), CliError> {
@@ -92,13 +92,19 @@ pub(crate) fn write_whole(
     content: impl FnOnce(&mut BufWriter<&mut File>) -> Result<(), Error>,
 ) -> Result<(), CliError> {
     check_file(path, overwrite)?;
+    // The file stays open, and with it locked, until it has its name.
+    let (file, new) = filled(path, &target(path, overwrite), content)?.into_parts();
+    named(new, &file, path, overwrite).map_err(|error| CliError::Write { path: path.to_owned(), source: error.error })
+}
+
+/// Gives a file its name, in place of the file of that name where that may be overwritten, whose rights it then takes.
+pub(crate) fn named(new: TempPath, file: &File, path: &Path, overwrite: bool) -> Result<(), PathPersistError> {
     let target = target(path, overwrite);
-    let file = filled(path, &target, content)?;
-    if overwrite {
-        keep_mode(&target, file.as_file());
+    if !overwrite {
+        return new.persist_noclobber(target);
     }
-    let kept = if overwrite { file.persist(target) } else { file.persist_noclobber(target) };
-    kept.map(|_| ()).map_err(|error| CliError::Write { path: path.to_owned(), source: error.error })
+    keep_mode(&target, file);
+    new.persist(target)
 }
 
 /// Whether the file that is there has these very bytes: whoever wrote it was ended before the rest was done. Another one is refused.
@@ -131,12 +137,12 @@ fn filled(
 }
 
 /// What is overwritten through a link is the file that the link leads to.
-pub(crate) fn target(path: &Path, overwrite: bool) -> PathBuf {
+fn target(path: &Path, overwrite: bool) -> PathBuf {
     if overwrite { path.canonicalize().unwrap_or_else(|_| path.to_owned()) } else { path.to_owned() }
 }
 
 /// Gives a new file the rights of the one that it replaces, where that may be done.
-pub(crate) fn keep_mode(old: &Path, new: &File) {
+fn keep_mode(old: &Path, new: &File) {
     if let Ok(old) = old.metadata() {
         let _ = new.set_permissions(old.permissions());
     }

@@ -1,5 +1,5 @@
 use crate::error::CliError;
-use crate::files::{keep_mode, target};
+use crate::files::named;
 use crate::lock::{Lock, locked};
 use crate::terminal;
 use std::fs::File;
@@ -69,13 +69,8 @@ impl PartFile {
     /// Gives the file the name of the output.
     pub(crate) fn becomes(self, out: &Path, overwrite: bool) -> Result<(), CliError> {
         let failed = |source| CliError::Write { path: out.to_owned(), source };
-        let target = target(out, overwrite);
-        if overwrite {
-            keep_mode(&target, &self.file);
-        }
         let path = TempPath::try_from_path(&self.path).map_err(failed)?;
-        let renamed = if overwrite { path.persist(target) } else { path.persist_noclobber(target) };
-        renamed.map_err(|error| {
+        named(path, &self.file, out, overwrite).map_err(|error| {
             // The rows stay where they are.
             let _ = error.path.keep();
             if error.error.kind() == ErrorKind::AlreadyExists {
