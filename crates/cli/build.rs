@@ -1,6 +1,6 @@
 //! Tells the program a hash of the sources that its numbers depend on.
 //!
-//! It is looked at where one of these has changed, when what is linked with them is compiled in any case.
+//! Cargo runs this script again if one of the sources has changed; the program is then linked again in any case.
 
 use std::fs;
 use std::path::{Path, PathBuf};

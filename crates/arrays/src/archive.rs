@@ -11,7 +11,7 @@ pub(crate) struct Archive<'f, F> {
     end: u64,
 }
 
-/// A member: its place, and the checksum of what is written of it.
+/// A member: its place, and the checksum of its bytes so far.
 #[derive(Debug)]
 struct Member {
     name: String,
@@ -41,7 +41,7 @@ impl<'f, F: Write + Seek> Archive<'f, F> {
         Self { file, members: Vec::new(), end: 0 }
     }
 
-    /// Makes room for a member that begins with these bytes and has so many more.
+    /// Makes room for a member: the bytes `first`, and `more` bytes after them.
     pub(crate) fn reserve(&mut self, name: String, first: Vec<u8>, more: u64) {
         let at = self.end;
         let size = first.len() as u64 + more;
@@ -135,7 +135,7 @@ impl Fields {
 
     /// The lengths of the name and of the larger fields.
     fn named(self, name: &str, more: u16) -> Self {
-        // Names are those of columns, which are checked to be short.
+        // Columns have short names: the reader of a scene checks them.
         self.short(u16::try_from(name.len()).unwrap_or(u16::MAX)).short(more)
     }
 }

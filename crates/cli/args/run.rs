@@ -62,7 +62,8 @@ pub(crate) struct RunArguments {
 }
 
 impl RunArguments {
-    /// Where the run is saved, and every how many steps. One that is resumed goes on saving where it is said how often.
+    /// The file of checkpoints, and the number of steps between two of them. A resumed run saves to the file of `--resume` if
+    /// `--checkpoint-every` is given without `--checkpoint`.
     pub(crate) fn saves(&self) -> Option<(&Path, u64)> {
         let Self { checkpoint, checkpoint_every, resume, .. } = self;
         let to = checkpoint.as_ref().or(resume.as_ref().filter(|_| checkpoint_every.is_some()));

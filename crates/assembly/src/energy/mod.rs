@@ -280,7 +280,7 @@ impl AssemblyMethod for SparseEnergy {
             self.path.end(&self.frames, (assembly, t0, h), (&self.q0, state), &self.x)?;
             let change = self.finish(assembly, t0 + h, near)? - kappa;
             // The factor of `M x` is `2 - kappa`.
-            // The last change is made, too, where it is not below rounding.
+            // A change above rounding is still made, although it is the last.
             if done || change.abs() <= Self::SETTLED {
                 break work;
             }
