@@ -124,10 +124,10 @@ duration = 3.0
 
 # What is long in Python, and what is known of it when it is interrupted.
 LONG = {
-    "nodes": ("noslip.scene('bowl').run(method='gauss8', step=1e-6, duration=30.0)", "result['t'][-1] > 0.0"),
+    "nodes": ("noslip.scene('bowl').run(method='gauss8', step=1e-6, duration=4.0)", "result['t'][-1] > 0.0"),
     "times": ("noslip.scene('bowl').run(step=1e-6, duration=1e3, t_eval=[0.001 * k for k in range(1000)])", "result['t'][-1] > 0.0"),
     "tolerance": ("noslip.scene('bowl').run(method='dla', tolerance=1e-12, duration=1e3)", "result is None"),
-    "section": ("noslip.scene('bowl').section(plane='x=0', starts=2, duration=1e6)", "result['starts'] == []"),
+    "section": ("noslip.scene('bowl').section(plane='x=0', starts=2, duration=1e6)", "all(start['interrupted'] for start in result['starts'])"),
     "derivatives": ("noslip.scene('bowl').sensitivities('speed', method='gauss8', step=1e-5, duration=1e3)", None),
     "dop853": ("noslip.Scene(STUCK).run(method='dop853')", "result.steps == 0"),
     "gauss-adaptive": ("noslip.Scene(STUCK).run(method='gauss-adaptive')", "result.steps == 0"),
