@@ -8,8 +8,8 @@
 //!
 //! This crate knows no particular system and no file; its [`Newton`] solver knows neither time nor mechanics.
 
+mod baseline;
 mod branch;
-mod checkpoint;
 mod closed_step_error;
 mod composition;
 mod continued;
@@ -18,13 +18,10 @@ mod corrections;
 mod dependent;
 mod derivatives;
 mod discretisation;
-mod divide;
 mod dla;
-mod drive;
 mod dropping;
 mod energy;
 pub mod ensemble;
-mod events;
 mod gauss;
 mod gni;
 mod hermite;
@@ -37,46 +34,39 @@ mod known_angle;
 mod lobatto;
 mod mean;
 mod mechanics;
+mod method;
 mod newton;
 mod not_a_number;
 mod one_step;
 mod overshoot;
 mod past;
-mod pieces;
 mod positions;
 mod power;
 mod projection;
 mod rebased;
-mod recommend;
+mod reduced_field;
+mod reduced_flow;
 mod resolved;
+mod run;
 mod runaway;
-mod samples;
 mod sensitivity;
 mod settle;
 mod stack;
 mod start;
 mod state;
-mod stop;
-mod subject;
-mod substepping;
 mod suspect;
-mod trajectory;
 mod unknowns;
-mod work;
 
 pub use crate::dla::{Dla, Form};
+pub use baseline::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced};
 pub use branch::{followed, turn};
-pub use checkpoint::{Checkpoint, CheckpointError};
 pub use closed_step_error::ClosedStepError;
 pub use composition::Composition;
 pub use dependent::{Dependency, Dependent};
 pub use discretisation::{Discretisation, EndMomenta, HandMade, RoundedStep, Rules};
-pub use divide::{Substeps, Undivided};
-pub use drive::{Observer, Part, RunError, Schedule, Shorter, View, drive, drive_part};
 pub use dropping::on_branch;
 pub use energy::Energy;
 pub use ensemble::{Each, Ensemble, GaussEnsemble, LaneState, Same, Systems};
-pub use events::{Close, Crossing, Direction, Event, Watch, Zero, Zeros, close_crossings, zeros};
 pub use gauss::{Collocation, CollocationOutcome, Gauss, GaussAdaptive};
 pub use gni::Gni;
 pub use hermite::Hermite;
@@ -86,18 +76,22 @@ pub use in_chart::InChart;
 pub use known_angle::KnownAngle;
 pub use lobatto::{LinearisedStage, Lobatto, LobattoTables, StagePoint};
 pub use mechanics::{Diagnosis, FullMechanics, Mechanics, RoundedMechanics, SecondSlopes, SeededMechanics, Slopes};
+pub use method::{METHODS, Method, MethodError, MethodInfo, MethodKind, has_derivatives};
 pub use newton::{Equations, Newton, NewtonError};
 pub use not_a_number::{Derivative, NotANumber, SystemFunction, Variable, not_a_number};
 pub use one_step::{OneStep, OwnStep, Stage, StepError, StepReport};
-pub use pieces::{
-    Piece, PiecewiseMechanics, fitted, onto_constraint, piece_by_piece, piece_by_piece_from, pieces, smooth_pieces,
-};
 pub use power::{MeanPower, power};
 pub use rebased::Rebased;
-pub use recommend::{RecommendError, Recommendation, recommend_by_trial, recommend_step};
+pub use reduced_field::{ReducedField, reduced_field};
 pub use resolved::Halved;
+pub use run::{
+    AnyState, Checkpoint, CheckpointError, Close, Crossing, Direction, Event, Integrator, Mechanism, Node, Nodes,
+    Observer, OwnMethods, Part, Piece, PiecewiseMechanics, Place, RecommendError, Recommendation, Report, RunError,
+    Samples, Schedule, SeeOwnStep, Shorter, Size, Stepper, Stop, Subject, SubstepSummary, Substeps, Trajectory,
+    Undivided, View, Watch, Work, Zero, Zeros, again, close_crossings, drive, drive_part, fitted, make_steps,
+    onto_constraint, piece_by_piece, pieces, recommend_by_trial, smooth_pieces, stops, substepped_part, zeros,
+};
 pub use runaway::Runaway;
-pub use samples::Samples;
 pub use sensitivity::{
     Differentiable, ReducedDerivative, ReducedVariation, Sensitivity, SensitivityError, StepDerivative, StepEquations,
     StepStart, StepUnknowns, Tangent, TangentRunError, Variation,
@@ -105,8 +99,3 @@ pub use sensitivity::{
 pub use stack::StackUse;
 pub use start::{Start, consistent_start, slip};
 pub use state::State;
-pub use stop::{Stop, stops};
-pub use subject::{OwnMethods, Stepper, Subject};
-pub use substepping::Substepping;
-pub use trajectory::{Node, Nodes, Trajectory};
-pub use work::Work;

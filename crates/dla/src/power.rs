@@ -1,5 +1,7 @@
-use crate::Mechanics;
-use lagrangian::PowerSources;
+use crate::{Hermite, Mechanics};
+use lagrangian::quadrature::gauss_legendre;
+use lagrangian::{PowerSources, from_fn};
+use std::sync::LazyLock;
 
 /// The power of all that may do work on a system (W): `F . v - dL/dt - lambda . b`, that of the generalised forces, of explicit time in the
 /// Lagrangian, and of what moves an affine constraint. It is not a number where the equations of motion do not determine the multipliers.
@@ -58,6 +60,41 @@ impl MeanPower {
     pub fn mean(&self) -> f64 {
         if self.unknown { self.sum / f64::from(self.known.max(1)) } else { self.weighted }
     }
+}
+
+/// The work over a step between two places, times, configurations and velocities: [`power`] with four Gauss nodes along the polynomial of
+/// degree five that has the accelerations of both ends too, or of degree three where an end has none.
+pub(crate) fn work_between<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    sources: PowerSources,
+    (t0, q0, v0): (f64, &[f64; N], &[f64; N]),
+    (t1, q1, v1): (f64, &[f64; N], &[f64; N]),
+) -> f64 {
+    static RULE: LazyLock<([f64; 4], [f64; 4])> = LazyLock::new(gauss_legendre);
+    let (nodes, weights) = &*RULE;
+    let h = t1 - t0;
+    let time = |c: f64| t0 + c * h;
+    let moves = |t: f64, q: &[f64; N]| system.constraint(t, q).1.iter().any(|b| *b != 0.0);
+    let mean = |c: f64| from_fn::<f64, N, _>(|i| q0[i] + c * (q1[i] - q0[i]));
+    let powered = sources.constraints && (moves(t0, q0) || moves(t1, q1))
+        || sources.forces && system.force(t0, q0, v0).is_some()
+        || sources.time && nodes.iter().any(|c| system.lagrangian_power(time(*c), &mean(*c), v1) != 0.0);
+    if !powered {
+        return 0.0;
+    }
+    // Those of the cubic where an end has none.
+    let acceleration = |t: f64, q: &[f64; N], v: &[f64; N], other: &[f64; N], side: f64| match system.motion(t, q, v) {
+        Ok(motion) => motion.acceleration,
+        Err(_) => from_fn(|i| side * (6.0 * (q1[i] - q0[i]) / h - 4.0 * v[i] - 2.0 * other[i]) / h),
+    };
+    let (a0, a1) = (acceleration(t0, q0, v0, v1, 1.0), acceleration(t1, q1, v1, v0, -1.0));
+    let hermite = Hermite::through((t0, h), [*q0, *v0, a0], [*q1, *v1, a1]);
+    let mut mean = MeanPower::default();
+    for (&c, &weight) in nodes.iter().zip(weights) {
+        let (q, v) = hermite.at_part(c);
+        mean.add(weight, power(system, sources, time(c), (&q, &v)));
+    }
+    h * mean.mean()
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
-use crate::{State, StepError};
+use crate::{AnyState, StepError};
 use lagrangian::linear::larger;
-use lagrangian::{from_fn, mapped};
 
 /// One coordinate of a step that was made whole, and again in two halves.
 ///
@@ -56,24 +55,25 @@ impl Halved {
     ///
     /// # Errors
     /// [`StepError::Unresolved`] where it does not, and what `make` fails with.
-    pub fn resolves<const N: usize>(
+    pub fn resolves(
         (t, h): (f64, f64),
-        before: &State<N>,
-        after: &State<N>,
-        mut make: impl FnMut((f64, f64), &mut State<N>) -> Result<(), StepError>,
+        before: &AnyState,
+        after: &AnyState,
+        mut make: impl FnMut((f64, f64), &mut AnyState) -> Result<(), StepError>,
     ) -> Result<(), StepError> {
         let half = 0.5 * h;
-        let mut middle = *before;
+        let mut middle = before.clone();
         make((t, half), &mut middle)?;
-        let mut end = middle;
+        let mut end = middle.clone();
         make((t + half, half), &mut end)?;
         let (halves, once) = (end.moved_since(before), after.moved_since(before));
-        let all: [Self; N] = from_fn(|i| Self {
+        let coordinate = |i: usize| Self {
             v: [before.v()[i], middle.v()[i], end.v()[i], after.v()[i]],
             moved: [halves[i], once[i]],
-        });
+        };
+        let all: Vec<Self> = (0..halves.len()).map(coordinate).collect();
         let most = |of: &[f64]| of.iter().fold(0.0, |most, x| larger(most, *x));
-        let fastest = most(&mapped(&all, |one| most(&one.v)));
+        let fastest = all.iter().fold(0.0, |fastest, one| larger(fastest, most(&one.v)));
         let nothing = Self::nothing(h, most(&before.unwrapped()), fastest);
         let resolved = all.iter().all(|one| one.is_resolved(h, fastest, nothing));
         if resolved { Ok(()) } else { Err(StepError::Unresolved) }

@@ -1,23 +1,26 @@
-use crate::Method;
-use dla::{Checkpoint, CheckpointError, Discretisation, Rules, State, View};
-use lagrangian::linear::{larger, largest};
+use dla::{AnyState, Checkpoint, CheckpointError, Method, Rules, View};
+use lagrangian::linear::larger;
 
 /// The constraint residuals of a run besides those of the velocities at its nodes: of the discrete constraint over each step, and of
 /// constraints on positions.
 #[derive(Debug)]
-pub(crate) struct Slip<const N: usize> {
+pub(crate) struct Slip {
     rules: Rules,
     h: f64,
     /// The time and the state at the node before.
-    before: Option<(f64, State<N>)>,
+    before: Option<(f64, AnyState)>,
+    /// The mean velocity of a step.
+    mean: Vec<f64>,
+    /// A configuration with its turns.
+    place: Vec<f64>,
     step: f64,
     /// The largest of the functions of the positions, where there are any.
     leaf: Option<f64>,
 }
 
-impl<const N: usize> Slip<N> {
+impl Slip {
     pub(crate) fn new(method: &Method, h: f64) -> Self {
-        Self { rules: Rules::new(method.rule(), method.rule()), h, before: None, step: 0.0, leaf: None }
+        Self { rules: Rules::new(method.rule(), method.rule()), h, before: None, mean: Vec::new(), place: Vec::new(), step: 0.0, leaf: None }
     }
 
     pub(crate) fn step_max(&self) -> f64 {
@@ -28,16 +31,23 @@ impl<const N: usize> Slip<N> {
         self.leaf
     }
 
-    pub(crate) fn start<const M: usize>(&mut self, node: &View<'_, N, M>) {
+    pub(crate) fn start(&mut self, node: &View<'_>) {
         self.look(node);
-        self.before = Some((node.t, *node.state));
+        self.resume(node);
     }
 
-    pub(crate) fn resume<const M: usize>(&mut self, node: &View<'_, N, M>) {
-        self.before = Some((node.t, *node.state));
+    /// Sees a node again where a smooth piece begins.
+    pub(crate) fn resume(&mut self, node: &View<'_>) {
+        match &mut self.before {
+            Some((t, state)) => {
+                *t = node.t;
+                state.clone_from(node.state);
+            }
+            before => *before = Some((node.t, node.state.clone())),
+        }
     }
 
-    pub(crate) fn step<const M: usize>(&mut self, node: &View<'_, N, M>) {
+    pub(crate) fn step(&mut self, node: &View<'_>) {
         // A piece between jumps may have a step of its own.
         let since = self.before.as_ref().map_or(self.h, |(t, _)| node.t - t);
         let own = (since - self.h).abs() > 1e-6 * self.h.abs();
@@ -45,7 +55,7 @@ impl<const N: usize> Slip<N> {
     }
 
     /// A part of a step.
-    pub(crate) fn part<const M: usize>(&mut self, node: &View<'_, N, M>) {
+    pub(crate) fn part(&mut self, node: &View<'_>) {
         // Sub-steps so short that the time does not change show nothing.
         match self.before.as_ref().map(|(t, _)| node.t - t) {
             Some(h) if h != 0.0 => self.over(node, h),
@@ -53,21 +63,23 @@ impl<const N: usize> Slip<N> {
         }
     }
 
-    fn over<const M: usize>(&mut self, node: &View<'_, N, M>, h: f64) {
+    fn over(&mut self, node: &View<'_>, h: f64) {
         if let Some((t, before)) = &self.before {
-            let v = node.state.moved_since(before).map(|moved| moved / h);
-            let residual: [f64; M] = self.rules.residual(node.system, (*t, h), before.q(), &v);
-            self.step = larger(self.step, largest(&residual));
+            self.mean.resize(node.state.v().len(), 0.0);
+            node.state.move_into(before, &mut self.mean);
+            self.mean.iter_mut().for_each(|moved| *moved /= h);
+            let residual = node.system.largest_step_residual(&self.rules, (*t, h), before.q(), &self.mean);
+            self.step = larger(self.step, residual);
         }
-        self.look(node);
-        self.before = Some((node.t, *node.state));
+        self.start(node);
     }
 
     /// At the functions `g(q, t)` whose rates are constraints.
-    fn look<const M: usize>(&mut self, node: &View<'_, N, M>) {
-        let functions = node.system.positions(node.t, &node.state.unwrapped());
-        for g in functions.into_iter().flatten().flatten() {
-            self.leaf = Some(larger(self.leaf.unwrap_or(0.0), g.abs()));
+    fn look(&mut self, node: &View<'_>) {
+        self.place.resize(node.state.q().len(), 0.0);
+        node.state.unwrap_into(&mut self.place);
+        if let Some(g) = node.system.largest_position(node.t, &self.place) {
+            self.leaf = Some(larger(self.leaf.unwrap_or(0.0), g));
         }
     }
 
@@ -81,6 +93,6 @@ impl<const N: usize> Slip<N> {
     pub(crate) fn load(&self, checkpoint: &Checkpoint) -> Result<Self, CheckpointError> {
         let [step] = checkpoint.get("slip")?;
         let leaf = checkpoint.list("leaf")?.first().copied();
-        Ok(Self { rules: self.rules, h: self.h, before: None, step, leaf })
+        Ok(Self { rules: self.rules, h: self.h, before: None, mean: Vec::new(), place: Vec::new(), step, leaf })
     }
 }

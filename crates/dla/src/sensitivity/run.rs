@@ -1,5 +1,5 @@
 use super::{Differentiable, Sensitivity, SensitivityError, Tangent, TangentRunError};
-use crate::{OneStep, Schedule, State, StepReport, View};
+use crate::{OneStep, Schedule, State, StepReport};
 use std::ops::ControlFlow;
 
 impl<const N: usize, const M: usize, const P: usize> Sensitivity<'_, N, M, P> {
@@ -27,7 +27,7 @@ impl<const N: usize, const M: usize, const P: usize> Sensitivity<'_, N, M, P> {
 
     /// Makes the steps of a schedule with a state and tangents; returns how many were made.
     ///
-    /// After every step `each` sees the node and may change the tangents, as the computation of Lyapunov exponents does that
+    /// After every step `each` sees the time (s) and the state, and may change the tangents, as the computation of Lyapunov exponents does that
     /// makes them orthonormal; `Break` ends the run there. No matrix is kept.
     ///
     /// # Errors
@@ -38,7 +38,7 @@ impl<const N: usize, const M: usize, const P: usize> Sensitivity<'_, N, M, P> {
         schedule: &Schedule,
         state: &mut State<N>,
         tangents: &mut [Tangent<N, P>],
-        mut each: impl FnMut(&View<'_, N, M>, &mut [Tangent<N, P>]) -> ControlFlow<()>,
+        mut each: impl FnMut(f64, &State<N>, &mut [Tangent<N, P>]) -> ControlFlow<()>,
     ) -> Result<u64, TangentRunError>
     where
         Method: OneStep<N, M> + Differentiable<N, M>,
@@ -50,8 +50,7 @@ impl<const N: usize, const M: usize, const P: usize> Sensitivity<'_, N, M, P> {
                 time,
                 source,
             })?;
-            let node = View { system: self.system(), k: k + 1, t: schedule.time(k + 1), state };
-            if each(&node, tangents).is_break() {
+            if each(schedule.time(k + 1), state, tangents).is_break() {
                 return Ok(k + 1);
             }
         }

@@ -1,38 +1,36 @@
 use super::finer::Between;
 use super::zeros::{Zeros, in_order, zeros_by};
 use super::{Crossing, Event, Zero};
-use crate::{Mechanics, OneStep, State, StepReport};
+use crate::run::again::again;
+use crate::{AnyState, Mechanism, Method, Report};
 
 /// A step, or one of those that a method makes of its own within it, to be made again in parts.
-pub(super) struct EventInterval<'a, Method, const N: usize, const M: usize> {
-    pub(super) system: &'a dyn Mechanics<N, M>,
+pub(super) struct EventInterval<'a> {
+    pub(super) system: &'a dyn Mechanism,
     pub(super) method: &'a Method,
     pub(super) t0: f64,
     pub(super) h: f64,
-    pub(super) start: &'a State<N>,
-    pub(super) end: &'a State<N>,
+    pub(super) start: &'a AnyState,
+    pub(super) end: &'a AnyState,
 }
 
-impl<Method, const N: usize, const M: usize> EventInterval<'_, Method, N, M>
-where
-    Method: OneStep<N, M> + Clone,
-{
+impl EventInterval<'_> {
     pub(super) fn time(&self, part: f64) -> f64 {
         self.t0 + part * self.h
     }
 
-    /// The state after a part of the step, and what that step reported; none where it has no solution.
-    pub(super) fn after(&self, part: f64) -> Option<(State<N>, StepReport<M>)> {
-        let mut state = *self.start;
-        let report = self.method.clone().step(self.system, self.t0, part * self.h, &mut state).ok()?;
+    /// The state after a part of the step, and what that step reported, its work where that is asked for; none where it has no solution.
+    pub(super) fn after(&self, part: f64, work: bool) -> Option<(AnyState, Report)> {
+        let mut state = self.start.clone();
+        let report = again(self.system, self.method, (self.t0, part * self.h), &mut state, work).ok()?;
         Some((state, report))
     }
 
-    pub(super) fn state(&self, part: f64) -> Option<State<N>> {
+    pub(super) fn state(&self, part: f64) -> Option<AnyState> {
         match part {
-            0.0 => Some(*self.start),
-            1.0 => Some(*self.end),
-            _ => self.after(part).map(|(state, _)| state),
+            0.0 => Some(self.start.clone()),
+            1.0 => Some(self.end.clone()),
+            _ => self.after(part, false).map(|(state, _)| state),
         }
     }
 
@@ -40,17 +38,17 @@ where
     /// an interval of time (s); and how many events were not seen as a whole. `k` is the node before.
     pub(super) fn crossings(
         &self,
-        events: &[Event<'_, N>],
+        events: &[Event<'_>],
         (samples, tolerance): (u32, f64),
         k: u64,
-    ) -> (Vec<Crossing<N>>, u64) {
+    ) -> (Vec<Crossing>, u64) {
         let parts = samples.max(1);
         let at = |j: i64| j as f64 / f64::from(parts);
         let states: Vec<_> = (-1..=i64::from(parts) + 1).map(|j| (at(j), self.state(at(j)))).collect();
         let (length, mut found, mut unseen) = (self.h.abs(), Vec::new(), 0);
         for (index, event) in events.iter().enumerate() {
             let value = |at: f64| self.state(at).map_or(f64::NAN, |state| event.value(self.time(at), &state));
-            let at_sample = |(at, state): &(f64, Option<State<N>>)| {
+            let at_sample = |(at, state): &(f64, Option<AnyState>)| {
                 (*at, state.as_ref().map_or(f64::NAN, |state| event.value(self.time(*at), state)))
             };
             let known: Vec<_> = states.iter().map(at_sample).collect();

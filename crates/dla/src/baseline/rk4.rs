@@ -1,5 +1,5 @@
 use super::{STAGES, shifted, weighted};
-use dla::{Mechanics, OneStep, StackUse, State, StepError, StepReport, on_branch};
+use crate::{Mechanics, OneStep, StackUse, State, StepError, StepReport, on_branch};
 use lagrangian::{Saddle, from_fn};
 
 /// The classical Runge-Kutta method in full coordinates.

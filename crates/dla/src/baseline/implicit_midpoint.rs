@@ -1,7 +1,7 @@
 use super::shifted;
-use dla::convergence::FixedPoint;
-use dla::convergence::tolerances::HALF_A_UNIT;
-use dla::{Mechanics, OneStep, StackUse, Stage, State, StepError, StepReport};
+use crate::convergence::FixedPoint;
+use crate::convergence::tolerances::HALF_A_UNIT;
+use crate::{Mechanics, OneStep, StackUse, Stage, State, StepError, StepReport};
 
 /// The implicit midpoint rule in full coordinates, the multiplier eliminated as in [`Rk4`](crate::Rk4).
 ///

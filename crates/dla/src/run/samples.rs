@@ -1,4 +1,5 @@
-use crate::{Observer, OneStep, State, StepError, StepReport, View};
+use super::again::again;
+use crate::{AnyState, Method, Observer, Report, StepError, View};
 use std::ops::ControlFlow;
 
 /// The observer that takes the state at given times, wherever the nodes are.
@@ -8,24 +9,24 @@ use std::ops::ControlFlow;
 /// the derivative of the position to that order. At a node it is the node; where a velocity jumps there, the one before.
 /// A method that remembers more than the state is repeated as in its first step. [`Hermite`](crate::Hermite) is cheaper.
 #[derive(Debug, Clone)]
-pub struct Samples<'a, Method, const N: usize> {
-    method: Method,
+pub struct Samples<'a> {
+    method: &'a Method,
     times: &'a [f64],
-    before: Option<(f64, State<N>)>,
-    taken: Vec<State<N>>,
+    before: Option<(f64, AnyState)>,
+    taken: Vec<AnyState>,
     failure: Option<StepError>,
 }
 
-impl<'a, Method, const N: usize> Samples<'a, Method, N> {
+impl<'a> Samples<'a> {
     /// Takes samples of a run with `method` at `times` (s), which are in the order in which the run goes.
-    pub fn new(method: Method, times: &'a [f64]) -> Self {
+    pub fn new(method: &'a Method, times: &'a [f64]) -> Self {
         Self { method, times, before: None, taken: Vec::with_capacity(times.len()), failure: None }
     }
 
     /// The states at the first of the times; fewer than those where the run ended early, where the times are not in
     /// order or begin before the run, or where a step has [failed](Self::failure).
     #[must_use]
-    pub fn taken(&self) -> &[State<N>] {
+    pub fn taken(&self) -> &[AnyState] {
         &self.taken
     }
 
@@ -39,14 +40,11 @@ impl<'a, Method, const N: usize> Samples<'a, Method, N> {
     ///
     /// # Errors
     /// As [`failure`](Self::failure).
-    pub fn into_taken(self) -> Result<Vec<State<N>>, StepError> {
+    pub fn into_taken(self) -> Result<Vec<AnyState>, StepError> {
         self.failure.map_or(Ok(self.taken), Err)
     }
 
-    fn take<const M: usize>(&mut self, node: &View<'_, N, M>, (t0, start): (f64, State<N>))
-    where
-        Method: OneStep<N, M> + Clone,
-    {
+    fn take(&mut self, node: &View<'_>, (t0, start): (f64, &AnyState)) {
         let forward = (node.t - t0).signum();
         while let Some(t) = self.times.get(self.taken.len()).copied()
             && self.failure.is_none()
@@ -56,10 +54,10 @@ impl<'a, Method, const N: usize> Samples<'a, Method, N> {
             if !(since >= 0.0 && left >= 0.0) {
                 return;
             }
-            let mut state = if left == 0.0 { *node.state } else { start };
+            let mut state = if left == 0.0 { node.state.clone() } else { start.clone() };
             if since > 0.0
                 && left > 0.0
-                && let Err(error) = self.method.clone().step(node.system, t0, t - t0, &mut state)
+                && let Err(error) = again(node.system, self.method, (t0, t - t0), &mut state, false)
             {
                 self.failure = Some(error);
                 return;
@@ -67,32 +65,40 @@ impl<'a, Method, const N: usize> Samples<'a, Method, N> {
             self.taken.push(state);
         }
     }
+
+    fn remember(&mut self, node: &View<'_>) {
+        match &mut self.before {
+            Some((t, state)) => {
+                *t = node.t;
+                state.clone_from(node.state);
+            }
+            before => *before = Some((node.t, node.state.clone())),
+        }
+    }
 }
 
-impl<Method, const N: usize, const M: usize> Observer<N, M> for Samples<'_, Method, N>
-where
-    Method: OneStep<N, M> + Clone,
-{
-    fn start(&mut self, node: &View<'_, N, M>) {
-        self.before = Some((node.t, *node.state));
+impl Observer for Samples<'_> {
+    fn start(&mut self, node: &View<'_>) {
+        self.remember(node);
     }
 
-    fn resume(&mut self, node: &View<'_, N, M>) {
-        self.start(node);
+    fn resume(&mut self, node: &View<'_>) {
+        self.remember(node);
     }
 
-    fn step(&mut self, node: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
-        if let Some(before) = self.before {
-            self.take(node, before);
+    fn step(&mut self, node: &View<'_>, _report: &Report) -> ControlFlow<()> {
+        if let Some((t0, start)) = self.before.take() {
+            self.take(node, (t0, &start));
+            self.before = Some((t0, start));
         }
-        self.before = Some((node.t, *node.state));
+        self.remember(node);
         ControlFlow::Continue(())
     }
 
     /// A run without a step has its start.
-    fn end(&mut self, node: &View<'_, N, M>) {
+    fn end(&mut self, node: &View<'_>) {
         while self.times.get(self.taken.len()) == Some(&node.t) && self.failure.is_none() {
-            self.taken.push(*node.state);
+            self.taken.push(node.state.clone());
         }
     }
 }

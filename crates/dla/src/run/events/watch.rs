@@ -1,6 +1,6 @@
 use super::interval::EventInterval;
 use super::{Close, Crossing, Event, close_crossings};
-use crate::{Observer, OneStep, State, StepError, StepReport, Undivided, View};
+use crate::{AnyState, Method, Observer, Report, StepError, Undivided, View};
 use std::ops::ControlFlow;
 
 /// A crossing that is so many roundings after the start of a run is one of its start.
@@ -27,15 +27,15 @@ const AT_START: f64 = 64.0;
 /// An event that ends the run shows the inner observer a last node, by a step that is shortened to end there. The state
 /// of the run itself is then one node further; [`ended`](Self::ended) has the one at the event.
 #[derive(Debug)]
-pub struct Watch<'a, Method, Inner, const N: usize> {
+pub struct Watch<'a, Inner> {
     /// Into how many parts a step is divided; 4 unless set, at least 1.
     pub samples: u32,
     /// To which interval of time a crossing is located (s); 0 unless set, which is to rounding.
     pub tolerance: f64,
-    method: Method,
-    events: &'a [Event<'a, N>],
+    method: &'a Method,
+    events: &'a [Event<'a>],
     inner: Inner,
-    before: Option<(f64, State<N>)>,
+    before: Option<(f64, AnyState)>,
     /// Whether nothing has been looked at since the start of the run.
     at_start: bool,
     /// How many events were not seen as a whole in a step.
@@ -44,14 +44,14 @@ pub struct Watch<'a, Method, Inner, const N: usize> {
     memory: Vec<f64>,
     /// Whether the parts of the step have been looked at already.
     in_parts: bool,
-    crossings: Vec<Crossing<N>>,
+    crossings: Vec<Crossing>,
     /// With the number of the node that it makes.
-    ended: Option<(Crossing<N>, u64)>,
+    ended: Option<(Crossing, u64)>,
 }
 
-impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
+impl<'a, Inner: Observer> Watch<'a, Inner> {
     /// Watches a run made with `method`, and shows it to `inner`.
-    pub fn new(method: Method, events: &'a [Event<'a, N>], inner: Inner) -> Self {
+    pub fn new(method: &'a Method, events: &'a [Event<'a>], inner: Inner) -> Self {
         Self {
             samples: 4,
             tolerance: 0.0,
@@ -70,19 +70,19 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
 
     /// The same, of a run that has come to this time (s) and state: what it saw last.
     #[must_use]
-    pub fn resumed(self, t: f64, state: State<N>) -> Self {
+    pub fn resumed(self, t: f64, state: AnyState) -> Self {
         Self { before: Some((t, state)), ..self }
     }
 
     /// What happened, in the order in which it did.
     #[must_use]
-    pub fn crossings(&self) -> &[Crossing<N>] {
+    pub fn crossings(&self) -> &[Crossing] {
         &self.crossings
     }
 
     /// The event that ended the run.
     #[must_use]
-    pub fn ended(&self) -> Option<&Crossing<N>> {
+    pub fn ended(&self) -> Option<&Crossing> {
         self.ended.as_ref().map(|(crossing, _)| crossing)
     }
 
@@ -105,72 +105,66 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
         self.unseen
     }
 
-    /// Lets its copies of the method measure the work where the inner observer wants it: of the step that an event ends too.
-    fn measure<const M: usize>(&mut self, node: &View<'_, N, M>)
-    where
-        Method: OneStep<N, M>,
-        Inner: Observer<N, M>,
-    {
-        if self.inner.measures_work() {
-            self.method.measure_work(node.system.power_sources());
-        }
-    }
-
     /// Looks for events on the way to a node, and shows the inner observer the last one where an event ends the run: `Break`.
-    fn look<const M: usize>(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()>
-    where
-        Method: OneStep<N, M> + Clone,
-        Inner: Observer<N, M>,
-    {
+    fn look(&mut self, node: &View<'_>, report: &Report) -> ControlFlow<()> {
         if self.ended.is_some() {
             return ControlFlow::Break(());
         }
-        if let Some((t0, start)) = self.before.filter(|_| !self.events.is_empty()) {
-            self.look_within(node, (t0, start));
+        if let Some((t0, start)) = self.before.take() {
+            if !self.events.is_empty() {
+                self.look_within(node, (t0, &start));
+            }
             if let Some((crossing, _)) = &self.ended {
-                let (system, method, h) = (node.system, &self.method, node.t - t0);
+                let (system, method, h) = (node.system, self.method, node.t - t0);
                 let step = EventInterval { system, method, t0, h, start: &start, end: node.state };
-                let report = step.after((crossing.t - t0) / h).map_or(*report, |(_, report)| report);
+                let ended = step.after((crossing.t - t0) / h, self.inner.measures_work()).map(|(_, report)| report);
                 let last = View { system, k: node.k, t: crossing.t, state: &crossing.state };
                 // The run ends here, whatever the inner observer says.
-                let _ = self.inner.step(&last, &report);
+                let _ = self.inner.step(&last, ended.as_ref().unwrap_or(report));
                 return ControlFlow::Break(());
             }
+            self.before = Some((t0, start));
         }
-        self.before = Some((node.t, *node.state));
+        self.remember(node);
         ControlFlow::Continue(())
     }
 
+    fn remember(&mut self, node: &View<'_>) {
+        match &mut self.before {
+            Some((t, state)) => {
+                *t = node.t;
+                state.clone_from(node.state);
+            }
+            before => *before = Some((node.t, node.state.clone())),
+        }
+    }
+
     /// Looks for events in each of the steps that the method makes of its own on the way to a node, until one ends the run.
-    fn look_within<const M: usize>(&mut self, node: &View<'_, N, M>, start: (f64, State<N>))
-    where
-        Method: OneStep<N, M> + Clone,
-    {
-        let (mut from, method, mut memory) = (start, self.method.clone(), std::mem::take(&mut self.memory));
-        let step = (start.0, node.t - start.0);
-        let made = method.own_steps(node.system, step, &start.1, &mut memory, &mut |t, state| {
-            let (t0, before) = std::mem::replace(&mut from, (t, *state));
-            self.look_between(node, (t0, &before), (t, state))
-        });
-        // Where they cannot be made again, the rest is looked at as one.
-        self.unseen += u64::from(made.is_err());
-        self.memory = memory;
+    fn look_within(&mut self, node: &View<'_>, (t0, start): (f64, &AnyState)) {
+        let mut from = (t0, start.clone());
+        if self.method.is_adaptive() {
+            let (integrator, mut memory) = (node.system.integrator(self.method), std::mem::take(&mut self.memory));
+            let made = integrator.own_steps((t0, node.t - t0), start, &mut memory, &mut |t, state| {
+                let (t0, before) = std::mem::replace(&mut from, (t, state.clone()));
+                self.look_between(node, (t0, &before), (t, state))
+            });
+            // Where they cannot be made again, the rest is looked at as one.
+            self.unseen += u64::from(made.is_err());
+            self.memory = memory;
+        }
         if self.ended.is_none() {
             let _ = self.look_between(node, (from.0, &from.1), (node.t, node.state));
         }
     }
 
     /// Looks for events between two states of a step to `node`.
-    fn look_between<const M: usize>(
+    fn look_between(
         &mut self,
-        node: &View<'_, N, M>,
-        (t0, start): (f64, &State<N>),
-        (t, end): (f64, &State<N>),
-    ) -> ControlFlow<()>
-    where
-        Method: OneStep<N, M> + Clone,
-    {
-        let interval = EventInterval { system: node.system, method: &self.method, t0, h: t - t0, start, end };
+        node: &View<'_>,
+        (t0, start): (f64, &AnyState),
+        (t, end): (f64, &AnyState),
+    ) -> ControlFlow<()> {
+        let interval = EventInterval { system: node.system, method: self.method, t0, h: t - t0, start, end };
         let (mut found, unseen) =
             interval.crossings(self.events, (self.samples, self.tolerance), node.k.saturating_sub(1));
         self.unseen += unseen;
@@ -183,51 +177,45 @@ impl<'a, Method, Inner, const N: usize> Watch<'a, Method, Inner, N> {
     }
 
     /// Notes a crossing; whether it ends the run, there at node `k`.
-    fn note(&mut self, crossing: Crossing<N>, k: u64) -> bool {
+    fn note(&mut self, crossing: Crossing, k: u64) -> bool {
         if !self.events[crossing.event].admits(&crossing) {
             return false;
         }
-        self.crossings.push(crossing);
         let ends = self.events[crossing.event].terminal;
         if ends {
-            self.ended = Some((crossing, k));
+            self.ended = Some((crossing.clone(), k));
         }
+        self.crossings.push(crossing);
         ends
     }
 }
 
-impl<Method, Inner, const N: usize, const M: usize> Observer<N, M> for Watch<'_, Method, Inner, N>
-where
-    Method: OneStep<N, M> + Clone,
-    Inner: Observer<N, M>,
-{
-    fn start(&mut self, node: &View<'_, N, M>) {
-        self.before = Some((node.t, *node.state));
+impl<Inner: Observer> Observer for Watch<'_, Inner> {
+    fn start(&mut self, node: &View<'_>) {
+        self.remember(node);
         self.at_start = true;
         self.memory.clear();
-        self.measure(node);
         self.inner.start(node);
     }
 
     /// Where the velocity jumps, a function may jump over zero.
-    fn resume(&mut self, node: &View<'_, N, M>) {
-        if let Some((t, before)) = self.before {
+    fn resume(&mut self, node: &View<'_>) {
+        if let Some((t, before)) = self.before.take() {
             for (index, event) in self.events.iter().enumerate() {
                 let (old, new) = (event.value(t, &before), event.value(node.t, node.state));
                 let rising = old < 0.0;
                 if old * new.signum() < 0.0 && new != 0.0 && event.counts(rising) && self.ended.is_none() {
-                    let (k, t, state) = (node.k, node.t, *node.state);
+                    let (k, t, state) = (node.k, node.t, node.state.clone());
                     self.note(Crossing { event: index, k, t, within: 0.0, spacing: 0.0, rising, state }, k);
                 }
             }
         }
-        self.before = Some((node.t, *node.state));
+        self.remember(node);
         self.memory.clear();
-        self.measure(node);
         self.inner.resume(node);
     }
 
-    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_>, report: &Report) -> ControlFlow<()> {
         if std::mem::take(&mut self.in_parts) {
             self.memory.clear();
         } else {
@@ -237,7 +225,7 @@ where
     }
 
     /// Each part is looked at as a step is: a divided step may hold many crossings.
-    fn part(&mut self, end: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn part(&mut self, end: &View<'_>, report: &Report) -> ControlFlow<()> {
         // It is made without what the method remembers.
         self.memory.clear();
         self.look(end, report)?;
@@ -253,7 +241,7 @@ where
         self.inner.undivided(why);
     }
 
-    fn end(&mut self, node: &View<'_, N, M>) {
+    fn end(&mut self, node: &View<'_>) {
         match &self.ended {
             Some((Crossing { t, state, .. }, k)) => {
                 self.inner.end(&View { system: node.system, k: *k, t: *t, state });

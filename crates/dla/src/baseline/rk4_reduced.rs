@@ -1,5 +1,5 @@
 use super::{STAGES, shifted, weighted};
-use dla::{Mechanics, OneStep, StackUse, State, StepError, StepReport};
+use crate::{Mechanics, OneStep, StackUse, State, StepError, StepReport};
 
 /// The classical Runge-Kutta method on the reduced equations.
 ///

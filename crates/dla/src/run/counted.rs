@@ -1,6 +1,8 @@
 //! A system that counts how often it is evaluated.
 
-use dla::{Collocation, CollocationOutcome, Diagnosis, Mechanics, NotANumber, RoundedMechanics, SecondSlopes, Slopes};
+use crate::{
+    Collocation, CollocationOutcome, Diagnosis, Mechanics, NotANumber, RoundedMechanics, SecondSlopes, Slopes,
+};
 use lagrangian::linear::Singular;
 use lagrangian::{
     AdmissibleBasis, Bracket, Constraint, ConstraintSlopes, Dependence, Dual, EnergySlope, HyperDual, Lanes, Motion,
@@ -9,9 +11,9 @@ use lagrangian::{
 use std::cell::Cell;
 
 /// A system, and how often its Lagrangian, its forces and its constraint have been evaluated.
-pub(crate) struct Counted<'a, const N: usize, const M: usize> {
-    pub(crate) system: &'a dyn Mechanics<N, M>,
-    pub(crate) evaluations: &'a Cell<u64>,
+pub(super) struct Counted<'a, const N: usize, const M: usize> {
+    pub(super) system: &'a dyn Mechanics<N, M>,
+    pub(super) evaluations: &'a Cell<u64>,
 }
 
 impl<const N: usize, const M: usize> Counted<'_, N, M> {

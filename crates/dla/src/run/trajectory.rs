@@ -1,18 +1,18 @@
-use crate::{Checkpoint, Observer, StepReport, View, Work};
+use crate::{Checkpoint, Observer, Report, View, Work};
 use std::io;
 use std::ops::ControlFlow;
 
 /// A node that was kept.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Node<const N: usize, const M: usize> {
+#[derive(Debug, Clone, PartialEq)]
+pub struct Node {
     /// The number of steps made so far.
     pub k: u64,
     /// Time (s).
     pub t: f64,
     /// Configuration, angles with their full turns.
-    pub q: [f64; N],
+    pub q: Vec<f64>,
     /// Velocity.
-    pub v: [f64; N],
+    pub v: Vec<f64>,
     /// Energy (J).
     pub energy: f64,
     /// Work done since the start (J), so that `E(t) - E(0) - work` is the error of the energy.
@@ -20,62 +20,64 @@ pub struct Node<const N: usize, const M: usize> {
     /// Largest constraint residual `|A(q) v + b|`.
     pub constraint: f64,
     /// Constraint forces averaged over the step that led here; none at the start.
-    pub multipliers: Option<[f64; M]>,
+    pub multipliers: Option<Vec<f64>>,
 }
 
-impl<const N: usize, const M: usize> Node<N, M> {
+impl Node {
     /// One number for each of the [columns](Trajectory::columns).
     pub fn numbers(&self) -> impl Iterator<Item = f64> {
-        let Self { t, q, v, energy, work, constraint, .. } = *self;
-        [t].into_iter().chain(q).chain(v).chain([energy, work, constraint])
+        let Self { t, q, v, energy, work, constraint, .. } = self;
+        [*t].into_iter().chain(q.iter().copied()).chain(v.iter().copied()).chain([*energy, *work, *constraint])
     }
 }
 
 /// Which nodes are kept: the first, every `every`-th and the last.
 #[derive(Debug, Clone, PartialEq)]
-struct Choice<const N: usize, const M: usize> {
+struct Choice {
     every: u64,
     time: f64,
-    multipliers: Option<[f64; M]>,
-    work: Work<N>,
+    multipliers: Option<Vec<f64>>,
+    work: Work,
     /// The number of the last one that was kept.
     last: Option<u64>,
 }
 
-impl<const N: usize, const M: usize> Choice<N, M> {
+impl Choice {
     fn every(every: u64) -> Self {
         Self { every: every.max(1), time: 0.0, multipliers: None, work: Work::default(), last: None }
     }
 
-    fn node(&mut self, view: &View<'_, N, M>) -> Node<N, M> {
+    fn node(&mut self, view: &View<'_>) -> Node {
         self.last = Some(view.k);
         Node {
             k: view.k,
             t: view.t,
             q: view.state.unwrapped(),
-            v: *view.state.v(),
+            v: view.state.v().to_vec(),
             energy: view.energy(),
             work: self.work.total(),
             constraint: view.constraint(),
-            multipliers: self.multipliers,
+            multipliers: self.multipliers.clone(),
         }
     }
 
-    fn start(&mut self, view: &View<'_, N, M>) -> Node<N, M> {
+    fn start(&mut self, view: &View<'_>) -> Node {
         (self.time, self.multipliers) = (view.t, None);
         self.work.start(view);
         self.node(view)
     }
 
-    fn step(&mut self, view: &View<'_, N, M>, report: &StepReport<M>) -> Option<Node<N, M>> {
+    fn step(&mut self, view: &View<'_>, report: &Report) -> Option<Node> {
         // Work never ends a run.
         let _ = self.work.step(view, report);
-        self.multipliers = Some(report.multipliers(view.t - self.time));
+        let rows = report.impulses[0].len();
+        let multipliers = self.multipliers.get_or_insert_with(|| vec![0.0; rows]);
+        report.multipliers_into(view.t - self.time, multipliers);
         self.time = view.t;
         view.k.is_multiple_of(self.every).then(|| self.node(view))
     }
 
-    fn end(&mut self, view: &View<'_, N, M>) -> Option<Node<N, M>> {
+    fn end(&mut self, view: &View<'_>) -> Option<Node> {
         self.work.end(view);
         (self.last != Some(view.k)).then(|| self.node(view))
     }
@@ -83,12 +85,12 @@ impl<const N: usize, const M: usize> Choice<N, M> {
 
 /// The observer that keeps the first node, every `every`-th and the last.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Trajectory<const N: usize, const M: usize> {
-    nodes: Vec<Node<N, M>>,
-    choice: Choice<N, M>,
+pub struct Trajectory {
+    nodes: Vec<Node>,
+    choice: Choice,
 }
 
-impl<const N: usize, const M: usize> Trajectory<N, M> {
+impl Trajectory {
     /// Keeps every `every`-th node; 0 counts as 1.
     #[must_use]
     pub fn every(every: u64) -> Self {
@@ -97,23 +99,23 @@ impl<const N: usize, const M: usize> Trajectory<N, M> {
 
     /// The same for a run that goes on from a checkpoint, whose work [`Work::load`] gave: keeps the nodes after it.
     #[must_use]
-    pub fn resumed(every: u64, t: f64, work: Work<N>) -> Self {
+    pub fn resumed(every: u64, t: f64, work: Work) -> Self {
         Self { nodes: Vec::new(), choice: Choice { time: t, work, ..Choice::every(every) } }
     }
 
     /// The nodes kept, in the order of time.
     #[must_use]
-    pub fn nodes(&self) -> &[Node<N, M>] {
+    pub fn nodes(&self) -> &[Node] {
         &self.nodes
     }
 
     /// The names of the columns of a file: time, the coordinates under these names, their rates (`x'`), energy, work and the largest residual
     /// of a constraint. They are those of a trajectory of a system of text.
     #[must_use]
-    pub fn columns(names: [&str; N]) -> Vec<String> {
-        let rates = names.map(|name| format!("{name}'"));
+    pub fn columns(names: &[&str]) -> Vec<String> {
+        let rates: Vec<String> = names.iter().map(|name| format!("{name}'")).collect();
         let own = |names: &[&str]| names.iter().copied().map(str::to_owned).collect::<Vec<_>>();
-        [own(&["t"]), own(&names), rates.to_vec(), own(&["energy", "work", "constraint"])].concat()
+        [own(&["t"]), own(names), rates, own(&["energy", "work", "constraint"])].concat()
     }
 
     /// Writes the nodes as CSV, in these [columns](Self::columns), all digits of each number.
@@ -121,14 +123,14 @@ impl<const N: usize, const M: usize> Trajectory<N, M> {
     /// ```
     /// # use dla::Trajectory;
     /// let mut text = Vec::new();
-    /// Trajectory::<2, 1>::every(1).write_csv(&mut text, ["x", "theta"])?;
+    /// Trajectory::every(1).write_csv(&mut text, &["x", "theta"])?;
     /// assert_eq!(text, b"t,x,theta,x',theta',energy,work,constraint\n");
     /// # Ok::<(), std::io::Error>(())
     /// ```
     ///
     /// # Errors
     /// Those of writing.
-    pub fn write_csv(&self, mut to: impl io::Write, names: [&str; N]) -> io::Result<()> {
+    pub fn write_csv(&self, mut to: impl io::Write, names: &[&str]) -> io::Result<()> {
         writeln!(to, "{}", Self::columns(names).join(","))?;
         for node in &self.nodes {
             for (k, x) in node.numbers().enumerate() {
@@ -140,17 +142,17 @@ impl<const N: usize, const M: usize> Trajectory<N, M> {
     }
 }
 
-impl<const N: usize, const M: usize> Observer<N, M> for Trajectory<N, M> {
-    fn start(&mut self, node: &View<'_, N, M>) {
+impl Observer for Trajectory {
+    fn start(&mut self, node: &View<'_>) {
         let node = self.choice.start(node);
         self.nodes.push(node);
     }
 
-    fn resume(&mut self, node: &View<'_, N, M>) {
+    fn resume(&mut self, node: &View<'_>) {
         self.choice.work.resume(node);
     }
 
-    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_>, report: &Report) -> ControlFlow<()> {
         let node = self.choice.step(node, report);
         self.nodes.extend(node);
         ControlFlow::Continue(())
@@ -160,35 +162,35 @@ impl<const N: usize, const M: usize> Observer<N, M> for Trajectory<N, M> {
         true
     }
 
-    fn part(&mut self, end: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn part(&mut self, end: &View<'_>, report: &Report) -> ControlFlow<()> {
         self.choice.work.part(end, report)
     }
 
-    fn end(&mut self, node: &View<'_, N, M>) {
+    fn end(&mut self, node: &View<'_>) {
         let node = self.choice.end(node);
         self.nodes.extend(node);
     }
 }
 
 /// The observer that hands on the nodes a [`Trajectory`] would keep, as they come: the memory holds none of them.
-pub struct Nodes<'a, const N: usize, const M: usize> {
-    choice: Choice<N, M>,
-    sink: &'a mut dyn FnMut(&Node<N, M>),
+pub struct Nodes<'a> {
+    choice: Choice,
+    sink: &'a mut dyn FnMut(&Node),
 }
 
-impl<'a, const N: usize, const M: usize> Nodes<'a, N, M> {
+impl<'a> Nodes<'a> {
     /// Hands on every `every`-th node, besides the first and the last; 0 counts as 1.
-    pub fn every(every: u64, sink: &'a mut dyn FnMut(&Node<N, M>)) -> Self {
+    pub fn every(every: u64, sink: &'a mut dyn FnMut(&Node)) -> Self {
         Self { choice: Choice::every(every), sink }
     }
 
     /// The same for a run that goes on from a checkpoint after `k` steps, at time `t` (s), whose work [`Work::load`] gave, and which
     /// [`save`](Self::save) wrote to: the nodes are those that a run without the checkpoint would have handed on after it.
     #[must_use]
-    pub fn resumed(self, (k, t): (u64, f64), work: Work<N>, checkpoint: &Checkpoint) -> Self {
+    pub fn resumed(self, (k, t): (u64, f64), work: Work, checkpoint: &Checkpoint) -> Self {
         let last = k.is_multiple_of(self.choice.every).then_some(k);
         // Of a run whose nodes nobody saw they are not known.
-        let multipliers = checkpoint.get("multipliers").ok();
+        let multipliers = checkpoint.list("multipliers").ok();
         Self { choice: Choice { time: t, work, last, multipliers, ..self.choice }, ..self }
     }
 
@@ -200,22 +202,22 @@ impl<'a, const N: usize, const M: usize> Nodes<'a, N, M> {
     }
 }
 
-impl<const N: usize, const M: usize> std::fmt::Debug for Nodes<'_, N, M> {
+impl std::fmt::Debug for Nodes<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Nodes").field("choice", &self.choice).finish_non_exhaustive()
     }
 }
 
-impl<const N: usize, const M: usize> Observer<N, M> for Nodes<'_, N, M> {
-    fn start(&mut self, node: &View<'_, N, M>) {
+impl Observer for Nodes<'_> {
+    fn start(&mut self, node: &View<'_>) {
         (self.sink)(&self.choice.start(node));
     }
 
-    fn resume(&mut self, node: &View<'_, N, M>) {
+    fn resume(&mut self, node: &View<'_>) {
         self.choice.work.resume(node);
     }
 
-    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_>, report: &Report) -> ControlFlow<()> {
         if let Some(node) = self.choice.step(node, report) {
             (self.sink)(&node);
         }
@@ -226,11 +228,11 @@ impl<const N: usize, const M: usize> Observer<N, M> for Nodes<'_, N, M> {
         true
     }
 
-    fn part(&mut self, end: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn part(&mut self, end: &View<'_>, report: &Report) -> ControlFlow<()> {
         self.choice.work.part(end, report)
     }
 
-    fn end(&mut self, node: &View<'_, N, M>) {
+    fn end(&mut self, node: &View<'_>) {
         if let Some(node) = self.choice.end(node) {
             (self.sink)(&node);
         }

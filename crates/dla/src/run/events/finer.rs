@@ -1,7 +1,6 @@
 use super::Event;
 use super::interval::EventInterval;
-use crate::{OneStep, State};
-use lagrangian::from_fn;
+use crate::AnyState;
 
 /// What the samples of a step tell of an event between them.
 pub(super) enum Between {
@@ -32,17 +31,14 @@ const ENOUGH: u32 = 8;
 const MOST: u32 = 1 << 14;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-impl<Method, const N: usize, const M: usize> EventInterval<'_, Method, N, M>
-where
-    Method: OneStep<N, M> + Clone,
-{
+impl EventInterval<'_> {
     /// Whether an event bends between the samples of a step, of which there is one beyond both ends: one value in each part is compared with
     /// the cubic through the four samples about it, at a place that differs from part to part. A sine that is looked at too seldom is not
     /// where the slower one is that it looks like.
     pub(super) fn between(
         &self,
-        event: &Event<'_, N>,
-        states: &[(f64, Option<State<N>>)],
+        event: &Event<'_>,
+        states: &[(f64, Option<AnyState>)],
         known: &[(f64, f64)],
         parts: u32,
     ) -> Between {
@@ -51,8 +47,8 @@ where
             let j = (place as usize).min(states.len().saturating_sub(2));
             match (&states[j].1, &states[j + 1].1) {
                 (Some(from), Some(to)) => {
-                    let state = self.cubic((from, to), self.h / f64::from(parts), place - j as f64);
-                    event.value(self.time(at), &state)
+                    let [q, v] = cubic((from, to), self.h / f64::from(parts), place - j as f64);
+                    event.value_at(self.time(at), &q, &v)
                 }
                 _ => f64::NAN,
             }
@@ -90,28 +86,29 @@ where
     }
 
     /// What some roundings of the time and the state make of an event.
-    fn rounding(&self, event: &Event<'_, N>, at: f64, state: &State<N>) -> f64 {
+    fn rounding(&self, event: &Event<'_>, at: f64, state: &AnyState) -> f64 {
         let (t, off) = (self.time(at), ROUNDINGS * f64::EPSILON);
         let moved = |sign: f64| {
-            let place = |x: [f64; N]| from_fn(|i| x[i] * (1.0 + off * if i % 2 == 0 { 1.0 } else { sign }));
-            let state = State::new(place(state.unwrapped()), place(*state.v()), self.system.angles());
-            event.value(t * (1.0 + off), &state)
+            let factor = |i: usize| 1.0 + off * if i % 2 == 0 { 1.0 } else { sign };
+            let near = |x: &[f64]| -> Vec<f64> { x.iter().enumerate().map(|(i, x)| x * factor(i)).collect() };
+            event.value_at(t * (1.0 + off), &near(&state.unwrapped()), &near(state.v()))
         };
         let value = event.value(t, state);
         (moved(1.0) - value).abs().max((moved(-1.0) - value).abs())
     }
+}
 
-    /// The state between two that are `s` seconds apart: a cubic in the coordinates.
-    fn cubic(&self, (from, to): (&State<N>, &State<N>), s: f64, c: f64) -> State<N> {
-        let (q0, q1) = (from.unwrapped(), to.unwrapped());
-        let parts = from_fn::<_, N, _>(|i| {
-            let (d0, d1, change) = (s * from.v()[i], s * to.v()[i], q1[i] - q0[i]);
-            [d0, 3.0 * change - 2.0 * d0 - d1, d0 + d1 - 2.0 * change]
-        });
-        let q = from_fn(|i| q0[i] + c * (parts[i][0] + c * (parts[i][1] + c * parts[i][2])));
-        let v = from_fn(|i| (parts[i][0] + c * (2.0 * parts[i][1] + c * 3.0 * parts[i][2])) / s);
-        State::new(q, v, self.system.angles())
-    }
+/// Configuration and velocity between two states that are `s` seconds apart: a cubic in the coordinates.
+fn cubic((from, to): (&AnyState, &AnyState), s: f64, c: f64) -> [Vec<f64>; 2] {
+    let (q0, q1) = (from.unwrapped(), to.unwrapped());
+    let parts = |i: usize| {
+        let (d0, d1, change) = (s * from.v()[i], s * to.v()[i], q1[i] - q0[i]);
+        [d0, 3.0 * change - 2.0 * d0 - d1, d0 + d1 - 2.0 * change]
+    };
+    let parts: Vec<[f64; 3]> = (0..q0.len()).map(parts).collect();
+    let q = q0.iter().zip(&parts).map(|(q, part)| q + c * (part[0] + c * (part[1] + c * part[2])));
+    let v = parts.iter().map(|part| (part[0] + c * (2.0 * part[1] + c * 3.0 * part[2])) / s);
+    [q.collect(), v.collect()]
 }
 
 /// A place in each part, what the cubic through the samples about it is there, and half the range of these, with what rounding makes of a

@@ -1,6 +1,6 @@
-use dla::{
-    Checkpoint, CheckpointError, Halved, Mechanics, Observer, OneStep, Part, RunError, Schedule, State, StepError,
-    StepReport, Substeps, Undivided, View, drive_part,
+use crate::{
+    AnyState, Checkpoint, CheckpointError, Halved, Integrator, Mechanism, Observer, Part, Report, RunError, Schedule,
+    StepError, Substeps, Undivided, View, make_steps,
 };
 use std::ops::{ControlFlow, Range};
 
@@ -19,17 +19,22 @@ pub struct SubstepSummary {
 
 impl SubstepSummary {
     /// Adds a step that was made in so many parts; none are a step that was made whole.
-    pub(crate) fn add(&mut self, parts: u64) {
+    pub fn add(&mut self, parts: u64) {
         self.divided += u64::from(parts > 0);
         self.parts += parts;
         self.most = self.most.max(parts);
     }
 
-    pub(crate) fn save(&self, checkpoint: &mut Checkpoint) {
+    /// Writes the counts to a checkpoint.
+    pub fn save(&self, checkpoint: &mut Checkpoint) {
         checkpoint.put_counts("substeps", &[self.divided, self.parts, self.most]);
     }
 
-    pub(crate) fn load(checkpoint: &Checkpoint) -> Result<Self, CheckpointError> {
+    /// The counts that [`save`](Self::save) wrote.
+    ///
+    /// # Errors
+    /// [`CheckpointError`] where the checkpoint has none.
+    pub fn load(checkpoint: &Checkpoint) -> Result<Self, CheckpointError> {
         let [divided, parts, most] = checkpoint.counts("substeps")?;
         Ok(Self { divided, parts, most, undivided: None })
     }
@@ -39,18 +44,21 @@ impl SubstepSummary {
 /// of the method, so that a run is the same from every checkpoint.
 ///
 /// It goes through the code of whole steps, a step at a time. Without limits of division it is that code.
-pub(crate) fn substepped_part<const N: usize, const M: usize>(
-    system: &dyn Mechanics<N, M>,
-    method: &mut dyn OneStep<N, M>,
+///
+/// # Errors
+/// [`RunError`] with the step that failed; the state then is the last good node.
+pub fn substepped_part(
+    system: &dyn Mechanism,
+    method: &mut dyn Integrator,
     limits: Option<Substeps>,
     schedule: &Schedule,
     steps: Range<u64>,
-    state: &mut State<N>,
-    observer: &mut dyn Observer<N, M>,
+    state: &mut AnyState,
+    observer: &mut dyn Observer,
 ) -> Result<Part, RunError> {
     let Some(limits) = limits else {
-        return drive_part(system, method, schedule, steps, state, observer)
-            .map_err(|error| error.with_shorter(system, method, (schedule.step, state)));
+        return make_steps(system, method, schedule, steps, state, observer)
+            .map_err(|error| error.with_shorter(method, (schedule.step, state)));
     };
     let mut made = steps.start;
     if observer.measures_work() {
@@ -85,20 +93,20 @@ pub(crate) fn substepped_part<const N: usize, const M: usize>(
 }
 
 /// The step from node `k`, whole or in parts; `Break`, with everything as it was, where the observer gives it up.
-fn step<const N: usize, const M: usize>(
-    system: &dyn Mechanics<N, M>,
-    method: &mut dyn OneStep<N, M>,
+fn step(
+    system: &dyn Mechanism,
+    method: &mut dyn Integrator,
     (schedule, k, limits): (&Schedule, u64, Substeps),
-    state: &mut State<N>,
-    observer: &mut dyn Observer<N, M>,
-) -> Result<ControlFlow<(), StepReport<M>>, RunError> {
-    let (before, remembered) = (*state, method.memory());
+    state: &mut AnyState,
+    observer: &mut dyn Observer,
+) -> Result<ControlFlow<(), Report>, RunError> {
+    let (before, remembered) = (state.clone(), method.memory());
     let (t, h) = (schedule.time(k), schedule.step);
     // From what a checkpoint has.
     method.recall(&remembered, state);
-    let mut report = LastReport(StepReport::of(0));
+    let mut last = LastReport::default();
     let mut memory = Vec::new();
-    let whole = drive_part(system, method, schedule, k..k + 1, state, &mut report)
+    let whole = make_steps(system, method, schedule, k..k + 1, state, &mut last)
         .map_err(|error| error.source)
         .and_then(|part| if part.made > k { Ok(()) } else { Err(StepError::Stopped) })
         .and_then(|()| {
@@ -107,19 +115,19 @@ fn step<const N: usize, const M: usize>(
         });
     let Err(failure) = whole else {
         method.recall(&memory, state);
-        return Ok(ControlFlow::Continue(report.0));
+        return Ok(ControlFlow::Continue(last.report));
     };
 
-    *state = before;
-    let mut total = StepReport::of(0);
+    state.clone_from(&before);
+    let mut total = Report::of(system.size().m);
     let made = limits.divide((t, h), failure, StepError::may_hold_in_parts, |(t, h), after| {
-        let start = *state;
+        let start = state.clone();
         let report = one(system, method, (t, h), state)?;
         if let Err(failure) = resolves(system, method, (t, h), &start, state) {
             *state = start;
             return Err(failure);
         }
-        total = total.then(&report);
+        total.add(&report);
         let t = if after < 1.0 { t + h } else { schedule.time(k + 1) };
         Ok(observer.part(&View { system, k: k + 1, t, state }, &report))
     });
@@ -144,42 +152,53 @@ fn step<const N: usize, const M: usize>(
 }
 
 /// Whether a step resolves the motion.
-fn resolves<const N: usize, const M: usize>(
-    system: &dyn Mechanics<N, M>,
-    method: &mut dyn OneStep<N, M>,
+fn resolves(
+    system: &dyn Mechanism,
+    method: &mut dyn Integrator,
     step: (f64, f64),
-    before: &State<N>,
-    after: &State<N>,
+    before: &AnyState,
+    after: &AnyState,
 ) -> Result<(), StepError> {
     Halved::resolves(step, before, after, |step, state| one(system, method, step, state).map(|_| ()))
 }
 
 /// One step by itself, without what the method remembers of others.
-pub(crate) fn one<const N: usize, const M: usize>(
-    system: &dyn Mechanics<N, M>,
-    method: &mut dyn OneStep<N, M>,
+fn one(
+    system: &dyn Mechanism,
+    method: &mut dyn Integrator,
     (t, h): (f64, f64),
-    state: &mut State<N>,
-) -> Result<StepReport<M>, StepError> {
+    state: &mut AnyState,
+) -> Result<Report, StepError> {
     method.recall(&[], state);
-    let mut report = LastReport(StepReport::of(0));
+    let mut last = LastReport::default();
     let alone = Schedule { t0: t, step: h, steps: 1 };
-    let part = drive_part(system, method, &alone, 0..1, state, &mut report).map_err(|error| error.source)?;
-    if part.made == 1 { Ok(report.0) } else { Err(StepError::Stopped) }
+    let part = make_steps(system, method, &alone, 0..1, state, &mut last).map_err(|error| error.source)?;
+    if part.made == 1 { Ok(last.report) } else { Err(StepError::Stopped) }
 }
 
-/// What the last step reported.
-pub(crate) struct LastReport<const M: usize>(pub(crate) StepReport<M>);
+/// The observer that keeps what the last step reported.
+#[derive(Debug)]
+pub(super) struct LastReport {
+    pub(super) report: Report,
+    /// Whether the work of the step is asked for.
+    pub(super) work: bool,
+}
 
-impl<const N: usize, const M: usize> Observer<N, M> for LastReport<M> {
-    fn start(&mut self, _node: &View<'_, N, M>) {}
+impl Default for LastReport {
+    fn default() -> Self {
+        Self { report: Report::default(), work: true }
+    }
+}
 
-    fn step(&mut self, _node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
-        self.0 = *report;
+impl Observer for LastReport {
+    fn start(&mut self, _node: &View<'_>) {}
+
+    fn step(&mut self, _node: &View<'_>, report: &Report) -> ControlFlow<()> {
+        self.report.clone_from(report);
         ControlFlow::Continue(())
     }
 
     fn measures_work(&self) -> bool {
-        true
+        self.work
     }
 }

@@ -1,12 +1,17 @@
 //! The methods by name.
 
+mod differentiable;
 mod kind;
+mod stepper;
 mod table;
+
+pub(crate) use differentiable::differentiable;
+pub use differentiable::has_derivatives;
 
 pub use kind::MethodKind;
 pub use table::{METHODS, MethodInfo};
 
-use dla::Substeps;
+use crate::Substeps;
 use lagrangian::{Alpha, AnyRule, Midpoint, NotAWeight, Trapezoid};
 use thiserror::Error;
 
@@ -110,7 +115,7 @@ impl Method {
     }
 
     /// The same method, whose steps are made in parts where it cannot make them whole, or where a whole one does not resolve the
-    /// motion ([`Halved`](dla::Halved)). Runs that are integrated piece by piece heed it, as all do that are measured; each step
+    /// motion ([`Halved`](crate::Halved)). Runs that are integrated piece by piece heed it, as all do that are measured; each step
     /// then takes the time of three.
     #[must_use]
     pub fn with_substeps(self, substeps: Substeps) -> Self {
@@ -142,7 +147,8 @@ impl Method {
     }
 
     /// The rule of the discrete constraint: the midpoint rule, but for `dla-trapezoid` and `dla-alpha`.
-    pub(crate) fn rule(&self) -> AnyRule {
+    #[must_use]
+    pub fn rule(&self) -> AnyRule {
         match self.info.kind {
             MethodKind::DlaTrapezoid => Trapezoid.into(),
             MethodKind::DlaAlpha => self.alpha.into(),

@@ -1,4 +1,4 @@
-use crate::{Mechanics, OneStep, RunError, Runaway, Samples, Schedule, State, StepError, drive, stops};
+use crate::{RunError, Runaway, Schedule, StepError, stops};
 use lagrangian::linear::larger;
 use thiserror::Error;
 
@@ -71,8 +71,9 @@ const UNSEEN: u64 = 1 << 22;
 /// Runs of more steps than this say when a motion leaves the range of numbers, and what is within reach of numbers without the digits.
 const FINE: u64 = 1 << 16;
 
-/// The longest constant step with which a run from `state` at time zero reaches its tolerance, the largest error of a
-/// coordinate in its own units, found by trial.
+/// The longest constant step with which a motion from time zero reaches its tolerance, the largest error of a coordinate in its own units,
+/// found by trial: `make` makes a run by a schedule, and gives the configurations, angles with their turns, at the times, which end with the
+/// end of the run.
 ///
 /// A step that changes along a run would destroy the symmetry of a symmetric method; a constant one keeps it. The number of
 /// steps is doubled until the change, extrapolated by the ratio of two changes (Richardson), no longer moves by more than a
@@ -82,37 +83,15 @@ const FINE: u64 = 1 << 16;
 ///
 /// # Errors
 /// [`RecommendError`], with the best that is within reach.
-pub fn recommend_step<Method, const N: usize, const M: usize>(
-    system: &dyn Mechanics<N, M>,
-    make_method: impl Fn() -> Method,
-    state: &State<N>,
+pub fn recommend_by_trial(
     duration: f64,
     tolerance: f64,
-) -> Result<Recommendation, RecommendError>
-where
-    Method: OneStep<N, M> + Clone,
-{
-    recommend_by_trial(duration, tolerance, |schedule, times| {
-        let mut samples = Samples::new(make_method(), times);
-        drive(system, &mut make_method(), schedule, &mut state.clone(), &mut samples)?;
-        samples.into_taken().map_err(|source| RunError::new(schedule.steps, schedule.t0, source))
-    })
-}
-
-/// The same with a function that makes the trials: a run by the schedule, and the states at the times, which end with the
-/// end of the run.
-///
-/// # Errors
-/// As [`recommend_step`].
-pub fn recommend_by_trial<const N: usize>(
-    duration: f64,
-    tolerance: f64,
-    mut make: impl FnMut(&Schedule, &[f64]) -> Result<Vec<State<N>>, RunError>,
+    mut make: impl FnMut(&Schedule, &[f64]) -> Result<Sampled, RunError>,
 ) -> Result<Recommendation, RecommendError> {
     if !(tolerance > 0.0 && tolerance.is_finite() && duration > 0.0 && duration.is_finite()) {
         return Err(RecommendError::Request { tolerance, duration });
     }
-    let mut trial = |steps: u64| -> Result<Sampled<N>, RunError> {
+    let mut trial = |steps: u64| -> Result<Sampled, RunError> {
         let schedule = Schedule { t0: 0.0, step: duration / steps as f64, steps };
         // The last is that of the last node, to the bit.
         let end = schedule.time(steps);
@@ -121,32 +100,32 @@ pub fn recommend_by_trial<const N: usize>(
         if stops() {
             return Err(RunError::new(steps, end, StepError::Stopped));
         }
-        let sampled: Sampled<N> = lagrangian::from_fn(|i| found.get(i).map_or([f64::NAN; N], State::unwrapped));
-        let finite = sampled.iter().flatten().all(|q| q.is_finite());
-        if finite { Ok(sampled) } else { Err(RunError::new(steps, end, StepError::NotFinite)) }
+        let finite = found.len() == TIMES && found.iter().flatten().all(|q| q.is_finite());
+        if finite { Ok(found) } else { Err(RunError::new(steps, end, StepError::NotFinite)) }
     };
     let (found, trials) = reference(&mut trial, duration, tolerance)?;
     refined(&mut trial, &found, &trials, duration, tolerance)
 }
 
-type Sampled<const N: usize> = [[f64; N]; TIMES];
+/// Configurations at some times.
+type Sampled = Vec<Vec<f64>>;
 
 /// The largest difference of a coordinate at any of the times.
-fn distance<const N: usize>(a: &Sampled<N>, b: &Sampled<N>) -> f64 {
+fn distance(a: &Sampled, b: &Sampled) -> f64 {
     a.iter().flatten().zip(b.iter().flatten()).fold(0.0, |largest, (a, b)| larger(largest, a - b))
 }
 
 /// The trials made, by the number of their steps.
-type Trials<const N: usize> = Vec<(u64, Sampled<N>)>;
+type Trials = Vec<(u64, Sampled)>;
 
 /// The motion to a part of the tolerance, and the trials that led to it.
-fn reference<const N: usize>(
-    trial: &mut impl FnMut(u64) -> Result<Sampled<N>, RunError>,
+fn reference(
+    trial: &mut impl FnMut(u64) -> Result<Sampled, RunError>,
     duration: f64,
     tolerance: f64,
-) -> Result<(Sampled<N>, Trials<N>), RecommendError> {
-    let mut trials: Trials<N> = Vec::new();
-    let mut extrapolated: Option<Sampled<N>> = None;
+) -> Result<(Sampled, Trials), RecommendError> {
+    let mut trials: Trials = Vec::new();
+    let mut extrapolated: Option<Sampled> = None;
     let (mut change, mut best) = (f64::INFINITY, (f64::INFINITY, 1));
     let (mut failure, mut runaway, mut slowly) = (None, Runaway::default(), false);
     let (mut steps, mut stalls, mut size, mut largest) = (4, 0, 0.0, 0.0);
@@ -165,13 +144,15 @@ fn reference<const N: usize>(
                     // A ratio of two is an error of order one.
                     let better = (ratio >= 1.9).then(|| {
                         let gain = (ratio.log2().round().clamp(1.0, 20.0).exp2() - 1.0).recip();
-                        lagrangian::from_fn(|k| lagrangian::from_fn(|i| now[k][i] + gain * (now[k][i] - before[k][i])))
+                        let beyond = |(now, before): (&f64, &f64)| now + gain * (now - before);
+                        let each = |(now, before): (&Vec<f64>, &Vec<f64>)| now.iter().zip(before).map(beyond).collect();
+                        now.iter().zip(before).map(each).collect::<Sampled>()
                     });
                     let moved = match (&better, &extrapolated) {
                         (Some(better), Some(before)) => distance(better, before),
                         _ => f64::INFINITY,
                     };
-                    trials.push((steps, now));
+                    trials.push((steps, now.clone()));
                     if moved <= REFERENCE * tolerance {
                         return Ok((better.unwrap_or(now), trials));
                     }
@@ -225,10 +206,10 @@ fn reference<const N: usize>(
 }
 
 /// The fewest steps whose error is below the aim, to the width of the aim.
-fn refined<const N: usize>(
-    trial: &mut impl FnMut(u64) -> Result<Sampled<N>, RunError>,
-    reference: &Sampled<N>,
-    trials: &Trials<N>,
+fn refined(
+    trial: &mut impl FnMut(u64) -> Result<Sampled, RunError>,
+    reference: &Sampled,
+    trials: &Trials,
     duration: f64,
     tolerance: f64,
 ) -> Result<Recommendation, RecommendError> {

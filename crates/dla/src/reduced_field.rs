@@ -4,11 +4,11 @@ use nalgebra::DMatrix;
 
 /// The reduced equations `q' = W xi + v_b`, `xi' = f(t, q, xi)` at one point, with their derivatives.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ReducedField<const N: usize> {
+pub struct ReducedField {
     /// The velocity `q'`.
-    pub velocity: [f64; N],
+    pub velocity: Vec<f64>,
     /// The accelerations `xi'`; only the first `N - M` places count.
-    pub acceleration: [f64; N],
+    pub acceleration: Vec<f64>,
     /// The derivatives of `(q', xi')` in `(q, xi, t)`: `2 N - M` rows, one more column.
     pub derivative: DMatrix<f64>,
 }
@@ -28,7 +28,7 @@ pub fn reduced_field<const N: usize, const M: usize>(
     t: f64,
     q: &[f64; N],
     xi: &[f64; N],
-) -> Option<Result<ReducedField<N>, Singular>> {
+) -> Option<Result<ReducedField, Singular>> {
     // The variables: N unknowns (xi', lambda), then q, xi, t.
     let dimension = N - M;
     let count = 2 * N + dimension + 1;
@@ -56,8 +56,8 @@ pub fn reduced_field<const N: usize, const M: usize>(
         }
     }
     Some(Ok(ReducedField {
-        velocity: from_fn(|i| there[(N + i, count)]),
-        acceleration: from_fn(|a| if a < dimension { solved[a] } else { 0.0 }),
+        velocity: (0..N).map(|i| there[(N + i, count)]).collect(),
+        acceleration: (0..N).map(|a| if a < dimension { solved[a] } else { 0.0 }).collect(),
         derivative,
     }))
 }

@@ -1,7 +1,7 @@
 use super::reduced_point::ReducedPoint;
+use crate::{MeanPower, Mechanics, OneStep, OwnStep, StackUse, State, StepError, StepReport, power, stops};
 use differential_equations::methods::{DormandPrince, ExplicitRungeKutta, Ordinary};
 use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
-use dla::{MeanPower, Mechanics, OneStep, OwnStep, StackUse, State, StepError, StepReport, power, stops};
 use lagrangian::PowerSources;
 use std::cell::Cell;
 use std::ops::ControlFlow;

@@ -1,5 +1,5 @@
 use crate::projection::project;
-use crate::{Mechanics, Part, RunError, Schedule, State, StepError};
+use crate::{AnyState, Mechanics, Mechanism, Part, RunError, Schedule, State, StepError};
 use lagrangian::{Piecewise, System, whole_steps};
 use std::ops::Range;
 
@@ -161,32 +161,20 @@ impl<Sys: System<N, M> + Piecewise, const N: usize, const M: usize> PiecewiseMec
     }
 }
 
-/// Makes a run whose forces or constraints may jump, one smooth piece after the other; returns how many steps were made.
+/// Makes a run whose forces or constraints may jump, one smooth piece after the other, that has made `from` steps already and is at `state`,
+/// before the impulse of a jump there; returns how many steps were made.
 ///
-/// `make` makes the given steps of the given schedule with the given piece, as [`drive_part`](crate::drive_part) does. Where an imposed
+/// `make` makes the given steps of the given schedule with the given piece, as [`make_steps`](crate::make_steps) does. Where an imposed
 /// velocity jumps, the impulse of the constraints changes the velocity before the next piece begins.
 ///
 /// # Errors
 /// [`RunError`] of the part that failed; a run with fewer steps than pieces is refused before the first step is made.
-pub fn piece_by_piece<const N: usize, const M: usize>(
-    system: &dyn PiecewiseMechanics<N, M>,
-    schedule: &Schedule,
-    state: &mut State<N>,
-    make: impl FnMut(&dyn PiecewiseMechanics<N, M>, Piece, &mut State<N>) -> Result<Part, RunError>,
-) -> Result<u64, RunError> {
-    piece_by_piece_from(0, system, schedule, state, make)
-}
-
-/// The same for a run that has made `from` steps already and is at `state`, before the impulse of a jump there.
-///
-/// # Errors
-/// As [`piece_by_piece`].
-pub fn piece_by_piece_from<const N: usize, const M: usize>(
+pub fn piece_by_piece(
     from: u64,
-    system: &dyn PiecewiseMechanics<N, M>,
+    system: &dyn Mechanism,
     schedule: &Schedule,
-    state: &mut State<N>,
-    mut make: impl FnMut(&dyn PiecewiseMechanics<N, M>, Piece, &mut State<N>) -> Result<Part, RunError>,
+    state: &mut AnyState,
+    mut make: impl FnMut(&dyn Mechanism, Piece, &mut AnyState) -> Result<Part, RunError>,
 ) -> Result<u64, RunError> {
     let (begin, end) = (schedule.t0, schedule.time(schedule.steps));
     let mut made = from;
@@ -195,11 +183,11 @@ pub fn piece_by_piece_from<const N: usize, const M: usize>(
         if from > 0 && steps.end <= from.min(schedule.steps.saturating_sub(1)) {
             continue;
         }
-        let (first, last) = (schedule.time(steps.start), schedule.time(steps.end));
-        let piece = system.smooth_piece(0.5 * (first + last));
+        let first = schedule.time(steps.start);
+        let piece = system.smooth_piece(schedule.middle(&steps));
         // Inside a piece there is no impulse.
         if steps.start >= from {
-            onto_constraint(&*piece, first, state).map_err(|source| RunError::new(made + 1, first, source))?;
+            piece.onto_constraint(first, state).map_err(|source| RunError::new(made + 1, first, source))?;
         }
         let done = make(&*piece, Piece { steps: steps.start.max(from)..steps.end, schedule }, state)?;
         made = done.made;

@@ -1,4 +1,4 @@
-use crate::State;
+use crate::AnyState;
 use std::fmt;
 
 /// Which crossings of zero count.
@@ -13,29 +13,29 @@ pub enum Direction {
     Both,
 }
 
-/// Of the time (s) and the state.
-type EventFunction<'a, const N: usize> = Box<dyn Fn(f64, &State<N>) -> f64 + 'a>;
+/// Of the time (s), the configuration with its full turns, and the velocity.
+type EventFunction<'a> = Box<dyn Fn(f64, &[f64], &[f64]) -> f64 + 'a>;
 
-/// Of the time (s), the state, and whether the function rises.
-type CrossingFilter<'a, const N: usize> = Box<dyn Fn(f64, &State<N>, bool) -> bool + 'a>;
+/// Of the same, and whether the function rises.
+type CrossingFilter<'a> = Box<dyn Fn(f64, &[f64], &[f64], bool) -> bool + 'a>;
 
 /// A function of time and state whose crossings of zero are looked for.
 ///
 /// A crossing changes the sign. A zero that is only touched is none, and a run that begins on one has not crossed it.
-pub struct Event<'a, const N: usize> {
+pub struct Event<'a> {
     /// What it is called.
     pub name: String,
     /// Which crossings count, in the direction in which the run goes.
     pub direction: Direction,
     /// Whether the first crossing ends the run.
     pub terminal: bool,
-    function: EventFunction<'a, N>,
-    filter: Option<CrossingFilter<'a, N>>,
+    function: EventFunction<'a>,
+    filter: Option<CrossingFilter<'a>>,
 }
 
-impl<'a, const N: usize> Event<'a, N> {
-    /// The event `function(t, state) = 0`, in both directions, which ends nothing.
-    pub fn new(name: impl Into<String>, function: impl Fn(f64, &State<N>) -> f64 + 'a) -> Self {
+impl<'a> Event<'a> {
+    /// The event `function(t, q, v) = 0`, in both directions, which ends nothing; angles of `q` have their full turns.
+    pub fn new(name: impl Into<String>, function: impl Fn(f64, &[f64], &[f64]) -> f64 + 'a) -> Self {
         Self {
             name: name.into(),
             direction: Direction::Both,
@@ -51,10 +51,10 @@ impl<'a, const N: usize> Event<'a, N> {
         Self { direction, ..self }
     }
 
-    /// The same event, of which only those crossings count that `filter(t, state, rising)` says: of those that the
+    /// The same event, of which only those crossings count that `filter(t, q, v, rising)` says: of those that the
     /// [`direction`](Self::direction) leaves.
     #[must_use]
-    pub fn where_true(self, filter: impl Fn(f64, &State<N>, bool) -> bool + 'a) -> Self {
+    pub fn where_true(self, filter: impl Fn(f64, &[f64], &[f64], bool) -> bool + 'a) -> Self {
         Self { filter: Some(Box::new(filter)), ..self }
     }
 
@@ -66,8 +66,13 @@ impl<'a, const N: usize> Event<'a, N> {
 
     /// The value of the function at the time `t` (s).
     #[must_use]
-    pub fn value(&self, t: f64, state: &State<N>) -> f64 {
-        (self.function)(t, state)
+    pub fn value(&self, t: f64, state: &AnyState) -> f64 {
+        self.value_at(t, &state.unwrapped(), state.v())
+    }
+
+    /// The value at a configuration and a velocity.
+    pub(super) fn value_at(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
+        (self.function)(t, q, v)
     }
 
     pub(super) fn counts(&self, rising: bool) -> bool {
@@ -85,12 +90,13 @@ impl<'a, const N: usize> Event<'a, N> {
     }
 
     /// Whether a crossing that was found counts.
-    pub(super) fn admits(&self, crossing: &Crossing<N>) -> bool {
-        self.filter.as_ref().is_none_or(|filter| filter(crossing.t, &crossing.state, crossing.rising))
+    pub(super) fn admits(&self, crossing: &Crossing) -> bool {
+        let Crossing { t, rising, state, .. } = crossing;
+        self.filter.as_ref().is_none_or(|filter| filter(*t, &state.unwrapped(), state.v(), *rising))
     }
 }
 
-impl<const N: usize> fmt::Debug for Event<'_, N> {
+impl fmt::Debug for Event<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { name, direction, terminal, .. } = self;
         f.debug_struct("Event")
@@ -102,8 +108,8 @@ impl<const N: usize> fmt::Debug for Event<'_, N> {
 }
 
 /// An event that happened.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Crossing<const N: usize> {
+#[derive(Debug, Clone, PartialEq)]
+pub struct Crossing {
     /// Which one, by its place in the list of events.
     pub event: usize,
     /// The node before it.
@@ -117,5 +123,5 @@ pub struct Crossing<const N: usize> {
     /// Whether the function rises through zero.
     pub rising: bool,
     /// The state then: a step of the method, shortened to end there. Where a velocity jumps, the state after the jump.
-    pub state: State<N>,
+    pub state: AnyState,
 }

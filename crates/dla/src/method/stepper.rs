@@ -1,10 +1,10 @@
 //! The methods by name, as objects.
 
-use crate::{Dop853, ImplicitMidpoint, Method, MethodKind, Rk4, Rk4Projected, Rk4Reduced};
-use dla::{
+use crate::{
     Composition, Dla, Energy, Gauss, GaussAdaptive, Gni, Lobatto, Mechanics, OneStep, OwnMethods, Rebased, State,
     StepError, StepReport, Stepper,
 };
+use crate::{Dop853, ImplicitMidpoint, Method, MethodKind, Rk4, Rk4Projected, Rk4Reduced};
 
 impl Method {
     /// The method, to make steps with, for a system that brings integrators of its own: the closed form that it has of `dla` takes the
@@ -53,7 +53,7 @@ impl Method {
 }
 
 /// The composition of that order, of those in the table of methods.
-pub(crate) fn composed<Step>(order: u32, step: Step) -> Composition<Step> {
+pub(super) fn composed<Step>(order: u32, step: Step) -> Composition<Step> {
     match order {
         4 => Composition::suzuki4(step),
         6 => Composition::kahan_li6(step),
@@ -62,7 +62,7 @@ pub(crate) fn composed<Step>(order: u32, step: Step) -> Composition<Step> {
 }
 
 /// The collocation with so many stages, of those in the table of methods.
-pub(crate) fn gauss(stages: usize) -> Gauss {
+pub(super) fn gauss(stages: usize) -> Gauss {
     match stages {
         2 => Gauss::new::<2>(),
         3 => Gauss::new::<3>(),
@@ -75,7 +75,7 @@ pub(crate) fn gauss(stages: usize) -> Gauss {
 }
 
 /// The energy-preserving method with so many stages, of those in the table of methods.
-pub(crate) fn energy(stages: usize) -> Energy {
+pub(super) fn energy(stages: usize) -> Energy {
     match stages {
         1 => Energy::new::<1>(),
         2 => Energy::new::<2>(),

@@ -1,8 +1,8 @@
-use crate::dependent::named;
-use crate::suspect::suspect_along;
-use crate::{Hint, Mechanics, OneStep, State, StepError, StepReport, Stop, Undivided};
+use super::integrator::Bound;
+use crate::{
+    AnyState, Hint, Integrator, Mechanics, Mechanism, OneStep, Report, State, StepError, Stop, Subject, Undivided,
+};
 use lagrangian::Shown;
-use lagrangian::linear::largest;
 use std::ops::{ControlFlow, Range};
 use thiserror::Error;
 
@@ -34,18 +34,18 @@ impl Schedule {
 
 /// A node of a run, as an observer sees it.
 #[derive(Debug)]
-pub struct View<'a, const N: usize, const M: usize> {
+pub struct View<'a> {
     /// The system.
-    pub system: &'a dyn Mechanics<N, M>,
+    pub system: &'a dyn Mechanism,
     /// The number of steps made so far.
     pub k: u64,
     /// The time (s).
     pub t: f64,
     /// The state.
-    pub state: &'a State<N>,
+    pub state: &'a AnyState,
 }
 
-impl<const N: usize, const M: usize> View<'_, N, M> {
+impl View<'_> {
     /// The energy `v . L_v - L` (J).
     #[must_use]
     pub fn energy(&self) -> f64 {
@@ -55,27 +55,27 @@ impl<const N: usize, const M: usize> View<'_, N, M> {
     /// The largest constraint residual `|A(q) v + b|`.
     #[must_use]
     pub fn constraint(&self) -> f64 {
-        largest(&self.system.residual(self.t, self.state.q(), self.state.v()))
+        self.system.largest_residual(self.t, self.state.q(), self.state.v())
     }
 }
 
 /// Something that looks at the nodes of a run and changes nothing.
 ///
 /// `()` looks at nothing; a pair is two observers.
-pub trait Observer<const N: usize, const M: usize> {
+pub trait Observer {
     /// Sees the first node.
-    fn start(&mut self, node: &View<'_, N, M>);
+    fn start(&mut self, node: &View<'_>);
 
     /// Sees a node again where the next smooth piece of a run begins: the velocity may have jumped.
     #[inline(always)]
-    fn resume(&mut self, _node: &View<'_, N, M>) {}
+    fn resume(&mut self, _node: &View<'_>) {}
 
     /// Sees a node after a step; `Break` ends the run there.
-    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()>;
+    fn step(&mut self, node: &View<'_>, report: &Report) -> ControlFlow<()>;
 
     /// Sees where each part of a divided step ends, the last at the node that [`step`](Self::step) is shown after it, and that
     /// node's number; `Break` gives the step up and ends the run at the node before.
-    fn part(&mut self, _end: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
+    fn part(&mut self, _end: &View<'_>, _report: &Report) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 
@@ -89,40 +89,36 @@ pub trait Observer<const N: usize, const M: usize> {
 
     /// Sees the last good node once more when the run ends, by itself, by a `Break` or by a failure.
     #[inline(always)]
-    fn end(&mut self, _node: &View<'_, N, M>) {}
+    fn end(&mut self, _node: &View<'_>) {}
 }
 
-impl<const N: usize, const M: usize> Observer<N, M> for () {
+impl Observer for () {
     #[inline(always)]
-    fn start(&mut self, _node: &View<'_, N, M>) {}
+    fn start(&mut self, _node: &View<'_>) {}
     #[inline(always)]
-    fn step(&mut self, _node: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, _node: &View<'_>, _report: &Report) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 }
 
-impl<A, B, const N: usize, const M: usize> Observer<N, M> for (A, B)
-where
-    A: Observer<N, M>,
-    B: Observer<N, M>,
-{
+impl<A: Observer, B: Observer> Observer for (A, B) {
     #[inline(always)]
-    fn start(&mut self, node: &View<'_, N, M>) {
+    fn start(&mut self, node: &View<'_>) {
         self.0.start(node);
         self.1.start(node);
     }
     #[inline(always)]
-    fn resume(&mut self, node: &View<'_, N, M>) {
+    fn resume(&mut self, node: &View<'_>) {
         self.0.resume(node);
         self.1.resume(node);
     }
     #[inline(always)]
-    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_>, report: &Report) -> ControlFlow<()> {
         let first = self.0.step(node, report);
         let second = self.1.step(node, report);
         if first.is_break() { first } else { second }
     }
-    fn part(&mut self, end: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn part(&mut self, end: &View<'_>, report: &Report) -> ControlFlow<()> {
         let first = self.0.part(end, report);
         let second = self.1.part(end, report);
         if first.is_break() { first } else { second }
@@ -135,24 +131,24 @@ where
         self.1.undivided(why);
     }
     #[inline(always)]
-    fn end(&mut self, node: &View<'_, N, M>) {
+    fn end(&mut self, node: &View<'_>) {
         self.0.end(node);
         self.1.end(node);
     }
 }
 
 /// Looks where there is something to look with.
-impl<O: Observer<N, M>, const N: usize, const M: usize> Observer<N, M> for Option<O> {
-    fn start(&mut self, node: &View<'_, N, M>) {
+impl<O: Observer> Observer for Option<O> {
+    fn start(&mut self, node: &View<'_>) {
         self.iter_mut().for_each(|observer| observer.start(node));
     }
-    fn resume(&mut self, node: &View<'_, N, M>) {
+    fn resume(&mut self, node: &View<'_>) {
         self.iter_mut().for_each(|observer| observer.resume(node));
     }
-    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_>, report: &Report) -> ControlFlow<()> {
         self.as_mut().map_or(ControlFlow::Continue(()), |observer| observer.step(node, report))
     }
-    fn part(&mut self, end: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn part(&mut self, end: &View<'_>, report: &Report) -> ControlFlow<()> {
         self.as_mut().map_or(ControlFlow::Continue(()), |observer| observer.part(end, report))
     }
     fn measures_work(&self) -> bool {
@@ -161,25 +157,25 @@ impl<O: Observer<N, M>, const N: usize, const M: usize> Observer<N, M> for Optio
     fn undivided(&mut self, why: &Undivided<StepError>) {
         self.iter_mut().for_each(|observer| observer.undivided(why));
     }
-    fn end(&mut self, node: &View<'_, N, M>) {
+    fn end(&mut self, node: &View<'_>) {
         self.iter_mut().for_each(|observer| observer.end(node));
     }
 }
 
-impl<O: Observer<N, M> + ?Sized, const N: usize, const M: usize> Observer<N, M> for &mut O {
+impl<O: Observer + ?Sized> Observer for &mut O {
     #[inline(always)]
-    fn start(&mut self, node: &View<'_, N, M>) {
+    fn start(&mut self, node: &View<'_>) {
         (**self).start(node);
     }
     #[inline(always)]
-    fn resume(&mut self, node: &View<'_, N, M>) {
+    fn resume(&mut self, node: &View<'_>) {
         (**self).resume(node);
     }
     #[inline(always)]
-    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_>, report: &Report) -> ControlFlow<()> {
         (**self).step(node, report)
     }
-    fn part(&mut self, end: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn part(&mut self, end: &View<'_>, report: &Report) -> ControlFlow<()> {
         (**self).part(end, report)
     }
     fn measures_work(&self) -> bool {
@@ -189,7 +185,7 @@ impl<O: Observer<N, M> + ?Sized, const N: usize, const M: usize> Observer<N, M> 
         (**self).undivided(why);
     }
     #[inline(always)]
-    fn end(&mut self, node: &View<'_, N, M>) {
+    fn end(&mut self, node: &View<'_>) {
         (**self).end(node);
     }
 }
@@ -232,12 +228,7 @@ impl RunError {
     /// before.
     #[cold]
     #[must_use]
-    pub fn with_shorter<const N: usize, const M: usize>(
-        self,
-        system: &dyn Mechanics<N, M>,
-        method: &mut dyn OneStep<N, M>,
-        (h, state): (f64, &State<N>),
-    ) -> Self {
+    pub fn with_shorter(self, method: &mut dyn Integrator, (h, state): (f64, &AnyState)) -> Self {
         /// So much shorter than the failure asks for.
         const PARTS: [f64; 4] = [1.0, 0.25, 1.0 / 32.0, 1.0 / 512.0];
         let asked = match self.source {
@@ -248,9 +239,9 @@ impl RunError {
         let Some(Hint::ShorterStep { part }) = asked else { return self };
         let remembered = method.memory();
         let succeeds = |x: &f64| {
-            let mut copy = *state;
+            let mut copy = state.clone();
             method.recall(&[], &copy);
-            method.step(system, self.time, x * part * h, &mut copy).is_ok()
+            method.step(self.time, x * part * h, &mut copy).is_ok()
         };
         let found = PARTS.into_iter().find(succeeds);
         method.recall(&remembered, state);
@@ -259,23 +250,39 @@ impl RunError {
     }
 }
 
-/// Makes the steps of a schedule and shows every node to the observer; returns how many steps were made.
+/// Makes the steps of a schedule with a method of the system's shape and shows every node to the observer; returns how many steps were made.
 ///
 /// # Errors
 /// [`RunError`] with the step that failed; `state` then is the last good node.
-#[inline]
-pub fn drive<Method, Obs, const N: usize, const M: usize>(
+pub fn drive<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
-    method: &mut Method,
+    method: &mut dyn OneStep<N, M>,
     schedule: &Schedule,
     state: &mut State<N>,
-    observer: Obs,
-) -> Result<u64, RunError>
-where
-    Method: OneStep<N, M> + ?Sized,
-    Obs: Observer<N, M>,
-{
+    observer: impl Observer,
+) -> Result<u64, RunError> {
     drive_part(system, method, schedule, 0..schedule.steps, state, observer).map(|part| part.made)
+}
+
+/// The same for some of the steps, as [`make_steps`].
+///
+/// # Errors
+/// As [`drive`].
+pub fn drive_part<const N: usize, const M: usize>(
+    system: &dyn Mechanics<N, M>,
+    method: &mut dyn OneStep<N, M>,
+    schedule: &Schedule,
+    steps: Range<u64>,
+    state: &mut State<N>,
+    mut observer: impl Observer,
+) -> Result<Part, RunError> {
+    let mut moved = AnyState::from(*state);
+    let mut method = Bound::new(system, method);
+    let part = make_steps(&Subject::smooth(system), &mut method, schedule, steps, &mut moved, &mut observer);
+    if let Some(moved) = moved.typed() {
+        *state = *moved;
+    }
+    part
 }
 
 /// Some of the steps of a run, made.
@@ -291,23 +298,15 @@ pub struct Part {
 /// first part, the end with the last or where the run ends early, and [`Observer::resume`] in between.
 ///
 /// # Errors
-/// As [`drive`].
-// Not inlined: the loops of all methods would become one function, and slow to compile. A build for any x86-64 has a second one with the
-// instructions of AVX2: the same bits, in .75 to .8 of the time.
-#[cfg_attr(not(target_feature = "avx2"), multiversion::multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt")))]
-#[inline(never)]
-pub fn drive_part<Method, Obs, const N: usize, const M: usize>(
-    system: &dyn Mechanics<N, M>,
-    method: &mut Method,
+/// [`RunError`] with the step that failed; `state` then is the last good node.
+pub fn make_steps(
+    system: &dyn Mechanism,
+    method: &mut dyn Integrator,
     schedule: &Schedule,
     steps: Range<u64>,
-    state: &mut State<N>,
-    mut observer: Obs,
-) -> Result<Part, RunError>
-where
-    Method: OneStep<N, M> + ?Sized,
-    Obs: Observer<N, M>,
-{
+    state: &mut AnyState,
+    observer: &mut dyn Observer,
+) -> Result<Part, RunError> {
     let mut made = steps.start;
     if observer.measures_work() {
         method.measure_work(system.power_sources());
@@ -325,12 +324,11 @@ where
             stopped = true;
             break;
         }
-        // The time is computed again where a step fails, so that it need not be kept during the step.
-        match method.step(system, schedule.time(made), schedule.step, state) {
+        match method.step(schedule.time(made), schedule.step, state) {
             Ok(report) => {
                 made += 1;
                 let node = View { system, k: made, t: schedule.time(made), state };
-                if observer.step(&node, &report).is_break() {
+                if observer.step(&node, report).is_break() {
                     stopped = true;
                     break;
                 }
@@ -341,8 +339,7 @@ where
             }
             Err(source) => {
                 let time = schedule.time(made);
-                let source = suspect_along(system, (time, schedule.step), state, state.v(), source);
-                let source = named(system, (time, schedule.step), state, source);
+                let source = system.explained((time, schedule.step), state, source);
                 outcome = Err(RunError::new(made + 1, time, source));
                 break;
             }

@@ -1,7 +1,7 @@
 //! The derivatives of the baselines: explicit methods by equations for the accelerations of their stages.
 
 use super::{Dop853, ImplicitMidpoint, Rk4, Rk4Projected, Rk4Reduced, STAGES};
-use dla::{Differentiable, SensitivityError, StepEquations, StepStart, StepUnknowns};
+use crate::{Differentiable, SensitivityError, StepEquations, StepStart, StepUnknowns};
 use lagrangian::{AdmissibleBasis, Gradients, Scalar, Seeded, from_fn};
 
 /// `x + h k`.

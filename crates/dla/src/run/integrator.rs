@@ -1,0 +1,207 @@
+use crate::{AnyState, Mechanics, OneStep, State, StepError, StepReport};
+use lagrangian::PowerSources;
+use std::ops::ControlFlow;
+
+/// A method made for a system: moves states of it, step by step. Sizes are known at run time.
+pub trait Integrator {
+    /// Moves the state from time `t` to `t + h` (s).
+    ///
+    /// # Errors
+    /// [`StepError`] where the step has no solution that the method accepts; the state is then unchanged.
+    fn step(&mut self, t: f64, h: f64, state: &mut AnyState) -> Result<&Report, StepError>;
+
+    /// As [`OneStep::memory`].
+    fn memory(&self) -> Vec<f64>;
+
+    /// As [`OneStep::recall`].
+    fn recall(&mut self, memory: &[f64], state: &AnyState);
+
+    /// As [`OneStep::measure_work`].
+    fn measure_work(&mut self, sources: PowerSources);
+
+    /// As [`OneStep::own_steps`].
+    ///
+    /// # Errors
+    /// As [`step`](Self::step), after what was shown until then.
+    fn own_steps(
+        &self,
+        time: (f64, f64),
+        state: &AnyState,
+        memory: &mut Vec<f64>,
+        see: &mut SeeOwnStep<'_>,
+    ) -> Result<(), StepError>;
+}
+
+/// Looks at the end of a step that a method makes of its own, a time (s) and a state; `Break` asks for no more of them.
+pub type SeeOwnStep<'a> = dyn FnMut(f64, &AnyState) -> ControlFlow<()> + 'a;
+
+/// What a step did besides moving the state.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Report {
+    /// Impulses of the constraints at the two ends of the step (N s), as in [`StepReport::impulses`].
+    pub impulses: [Vec<f64>; 2],
+    /// Newton iterations of the step's equations; 0 for an explicit method.
+    pub iterations: u32,
+    /// The work that was done over the step (J), of a method that reports one.
+    pub work: Option<f64>,
+}
+
+impl Report {
+    /// The report of a step of `rows` constraints of which nothing is known.
+    #[must_use]
+    pub fn of(rows: usize) -> Self {
+        Self { impulses: [vec![0.0; rows], vec![0.0; rows]], iterations: 0, work: None }
+    }
+
+    /// Adds what a further step did.
+    pub fn add(&mut self, next: &Self) {
+        for (sum, impulses) in self.impulses.iter_mut().zip(&next.impulses) {
+            sum.iter_mut().zip(impulses).for_each(|(sum, impulse)| *sum += impulse);
+        }
+        self.iterations += next.iterations;
+        self.work = match (self.work, next.work) {
+            (Some(before), Some(work)) => Some(before + work),
+            (before, work) => before.or(work),
+        };
+    }
+
+    /// Writes the constraint forces, averaged over a step of length `h`: second-order accurate in its middle.
+    pub fn multipliers_into(&self, h: f64, multipliers: &mut [f64]) {
+        let [before, after] = &self.impulses;
+        let both = before.iter().zip(after);
+        multipliers.iter_mut().zip(both).for_each(|(lambda, (before, after))| *lambda = (before + after) / h);
+    }
+
+    /// The same as a list.
+    #[must_use]
+    pub fn multipliers(&self, h: f64) -> Vec<f64> {
+        let mut multipliers = vec![0.0; self.impulses[0].len()];
+        self.multipliers_into(h, &mut multipliers);
+        multipliers
+    }
+
+    /// The report of a step of a shape.
+    pub(crate) fn typed<const M: usize>(&self) -> StepReport<M> {
+        let impulses = [super::state::row(&self.impulses[0]), super::state::row(&self.impulses[1])];
+        StepReport { impulses, iterations: self.iterations, work: self.work }
+    }
+
+    #[inline]
+    fn take<const M: usize>(&mut self, report: &StepReport<M>) {
+        for (own, impulses) in self.impulses.iter_mut().zip(&report.impulses) {
+            own.copy_from_slice(impulses);
+        }
+        (self.iterations, self.work) = (report.iterations, report.work);
+    }
+}
+
+impl<const M: usize> From<&StepReport<M>> for Report {
+    fn from(report: &StepReport<M>) -> Self {
+        let mut own = Self::of(M);
+        own.take(report);
+        own
+    }
+}
+
+/// A method of a shape, with the system that it steps.
+pub(crate) struct Bound<'a, Method, const N: usize, const M: usize> {
+    system: &'a dyn Mechanics<N, M>,
+    method: Method,
+    report: Report,
+}
+
+impl<'a, Method, const N: usize, const M: usize> Bound<'a, Method, N, M> {
+    pub(crate) fn new(system: &'a dyn Mechanics<N, M>, method: Method) -> Self {
+        Self { system, method, report: Report::of(M) }
+    }
+}
+
+/// The error of a state that is one of another system.
+pub(crate) const OTHER_SHAPE: StepError =
+    StepError::Unsupported { reason: "the state is one of a system with another number of coordinates" };
+
+impl<Method: OneStep<N, M>, const N: usize, const M: usize> Integrator for Bound<'_, Method, N, M> {
+    #[inline]
+    fn step(&mut self, t: f64, h: f64, state: &mut AnyState) -> Result<&Report, StepError> {
+        let state = state.typed_mut::<N>().ok_or(OTHER_SHAPE)?;
+        let report = self.method.step(self.system, t, h, state)?;
+        self.report.take(&report);
+        Ok(&self.report)
+    }
+
+    fn memory(&self) -> Vec<f64> {
+        self.method.memory()
+    }
+
+    fn recall(&mut self, memory: &[f64], state: &AnyState) {
+        if let Some(state) = state.typed() {
+            self.method.recall(memory, state);
+        }
+    }
+
+    fn measure_work(&mut self, sources: PowerSources) {
+        self.method.measure_work(sources);
+    }
+
+    fn own_steps(
+        &self,
+        time: (f64, f64),
+        state: &AnyState,
+        memory: &mut Vec<f64>,
+        see: &mut SeeOwnStep<'_>,
+    ) -> Result<(), StepError> {
+        let start = state.typed::<N>().ok_or(OTHER_SHAPE)?;
+        let mut shown = state.clone();
+        self.method.own_steps(self.system, time, start, memory, &mut |t, node: &State<N>| {
+            if let Some(shown) = shown.typed_mut() {
+                *shown = *node;
+            }
+            see(t, &shown)
+        })
+    }
+}
+
+impl<Method: OneStep<N, M> + ?Sized, const N: usize, const M: usize> OneStep<N, M> for &mut Method {
+    fn step(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        t: f64,
+        h: f64,
+        state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
+        (**self).step(system, t, h, state)
+    }
+
+    fn step_until(
+        &mut self,
+        system: &dyn Mechanics<N, M>,
+        step: (f64, f64),
+        state: &mut State<N>,
+        see: &mut crate::OwnStep<'_, N>,
+    ) -> Result<(StepReport<M>, Option<f64>), StepError> {
+        (**self).step_until(system, step, state, see)
+    }
+
+    fn memory(&self) -> Vec<f64> {
+        (**self).memory()
+    }
+
+    fn recall(&mut self, memory: &[f64], state: &State<N>) {
+        (**self).recall(memory, state);
+    }
+
+    fn measure_work(&mut self, sources: PowerSources) {
+        (**self).measure_work(sources);
+    }
+
+    fn own_steps(
+        &self,
+        system: &dyn Mechanics<N, M>,
+        step: (f64, f64),
+        state: &State<N>,
+        memory: &mut Vec<f64>,
+        see: &mut crate::OwnStep<'_, N>,
+    ) -> Result<(), StepError> {
+        (**self).own_steps(system, step, state, memory, see)
+    }
+}

@@ -1,0 +1,36 @@
+//! Runs: the loop over steps, its pieces, and what looks on. Sizes are known at run time.
+
+mod again;
+mod checkpoint;
+mod counted;
+mod divide;
+mod drive;
+mod events;
+mod integrator;
+mod mechanism;
+mod pieces;
+mod recommend;
+mod samples;
+mod state;
+mod stop;
+mod subject;
+mod substeps;
+mod trajectory;
+mod work;
+
+pub use again::again;
+pub use checkpoint::{Checkpoint, CheckpointError};
+pub use divide::{Substeps, Undivided};
+pub use drive::{Observer, Part, RunError, Schedule, Shorter, View, drive, drive_part, make_steps};
+pub use events::{Close, Crossing, Direction, Event, Watch, Zero, Zeros, close_crossings, zeros};
+pub use integrator::{Integrator, Report, SeeOwnStep};
+pub use mechanism::{Mechanism, Place, Size};
+pub use pieces::{Piece, PiecewiseMechanics, fitted, onto_constraint, piece_by_piece, pieces, smooth_pieces};
+pub use recommend::{RecommendError, Recommendation, recommend_by_trial};
+pub use samples::Samples;
+pub use state::AnyState;
+pub use stop::{Stop, stops};
+pub use subject::{OwnMethods, Stepper, Subject};
+pub use substeps::{SubstepSummary, substepped_part};
+pub use trajectory::{Node, Nodes, Trajectory};
+pub use work::Work;

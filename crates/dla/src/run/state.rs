@@ -1,0 +1,176 @@
+use crate::{Checkpoint, State};
+use lagrangian::from_fn;
+use std::any::Any;
+use std::fmt;
+
+/// Configuration and velocity of a system whose size is known at run time.
+///
+/// It holds the [`State`] of the system's shape, which methods step; [`Mechanism::state`](crate::Mechanism::state) makes it.
+pub struct AnyState(Box<dyn Shaped>);
+
+/// A state of some shape.
+trait Shaped: Any + Send + Sync {
+    fn q(&self) -> &[f64];
+    fn v(&self) -> &[f64];
+    fn turns(&self) -> &[f64];
+    fn unwrap_into(&self, q: &mut [f64]);
+    /// The distance moved since a state of the same shape; zeros of another one.
+    fn move_into(&self, before: &dyn Any, moved: &mut [f64]);
+    fn save(&self, checkpoint: &mut Checkpoint);
+    fn reversed(&self) -> AnyState;
+    fn cloned(&self) -> AnyState;
+    /// Whether it became the other one, of the same shape.
+    fn becomes(&mut self, other: &dyn Any) -> bool;
+}
+
+impl<const N: usize> Shaped for State<N> {
+    fn q(&self) -> &[f64] {
+        self.q()
+    }
+
+    fn v(&self) -> &[f64] {
+        self.v()
+    }
+
+    fn turns(&self) -> &[f64] {
+        self.turns()
+    }
+
+    fn unwrap_into(&self, q: &mut [f64]) {
+        q.iter_mut().zip(self.unwrapped()).for_each(|(q, x)| *q = x);
+    }
+
+    fn move_into(&self, before: &dyn Any, moved: &mut [f64]) {
+        let way = before.downcast_ref().map_or([0.0; N], |before| self.moved_since(before));
+        moved.iter_mut().zip(way).for_each(|(moved, x)| *moved = x);
+    }
+
+    fn save(&self, checkpoint: &mut Checkpoint) {
+        self.save(checkpoint);
+    }
+
+    fn reversed(&self) -> AnyState {
+        State::reversed(self).into()
+    }
+
+    fn cloned(&self) -> AnyState {
+        (*self).into()
+    }
+
+    fn becomes(&mut self, other: &dyn Any) -> bool {
+        other.downcast_ref().map(|other| *self = *other).is_some()
+    }
+}
+
+impl<const N: usize> From<State<N>> for AnyState {
+    fn from(state: State<N>) -> Self {
+        Self(Box::new(state))
+    }
+}
+
+impl AnyState {
+    /// Configuration, angles within a turn: what a system is evaluated at.
+    #[must_use]
+    pub fn q(&self) -> &[f64] {
+        self.0.q()
+    }
+
+    /// Velocity.
+    #[must_use]
+    pub fn v(&self) -> &[f64] {
+        self.0.v()
+    }
+
+    /// The full turns of every angle.
+    #[must_use]
+    pub fn turns(&self) -> &[f64] {
+        self.0.turns()
+    }
+
+    /// Configuration, angles with their full turns: what a user wants to see.
+    #[must_use]
+    pub fn unwrapped(&self) -> Vec<f64> {
+        let mut q = vec![0.0; self.q().len()];
+        self.unwrap_into(&mut q);
+        q
+    }
+
+    /// Writes the same into a slice of its length.
+    pub fn unwrap_into(&self, q: &mut [f64]) {
+        self.0.unwrap_into(q);
+    }
+
+    /// How far the configuration has moved since a state of the same system, with the digits that the sums keep; written into a slice.
+    pub fn move_into(&self, before: &Self, moved: &mut [f64]) {
+        self.0.move_into(&*before.0, moved);
+    }
+
+    /// The same as a list.
+    #[must_use]
+    pub fn moved_since(&self, before: &Self) -> Vec<f64> {
+        let mut moved = vec![0.0; self.q().len()];
+        self.move_into(before, &mut moved);
+        moved
+    }
+
+    /// The same place with the opposite velocity.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        self.0.reversed()
+    }
+
+    /// Writes every bit of the state to a checkpoint; all but which coordinates are angles, which the system knows.
+    pub fn save(&self, checkpoint: &mut Checkpoint) {
+        self.0.save(checkpoint);
+    }
+
+    /// The state of a shape; none where it is of another one.
+    #[must_use]
+    #[inline]
+    pub fn typed<const N: usize>(&self) -> Option<&State<N>> {
+        let state: &dyn Any = &*self.0;
+        state.downcast_ref()
+    }
+
+    /// The same, to be changed.
+    #[inline]
+    pub fn typed_mut<const N: usize>(&mut self) -> Option<&mut State<N>> {
+        let state: &mut dyn Any = &mut *self.0;
+        state.downcast_mut()
+    }
+}
+
+impl Clone for AnyState {
+    fn clone(&self) -> Self {
+        self.0.cloned()
+    }
+
+    /// Without an allocation where both are of one shape.
+    fn clone_from(&mut self, source: &Self) {
+        let other: &dyn Any = &*source.0;
+        if !self.0.becomes(other) {
+            *self = source.clone();
+        }
+    }
+}
+
+impl PartialEq for AnyState {
+    /// Configurations with their turns, and velocities.
+    fn eq(&self, other: &Self) -> bool {
+        (self.q(), self.turns(), self.v()) == (other.q(), other.turns(), other.v())
+    }
+}
+
+impl fmt::Debug for AnyState {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("AnyState").field("q", &self.q()).field("turns", &self.turns()).field("v", &self.v()).finish()
+    }
+}
+
+/// A list of numbers as a row of `N`, with not a number in the places that it lacks.
+pub(crate) fn row<const N: usize>(x: &[f64]) -> [f64; N] {
+    match x.first_chunk() {
+        Some(row) => *row,
+        None => from_fn(|i| x.get(i).copied().unwrap_or(f64::NAN)),
+    }
+}
