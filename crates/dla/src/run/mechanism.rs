@@ -30,6 +30,9 @@ pub trait Mechanism {
     /// The method, made for this system: its own closed form or series where it has one.
     fn integrator(&self, method: &Method) -> Box<dyn Integrator + '_>;
 
+    /// The midpoint discrete Lagrange-d'Alembert map in its general form.
+    fn general_map(&self) -> Box<dyn Integrator + '_>;
+
     /// The times of the jumps of forces and constraints in the open interval from `from` to `to` (s), in any order.
     fn jump_times(&self, from: f64, to: f64) -> Vec<f64>;
 
@@ -122,7 +125,13 @@ pub trait Mechanism {
     /// The velocity of quasi-velocities on numbers with derivatives.
     fn velocity_seeded(&self, t: f64, q: &[Seeded], xi: &[Seeded]) -> Option<Vec<Seeded>>;
 
-    /// The derivative of a step of a method, in the coordinates `(q, xi)` with all `2 n` places of both.
+    /// Whether the steps of a method on it have derivatives for exponents ([`has_derivatives`](crate::has_derivatives)).
+    ///
+    /// # Errors
+    /// [`SensitivityError::Unsupported`] with the reason, where they have not.
+    fn has_derivatives(&self, method: &Method) -> Result<(), SensitivityError>;
+
+    /// The derivative of a step of a method, in the `2 n - m` coordinates `(q, xi)`.
     ///
     /// # Errors
     /// [`SensitivityError`] where the method or the system has none.

@@ -8,9 +8,9 @@ use crate::power::work_between;
 use crate::reduced_flow::reduced_flow;
 use crate::suspect::suspect_along;
 use crate::{
-    Checkpoint, CheckpointError, Discretisation, FullMechanics, Integrator, Mechanics, Method, OneStep,
-    PiecewiseMechanics, ReducedField, Report, Rules, SeededMechanics, Sensitivity, SensitivityError, State, StepError,
-    onto_constraint, reduced_field, slip,
+    Checkpoint, CheckpointError, Discretisation, Dla, FullMechanics, Integrator, Mechanics, Method, MethodKind,
+    OneStep, PiecewiseMechanics, ReducedField, Report, Rk4, Rules, SeededMechanics, Sensitivity, SensitivityError,
+    State, StepError, onto_constraint, reduced_field, slip,
 };
 use lagrangian::linear::{Singular, larger, largest};
 use lagrangian::{MotionError, PowerSources, ReducedError, Scalar, Seeded, from_fn};
@@ -145,6 +145,10 @@ impl<const N: usize, const M: usize> Mechanism for Subject<'_, N, M> {
         Box::new(Bound::new(self.system(), method.stepper_of(self.own, self.at)))
     }
 
+    fn general_map(&self) -> Box<dyn Integrator + '_> {
+        Box::new(Bound::new(self.system(), Dla::midpoint()))
+    }
+
     fn jump_times(&self, from: f64, to: f64) -> Vec<f64> {
         self.pieces().map_or_else(Vec::new, |system| system.jump_times(from, to))
     }
@@ -263,6 +267,11 @@ impl<const N: usize, const M: usize> Mechanism for Subject<'_, N, M> {
         system.velocity_seeded(Seeded::constant(t), &seeded_row(q), &seeded_row(xi)).map(|v| v.to_vec())
     }
 
+    fn has_derivatives(&self, method: &Method) -> Result<(), SensitivityError> {
+        self.with_derivatives().ok_or(NO_DERIVATIVES)?;
+        differentiable::<N, M>(method).map(drop)
+    }
+
     fn step_derivative(
         &self,
         method: &Method,
@@ -273,7 +282,11 @@ impl<const N: usize, const M: usize> Mechanism for Subject<'_, N, M> {
         const NO_BASIS: SensitivityError = SensitivityError::Unsupported {
             reason: "exponents need a basis of the admissible velocities, and the system has no basis",
         };
-        let rule = differentiable(method)?;
+        let rule = match method.info().kind {
+            // It leaves the distribution, on which exponents are defined, and its steps have derivatives there.
+            MethodKind::Rk4 => Box::new(Rk4),
+            _ => differentiable(method)?,
+        };
         let sensitivity = Sensitivity::<N, M, 0>::of(self.with_derivatives().ok_or(NO_DERIVATIVES)?);
         let (start, end) = start.typed().zip(end.typed()).ok_or(OTHER_SHAPE)?;
         let derivative = sensitivity.between(&*rule, time, start, end, report.typed())?;
