@@ -85,7 +85,7 @@ pub use rebased::Rebased;
 pub use reduced_field::{ReducedField, reduced_field};
 pub use resolved::Halved;
 pub use run::{
-    AnyState, Checkpoint, CheckpointError, Close, Crossing, Direction, Event, Integrator, Mechanism, Node, Nodes,
+    AnyState, AnyTangent, Checkpoint, CheckpointError, Close, Crossing, Direction, Event, Integrator, Mechanism, Member, Node, ParametrisedMechanics, ParametrisedMechanism, Nodes,
     Observer, OwnMethods, Part, Piece, PiecewiseMechanics, Place, RecommendError, Recommendation, Report, RunError,
     Samples, Schedule, SeeOwnStep, Shorter, Size, Stepper, Stop, Subject, SubstepSummary, Substeps, Trajectory,
     Undivided, View, Watch, Work, Zero, Zeros, again, close_crossings, drive, drive_part, fitted, make_steps,

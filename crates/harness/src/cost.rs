@@ -1,6 +1,5 @@
-use crate::counted::Counted;
 use crate::timing::median_seconds;
-use dla::{Dla, Mechanics, Part, Piece, PiecewiseMechanics, RunError, Schedule, State, drive_part, piece_by_piece};
+use dla::{AnyState, Mechanism, Part, Piece, RunError, Schedule, make_steps, piece_by_piece};
 use std::cell::Cell;
 use std::hint::black_box;
 
@@ -9,19 +8,13 @@ use std::hint::black_box;
 ///
 /// # Errors
 /// [`RunError`] where the run fails.
-#[inline(never)]
-pub fn step_time<const N: usize, const M: usize>(
-    system: &dyn PiecewiseMechanics<N, M>,
-    schedule: &Schedule,
-    q: [f64; N],
-    v: [f64; N],
-) -> Result<f64, RunError> {
-    let start = State::new(q, v, system.angles());
-    let run = |start: State<N>| made(system, schedule, start, |piece, run| run(piece));
-    let steps = run(start)?;
+pub fn step_time(system: &dyn Mechanism, schedule: &Schedule, q: &[f64], v: &[f64]) -> Result<f64, RunError> {
+    let start = system.state(q, v);
+    let run = |start: AnyState| made(system, schedule, start, |piece, run| run(piece));
+    let steps = run(start.clone())?;
     let seconds = median_seconds(|| {
         // The same run has just succeeded.
-        black_box(run(black_box(start)).is_ok());
+        black_box(run(black_box(&start).clone()).is_ok());
     });
     Ok(1e9 * seconds / steps.max(1) as f64)
 }
@@ -30,33 +23,27 @@ pub fn step_time<const N: usize, const M: usize>(
 ///
 /// # Errors
 /// [`RunError`] where the run fails.
-#[inline(never)]
-pub fn step_evaluations<const N: usize, const M: usize>(
-    system: &dyn PiecewiseMechanics<N, M>,
-    schedule: &Schedule,
-    q: [f64; N],
-    v: [f64; N],
-) -> Result<f64, RunError> {
+pub fn step_evaluations(system: &dyn Mechanism, schedule: &Schedule, q: &[f64], v: &[f64]) -> Result<f64, RunError> {
     let evaluations = Cell::new(0);
-    let counting = |piece: &dyn Mechanics<N, M>, run: &mut PieceRun<'_, N, M>| {
-        run(&Counted { system: piece, evaluations: &evaluations })
-    };
-    let steps = made(system, schedule, State::new(q, v, system.angles()), counting)?;
+    let steps = made(system, schedule, system.state(q, v), |piece, run| piece.counted(&evaluations, run))?;
     Ok(evaluations.get() as f64 / steps.max(1) as f64)
 }
 
 /// Makes the steps of a piece, on the system that is given.
-type PieceRun<'a, const N: usize, const M: usize> = dyn FnMut(&dyn Mechanics<N, M>) -> Result<Part, RunError> + 'a;
+type PieceRun<'a> = dyn FnMut(&dyn Mechanism) + 'a;
 
 /// A run of which `on` gives each piece, or something in its place, to the steps.
-fn made<const N: usize, const M: usize>(
-    system: &dyn PiecewiseMechanics<N, M>,
+fn made(
+    system: &dyn Mechanism,
     schedule: &Schedule,
-    mut state: State<N>,
-    on: impl Fn(&dyn Mechanics<N, M>, &mut PieceRun<'_, N, M>) -> Result<Part, RunError>,
+    mut state: AnyState,
+    on: impl Fn(&dyn Mechanism, &mut PieceRun<'_>),
 ) -> Result<u64, RunError> {
-    let mut method = Dla::midpoint();
-    piece_by_piece(system, schedule, &mut state, |piece, Piece { steps, schedule }, state| {
-        on(piece, &mut |piece| drive_part(piece, &mut method, &schedule, steps.clone(), state, ()))
+    piece_by_piece(0, system, schedule, &mut state, |piece, Piece { steps, schedule }, state| {
+        let mut outcome = Ok(Part { made: steps.start, stopped: true });
+        on(piece, &mut |piece| {
+            outcome = make_steps(piece, &mut *piece.general_map(), &schedule, steps.clone(), state, &mut ());
+        });
+        outcome
     })
 }

@@ -1,6 +1,6 @@
 use crate::slip::Slip;
 use crate::{Blocks, Drift, DriftVerdict, Energies, EnergyJump, Method, MethodInfo, Request, SubstepSummary, Trend};
-use dla::{Checkpoint, CheckpointError, Observer, RunError, State, StepError, StepReport, Undivided, View, Work};
+use dla::{AnyState, Checkpoint, CheckpointError, Observer, Report, RunError, StepError, Undivided, View, Work};
 use lagrangian::linear::larger;
 use std::ops::ControlFlow;
 
@@ -33,12 +33,12 @@ pub struct EnergySummary {
 }
 
 /// A node kept for plots.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sample<const N: usize> {
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sample {
     /// Time (s).
     pub t: f64,
     /// Configuration, angles with their full turns.
-    pub q: [f64; N],
+    pub q: Vec<f64>,
     /// The largest `|E - E0 - work|` (J) since the sample before.
     pub energy_error: f64,
     /// The largest constraint residual since the sample before.
@@ -47,7 +47,7 @@ pub struct Sample<const N: usize> {
 
 /// One run of one method, measured.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Record<const N: usize> {
+pub struct Record {
     /// The method.
     pub method: MethodInfo,
     /// Step (s).
@@ -75,11 +75,11 @@ pub struct Record<const N: usize> {
     /// Time at the end (s).
     pub t: f64,
     /// Configuration at the end, angles with their full turns.
-    pub q: [f64; N],
+    pub q: Vec<f64>,
     /// Velocity at the end.
-    pub v: [f64; N],
+    pub v: Vec<f64>,
     /// Nodes for plots.
-    pub samples: Vec<Sample<N>>,
+    pub samples: Vec<Sample>,
     /// Why the run ended early, where it did; all else then tells of the part before.
     pub failure: Option<RunError>,
     /// What became of steps that might be divided; none of a method that may divide none.
@@ -88,7 +88,7 @@ pub struct Record<const N: usize> {
     pub interrupted: bool,
 }
 
-impl<const N: usize> Record<N> {
+impl Record {
     /// The time of the steps for each second of the motion; none of a run without a step.
     #[must_use]
     pub fn seconds_per_simulated_second(&self) -> Option<f64> {
@@ -119,7 +119,7 @@ impl<const N: usize> Record<N> {
 
 /// The observer that measures a run.
 #[derive(Debug)]
-pub(crate) struct Meter<const N: usize> {
+pub(crate) struct Meter {
     every: u64,
     step: f64,
     initial: f64,
@@ -129,23 +129,23 @@ pub(crate) struct Meter<const N: usize> {
     trend: Trend,
     blocks: Blocks,
     energies: Energies,
-    slip: Slip<N>,
-    work: Work<N>,
+    slip: Slip,
+    work: Work,
     iterations: u64,
     most: u32,
     bucket: (f64, f64),
-    samples: Vec<Sample<N>>,
+    samples: Vec<Sample>,
     /// The end, where that is no regular sample.
-    last_sample: Option<Sample<N>>,
-    end: (u64, f64, [f64; N], [f64; N]),
+    last_sample: Option<Sample>,
+    end: (u64, f64, Vec<f64>, Vec<f64>),
     substeps: Option<SubstepSummary>,
     /// Of the step that is being made.
     parts: u64,
 }
 
-impl<const N: usize> Meter<N> {
+impl Meter {
     /// Keeps about as many samples as are asked for.
-    pub(crate) fn new(request: &Request<N>, method: &Method) -> Self {
+    pub(crate) fn new(request: &Request, method: &Method) -> Self {
         let Request { schedule, samples, .. } = request;
         Self {
             every: schedule.steps.div_ceil((*samples).max(1)).max(1),
@@ -164,7 +164,7 @@ impl<const N: usize> Meter<N> {
             bucket: (0.0, 0.0),
             samples: Vec::new(),
             last_sample: None,
-            end: (0, 0.0, [0.0; N], [0.0; N]),
+            end: (0, 0.0, request.q.clone(), request.v.clone()),
             substeps: method.substeps().map(|_| SubstepSummary::default()),
             parts: 0,
         }
@@ -184,7 +184,7 @@ impl<const N: usize> Meter<N> {
         if let Some(substeps) = &self.substeps {
             substeps.save(checkpoint);
         }
-        let samples = self.samples.iter().flat_map(|s| [s.t, s.energy_error, s.constraint].into_iter().chain(s.q));
+        let samples = self.samples.iter().flat_map(|s| [s.t, s.energy_error, s.constraint].into_iter().chain(s.q.iter().copied()));
         checkpoint.put("samples", &samples.collect::<Vec<_>>());
     }
 
@@ -194,22 +194,22 @@ impl<const N: usize> Meter<N> {
         new: Self,
         made: u64,
         t: f64,
-        state: &State<N>,
-        work: Work<N>,
+        state: &AnyState,
+        work: Work,
     ) -> Result<Self, CheckpointError> {
         let [initial, last, max_error, constraint_max, energy, constraint] = checkpoint.get("meter")?;
         let [iterations, most] = checkpoint.counts("iterations")?;
         let substeps = new.substeps.map(|_| SubstepSummary::load(checkpoint)).transpose()?;
         let most = u32::try_from(most).unwrap_or(u32::MAX);
         let trend = Trend::of_sums(checkpoint.get("trend")?);
-        let end = (made, t, state.unwrapped(), *state.v());
+        let end = (made, t, state.unwrapped(), state.v().to_vec());
         let sizes = Self { initial, last, max_error, constraint_max, end, ..new };
         let (blocks, slip) = (Blocks::load(checkpoint)?, sizes.slip.load(checkpoint)?);
         let energies = Energies::load(checkpoint)?;
         let list = checkpoint.list("samples")?;
-        let samples = list.chunks_exact(3 + N).map(|numbers| Sample {
+        let samples = list.chunks_exact(3 + state.q().len()).map(|numbers| Sample {
             t: numbers[0],
-            q: lagrangian::from_fn(|i| numbers[3 + i]),
+            q: numbers[3..].to_vec(),
             energy_error: numbers[1],
             constraint: numbers[2],
         });
@@ -236,7 +236,7 @@ impl<const N: usize> Meter<N> {
         })
     }
 
-    fn see<const M: usize>(&mut self, node: &View<'_, N, M>) {
+    fn see(&mut self, node: &View<'_>) {
         self.last = node.energy();
         let error = self.last - self.initial - self.work.total();
         let constraint = node.constraint();
@@ -248,18 +248,18 @@ impl<const N: usize> Meter<N> {
         self.bucket = (larger(self.bucket.0, error.abs()), larger(self.bucket.1, constraint));
     }
 
-    fn sample<const M: usize>(&mut self, node: &View<'_, N, M>) {
+    fn sample(&mut self, node: &View<'_>) {
         let sample = self.sampled(node);
         self.samples.push(sample);
         self.bucket = (0.0, 0.0);
     }
 
-    fn sampled<const M: usize>(&self, node: &View<'_, N, M>) -> Sample<N> {
+    fn sampled(&self, node: &View<'_>) -> Sample {
         let (energy_error, constraint) = self.bucket;
         Sample { t: node.t, q: node.state.unwrapped(), energy_error, constraint }
     }
 
-    pub(crate) fn record(self, method: MethodInfo, wall_seconds: f64, failure: Option<RunError>) -> Record<N> {
+    pub(crate) fn record(self, method: MethodInfo, wall_seconds: f64, failure: Option<RunError>) -> Record {
         let (steps, t, q, v) = self.end;
         let mean = if steps == 0 { 0.0 } else { self.iterations as f64 / steps as f64 };
         Record {
@@ -292,8 +292,8 @@ impl<const N: usize> Meter<N> {
     }
 }
 
-impl<const N: usize, const M: usize> Observer<N, M> for Meter<N> {
-    fn start(&mut self, node: &View<'_, N, M>) {
+impl Observer for Meter {
+    fn start(&mut self, node: &View<'_>) {
         self.initial = node.energy();
         self.energies = Energies::of_start(self.initial, kinetic(node));
         self.work.start(node);
@@ -302,12 +302,12 @@ impl<const N: usize, const M: usize> Observer<N, M> for Meter<N> {
         self.sample(node);
     }
 
-    fn resume(&mut self, node: &View<'_, N, M>) {
+    fn resume(&mut self, node: &View<'_>) {
         self.work.resume(node);
         self.slip.resume(node);
     }
 
-    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_>, report: &Report) -> ControlFlow<()> {
         // Work never ends a run.
         let _ = self.work.step(node, report);
         // Over a divided step the discrete constraint is that of its parts.
@@ -330,7 +330,7 @@ impl<const N: usize, const M: usize> Observer<N, M> for Meter<N> {
         true
     }
 
-    fn part(&mut self, end: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn part(&mut self, end: &View<'_>, report: &Report) -> ControlFlow<()> {
         self.slip.part(end);
         self.parts += 1;
         self.work.part(end, report)
@@ -342,17 +342,14 @@ impl<const N: usize, const M: usize> Observer<N, M> for Meter<N> {
         }
     }
 
-    fn end(&mut self, node: &View<'_, N, M>) {
+    fn end(&mut self, node: &View<'_>) {
         self.work.end(node);
         self.parts = 0;
-        self.end = (node.k, node.t, node.state.unwrapped(), *node.state.v());
+        self.end = (node.k, node.t, node.state.unwrapped(), node.state.v().to_vec());
         self.last_sample = (!node.k.is_multiple_of(self.every)).then(|| self.sampled(node));
     }
 }
 
-/// The kinetic energy `v . L_v / 2` (J) of a Lagrangian of second degree in the velocities.
-fn kinetic<const N: usize, const M: usize>(node: &View<'_, N, M>) -> f64 {
-    let v = node.state.v();
-    let p = node.system.momentum(node.t, node.state.q(), v);
-    0.5 * p.iter().zip(v).map(|(p, v)| p * v).sum::<f64>()
+fn kinetic(node: &View<'_>) -> f64 {
+    node.system.kinetic_energy(node.t, node.state.q(), node.state.v())
 }

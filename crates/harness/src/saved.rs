@@ -1,10 +1,9 @@
 use crate::record::Meter;
-use crate::substeps::substepped_part;
 use crate::timing::Ticker;
-use crate::{Again, Method, Progress, Record, Request};
+use crate::{Method, Progress, Record, Request};
 use dla::{
-    Checkpoint, CheckpointError, Close, Crossing, Event, Nodes, Part, Piece, State, Subject, Watch, Work,
-    close_crossings, piece_by_piece_from,
+    AnyState, Checkpoint, CheckpointError, Close, Crossing, Event, Mechanism, Nodes, Part, Piece, Watch, Work,
+    close_crossings, piece_by_piece, substepped_part,
 };
 use std::ops::Range;
 use std::time::Instant;
@@ -22,8 +21,8 @@ pub struct Saving<'a> {
 }
 
 /// An event that happened, as a checkpoint keeps it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SavedCrossing<const N: usize> {
+#[derive(Debug, Clone, PartialEq)]
+pub struct SavedCrossing {
     /// Which one, by its place in the list of events.
     pub event: usize,
     /// When (s).
@@ -35,60 +34,61 @@ pub struct SavedCrossing<const N: usize> {
     /// Whether the function rises through zero.
     pub rising: bool,
     /// The configuration then, angles with their turns.
-    pub q: [f64; N],
+    pub q: Vec<f64>,
     /// The velocity then.
-    pub v: [f64; N],
+    pub v: Vec<f64>,
 }
 
 /// The numbers of a crossing beside its state.
 const BESIDE: usize = 5;
 
-impl<const N: usize> From<&Crossing<N>> for SavedCrossing<N> {
-    fn from(found: &Crossing<N>) -> Self {
+impl From<&Crossing> for SavedCrossing {
+    fn from(found: &Crossing) -> Self {
         let Crossing { event, t, within, spacing, rising, ref state, .. } = *found;
-        Self { event, t, within, spacing, rising, q: state.unwrapped(), v: *state.v() }
+        Self { event, t, within, spacing, rising, q: state.unwrapped(), v: state.v().to_vec() }
     }
 }
 
-impl<const N: usize> SavedCrossing<N> {
+impl SavedCrossing {
     fn numbers(&self) -> Vec<f64> {
         let beside = [self.event as f64, self.t, self.within, self.spacing, f64::from(u8::from(self.rising))];
-        beside.into_iter().chain(self.q).chain(self.v).collect()
+        beside.iter().chain(&self.q).chain(&self.v).copied().collect()
     }
 
-    /// All of a checkpoint; what is not a multiple of their length belongs to none.
-    fn all(numbers: &[f64]) -> Vec<Self> {
+    /// All of a checkpoint of a system of `n` coordinates; what is not a multiple of their length belongs to none.
+    fn all(numbers: &[f64], n: usize) -> Vec<Self> {
         let one = |numbers: &[f64]| {
             let (beside, state) = numbers.split_first_chunk::<BESIDE>()?;
-            let (q, v) = (state.first_chunk()?, state.last_chunk()?);
+            let (q, v) = state.split_at_checked(n)?;
             let [event, t, within, spacing, rising] = *beside;
-            Some(Self { event: event as usize, t, within, spacing, rising: rising != 0.0, q: *q, v: *v })
+            let (q, v) = (q.to_vec(), v.to_vec());
+            Some(Self { event: event as usize, t, within, spacing, rising: rising != 0.0, q, v })
         };
-        numbers.chunks_exact(BESIDE + 2 * N).filter_map(one).collect()
+        numbers.chunks_exact(BESIDE + 2 * n).filter_map(one).collect()
     }
 }
 
 /// A saved run, with the events that happened.
 #[derive(Debug, Clone)]
-pub struct SavedRun<const N: usize> {
+pub struct SavedRun {
     /// The record; where an event ended the run, its end is the event.
-    pub record: Record<N>,
+    pub record: Record,
     /// The events, in the order in which they happened, also those before the checkpoint.
-    pub crossings: Vec<SavedCrossing<N>>,
+    pub crossings: Vec<SavedCrossing>,
     /// Which of them are so close that others may have been missed.
     pub close: Option<Close>,
 }
 
 /// Everything that changes along a run.
-struct Progressing<const N: usize> {
+struct Progressing {
     made: u64,
     /// The time (s).
     t: f64,
-    state: State<N>,
+    state: AnyState,
     memory: Vec<f64>,
-    meter: Meter<N>,
+    meter: Meter,
     seconds: f64,
-    crossings: Vec<SavedCrossing<N>>,
+    crossings: Vec<SavedCrossing>,
     /// See [`Close::unseen`].
     unseen: u64,
 }
@@ -102,15 +102,15 @@ struct Progressing<const N: usize> {
 ///
 /// # Errors
 /// [`CheckpointError`] where the checkpoint does not belong to this run; nothing is then done.
-pub fn run_saved<'a, const N: usize, const M: usize>(
-    subject: impl Into<Subject<'a, N, M>>,
+pub fn run_saved(
+    system: &dyn Mechanism,
     method: &Method,
-    request: &Request<N>,
+    request: &Request,
     saving: &mut Saving<'_>,
-    nodes: Option<Nodes<'_, N, M>>,
+    nodes: Option<Nodes<'_>>,
     progress: &mut dyn Progress,
-) -> Result<Record<N>, CheckpointError> {
-    run_saved_watched(subject.into(), method, request, (&[], 1), saving, nodes, progress).map(|made| made.record)
+) -> Result<Record, CheckpointError> {
+    run_saved_watched(system, method, request, (&[], 1), saving, nodes, progress).map(|made| made.record)
 }
 
 /// The same with an eye on events, in so many parts of each step, which are told from others by the identity. The event that ends a run is
@@ -118,24 +118,23 @@ pub fn run_saved<'a, const N: usize, const M: usize>(
 ///
 /// # Errors
 /// As [`run_saved`].
-#[inline(never)]
-pub fn run_saved_watched<const N: usize, const M: usize>(
-    Subject { system, own }: Subject<'_, N, M>,
+pub fn run_saved_watched(
+    system: &dyn Mechanism,
     method: &Method,
-    request: &Request<N>,
-    (events, samples): (&[Event<'_, N>], u32),
+    request: &Request,
+    (events, samples): (&[Event<'_>], u32),
     saving: &mut Saving<'_>,
-    nodes: Option<Nodes<'_, N, M>>,
+    nodes: Option<Nodes<'_>>,
     progress: &mut dyn Progress,
-) -> Result<SavedRun<N>, CheckpointError> {
-    let Request { schedule, q, v, .. } = *request;
+) -> Result<SavedRun, CheckpointError> {
+    let Request { schedule, ref q, ref v, .. } = *request;
     let meter = Meter::new(request, method);
     let loaded = match saving.from {
         Some(checkpoint) => {
             checkpoint.belongs_to(saving.identity)?;
             let [made] = checkpoint.counts("k")?;
             within(made, schedule.steps)?;
-            Some(Progressing::load(checkpoint, system.angles(), Meter::new(request, method))?)
+            Some(Progressing::load(checkpoint, system, Meter::new(request, method))?)
         }
         None => None,
     };
@@ -152,7 +151,7 @@ pub fn run_saved_watched<const N: usize, const M: usize>(
         None => Progressing {
             made: 0,
             t: schedule.t0,
-            state: State::new(q, v, system.angles()),
+            state: system.state(q, v),
             memory: Vec::new(),
             meter,
             seconds: 0.0,
@@ -165,30 +164,30 @@ pub fn run_saved_watched<const N: usize, const M: usize>(
     progress.advance(run.made);
     let mut ticker = Ticker::new(progress, run.made);
     let (begin, before) = (Instant::now(), run.seconds);
-    let (first, mut state) = (run.made, run.state);
-    let mut seen = (first > 0).then_some((run.t, state));
+    let (first, mut state) = (run.made, run.state.clone());
+    let mut seen = (first > 0).then(|| (run.t, state.clone()));
     let mut stopped = false;
     let ends = |done: &Part| saving.every.is_some() && (done.stopped || done.made == schedule.steps);
     let outcome =
-        piece_by_piece_from(first, system, &schedule, &mut state, |piece, Piece { steps, schedule: times }, state| {
+        piece_by_piece(first, system, &schedule, &mut state, |piece, Piece { steps, schedule: times }, state| {
             if steps.start > first {
                 // A piece begins with a new method.
                 run.memory.clear();
             }
-            let mut stepper = method.stepper_of(own, times.middle(&steps));
+            let mut integrator = piece.integrator(method);
             let mut done = Part { made: steps.start, stopped: false };
             for chunk in chunks(&steps, saving.every) {
                 // From what a checkpoint has, so that the run is the same with one.
-                stepper.recall(&run.memory, state);
+                integrator.recall(&run.memory, state);
                 let limits = method.substeps();
                 let inner = (&mut run.meter, (&mut nodes, &mut ticker));
-                let mut watch = Watch::new(Again { method, own }, events, inner);
+                let mut watch = Watch::new(method, events, inner);
                 watch.samples = samples;
-                let mut watch = match seen {
+                let mut watch = match seen.take() {
                     Some((t, state)) => watch.resumed(t, state),
                     None => watch,
                 };
-                let outcome = substepped_part(piece, &mut *stepper, limits, &times, chunk.clone(), state, &mut watch);
+                let outcome = substepped_part(piece, &mut *integrator, limits, &times, chunk.clone(), state, &mut watch);
                 run.crossings.extend(watch.crossings().iter().map(SavedCrossing::from));
                 run.unseen += watch.unseen();
                 let ended = watch.ended().is_some();
@@ -197,8 +196,8 @@ pub fn run_saved_watched<const N: usize, const M: usize>(
                     start.iter().for_each(|made| (saving.save)(made));
                     break;
                 }
-                seen = Some((times.time(done.made), *state));
-                run.memory = stepper.memory();
+                seen = Some((times.time(done.made), state.clone()));
+                run.memory = integrator.memory();
                 // Of a run that is over there is none, and its checkpoint stays as it is.
                 let news = done.made > first || first == 0;
                 let due = saving.every.is_some_and(|every| done.made.is_multiple_of(every));
@@ -206,7 +205,7 @@ pub fn run_saved_watched<const N: usize, const M: usize>(
                     if done.made == steps.end && done.made < schedule.steps {
                         run.memory.clear();
                     }
-                    (run.made, run.t, run.state) = (done.made, times.time(done.made), *state);
+                    (run.made, run.t, run.state) = (done.made, times.time(done.made), state.clone());
                     run.seconds = before + begin.elapsed().as_secs_f64();
                     start = None;
                     (saving.save)(&run.checkpoint(saving.identity, nodes.as_ref()));
@@ -250,8 +249,8 @@ fn chunks(steps: &Range<u64>, every: Option<u64>) -> Vec<Range<u64>> {
     }
 }
 
-impl<const N: usize> Progressing<N> {
-    fn checkpoint<const M: usize>(&self, identity: &Checkpoint, nodes: Option<&Nodes<'_, N, M>>) -> Checkpoint {
+impl Progressing {
+    fn checkpoint(&self, identity: &Checkpoint, nodes: Option<&Nodes<'_>>) -> Checkpoint {
         let mut checkpoint = identity.clone();
         if let Some(nodes) = nodes {
             nodes.save(&mut checkpoint);
@@ -268,13 +267,13 @@ impl<const N: usize> Progressing<N> {
         checkpoint
     }
 
-    fn load(checkpoint: &Checkpoint, angles: [bool; N], meter: Meter<N>) -> Result<(Self, Work<N>), CheckpointError> {
+    fn load(checkpoint: &Checkpoint, system: &dyn Mechanism, meter: Meter) -> Result<(Self, Work), CheckpointError> {
         let [made] = checkpoint.counts("k")?;
         let ([seconds], [t]) = (checkpoint.get("seconds")?, checkpoint.get("time")?);
-        let state = State::load(checkpoint, angles)?;
+        let state = system.load_state(checkpoint)?;
         let work = Work::load(checkpoint, t, &state)?;
-        let meter = Meter::load(checkpoint, meter, made, t, &state, work)?;
-        let crossings = SavedCrossing::all(&checkpoint.list("crossings")?);
+        let meter = Meter::load(checkpoint, meter, made, t, &state, work.clone())?;
+        let crossings = SavedCrossing::all(&checkpoint.list("crossings")?, state.q().len());
         // A checkpoint may be of a program that did not count them.
         let [unseen] = checkpoint.counts("unseen").unwrap_or([0]);
         Ok((Self { made, t, state, memory: checkpoint.list("memory")?, meter, seconds, crossings, unseen }, work))

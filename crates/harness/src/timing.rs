@@ -1,5 +1,5 @@
 use crate::stopwatch::take;
-use dla::{Observer, StepReport, View};
+use dla::{Observer, Report, View};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
@@ -48,11 +48,11 @@ impl<'a> Ticker<'a> {
     }
 }
 
-impl<const N: usize, const M: usize> Observer<N, M> for Ticker<'_> {
-    fn start(&mut self, _node: &View<'_, N, M>) {}
+impl Observer for Ticker<'_> {
+    fn start(&mut self, _node: &View<'_>) {}
 
     #[inline]
-    fn step(&mut self, node: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_>, _report: &Report) -> ControlFlow<()> {
         if node.k.is_multiple_of(Self::EVERY) {
             self.progress.advance(node.k - self.told);
             self.told = node.k;
@@ -64,12 +64,12 @@ impl<const N: usize, const M: usize> Observer<N, M> for Ticker<'_> {
         ControlFlow::Continue(())
     }
 
-    fn part(&mut self, _end: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
+    fn part(&mut self, _end: &View<'_>, _report: &Report) -> ControlFlow<()> {
         self.stopped = self.progress.stops();
         if self.stopped { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
-    fn end(&mut self, node: &View<'_, N, M>) {
+    fn end(&mut self, node: &View<'_>) {
         self.progress.advance(node.k - self.told);
         self.told = node.k;
     }
@@ -78,18 +78,18 @@ impl<const N: usize, const M: usize> Observer<N, M> for Ticker<'_> {
 /// The observer that only asks whether to go on.
 pub(crate) struct Stopper<'a>(pub(crate) &'a dyn Progress);
 
-impl<const N: usize, const M: usize> Observer<N, M> for Stopper<'_> {
-    fn start(&mut self, _node: &View<'_, N, M>) {}
+impl Observer for Stopper<'_> {
+    fn start(&mut self, _node: &View<'_>) {}
 
     #[inline]
-    fn step(&mut self, node: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_>, _report: &Report) -> ControlFlow<()> {
         if node.k.is_multiple_of(Ticker::EVERY) && self.0.stops() {
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
     }
 
-    fn part(&mut self, _end: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
+    fn part(&mut self, _end: &View<'_>, _report: &Report) -> ControlFlow<()> {
         if self.0.stops() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }

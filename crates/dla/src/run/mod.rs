@@ -8,6 +8,7 @@ mod drive;
 mod events;
 mod integrator;
 mod mechanism;
+mod parametrised;
 mod pieces;
 mod recommend;
 mod samples;
@@ -25,6 +26,7 @@ pub use drive::{Observer, Part, RunError, Schedule, Shorter, View, drive, drive_
 pub use events::{Close, Crossing, Direction, Event, Watch, Zero, Zeros, close_crossings, zeros};
 pub use integrator::{Integrator, Report, SeeOwnStep};
 pub use mechanism::{Mechanism, Place, Size};
+pub use parametrised::{AnyTangent, Member, ParametrisedMechanics, ParametrisedMechanism};
 pub use pieces::{Piece, PiecewiseMechanics, fitted, onto_constraint, piece_by_piece, pieces, smooth_pieces};
 pub use recommend::{RecommendError, Recommendation, recommend_by_trial};
 pub use samples::Samples;

@@ -75,7 +75,7 @@ impl<'a, const N: usize, const M: usize> Subject<'a, N, M> {
         Self { system: Held::Seeded(system), own: &(), at: 0.0 }
     }
 
-    fn system(&self) -> &dyn Mechanics<N, M> {
+    pub(super) fn system(&self) -> &dyn Mechanics<N, M> {
         match &self.system {
             Held::Smooth(system) => *system,
             Held::Seeded(system) => *system,
@@ -116,7 +116,7 @@ impl<'a, Sys: PiecewiseMechanics<N, M>, const N: usize, const M: usize> From<&'a
 }
 
 /// Numbers with derivatives as a row.
-fn seeded_row<const N: usize>(x: &[Seeded]) -> [Seeded; N] {
+pub(super) fn seeded_row<const N: usize>(x: &[Seeded]) -> [Seeded; N] {
     from_fn(|i| x.get(i).copied().unwrap_or(Seeded::constant(f64::NAN)))
 }
 

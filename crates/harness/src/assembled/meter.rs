@@ -23,7 +23,7 @@ pub(super) struct AssemblyMeter<'a> {
     iterations: u64,
     most_iterations: u32,
     bucket: (f64, f64),
-    samples: Vec<Sample<3>>,
+    samples: Vec<Sample>,
     pub(super) nodes: Vec<AssemblyNode>,
     substeps: Option<SubstepSummary>,
 }
@@ -141,7 +141,7 @@ impl<'a> AssemblyMeter<'a> {
 
     fn keep(&mut self, assembly: &Assembly, t: f64, state: &AssemblyState) {
         let node = self.node(assembly, t, state);
-        self.samples.push(Sample { t, q: first(&node.q), energy_error: self.bucket.0, constraint: self.bucket.1 });
+        self.samples.push(Sample { t, q: first(&node.q).to_vec(), energy_error: self.bucket.0, constraint: self.bucket.1 });
         self.bucket = (0.0, 0.0);
         if self.shown.is_none() {
             self.nodes.push(node);
@@ -176,7 +176,7 @@ impl<'a> AssemblyMeter<'a> {
         (t, steps, wall_seconds): (f64, u64, f64),
         state: &AssemblyState,
         failure: Option<&AssemblyRunError>,
-    ) -> Record<3> {
+    ) -> Record {
         let coordinates: Vec<[f64; 2]> = (0..state.len().min(3)).map(|i| [state.unwrapped(i), state.v(i)]).collect();
         let of = |which: usize| first(&coordinates.iter().map(|pair| pair[which]).collect::<Vec<_>>());
         let mean = if steps == 0 { 0.0 } else { self.iterations as f64 / steps as f64 };
@@ -201,8 +201,8 @@ impl<'a> AssemblyMeter<'a> {
             step_constraint_max: f64::NAN,
             leaf_max: Some(self.most[1]),
             t,
-            q: of(0),
-            v: of(1),
+            q: of(0).to_vec(),
+            v: of(1).to_vec(),
             samples: self.samples.clone(),
             failure: failure.map(|error| dla::RunError::new(error.step, error.time, error.source.step_error())),
             substeps: self.substeps,
@@ -242,7 +242,7 @@ impl<'a> AssemblyMeter<'a> {
         let [iterations, most] = checkpoint.counts("iterations")?;
         let substeps = method.substeps().map(|_| SubstepSummary::load(checkpoint)).transpose()?;
         let samples = checkpoint.list("samples")?;
-        let sample = |x: &[f64]| Sample { t: x[0], energy_error: x[1], constraint: x[2], q: [x[3], x[4], x[5]] };
+        let sample = |x: &[f64]| Sample { t: x[0], energy_error: x[1], constraint: x[2], q: x[3..6].to_vec() };
         Ok(Self {
             shown,
             every,

@@ -77,7 +77,7 @@ impl std::fmt::Debug for AssemblyNodes<'_> {
 #[derive(Debug, Clone)]
 pub struct Assembled {
     /// The record, whose coordinates are the first three of the assembly; [`Record::leaf_max`] is that of its joints.
-    pub record: Record<3>,
+    pub record: Record,
     /// The nodes that were kept.
     pub nodes: Vec<AssemblyNode>,
     /// The state at the end.

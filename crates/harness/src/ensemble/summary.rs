@@ -1,4 +1,4 @@
-use dla::{Mechanics, State};
+use dla::{AnyState, Mechanism};
 use lagrangian::linear::larger;
 
 /// A list of numbers: an array, or a vector where their number is not known before.
@@ -28,15 +28,15 @@ pub struct Summary<Q> {
 }
 
 /// Quantities of a time (s), a configuration, angles with their full turns, and a velocity.
-pub(super) type Of<'a, Q, const N: usize> = &'a dyn Fn(f64, &[f64; N], &[f64; N]) -> Q;
+pub(super) type Of<'a, Q> = &'a dyn Fn(f64, &[f64], &[f64]) -> Q;
 
 impl<Q: Quantities> Summary<Q> {
     /// The summary of the first node alone.
-    pub(super) fn first<const N: usize, const M: usize>(
-        system: &dyn Mechanics<N, M>,
+    pub(super) fn first(
+        system: &dyn Mechanism,
         t: f64,
-        state: &State<N>,
-        of: Of<'_, Q, N>,
+        state: &AnyState,
+        of: Of<'_, Q>,
     ) -> Self {
         let end = of(t, &state.unwrapped(), state.v());
         let energy = system.energy(t, state.q(), state.v());
@@ -47,12 +47,12 @@ impl<Q: Quantities> Summary<Q> {
     }
 
     /// Takes in one more node.
-    pub(super) fn see<const N: usize, const M: usize>(
+    pub(super) fn see(
         &mut self,
-        system: &dyn Mechanics<N, M>,
+        system: &dyn Mechanism,
         t: f64,
-        state: &State<N>,
-        of: Of<'_, Q, N>,
+        state: &AnyState,
+        of: Of<'_, Q>,
     ) {
         (self.t, self.end) = (t, of(t, &state.unwrapped(), state.v()));
         for (k, value) in self.end.as_ref().iter().enumerate() {
@@ -63,9 +63,8 @@ impl<Q: Quantities> Summary<Q> {
         self.look(system, t, state);
     }
 
-    fn look<const N: usize, const M: usize>(&mut self, system: &dyn Mechanics<N, M>, t: f64, state: &State<N>) {
+    fn look(&mut self, system: &dyn Mechanism, t: f64, state: &AnyState) {
         self.energy_deviation = larger(self.energy_deviation, (self.energy[1] - self.energy[0]).abs());
-        let residual = system.residual(t, state.q(), state.v());
-        self.constraint = residual.iter().fold(self.constraint, |most, residual| larger(most, residual.abs()));
+        self.constraint = larger(self.constraint, system.largest_residual(t, state.q(), state.v()));
     }
 }

@@ -2,81 +2,50 @@ use super::summary::Of;
 use super::{Quantities, Summary};
 use crate::Method;
 use crate::run::integrate_pieces;
-use dla::{Ensemble, Mechanics, Observer, RunError, Schedule, State, StepReport, Subject, View, stops};
+use dla::{Mechanism, Observer, Report, RunError, Schedule, View};
 use std::fmt::{Debug, Formatter};
 use std::ops::ControlFlow;
 
 /// Which quantities are observed, and at which nodes.
 #[derive(Clone, Copy)]
-pub struct Watching<'a, Q, const N: usize> {
+pub struct Watching<'a, Q> {
     /// The steps.
     pub schedule: Schedule,
     /// Every so many of them, and at the end.
     pub every: u64,
     /// The quantities.
-    pub of: Of<'a, Q, N>,
+    pub of: Of<'a, Q>,
 }
 
-impl<Q, const N: usize> Debug for Watching<'_, Q, N> {
+impl<Q> Debug for Watching<'_, Q> {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
         let Self { schedule, every, .. } = self;
         f.debug_struct("Watching").field("schedule", schedule).field("every", every).finish_non_exhaustive()
     }
 }
 
-/// The summaries of trajectories in lanes; none of one that was lost, which [`summarise`] tells more about.
-pub fn watch<Q: Quantities, const N: usize, const M: usize, const W: usize>(
-    ensemble: &mut dyn Ensemble<N, W>,
-    systems: &[&dyn Mechanics<N, M>; W],
-    watching: &Watching<'_, Q, N>,
-) -> Vec<Option<Summary<Q>>> {
-    let Watching { schedule, every, of } = watching;
-    let mut summaries: Vec<Option<Summary<Q>>> = vec![None; W];
-    let mut made = 0;
-    loop {
-        let (state, t) = (ensemble.state(), schedule.time(made));
-        for (lane, place) in summaries.iter_mut().enumerate() {
-            let system = systems[lane];
-            let there = state.is_finite(lane) && (made == 0 || place.is_some());
-            let seen = there.then(|| system.velocity_of(t, &state.q(lane), &state.xi(lane)).ok()).flatten();
-            match (seen, place.as_mut()) {
-                (Some(v), Some(summary)) => summary.see(system, t, &state.lane(lane, v), of),
-                (Some(v), None) => *place = Some(Summary::first(system, t, &state.lane(lane, v), of)),
-                (None, _) => *place = None,
-            }
-        }
-        if made >= schedule.steps || stops() {
-            return summaries;
-        }
-        let steps = (*every).max(1).min(schedule.steps - made);
-        ensemble.advance(steps);
-        made += steps;
-    }
-}
-
 /// The summary of one trajectory by any method; of one that fails that of its valid part, with the failure.
-pub fn summarise<'a, Q: Quantities, const N: usize, const M: usize>(
-    subject: impl Into<Subject<'a, N, M>>,
+pub fn summarise<Q: Quantities>(
+    system: &dyn Mechanism,
     method: &Method,
-    (q, v): ([f64; N], [f64; N]),
-    watching: &Watching<'_, Q, N>,
+    (q, v): (&[f64], &[f64]),
+    watching: &Watching<'_, Q>,
 ) -> (Option<Summary<Q>>, Option<RunError>) {
     let mut looking = Looking { watching, seen: None, last: None };
-    let subject = subject.into();
-    let mut state = State::new(q, v, subject.system.angles());
-    let outcome = integrate_pieces(subject, method, &watching.schedule, &mut state, &mut looking);
+    let mut state = system.state(q, v);
+    let outcome = integrate_pieces(system, method, &watching.schedule, &mut state, &mut looking);
     (looking.seen, outcome.err())
 }
 
 /// The observer of one trajectory.
-struct Looking<'a, 'b, Q, const N: usize> {
-    watching: &'a Watching<'b, Q, N>,
+struct Looking<'a, 'b, Q> {
+    watching: &'a Watching<'b, Q>,
     seen: Option<Summary<Q>>,
     last: Option<u64>,
 }
 
-impl<Q: Quantities, const N: usize> Looking<'_, '_, Q, N> {
-    fn see<const M: usize>(&mut self, node: &View<'_, N, M>) {
+impl<Q: Quantities> Looking<'_, '_, Q> {
+    fn see(&mut self, node: &View<'_>) {
         if self.last == Some(node.k) {
             return;
         }
@@ -89,19 +58,19 @@ impl<Q: Quantities, const N: usize> Looking<'_, '_, Q, N> {
     }
 }
 
-impl<Q: Quantities, const N: usize, const M: usize> Observer<N, M> for Looking<'_, '_, Q, N> {
-    fn start(&mut self, node: &View<'_, N, M>) {
+impl<Q: Quantities> Observer for Looking<'_, '_, Q> {
+    fn start(&mut self, node: &View<'_>) {
         self.see(node);
     }
 
-    fn step(&mut self, node: &View<'_, N, M>, _report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_>, _report: &Report) -> ControlFlow<()> {
         if node.k.is_multiple_of(self.watching.every.max(1)) {
             self.see(node);
         }
         ControlFlow::Continue(())
     }
 
-    fn end(&mut self, node: &View<'_, N, M>) {
+    fn end(&mut self, node: &View<'_>) {
         self.see(node);
     }
 }

@@ -1,12 +1,12 @@
 use crate::{Method, integrate_pieces};
-use dla::{RunError, Schedule, State, StepError, Subject, pieces};
+use dla::{Mechanism, RunError, Schedule, StepError, pieces};
 
 /// A motion to be computed again and again, with other methods and other steps.
-#[derive(Debug, Clone, Copy)]
-pub struct ReferenceMotion<'a, const N: usize, const M: usize> {
-    subject: Subject<'a, N, M>,
-    q: [f64; N],
-    v: [f64; N],
+#[derive(Debug, Clone)]
+pub struct ReferenceMotion<'a> {
+    system: &'a dyn Mechanism,
+    q: Vec<f64>,
+    v: Vec<f64>,
     duration: f64,
     base: u64,
     /// The least that the pieces between jumps need.
@@ -18,15 +18,15 @@ const FEWEST: u64 = 8;
 /// More steps than so many are not asked for so that every jump falls on a node of equal steps.
 const MOST: u64 = 1 << 20;
 
-impl<'a, const N: usize, const M: usize> ReferenceMotion<'a, N, M> {
+impl<'a> ReferenceMotion<'a> {
     /// The motion of a system from `q` with the velocity `v` over `duration` (s).
     #[must_use]
-    pub fn new(subject: impl Into<Subject<'a, N, M>>, q: [f64; N], v: [f64; N], duration: f64) -> Self {
-        let subject = subject.into();
-        let jumps = subject.system.jump_times(0.0, duration);
-        let motion = Self { subject, q, v, duration, base: 1, least: 1 + jumps.len() as u64 };
+    pub fn new(system: &'a dyn Mechanism, q: &[f64], v: &[f64], duration: f64) -> Self {
+        let jumps = system.jump_times(0.0, duration);
+        let motion = Self { system, q: q.to_vec(), v: v.to_vec(), duration, base: 1, least: 1 + jumps.len() as u64 };
         let aligned = |steps: &u64| pieces(&motion.schedule(*steps), jumps.clone()).is_ok();
-        Self { base: (1..=MOST).find(aligned).unwrap_or(1), ..motion }
+        let base = (1..=MOST).find(aligned).unwrap_or(1);
+        Self { base, ..motion }
     }
 
     /// How long it takes (s).
@@ -56,10 +56,9 @@ impl<'a, const N: usize, const M: usize> ReferenceMotion<'a, N, M> {
     ///
     /// # Errors
     /// [`RunError`] with the step that failed.
-    #[inline(never)]
-    pub fn end(&self, method: &Method, steps: u64) -> Result<[f64; N], RunError> {
-        let mut state = State::new(self.q, self.v, self.subject.system.angles());
-        let made = integrate_pieces(self.subject, method, &self.schedule(steps), &mut state, &mut ())?;
+    pub fn end(&self, method: &Method, steps: u64) -> Result<Vec<f64>, RunError> {
+        let mut state = self.system.state(&self.q, &self.v);
+        let made = integrate_pieces(self.system, method, &self.schedule(steps), &mut state, &mut ())?;
         if made < steps {
             let time = self.schedule(steps).time(made);
             return Err(RunError::new(made + 1, time, StepError::Stopped));

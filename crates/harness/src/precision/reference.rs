@@ -5,10 +5,10 @@ use lagrangian::linear::larger;
 use thiserror::Error;
 
 /// Where a motion ends, computed until finer steps change nothing but rounding.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reference<const N: usize> {
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reference {
     /// Configuration at the end, angles with their full turns.
-    pub q: [f64; N],
+    pub q: Vec<f64>,
     /// Steps of the run.
     pub steps: u64,
     /// How far it may be off: the largest distance among the runs from which on nothing improves, and from one by
@@ -58,7 +58,7 @@ const VAGUE: f64 = 0.1;
 /// So many runs on, nothing has improved: rounding is reached.
 const PATIENCE: usize = 3;
 
-impl<const N: usize> Reference<N> {
+impl Reference {
     /// Runs `gauss16` with ever more steps until the distance of successive ends no longer falls.
     ///
     /// The state carries its coordinates with twice the digits, so that what is left is the rounding of the velocities.
@@ -66,13 +66,12 @@ impl<const N: usize> Reference<N> {
     ///
     /// # Errors
     /// [`ReferenceError`] where no run succeeds.
-    #[inline(never)]
-    pub fn converged<const M: usize>(
-        motion: &ReferenceMotion<'_, N, M>,
-        distance: &dyn Fn(&[f64; N], &[f64; N]) -> f64,
+    pub fn converged(
+        motion: &ReferenceMotion<'_>,
+        distance: &dyn Fn(&[f64], &[f64]) -> f64,
     ) -> Result<Self, ReferenceError> {
         let (gauss16, gauss14) = (Method::named("gauss16", None)?, Method::named("gauss14", None)?);
-        let mut ends: Vec<(u64, [f64; N])> = Vec::new();
+        let mut ends: Vec<(u64, Vec<f64>)> = Vec::new();
         // The distances of successive ends, the best of them and where it is.
         let mut steps: Vec<f64> = Vec::new();
         let mut best = (f64::INFINITY, 0);
@@ -104,7 +103,7 @@ impl<const N: usize> Reference<N> {
             wanted = (count as f64 * RATIO).ceil() as u64;
         }
         // Of the two ends with the smallest distance the later one.
-        let Some(&(count, q)) = ends.get(best.1 + 1) else {
+        let Some((count, q)) = ends.get(best.1 + 1).cloned() else {
             return Err(failure.unwrap_or(ReferenceError::TooFew));
         };
         let rounding = f64::EPSILON * q.iter().fold(0.0, |size: f64, q| size.max(q.abs()));

@@ -1,4 +1,4 @@
-use dla::{Observer, RunError, State, StepReport, View, Work};
+use dla::{AnyState, Observer, Report, RunError, View, Work};
 use std::fmt;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -44,22 +44,22 @@ impl Recorded {
 }
 
 /// The observer that records a run for the checks; it ends one that is no longer finite, or that takes too long.
-pub struct Recorder<'a, const N: usize> {
-    look: &'a dyn Fn(&State<N>) -> [f64; VALUES],
+pub struct Recorder<'a> {
+    look: &'a dyn Fn(&AnyState) -> [f64; VALUES],
     every: u64,
     begun: Instant,
     initial: f64,
-    work: Work<N>,
+    work: Work,
     recorded: Recorded,
 }
 
-impl<'a, const N: usize> Recorder<'a, N> {
+impl<'a> Recorder<'a> {
     /// No run of a case takes so long, on any machine and beside any other work.
     const LONGEST: Duration = Duration::from_secs(600);
 
     /// Keeps every `every`-th node, with what `look` sees in it.
     #[must_use]
-    pub fn new(every: u64, look: &'a dyn Fn(&State<N>) -> [f64; VALUES]) -> Self {
+    pub fn new(every: u64, look: &'a dyn Fn(&AnyState) -> [f64; VALUES]) -> Self {
         let (work, recorded) = (Work::default(), Recorded::default());
         Self { look, every: every.max(1), begun: Instant::now(), initial: 0.0, work, recorded }
     }
@@ -70,7 +70,7 @@ impl<'a, const N: usize> Recorder<'a, N> {
         Recorded { failure, ..self.recorded }
     }
 
-    fn see<const M: usize>(&mut self, node: &View<'_, N, M>) -> ControlFlow<()> {
+    fn see(&mut self, node: &View<'_>) -> ControlFlow<()> {
         let late = node.k.is_multiple_of(1024) && self.begun.elapsed() > Self::LONGEST;
         self.recorded.late |= late;
         let mut broken = false;
@@ -84,8 +84,8 @@ impl<'a, const N: usize> Recorder<'a, N> {
     }
 }
 
-impl<const N: usize, const M: usize> Observer<N, M> for Recorder<'_, N> {
-    fn start(&mut self, node: &View<'_, N, M>) {
+impl Observer for Recorder<'_> {
+    fn start(&mut self, node: &View<'_>) {
         self.initial = node.energy();
         self.work.start(node);
         // A start that is not finite is seen again after the first step.
@@ -93,7 +93,7 @@ impl<const N: usize, const M: usize> Observer<N, M> for Recorder<'_, N> {
     }
 
     /// Also where a run begins that has made steps before.
-    fn resume(&mut self, node: &View<'_, N, M>) {
+    fn resume(&mut self, node: &View<'_>) {
         if self.recorded.nodes.is_empty() {
             self.start(node);
         } else {
@@ -101,7 +101,7 @@ impl<const N: usize, const M: usize> Observer<N, M> for Recorder<'_, N> {
         }
     }
 
-    fn step(&mut self, node: &View<'_, N, M>, report: &StepReport<M>) -> ControlFlow<()> {
+    fn step(&mut self, node: &View<'_>, report: &Report) -> ControlFlow<()> {
         // Work never ends a run.
         let _ = self.work.step(node, report);
         self.see(node)
@@ -112,7 +112,7 @@ impl<const N: usize, const M: usize> Observer<N, M> for Recorder<'_, N> {
     }
 }
 
-impl<const N: usize> fmt::Debug for Recorder<'_, N> {
+impl fmt::Debug for Recorder<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Recorder").field("every", &self.every).field("recorded", &self.recorded).finish_non_exhaustive()
     }

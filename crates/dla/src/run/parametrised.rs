@@ -1,0 +1,117 @@
+use super::integrator::OTHER_SHAPE;
+use super::mechanism::Mechanism;
+use super::state::row;
+use super::subject::{Subject, seeded_row};
+use crate::method::differentiable;
+use crate::{AnyState, Method, Report, Sensitivity, SensitivityError, Tangent, Variation};
+use lagrangian::{Gradients, Scalar, Seeded, from_fn};
+use std::fmt;
+
+/// A system as a function of `P` parameters, on numbers with derivatives; an object, so that what uses it is compiled once for a shape.
+pub trait ParametrisedMechanics<const N: usize, const M: usize, const P: usize> {
+    /// The system at these parameters, with the basis of that number ([`lagrangian::System::near`]).
+    fn at(&self, basis: u64, p: &[Seeded; P]) -> Box<dyn Gradients<N, M> + '_>;
+}
+
+/// A variation of a state and of the parameters of its system, of sizes known at run time.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct AnyTangent {
+    /// Of the configuration.
+    pub q: Vec<f64>,
+    /// Of the velocity.
+    pub v: Vec<f64>,
+    /// Of the parameters; it is the same along a run.
+    pub parameters: Vec<f64>,
+}
+
+/// A member of a family of systems, whose motions are differentiated in the parameters too; sizes are known at run time.
+pub trait ParametrisedMechanism {
+    /// The member.
+    fn mechanism(&self) -> &dyn Mechanism;
+
+    /// The values of its parameters.
+    fn parameters(&self) -> &[f64];
+
+    /// The energy (J) at a time and a state on numbers with derivatives.
+    fn energy(&self, t: f64, q: &[Seeded], v: &[Seeded], p: &[Seeded]) -> Seeded;
+
+    /// Tangents after a step of a method, made in the basis of that number.
+    ///
+    /// # Errors
+    /// [`SensitivityError`] where the step has no derivative.
+    fn carried(
+        &self,
+        method: &Method,
+        basis: u64,
+        time: (f64, f64),
+        ends: [&AnyState; 2],
+        report: &Report,
+        tangents: &[AnyTangent],
+    ) -> Result<Vec<AnyTangent>, SensitivityError>;
+}
+
+/// A system of a shape with its family.
+pub struct Member<'a, const N: usize, const M: usize, const P: usize> {
+    subject: Subject<'a, N, M>,
+    family: &'a dyn ParametrisedMechanics<N, M, P>,
+    parameters: [f64; P],
+}
+
+impl<'a, const N: usize, const M: usize, const P: usize> Member<'a, N, M, P> {
+    /// The member at these parameters, which the subject is.
+    pub fn new(
+        subject: Subject<'a, N, M>,
+        family: &'a dyn ParametrisedMechanics<N, M, P>,
+        parameters: [f64; P],
+    ) -> Self {
+        Self { subject, family, parameters }
+    }
+}
+
+impl<const N: usize, const M: usize, const P: usize> fmt::Debug for Member<'_, N, M, P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Member").field("parameters", &self.parameters).finish_non_exhaustive()
+    }
+}
+
+impl<const N: usize, const M: usize, const P: usize> ParametrisedMechanism for Member<'_, N, M, P> {
+    fn mechanism(&self) -> &dyn Mechanism {
+        &self.subject
+    }
+
+    fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
+    /// `v . L_v - L`.
+    fn energy(&self, t: f64, q: &[Seeded], v: &[Seeded], p: &[Seeded]) -> Seeded {
+        let (t, q, v): (_, [Seeded; N], [Seeded; N]) = (Seeded::constant(t), seeded_row(q), seeded_row(v));
+        let model = self.family.at(0, &seeded_row(p));
+        let momentum = model.momentum(t, &q, &v);
+        let twice = v.iter().zip(momentum).fold(Seeded::zero(), |sum, (v, p)| sum + *v * p);
+        twice - model.lagrangian(t, &q, &v)
+    }
+
+    fn carried(
+        &self,
+        method: &Method,
+        basis: u64,
+        time: (f64, f64),
+        [start, end]: [&AnyState; 2],
+        report: &Report,
+        tangents: &[AnyTangent],
+    ) -> Result<Vec<AnyTangent>, SensitivityError> {
+        let rule = differentiable::<N, M>(method)?;
+        let seeder = |p: &[Seeded]| self.family.at(basis, &from_fn(|k| p.get(k).copied().unwrap_or(Seeded::zero())));
+        let sensitivity = Sensitivity::seeded(self.subject.system(), self.parameters, seeder);
+        let (start, end) = start.typed().zip(end.typed()).ok_or(OTHER_SHAPE)?;
+        let derivative = sensitivity.between(&*rule, time, start, end, report.typed())?;
+        let carried = |tangent: &AnyTangent| {
+            let state = Variation { q: row(&tangent.q), v: row(&tangent.v) };
+            let Tangent { state, parameters } =
+                derivative.apply(&Tangent { state, parameters: row(&tangent.parameters) });
+            AnyTangent { q: state.q.to_vec(), v: state.v.to_vec(), parameters: parameters.to_vec() }
+        };
+        Ok(tangents.iter().map(carried).collect())
+    }
+}
