@@ -2,7 +2,7 @@ use lagrangian::linear::{Inverse, larger};
 use lagrangian::{from_fn, mul_add};
 
 /// Larger systems, by coordinates or constraints, have no frozen Jacobian: each of their steps is made without memory.
-pub(crate) const COORDINATES: usize = 8;
+pub(crate) const COORDINATES: usize = 12;
 
 /// A correction is accepted without a check of its residual at most so many times in a row, and only after so many steps with the same
 /// Jacobian.
@@ -105,7 +105,11 @@ impl StepDerivatives {
     /// The product of the inverse with a vector.
     #[inline(always)]
     pub(crate) fn times<const N: usize>(&self, x: &[f64; N]) -> [f64; N] {
-        if N <= 4 { self.times_of::<N, N>(x) } else { self.times_of::<N, COORDINATES>(x) }
+        match N {
+            0..=4 => self.times_of::<N, N>(x),
+            5..=8 => self.times_of::<N, 8>(x),
+            _ => self.times_of::<N, COORDINATES>(x),
+        }
     }
 
     /// The same by columns padded to `W` places: beyond four, whole vector registers are quicker.

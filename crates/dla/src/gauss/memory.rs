@@ -2,7 +2,7 @@ use super::lanes::StageSlopes;
 use crate::State;
 
 /// Of larger systems nothing is remembered.
-const COORDINATES: usize = 6;
+const COORDINATES: usize = 12;
 
 /// The predictor of the stages: the slopes of the last step, whose polynomial is continued to the nodes of the next.
 ///
