@@ -76,7 +76,7 @@ pub use in_chart::InChart;
 pub use known_angle::KnownAngle;
 pub use lobatto::{LinearisedStage, Lobatto, LobattoTables, StagePoint};
 pub use mechanics::{Diagnosis, FullMechanics, Mechanics, RoundedMechanics, SecondSlopes, SeededMechanics, Slopes};
-pub use method::{METHODS, Method, MethodError, MethodInfo, MethodKind, has_derivatives};
+pub use method::{METHODS, Method, MethodError, MethodInfo, MethodKind, has_derivatives, has_tangents};
 pub use newton::{Equations, Newton, NewtonError};
 pub use not_a_number::{Derivative, NotANumber, SystemFunction, Variable, not_a_number};
 pub use one_step::{OneStep, OwnStep, Stage, StepError, StepReport};

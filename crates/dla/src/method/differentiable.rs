@@ -2,12 +2,21 @@ use super::stepper::{composed, energy, gauss};
 use super::{Method, MethodKind};
 use crate::{Differentiable, Dla, Lobatto, Rk4, Rk4Reduced, SensitivityError};
 
-/// Whether the steps of a method have derivatives, for systems of any size.
+/// Whether the steps of a method have derivatives.
 ///
 /// # Errors
 /// [`SensitivityError::Unsupported`] with the reason, where they have not.
 pub fn has_derivatives(method: &Method) -> Result<(), SensitivityError> {
     differentiable::<3, 1>(method).map(drop)
+}
+
+/// Whether they have derivatives on the distribution, for exponents.
+///
+/// # Errors
+/// [`SensitivityError::Unsupported`] with the reason, where they have not.
+pub fn has_tangents(method: &Method) -> Result<(), SensitivityError> {
+    method.info().tangent.map_err(|reason| SensitivityError::Unsupported { reason })?;
+    has_derivatives(method)
 }
 
 /// A method as an object whose steps can be differentiated.
@@ -24,7 +33,6 @@ pub(crate) fn differentiable<const N: usize, const M: usize>(
         reason: "derivatives of the steps of this method are available for systems of up to four coordinates: take gauss8",
     };
     let info = method.info();
-    info.tangent.map_err(|reason| SensitivityError::Unsupported { reason })?;
     Ok(match info.kind {
         MethodKind::Dla => Box::new(Dla::midpoint()),
         MethodKind::DlaTrapezoid | MethodKind::DlaAlpha => Box::new(Dla::new(method.rule(), method.rule())),
@@ -32,7 +40,10 @@ pub(crate) fn differentiable<const N: usize, const M: usize>(
         MethodKind::Gauss(stages) => Box::new(gauss(stages)),
         MethodKind::Rk4 => Box::new(Rk4),
         MethodKind::Rk4Reduced => Box::new(Rk4Reduced),
-        kind => return if const { N <= 4 } { small(kind) } else { None }.ok_or(TOO_LARGE),
+        kind => match info.tangent {
+            Err(reason) => return Err(SensitivityError::Unsupported { reason }),
+            Ok(()) => return if const { N <= 4 } { small(kind) } else { None }.ok_or(TOO_LARGE),
+        },
     })
 }
 

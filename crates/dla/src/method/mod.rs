@@ -6,7 +6,7 @@ mod stepper;
 mod table;
 
 pub(crate) use differentiable::differentiable;
-pub use differentiable::has_derivatives;
+pub use differentiable::{has_derivatives, has_tangents};
 
 pub use kind::MethodKind;
 pub use table::{METHODS, MethodInfo};

@@ -278,7 +278,7 @@ pub fn drive_part<const N: usize, const M: usize>(
 ) -> Result<Part, RunError> {
     let mut moved = AnyState::from(*state);
     let mut method = Bound::new(system, method);
-    let part = make_steps(&Subject::smooth(system), &mut method, schedule, steps, &mut moved, &mut observer);
+    let part = make_steps(&Subject::driven(system), &mut method, schedule, steps, &mut moved, &mut observer);
     if let Some(moved) = moved.typed() {
         *state = *moved;
     }

@@ -8,12 +8,12 @@ use crate::power::work_between;
 use crate::reduced_flow::reduced_flow;
 use crate::suspect::suspect_along;
 use crate::{
-    Checkpoint, CheckpointError, Discretisation, Dla, FullMechanics, Integrator, Mechanics, Method, MethodKind,
-    OneStep, PiecewiseMechanics, ReducedField, Report, Rk4, Rules, SeededMechanics, Sensitivity, SensitivityError,
-    State, StepError, onto_constraint, reduced_field, slip,
+    Checkpoint, CheckpointError, Differentiable, Discretisation, Dla, FullMechanics, Integrator, Mechanics, Method, OneStep,
+    PiecewiseMechanics, ReducedField, Report, Rules, SeededMechanics, Sensitivity, SensitivityError, State, StepError,
+    StepReport, has_tangents, onto_constraint, reduced_field, slip,
 };
 use lagrangian::linear::{Singular, larger, largest};
-use lagrangian::{MotionError, PowerSources, ReducedError, Scalar, Seeded, from_fn};
+use lagrangian::{Gradients, MotionError, PowerSources, ReducedError, Scalar, Seeded, from_fn};
 use nalgebra::DMatrix;
 use std::cell::Cell;
 use std::fmt;
@@ -48,6 +48,54 @@ pub struct Subject<'a, const N: usize, const M: usize> {
     own: &'a dyn OwnMethods<N, M>,
     /// The time of the smooth piece (s), where it is one.
     at: f64,
+    shaped: Option<&'static Shaped<N, M>>,
+}
+
+/// What is compiled for a shape where a system can be run by every method and analysed. A system that is only driven by methods of its shape
+/// costs none of this code.
+struct Shaped<const N: usize, const M: usize> {
+    stepper: for<'b> fn(&Method, &'b dyn OwnMethods<N, M>, f64) -> Stepper<'b, N, M>,
+    field: fn(&dyn Gradients<N, M>, f64, &[f64; N], &[f64; N]) -> Option<Result<ReducedField, Singular>>,
+    flow: fn(&dyn SeededMechanics<N, M>, f64, &[Seeded; N], &[Seeded; N]) -> Option<[[Seeded; N]; 2]>,
+    differentiable: fn(&Method) -> Result<Box<dyn Differentiable<N, M>>, SensitivityError>,
+    derivative: StepDerivativeOf<N, M>,
+}
+
+/// The derivative of a step of a method on a system.
+type StepDerivativeOf<const N: usize, const M: usize> = fn(
+    &dyn SeededMechanics<N, M>,
+    &Method,
+    (f64, f64),
+    [&State<N>; 2],
+    StepReport<M>,
+) -> Result<DMatrix<f64>, SensitivityError>;
+
+impl<const N: usize, const M: usize> Shaped<N, M> {
+    const ALL: Self =
+        Self {
+            stepper: Method::stepper_of,
+            field: reduced_field,
+            flow: reduced_flow,
+            differentiable,
+            derivative: reduced_derivative,
+        };
+}
+
+/// The derivative of a step in the coordinates `(q, xi)`.
+fn reduced_derivative<const N: usize, const M: usize>(
+    system: &dyn SeededMechanics<N, M>,
+    method: &Method,
+    time: (f64, f64),
+    [start, end]: [&State<N>; 2],
+    report: StepReport<M>,
+) -> Result<DMatrix<f64>, SensitivityError> {
+    const NO_BASIS: SensitivityError = SensitivityError::Unsupported {
+        reason: "exponents need a basis of the admissible velocities, and the system has no basis",
+    };
+    let rule = differentiable(method)?;
+    let derivative = Sensitivity::<N, M, 0>::of(system).between(&*rule, time, start, end, report)?;
+    let rows = derivative.reduced.ok_or(NO_BASIS)?.matrix();
+    Ok(DMatrix::from_fn(rows.len(), rows.len(), |i, j| rows[i][j]))
 }
 
 /// The system, by what can be asked of it.
@@ -62,17 +110,17 @@ enum Held<'a, const N: usize, const M: usize> {
 impl<'a, const N: usize, const M: usize> Subject<'a, N, M> {
     /// A system of which everything can be asked.
     pub fn new(system: &'a dyn FullMechanics<N, M>, own: &'a dyn OwnMethods<N, M>) -> Self {
-        Self { system: Held::Full(system), own, at: 0.0 }
+        Self { system: Held::Full(system), own, at: 0.0, shaped: Some(&Shaped::ALL) }
     }
 
-    /// A system without jumps, whose motions are not differentiated.
-    pub fn smooth(system: &'a dyn Mechanics<N, M>) -> Self {
-        Self { system: Held::Smooth(system), own: &(), at: 0.0 }
+    /// A system without jumps that methods of its shape drive: no method by name, and no analysis.
+    pub(super) fn driven(system: &'a dyn Mechanics<N, M>) -> Self {
+        Self { system: Held::Smooth(system), own: &(), at: 0.0, shaped: None }
     }
 
-    /// A system without jumps.
-    pub fn seeded(system: &'a dyn SeededMechanics<N, M>) -> Self {
-        Self { system: Held::Seeded(system), own: &(), at: 0.0 }
+    /// Another system of the shape, to which the same can be done.
+    fn other<'b>(&self, system: Held<'b, N, M>, own: &'b dyn OwnMethods<N, M>, at: f64) -> Subject<'b, N, M> {
+        Subject { system, own, at, shaped: self.shaped }
     }
 
     pub(super) fn system(&self) -> &dyn Mechanics<N, M> {
@@ -111,7 +159,7 @@ impl<const N: usize, const M: usize> fmt::Debug for Subject<'_, N, M> {
 
 impl<'a, Sys: PiecewiseMechanics<N, M>, const N: usize, const M: usize> From<&'a Sys> for Subject<'a, N, M> {
     fn from(system: &'a Sys) -> Self {
-        Self { system: Held::Piecewise(system), own: &(), at: 0.0 }
+        Self { system: Held::Piecewise(system), own: &(), at: 0.0, shaped: Some(&Shaped::ALL) }
     }
 }
 
@@ -142,7 +190,10 @@ impl<const N: usize, const M: usize> Mechanism for Subject<'_, N, M> {
     }
 
     fn integrator(&self, method: &Method) -> Box<dyn Integrator + '_> {
-        Box::new(Bound::new(self.system(), method.stepper_of(self.own, self.at)))
+        match self.shaped {
+            Some(shaped) => Box::new(Bound::new(self.system(), (shaped.stepper)(method, self.own, self.at))),
+            None => Box::new(Bound::new(self.system(), NotByName)),
+        }
     }
 
     fn general_map(&self) -> Box<dyn Integrator + '_> {
@@ -158,7 +209,7 @@ impl<const N: usize, const M: usize> Mechanism for Subject<'_, N, M> {
             Some(system) => Held::Piece(system.smooth_piece(t)),
             None => Held::Smooth(self.system()),
         };
-        Box::new(Subject { system, own: self.own, at: t })
+        Box::new(self.other(system, self.own, t))
     }
 
     fn energy(&self, t: f64, q: &[f64], v: &[f64]) -> f64 {
@@ -243,22 +294,23 @@ impl<const N: usize, const M: usize> Mechanism for Subject<'_, N, M> {
     fn near(&self, t: f64, q: &[f64], basis: u64, then: &mut dyn FnMut(u64, &dyn Mechanism)) -> bool {
         match self.with_derivatives() {
             Some(system) => {
-                system.near_seeded(t, &row(q), basis, &mut |number, near| then(number, &Subject::seeded(near)))
+                system.near_seeded(t, &row(q), basis, &mut |number, near| then(number, &self.other(Held::Seeded(near), &(), self.at)))
             }
-            None => self.system().near(t, &row(q), basis, &mut |number, near| then(number, &Subject::smooth(near))),
+            None => self.system().near(t, &row(q), basis, &mut |number, near| then(number, &self.other(Held::Smooth(near), &(), self.at))),
         }
     }
 
     fn counted(&self, evaluations: &Cell<u64>, then: &mut dyn FnMut(&dyn Mechanism)) {
-        then(&Subject::smooth(&Counted { system: self.system(), evaluations }));
+        let counted = Counted { system: self.system(), evaluations };
+        then(&self.other(Held::Smooth(&counted), &(), self.at));
     }
 
     fn reduced_field(&self, t: f64, q: &[f64], xi: &[f64]) -> Option<Result<ReducedField, Singular>> {
-        reduced_field(&*self.with_derivatives()?.gradients(), t, &row(q), &row(xi))
+        (self.shaped?.field)(&*self.with_derivatives()?.gradients(), t, &row(q), &row(xi))
     }
 
     fn reduced_flow(&self, t: f64, q: &[Seeded], xi: &[Seeded]) -> Option<[Vec<Seeded>; 2]> {
-        let flow = reduced_flow(self.with_derivatives()?, t, &seeded_row(q), &seeded_row(xi))?;
+        let flow = (self.shaped?.flow)(self.with_derivatives()?, t, &seeded_row(q), &seeded_row(xi))?;
         Some(flow.map(|part| part.to_vec()))
     }
 
@@ -268,8 +320,9 @@ impl<const N: usize, const M: usize> Mechanism for Subject<'_, N, M> {
     }
 
     fn has_derivatives(&self, method: &Method) -> Result<(), SensitivityError> {
-        self.with_derivatives().ok_or(NO_DERIVATIVES)?;
-        differentiable::<N, M>(method).map(drop)
+        has_tangents(method)?;
+        let (shaped, _) = self.shaped.zip(self.with_derivatives()).ok_or(NO_DERIVATIVES)?;
+        (shaped.differentiable)(method).map(drop)
     }
 
     fn step_derivative(
@@ -279,18 +332,25 @@ impl<const N: usize, const M: usize> Mechanism for Subject<'_, N, M> {
         [start, end]: [&AnyState; 2],
         report: &Report,
     ) -> Result<DMatrix<f64>, SensitivityError> {
-        const NO_BASIS: SensitivityError = SensitivityError::Unsupported {
-            reason: "exponents need a basis of the admissible velocities, and the system has no basis",
-        };
-        let rule = match method.info().kind {
-            // It leaves the distribution, on which exponents are defined, and its steps have derivatives there.
-            MethodKind::Rk4 => Box::new(Rk4),
-            _ => differentiable(method)?,
-        };
-        let sensitivity = Sensitivity::<N, M, 0>::of(self.with_derivatives().ok_or(NO_DERIVATIVES)?);
+        let (shaped, system) = self.shaped.zip(self.with_derivatives()).ok_or(NO_DERIVATIVES)?;
         let (start, end) = start.typed().zip(end.typed()).ok_or(OTHER_SHAPE)?;
-        let derivative = sensitivity.between(&*rule, time, start, end, report.typed())?;
-        let rows = derivative.reduced.ok_or(NO_BASIS)?.matrix();
-        Ok(DMatrix::from_fn(rows.len(), rows.len(), |i, j| rows[i][j]))
+        (shaped.derivative)(system, method, time, [start, end], report.typed())
+    }
+}
+
+/// The method by name of a system that is driven by methods of its shape.
+struct NotByName;
+
+impl<const N: usize, const M: usize> OneStep<N, M> for NotByName {
+    fn step(
+        &mut self,
+        _system: &dyn Mechanics<N, M>,
+        _t: f64,
+        _h: f64,
+        _state: &mut State<N>,
+    ) -> Result<StepReport<M>, StepError> {
+        Err(StepError::Unsupported {
+            reason: "the run was begun with a method and not with its name: `Subject` has the methods by name",
+        })
     }
 }
