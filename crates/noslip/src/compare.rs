@@ -10,9 +10,9 @@ use thiserror::Error;
 
 /// Runs of a system by several methods, as a table where it is printed.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Comparison<const N: usize> {
+pub struct Comparison {
     /// What each method did, in the order asked for.
-    pub runs: Vec<Record<N>>,
+    pub runs: Vec<Record>,
 }
 
 /// Makes the same run by each of these methods, by their names in the table of methods, and measures constraint, energy and time.
@@ -44,17 +44,17 @@ pub fn compare<'a, const N: usize, const M: usize>(
     methods: &[&str],
     schedule: &Schedule,
     (q, v): ([f64; N], [f64; N]),
-) -> Result<Comparison<N>, MethodError> {
+) -> Result<Comparison, MethodError> {
     /// Nodes that a record keeps for plots.
     const SAMPLES: u64 = 200;
     let subject = system.into();
-    let request = Request { schedule: *schedule, q, v, samples: SAMPLES };
-    let one = |name: &&str| Method::named(name, None).map(|method| run(subject, &method, &request, &mut ()));
+    let request = Request { schedule: *schedule, q: q.to_vec(), v: v.to_vec(), samples: SAMPLES };
+    let one = |name: &&str| Method::named(name, None).map(|method| run(&subject, &method, &request, &mut ()));
     let runs = methods.iter().map(one).collect::<Result<_, _>>()?;
     Ok(Comparison { runs })
 }
 
-impl<const N: usize> fmt::Display for Comparison<N> {
+impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{:<14} {:>10} {:>10} {:>12} {:>10}", "method", "steps", "constraint", "energy error", "wall [s]")?;
         for run in &self.runs {
@@ -114,8 +114,9 @@ pub fn precision<'a, const N: usize, const M: usize>(
     longest: f64,
 ) -> Result<WorkPrecision, PrecisionError> {
     let methods = methods.iter().map(|name| Method::named(name, None)).collect::<Result<Vec<_>, _>>()?;
-    let apart = |a: &[f64; N], b: &[f64; N]| a.iter().zip(b).fold(0.0, |most, (a, b)| larger(most, (a - b).abs()));
-    let motion = ReferenceMotion::new(system, q, v, duration);
+    let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).fold(0.0, |most, (a, b)| larger(most, (a - b).abs()));
+    let subject = system.into();
+    let motion = ReferenceMotion::new(&subject, &q, &v, duration);
     let reference = Reference::converged(&motion, &apart)?;
     let end_error = |method: &Method, steps: u64| motion.end(method, steps).map(|q| apart(&q, &reference.q));
     let aligned = |steps: u64| motion.aligned(steps);

@@ -10,9 +10,9 @@
 //! | add what acts on a body; derive a basis of the admissible velocities | [`Effect`], [`With`]; [`WithBasis`] |
 //! | ask what its constraints let it reach, and what its symmetries conserve | [`lagrangian::growth`], [`lagrangian::conservation`] |
 //! | choose a method | [`Dla`], [`DiscreteLagrangian`], [`OneStep`] |
-//! | run it and look on | [`drive`], [`Schedule`], [`State`], [`Observer`], [`Trajectory`] |
+//! | run it and look on | [`drive`], [`Schedule`], [`State`], [`Observer`], [`Trajectory`]; by any method, [`Subject`] |
 //! | differentiate its steps in state, parameters and controls | [`Sensitivity`], [`Parametrised`], [`Member`] |
-//! | find events, take samples, stop and resume, choose a step | [`Event`], [`Watch`], [`Samples`], [`Checkpoint`], [`recommend_step`] |
+//! | find events, take samples, stop and resume, choose a step | [`Event`], [`Watch`], [`Samples`], [`Checkpoint`], [`dla::recommend_by_trial`] |
 //! | use the Chaplygin sleigh, its closed form and its own integrator | [`Sleigh`], [`SleighState`], [`Exact`], [`ClosedMap`] |
 //! | compare methods by long runs, and by time against error (the cargo feature `compare`) | `noslip::compare`, `noslip::precision` |
 //! | write a trajectory for NumPy (the cargo feature `npz`) | `noslip::write_npz` |
@@ -34,9 +34,9 @@ pub use npz::write_npz;
 pub use assembly;
 pub use dla::{
     self, Checkpoint, CheckpointError, ClosedStepError, Crossing, Direction, Dla, Equations, Event, Form, Hermite,
-    Hint, History, InChart, Mechanics, Newton, NewtonError, Node, NotANumber, Observer, OneStep, RecommendError,
-    Recommendation, RunError, Samples, Schedule, Sensitivity, Stage, State, StepError, StepReport, Trajectory, View,
-    Watch, consistent_start, recommend_step, slip,
+    Hint, History, InChart, Mechanics, Mechanism, Newton, NewtonError, Node, NotANumber, Observer, OneStep, RecommendError,
+    Recommendation, RunError, Samples, Schedule, Sensitivity, Stage, State, StepError, StepReport, Subject, Trajectory, View,
+    Watch, consistent_start, slip,
 };
 pub use lagrangian::{
     self, AdmissibleBasis, Alpha, Attitude, Constraint, Derivatives, DiscreteConstraint, DiscreteLagrangian, Dual,
@@ -90,17 +90,13 @@ macro_rules! system {
 /// # Errors
 /// [`StepError::Slips`] where the start does not obey the constraints to six digits, with the residual: [`consistent_start`] gives the
 /// nearest state that does. [`RunError`] with the step that failed; `state` then is the last good node.
-pub fn drive<Method, Obs, const N: usize, const M: usize>(
+pub fn drive<const N: usize, const M: usize>(
     system: &dyn Mechanics<N, M>,
-    method: &mut Method,
+    method: &mut dyn OneStep<N, M>,
     schedule: &Schedule,
     state: &mut State<N>,
-    observer: Obs,
-) -> Result<u64, RunError>
-where
-    Method: OneStep<N, M> + ?Sized,
-    Obs: Observer<N, M>,
-{
+    observer: impl Observer,
+) -> Result<u64, RunError> {
     match slip(system, schedule.t0, state) {
         Some(source) => Err(RunError::new(1, schedule.t0, source)),
         None => dla::drive(system, method, schedule, state, observer),

@@ -12,17 +12,17 @@ use std::io::{self, Seek, Write};
 /// use noslip::prelude::*;
 ///
 /// let mut file = std::io::Cursor::new(Vec::new());
-/// noslip::write_npz(&Trajectory::<2, 1>::every(1), &mut file, ["x", "theta"], "an empty run")?;
+/// noslip::write_npz(&Trajectory::every(1), &mut file, &["x", "theta"], "an empty run")?;
 /// assert!(file.into_inner().starts_with(b"PK"));
 /// # Ok::<(), std::io::Error>(())
 /// ```
-pub fn write_npz<const N: usize, const M: usize>(
-    trajectory: &Trajectory<N, M>,
+pub fn write_npz(
+    trajectory: &Trajectory,
     file: &mut (impl Write + Seek),
-    names: [&str; N],
+    names: &[&str],
     metadata: &str,
 ) -> io::Result<()> {
-    let names = Trajectory::<N, M>::columns(names);
+    let names = Trajectory::columns(names);
     let columns: Vec<_> = names.iter().map(|name| ArrayColumn { name, whole: false }).collect();
     let nodes = trajectory.nodes();
     arrays::write(file, &columns, nodes.len() as u64, metadata, |push| {
